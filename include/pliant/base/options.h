@@ -1,0 +1,95 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Options by name. Every algorithm has a struct of options whose fields are listed once, in
+//   void MyOptions::List(OptionTable& table) { table.Add("levels", &levels, "-", "pyramid levels", 1, 8); }
+// and that one list serves the configuration file, the command line, the printed manual and the validation.
+// A field's full name is "Group.option". A table holds pointers into the structs: it must not outlive them.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "pliant/base/status.h"
+
+namespace pliant {
+
+// One option. `get` prints the present value so that `set` reads the same value back.
+struct OptionField {
+  std::string name;   // "Group.option"
+  std::string unit;   // "px", "mm", "-" ...; for a choice its names, "a | b"
+  std::string why;    // one line
+  std::function<std::string()> get;
+  std::function<Status(std::string_view)> set;  // refuses what cannot be read or is out of range
+};
+
+// The names of an enum's values; specialise it beside the enum:
+//   template <> struct EnumNames<Policy> {
+//     static constexpr std::array kNames = {std::pair{Policy::kPeriodic, std::string_view("periodic")}, ...}; };
+template <class Enum>
+struct EnumNames;
+
+template <class Enum>
+std::string_view EnumName(Enum value) {
+  for (const auto& [candidate, name] : EnumNames<Enum>::kNames)
+    if (candidate == value) return name;
+  return "?";
+}
+
+class OptionTable {
+ public:
+  // The fields added from here on belong to this group; `why` describes it in one line.
+  void BeginGroup(std::string name, std::string why);
+
+  // Ranges are inclusive. Not-a-number is always refused.
+  void Add(std::string name, bool* value, std::string unit, std::string why);
+  void Add(std::string name, int* value, std::string unit, std::string why, int low, int high);
+  void Add(std::string name, double* value, std::string unit, std::string why, double low, double high);
+  void Add(std::string name, std::string* value, std::string unit, std::string why);
+
+  // One of the named values of an enum (EnumNames).
+  template <class Enum>
+  void AddChoice(std::string name, Enum* value, std::string why) {
+    std::vector<std::string> names;
+    for (const auto& entry : EnumNames<Enum>::kNames) names.emplace_back(entry.second);
+    AddChoice(
+        std::move(name), std::move(names), std::move(why), [value] { return std::string(EnumName(*value)); },
+        [value](std::size_t index) { *value = EnumNames<Enum>::kNames[index].first; });
+  }
+
+  const std::vector<OptionField>& fields() const { return fields_; }
+  const std::vector<std::pair<std::string, std::string>>& groups() const { return groups_; }  // name, why
+  const OptionField* Find(std::string_view name) const;
+
+  // Sets one option from text. An unknown name is an error that names its nearest neighbour; a bad value, an error that
+  // names the option, its range and its unit. Nothing is changed on error.
+  Status Set(std::string_view name, std::string_view value);
+
+  // The table as YAML with every option's unit and reason as a comment; LoadOptionsFile (io) reads it back.
+  std::string ToYaml() const;
+
+ private:
+  void AddChoice(std::string name, std::vector<std::string> names, std::string why, std::function<std::string()> get,
+                 std::function<void(std::size_t)> set_index);
+  void AddField(OptionField field);
+
+  std::string group_;
+  std::vector<std::pair<std::string, std::string>> groups_;
+  std::vector<OptionField> fields_;
+};
+
+// The entry of `names` nearest to `name` (Levenshtein distance, upper and lower case alike); empty if `names` is empty.
+std::string NearestName(std::string_view name, const std::vector<std::string>& names);
+
+// Prints a double so that it reads back to the same value, in as few digits as possible.
+std::string FormatDouble(double value);
+// Reads the whole of `text` as a number; false if it is not one.
+bool ParseDouble(std::string_view text, double* value);
+bool ParseInt(std::string_view text, int* value);
+
+}  // namespace pliant

@@ -1,0 +1,186 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/base/options.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cctype>
+#include <cmath>
+
+namespace pliant {
+namespace {
+
+std::string Quote(std::string_view text) { return "'" + std::string(text) + "'"; }
+
+// A plain YAML scalar where it is safe, a double-quoted one elsewhere.
+std::string YamlScalar(const std::string& text) {
+  const bool plain = !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '_' || c == '.' || c == '-' || c == '+' || c == '/';
+  });
+  if (plain) return text;
+  std::string quoted = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') quoted += '\\';
+    quoted += c;
+  }
+  return quoted + '"';
+}
+
+}  // namespace
+
+std::string FormatDouble(double value) {
+  std::array<char, 64> buffer;
+  const auto [end, error] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
+  return {buffer.data(), end};
+}
+
+bool ParseDouble(std::string_view text, double* value) {
+  double parsed = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), parsed);
+  if (error != std::errc() || end != text.data() + text.size()) return false;
+  *value = parsed;
+  return true;
+}
+
+bool ParseInt(std::string_view text, int* value) {
+  int parsed = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), parsed);
+  if (error != std::errc() || end != text.data() + text.size()) return false;
+  *value = parsed;
+  return true;
+}
+
+std::string NearestName(std::string_view name, const std::vector<std::string>& names) {
+  std::string best;
+  std::size_t best_distance = std::numeric_limits<std::size_t>::max();
+  const auto lower = [](char c) { return std::tolower(static_cast<unsigned char>(c)); };
+  for (const std::string& candidate : names) {
+    std::vector<std::size_t> row(candidate.size() + 1);
+    for (std::size_t j = 0; j < row.size(); ++j) row[j] = j;
+    for (std::size_t i = 0; i < name.size(); ++i) {
+      std::size_t diagonal = row[0];
+      row[0] = i + 1;
+      for (std::size_t j = 0; j < candidate.size(); ++j) {
+        const std::size_t substitute = diagonal + (lower(name[i]) != lower(candidate[j]) ? 1 : 0);
+        diagonal = row[j + 1];
+        row[j + 1] = std::min({row[j] + 1, row[j + 1] + 1, substitute});
+      }
+    }
+    if (row.back() < best_distance) {
+      best_distance = row.back();
+      best = candidate;
+    }
+  }
+  return best;
+}
+
+void OptionTable::BeginGroup(std::string name, std::string why) {
+  group_ = std::move(name);
+  groups_.emplace_back(group_, std::move(why));
+}
+
+void OptionTable::AddField(OptionField field) {
+  assert(!group_.empty());
+  field.name = group_ + "." + field.name;
+  assert(Find(field.name) == nullptr);
+  fields_.push_back(std::move(field));
+}
+
+void OptionTable::Add(std::string name, bool* value, std::string unit, std::string why) {
+  const std::string full_name = group_ + "." + name;
+  AddField({std::move(name), std::move(unit), std::move(why), [value] { return *value ? "true" : "false"; },
+            [value, full_name](std::string_view text) {
+              if (text == "true" || text == "1" || text == "on" || text == "yes") {
+                *value = true;
+              } else if (text == "false" || text == "0" || text == "off" || text == "no") {
+                *value = false;
+              } else {
+                return Status(ErrorCode::kInvalidArgument, full_name + " is " + Quote(text) + "; give true or false");
+              }
+              return Status::Ok();
+            }});
+}
+
+void OptionTable::Add(std::string name, int* value, std::string unit, std::string why, int low, int high) {
+  const std::string full_name = group_ + "." + name;
+  AddField({std::move(name), std::move(unit), std::move(why), [value] { return std::to_string(*value); },
+            [value, full_name, low, high](std::string_view text) {
+              int parsed = 0;
+              if (!ParseInt(text, &parsed) || parsed < low || parsed > high)
+                return Status(ErrorCode::kInvalidArgument, full_name + " is " + Quote(text) +
+                                                               "; give a whole number from " + std::to_string(low) +
+                                                               " to " + std::to_string(high));
+              *value = parsed;
+              return Status::Ok();
+            }});
+}
+
+void OptionTable::Add(std::string name, double* value, std::string unit, std::string why, double low, double high) {
+  const std::string full_name = group_ + "." + name;
+  const std::string range = FormatDouble(low) + " to " + FormatDouble(high) + (unit == "-" ? "" : " " + unit);
+  AddField({std::move(name), std::move(unit), std::move(why), [value] { return FormatDouble(*value); },
+            [value, full_name, range, low, high](std::string_view text) {
+              double parsed = 0;
+              if (!ParseDouble(text, &parsed) || !(parsed >= low && parsed <= high))
+                return Status(ErrorCode::kInvalidArgument,
+                              full_name + " is " + Quote(text) + "; give a number from " + range);
+              *value = parsed;
+              return Status::Ok();
+            }});
+}
+
+void OptionTable::Add(std::string name, std::string* value, std::string unit, std::string why) {
+  AddField({std::move(name), std::move(unit), std::move(why), [value] { return *value; },
+            [value](std::string_view text) {
+              *value = text;
+              return Status::Ok();
+            }});
+}
+
+void OptionTable::AddChoice(std::string name, std::vector<std::string> names, std::string why,
+                            std::function<std::string()> get, std::function<void(std::size_t)> set_index) {
+  const std::string full_name = group_ + "." + name;
+  std::string unit;
+  for (const std::string& n : names) unit += (unit.empty() ? "" : " | ") + n;
+  AddField({std::move(name), unit, std::move(why), std::move(get),
+            [names = std::move(names), unit, full_name, set_index = std::move(set_index)](std::string_view text) {
+              const auto it = std::find(names.begin(), names.end(), text);
+              if (it == names.end())
+                return Status(ErrorCode::kInvalidArgument, full_name + " is " + Quote(text) + "; give one of " + unit);
+              set_index(static_cast<std::size_t>(it - names.begin()));
+              return Status::Ok();
+            }});
+}
+
+const OptionField* OptionTable::Find(std::string_view name) const {
+  const auto it = std::find_if(fields_.begin(), fields_.end(), [&](const OptionField& f) { return f.name == name; });
+  return it == fields_.end() ? nullptr : &*it;
+}
+
+Status OptionTable::Set(std::string_view name, std::string_view value) {
+  const OptionField* field = Find(name);
+  if (field == nullptr) {
+    std::vector<std::string> names;
+    for (const OptionField& f : fields_) names.push_back(f.name);
+    return {ErrorCode::kInvalidArgument,
+            "there is no option " + Quote(name) + "; did you mean " + Quote(NearestName(name, names)) + "?"};
+  }
+  return field->set(value);
+}
+
+std::string OptionTable::ToYaml() const {
+  std::string yaml;
+  for (const auto& [group, why] : groups_) {
+    yaml += (yaml.empty() ? "" : "\n") + group + ":  # " + why + "\n";
+    for (const OptionField& field : fields_) {
+      if (!field.name.starts_with(group + ".")) continue;
+      const std::string line = "  " + field.name.substr(group.size() + 1) + ": " + YamlScalar(field.get());
+      yaml += line + std::string(line.size() < 34 ? 34 - line.size() : 1, ' ') + "# [" + field.unit + "] " + field.why +
+              "\n";
+    }
+  }
+  return yaml;
+}
+
+}  // namespace pliant

@@ -1,0 +1,16 @@
+# SPDX-FileCopyrightText: 2026 The Pliant authors
+# SPDX-License-Identifier: BSD-3-Clause
+#
+# Everything Pliant links. The installed package includes this file too, so both find the same libraries.
+find_package(Threads REQUIRED)
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(OpenCV 4.5 REQUIRED COMPONENTS core imgproc imgcodecs videoio video calib3d)
+find_package(Ceres 2.1 REQUIRED)
+find_package(opengv CONFIG REQUIRED)
+find_package(flann CONFIG REQUIRED)
+find_library(PLIANT_LZ4_LIBRARY lz4 REQUIRED)
+find_package(hwy CONFIG REQUIRED)
+find_package(TBB CONFIG REQUIRED)
+find_package(embree 3 CONFIG REQUIRED)
+find_package(yaml-cpp CONFIG REQUIRED)
+find_package(nlohmann_json CONFIG REQUIRED)
