@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// What every data set looks like to the rest of the program: a sequence of frames read in order, with a camera, and
+// with truth where there is truth. Frames are numbered from 0 as they come (`start`, `end`, `stride` already applied).
+#pragma once
+
+#include <cstddef>
+#include <opencv2/core/mat.hpp>
+#include <optional>
+#include <string>
+
+#include "pliant/base/status.h"
+#include "pliant/camera/camera.h"
+#include "pliant/geometry/rigid3.h"
+
+namespace pliant {
+
+struct SequenceFrame {
+  int frame_idx = 0;        // position in the source (its image number), before `start` and `stride` are taken off
+  std::string name;         // the image's file name, or NNNNNN.png for a video's frame
+  double timestamp_s = 0;
+  cv::Mat image;            // 8-bit, 1 (grey) or 3 (BGR) channels, the camera's size
+  cv::Mat mask;             // 8-bit, 0 = ignore; empty: no mask
+};
+
+class Sequence {
+ public:
+  virtual ~Sequence() = default;
+
+  virtual const Camera& camera() const = 0;
+  // Number of frames; for a video the container's word, which may be off: trust the end that Next reports.
+  virtual int size() const = 0;
+
+  // The next frame, nothing at the end. Fails with kUnreadable (a truncated file), kMismatch (another size).
+  // After a failure the sequence may be asked for the frame after it.
+  virtual Result<std::optional<SequenceFrame>> Next() = 0;
+
+  // Truth by the frame's own index, where the sequence has it; nothing where not.
+  // Depth: CV_32FC1, z along the optical axis in mm, 0 = none.
+  virtual Result<std::optional<cv::Mat>> Depth(int frame_idx) const = 0;
+  virtual std::optional<Rigid3> WorldFromCamera(int frame_idx) const = 0;
+};
+
+}  // namespace pliant
