@@ -1,0 +1,84 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// What is reported of one frame. Observers (recorder, progress, viewers) see this and nothing else; it is complete:
+// the run folder is written from it alone.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "pliant/base/ids.h"
+#include "pliant/base/options.h"
+#include "pliant/geometry/rigid3.h"
+
+namespace pliant {
+
+enum class TrackingState {
+  kWaitingForReference,  // no reference frame yet: too few corners
+  kInitialising,         // points are followed; the first map does not exist yet
+  kTracking,             // pose and deformation of this frame are known
+  kLost,                 // too few points are left
+};
+
+template <>
+struct EnumNames<TrackingState> {
+  static constexpr std::array kNames = {
+      std::pair{TrackingState::kWaitingForReference, std::string_view("waiting_for_reference")},
+      std::pair{TrackingState::kInitialising, std::string_view("initialising")},
+      std::pair{TrackingState::kTracking, std::string_view("tracking")},
+      std::pair{TrackingState::kLost, std::string_view("lost")}};
+};
+
+// One point seen in one frame.
+struct PointObservation {
+  PointId id;
+  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();     // where it was measured
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  // where the point was IN THIS FRAME, world frame, map units
+  double ssim = 0;                                     // similarity to its reference patch, at most 1
+};
+
+// A point that this frame added to the map.
+struct NewPoint {
+  PointId id;
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  // undeformed, world frame, map units
+  std::array<std::uint8_t, 3> rgb = {128, 128, 128};
+};
+
+// Costs of the joint problem at its solution (0.5 * sum of rho, weighted), and how many points each step kept.
+struct FrameCosts {
+  double reprojection = 0;
+  double spatial = 0;
+  double temporal = 0;
+  double edge_length = 0;
+};
+
+struct FrameReport {
+  int frame_idx = 0;  // the sequence's own number
+  std::string name;   // image name
+  double timestamp_s = 0;
+  TrackingState state = TrackingState::kWaitingForReference;
+  std::string note;   // why the state is what it is, where there is something to say; one sentence, else empty
+
+  std::optional<Rigid3> cam_from_world;        // exactly in state tracking
+  std::vector<PointObservation> observations;  // in state tracking; sorted by id
+  std::vector<NewPoint> new_points;            // sorted by id
+
+  int tracked = 0;    // points followed into this frame
+  int optimized = 0;  // points in the joint problem's solution
+  int lost = 0;       // points given up in this frame
+  int added = 0;      // points new in this frame
+  std::vector<std::pair<std::string, int>> losses;  // points given up by reason; fixed order and names
+
+  FrameCosts costs;
+  double median_reprojection_error_px = 0;
+  std::vector<std::pair<std::string, double>> stage_ms;  // wall time by stage; fixed order and names
+};
+
+}  // namespace pliant
