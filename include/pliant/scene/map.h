@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// The map: material points and where they are now. Plain values; only the tracker changes them. World frame: the
+// camera frame of the reference image. Units are map units: millimetres after a metric start, else scaled once so that
+// the median depth of the first map is the configured nominal depth.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "pliant/base/ids.h"
+
+namespace pliant {
+
+struct Landmark {
+  PointId id;
+  Eigen::Vector3d rest_position = Eigen::Vector3d::Zero();  // when it entered the map: undeformed
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();       // X_i^{t-1}: in the last tracked frame
+  Eigen::Vector3d last_motion = Eigen::Vector3d::Zero();    // delta_i of the last tracked frame
+  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();          // where it was last measured
+};
+
+// Landmarks that are alive, sorted by id.
+struct Map {
+  std::vector<Landmark> landmarks;
+
+  // The landmark with this id, or null.
+  Landmark* Find(PointId id);
+  const Landmark* Find(PointId id) const;
+};
+
+}  // namespace pliant

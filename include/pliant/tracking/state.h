@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// The tracker's states and what moves it from one to the next: a pure function, so that the whole of it is a table.
+#pragma once
+
+#include <array>
+#include <string_view>
+#include <utility>
+
+#include "pliant/tracking/frame_report.h"
+
+namespace pliant {
+
+// What happened in a frame.
+enum class TrackingEvent {
+  kTooFewCorners,   // no reference: the image has too little to follow
+  kReferenceFound,  // corners were placed; this image is the reference
+  kMapAwaited,      // the initialiser needs more (parallax, frames)
+  kReferenceSpent,  // the initialiser gave this reference up
+  kMapCreated,      // the first map exists
+  kFrameTracked,    // pose and deformation were found
+  kTooFewPoints,    // too few points could be followed or explained
+};
+
+template <>
+struct EnumNames<TrackingEvent> {
+  static constexpr std::array kNames = {
+      std::pair{TrackingEvent::kTooFewCorners, std::string_view("too_few_corners")},
+      std::pair{TrackingEvent::kReferenceFound, std::string_view("reference_found")},
+      std::pair{TrackingEvent::kMapAwaited, std::string_view("map_awaited")},
+      std::pair{TrackingEvent::kReferenceSpent, std::string_view("reference_spent")},
+      std::pair{TrackingEvent::kMapCreated, std::string_view("map_created")},
+      std::pair{TrackingEvent::kFrameTracked, std::string_view("frame_tracked")},
+      std::pair{TrackingEvent::kTooFewPoints, std::string_view("too_few_points")}};
+};
+
+// The state after `event` in `state`. Events that cannot happen in a state leave it as it is.
+//   waiting       --reference_found-->  initialising     --map_created--> tracking
+//   initialising  --reference_spent-->  waiting          (or straight to tracking from waiting: a start from depth)
+//   tracking      --too_few_points-->   lost             lost --frame_tracked--> tracking
+TrackingState NextState(TrackingState state, TrackingEvent event);
+
+}  // namespace pliant

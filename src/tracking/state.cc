@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/tracking/state.h"
+
+namespace pliant {
+
+TrackingState NextState(TrackingState state, TrackingEvent event) {
+  switch (state) {
+    case TrackingState::kWaitingForReference:
+      if (event == TrackingEvent::kReferenceFound) return TrackingState::kInitialising;
+      if (event == TrackingEvent::kMapCreated) return TrackingState::kTracking;
+      return state;
+    case TrackingState::kInitialising:
+      if (event == TrackingEvent::kMapCreated) return TrackingState::kTracking;
+      if (event == TrackingEvent::kReferenceSpent) return TrackingState::kWaitingForReference;
+      return state;
+    case TrackingState::kTracking:
+      return event == TrackingEvent::kTooFewPoints ? TrackingState::kLost : state;
+    case TrackingState::kLost:
+      return event == TrackingEvent::kFrameTracked ? TrackingState::kTracking : state;
+  }
+  return state;
+}
+
+}  // namespace pliant
