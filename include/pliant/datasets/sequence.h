@@ -2,13 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // What every data set looks like to the rest of the program: a sequence of frames read in order, with a camera, and
-// with truth where there is truth. Frames are numbered from 0 as they come (`start`, `end`, `stride` already applied).
+// with truth where there is truth. A frame keeps its number in the source whatever part of it is read.
 #pragma once
 
 #include <cstddef>
-#include <opencv2/core/mat.hpp>
 #include <optional>
 #include <string>
+
+#include <opencv2/core/mat.hpp>
 
 #include "pliant/base/status.h"
 #include "pliant/camera/camera.h"
@@ -17,11 +18,11 @@
 namespace pliant {
 
 struct SequenceFrame {
-  int frame_idx = 0;        // position in the source (its image number), before `start` and `stride` are taken off
-  std::string name;         // the image's file name, or NNNNNN.png for a video's frame
+  int frame_idx = 0;  // position in the source (its image number), before `start` and `stride` are taken off
+  std::string name;   // the image's file name, or NNNNNN.png for a video's frame
   double timestamp_s = 0;
-  cv::Mat image;            // 8-bit, 1 (grey) or 3 (BGR) channels, the camera's size
-  cv::Mat mask;             // 8-bit, 0 = ignore; empty: no mask
+  cv::Mat image;  // 8-bit, 1 (grey) or 3 (BGR) channels, the camera's size
+  cv::Mat mask;   // 8-bit, 0 = ignore; empty: no mask
 };
 
 class Sequence {
@@ -37,9 +38,13 @@ class Sequence {
   virtual Result<std::optional<SequenceFrame>> Next() = 0;
 
   // Truth by the frame's own index, where the sequence has it; nothing where not.
-  // Depth: CV_32FC1, z along the optical axis in mm, 0 = none.
+  // These do not depend on how far Next has come. Depth: CV_32FC1, z along the optical axis in mm, 0 = none.
   virtual Result<std::optional<cv::Mat>> Depth(int frame_idx) const = 0;
   virtual std::optional<Rigid3> WorldFromCamera(int frame_idx) const = 0;
+
+  // When the source's frame of this index was taken, seconds; nothing where the source has no such frame or cannot say
+  // without reading it. It tells whether a run belongs to this sequence.
+  virtual std::optional<double> TimestampS(int /*frame_idx*/) const { return std::nullopt; }
 };
 
 }  // namespace pliant

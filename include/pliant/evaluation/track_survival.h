@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// How long points live: an accurate figure over a handful of survivors is no tracking.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "pliant/base/ids.h"
+
+namespace pliant {
+
+// The ids seen in one frame; `ids` is empty and `tracked` false where the frame was not tracked.
+struct FrameTracks {
+  int frame_idx = 0;
+  bool tracked = false;
+  std::vector<PointId> ids;
+};
+
+struct TrackSurvival {
+  struct Frame {
+    int frame_idx = 0;
+    bool tracked = false;
+    int points = 0;          // followed in this frame
+    int alive_of_first = 0;  // of them, those of the first tracked frame
+  };
+  int frames_read = 0;
+  int frames_tracked = 0;
+  int first_points = 0;            // in the first tracked frame
+  int last_points = 0;             // in the last tracked frame
+  double mean_points = 0;          // over the tracked frames
+  int last_alive_of_first = 0;     // of the first frame's points, those seen in the last tracked frame
+  int tracks = 0;                  // different points in all
+  double median_track_length = 0;  // frames in which a point was seen
+  std::vector<Frame> frames;       // one a frame read
+};
+
+TrackSurvival ComputeTrackSurvival(std::span<const FrameTracks> frames);
+
+}  // namespace pliant

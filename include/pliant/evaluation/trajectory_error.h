@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// How far the estimated camera path lies from the true one, with the definitions of the evo tools:
+//   ATE  RMSE of the camera centres after the least-squares alignment of the estimate to the truth (Umeyama, PAMI 1991)
+//   RPE  E_i = (Q_i^-1 Q_{i+d})^-1 (P_i^-1 P_{i+d}), P the aligned estimate, Q the truth; d frames apart
+// Part of a scene's deformation is a gauge: what it does as a whole is absorbed by the camera, so read this beside the
+// surface error. Millimetres and degrees.
+#pragma once
+
+#include <array>
+#include <span>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "pliant/base/options.h"
+#include "pliant/base/status.h"
+#include "pliant/geometry/alignment.h"
+#include "pliant/geometry/rigid3.h"
+
+namespace pliant {
+
+enum class TrajectoryAlignment {
+  kSim3,  // rotation, translation and scale: maps of a monocular start
+  kSe3,   // no scale: maps that claim millimetres
+};
+
+template <>
+struct EnumNames<TrajectoryAlignment> {
+  static constexpr std::array kNames = {std::pair{TrajectoryAlignment::kSim3, std::string_view("sim3")},
+                                        std::pair{TrajectoryAlignment::kSe3, std::string_view("se3")}};
+};
+
+struct TrajectoryErrorOptions {
+  TrajectoryAlignment alignment = TrajectoryAlignment::kSim3;
+  int rpe_delta = 1;  // tracked frames between the two poses of a relative error
+
+  void List(OptionTable& table);
+};
+
+// One frame's pose, estimated and true.
+struct PosePair {
+  int frame_idx = 0;
+  Rigid3 world_from_cam;       // the run's, in map units
+  Rigid3 true_world_from_cam;  // the truth, mm
+};
+
+struct TrajectoryError {
+  TrajectoryAlignment alignment = TrajectoryAlignment::kSim3;
+  int poses = 0;
+  double ate_rmse_mm = 0;
+  double ate_median_mm = 0;
+  double ate_max_mm = 0;
+  double rotation_rmse_deg = 0;  // of the aligned estimate's rotations
+  int rpe_delta = 1;
+  int rpe_pairs = 0;  // 0: too short a path for an RPE
+  double rpe_translation_rmse_mm = 0;
+  double rpe_rotation_rmse_deg = 0;
+  double true_path_length_mm = 0;  // over the frames compared
+  double path_length_mm = 0;       // of the aligned estimate
+  Sim3 truth_from_run;             // the alignment
+  std::vector<double> ate_mm;      // a frame, in the order of the pairs
+};
+
+// Fails with kInsufficient below three poses, with kDegenerate where either camera never moves.
+Result<TrajectoryError> ComputeTrajectoryError(std::span<const PosePair> pairs, const TrajectoryErrorOptions& options);
+
+}  // namespace pliant
