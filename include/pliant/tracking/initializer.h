@@ -1,0 +1,103 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// What makes the first map. An initialiser is asked once a frame with everything that was followed since the reference
+// frame, and answers: wait, start again from a new reference, or here is the map. It keeps no state between calls.
+// World frame: the reference frame's camera. Unit: mm in the sense of a configured nominal depth (monocular maps), or
+// true mm (stereo, depth). A rival is a file that implements Initializer.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "pliant/base/ids.h"
+#include "pliant/camera/camera.h"
+#include "pliant/geometry/rigid3.h"
+
+namespace pliant {
+
+struct InitObservation {
+  PointId id;
+  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
+};
+
+struct InitFrame {
+  int frame_idx = 0;                          // the sequence's own number
+  std::vector<InitObservation> observations;  // sorted by id
+};
+
+struct InitInput {
+  const Camera& camera;
+  // The reference frame with all its points, then the frames since, in order of time; the last one is the current
+  // frame. A point lost on the way is missing from its frame on.
+  const std::vector<InitFrame>& frames;
+};
+
+enum class InitDecision {
+  kWait,          // not yet: `reason` says what is missing and by how much
+  kNewReference,  // this reference will not do any more: take the current frame
+  kMap,           // poses and points are filled in
+};
+
+enum class InitRejection {
+  kNoRay,           // its pixel has no ray
+  kLostOnTheWay,    // not seen in the current frame
+  kEpipolar,        // contradicts the motion
+  kCheirality,      // behind a camera, or its rays part
+  kUncertainDepth,  // predicted depth too uncertain: too little parallax
+  kReprojection,    // contradicts the refined map
+};
+inline constexpr int kInitRejectionCount = 6;
+std::string_view InitRejectionName(InitRejection reason);
+
+struct InitPoint {
+  PointId id;
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  // world
+  double depth_sigma = 0;   // predicted standard deviation along the reference ray, map units
+  double parallax_rad = 0;  // between the reference and the current frame
+};
+
+struct InitPose {
+  int frame_idx = 0;
+  Rigid3 cam_from_world;
+};
+
+struct InitRejectedPoint {
+  PointId id;
+  InitRejection reason = InitRejection::kNoRay;
+};
+
+// What was measured on the way; not-a-number where a step was not reached.
+struct InitMeasurements {
+  int correspondences = 0;
+  int inliers = 0;
+  double rotation_only_share = 0;  // correspondences that a pure rotation explains, 0 to 1
+  double median_parallax_deg = 0;  // rotation-compensated
+  double median_depth_sigma = 0;   // predicted sigma_z / z of the map
+  double rival_cost_ratio = 0;     // robust cost of the second best motion over the best one's; infinite: no rival
+  double median_error_px = 0;      // of the map in its frames
+};
+
+struct InitOutcome {
+  InitDecision decision = InitDecision::kWait;
+  std::string reason;  // one sentence with its numbers; of a map too
+  InitMeasurements measured;
+
+  // Filled in for kMap only.
+  std::vector<InitPose> poses;              // one a frame of the input, in its order; the first is the identity
+  std::vector<InitPoint> points;            // sorted by id
+  std::vector<InitRejectedPoint> rejected;  // the reference's other points, sorted by id
+};
+
+class Initializer {
+ public:
+  virtual ~Initializer() = default;
+  virtual std::string_view name() const = 0;
+  virtual InitOutcome Try(const InitInput& input) const = 0;
+};
+
+}  // namespace pliant
