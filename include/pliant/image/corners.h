@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Points worth following: Shi-Tomasi corners (Shi and Tomasi, CVPR 1994), refined to sub-pixel, spread evenly over the
+// usable image, without those that lie on occluding contours. The same input gives the same corners in the same order.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+#include <opencv2/core/mat.hpp>
+
+#include "pliant/base/options.h"
+#include "pliant/image/masks.h"
+
+namespace pliant {
+
+struct CornerOptions {
+  int max_corners = 500;
+  double quality_level = 0.003;  // share of the strongest corner response (its 99 % quantile) below which is noise
+  double min_distance_px = 8;    // between two corners, and to points that exist already
+  int border_px = 12;            // to the image's edge and to masked pixels: half a patch and a little
+  int block_size_px = 7;         // window of the structure tensor
+  Detection contour_filter = Detection::kOn;
+  double contour_threshold = 0.5;  // ContourMeasure above which a corner counts as lying on an occluding contour
+  int contour_radius_px = 16;      // how far to each side the surroundings are compared
+
+  void List(OptionTable& table);  // group "Corners"
+};
+
+struct Corner {
+  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
+  double score = 0;    // smaller eigenvalue of the structure tensor
+  double contour = 0;  // ContourMeasure at the corner
+};
+
+// At most `options.max_corners` corners of a CV_8UC1 image. `valid`: CV_8UC1 of the same size, 0 = not usable; or
+// empty. `existing`: points to stay away from (for adding to those already followed); they count towards evenness, not
+// towards max_corners. Sorted by row, then column.
+std::vector<Corner> DetectCorners(const cv::Mat& grey, const cv::Mat& valid, std::span<const Eigen::Vector2d> existing,
+                                  const CornerOptions& options);
+
+// How much the surroundings of a pixel look like an occluding contour, at every pixel of a CV_8UC1 image (CV_32FC1, 0
+// to 1): with the light at the camera a near surface is bright and a far one dark, so a contour is a step between two
+// sides that are each far more alike within themselves than to each other, at a scale coarser than texture.
+cv::Mat ContourMeasure(const cv::Mat& grey, int radius_px);
+
+}  // namespace pliant

@@ -1,0 +1,116 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Reference patches: the look of a small square around a pixel on every pyramid level, with all that Lucas-Kanade needs
+// of it computed once. This header and its sources know no Eigen: they are compiled for several instruction sets.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "pliant/base/options.h"
+#include "pliant/image/masks.h"
+#include "pliant/image/pyramid.h"
+
+namespace pliant {
+
+struct Pixel {
+  double x = 0;
+  double y = 0;
+};
+
+// A 2x2 matrix, row by row: x' = xx x + xy y, y' = yx x + yy y.
+struct Affine2 {
+  double xx = 1, xy = 0, yx = 0, yy = 1;
+};
+
+// Why a patch could not be followed. The order is that of the report.
+enum class PatchFailure {
+  kNone,
+  kUnknownPoint,     // nothing is stored under this id
+  kOutOfImage,       // the patch left the image
+  kMasked,           // too little of the patch lies on usable pixels
+  kLowTexture,       // the patch does not determine its position
+  kDiverged,         // ran away from its start, or did not come to rest
+  kGainOutOfRange,   // the brightness change is not plausible
+  kLowSimilarity,    // SSIM below its threshold
+  kForwardBackward,  // followed back, it does not return to where it came from
+};
+template <>
+struct EnumNames<PatchFailure> {
+  static constexpr std::array kNames = {
+      std::pair{PatchFailure::kNone, std::string_view("none")},
+      std::pair{PatchFailure::kUnknownPoint, std::string_view("unknown_point")},
+      std::pair{PatchFailure::kOutOfImage, std::string_view("out_of_image")},
+      std::pair{PatchFailure::kMasked, std::string_view("masked")},
+      std::pair{PatchFailure::kLowTexture, std::string_view("low_texture")},
+      std::pair{PatchFailure::kDiverged, std::string_view("diverged")},
+      std::pair{PatchFailure::kGainOutOfRange, std::string_view("gain_out_of_range")},
+      std::pair{PatchFailure::kLowSimilarity, std::string_view("low_similarity")},
+      std::pair{PatchFailure::kForwardBackward, std::string_view("forward_backward")}};
+};
+
+enum class GainBias { kOff, kOn };
+template <>
+struct EnumNames<GainBias> {
+  static constexpr std::array kNames = {std::pair{GainBias::kOff, std::string_view("off")},
+                                        std::pair{GainBias::kOn, std::string_view("on")}};
+};
+
+// What SSIM compares: the reference with the tracked patch as it is, or with alpha * patch + beta. A light at the
+// camera makes a patch 2.5 times brighter on the way from 80 to 50 mm: a plain comparison calls that another surface.
+enum class SimilarityMode { kPlain, kCompensated };
+template <>
+struct EnumNames<SimilarityMode> {
+  static constexpr std::array kNames = {std::pair{SimilarityMode::kPlain, std::string_view("plain")},
+                                        std::pair{SimilarityMode::kCompensated, std::string_view("compensated")}};
+};
+
+struct LucasKanadeOptions {
+  int patch_size = 21;       // px, odd; side of the square, on every level
+  int levels = 4;            // pyramid levels, 1: the image alone
+  int max_iterations = 15;   // on each level
+  double epsilon_px = 0.01;  // a smaller step ends a level (in pixels of that level)
+  GainBias gain_bias = GainBias::kOn;
+  double max_gain = 4;             // gains outside [1 / max_gain, max_gain] are refused
+  double min_texture = 1.0;        // grey levels / px: root of the smaller eigenvalue of the mean gradient tensor
+  double min_valid_support = 0.6;  // share of the patch that must lie on usable pixels
+  double max_correction_px = 60;   // farther from its start than this, a patch has run away
+  SimilarityMode similarity = SimilarityMode::kCompensated;
+  double min_ssim = 0.8;
+
+  void List(OptionTable& table);  // group "LucasKanade"
+};
+
+// One pyramid level of a reference patch. Rows are padded to `row_stride` floats; padding is zero.
+struct PatchLevel {
+  std::vector<float> values;   // (size + 2) rows: the patch with a margin of one pixel, for gradients
+  std::vector<float> weights;  // size rows, 0 or 1; empty: all ones
+  // size rows each: p = sum over v of K(v) * I(v) is the least-squares solution of I ~ a I0 + a g.d + b in a d and a.
+  std::vector<float> solve_x, solve_y, solve_gain;
+  PatchFailure failure = PatchFailure::kNone;  // kLowTexture or kMasked: this level is of no use
+};
+
+// A patch of `size` x `size` pixels around `centre`, bilinear values.
+struct ReferencePatch {
+  Pixel centre;  // pixels of level 0
+  int size = 0;
+  std::vector<PatchLevel> levels;
+  // The affine solution on level 0 (PatchLevel's, with six motion parameters): 7 blocks of size rows.
+  std::vector<float> solve_affine;
+
+  bool empty() const { return levels.empty(); }
+  // Level 0 decides: without it the patch cannot be followed.
+  PatchFailure failure() const { return empty() ? PatchFailure::kUnknownPoint : levels.front().failure; }
+};
+
+// Floats from one row of a patch to the next.
+constexpr int PatchRowStride(int size) { return (size + 2 + 7) / 8 * 8; }
+
+enum class AffineSolution { kWithout, kWith };
+
+// Cuts a patch out of a pyramid. Failure, if any, is in the result: kOutOfImage, kMasked, kLowTexture.
+ReferencePatch MakeReferencePatch(const ImagePyramid& pyramid, const SupportMask& mask, Pixel centre,
+                                  const LucasKanadeOptions& options, AffineSolution affine = AffineSolution::kWithout);
+
+}  // namespace pliant

@@ -1,0 +1,109 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Follows points from image to image and decides what each is compared with. Two policies, by name:
+//   periodic  the reference patch is cut anew every few images (Gomez Rodriguez et al., IROS 2022). Each cut adds the
+//             error of the moment for good, so a track drifts.
+//   adaptive  keeps the first patch. The latest image's patch finds the point, then the point is re-aligned to the
+//   first
+//             patch seen through the affine change since, so errors do not add up. Only when the first patch no longer
+//             resembles what is seen is a new one cut (one error is committed), and not before.
+// Pixels: (0, 0) is the centre of the first pixel. Memory grows with the number of points only.
+#pragma once
+
+#include <map>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "pliant/base/ids.h"
+#include "pliant/image/masks.h"
+#include "pliant/image/pyramid.h"
+#include "pliant/photometric/lucas_kanade.h"
+
+namespace pliant {
+
+enum class PatchPolicy { kPeriodic, kAdaptive };
+template <>
+struct EnumNames<PatchPolicy> {
+  static constexpr std::array kNames = {std::pair{PatchPolicy::kPeriodic, std::string_view("periodic")},
+                                        std::pair{PatchPolicy::kAdaptive, std::string_view("adaptive")}};
+};
+
+struct PointTrackerOptions {
+  LucasKanadeOptions lucas_kanade;
+  PatchPolicy patch_policy = PatchPolicy::kAdaptive;
+  int refresh_period = 5;           // images; periodic only
+  double refresh_ssim = 0.85;       // adaptive: a new first patch is cut when similarity to the first falls below
+  double max_realignment_px = 1.5;  // adaptive: a re-alignment that jumps farther from the latest patch is refused
+  Detection forward_backward = Detection::kOn;
+  double max_forward_backward_px = 0.5;
+
+  void List(OptionTable& table);  // groups "LucasKanade" and "PointTracker"
+};
+
+// Where a point is expected in the next image.
+struct PointPrediction {
+  PointId id;
+  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
+  // How the neighbourhood in the latest image is expected to map to the next (identity: as it was).
+  Eigen::Matrix2d affine_from_latest = Eigen::Matrix2d::Identity();
+};
+
+enum class Refreshed { kNo, kYes };
+
+struct PointTrack {
+  PointId id;
+  PatchFailure failure = PatchFailure::kNone;  // anything else: the point is not in this image; `pixel` is a guess
+  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
+  double ssim = 0;  // to the reference patch
+  double gain = 1;  // brightness from this image to the reference patch's: alpha, beta
+  double bias = 0;
+  // How the neighbourhood in the image where the point was added maps to this one.
+  Eigen::Matrix2d affine_from_first = Eigen::Matrix2d::Identity();
+  Refreshed refreshed = Refreshed::kNo;  // a new reference patch was cut in this image
+};
+
+class PointTracker {
+ public:
+  explicit PointTracker(const PointTrackerOptions& options) : options_(options) {}
+
+  // Starts to follow the point seen at `pixel`; kNone, or why its patch cannot be followed (then nothing is kept).
+  // An id that is known is replaced.
+  PatchFailure Add(PointId id, const Eigen::Vector2d& pixel, const ImagePyramid& pyramid, const SupportMask& mask);
+  void Remove(PointId id) { points_.erase(id); }
+  void Clear() { points_.clear(); }
+  std::size_t size() const { return points_.size(); }
+  bool Contains(PointId id) const { return points_.contains(id); }
+
+  // Follows the predicted points from the image they were last seen in (`previous`; every predicted point must have
+  // been added or tracked there) into `current`. One result a prediction, in their order, whatever the number of
+  // threads. A point that fails stays known, at its last good place; the caller removes it.
+  std::vector<PointTrack> Track(const ImagePyramid& previous, const SupportMask& previous_mask,
+                                const ImagePyramid& current, const SupportMask& current_mask,
+                                std::span<const PointPrediction> predictions, int threads);
+
+ private:
+  struct Point {
+    ReferencePatch reference;                         // adaptive: the first; periodic: the last one cut
+    ReferencePatch latest;                            // adaptive: cut in the latest image
+    Eigen::Vector2d pixel = Eigen::Vector2d::Zero();  // in the latest image
+    Eigen::Matrix2d affine_from_reference = Eigen::Matrix2d::Identity();
+    Eigen::Matrix2d reference_affine_from_first = Eigen::Matrix2d::Identity();
+    int age = 0;  // images since the reference was cut
+  };
+
+  PointTrackerOptions options_;
+  std::map<PointId, Point> points_;
+};
+
+// The 2x2 affine change of every point's neighbourhood between two images, from how its `neighbours` nearest points
+// moved: least squares, damped towards `prior` identity with a strength of `damping_px` (the spread of neighbours below
+// which they say little), so that few, collinear or far neighbours change little. Disagreeing neighbours are
+// down-weighted (one reweighting). `from` and `to` have equal length; so has the result.
+std::vector<Eigen::Matrix2d> NeighbourhoodAffines(std::span<const Eigen::Vector2d> from,
+                                                  std::span<const Eigen::Vector2d> to, int neighbours = 8,
+                                                  double damping_px = 10);
+
+}  // namespace pliant
