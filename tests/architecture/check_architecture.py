@@ -1,0 +1,114 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The Pliant authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Checks the rules of the house that a compiler does not see.
+
+usage: check_architecture.py ROOT
+
+1. A room includes only itself and rooms below it (so there is no circle of rooms).
+2. FLANN and OpenGV are included in one file each, in the rooms deformation and estimation.
+3. Nothing below the room cli prints, logs, or ends the process.
+4. Every source, header and script begins with the two SPDX lines.
+Prints one line a violation, `file:line: sentence`, and exits with 1 if there is one.
+"""
+
+import pathlib
+import re
+import sys
+
+ROOMS = ("base geometry image camera photometric scene deformation residuals estimation tracking io datasets simulation "
+         "evaluation pipeline cli").split()
+ONE_FILE_ONLY = {"flann": "deformation", "opengv": "estimation"}
+SPDX = ("SPDX-FileCopyrightText: ", "SPDX-License-Identifier: BSD-3-Clause")
+SPDX_SUFFIXES = {".h", ".cc", ".py", ".cmake", ".sh"}
+
+INCLUDE = re.compile(r'^\s*#\s*include\s*["<]([^">]+)[">]')
+FORBIDDEN_CALL = re.compile(
+    r"\bstd::(cout|cerr|clog)\b|(?<![\w.>])(std::)?(printf|fprintf|vprintf|vfprintf|puts|fputs|putchar|perror|exit|"
+    r"_Exit|_exit|quick_exit|abort|terminate)\s*\(|\bspdlog::|\b(LOG|VLOG)\s*\(")
+COMMENT_OR_TEXT = re.compile(r'//[^\n]*|/\*.*?\*/|R"\((?:.*?)\)"|"(?:\\.|[^"\\\n])*"', re.DOTALL)
+
+
+def without_comments(text):
+    """The source with comments and string contents blanked, line by line as before."""
+    def blank(match):
+        return "".join("\n" if c == "\n" else " " for c in match.group())
+    return COMMENT_OR_TEXT.sub(blank, text)
+
+
+def sources(root):
+    """(room, path) of every source and header of the library and the program, sorted."""
+    for base in (root / "include" / "pliant", root / "src"):
+        for path in sorted(base.rglob("*")):
+            if path.suffix in (".h", ".cc"):
+                yield path.relative_to(base).parts[0], path
+
+
+def included_room(target):
+    parts = target.split("/")
+    if parts[0] == "pliant":
+        parts = parts[1:]
+    return parts[0] if len(parts) > 1 and parts[0] in ROOMS else None
+
+
+def check_room_order(root):
+    for room, path in sources(root):
+        if room not in ROOMS:
+            yield path, 1, f"'{room}' is no room of the house"
+            continue
+        for number, line in enumerate(path.read_text().splitlines(), 1):
+            match = INCLUDE.match(line)
+            below = included_room(match.group(1)) if match else None
+            if below and ROOMS.index(below) > ROOMS.index(room):
+                yield path, number, f"room {room} includes room {below}, which lies above it"
+
+
+def check_one_file_only(root):
+    for library, home in ONE_FILE_ONLY.items():
+        seen = []
+        for room, path in sources(root):
+            for number, line in enumerate(path.read_text().splitlines(), 1):
+                match = INCLUDE.match(line)
+                if match and match.group(1).startswith(library + "/"):
+                    if room != home:
+                        yield path, number, f"{library} may be included in room {home} only"
+                    elif seen and seen[0] != path:
+                        yield path, number, f"{library} is already included in {seen[0].relative_to(root)}"
+                    seen.append(path)
+
+
+def check_calls(root):
+    for room, path in sources(root):
+        if room == "cli":
+            continue
+        for number, line in enumerate(without_comments(path.read_text()).splitlines(), 1):
+            match = FORBIDDEN_CALL.search(line)
+            if match:
+                yield path, number, f"'{match.group().strip()}' below cli: return a Status instead"
+
+
+def check_spdx(root):
+    paths = [root / "run", root / ".ci" / "run"]
+    for folder in ("include", "src", "tests", "third_party_configs", "experiments"):
+        paths += [p for p in sorted((root / folder).rglob("*")) if p.suffix in SPDX_SUFFIXES]
+    for path in paths:
+        if path.is_file():
+            head = [line for line in path.read_text().splitlines()[:3] if not line.startswith("#!")]
+            if not all(text in line for text, line in zip(SPDX, head + ["", ""])):
+                yield path, 1, "the two SPDX lines are not the first ones"
+
+
+CHECKS = (check_room_order, check_one_file_only, check_calls, check_spdx)
+
+
+def violations(root):
+    root = pathlib.Path(root)
+    return [f"{path.relative_to(root)}:{number}: {text}" for check in CHECKS for path, number, text in check(root)]
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 2:
+        sys.exit(__doc__)
+    found = violations(sys.argv[1])
+    print("\n".join(found) if found else "the house keeps its rules")
+    sys.exit(1 if found else 0)

@@ -1,0 +1,65 @@
+# SPDX-FileCopyrightText: 2026 The Pliant authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Every rule of check_architecture.py finds its violation, in a small house made for it, and nothing else."""
+
+import pathlib
+import tempfile
+import unittest
+
+import check_architecture
+
+HEAD = "// SPDX-FileCopyrightText: 2026 The Pliant authors\n// SPDX-License-Identifier: BSD-3-Clause\n"
+
+
+def violations(files):
+    """What the check finds in a house of these files (path: text after the SPDX lines)."""
+    with tempfile.TemporaryDirectory() as folder:
+        for name, text in files.items():
+            path = pathlib.Path(folder) / name
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(text if text.startswith("no head") else HEAD + text)
+        return check_architecture.violations(folder)
+
+
+class Rules(unittest.TestCase):
+    def test_a_clean_house_has_no_violation(self):
+        self.assertEqual(violations({
+            "include/pliant/camera/a.h": '#include "pliant/base/b.h"\n#include "pliant/camera/c.h"\n',
+            "src/camera/a.cc": '#include <camera/private.h>\n// std::cout, exit(1)\nconst char* s = "abort()";\n',
+            "src/deformation/graph.cc": "#include <flann/flann.hpp>\n#include <flann/io.h>\n",
+            "src/cli/main.cc": "std::cout << 1; exit(2);\n",
+        }), [])
+
+    def test_a_room_that_includes_one_above_it_is_found(self):
+        for include in ('"pliant/tracking/tracker.h"', "<tracking/private.h>"):
+            found = violations({"src/camera/a.cc": f"\n#include {include}\n"})
+            self.assertEqual(found, ["src/camera/a.cc:4: room camera includes room tracking, which lies above it"])
+
+    def test_an_unknown_room_is_found(self):
+        self.assertEqual(len(violations({"src/cellar/a.cc": "\n"})), 1)
+
+    def test_flann_in_a_second_file_is_found(self):
+        found = violations({"src/deformation/a.cc": "#include <flann/flann.hpp>\n",
+                            "src/deformation/b.cc": "#include <flann/flann.hpp>\n"})
+        self.assertEqual(found, ["src/deformation/b.cc:3: flann is already included in src/deformation/a.cc"])
+
+    def test_opengv_in_another_room_is_found(self):
+        found = violations({"src/geometry/a.cc": "#include <opengv/types.hpp>\n"})
+        self.assertEqual(found, ["src/geometry/a.cc:3: opengv may be included in room estimation only"])
+
+    def test_printing_and_ending_the_process_are_found(self):
+        for call in ("std::cout << 1;", "std::cerr << 1;", 'printf("x");', "exit(1);", "std::exit(1);", "abort();",
+                     "std::abort();", 'spdlog::info("x");'):
+            self.assertEqual(len(violations({"src/io/a.cc": f"void F() {{ {call} }}\n"})), 1, call)
+
+    def test_a_call_of_a_like_name_is_none(self):
+        for call in ("reader.abort();", "Snprintf(x);", "std::snprintf(b, 2, x);", "on_exit_(1);"):
+            self.assertEqual(violations({"src/io/a.cc": f"void F() {{ {call} }}\n"}), [], call)
+
+    def test_a_missing_spdx_head_is_found(self):
+        found = violations({"src/io/a.cc": "no head\n"})
+        self.assertEqual(found, ["src/io/a.cc:1: the two SPDX lines are not the first ones"])
+
+
+if __name__ == "__main__":
+    unittest.main()
