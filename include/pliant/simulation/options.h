@@ -1,0 +1,125 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// What is simulated: a scene that deforms, a camera with a light on its way through it, and a sensor. Every number
+// that a sequence depends on is one of these options; they are written beside it (simulation.yaml) and give it back.
+// World frame: the tube's centreline starts at the origin and leaves it along +z; x right, y down; millimetres.
+#pragma once
+
+#include <array>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "pliant/base/options.h"
+#include "pliant/base/status.h"
+#include "pliant/camera/camera.h"
+
+namespace pliant {
+
+enum class SceneKind {
+  kColon,  // a bent tube with incomplete rings of folds, a three-cornered section and relief
+  kTube,   // the same bent tube with a round, smooth wall
+};
+template <>
+struct EnumNames<SceneKind> {
+  static constexpr std::array kNames = {std::pair{SceneKind::kColon, std::string_view("colon")},
+                                        std::pair{SceneKind::kTube, std::string_view("tube")}};
+};
+
+enum class TrajectoryKind {
+  kInsert,  // forward along the centreline
+  kSway,    // from side to side on an arc around a point of the wall ahead, which stays in view
+  kHold,    // on the spot
+};
+template <>
+struct EnumNames<TrajectoryKind> {
+  static constexpr std::array kNames = {std::pair{TrajectoryKind::kInsert, std::string_view("insert")},
+                                        std::pair{TrajectoryKind::kSway, std::string_view("sway")},
+                                        std::pair{TrajectoryKind::kHold, std::string_view("hold")}};
+};
+
+struct SimulationOptions {
+  struct Scene {
+    SceneKind kind = SceneKind::kColon;
+    int seed = 1;                   // of everything that is drawn: folds, texture, tremor, noise
+    double radius_mm = 25.0;        // of the lumen, folds left out
+    double length_mm = 0.0;         // of the tube; 0: the way of the camera and view_mm more
+    double view_mm = 230.0;         // how much tube lies ahead of the last camera
+    double bend_deg_per_cm = 3.0;   // largest bending of the centreline, in each of the two planes
+    double fold_depth_mm = 6.0;     // how far a typical fold stands into the lumen
+    double fold_spacing_mm = 21.0;  // between rings of folds, in the mean
+    double relief_mm = 0.5;         // uneven wall, standard deviation of about
+    double mesh_step_mm = 0.4;      // edge of the mesh; finer where folds are steep
+  } scene;
+
+  struct Texture {
+    double contrast = 1.0;      // 0: one colour
+    double largest_mm = 12.0;   // longest wave of the mottling
+    double smallest_mm = 0.3;   // shortest wave: about two pixels at 60 mm
+    double persistence = 0.85;  // amplitude of an octave by the one before
+    double vessels = 1.0;       // number of vessel trees, 1: one on 9 cm^2
+    double texel_mm = 0.08;     // of the map that the wall carries
+  } texture;
+
+  // V_y(t) = V_y + amplitude * sin(omega * t + 2 pi / wavelength * (V_x + V_y + V_z)), V the material point at rest.
+  // Source: Gomez Rodriguez, Montiel, Tardos, IROS 2022; the wavelength of 200 pi mm reads V in decimetres.
+  struct Deformation {
+    double amplitude_mm = 0.0;  // 0: rigid
+    double omega_rad_s = 2.5;
+    double wavelength_mm = 628.3185307179587;
+  } deformation;
+
+  struct Light {
+    double ambient = 0.1;     // light that reaches the wall from the rest of the wall, as a share
+    double specular = 6.0;    // peak of the wet reflection by the diffuse one; 0: none
+    double roughness = 0.13;  // width of the wet reflection: slope of the facets
+  } light;
+
+  struct Sensor {
+    double exposure = 0.55;        // linear level (1: white) that the 80 % quantile of the image is brought to
+    double exposure_time_s = 0.5;  // time constant with which the exposure follows
+    double gain_jitter = 0.01;     // standard deviation of the gain from frame to frame, as a share
+    double gamma = 2.2;
+    double noise_levels = 1.5;      // standard deviation in grey levels of 255
+    double blur_px = 0.45;          // standard deviation of the lens's blur
+    double vignetting = 0.25;       // light lost in the corners, as a share
+    int samples = 4;                // rays a pixel; depth is always taken at the pixel's centre
+    double depth_scale_mm = 0.005;  // one step of the 16-bit depth; range 65535 of them
+  } sensor;
+
+  struct CameraModel {
+    CameraModelId model = CameraModelId::kPinhole;
+    int width = 640;
+    int height = 480;
+    double horizontal_fov_deg = 72.0;  // used when params is empty
+    std::string params;                // in COLMAP's order, separated by commas
+  } camera;
+
+  struct Trajectory {
+    TrajectoryKind kind = TrajectoryKind::kInsert;
+    int frames = 100;
+    double fps = 30.0;
+    double start_mm = 25.0;          // first camera, along the centreline
+    double speed_mm_s = 15.0;        // insert
+    double look_ahead_mm = 35.0;     // the camera looks at the centreline this far ahead
+    double sway_amplitude_mm = 8.0;  // sway: to each side
+    double sway_period_s = 4.0;      // sway: there and back, to both sides
+    double sway_distance_mm = 45.0;  // sway: of the point that stays in view
+    double tremor_mm = 0.3;          // of the hand, standard deviation of about
+    double tremor_deg = 0.3;
+    double clearance_mm = 3.0;  // a camera nearer to the wall than this is an error
+  } trajectory;
+
+  int threads = 0;  // 0: all; never changes the result
+
+  void List(OptionTable& table);
+};
+
+// The options as the YAML that is written beside a sequence.
+std::string ToYaml(const SimulationOptions& options);
+
+// The camera that the options describe; fails as Camera::Create does.
+Result<Camera> SimulatedCamera(const SimulationOptions& options);
+
+}  // namespace pliant

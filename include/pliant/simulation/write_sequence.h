@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// A simulated sequence on disk, in the native layout (docs/formats.md): camera.yaml, images/NNNNNN.png,
+// depth/NNNNNN.png (16-bit, z along the optical axis = value * depth_scale mm, 0 = none or out of range),
+// groundtruth.txt (TUM, world_from_camera, mm), times.txt, and simulation.yaml with every option.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+
+#include "pliant/base/status.h"
+#include "pliant/simulation/options.h"
+
+namespace pliant {
+
+enum class SimulationContinue { kYes, kStop };
+
+// Called after each frame is on disk.
+using SimulationProgress = std::function<SimulationContinue(int frames_done, int frames_total)>;
+
+// Renders every frame into `output`, which is made where it is not there; files of the same name are replaced, and
+// images left from a longer sequence are removed. Poses and times are flushed as frames are done.
+// Fails as Simulator::Create does, with kUnwritable (the sentence names the file) and with kInterrupted when `progress`
+// asked to stop (what was rendered is on disk and readable).
+Status WriteSequence(const SimulationOptions& options, const std::filesystem::path& output,
+                     const SimulationProgress& progress = {});
+
+}  // namespace pliant
