@@ -4,8 +4,8 @@
 #include "pliant/base/options.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cctype>
+#include <charconv>
 #include <cmath>
 
 namespace pliant {

@@ -4,6 +4,7 @@
 #include "pliant/base/options.h"
 
 #include <cmath>
+
 #include <gtest/gtest.h>
 
 namespace pliant {
@@ -46,8 +47,12 @@ TEST(Options, RefusesAndKeepsTheOldValue) {
   BasketOptions options;
   OptionTable table;
   options.List(table);
-  for (const auto& [name, value] : {std::pair{"Basket.count", "0"}, {"Basket.count", "3.5"}, {"Basket.weight", "nan"},
-                                    {"Basket.weight", "1kg"}, {"Basket.open", "maybe"}, {"Basket.fruit", "plum"}}) {
+  for (const auto& [name, value] : {std::pair{"Basket.count", "0"},
+                                    {"Basket.count", "3.5"},
+                                    {"Basket.weight", "nan"},
+                                    {"Basket.weight", "1kg"},
+                                    {"Basket.open", "maybe"},
+                                    {"Basket.fruit", "plum"}}) {
     const Status status = table.Set(name, value);
     EXPECT_EQ(status.code(), ErrorCode::kInvalidArgument) << name;
     EXPECT_NE(status.message().find(name), std::string::npos);

@@ -4,6 +4,7 @@
 #include "pliant/base/random.h"
 
 #include <cmath>
+
 #include <gtest/gtest.h>
 
 namespace pliant {

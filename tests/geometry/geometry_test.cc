@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "pliant/geometry/alignment.h"
-
-#include <gtest/gtest.h>
 #include <vector>
 
+#include <gtest/gtest.h>
+
 #include "pliant/base/random.h"
+#include "pliant/geometry/alignment.h"
 
 namespace pliant {
 namespace {

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // What a call that may fail returns. An expected failure (an unreadable file, too few inliers) is a value: a code for
-// the program and one sentence for the person, which says what failed, where, and what to do. A programming error asserts.
+// the program and one sentence for the person, which says what failed, where, and what to do. A programming error
+// asserts.
 #pragma once
 
 #include <cassert>
@@ -52,9 +53,18 @@ class [[nodiscard]] Result {
   bool ok() const { return std::holds_alternative<T>(content_); }
   Status status() const { return ok() ? Status::Ok() : std::get<Status>(content_); }
 
-  T& value() & { assert(ok()); return *std::get_if<T>(&content_); }
-  const T& value() const& { assert(ok()); return *std::get_if<T>(&content_); }
-  T&& value() && { assert(ok()); return std::move(*std::get_if<T>(&content_)); }
+  T& value() & {
+    assert(ok());
+    return *std::get_if<T>(&content_);
+  }
+  const T& value() const& {
+    assert(ok());
+    return *std::get_if<T>(&content_);
+  }
+  T&& value() && {
+    assert(ok());
+    return std::move(*std::get_if<T>(&content_));
+  }
   T& operator*() & { return value(); }
   const T& operator*() const& { return value(); }
   T&& operator*() && { return std::move(*this).value(); }

@@ -8,7 +8,6 @@
 // The model is dispatched once a call: for many points use the batch functions or Visit.
 #pragma once
 
-#include <Eigen/Core>
 #include <array>
 #include <optional>
 #include <span>
@@ -16,6 +15,8 @@
 #include <utility>
 #include <variant>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "pliant/base/options.h"
 #include "pliant/base/status.h"
@@ -34,13 +35,12 @@ enum class CameraModelId : int {  // COLMAP's numbers
 
 template <>
 struct EnumNames<CameraModelId> {
-  static constexpr std::array kNames = {
-      std::pair{CameraModelId::kSimplePinhole, std::string_view("SIMPLE_PINHOLE")},
-      std::pair{CameraModelId::kPinhole, std::string_view("PINHOLE")},
-      std::pair{CameraModelId::kSimpleRadial, std::string_view("SIMPLE_RADIAL")},
-      std::pair{CameraModelId::kRadial, std::string_view("RADIAL")},
-      std::pair{CameraModelId::kOpenCv, std::string_view("OPENCV")},
-      std::pair{CameraModelId::kOpenCvFisheye, std::string_view("OPENCV_FISHEYE")}};
+  static constexpr std::array kNames = {std::pair{CameraModelId::kSimplePinhole, std::string_view("SIMPLE_PINHOLE")},
+                                        std::pair{CameraModelId::kPinhole, std::string_view("PINHOLE")},
+                                        std::pair{CameraModelId::kSimpleRadial, std::string_view("SIMPLE_RADIAL")},
+                                        std::pair{CameraModelId::kRadial, std::string_view("RADIAL")},
+                                        std::pair{CameraModelId::kOpenCv, std::string_view("OPENCV")},
+                                        std::pair{CameraModelId::kOpenCvFisheye, std::string_view("OPENCV_FISHEYE")}};
 };
 
 struct Projection {
@@ -53,7 +53,9 @@ class Camera {
   using Model = std::variant<SimplePinhole, Pinhole, SimpleRadial, Radial, OpenCv, OpenCvFisheye>;
 
   // Fails with kInvalidArgument for a wrong parameter count, numbers that are not finite, focal lengths or sizes that
-  // are not positive, or a distortion that folds over inside the image; the sentence says which.
+  // are not positive, or a distortion that folds over within the circle inscribed in the image; the sentence says
+  // which. (Only that circle: endoscopes show a disc, and their calibrations often fold in the black corners. Unproject
+  // answers nothing there.)
   static Result<Camera> Create(CameraModelId model, int width, int height, std::span<const double> params);
   static Result<Camera> Create(std::string_view model_name, int width, int height, std::span<const double> params);
 

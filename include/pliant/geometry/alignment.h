@@ -4,8 +4,9 @@
 // Similarity transforms and least-squares alignment of point sets (Umeyama, PAMI 1991).
 #pragma once
 
-#include <Eigen/Core>
 #include <span>
+
+#include <Eigen/Core>
 
 #include "pliant/base/status.h"
 #include "pliant/geometry/rigid3.h"

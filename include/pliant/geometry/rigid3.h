@@ -6,9 +6,10 @@
 // Lengths are millimetres, or map units where a map has no scale. Quaternions are kept at unit length.
 #pragma once
 
+#include <cmath>
+
 #include <Eigen/Core>
 #include <Eigen/Geometry>
-#include <cmath>
 
 namespace pliant {
 

@@ -6,8 +6,9 @@
 // the median depth of the first map is the configured nominal depth.
 #pragma once
 
-#include <Eigen/Core>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "pliant/base/ids.h"
 
