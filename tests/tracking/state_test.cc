@@ -3,8 +3,9 @@
 
 #include "pliant/tracking/state.h"
 
-#include <gtest/gtest.h>
 #include <map>
+
+#include <gtest/gtest.h>
 
 namespace pliant {
 namespace {

@@ -5,7 +5,6 @@
 // the run folder is written from it alone.
 #pragma once
 
-#include <Eigen/Core>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -13,6 +12,8 @@
 #include <string_view>
 #include <utility>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "pliant/base/ids.h"
 #include "pliant/base/options.h"
@@ -64,16 +65,16 @@ struct FrameReport {
   std::string name;   // image name
   double timestamp_s = 0;
   TrackingState state = TrackingState::kWaitingForReference;
-  std::string note;   // why the state is what it is, where there is something to say; one sentence, else empty
+  std::string note;  // why the state is what it is, where there is something to say; one sentence, else empty
 
   std::optional<Rigid3> cam_from_world;        // exactly in state tracking
   std::vector<PointObservation> observations;  // in state tracking; sorted by id
   std::vector<NewPoint> new_points;            // sorted by id
 
-  int tracked = 0;    // points followed into this frame
-  int optimized = 0;  // points in the joint problem's solution
-  int lost = 0;       // points given up in this frame
-  int added = 0;      // points new in this frame
+  int tracked = 0;                                  // points followed into this frame
+  int optimized = 0;                                // points in the joint problem's solution
+  int lost = 0;                                     // points given up in this frame
+  int added = 0;                                    // points new in this frame
   std::vector<std::pair<std::string, int>> losses;  // points given up by reason; fixed order and names
 
   FrameCosts costs;

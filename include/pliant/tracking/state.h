@@ -25,14 +25,13 @@ enum class TrackingEvent {
 
 template <>
 struct EnumNames<TrackingEvent> {
-  static constexpr std::array kNames = {
-      std::pair{TrackingEvent::kTooFewCorners, std::string_view("too_few_corners")},
-      std::pair{TrackingEvent::kReferenceFound, std::string_view("reference_found")},
-      std::pair{TrackingEvent::kMapAwaited, std::string_view("map_awaited")},
-      std::pair{TrackingEvent::kReferenceSpent, std::string_view("reference_spent")},
-      std::pair{TrackingEvent::kMapCreated, std::string_view("map_created")},
-      std::pair{TrackingEvent::kFrameTracked, std::string_view("frame_tracked")},
-      std::pair{TrackingEvent::kTooFewPoints, std::string_view("too_few_points")}};
+  static constexpr std::array kNames = {std::pair{TrackingEvent::kTooFewCorners, std::string_view("too_few_corners")},
+                                        std::pair{TrackingEvent::kReferenceFound, std::string_view("reference_found")},
+                                        std::pair{TrackingEvent::kMapAwaited, std::string_view("map_awaited")},
+                                        std::pair{TrackingEvent::kReferenceSpent, std::string_view("reference_spent")},
+                                        std::pair{TrackingEvent::kMapCreated, std::string_view("map_created")},
+                                        std::pair{TrackingEvent::kFrameTracked, std::string_view("frame_tracked")},
+                                        std::pair{TrackingEvent::kTooFewPoints, std::string_view("too_few_points")}};
 };
 
 // The state after `event` in `state`. Events that cannot happen in a state leave it as it is.

@@ -1,0 +1,136 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/tracking/neighbour_agreement.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Dense>
+
+namespace pliant {
+namespace {
+
+double Median(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+constexpr double kMadToSigma = 1.4826;  // of a normal distribution
+constexpr double kTukey = 4.685;        // 95 % efficiency under normal noise
+
+// displacement(anchor) = offset + gradient * (anchor - centre), with weights of how far each neighbour is to be
+// trusted.
+struct AffineMotion {
+  Eigen::Vector3d centre;
+  Eigen::Matrix<double, 4, 3> coefficients;
+
+  Eigen::Vector3d At(const Eigen::Vector3d& anchor) const {
+    const Eigen::Vector4d basis(1, anchor.x() - centre.x(), anchor.y() - centre.y(), anchor.z() - centre.z());
+    return coefficients.transpose() * basis;
+  }
+};
+
+class MotionFit {
+ public:
+  MotionFit(std::span<const NeighbourMotion> motions, const std::vector<int>& neighbours) {
+    for (const int j : neighbours) {
+      anchors_.push_back(motions[j].anchor);
+      displacements_.emplace_back(motions[j].position - motions[j].anchor);
+    }
+    weights_.assign(anchors_.size(), 1.0);
+  }
+
+  // Weights from the distance to the median displacement, then two rounds of weighted least squares.
+  AffineMotion Run(const Eigen::Vector3d& centre) {
+    Eigen::Vector3d median;
+    std::vector<double> values(displacements_.size());
+    for (int axis = 0; axis < 3; ++axis) {
+      for (std::size_t k = 0; k < values.size(); ++k) values[k] = displacements_[k][axis];
+      median[axis] = Median(values);
+    }
+    Reweigh([&](std::size_t k) { return (displacements_[k] - median).norm(); });
+    AffineMotion motion = Solve(centre);
+    Reweigh([&](std::size_t k) { return (displacements_[k] - motion.At(anchors_[k])).norm(); });
+    return Solve(centre);
+  }
+
+  // Robust spread of the neighbours' residuals across the viewing ray.
+  double Sigma(const AffineMotion& motion, const Eigen::Vector3d& ray) const {
+    std::vector<double> residuals;
+    for (std::size_t k = 0; k < anchors_.size(); ++k)
+      residuals.push_back((displacements_[k] - motion.At(anchors_[k])).cross(ray).norm());
+    return kMadToSigma * Median(residuals);
+  }
+
+ private:
+  template <class Distance>
+  void Reweigh(const Distance& distance) {
+    std::vector<double> residuals(anchors_.size());
+    for (std::size_t k = 0; k < residuals.size(); ++k) residuals[k] = distance(k);
+    std::vector<double> sorted = residuals;
+    // Never so tight that rounding decides: at least a micrometre.
+    const double cutoff = kTukey * std::max(1e-3, kMadToSigma * Median(sorted));
+    for (std::size_t k = 0; k < residuals.size(); ++k) {
+      const double ratio = residuals[k] / cutoff;
+      weights_[k] = ratio < 1 ? (1 - ratio * ratio) * (1 - ratio * ratio) : 0.0;
+    }
+  }
+
+  AffineMotion Solve(const Eigen::Vector3d& centre) const {
+    Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
+    Eigen::Matrix<double, 4, 3> right = Eigen::Matrix<double, 4, 3>::Zero();
+    double spread = 0;
+    for (std::size_t k = 0; k < anchors_.size(); ++k) {
+      const Eigen::Vector3d offset = anchors_[k] - centre;
+      const Eigen::Vector4d basis(1, offset.x(), offset.y(), offset.z());
+      normal += weights_[k] * basis * basis.transpose();
+      right += weights_[k] * basis * displacements_[k].transpose();
+      spread += weights_[k] * offset.squaredNorm();
+    }
+    // The neighbours lie on a surface: across it the gradient is not observed, and stays small.
+    normal.diagonal().tail<3>().array() += 0.01 * spread / 3 + 1e-12;
+    normal(0, 0) += 1e-12;
+    return {centre, normal.ldlt().solve(right)};
+  }
+
+  std::vector<Eigen::Vector3d> anchors_;
+  std::vector<Eigen::Vector3d> displacements_;
+  std::vector<double> weights_;
+};
+
+}  // namespace
+
+void AgreementOptions::List(OptionTable& table) {
+  table.Add("max_disagreement_px", &max_disagreement_px, "px",
+            "a point further than this from where its neighbours' motion puts it is dropped", 0.1, 1e6);
+  table.Add("max_disagreement_sigmas", &max_disagreement_sigmas, "-",
+            "and further than this many robust spreads of its neighbours", 0, 1e6);
+  table.Add("min_agreement_neighbors", &min_neighbors, "-", "no statement about points with fewer neighbours", 4, 100);
+}
+
+std::vector<Disagreement> MeasureDisagreement(std::span<const NeighbourMotion> motions,
+                                              std::span<const std::vector<int>> neighbours,
+                                              const Eigen::Vector3d& camera_centre) {
+  std::vector<Disagreement> disagreements(motions.size());
+  for (std::size_t i = 0; i < motions.size(); ++i) {
+    if (neighbours[i].size() < 4) continue;
+    MotionFit fit(motions, neighbours[i]);
+    const AffineMotion motion = fit.Run(motions[i].anchor);
+    const Eigen::Vector3d ray = (motions[i].position - camera_centre).normalized();
+    const Eigen::Vector3d predicted = motions[i].anchor + motion.At(motions[i].anchor);
+    disagreements[i].distance_mm = (motions[i].position - predicted).cross(ray).norm();
+    disagreements[i].sigma_mm = fit.Sigma(motion, ray);
+    disagreements[i].neighbors = static_cast<int>(neighbours[i].size());
+  }
+  return disagreements;
+}
+
+bool Contradicts(const Disagreement& disagreement, double px_per_mm, const AgreementOptions& options) {
+  return disagreement.neighbors >= options.min_neighbors &&
+         disagreement.distance_mm * px_per_mm > options.max_disagreement_px &&
+         disagreement.distance_mm > options.max_disagreement_sigmas * disagreement.sigma_mm;
+}
+
+}  // namespace pliant

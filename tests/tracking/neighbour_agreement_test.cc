@@ -1,0 +1,96 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/tracking/neighbour_agreement.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <gtest/gtest.h>
+
+#include "pliant/base/random.h"
+
+namespace pliant {
+namespace {
+
+constexpr int kPoints = 300;
+constexpr double kDepthMm = 50;
+constexpr double kPxPerMm = 500 / kDepthMm;
+
+// Points of a bumpy sheet before a camera at the origin, moved by `motion`.
+template <class Motion>
+std::vector<NeighbourMotion> MovingSheet(const Motion& motion) {
+  Random random(11);
+  std::vector<NeighbourMotion> motions;
+  for (int i = 0; i < kPoints; ++i) {
+    const double x = random.Uniform(-25, 25);
+    const double y = random.Uniform(-20, 20);
+    const Eigen::Vector3d anchor(x, y, kDepthMm + 2 * std::sin(0.2 * x) * std::cos(0.15 * y));
+    motions.push_back({anchor, motion(anchor)});
+  }
+  return motions;
+}
+
+std::vector<std::vector<int>> Nearest(const std::vector<NeighbourMotion>& motions, int count) {
+  std::vector<std::vector<int>> neighbours(motions.size());
+  for (std::size_t i = 0; i < motions.size(); ++i) {
+    std::vector<int> order(motions.size());
+    std::iota(order.begin(), order.end(), 0);
+    const auto distance = [&](int j) { return (motions[j].anchor - motions[i].anchor).squaredNorm(); };
+    std::sort(order.begin(), order.end(), [&](int a, int b) { return distance(a) < distance(b); });
+    neighbours[i].assign(order.begin() + 1, order.begin() + 1 + count);
+  }
+  return neighbours;
+}
+
+TEST(NeighbourAgreement, AffineMotionOfTheWholeSceneIsNoContradiction) {
+  Eigen::Matrix3d gradient;
+  gradient << 0.02, 0.01, 0, -0.03, 0.01, 0, 0.02, 0.05, 0;
+  const auto motions = MovingSheet(
+      [&](const Eigen::Vector3d& x) -> Eigen::Vector3d { return x + Eigen::Vector3d(1, -2, 3) + gradient * x; });
+  // The gradient across the surface is damped, so an affine field is met up to that damping, far below a pixel.
+  for (const Disagreement& d : MeasureDisagreement(motions, Nearest(motions, 20), Eigen::Vector3d::Zero()))
+    EXPECT_LT(d.distance_mm * kPxPerMm, 1.0);
+}
+
+TEST(NeighbourAgreement, SmoothDeformationIsAcceptedAndSlidingPointsAreFound) {
+  Random random(3);
+  auto motions = MovingSheet([&](const Eigen::Vector3d& x) -> Eigen::Vector3d {
+    const double noise = 0.03;  // 0.3 px
+    return x + Eigen::Vector3d(random.Normal(noise), 2.5 * std::sin(0.06 * (x.x() + x.y())) + random.Normal(noise), 0);
+  });
+  std::vector<int> sliding;
+  for (int i = 7; i < kPoints; i += 20) {  // one in twenty slides by 8 px
+    motions[i].position += Eigen::Vector3d(0.8, 0, 0);
+    sliding.push_back(i);
+  }
+  const AgreementOptions options;
+  const auto disagreements = MeasureDisagreement(motions, Nearest(motions, 20), Eigen::Vector3d::Zero());
+  int found = 0;
+  int false_alarms = 0;
+  for (int i = 0; i < kPoints; ++i) {
+    const bool is_sliding = std::find(sliding.begin(), sliding.end(), i) != sliding.end();
+    const bool flagged = Contradicts(disagreements[i], kPxPerMm, options);
+    (is_sliding ? found : false_alarms) += flagged ? 1 : 0;
+  }
+  EXPECT_EQ(found, static_cast<int>(sliding.size()));
+  EXPECT_LE(false_alarms, 3);  // 1 % at the sheet's rim, where neighbours lie on one side only
+}
+
+TEST(NeighbourAgreement, MotionAlongTheRayIsNotJudged) {
+  auto motions = MovingSheet([](const Eigen::Vector3d& x) { return x; });
+  motions[42].position *= 1.2;
+  const auto disagreements = MeasureDisagreement(motions, Nearest(motions, 20), Eigen::Vector3d::Zero());
+  EXPECT_LT(disagreements[42].distance_mm, 1e-9);
+}
+
+TEST(NeighbourAgreement, TooFewNeighboursMakeNoStatement) {
+  auto motions = MovingSheet([](const Eigen::Vector3d& x) { return x; });
+  motions[0].position.x() += 100;
+  const auto disagreements = MeasureDisagreement(motions, Nearest(motions, 3), Eigen::Vector3d::Zero());
+  EXPECT_FALSE(Contradicts(disagreements[0], kPxPerMm, AgreementOptions{}));
+}
+
+}  // namespace
+}  // namespace pliant
