@@ -1,0 +1,129 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/deformation/graph.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include <flann/flann.hpp>  // the only file that includes FLANN; OpenCV's headers clash with it
+
+namespace pliant {
+namespace {
+
+using Points = std::span<const Eigen::Vector3d>;
+using NeighborLists = std::vector<std::vector<int>>;
+
+// Distances that differ by less than this ratio count as equal: FLANN sums squares in its own order.
+constexpr double kTie = 1e-12;
+
+bool AllFinite(Points points) {
+  return std::all_of(points.begin(), points.end(), [](const Eigen::Vector3d& x) { return x.allFinite(); });
+}
+
+// The `count` nearest of point i, by distance and then by index: settles ties, at the price of a look at every point.
+std::vector<int> NearestByScan(Points points, int i, int count) {
+  std::vector<std::pair<double, int>> others;
+  others.reserve(points.size());
+  for (int j = 0; j < static_cast<int>(points.size()); ++j)
+    if (j != i) others.emplace_back((points[j] - points[i]).squaredNorm(), j);
+  std::partial_sort(others.begin(), others.begin() + count, others.end());
+  std::vector<int> nearest;
+  for (int k = 0; k < count; ++k) nearest.push_back(others[k].second);
+  return nearest;
+}
+
+// The K nearest of every point, itself excluded; fewer where there are not K others.
+NeighborLists FindNeighbors(Points points, int neighbors) {
+  const int num_points = static_cast<int>(points.size());
+  const int count = std::min(neighbors, num_points - 1);
+  NeighborLists lists(num_points);
+  if (count < 1) return lists;
+
+  // FLANN does not write to its input, but takes it without const. Vector3d has no padding: rows of three doubles.
+  static_assert(sizeof(Eigen::Vector3d) == 3 * sizeof(double));
+  const flann::Matrix<double> data(const_cast<double*>(points.data()->data()), num_points, 3);
+  flann::KDTreeSingleIndex<flann::L2_Simple<double>> index(data, flann::KDTreeSingleIndexParams());
+  index.buildIndex();
+
+  // The point itself comes back too, and one more tells whether the K-th place is contested.
+  const int asked = std::min(count + 2, num_points);
+  std::vector<std::size_t> indices(static_cast<std::size_t>(num_points) * asked);
+  std::vector<double> distances(indices.size());
+  flann::Matrix<std::size_t> index_rows(indices.data(), num_points, asked);
+  flann::Matrix<double> distance_rows(distances.data(), num_points, asked);
+  index.knnSearch(data, index_rows, distance_rows, asked, flann::SearchParams(flann::FLANN_CHECKS_UNLIMITED));
+
+  for (int i = 0; i < num_points; ++i) {
+    const double* row = distance_rows[i];
+    const bool contested = asked > count + 1 && row[count + 1] - row[count] <= kTie * row[count + 1];
+    if (contested) {
+      lists[i] = NearestByScan(points, i, count);
+      continue;
+    }
+    for (int k = 0; k < asked && static_cast<int>(lists[i].size()) < count; ++k)
+      if (const int j = static_cast<int>(index_rows[i][k]); j != i) lists[i].push_back(j);
+  }
+  return lists;
+}
+
+// The directed pairs of the lists as edges i < j in ascending order, each with the number of its directions.
+std::vector<GraphEdge> MergeDirections(const NeighborLists& lists) {
+  std::vector<std::pair<int, int>> pairs;
+  for (int i = 0; i < static_cast<int>(lists.size()); ++i)
+    for (const int j : lists[i]) pairs.push_back(std::minmax(i, j));
+  std::sort(pairs.begin(), pairs.end());
+
+  std::vector<GraphEdge> edges;
+  edges.reserve(pairs.size());
+  for (const auto& [i, j] : pairs) {
+    if (!edges.empty() && edges.back().i == i && edges.back().j == j) {
+      edges.back().multiplicity = 2;
+    } else {
+      edges.push_back({.i = i, .j = j});
+    }
+  }
+  return edges;
+}
+
+}  // namespace
+
+void GraphOptions::List(OptionTable& table) {
+  table.BeginGroup("Deformation", "The graph that ties each point to its neighbours.");
+  table.Add("neighbors", &neighbors, "points", "K, how many nearest neighbours each point is tied to", 1, 1000);
+  table.Add("sigma_mm", &sigma_mm, "mm", "distance over which neighbours move alike: w = exp(-d^2 / (2 sigma^2))", 1e-6,
+            1e6);
+  table.AddChoice("cut_edges", &cut_edges,
+                  "whether edges are left out whose length has left its rest length (surfaces that slide or part)");
+  table.Add("max_stretch", &max_stretch, "ratio", "with cut_edges = stretch: largest |length / rest length - 1| kept",
+            0.0, 1e6);
+}
+
+Result<DeformationGraph> BuildDeformationGraph(Points positions, Points rest_positions, const GraphOptions& options) {
+  if (!rest_positions.empty() && rest_positions.size() != positions.size())
+    return {ErrorCode::kMismatch, "The deformation graph was given " + std::to_string(positions.size()) +
+                                      " positions but " + std::to_string(rest_positions.size()) + " rest positions."};
+  if (!AllFinite(positions) || !AllFinite(rest_positions))
+    return {ErrorCode::kInvalidArgument, "The deformation graph was given a position that is not a finite number."};
+
+  DeformationGraph graph;
+  graph.num_points = static_cast<int>(positions.size());
+  graph.edges = MergeDirections(FindNeighbors(positions, options.neighbors));
+  const double exponent = -1.0 / (2.0 * options.sigma_mm * options.sigma_mm);
+  for (GraphEdge& edge : graph.edges) {
+    const double squared_length = (positions[edge.i] - positions[edge.j]).squaredNorm();
+    edge.weight = std::exp(exponent * squared_length);
+    edge.rest_length_mm =
+        rest_positions.empty() ? std::sqrt(squared_length) : (rest_positions[edge.i] - rest_positions[edge.j]).norm();
+  }
+  if (options.cut_edges == EdgeCut::kStretch && !rest_positions.empty()) {
+    graph.cut = static_cast<int>(std::erase_if(graph.edges, [&](const GraphEdge& edge) {
+      const double length = (positions[edge.i] - positions[edge.j]).norm();
+      return std::abs(length - edge.rest_length_mm) > options.max_stretch * edge.rest_length_mm;
+    }));
+  }
+  return graph;
+}
+
+}  // namespace pliant
