@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Calibration files. Three kinds are recognised by what they contain, whatever they are called:
+// - Pliant's camera.yaml: model, width, height, params, and optionally fps, depth_scale, baseline, unit;
+// - COLMAP's cameras.txt and cameras.bin, whose first pixel's centre is (0.5, 0.5): the half pixel is taken off here;
+// - OpenCV's calibrations, YAML or XML: a camera matrix (M1, K1, K, M, camera_matrix, cameraMatrix, ...), distortion
+//   coefficients (D1, D, distortion_coefficients, distCoeffs, ...) and, where they are written, the image size and
+//   `camera_model` or `distortion_model` (fisheye, equidistant and kannala_brandt mean OPENCV_FISHEYE). Of a stereo
+//   calibration the first camera is read.
+// Every failure is one sentence with the file's name: what is wrong, where, and what to do.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "pliant/base/status.h"
+#include "pliant/camera/camera.h"
+
+namespace pliant {
+
+struct ImageSize {
+  int width = 0;
+  int height = 0;
+};
+
+struct CameraFileOptions {
+  std::optional<int> camera_id;         // which of several cameras in a COLMAP file
+  std::optional<ImageSize> image_size;  // used where the file does not say the size, as OpenCV's often do not
+};
+
+struct CameraFile {
+  Camera camera;
+  std::optional<double> fps;
+  std::optional<double> depth_scale;  // mm per unit of a depth image
+  std::optional<double> baseline_mm;  // the right camera's centre is at +baseline on the left one's x axis
+  std::string unit = "mm";            // of the lengths that come with the sequence
+  // OpenCV's k3 to k6 have no place in the OPENCV model. Where they are small, k1 and k2 are fitted again to the whole
+  // distortion over the image, and this is the largest difference that is left, px; 0: nothing had to be fitted. Above
+  // kLargestRefitPx the file is refused.
+  double refit_residual_px = 0;
+};
+
+inline constexpr double kLargestRefitPx = 0.1;
+
+// Fails with kNotFound, kUnreadable (not a calibration, or damaged) or kInvalidArgument (a calibration that cannot be
+// meant: a wrong number of parameters, not-a-number, an unknown model, no image size, several cameras).
+Result<CameraFile> ReadCameraFile(const std::string& path, const CameraFileOptions& options = {});
+Result<Camera> ReadCamera(const std::string& path, const CameraFileOptions& options = {});
+
+// Writes a camera.yaml, so that ReadCameraFile gives the same numbers back. Fails with kUnwritable.
+Status WriteCameraFile(const std::string& path, const CameraFile& file);
+
+}  // namespace pliant

@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// COLMAP models: the cameras, and a canonical model of a run. COLMAP's first pixel has its centre at (0.5, 0.5); the
+// half pixel is added and taken off here and nowhere else.
+//
+// The canonical model has one point a track, at its undeformed position, and every tracked image with its keypoints.
+// It shows a run in COLMAP's viewers; it is not consistent with bundle adjustment, because the scene moved.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "pliant/base/status.h"
+#include "pliant/camera/camera.h"
+#include "pliant/geometry/rigid3.h"
+#include "pliant/tracking/frame_report.h"
+
+namespace pliant {
+
+struct ColmapCamera {
+  int id = 0;
+  Camera camera;
+};
+
+// cameras.txt or cameras.bin, told apart by the extension. Fails with kNotFound, kUnreadable (damaged; text with the
+// line's number) or kInvalidArgument (a model that Pliant does not have, named, or parameters that cannot be meant).
+Result<std::vector<ColmapCamera>> ReadColmapCameras(const std::string& path);
+
+enum class ColmapFormat { kText, kBinary, kBoth };
+
+struct ColmapImage {
+  int frame_idx = 0;  // its observations carry this; the image's id is frame_idx + 1
+  std::string name;
+  Rigid3 cam_from_world;
+};
+
+struct ColmapPoint {
+  NewPoint point;                     // the point's id is the COLMAP point's
+  double error_px = 0;                // mean reprojection error over its observations
+  std::int64_t num_observations = 0;  // rows that it has in the observations file; 0: it is left out
+};
+
+// Writes cameras, images and points3D into `folder`, which must exist. `images` are sorted by frame, `points` by id;
+// the keypoints are streamed from a run folder's observations.csv, several times if need be, so that memory stays
+// bounded (about 40 MB) however long the run. Fails with kUnwritable, or as the reading of observations.csv does.
+Status WriteColmapModel(const std::string& folder, ColmapFormat format, const Camera& camera,
+                        std::span<const ColmapImage> images, std::span<const ColmapPoint> points,
+                        const std::string& observations_path);
+
+}  // namespace pliant

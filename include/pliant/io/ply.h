@@ -1,0 +1,19 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Coloured points as a PLY file (binary, little-endian; x y z float, red green blue uchar), which MeshLab, CloudCompare
+// and Open3D open.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "pliant/base/status.h"
+#include "pliant/tracking/frame_report.h"
+
+namespace pliant {
+
+// Fails with kUnwritable.
+Status WritePly(const std::string& path, std::span<const NewPoint> points);
+
+}  // namespace pliant

@@ -1,0 +1,80 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Reads run folders: Pliant's, also of runs that were killed, and other programs' results that consist of
+// trajectory.txt and observations.csv alone. The last line of a file may be cut off: it is left out and counted.
+// Anything else that cannot be read is an error with file and line.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pliant/base/status.h"
+#include "pliant/geometry/rigid3.h"
+#include "pliant/io/run_summary.h"
+#include "pliant/tracking/frame_report.h"
+
+namespace pliant {
+
+// A row of frames.csv.
+struct RunFrame {
+  int frame_idx = 0;
+  double timestamp_s = 0;
+  TrackingState state = TrackingState::kWaitingForReference;
+  int tracked = 0;
+  int optimized = 0;
+  int lost = 0;
+  int added = 0;
+  FrameCosts costs;
+  double median_reprojection_error_px = 0;
+  std::vector<double> stage_ms;  // as Run::stage_names
+};
+
+struct RunPose {
+  int frame_idx = 0;
+  double timestamp_s = 0;
+  Rigid3 world_from_cam;
+};
+
+struct Run {
+  std::optional<RunSummary> summary;  // nothing: another program's result
+  std::vector<std::string> stage_names;
+  std::vector<RunFrame> frames;  // empty: another program's result
+  // A pose a tracked frame. Its frame is the row of frames.csv with state `tracking`; without that file, the frame that
+  // has the same place among observations.csv's frames, whose number must then be the same.
+  std::vector<RunPose> poses;
+  int cut_lines = 0;  // last lines that were cut off, in trajectory.txt and frames.csv
+};
+
+// Fails with kNotFound (no folder, no trajectory.txt, no observations.csv), kUnreadable (file and line) or kMismatch
+// (poses that belong to no frame).
+Result<Run> ReadRun(const std::string& path);
+
+struct FrameObservations {
+  int frame_idx = 0;
+  std::vector<PointObservation> observations;
+};
+
+// observations.csv, a frame at a time: memory does not grow with the run.
+class ObservationReader {
+ public:
+  // `path` is the run folder. Fails with kNotFound, or kUnreadable for a header that is not a run's.
+  static Result<ObservationReader> Open(const std::string& path);
+  ObservationReader(ObservationReader&&) noexcept;
+  ObservationReader& operator=(ObservationReader&&) noexcept;
+  ~ObservationReader();
+
+  // The next frame's rows, nothing at the end. A frame whose last row was cut off is returned without that row. Fails
+  // with kUnreadable for a row that is not numbers, that repeats a point, or whose frame is before the one before.
+  Result<std::optional<FrameObservations>> Next();
+  int cut_lines() const;
+
+ private:
+  struct State;
+  explicit ObservationReader(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace pliant

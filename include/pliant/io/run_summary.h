@@ -1,0 +1,64 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// The run folder: what it says about itself (run.json), shared by its writer and its reader.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "pliant/base/options.h"
+#include "pliant/base/status.h"
+
+namespace pliant {
+
+enum class RunStatus {
+  kCompleted,    // the sequence's end was reached
+  kLost,         // too few points were left
+  kInterrupted,  // stopped on request, or killed: a run says so until it can say something else
+  kFailed,       // an input could not be read, an output could not be written
+};
+
+template <>
+struct EnumNames<RunStatus> {
+  static constexpr std::array kNames = {std::pair{RunStatus::kCompleted, std::string_view("completed")},
+                                        std::pair{RunStatus::kLost, std::string_view("lost")},
+                                        std::pair{RunStatus::kInterrupted, std::string_view("interrupted")},
+                                        std::pair{RunStatus::kFailed, std::string_view("failed")}};
+};
+
+// What is known when a run begins.
+struct RunDescription {
+  std::string program_version;
+  std::vector<std::string> command_line;
+  std::uint64_t seed = 0;
+  std::string input;  // the images' path, as given
+};
+
+// run.json.
+struct RunSummary {
+  RunDescription description;
+  RunStatus status = RunStatus::kInterrupted;
+  std::string note;  // why the run ended, one sentence
+
+  std::int64_t frames_read = 0;
+  std::int64_t frames_tracked = 0;
+  std::int64_t points = 0;
+  std::int64_t observations = 0;
+  std::vector<std::pair<std::string, std::int64_t>> losses;  // points given up, by reason
+
+  double total_s = 0;
+  double frames_per_second = 0;
+  std::vector<std::pair<std::string, double>> mean_ms;  // a frame, by stage
+};
+
+// Writes the file beside its place and renames it, so that there is always a whole one. Fails with kUnwritable.
+Status WriteRunSummary(const std::string& path, const RunSummary& summary);
+// Fails with kNotFound, or with kUnreadable if it is not JSON or not a run's.
+Result<RunSummary> ReadRunSummary(const std::string& path);
+
+}  // namespace pliant

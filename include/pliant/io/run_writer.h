@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Writes a run folder from frame reports, row by row as frames are done, so that a run that is killed keeps what it
+// had:
+//   config.yaml       as given                      trajectory.txt    a line a tracked frame
+//   run.json          `interrupted` until Finish    frames.csv        a row a frame, written after the frame's other
+//   rows map.ply, sparse/  by Finish                     observations.csv  a row a point and tracked frame
+// Units: pixels to 1e-4, positions (map units, mm) and times (s) to 1e-6, quaternions to 1e-9.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "pliant/base/status.h"
+#include "pliant/camera/camera.h"
+#include "pliant/io/colmap.h"
+#include "pliant/io/run_summary.h"
+#include "pliant/tracking/frame_report.h"
+
+namespace pliant {
+
+enum class RunTimings {
+  kWritten,
+  kNone,  // zeros instead, so that two runs can be compared byte by byte
+};
+
+struct RunWriterOptions {
+  RunTimings timings = RunTimings::kWritten;
+  ColmapFormat sparse_format = ColmapFormat::kBoth;
+};
+
+class RunWriter {
+ public:
+  // Makes the folder (and those above it) and begins its files. A former run's files are deleted first; a folder that
+  // holds anything else, and no run, is refused. `stage_names` are the columns ms_<stage> of frames.csv, in order.
+  // Fails with kInvalidArgument (a folder with other content) or kUnwritable.
+  static Result<RunWriter> Create(const std::string& output_path, const Camera& camera, RunDescription description,
+                                  const std::string& config_yaml, std::vector<std::string> stage_names,
+                                  const RunWriterOptions& options = {});
+  RunWriter(RunWriter&&) noexcept;
+  RunWriter& operator=(RunWriter&&) noexcept;
+  ~RunWriter();  // without Finish the folder stays what a killed run leaves
+
+  // Appends one frame. Frames come in growing order. Fails with kUnwritable (a full disk), or kInvalidArgument for a
+  // report with numbers that are not finite, a stage that is not in the list, or an observed point that was never new.
+  Status Write(const FrameReport& report);
+
+  // Writes map.ply, sparse/ and the final run.json; to be called once, whatever ended the run. run.json is attempted
+  // even when the others fail, and then says `failed` with the reason.
+  Status Finish(RunStatus status, const std::string& note);
+
+  const RunSummary& summary() const;
+
+ private:
+  struct State;
+  explicit RunWriter(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace pliant
