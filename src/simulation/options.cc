@@ -1,0 +1,129 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/simulation/options.h"
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+namespace pliant {
+
+void SimulationOptions::List(OptionTable& table) {
+  table.BeginGroup("Scene", "what is filmed");
+  table.AddChoice("kind", &scene.kind, "folds, corners and relief, or a smooth round tube");
+  table.Add("seed", &scene.seed, "-", "of everything that is drawn by lot: folds, texture, tremor, noise", 0, 1 << 30);
+  table.Add("radius_mm", &scene.radius_mm, "mm", "radius of the lumen without its folds", 5, 200);
+  table.Add("length_mm", &scene.length_mm, "mm", "length of the tube; 0: the camera's way and view_mm more", 0, 20000);
+  table.Add("view_mm", &scene.view_mm, "mm", "tube that lies ahead of the last camera", 20, 2000);
+  table.Add("bend_deg_per_cm", &scene.bend_deg_per_cm, "deg/cm", "largest bending in each plane", 0, 15);
+  table.Add("fold_depth_mm", &scene.fold_depth_mm, "mm", "how far a typical fold stands into the lumen", 0, 100);
+  table.Add("fold_spacing_mm", &scene.fold_spacing_mm, "mm", "mean distance of the rings of folds", 3, 500);
+  table.Add("relief_mm", &scene.relief_mm, "mm", "uneven wall, about its standard deviation", 0, 20);
+  table.Add("mesh_step_mm", &scene.mesh_step_mm, "mm", "edge of the mesh; facets must not be seen", 0.1, 20);
+
+  table.BeginGroup("Texture", "what the wall carries");
+  table.Add("contrast", &texture.contrast, "-", "of mottling and vessels; 0: one colour", 0, 4);
+  table.Add("largest_mm", &texture.largest_mm, "mm", "longest wave of the mottling", 0.1, 500);
+  table.Add("smallest_mm", &texture.smallest_mm, "mm", "shortest wave; two pixels or more keep corners stable", 0.05,
+            500);
+  table.Add("persistence", &texture.persistence, "-", "amplitude of an octave by the next longer one", 0.1, 1.5);
+  table.Add("vessels", &texture.vessels, "-", "number of vessel trees; 1: one on 9 cm^2", 0, 20);
+  table.Add("texel_mm", &texture.texel_mm, "mm", "of the map on the wall; below half of smallest_mm", 0.02, 10);
+
+  table.BeginGroup("Deformation", "V_y += A sin(omega t + 2 pi / wavelength (V_x + V_y + V_z))");
+  table.Add("amplitude_mm", &deformation.amplitude_mm, "mm", "A; 0: rigid", 0, 50);
+  table.Add("omega_rad_s", &deformation.omega_rad_s, "rad/s", "omega; 2.5 is a breath in 2.5 s", 0, 100);
+  table.Add("wavelength_mm", &deformation.wavelength_mm, "mm", "200 pi reads the sine's argument in decimetres", 20,
+            1e9);
+
+  table.BeginGroup("Light", "one light at the camera");
+  table.Add("ambient", &light.ambient, "-", "share of light that comes by way of the other walls", 0, 1);
+  table.Add("specular", &light.specular, "-", "peak of the wet reflection; 0: none", 0, 1000);
+  table.Add("roughness", &light.roughness, "-", "slope of the wet facets; larger: wider highlights", 0.01, 1);
+
+  table.BeginGroup("Sensor", "from light to grey levels");
+  table.Add("exposure", &sensor.exposure, "-", "linear level that the 80 % quantile is brought to; 1: white", 0.01, 2);
+  table.Add("exposure_time_s", &sensor.exposure_time_s, "s", "time constant of the automatic exposure", 0, 1000);
+  table.Add("gain_jitter", &sensor.gain_jitter, "-", "standard deviation of the gain between frames", 0, 0.3);
+  table.Add("gamma", &sensor.gamma, "-", "level = linear^(1/gamma)", 0.5, 4);
+  table.Add("noise_levels", &sensor.noise_levels, "-", "standard deviation of the noise, grey levels of 255", 0, 50);
+  table.Add("blur_px", &sensor.blur_px, "px", "standard deviation of the lens's blur", 0, 20);
+  table.Add("vignetting", &sensor.vignetting, "-", "share of light lost in the corners", 0, 1);
+  table.Add("samples", &sensor.samples, "-", "rays a pixel, made a square number; depth is the centre's", 1, 64);
+  table.Add("depth_scale_mm", &sensor.depth_scale_mm, "mm", "one step of the 16-bit depth; range 65535 of them", 1e-4,
+            1);
+
+  table.BeginGroup("Camera", "the camera that films");
+  table.AddChoice("model", &camera.model, "projection");
+  table.Add("width", &camera.width, "px", "of the image", 16, 8192);
+  table.Add("height", &camera.height, "px", "of the image", 16, 8192);
+  table.Add("horizontal_fov_deg", &camera.horizontal_fov_deg, "deg", "field of view where params is empty", 5, 230);
+  table.Add("params", &camera.params, "px", "the model's parameters in COLMAP's order, e.g. 440,440,319.5,239.5");
+
+  table.BeginGroup("Trajectory", "the camera's way");
+  table.AddChoice("kind", &trajectory.kind, "forward, from side to side, or on the spot");
+  table.Add("frames", &trajectory.frames, "-", "number of frames", 1, 1000000);
+  table.Add("fps", &trajectory.fps, "1/s", "frames a second", 0.01, 10000);
+  table.Add("start_mm", &trajectory.start_mm, "mm", "first camera, along the centreline", 0, 10000);
+  table.Add("speed_mm_s", &trajectory.speed_mm_s, "mm/s", "insert: along the centreline", 0, 1000);
+  table.Add("look_ahead_mm", &trajectory.look_ahead_mm, "mm", "the camera looks at the centreline this far ahead", 1,
+            500);
+  table.Add("sway_amplitude_mm", &trajectory.sway_amplitude_mm, "mm", "sway: to each side", 0, 200);
+  table.Add("sway_period_s", &trajectory.sway_period_s, "s", "sway: to both sides and back", 0.01, 1000);
+  table.Add("sway_distance_mm", &trajectory.sway_distance_mm, "mm", "sway: to the point that stays in view", 5, 500);
+  table.Add("tremor_mm", &trajectory.tremor_mm, "mm", "of the hand, about its standard deviation", 0, 20);
+  table.Add("tremor_deg", &trajectory.tremor_deg, "deg", "of the hand, about its standard deviation", 0, 20);
+  table.Add("clearance_mm", &trajectory.clearance_mm, "mm", "a camera nearer to the wall than this is an error", 0.1,
+            100);
+
+  table.BeginGroup("Simulation", "how it is computed");
+  table.Add("threads", &threads, "-", "0: all; never changes the result", 0, 1024);
+}
+
+std::string ToYaml(const SimulationOptions& options) {
+  SimulationOptions copy = options;
+  OptionTable table;
+  copy.List(table);
+  return table.ToYaml();
+}
+
+Result<Camera> SimulatedCamera(const SimulationOptions& options) {
+  const SimulationOptions::CameraModel& camera = options.camera;
+  std::vector<double> params;
+  if (!camera.params.empty()) {
+    std::string_view rest = camera.params;
+    while (true) {
+      const std::size_t comma = rest.find(',');
+      std::string_view item = rest.substr(0, comma);
+      while (item.starts_with(' ')) item.remove_prefix(1);
+      double value = 0;
+      if (!ParseDouble(item, &value))
+        return {ErrorCode::kInvalidArgument,
+                "Camera.params is '" + camera.params + "'; give numbers separated by commas"};
+      params.push_back(value);
+      if (comma == std::string_view::npos) break;
+      rest.remove_prefix(comma + 1);
+    }
+    return Camera::Create(camera.model, camera.width, camera.height, params);
+  }
+  const double half_rad = 0.5 * camera.horizontal_fov_deg * std::numbers::pi / 180.0;
+  const bool fisheye = camera.model == CameraModelId::kOpenCvFisheye;
+  if (!fisheye && camera.horizontal_fov_deg > 170.0)
+    return {ErrorCode::kInvalidArgument, "Camera.horizontal_fov_deg is " + FormatDouble(camera.horizontal_fov_deg) +
+                                             "; beyond 170 degrees only OPENCV_FISHEYE sees"};
+  const double focal = 0.5 * camera.width / (fisheye ? half_rad : std::tan(half_rad));
+  const double cx = 0.5 * (camera.width - 1);
+  const double cy = 0.5 * (camera.height - 1);
+  const bool single_focal = camera.model == CameraModelId::kSimplePinhole ||
+                            camera.model == CameraModelId::kSimpleRadial || camera.model == CameraModelId::kRadial;
+  params = single_focal ? std::vector{focal, cx, cy} : std::vector{focal, focal, cx, cy};
+  const std::size_t distortions = camera.model == CameraModelId::kSimpleRadial        ? 1
+                                  : camera.model == CameraModelId::kRadial            ? 2
+                                  : camera.model == CameraModelId::kOpenCv || fisheye ? 4
+                                                                                      : 0;
+  params.insert(params.end(), distortions, 0.0);
+  return Camera::Create(camera.model, camera.width, camera.height, params);
+}
+
+}  // namespace pliant

@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// From light to grey levels: lens blur, vignetting, exposure, saturation, gamma, noise, 8 bits.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <opencv2/core/mat.hpp>
+
+#include "pliant/simulation/options.h"
+
+namespace pliant::simulation {
+
+// The light of a frame that the exposure is set by: the 80 % quantile of its samples. Sorts them.
+double ExposureLevel(std::span<float> luminances);
+
+// The gain of every frame from its light: an automatic exposure that follows with a time constant and starts settled,
+// with the jitter of the electronics on top.
+std::vector<double> ExposureGains(const SimulationOptions::Sensor& options, std::span<const double> levels, double fps,
+                                  int seed);
+
+// CV_32FC3 linear light -> CV_8UC3. Noise depends on seed, frame and pixel alone.
+cv::Mat Develop(const SimulationOptions::Sensor& options, const cv::Mat& radiance, double gain, int seed,
+                int frame_idx);
+
+// CV_32FC1 mm -> CV_16UC1 steps of depth_scale_mm; 0 where there is none or it is out of range.
+cv::Mat QuantiseDepth(const cv::Mat& depth_mm, double depth_scale_mm);
+
+}  // namespace pliant::simulation

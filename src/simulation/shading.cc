@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "simulation/shading.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pliant::simulation {
+namespace {
+
+constexpr float kLeastBlood = -4.0F;
+constexpr float kMostBlood = 4.0F;
+constexpr float kReferenceMm = 50.0F;
+
+}  // namespace
+
+Shader::Shader(const SimulationOptions::Light& options, const Surface& surface, const BloodMap& blood, double pixel_rad)
+    : options_(options), surface_(surface), blood_(blood), pixel_rad_(static_cast<float>(pixel_rad)) {
+  // Linear colour of mucosa, and how fast blood takes each channel away (blue, green, red).
+  const Eigen::Array3f mucosa(0.21F, 0.27F, 0.68F);
+  const Eigen::Array3f absorption(0.75F, 0.85F, 0.24F);
+  for (int i = 0; i < kAlbedoSteps; ++i) {
+    const float blood_amount = kLeastBlood + (kMostBlood - kLeastBlood) * static_cast<float>(i) / (kAlbedoSteps - 1);
+    albedo_[i] = (mucosa * (-absorption * blood_amount).exp()).min(0.95F).matrix();
+  }
+}
+
+Eigen::Vector3f Shader::Radiance(const RayHit& hit, const Eigen::Vector3d& direction,
+                                 const std::vector<Eigen::Vector3f>& normals) const {
+  const auto& t = surface_.triangles[hit.point.triangle_idx];
+  const auto b1 = static_cast<float>(hit.point.b1);
+  const auto b2 = static_cast<float>(hit.point.b2);
+  const float b0 = 1.0F - b1 - b2;
+  const Eigen::Vector3f normal = (b0 * normals[t[0]] + b1 * normals[t[1]] + b2 * normals[t[2]]).normalized();
+  const Eigen::Vector2f chart = b0 * surface_.chart[t[0]] + b1 * surface_.chart[t[1]] + b2 * surface_.chart[t[2]];
+  const float cosine = std::clamp(-normal.dot(direction.cast<float>()), 0.0F, 1.0F);
+  const auto distance = static_cast<float>(hit.distance_mm);
+
+  // A slanted wall spreads the pixel over more of it, one way only: the geometric mean of both.
+  const float footprint_mm = distance * pixel_rad_ / std::sqrt(std::max(cosine, 0.08F));
+  const float blood = blood_.At(chart.x(), chart.y(), footprint_mm);
+  const int step = static_cast<int>((blood - kLeastBlood) / (kMostBlood - kLeastBlood) * (kAlbedoSteps - 1) + 0.5F);
+  const Eigen::Vector3f& albedo = albedo_[std::clamp(step, 0, kAlbedoSteps - 1)];
+
+  const auto ambient = static_cast<float>(options_.ambient);
+  const float fall_off = (kReferenceMm / distance) * (kReferenceMm / distance);
+  Eigen::Vector3f radiance = albedo * ((1.0F - ambient) * cosine + ambient);
+  if (options_.specular > 0 && cosine > 0.5F) {
+    const float tan_sq = 1.0F / (cosine * cosine) - 1.0F;
+    const auto slope = static_cast<float>(options_.roughness);
+    radiance.array() += static_cast<float>(options_.specular) * std::exp(-tan_sq / (slope * slope));
+  }
+  return fall_off * radiance;
+}
+
+}  // namespace pliant::simulation

@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// The light that comes back along a ray. One small light sits in the camera, so light and view directions coincide:
+//   L = (50 mm / d)^2 ( albedo ((1 - a) cos + a) + s exp(-tan^2 / m^2) )
+// cos and tan of the angle between view and normal, d the distance, a the ambient share, s and m the wet reflection's
+// peak and facet slope (Beckmann's distribution). Albedo falls with the local amount of blood, least in the red.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "pliant/simulation/options.h"
+#include "simulation/ray_scene.h"
+#include "simulation/surface.h"
+#include "simulation/texture.h"
+
+namespace pliant::simulation {
+
+class Shader {
+ public:
+  // `pixel_rad`: the angle that a sample covers. Keeps references to the surface and the map.
+  Shader(const SimulationOptions::Light& options, const Surface& surface, const BloodMap& blood, double pixel_rad);
+
+  // Blue, green, red; 1 is about a white wall at 50 mm. `normals`: the vertices' unit normals as posed.
+  Eigen::Vector3f Radiance(const RayHit& hit, const Eigen::Vector3d& direction,
+                           const std::vector<Eigen::Vector3f>& normals) const;
+
+ private:
+  static constexpr int kAlbedoSteps = 2048;
+
+  SimulationOptions::Light options_;
+  const Surface& surface_;
+  const BloodMap& blood_;
+  float pixel_rad_;
+  std::array<Eigen::Vector3f, kAlbedoSteps> albedo_;  // over blood from kLeastBlood to kMostBlood
+};
+
+}  // namespace pliant::simulation

@@ -1,0 +1,113 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/simulation/write_sequence.h"
+
+#include <cstdio>
+#include <fstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <opencv2/imgcodecs.hpp>
+
+#include "pliant/simulation/simulator.h"
+#include "simulation/sensor.h"
+
+namespace pliant {
+namespace {
+
+namespace fs = std::filesystem;
+
+Status Unwritable(const fs::path& path) {
+  return {ErrorCode::kUnwritable,
+          "cannot write " + path.string() + "; is the folder writable and is there room on the disk?"};
+}
+
+Status WriteBytes(const fs::path& path, const char* data, std::size_t size) {
+  std::ofstream file(path, std::ios::binary);
+  file.write(data, static_cast<std::streamsize>(size));
+  file.close();
+  return file ? Status::Ok() : Unwritable(path);
+}
+
+Status WriteText(const fs::path& path, const std::string& text) { return WriteBytes(path, text.data(), text.size()); }
+
+// Little compression: noise does not compress, and time is better spent on rays.
+Status WritePng(const fs::path& path, const cv::Mat& image) {
+  std::vector<unsigned char> bytes;
+  if (!cv::imencode(".png", image, bytes, {cv::IMWRITE_PNG_COMPRESSION, 1})) return Unwritable(path);
+  return WriteBytes(path, reinterpret_cast<const char*>(bytes.data()), bytes.size());
+}
+
+std::string CameraYaml(const Camera& camera, const SimulationOptions& options) {
+  std::string params;
+  for (const double p : camera.params()) params += (params.empty() ? "" : ", ") + FormatDouble(p);
+  return "model: " + std::string(camera.model_name()) + "\nwidth: " + std::to_string(camera.width()) +
+         "\nheight: " + std::to_string(camera.height()) + "\nparams: [" + params +
+         "]\nfps: " + FormatDouble(options.trajectory.fps) +
+         "\ndepth_scale: " + FormatDouble(options.sensor.depth_scale_mm) + "\nunit: mm\n";
+}
+
+std::string TumLine(double time_s, const Rigid3& world_from_cam) {
+  std::string line = FormatDouble(time_s);
+  const Eigen::Vector3d& t = world_from_cam.translation;
+  const Eigen::Quaterniond& q = world_from_cam.rotation;
+  for (const double value : {t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()}) line += ' ' + FormatDouble(value);
+  return line + '\n';
+}
+
+std::string FrameName(int frame_idx) {
+  char name[32];
+  std::snprintf(name, sizeof(name), "%06d.png", frame_idx);
+  return name;
+}
+
+// Frames that an earlier, longer sequence left would be read as part of this one.
+Status RemoveLeftovers(const fs::path& folder) {
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+    if (entry.path().extension() == ".png" && !fs::remove(entry.path(), error)) return Unwritable(entry.path());
+  }
+  return error ? Unwritable(folder) : Status::Ok();
+}
+
+Status PrepareFolder(const fs::path& output, const Simulator& simulator) {
+  for (const char* name : {"images", "depth"}) {
+    std::error_code error;
+    fs::create_directories(output / name, error);
+    if (error) return Unwritable(output / name);
+    if (Status status = RemoveLeftovers(output / name); !status.ok()) return status;
+  }
+  if (Status status = WriteText(output / "camera.yaml", CameraYaml(simulator.camera(), simulator.options()));
+      !status.ok())
+    return status;
+  return WriteText(output / "simulation.yaml", ToYaml(simulator.options()));
+}
+
+}  // namespace
+
+Status WriteSequence(const SimulationOptions& options, const fs::path& output, const SimulationProgress& progress) {
+  Result<Simulator> simulator = Simulator::Create(options);
+  if (!simulator.ok()) return simulator.status();
+  if (Status status = PrepareFolder(output, *simulator); !status.ok()) return status;
+  std::ofstream poses(output / "groundtruth.txt");
+  std::ofstream times(output / "times.txt");
+  for (int i = 0; i < simulator->frame_count(); ++i) {
+    const SimulatedFrame frame = simulator->Render(i);
+    if (Status status = WritePng(output / "images" / FrameName(i), frame.image); !status.ok()) return status;
+    const cv::Mat depth = simulation::QuantiseDepth(frame.depth, options.sensor.depth_scale_mm);
+    if (Status status = WritePng(output / "depth" / FrameName(i), depth); !status.ok()) return status;
+    poses << TumLine(simulator->TimeOf(i), simulator->WorldFromCamera(i)) << std::flush;
+    times << FormatDouble(simulator->TimeOf(i)) << std::endl;
+    if (!poses) return Unwritable(output / "groundtruth.txt");
+    if (!times) return Unwritable(output / "times.txt");
+    if (progress && progress(i + 1, simulator->frame_count()) == SimulationContinue::kStop)
+      return {ErrorCode::kInterrupted, "stopped after " + std::to_string(i + 1) + " of " +
+                                           std::to_string(simulator->frame_count()) + " frames; they are in " +
+                                           output.string()};
+  }
+  return Status::Ok();
+}
+
+}  // namespace pliant
