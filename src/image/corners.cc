@@ -1,0 +1,158 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/image/corners.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include <opencv2/imgproc.hpp>
+
+namespace pliant {
+namespace {
+
+constexpr double kReferenceQuantile = 0.99;  // of the local maxima: a few highlights do not set the scale
+// Smallest response of a corner, (grey levels / px)^2 of the mean tensor: below it is the noise of an 8-bit image.
+constexpr double kNoiseFloor = 0.5;
+// OpenCV's response is the mean tensor of gradients in units of half a grey level / 255 a pixel.
+constexpr double kTensorScale = 255.0 * 255.0 / 4.0;
+
+// Peak of the parabola through three equidistant samples, within half a pixel.
+double ParabolaPeak(double left, double centre, double right) {
+  const double curvature = left - 2 * centre + right;
+  return curvature < 0 ? std::clamp(0.5 * (left - right) / curvature, -0.5, 0.5) : 0;
+}
+
+// Local maxima of the corner response on usable pixels, strongest first; ties by row, then column.
+std::vector<Corner> Candidates(const cv::Mat& grey, const cv::Mat& valid, const CornerOptions& options) {
+  cv::Mat response, peaks;
+  cv::cornerMinEigenVal(grey, response, options.block_size_px, 3);
+  cv::dilate(response, peaks, cv::Mat());
+  const cv::Mat usable = ErodeMask(valid, options.border_px);
+  std::vector<Corner> corners;
+  for (int y = 1; y + 1 < grey.rows; ++y) {
+    const auto* row = response.ptr<float>(y);
+    const auto* above = response.ptr<float>(y - 1);
+    const auto* below = response.ptr<float>(y + 1);
+    const auto* peak = peaks.ptr<float>(y);
+    const auto* use = usable.ptr<std::uint8_t>(y);
+    for (int x = 1; x + 1 < grey.cols; ++x) {
+      if (use[x] == 0 || row[x] < peak[x] || row[x] <= 0) continue;
+      Corner corner;
+      corner.pixel = {x + ParabolaPeak(row[x - 1], row[x], row[x + 1]), y + ParabolaPeak(above[x], row[x], below[x])};
+      corner.score = row[x] * kTensorScale;
+      corners.push_back(corner);
+    }
+  }
+  std::stable_sort(corners.begin(), corners.end(), [](const Corner& a, const Corner& b) { return a.score > b.score; });
+  return corners;
+}
+
+void DropWeak(double quality_level, double noise_floor, std::vector<Corner>* corners) {
+  if (corners->empty()) return;
+  const auto rank = static_cast<std::size_t>((1 - kReferenceQuantile) * static_cast<double>(corners->size()));
+  const double limit = std::max(quality_level * (*corners)[rank].score, noise_floor);
+  std::erase_if(*corners, [&](const Corner& c) { return c.score < limit; });
+}
+
+void DropContours(const cv::Mat& grey, const CornerOptions& options, std::vector<Corner>* corners) {
+  std::vector<Eigen::Vector2d> pixels;
+  for (const Corner& corner : *corners) pixels.push_back(corner.pixel);
+  const std::vector<double> measures = ContourMeasure(grey, pixels, options.contour_radius_px);
+  for (std::size_t i = 0; i < corners->size(); ++i) (*corners)[i].contour = measures[i];
+  if (options.contour_filter == Detection::kOn)
+    std::erase_if(*corners, [&](const Corner& c) { return c.contour > options.contour_threshold; });
+}
+
+// Square cells, about one for every wanted corner, each with the points that lie in it.
+class Cells {
+ public:
+  Cells(cv::Size size, double side)
+      : side_(side), cols_(static_cast<int>(size.width / side) + 1), rows_(static_cast<int>(size.height / side) + 1) {
+    taken_.resize(static_cast<std::size_t>(cols_) * static_cast<std::size_t>(rows_));
+  }
+  std::size_t size() const { return taken_.size(); }
+  std::size_t Index(const Eigen::Vector2d& p) const {
+    const int col = std::clamp(static_cast<int>(p.x() / side_), 0, cols_ - 1);
+    const int row = std::clamp(static_cast<int>(p.y() / side_), 0, rows_ - 1);
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(cols_) + static_cast<std::size_t>(col);
+  }
+  void Take(const Eigen::Vector2d& p) { taken_[Index(p)].push_back(p); }
+  int count(std::size_t cell) const { return static_cast<int>(taken_[cell].size()); }
+  bool Crowded(const Eigen::Vector2d& p, double distance) const {
+    const int reach = static_cast<int>(std::ceil(distance / side_));
+    const int col = static_cast<int>(p.x() / side_);
+    const int row = static_cast<int>(p.y() / side_);
+    for (int r = std::max(0, row - reach); r <= std::min(rows_ - 1, row + reach); ++r)
+      for (int c = std::max(0, col - reach); c <= std::min(cols_ - 1, col + reach); ++c)
+        for (const auto& other :
+             taken_[static_cast<std::size_t>(r) * static_cast<std::size_t>(cols_) + static_cast<std::size_t>(c)])
+          if ((other - p).squaredNorm() < distance * distance) return true;
+    return false;
+  }
+
+ private:
+  double side_;
+  int cols_, rows_;
+  std::vector<std::vector<Eigen::Vector2d>> taken_;
+};
+
+// Rounds: in round k every cell that holds k points takes its strongest candidate left, strong cells first, until
+// enough are taken. So each part of the image gets its share before any part gets more.
+std::vector<Corner> Spread(const std::vector<Corner>& candidates, std::span<const Eigen::Vector2d> existing,
+                           cv::Size size, double side, const CornerOptions& options) {
+  Cells cells(size, side);
+  for (const Eigen::Vector2d& p : existing) cells.Take(p);
+  std::vector<Corner> chosen;
+  std::vector<char> done(candidates.size(), 0);
+  std::size_t left = candidates.size();
+  const auto limit = static_cast<std::size_t>(options.max_corners);
+  for (int round = 0; left > 0 && chosen.size() < limit; ++round) {
+    for (std::size_t i = 0; i < candidates.size() && chosen.size() < limit; ++i) {
+      if (done[i] != 0 || cells.count(cells.Index(candidates[i].pixel)) > round) continue;
+      done[i] = 1;
+      --left;
+      if (cells.Crowded(candidates[i].pixel, options.min_distance_px)) continue;
+      cells.Take(candidates[i].pixel);
+      chosen.push_back(candidates[i]);
+    }
+  }
+  return chosen;
+}
+
+}  // namespace
+
+void CornerOptions::List(OptionTable& table) {
+  table.BeginGroup("Corners", "points worth following");
+  table.Add("max_corners", &max_corners, "-", "more points cost time in every frame", 1, 100000);
+  table.Add("quality_level", &quality_level, "-", "share of the strong corners' response below which is noise", 0, 1);
+  table.Add("min_distance_px", &min_distance_px, "px", "closer corners say the same thing twice", 0, 1000);
+  table.Add("border_px", &border_px, "px", "distance to the image's edge and to masked pixels: a patch must fit", 1,
+            200);
+  table.Add("block_size_px", &block_size_px, "px", "window of the structure tensor", 3, 31);
+  table.AddChoice("contour_filter", &contour_filter,
+                  "keep corners off occluding contours: what is seen there slides over the surface");
+  table.Add("contour_threshold", &contour_threshold, "-", "contour measure above which a corner is dropped", 0, 1);
+  table.Add("contour_radius_px", &contour_radius_px, "px", "how far to each side brightness is compared", 2, 200);
+}
+
+std::vector<Corner> DetectCorners(const cv::Mat& grey, const cv::Mat& valid, std::span<const Eigen::Vector2d> existing,
+                                  const CornerOptions& options) {
+  assert(grey.type() == CV_8UC1 && !grey.empty());
+  assert(valid.empty() || (valid.type() == CV_8UC1 && valid.size() == grey.size()));
+  const cv::Mat usable = valid.empty() ? cv::Mat(grey.size(), CV_8UC1, cv::Scalar(255)) : valid;
+  std::vector<Corner> candidates = Candidates(grey, usable, options);
+  DropWeak(options.quality_level, kNoiseFloor, &candidates);
+  DropContours(grey, options, &candidates);
+  const double area = std::max(1, cv::countNonZero(usable));
+  const double wanted = options.max_corners + static_cast<double>(existing.size());
+  const double side = std::max({std::sqrt(area / wanted), options.min_distance_px, 1.0});
+  std::vector<Corner> corners = Spread(candidates, existing, grey.size(), side, options);
+  std::sort(corners.begin(), corners.end(), [](const Corner& a, const Corner& b) {
+    return a.pixel.y() != b.pixel.y() ? a.pixel.y() < b.pixel.y() : a.pixel.x() < b.pixel.x();
+  });
+  return corners;
+}
+
+}  // namespace pliant
