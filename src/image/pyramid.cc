@@ -41,7 +41,7 @@ ImagePyramid::ImagePyramid(const cv::Mat& grey, int levels) {
     if (size.width < kMinSide_px || size.height < kMinSide_px) break;
     cv::Mat padded(size.height + 2 * kPad, size.width + 2 * kPad, CV_8UC1);
     cv::Mat inner = Inner(padded);
-    cv::pyrDown(finer, inner, size, cv::BORDER_REFLECT_101 | cv::BORDER_ISOLATED);
+    cv::pyrDown(finer, inner, size, cv::BORDER_REFLECT_101);
     RepeatBorder(&padded);
     padded_.push_back(padded);
   }

@@ -35,6 +35,7 @@ struct InitInput {
   // The reference frame with all its points, then the frames since, in order of time; the last one is the current
   // frame. A point lost on the way is missing from its frame on.
   const std::vector<InitFrame>& frames;
+  cv::Mat reference_depth_mm;  // CV_32FC1, z along the optical axis, 0 = none; empty where there is no depth
 };
 
 enum class InitDecision {
@@ -87,7 +88,7 @@ struct InitOutcome {
   std::string reason;  // one sentence with its numbers; of a map too
   InitMeasurements measured;
 
-  // Filled in for kMap only.
+  // Filled in for kMap alone.
   std::vector<InitPose> poses;              // one a frame of the input, in its order; the first is the identity
   std::vector<InitPoint> points;            // sorted by id
   std::vector<InitRejectedPoint> rejected;  // the reference's other points, sorted by id

@@ -1,0 +1,78 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// The main job: a sequence in, a run folder out (docs/formats.md). Everything computed is on disk after every frame, so
+// that a run which is lost, interrupted, killed or fails leaves what it had.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "pliant/base/options.h"
+#include "pliant/base/status.h"
+#include "pliant/datasets/open_sequence.h"
+#include "pliant/io/run_summary.h"
+#include "pliant/tracking/frame_report.h"
+#include "pliant/tracking/tracker.h"
+
+namespace pliant {
+
+enum class Preset {
+  kDefault,  // ours
+  kPaper,    // every choice and constant as published, for comparison
+};
+template <>
+struct EnumNames<Preset> {
+  static constexpr std::array kNames = {std::pair{Preset::kDefault, std::string_view("default")},
+                                        std::pair{Preset::kPaper, std::string_view("paper")}};
+};
+
+enum class Timings { kWritten, kNone };
+template <>
+struct EnumNames<Timings> {
+  static constexpr std::array kNames = {std::pair{Timings::kWritten, std::string_view("written")},
+                                        std::pair{Timings::kNone, std::string_view("none")}};
+};
+
+struct TrackOptions {
+  int seed = 1;
+  int threads = 2;  // 1: everything on one thread; 2 and more: images are read ahead, points are followed in parallel
+  Timings timings = Timings::kWritten;
+  TrackerOptions tracker;
+
+  void List(OptionTable& table);  // group "General" and the tracker's
+};
+
+TrackOptions MakeTrackOptions(Preset preset);
+
+struct TrackRequest {
+  SequenceRequest input;
+  std::string output_path;
+  std::vector<std::string> command_line;    // for run.json
+  const std::atomic<bool>* stop = nullptr;  // becomes true when the run is to end after the present frame; may be null
+};
+
+class TrackObserver {
+ public:
+  virtual ~TrackObserver() = default;
+  // Before the first frame; `frames` is what the sequence says of its length.
+  virtual void OnStart(int frames) = 0;
+  // After a frame's rows are on disk.
+  virtual void OnFrame(const FrameReport& report) = 0;
+};
+
+// Runs the tracker over the sequence. Fails when there is nothing to run on: an input that cannot be opened, an output
+// that cannot be made. Once frames are read the answer is a summary, whose status and note say how the run ended:
+//   completed    at the sequence's end            lost    too few points (the note says in which frame)
+//   interrupted  `stop` became true               failed  an image could not be read, a row not be written, or the
+//                                                         sequence ended without a first map
+// The result depends on input, options and seed, not on the number of threads. Sets OpenCV's number of threads.
+Result<RunSummary> RunTrack(const TrackRequest& request, const TrackOptions& options,
+                            std::span<TrackObserver* const> observers);
+
+}  // namespace pliant

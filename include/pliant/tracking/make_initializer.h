@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// The initialisers by name.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string_view>
+#include <utility>
+
+#include "pliant/base/random.h"
+#include "pliant/tracking/depth_initializer.h"
+#include "pliant/tracking/monocular_initializer.h"
+
+namespace pliant {
+
+enum class InitMethod { kGated, kPaper, kDepth };
+template <>
+struct EnumNames<InitMethod> {
+  static constexpr std::array kNames = {std::pair{InitMethod::kGated, std::string_view("gated")},
+                                        std::pair{InitMethod::kPaper, std::string_view("paper")},
+                                        std::pair{InitMethod::kDepth, std::string_view("depth")}};
+};
+
+struct InitOptions {
+  InitMethod method = InitMethod::kGated;
+  MonocularInitOptions monocular;
+  DepthInitOptions depth;
+
+  void List(OptionTable& table);  // group "Init"
+};
+
+// Whether a map from this method has true units (then the published sigma for metric starts applies).
+inline bool IsMetric(InitMethod method) { return method == InitMethod::kDepth; }
+
+std::unique_ptr<Initializer> MakeInitializer(const InitOptions& options, Random random);
+
+}  // namespace pliant

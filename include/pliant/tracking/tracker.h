@@ -1,0 +1,137 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Camera pose and deformation from one image after another (Gomez Rodriguez, Montiel, Tardos, IROS 2022). The tracker
+// is given images and answers with reports; it owns the map and is the only one to change it. It neither reads nor
+// writes files. One frame's way: docs/concepts.md; equations: docs/method.md.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <opencv2/core/mat.hpp>
+
+#include "pliant/base/options.h"
+#include "pliant/camera/camera.h"
+#include "pliant/deformation/graph.h"
+#include "pliant/estimation/camera_pose.h"
+#include "pliant/estimation/frame_problem.h"
+#include "pliant/image/corners.h"
+#include "pliant/image/masks.h"
+#include "pliant/image/pyramid.h"
+#include "pliant/scene/map.h"
+#include "pliant/tracking/frame_report.h"
+#include "pliant/tracking/initializer.h"
+#include "pliant/tracking/make_initializer.h"
+#include "pliant/tracking/neighbour_agreement.h"
+#include "pliant/tracking/point_tracker.h"
+#include "pliant/tracking/state.h"
+
+namespace pliant {
+
+enum class NeighbourAgreement { kOff, kOn };
+template <>
+struct EnumNames<NeighbourAgreement> {
+  static constexpr std::array kNames = {std::pair{NeighbourAgreement::kOff, std::string_view("off")},
+                                        std::pair{NeighbourAgreement::kOn, std::string_view("on")}};
+};
+
+struct TrackerOptions {
+  CornerOptions corners;
+  MaskOptions masks;
+  PointTrackerOptions point_tracker;
+  InitOptions init;
+  CameraPoseOptions pose;
+  GraphOptions graph;
+  FrameProblemOptions problem;
+  AgreementOptions agreement;
+
+  double sigma_metric_mm = 55.0;  // instead of graph.sigma_mm after a start from metric depth, as published
+  NeighbourAgreement neighbor_agreement = NeighbourAgreement::kOn;
+  double max_reprojection_px = 2.4477;  // square root of the 95 % quantile of chi-square at 2 degrees of freedom
+  int min_points = 12;                  // fewer: lost
+  int min_corners = 40;                 // fewer in an image: it is no reference
+  int max_lost_frames = 10;             // after so many frames in a row without enough points the tracker gives up
+
+  // Groups Corners, Masks, LucasKanade, PointTracker, Init, CameraPose, Deformation, Optimization, Tracking.
+  void List(OptionTable& table);
+};
+
+// An image made ready: everything that depends on the image alone, so that it can be done ahead on another thread.
+struct TrackerFrame {
+  int frame_idx = 0;
+  std::string name;
+  double timestamp_s = 0;
+  cv::Mat image;  // 8-bit, 1 or 3 (BGR) channels
+  cv::Mat grey;   // CV_8UC1
+  ImagePyramid pyramid;
+  SupportMask mask;
+  cv::Mat depth_mm;       // CV_32FC1 or empty; only a start from depth uses it
+  double prepare_ms = 0;  // wall time of PrepareFrame
+};
+
+// `image` has the camera's size; `mask` is empty or CV_8UC1 of that size, 0 = ignore.
+TrackerFrame PrepareFrame(int frame_idx, std::string name, double timestamp_s, const cv::Mat& image,
+                          const cv::Mat& mask, const TrackerOptions& options);
+
+class Tracker {
+ public:
+  // The stages whose wall times are in every report, in this order.
+  static constexpr std::array<std::string_view, 7> kStages = {"prepare", "photometric", "pose",      "agreement",
+                                                              "graph",   "joint",       "initialise"};
+  // `threads` >= 1 work on one frame; the result does not depend on it. `seed` decides RANSAC's samples.
+  Tracker(const Camera& camera, const TrackerOptions& options, std::uint64_t seed, int threads);
+  ~Tracker();
+
+  FrameReport Process(const TrackerFrame& frame);
+
+  TrackingState state() const { return state_; }
+  const Map& map() const { return map_; }
+  // Lost for max_lost_frames frames: further frames will not help.
+  bool GaveUp() const { return lost_frames_ >= options_.max_lost_frames; }
+
+ private:
+  struct Followed;  // the landmarks that were followed into a frame, side by side
+
+  void Apply(TrackingEvent event) { state_ = NextState(state_, event); }
+  void Count(std::string_view reason, int count);
+
+  // Reference and first map.
+  void TakeReference(const TrackerFrame& frame, FrameReport* report);
+  void FollowReference(const TrackerFrame& frame, FrameReport* report);
+  void TryInitialize(const TrackerFrame& frame, FrameReport* report);
+  void CreateMap(const TrackerFrame& frame, const InitOutcome& outcome, FrameReport* report);
+
+  // One frame.
+  void TrackFrame(const TrackerFrame& frame, FrameReport* report);
+  std::vector<PointPrediction> PredictPixels(const Rigid3& predicted_cam_from_world) const;
+  Followed FollowPoints(const TrackerFrame& frame, const std::vector<PointPrediction>& predictions);
+  void DropContradicted(const Rigid3& cam_from_world, Followed* followed);
+  void DropUnexplained(Followed* followed);
+  void Commit(const FrameSolution& solution, const Followed& followed, FrameReport* report);
+  void ReportLost(const TrackerFrame& frame, int found, FrameReport* report);
+
+  Camera camera_;
+  TrackerOptions options_;
+  int threads_;
+  std::unique_ptr<Initializer> initializer_;
+  PointTracker point_tracker_;
+
+  TrackingState state_ = TrackingState::kWaitingForReference;
+  Map map_;
+  std::vector<InitFrame> init_frames_;  // since the reference
+  TrackerFrame previous_;               // the last frame in which points were seen
+  Rigid3 last_cam_from_world_;
+  Rigid3 before_last_cam_from_world_;
+  std::int64_t next_id_ = 0;
+  int lost_frames_ = 0;
+  std::vector<std::pair<std::string, int>> losses_;  // of the present frame, by reason
+};
+
+}  // namespace pliant

@@ -1,0 +1,125 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/pipeline/track.h"
+
+#include <memory>
+
+#include <opencv2/core.hpp>
+
+#include "pliant/base/prefetcher.h"
+#include "pliant/base/version.h"
+#include "pliant/io/run_writer.h"
+
+namespace pliant {
+namespace {
+
+constexpr int kFramesAhead = 3;
+
+// Reads and prepares the next frame; nothing at the end.
+std::optional<Result<TrackerFrame>> NextFrame(Sequence& sequence, const TrackerOptions& options) {
+  auto next = sequence.Next();
+  if (!next.ok()) return next.status();
+  if (!next->has_value()) return std::nullopt;
+  const SequenceFrame& frame = **next;
+  TrackerFrame prepared =
+      PrepareFrame(frame.frame_idx, frame.name, frame.timestamp_s, frame.image, frame.mask, options);
+  if (options.init.method == InitMethod::kDepth) {
+    auto depth = sequence.Depth(frame.frame_idx);
+    if (!depth.ok()) return depth.status();
+    if (depth->has_value()) prepared.depth_mm = **depth;
+  }
+  return prepared;
+}
+
+// How a run ended.
+struct Ending {
+  RunStatus status = RunStatus::kCompleted;
+  std::string note;
+};
+
+Ending TrackSequence(Sequence& sequence, const TrackRequest& request, const TrackOptions& options, RunWriter& writer,
+                     std::span<TrackObserver* const> observers) {
+  Tracker tracker(sequence.camera(), options.tracker, static_cast<std::uint64_t>(options.seed), options.threads);
+  Prefetcher<Result<TrackerFrame>> frames([&] { return NextFrame(sequence, options.tracker); },
+                                          options.threads > 1 ? kFramesAhead : 0);
+  std::string last_note = "the sequence has no frames";
+  while (auto frame = frames.Next()) {
+    if (!frame->ok()) return {RunStatus::kFailed, frame->status().message()};
+    const FrameReport report = tracker.Process(**frame);
+    if (const Status written = writer.Write(report); !written.ok()) return {RunStatus::kFailed, written.message()};
+    for (TrackObserver* observer : observers) observer->OnFrame(report);
+    last_note = report.note;
+    if (tracker.GaveUp()) return {RunStatus::kLost, "frame " + report.name + ": " + report.note};
+    if (request.stop != nullptr && *request.stop)
+      return {RunStatus::kInterrupted, "stopped on request after frame " + report.name};
+  }
+  switch (tracker.state()) {
+    case TrackingState::kTracking:
+      return {RunStatus::kCompleted, "the sequence's end was reached"};
+    case TrackingState::kLost:
+      return {RunStatus::kLost, last_note + "; then the sequence ended"};
+    case TrackingState::kWaitingForReference:
+    case TrackingState::kInitialising:
+      break;
+  }
+  return {RunStatus::kFailed, "the sequence ended without a first map: " + last_note};
+}
+
+}  // namespace
+
+void TrackOptions::List(OptionTable& table) {
+  table.BeginGroup("General", "the run as a whole");
+  table.Add("seed", &seed, "-", "decides every random choice; the same seed gives the same files", 0, 2147483647);
+  table.Add("threads", &threads, "-",
+            "1: everything on one thread; 2 and more: images are read ahead, points followed in parallel; never "
+            "changes the result",
+            1, 1024);
+  table.AddChoice("timings", &timings, "none: wall times are written as 0, so that two runs are equal byte for byte");
+  tracker.List(table);
+}
+
+TrackOptions MakeTrackOptions(Preset preset) {
+  TrackOptions options;
+  if (preset == Preset::kDefault) return options;
+  TrackerOptions& tracker = options.tracker;
+  tracker.corners.contour_filter = Detection::kOff;
+  tracker.masks.highlights = Detection::kOff;
+  tracker.masks.border = Detection::kOff;
+  tracker.point_tracker.patch_policy = PatchPolicy::kPeriodic;
+  tracker.point_tracker.forward_backward = Detection::kOff;
+  tracker.point_tracker.lucas_kanade.similarity = SimilarityMode::kPlain;
+  tracker.init.method = InitMethod::kPaper;
+  tracker.neighbor_agreement = NeighbourAgreement::kOff;
+  return options;
+}
+
+Result<RunSummary> RunTrack(const TrackRequest& request, const TrackOptions& options,
+                            std::span<TrackObserver* const> observers) {
+  cv::setNumThreads(options.threads);
+  auto sequence = OpenSequence(request.input);
+  if (!sequence.ok()) return sequence.status();
+
+  OptionTable table;
+  TrackOptions listed = options;
+  listed.List(table);
+  RunWriterOptions writer_options;
+  writer_options.timings = options.timings == Timings::kNone ? RunTimings::kNone : RunTimings::kWritten;
+  auto writer = RunWriter::Create(
+      request.output_path, (*sequence)->camera(),
+      {kVersion, request.command_line, static_cast<std::uint64_t>(options.seed), request.input.image_path.string()},
+      table.ToYaml(), {Tracker::kStages.begin(), Tracker::kStages.end()}, writer_options);
+  if (!writer.ok()) return writer.status();
+
+  for (TrackObserver* observer : observers) observer->OnStart((*sequence)->size());
+  const Ending ending = TrackSequence(**sequence, request, options, *writer, observers);
+  const Status finished = writer->Finish(ending.status, ending.note);
+  RunSummary summary = writer->summary();
+  if (!finished.ok()) {
+    summary.status = RunStatus::kFailed;
+    summary.note = finished.message();
+  }
+  return summary;
+}
+
+}  // namespace pliant

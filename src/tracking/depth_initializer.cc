@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/tracking/depth_initializer.h"
+
+#include <string>
+
+#include "pliant/image/depth_lookup.h"
+
+namespace pliant {
+namespace {
+
+class DepthInitializer final : public Initializer {
+ public:
+  explicit DepthInitializer(const DepthInitOptions& options) : options_(options) {}
+
+  std::string_view name() const override { return "depth"; }
+
+  InitOutcome Try(const InitInput& input) const override {
+    InitOutcome outcome;
+    const InitFrame& reference = input.frames.front();
+    if (input.reference_depth_mm.empty()) {
+      outcome.decision = InitDecision::kNewReference;
+      outcome.reason = "the frame has no depth image, which a start from depth needs; choose another Init.method";
+      return outcome;
+    }
+    for (const InitObservation& observation : reference.observations) AddPoint(input, observation, &outcome);
+    outcome.measured.correspondences = static_cast<int>(reference.observations.size());
+    outcome.measured.inliers = static_cast<int>(outcome.points.size());
+    const std::string count = std::to_string(outcome.points.size());
+    if (outcome.measured.inliers < options_.min_points) {
+      outcome.decision = InitDecision::kNewReference;
+      outcome.reason = "only " + count + " corners have a usable depth, of at least " +
+                       std::to_string(options_.min_points) + " that a map needs";
+      return outcome;
+    }
+    outcome.decision = InitDecision::kMap;
+    outcome.reason = "first map of " + count + " points from the depth image";
+    for (const InitFrame& frame : input.frames) outcome.poses.push_back({frame.frame_idx, Rigid3()});
+    return outcome;
+  }
+
+ private:
+  void AddPoint(const InitInput& input, const InitObservation& observation, InitOutcome* outcome) const {
+    const auto ray = input.camera.Unproject(observation.pixel);
+    if (!ray || ray->z() <= 0) {
+      outcome->rejected.push_back({observation.id, InitRejection::kNoRay});
+      return;
+    }
+    const DepthAtPixel depth = LookUpDepth(input.reference_depth_mm, observation.pixel, options_.max_depth_step);
+    if (depth.lookup != DepthLookup::kOk) {
+      outcome->rejected.push_back({observation.id, InitRejection::kUncertainDepth});
+      return;
+    }
+    const Eigen::Vector3d position = *ray * (depth.depth_mm / ray->z());
+    outcome->points.push_back({observation.id, position, options_.relative_sigma * depth.depth_mm, 0.0});
+  }
+
+  DepthInitOptions options_;
+};
+
+}  // namespace
+
+void DepthInitOptions::List(OptionTable& table) {
+  table.Add("depth_max_step", &max_depth_step, "-",
+            "depth: relative step among the four pixels around a corner above which it gets no depth", 1e-6, 1);
+  table.Add("depth_relative_sigma", &relative_sigma, "-", "depth: standard deviation of the depth by the depth", 0, 1);
+  table.Add("depth_min_points", &min_points, "-", "depth: fewer corners with depth make no map", 4, 100000);
+}
+
+std::unique_ptr<Initializer> MakeDepthInitializer(const DepthInitOptions& options) {
+  return std::make_unique<DepthInitializer>(options);
+}
+
+}  // namespace pliant

@@ -1,0 +1,233 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/tracking/tracker.h"
+
+#include <chrono>
+#include <cmath>
+
+#include "tracking/tracker_support.h"
+
+namespace pliant {
+
+void TrackerOptions::List(OptionTable& table) {
+  corners.List(table);
+  masks.List(table);
+  point_tracker.List(table);
+  init.List(table);
+  pose.List(table);
+  graph.List(table);
+  problem.List(table);
+  table.BeginGroup("Tracking", "the tracker: which points stay, when it is lost");
+  table.Add("sigma_metric_mm", &sigma_metric_mm, "mm",
+            "instead of Deformation.sigma_mm after a start from metric depth, as published", 0.1, 1e6);
+  table.AddChoice("neighbor_agreement", &neighbor_agreement, "drop points that move as none of their neighbours does");
+  agreement.List(table);
+  table.Add("max_reprojection_px", &max_reprojection_px, "px",
+            "a point further than this from its measurement after the joint problem is dropped", 0.1, 1e6);
+  table.Add("min_points", &min_points, "-", "fewer points in a frame: lost", 4, 100000);
+  table.Add("min_corners", &min_corners, "-", "fewer corners in an image: it is no reference", 8, 100000);
+  table.Add("max_lost_frames", &max_lost_frames, "frames", "lost for so many frames in a row, the run ends", 1,
+            1000000);
+}
+
+TrackerFrame PrepareFrame(int frame_idx, std::string name, double timestamp_s, const cv::Mat& image,
+                          const cv::Mat& mask, const TrackerOptions& options) {
+  const auto start = std::chrono::steady_clock::now();
+  TrackerFrame frame;
+  frame.frame_idx = frame_idx;
+  frame.name = std::move(name);
+  frame.timestamp_s = timestamp_s;
+  frame.image = image;
+  frame.grey = ToGrey(image);
+  frame.pyramid = ImagePyramid(frame.grey, options.point_tracker.lucas_kanade.levels);
+  frame.mask = SupportMask(ValidMask(image, mask, options.masks));
+  frame.prepare_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  return frame;
+}
+
+Tracker::Tracker(const Camera& camera, const TrackerOptions& options, std::uint64_t seed, int threads)
+    : camera_(camera),
+      options_(options),
+      threads_(threads),
+      initializer_(MakeInitializer(options.init, Random(seed).Child("initializer"))),
+      point_tracker_(options.point_tracker) {
+  if (IsMetric(options_.init.method)) options_.graph.sigma_mm = options_.sigma_metric_mm;
+}
+
+Tracker::~Tracker() = default;
+
+FrameReport Tracker::Process(const TrackerFrame& frame) {
+  FrameReport report;
+  report.frame_idx = frame.frame_idx;
+  report.name = frame.name;
+  report.timestamp_s = frame.timestamp_s;
+  for (const std::string_view stage : kStages) report.stage_ms.emplace_back(stage, 0.0);
+  report.stage_ms.front().second = frame.prepare_ms;
+  losses_.clear();
+
+  switch (state_) {
+    case TrackingState::kWaitingForReference:
+      TakeReference(frame, &report);
+      break;
+    case TrackingState::kInitialising:
+      FollowReference(frame, &report);
+      break;
+    case TrackingState::kTracking:
+    case TrackingState::kLost:
+      TrackFrame(frame, &report);
+      break;
+  }
+  report.state = state_;
+  report.losses = losses_;
+  for (const auto& [reason, count] : losses_) report.lost += count;
+  return report;
+}
+
+void Tracker::Count(std::string_view reason, int count) {
+  if (count == 0) return;
+  for (auto& [name, total] : losses_)
+    if (name == reason) {
+      total += count;
+      return;
+    }
+  losses_.emplace_back(reason, count);
+}
+
+void Tracker::TakeReference(const TrackerFrame& frame, FrameReport* report) {
+  {
+    const StageTimer timer(report, "initialise");
+    map_.landmarks.clear();
+    init_frames_.clear();
+    point_tracker_.Clear();
+    InitFrame reference{frame.frame_idx, {}};
+    for (const Corner& corner : DetectCorners(frame.grey, frame.mask.valid(), {}, options_.corners)) {
+      const PointId id{next_id_};
+      if (point_tracker_.Add(id, corner.pixel, frame.pyramid, frame.mask) != PatchFailure::kNone) continue;
+      reference.observations.push_back({id, corner.pixel});
+      ++next_id_;
+    }
+    report->tracked = static_cast<int>(reference.observations.size());
+    init_frames_.push_back(std::move(reference));
+  }
+  if (report->tracked < options_.min_corners) {
+    Apply(TrackingEvent::kTooFewCorners);
+    report->note = WithFault("no reference yet: " + std::to_string(report->tracked) + " corners, of at least " +
+                                 std::to_string(options_.min_corners),
+                             ImageFault(frame, previous_));
+  } else {
+    TryInitialize(frame, report);
+    if (state_ == TrackingState::kWaitingForReference && report->note.empty()) {
+      Apply(TrackingEvent::kReferenceFound);
+      report->note = "reference with " + std::to_string(report->tracked) + " corners";
+    }
+  }
+  previous_ = frame;
+}
+
+void Tracker::FollowReference(const TrackerFrame& frame, FrameReport* report) {
+  {
+    const StageTimer timer(report, "photometric");
+    // Constant velocity in the image: there is no map yet.
+    const std::vector<InitObservation>& last = init_frames_.back().observations;
+    std::vector<Eigen::Vector2d> from;
+    std::vector<Eigen::Vector2d> to;
+    for (const InitObservation& observation : last) {
+      from.push_back(observation.pixel);
+      to.push_back(observation.pixel);
+    }
+    if (init_frames_.size() >= 2) {
+      auto before = init_frames_[init_frames_.size() - 2].observations.begin();
+      for (std::size_t k = 0; k < last.size(); ++k) {
+        while (before->id < last[k].id) ++before;
+        to[k] = 2 * last[k].pixel - before->pixel;
+      }
+    }
+    const std::vector<Eigen::Matrix2d> affines = NeighbourhoodAffines(from, to);
+    std::vector<PointPrediction> predictions;
+    for (std::size_t k = 0; k < last.size(); ++k) predictions.push_back({last[k].id, to[k], affines[k]});
+
+    InitFrame followed{frame.frame_idx, {}};
+    for (const PointTrack& track :
+         point_tracker_.Track(previous_.pyramid, previous_.mask, frame.pyramid, frame.mask, predictions, threads_)) {
+      if (track.failure == PatchFailure::kNone) {
+        followed.observations.push_back({track.id, track.pixel});
+      } else {
+        point_tracker_.Remove(track.id);
+        Count(EnumName(track.failure), 1);
+      }
+    }
+    report->tracked = static_cast<int>(followed.observations.size());
+    init_frames_.push_back(std::move(followed));
+  }
+  const std::string fault = ImageFault(frame, previous_);
+  TryInitialize(frame, report);
+  report->note = WithFault(report->note, fault);
+  previous_ = frame;
+}
+
+void Tracker::TryInitialize(const TrackerFrame& frame, FrameReport* report) {
+  InitOutcome outcome;
+  {
+    const StageTimer timer(report, "initialise");
+    outcome = initializer_->Try({camera_, init_frames_, frame.depth_mm});
+  }
+  switch (outcome.decision) {
+    case InitDecision::kMap:
+      CreateMap(frame, outcome, report);
+      report->note = outcome.reason;
+      return;
+    case InitDecision::kWait:
+      if (init_frames_.size() == 1) return;  // the reference itself: nothing to say yet
+      Apply(TrackingEvent::kMapAwaited);
+      report->note = outcome.reason;
+      return;
+    case InitDecision::kNewReference:
+      break;
+  }
+  if (init_frames_.size() == 1) {  // not this image either
+    report->note = outcome.reason;
+    return;
+  }
+  Apply(TrackingEvent::kReferenceSpent);
+  TakeReference(frame, report);
+  report->note = outcome.reason + "; " + report->note;
+}
+
+void Tracker::CreateMap(const TrackerFrame& frame, const InitOutcome& outcome, FrameReport* report) {
+  for (const InitRejectedPoint& rejected : outcome.rejected) {
+    if (rejected.reason != InitRejection::kLostOnTheWay) Count(InitRejectionName(rejected.reason), 1);
+    point_tracker_.Remove(rejected.id);
+  }
+  last_cam_from_world_ = outcome.poses.back().cam_from_world;
+  before_last_cam_from_world_ =
+      outcome.poses.size() >= 2 ? outcome.poses[outcome.poses.size() - 2].cam_from_world : last_cam_from_world_;
+
+  std::vector<double> errors;
+  auto observation = init_frames_.back().observations.begin();
+  for (const InitPoint& point : outcome.points) {
+    while (observation->id < point.id) ++observation;
+    const Eigen::Vector2d& pixel = observation->pixel;
+    map_.landmarks.push_back({point.id, point.position, point.position, Eigen::Vector3d::Zero(), pixel});
+    report->observations.push_back({point.id, pixel, point.position, 1.0});
+    const cv::Point nearest(static_cast<int>(std::lround(pixel.x())), static_cast<int>(std::lround(pixel.y())));
+    NewPoint added{point.id, point.position, {}};
+    if (frame.image.channels() == 3) {
+      const auto bgr = frame.image.at<cv::Vec3b>(nearest);
+      added.rgb = {bgr[2], bgr[1], bgr[0]};
+    } else {
+      added.rgb.fill(frame.image.at<std::uint8_t>(nearest));
+    }
+    report->new_points.push_back(added);
+    if (const auto projected = camera_.Project(last_cam_from_world_ * point.position))
+      errors.push_back((*projected - pixel).norm());
+  }
+  report->cam_from_world = last_cam_from_world_;
+  report->added = static_cast<int>(outcome.points.size());
+  report->optimized = report->added;
+  report->median_reprojection_error_px = MedianOf(std::move(errors));
+  init_frames_.clear();
+  Apply(TrackingEvent::kMapCreated);
+}
+
+}  // namespace pliant

@@ -1,0 +1,207 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// One frame with a map: the way from predicted pixels to the committed solution.
+#include <algorithm>
+#include <cmath>
+
+#include "pliant/tracking/tracker.h"
+#include "tracking/tracker_support.h"
+
+namespace pliant {
+
+// The landmarks that were followed into this frame: element k of each belongs to the same one.
+struct Tracker::Followed {
+  std::vector<int> landmark_idx;
+  std::vector<Eigen::Vector3d> positions;       // X_i^{t-1}
+  std::vector<Eigen::Vector3d> rest_positions;  // undeformed
+  std::vector<Eigen::Vector2d> pixels;
+  std::vector<double> ssim;
+  std::vector<FramePoint> solved;  // of the joint problem, once there is a solution
+
+  std::size_t size() const { return positions.size(); }
+
+  // Keeps the elements whose flag is set.
+  void Keep(const std::vector<char>& keep) {
+    const auto filter = [&](auto& values) {
+      if (values.empty()) return;  // not filled in yet
+      std::size_t kept = 0;
+      for (std::size_t k = 0; k < keep.size(); ++k)
+        if (keep[k] != 0) values[kept++] = values[k];
+      values.resize(kept);
+    };
+    filter(landmark_idx);
+    filter(positions);
+    filter(rest_positions);
+    filter(pixels);
+    filter(ssim);
+    filter(solved);
+  }
+};
+
+// One frame, as in the paper; the names in brackets are those of docs/method.md.
+void Tracker::TrackFrame(const TrackerFrame& frame, FrameReport* report) {
+  // While lost, the camera's velocity is not known.
+  const Rigid3 predicted = state_ == TrackingState::kTracking
+                               ? PredictCameraPose(before_last_cam_from_world_, last_cam_from_world_)  // (E6)
+                               : last_cam_from_world_;
+  Followed followed;
+  {
+    const StageTimer timer(report, "photometric");
+    followed = FollowPoints(frame, PredictPixels(predicted));  // (P1)
+    report->tracked = static_cast<int>(followed.size());
+  }
+  if (report->tracked < options_.min_points) return ReportLost(frame, report->tracked, report);
+
+  Rigid3 pose = predicted;
+  {
+    const StageTimer timer(report, "pose");
+    const auto estimate =
+        EstimateCameraPose(camera_, followed.positions, followed.pixels, predicted, options_.pose);  // (E7)
+    if (estimate.ok()) pose = estimate->cam_from_world;
+  }
+  if (options_.neighbor_agreement == NeighbourAgreement::kOn) {
+    const StageTimer timer(report, "agreement");
+    DropContradicted(pose, &followed);  // (A3)
+  }
+  Result<FrameSolution> solution = Status(ErrorCode::kInsufficient, "not solved");
+  {
+    DeformationGraph graph;
+    {
+      const StageTimer timer(report, "graph");
+      auto built = BuildDeformationGraph(followed.positions, followed.rest_positions, options_.graph);  // (D1)
+      if (built.ok()) graph = *std::move(built);
+    }
+    const StageTimer timer(report, "joint");
+    solution = SolveFrameProblem(camera_, {followed.positions, followed.pixels, graph.edges, pose},
+                                 options_.problem);  // (E5)
+  }
+  if (solution.ok()) {
+    followed.solved = solution->points;
+    DropUnexplained(&followed);
+  }
+  if (!solution.ok() || static_cast<int>(followed.size()) < options_.min_points)
+    return ReportLost(frame, static_cast<int>(followed.size()), report);
+  Commit(*solution, followed, report);
+  Apply(TrackingEvent::kFrameTracked);
+  report->note = ImageFault(frame, previous_);
+  previous_ = frame;
+}
+
+// Where each landmark is expected: its last pixel, moved as the map says that the camera and its own motion move it.
+std::vector<PointPrediction> Tracker::PredictPixels(const Rigid3& predicted_cam_from_world) const {
+  std::vector<Eigen::Vector2d> from;
+  std::vector<Eigen::Vector2d> to;
+  for (const Landmark& landmark : map_.landmarks) {
+    const auto now = camera_.Project(last_cam_from_world_ * landmark.position);
+    const auto next = camera_.Project(predicted_cam_from_world * (landmark.position + landmark.last_motion));
+    from.push_back(landmark.pixel);
+    to.push_back(now && next ? Eigen::Vector2d(landmark.pixel + *next - *now) : landmark.pixel);
+  }
+  const std::vector<Eigen::Matrix2d> affines = NeighbourhoodAffines(from, to);
+  std::vector<PointPrediction> predictions;
+  for (std::size_t k = 0; k < to.size(); ++k) predictions.push_back({map_.landmarks[k].id, to[k], affines[k]});
+  return predictions;
+}
+
+Tracker::Followed Tracker::FollowPoints(const TrackerFrame& frame, const std::vector<PointPrediction>& predictions) {
+  const std::vector<PointTrack> tracks =
+      point_tracker_.Track(previous_.pyramid, previous_.mask, frame.pyramid, frame.mask, predictions, threads_);
+  Followed followed;
+  for (std::size_t k = 0; k < tracks.size(); ++k) {
+    if (tracks[k].failure != PatchFailure::kNone) {
+      Count(EnumName(tracks[k].failure), 1);
+      continue;
+    }
+    const Landmark& landmark = map_.landmarks[k];
+    followed.landmark_idx.push_back(static_cast<int>(k));
+    followed.positions.push_back(landmark.position);
+    followed.rest_positions.push_back(landmark.rest_position);
+    followed.pixels.push_back(tracks[k].pixel);
+    followed.ssim.push_back(tracks[k].ssim);
+  }
+  return followed;
+}
+
+// Each point is put where its pixel says, at its last depth; how far that is from where its neighbours' motion since
+// rest would put it, is what its neighbours do not share.
+void Tracker::DropContradicted(const Rigid3& cam_from_world, Followed* followed) {
+  const Rigid3 world_from_cam = cam_from_world.Inverse();
+  std::vector<NeighbourMotion> motions;
+  std::vector<double> px_per_mm;
+  for (std::size_t k = 0; k < followed->size(); ++k) {
+    const Eigen::Vector3d last_in_cam = cam_from_world * followed->positions[k];
+    const auto ray = camera_.Unproject(followed->pixels[k]);
+    const Eigen::Vector3d now = ray ? Eigen::Vector3d(*ray * last_in_cam.norm()) : last_in_cam;
+    motions.push_back({followed->rest_positions[k], world_from_cam * now});
+    px_per_mm.push_back(camera_.MeanFocalLengthPx() / last_in_cam.norm());
+  }
+  const auto graph = BuildDeformationGraph(followed->rest_positions, {}, options_.graph);
+  if (!graph.ok()) return;
+  std::vector<std::vector<int>> neighbours(followed->size());
+  for (const GraphEdge& edge : graph->edges) {
+    neighbours[edge.i].push_back(edge.j);
+    neighbours[edge.j].push_back(edge.i);
+  }
+  const auto disagreements = MeasureDisagreement(motions, neighbours, world_from_cam.translation);
+  std::vector<char> keep(followed->size(), 1);
+  for (std::size_t k = 0; k < keep.size(); ++k)
+    if (Contradicts(disagreements[k], px_per_mm[k], options_.agreement)) keep[k] = 0;
+  Count("contradicts_neighbors", static_cast<int>(std::count(keep.begin(), keep.end(), 0)));
+  followed->Keep(keep);
+}
+
+void Tracker::DropUnexplained(Followed* followed) {
+  std::vector<char> keep(followed->size(), 1);
+  for (std::size_t k = 0; k < keep.size(); ++k) {
+    const FramePoint& point = followed->solved[k];
+    if (!point.used) {
+      Count("behind_camera", 1);
+      keep[k] = 0;
+    } else if (point.reprojection_error_px > options_.max_reprojection_px) {
+      Count("reprojection_error", 1);
+      keep[k] = 0;
+    }
+  }
+  followed->Keep(keep);
+}
+
+// The only place where a frame changes the map.
+void Tracker::Commit(const FrameSolution& solution, const Followed& followed, FrameReport* report) {
+  Map next;
+  std::vector<double> errors;
+  for (std::size_t k = 0; k < followed.size(); ++k) {
+    Landmark landmark = map_.landmarks[followed.landmark_idx[k]];
+    landmark.last_motion = followed.solved[k].position - landmark.position;
+    landmark.position = followed.solved[k].position;
+    landmark.pixel = followed.pixels[k];
+    next.landmarks.push_back(landmark);
+    report->observations.push_back({landmark.id, landmark.pixel, landmark.position, followed.ssim[k]});
+    errors.push_back(followed.solved[k].reprojection_error_px);
+  }
+  for (const Landmark& landmark : map_.landmarks)
+    if (next.Find(landmark.id) == nullptr) point_tracker_.Remove(landmark.id);
+  map_ = std::move(next);
+  before_last_cam_from_world_ =
+      state_ == TrackingState::kTracking ? last_cam_from_world_ : solution.cam_from_world;  // no velocity after a gap
+  last_cam_from_world_ = solution.cam_from_world;
+  lost_frames_ = 0;
+
+  report->cam_from_world = solution.cam_from_world;
+  report->optimized = static_cast<int>(followed.size());
+  report->median_reprojection_error_px = MedianOf(std::move(errors));
+  report->costs = {solution.costs.reprojection, solution.costs.spatial, solution.costs.temporal,
+                   solution.costs.edge_length};
+}
+
+// Nothing is given up: the map and the patches stay as they were in the last good frame.
+void Tracker::ReportLost(const TrackerFrame& frame, int found, FrameReport* report) {
+  Apply(TrackingEvent::kTooFewPoints);
+  ++lost_frames_;
+  losses_.clear();
+  report->note = WithFault("lost: " + std::to_string(found) + " of " + std::to_string(map_.landmarks.size()) +
+                               " points could be followed, of at least " + std::to_string(options_.min_points),
+                           ImageFault(frame, previous_));
+}
+
+}  // namespace pliant

@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tracking/tracker_support.h"
+
+#include <algorithm>
+#include <cassert>
+
+#include <opencv2/core.hpp>
+
+namespace pliant {
+
+StageTimer::StageTimer(FrameReport* report, std::string_view stage) : start_(std::chrono::steady_clock::now()) {
+  for (auto& [name, ms] : report->stage_ms)
+    if (name == stage) ms_ = &ms;
+  assert(ms_ != nullptr);
+}
+
+StageTimer::~StageTimer() {
+  *ms_ += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
+}
+
+double MedianOf(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+std::string ImageFault(const TrackerFrame& frame, const TrackerFrame& previous) {
+  constexpr double kBlack = 8;        // grey levels, mean
+  constexpr double kWhite = 247;      // grey levels, mean
+  constexpr double kFeatureless = 2;  // grey levels, standard deviation: the noise of a sensor
+  cv::Scalar mean;
+  cv::Scalar deviation;
+  cv::meanStdDev(frame.grey, mean, deviation);
+  if (mean[0] < kBlack) return "the image is black";
+  if (mean[0] > kWhite) return "the image is white";
+  if (deviation[0] < kFeatureless) return "the image is of one colour";
+  if (previous.grey.size() == frame.grey.size() && cv::norm(frame.grey, previous.grey, cv::NORM_INF) == 0)
+    return "the image is the same as the one before (frozen)";
+  return {};
+}
+
+std::string WithFault(const std::string& note, const std::string& fault) {
+  if (fault.empty() || note.empty()) return note + fault;
+  return note + "; " + fault;
+}
+
+}  // namespace pliant

@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// What the tracker's two sources share: timing of stages, and what may be wrong with an image.
+#pragma once
+
+#include <chrono>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pliant/tracking/frame_report.h"
+#include "pliant/tracking/tracker.h"
+
+namespace pliant {
+
+// Adds the time until its end to one of the report's stages.
+class StageTimer {
+ public:
+  StageTimer(FrameReport* report, std::string_view stage);
+  ~StageTimer();
+  StageTimer(const StageTimer&) = delete;
+  StageTimer& operator=(const StageTimer&) = delete;
+
+ private:
+  std::chrono::steady_clock::time_point start_;
+  double* ms_ = nullptr;
+};
+
+// The middle value (the upper of two); 0 of nothing.
+double MedianOf(std::vector<double> values);
+
+// What is wrong with an image in which nothing can be followed; empty when nothing is.
+std::string ImageFault(const TrackerFrame& frame, const TrackerFrame& previous);
+
+// "note; fault", or the one that is not empty.
+std::string WithFault(const std::string& note, const std::string& fault);
+
+}  // namespace pliant

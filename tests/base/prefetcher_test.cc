@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/base/prefetcher.h"
+
+#include <atomic>
+#include <memory>
+
+#include <gtest/gtest.h>
+
+namespace pliant {
+namespace {
+
+TEST(Prefetcher, GivesWhatPlainCallsGiveAndThenTheEnd) {
+  for (const int ahead : {0, 1, 3}) {
+    int count = 0;
+    Prefetcher<std::unique_ptr<int>> prefetcher(
+        [&]() -> std::optional<std::unique_ptr<int>> {
+          if (count == 50) return std::nullopt;
+          return std::make_unique<int>(count++);
+        },
+        ahead);
+    for (int i = 0; i < 50; ++i) EXPECT_EQ(**prefetcher.Next(), i);
+    EXPECT_FALSE(prefetcher.Next().has_value());
+    EXPECT_FALSE(prefetcher.Next().has_value());
+  }
+}
+
+TEST(Prefetcher, NeverRunsFurtherAheadThanAskedAndStopsAtAnyTime) {
+  std::atomic<int> made = 0;
+  {
+    Prefetcher<int> prefetcher([&]() -> std::optional<int> { return made++; }, 2);
+    EXPECT_EQ(*prefetcher.Next(), 0);
+    EXPECT_EQ(*prefetcher.Next(), 1);
+  }
+  EXPECT_LE(made, 2 + 2 + 1);  // taken, waiting, and one being made
+}
+
+}  // namespace
+}  // namespace pliant
