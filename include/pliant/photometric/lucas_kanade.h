@@ -31,6 +31,11 @@ PatchMatch TrackPatch(const ReferencePatch& patch, const ImagePyramid& pyramid, 
                       const LucasKanadeOptions& options);
 
 enum class AlignmentModel { kTranslation, kAffine };
+template <>
+struct EnumNames<AlignmentModel> {
+  static constexpr std::array kNames = {std::pair{AlignmentModel::kTranslation, std::string_view("translation")},
+                                        std::pair{AlignmentModel::kAffine, std::string_view("affine")}};
+};
 
 // Aligns a patch on the finest level only, seen through the 2x2 `affine` (current from reference neighbourhood), from a
 // start within about two pixels. kTranslation keeps `affine`; kAffine refines it too, and needs a patch made with

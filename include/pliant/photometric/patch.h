@@ -5,6 +5,7 @@
 // of it computed once. This header and its sources know no Eigen: they are compiled for several instruction sets.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -66,8 +67,10 @@ struct EnumNames<SimilarityMode> {
                                         std::pair{SimilarityMode::kCompensated, std::string_view("compensated")}};
 };
 
+inline constexpr int kMaxPatchSize = 31;
+
 struct LucasKanadeOptions {
-  int patch_size = 21;       // px, odd; side of the square, on every level
+  int patch_size = 21;       // px, odd, at most kMaxPatchSize; side of the square, on every level
   int levels = 4;            // pyramid levels, 1: the image alone
   int max_iterations = 15;   // on each level
   double epsilon_px = 0.01;  // a smaller step ends a level (in pixels of that level)
@@ -82,22 +85,26 @@ struct LucasKanadeOptions {
   void List(OptionTable& table);  // group "LucasKanade"
 };
 
-// One pyramid level of a reference patch. Rows are padded to `row_stride` floats; padding is zero.
+// One pyramid level of a reference patch. Blocks have rows of PatchRowStride(size) floats.
 struct PatchLevel {
-  std::vector<float> values;   // (size + 2) rows: the patch with a margin of one pixel, for gradients
+  std::vector<float> values;   // size + 3 rows: the patch with a margin of one pixel for gradients, and a spare row
   std::vector<float> weights;  // size rows, 0 or 1; empty: all ones
-  // size rows each: p = sum over v of K(v) * I(v) is the least-squares solution of I ~ a I0 + a g.d + b in a d and a.
-  std::vector<float> solve_x, solve_y, solve_gain;
-  PatchFailure failure = PatchFailure::kNone;  // kLowTexture or kMasked: this level is of no use
+  // 3 blocks of size rows: sum over v of solve(v) * I(v), less `offsets`, is (a dx, a dy, a) of the least-squares
+  // solution of I ~ a (I0 + g.d) + b over the patch, g being the gradient of I0.
+  std::vector<float> solve;
+  std::array<float, 3> offsets{};
+  PatchFailure failure = PatchFailure::kNone;  // kLowTexture, kMasked, kOutOfImage: this level is of no use
 };
 
-// A patch of `size` x `size` pixels around `centre`, bilinear values.
+// A patch of `size` x `size` pixels around `centre`, bilinear values, and its solution on each level.
 struct ReferencePatch {
   Pixel centre;  // pixels of level 0
   int size = 0;
   std::vector<PatchLevel> levels;
-  // The affine solution on level 0 (PatchLevel's, with six motion parameters): 7 blocks of size rows.
+  // Level 0 with motion d + M (u, v), u and v from -1 to 1 over the patch: 7 blocks, as PatchLevel::solve, for
+  // a (dx, dy, Mxx, Mxy, Myx, Myy, 1). Empty if not asked for.
   std::vector<float> solve_affine;
+  std::array<float, 7> offsets_affine{};
 
   bool empty() const { return levels.empty(); }
   // Level 0 decides: without it the patch cannot be followed.
@@ -109,8 +116,9 @@ constexpr int PatchRowStride(int size) { return (size + 2 + 7) / 8 * 8; }
 
 enum class AffineSolution { kWithout, kWith };
 
-// Cuts a patch out of a pyramid. Failure, if any, is in the result: kOutOfImage, kMasked, kLowTexture.
-ReferencePatch MakeReferencePatch(const ImagePyramid& pyramid, const SupportMask& mask, Pixel centre,
-                                  const LucasKanadeOptions& options, AffineSolution affine = AffineSolution::kWithout);
+// Cuts a patch out of a pyramid, into `patch`, whose memory is used again. Returns patch->failure(): kNone,
+// kOutOfImage, kMasked or kLowTexture.
+PatchFailure CutReferencePatch(const ImagePyramid& pyramid, const SupportMask& mask, Pixel centre,
+                               const LucasKanadeOptions& options, AffineSolution affine, ReferencePatch* patch);
 
 }  // namespace pliant

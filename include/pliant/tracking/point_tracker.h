@@ -34,9 +34,11 @@ struct EnumNames<PatchPolicy> {
 struct PointTrackerOptions {
   LucasKanadeOptions lucas_kanade;
   PatchPolicy patch_policy = PatchPolicy::kAdaptive;
-  int refresh_period = 5;           // images; periodic only
-  double refresh_ssim = 0.85;       // adaptive: a new first patch is cut when similarity to the first falls below
+  int refresh_period = 5;      // images; periodic only
+  double refresh_ssim = 0.85;  // adaptive: a new first patch is cut when similarity to the first falls below
+  AlignmentModel realignment = AlignmentModel::kAffine;  // adaptive: what is refined against the first patch
   double max_realignment_px = 1.5;  // adaptive: a re-alignment that jumps farther from the latest patch is refused
+  double max_scale = 2;             // adaptive: a neighbourhood stretched or shrunk by more gets a new first patch
   Detection forward_backward = Detection::kOn;
   double max_forward_backward_px = 0.5;
 
@@ -93,17 +95,26 @@ class PointTracker {
     Eigen::Matrix2d reference_affine_from_first = Eigen::Matrix2d::Identity();
     int age = 0;  // images since the reference was cut
   };
+  struct Images;
+
+  PatchMatch FollowLatest(const Point& point, const PointPrediction& prediction, const Images& images) const;
+  PatchMatch Realign(const Point& point, const PatchMatch& found, const Eigen::Matrix2d& affine,
+                     const Images& images) const;
+  bool Returns(const ReferencePatch& patch, const Point& point, const PointPrediction& prediction,
+               const Images& images) const;
+  PointTrack TrackOne(const PointPrediction& prediction, const Images& images, Point* point) const;
 
   PointTrackerOptions options_;
   std::map<PointId, Point> points_;
 };
 
 // The 2x2 affine change of every point's neighbourhood between two images, from how its `neighbours` nearest points
-// moved: least squares, damped towards `prior` identity with a strength of `damping_px` (the spread of neighbours below
-// which they say little), so that few, collinear or far neighbours change little. Disagreeing neighbours are
-// down-weighted (one reweighting). `from` and `to` have equal length; so has the result.
+// moved relative to it: least squares, pulled towards the identity by `damping_px` (noise of a relative motion over the
+// change expected between two images: 0.3 px / 0.05), so that few, near or collinear neighbours change little.
+// Neighbours that disagree with the rest are down-weighted (one reweighting). `from`, `to` and the result are of equal
+// length.
 std::vector<Eigen::Matrix2d> NeighbourhoodAffines(std::span<const Eigen::Vector2d> from,
                                                   std::span<const Eigen::Vector2d> to, int neighbours = 8,
-                                                  double damping_px = 10);
+                                                  double damping_px = 6);
 
 }  // namespace pliant

@@ -1,0 +1,105 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "photometric/patch_solution.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace pliant {
+namespace {
+
+constexpr int kMaxBlocks = 8;
+
+// Inverse of a symmetric positive definite n x n matrix in place (Gauss-Jordan); false if it is not.
+bool Invert(int n, double* m) {
+  for (int k = 0; k < n; ++k) {
+    const double pivot = m[k * n + k];
+    if (!(pivot > 1e-9)) return false;
+    m[k * n + k] = 1;
+    for (int j = 0; j < n; ++j) m[k * n + j] /= pivot;
+    for (int i = 0; i < n; ++i) {
+      if (i == k) continue;
+      const double factor = m[i * n + k];
+      m[i * n + k] = 0;
+      for (int j = 0; j < n; ++j) m[i * n + j] -= factor * m[k * n + j];
+    }
+  }
+  return true;
+}
+
+// Larger eigenvalue of the covariance of the position (the upper left 2 x 2 of the inverse): its inverse is the
+// texture that is left to determine the position when everything else is free.
+double LargestVariance(const double* inverse, int n) {
+  const double mean = 0.5 * (inverse[0] + inverse[n + 1]);
+  const double half_difference = 0.5 * (inverse[0] - inverse[n + 1]);
+  return mean + std::hypot(half_difference, inverse[1]);
+}
+
+}  // namespace
+
+PatchFailure SolvePatch(const float* values, const float* weights, BasisKind kind, PatchShape shape,
+                        const LucasKanadeOptions& options, float* solve, float* offsets) {
+  const int motion = kind == BasisKind::kAffine ? 6 : 2;
+  const int blocks = motion + 2;  // and the values (gain), and one (bias)
+  const int used = options.gain_bias == GainBias::kOn ? blocks : motion;
+  alignas(64) std::array<float, static_cast<std::size_t>(kMaxBlocks) * kMaxBlock> basis;
+  std::array<float, kMaxBlocks * kMaxBlocks> gram;
+  const float* centre = values + shape.row_stride + 1;
+  const float level = centre[(shape.size / 2) * shape.row_stride + shape.size / 2];
+  FillBasis(values, weights, level, kind, shape, basis.data());
+  GramMatrix(basis.data(), blocks, shape, gram.data());
+
+  std::array<double, kMaxBlocks * kMaxBlocks> inverse;
+  for (int i = 0; i < used; ++i)
+    for (int j = 0; j < used; ++j)
+      inverse[static_cast<std::size_t>(i * used + j)] = gram[static_cast<std::size_t>(i * blocks + j)];
+  const double count = gram[static_cast<std::size_t>(blocks * blocks - 1)];
+  if (!Invert(used, inverse.data())) return PatchFailure::kLowTexture;
+  if (LargestVariance(inverse.data(), used) * options.min_texture * options.min_texture * count > 1)
+    return PatchFailure::kLowTexture;
+
+  const int rows = motion + 1;
+  std::array<float, kMaxBlocks * kMaxBlocks> coefficients{};
+  for (int i = 0; i < std::min(rows, used); ++i)
+    for (int j = 0; j < used; ++j)
+      coefficients[static_cast<std::size_t>(i * blocks + j)] =
+          static_cast<float>(inverse[static_cast<std::size_t>(i * used + j)]);
+  CombineBlocks(basis.data(), blocks, coefficients.data(), rows, shape, solve);
+  std::fill(offsets, offsets + rows, 0.0F);
+  if (options.gain_bias == GainBias::kOff) {
+    // Only the difference to the patch moves it, and the gain is 1.
+    SolveOnValues(centre, solve, motion, shape, offsets);
+    offsets[motion] = -1;
+  }
+  return PatchFailure::kNone;
+}
+
+Support SupportAt(const SupportMask& mask, ImageSize size, double x, double y, int radius_px) {
+  const int cx = static_cast<int>(std::lround(x));
+  const int cy = static_cast<int>(std::lround(y));
+  const int cols = std::min(cx + radius_px, size.width - 1) - std::max(cx - radius_px, 0) + 1;
+  const int rows = std::min(cy + radius_px, size.height - 1) - std::max(cy - radius_px, 0) + 1;
+  const double side = 2 * radius_px + 1;
+  const double inside = std::max(cols, 0) * static_cast<double>(std::max(rows, 0)) / (side * side);
+  return {inside, mask.unrestricted() ? inside : mask.Fraction(cx, cy, radius_px)};
+}
+
+void FillWeights(const SupportMask& mask, ImageSize size, double x, double y, const Affine2& affine, PatchShape shape,
+                 const float* reference, float* weights) {
+  const int half = shape.size / 2;
+  for (int row = 0; row < shape.size; ++row) {
+    for (int col = 0; col < shape.row_stride; ++col) {
+      const int i = row * shape.row_stride + col;
+      const double u = col - half;
+      const double v = row - half;
+      const auto px = static_cast<int>(std::lround(x + affine.xx * u + affine.xy * v));
+      const auto py = static_cast<int>(std::lround(y + affine.yx * u + affine.yy * v));
+      const bool usable = px >= 0 && py >= 0 && px < size.width && py < size.height && mask.Valid(px, py);
+      weights[i] = col < shape.size && usable ? (reference == nullptr ? 1.0F : reference[i]) : 0.0F;
+    }
+  }
+}
+
+}  // namespace pliant

@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// The least-squares solution of a patch's linear model, and which of its pixels count.
+#pragma once
+
+#include "photometric/patch_kernels.h"
+#include "pliant/photometric/patch.h"
+
+namespace pliant {
+
+// Largest block: kMaxPatchSize rows.
+inline constexpr int kMaxBlock = kMaxPatchSize * PatchRowStride(kMaxPatchSize);
+
+inline PatchShape ShapeOf(int size) { return {size, PatchRowStride(size)}; }
+inline int BlockOf(PatchShape shape) { return shape.size * shape.row_stride; }
+
+// Writes the solution (3 blocks and offsets for a translation, 7 for affine motion). `values` and `weights` (null: all
+// ones) as in PatchLevel. kLowTexture if the patch does not determine its position.
+PatchFailure SolvePatch(const float* values, const float* weights, BasisKind kind, PatchShape shape,
+                        const LucasKanadeOptions& options, float* solve, float* offsets);
+
+struct ImageSize {
+  int width = 0;
+  int height = 0;
+};
+
+// Share of the patch around (x, y), pixels of level 0, that lies inside the image and on usable pixels; radius_px of
+// level 0.
+struct Support {
+  double inside = 0;
+  double usable = 0;
+};
+Support SupportAt(const SupportMask& mask, ImageSize size, double x, double y, int radius_px);
+
+// weights[v] = 1 where the pixel of level 0 under patch pixel v is usable and inside, else 0, times `reference` where
+// not null. (x, y): the patch's centre on level 0; A: {xx, xy, yx, yy} from patch pixels to pixels of level 0.
+void FillWeights(const SupportMask& mask, ImageSize size, double x, double y, const Affine2& affine, PatchShape shape,
+                 const float* reference, float* weights);
+
+}  // namespace pliant

@@ -1,0 +1,250 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/tracking/point_tracker.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include <Eigen/LU>
+#include <Eigen/SVD>
+
+#include "pliant/photometric/parallel.h"
+
+namespace pliant {
+namespace {
+
+constexpr double kMaxAffineJump = 0.25;  // a refined neighbourhood farther from the expected one is a wrong fit
+constexpr double kOtherStart_px = 1;     // starts closer than this are one and the same
+
+Pixel ToPixel(const Eigen::Vector2d& p) { return {p.x(), p.y()}; }
+Eigen::Vector2d ToVector(Pixel p) { return {p.x, p.y}; }
+Affine2 ToAffine2(const Eigen::Matrix2d& m) { return {m(0, 0), m(0, 1), m(1, 0), m(1, 1)}; }
+Eigen::Matrix2d ToMatrix(const Affine2& a) {
+  Eigen::Matrix2d m;
+  m << a.xx, a.xy, a.yx, a.yy;
+  return m;
+}
+
+bool WithinScale(const Eigen::Matrix2d& affine, double max_scale) {
+  const Eigen::Vector2d s = affine.jacobiSvd().singularValues();
+  return s[0] <= max_scale && s[1] * max_scale >= 1;
+}
+
+}  // namespace
+
+struct PointTracker::Images {
+  const ImagePyramid& previous;
+  const SupportMask& previous_mask;
+  const ImagePyramid& current;
+  const SupportMask& current_mask;
+};
+
+void PointTrackerOptions::List(OptionTable& table) {
+  lucas_kanade.List(table);
+  table.BeginGroup("PointTracker", "what a point is compared with from image to image");
+  table.AddChoice("patch_policy", &patch_policy,
+                  "cut reference patches anew every few images, or only when they differ");
+  table.Add("refresh_period", &refresh_period, "images", "periodic: how long a reference patch is kept", 1, 1000000);
+  table.Add("refresh_ssim", &refresh_ssim, "-",
+            "adaptive: a new first patch is cut when similarity to the first falls below", -1, 1);
+  table.AddChoice("realignment", &realignment, "adaptive: what is refined against the first patch");
+  table.Add("max_realignment_px", &max_realignment_px, "px",
+            "adaptive: a re-alignment that jumps farther from the latest patch's track is refused", 0, 100);
+  table.Add("max_scale", &max_scale, "-",
+            "adaptive: a neighbourhood stretched or shrunk by more gets a new first patch", 1, 4);
+  table.AddChoice("forward_backward", &forward_backward,
+                  "follow each track back: it must return to where it came from");
+  table.Add("max_forward_backward_px", &max_forward_backward_px, "px", "how near it must return", 0, 100);
+}
+
+PatchFailure PointTracker::Add(PointId id, const Eigen::Vector2d& pixel, const ImagePyramid& pyramid,
+                               const SupportMask& mask) {
+  Point point;
+  const AffineSolution affine =
+      options_.patch_policy == PatchPolicy::kAdaptive ? AffineSolution::kWith : AffineSolution::kWithout;
+  const PatchFailure failure =
+      CutReferencePatch(pyramid, mask, ToPixel(pixel), options_.lucas_kanade, affine, &point.reference);
+  if (failure != PatchFailure::kNone) {
+    points_.erase(id);
+    return failure;
+  }
+  point.latest = point.reference;
+  point.pixel = pixel;
+  points_[id] = std::move(point);
+  return PatchFailure::kNone;
+}
+
+// From the predicted pixel; should that fail, from where the point was.
+PatchMatch PointTracker::FollowLatest(const Point& point, const PointPrediction& prediction,
+                                      const Images& images) const {
+  const ReferencePatch& patch = options_.patch_policy == PatchPolicy::kAdaptive ? point.latest : point.reference;
+  const auto from = [&](const Eigen::Vector2d& start) {
+    return TrackPatch(patch, images.current, images.current_mask, ToPixel(start), options_.lucas_kanade);
+  };
+  const PatchMatch match = from(prediction.pixel);
+  if (match.failure == PatchFailure::kNone || (prediction.pixel - point.pixel).norm() < kOtherStart_px) return match;
+  const PatchMatch again = from(point.pixel);
+  return again.failure == PatchFailure::kNone ? again : match;
+}
+
+// The point against its first patch. Its failure says that the first patch no longer finds it.
+PatchMatch PointTracker::Realign(const Point& point, const PatchMatch& found, const Eigen::Matrix2d& affine,
+                                 const Images& images) const {
+  const auto align = [&](Pixel start, AlignmentModel model) {
+    PatchMatch match = AlignPatch(point.reference, images.current, images.current_mask, start, ToAffine2(affine), model,
+                                  options_.lucas_kanade);
+    const bool jumps = (ToVector(match.pixel) - ToVector(found.pixel)).norm() > options_.max_realignment_px;
+    const bool bends = (ToMatrix(match.affine) - affine).norm() > kMaxAffineJump;
+    if (match.failure == PatchFailure::kNone && (jumps || bends)) match.failure = PatchFailure::kDiverged;
+    return match;
+  };
+  PatchMatch shifted = align(found.pixel, AlignmentModel::kTranslation);
+  if (options_.realignment == AlignmentModel::kTranslation) return shifted;
+  const PatchMatch warped =
+      align(shifted.failure == PatchFailure::kNone ? shifted.pixel : found.pixel, AlignmentModel::kAffine);
+  return warped.failure == PatchFailure::kNone &&
+                 !(shifted.failure == PatchFailure::kNone && shifted.ssim > warped.ssim)
+             ? warped
+             : shifted;
+}
+
+bool PointTracker::Returns(const ReferencePatch& patch, const Point& point, const PointPrediction& prediction,
+                           const Images& images) const {
+  const Eigen::Vector2d start = ToVector(patch.centre) - (prediction.pixel - point.pixel);
+  const PatchMatch back =
+      TrackPatch(patch, images.previous, images.previous_mask, ToPixel(start), options_.lucas_kanade);
+  return back.failure == PatchFailure::kNone &&
+         (ToVector(back.pixel) - point.pixel).norm() <= options_.max_forward_backward_px;
+}
+
+PointTrack PointTracker::TrackOne(const PointPrediction& prediction, const Images& images, Point* point) const {
+  const bool adaptive = options_.patch_policy == PatchPolicy::kAdaptive;
+  const Eigen::Matrix2d expected = prediction.affine_from_latest * point->affine_from_reference;
+  PointTrack track;
+  track.id = prediction.id;
+  track.affine_from_first = expected * point->reference_affine_from_first;
+  PatchMatch match = FollowLatest(*point, prediction, images);
+  match.affine = ToAffine2(expected);
+  track.failure = match.failure;
+  bool refresh = !adaptive && point->age + 1 >= options_.refresh_period;
+  if (adaptive && track.failure == PatchFailure::kNone) {
+    const PatchMatch aligned = Realign(*point, match, expected, images);
+    const bool found = aligned.failure == PatchFailure::kNone;
+    if (found) match = aligned;
+    refresh = !found || match.ssim < options_.refresh_ssim || !WithinScale(ToMatrix(match.affine), options_.max_scale);
+  }
+  track.pixel = ToVector(match.pixel);
+  track.ssim = match.ssim;
+  track.gain = match.gain;
+  track.bias = match.bias;
+  track.affine_from_first = ToMatrix(match.affine) * point->reference_affine_from_first;
+  if (track.failure != PatchFailure::kNone) return track;
+
+  thread_local ReferencePatch cut;  // takes over the memory of the patch that it replaces
+  if (adaptive || refresh || options_.forward_backward == Detection::kOn) {
+    const AffineSolution affine = adaptive && refresh ? AffineSolution::kWith : AffineSolution::kWithout;
+    track.failure =
+        CutReferencePatch(images.current, images.current_mask, match.pixel, options_.lucas_kanade, affine, &cut);
+    if (track.failure == PatchFailure::kNone && options_.forward_backward == Detection::kOn &&
+        !Returns(cut, *point, prediction, images))
+      track.failure = PatchFailure::kForwardBackward;
+    if (track.failure != PatchFailure::kNone) return track;
+    std::swap(cut, point->latest);
+  }
+  point->pixel = track.pixel;
+  point->affine_from_reference = ToMatrix(match.affine);
+  ++point->age;
+  if (refresh) {
+    point->reference = point->latest;
+    point->reference_affine_from_first = track.affine_from_first;
+    point->affine_from_reference.setIdentity();
+    point->age = 0;
+    track.refreshed = Refreshed::kYes;
+  }
+  return track;
+}
+
+std::vector<PointTrack> PointTracker::Track(const ImagePyramid& previous, const SupportMask& previous_mask,
+                                            const ImagePyramid& current, const SupportMask& current_mask,
+                                            std::span<const PointPrediction> predictions, int threads) {
+  const Images images{previous, previous_mask, current, current_mask};
+  std::vector<Point*> points;
+  points.reserve(predictions.size());
+  for (const PointPrediction& prediction : predictions) {
+    const auto it = points_.find(prediction.id);
+    points.push_back(it == points_.end() ? nullptr : &it->second);
+  }
+  std::vector<PointTrack> tracks(predictions.size());
+  ParallelFor(static_cast<int>(predictions.size()), threads, [&](int i) {
+    const auto idx = static_cast<std::size_t>(i);
+    PointTrack& track = tracks[idx];
+    if (points[idx] != nullptr) {
+      track = TrackOne(predictions[idx], images, points[idx]);
+    } else {
+      track.id = predictions[idx].id;
+      track.pixel = predictions[idx].pixel;
+      track.failure = PatchFailure::kUnknownPoint;
+    }
+  });
+  return tracks;
+}
+
+namespace {
+
+// Positions of the `count` nearest other points, nearest first; ties by position.
+std::vector<std::size_t> Nearest(std::span<const Eigen::Vector2d> points, std::size_t centre, std::size_t count) {
+  std::vector<std::pair<double, std::size_t>> best;
+  best.reserve(count + 1);
+  for (std::size_t j = 0; j < points.size(); ++j) {
+    if (j == centre) continue;
+    const std::pair<double, std::size_t> entry((points[j] - points[centre]).squaredNorm(), j);
+    if (best.size() == count && !(entry < best.back())) continue;
+    best.insert(std::upper_bound(best.begin(), best.end(), entry), entry);
+    if (best.size() > count) best.pop_back();
+  }
+  std::vector<std::size_t> nearest;
+  for (const auto& entry : best) nearest.push_back(entry.second);
+  return nearest;
+}
+
+Eigen::Matrix2d FitAffine(std::span<const Eigen::Vector2d> from, std::span<const Eigen::Vector2d> to,
+                          const std::vector<double>& weights, double damping_px) {
+  Eigen::Matrix2d normal = damping_px * damping_px * Eigen::Matrix2d::Identity();
+  Eigen::Matrix2d mixed = normal;
+  for (std::size_t j = 0; j < from.size(); ++j) {
+    normal += weights[j] * from[j] * from[j].transpose();
+    mixed += weights[j] * to[j] * from[j].transpose();
+  }
+  return mixed * normal.inverse();
+}
+
+}  // namespace
+
+std::vector<Eigen::Matrix2d> NeighbourhoodAffines(std::span<const Eigen::Vector2d> from,
+                                                  std::span<const Eigen::Vector2d> to, int neighbours,
+                                                  double damping_px) {
+  assert(from.size() == to.size() && neighbours >= 1 && damping_px > 0);
+  constexpr double kAgreement_px = 0.5;  // a neighbour nearer to the fit than this agrees
+  std::vector<Eigen::Matrix2d> affines;
+  affines.reserve(from.size());
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    std::vector<Eigen::Vector2d> before;
+    std::vector<Eigen::Vector2d> after;
+    for (const std::size_t j : Nearest(from, i, static_cast<std::size_t>(neighbours))) {
+      before.push_back(from[j] - from[i]);
+      after.push_back(to[j] - to[i]);
+    }
+    std::vector<double> weights(before.size(), 1.0);
+    Eigen::Matrix2d affine = FitAffine(before, after, weights, damping_px);
+    for (std::size_t j = 0; j < before.size(); ++j) {
+      const double ratio = (affine * before[j] - after[j]).squaredNorm() / (kAgreement_px * kAgreement_px);
+      weights[j] = 1 / (1 + ratio);
+    }
+    affines.push_back(FitAffine(before, after, weights, damping_px));
+  }
+  return affines;
+}
+
+}  // namespace pliant
