@@ -13,6 +13,7 @@
 #include <vector>
 
 #include <Eigen/Core>
+#include <opencv2/core/mat.hpp>
 
 #include "pliant/base/ids.h"
 #include "pliant/camera/camera.h"

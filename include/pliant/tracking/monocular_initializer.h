@@ -11,10 +11,7 @@
 // The map is scaled once, so that its median depth is nominal_depth_mm.
 #pragma once
 
-#include <array>
 #include <memory>
-#include <string_view>
-#include <utility>
 
 #include "pliant/base/options.h"
 #include "pliant/base/random.h"
@@ -24,16 +21,9 @@
 
 namespace pliant {
 
-enum class MonocularInitMethod { kGated, kPaper };
-
-template <>
-struct EnumNames<MonocularInitMethod> {
-  static constexpr std::array kNames = {std::pair{MonocularInitMethod::kGated, std::string_view("gated")},
-                                        std::pair{MonocularInitMethod::kPaper, std::string_view("paper")}};
-};
+enum class MonocularGates { kGated, kPaper };
 
 struct MonocularInitOptions {
-  MonocularInitMethod method = MonocularInitMethod::kGated;
   RigidRefinement refinement = RigidRefinement::kWindow;  // gated only
   TriangulationMethod triangulation = TriangulationMethod::kIdwm;
 
@@ -59,10 +49,11 @@ struct MonocularInitOptions {
   // Gated: the window's refinement.
   int window_frames = 8;
 
-  void List(OptionTable& table);  // group "Init"
+  void List(OptionTable& table);  // appended to the group "Init"
 };
 
 // `random` decides RANSAC's samples; every attempt starts from it anew, so that an outcome depends on the input alone.
-std::unique_ptr<Initializer> MakeMonocularInitializer(const MonocularInitOptions& options, Random random);
+std::unique_ptr<Initializer> MakeMonocularInitializer(const MonocularInitOptions& options, MonocularGates gates,
+                                                      Random random);
 
 }  // namespace pliant
