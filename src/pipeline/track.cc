@@ -38,7 +38,7 @@ struct Ending {
   std::string note;
 };
 
-Ending TrackSequence(Sequence& sequence, const TrackRequest& request, const TrackOptions& options, RunWriter& writer,
+Ending TrackSequence(Sequence& sequence, const RunRequest& request, const TrackOptions& options, RunWriter& writer,
                      std::span<TrackObserver* const> observers) {
   Tracker tracker(sequence.camera(), options.tracker, static_cast<std::uint64_t>(options.seed), options.threads);
   Prefetcher<Result<TrackerFrame>> frames([&] { return NextFrame(sequence, options.tracker); },
@@ -94,7 +94,7 @@ TrackOptions MakeTrackOptions(Preset preset) {
   return options;
 }
 
-Result<RunSummary> RunTrack(const TrackRequest& request, const TrackOptions& options,
+Result<RunSummary> RunTrack(const RunRequest& request, const TrackOptions& options,
                             std::span<TrackObserver* const> observers) {
   cv::setNumThreads(options.threads);
   auto sequence = OpenSequence(request.input);

@@ -50,7 +50,7 @@ struct TrackOptions {
 
 TrackOptions MakeTrackOptions(Preset preset);
 
-struct TrackRequest {
+struct RunRequest {
   SequenceRequest input;
   std::string output_path;
   std::vector<std::string> command_line;    // for run.json
@@ -72,7 +72,7 @@ class TrackObserver {
 //   interrupted  `stop` became true               failed  an image could not be read, a row not be written, or the
 //                                                         sequence ended without a first map
 // The result depends on input, options and seed, not on the number of threads. Sets OpenCV's number of threads.
-Result<RunSummary> RunTrack(const TrackRequest& request, const TrackOptions& options,
+Result<RunSummary> RunTrack(const RunRequest& request, const TrackOptions& options,
                             std::span<TrackObserver* const> observers);
 
 }  // namespace pliant
