@@ -41,9 +41,11 @@ void SimulationOptions::List(OptionTable& table) {
   table.Add("ambient", &light.ambient, "-", "share of light that comes by way of the other walls", 0, 1);
   table.Add("specular", &light.specular, "-", "peak of the wet reflection; 0: none", 0, 1000);
   table.Add("roughness", &light.roughness, "-", "slope of the wet facets; larger: wider highlights", 0.01, 1);
+  table.Add("unevenness_mm", &light.unevenness_mm, "mm", "of the wet film, by the mottling; breaks highlights up", 0,
+            5);
 
   table.BeginGroup("Sensor", "from light to grey levels");
-  table.Add("exposure", &sensor.exposure, "-", "linear level that the 80 % quantile is brought to; 1: white", 0.01, 2);
+  table.Add("exposure", &sensor.exposure, "-", "linear level that the 90 % quantile is brought to; 1: white", 0.01, 2);
   table.Add("exposure_time_s", &sensor.exposure_time_s, "s", "time constant of the automatic exposure", 0, 1000);
   table.Add("gain_jitter", &sensor.gain_jitter, "-", "standard deviation of the gain between frames", 0, 0.3);
   table.Add("gamma", &sensor.gamma, "-", "level = linear^(1/gamma)", 0.5, 4);

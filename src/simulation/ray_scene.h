@@ -13,6 +13,7 @@
 #include <Eigen/Core>
 
 #include "pliant/base/status.h"
+#include "pliant/simulation/simulator.h"
 #include "simulation/surface.h"
 
 namespace pliant::simulation {

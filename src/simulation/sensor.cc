@@ -40,7 +40,7 @@ class GammaCurve {
 
 double ExposureLevel(std::span<float> luminances) {
   if (luminances.empty()) return 0;
-  const auto quantile = luminances.begin() + static_cast<std::ptrdiff_t>(0.8 * static_cast<double>(luminances.size()));
+  const auto quantile = luminances.begin() + static_cast<std::ptrdiff_t>(0.9 * static_cast<double>(luminances.size()));
   std::nth_element(luminances.begin(), quantile, luminances.end());
   return *quantile;
 }

@@ -14,7 +14,7 @@
 
 namespace pliant::simulation {
 
-// The light of a frame that the exposure is set by: the 80 % quantile of its samples. Sorts them.
+// The light of a frame that the exposure is set by: the 90 % quantile of its samples. Sorts them.
 double ExposureLevel(std::span<float> luminances);
 
 // The gain of every frame from its light: an automatic exposure that follows with a time constant and starts settled,

@@ -12,18 +12,37 @@ namespace {
 constexpr float kLeastBlood = -4.0F;
 constexpr float kMostBlood = 4.0F;
 constexpr float kReferenceMm = 50.0F;
+constexpr float kFinestFacetMm = 0.2F;
 
 }  // namespace
 
 Shader::Shader(const SimulationOptions::Light& options, const Surface& surface, const BloodMap& blood, double pixel_rad)
     : options_(options), surface_(surface), blood_(blood), pixel_rad_(static_cast<float>(pixel_rad)) {
   // Linear colour of mucosa, and how fast blood takes each channel away (blue, green, red).
-  const Eigen::Array3f mucosa(0.21F, 0.27F, 0.68F);
-  const Eigen::Array3f absorption(0.75F, 0.85F, 0.24F);
+  const Eigen::Array3f mucosa(0.20F, 0.26F, 0.66F);
+  const Eigen::Array3f absorption(0.80F, 0.85F, 0.26F);
   for (int i = 0; i < kAlbedoSteps; ++i) {
     const float blood_amount = kLeastBlood + (kMostBlood - kLeastBlood) * static_cast<float>(i) / (kAlbedoSteps - 1);
     albedo_[i] = (mucosa * (-absorption * blood_amount).exp()).min(0.95F).matrix();
   }
+}
+
+Eigen::Vector3f Shader::Facet(const std::array<std::uint32_t, 3>& t, const Eigen::Vector2f& chart,
+                              const Eigen::Vector3f& normal, float size_mm) const {
+  // What is mottled is also uneven: the map's slope tilts the normal. The chart's axes on the triangle first.
+  const Eigen::Vector3f ab = surface_.vertices[t[1]] - surface_.vertices[t[0]];
+  const Eigen::Vector3f ac = surface_.vertices[t[2]] - surface_.vertices[t[0]];
+  const Eigen::Vector2f chart_ab = surface_.chart[t[1]] - surface_.chart[t[0]];
+  const Eigen::Vector2f chart_ac = surface_.chart[t[2]] - surface_.chart[t[0]];
+  const float area = chart_ab.x() * chart_ac.y() - chart_ab.y() * chart_ac.x();
+  if (area == 0.0F) return normal;
+  const Eigen::Vector3f x_axis = ((ab * chart_ac.y() - ac * chart_ab.y()) / area).normalized();
+  const Eigen::Vector3f y_axis = ((ac * chart_ab.x() - ab * chart_ac.x()) / area).normalized();
+  const float here = blood_.At(chart.x(), chart.y(), size_mm);
+  const float slope_x = (blood_.At(chart.x() + size_mm, chart.y(), size_mm) - here) / size_mm;
+  const float slope_y = (blood_.At(chart.x(), chart.y() + size_mm, size_mm) - here) / size_mm;
+  const auto height = static_cast<float>(options_.unevenness_mm);
+  return (normal - height * (slope_x * x_axis + slope_y * y_axis)).normalized();
 }
 
 Eigen::Vector3f Shader::Radiance(const RayHit& hit, const Eigen::Vector3d& direction,
@@ -46,8 +65,11 @@ Eigen::Vector3f Shader::Radiance(const RayHit& hit, const Eigen::Vector3d& direc
   const auto ambient = static_cast<float>(options_.ambient);
   const float fall_off = (kReferenceMm / distance) * (kReferenceMm / distance);
   Eigen::Vector3f radiance = albedo * ((1.0F - ambient) * cosine + ambient);
-  if (options_.specular > 0 && cosine > 0.5F) {
-    const float tan_sq = 1.0F / (cosine * cosine) - 1.0F;
+  // The mean facet must be near enough to the light for a rough one to mirror it.
+  if (options_.specular > 0 && cosine > 0.85F) {
+    const Eigen::Vector3f facet = Facet(t, chart, normal, std::max(footprint_mm, kFinestFacetMm));
+    const float mirror = std::clamp(-facet.dot(direction.cast<float>()), 0.1F, 1.0F);
+    const float tan_sq = 1.0F / (mirror * mirror) - 1.0F;
     const auto slope = static_cast<float>(options_.roughness);
     radiance.array() += static_cast<float>(options_.specular) * std::exp(-tan_sq / (slope * slope));
   }

@@ -4,7 +4,8 @@
 // The light that comes back along a ray. One small light sits in the camera, so light and view directions coincide:
 //   L = (50 mm / d)^2 ( albedo ((1 - a) cos + a) + s exp(-tan^2 / m^2) )
 // cos and tan of the angle between view and normal, d the distance, a the ambient share, s and m the wet reflection's
-// peak and facet slope (Beckmann's distribution). Albedo falls with the local amount of blood, least in the red.
+// peak and facet slope (Beckmann's distribution); for it the normal is tilted by the slope of the mottling. Albedo
+// falls with the local amount of blood, least in the red.
 #pragma once
 
 #include <array>
@@ -29,6 +30,10 @@ class Shader {
                            const std::vector<Eigen::Vector3f>& normals) const;
 
  private:
+  // The normal of the wet film on a patch of this size.
+  Eigen::Vector3f Facet(const std::array<std::uint32_t, 3>& triangle, const Eigen::Vector2f& chart,
+                        const Eigen::Vector3f& normal, float size_mm) const;
+
   static constexpr int kAlbedoSteps = 2048;
 
   SimulationOptions::Light options_;

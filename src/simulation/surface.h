@@ -11,7 +11,6 @@
 #include <Eigen/Core>
 
 #include "pliant/simulation/options.h"
-#include "pliant/simulation/simulator.h"
 #include "simulation/centreline.h"
 
 namespace pliant::simulation {
@@ -31,13 +30,5 @@ struct Surface {
 
 // A bent tube of the given length around a centreline.
 Surface MakeTube(const SimulationOptions::Scene& options, const Centreline& centreline, double length_mm);
-
-// Interpolates a quantity of the three corners of a point's triangle.
-template <class T>
-T Interpolate(const std::vector<std::array<std::uint32_t, 3>>& triangles, const std::vector<T>& values,
-              const MaterialPoint& point) {
-  const auto& t = triangles[point.triangle_idx];
-  return values[t[0]] * (1.0 - point.b1 - point.b2) + values[t[1]] * point.b1 + values[t[2]] * point.b2;
-}
 
 }  // namespace pliant::simulation

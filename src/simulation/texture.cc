@@ -117,8 +117,8 @@ Eigen::Vector3f PlaceAtRest(const Surface& surface, float column, float row) {
 }  // namespace
 
 BloodMap::BloodMap(const SimulationOptions::Texture& options, int seed, const Surface& surface) {
-  constexpr float kMottling = 0.42F;
-  constexpr float kVessel = 1.1F;
+  constexpr float kMottling = 0.30F;
+  constexpr float kVessel = 1.0F;
   const Random random = Random(static_cast<std::uint64_t>(seed)).Child("texture");
   // A power of two around, so that every reduced copy closes on itself exactly.
   const int width = 1 << static_cast<int>(std::ceil(std::log2(surface.chart_width_mm / options.texel_mm)));

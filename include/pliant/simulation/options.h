@@ -71,13 +71,14 @@ struct SimulationOptions {
   } deformation;
 
   struct Light {
-    double ambient = 0.1;     // light that reaches the wall from the rest of the wall, as a share
-    double specular = 6.0;    // peak of the wet reflection by the diffuse one; 0: none
-    double roughness = 0.13;  // width of the wet reflection: slope of the facets
+    double ambient = 0.1;         // light that reaches the wall from the rest of the wall, as a share
+    double specular = 2.5;        // peak of the wet reflection by the diffuse one; 0: none
+    double roughness = 0.1;       // width of the wet reflection: slope of the facets
+    double unevenness_mm = 0.12;  // breaks highlights up: height of the wet film by the mottling, of no visible depth
   } light;
 
   struct Sensor {
-    double exposure = 0.55;        // linear level (1: white) that the 80 % quantile of the image is brought to
+    double exposure = 0.6;         // linear level (1: white) that the 90 % quantile of the image is brought to
     double exposure_time_s = 0.5;  // time constant with which the exposure follows
     double gain_jitter = 0.01;     // standard deviation of the gain from frame to frame, as a share
     double gamma = 2.2;
