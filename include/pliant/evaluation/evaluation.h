@@ -21,7 +21,7 @@
 namespace pliant {
 
 // One frame of a run. Points and poses in map units, world frame.
-struct RunFrame {
+struct EvaluationFrame {
   int frame_idx = 0;  // the sequence's own number
   double timestamp_s = 0;
   std::optional<Rigid3> cam_from_world;        // nothing: not tracked
@@ -29,12 +29,16 @@ struct RunFrame {
 };
 
 struct EvaluationInput {
-  std::string name;              // for messages: the run's folder
-  std::vector<RunFrame> frames;  // every frame read, in order
+  std::string name;                     // for messages: the run's folder
+  std::vector<EvaluationFrame> frames;  // every frame read, in order
 };
 
 // Takes over what the evaluation needs of a frame report.
-RunFrame RunFrameFromReport(const FrameReport& report);
+EvaluationFrame FrameFromReport(const FrameReport& report);
+
+// Reads a run folder. Other programs' results without frames.csv count their poses' frames as the frames read. Errors
+// as io's ReadRun; rows of a killed run's last, unfinished frame are left out.
+Result<EvaluationInput> ReadEvaluationInput(const std::string& run_path);
 
 struct EvaluationOptions {
   SurfaceErrorOptions surface;
