@@ -18,6 +18,7 @@ namespace {
 constexpr double kCoarseEpsilon_px = 0.05;  // of its own pixels: a coarse level only has to come near
 constexpr double kRest_px = 0.1;            // a patch whose last step on the finest level is larger is not at rest
 constexpr double kMinCoarseSupport = 0.3;
+constexpr double kSimilarSupport = 0.9;
 constexpr double kMinStepGain = 0.05;  // the fit says: nothing of the patch is there
 
 // A solution that holds for the pixels usable in both images: the patch's own, or a recomputed one.
@@ -61,7 +62,8 @@ PatchFailure ChooseSolution(const Finest& f, int level, double x, double y, cons
   const double wanted = level == 0 ? f.options.min_valid_support : kMinCoarseSupport;
   if (support.inside < wanted) return PatchFailure::kOutOfImage;
   if (support.usable < wanted) return PatchFailure::kMasked;
-  if (support.usable >= 1) return PatchFailure::kNone;
+  // A coarse level only has to come near: its own weights will do while about as much of it is usable as before.
+  if (support.usable >= (level == 0 ? 1 : kSimilarSupport * reference.support)) return PatchFailure::kNone;
   FillWeights(f.mask, f.size, x, y, affine, f.shape, solution->weights, scratch->weights.data());
   const PatchFailure failure = SolvePatch(reference.values.data(), scratch->weights.data(), kind, f.shape, f.options,
                                           scratch->solve.data(), scratch->offsets.data());

@@ -27,6 +27,7 @@ PatchFailure CutLevel(const ImagePyramid& pyramid, const SupportMask& mask, Pixe
   out->values.resize(static_cast<std::size_t>((shape.size + 3) * shape.row_stride));
   SampleGrid({pyramid.origin(level), pyramid.stride(level)}, centre.x / scale - half - 1, centre.y / scale - half - 1,
              shape.size + 2, shape, out->values.data());
+  out->support = static_cast<float>(support.usable);
   out->weights.clear();
   if (support.usable < 1) {
     out->weights.resize(static_cast<std::size_t>(BlockOf(shape)));

@@ -89,15 +89,20 @@ Support SupportAt(const SupportMask& mask, ImageSize size, double x, double y, i
 void FillWeights(const SupportMask& mask, ImageSize size, double x, double y, const Affine2& affine, PatchShape shape,
                  const float* reference, float* weights) {
   const int half = shape.size / 2;
+  const cv::Mat& valid = mask.valid();
+  const auto round = [](double value) { return static_cast<int>(std::floor(value + 0.5)); };
   for (int row = 0; row < shape.size; ++row) {
+    const double v = row - half;
+    const double row_x = x + affine.xy * v;
+    const double row_y = y + affine.yy * v;
     for (int col = 0; col < shape.row_stride; ++col) {
       const int i = row * shape.row_stride + col;
       const double u = col - half;
-      const double v = row - half;
-      const auto px = static_cast<int>(std::lround(x + affine.xx * u + affine.xy * v));
-      const auto py = static_cast<int>(std::lround(y + affine.yx * u + affine.yy * v));
-      const bool usable = px >= 0 && py >= 0 && px < size.width && py < size.height && mask.Valid(px, py);
-      weights[i] = col < shape.size && usable ? (reference == nullptr ? 1.0F : reference[i]) : 0.0F;
+      const int px = round(row_x + affine.xx * u);
+      const int py = round(row_y + affine.yx * u);
+      const bool inside = col < shape.size && px >= 0 && py >= 0 && px < size.width && py < size.height;
+      const bool usable = inside && (valid.empty() || valid.ptr<std::uint8_t>(py)[px] != 0);
+      weights[i] = usable ? (reference == nullptr ? 1.0F : reference[i]) : 0.0F;
     }
   }
 }

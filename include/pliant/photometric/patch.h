@@ -89,6 +89,7 @@ struct LucasKanadeOptions {
 struct PatchLevel {
   std::vector<float> values;   // size + 3 rows: the patch with a margin of one pixel for gradients, and a spare row
   std::vector<float> weights;  // size rows, 0 or 1; empty: all ones
+  float support = 1;           // share of the patch that lies on usable pixels
   // 3 blocks of size rows: sum over v of solve(v) * I(v), less `offsets`, is (a dx, a dy, a) of the least-squares
   // solution of I ~ a (I0 + g.d) + b over the patch, g being the gradient of I0.
   std::vector<float> solve;
