@@ -1,0 +1,217 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "cli/command_line.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <iostream>
+#include <sstream>
+#include <utility>
+
+#include <CLI/CLI.hpp>
+
+#include "pliant/io/options_file.h"
+
+namespace pliant::cli {
+namespace {
+
+constexpr std::size_t kManualWidth = 100;
+
+std::string Quote(std::string_view text) { return "'" + std::string(text) + "'"; }
+
+// `text` broken into lines of the manual's width, each behind `indent` spaces.
+std::string Wrap(std::string_view text, std::size_t indent) {
+  std::istringstream words{std::string(text)};
+  std::string wrapped;
+  std::size_t column = 0;
+  for (std::string word; words >> word;) {
+    if (column == 0 || column + 1 + word.size() > kManualWidth) {
+      wrapped += (column == 0 ? "" : "\n") + std::string(indent, ' ') + word;
+      column = indent + word.size();
+    } else {
+      wrapped += " " + word;
+      column += 1 + word.size();
+    }
+  }
+  return wrapped + "\n";
+}
+
+// Paragraphs, separated by empty lines as they come.
+std::string WrapParagraphs(std::string_view text, std::size_t indent) {
+  std::string wrapped;
+  while (!text.empty()) {
+    const std::size_t end = text.find("\n\n");
+    wrapped += (wrapped.empty() ? "" : "\n") + Wrap(text.substr(0, end), indent);
+    text = end == std::string_view::npos ? std::string_view() : text.substr(end + 2);
+  }
+  return wrapped;
+}
+
+}  // namespace
+
+void SayError(std::string_view command, std::string_view sentence) {
+  std::cerr << "pliant" << (command.empty() ? "" : " ") << command << ": " << sentence << std::endl;
+}
+
+CommandLine::CommandLine(Manual manual) : manual_(std::move(manual)) {}
+
+void CommandLine::AddArgument(Argument argument) { arguments_.push_back(std::move(argument)); }
+
+void CommandLine::Add(std::string name, std::string* value, std::string placeholder, std::string why, Need need) {
+  AddArgument({std::move(name), placeholder, std::move(why), placeholder, *value, need, [value](std::string_view text) {
+                 *value = text;
+                 return !text.empty();
+               }});
+}
+
+void CommandLine::Add(std::string name, int* value, std::string why, int low, int high) {
+  AddArgument({std::move(name), "N", std::move(why),
+               "a whole number from " + std::to_string(low) + " to " + std::to_string(high), std::to_string(*value),
+               Need::kOptional, [value, low, high](std::string_view text) {
+                 return ParseInt(text, value) && *value >= low && *value <= high;
+               }});
+}
+
+void CommandLine::AddFlag(std::string name, bool* value, std::string why) {
+  AddArgument({std::move(name), "", std::move(why), "", "", Need::kOptional, [value](std::string_view) {
+                 *value = true;
+                 return true;
+               }});
+}
+
+Status CommandLine::ReadArguments(std::span<const std::string> args) {
+  CLI::App app;
+  app.allow_extras();
+  app.set_help_flag();  // the manual is ours
+  for (Argument& argument : arguments_) {
+    if (argument.placeholder.empty()) {
+      app.add_flag_callback("--" + argument.name, [&argument] { argument.given = {""}; });
+    } else {
+      app.add_option("--" + argument.name, argument.given)->expected(1);
+    }
+  }
+  try {
+    app.parse(std::vector<std::string>(args.rbegin(), args.rend()));  // CLI11 takes them from the back
+  } catch (const CLI::ParseError& error) {
+    return {ErrorCode::kInvalidArgument, error.what()};
+  }
+  extras_ = app.remaining();
+  for (const Argument& argument : arguments_) {
+    for (const std::string& value : argument.given) {
+      if (argument.set(value)) continue;
+      return {ErrorCode::kInvalidArgument, "--" + argument.name + " is " + Quote(value) + "; give " + argument.accepts};
+    }
+  }
+  return Status::Ok();
+}
+
+std::optional<int> CommandLine::Parse(std::span<const std::string> args) {
+  Add("config", &config_path_, "FILE", "YAML file of options, as --print_config prints it; flags win over it",
+      Need::kOptional);
+  AddFlag("print_config", &print_config_, "print every option as resolved, with unit and reason, and end");
+  AddFlag("help", &help_, "print this manual and end");
+  const Status status = ReadArguments(args);
+  if (status.ok() || help_) return std::nullopt;
+  return UsageError(status.message());
+}
+
+std::string CommandLine::NearestFlag(std::string_view flag, const OptionTable& options) const {
+  std::vector<std::string> names;
+  for (const Argument& argument : arguments_) names.push_back(argument.name);
+  for (const OptionField& field : options.fields()) names.push_back(field.name);
+  return "--" + NearestName(flag, names);
+}
+
+Status CommandLine::ApplyFlags(OptionTable& options) const {
+  for (std::size_t i = 0; i < extras_.size(); ++i) {
+    const std::string& token = extras_[i];
+    if (!token.starts_with("--") || token.size() == 2) {
+      return {ErrorCode::kInvalidArgument, "does not know what to do with " + Quote(token) +
+                                               "; arguments are --name value, see pliant " +
+                                               std::string(manual_.command) + " --help"};
+    }
+    const std::size_t equals = token.find('=');
+    const std::string name = token.substr(2, equals == std::string::npos ? equals : equals - 2);
+    if (options.Find(name) == nullptr) {
+      return {ErrorCode::kInvalidArgument,
+              "there is no option --" + name + "; did you mean " + NearestFlag(name, options) + "?"};
+    }
+    std::string value;
+    if (equals != std::string::npos) {
+      value = token.substr(equals + 1);
+    } else if (i + 1 < extras_.size() && !extras_[i + 1].starts_with("--")) {
+      value = extras_[++i];
+    } else {
+      return {ErrorCode::kInvalidArgument, "--" + name + " needs a value"};
+    }
+    if (Status status = options.Set(name, value); !status.ok()) return status;
+  }
+  return Status::Ok();
+}
+
+std::optional<int> CommandLine::Resolve(OptionTable& options) {
+  if (help_) {
+    std::cout << ManualText(options) << std::flush;
+    return kExitOk;
+  }
+  if (!config_path_.empty()) {
+    if (const Status status = LoadOptionsFile(config_path_, options); !status.ok()) return UsageError(status.message());
+  }
+  if (const Status status = ApplyFlags(options); !status.ok()) return UsageError(status.message());
+  if (print_config_) {
+    std::cout << options.ToYaml() << std::flush;
+    return kExitOk;
+  }
+  for (const Argument& argument : arguments_) {
+    if (argument.need == Need::kRequired && argument.given.empty())
+      return UsageError("--" + argument.name + " " + argument.placeholder + " is missing; see pliant " +
+                        std::string(manual_.command) + " --help");
+  }
+  return std::nullopt;
+}
+
+int CommandLine::UsageError(std::string_view sentence) const {
+  SayError(manual_.command, sentence);
+  return kExitUsage;
+}
+
+std::string CommandLine::ManualText(const OptionTable& options) const {
+  const std::string program = "pliant " + std::string(manual_.command);
+  std::string usage = program;
+  std::string arguments;
+  for (const Argument& argument : arguments_) {
+    const std::string flag = "--" + argument.name + (argument.placeholder.empty() ? "" : " ") + argument.placeholder;
+    if (argument.need == Need::kRequired) usage += " " + flag;
+    std::string why = argument.why;
+    if (argument.need == Need::kRequired) why += " (required)";
+    if (!argument.default_text.empty()) why += " (default: " + argument.default_text + ")";
+    arguments += "  " + flag + "\n" + Wrap(why, 8);
+  }
+  std::string text = program + " - " + std::string(manual_.summary) + "\n\nUSAGE\n" +
+                     Wrap(usage + " [ARGUMENTS] [--Group.option VALUE ...]", 2) + "\nDESCRIPTION\n" +
+                     WrapParagraphs(manual_.text, 2) + "\nARGUMENTS\n" + arguments;
+  if (!options.fields().empty()) {
+    text += "\nOPTIONS\n" +
+            Wrap(
+                "Given as --Group.option VALUE or --Group.option=VALUE, or in the file of --config. Each is shown with "
+                "its default and its unit or choices.",
+                2);
+  }
+  for (const auto& [group, why] : options.groups()) {
+    text += "\n" + Wrap(group + ": " + why, 2);
+    for (const OptionField& field : options.fields()) {
+      if (!field.name.starts_with(group + ".")) continue;
+      const std::string value = field.get();
+      text += "    --" + field.name + " " + (value.empty() ? "\"\"" : value) + "  [" + field.unit + "]\n" +
+              Wrap(field.why, 8);
+    }
+  }
+  text +=
+      "\nEXIT CODES\n  0  done\n  1  the run failed or was interrupted; the reason is on standard error\n"
+      "  2  the command line or the file of --config is wrong\n\nEXAMPLES\n";
+  for (const std::string_view example : manual_.examples) text += "  " + std::string(example) + "\n";
+  return text;
+}
+
+}  // namespace pliant::cli

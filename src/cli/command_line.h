@@ -1,0 +1,106 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// What the commands' command lines have in common. A command has arguments of its own (--image_path PATH) and options
+// (--Group.option VALUE or --Group.option=VALUE) that an OptionTable lists. The order of a command:
+//   CommandLine line(kManual);  line.Add(...);            its own arguments
+//   if (auto exit = line.Parse(args)) return *exit;        reads them; the options' flags are kept for later
+//   TrackOptions options = MakeTrackOptions(preset);       what the arguments choose as defaults
+//   OptionTable table;  options.List(table);
+//   if (auto exit = line.Resolve(table)) return *exit;     --config FILE, then the flags; --help, --print_config
+// Every command gets --config, --print_config and --help from here. Exit codes and where text goes: results and manuals
+// to standard output, errors and progress to standard error, one sentence an error.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pliant/base/options.h"
+#include "pliant/base/status.h"
+
+namespace pliant::cli {
+
+inline constexpr int kExitOk = 0;
+inline constexpr int kExitFailed = 1;  // the command was understood, but could not be carried out
+inline constexpr int kExitUsage = 2;   // the command line or an option file is wrong
+
+struct Manual {
+  std::string_view command;  // "track"
+  std::string_view summary;  // one line, no full stop
+  std::string_view text;     // what it does, what it reads, what it leaves; paragraphs separated by an empty line
+  std::vector<std::string_view> examples;
+};
+
+enum class Need { kRequired, kOptional };
+
+// Says "pliant COMMAND: sentence" on standard error.
+void SayError(std::string_view command, std::string_view sentence);
+
+class CommandLine {
+ public:
+  explicit CommandLine(Manual manual);
+
+  // An argument `--name VALUE`. The value at the time of the call is its default in the manual.
+  void Add(std::string name, std::string* value, std::string placeholder, std::string why, Need need);
+  void Add(std::string name, int* value, std::string why, int low, int high);
+  // An argument without a value.
+  void AddFlag(std::string name, bool* value, std::string why);
+  // One of the named values of an enum (EnumNames).
+  template <class Enum>
+  void AddChoice(std::string name, Enum* value, std::string why) {
+    std::string names;
+    for (const auto& entry : EnumNames<Enum>::kNames) names += (names.empty() ? "" : "|") + std::string(entry.second);
+    AddArgument({std::move(name), names, std::move(why), "one of " + names, std::string(EnumName(*value)),
+                 Need::kOptional, [value](std::string_view text) {
+                   for (const auto& [candidate, candidate_name] : EnumNames<Enum>::kNames) {
+                     if (candidate_name != text) continue;
+                     *value = candidate;
+                     return true;
+                   }
+                   return false;
+                 }});
+  }
+
+  // Reads the command's own arguments. An exit code when the command line is wrong (the sentence has been said).
+  std::optional<int> Parse(std::span<const std::string> args);
+
+  // Sets the options: the file of --config first, then the flags. Then --help or --print_config is answered, else a
+  // missing required argument is an error. An exit code when the command is to end here.
+  std::optional<int> Resolve(OptionTable& options);
+
+  // For errors in the values of arguments that the command itself finds: says it and gives kExitUsage.
+  int UsageError(std::string_view sentence) const;
+
+  // The manual of `--help`.
+  std::string ManualText(const OptionTable& options) const;
+
+ private:
+  struct Argument {
+    std::string name;
+    std::string placeholder;  // empty: a flag
+    std::string why;
+    std::string accepts;  // "a whole number from 0 to 9"
+    std::string default_text;
+    Need need = Need::kOptional;
+    std::function<bool(std::string_view)> set;  // false: a value that it does not accept
+    std::vector<std::string> given = {};        // what the command line gave: values, or one entry for a flag
+  };
+
+  void AddArgument(Argument argument);
+  Status ReadArguments(std::span<const std::string> args);
+  Status ApplyFlags(OptionTable& options) const;
+  std::string NearestFlag(std::string_view flag, const OptionTable& options) const;
+
+  Manual manual_;
+  std::vector<Argument> arguments_;
+  std::vector<std::string> extras_;  // what CLI11 did not know: the options' flags and their values
+  std::string config_path_;
+  bool print_config_ = false;
+  bool help_ = false;
+};
+
+}  // namespace pliant::cli

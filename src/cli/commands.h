@@ -1,0 +1,18 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// The commands of the program, one a file. Each takes what follows its name on the command line and gives the exit
+// code.
+#pragma once
+
+#include <span>
+#include <string>
+
+namespace pliant::cli {
+
+int TrackCommand(std::span<const std::string> args);
+int SimulateCommand(std::span<const std::string> args);
+int EvaluateCommand(std::span<const std::string> args);
+int DemoCommand(std::span<const std::string> args);
+
+}  // namespace pliant::cli

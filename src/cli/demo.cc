@@ -1,0 +1,128 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+
+#include "cli/command_line.h"
+#include "cli/commands.h"
+#include "cli/interrupt.h"
+#include "cli/run_evaluation.h"
+#include "cli/track_progress.h"
+#include "pliant/pipeline/track.h"
+#include "pliant/simulation/write_sequence.h"
+
+namespace pliant::cli {
+namespace {
+
+const Manual kManual = {
+    "demo",
+    "simulate, track and evaluate a small sequence",
+    "Renders a short way through a colon that deforms, tracks it with the default options from the images alone, "
+    "compares the result with the truth, and prints the figures and where to look.\n\n"
+    "Reads nothing.\n\n"
+    "Leaves in --output_path: sequence/ (see pliant simulate --help), run/ (see pliant track --help), evaluation.json "
+    "and evaluation.csv.",
+    {"pliant demo", "pliant demo --output_path /tmp/demo --Deformation.amplitude_mm 5"},
+};
+
+SimulationOptions DemoSimulation() {
+  SimulationOptions options;
+  options.trajectory.frames = 90;
+  options.deformation.amplitude_mm = 2.5;
+  return options;
+}
+
+std::string Text(const char* format, double value) {
+  std::array<char, 64> text;
+  std::snprintf(text.data(), text.size(), format, value);
+  return text.data();
+}
+
+void Print(const SimulationOptions& simulation, const RunSummary& run, const Evaluation& evaluation,
+           const std::filesystem::path& output) {
+  const TrackSurvival& tracks = evaluation.survival;
+  std::cout << "sequence      " << simulation.trajectory.frames << " frames, deforming by "
+            << Text("%.3g", simulation.deformation.amplitude_mm) << " mm\n"
+            << "run           " << EnumName(run.status) << ": " << run.note << "\n"
+            << "frames        " << run.frames_tracked << " of " << run.frames_read << " tracked\n"
+            << "points        " << tracks.first_points << " in the first tracked frame, " << tracks.last_points
+            << " in the last, " << tracks.last_alive_of_first << " in both\n";
+  if (evaluation.surface) {
+    const SurfaceSummary& error = evaluation.surface->estimate;
+    const SurfaceSummary& null = evaluation.surface->null;
+    std::cout << "RMSE          " << Text("%.2f mm", error.mean_rmse_mm)
+              << "  (one constant depth instead: " << Text("%.2f mm)", null.mean_rmse_mm) << "\n"
+              << "median error  " << Text("%.2f mm", error.pooled_median_mm)
+              << "  (one constant depth instead: " << Text("%.2f mm)", null.pooled_median_mm) << "\n";
+  }
+  if (evaluation.trajectory)
+    std::cout << "camera ATE    " << Text("%.2f mm", evaluation.trajectory->ate_rmse_mm) << "  over a path of "
+              << Text("%.1f mm", evaluation.trajectory->true_path_length_mm) << "\n";
+  for (const std::string& note : evaluation.notes) std::cout << "note          " << note << "\n";
+  std::cout << "speed         " << Text("%.1f frames/s", run.frames_per_second) << "\n"
+            << "look at       " << (output / "sequence" / "images").string() << "\n"
+            << "              " << (output / "run" / "map.ply").string() << "\n"
+            << "              " << (output / "run" / "observations.csv").string() << "\n"
+            << "              " << (output / "evaluation.json").string() << std::endl;
+}
+
+Status RunDemo(const SimulationOptions& simulation, const std::filesystem::path& output, ProgressStyle style) {
+  const std::atomic<bool>& stop = StopOnSignals();
+  const std::filesystem::path sequence = output / "sequence";
+  {
+    Progress progress(std::cerr, style, "simulate", simulation.trajectory.frames);
+    if (Status status = WriteSequence(simulation, sequence,
+                                      [&](int done, int) {
+                                        progress.Update(done, "");
+                                        return stop ? SimulationContinue::kStop : SimulationContinue::kYes;
+                                      });
+        !status.ok())
+      return status;
+  }
+  RunRequest request;
+  request.input.image_path = sequence;
+  request.output_path = (output / "run").string();
+  request.command_line = {"pliant", "demo"};
+  request.stop = &stop;
+  const Result<RunSummary> run = [&] {
+    TrackProgress progress(style);
+    const std::array<TrackObserver*, 1> observers = {&progress};
+    return RunTrack(request, MakeTrackOptions(Preset::kDefault), observers);
+  }();
+  if (!run.ok()) return run.status();
+  if (run->status == RunStatus::kInterrupted || run->frames_tracked == 0)
+    return {ErrorCode::kInsufficient, run->note + "; see " + request.output_path};
+  const Result<Evaluation> evaluation = EvaluateRun(request.output_path, sequence.string(), {});
+  if (!evaluation.ok()) return evaluation.status();
+  if (Status status = WriteEvaluation(*evaluation, output.string()); !status.ok()) return status;
+  Print(simulation, *run, *evaluation, output);
+  return Status::Ok();
+}
+
+}  // namespace
+
+int DemoCommand(std::span<const std::string> args) {
+  std::string output_path = "pliant_demo";
+  bool quiet = false;
+  CommandLine line(kManual);
+  line.Add("output_path", &output_path, "DIR", "folder for everything; made where it is not there", Need::kOptional);
+  line.AddFlag("quiet", &quiet, "show no progress");
+  if (const auto exit = line.Parse(args)) return *exit;
+
+  SimulationOptions simulation = DemoSimulation();
+  OptionTable table;
+  simulation.List(table);
+  if (const auto exit = line.Resolve(table)) return *exit;
+
+  const ProgressStyle style = quiet ? ProgressStyle::kQuiet : ProgressStyleOfStandardError();
+  if (const Status status = RunDemo(simulation, output_path, style); !status.ok()) {
+    SayError(kManual.command, status.message());
+    return kExitFailed;
+  }
+  return kExitOk;
+}
+
+}  // namespace pliant::cli

@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "cli/interrupt.h"
+
+#include <csignal>
+
+namespace pliant::cli {
+namespace {
+
+// A signal handler can reach nothing but a global; a lock-free atomic is safe to write there.
+std::atomic<bool> stop_requested = false;
+static_assert(std::atomic<bool>::is_always_lock_free);
+
+void RequestStop(int) { stop_requested = true; }
+
+}  // namespace
+
+std::atomic<bool>& StopOnSignals() {
+  struct sigaction action = {};
+  action.sa_handler = RequestStop;
+  action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);  // the next signal gets its default action
+  sigemptyset(&action.sa_mask);
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+  return stop_requested;
+}
+
+}  // namespace pliant::cli

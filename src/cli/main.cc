@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include <array>
+#include <exception>
+#include <iostream>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "cli/command_line.h"
+#include "cli/commands.h"
+#include "pliant/base/options.h"
+#include "pliant/base/version.h"
+
+namespace pliant::cli {
+namespace {
+
+struct Command {
+  std::string_view name;
+  std::string_view summary;
+  int (*run)(std::span<const std::string> args);
+};
+
+constexpr std::array kCommands = {
+    Command{"track", "camera pose and the motion of every point, from a folder of images or a video", TrackCommand},
+    Command{"simulate", "render a deforming, textured tube with depth and poses", SimulateCommand},
+    Command{"evaluate", "compare a run with the truth of its sequence", EvaluateCommand},
+    Command{"demo", "simulate, track and evaluate a small sequence", DemoCommand},
+};
+
+std::string Usage() {
+  std::string text =
+      "pliant - camera pose and scene deformation from one moving camera\n\nusage: pliant COMMAND ...\n\n";
+  for (const Command& command : kCommands)
+    text += "  " + std::string(command.name) + std::string(12 - command.name.size(), ' ') +
+            std::string(command.summary) + "\n";
+  return text + "\npliant COMMAND --help is the command's manual; pliant --version prints the version.\n";
+}
+
+int Run(std::span<const std::string> args) {
+  if (args.empty()) {
+    std::cerr << Usage();
+    return kExitUsage;
+  }
+  const std::string& name = args.front();
+  if (name == "--help" || name == "help") {
+    std::cout << Usage();
+    return kExitOk;
+  }
+  if (name == "--version") {
+    std::cout << "pliant " << kVersion << "\n";
+    return kExitOk;
+  }
+  std::vector<std::string> names;
+  for (const Command& command : kCommands) {
+    if (command.name == name) return command.run(args.subspan(1));
+    names.emplace_back(command.name);
+  }
+  SayError("", "there is no command '" + name + "'; did you mean '" + NearestName(name, names) +
+                   "'? pliant --help lists them");
+  return kExitUsage;
+}
+
+}  // namespace
+}  // namespace pliant::cli
+
+int main(int argc, char** argv) {
+  const std::vector<std::string> args(argv + (argc > 0 ? 1 : 0), argv + argc);
+  try {
+    return pliant::cli::Run(args);
+  } catch (const std::exception& error) {  // a library ran out of memory or met what it did not expect
+    pliant::cli::SayError("", error.what());
+    return pliant::cli::kExitFailed;
+  }
+}

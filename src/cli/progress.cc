@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "cli/progress.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <ostream>
+#include <utility>
+
+#include <unistd.h>
+
+namespace pliant::cli {
+namespace {
+
+constexpr int kBarWidth = 24;
+constexpr std::chrono::milliseconds kDrawEvery{100};  // faster than the eye needs, and cheap
+constexpr std::string_view kToLineStartAndClear = "\r\x1b[K";
+
+}  // namespace
+
+ProgressStyle ProgressStyleOfStandardError() {
+  return isatty(STDERR_FILENO) != 0 ? ProgressStyle::kBar : ProgressStyle::kLines;
+}
+
+Progress::Progress(std::ostream& out, ProgressStyle style, std::string what, int total)
+    : out_(out), style_(style), what_(std::move(what)), total_(total), start_(Clock::now()), drawn_(start_) {}
+
+Progress::~Progress() {
+  if (line_open_) out_ << std::endl;
+}
+
+std::string Progress::Line(int done, std::string_view detail, Clock::time_point now) const {
+  std::string line = what_ + "  ";
+  if (style_ == ProgressStyle::kBar && total_ > 0) {
+    const int filled = std::clamp(static_cast<int>(static_cast<long long>(kBarWidth) * done / total_), 0, kBarWidth);
+    line += "[" + std::string(static_cast<std::size_t>(filled), '=') +
+            std::string(static_cast<std::size_t>(kBarWidth - filled), ' ') + "]  ";
+  }
+  line += std::to_string(done) + (total_ > 0 ? "/" + std::to_string(total_) : "");
+  const double seconds = std::chrono::duration<double>(now - start_).count();
+  if (seconds > 0) {
+    std::array<char, 48> rate;
+    std::snprintf(rate.data(), rate.size(), "  %.1f frames/s", done / seconds);
+    line += rate.data();
+  }
+  if (!detail.empty()) line += "  " + std::string(detail);
+  return line;
+}
+
+void Progress::Update(int done, std::string_view detail, Clock::time_point now) {
+  const bool last = total_ > 0 && done >= total_;
+  if (style_ == ProgressStyle::kBar && (last || !line_open_ || now - drawn_ >= kDrawEvery)) {
+    out_ << kToLineStartAndClear << Line(done, detail, now) << std::flush;
+    drawn_ = now;
+    line_open_ = true;
+  } else if (style_ == ProgressStyle::kLines && (last || done % kLinesEvery == 0)) {
+    out_ << Line(done, detail, now) << std::endl;
+  }
+}
+
+void Progress::Note(std::string_view text) {
+  if (style_ == ProgressStyle::kQuiet) return;
+  if (line_open_) out_ << kToLineStartAndClear;
+  line_open_ = false;
+  out_ << text << std::endl;
+}
+
+}  // namespace pliant::cli

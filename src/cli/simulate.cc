@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include <iostream>
+
+#include "cli/command_line.h"
+#include "cli/commands.h"
+#include "cli/interrupt.h"
+#include "cli/progress.h"
+#include "pliant/simulation/write_sequence.h"
+
+namespace pliant::cli {
+namespace {
+
+const Manual kManual = {
+    "simulate",
+    "render a deforming, textured tube with depth and poses",
+    "Renders what a camera with a light beside it sees on its way through a textured tube that deforms, and writes it "
+    "as a sequence that pliant track reads and pliant evaluate knows the truth of.\n\n"
+    "Reads nothing. The same options give the same files, byte for byte, whatever the number of threads.\n\n"
+    "Leaves in --output_path: camera.yaml, images/NNNNNN.png, depth/NNNNNN.png (16-bit, z along the optical axis in "
+    "steps of depth_scale mm, 0 = none), groundtruth.txt (TUM, world_from_camera, mm), times.txt and simulation.yaml "
+    "(every option).",
+    {"pliant simulate --output_path colon --Deformation.amplitude_mm 2.5",
+     "pliant simulate --output_path rigid --Trajectory.frames 60 --Trajectory.kind sway"},
+};
+
+}  // namespace
+
+int SimulateCommand(std::span<const std::string> args) {
+  std::string output_path;
+  bool quiet = false;
+  CommandLine line(kManual);
+  line.Add("output_path", &output_path, "DIR", "folder of the new sequence; made where it is not there",
+           Need::kRequired);
+  line.AddFlag("quiet", &quiet, "say nothing but errors");
+  if (const auto exit = line.Parse(args)) return *exit;
+
+  SimulationOptions options;
+  OptionTable table;
+  options.List(table);
+  if (const auto exit = line.Resolve(table)) return *exit;
+
+  const std::atomic<bool>& stop = StopOnSignals();
+  Status status;
+  {
+    Progress progress(std::cerr, quiet ? ProgressStyle::kQuiet : ProgressStyleOfStandardError(), "simulate",
+                      options.trajectory.frames);
+    status = WriteSequence(options, output_path, [&](int done, int) {
+      progress.Update(done, "");
+      return stop ? SimulationContinue::kStop : SimulationContinue::kYes;
+    });
+  }
+  if (!status.ok()) {
+    SayError(kManual.command, status.message());
+    return status.code() == ErrorCode::kInvalidArgument ? kExitUsage : kExitFailed;
+  }
+  if (!quiet) std::cout << options.trajectory.frames << " frames in " << output_path << std::endl;
+  return kExitOk;
+}
+
+}  // namespace pliant::cli

@@ -1,0 +1,119 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/pipeline/track.h"
+
+#include <array>
+#include <cstdio>
+#include <iostream>
+
+#include "cli/command_line.h"
+#include "cli/commands.h"
+#include "cli/interrupt.h"
+#include "cli/track_progress.h"
+
+namespace pliant::cli {
+namespace {
+
+const Manual kManual = {
+    "track",
+    "camera pose and the motion of every point, from a folder of images or a video",
+    "Follows points through the images of one moving, calibrated camera in a scene that deforms, and estimates for "
+    "every frame where the camera is and where every point is. A first map comes from two close frames; it has no "
+    "scale of its own and is scaled once, so that its median depth is the configured nominal depth.\n\n"
+    "Reads --image_path: a native sequence (a folder with images/ and camera.yaml), any folder of png, jpg, bmp or tif "
+    "images in natural order, or a video file. Reads --camera: camera.yaml, COLMAP's cameras.txt or cameras.bin, or an "
+    "OpenCV calibration in YAML or XML; without it, camera.yaml in the folder or beside the video. Pixel (0, 0) is the "
+    "centre of the first pixel.\n\n"
+    "Leaves in --output_path: config.yaml (every option as resolved), run.json (what ran and how it ended), "
+    "trajectory.txt (TUM, world_from_camera), frames.csv (one row a frame), observations.csv (one row a point and "
+    "frame), map.ply (the undeformed map) and sparse/ (a COLMAP model). Rows are on disk as frames are done: a run "
+    "that is lost, interrupted or killed keeps what it had. When too few points are left the run ends as `lost`, "
+    "which is an answer and no failure: the exit code is 0, and run.json says so.",
+    {"pliant track --image_path clip.mp4 --camera camera.yaml --output_path run",
+     "pliant track --image_path seq --output_path run --preset paper --start 100 --end 400"},
+};
+
+struct TrackArguments {
+  std::string image_path;
+  std::string camera_path;
+  std::string mask_path;
+  std::string output_path;
+  int start = 0;
+  int end = -1;
+  int stride = 1;
+  Preset preset = Preset::kDefault;
+  bool quiet = false;
+};
+
+void AddArguments(TrackArguments* arguments, CommandLine* line) {
+  constexpr int kMost = 2147483647;
+  line->Add("image_path", &arguments->image_path, "PATH", "folder of images, native sequence or video",
+            Need::kRequired);
+  line->Add("output_path", &arguments->output_path, "DIR", "run folder; made where it is not there", Need::kRequired);
+  line->Add("camera", &arguments->camera_path, "FILE",
+            "calibration; not needed where camera.yaml lies in the folder or beside the video", Need::kOptional);
+  line->Add("mask_path", &arguments->mask_path, "PATH",
+            "folder of masks, or one image for all frames; 0 = ignore this pixel", Need::kOptional);
+  line->Add("start", &arguments->start, "first frame, by its number in the source", 0, kMost);
+  line->Add("end", &arguments->end, "one past the last frame; -1: to the end", -1, kMost);
+  line->Add("stride", &arguments->stride, "take every Nth frame", 1, kMost);
+  line->AddChoice("preset", &arguments->preset,
+                  "the defaults of the options: ours, or every choice and constant as published in the paper");
+  line->AddFlag("quiet", &arguments->quiet, "say nothing but errors");
+}
+
+int Report(const RunSummary& summary, const TrackArguments& arguments) {
+  if (summary.status == RunStatus::kFailed || summary.status == RunStatus::kInterrupted) {
+    SayError(kManual.command, summary.note + "; " + std::to_string(summary.frames_tracked) + " tracked frames are in " +
+                                  arguments.output_path);
+    return kExitFailed;
+  }
+  if (arguments.quiet) return kExitOk;
+  std::array<char, 64> rate;
+  std::snprintf(rate.data(), rate.size(), "%.1f frames/s", summary.frames_per_second);
+  std::cout << EnumName(summary.status) << ": " << summary.note << "\n"
+            << summary.frames_tracked << " of " << summary.frames_read << " frames tracked, " << summary.points
+            << " points, " << rate.data() << "\n"
+            << arguments.output_path << std::endl;
+  return kExitOk;
+}
+
+}  // namespace
+
+int TrackCommand(std::span<const std::string> args) {
+  TrackArguments arguments;
+  CommandLine line(kManual);
+  AddArguments(&arguments, &line);
+  if (const auto exit = line.Parse(args)) return *exit;
+
+  TrackOptions options = MakeTrackOptions(arguments.preset);
+  OptionTable table;
+  options.List(table);
+  if (const auto exit = line.Resolve(table)) return *exit;
+
+  RunRequest request;
+  request.input.image_path = arguments.image_path;
+  request.input.camera_path = arguments.camera_path;
+  request.input.mask_path = arguments.mask_path;
+  request.input.start = arguments.start;
+  request.input.end = arguments.end;
+  request.input.stride = arguments.stride;
+  request.output_path = arguments.output_path;
+  request.command_line = {"pliant", "track"};
+  request.command_line.insert(request.command_line.end(), args.begin(), args.end());
+  request.stop = &StopOnSignals();
+
+  const Result<RunSummary> summary = [&] {
+    TrackProgress progress(arguments.quiet ? ProgressStyle::kQuiet : ProgressStyleOfStandardError());
+    const std::array<TrackObserver*, 1> observers = {&progress};
+    return RunTrack(request, options, observers);
+  }();
+  if (!summary.ok()) {
+    SayError(kManual.command, summary.status().message());
+    return kExitFailed;
+  }
+  return Report(*summary, arguments);
+}
+
+}  // namespace pliant::cli

@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// The progress of a run on standard error: frames, rate and points, and a line whenever the tracker changes its state.
+#pragma once
+
+#include <optional>
+
+#include "cli/progress.h"
+#include "pliant/pipeline/track.h"
+
+namespace pliant::cli {
+
+class TrackProgress : public TrackObserver {
+ public:
+  explicit TrackProgress(ProgressStyle style) : style_(style) {}
+  void OnStart(int frames) override;
+  void OnFrame(const FrameReport& report) override;
+
+ private:
+  ProgressStyle style_;
+  std::optional<Progress> progress_;
+  TrackingState state_ = TrackingState::kWaitingForReference;
+  int done_ = 0;
+};
+
+}  // namespace pliant::cli
