@@ -117,7 +117,7 @@ Eigen::Vector3f PlaceAtRest(const Surface& surface, float column, float row) {
 }  // namespace
 
 BloodMap::BloodMap(const SimulationOptions::Texture& options, int seed, const Surface& surface) {
-  constexpr float kMottling = 0.30F;
+  constexpr float kMottling = 0.36F;
   constexpr float kVessel = 1.0F;
   const Random random = Random(static_cast<std::uint64_t>(seed)).Child("texture");
   // A power of two around, so that every reduced copy closes on itself exactly.

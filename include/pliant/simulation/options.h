@@ -46,9 +46,9 @@ struct SimulationOptions {
     double radius_mm = 25.0;        // of the lumen, folds left out
     double length_mm = 0.0;         // of the tube; 0: the way of the camera and view_mm more
     double view_mm = 230.0;         // how much tube lies ahead of the last camera
-    double bend_deg_per_cm = 3.0;   // largest bending of the centreline, in each of the two planes
-    double fold_depth_mm = 6.0;     // how far a typical fold stands into the lumen
-    double fold_spacing_mm = 21.0;  // between rings of folds, in the mean
+    double bend_deg_per_cm = 4.0;   // largest bending of the centreline, in each of the two planes
+    double fold_depth_mm = 5.5;     // how far a typical fold stands into the lumen
+    double fold_spacing_mm = 26.0;  // between rings of folds, in the mean
     double relief_mm = 0.5;         // uneven wall, standard deviation of about
     double mesh_step_mm = 0.4;      // edge of the mesh; finer where folds are steep
   } scene;
@@ -57,7 +57,7 @@ struct SimulationOptions {
     double contrast = 1.0;      // 0: one colour
     double largest_mm = 12.0;   // longest wave of the mottling
     double smallest_mm = 0.3;   // shortest wave: about two pixels at 60 mm
-    double persistence = 0.85;  // amplitude of an octave by the one before
+    double persistence = 0.95;  // amplitude of an octave by the one before
     double vessels = 1.0;       // number of vessel trees, 1: one on 9 cm^2
     double texel_mm = 0.08;     // of the map that the wall carries
   } texture;
@@ -72,7 +72,7 @@ struct SimulationOptions {
 
   struct Light {
     double ambient = 0.1;         // light that reaches the wall from the rest of the wall, as a share
-    double specular = 2.5;        // peak of the wet reflection by the diffuse one; 0: none
+    double specular = 1.8;        // peak of the wet reflection by the diffuse one; 0: none
     double roughness = 0.1;       // width of the wet reflection: slope of the facets
     double unevenness_mm = 0.12;  // breaks highlights up: height of the wet film by the mottling, of no visible depth
   } light;
@@ -93,7 +93,7 @@ struct SimulationOptions {
     CameraModelId model = CameraModelId::kPinhole;
     int width = 640;
     int height = 480;
-    double horizontal_fov_deg = 72.0;  // used when params is empty
+    double horizontal_fov_deg = 70.0;  // used when params is empty
     std::string params;                // in COLMAP's order, separated by commas
   } camera;
 
@@ -106,7 +106,7 @@ struct SimulationOptions {
     double look_ahead_mm = 35.0;     // the camera looks at the centreline this far ahead
     double sway_amplitude_mm = 8.0;  // sway: to each side
     double sway_period_s = 4.0;      // sway: there and back, to both sides
-    double sway_distance_mm = 45.0;  // sway: of the point that stays in view
+    double sway_distance_mm = 55.0;  // sway: of the point that stays in view
     double tremor_mm = 0.3;          // of the hand, standard deviation of about
     double tremor_deg = 0.3;
     double clearance_mm = 3.0;  // a camera nearer to the wall than this is an error
