@@ -31,10 +31,11 @@ struct CameraFileOptions {
 
 struct CameraFile {
   Camera camera;
-  std::optional<double> fps;
-  std::optional<double> depth_scale;  // mm per unit of a depth image
-  std::optional<double> baseline_mm;  // the right camera's centre is at +baseline on the left one's x axis
-  std::string unit = "mm";            // of the lengths that come with the sequence
+  std::optional<double> fps = std::nullopt;
+  std::optional<double> depth_scale = std::nullopt;  // mm per unit of a depth image
+  std::optional<double> baseline_mm =
+      std::nullopt;         // the right camera's centre is at +baseline on the left one's x axis
+  std::string unit = "mm";  // of the lengths that come with the sequence
   // OpenCV's k3 to k6 have no place in the OPENCV model. Where they are small, k1 and k2 are fitted again to the whole
   // distortion over the image, and this is the largest difference that is left, px; 0: nothing had to be fitted. Above
   // kLargestRefitPx the file is refused.

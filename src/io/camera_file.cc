@@ -1,0 +1,225 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/io/camera_file.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include <opencv2/core.hpp>
+
+#include "io/opencv_calibration.h"
+#include "io/text.h"
+#include "io/yaml.h"
+#include "pliant/io/colmap.h"
+
+namespace pliant {
+namespace {
+
+const std::vector<std::string> kKeys = {"model", "width", "height", "params", "fps", "depth_scale", "baseline", "unit"};
+
+bool ParseYamlNumber(const YAML::Node& node, double* value) {
+  if (!node.IsScalar()) return false;
+  try {
+    *value = node.as<double>();  // also .nan and .inf
+    return true;
+  } catch (const YAML::Exception&) {
+    return false;
+  }
+}
+
+// One of camera.yaml's numbers.
+struct NumberField {
+  const char* name;
+  double value = 0;
+  bool given = false;
+};
+
+Status ReadNumber(const std::string& path, const YAML::Node& root, NumberField* field) {
+  const YAML::Node node = root[field->name];
+  if (!node) return Status::Ok();
+  field->given = true;
+  if (!ParseYamlNumber(node, &field->value) || !std::isfinite(field->value))
+    return {ErrorCode::kInvalidArgument, At(path, node) + ": " + field->name + " is not a finite number"};
+  return Status::Ok();
+}
+
+Result<std::vector<double>> Params(const std::string& path, const YAML::Node& node) {
+  const Status invalid(ErrorCode::kInvalidArgument,
+                       At(path, node) + ": params must be a list of numbers, such as [fx, fy, cx, cy]");
+  if (!node.IsSequence()) return invalid;
+  std::vector<double> params;
+  for (const YAML::Node& entry : node) {
+    params.emplace_back();
+    if (!ParseYamlNumber(entry, &params.back())) return invalid;
+  }
+  return params;
+}
+
+Result<CameraFile> FromPliant(const std::string& path, const YAML::Node& root) {
+  const auto invalid = [](const std::string& where, const std::string& what) {
+    return Status(ErrorCode::kInvalidArgument, where + ": " + what);
+  };
+  for (const auto& entry : root) {
+    const std::string key = KeyText(entry.first);
+    if (std::find(kKeys.begin(), kKeys.end(), key) == kKeys.end())
+      return invalid(At(path, entry.first), "there is no entry " + Quoted(key) + " in a camera.yaml; did you mean " +
+                                                Quoted(NearestName(key, kKeys)) + "?");
+  }
+  for (const char* key : {"model", "width", "height", "params"})
+    if (!root[key])
+      return invalid(Quoted(path), std::string(key) + " is missing; a camera needs model, width, height, params");
+
+  NumberField width{"width"};
+  NumberField height{"height"};
+  NumberField fps{"fps"};
+  NumberField depth_scale{"depth_scale"};
+  NumberField baseline{"baseline"};
+  for (NumberField* field : {&width, &height, &fps, &depth_scale, &baseline})
+    if (const Status status = ReadNumber(path, root, field); !status.ok()) return status;
+  for (const NumberField* field : {&width, &height})
+    if (field->value != std::floor(field->value) || std::abs(field->value) > 1e6)
+      return invalid(Quoted(path), std::string(field->name) + " must be a whole number of pixels");
+  for (const NumberField* field : {&fps, &depth_scale})
+    if (field->given && !(field->value > 0.0))
+      return invalid(Quoted(path), std::string(field->name) + " must be positive");
+
+  const auto params = Params(path, root["params"]);
+  if (!params.ok()) return params.status();
+  if (!root["model"].IsScalar()) return invalid(At(path, root["model"]), "model must be a name, such as PINHOLE");
+  auto camera =
+      Camera::Create(root["model"].Scalar(), static_cast<int>(width.value), static_cast<int>(height.value), *params);
+  if (!camera.ok()) return invalid(Quoted(path), camera.status().message());
+  CameraFile file{std::move(camera).value()};
+  if (fps.given) file.fps = fps.value;
+  if (depth_scale.given) file.depth_scale = depth_scale.value;
+  if (baseline.given) file.baseline_mm = baseline.value;
+  if (root["unit"] && root["unit"].IsScalar()) file.unit = root["unit"].Scalar();
+  return file;
+}
+
+void AppendNumbers(const YAML::Node& node, std::vector<double>* numbers) {
+  if (node.IsMap() && node["data"]) return AppendNumbers(node["data"], numbers);
+  if (node.IsSequence()) {
+    for (const YAML::Node& entry : node) AppendNumbers(entry, numbers);
+  } else if (double value = 0; ParseYamlNumber(node, &value)) {
+    numbers->push_back(value);
+  }
+}
+
+CalibrationEntries EntriesOf(const YAML::Node& root) {
+  return {[root](std::string_view name) {
+            std::vector<double> numbers;
+            if (const YAML::Node node = root[std::string(name)]) AppendNumbers(node, &numbers);
+            return numbers;
+          },
+          [root](std::string_view name) {
+            const YAML::Node node = root[std::string(name)];
+            return node && node.IsScalar() ? node.Scalar() : std::string();
+          }};
+}
+
+void AppendNumbers(const cv::FileNode& node, std::vector<double>* numbers) {
+  if (node.isReal() || node.isInt()) {
+    numbers->push_back(node.real());
+  } else if (node.isSeq()) {
+    for (const cv::FileNode& entry : node) AppendNumbers(entry, numbers);
+  } else if (node.isMap() && !node["data"].empty()) {
+    AppendNumbers(node["data"], numbers);
+  }
+}
+
+CalibrationEntries EntriesOf(const cv::FileStorage& storage) {
+  return {[&storage](std::string_view name) {
+            std::vector<double> numbers;
+            AppendNumbers(storage[std::string(name)], &numbers);
+            return numbers;
+          },
+          [&storage](std::string_view name) {
+            const cv::FileNode node = storage[std::string(name)];
+            return node.isString() ? node.string() : std::string();
+          }};
+}
+
+Result<CameraFile> FromOpenCv(const std::string& path, const CalibrationEntries& entries,
+                              const CameraFileOptions& options) {
+  if (!HasCameraMatrix(entries))
+    return Status(ErrorCode::kUnreadable,
+                  Quoted(path) +
+                      " holds no camera: neither model and params, nor a camera matrix (M1, K, camera_matrix, "
+                      "cameraMatrix)");
+  auto file = CameraFromOpenCv(entries, options);
+  if (!file.ok()) return Status(file.status().code(), Quoted(path) + ": " + file.status().message());
+  return file;
+}
+
+Result<CameraFile> ReadXml(const std::string& path, const std::string& text, const CameraFileOptions& options) {
+  try {
+    const cv::FileStorage storage(text, cv::FileStorage::READ | cv::FileStorage::MEMORY | cv::FileStorage::FORMAT_XML);
+    return FromOpenCv(path, EntriesOf(storage), options);
+  } catch (const cv::Exception& error) {
+    return Status(ErrorCode::kUnreadable, Quoted(path) + " is not an OpenCV calibration: " + error.err);
+  }
+}
+
+Result<CameraFile> ReadYaml(const std::string& path, std::string text, const CameraFileOptions& options) {
+  // OpenCV writes a first line that YAML does not allow; a comment keeps the line numbers.
+  if (text.starts_with("%YAML")) text[0] = '#';
+  const auto root = ParseYamlMap(path, text);
+  if (!root.ok()) return root.status();
+  if (root->IsMap() && ((*root)["params"] || ((*root)["model"] && !HasCameraMatrix(EntriesOf(*root)))))
+    return FromPliant(path, *root);
+  return FromOpenCv(path, EntriesOf(*root), options);
+}
+
+Result<CameraFile> FromColmap(const std::string& path, const CameraFileOptions& options) {
+  auto cameras = ReadColmapCameras(path);
+  if (!cameras.ok()) return cameras.status();
+  if (cameras->empty()) return Status(ErrorCode::kUnreadable, Quoted(path) + " holds no camera");
+  std::string ids;
+  for (const ColmapCamera& camera : *cameras) {
+    ids += (ids.empty() ? "" : ", ") + std::to_string(camera.id);
+    if (options.camera_id ? camera.id == *options.camera_id : cameras->size() == 1) return CameraFile{camera.camera};
+  }
+  return Status(
+      ErrorCode::kInvalidArgument,
+      options.camera_id
+          ? Quoted(path) + " has no camera " + std::to_string(*options.camera_id) + ", but " + ids
+          : Quoted(path) + " holds " + std::to_string(cameras->size()) + " cameras; choose one by its id: " + ids);
+}
+
+}  // namespace
+
+Result<CameraFile> ReadCameraFile(const std::string& path, const CameraFileOptions& options) {
+  const std::string extension = std::filesystem::path(path).extension();
+  if (extension == ".bin" || extension == ".txt") return FromColmap(path, options);
+  auto text = ReadFile(path);
+  if (!text.ok()) return text.status();
+  const std::size_t first = text->find_first_not_of(" \t\r\n");
+  if (first == std::string::npos) return Status(ErrorCode::kUnreadable, Quoted(path) + " is empty; give a calibration");
+  if (text->find('\0') != std::string::npos)
+    return Status(ErrorCode::kUnreadable, Quoted(path) + " is a binary file; COLMAP's cameras end in .bin");
+  return (*text)[first] == '<' ? ReadXml(path, *text, options) : ReadYaml(path, std::move(*text), options);
+}
+
+Result<Camera> ReadCamera(const std::string& path, const CameraFileOptions& options) {
+  auto file = ReadCameraFile(path, options);
+  if (!file.ok()) return file.status();
+  return std::move(file->camera);
+}
+
+Status WriteCameraFile(const std::string& path, const CameraFile& file) {
+  std::string text = "model: " + std::string(file.camera.model_name()) +
+                     "\nwidth: " + std::to_string(file.camera.width()) +
+                     "\nheight: " + std::to_string(file.camera.height()) + "\nparams: [";
+  for (std::size_t i = 0; i < file.camera.params().size(); ++i)
+    text += (i == 0 ? "" : ", ") + FormatDouble(file.camera.params()[i]);
+  text += "]\n";
+  if (file.fps) text += "fps: " + FormatDouble(*file.fps) + "\n";
+  if (file.depth_scale) text += "depth_scale: " + FormatDouble(*file.depth_scale) + "  # mm per unit\n";
+  if (file.baseline_mm) text += "baseline: " + FormatDouble(*file.baseline_mm) + "  # mm\n";
+  return WriteFileAtomically(path, text + "unit: " + file.unit + "\n");
+}
+
+}  // namespace pliant

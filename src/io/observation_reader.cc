@@ -1,0 +1,95 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include <cmath>
+
+#include "io/run_format.h"
+#include "io/text.h"
+#include "pliant/io/run_reader.h"
+
+namespace pliant {
+namespace {
+
+struct Row {
+  int frame_idx = 0;
+  PointObservation observation;
+};
+
+// Empty: the row is right; else what is wrong with it.
+std::string ParseRow(std::string_view line, Row* row) {
+  constexpr std::size_t kColumns = 8;
+  const std::vector<std::string_view> fields = Split(line, ',');
+  if (fields.size() != kColumns)
+    return "a row has 8 columns (" + std::string(kObservationColumns) + "), this one has " +
+           std::to_string(fields.size());
+  PointObservation& o = row->observation;
+  if (!ParseInt(fields[0], &row->frame_idx) || row->frame_idx < 0)
+    return Quoted(fields[0]) + " is not a frame's number";
+  if (!ParseInt64(fields[1], &o.id.value) || o.id.value < 0) return Quoted(fields[1]) + " is not a point's id";
+  const std::array<double*, 6> numbers = {&o.pixel.x(),    &o.pixel.y(),    &o.position.x(),
+                                          &o.position.y(), &o.position.z(), &o.ssim};
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+    if (!ParseFinite(fields[i + 2], numbers[i])) return Quoted(fields[i + 2]) + " is not a finite number";
+  return {};
+}
+
+}  // namespace
+
+struct ObservationReader::State {
+  LineReader lines;
+  std::optional<Row> ahead;  // the next frame's first row
+  int last_frame_idx = -1;
+  int cut_lines = 0;
+};
+
+ObservationReader::ObservationReader(std::unique_ptr<State> state) : state_(std::move(state)) {}
+ObservationReader::ObservationReader(ObservationReader&&) noexcept = default;
+ObservationReader& ObservationReader::operator=(ObservationReader&&) noexcept = default;
+ObservationReader::~ObservationReader() = default;
+
+Result<ObservationReader> ObservationReader::Open(const std::string& path) {
+  auto lines = LineReader::Open(path + "/observations.csv");
+  if (!lines.ok()) return lines.status();
+  std::string_view header;
+  const bool cut = !lines->Next(&header) || !lines->ended();  // killed before the first row
+  if (!cut && header != kObservationColumns)
+    return lines->Error("the first line must be " + Quoted(kObservationColumns));
+  return ObservationReader(std::make_unique<State>(State{std::move(lines).value(), std::nullopt, -1, 0}));
+}
+
+Result<std::optional<FrameObservations>> ObservationReader::Next() {
+  std::optional<FrameObservations> frame;
+  if (state_->ahead) {
+    frame = FrameObservations{state_->ahead->frame_idx, {state_->ahead->observation}};
+    state_->ahead.reset();
+  }
+  for (std::string_view line; state_->lines.Next(&line);) {
+    if (!state_->lines.ended()) {
+      ++state_->cut_lines;
+      break;
+    }
+    Row row;
+    if (const std::string wrong = ParseRow(line, &row); !wrong.empty()) return state_->lines.Error(wrong);
+    if (frame && row.frame_idx == frame->frame_idx) {
+      if (!(row.observation.id > frame->observations.back().id))
+        return state_->lines.Error("point " + std::to_string(row.observation.id.value) +
+                                   " comes twice or out of order in its frame; sort rows by frame and point_id");
+      frame->observations.push_back(row.observation);
+      continue;
+    }
+    if (row.frame_idx <= state_->last_frame_idx)
+      return state_->lines.Error("frame " + std::to_string(row.frame_idx) + " comes after frame " +
+                                 std::to_string(state_->last_frame_idx) + "; sort rows by frame and point_id");
+    state_->last_frame_idx = row.frame_idx;
+    if (frame) {
+      state_->ahead = row;
+      break;
+    }
+    frame = FrameObservations{row.frame_idx, {row.observation}};
+  }
+  return frame;
+}
+
+int ObservationReader::cut_lines() const { return state_->cut_lines; }
+
+}  // namespace pliant

@@ -1,0 +1,125 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/io/run_reader.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "io/run_format.h"
+#include "io/text.h"
+#include "io/tum_line.h"
+
+namespace pliant {
+namespace {
+
+// Empty: the row is right; else what is wrong with it.
+std::string ParseFrame(std::string_view line, std::size_t num_stages, RunFrame* frame) {
+  const std::vector<std::string_view> fields = Split(line, ',');
+  if (fields.size() != kNumFrameColumns + num_stages)
+    return "a row has " + std::to_string(kNumFrameColumns + num_stages) + " columns, this one has " +
+           std::to_string(fields.size());
+  const auto state = std::find_if(EnumNames<TrackingState>::kNames.begin(), EnumNames<TrackingState>::kNames.end(),
+                                  [&](const auto& entry) { return entry.second == fields[2]; });
+  if (state == EnumNames<TrackingState>::kNames.end()) return Quoted(fields[2]) + " is not a state";
+  frame->state = state->first;
+  const std::array<std::pair<std::size_t, int*>, 5> counts = {
+      {{0, &frame->frame_idx}, {3, &frame->tracked}, {4, &frame->optimized}, {5, &frame->lost}, {6, &frame->added}}};
+  for (const auto& [column, value] : counts)
+    if (!ParseInt(fields[column], value) || *value < 0) return Quoted(fields[column]) + " is not a whole number";
+  frame->stage_ms.resize(num_stages);
+  std::vector<std::pair<std::size_t, double*>> numbers = {
+      {1, &frame->timestamp_s},    {7, &frame->costs.reprojection}, {8, &frame->costs.spatial},
+      {9, &frame->costs.temporal}, {10, &frame->costs.edge_length}, {11, &frame->median_reprojection_error_px}};
+  for (std::size_t i = 0; i < num_stages; ++i) numbers.emplace_back(kNumFrameColumns + i, &frame->stage_ms[i]);
+  for (const auto& [column, value] : numbers)
+    if (!ParseFinite(fields[column], value)) return Quoted(fields[column]) + " is not a finite number";
+  return {};
+}
+
+Status ReadFrames(const std::string& path, Run* run) {
+  auto lines = LineReader::Open(path);
+  if (!lines.ok()) return lines.status();
+  std::string_view line;
+  if (!lines->Next(&line) || !lines->ended()) return Status::Ok();  // killed before the first row
+  const std::vector<std::string_view> columns = Split(line, ',');
+  const bool known = line.starts_with(kFrameColumns) &&
+                     std::all_of(columns.begin() + kNumFrameColumns, columns.end(),
+                                 [](std::string_view column) { return column.starts_with(kStagePrefix); });
+  if (!known)
+    return lines->Error("the first line must begin with " + Quoted(kFrameColumns) + ", then stages " +
+                        Quoted(kStagePrefix) + "...");
+  for (std::size_t i = kNumFrameColumns; i < columns.size(); ++i)
+    run->stage_names.emplace_back(columns[i].substr(kStagePrefix.size()));
+  while (lines->Next(&line)) {
+    if (!lines->ended()) {
+      ++run->cut_lines;
+      break;
+    }
+    RunFrame frame;
+    if (const std::string wrong = ParseFrame(line, run->stage_names.size(), &frame); !wrong.empty())
+      return lines->Error(wrong);
+    if (!run->frames.empty() && frame.frame_idx <= run->frames.back().frame_idx)
+      return lines->Error("frame " + std::to_string(frame.frame_idx) + " is not after the row before");
+    run->frames.push_back(std::move(frame));
+  }
+  return Status::Ok();
+}
+
+// The tracked frames' numbers: from frames.csv, or of a foreign result from its observations.
+Result<std::vector<int>> TrackedFrames(const std::string& path, const Run& run, bool has_frames) {
+  std::vector<int> frame_idxs;
+  if (has_frames) {
+    for (const RunFrame& frame : run.frames)
+      if (frame.state == TrackingState::kTracking) frame_idxs.push_back(frame.frame_idx);
+    return frame_idxs;
+  }
+  auto reader = ObservationReader::Open(path);
+  if (!reader.ok()) return reader.status();
+  while (true) {
+    const auto frame = reader->Next();
+    if (!frame.ok()) return frame.status();
+    if (!frame->has_value()) return frame_idxs;
+    frame_idxs.push_back((*frame)->frame_idx);
+  }
+}
+
+}  // namespace
+
+Result<Run> ReadRun(const std::string& path) {
+  if (!std::filesystem::is_directory(path))
+    return Status(ErrorCode::kNotFound, "there is no run folder " + Quoted(path) + "; check the path");
+  for (const char* name : {"/trajectory.txt", "/observations.csv"})
+    if (!std::filesystem::exists(path + name))
+      return Status(ErrorCode::kNotFound, "the folder " + Quoted(path) + " holds no " + (name + 1) +
+                                              "; a run has trajectory.txt and observations.csv");
+  Run run;
+  const bool ours = std::filesystem::exists(path + "/run.json");
+  if (ours) {
+    auto summary = ReadRunSummary(path + "/run.json");
+    if (!summary.ok()) return summary.status();
+    run.summary = std::move(summary).value();
+  }
+  const bool has_frames = std::filesystem::exists(path + "/frames.csv");
+  if (has_frames)
+    if (const Status status = ReadFrames(path + "/frames.csv", &run); !status.ok()) return status;
+
+  // Ours end every line, so an open one was cut; another program may leave its last line open.
+  const auto poses =
+      ReadTumTrajectory(path + "/trajectory.txt", ours ? OpenLastLine::kIsCut : OpenLastLine::kIsRead, &run.cut_lines);
+  if (!poses.ok()) return poses.status();
+  const auto frame_idxs = TrackedFrames(path, run, has_frames);
+  if (!frame_idxs.ok()) return frame_idxs.status();
+  // A frame's row in frames.csv is written last: a killed run may have a pose or two more than rows.
+  const bool belong = ours ? poses->size() >= frame_idxs->size() : poses->size() == frame_idxs->size();
+  if (!belong)
+    return Status(ErrorCode::kMismatch, "the folder " + Quoted(path) + " has " + std::to_string(poses->size()) +
+                                            " poses in trajectory.txt for " + std::to_string(frame_idxs->size()) +
+                                            " frames in " + (has_frames ? "frames.csv" : "observations.csv") +
+                                            "; each tracked frame needs one of both");
+  for (std::size_t i = 0; i < frame_idxs->size(); ++i)
+    run.poses.push_back({(*frame_idxs)[i], (*poses)[i].timestamp_s, (*poses)[i].world_from_cam});
+  return run;
+}
+
+}  // namespace pliant

@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/io/run_summary.h"
+
+#include <nlohmann/json.hpp>
+
+#include "io/run_format.h"
+#include "io/text.h"
+
+namespace pliant {
+
+using Json = nlohmann::ordered_json;
+
+Status WriteRunSummary(const std::string& path, const RunSummary& summary) {
+  Json losses = Json::object();
+  for (const auto& [reason, count] : summary.losses) losses[reason] = count;
+  Json mean_ms = Json::object();
+  for (const auto& [stage, ms] : summary.mean_ms) mean_ms[stage] = ms;
+  const Json json = {
+      {"program", kRunProgram},
+      {"version", summary.description.program_version},
+      {"command_line", summary.description.command_line},
+      {"seed", summary.description.seed},
+      {"input", summary.description.input},
+      {"status", EnumName(summary.status)},
+      {"note", summary.note},
+      {"counts",
+       {{"frames_read", summary.frames_read},
+        {"frames_tracked", summary.frames_tracked},
+        {"points", summary.points},
+        {"observations", summary.observations},
+        {"losses", losses}}},
+      {"timings",
+       {{"total_s", summary.total_s}, {"frames_per_second", summary.frames_per_second}, {"mean_ms", mean_ms}}}};
+  // Paths need not be UTF-8.
+  return WriteFileAtomically(path, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+}
+
+Result<RunSummary> ReadRunSummary(const std::string& path) {
+  const auto text = ReadFile(path);
+  if (!text.ok()) return text.status();
+  try {
+    const Json json = Json::parse(*text);
+    if (json.at("program").get<std::string>() != kRunProgram)
+      return Status(ErrorCode::kUnreadable, Quoted(path) + " was not written by Pliant");
+    RunSummary summary;
+    summary.description = {json.at("version").get<std::string>(),
+                           json.at("command_line").get<std::vector<std::string>>(),
+                           json.at("seed").get<std::uint64_t>(), json.at("input").get<std::string>()};
+    const std::string status = json.at("status").get<std::string>();
+    bool known = false;
+    for (const auto& [value, name] : EnumNames<RunStatus>::kNames) {
+      if (name != status) continue;
+      summary.status = value;
+      known = true;
+    }
+    if (!known) return Status(ErrorCode::kUnreadable, Quoted(path) + " has an unknown status " + Quoted(status));
+    summary.note = json.at("note").get<std::string>();
+    const Json& counts = json.at("counts");
+    summary.frames_read = counts.at("frames_read").get<std::int64_t>();
+    summary.frames_tracked = counts.at("frames_tracked").get<std::int64_t>();
+    summary.points = counts.at("points").get<std::int64_t>();
+    summary.observations = counts.at("observations").get<std::int64_t>();
+    for (const auto& [reason, count] : counts.at("losses").items())
+      summary.losses.emplace_back(reason, count.get<std::int64_t>());
+    const Json& timings = json.at("timings");
+    summary.total_s = timings.at("total_s").get<double>();
+    summary.frames_per_second = timings.at("frames_per_second").get<double>();
+    for (const auto& [stage, ms] : timings.at("mean_ms").items()) summary.mean_ms.emplace_back(stage, ms.get<double>());
+    return summary;
+  } catch (const Json::exception& error) {
+    return Status(ErrorCode::kUnreadable, Quoted(path) + " is not a run's run.json: " + error.what());
+  }
+}
+
+}  // namespace pliant

@@ -1,0 +1,270 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/io/run_writer.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+
+#include "io/run_format.h"
+#include "io/text.h"
+#include "io/tum_line.h"
+#include "pliant/io/ply.h"
+
+namespace pliant {
+namespace {
+
+namespace fs = std::filesystem;
+
+Status Unwritable(const std::string& path, const std::error_code& error) {
+  return {ErrorCode::kUnwritable, "cannot write into " + Quoted(path) + ": " + error.message() +
+                                      "; choose another place or change its permissions"};
+}
+
+// Makes the folder, or empties it of a former run.
+Status PrepareFolder(const std::string& path) {
+  std::error_code error;
+  fs::create_directories(path, error);
+  if (error) return Unwritable(path, error);
+  const bool empty = fs::is_empty(path, error);
+  if (error) return Unwritable(path, error);
+  if (empty) return Status::Ok();
+  if (!ReadRunSummary(path + "/run.json").ok())
+    return {ErrorCode::kInvalidArgument,
+            "the folder " + Quoted(path) + " holds files that are not a run's; give a new or an empty folder"};
+  for (const std::string_view name : kRunFiles) {
+    fs::remove(fs::path(path) / name, error);
+    if (error) return Unwritable(path, error);
+  }
+  return Status::Ok();
+}
+
+bool IsFinite(const PointObservation& o) {
+  return o.pixel.allFinite() && o.position.allFinite() && std::isfinite(o.ssim);
+}
+
+// The point's entry, or null.
+ColmapPoint* Find(std::vector<ColmapPoint>& points, PointId id) {
+  const auto it = std::lower_bound(points.begin(), points.end(), id,
+                                   [](const ColmapPoint& p, PointId wanted) { return p.point.id < wanted; });
+  return it == points.end() || it->point.id != id ? nullptr : &*it;
+}
+
+void AppendObservation(std::string* out, int frame_idx, const PointObservation& o) {
+  AppendInt(out, frame_idx);
+  out->push_back(',');
+  AppendInt(out, o.id.value);
+  for (const double pixel : o.pixel) {
+    out->push_back(',');
+    AppendFixed(out, pixel, 4);
+  }
+  for (const double coordinate : o.position) {
+    out->push_back(',');
+    AppendFixed(out, coordinate, 6);
+  }
+  out->push_back(',');
+  AppendFixed(out, o.ssim, 4);
+  out->push_back('\n');
+}
+
+}  // namespace
+
+struct RunWriter::State {
+  std::string path;
+  Camera camera;
+  std::vector<std::string> stage_names;
+  RunWriterOptions options;
+  OutputFile trajectory;
+  OutputFile frames;
+  OutputFile observations;
+  RunSummary summary = {};
+  // What the sparse model needs beside observations.csv: one entry a tracked frame and one a point.
+  std::vector<ColmapImage> images = {};
+  std::vector<ColmapPoint> points = {};
+  std::vector<double> stage_total_ms = {};
+  int last_frame_idx = -1;
+  std::chrono::steady_clock::time_point begin = std::chrono::steady_clock::now();
+  std::string rows = {};
+
+  Status Check(const FrameReport& report);
+  Status AddPoints(const FrameReport& report);
+  void Count(const FrameReport& report);
+  void AppendFrameRow(const FrameReport& report);
+  Status FinishSparse() const;
+};
+
+RunWriter::RunWriter(std::unique_ptr<State> state) : state_(std::move(state)) {}
+RunWriter::RunWriter(RunWriter&&) noexcept = default;
+RunWriter& RunWriter::operator=(RunWriter&&) noexcept = default;
+RunWriter::~RunWriter() = default;
+
+const RunSummary& RunWriter::summary() const { return state_->summary; }
+
+Result<RunWriter> RunWriter::Create(const std::string& output_path, const Camera& camera, RunDescription description,
+                                    const std::string& config_yaml, std::vector<std::string> stage_names,
+                                    const RunWriterOptions& options) {
+  if (Status status = PrepareFolder(output_path); !status.ok()) return status;
+  RunSummary summary;
+  summary.description = std::move(description);
+  summary.note = "the run was stopped before its end";  // what a killed run says
+  if (Status status = WriteRunSummary(output_path + "/run.json", summary); !status.ok()) return status;
+  if (Status status = WriteFileAtomically(output_path + "/config.yaml", config_yaml); !status.ok()) return status;
+
+  auto trajectory = OutputFile::Create(output_path + "/trajectory.txt");
+  if (!trajectory.ok()) return trajectory.status();
+  auto frames = OutputFile::Create(output_path + "/frames.csv");
+  if (!frames.ok()) return frames.status();
+  auto observations = OutputFile::Create(output_path + "/observations.csv");
+  if (!observations.ok()) return observations.status();
+  std::string columns(kFrameColumns);
+  for (const std::string& stage : stage_names) columns += "," + std::string(kStagePrefix) + stage;
+  if (Status status = frames->Append(columns + "\n"); !status.ok()) return status;
+  if (Status status = observations->Append(std::string(kObservationColumns) + "\n"); !status.ok()) return status;
+
+  auto state =
+      std::make_unique<State>(State{output_path, camera, std::move(stage_names), options, std::move(trajectory).value(),
+                                    std::move(frames).value(), std::move(observations).value()});
+  state->summary = std::move(summary);
+  state->stage_total_ms.assign(state->stage_names.size(), 0.0);
+  return RunWriter(std::move(state));
+}
+
+Status RunWriter::State::Check(const FrameReport& report) {
+  const std::string where = "frame " + std::to_string(report.frame_idx) + ": ";
+  const auto invalid = [&](const std::string& what) { return Status(ErrorCode::kInvalidArgument, where + what); };
+  if (report.frame_idx <= last_frame_idx) return invalid("frames must come in growing order");
+  const FrameCosts& c = report.costs;
+  bool finite = std::isfinite(report.timestamp_s) && std::isfinite(report.median_reprojection_error_px) &&
+                std::isfinite(c.reprojection) && std::isfinite(c.spatial) && std::isfinite(c.temporal) &&
+                std::isfinite(c.edge_length);
+  if (report.cam_from_world)
+    finite = finite && report.cam_from_world->rotation.coeffs().allFinite() &&
+             report.cam_from_world->translation.allFinite();
+  for (const NewPoint& point : report.new_points) finite = finite && point.position.allFinite();
+  for (const PointObservation& o : report.observations) finite = finite && IsFinite(o);
+  for (const auto& [stage, ms] : report.stage_ms) {
+    finite = finite && std::isfinite(ms);
+    if (std::find(stage_names.begin(), stage_names.end(), stage) == stage_names.end())
+      return invalid("there is no stage " + Quoted(stage) + " in the run's list");
+  }
+  if (!finite) return invalid("the report holds numbers that are not finite");
+  if (report.observations.empty() == false && !report.cam_from_world)
+    return invalid("points are observed in a frame without a pose");
+  return Status::Ok();
+}
+
+Status RunWriter::State::AddPoints(const FrameReport& report) {
+  for (const NewPoint& point : report.new_points) {
+    if (!points.empty() && point.id <= points.back().point.id)
+      return {ErrorCode::kInvalidArgument,
+              "frame " + std::to_string(report.frame_idx) + ": new points must have ids above all former ones"};
+    points.push_back({point, 0.0, 0});
+  }
+  for (const PointObservation& o : report.observations) {
+    ColmapPoint* point = Find(points, o.id);
+    if (point == nullptr)
+      return {ErrorCode::kInvalidArgument, "frame " + std::to_string(report.frame_idx) + ": point " +
+                                               std::to_string(o.id.value) + " is observed but was never new"};
+    // A running mean; a point that does not project there adds nothing to it.
+    ++point->num_observations;
+    if (const auto pixel = camera.Project(*report.cam_from_world * o.position))
+      point->error_px += ((*pixel - o.pixel).norm() - point->error_px) / static_cast<double>(point->num_observations);
+  }
+  return Status::Ok();
+}
+
+void RunWriter::State::Count(const FrameReport& report) {
+  last_frame_idx = report.frame_idx;
+  ++summary.frames_read;
+  if (report.cam_from_world) ++summary.frames_tracked;
+  summary.observations += static_cast<std::int64_t>(report.observations.size());
+  summary.points = static_cast<std::int64_t>(points.size());
+  for (const auto& [reason, count] : report.losses) {
+    const auto it = std::find_if(summary.losses.begin(), summary.losses.end(),
+                                 [&, name = std::string_view(reason)](const auto& loss) { return loss.first == name; });
+    if (it == summary.losses.end()) {
+      summary.losses.emplace_back(reason, count);
+    } else {
+      it->second += count;
+    }
+  }
+}
+
+void RunWriter::State::AppendFrameRow(const FrameReport& report) {
+  const auto integer = [&](std::int64_t value) {
+    rows.push_back(',');
+    AppendInt(&rows, value);
+  };
+  const auto number = [&](double value, int decimals) {
+    rows.push_back(',');
+    AppendFixed(&rows, value, decimals);
+  };
+  AppendInt(&rows, report.frame_idx);
+  number(report.timestamp_s, 6);
+  rows.append(",").append(EnumName(report.state));
+  for (const int count : {report.tracked, report.optimized, report.lost, report.added}) integer(count);
+  const FrameCosts& c = report.costs;
+  for (const double cost : {c.reprojection, c.spatial, c.temporal, c.edge_length}) number(cost, 6);
+  number(report.median_reprojection_error_px, 4);
+  for (std::size_t i = 0; i < stage_names.size(); ++i) {
+    double ms = 0;
+    for (const auto& [stage, value] : report.stage_ms)
+      if (stage == stage_names[i] && options.timings == RunTimings::kWritten) ms += value;
+    stage_total_ms[i] += ms;
+    number(ms, 3);
+  }
+  rows.push_back('\n');
+}
+
+Status RunWriter::Write(const FrameReport& report) {
+  State& s = *state_;
+  if (Status status = s.Check(report); !status.ok()) return status;
+  if (Status status = s.AddPoints(report); !status.ok()) return status;
+  s.Count(report);
+  s.rows.clear();
+  for (const PointObservation& o : report.observations) AppendObservation(&s.rows, report.frame_idx, o);
+  if (Status status = s.observations.Append(s.rows); !status.ok()) return status;
+  if (report.cam_from_world) {
+    s.rows.clear();
+    AppendTumLine(&s.rows, report.timestamp_s, report.cam_from_world->Inverse());
+    if (Status status = s.trajectory.Append(s.rows); !status.ok()) return status;
+    s.images.push_back({report.frame_idx, report.name, *report.cam_from_world});
+  }
+  s.rows.clear();
+  s.AppendFrameRow(report);
+  return s.frames.Append(s.rows);
+}
+
+Status RunWriter::State::FinishSparse() const {
+  std::vector<NewPoint> map;
+  for (const ColmapPoint& point : points) map.push_back(point.point);
+  if (Status status = WritePly(path + "/map.ply", map); !status.ok()) return status;
+  std::error_code error;
+  fs::create_directories(path + "/sparse", error);
+  if (error) return Unwritable(path + "/sparse", error);
+  return WriteColmapModel(path + "/sparse", options.sparse_format, camera, images, points, path + "/observations.csv");
+}
+
+Status RunWriter::Finish(RunStatus run_status, const std::string& note) {
+  State& s = *state_;
+  Status status;
+  for (OutputFile* file : {&s.observations, &s.trajectory, &s.frames})
+    if (Status closed = file->Close(); status.ok()) status = closed;
+  if (s.options.timings == RunTimings::kWritten) {
+    s.summary.total_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - s.begin).count();
+    if (s.summary.total_s > 0)
+      s.summary.frames_per_second = static_cast<double>(s.summary.frames_read) / s.summary.total_s;
+  }
+  for (std::size_t i = 0; i < s.stage_names.size(); ++i)
+    s.summary.mean_ms.emplace_back(
+        s.stage_names[i], s.stage_total_ms[i] / static_cast<double>(std::max<std::int64_t>(s.summary.frames_read, 1)));
+  if (status.ok()) status = s.FinishSparse();
+  s.summary.status = status.ok() ? run_status : RunStatus::kFailed;
+  s.summary.note = status.ok() ? note : status.message();
+  const Status written = WriteRunSummary(s.path + "/run.json", s.summary);
+  return status.ok() ? written : status;
+}
+
+}  // namespace pliant

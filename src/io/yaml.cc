@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "io/yaml.h"
+
+#include <set>
+
+#include "io/text.h"
+
+namespace pliant {
+
+std::string At(const std::string& path, const YAML::Node& node) { return At(path, node.Mark().line + 1); }
+
+std::string KeyText(const YAML::Node& key) { return key.IsScalar() ? key.Scalar() : "?"; }
+
+Result<YAML::Node> ParseYamlMap(const std::string& path, const std::string& text) {
+  YAML::Node root;
+  try {
+    root = YAML::Load(text);
+  } catch (const YAML::Exception& error) {
+    return Status(ErrorCode::kUnreadable, At(path, error.mark.line + 1) + ": this is not YAML: " + error.msg);
+  }
+  if (!root.IsMap() && !root.IsNull())
+    return Status(ErrorCode::kUnreadable, At(path, 1) + ": expected lines `name: value`");
+  if (const Status status = CheckUniqueKeys(path, root); !status.ok()) return status;
+  return root;
+}
+
+Status CheckUniqueKeys(const std::string& path, const YAML::Node& map) {
+  std::set<std::string> keys;
+  for (const auto& entry : map)
+    if (!keys.insert(KeyText(entry.first)).second)
+      return {ErrorCode::kInvalidArgument,
+              At(path, entry.first) + ": " + Quoted(KeyText(entry.first)) + " is given twice; leave one"};
+  return Status::Ok();
+}
+
+}  // namespace pliant
