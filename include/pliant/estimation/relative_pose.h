@@ -31,6 +31,11 @@ struct RelativePose {
   int iterations = 0;
 };
 
+// Whether a correspondence agrees with a motion: its epipolar error is at most max_error_rad a view, and its rays meet
+// in front of both cameras, or are too nearly parallel to say.
+bool AgreesWithMotion(const Rigid3& cam1_from_cam0, const Eigen::Vector3d& ray0, const Eigen::Vector3d& ray1,
+                      double max_error_rad);
+
 // The least number of correspondences: five make the model, three choose among its solutions.
 inline constexpr int kRelativePoseMinPoints = 8;
 

@@ -37,9 +37,9 @@ struct HomographyFit {
 Result<HomographyFit> FitHomography(std::span<const Eigen::Vector3d> rays0, std::span<const Eigen::Vector3d> rays1,
                                     double focal_px, double max_error_px, Random random);
 
-// The motions that explain a plane's homography H = R + t n' / d (Faugeras and Lustman, 1988), those kept that put the
-// plane in front of both cameras for more than half of the rays; 0 to 2 of them (none for a rotation). |translation|
-// = 1.
+// The motions that explain a plane's homography H = R + t n' / d (Ma, Soatto, Kosecka and Sastry, "An Invitation to 3-D
+// Vision", 5.3.3), each with the sign that puts the plane in front of the camera for most of the rays: two, or none
+// where H is a rotation. |translation| = 1.
 std::vector<Rigid3> MotionsFromHomography(const Eigen::Matrix3d& homography, std::span<const Eigen::Vector3d> rays0);
 
 }  // namespace pliant
