@@ -1,0 +1,118 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tracking/initial_map.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+
+namespace pliant {
+
+MatchedRays MatchRays(const Camera& camera, const InitFrame& reference, const InitFrame& current) {
+  MatchedRays matched;
+  auto now = current.observations.begin();
+  for (const InitObservation& observation : reference.observations) {
+    while (now != current.observations.end() && now->id < observation.id) ++now;
+    if (now == current.observations.end() || now->id != observation.id) {
+      matched.rejected.push_back({observation.id, InitRejection::kLostOnTheWay});
+      continue;
+    }
+    const auto ray0 = camera.Unproject(observation.pixel);
+    const auto ray1 = camera.Unproject(now->pixel);
+    if (!ray0 || !ray1 || !ray0->allFinite() || !ray1->allFinite()) {
+      matched.rejected.push_back({observation.id, InitRejection::kNoRay});
+      continue;
+    }
+    matched.ids.push_back(observation.id);
+    matched.rays0.push_back(*ray0);
+    matched.rays1.push_back(*ray1);
+  }
+  return matched;
+}
+
+std::vector<WindowObservation> ObservationsOf(const Camera& camera, const InitFrame& frame,
+                                              const std::vector<PointId>& ids, int view_idx) {
+  std::vector<WindowObservation> observations;
+  auto seen = frame.observations.begin();
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    while (seen != frame.observations.end() && seen->id < ids[i]) ++seen;
+    if (seen == frame.observations.end()) break;
+    if (seen->id != ids[i]) continue;
+    const auto ray = camera.Unproject(seen->pixel);
+    if (ray && ray->allFinite()) observations.push_back({view_idx, static_cast<int>(i), *ray});
+  }
+  return observations;
+}
+
+Result<Rigid3> LocateFrame(const Camera& camera, const InitFrame& frame, const InitialMap& map, const Rigid3& near,
+                           const RefinementOptions& options) {
+  constexpr double kWideLoss = 20.0;  // times the loss: 10 px of the default 0.5
+  constexpr std::size_t kLeastPoints = 6;
+  Window window;
+  window.cams_from_world = {Rigid3(), near};
+  window.points_in_world = map.positions;
+  window.observations = ObservationsOf(camera, frame, map.ids, 1);
+  if (window.observations.size() < kLeastPoints)
+    return Status(ErrorCode::kInsufficient, "frame " + std::to_string(frame.frame_idx) + " sees only " +
+                                                std::to_string(window.observations.size()) + " points of the map");
+  RefinementOptions wide = options;
+  wide.loss_scale_px *= kWideLoss;
+  const double focal_px = camera.MeanFocalLengthPx();
+  auto located = RefineWindow(window, focal_px, WindowPoints::kFixed, wide);
+  if (located.ok()) located = RefineWindow(located->window, focal_px, WindowPoints::kFixed, options);
+  if (!located.ok()) return located.status();
+  return located->window.cams_from_world.back();
+}
+
+Result<std::vector<Rigid3>> LocateFrames(const InitInput& input, const InitialMap& map, std::vector<KnownPose> known,
+                                         const RefinementOptions& options) {
+  std::vector<Rigid3> poses(known.size());
+  poses.back() = known.back().cam_from_world;
+  for (std::size_t k = known.size() - 1; k-- > 0;) {
+    if (known[k].known) {
+      poses[k] = known[k].cam_from_world;
+      continue;
+    }
+    const auto pose = LocateFrame(input.camera, input.frames[k], map, poses[k + 1], options);
+    if (!pose.ok()) return pose.status();
+    poses[k] = *pose;
+  }
+  return poses;
+}
+
+Status HandOver(const InitInput& input, const InitialMap& map, const std::vector<Rigid3>& cams_from_world,
+                std::vector<InitRejectedPoint> rejected, double nominal_depth_mm, InitOutcome* outcome) {
+  std::vector<double> depths;
+  for (const Eigen::Vector3d& position : map.positions) depths.push_back(position.z());
+  const double median = depths.empty() ? 0.0 : MedianOf(std::move(depths));
+  if (!(median > 0.0))
+    return {ErrorCode::kDegenerate, "the map's median depth is not in front of the camera, so it cannot be scaled"};
+
+  const double scale = nominal_depth_mm / median;
+  outcome->decision = InitDecision::kMap;
+  for (std::size_t k = 0; k < cams_from_world.size(); ++k)
+    outcome->poses.push_back(
+        {input.frames[k].frame_idx, Rigid3(cams_from_world[k].rotation, scale * cams_from_world[k].translation)});
+  for (std::size_t i = 0; i < map.ids.size(); ++i)
+    outcome->points.push_back(
+        {map.ids[i], scale * map.positions[i], scale * map.depth_sigmas[i], map.parallaxes_rad[i]});
+  std::sort(rejected.begin(), rejected.end(),
+            [](const InitRejectedPoint& a, const InitRejectedPoint& b) { return a.id < b.id; });
+  outcome->rejected = std::move(rejected);
+  return Status::Ok();
+}
+
+double MedianOf(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+std::string Digits(double value, int digits) {
+  std::array<char, 64> text{};
+  std::snprintf(text.data(), text.size(), "%.*f", digits, value);
+  return text.data();
+}
+
+}  // namespace pliant

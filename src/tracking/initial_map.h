@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// What every initialiser from two sets of unit rays does before and after its own method: match the rays of the
+// reference and the current frame, place the frames between them, scale the map and hand it over.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "pliant/base/status.h"
+#include "pliant/estimation/two_view_refinement.h"
+#include "pliant/tracking/initializer.h"
+
+namespace pliant {
+
+// The points seen in the reference (cam0) and in the current frame (cam1), side by side, sorted by id.
+struct MatchedRays {
+  std::vector<PointId> ids;
+  std::vector<Eigen::Vector3d> rays0;
+  std::vector<Eigen::Vector3d> rays1;
+  std::vector<InitRejectedPoint> rejected;  // the reference's other points
+};
+MatchedRays MatchRays(const Camera& camera, const InitFrame& reference, const InitFrame& current);
+
+// A map in the making; world = the reference camera, any scale.
+struct InitialMap {
+  std::vector<PointId> ids;  // sorted
+  std::vector<Eigen::Vector3d> positions;
+  std::vector<double> depth_sigmas;
+  std::vector<double> parallaxes_rad;
+};
+
+// The rays of the map's points in one frame, as observations of view `view_idx`; points are numbered by their place in
+// `ids`.
+std::vector<WindowObservation> ObservationsOf(const Camera& camera, const InitFrame& frame,
+                                              const std::vector<PointId>& ids, int view_idx);
+
+// The pose of a frame against fixed points, from the pose of a frame near it: robust, first with a wide loss, because
+// the frames between may lie tens of pixels apart. Fails with kInsufficient when the frame sees too few of the points.
+Result<Rigid3> LocateFrame(const Camera& camera, const InitFrame& frame, const InitialMap& map, const Rigid3& near,
+                           const RefinementOptions& options);
+
+// Poses of all frames. `known[k]` is frame k's pose if it has one; the first and the last must. A frame without one is
+// located from the next later one.
+struct KnownPose {
+  bool known = false;
+  Rigid3 cam_from_world;
+};
+Result<std::vector<Rigid3>> LocateFrames(const InitInput& input, const InitialMap& map, std::vector<KnownPose> known,
+                                         const RefinementOptions& options);
+
+// Scales map and poses so that the median depth (z in the reference camera) is nominal_depth_mm, and fills the outcome
+// in as a map. Fails with kDegenerate when the median depth is not positive.
+Status HandOver(const InitInput& input, const InitialMap& map, const std::vector<Rigid3>& cams_from_world,
+                std::vector<InitRejectedPoint> rejected, double nominal_depth_mm, InitOutcome* outcome);
+
+// The value in the middle (the upper one of two); `values` is not empty.
+double MedianOf(std::vector<double> values);
+// A number for a sentence, with so many digits after the point.
+std::string Digits(double value, int digits);
+
+}  // namespace pliant

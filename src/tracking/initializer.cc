@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/tracking/initializer.h"
+
+namespace pliant {
+
+std::string_view InitRejectionName(InitRejection reason) {
+  switch (reason) {
+    case InitRejection::kNoRay:
+      return "no_ray";
+    case InitRejection::kLostOnTheWay:
+      return "lost_on_the_way";
+    case InitRejection::kEpipolar:
+      return "epipolar_error";
+    case InitRejection::kCheirality:
+      return "cheirality";
+    case InitRejection::kUncertainDepth:
+      return "uncertain_depth";
+    case InitRejection::kReprojection:
+      return "map_reprojection_error";
+  }
+  return "?";
+}
+
+}  // namespace pliant

@@ -1,0 +1,90 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Initialisation as published (Gomez Rodriguez, Montiel, Tardos, IROS 2022, section III-B): k frames apart, no gates.
+#include <numbers>
+
+#include "pliant/estimation/relative_pose.h"
+#include "tracking/initial_map.h"
+#include "tracking/monocular_methods.h"
+
+namespace pliant {
+namespace {
+
+class PaperInitializer final : public Initializer {
+ public:
+  PaperInitializer(const MonocularInitOptions& options, Random random) : options_(options), random_(random) {}
+
+  std::string_view name() const override { return "paper"; }
+
+  InitOutcome Try(const InitInput& input) const override {
+    InitOutcome outcome;
+    const int since = static_cast<int>(input.frames.size()) - 1;
+    if (since < options_.paper_frames) {
+      outcome.reason =
+          std::to_string(since) + " of " + std::to_string(options_.paper_frames) + " frames since the reference";
+      return outcome;
+    }
+    if (Status status = MakeMap(input, &outcome); !status.ok()) {
+      outcome.decision = InitDecision::kNewReference;
+      outcome.reason = status.message();
+    }
+    return outcome;
+  }
+
+ private:
+  Status MakeMap(const InitInput& input, InitOutcome* outcome) const {
+    MatchedRays matched = MatchRays(input.camera, input.frames.front(), input.frames.back());
+    outcome->measured.correspondences = static_cast<int>(matched.ids.size());
+    const double focal_px = input.camera.MeanFocalLengthPx();
+    const auto pose =
+        EstimateRelativePose(matched.rays0, matched.rays1, focal_px, random_.Child("relative_pose"),
+                             {.max_error_px = options_.max_error_px, .max_iterations = options_.max_iterations});
+    if (!pose.ok()) return pose.status();
+    outcome->measured.inliers = pose->num_inliers;
+
+    const InitialMap map = TriangulateInliers(*pose, &matched, focal_px);
+    if (map.ids.empty()) return {ErrorCode::kInsufficient, "no point could be triangulated"};
+    outcome->measured.median_parallax_deg = MedianOf(map.parallaxes_rad) * 180.0 / std::numbers::pi;
+
+    std::vector<KnownPose> known(input.frames.size());
+    known.front().known = true;
+    known.back() = {true, pose->cam1_from_cam0};
+    const auto poses = LocateFrames(input, map, std::move(known), {});
+    if (!poses.ok()) return poses.status();
+    outcome->reason = "first map of " + std::to_string(map.ids.size()) + " points, " +
+                      std::to_string(input.frames.size() - 1) + " frames apart, median parallax " +
+                      Digits(outcome->measured.median_parallax_deg, 2) + " deg";
+    return HandOver(input, map, *poses, std::move(matched.rejected), options_.nominal_depth_mm, outcome);
+  }
+
+  InitialMap TriangulateInliers(const RelativePose& pose, MatchedRays* matched, double focal_px) const {
+    InitialMap map;
+    const auto points = Triangulate(options_.triangulation, pose.cam1_from_cam0, matched->rays0, matched->rays1);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (pose.inliers[i] == 0 || !points[i].ok()) {
+        matched->rejected.push_back(
+            {matched->ids[i], pose.inliers[i] == 0 ? InitRejection::kEpipolar : InitRejection::kCheirality});
+        continue;
+      }
+      const double parallax = ParallaxAngle(pose.cam1_from_cam0.rotation, matched->rays0[i], matched->rays1[i]);
+      map.ids.push_back(matched->ids[i]);
+      map.positions.push_back(points[i].point_in_cam0);
+      map.parallaxes_rad.push_back(parallax);
+      map.depth_sigmas.push_back(points[i].point_in_cam0.norm() *
+                                 RelativeDepthSigma(options_.sigma_px, focal_px, parallax));
+    }
+    return map;
+  }
+
+  MonocularInitOptions options_;
+  Random random_;
+};
+
+}  // namespace
+
+std::unique_ptr<Initializer> MakePaperInitializer(const MonocularInitOptions& options, Random random) {
+  return std::make_unique<PaperInitializer>(options, random);
+}
+
+}  // namespace pliant
