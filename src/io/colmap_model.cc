@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include <algorithm>
-#include <filesystem>
+#include <limits>
 #include <optional>
 
 #include "io/colmap_pixels.h"
@@ -163,12 +163,15 @@ struct TrackElement {
 
 // The tracks of consecutive points, one after the other in one array.
 Result<std::vector<TrackElement>> Tracks(std::span<const ColmapPoint> points, const std::string& run_path) {
-  std::vector<std::int64_t> ends;  // where each point's next element goes
+  std::vector<std::int64_t> next;   // where each point's next element goes
+  std::vector<std::int64_t> limit;  // where its elements end
   std::int64_t total = 0;
   for (const ColmapPoint& point : points) {
-    ends.push_back(total);
-    total += point.num_observations;
+    next.push_back(total);
+    limit.push_back(total += point.num_observations);
   }
+  const Status mismatch(ErrorCode::kMismatch,
+                        "the observations in " + Quoted(run_path) + " are not those that were counted");
   std::vector<TrackElement> elements(static_cast<std::size_t>(total));
   const Status status = ForEachFrame(run_path, [&](const FrameObservations& frame) {
     auto point = points.begin();
@@ -179,14 +182,13 @@ Result<std::vector<TrackElement>> Tracks(std::span<const ColmapPoint> points, co
       if (point == points.end()) break;
       if (point->point.id != id) continue;
       const auto idx = static_cast<std::size_t>(point - points.begin());
-      const std::int64_t end = idx + 1 < ends.size() ? ends[idx] : ends[idx];
-      if (end >= total)
-        return Status(ErrorCode::kMismatch, Quoted(run_path) + " has more observations than were counted");
-      elements[static_cast<std::size_t>(ends[idx]++)] = {ImageId(frame.frame_idx), static_cast<std::uint32_t>(i)};
+      if (next[idx] == limit[idx]) return mismatch;
+      elements[static_cast<std::size_t>(next[idx]++)] = {ImageId(frame.frame_idx), static_cast<std::uint32_t>(i)};
     }
     return Status::Ok();
   });
   if (!status.ok()) return status;
+  if (next != limit) return mismatch;
   return elements;
 }
 
@@ -254,8 +256,7 @@ Status WritePoints(const std::string& folder, ColmapFormat format, std::span<con
 
 Status WriteColmapModel(const std::string& folder, ColmapFormat format, const Camera& camera,
                         std::span<const ColmapImage> images, std::span<const ColmapPoint> points,
-                        const std::string& observations_path) {
-  const std::string run_path = std::filesystem::path(observations_path).parent_path().string();
+                        const std::string& run_path) {
   if (Status status = WriteCamera(folder, format, camera); !status.ok()) return status;
   if (Status status = WriteImages(folder, format, images, run_path); !status.ok()) return status;
   return WritePoints(folder, format, points, run_path);

@@ -87,11 +87,13 @@ struct RunWriter::State {
   int last_frame_idx = -1;
   std::chrono::steady_clock::time_point begin = std::chrono::steady_clock::now();
   std::string rows = {};
+  Status failure = {};  // the first row that could not be written
 
   Status Check(const FrameReport& report);
   Status AddPoints(const FrameReport& report);
   void Count(const FrameReport& report);
   void AppendFrameRow(const FrameReport& report);
+  Status WriteRows(const FrameReport& report);
   Status FinishSparse() const;
 };
 
@@ -150,7 +152,7 @@ Status RunWriter::State::Check(const FrameReport& report) {
       return invalid("there is no stage " + Quoted(stage) + " in the run's list");
   }
   if (!finite) return invalid("the report holds numbers that are not finite");
-  if (report.observations.empty() == false && !report.cam_from_world)
+  if (!report.observations.empty() && !report.cam_from_world)
     return invalid("points are observed in a frame without a pose");
   return Status::Ok();
 }
@@ -218,23 +220,29 @@ void RunWriter::State::AppendFrameRow(const FrameReport& report) {
   rows.push_back('\n');
 }
 
+Status RunWriter::State::WriteRows(const FrameReport& report) {
+  rows.clear();
+  for (const PointObservation& o : report.observations) AppendObservation(&rows, report.frame_idx, o);
+  if (Status status = observations.Append(rows); !status.ok()) return status;
+  if (report.cam_from_world) {
+    rows.clear();
+    AppendTumLine(&rows, report.timestamp_s, report.cam_from_world->Inverse());
+    if (Status status = trajectory.Append(rows); !status.ok()) return status;
+    images.push_back({report.frame_idx, report.name, *report.cam_from_world});
+  }
+  rows.clear();
+  AppendFrameRow(report);
+  return frames.Append(rows);
+}
+
 Status RunWriter::Write(const FrameReport& report) {
   State& s = *state_;
+  if (!s.failure.ok()) return s.failure;
   if (Status status = s.Check(report); !status.ok()) return status;
   if (Status status = s.AddPoints(report); !status.ok()) return status;
   s.Count(report);
-  s.rows.clear();
-  for (const PointObservation& o : report.observations) AppendObservation(&s.rows, report.frame_idx, o);
-  if (Status status = s.observations.Append(s.rows); !status.ok()) return status;
-  if (report.cam_from_world) {
-    s.rows.clear();
-    AppendTumLine(&s.rows, report.timestamp_s, report.cam_from_world->Inverse());
-    if (Status status = s.trajectory.Append(s.rows); !status.ok()) return status;
-    s.images.push_back({report.frame_idx, report.name, *report.cam_from_world});
-  }
-  s.rows.clear();
-  s.AppendFrameRow(report);
-  return s.frames.Append(s.rows);
+  s.failure = s.WriteRows(report);
+  return s.failure;
 }
 
 Status RunWriter::State::FinishSparse() const {
@@ -244,12 +252,12 @@ Status RunWriter::State::FinishSparse() const {
   std::error_code error;
   fs::create_directories(path + "/sparse", error);
   if (error) return Unwritable(path + "/sparse", error);
-  return WriteColmapModel(path + "/sparse", options.sparse_format, camera, images, points, path + "/observations.csv");
+  return WriteColmapModel(path + "/sparse", options.sparse_format, camera, images, points, path);
 }
 
 Status RunWriter::Finish(RunStatus run_status, const std::string& note) {
   State& s = *state_;
-  Status status;
+  Status status = s.failure;
   for (OutputFile* file : {&s.observations, &s.trajectory, &s.frames})
     if (Status closed = file->Close(); status.ok()) status = closed;
   if (s.options.timings == RunTimings::kWritten) {

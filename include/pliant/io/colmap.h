@@ -44,10 +44,10 @@ struct ColmapPoint {
 };
 
 // Writes cameras, images and points3D into `folder`, which must exist. `images` are sorted by frame, `points` by id;
-// the keypoints are streamed from a run folder's observations.csv, several times if need be, so that memory stays
+// the keypoints are streamed from observations.csv in `run_path`, several times if need be, so that memory stays
 // bounded (about 40 MB) however long the run. Fails with kUnwritable, or as the reading of observations.csv does.
 Status WriteColmapModel(const std::string& folder, ColmapFormat format, const Camera& camera,
                         std::span<const ColmapImage> images, std::span<const ColmapPoint> points,
-                        const std::string& observations_path);
+                        const std::string& run_path);
 
 }  // namespace pliant
