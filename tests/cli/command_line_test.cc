@@ -1,0 +1,191 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "cli/command_line.h"
+
+#include <array>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace pliant::cli {
+enum class Fruit { kApple, kPear };
+}
+template <>
+struct pliant::EnumNames<pliant::cli::Fruit> {
+  static constexpr std::array kNames = {std::pair{pliant::cli::Fruit::kApple, std::string_view("apple")},
+                                        std::pair{pliant::cli::Fruit::kPear, std::string_view("pear")}};
+};
+
+namespace pliant::cli {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+const Manual kManual = {"fill", "fill a basket", "First paragraph.\n\nSecond paragraph.", {"pliant fill --to X"}};
+
+struct BasketOptions {
+  int count = 3;
+  double weight = 0.5;
+  bool open = false;
+  void List(OptionTable& table) {
+    table.BeginGroup("Basket", "what is carried");
+    table.Add("count", &count, "-", "how many pieces", 1, 9);
+    table.Add("weight", &weight, "kg", "of all pieces", -10, 10);
+    table.Add("open", &open, "-", "open at the top");
+  }
+};
+
+// What a command line gives: the exit code (-1: the command is to run) and what was said.
+struct Outcome {
+  int exit = -1;
+  std::string out;
+  std::string err;
+  std::string to = "";
+  int pieces = 1;
+  Fruit fruit = Fruit::kApple;
+  bool quiet = false;
+  BasketOptions options = {};
+};
+
+Outcome Give(const std::vector<std::string>& args) {
+  Outcome outcome;
+  testing::internal::CaptureStdout();
+  testing::internal::CaptureStderr();
+  CommandLine line(kManual);
+  line.Add("to", &outcome.to, "PATH", "where it goes", Need::kRequired);
+  line.Add("pieces", &outcome.pieces, "how many", 0, 100);
+  line.AddChoice("fruit", &outcome.fruit, "kind");
+  line.AddFlag("quiet", &outcome.quiet, "say nothing");
+  std::optional<int> exit = line.Parse(args);
+  OptionTable table;
+  outcome.options.List(table);
+  if (!exit) exit = line.Resolve(table);
+  outcome.exit = exit.value_or(-1);
+  outcome.out = testing::internal::GetCapturedStdout();
+  outcome.err = testing::internal::GetCapturedStderr();
+  return outcome;
+}
+
+std::filesystem::path WriteTemporary(const std::string& name, const std::string& text) {
+  const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / name;
+  std::ofstream(path) << text;
+  return path;
+}
+
+TEST(CommandLine, ArgumentsAndOptionsMayBeMixedInBothSpellings) {
+  const Outcome outcome = Give({"--Basket.count", "5", "--to", "X", "--Basket.weight=-2.5", "--quiet", "--fruit=pear",
+                                "--pieces", "7", "--Basket.open", "true"});
+  EXPECT_EQ(outcome.exit, -1) << outcome.err;
+  EXPECT_EQ(outcome.to, "X");
+  EXPECT_EQ(outcome.pieces, 7);
+  EXPECT_EQ(outcome.fruit, Fruit::kPear);
+  EXPECT_TRUE(outcome.quiet);
+  EXPECT_EQ(outcome.options.count, 5);
+  EXPECT_EQ(outcome.options.weight, -2.5);
+  EXPECT_TRUE(outcome.options.open);
+}
+
+TEST(CommandLine, ANegativeNumberIsAValueAndNoFlag) {
+  EXPECT_EQ(Give({"--to", "X", "--Basket.weight", "-3"}).options.weight, -3);
+  EXPECT_EQ(Give({"--to", "X", "--Basket.weight", "-1e-3"}).options.weight, -1e-3);
+  EXPECT_THAT(Give({"--to", "X", "--pieces", "-3"}).err, HasSubstr("--pieces is '-3'; give a whole number from 0"));
+}
+
+TEST(CommandLine, TheFileComesFirstAndFlagsWinOverIt) {
+  const auto path = WriteTemporary("basket.yaml", "Basket:\n  count: 7\n  weight: 1.5\n");
+  const Outcome outcome = Give({"--Basket.count", "2", "--to", "X", "--config", path.string()});
+  EXPECT_EQ(outcome.exit, -1) << outcome.err;
+  EXPECT_EQ(outcome.options.count, 2);
+  EXPECT_EQ(outcome.options.weight, 1.5);
+}
+
+TEST(CommandLine, WhatPrintConfigPrintsReadsBack) {
+  const Outcome printed =
+      Give({"--Basket.count", "8", "--Basket.weight", "0.1", "--Basket.open", "on", "--print_config"});
+  EXPECT_EQ(printed.exit, kExitOk) << "a required argument is not needed to print";
+  const auto path = WriteTemporary("printed.yaml", printed.out);
+  const Outcome read = Give({"--to", "X", "--config", path.string(), "--print_config"});
+  EXPECT_EQ(read.out, printed.out);
+  EXPECT_EQ(read.options.count, 8);
+  EXPECT_TRUE(read.options.open);
+}
+
+TEST(CommandLine, AnUnknownNameNamesItsNeighbourAmongArgumentsAndOptions) {
+  for (const auto& [flag, neighbour] : {std::pair{"--Basket.cuont", "--Basket.count"},
+                                        {"--basket.weight", "--Basket.weight"},
+                                        {"--peices", "--pieces"},
+                                        {"--print-config", "--print_config"}}) {
+    const Outcome outcome = Give({"--to", "X", flag, "1"});
+    EXPECT_EQ(outcome.exit, kExitUsage) << flag;
+    EXPECT_EQ(outcome.err,
+              std::string("pliant fill: there is no option ") + flag + "; did you mean " + neighbour + "?\n");
+  }
+}
+
+TEST(CommandLine, WrongUsesAreOneSentenceAndExitCodeTwo) {
+  const auto unknown = WriteTemporary("unknown.yaml", "Basket:\n  cuont: 7\n");
+  const auto garbled = WriteTemporary("garbled.yaml", "Basket: [1, 2\n");
+  const std::vector<std::pair<std::vector<std::string>, std::string>> cases = {
+      {{}, "--to PATH is missing"},
+      {{"--to"}, "--to"},
+      {{"--to", ""}, "--to is ''"},
+      {{"--to", "X", "--to", "Y"}, "--to"},
+      {{"--to", "X", "stray"}, "'stray'"},
+      {{"--to", "X", "--fruit", "plum"}, "--fruit is 'plum'; give one of apple|pear"},
+      {{"--to", "X", "--pieces", "2.5"}, "--pieces is '2.5'"},
+      {{"--to", "X", "--pieces", "101"}, "from 0 to 100"},
+      {{"--to", "X", "--Basket.count", "10"}, "Basket.count is '10'; give a whole number from 1 to 9"},
+      {{"--to", "X", "--Basket.weight", "nan"}, "Basket.weight"},
+      {{"--to", "X", "--Basket.count"}, "--Basket.count needs a value"},
+      {{"--to", "X", "--Basket.count", "--quiet"}, "--Basket.count needs a value"},
+      {{"--to", "X", "--config", "/nowhere/options.yaml"}, "/nowhere/options.yaml"},
+      {{"--to", "X", "--config", unknown.string()}, "Basket.count"},
+      {{"--to", "X", "--config", garbled.string()}, "garbled.yaml"},
+  };
+  for (const auto& [args, sentence] : cases) {
+    const Outcome outcome = Give(args);
+    EXPECT_EQ(outcome.exit, kExitUsage) << sentence;
+    EXPECT_THAT(outcome.err, HasSubstr(sentence));
+    EXPECT_THAT(outcome.err, testing::StartsWith("pliant fill: "));
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+    EXPECT_EQ(outcome.out, "");
+  }
+}
+
+TEST(CommandLine, HelpIsAManualOfEveryArgumentAndOption) {
+  const Outcome outcome = Give({"--help"});
+  EXPECT_EQ(outcome.exit, kExitOk);
+  EXPECT_EQ(outcome.err, "");
+  for (const char* part : {"pliant fill - fill a basket",
+                           "USAGE",
+                           "First paragraph.",
+                           "Second paragraph.",
+                           "--to PATH",
+                           "(required)",
+                           "--pieces N",
+                           "(default: 1)",
+                           "--fruit apple|pear",
+                           "(default: apple)",
+                           "--quiet",
+                           "--config FILE",
+                           "--print_config",
+                           "--help",
+                           "Basket: what is carried",
+                           "--Basket.count 3  [-]",
+                           "how many pieces",
+                           "--Basket.weight 0.5  [kg]",
+                           "EXIT CODES",
+                           "pliant fill --to X"})
+    EXPECT_THAT(outcome.out, HasSubstr(part));
+  std::istringstream lines(outcome.out);
+  for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 100) << line;
+}
+
+}  // namespace
+}  // namespace pliant::cli

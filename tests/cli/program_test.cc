@@ -1,0 +1,174 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// The program itself, started as a user starts it.
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include "pliant/evaluation/evaluation.h"
+#include "pliant/pipeline/track.h"
+#include "pliant/simulation/options.h"
+
+namespace pliant {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+
+struct Outcome {
+  int exit = -1;
+  std::string out;
+  std::string err;
+};
+
+std::filesystem::path Temporary(const std::string& name) {
+  const testing::TestInfo* test = testing::UnitTest::GetInstance()->current_test_info();
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "pliant_program_test" / test->name();
+  std::filesystem::create_directories(folder);
+  return folder / name;
+}
+
+std::string ReadText(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+// Runs `pliant arguments` through the shell, with standard error in a file (so no terminal).
+Outcome Pliant(const std::string& arguments) {
+  const std::filesystem::path out = Temporary("out.txt");
+  const std::filesystem::path err = Temporary("err.txt");
+  const std::string command = "'" PLIANT_PROGRAM "' " + arguments + " >'" + out.string() + "' 2>'" + err.string() + "'";
+  const int status = std::system(command.c_str());
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, ReadText(out), ReadText(err)};
+}
+
+// The fields of every command's options.
+template <class Options>
+std::vector<OptionField> FieldsOf() {
+  static Options options;
+  OptionTable table;
+  options.List(table);
+  return table.fields();
+}
+
+TEST(Program, WithoutACommandItShowsTheUsageAndExitsWithTwo) {
+  const Outcome outcome = Pliant("");
+  EXPECT_EQ(outcome.exit, 2);
+  EXPECT_EQ(outcome.out, "");
+  for (const char* command : {"track", "simulate", "evaluate", "demo"}) EXPECT_THAT(outcome.err, HasSubstr(command));
+}
+
+TEST(Program, HelpAndVersionSucceed) {
+  EXPECT_EQ(Pliant("--help").exit, 0);
+  const Outcome version = Pliant("--version");
+  EXPECT_EQ(version.exit, 0);
+  EXPECT_THAT(version.out, testing::MatchesRegex("pliant [0-9]+\\.[0-9]+\\.[0-9]+\n"));
+}
+
+TEST(Program, AnUnknownCommandNamesTheNearestOne) {
+  const Outcome outcome = Pliant("trakc");
+  EXPECT_EQ(outcome.exit, 2);
+  EXPECT_EQ(outcome.err, "pliant: there is no command 'trakc'; did you mean 'track'? pliant --help lists them\n");
+}
+
+TEST(Program, TheManualOfACommandNamesEveryOptionWithUnitAndReason) {
+  const std::vector<std::pair<std::string, std::vector<OptionField>>> commands = {
+      {"track", FieldsOf<TrackOptions>()},
+      {"simulate", FieldsOf<SimulationOptions>()},
+      {"demo", FieldsOf<SimulationOptions>()},
+      {"evaluate", FieldsOf<EvaluationOptions>()}};
+  for (const auto& [command, fields] : commands) {
+    const Outcome outcome = Pliant(command + " --help");
+    EXPECT_EQ(outcome.exit, 0) << command;
+    ASSERT_FALSE(fields.empty());
+    for (const OptionField& field : fields) {
+      EXPECT_THAT(outcome.out, HasSubstr("--" + field.name + " "));
+      EXPECT_THAT(outcome.out, HasSubstr("[" + field.unit + "]"));
+    }
+    for (const char* part : {"DESCRIPTION", "ARGUMENTS", "EXIT CODES", "EXAMPLES", "(default", "--config FILE"})
+      EXPECT_THAT(outcome.out, HasSubstr(part)) << command;
+  }
+}
+
+TEST(Program, WhatPrintConfigPrintsReadsBackAsTheConfig) {
+  for (const std::string command : {"track", "track --preset paper", "simulate", "evaluate"}) {
+    const Outcome printed = Pliant(command + " --print_config");
+    ASSERT_EQ(printed.exit, 0) << command << ": " << printed.err;
+    const std::filesystem::path path = Temporary("config.yaml");
+    std::ofstream(path) << printed.out;
+    const std::string base = command.substr(0, command.find(' '));
+    const Outcome read = Pliant(base + " --print_config --config '" + path.string() + "'");
+    EXPECT_EQ(read.exit, 0) << command << ": " << read.err;
+    EXPECT_EQ(read.out, printed.out) << command;
+  }
+}
+
+TEST(Program, ThePaperPresetDiffersFromTheDefault) {
+  EXPECT_NE(Pliant("track --print_config").out, Pliant("track --preset paper --print_config").out);
+}
+
+TEST(Program, AnUnknownOptionNamesItsNeighbourAndExitsWithTwo) {
+  const Outcome group = Pliant("track --image_path a --output_path b --General.seeed 2");
+  EXPECT_EQ(group.exit, 2);
+  EXPECT_EQ(group.err, "pliant track: there is no option --General.seeed; did you mean --General.seed?\n");
+  const Outcome own = Pliant("track --imagepath a --output_path b");
+  EXPECT_EQ(own.exit, 2);
+  EXPECT_EQ(own.err, "pliant track: there is no option --imagepath; did you mean --image_path?\n");
+}
+
+TEST(Program, AMissingArgumentExitsWithTwo) {
+  for (const auto& [arguments, missing] : {std::pair{"track --image_path a", "--output_path"},
+                                           {"track --output_path b", "--image_path"},
+                                           {"simulate", "--output_path"},
+                                           {"evaluate --run a", "--sequence"}}) {
+    const Outcome outcome = Pliant(arguments);
+    EXPECT_EQ(outcome.exit, 2);
+    EXPECT_THAT(outcome.err, HasSubstr(std::string(missing) + " "));
+    EXPECT_THAT(outcome.err, HasSubstr("is missing"));
+  }
+}
+
+TEST(Program, AnInputThatIsNotThereIsOneSentenceAndExitCodeOne) {
+  const std::string nowhere = Temporary("nowhere").string();
+  for (const std::string& arguments :
+       {"track --image_path '" + nowhere + "' --output_path '" + Temporary("run").string() + "'",
+        "evaluate --run '" + nowhere + "' --sequence '" + nowhere + "'"}) {
+    const Outcome outcome = Pliant(arguments);
+    EXPECT_EQ(outcome.exit, 1);
+    EXPECT_THAT(outcome.err, HasSubstr(nowhere));
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+    EXPECT_EQ(outcome.out, "");
+  }
+}
+
+TEST(Program, AnOutputThatCannotBeMadeIsExitCodeOne) {
+  const std::filesystem::path file = Temporary("file");
+  std::ofstream(file) << "in the way";
+  const Outcome outcome = Pliant("simulate --Trajectory.frames 1 --output_path '" + (file / "seq").string() + "'");
+  EXPECT_EQ(outcome.exit, 1);
+  EXPECT_THAT(outcome.err, HasSubstr(file.string()));
+}
+
+TEST(Program, QuietSaysNothingAndProgressGoesToStandardError) {
+  const std::string small = "--Trajectory.frames 2 --Camera.width 64 --Camera.height 48 --Sensor.samples 1 ";
+  const std::string output = "--output_path '" + Temporary("seq").string() + "'";
+  const Outcome loud = Pliant("simulate " + small + output);
+  ASSERT_EQ(loud.exit, 0) << loud.err;
+  EXPECT_THAT(loud.err, HasSubstr("simulate  2/2"));
+  EXPECT_THAT(loud.out, StartsWith("2 frames in "));
+  const Outcome quiet = Pliant("simulate --quiet " + small + output);
+  EXPECT_EQ(quiet.exit, 0);
+  EXPECT_EQ(quiet.out + quiet.err, "");
+}
+
+}  // namespace
+}  // namespace pliant

@@ -1,0 +1,84 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "cli/progress.h"
+
+#include <algorithm>
+#include <sstream>
+
+#include <gtest/gtest.h>
+
+namespace pliant::cli {
+namespace {
+
+using std::chrono::seconds;
+
+TEST(Progress, LinesComeEveryTwentyFiveFramesAndAtTheEnd) {
+  std::ostringstream out;
+  {
+    Progress progress(out, ProgressStyle::kLines, "track", 60);
+    for (int i = 1; i <= 60; ++i) progress.Update(i, std::to_string(500 - i) + " points");
+  }
+  const std::string text = out.str();
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 3);
+  EXPECT_NE(text.find("25/60"), std::string::npos);
+  EXPECT_NE(text.find("50/60"), std::string::npos);
+  EXPECT_NE(text.find("60/60"), std::string::npos);
+  EXPECT_NE(text.find("440 points"), std::string::npos);
+  EXPECT_EQ(text.find('\r'), std::string::npos);
+  EXPECT_EQ(text.find('\x1b'), std::string::npos);
+}
+
+TEST(Progress, TheRateIsFramesByTimeSinceTheStart) {
+  std::ostringstream out;
+  Progress progress(out, ProgressStyle::kLines, "track", 25);
+  // The start is taken when the object is made, so that the rate is a little below 25 frames in 10 s.
+  progress.Update(25, "", Progress::Clock::now() + seconds(10));
+  EXPECT_NE(out.str().find("  2.5 frames/s"), std::string::npos) << out.str();
+}
+
+TEST(Progress, TheBarIsDrawnOverAndEndsItsLine) {
+  std::ostringstream out;
+  {
+    Progress progress(out, ProgressStyle::kBar, "track", 4);
+    const auto start = Progress::Clock::now();
+    progress.Update(2, "9 points", start + seconds(1));
+    progress.Update(4, "8 points", start + seconds(2));
+  }
+  const std::string text = out.str();
+  EXPECT_NE(text.find("[============            ]  2/4"), std::string::npos) << text;
+  EXPECT_NE(text.find("[========================]  4/4"), std::string::npos) << text;
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\r'), 2);
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1);
+  EXPECT_EQ(text.back(), '\n');
+}
+
+TEST(Progress, ABarIsNotDrawnMoreOftenThanTheEyeNeeds) {
+  std::ostringstream out;
+  Progress progress(out, ProgressStyle::kBar, "track", 1000);
+  const auto now = Progress::Clock::now();
+  for (int i = 1; i < 1000; ++i) progress.Update(i, "", now);
+  const std::string text = out.str();
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\r'), 1);
+}
+
+TEST(Progress, AnUnknownTotalShowsTheCountAlone) {
+  std::ostringstream out;
+  Progress progress(out, ProgressStyle::kBar, "track", 0);
+  progress.Update(7, "");
+  EXPECT_NE(out.str().find("track  7  "), std::string::npos) << out.str();
+  EXPECT_EQ(out.str().find('['), out.str().find("[K")) << "no bar without a total";
+}
+
+TEST(Progress, QuietSaysNothing) {
+  std::ostringstream out;
+  {
+    Progress progress(out, ProgressStyle::kQuiet, "track", 25);
+    progress.Update(25, "5 points");
+    progress.Note("lost");
+  }
+  EXPECT_EQ(out.str(), "");
+}
+
+}  // namespace
+}  // namespace pliant::cli
