@@ -1,0 +1,346 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/estimation/frame_problem.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <ceres/problem.h>
+#include <gtest/gtest.h>
+
+#include "estimation/frame_energy.h"
+#include "estimation/frame_scene.h"
+#include "pliant/estimation/camera_pose.h"
+#include "pliant/residuals/ceres_adapter.h"
+
+namespace pliant {
+namespace {
+
+constexpr double kExactRad = 1e-8;  // zero noise: the gradient's tolerance over the weakest curvature
+constexpr double kExactMm = 1e-6;
+constexpr double kSameCost = 1e-6;           // relative; what both solvers' convergence guarantees
+constexpr double kCostRounding = 1e-12;      // relative; the same sums in another order
+constexpr double kGradientRounding = 1e-10;  // relative to the largest entry; long sums of both signs
+
+Rigid3 Predicted(const FrameScene& scene) {
+  return PredictCameraPose(scene.before_last_cam_from_world, scene.last_cam_from_world);
+}
+
+Rigid3 PoseOnLastGeometry(const FrameScene& scene) {
+  return EstimateCameraPose(scene.camera, scene.positions, scene.pixels, Predicted(scene), {}).value().cam_from_world;
+}
+
+FrameSolution Solve(const FrameScene& scene, const Rigid3& initial, const FrameProblemOptions& options = {}) {
+  auto solution = SolveFrameProblem(scene.camera, scene.Input(initial), options);
+  EXPECT_TRUE(solution.ok()) << solution.status().message();
+  return solution.ok() ? *solution : FrameSolution{};
+}
+
+double LargestPositionError(const FrameSolution& solution, const std::vector<Eigen::Vector3d>& expected) {
+  double largest = 0;
+  for (std::size_t i = 0; i < expected.size(); ++i)
+    largest = std::max(largest, (solution.points[i].position - expected[i]).norm());
+  return largest;
+}
+
+double PlainHuber(double s, double chi2) { return s <= chi2 ? s : 2 * std::sqrt(chi2) * std::sqrt(s) - chi2; }
+
+// The paper's energy with its directed sums, written out from the formula: neighbours by sorting all distances.
+FrameProblemCosts DirectedCosts(const FrameScene& scene, const Rigid3& pose,
+                                const std::vector<Eigen::Vector3d>& moved) {
+  FrameProblemCosts costs;
+  const int count = static_cast<int>(moved.size());
+  for (int i = 0; i < count; ++i) {
+    const Eigen::Vector3d delta = moved[i] - scene.positions[i];
+    const Eigen::Vector3d x = pose * moved[i];
+    const Eigen::Vector2d u(500 * x.x() / x.z() + 319.5, 500 * x.y() / x.z() + 239.5);
+    costs.reprojection += 0.5 * PlainHuber((u - scene.pixels[i]).squaredNorm(), 5.991);
+    costs.temporal += 0.5 * PlainHuber(delta.squaredNorm() / 100.0, 7.815);
+    std::vector<std::pair<double, int>> others;
+    for (int j = 0; j < count; ++j)
+      if (j != i) others.emplace_back((scene.positions[i] - scene.positions[j]).squaredNorm(), j);
+    std::sort(others.begin(), others.end());
+    for (int k = 0; k < std::min(20, count - 1); ++k) {
+      const auto [squared_distance, j] = others[k];
+      const double w = std::exp(-squared_distance / (2 * 15.0 * 15.0));
+      const Eigen::Vector3d difference = delta - (moved[j] - scene.positions[j]);
+      costs.spatial += 0.5 * PlainHuber(w * w * difference.squaredNorm() / 100.0, 7.815);
+    }
+  }
+  return costs;
+}
+
+TEST(FrameProblem, CostsAreThePapersDirectedSums) {
+  FrameScene scene = MakeFrameScene({.num_points = 150});
+  std::vector<Eigen::Vector3d> moved = scene.true_positions;
+  Random random(3);
+  for (std::size_t i = 0; i < moved.size(); i += 10)  // far enough for every robust loss to act
+    moved[i] += Eigen::Vector3d(random.Normal(30), random.Normal(30), random.Normal(3));
+  const FrameProblemCosts expected = DirectedCosts(scene, scene.true_cam_from_world, moved);
+  const auto costs =
+      EvaluateFrameCosts(scene.camera, scene.Input(scene.last_cam_from_world), scene.true_cam_from_world, moved, {});
+  ASSERT_TRUE(costs.ok());
+  EXPECT_NEAR(costs->reprojection, expected.reprojection, kCostRounding * expected.reprojection);
+  EXPECT_NEAR(costs->spatial, expected.spatial, kCostRounding * expected.spatial);
+  EXPECT_NEAR(costs->temporal, expected.temporal, kCostRounding * expected.temporal);
+  EXPECT_EQ(costs->edge_length, 0);
+}
+
+// Both ends of the gauge: with nothing to explain, the temporal term leaves all motion to the camera.
+TEST(FrameProblem, RecoversARigidSceneExactlyFromConstantVelocity) {
+  const FrameScene scene = MakeFrameScene({.deformation_mm = 0, .pixel_noise_px = 0, .outlier_ratio = 0});
+  for (const FrameSolver solver : {FrameSolver::kLbfgs, FrameSolver::kLevenbergMarquardt}) {
+    FrameProblemOptions options;
+    options.solver = solver;
+    options.function_tolerance = 0;  // on to the gradient's tolerance
+    const FrameSolution solution = Solve(scene, Predicted(scene), options);
+    EXPECT_TRUE(solution.converged) << solution.message;
+    EXPECT_LT(RotationAngle(solution.cam_from_world.rotation * scene.true_cam_from_world.rotation.conjugate()),
+              kExactRad);
+    EXPECT_LT((solution.cam_from_world.translation - scene.true_cam_from_world.translation).norm(), kExactMm);
+    EXPECT_LT(LargestPositionError(solution, scene.positions), kExactMm);
+  }
+}
+
+// What the whole scene does together, the camera takes; what is left of a smooth deformation is small in the image.
+TEST(FrameProblem, FollowsASmoothDeformationInTheImage) {
+  const FrameScene scene = MakeFrameScene({.pixel_noise_px = 0, .outlier_ratio = 0});
+  const FrameSolution solution = Solve(scene, PoseOnLastGeometry(scene));
+  EXPECT_TRUE(solution.converged) << solution.message;
+  for (const FramePoint& point : solution.points) EXPECT_LT(point.reprojection_error_px, 0.1);
+  EXPECT_LT(solution.costs.Total(), solution.initial_costs.Total());
+}
+
+struct Variant {
+  const char* name;
+  FrameSceneOptions scene;
+  void (*adjust)(FrameProblemOptions*);
+};
+
+class FrameProblemVariant : public testing::TestWithParam<Variant> {};
+
+TEST_P(FrameProblemVariant, BothSolversEndInTheSameMinimum) {
+  const FrameScene scene = MakeFrameScene(GetParam().scene);
+  const Rigid3 initial = PoseOnLastGeometry(scene);
+  FrameProblemOptions options;
+  GetParam().adjust(&options);
+  const FrameSolution ours = Solve(scene, initial, options);
+  options.solver = FrameSolver::kLevenbergMarquardt;
+  options.function_tolerance = 1e-12;
+  const FrameSolution reference = Solve(scene, initial, options);
+  ASSERT_TRUE(ours.converged && reference.converged) << ours.message << " / " << reference.message;
+  EXPECT_NEAR(ours.costs.Total(), reference.costs.Total(), kSameCost * reference.costs.Total());
+  EXPECT_DOUBLE_EQ(ours.initial_costs.Total(), reference.initial_costs.Total());
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Options, FrameProblemVariant,
+    testing::Values(
+        Variant{"AsPublished", {}, [](FrameProblemOptions*) {}},
+        Variant{"FewPoints", {.num_points = 12}, [](FrameProblemOptions*) {}},
+        Variant{"LargeDeformation", {.deformation_mm = 3}, [](FrameProblemOptions*) {}},
+        Variant{"ManyOutliers", {.outlier_ratio = 0.3}, [](FrameProblemOptions*) {}},
+        Variant{"StiffRegularisers", {}, [](FrameProblemOptions* o) { o->sigma_spa_mm = o->sigma_tmp_mm = 0.3; }},
+        Variant{"ActiveRobustLosses",
+                {.outlier_ratio = 0.1},
+                [](FrameProblemOptions* o) {
+                  o->sigma_spa_mm = o->sigma_tmp_mm = 0.3;
+                  o->chi2_rep = o->chi2_spa = o->chi2_tmp = 0.5;
+                }},
+        // The edge-length term is not convex: with noise the solvers may end in different minima.
+        Variant{"EdgeLength",
+                {.pixel_noise_px = 0, .outlier_ratio = 0},
+                [](FrameProblemOptions* o) { o->edge_length = EdgeLengthTerm::kOn; }},
+        Variant{"StiffEdgeLength",
+                {},
+                [](FrameProblemOptions* o) {
+                  o->edge_length = EdgeLengthTerm::kOn;
+                  o->sigma_len_mm = 0.1;
+                }},
+        Variant{"Weighted",
+                {},
+                [](FrameProblemOptions* o) {
+                  o->lambda_spa = 3;
+                  o->lambda_tmp = 0.1;
+                }},
+        Variant{"NoSpatialTerm", {}, [](FrameProblemOptions* o) { o->lambda_spa = 0; }}),
+    [](const auto& test) { return std::string(test.param.name); });
+
+// One residual block a term, by the adapter that the kernels' own tests hold against automatic derivatives.
+void AddResidualBlocks(const FrameTerms& terms, Vector6d* increment, std::vector<Eigen::Vector3d>* deltas,
+                       ceres::Problem* problem) {
+  const FrameProblemOptions& o = terms.options;
+  for (std::size_t i = 0; i < deltas->size(); ++i) {
+    double* delta = (*deltas)[i].data();
+    problem->AddResidualBlock(
+        NewReprojectionCost(*terms.camera, terms.pose, terms.positions[i], terms.pixels[i], o.sigma_rep_px),
+        NewRobustLoss(o.chi2_rep, 1.0), increment->data(), delta);
+    problem->AddResidualBlock(NewTemporalCost(o.sigma_tmp_mm), NewRobustLoss(o.chi2_tmp, o.lambda_tmp), delta);
+  }
+  for (const GraphEdge& edge : terms.edges) {
+    double* delta_i = (*deltas)[edge.i].data();
+    double* delta_j = (*deltas)[edge.j].data();
+    problem->AddResidualBlock(NewSpatialCost(edge.weight, o.sigma_spa_mm),
+                              NewRobustLoss(o.chi2_spa, o.lambda_spa * edge.multiplicity), delta_i, delta_j);
+    problem->AddResidualBlock(
+        NewEdgeLengthCost(terms.positions[edge.i], terms.positions[edge.j], edge.rest_length_mm, o.sigma_len_mm),
+        NewRobustLoss(o.chi2_len, o.lambda_len * edge.multiplicity), delta_i, delta_j);
+  }
+}
+
+TEST(FrameProblem, GradientOfTheEnergyIsThatOfTheResidualBlocks) {
+  const FrameScene scene = MakeFrameScene({.num_points = 40, .deformation_mm = 2});
+  FrameTerms terms;
+  terms.camera = &scene.camera;
+  terms.options.edge_length = EdgeLengthTerm::kOn;
+  terms.options.sigma_spa_mm = terms.options.sigma_tmp_mm = 0.5;
+  terms.positions = scene.positions;
+  terms.pixels = scene.pixels;
+  terms.edges = scene.graph.edges;
+  for (GraphEdge& edge : terms.edges) edge.rest_length_mm *= 1.1;
+  terms.pose = PoseIncrement(scene.last_cam_from_world, scene.positions[0]);
+
+  Random random(8);
+  Vector6d increment;
+  for (int k = 0; k < 6; ++k) increment[k] = random.Normal(k < 3 ? 0.02 : 0.5);
+  std::vector<Eigen::Vector3d> points_in_cam;
+  for (const Eigen::Vector3d& position : scene.true_positions)
+    points_in_cam.push_back(terms.pose.Transform<double>(increment, position) +
+                            Eigen::Vector3d(random.Normal(0.5), random.Normal(0.5), random.Normal(0.5)));
+  FrameEnergy energy(terms);
+  double cost = 0;
+  std::vector<Eigen::Vector3d> by_points(points_in_cam.size());
+  Vector6d by_increment;
+  ASSERT_TRUE(energy.Evaluate(points_in_cam, increment, &cost, &by_points, &by_increment));
+
+  // The same point of the problem in the published variables, x = T(increment) (X + delta), and its gradient by Ceres.
+  const Rigid3 pose = terms.pose.Pose(increment);
+  std::vector<Eigen::Vector3d> deltas;
+  for (std::size_t i = 0; i < points_in_cam.size(); ++i)
+    deltas.push_back(pose.Inverse() * points_in_cam[i] - terms.positions[i]);
+  ceres::Problem problem;
+  AddResidualBlocks(terms, &increment, &deltas, &problem);
+  double expected_cost = 0;
+  std::vector<double> expected;
+  std::vector<double*> blocks = {increment.data()};
+  for (Eigen::Vector3d& delta : deltas) blocks.push_back(delta.data());
+  ceres::Problem::EvaluateOptions evaluate_options;
+  evaluate_options.parameter_blocks = blocks;
+  ASSERT_TRUE(problem.Evaluate(evaluate_options, &expected_cost, nullptr, &expected, nullptr));
+  EXPECT_NEAR(cost, expected_cost, kCostRounding * expected_cost);
+
+  // By the chain rule: by_delta = R' by_point, and the pose moves the points that the displacements are fixed to.
+  const Eigen::Matrix3d rotation = pose.RotationMatrix();
+  const Eigen::Vector3d origin = terms.pose.pivot_in_cam() + increment.tail<3>();
+  double largest = 0;
+  for (const double entry : expected) largest = std::max(largest, std::abs(entry));
+  for (std::size_t i = 0; i < points_in_cam.size(); ++i) {
+    const Eigen::Vector3d by_delta = rotation.transpose() * by_points[i];
+    EXPECT_LT((by_delta - Eigen::Vector3d(&expected[6 + 3 * i])).norm(), kGradientRounding * largest) << i;
+    const Eigen::Vector3d arm = points_in_cam[i] - origin;
+    by_increment.head<3>() += LeftJacobian(increment.head<3>()).transpose() * arm.cross(by_points[i]);
+    by_increment.tail<3>() += by_points[i];
+  }
+  for (int k = 0; k < 6; ++k) EXPECT_NEAR(by_increment[k], expected[k], kGradientRounding * largest) << k;
+}
+
+TEST(FrameProblem, OutliersHaveBoundedInfluence) {
+  const FrameSceneOptions clean = {.deformation_mm = 0, .pixel_noise_px = 0, .outlier_ratio = 0};
+  FrameScene scene = MakeFrameScene(clean);
+  const std::vector<Eigen::Vector2d> pixels = scene.pixels;
+  double shift_mm[3];  // mean over the other points
+  for (int k = 0; k < 3; ++k) {
+    constexpr double kErrorPx[] = {50.0, 5000.0, 50000.0};
+    scene.pixels[0].x() = pixels[0].x() + kErrorPx[k];
+    const FrameSolution solution = Solve(scene, Predicted(scene));
+    EXPECT_TRUE(solution.converged) << solution.message;
+    double sum = 0;
+    for (std::size_t i = 1; i < scene.positions.size(); ++i)
+      sum += (solution.points[i].position - scene.positions[i]).norm();
+    shift_mm[k] = sum / static_cast<double>(scene.positions.size() - 1);
+  }
+  EXPECT_LT(shift_mm[0], 0.1);
+  EXPECT_LT(shift_mm[2], 1.1 * shift_mm[1]);  // the pull has saturated; with squares it would be ten times as strong
+}
+
+TEST(FrameProblem, DisagreementPointsAtWrongTracks) {
+  const FrameScene scene = MakeFrameScene({});
+  const FrameSolution solution = Solve(scene, PoseOnLastGeometry(scene));
+  double largest_good = 0;
+  double smallest_bad = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < solution.points.size(); ++i) {
+    const double disagreement = solution.points[i].disagreement_mm;
+    if (scene.is_outlier[i])
+      smallest_bad = std::min(smallest_bad, disagreement);
+    else
+      largest_good = std::max(largest_good, disagreement);
+  }
+  EXPECT_GT(smallest_bad, largest_good);
+}
+
+TEST(FrameProblem, RepeatsBitForBitWhateverWasSolvedBefore) {
+  const FrameScene scene = MakeFrameScene({});
+  const Rigid3 initial = PoseOnLastGeometry(scene);
+  const FrameSolution first = Solve(scene, initial);
+  const FrameScene other = MakeFrameScene({.num_points = 321, .seed = 9});
+  (void)Solve(other, PoseOnLastGeometry(other));
+  const FrameSolution second = Solve(scene, initial);
+  EXPECT_EQ(first.cam_from_world.rotation.coeffs(), second.cam_from_world.rotation.coeffs());
+  EXPECT_EQ(first.cam_from_world.translation, second.cam_from_world.translation);
+  for (std::size_t i = 0; i < first.points.size(); ++i) EXPECT_EQ(first.points[i].position, second.points[i].position);
+}
+
+TEST(FrameProblem, LeavesOutPointsBehindTheCamera) {
+  FrameScene scene = MakeFrameScene({.deformation_mm = 0, .pixel_noise_px = 0, .outlier_ratio = 0});
+  const Eigen::Vector3d behind = scene.true_cam_from_world.Inverse() * Eigen::Vector3d(1, 2, -30);
+  scene.positions[17] = behind;
+  FrameProblemOptions options;
+  options.function_tolerance = 0;
+  const FrameSolution solution = Solve(scene, Predicted(scene), options);
+  EXPECT_EQ(solution.num_used, 499);
+  EXPECT_FALSE(solution.points[17].used);
+  EXPECT_EQ(solution.points[17].position, behind);
+  EXPECT_TRUE(std::isinf(solution.points[17].reprojection_error_px));
+  EXPECT_LT(LargestPositionError(solution, scene.positions), kExactMm);
+}
+
+TEST(FrameProblem, SaysWhyThereIsNoSolution) {
+  FrameScene scene = MakeFrameScene({.num_points = 30});
+  const Rigid3 initial = Predicted(scene);
+  const auto code = [&](const FrameProblemInput& input) {
+    return SolveFrameProblem(scene.camera, input, {}).status().code();
+  };
+  FrameProblemInput input = scene.Input(initial);
+  input.pixels = input.pixels.first(29);
+  EXPECT_EQ(code(input), ErrorCode::kMismatch);
+  input.positions = input.positions.first(29);  // edges now point outside
+  EXPECT_EQ(code(input), ErrorCode::kMismatch);
+  input.edges = {};
+  input.positions = input.positions.first(3);
+  input.pixels = input.pixels.first(3);
+  EXPECT_EQ(code(input), ErrorCode::kInsufficient);
+  EXPECT_EQ(code({{}, {}, {}, initial}), ErrorCode::kInsufficient);
+  EXPECT_EQ(code(scene.Input(Rigid3(RotationExp({3.14, 0, 0}), {0, 0, 0}) * initial)), ErrorCode::kInsufficient);
+
+  scene.pixels[5].y() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(code(scene.Input(initial)), ErrorCode::kInvalidArgument);
+  scene.pixels[5] = {1, 2};
+  scene.positions[4].z() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(code(scene.Input(initial)), ErrorCode::kInvalidArgument);
+}
+
+TEST(FrameProblemOptions, ListTheConstantsUnderTheirNames) {
+  FrameProblemOptions options;
+  OptionTable table;
+  options.List(table);
+  EXPECT_TRUE(table.Set("Optimization.lambda_spa", "2.5").ok());
+  EXPECT_TRUE(table.Set("Optimization.solver", "levenberg_marquardt").ok());
+  EXPECT_EQ(options.lambda_spa, 2.5);
+  EXPECT_EQ(options.solver, FrameSolver::kLevenbergMarquardt);
+  EXPECT_FALSE(table.Set("Optimization.sigma_tmp_mm", "0").ok());
+}
+
+}  // namespace
+}  // namespace pliant
