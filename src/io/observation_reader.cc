@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include <cmath>
+#include <algorithm>
+#include <array>
 
 #include "io/run_format.h"
 #include "io/text.h"
@@ -17,11 +18,16 @@ struct Row {
 
 // Empty: the row is right; else what is wrong with it.
 std::string ParseRow(std::string_view line, Row* row) {
-  constexpr std::size_t kColumns = 8;
-  const std::vector<std::string_view> fields = Split(line, ',');
-  if (fields.size() != kColumns)
-    return "a row has 8 columns (" + std::string(kObservationColumns) + "), this one has " +
-           std::to_string(fields.size());
+  // Millions of rows are read: the fields stay on the stack.
+  std::array<std::string_view, 8> fields;
+  std::size_t count = 0;
+  for (std::size_t begin = 0; begin <= line.size(); ++count) {
+    const std::size_t end = std::min(line.find(',', begin), line.size());
+    if (count < fields.size()) fields[count] = line.substr(begin, end - begin);
+    begin = end + 1;
+  }
+  if (count != fields.size())
+    return "a row has 8 columns (" + std::string(kObservationColumns) + "), this one has " + std::to_string(count);
   PointObservation& o = row->observation;
   if (!ParseInt(fields[0], &row->frame_idx) || row->frame_idx < 0)
     return Quoted(fields[0]) + " is not a frame's number";
