@@ -47,16 +47,6 @@ struct SurfaceErrorOptions {
   void List(OptionTable& table);
 };
 
-// The true depth at a pixel, or why there is none.
-enum class DepthLookup { kOk, kOutsideImage, kNoDepth, kDepthStep };
-struct InterpolatedDepth {
-  DepthLookup outcome = DepthLookup::kNoDepth;
-  double depth_mm = 0;
-};
-// Bilinear among the four pixels around; on a pixel's centre only that row or column counts. `depth_mm` is CV_32FC1,
-// 0 = none. kDepthStep where (largest - smallest) > max_depth_step * smallest.
-InterpolatedDepth InterpolateDepth(const cv::Mat& depth_mm, const Eigen::Vector2d& pixel, double max_depth_step);
-
 // A point estimated and its truth, both in the camera's frame of the moment.
 struct SurfacePair {
   Eigen::Vector3d estimate;

@@ -60,7 +60,8 @@ struct TrajectoryError {
   double true_path_length_mm = 0;  // over the frames compared
   double path_length_mm = 0;       // of the aligned estimate
   Sim3 truth_from_run;             // the alignment
-  std::vector<double> ate_mm;      // a frame, in the order of the pairs
+  std::vector<int> frame_idx;      // the frames compared
+  std::vector<double> ate_mm;      // of each of them
 };
 
 // Fails with kInsufficient below three poses, with kDegenerate where either camera never moves.

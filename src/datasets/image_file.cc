@@ -1,0 +1,155 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "datasets/image_file.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <fstream>
+#include <string_view>
+#include <vector>
+
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+namespace pliant {
+namespace {
+
+using Bytes = std::vector<unsigned char>;
+
+Result<Bytes> ReadBytes(const std::filesystem::path& path) {
+  std::error_code error;
+  if (!std::filesystem::exists(path, error))
+    return Status(ErrorCode::kNotFound, "there is no file " + path.string() + "; check the name");
+  if (!std::filesystem::is_regular_file(path, error))
+    return Status(ErrorCode::kUnreadable, path.string() + " is not a file; an image file belongs there");
+  std::ifstream file(path, std::ios::binary | std::ios::ate);
+  if (!file) return Status(ErrorCode::kUnreadable, "cannot open " + path.string() + "; check its permissions");
+  Bytes bytes(static_cast<std::size_t>(file.tellg()));
+  file.seekg(0);
+  file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  if (!file) return Status(ErrorCode::kUnreadable, "cannot read " + path.string() + " to its end; copy it anew");
+  return bytes;
+}
+
+bool StartsWith(const Bytes& bytes, std::string_view head) {
+  return bytes.size() >= head.size() &&
+         std::equal(head.begin(), head.end(), bytes.begin(),
+                    [](char a, unsigned char b) { return static_cast<unsigned char>(a) == b; });
+}
+
+// Every chunk is length (4, big-endian), type (4), data, checksum (4); the last one is IEND.
+bool PngIsWhole(const Bytes& bytes) {
+  std::size_t at = 8;
+  while (at + 12 <= bytes.size()) {
+    const std::size_t length = (std::size_t{bytes[at]} << 24) | (std::size_t{bytes[at + 1]} << 16) |
+                               (std::size_t{bytes[at + 2]} << 8) | std::size_t{bytes[at + 3]};
+    const std::string_view type(reinterpret_cast<const char*>(&bytes[at + 4]), 4);
+    at += 12 + length;
+    if (type == "IEND") return at <= bytes.size();
+  }
+  return false;
+}
+
+// Segments with a length come first (a thumbnail with its own end marker hides inside one); after the start of scan
+// the end marker FF D9 cannot occur in the data, where FF is always followed by 00 or a restart marker.
+bool JpegIsWhole(const Bytes& bytes) {
+  constexpr std::array<unsigned char, 2> kEndOfImage = {0xFF, 0xD9};
+  constexpr unsigned char kStartOfScan = 0xDA;
+  std::size_t at = 2;
+  while (at + 4 <= bytes.size() && bytes[at] == 0xFF) {
+    if (bytes[at + 1] == 0xFF) {  // a fill byte
+      ++at;
+      continue;
+    }
+    if (bytes[at + 1] == kStartOfScan)
+      return std::search(bytes.begin() + static_cast<std::ptrdiff_t>(at), bytes.end(), kEndOfImage.begin(),
+                         kEndOfImage.end()) != bytes.end();
+    at += 2 + ((std::size_t{bytes[at + 2]} << 8) | std::size_t{bytes[at + 3]});
+  }
+  return false;
+}
+
+bool IsPng(const Bytes& bytes) { return StartsWith(bytes, "\x89PNG\r\n\x1a\n"); }
+bool IsJpeg(const Bytes& bytes) { return StartsWith(bytes, "\xFF\xD8"); }
+
+struct DecodedImage {
+  cv::Mat image;  // as stored: any depth, any number of channels
+  bool lossy = false;
+};
+
+Result<DecodedImage> Decode(const std::filesystem::path& path) {
+  const Result<Bytes> bytes = ReadBytes(path);
+  if (!bytes.ok()) return bytes.status();
+  const std::string advice = "; copy or export it anew";
+  if (bytes->empty()) return Status(ErrorCode::kUnreadable, "the image " + path.string() + " is empty" + advice);
+  if ((IsPng(*bytes) && !PngIsWhole(*bytes)) || (IsJpeg(*bytes) && !JpegIsWhole(*bytes)))
+    return Status(ErrorCode::kUnreadable, "the image " + path.string() + " is truncated" + advice);
+  DecodedImage decoded;
+  try {
+    decoded.image = cv::imdecode(*bytes, cv::IMREAD_UNCHANGED);
+  } catch (const cv::Exception&) {
+    decoded.image.release();
+  }
+  if (decoded.image.empty())
+    return Status(ErrorCode::kUnreadable,
+                  "the image " + path.string() + " cannot be decoded (damaged, or not an image)" + advice);
+  decoded.lossy = IsJpeg(*bytes);
+  return decoded;
+}
+
+// Grey or BGR; what the fourth channel says is dropped.
+cv::Mat WithoutAlpha(const cv::Mat& image) {
+  if (image.channels() == 1 || image.channels() == 3) return image;
+  cv::Mat result;
+  if (image.channels() == 4)
+    cv::cvtColor(image, result, cv::COLOR_BGRA2BGR);
+  else
+    cv::extractChannel(image, result, 0);
+  return result;
+}
+
+}  // namespace
+
+std::string SizeText(int width, int height) { return std::to_string(width) + "x" + std::to_string(height); }
+
+Result<cv::Mat> ReadImage(const std::filesystem::path& path) {
+  const Result<DecodedImage> decoded = Decode(path);
+  if (!decoded.ok()) return decoded.status();
+  const cv::Mat image = WithoutAlpha(decoded->image);
+  if (image.depth() == CV_8U) return image;
+  if (image.depth() != CV_16U)
+    return Status(ErrorCode::kUnreadable,
+                  "the image " + path.string() + " is neither 8-bit nor 16-bit; export it as 8-bit PNG");
+  cv::Mat result;
+  image.convertTo(result, CV_8U, 1.0 / 257.0);
+  return result;
+}
+
+Result<cv::Mat> ReadMaskImage(const std::filesystem::path& path) {
+  const Result<DecodedImage> decoded = Decode(path);
+  if (!decoded.ok()) return decoded.status();
+  const cv::Mat image = WithoutAlpha(decoded->image);
+  const cv::Mat one_row_a_pixel = image.reshape(1, static_cast<int>(image.total()));
+  cv::Mat strongest;
+  cv::reduce(one_row_a_pixel.depth() == CV_8U ? one_row_a_pixel : cv::Mat_<float>(one_row_a_pixel), strongest, 1,
+             cv::REDUCE_MAX);
+  const cv::Mat mask = strongest.reshape(1, image.rows) > (decoded->lossy ? 127 : 0);
+  return mask;
+}
+
+Result<cv::Mat> ReadDepthImage(const std::filesystem::path& path, double depth_scale) {
+  const Result<DecodedImage> decoded = Decode(path);
+  if (!decoded.ok()) return decoded.status();
+  if (decoded->image.type() != CV_16UC1)
+    return Status(ErrorCode::kMismatch, "the depth image " + path.string() + " has " +
+                                            std::to_string(decoded->image.channels()) + " channel(s) of " +
+                                            std::to_string(8 * decoded->image.elemSize1()) +
+                                            " bits; write depth as 16-bit PNG with one channel");
+  cv::Mat depth_mm;
+  decoded->image.convertTo(depth_mm, CV_32F, depth_scale);
+  return depth_mm;
+}
+
+}  // namespace pliant

@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Image files as the readers need them: whole or not at all. Decoders of PNG and JPEG fill the missing part of a
+// truncated file with grey or black, so the file's own end marker is looked for first.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include <opencv2/core/mat.hpp>
+
+#include "pliant/base/status.h"
+
+namespace pliant {
+
+// "640x480".
+std::string SizeText(int width, int height);
+inline std::string SizeText(const cv::Mat& image) { return SizeText(image.cols, image.rows); }
+
+// 8-bit with one (grey) or three (BGR) channels. 16-bit values are divided by 257, alpha is dropped, EXIF is ignored.
+// Fails with kNotFound or kUnreadable.
+Result<cv::Mat> ReadImage(const std::filesystem::path& path);
+
+// 8-bit, one channel, 0 or 255. A pixel counts when any colour channel does: not 0, in a JPEG (whose zeros are not
+// exact) at least 128.
+Result<cv::Mat> ReadMaskImage(const std::filesystem::path& path);
+
+// CV_32FC1, millimetres: value * depth_scale. Fails with kMismatch unless the file is 16-bit with one channel.
+Result<cv::Mat> ReadDepthImage(const std::filesystem::path& path, double depth_scale);
+
+}  // namespace pliant

@@ -1,0 +1,158 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "datasets/image_list.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <system_error>
+#include <utility>
+
+#include "datasets/image_file.h"
+
+namespace pliant {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool IsDigit(char c) { return c >= '0' && c <= '9'; }
+
+bool IsImageName(const fs::path& path) {
+  constexpr std::array<std::string_view, 6> kExtensions = {".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff"};
+  if (path.filename().string().starts_with('.')) return false;
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return std::find(kExtensions.begin(), kExtensions.end(), extension) != kExtensions.end();
+}
+
+// The digits at `at` without leading zeros; moves `at` past them.
+std::string_view TakeNumber(std::string_view text, std::size_t* at) {
+  while (*at < text.size() && text[*at] == '0') ++*at;
+  const std::size_t begin = *at;
+  while (*at < text.size() && IsDigit(text[*at])) ++*at;
+  return text.substr(begin, *at - begin);
+}
+
+}  // namespace
+
+bool NaturalLess(std::string_view a, std::string_view b) {
+  std::size_t i = 0;
+  std::size_t j = 0;
+  while (i < a.size() && j < b.size()) {
+    if (IsDigit(a[i]) && IsDigit(b[j])) {
+      const std::string_view m = TakeNumber(a, &i);
+      const std::string_view n = TakeNumber(b, &j);
+      if (m.size() != n.size()) return m.size() < n.size();
+      if (m != n) return m < n;
+    } else {
+      if (a[i] != b[j]) return static_cast<unsigned char>(a[i]) < static_cast<unsigned char>(b[j]);
+      ++i;
+      ++j;
+    }
+  }
+  if ((i < a.size()) != (j < b.size())) return j < b.size();
+  return a < b;
+}
+
+Result<std::vector<fs::path>> ListImages(const fs::path& folder) {
+  std::error_code error;
+  if (!fs::exists(folder, error))
+    return Status(ErrorCode::kNotFound, "there is no folder " + folder.string() + "; check the path");
+  if (!fs::is_directory(folder, error))
+    return Status(ErrorCode::kUnreadable, folder.string() + " is a file where a folder of images is expected");
+  std::vector<fs::path> images;
+  fs::directory_iterator entry(folder, error);
+  for (; !error && entry != fs::directory_iterator(); entry.increment(error))
+    if (IsImageName(entry->path()) && !entry->is_directory()) images.push_back(entry->path());
+  if (error)
+    return Status(ErrorCode::kUnreadable,
+                  "cannot list the folder " + folder.string() + " (" + error.message() + "); check its permissions");
+  if (images.empty())
+    return Status(ErrorCode::kNotFound,
+                  "the folder " + folder.string() + " holds no image (png, jpg, jpeg, bmp, tif, tiff); check the path");
+  std::sort(images.begin(), images.end(), [](const fs::path& a, const fs::path& b) {
+    return NaturalLess(a.filename().string(), b.filename().string());
+  });
+  return images;
+}
+
+Result<FrameRange> FrameRange::From(const SequenceRequest& request) {
+  if (request.start < 0)
+    return Status(ErrorCode::kInvalidArgument,
+                  "start is " + std::to_string(request.start) + "; frames are counted from 0");
+  if (request.stride < 1)
+    return Status(ErrorCode::kInvalidArgument, "stride is " + std::to_string(request.stride) + "; it is at least 1");
+  if (request.end != -1 && request.end <= request.start)
+    return Status(ErrorCode::kInvalidArgument, "end is " + std::to_string(request.end) + " and start is " +
+                                                   std::to_string(request.start) +
+                                                   "; end is one past the last frame, or -1 for all");
+  return FrameRange{request.start, request.end, request.stride};
+}
+
+Result<FrameRange> FrameRange::Within(int count, const fs::path& source) const {
+  if (start >= count)
+    return Status(ErrorCode::kInvalidArgument, "start is " + std::to_string(start) + ", but " + source.string() +
+                                                   " has " + std::to_string(count) + " frames, counted from 0");
+  return FrameRange{start, end == -1 ? count : std::min(end, count), stride};
+}
+
+Result<CompanionImages> CompanionImages::Open(std::string what, const fs::path& path,
+                                              const std::vector<std::string>& frame_stems, Counts counts) {
+  CompanionImages companion;
+  companion.what_ = std::move(what);
+  companion.path_ = path;
+  std::error_code error;
+  if (fs::is_regular_file(path, error)) {
+    companion.one_for_all_ = true;
+    companion.files_ = {path};
+    return companion;
+  }
+  Result<std::vector<fs::path>> files = ListImages(path);
+  if (!files.ok()) return files.status();
+  companion.files_ = *std::move(files);
+  for (const fs::path& file : companion.files_) companion.file_of_stem_.emplace(file.stem().string(), file);
+  companion.by_stem_ = std::any_of(frame_stems.begin(), frame_stems.end(), [&companion](const std::string& stem) {
+    return companion.file_of_stem_.contains(stem);
+  });
+  if (!companion.by_stem_ && counts == Counts::kMustAgree && companion.files_.size() != frame_stems.size())
+    return Status(ErrorCode::kMismatch, "the folder " + path.string() + " has " +
+                                            std::to_string(companion.files_.size()) + " " + companion.what_ +
+                                            " images for " + std::to_string(frame_stems.size()) +
+                                            " frames and no name agrees; name each like its frame");
+  return companion;
+}
+
+fs::path CompanionImages::Find(int frame_idx, const std::string& frame_stem) const {
+  if (one_for_all_) return files_.front();
+  if (by_stem_) {
+    const auto found = file_of_stem_.find(frame_stem);
+    return found == file_of_stem_.end() ? fs::path() : found->second;
+  }
+  return frame_idx >= 0 && frame_idx < static_cast<int>(files_.size()) ? files_[static_cast<std::size_t>(frame_idx)]
+                                                                       : fs::path();
+}
+
+Result<fs::path> CompanionImages::Require(int frame_idx, const std::string& frame_name) const {
+  fs::path file = Find(frame_idx, fs::path(frame_name).stem().string());
+  if (file.empty())
+    return Status(ErrorCode::kNotFound, "the folder " + path_.string() + " has no " + what_ + " for the frame " +
+                                            frame_name + " (number " + std::to_string(frame_idx) +
+                                            "); add it or leave the folder out");
+  return file;
+}
+
+Result<cv::Mat> ReadFrameMask(const CompanionImages& masks, int frame_idx, const std::string& frame_name, int width,
+                              int height) {
+  const Result<fs::path> file = masks.Require(frame_idx, frame_name);
+  if (!file.ok()) return file.status();
+  Result<cv::Mat> mask = ReadMaskImage(*file);
+  if (mask.ok() && (mask->cols != width || mask->rows != height))
+    return Status(ErrorCode::kMismatch, "the mask " + file->string() + " is " + SizeText(*mask) +
+                                            ", but the images are " + SizeText(width, height) +
+                                            "; masks have the images' size");
+  return mask;
+}
+
+}  // namespace pliant

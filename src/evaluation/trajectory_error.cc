@@ -1,0 +1,97 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/evaluation/trajectory_error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "evaluation/statistics.h"
+
+namespace pliant {
+namespace {
+
+constexpr double kDegPerRad = 180.0 / std::numbers::pi;
+
+double AngleDeg(const Eigen::Quaterniond& rotation) { return kDegPerRad * RotationAngle(rotation); }
+
+double PathLength(std::span<const Rigid3> poses) {
+  double length = 0;
+  for (std::size_t i = 1; i < poses.size(); ++i) length += (poses[i].translation - poses[i - 1].translation).norm();
+  return length;
+}
+
+// The estimate moved and scaled into the truth's frame.
+Rigid3 Aligned(const Sim3& truth_from_run, const Rigid3& world_from_cam) {
+  return {truth_from_run.rotation * world_from_cam.rotation, truth_from_run * world_from_cam.translation};
+}
+
+void AddRelativeErrors(std::span<const Rigid3> aligned, std::span<const Rigid3> truth, TrajectoryError* error) {
+  std::vector<double> translations;
+  std::vector<double> rotations;
+  const auto delta = static_cast<std::size_t>(error->rpe_delta);
+  for (std::size_t i = 0; i + delta < truth.size(); ++i) {
+    const Rigid3 true_motion = truth[i].Inverse() * truth[i + delta];
+    const Rigid3 motion = aligned[i].Inverse() * aligned[i + delta];
+    const Rigid3 difference = true_motion.Inverse() * motion;
+    translations.push_back(difference.translation.norm());
+    rotations.push_back(AngleDeg(difference.rotation));
+  }
+  error->rpe_pairs = static_cast<int>(translations.size());
+  error->rpe_translation_rmse_mm = Rms(translations);
+  error->rpe_rotation_rmse_deg = Rms(rotations);
+}
+
+}  // namespace
+
+void TrajectoryErrorOptions::List(OptionTable& table) {
+  table.AddChoice("alignment", &alignment, "how the path is laid onto the true one: sim3 after a monocular start");
+  table.Add("rpe_delta", &rpe_delta, "frames", "tracked frames between the two poses of a relative error", 1, 100000);
+}
+
+Result<TrajectoryError> ComputeTrajectoryError(std::span<const PosePair> pairs, const TrajectoryErrorOptions& options) {
+  if (pairs.size() < 3)
+    return Status(ErrorCode::kInsufficient, "a camera path is compared from three poses on; " +
+                                                std::to_string(pairs.size()) + " tracked frames have a true pose");
+  std::vector<Eigen::Vector3d> run_centres;
+  std::vector<Eigen::Vector3d> true_centres;
+  for (const PosePair& pair : pairs) {
+    run_centres.push_back(pair.world_from_cam.translation);
+    true_centres.push_back(pair.true_world_from_cam.translation);
+  }
+  const AlignmentScale scale =
+      options.alignment == TrajectoryAlignment::kSim3 ? AlignmentScale::kEstimated : AlignmentScale::kFixedAtOne;
+  const Result<Sim3> truth_from_run = AlignPoints(run_centres, true_centres, scale);
+  if (!truth_from_run.ok())
+    return Status(truth_from_run.status().code(),
+                  "the camera paths cannot be aligned, since one of the two cameras does not move (" +
+                      truth_from_run.status().message() + "); read the surface error alone");
+
+  TrajectoryError error;
+  error.alignment = options.alignment;
+  error.poses = static_cast<int>(pairs.size());
+  error.rpe_delta = options.rpe_delta;
+  error.truth_from_run = *truth_from_run;
+  std::vector<Rigid3> aligned;
+  std::vector<Rigid3> truth;
+  std::vector<double> rotations_deg;
+  for (const PosePair& pair : pairs) {
+    truth.push_back(pair.true_world_from_cam);
+    aligned.push_back(Aligned(*truth_from_run, pair.world_from_cam));
+    error.frame_idx.push_back(pair.frame_idx);
+    error.ate_mm.push_back((aligned.back().translation - truth.back().translation).norm());
+    rotations_deg.push_back(AngleDeg(truth.back().rotation.conjugate() * aligned.back().rotation));
+  }
+  error.ate_rmse_mm = Rms(error.ate_mm);
+  error.ate_median_mm = Median(error.ate_mm);
+  error.ate_max_mm = *std::max_element(error.ate_mm.begin(), error.ate_mm.end());
+  error.rotation_rmse_deg = Rms(rotations_deg);
+  error.true_path_length_mm = PathLength(truth);
+  error.path_length_mm = PathLength(aligned);
+  AddRelativeErrors(aligned, truth, &error);
+  return error;
+}
+
+}  // namespace pliant
