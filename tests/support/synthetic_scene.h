@@ -105,7 +105,7 @@ inline double MedianParallax(const SceneOptions& options, const std::vector<Eige
   return angles[angles.size() / 2] * 180.0 / std::numbers::pi;
 }
 
-// The baseline of the wanted median parallax, by bisection; 5 mm at most for motions that have none.
+// The baseline of the wanted median parallax, by bisection, at most 15 mm: farther forwards, near points fall behind.
 inline double Baseline(const SceneOptions& options, const std::vector<Eigen::Vector3d>& points) {
   if (options.motion == Motion::kRotation || options.motion == Motion::kStill) return 0.0;
   double low = 0.0;
