@@ -62,7 +62,7 @@ FramePreconditioner::FramePreconditioner(const FrameTerms& terms, const Points& 
   scratch_.resize(terms_.num_points());
 }
 
-// T: the reprojection term's curvature and the regularisers' own, across each ray.
+// C: the reprojection term's curvature and the regularisers' own, across each ray.
 void FramePreconditioner::BuildAcross(const std::vector<Eigen::Matrix3d>& stiffness) {
   across_.resize(start_.size());
   terms_.camera->Visit([&]<class Model>(const Model& model) {

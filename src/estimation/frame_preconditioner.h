@@ -5,8 +5,8 @@
 //
 // In the camera frame (frame_energy.h) the reprojection term holds each point across its ray, a hundred times more
 // strongly than the regularisers hold anything, and does not hold it along its ray at all. So the Hessian is nearly
-//   [ T 0 0 ; 0 A B ; 0 B' P ]   by (across the rays, along the rays, pose):
-// T has 2x2 blocks, A is a sparse matrix with ONE row a point, P is 6x6. This matrix M = L L' is cheap to factorise
+//   [ C 0 0 ; 0 A B ; 0 B' P ]   by (across the rays, along the rays, pose):
+// C has 2x2 blocks, A is a sparse matrix with ONE row a point, P is 6x6. This matrix M = L L' is cheap to factorise
 // (27 times fewer operations than with three rows a point), and
 //   (points - start, increment) = Q L^-T z,   dE/dz = L^-1 Q' dE/d(points, increment),
 // with Q the turn into the rays' frames. What M leaves out only costs iterations, never exactness.
@@ -38,7 +38,7 @@ class FramePreconditioner {
                   Eigen::Ref<Eigen::VectorXd> by_z) const;
 
  private:
-  // Two directions across the ray, the second axis of T's triangle already divided out: across = directions * z_i.
+  // Two directions across the ray, the factor of C's block already divided out: across = directions * z_i.
   using Across = Eigen::Matrix<double, 3, 2>;
   using Pose = Eigen::Matrix<double, Eigen::Dynamic, 6>;
 
@@ -50,7 +50,7 @@ class FramePreconditioner {
   const std::vector<Eigen::Vector3d>& start_;
   bool ok_ = false;
   std::vector<Eigen::Vector3d> rays_;  // unit
-  std::vector<Across> across_;         // T's part of Q L^-T
+  std::vector<Across> across_;         // C's part of Q L^-T
   Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> along_;
   Pose coupling_;                            // W = L_A^-1 B, rows in the order of along_
   Eigen::Matrix<double, 6, 6> pose_factor_;  // lower triangle of P - W' W

@@ -140,6 +140,8 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Variant{"AsPublished", {}, [](FrameProblemOptions*) {}},
         Variant{"FewPoints", {.num_points = 12}, [](FrameProblemOptions*) {}},
+        Variant{"FourPoints", {.num_points = 4}, [](FrameProblemOptions*) {}},
+        Variant{"Fisheye", {.camera_model = "OPENCV_FISHEYE"}, [](FrameProblemOptions*) {}},
         Variant{"LargeDeformation", {.deformation_mm = 3}, [](FrameProblemOptions*) {}},
         Variant{"ManyOutliers", {.outlier_ratio = 0.3}, [](FrameProblemOptions*) {}},
         Variant{"StiffRegularisers", {}, [](FrameProblemOptions* o) { o->sigma_spa_mm = o->sigma_tmp_mm = 0.3; }},

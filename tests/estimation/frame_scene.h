@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cmath>
+#include <string_view>
 #include <vector>
 
 #include "pliant/base/random.h"
@@ -21,6 +22,7 @@ struct FrameSceneOptions {
   double pixel_noise_px = 0.3;  // standard deviation
   double outlier_ratio = 0.03;  // pixels displaced by 5 to 20 px
   std::uint64_t seed = 1;
+  std::string_view camera_model = "PINHOLE";  // or OPENCV_FISHEYE
 };
 
 struct FrameScene {
@@ -42,6 +44,10 @@ struct FrameScene {
 inline FrameScene MakeFrameScene(const FrameSceneOptions& options) {
   Random random = Random(options.seed).Child("frame scene");
   FrameScene scene;
+  if (options.camera_model == "OPENCV_FISHEYE")
+    scene.camera = Camera::Create(options.camera_model, 640, 480,
+                                  std::vector<double>{500, 500, 319.5, 239.5, -0.02, 0.005, 0.0, 0.0})
+                       .value();
   scene.before_last_cam_from_world = Rigid3(RotationExp({0.21, -0.1, 0.05}), {1.0, -2.0, 3.0});
   const Rigid3 step(RotationExp({0.004, -0.003, 0.002}), {0.3, -0.2, -0.35});
   const Rigid3 jerk(RotationExp({-0.001, 0.0008, 0.0005}), {-0.04, 0.05, 0.03});
