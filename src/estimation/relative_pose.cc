@@ -26,7 +26,7 @@ constexpr double kUnitTolerance = 1e-6;   // of a ray's squared length: single p
 constexpr double kStillAngleRad = 1e-10;  // two rays nearer than this are the same ray
 
 // A hypothesis is scored on at most this many correspondences: beyond it the time grows and the choice does not change.
-constexpr std::size_t kMaxScored = 300;
+constexpr std::size_t kMaxScored = 200;
 
 int CountApart(Rays a, Rays b) {
   int count = 0;

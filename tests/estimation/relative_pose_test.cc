@@ -1,0 +1,161 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/estimation/relative_pose.h"
+
+#include <cstring>
+#include <limits>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "pliant/estimation/two_view_models.h"
+#include "pliant/geometry/triangulation.h"
+#include "support/synthetic_scene.h"
+
+namespace pliant {
+namespace {
+
+using test::MakeScene;
+using test::Motion;
+using test::RaysOf;
+using test::Scene;
+using test::SceneOptions;
+using test::Surface;
+
+constexpr double kDeg = std::numbers::pi / 180.0;
+constexpr double kExactRad = 1e-6;  // of exact pixels: the five-point solver's own rounding
+
+struct Pair {
+  Scene scene;
+  SceneOptions options;
+  std::vector<Eigen::Vector3d> rays0;
+  std::vector<Eigen::Vector3d> rays1;
+  const Rigid3& truth() const { return scene.cams_from_world.back(); }
+};
+
+Pair MakePair(SceneOptions options) {
+  options.num_frames = 2;
+  Pair pair{MakeScene(options), options, {}, {}};
+  pair.rays0 = RaysOf(pair.scene, options, 0);
+  pair.rays1 = RaysOf(pair.scene, options, 1);
+  return pair;
+}
+
+Result<RelativePose> Estimate(const Pair& pair) {
+  return EstimateRelativePose(pair.rays0, pair.rays1, pair.options.focal_px, Random(1), {});
+}
+
+TEST(RelativePose, IsExactWithoutNoise) {
+  for (const Motion motion : {Motion::kForward, Motion::kSideways}) {
+    const Pair pair = MakePair({.motion = motion});
+    const auto pose = Estimate(pair);
+    ASSERT_TRUE(pose.ok()) << pose.status().message();
+    EXPECT_NEAR(pose->cam1_from_cam0.translation.norm(), 1.0, 1e-12);
+    EXPECT_LT(AngleBetween(pose->cam1_from_cam0.translation, pair.truth().translation), kExactRad);
+    EXPECT_LT(RotationAngle(pose->cam1_from_cam0.rotation * pair.truth().rotation.conjugate()), kExactRad);
+    EXPECT_EQ(pose->num_inliers, 500);
+  }
+}
+
+TEST(RelativePose, SortsOutThirtyPercentOutliers) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    const Pair pair = MakePair({.noise_px = 0.3, .outlier_share = 0.3, .seed = seed});
+    const auto pose = Estimate(pair);
+    ASSERT_TRUE(pose.ok()) << pose.status().message();
+    int wrong = 0;
+    int missed = 0;
+    for (std::size_t i = 0; i < pair.rays0.size(); ++i) {
+      wrong += pose->inliers[i] != 0 && pair.scene.is_outlier[i] != 0 ? 1 : 0;
+      missed += pose->inliers[i] == 0 && pair.scene.is_outlier[i] == 0 ? 1 : 0;
+    }
+    EXPECT_LT(wrong, 15);   // of about 150: those that fell near their epipolar line by chance
+    EXPECT_LT(missed, 90);  // of about 350: a raw five-point motion at 4 degrees leaves some beyond the threshold
+    EXPECT_LT(AngleBetween(pose->cam1_from_cam0.translation, pair.truth().translation), 10.0 * kDeg);
+  }
+}
+
+TEST(RelativePose, RepeatsBitForBit) {
+  const Pair pair = MakePair({.noise_px = 0.3, .outlier_share = 0.3});
+  const auto a = Estimate(pair);
+  const auto b = Estimate(pair);
+  ASSERT_TRUE(a.ok() && b.ok());
+  EXPECT_EQ(a->inliers, b->inliers);
+  EXPECT_EQ(a->cam1_from_cam0.translation, b->cam1_from_cam0.translation);
+  EXPECT_EQ(a->cam1_from_cam0.rotation.coeffs(), b->cam1_from_cam0.rotation.coeffs());
+  const auto other = EstimateRelativePose(pair.rays0, pair.rays1, pair.options.focal_px, Random(2), {});
+  ASSERT_TRUE(other.ok());
+  EXPECT_NE(a->cam1_from_cam0.translation, other->cam1_from_cam0.translation);  // the generator has a say
+}
+
+TEST(RelativePose, RefusesBadInputQuietly) {
+  Pair pair = MakePair({.num_points = 20});
+  const auto code = [&] { return Estimate(pair).status().code(); };
+  testing::internal::CaptureStderr();
+  testing::internal::CaptureStdout();
+  Pair good = pair;
+  pair.rays0.resize(7);
+  pair.rays1.resize(7);
+  EXPECT_EQ(code(), ErrorCode::kInsufficient);
+  pair.rays1.pop_back();
+  EXPECT_EQ(code(), ErrorCode::kInvalidArgument);
+  pair = good;
+  pair.rays1[3].x() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(code(), ErrorCode::kInvalidArgument);
+  pair = good;
+  pair.rays0.assign(20, Eigen::Vector3d::UnitZ());
+  EXPECT_EQ(code(), ErrorCode::kDegenerate);
+  pair = good;
+  pair.rays1 = pair.rays0;
+  EXPECT_EQ(code(), ErrorCode::kDegenerate);
+  pair.rays0.clear();
+  pair.rays1.clear();
+  EXPECT_EQ(code(), ErrorCode::kInsufficient);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
+}
+
+TEST(RotationModel, IsFoundAmongOutliers) {
+  const Pair pair = MakePair({.motion = Motion::kRotation, .rotation_deg = 5.0, .outlier_share = 0.3});
+  const auto fit = FitRotation(pair.rays0, pair.rays1, pair.options.focal_px, 1.5);
+  ASSERT_TRUE(fit.ok());
+  // Outliers keep a pull that falls with their distance: 0.05 degrees is a third of a pixel.
+  EXPECT_LT(RotationAngle(fit->cam1_from_cam0 * pair.truth().rotation.conjugate()), 0.05 * kDeg);
+  EXPECT_GT(fit->num_inliers, 300);
+}
+
+TEST(RotationModel, DoesNotExplainATranslation) {
+  for (const Motion motion : {Motion::kForward, Motion::kSideways}) {
+    const Pair pair = MakePair({.motion = motion});
+    const auto fit = FitRotation(pair.rays0, pair.rays1, pair.options.focal_px, 1.5);
+    ASSERT_TRUE(fit.ok());
+    EXPECT_LT(fit->num_inliers, 150);
+  }
+  EXPECT_EQ(FitRotation({}, {}, 450, 1.5).status().code(), ErrorCode::kInsufficient);
+}
+
+TEST(PlaneModel, HomographyOfAPlaneHoldsItsMotion) {
+  for (const Motion motion : {Motion::kForward, Motion::kSideways}) {
+    const Pair pair = MakePair({.surface = Surface::kPlane, .motion = motion, .outlier_share = 0.3});
+    const auto fit = FitHomography(pair.rays0, pair.rays1, pair.options.focal_px, 1.5, Random(1));
+    ASSERT_TRUE(fit.ok());
+    EXPECT_GT(fit->num_inliers, 300);
+    double nearest = std::numbers::pi;
+    const auto motions = MotionsFromHomography(fit->cam1_from_cam0, pair.rays0);
+    ASSERT_EQ(motions.size(), 2U);
+    for (const Rigid3& candidate : motions)
+      nearest = std::min(nearest, AngleBetween(candidate.translation, pair.truth().translation) +
+                                      RotationAngle(candidate.rotation * pair.truth().rotation.conjugate()));
+    EXPECT_LT(nearest, 1.0 * kDeg);  // an outlier within the threshold may be among the least squares
+  }
+}
+
+TEST(PlaneModel, DoesNotExplainATube) {
+  const Pair pair = MakePair({});
+  const auto fit = FitHomography(pair.rays0, pair.rays1, pair.options.focal_px, 1.5, Random(1));
+  ASSERT_TRUE(fit.ok());
+  EXPECT_LT(fit->num_inliers, 250);
+}
+
+}  // namespace
+}  // namespace pliant

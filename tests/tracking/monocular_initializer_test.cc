@@ -1,0 +1,276 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/tracking/monocular_initializer.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "support/synthetic_scene.h"
+
+namespace pliant {
+namespace {
+
+using test::MakeScene;
+using test::Motion;
+using test::Scene;
+using test::SceneOptions;
+using test::Surface;
+
+// Of all points; those that move most leave the image in forward motion, and the median of the rest is about 4.
+constexpr double kEnoughDeg = 6.0;
+
+Camera SceneCamera(const SceneOptions& options) {
+  const std::array params = {options.focal_px, 0.5 * (options.width - 1), 0.5 * (options.height - 1)};
+  return Camera::Create(CameraModelId::kSimplePinhole, options.width, options.height, params).value();
+}
+
+// What a tracker would hand over: a point that leaves the image is lost from then on.
+std::vector<InitFrame> FramesOf(const Scene& scene, const SceneOptions& options) {
+  const Camera camera = SceneCamera(options);
+  std::vector<char> alive(scene.points.size(), 1);
+  std::vector<InitFrame> frames;
+  for (std::size_t k = 0; k < scene.pixels.size(); ++k) {
+    InitFrame& frame = frames.emplace_back();
+    frame.frame_idx = 10 + static_cast<int>(k);
+    for (std::size_t i = 0; i < scene.points.size(); ++i) {
+      if (!camera.Contains(scene.pixels[k][i])) alive[i] = 0;
+      if (alive[i] != 0) frame.observations.push_back({PointId{static_cast<std::int64_t>(i)}, scene.pixels[k][i]});
+    }
+  }
+  return frames;
+}
+
+InitOutcome Try(const SceneOptions& options, const MonocularInitOptions& init = {},
+                MonocularGates gates = MonocularGates::kGated) {
+  const auto frames = FramesOf(MakeScene(options), options);
+  return MakeMonocularInitializer(init, gates, Random(1))->Try({SceneCamera(options), frames, {}});
+}
+
+struct MapError {
+  double median = 0;    // relative distance error after the best scale (median of ratios)
+  double share_10 = 0;  // share of points more than 10 % off
+};
+
+MapError ErrorOf(const InitOutcome& outcome, const Scene& scene) {
+  std::vector<double> ratios;
+  for (const InitPoint& point : outcome.points)
+    ratios.push_back(point.position.norm() / scene.points[static_cast<std::size_t>(point.id.value)].norm());
+  std::vector<double> sorted = ratios;
+  std::sort(sorted.begin(), sorted.end());
+  const double scale = sorted[sorted.size() / 2];
+  for (double& ratio : ratios) ratio = std::abs(ratio / scale - 1.0);
+  std::sort(ratios.begin(), ratios.end());
+  const auto bad = std::count_if(ratios.begin(), ratios.end(), [](double error) { return error > 0.1; });
+  return {ratios[ratios.size() / 2], static_cast<double>(bad) / static_cast<double>(ratios.size())};
+}
+
+TEST(MonocularInitializer, RecoversTheSceneExactlyWithoutNoise) {
+  for (const Motion motion : {Motion::kForward, Motion::kSideways}) {
+    const SceneOptions options{.motion = motion, .parallax_deg = kEnoughDeg};
+    const Scene scene = MakeScene(options);
+    const InitOutcome outcome = Try(options);
+    ASSERT_EQ(outcome.decision, InitDecision::kMap) << outcome.reason;
+    constexpr double kExact = 1e-5;  // relative: the solvers rest at 1e-7 rad, parallax is 0.03 rad and more
+    const double scale = outcome.points.front().position.norm() /
+                         scene.points[static_cast<std::size_t>(outcome.points.front().id.value)].norm();
+    for (const InitPoint& point : outcome.points) {
+      const Eigen::Vector3d truth = scale * scene.points[static_cast<std::size_t>(point.id.value)];
+      EXPECT_LT((point.position - truth).norm(), kExact * truth.norm());
+    }
+    ASSERT_EQ(outcome.poses.size(), scene.cams_from_world.size());
+    for (std::size_t k = 0; k < outcome.poses.size(); ++k) {
+      EXPECT_EQ(outcome.poses[k].frame_idx, 10 + static_cast<int>(k));
+      EXPECT_LT((outcome.poses[k].cam_from_world.translation - scale * scene.cams_from_world[k].translation).norm(),
+                1e-3);
+    }
+  }
+}
+
+TEST(MonocularInitializer, ScalesTheMapToTheNominalDepth) {
+  MonocularInitOptions init;
+  init.nominal_depth_mm = 80;
+  const InitOutcome outcome = Try({.parallax_deg = kEnoughDeg, .noise_px = 0.3}, init);
+  ASSERT_EQ(outcome.decision, InitDecision::kMap) << outcome.reason;
+  std::vector<double> depths;
+  for (const InitPoint& point : outcome.points) depths.push_back(point.position.z());
+  std::nth_element(depths.begin(), depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2), depths.end());
+  EXPECT_NEAR(depths[depths.size() / 2], 80.0, 1e-9);
+}
+
+TEST(MonocularInitializer, StaysWithinBoundsUnderNoiseAndOutliers) {
+  for (const Motion motion : {Motion::kForward, Motion::kSideways}) {
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+      const SceneOptions options{
+          .motion = motion, .parallax_deg = kEnoughDeg, .noise_px = 0.3, .outlier_share = 0.3, .seed = seed};
+      const Scene scene = MakeScene(options);
+      const InitOutcome outcome = Try(options);
+      ASSERT_EQ(outcome.decision, InitDecision::kMap) << outcome.reason;
+      const MapError error = ErrorOf(outcome, scene);
+      EXPECT_LT(error.median, 0.015);   // predicted for 0.3 px, 4 degrees, f = 450 px: 0.9 % for two views
+      EXPECT_LT(error.share_10, 0.01);  // what is uncertain stays out
+      int outliers = 0;
+      for (const InitPoint& point : outcome.points)
+        outliers += scene.is_outlier[static_cast<std::size_t>(point.id.value)];
+      EXPECT_LE(outliers, 2);
+    }
+  }
+}
+
+TEST(MonocularInitializer, AccountsForEveryPointOfTheReference) {
+  const SceneOptions options{.parallax_deg = kEnoughDeg, .noise_px = 0.3, .outlier_share = 0.2};
+  const InitOutcome outcome = Try(options);
+  ASSERT_EQ(outcome.decision, InitDecision::kMap) << outcome.reason;
+  std::set<PointId> ids;
+  for (const InitPoint& point : outcome.points) ids.insert(point.id);
+  for (const InitRejectedPoint& point : outcome.rejected) EXPECT_TRUE(ids.insert(point.id).second);
+  EXPECT_EQ(ids.size(), FramesOf(MakeScene(options), options).front().observations.size());
+  const auto by_id = [](const auto& a, const auto& b) { return a.id < b.id; };
+  EXPECT_TRUE(std::is_sorted(outcome.points.begin(), outcome.points.end(), by_id));
+  EXPECT_TRUE(std::is_sorted(outcome.rejected.begin(), outcome.rejected.end(), by_id));
+}
+
+TEST(MonocularInitializer, LeavesOutPointsNearTheFocusOfExpansion) {
+  const InitOutcome outcome = Try({.parallax_deg = kEnoughDeg, .noise_px = 0.3});
+  ASSERT_EQ(outcome.decision, InitDecision::kMap) << outcome.reason;
+  const MonocularInitOptions defaults;
+  for (const InitPoint& point : outcome.points)
+    EXPECT_LE(point.depth_sigma, defaults.max_depth_sigma * point.position.norm() * (1 + 1e-12));
+  EXPECT_TRUE(std::any_of(outcome.rejected.begin(), outcome.rejected.end(), [](const InitRejectedPoint& point) {
+    return point.reason == InitRejection::kUncertainDepth;
+  }));
+}
+
+TEST(MonocularInitializer, WaitsForParallax) {
+  const InitOutcome outcome = Try({.parallax_deg = 1.0, .noise_px = 0.3});
+  EXPECT_EQ(outcome.decision, InitDecision::kWait);
+  EXPECT_NE(outcome.reason.find("parallax"), std::string::npos) << outcome.reason;
+  EXPECT_NEAR(outcome.measured.median_parallax_deg, 1.0, 0.3);
+}
+
+TEST(MonocularInitializer, RefusesRotationAndStandstill) {
+  for (const Motion motion : {Motion::kRotation, Motion::kStill}) {
+    for (const double noise_px : {0.0, 0.3}) {
+      const InitOutcome outcome = Try({.motion = motion, .rotation_deg = 6.0, .noise_px = noise_px});
+      EXPECT_EQ(outcome.decision, InitDecision::kWait);
+      EXPECT_NE(outcome.reason.find("rotation alone"), std::string::npos) << outcome.reason;
+      EXPECT_GT(outcome.measured.rotation_only_share, 0.95);
+    }
+  }
+}
+
+// A plane approached head-on is explained by two motions; a plane passed sideways, and an organ with 3 mm of relief, by
+// one alone.
+TEST(MonocularInitializer, RefusesThePlaneOnlyWhereASecondMotionExplainsIt) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    const InitOutcome plane = Try({.surface = Surface::kPlane, .noise_px = 0.3, .seed = seed});
+    EXPECT_EQ(plane.decision, InitDecision::kWait);
+    EXPECT_NE(plane.reason.find("second camera motion"), std::string::npos) << plane.reason;
+    for (const auto& [surface, motion] :
+         {std::pair{Surface::kPlane, Motion::kSideways}, std::pair{Surface::kOrgan, Motion::kForward},
+          std::pair{Surface::kOrgan, Motion::kSideways}}) {
+      const SceneOptions options{.surface = surface, .motion = motion, .noise_px = 0.3, .seed = seed};
+      const InitOutcome outcome = Try(options);
+      ASSERT_EQ(outcome.decision, InitDecision::kMap) << outcome.reason;
+      EXPECT_LT(ErrorOf(outcome, MakeScene(options)).median, 0.015);
+    }
+  }
+}
+
+TEST(MonocularInitializer, TheWindowReducesTheDepthNoiseOfTwoViews) {
+  constexpr int kSeeds = 12;
+  double two_view = 0;
+  double window = 0;
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    const SceneOptions options{.motion = Motion::kSideways, .noise_px = 0.3, .seed = seed};
+    const Scene scene = MakeScene(options);
+    MonocularInitOptions init;
+    init.refinement = RigidRefinement::kTwoView;
+    const InitOutcome pair = Try(options, init);
+    const InitOutcome all = Try(options);
+    ASSERT_EQ(pair.decision, InitDecision::kMap) << pair.reason;
+    ASSERT_EQ(all.decision, InitDecision::kMap) << all.reason;
+    two_view += ErrorOf(pair, scene).median / kSeeds;
+    window += ErrorOf(all, scene).median / kSeeds;
+  }
+  // A line through eight evenly spaced positions has 0.77 of the slope error of one through its ends.
+  EXPECT_LT(window, 0.85 * two_view);
+}
+
+TEST(MonocularInitializer, GivesUpAReferenceThatDoesNotServe) {
+  MonocularInitOptions init;
+  init.max_window = 8;
+  const InitOutcome spent = Try({.motion = Motion::kStill, .noise_px = 0.3}, init);
+  EXPECT_EQ(spent.decision, InitDecision::kNewReference);
+  EXPECT_NE(spent.reason.find("given up after 8 frames"), std::string::npos) << spent.reason;
+
+  const SceneOptions options;
+  auto frames = FramesOf(MakeScene(options), options);
+  frames.back().observations.resize(100);
+  const InitOutcome few =
+      MakeMonocularInitializer({}, MonocularGates::kGated, Random(1))->Try({SceneCamera(options), frames, {}});
+  EXPECT_EQ(few.decision, InitDecision::kNewReference);
+  frames.resize(1);
+  const InitOutcome first =
+      MakeMonocularInitializer({}, MonocularGates::kGated, Random(1))->Try({SceneCamera(options), frames, {}});
+  EXPECT_EQ(first.decision, InitDecision::kWait);
+}
+
+TEST(MonocularInitializer, SurvivesNotANumberAndEqualPixels) {
+  const SceneOptions options{.num_points = 100};
+  auto frames = FramesOf(MakeScene(options), options);
+  frames.back().observations[5].pixel.x() = std::numeric_limits<double>::quiet_NaN();
+  const auto initializer = MakeMonocularInitializer({}, MonocularGates::kGated, Random(1));
+  const InitOutcome outcome = initializer->Try({SceneCamera(options), frames, {}});
+  ASSERT_EQ(outcome.decision, InitDecision::kMap) << outcome.reason;
+  EXPECT_TRUE(std::any_of(outcome.rejected.begin(), outcome.rejected.end(),
+                          [](const InitRejectedPoint& point) { return point.reason == InitRejection::kNoRay; }));
+  for (InitFrame& frame : frames)
+    for (InitObservation& observation : frame.observations) observation.pixel = {100, 100};
+  EXPECT_EQ(initializer->Try({SceneCamera(options), frames, {}}).decision, InitDecision::kWait);
+}
+
+TEST(MonocularInitializer, RepeatsBitForBit) {
+  const SceneOptions options{.parallax_deg = kEnoughDeg, .noise_px = 0.3, .outlier_share = 0.2};
+  const InitOutcome a = Try(options);
+  const InitOutcome b = Try(options);
+  ASSERT_EQ(a.decision, InitDecision::kMap) << a.reason;
+  ASSERT_EQ(a.points.size(), b.points.size());
+  for (std::size_t i = 0; i < a.points.size(); ++i) EXPECT_EQ(a.points[i].position, b.points[i].position);
+}
+
+TEST(PaperInitializer, MakesItsMapThreeFramesAfterTheReference) {
+  SceneOptions options{.noise_px = 0.1};
+  options.num_frames = 3;
+  EXPECT_EQ(Try(options, {}, MonocularGates::kPaper).decision, InitDecision::kWait);
+  options.num_frames = 4;
+  const InitOutcome outcome = Try(options, {}, MonocularGates::kPaper);
+  ASSERT_EQ(outcome.decision, InitDecision::kMap) << outcome.reason;
+  EXPECT_EQ(outcome.poses.size(), 4U);
+  EXPECT_GT(outcome.points.size(), 200U);
+  EXPECT_LT(ErrorOf(outcome, MakeScene(options)).median, 0.05);  // RANSAC's motion, not refined
+}
+
+TEST(PaperInitializer, HasNoGates) {
+  SceneOptions options{.parallax_deg = 0.5, .noise_px = 0.3};
+  options.num_frames = 4;
+  EXPECT_EQ(Try(options, {}, MonocularGates::kPaper).decision, InitDecision::kMap);
+  EXPECT_EQ(Try(options).decision, InitDecision::kWait);
+}
+
+TEST(MonocularInitOptions, AreListedWithinTheirRanges) {
+  MonocularInitOptions options;
+  OptionTable table;
+  table.BeginGroup("Init", "the first map");
+  options.List(table);
+  for (const OptionField& field : table.fields()) EXPECT_TRUE(table.Set(field.name, field.get()).ok()) << field.name;
+  EXPECT_FALSE(table.Set("Init.min_parallax_deg", "-1").ok());
+}
+
+}  // namespace
+}  // namespace pliant
