@@ -19,8 +19,8 @@ constexpr float kFinestFacetMm = 0.2F;
 Shader::Shader(const SimulationOptions::Light& options, const Surface& surface, const BloodMap& blood, double pixel_rad)
     : options_(options), surface_(surface), blood_(blood), pixel_rad_(static_cast<float>(pixel_rad)) {
   // Linear colour of mucosa, and how fast blood takes each channel away (blue, green, red).
-  const Eigen::Array3f mucosa(0.20F, 0.26F, 0.66F);
-  const Eigen::Array3f absorption(0.80F, 0.85F, 0.26F);
+  const Eigen::Array3f mucosa(0.19F, 0.235F, 0.68F);
+  const Eigen::Array3f absorption(0.78F, 0.85F, 0.25F);
   for (int i = 0; i < kAlbedoSteps; ++i) {
     const float blood_amount = kLeastBlood + (kMostBlood - kLeastBlood) * static_cast<float>(i) / (kAlbedoSteps - 1);
     albedo_[i] = (mucosa * (-absorption * blood_amount).exp()).min(0.95F).matrix();

@@ -5,6 +5,7 @@
 
 #include <cstdio>
 #include <fstream>
+#include <future>
 #include <string>
 #include <utility>
 #include <vector>
@@ -85,6 +86,11 @@ Status PrepareFolder(const fs::path& output, const Simulator& simulator) {
   return WriteText(output / "simulation.yaml", ToYaml(simulator.options()));
 }
 
+Status WriteFrame(const fs::path& output, int frame_idx, const SimulatedFrame& frame, double depth_scale_mm) {
+  if (Status status = WritePng(output / "images" / FrameName(frame_idx), frame.image); !status.ok()) return status;
+  return WritePng(output / "depth" / FrameName(frame_idx), simulation::QuantiseDepth(frame.depth, depth_scale_mm));
+}
+
 }  // namespace
 
 Status WriteSequence(const SimulationOptions& options, const fs::path& output, const SimulationProgress& progress) {
@@ -93,11 +99,14 @@ Status WriteSequence(const SimulationOptions& options, const fs::path& output, c
   if (Status status = PrepareFolder(output, *simulator); !status.ok()) return status;
   std::ofstream poses(output / "groundtruth.txt");
   std::ofstream times(output / "times.txt");
+  SimulatedFrame frame = simulator->Render(0);
   for (int i = 0; i < simulator->frame_count(); ++i) {
-    const SimulatedFrame frame = simulator->Render(i);
-    if (Status status = WritePng(output / "images" / FrameName(i), frame.image); !status.ok()) return status;
-    const cv::Mat depth = simulation::QuantiseDepth(frame.depth, options.sensor.depth_scale_mm);
-    if (Status status = WritePng(output / "depth" / FrameName(i), depth); !status.ok()) return status;
+    // A frame is packed and written while the next one is rendered.
+    std::future<Status> written = std::async(std::launch::async, [&output, &options, i, done = std::move(frame)] {
+      return WriteFrame(output, i, done, options.sensor.depth_scale_mm);
+    });
+    if (i + 1 < simulator->frame_count()) frame = simulator->Render(i + 1);
+    if (Status status = written.get(); !status.ok()) return status;
     poses << TumLine(simulator->TimeOf(i), simulator->WorldFromCamera(i)) << std::flush;
     times << FormatDouble(simulator->TimeOf(i)) << std::endl;
     if (!poses) return Unwritable(output / "groundtruth.txt");

@@ -4,6 +4,7 @@
 // A scene small enough for tests, and the truth about it, worked out here again without the simulator's code.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 

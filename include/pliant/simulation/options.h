@@ -72,7 +72,7 @@ struct SimulationOptions {
 
   struct Light {
     double ambient = 0.1;         // light that reaches the wall from the rest of the wall, as a share
-    double specular = 1.8;        // peak of the wet reflection by the diffuse one; 0: none
+    double specular = 1.3;        // peak of the wet reflection by the diffuse one; 0: none
     double roughness = 0.1;       // width of the wet reflection: slope of the facets
     double unevenness_mm = 0.12;  // breaks highlights up: height of the wet film by the mottling, of no visible depth
   } light;
