@@ -18,6 +18,7 @@ namespace {
 constexpr double kCoarseEpsilon_px = 0.05;  // of its own pixels: a coarse level only has to come near
 constexpr double kRest_px = 0.1;            // a patch whose last step on the finest level is larger is not at rest
 constexpr double kMinCoarseSupport = 0.3;
+constexpr double kSamePixels_px = 0.5;
 constexpr double kSimilarSupport = 0.9;
 constexpr double kMinStepGain = 0.05;  // the fit says: nothing of the patch is there
 
@@ -65,8 +66,8 @@ PatchFailure ChooseSolution(const Finest& f, int level, double x, double y, cons
   // A coarse level only has to come near: its own weights will do while about as much of it is usable as before.
   if (support.usable >= (level == 0 ? 1 : kSimilarSupport * reference.support)) return PatchFailure::kNone;
   FillWeights(f.mask, f.size, x, y, affine, f.shape, solution->weights, scratch->weights.data());
-  const PatchFailure failure = SolvePatch(reference.values.data(), scratch->weights.data(), kind, f.shape, f.options,
-                                          scratch->solve.data(), scratch->offsets.data());
+  const PatchFailure failure = SolvePatch(reference.values.data(), scratch->weights.data(), kind, level, f.shape,
+                                          f.options, scratch->solve.data(), scratch->offsets.data());
   *solution = {scratch->solve.data(), scratch->offsets.data(), scratch->weights.data()};
   return failure;
 }
@@ -140,10 +141,18 @@ void TrackLevel(const Finest& f, int level, PatchMatch* match) {
   Scratch scratch;
   Solution solution;
   const double scale = 1 << level;
-  PatchFailure failure = ChooseSolution(f, level, match->pixel.x, match->pixel.y, {scale, 0, 0, scale},
-                                        BasisKind::kTranslation, &scratch, &solution);
   Pixel at{match->pixel.x / scale, match->pixel.y / scale};
-  if (failure == PatchFailure::kNone) failure = IterateLevel(f, level, solution, &at, &match->iterations);
+  PatchFailure failure = PatchFailure::kNone;
+  for (int round = 0; round < 2; ++round) {
+    const Pixel start = at;
+    failure = ChooseSolution(f, level, scale * at.x, scale * at.y, {scale, 0, 0, scale}, BasisKind::kTranslation,
+                             &scratch, &solution);
+    if (failure == PatchFailure::kNone) failure = IterateLevel(f, level, solution, &at, &match->iterations);
+    // Weights were chosen for the start: where masked pixels matter, once more from where it led.
+    const bool masked_here = level == 0 && solution.weights == scratch.weights.data();
+    if (failure != PatchFailure::kNone || !masked_here || std::hypot(at.x - start.x, at.y - start.y) < kSamePixels_px)
+      break;
+  }
   if (failure == PatchFailure::kNone) match->pixel = {at.x * scale, at.y * scale};
   if (level > 0) return;
   match->failure = failure;

@@ -13,6 +13,7 @@ void LucasKanadeOptions::List(OptionTable& table) {
   table.Add("max_iterations", &max_iterations, "-", "on each level", 1, 100);
   table.Add("epsilon_px", &epsilon_px, "px", "a smaller step ends a level", 1e-4, 1);
   table.AddChoice("gain_bias", &gain_bias, "estimate a brightness gain and bias for each patch");
+  table.AddChoice("shading", &shading, "with gain_bias: let brightness differ by a plane over the patch too");
   table.Add("max_gain", &max_gain, "-", "a larger gain, or one below its inverse, is refused", 1, 100);
   table.Add("min_texture", &min_texture, "grey levels / px", "weakest gradient of a patch that determines its position",
             0, 100);

@@ -35,7 +35,7 @@ PatchFailure CutLevel(const ImagePyramid& pyramid, const SupportMask& mask, Pixe
   }
   out->solve.resize(static_cast<std::size_t>(3 * BlockOf(shape)));
   return SolvePatch(out->values.data(), out->weights.empty() ? nullptr : out->weights.data(), BasisKind::kTranslation,
-                    shape, options, out->solve.data(), out->offsets.data());
+                    level, shape, options, out->solve.data(), out->offsets.data());
 }
 
 }  // namespace
@@ -60,7 +60,7 @@ PatchFailure CutReferencePatch(const ImagePyramid& pyramid, const SupportMask& m
     patch->solve_affine.resize(static_cast<std::size_t>(7 * BlockOf(shape)));
     const PatchFailure failure =
         SolvePatch(finest.values.data(), finest.weights.empty() ? nullptr : finest.weights.data(), BasisKind::kAffine,
-                   shape, options, patch->solve_affine.data(), patch->offsets_affine.data());
+                   0, shape, options, patch->solve_affine.data(), patch->offsets_affine.data());
     // Six parameters need more texture than two: without it the patch still aligns by translation.
     if (failure != PatchFailure::kNone) patch->solve_affine.clear();
   }

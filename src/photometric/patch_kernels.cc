@@ -199,9 +199,9 @@ void FillBasis(const float* values, const float* weights, float mean, BasisKind 
       };
       store(gx);
       store(gy);
+      const Vf u = hn::Mul(hn::Sub(column, hn::Set(F(), half)), hn::Set(F(), 1.0F / half));
+      const Vf v = hn::Set(F(), v_row);
       if (kind == BasisKind::kAffine) {
-        const Vf u = hn::Mul(hn::Sub(column, hn::Set(F(), half)), hn::Set(F(), 1.0F / half));
-        const Vf v = hn::Set(F(), v_row);
         store(hn::Mul(u, gx));
         store(hn::Mul(v, gx));
         store(hn::Mul(u, gy));
@@ -209,6 +209,8 @@ void FillBasis(const float* values, const float* weights, float mean, BasisKind 
       }
       store(hn::Mul(w, hn::Sub(hn::LoadU(F(), centre), hn::Set(F(), mean))));
       store(w);
+      store(hn::Mul(w, u));
+      store(hn::Mul(w, v));
     }
   }
 }

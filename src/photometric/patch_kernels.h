@@ -43,8 +43,8 @@ MomentSums SumMoments(const float* x, const float* y, const float* weights, floa
 
 // The linear model of a patch's look, block by block. From `values` (size + 2 rows: a margin of one pixel all round,
 // its first pixel at block position -1, -1): gradients gx, gy by central differences and the values less `mean`.
-// Translation: gx, gy, values, 1. Affine: gx, gy, u gx, v gx, u gy, v gy, values, 1 with u, v from -1 to 1 over the
-// patch. All times `weights` where not null.
+// Translation: gx, gy, values, 1, u, v, where u and v go from -1 to 1 over the patch. Affine: gx, gy, u gx, v gx, u gy,
+// v gy, values, 1, u, v. All times `weights` where not null.
 enum class BasisKind { kTranslation, kAffine };
 void FillBasis(const float* values, const float* weights, float mean, BasisKind kind, PatchShape shape, float* basis);
 

@@ -10,7 +10,7 @@
 namespace pliant {
 namespace {
 
-constexpr int kMaxBlocks = 8;
+constexpr int kMaxBlocks = 10;
 
 // Inverse of a symmetric positive definite n x n matrix in place (Gauss-Jordan); false if it is not.
 bool Invert(int n, double* m) {
@@ -39,23 +39,24 @@ double LargestVariance(const double* inverse, int n) {
 
 }  // namespace
 
-PatchFailure SolvePatch(const float* values, const float* weights, BasisKind kind, PatchShape shape,
+PatchFailure SolvePatch(const float* values, const float* weights, BasisKind kind, int level, PatchShape shape,
                         const LucasKanadeOptions& options, float* solve, float* offsets) {
   const int motion = kind == BasisKind::kAffine ? 6 : 2;
-  const int blocks = motion + 2;  // and the values (gain), and one (bias)
-  const int used = options.gain_bias == GainBias::kOn ? blocks : motion;
+  const int blocks = motion + 4;  // and gain, bias, the two slopes of the shading
+  const bool plane = level == 0 && options.shading == Shading::kPlane;
+  const int used = motion + (options.gain_bias == GainBias::kOff ? 0 : plane ? 4 : 2);
   alignas(64) std::array<float, static_cast<std::size_t>(kMaxBlocks) * kMaxBlock> basis;
   std::array<float, kMaxBlocks * kMaxBlocks> gram;
   const float* centre = values + shape.row_stride + 1;
-  const float level = centre[(shape.size / 2) * shape.row_stride + shape.size / 2];
-  FillBasis(values, weights, level, kind, shape, basis.data());
+  const float grey = centre[(shape.size / 2) * shape.row_stride + shape.size / 2];
+  FillBasis(values, weights, grey, kind, shape, basis.data());
   GramMatrix(basis.data(), blocks, shape, gram.data());
 
   std::array<double, kMaxBlocks * kMaxBlocks> inverse;
   for (int i = 0; i < used; ++i)
     for (int j = 0; j < used; ++j)
       inverse[static_cast<std::size_t>(i * used + j)] = gram[static_cast<std::size_t>(i * blocks + j)];
-  const double count = gram[static_cast<std::size_t>(blocks * blocks - 1)];
+  const double count = gram[static_cast<std::size_t>((motion + 1) * (blocks + 1))];
   if (!Invert(used, inverse.data())) return PatchFailure::kLowTexture;
   if (LargestVariance(inverse.data(), used) * options.min_texture * options.min_texture * count > 1)
     return PatchFailure::kLowTexture;

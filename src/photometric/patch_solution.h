@@ -16,8 +16,9 @@ inline PatchShape ShapeOf(int size) { return {size, PatchRowStride(size)}; }
 inline int BlockOf(PatchShape shape) { return shape.size * shape.row_stride; }
 
 // Writes the solution (3 blocks and offsets for a translation, 7 for affine motion). `values` and `weights` (null: all
-// ones) as in PatchLevel. kLowTexture if the patch does not determine its position.
-PatchFailure SolvePatch(const float* values, const float* weights, BasisKind kind, PatchShape shape,
+// ones) as in PatchLevel. Shading is a matter of the finest level: on a coarse one a plane leaves too little of the
+// patch to be found by. kLowTexture if the patch does not determine its position.
+PatchFailure SolvePatch(const float* values, const float* weights, BasisKind kind, int level, PatchShape shape,
                         const LucasKanadeOptions& options, float* solve, float* offsets);
 
 struct ImageSize {

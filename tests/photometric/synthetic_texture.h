@@ -6,8 +6,9 @@
 
 #include <cmath>
 #include <numbers>
-#include <opencv2/core.hpp>
 #include <vector>
+
+#include <opencv2/core.hpp>
 
 #include "pliant/base/random.h"
 
@@ -35,8 +36,8 @@ class SyntheticTexture {
 
   // Image whose pixel p shows gain * At(texture_from_pixel(p)) + bias, with normal noise.
   template <class Map>
-  cv::Mat Render(cv::Size size, const Map& texture_from_pixel, double gain = 1, double bias = 0,
-                 double noise_sigma = 0, std::uint64_t noise_seed = 0) const {
+  cv::Mat Render(cv::Size size, const Map& texture_from_pixel, double gain = 1, double bias = 0, double noise_sigma = 0,
+                 std::uint64_t noise_seed = 0) const {
     Random random(noise_seed);
     cv::Mat image(size, CV_8UC1);
     for (int y = 0; y < size.height; ++y) {

@@ -58,6 +58,15 @@ struct EnumNames<GainBias> {
                                         std::pair{GainBias::kOn, std::string_view("on")}};
 };
 
+// Light at the camera shades a patch more on one side after the camera has moved. Without a model of it that slope
+// pulls the patch aside. kPlane lets brightness differ by a plane over the patch, beside gain and bias.
+enum class Shading { kNone, kPlane };
+template <>
+struct EnumNames<Shading> {
+  static constexpr std::array kNames = {std::pair{Shading::kNone, std::string_view("none")},
+                                        std::pair{Shading::kPlane, std::string_view("plane")}};
+};
+
 // What SSIM compares: the reference with the tracked patch as it is, or with alpha * patch + beta. A light at the
 // camera makes a patch 2.5 times brighter on the way from 80 to 50 mm: a plain comparison calls that another surface.
 enum class SimilarityMode { kPlain, kCompensated };
@@ -75,10 +84,11 @@ struct LucasKanadeOptions {
   int max_iterations = 15;   // on each level
   double epsilon_px = 0.01;  // a smaller step ends a level (in pixels of that level)
   GainBias gain_bias = GainBias::kOn;
-  double max_gain = 4;             // gains outside [1 / max_gain, max_gain] are refused
-  double min_texture = 1.0;        // grey levels / px: root of the smaller eigenvalue of the mean gradient tensor
-  double min_valid_support = 0.6;  // share of the patch that must lie on usable pixels
-  double max_correction_px = 60;   // farther from its start than this, a patch has run away
+  Shading shading = Shading::kPlane;  // with gain_bias only
+  double max_gain = 4;                // gains outside [1 / max_gain, max_gain] are refused
+  double min_texture = 1.0;           // grey levels / px: root of the smaller eigenvalue of the mean gradient tensor
+  double min_valid_support = 0.6;     // share of the patch that must lie on usable pixels
+  double max_correction_px = 60;      // farther from its start than this, a patch has run away
   SimilarityMode similarity = SimilarityMode::kCompensated;
   double min_ssim = 0.8;
 
@@ -91,7 +101,7 @@ struct PatchLevel {
   std::vector<float> weights;  // size rows, 0 or 1; empty: all ones
   float support = 1;           // share of the patch that lies on usable pixels
   // 3 blocks of size rows: sum over v of solve(v) * I(v), less `offsets`, is (a dx, a dy, a) of the least-squares
-  // solution of I ~ a (I0 + g.d) + b over the patch, g being the gradient of I0.
+  // solution of I ~ a (I0 + g.d) + b (+ a plane) over the patch, g being the gradient of I0.
   std::vector<float> solve;
   std::array<float, 3> offsets{};
   PatchFailure failure = PatchFailure::kNone;  // kLowTexture, kMasked, kOutOfImage: this level is of no use
