@@ -14,6 +14,7 @@
 #include <Eigen/QR>
 #include <Eigen/SVD>
 
+#include "pliant/base/statistics.h"
 #include "pliant/geometry/triangulation.h"
 
 namespace pliant {
@@ -28,12 +29,6 @@ Status CheckCounts(Rays rays0, Rays rays1, std::size_t least) {
     return {ErrorCode::kInsufficient, "fitting this model takes at least " + std::to_string(least) +
                                           " correspondences; there are " + std::to_string(rays0.size())};
   return Status::Ok();
-}
-
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 // Wahba's problem: the rotation that maximises sum_i w_i f1_i . (R f0_i).

@@ -12,6 +12,7 @@
 #include <ceres/ceres.h>
 
 #include "estimation/ray_residuals.h"
+#include "pliant/base/statistics.h"
 #include "pliant/geometry/triangulation.h"
 
 namespace pliant {
@@ -82,6 +83,7 @@ ceres::Solver::Options SolverOptions(ceres::LinearSolverType linear_solver, int 
   options.parameter_tolerance = 1e-12;
   options.gradient_tolerance = 1e-14;
   options.num_threads = 1;
+  options.max_trust_region_radius = 1e8;  // some damping stays, whatever a point's depth does
   options.logging_type = ceres::SILENT;
   return options;
 }
@@ -92,12 +94,6 @@ ceres::Problem::Options BorrowingOptions() {
   options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   options.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   return options;
-}
-
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 // Adds the spread and the direction's covariance at the solution: the inverse of the weighted normal equations, the
@@ -277,7 +273,8 @@ Result<TwoViewRefinement> RefineTwoView(const Rigid3& start, Rays rays0, Rays ra
   problem.SetManifold(translation.data(), &translation_manifold);
 
   ceres::Solver::Summary summary;
-  ceres::Solve(SolverOptions(ceres::DENSE_NORMAL_CHOLESKY, options.max_iterations), &problem, &summary);
+  // QR, because a rival's start may leave the normal equations singular, of which Ceres complains on stderr.
+  ceres::Solve(SolverOptions(ceres::DENSE_QR, options.max_iterations), &problem, &summary);
   if (!summary.IsSolutionUsable())
     return Status(ErrorCode::kDegenerate, "the refinement of the relative pose found no step that improves it");
 

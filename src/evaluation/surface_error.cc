@@ -8,7 +8,7 @@
 #include <cmath>
 #include <string>
 
-#include "evaluation/statistics.h"
+#include "pliant/base/statistics.h"
 #include "pliant/image/depth_lookup.h"
 
 namespace pliant {

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "evaluation/statistics.h"
+#include "pliant/base/statistics.h"
 
 namespace pliant {
 

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <string>
 
-#include "evaluation/statistics.h"
+#include "pliant/base/statistics.h"
 
 namespace pliant {
 namespace {

@@ -9,6 +9,7 @@
 #include <limits>
 #include <numbers>
 
+#include "pliant/base/statistics.h"
 #include "pliant/estimation/relative_pose.h"
 #include "pliant/estimation/two_view_models.h"
 #include "pliant/geometry/triangulation.h"
@@ -150,7 +151,7 @@ class Attempt {
     for (std::size_t i = 0; i < matched_.ids.size(); ++i)
       if (motion_.inliers[i] != 0)
         parallaxes.push_back(ParallaxAngle(motion_.cam1_from_cam0.rotation, matched_.rays0[i], matched_.rays1[i]));
-    outcome_.measured.median_parallax_deg = MedianOf(std::move(parallaxes)) * kDegPerRad;
+    outcome_.measured.median_parallax_deg = Median(std::move(parallaxes)) * kDegPerRad;
     if (outcome_.measured.median_parallax_deg >= options_.min_parallax_deg) return Status::Ok();
     return {ErrorCode::kInsufficient, "the median parallax is " + Digits(outcome_.measured.median_parallax_deg, 2) +
                                           " deg, " + Digits(options_.min_parallax_deg, 2) + " are needed"};
@@ -209,7 +210,7 @@ class Attempt {
     std::vector<double> relative_sigmas;
     for (std::size_t i = 0; i < map.ids.size(); ++i)
       relative_sigmas.push_back(map.depth_sigmas[i] / map.positions[i].norm());
-    outcome_.measured.median_depth_sigma = MedianOf(std::move(relative_sigmas));
+    outcome_.measured.median_depth_sigma = Median(std::move(relative_sigmas));
     if (outcome_.measured.median_depth_sigma > options_.max_median_depth_sigma)
       return {ErrorCode::kInsufficient, "the predicted depth noise is " +
                                             Digits(100.0 * outcome_.measured.median_depth_sigma, 1) + " %, at most " +
@@ -287,7 +288,8 @@ class Attempt {
 
   // Bundle adjustment over the window. Points the window cannot settle are left out before it: far ones hardly help.
   Status RefineMap(InitialMap* map, std::vector<KnownPose>* known) {
-    constexpr double kBeforeWindow = 3.0;  // the window improves a depth by less than this
+    constexpr double kStartErrorFactor = 2.0;  // the pair's depths carry more noise than the window's
+    constexpr double kBeforeWindow = 3.0;      // the window improves a depth by less than this
     DropUncertain(kBeforeWindow * options_.max_depth_sigma, map);
     if (static_cast<int>(map->ids.size()) < options_.min_points) return TooFewPoints(*map);
     const std::vector<std::size_t> frames = WindowFrames();
@@ -302,6 +304,11 @@ class Attempt {
       window.cams_from_world[k] = *pose;
     }
     AddObservations(frames, *map, &window);
+    // A point that is wrong between the pair's frames would run to infinity and spoil the normal equations.
+    DropContradicted(window, kStartErrorFactor * options_.max_error_px, map);
+    if (static_cast<int>(map->ids.size()) < options_.min_points) return TooFewPoints(*map);
+    window.points_in_world = map->positions;
+    AddObservations(frames, *map, &window);
     const auto refined = RefineWindow(window, focal_px_, WindowPoints::kRefined, {});
     if (!refined.ok()) return refined.status();
     outcome_.measured.median_error_px = refined->median_error_px;
@@ -312,6 +319,7 @@ class Attempt {
 
   // An observation behind its camera contradicts the start; without it the window decides.
   void AddObservations(const std::vector<std::size_t>& frames, const InitialMap& map, Window* window) const {
+    window->observations.clear();
     for (std::size_t k = 0; k < frames.size(); ++k)
       for (const WindowObservation& observation :
            ObservationsOf(input_.camera, input_.frames[frames[k]], map.ids, static_cast<int>(k))) {
@@ -326,23 +334,28 @@ class Attempt {
   // Takes over the refined points with their new predictions, without those that contradict the refined window.
   void Adopt(const Window& window, InitialMap* map) {
     map->positions = window.points_in_world;
-    std::vector<double> squares(map->ids.size(), 0.0);
-    std::vector<int> counts(map->ids.size(), 0);
-    for (const WindowObservation& observation : window.observations) {
-      const auto i = static_cast<std::size_t>(observation.point_idx);
-      const Eigen::Vector3d x =
-          window.cams_from_world[static_cast<std::size_t>(observation.view_idx)] * map->positions[i];
-      squares[i] += std::pow(focal_px_ * AngleBetween(x, observation.ray), 2);
-      ++counts[i];
-    }
     for (std::size_t i = 0; i < map->ids.size(); ++i) {
       const Eigen::Matrix3d covariance =
           PointCovariance(window.cams_from_world, map->positions[i], options_.sigma_px / focal_px_);
       map->depth_sigmas[i] = DepthSigma(covariance, map->positions[i]);
     }
+    DropContradicted(window, options_.max_error_px, map);
+  }
+
+  // Drops the points whose root mean square error over the window's views is larger; they are the window's points.
+  void DropContradicted(const Window& window, double max_error_px, InitialMap* map) {
+    std::vector<double> squares(map->ids.size(), 0.0);
+    std::vector<int> counts(map->ids.size(), 0);
+    for (const WindowObservation& observation : window.observations) {
+      const auto i = static_cast<std::size_t>(observation.point_idx);
+      const Rigid3& cam_from_world = window.cams_from_world[static_cast<std::size_t>(observation.view_idx)];
+      const Eigen::Vector3d x = cam_from_world * window.points_in_world[i];
+      squares[i] += std::pow(focal_px_ * AngleBetween(x, observation.ray), 2);
+      ++counts[i];
+    }
     Filter(
         InitRejection::kReprojection,
-        [&](std::size_t i) { return squares[i] <= counts[i] * options_.max_error_px * options_.max_error_px; }, map);
+        [&](std::size_t i) { return squares[i] <= counts[i] * max_error_px * max_error_px; }, map);
   }
 
   const MonocularInitOptions& options_;

@@ -7,6 +7,8 @@
 #include <array>
 #include <cstdio>
 
+#include "pliant/base/statistics.h"
+
 namespace pliant {
 
 MatchedRays MatchRays(const Camera& camera, const InitFrame& reference, const InitFrame& current) {
@@ -85,7 +87,7 @@ Status HandOver(const InitInput& input, const InitialMap& map, const std::vector
                 std::vector<InitRejectedPoint> rejected, double nominal_depth_mm, InitOutcome* outcome) {
   std::vector<double> depths;
   for (const Eigen::Vector3d& position : map.positions) depths.push_back(position.z());
-  const double median = depths.empty() ? 0.0 : MedianOf(std::move(depths));
+  const double median = depths.empty() ? 0.0 : Median(std::move(depths));
   if (!(median > 0.0))
     return {ErrorCode::kDegenerate, "the map's median depth is not in front of the camera, so it cannot be scaled"};
 
@@ -101,12 +103,6 @@ Status HandOver(const InitInput& input, const InitialMap& map, const std::vector
             [](const InitRejectedPoint& a, const InitRejectedPoint& b) { return a.id < b.id; });
   outcome->rejected = std::move(rejected);
   return Status::Ok();
-}
-
-double MedianOf(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 std::string Digits(double value, int digits) {

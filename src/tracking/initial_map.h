@@ -57,8 +57,6 @@ Result<std::vector<Rigid3>> LocateFrames(const InitInput& input, const InitialMa
 Status HandOver(const InitInput& input, const InitialMap& map, const std::vector<Rigid3>& cams_from_world,
                 std::vector<InitRejectedPoint> rejected, double nominal_depth_mm, InitOutcome* outcome);
 
-// The value in the middle (the upper one of two); `values` is not empty.
-double MedianOf(std::vector<double> values);
 // A number for a sentence, with so many digits after the point.
 std::string Digits(double value, int digits);
 

@@ -8,14 +8,10 @@
 
 #include <Eigen/Dense>
 
+#include "pliant/base/statistics.h"
+
 namespace pliant {
 namespace {
-
-double Median(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 constexpr double kMadToSigma = 1.4826;  // of a normal distribution
 constexpr double kTukey = 4.685;        // 95 % efficiency under normal noise

@@ -4,6 +4,7 @@
 // Initialisation as published (Gomez Rodriguez, Montiel, Tardos, IROS 2022, section III-B): k frames apart, no gates.
 #include <numbers>
 
+#include "pliant/base/statistics.h"
 #include "pliant/estimation/relative_pose.h"
 #include "tracking/initial_map.h"
 #include "tracking/monocular_methods.h"
@@ -45,7 +46,7 @@ class PaperInitializer final : public Initializer {
 
     const InitialMap map = TriangulateInliers(*pose, &matched, focal_px);
     if (map.ids.empty()) return {ErrorCode::kInsufficient, "no point could be triangulated"};
-    outcome->measured.median_parallax_deg = MedianOf(map.parallaxes_rad) * 180.0 / std::numbers::pi;
+    outcome->measured.median_parallax_deg = Median(map.parallaxes_rad) * 180.0 / std::numbers::pi;
 
     std::vector<KnownPose> known(input.frames.size());
     known.front().known = true;

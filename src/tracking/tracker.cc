@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "pliant/base/statistics.h"
 #include "tracking/tracker_support.h"
 
 namespace pliant {
@@ -225,7 +226,7 @@ void Tracker::CreateMap(const TrackerFrame& frame, const InitOutcome& outcome, F
   report->cam_from_world = last_cam_from_world_;
   report->added = static_cast<int>(outcome.points.size());
   report->optimized = report->added;
-  report->median_reprojection_error_px = MedianOf(std::move(errors));
+  report->median_reprojection_error_px = Median(std::move(errors));
   init_frames_.clear();
   Apply(TrackingEvent::kMapCreated);
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pliant/base/statistics.h"
 #include "pliant/tracking/tracker.h"
 #include "tracking/tracker_support.h"
 
@@ -189,7 +190,7 @@ void Tracker::Commit(const FrameSolution& solution, const Followed& followed, Fr
 
   report->cam_from_world = solution.cam_from_world;
   report->optimized = static_cast<int>(followed.size());
-  report->median_reprojection_error_px = MedianOf(std::move(errors));
+  report->median_reprojection_error_px = Median(std::move(errors));
   report->costs = {solution.costs.reprojection, solution.costs.spatial, solution.costs.temporal,
                    solution.costs.edge_length};
 }

@@ -20,13 +20,6 @@ StageTimer::~StageTimer() {
   *ms_ += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
 }
 
-double MedianOf(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 std::string ImageFault(const TrackerFrame& frame, const TrackerFrame& previous) {
   constexpr double kBlack = 8;        // grey levels, mean
   constexpr double kWhite = 247;      // grey levels, mean

@@ -27,9 +27,6 @@ class StageTimer {
   double* ms_ = nullptr;
 };
 
-// The middle value (the upper of two); 0 of nothing.
-double MedianOf(std::vector<double> values);
-
 // What is wrong with an image in which nothing can be followed; empty when nothing is.
 std::string ImageFault(const TrackerFrame& frame, const TrackerFrame& previous);
 

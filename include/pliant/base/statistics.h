@@ -1,18 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Small statistics. A median reorders its values and takes them by copy.
+// Plain statistics of a list of numbers. Of an empty list each is 0.
 #pragma once
 
 #include <vector>
 
 namespace pliant {
 
-// The middle value, the mean of the two middle ones for an even count; 0 for none.
+// The middle value; the mean of the two middle ones of an even count.
 double Median(std::vector<double> values);
-// 0 for none.
 double Mean(const std::vector<double>& values);
-// sqrt(mean of squares); 0 for none.
+// Root of the mean square.
 double Rms(const std::vector<double>& values);
 
 }  // namespace pliant
