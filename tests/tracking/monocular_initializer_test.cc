@@ -11,6 +11,7 @@
 
 #include <gtest/gtest.h>
 
+#include "pliant/base/statistics.h"
 #include "support/synthetic_scene.h"
 
 namespace pliant {
@@ -99,8 +100,7 @@ TEST(MonocularInitializer, ScalesTheMapToTheNominalDepth) {
   ASSERT_EQ(outcome.decision, InitDecision::kMap) << outcome.reason;
   std::vector<double> depths;
   for (const InitPoint& point : outcome.points) depths.push_back(point.position.z());
-  std::nth_element(depths.begin(), depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2), depths.end());
-  EXPECT_NEAR(depths[depths.size() / 2], 80.0, 1e-9);
+  EXPECT_NEAR(Median(depths), 80.0, 1e-9);
 }
 
 TEST(MonocularInitializer, StaysWithinBoundsUnderNoiseAndOutliers) {
