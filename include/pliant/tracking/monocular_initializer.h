@@ -35,7 +35,7 @@ struct MonocularInitOptions {
   int paper_frames = 3;  // paper only: k
 
   // Gated: the pair.
-  double min_parallax_deg = 3.0;
+  double min_parallax_deg = 2.5;
   double max_rotation_share = 0.8;
   double min_inlier_share = 0.5;
   double min_rival_cost_ratio = 1.3;
