@@ -3,6 +3,9 @@
 
 #include "pliant/estimation/camera_pose.h"
 
+#include <memory>
+#include <string>
+
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <ceres/ceres.h>
@@ -17,7 +20,7 @@ namespace {
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
 // Reciprocal condition of the normal equations, scaled to a unit diagonal, below which a direction of the pose is free.
-// Rounding leaves about 1e-15 there; four well spread points give more than 1e-6.
+// Points on a line leave rounding there, about 1e-15.
 constexpr double kFreeDirection = 1e-12;
 
 Status Check(std::span<const Eigen::Vector3d> points, std::span<const Eigen::Vector2d> pixels, const Rigid3& pose) {
@@ -70,6 +73,39 @@ bool InvertInformation(const Matrix6d& information, Matrix6d* covariance) {
   return true;
 }
 
+// Eq. E7 over the points `used`; kDegenerate when Ceres finds no usable solution.
+Result<CameraPoseEstimate> SolvePose(const Camera& camera, std::span<const Eigen::Vector3d> points,
+                                     std::span<const Eigen::Vector2d> pixels, const std::vector<int>& used,
+                                     const PoseIncrement& pose, const CameraPoseOptions& options) {
+  Vector6d increment = Vector6d::Zero();
+  const std::unique_ptr<ceres::LossFunction> loss(NewRobustLoss(options.chi2_rep, 1.0));
+  ceres::Problem::Options problem_options;
+  problem_options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  ceres::Problem problem(problem_options);
+  for (const int i : used)
+    problem.AddResidualBlock(NewPoseReprojectionCost(camera, pose, points[i], pixels[i], options.sigma_rep_px),
+                             loss.get(), increment.data());
+  ceres::Solver::Options solver_options;
+  solver_options.linear_solver_type = ceres::DENSE_QR;
+  solver_options.max_num_iterations = options.max_iterations;
+  solver_options.function_tolerance = options.function_tolerance;
+  solver_options.num_threads = 1;
+  solver_options.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(solver_options, &problem, &summary);
+  if (!summary.IsSolutionUsable() || !increment.allFinite())
+    return {ErrorCode::kDegenerate, "The camera pose could not be computed: " + summary.message};
+
+  CameraPoseEstimate estimate;
+  estimate.cam_from_world = pose.Pose(increment);
+  estimate.num_used = static_cast<int>(used.size());
+  estimate.final_cost = summary.final_cost;
+  estimate.iterations = static_cast<int>(summary.iterations.size()) - 1;
+  estimate.converged = summary.termination_type == ceres::CONVERGENCE;
+  estimate.message = summary.message;
+  return estimate;
+}
+
 }  // namespace
 
 void CameraPoseOptions::List(OptionTable& table) {
@@ -98,34 +134,10 @@ Result<CameraPoseEstimate> EstimateCameraPose(const Camera& camera, std::span<co
                 " points lie in front of the camera; a pose needs " + std::to_string(options.min_points) + "."};
 
   const PoseIncrement pose(initial_cam_from_world, pivot / static_cast<double>(used.size()));
-  Vector6d increment = Vector6d::Zero();
-  const std::unique_ptr<ceres::LossFunction> loss(NewRobustLoss(options.chi2_rep, 1.0));
-  ceres::Problem::Options problem_options;
-  problem_options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-  ceres::Problem problem(problem_options);
-  for (const int i : used)
-    problem.AddResidualBlock(NewPoseReprojectionCost(camera, pose, points_in_world[i], pixels[i], options.sigma_rep_px),
-                             loss.get(), increment.data());
-  ceres::Solver::Options solver_options;
-  solver_options.linear_solver_type = ceres::DENSE_QR;
-  solver_options.max_num_iterations = options.max_iterations;
-  solver_options.function_tolerance = options.function_tolerance;
-  solver_options.num_threads = 1;
-  solver_options.logging_type = ceres::SILENT;
-  ceres::Solver::Summary summary;
-  ceres::Solve(solver_options, &problem, &summary);
-  if (!summary.IsSolutionUsable() || !increment.allFinite())
-    return {ErrorCode::kDegenerate, "The camera pose could not be computed: " + summary.message};
-
-  CameraPoseEstimate estimate;
-  estimate.cam_from_world = pose.Pose(increment);
-  estimate.num_used = static_cast<int>(used.size());
-  estimate.final_cost = summary.final_cost;
-  estimate.iterations = static_cast<int>(summary.iterations.size()) - 1;
-  estimate.converged = summary.termination_type == ceres::CONVERGENCE;
-  estimate.message = summary.message;
-  const Matrix6d information = ClassifyAndAccumulate(camera, points_in_world, pixels, options, &estimate);
-  if (!InvertInformation(information, &estimate.covariance))
+  auto estimate = SolvePose(camera, points_in_world, pixels, used, pose, options);
+  if (!estimate.ok()) return estimate.status();
+  const Matrix6d information = ClassifyAndAccumulate(camera, points_in_world, pixels, options, &*estimate);
+  if (!InvertInformation(information, &estimate->covariance))
     return {ErrorCode::kDegenerate,
             "The " + std::to_string(used.size()) + " points do not determine the camera's pose (they lie on a line)."};
   return estimate;

@@ -3,6 +3,8 @@
 
 // The joint problem by Ceres' L-BFGS in the preconditioned variables: a handful of steps, each an evaluation of the
 // energy and two sparse triangular solves.
+#include <memory>
+
 #include <ceres/gradient_problem.h>
 #include <ceres/gradient_problem_solver.h>
 

@@ -4,6 +4,7 @@
 #include "pliant/estimation/frame_problem.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "estimation/frame_terms.h"
 #include "pliant/residuals/edge_length.h"

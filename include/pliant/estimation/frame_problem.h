@@ -71,7 +71,7 @@ struct FrameProblemOptions {
   double sigma_len_mm = 1.0;
   double chi2_len = 3.841;  // 95 % at 1 degree of freedom
   FrameSolver solver = FrameSolver::kLbfgs;
-  int max_iterations = 100;
+  int max_iterations = 200;
   double function_tolerance = 1e-9;  // relative change of the cost at which it has converged
   int min_points = 4;                // fewer usable points determine no pose
 
