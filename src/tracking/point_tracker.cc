@@ -77,16 +77,19 @@ PatchFailure PointTracker::Add(PointId id, const Eigen::Vector2d& pixel, const I
 }
 
 // From the predicted pixel; should that fail, from where the point was.
-PatchMatch PointTracker::FollowLatest(const Point& point, const PointPrediction& prediction,
-                                      const Images& images) const {
+PatchMatch PointTracker::FollowLatest(const Point& point, const PointPrediction& prediction, const Images& images,
+                                      Eigen::Vector2d* expected_motion) const {
   const ReferencePatch& patch = options_.patch_policy == PatchPolicy::kAdaptive ? point.latest : point.reference;
   const auto from = [&](const Eigen::Vector2d& start) {
     return TrackPatch(patch, images.current, images.current_mask, ToPixel(start), options_.lucas_kanade);
   };
+  *expected_motion = prediction.pixel - point.pixel;
   const PatchMatch match = from(prediction.pixel);
-  if (match.failure == PatchFailure::kNone || (prediction.pixel - point.pixel).norm() < kOtherStart_px) return match;
+  if (match.failure == PatchFailure::kNone || expected_motion->norm() < kOtherStart_px) return match;
   const PatchMatch again = from(point.pixel);
-  return again.failure == PatchFailure::kNone ? again : match;
+  if (again.failure != PatchFailure::kNone) return match;
+  expected_motion->setZero();
+  return again;
 }
 
 // The point against its first patch. Its failure says that the first patch no longer finds it.
@@ -110,9 +113,9 @@ PatchMatch PointTracker::Realign(const Point& point, const PatchMatch& found, co
              : shifted;
 }
 
-bool PointTracker::Returns(const ReferencePatch& patch, const Point& point, const PointPrediction& prediction,
+bool PointTracker::Returns(const ReferencePatch& patch, const Point& point, const Eigen::Vector2d& expected_motion,
                            const Images& images) const {
-  const Eigen::Vector2d start = ToVector(patch.centre) - (prediction.pixel - point.pixel);
+  const Eigen::Vector2d start = ToVector(patch.centre) - expected_motion;
   const PatchMatch back =
       TrackPatch(patch, images.previous, images.previous_mask, ToPixel(start), options_.lucas_kanade);
   return back.failure == PatchFailure::kNone &&
@@ -125,7 +128,8 @@ PointTrack PointTracker::TrackOne(const PointPrediction& prediction, const Image
   PointTrack track;
   track.id = prediction.id;
   track.affine_from_first = expected * point->reference_affine_from_first;
-  PatchMatch match = FollowLatest(*point, prediction, images);
+  Eigen::Vector2d expected_motion;
+  PatchMatch match = FollowLatest(*point, prediction, images, &expected_motion);
   match.affine = ToAffine2(expected);
   track.failure = match.failure;
   bool refresh = !adaptive && point->age + 1 >= options_.refresh_period;
@@ -148,7 +152,7 @@ PointTrack PointTracker::TrackOne(const PointPrediction& prediction, const Image
     track.failure =
         CutReferencePatch(images.current, images.current_mask, match.pixel, options_.lucas_kanade, affine, &cut);
     if (track.failure == PatchFailure::kNone && options_.forward_backward == Detection::kOn &&
-        !Returns(cut, *point, prediction, images))
+        !Returns(cut, *point, expected_motion, images))
       track.failure = PatchFailure::kForwardBackward;
     if (track.failure != PatchFailure::kNone) return track;
     std::swap(cut, point->latest);

@@ -19,7 +19,7 @@ class SyntheticTexture {
   // Waves of 8 to 60 px, standard deviation about 28 grey levels around 120.
   explicit SyntheticTexture(std::uint64_t seed, double shortest_px = 8) {
     Random random(seed);
-    constexpr int kWaves = 60;
+    constexpr int kWaves = 36;
     for (int i = 0; i < kWaves; ++i) {
       const double wavelength = shortest_px * std::pow(60 / shortest_px, random.Uniform());
       const double angle = random.Uniform(0, std::numbers::pi);
@@ -31,7 +31,7 @@ class SyntheticTexture {
   double At(double x, double y) const {
     double sum = 0;
     for (const Wave& wave : waves_) sum += std::cos(wave.kx * x + wave.ky * y + wave.phase);
-    return 120 + 5.1 * sum;
+    return 120 + 6.6 * sum;
   }
 
   // Image whose pixel p shows gain * At(texture_from_pixel(p)) + bias, with normal noise.

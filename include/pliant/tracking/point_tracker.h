@@ -97,10 +97,11 @@ class PointTracker {
   };
   struct Images;
 
-  PatchMatch FollowLatest(const Point& point, const PointPrediction& prediction, const Images& images) const;
+  PatchMatch FollowLatest(const Point& point, const PointPrediction& prediction, const Images& images,
+                          Eigen::Vector2d* expected_motion) const;
   PatchMatch Realign(const Point& point, const PatchMatch& found, const Eigen::Matrix2d& affine,
                      const Images& images) const;
-  bool Returns(const ReferencePatch& patch, const Point& point, const PointPrediction& prediction,
+  bool Returns(const ReferencePatch& patch, const Point& point, const Eigen::Vector2d& expected_motion,
                const Images& images) const;
   PointTrack TrackOne(const PointPrediction& prediction, const Images& images, Point* point) const;
 
