@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <cstdlib>
 #include <fstream>
 #include <string_view>
 #include <vector>
@@ -71,7 +72,24 @@ bool JpegIsWhole(const Bytes& bytes) {
   return false;
 }
 
+// The head says where the pixels begin and how large the image is; packed ones (compression not 0) have no fixed
+// length.
+bool BmpIsWhole(const Bytes& bytes) {
+  if (bytes.size() < 54) return false;
+  const auto number = [&bytes](std::size_t at, int count) {
+    std::uint32_t value = 0;
+    for (int i = count - 1; i >= 0; --i) value = (value << 8) | bytes[at + static_cast<std::size_t>(i)];
+    return value;
+  };
+  if (number(30, 4) != 0) return true;
+  const std::int64_t width = number(18, 4);
+  const std::int64_t height = std::abs(std::int64_t{static_cast<std::int32_t>(number(22, 4))});  // negative: top down
+  const std::int64_t row_bytes = (width * number(28, 2) + 31) / 32 * 4;
+  return number(10, 4) + row_bytes * height <= static_cast<std::int64_t>(bytes.size());
+}
+
 bool IsPng(const Bytes& bytes) { return StartsWith(bytes, "\x89PNG\r\n\x1a\n"); }
+bool IsBmp(const Bytes& bytes) { return StartsWith(bytes, "BM"); }
 bool IsJpeg(const Bytes& bytes) { return StartsWith(bytes, "\xFF\xD8"); }
 
 struct DecodedImage {
@@ -84,7 +102,8 @@ Result<DecodedImage> Decode(const std::filesystem::path& path) {
   if (!bytes.ok()) return bytes.status();
   const std::string advice = "; copy or export it anew";
   if (bytes->empty()) return Status(ErrorCode::kUnreadable, "the image " + path.string() + " is empty" + advice);
-  if ((IsPng(*bytes) && !PngIsWhole(*bytes)) || (IsJpeg(*bytes) && !JpegIsWhole(*bytes)))
+  if ((IsPng(*bytes) && !PngIsWhole(*bytes)) || (IsJpeg(*bytes) && !JpegIsWhole(*bytes)) ||
+      (IsBmp(*bytes) && !BmpIsWhole(*bytes)))
     return Status(ErrorCode::kUnreadable, "the image " + path.string() + " is truncated" + advice);
   DecodedImage decoded;
   try {

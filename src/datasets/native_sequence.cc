@@ -83,6 +83,8 @@ Result<std::unique_ptr<NativeSequence>> NativeSequence::Open(const fs::path& fol
     for (const TimedPose& pose : *poses) sequence->world_from_cam_.push_back(pose.world_from_cam);
   }
   if (const fs::path depth_path = folder / "depth"; Exists(depth_path)) {
+    if (!fs::is_directory(depth_path))  // one image may mask every frame, but is not the depth of every frame
+      return Status(ErrorCode::kUnreadable, depth_path.string() + " is a file where a folder of images is expected");
     Result<CompanionImages> depth =
         CompanionImages::Open("depth", depth_path, sequence->stems_, CompanionImages::Counts::kMustAgree);
     if (!depth.ok()) return depth.status();

@@ -28,8 +28,8 @@ Status CheckBelongsTo(const EvaluationInput& run, const Sequence& sequence) {
                                         ", which the sequence does not have; give the sequence that was tracked"};
     if (time_s && !(std::abs(*time_s - frame.timestamp_s) <= kTimeToleranceS))
       return {ErrorCode::kMismatch, "frame " + std::to_string(frame.frame_idx) + " is at " +
-                                        FormatDouble(frame.timestamp_s) + " s in the run " + run.name + " and at " +
-                                        FormatDouble(*time_s) +
+                                        std::to_string(frame.timestamp_s) + " s in the run " + run.name + " and at " +
+                                        std::to_string(*time_s) +
                                         " s in the sequence; give the sequence that was tracked"};
   }
   return Status::Ok();

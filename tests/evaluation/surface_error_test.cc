@@ -1,0 +1,171 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/evaluation/surface_error.h"
+
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "pliant/base/random.h"
+
+namespace pliant {
+namespace {
+
+constexpr double kRounding = 1e-9;       // of lengths of about 100 mm
+constexpr double kDepthRounding = 1e-5;  // depth maps are float: 50 mm to about 4e-6
+constexpr double kStep = 0.05;
+
+Camera TestCamera() {
+  constexpr std::array<double, 4> kParams = {60, 60, 31.5, 23.5};
+  return *Camera::Create(CameraModelId::kPinhole, 64, 48, kParams);
+}
+
+// A curved surface whose depth is not the same in any two neighbouring columns.
+cv::Mat WavyDepth() {
+  cv::Mat_<float> depth(48, 64);
+  for (int y = 0; y < depth.rows; ++y)
+    for (int x = 0; x < depth.cols; ++x) depth(y, x) = static_cast<float>(50 + 5 * std::sin(0.1 * x) + 0.1 * y);
+  return depth;
+}
+
+std::vector<Eigen::Vector2d> Pixels(int count, Random random) {
+  std::vector<Eigen::Vector2d> pixels;
+  for (int i = 0; i < count; ++i) pixels.emplace_back(random.Uniform(0, 63), random.Uniform(0, 47));
+  return pixels;
+}
+
+// The truth of the pixels, and estimates that are it divided by `scale`, with noise (mm, each axis).
+SurfaceFrame Frame(int frame_idx, double scale, double noise_mm, int count = 200) {
+  const Random random(100 + static_cast<std::uint64_t>(frame_idx));
+  const std::vector<Eigen::Vector2d> pixels = Pixels(count, random.Child("pixels"));
+  const std::vector<Eigen::Vector3d> nothing(pixels.size(), Eigen::Vector3d::Zero());
+  SurfaceFrame frame = PairWithSurface(frame_idx, nothing, pixels, TestCamera(), WavyDepth(), kStep);
+  Random noise = random.Child("noise");
+  for (SurfacePair& pair : frame.pairs) {
+    const Eigen::Vector3d error(noise.Normal(noise_mm), noise.Normal(noise_mm), noise.Normal(noise_mm));
+    pair.estimate = (pair.truth + error) / scale;
+  }
+  return frame;
+}
+
+TEST(SurfaceError, IsZeroForTheTruthItself) {
+  for (const SurfaceScale scale : {SurfaceScale::kPerFrame, SurfaceScale::kGlobal, SurfaceScale::kNone}) {
+    const auto error = ComputeSurfaceError(std::vector{Frame(0, 1, 0), Frame(1, 1, 0)}, {.scale = scale});
+    ASSERT_TRUE(error.ok());
+    EXPECT_LT(error->estimate.mean_rmse_mm, kRounding);
+    EXPECT_LT(error->estimate.pooled_median_mm, kRounding);
+    EXPECT_LT(error->estimate.median_relative_depth, kRounding);
+    EXPECT_GT(error->null.mean_rmse_mm, 1.0);
+    EXPECT_EQ(error->points, 400);
+  }
+}
+
+TEST(SurfaceError, RecoversAKnownScaleExactly) {
+  const std::vector frames = {Frame(0, 2.5, 0), Frame(1, 2.5, 0)};
+  for (const SurfaceScale scale : {SurfaceScale::kPerFrame, SurfaceScale::kGlobal}) {
+    const auto error = ComputeSurfaceError(frames, {.scale = scale});
+    ASSERT_TRUE(error.ok());
+    EXPECT_NEAR(error->estimate.min_scale, 2.5, kRounding);
+    EXPECT_NEAR(error->estimate.max_scale, 2.5, kRounding);
+    EXPECT_LT(error->estimate.pooled_rmse_mm, kRounding);
+  }
+  const auto unscaled = ComputeSurfaceError(frames, {.scale = SurfaceScale::kNone});
+  ASSERT_TRUE(unscaled.ok());
+  EXPECT_NEAR(unscaled->estimate.median_relative_depth, 1 - 1 / 2.5, kRounding);
+}
+
+TEST(SurfaceError, CountsDriftOfTheScaleOnlyUnderAGlobalScale) {
+  const std::vector frames = {Frame(0, 1.0, 0), Frame(1, 1.2, 0)};
+  EXPECT_LT(ComputeSurfaceError(frames, {.scale = SurfaceScale::kPerFrame})->estimate.mean_rmse_mm, kRounding);
+  EXPECT_GT(ComputeSurfaceError(frames, {.scale = SurfaceScale::kGlobal})->estimate.mean_rmse_mm, 2.0);
+}
+
+TEST(SurfaceError, MatchesKnownNoise) {
+  std::vector<SurfaceFrame> frames;
+  for (int i = 0; i < 50; ++i) frames.push_back(Frame(i, 1, 0.8));
+  const auto error = ComputeSurfaceError(frames, {.scale = SurfaceScale::kNone});
+  ASSERT_TRUE(error.ok());
+  // The mean square of 30,000 normal numbers is right to 3 * sqrt(2 / 30000) = 2.5 %.
+  EXPECT_NEAR(error->estimate.pooled_rmse_mm, 0.8 * std::sqrt(3.0), 0.0125 * 0.8 * std::sqrt(3.0));
+  // The median of a chi distribution of three degrees of freedom is 1.5382.
+  EXPECT_NEAR(error->estimate.pooled_median_mm, 0.8 * 1.5382, 0.03);
+}
+
+TEST(SurfaceError, IsThePlainUntrimmedRmse) {
+  SurfaceFrame frame;
+  frame.pairs = {
+      {{0, 0, 10}, {0, 0, 10}}, {{0, 3, 10}, {0, 0, 10}}, {{4, 0, 10}, {0, 0, 10}}, {{0, 0, 22}, {0, 0, 10}}};
+  const auto error = ComputeSurfaceError(std::vector{frame}, {.scale = SurfaceScale::kNone});
+  ASSERT_TRUE(error.ok());
+  EXPECT_NEAR(error->estimate.mean_rmse_mm, std::sqrt((9 + 16 + 144) / 4.0), kRounding);
+  EXPECT_NEAR(error->estimate.pooled_median_mm, 3.5, kRounding);
+}
+
+TEST(SurfaceError, ScaleIsTheLeastSquaresOne) {
+  const std::vector<SurfacePair> pairs = {{{1, 0, 2}, {2, 1, 4}}, {{0, 1, 3}, {0, 2, 7}}};
+  const double s = BestScale(pairs);
+  EXPECT_NEAR(s, (2 + 8 + 2 + 21) / (5.0 + 10.0), kRounding);
+  const std::vector<SurfacePair> zero = {{{0, 0, 0}, {0, 0, 5}}};
+  EXPECT_EQ(BestScale(zero), 1.0);
+}
+
+TEST(SurfaceError, NullOfAPlaneAtConstantDepthIsZero) {
+  const cv::Mat depth(48, 64, CV_32FC1, cv::Scalar::all(40));
+  const std::vector<Eigen::Vector2d> pixels = Pixels(50, Random(3));
+  const std::vector<Eigen::Vector3d> points(pixels.size(), Eigen::Vector3d(1, 2, 3));
+  const auto frame = PairWithSurface(0, points, pixels, TestCamera(), depth, kStep);
+  for (const SurfaceScale scale : {SurfaceScale::kPerFrame, SurfaceScale::kGlobal, SurfaceScale::kNone}) {
+    const auto error = ComputeSurfaceError(std::vector{frame}, {.scale = scale});
+    ASSERT_TRUE(error.ok());
+    EXPECT_LT(error->null.mean_rmse_mm, kDepthRounding);
+    EXPECT_NEAR(error->null.min_scale, 40, kDepthRounding);
+    EXPECT_GT(error->estimate.mean_rmse_mm, 1.0);
+  }
+}
+
+TEST(SurfaceError, TakesTheTruthAtThePixelItselfAndNotAtARoundedOne) {
+  cv::Mat_<float> slanted(48, 64);
+  for (int y = 0; y < slanted.rows; ++y)
+    for (int x = 0; x < slanted.cols; ++x) slanted(y, x) = static_cast<float>(40 + 0.5 * x + 0.25 * y);
+  const Eigen::Vector2d pixel(10.25, 20.5);
+  const std::vector<Eigen::Vector3d> point = {{0, 0, 1}};
+  const auto frame = PairWithSurface(0, point, std::vector{pixel}, TestCamera(), slanted, kStep);
+  ASSERT_EQ(frame.pairs.size(), 1U);
+  const double depth_mm = 40 + 0.5 * 10.25 + 0.25 * 20.5;
+  const Eigen::Vector3d expected((10.25 - 31.5) / 60 * depth_mm, (20.5 - 23.5) / 60 * depth_mm, depth_mm);
+  EXPECT_LT((frame.pairs[0].truth - expected).norm(), kDepthRounding);
+}
+
+TEST(SurfaceError, LeavesOutDepthStepsHolesAndWhatHasNoTruthAndCountsThem) {
+  cv::Mat_<float> depth(48, 64, 50.0F);
+  depth(cv::Rect(32, 0, 32, 48)) = 60.0F;  // a step of 20 % between columns 31 and 32
+  depth(10, 10) = 0;
+  const std::vector<Eigen::Vector2d> pixels = {{31.5, 20}, {30.5, 20}, {32.5, 20}, {9.5, 9.5},
+                                               {-0.1, 5},  {63.2, 5},  {63, 47},   {20, 20}};
+  std::vector<Eigen::Vector3d> points(pixels.size(), Eigen::Vector3d(0, 0, 50));
+  points.back().x() = std::nan("");
+  const auto frame = PairWithSurface(0, points, pixels, TestCamera(), depth, kStep);
+  EXPECT_EQ(frame.left_out.depth_step, 1);
+  EXPECT_EQ(frame.left_out.no_depth, 1);
+  EXPECT_EQ(frame.left_out.outside_image, 2);
+  EXPECT_EQ(frame.left_out.not_finite, 1);
+  EXPECT_EQ(frame.left_out.Total(), 5);
+  EXPECT_EQ(frame.pairs.size(), 3U);
+  EXPECT_EQ(PairWithSurface(0, points, pixels, TestCamera(), depth, 0.25).left_out.depth_step, 0);
+}
+
+TEST(SurfaceError, SaysWhyNothingCouldBeCompared) {
+  SurfaceFrame frame;
+  frame.left_out.depth_step = 7;
+  const auto error = ComputeSurfaceError(std::vector{frame}, {});
+  EXPECT_EQ(error.status().code(), ErrorCode::kInsufficient);
+  EXPECT_THAT(error.status().message(), testing::HasSubstr("7 on a depth step"));
+}
+
+}  // namespace
+}  // namespace pliant

@@ -1,0 +1,120 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/evaluation/trajectory_error.h"
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "pliant/base/random.h"
+#include "pliant/evaluation/track_survival.h"
+
+namespace pliant {
+namespace {
+
+constexpr double kRounding = 1e-9;  // of lengths of about 100 mm and angles in degrees
+constexpr double kDegPerRad = 180.0 / std::numbers::pi;
+
+Rigid3 At(double x, double y, double z) { return {Eigen::Quaterniond::Identity(), Eigen::Vector3d(x, y, z)}; }
+
+// A true path and the same path as a run sees it: in another frame and scale.
+std::vector<PosePair> MovedPath(const Sim3& run_from_truth) {
+  Random random(11);
+  std::vector<PosePair> pairs;
+  for (int i = 0; i < 30; ++i) {
+    const Rigid3 truth(RotationExp({random.Normal(0.3), random.Normal(0.3), random.Normal(0.3)}),
+                       Eigen::Vector3d(2.0 * i, random.Normal(5), random.Normal(5)));
+    pairs.push_back({i, {run_from_truth.rotation * truth.rotation, run_from_truth * truth.translation}, truth});
+  }
+  return pairs;
+}
+
+TEST(TrajectoryError, IsZeroForTheTruePathInAnotherFrameAndScale) {
+  const auto error = ComputeTrajectoryError(MovedPath({0.4, RotationExp({1, -2, 0.5}), {7, 8, 9}}), {});
+  ASSERT_TRUE(error.ok());
+  EXPECT_LT(error->ate_rmse_mm, kRounding);
+  EXPECT_LT(error->ate_max_mm, kRounding);
+  EXPECT_LT(error->rotation_rmse_deg, 1e-6);  // the angle of a rotation near none is right to the root of rounding
+  EXPECT_LT(error->rpe_translation_rmse_mm, kRounding);
+  EXPECT_LT(error->rpe_rotation_rmse_deg, 1e-6);
+  EXPECT_NEAR(error->truth_from_run.scale, 2.5, kRounding);
+  EXPECT_NEAR(error->path_length_mm, error->true_path_length_mm, 1e-8);
+  EXPECT_EQ(error->rpe_pairs, 29);
+}
+
+TEST(TrajectoryError, CountsAWrongScaleUnderSe3) {
+  const auto pairs = MovedPath({0.4, RotationExp({1, -2, 0.5}), {7, 8, 9}});
+  const auto error = ComputeTrajectoryError(pairs, {.alignment = TrajectoryAlignment::kSe3});
+  ASSERT_TRUE(error.ok());
+  EXPECT_EQ(error->truth_from_run.scale, 1.0);
+  EXPECT_GT(error->ate_rmse_mm, 5.0);
+}
+
+// By hand: true centres (+-1, 0, 0), (0, +-1, 0); estimates (+-2, 0, 0), (0, +-1, 0). Both are centred and the best
+// rotation is none. The best scale is sum(a.b) / sum(a.a) = (2 + 2 + 1 + 1) / (4 + 4 + 1 + 1) = 0.6, which leaves
+// 0.2 twice and 0.4 twice: RMSE sqrt(0.1). With the scale fixed at 1 it leaves 1, 1, 0, 0: sqrt(0.5).
+TEST(TrajectoryError, MatchesACaseWorkedByHand) {
+  const std::vector<PosePair> pairs = {{0, At(2, 0, 0), At(1, 0, 0)},
+                                       {1, At(0, 1, 0), At(0, 1, 0)},
+                                       {2, At(-2, 0, 0), At(-1, 0, 0)},
+                                       {3, At(0, -1, 0), At(0, -1, 0)}};
+  const auto sim3 = ComputeTrajectoryError(pairs, {});
+  ASSERT_TRUE(sim3.ok());
+  EXPECT_NEAR(sim3->ate_rmse_mm, std::sqrt(0.1), kRounding);
+  EXPECT_NEAR(sim3->ate_median_mm, 0.3, kRounding);
+  EXPECT_NEAR(sim3->ate_max_mm, 0.4, kRounding);
+  EXPECT_NEAR(sim3->true_path_length_mm, 3 * std::sqrt(2.0), kRounding);
+  const auto se3 = ComputeTrajectoryError(pairs, {.alignment = TrajectoryAlignment::kSe3});
+  ASSERT_TRUE(se3.ok());
+  EXPECT_NEAR(se3->ate_rmse_mm, std::sqrt(0.5), kRounding);
+}
+
+// One pose of the path turned in place by a known angle: it spoils two relative rotations of 29 and one absolute one.
+TEST(TrajectoryError, RelativeErrorSeesOneTurnedPoseTwice) {
+  std::vector<PosePair> pairs = MovedPath({1, Eigen::Quaterniond::Identity(), {0, 0, 0}});
+  pairs[10].world_from_cam.rotation = pairs[10].world_from_cam.rotation * RotationExp({0, 0, 0.1});
+  const auto error = ComputeTrajectoryError(pairs, {});
+  ASSERT_TRUE(error.ok());
+  EXPECT_LT(error->ate_rmse_mm, kRounding);
+  EXPECT_NEAR(error->rotation_rmse_deg, 0.1 * kDegPerRad / std::sqrt(30.0), 1e-6);
+  EXPECT_NEAR(error->rpe_rotation_rmse_deg, 0.1 * kDegPerRad * std::sqrt(2.0 / 29.0), 1e-6);
+  const auto far = ComputeTrajectoryError(pairs, {.rpe_delta = 29});
+  EXPECT_EQ(far->rpe_pairs, 1);
+  EXPECT_LT(far->rpe_rotation_rmse_deg, 1e-6);
+}
+
+TEST(TrajectoryError, RefusesTooFewPosesAndACameraThatStandsStill) {
+  std::vector<PosePair> pairs = MovedPath({1, Eigen::Quaterniond::Identity(), {0, 0, 0}});
+  EXPECT_EQ(ComputeTrajectoryError(std::span(pairs).first(2), {}).status().code(), ErrorCode::kInsufficient);
+  for (PosePair& pair : pairs) pair.true_world_from_cam.translation.setConstant(3);
+  EXPECT_EQ(ComputeTrajectoryError(pairs, {}).status().code(), ErrorCode::kDegenerate);
+}
+
+TEST(TrackSurvival, CountsPointsTracksAndFrames) {
+  const auto ids = [](std::vector<int> values) {
+    std::vector<PointId> result;
+    for (const int value : values) result.push_back({value});
+    return result;
+  };
+  const std::vector<FrameTracks> frames = {{3, false, {}},
+                                           {4, true, ids({0, 1, 2, 3})},
+                                           {5, true, ids({0, 2, 3, 7})},
+                                           {6, true, ids({3, 7})},
+                                           {7, false, {}}};
+  const TrackSurvival survival = ComputeTrackSurvival(frames);
+  EXPECT_EQ(survival.frames_read, 5);
+  EXPECT_EQ(survival.frames_tracked, 3);
+  EXPECT_EQ(survival.first_points, 4);
+  EXPECT_EQ(survival.last_points, 2);
+  EXPECT_NEAR(survival.mean_points, 10 / 3.0, kRounding);
+  EXPECT_EQ(survival.last_alive_of_first, 1);
+  EXPECT_EQ(survival.tracks, 5);
+  EXPECT_EQ(survival.median_track_length, 2);  // lengths 2, 1, 2, 3, 2
+  EXPECT_EQ(survival.frames[2].alive_of_first, 3);
+}
+
+}  // namespace
+}  // namespace pliant
