@@ -113,13 +113,13 @@ PatchMatch PointTracker::Realign(const Point& point, const PatchMatch& found, co
              : shifted;
 }
 
-bool PointTracker::Returns(const ReferencePatch& patch, const Point& point, const Eigen::Vector2d& expected_motion,
-                           const Images& images) const {
+bool PointTracker::Returns(const ReferencePatch& patch, const Eigen::Vector2d& expected_motion,
+                           const Eigen::Vector2d& origin, const Images& images) const {
   const Eigen::Vector2d start = ToVector(patch.centre) - expected_motion;
   const PatchMatch back =
       TrackPatch(patch, images.previous, images.previous_mask, ToPixel(start), options_.lucas_kanade);
   return back.failure == PatchFailure::kNone &&
-         (ToVector(back.pixel) - point.pixel).norm() <= options_.max_forward_backward_px;
+         (ToVector(back.pixel) - origin).norm() <= options_.max_forward_backward_px;
 }
 
 PointTrack PointTracker::TrackOne(const PointPrediction& prediction, const Images& images, Point* point) const {
@@ -132,6 +132,7 @@ PointTrack PointTracker::TrackOne(const PointPrediction& prediction, const Image
   PatchMatch match = FollowLatest(*point, prediction, images, &expected_motion);
   match.affine = ToAffine2(expected);
   track.failure = match.failure;
+  const Pixel by_latest = match.pixel;
   bool refresh = !adaptive && point->age + 1 >= options_.refresh_period;
   if (adaptive && track.failure == PatchFailure::kNone) {
     const PatchMatch aligned = Realign(*point, match, expected, images);
@@ -151,8 +152,10 @@ PointTrack PointTracker::TrackOne(const PointPrediction& prediction, const Image
     const AffineSolution affine = adaptive && refresh ? AffineSolution::kWith : AffineSolution::kWithout;
     track.failure =
         CutReferencePatch(images.current, images.current_mask, match.pixel, options_.lucas_kanade, affine, &cut);
+    // The way back is that of the latest patch: what re-alignment corrected is not held against the point.
+    const Eigen::Vector2d origin = point->pixel + track.pixel - ToVector(by_latest);
     if (track.failure == PatchFailure::kNone && options_.forward_backward == Detection::kOn &&
-        !Returns(cut, *point, expected_motion, images))
+        !Returns(cut, expected_motion, origin, images))
       track.failure = PatchFailure::kForwardBackward;
     if (track.failure != PatchFailure::kNone) return track;
     std::swap(cut, point->latest);

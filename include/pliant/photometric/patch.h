@@ -86,7 +86,7 @@ struct LucasKanadeOptions {
   GainBias gain_bias = GainBias::kOn;
   Shading shading = Shading::kPlane;  // with gain_bias only
   double max_gain = 4;                // gains outside [1 / max_gain, max_gain] are refused
-  double min_texture = 1.0;           // grey levels / px: root of the smaller eigenvalue of the mean gradient tensor
+  double min_texture = 0.5;           // grey levels / px: root of the smaller eigenvalue of the mean gradient tensor
   double min_valid_support = 0.6;     // share of the patch that must lie on usable pixels
   double max_correction_px = 60;      // farther from its start than this, a patch has run away
   SimilarityMode similarity = SimilarityMode::kCompensated;

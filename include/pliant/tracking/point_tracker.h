@@ -101,7 +101,7 @@ class PointTracker {
                           Eigen::Vector2d* expected_motion) const;
   PatchMatch Realign(const Point& point, const PatchMatch& found, const Eigen::Matrix2d& affine,
                      const Images& images) const;
-  bool Returns(const ReferencePatch& patch, const Point& point, const Eigen::Vector2d& expected_motion,
+  bool Returns(const ReferencePatch& patch, const Eigen::Vector2d& expected_motion, const Eigen::Vector2d& origin,
                const Images& images) const;
   PointTrack TrackOne(const PointPrediction& prediction, const Images& images, Point* point) const;
 
