@@ -88,7 +88,8 @@ Status CommandLine::ReadArguments(std::span<const std::string> args) {
     if (argument.placeholder.empty()) {
       app.add_flag_callback("--" + argument.name, [&argument] { argument.given = {""}; });
     } else {
-      app.add_option("--" + argument.name, argument.given)->expected(1);
+      app.add_option_function<std::string>("--" + argument.name,
+                                           [&argument](const std::string& value) { argument.given = {value}; });
     }
   }
   try {

@@ -20,7 +20,8 @@ run(0 "" ${CMAKE_COMMAND} --build ${WORK}/build)
 
 set(sequence ${WORK}/sequence)
 run(0 "8 frames" ${WORK}/prefix/bin/pliant simulate --output_path ${sequence} --Trajectory.frames 8
-    --Camera.width 160 --Camera.height 120 --Sensor.samples 1)
+    --Camera.width 160 --Camera.height 120 --Sensor.samples 1
+    --Scene.view_mm 80 --Scene.mesh_step_mm 2 --Texture.smallest_mm 2 --Texture.texel_mm 0.8)
 # Eight small frames need not carry a map: what counts is that the pipeline ran to the sequence's end.
 run(0 "8 frames" ${WORK}/build/consumer ${sequence} ${WORK}/run)
 run(1 "${WORK}/nowhere" ${WORK}/build/consumer ${WORK}/nowhere ${WORK}/run2)
