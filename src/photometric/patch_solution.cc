@@ -42,9 +42,9 @@ double LargestVariance(const double* inverse, int n) {
 PatchFailure SolvePatch(const float* values, const float* weights, BasisKind kind, int level, PatchShape shape,
                         const LucasKanadeOptions& options, float* solve, float* offsets) {
   const int motion = kind == BasisKind::kAffine ? 6 : 2;
-  const int blocks = motion + 4;  // and gain, bias, the two slopes of the shading
   const bool plane = level == 0 && options.shading == Shading::kPlane;
-  const int used = motion + (options.gain_bias == GainBias::kOff ? 0 : plane ? 4 : 2);
+  const int blocks = motion + (plane ? 4 : 2);  // and gain, bias, the two slopes of the shading
+  const int used = options.gain_bias == GainBias::kOff ? motion : blocks;
   alignas(64) std::array<float, static_cast<std::size_t>(kMaxBlocks) * kMaxBlock> basis;
   std::array<float, kMaxBlocks * kMaxBlocks> gram;
   const float* centre = values + shape.row_stride + 1;

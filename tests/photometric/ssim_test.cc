@@ -43,6 +43,7 @@ TEST(Ssim, OfATrackIsTheDirectComputationOnThePatchFound) {
   for (const SimilarityMode mode : {SimilarityMode::kPlain, SimilarityMode::kCompensated}) {
     LucasKanadeOptions options;
     options.similarity = mode;
+    options.patch_size = 21;
     ReferencePatch patch;
     CutReferencePatch(ImagePyramid(first, 4), {}, at, options, AffineSolution::kWithout, &patch);
     const PatchMatch match = TrackPatch(patch, ImagePyramid(second, 4), {}, at, options);

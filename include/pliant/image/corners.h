@@ -23,8 +23,8 @@ struct CornerOptions {
   int border_px = 12;            // to the image's edge and to masked pixels: half a patch and a little
   int block_size_px = 7;         // window of the structure tensor
   Detection contour_filter = Detection::kOn;
-  double contour_threshold = 0.5;  // ContourMeasure above which a corner counts as lying on an occluding contour
-  int contour_radius_px = 16;      // how far to each side the surroundings are compared
+  double contour_threshold = 0.35;  // ContourMeasure above which a corner counts as lying on an occluding contour
+  int contour_radius_px = 24;      // how far to each side the surroundings are compared
 
   void List(OptionTable& table);  // group "Corners"
 };

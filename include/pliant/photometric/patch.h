@@ -79,7 +79,7 @@ struct EnumNames<SimilarityMode> {
 inline constexpr int kMaxPatchSize = 31;
 
 struct LucasKanadeOptions {
-  int patch_size = 21;       // px, odd, at most kMaxPatchSize; side of the square, on every level
+  int patch_size = 15;       // px, odd, at most kMaxPatchSize; side of the square, on every level
   int levels = 4;            // pyramid levels, 1: the image alone
   int max_iterations = 15;   // on each level
   double epsilon_px = 0.01;  // a smaller step ends a level (in pixels of that level)
