@@ -222,15 +222,30 @@ void GramMatrix(const float* basis, int blocks, PatchShape shape, float* gram) {
       gram[i * blocks + j] = gram[j * blocks + i] = Dot(basis + i * block, basis + j * block, block);
 }
 
-void CombineBlocks(const float* basis, int blocks, const float* coefficients, int rows, PatchShape shape, float* out) {
+// The number of blocks is known to the compiler, so that all coefficients stay in registers.
+template <int kBlocks>
+HWY_INLINE void CombineRow(const float* basis, const float* coefficients, int block, float* out) {
   const int lanes = static_cast<int>(hn::Lanes(F()));
-  const int block = shape.size * shape.row_stride;
   for (int i = 0; i < block; i += lanes) {
-    for (int r = 0; r < rows; ++r) {
-      Vf sum = hn::Zero(F());
-      for (int j = 0; j < blocks; ++j)
-        sum = hn::MulAdd(hn::Set(F(), coefficients[r * blocks + j]), hn::LoadU(F(), basis + j * block + i), sum);
-      hn::StoreU(sum, F(), out + r * block + i);
+    Vf sum = hn::Zero(F());
+    for (int j = 0; j < kBlocks; ++j)
+      sum = hn::MulAdd(hn::Set(F(), coefficients[j]), hn::LoadU(F(), basis + j * block + i), sum);
+    hn::StoreU(sum, F(), out + i);
+  }
+}
+
+void CombineBlocks(const float* basis, int blocks, const float* coefficients, int rows, PatchShape shape, float* out) {
+  const int block = shape.size * shape.row_stride;
+  for (int r = 0; r < rows; ++r) {
+    float row[10] = {};  // a copy that `out` cannot overlap
+    std::copy(coefficients + r * blocks, coefficients + (r + 1) * blocks, row);
+    float* target = out + r * block;
+    if (blocks <= 4) {
+      blocks == 4 ? CombineRow<4>(basis, row, block, target) : CombineRow<2>(basis, row, block, target);
+    } else if (blocks <= 6) {
+      CombineRow<6>(basis, row, block, target);
+    } else {
+      blocks == 8 ? CombineRow<8>(basis, row, block, target) : CombineRow<10>(basis, row, block, target);
     }
   }
 }

@@ -51,7 +51,8 @@ void FillBasis(const float* values, const float* weights, float mean, BasisKind 
 // gram[i * blocks + j] = sum of block i times block j.
 void GramMatrix(const float* basis, int blocks, PatchShape shape, float* gram);
 
-// out block i = sum over j of coefficients[i * blocks + j] * basis block j, for i < rows.
+// out block i = sum over j of coefficients[i * blocks + j] * basis block j, for i < rows; `blocks` is 2, 4, 6, 8
+// or 10.
 void CombineBlocks(const float* basis, int blocks, const float* coefficients, int rows, PatchShape shape, float* out);
 
 }  // namespace pliant

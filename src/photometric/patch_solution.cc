@@ -92,6 +92,25 @@ void FillWeights(const SupportMask& mask, ImageSize size, double x, double y, co
   const int half = shape.size / 2;
   const cv::Mat& valid = mask.valid();
   const auto round = [](double value) { return static_cast<int>(std::floor(value + 0.5)); };
+  if (affine.xy == 0 && affine.yx == 0) {  // rows stay rows: every column is looked up once
+    std::array<int, static_cast<std::size_t>(PatchRowStride(kMaxPatchSize))> columns;
+    for (int col = 0; col < shape.size; ++col) {
+      const int px = round(x + affine.xx * (col - half));
+      columns[static_cast<std::size_t>(col)] = px >= 0 && px < size.width ? px : -1;
+    }
+    std::fill(weights, weights + BlockOf(shape), 0.0F);
+    for (int row = 0; row < shape.size; ++row) {
+      const int py = round(y + affine.yy * (row - half));
+      if (py < 0 || py >= size.height) continue;
+      const std::uint8_t* usable = valid.empty() ? nullptr : valid.ptr<std::uint8_t>(py);
+      for (int col = 0; col < shape.size; ++col) {
+        const int i = row * shape.row_stride + col;
+        const int px = columns[static_cast<std::size_t>(col)];
+        if (px >= 0 && (usable == nullptr || usable[px] != 0)) weights[i] = reference == nullptr ? 1.0F : reference[i];
+      }
+    }
+    return;
+  }
   for (int row = 0; row < shape.size; ++row) {
     const double v = row - half;
     const double row_x = x + affine.xy * v;
