@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <memory>
+#include <stdexcept>
 
 #include <gtest/gtest.h>
 
@@ -34,6 +35,20 @@ TEST(Prefetcher, NeverRunsFurtherAheadThanAskedAndStopsAtAnyTime) {
     EXPECT_EQ(*prefetcher.Next(), 1);
   }
   EXPECT_LE(made, 2 + 2 + 1);  // taken, waiting, and one being made
+}
+
+TEST(Prefetcher, ThrowsInNextWhatTheProducerThrew) {
+  for (const int ahead : {0, 2}) {
+    int count = 0;
+    Prefetcher<int> prefetcher(
+        [&]() -> std::optional<int> {
+          if (count == 3) throw std::runtime_error("torn tape");
+          return count++;
+        },
+        ahead);
+    for (int i = 0; i < 3; ++i) EXPECT_EQ(*prefetcher.Next(), i);
+    EXPECT_THROW((void)prefetcher.Next(), std::runtime_error);
+  }
 }
 
 }  // namespace

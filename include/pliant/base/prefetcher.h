@@ -7,6 +7,7 @@
 
 #include <condition_variable>
 #include <deque>
+#include <exception>
 #include <functional>
 #include <mutex>
 #include <optional>
@@ -18,7 +19,8 @@ namespace pliant {
 template <class T>
 class Prefetcher {
  public:
-  // Nothing: the end. The producer is called by one thread at a time, and no more after the end. It must not throw.
+  // Nothing: the end. The producer is called by one thread at a time, and no more after the end. What it throws, Next
+  // throws.
   using Producer = std::function<std::optional<T>()>;
 
   // At most `ahead` >= 1 values wait; `ahead` = 0: no thread, the producer runs inside Next.
@@ -46,7 +48,10 @@ class Prefetcher {
     }
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [this] { return !ready_.empty() || ended_; });
-    if (ready_.empty()) return std::nullopt;
+    if (ready_.empty()) {
+      if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
+      return std::nullopt;
+    }
     std::optional<T> value = std::move(ready_.front());
     ready_.pop_front();
     changed_.notify_all();
@@ -61,8 +66,15 @@ class Prefetcher {
         changed_.wait(lock, [this] { return stop_ || ready_.size() < ahead_; });
         if (stop_) return;
       }
-      std::optional<T> value = produce_();
+      std::optional<T> value;
+      std::exception_ptr failure;
+      try {
+        value = produce_();
+      } catch (...) {
+        failure = std::current_exception();
+      }
       const std::lock_guard lock(mutex_);
+      failure_ = failure;
       if (value) {
         ready_.push_back(*std::move(value));
       } else {
@@ -78,6 +90,7 @@ class Prefetcher {
   std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<T> ready_;
+  std::exception_ptr failure_;
   bool ended_ = false;
   bool stop_ = false;
   std::thread worker_;

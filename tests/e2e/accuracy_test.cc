@@ -1,0 +1,78 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// The main job against the truth of a rigid simulated scene, about 50 mm away.
+#include <fstream>
+#include <iterator>
+
+#include <gmock/gmock.h>
+
+#include "e2e/e2e_support.h"
+
+namespace pliant {
+namespace {
+
+constexpr double kMaxMedianFromTruth_mm = 0.3;  // with a true first map: what tracking and the joint problem add
+constexpr double kMaxRmseMonocular_mm = 2.0;    // plain, untrimmed, scale per frame
+
+std::string Text(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+TEST(RigidScene, WithATrueFirstMapTheMedianErrorStaysSmall) {
+  const TestFolder folder;
+  const RunSummary summary = TrackSequenceAt(kSequence, folder.Path("run"), DepthStart());
+  EXPECT_EQ(summary.status, RunStatus::kCompleted);
+  EXPECT_EQ(summary.frames_tracked, 60);
+  const Evaluation evaluation = EvaluateRun(folder.Path("run"), kSequence, SurfaceScale::kNone);
+  EXPECT_LT(evaluation.surface->estimate.pooled_median_mm, kMaxMedianFromTruth_mm);
+}
+
+TEST(RigidScene, FromAMonocularStartThePlainErrorStaysBelowTwoMillimetres) {
+  const TestFolder folder;
+  const RunSummary summary = TrackSequenceAt(kSequence, folder.Path("run"), TrackOptions());
+  EXPECT_EQ(summary.status, RunStatus::kCompleted);
+  EXPECT_GE(summary.frames_tracked, 40);  // the rest is the wait for parallax
+  const Evaluation evaluation = EvaluateRun(folder.Path("run"), kSequence, SurfaceScale::kPerFrame);
+  EXPECT_LT(evaluation.surface->estimate.mean_rmse_mm, kMaxRmseMonocular_mm);
+}
+
+TEST(RigidScene, OneAndTwoThreadsAndTheSameSeedTwiceGiveIdenticalFiles) {
+  const TestFolder folder;
+  TrackOptions options;
+  options.timings = Timings::kNone;
+  for (const auto& [run, threads] : {std::pair{"one", 1}, {"two", 2}, {"again", 2}}) {
+    options.threads = threads;
+    TrackSequenceAt(kSequence, folder.Path(run), options, 30);
+  }
+  int files = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder.Path("two"))) {
+    if (!entry.is_regular_file()) continue;
+    const auto name = std::filesystem::relative(entry.path(), folder.Path("two"));
+    const std::string text = Text(entry.path());
+    EXPECT_TRUE(text == Text(std::filesystem::path(folder.Path("again")) / name)) << name;
+    // config.yaml says how many threads there were, which is the one difference.
+    if (name != "config.yaml") {
+      EXPECT_TRUE(text == Text(std::filesystem::path(folder.Path("one")) / name)) << name;
+    }
+    ++files;
+  }
+  EXPECT_GE(files, 9);
+}
+
+// Corners on occluding contours and points that move alone are what spoils the map: leaving them in must show.
+TEST(RigidScene, KeepingContoursOutLowersThePlainError) {
+  const TestFolder folder;
+  TrackOptions without = DepthStart();
+  without.tracker.corners.contour_filter = Detection::kOff;
+  without.tracker.neighbor_agreement = NeighbourAgreement::kOff;
+  TrackSequenceAt(kSequence, folder.Path("with"), DepthStart());
+  TrackSequenceAt(kSequence, folder.Path("without"), without);
+  const Evaluation good = EvaluateRun(folder.Path("with"), kSequence, SurfaceScale::kNone);
+  const Evaluation bad = EvaluateRun(folder.Path("without"), kSequence, SurfaceScale::kNone);
+  EXPECT_LT(good.surface->estimate.mean_rmse_mm, bad.surface->estimate.mean_rmse_mm);
+}
+
+}  // namespace
+}  // namespace pliant

@@ -1,0 +1,180 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// What goes wrong in the middle of a run: what was computed is on disk and readable, and one sentence says what it was.
+#include <csignal>
+#include <fstream>
+#include <thread>
+
+#include <gmock/gmock.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "e2e/e2e_support.h"
+
+namespace pliant {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr int kFrames = 16;
+
+// The run folder reads back and holds as many poses as the summary says.
+void ExpectReadable(const std::string& path, std::int64_t poses) {
+  const auto run = ReadRun(path);
+  ASSERT_TRUE(run.ok()) << run.status().message();
+  EXPECT_EQ(static_cast<std::int64_t>(run->poses.size()), poses);
+}
+
+TEST(Robustness, ATruncatedImageEndsTheRunAndTheFramesBeforeItStay) {
+  const TestFolder folder;
+  const SequenceCopy sequence(folder, kFrames);
+  std::filesystem::resize_file(sequence.Image(9), std::filesystem::file_size(sequence.Image(9)) / 2);
+  const RunSummary summary = TrackSequenceAt(sequence.path(), folder.Path("run"), DepthStart());
+  EXPECT_EQ(summary.status, RunStatus::kFailed);
+  EXPECT_THAT(summary.note, HasSubstr(FrameName(9)));
+  EXPECT_EQ(summary.frames_tracked, 9);
+  ExpectReadable(folder.Path("run"), 9);
+  EXPECT_TRUE(std::filesystem::exists(folder.Path("run/sparse/points3D.bin")));
+}
+
+TEST(Robustness, AnImageOfAnotherSizeEndsTheRunAndIsNamed) {
+  const TestFolder folder;
+  const SequenceCopy sequence(folder, kFrames);
+  sequence.Replace(5, cv::Mat(100, 200, CV_8UC3, cv::Scalar::all(90)));
+  const RunSummary summary = TrackSequenceAt(sequence.path(), folder.Path("run"), DepthStart());
+  EXPECT_EQ(summary.status, RunStatus::kFailed);
+  EXPECT_THAT(summary.note, HasSubstr(FrameName(5)));
+  EXPECT_THAT(summary.note, HasSubstr("200"));
+  ExpectReadable(folder.Path("run"), 5);
+}
+
+TEST(Robustness, BlackToTheEndIsLostAndSaysBlack) {
+  const TestFolder folder;
+  const SequenceCopy sequence(folder, kFrames);
+  sequence.Fill(6, kFrames - 1, 0);
+  const RunSummary summary = TrackSequenceAt(sequence.path(), folder.Path("run"), DepthStart());
+  EXPECT_EQ(summary.status, RunStatus::kLost);
+  EXPECT_THAT(summary.note, HasSubstr("the image is black"));
+  ExpectReadable(folder.Path("run"), 6);
+}
+
+TEST(Robustness, WhiteToTheEndIsLostAndSaysWhite) {
+  const TestFolder folder;
+  const SequenceCopy sequence(folder, kFrames);
+  sequence.Fill(6, kFrames - 1, 255);
+  const RunSummary summary = TrackSequenceAt(sequence.path(), folder.Path("run"), DepthStart());
+  EXPECT_EQ(summary.status, RunStatus::kLost);
+  EXPECT_THAT(summary.note, HasSubstr("the image is white"));
+  ExpectReadable(folder.Path("run"), 6);
+}
+
+TEST(Robustness, AFlashOfBlackIsSurvivedInTheSameMap) {
+  const TestFolder folder;
+  const SequenceCopy sequence(folder, kFrames);
+  sequence.Fill(6, 7, 0);
+  const RunSummary summary = TrackSequenceAt(sequence.path(), folder.Path("run"), DepthStart());
+  EXPECT_EQ(summary.status, RunStatus::kCompleted);
+  EXPECT_EQ(summary.frames_tracked, kFrames - 2);
+  ExpectReadable(folder.Path("run"), kFrames - 2);
+}
+
+TEST(Robustness, BlackFromTheBeginningHasNoReferenceAndSaysSo) {
+  const TestFolder folder;
+  const SequenceCopy sequence(folder, 4);
+  sequence.Fill(0, 3, 0);
+  const RunSummary summary = TrackSequenceAt(sequence.path(), folder.Path("run"), TrackOptions());
+  EXPECT_EQ(summary.status, RunStatus::kFailed);
+  EXPECT_THAT(summary.note, HasSubstr("the image is black"));
+  ExpectReadable(folder.Path("run"), 0);
+}
+
+TEST(Robustness, AFrozenStretchIsTrackedWithACameraThatStandsStill) {
+  const TestFolder folder;
+  const SequenceCopy sequence(folder, kFrames);
+  const cv::Mat still = cv::imread(sequence.Image(6).string());
+  for (int i = 7; i <= 10; ++i) sequence.Replace(i, still);
+  const RunSummary summary = TrackSequenceAt(sequence.path(), folder.Path("run"), DepthStart());
+  EXPECT_EQ(summary.status, RunStatus::kCompleted);
+  EXPECT_EQ(summary.frames_tracked, kFrames);
+  const auto run = ReadRun(folder.Path("run"));
+  ASSERT_TRUE(run.ok());
+  // The same pixels: what is left is what constant velocity and the solver's tolerance leave.
+  EXPECT_LT((run->poses[10].world_from_cam.translation - run->poses[8].world_from_cam.translation).norm(), 0.05);
+}
+
+TEST(Robustness, AFrozenSequenceCarriesNoMapAndSaysFrozen) {
+  const TestFolder folder;
+  const SequenceCopy sequence(folder, 6);
+  const cv::Mat still = cv::imread(sequence.Image(0).string());
+  for (int i = 1; i < 6; ++i) sequence.Replace(i, still);
+  const RunSummary summary = TrackSequenceAt(sequence.path(), folder.Path("run"), TrackOptions());
+  EXPECT_EQ(summary.status, RunStatus::kFailed);
+  EXPECT_THAT(summary.note, HasSubstr("frozen"));
+}
+
+TEST(Robustness, StoppedOnRequestTheRunSaysInterrupted) {
+  const TestFolder folder;
+  const std::atomic<bool> stop = true;
+  const RunSummary summary = TrackSequenceAt(kSequence, folder.Path("run"), DepthStart(), -1, &stop);
+  EXPECT_EQ(summary.status, RunStatus::kInterrupted);
+  EXPECT_EQ(summary.frames_tracked, 1);
+  ExpectReadable(folder.Path("run"), 1);
+}
+
+TEST(Robustness, AStartFromDepthWithoutDepthSaysSo) {
+  const TestFolder folder;
+  const SequenceCopy sequence(folder, 4);
+  std::filesystem::remove_all(std::filesystem::path(sequence.path()) / "depth");
+  const RunSummary summary = TrackSequenceAt(sequence.path(), folder.Path("run"), DepthStart());
+  EXPECT_EQ(summary.status, RunStatus::kFailed);
+  EXPECT_THAT(summary.note, HasSubstr("no depth image"));
+}
+
+// Starts the program, lets it track some frames, and sends it a signal. Returns wait's status.
+int SignalInMidRun(const std::string& run, int signal) {
+  const pid_t child = fork();
+  if (child == 0) {
+    execl(PLIANT_PROGRAM, PLIANT_PROGRAM, "track", "--image_path", kSequence.c_str(), "--output_path", run.c_str(),
+          "--Init.method", "depth", "--quiet", static_cast<char*>(nullptr));
+    _exit(127);
+  }
+  const auto rows = [&] {
+    std::ifstream frames(run + "/frames.csv");
+    std::string line;
+    int count = 0;
+    while (std::getline(frames, line)) ++count;
+    return count;
+  };
+  for (int i = 0; i < 2000 && rows() < 8; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  kill(child, signal);
+  int status = 0;
+  waitpid(child, &status, 0);
+  return status;
+}
+
+TEST(Robustness, AfterCtrlCTheRunIsWholeAndSaysInterrupted) {
+  const TestFolder folder;
+  const int status = SignalInMidRun(folder.Path("run"), SIGINT);
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 1);
+  const auto run = ReadRun(folder.Path("run"));
+  ASSERT_TRUE(run.ok()) << run.status().message();
+  EXPECT_EQ(run->summary->status, RunStatus::kInterrupted);
+  EXPECT_GE(run->poses.size(), 6U);
+  EXPECT_TRUE(std::filesystem::exists(folder.Path("run/map.ply")));
+}
+
+TEST(Robustness, AfterKillMinusNineWhatWasComputedIsReadableAndCanBeEvaluated) {
+  const TestFolder folder;
+  const int status = SignalInMidRun(folder.Path("run"), SIGKILL);
+  ASSERT_TRUE(WIFSIGNALED(status));
+  const auto run = ReadRun(folder.Path("run"));
+  ASSERT_TRUE(run.ok()) << run.status().message();
+  EXPECT_EQ(run->summary->status, RunStatus::kInterrupted);
+  EXPECT_GE(run->poses.size(), 6U);
+  EXPECT_GT(EvaluateRun(folder.Path("run"), kSequence, SurfaceScale::kNone).surface->frames.size(), 5U);
+}
+
+}  // namespace
+}  // namespace pliant
