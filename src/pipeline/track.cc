@@ -88,6 +88,8 @@ TrackOptions MakeTrackOptions(Preset preset) {
   tracker.masks.border = Detection::kOff;
   tracker.point_tracker.patch_policy = PatchPolicy::kPeriodic;
   tracker.point_tracker.forward_backward = Detection::kOff;
+  tracker.point_tracker.lucas_kanade.patch_size = 21;
+  tracker.point_tracker.lucas_kanade.shading = Shading::kNone;
   tracker.point_tracker.lucas_kanade.similarity = SimilarityMode::kPlain;
   tracker.init.method = InitMethod::kPaper;
   tracker.neighbor_agreement = NeighbourAgreement::kOff;
