@@ -17,14 +17,15 @@ namespace {
 constexpr int kFramesAhead = 3;
 
 // Reads and prepares the next frame; nothing at the end.
-std::optional<Result<TrackerFrame>> NextFrame(Sequence& sequence, const TrackerOptions& options) {
+std::optional<Result<TrackerFrame>> NextFrame(Sequence& sequence, const TrackerOptions& options,
+                                              const std::atomic<bool>& wants_depth) {
   auto next = sequence.Next();
   if (!next.ok()) return next.status();
   if (!next->has_value()) return std::nullopt;
   const SequenceFrame& frame = **next;
   TrackerFrame prepared =
       PrepareFrame(frame.frame_idx, frame.name, frame.timestamp_s, frame.image, frame.mask, options);
-  if (options.init.method == InitMethod::kDepth) {
+  if (wants_depth) {
     auto depth = sequence.Depth(frame.frame_idx);
     if (!depth.ok()) return depth.status();
     if (depth->has_value()) prepared.depth_mm = **depth;
@@ -41,12 +42,15 @@ struct Ending {
 Ending TrackSequence(Sequence& sequence, const RunRequest& request, const TrackOptions& options, RunWriter& writer,
                      std::span<TrackObserver* const> observers) {
   Tracker tracker(sequence.camera(), options.tracker, static_cast<std::uint64_t>(options.seed), options.threads);
-  Prefetcher<Result<TrackerFrame>> frames([&] { return NextFrame(sequence, options.tracker); },
+  // Once there is a map no depth image is read any more; those read ahead in the meantime change nothing.
+  std::atomic<bool> wants_depth = tracker.WantsDepth();
+  Prefetcher<Result<TrackerFrame>> frames([&] { return NextFrame(sequence, options.tracker, wants_depth); },
                                           options.threads > 1 ? kFramesAhead : 0);
   std::string last_note = "the sequence has no frames";
   while (auto frame = frames.Next()) {
     if (!frame->ok()) return {RunStatus::kFailed, frame->status().message()};
     const FrameReport report = tracker.Process(**frame);
+    wants_depth = tracker.WantsDepth();
     if (const Status written = writer.Write(report); !written.ok()) return {RunStatus::kFailed, written.message()};
     for (TrackObserver* observer : observers) observer->OnFrame(report);
     last_note = report.note;

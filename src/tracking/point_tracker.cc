@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <numeric>
 
 #include <Eigen/LU>
 #include <Eigen/SVD>
@@ -200,21 +201,49 @@ std::vector<PointTrack> PointTracker::Track(const ImagePyramid& previous, const 
 
 namespace {
 
-// Positions of the `count` nearest other points, nearest first; ties by position.
-std::vector<std::size_t> Nearest(std::span<const Eigen::Vector2d> points, std::size_t centre, std::size_t count) {
-  std::vector<std::pair<double, std::size_t>> best;
-  best.reserve(count + 1);
-  for (std::size_t j = 0; j < points.size(); ++j) {
-    if (j == centre) continue;
-    const std::pair<double, std::size_t> entry((points[j] - points[centre]).squaredNorm(), j);
-    if (best.size() == count && !(entry < best.back())) continue;
-    best.insert(std::upper_bound(best.begin(), best.end(), entry), entry);
-    if (best.size() > count) best.pop_back();
+// Finds nearest neighbours among points in order of x: from a point outwards, until x alone is too far.
+class NearestInPlane {
+ public:
+  explicit NearestInPlane(std::span<const Eigen::Vector2d> points) : points_(points), order_(points.size()) {
+    std::iota(order_.begin(), order_.end(), std::size_t{0});
+    std::sort(order_.begin(), order_.end(),
+              [&](std::size_t a, std::size_t b) { return std::pair(points[a].x(), a) < std::pair(points[b].x(), b); });
+    rank_.resize(order_.size());
+    for (std::size_t k = 0; k < order_.size(); ++k) rank_[order_[k]] = k;
   }
-  std::vector<std::size_t> nearest;
-  for (const auto& entry : best) nearest.push_back(entry.second);
-  return nearest;
-}
+
+  // Positions of the `count` nearest other points, nearest first; ties by position.
+  std::vector<std::size_t> Of(std::size_t centre, std::size_t count) const {
+    std::vector<std::pair<double, std::size_t>> best;
+    best.reserve(count + 1);
+    // Whether points farther along x than this one may still be nearer.
+    const auto visit = [&](std::size_t j) {
+      const Eigen::Vector2d offset = points_[j] - points_[centre];
+      if (best.size() == count && offset.x() * offset.x() > best.back().first) return false;
+      const std::pair<double, std::size_t> entry(offset.squaredNorm(), j);
+      if (best.size() < count || entry < best.back()) {
+        best.insert(std::upper_bound(best.begin(), best.end(), entry), entry);
+        if (best.size() > count) best.pop_back();
+      }
+      return true;
+    };
+    bool left = true;
+    bool right = true;
+    for (std::size_t step = 1; left || right; ++step) {
+      left = left && step <= rank_[centre] && visit(order_[rank_[centre] - step]);
+      right = right && rank_[centre] + step < order_.size() && visit(order_[rank_[centre] + step]);
+    }
+    std::vector<std::size_t> nearest;
+    nearest.reserve(best.size());
+    for (const auto& entry : best) nearest.push_back(entry.second);
+    return nearest;
+  }
+
+ private:
+  std::span<const Eigen::Vector2d> points_;
+  std::vector<std::size_t> order_;
+  std::vector<std::size_t> rank_;
+};
 
 Eigen::Matrix2d FitAffine(std::span<const Eigen::Vector2d> from, std::span<const Eigen::Vector2d> to,
                           const std::vector<double>& weights, double damping_px) {
@@ -236,10 +265,11 @@ std::vector<Eigen::Matrix2d> NeighbourhoodAffines(std::span<const Eigen::Vector2
   constexpr double kAgreement_px = 0.5;  // a neighbour nearer to the fit than this agrees
   std::vector<Eigen::Matrix2d> affines;
   affines.reserve(from.size());
+  const NearestInPlane nearest(from);
   for (std::size_t i = 0; i < from.size(); ++i) {
     std::vector<Eigen::Vector2d> before;
     std::vector<Eigen::Vector2d> after;
-    for (const std::size_t j : Nearest(from, i, static_cast<std::size_t>(neighbours))) {
+    for (const std::size_t j : nearest.Of(i, static_cast<std::size_t>(neighbours))) {
       before.push_back(from[j] - from[i]);
       after.push_back(to[j] - to[i]);
     }

@@ -61,18 +61,17 @@ void Tracker::TrackFrame(const TrackerFrame& frame, FrameReport* report) {
         EstimateCameraPose(camera_, followed.positions, followed.pixels, predicted, options_.pose);  // (E7)
     if (estimate.ok()) pose = estimate->cam_from_world;
   }
+  DeformationGraph graph = TieNeighbours(followed, report);  // (D1)
   if (options_.neighbor_agreement == NeighbourAgreement::kOn) {
-    const StageTimer timer(report, "agreement");
-    DropContradicted(pose, &followed);  // (A3)
+    const std::size_t before = followed.size();
+    {
+      const StageTimer timer(report, "agreement");
+      DropContradicted(pose, graph, &followed);  // (A3)
+    }
+    if (followed.size() < before) graph = TieNeighbours(followed, report);
   }
   Result<FrameSolution> solution = Status(ErrorCode::kInsufficient, "not solved");
   {
-    DeformationGraph graph;
-    {
-      const StageTimer timer(report, "graph");
-      auto built = BuildDeformationGraph(followed.positions, followed.rest_positions, options_.graph);  // (D1)
-      if (built.ok()) graph = *std::move(built);
-    }
     const StageTimer timer(report, "joint");
     solution = SolveFrameProblem(camera_, {followed.positions, followed.pixels, graph.edges, pose},
                                  options_.problem);  // (E5)
@@ -124,9 +123,16 @@ Tracker::Followed Tracker::FollowPoints(const TrackerFrame& frame, const std::ve
   return followed;
 }
 
+// An empty graph where there is none: the points are then tied to nothing.
+DeformationGraph Tracker::TieNeighbours(const Followed& followed, FrameReport* report) const {
+  const StageTimer timer(report, "graph");
+  auto graph = BuildDeformationGraph(followed.positions, followed.rest_positions, options_.graph);
+  return graph.ok() ? *std::move(graph) : DeformationGraph{};
+}
+
 // Each point is put where its pixel says, at its last depth; how far that is from where its neighbours' motion since
 // rest would put it, is what its neighbours do not share.
-void Tracker::DropContradicted(const Rigid3& cam_from_world, Followed* followed) {
+void Tracker::DropContradicted(const Rigid3& cam_from_world, const DeformationGraph& graph, Followed* followed) {
   const Rigid3 world_from_cam = cam_from_world.Inverse();
   std::vector<NeighbourMotion> motions;
   std::vector<double> px_per_mm;
@@ -137,10 +143,8 @@ void Tracker::DropContradicted(const Rigid3& cam_from_world, Followed* followed)
     motions.push_back({followed->rest_positions[k], world_from_cam * now});
     px_per_mm.push_back(camera_.MeanFocalLengthPx() / last_in_cam.norm());
   }
-  const auto graph = BuildDeformationGraph(followed->rest_positions, {}, options_.graph);
-  if (!graph.ok()) return;
   std::vector<std::vector<int>> neighbours(followed->size());
-  for (const GraphEdge& edge : graph->edges) {
+  for (const GraphEdge& edge : graph.edges) {
     neighbours[edge.i].push_back(edge.j);
     neighbours[edge.j].push_back(edge.i);
   }

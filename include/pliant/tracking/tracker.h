@@ -91,6 +91,9 @@ class Tracker {
 
   FrameReport Process(const TrackerFrame& frame);
 
+  // Whether a frame's depth image can still be of use: before the first map, when that is to come from depth.
+  bool WantsDepth() const { return options_.init.method == InitMethod::kDepth && map_.landmarks.empty(); }
+
   TrackingState state() const { return state_; }
   const Map& map() const { return map_; }
   // Lost for max_lost_frames frames: further frames will not help.
@@ -112,7 +115,8 @@ class Tracker {
   void TrackFrame(const TrackerFrame& frame, FrameReport* report);
   std::vector<PointPrediction> PredictPixels(const Rigid3& predicted_cam_from_world) const;
   Followed FollowPoints(const TrackerFrame& frame, const std::vector<PointPrediction>& predictions);
-  void DropContradicted(const Rigid3& cam_from_world, Followed* followed);
+  DeformationGraph TieNeighbours(const Followed& followed, FrameReport* report) const;
+  void DropContradicted(const Rigid3& cam_from_world, const DeformationGraph& graph, Followed* followed);
   void DropUnexplained(Followed* followed);
   void Commit(const FrameSolution& solution, const Followed& followed, FrameReport* report);
   void ReportLost(const TrackerFrame& frame, int found, FrameReport* report);
