@@ -24,7 +24,7 @@ struct CornerOptions {
   int block_size_px = 7;         // window of the structure tensor
   Detection contour_filter = Detection::kOn;
   double contour_threshold = 0.35;  // ContourMeasure above which a corner counts as lying on an occluding contour
-  int contour_radius_px = 24;      // how far to each side the surroundings are compared
+  int contour_radius_px = 24;       // how far to each side the surroundings are compared
 
   void List(OptionTable& table);  // group "Corners"
 };
