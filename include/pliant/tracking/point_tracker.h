@@ -40,7 +40,7 @@ struct PointTrackerOptions {
   double max_realignment_px = 1.5;  // adaptive: a re-alignment that jumps farther from the latest patch is refused
   double max_scale = 2;             // adaptive: a neighbourhood stretched or shrunk by more gets a new first patch
   Detection forward_backward = Detection::kOn;
-  double max_forward_backward_px = 0.5;
+  double max_forward_backward_px = 0.75;
 
   void List(OptionTable& table);  // groups "LucasKanade" and "PointTracker"
 };
