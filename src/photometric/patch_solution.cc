@@ -30,7 +30,7 @@ bool Invert(int n, double* m) {
 }
 
 // Larger eigenvalue of the covariance of the position (the upper left 2 x 2 of the inverse): its inverse is the
-// texture that is left to determine the position when everything else is free.
+// texture that is left to determine the position when everything else is free (docs/method.md, eq. P4).
 double LargestVariance(const double* inverse, int n) {
   const double mean = 0.5 * (inverse[0] + inverse[n + 1]);
   const double half_difference = 0.5 * (inverse[0] - inverse[n + 1]);

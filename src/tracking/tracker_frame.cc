@@ -88,7 +88,7 @@ void Tracker::TrackFrame(const TrackerFrame& frame, FrameReport* report) {
   previous_ = frame;
 }
 
-// Where each landmark is expected: its last pixel, moved as the map says that the camera and its own motion move it.
+// Where each landmark is expected (P6): its last pixel, moved as the map says that camera and point move it.
 std::vector<PointPrediction> Tracker::PredictPixels(const Rigid3& predicted_cam_from_world) const {
   std::vector<Eigen::Vector2d> from;
   std::vector<Eigen::Vector2d> to;

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // The motion between two views from matched unit rays, against outliers: RANSAC with the five-point solver (Nister,
-// PAMI 2004) through OpenGV. Translations have unit length: two views have no scale.
+// PAMI 2004) through OpenGV (docs/method.md, eq. I1 to I3). Translations have unit length: two views have no scale.
 // The result depends on the inputs and on `random` alone: OpenGV's own generator is held at its fixed seed, and the
 // correspondences are handed to it in an order drawn from `random`.
 #pragma once

@@ -3,7 +3,7 @@
 
 // The simpler models of two views, which an essential matrix fits as well and then means nothing: no translation (a
 // rotation carries every ray), and a plane (a homography carries every ray, and up to two motions explain it).
-// All on unit rays, x1 = cam1_from_cam0 * x0, errors in pixels at the mean focal length.
+// All on unit rays, x1 = cam1_from_cam0 * x0, errors in px at the mean focal length (docs/method.md, eq. I5, I8).
 #pragma once
 
 #include <span>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // Robust non-linear refinement of a rigid start (Ceres): of the motion between two views, and of several views and the
-// points together. All on unit rays; errors are in pixels at the mean focal length.
+// points together. All on unit rays; errors in px at the mean focal length (docs/method.md, eq. I7, I10).
 #pragma once
 
 #include <array>

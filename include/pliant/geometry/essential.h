@@ -29,7 +29,7 @@ struct EssentialMotions {
 Result<EssentialMotions> DecomposeEssential(const Eigen::Matrix3d& essential);
 
 // The motion chosen among the four: the smaller rotation (the views are close in time), and of its two translations the
-// one with more points in front of both cameras.
+// one with more points in front of both cameras (docs/method.md, eq. I3).
 struct EssentialChoice {
   Rigid3 cam1_from_cam0;  // translation of unit length
   int in_front = 0;       // points in front of both cameras with this translation
@@ -40,7 +40,7 @@ Result<EssentialChoice> ChooseMotion(const Eigen::Matrix3d& essential, std::span
                                      std::span<const Eigen::Vector3d> rays1);
 
 // The epipolar error of a pair of unit rays, radians, signed: to first order the least turn of both rays (root of the
-// sum of squares) after which they meet (Sampson's error on the sphere),
+// sum of squares) after which they meet (Sampson's error on the sphere; docs/method.md, eq. I1),
 //   c / sqrt(|t x y|^2 + |t x f1|^2 - 2 c^2)  with  y = R f0,  c = f1 . (t x y).
 // Zero when both rays point along the translation: such a pair says nothing.
 double SampsonErrorRad(const Rigid3& cam1_from_cam0, const Eigen::Vector3d& ray0, const Eigen::Vector3d& ray1);

@@ -4,7 +4,7 @@
 // A point from two unit rays, and how far it can be trusted. Frames: cam0 is the reference view, cam1 the other one,
 // x1 = cam1_from_cam0 * x0; rays are unit vectors in their own camera's frame, so pinhole and fisheye are alike. Points
 // are returned in cam0 in the unit of the translation. A point that cannot be had carries the reason: nothing throws,
-// and a caller counts the reasons.
+// and a caller counts the reasons. Equations: docs/method.md, eq. I4, I6, I9 and I11.
 #pragma once
 
 #include <array>

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Lucas-Kanade with gain and bias, coarse to fine: the d, alpha and beta of
+// Lucas-Kanade with gain and bias, coarse to fine (docs/method.md, eq. P1 to P3): the d, alpha and beta of
 //   argmin sum over v in the patch of ( I0(v) - alpha It(v + d) - beta )^2
 // (Gomez Rodriguez et al., IROS 2022), solved inverse-compositionally (Baker and Matthews, IJCV 2004): the patch is
 // linearised once, gain and bias are eliminated in closed form, and a step costs one bilinear pass over the patch.

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Structural similarity (Wang, Bovik, Sheikh, Simoncelli, IEEE TIP 2004) of two patches as wholes, from their moments:
+// Structural similarity (Wang et al., IEEE TIP 2004, docs/method.md (P5)) of two patches as wholes, from their moments:
 //   SSIM = (2 mx my + C1) (2 sxy + C2) / ((mx^2 + my^2 + C1) (sx^2 + sy^2 + C2)),  C1 = (0.01 * 255)^2,
 //   C2 = (0.03 * 255)^2, for grey levels 0..255.
 #pragma once

@@ -8,7 +8,7 @@
 //   (a
 //          plane), parallax and predicted depth accuracy suffice; then refines robustly over the frames since the
 //          reference, and leaves out points whose depth is uncertain or which contradict the map.
-// The map is scaled once, so that its median depth is nominal_depth_mm.
+// The map is scaled once, so that its median depth is nominal_depth_mm. Equations: docs/method.md, eq. I1 to I12.
 #pragma once
 
 #include <memory>
