@@ -85,7 +85,8 @@ bool BmpIsWhole(const Bytes& bytes) {
   const std::int64_t width = number(18, 4);
   const std::int64_t height = std::abs(std::int64_t{static_cast<std::int32_t>(number(22, 4))});  // negative: top down
   const std::int64_t row_bytes = (width * number(28, 2) + 31) / 32 * 4;
-  return number(10, 4) + row_bytes * height <= static_cast<std::int64_t>(bytes.size());
+  const auto size = static_cast<std::int64_t>(bytes.size());
+  return row_bytes <= size && number(10, 4) + row_bytes * height <= size;
 }
 
 bool IsPng(const Bytes& bytes) { return StartsWith(bytes, "\x89PNG\r\n\x1a\n"); }

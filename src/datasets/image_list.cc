@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <limits>
 #include <system_error>
 #include <utility>
 
@@ -88,7 +89,9 @@ Result<FrameRange> FrameRange::From(const SequenceRequest& request) {
     return Status(ErrorCode::kInvalidArgument, "end is " + std::to_string(request.end) + " and start is " +
                                                    std::to_string(request.start) +
                                                    "; end is one past the last frame, or -1 for all");
-  return FrameRange{request.start, request.end, request.stride};
+  // A longer stride than this leaves one frame; bounded, the number after it does not overflow.
+  const int stride = std::min(request.stride, std::numeric_limits<int>::max() - request.start);
+  return FrameRange{request.start, request.end, std::max(stride, 1)};
 }
 
 Result<FrameRange> FrameRange::Within(int count, const fs::path& source) const {

@@ -36,7 +36,7 @@ struct FrameRange {
   // Bounded by the frames there are; fails with kInvalidArgument when none is left.
   Result<FrameRange> Within(int count, const std::filesystem::path& source) const;
   // Number of frames of a bounded range.
-  int Count() const { return end > start ? (end - start + stride - 1) / stride : 0; }
+  int Count() const { return end > start ? 1 + (end - start - 1) / stride : 0; }
 };
 
 // The image file of every frame in one folder, by stem, or by order where no stem agrees.

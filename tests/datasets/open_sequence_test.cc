@@ -3,6 +3,7 @@
 
 #include "pliant/datasets/open_sequence.h"
 
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -101,6 +102,20 @@ TEST_F(OpenSequenceTest, AppliesStartEndAndStrideToSourceNumbers) {
   EXPECT_THAT(Indices(*sequence), ElementsAre(2, 5, 8));
   EXPECT_DOUBLE_EQ(*sequence->TimestampS(0), 0.0);  // truth is there for the whole source
   EXPECT_FALSE(sequence->TimestampS(10).has_value());
+}
+
+TEST_F(OpenSequenceTest, TakesOneFrameWithTheLargestStride) {
+  WriteNative(5);
+  WriteVideo("clip.avi", 5);
+  for (const char* source : {"", "clip.avi"}) {
+    SequenceRequest request = Request(source);
+    request.start = 2;
+    request.stride = std::numeric_limits<int>::max();
+    const auto sequence = Open(request);
+    ASSERT_NE(sequence, nullptr);
+    EXPECT_EQ(sequence->size(), 1);
+    EXPECT_THAT(Indices(*sequence), ElementsAre(2));
+  }
 }
 
 TEST_F(OpenSequenceTest, ReadsTruthByFrameNumber) {
