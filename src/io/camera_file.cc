@@ -85,6 +85,9 @@ Result<CameraFile> FromPliant(const std::string& path, const YAML::Node& root) {
     if (field->given && !(field->value > 0.0))
       return invalid(Quoted(path), std::string(field->name) + " must be positive");
 
+  if (const YAML::Node unit = root["unit"]; unit && !(unit.IsScalar() && unit.Scalar() == "mm"))
+    return invalid(At(path, unit), "unit must be mm; scale depth_scale, baseline and groundtruth.txt to millimetres");
+
   const auto params = Params(path, root["params"]);
   if (!params.ok()) return params.status();
   if (!root["model"].IsScalar()) return invalid(At(path, root["model"]), "model must be a name, such as PINHOLE");
@@ -95,7 +98,6 @@ Result<CameraFile> FromPliant(const std::string& path, const YAML::Node& root) {
   if (fps.given) file.fps = fps.value;
   if (depth_scale.given) file.depth_scale = depth_scale.value;
   if (baseline.given) file.baseline_mm = baseline.value;
-  if (root["unit"] && root["unit"].IsScalar()) file.unit = root["unit"].Scalar();
   return file;
 }
 
@@ -219,7 +221,7 @@ Status WriteCameraFile(const std::string& path, const CameraFile& file) {
   if (file.fps) text += "fps: " + FormatDouble(*file.fps) + "\n";
   if (file.depth_scale) text += "depth_scale: " + FormatDouble(*file.depth_scale) + "  # mm per unit\n";
   if (file.baseline_mm) text += "baseline: " + FormatDouble(*file.baseline_mm) + "  # mm\n";
-  return WriteFileAtomically(path, text + "unit: " + file.unit + "\n");
+  return WriteFileAtomically(path, text + "unit: mm\n");
 }
 
 }  // namespace pliant

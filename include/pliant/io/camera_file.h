@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // Calibration files. Three kinds are recognised by what they contain, whatever they are called:
-// - Pliant's camera.yaml: model, width, height, params, and optionally fps, depth_scale, baseline, unit;
+// - Pliant's camera.yaml: model, width, height, params, and optionally fps, depth_scale, baseline, unit (mm,
+//   the only one there is);
 // - COLMAP's cameras.txt and cameras.bin, whose first pixel's centre is (0.5, 0.5): the half pixel is taken off here;
 // - OpenCV's calibrations, YAML or XML: a camera matrix (M1, K1, K, M, camera_matrix, cameraMatrix, ...), distortion
 //   coefficients (D1, D, distortion_coefficients, distCoeffs, ...) and, where they are written, the image size and
@@ -33,9 +34,8 @@ struct CameraFile {
   Camera camera;
   std::optional<double> fps = std::nullopt;
   std::optional<double> depth_scale = std::nullopt;  // mm per unit of a depth image
-  std::optional<double> baseline_mm =
-      std::nullopt;         // the right camera's centre is at +baseline on the left one's x axis
-  std::string unit = "mm";  // of the lengths that come with the sequence
+  // The right camera's centre is at +baseline on the left one's x axis.
+  std::optional<double> baseline_mm = std::nullopt;
   // OpenCV's k3 to k6 have no place in the OPENCV model. Where they are small, k1 and k2 are fitted again to the whole
   // distortion over the image, and this is the largest difference that is left, px; 0: nothing had to be fitted. Above
   // kLargestRefitPx the file is refused.
