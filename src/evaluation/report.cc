@@ -170,7 +170,8 @@ std::string EvaluationJson(const Evaluation& evaluation) {
   json["trajectory"] = evaluation.trajectory ? ToJson(*evaluation.trajectory) : Json();
   json["survival"] = ToJson(evaluation.survival);
   json["notes"] = evaluation.notes;
-  return json.dump(2) + "\n";
+  // Paths need not be UTF-8.
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 std::string EvaluationCsv(const Evaluation& evaluation) {

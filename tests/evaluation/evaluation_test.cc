@@ -25,6 +25,7 @@ namespace pliant {
 namespace {
 
 using testing::HasSubstr;
+using testing::StartsWith;
 namespace fs = std::filesystem;
 
 constexpr double kFps = 25;
@@ -165,6 +166,14 @@ TEST(EvaluationReport, TableJsonAndCsvSayTheSame) {
     }
   }
   EXPECT_EQ(rows, 8);
+}
+
+TEST(EvaluationReport, JsonTakesARunWhoseNameIsNotUtf8) {
+  EvaluationInput run = MakeRun(8, 1, 1);
+  run.name = "run_\xff";
+  const auto evaluation = Evaluate(run, TruthSequence(8), {});
+  ASSERT_TRUE(evaluation.ok());
+  EXPECT_THAT(nlohmann::json::parse(EvaluationJson(*evaluation))["run"].get<std::string>(), StartsWith("run_"));
 }
 
 TEST(EvaluationOptions, AreSetByName) {
