@@ -64,6 +64,18 @@ std::string FrameName(int frame_idx) {
   return name;
 }
 
+// A sequence that was filmed is not written over.
+Status CheckOwnFolder(const fs::path& output) {
+  std::error_code error;
+  if (fs::exists(output / "simulation.yaml", error)) return Status::Ok();
+  for (const char* name : {"images", "depth"})
+    if (fs::exists(output / name, error) && !fs::is_empty(output / name, error))
+      return {ErrorCode::kInvalidArgument, "the folder " + (output / name).string() +
+                                               " holds files of a sequence that was not simulated; give a new or an "
+                                               "empty folder"};
+  return Status::Ok();
+}
+
 // Frames that an earlier, longer sequence left would be read as part of this one.
 Status RemoveLeftovers(const fs::path& folder) {
   std::error_code error;
@@ -94,6 +106,7 @@ Status WriteFrame(const fs::path& output, int frame_idx, const SimulatedFrame& f
 }  // namespace
 
 Status WriteSequence(const SimulationOptions& options, const fs::path& output, const SimulationProgress& progress) {
+  if (Status status = CheckOwnFolder(output); !status.ok()) return status;
   Result<Simulator> simulator = Simulator::Create(options);
   if (!simulator.ok()) return simulator.status();
   if (Status status = PrepareFolder(output, *simulator); !status.ok()) return status;

@@ -142,6 +142,16 @@ TEST_F(WriteSequenceTest, AShorterSequenceReplacesALongerOne) {
   EXPECT_EQ(Numbers(folder_ / "groundtruth.txt").size(), 1U);
 }
 
+TEST_F(WriteSequenceTest, LeavesASequenceAloneThatWasNotSimulated) {
+  fs::create_directories(folder_ / "images");
+  std::ofstream(folder_ / "images/filmed.png") << "of a patient";
+  const Status status = WriteSequence(SmallScene(TrajectoryKind::kHold, 1), folder_);
+  EXPECT_EQ(status.code(), ErrorCode::kInvalidArgument);
+  EXPECT_THAT(status.message(), testing::HasSubstr("images"));
+  EXPECT_EQ(CountFiles(folder_), 1);
+  EXPECT_EQ(Bytes(folder_ / "images/filmed.png"), "of a patient");
+}
+
 TEST_F(WriteSequenceTest, StopsOnRequestAndKeepsWhatWasRendered) {
   const Status status = WriteSequence(SmallScene(TrajectoryKind::kHold, 5), folder_, [](int done, int) {
     return done == 2 ? SimulationContinue::kStop : SimulationContinue::kYes;

@@ -20,9 +20,10 @@ enum class SimulationContinue { kYes, kStop };
 using SimulationProgress = std::function<SimulationContinue(int frames_done, int frames_total)>;
 
 // Renders every frame into `output`, which is made where it is not there; files of the same name are replaced, and
-// images left from a longer sequence are removed. Poses and times are flushed as frames are done.
-// Fails as Simulator::Create does, with kUnwritable (the sentence names the file) and with kInterrupted when `progress`
-// asked to stop (what was rendered is on disk and readable).
+// images left from a longer simulation are removed; images in a folder without simulation.yaml are never touched. Poses
+// and times are flushed as frames are done.
+// Fails as Simulator::Create does, with kInvalidArgument (such a folder), with kUnwritable (the sentence names the
+// file) and with kInterrupted when `progress` asked to stop (what was rendered is on disk and readable).
 Status WriteSequence(const SimulationOptions& options, const std::filesystem::path& output,
                      const SimulationProgress& progress = {});
 
