@@ -80,6 +80,14 @@ void CommandLine::AddFlag(std::string name, bool* value, std::string why) {
                }});
 }
 
+void CommandLine::AddAlias(std::string name, std::string option, std::string placeholder, std::string why) {
+  AddArgument({std::move(name), placeholder, std::move(why), placeholder, "", Need::kOptional,
+               [this, option = std::move(option)](std::string_view text) {
+                 extras_.push_back("--" + option + "=" + std::string(text));
+                 return true;
+               }});
+}
+
 Status CommandLine::ReadArguments(std::span<const std::string> args) {
   CLI::App app;
   app.allow_extras();

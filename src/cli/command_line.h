@@ -65,6 +65,9 @@ class CommandLine {
                  }});
   }
 
+  // A short name of an option: as if `--Group.option VALUE` were given last.
+  void AddAlias(std::string name, std::string option, std::string placeholder, std::string why);
+
   // Reads the command's own arguments. An exit code when the command line is wrong (the sentence has been said).
   std::optional<int> Parse(std::span<const std::string> args);
 
@@ -97,7 +100,7 @@ class CommandLine {
 
   Manual manual_;
   std::vector<Argument> arguments_;
-  std::vector<std::string> extras_;  // what CLI11 did not know: the options' flags and their values
+  std::vector<std::string> extras_;  // the options' flags and their values: what CLI11 did not know, and aliases
   std::string config_path_;
   bool print_config_ = false;
   bool help_ = false;

@@ -36,9 +36,9 @@ int EvaluateCommand(std::span<const std::string> args) {
   CommandLine line(kManual);
   line.Add("run", &run_path, "DIR", "run folder", Need::kRequired);
   line.Add("sequence", &sequence_path, "DIR", "native sequence with truth", Need::kRequired);
-  line.AddChoice("scale", &options.surface.scale,
-                 "what a run is multiplied with: the best scale of each frame (the paper's protocol after a monocular "
-                 "start), one for all frames, or nothing (runs in true millimetres)");
+  line.AddAlias("scale", "SurfaceError.scale", "per_frame|global|none",
+                "what a run is multiplied with: the best scale of each frame (the paper's protocol after a monocular "
+                "start), one for all frames, or nothing (runs in true millimetres)");
   line.Add("output_path", &output_path, "DIR", "folder for evaluation.json and evaluation.csv", Need::kOptional);
   line.AddFlag("quiet", &quiet, "print no table");
   if (const auto exit = line.Parse(args)) return *exit;

@@ -62,6 +62,7 @@ Outcome Give(const std::vector<std::string>& args) {
   line.Add("pieces", &outcome.pieces, "how many", 0, 100);
   line.AddChoice("fruit", &outcome.fruit, "kind");
   line.AddFlag("quiet", &outcome.quiet, "say nothing");
+  line.AddAlias("kg", "Basket.weight", "KG", "a short name");
   std::optional<int> exit = line.Parse(args);
   OptionTable table;
   outcome.options.List(table);
@@ -103,6 +104,16 @@ TEST(CommandLine, TheFileComesFirstAndFlagsWinOverIt) {
   EXPECT_EQ(outcome.exit, -1) << outcome.err;
   EXPECT_EQ(outcome.options.count, 2);
   EXPECT_EQ(outcome.options.weight, 1.5);
+}
+
+TEST(CommandLine, AShortNameOfAnOptionWinsOverTheFileToo) {
+  const std::string config = WriteTemporary("alias.yaml", "Basket:\n  weight: 4\n").string();
+  const Outcome outcome = Give({"--to", "x", "--kg", "-2.5", "--config", config});
+  EXPECT_EQ(outcome.exit, -1) << outcome.err;
+  EXPECT_EQ(outcome.options.weight, -2.5);
+  const Outcome wrong = Give({"--to", "x", "--kg", "much"});
+  EXPECT_EQ(wrong.exit, kExitUsage);
+  EXPECT_THAT(wrong.err, HasSubstr("Basket.weight is 'much'"));
 }
 
 TEST(CommandLine, WhatPrintConfigPrintsReadsBack) {
