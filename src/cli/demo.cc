@@ -30,8 +30,11 @@ const Manual kManual = {
 
 SimulationOptions DemoSimulation() {
   SimulationOptions options;
-  options.trajectory.frames = 90;
-  options.deformation.amplitude_mm = 2.5;
+  // A camera that moves faster than the scene deforms: what the method assumes.
+  options.trajectory.kind = TrajectoryKind::kSway;
+  options.trajectory.sway_period_s = 2.0;
+  options.trajectory.frames = 60;
+  options.deformation.amplitude_mm = 2.0;
   return options;
 }
 
