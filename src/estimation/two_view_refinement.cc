@@ -118,7 +118,7 @@ void Assess(Rays rays0, Rays rays1, double focal_px, double loss_scale_px, TwoVi
     const double weight = 1.0 / (1.0 + std::pow(error_px / loss_scale_px, 2));
     normal_equations += weight * focal_px * focal_px * row.transpose() * row;
   }
-  refinement->rms_px = errors_px.empty() ? 0.0 : kMedianToSigma * Median(errors_px);
+  refinement->spread_px = errors_px.empty() ? 0.0 : kMedianToSigma * Median(errors_px);
 
   const Eigen::Matrix2d direction =
       normal_equations.bottomRightCorner<2, 2>() -
@@ -126,8 +126,8 @@ void Assess(Rays rays0, Rays rays1, double focal_px, double loss_scale_px, TwoVi
           normal_equations.topLeftCorner<3, 3>().ldlt().solve(normal_equations.topRightCorner<3, 2>());
   const Eigen::Vector2d eigenvalues = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(direction).eigenvalues();
   for (int k = 0; k < 2; ++k)
-    refinement->direction_sigma_rad[k] =
-        eigenvalues[k] > 0.0 ? refinement->rms_px / std::sqrt(eigenvalues[k]) : std::numeric_limits<double>::infinity();
+    refinement->direction_sigma_rad[k] = eigenvalues[k] > 0.0 ? refinement->spread_px / std::sqrt(eigenvalues[k])
+                                                              : std::numeric_limits<double>::infinity();
 }
 
 Status CheckWindow(const Window& window, WindowPoints points) {

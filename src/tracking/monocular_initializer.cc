@@ -8,8 +8,9 @@
 namespace pliant {
 
 void MonocularInitOptions::List(OptionTable& table) {
-  table.AddChoice("refinement", &refinement,
-                  "gated: what follows RANSAC; window uses all frames since the reference and halves the depth noise");
+  table.AddChoice(
+      "refinement", &refinement,
+      "gated: what follows RANSAC: nothing, the pair alone, or the points with window_frames of the frames since");
   table.AddChoice("triangulation", &triangulation, "how a point comes from two rays");
   table.Add("nominal_depth_mm", &nominal_depth_mm, "mm", "the map is scaled once so that this is its median depth",
             1e-3, 1e6);

@@ -128,7 +128,7 @@ TEST(TwoViewRefinement, PredictsTheDirectionsSpread) {
     const auto refined =
         RefineTwoView(Disturbed(truth), RaysOf(scene, options, 0), RaysOf(scene, options, 8), options.focal_px, {});
     ASSERT_TRUE(refined.ok());
-    EXPECT_NEAR(refined->rms_px, 0.3, 0.06);  // the sample's own spread and the outliers' share in the median
+    EXPECT_NEAR(refined->spread_px, 0.3, 0.06);  // the sample's own spread and the outliers' share in the median
     squares += std::pow(AngleBetween(refined->cam1_from_cam0.translation, truth.translation), 2) / kTrials;
     predicted += refined->direction_sigma_rad.squaredNorm() / kTrials;
   }

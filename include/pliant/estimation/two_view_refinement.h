@@ -22,7 +22,7 @@ namespace pliant {
 enum class RigidRefinement {
   kNone,     // RANSAC's motion as it is
   kTwoView,  // the pair's motion by its epipolar errors
-  kWindow,   // then all frames since the reference, their poses and the points together
+  kWindow,   // then several frames since the reference, their poses and the points together
 };
 
 template <>
@@ -40,9 +40,9 @@ struct RefinementOptions {
 struct TwoViewRefinement {
   Rigid3 cam1_from_cam0;  // |translation| = 1
   double cost = 0;        // 0.5 * sum of the robust squared errors, px^2
-  double rms_px = 0;      // of the plain errors, robust: 1.48 * the median of their sizes
+  double spread_px = 0;   // robust standard deviation of the errors: 1.48 * the median of their sizes
   // Standard deviation of the translation's direction, radians, along its two principal axes (larger first), for errors
-  // of rms_px; infinite where the data do not determine it.
+  // of spread_px; infinite where the data do not determine it.
   Eigen::Vector2d direction_sigma_rad = Eigen::Vector2d::Zero();
 };
 

@@ -5,9 +5,8 @@
 //   paper  k frames after the reference, whatever the motion: RANSAC essential matrix, the smaller rotation, cheirality
 //          vote, IDWM triangulation with its cheirality test.
 //   gated  waits until the pair can carry a map: a rotation does not explain it, no second motion explains it as well
-//   (a
-//          plane), parallax and predicted depth accuracy suffice; then refines robustly over the frames since the
-//          reference, and leaves out points whose depth is uncertain or which contradict the map.
+//          (a plane has one), parallax and predicted depth accuracy suffice; then refines robustly over some of the
+//          frames since the reference, and leaves out points whose depth is uncertain or which contradict the map.
 // The map is scaled once, so that its median depth is nominal_depth_mm. Equations: docs/method.md, eq. I1 to I12.
 #pragma once
 
@@ -31,10 +30,11 @@ struct MonocularInitOptions {
   double nominal_depth_mm = 50.0;
   double max_error_px = 1.5;
   int max_iterations = 300;
-  int min_points = 40;
-  int paper_frames = 3;  // paper only: k
+  // Paper: k.
+  int paper_frames = 3;
 
-  // Gated: the pair.
+  // Gated: the pair, and the map.
+  int min_points = 40;
   double min_parallax_deg = 2.5;
   double max_rotation_share = 0.8;
   double min_inlier_share = 0.5;
