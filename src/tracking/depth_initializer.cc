@@ -53,7 +53,7 @@ class DepthInitializer final : public Initializer {
       return;
     }
     const Eigen::Vector3d position = *ray * (depth.depth_mm / ray->z());
-    outcome->points.push_back({observation.id, position, options_.relative_sigma * depth.depth_mm, 0.0});
+    outcome->points.push_back({observation.id, position, 0.0, 0.0});
   }
 
   DepthInitOptions options_;
@@ -64,7 +64,6 @@ class DepthInitializer final : public Initializer {
 void DepthInitOptions::List(OptionTable& table) {
   table.Add("depth_max_step", &max_depth_step, "-",
             "depth: relative step among the four pixels around a corner above which it gets no depth", 1e-6, 1);
-  table.Add("depth_relative_sigma", &relative_sigma, "-", "depth: standard deviation of the depth by the depth", 0, 1);
   table.Add("depth_min_points", &min_points, "-", "depth: fewer corners with depth make no map", 4, 100000);
 }
 

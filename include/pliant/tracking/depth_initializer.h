@@ -13,8 +13,7 @@
 namespace pliant {
 
 struct DepthInitOptions {
-  double max_depth_step = 0.05;   // relative step among the four pixels around a corner, above it: no point
-  double relative_sigma = 0.005;  // standard deviation of the depth, relative
+  double max_depth_step = 0.05;  // relative step among the four pixels around a corner, above it: no point
   int min_points = 40;
 
   void List(OptionTable& table);  // appended to the group "Init"

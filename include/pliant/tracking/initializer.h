@@ -53,13 +53,12 @@ enum class InitRejection {
   kUncertainDepth,  // predicted depth too uncertain: too little parallax
   kReprojection,    // contradicts the refined map
 };
-inline constexpr int kInitRejectionCount = 6;
 std::string_view InitRejectionName(InitRejection reason);
 
 struct InitPoint {
   PointId id;
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  // world
-  double depth_sigma = 0;   // predicted standard deviation along the reference ray, map units
+  double depth_sigma = 0;   // predicted standard deviation along the reference ray, map units; 0: not predicted
   double parallax_rad = 0;  // between the reference and the current frame
 };
 
@@ -73,7 +72,7 @@ struct InitRejectedPoint {
   InitRejection reason = InitRejection::kNoRay;
 };
 
-// What was measured on the way; not-a-number where a step was not reached.
+// What was measured on the way; zero where a step was not reached.
 struct InitMeasurements {
   int correspondences = 0;
   int inliers = 0;
