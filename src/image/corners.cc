@@ -72,7 +72,6 @@ class Cells {
       : side_(side), cols_(static_cast<int>(size.width / side) + 1), rows_(static_cast<int>(size.height / side) + 1) {
     taken_.resize(static_cast<std::size_t>(cols_) * static_cast<std::size_t>(rows_));
   }
-  std::size_t size() const { return taken_.size(); }
   std::size_t Index(const Eigen::Vector2d& p) const {
     const int col = std::clamp(static_cast<int>(p.x() / side_), 0, cols_ - 1);
     const int row = std::clamp(static_cast<int>(p.y() / side_), 0, rows_ - 1);

@@ -14,10 +14,10 @@
 // Domain: theta below the angle at which theta_d stops growing; points beside and behind the camera are seen.
 //
 // Every model has the same members: kName, kParamNames, kNumParams, params() and
-//   template <class T> bool Project(const T point[3], T pixel[2]) const;     T: double or a type of automatic
-//   derivatives bool ProjectWithJacobian(const double point[3], double pixel[2], double jacobian[6]) const;     2x3,
-//   row-major bool Unproject(const double pixel[2], double ray[3]) const;                                     ray of
-//   unit length
+//   template <class T> bool Project(const T point[3], T pixel[2]) const;
+//   bool ProjectWithJacobian(const double point[3], double pixel[2], double jacobian[6]) const;
+//   bool Unproject(const double pixel[2], double ray[3]) const;
+// T is double or a type of automatic derivatives, the Jacobian is 2x3 row-major, rays have unit length.
 // They answer false, and write nothing that may be used, outside of the domain and for what is not a number. Unproject
 // is exact to rounding or false: never an approximation.
 #pragma once

@@ -5,16 +5,14 @@
 // X_i(t) = X_i(t-1) + delta_i, that minimise (docs/method.md, eq. E5)
 //
 //   E = 0.5 * (            sum_i   rho_rep(|u_i - project(T (X_i + delta_i))|^2 / sigma_rep^2)
-//              + lambda_spa sum_ij rho_spa(w_ij^2 |delta_i - delta_j|^2 / sigma_spa^2)    over the paper's directed
-//              pairs
+//              + lambda_spa sum_ij rho_spa(w_ij^2 |delta_i - delta_j|^2 / sigma_spa^2)
 //              + lambda_tmp sum_i  rho_tmp(|delta_i|^2 / sigma_tmp^2)
 //              + lambda_len sum_ij rho_len((|X_i + delta_i - X_j - delta_j| - rest_ij)^2 / sigma_len^2)  if asked for)
 //
-// with rho Huber's on the squared norm: rho(s) = s up to chi2, 2 sqrt(chi2 s) - chi2 beyond.
-// World frame, mm; pixels with (0, 0) at the centre of the first pixel.
-// What pose and displacements could share (a motion of everything at once) is settled by the temporal term: it goes to
-// the camera as far as it is rigid.
-// Source: Gomez Rodriguez, Montiel, Tardos, IROS 2022 (arXiv 2204.08309), section III.
+// with the sums over ij going over the paper's directed pairs, and rho Huber's on the squared norm: rho(s) = s up to
+// chi2, 2 sqrt(chi2 s) - chi2 beyond. World frame, mm; pixels with (0, 0) at the centre of the first pixel. What pose
+// and displacements could share (a motion of everything at once) is settled by the temporal term: it goes to the camera
+// as far as it is rigid. Source: Gomez Rodriguez, Montiel, Tardos, IROS 2022 (arXiv 2204.08309), section III.
 #pragma once
 
 #include <array>

@@ -52,7 +52,7 @@ struct NewPoint {
   std::array<std::uint8_t, 3> rgb = {128, 128, 128};
 };
 
-// Costs of the joint problem at its solution (0.5 * sum of rho, weighted), and how many points each step kept.
+// Costs of the joint problem at its solution (0.5 * sum of rho, weighted).
 struct FrameCosts {
   double reprojection = 0;
   double spatial = 0;
@@ -75,7 +75,7 @@ struct FrameReport {
   int optimized = 0;                                // points in the joint problem's solution
   int lost = 0;                                     // points given up in this frame
   int added = 0;                                    // points new in this frame
-  std::vector<std::pair<std::string, int>> losses;  // points given up by reason; fixed order and names
+  std::vector<std::pair<std::string, int>> losses;  // points given up by reason, in the order of the first of each
 
   FrameCosts costs;
   double median_reprojection_error_px = 0;

@@ -26,8 +26,8 @@ struct AgreementOptions {
 
 // One point's motion from an anchor (where it was at some earlier time) to now.
 struct NeighbourMotion {
-  Eigen::Vector3d anchor;    // world, map units
-  Eigen::Vector3d position;  // world, map units
+  Eigen::Vector3d anchor = Eigen::Vector3d::Zero();    // world, map units
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  // world, map units
 };
 
 struct Disagreement {

@@ -5,9 +5,8 @@
 //   periodic  the reference patch is cut anew every few images (Gomez Rodriguez et al., IROS 2022). Each cut adds the
 //             error of the moment for good, so a track drifts.
 //   adaptive  keeps the first patch. The latest image's patch finds the point, then the point is re-aligned to the
-//   first
-//             patch seen through the affine change since, so errors do not add up. Only when the first patch no longer
-//             resembles what is seen is a new one cut (one error is committed), and not before.
+//             first patch seen through the affine change since, so errors do not add up. Only when the first patch no
+//             longer resembles what is seen is a new one cut (one error is committed), and not before.
 // Pixels: (0, 0) is the centre of the first pixel. Memory grows with the number of points only.
 #pragma once
 
