@@ -9,7 +9,6 @@
 
 #include "pliant/base/prefetcher.h"
 #include "pliant/base/version.h"
-#include "pliant/io/run_writer.h"
 
 namespace pliant {
 namespace {
@@ -110,7 +109,7 @@ Result<RunSummary> RunTrack(const RunRequest& request, const TrackOptions& optio
   TrackOptions listed = options;
   listed.List(table);
   RunWriterOptions writer_options;
-  writer_options.timings = options.timings == Timings::kNone ? RunTimings::kNone : RunTimings::kWritten;
+  writer_options.timings = options.timings;
   auto writer = RunWriter::Create(
       request.output_path, (*sequence)->camera(),
       {kVersion, request.command_line, static_cast<std::uint64_t>(options.seed), request.input.image_path.string()},

@@ -41,7 +41,7 @@ TEST(RigidScene, FromAMonocularStartThePlainErrorStaysBelowTwoMillimetres) {
 TEST(RigidScene, OneAndTwoThreadsAndTheSameSeedTwiceGiveIdenticalFiles) {
   const TestFolder folder;
   TrackOptions options;
-  options.timings = Timings::kNone;
+  options.timings = RunTimings::kNone;
   for (const auto& [run, threads] : {std::pair{"one", 1}, {"two", 2}, {"again", 2}}) {
     options.threads = threads;
     TrackSequenceAt(kSequence, folder.Path(run), options, 30);

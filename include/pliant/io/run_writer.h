@@ -3,16 +3,23 @@
 
 // Writes a run folder from frame reports, row by row as frames are done, so that a run that is killed keeps what it
 // had:
-//   config.yaml       as given                      trajectory.txt    a line a tracked frame
-//   run.json          `interrupted` until Finish    frames.csv        a row a frame, written after the frame's other
-//   rows map.ply, sparse/  by Finish                     observations.csv  a row a point and tracked frame
+//   config.yaml       as given
+//   run.json          `interrupted` until Finish
+//   trajectory.txt    a line a tracked frame
+//   observations.csv  a row a point and tracked frame
+//   frames.csv        a row a frame, written after the frame's other rows
+//   map.ply, sparse/  by Finish
 // Units: pixels to 1e-4, positions (map units, mm) and times (s) to 1e-6, quaternions to 1e-9.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
+#include "pliant/base/options.h"
 #include "pliant/base/status.h"
 #include "pliant/camera/camera.h"
 #include "pliant/io/colmap.h"
@@ -24,6 +31,12 @@ namespace pliant {
 enum class RunTimings {
   kWritten,
   kNone,  // zeros instead, so that two runs can be compared byte by byte
+};
+
+template <>
+struct EnumNames<RunTimings> {
+  static constexpr std::array kNames = {std::pair{RunTimings::kWritten, std::string_view("written")},
+                                        std::pair{RunTimings::kNone, std::string_view("none")}};
 };
 
 struct RunWriterOptions {

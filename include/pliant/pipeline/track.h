@@ -17,6 +17,7 @@
 #include "pliant/base/status.h"
 #include "pliant/datasets/open_sequence.h"
 #include "pliant/io/run_summary.h"
+#include "pliant/io/run_writer.h"
 #include "pliant/tracking/frame_report.h"
 #include "pliant/tracking/tracker.h"
 
@@ -32,17 +33,10 @@ struct EnumNames<Preset> {
                                         std::pair{Preset::kPaper, std::string_view("paper")}};
 };
 
-enum class Timings { kWritten, kNone };
-template <>
-struct EnumNames<Timings> {
-  static constexpr std::array kNames = {std::pair{Timings::kWritten, std::string_view("written")},
-                                        std::pair{Timings::kNone, std::string_view("none")}};
-};
-
 struct TrackOptions {
   int seed = 1;
   int threads = 2;  // 1: everything on one thread; 2 and more: images are read ahead, points are followed in parallel
-  Timings timings = Timings::kWritten;
+  RunTimings timings = RunTimings::kWritten;
   TrackerOptions tracker;
 
   void List(OptionTable& table);  // group "General" and the tracker's
