@@ -66,7 +66,8 @@ Result<std::vector<fs::path>> ListImages(const fs::path& folder) {
   std::vector<fs::path> images;
   fs::directory_iterator entry(folder, error);
   for (; !error && entry != fs::directory_iterator(); entry.increment(error))
-    if (IsImageName(entry->path()) && !entry->is_directory()) images.push_back(entry->path());
+    if (std::error_code ignored; IsImageName(entry->path()) && !entry->is_directory(ignored))
+      images.push_back(entry->path());
   if (error)
     return Status(ErrorCode::kUnreadable,
                   "cannot list the folder " + folder.string() + " (" + error.message() + "); check its permissions");

@@ -36,7 +36,8 @@ std::string Trimmed(const std::string& text) {
 // One time a line, seconds, growing; lines that start with # are comments.
 Result<std::vector<double>> ReadTimes(const fs::path& file) {
   std::ifstream stream(file);
-  if (!stream || !fs::is_regular_file(file))
+  std::error_code error;
+  if (!stream || !fs::is_regular_file(file, error))
     return Status(ErrorCode::kUnreadable, "cannot open " + file.string() + "; check that it is a readable file");
   std::vector<double> times_s;
   std::string line;

@@ -87,20 +87,25 @@ Result<std::vector<int>> TrackedFrames(const std::string& path, const Run& run, 
 }  // namespace
 
 Result<Run> ReadRun(const std::string& path) {
-  if (!std::filesystem::is_directory(path))
+  const auto exists = [&](const char* name) {
+    std::error_code error;
+    return std::filesystem::exists(path + name, error);
+  };
+  std::error_code error;
+  if (!std::filesystem::is_directory(path, error))
     return Status(ErrorCode::kNotFound, "there is no run folder " + Quoted(path) + "; check the path");
   for (const char* name : {"/trajectory.txt", "/observations.csv"})
-    if (!std::filesystem::exists(path + name))
+    if (!exists(name))
       return Status(ErrorCode::kNotFound, "the folder " + Quoted(path) + " holds no " + (name + 1) +
                                               "; a run has trajectory.txt and observations.csv");
   Run run;
-  const bool ours = std::filesystem::exists(path + "/run.json");
+  const bool ours = exists("/run.json");
   if (ours) {
     auto summary = ReadRunSummary(path + "/run.json");
     if (!summary.ok()) return summary.status();
     run.summary = std::move(summary).value();
   }
-  const bool has_frames = std::filesystem::exists(path + "/frames.csv");
+  const bool has_frames = exists("/frames.csv");
   if (has_frames)
     if (const Status status = ReadFrames(path + "/frames.csv", &run); !status.ok()) return status;
 

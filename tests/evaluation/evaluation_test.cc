@@ -168,6 +168,22 @@ TEST(EvaluationReport, TableJsonAndCsvSayTheSame) {
   EXPECT_EQ(rows, 8);
 }
 
+TEST(Evaluate, TakesFrameReportsAsTheyAre) {
+  EvaluationInput run = MakeRun(8, 1, 1);
+  const auto expected = Evaluate(run, TruthSequence(8), {});
+  for (EvaluationFrame& frame : run.frames) {
+    FrameReport report;
+    report.frame_idx = frame.frame_idx;
+    report.timestamp_s = frame.timestamp_s;
+    report.cam_from_world = frame.cam_from_world;
+    report.observations = frame.observations;
+    frame = FrameFromReport(report);
+  }
+  const auto evaluation = Evaluate(run, TruthSequence(8), {});
+  ASSERT_TRUE(expected.ok() && evaluation.ok());
+  EXPECT_EQ(EvaluationCsv(*evaluation), EvaluationCsv(*expected));
+}
+
 TEST(EvaluationReport, JsonTakesARunWhoseNameIsNotUtf8) {
   EvaluationInput run = MakeRun(8, 1, 1);
   run.name = "run_\xff";

@@ -177,6 +177,8 @@ TEST(RunFolder, ReadsAnotherProgramsResult) {
   folder.Write("trajectory.txt", "0.1 0 0 0 0 0 0 1\n");
   EXPECT_EQ(ReadRun(folder.Path("")).status().code(), ErrorCode::kMismatch);
   EXPECT_EQ(ReadRun(folder.Path("none")).status().code(), ErrorCode::kNotFound);
+  EXPECT_EQ(ReadRun(folder.Path(std::string(300, 'x'))).status().code(),
+            ErrorCode::kNotFound);  // no name may be so long
 }
 
 TEST(RunWriter, ReplacesAFormerRunAndNothingElse) {
