@@ -15,21 +15,25 @@ namespace {
 
 constexpr int kFramesAhead = 3;
 
+struct ReadFrame {
+  TrackerFrame frame;
+  Status depth;  // of reading its depth image; matters only while the tracker wants depth
+};
+
 // Reads and prepares the next frame; nothing at the end.
-std::optional<Result<TrackerFrame>> NextFrame(Sequence& sequence, const TrackerOptions& options,
-                                              const std::atomic<bool>& wants_depth) {
+std::optional<Result<ReadFrame>> NextFrame(Sequence& sequence, const TrackerOptions& options,
+                                           const std::atomic<bool>& wants_depth) {
   auto next = sequence.Next();
   if (!next.ok()) return next.status();
   if (!next->has_value()) return std::nullopt;
   const SequenceFrame& frame = **next;
-  TrackerFrame prepared =
-      PrepareFrame(frame.frame_idx, frame.name, frame.timestamp_s, frame.image, frame.mask, options);
+  ReadFrame read{PrepareFrame(frame.frame_idx, frame.name, frame.timestamp_s, frame.image, frame.mask, options), {}};
   if (wants_depth) {
-    auto depth = sequence.Depth(frame.frame_idx);
-    if (!depth.ok()) return depth.status();
-    if (depth->has_value()) prepared.depth_mm = **depth;
+    const auto depth = sequence.Depth(frame.frame_idx);
+    read.depth = depth.status();
+    if (depth.ok() && depth->has_value()) read.frame.depth_mm = **depth;
   }
-  return prepared;
+  return read;
 }
 
 // How a run ended.
@@ -43,12 +47,15 @@ Ending TrackSequence(Sequence& sequence, const RunRequest& request, const TrackO
   Tracker tracker(sequence.camera(), options.tracker, static_cast<std::uint64_t>(options.seed), options.threads);
   // Once there is a map no depth image is read any more; those read ahead in the meantime change nothing.
   std::atomic<bool> wants_depth = tracker.WantsDepth();
-  Prefetcher<Result<TrackerFrame>> frames([&] { return NextFrame(sequence, options.tracker, wants_depth); },
-                                          options.threads > 1 ? kFramesAhead : 0);
+  Prefetcher<Result<ReadFrame>> frames([&] { return NextFrame(sequence, options.tracker, wants_depth); },
+                                       options.threads > 1 ? kFramesAhead : 0);
   std::string last_note = "the sequence has no frames";
   while (auto frame = frames.Next()) {
     if (!frame->ok()) return {RunStatus::kFailed, frame->status().message()};
-    const FrameReport report = tracker.Process(**frame);
+    const ReadFrame& read = **frame;
+    // What was read ahead for nothing cannot end the run, or the number of threads would decide.
+    if (tracker.WantsDepth() && !read.depth.ok()) return {RunStatus::kFailed, read.depth.message()};
+    const FrameReport report = tracker.Process(read.frame);
     wants_depth = tracker.WantsDepth();
     if (const Status written = writer.Write(report); !written.ok()) return {RunStatus::kFailed, written.message()};
     for (TrackObserver* observer : observers) observer->OnFrame(report);

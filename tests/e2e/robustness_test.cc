@@ -122,6 +122,19 @@ TEST(Robustness, StoppedOnRequestTheRunSaysInterrupted) {
   ExpectReadable(folder.Path("run"), 1);
 }
 
+TEST(Robustness, ADepthImageThatNothingNeedsAnyMoreMayBeBroken) {
+  for (const int threads : {1, 2}) {
+    const TestFolder folder;
+    const SequenceCopy sequence(folder, 4);
+    for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(sequence.path()) / "depth"))
+      if (entry.path().stem() != "000000") std::ofstream(entry.path()) << "no image";
+    TrackOptions options = DepthStart();
+    options.threads = threads;
+    const RunSummary summary = TrackSequenceAt(sequence.path(), folder.Path("run"), options);
+    EXPECT_EQ(summary.status, RunStatus::kCompleted) << threads << " threads: " << summary.note;
+  }
+}
+
 TEST(Robustness, AStartFromDepthWithoutDepthSaysSo) {
   const TestFolder folder;
   const SequenceCopy sequence(folder, 4);
