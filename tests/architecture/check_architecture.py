@@ -8,7 +8,7 @@ usage: check_architecture.py ROOT
 1. A room includes only itself and rooms below it (so there is no circle of rooms).
 2. FLANN and OpenGV are included in one file each, in the rooms deformation and estimation.
 3. Nothing below the room cli prints, logs, or ends the process.
-4. Every source, header and script begins with the two SPDX lines.
+4. Every source, header, script and CMake list begins with the two SPDX lines.
 Prints one line a violation, `file:line: sentence`, and exits with 1 if there is one.
 """
 
@@ -88,9 +88,10 @@ def check_calls(root):
 
 
 def check_spdx(root):
-    paths = [root / "run", root / ".ci" / "run"]
+    paths = [root / "run", root / ".ci" / "run", root / "CMakeLists.txt"]
     for folder in ("include", "src", "tests", "third_party_configs", "experiments"):
-        paths += [p for p in sorted((root / folder).rglob("*")) if p.suffix in SPDX_SUFFIXES]
+        paths += [p for p in sorted((root / folder).rglob("*"))
+                  if p.suffix in SPDX_SUFFIXES or p.name == "CMakeLists.txt"]
     for path in paths:
         if path.is_file():
             head = [line for line in path.read_text().splitlines()[:3] if not line.startswith("#!")]

@@ -59,6 +59,8 @@ class Rules(unittest.TestCase):
     def test_a_missing_spdx_head_is_found(self):
         found = violations({"src/io/a.cc": "no head\n"})
         self.assertEqual(found, ["src/io/a.cc:1: the two SPDX lines are not the first ones"])
+        found = violations({"src/io/CMakeLists.txt": "no head\n"})
+        self.assertEqual(found, ["src/io/CMakeLists.txt:1: the two SPDX lines are not the first ones"])
 
 
 if __name__ == "__main__":
