@@ -90,7 +90,7 @@ std::vector<GraphEdge> MergeDirections(const NeighborLists& lists) {
 }  // namespace
 
 void GraphOptions::List(OptionTable& table) {
-  table.BeginGroup("Deformation", "The graph that ties each point to its neighbours.");
+  table.BeginGroup("Deformation", "the graph that ties each point to its neighbours");
   table.Add("neighbors", &neighbors, "points", "K, how many nearest neighbours each point is tied to", 1, 1000);
   table.Add("sigma_mm", &sigma_mm, "mm", "distance over which neighbours move alike: w = exp(-d^2 / (2 sigma^2))", 1e-6,
             1e6);
@@ -102,10 +102,10 @@ void GraphOptions::List(OptionTable& table) {
 
 Result<DeformationGraph> BuildDeformationGraph(Points positions, Points rest_positions, const GraphOptions& options) {
   if (!rest_positions.empty() && rest_positions.size() != positions.size())
-    return {ErrorCode::kMismatch, "The deformation graph was given " + std::to_string(positions.size()) +
-                                      " positions but " + std::to_string(rest_positions.size()) + " rest positions."};
+    return {ErrorCode::kMismatch, "the deformation graph was given " + std::to_string(positions.size()) +
+                                      " positions but " + std::to_string(rest_positions.size()) + " rest positions"};
   if (!AllFinite(positions) || !AllFinite(rest_positions))
-    return {ErrorCode::kInvalidArgument, "The deformation graph was given a position that is not a finite number."};
+    return {ErrorCode::kInvalidArgument, "the deformation graph was given a position that is not a finite number"};
 
   DeformationGraph graph;
   graph.num_points = static_cast<int>(positions.size());

@@ -25,14 +25,14 @@ constexpr double kFreeDirection = 1e-12;
 
 Status Check(std::span<const Eigen::Vector3d> points, std::span<const Eigen::Vector2d> pixels, const Rigid3& pose) {
   if (points.size() != pixels.size())
-    return {ErrorCode::kMismatch, "The camera pose was given " + std::to_string(points.size()) + " points but " +
-                                      std::to_string(pixels.size()) + " pixels."};
+    return {ErrorCode::kMismatch, "the camera pose was given " + std::to_string(points.size()) + " points but " +
+                                      std::to_string(pixels.size()) + " pixels"};
   bool finite = pose.rotation.coeffs().allFinite() && pose.translation.allFinite();
   for (const Eigen::Vector3d& point : points) finite = finite && point.allFinite();
   for (const Eigen::Vector2d& pixel : pixels) finite = finite && pixel.allFinite();
   if (!finite)
     return {ErrorCode::kInvalidArgument,
-            "The camera pose was given a point, a pixel or an initial pose that is not a finite number."};
+            "the camera pose was given a point, a pixel or an initial pose that is not a finite number"};
   return Status::Ok();
 }
 
@@ -94,7 +94,7 @@ Result<CameraPoseEstimate> SolvePose(const Camera& camera, std::span<const Eigen
   ceres::Solver::Summary summary;
   ceres::Solve(solver_options, &problem, &summary);
   if (!summary.IsSolutionUsable() || !increment.allFinite())
-    return {ErrorCode::kDegenerate, "The camera pose could not be computed: " + summary.message};
+    return {ErrorCode::kDegenerate, "the camera pose could not be computed: " + summary.message};
 
   CameraPoseEstimate estimate;
   estimate.cam_from_world = pose.Pose(increment);
@@ -109,7 +109,7 @@ Result<CameraPoseEstimate> SolvePose(const Camera& camera, std::span<const Eigen
 }  // namespace
 
 void CameraPoseOptions::List(OptionTable& table) {
-  table.BeginGroup("CameraPose", "The camera's pose on the geometry of the last frame, before the joint problem.");
+  table.BeginGroup("CameraPose", "the camera's pose on the geometry of the last frame, before the joint problem");
   table.Add("sigma_rep_px", &sigma_rep_px, "px", "standard deviation of a measured pixel", 1e-3, 1e3);
   table.Add("chi2_rep", &chi2_rep, "-", "Huber threshold on the squared normalised error (95 %, 2 dof)", 1e-3, 1e6);
   table.Add("max_iterations", &max_iterations, "iterations", "limit of Levenberg-Marquardt", 1, 10000);
@@ -130,8 +130,8 @@ Result<CameraPoseEstimate> EstimateCameraPose(const Camera& camera, std::span<co
   }
   if (static_cast<int>(used.size()) < options.min_points)
     return {ErrorCode::kInsufficient,
-            "Only " + std::to_string(used.size()) + " of " + std::to_string(points_in_world.size()) +
-                " points lie in front of the camera; a pose needs " + std::to_string(options.min_points) + "."};
+            "only " + std::to_string(used.size()) + " of " + std::to_string(points_in_world.size()) +
+                " points lie in front of the camera; a pose needs " + std::to_string(options.min_points)};
 
   const PoseIncrement pose(initial_cam_from_world, pivot / static_cast<double>(used.size()));
   auto estimate = SolvePose(camera, points_in_world, pixels, used, pose, options);
@@ -139,7 +139,7 @@ Result<CameraPoseEstimate> EstimateCameraPose(const Camera& camera, std::span<co
   const Matrix6d information = ClassifyAndAccumulate(camera, points_in_world, pixels, options, &*estimate);
   if (!InvertInformation(information, &estimate->covariance))
     return {ErrorCode::kDegenerate,
-            "The " + std::to_string(used.size()) + " points do not determine the camera's pose (they lie on a line)."};
+            "the " + std::to_string(used.size()) + " points do not determine the camera's pose (they lie on a line)"};
   return estimate;
 }
 

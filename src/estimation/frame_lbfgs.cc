@@ -100,14 +100,14 @@ Result<FrameEstimate> SolveFrameByLbfgs(const FrameTerms& terms) {
   const FramePreconditioner preconditioner(terms, start);
   auto energy = std::make_unique<PreconditionedEnergy>(terms, preconditioner);
   if (!preconditioner.ok() || !energy->SetScale())
-    return {ErrorCode::kDegenerate, "The joint problem of pose and deformation is singular at its start."};
+    return {ErrorCode::kDegenerate, "the joint problem of pose and deformation is singular at its start"};
   const double scale = energy->scale();
   ceres::GradientProblem problem(energy.release());  // takes ownership
   Eigen::VectorXd z = Eigen::VectorXd::Zero(problem.NumParameters());
   ceres::GradientProblemSolver::Summary summary;
   ceres::Solve(SolverOptions(terms.options), problem, z.data(), &summary);
   if (!summary.IsSolutionUsable() || !z.allFinite())
-    return {ErrorCode::kDegenerate, "The joint problem of pose and deformation has no solution: " + summary.message};
+    return {ErrorCode::kDegenerate, "the joint problem of pose and deformation has no solution: " + summary.message};
 
   FrameEstimate estimate;
   Vector6d increment;

@@ -74,7 +74,7 @@ Result<FrameEstimate> SolveFrameByLevenbergMarquardt(const FrameTerms& terms) {
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
   if (!summary.IsSolutionUsable() || !increment.allFinite())
-    return {ErrorCode::kDegenerate, "The joint problem of pose and deformation has no solution: " + summary.message};
+    return {ErrorCode::kDegenerate, "the joint problem of pose and deformation has no solution: " + summary.message};
 
   FrameEstimate estimate;
   estimate.cam_from_world = terms.pose.Pose(increment);

@@ -19,8 +19,8 @@ namespace {
 Status CheckInput(const FrameProblemInput& input) {
   const std::size_t count = input.positions.size();
   if (input.pixels.size() != count)
-    return {ErrorCode::kMismatch, "The joint problem was given " + std::to_string(count) + " positions but " +
-                                      std::to_string(input.pixels.size()) + " pixels."};
+    return {ErrorCode::kMismatch, "the joint problem was given " + std::to_string(count) + " positions but " +
+                                      std::to_string(input.pixels.size()) + " pixels"};
   bool finite = input.initial_cam_from_world.rotation.coeffs().allFinite() &&
                 input.initial_cam_from_world.translation.allFinite();
   for (const Eigen::Vector3d& position : input.positions) finite = finite && position.allFinite();
@@ -28,14 +28,14 @@ Status CheckInput(const FrameProblemInput& input) {
   for (const GraphEdge& edge : input.edges) {
     if (edge.i < 0 || edge.i >= edge.j || edge.j >= static_cast<int>(count) || edge.multiplicity < 1 ||
         edge.multiplicity > 2)
-      return {ErrorCode::kMismatch, "An edge of the deformation graph (" + std::to_string(edge.i) + ", " +
+      return {ErrorCode::kMismatch, "an edge of the deformation graph (" + std::to_string(edge.i) + ", " +
                                         std::to_string(edge.j) + ") does not belong to these " + std::to_string(count) +
-                                        " points."};
+                                        " points"};
     finite = finite && std::isfinite(edge.weight) && std::isfinite(edge.rest_length_mm);
   }
   if (!finite)
     return {ErrorCode::kInvalidArgument,
-            "The joint problem was given a position, a pixel, an edge or a pose that is not a finite number."};
+            "the joint problem was given a position, a pixel, an edge or a pose that is not a finite number"};
   return Status::Ok();
 }
 
@@ -57,10 +57,9 @@ Result<FrameTerms> BuildTerms(const Camera& camera, const FrameProblemInput& inp
     sum += input.positions[i];
   }
   if (terms.num_points() < options.min_points)
-    return {ErrorCode::kInsufficient, "Only " + std::to_string(terms.num_points()) + " of " +
-                                          std::to_string(input.positions.size()) +
-                                          " points lie in front of the camera; the joint problem needs " +
-                                          std::to_string(options.min_points) + "."};
+    return {ErrorCode::kInsufficient,
+            "only " + std::to_string(terms.num_points()) + " of " + std::to_string(input.positions.size()) +
+                " points lie in front of the camera; the joint problem needs " + std::to_string(options.min_points)};
   terms.pose = PoseIncrement(input.initial_cam_from_world, sum / terms.num_points());
   for (GraphEdge edge : input.edges) {
     edge.i = place[edge.i];
@@ -133,7 +132,7 @@ std::vector<double> Disagreements(const FrameTerms& terms, const std::vector<Eig
 }  // namespace
 
 void FrameProblemOptions::List(OptionTable& table) {
-  table.BeginGroup("Optimization", "The joint problem of camera pose and deformation, solved once a frame.");
+  table.BeginGroup("Optimization", "the joint problem of camera pose and deformation, solved once a frame");
   table.Add("lambda_spa", &lambda_spa, "-", "weight of the spatial term: close points move alike", 0.0, 1e9);
   table.Add("lambda_tmp", &lambda_tmp, "-", "weight of the temporal term: points move slowly", 1e-9, 1e9);
   table.Add("sigma_rep_px", &sigma_rep_px, "px", "standard deviation of a measured pixel", 1e-3, 1e3);
@@ -167,7 +166,7 @@ Result<FrameSolution> SolveFrameProblem(const Camera& camera, const FrameProblem
   std::vector<double> errors_px;
   if (!AddCosts(*terms, input.initial_cam_from_world, terms->positions, &solution.initial_costs, nullptr) ||
       !AddCosts(*terms, estimate->cam_from_world, estimate->positions, &solution.costs, &errors_px))
-    return {ErrorCode::kDegenerate, "The joint problem's solution puts a point behind the camera."};
+    return {ErrorCode::kDegenerate, "the joint problem's solution puts a point behind the camera"};
   solution.cam_from_world = estimate->cam_from_world;
   solution.num_used = terms->num_points();
   solution.iterations = estimate->iterations;
@@ -187,13 +186,13 @@ Result<FrameProblemCosts> EvaluateFrameCosts(const Camera& camera, const FramePr
   const auto terms = BuildTerms(camera, input, options);
   if (!terms.ok()) return terms.status();
   if (positions.size() != input.positions.size())
-    return {ErrorCode::kMismatch, "The joint problem has " + std::to_string(input.positions.size()) + " points, but " +
-                                      std::to_string(positions.size()) + " positions were given."};
+    return {ErrorCode::kMismatch, "the joint problem has " + std::to_string(input.positions.size()) + " points, but " +
+                                      std::to_string(positions.size()) + " positions were given"};
   std::vector<Eigen::Vector3d> used;
   for (const int i : terms->input_idx) used.push_back(positions[i]);
   FrameProblemCosts costs;
   if (!AddCosts(*terms, cam_from_world, used, &costs, nullptr))
-    return {ErrorCode::kInvalidArgument, "A point of the joint problem does not project at the given pose."};
+    return {ErrorCode::kInvalidArgument, "a point of the joint problem does not project at the given pose"};
   return costs;
 }
 
