@@ -91,6 +91,9 @@ int TrackCommand(std::span<const std::string> args) {
   OptionTable table;
   options.List(table);
   if (const auto exit = line.Resolve(table)) return *exit;
+  if (arguments.end != -1 && arguments.end <= arguments.start)
+    return line.UsageError("--end is " + std::to_string(arguments.end) + " and --start is " +
+                           std::to_string(arguments.start) + "; --end is one past the last frame, or -1 for all");
 
   RunRequest request;
   request.input.image_path = arguments.image_path;

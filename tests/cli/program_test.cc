@@ -142,6 +142,12 @@ TEST(Program, AMissingArgumentExitsWithTwo) {
   }
 }
 
+TEST(Program, AnEndBeforeTheStartExitsWithTwo) {
+  const Outcome outcome = Pliant("track --image_path x --output_path y --start 10 --end 5");
+  EXPECT_EQ(outcome.exit, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("--end is 5 and --start is 10"));
+}
+
 TEST(Program, AnInputThatIsNotThereIsOneSentenceAndExitCodeOne) {
   const std::string nowhere = Temporary("nowhere").string();
   for (const std::string& arguments :
