@@ -69,6 +69,27 @@ struct Simulator::State {
 
 namespace {
 
+// Scenes and cameras that no memory holds are refused before it is asked for.
+Status CheckMemory(const SimulationOptions& options, double length_mm) {
+  constexpr double kMostTexels = 4e8;
+  const double texels = 2 * 3.1416 * options.scene.radius_mm * 1.5 * length_mm /
+                        std::min(options.texture.texel_mm * options.texture.texel_mm,
+                                 options.scene.mesh_step_mm * options.scene.mesh_step_mm / 8);
+  if (texels > kMostTexels)
+    return {ErrorCode::kInvalidArgument,
+            "a wall " + FormatDouble(std::round(length_mm)) +
+                " mm long does not fit into memory at this resolution; shorten the way, or raise Texture.texel_mm and "
+                "Scene.mesh_step_mm"};
+  constexpr double kMostRays = 4e8;
+  const double rays = static_cast<double>(options.camera.width) * options.camera.height * (options.sensor.samples + 1);
+  if (rays > kMostRays)
+    return {ErrorCode::kInvalidArgument, "the rays of " + std::to_string(options.camera.width) + "x" +
+                                             std::to_string(options.camera.height) +
+                                             " pixels do not fit into memory with Sensor.samples " +
+                                             std::to_string(options.sensor.samples) + "; lower one of them"};
+  return Status::Ok();
+}
+
 struct Clearance {
   double distance_mm = std::numeric_limits<double>::infinity();
   bool inside = true;
@@ -196,15 +217,7 @@ Result<Simulator> Simulator::Create(const SimulationOptions& options) {
 
   const double needed_mm = simulation::LastCameraMm(options.trajectory) + options.scene.view_mm;
   const double length_mm = options.scene.length_mm > 0 ? options.scene.length_mm : needed_mm;
-  constexpr double kMostTexels = 4e8;
-  const double texels = 2 * 3.1416 * options.scene.radius_mm * 1.5 * length_mm /
-                        std::min(options.texture.texel_mm * options.texture.texel_mm,
-                                 options.scene.mesh_step_mm * options.scene.mesh_step_mm / 8);
-  if (texels > kMostTexels)
-    return {ErrorCode::kInvalidArgument,
-            "a wall " + FormatDouble(std::round(length_mm)) +
-                " mm long does not fit into memory at this resolution; shorten the way, or "
-                "raise Texture.texel_mm and Scene.mesh_step_mm"};
+  if (Status status = CheckMemory(options, length_mm); !status.ok()) return status;
 
   auto state = std::make_unique<State>(options, *std::move(camera), length_mm);
   Status status;

@@ -278,5 +278,13 @@ TEST(Simulator, RefusesOptionsOutOfRange) {
   EXPECT_EQ(Simulator::Create(options).status().code(), ErrorCode::kInvalidArgument);
 }
 
+TEST(Simulator, RefusesACameraThatNoMemoryHolds) {
+  SimulationOptions options = SmallScene(TrajectoryKind::kHold, 1);
+  options.camera.width = 8192;
+  options.camera.height = 8192;
+  options.sensor.samples = 64;
+  EXPECT_THAT(Simulator::Create(options).status().message(), testing::HasSubstr("8192x8192"));
+}
+
 }  // namespace
 }  // namespace pliant
