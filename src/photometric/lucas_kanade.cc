@@ -17,7 +17,6 @@ namespace {
 
 constexpr double kCoarseEpsilon_px = 0.05;  // of its own pixels: a coarse level only has to come near
 constexpr double kRest_px = 0.1;            // a patch whose last step on the finest level is larger is not at rest
-constexpr double kMinCoarseSupport = 0.3;
 constexpr double kSamePixels_px = 0.5;
 constexpr double kSimilarSupport = 0.9;
 constexpr double kMinStepGain = 0.05;  // the fit says: nothing of the patch is there

@@ -12,8 +12,6 @@
 namespace pliant {
 namespace {
 
-constexpr double kMinCoarseSupport = 0.3;  // a coarse level only has to come near
-
 PatchFailure CutLevel(const ImagePyramid& pyramid, const SupportMask& mask, Pixel centre, int level,
                       const LucasKanadeOptions& options, PatchShape shape, PatchLevel* out) {
   const double scale = 1 << level;

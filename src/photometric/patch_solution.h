@@ -12,6 +12,9 @@ namespace pliant {
 // Largest block: kMaxPatchSize rows.
 inline constexpr int kMaxBlock = kMaxPatchSize * PatchRowStride(kMaxPatchSize);
 
+// Share of a patch that must be usable on a coarse level, which only has to come near.
+inline constexpr double kMinCoarseSupport = 0.3;
+
 inline PatchShape ShapeOf(int size) { return {size, PatchRowStride(size)}; }
 inline int BlockOf(PatchShape shape) { return shape.size * shape.row_stride; }
 
