@@ -7,7 +7,7 @@
 //   adaptive  keeps the first patch. The latest image's patch finds the point, then the point is re-aligned to the
 //             first patch seen through the affine change since, so errors do not add up. Only when the first patch no
 //             longer resembles what is seen is a new one cut (one error is committed), and not before.
-// Pixels: (0, 0) is the centre of the first pixel. Memory grows with the number of points only.
+// Pixels: (0, 0) is the centre of the first pixel. Memory grows with the points only. docs/method.md, eq. P7 to P9.
 #pragma once
 
 #include <map>
