@@ -172,7 +172,8 @@ Status OptionTable::Set(std::string_view name, std::string_view value) {
 std::string OptionTable::ToYaml() const {
   std::string yaml;
   for (const auto& [group, why] : groups_) {
-    yaml += (yaml.empty() ? "" : "\n") + group + ":  # " + why + "\n";
+    if (!yaml.empty()) yaml += '\n';
+    yaml.append(group).append(":  # ").append(why).append("\n");
     for (const OptionField& field : fields_) {
       if (!field.name.starts_with(group + ".")) continue;
       const std::string line = "  " + field.name.substr(group.size() + 1) + ": " + YamlScalar(field.get());

@@ -145,7 +145,7 @@ Status WriteImages(const std::string& folder, ColmapFormat format, std::span<con
   const auto append_until = [&](int frame_idx) {
     for (; next < images.size() && images[next].frame_idx < frame_idx; ++next) AppendImage(&*file, images[next], {});
   };
-  const Status status = ForEachFrame(run_path, [&](const FrameObservations& frame) {
+  Status status = ForEachFrame(run_path, [&](const FrameObservations& frame) {
     append_until(frame.frame_idx);
     if (next < images.size() && images[next].frame_idx == frame.frame_idx)
       AppendImage(&*file, images[next++], frame.observations);
@@ -170,7 +170,7 @@ Result<std::vector<TrackElement>> Tracks(std::span<const ColmapPoint> points, co
     next.push_back(total);
     limit.push_back(total += point.num_observations);
   }
-  const Status mismatch(ErrorCode::kMismatch,
+  Status mismatch(ErrorCode::kMismatch,
                         "the observations in " + Quoted(run_path) + " are not those that were counted");
   std::vector<TrackElement> elements(static_cast<std::size_t>(total));
   const Status status = ForEachFrame(run_path, [&](const FrameObservations& frame) {

@@ -57,7 +57,7 @@ PatchFailure ChooseSolution(const Finest& f, int level, double x, double y, cons
                is_affine ? f.patch.offsets_affine.data() : reference.offsets.data(),
                reference.weights.empty() ? nullptr : reference.weights.data()};
   const double reach = std::max(std::hypot(affine.xx, affine.yx), std::hypot(affine.xy, affine.yy));
-  const int radius = static_cast<int>(std::ceil(reach * (f.shape.size / 2 + 1))) - 1;
+  const int radius = static_cast<int>(std::ceil(reach * (f.shape.half() + 1))) - 1;
   const Support support = SupportAt(f.mask, f.size, x, y, radius);
   const double wanted = level == 0 ? f.options.min_valid_support : kMinCoarseSupport;
   if (support.inside < wanted) return PatchFailure::kOutOfImage;
@@ -73,7 +73,7 @@ PatchFailure ChooseSolution(const Finest& f, int level, double x, double y, cons
 
 // Steps on one level until at rest; `at` in pixels of the level.
 PatchFailure IterateLevel(const Finest& f, int level, const Solution& solution, Pixel* at, int* iterations) {
-  const double half = f.shape.size / 2;
+  const double half = f.shape.half();
   const double epsilon = level == 0 ? f.options.epsilon_px : std::max(f.options.epsilon_px, kCoarseEpsilon_px);
   const double max_x = f.pyramid.width(level) - 1;
   const double max_y = f.pyramid.height(level) - 1;
@@ -111,7 +111,7 @@ PatchFailure IterateLevel(const Finest& f, int level, const Solution& solution, 
 void Judge(const Finest& f, const float* found, const float* weights, PatchMatch* match) {
   const PatchLevel& finest = f.patch.levels.front();
   const float* reference = finest.values.data() + f.shape.row_stride + 1;
-  const float origin = reference[(f.shape.size / 2) * f.shape.row_stride + f.shape.size / 2];
+  const float origin = reference[f.shape.half() * f.shape.row_stride + f.shape.half()];
   const MomentSums sums = SumMoments(reference, found, weights, origin, f.shape);
   const double w = std::max(1.0F, sums.w);
   const double dx = sums.x / w;
@@ -161,7 +161,7 @@ void TrackLevel(const Finest& f, int level, PatchMatch* match) {
     return;
   }
   alignas(64) std::array<float, kMaxBlock> found;
-  SampleGrid(f.view(0), at.x - f.shape.size / 2, at.y - f.shape.size / 2, f.shape.size, f.shape, found.data());
+  SampleGrid(f.view(0), at.x - f.shape.half(), at.y - f.shape.half(), f.shape.size, f.shape, found.data());
   Judge(f, found.data(), solution.weights, match);
 }
 
@@ -180,8 +180,8 @@ bool Compose(const std::array<double, 4>& m, double half, Affine2* a) {
 
 // Whether everything the kernel may read of the warped patch is inside the padded image.
 bool Readable(const Finest& f, Pixel at, const Affine2& a) {
-  const double half = f.shape.size / 2 + 1;
-  const double right = f.shape.row_stride - f.shape.size / 2;
+  const double half = f.shape.half() + 1;
+  const double right = f.shape.row_stride - f.shape.half();
   const double reach_x = std::abs(a.xx) * right + std::abs(a.xy) * half;
   const double reach_y = std::abs(a.yx) * right + std::abs(a.yy) * half;
   const double margin = ImagePyramid::kPadding - 4;
@@ -192,7 +192,7 @@ bool Readable(const Finest& f, Pixel at, const Affine2& a) {
 void SampleWarped(const Finest& f, Pixel at, const Affine2& a, float* found) {
   const std::array<float, 4> coefficients = {static_cast<float>(a.xx), static_cast<float>(a.xy),
                                              static_cast<float>(a.yx), static_cast<float>(a.yy)};
-  const double half = f.shape.size / 2;
+  const double half = f.shape.half();
   SampleAffineGrid(f.view(0), at.x - (a.xx + a.xy) * half, at.y - (a.yx + a.yy) * half, coefficients.data(), f.shape,
                    found);
 }
@@ -201,7 +201,7 @@ void SampleWarped(const Finest& f, Pixel at, const Affine2& a, float* found) {
 PatchFailure IterateWarped(const Finest& f, const Solution& solution, AlignmentModel model, PatchMatch* match,
                            float* found) {
   const int motion = model == AlignmentModel::kAffine ? 6 : 2;
-  const double half = f.shape.size / 2;
+  const double half = f.shape.half();
   const Pixel start = match->pixel;
   double length = 0;
   for (int i = 0;; ++i) {

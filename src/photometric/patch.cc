@@ -16,7 +16,7 @@ PatchFailure CutLevel(const ImagePyramid& pyramid, const SupportMask& mask, Pixe
                       const LucasKanadeOptions& options, PatchShape shape, PatchLevel* out) {
   const double scale = 1 << level;
   const ImageSize size{pyramid.width(), pyramid.height()};
-  const int half = shape.size / 2;
+  const int half = shape.half();
   const Support support = SupportAt(mask, size, centre.x, centre.y, static_cast<int>(scale) * (half + 1) - 1);
   const double wanted = level == 0 ? options.min_valid_support : kMinCoarseSupport;
   if (support.inside < wanted) return PatchFailure::kOutOfImage;

@@ -48,7 +48,7 @@ PatchFailure SolvePatch(const float* values, const float* weights, BasisKind kin
   alignas(64) std::array<float, static_cast<std::size_t>(kMaxBlocks) * kMaxBlock> basis;
   std::array<float, kMaxBlocks * kMaxBlocks> gram;
   const float* centre = values + shape.row_stride + 1;
-  const float grey = centre[(shape.size / 2) * shape.row_stride + shape.size / 2];
+  const float grey = centre[shape.half() * shape.row_stride + shape.half()];
   FillBasis(values, weights, grey, kind, shape, basis.data());
   GramMatrix(basis.data(), blocks, shape, gram.data());
 
@@ -89,7 +89,7 @@ Support SupportAt(const SupportMask& mask, ImageSize size, double x, double y, i
 
 void FillWeights(const SupportMask& mask, ImageSize size, double x, double y, const Affine2& affine, PatchShape shape,
                  const float* reference, float* weights) {
-  const int half = shape.size / 2;
+  const int half = shape.half();
   const cv::Mat& valid = mask.valid();
   const auto round = [](double value) { return static_cast<int>(std::floor(value + 0.5)); };
   if (affine.xy == 0 && affine.yx == 0) {  // rows stay rows: every column is looked up once
