@@ -61,17 +61,18 @@ TEST(RigidScene, OneAndTwoThreadsAndTheSameSeedTwiceGiveIdenticalFiles) {
   EXPECT_GE(files, 9);
 }
 
-// Corners on occluding contours and points that move alone are what spoils the map: leaving them in must show.
-TEST(RigidScene, KeepingContoursOutLowersThePlainError) {
+// Corners on occluding contours and points that move alone are what spoils the map: leaving them in must show. Here it
+// costs about a quarter; experiments/occluding_contours has more scenes.
+TEST(RigidScene, KeepingContoursOutLowersThePlainErrorByATenthAtLeast) {
   const TestFolder folder;
-  TrackOptions without = DepthStart();
+  TrackOptions without;
   without.tracker.corners.contour_filter = Detection::kOff;
   without.tracker.neighbor_agreement = NeighbourAgreement::kOff;
-  TrackSequenceAt(kSequence, folder.Path("with"), DepthStart());
+  TrackSequenceAt(kSequence, folder.Path("with"), TrackOptions());
   TrackSequenceAt(kSequence, folder.Path("without"), without);
-  const Evaluation good = EvaluateRun(folder.Path("with"), kSequence, SurfaceScale::kNone);
-  const Evaluation bad = EvaluateRun(folder.Path("without"), kSequence, SurfaceScale::kNone);
-  EXPECT_LT(good.surface->estimate.mean_rmse_mm, bad.surface->estimate.mean_rmse_mm);
+  const Evaluation good = EvaluateRun(folder.Path("with"), kSequence, SurfaceScale::kPerFrame);
+  const Evaluation bad = EvaluateRun(folder.Path("without"), kSequence, SurfaceScale::kPerFrame);
+  EXPECT_LT(good.surface->estimate.mean_rmse_mm, 0.9 * bad.surface->estimate.mean_rmse_mm);
 }
 
 }  // namespace
