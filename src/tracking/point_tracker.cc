@@ -159,19 +159,39 @@ PointTrack PointTracker::TrackOne(const PointPrediction& prediction, const Image
         !Returns(cut, expected_motion, origin, images))
       track.failure = PatchFailure::kForwardBackward;
     if (track.failure != PatchFailure::kNone) return track;
-    std::swap(cut, point->latest);
+    std::swap(cut, point->next.latest);
+    point->next.patch = Step::Patch::kLatest;
+  } else {
+    point->next.patch = Step::Patch::kKept;
   }
-  point->pixel = track.pixel;
-  point->affine_from_reference = ToMatrix(match.affine);
-  ++point->age;
   if (refresh) {
-    point->reference = point->latest;
-    point->reference_affine_from_first = track.affine_from_first;
-    point->affine_from_reference.setIdentity();
-    point->age = 0;
+    point->next.patch = Step::Patch::kReference;
     track.refreshed = Refreshed::kYes;
   }
+  point->next.pixel = track.pixel;
+  point->next.affine_from_reference = ToMatrix(match.affine);
+  point->next.affine_from_first = track.affine_from_first;
+  point->next.pending = true;
   return track;
+}
+
+void PointTracker::Point::TakeStep() {
+  if (!next.pending) return;
+  next.pending = false;
+  pixel = next.pixel;
+  affine_from_reference = next.affine_from_reference;
+  ++age;
+  if (next.patch == Step::Patch::kKept) return;
+  std::swap(latest, next.latest);
+  if (next.patch == Step::Patch::kLatest) return;
+  reference = latest;
+  reference_affine_from_first = next.affine_from_first;
+  affine_from_reference.setIdentity();
+  age = 0;
+}
+
+void PointTracker::Undo() {
+  for (auto& [id, point] : points_) point.next.pending = false;
 }
 
 std::vector<PointTrack> PointTracker::Track(const ImagePyramid& previous, const SupportMask& previous_mask,
@@ -189,6 +209,7 @@ std::vector<PointTrack> PointTracker::Track(const ImagePyramid& previous, const 
     const auto idx = static_cast<std::size_t>(i);
     PointTrack& track = tracks[idx];
     if (points[idx] != nullptr) {
+      points[idx]->TakeStep();
       track = TrackOne(predictions[idx], images, points[idx]);
     } else {
       track.id = predictions[idx].id;

@@ -52,7 +52,7 @@ void Tracker::TrackFrame(const TrackerFrame& frame, FrameReport* report) {
     followed = FollowPoints(frame, PredictPixels(predicted));  // (P1)
     report->tracked = static_cast<int>(followed.size());
   }
-  if (report->tracked < options_.min_points) return ReportLost(frame, report->tracked, report);
+  if (report->tracked < options_.min_points) return ReportLost(frame, Found(report->tracked), report);
 
   Rigid3 pose = predicted;
   {
@@ -80,8 +80,9 @@ void Tracker::TrackFrame(const TrackerFrame& frame, FrameReport* report) {
     followed.solved = solution->points;
     DropUnexplained(&followed);
   }
-  if (!solution.ok() || static_cast<int>(followed.size()) < options_.min_points)
-    return ReportLost(frame, static_cast<int>(followed.size()), report);
+  if (!solution.ok()) return ReportLost(frame, solution.status().message(), report);
+  if (static_cast<int>(followed.size()) < options_.min_points)
+    return ReportLost(frame, Found(static_cast<int>(followed.size())), report);
   Commit(*solution, followed, report);
   Apply(TrackingEvent::kFrameTracked);
   report->note = ImageFault(frame, previous_);
@@ -199,14 +200,19 @@ void Tracker::Commit(const FrameSolution& solution, const Followed& followed, Fr
                    solution.costs.edge_length};
 }
 
+// Too few points, as a sentence.
+std::string Tracker::Found(int count) const {
+  return std::to_string(count) + " of " + std::to_string(map_.landmarks.size()) +
+         " points could be followed, of at least " + std::to_string(options_.min_points);
+}
+
 // Nothing is given up: the map and the patches stay as they were in the last good frame.
-void Tracker::ReportLost(const TrackerFrame& frame, int found, FrameReport* report) {
+void Tracker::ReportLost(const TrackerFrame& frame, const std::string& reason, FrameReport* report) {
   Apply(TrackingEvent::kTooFewPoints);
   ++lost_frames_;
   losses_.clear();
-  report->note = WithFault("lost: " + std::to_string(found) + " of " + std::to_string(map_.landmarks.size()) +
-                               " points could be followed, of at least " + std::to_string(options_.min_points),
-                           ImageFault(frame, previous_));
+  point_tracker_.Undo();
+  report->note = WithFault("lost: " + reason, ImageFault(frame, previous_));
 }
 
 }  // namespace pliant

@@ -79,6 +79,25 @@ TEST(Robustness, AFlashOfBlackIsSurvivedInTheSameMap) {
   ExpectReadable(folder.Path("run"), kFrames - 2);
 }
 
+// A few points stay visible, too few to track: what was followed of them in the meantime must not stand in the way.
+TEST(Robustness, AViewThatIsNearlyCoveredForAMomentIsSurvivedInTheSameMap) {
+  const TestFolder folder;
+  const SequenceCopy sequence(folder, kFrames);
+  for (int i = 6; i <= 8; ++i) {
+    const cv::Mat image = cv::imread(sequence.Image(i).string());
+    cv::Mat covered(image.size(), image.type(), cv::Scalar::all(0));
+    const cv::Rect gap(image.cols / 3, image.rows / 3, 60, 60);
+    image(gap).copyTo(covered(gap));
+    sequence.Replace(i, covered);
+  }
+  const RunSummary summary = TrackSequenceAt(sequence.path(), folder.Path("run"), DepthStart());
+  EXPECT_EQ(summary.status, RunStatus::kCompleted);
+  EXPECT_EQ(summary.frames_tracked, kFrames - 3);
+  const auto run = ReadRun(folder.Path("run"));
+  ASSERT_TRUE(run.ok()) << run.status().message();
+  EXPECT_GT(run->frames[9].optimized, run->frames[5].optimized / 2);
+}
+
 TEST(Robustness, BlackFromTheBeginningHasNoReferenceAndSaysSo) {
   const TestFolder folder;
   const SequenceCopy sequence(folder, 4);

@@ -179,6 +179,26 @@ TEST(PointTracker, ForwardBackwardRefusesATrackThatDoesNotReturn) {
             PatchFailure::kNone);
 }
 
+TEST(PointTracker, AfterUndoItGoesOnAsIfTheImageHadNotBeen) {
+  const Sequence sequence = Zoom();
+  const ImagePyramid first = sequence.Image(0);
+  const ImagePyramid skipped = sequence.Image(6);
+  const ImagePyramid next = sequence.Image(2);
+  const Eigen::Vector2d start(90, 80);
+  const std::vector<PointPrediction> predictions = {{PointId{0}, start, Eigen::Matrix2d::Identity()}};
+  PointTracker plain{PointTrackerOptions{}};
+  PointTracker undone{PointTrackerOptions{}};
+  ASSERT_EQ(plain.Add(PointId{0}, start, first, {}), PatchFailure::kNone);
+  ASSERT_EQ(undone.Add(PointId{0}, start, first, {}), PatchFailure::kNone);
+  ASSERT_EQ(undone.Track(first, {}, skipped, {}, predictions, 1)[0].failure, PatchFailure::kNone);
+  undone.Undo();
+  const PointTrack expected = plain.Track(first, {}, next, {}, predictions, 1)[0];
+  const PointTrack found = undone.Track(first, {}, next, {}, predictions, 1)[0];
+  ASSERT_EQ(expected.failure, PatchFailure::kNone);
+  EXPECT_EQ(found.failure, PatchFailure::kNone);
+  EXPECT_EQ(found.pixel, expected.pixel);
+}
+
 TEST(PointTracker, UnknownAndRemovedPointsAreSaidToBeUnknown) {
   const Sequence still = Still();
   PointTracker tracker({});

@@ -85,7 +85,21 @@ class PointTracker {
                                 const ImagePyramid& current, const SupportMask& current_mask,
                                 std::span<const PointPrediction> predictions, int threads);
 
+  // Takes the last Track back: every point is again where it was before. For an image whose result is not used; the
+  // next Track then starts from the same `previous` as the one taken back.
+  void Undo();
+
  private:
+  // What the latest Track found of a point; it becomes the point's own with the next Track.
+  struct Step {
+    enum class Patch { kKept, kLatest, kReference };  // what was cut anew: nothing, the latest, the reference as well
+    bool pending = false;
+    Patch patch = Patch::kKept;
+    ReferencePatch latest;
+    Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
+    Eigen::Matrix2d affine_from_reference = Eigen::Matrix2d::Identity();
+    Eigen::Matrix2d affine_from_first = Eigen::Matrix2d::Identity();
+  };
   struct Point {
     ReferencePatch reference;                         // adaptive: the first; periodic: the last one cut
     ReferencePatch latest;                            // adaptive: cut in the latest image
@@ -93,6 +107,9 @@ class PointTracker {
     Eigen::Matrix2d affine_from_reference = Eigen::Matrix2d::Identity();
     Eigen::Matrix2d reference_affine_from_first = Eigen::Matrix2d::Identity();
     int age = 0;  // images since the reference was cut
+    Step next;
+
+    void TakeStep();  // no effect when none is pending
   };
   struct Images;
 

@@ -119,7 +119,8 @@ class Tracker {
   void DropContradicted(const Rigid3& cam_from_world, const DeformationGraph& graph, Followed* followed);
   void DropUnexplained(Followed* followed);
   void Commit(const FrameSolution& solution, const Followed& followed, FrameReport* report);
-  void ReportLost(const TrackerFrame& frame, int found, FrameReport* report);
+  std::string Found(int count) const;
+  void ReportLost(const TrackerFrame& frame, const std::string& reason, FrameReport* report);
 
   Camera camera_;
   TrackerOptions options_;
