@@ -3,7 +3,10 @@
 
 #include "pliant/pipeline/track.h"
 
+#include <algorithm>
+#include <exception>
 #include <memory>
+#include <thread>
 
 #include <opencv2/core.hpp>
 
@@ -73,6 +76,8 @@ Ending TrackSequence(Sequence& sequence, const RunRequest& request, const TrackO
     case TrackingState::kInitialising:
       break;
   }
+  if (writer.summary().frames_read == 1)
+    return {RunStatus::kFailed, "one frame carries no map; give two or more, between which the camera moved"};
   return {RunStatus::kFailed, "the sequence ended without a first map: " + last_note};
 }
 
@@ -108,7 +113,10 @@ TrackOptions MakeTrackOptions(Preset preset) {
 
 Result<RunSummary> RunTrack(const RunRequest& request, const TrackOptions& options,
                             std::span<TrackObserver* const> observers) {
-  cv::setNumThreads(options.threads);
+  // More threads than processors gain nothing, and TBB complains of them on standard error.
+  TrackOptions usable = options;
+  usable.threads = std::min(options.threads, std::max(2, static_cast<int>(std::thread::hardware_concurrency())));
+  cv::setNumThreads(usable.threads);
   auto sequence = OpenSequence(request.input);
   if (!sequence.ok()) return sequence.status();
 
@@ -124,7 +132,7 @@ Result<RunSummary> RunTrack(const RunRequest& request, const TrackOptions& optio
   if (!writer.ok()) return writer.status();
 
   for (TrackObserver* observer : observers) observer->OnStart((*sequence)->size());
-  const Ending ending = TrackSequence(**sequence, request, options, *writer, observers);
+  const Ending ending = TrackSequence(**sequence, request, usable, *writer, observers);
   const Status finished = writer->Finish(ending.status, ending.note);
   RunSummary summary = writer->summary();
   if (!finished.ok()) {
