@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <fstream>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -40,17 +41,40 @@ bool StartsWith(const Bytes& bytes, std::string_view head) {
                     [](char a, unsigned char b) { return static_cast<unsigned char>(a) == b; });
 }
 
-// Every chunk is length (4, big-endian), type (4), data, checksum (4); the last one is IEND.
-bool PngIsWhole(const Bytes& bytes) {
+// The checksum of PNG: CRC-32, polynomial 0xEDB88320 (the lowest bit first), as in the format's annex D.
+std::uint32_t Crc32(std::span<const unsigned char> bytes) {
+  static const std::array<std::uint32_t, 256> kTable = [] {
+    std::array<std::uint32_t, 256> table = {};
+    for (std::uint32_t i = 0; i < table.size(); ++i) {
+      table[i] = i;
+      for (int bit = 0; bit < 8; ++bit) table[i] = (table[i] >> 1) ^ ((table[i] & 1) != 0 ? 0xEDB88320U : 0U);
+    }
+    return table;
+  }();
+  std::uint32_t crc = 0xFFFFFFFFU;
+  for (const unsigned char byte : bytes) crc = kTable[(crc ^ byte) & 0xFF] ^ (crc >> 8);
+  return ~crc;
+}
+
+enum class Wholeness { kWhole, kTruncated, kDamaged };
+
+// Every chunk is length (4, big-endian), type (4), data, checksum of type and data (4); the last one is IEND.
+Wholeness PngWholeness(const Bytes& bytes) {
+  const auto number = [&bytes](std::size_t at) {
+    return (std::uint32_t{bytes[at]} << 24) | (std::uint32_t{bytes[at + 1]} << 16) |
+           (std::uint32_t{bytes[at + 2]} << 8) | std::uint32_t{bytes[at + 3]};
+  };
   std::size_t at = 8;
   while (at + 12 <= bytes.size()) {
-    const std::size_t length = (std::size_t{bytes[at]} << 24) | (std::size_t{bytes[at + 1]} << 16) |
-                               (std::size_t{bytes[at + 2]} << 8) | std::size_t{bytes[at + 3]};
-    const std::string_view type(reinterpret_cast<const char*>(&bytes[at + 4]), 4);
+    const std::size_t length = number(at);
+    if (length > bytes.size() - at - 12) return Wholeness::kTruncated;
+    const std::span<const unsigned char> checked(&bytes[at + 4], 4 + length);
+    if (Crc32(checked) != number(at + 8 + length)) return Wholeness::kDamaged;
+    constexpr std::string_view kEnd = "IEND";
+    if (std::equal(kEnd.begin(), kEnd.end(), checked.begin())) return Wholeness::kWhole;
     at += 12 + length;
-    if (type == "IEND") return at <= bytes.size();
   }
-  return false;
+  return Wholeness::kTruncated;
 }
 
 // Segments with a length come first (a thumbnail with its own end marker hides inside one); after the start of scan
@@ -103,7 +127,10 @@ Result<DecodedImage> Decode(const std::filesystem::path& path) {
   if (!bytes.ok()) return bytes.status();
   const std::string advice = "; copy or export it anew";
   if (bytes->empty()) return Status(ErrorCode::kUnreadable, "the image " + path.string() + " is empty" + advice);
-  if ((IsPng(*bytes) && !PngIsWhole(*bytes)) || (IsJpeg(*bytes) && !JpegIsWhole(*bytes)) ||
+  const Wholeness png = IsPng(*bytes) ? PngWholeness(*bytes) : Wholeness::kWhole;
+  if (png == Wholeness::kDamaged)
+    return Status(ErrorCode::kUnreadable, "the image " + path.string() + " is damaged: a checksum is wrong" + advice);
+  if (png == Wholeness::kTruncated || (IsJpeg(*bytes) && !JpegIsWhole(*bytes)) ||
       (IsBmp(*bytes) && !BmpIsWhole(*bytes)))
     return Status(ErrorCode::kUnreadable, "the image " + path.string() + " is truncated" + advice);
   DecodedImage decoded;

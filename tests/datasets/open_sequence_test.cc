@@ -3,6 +3,8 @@
 
 #include "pliant/datasets/open_sequence.h"
 
+#include <filesystem>
+#include <fstream>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -290,6 +292,23 @@ TEST_F(OpenSequenceTest, NamesATruncatedPngAndGoesOnAfterIt) {
   Truncate("images/000002.png", 0.6);
   testing::internal::CaptureStderr();
   ExpectBadFrame(*Open(Request()), 5, 2, ErrorCode::kUnreadable, "000002.png is truncated");
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+TEST_F(OpenSequenceTest, NamesAPngWithAFlippedByteBeforeTheLibraryDoes) {
+  WriteNative(5);
+  Write("images/000002.png", Noise());
+  {
+    const std::string path = Request().image_path.string() + "/images/000002.png";
+    std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out);
+    const auto middle = static_cast<std::streamoff>(std::filesystem::file_size(path) / 2);
+    file.seekg(middle);
+    const int byte = file.get();
+    file.seekp(middle);
+    file.put(static_cast<char>(byte ^ 0x5a));
+  }
+  testing::internal::CaptureStderr();
+  ExpectBadFrame(*Open(Request()), 5, 2, ErrorCode::kUnreadable, "000002.png is damaged");
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
