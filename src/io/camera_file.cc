@@ -184,11 +184,11 @@ Result<CameraFile> FromColmap(const std::string& path, const CameraFileOptions& 
     ids += (ids.empty() ? "" : ", ") + std::to_string(camera.id);
     if (options.camera_id ? camera.id == *options.camera_id : cameras->size() == 1) return CameraFile{camera.camera};
   }
-  return Status(
-      ErrorCode::kInvalidArgument,
-      options.camera_id
-          ? Quoted(path) + " has no camera " + std::to_string(*options.camera_id) + ", but " + ids
-          : Quoted(path) + " holds " + std::to_string(cameras->size()) + " cameras; choose one by its id: " + ids);
+  return Status(ErrorCode::kInvalidArgument,
+                options.camera_id
+                    ? Quoted(path) + " has no camera " + std::to_string(*options.camera_id) + ", but " + ids
+                    : Quoted(path) + " holds " + std::to_string(cameras->size()) + " cameras (" + ids +
+                          "); choose one by its id, or leave one in the file");
 }
 
 }  // namespace

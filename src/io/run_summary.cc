@@ -3,6 +3,8 @@
 
 #include "pliant/io/run_summary.h"
 
+#include <filesystem>
+
 #include <nlohmann/json.hpp>
 
 #include "io/run_format.h"
@@ -34,7 +36,13 @@ Status WriteRunSummary(const std::string& path, const RunSummary& summary) {
       {"timings",
        {{"total_s", summary.total_s}, {"frames_per_second", summary.frames_per_second}, {"mean_ms", mean_ms}}}};
   // Paths need not be UTF-8.
-  return WriteFileAtomically(path, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  const Status status = WriteFileAtomically(path, text);
+  // How a run ended must be told on a full disk too; a file's first block has room enough.
+  constexpr std::size_t kBlock = 4096;
+  std::error_code error;
+  if (status.ok() || !std::filesystem::exists(path, error) || text.size() > kBlock) return status;
+  return OverwriteFile(path, text);
 }
 
 Result<RunSummary> ReadRunSummary(const std::string& path) {

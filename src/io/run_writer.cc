@@ -252,7 +252,9 @@ Status RunWriter::State::FinishSparse() const {
   std::error_code error;
   fs::create_directories(path + "/sparse", error);
   if (error) return Unwritable(path + "/sparse", error);
-  return WriteColmapModel(path + "/sparse", options.sparse_format, camera, images, points, path);
+  Status status = WriteColmapModel(path + "/sparse", options.sparse_format, camera, images, points, path);
+  if (!status.ok()) fs::remove_all(path + "/sparse", error);  // half a model reads as a whole one or not at all
+  return status;
 }
 
 Status RunWriter::Finish(RunStatus run_status, const std::string& note) {

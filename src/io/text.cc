@@ -113,6 +113,17 @@ Status WriteFileAtomically(const std::string& path, std::string_view text) {
   return status;
 }
 
+Status OverwriteFile(const std::string& path, std::string_view text) {
+  errno = 0;
+  std::FILE* file = std::fopen(path.c_str(), "r+b");
+  bool written = file != nullptr && std::fwrite(text.data(), 1, text.size(), file) == text.size();
+  if (file != nullptr) written = std::fclose(file) == 0 && written;
+  std::error_code error;
+  if (written) std::filesystem::resize_file(path, text.size(), error);
+  if (written && !error) return Status::Ok();
+  return {ErrorCode::kUnwritable, "cannot write " + Quoted(path) + ": " + Reason(errno)};
+}
+
 Result<std::string> ReadFile(const std::string& path) {
   auto reader = LineReader::Open(path);  // checks that it is there and a file
   if (!reader.ok()) return reader.status();
@@ -129,6 +140,8 @@ Result<LineReader> LineReader::Open(const std::string& path) {
     return Status(ErrorCode::kNotFound, "there is no file " + Quoted(path) + "; check the path");
   if (std::filesystem::is_directory(kind))
     return Status(ErrorCode::kUnreadable, Quoted(path) + " is a folder; give a file in it");
+  if (!std::filesystem::is_regular_file(kind))  // which may be endless
+    return Status(ErrorCode::kUnreadable, Quoted(path) + " is a pipe or a device; give a file");
   std::ifstream stream(path, std::ios::binary);
   if (!stream) return Status(ErrorCode::kUnreadable, "cannot read " + Quoted(path) + "; check its permissions");
   return LineReader(path, std::move(stream));

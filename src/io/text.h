@@ -53,6 +53,8 @@ class OutputFile {
 
 // Replaces a whole file: a reader sees the old one or the new one.
 Status WriteFileAtomically(const std::string& path, std::string_view text);
+// Replaces the content of a file that is there, in its own blocks: for a full disk, where nothing new can be made.
+Status OverwriteFile(const std::string& path, std::string_view text);
 Result<std::string> ReadFile(const std::string& path);
 
 // A file line by line, without its line ends (\n or \r\n).

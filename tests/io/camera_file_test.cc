@@ -84,7 +84,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadFile{"ColmapText", "cameras.txt", "# x\n1 PINHOLE 64 48 1 2 nan 4\n", ":2: 'nan' is not a finite"},
         BadFile{"ColmapModel", "cameras.txt", "1 FOV 64 48 1 2 3 4 5\n", "no camera model 'FOV'"},
         BadFile{"ColmapSeveral", "cameras.txt", "3 PINHOLE 64 48 50 50 32 24\n7 PINHOLE 64 48 50 50 32 24\n",
-                "2 cameras; choose one by its id: 3, 7"},
+                "2 cameras (3, 7); choose one by its id"},
         BadFile{"ColmapTruncated", "cameras.bin", std::string("\1\0\0\0\0\0\0\0\1\0\0\0", 12), "ends too early"},
         BadFile{"OpenCvThin", "k.yaml", kMatrix + "D: [0.1, 0, 0, 0, 0, 0, 0, 0, 0.01, 0, 0, 0]\n",
                 "coefficient s1 is 0.01"},

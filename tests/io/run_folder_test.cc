@@ -244,6 +244,22 @@ TEST(RunWriter, ReportsAFullDiskAndKeepsWhatItWrote) {
   EXPECT_EQ(static_cast<int>(run->frames.size()), frames - 1);
 }
 
+TEST(RunWriter, TellsHowTheRunEndedWhereNoNewFileCanBeMade) {
+  const TestFolder folder;
+  RunWriter writer = Writer(folder.Path("run"));
+  ASSERT_TRUE(writer.Write(Report(0)).ok());
+  // Folders in the way of the files stand in for a disk without room for new ones.
+  std::filesystem::create_directories(folder.Path("run/run.json.tmp"));
+  std::filesystem::create_directories(folder.Path("run/sparse/cameras.txt"));
+  std::filesystem::create_directories(folder.Path("run/sparse/cameras.bin"));
+  EXPECT_EQ(writer.Finish(RunStatus::kCompleted, "").code(), ErrorCode::kUnwritable);
+  const auto run = ReadRun(folder.Path("run"));
+  ASSERT_TRUE(run.ok()) << run.status().message();
+  EXPECT_EQ(run->summary->status, RunStatus::kFailed);
+  EXPECT_THAT(run->summary->note, HasSubstr("cannot write"));
+  EXPECT_FALSE(std::filesystem::exists(folder.Path("run/sparse")));
+}
+
 // A second, independent reading of COLMAP's formats.
 TEST(ColmapModel, OfARunLinksImagesAndPointsBothWays) {
   const TestFolder folder;
