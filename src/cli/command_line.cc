@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <iostream>
+#include <set>
 #include <sstream>
 #include <utility>
 
@@ -35,6 +36,14 @@ std::string Wrap(std::string_view text, std::size_t indent) {
     }
   }
   return wrapped + "\n";
+}
+
+// CLI11's sentences speak of its own types and counts.
+std::string ArgumentError(const CLI::ParseError& error) {
+  const std::string text = error.what();
+  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) == nullptr) return text;
+  const std::string name = text.substr(0, text.find(':'));
+  return name + (text.find("missing") != std::string::npos ? " needs a value" : " is given more than once; leave one");
 }
 
 // Paragraphs, separated by empty lines as they come.
@@ -103,7 +112,7 @@ Status CommandLine::ReadArguments(std::span<const std::string> args) {
   try {
     app.parse(std::vector<std::string>(args.rbegin(), args.rend()));  // CLI11 takes them from the back
   } catch (const CLI::ParseError& error) {
-    return {ErrorCode::kInvalidArgument, error.what()};
+    return {ErrorCode::kInvalidArgument, ArgumentError(error)};
   }
   extras_ = app.remaining();
   for (const Argument& argument : arguments_) {
@@ -133,6 +142,7 @@ std::string CommandLine::NearestFlag(std::string_view flag, const OptionTable& o
 }
 
 Status CommandLine::ApplyFlags(OptionTable& options) const {
+  std::set<std::string> given;
   for (std::size_t i = 0; i < extras_.size(); ++i) {
     const std::string& token = extras_[i];
     if (!token.starts_with("--") || token.size() == 2) {
@@ -146,6 +156,8 @@ Status CommandLine::ApplyFlags(OptionTable& options) const {
       return {ErrorCode::kInvalidArgument,
               "there is no option --" + name + "; did you mean " + NearestFlag(name, options) + "?"};
     }
+    if (!given.insert(name).second)
+      return {ErrorCode::kInvalidArgument, "--" + name + " is given more than once; leave one"};
     std::string value;
     if (equals != std::string::npos) {
       value = token.substr(equals + 1);

@@ -23,6 +23,10 @@ std::atomic<bool>& StopOnSignals() {
   sigemptyset(&action.sa_mask);
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+  struct sigaction hang_up = {};
+  sigaction(SIGHUP, nullptr, &hang_up);
+  if (hang_up.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);  // nohup: the run outlives its terminal
+  std::signal(SIGPIPE, SIG_IGN);  // whoever read the progress is gone; that is no reason to end a run
   return stop_requested;
 }
 

@@ -1,14 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Ctrl-C and SIGTERM ask a command to stop at the next frame, so that it can close its files.
+// Ctrl-C, SIGTERM and a closed terminal ask a command to stop at the next frame, so that it can close its files.
 #pragma once
 
 #include <atomic>
 
 namespace pliant::cli {
 
-// From this call on the first SIGINT or SIGTERM sets the flag that is returned; a second one ends the process at once.
+// From this call on the first SIGINT, SIGTERM or SIGHUP (unless it was ignored, as under nohup) sets the flag that is
+// returned; a second one of its kind ends the process at once. A closed pipe on standard output or error ends nothing.
 std::atomic<bool>& StopOnSignals();
 
 }  // namespace pliant::cli

@@ -2,12 +2,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include <array>
+#include <cstdlib>
 #include <exception>
 #include <iostream>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include <fcntl.h>
+#include <unistd.h>
 
 #include "cli/command_line.h"
 #include "cli/commands.h"
@@ -63,13 +67,32 @@ int Run(std::span<const std::string> args) {
   return kExitUsage;
 }
 
+// A closed standard stream would give its number to the next file that is opened, and messages would end up in a run's
+// files.
+void OpenStandardStreams() {
+  int opened = 0;
+  do {
+    opened = open("/dev/null", O_RDWR);
+  } while (opened >= 0 && opened <= STDERR_FILENO);
+  if (opened > STDERR_FILENO) close(opened);
+}
+
+// What the video decoder says of a damaged file is said once, by the command. Whoever sets the variable wants to see
+// it.
+void QuietVideoDecoder() { setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0); }
+
 }  // namespace
 }  // namespace pliant::cli
 
 int main(int argc, char** argv) {
   const std::vector<std::string> args(argv + (argc > 0 ? 1 : 0), argv + argc);
+  pliant::cli::OpenStandardStreams();
+  pliant::cli::QuietVideoDecoder();
   try {
-    return pliant::cli::Run(args);
+    const int exit = pliant::cli::Run(args);
+    if (std::cout.flush() || exit != pliant::cli::kExitOk) return exit;
+    pliant::cli::SayError("", "cannot write to standard output; is the disk full?");
+    return pliant::cli::kExitFailed;
   } catch (const std::exception& error) {  // a library ran out of memory or met what it did not expect
     pliant::cli::SayError("", error.what());
     return pliant::cli::kExitFailed;

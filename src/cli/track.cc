@@ -87,6 +87,10 @@ int TrackCommand(std::span<const std::string> args) {
   AddArguments(&arguments, &line);
   if (const auto exit = line.Parse(args)) return *exit;
 
+  if (arguments.end != -1 && arguments.end <= arguments.start)
+    return line.UsageError("--end is " + std::to_string(arguments.end) + " and --start is " +
+                           std::to_string(arguments.start) + "; --end is one past the last frame, or -1 for all");
+
   TrackOptions options = MakeTrackOptions(arguments.preset);
   OptionTable table;
   options.List(table);

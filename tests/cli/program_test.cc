@@ -182,5 +182,66 @@ TEST(Program, QuietSaysNothingAndProgressGoesToStandardError) {
   EXPECT_EQ(quiet.out + quiet.err, "");
 }
 
+TEST(Program, AnArgumentWithoutItsValueOrGivenTwiceIsToldInWords) {
+  const std::string base = "track --image_path a --output_path b ";
+  for (const auto& [arguments, sentence] :
+       {std::pair{"--start", "--start needs a value"},
+        {"--start 1 --start 2", "--start is given more than once; leave one"},
+        {"--General.seed 1 --General.seed 2", "--General.seed is given more than once; leave one"},
+        {"--start 5 --end 3", "--end is 3 and --start is 5; --end is one past the last frame, or -1 for all"}}) {
+    const Outcome outcome = Pliant(base + arguments);
+    EXPECT_EQ(outcome.exit, 2) << arguments;
+    EXPECT_EQ(outcome.err, "pliant track: " + std::string(sentence) + "\n");
+  }
+}
+
+TEST(Program, AFullStandardOutputIsAFailure) {
+  const int status = std::system("'" PLIANT_PROGRAM "' track --help >/dev/full 2>/dev/null");
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 1);
+}
+
+TEST(Program, WithoutStandardStreamsNoMessageGetsIntoTheFiles) {
+  const std::string sequence = Temporary("seq").string();
+  const std::string run = Temporary("run").string();
+  ASSERT_EQ(Pliant("simulate --quiet --Trajectory.frames 2" + kCoarse + "--output_path '" + sequence + "'").exit, 0);
+  std::system(
+      ("'" PLIANT_PROGRAM "' track --image_path '" + sequence + "' --output_path '" + run + "' <&- >&- 2>&-").c_str());
+  EXPECT_EQ(ReadText(run + "/observations.csv"), "frame,point_id,u_px,v_px,x,y,z,ssim\n");
+  EXPECT_EQ(ReadText(run + "/trajectory.txt"), "");
+}
+
+TEST(Program, ADamagedVideoIsOneSentenceWithoutTheDecoders) {
+  const std::filesystem::path video = Temporary("video.mp4");
+  std::ofstream(video, std::ios::binary) << std::string("\0\0\0\x18", 4) << "ftypisom" << std::string(500, 'x');
+  const std::filesystem::path camera = Temporary("camera.yaml");
+  std::ofstream(camera) << "model: PINHOLE\nwidth: 64\nheight: 48\nparams: [50, 50, 31.5, 23.5]\n";
+  const Outcome outcome =
+      Pliant("track --image_path '" + video.string() + "' --output_path '" + Temporary("run").string() + "'");
+  EXPECT_EQ(outcome.exit, 1);
+  EXPECT_THAT(outcome.err, StartsWith("pliant track: cannot open "));
+  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+}
+
+TEST(Program, OneFrameAndManyThreadsAreOneSentenceEach) {
+  const std::string sequence = Temporary("seq").string();
+  ASSERT_EQ(Pliant("simulate --quiet --Trajectory.frames 2" + kCoarse + "--output_path '" + sequence + "'").exit, 0);
+  const std::string track =
+      "track --quiet --image_path '" + sequence + "' --output_path '" + Temporary("run").string() + "' ";
+  EXPECT_THAT(Pliant(track + "--end 1").err, StartsWith("pliant track: one frame carries no map; "));
+  const Outcome threads = Pliant(track + "--General.threads 64");
+  EXPECT_THAT(threads.err, StartsWith("pliant track: "));
+  EXPECT_EQ(std::count(threads.err.begin(), threads.err.end(), '\n'), 1) << threads.err;
+}
+
+TEST(Program, ADeviceIsNoCalibration) {
+  const std::string sequence = Temporary("seq").string();
+  ASSERT_EQ(Pliant("simulate --quiet --Trajectory.frames 1" + kCoarse + "--output_path '" + sequence + "'").exit, 0);
+  const Outcome outcome = Pliant("track --image_path '" + sequence + "' --camera /dev/zero --output_path '" +
+                                 Temporary("run").string() + "'");
+  EXPECT_EQ(outcome.exit, 1);
+  EXPECT_EQ(outcome.err, "pliant track: '/dev/zero' is a pipe or a device; give a file\n");
+}
+
 }  // namespace
 }  // namespace pliant

@@ -197,6 +197,16 @@ TEST(Robustness, AfterCtrlCTheRunIsWholeAndSaysInterrupted) {
   EXPECT_TRUE(std::filesystem::exists(folder.Path("run/map.ply")));
 }
 
+TEST(Robustness, AfterTheTerminalIsClosedTheRunIsWholeAndSaysInterrupted) {
+  const TestFolder folder;
+  const int status = SignalInMidRun(folder.Path("run"), SIGHUP);
+  ASSERT_TRUE(WIFEXITED(status));
+  const auto run = ReadRun(folder.Path("run"));
+  ASSERT_TRUE(run.ok()) << run.status().message();
+  EXPECT_EQ(run->summary->status, RunStatus::kInterrupted);
+  EXPECT_TRUE(std::filesystem::exists(folder.Path("run/map.ply")));
+}
+
 TEST(Robustness, AfterKillMinusNineWhatWasComputedIsReadableAndCanBeEvaluated) {
   const TestFolder folder;
   const int status = SignalInMidRun(folder.Path("run"), SIGKILL);
