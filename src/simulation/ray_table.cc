@@ -23,8 +23,10 @@ RayTable::RayTable(const Camera& camera, int samples)
   std::vector<Eigen::Vector2d> pixels(static_cast<std::size_t>(width_) * offsets.size());
   rays_.reserve(pixels.size() * camera.height());
   for (int y = 0; y < camera.height(); ++y) {
-    for (std::size_t i = 0; i < pixels.size(); ++i)
-      pixels[i] = Eigen::Vector2d(static_cast<double>(i / offsets.size()), y) + offsets[i % offsets.size()];
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+      const std::size_t x = i / offsets.size();
+      pixels[i] = Eigen::Vector2d(static_cast<double>(x), y) + offsets[i % offsets.size()];
+    }
     for (const auto& ray : camera.Unproject(pixels))
       rays_.push_back(ray ? Eigen::Vector3f(ray->cast<float>()) : Eigen::Vector3f(Eigen::Vector3f::Zero()));
   }
