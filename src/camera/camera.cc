@@ -53,6 +53,26 @@ Result<Camera::Model> CreateModel(CameraModelId model, std::span<const double> p
                                                  std::to_string(static_cast<int>(model)) + "; the numbers are 0 to 5");
 }
 
+// What no lens has, but a slip in the order or the unit of the parameters gives.
+Status CheckPlausible(const Camera& camera) {
+  constexpr double kLongest = 1000;    // focal length by the image's longer side: a field of view of 0.06 degrees
+  constexpr double kShortest = 0.001;  // and one that sees everything in a pixel
+  const double side = std::max(camera.width(), camera.height());
+  const double focal = camera.MeanFocalLengthPx();
+  const std::string size = std::to_string(camera.width()) + "x" + std::to_string(camera.height());
+  if (!(focal > kShortest * side && focal < kLongest * side))
+    return Invalid(camera.model_name(), "has a focal length of " + FormatDouble(focal) + " px for an image of " + size +
+                                            "; check the parameters' order and unit (px)");
+  return camera.Visit([&](const auto& model) {
+    const bool near = model.cx() > -camera.width() && model.cx() < 2.0 * camera.width() &&
+                      model.cy() > -camera.height() && model.cy() < 2.0 * camera.height();
+    if (near) return Status::Ok();
+    return Invalid(camera.model_name(), "has its principal point at (" + FormatDouble(model.cx()) + ", " +
+                                            FormatDouble(model.cy()) + "), far outside the image of " + size +
+                                            "; check the parameters' order");
+  });
+}
+
 // Endoscopes show a disc in a rectangular image: the corners may lie beyond the fold, the inscribed circle may not.
 bool SeesInscribedCircle(const Camera& camera) {
   constexpr int kSamples = 64;
@@ -74,6 +94,7 @@ Result<Camera> Camera::Create(CameraModelId model, int width, int height, std::s
     return Invalid(EnumName(model), "has an image size of " + std::to_string(width) + "x" + std::to_string(height) +
                                         "; both must be positive");
   Camera camera(std::move(created).value(), width, height);
+  if (Status plausible = CheckPlausible(camera); !plausible.ok()) return plausible;
   if (!SeesInscribedCircle(camera))
     return Invalid(EnumName(model), "has a distortion that folds over inside the image of " + std::to_string(width) +
                                         "x" + std::to_string(height) +

@@ -53,9 +53,9 @@ class Camera {
   using Model = std::variant<SimplePinhole, Pinhole, SimpleRadial, Radial, OpenCv, OpenCvFisheye>;
 
   // Fails with kInvalidArgument for a wrong parameter count, numbers that are not finite, focal lengths or sizes that
-  // are not positive, or a distortion that folds over within the circle inscribed in the image; the sentence says
-  // which. (Only that circle: endoscopes show a disc, and their calibrations often fold in the black corners. Unproject
-  // answers nothing there.)
+  // are not positive, a focal length or principal point that no lens for this image has, or a distortion that folds
+  // over within the circle inscribed in the image; the sentence says which. (Only that circle: endoscopes show a disc,
+  // and their calibrations often fold in the black corners. Unproject answers nothing there.)
   static Result<Camera> Create(CameraModelId model, int width, int height, std::span<const double> params);
   static Result<Camera> Create(std::string_view model_name, int width, int height, std::span<const double> params);
 
