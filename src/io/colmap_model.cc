@@ -170,8 +170,7 @@ Result<std::vector<TrackElement>> Tracks(std::span<const ColmapPoint> points, co
     next.push_back(total);
     limit.push_back(total += point.num_observations);
   }
-  Status mismatch(ErrorCode::kMismatch,
-                        "the observations in " + Quoted(run_path) + " are not those that were counted");
+  Status mismatch(ErrorCode::kMismatch, "the observations in " + Quoted(run_path) + " are not those that were counted");
   std::vector<TrackElement> elements(static_cast<std::size_t>(total));
   const Status status = ForEachFrame(run_path, [&](const FrameObservations& frame) {
     auto point = points.begin();

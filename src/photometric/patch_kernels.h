@@ -18,8 +18,8 @@ struct ImageView {
 };
 
 struct PatchShape {
-  int size = 0;        // pixels a side
-  int row_stride = 0;  // floats
+  int size = 0;                          // pixels a side
+  int row_stride = 0;                    // floats
   int half() const { return size / 2; }  // from the centre to the outermost pixel
 };
 
