@@ -22,8 +22,6 @@ using Rays = std::span<const Eigen::Vector3d>;
 using RowMajor24 = Eigen::Matrix<double, 2, 4, Eigen::RowMajor>;
 using RowMajor23 = Eigen::Matrix<double, 2, 3, Eigen::RowMajor>;
 
-constexpr double kMedianToSigma = 1.4826;  // of a normal distribution's absolute value
-
 Eigen::Quaterniond ReadQuaternion(const double* q) { return Eigen::Quaterniond(q[3], q[0], q[1], q[2]); }
 
 // Blocks: rotation (x, y, z, w), translation of unit length. Unit: px.

@@ -137,7 +137,7 @@ Status RunWriter::State::Check(const FrameReport& report) {
   const std::string where = "frame " + std::to_string(report.frame_idx) + ": ";
   const auto invalid = [&](const std::string& what) { return Status(ErrorCode::kInvalidArgument, where + what); };
   if (report.frame_idx <= last_frame_idx) return invalid("frames must come in growing order");
-  const FrameCosts& c = report.costs;
+  const FrameProblemCosts& c = report.costs;
   bool finite = std::isfinite(report.timestamp_s) && std::isfinite(report.median_reprojection_error_px) &&
                 std::isfinite(c.reprojection) && std::isfinite(c.spatial) && std::isfinite(c.temporal) &&
                 std::isfinite(c.edge_length);
@@ -207,7 +207,7 @@ void RunWriter::State::AppendFrameRow(const FrameReport& report) {
   number(report.timestamp_s, 6);
   rows.append(",").append(EnumName(report.state));
   for (const int count : {report.tracked, report.optimized, report.lost, report.added}) integer(count);
-  const FrameCosts& c = report.costs;
+  const FrameProblemCosts& c = report.costs;
   for (const double cost : {c.reprojection, c.spatial, c.temporal, c.edge_length}) number(cost, 6);
   number(report.median_reprojection_error_px, 4);
   for (std::size_t i = 0; i < stage_names.size(); ++i) {

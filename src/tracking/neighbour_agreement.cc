@@ -13,8 +13,7 @@
 namespace pliant {
 namespace {
 
-constexpr double kMadToSigma = 1.4826;  // of a normal distribution
-constexpr double kTukey = 4.685;        // 95 % efficiency under normal noise
+constexpr double kTukey = 4.685;  // 95 % efficiency under normal noise
 
 // displacement(anchor) = offset + gradient * (anchor - centre), with weights of how far each neighbour is to be
 // trusted.
@@ -57,7 +56,7 @@ class MotionFit {
     std::vector<double> residuals;
     for (std::size_t k = 0; k < anchors_.size(); ++k)
       residuals.push_back((displacements_[k] - motion.At(anchors_[k])).cross(ray).norm());
-    return kMadToSigma * Median(residuals);
+    return kMedianToSigma * Median(residuals);
   }
 
  private:
@@ -67,7 +66,7 @@ class MotionFit {
     for (std::size_t k = 0; k < residuals.size(); ++k) residuals[k] = distance(k);
     std::vector<double> sorted = residuals;
     // Never so tight that rounding decides: at least a micrometre.
-    const double cutoff = kTukey * std::max(1e-3, kMadToSigma * Median(sorted));
+    const double cutoff = kTukey * std::max(1e-3, kMedianToSigma * Median(sorted));
     for (std::size_t k = 0; k < residuals.size(); ++k) {
       const double ratio = residuals[k] / cutoff;
       weights_[k] = ratio < 1 ? (1 - ratio * ratio) * (1 - ratio * ratio) : 0.0;

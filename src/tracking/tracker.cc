@@ -116,12 +116,9 @@ void Tracker::TakeReference(const TrackerFrame& frame, FrameReport* report) {
     report->note = WithFault("no reference yet: " + std::to_string(report->tracked) + " corners, of at least " +
                                  std::to_string(options_.min_corners),
                              ImageFault(frame, previous_));
-  } else {
-    TryInitialize(frame, report);
-    if (state_ == TrackingState::kWaitingForReference && report->note.empty()) {
-      Apply(TrackingEvent::kReferenceFound);
-      report->note = "reference with " + std::to_string(report->tracked) + " corners";
-    }
+  } else if (TryInitialize(frame, report) == InitDecision::kWait) {
+    Apply(TrackingEvent::kReferenceFound);
+    report->note = "reference with " + std::to_string(report->tracked) + " corners";
   }
   previous_ = frame;
 }
@@ -167,7 +164,7 @@ void Tracker::FollowReference(const TrackerFrame& frame, FrameReport* report) {
   previous_ = frame;
 }
 
-void Tracker::TryInitialize(const TrackerFrame& frame, FrameReport* report) {
+InitDecision Tracker::TryInitialize(const TrackerFrame& frame, FrameReport* report) {
   InitOutcome outcome;
   {
     const StageTimer timer(report, "initialise");
@@ -177,22 +174,22 @@ void Tracker::TryInitialize(const TrackerFrame& frame, FrameReport* report) {
     case InitDecision::kMap:
       CreateMap(frame, outcome, report);
       report->note = outcome.reason;
-      return;
+      return outcome.decision;
     case InitDecision::kWait:
-      if (init_frames_.size() == 1) return;  // the reference itself: nothing to say yet
       Apply(TrackingEvent::kMapAwaited);
       report->note = outcome.reason;
-      return;
+      return outcome.decision;
     case InitDecision::kNewReference:
       break;
   }
   if (init_frames_.size() == 1) {  // not this image either
     report->note = outcome.reason;
-    return;
+    return outcome.decision;
   }
   Apply(TrackingEvent::kReferenceSpent);
   TakeReference(frame, report);
   report->note = outcome.reason + "; " + report->note;
+  return outcome.decision;
 }
 
 void Tracker::CreateMap(const TrackerFrame& frame, const InitOutcome& outcome, FrameReport* report) {

@@ -196,8 +196,7 @@ void Tracker::Commit(const FrameSolution& solution, const Followed& followed, Fr
   report->cam_from_world = solution.cam_from_world;
   report->optimized = static_cast<int>(followed.size());
   report->median_reprojection_error_px = Median(std::move(errors));
-  report->costs = {solution.costs.reprojection, solution.costs.spatial, solution.costs.temporal,
-                   solution.costs.edge_length};
+  report->costs = solution.costs;
 }
 
 // Too few points, as a sentence.

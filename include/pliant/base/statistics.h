@@ -11,6 +11,8 @@ namespace pliant {
 // The middle value; the mean of the two middle ones of an even count.
 double Median(std::vector<double> values);
 double Mean(const std::vector<double>& values);
+// By this a median of absolute errors becomes the standard deviation of a normal distribution.
+inline constexpr double kMedianToSigma = 1.4826;
 // Root of the mean square.
 double Rms(const std::vector<double>& values);
 

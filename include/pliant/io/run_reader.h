@@ -27,7 +27,7 @@ struct RunFrame {
   int optimized = 0;
   int lost = 0;
   int added = 0;
-  FrameCosts costs;
+  FrameProblemCosts costs;
   double median_reprojection_error_px = 0;
   std::vector<double> stage_ms;  // as Run::stage_names
 };

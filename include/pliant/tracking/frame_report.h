@@ -17,6 +17,7 @@
 
 #include "pliant/base/ids.h"
 #include "pliant/base/options.h"
+#include "pliant/estimation/frame_problem.h"
 #include "pliant/geometry/rigid3.h"
 
 namespace pliant {
@@ -52,14 +53,6 @@ struct NewPoint {
   std::array<std::uint8_t, 3> rgb = {128, 128, 128};
 };
 
-// Costs of the joint problem at its solution (0.5 * sum of rho, weighted).
-struct FrameCosts {
-  double reprojection = 0;
-  double spatial = 0;
-  double temporal = 0;
-  double edge_length = 0;
-};
-
 struct FrameReport {
   int frame_idx = 0;  // the sequence's own number
   std::string name;   // image name
@@ -77,7 +70,7 @@ struct FrameReport {
   int added = 0;                                    // points new in this frame
   std::vector<std::pair<std::string, int>> losses;  // points given up by reason, in the order of the first of each
 
-  FrameCosts costs;
+  FrameProblemCosts costs;  // at the solution
   double median_reprojection_error_px = 0;
   std::vector<std::pair<std::string, double>> stage_ms;  // wall time by stage; fixed order and names
 };

@@ -108,7 +108,7 @@ class Tracker {
   // Reference and first map.
   void TakeReference(const TrackerFrame& frame, FrameReport* report);
   void FollowReference(const TrackerFrame& frame, FrameReport* report);
-  void TryInitialize(const TrackerFrame& frame, FrameReport* report);
+  InitDecision TryInitialize(const TrackerFrame& frame, FrameReport* report);
   void CreateMap(const TrackerFrame& frame, const InitOutcome& outcome, FrameReport* report);
 
   // One frame.
