@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// One line of a TUM trajectory, for whole files and for those that grow.
+// Reading one line of a TUM trajectory, of whole files and of those that grow.
 #pragma once
 
 #include <string>
@@ -10,8 +10,6 @@
 #include "pliant/io/trajectory.h"
 
 namespace pliant {
-
-void AppendTumLine(std::string* out, double timestamp_s, const Rigid3& world_from_cam);
 
 // The sentence of a failure has no file and line; its caller knows them.
 Result<TimedPose> ParseTumLine(std::string_view line);

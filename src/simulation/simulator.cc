@@ -35,10 +35,7 @@ struct Simulator::State {
         centreline(length_mm, options.scene.bend_deg_per_cm, options.scene.seed),
         motion(options.deformation),
         path(options.trajectory, options.scene.radius_mm, options.scene.seed, centreline),
-        rays(camera, options.sensor.samples),
         surface(arena.execute([&] { return simulation::MakeTube(options.scene, centreline, length_mm); })),
-        blood(arena.execute([&] { return simulation::BloodMap(options.texture, options.scene.seed, surface); })),
-        shader(options.light, surface, blood, 1.0 / (camera.MeanFocalLengthPx() * rays.samples_per_side())),
         posed_vertices(surface.vertices),
         posed_normals(surface.normals) {}
 
@@ -46,9 +43,12 @@ struct Simulator::State {
   Rigid3 WorldFromCamera(int frame_idx) const { return path.WorldFromCamera(Time(frame_idx)); }
 
   Status CheckClearance() const;
-  void MeterExposure();
+  // What rendering needs and truth does not, made when the first frame is rendered.
+  struct Look;
+  const Look& GetLook();
+  std::vector<double> MeterExposure(const Look& made) const;
   void Pose(int frame_idx);
-  void RenderRow(const Rigid3& world_from_cam, int y, cv::Vec3f* light, float* depth_mm) const;
+  void RenderRow(const Look& made, const Rigid3& world_from_cam, int y, cv::Vec3f* light, float* depth_mm) const;
 
   SimulationOptions options;
   Camera camera;
@@ -56,15 +56,25 @@ struct Simulator::State {
   simulation::Centreline centreline;
   simulation::Motion motion;
   simulation::Path path;
-  simulation::RayTable rays;
   simulation::Surface surface;
-  simulation::BloodMap blood;
-  simulation::Shader shader;
   std::vector<Eigen::Vector3f> posed_vertices;
   std::vector<Eigen::Vector3f> posed_normals;
   std::optional<simulation::RayScene> scene;
+  std::unique_ptr<Look> look;
+  int posed_frame_idx = -1;  // -1: at rest
+};
+
+struct Simulator::State::Look {
+  explicit Look(const State& state)
+      : rays(state.camera, state.options.sensor.samples),
+        blood(state.options.texture, state.options.scene.seed, state.surface),
+        shader(state.options.light, state.surface, blood,
+               1.0 / (state.camera.MeanFocalLengthPx() * rays.samples_per_side())) {}
+
+  simulation::RayTable rays;
+  simulation::BloodMap blood;
+  simulation::Shader shader;
   std::vector<double> gains;  // one a frame
-  int posed_frame_idx = -1;   // -1: at rest
 };
 
 namespace {
@@ -142,7 +152,7 @@ Status Simulator::State::CheckClearance() const {
 }
 
 // The exposure follows the scene at rest, so that any frame can be rendered by itself.
-void Simulator::State::MeterExposure() {
+std::vector<double> Simulator::State::MeterExposure(const Look& made) const {
   constexpr int kAcross = 40;
   constexpr int kDown = 30;
   std::vector<double> levels(static_cast<std::size_t>(options.trajectory.frames));
@@ -151,16 +161,27 @@ void Simulator::State::MeterExposure() {
     std::vector<Eigen::Vector3d> directions;
     for (int y = 0; y < kDown; ++y)
       for (int x = 0; x < kAcross; ++x)
-        directions.push_back(world_from_cam.rotation * rays.Centre((x * 2 + 1) * camera.width() / (2 * kAcross),
-                                                                   (y * 2 + 1) * camera.height() / (2 * kDown)));
+        directions.push_back(world_from_cam.rotation * made.rays.Centre((x * 2 + 1) * camera.width() / (2 * kAcross),
+                                                                        (y * 2 + 1) * camera.height() / (2 * kDown)));
     std::vector<RayHit> hits(directions.size());
     scene->Intersect(world_from_cam.translation, directions, hits);
     std::vector<float> luminances;
     for (std::size_t i = 0; i < hits.size(); ++i)
-      if (hits[i].hit()) luminances.push_back(shader.Radiance(hits[i], directions[i], surface.normals).mean());
+      if (hits[i].hit()) luminances.push_back(made.shader.Radiance(hits[i], directions[i], surface.normals).mean());
     levels[frame_idx] = simulation::ExposureLevel(luminances);
   });
-  gains = simulation::ExposureGains(options.sensor, levels, options.trajectory.fps, options.scene.seed);
+  return simulation::ExposureGains(options.sensor, levels, options.trajectory.fps, options.scene.seed);
+}
+
+const Simulator::State::Look& Simulator::State::GetLook() {
+  if (!look) {
+    if (posed_frame_idx != -1) scene->Move(surface.vertices);
+    posed_frame_idx = -1;
+    auto made = std::make_unique<Look>(*this);
+    made->gains = MeterExposure(*made);
+    look = std::move(made);
+  }
+  return *look;
 }
 
 void Simulator::State::Pose(int frame_idx) {
@@ -178,10 +199,11 @@ void Simulator::State::Pose(int frame_idx) {
   posed_frame_idx = frame_idx;
 }
 
-void Simulator::State::RenderRow(const Rigid3& world_from_cam, int y, cv::Vec3f* light, float* depth_mm) const {
+void Simulator::State::RenderRow(const Look& made, const Rigid3& world_from_cam, int y, cv::Vec3f* light,
+                                 float* depth_mm) const {
   const Eigen::Matrix3d rotation = world_from_cam.RotationMatrix();
-  const std::span<const Eigen::Vector3f> in_cam = rays.Row(y);
-  const auto per_pixel = static_cast<std::size_t>(rays.rays_per_pixel());
+  const std::span<const Eigen::Vector3f> in_cam = made.rays.Row(y);
+  const auto per_pixel = static_cast<std::size_t>(made.rays.rays_per_pixel());
   std::vector<Eigen::Vector3d> directions(in_cam.size());
   for (std::size_t i = 0; i < in_cam.size(); ++i) directions[i] = rotation * in_cam[i].cast<double>();
   std::vector<RayHit> hits(in_cam.size());
@@ -189,7 +211,7 @@ void Simulator::State::RenderRow(const Rigid3& world_from_cam, int y, cv::Vec3f*
   for (int x = 0; x < camera.width(); ++x) {
     Eigen::Vector3f sum = Eigen::Vector3f::Zero();
     for (std::size_t i = x * per_pixel; i + 1 < (x + 1) * per_pixel; ++i)
-      if (hits[i].hit()) sum += shader.Radiance(hits[i], directions[i], posed_normals);
+      if (hits[i].hit()) sum += made.shader.Radiance(hits[i], directions[i], posed_normals);
     sum /= static_cast<float>(per_pixel - 1);
     light[x] = {sum[0], sum[1], sum[2]};
     // The last ray of a pixel goes through its centre.
@@ -232,7 +254,6 @@ Result<Simulator> Simulator::Create(const SimulationOptions& options) {
       return;
     }
     state->scene = *std::move(scene);
-    state->MeterExposure();
   });
   if (!status.ok()) return status;
   return Simulator(std::move(state));
@@ -306,13 +327,13 @@ SimulatedFrame Simulator::Render(int frame_idx) {
   cv::Mat light(size, CV_32FC3);
   frame.depth.create(size, CV_32FC1);
   state_->arena.execute([&] {
+    const State::Look& look = state_->GetLook();
     state_->Pose(frame_idx);
     const Rigid3 world_from_cam = WorldFromCamera(frame_idx);
     tbb::parallel_for(0, size.height, [&](int y) {
-      state_->RenderRow(world_from_cam, y, light.ptr<cv::Vec3f>(y), frame.depth.ptr<float>(y));
+      state_->RenderRow(look, world_from_cam, y, light.ptr<cv::Vec3f>(y), frame.depth.ptr<float>(y));
     });
-    frame.image =
-        simulation::Develop(options().sensor, light, state_->gains[frame_idx], options().scene.seed, frame_idx);
+    frame.image = simulation::Develop(options().sensor, light, look.gains[frame_idx], options().scene.seed, frame_idx);
   });
   return frame;
 }

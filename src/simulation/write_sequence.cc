@@ -3,7 +3,6 @@
 
 #include "pliant/simulation/write_sequence.h"
 
-#include <cstdio>
 #include <fstream>
 #include <future>
 #include <string>
@@ -12,13 +11,17 @@
 
 #include <opencv2/imgcodecs.hpp>
 
+#include "pliant/io/camera_file.h"
+#include "pliant/io/trajectory.h"
 #include "pliant/simulation/simulator.h"
 #include "simulation/sensor.h"
+#include "simulation/sequence_files.h"
 
 namespace pliant {
 namespace {
 
 namespace fs = std::filesystem;
+using simulation::FrameFileName;
 
 Status Unwritable(const fs::path& path) {
   return {ErrorCode::kUnwritable,
@@ -29,7 +32,10 @@ Status WriteBytes(const fs::path& path, const char* data, std::size_t size) {
   std::ofstream file(path, std::ios::binary);
   file.write(data, static_cast<std::streamsize>(size));
   file.close();
-  return file ? Status::Ok() : Unwritable(path);
+  if (file) return Status::Ok();
+  std::error_code error;
+  fs::remove(path, error);  // half a file would be read as a damaged one
+  return Unwritable(path);
 }
 
 Status WriteText(const fs::path& path, const std::string& text) { return WriteBytes(path, text.data(), text.size()); }
@@ -41,34 +47,11 @@ Status WritePng(const fs::path& path, const cv::Mat& image) {
   return WriteBytes(path, reinterpret_cast<const char*>(bytes.data()), bytes.size());
 }
 
-std::string CameraYaml(const Camera& camera, const SimulationOptions& options) {
-  std::string params;
-  for (const double p : camera.params()) params += (params.empty() ? "" : ", ") + FormatDouble(p);
-  return "model: " + std::string(camera.model_name()) + "\nwidth: " + std::to_string(camera.width()) +
-         "\nheight: " + std::to_string(camera.height()) + "\nparams: [" + params +
-         "]\nfps: " + FormatDouble(options.trajectory.fps) +
-         "\ndepth_scale: " + FormatDouble(options.sensor.depth_scale_mm) + "\nunit: mm\n";
-}
-
-std::string TumLine(double time_s, const Rigid3& world_from_cam) {
-  std::string line = FormatDouble(time_s);
-  const Eigen::Vector3d& t = world_from_cam.translation;
-  const Eigen::Quaterniond& q = world_from_cam.rotation;
-  for (const double value : {t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()}) line += ' ' + FormatDouble(value);
-  return line + '\n';
-}
-
-std::string FrameName(int frame_idx) {
-  char name[32];
-  std::snprintf(name, sizeof(name), "%06d.png", frame_idx);
-  return name;
-}
-
 // A sequence that was filmed is not written over.
 Status CheckOwnFolder(const fs::path& output) {
   std::error_code error;
-  if (fs::exists(output / "simulation.yaml", error)) return Status::Ok();
-  for (const char* name : {"images", "depth"})
+  if (fs::exists(output / simulation::kOptionsFile, error)) return Status::Ok();
+  for (const char* name : {simulation::kImageFolder, simulation::kDepthFolder})
     if (fs::exists(output / name, error) && !fs::is_empty(output / name, error))
       return {ErrorCode::kInvalidArgument, "the folder " + (output / name).string() +
                                                " holds files of a sequence that was not simulated; give a new or an "
@@ -86,21 +69,24 @@ Status RemoveLeftovers(const fs::path& folder) {
 }
 
 Status PrepareFolder(const fs::path& output, const Simulator& simulator) {
-  for (const char* name : {"images", "depth"}) {
+  for (const char* name : {simulation::kImageFolder, simulation::kDepthFolder}) {
     std::error_code error;
     fs::create_directories(output / name, error);
     if (error) return Unwritable(output / name);
     if (Status status = RemoveLeftovers(output / name); !status.ok()) return status;
   }
-  if (Status status = WriteText(output / "camera.yaml", CameraYaml(simulator.camera(), simulator.options()));
-      !status.ok())
-    return status;
-  return WriteText(output / "simulation.yaml", ToYaml(simulator.options()));
+  const CameraFile camera{.camera = simulator.camera(),
+                          .fps = simulator.options().trajectory.fps,
+                          .depth_scale = simulator.options().sensor.depth_scale_mm};
+  if (Status status = WriteCameraFile((output / simulation::kCameraFile).string(), camera); !status.ok()) return status;
+  return WriteText(output / simulation::kOptionsFile, ToYaml(simulator.options()));
 }
 
 Status WriteFrame(const fs::path& output, int frame_idx, const SimulatedFrame& frame, double depth_scale_mm) {
-  if (Status status = WritePng(output / "images" / FrameName(frame_idx), frame.image); !status.ok()) return status;
-  return WritePng(output / "depth" / FrameName(frame_idx), simulation::QuantiseDepth(frame.depth, depth_scale_mm));
+  if (Status status = WritePng(output / simulation::kImageFolder / FrameFileName(frame_idx), frame.image); !status.ok())
+    return status;
+  return WritePng(output / simulation::kDepthFolder / FrameFileName(frame_idx),
+                  simulation::QuantiseDepth(frame.depth, depth_scale_mm));
 }
 
 }  // namespace
@@ -110,8 +96,8 @@ Status WriteSequence(const SimulationOptions& options, const fs::path& output, c
   Result<Simulator> simulator = Simulator::Create(options);
   if (!simulator.ok()) return simulator.status();
   if (Status status = PrepareFolder(output, *simulator); !status.ok()) return status;
-  std::ofstream poses(output / "groundtruth.txt");
-  std::ofstream times(output / "times.txt");
+  std::ofstream poses(output / simulation::kPosesFile);
+  std::ofstream times(output / simulation::kTimesFile);
   SimulatedFrame frame = simulator->Render(0);
   for (int i = 0; i < simulator->frame_count(); ++i) {
     // A frame is packed and written while the next one is rendered.
@@ -120,10 +106,12 @@ Status WriteSequence(const SimulationOptions& options, const fs::path& output, c
     });
     if (i + 1 < simulator->frame_count()) frame = simulator->Render(i + 1);
     if (Status status = written.get(); !status.ok()) return status;
-    poses << TumLine(simulator->TimeOf(i), simulator->WorldFromCamera(i)) << std::flush;
+    std::string pose;
+    AppendTumLine(&pose, simulator->TimeOf(i), simulator->WorldFromCamera(i));
+    poses << pose << std::flush;
     times << FormatDouble(simulator->TimeOf(i)) << std::endl;
-    if (!poses) return Unwritable(output / "groundtruth.txt");
-    if (!times) return Unwritable(output / "times.txt");
+    if (!poses) return Unwritable(output / simulation::kPosesFile);
+    if (!times) return Unwritable(output / simulation::kTimesFile);
     if (progress && progress(i + 1, simulator->frame_count()) == SimulationContinue::kStop)
       return {ErrorCode::kInterrupted, "stopped after " + std::to_string(i + 1) + " of " +
                                            std::to_string(simulator->frame_count()) + " frames; they are in " +

@@ -23,6 +23,9 @@ struct TimedPose {
 // finite numbers, whose quaternion is not of unit length within 1 %, or whose time is not after the one before.
 Result<std::vector<TimedPose>> ReadTumTrajectory(const std::string& path);
 
+// One line for a file that grows, in WriteTumTrajectory's precision, with its line end.
+void AppendTumLine(std::string* out, double timestamp_s, const Rigid3& world_from_cam);
+
 // Writes 8 columns, single spaces between them: times and positions to 1e-6, quaternions to 1e-9. Fails with
 // kUnwritable.
 Status WriteTumTrajectory(const std::string& path, std::span<const TimedPose> poses);
