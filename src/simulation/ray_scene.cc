@@ -82,6 +82,8 @@ Result<RayScene> RayScene::Create(const Surface& surface, Vertices vertices) {
   unsigned flags = RTC_SCENE_FLAG_ROBUST;
   if (vertices == Vertices::kMoving) {
     flags |= RTC_SCENE_FLAG_DYNAMIC;
+    // Only a scene of low quality keeps a tree a mesh and refits it; the mesh's own tree is built with care all the same.
+    rtcSetSceneBuildQuality(state->scene, RTC_BUILD_QUALITY_LOW);
     rtcSetGeometryBuildQuality(state->geometry, RTC_BUILD_QUALITY_REFIT);
   }
   rtcSetSceneFlags(state->scene, static_cast<RTCSceneFlags>(flags));
