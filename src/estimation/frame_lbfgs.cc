@@ -28,7 +28,11 @@ constexpr double kParameterTolerance = 1e-12;
 class PreconditionedEnergy final : public ceres::FirstOrderFunction {
  public:
   PreconditionedEnergy(const FrameTerms& terms, const FramePreconditioner& preconditioner)
-      : energy_(terms), preconditioner_(preconditioner), points_(terms.positions.size()), by_points_(points_.size()) {}
+      : energy_(terms),
+        preconditioner_(preconditioner),
+        pose_is_(terms.pose_is),
+        points_(terms.positions.size()),
+        by_points_(points_.size()) {}
 
   // Sets the scale from the gradient at zero. False where the start cannot be evaluated.
   bool SetScale() {
@@ -54,6 +58,8 @@ class PreconditionedEnergy final : public ceres::FirstOrderFunction {
     if (gradient == nullptr) return true;
     Eigen::Map<Eigen::VectorXd> by_z(gradient, NumParameters());
     preconditioner_.ToGradient(by_points_, by_increment, by_z);
+    // The increment depends on the last six variables alone: without a slope they, and it, stay zero.
+    if (pose_is_ == FramePose::kHeld) by_z.tail<6>().setZero();
     by_z /= scale_;
     return true;
   }
@@ -62,6 +68,7 @@ class PreconditionedEnergy final : public ceres::FirstOrderFunction {
   // Ceres' interface is const; these are working memory, and the solver is single-threaded.
   mutable FrameEnergy energy_;
   const FramePreconditioner& preconditioner_;
+  FramePose pose_is_;
   mutable Points points_;
   mutable Points by_points_;
   double scale_ = 1;

@@ -64,6 +64,7 @@ Result<FrameEstimate> SolveFrameByLevenbergMarquardt(const FrameTerms& terms) {
   problem_options.disable_all_safety_checks = true;  // thousands of blocks, all of the right size and of their own data
   ceres::Problem problem(problem_options);
   AddTerms(terms, losses, &increment, &deltas, &problem);
+  if (terms.pose_is == FramePose::kHeld) problem.SetParameterBlockConstant(increment.data());
 
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;

@@ -46,6 +46,7 @@ Result<FrameTerms> BuildTerms(const Camera& camera, const FrameProblemInput& inp
   FrameTerms terms;
   terms.camera = &camera;
   terms.options = options;
+  terms.pose_is = input.pose;
   std::vector<int> place(input.positions.size(), -1);
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < input.positions.size(); ++i) {

@@ -22,6 +22,7 @@ struct FrameTerms {
   std::vector<Eigen::Vector2d> pixels;     // u_i
   std::vector<GraphEdge> edges;            // between points here, sorted by (i, j)
   PoseIncrement pose;                      // around the initial pose, pivot at the points' mean
+  FramePose pose_is = FramePose::kEstimated;
 
   int num_points() const { return static_cast<int>(positions.size()); }
 };

@@ -10,6 +10,7 @@
 
 #include <opencv2/core.hpp>
 
+#include "pipeline/simulation_truth.h"
 #include "pliant/base/prefetcher.h"
 #include "pliant/base/version.h"
 
@@ -45,9 +46,9 @@ struct Ending {
   std::string note;
 };
 
-Ending TrackSequence(Sequence& sequence, const RunRequest& request, const TrackOptions& options, RunWriter& writer,
-                     std::span<TrackObserver* const> observers) {
-  Tracker tracker(sequence.camera(), options.tracker, static_cast<std::uint64_t>(options.seed), options.threads);
+Ending TrackSequence(Sequence& sequence, const RunRequest& request, const TrackOptions& options, TrackingTruth* truth,
+                     RunWriter& writer, std::span<TrackObserver* const> observers) {
+  Tracker tracker(sequence.camera(), options.tracker, static_cast<std::uint64_t>(options.seed), options.threads, truth);
   // Once there is a map no depth image is read any more; those read ahead in the meantime change nothing.
   std::atomic<bool> wants_depth = tracker.WantsDepth();
   Prefetcher<Result<ReadFrame>> frames([&] { return NextFrame(sequence, options.tracker, wants_depth); },
@@ -119,20 +120,30 @@ Result<RunSummary> RunTrack(const RunRequest& request, const TrackOptions& optio
   cv::setNumThreads(usable.threads);
   auto sequence = OpenSequence(request.input);
   if (!sequence.ok()) return sequence.status();
+  std::unique_ptr<TrackingTruth> truth;
+  if (options.tracker.oracle.Any()) {
+    auto opened = OpenSimulationTruth(request.input.image_path, **sequence);
+    if (!opened.ok()) return opened.status();
+    truth = *std::move(opened);
+  }
 
   OptionTable table;
   TrackOptions listed = options;
   listed.List(table);
   RunWriterOptions writer_options;
   writer_options.timings = options.timings;
-  auto writer = RunWriter::Create(
-      request.output_path, (*sequence)->camera(),
-      {kVersion, request.command_line, static_cast<std::uint64_t>(options.seed), request.input.image_path.string()},
-      table.ToYaml(), {Tracker::kStages.begin(), Tracker::kStages.end()}, writer_options);
+  const std::vector<std::string_view> oracles = options.tracker.oracle.Names();
+  auto writer = RunWriter::Create(request.output_path, (*sequence)->camera(),
+                                  {kVersion,
+                                   request.command_line,
+                                   static_cast<std::uint64_t>(options.seed),
+                                   request.input.image_path.string(),
+                                   {oracles.begin(), oracles.end()}},
+                                  table.ToYaml(), {Tracker::kStages.begin(), Tracker::kStages.end()}, writer_options);
   if (!writer.ok()) return writer.status();
 
   for (TrackObserver* observer : observers) observer->OnStart((*sequence)->size());
-  const Ending ending = TrackSequence(**sequence, request, usable, *writer, observers);
+  const Ending ending = TrackSequence(**sequence, request, usable, truth.get(), *writer, observers);
   const Status finished = writer->Finish(ending.status, ending.note);
   RunSummary summary = writer->summary();
   if (!finished.ok()) {

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "pliant/base/statistics.h"
+#include "tracking/oracle_answers.h"
 #include "tracking/tracker_support.h"
 
 namespace pliant {
@@ -30,6 +31,7 @@ void TrackerOptions::List(OptionTable& table) {
   table.Add("min_corners", &min_corners, "-", "fewer corners in an image: it is no reference", 8, 100000);
   table.Add("max_lost_frames", &max_lost_frames, "frames", "lost for so many frames in a row, the run ends", 1,
             1000000);
+  oracle.List(table);
 }
 
 TrackerFrame PrepareFrame(int frame_idx, std::string name, double timestamp_s, const cv::Mat& image,
@@ -47,12 +49,16 @@ TrackerFrame PrepareFrame(int frame_idx, std::string name, double timestamp_s, c
   return frame;
 }
 
-Tracker::Tracker(const Camera& camera, const TrackerOptions& options, std::uint64_t seed, int threads)
+Tracker::Tracker(const Camera& camera, const TrackerOptions& options, std::uint64_t seed, int threads,
+                 TrackingTruth* truth)
     : camera_(camera),
       options_(options),
       threads_(threads),
       initializer_(MakeInitializer(options.init, Random(seed).Child("initializer"))),
-      point_tracker_(options.point_tracker) {
+      point_tracker_(options.point_tracker),
+      oracle_(std::make_unique<OracleAnswers>(
+          options.oracle, truth,
+          IsMetric(options.init.method) ? std::nullopt : std::optional(options.init.monocular.nominal_depth_mm))) {
   if (IsMetric(options_.init.method)) options_.graph.sigma_mm = options_.sigma_metric_mm;
 }
 
@@ -108,6 +114,7 @@ void Tracker::TakeReference(const TrackerFrame& frame, FrameReport* report) {
       reference.observations.push_back({id, corner.pixel});
       ++next_id_;
     }
+    oracle_->StartTracks(&reference);
     report->tracked = static_cast<int>(reference.observations.size());
     init_frames_.push_back(std::move(reference));
   }
@@ -146,8 +153,7 @@ void Tracker::FollowReference(const TrackerFrame& frame, FrameReport* report) {
     for (std::size_t k = 0; k < last.size(); ++k) predictions.push_back({last[k].id, to[k], affines[k]});
 
     InitFrame followed{frame.frame_idx, {}};
-    for (const PointTrack& track :
-         point_tracker_.Track(previous_.pyramid, previous_.mask, frame.pyramid, frame.mask, predictions, threads_)) {
+    for (const PointTrack& track : TrackPixels(frame, predictions)) {
       if (track.failure == PatchFailure::kNone) {
         followed.observations.push_back({track.id, track.pixel});
       } else {
@@ -168,7 +174,9 @@ InitDecision Tracker::TryInitialize(const TrackerFrame& frame, FrameReport* repo
   InitOutcome outcome;
   {
     const StageTimer timer(report, "initialise");
-    outcome = initializer_->Try({camera_, init_frames_, frame.depth_mm});
+    const InitInput input{camera_, init_frames_, frame.depth_mm};
+    outcome = oracle_->gives_first_map() ? oracle_->FirstMap(input, options_.min_points) : initializer_->Try(input);
+    if (outcome.decision == InitDecision::kMap) oracle_->TakeWorld(input, &outcome);
   }
   switch (outcome.decision) {
     case InitDecision::kMap:

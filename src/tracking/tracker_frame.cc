@@ -7,6 +7,7 @@
 
 #include "pliant/base/statistics.h"
 #include "pliant/tracking/tracker.h"
+#include "tracking/oracle_answers.h"
 #include "tracking/tracker_support.h"
 
 namespace pliant {
@@ -43,9 +44,11 @@ struct Tracker::Followed {
 // One frame, as in the paper; the names in brackets are those of docs/method.md.
 void Tracker::TrackFrame(const TrackerFrame& frame, FrameReport* report) {
   // While lost, the camera's velocity is not known.
-  const Rigid3 predicted = state_ == TrackingState::kTracking
-                               ? PredictCameraPose(before_last_cam_from_world_, last_cam_from_world_)  // (E6)
-                               : last_cam_from_world_;
+  Rigid3 predicted = state_ == TrackingState::kTracking
+                         ? PredictCameraPose(before_last_cam_from_world_, last_cam_from_world_)  // (E6)
+                         : last_cam_from_world_;
+  const std::optional<Rigid3> true_pose = oracle_->Pose(frame.frame_idx);
+  if (true_pose) predicted = *true_pose;
   Followed followed;
   {
     const StageTimer timer(report, "photometric");
@@ -55,7 +58,7 @@ void Tracker::TrackFrame(const TrackerFrame& frame, FrameReport* report) {
   if (report->tracked < options_.min_points) return ReportLost(frame, Found(report->tracked), report);
 
   Rigid3 pose = predicted;
-  {
+  if (!true_pose) {
     const StageTimer timer(report, "pose");
     const auto estimate =
         EstimateCameraPose(camera_, followed.positions, followed.pixels, predicted, options_.pose);  // (E7)
@@ -73,8 +76,10 @@ void Tracker::TrackFrame(const TrackerFrame& frame, FrameReport* report) {
   Result<FrameSolution> solution = Status(ErrorCode::kInsufficient, "not solved");
   {
     const StageTimer timer(report, "joint");
-    solution = SolveFrameProblem(camera_, {followed.positions, followed.pixels, graph.edges, pose},
-                                 options_.problem);  // (E5)
+    solution = SolveFrameProblem(
+        camera_,
+        {followed.positions, followed.pixels, graph.edges, pose, true_pose ? FramePose::kHeld : FramePose::kEstimated},
+        options_.problem);  // (E5)
   }
   if (solution.ok()) {
     followed.solved = solution->points;
@@ -105,9 +110,15 @@ std::vector<PointPrediction> Tracker::PredictPixels(const Rigid3& predicted_cam_
   return predictions;
 }
 
+// The points in this image, one result a prediction.
+std::vector<PointTrack> Tracker::TrackPixels(const TrackerFrame& frame,
+                                             const std::vector<PointPrediction>& predictions) {
+  if (oracle_->gives_tracks()) return oracle_->Tracks(frame.frame_idx, predictions);
+  return point_tracker_.Track(previous_.pyramid, previous_.mask, frame.pyramid, frame.mask, predictions, threads_);
+}
+
 Tracker::Followed Tracker::FollowPoints(const TrackerFrame& frame, const std::vector<PointPrediction>& predictions) {
-  const std::vector<PointTrack> tracks =
-      point_tracker_.Track(previous_.pyramid, previous_.mask, frame.pyramid, frame.mask, predictions, threads_);
+  const std::vector<PointTrack> tracks = TrackPixels(frame, predictions);
   Followed followed;
   for (std::size_t k = 0; k < tracks.size(); ++k) {
     if (tracks[k].failure != PatchFailure::kNone) {

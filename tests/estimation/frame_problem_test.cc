@@ -113,6 +113,28 @@ TEST(FrameProblem, FollowsASmoothDeformationInTheImage) {
   EXPECT_LT(solution.costs.Total(), solution.initial_costs.Total());
 }
 
+TEST(FrameProblem, AHeldPoseStaysAndBothSolversFindTheSameDisplacements) {
+  const FrameScene scene = MakeFrameScene({.num_points = 150});
+  FrameProblemInput input = scene.Input(scene.true_cam_from_world);
+  input.pose = FramePose::kHeld;
+  double cost = 0;
+  for (const FrameSolver solver : {FrameSolver::kLevenbergMarquardt, FrameSolver::kLbfgs}) {
+    FrameProblemOptions options;
+    options.solver = solver;
+    const auto solution = SolveFrameProblem(scene.camera, input, options);
+    ASSERT_TRUE(solution.ok()) << solution.status().message();
+    EXPECT_TRUE(solution->converged) << solution->message;
+    EXPECT_LT(RotationAngle(solution->cam_from_world.rotation * scene.true_cam_from_world.rotation.conjugate()),
+              kExactRad);
+    EXPECT_LT((solution->cam_from_world.translation - scene.true_cam_from_world.translation).norm(), kExactMm);
+    EXPECT_LT(solution->costs.Total(), solution->initial_costs.Total());
+    if (solver == FrameSolver::kLevenbergMarquardt) cost = solution->costs.Total();
+    EXPECT_NEAR(solution->costs.Total(), cost, kSameCost * cost);
+  }
+  // The pose was held against its will: freed, it moves.
+  EXPECT_LT(Solve(scene, scene.true_cam_from_world).costs.Total(), (1 - kSameCost) * cost);
+}
+
 struct Variant {
   const char* name;
   FrameSceneOptions scene;

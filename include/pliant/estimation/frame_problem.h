@@ -76,12 +76,16 @@ struct FrameProblemOptions {
   void List(OptionTable& table);  // group "Optimization"
 };
 
+// Whether the pose is sought, or known and held at the initial one: then only the displacements are.
+enum class FramePose { kEstimated, kHeld };
+
 // What a frame gives to the problem. Spans are as long as there are points; nothing here is changed.
 struct FrameProblemInput {
   std::span<const Eigen::Vector3d> positions;  // X_i(t-1)
   std::span<const Eigen::Vector2d> pixels;     // u_i
   std::span<const GraphEdge> edges;            // of BuildDeformationGraph(positions)
   Rigid3 initial_cam_from_world;               // where the search starts, with delta = 0
+  FramePose pose = FramePose::kEstimated;
 };
 
 // Costs at the solution by term: 0.5 * lambda * sum of rho.

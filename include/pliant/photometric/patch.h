@@ -36,6 +36,7 @@ enum class PatchFailure {
   kGainOutOfRange,   // the brightness change is not plausible
   kLowSimilarity,    // SSIM below its threshold
   kForwardBackward,  // followed back, it does not return to where it came from
+  kOccluded,         // something lies before it; only the truth can say so
 };
 template <>
 struct EnumNames<PatchFailure> {
@@ -48,7 +49,8 @@ struct EnumNames<PatchFailure> {
       std::pair{PatchFailure::kDiverged, std::string_view("diverged")},
       std::pair{PatchFailure::kGainOutOfRange, std::string_view("gain_out_of_range")},
       std::pair{PatchFailure::kLowSimilarity, std::string_view("low_similarity")},
-      std::pair{PatchFailure::kForwardBackward, std::string_view("forward_backward")}};
+      std::pair{PatchFailure::kForwardBackward, std::string_view("forward_backward")},
+      std::pair{PatchFailure::kOccluded, std::string_view("occluded")}};
 };
 
 enum class GainBias { kOff, kOn };

@@ -30,10 +30,13 @@
 #include "pliant/tracking/initializer.h"
 #include "pliant/tracking/make_initializer.h"
 #include "pliant/tracking/neighbour_agreement.h"
+#include "pliant/tracking/oracle.h"
 #include "pliant/tracking/point_tracker.h"
 #include "pliant/tracking/state.h"
 
 namespace pliant {
+
+class OracleAnswers;
 
 enum class NeighbourAgreement { kOff, kOn };
 template <>
@@ -51,6 +54,7 @@ struct TrackerOptions {
   GraphOptions graph;
   FrameProblemOptions problem;
   AgreementOptions agreement;
+  OracleOptions oracle;
 
   double sigma_metric_mm = 55.0;  // instead of graph.sigma_mm after a start from metric depth, as published
   NeighbourAgreement neighbor_agreement = NeighbourAgreement::kOn;
@@ -59,7 +63,8 @@ struct TrackerOptions {
   int min_corners = 40;                 // fewer in an image: it is no reference
   int max_lost_frames = 10;             // after so many frames in a row without enough points the tracker gives up
 
-  // Groups Corners, Masks, LucasKanade, PointTracker, Init, CameraPose, Deformation, Optimization, Tracking.
+  // Groups Corners, Masks, LucasKanade, PointTracker, Init, CameraPose, Deformation, Optimization, Tracking,
+  // Oracle.
   void List(OptionTable& table);
 };
 
@@ -86,7 +91,9 @@ class Tracker {
   static constexpr std::array<std::string_view, 7> kStages = {"prepare", "photometric", "pose",      "agreement",
                                                               "graph",   "joint",       "initialise"};
   // `threads` >= 1 work on one frame; the result does not depend on it. `seed` decides RANSAC's samples.
-  Tracker(const Camera& camera, const TrackerOptions& options, std::uint64_t seed, int threads);
+  // `truth` is what the oracle switches ask; it must be there when one is on, and outlive this.
+  Tracker(const Camera& camera, const TrackerOptions& options, std::uint64_t seed, int threads,
+          TrackingTruth* truth = nullptr);
   ~Tracker();
 
   FrameReport Process(const TrackerFrame& frame);
@@ -113,6 +120,7 @@ class Tracker {
 
   // One frame.
   void TrackFrame(const TrackerFrame& frame, FrameReport* report);
+  std::vector<PointTrack> TrackPixels(const TrackerFrame& frame, const std::vector<PointPrediction>& predictions);
   std::vector<PointPrediction> PredictPixels(const Rigid3& predicted_cam_from_world) const;
   Followed FollowPoints(const TrackerFrame& frame, const std::vector<PointPrediction>& predictions);
   DeformationGraph TieNeighbours(const Followed& followed, FrameReport* report) const;
@@ -127,6 +135,7 @@ class Tracker {
   int threads_;
   std::unique_ptr<Initializer> initializer_;
   PointTracker point_tracker_;
+  std::unique_ptr<OracleAnswers> oracle_;
 
   TrackingState state_ = TrackingState::kWaitingForReference;
   Map map_;

@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// The truth in the tracker's own terms: its frames, units and failures. The tracker asks at three places: for the first
+// map, where points are followed, and for a frame's pose.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "pliant/photometric/patch.h"
+#include "pliant/tracking/oracle.h"
+#include "pliant/tracking/point_tracker.h"
+
+namespace pliant {
+
+class OracleAnswers {
+ public:
+  // `truth` may be null when nothing is switched on; it must outlive this. `nominal_depth_mm`: what a map's median
+  // depth is scaled to; nothing for a method whose maps are metric.
+  OracleAnswers(const OracleOptions& options, TrackingTruth* truth, std::optional<double> nominal_depth_mm);
+
+  bool gives_first_map() const { return options_.first_map == OracleSwitch::kOn; }
+  bool gives_tracks() const { return options_.tracks == OracleSwitch::kOn; }
+  bool gives_poses() const { return options_.poses == OracleSwitch::kOn; }
+
+  // The map from the reference alone; a new reference where fewer than `min_points` corners show the surface.
+  InitOutcome FirstMap(const InitInput& input, int min_points) const;
+  // To be called with every first map: fixes the world frame and the unit of the poses, and puts the true poses in the
+  // place of the map's own. No effect when poses are not switched on.
+  void TakeWorld(const InitInput& input, InitOutcome* outcome);
+
+  // Removes the reference's points that lie on no surface; the others are followed from here.
+  void StartTracks(InitFrame* reference) const;
+  // In the order of the predictions, whose pixels are not looked at.
+  std::vector<PointTrack> Tracks(int frame_idx, std::span<const PointPrediction> predictions) const;
+
+  // cam_from_world in the world and unit of the map; nothing when poses are not switched on.
+  std::optional<Rigid3> Pose(int frame_idx) const;
+
+ private:
+  OracleOptions options_;
+  TrackingTruth* truth_;
+  std::optional<double> nominal_depth_mm_;
+  Rigid3 scene_from_world_;  // of the tracker's world, the reference camera
+  double unit_per_mm_ = 1;
+};
+
+}  // namespace pliant
