@@ -9,8 +9,7 @@
 #include <string>
 #include <utility>
 
-#include "pliant/io/options_file.h"
-#include "pliant/simulation/simulator.h"
+#include "pliant/simulation/open_simulation.h"
 
 namespace pliant {
 namespace {
@@ -85,11 +84,7 @@ Result<std::unique_ptr<TrackingTruth>> OpenSimulationTruth(const std::filesystem
                   "an oracle switch needs the truth of a sequence written by `pliant simulate`, "
                   "and '" +
                       folder.string() + "' has no simulation.yaml; switch it off");
-  SimulationOptions options;
-  OptionTable table;
-  options.List(table);
-  if (const Status loaded = LoadOptionsFile(file.string(), table); !loaded.ok()) return loaded;
-  auto simulator = Simulator::Create(options);
+  auto simulator = OpenSimulation(folder);
   if (!simulator.ok()) return simulator.status();
   if (!Same(simulator->camera(), sequence.camera()))
     return Status(ErrorCode::kMismatch, "the camera is not the one that '" + file.string() +

@@ -14,8 +14,8 @@
 
 namespace pliant {
 
-// Fails with kNotFound where `folder` has no simulation.yaml, as the simulator does where the scene cannot be built,
-// and with kMismatch where the sequence's camera or its number of frames is not the scene's.
+// Fails with kNotFound where `folder` has no simulation.yaml, as OpenSimulation does, and with kMismatch where the
+// sequence's camera or its number of frames is not the scene's.
 Result<std::unique_ptr<TrackingTruth>> OpenSimulationTruth(const std::filesystem::path& folder,
                                                            const Sequence& sequence);
 

@@ -47,8 +47,8 @@ FrameReport Report(int frame) {
 }
 
 RunWriter Writer(const std::string& path, const RunWriterOptions& options = {}) {
-  auto writer = RunWriter::Create(path, TestCamera(), {"0.1.0", {"pliant", "track"}, 7, "clip.mp4"}, "Track:\n",
-                                  kStages, options);
+  auto writer = RunWriter::Create(path, TestCamera(), {"0.1.0", {"pliant", "track"}, 7, "clip.mp4", {"tracks"}},
+                                  "Track:\n", kStages, options);
   EXPECT_TRUE(writer.ok()) << writer.status().message();
   return std::move(writer).value();
 }
@@ -69,6 +69,7 @@ TEST(RunFolder, ComesBackAsItWasReported) {
   EXPECT_EQ(run->summary->note, "too few points");
   EXPECT_EQ(run->summary->description.command_line, (std::vector<std::string>{"pliant", "track"}));
   EXPECT_EQ(run->summary->description.seed, 7u);
+  EXPECT_EQ(run->summary->description.oracles, (std::vector<std::string>{"tracks"}));
   EXPECT_EQ(run->summary->frames_read, 5);
   EXPECT_EQ(run->summary->frames_tracked, 4);
   EXPECT_EQ(run->summary->points, kPoints);

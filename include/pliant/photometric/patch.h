@@ -40,17 +40,16 @@ enum class PatchFailure {
 };
 template <>
 struct EnumNames<PatchFailure> {
-  static constexpr std::array kNames = {
-      std::pair{PatchFailure::kNone, std::string_view("none")},
-      std::pair{PatchFailure::kUnknownPoint, std::string_view("unknown_point")},
-      std::pair{PatchFailure::kOutOfImage, std::string_view("out_of_image")},
-      std::pair{PatchFailure::kMasked, std::string_view("masked")},
-      std::pair{PatchFailure::kLowTexture, std::string_view("low_texture")},
-      std::pair{PatchFailure::kDiverged, std::string_view("diverged")},
-      std::pair{PatchFailure::kGainOutOfRange, std::string_view("gain_out_of_range")},
-      std::pair{PatchFailure::kLowSimilarity, std::string_view("low_similarity")},
-      std::pair{PatchFailure::kForwardBackward, std::string_view("forward_backward")},
-      std::pair{PatchFailure::kOccluded, std::string_view("occluded")}};
+  static constexpr std::array kNames = {std::pair{PatchFailure::kNone, std::string_view("none")},
+                                        std::pair{PatchFailure::kUnknownPoint, std::string_view("unknown_point")},
+                                        std::pair{PatchFailure::kOutOfImage, std::string_view("out_of_image")},
+                                        std::pair{PatchFailure::kMasked, std::string_view("masked")},
+                                        std::pair{PatchFailure::kLowTexture, std::string_view("low_texture")},
+                                        std::pair{PatchFailure::kDiverged, std::string_view("diverged")},
+                                        std::pair{PatchFailure::kGainOutOfRange, std::string_view("gain_out_of_range")},
+                                        std::pair{PatchFailure::kLowSimilarity, std::string_view("low_similarity")},
+                                        std::pair{PatchFailure::kForwardBackward, std::string_view("forward_backward")},
+                                        std::pair{PatchFailure::kOccluded, std::string_view("occluded")}};
 };
 
 enum class GainBias { kOff, kOn };
