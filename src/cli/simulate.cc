@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
+#include <chrono>
+#include <cstdio>
 #include <iostream>
 
 #include "cli/command_line.h"
@@ -43,10 +45,14 @@ int SimulateCommand(std::span<const std::string> args) {
 
   const std::atomic<bool>& stop = StopOnSignals();
   Status status;
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point started = Clock::now();
+  Clock::time_point scene_stood = started;
   {
     Progress progress(std::cerr, quiet ? ProgressStyle::kQuiet : ProgressStyleOfStandardError(), "simulate",
                       options.trajectory.frames);
     status = WriteSequence(options, output_path, [&](int done, int) {
+      if (done == 0) scene_stood = Clock::now();
       progress.Update(done, "");
       return stop ? SimulationContinue::kStop : SimulationContinue::kYes;
     });
@@ -55,7 +61,14 @@ int SimulateCommand(std::span<const std::string> args) {
     SayError(kManual.command, status.message());
     return status.code() == ErrorCode::kInvalidArgument ? kExitUsage : kExitFailed;
   }
-  if (!quiet) std::cout << options.trajectory.frames << " frames in " << output_path << std::endl;
+  if (quiet) return kExitOk;
+  const double scene_s = std::chrono::duration<double>(scene_stood - started).count();
+  const double frames_s = std::chrono::duration<double>(Clock::now() - scene_stood).count();
+  char timing[96];
+  std::snprintf(timing, sizeof(timing), "scene built in %.1f s, %.1f frames/s", scene_s,
+                options.trajectory.frames / frames_s);
+  std::cerr << timing << "\n";
+  std::cout << options.trajectory.frames << " frames in " << output_path << std::endl;
   return kExitOk;
 }
 

@@ -35,7 +35,8 @@ Status CheckCamera(const fs::path& folder, const Simulator& simulator) {
   const Camera& here = simulator.camera();
   const bool same = there.model_id() == here.model_id() && there.width() == here.width() &&
                     there.height() == here.height() && std::ranges::equal(there.params(), here.params()) &&
-                    file->fps == simulator.options().trajectory.fps;
+                    file->fps == simulator.options().trajectory.fps &&
+                    file->baseline_mm.value_or(0.0) == simulator.options().camera.baseline_mm;
   return same ? Status::Ok() : Foreign(folder, "camera.yaml has another camera");
 }
 

@@ -52,9 +52,12 @@ void SimulationOptions::List(OptionTable& table) {
   table.Add("noise_levels", &sensor.noise_levels, "-", "standard deviation of the noise, grey levels of 255", 0, 50);
   table.Add("blur_px", &sensor.blur_px, "px", "standard deviation of the lens's blur", 0, 20);
   table.Add("vignetting", &sensor.vignetting, "-", "share of light lost in the corners", 0, 1);
+  table.Add("shutter_s", &sensor.shutter_s, "s", "motion blur: how long the shutter is open; 0: an instant", 0, 1);
   table.Add("samples", &sensor.samples, "-", "rays a pixel, made a square number; depth is the centre's", 1, 64);
   table.Add("depth_scale_mm", &sensor.depth_scale_mm, "mm", "one step of the 16-bit depth; range 65535 of them", 1e-4,
             1);
+  table.Add("drops", &sensor.drops, "-", "drops of fluid on the lens at a time, in the mean; in no truth", 0, 50);
+  table.Add("debris", &sensor.debris, "-", "pieces that float before the lens, in the mean; in no truth", 0, 200);
 
   table.BeginGroup("Camera", "the camera that films");
   table.AddChoice("model", &camera.model, "projection");
@@ -62,6 +65,8 @@ void SimulationOptions::List(OptionTable& table) {
   table.Add("height", &camera.height, "px", "of the image", 16, 8192);
   table.Add("horizontal_fov_deg", &camera.horizontal_fov_deg, "deg", "field of view where params is empty", 5, 230);
   table.Add("params", &camera.params, "px", "the model's parameters in COLMAP's order, e.g. 440,440,319.5,239.5");
+  table.Add("baseline_mm", &camera.baseline_mm, "mm", "stereo: the right camera on the left one's x axis; 0: none", 0,
+            100);
 
   table.BeginGroup("Trajectory", "the camera's way");
   table.AddChoice("kind", &trajectory.kind, "forward, from side to side, or on the spot");

@@ -82,7 +82,8 @@ Result<RayScene> RayScene::Create(const Surface& surface, Vertices vertices) {
   unsigned flags = RTC_SCENE_FLAG_ROBUST;
   if (vertices == Vertices::kMoving) {
     flags |= RTC_SCENE_FLAG_DYNAMIC;
-    // Only a scene of low quality keeps a tree a mesh and refits it; the mesh's own tree is built with care all the same.
+    // Only a scene of low quality keeps a tree a mesh and refits it; the mesh's own tree is built with care all the
+    // same.
     rtcSetSceneBuildQuality(state->scene, RTC_BUILD_QUALITY_LOW);
     rtcSetGeometryBuildQuality(state->geometry, RTC_BUILD_QUALITY_REFIT);
   }
@@ -103,17 +104,24 @@ void RayScene::Move(std::span<const Eigen::Vector3f> vertices) {
 
 void RayScene::Intersect(const Eigen::Vector3d& origin, std::span<const Eigen::Vector3d> directions,
                          std::span<RayHit> hits) const {
-  assert(directions.size() == hits.size());
+  std::vector<Ray> rays;
+  rays.reserve(directions.size());
+  for (const Eigen::Vector3d& direction : directions) rays.push_back({origin, direction});
+  Intersect(rays, hits);
+}
+
+void RayScene::Intersect(std::span<const Ray> rays, std::span<RayHit> hits) const {
+  assert(rays.size() == hits.size());
   constexpr std::size_t kPacket = 8;
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  for (std::size_t begin = 0; begin < directions.size(); begin += kPacket) {
-    const std::size_t count = std::min(kPacket, directions.size() - begin);
+  for (std::size_t begin = 0; begin < rays.size(); begin += kPacket) {
+    const std::size_t count = std::min(kPacket, rays.size() - begin);
     alignas(32) int valid[kPacket] = {};
     RTCRayHit8 packet;
     for (std::size_t i = 0; i < kPacket; ++i) {
-      const Eigen::Vector3d& direction = directions[begin + std::min(i, count - 1)];
+      const auto& [origin, direction] = rays[begin + std::min(i, count - 1)];
       // A ray that does not exist (a pixel outside of the camera's domain) has no direction.
       valid[i] = i < count && direction.squaredNorm() > 0 ? -1 : 0;
       packet.ray.org_x[i] = static_cast<float>(origin.x());
@@ -138,8 +146,8 @@ void RayScene::Intersect(const Eigen::Vector3d& origin, std::span<const Eigen::V
       if (valid[i] == 0 || packet.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
       const std::uint32_t idx = packet.hit.primID[i];
       const auto& t = state_->triangles[idx];
-      hits[begin + i] =
-          Refine(origin, directions[begin + i], idx, state_->Vertex(t[0]), state_->Vertex(t[1]), state_->Vertex(t[2]));
+      hits[begin + i] = Refine(rays[begin + i].origin, rays[begin + i].direction, idx, state_->Vertex(t[0]),
+                               state_->Vertex(t[1]), state_->Vertex(t[2]));
     }
   }
 }

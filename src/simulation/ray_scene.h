@@ -25,6 +25,11 @@ struct RayHit {
   bool hit() const { return point.triangle_idx != kNone; }
 };
 
+struct Ray {
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
+  Eigen::Vector3d direction = Eigen::Vector3d::Zero();  // unit; zero: no ray
+};
+
 class RayScene {
  public:
   enum class Vertices { kFixed, kMoving };
@@ -38,7 +43,9 @@ class RayScene {
   // New positions for all vertices (in their order); for a scene of moving vertices.
   void Move(std::span<const Eigen::Vector3f> vertices);
 
-  // The first triangle on each ray from `origin` along unit `directions`. May be called from several threads at once.
+  // The first triangle on each ray. May be called from several threads at once.
+  void Intersect(std::span<const Ray> rays, std::span<RayHit> hits) const;
+  // The same for rays from one `origin`.
   void Intersect(const Eigen::Vector3d& origin, std::span<const Eigen::Vector3d> directions,
                  std::span<RayHit> hits) const;
 

@@ -59,8 +59,14 @@ std::vector<double> ExposureGains(const SimulationOptions::Sensor& options, std:
   return gains;
 }
 
-cv::Mat Develop(const SimulationOptions::Sensor& options, const cv::Mat& radiance, double gain, int seed,
-                int frame_idx) {
+std::uint64_t NoiseSeed(int seed, int frame_idx, Eye eye) {
+  const std::uint64_t left = HashBits((static_cast<std::uint64_t>(static_cast<std::uint32_t>(seed)) << 32) |
+                                      static_cast<std::uint32_t>(frame_idx));
+  return eye == Eye::kLeft ? left : HashBits(left);
+}
+
+cv::Mat Develop(const SimulationOptions::Sensor& options, const cv::Mat& radiance, double gain,
+                std::uint64_t noise_seed) {
   assert(radiance.type() == CV_32FC3);
   // Noise of neighbouring channels is alike (they share a demosaicing): 0.9^2 + 0.19 = 1.
   constexpr float kShared = 0.9F;
@@ -74,15 +80,13 @@ cv::Mat Develop(const SimulationOptions::Sensor& options, const cv::Mat& radianc
   const double centre_y = 0.5 * (light.rows - 1);
   const double corner_sq = std::max(1.0, centre_x * centre_x + centre_y * centre_y);
   const auto noise = static_cast<float>(options.noise_levels);
-  const std::uint64_t frame_seed = HashBits((static_cast<std::uint64_t>(static_cast<std::uint32_t>(seed)) << 32) |
-                                            static_cast<std::uint32_t>(frame_idx));
   tbb::parallel_for(0, light.rows, [&](int y) {
     const auto* in = light.ptr<cv::Vec3f>(y);
     auto* out = image.ptr<cv::Vec3b>(y);
     for (int x = 0; x < light.cols; ++x) {
       const double radius_sq = ((x - centre_x) * (x - centre_x) + (y - centre_y) * (y - centre_y)) / corner_sq;
       const auto scale = static_cast<float>(gain * (1.0 - options.vignetting * radius_sq));
-      const std::uint64_t counter = frame_seed + 4 * (static_cast<std::uint64_t>(y) * light.cols + x);
+      const std::uint64_t counter = noise_seed + 4 * (static_cast<std::uint64_t>(y) * light.cols + x);
       const float shared = kShared * NormalFromBits(HashBits(counter));
       for (int c = 0; c < 3; ++c) {
         const float grain = noise * (shared + kOwn * NormalFromBits(HashBits(counter + 1 + c)));

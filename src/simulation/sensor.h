@@ -11,6 +11,7 @@
 #include <opencv2/core/mat.hpp>
 
 #include "pliant/simulation/options.h"
+#include "pliant/simulation/simulator.h"
 
 namespace pliant::simulation {
 
@@ -22,9 +23,12 @@ double ExposureLevel(std::span<float> luminances);
 std::vector<double> ExposureGains(const SimulationOptions::Sensor& options, std::span<const double> levels, double fps,
                                   int seed);
 
-// CV_32FC3 linear light -> CV_8UC3. Noise depends on seed, frame and pixel alone.
-cv::Mat Develop(const SimulationOptions::Sensor& options, const cv::Mat& radiance, double gain, int seed,
-                int frame_idx);
+// What the noise of an image is drawn from.
+std::uint64_t NoiseSeed(int seed, int frame_idx, Eye eye);
+
+// CV_32FC3 linear light -> CV_8UC3. Noise depends on its seed and the pixel alone.
+cv::Mat Develop(const SimulationOptions::Sensor& options, const cv::Mat& radiance, double gain,
+                std::uint64_t noise_seed);
 
 // CV_32FC1 mm -> CV_16UC1 steps of depth_scale_mm; 0 where there is none or it is out of range.
 cv::Mat QuantiseDepth(const cv::Mat& depth_mm, double depth_scale_mm);

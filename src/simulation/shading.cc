@@ -46,6 +46,7 @@ Eigen::Vector3f Shader::Facet(const std::array<std::uint32_t, 3>& t, const Eigen
 }
 
 Eigen::Vector3f Shader::Radiance(const RayHit& hit, const Eigen::Vector3d& direction,
+                                 const Eigen::Vector3d& light_from_eye,
                                  const std::vector<Eigen::Vector3f>& normals) const {
   const auto& t = surface_.triangles[hit.point.triangle_idx];
   const auto b1 = static_cast<float>(hit.point.b1);
@@ -53,8 +54,13 @@ Eigen::Vector3f Shader::Radiance(const RayHit& hit, const Eigen::Vector3d& direc
   const float b0 = 1.0F - b1 - b2;
   const Eigen::Vector3f normal = (b0 * normals[t[0]] + b1 * normals[t[1]] + b2 * normals[t[2]]).normalized();
   const Eigen::Vector2f chart = b0 * surface_.chart[t[0]] + b1 * surface_.chart[t[1]] + b2 * surface_.chart[t[2]];
-  const float cosine = std::clamp(-normal.dot(direction.cast<float>()), 0.0F, 1.0F);
+  const Eigen::Vector3f to_eye = -direction.cast<float>();
+  const float cosine = std::clamp(normal.dot(to_eye), 0.0F, 1.0F);
   const auto distance = static_cast<float>(hit.distance_mm);
+  const Eigen::Vector3f light_from_place = distance * to_eye + light_from_eye.cast<float>();
+  const float light_distance = light_from_place.norm();
+  const Eigen::Vector3f to_light = light_from_place / light_distance;
+  const float light_cosine = std::clamp(normal.dot(to_light), 0.0F, 1.0F);
 
   // A slanted wall spreads the pixel over more of it, one way only: the geometric mean of both.
   const float footprint_mm = distance * pixel_rad_ / std::sqrt(std::max(cosine, 0.08F));
@@ -63,12 +69,12 @@ Eigen::Vector3f Shader::Radiance(const RayHit& hit, const Eigen::Vector3d& direc
   const Eigen::Vector3f& albedo = albedo_[std::clamp(step, 0, kAlbedoSteps - 1)];
 
   const auto ambient = static_cast<float>(options_.ambient);
-  const float fall_off = (kReferenceMm / distance) * (kReferenceMm / distance);
-  Eigen::Vector3f radiance = albedo * ((1.0F - ambient) * cosine + ambient);
+  const float fall_off = (kReferenceMm / light_distance) * (kReferenceMm / light_distance);
+  Eigen::Vector3f radiance = albedo * ((1.0F - ambient) * light_cosine + ambient);
   // The mean facet must be near enough to the light for a rough one to mirror it.
   if (options_.specular > 0 && cosine > 0.85F) {
     const Eigen::Vector3f facet = Facet(t, chart, normal, std::max(footprint_mm, kFinestFacetMm));
-    const float mirror = std::clamp(-facet.dot(direction.cast<float>()), 0.1F, 1.0F);
+    const float mirror = std::clamp(facet.dot((to_eye + to_light).normalized()), 0.1F, 1.0F);
     const float tan_sq = 1.0F / (mirror * mirror) - 1.0F;
     const auto slope = static_cast<float>(options_.roughness);
     radiance.array() += static_cast<float>(options_.specular) * std::exp(-tan_sq / (slope * slope));

@@ -1,10 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// The light that comes back along a ray. One small light sits in the camera, so light and view directions coincide:
+// The light that comes back along a ray. One small light sits in the camera (the left one of a pair):
 //   L = (50 mm / d)^2 ( albedo ((1 - a) cos + a) + s exp(-tan^2 / m^2) )
-// cos and tan of the angle between view and normal, d the distance, a the ambient share, s and m the wet reflection's
-// peak and facet slope (Beckmann's distribution); for it the normal is tilted by the slope of the mottling. Albedo
+// cos of the angle between light and normal, d the distance of the light, a the ambient share, s and m the wet
+// reflection's peak and facet slope (Beckmann's distribution), tan of the angle between the normal and the direction
+// halfway between light and view; for it the normal is tilted by the slope of the mottling. Albedo
 // falls with the local amount of blood, least in the red.
 #pragma once
 
@@ -25,8 +26,9 @@ class Shader {
   // `pixel_rad`: the angle that a sample covers. Keeps references to the surface and the map.
   Shader(const SimulationOptions::Light& options, const Surface& surface, const BloodMap& blood, double pixel_rad);
 
-  // Blue, green, red; 1 is about a white wall at 50 mm. `normals`: the vertices' unit normals as posed.
-  Eigen::Vector3f Radiance(const RayHit& hit, const Eigen::Vector3d& direction,
+  // Blue, green, red; 1 is about a white wall at 50 mm. `direction` of the ray, unit; `light_from_eye`: the light's
+  // place by the ray's origin, in the world; `normals`: the vertices' unit normals as posed.
+  Eigen::Vector3f Radiance(const RayHit& hit, const Eigen::Vector3d& direction, const Eigen::Vector3d& light_from_eye,
                            const std::vector<Eigen::Vector3f>& normals) const;
 
  private:

@@ -16,11 +16,8 @@
 #include "simulation/centreline.h"
 #include "simulation/motion.h"
 #include "simulation/ray_scene.h"
-#include "simulation/ray_table.h"
-#include "simulation/sensor.h"
-#include "simulation/shading.h"
+#include "simulation/renderer.h"
 #include "simulation/surface.h"
-#include "simulation/texture.h"
 #include "simulation/trajectory.h"
 
 namespace pliant {
@@ -41,14 +38,15 @@ struct Simulator::State {
 
   double Time(int frame_idx) const { return frame_idx / options.trajectory.fps; }
   Rigid3 WorldFromCamera(int frame_idx) const { return path.WorldFromCamera(Time(frame_idx)); }
+  Eigen::Vector3d RestPosition(const MaterialPoint& point) const;
+  Eigen::Vector3d Position(const MaterialPoint& point, double time_s) const {
+    return motion.Position(RestPosition(point), time_s);
+  }
 
   Status CheckClearance() const;
-  // What rendering needs and truth does not, made when the first frame is rendered.
-  struct Look;
-  const Look& GetLook();
-  std::vector<double> MeterExposure(const Look& made) const;
+  // Made when the first frame is rendered: truth does without.
+  const simulation::Renderer& GetRenderer();
   void Pose(int frame_idx);
-  void RenderRow(const Look& made, const Rigid3& world_from_cam, int y, cv::Vec3f* light, float* depth_mm) const;
 
   SimulationOptions options;
   Camera camera;
@@ -60,21 +58,8 @@ struct Simulator::State {
   std::vector<Eigen::Vector3f> posed_vertices;
   std::vector<Eigen::Vector3f> posed_normals;
   std::optional<simulation::RayScene> scene;
-  std::unique_ptr<Look> look;
+  std::unique_ptr<simulation::Renderer> renderer;
   int posed_frame_idx = -1;  // -1: at rest
-};
-
-struct Simulator::State::Look {
-  explicit Look(const State& state)
-      : rays(state.camera, state.options.sensor.samples),
-        blood(state.options.texture, state.options.scene.seed, state.surface),
-        shader(state.options.light, state.surface, blood,
-               1.0 / (state.camera.MeanFocalLengthPx() * rays.samples_per_side())) {}
-
-  simulation::RayTable rays;
-  simulation::BloodMap blood;
-  simulation::Shader shader;
-  std::vector<double> gains;  // one a frame
 };
 
 namespace {
@@ -151,37 +136,17 @@ Status Simulator::State::CheckClearance() const {
   return Status::Ok();
 }
 
-// The exposure follows the scene at rest, so that any frame can be rendered by itself.
-std::vector<double> Simulator::State::MeterExposure(const Look& made) const {
-  constexpr int kAcross = 40;
-  constexpr int kDown = 30;
-  std::vector<double> levels(static_cast<std::size_t>(options.trajectory.frames));
-  tbb::parallel_for(0, options.trajectory.frames, [&](int frame_idx) {
-    const Rigid3 world_from_cam = WorldFromCamera(frame_idx);
-    std::vector<Eigen::Vector3d> directions;
-    for (int y = 0; y < kDown; ++y)
-      for (int x = 0; x < kAcross; ++x)
-        directions.push_back(world_from_cam.rotation * made.rays.Centre((x * 2 + 1) * camera.width() / (2 * kAcross),
-                                                                        (y * 2 + 1) * camera.height() / (2 * kDown)));
-    std::vector<RayHit> hits(directions.size());
-    scene->Intersect(world_from_cam.translation, directions, hits);
-    std::vector<float> luminances;
-    for (std::size_t i = 0; i < hits.size(); ++i)
-      if (hits[i].hit()) luminances.push_back(made.shader.Radiance(hits[i], directions[i], surface.normals).mean());
-    levels[frame_idx] = simulation::ExposureLevel(luminances);
-  });
-  return simulation::ExposureGains(options.sensor, levels, options.trajectory.fps, options.scene.seed);
-}
-
-const Simulator::State::Look& Simulator::State::GetLook() {
-  if (!look) {
+const simulation::Renderer& Simulator::State::GetRenderer() {
+  if (!renderer) {
     if (posed_frame_idx != -1) scene->Move(surface.vertices);
     posed_frame_idx = -1;
-    auto made = std::make_unique<Look>(*this);
-    made->gains = MeterExposure(*made);
-    look = std::move(made);
+    simulation::Motions motions;
+    motions.world_from_cam = [this](double time_s) { return path.WorldFromCamera(time_s); };
+    if (!motion.rigid())
+      motions.position = [this](const MaterialPoint& point, double time_s) { return Position(point, time_s); };
+    renderer = std::make_unique<simulation::Renderer>(options, camera, surface, *scene, std::move(motions));
   }
-  return *look;
+  return *renderer;
 }
 
 void Simulator::State::Pose(int frame_idx) {
@@ -199,30 +164,6 @@ void Simulator::State::Pose(int frame_idx) {
   posed_frame_idx = frame_idx;
 }
 
-void Simulator::State::RenderRow(const Look& made, const Rigid3& world_from_cam, int y, cv::Vec3f* light,
-                                 float* depth_mm) const {
-  const Eigen::Matrix3d rotation = world_from_cam.RotationMatrix();
-  const std::span<const Eigen::Vector3f> in_cam = made.rays.Row(y);
-  const auto per_pixel = static_cast<std::size_t>(made.rays.rays_per_pixel());
-  std::vector<Eigen::Vector3d> directions(in_cam.size());
-  for (std::size_t i = 0; i < in_cam.size(); ++i) directions[i] = rotation * in_cam[i].cast<double>();
-  std::vector<RayHit> hits(in_cam.size());
-  scene->Intersect(world_from_cam.translation, directions, hits);
-  for (int x = 0; x < camera.width(); ++x) {
-    Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-    for (std::size_t i = x * per_pixel; i + 1 < (x + 1) * per_pixel; ++i)
-      if (hits[i].hit()) sum += made.shader.Radiance(hits[i], directions[i], posed_normals);
-    sum /= static_cast<float>(per_pixel - 1);
-    light[x] = {sum[0], sum[1], sum[2]};
-    // The last ray of a pixel goes through its centre.
-    const std::size_t centre = (x + 1) * per_pixel - 1;
-    depth_mm[x] =
-        hits[centre].hit()
-            ? static_cast<float>(std::max(0.0, hits[centre].distance_mm * static_cast<double>(in_cam[centre].z())))
-            : 0.0F;
-  }
-}
-
 Simulator::Simulator(std::unique_ptr<State> state) : state_(std::move(state)) {}
 Simulator::Simulator(Simulator&&) noexcept = default;
 Simulator& Simulator::operator=(Simulator&&) noexcept = default;
@@ -236,6 +177,16 @@ Result<Simulator> Simulator::Create(const SimulationOptions& options) {
     if (Status status = field.set(field.get()); !status.ok()) return status;
   Result<Camera> camera = SimulatedCamera(options);
   if (!camera.ok()) return camera.status();
+  if (options.camera.baseline_mm > 0 && options.camera.model != CameraModelId::kPinhole &&
+      options.camera.model != CameraModelId::kSimplePinhole)
+    return {ErrorCode::kInvalidArgument,
+            "Camera.baseline_mm makes rectified pairs, which only PINHOLE and SIMPLE_PINHOLE cameras give, and "
+            "Camera.model is " +
+                std::string(EnumName(options.camera.model))};
+  if (options.sensor.shutter_s * options.trajectory.fps > 1.0)
+    return {ErrorCode::kInvalidArgument, "Sensor.shutter_s is " + FormatDouble(options.sensor.shutter_s) +
+                                             ", longer than a frame at " + FormatDouble(options.trajectory.fps) +
+                                             " frames a second; shorten it"};
 
   const double needed_mm = simulation::LastCameraMm(options.trajectory) + options.scene.view_mm;
   const double length_mm = options.scene.length_mm > 0 ? options.scene.length_mm : needed_mm;
@@ -261,22 +212,28 @@ Result<Simulator> Simulator::Create(const SimulationOptions& options) {
 
 const SimulationOptions& Simulator::options() const { return state_->options; }
 const Camera& Simulator::camera() const { return state_->camera; }
-Rigid3 Simulator::WorldFromCamera(int frame_idx) const { return state_->WorldFromCamera(frame_idx); }
+Rigid3 Simulator::WorldFromCamera(int frame_idx, Eye eye) const {
+  const Rigid3 world_from_left = state_->WorldFromCamera(frame_idx);
+  return eye == Eye::kLeft ? world_from_left : simulation::RightCamera(world_from_left, options().camera.baseline_mm);
+}
 
-Eigen::Vector3d Simulator::RestPosition(const MaterialPoint& point) const {
-  const auto& t = state_->surface.triangles[point.triangle_idx];
-  const auto& v = state_->surface.vertices;
+Eigen::Vector3d Simulator::RestPosition(const MaterialPoint& point) const { return state_->RestPosition(point); }
+
+Eigen::Vector3d Simulator::State::RestPosition(const MaterialPoint& point) const {
+  const auto& t = surface.triangles[point.triangle_idx];
+  const auto& v = surface.vertices;
   return (1.0 - point.b1 - point.b2) * v[t[0]].cast<double>() + point.b1 * v[t[1]].cast<double>() +
          point.b2 * v[t[2]].cast<double>();
 }
 
 Eigen::Vector3d Simulator::Position(const MaterialPoint& point, int frame_idx) const {
-  return state_->motion.Position(RestPosition(point), TimeOf(frame_idx));
+  return state_->Position(point, TimeOf(frame_idx));
 }
 
-std::vector<std::optional<SurfaceHit>> Simulator::HitsAt(int frame_idx, std::span<const Eigen::Vector2d> pixels) {
+std::vector<std::optional<SurfaceHit>> Simulator::HitsAt(int frame_idx, std::span<const Eigen::Vector2d> pixels,
+                                                         Eye eye) {
   state_->arena.execute([&] { state_->Pose(frame_idx); });
-  const Rigid3 world_from_cam = WorldFromCamera(frame_idx);
+  const Rigid3 world_from_cam = WorldFromCamera(frame_idx, eye);
   const auto rays_in_cam = camera().Unproject(pixels);
   std::vector<Eigen::Vector3d> directions;
   for (const auto& ray : rays_in_cam)
@@ -292,11 +249,11 @@ std::vector<std::optional<SurfaceHit>> Simulator::HitsAt(int frame_idx, std::spa
   return answers;
 }
 
-std::vector<MaterialObservation> Simulator::Observe(int frame_idx, std::span<const MaterialPoint> points) {
+std::vector<MaterialObservation> Simulator::Observe(int frame_idx, std::span<const MaterialPoint> points, Eye eye) {
   // Longer than the rounding of the rays and the chord of a moved triangle, shorter than any fold.
   constexpr double kSameMm = 0.02;
   state_->arena.execute([&] { state_->Pose(frame_idx); });
-  const Rigid3 world_from_cam = WorldFromCamera(frame_idx);
+  const Rigid3 world_from_cam = WorldFromCamera(frame_idx, eye);
   const Rigid3 cam_from_world = world_from_cam.Inverse();
   std::vector<MaterialObservation> observations(points.size());
   std::vector<Eigen::Vector3d> directions(points.size());
@@ -321,19 +278,16 @@ std::vector<MaterialObservation> Simulator::Observe(int frame_idx, std::span<con
   return observations;
 }
 
+void Simulator::PrepareRendering() {
+  state_->arena.execute([&] { state_->GetRenderer(); });
+}
+
 SimulatedFrame Simulator::Render(int frame_idx) {
   SimulatedFrame frame;
-  const cv::Size size(camera().width(), camera().height());
-  cv::Mat light(size, CV_32FC3);
-  frame.depth.create(size, CV_32FC1);
   state_->arena.execute([&] {
-    const State::Look& look = state_->GetLook();
+    const simulation::Renderer& renderer = state_->GetRenderer();
     state_->Pose(frame_idx);
-    const Rigid3 world_from_cam = WorldFromCamera(frame_idx);
-    tbb::parallel_for(0, size.height, [&](int y) {
-      state_->RenderRow(look, world_from_cam, y, light.ptr<cv::Vec3f>(y), frame.depth.ptr<float>(y));
-    });
-    frame.image = simulation::Develop(options().sensor, light, look.gains[frame_idx], options().scene.seed, frame_idx);
+    frame = renderer.Render(frame_idx, *state_->scene, state_->posed_normals);
   });
   return frame;
 }

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <future>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -51,7 +52,7 @@ Status WritePng(const fs::path& path, const cv::Mat& image) {
 Status CheckOwnFolder(const fs::path& output) {
   std::error_code error;
   if (fs::exists(output / simulation::kOptionsFile, error)) return Status::Ok();
-  for (const char* name : {simulation::kImageFolder, simulation::kDepthFolder})
+  for (const char* name : {simulation::kImageFolder, simulation::kRightFolder, simulation::kDepthFolder})
     if (fs::exists(output / name, error) && !fs::is_empty(output / name, error))
       return {ErrorCode::kInvalidArgument, "the folder " + (output / name).string() +
                                                " holds files of a sequence that was not simulated; give a new or an "
@@ -69,15 +70,19 @@ Status RemoveLeftovers(const fs::path& folder) {
 }
 
 Status PrepareFolder(const fs::path& output, const Simulator& simulator) {
-  for (const char* name : {simulation::kImageFolder, simulation::kDepthFolder}) {
-    std::error_code error;
+  const bool stereo = simulator.options().camera.baseline_mm > 0;
+  std::error_code error;
+  for (const std::string_view name : {simulation::kImageFolder, simulation::kRightFolder, simulation::kDepthFolder}) {
+    if (name == simulation::kRightFolder && !stereo && !fs::exists(output / name, error)) continue;
     fs::create_directories(output / name, error);
     if (error) return Unwritable(output / name);
     if (Status status = RemoveLeftovers(output / name); !status.ok()) return status;
   }
-  const CameraFile camera{.camera = simulator.camera(),
-                          .fps = simulator.options().trajectory.fps,
-                          .depth_scale = simulator.options().sensor.depth_scale_mm};
+  if (!stereo) fs::remove(output / simulation::kRightFolder, error);  // stays where it holds anything else
+  CameraFile camera{.camera = simulator.camera(),
+                    .fps = simulator.options().trajectory.fps,
+                    .depth_scale = simulator.options().sensor.depth_scale_mm};
+  if (stereo) camera.baseline_mm = simulator.options().camera.baseline_mm;
   if (Status status = WriteCameraFile((output / simulation::kCameraFile).string(), camera); !status.ok()) return status;
   return WriteText(output / simulation::kOptionsFile, ToYaml(simulator.options()));
 }
@@ -85,6 +90,10 @@ Status PrepareFolder(const fs::path& output, const Simulator& simulator) {
 Status WriteFrame(const fs::path& output, int frame_idx, const SimulatedFrame& frame, double depth_scale_mm) {
   if (Status status = WritePng(output / simulation::kImageFolder / FrameFileName(frame_idx), frame.image); !status.ok())
     return status;
+  if (!frame.right.empty())
+    if (Status status = WritePng(output / simulation::kRightFolder / FrameFileName(frame_idx), frame.right);
+        !status.ok())
+      return status;
   return WritePng(output / simulation::kDepthFolder / FrameFileName(frame_idx),
                   simulation::QuantiseDepth(frame.depth, depth_scale_mm));
 }
@@ -98,6 +107,13 @@ Status WriteSequence(const SimulationOptions& options, const fs::path& output, c
   if (Status status = PrepareFolder(output, *simulator); !status.ok()) return status;
   std::ofstream poses(output / simulation::kPosesFile);
   std::ofstream times(output / simulation::kTimesFile);
+  simulator->PrepareRendering();
+  const auto stopped_after = [&](int frames) {
+    return Status(ErrorCode::kInterrupted, "stopped after " + std::to_string(frames) + " of " +
+                                               std::to_string(simulator->frame_count()) + " frames; they are in " +
+                                               output.string());
+  };
+  if (progress && progress(0, simulator->frame_count()) == SimulationContinue::kStop) return stopped_after(0);
   SimulatedFrame frame = simulator->Render(0);
   for (int i = 0; i < simulator->frame_count(); ++i) {
     // A frame is packed and written while the next one is rendered.
@@ -112,10 +128,7 @@ Status WriteSequence(const SimulationOptions& options, const fs::path& output, c
     times << FormatDouble(simulator->TimeOf(i)) << std::endl;
     if (!poses) return Unwritable(output / simulation::kPosesFile);
     if (!times) return Unwritable(output / simulation::kTimesFile);
-    if (progress && progress(i + 1, simulator->frame_count()) == SimulationContinue::kStop)
-      return {ErrorCode::kInterrupted, "stopped after " + std::to_string(i + 1) + " of " +
-                                           std::to_string(simulator->frame_count()) + " frames; they are in " +
-                                           output.string()};
+    if (progress && progress(i + 1, simulator->frame_count()) == SimulationContinue::kStop) return stopped_after(i + 1);
   }
   return Status::Ok();
 }

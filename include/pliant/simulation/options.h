@@ -85,8 +85,11 @@ struct SimulationOptions {
     double noise_levels = 1.5;      // standard deviation in grey levels of 255
     double blur_px = 0.45;          // standard deviation of the lens's blur
     double vignetting = 0.25;       // light lost in the corners, as a share
+    double shutter_s = 0.004;       // motion blur: how long the shutter is open, about the frame's time; 0: an instant
     int samples = 4;                // rays a pixel; depth is always taken at the pixel's centre
     double depth_scale_mm = 0.005;  // one step of the 16-bit depth; range 65535 of them
+    double drops = 0.0;             // drops of fluid on the lens at a time, in the mean; not in any truth
+    double debris = 0.0;            // pieces that float before the lens at a time, in the mean; not in any truth
   } sensor;
 
   struct CameraModel {
@@ -95,6 +98,7 @@ struct SimulationOptions {
     int height = 480;
     double horizontal_fov_deg = 70.0;  // used when params is empty
     std::string params;                // in COLMAP's order, separated by commas
+    double baseline_mm = 0.0;          // stereo: the right camera's place on the left one's x axis; 0: one camera
   } camera;
 
   struct Trajectory {

@@ -51,8 +51,13 @@ struct MaterialObservation {
   Visibility visibility = Visibility::kOutsideImage;
 };
 
+// Of a stereo pair (Camera.baseline_mm > 0); the left camera is the one that poses and depth belong to. The right one
+// has the same parameters and orientation: the pair is rectified where the model has no distortion.
+enum class Eye { kLeft, kRight };
+
 struct SimulatedFrame {
   cv::Mat image;  // CV_8UC3, BGR
+  cv::Mat right;  // the same of the right camera; empty where there is none
   cv::Mat depth;  // CV_32FC1, z along the optical axis at the pixel's centre, mm; 0: nothing was hit
 };
 
@@ -72,15 +77,18 @@ class Simulator {
 
   // Truth that needs no rendering.
   double TimeOf(int frame_idx) const { return frame_idx / options().trajectory.fps; }
-  Rigid3 WorldFromCamera(int frame_idx) const;
+  Rigid3 WorldFromCamera(int frame_idx, Eye eye = Eye::kLeft) const;
   Eigen::Vector3d RestPosition(const MaterialPoint& point) const;
   Eigen::Vector3d Position(const MaterialPoint& point, int frame_idx) const;
 
   // What the camera of a frame sees at pixels (sub-pixel positions too); nothing where the ray leaves the scene.
-  std::vector<std::optional<SurfaceHit>> HitsAt(int frame_idx, std::span<const Eigen::Vector2d> pixels);
+  std::vector<std::optional<SurfaceHit>> HitsAt(int frame_idx, std::span<const Eigen::Vector2d> pixels,
+                                                Eye eye = Eye::kLeft);
   // Where material points are seen in a frame.
-  std::vector<MaterialObservation> Observe(int frame_idx, std::span<const MaterialPoint> points);
+  std::vector<MaterialObservation> Observe(int frame_idx, std::span<const MaterialPoint> points, Eye eye = Eye::kLeft);
 
+  // Makes the texture and meters the light; the first Render does it where nobody asked for it.
+  void PrepareRendering();
   SimulatedFrame Render(int frame_idx);
 
  private:

@@ -3,7 +3,8 @@
 
 // A simulated sequence on disk, in the native layout (docs/formats.md): camera.yaml, images/NNNNNN.png,
 // depth/NNNNNN.png (16-bit, z along the optical axis = value * depth_scale mm, 0 = none or out of range),
-// groundtruth.txt (TUM, world_from_camera, mm), times.txt, and simulation.yaml with every option.
+// right/NNNNNN.png where there is a right camera, groundtruth.txt (TUM, world_from_camera, mm), times.txt, and
+// simulation.yaml with every option.
 #pragma once
 
 #include <filesystem>
@@ -16,7 +17,7 @@ namespace pliant {
 
 enum class SimulationContinue { kYes, kStop };
 
-// Called after each frame is on disk.
+// Called once with 0 frames done when the scene stands, and after each frame is on disk.
 using SimulationProgress = std::function<SimulationContinue(int frames_done, int frames_total)>;
 
 // Renders every frame into `output`, which is made where it is not there; files of the same name are replaced, and

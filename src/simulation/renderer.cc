@@ -1,0 +1,167 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "simulation/renderer.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <tbb/parallel_for.h>
+
+#include "simulation/lens.h"
+#include "simulation/sensor.h"
+
+namespace pliant::simulation {
+namespace {
+
+// Pixels of a tile this wide sample the exposure at different times, so that fast motion blurs instead of showing
+// double.
+constexpr int kTile = 2;
+
+// To and fro, so that the mean time of every pixel with an even number of samples is the frame's.
+int TimeStep(int sample_idx, int x, int y) {
+  constexpr int kSteps = kTile * kTile;
+  const int in_tile = (y % kTile) * kTile + x % kTile;
+  return sample_idx * kSteps + (sample_idx % 2 == 0 ? in_tile : kSteps - 1 - in_tile);
+}
+
+// Neighbours in a row that share a velocity.
+constexpr std::size_t kVelocityPixels = 4;
+
+}  // namespace
+
+Rigid3 RightCamera(const Rigid3& world_from_left, double baseline_mm) {
+  return {world_from_left.rotation, world_from_left * Eigen::Vector3d(baseline_mm, 0, 0)};
+}
+
+Renderer::Renderer(const SimulationOptions& options, const Camera& camera, const Surface& surface,
+                   const RayScene& at_rest, Motions motions)
+    : options_(options),
+      camera_(camera),
+      surface_(surface),
+      motions_(std::move(motions)),
+      rays_(camera, options.sensor.samples),
+      blood_(options.texture, options.scene.seed, surface),
+      shader_(options.light, surface, blood_, 1.0 / (camera.MeanFocalLengthPx() * rays_.samples_per_side())) {
+  MeterExposure(at_rest);
+}
+
+void Renderer::MeterExposure(const RayScene& at_rest) {
+  constexpr int kAcross = 40;
+  constexpr int kDown = 30;
+  std::vector<double> levels(static_cast<std::size_t>(options_.trajectory.frames));
+  tbb::parallel_for(0, options_.trajectory.frames, [&](int frame_idx) {
+    const Rigid3 world_from_cam = motions_.world_from_cam(TimeOf(frame_idx));
+    std::vector<Ray> rays;
+    for (int y = 0; y < kDown; ++y)
+      for (int x = 0; x < kAcross; ++x)
+        rays.push_back({world_from_cam.translation,
+                        world_from_cam.rotation * rays_.Centre((x * 2 + 1) * camera_.width() / (2 * kAcross),
+                                                               (y * 2 + 1) * camera_.height() / (2 * kDown))});
+    std::vector<RayHit> hits(rays.size());
+    at_rest.Intersect(rays, hits);
+    std::vector<float> luminances;
+    for (std::size_t i = 0; i < hits.size(); ++i)
+      if (hits[i].hit())
+        luminances.push_back(
+            shader_.Radiance(hits[i], rays[i].direction, Eigen::Vector3d::Zero(), surface_.normals).mean());
+    levels[frame_idx] = ExposureLevel(luminances);
+  });
+  gains_ = ExposureGains(options_.sensor, levels, options_.trajectory.fps, options_.scene.seed);
+}
+
+Renderer::Shot Renderer::MakeShot(int frame_idx, Eye eye, const RayScene& posed,
+                                  const std::vector<Eigen::Vector3f>& normals) const {
+  const double baseline_mm = eye == Eye::kLeft ? 0.0 : options_.camera.baseline_mm;
+  const double time_s = TimeOf(frame_idx);
+  Shot shot{.scene = posed,
+            .normals = normals,
+            .time_s = time_s,
+            .world_from_cam = RightCamera(motions_.world_from_cam(time_s), baseline_mm)};
+  const int steps = (rays_.rays_per_pixel() - 1) * kTile * kTile;
+  for (int i = 0; i < steps; ++i) {
+    shot.lags_s.push_back(options_.sensor.shutter_s * ((i + 0.5) / steps - 0.5));
+    const Rigid3 world_from_left = motions_.world_from_cam(time_s + shot.lags_s.back());
+    shot.rotations.push_back(world_from_left.RotationMatrix());
+    shot.origins.push_back(RightCamera(world_from_left, baseline_mm).translation);
+    shot.light_from_cam.emplace_back(world_from_left.translation - shot.origins.back());
+  }
+  return shot;
+}
+
+std::vector<Eigen::Vector3d> Renderer::MaterialVelocities(const Shot& shot, std::span<const RayHit> centres) const {
+  std::vector<Eigen::Vector3d> velocities(centres.size(), Eigen::Vector3d::Zero());
+  const double shutter_s = options_.sensor.shutter_s;
+  if (!motions_.position || shutter_s == 0.0) return velocities;
+  for (std::size_t i = 0; i < centres.size(); ++i) {
+    if (i % kVelocityPixels != 0) {
+      velocities[i] = velocities[i - 1];
+      continue;
+    }
+    if (!centres[i].hit()) continue;
+    velocities[i] = (motions_.position(centres[i].point, shot.time_s + 0.5 * shutter_s) -
+                     motions_.position(centres[i].point, shot.time_s - 0.5 * shutter_s)) /
+                    shutter_s;
+  }
+  return velocities;
+}
+
+void Renderer::RenderRow(const Shot& shot, int y, cv::Vec3f* light, float* depth_mm) const {
+  const std::span<const Eigen::Vector3f> in_cam = rays_.Row(y);
+  const auto width = static_cast<std::size_t>(camera_.width());
+  const auto per_pixel = static_cast<std::size_t>(rays_.rays_per_pixel());
+  const std::size_t samples = per_pixel - 1;
+  const Eigen::Matrix3d rotation = shot.world_from_cam.RotationMatrix();
+  std::vector<Ray> rays(width);
+  std::vector<RayHit> hits(width);
+  for (std::size_t x = 0; x < width; ++x)  // the last ray of a pixel goes through its centre
+    rays[x] = {shot.world_from_cam.translation, rotation * in_cam[(x + 1) * per_pixel - 1].cast<double>()};
+  shot.scene.Intersect(rays, hits);
+  for (std::size_t x = 0; x < width; ++x) {
+    const double z = hits[x].hit() ? hits[x].distance_mm * in_cam[(x + 1) * per_pixel - 1].z() : 0.0;
+    depth_mm[x] = static_cast<float>(std::max(0.0, z));
+  }
+  const std::vector<Eigen::Vector3d> velocities = MaterialVelocities(shot, hits);
+
+  rays.resize(width * samples);
+  hits.resize(rays.size());
+  for (std::size_t x = 0; x < width; ++x) {
+    for (std::size_t i = 0; i < samples; ++i) {
+      const int step = TimeStep(static_cast<int>(i), static_cast<int>(x), y);
+      rays[x * samples + i] = {shot.origins[step] - shot.lags_s[step] * velocities[x],
+                               shot.rotations[step] * in_cam[x * per_pixel + i].cast<double>()};
+    }
+  }
+  shot.scene.Intersect(rays, hits);
+  for (std::size_t x = 0; x < width; ++x) {
+    Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+    for (std::size_t i = 0; i < samples; ++i) {
+      const std::size_t idx = x * samples + i;
+      if (!hits[idx].hit()) continue;
+      const int step = TimeStep(static_cast<int>(i), static_cast<int>(x), y);
+      sum += shader_.Radiance(hits[idx], rays[idx].direction, shot.light_from_cam[step], shot.normals);
+    }
+    sum /= static_cast<float>(samples);
+    light[x] = {sum[0], sum[1], sum[2]};
+  }
+}
+
+SimulatedFrame Renderer::Render(int frame_idx, const RayScene& posed,
+                                const std::vector<Eigen::Vector3f>& normals) const {
+  SimulatedFrame frame;
+  const cv::Size size(camera_.width(), camera_.height());
+  const auto photograph = [&](Eye eye) {
+    const Shot shot = MakeShot(frame_idx, eye, posed, normals);
+    cv::Mat light(size, CV_32FC3);
+    cv::Mat depth(size, CV_32FC1);
+    tbb::parallel_for(0, size.height, [&](int y) { RenderRow(shot, y, light.ptr<cv::Vec3f>(y), depth.ptr<float>(y)); });
+    if (eye == Eye::kLeft) frame.depth = depth;
+    CoverLens(options_, camera_.MeanFocalLengthPx(), gains_[frame_idx], shot.time_s, eye, &light);
+    return Develop(options_.sensor, light, gains_[frame_idx], NoiseSeed(options_.scene.seed, frame_idx, eye));
+  };
+  frame.image = photograph(Eye::kLeft);
+  if (options_.camera.baseline_mm > 0) frame.right = photograph(Eye::kRight);
+  return frame;
+}
+
+}  // namespace pliant::simulation
