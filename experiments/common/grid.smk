@@ -1,0 +1,99 @@
+# SPDX-FileCopyrightText: 2026 The Pliant authors
+# SPDX-License-Identifier: BSD-3-Clause
+#
+# The rules that every experiment on a grid shares: simulate -> track -> evaluate -> figures.csv. An experiment's
+# Snakefile names its config file, includes this, and turns figures.csv into table.md and table.csv in a rule `table`.
+# Paths are relative to the working directory, where everything is left; `./run experiment` sets it.
+import os
+import pathlib
+import sys
+
+sys.path.insert(0, str(pathlib.Path(workflow.current_basedir).resolve()))
+import grid
+
+EXPERIMENT = pathlib.Path(workflow.basedir)
+ROOT = EXPERIMENT.parent.parent
+GRID = grid.Grid(config)
+PROGRAM = os.environ.get("PLIANT_PROGRAM") or str(ROOT / config["program"])
+THREADS = int(config["threads"])
+
+
+# The mark of a whole sequence: among those that were rendered elsewhere, or here.
+def sequence_of(scene):
+    elsewhere = config["sequences"] and ROOT / config["sequences"] / scene / "done"
+    return str(elsewhere) if elsewhere and elsewhere.exists() else f"sequences/{scene}/done"
+
+
+wildcard_constraints:
+    scene=r"\w+_A[\d.]+_w[\d.]+_s\d+",
+    variant=r"[\w.-]+",
+
+
+localrules:
+    figures,
+    table,
+    readme,
+
+
+# Rendering takes longest, so a new build of the program alone does not repeat it; `--forcerun simulate` does.
+rule simulate:
+    output:
+        touch("sequences/{scene}/done"),
+    input:
+        ancient(PROGRAM),
+    params:
+        options=lambda wildcards: GRID.simulate_options(wildcards.scene),
+    threads: THREADS
+    shell:
+        "{input} simulate --output_path sequences/{wildcards.scene} --quiet {params.options} --Simulation.threads {threads}"
+
+
+# A run that never found a first map is an answer (`failed`, no frame tracked); an interrupted one is none.
+rule track:
+    output:
+        "runs/{variant}/{scene}/run.json",
+    input:
+        program=PROGRAM,
+        done=lambda wildcards: sequence_of(wildcards.scene),
+    params:
+        sequence=lambda wildcards, input: os.path.dirname(input.done),
+        run="runs/{variant}/{scene}",
+        options=lambda wildcards: GRID.track_options(wildcards.variant),
+    threads: THREADS
+    shell:
+        "rm -rf {params.run}\n"
+        "{input.program} track --image_path {params.sequence} --output_path {params.run} --quiet"
+        " --General.threads {threads} {params.options} || grep -q '\"status\": \"failed\"' {output}"
+
+
+rule evaluate:
+    output:
+        "runs/{variant}/{scene}/evaluation/evaluation.json",
+    input:
+        program=ancient(PROGRAM),
+        run="runs/{variant}/{scene}/run.json",
+        done=lambda wildcards: ancient(sequence_of(wildcards.scene)),
+    params:
+        sequence=lambda wildcards, input: os.path.dirname(input.done),
+        run="runs/{variant}/{scene}",
+    shell:
+        "if grep -q '\"frames_tracked\": 0' {input.run}; then echo '{{}}' >{output}; else"
+        " {input.program} evaluate --run {params.run} --sequence {params.sequence}"
+        " --output_path {params.run}/evaluation --quiet; fi"
+
+
+rule figures:
+    output:
+        "figures.csv",
+    input:
+        [f"{run}/evaluation/evaluation.json" for run in GRID.runs()],
+    run:
+        grid.write_rows(output[0], grid.COLUMNS, [grid.figures_of(run) for run in GRID.runs()])
+
+
+# On request: the table in the experiment's README is the one just made.
+rule readme:
+    input:
+        "table.md",
+    run:
+        grid.put_into_readme(EXPERIMENT / "README.md", input[0])
