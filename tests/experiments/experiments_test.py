@@ -35,7 +35,8 @@ def snakemake(experiment, folder, *arguments, **environment):
     result = subprocess.run(
         ["snakemake", "--snakefile", str(ROOT / "experiments" / experiment / "Snakefile"), "--directory", str(folder),
          "--cores", "2", *arguments],
-        env={**os.environ, "PLIANT_PROGRAM": sys.argv[2], "XDG_CACHE_HOME": str(folder / "cache"), **environment},
+        env={**os.environ, "PLIANT_PROGRAM": os.path.abspath(sys.argv[2]), "XDG_CACHE_HOME": str(folder / "cache"),
+             **environment},
         stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
     assert result.returncode == 0, result.stdout
     return result.stdout
