@@ -16,15 +16,23 @@ namespace {
 
 const Manual kManual = {
     "simulate",
-    "render a deforming, textured tube with depth and poses",
-    "Renders what a camera with a light beside it sees on its way through a textured tube that deforms, and writes it "
-    "as a sequence that pliant track reads and pliant evaluate knows the truth of.\n\n"
-    "Reads nothing. The same options give the same files, byte for byte, whatever the number of threads.\n\n"
+    "render a deforming scene with depth and poses",
+    "Renders what a camera with a light beside it sees in a textured scene that deforms, and writes it as a sequence "
+    "that pliant track reads and pliant evaluate knows the truth of. The scene is a colon with folds, a smooth tube, "
+    "an "
+    "organ's surface seen from outside, two lobes that move by themselves, or a mesh from a file (Scene.kind).\n\n"
+    "Reads nothing but the mesh (Scene.mesh_path) and the camera's poses (Trajectory.path) where they are asked for; "
+    "their names are relative to the working folder and are written absolute. The same options give the same files, "
+    "byte for byte, whatever the number of threads.\n\n"
     "Leaves in --output_path: camera.yaml, images/NNNNNN.png, depth/NNNNNN.png (16-bit, z along the optical axis in "
     "steps of depth_scale mm, 0 = none), groundtruth.txt (TUM, world_from_camera, mm), times.txt and simulation.yaml "
     "(every option).",
     {"pliant simulate --output_path colon --Deformation.amplitude_mm 2.5",
-     "pliant simulate --output_path rigid --Trajectory.frames 60 --Trajectory.kind sway"},
+     "pliant simulate --output_path rigid --Trajectory.frames 60 --Trajectory.kind sway",
+     "pliant simulate --output_path liver --Scene.kind lobes --Trajectory.kind loop --Deformation.amplitude_mm 3",
+     "pliant simulate --output_path ct --Scene.kind mesh --Scene.mesh_path colon.stl --Trajectory.kind file "
+     "--Trajectory.path poses.txt",
+     "pliant simulate --output_path again --config colon/simulation.yaml"},
 };
 
 }  // namespace
@@ -44,14 +52,17 @@ int SimulateCommand(std::span<const std::string> args) {
   if (const auto exit = line.Resolve(table)) return *exit;
 
   const std::atomic<bool>& stop = StopOnSignals();
-  Status status;
   using Clock = std::chrono::steady_clock;
   const Clock::time_point started = Clock::now();
   Clock::time_point scene_stood = started;
-  {
+  Result<Simulator> simulator = Simulator::Create(options);
+  Status status = simulator.status();
+  if (status.ok()) {
+    if (!quiet)
+      for (const std::string& warning : simulator->warnings()) SayError(kManual.command, "warning: " + warning);
     Progress progress(std::cerr, quiet ? ProgressStyle::kQuiet : ProgressStyleOfStandardError(), "simulate",
                       options.trajectory.frames);
-    status = WriteSequence(options, output_path, [&](int done, int) {
+    status = WriteSequence(*simulator, output_path, [&](int done, int) {
       if (done == 0) scene_stood = Clock::now();
       progress.Update(done, "");
       return stop ? SimulationContinue::kStop : SimulationContinue::kYes;

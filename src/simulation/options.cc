@@ -7,20 +7,27 @@
 #include <numbers>
 #include <vector>
 
+#include "simulation/numbers.h"
+
 namespace pliant {
 
 void SimulationOptions::List(OptionTable& table) {
   table.BeginGroup("Scene", "what is filmed");
-  table.AddChoice("kind", &scene.kind, "folds, corners and relief, or a smooth round tube");
+  table.AddChoice("kind", &scene.kind, "colon with folds, smooth tube, sheet, two lobes, or a mesh file");
   table.Add("seed", &scene.seed, "-", "of everything that is drawn by lot: folds, texture, tremor, noise", 0, 1 << 30);
   table.Add("radius_mm", &scene.radius_mm, "mm", "radius of the lumen without its folds", 5, 200);
-  table.Add("length_mm", &scene.length_mm, "mm", "length of the tube; 0: the camera's way and view_mm more", 0, 20000);
-  table.Add("view_mm", &scene.view_mm, "mm", "tube that lies ahead of the last camera", 20, 2000);
+  table.Add("length_mm", &scene.length_mm, "mm", "of the tube or sheet; 0: the camera's way and view_mm more", 0,
+            20000);
+  table.Add("view_mm", &scene.view_mm, "mm", "tube or sheet that lies ahead of the last camera", 20, 2000);
   table.Add("bend_deg_per_cm", &scene.bend_deg_per_cm, "deg/cm", "largest bending in each plane", 0, 15);
   table.Add("fold_depth_mm", &scene.fold_depth_mm, "mm", "how far a typical fold stands into the lumen", 0, 100);
   table.Add("fold_spacing_mm", &scene.fold_spacing_mm, "mm", "mean distance of the rings of folds", 3, 500);
   table.Add("relief_mm", &scene.relief_mm, "mm", "uneven wall, about its standard deviation", 0, 20);
-  table.Add("mesh_step_mm", &scene.mesh_step_mm, "mm", "edge of the mesh; facets must not be seen", 0.1, 20);
+  table.Add("width_mm", &scene.width_mm, "mm", "surface, lobes: of the sheet across the camera's way", 20, 2000);
+  table.Add("lobe_step_mm", &scene.lobe_step_mm, "mm", "lobes: how far one lies above the other", 2, 60);
+  table.Add("mesh_path", &scene.mesh_path, "FILE", "mesh: OBJ, PLY or STL; relative to the working folder");
+  table.Add("mesh_scale", &scene.mesh_scale, "mm", "mesh: millimetres in a unit of the file", 1e-6, 1e6);
+  table.Add("mesh_step_mm", &scene.mesh_step_mm, "mm", "longest edge of the mesh; facets must not be seen", 0.1, 20);
 
   table.BeginGroup("Texture", "what the wall carries");
   table.Add("contrast", &texture.contrast, "-", "of mottling and vessels; 0: one colour", 0, 4);
@@ -31,11 +38,23 @@ void SimulationOptions::List(OptionTable& table) {
   table.Add("vessels", &texture.vessels, "-", "number of vessel trees; 1: one on 9 cm^2", 0, 20);
   table.Add("texel_mm", &texture.texel_mm, "mm", "of the map on the wall; below half of smallest_mm", 0.02, 10);
 
-  table.BeginGroup("Deformation", "V_y += A sin(omega t + 2 pi / wavelength (V_x + V_y + V_z))");
-  table.Add("amplitude_mm", &deformation.amplitude_mm, "mm", "A; 0: rigid", 0, 50);
+  table.BeginGroup("Deformation", "a wave V_y += A sin(omega t + 2 pi / wavelength (V_x + V_y + V_z)), breath, poke");
+  table.Add("amplitude_mm", &deformation.amplitude_mm, "mm", "A; 0: no wave", 0, 50);
   table.Add("omega_rad_s", &deformation.omega_rad_s, "rad/s", "omega; 2.5 is a breath in 2.5 s", 0, 100);
   table.Add("wavelength_mm", &deformation.wavelength_mm, "mm", "200 pi reads the sine's argument in decimetres", 20,
             1e9);
+  table.Add("breathing_mm", &deformation.breathing_mm, "mm", "swelling of the wall to each side of rest; 0: none", 0,
+            50);
+  table.Add("breathing_period_s", &deformation.breathing_period_s, "s", "of a breath", 0.05, 1000);
+  table.Add("poke_mm", &deformation.poke_mm, "mm", "height of a bump pushed into the lumen; 0: none", -50, 50);
+  table.Add("poke_radius_mm", &deformation.poke_radius_mm, "mm", "its standard deviation", 1, 500);
+  table.Add("poke_period_s", &deformation.poke_period_s, "s", "from push to push; sine squared in between", 0.05, 1000);
+  table.Add("poke_place", &deformation.poke_place, "mm",
+            "x,y,z at rest; empty: what the first camera sees in the lower middle of its image");
+  table.Add("lobe_share", &deformation.lobe_share, "-", "lobes: amplitudes of the upper by the lower one's", 0, 3);
+  table.Add("lobe_phase_deg", &deformation.lobe_phase_deg, "deg", "lobes: the upper one is ahead by this", -360, 360);
+  table.Add("lobe_direction_deg", &deformation.lobe_direction_deg, "deg",
+            "lobes: direction of the upper one's wave, from y towards x", -180, 180);
 
   table.BeginGroup("Light", "one light at the camera");
   table.Add("ambient", &light.ambient, "-", "share of light that comes by way of the other walls", 0, 1);
@@ -69,16 +88,25 @@ void SimulationOptions::List(OptionTable& table) {
             100);
 
   table.BeginGroup("Trajectory", "the camera's way");
-  table.AddChoice("kind", &trajectory.kind, "forward, from side to side, or on the spot");
+  table.AddChoice("kind", &trajectory.kind, "forward, from side to side, on the spot, out and back, or a file's poses");
   table.Add("frames", &trajectory.frames, "-", "number of frames", 1, 1000000);
   table.Add("fps", &trajectory.fps, "1/s", "frames a second", 0.01, 10000);
-  table.Add("start_mm", &trajectory.start_mm, "mm", "first camera, along the centreline", 0, 10000);
-  table.Add("speed_mm_s", &trajectory.speed_mm_s, "mm/s", "insert: along the centreline", 0, 1000);
-  table.Add("look_ahead_mm", &trajectory.look_ahead_mm, "mm", "the camera looks at the centreline this far ahead", 1,
-            500);
+  table.Add("start_mm", &trajectory.start_mm, "mm", "first camera, along the scene's way", 0, 10000);
+  table.Add(
+      "start_pose", &trajectory.start_pose, "mm",
+      "first camera as tx,ty,tz,qx,qy,qz,qw (world_from_camera), then straight ahead; empty: the scene's own way");
+  table.Add("speed_mm_s", &trajectory.speed_mm_s, "mm/s", "insert: along the scene's way", 0, 1000);
+  table.Add("look_ahead_mm", &trajectory.look_ahead_mm, "mm",
+            "the camera looks at the centreline or sheet this far ahead", 1, 500);
+  table.Add("height_mm", &trajectory.height_mm, "mm", "surface, lobes: of the camera's way over the sheet", 5, 500);
   table.Add("sway_amplitude_mm", &trajectory.sway_amplitude_mm, "mm", "sway: to each side", 0, 200);
   table.Add("sway_period_s", &trajectory.sway_period_s, "s", "sway: to both sides and back", 0.01, 1000);
   table.Add("sway_distance_mm", &trajectory.sway_distance_mm, "mm", "sway: to the point that stays in view", 5, 500);
+  table.Add("loop_length_mm", &trajectory.loop_length_mm, "mm", "loop: how far out", 0, 1000);
+  table.Add("loop_width_mm", &trajectory.loop_width_mm, "mm", "loop: to each side", 0, 200);
+  table.Add("loop_period_s", &trajectory.loop_period_s, "s", "loop: out and back; 0: the whole sequence", 0, 10000);
+  table.Add("path", &trajectory.path, "FILE",
+            "file: TUM lines, mm, s from the first frame; relative to the working folder");
   table.Add("tremor_mm", &trajectory.tremor_mm, "mm", "of the hand, about its standard deviation", 0, 20);
   table.Add("tremor_deg", &trajectory.tremor_deg, "deg", "of the hand, about its standard deviation", 0, 20);
   table.Add("clearance_mm", &trajectory.clearance_mm, "mm", "a camera nearer to the wall than this is an error", 0.1,
@@ -99,20 +127,11 @@ Result<Camera> SimulatedCamera(const SimulationOptions& options) {
   const SimulationOptions::CameraModel& camera = options.camera;
   std::vector<double> params;
   if (!camera.params.empty()) {
-    std::string_view rest = camera.params;
-    while (true) {
-      const std::size_t comma = rest.find(',');
-      std::string_view item = rest.substr(0, comma);
-      while (item.starts_with(' ')) item.remove_prefix(1);
-      double value = 0;
-      if (!ParseDouble(item, &value))
-        return {ErrorCode::kInvalidArgument,
-                "Camera.params is '" + camera.params + "'; give numbers separated by commas"};
-      params.push_back(value);
-      if (comma == std::string_view::npos) break;
-      rest.remove_prefix(comma + 1);
-    }
-    return Camera::Create(camera.model, camera.width, camera.height, params);
+    const auto numbers = simulation::ParseNumbers(camera.params);
+    if (!numbers)
+      return {ErrorCode::kInvalidArgument,
+              "Camera.params is '" + camera.params + "'; give numbers separated by commas"};
+    return Camera::Create(camera.model, camera.width, camera.height, *numbers);
   }
   const double half_rad = 0.5 * camera.horizontal_fov_deg * std::numbers::pi / 180.0;
   const bool fisheye = camera.model == CameraModelId::kOpenCvFisheye;

@@ -152,4 +152,21 @@ void RayScene::Intersect(std::span<const Ray> rays, std::span<RayHit> hits) cons
   }
 }
 
+void RayScene::VisitNear(const Eigen::Vector3d& centre, double radius_mm,
+                         const std::function<void(std::uint32_t triangle_idx)>& visit) const {
+  RTCPointQuery query;
+  query.x = static_cast<float>(centre.x());
+  query.y = static_cast<float>(centre.y());
+  query.z = static_cast<float>(centre.z());
+  query.time = 0.0F;
+  query.radius = static_cast<float>(radius_mm);
+  RTCPointQueryContext context;
+  rtcInitPointQueryContext(&context);
+  const auto callback = [](RTCPointQueryFunctionArguments* arguments) {
+    (*static_cast<const std::function<void(std::uint32_t)>*>(arguments->userPtr))(arguments->primID);
+    return false;  // the radius stays
+  };
+  rtcPointQuery(state_->scene, &query, &context, callback, const_cast<std::function<void(std::uint32_t)>*>(&visit));
+}
+
 }  // namespace pliant::simulation

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -48,6 +49,11 @@ class RayScene {
   // The same for rays from one `origin`.
   void Intersect(const Eigen::Vector3d& origin, std::span<const Eigen::Vector3d> directions,
                  std::span<RayHit> hits) const;
+
+  // Calls `visit` with every triangle that is nearer to `centre` than `radius_mm`, and a few more, in no order that
+  // means anything. May be called from several threads at once.
+  void VisitNear(const Eigen::Vector3d& centre, double radius_mm,
+                 const std::function<void(std::uint32_t triangle_idx)>& visit) const;
 
  private:
   struct State;

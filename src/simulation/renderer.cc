@@ -41,8 +41,8 @@ Renderer::Renderer(const SimulationOptions& options, const Camera& camera, const
       surface_(surface),
       motions_(std::move(motions)),
       rays_(camera, options.sensor.samples),
-      blood_(options.texture, options.scene.seed, surface),
-      shader_(options.light, surface, blood_, 1.0 / (camera.MeanFocalLengthPx() * rays_.samples_per_side())) {
+      paint_(options.texture, options.scene.seed, surface, at_rest),
+      shader_(options.light, surface, paint_, 1.0 / (camera.MeanFocalLengthPx() * rays_.samples_per_side())) {
   MeterExposure(at_rest);
 }
 

@@ -19,11 +19,11 @@
 #include "pliant/geometry/rigid3.h"
 #include "pliant/simulation/options.h"
 #include "pliant/simulation/simulator.h"
+#include "simulation/paint.h"
 #include "simulation/ray_scene.h"
 #include "simulation/ray_table.h"
 #include "simulation/shading.h"
 #include "simulation/surface.h"
-#include "simulation/texture.h"
 
 namespace pliant::simulation {
 
@@ -70,7 +70,7 @@ class Renderer {
   const Surface& surface_;
   Motions motions_;
   RayTable rays_;
-  BloodMap blood_;
+  Paint paint_;
   Shader shader_;
   std::vector<double> gains_;  // one a frame
 };

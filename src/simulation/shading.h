@@ -15,16 +15,16 @@
 #include <Eigen/Core>
 
 #include "pliant/simulation/options.h"
+#include "simulation/paint.h"
 #include "simulation/ray_scene.h"
 #include "simulation/surface.h"
-#include "simulation/texture.h"
 
 namespace pliant::simulation {
 
 class Shader {
  public:
-  // `pixel_rad`: the angle that a sample covers. Keeps references to the surface and the map.
-  Shader(const SimulationOptions::Light& options, const Surface& surface, const BloodMap& blood, double pixel_rad);
+  // `pixel_rad`: the angle that a sample covers. Keeps references to the surface and the paint.
+  Shader(const SimulationOptions::Light& options, const Surface& surface, const Paint& paint, double pixel_rad);
 
   // Blue, green, red; 1 is about a white wall at 50 mm. `direction` of the ray, unit; `light_from_eye`: the light's
   // place by the ray's origin, in the world; `normals`: the vertices' unit normals as posed.
@@ -32,15 +32,22 @@ class Shader {
                            const std::vector<Eigen::Vector3f>& normals) const;
 
  private:
+  // Where a ray met the surface at rest, by the chart and in space; what the surface has none of is zero.
+  struct Place {
+    Eigen::Vector2f chart = Eigen::Vector2f::Zero();
+    Eigen::Vector3f at_rest = Eigen::Vector3f::Zero();
+  };
+  Place PlaceOf(const std::array<std::uint32_t, 3>& triangle, float b1, float b2) const;
+  const Eigen::Vector3f& AlbedoOf(float blood) const;
   // The normal of the wet film on a patch of this size.
-  Eigen::Vector3f Facet(const std::array<std::uint32_t, 3>& triangle, const Eigen::Vector2f& chart,
-                        const Eigen::Vector3f& normal, float size_mm) const;
+  Eigen::Vector3f Facet(const std::array<std::uint32_t, 3>& triangle, const Place& place, const Eigen::Vector3f& normal,
+                        float size_mm) const;
 
   static constexpr int kAlbedoSteps = 2048;
 
   SimulationOptions::Light options_;
   const Surface& surface_;
-  const BloodMap& blood_;
+  const Paint& paint_;
   float pixel_rad_;
   std::array<Eigen::Vector3f, kAlbedoSteps> albedo_;  // over blood from kLeastBlood to kMostBlood
 };

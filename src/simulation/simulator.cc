@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <limits>
+#include <filesystem>
 #include <utility>
 
 #include <tbb/blocked_range.h>
@@ -14,7 +14,9 @@
 #include <tbb/task_arena.h>
 
 #include "simulation/centreline.h"
+#include "simulation/clearance.h"
 #include "simulation/motion.h"
+#include "simulation/numbers.h"
 #include "simulation/ray_scene.h"
 #include "simulation/renderer.h"
 #include "simulation/surface.h"
@@ -25,25 +27,26 @@ namespace pliant {
 using simulation::RayHit;
 
 struct Simulator::State {
-  State(SimulationOptions o, Camera c, double length_mm)
+  State(SimulationOptions o, Camera c, simulation::Path p)
       : options(std::move(o)),
         camera(std::move(c)),
         arena(options.threads == 0 ? tbb::task_arena::automatic : options.threads),
-        centreline(length_mm, options.scene.bend_deg_per_cm, options.scene.seed),
-        motion(options.deformation),
-        path(options.trajectory, options.scene.radius_mm, options.scene.seed, centreline),
-        surface(arena.execute([&] { return simulation::MakeTube(options.scene, centreline, length_mm); })),
-        posed_vertices(surface.vertices),
-        posed_normals(surface.normals) {}
+        path(std::move(p)) {}
 
   double Time(int frame_idx) const { return frame_idx / options.trajectory.fps; }
   Rigid3 WorldFromCamera(int frame_idx) const { return path.WorldFromCamera(Time(frame_idx)); }
-  Eigen::Vector3d RestPosition(const MaterialPoint& point) const;
   Eigen::Vector3d Position(const MaterialPoint& point, double time_s) const {
-    return motion.Position(RestPosition(point), time_s);
+    return motion.Position(surface.AtRest(point), time_s);
   }
 
-  Status CheckClearance() const;
+  // Surface, rays, motion, and whether the camera can go its way.
+  Status Build(double length_mm);
+  Status MakeSurface(double length_mm);
+  // Unit rays in the world of a coarse grid of pixels.
+  std::vector<Eigen::Vector3d> FirstView() const;
+  void TurnNormalsToFirstView();
+  Result<simulation::Poke> FindPoke() const;
+  void CollectWarnings();
   // Made when the first frame is rendered: truth does without.
   const simulation::Renderer& GetRenderer();
   void Pose(int frame_idx);
@@ -51,10 +54,10 @@ struct Simulator::State {
   SimulationOptions options;
   Camera camera;
   tbb::task_arena arena;
-  simulation::Centreline centreline;
-  simulation::Motion motion;
   simulation::Path path;
   simulation::Surface surface;
+  simulation::Motion motion;
+  std::vector<std::string> warnings;
   std::vector<Eigen::Vector3f> posed_vertices;
   std::vector<Eigen::Vector3f> posed_normals;
   std::optional<simulation::RayScene> scene;
@@ -67,10 +70,12 @@ namespace {
 // Scenes and cameras that no memory holds are refused before it is asked for.
 Status CheckMemory(const SimulationOptions& options, double length_mm) {
   constexpr double kMostTexels = 4e8;
-  const double texels = 2 * 3.1416 * options.scene.radius_mm * 1.5 * length_mm /
+  const bool sheet = options.scene.kind == SceneKind::kSurface || options.scene.kind == SceneKind::kLobes;
+  const double around_mm = sheet ? 1.2 * options.scene.width_mm : 2 * 3.1416 * options.scene.radius_mm * 1.5;
+  const double texels = around_mm * length_mm /
                         std::min(options.texture.texel_mm * options.texture.texel_mm,
                                  options.scene.mesh_step_mm * options.scene.mesh_step_mm / 8);
-  if (texels > kMostTexels)
+  if (options.scene.kind != SceneKind::kMesh && texels > kMostTexels)
     return {ErrorCode::kInvalidArgument,
             "a wall " + FormatDouble(std::round(length_mm)) +
                 " mm long does not fit into memory at this resolution; shorten the way, or raise Texture.texel_mm and "
@@ -85,55 +90,123 @@ Status CheckMemory(const SimulationOptions& options, double length_mm) {
   return Status::Ok();
 }
 
-struct Clearance {
-  double distance_mm = std::numeric_limits<double>::infinity();
-  bool inside = true;
-};
-
-// The vertex nearest to the camera, and whether the camera is on its inner side.
-Clearance NearestWall(const simulation::Surface& surface, const simulation::Motion& motion, double reach_mm,
-                      const Eigen::Vector3d& centre, double time_s) {
-  Clearance nearest;
-  const Eigen::Vector3f centre_f = centre.cast<float>();
-  // Every second vertex each way: a wall that is smooth over the mesh does not hide between them.
-  for (int row = 0; row < surface.rows; row += 2) {
-    for (int column = 0; column < surface.columns; column += 2) {
-      const std::size_t idx = static_cast<std::size_t>(row) * surface.columns + column;
-      if ((surface.vertices[idx] - centre_f).squaredNorm() > reach_mm * reach_mm) continue;
-      const Eigen::Vector3d at_rest = surface.vertices[idx].cast<double>();
-      const Eigen::Vector3d to_camera = centre - motion.Position(at_rest, time_s);
-      if (to_camera.norm() >= nearest.distance_mm) continue;
-      nearest.distance_mm = to_camera.norm();
-      nearest.inside = to_camera.dot(motion.Normal(surface.normals[idx].cast<double>(), at_rest, time_s)) > 0;
-    }
-  }
-  return nearest;
+// Files are named so that the options beside a sequence find them from any folder.
+void MakeAbsolute(std::string* path) {
+  std::error_code error;
+  const auto absolute = std::filesystem::absolute(*path, error);
+  if (!path->empty() && !error) *path = absolute.lexically_normal().string();
 }
 
 }  // namespace
 
-Status Simulator::State::CheckClearance() const {
-  const double least_mm = options.trajectory.clearance_mm;
-  const double reach_mm = 1.5 * options.scene.radius_mm + options.deformation.amplitude_mm + least_mm;
-  std::vector<Clearance> clearances(static_cast<std::size_t>(options.trajectory.frames));
-  tbb::parallel_for(0, options.trajectory.frames, [&](int frame_idx) {
-    clearances[frame_idx] =
-        NearestWall(surface, motion, reach_mm, WorldFromCamera(frame_idx).translation, Time(frame_idx));
-  });
-  for (std::size_t i = 0; i < clearances.size(); ++i) {
-    const std::string camera_of_frame = "the camera of frame " + std::to_string(i);
-    const std::string advice =
-        "; change the Trajectory options, lower Scene.fold_depth_mm or Deformation.amplitude_mm, or widen "
-        "Scene.radius_mm";
-    // Beyond reach of any wall is outside too: the camera has passed an end of the tube.
-    if (!clearances[i].inside || std::isinf(clearances[i].distance_mm))
-      return {ErrorCode::kInvalidArgument, camera_of_frame + " has left the lumen" + advice};
-    if (clearances[i].distance_mm < least_mm)
-      return {ErrorCode::kInvalidArgument,
-              camera_of_frame + " is " + FormatDouble(std::round(100.0 * clearances[i].distance_mm) / 100.0) +
-                  " mm from the wall, and Trajectory.clearance_mm is " + FormatDouble(least_mm) + advice};
+Status Simulator::State::MakeSurface(double length_mm) {
+  switch (options.scene.kind) {
+    case SceneKind::kColon:
+    case SceneKind::kTube: {
+      const simulation::Centreline centreline(length_mm, options.scene.bend_deg_per_cm, options.scene.seed);
+      surface = simulation::MakeTube(options.scene, centreline, length_mm);
+      path.Follow(centreline);
+      break;
+    }
+    case SceneKind::kSurface:
+    case SceneKind::kLobes:
+      surface = simulation::MakeSheet(options.scene, options.trajectory.height_mm, length_mm);
+      break;
+    case SceneKind::kMesh: {
+      Result<simulation::Surface> mesh = simulation::MakeMeshSurface(options.scene);
+      if (!mesh.ok()) return mesh.status();
+      surface = *std::move(mesh);
+      break;
+    }
   }
   return Status::Ok();
+}
+
+std::vector<Eigen::Vector3d> Simulator::State::FirstView() const {
+  constexpr int kAcross = 12;
+  constexpr int kDown = 9;
+  std::vector<Eigen::Vector2d> pixels;
+  for (int y = 0; y < kDown; ++y)
+    for (int x = 0; x < kAcross; ++x)
+      pixels.emplace_back((x + 0.5) * camera.width() / kAcross - 0.5, (y + 0.5) * camera.height() / kDown - 0.5);
+  const Eigen::Quaterniond world_from_cam = WorldFromCamera(0).rotation;
+  std::vector<Eigen::Vector3d> rays;
+  for (const auto& ray : camera.Unproject(pixels))
+    if (ray) rays.emplace_back(world_from_cam * *ray);
+  return rays;
+}
+
+// A file's triangles may run either way round; the side that the first camera sees is the inner one.
+void Simulator::State::TurnNormalsToFirstView() {
+  const std::vector<Eigen::Vector3d> rays = FirstView();
+  std::vector<RayHit> hits(rays.size());
+  scene->Intersect(WorldFromCamera(0).translation, rays, hits);
+  int away = 0;
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    if (!hits[i].hit()) continue;
+    const auto& t = surface.triangles[hits[i].point.triangle_idx];
+    const Eigen::Vector3f normal = surface.normals[t[0]] + surface.normals[t[1]] + surface.normals[t[2]];
+    away += normal.cast<double>().dot(rays[i]) > 0 ? 1 : -1;
+  }
+  if (away <= 0) return;
+  for (Eigen::Vector3f& normal : surface.normals) normal = -normal;
+}
+
+// The place is given, or in the lower middle of the first image; the push goes against the wall's face there.
+Result<simulation::Poke> Simulator::State::FindPoke() const {
+  simulation::Poke poke;
+  if (options.deformation.poke_mm == 0) return poke;
+  const Rigid3 world_from_cam = WorldFromCamera(0);
+  Eigen::Vector2d pixel(0.5 * (camera.width() - 1), 0.8 * (camera.height() - 1));
+  Eigen::Vector3d direction;
+  if (!options.deformation.poke_place.empty()) {
+    const auto place = simulation::ParseNumbers(options.deformation.poke_place);
+    if (!place || place->size() != 3)
+      return {ErrorCode::kInvalidArgument,
+              "Deformation.poke_place is '" + options.deformation.poke_place + "'; give x,y,z in mm"};
+    direction = (Eigen::Vector3d(place->data()) - world_from_cam.translation).normalized();
+  } else if (const auto ray = camera.Unproject(std::span(&pixel, 1))[0]) {
+    direction = world_from_cam.rotation * *ray;
+  }
+  RayHit hit;
+  scene->Intersect(world_from_cam.translation, std::span(&direction, 1), std::span(&hit, 1));
+  if (!hit.hit())
+    return {ErrorCode::kInvalidArgument,
+            "the first camera sees no wall where the poke is to be; set Deformation.poke_place to a place in its view"};
+  const auto& t = surface.triangles[hit.point.triangle_idx];
+  poke.place = surface.AtRest(hit.point).position;
+  poke.direction = (surface.normals[t[0]] + surface.normals[t[1]] + surface.normals[t[2]]).cast<double>().normalized();
+  return poke;
+}
+
+void Simulator::State::CollectWarnings() {
+  constexpr std::size_t kPoints = 5000;
+  constexpr int kTimes = 40;
+  std::vector<simulation::RestPoint> points;
+  const std::size_t stride = surface.vertices.size() / kPoints + 1;
+  for (std::size_t i = 0; i < surface.vertices.size(); i += stride)
+    points.push_back(surface.VertexAtRest(static_cast<std::uint32_t>(i)));
+  std::vector<double> times_s;
+  for (int i = 0; i < options.trajectory.frames; i += options.trajectory.frames / kTimes + 1)
+    times_s.push_back(Time(i));
+  warnings = simulation::DeformationWarnings(options, motion, points, times_s);
+}
+
+Status Simulator::State::Build(double length_mm) {
+  if (Status status = MakeSurface(length_mm); !status.ok()) return status;
+  const bool moves = !simulation::Motion(options.deformation, 1.0, {}).rigid();
+  using Vertices = simulation::RayScene::Vertices;
+  auto made = simulation::RayScene::Create(surface, moves ? Vertices::kMoving : Vertices::kFixed);
+  if (!made.ok()) return made.status();
+  scene = *std::move(made);
+  if (options.scene.kind == SceneKind::kMesh) TurnNormalsToFirstView();
+  posed_vertices = surface.vertices;
+  posed_normals = surface.normals;
+  const Result<simulation::Poke> poke = FindPoke();
+  if (!poke.ok()) return poke.status();
+  motion = simulation::Motion(options.deformation, surface.swell_radius_mm, *poke);
+  CollectWarnings();
+  return simulation::CheckClearance(options, path, length_mm, surface, motion, *scene, FirstView());
 }
 
 const simulation::Renderer& Simulator::State::GetRenderer() {
@@ -155,7 +228,7 @@ void Simulator::State::Pose(int frame_idx) {
   const double time_s = Time(frame_idx);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, surface.vertices.size(), 4096), [&](const auto& range) {
     for (std::size_t i = range.begin(); i < range.end(); ++i) {
-      const Eigen::Vector3d at_rest = surface.vertices[i].cast<double>();
+      const simulation::RestPoint at_rest = surface.VertexAtRest(static_cast<std::uint32_t>(i));
       posed_vertices[i] = motion.Position(at_rest, time_s).cast<float>();
       posed_normals[i] = motion.Normal(surface.normals[i].cast<double>(), at_rest, time_s).cast<float>();
     }
@@ -188,28 +261,21 @@ Result<Simulator> Simulator::Create(const SimulationOptions& options) {
                                              ", longer than a frame at " + FormatDouble(options.trajectory.fps) +
                                              " frames a second; shorten it"};
 
-  const double needed_mm = simulation::LastCameraMm(options.trajectory) + options.scene.view_mm;
+  MakeAbsolute(&checked.scene.mesh_path);
+  MakeAbsolute(&checked.trajectory.path);
+  Result<simulation::Path> path = simulation::Path::Create(checked);
+  if (!path.ok()) return path.status();
+
+  const double needed_mm = path->ReachMm() + options.scene.view_mm;
   const double length_mm = options.scene.length_mm > 0 ? options.scene.length_mm : needed_mm;
   if (Status status = CheckMemory(options, length_mm); !status.ok()) return status;
 
-  auto state = std::make_unique<State>(options, *std::move(camera), length_mm);
-  Status status;
-  state->arena.execute([&] {
-    status = state->CheckClearance();
-    if (!status.ok()) return;
-    using Vertices = simulation::RayScene::Vertices;
-    auto scene =
-        simulation::RayScene::Create(state->surface, state->motion.rigid() ? Vertices::kFixed : Vertices::kMoving);
-    if (!scene.ok()) {
-      status = scene.status();
-      return;
-    }
-    state->scene = *std::move(scene);
-  });
-  if (!status.ok()) return status;
+  auto state = std::make_unique<State>(std::move(checked), *std::move(camera), *std::move(path));
+  if (Status status = state->arena.execute([&] { return state->Build(length_mm); }); !status.ok()) return status;
   return Simulator(std::move(state));
 }
 
+const std::vector<std::string>& Simulator::warnings() const { return state_->warnings; }
 const SimulationOptions& Simulator::options() const { return state_->options; }
 const Camera& Simulator::camera() const { return state_->camera; }
 Rigid3 Simulator::WorldFromCamera(int frame_idx, Eye eye) const {
@@ -217,13 +283,8 @@ Rigid3 Simulator::WorldFromCamera(int frame_idx, Eye eye) const {
   return eye == Eye::kLeft ? world_from_left : simulation::RightCamera(world_from_left, options().camera.baseline_mm);
 }
 
-Eigen::Vector3d Simulator::RestPosition(const MaterialPoint& point) const { return state_->RestPosition(point); }
-
-Eigen::Vector3d Simulator::State::RestPosition(const MaterialPoint& point) const {
-  const auto& t = surface.triangles[point.triangle_idx];
-  const auto& v = surface.vertices;
-  return (1.0 - point.b1 - point.b2) * v[t[0]].cast<double>() + point.b1 * v[t[1]].cast<double>() +
-         point.b2 * v[t[2]].cast<double>();
+Eigen::Vector3d Simulator::RestPosition(const MaterialPoint& point) const {
+  return state_->surface.AtRest(point).position;
 }
 
 Eigen::Vector3d Simulator::Position(const MaterialPoint& point, int frame_idx) const {

@@ -11,7 +11,7 @@
 #include <tbb/parallel_for.h>
 
 #include "pliant/base/random.h"
-#include "simulation/noise.h"
+#include "simulation/mottling.h"
 
 namespace pliant::simulation {
 namespace {
@@ -75,71 +75,41 @@ cv::Mat DrawVessels(const SimulationOptions::Texture& options, Random random, co
   return map;
 }
 
-struct Octave {
-  float inverse_wave;
-  float amplitude;
-  std::uint32_t seed;
-};
-
-// Amplitudes are scaled so that the sum has a standard deviation of about one.
-std::vector<Octave> Octaves(const SimulationOptions::Texture& options, Random random) {
-  std::vector<Octave> octaves;
-  double amplitude = 1.0;
-  double power = 0;
-  for (double wave = options.largest_mm; wave >= 0.99 * options.smallest_mm; wave *= 0.5) {
-    octaves.push_back(
-        {static_cast<float>(1.0 / wave), static_cast<float>(amplitude), static_cast<std::uint32_t>(random.Next())});
-    power += amplitude * amplitude;
-    amplitude *= options.persistence;
-  }
-  constexpr double kNoiseDeviation = 0.28;  // of GradientNoise
-  for (Octave& octave : octaves) octave.amplitude /= static_cast<float>(kNoiseDeviation * std::sqrt(power));
-  return octaves;
-}
-
-float Mottling(const std::vector<Octave>& octaves, const Eigen::Vector3f& x) {
-  float sum = 0;
-  for (const Octave& octave : octaves) sum += octave.amplitude * GradientNoise(x * octave.inverse_wave, octave.seed);
-  return sum;
-}
-
 // The place at rest of a place on the chart; the vertices are a grid that is even on the chart.
 Eigen::Vector3f PlaceAtRest(const Surface& surface, float column, float row) {
-  const int c = std::clamp(static_cast<int>(column), 0, surface.columns - 2);
-  const int r = std::clamp(static_cast<int>(row), 0, surface.rows - 2);
+  const auto columns = static_cast<std::size_t>(surface.grid->columns);
+  const int c = std::clamp(static_cast<int>(column), 0, surface.grid->columns - 2);
+  const int r = std::clamp(static_cast<int>(row), 0, surface.grid->rows - 2);
   const float a = column - static_cast<float>(c);
   const float b = row - static_cast<float>(r);
-  const Eigen::Vector3f* corner = &surface.vertices[static_cast<std::size_t>(r) * surface.columns + c];
-  return (1 - b) * ((1 - a) * corner[0] + a * corner[1]) +
-         b * ((1 - a) * corner[surface.columns] + a * corner[surface.columns + 1]);
+  const Eigen::Vector3f* corner = &surface.vertices[r * columns + c];
+  return (1 - b) * ((1 - a) * corner[0] + a * corner[1]) + b * ((1 - a) * corner[columns] + a * corner[columns + 1]);
 }
 
 }  // namespace
 
 BloodMap::BloodMap(const SimulationOptions::Texture& options, int seed, const Surface& surface) {
-  constexpr float kMottling = 0.36F;
-  constexpr float kVessel = 1.0F;
+  const SurfaceGrid& grid = *surface.grid;
   const Random random = Random(static_cast<std::uint64_t>(seed)).Child("texture");
   // A power of two around, so that every reduced copy closes on itself exactly.
-  const int width = 1 << static_cast<int>(std::ceil(std::log2(surface.chart_width_mm / options.texel_mm)));
-  const int height = static_cast<int>(std::ceil(surface.chart_height_mm / options.texel_mm));
-  texels_per_mm_x_ = static_cast<float>(width / surface.chart_width_mm);
-  texels_per_mm_y_ = static_cast<float>(height / surface.chart_height_mm);
+  const int width = 1 << static_cast<int>(std::ceil(std::log2(grid.chart_width_mm / options.texel_mm)));
+  const int height = static_cast<int>(std::ceil(grid.chart_height_mm / options.texel_mm));
+  texels_per_mm_x_ = static_cast<float>(width / grid.chart_width_mm);
+  texels_per_mm_y_ = static_cast<float>(height / grid.chart_height_mm);
   texel_mm_ = static_cast<float>(options.texel_mm);
   const cv::Mat vessels =
-      DrawVessels(options, random.Child("vessels"), {width, height}, surface.chart_width_mm, surface.chart_height_mm);
-  const std::vector<Octave> octaves = Octaves(options, random.Child("mottling"));
+      DrawVessels(options, random.Child("vessels"), {width, height}, grid.chart_width_mm, grid.chart_height_mm);
+  const Mottling mottling(options, random.Child("mottling"));
   cv::Mat map(height, width, CV_16UC1);
   tbb::parallel_for(0, height, [&](int y) {
     auto* out = map.ptr<std::uint16_t>(y);
     const auto* vessel = vessels.ptr<std::uint8_t>(y);
-    const float row =
-        (static_cast<float>(y) + 0.5F) * static_cast<float>(surface.rows - 1) / static_cast<float>(height);
+    const float row = (static_cast<float>(y) + 0.5F) * static_cast<float>(grid.rows - 1) / static_cast<float>(height);
     for (int x = 0; x < width; ++x) {
       const float column =
-          (static_cast<float>(x) + 0.5F) * static_cast<float>(surface.columns - 1) / static_cast<float>(width);
-      float value = kMottling * Mottling(octaves, PlaceAtRest(surface, column, row));
-      value += kVessel * static_cast<float>(vessel[x]) / 255.0F;
+          (static_cast<float>(x) + 0.5F) * static_cast<float>(grid.columns - 1) / static_cast<float>(width);
+      float value = kMottlingBlood * mottling.At(PlaceAtRest(surface, column, row));
+      value += kVesselBlood * static_cast<float>(vessel[x]) / 255.0F;
       value *= static_cast<float>(options.contrast);
       out[x] = cv::saturate_cast<std::uint16_t>((value - kLowest) / kStep);
     }

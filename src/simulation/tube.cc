@@ -91,13 +91,7 @@ class Wall {
 
   double Relief(double s, double v) const {
     const double radius = options_.radius_mm;
-    const Eigen::Vector3d x(radius * std::cos(v), radius * std::sin(v), s);
-    double sum = 0;
-    double amplitude = 2.2 * options_.relief_mm;
-    double wave_mm = 14.0;
-    for (std::uint32_t octave = 0; octave < 4; ++octave, amplitude *= 0.42, wave_mm *= 0.45)
-      sum += amplitude * GradientNoise((x / wave_mm).cast<float>(), noise_seed_ + octave);
-    return sum;
+    return ReliefMm({radius * std::cos(v), radius * std::sin(v), s}, options_.relief_mm, noise_seed_);
   }
 
   const SimulationOptions::Scene& options_;
@@ -125,35 +119,13 @@ std::vector<double> RowPlaces(const Wall& wall, double length_mm, double step_mm
   return places;
 }
 
-void FillNormals(Surface& surface) {
-  const int last = surface.columns - 1;
-  surface.normals.resize(surface.vertices.size());
-  tbb::parallel_for(0, surface.rows, [&](int row) {
-    const int above = std::max(row - 1, 0);
-    const int below = std::min(row + 1, surface.rows - 1);
-    for (int column = 0; column <= last; ++column) {
-      const int left = column == 0 ? last - 1 : column - 1;
-      const int right = column == last ? 1 : column + 1;
-      const auto at = [&](int r, int c) { return surface.vertices[static_cast<std::size_t>(r) * surface.columns + c]; };
-      const Eigen::Vector3f along = at(below, column) - at(above, column);
-      const Eigen::Vector3f around = at(row, right) - at(row, left);
-      surface.normals[static_cast<std::size_t>(row) * surface.columns + column] = along.cross(around).normalized();
-    }
-  });
-}
-
-void FillTriangles(Surface& surface) {
-  surface.triangles.reserve(static_cast<std::size_t>(surface.rows - 1) * (surface.columns - 1) * 2);
-  for (int row = 0; row + 1 < surface.rows; ++row) {
-    for (int column = 0; column + 1 < surface.columns; ++column) {
-      const auto a = static_cast<std::uint32_t>(row * surface.columns + column);
-      const auto b = a + 1;
-      const auto c = a + static_cast<std::uint32_t>(surface.columns);
-      const auto d = c + 1;
-      surface.triangles.push_back({a, b, c});
-      surface.triangles.push_back({b, d, c});
-    }
-  }
+// The square root of the gradient of the nearest point on the centreline (RestPoint::swell_along).
+Eigen::Vector3d SwellAlong(const Centreline& centreline, double s, const Eigen::Vector3d& from_centre) {
+  constexpr double kStepMm = 0.5;
+  const auto tangent = [&](double at) { return centreline.WorldFromFrame(at).rotation * Eigen::Vector3d::UnitZ(); };
+  const Eigen::Vector3d curvature = (tangent(s + kStepMm) - tangent(s - kStepMm)) / (2.0 * kStepMm);
+  // A section that is bent more than its radius allows would have no nearest point; the bend's limit excludes it.
+  return tangent(s) / std::sqrt(std::max(0.1, 1.0 - curvature.dot(from_centre)));
 }
 
 }  // namespace
@@ -162,29 +134,34 @@ Surface MakeTube(const SimulationOptions::Scene& options, const Centreline& cent
   const Wall wall(options, length_mm);
   const std::vector<double> places = RowPlaces(wall, length_mm, options.mesh_step_mm);
   Surface surface;
-  surface.rows = static_cast<int>(places.size());
-  surface.columns = static_cast<int>(std::ceil(2.0 * kPi * options.radius_mm / options.mesh_step_mm)) + 1;
-  surface.chart_width_mm = 2.0 * kPi * options.radius_mm;
-  surface.chart_height_mm = surface.rows * options.mesh_step_mm;
-  const std::size_t count = static_cast<std::size_t>(surface.rows) * surface.columns;
+  const int rows = static_cast<int>(places.size());
+  const int columns = static_cast<int>(std::ceil(2.0 * kPi * options.radius_mm / options.mesh_step_mm)) + 1;
+  surface.grid = SurfaceGrid{rows, columns, SurfaceGrid::Sides::kClosed, 2.0 * kPi * options.radius_mm,
+                             rows * options.mesh_step_mm};
+  const std::size_t count = static_cast<std::size_t>(rows) * columns;
   surface.vertices.resize(count);
   surface.chart.resize(count);
-  tbb::parallel_for(0, surface.rows, [&](int row) {
+  surface.swell_centre.resize(count);
+  surface.swell_along.resize(count);
+  surface.swell_radius_mm = options.radius_mm;
+  tbb::parallel_for(0, rows, [&](int row) {
     const double s = places[row];
     const Rigid3 world_from_frame = centreline.WorldFromFrame(s);
-    for (int column = 0; column < surface.columns; ++column) {
+    for (int column = 0; column < columns; ++column) {
       // The last column is the first one again, to the bit.
-      const double v = 2.0 * kPi * (column % (surface.columns - 1)) / (surface.columns - 1);
+      const double v = 2.0 * kPi * (column % (columns - 1)) / (columns - 1);
       const double r = wall.Radius(s, v);
-      const std::size_t idx = static_cast<std::size_t>(row) * surface.columns + column;
-      surface.vertices[idx] = (world_from_frame * Eigen::Vector3d(r * std::cos(v), r * std::sin(v), 0.0)).cast<float>();
+      const std::size_t idx = static_cast<std::size_t>(row) * columns + column;
+      const Eigen::Vector3d place = world_from_frame * Eigen::Vector3d(r * std::cos(v), r * std::sin(v), 0.0);
+      surface.vertices[idx] = place.cast<float>();
       surface.chart[idx] =
-          Eigen::Vector2d(surface.chart_width_mm * column / (surface.columns - 1), row * options.mesh_step_mm)
+          Eigen::Vector2d(surface.grid->chart_width_mm * column / (columns - 1), row * options.mesh_step_mm)
               .cast<float>();
+      surface.swell_centre[idx] = world_from_frame.translation.cast<float>();
+      surface.swell_along[idx] = SwellAlong(centreline, s, place - world_from_frame.translation).cast<float>();
     }
   });
-  FillNormals(surface);
-  FillTriangles(surface);
+  FillGrid(surface);
   return surface;
 }
 

@@ -104,31 +104,36 @@ Status WriteSequence(const SimulationOptions& options, const fs::path& output, c
   if (Status status = CheckOwnFolder(output); !status.ok()) return status;
   Result<Simulator> simulator = Simulator::Create(options);
   if (!simulator.ok()) return simulator.status();
-  if (Status status = PrepareFolder(output, *simulator); !status.ok()) return status;
+  return WriteSequence(*simulator, output, progress);
+}
+
+Status WriteSequence(Simulator& simulator, const fs::path& output, const SimulationProgress& progress) {
+  if (Status status = CheckOwnFolder(output); !status.ok()) return status;
+  if (Status status = PrepareFolder(output, simulator); !status.ok()) return status;
   std::ofstream poses(output / simulation::kPosesFile);
   std::ofstream times(output / simulation::kTimesFile);
-  simulator->PrepareRendering();
+  simulator.PrepareRendering();
   const auto stopped_after = [&](int frames) {
     return Status(ErrorCode::kInterrupted, "stopped after " + std::to_string(frames) + " of " +
-                                               std::to_string(simulator->frame_count()) + " frames; they are in " +
+                                               std::to_string(simulator.frame_count()) + " frames; they are in " +
                                                output.string());
   };
-  if (progress && progress(0, simulator->frame_count()) == SimulationContinue::kStop) return stopped_after(0);
-  SimulatedFrame frame = simulator->Render(0);
-  for (int i = 0; i < simulator->frame_count(); ++i) {
+  if (progress && progress(0, simulator.frame_count()) == SimulationContinue::kStop) return stopped_after(0);
+  SimulatedFrame frame = simulator.Render(0);
+  for (int i = 0; i < simulator.frame_count(); ++i) {
     // A frame is packed and written while the next one is rendered.
-    std::future<Status> written = std::async(std::launch::async, [&output, &options, i, done = std::move(frame)] {
-      return WriteFrame(output, i, done, options.sensor.depth_scale_mm);
+    std::future<Status> written = std::async(std::launch::async, [&output, &simulator, i, done = std::move(frame)] {
+      return WriteFrame(output, i, done, simulator.options().sensor.depth_scale_mm);
     });
-    if (i + 1 < simulator->frame_count()) frame = simulator->Render(i + 1);
+    if (i + 1 < simulator.frame_count()) frame = simulator.Render(i + 1);
     if (Status status = written.get(); !status.ok()) return status;
     std::string pose;
-    AppendTumLine(&pose, simulator->TimeOf(i), simulator->WorldFromCamera(i));
+    AppendTumLine(&pose, simulator.TimeOf(i), simulator.WorldFromCamera(i));
     poses << pose << std::flush;
-    times << FormatDouble(simulator->TimeOf(i)) << std::endl;
+    times << FormatDouble(simulator.TimeOf(i)) << std::endl;
     if (!poses) return Unwritable(output / simulation::kPosesFile);
     if (!times) return Unwritable(output / simulation::kTimesFile);
-    if (progress && progress(i + 1, simulator->frame_count()) == SimulationContinue::kStop) return stopped_after(i + 1);
+    if (progress && progress(i + 1, simulator.frame_count()) == SimulationContinue::kStop) return stopped_after(i + 1);
   }
   return Status::Ok();
 }

@@ -18,45 +18,13 @@
 namespace pliant {
 namespace {
 
+using simulation_test::Make;
+using simulation_test::Median;
 using simulation_test::Pinhole160;
+using simulation_test::SamePixels;
 using simulation_test::SmallScene;
 using simulation_test::SmoothDepth;
-
-Simulator Make(const SimulationOptions& options) {
-  Result<Simulator> simulator = Simulator::Create(options);
-  EXPECT_TRUE(simulator.ok()) << simulator.status().message();
-  return *std::move(simulator);
-}
-
-double Median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
-  return values[values.size() / 2];
-}
-
-bool SamePixels(const cv::Mat& a, const cv::Mat& b) {
-  return a.size() == b.size() && a.type() == b.type() && std::equal(a.datastart, a.dataend, b.datastart, b.dataend);
-}
-
-// |depth of the second frame at the projection - z of the first frame's point there|, over unoccluded smooth pixels.
-std::vector<double> WarpErrors(Simulator& simulator, int from, int to) {
-  const Pinhole160 pinhole;
-  const cv::Mat depth_from = simulator.Render(from).depth.clone();
-  const cv::Mat depth_to = simulator.Render(to).depth.clone();
-  const Rigid3 to_from_from = simulator.WorldFromCamera(to).Inverse() * simulator.WorldFromCamera(from);
-  constexpr double kSmoothMm = 1.0;
-  constexpr double kOccludedMm = 1.5;
-  std::vector<double> errors;
-  for (int y = 0; y < depth_from.rows; ++y) {
-    for (int x = 0; x < depth_from.cols; ++x) {
-      const double z = depth_from.at<float>(y, x);
-      if (!(z > 0)) continue;
-      const Eigen::Vector3d point = to_from_from * pinhole.BackProject(x, y, z);
-      const auto seen = SmoothDepth(depth_to, pinhole.Project(point), kSmoothMm);
-      if (seen && std::abs(*seen - point.z()) < kOccludedMm) errors.push_back(std::abs(*seen - point.z()));
-    }
-  }
-  return errors;
-}
+using simulation_test::WarpErrors;
 
 TEST(Simulator, DepthAndPosesOfARigidSceneAgree) {
   for (const TrajectoryKind kind : {TrajectoryKind::kInsert, TrajectoryKind::kSway}) {

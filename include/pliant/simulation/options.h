@@ -3,7 +3,9 @@
 
 // What is simulated: a scene that deforms, a camera with a light on its way through it, and a sensor. Every number
 // that a sequence depends on is one of these options; they are written beside it (simulation.yaml) and give it back.
-// World frame: the tube's centreline starts at the origin and leaves it along +z; x right, y down; millimetres.
+// World frame: millimetres, x right, y down. The camera's way starts at the origin and leaves it along +z: the
+// centreline of `colon` and `tube`, a straight line over the sheet of `surface` and `lobes` (which lies below it, at
+// larger y). In `mesh` it is the file's own frame, scaled.
 #pragma once
 
 #include <array>
@@ -18,25 +20,34 @@
 namespace pliant {
 
 enum class SceneKind {
-  kColon,  // a bent tube with incomplete rings of folds, a three-cornered section and relief
-  kTube,   // the same bent tube with a round, smooth wall
+  kColon,    // a bent tube with incomplete rings of folds, a three-cornered section and relief
+  kTube,     // the same bent tube with a round, smooth wall
+  kSurface,  // one smooth organ seen from outside: a curved sheet with relief
+  kLobes,    // two lobes, one over the edge of the other with a step between them; each deforms by its own wave
+  kMesh,     // a mesh from a file: OBJ, PLY, STL
 };
 template <>
 struct EnumNames<SceneKind> {
-  static constexpr std::array kNames = {std::pair{SceneKind::kColon, std::string_view("colon")},
-                                        std::pair{SceneKind::kTube, std::string_view("tube")}};
+  static constexpr std::array kNames = {
+      std::pair{SceneKind::kColon, std::string_view("colon")}, std::pair{SceneKind::kTube, std::string_view("tube")},
+      std::pair{SceneKind::kSurface, std::string_view("surface")},
+      std::pair{SceneKind::kLobes, std::string_view("lobes")}, std::pair{SceneKind::kMesh, std::string_view("mesh")}};
 };
 
 enum class TrajectoryKind {
-  kInsert,  // forward along the centreline
+  kInsert,  // forward along the scene's way
   kSway,    // from side to side on an arc around a point of the wall ahead, which stays in view
   kHold,    // on the spot
+  kLoop,    // forward and back on a closed curve; the last frame's camera is the first one's
+  kFile,    // the poses of a file
 };
 template <>
 struct EnumNames<TrajectoryKind> {
   static constexpr std::array kNames = {std::pair{TrajectoryKind::kInsert, std::string_view("insert")},
                                         std::pair{TrajectoryKind::kSway, std::string_view("sway")},
-                                        std::pair{TrajectoryKind::kHold, std::string_view("hold")}};
+                                        std::pair{TrajectoryKind::kHold, std::string_view("hold")},
+                                        std::pair{TrajectoryKind::kLoop, std::string_view("loop")},
+                                        std::pair{TrajectoryKind::kFile, std::string_view("file")}};
 };
 
 struct SimulationOptions {
@@ -44,13 +55,17 @@ struct SimulationOptions {
     SceneKind kind = SceneKind::kColon;
     int seed = 1;                   // of everything that is drawn: folds, texture, tremor, noise
     double radius_mm = 25.0;        // of the lumen, folds left out
-    double length_mm = 0.0;         // of the tube; 0: the way of the camera and view_mm more
-    double view_mm = 230.0;         // how much tube lies ahead of the last camera
+    double length_mm = 0.0;         // of the tube or sheet; 0: the way of the camera and view_mm more
+    double view_mm = 230.0;         // how much of it lies ahead of the last camera
     double bend_deg_per_cm = 4.0;   // largest bending of the centreline, in each of the two planes
     double fold_depth_mm = 5.5;     // how far a typical fold stands into the lumen
     double fold_spacing_mm = 26.0;  // between rings of folds, in the mean
     double relief_mm = 0.5;         // uneven wall, standard deviation of about
-    double mesh_step_mm = 0.4;      // edge of the mesh; finer where folds are steep
+    double width_mm = 220.0;        // surface, lobes: of the sheet, across the camera's way
+    double lobe_step_mm = 12.0;     // lobes: how far one lies above the other
+    std::string mesh_path;          // mesh: the file; written absolute beside a sequence
+    double mesh_scale = 1.0;        // mesh: millimetres in a unit of the file
+    double mesh_step_mm = 0.4;      // edge of the mesh, also of one that is read; finer where folds are steep
   } scene;
 
   struct Texture {
@@ -62,12 +77,25 @@ struct SimulationOptions {
     double texel_mm = 0.08;     // of the map that the wall carries
   } texture;
 
-  // V_y(t) = V_y + amplitude * sin(omega * t + 2 pi / wavelength * (V_x + V_y + V_z)), V the material point at rest.
-  // Source: Gomez Rodriguez, Montiel, Tardos, IROS 2022; the wavelength of 200 pi mm reads V in decimetres.
+  // The displacement of the material point that is V at rest is the sum of three (docs/method.md, section "The
+  // simulated scene"):
+  //   the wave      d A sin(omega t + 2 pi / wavelength (V_x + V_y + V_z)),   d = e_y
+  //   breathing     B sin(2 pi t / period) (V - C) / R,  C the place it swells from (the centreline), R the radius
+  //   the poke      n P sin^2(pi t / period) exp(-|V - Q|^2 / (2 radius^2)),  n into the lumen at Q
+  // Source of the wave: Gomez Rodriguez, Montiel, Tardos, IROS 2022; 200 pi mm reads V in decimetres.
   struct Deformation {
-    double amplitude_mm = 0.0;  // 0: rigid
+    double amplitude_mm = 0.0;  // A; 0: no wave
     double omega_rad_s = 2.5;
     double wavelength_mm = 628.3185307179587;
+    double breathing_mm = 0.0;  // B; 0: no breathing
+    double breathing_period_s = 4.0;
+    double poke_mm = 0.0;  // P; negative: pulled out; 0: no poke
+    double poke_radius_mm = 12.0;
+    double poke_period_s = 2.0;
+    std::string poke_place;            // Q as x,y,z; empty: what the first camera sees in the lower middle of its image
+    double lobe_share = 0.7;           // lobes: amplitudes of the upper one by the lower one's
+    double lobe_phase_deg = 110.0;     // lobes: how far the upper one is ahead in wave and breath
+    double lobe_direction_deg = 40.0;  // lobes: d of the upper one's wave, turned from y towards x
   } deformation;
 
   struct Light {
@@ -105,13 +133,19 @@ struct SimulationOptions {
     TrajectoryKind kind = TrajectoryKind::kInsert;
     int frames = 100;
     double fps = 30.0;
-    double start_mm = 25.0;          // first camera, along the centreline
+    double start_mm = 25.0;          // first camera, along the centreline or the way over the sheet
+    std::string start_pose;          // first camera as tx,ty,tz,qx,qy,qz,qw, world_from_camera; empty: the scene's own
     double speed_mm_s = 15.0;        // insert
-    double look_ahead_mm = 35.0;     // the camera looks at the centreline this far ahead
+    double look_ahead_mm = 35.0;     // the camera looks at the centreline, or the sheet, this far ahead
+    double height_mm = 60.0;         // surface, lobes: of the camera's way over the sheet
     double sway_amplitude_mm = 8.0;  // sway: to each side
     double sway_period_s = 4.0;      // sway: there and back, to both sides
     double sway_distance_mm = 55.0;  // sway: of the point that stays in view
-    double tremor_mm = 0.3;          // of the hand, standard deviation of about
+    double loop_length_mm = 25.0;    // loop: how far out
+    double loop_width_mm = 5.0;      // loop: to each side
+    double loop_period_s = 0.0;      // loop: out and back; 0: the whole sequence
+    std::string path;                // file: TUM lines in seconds from the first frame on; written absolute
+    double tremor_mm = 0.3;          // of the hand, standard deviation of about; none on the poses of a file
     double tremor_deg = 0.3;
     double clearance_mm = 3.0;  // a camera nearer to the wall than this is an error
   } trajectory;

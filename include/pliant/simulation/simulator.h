@@ -13,6 +13,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
@@ -63,15 +64,19 @@ struct SimulatedFrame {
 
 class Simulator {
  public:
-  // Builds the scene. Fails with kInvalidArgument for options out of range or a camera that comes nearer to the wall
-  // than the clearance (or leaves the lumen); the sentence names the frame and the distance.
+  // Builds the scene. Fails with kInvalidArgument for options out of range, or a camera that sees nothing, leaves the
+  // lumen, comes nearer to the wall than the clearance or passes through it (the sentence names the frame); and as the
+  // readers of a mesh (kNotFound, kUnreadable, kInsufficient) and of a path of poses do.
   static Result<Simulator> Create(const SimulationOptions& options);
 
   Simulator(Simulator&&) noexcept;
   Simulator& operator=(Simulator&&) noexcept;
   ~Simulator();
 
+  // As they were given, with the names of files made absolute.
   const SimulationOptions& options() const;
+  // What the scene cannot be by its options and is made as all the same, one sentence each: a surface that folds over.
+  const std::vector<std::string>& warnings() const;
   const Camera& camera() const;
   int frame_count() const { return options().trajectory.frames; }
 

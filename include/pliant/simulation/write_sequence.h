@@ -12,6 +12,7 @@
 
 #include "pliant/base/status.h"
 #include "pliant/simulation/options.h"
+#include "pliant/simulation/simulator.h"
 
 namespace pliant {
 
@@ -26,6 +27,10 @@ using SimulationProgress = std::function<SimulationContinue(int frames_done, int
 // Fails as Simulator::Create does, with kInvalidArgument (such a folder), with kUnwritable (the sentence names the
 // file) and with kInterrupted when `progress` asked to stop (what was rendered is on disk and readable).
 Status WriteSequence(const SimulationOptions& options, const std::filesystem::path& output,
+                     const SimulationProgress& progress = {});
+
+// The same from a simulator that is there already.
+Status WriteSequence(Simulator& simulator, const std::filesystem::path& output,
                      const SimulationProgress& progress = {});
 
 }  // namespace pliant

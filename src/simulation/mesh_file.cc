@@ -1,0 +1,96 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// The only file that includes Assimp.
+#include "simulation/mesh_file.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include <Eigen/Geometry>
+#include <assimp/Importer.hpp>
+#include <assimp/config.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <opencv2/imgcodecs.hpp>
+
+namespace pliant::simulation {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The vertices and triangles of one of the file's meshes, behind those that there are.
+Status Append(const std::string& path, const aiMesh& mesh, bool with_uv, MeshFile& out) {
+  const auto first = static_cast<std::uint32_t>(out.vertices.size());
+  for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
+    const aiVector3D& v = mesh.mVertices[i];
+    out.vertices.emplace_back(v.x, v.y, v.z);
+    if (!out.vertices.back().allFinite())
+      return {ErrorCode::kUnreadable, "the mesh " + path + " has a vertex that is not a finite number (" +
+                                          std::to_string(i) + "); export it again"};
+    if (with_uv) {
+      const bool has = mesh.HasTextureCoords(0);
+      out.uv.emplace_back(has ? mesh.mTextureCoords[0][i].x : 0.0F, has ? mesh.mTextureCoords[0][i].y : 0.0F);
+    }
+  }
+  for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
+    const aiFace& face = mesh.mFaces[i];
+    if (face.mNumIndices != 3) continue;
+    const std::array<std::uint32_t, 3> t = {first + face.mIndices[0], first + face.mIndices[1],
+                                            first + face.mIndices[2]};
+    const Eigen::Vector3d& a = out.vertices[t[0]];
+    if ((out.vertices[t[1]] - a).cross(out.vertices[t[2]] - a).squaredNorm() > 0) out.triangles.push_back(t);
+  }
+  return Status::Ok();
+}
+
+// The picture that the first material with one names, beside the mesh.
+Status ReadPicture(const std::string& path, const aiScene& scene, cv::Mat* image) {
+  for (unsigned i = 0; i < scene.mNumMaterials; ++i) {
+    aiString name;
+    if (scene.mMaterials[i]->GetTexture(aiTextureType_DIFFUSE, 0, &name) != aiReturn_SUCCESS) continue;
+    std::string relative = name.C_Str();
+    std::replace(relative.begin(), relative.end(), '\\', '/');
+    const fs::path picture = fs::path(path).parent_path() / relative;
+    const std::string what = "the picture " + picture.string() + " of the mesh " + path;
+    std::error_code error;
+    if (!fs::exists(picture, error))
+      return {ErrorCode::kNotFound, what + " is not there; put it there, or take it out of the mesh's material"};
+    *image = cv::imread(picture.string(), cv::IMREAD_COLOR);
+    if (image->empty()) return {ErrorCode::kUnreadable, what + " cannot be decoded"};
+    return Status::Ok();
+  }
+  return Status::Ok();
+}
+
+}  // namespace
+
+Result<MeshFile> ReadMeshFile(const std::string& path) {
+  std::error_code error;
+  if (!fs::is_regular_file(path, error))
+    return {ErrorCode::kNotFound, "there is no mesh file " + path + "; is Scene.mesh_path right?"};
+  Assimp::Importer importer;
+  // What a renderer would want (normals, colours) only keeps vertices of one place apart.
+  importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, aiComponent_NORMALS | aiComponent_COLORS |
+                                                          aiComponent_TANGENTS_AND_BITANGENTS |
+                                                          aiComponent_BONEWEIGHTS | aiComponent_ANIMATIONS);
+  importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
+  const aiScene* scene =
+      importer.ReadFile(path, aiProcess_RemoveComponent | aiProcess_Triangulate | aiProcess_PreTransformVertices |
+                                  aiProcess_JoinIdenticalVertices | aiProcess_SortByPType);
+  if (scene == nullptr)
+    return {ErrorCode::kUnreadable,
+            "the mesh " + path + " cannot be read as OBJ, PLY or STL: " + importer.GetErrorString()};
+  bool with_uv = false;
+  for (unsigned i = 0; i < scene->mNumMeshes; ++i) with_uv = with_uv || scene->mMeshes[i]->HasTextureCoords(0);
+  MeshFile mesh;
+  for (unsigned i = 0; i < scene->mNumMeshes; ++i)
+    if (Status status = Append(path, *scene->mMeshes[i], with_uv, mesh); !status.ok()) return status;
+  if (mesh.triangles.empty())
+    return {ErrorCode::kInsufficient, "the mesh " + path + " has no faces; a cloud of points shows nothing"};
+  if (with_uv)
+    if (Status status = ReadPicture(path, *scene, &mesh.image); !status.ok()) return status;
+  return mesh;
+}
+
+}  // namespace pliant::simulation

@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Triangle meshes from files: OBJ, PLY, STL (and what else Assimp reads).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+#include <opencv2/core/mat.hpp>
+
+#include "pliant/base/status.h"
+
+namespace pliant::simulation {
+
+struct MeshFile {
+  std::vector<Eigen::Vector3d> vertices;  // the file's unit and frame
+  std::vector<Eigen::Vector2d> uv;        // of a vertex; empty: the file has none
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  cv::Mat image;  // CV_8UC3, the first material's diffuse picture; empty: it names none
+};
+
+// Vertices that agree in place and uv are one. Polygons are cut into triangles; points, lines and triangles without
+// area are left out. Fails with kNotFound (no such file, or its picture is missing), kUnreadable (not a mesh, a vertex
+// that is not a finite number, a picture that cannot be decoded) and kInsufficient (no faces); the sentence names the
+// file.
+Result<MeshFile> ReadMeshFile(const std::string& path);
+
+}  // namespace pliant::simulation
