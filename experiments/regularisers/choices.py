@@ -23,15 +23,30 @@ def variants(config):
     return {"variant_options": options, "variants": [f"{start}.{choice}" for start in starts for choice in chosen]}
 
 
+# A run that lost its points early has a mean over its easy frames alone: it is compared with nothing.
+LEAST_FRAME_SHARE = 0.9
+
+
+def comparable(cell, standard):
+    """Whether both have a map in the median run, and the cell about as many tracked frames as the default's."""
+    return (cell.median_rmse() is not None and standard.median_rmse() is not None and
+            cell.median("frames_tracked") >= LEAST_FRAME_SHARE * standard.median("frames_tracked"))
+
+
 def ratio_to(standard, cells):
-    """Geometric mean over the cells of RMSE by the default's; None where a run of either has no map."""
-    logs = []
-    for key, cell in cells.items():
-        rmse, reference = cell.median_rmse(), standard[key].median_rmse()
-        if rmse is None or reference is None:
-            return None
-        logs.append(math.log(rmse / reference))
-    return math.exp(sum(logs) / len(logs))
+    """Geometric mean over the comparable cells of RMSE by the default's, and in how many of all."""
+    logs = [math.log(cell.median_rmse() / standard[key].median_rmse()) for key, cell in cells.items()
+            if comparable(cell, standard[key])]
+    if not logs:
+        return "-"
+    part = f" ({len(logs)} of {len(cells)})" if len(logs) < len(cells) else ""
+    return f"{math.exp(sum(logs) / len(logs)):.2f}{part}"
+
+
+def rmse_of(cell, standard):
+    """With the number of tracked frames behind it where they are too few to compare."""
+    rmse = grid.number(cell.median_rmse())
+    return rmse if rmse == "-" or comparable(cell, standard) else f"{rmse} ({cell.median('frames_tracked'):.0f} frames)"
 
 
 def mean(cells, column):
@@ -49,9 +64,9 @@ def write(figures_path, frames, markdown_path, csv_path):
     rows = []
     for variant, cells in by_variant.items():
         start, choice = variant.split(".", 1)
-        ratio = ratio_to(by_variant[f"{start}.{STANDARD}"], cells)
-        rows.append({"start": start, "choice": choice, "ratio": grid.number(ratio),
-                     **{name: grid.number(cells[key].median_rmse()) for name, key in zip(names, keys)},
+        standard = by_variant[f"{start}.{STANDARD}"]
+        rows.append({"start": start, "choice": choice, "ratio": ratio_to(standard, cells),
+                     **{name: rmse_of(cells[key], standard[key]) for name, key in zip(names, keys)},
                      "points": grid.number(mean(cells, "points"), 0),
                      "frames": grid.number(mean(cells, "frames_tracked"), 0),
                      "frames/s": grid.number(mean(cells, "frames_per_second"), 1)})

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The experiments' workflows on grids small enough for a test.
 
-usage: experiments_test.py dry_run|tables|tiny_grid|slurm PLIANT
+usage: experiments_test.py dry_run|tables|choices|tiny_grid|slurm PLIANT
 """
 
 import csv
@@ -22,6 +22,7 @@ TINY = ["--config", "sets=dm", "cells=2.5:2.5", "seeds=1", "frames=12", "variant
 
 sys.path.insert(0, str(ROOT / "experiments/common"))
 sys.path.insert(0, str(ROOT / "experiments/simulated_colon"))
+sys.path.insert(0, str(ROOT / "experiments/regularisers"))
 
 
 def need(*programs):
@@ -95,6 +96,34 @@ def tables(folder):
         grid.put_into_readme(readme, folder / "new.md")
         assert readme.read_text(encoding="utf-8") == \
             "before\n<!-- table -->\n\nnew\n\n<!-- end of table -->\nafter\n"
+
+
+def choices(folder):
+    """A choice is compared with the default of its own start, in the cells where it tracked about as many frames."""
+    import choices as table
+    import grid
+
+    def row(variant, amplitude, rmse, frames):
+        return {"set": "dm", "amplitude_mm": amplitude, "omega_rad_s": "5", "seed": 1, "variant": variant,
+                "status": "completed", "rmse_mm": rmse, "points": 150, "frames_tracked": frames, "frames_per_second": 20}
+
+    grid.write_rows(folder / "figures.csv", grid.COLUMNS, [
+        row("own_map.default", "5", 2.0, 100), row("own_map.default", "10", 3.0, 100),
+        row("own_map.halved", "5", 1.0, 100), row("own_map.halved", "10", 1.5, 91),
+        row("own_map.short", "5", 1.0, 30), row("own_map.short", "10", 6.0, 100),
+        row("own_map.none", "5", "", 0), row("own_map.none", "10", "", 0)])
+    table.write(folder / "figures.csv", 100, folder / "table.md", folder / "table.csv")
+    by_choice = {line["choice"]: line for line in grid.read_rows(folder / "table.csv")}
+    assert by_choice["default"]["ratio"] == "1.00"
+    assert by_choice["halved"]["ratio"] == "0.50"
+    assert by_choice["short"]["ratio"] == "2.00 (1 of 2)"
+    assert by_choice["short"]["dm A 5, omega 5"] == "1.00 (30 frames)"
+    assert by_choice["none"]["ratio"] == "-" and by_choice["none"]["dm A 5, omega 5"] == "-"
+
+    config = {"starts": "true_map", "choices": "b", "start_options": {"true_map": "--Oracle.first_map on", "own_map": ""},
+              "choice_options": {"default": "", "a": "--a 1", "b": "--b 2"}}
+    assert table.variants(config)["variants"] == ["true_map.default", "true_map.b"]
+    assert table.variants(config)["variant_options"]["true_map.b"] == "--Oracle.first_map on --b 2"
 
 
 def tiny_grid(folder):
