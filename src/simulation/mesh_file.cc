@@ -78,16 +78,23 @@ Result<MeshFile> ReadMeshFile(const std::string& path) {
   const aiScene* scene =
       importer.ReadFile(path, aiProcess_RemoveComponent | aiProcess_Triangulate | aiProcess_PreTransformVertices |
                                   aiProcess_JoinIdenticalVertices | aiProcess_SortByPType);
-  if (scene == nullptr)
-    return {ErrorCode::kUnreadable,
-            "the mesh " + path + " cannot be read as OBJ, PLY or STL: " + importer.GetErrorString()};
+  const Status no_faces(ErrorCode::kInsufficient,
+                        "the mesh " + path + " has no faces; a cloud of points shows nothing");
+  if (scene == nullptr) {
+    const std::string reason = importer.GetErrorString();
+    // Assimp's own steps stumble over a file that is right but has nothing but points.
+    const aiScene* as_it_is = importer.ReadFile(path, 0);
+    if (as_it_is != nullptr && std::none_of(as_it_is->mMeshes, as_it_is->mMeshes + as_it_is->mNumMeshes,
+                                            [](const aiMesh* mesh) { return mesh->mNumFaces > 0; }))
+      return no_faces;
+    return {ErrorCode::kUnreadable, "the mesh " + path + " cannot be read as OBJ, PLY or STL: " + reason};
+  }
   bool with_uv = false;
   for (unsigned i = 0; i < scene->mNumMeshes; ++i) with_uv = with_uv || scene->mMeshes[i]->HasTextureCoords(0);
   MeshFile mesh;
   for (unsigned i = 0; i < scene->mNumMeshes; ++i)
     if (Status status = Append(path, *scene->mMeshes[i], with_uv, mesh); !status.ok()) return status;
-  if (mesh.triangles.empty())
-    return {ErrorCode::kInsufficient, "the mesh " + path + " has no faces; a cloud of points shows nothing"};
+  if (mesh.triangles.empty()) return no_faces;
   if (with_uv)
     if (Status status = ReadPicture(path, *scene, &mesh.image); !status.ok()) return status;
   return mesh;

@@ -213,13 +213,13 @@ TEST_F(MeshSceneTest, SaysWhatIsWrongWithAMesh) {
   EXPECT_THAT(message(""), HasSubstr("needs Scene.mesh_path"));
   EXPECT_THAT(message((folder_ / "none.stl").string()), HasSubstr("there is no mesh file"));
   EXPECT_THAT(message(Write("text.ply", "not a mesh\n")), HasSubstr("cannot be read"));
-  EXPECT_THAT(message(Write("points.obj", "v 0 0 0\nv 30 0 0\nv 0 40 0\n")), HasSubstr("points.obj"));
+  EXPECT_THAT(message(Write("points.obj", "v 0 0 0\nv 30 0 0\nv 0 40 0\n")), HasSubstr("points.obj has no faces"));
   EXPECT_THAT(message(Write("flat.obj", "v 0 0 0\nv 30 0 0\nv 60 0 0\nf 1 2 3\n")), HasSubstr("no faces"));
   EXPECT_THAT(message(Write("nan.ply",
                             "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty "
                             "float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\nnan 0 "
                             "0\n0 30 0\n3 0 1 2\n")),
-              HasSubstr("nan.ply"));
+              HasSubstr("nan.ply has a vertex that is not a finite number"));
   EXPECT_THAT(message(WriteObj()), HasSubstr("Scene.mesh_scale"));  // metres taken for millimetres
   EXPECT_THAT(message(WritePly(), 1e5), HasSubstr("Scene.mesh_scale"));
   SimulationOptions options = Room(WritePly(), TrajectoryKind::kHold, 1);
