@@ -13,6 +13,7 @@ namespace pliant::cli {
 int TrackCommand(std::span<const std::string> args);
 int SimulateCommand(std::span<const std::string> args);
 int EvaluateCommand(std::span<const std::string> args);
+int TruthCommand(std::span<const std::string> args);
 int DemoCommand(std::span<const std::string> args);
 
 }  // namespace pliant::cli

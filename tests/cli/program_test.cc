@@ -69,7 +69,8 @@ TEST(Program, WithoutACommandItShowsTheUsageAndExitsWithTwo) {
   const Outcome outcome = Pliant("");
   EXPECT_EQ(outcome.exit, 2);
   EXPECT_EQ(outcome.out, "");
-  for (const char* command : {"track", "simulate", "evaluate", "demo"}) EXPECT_THAT(outcome.err, HasSubstr(command));
+  for (const char* command : {"track", "simulate", "evaluate", "truth", "demo"})
+    EXPECT_THAT(outcome.err, HasSubstr(command));
 }
 
 TEST(Program, HelpAndVersionSucceed) {
@@ -241,6 +242,39 @@ TEST(Program, ADeviceIsNoCalibration) {
                                  Temporary("run").string() + "'");
   EXPECT_EQ(outcome.exit, 1);
   EXPECT_EQ(outcome.err, "pliant track: '/dev/zero' is a pipe or a device; give a file\n");
+}
+
+TEST(Program, TruthFollowsMaterialThroughASequence) {
+  const std::string sequence = Temporary("seq").string();
+  const std::string paths = Temporary("paths.csv").string();
+  ASSERT_EQ(Pliant("simulate --quiet --Trajectory.frames 3 --Deformation.amplitude_mm 2" + kCoarse + "--output_path '" +
+                   sequence + "'")
+                .exit,
+            0);
+  const std::string truth = "truth --sequence '" + sequence + "' --output_path '" + paths + "' ";
+  const Outcome grid = Pliant(truth + "--grid_px 16 --frame 1");
+  EXPECT_EQ(grid.exit, 0) << grid.err;
+  EXPECT_THAT(grid.out, StartsWith("12 of 12 points in 3 frames"));
+  std::ifstream file(paths);
+  std::string line;
+  std::getline(file, line);
+  EXPECT_EQ(line, "point,frame,u_px,v_px,x,y,z,depth_mm,visibility");
+  int rows = 0;
+  for (; std::getline(file, line); ++rows) {
+    // The first point, in the frame that it was taken from.
+    if (rows == 1) {
+      EXPECT_THAT(line, testing::EndsWith(",visible"));
+    }
+  }
+  EXPECT_EQ(rows, 36);
+
+  const std::string points = Temporary("points.csv").string();
+  std::ofstream(points) << "frame,u_px,v_px\n0,10,10\n3,10,10\n";
+  const Outcome late = Pliant(truth + "--points '" + points + "'");
+  EXPECT_EQ(late.exit, 2);
+  EXPECT_EQ(late.err, "pliant truth: point 2 is in frame 3, and the sequence has the frames 0 to 2\n");
+  EXPECT_THAT(Pliant(truth).err, HasSubstr("give either --points FILE or --grid_px N"));
+  EXPECT_THAT(Pliant(truth + "--grid_px 8 --points '" + points + "'").err, HasSubstr("give either"));
 }
 
 }  // namespace

@@ -93,4 +93,16 @@ inline std::vector<double> WarpErrors(Simulator& simulator, int from, int to) {
   return errors;
 }
 
+// The green level between four pixels; nothing outside.
+inline std::optional<double> SmoothLevel(const cv::Mat& image, const Eigen::Vector2d& pixel) {
+  const int x = static_cast<int>(std::floor(pixel.x()));
+  const int y = static_cast<int>(std::floor(pixel.y()));
+  if (x < 0 || y < 0 || x + 1 >= image.cols || y + 1 >= image.rows) return std::nullopt;
+  const double s = pixel.x() - x;
+  const double t = pixel.y() - y;
+  const auto level = [&](int u, int v) { return static_cast<double>(image.at<cv::Vec3b>(v, u)[1]); };
+  return (1 - t) * ((1 - s) * level(x, y) + s * level(x + 1, y)) +
+         t * ((1 - s) * level(x, y + 1) + s * level(x + 1, y + 1));
+}
+
 }  // namespace pliant::simulation_test

@@ -9,6 +9,7 @@
 // frame.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -47,7 +48,7 @@ enum class Visibility {
 
 struct MaterialObservation {
   Eigen::Vector3d point_in_world;
-  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();  // not set where the point does not project
+  Eigen::Vector2d pixel = Eigen::Vector2d::Constant(std::nan(""));  // stays so where the point does not project
   double depth_mm = 0;
   Visibility visibility = Visibility::kOutsideImage;
 };

@@ -1,0 +1,278 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Motion blur, drops, debris, and the second camera: what an image shows beyond the scene itself.
+#include <cmath>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <opencv2/core.hpp>
+
+#include "pliant/simulation/simulator.h"
+#include "simulation/small_scene.h"
+
+namespace pliant {
+namespace {
+
+using simulation_test::Make;
+using simulation_test::Median;
+using simulation_test::Pinhole160;
+using simulation_test::SamePixels;
+using simulation_test::SmallScene;
+
+// Grey levels that are linear in light, the same exposure in every frame, no noise.
+SimulationOptions LinearScene(TrajectoryKind kind, int frames) {
+  SimulationOptions options = SmallScene(kind, frames);
+  options.sensor.gamma = 1.0;
+  options.sensor.exposure = 0.4;
+  options.sensor.exposure_time_s = 1000;
+  options.sensor.gain_jitter = 0;
+  options.sensor.noise_levels = 0;
+  options.light.specular = 0;
+  return options;
+}
+
+cv::Mat ToFloat(const cv::Mat& image) {
+  cv::Mat out;
+  image.convertTo(out, CV_32FC3);
+  return out;
+}
+
+// Mean absolute difference in grey levels.
+double Difference(const cv::Mat& a, const cv::Mat& b) {
+  return cv::norm(ToFloat(a), ToFloat(b), cv::NORM_L1) / static_cast<double>(3 * a.total());
+}
+
+// What a shutter of 30 ms sees is the mean of what instants within it see.
+void ExpectBlurIsTheMeanOfInstants(SimulationOptions options) {
+  options.sensor.samples = 16;
+  options.sensor.shutter_s = 0.03;
+  const SimulatedFrame blurred = Make(options).Render(3);  // at 0.1 s, from 0.085 s to 0.115 s
+  options.sensor.shutter_s = 0;
+  const SimulatedFrame instant = Make(options).Render(3);
+  EXPECT_TRUE(SamePixels(blurred.depth, instant.depth));
+
+  options.trajectory.fps = 800;
+  options.trajectory.frames = 93;
+  Simulator fine = Make(options);
+  cv::Mat mean = cv::Mat::zeros(instant.image.size(), CV_32FC3);
+  constexpr int kFirst = 68;  // 0.085 s
+  constexpr int kLast = 92;   // 0.115 s
+  for (int i = kFirst; i <= kLast; ++i) {
+    const double weight = (i == kFirst || i == kLast ? 0.5 : 1.0) / (kLast - kFirst);  // the trapezium rule
+    mean += weight * ToFloat(fine.Render(i).image);
+  }
+  // Rounding to grey levels is 0.25 in the mean; the rest is overexposed pixels, whose mean is not the mean's.
+  EXPECT_LT(Difference(blurred.image, mean), 0.8);
+  EXPECT_GT(Difference(instant.image, mean), 2.5 * Difference(blurred.image, mean));
+}
+
+TEST(Sensor, BlurOfAMovingCameraIsTheMeanOfInstants) {
+  SimulationOptions options = LinearScene(TrajectoryKind::kInsert, 4);
+  options.trajectory.speed_mm_s = 150;
+  options.scene.length_mm = 250;  // the same tube for both frame rates
+  ExpectBlurIsTheMeanOfInstants(options);
+}
+
+// The camera moves too, so that a motion of the wrong sign shows.
+TEST(Sensor, BlurOfMovingMaterialIsTheMeanOfInstants) {
+  SimulationOptions options = LinearScene(TrajectoryKind::kInsert, 4);
+  options.trajectory.speed_mm_s = 100;
+  options.scene.length_mm = 250;
+  options.trajectory.tremor_mm = 0;
+  options.trajectory.tremor_deg = 0;
+  options.deformation.amplitude_mm = 8;
+  options.deformation.omega_rad_s = 10;
+  options.deformation.wavelength_mm = 400;
+  ExpectBlurIsTheMeanOfInstants(options);
+}
+
+TEST(Sensor, RefusesAShutterThatIsOpenLongerThanAFrame) {
+  SimulationOptions options = SmallScene(TrajectoryKind::kHold, 1);
+  options.sensor.shutter_s = 0.05;
+  EXPECT_THAT(Simulator::Create(options).status().message(), testing::HasSubstr("longer than a frame"));
+}
+
+// Pixels that differ by more than three levels.
+cv::Mat Changed(const cv::Mat& a, const cv::Mat& b) {
+  cv::Mat changed(a.size(), CV_8UC1);
+  for (int y = 0; y < a.rows; ++y) {
+    for (int x = 0; x < a.cols; ++x) {
+      const cv::Vec3i d = cv::Vec3i(a.at<cv::Vec3b>(y, x)) - cv::Vec3i(b.at<cv::Vec3b>(y, x));
+      changed.at<std::uint8_t>(y, x) = std::max({std::abs(d[0]), std::abs(d[1]), std::abs(d[2])}) > 3 ? 255 : 0;
+    }
+  }
+  return changed;
+}
+
+// Something covers a part of the image, stays nearly where it was until the next frame, and is in no truth.
+void ExpectCovers(double SimulationOptions::Sensor::*amount) {
+  SimulationOptions options = LinearScene(TrajectoryKind::kSway, 82);
+  Simulator clear = Make(options);
+  options.sensor.*amount = 5;
+  options.threads = 1;
+  Simulator covered = Make(options);
+  options.threads = 3;
+  Simulator again = Make(options);
+  double share = 0;
+  for (const int frame_idx : {0, 40, 80}) {
+    const SimulatedFrame there = covered.Render(frame_idx);
+    EXPECT_TRUE(SamePixels(there.image, again.Render(frame_idx).image));
+    EXPECT_TRUE(SamePixels(there.depth, clear.Render(frame_idx).depth));
+    const cv::Mat now = Changed(there.image, clear.Render(frame_idx).image);
+    const cv::Mat next = Changed(covered.Render(frame_idx + 1).image, clear.Render(frame_idx + 1).image);
+    share += cv::countNonZero(now) / static_cast<double>(now.total()) / 3;
+    EXPECT_GT(cv::countNonZero(now & next), 0.5 * cv::countNonZero(now)) << frame_idx;
+    EXPECT_GT(cv::countNonZero(now ^ next), 0) << "nothing moves in frame " << frame_idx;
+  }
+  EXPECT_GT(share, 0.002);
+  EXPECT_LT(share, 0.25);
+}
+
+TEST(Sensor, DropsCoverPartOfTheImageAndNoTruth) { ExpectCovers(&SimulationOptions::Sensor::drops); }
+
+TEST(Sensor, DebrisCoversPartOfTheImageAndNoTruth) { ExpectCovers(&SimulationOptions::Sensor::debris); }
+
+TEST(Sensor, TheRightCameraSeesTheSceneShiftedByTheDisparity) {
+  SimulationOptions options = SmallScene(TrajectoryKind::kSway, 10);
+  options.camera.baseline_mm = 4.0;
+  options.sensor.noise_levels = 0;
+  options.light.specular = 0;  // highlights lie where light and view meet, in each image elsewhere
+  options.deformation.amplitude_mm = 2.0;
+  Simulator simulator = Make(options);
+  const SimulatedFrame frame = simulator.Render(9);
+  ASSERT_EQ(frame.right.size(), frame.image.size());
+  const Pinhole160 pinhole;
+  std::vector<double> differences;
+  std::vector<double> differences_mirrored;  // with the right camera on the other side
+  std::vector<double> disparities;
+  for (int y = 4; y < 116; ++y) {
+    for (int x = 30; x < 130; ++x) {
+      const double z = frame.depth.at<float>(y, x);
+      if (!(z > 0)) continue;
+      const double disparity = pinhole.focal * 4.0 / z;
+      const auto level_at = [&](double u) {
+        const int left = static_cast<int>(std::floor(u));
+        const double t = u - left;
+        return (1 - t) * frame.right.at<cv::Vec3b>(y, left)[1] + t * frame.right.at<cv::Vec3b>(y, left + 1)[1];
+      };
+      const double level = frame.image.at<cv::Vec3b>(y, x)[1];
+      disparities.push_back(disparity);
+      differences.push_back(std::abs(level_at(x - disparity) - level));
+      differences_mirrored.push_back(std::abs(level_at(x + disparity) - level));
+    }
+  }
+  ASSERT_GT(disparities.size(), 5000U);
+  EXPECT_GT(Median(disparities), 5.0);
+  // Interpolation between pixels of fine texture; hidden places are rarer than half.
+  EXPECT_LT(Median(differences), 2.5);
+  EXPECT_GT(Median(differences_mirrored), 3 * Median(differences));
+}
+
+TEST(Sensor, MaterialLiesInTheRightImageAtTheDisparity) {
+  SimulationOptions options = SmallScene(TrajectoryKind::kSway, 10);
+  options.camera.baseline_mm = 4.0;
+  options.deformation.amplitude_mm = 2.0;
+  Simulator simulator = Make(options);
+  const Pinhole160 pinhole;
+  const std::vector<Eigen::Vector2d> pixels = {{40, 30}, {80.5, 100.25}, {120, 40}, {60, 90}};
+  const auto hits = simulator.HitsAt(9, pixels);
+  std::vector<MaterialPoint> points;
+  for (const auto& hit : hits) points.push_back(hit.value().point);
+  const auto right = simulator.Observe(9, points, Eye::kRight);
+  const Rigid3 right_from_left =
+      simulator.WorldFromCamera(9, Eye::kRight).Inverse() * simulator.WorldFromCamera(9, Eye::kLeft);
+  EXPECT_LT((right_from_left.translation - Eigen::Vector3d(-4, 0, 0)).norm(), 1e-9);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Eigen::Vector2d expected(pixels[i].x() - pinhole.focal * 4.0 / hits[i]->depth_mm, pixels[i].y());
+    EXPECT_LT((right[i].pixel - expected).norm(), 0.02);  // the chord of the moved triangle, seen from 25 mm
+    EXPECT_NEAR(right[i].depth_mm, hits[i]->depth_mm, 1e-3);
+    if (right[i].visibility != Visibility::kVisible) continue;
+    const auto seen = simulator.HitsAt(9, std::vector{right[i].pixel}, Eye::kRight)[0];
+    EXPECT_LT((seen.value().point_in_world - hits[i]->point_in_world).norm(), 0.02);
+  }
+}
+
+TEST(Sensor, RefusesAPairThatIsNotRectified) {
+  SimulationOptions options = SmallScene(TrajectoryKind::kHold, 1);
+  options.camera.baseline_mm = 4.0;
+  options.camera.model = CameraModelId::kOpenCvFisheye;
+  EXPECT_THAT(Simulator::Create(options).status().message(), testing::HasSubstr("rectified"));
+}
+
+// The models' formulas once more: OpenCV's, for a point in the camera frame.
+Eigen::Vector2d ProjectOpenCv(const std::vector<double>& p, const Eigen::Vector3d& x) {
+  const double a = x.x() / x.z();
+  const double b = x.y() / x.z();
+  const double r2 = a * a + b * b;
+  const double radial = 1 + p[4] * r2 + p[5] * r2 * r2;
+  return {p[0] * (a * radial + 2 * p[6] * a * b + p[7] * (r2 + 2 * a * a)) + p[2],
+          p[1] * (b * radial + p[6] * (r2 + 2 * b * b) + 2 * p[7] * a * b) + p[3]};
+}
+
+Eigen::Vector2d ProjectFisheye(const std::vector<double>& p, const Eigen::Vector3d& x) {
+  const double r = std::hypot(x.x(), x.y());
+  const double t = std::atan2(r, x.z());
+  const double t2 = t * t;
+  const double d = t * (1 + t2 * (p[4] + t2 * (p[5] + t2 * (p[6] + t2 * p[7]))));
+  return {p[0] * d * x.x() / r + p[2], p[1] * d * x.y() / r + p[3]};
+}
+
+// Truth, depth and image of a camera model against its formula and a pinhole at the same place.
+template <class Project>
+void ExpectModelIsRendered(SimulationOptions options, CameraModelId model, const std::vector<double>& params,
+                           const Project& project) {
+  options.sensor.noise_levels = 0;
+  options.sensor.vignetting = 0;
+  options.sensor.gain_jitter = 0;
+  const SimulatedFrame straight = Make(options).Render(1);
+  options.camera.model = model;
+  for (const double p : params) options.camera.params += (options.camera.params.empty() ? "" : ",") + FormatDouble(p);
+  Simulator simulator = Make(options);
+  const SimulatedFrame frame = simulator.Render(1);
+  const Rigid3 cam_from_world = simulator.WorldFromCamera(1).Inverse();
+
+  std::vector<Eigen::Vector2d> pixels;
+  for (int y = 3; y < 120; y += 12)
+    for (int x = 3; x < 160; x += 12) pixels.emplace_back(x, y);
+  const auto hits = simulator.HitsAt(1, pixels);
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    if (!hits[i]) continue;
+    const Eigen::Vector3d in_cam = cam_from_world * hits[i]->point_in_world;
+    EXPECT_LT((project(params, in_cam) - pixels[i]).norm(), 1e-6);  // of the inverse model, which is iterative
+    EXPECT_NEAR(hits[i]->depth_mm, in_cam.z(), 1e-9);
+    const double depth = frame.depth.at<float>(static_cast<int>(pixels[i].y()), static_cast<int>(pixels[i].x()));
+    EXPECT_NEAR(depth, in_cam.z(), 1e-3);  // rays are kept as floats
+  }
+
+  // The same place has the same look in both images, up to the exposure that each chose.
+  const Pinhole160 pinhole;
+  std::vector<double> ratios;
+  for (int y = 20; y < 100; y += 2) {
+    for (int x = 20; x < 140; x += 2) {
+      const double z = straight.depth.at<float>(y, x);
+      const Eigen::Vector2d pixel = project(params, pinhole.BackProject(x, y, z));
+      const auto there = simulation_test::SmoothLevel(frame.image, pixel);
+      const int here = straight.image.at<cv::Vec3b>(y, x)[1];
+      if (there && here > 20 && here < 230) ratios.push_back(*there / here);
+    }
+  }
+  ASSERT_GT(ratios.size(), 500U);
+  const double exposure = Median(ratios);
+  for (double& ratio : ratios) ratio = std::abs(ratio / exposure - 1);
+  EXPECT_LT(Median(ratios), 0.03);  // different sampling of fine texture
+}
+
+TEST(Sensor, AnOpenCvCameraIsRenderedByItsFormula) {
+  const std::vector<double> params = {112, 114, 80.5, 58, -0.2, 0.05, 0.003, -0.002};
+  ExpectModelIsRendered(SmallScene(TrajectoryKind::kHold, 2), CameraModelId::kOpenCv, params, ProjectOpenCv);
+}
+
+TEST(Sensor, AFisheyeIsRenderedByItsFormula) {
+  const std::vector<double> params = {70, 71, 80.5, 58, -0.03, 0.004, -0.001, 0.0002};
+  ExpectModelIsRendered(SmallScene(TrajectoryKind::kHold, 2), CameraModelId::kOpenCvFisheye, params, ProjectFisheye);
+}
+
+}  // namespace
+}  // namespace pliant
