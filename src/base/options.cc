@@ -153,6 +153,37 @@ void OptionTable::AddChoice(std::string name, std::vector<std::string> names, st
             }});
 }
 
+void OptionTable::AddChoices(std::string name, std::vector<std::string> names, std::string why,
+                             std::function<std::vector<std::string>()> get,
+                             std::function<void(const std::vector<std::size_t>&)> set_indices) {
+  const std::string full_name = group_ + "." + name;
+  std::string unit;
+  for (const std::string& n : names) unit += n + ", ";
+  unit += "several with commas, or all";
+  AddField({std::move(name), unit, std::move(why),
+            [get = std::move(get)] {
+              std::string text;
+              for (const std::string& n : get()) text += (text.empty() ? "" : ",") + n;
+              return text;
+            },
+            [names = std::move(names), unit, full_name, set_indices = std::move(set_indices)](std::string_view text) {
+              std::vector<bool> chosen(names.size(), text == "all");
+              for (std::size_t begin = 0; text != "all" && begin < text.size();) {
+                const std::size_t end = std::min(text.find(',', begin), text.size());
+                const auto it = std::find(names.begin(), names.end(), text.substr(begin, end - begin));
+                if (it == names.end())
+                  return Status(ErrorCode::kInvalidArgument, full_name + " is " + Quote(text) + "; give " + unit);
+                chosen[static_cast<std::size_t>(it - names.begin())] = true;
+                begin = end + 1;
+              }
+              std::vector<std::size_t> indices;
+              for (std::size_t i = 0; i < chosen.size(); ++i)
+                if (chosen[i]) indices.push_back(i);
+              set_indices(indices);
+              return Status::Ok();
+            }});
+}
+
 const OptionField* OptionTable::Find(std::string_view name) const {
   const auto it = std::find_if(fields_.begin(), fields_.end(), [&](const OptionField& f) { return f.name == name; });
   return it == fields_.end() ? nullptr : &*it;

@@ -82,6 +82,15 @@ void CommandLine::Add(std::string name, int* value, std::string why, int low, in
                }});
 }
 
+void CommandLine::Add(std::string name, std::vector<std::string>* values, std::string placeholder, std::string why,
+                      Need need) {
+  AddArgument({std::move(name), placeholder, std::move(why), placeholder, "", need, [values](std::string_view text) {
+                 values->emplace_back(text);
+                 return !text.empty();
+               }});
+  arguments_.back().times = Times::kSeveral;
+}
+
 void CommandLine::AddFlag(std::string name, bool* value, std::string why) {
   AddArgument({std::move(name), "", std::move(why), "", "", Need::kOptional, [value](std::string_view) {
                  *value = true;
@@ -104,6 +113,10 @@ Status CommandLine::ReadArguments(std::span<const std::string> args) {
   for (Argument& argument : arguments_) {
     if (argument.placeholder.empty()) {
       app.add_flag_callback("--" + argument.name, [&argument] { argument.given = {""}; });
+    } else if (argument.times == Times::kSeveral) {
+      app.add_option_function<std::vector<std::string>>(
+             "--" + argument.name, [&argument](const std::vector<std::string>& values) { argument.given = values; })
+          ->allow_extra_args(false);  // one value each time it is given
     } else {
       app.add_option_function<std::string>("--" + argument.name,
                                            [&argument](const std::string& value) { argument.given = {value}; });
@@ -202,8 +215,9 @@ std::string CommandLine::ManualText(const OptionTable& options) const {
   std::string usage = program;
   std::string arguments;
   for (const Argument& argument : arguments_) {
-    const std::string flag = "--" + argument.name + (argument.placeholder.empty() ? "" : " ") + argument.placeholder;
+    std::string flag = "--" + argument.name + (argument.placeholder.empty() ? "" : " ") + argument.placeholder;
     if (argument.need == Need::kRequired) usage += " " + flag;
+    if (argument.times == Times::kSeveral) flag += " [--" + argument.name + " ...]";
     std::string why = argument.why;
     if (argument.need == Need::kRequired) why += " (required)";
     if (!argument.default_text.empty()) why += " (default: " + argument.default_text + ")";

@@ -47,6 +47,8 @@ class CommandLine {
   // An argument `--name VALUE`. The value at the time of the call is its default in the manual.
   void Add(std::string name, std::string* value, std::string placeholder, std::string why, Need need);
   void Add(std::string name, int* value, std::string why, int low, int high);
+  // An argument that may be given several times; the values in the order given.
+  void Add(std::string name, std::vector<std::string>* values, std::string placeholder, std::string why, Need need);
   // An argument without a value.
   void AddFlag(std::string name, bool* value, std::string why);
   // One of the named values of an enum (EnumNames).
@@ -82,6 +84,7 @@ class CommandLine {
   std::string ManualText(const OptionTable& options) const;
 
  private:
+  enum class Times { kOnce, kSeveral };
   struct Argument {
     std::string name;
     std::string placeholder;  // empty: a flag
@@ -91,6 +94,7 @@ class CommandLine {
     Need need = Need::kOptional;
     std::function<bool(std::string_view)> set;  // false: a value that it does not accept
     std::vector<std::string> given = {};        // what the command line gave: values, or one entry for a flag
+    Times times = Times::kOnce;
   };
 
   void AddArgument(Argument argument);

@@ -54,8 +54,8 @@ void Print(const SimulationOptions& simulation, const RunSummary& run, const Eva
             << "points        " << tracks.first_points << " in the first tracked frame, " << tracks.last_points
             << " in the last, " << tracks.last_alive_of_first << " in both\n";
   if (evaluation.surface) {
-    const SurfaceSummary& error = evaluation.surface->estimate;
-    const SurfaceSummary& null = evaluation.surface->null;
+    const PointSummary& error = evaluation.surface->plain.estimate;
+    const PointSummary& null = evaluation.surface->plain.null;
     std::cout << "RMSE          " << Text("%.2f mm", error.mean_rmse_mm)
               << "  (one constant depth instead: " << Text("%.2f mm)", null.mean_rmse_mm) << "\n"
               << "median error  " << Text("%.2f mm", error.pooled_median_mm)
@@ -98,7 +98,9 @@ Status RunDemo(const SimulationOptions& simulation, const std::filesystem::path&
   if (!run.ok()) return run.status();
   if (run->status == RunStatus::kInterrupted || run->frames_tracked == 0)
     return {ErrorCode::kInsufficient, run->note + "; see " + request.output_path};
-  const Result<Evaluation> evaluation = EvaluateRun(request.output_path, sequence.string(), {});
+  const Result<OpenedTruth> truth = OpenTruth(sequence.string(), {});
+  if (!truth.ok()) return truth.status();
+  const Result<Evaluation> evaluation = EvaluateRun(request.output_path, *truth, {});
   if (!evaluation.ok()) return evaluation.status();
   if (Status status = WriteEvaluation(*evaluation, output.string()); !status.ok()) return status;
   Print(simulation, *run, *evaluation, output);

@@ -5,15 +5,42 @@
 
 #include <filesystem>
 #include <fstream>
-#include <memory>
 #include <system_error>
+#include <utility>
 
 #include "pliant/datasets/open_sequence.h"
+#include "pliant/evaluation/report.h"
 
 namespace pliant::cli {
-namespace {
 
-Status WriteText(const std::filesystem::path& path, const std::string& text) {
+Result<OpenedTruth> OpenTruth(const std::string& sequence_path, const EvaluationOptions& options) {
+  OpenedTruth truth;
+  truth.sequence_path = sequence_path;
+  SequenceRequest request;
+  request.image_path = sequence_path;
+  Result<std::unique_ptr<Sequence>> sequence = OpenSequence(request);
+  if (!sequence.ok()) return sequence.status();
+  truth.sequence = *std::move(sequence);
+  if (options.Wants(EvaluationPart::kMaterial)) truth.material = OpenMaterialTruth(sequence_path);
+  return truth;
+}
+
+Result<Evaluation> EvaluateRun(const std::string& run_path, const OpenedTruth& truth,
+                               const EvaluationOptions& options) {
+  const Result<EvaluationInput> input = ReadEvaluationInput(run_path, *truth.sequence, options.matching);
+  if (!input.ok()) return input.status();
+  const Result<MaterialTruth*> material =
+      truth.material.ok() ? Result<MaterialTruth*>(truth.material->get()) : truth.material.status();
+  Result<Evaluation> evaluation = Evaluate(*input, *truth.sequence, material, options);
+  if (evaluation.ok()) evaluation->sequence = truth.sequence_path;
+  return evaluation;
+}
+
+Status WriteReport(const std::string& folder, const std::string& file_name, const std::string& text) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) return {ErrorCode::kUnwritable, "cannot make the folder " + folder + ": " + error.message()};
+  const std::filesystem::path path = std::filesystem::path(folder) / file_name;
   std::ofstream file(path, std::ios::binary);
   file << text << std::flush;
   if (!file)
@@ -21,27 +48,9 @@ Status WriteText(const std::filesystem::path& path, const std::string& text) {
   return Status::Ok();
 }
 
-}  // namespace
-
-Result<Evaluation> EvaluateRun(const std::string& run_path, const std::string& sequence_path,
-                               const EvaluationOptions& options) {
-  const Result<EvaluationInput> input = ReadEvaluationInput(run_path);
-  if (!input.ok()) return input.status();
-  SequenceRequest request;
-  request.image_path = sequence_path;
-  const Result<std::unique_ptr<Sequence>> sequence = OpenSequence(request);
-  if (!sequence.ok()) return sequence.status();
-  return Evaluate(*input, **sequence, options);
-}
-
 Status WriteEvaluation(const Evaluation& evaluation, const std::string& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) return {ErrorCode::kUnwritable, "cannot make the folder " + folder + ": " + error.message()};
-  if (Status status = WriteText(std::filesystem::path(folder) / "evaluation.json", EvaluationJson(evaluation));
-      !status.ok())
-    return status;
-  return WriteText(std::filesystem::path(folder) / "evaluation.csv", EvaluationCsv(evaluation));
+  if (Status status = WriteReport(folder, "evaluation.json", EvaluationJson(evaluation)); !status.ok()) return status;
+  return WriteReport(folder, "evaluation.csv", EvaluationCsv(evaluation));
 }
 
 }  // namespace pliant::cli

@@ -1,21 +1,35 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// A run folder against the truth of its sequence, for the commands that do that.
+// Run folders against the truth of their sequences, for the commands that do that.
 #pragma once
 
+#include <memory>
 #include <string>
 
 #include "pliant/base/status.h"
+#include "pliant/datasets/sequence.h"
 #include "pliant/evaluation/evaluation.h"
 
 namespace pliant::cli {
 
-// Reads both and evaluates. Fails as ReadRun, OpenSequence and Evaluate do.
-Result<Evaluation> EvaluateRun(const std::string& run_path, const std::string& sequence_path,
-                               const EvaluationOptions& options);
+// A sequence opened for its truth. Opening a simulated one builds its scene again, so it serves several runs.
+struct OpenedTruth {
+  std::string sequence_path;
+  std::unique_ptr<Sequence> sequence;
+  Result<std::unique_ptr<MaterialTruth>> material = Status(ErrorCode::kNotFound, "it is not wanted");
+};
 
-// Writes evaluation.json and evaluation.csv into `folder`, which is made where it is not there. Fails with kUnwritable.
+// Fails as OpenSequence does; without the truth of the material it is open all the same.
+Result<OpenedTruth> OpenTruth(const std::string& sequence_path, const EvaluationOptions& options);
+
+// Reads the run and evaluates. Fails as ReadEvaluationInput and Evaluate do.
+Result<Evaluation> EvaluateRun(const std::string& run_path, const OpenedTruth& truth, const EvaluationOptions& options);
+
+// Writes `text` into `folder`, which is made where it is not there. Fails with kUnwritable.
+Status WriteReport(const std::string& folder, const std::string& file_name, const std::string& text);
+
+// Writes evaluation.json and evaluation.csv into `folder`.
 Status WriteEvaluation(const Evaluation& evaluation, const std::string& folder);
 
 }  // namespace pliant::cli

@@ -3,66 +3,52 @@
 
 #include "pliant/evaluation/evaluation.h"
 
-#include <cmath>
+#include <algorithm>
 #include <utility>
+
+#include "pliant/evaluation/surface_error.h"
 
 namespace pliant {
 namespace {
 
-// Run and sequence write the same times; only the digits written may differ.
-constexpr double kTimeToleranceS = 1e-3;
-
 // The truth of the tracked frames, collected in one pass.
 struct CollectedTruth {
-  std::vector<SurfaceFrame> surface;
+  std::vector<PairedFrame> surface;
+  std::optional<MaterialErrorCollector> material;
   std::vector<PosePair> poses;
-  bool has_depth = false;
-  bool has_pose = false;
 };
 
-Status CheckBelongsTo(const EvaluationInput& run, const Sequence& sequence) {
-  for (const EvaluationFrame& frame : run.frames) {
-    const std::optional<double> time_s = sequence.TimestampS(frame.frame_idx);
-    if (!time_s && sequence.TimestampS(0))
-      return {ErrorCode::kMismatch, "the run " + run.name + " has a frame " + std::to_string(frame.frame_idx) +
-                                        ", which the sequence does not have; give the sequence that was tracked"};
-    if (time_s && !(std::abs(*time_s - frame.timestamp_s) <= kTimeToleranceS))
-      return {ErrorCode::kMismatch, "frame " + std::to_string(frame.frame_idx) + " is at " +
-                                        std::to_string(frame.timestamp_s) + " s in the run " + run.name + " and at " +
-                                        std::to_string(*time_s) +
-                                        " s in the sequence; give the sequence that was tracked"};
-  }
-  return Status::Ok();
-}
-
-SurfaceFrame PairFrame(const EvaluationFrame& frame, const Camera& camera, const cv::Mat& depth_mm,
-                       double max_depth_step) {
+PairedFrame PairFrame(int frame_idx, const std::vector<TrackedPoint>& points, const Camera& camera,
+                      const cv::Mat& depth_mm, double max_depth_step) {
   std::vector<Eigen::Vector3d> points_in_cam;
   std::vector<Eigen::Vector2d> pixels;
-  for (const PointObservation& observation : frame.observations) {
-    points_in_cam.push_back(*frame.cam_from_world * observation.position);
-    pixels.push_back(observation.pixel);
+  for (const TrackedPoint& point : points) {
+    points_in_cam.push_back(point.point_in_cam);
+    pixels.push_back(point.pixel);
   }
-  return PairWithSurface(frame.frame_idx, points_in_cam, pixels, camera, depth_mm, max_depth_step);
+  return PairWithSurface(frame_idx, points_in_cam, pixels, camera, depth_mm, max_depth_step);
 }
 
-Result<CollectedTruth> CollectTruth(const EvaluationInput& run, const Sequence& sequence,
-                                    const EvaluationOptions& options) {
-  CollectedTruth truth;
-  for (const EvaluationFrame& frame : run.frames) {
-    if (!frame.cam_from_world) continue;
-    const Result<std::optional<cv::Mat>> depth_mm = sequence.Depth(frame.frame_idx);
-    if (!depth_mm.ok()) return depth_mm.status();
-    if (depth_mm->has_value()) {
-      truth.has_depth = true;
-      truth.surface.push_back(PairFrame(frame, sequence.camera(), **depth_mm, options.surface.max_depth_step));
-    }
-    if (const std::optional<Rigid3> world_from_cam = sequence.WorldFromCamera(frame.frame_idx)) {
-      truth.has_pose = true;
-      truth.poses.push_back({frame.frame_idx, frame.cam_from_world->Inverse(), *world_from_cam});
-    }
+Status CollectFrame(const EvaluationFrame& frame, const Sequence& sequence, const EvaluationOptions& options,
+                    CollectedTruth* truth) {
+  std::vector<TrackedPoint> points;
+  for (const PointObservation& observation : frame.observations)
+    points.push_back({observation.id, observation.pixel, *frame.cam_from_world * observation.position});
+  cv::Mat depth_mm;
+  if (options.Wants(EvaluationPart::kSurface) || truth->material) {
+    const Result<std::optional<cv::Mat>> depth = sequence.Depth(frame.frame_idx);
+    if (!depth.ok()) return depth.status();
+    depth_mm = depth->value_or(cv::Mat());
   }
-  return truth;
+  if (options.Wants(EvaluationPart::kSurface) && !depth_mm.empty())
+    truth->surface.push_back(
+        PairFrame(frame.frame_idx, points, sequence.camera(), depth_mm, options.points.max_depth_step));
+  if (truth->material)
+    if (Status status = truth->material->AddFrame(frame.frame_idx, points, depth_mm); !status.ok()) return status;
+  const std::optional<Rigid3> world_from_cam = sequence.WorldFromCamera(frame.frame_idx);
+  if (options.Wants(EvaluationPart::kCamera) && world_from_cam)
+    truth->poses.push_back({frame.frame_idx, frame.cam_from_world->Inverse(), *world_from_cam});
+  return Status::Ok();
 }
 
 TrackSurvival Survival(const EvaluationInput& run) {
@@ -77,52 +63,100 @@ TrackSurvival Survival(const EvaluationInput& run) {
   return ComputeTrackSurvival(tracks);
 }
 
+// Takes over a part, or notes why it is missing; a part that was asked for by name must be there.
+template <class Part>
+Status Take(EvaluationPart name, Result<Part> result, const EvaluationOptions& options, std::optional<Part>* part,
+            std::vector<std::string>* notes) {
+  if (result.ok()) {
+    *part = *std::move(result);
+    return Status::Ok();
+  }
+  const std::string sentence = "no " + std::string(EnumName(name)) + " error: " + result.status().message();
+  if (!options.parts.empty()) return {result.status().code(), sentence};
+  notes->push_back(sentence);
+  return Status::Ok();
+}
+
+Status ComputeParts(const CollectedTruth& truth, const Status& material_status, const EvaluationOptions& options,
+                    Evaluation* evaluation) {
+  const auto missing = [](const char* what) { return Status(ErrorCode::kNotFound, what); };
+  if (options.Wants(EvaluationPart::kSurface)) {
+    Result<PointError> surface = truth.surface.empty()
+                                     ? Result<PointError>(missing("the sequence has no depth for the tracked frames"))
+                                     : ComputePointError(truth.surface, options.points);
+    if (Status status = Take(EvaluationPart::kSurface, std::move(surface), options, &evaluation->surface,
+                             &evaluation->notes);
+        !status.ok())
+      return status;
+  }
+  if (options.Wants(EvaluationPart::kMaterial)) {
+    Result<MaterialError> material =
+        truth.material ? truth.material->Compute(options.points) : Result<MaterialError>(material_status);
+    if (Status status = Take(EvaluationPart::kMaterial, std::move(material), options, &evaluation->material,
+                             &evaluation->notes);
+        !status.ok())
+      return status;
+  }
+  if (options.Wants(EvaluationPart::kCamera)) {
+    Result<TrajectoryError> trajectory = truth.poses.empty()
+                                             ? Result<TrajectoryError>(missing("the sequence has no pose for the tracked frames"))
+                                             : ComputeTrajectoryError(truth.poses, options.trajectory);
+    return Take(EvaluationPart::kCamera, std::move(trajectory), options, &evaluation->trajectory, &evaluation->notes);
+  }
+  return Status::Ok();
+}
+
+Status CheckProtocols(const Evaluation& evaluation, const EvaluationOptions& options) {
+  if (evaluation.surface || evaluation.material) return Status::Ok();
+  for (const ErrorProtocol protocol : options.points.protocols)
+    if (protocol != ErrorProtocol::kPaper)
+      return {ErrorCode::kNotFound, "the protocol " + std::string(EnumName(protocol)) +
+                                        " compares points, and there is no truth for the points of the run " +
+                                        evaluation.run + "; evaluate on a sequence with depth/ or simulation.yaml"};
+  return Status::Ok();
+}
+
 }  // namespace
 
-EvaluationFrame FrameFromReport(const FrameReport& report) {
-  return {report.frame_idx, report.timestamp_s, report.cam_from_world, report.observations};
+bool EvaluationOptions::Wants(EvaluationPart part) const {
+  return parts.empty() || std::find(parts.begin(), parts.end(), part) != parts.end();
 }
 
 void EvaluationOptions::List(OptionTable& table) {
-  table.BeginGroup("SurfaceError", "distance of the estimated points from the true surface");
-  surface.List(table);
+  table.BeginGroup("Evaluation", "what is compared, and how run and sequence are brought together");
+  table.AddChoices("parts", &parts,
+                   "the parts to compute; one that has no truth is an error. Empty: all that have truth");
+  matching.List(table);
+  table.BeginGroup("PointError", "surface error and material error: estimated points against true ones");
+  points.List(table);
   table.BeginGroup("TrajectoryError", "distance of the estimated camera path from the true one");
   trajectory.List(table);
 }
 
-Result<Evaluation> Evaluate(const EvaluationInput& run, const Sequence& sequence, const EvaluationOptions& options) {
-  if (Status status = CheckBelongsTo(run, sequence); !status.ok()) return status;
+Result<Evaluation> Evaluate(const EvaluationInput& run, const Sequence& sequence,
+                            const Result<MaterialTruth*>& material, const EvaluationOptions& options) {
+  if (Status status = CheckBelongsTo(run, sequence, options.matching); !status.ok()) return status;
   Evaluation evaluation;
   evaluation.run = run.name;
+  evaluation.notes = run.notes;
   evaluation.survival = Survival(run);
   if (evaluation.survival.frames_tracked == 0)
     return Status(ErrorCode::kInsufficient, "the run " + run.name + " has no tracked frame among the " +
                                                 std::to_string(run.frames.size()) +
                                                 " it read; there is nothing to evaluate");
-  const Result<CollectedTruth> truth = CollectTruth(run, sequence, options);
-  if (!truth.ok()) return truth.status();
-  if (!truth->has_depth && !truth->has_pose)
+  CollectedTruth truth;
+  if (material.ok() && options.Wants(EvaluationPart::kMaterial))
+    truth.material.emplace(**material, sequence.camera(), options.points.max_depth_step);
+  for (const EvaluationFrame& frame : run.frames) {
+    if (!frame.cam_from_world) continue;
+    if (Status status = CollectFrame(frame, sequence, options, &truth); !status.ok()) return status;
+  }
+  if (truth.surface.empty() && !truth.material && truth.poses.empty() && options.parts.empty())
     return Status(ErrorCode::kNotFound, "the sequence of the run " + run.name +
-                                            " has no truth for the tracked frames: neither depth/ nor groundtruth.txt; "
-                                            "evaluate on a sequence that has one of them");
-  if (truth->has_depth) {
-    Result<SurfaceError> surface = ComputeSurfaceError(truth->surface, options.surface);
-    if (surface.ok())
-      evaluation.surface = *std::move(surface);
-    else
-      evaluation.notes.push_back("no surface error: " + surface.status().message());
-  } else {
-    evaluation.notes.push_back("no surface error: the sequence has no depth for the tracked frames");
-  }
-  if (truth->has_pose) {
-    Result<TrajectoryError> trajectory = ComputeTrajectoryError(truth->poses, options.trajectory);
-    if (trajectory.ok())
-      evaluation.trajectory = *std::move(trajectory);
-    else
-      evaluation.notes.push_back("no camera error: " + trajectory.status().message());
-  } else {
-    evaluation.notes.push_back("no camera error: the sequence has no pose for the tracked frames");
-  }
+                                            " has no truth for the tracked frames: no depth/, no groundtruth.txt, no "
+                                            "simulation.yaml; evaluate on a sequence that has one of them");
+  if (Status status = ComputeParts(truth, material.status(), options, &evaluation); !status.ok()) return status;
+  if (Status status = CheckProtocols(evaluation, options); !status.ok()) return status;
   return evaluation;
 }
 

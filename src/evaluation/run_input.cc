@@ -1,45 +1,187 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
+#include "pliant/evaluation/run_input.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
 #include <map>
 #include <utility>
 
-#include "pliant/evaluation/evaluation.h"
+#include "pliant/io/colmap.h"
 #include "pliant/io/run_reader.h"
 
 namespace pliant {
+namespace {
 
-Result<EvaluationInput> ReadEvaluationInput(const std::string& run_path) {
-  const Result<Run> run = ReadRun(run_path);
-  if (!run.ok()) return run.status();
+// Our runs write the sequence's times; only the digits written may differ.
+constexpr double kTimeToleranceS = 1e-3;
+
+using FrameMap = std::map<int, EvaluationFrame>;  // by frame number
+
+EvaluationFrame& FrameAt(int frame_idx, double timestamp_s, FrameMap* frames) {
+  EvaluationFrame& frame = (*frames)[frame_idx];
+  frame.frame_idx = frame_idx;
+  frame.timestamp_s = timestamp_s;
+  return frame;
+}
+
+std::string Seconds(double value) { return FormatDouble(value) + " s"; }
+
+// The frame nearest in time to each pose; of two poses near the same frame the nearer one.
+Status GivePosesFrames(const std::string& name, const std::vector<RunPose>& poses, const Sequence& sequence,
+                       double max_difference_s, EvaluationInput* input, FrameMap* frames) {
+  std::map<double, int> frame_at;  // the sequence's frames by time
+  for (int i = 0; i < sequence.size(); ++i)
+    if (const auto time_s = sequence.TimestampS(i)) frame_at.emplace(*time_s, i);
+  if (frame_at.empty())
+    return {ErrorCode::kMismatch, "the sequence has no times to which the poses of " + name + " could be matched"};
+  std::map<int, std::pair<double, const RunPose*>> nearest;  // by frame number
+  for (const RunPose& pose : poses) {
+    auto after = frame_at.lower_bound(pose.timestamp_s);
+    if (after == frame_at.end() || (after != frame_at.begin() && pose.timestamp_s - std::prev(after)->first <
+                                                                     after->first - pose.timestamp_s))
+      --after;
+    const double difference_s = std::abs(after->first - pose.timestamp_s);
+    if (difference_s > max_difference_s) continue;
+    const auto [it, is_new] = nearest.try_emplace(after->second, difference_s, &pose);
+    if (!is_new && difference_s < it->second.first) it->second = {difference_s, &pose};
+  }
+  if (nearest.empty() && !poses.empty())
+    return {ErrorCode::kMismatch,
+            "no pose of " + name + " is within " + Seconds(max_difference_s) + " of a frame: its times go from " +
+                Seconds(poses.front().timestamp_s) + " to " + Seconds(poses.back().timestamp_s) +
+                ", the sequence's from " + Seconds(frame_at.begin()->first) + " to " +
+                Seconds(frame_at.rbegin()->first) + "; write times in seconds of the sequence's clock"};
+  for (const auto& [frame_idx, match] : nearest)
+    FrameAt(frame_idx, *sequence.TimestampS(frame_idx), frames).cam_from_world = match.second->world_from_cam.Inverse();
+  if (nearest.size() < poses.size())
+    input->notes.push_back(std::to_string(poses.size() - nearest.size()) + " of " + std::to_string(poses.size()) +
+                           " poses of " + name + " are near no frame in time and are left out");
+  return Status::Ok();
+}
+
+// Adds the points to the frames. Of another system's result frames may have points and no pose.
+Status ReadPoints(const std::string& run_path, bool foreign, const Sequence& sequence, EvaluationInput* input,
+                  FrameMap* frames) {
   Result<ObservationReader> reader = ObservationReader::Open(run_path);
   if (!reader.ok()) return reader.status();
-
-  std::map<int, EvaluationFrame> frames;  // by frame number
-  for (const RunFrame& row : run->frames) {
-    EvaluationFrame& frame = frames[row.frame_idx];
-    frame.frame_idx = row.frame_idx;
-    frame.timestamp_s = row.timestamp_s;
-  }
-  for (const RunPose& pose : run->poses) {
-    EvaluationFrame& frame = frames[pose.frame_idx];
-    frame.frame_idx = pose.frame_idx;
-    frame.timestamp_s = pose.timestamp_s;
-    frame.cam_from_world = pose.world_from_cam.Inverse();
-  }
+  int without_pose = 0;
   while (true) {
     Result<std::optional<FrameObservations>> rows = reader->Next();
     if (!rows.ok()) return rows.status();
     if (!rows->has_value()) break;
-    const auto frame = frames.find((*rows)->frame_idx);
-    // A killed run may have written the points of a frame whose pose it had not.
-    if (frame != frames.end() && frame->second.cam_from_world)
+    const int frame_idx = (*rows)->frame_idx;
+    const auto frame = frames->find(frame_idx);
+    if (frame != frames->end() && frame->second.cam_from_world) {
       frame->second.observations = std::move((*rows)->observations);
+    } else if (foreign) {
+      ++without_pose;
+      FrameAt(frame_idx, sequence.TimestampS(frame_idx).value_or(0), frames);
+    }  // else: a killed run may have written the points of a frame whose pose it had not
   }
+  if (without_pose > 0)
+    input->notes.push_back(std::to_string(without_pose) + " frames of " + run_path +
+                           " have points and no pose; they count as not tracked");
+  return Status::Ok();
+}
+
+Result<std::optional<Camera>> ReadRunCamera(const std::string& run_path) {
+  for (const char* name : {"cameras.txt", "cameras.bin"}) {
+    const std::filesystem::path path = std::filesystem::path(run_path) / "sparse" / name;
+    std::error_code error;
+    if (!std::filesystem::exists(path, error)) continue;
+    const Result<std::vector<ColmapCamera>> cameras = ReadColmapCameras(path.string());
+    if (!cameras.ok()) return cameras.status();
+    if (!cameras->empty()) return std::optional<Camera>(cameras->front().camera);
+  }
+  return std::optional<Camera>();
+}
+
+// The largest distance between where two cameras of one image size see the same rays, px, on a grid over the image.
+double LargestDifferencePx(const Camera& a, const Camera& b) {
+  constexpr int kSteps = 8;
+  double largest = 0;
+  for (int i = 0; i <= kSteps; ++i) {
+    for (int j = 0; j <= kSteps; ++j) {
+      const Eigen::Vector2d pixel((a.width() - 1) * i / double{kSteps}, (a.height() - 1) * j / double{kSteps});
+      const auto ray = a.Unproject(pixel);
+      const auto seen = ray ? b.Project(*ray) : std::nullopt;
+      if (seen) largest = std::max(largest, (*seen - pixel).norm());
+    }
+  }
+  return largest;
+}
+
+Status CheckCamera(const EvaluationInput& run, const Camera& camera, CameraAgreement agreement) {
+  constexpr double kSame_px = 0.01;
+  if (!run.camera) return Status::Ok();
+  const auto size = [](const Camera& c) { return std::to_string(c.width()) + "x" + std::to_string(c.height()); };
+  if (size(*run.camera) != size(camera))
+    return {ErrorCode::kMismatch, "the run " + run.name + " was made on images of " + size(*run.camera) +
+                                      " and the sequence has " + size(camera) + "; give the sequence that was tracked"};
+  const double difference_px = LargestDifferencePx(*run.camera, camera);
+  if (agreement == CameraAgreement::kSame && difference_px > kSame_px)
+    return {ErrorCode::kMismatch, "the camera of the run " + run.name + " sees points up to " +
+                                      FormatDouble(std::round(100 * difference_px) / 100) +
+                                      " px from where the sequence's camera sees them; give the sequence that was "
+                                      "tracked, or --Evaluation.camera any"};
+  return Status::Ok();
+}
+
+}  // namespace
+
+void MatchingOptions::List(OptionTable& table) {
+  table.Add("max_time_difference_s", &max_time_difference_s, "s",
+            "another system's poses belong to the nearest frame in time, if it is not further than this", 0.0, 10.0);
+  table.AddChoice("camera", &camera, "whether the camera in the run's sparse/ must be the sequence's");
+}
+
+EvaluationFrame FrameFromReport(const FrameReport& report) {
+  return {report.frame_idx, report.timestamp_s, report.cam_from_world, report.observations};
+}
+
+Result<EvaluationInput> ReadEvaluationInput(const std::string& run_path, const Sequence& sequence,
+                                            const MatchingOptions& options) {
+  const Result<Run> run = ReadRun(run_path);
+  if (!run.ok()) return run.status();
   EvaluationInput input;
   input.name = run_path;
+  Result<std::optional<Camera>> camera = ReadRunCamera(run_path);
+  if (!camera.ok()) return camera.status();
+  input.camera = *std::move(camera);
+
+  FrameMap frames;
+  for (const RunFrame& row : run->frames) FrameAt(row.frame_idx, row.timestamp_s, &frames);
+  const bool foreign = run->frames.empty() && !run->summary;
+  if (foreign) {
+    if (Status status =
+            GivePosesFrames(run_path, run->poses, sequence, options.max_time_difference_s, &input, &frames);
+        !status.ok())
+      return status;
+  } else {
+    for (const RunPose& pose : run->poses)
+      FrameAt(*pose.frame_idx, pose.timestamp_s, &frames).cam_from_world = pose.world_from_cam.Inverse();
+  }
+  if (Status status = ReadPoints(run_path, foreign, sequence, &input, &frames); !status.ok()) return status;
   for (auto& entry : frames) input.frames.push_back(std::move(entry.second));
   return input;
+}
+
+Status CheckBelongsTo(const EvaluationInput& run, const Sequence& sequence, const MatchingOptions& options) {
+  const std::string advice = "; give the sequence that was tracked";
+  for (const EvaluationFrame& frame : run.frames) {
+    const std::optional<double> time_s = sequence.TimestampS(frame.frame_idx);
+    if (!time_s && sequence.TimestampS(0))
+      return {ErrorCode::kMismatch, "the run " + run.name + " has a frame " + std::to_string(frame.frame_idx) +
+                                        ", which the sequence does not have" + advice};
+    if (time_s && !(std::abs(*time_s - frame.timestamp_s) <= kTimeToleranceS))
+      return {ErrorCode::kMismatch, "frame " + std::to_string(frame.frame_idx) + " is at " +
+                                        Seconds(frame.timestamp_s) + " in the run " + run.name + " and at " +
+                                        Seconds(*time_s) + " in the sequence" + advice};
+  }
+  return CheckCamera(run, sequence.camera(), options.camera);
 }
 
 }  // namespace pliant

@@ -3,29 +3,51 @@
 
 #include "pliant/evaluation/track_survival.h"
 
+#include <cmath>
+#include <cstddef>
 #include <map>
-#include <set>
 #include <utility>
 #include <vector>
 
 #include "pliant/base/statistics.h"
 
 namespace pliant {
+namespace {
+
+// `last_seen`: of each of the first frame's points, the position in the list of frames read.
+void FillAliveShares(const std::map<PointId, std::size_t>& last_seen, std::size_t first, TrackSurvival* survival) {
+  const std::size_t way = survival->frames.size() - 1 - first;
+  for (std::size_t k = 0; k < survival->alive_shares.size(); ++k) {
+    const double part = static_cast<double>(k + 1) / static_cast<double>(survival->alive_shares.size());
+    const auto place = first + static_cast<std::size_t>(std::lround(part * static_cast<double>(way)));
+    std::size_t alive = 0;
+    for (const auto& entry : last_seen)
+      if (entry.second >= place) ++alive;
+    survival->alive_shares[k] = static_cast<double>(alive) / static_cast<double>(last_seen.size());
+  }
+}
+
+}  // namespace
 
 TrackSurvival ComputeTrackSurvival(std::span<const FrameTracks> frames) {
   TrackSurvival survival;
   std::map<PointId, int> length_of_track;
-  std::set<PointId> first_ids;
+  std::map<PointId, std::size_t> last_seen;  // of the first tracked frame's points
+  std::size_t first = 0;
   for (const FrameTracks& frame : frames) {
     TrackSurvival::Frame row{frame.frame_idx, frame.tracked, 0, 0};
     if (frame.tracked) {
       if (survival.frames_tracked == 0) {
-        first_ids.insert(frame.ids.begin(), frame.ids.end());
+        first = survival.frames.size();
+        for (const PointId id : frame.ids) last_seen[id] = first;
         survival.first_points = static_cast<int>(frame.ids.size());
       }
       for (const PointId id : frame.ids) {
         ++length_of_track[id];
-        if (first_ids.contains(id)) ++row.alive_of_first;
+        const auto of_first = last_seen.find(id);
+        if (of_first == last_seen.end()) continue;
+        of_first->second = survival.frames.size();
+        ++row.alive_of_first;
       }
       row.points = static_cast<int>(frame.ids.size());
       ++survival.frames_tracked;
@@ -37,6 +59,7 @@ TrackSurvival ComputeTrackSurvival(std::span<const FrameTracks> frames) {
   }
   survival.frames_read = static_cast<int>(frames.size());
   if (survival.frames_tracked > 0) survival.mean_points /= survival.frames_tracked;
+  if (!last_seen.empty()) FillAliveShares(last_seen, first, &survival);
   survival.tracks = static_cast<int>(length_of_track.size());
   std::vector<double> lengths;
   for (const auto& entry : length_of_track) lengths.push_back(entry.second);

@@ -28,11 +28,13 @@ Rigid3 Aligned(const Sim3& truth_from_run, const Rigid3& world_from_cam) {
   return {truth_from_run.rotation * world_from_cam.rotation, truth_from_run * world_from_cam.translation};
 }
 
-void AddRelativeErrors(std::span<const Rigid3> aligned, std::span<const Rigid3> truth, TrajectoryError* error) {
+void AddRelativeErrors(std::span<const Rigid3> aligned, std::span<const Rigid3> truth, RelativePairs pairs,
+                       TrajectoryError* error) {
   std::vector<double> translations;
   std::vector<double> rotations;
   const auto delta = static_cast<std::size_t>(error->rpe_delta);
-  for (std::size_t i = 0; i + delta < truth.size(); ++i) {
+  const std::size_t step = pairs == RelativePairs::kAll ? 1 : delta;
+  for (std::size_t i = 0; i + delta < truth.size(); i += step) {
     const Rigid3 true_motion = truth[i].Inverse() * truth[i + delta];
     const Rigid3 motion = aligned[i].Inverse() * aligned[i + delta];
     const Rigid3 difference = true_motion.Inverse() * motion;
@@ -41,6 +43,7 @@ void AddRelativeErrors(std::span<const Rigid3> aligned, std::span<const Rigid3> 
   }
   error->rpe_pairs = static_cast<int>(translations.size());
   error->rpe_translation_rmse_mm = Rms(translations);
+  error->rpe_translation_mean_mm = Mean(translations);
   error->rpe_rotation_rmse_deg = Rms(rotations);
 }
 
@@ -49,6 +52,7 @@ void AddRelativeErrors(std::span<const Rigid3> aligned, std::span<const Rigid3> 
 void TrajectoryErrorOptions::List(OptionTable& table) {
   table.AddChoice("alignment", &alignment, "how the path is laid onto the true one: sim3 after a monocular start");
   table.Add("rpe_delta", &rpe_delta, "frames", "tracked frames between the two poses of a relative error", 1, 100000);
+  table.AddChoice("rpe_pairs", &rpe_pairs, "which pairs: consecutive as evo_rpe does, all as its --all_pairs");
 }
 
 Result<TrajectoryError> ComputeTrajectoryError(std::span<const PosePair> pairs, const TrajectoryErrorOptions& options) {
@@ -85,12 +89,15 @@ Result<TrajectoryError> ComputeTrajectoryError(std::span<const PosePair> pairs, 
     rotations_deg.push_back(AngleDeg(truth.back().rotation.conjugate() * aligned.back().rotation));
   }
   error.ate_rmse_mm = Rms(error.ate_mm);
+  error.ate_mean_mm = Mean(error.ate_mm);
+  error.ate_std_mm = std::sqrt(std::max(0.0, error.ate_rmse_mm * error.ate_rmse_mm - error.ate_mean_mm * error.ate_mean_mm));
+  error.ate_min_mm = *std::min_element(error.ate_mm.begin(), error.ate_mm.end());
   error.ate_median_mm = Median(error.ate_mm);
   error.ate_max_mm = *std::max_element(error.ate_mm.begin(), error.ate_mm.end());
   error.rotation_rmse_deg = Rms(rotations_deg);
   error.true_path_length_mm = PathLength(truth);
   error.path_length_mm = PathLength(aligned);
-  AddRelativeErrors(aligned, truth, &error);
+  AddRelativeErrors(aligned, truth, options.rpe_pairs, &error);
   return error;
 }
 

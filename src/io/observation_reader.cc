@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
+#include <limits>
 
 #include "io/run_format.h"
 #include "io/text.h"
@@ -17,7 +19,7 @@ struct Row {
 };
 
 // Empty: the row is right; else what is wrong with it.
-std::string ParseRow(std::string_view line, Row* row) {
+std::string ParseRow(std::string_view line, std::string_view columns, Row* row) {
   // Millions of rows are read: the fields stay on the stack.
   std::array<std::string_view, 8> fields;
   std::size_t count = 0;
@@ -26,16 +28,20 @@ std::string ParseRow(std::string_view line, Row* row) {
     if (count < fields.size()) fields[count] = line.substr(begin, end - begin);
     begin = end + 1;
   }
-  if (count != fields.size())
-    return "a row has 8 columns (" + std::string(kObservationColumns) + "), this one has " + std::to_string(count);
+  const std::size_t needed = columns == kObservationColumns ? 8 : 7;
+  if (count != needed)
+    return "a row has " + std::to_string(needed) + " columns (" + std::string(columns) + "), this one has " +
+           std::to_string(count);
   PointObservation& o = row->observation;
   if (!ParseInt(fields[0], &row->frame_idx) || row->frame_idx < 0)
     return Quoted(fields[0]) + " is not a frame's number";
   if (!ParseInt64(fields[1], &o.id.value) || o.id.value < 0) return Quoted(fields[1]) + " is not a point's id";
   const std::array<double*, 6> numbers = {&o.pixel.x(),    &o.pixel.y(),    &o.position.x(),
                                           &o.position.y(), &o.position.z(), &o.ssim};
-  for (std::size_t i = 0; i < numbers.size(); ++i)
-    if (!ParseFinite(fields[i + 2], numbers[i])) return Quoted(fields[i + 2]) + " is not a finite number";
+  o.ssim = std::numeric_limits<double>::quiet_NaN();
+  for (std::size_t i = 0; i + 2 < needed; ++i)
+    if (!ParseFinite(fields[i + 2], numbers[i]))
+      return Quoted(fields[i + 2]) + " is not a finite number; leave out points that have no position";
   return {};
 }
 
@@ -43,7 +49,9 @@ std::string ParseRow(std::string_view line, Row* row) {
 
 struct ObservationReader::State {
   LineReader lines;
-  std::optional<Row> ahead;  // the next frame's first row
+  std::string_view columns;
+  bool ours = false;         // ours end every line, so an open one was cut
+  std::optional<Row> ahead = std::nullopt;  // the next frame's first row
   int last_frame_idx = -1;
   int cut_lines = 0;
 };
@@ -57,10 +65,14 @@ Result<ObservationReader> ObservationReader::Open(const std::string& path) {
   auto lines = LineReader::Open(path + "/observations.csv");
   if (!lines.ok()) return lines.status();
   std::string_view header;
-  const bool cut = !lines->Next(&header) || !lines->ended();  // killed before the first row
-  if (!cut && header != kObservationColumns)
-    return lines->Error("the first line must be " + Quoted(kObservationColumns));
-  return ObservationReader(std::make_unique<State>(State{std::move(lines).value(), std::nullopt, -1, 0}));
+  std::error_code error;
+  const bool ours = std::filesystem::exists(path + "/run.json", error);
+  const bool cut = !lines->Next(&header) || (ours && !lines->ended());  // killed before the first row
+  const std::string_view columns =
+      header == kObservationColumnsWithoutSsim ? kObservationColumnsWithoutSsim : kObservationColumns;
+  if (!cut && header != columns)
+    return lines->Error("the first line must be " + Quoted(kObservationColumns) + "; ssim may be missing");
+  return ObservationReader(std::make_unique<State>(State{std::move(lines).value(), columns, ours}));
 }
 
 Result<std::optional<FrameObservations>> ObservationReader::Next() {
@@ -70,12 +82,12 @@ Result<std::optional<FrameObservations>> ObservationReader::Next() {
     state_->ahead.reset();
   }
   for (std::string_view line; state_->lines.Next(&line);) {
-    if (!state_->lines.ended()) {
+    if (state_->ours && !state_->lines.ended()) {
       ++state_->cut_lines;
       break;
     }
     Row row;
-    if (const std::string wrong = ParseRow(line, &row); !wrong.empty()) return state_->lines.Error(wrong);
+    if (const std::string wrong = ParseRow(line, state_->columns, &row); !wrong.empty()) return state_->lines.Error(wrong);
     if (frame && row.frame_idx == frame->frame_idx) {
       if (!(row.observation.id > frame->observations.back().id))
         return state_->lines.Error("point " + std::to_string(row.observation.id.value) +

@@ -11,6 +11,7 @@ namespace pliant {
 
 inline constexpr std::string_view kRunProgram = "pliant";
 inline constexpr std::string_view kObservationColumns = "frame,point_id,u_px,v_px,x,y,z,ssim";
+inline constexpr std::string_view kObservationColumnsWithoutSsim = "frame,point_id,u_px,v_px,x,y,z";
 inline constexpr std::string_view kFrameColumns =
     "frame,timestamp,state,tracked,optimized,lost,added,cost_reprojection,cost_spatial,cost_temporal,cost_edge_length,"
     "median_reprojection_error_px";

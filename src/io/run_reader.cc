@@ -66,22 +66,21 @@ Status ReadFrames(const std::string& path, Run* run) {
   return Status::Ok();
 }
 
-// The tracked frames' numbers: from frames.csv, or of a foreign result from its observations.
-Result<std::vector<int>> TrackedFrames(const std::string& path, const Run& run, bool has_frames) {
+// Gives the poses the frames of frames.csv that were tracked.
+Status NumberPoses(const std::string& path, Run* run) {
   std::vector<int> frame_idxs;
-  if (has_frames) {
-    for (const RunFrame& frame : run.frames)
-      if (frame.state == TrackingState::kTracking) frame_idxs.push_back(frame.frame_idx);
-    return frame_idxs;
-  }
-  auto reader = ObservationReader::Open(path);
-  if (!reader.ok()) return reader.status();
-  while (true) {
-    const auto frame = reader->Next();
-    if (!frame.ok()) return frame.status();
-    if (!frame->has_value()) return frame_idxs;
-    frame_idxs.push_back((*frame)->frame_idx);
-  }
+  for (const RunFrame& frame : run->frames)
+    if (frame.state == TrackingState::kTracking) frame_idxs.push_back(frame.frame_idx);
+  // A frame's row in frames.csv is written last: a killed run may have a pose or two more than rows.
+  const bool belong =
+      run->summary ? run->poses.size() >= frame_idxs.size() : run->poses.size() == frame_idxs.size();
+  if (!belong)
+    return {ErrorCode::kMismatch, "the folder " + Quoted(path) + " has " + std::to_string(run->poses.size()) +
+                                      " poses in trajectory.txt for " + std::to_string(frame_idxs.size()) +
+                                      " tracked frames in frames.csv; each tracked frame needs one"};
+  run->poses.resize(frame_idxs.size());
+  for (std::size_t i = 0; i < frame_idxs.size(); ++i) run->poses[i].frame_idx = frame_idxs[i];
+  return Status::Ok();
 }
 
 }  // namespace
@@ -113,17 +112,9 @@ Result<Run> ReadRun(const std::string& path) {
   const auto poses =
       ReadTumTrajectory(path + "/trajectory.txt", ours ? OpenLastLine::kIsCut : OpenLastLine::kIsRead, &run.cut_lines);
   if (!poses.ok()) return poses.status();
-  const auto frame_idxs = TrackedFrames(path, run, has_frames);
-  if (!frame_idxs.ok()) return frame_idxs.status();
-  // A frame's row in frames.csv is written last: a killed run may have a pose or two more than rows.
-  const bool belong = ours ? poses->size() >= frame_idxs->size() : poses->size() == frame_idxs->size();
-  if (!belong)
-    return Status(ErrorCode::kMismatch, "the folder " + Quoted(path) + " has " + std::to_string(poses->size()) +
-                                            " poses in trajectory.txt for " + std::to_string(frame_idxs->size()) +
-                                            " frames in " + (has_frames ? "frames.csv" : "observations.csv") +
-                                            "; each tracked frame needs one of both");
-  for (std::size_t i = 0; i < frame_idxs->size(); ++i)
-    run.poses.push_back({(*frame_idxs)[i], (*poses)[i].timestamp_s, (*poses)[i].world_from_cam});
+  for (const TimedPose& pose : *poses) run.poses.push_back({std::nullopt, pose.timestamp_s, pose.world_from_cam});
+  if (has_frames)
+    if (Status status = NumberPoses(path, &run); !status.ok()) return status;
   return run;
 }
 

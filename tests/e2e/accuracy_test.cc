@@ -25,8 +25,8 @@ TEST(RigidScene, WithATrueFirstMapTheMedianErrorStaysSmall) {
   const RunSummary summary = TrackSequenceAt(kSequence, folder.Path("run"), DepthStart());
   EXPECT_EQ(summary.status, RunStatus::kCompleted);
   EXPECT_EQ(summary.frames_tracked, 60);
-  const Evaluation evaluation = EvaluateRun(folder.Path("run"), kSequence, SurfaceScale::kNone);
-  EXPECT_LT(evaluation.surface->estimate.pooled_median_mm, kMaxMedianFromTruth_mm);
+  const Evaluation evaluation = EvaluateRun(folder.Path("run"), kSequence, ErrorScale::kNone);
+  EXPECT_LT(evaluation.surface->plain.estimate.pooled_median_mm, kMaxMedianFromTruth_mm);
 }
 
 TEST(RigidScene, FromAMonocularStartThePlainErrorStaysBelowTwoMillimetres) {
@@ -34,8 +34,8 @@ TEST(RigidScene, FromAMonocularStartThePlainErrorStaysBelowTwoMillimetres) {
   const RunSummary summary = TrackSequenceAt(kSequence, folder.Path("run"), TrackOptions());
   EXPECT_EQ(summary.status, RunStatus::kCompleted);
   EXPECT_GE(summary.frames_tracked, 40);  // the rest is the wait for parallax
-  const Evaluation evaluation = EvaluateRun(folder.Path("run"), kSequence, SurfaceScale::kPerFrame);
-  EXPECT_LT(evaluation.surface->estimate.mean_rmse_mm, kMaxRmseMonocular_mm);
+  const Evaluation evaluation = EvaluateRun(folder.Path("run"), kSequence, ErrorScale::kPerFrame);
+  EXPECT_LT(evaluation.surface->plain.estimate.mean_rmse_mm, kMaxRmseMonocular_mm);
 }
 
 TEST(RigidScene, OneAndTwoThreadsAndTheSameSeedTwiceGiveIdenticalFiles) {
@@ -70,9 +70,9 @@ TEST(RigidScene, KeepingContoursOutLowersThePlainErrorByATenthAtLeast) {
   without.tracker.neighbor_agreement = NeighbourAgreement::kOff;
   TrackSequenceAt(kSequence, folder.Path("with"), TrackOptions());
   TrackSequenceAt(kSequence, folder.Path("without"), without);
-  const Evaluation good = EvaluateRun(folder.Path("with"), kSequence, SurfaceScale::kPerFrame);
-  const Evaluation bad = EvaluateRun(folder.Path("without"), kSequence, SurfaceScale::kPerFrame);
-  EXPECT_LT(good.surface->estimate.mean_rmse_mm, 0.9 * bad.surface->estimate.mean_rmse_mm);
+  const Evaluation good = EvaluateRun(folder.Path("with"), kSequence, ErrorScale::kPerFrame);
+  const Evaluation bad = EvaluateRun(folder.Path("without"), kSequence, ErrorScale::kPerFrame);
+  EXPECT_LT(good.surface->plain.estimate.mean_rmse_mm, 0.9 * bad.surface->plain.estimate.mean_rmse_mm);
 }
 
 }  // namespace

@@ -43,16 +43,16 @@ inline TrackOptions DepthStart() {
   return options;
 }
 
-inline Evaluation EvaluateRun(const std::string& run, const std::string& sequence, SurfaceScale scale) {
-  const auto input = ReadEvaluationInput(run);
-  EXPECT_TRUE(input.ok()) << input.status().message();
+inline Evaluation EvaluateRun(const std::string& run, const std::string& sequence, ErrorScale scale) {
   SequenceRequest request;
   request.image_path = sequence;
   const auto truth = OpenSequence(request);
   EXPECT_TRUE(truth.ok()) << truth.status().message();
   EvaluationOptions options;
-  options.surface.scale = scale;
-  const auto evaluation = Evaluate(*input, **truth, options);
+  options.points.scale = scale;
+  const auto input = ReadEvaluationInput(run, **truth, options.matching);
+  EXPECT_TRUE(input.ok()) << input.status().message();
+  const auto evaluation = Evaluate(*input, **truth, Status(ErrorCode::kNotFound, "not wanted"), options);
   EXPECT_TRUE(evaluation.ok()) << evaluation.status().message();
   return *evaluation;
 }

@@ -215,7 +215,7 @@ TEST(Robustness, AfterKillMinusNineWhatWasComputedIsReadableAndCanBeEvaluated) {
   ASSERT_TRUE(run.ok()) << run.status().message();
   EXPECT_EQ(run->summary->status, RunStatus::kInterrupted);
   EXPECT_GE(run->poses.size(), 6U);
-  EXPECT_GT(EvaluateRun(folder.Path("run"), kSequence, SurfaceScale::kNone).surface->frames.size(), 5U);
+  EXPECT_GT(EvaluateRun(folder.Path("run"), kSequence, ErrorScale::kNone).surface->plain.frames.size(), 5U);
 }
 
 }  // namespace

@@ -40,78 +40,76 @@ std::vector<Eigen::Vector2d> Pixels(int count, Random random) {
 }
 
 // The truth of the pixels, and estimates that are it divided by `scale`, with noise (mm, each axis).
-SurfaceFrame Frame(int frame_idx, double scale, double noise_mm, int count = 200) {
+PairedFrame Frame(int frame_idx, double scale, double noise_mm, int count = 200) {
   const Random random(100 + static_cast<std::uint64_t>(frame_idx));
   const std::vector<Eigen::Vector2d> pixels = Pixels(count, random.Child("pixels"));
   const std::vector<Eigen::Vector3d> nothing(pixels.size(), Eigen::Vector3d::Zero());
-  SurfaceFrame frame = PairWithSurface(frame_idx, nothing, pixels, TestCamera(), WavyDepth(), kStep);
+  PairedFrame frame = PairWithSurface(frame_idx, nothing, pixels, TestCamera(), WavyDepth(), kStep);
   Random noise = random.Child("noise");
-  for (SurfacePair& pair : frame.pairs) {
+  for (PointPair& pair : frame.pairs) {
     const Eigen::Vector3d error(noise.Normal(noise_mm), noise.Normal(noise_mm), noise.Normal(noise_mm));
     pair.estimate = (pair.truth + error) / scale;
   }
   return frame;
 }
 
+PointErrorOptions WithScale(ErrorScale scale) {
+  PointErrorOptions options;
+  options.scale = scale;
+  return options;
+}
+
 TEST(SurfaceError, IsZeroForTheTruthItself) {
-  for (const SurfaceScale scale : {SurfaceScale::kPerFrame, SurfaceScale::kGlobal, SurfaceScale::kNone}) {
-    const auto error = ComputeSurfaceError(std::vector{Frame(0, 1, 0), Frame(1, 1, 0)}, {.scale = scale});
+  for (const ErrorScale scale : {ErrorScale::kPerFrame, ErrorScale::kGlobal, ErrorScale::kNone}) {
+    const auto error = ComputePointError(std::vector{Frame(0, 1, 0), Frame(1, 1, 0)}, WithScale(scale));
     ASSERT_TRUE(error.ok());
-    EXPECT_LT(error->estimate.mean_rmse_mm, kRounding);
-    EXPECT_LT(error->estimate.pooled_median_mm, kRounding);
-    EXPECT_LT(error->estimate.median_relative_depth, kRounding);
-    EXPECT_GT(error->null.mean_rmse_mm, 1.0);
+    EXPECT_LT(error->plain.estimate.mean_rmse_mm, kRounding);
+    EXPECT_LT(error->plain.estimate.pooled_median_mm, kRounding);
+    EXPECT_LT(error->plain.estimate.median_relative_depth, kRounding);
+    EXPECT_GT(error->plain.null.mean_rmse_mm, 1.0);
     EXPECT_EQ(error->points, 400);
   }
 }
 
 TEST(SurfaceError, RecoversAKnownScaleExactly) {
   const std::vector frames = {Frame(0, 2.5, 0), Frame(1, 2.5, 0)};
-  for (const SurfaceScale scale : {SurfaceScale::kPerFrame, SurfaceScale::kGlobal}) {
-    const auto error = ComputeSurfaceError(frames, {.scale = scale});
+  for (const ErrorScale scale : {ErrorScale::kPerFrame, ErrorScale::kGlobal}) {
+    const auto error = ComputePointError(frames, WithScale(scale));
     ASSERT_TRUE(error.ok());
-    EXPECT_NEAR(error->estimate.min_scale, 2.5, kRounding);
-    EXPECT_NEAR(error->estimate.max_scale, 2.5, kRounding);
-    EXPECT_LT(error->estimate.pooled_rmse_mm, kRounding);
+    EXPECT_NEAR(error->plain.estimate.min_scale, 2.5, kRounding);
+    EXPECT_NEAR(error->plain.estimate.max_scale, 2.5, kRounding);
+    EXPECT_LT(error->plain.estimate.pooled_rmse_mm, kRounding);
   }
-  const auto unscaled = ComputeSurfaceError(frames, {.scale = SurfaceScale::kNone});
+  const auto unscaled = ComputePointError(frames, WithScale(ErrorScale::kNone));
   ASSERT_TRUE(unscaled.ok());
-  EXPECT_NEAR(unscaled->estimate.median_relative_depth, 1 - 1 / 2.5, kRounding);
+  EXPECT_NEAR(unscaled->plain.estimate.median_relative_depth, 1 - 1 / 2.5, kRounding);
 }
 
 TEST(SurfaceError, CountsDriftOfTheScaleOnlyUnderAGlobalScale) {
   const std::vector frames = {Frame(0, 1.0, 0), Frame(1, 1.2, 0)};
-  EXPECT_LT(ComputeSurfaceError(frames, {.scale = SurfaceScale::kPerFrame})->estimate.mean_rmse_mm, kRounding);
-  EXPECT_GT(ComputeSurfaceError(frames, {.scale = SurfaceScale::kGlobal})->estimate.mean_rmse_mm, 2.0);
+  EXPECT_LT(ComputePointError(frames, WithScale(ErrorScale::kPerFrame))->plain.estimate.mean_rmse_mm, kRounding);
+  EXPECT_GT(ComputePointError(frames, WithScale(ErrorScale::kGlobal))->plain.estimate.mean_rmse_mm, 2.0);
 }
 
 TEST(SurfaceError, MatchesKnownNoise) {
-  std::vector<SurfaceFrame> frames;
+  std::vector<PairedFrame> frames;
   for (int i = 0; i < 50; ++i) frames.push_back(Frame(i, 1, 0.8));
-  const auto error = ComputeSurfaceError(frames, {.scale = SurfaceScale::kNone});
+  const auto error = ComputePointError(frames, WithScale(ErrorScale::kNone));
   ASSERT_TRUE(error.ok());
   // The mean square of 30,000 normal numbers is right to 3 * sqrt(2 / 30000) = 2.5 %.
-  EXPECT_NEAR(error->estimate.pooled_rmse_mm, 0.8 * std::sqrt(3.0), 0.0125 * 0.8 * std::sqrt(3.0));
+  EXPECT_NEAR(error->plain.estimate.pooled_rmse_mm, 0.8 * std::sqrt(3.0), 0.0125 * 0.8 * std::sqrt(3.0));
   // The median of a chi distribution of three degrees of freedom is 1.5382.
-  EXPECT_NEAR(error->estimate.pooled_median_mm, 0.8 * 1.5382, 0.03);
+  EXPECT_NEAR(error->plain.estimate.pooled_median_mm, 0.8 * 1.5382, 0.03);
 }
 
 TEST(SurfaceError, IsThePlainUntrimmedRmse) {
-  SurfaceFrame frame;
+  PairedFrame frame;
   frame.pairs = {
       {{0, 0, 10}, {0, 0, 10}}, {{0, 3, 10}, {0, 0, 10}}, {{4, 0, 10}, {0, 0, 10}}, {{0, 0, 22}, {0, 0, 10}}};
-  const auto error = ComputeSurfaceError(std::vector{frame}, {.scale = SurfaceScale::kNone});
+  const auto error = ComputePointError(std::vector{frame}, WithScale(ErrorScale::kNone));
   ASSERT_TRUE(error.ok());
-  EXPECT_NEAR(error->estimate.mean_rmse_mm, std::sqrt((9 + 16 + 144) / 4.0), kRounding);
-  EXPECT_NEAR(error->estimate.pooled_median_mm, 3.5, kRounding);
-}
-
-TEST(SurfaceError, ScaleIsTheLeastSquaresOne) {
-  const std::vector<SurfacePair> pairs = {{{1, 0, 2}, {2, 1, 4}}, {{0, 1, 3}, {0, 2, 7}}};
-  const double s = BestScale(pairs);
-  EXPECT_NEAR(s, (2 + 8 + 2 + 21) / (5.0 + 10.0), kRounding);
-  const std::vector<SurfacePair> zero = {{{0, 0, 0}, {0, 0, 5}}};
-  EXPECT_EQ(BestScale(zero), 1.0);
+  EXPECT_NEAR(error->plain.estimate.mean_rmse_mm, std::sqrt((9 + 16 + 144) / 4.0), kRounding);
+  EXPECT_NEAR(error->plain.estimate.pooled_median_mm, 3.5, kRounding);
 }
 
 TEST(SurfaceError, NullOfAPlaneAtConstantDepthIsZero) {
@@ -119,12 +117,12 @@ TEST(SurfaceError, NullOfAPlaneAtConstantDepthIsZero) {
   const std::vector<Eigen::Vector2d> pixels = Pixels(50, Random(3));
   const std::vector<Eigen::Vector3d> points(pixels.size(), Eigen::Vector3d(1, 2, 3));
   const auto frame = PairWithSurface(0, points, pixels, TestCamera(), depth, kStep);
-  for (const SurfaceScale scale : {SurfaceScale::kPerFrame, SurfaceScale::kGlobal, SurfaceScale::kNone}) {
-    const auto error = ComputeSurfaceError(std::vector{frame}, {.scale = scale});
+  for (const ErrorScale scale : {ErrorScale::kPerFrame, ErrorScale::kGlobal, ErrorScale::kNone}) {
+    const auto error = ComputePointError(std::vector{frame}, WithScale(scale));
     ASSERT_TRUE(error.ok());
-    EXPECT_LT(error->null.mean_rmse_mm, kDepthRounding);
-    EXPECT_NEAR(error->null.min_scale, 40, kDepthRounding);
-    EXPECT_GT(error->estimate.mean_rmse_mm, 1.0);
+    EXPECT_LT(error->plain.null.mean_rmse_mm, kDepthRounding);
+    EXPECT_NEAR(error->plain.null.min_scale, 40, kDepthRounding);
+    EXPECT_GT(error->plain.estimate.mean_rmse_mm, 1.0);
   }
 }
 
@@ -160,9 +158,9 @@ TEST(SurfaceError, LeavesOutDepthStepsHolesAndWhatHasNoTruthAndCountsThem) {
 }
 
 TEST(SurfaceError, SaysWhyNothingCouldBeCompared) {
-  SurfaceFrame frame;
+  PairedFrame frame;
   frame.left_out.depth_step = 7;
-  const auto error = ComputeSurfaceError(std::vector{frame}, {});
+  const auto error = ComputePointError(std::vector{frame}, {});
   EXPECT_EQ(error.status().code(), ErrorCode::kInsufficient);
   EXPECT_THAT(error.status().message(), testing::HasSubstr("7 on a depth step"));
 }

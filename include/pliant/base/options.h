@@ -62,6 +62,24 @@ class OptionTable {
         [value](std::size_t index) { *value = EnumNames<Enum>::kNames[index].first; });
   }
 
+  // Any number of them: "one,another", "all" for every one, empty for none. They are kept in the enum's order, each once.
+  template <class Enum>
+  void AddChoices(std::string name, std::vector<Enum>* values, std::string why) {
+    std::vector<std::string> names;
+    for (const auto& entry : EnumNames<Enum>::kNames) names.emplace_back(entry.second);
+    AddChoices(
+        std::move(name), std::move(names), std::move(why),
+        [values] {
+          std::vector<std::string> present;
+          for (const Enum value : *values) present.emplace_back(EnumName(value));
+          return present;
+        },
+        [values](const std::vector<std::size_t>& indices) {
+          values->clear();
+          for (const std::size_t index : indices) values->push_back(EnumNames<Enum>::kNames[index].first);
+        });
+  }
+
   const std::vector<OptionField>& fields() const { return fields_; }
   const std::vector<std::pair<std::string, std::string>>& groups() const { return groups_; }  // name, why
   const OptionField* Find(std::string_view name) const;
@@ -76,6 +94,9 @@ class OptionTable {
  private:
   void AddChoice(std::string name, std::vector<std::string> names, std::string why, std::function<std::string()> get,
                  std::function<void(std::size_t)> set_index);
+  void AddChoices(std::string name, std::vector<std::string> names, std::string why,
+                  std::function<std::vector<std::string>()> get,
+                  std::function<void(const std::vector<std::size_t>&)> set_indices);
   void AddField(OptionField field);
 
   std::string group_;

@@ -10,6 +10,8 @@ namespace pliant {
 
 // The middle value; the mean of the two middle ones of an even count.
 double Median(std::vector<double> values);
+// The value below which `share` (0 to 1) of them lie, between the two nearest ones by their distance (NumPy's default).
+double Quantile(std::vector<double> values, double share);
 double Mean(const std::vector<double>& values);
 // By this a median of absolute errors becomes the standard deviation of a normal distribution.
 inline constexpr double kMedianToSigma = 1.4826;

@@ -1,71 +1,64 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// A run against the truth of its sequence: surface error, camera error, survival of the tracks, as values, and as a
-// table, JSON or CSV for printing. The run may come from a folder or straight from the tracker's frame reports.
+// A run against the truth of its sequence: surface error, material error, camera error, survival of the tracks, as
+// values. report.h prints them.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "pliant/base/options.h"
 #include "pliant/base/status.h"
 #include "pliant/datasets/sequence.h"
-#include "pliant/evaluation/surface_error.h"
+#include "pliant/evaluation/material_error.h"
+#include "pliant/evaluation/point_error.h"
+#include "pliant/evaluation/run_input.h"
 #include "pliant/evaluation/track_survival.h"
 #include "pliant/evaluation/trajectory_error.h"
-#include "pliant/geometry/rigid3.h"
-#include "pliant/tracking/frame_report.h"
 
 namespace pliant {
 
-// One frame of a run. Points and poses in map units, world frame.
-struct EvaluationFrame {
-  int frame_idx = 0;  // the sequence's own number
-  double timestamp_s = 0;
-  std::optional<Rigid3> cam_from_world;        // nothing: not tracked
-  std::vector<PointObservation> observations;  // sorted by id
+enum class EvaluationPart { kSurface, kMaterial, kCamera };
+
+template <>
+struct EnumNames<EvaluationPart> {
+  static constexpr std::array kNames = {std::pair{EvaluationPart::kSurface, std::string_view("surface")},
+                                        std::pair{EvaluationPart::kMaterial, std::string_view("material")},
+                                        std::pair{EvaluationPart::kCamera, std::string_view("camera")}};
 };
-
-struct EvaluationInput {
-  std::string name;                     // for messages: the run's folder
-  std::vector<EvaluationFrame> frames;  // every frame read, in order
-};
-
-// Takes over what the evaluation needs of a frame report.
-EvaluationFrame FrameFromReport(const FrameReport& report);
-
-// Reads a run folder. Other programs' results without frames.csv count their poses' frames as the frames read. Errors
-// as io's ReadRun; rows of a killed run's last, unfinished frame are left out.
-Result<EvaluationInput> ReadEvaluationInput(const std::string& run_path);
 
 struct EvaluationOptions {
-  SurfaceErrorOptions surface;
+  // None: all that the sequence has truth for, and a note where it has none. Those named are computed alone, and one
+  // that cannot be is an error.
+  std::vector<EvaluationPart> parts;
+  MatchingOptions matching;
+  PointErrorOptions points;
   TrajectoryErrorOptions trajectory;
 
-  void List(OptionTable& table);  // groups SurfaceError, TrajectoryError
+  bool Wants(EvaluationPart part) const;
+  void List(OptionTable& table);  // groups Evaluation, PointError, TrajectoryError
 };
 
 struct Evaluation {
   std::string run;
-  std::optional<SurfaceError> surface;        // where the sequence has depth
+  std::string sequence;                       // for reports; the caller's word for it, may be empty
+  std::optional<PointError> surface;          // where the sequence has depth
+  std::optional<MaterialError> material;      // where it knows its material
   std::optional<TrajectoryError> trajectory;  // where it has poses
   TrackSurvival survival;
-  std::vector<std::string> notes;  // why a part is missing, one sentence each
+  std::vector<std::string> notes;  // why a part is missing, what was left out; one sentence each
 };
 
-// Fails with kMismatch when run and sequence do not belong together (a frame that the sequence does not have, or of
-// another time: the sentence says which), kInsufficient when no frame was tracked, kNotFound when the sequence has
-// neither depth nor poses, and with what Depth reports. `sequence` is used for its truth alone: open it without
-// start, end and stride.
-Result<Evaluation> Evaluate(const EvaluationInput& run, const Sequence& sequence, const EvaluationOptions& options);
-
-// About twenty lines for a person; figures beside their null.
-std::string EvaluationTable(const Evaluation& evaluation);
-// Every figure by name; per-frame values in `frames`.
-std::string EvaluationJson(const Evaluation& evaluation);
-// One row a frame read, header first: frame, tracked, alive_of_first, surface and camera errors (empty where none).
-std::string EvaluationCsv(const Evaluation& evaluation);
+// `sequence` is used for its truth alone: open it without start, end and stride. `material` is the truth of its
+// material, not null, or why there is none. Fails with kMismatch when run and sequence do not belong together (CheckBelongsTo), kInsufficient when no frame was tracked,
+// kNotFound when the sequence has no truth at all, or not the truth for a part or a protocol that was asked for; with
+// what a part reports that was asked for, and with what the truth reports when it cannot be read.
+Result<Evaluation> Evaluate(const EvaluationInput& run, const Sequence& sequence,
+                            const Result<MaterialTruth*>& material, const EvaluationOptions& options);
 
 }  // namespace pliant

@@ -4,6 +4,7 @@
 // How long points live: an accurate figure over a handful of survivors is no tracking.
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -31,6 +32,9 @@ struct TrackSurvival {
   int last_points = 0;             // in the last tracked frame
   double mean_points = 0;          // over the tracked frames
   int last_alive_of_first = 0;     // of the first frame's points, those seen in the last tracked frame
+  // Of the first tracked frame's points the share that is seen a quarter, a half, three quarters and all of the way from
+  // there to the last frame read, or later: a point that is lost for a while and found again is alive in between.
+  std::array<double, 4> alive_shares = {0, 0, 0, 0};
   int tracks = 0;                  // different points in all
   double median_track_length = 0;  // frames in which a point was seen
   std::vector<Frame> frames;       // one a frame read

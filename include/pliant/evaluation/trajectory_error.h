@@ -1,9 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// How far the estimated camera path lies from the true one, with the definitions of the evo tools:
-//   ATE  RMSE of the camera centres after the least-squares alignment of the estimate to the truth (Umeyama, PAMI 1991)
-//   RPE  E_i = (Q_i^-1 Q_{i+d})^-1 (P_i^-1 P_{i+d}), P the aligned estimate, Q the truth; d frames apart
+// How far the estimated camera path lies from the true one, with the definitions of the evo tools (Grupp, evo, 2017;
+// github.com/MichaelGrupp/evo, notebooks/metrics.py_API_Documentation.ipynb), P the aligned estimate, Q the truth:
+//   ATE  E_i = Q_i^-1 P_i, its translation and its angle, after the least-squares alignment of the camera centres
+//        (Umeyama, PAMI 1991). As evo_ape -as (sim3) or -a (se3), with -r trans_part and -r angle_deg.
+//   RPE  E_ij = (Q_i^-1 Q_j)^-1 (P_i^-1 P_j), j = i + delta frames. Aligning changes nothing but its scale. As evo_rpe
+//        -as or -a, --delta_unit f; pairs that do not overlap are its default, all pairs are its --all_pairs.
 // Part of a scene's deformation is a gauge: what it does as a whole is absorbed by the camera, so read this beside the
 // surface error. Millimetres and degrees.
 #pragma once
@@ -32,9 +35,21 @@ struct EnumNames<TrajectoryAlignment> {
                                         std::pair{TrajectoryAlignment::kSe3, std::string_view("se3")}};
 };
 
+enum class RelativePairs {
+  kConsecutive,  // 0 to d, d to 2 d, ...
+  kAll,          // 0 to d, 1 to 1 + d, ...
+};
+
+template <>
+struct EnumNames<RelativePairs> {
+  static constexpr std::array kNames = {std::pair{RelativePairs::kConsecutive, std::string_view("consecutive")},
+                                        std::pair{RelativePairs::kAll, std::string_view("all")}};
+};
+
 struct TrajectoryErrorOptions {
   TrajectoryAlignment alignment = TrajectoryAlignment::kSim3;
   int rpe_delta = 1;  // tracked frames between the two poses of a relative error
+  RelativePairs rpe_pairs = RelativePairs::kConsecutive;
 
   void List(OptionTable& table);
 };
@@ -50,12 +65,16 @@ struct TrajectoryError {
   TrajectoryAlignment alignment = TrajectoryAlignment::kSim3;
   int poses = 0;
   double ate_rmse_mm = 0;
+  double ate_mean_mm = 0;
   double ate_median_mm = 0;
+  double ate_std_mm = 0;
+  double ate_min_mm = 0;
   double ate_max_mm = 0;
   double rotation_rmse_deg = 0;  // of the aligned estimate's rotations
   int rpe_delta = 1;
   int rpe_pairs = 0;  // 0: too short a path for an RPE
   double rpe_translation_rmse_mm = 0;
+  double rpe_translation_mean_mm = 0;
   double rpe_rotation_rmse_deg = 0;
   double true_path_length_mm = 0;  // over the frames compared
   double path_length_mm = 0;       // of the aligned estimate

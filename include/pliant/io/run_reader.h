@@ -33,7 +33,7 @@ struct RunFrame {
 };
 
 struct RunPose {
-  int frame_idx = 0;
+  std::optional<int> frame_idx;  // nothing in another program's result: its time tells the frame
   double timestamp_s = 0;
   Rigid3 world_from_cam;
 };
@@ -42,14 +42,12 @@ struct Run {
   std::optional<RunSummary> summary;  // nothing: another program's result
   std::vector<std::string> stage_names;
   std::vector<RunFrame> frames;  // empty: another program's result
-  // A pose a tracked frame. Its frame is the row of frames.csv with state `tracking`; without that file, the frame that
-  // has the same place among observations.csv's frames, whose number must then be the same.
-  std::vector<RunPose> poses;
+  std::vector<RunPose> poses;    // a pose a tracked frame; its frame is the row of frames.csv with state `tracking`
   int cut_lines = 0;  // last lines that were cut off, in trajectory.txt and frames.csv
 };
 
 // Fails with kNotFound (no folder, no trajectory.txt, no observations.csv), kUnreadable (file and line) or kMismatch
-// (poses that belong to no frame).
+// (poses that belong to no row of frames.csv).
 Result<Run> ReadRun(const std::string& path);
 
 struct FrameObservations {
@@ -57,7 +55,8 @@ struct FrameObservations {
   std::vector<PointObservation> observations;
 };
 
-// observations.csv, a frame at a time: memory does not grow with the run.
+// observations.csv, a frame at a time: memory does not grow with the run. Another program's may have no column ssim; it
+// is not a number then.
 class ObservationReader {
  public:
   // `path` is the run folder. Fails with kNotFound, or kUnreadable for a header that is not a run's.

@@ -1,0 +1,175 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include <nlohmann/json.hpp>
+
+#include "pliant/evaluation/report.h"
+
+namespace pliant {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json ToJson(const LeftOutCounts& counts) {
+  return {{"depth_step", counts.depth_step},
+          {"no_depth", counts.no_depth},
+          {"outside_image", counts.outside_image},
+          {"no_ray", counts.no_ray},
+          {"not_finite", counts.not_finite}};
+}
+
+Json ToJson(const PointSummary& s) {
+  return {{"mean_rmse_mm", s.mean_rmse_mm},
+          {"pooled_rmse_mm", s.pooled_rmse_mm},
+          {"pooled_median_mm", s.pooled_median_mm},
+          {"mean_median_mm", s.mean_median_mm},
+          {"median_relative_depth", s.median_relative_depth},
+          {"left_out_share", s.left_out_share},
+          {"min_scale", s.min_scale},
+          {"max_scale", s.max_scale}};
+}
+
+Json ToJson(const PointFigures& f) {
+  return {{"scale", f.scale},
+          {"points", f.points},
+          {"rmse_mm", f.rmse_mm},
+          {"median_mm", f.median_mm},
+          {"median_relative_depth", f.median_relative_depth}};
+}
+
+Json ToJson(const PointFrameError& frame) {
+  return {{"frame", frame.frame_idx}, {"estimate", ToJson(frame.estimate)}, {"null", ToJson(frame.null)}};
+}
+
+Json ToJson(const PointError& e) {
+  Json protocols = Json::object();
+  for (const ProtocolError& protocol : e.protocols) {
+    Json frames = Json::array();
+    for (const PointFrameError& frame : protocol.frames) frames.push_back(ToJson(frame));
+    protocols[std::string(EnumName(protocol.protocol))] = {
+        {"estimate", ToJson(protocol.estimate)}, {"null", ToJson(protocol.null)}, {"frames", frames}};
+  }
+  Json frames = Json::array();
+  for (std::size_t i = 0; i < e.plain.frames.size(); ++i) {
+    const PointFrameError& frame = e.plain.frames[i];
+    frames.push_back({{"frame", frame.frame_idx},
+                      {"points", frame.estimate.points},
+                      {"estimate", ToJson(frame.estimate)},
+                      {"null", ToJson(frame.null)},
+                      {"left_out", ToJson(e.frame_left_out[i])}});
+  }
+  return {{"scale", EnumName(e.scale)},
+          {"points", e.points},
+          {"frames_without_pair", e.frames_without_pair},
+          {"left_out", ToJson(e.left_out)},
+          {"estimate", ToJson(e.plain.estimate)},
+          {"null", ToJson(e.plain.null)},
+          {"protocols", protocols},
+          {"frames", frames}};
+}
+
+Json ToJson(const DriftFigures& d) {
+  return {{"points_px", d.points_px}, {"rmse_px", d.rmse_px}, {"median_px", d.median_px},
+          {"p95_px", d.p95_px},       {"still_median_px", d.still_median_px},
+          {"points_mm", d.points_mm}, {"rmse_mm", d.rmse_mm}, {"median_mm", d.median_mm},
+          {"p95_mm", d.p95_mm}};
+}
+
+Json ToJson(const MaterialError& e) {
+  Json json = ToJson(e.error);
+  json["drift"] = ToJson(e.drift);
+  json["tracks"] = e.tracks;
+  json["occluded"] = e.occluded;
+  json["tracks_occluded"] = e.tracks_occluded;
+  json["outside_image"] = e.outside_image;
+  json["tracks_outside_image"] = e.tracks_outside_image;
+  for (std::size_t i = 0; i < e.frames.size(); ++i) {
+    json["frames"][i]["drift"] = ToJson(e.frames[i].drift);
+    json["frames"][i]["occluded"] = e.frames[i].occluded;
+    json["frames"][i]["outside_image"] = e.frames[i].outside_image;
+  }
+  return json;
+}
+
+Json ToJson(const TrajectoryError& e) {
+  Json frames = Json::array();
+  for (std::size_t i = 0; i < e.ate_mm.size(); ++i)
+    frames.push_back({{"frame", e.frame_idx[i]}, {"ate_mm", e.ate_mm[i]}});
+  return {{"alignment", EnumName(e.alignment)},
+          {"poses", e.poses},
+          {"ate_rmse_mm", e.ate_rmse_mm},
+          {"ate_mean_mm", e.ate_mean_mm},
+          {"ate_median_mm", e.ate_median_mm},
+          {"ate_std_mm", e.ate_std_mm},
+          {"ate_min_mm", e.ate_min_mm},
+          {"ate_max_mm", e.ate_max_mm},
+          {"rotation_rmse_deg", e.rotation_rmse_deg},
+          {"rpe_delta", e.rpe_delta},
+          {"rpe_pairs", e.rpe_pairs},
+          {"rpe_translation_rmse_mm", e.rpe_translation_rmse_mm},
+          {"rpe_translation_mean_mm", e.rpe_translation_mean_mm},
+          {"rpe_rotation_rmse_deg", e.rpe_rotation_rmse_deg},
+          {"true_path_length_mm", e.true_path_length_mm},
+          {"path_length_mm", e.path_length_mm},
+          {"scale", e.truth_from_run.scale},
+          {"frames", frames}};
+}
+
+Json ToJson(const TrackSurvival& s) {
+  Json frames = Json::array();
+  for (const TrackSurvival::Frame& frame : s.frames)
+    frames.push_back({{"frame", frame.frame_idx},
+                      {"tracked", frame.tracked},
+                      {"points", frame.points},
+                      {"alive_of_first", frame.alive_of_first}});
+  return {{"frames_read", s.frames_read},
+          {"frames_tracked", s.frames_tracked},
+          {"first_points", s.first_points},
+          {"last_points", s.last_points},
+          {"mean_points", s.mean_points},
+          {"last_alive_of_first", s.last_alive_of_first},
+          {"alive_share_25", s.alive_shares[0]},
+          {"alive_share_50", s.alive_shares[1]},
+          {"alive_share_75", s.alive_shares[2]},
+          {"alive_share_100", s.alive_shares[3]},
+          {"tracks", s.tracks},
+          {"median_track_length", s.median_track_length},
+          {"frames", frames}};
+}
+
+Json ToJson(const Evaluation& evaluation) {
+  return {{"run", evaluation.run},
+          {"sequence", evaluation.sequence},
+          {"surface", evaluation.surface ? ToJson(*evaluation.surface) : Json()},
+          {"material", evaluation.material ? ToJson(*evaluation.material) : Json()},
+          {"trajectory", evaluation.trajectory ? ToJson(*evaluation.trajectory) : Json()},
+          {"survival", ToJson(evaluation.survival)},
+          {"notes", evaluation.notes}};
+}
+
+// Takes every key `frames` out, at any depth.
+void EraseFrames(Json* json) {
+  if (json->is_object()) json->erase("frames");
+  if (json->is_structured())
+    for (Json& child : *json) EraseFrames(&child);
+}
+
+std::string Print(const Json& json) {
+  // Paths need not be UTF-8.
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace
+
+std::string EvaluationJson(const Evaluation& evaluation) { return Print(ToJson(evaluation)); }
+
+std::string ComparisonJson(std::span<const Evaluation> evaluations) {
+  Json runs = Json::array();
+  for (const Evaluation& evaluation : evaluations) {
+    runs.push_back(ToJson(evaluation));
+    EraseFrames(&runs.back());
+  }
+  return Print({{"runs", runs}});
+}
+
+}  // namespace pliant

@@ -1,0 +1,87 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "evaluation/format_text.h"
+#include "pliant/evaluation/report.h"
+
+namespace pliant {
+namespace {
+
+std::string Row(const char* name, double estimate, double null) {
+  return FormatText("  %-32s %10.3f %10.3f\n", name, estimate, null);
+}
+
+std::string ProtocolRows(const ProtocolError& e) {
+  const std::string name(EnumName(e.protocol));
+  return Row((name + ": RMSE, mean over frames").c_str(), e.estimate.mean_rmse_mm, e.null.mean_rmse_mm) +
+         Row((name + ": median").c_str(), e.estimate.pooled_median_mm, e.null.pooled_median_mm) +
+         Row((name + ": left out, %").c_str(), 100 * e.estimate.left_out_share, 100 * e.null.left_out_share);
+}
+
+std::string PointTable(const char* title, const PointError& e) {
+  const PointSummary& estimate = e.plain.estimate;
+  const PointSummary& null = e.plain.null;
+  const std::string head = std::string(title) + ", mm (scale " + std::string(EnumName(e.scale)) + ")";
+  std::string text = FormatText("%-34s %10s %10s\n", head.c_str(), "estimate", "null");
+  text += Row("RMSE, mean over frames", estimate.mean_rmse_mm, null.mean_rmse_mm);
+  text += Row("RMSE, all points", estimate.pooled_rmse_mm, null.pooled_rmse_mm);
+  text += Row("median, all points", estimate.pooled_median_mm, null.pooled_median_mm);
+  text += Row("median, mean over frames", estimate.mean_median_mm, null.mean_median_mm);
+  text += Row("relative depth, median, %", 100 * estimate.median_relative_depth, 100 * null.median_relative_depth);
+  for (const ProtocolError& protocol : e.protocols)
+    if (protocol.protocol != ErrorProtocol::kPaper) text += ProtocolRows(protocol);
+  text += FormatText("  scale %.4f to %.4f; %d points in %zu frames, every one counts unless a protocol says so\n",
+                     estimate.min_scale, estimate.max_scale, e.points, e.plain.frames.size());
+  return text + "  without truth: " + Describe(e.left_out) + "\n";
+}
+
+std::string MaterialTable(const MaterialError& e) {
+  std::string text = PointTable("material error", e.error);
+  const DriftFigures& d = e.drift;
+  text += FormatText("  drift, px: median %.3f, RMSE %.3f, 95 %% below %.3f (points that stay put: median %.3f)\n",
+                     d.median_px, d.rmse_px, d.p95_px, d.still_median_px);
+  if (d.points_mm > 0)
+    text += FormatText("  drift along the surface, mm: median %.3f, RMSE %.3f, 95 %% below %.3f\n", d.median_mm,
+                       d.rmse_mm, d.p95_mm);
+  return text + FormatText(
+                    "  tracked while truly occluded: %d times, %d tracks; outside the image: %d times, %d tracks; of "
+                    "%d tracks\n",
+                    e.occluded, e.tracks_occluded, e.outside_image, e.tracks_outside_image, e.tracks);
+}
+
+std::string TrajectoryTable(const TrajectoryError& e) {
+  std::string text = FormatText("camera error (%s, %d poses)\n", std::string(EnumName(e.alignment)).c_str(), e.poses);
+  text += FormatText("  ATE RMSE %.4f mm, median %.4f, largest %.4f, over a path of %.2f mm\n", e.ate_rmse_mm,
+                     e.ate_median_mm, e.ate_max_mm, e.true_path_length_mm);
+  text += FormatText("  rotation RMSE %.4f deg\n", e.rotation_rmse_deg);
+  if (e.rpe_pairs > 0)
+    text += FormatText("  RPE over %d frame(s): %.4f mm, %.4f deg\n", e.rpe_delta, e.rpe_translation_rmse_mm,
+                       e.rpe_rotation_rmse_deg);
+  return text;
+}
+
+std::string SurvivalTable(const TrackSurvival& s) {
+  std::string text = "tracks\n";
+  text += FormatText("  frames tracked %d of %d\n", s.frames_tracked, s.frames_read);
+  text += FormatText("  points: first frame %d, last %d, mean %.1f\n", s.first_points, s.last_points, s.mean_points);
+  text += FormatText("  of the first frame's points %d live in the last;", s.last_alive_of_first);
+  text += FormatText(" alive after 25, 50, 75, 100 %% of the frames: %.0f, %.0f, %.0f, %.0f %%\n",
+                     100 * s.alive_shares[0], 100 * s.alive_shares[1], 100 * s.alive_shares[2],
+                     100 * s.alive_shares[3]);
+  text += FormatText("  %d tracks, median length %.1f frames\n", s.tracks, s.median_track_length);
+  return text;
+}
+
+}  // namespace
+
+std::string EvaluationTable(const Evaluation& evaluation) {
+  std::string text = "run " + evaluation.run + "\n";
+  if (evaluation.surface) text += PointTable("surface error", *evaluation.surface);
+  if (evaluation.material) text += MaterialTable(*evaluation.material);
+  if (evaluation.trajectory) text += TrajectoryTable(*evaluation.trajectory);
+  text += SurvivalTable(evaluation.survival);
+  for (const std::string& note : evaluation.notes) text += "note: " + note + "\n";
+  return text;
+}
+
+}  // namespace pliant
