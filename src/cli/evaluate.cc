@@ -42,20 +42,25 @@ struct Request {
   std::string output_path;
 };
 
-// Evaluates every run; a sequence that several runs in a row share is opened once. A run that cannot be evaluated is
-// told on standard error and leaves no evaluation; the others go on.
+// Evaluates every run; a sequence that several runs in a row share is opened once. A run that cannot be evaluated, and
+// a sequence that cannot be opened, is told on standard error and leaves no evaluation; the others go on.
 std::vector<std::optional<Evaluation>> EvaluateAll(const Request& request, const EvaluationOptions& options) {
-  std::vector<std::optional<Evaluation>> evaluations;
+  std::vector<std::optional<Evaluation>> evaluations(request.run_paths.size());
   std::optional<Result<OpenedTruth>> truth;
   std::string opened_path;
   for (std::size_t i = 0; i < request.run_paths.size(); ++i) {
     const std::string& sequence_path = request.sequence_paths[request.sequence_paths.size() == 1 ? 0 : i];
-    if (!truth || sequence_path != opened_path) truth = OpenTruth(sequence_path, options);
-    opened_path = sequence_path;
-    const Result<Evaluation> evaluation =
-        truth->ok() ? EvaluateRun(request.run_paths[i], **truth, options) : truth->status();
-    evaluations.push_back(evaluation.ok() ? std::optional(*evaluation) : std::nullopt);
-    if (!evaluation.ok()) SayError(kManual.command, evaluation.status().message());
+    if (!truth || sequence_path != opened_path) {
+      truth = OpenTruth(sequence_path, options);
+      opened_path = sequence_path;
+      if (!truth->ok()) SayError(kManual.command, truth->status().message());
+    }
+    if (!truth->ok()) continue;
+    Result<Evaluation> evaluation = EvaluateRun(request.run_paths[i], **truth, options);
+    if (evaluation.ok())
+      evaluations[i] = *std::move(evaluation);
+    else
+      SayError(kManual.command, evaluation.status().message());
   }
   return evaluations;
 }

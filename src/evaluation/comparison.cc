@@ -115,14 +115,13 @@ std::string ComparisonTable(std::span<const Evaluation> evaluations) {
   bool has_protocol[EnumNames<ErrorProtocol>::kNames.size()] = {};
   for (const Evaluation& e : evaluations) {
     const TrackSurvival& s = e.survival;
-    rows.push_back({e.run, FormatText("%d/%d", s.frames_tracked, s.frames_read), FormatText("%.0f", s.mean_points),
-                    FormatText("%.0f, %.0f", 100 * s.alive_shares[1], 100 * s.alive_shares[3]),
-                    PointCell(e.surface ? &e.surface->plain : nullptr),
-                    PointCell(e.material ? &e.material->error.plain : nullptr),
-                    e.material ? FormatText("%.2f", e.material->drift.median_px) : "-",
-                    e.material && e.material->drift.points_mm > 0 ? FormatText("%.3f", e.material->drift.median_mm)
-                                                                  : "-",
-                    e.trajectory ? FormatText("%.3f", e.trajectory->ate_rmse_mm) : "-"});
+    rows.push_back(
+        {e.run, FormatText("%d/%d", s.frames_tracked, s.frames_read), FormatText("%.0f", s.mean_points),
+         FormatText("%.0f, %.0f", 100 * s.alive_shares[1], 100 * s.alive_shares[3]),
+         PointCell(e.surface ? &e.surface->plain : nullptr), PointCell(e.material ? &e.material->error.plain : nullptr),
+         e.material ? FormatText("%.2f", e.material->drift.median_px) : "-",
+         e.material && e.material->drift.points_mm > 0 ? FormatText("%.3f", e.material->drift.median_mm) : "-",
+         e.trajectory ? FormatText("%.3f", e.trajectory->ate_rmse_mm) : "-"});
     if (!e.surface && !e.material) continue;
     for (const ProtocolError& protocol : e.surface ? e.surface->protocols : e.material->error.protocols)
       has_protocol[static_cast<std::size_t>(protocol.protocol)] = true;
@@ -150,7 +149,8 @@ std::string ComparisonCsv(std::span<const Evaluation> evaluations) {
   for (const Cells& cells : rows) {
     std::string line;
     for (std::size_t i = 0; i < columns.size(); ++i) {
-      const auto it = std::find_if(cells.begin(), cells.end(), [&](const auto& cell) { return cell.first == columns[i]; });
+      const auto it =
+          std::find_if(cells.begin(), cells.end(), [&](const auto& cell) { return cell.first == columns[i]; });
       line += (i == 0 ? "" : ",") + (it == cells.end() ? std::string() : it->second);
     }
     text += line + "\n";

@@ -84,23 +84,23 @@ Status ComputeParts(const CollectedTruth& truth, const Status& material_status, 
     Result<PointError> surface = truth.surface.empty()
                                      ? Result<PointError>(missing("the sequence has no depth for the tracked frames"))
                                      : ComputePointError(truth.surface, options.points);
-    if (Status status = Take(EvaluationPart::kSurface, std::move(surface), options, &evaluation->surface,
-                             &evaluation->notes);
+    if (Status status =
+            Take(EvaluationPart::kSurface, std::move(surface), options, &evaluation->surface, &evaluation->notes);
         !status.ok())
       return status;
   }
   if (options.Wants(EvaluationPart::kMaterial)) {
     Result<MaterialError> material =
         truth.material ? truth.material->Compute(options.points) : Result<MaterialError>(material_status);
-    if (Status status = Take(EvaluationPart::kMaterial, std::move(material), options, &evaluation->material,
-                             &evaluation->notes);
+    if (Status status =
+            Take(EvaluationPart::kMaterial, std::move(material), options, &evaluation->material, &evaluation->notes);
         !status.ok())
       return status;
   }
   if (options.Wants(EvaluationPart::kCamera)) {
-    Result<TrajectoryError> trajectory = truth.poses.empty()
-                                             ? Result<TrajectoryError>(missing("the sequence has no pose for the tracked frames"))
-                                             : ComputeTrajectoryError(truth.poses, options.trajectory);
+    Result<TrajectoryError> trajectory =
+        truth.poses.empty() ? Result<TrajectoryError>(missing("the sequence has no pose for the tracked frames"))
+                            : ComputeTrajectoryError(truth.poses, options.trajectory);
     return Take(EvaluationPart::kCamera, std::move(trajectory), options, &evaluation->trajectory, &evaluation->notes);
   }
   return Status::Ok();

@@ -105,8 +105,7 @@ double Threshold(std::vector<double> errors, ErrorProtocol protocol, const Proto
   if (protocol == ErrorProtocol::kPaper || n < 2) return std::numeric_limits<double>::infinity();
   const auto middle = static_cast<std::ptrdiff_t>(n / 2);
   std::nth_element(errors.begin(), errors.begin() + middle, errors.end());
-  const double sigma =
-      kMedianToSigma * (1 + 5 / static_cast<double>(n - 1)) * errors[static_cast<std::size_t>(middle)];
+  const double sigma = kMedianToSigma * (1 + 5 / static_cast<double>(n - 1)) * errors[static_cast<std::size_t>(middle)];
   return std::max(options.inlier_sigmas * sigma, kRounding_mm);
 }
 

@@ -51,11 +51,10 @@ void AddPoints(const PointError* error, const std::string& prefix, FrameTable* t
   if (error == nullptr) return;
   for (std::size_t i = 0; i < error->plain.frames.size(); ++i) {
     const PointFrameError& frame = error->plain.frames[i];
-    table->Set(frame.frame_idx,
-               {std::to_string(frame.estimate.points), std::to_string(error->frame_left_out[i].Total()),
-                FormatDouble(frame.estimate.scale), FormatDouble(frame.estimate.rmse_mm),
-                FormatDouble(frame.estimate.median_mm), FormatDouble(frame.null.rmse_mm),
-                FormatDouble(frame.null.median_mm)});
+    table->Set(frame.frame_idx, {std::to_string(frame.estimate.points),
+                                 std::to_string(error->frame_left_out[i].Total()), FormatDouble(frame.estimate.scale),
+                                 FormatDouble(frame.estimate.rmse_mm), FormatDouble(frame.estimate.median_mm),
+                                 FormatDouble(frame.null.rmse_mm), FormatDouble(frame.null.median_mm)});
   }
 }
 
@@ -71,8 +70,8 @@ void AddProtocols(const PointError& error, const std::string& prefix, FrameTable
 }
 
 void AddDrift(const MaterialError* error, FrameTable* table) {
-  table->AddColumns({"drift_median_px", "drift_rmse_px", "drift_median_mm", "drift_rmse_mm", "occluded",
-                     "outside_image"});
+  table->AddColumns(
+      {"drift_median_px", "drift_rmse_px", "drift_median_mm", "drift_rmse_mm", "occluded", "outside_image"});
   if (error == nullptr) return;
   for (const MaterialFrameDrift& frame : error->frames)
     table->Set(frame.frame_idx, {FormatDouble(frame.drift.median_px), FormatDouble(frame.drift.rmse_px),

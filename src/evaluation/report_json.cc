@@ -69,9 +69,14 @@ Json ToJson(const PointError& e) {
 }
 
 Json ToJson(const DriftFigures& d) {
-  return {{"points_px", d.points_px}, {"rmse_px", d.rmse_px}, {"median_px", d.median_px},
-          {"p95_px", d.p95_px},       {"still_median_px", d.still_median_px},
-          {"points_mm", d.points_mm}, {"rmse_mm", d.rmse_mm}, {"median_mm", d.median_mm},
+  return {{"points_px", d.points_px},
+          {"rmse_px", d.rmse_px},
+          {"median_px", d.median_px},
+          {"p95_px", d.p95_px},
+          {"still_median_px", d.still_median_px},
+          {"points_mm", d.points_mm},
+          {"rmse_mm", d.rmse_mm},
+          {"median_mm", d.median_mm},
           {"p95_mm", d.p95_mm}};
 }
 

@@ -65,9 +65,9 @@ std::string SurvivalTable(const TrackSurvival& s) {
   text += FormatText("  frames tracked %d of %d\n", s.frames_tracked, s.frames_read);
   text += FormatText("  points: first frame %d, last %d, mean %.1f\n", s.first_points, s.last_points, s.mean_points);
   text += FormatText("  of the first frame's points %d live in the last;", s.last_alive_of_first);
-  text += FormatText(" alive after 25, 50, 75, 100 %% of the frames: %.0f, %.0f, %.0f, %.0f %%\n",
-                     100 * s.alive_shares[0], 100 * s.alive_shares[1], 100 * s.alive_shares[2],
-                     100 * s.alive_shares[3]);
+  text +=
+      FormatText(" alive after 25, 50, 75, 100 %% of the frames: %.0f, %.0f, %.0f, %.0f %%\n", 100 * s.alive_shares[0],
+                 100 * s.alive_shares[1], 100 * s.alive_shares[2], 100 * s.alive_shares[3]);
   text += FormatText("  %d tracks, median length %.1f frames\n", s.tracks, s.median_track_length);
   return text;
 }

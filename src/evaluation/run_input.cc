@@ -27,7 +27,7 @@ EvaluationFrame& FrameAt(int frame_idx, double timestamp_s, FrameMap* frames) {
   return frame;
 }
 
-std::string Seconds(double value) { return FormatDouble(value) + " s"; }
+std::string Seconds(double value) { return FormatDouble(std::round(1e6 * value) / 1e6) + " s"; }
 
 // The frame nearest in time to each pose; of two poses near the same frame the nearer one.
 Status GivePosesFrames(const std::string& name, const std::vector<RunPose>& poses, const Sequence& sequence,
@@ -40,8 +40,8 @@ Status GivePosesFrames(const std::string& name, const std::vector<RunPose>& pose
   std::map<int, std::pair<double, const RunPose*>> nearest;  // by frame number
   for (const RunPose& pose : poses) {
     auto after = frame_at.lower_bound(pose.timestamp_s);
-    if (after == frame_at.end() || (after != frame_at.begin() && pose.timestamp_s - std::prev(after)->first <
-                                                                     after->first - pose.timestamp_s))
+    if (after == frame_at.end() ||
+        (after != frame_at.begin() && pose.timestamp_s - std::prev(after)->first < after->first - pose.timestamp_s))
       --after;
     const double difference_s = std::abs(after->first - pose.timestamp_s);
     if (difference_s > max_difference_s) continue;
@@ -49,11 +49,11 @@ Status GivePosesFrames(const std::string& name, const std::vector<RunPose>& pose
     if (!is_new && difference_s < it->second.first) it->second = {difference_s, &pose};
   }
   if (nearest.empty() && !poses.empty())
-    return {ErrorCode::kMismatch,
-            "no pose of " + name + " is within " + Seconds(max_difference_s) + " of a frame: its times go from " +
-                Seconds(poses.front().timestamp_s) + " to " + Seconds(poses.back().timestamp_s) +
-                ", the sequence's from " + Seconds(frame_at.begin()->first) + " to " +
-                Seconds(frame_at.rbegin()->first) + "; write times in seconds of the sequence's clock"};
+    return {ErrorCode::kMismatch, "no pose of " + name + " is within " + Seconds(max_difference_s) +
+                                      " of a frame: its times go from " + Seconds(poses.front().timestamp_s) + " to " +
+                                      Seconds(poses.back().timestamp_s) + ", the sequence's from " +
+                                      Seconds(frame_at.begin()->first) + " to " + Seconds(frame_at.rbegin()->first) +
+                                      "; write times in seconds of the sequence's clock"};
   for (const auto& [frame_idx, match] : nearest)
     FrameAt(frame_idx, *sequence.TimestampS(frame_idx), frames).cam_from_world = match.second->world_from_cam.Inverse();
   if (nearest.size() < poses.size())
@@ -156,8 +156,7 @@ Result<EvaluationInput> ReadEvaluationInput(const std::string& run_path, const S
   for (const RunFrame& row : run->frames) FrameAt(row.frame_idx, row.timestamp_s, &frames);
   const bool foreign = run->frames.empty() && !run->summary;
   if (foreign) {
-    if (Status status =
-            GivePosesFrames(run_path, run->poses, sequence, options.max_time_difference_s, &input, &frames);
+    if (Status status = GivePosesFrames(run_path, run->poses, sequence, options.max_time_difference_s, &input, &frames);
         !status.ok())
       return status;
   } else {

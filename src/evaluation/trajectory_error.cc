@@ -90,7 +90,8 @@ Result<TrajectoryError> ComputeTrajectoryError(std::span<const PosePair> pairs, 
   }
   error.ate_rmse_mm = Rms(error.ate_mm);
   error.ate_mean_mm = Mean(error.ate_mm);
-  error.ate_std_mm = std::sqrt(std::max(0.0, error.ate_rmse_mm * error.ate_rmse_mm - error.ate_mean_mm * error.ate_mean_mm));
+  error.ate_std_mm =
+      std::sqrt(std::max(0.0, error.ate_rmse_mm * error.ate_rmse_mm - error.ate_mean_mm * error.ate_mean_mm));
   error.ate_min_mm = *std::min_element(error.ate_mm.begin(), error.ate_mm.end());
   error.ate_median_mm = Median(error.ate_mm);
   error.ate_max_mm = *std::max_element(error.ate_mm.begin(), error.ate_mm.end());

@@ -50,7 +50,7 @@ std::string ParseRow(std::string_view line, std::string_view columns, Row* row) 
 struct ObservationReader::State {
   LineReader lines;
   std::string_view columns;
-  bool ours = false;         // ours end every line, so an open one was cut
+  bool ours = false;                        // ours end every line, so an open one was cut
   std::optional<Row> ahead = std::nullopt;  // the next frame's first row
   int last_frame_idx = -1;
   int cut_lines = 0;
@@ -87,7 +87,8 @@ Result<std::optional<FrameObservations>> ObservationReader::Next() {
       break;
     }
     Row row;
-    if (const std::string wrong = ParseRow(line, state_->columns, &row); !wrong.empty()) return state_->lines.Error(wrong);
+    if (const std::string wrong = ParseRow(line, state_->columns, &row); !wrong.empty())
+      return state_->lines.Error(wrong);
     if (frame && row.frame_idx == frame->frame_idx) {
       if (!(row.observation.id > frame->observations.back().id))
         return state_->lines.Error("point " + std::to_string(row.observation.id.value) +

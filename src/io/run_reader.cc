@@ -72,8 +72,7 @@ Status NumberPoses(const std::string& path, Run* run) {
   for (const RunFrame& frame : run->frames)
     if (frame.state == TrackingState::kTracking) frame_idxs.push_back(frame.frame_idx);
   // A frame's row in frames.csv is written last: a killed run may have a pose or two more than rows.
-  const bool belong =
-      run->summary ? run->poses.size() >= frame_idxs.size() : run->poses.size() == frame_idxs.size();
+  const bool belong = run->summary ? run->poses.size() >= frame_idxs.size() : run->poses.size() == frame_idxs.size();
   if (!belong)
     return {ErrorCode::kMismatch, "the folder " + Quoted(path) + " has " + std::to_string(run->poses.size()) +
                                       " poses in trajectory.txt for " + std::to_string(frame_idxs.size()) +

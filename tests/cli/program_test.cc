@@ -235,6 +235,73 @@ TEST(Program, OneFrameAndManyThreadsAreOneSentenceEach) {
   EXPECT_EQ(std::count(threads.err.begin(), threads.err.end(), '\n'), 1) << threads.err;
 }
 
+// A result as another system would leave it, of a camera that moves along x, with one point.
+std::string ForeignResult(const std::string& name, int frames) {
+  const std::filesystem::path folder = Temporary(name);
+  std::filesystem::create_directories(folder);
+  std::ofstream trajectory(folder / "trajectory.txt");
+  std::ofstream observations(folder / "observations.csv");
+  observations << "frame,point_id,u_px,v_px,x,y,z\n";
+  for (int i = 0; i < frames; ++i) {
+    trajectory << i / 30.0 << " " << i << " 0 0 0 0 0 1\n";
+    observations << i << ",1,30,20,0,0,40\n";
+  }
+  return folder.string();
+}
+
+TEST(Program, EvaluateComparesRunsOfOtherSystemsSideBySide) {
+  const std::string sequence = Temporary("seq").string();
+  ASSERT_EQ(Pliant("simulate --quiet --Trajectory.frames 4" + kCoarse + "--output_path '" + sequence + "'").exit, 0);
+  const std::string a = ForeignResult("a", 4);
+  const std::string b = ForeignResult("b", 3);
+  const std::string out = Temporary("out").string();
+  const Outcome both = Pliant("evaluate --run '" + a + "' --run '" + b + "' --sequence '" + sequence +
+                              "' --protocol all --output_path '" + out + "'");
+  ASSERT_EQ(both.exit, 0) << both.err;
+  EXPECT_THAT(both.out, HasSubstr(a));
+  EXPECT_THAT(both.out, HasSubstr("3/3"));
+  EXPECT_THAT(both.out, HasSubstr("lmeds, RMSE mm (null)"));
+  EXPECT_THAT(ReadText(out + "/comparison.csv"), HasSubstr("surface_lmeds_mean_rmse_mm"));
+  EXPECT_THAT(ReadText(out + "/comparison.json"), HasSubstr("\"material\": {"));
+  EXPECT_THAT(ReadText(out + "/1/evaluation.csv"), StartsWith("frame,tracked,points,"));
+
+  const Outcome one = Pliant("evaluate --run '" + a + "' --sequence '" + sequence + "' --parts material");
+  EXPECT_EQ(one.exit, 0) << one.err;
+  EXPECT_THAT(one.out, HasSubstr("drift, px"));
+  EXPECT_THAT(one.out, testing::Not(HasSubstr("surface error")));
+
+  // One that is not there does not keep the other from its row.
+  const Outcome half = Pliant("evaluate --run '" + a + "' --run '" + b + "x' --sequence '" + sequence + "'");
+  EXPECT_EQ(half.exit, 1);
+  EXPECT_THAT(half.err, HasSubstr(b + "x"));
+  EXPECT_EQ(std::count(half.err.begin(), half.err.end(), '\n'), 1) << half.err;
+  EXPECT_THAT(half.out, HasSubstr("4/4"));
+
+  const Outcome pairs = Pliant("evaluate --run a --run b --run c --sequence d --sequence e");
+  EXPECT_EQ(pairs.exit, 2);
+  EXPECT_EQ(pairs.err,
+            "pliant evaluate: --sequence is given 2 times for 3 runs; give one for all of them, or one for each\n");
+}
+
+TEST(Program, EvaluateSaysInOneSentenceThatThereIsNoTruthForWhatWasAsked) {
+  const std::string sequence = Temporary("seq").string();
+  ASSERT_EQ(Pliant("simulate --quiet --Trajectory.frames 4" + kCoarse + "--output_path '" + sequence + "'").exit, 0);
+  const std::string evaluate = "evaluate --run '" + ForeignResult("a", 4) + "' --sequence '" + sequence + "' ";
+  std::filesystem::remove(sequence + "/simulation.yaml");
+  const Outcome material = Pliant(evaluate + "--parts material");
+  EXPECT_EQ(material.exit, 1);
+  EXPECT_THAT(material.err, StartsWith("pliant evaluate: no material error: "));
+  EXPECT_THAT(material.err, HasSubstr("simulation.yaml"));
+  EXPECT_EQ(Pliant(evaluate).exit, 0);
+  std::filesystem::remove_all(sequence + "/depth");
+  const Outcome surface = Pliant(evaluate + "--parts surface");
+  EXPECT_EQ(surface.exit, 1);
+  EXPECT_EQ(surface.err, "pliant evaluate: no surface error: the sequence has no depth for the tracked frames\n");
+  const Outcome protocol = Pliant(evaluate + "--protocol depth_trimmed");
+  EXPECT_EQ(protocol.exit, 1);
+  EXPECT_THAT(protocol.err, StartsWith("pliant evaluate: the protocol depth_trimmed compares points"));
+}
+
 TEST(Program, ADeviceIsNoCalibration) {
   const std::string sequence = Temporary("seq").string();
   ASSERT_EQ(Pliant("simulate --quiet --Trajectory.frames 1" + kCoarse + "--output_path '" + sequence + "'").exit, 0);

@@ -3,6 +3,7 @@
 
 #include "pliant/evaluation/trajectory_error.h"
 
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -66,6 +67,9 @@ TEST(TrajectoryError, MatchesACaseWorkedByHand) {
   EXPECT_NEAR(sim3->ate_rmse_mm, std::sqrt(0.1), kRounding);
   EXPECT_NEAR(sim3->ate_median_mm, 0.3, kRounding);
   EXPECT_NEAR(sim3->ate_max_mm, 0.4, kRounding);
+  EXPECT_NEAR(sim3->ate_min_mm, 0.2, kRounding);
+  EXPECT_NEAR(sim3->ate_mean_mm, 0.3, kRounding);
+  EXPECT_NEAR(sim3->ate_std_mm, 0.1, kRounding);
   EXPECT_NEAR(sim3->true_path_length_mm, 3 * std::sqrt(2.0), kRounding);
   const auto se3 = ComputeTrajectoryError(pairs, {.alignment = TrajectoryAlignment::kSe3});
   ASSERT_TRUE(se3.ok());
@@ -86,11 +90,35 @@ TEST(TrajectoryError, RelativeErrorSeesOneTurnedPoseTwice) {
   EXPECT_LT(far->rpe_rotation_rmse_deg, 1e-6);
 }
 
+// One pose of ten turned in place. Of all pairs four frames apart it spoils two; of those that do not overlap, 0 to 4
+// and 4 to 8, both if it is where they meet, none if it is beside.
+TEST(TrajectoryError, RelativePairsOverlapOnlyWhereAskedTo) {
+  const auto spoiled = [](std::size_t turned, RelativePairs rpe_pairs) {
+    std::vector<PosePair> pairs = MovedPath({1, Eigen::Quaterniond::Identity(), {0, 0, 0}});
+    pairs.resize(10);
+    pairs[turned].world_from_cam.rotation = pairs[turned].world_from_cam.rotation * RotationExp({0, 0, 0.1});
+    const auto error = ComputeTrajectoryError(pairs, {.rpe_delta = 4, .rpe_pairs = rpe_pairs});
+    EXPECT_EQ(error->rpe_pairs, rpe_pairs == RelativePairs::kAll ? 6 : 2);
+    return error->rpe_rotation_rmse_deg / (0.1 * kDegPerRad);
+  };
+  EXPECT_NEAR(spoiled(4, RelativePairs::kConsecutive), 1, 1e-6);
+  EXPECT_NEAR(spoiled(5, RelativePairs::kConsecutive), 0, 1e-6);
+  EXPECT_NEAR(spoiled(5, RelativePairs::kAll), std::sqrt(2.0 / 6), 1e-6);
+}
+
 TEST(TrajectoryError, RefusesTooFewPosesAndACameraThatStandsStill) {
   std::vector<PosePair> pairs = MovedPath({1, Eigen::Quaterniond::Identity(), {0, 0, 0}});
   EXPECT_EQ(ComputeTrajectoryError(std::span(pairs).first(2), {}).status().code(), ErrorCode::kInsufficient);
   for (PosePair& pair : pairs) pair.true_world_from_cam.translation.setConstant(3);
   EXPECT_EQ(ComputeTrajectoryError(pairs, {}).status().code(), ErrorCode::kDegenerate);
+}
+
+TEST(TrackSurvival, APointThatIsFoundAgainWasAliveInBetween) {
+  const std::vector<FrameTracks> frames = {
+      {0, true, {{0}, {1}}}, {1, true, {{0}}}, {2, false, {}}, {3, true, {{0}}}, {4, true, {{0}, {1}}}};
+  const TrackSurvival survival = ComputeTrackSurvival(frames);
+  EXPECT_EQ(survival.alive_shares, (std::array<double, 4>{1, 1, 1, 1}));
+  EXPECT_EQ(survival.frames[3].alive_of_first, 1);
 }
 
 TEST(TrackSurvival, CountsPointsTracksAndFrames) {
@@ -114,6 +142,8 @@ TEST(TrackSurvival, CountsPointsTracksAndFrames) {
   EXPECT_EQ(survival.tracks, 5);
   EXPECT_EQ(survival.median_track_length, 2);  // lengths 2, 1, 2, 3, 2
   EXPECT_EQ(survival.frames[2].alive_of_first, 3);
+  // Frames 4 to 7: places 1, 2, 2 and 3 of the way (0.75, 1.5, 2.25 and 3 frames, rounded).
+  EXPECT_EQ(survival.alive_shares, (std::array<double, 4>{0.75, 0.25, 0.25, 0}));
 }
 
 }  // namespace

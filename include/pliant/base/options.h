@@ -62,7 +62,8 @@ class OptionTable {
         [value](std::size_t index) { *value = EnumNames<Enum>::kNames[index].first; });
   }
 
-  // Any number of them: "one,another", "all" for every one, empty for none. They are kept in the enum's order, each once.
+  // Any number of them: "one,another", "all" for every one, empty for none. They are kept in the enum's order, each
+  // once.
   template <class Enum>
   void AddChoices(std::string name, std::vector<Enum>* values, std::string why) {
     std::vector<std::string> names;

@@ -55,9 +55,10 @@ struct Evaluation {
 };
 
 // `sequence` is used for its truth alone: open it without start, end and stride. `material` is the truth of its
-// material, not null, or why there is none. Fails with kMismatch when run and sequence do not belong together (CheckBelongsTo), kInsufficient when no frame was tracked,
-// kNotFound when the sequence has no truth at all, or not the truth for a part or a protocol that was asked for; with
-// what a part reports that was asked for, and with what the truth reports when it cannot be read.
+// material, not null, or why there is none. Fails with kMismatch when run and sequence do not belong together
+// (CheckBelongsTo), kInsufficient when no frame was tracked, kNotFound when the sequence has no truth at all, or not
+// the truth for a part or a protocol that was asked for; with what a part reports that was asked for, and with what the
+// truth reports when it cannot be read.
 Result<Evaluation> Evaluate(const EvaluationInput& run, const Sequence& sequence,
                             const Result<MaterialTruth*>& material, const EvaluationOptions& options);
 

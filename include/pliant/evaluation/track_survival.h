@@ -28,12 +28,12 @@ struct TrackSurvival {
   };
   int frames_read = 0;
   int frames_tracked = 0;
-  int first_points = 0;            // in the first tracked frame
-  int last_points = 0;             // in the last tracked frame
-  double mean_points = 0;          // over the tracked frames
-  int last_alive_of_first = 0;     // of the first frame's points, those seen in the last tracked frame
-  // Of the first tracked frame's points the share that is seen a quarter, a half, three quarters and all of the way from
-  // there to the last frame read, or later: a point that is lost for a while and found again is alive in between.
+  int first_points = 0;         // in the first tracked frame
+  int last_points = 0;          // in the last tracked frame
+  double mean_points = 0;       // over the tracked frames
+  int last_alive_of_first = 0;  // of the first frame's points, those seen in the last tracked frame
+  // Of the first tracked frame's points the share that is seen a quarter, a half, three quarters and all of the way
+  // from there to the last frame read, or later: a point that is lost for a while and found again is alive in between.
   std::array<double, 4> alive_shares = {0, 0, 0, 0};
   int tracks = 0;                  // different points in all
   double median_track_length = 0;  // frames in which a point was seen

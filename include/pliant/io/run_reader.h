@@ -43,7 +43,7 @@ struct Run {
   std::vector<std::string> stage_names;
   std::vector<RunFrame> frames;  // empty: another program's result
   std::vector<RunPose> poses;    // a pose a tracked frame; its frame is the row of frames.csv with state `tracking`
-  int cut_lines = 0;  // last lines that were cut off, in trajectory.txt and frames.csv
+  int cut_lines = 0;             // last lines that were cut off, in trajectory.txt and frames.csv
 };
 
 // Fails with kNotFound (no folder, no trajectory.txt, no observations.csv), kUnreadable (file and line) or kMismatch

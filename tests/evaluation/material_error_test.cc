@@ -1,0 +1,113 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/evaluation/material_error.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "evaluation/truth_sequence.h"
+
+namespace pliant {
+namespace {
+
+constexpr double kRounding = 1e-9;  // of lengths of about 100 mm
+constexpr int kFrames = 6;
+
+// Points that start at `first` in frame 0 and are tracked `slide_px` a frame beside their material; estimates are the
+// true surface under the tracked pixel divided by `scale`.
+Status AddFrames(const TruthSequence& sequence, const WallMaterial& wall, const std::vector<Eigen::Vector2d>& first,
+                 const Eigen::Vector2d& slide_px, double scale, MaterialErrorCollector* collector) {
+  for (int frame_idx = 0; frame_idx < kFrames; ++frame_idx) {
+    std::vector<TrackedPoint> points;
+    for (std::size_t i = 0; i < first.size(); ++i) {
+      const Eigen::Vector2d pixel = WallMaterial::PixelIn(frame_idx, 0, first[i]) + frame_idx * slide_px;
+      points.push_back({PointId{static_cast<int>(i)}, pixel, wall.PointIn(frame_idx, pixel) / scale});
+    }
+    if (Status status = collector->AddFrame(frame_idx, points, **sequence.Depth(frame_idx)); !status.ok())
+      return status;
+  }
+  return Status::Ok();
+}
+
+class MaterialErrorTest : public testing::Test {
+ protected:
+  Result<MaterialError> Compute(const std::vector<Eigen::Vector2d>& first, const Eigen::Vector2d& slide_px,
+                                double scale) {
+    MaterialErrorCollector collector(wall_, sequence_.camera(), 0.05);
+    if (Status status = AddFrames(sequence_, wall_, first, slide_px, scale, &collector); !status.ok()) return status;
+    return collector.Compute({});
+  }
+
+  TruthSequence sequence_{kFrames};
+  WallMaterial wall_{sequence_};
+  std::vector<Eigen::Vector2d> pixels_ = {{10, 10}, {30.5, 12.25}, {20, 30}, {40, 20.75}};
+};
+
+TEST_F(MaterialErrorTest, IsZeroForPointsThatStayOnTheirMaterial) {
+  const auto error = Compute(pixels_, {0, 0}, 2);
+  ASSERT_TRUE(error.ok()) << error.status().message();
+  EXPECT_LT(error->error.plain.estimate.pooled_rmse_mm, kRounding);
+  EXPECT_NEAR(error->error.plain.estimate.max_scale, 2, kRounding);
+  EXPECT_GT(error->error.plain.null.pooled_rmse_mm, 1);
+  EXPECT_LT(error->drift.rmse_px, kRounding);
+  EXPECT_LT(error->drift.rmse_mm, kRounding);
+  EXPECT_EQ(error->tracks, 4);
+  EXPECT_EQ(error->error.points, 4 * kFrames);
+}
+
+// They are on the surface all the time: the surface error is none, the material error is all drift.
+TEST_F(MaterialErrorTest, TellsDriftAlongTheSurfaceFromShape) {
+  const Eigen::Vector2d slide_px(0.3, 0.4);
+  const auto error = Compute(pixels_, slide_px, 1);
+  ASSERT_TRUE(error.ok());
+  EXPECT_GT(error->error.plain.estimate.pooled_rmse_mm, 0.5);
+  ASSERT_EQ(error->frames.size(), static_cast<std::size_t>(kFrames));
+  for (int i = 0; i < kFrames; ++i) {
+    EXPECT_NEAR(error->frames[static_cast<std::size_t>(i)].drift.median_px, 0.5 * i, kRounding);
+    EXPECT_NEAR(error->frames[static_cast<std::size_t>(i)].drift.rmse_px, 0.5 * i, kRounding);
+  }
+  // 0.5 px a frame at a focal length of 60 px and some 50 mm.
+  EXPECT_NEAR(error->frames.back().drift.median_mm, 2.5 / 60 * 52, 0.5);
+  EXPECT_NEAR(error->drift.median_px, 1.25, kRounding);
+  // Points that stay put are off by the material's own motion, (0.5, 0.25) px a frame.
+  EXPECT_NEAR(error->drift.still_median_px, 2.5 * std::hypot(0.5, 0.25), kRounding);
+}
+
+TEST_F(MaterialErrorTest, CountsPointsTrackedWhoseMaterialHasLeftTheImage) {
+  const auto error = Compute({{61.25, 20}, {20, 20}}, {-0.5, 0}, 1);  // the first leaves in truth after frame 3
+  ASSERT_TRUE(error.ok());
+  EXPECT_EQ(error->outside_image, 2);
+  EXPECT_EQ(error->tracks_outside_image, 1);
+  EXPECT_EQ(error->frames[3].outside_image, 0);
+  EXPECT_EQ(error->frames[4].outside_image, 1);
+  EXPECT_EQ(error->occluded, 0);
+}
+
+TEST_F(MaterialErrorTest, LeavesOutTracksThatStartWhereThereIsNoMaterialPoint) {
+  MaterialErrorCollector collector(wall_, sequence_.camera(), 0.05);
+  cv::Mat_<float> step(48, 64, 50.0F);
+  step(cv::Rect(32, 0, 32, 48)) = 60.0F;
+  const auto at = [](int id, double u, double v) {
+    return TrackedPoint{PointId{id}, {u, v}, Eigen::Vector3d(0, 0, 50)};
+  };
+  ASSERT_TRUE(collector.AddFrame(0, std::vector{at(0, 31.5, 20), at(1, -1, 20), at(2, 10, 10)}, step).ok());
+  // Where a track goes later does not matter.
+  ASSERT_TRUE(collector.AddFrame(1, std::vector{at(0, 10, 20), at(1, 10, 20), at(2, 31.5, 10)}, step).ok());
+  const auto error = collector.Compute({});
+  ASSERT_TRUE(error.ok());
+  EXPECT_EQ(error->error.points, 2);
+  EXPECT_EQ(error->error.left_out.depth_step, 2);
+  EXPECT_EQ(error->error.left_out.outside_image, 2);
+  EXPECT_EQ(error->tracks, 1);
+  EXPECT_EQ(error->drift.points_px, 2);
+  EXPECT_EQ(error->drift.points_mm, 1);  // on the step there is no surface to drift along
+}
+
+TEST_F(MaterialErrorTest, NeedsATrackWithAMaterialPoint) {
+  MaterialErrorCollector collector(wall_, sequence_.camera(), 0.05);
+  EXPECT_EQ(collector.Compute({}).status().code(), ErrorCode::kInsufficient);
+}
+
+}  // namespace
+}  // namespace pliant
