@@ -30,9 +30,14 @@ std::string PointTable(const char* title, const PointError& e) {
   text += Row("relative depth, median, %", 100 * estimate.median_relative_depth, 100 * null.median_relative_depth);
   for (const ProtocolError& protocol : e.protocols)
     if (protocol.protocol != ErrorProtocol::kPaper) text += ProtocolRows(protocol);
-  text += FormatText("  scale %.4f to %.4f; %d points in %zu frames, every one counts unless a protocol says so\n",
-                     estimate.min_scale, estimate.max_scale, e.points, e.plain.frames.size());
-  return text + "  without truth: " + Describe(e.left_out) + "\n";
+  text +=
+      FormatText("  scale %.4f to %.4f; %d points in %zu frames; the RMSE and medians above leave none of them out\n",
+                 estimate.min_scale, estimate.max_scale, e.points, e.plain.frames.size());
+  const int observations = e.points + e.left_out.Total();
+  return text +
+         FormatText("  without truth: %.1f %% of %d observations: ", 100.0 * e.left_out.Total() / observations,
+                    observations) +
+         Describe(e.left_out) + "\n";
 }
 
 std::string MaterialTable(const MaterialError& e) {
