@@ -8,7 +8,7 @@ namespace pliant {
 namespace {
 
 std::string Row(const char* name, double estimate, double null) {
-  return FormatText("  %-32s %10.3f %10.3f\n", name, estimate, null);
+  return FormatText("  %-38s %10.3f %10.3f\n", name, estimate, null);
 }
 
 std::string ProtocolRows(const ProtocolError& e) {
@@ -22,7 +22,7 @@ std::string PointTable(const char* title, const PointError& e) {
   const PointSummary& estimate = e.plain.estimate;
   const PointSummary& null = e.plain.null;
   const std::string head = std::string(title) + ", mm (scale " + std::string(EnumName(e.scale)) + ")";
-  std::string text = FormatText("%-34s %10s %10s\n", head.c_str(), "estimate", "null");
+  std::string text = FormatText("%-40s %10s %10s\n", head.c_str(), "estimate", "null");
   text += Row("RMSE, mean over frames", estimate.mean_rmse_mm, null.mean_rmse_mm);
   text += Row("RMSE, all points", estimate.pooled_rmse_mm, null.pooled_rmse_mm);
   text += Row("median, all points", estimate.pooled_median_mm, null.pooled_median_mm);
