@@ -33,6 +33,9 @@ struct Outcome {
 std::filesystem::path Temporary(const std::string& name) {
   const testing::TestInfo* test = testing::UnitTest::GetInstance()->current_test_info();
   const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "pliant_program_test" / test->name();
+  static std::string started;  // the test whose folder was emptied, of what an earlier run left
+  if (started != test->name()) std::filesystem::remove_all(folder);
+  started = test->name();
   std::filesystem::create_directories(folder);
   return folder / name;
 }
