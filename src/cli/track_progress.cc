@@ -10,7 +10,15 @@ namespace pliant::cli {
 
 void TrackProgress::OnStart(int frames) { progress_.emplace(std::cerr, style_, "track", frames); }
 
+// A frame that was shown when it was processed is not shown again when its report is final.
 void TrackProgress::OnFrame(const FrameReport& report) {
+  if (report.frame_idx > shown_frame_idx_) Show(report);
+}
+
+void TrackProgress::OnHeld(const FrameReport& report) { Show(report); }
+
+void TrackProgress::Show(const FrameReport& report) {
+  shown_frame_idx_ = report.frame_idx;
   if (report.state != state_) {
     progress_->Note("frame " + report.name + ": " + std::string(EnumName(report.state)) +
                     (report.note.empty() ? "" : " (" + report.note + ")"));

@@ -16,12 +16,16 @@ class TrackProgress : public TrackObserver {
   explicit TrackProgress(ProgressStyle style) : style_(style) {}
   void OnStart(int frames) override;
   void OnFrame(const FrameReport& report) override;
+  void OnHeld(const FrameReport& report) override;
 
  private:
+  void Show(const FrameReport& report);
+
   ProgressStyle style_;
   std::optional<Progress> progress_;
   TrackingState state_ = TrackingState::kWaitingForReference;
   int done_ = 0;
+  int shown_frame_idx_ = -1;  // the last one
 };
 
 }  // namespace pliant::cli

@@ -46,29 +46,30 @@ struct Ending {
   std::string note;
 };
 
-Ending TrackSequence(Sequence& sequence, const RunRequest& request, const TrackOptions& options, TrackingTruth* truth,
-                     RunWriter& writer, std::span<TrackObserver* const> observers) {
-  Tracker tracker(sequence.camera(), options.tracker, static_cast<std::uint64_t>(options.seed), options.threads, truth);
-  // Once there is a map no depth image is read any more; those read ahead in the meantime change nothing.
-  std::atomic<bool> wants_depth = tracker.WantsDepth();
-  Prefetcher<Result<ReadFrame>> frames([&] { return NextFrame(sequence, options.tracker, wants_depth); },
-                                       options.threads > 1 ? kFramesAhead : 0);
-  std::string last_note = "the sequence has no frames";
-  while (auto frame = frames.Next()) {
-    if (!frame->ok()) return {RunStatus::kFailed, frame->status().message()};
-    const ReadFrame& read = **frame;
-    // What was read ahead for nothing cannot end the run, or the number of threads would decide.
-    if (tracker.WantsDepth() && !read.depth.ok()) return {RunStatus::kFailed, read.depth.message()};
-    const FrameReport report = tracker.Process(read.frame);
-    wants_depth = tracker.WantsDepth();
-    if (const Status written = writer.Write(report); !written.ok()) return {RunStatus::kFailed, written.message()};
-    for (TrackObserver* observer : observers) observer->OnFrame(report);
-    last_note = report.note;
-    if (tracker.GaveUp()) return {RunStatus::kLost, "frame " + report.name + ": " + report.note};
-    if (request.stop != nullptr && *request.stop)
-      return {RunStatus::kInterrupted, "stopped on request after frame " + report.name};
+// Final reports on their way to the run folder and then to the observers.
+class Recorder {
+ public:
+  Recorder(RunWriter& writer, std::span<TrackObserver* const> observers) : writer_(writer), observers_(observers) {}
+
+  Status Record(const std::vector<FrameReport>& reports) {
+    for (const FrameReport& report : reports) {
+      if (Status written = writer_.Write(report); !written.ok()) return written;
+      for (TrackObserver* observer : observers_) observer->OnFrame(report);
+    }
+    return Status::Ok();
   }
-  switch (tracker.state()) {
+  void Announce(const FrameReport& held) {
+    for (TrackObserver* observer : observers_) observer->OnHeld(held);
+  }
+
+ private:
+  RunWriter& writer_;
+  std::span<TrackObserver* const> observers_;
+};
+
+// The ending at the sequence's end.
+Ending AtTheEnd(TrackingState state, int frames, const std::string& last_note) {
+  switch (state) {
     case TrackingState::kTracking:
       return {RunStatus::kCompleted, "the sequence's end was reached"};
     case TrackingState::kLost:
@@ -77,9 +78,47 @@ Ending TrackSequence(Sequence& sequence, const RunRequest& request, const TrackO
     case TrackingState::kInitialising:
       break;
   }
-  if (writer.summary().frames_read == 1)
+  if (frames == 1)
     return {RunStatus::kFailed, "one frame carries no map; give two or more, between which the camera moved"};
   return {RunStatus::kFailed, "the sequence ended without a first map: " + last_note};
+}
+
+Ending TrackFrames(Sequence& sequence, const RunRequest& request, const TrackOptions& options, Tracker& tracker,
+                   Recorder& recorder) {
+  // Once there is a map no depth image is read any more; those read ahead in the meantime change nothing.
+  std::atomic<bool> wants_depth = tracker.WantsDepth();
+  Prefetcher<Result<ReadFrame>> frames([&] { return NextFrame(sequence, options.tracker, wants_depth); },
+                                       options.threads > 1 ? kFramesAhead : 0);
+  std::string last_note = "the sequence has no frames";
+  int count = 0;
+  while (auto frame = frames.Next()) {
+    if (!frame->ok()) return {RunStatus::kFailed, frame->status().message()};
+    const ReadFrame& read = **frame;
+    // What was read ahead for nothing cannot end the run, or the number of threads would decide.
+    if (tracker.WantsDepth() && !read.depth.ok()) return {RunStatus::kFailed, read.depth.message()};
+    const std::vector<FrameReport> done = tracker.Process(read.frame);
+    ++count;
+    wants_depth = tracker.WantsDepth();
+    if (const Status recorded = recorder.Record(done); !recorded.ok()) return {RunStatus::kFailed, recorded.message()};
+    const bool held = !tracker.held().empty();
+    const FrameReport& present = held ? tracker.held().back() : done.back();
+    if (held) recorder.Announce(present);
+    last_note = present.note;
+    if (tracker.GaveUp()) return {RunStatus::kLost, "frame " + present.name + ": " + present.note};
+    if (request.stop != nullptr && *request.stop)
+      return {RunStatus::kInterrupted, "stopped on request after frame " + present.name};
+  }
+  return AtTheEnd(tracker.state(), count, last_note);
+}
+
+Ending TrackSequence(Sequence& sequence, const RunRequest& request, const TrackOptions& options, TrackingTruth* truth,
+                     RunWriter& writer, std::span<TrackObserver* const> observers) {
+  Tracker tracker(sequence.camera(), options.tracker, static_cast<std::uint64_t>(options.seed), options.threads, truth);
+  Recorder recorder(writer, observers);
+  const Ending ending = TrackFrames(sequence, request, options, tracker, recorder);
+  // Whatever the ending: the frames that waited for a map are written too.
+  const Status recorded = recorder.Record(tracker.Finish());
+  return recorded.ok() || ending.status == RunStatus::kFailed ? ending : Ending{RunStatus::kFailed, recorded.message()};
 }
 
 }  // namespace

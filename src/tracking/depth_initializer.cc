@@ -6,6 +6,7 @@
 #include <string>
 
 #include "pliant/image/depth_lookup.h"
+#include "tracking/initial_map.h"
 
 namespace pliant {
 namespace {
@@ -36,7 +37,7 @@ class DepthInitializer final : public Initializer {
     }
     outcome.decision = InitDecision::kMap;
     outcome.reason = "first map of " + count + " points from the depth image";
-    for (const InitFrame& frame : input.frames) outcome.poses.push_back({frame.frame_idx, Rigid3()});
+    FillRigidFrames(input, {Rigid3()}, &outcome);  // the reference alone: this start never waits
     return outcome;
   }
 

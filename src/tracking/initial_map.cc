@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstdio>
 
 #include "pliant/base/statistics.h"
@@ -83,6 +84,21 @@ Result<std::vector<Rigid3>> LocateFrames(const InitInput& input, const InitialMa
   return poses;
 }
 
+void FillRigidFrames(const InitInput& input, const std::vector<Rigid3>& cams_from_world, InitOutcome* outcome) {
+  assert(cams_from_world.size() == input.frames.size());
+  for (std::size_t k = 0; k < cams_from_world.size(); ++k) {
+    const InitFrame& frame = input.frames[k];
+    InitFrameState state{frame.frame_idx, cams_from_world[k], {}};
+    auto seen = frame.observations.begin();
+    for (const InitPoint& point : outcome->points) {
+      while (seen != frame.observations.end() && seen->id < point.id) ++seen;
+      if (seen == frame.observations.end()) break;
+      if (seen->id == point.id) state.positions.push_back({point.id, point.position});
+    }
+    outcome->frames.push_back(std::move(state));
+  }
+}
+
 Status HandOver(const InitInput& input, const InitialMap& map, const std::vector<Rigid3>& cams_from_world,
                 std::vector<InitRejectedPoint> rejected, double nominal_depth_mm, InitOutcome* outcome) {
   std::vector<double> depths;
@@ -93,12 +109,12 @@ Status HandOver(const InitInput& input, const InitialMap& map, const std::vector
 
   const double scale = nominal_depth_mm / median;
   outcome->decision = InitDecision::kMap;
-  for (std::size_t k = 0; k < cams_from_world.size(); ++k)
-    outcome->poses.push_back(
-        {input.frames[k].frame_idx, Rigid3(cams_from_world[k].rotation, scale * cams_from_world[k].translation)});
   for (std::size_t i = 0; i < map.ids.size(); ++i)
     outcome->points.push_back(
         {map.ids[i], scale * map.positions[i], scale * map.depth_sigmas[i], map.parallaxes_rad[i]});
+  std::vector<Rigid3> scaled = cams_from_world;
+  for (Rigid3& cam_from_world : scaled) cam_from_world.translation *= scale;
+  FillRigidFrames(input, scaled, outcome);
   std::sort(rejected.begin(), rejected.end(),
             [](const InitRejectedPoint& a, const InitRejectedPoint& b) { return a.id < b.id; });
   outcome->rejected = std::move(rejected);

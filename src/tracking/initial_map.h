@@ -52,6 +52,10 @@ struct KnownPose {
 Result<std::vector<Rigid3>> LocateFrames(const InitInput& input, const InitialMap& map, std::vector<KnownPose> known,
                                          const RefinementOptions& options);
 
+// Fills in the frames of an outcome whose points are there and stand still: each at its one position in every frame in
+// which it was seen. `cams_from_world`: one a frame of the input.
+void FillRigidFrames(const InitInput& input, const std::vector<Rigid3>& cams_from_world, InitOutcome* outcome);
+
 // Scales map and poses so that the median depth (z in the reference camera) is nominal_depth_mm, and fills the outcome
 // in as a map. Fails with kDegenerate when the median depth is not positive.
 Status HandOver(const InitInput& input, const InitialMap& map, const std::vector<Rigid3>& cams_from_world,

@@ -52,8 +52,8 @@ InitOutcome OracleAnswers::FirstMap(const InitInput& input, int min_points) cons
   std::vector<InitRejectedPoint> rejected;
   std::vector<double> z_mm;
   for (std::size_t k = 0; k < depths.size(); ++k) {
-    const auto& [id, pixel] = reference.observations[k];
-    const auto ray = input.camera.Unproject(pixel);
+    const PointId id = reference.observations[k].id;
+    const auto ray = input.camera.Unproject(reference.observations[k].pixel);
     if (!ray || ray->z() <= 0 || !depths[k]) {
       rejected.push_back({id, InitRejection::kNoRay});
       continue;
@@ -73,8 +73,7 @@ InitOutcome OracleAnswers::FirstMap(const InitInput& input, int min_points) cons
     return outcome;
   }
   const double median_mm = nominal_depth_mm_ ? *nominal_depth_mm_ : Median(std::move(z_mm));
-  const std::vector<Rigid3> poses(input.frames.size());
-  const Status handed = HandOver(input, map, poses, std::move(rejected), median_mm, &outcome);
+  const Status handed = HandOver(input, map, {Rigid3()}, std::move(rejected), median_mm, &outcome);
   outcome.reason = handed.ok() ? "first map of " + count + " points at their true depths" : handed.message();
   return outcome;
 }
@@ -93,7 +92,7 @@ void OracleAnswers::TakeWorld(const InitInput& input, InitOutcome* outcome) {
     }
     if (!ratios.empty()) unit_per_mm_ = Median(std::move(ratios));
   }
-  for (InitPose& pose : outcome->poses) pose.cam_from_world = *Pose(pose.frame_idx);
+  for (InitFrameState& frame : outcome->frames) frame.cam_from_world = *Pose(frame.frame_idx);
 }
 
 void OracleAnswers::StartTracks(InitFrame* reference) const {

@@ -25,7 +25,8 @@ class OracleAnswers {
   bool gives_tracks() const { return options_.tracks == OracleSwitch::kOn; }
   bool gives_poses() const { return options_.poses == OracleSwitch::kOn; }
 
-  // The map from the reference alone; a new reference where fewer than `min_points` corners show the surface.
+  // The map from the reference alone, the input's one frame; a new reference where fewer than `min_points` corners show
+  // the surface.
   InitOutcome FirstMap(const InitInput& input, int min_points) const;
   // To be called with every first map: fixes the world frame and the unit of the poses, and puts the true poses in the
   // place of the map's own. No effect when poses are not switched on.

@@ -4,9 +4,10 @@
 #include "pliant/tracking/tracker.h"
 
 #include <chrono>
-#include <cmath>
+#include <iterator>
+#include <span>
 
-#include "pliant/base/statistics.h"
+#include "tracking/first_map.h"
 #include "tracking/oracle_answers.h"
 #include "tracking/tracker_support.h"
 
@@ -64,8 +65,8 @@ Tracker::Tracker(const Camera& camera, const TrackerOptions& options, std::uint6
 
 Tracker::~Tracker() = default;
 
-FrameReport Tracker::Process(const TrackerFrame& frame) {
-  FrameReport report;
+std::vector<FrameReport> Tracker::Process(const TrackerFrame& frame) {
+  FrameReport& report = held_.emplace_back();
   report.frame_idx = frame.frame_idx;
   report.name = frame.name;
   report.timestamp_s = frame.timestamp_s;
@@ -88,7 +89,12 @@ FrameReport Tracker::Process(const TrackerFrame& frame) {
   report.state = state_;
   report.losses = losses_;
   for (const auto& [reason, count] : losses_) report.lost += count;
-  return report;
+
+  const std::size_t waiting = state_ == TrackingState::kInitialising ? init_frames_.size() : 0;
+  const auto first_held = held_.end() - static_cast<std::ptrdiff_t>(waiting);
+  std::vector<FrameReport> done(std::make_move_iterator(held_.begin()), std::make_move_iterator(first_held));
+  held_.erase(held_.begin(), first_held);
+  return done;
 }
 
 void Tracker::Count(std::string_view reason, int count) {
@@ -117,6 +123,7 @@ void Tracker::TakeReference(const TrackerFrame& frame, FrameReport* report) {
     oracle_->StartTracks(&reference);
     report->tracked = static_cast<int>(reference.observations.size());
     init_frames_.push_back(std::move(reference));
+    reference_image_ = frame.image;
   }
   if (report->tracked < options_.min_corners) {
     Apply(TrackingEvent::kTooFewCorners);
@@ -155,7 +162,7 @@ void Tracker::FollowReference(const TrackerFrame& frame, FrameReport* report) {
     InitFrame followed{frame.frame_idx, {}};
     for (const PointTrack& track : TrackPixels(frame, predictions)) {
       if (track.failure == PatchFailure::kNone) {
-        followed.observations.push_back({track.id, track.pixel});
+        followed.observations.push_back({track.id, track.pixel, track.ssim});
       } else {
         point_tracker_.Remove(track.id);
         Count(EnumName(track.failure), 1);
@@ -180,7 +187,7 @@ InitDecision Tracker::TryInitialize(const TrackerFrame& frame, FrameReport* repo
   }
   switch (outcome.decision) {
     case InitDecision::kMap:
-      CreateMap(frame, outcome, report);
+      CreateMap(outcome);
       report->note = outcome.reason;
       return outcome.decision;
     case InitDecision::kWait:
@@ -200,39 +207,21 @@ InitDecision Tracker::TryInitialize(const TrackerFrame& frame, FrameReport* repo
   return outcome.decision;
 }
 
-void Tracker::CreateMap(const TrackerFrame& frame, const InitOutcome& outcome, FrameReport* report) {
+// Every frame since the reference gets its pose and points; tracking goes on from the last one.
+void Tracker::CreateMap(const InitOutcome& outcome) {
   for (const InitRejectedPoint& rejected : outcome.rejected) {
     if (rejected.reason != InitRejection::kLostOnTheWay) Count(InitRejectionName(rejected.reason), 1);
     point_tracker_.Remove(rejected.id);
   }
-  last_cam_from_world_ = outcome.poses.back().cam_from_world;
+  ReportFirstMap(camera_, init_frames_, outcome, reference_image_, std::span(held_).last(init_frames_.size()));
+  map_ = MakeFirstMap(init_frames_, outcome);
+  for (const InitPoint& point : outcome.points)
+    if (map_.Find(point.id) == nullptr) point_tracker_.Remove(point.id);
+  last_cam_from_world_ = outcome.frames.back().cam_from_world;
   before_last_cam_from_world_ =
-      outcome.poses.size() >= 2 ? outcome.poses[outcome.poses.size() - 2].cam_from_world : last_cam_from_world_;
-
-  std::vector<double> errors;
-  auto observation = init_frames_.back().observations.begin();
-  for (const InitPoint& point : outcome.points) {
-    while (observation->id < point.id) ++observation;
-    const Eigen::Vector2d& pixel = observation->pixel;
-    map_.landmarks.push_back({point.id, point.position, point.position, Eigen::Vector3d::Zero(), pixel});
-    report->observations.push_back({point.id, pixel, point.position, 1.0});
-    const cv::Point nearest(static_cast<int>(std::lround(pixel.x())), static_cast<int>(std::lround(pixel.y())));
-    NewPoint added{point.id, point.position, {}};
-    if (frame.image.channels() == 3) {
-      const auto bgr = frame.image.at<cv::Vec3b>(nearest);
-      added.rgb = {bgr[2], bgr[1], bgr[0]};
-    } else {
-      added.rgb.fill(frame.image.at<std::uint8_t>(nearest));
-    }
-    report->new_points.push_back(added);
-    if (const auto projected = camera_.Project(last_cam_from_world_ * point.position))
-      errors.push_back((*projected - pixel).norm());
-  }
-  report->cam_from_world = last_cam_from_world_;
-  report->added = static_cast<int>(outcome.points.size());
-  report->optimized = report->added;
-  report->median_reprojection_error_px = Median(std::move(errors));
+      outcome.frames.size() >= 2 ? outcome.frames[outcome.frames.size() - 2].cam_from_world : last_cam_from_world_;
   init_frames_.clear();
+  reference_image_.release();
   Apply(TrackingEvent::kMapCreated);
 }
 

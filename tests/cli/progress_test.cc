@@ -8,6 +8,8 @@
 
 #include <gtest/gtest.h>
 
+#include "cli/track_progress.h"
+
 namespace pliant::cli {
 namespace {
 
@@ -78,6 +80,34 @@ TEST(Progress, QuietSaysNothing) {
     progress.Note("lost");
   }
   EXPECT_EQ(out.str(), "");
+}
+
+FrameReport Report(int frame_idx, TrackingState state, const std::string& note) {
+  FrameReport report;
+  report.frame_idx = frame_idx;
+  report.name = std::to_string(frame_idx) + ".png";
+  report.state = state;
+  report.note = note;
+  return report;
+}
+
+TEST(TrackProgress, ShowsAFrameWhenItIsProcessedAndNotAgainWhenItIsFinal) {
+  testing::internal::CaptureStderr();
+  {
+    TrackProgress progress(ProgressStyle::kBar);
+    progress.OnStart(3);
+    progress.OnHeld(Report(0, TrackingState::kInitialising, "reference"));
+    progress.OnHeld(Report(1, TrackingState::kInitialising, "parallax"));
+    progress.OnFrame(Report(0, TrackingState::kTracking, "from the map"));
+    progress.OnFrame(Report(1, TrackingState::kTracking, "from the map"));
+    progress.OnFrame(Report(2, TrackingState::kTracking, "first map"));
+  }
+  const std::string text = testing::internal::GetCapturedStderr();
+  EXPECT_NE(text.find("frame 0.png: initialising (reference)\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("frame 2.png: tracking (first map)\n"), std::string::npos) << text;
+  EXPECT_EQ(text.find("from the map"), std::string::npos) << text;
+  EXPECT_NE(text.find("1/3"), std::string::npos) << "a frame that waits moves the bar: " << text;
+  EXPECT_NE(text.find("3/3"), std::string::npos) << text;
 }
 
 }  // namespace

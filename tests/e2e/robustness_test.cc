@@ -141,6 +141,66 @@ TEST(Robustness, StoppedOnRequestTheRunSaysInterrupted) {
   ExpectReadable(folder.Path("run"), 1);
 }
 
+// A camera that stands still: every frame waits for a map that does not come.
+class BeforeTheFirstMap : public testing::Test {
+ protected:
+  BeforeTheFirstMap() : sequence_(folder_, kWaiting) {
+    const cv::Mat still = cv::imread(sequence_.Image(0).string());
+    for (int i = 1; i < kWaiting; ++i) sequence_.Replace(i, still);
+  }
+  void ExpectInitialising(int frames) const {
+    const auto run = ReadRun(folder_.Path("run"));
+    ASSERT_TRUE(run.ok()) << run.status().message();
+    ASSERT_EQ(static_cast<int>(run->frames.size()), frames);
+    for (const auto& frame : run->frames) EXPECT_EQ(frame.state, TrackingState::kInitialising);
+    EXPECT_TRUE(run->poses.empty());
+  }
+
+  static constexpr int kWaiting = 6;
+  const TestFolder folder_;
+  const SequenceCopy sequence_;
+};
+
+TEST_F(BeforeTheFirstMap, TheSequencesEndWritesTheFramesThatWait) {
+  const RunSummary summary = TrackSequenceAt(sequence_.path(), folder_.Path("run"), TrackOptions());
+  EXPECT_EQ(summary.status, RunStatus::kFailed);
+  EXPECT_EQ(summary.frames_read, kWaiting);
+  ExpectInitialising(kWaiting);
+}
+
+TEST_F(BeforeTheFirstMap, AStopOnRequestWritesTheFramesThatWait) {
+  struct StopAtFourth : TrackObserver {
+    void OnStart(int) override {}
+    void OnFrame(const FrameReport& report) override { final_frames.push_back(report.frame_idx); }
+    void OnHeld(const FrameReport& report) override {
+      held_frames.push_back(report.frame_idx);
+      stop = report.frame_idx == 3;
+    }
+    std::vector<int> held_frames;
+    std::vector<int> final_frames;
+    std::atomic<bool> stop = false;
+  } observer;
+  RunRequest request;
+  request.input.image_path = sequence_.path();
+  request.output_path = folder_.Path("run");
+  request.stop = &observer.stop;
+  const auto summary = RunTrack(request, TrackOptions(), std::array<TrackObserver*, 1>{&observer});
+  ASSERT_TRUE(summary.ok()) << summary.status().message();
+  EXPECT_EQ(summary->status, RunStatus::kInterrupted);
+  EXPECT_THAT(summary->note, HasSubstr(FrameName(3)));
+  EXPECT_THAT(observer.held_frames, testing::ElementsAre(0, 1, 2, 3));
+  EXPECT_THAT(observer.final_frames, testing::ElementsAre(0, 1, 2, 3));
+  ExpectInitialising(4);
+}
+
+TEST_F(BeforeTheFirstMap, ATruncatedImageWritesTheFramesThatWait) {
+  std::filesystem::resize_file(sequence_.Image(4), std::filesystem::file_size(sequence_.Image(4)) / 2);
+  const RunSummary summary = TrackSequenceAt(sequence_.path(), folder_.Path("run"), TrackOptions());
+  EXPECT_EQ(summary.status, RunStatus::kFailed);
+  EXPECT_THAT(summary.note, HasSubstr(FrameName(4)));
+  ExpectInitialising(4);
+}
+
 TEST(Robustness, ADepthImageThatNothingNeedsAnyMoreMayBeBroken) {
   for (const int threads : {1, 2}) {
     const TestFolder folder;

@@ -140,6 +140,40 @@ TEST_F(Oracles, EachAloneIsNotWorseThanNone) {
   }
 }
 
+class RotationError final : public TrackObserver {
+ public:
+  explicit RotationError(const SimulationOptions& options) : simulator_(Simulator::Create(options).value()) {}
+  void OnStart(int) override {}
+  void OnFrame(const FrameReport& report) override {
+    if (!report.cam_from_world) return;
+    const Rigid3 truth = simulator_.WorldFromCamera(report.frame_idx).Inverse() * simulator_.WorldFromCamera(0);
+    largest_rad = std::max(largest_rad, report.cam_from_world->rotation.angularDistance(truth.rotation));
+    ++frames;
+  }
+  void OnHeld(const FrameReport&) override { ++held; }
+  double largest_rad = 0;
+  int frames = 0;
+  int held = 0;
+
+ private:
+  Simulator simulator_;
+};
+
+TEST_F(Oracles, ThePosesAreTrueInTheFramesThatWaitedForTheMapToo) {
+  constexpr double kRoundingRad = 1e-7;  // of an angle by the arc cosine
+  Render(0.0);
+  RunRequest request;
+  request.input.image_path = folder_.Path("sequence");
+  request.output_path = folder_.Path("run");
+  TrackOptions options;
+  options.tracker.oracle.poses = OracleSwitch::kOn;
+  RotationError error(scene_);
+  ASSERT_TRUE(RunTrack(request, options, std::array<TrackObserver*, 1>{&error}).ok());
+  EXPECT_GT(error.held, 1);
+  EXPECT_EQ(error.frames, kFrames);
+  EXPECT_LT(error.largest_rad, kRoundingRad);
+}
+
 TEST_F(Oracles, WithAllOfThemPointsAreLostOnlyWhenOccludedOrOutsideTheImage) {
   Render(0.0);
   for (const auto& [reason, count] : Track(All()).summary.losses)

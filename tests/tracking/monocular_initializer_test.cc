@@ -84,11 +84,36 @@ TEST(MonocularInitializer, RecoversTheSceneExactlyWithoutNoise) {
       const Eigen::Vector3d truth = scale * scene.points[static_cast<std::size_t>(point.id.value)];
       EXPECT_LT((point.position - truth).norm(), kExact * truth.norm());
     }
-    ASSERT_EQ(outcome.poses.size(), scene.cams_from_world.size());
-    for (std::size_t k = 0; k < outcome.poses.size(); ++k) {
-      EXPECT_EQ(outcome.poses[k].frame_idx, 10 + static_cast<int>(k));
-      EXPECT_LT((outcome.poses[k].cam_from_world.translation - scale * scene.cams_from_world[k].translation).norm(),
+    ASSERT_EQ(outcome.frames.size(), scene.cams_from_world.size());
+    for (std::size_t k = 0; k < outcome.frames.size(); ++k) {
+      EXPECT_EQ(outcome.frames[k].frame_idx, 10 + static_cast<int>(k));
+      EXPECT_LT((outcome.frames[k].cam_from_world.translation - scale * scene.cams_from_world[k].translation).norm(),
                 1e-3);
+    }
+  }
+}
+
+TEST(MonocularInitializer, PlacesItsPointsInEveryFrameInWhichTheyWereSeen) {
+  constexpr double kExactPx = 1e-3;  // as above: 1e-5 of the distance, 450 px focal length, 6 degrees of parallax
+  const SceneOptions options{.parallax_deg = kEnoughDeg};
+  const Camera camera = SceneCamera(options);
+  auto frames = FramesOf(MakeScene(options), options);
+  // One point is seen in the reference and the current frame, but not in the second.
+  const PointId hidden = frames.back().observations[7].id;
+  std::erase_if(frames[1].observations, [&](const InitObservation& seen) { return seen.id == hidden; });
+  const InitOutcome outcome =
+      MakeMonocularInitializer({}, MonocularGates::kGated, Random(1))->Try({camera, frames, {}});
+  ASSERT_EQ(outcome.decision, InitDecision::kMap) << outcome.reason;
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    const InitFrameState& state = outcome.frames[k];
+    EXPECT_EQ(state.positions.size(), outcome.points.size() - (k == 1 ? 1 : 0));
+    auto seen = frames[k].observations.begin();
+    for (const InitPosition& point : state.positions) {
+      while (seen != frames[k].observations.end() && seen->id < point.id) ++seen;
+      ASSERT_TRUE(seen != frames[k].observations.end() && seen->id == point.id);
+      const auto projected = camera.Project(state.cam_from_world * point.position);
+      ASSERT_TRUE(projected);
+      EXPECT_LT((*projected - seen->pixel).norm(), kExactPx);
     }
   }
 }
@@ -251,7 +276,7 @@ TEST(PaperInitializer, MakesItsMapThreeFramesAfterTheReference) {
   options.num_frames = 4;
   const InitOutcome outcome = Try(options, {}, MonocularGates::kPaper);
   ASSERT_EQ(outcome.decision, InitDecision::kMap) << outcome.reason;
-  EXPECT_EQ(outcome.poses.size(), 4U);
+  EXPECT_EQ(outcome.frames.size(), 4U);
   EXPECT_GT(outcome.points.size(), 200U);
   EXPECT_LT(ErrorOf(outcome, MakeScene(options)).median, 0.05);  // RANSAC's motion, not refined
 }

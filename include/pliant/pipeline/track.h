@@ -1,8 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// The main job: a sequence in, a run folder out (docs/formats.md). Everything computed is on disk after every frame, so
-// that a run which is lost, interrupted, killed or fails leaves what it had.
+// The main job: a sequence in, a run folder out (docs/formats.md). A frame is on disk as soon as its report is final,
+// so that a run which is lost, interrupted, killed or fails leaves what it had. The frames from the reference on are
+// final when the first map is made or given up; a run that is interrupted or fails before writes them without poses,
+// and one that is killed has not written them.
 #pragma once
 
 #include <array>
@@ -56,8 +58,10 @@ class TrackObserver {
   virtual ~TrackObserver() = default;
   // Before the first frame; `frames` is what the sequence says of its length.
   virtual void OnStart(int frames) = 0;
-  // After a frame's rows are on disk.
+  // After a frame's rows are on disk: once a frame, in order of time.
   virtual void OnFrame(const FrameReport& report) = 0;
+  // A frame was processed whose report waits for the first map: what is known so far. Its OnFrame follows later.
+  virtual void OnHeld(const FrameReport& /*report*/) {}
 };
 
 // Runs the tracker over the sequence. Fails when there is nothing to run on: an input that cannot be opened, an output

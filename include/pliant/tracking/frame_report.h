@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // What is reported of one frame. Observers (recorder, progress, viewers) see this and nothing else; it is complete:
-// the run folder is written from it alone.
+// the run folder is written from it alone. A frame before the first map gets its pose and points from that map, so its
+// report becomes final only when the map is made, or given up.
 #pragma once
 
 #include <array>
@@ -24,8 +25,8 @@ namespace pliant {
 
 enum class TrackingState {
   kWaitingForReference,  // no reference frame yet: too few corners
-  kInitialising,         // points are followed; the first map does not exist yet
-  kTracking,             // pose and deformation of this frame are known
+  kInitialising,         // points are followed; the first map does not exist yet, or never came
+  kTracking,             // pose and deformation of this frame are known, if only since a later frame made the map
   kLost,                 // too few points are left
 };
 
@@ -65,7 +66,7 @@ struct FrameReport {
   std::vector<NewPoint> new_points;            // sorted by id
 
   int tracked = 0;                                  // points followed into this frame
-  int optimized = 0;                                // points in the joint problem's solution
+  int optimized = 0;                                // points in the joint problem's solution, or in the first map
   int lost = 0;                                     // points given up in this frame
   int added = 0;                                    // points new in this frame
   std::vector<std::pair<std::string, int>> losses;  // points given up by reason, in the order of the first of each

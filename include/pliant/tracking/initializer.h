@@ -24,6 +24,7 @@ namespace pliant {
 struct InitObservation {
   PointId id;
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
+  double ssim = 1;  // similarity to its reference patch, at most 1
 };
 
 struct InitFrame {
@@ -57,14 +58,22 @@ std::string_view InitRejectionName(InitRejection reason);
 
 struct InitPoint {
   PointId id;
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();  // world
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  // world, in the reference frame
   double depth_sigma = 0;   // predicted standard deviation along the reference ray, map units; 0: not predicted
   double parallax_rad = 0;  // between the reference and the current frame
 };
 
-struct InitPose {
+struct InitPosition {
+  PointId id;
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  // world
+};
+
+// One frame of the input as the map explains it.
+struct InitFrameState {
   int frame_idx = 0;
   Rigid3 cam_from_world;
+  // The map's points that were seen in this frame, each where it was IN THIS FRAME; sorted by id.
+  std::vector<InitPosition> positions;
 };
 
 struct InitRejectedPoint {
@@ -89,8 +98,8 @@ struct InitOutcome {
   InitMeasurements measured;
 
   // Filled in for kMap alone.
-  std::vector<InitPose> poses;              // one a frame of the input, in its order; the first is the identity
-  std::vector<InitPoint> points;            // sorted by id
+  std::vector<InitFrameState> frames;       // one a frame of the input, in its order; the first pose is the identity
+  std::vector<InitPoint> points;            // sorted by id; one may be lost on the way, and missing from later frames
   std::vector<InitRejectedPoint> rejected;  // the reference's other points, sorted by id
 };
 

@@ -3,7 +3,8 @@
 
 // Camera pose and deformation from one image after another (Gomez Rodriguez, Montiel, Tardos, IROS 2022). The tracker
 // is given images and answers with reports; it owns the map and is the only one to change it. It neither reads nor
-// writes files. One frame's way: docs/concepts.md; equations: docs/method.md.
+// writes files. From the reference frame on reports are held back until the first map is made, which gives those frames
+// their poses and points, or the reference is given up. One frame's way: docs/concepts.md; equations: docs/method.md.
 #pragma once
 
 #include <array>
@@ -96,7 +97,13 @@ class Tracker {
           TrackingTruth* truth = nullptr);
   ~Tracker();
 
-  FrameReport Process(const TrackerFrame& frame);
+  // The reports that became final with this frame, in order of time; each frame is reported once.
+  std::vector<FrameReport> Process(const TrackerFrame& frame);
+  // The reports that are held back, in order of time, the last processed frame's last: those since the reference while
+  // there is no map, else none. So far they are in state initialising.
+  const std::vector<FrameReport>& held() const { return held_; }
+  // To be called when no more frames come, whatever the reason: the reports held back become final as they are.
+  std::vector<FrameReport> Finish() { return std::exchange(held_, {}); }
 
   // Whether a frame's depth image can still be of use: before the first map, when that is to come from depth.
   bool WantsDepth() const { return options_.init.method == InitMethod::kDepth && map_.landmarks.empty(); }
@@ -116,7 +123,7 @@ class Tracker {
   void TakeReference(const TrackerFrame& frame, FrameReport* report);
   void FollowReference(const TrackerFrame& frame, FrameReport* report);
   InitDecision TryInitialize(const TrackerFrame& frame, FrameReport* report);
-  void CreateMap(const TrackerFrame& frame, const InitOutcome& outcome, FrameReport* report);
+  void CreateMap(const InitOutcome& outcome);
 
   // One frame.
   void TrackFrame(const TrackerFrame& frame, FrameReport* report);
@@ -140,7 +147,9 @@ class Tracker {
   TrackingState state_ = TrackingState::kWaitingForReference;
   Map map_;
   std::vector<InitFrame> init_frames_;  // since the reference
-  TrackerFrame previous_;               // the last frame in which points were seen
+  cv::Mat reference_image_;
+  std::vector<FrameReport> held_;  // of init_frames_ while initialising; within Process the present frame's is the last
+  TrackerFrame previous_;          // the last frame in which points were seen
   Rigid3 last_cam_from_world_;
   Rigid3 before_last_cam_from_world_;
   std::int64_t next_id_ = 0;

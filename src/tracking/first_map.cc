@@ -1,0 +1,84 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tracking/first_map.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+
+#include <opencv2/core.hpp>
+
+#include "pliant/base/statistics.h"
+
+namespace pliant {
+namespace {
+
+// The element with this id of a sequence that is sorted by id, or null.
+template <class T>
+const T* Find(const std::vector<T>& sorted, PointId id) {
+  const auto found = std::ranges::lower_bound(sorted, id, {}, &T::id);
+  return found == sorted.end() || found->id != id ? nullptr : &*found;
+}
+
+std::array<std::uint8_t, 3> ColourAt(const cv::Mat& image, const Eigen::Vector2d& pixel) {
+  const cv::Point nearest(static_cast<int>(std::lround(pixel.x())), static_cast<int>(std::lround(pixel.y())));
+  if (image.channels() == 3) {
+    const auto bgr = image.at<cv::Vec3b>(nearest);
+    return {bgr[2], bgr[1], bgr[0]};
+  }
+  const auto grey = image.at<std::uint8_t>(nearest);
+  return {grey, grey, grey};
+}
+
+void ReportFrame(const Camera& camera, const InitFrame& frame, const InitFrameState& state, FrameReport* report) {
+  std::vector<double> errors;
+  for (const InitPosition& point : state.positions) {
+    const InitObservation& seen = *Find(frame.observations, point.id);
+    report->observations.push_back({point.id, seen.pixel, point.position, seen.ssim});
+    if (const auto projected = camera.Project(state.cam_from_world * point.position))
+      errors.push_back((*projected - seen.pixel).norm());
+  }
+  report->state = TrackingState::kTracking;
+  report->cam_from_world = state.cam_from_world;
+  report->optimized = static_cast<int>(state.positions.size());
+  report->median_reprojection_error_px = errors.empty() ? 0 : Median(std::move(errors));
+}
+
+}  // namespace
+
+void ReportFirstMap(const Camera& camera, const std::vector<InitFrame>& frames, const InitOutcome& outcome,
+                    const cv::Mat& reference_image, std::span<FrameReport> reports) {
+  assert(outcome.frames.size() == frames.size() && reports.size() == frames.size());
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    ReportFrame(camera, frames[k], outcome.frames[k], &reports[k]);
+    reports[k].note = "the pose came with the first map, which was made in frame " + reports.back().name;
+  }
+  for (const InitPoint& point : outcome.points) {
+    const Eigen::Vector2d& pixel = Find(frames.front().observations, point.id)->pixel;
+    reports.front().new_points.push_back({point.id, point.position, ColourAt(reference_image, pixel)});
+  }
+  reports.front().added = static_cast<int>(outcome.points.size());
+}
+
+Map MakeFirstMap(const std::vector<InitFrame>& frames, const InitOutcome& outcome) {
+  assert(!frames.empty() && outcome.frames.size() == frames.size());
+  const std::size_t last = frames.size() - 1;
+  const std::size_t before = last == 0 ? 0 : last - 1;
+  Map map;
+  for (const InitPoint& point : outcome.points) {
+    const InitPosition* now = Find(outcome.frames[last].positions, point.id);
+    if (now == nullptr) continue;
+    const InitPosition* then = Find(outcome.frames[before].positions, point.id);
+    Landmark landmark{.id = point.id, .rest_position = point.position, .position = now->position};
+    if (then != nullptr) landmark.last_motion = now->position - then->position;
+    landmark.pixel = Find(frames[last].observations, point.id)->pixel;
+    map.landmarks.push_back(landmark);
+  }
+  return map;
+}
+
+}  // namespace pliant

@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// What the tracker makes of an initialiser's map: the reports of the frames since the reference, which waited for it,
+// and the landmarks that it goes on with. `frames` is what the initialiser was given, `outcome` what it answered.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include <opencv2/core/mat.hpp>
+
+#include "pliant/camera/camera.h"
+#include "pliant/scene/map.h"
+#include "pliant/tracking/frame_report.h"
+#include "pliant/tracking/initializer.h"
+
+namespace pliant {
+
+// Completes one report a frame, in their order: state tracking, pose, observations; in the first the new points,
+// coloured as in `reference_image` (8-bit, 1 or 3 channels, BGR). The notes say that the map came later.
+void ReportFirstMap(const Camera& camera, const std::vector<InitFrame>& frames, const InitOutcome& outcome,
+                    const cv::Mat& reference_image, std::span<FrameReport> reports);
+
+// The points that are seen in the last frame, as they are there: at rest in the reference frame, with the motion since
+// the frame before.
+Map MakeFirstMap(const std::vector<InitFrame>& frames, const InitOutcome& outcome);
+
+}  // namespace pliant

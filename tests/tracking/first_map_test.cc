@@ -1,0 +1,101 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tracking/first_map.h"
+
+#include <array>
+
+#include <gmock/gmock.h>
+
+namespace pliant {
+namespace {
+
+constexpr double kRounding = 1e-9;
+const std::array<double, 3> kParams = {100, 31.5, 23.5};
+
+// Three frames of a scene that deforms: point k starts at (5 k - 5, 0, 50) and moves by (k, 0, 1) a frame, the camera
+// by 1 mm to the right; point 1 is lost before the last frame, and point 3 never got into the map.
+struct DeformingStart {
+  Camera camera = Camera::Create(CameraModelId::kSimplePinhole, 64, 48, kParams).value();
+  std::vector<InitFrame> frames;
+  InitOutcome outcome;
+
+  static Eigen::Vector3d Position(int k, int frame) { return {5.0 * k - 5 + k * frame, 0, 50.0 + frame}; }
+
+  DeformingStart() {
+    outcome.decision = InitDecision::kMap;
+    for (int t = 0; t < 3; ++t) {
+      const Rigid3 cam_from_world(Eigen::Quaterniond::Identity(), Eigen::Vector3d(-t, 0, 0));
+      InitFrame frame{20 + t, {}};
+      InitFrameState state{20 + t, cam_from_world, {}};
+      for (int k = 0; k < 4; ++k) {
+        if (k == 1 && t == 2) continue;
+        const Eigen::Vector3d position = Position(k, t);
+        frame.observations.push_back({PointId{k}, *camera.Project(cam_from_world * position), 1 - 0.1 * t});
+        if (k != 3) state.positions.push_back({PointId{k}, position});
+      }
+      frames.push_back(frame);
+      outcome.frames.push_back(state);
+    }
+    for (int k = 0; k < 3; ++k) outcome.points.push_back({PointId{k}, Position(k, 0)});
+  }
+};
+
+TEST(FirstMap, IsThatOfTheLastFrameWithTheMotionIntoIt) {
+  const DeformingStart start;
+  const Map map = MakeFirstMap(start.frames, start.outcome);
+  ASSERT_EQ(map.landmarks.size(), 2U);  // point 1 was lost on the way
+  for (const Landmark& landmark : map.landmarks) {
+    const int k = static_cast<int>(landmark.id.value);
+    EXPECT_NE(k, 1);
+    EXPECT_EQ(landmark.rest_position, DeformingStart::Position(k, 0));
+    EXPECT_EQ(landmark.position, DeformingStart::Position(k, 2));
+    EXPECT_EQ(landmark.last_motion, Eigen::Vector3d(k, 0, 1));
+    EXPECT_EQ(landmark.pixel, start.frames[2].observations[k == 0 ? 0 : 1].pixel);
+  }
+}
+
+TEST(FirstMap, OfOneFrameHasNoMotion) {
+  DeformingStart start;
+  start.frames.resize(1);
+  start.outcome.frames.resize(1);
+  const Map map = MakeFirstMap(start.frames, start.outcome);
+  ASSERT_EQ(map.landmarks.size(), 3U);
+  for (const Landmark& landmark : map.landmarks) {
+    EXPECT_EQ(landmark.position, landmark.rest_position);
+    EXPECT_EQ(landmark.last_motion, Eigen::Vector3d::Zero());
+  }
+}
+
+TEST(FirstMap, GivesEveryFrameItsOwnPositions) {
+  const DeformingStart start;
+  cv::Mat image(48, 64, CV_8UC3, cv::Scalar(10, 20, 30));
+  image.colRange(32, 64).setTo(cv::Scalar(40, 50, 60));  // from 31.5 px on: the axis lies on the border
+  std::vector<FrameReport> reports(3);
+  reports.back().name = "last.png";
+  ReportFirstMap(start.camera, start.frames, start.outcome, image, reports);
+  for (int t = 0; t < 3; ++t) {
+    const FrameReport& report = reports[t];
+    EXPECT_EQ(report.state, TrackingState::kTracking);
+    EXPECT_THAT(report.note, testing::HasSubstr("made in frame last.png"));
+    ASSERT_TRUE(report.cam_from_world);
+    EXPECT_EQ(report.optimized, t == 2 ? 2 : 3);
+    ASSERT_EQ(static_cast<int>(report.observations.size()), report.optimized);
+    EXPECT_LT(report.median_reprojection_error_px, kRounding);
+    for (const PointObservation& seen : report.observations) {
+      EXPECT_EQ(seen.position, DeformingStart::Position(static_cast<int>(seen.id.value), t));
+      EXPECT_EQ(seen.ssim, 1 - 0.1 * t);
+      EXPECT_LT((*start.camera.Project(*report.cam_from_world * seen.position) - seen.pixel).norm(), kRounding);
+    }
+    EXPECT_EQ(report.added, t == 0 ? 3 : 0);
+    ASSERT_EQ(static_cast<int>(report.new_points.size()), report.added);
+  }
+  const std::vector<NewPoint>& points = reports.front().new_points;
+  EXPECT_THAT(points[0].rgb, testing::ElementsAre(30, 20, 10));  // left of the axis; blue comes first in the image
+  EXPECT_THAT(points[2].rgb, testing::ElementsAre(60, 50, 40));
+  for (const NewPoint& point : points)
+    EXPECT_EQ(point.position, DeformingStart::Position(static_cast<int>(point.id.value), 0));
+}
+
+}  // namespace
+}  // namespace pliant

@@ -1,0 +1,171 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// The tracker on a small simulated scene that is rigid, from images alone: what is reported, and when.
+#include "pliant/tracking/tracker.h"
+
+#include <algorithm>
+#include <set>
+
+#include <gmock/gmock.h>
+
+#include "simulation/small_scene.h"
+
+namespace pliant {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr int kFrames = 14;
+// A rigid scene: what is left is the error of a track, in single views up to what the initialiser's root mean square
+// over 8 views lets through.
+constexpr double kMedianError_px = 0.3;
+constexpr double kLargestError_px = 1.5 * 2.83;
+
+class TrackerFromImages : public testing::Test {
+ protected:
+  // The sequence is rendered once for all tests.
+  static void SetUpTestSuite() {
+    SimulationOptions scene = simulation_test::SmallScene(TrajectoryKind::kSway, kFrames);
+    scene.camera.width = 320;
+    scene.camera.height = 240;
+    scene.deformation.amplitude_mm = 0;
+    scene.trajectory.sway_period_s = 2.0;
+    Simulator simulator = simulation_test::Make(scene);
+    camera_ = new Camera(simulator.camera());
+    images_ = new std::vector<cv::Mat>();
+    for (int i = 0; i < kFrames; ++i) images_->push_back(simulator.Render(i).image.clone());
+  }
+  static void TearDownTestSuite() {
+    delete camera_;
+    delete images_;
+  }
+
+  static Tracker MakeTracker(const TrackerOptions& options = {}) { return {*camera_, options, 1, 1}; }
+  static std::string NameOf(int frame_idx) { return "image" + std::to_string(frame_idx) + ".png"; }
+  // Shows the tracker image `image_idx` as the sequence's frame `frame_idx`.
+  static std::vector<FrameReport> Show(int image_idx, int frame_idx, Tracker* tracker) {
+    return tracker->Process(PrepareFrame(frame_idx, NameOf(frame_idx), frame_idx / 30.0,
+                                         (*images_)[static_cast<std::size_t>(image_idx)], {}, {}));
+  }
+
+  static inline const Camera* camera_ = nullptr;
+  static inline std::vector<cv::Mat>* images_ = nullptr;
+};
+
+void ExpectInitialising(const FrameReport& report) {
+  EXPECT_EQ(report.state, TrackingState::kInitialising);
+  EXPECT_FALSE(report.cam_from_world);
+  EXPECT_TRUE(report.observations.empty());
+  EXPECT_TRUE(report.new_points.empty());
+  EXPECT_GT(report.tracked, 0);
+}
+
+// Pose, points of the map alone, and reprojections on the pixels.
+void ExpectFromTheMap(const FrameReport& report, const std::set<PointId>& map, const Camera& camera) {
+  EXPECT_EQ(report.state, TrackingState::kTracking);
+  ASSERT_TRUE(report.cam_from_world);
+  ASSERT_FALSE(report.observations.empty());
+  EXPECT_EQ(report.optimized, static_cast<int>(report.observations.size()));
+  EXPECT_GE(report.tracked, report.optimized);
+  std::vector<double> errors;
+  PointId last;
+  for (const PointObservation& seen : report.observations) {
+    EXPECT_TRUE(map.contains(seen.id));
+    EXPECT_LT(last, seen.id);
+    EXPECT_GT(seen.ssim, 0);
+    EXPECT_LE(seen.ssim, 1);
+    last = seen.id;
+    const auto projected = camera.Project(*report.cam_from_world * seen.position);
+    ASSERT_TRUE(projected);
+    errors.push_back((*projected - seen.pixel).norm());
+  }
+  EXPECT_LT(*std::max_element(errors.begin(), errors.end()), kLargestError_px);
+  EXPECT_LT(simulation_test::Median(errors), kMedianError_px);
+  EXPECT_LT(report.median_reprojection_error_px, kMedianError_px);
+}
+
+TEST_F(TrackerFromImages, TheFirstMapGivesEveryFrameSinceTheReferenceItsPoseAndPoints) {
+  Tracker tracker = MakeTracker();
+  std::vector<FrameReport> done;
+  int shown = 0;
+  for (; shown < kFrames && done.empty(); ++shown) {
+    done = Show(shown, shown, &tracker);
+    if (!done.empty()) break;
+    ASSERT_EQ(static_cast<int>(tracker.held().size()), shown + 1);
+    EXPECT_EQ(tracker.held().back().frame_idx, shown);
+    ExpectInitialising(tracker.held().back());
+  }
+  ASSERT_GT(shown, 1) << "the map came at once, so nothing was waited for";
+  ASSERT_EQ(static_cast<int>(done.size()), shown + 1) << "no map came";
+  EXPECT_TRUE(tracker.held().empty());
+
+  std::set<PointId> map;
+  for (const NewPoint& point : done.front().new_points) map.insert(point.id);
+  EXPECT_EQ(done.front().added, static_cast<int>(map.size()));
+  for (int k = 0; k <= shown; ++k) {
+    const FrameReport& report = done[static_cast<std::size_t>(k)];
+    EXPECT_EQ(report.frame_idx, k);
+    ExpectFromTheMap(report, map, *camera_);
+    EXPECT_THAT(report.note, HasSubstr(k < shown ? "made in frame " + NameOf(shown) : "first map of"));
+    EXPECT_EQ(report.new_points.empty(), k > 0);
+  }
+  // The reference is the world, and its points are where the map has them.
+  const FrameReport& reference = done.front();
+  EXPECT_TRUE(reference.cam_from_world->translation.isZero());
+  ASSERT_EQ(reference.observations.size(), reference.new_points.size());
+  for (std::size_t i = 0; i < reference.observations.size(); ++i)
+    EXPECT_EQ(reference.observations[i].position, reference.new_points[i].position);
+
+  // It goes on smoothly: one frame, at once, with nearly all points.
+  const auto next = Show(shown + 1, shown + 1, &tracker);
+  ASSERT_EQ(next.size(), 1U);
+  ExpectFromTheMap(next.front(), map, *camera_);
+  EXPECT_GT(next.front().optimized, 0.9 * done.back().optimized);
+  EXPECT_TRUE(tracker.Finish().empty());
+}
+
+TEST_F(TrackerFromImages, AReferenceThatIsGivenUpLeavesFramesWithoutPoses) {
+  constexpr int kWindow = 8;
+  TrackerOptions options;
+  options.init.monocular.max_window = kWindow;
+  Tracker tracker = MakeTracker(options);
+  for (int i = 0; i < kWindow; ++i) EXPECT_TRUE(Show(0, i, &tracker).empty());
+  const auto given_up = Show(0, kWindow, &tracker);  // a camera that stands still carries no map
+  ASSERT_EQ(given_up.size(), kWindow);
+  for (const FrameReport& report : given_up) ExpectInitialising(report);
+  ASSERT_EQ(tracker.held().size(), 1U) << "the present frame is the new reference";
+  EXPECT_EQ(tracker.held().front().frame_idx, kWindow);
+  EXPECT_THAT(tracker.held().front().note, HasSubstr("given up after 8 frames"));
+
+  // The next reference carries one, from itself on.
+  std::vector<FrameReport> done;
+  for (int i = 1; i < kFrames && done.empty(); ++i) done = Show(i, kWindow + i, &tracker);
+  ASSERT_FALSE(done.empty());
+  EXPECT_EQ(done.front().frame_idx, kWindow);
+  EXPECT_FALSE(done.front().new_points.empty());
+  for (const FrameReport& report : done) EXPECT_EQ(report.state, TrackingState::kTracking);
+}
+
+TEST_F(TrackerFromImages, FinishGivesTheFramesThatWaitedInVain) {
+  Tracker tracker = MakeTracker();
+  Show(0, 5, &tracker);
+  Show(1, 6, &tracker);
+  const auto rest = tracker.Finish();
+  ASSERT_EQ(rest.size(), 2U);
+  for (const FrameReport& report : rest) ExpectInitialising(report);
+  EXPECT_EQ(rest.back().frame_idx, 6);
+  EXPECT_TRUE(tracker.held().empty());
+}
+
+TEST_F(TrackerFromImages, AFrameWithoutCornersIsReportedAtOnce) {
+  Tracker tracker = MakeTracker();
+  const cv::Mat black(images_->front().size(), CV_8UC3, cv::Scalar::all(0));
+  const auto done = tracker.Process(PrepareFrame(0, NameOf(0), 0, black, {}, {}));
+  ASSERT_EQ(done.size(), 1U);
+  EXPECT_EQ(done.front().state, TrackingState::kWaitingForReference);
+  EXPECT_TRUE(tracker.held().empty());
+}
+
+}  // namespace
+}  // namespace pliant
