@@ -27,7 +27,7 @@ const T* Find(const std::vector<T>& sorted, PointId id) {
 std::array<std::uint8_t, 3> ColourAt(const cv::Mat& image, const Eigen::Vector2d& pixel) {
   const cv::Point nearest(static_cast<int>(std::lround(pixel.x())), static_cast<int>(std::lround(pixel.y())));
   if (image.channels() == 3) {
-    const auto bgr = image.at<cv::Vec3b>(nearest);
+    const auto& bgr = image.at<cv::Vec3b>(nearest);
     return {bgr[2], bgr[1], bgr[0]};
   }
   const auto grey = image.at<std::uint8_t>(nearest);
