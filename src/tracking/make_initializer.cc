@@ -8,10 +8,12 @@ namespace pliant {
 void InitOptions::List(OptionTable& table) {
   table.BeginGroup("Init", "the first map");
   table.AddChoice("method", &method,
-                  "gated: waits until two views can carry a map; paper: 3 frames apart, as published; depth: the "
+                  "window: all frames since the reference, the scene deforming; gated: waits until two views can carry "
+                  "a map; paper: 3 frames apart, as published; depth: the "
                   "sequence's own depth image");
   monocular.List(table);
   depth.List(table);
+  window.List(table);
 }
 
 std::unique_ptr<Initializer> MakeInitializer(const InitOptions& options, Random random) {
@@ -21,9 +23,11 @@ std::unique_ptr<Initializer> MakeInitializer(const InitOptions& options, Random 
     case InitMethod::kPaper:
       return MakeMonocularInitializer(options.monocular, MonocularGates::kPaper, random);
     case InitMethod::kGated:
+      return MakeMonocularInitializer(options.monocular, MonocularGates::kGated, random);
+    case InitMethod::kWindow:
       break;
   }
-  return MakeMonocularInitializer(options.monocular, MonocularGates::kGated, random);
+  return MakeWindowInitializer(options.window, options.monocular.nominal_depth_mm);
 }
 
 }  // namespace pliant

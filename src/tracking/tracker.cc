@@ -7,6 +7,7 @@
 #include <iterator>
 #include <span>
 
+#include "pliant/image/brightness.h"
 #include "tracking/first_map.h"
 #include "tracking/oracle_answers.h"
 #include "tracking/tracker_support.h"
@@ -114,10 +115,11 @@ void Tracker::TakeReference(const TrackerFrame& frame, FrameReport* report) {
     init_frames_.clear();
     point_tracker_.Clear();
     InitFrame reference{frame.frame_idx, {}};
+    const LocalBrightness brightness(frame.image, frame.mask.valid());
     for (const Corner& corner : DetectCorners(frame.grey, frame.mask.valid(), {}, options_.corners)) {
       const PointId id{next_id_};
       if (point_tracker_.Add(id, corner.pixel, frame.pyramid, frame.mask) != PatchFailure::kNone) continue;
-      reference.observations.push_back({id, corner.pixel});
+      reference.observations.push_back({id, corner.pixel, 1.0, brightness.At(corner.pixel)});
       ++next_id_;
     }
     oracle_->StartTracks(&reference);
@@ -160,9 +162,10 @@ void Tracker::FollowReference(const TrackerFrame& frame, FrameReport* report) {
     for (std::size_t k = 0; k < last.size(); ++k) predictions.push_back({last[k].id, to[k], affines[k]});
 
     InitFrame followed{frame.frame_idx, {}};
+    const LocalBrightness brightness(frame.image, frame.mask.valid());
     for (const PointTrack& track : TrackPixels(frame, predictions)) {
       if (track.failure == PatchFailure::kNone) {
-        followed.observations.push_back({track.id, track.pixel, track.ssim});
+        followed.observations.push_back({track.id, track.pixel, track.ssim, brightness.At(track.pixel)});
       } else {
         point_tracker_.Remove(track.id);
         Count(EnumName(track.failure), 1);

@@ -24,7 +24,8 @@ namespace pliant {
 struct InitObservation {
   PointId id;
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
-  double ssim = 1;  // similarity to its reference patch, at most 1
+  double ssim = 1;        // similarity to its reference patch, at most 1
+  double brightness = 0;  // of the surface around it, 0 to 255 (LocalBrightness); 0: unknown
 };
 
 struct InitFrame {

@@ -12,23 +12,26 @@
 #include "pliant/base/random.h"
 #include "pliant/tracking/depth_initializer.h"
 #include "pliant/tracking/monocular_initializer.h"
+#include "pliant/tracking/window_initializer.h"
 
 namespace pliant {
 
-enum class InitMethod { kGated, kPaper, kDepth };
+enum class InitMethod { kWindow, kGated, kPaper, kDepth };
 template <>
 struct EnumNames<InitMethod> {
-  static constexpr std::array kNames = {std::pair{InitMethod::kGated, std::string_view("gated")},
+  static constexpr std::array kNames = {std::pair{InitMethod::kWindow, std::string_view("window")},
+                                        std::pair{InitMethod::kGated, std::string_view("gated")},
                                         std::pair{InitMethod::kPaper, std::string_view("paper")},
                                         std::pair{InitMethod::kDepth, std::string_view("depth")}};
 };
 
 struct InitOptions {
-  InitMethod method = InitMethod::kGated;
+  InitMethod method = InitMethod::kWindow;
   MonocularInitOptions monocular;
   DepthInitOptions depth;
+  WindowInitOptions window;
 
-  void List(OptionTable& table);  // group "Init"
+  void List(OptionTable& table);  // groups "Init", "WindowInit", "Window"
 };
 
 // Whether a map from this method has true units (then the published sigma for metric starts applies).

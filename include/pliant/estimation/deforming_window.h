@@ -1,0 +1,90 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Bundle adjustment of a window in which the scene deforms (Ceres): poses, points and how the points move, together.
+//
+// The model is that of low-rank non-rigid structure from motion (Bregler, Hertzmann, Biermann, CVPR 2000): a tissue
+// that breathes, beats or is pushed moves in few ways at a time, so every point follows the same few courses in time,
+// each along a direction of its own (docs/method.md, eq. W1):
+//   X_i(v) = X_i + sum_r c_r(v) m_ir,   c_r(0) = 0
+// R courses c and 3 R numbers a point (its modes m), where a free motion would take 3 numbers a point and view. Modes
+// of neighbours are alike (W3) and small (W4), courses are smooth in time (W5). What is common to all points is the
+// camera's: a uniform motion of the scene and the camera's own cannot be told apart, and their sum is what is found.
+// Scale is free in a monocular window; it stays that of the start (W7).
+#pragma once
+
+#include <limits>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "pliant/base/options.h"
+#include "pliant/base/status.h"
+#include "pliant/geometry/rigid3.h"
+
+namespace pliant {
+
+// One ray of the window, and what the light says of the distance along it.
+struct DeformingObservation {
+  int view_idx = 0;
+  int point_idx = 0;
+  Eigen::Vector3d ray = Eigen::Vector3d::UnitZ();  // unit, in the view's camera
+  // Log distance up to a constant of the view, from brightness (LogDistanceFromLight); NaN: unknown.
+  double log_light = std::numeric_limits<double>::quiet_NaN();
+};
+
+struct DeformingWindow {
+  std::vector<double> times;                       // of the views, in frames since the reference, ascending from 0
+  std::vector<Rigid3> cams_from_world;             // view 0 is the reference: the identity, and it stays so
+  Eigen::MatrixXd courses;                         // R x views, no unit; column 0 is zero
+  std::vector<Eigen::Vector3d> points_in_world;    // X_i, in the reference view
+  std::vector<Eigen::Matrix3Xd> modes;             // m_ir, 3 x R a point, map units
+  std::vector<DeformingObservation> observations;  // any order
+
+  // X_i(v), world frame.
+  Eigen::Vector3d Position(int point_idx, int view_idx) const;
+};
+
+struct DeformingWindowOptions {
+  int rank = 3;                      // R; one less is tried too
+  double loss_scale_px = 0.15;       // Cauchy loss
+  double gradient_sigma = 0.3;       // of neighbours' modes: standard deviation of their difference by their distance
+  double mode_sigma = 0.2;           // of a mode's components by the median distance
+  double acceleration_sigma = 0.02;  // of a course's second derivative, 1/frame^2
+  double light_sigma = 0.5;          // of log distance from brightness
+  int neighbors = 6;                 // of the smoothness over the surface
+  int max_iterations = 30;           // of one solution
+
+  void List(OptionTable& table);  // group "Window"
+};
+
+struct DeformingSolution {
+  DeformingWindow window;
+  // Predicted standard deviation of log |X_i|, from noise of loss_scale_px, with what the deformation may be taken into
+  // account; relative to the gauge (W7). Infinite where the data do not determine it.
+  std::vector<double> log_depth_sigmas;
+  std::vector<double> errors_px;  // root mean square error of each point over its views but the reference
+  double cost = 0;
+  double light_error = 0;  // median deviation of log distance from what the light says (W8); 0: the light says nothing
+};
+
+// Solves the window from a rigid start: `start` has times, poses, points and observations, and no courses. The courses
+// are first sought in what the rigid scene leaves unexplained; then poses, points, modes and courses are solved for
+// together. Solutions of rank R, of R - 1, and of R - 1 from that of rank R are compared: images alone hardly tell one
+// minimum from another, the light does. That of rank R is returned unless the light_error of another is clearly less.
+//
+// Fails with kInvalidArgument for sizes and indices that do not fit, kInsufficient below three views or twelve points,
+// and kDegenerate when there is no usable step.
+Result<DeformingSolution> SolveDeformingWindow(const DeformingWindow& start, double focal_px,
+                                               const DeformingWindowOptions& options);
+
+// Poses and courses of more views of a solved window's points, which stay as they are with their modes: `views` has a
+// start of every view's pose and courses. The first view stays as it is. Fails like SolveDeformingWindow.
+Result<DeformingWindow> LocateDeformingViews(const DeformingWindow& views, double focal_px,
+                                             const DeformingWindowOptions& options);
+
+// -(gamma / 2) log(brightness / 255): log distance up to a constant, for a light at the camera, whose falloff is with
+// the square of the distance, and a response of `gamma`. NaN for a brightness that is not above 0.
+double LogDistanceFromLight(double brightness, double gamma);
+
+}  // namespace pliant

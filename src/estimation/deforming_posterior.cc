@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// How certain the points of a deforming window are: the inverse of the normal equations at the solution, in which
+// poses, courses and modes are free and the priors stand for what is known of them.
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include <Eigen/SparseCholesky>
+#include <Eigen/SparseCore>
+
+#include "estimation/deforming_problem.h"
+
+namespace pliant {
+
+std::vector<double> DeformingProblem::LogDepthSigmas() {
+  // Depths first: point i's is column 3 i + 2. Then everything else that is free.
+  ceres::Problem::EvaluateOptions options;
+  options.num_threads = 1;
+  std::set<const double*> depths;
+  for (Point& point : points_) {
+    options.parameter_blocks.push_back(point.parameters.data());
+    depths.insert(point.parameters.data());
+  }
+  std::vector<double*> blocks;
+  problem_->GetParameterBlocks(&blocks);
+  for (double* block : blocks)
+    if (!depths.contains(block) && !problem_->IsParameterBlockConstant(block))
+      options.parameter_blocks.push_back(block);
+
+  ceres::CRSMatrix rows;
+  std::vector<double> sigmas(points_.size(), std::numeric_limits<double>::infinity());
+  if (!problem_->Evaluate(options, nullptr, nullptr, nullptr, &rows)) return sigmas;
+  const Eigen::Map<const Eigen::SparseMatrix<double, Eigen::RowMajor>> jacobian(
+      rows.num_rows, rows.num_cols, static_cast<Eigen::Index>(rows.values.size()), rows.rows.data(), rows.cols.data(),
+      rows.values.data());
+  Eigen::SparseMatrix<double> information = jacobian.transpose() * jacobian;
+  constexpr double kLeastInformation = 1e-9;  // of a parameter that nothing speaks of
+  for (Eigen::Index k = 0; k < information.cols(); ++k) information.coeffRef(k, k) += kLeastInformation;
+  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factors(information);
+  if (factors.info() != Eigen::Success) return sigmas;
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const auto column = static_cast<Eigen::Index>(3 * i + 2);
+    const Eigen::VectorXd covariance = factors.solve(Eigen::VectorXd::Unit(information.cols(), column));
+    if (covariance[column] > 0.0) sigmas[i] = std::sqrt(covariance[column]);
+  }
+  return sigmas;
+}
+
+}  // namespace pliant

@@ -1,0 +1,211 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/estimation/deforming_window.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include <Eigen/Eigenvalues>
+
+#include "estimation/deforming_problem.h"
+#include "estimation/light_depth.h"
+#include "estimation/ray_residuals.h"
+#include "pliant/base/statistics.h"
+
+namespace pliant {
+namespace {
+
+constexpr int kLeastViews = 3;
+constexpr int kLeastPoints = 12;
+// The courses are first sought in the motions of points seen in this share of the views ...
+constexpr double kStartShare = 0.8;
+// ... none of which counts for more than this many times the median one: a wrong track moves most.
+constexpr double kLargestMotion = 3.0;
+// Neighbours and slopes are taken anew from each solution's points.
+constexpr int kRounds = 2;
+// A rival replaces the solution of rank R where the light says so clearly; smaller differences are its noise.
+constexpr double kClearlyBetter = 0.95;
+
+Status CheckStart(const DeformingWindow& start) {
+  const std::size_t views = start.cams_from_world.size();
+  const std::size_t points = start.points_in_world.size();
+  if (start.times.size() != views)
+    return {ErrorCode::kInvalidArgument, "the parts of the deforming window differ in size"};
+  if (static_cast<int>(views) < kLeastViews || static_cast<int>(points) < kLeastPoints)
+    return {ErrorCode::kInsufficient, "a deforming window takes at least " + std::to_string(kLeastViews) +
+                                          " views and " + std::to_string(kLeastPoints) + " points; there are " +
+                                          std::to_string(views) + " and " + std::to_string(points)};
+  for (const DeformingObservation& observation : start.observations)
+    if (observation.view_idx < 0 || static_cast<std::size_t>(observation.view_idx) >= views ||
+        observation.point_idx < 0 || static_cast<std::size_t>(observation.point_idx) >= points)
+      return {ErrorCode::kInvalidArgument, "an observation of the window names a view or point that is not there"};
+  return Status::Ok();
+}
+
+// Motions of the points across their rays that the start's rigid scene leaves unexplained, in map units: two rows a
+// point, a column a view. Points seen in most views alone; where one is not seen, its motion is that of the view
+// before.
+Eigen::MatrixXd UnexplainedMotions(const DeformingWindow& start) {
+  const auto views = static_cast<Eigen::Index>(start.cams_from_world.size());
+  std::vector<int> seen(start.points_in_world.size(), 0);
+  for (const DeformingObservation& observation : start.observations)
+    ++seen[static_cast<std::size_t>(observation.point_idx)];
+  std::vector<Eigen::Index> row(seen.size(), -1);
+  Eigen::Index rows = 0;
+  for (std::size_t i = 0; i < seen.size(); ++i)
+    if (seen[i] >= kStartShare * static_cast<double>(views)) row[i] = 2 * rows++;
+
+  Eigen::MatrixXd motions = Eigen::MatrixXd::Constant(2 * rows, views, std::numeric_limits<double>::quiet_NaN());
+  for (const DeformingObservation& observation : start.observations) {
+    const Eigen::Index first = row[static_cast<std::size_t>(observation.point_idx)];
+    if (first < 0) continue;
+    const Eigen::Vector3d x = start.cams_from_world[static_cast<std::size_t>(observation.view_idx)] *
+                              start.points_in_world[static_cast<std::size_t>(observation.point_idx)];
+    motions.block<2, 1>(first, observation.view_idx) = BasisAcross(observation.ray) * x;
+  }
+  for (Eigen::Index v = 1; v < views; ++v)
+    for (Eigen::Index k = 0; k < motions.rows(); ++k)
+      if (!std::isfinite(motions(k, v))) motions(k, v) = motions(k, v - 1);
+  return motions.unaryExpr([](double value) { return std::isfinite(value) ? value : 0.0; });
+}
+
+// The courses that explain most of what the rigid start leaves unexplained, of unit mean square. A wrong depth looks
+// like a motion too, the same course for all, so it does no harm here.
+void SetCourses(int rank, DeformingWindow* window) {
+  Eigen::MatrixXd motions = UnexplainedMotions(*window);
+  std::vector<double> sizes;
+  for (Eigen::Index k = 0; k + 1 < motions.rows(); k += 2) sizes.push_back(motions.middleRows<2>(k).norm());
+  const double largest = sizes.empty() ? 0.0 : kLargestMotion * Median(sizes);
+  for (std::size_t i = 0; i < sizes.size(); ++i)
+    if (sizes[i] > largest) motions.middleRows<2>(2 * static_cast<Eigen::Index>(i)) *= largest / sizes[i];
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(motions.transpose() * motions);  // the strongest last
+  const auto views = static_cast<double>(window->cams_from_world.size());
+  window->courses = std::sqrt(views) * eigen.eigenvectors().rightCols(rank).rowwise().reverse().transpose();
+  window->courses.colwise() -= Eigen::VectorXd(window->courses.col(0));
+  window->modes.resize(window->points_in_world.size());
+  for (Eigen::Matrix3Xd& modes : window->modes) modes.setZero(3, rank);
+}
+
+// The R strongest courses of all the points' motions, of unit mean square, and the modes that go with them: the best
+// approximation of rank R (Eckart, Young). Courses of rank R of a window that starts from zero start from zero.
+void KeepStrongestCourses(int rank, DeformingWindow* window) {
+  const Eigen::Index views = window->courses.cols();
+  Eigen::MatrixXd second_moment = Eigen::MatrixXd::Zero(window->courses.rows(), window->courses.rows());
+  for (const Eigen::Matrix3Xd& modes : window->modes) second_moment += modes.transpose() * modes;
+  const Eigen::MatrixXd motions = window->courses.transpose() * second_moment * window->courses;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(motions);  // the strongest last
+  const Eigen::MatrixXd strongest = eigen.eigenvectors().rightCols(rank).rowwise().reverse();
+  const double length = std::sqrt(static_cast<double>(views));
+  const Eigen::MatrixXd change = window->courses * strongest / length;
+  for (Eigen::Matrix3Xd& modes : window->modes) modes = Eigen::Matrix3Xd(modes * change);
+  window->courses = length * strongest.transpose();
+  window->courses.col(0).setZero();  // but for rounding it is
+}
+
+// (W8) How far the window's shape in its first, middle and last view is from what the light says of it; 0: no light.
+double WindowLightError(const DeformingWindow& window) {
+  const int views = static_cast<int>(window.cams_from_world.size());
+  double sum = 0;
+  for (const int view : {0, views / 2, views - 1}) {
+    std::vector<Eigen::Vector3d> positions;
+    std::vector<double> log_light;
+    for (const DeformingObservation& observation : window.observations) {
+      if (observation.view_idx != view) continue;
+      positions.push_back(window.cams_from_world[static_cast<std::size_t>(view)] *
+                          window.Position(observation.point_idx, view));
+      log_light.push_back(observation.log_light);
+    }
+    const double error = LightError(positions, log_light);
+    if (!(error > 0.0)) return 0.0;
+    sum += error / 3.0;
+  }
+  return sum;
+}
+
+// The solution from a start with courses.
+Result<DeformingSolution> SolveFrom(DeformingWindow window, double focal_px, const DeformingWindowOptions& options) {
+  DeformingSolution solution;
+  for (int round = 0; round < kRounds; ++round) {
+    DeformingProblem problem(window, focal_px, options);
+    const auto cost = problem.Solve(options.max_iterations);
+    if (!cost.ok()) return cost.status();
+    solution.cost = *cost;
+    window = problem.Window();
+    if (round + 1 < kRounds) continue;
+    solution.errors_px = problem.ErrorsPx();
+    solution.log_depth_sigmas = problem.LogDepthSigmas();
+  }
+  solution.light_error = WindowLightError(window);
+  if (getenv("DBG")) {
+    double se = 0;
+    std::vector<double> sg = solution.log_depth_sigmas;
+    fprintf(stderr, "rank %ld cost %.1f light %.4f views %zu points %zu med sigma %.4f err %.3f\n",
+            window.courses.rows(), solution.cost, solution.light_error, window.times.size(),
+            window.points_in_world.size(), Median(sg), Median(solution.errors_px));
+    (void)se;
+  }
+  solution.window = std::move(window);
+  return solution;
+}
+
+}  // namespace
+
+Eigen::Vector3d DeformingWindow::Position(int point_idx, int view_idx) const {
+  const Eigen::Vector3d& rest = points_in_world[static_cast<std::size_t>(point_idx)];
+  if (courses.rows() == 0) return rest;
+  return rest + modes[static_cast<std::size_t>(point_idx)] * courses.col(view_idx);
+}
+
+void DeformingWindowOptions::List(OptionTable& table) {
+  table.BeginGroup("Window", "the deforming window from which the first map is made");
+  table.Add("rank", &rank, "-", "ways in which the scene moves at a time: courses in time common to all points", 1, 12);
+  table.Add("loss_scale_px", &loss_scale_px, "px", "scale of the Cauchy loss: about a tracked pixel's noise", 1e-3,
+            100);
+  table.Add("gradient_sigma", &gradient_sigma, "-",
+            "difference of neighbours' modes by their distance, standard deviation; smaller is smoother", 1e-4, 100);
+  table.Add("mode_sigma", &mode_sigma, "-", "a mode's size by the median distance, standard deviation", 1e-4, 100);
+  table.Add("acceleration_sigma", &acceleration_sigma, "1/frame^2",
+            "second derivative of a course (whose size is about 1), standard deviation", 1e-6, 1e3);
+  table.Add("light_sigma", &light_sigma, "-",
+            "log distance from brightness, standard deviation; large, because neighbours err alike", 1e-3, 1e6);
+  table.Add("neighbors", &neighbors, "-", "neighbours with which a point's modes are compared", 1, 100);
+  table.Add("max_iterations", &max_iterations, "-", "most iterations of one solution", 1, 10000);
+}
+
+Result<DeformingSolution> SolveDeformingWindow(const DeformingWindow& start, double focal_px,
+                                               const DeformingWindowOptions& options) {
+  if (Status status = CheckStart(start); !status.ok()) return status;
+  const int rank = std::min(options.rank, static_cast<int>(start.times.size()) - 1);
+  const auto from_start = [&](int of_rank) {
+    DeformingWindow window = start;
+    SetCourses(of_rank, &window);
+    return SolveFrom(std::move(window), focal_px, options);
+  };
+  auto best = from_start(rank);
+  if (!best.ok() || !(best->light_error > 0.0) || rank < 2) return best;
+
+  DeformingWindow reduced = best->window;
+  KeepStrongestCourses(rank - 1, &reduced);
+  for (auto rival : {from_start(rank - 1), SolveFrom(std::move(reduced), focal_px, options)})
+    if (rival.ok() && rival->light_error < kClearlyBetter * best->light_error) best = std::move(rival);
+  return best;
+}
+
+Result<DeformingWindow> LocateDeformingViews(const DeformingWindow& views, double focal_px,
+                                             const DeformingWindowOptions& options) {
+  if (Status status = CheckStart(views); !status.ok()) return status;
+  DeformingProblem problem(views, focal_px, options);
+  problem.FixPoints();
+  if (const auto cost = problem.Solve(options.max_iterations); !cost.ok()) return cost.status();
+  return problem.Window();
+}
+
+double LogDistanceFromLight(double brightness, double gamma) {
+  if (!(brightness > 0.0)) return std::numeric_limits<double>::quiet_NaN();
+  return -0.5 * gamma * std::log(brightness / 255.0);
+}
+
+}  // namespace pliant

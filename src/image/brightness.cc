@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/image/brightness.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <opencv2/imgproc.hpp>
+
+namespace pliant {
+namespace {
+
+constexpr int kScale = 4;        // the average is taken on an image this much smaller ...
+constexpr double kSigma = 1.25;  // ... with this standard deviation: 5 px of the image
+constexpr float kLeastValid = 0.05F;
+
+}  // namespace
+
+LocalBrightness::LocalBrightness(const cv::Mat& image, const cv::Mat& valid) {
+  cv::Mat red = image;
+  if (image.channels() == 3) cv::extractChannel(image, red, 2);
+  cv::Mat weight = valid.empty() ? cv::Mat(image.size(), CV_8UC1, cv::Scalar(255)) : valid;
+  red = red.clone();
+  red.setTo(0, weight == 0);
+  const cv::Size size((image.cols + kScale - 1) / kScale, (image.rows + kScale - 1) / kScale);
+  const auto average = [&](const cv::Mat& full) {
+    cv::Mat small;
+    cv::resize(full, small, size, 0, 0, cv::INTER_AREA);
+    small.convertTo(small, CV_32FC1);
+    cv::GaussianBlur(small, small, {}, kSigma);
+    return small;
+  };
+  cv::Mat share = average(weight) / 255.0;
+  cv::divide(average(red), share, brightness_);
+  brightness_.setTo(0, share < kLeastValid);
+}
+
+double LocalBrightness::At(const Eigen::Vector2d& pixel) const {
+  // Centres of pixels are at whole numbers in both images.
+  const double x = (pixel.x() + 0.5) / kScale - 0.5;
+  const double y = (pixel.y() + 0.5) / kScale - 0.5;
+  if (!(x > -1.0) || !(y > -1.0) || !(x < brightness_.cols) || !(y < brightness_.rows)) return 0.0;
+  const auto clamped = [](double value, int count) { return std::clamp(value, 0.0, static_cast<double>(count - 1)); };
+  const double cx = clamped(x, brightness_.cols);
+  const double cy = clamped(y, brightness_.rows);
+  const int x0 = static_cast<int>(cx);
+  const int y0 = static_cast<int>(cy);
+  const int x1 = std::min(x0 + 1, brightness_.cols - 1);
+  const int y1 = std::min(y0 + 1, brightness_.rows - 1);
+  const double fx = cx - x0;
+  const double fy = cy - y0;
+  const auto value = [&](int row, int column) { return static_cast<double>(brightness_.at<float>(row, column)); };
+  return (1 - fy) * ((1 - fx) * value(y0, x0) + fx * value(y0, x1)) +
+         fy * ((1 - fx) * value(y1, x0) + fx * value(y1, x1));
+}
+
+}  // namespace pliant
