@@ -20,7 +20,6 @@ class DeformingProblem {
   // Everything is free but the first view. Neighbours, slopes and scale are those of `start`'s points.
   DeformingProblem(const DeformingWindow& start, double focal_px, const DeformingWindowOptions& options);
 
-  void FixCourses();
   void FixPoints();  // and their modes
 
   // The cost at the solution; kDegenerate when there is no usable step.

@@ -26,13 +26,15 @@ constexpr double kStartShare = 0.8;
 constexpr double kLargestMotion = 3.0;
 // Neighbours and slopes are taken anew from each solution's points.
 constexpr int kRounds = 2;
-// A rival replaces the solution of rank R where the light says so clearly; smaller differences are its noise.
-constexpr double kClearlyBetter = 0.95;
+// A lower rank explains the images less well in any case; it must explain the light better by so much.
+constexpr double kClearlyBetter = 0.85;
 
 Status CheckStart(const DeformingWindow& start) {
   const std::size_t views = start.cams_from_world.size();
   const std::size_t points = start.points_in_world.size();
-  if (start.times.size() != views)
+  if (start.times.size() != views ||
+      (start.courses.rows() > 0 && start.courses.cols() != static_cast<Eigen::Index>(views)) ||
+      (start.courses.rows() > 0 && start.modes.size() != points))
     return {ErrorCode::kInvalidArgument, "the parts of the deforming window differ in size"};
   if (static_cast<int>(views) < kLeastViews || static_cast<int>(points) < kLeastPoints)
     return {ErrorCode::kInsufficient, "a deforming window takes at least " + std::to_string(kLeastViews) +
@@ -45,8 +47,8 @@ Status CheckStart(const DeformingWindow& start) {
   return Status::Ok();
 }
 
-// Motions of the points across their rays that the start's rigid scene leaves unexplained, in map units: two rows a
-// point, a column a view. Points seen in most views alone; where one is not seen, its motion is that of the view
+// Motions of the points across their first rays that the start's rigid scene leaves unexplained, in map units: two rows
+// a point, a column a view. Points seen in most views alone; where one is not seen, its motion is that of the view
 // before.
 Eigen::MatrixXd UnexplainedMotions(const DeformingWindow& start) {
   const auto views = static_cast<Eigen::Index>(start.cams_from_world.size());
@@ -62,9 +64,11 @@ Eigen::MatrixXd UnexplainedMotions(const DeformingWindow& start) {
   for (const DeformingObservation& observation : start.observations) {
     const Eigen::Index first = row[static_cast<std::size_t>(observation.point_idx)];
     if (first < 0) continue;
-    const Eigen::Vector3d x = start.cams_from_world[static_cast<std::size_t>(observation.view_idx)] *
-                              start.points_in_world[static_cast<std::size_t>(observation.point_idx)];
-    motions.block<2, 1>(first, observation.view_idx) = BasisAcross(observation.ray) * x;
+    const Rigid3& cam_from_world = start.cams_from_world[static_cast<std::size_t>(observation.view_idx)];
+    const Eigen::Vector3d& point = start.points_in_world[static_cast<std::size_t>(observation.point_idx)];
+    const double distance = (cam_from_world * point).norm();
+    const Eigen::Vector3d found = cam_from_world.Inverse() * (distance * observation.ray);
+    motions.block<2, 1>(first, observation.view_idx) = BasisAcross(point.normalized()) * (found - point);
   }
   for (Eigen::Index v = 1; v < views; ++v)
     for (Eigen::Index k = 0; k < motions.rows(); ++k)
@@ -72,8 +76,8 @@ Eigen::MatrixXd UnexplainedMotions(const DeformingWindow& start) {
   return motions.unaryExpr([](double value) { return std::isfinite(value) ? value : 0.0; });
 }
 
-// The courses that explain most of what the rigid start leaves unexplained, of unit mean square. A wrong depth looks
-// like a motion too, the same course for all, so it does no harm here.
+// The courses that explain most of what the rigid start leaves unexplained, of unit mean square about their mean. A
+// wrong depth looks like a motion too, the same course for all, so it does no harm here.
 void SetCourses(int rank, DeformingWindow* window) {
   Eigen::MatrixXd motions = UnexplainedMotions(*window);
   std::vector<double> sizes;
@@ -125,6 +129,13 @@ double WindowLightError(const DeformingWindow& window) {
   return sum;
 }
 
+// (W9) Minus the log likelihood of a solution by images and priors and by its light, the latter as one measurement a
+// point of unknown spread. Without light no solution is compared with another.
+double Implausibility(const DeformingSolution& solution) {
+  if (!(solution.light_error > 0.0)) return std::numeric_limits<double>::infinity();
+  return solution.cost + static_cast<double>(solution.window.points_in_world.size()) * std::log(solution.light_error);
+}
+
 // The solution from a start with courses.
 Result<DeformingSolution> SolveFrom(DeformingWindow window, double focal_px, const DeformingWindowOptions& options) {
   DeformingSolution solution;
@@ -139,14 +150,6 @@ Result<DeformingSolution> SolveFrom(DeformingWindow window, double focal_px, con
     solution.log_depth_sigmas = problem.LogDepthSigmas();
   }
   solution.light_error = WindowLightError(window);
-  if (getenv("DBG")) {
-    double se = 0;
-    std::vector<double> sg = solution.log_depth_sigmas;
-    fprintf(stderr, "rank %ld cost %.1f light %.4f views %zu points %zu med sigma %.4f err %.3f\n",
-            window.courses.rows(), solution.cost, solution.light_error, window.times.size(),
-            window.points_in_world.size(), Median(sg), Median(solution.errors_px));
-    (void)se;
-  }
   solution.window = std::move(window);
   return solution;
 }
@@ -189,8 +192,12 @@ Result<DeformingSolution> SolveDeformingWindow(const DeformingWindow& start, dou
 
   DeformingWindow reduced = best->window;
   KeepStrongestCourses(rank - 1, &reduced);
-  for (auto rival : {from_start(rank - 1), SolveFrom(std::move(reduced), focal_px, options)})
-    if (rival.ok() && rival->light_error < kClearlyBetter * best->light_error) best = std::move(rival);
+  auto lower = from_start(rank - 1);
+  auto from_best = SolveFrom(std::move(reduced), focal_px, options);
+  if (!lower.ok() || (from_best.ok() && Implausibility(*from_best) < Implausibility(*lower)))
+    lower = std::move(from_best);
+  if (lower.ok() && lower->light_error > 0.0 && lower->light_error < kClearlyBetter * best->light_error)
+    best = std::move(lower);
   return best;
 }
 

@@ -13,12 +13,11 @@
 namespace pliant {
 namespace {
 
-// Brightness goes with the cosine to the power of about one, log distance with half of it and the response; wet tissue
+// Brightness goes with cosine / distance^2, so log distance with half of log cosine, whatever the response; wet tissue
 // reflects from its coat too, which takes some off.
 constexpr double kCosineExponent = 0.4;
 constexpr double kLeastCosine = 0.12;  // steeper slopes are not trusted
-constexpr int kSlopeNeighbors = 12;
-constexpr double kFar = 1.8;  // times the median distance: beyond, dark noise and the ambient light count
+constexpr double kFar = 1.8;           // times the median distance: beyond, dark noise and the ambient light count
 constexpr std::size_t kLeastLit = 20;
 
 }  // namespace

@@ -17,6 +17,8 @@ struct Neighbor {
 };
 using Neighbors = std::vector<Neighbor>;  // nearest first
 
+inline constexpr int kSlopeNeighbors = 12;  // whose plane is the surface
+
 // The `count` nearest other points of each (fewer where there are fewer), by search through all: for some hundreds.
 std::vector<Neighbors> FindNeighbors(const std::vector<Eigen::Vector3d>& positions, int count);
 

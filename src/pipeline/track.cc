@@ -108,6 +108,8 @@ Ending TrackFrames(Sequence& sequence, const RunRequest& request, const TrackOpt
     if (request.stop != nullptr && *request.stop)
       return {RunStatus::kInterrupted, "stopped on request after frame " + present.name};
   }
+  tracker.EndSequence();
+  if (!tracker.held().empty()) last_note = tracker.held().back().note;
   return AtTheEnd(tracker.state(), count, last_note);
 }
 

@@ -4,13 +4,9 @@
 #include "tracking/first_map.h"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
-#include <cmath>
-#include <cstdint>
+#include <set>
 #include <utility>
-
-#include <opencv2/core.hpp>
 
 #include "pliant/base/statistics.h"
 
@@ -22,16 +18,6 @@ template <class T>
 const T* Find(const std::vector<T>& sorted, PointId id) {
   const auto found = std::ranges::lower_bound(sorted, id, {}, &T::id);
   return found == sorted.end() || found->id != id ? nullptr : &*found;
-}
-
-std::array<std::uint8_t, 3> ColourAt(const cv::Mat& image, const Eigen::Vector2d& pixel) {
-  const cv::Point nearest(static_cast<int>(std::lround(pixel.x())), static_cast<int>(std::lround(pixel.y())));
-  if (image.channels() == 3) {
-    const auto& bgr = image.at<cv::Vec3b>(nearest);
-    return {bgr[2], bgr[1], bgr[0]};
-  }
-  const auto grey = image.at<std::uint8_t>(nearest);
-  return {grey, grey, grey};
 }
 
 void ReportFrame(const Camera& camera, const InitFrame& frame, const InitFrameState& state, FrameReport* report) {
@@ -51,17 +37,22 @@ void ReportFrame(const Camera& camera, const InitFrame& frame, const InitFrameSt
 }  // namespace
 
 void ReportFirstMap(const Camera& camera, const std::vector<InitFrame>& frames, const InitOutcome& outcome,
-                    const cv::Mat& reference_image, std::span<FrameReport> reports) {
+                    std::span<FrameReport> reports) {
   assert(outcome.frames.size() == frames.size() && reports.size() == frames.size());
   for (std::size_t k = 0; k < frames.size(); ++k) {
     ReportFrame(camera, frames[k], outcome.frames[k], &reports[k]);
     reports[k].note = "the pose came with the first map, which was made in frame " + reports.back().name;
   }
-  for (const InitPoint& point : outcome.points) {
-    const Eigen::Vector2d& pixel = Find(frames.front().observations, point.id)->pixel;
-    reports.front().new_points.push_back({point.id, point.position, ColourAt(reference_image, pixel)});
+  // A point is new in the first frame that shows it.
+  std::set<PointId> known;
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    for (const InitPosition& seen : outcome.frames[k].positions) {
+      if (!known.insert(seen.id).second) continue;
+      const InitPoint& point = *Find(outcome.points, seen.id);
+      reports[k].new_points.push_back({point.id, point.position, Find(frames[k].observations, point.id)->rgb});
+    }
+    reports[k].added = static_cast<int>(reports[k].new_points.size());
   }
-  reports.front().added = static_cast<int>(outcome.points.size());
 }
 
 Map MakeFirstMap(const std::vector<InitFrame>& frames, const InitOutcome& outcome) {

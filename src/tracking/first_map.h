@@ -8,8 +8,6 @@
 #include <span>
 #include <vector>
 
-#include <opencv2/core/mat.hpp>
-
 #include "pliant/camera/camera.h"
 #include "pliant/scene/map.h"
 #include "pliant/tracking/frame_report.h"
@@ -17,10 +15,10 @@
 
 namespace pliant {
 
-// Completes one report a frame, in their order: state tracking, pose, observations; in the first the new points,
-// coloured as in `reference_image` (8-bit, 1 or 3 channels, BGR). The notes say that the map came later.
+// Completes one report a frame, in their order: state tracking, pose, observations; a point is new in the
+// first frame that shows it, coloured as there. The notes say that the map came later.
 void ReportFirstMap(const Camera& camera, const std::vector<InitFrame>& frames, const InitOutcome& outcome,
-                    const cv::Mat& reference_image, std::span<FrameReport> reports);
+                    std::span<FrameReport> reports);
 
 // The points that are seen in the last frame, as they are there: at rest in the reference frame, with the motion since
 // the frame before.

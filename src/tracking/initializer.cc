@@ -11,6 +11,8 @@ std::string_view InitRejectionName(InitRejection reason) {
       return "no_ray";
     case InitRejection::kLostOnTheWay:
       return "lost_on_the_way";
+    case InitRejection::kTooFewViews:
+      return "too_few_views";
     case InitRejection::kEpipolar:
       return "epipolar_error";
     case InitRejection::kCheirality:

@@ -31,6 +31,9 @@ void TrackerOptions::List(OptionTable& table) {
             "a point further than this from its measurement after the joint problem is dropped", 0.1, 1e6);
   table.Add("min_points", &min_points, "-", "fewer points in a frame: lost", 4, 100000);
   table.Add("min_corners", &min_corners, "-", "fewer corners in an image: it is no reference", 8, 100000);
+  table.Add("top_up_frames", &top_up_frames, "frames",
+            "while the first map is awaited, corners are added where there are none so often (Init.method = window)", 1,
+            1000000);
   table.Add("max_lost_frames", &max_lost_frames, "frames", "lost for so many frames in a row, the run ends", 1,
             1000000);
   oracle.List(table);
@@ -108,6 +111,26 @@ void Tracker::Count(std::string_view reason, int count) {
   losses_.emplace_back(reason, count);
 }
 
+// Adds corners away from the points that are there.
+void Tracker::AddCorners(const TrackerFrame& frame, int max_corners, InitFrame* points) {
+  if (max_corners <= 0) return;
+  std::vector<Eigen::Vector2d> existing;
+  for (const InitObservation& observation : points->observations) existing.push_back(observation.pixel);
+  CornerOptions corners = options_.corners;
+  corners.max_corners = max_corners;
+  const LocalBrightness brightness(frame.image, frame.mask.valid());
+  InitFrame added{frame.frame_idx, {}};
+  for (const Corner& corner : DetectCorners(frame.grey, frame.mask.valid(), existing, corners)) {
+    const PointId id{next_id_};
+    if (point_tracker_.Add(id, corner.pixel, frame.pyramid, frame.mask) != PatchFailure::kNone) continue;
+    added.observations.push_back(
+        {id, corner.pixel, 1.0, brightness.At(corner.pixel), ColourAt(frame.image, corner.pixel)});
+    ++next_id_;
+  }
+  oracle_->StartTracks(&added);
+  points->observations.insert(points->observations.end(), added.observations.begin(), added.observations.end());
+}
+
 void Tracker::TakeReference(const TrackerFrame& frame, FrameReport* report) {
   {
     const StageTimer timer(report, "initialise");
@@ -115,17 +138,9 @@ void Tracker::TakeReference(const TrackerFrame& frame, FrameReport* report) {
     init_frames_.clear();
     point_tracker_.Clear();
     InitFrame reference{frame.frame_idx, {}};
-    const LocalBrightness brightness(frame.image, frame.mask.valid());
-    for (const Corner& corner : DetectCorners(frame.grey, frame.mask.valid(), {}, options_.corners)) {
-      const PointId id{next_id_};
-      if (point_tracker_.Add(id, corner.pixel, frame.pyramid, frame.mask) != PatchFailure::kNone) continue;
-      reference.observations.push_back({id, corner.pixel, 1.0, brightness.At(corner.pixel)});
-      ++next_id_;
-    }
-    oracle_->StartTracks(&reference);
+    AddCorners(frame, options_.corners.max_corners, &reference);
     report->tracked = static_cast<int>(reference.observations.size());
     init_frames_.push_back(std::move(reference));
-    reference_image_ = frame.image;
   }
   if (report->tracked < options_.min_corners) {
     Apply(TrackingEvent::kTooFewCorners);
@@ -151,10 +166,12 @@ void Tracker::FollowReference(const TrackerFrame& frame, FrameReport* report) {
       to.push_back(observation.pixel);
     }
     if (init_frames_.size() >= 2) {
-      auto before = init_frames_[init_frames_.size() - 2].observations.begin();
+      const std::vector<InitObservation>& earlier = init_frames_[init_frames_.size() - 2].observations;
+      auto before = earlier.begin();
+      const auto end = earlier.end();
       for (std::size_t k = 0; k < last.size(); ++k) {
-        while (before->id < last[k].id) ++before;
-        to[k] = 2 * last[k].pixel - before->pixel;
+        while (before != end && before->id < last[k].id) ++before;
+        if (before != end && before->id == last[k].id) to[k] = 2 * last[k].pixel - before->pixel;
       }
     }
     const std::vector<Eigen::Matrix2d> affines = NeighbourhoodAffines(from, to);
@@ -165,13 +182,16 @@ void Tracker::FollowReference(const TrackerFrame& frame, FrameReport* report) {
     const LocalBrightness brightness(frame.image, frame.mask.valid());
     for (const PointTrack& track : TrackPixels(frame, predictions)) {
       if (track.failure == PatchFailure::kNone) {
-        followed.observations.push_back({track.id, track.pixel, track.ssim, brightness.At(track.pixel)});
+        followed.observations.push_back(
+            {track.id, track.pixel, track.ssim, brightness.At(track.pixel), ColourAt(frame.image, track.pixel)});
       } else {
         point_tracker_.Remove(track.id);
         Count(EnumName(track.failure), 1);
       }
     }
     report->tracked = static_cast<int>(followed.observations.size());
+    if (initializer_->TakesLaterPoints() && init_frames_.size() % static_cast<std::size_t>(options_.top_up_frames) == 0)
+      AddCorners(frame, options_.corners.max_corners - report->tracked, &followed);
     init_frames_.push_back(std::move(followed));
   }
   const std::string fault = ImageFault(frame, previous_);
@@ -180,14 +200,24 @@ void Tracker::FollowReference(const TrackerFrame& frame, FrameReport* report) {
   previous_ = frame;
 }
 
+InitOutcome Tracker::AskInitializer(const cv::Mat& depth_mm, InitMoment moment, FrameReport* report) {
+  const StageTimer timer(report, "initialise");
+  const InitInput input{camera_, init_frames_, depth_mm, moment};
+  InitOutcome outcome =
+      oracle_->gives_first_map() ? oracle_->FirstMap(input, options_.min_points) : initializer_->Try(input);
+  if (outcome.decision == InitDecision::kMap) oracle_->TakeWorld(input, &outcome);
+  return outcome;
+}
+
+void Tracker::EndSequence() {
+  if (state_ != TrackingState::kInitialising) return;
+  const InitOutcome outcome = AskInitializer({}, InitMoment::kLastFrame, &held_.back());
+  if (outcome.decision == InitDecision::kMap) CreateMap(outcome);
+  held_.back().note = outcome.reason;
+}
+
 InitDecision Tracker::TryInitialize(const TrackerFrame& frame, FrameReport* report) {
-  InitOutcome outcome;
-  {
-    const StageTimer timer(report, "initialise");
-    const InitInput input{camera_, init_frames_, frame.depth_mm};
-    outcome = oracle_->gives_first_map() ? oracle_->FirstMap(input, options_.min_points) : initializer_->Try(input);
-    if (outcome.decision == InitDecision::kMap) oracle_->TakeWorld(input, &outcome);
-  }
+  const InitOutcome outcome = AskInitializer(frame.depth_mm, InitMoment::kMoreFollow, report);
   switch (outcome.decision) {
     case InitDecision::kMap:
       CreateMap(outcome);
@@ -216,7 +246,7 @@ void Tracker::CreateMap(const InitOutcome& outcome) {
     if (rejected.reason != InitRejection::kLostOnTheWay) Count(InitRejectionName(rejected.reason), 1);
     point_tracker_.Remove(rejected.id);
   }
-  ReportFirstMap(camera_, init_frames_, outcome, reference_image_, std::span(held_).last(init_frames_.size()));
+  ReportFirstMap(camera_, init_frames_, outcome, std::span(held_).last(init_frames_.size()));
   map_ = MakeFirstMap(init_frames_, outcome);
   for (const InitPoint& point : outcome.points)
     if (map_.Find(point.id) == nullptr) point_tracker_.Remove(point.id);
@@ -224,7 +254,6 @@ void Tracker::CreateMap(const InitOutcome& outcome) {
   before_last_cam_from_world_ =
       outcome.frames.size() >= 2 ? outcome.frames[outcome.frames.size() - 2].cam_from_world : last_cam_from_world_;
   init_frames_.clear();
-  reference_image_.release();
   Apply(TrackingEvent::kMapCreated);
 }
 

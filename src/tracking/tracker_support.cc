@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 
 #include <opencv2/core.hpp>
 
@@ -33,6 +34,16 @@ std::string ImageFault(const TrackerFrame& frame, const TrackerFrame& previous) 
   if (previous.grey.size() == frame.grey.size() && cv::norm(frame.grey, previous.grey, cv::NORM_INF) == 0)
     return "the image is the same as the one before (frozen)";
   return {};
+}
+
+std::array<std::uint8_t, 3> ColourAt(const cv::Mat& image, const Eigen::Vector2d& pixel) {
+  const cv::Point nearest(static_cast<int>(std::lround(pixel.x())), static_cast<int>(std::lround(pixel.y())));
+  if (image.channels() == 3) {
+    const auto& bgr = image.at<cv::Vec3b>(nearest);
+    return {bgr[2], bgr[1], bgr[0]};
+  }
+  const auto grey = image.at<std::uint8_t>(nearest);
+  return {grey, grey, grey};
 }
 
 std::string WithFault(const std::string& note, const std::string& fault) {

@@ -4,7 +4,9 @@
 // What the tracker's two sources share: timing of stages, and what may be wrong with an image.
 #pragma once
 
+#include <array>
 #include <chrono>
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -29,6 +31,9 @@ class StageTimer {
 
 // What is wrong with an image in which nothing can be followed; empty when nothing is.
 std::string ImageFault(const TrackerFrame& frame, const TrackerFrame& previous);
+
+// The colour (R, G, B) of the nearest pixel of an 8-bit image with 1 or 3 (BGR) channels.
+std::array<std::uint8_t, 3> ColourAt(const cv::Mat& image, const Eigen::Vector2d& pixel);
 
 // "note; fault", or the one that is not empty.
 std::string WithFault(const std::string& note, const std::string& fault);

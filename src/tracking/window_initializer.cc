@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <string>
 
 #include "pliant/base/statistics.h"
@@ -19,6 +20,10 @@ namespace {
 constexpr double kRotationErrorPx = 1.5;
 constexpr double kMaxRotationShare = 0.8;
 constexpr std::size_t kLeastPoints = 12;
+constexpr std::size_t kLeastFrames = 6;
+
+// Whether to wait while many points are uncertain.
+enum class WhenUncertain { kWait, kTakeTheCertain };
 
 // One attempt on the frames since the reference.
 class Attempt {
@@ -30,10 +35,13 @@ class Attempt {
         focal_px_(input.camera.MeanFocalLengthPx()),
         outcome_(*outcome) {}
 
-  // What is missing for a map; ok when the outcome is one. `longest`: no later attempt will follow.
-  Status Run(bool longest) {
+  // What is missing for a map; ok when the outcome is one. The window is that of the first `frames` frames; the others
+  // are located in it.
+  Status Run(std::size_t frames, WhenUncertain when_uncertain) {
+    if (frames < kLeastFrames)
+      return {ErrorCode::kInsufficient, "a window takes at least " + std::to_string(kLeastFrames) + " frames"};
     if (Status status = MoreThanARotation(); !status.ok()) return status;
-    ChooseViews();
+    ChooseViews(frames);
     ChoosePoints();
     if (ids_.size() < kLeastPoints)
       return {ErrorCode::kInsufficient, "only " + std::to_string(ids_.size()) + " points were followed long enough"};
@@ -41,7 +49,7 @@ class Attempt {
     auto solution = SolveDeformingWindow(std::move(start_), focal_px_, options_.window);
     if (!solution.ok()) return solution.status();
     ChooseCertain(*solution);
-    if (Status status = EnoughCertain(longest); !status.ok()) return status;
+    if (Status status = EnoughCertain(when_uncertain); !status.ok()) return status;
     return HandOver(*solution);
   }
 
@@ -58,22 +66,27 @@ class Attempt {
                                         " % of the points; move it sideways or forwards"};
   }
 
-  void ChooseViews() {
-    const std::size_t last = input_.frames.size() - 1;
+  // Spread evenly.
+  void ChooseViews(std::size_t frames) {
+    const std::size_t last = frames - 1;
     const std::size_t count = std::min(last + 1, static_cast<std::size_t>(options_.views));
     for (std::size_t k = 0; k < count; ++k) views_.push_back((k * last + (count - 1) / 2) / (count - 1));
   }
 
-  // The reference's points that are seen in enough views; the most often seen where there are too many.
+  // The points that are seen in enough views; where they are too many, those still seen, then those seen most.
   void ChoosePoints() {
     std::map<PointId, int> seen;
     for (const std::size_t view : views_)
       for (const InitObservation& observation : input_.frames[view].observations) ++seen[observation.id];
-    std::vector<std::pair<int, PointId>> chosen;
     const int least = std::min(options_.min_views, static_cast<int>(views_.size()));
-    for (const InitObservation& observation : input_.frames.front().observations)
-      if (seen[observation.id] >= least) chosen.emplace_back(seen[observation.id], observation.id);
-    std::stable_sort(chosen.begin(), chosen.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+    const int bonus = static_cast<int>(views_.size());
+    for (const InitObservation& observation : input_.frames.back().observations)
+      if (const auto found = seen.find(observation.id); found != seen.end() && found->second >= least)
+        found->second += bonus;
+    std::vector<std::pair<int, PointId>> chosen;
+    for (const auto& [id, count] : seen)
+      if (count >= least) chosen.emplace_back(count, id);
+    std::stable_sort(chosen.begin(), chosen.end(), [](const auto& x, const auto& y) { return x.first > y.first; });
     if (chosen.size() > static_cast<std::size_t>(options_.max_points))
       chosen.resize(static_cast<std::size_t>(options_.max_points));
     for (const auto& [count, id] : chosen) ids_.push_back(id);
@@ -99,37 +112,62 @@ class Attempt {
     }
   }
 
-  // Points where the light puts them, or all at one distance; views located against them as if nothing deformed.
+  // Points where the light puts them, or all at one distance; views located against them as if nothing deformed. A
+  // point that is first seen in a later view is put there, among those known already.
   Status Start() {
-    Observe(input_.frames.front(), 0, &start_.observations);
-    std::vector<double> lights;
-    for (const DeformingObservation& observation : start_.observations)
-      if (std::isfinite(observation.log_light)) lights.push_back(observation.log_light);
-    const double median = lights.empty() ? 0.0 : Median(lights);
-    InitialMap map;
-    std::vector<PointId> with_ray;
-    for (const DeformingObservation& observation : start_.observations) {
-      const double log_ratio = std::isfinite(observation.log_light) ? observation.log_light - median : 0.0;
-      with_ray.push_back(ids_[static_cast<std::size_t>(observation.point_idx)]);
-      map.positions.push_back(nominal_depth_mm_ * std::exp(log_ratio) * observation.ray);
-    }
-    ids_ = with_ray;
-    map.ids = ids_;
-    start_.points_in_world = map.positions;
-    start_.observations.clear();
+    std::map<PointId, Eigen::Vector3d> known;
     Rigid3 near;
     for (std::size_t v = 0; v < views_.size(); ++v) {
       const InitFrame& frame = input_.frames[views_[v]];
       if (v > 0) {
+        InitialMap map;
+        for (const auto& [id, position] : known) {
+          map.ids.push_back(id);
+          map.positions.push_back(position);
+        }
         const auto pose = LocateFrame(input_.camera, frame, map, near, {});
         if (!pose.ok()) return pose.status();
         near = *pose;
       }
       start_.cams_from_world.push_back(near);
       start_.times.push_back(frame.frame_idx - input_.frames.front().frame_idx);
-      Observe(frame, static_cast<int>(v), &start_.observations);
+      AddNewPoints(frame, near, &known);
     }
+    ids_.clear();
+    for (const auto& [id, position] : known) {
+      ids_.push_back(id);
+      start_.points_in_world.push_back(position);
+    }
+    for (std::size_t v = 0; v < views_.size(); ++v)
+      Observe(input_.frames[views_[v]], static_cast<int>(v), &start_.observations);
     return Status::Ok();
+  }
+
+  // Puts a frame's chosen points that are not known yet at the distance that the light says, relative to the others.
+  void AddNewPoints(const InitFrame& frame, const Rigid3& cam_from_world, std::map<PointId, Eigen::Vector3d>* known) {
+    std::vector<DeformingObservation> observations;
+    Observe(frame, 0, &observations);
+    std::vector<double> lights;
+    std::vector<double> distances;
+    std::vector<double> offsets;  // log distance less the light's
+    for (const DeformingObservation& observation : observations) {
+      if (std::isfinite(observation.log_light)) lights.push_back(observation.log_light);
+      const auto found = known->find(ids_[static_cast<std::size_t>(observation.point_idx)]);
+      if (found == known->end()) continue;
+      distances.push_back((cam_from_world * found->second).norm());
+      if (std::isfinite(observation.log_light)) offsets.push_back(std::log(distances.back()) - observation.log_light);
+    }
+    const double unlit = distances.empty() ? nominal_depth_mm_ : Median(distances);
+    double offset = 0;
+    if (!offsets.empty())
+      offset = Median(offsets);
+    else if (!lights.empty())
+      offset = std::log(nominal_depth_mm_) - Median(lights);
+    for (const DeformingObservation& observation : observations) {
+      const double distance = std::isfinite(observation.log_light) ? std::exp(offset + observation.log_light) : unlit;
+      known->try_emplace(ids_[static_cast<std::size_t>(observation.point_idx)],
+                         cam_from_world.Inverse() * (distance * observation.ray));
+    }
   }
 
   void ChooseCertain(const DeformingSolution& solution) {
@@ -151,7 +189,7 @@ class Attempt {
     outcome_.measured.median_error_px = Median(solution.errors_px);
   }
 
-  Status EnoughCertain(bool longest) const {
+  Status EnoughCertain(WhenUncertain when_uncertain) const {
     int seen = 0;
     int certain = 0;
     for (const InitObservation& observation : input_.frames.back().observations) {
@@ -161,11 +199,15 @@ class Attempt {
       certain += certain_[static_cast<std::size_t>(point)];
     }
     const double share = seen > 0 ? static_cast<double>(certain) / seen : 0.0;
-    if (certain >= options_.min_points && (longest || share >= options_.min_certain_share)) return Status::Ok();
+    if (certain >= options_.min_points &&
+        (when_uncertain == WhenUncertain::kTakeTheCertain || share >= options_.min_certain_share))
+      return Status::Ok();
+    std::string needed = std::to_string(options_.min_points);
+    if (when_uncertain == WhenUncertain::kWait)
+      needed += " and " + Digits(100.0 * options_.min_certain_share, 0) + " %";
     return {ErrorCode::kInsufficient, "the depth of " + std::to_string(certain) + " of " + std::to_string(seen) +
-                                          " points is certain (at least " + std::to_string(options_.min_points) +
-                                          " and " + Digits(100.0 * options_.min_certain_share, 0) +
-                                          " % are needed): more motion of the camera is needed"};
+                                          " points is certain, at least " + needed +
+                                          " are needed; move the camera sideways or forwards"};
   }
 
   // All frames, the certain points alone.
@@ -182,8 +224,8 @@ class Attempt {
     all.courses.resize(solved.courses.rows(), static_cast<Eigen::Index>(input_.frames.size()));
     std::size_t next = 0;  // the first solved view that is not before the frame
     for (std::size_t k = 0; k < input_.frames.size(); ++k) {
-      while (views_[next] < k) ++next;
-      const std::size_t before = views_[next] == k ? next : next - 1;
+      while (views_[next] < k && next + 1 < views_.size()) ++next;
+      const std::size_t before = views_[next] <= k ? next : next - 1;
       const double share =
           before == next ? 0.0
                          : static_cast<double>(k - views_[before]) / static_cast<double>(views_[next] - views_[before]);
@@ -224,11 +266,12 @@ class Attempt {
           state.positions.push_back({observation.id, scale * located->Position(point, static_cast<int>(k))});
       outcome_.frames.push_back(std::move(state));
     }
-    for (const InitObservation& observation : input_.frames.front().observations)
-      if (IndexOf(observation.id) < 0 &&
-          std::none_of(rejected_.begin(), rejected_.end(),
-                       [&](const InitRejectedPoint& rejected) { return rejected.id == observation.id; }))
-        rejected_.push_back({observation.id, InitRejection::kLostOnTheWay});
+    std::set<PointId> others;
+    for (const InitFrame& frame : input_.frames)
+      for (const InitObservation& observation : frame.observations) others.insert(observation.id);
+    for (const PointId id : ids_) others.erase(id);
+    for (const InitRejectedPoint& rejected : rejected_) others.erase(rejected.id);
+    for (const PointId id : others) rejected_.push_back({id, InitRejection::kTooFewViews});
     std::sort(rejected_.begin(), rejected_.end(),
               [](const InitRejectedPoint& a, const InitRejectedPoint& b) { return a.id < b.id; });
     outcome_.rejected = std::move(rejected_);
@@ -257,6 +300,7 @@ class WindowInitializer final : public Initializer {
       : options_(options), nominal_depth_mm_(nominal_depth_mm) {}
 
   std::string_view name() const override { return "window"; }
+  bool TakesLaterPoints() const override { return true; }
 
   InitOutcome Try(const InitInput& input) const override {
     InitOutcome outcome;
@@ -265,20 +309,30 @@ class WindowInitializer final : public Initializer {
     outcome.measured.correspondences = followed;
     if (followed < options_.min_points) {
       outcome.decision = InitDecision::kNewReference;
-      outcome.reason = "only " + std::to_string(followed) + " of the reference's points are still followed (at least " +
+      outcome.reason = "only " + std::to_string(followed) + " points are still followed (at least " +
                        std::to_string(options_.min_points) + " must be)";
       return outcome;
     }
-    if (since < options_.first_frame || (since - options_.first_frame) % options_.every != 0) {
-      outcome.reason = "the window has " + std::to_string(since + 1) + " frames; " +
-                       (outcome.measured.correspondences > 0 ? std::to_string(followed) + " points are followed" : "");
+    const bool ends = input.moment == InitMoment::kLastFrame;
+    const bool due = since >= options_.first_frame && (since - options_.first_frame) % options_.every == 0;
+    if (!due && !ends) {
+      outcome.reason = "the window has " + std::to_string(since + 1) + " frames, with " + std::to_string(followed) +
+                       " points; a map is first sought after " + std::to_string(options_.first_frame) +
+                       ", then every " + std::to_string(options_.every);
       return outcome;
     }
-    const bool longest = since + options_.every > options_.last_frame;
-    if (const Status status = Attempt(options_, nominal_depth_mm_, input, &outcome).Run(longest); !status.ok()) {
-      outcome.decision = longest ? InitDecision::kNewReference : InitDecision::kWait;
+    const std::size_t frames = input.frames.size();
+    const bool last = ends || since + options_.every > options_.last_frame;
+    Status status = Attempt(options_, nominal_depth_mm_, input, &outcome)
+                        .Run(frames, last ? WhenUncertain::kTakeTheCertain : WhenUncertain::kWait);
+    // The longer the window the more it holds, and the more there is to go wrong.
+    if (last && !status.ok() &&
+        Attempt(options_, nominal_depth_mm_, input, &outcome).Run(2 * frames / 3, WhenUncertain::kTakeTheCertain).ok())
+      status = Status::Ok();
+    if (!status.ok()) {
+      outcome.decision = last ? InitDecision::kNewReference : InitDecision::kWait;
       outcome.reason = status.message();
-      if (longest) outcome.reason += "; given up after " + std::to_string(since) + " frames from one reference";
+      if (last) outcome.reason += "; given up after " + std::to_string(since) + " frames from one reference";
     }
     return outcome;
   }

@@ -68,18 +68,21 @@ TEST(FirstMap, OfOneFrameHasNoMotion) {
 }
 
 TEST(FirstMap, GivesEveryFrameItsOwnPositions) {
-  const DeformingStart start;
-  cv::Mat image(48, 64, CV_8UC3, cv::Scalar(10, 20, 30));
-  image.colRange(32, 64).setTo(cv::Scalar(40, 50, 60));  // from 31.5 px on: the axis lies on the border
+  DeformingStart start;
+  start.frames[0].observations[0].rgb = {30, 20, 10};
+  start.frames[1].observations[2].rgb = {60, 50, 40};
+  // Point 2 is first seen in the second frame.
+  start.frames[0].observations.erase(start.frames[0].observations.begin() + 2);
+  start.outcome.frames[0].positions.erase(start.outcome.frames[0].positions.begin() + 2);
   std::vector<FrameReport> reports(3);
   reports.back().name = "last.png";
-  ReportFirstMap(start.camera, start.frames, start.outcome, image, reports);
+  ReportFirstMap(start.camera, start.frames, start.outcome, reports);
   for (int t = 0; t < 3; ++t) {
     const FrameReport& report = reports[t];
     EXPECT_EQ(report.state, TrackingState::kTracking);
     EXPECT_THAT(report.note, testing::HasSubstr("made in frame last.png"));
     ASSERT_TRUE(report.cam_from_world);
-    EXPECT_EQ(report.optimized, t == 2 ? 2 : 3);
+    EXPECT_EQ(report.optimized, t == 1 ? 3 : 2);
     ASSERT_EQ(static_cast<int>(report.observations.size()), report.optimized);
     EXPECT_LT(report.median_reprojection_error_px, kRounding);
     for (const PointObservation& seen : report.observations) {
@@ -87,14 +90,17 @@ TEST(FirstMap, GivesEveryFrameItsOwnPositions) {
       EXPECT_EQ(seen.ssim, 1 - 0.1 * t);
       EXPECT_LT((*start.camera.Project(*report.cam_from_world * seen.position) - seen.pixel).norm(), kRounding);
     }
-    EXPECT_EQ(report.added, t == 0 ? 3 : 0);
+    EXPECT_EQ(report.added, 2 - t);
     ASSERT_EQ(static_cast<int>(report.new_points.size()), report.added);
   }
-  const std::vector<NewPoint>& points = reports.front().new_points;
-  EXPECT_THAT(points[0].rgb, testing::ElementsAre(30, 20, 10));  // left of the axis; blue comes first in the image
-  EXPECT_THAT(points[2].rgb, testing::ElementsAre(60, 50, 40));
-  for (const NewPoint& point : points)
-    EXPECT_EQ(point.position, DeformingStart::Position(static_cast<int>(point.id.value), 0));
+  const NewPoint& first = reports[0].new_points[0];
+  const NewPoint& later = reports[1].new_points[0];
+  EXPECT_EQ(first.id, PointId{0});
+  EXPECT_EQ(later.id, PointId{2});
+  EXPECT_THAT(first.rgb, testing::ElementsAre(30, 20, 10));
+  EXPECT_THAT(later.rgb, testing::ElementsAre(60, 50, 40));
+  EXPECT_EQ(first.position, DeformingStart::Position(0, 0));
+  EXPECT_EQ(later.position, DeformingStart::Position(2, 0));  // undeformed: as in the reference
 }
 
 }  // namespace

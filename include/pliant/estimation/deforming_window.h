@@ -51,7 +51,7 @@ struct DeformingWindowOptions {
   double gradient_sigma = 0.3;       // of neighbours' modes: standard deviation of their difference by their distance
   double mode_sigma = 0.2;           // of a mode's components by the median distance
   double acceleration_sigma = 0.02;  // of a course's second derivative, 1/frame^2
-  double light_sigma = 0.5;          // of log distance from brightness
+  double light_sigma = 2.0;          // of log distance from brightness; large, because neighbours err alike
   int neighbors = 6;                 // of the smoothness over the surface
   int max_iterations = 30;           // of one solution
 
@@ -61,7 +61,7 @@ struct DeformingWindowOptions {
 struct DeformingSolution {
   DeformingWindow window;
   // Predicted standard deviation of log |X_i|, from noise of loss_scale_px, with what the deformation may be taken into
-  // account; relative to the gauge (W7). Infinite where the data do not determine it.
+  // account; relative to the gauge (W7). Infinite where it cannot be computed.
   std::vector<double> log_depth_sigmas;
   std::vector<double> errors_px;  // root mean square error of each point over its views but the reference
   double cost = 0;

@@ -7,6 +7,8 @@
 // true mm (stereo, depth). A rival is a file that implements Initializer.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -26,6 +28,7 @@ struct InitObservation {
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
   double ssim = 1;        // similarity to its reference patch, at most 1
   double brightness = 0;  // of the surface around it, 0 to 255 (LocalBrightness); 0: unknown
+  std::array<std::uint8_t, 3> rgb = {128, 128, 128};
 };
 
 struct InitFrame {
@@ -33,12 +36,19 @@ struct InitFrame {
   std::vector<InitObservation> observations;  // sorted by id
 };
 
+enum class InitMoment {
+  kMoreFollow,  // to wait is a choice
+  kLastFrame,   // the sequence ends here
+};
+
 struct InitInput {
   const Camera& camera;
   // The reference frame with all its points, then the frames since, in order of time; the last one is the current
-  // frame. A point lost on the way is missing from its frame on.
+  // frame. A point lost on the way is missing from its frame on; one that was added on the way (TakesLaterPoints) is
+  // missing before.
   const std::vector<InitFrame>& frames;
   cv::Mat reference_depth_mm;  // CV_32FC1, z along the optical axis, 0 = none; empty where there is no depth
+  InitMoment moment = InitMoment::kMoreFollow;
 };
 
 enum class InitDecision {
@@ -50,6 +60,7 @@ enum class InitDecision {
 enum class InitRejection {
   kNoRay,           // its pixel has no ray
   kLostOnTheWay,    // not seen in the current frame
+  kTooFewViews,     // seen too briefly, or left out where there were too many
   kEpipolar,        // contradicts the motion
   kCheirality,      // behind a camera, or its rays part
   kUncertainDepth,  // predicted depth too uncertain: too little parallax
@@ -100,8 +111,8 @@ struct InitOutcome {
 
   // Filled in for kMap alone.
   std::vector<InitFrameState> frames;       // one a frame of the input, in its order; the first pose is the identity
-  std::vector<InitPoint> points;            // sorted by id; one may be lost on the way, and missing from later frames
-  std::vector<InitRejectedPoint> rejected;  // the reference's other points, sorted by id
+  std::vector<InitPoint> points;            // sorted by id; each is in some of the frames, not in all
+  std::vector<InitRejectedPoint> rejected;  // the other points, sorted by id
 };
 
 class Initializer {
@@ -109,6 +120,8 @@ class Initializer {
   virtual ~Initializer() = default;
   virtual std::string_view name() const = 0;
   virtual InitOutcome Try(const InitInput& input) const = 0;
+  // Whether points that are first seen after the reference are of use.
+  virtual bool TakesLaterPoints() const { return false; }
 };
 
 }  // namespace pliant

@@ -62,6 +62,7 @@ struct TrackerOptions {
   double max_reprojection_px = 2.4477;  // square root of the 95 % quantile of chi-square at 2 degrees of freedom
   int min_points = 12;                  // fewer: lost
   int min_corners = 40;                 // fewer in an image: it is no reference
+  int top_up_frames = 10;               // while the first map is awaited, corners are added so often
   int max_lost_frames = 10;             // after so many frames in a row without enough points the tracker gives up
 
   // Groups Corners, Masks, LucasKanade, PointTracker, Init, CameraPose, Deformation, Optimization, Tracking,
@@ -102,6 +103,8 @@ class Tracker {
   // The reports that are held back, in order of time, the last processed frame's last: those since the reference while
   // there is no map, else none. So far they are in state initialising.
   const std::vector<FrameReport>& held() const { return held_; }
+  // No frame will follow: while the first map is awaited, a last attempt at one. Its frames come from Finish.
+  void EndSequence();
   // To be called when no more frames come, whatever the reason: the reports held back become final as they are.
   std::vector<FrameReport> Finish() { return std::exchange(held_, {}); }
 
@@ -120,8 +123,10 @@ class Tracker {
   void Count(std::string_view reason, int count);
 
   // Reference and first map.
+  void AddCorners(const TrackerFrame& frame, int max_corners, InitFrame* points);
   void TakeReference(const TrackerFrame& frame, FrameReport* report);
   void FollowReference(const TrackerFrame& frame, FrameReport* report);
+  InitOutcome AskInitializer(const cv::Mat& depth_mm, InitMoment moment, FrameReport* report);
   InitDecision TryInitialize(const TrackerFrame& frame, FrameReport* report);
   void CreateMap(const InitOutcome& outcome);
 
@@ -147,7 +152,6 @@ class Tracker {
   TrackingState state_ = TrackingState::kWaitingForReference;
   Map map_;
   std::vector<InitFrame> init_frames_;  // since the reference
-  cv::Mat reference_image_;
   std::vector<FrameReport> held_;  // of init_frames_ while initialising; within Process the present frame's is the last
   TrackerFrame previous_;          // the last frame in which points were seen
   Rigid3 last_cam_from_world_;

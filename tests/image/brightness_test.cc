@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/image/brightness.h"
+
+#include <gtest/gtest.h>
+
+namespace pliant {
+namespace {
+
+constexpr double kRounding = 0.6;  // grey levels: averages are taken of whole levels
+
+TEST(LocalBrightness, IsThatOfTheRedChannel) {
+  const cv::Mat image(60, 80, CV_8UC3, cv::Scalar(200, 100, 50));
+  EXPECT_NEAR(LocalBrightness(image, {}).At({40, 30}), 50, kRounding);
+  EXPECT_NEAR(LocalBrightness(cv::Mat(60, 80, CV_8UC1, cv::Scalar(70)), {}).At({0, 59}), 70, kRounding);
+}
+
+TEST(LocalBrightness, LeavesOutWhatIsNotTheSurface) {
+  cv::Mat image(60, 80, CV_8UC3, cv::Scalar(0, 0, 100));
+  cv::Mat valid(60, 80, CV_8UC1, cv::Scalar(255));
+  const cv::Rect highlight(36, 26, 8, 8);
+  image(highlight).setTo(cv::Scalar(255, 255, 255));
+  EXPECT_GT(LocalBrightness(image, valid).At({40, 30}), 110);
+  valid(highlight).setTo(0);
+  EXPECT_NEAR(LocalBrightness(image, valid).At({40, 30}), 100,
+              2.0);  // the highlight's rim shares pixels of the average
+  valid.setTo(0);
+  EXPECT_EQ(LocalBrightness(image, valid).At({40, 30}), 0);
+}
+
+TEST(LocalBrightness, FollowsTheImageToAFractionOfAPixel) {
+  cv::Mat image(64, 128, CV_8UC1);
+  for (int x = 0; x < image.cols; ++x) image.col(x).setTo(2 * x);
+  const LocalBrightness brightness(image, {});
+  for (const double x : {40.0, 41.3, 61.9, 80.5}) EXPECT_NEAR(brightness.At({x, 30.2}), 2 * x, kRounding);
+  EXPECT_EQ(brightness.At({-20, 30}), 0);
+  EXPECT_EQ(brightness.At({40, 300}), 0);
+}
+
+}  // namespace
+}  // namespace pliant
