@@ -194,9 +194,9 @@ void Tracker::FollowReference(const TrackerFrame& frame, FrameReport* report) {
       AddCorners(frame, options_.corners.max_corners - report->tracked, &followed);
     init_frames_.push_back(std::move(followed));
   }
-  const std::string fault = ImageFault(frame, previous_);
+  image_fault_ = ImageFault(frame, previous_);
   TryInitialize(frame, report);
-  report->note = WithFault(report->note, fault);
+  report->note = WithFault(report->note, image_fault_);
   previous_ = frame;
 }
 
@@ -213,7 +213,7 @@ void Tracker::EndSequence() {
   if (state_ != TrackingState::kInitialising) return;
   const InitOutcome outcome = AskInitializer({}, InitMoment::kLastFrame, &held_.back());
   if (outcome.decision == InitDecision::kMap) CreateMap(outcome);
-  held_.back().note = outcome.reason;
+  held_.back().note = WithFault(outcome.reason, image_fault_);
 }
 
 InitDecision Tracker::TryInitialize(const TrackerFrame& frame, FrameReport* report) {

@@ -86,7 +86,9 @@ void ExpectFromTheMap(const FrameReport& report, const std::set<PointId>& map, c
 }
 
 TEST_F(TrackerFromImages, TheFirstMapGivesEveryFrameSinceTheReferenceItsPoseAndPoints) {
-  Tracker tracker = MakeTracker();
+  TrackerOptions options;
+  options.init.method = InitMethod::kGated;  // within the few frames here
+  Tracker tracker = MakeTracker(options);
   std::vector<FrameReport> done;
   int shown = 0;
   for (; shown < kFrames && done.empty(); ++shown) {
@@ -128,6 +130,7 @@ TEST_F(TrackerFromImages, TheFirstMapGivesEveryFrameSinceTheReferenceItsPoseAndP
 TEST_F(TrackerFromImages, AReferenceThatIsGivenUpLeavesFramesWithoutPoses) {
   constexpr int kWindow = 8;
   TrackerOptions options;
+  options.init.method = InitMethod::kGated;
   options.init.monocular.max_window = kWindow;
   Tracker tracker = MakeTracker(options);
   for (int i = 0; i < kWindow; ++i) EXPECT_TRUE(Show(0, i, &tracker).empty());

@@ -152,6 +152,7 @@ class Tracker {
   TrackingState state_ = TrackingState::kWaitingForReference;
   Map map_;
   std::vector<InitFrame> init_frames_;  // since the reference
+  std::string image_fault_;             // of the last of them
   std::vector<FrameReport> held_;  // of init_frames_ while initialising; within Process the present frame's is the last
   TrackerFrame previous_;          // the last frame in which points were seen
   Rigid3 last_cam_from_world_;
