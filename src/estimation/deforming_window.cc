@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <future>
 #include <limits>
 #include <string>
 
@@ -179,7 +180,7 @@ void DeformingWindowOptions::List(OptionTable& table) {
 }
 
 Result<DeformingSolution> SolveDeformingWindow(const DeformingWindow& start, double focal_px,
-                                               const DeformingWindowOptions& options) {
+                                               const DeformingWindowOptions& options, int threads) {
   if (Status status = CheckStart(start); !status.ok()) return status;
   const int rank = std::min(options.rank, static_cast<int>(start.times.size()) - 1);
   const auto from_start = [&](int of_rank) {
@@ -187,12 +188,16 @@ Result<DeformingSolution> SolveDeformingWindow(const DeformingWindow& start, dou
     SetCourses(of_rank, &window);
     return SolveFrom(std::move(window), focal_px, options);
   };
+  const bool lit = std::any_of(start.observations.begin(), start.observations.end(),
+                               [](const auto& observation) { return std::isfinite(observation.log_light); });
+  if (!lit || rank < 2) return from_start(rank);
+  auto lower_later = std::async(threads > 1 ? std::launch::async : std::launch::deferred, from_start, rank - 1);
   auto best = from_start(rank);
-  if (!best.ok() || !(best->light_error > 0.0) || rank < 2) return best;
+  auto lower = lower_later.get();
+  if (!best.ok() || !(best->light_error > 0.0)) return best;
 
   DeformingWindow reduced = best->window;
   KeepStrongestCourses(rank - 1, &reduced);
-  auto lower = from_start(rank - 1);
   auto from_best = SolveFrom(std::move(reduced), focal_px, options);
   if (!lower.ok() || (from_best.ok() && Implausibility(*from_best) < Implausibility(*lower)))
     lower = std::move(from_best);

@@ -202,7 +202,7 @@ void Tracker::FollowReference(const TrackerFrame& frame, FrameReport* report) {
 
 InitOutcome Tracker::AskInitializer(const cv::Mat& depth_mm, InitMoment moment, FrameReport* report) {
   const StageTimer timer(report, "initialise");
-  const InitInput input{camera_, init_frames_, depth_mm, moment};
+  const InitInput input{camera_, init_frames_, depth_mm, moment, threads_};
   InitOutcome outcome =
       oracle_->gives_first_map() ? oracle_->FirstMap(input, options_.min_points) : initializer_->Try(input);
   if (outcome.decision == InitDecision::kMap) oracle_->TakeWorld(input, &outcome);

@@ -46,7 +46,7 @@ class Attempt {
     if (ids_.size() < kLeastPoints)
       return {ErrorCode::kInsufficient, "only " + std::to_string(ids_.size()) + " points were followed long enough"};
     if (Status status = Start(); !status.ok()) return status;
-    auto solution = SolveDeformingWindow(std::move(start_), focal_px_, options_.window);
+    auto solution = SolveDeformingWindow(start_, focal_px_, options_.window, input_.threads);
     if (!solution.ok()) return solution.status();
     ChooseCertain(*solution);
     if (Status status = EnoughCertain(when_uncertain); !status.ok()) return status;

@@ -153,6 +153,15 @@ TEST(DeformingWindow, TheLightTellsSolutionsApart) {
   EXPECT_LT(solution->light_error, 3 * 0.1 / kMedianToSigma);
 }
 
+TEST(DeformingWindow, DoesNotDependOnTheNumberOfThreads) {
+  const DeformingWindow start = Scene(7).Start(0.1);
+  const auto one = SolveDeformingWindow(start, kFocalPx, {}, 1);
+  const auto two = SolveDeformingWindow(start, kFocalPx, {}, 2);
+  ASSERT_TRUE(one.ok() && two.ok());
+  EXPECT_EQ(one->window.points_in_world, two->window.points_in_world);
+  EXPECT_EQ(one->window.courses, two->window.courses);
+}
+
 TEST(DeformingWindow, LocatesTheViewsBetween) {
   const Scene scene;
   const auto solution = SolveDeformingWindow(scene.Start(0), kFocalPx, {});

@@ -73,10 +73,10 @@ struct DeformingSolution {
 // together. Solutions of rank R, of R - 1, and of R - 1 from that of rank R are compared: images alone hardly tell one
 // minimum from another, the light does. That of rank R is returned unless the light_error of another is clearly less.
 //
-// Fails with kInvalidArgument for sizes and indices that do not fit, kInsufficient below three views or twelve points,
-// and kDegenerate when there is no usable step.
+// `threads` never changes the result. Fails with kInvalidArgument for sizes and indices that do not fit, kInsufficient
+// below three views or twelve points, and kDegenerate when there is no usable step.
 Result<DeformingSolution> SolveDeformingWindow(const DeformingWindow& start, double focal_px,
-                                               const DeformingWindowOptions& options);
+                                               const DeformingWindowOptions& options, int threads = 1);
 
 // Poses and courses of more views of a solved window's points, which stay as they are with their modes: `views` has a
 // start of every view's pose and courses. The first view stays as it is. Fails like SolveDeformingWindow.

@@ -49,6 +49,7 @@ struct InitInput {
   const std::vector<InitFrame>& frames;
   cv::Mat reference_depth_mm;  // CV_32FC1, z along the optical axis, 0 = none; empty where there is no depth
   InitMoment moment = InitMoment::kMoreFollow;
+  int threads = 1;  // that an initialiser may use; they never change its answer
 };
 
 enum class InitDecision {
