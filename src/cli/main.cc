@@ -29,7 +29,8 @@ struct Command {
 
 constexpr std::array kCommands = {
     Command{"track", "camera pose and the motion of every point, from a folder of images or a video", TrackCommand},
-    Command{"simulate", "render a scene that deforms, with depth, poses and the paths of its material", SimulateCommand},
+    Command{"simulate", "render a scene that deforms, with depth, poses and the paths of its material",
+            SimulateCommand},
     Command{"evaluate", "compare runs with the truth of their sequences", EvaluateCommand},
     Command{"truth", "follow the material that pixels of a simulated sequence show", TruthCommand},
     Command{"demo", "simulate, track and evaluate a small sequence", DemoCommand},
