@@ -13,7 +13,6 @@ namespace pliant {
 namespace {
 
 using Points = std::span<const Eigen::Vector3d>;
-using NeighborLists = std::vector<std::vector<int>>;
 
 // Distances that differ by less than this ratio count as equal: FLANN sums squares in its own order.
 constexpr double kTie = 1e-12;
@@ -34,12 +33,32 @@ std::vector<int> NearestByScan(Points points, int i, int count) {
   return nearest;
 }
 
-// The K nearest of every point, itself excluded; fewer where there are not K others.
-NeighborLists FindNeighbors(Points points, int neighbors) {
+// The directed pairs of the lists as edges i < j in ascending order, each with the number of its directions.
+std::vector<GraphEdge> MergeDirections(const NeighborLists& lists) {
+  std::vector<std::pair<int, int>> pairs;
+  for (int i = 0; i < static_cast<int>(lists.size()); ++i)
+    for (const int j : lists[i]) pairs.push_back(std::minmax(i, j));
+  std::sort(pairs.begin(), pairs.end());
+
+  std::vector<GraphEdge> edges;
+  edges.reserve(pairs.size());
+  for (const auto& [i, j] : pairs) {
+    if (!edges.empty() && edges.back().i == i && edges.back().j == j) {
+      edges.back().multiplicity = 2;
+    } else {
+      edges.push_back({.i = i, .j = j});
+    }
+  }
+  return edges;
+}
+
+}  // namespace
+
+NeighborLists NearestNeighbors(Points points, int neighbors) {
   const int num_points = static_cast<int>(points.size());
   const int count = std::min(neighbors, num_points - 1);
   NeighborLists lists(num_points);
-  if (count < 1) return lists;
+  if (count < 1 || !AllFinite(points)) return lists;
 
   // FLANN does not write to its input, but takes it without const. Vector3d has no padding: rows of three doubles.
   static_assert(sizeof(Eigen::Vector3d) == 3 * sizeof(double));
@@ -68,27 +87,6 @@ NeighborLists FindNeighbors(Points points, int neighbors) {
   return lists;
 }
 
-// The directed pairs of the lists as edges i < j in ascending order, each with the number of its directions.
-std::vector<GraphEdge> MergeDirections(const NeighborLists& lists) {
-  std::vector<std::pair<int, int>> pairs;
-  for (int i = 0; i < static_cast<int>(lists.size()); ++i)
-    for (const int j : lists[i]) pairs.push_back(std::minmax(i, j));
-  std::sort(pairs.begin(), pairs.end());
-
-  std::vector<GraphEdge> edges;
-  edges.reserve(pairs.size());
-  for (const auto& [i, j] : pairs) {
-    if (!edges.empty() && edges.back().i == i && edges.back().j == j) {
-      edges.back().multiplicity = 2;
-    } else {
-      edges.push_back({.i = i, .j = j});
-    }
-  }
-  return edges;
-}
-
-}  // namespace
-
 void GraphOptions::List(OptionTable& table) {
   table.BeginGroup("Deformation", "the graph that ties each point to its neighbours");
   table.Add("neighbors", &neighbors, "points", "K, how many nearest neighbours each point is tied to", 1, 1000);
@@ -109,7 +107,7 @@ Result<DeformationGraph> BuildDeformationGraph(Points positions, Points rest_pos
 
   DeformationGraph graph;
   graph.num_points = static_cast<int>(positions.size());
-  graph.edges = MergeDirections(FindNeighbors(positions, options.neighbors));
+  graph.edges = MergeDirections(NearestNeighbors(positions, options.neighbors));
   const double exponent = -1.0 / (2.0 * options.sigma_mm * options.sigma_mm);
   for (GraphEdge& edge : graph.edges) {
     const double squared_length = (positions[edge.i] - positions[edge.j]).squaredNorm();

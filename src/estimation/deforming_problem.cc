@@ -58,7 +58,7 @@ DeformingProblem::DeformingProblem(const DeformingWindow& start, double focal_px
     points_.push_back({chart, chart.Parameters(position),
                        rank_ > 0 ? Eigen::VectorXd(start.modes[i].reshaped()) : Eigen::VectorXd()});
   }
-  neighbors_ = FindNeighbors(start.points_in_world, std::max(options_.neighbors, kSlopeNeighbors));
+  neighbors_ = NearestNeighbors(start.points_in_world, std::max(options_.neighbors, kSlopeNeighbors));
   AddObservations();
   if (rank_ > 0) AddSmoothness();
   AddScale();
@@ -103,9 +103,9 @@ void DeformingProblem::AddSmoothness() {
     problem_->AddResidualBlock(new LinearCost({mode_weight}, 3 * rank_), nullptr, modes);
     const auto count = std::min(neighbors_[i].size(), static_cast<std::size_t>(options_.neighbors));
     for (std::size_t k = 0; k < count; ++k) {
-      const double weight = EdgeWeight(neighbors_[i][k].distance);
-      problem_->AddResidualBlock(new LinearCost({weight, -weight}, 3 * rank_), nullptr, modes,
-                                 points_[static_cast<std::size_t>(neighbors_[i][k].point_idx)].modes.data());
+      const auto j = static_cast<std::size_t>(neighbors_[i][k]);
+      const double weight = EdgeWeight((start_.points_in_world[j] - start_.points_in_world[i]).norm());
+      problem_->AddResidualBlock(new LinearCost({weight, -weight}, 3 * rank_), nullptr, modes, points_[j].modes.data());
     }
   }
   for (std::size_t v = 1; v < views_.size(); ++v)

@@ -57,7 +57,7 @@ class DeformingProblem {
   double median_distance_ = 1;
   std::vector<View> views_;
   std::vector<Point> points_;
-  std::vector<Neighbors> neighbors_;  // of the points, at the start
+  NeighborLists neighbors_;  // of the points, at the start
   double light_offset_ = 0;
 
   ceres::CauchyLoss cauchy_;

@@ -22,42 +22,28 @@ constexpr std::size_t kLeastLit = 20;
 
 }  // namespace
 
-std::vector<Neighbors> FindNeighbors(const std::vector<Eigen::Vector3d>& positions, int count) {
-  std::vector<Neighbors> neighbors(positions.size());
-  for (std::size_t i = 0; i < positions.size(); ++i) {
-    Neighbors& others = neighbors[i];
-    for (std::size_t j = 0; j < positions.size(); ++j)
-      if (j != i) others.push_back({static_cast<int>(j), (positions[j] - positions[i]).norm()});
-    const auto kept = std::min(others.size(), static_cast<std::size_t>(count));
-    std::partial_sort(others.begin(), others.begin() + static_cast<std::ptrdiff_t>(kept), others.end(),
-                      [](const Neighbor& a, const Neighbor& b) {
-                        return a.distance != b.distance ? a.distance < b.distance : a.point_idx < b.point_idx;
-                      });
-    others.resize(kept);
-  }
-  return neighbors;
-}
-
 std::vector<double> CorrectForSlope(const std::vector<Eigen::Vector3d>& positions_in_cam,
-                                    const std::vector<Neighbors>& neighbors, const std::vector<double>& log_light) {
+                                    const NeighborLists& neighbors, const std::vector<double>& log_light) {
   std::vector<double> corrected = log_light;
   for (std::size_t i = 0; i < corrected.size(); ++i) {
     if (!std::isfinite(corrected[i]) || neighbors[i].empty()) continue;
     const auto count = std::min(neighbors[i].size(), static_cast<std::size_t>(kSlopeNeighbors));
-    const double reach = neighbors[i][count / 2].distance;
+    const auto neighbor = [&](std::size_t k) { return positions_in_cam[static_cast<std::size_t>(neighbors[i][k])]; };
+    const auto distance = [&](std::size_t k) { return (neighbor(k) - positions_in_cam[i]).norm(); };
+    const double reach = distance(count / 2);
     if (!(reach > 0.0)) continue;
     Eigen::Vector3d center = positions_in_cam[i];
     double sum = 1.0;
     std::vector<double> weights;
     for (std::size_t k = 0; k < count; ++k) {
-      weights.push_back(std::exp(-0.5 * std::pow(neighbors[i][k].distance / reach, 2)));
-      center += weights[k] * positions_in_cam[static_cast<std::size_t>(neighbors[i][k].point_idx)];
+      weights.push_back(std::exp(-0.5 * std::pow(distance(k) / reach, 2)));
+      center += weights[k] * neighbor(k);
       sum += weights[k];
     }
     center /= sum;
     Eigen::Matrix3d spread = (positions_in_cam[i] - center) * (positions_in_cam[i] - center).transpose();
     for (std::size_t k = 0; k < count; ++k) {
-      const Eigen::Vector3d arm = positions_in_cam[static_cast<std::size_t>(neighbors[i][k].point_idx)] - center;
+      const Eigen::Vector3d arm = neighbor(k) - center;
       spread += weights[k] * arm * arm.transpose();
     }
     const Eigen::Vector3d normal = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().col(0);
@@ -70,7 +56,7 @@ std::vector<double> CorrectForSlope(const std::vector<Eigen::Vector3d>& position
 double LightError(const std::vector<Eigen::Vector3d>& positions_in_cam, const std::vector<double>& log_light) {
   if (positions_in_cam.empty()) return 0.0;
   const std::vector<double> light =
-      CorrectForSlope(positions_in_cam, FindNeighbors(positions_in_cam, kSlopeNeighbors), log_light);
+      CorrectForSlope(positions_in_cam, NearestNeighbors(positions_in_cam, kSlopeNeighbors), log_light);
   std::vector<double> distances;
   for (const Eigen::Vector3d& position : positions_in_cam) distances.push_back(position.norm());
   const double far = kFar * Median(distances);

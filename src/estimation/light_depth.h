@@ -9,23 +9,17 @@
 
 #include <Eigen/Core>
 
-namespace pliant {
+#include "pliant/deformation/graph.h"
 
-struct Neighbor {
-  int point_idx = 0;
-  double distance = 0;
-};
-using Neighbors = std::vector<Neighbor>;  // nearest first
+namespace pliant {
 
 inline constexpr int kSlopeNeighbors = 12;  // whose plane is the surface
 
-// The `count` nearest other points of each (fewer where there are fewer), by search through all: for some hundreds.
-std::vector<Neighbors> FindNeighbors(const std::vector<Eigen::Vector3d>& positions, int count);
-
 // `log_light` with the cosine between ray and surface put in, which darkens like distance does. Positions are in the
-// camera; the surface at a point is the plane of its neighbours, the nearer the more. NaN stays NaN.
+// camera; the surface at a point is the plane of its neighbours, the nearer the more. NaN stays NaN. `neighbors`:
+// kSlopeNeighbors or more of each.
 std::vector<double> CorrectForSlope(const std::vector<Eigen::Vector3d>& positions_in_cam,
-                                    const std::vector<Neighbors>& neighbors, const std::vector<double>& log_light);
+                                    const NeighborLists& neighbors, const std::vector<double>& log_light);
 
 // Median absolute deviation of log |x| - light from its median, over the lit points that are not far; 0 where fewer
 // than twenty are lit.

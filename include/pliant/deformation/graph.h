@@ -57,6 +57,12 @@ struct DeformationGraph {
   int cut = 0;                   // edges left out for their stretch
 };
 
+// The `count` nearest other points of each, nearest first; fewer where there are not as many, and none for positions
+// that are not all finite. Exact; who is among them does not depend on the order of the search, because neighbours at
+// equal distance are taken in the order of their index.
+using NeighborLists = std::vector<std::vector<int>>;
+NeighborLists NearestNeighbors(std::span<const Eigen::Vector3d> positions, int count);
+
 // The graph of `positions` (mm, any one frame). `rest_positions` are the same points undeformed; they may be empty when
 // nothing asks for them, and then rest lengths are the present lengths and no edge is cut. The search is exact, and
 // neighbours at equal distance are taken in the order of their index, so the answer depends on nothing but the input.
