@@ -12,6 +12,7 @@
 #include <ceres/cost_function.h>
 #include <ceres/sized_cost_function.h>
 
+#include "estimation/ceres_support.h"
 #include "estimation/ray_residuals.h"
 
 namespace pliant {
@@ -56,7 +57,7 @@ class DeformingDirectionCost final : public ceres::CostFunction {
   }
 
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
-    const Eigen::Quaterniond rotation(parameters[0][3], parameters[0][0], parameters[0][1], parameters[0][2]);
+    const Eigen::Quaterniond rotation = ReadQuaternion(parameters[0]);
     const Eigen::Map<const Eigen::Vector3d> translation(parameters[1]);
     const Eigen::Map<const Eigen::Vector3d> point(parameters[2]);
     Eigen::Vector3d x = chart_.Point(point);

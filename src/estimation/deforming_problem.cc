@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "estimation/ceres_support.h"
 #include "pliant/base/statistics.h"
 #include "pliant/geometry/triangulation.h"
 
@@ -22,13 +23,6 @@ constexpr double kScaleWeight = 300.0;
 // Without light, a prior this weak keeps the depth of a point that nothing determines from running away.
 constexpr double kFarSigma = 100.0;
 constexpr double kLightLoss = 1.5;  // in standard deviations
-
-ceres::Problem::Options BorrowingOptions() {
-  ceres::Problem::Options options;
-  options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-  options.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-  return options;
-}
 
 std::vector<double> Logs(const std::vector<Eigen::Vector3d>& positions) {
   std::vector<double> logs;
@@ -191,8 +185,7 @@ Result<double> DeformingProblem::Solve(int max_iterations) {
 DeformingWindow DeformingProblem::Window() const {
   DeformingWindow window = start_;
   for (std::size_t v = 0; v < views_.size(); ++v) {
-    const Eigen::Vector4d& q = views_[v].rotation;
-    window.cams_from_world[v] = Rigid3(Eigen::Quaterniond(q[3], q[0], q[1], q[2]), views_[v].translation);
+    window.cams_from_world[v] = Rigid3(ReadQuaternion(views_[v].rotation.data()), views_[v].translation);
     if (rank_ > 0) window.courses.col(static_cast<Eigen::Index>(v)) = views_[v].courses;
   }
   for (std::size_t i = 0; i < points_.size(); ++i) {

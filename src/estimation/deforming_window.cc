@@ -7,6 +7,7 @@
 #include <cmath>
 #include <future>
 #include <limits>
+#include <memory>
 #include <string>
 
 #include <Eigen/Eigenvalues>
@@ -137,22 +138,54 @@ double Implausibility(const DeformingSolution& solution) {
   return solution.cost + static_cast<double>(solution.window.points_in_world.size()) * std::log(solution.light_error);
 }
 
-// The solution from a start with courses.
-Result<DeformingSolution> SolveFrom(DeformingWindow window, double focal_px, const DeformingWindowOptions& options) {
+// A solution and its problem, which can still be asked how certain the points are: that costs as much as a few steps,
+// and is asked of the one that is returned.
+struct Candidate {
   DeformingSolution solution;
+  std::unique_ptr<DeformingProblem> problem;
+};
+
+// The solution from a start with courses.
+Result<Candidate> SolveFrom(DeformingWindow window, double focal_px, const DeformingWindowOptions& options) {
+  Candidate candidate;
   for (int round = 0; round < kRounds; ++round) {
-    DeformingProblem problem(window, focal_px, options);
-    const auto cost = problem.Solve(options.max_iterations);
+    candidate.problem = std::make_unique<DeformingProblem>(window, focal_px, options);
+    const auto cost = candidate.problem->Solve(options.max_iterations);
     if (!cost.ok()) return cost.status();
-    solution.cost = *cost;
-    window = problem.Window();
-    if (round + 1 < kRounds) continue;
-    solution.errors_px = problem.ErrorsPx();
-    solution.log_depth_sigmas = problem.LogDepthSigmas();
+    candidate.solution.cost = *cost;
+    window = candidate.problem->Window();
   }
-  solution.light_error = WindowLightError(window);
-  solution.window = std::move(window);
-  return solution;
+  candidate.solution.light_error = WindowLightError(window);
+  candidate.solution.window = std::move(window);
+  return candidate;
+}
+
+// The best of the solutions that are compared; see SolveDeformingWindow.
+Result<Candidate> BestCandidate(const DeformingWindow& start, double focal_px, const DeformingWindowOptions& options,
+                                int threads) {
+  const int rank = std::min(options.rank, static_cast<int>(start.times.size()) - 1);
+  const auto from_start = [&](int of_rank) {
+    DeformingWindow window = start;
+    SetCourses(of_rank, &window);
+    return SolveFrom(std::move(window), focal_px, options);
+  };
+  const bool lit = std::any_of(start.observations.begin(), start.observations.end(),
+                               [](const auto& observation) { return std::isfinite(observation.log_light); });
+  if (!lit || rank < 2) return from_start(rank);
+  auto lower_later = std::async(threads > 1 ? std::launch::async : std::launch::deferred, from_start, rank - 1);
+  auto best = from_start(rank);
+  auto lower = lower_later.get();
+  if (!best.ok() || !(best->solution.light_error > 0.0)) return best;
+
+  DeformingWindow reduced = best->solution.window;
+  KeepStrongestCourses(rank - 1, &reduced);
+  auto from_best = SolveFrom(std::move(reduced), focal_px, options);
+  if (!lower.ok() || (from_best.ok() && Implausibility(from_best->solution) < Implausibility(lower->solution)))
+    lower = std::move(from_best);
+  if (lower.ok() && lower->solution.light_error > 0.0 &&
+      lower->solution.light_error < kClearlyBetter * best->solution.light_error)
+    return lower;
+  return best;
 }
 
 }  // namespace
@@ -182,28 +215,11 @@ void DeformingWindowOptions::List(OptionTable& table) {
 Result<DeformingSolution> SolveDeformingWindow(const DeformingWindow& start, double focal_px,
                                                const DeformingWindowOptions& options, int threads) {
   if (Status status = CheckStart(start); !status.ok()) return status;
-  const int rank = std::min(options.rank, static_cast<int>(start.times.size()) - 1);
-  const auto from_start = [&](int of_rank) {
-    DeformingWindow window = start;
-    SetCourses(of_rank, &window);
-    return SolveFrom(std::move(window), focal_px, options);
-  };
-  const bool lit = std::any_of(start.observations.begin(), start.observations.end(),
-                               [](const auto& observation) { return std::isfinite(observation.log_light); });
-  if (!lit || rank < 2) return from_start(rank);
-  auto lower_later = std::async(threads > 1 ? std::launch::async : std::launch::deferred, from_start, rank - 1);
-  auto best = from_start(rank);
-  auto lower = lower_later.get();
-  if (!best.ok() || !(best->light_error > 0.0)) return best;
-
-  DeformingWindow reduced = best->window;
-  KeepStrongestCourses(rank - 1, &reduced);
-  auto from_best = SolveFrom(std::move(reduced), focal_px, options);
-  if (!lower.ok() || (from_best.ok() && Implausibility(*from_best) < Implausibility(*lower)))
-    lower = std::move(from_best);
-  if (lower.ok() && lower->light_error > 0.0 && lower->light_error < kClearlyBetter * best->light_error)
-    best = std::move(lower);
-  return best;
+  auto best = BestCandidate(start, focal_px, options, threads);
+  if (!best.ok()) return best.status();
+  best->solution.errors_px = best->problem->ErrorsPx();
+  best->solution.log_depth_sigmas = best->problem->LogDepthSigmas();
+  return std::move(best->solution);
 }
 
 Result<DeformingWindow> LocateDeformingViews(const DeformingWindow& views, double focal_px,

@@ -11,6 +11,7 @@
 #include <Eigen/Eigenvalues>
 #include <ceres/ceres.h>
 
+#include "estimation/ceres_support.h"
 #include "estimation/ray_residuals.h"
 #include "pliant/base/statistics.h"
 #include "pliant/geometry/triangulation.h"
@@ -21,8 +22,6 @@ namespace {
 using Rays = std::span<const Eigen::Vector3d>;
 using RowMajor24 = Eigen::Matrix<double, 2, 4, Eigen::RowMajor>;
 using RowMajor23 = Eigen::Matrix<double, 2, 3, Eigen::RowMajor>;
-
-Eigen::Quaterniond ReadQuaternion(const double* q) { return Eigen::Quaterniond(q[3], q[0], q[1], q[2]); }
 
 // Blocks: rotation (x, y, z, w), translation of unit length. Unit: px.
 class SampsonCost final : public ceres::SizedCostFunction<1, 4, 3> {
@@ -83,14 +82,6 @@ ceres::Solver::Options SolverOptions(ceres::LinearSolverType linear_solver, int 
   options.num_threads = 1;
   options.max_trust_region_radius = 1e8;  // some damping stays, whatever a point's depth does
   options.logging_type = ceres::SILENT;
-  return options;
-}
-
-// The problem borrows its losses and manifolds from the caller.
-ceres::Problem::Options BorrowingOptions() {
-  ceres::Problem::Options options;
-  options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-  options.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   return options;
 }
 

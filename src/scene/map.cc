@@ -3,16 +3,10 @@
 
 #include "pliant/scene/map.h"
 
-#include <algorithm>
-
 namespace pliant {
 
-Landmark* Map::Find(PointId id) {
-  const auto it = std::lower_bound(landmarks.begin(), landmarks.end(), id,
-                                   [](const Landmark& landmark, PointId wanted) { return landmark.id < wanted; });
-  return it != landmarks.end() && it->id == id ? &*it : nullptr;
-}
+Landmark* Map::Find(PointId id) { return FindById(landmarks, id); }
 
-const Landmark* Map::Find(PointId id) const { return const_cast<Map*>(this)->Find(id); }
+const Landmark* Map::Find(PointId id) const { return FindById(landmarks, id); }
 
 }  // namespace pliant

@@ -13,17 +13,10 @@
 namespace pliant {
 namespace {
 
-// The element with this id of a sequence that is sorted by id, or null.
-template <class T>
-const T* Find(const std::vector<T>& sorted, PointId id) {
-  const auto found = std::ranges::lower_bound(sorted, id, {}, &T::id);
-  return found == sorted.end() || found->id != id ? nullptr : &*found;
-}
-
 void ReportFrame(const Camera& camera, const InitFrame& frame, const InitFrameState& state, FrameReport* report) {
   std::vector<double> errors;
   for (const InitPosition& point : state.positions) {
-    const InitObservation& seen = *Find(frame.observations, point.id);
+    const InitObservation& seen = *FindById(frame.observations, point.id);
     report->observations.push_back({point.id, seen.pixel, point.position, seen.ssim});
     if (const auto projected = camera.Project(state.cam_from_world * point.position))
       errors.push_back((*projected - seen.pixel).norm());
@@ -48,8 +41,8 @@ void ReportFirstMap(const Camera& camera, const std::vector<InitFrame>& frames, 
   for (std::size_t k = 0; k < frames.size(); ++k) {
     for (const InitPosition& seen : outcome.frames[k].positions) {
       if (!known.insert(seen.id).second) continue;
-      const InitPoint& point = *Find(outcome.points, seen.id);
-      reports[k].new_points.push_back({point.id, point.position, Find(frames[k].observations, point.id)->rgb});
+      const InitPoint& point = *FindById(outcome.points, seen.id);
+      reports[k].new_points.push_back({point.id, point.position, FindById(frames[k].observations, point.id)->rgb});
     }
     reports[k].added = static_cast<int>(reports[k].new_points.size());
   }
@@ -61,12 +54,12 @@ Map MakeFirstMap(const std::vector<InitFrame>& frames, const InitOutcome& outcom
   const std::size_t before = last == 0 ? 0 : last - 1;
   Map map;
   for (const InitPoint& point : outcome.points) {
-    const InitPosition* now = Find(outcome.frames[last].positions, point.id);
+    const InitPosition* now = FindById(outcome.frames[last].positions, point.id);
     if (now == nullptr) continue;
-    const InitPosition* then = Find(outcome.frames[before].positions, point.id);
+    const InitPosition* then = FindById(outcome.frames[before].positions, point.id);
     Landmark landmark{.id = point.id, .rest_position = point.position, .position = now->position};
     if (then != nullptr) landmark.last_motion = now->position - then->position;
-    landmark.pixel = Find(frames[last].observations, point.id)->pixel;
+    landmark.pixel = FindById(frames[last].observations, point.id)->pixel;
     map.landmarks.push_back(landmark);
   }
   return map;

@@ -85,10 +85,9 @@ void OracleAnswers::TakeWorld(const InitInput& input, InitOutcome* outcome) {
   if (nominal_depth_mm_) {
     const auto depths = truth_->DepthsAt(reference.frame_idx, PixelsOf(reference));
     std::vector<double> ratios;
-    std::size_t k = 0;
-    for (const InitPoint& point : outcome->points) {
-      while (reference.observations[k].id < point.id) ++k;
-      if (depths[k]) ratios.push_back(point.position.z() / *depths[k]);
+    for (std::size_t k = 0; k < depths.size(); ++k) {
+      const InitPoint* point = FindById(outcome->points, reference.observations[k].id);
+      if (point != nullptr && depths[k]) ratios.push_back(point->position.z() / *depths[k]);
     }
     if (!ratios.empty()) unit_per_mm_ = Median(std::move(ratios));
   }

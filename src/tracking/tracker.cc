@@ -112,13 +112,13 @@ void Tracker::Count(std::string_view reason, int count) {
 }
 
 // Adds corners away from the points that are there.
-void Tracker::AddCorners(const TrackerFrame& frame, int max_corners, InitFrame* points) {
+void Tracker::AddCorners(const TrackerFrame& frame, const LocalBrightness& brightness, int max_corners,
+                         InitFrame* points) {
   if (max_corners <= 0) return;
   std::vector<Eigen::Vector2d> existing;
   for (const InitObservation& observation : points->observations) existing.push_back(observation.pixel);
   CornerOptions corners = options_.corners;
   corners.max_corners = max_corners;
-  const LocalBrightness brightness(frame.image, frame.mask.valid());
   InitFrame added{frame.frame_idx, {}};
   for (const Corner& corner : DetectCorners(frame.grey, frame.mask.valid(), existing, corners)) {
     const PointId id{next_id_};
@@ -138,7 +138,7 @@ void Tracker::TakeReference(const TrackerFrame& frame, FrameReport* report) {
     init_frames_.clear();
     point_tracker_.Clear();
     InitFrame reference{frame.frame_idx, {}};
-    AddCorners(frame, options_.corners.max_corners, &reference);
+    AddCorners(frame, LocalBrightness(frame.image, frame.mask.valid()), options_.corners.max_corners, &reference);
     report->tracked = static_cast<int>(reference.observations.size());
     init_frames_.push_back(std::move(reference));
   }
@@ -191,7 +191,7 @@ void Tracker::FollowReference(const TrackerFrame& frame, FrameReport* report) {
     }
     report->tracked = static_cast<int>(followed.observations.size());
     if (initializer_->TakesLaterPoints() && init_frames_.size() % static_cast<std::size_t>(options_.top_up_frames) == 0)
-      AddCorners(frame, options_.corners.max_corners - report->tracked, &followed);
+      AddCorners(frame, brightness, options_.corners.max_corners - report->tracked, &followed);
     init_frames_.push_back(std::move(followed));
   }
   image_fault_ = ImageFault(frame, previous_);

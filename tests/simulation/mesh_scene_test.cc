@@ -11,7 +11,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <opencv2/imgcodecs.hpp>
-#include <tbb/global_control.h>
 #include <unistd.h>
 
 #include "pliant/simulation/open_simulation.h"
@@ -23,10 +22,10 @@ namespace pliant {
 namespace {
 
 namespace fs = std::filesystem;
+using simulation_test::ExpectSameBytesOnFourThreads;
 using simulation_test::Make;
 using simulation_test::Median;
 using simulation_test::Pinhole160;
-using simulation_test::SamePixels;
 using simulation_test::SmallScene;
 using simulation_test::WarpErrors;
 using testing::HasSubstr;
@@ -168,13 +167,7 @@ TEST_F(MeshSceneTest, CoarseWallsBendAsTheFormulaSays) {
 TEST_F(MeshSceneTest, GivesTheSameBytesForAnyNumberOfThreads) {
   SimulationOptions options = Room(WriteStl(), TrajectoryKind::kSway, 3);
   options.deformation.amplitude_mm = 2.0;
-  const tbb::global_control workers(tbb::global_control::max_allowed_parallelism, 4);
-  options.threads = 1;
-  const SimulatedFrame a = Make(options).Render(2);
-  options.threads = 4;
-  const SimulatedFrame b = Make(options).Render(2);
-  EXPECT_TRUE(SamePixels(a.image, b.image));
-  EXPECT_TRUE(SamePixels(a.depth, b.depth));
+  ExpectSameBytesOnFourThreads(options, {2});
 }
 
 TEST_F(MeshSceneTest, CarriesTheSolidTextureOrItsOwnPicture) {

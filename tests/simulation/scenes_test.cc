@@ -7,7 +7,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include "pliant/simulation/simulator.h"
 #include "simulation/small_scene.h"
@@ -15,10 +14,10 @@
 namespace pliant {
 namespace {
 
+using simulation_test::ExpectSameBytesOnFourThreads;
 using simulation_test::Make;
 using simulation_test::Median;
 using simulation_test::Pinhole160;
-using simulation_test::SamePixels;
 using simulation_test::SmallScene;
 using simulation_test::SmoothDepth;
 using simulation_test::WarpErrors;
@@ -66,13 +65,7 @@ TEST_P(EveryScene, GivesTheSameBytesForAnyNumberOfThreads) {
   options.deformation.amplitude_mm = 2.0;
   options.deformation.breathing_mm = 1.0;
   options.deformation.poke_mm = 2.0;
-  const tbb::global_control workers(tbb::global_control::max_allowed_parallelism, 4);
-  options.threads = 1;
-  const SimulatedFrame a = Make(options).Render(3);
-  options.threads = 4;
-  const SimulatedFrame b = Make(options).Render(3);
-  EXPECT_TRUE(SamePixels(a.image, b.image));
-  EXPECT_TRUE(SamePixels(a.depth, b.depth));
+  ExpectSameBytesOnFourThreads(options, {3});
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, EveryScene,

@@ -11,13 +11,13 @@
 #include <gtest/gtest.h>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
-#include <tbb/global_control.h>
 
 #include "simulation/small_scene.h"
 
 namespace pliant {
 namespace {
 
+using simulation_test::ExpectSameBytesOnFourThreads;
 using simulation_test::Make;
 using simulation_test::Median;
 using simulation_test::Pinhole160;
@@ -118,18 +118,7 @@ TEST(Simulator, PointsBehindAFoldAreOccluded) {
 TEST(Simulator, GivesTheSameBytesForAnyNumberOfThreads) {
   SimulationOptions options = SmallScene(TrajectoryKind::kInsert, 4);
   options.deformation.amplitude_mm = 2.0;
-  // More workers than cores, so that the second run is parallel wherever the test runs.
-  const tbb::global_control workers(tbb::global_control::max_allowed_parallelism, 4);
-  options.threads = 1;
-  Simulator one = Make(options);
-  options.threads = 4;
-  Simulator four = Make(options);
-  for (const int frame_idx : {3, 0}) {
-    const SimulatedFrame a = one.Render(frame_idx);
-    const SimulatedFrame b = four.Render(frame_idx);
-    EXPECT_TRUE(SamePixels(a.image, b.image)) << frame_idx;
-    EXPECT_TRUE(SamePixels(a.depth, b.depth)) << frame_idx;
-  }
+  ExpectSameBytesOnFourThreads(options, {3, 0});
 }
 
 TEST(Simulator, AFrameDoesNotDependOnTheOrderOfRendering) {

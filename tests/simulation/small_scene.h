@@ -13,6 +13,7 @@
 #include <Eigen/Core>
 #include <gtest/gtest.h>
 #include <opencv2/core.hpp>
+#include <tbb/global_control.h>
 
 #include "pliant/simulation/simulator.h"
 
@@ -70,6 +71,22 @@ inline double Median(std::vector<double> values) {
 
 inline bool SamePixels(const cv::Mat& a, const cv::Mat& b) {
   return a.size() == b.size() && a.type() == b.type() && std::equal(a.datastart, a.dataend, b.datastart, b.dataend);
+}
+
+// A frame's image and depth are the same bytes on one thread and on four. More workers than cores, so that the second
+// run is parallel wherever the test runs.
+inline void ExpectSameBytesOnFourThreads(SimulationOptions options, const std::vector<int>& frames) {
+  const tbb::global_control workers(tbb::global_control::max_allowed_parallelism, 4);
+  options.threads = 1;
+  Simulator one = Make(options);
+  options.threads = 4;
+  Simulator four = Make(options);
+  for (const int frame_idx : frames) {
+    const SimulatedFrame a = one.Render(frame_idx);
+    const SimulatedFrame b = four.Render(frame_idx);
+    EXPECT_TRUE(SamePixels(a.image, b.image)) << frame_idx;
+    EXPECT_TRUE(SamePixels(a.depth, b.depth)) << frame_idx;
+  }
 }
 
 // |depth of the second frame at the projection - z of the first frame's point there|, over unoccluded smooth pixels.

@@ -7,6 +7,8 @@
 
 #include <gmock/gmock.h>
 
+#include "tracking/oracle_answers.h"
+
 namespace pliant {
 namespace {
 
@@ -101,6 +103,33 @@ TEST(FirstMap, GivesEveryFrameItsOwnPositions) {
   EXPECT_THAT(later.rgb, testing::ElementsAre(60, 50, 40));
   EXPECT_EQ(first.position, DeformingStart::Position(0, 0));
   EXPECT_EQ(later.position, DeformingStart::Position(2, 0));  // undeformed: as in the reference
+}
+
+// Every pixel shows a surface 40 mm away, from a camera that stands still.
+class FlatTruth final : public TrackingTruth {
+ public:
+  Rigid3 WorldFromCamera(int) const override { return {}; }
+  std::vector<std::optional<double>> DepthsAt(int, std::span<const Eigen::Vector2d> pixels) override {
+    return std::vector<std::optional<double>>(pixels.size(), 40.0);
+  }
+  std::vector<char> Follow(int, std::span<const InitObservation> points) override {
+    return std::vector<char>(points.size(), 1);
+  }
+  std::vector<TrueTrack> Locate(int, std::span<const PointId> ids) override {
+    return std::vector<TrueTrack>(ids.size());
+  }
+};
+
+TEST(FirstMap, TakesItsUnitFromTheReferencesPointsAlone) {
+  DeformingStart start;
+  // Points that came into view later, one of them with an id beyond all of the reference's.
+  start.frames[0].observations.resize(2);
+  start.outcome.points.push_back({PointId{7}, Eigen::Vector3d(0, 0, 500)});
+  FlatTruth truth;
+  OracleAnswers oracle({.poses = OracleSwitch::kOn}, &truth, 50.0);
+  oracle.TakeWorld({start.camera, start.frames, {}}, &start.outcome);
+  for (const InitFrameState& frame : start.outcome.frames) EXPECT_TRUE(frame.cam_from_world.translation.isZero());
+  EXPECT_TRUE(oracle.Pose(22).has_value());
 }
 
 }  // namespace

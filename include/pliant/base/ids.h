@@ -4,6 +4,7 @@
 // Strong identifiers. An `_id` is sparse and never reused; an `_idx` is a position in a container and a plain int.
 #pragma once
 
+#include <algorithm>
 #include <compare>
 #include <cstdint>
 #include <functional>
@@ -16,6 +17,14 @@ struct PointId {
   bool valid() const { return value >= 0; }
   auto operator<=>(const PointId&) const = default;
 };
+
+// The element with this `id` in a vector (or span) that is sorted by it, or null.
+template <class Sorted>
+auto FindById(Sorted& sorted, PointId id) -> decltype(sorted.data()) {
+  const auto found = std::lower_bound(sorted.begin(), sorted.end(), id,
+                                      [](const auto& element, PointId wanted) { return element.id < wanted; });
+  return found != sorted.end() && found->id == id ? &*found : nullptr;
+}
 
 }  // namespace pliant
 

@@ -37,6 +37,7 @@
 
 namespace pliant {
 
+class LocalBrightness;
 class OracleAnswers;
 
 enum class NeighbourAgreement { kOff, kOn };
@@ -123,7 +124,7 @@ class Tracker {
   void Count(std::string_view reason, int count);
 
   // Reference and first map.
-  void AddCorners(const TrackerFrame& frame, int max_corners, InitFrame* points);
+  void AddCorners(const TrackerFrame& frame, const LocalBrightness& brightness, int max_corners, InitFrame* points);
   void TakeReference(const TrackerFrame& frame, FrameReport* report);
   void FollowReference(const TrackerFrame& frame, FrameReport* report);
   InitOutcome AskInitializer(const cv::Mat& depth_mm, InitMoment moment, FrameReport* report);
