@@ -40,10 +40,13 @@ std::vector<double> DeformingProblem::LogDepthSigmas() {
   for (Eigen::Index k = 0; k < information.cols(); ++k) information.coeffRef(k, k) += kLeastInformation;
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factors(information);
   if (factors.info() != Eigen::Success) return sigmas;
+  // With P A P' = L D L' the variance is |D^-1/2 L^-1 P e|^2: the forward half of a solution.
+  const Eigen::VectorXd pivots = factors.vectorD();
   for (std::size_t i = 0; i < points_.size(); ++i) {
-    const auto column = static_cast<Eigen::Index>(3 * i + 2);
-    const Eigen::VectorXd covariance = factors.solve(Eigen::VectorXd::Unit(information.cols(), column));
-    if (covariance[column] > 0.0) sigmas[i] = std::sqrt(covariance[column]);
+    const Eigen::VectorXd unit = Eigen::VectorXd::Unit(information.cols(), static_cast<Eigen::Index>(3 * i + 2));
+    const Eigen::VectorXd half = factors.matrixL().solve(Eigen::VectorXd(factors.permutationP() * unit));
+    const double variance = half.cwiseAbs2().cwiseQuotient(pivots).sum();
+    if (variance > 0.0) sigmas[i] = std::sqrt(variance);
   }
   return sigmas;
 }

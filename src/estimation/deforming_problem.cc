@@ -163,6 +163,14 @@ void DeformingProblem::FixPoints() {
   }
 }
 
+void DeformingProblem::FixViews() {
+  for (View& view : views_) {
+    problem_->SetParameterBlockConstant(view.rotation.data());
+    problem_->SetParameterBlockConstant(view.translation.data());
+    if (rank_ > 0) problem_->SetParameterBlockConstant(view.courses.data());
+  }
+}
+
 Result<double> DeformingProblem::Solve(int max_iterations) {
   ceres::Solver::Options options;
   // Eigen's: simplicial, several times as fast here as a supernodal factorisation on the reference BLAS.

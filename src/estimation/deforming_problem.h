@@ -21,6 +21,7 @@ class DeformingProblem {
   DeformingProblem(const DeformingWindow& start, double focal_px, const DeformingWindowOptions& options);
 
   void FixPoints();  // and their modes
+  void FixViews();   // and their courses
 
   // The cost at the solution; kDegenerate when there is no usable step.
   Result<double> Solve(int max_iterations);

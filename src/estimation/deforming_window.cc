@@ -4,6 +4,7 @@
 #include "pliant/estimation/deforming_window.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <future>
 #include <limits>
@@ -15,6 +16,7 @@
 #include "estimation/deforming_problem.h"
 #include "estimation/light_depth.h"
 #include "estimation/ray_residuals.h"
+#include "estimation/window_samples.h"
 #include "pliant/base/statistics.h"
 
 namespace pliant {
@@ -26,8 +28,6 @@ constexpr int kLeastPoints = 12;
 constexpr double kStartShare = 0.8;
 // ... none of which counts for more than this many times the median one: a wrong track moves most.
 constexpr double kLargestMotion = 3.0;
-// Neighbours and slopes are taken anew from each solution's points.
-constexpr int kRounds = 2;
 // A lower rank explains the images less well in any case; it must explain the light better by so much.
 constexpr double kClearlyBetter = 0.85;
 
@@ -111,11 +111,16 @@ void KeepStrongestCourses(int rank, DeformingWindow* window) {
   window->courses.col(0).setZero();  // but for rounding it is
 }
 
-// (W8) How far the window's shape in its first, middle and last view is from what the light says of it; 0: no light.
-double WindowLightError(const DeformingWindow& window) {
+// The views by which a window's shape is judged: the first, the middle and the last.
+std::array<int, 3> JudgedViews(const DeformingWindow& window) {
   const int views = static_cast<int>(window.cams_from_world.size());
+  return {0, views / 2, views - 1};
+}
+
+// (W8) How far the window's shape in the judged views is from what the light says of it; 0: no light.
+double WindowLightError(const DeformingWindow& window) {
   double sum = 0;
-  for (const int view : {0, views / 2, views - 1}) {
+  for (const int view : JudgedViews(window)) {
     std::vector<Eigen::Vector3d> positions;
     std::vector<double> log_light;
     for (const DeformingObservation& observation : window.observations) {
@@ -131,61 +136,89 @@ double WindowLightError(const DeformingWindow& window) {
   return sum;
 }
 
-// (W9) Minus the log likelihood of a solution by images and priors and by its light, the latter as one measurement a
-// point of unknown spread. Without light no solution is compared with another.
-double Implausibility(const DeformingSolution& solution) {
-  if (!(solution.light_error > 0.0)) return std::numeric_limits<double>::infinity();
-  return solution.cost + static_cast<double>(solution.window.points_in_world.size()) * std::log(solution.light_error);
-}
-
-// A solution and its problem, which can still be asked how certain the points are: that costs as much as a few steps,
-// and is asked of the one that is returned.
+// A solution and its problem, which can still be asked how certain the points are.
 struct Candidate {
   DeformingSolution solution;
   std::unique_ptr<DeformingProblem> problem;
 };
 
-// The solution from a start with courses.
-Result<Candidate> SolveFrom(DeformingWindow window, double focal_px, const DeformingWindowOptions& options) {
+enum class Views { kFree, kFixed };
+
+Result<Candidate> SolveFrom(const DeformingWindow& window, Views views, double focal_px,
+                            const DeformingWindowOptions& options) {
   Candidate candidate;
-  for (int round = 0; round < kRounds; ++round) {
-    candidate.problem = std::make_unique<DeformingProblem>(window, focal_px, options);
-    const auto cost = candidate.problem->Solve(options.max_iterations);
-    if (!cost.ok()) return cost.status();
-    candidate.solution.cost = *cost;
-    window = candidate.problem->Window();
-  }
-  candidate.solution.light_error = WindowLightError(window);
-  candidate.solution.window = std::move(window);
+  candidate.problem = std::make_unique<DeformingProblem>(window, focal_px, options);
+  if (views == Views::kFixed) candidate.problem->FixViews();
+  const auto cost = candidate.problem->Solve(options.max_iterations);
+  if (!cost.ok()) return cost.status();
+  candidate.solution.cost = *cost;
+  candidate.solution.window = candidate.problem->Window();
+  candidate.solution.light_error = WindowLightError(candidate.solution.window);
   return candidate;
 }
 
-// The best of the solutions that are compared; see SolveDeformingWindow.
-Result<Candidate> BestCandidate(const DeformingWindow& start, double focal_px, const DeformingWindowOptions& options,
-                                int threads) {
-  const int rank = std::min(options.rank, static_cast<int>(start.times.size()) - 1);
-  const auto from_start = [&](int of_rank) {
-    DeformingWindow window = start;
-    SetCourses(of_rank, &window);
-    return SolveFrom(std::move(window), focal_px, options);
-  };
-  const bool lit = std::any_of(start.observations.begin(), start.observations.end(),
-                               [](const auto& observation) { return std::isfinite(observation.log_light); });
-  if (!lit || rank < 2) return from_start(rank);
-  auto lower_later = std::async(threads > 1 ? std::launch::async : std::launch::deferred, from_start, rank - 1);
-  auto best = from_start(rank);
-  auto lower = lower_later.get();
-  if (!best.ok() || !(best->solution.light_error > 0.0)) return best;
+// A sample's solutions, extended to all points: of rank R, and where that is not the last one of rank R - 1.
+using SampleCandidates = std::vector<Result<Candidate>>;
 
-  DeformingWindow reduced = best->solution.window;
-  KeepStrongestCourses(rank - 1, &reduced);
-  auto from_best = SolveFrom(std::move(reduced), focal_px, options);
-  if (!lower.ok() || (from_best.ok() && Implausibility(from_best->solution) < Implausibility(lower->solution)))
-    lower = std::move(from_best);
-  if (lower.ok() && lower->solution.light_error > 0.0 &&
-      lower->solution.light_error < kClearlyBetter * best->solution.light_error)
-    return lower;
+SampleCandidates SolveSample(const DeformingWindow& start, const PointSample& sample, int rank, double focal_px,
+                             const DeformingWindowOptions& options) {
+  DeformingWindow part = PartOf(start, sample);
+  SetCourses(rank, &part);
+  SampleCandidates candidates;
+  for (int of_rank = rank; of_rank >= std::max(1, rank - 1); --of_rank) {
+    if (of_rank < rank) KeepStrongestCourses(of_rank, &part);
+    const auto solved = SolveFrom(part, Views::kFree, focal_px, options);
+    if (!solved.ok()) {
+      candidates.emplace_back(solved.status());
+      return candidates;
+    }
+    part = solved->solution.window;
+    candidates.push_back(SolveFrom(ExtendToAll(start, part, sample), Views::kFixed, focal_px, options));
+  }
+  return candidates;
+}
+
+// (W9) Minus the log likelihood of a solution by images and priors and by its light, if any, the latter as one
+// measurement a point of unknown spread.
+double Implausibility(const DeformingSolution& solution) {
+  const double light = solution.light_error > 0.0 ? std::log(solution.light_error) : 0.0;
+  return solution.cost + static_cast<double>(solution.window.points_in_world.size()) * light;
+}
+
+// The most plausible of the samples' solutions with this place in their lists, or none.
+const Candidate* MostPlausible(const std::vector<SampleCandidates>& samples, std::size_t place) {
+  const Candidate* best = nullptr;
+  for (const SampleCandidates& candidates : samples) {
+    if (place >= candidates.size() || !candidates[place].ok()) continue;
+    const Candidate& candidate = *candidates[place];
+    if (best == nullptr || Implausibility(candidate.solution) < Implausibility(best->solution)) best = &candidate;
+  }
   return best;
+}
+
+// (W10) Mean square of the differences of log distance between the samples' solutions of the same rank over the judged
+// views, but for a common scale: twice the variance of one of them, of which half is returned. Zeros for one sample.
+std::vector<double> VariancesBetween(const std::vector<SampleCandidates>& samples, std::size_t place) {
+  std::vector<const DeformingWindow*> windows;
+  for (const SampleCandidates& candidates : samples)
+    if (place < candidates.size() && candidates[place].ok()) windows.push_back(&candidates[place]->solution.window);
+  if (windows.empty()) return {};
+  const DeformingWindow& first = *windows.front();
+  std::vector<double> variances(first.points_in_world.size(), 0.0);
+  if (windows.size() < 2) return variances;
+  const DeformingWindow& second = *windows.back();
+  for (const int view : JudgedViews(first)) {
+    const auto v = static_cast<std::size_t>(view);
+    std::vector<double> differences;
+    for (std::size_t i = 0; i < variances.size(); ++i) {
+      const int point = static_cast<int>(i);
+      differences.push_back(std::log((first.cams_from_world[v] * first.Position(point, view)).norm() /
+                                     (second.cams_from_world[v] * second.Position(point, view)).norm()));
+    }
+    const double scale = Median(differences);
+    for (std::size_t i = 0; i < variances.size(); ++i) variances[i] += std::pow(differences[i] - scale, 2) / 6.0;
+  }
+  return variances;
 }
 
 }  // namespace
@@ -209,17 +242,40 @@ void DeformingWindowOptions::List(OptionTable& table) {
   table.Add("light_sigma", &light_sigma, "-",
             "log distance from brightness, standard deviation; large, because neighbours err alike", 1e-3, 1e6);
   table.Add("neighbors", &neighbors, "-", "neighbours with which a point's modes are compared", 1, 100);
+  table.Add("sample_points", &sample_points, "-",
+            "points in each of the two samples that are solved before all; fewer is faster", 60, 100000);
   table.Add("max_iterations", &max_iterations, "-", "most iterations of one solution", 1, 10000);
 }
 
 Result<DeformingSolution> SolveDeformingWindow(const DeformingWindow& start, double focal_px,
                                                const DeformingWindowOptions& options, int threads) {
   if (Status status = CheckStart(start); !status.ok()) return status;
-  auto best = BestCandidate(start, focal_px, options, threads);
-  if (!best.ok()) return best.status();
-  best->solution.errors_px = best->problem->ErrorsPx();
-  best->solution.log_depth_sigmas = best->problem->LogDepthSigmas();
-  return std::move(best->solution);
+  const int rank = std::min(options.rank, static_cast<int>(start.times.size()) - 1);
+  std::vector<std::future<SampleCandidates>> solving;
+  for (const PointSample& sample : SamplePoints(start, options.sample_points))
+    solving.push_back(std::async(threads > 1 ? std::launch::async : std::launch::deferred,
+                                 [&, sample] { return SolveSample(start, sample, rank, focal_px, options); }));
+  std::vector<SampleCandidates> samples;
+  for (std::future<SampleCandidates>& solved : solving) samples.push_back(solved.get());
+
+  const Candidate* best = MostPlausible(samples, 0);
+  if (best == nullptr) return samples.front().front().status();
+  std::size_t place = 0;
+  if (const Candidate* lower = MostPlausible(samples, 1);
+      lower != nullptr && lower->solution.light_error > 0.0 &&
+      lower->solution.light_error < kClearlyBetter * best->solution.light_error) {
+    best = lower;
+    place = 1;
+  }
+  auto all = SolveFrom(best->solution.window, Views::kFree, focal_px, options);
+  if (!all.ok()) return all.status();
+  DeformingSolution& solution = all->solution;
+  solution.errors_px = all->problem->ErrorsPx();
+  solution.log_depth_sigmas = all->problem->LogDepthSigmas();
+  const std::vector<double> between = VariancesBetween(samples, place);
+  for (std::size_t i = 0; i < between.size(); ++i)
+    solution.log_depth_sigmas[i] = std::sqrt(std::pow(solution.log_depth_sigmas[i], 2) + between[i]);
+  return std::move(solution);
 }
 
 Result<DeformingWindow> LocateDeformingViews(const DeformingWindow& views, double focal_px,

@@ -53,6 +53,7 @@ struct DeformingWindowOptions {
   double acceleration_sigma = 0.02;  // of a course's second derivative, 1/frame^2
   double light_sigma = 2.0;          // of log distance from brightness; large, because neighbours err alike
   int neighbors = 6;                 // of the smoothness over the surface
+  int sample_points = 150;           // in each of the two samples that are solved first
   int max_iterations = 30;           // of one solution
 
   void List(OptionTable& table);  // group "Window"
@@ -60,18 +61,21 @@ struct DeformingWindowOptions {
 
 struct DeformingSolution {
   DeformingWindow window;
-  // Predicted standard deviation of log |X_i|, from noise of loss_scale_px, with what the deformation may be taken into
-  // account; relative to the gauge (W7). Infinite where it cannot be computed.
+  // Standard deviation of log |X_i|, relative to the gauge (W7): predicted from noise of loss_scale_px, with what the
+  // deformation may be taken into account; and how far two samples of the points disagree there (W10). Infinite where
+  // it cannot be computed.
   std::vector<double> log_depth_sigmas;
   std::vector<double> errors_px;  // root mean square error of each point over its views but the reference
   double cost = 0;
   double light_error = 0;  // median deviation of log distance from what the light says (W8); 0: the light says nothing
 };
 
-// Solves the window from a rigid start: `start` has times, poses, points and observations, and no courses. The courses
-// are first sought in what the rigid scene leaves unexplained; then poses, points, modes and courses are solved for
-// together. Solutions of rank R, of R - 1, and of R - 1 from that of rank R are compared: images alone hardly tell one
-// minimum from another, the light does. That of rank R is returned unless the light_error of another is clearly less.
+// Solves the window from a rigid start: `start` has times, poses, points and observations, and no courses. Images alone
+// hardly tell one minimum from another, so there are several solutions to choose from. Two samples of the points are
+// solved each by itself: the courses are first sought in what the rigid scene leaves unexplained, then poses, points,
+// modes and courses are solved for together, with rank R and from there with R - 1; the other points join with the
+// views fixed. The most plausible by images and light is then solved with all points. It is of rank R unless the
+// light_error of rank R - 1 is clearly less.
 //
 // `threads` never changes the result. Fails with kInvalidArgument for sizes and indices that do not fit, kInsufficient
 // below three views or twelve points, and kDegenerate when there is no usable step.

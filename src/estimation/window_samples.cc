@@ -1,0 +1,110 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "estimation/window_samples.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+namespace pliant {
+namespace {
+
+constexpr std::size_t kLeastSample = 60;
+constexpr std::size_t kNearest = 4;
+constexpr double kSameDirection = 1e-3;  // rad, below which nearer does not count for more
+
+using Directions = std::vector<Eigen::Vector3d>;
+
+Directions DirectionsOf(const DeformingWindow& window) {
+  Directions directions;
+  for (const Eigen::Vector3d& point : window.points_in_world) directions.push_back(point.normalized());
+  return directions;
+}
+
+// Farthest point sampling: each next one is the farthest from those chosen.
+PointSample Spread(const Directions& directions, const PointSample& from, std::size_t count) {
+  PointSample chosen;
+  std::vector<double> nearest(from.size(), std::numeric_limits<double>::infinity());
+  std::size_t next = 0;
+  while (chosen.size() < count) {
+    chosen.push_back(from[next]);
+    for (std::size_t k = 0; k < from.size(); ++k)
+      nearest[k] = std::min(
+          nearest[k],
+          (directions[static_cast<std::size_t>(from[k])] - directions[static_cast<std::size_t>(chosen.back())]).norm());
+    next = static_cast<std::size_t>(std::max_element(nearest.begin(), nearest.end()) - nearest.begin());
+  }
+  std::sort(chosen.begin(), chosen.end());
+  return chosen;
+}
+
+}  // namespace
+
+std::vector<PointSample> SamplePoints(const DeformingWindow& window, int size) {
+  const Directions directions = DirectionsOf(window);
+  PointSample all(directions.size());
+  std::iota(all.begin(), all.end(), 0);
+  const std::size_t count = std::min(static_cast<std::size_t>(size), all.size() / 2);
+  if (count < kLeastSample) return {all};
+  PointSample first = Spread(directions, all, count);
+  PointSample others;
+  std::set_difference(all.begin(), all.end(), first.begin(), first.end(), std::back_inserter(others));
+  PointSample second = Spread(directions, others, count);
+  return {std::move(first), std::move(second)};
+}
+
+DeformingWindow PartOf(const DeformingWindow& window, const PointSample& sample) {
+  DeformingWindow part;
+  part.times = window.times;
+  part.cams_from_world = window.cams_from_world;
+  std::vector<int> index(window.points_in_world.size(), -1);
+  for (const int i : sample) {
+    index[static_cast<std::size_t>(i)] = static_cast<int>(part.points_in_world.size());
+    part.points_in_world.push_back(window.points_in_world[static_cast<std::size_t>(i)]);
+  }
+  for (DeformingObservation observation : window.observations) {
+    observation.point_idx = index[static_cast<std::size_t>(observation.point_idx)];
+    if (observation.point_idx >= 0) part.observations.push_back(observation);
+  }
+  return part;
+}
+
+DeformingWindow ExtendToAll(const DeformingWindow& start, const DeformingWindow& part, const PointSample& sample) {
+  DeformingWindow all = start;
+  all.cams_from_world = part.cams_from_world;
+  all.courses = part.courses;
+  all.modes.clear();
+  const Directions directions = DirectionsOf(start);
+  std::vector<double> changes;  // of log distance
+  for (std::size_t k = 0; k < sample.size(); ++k)
+    changes.push_back(
+        std::log(part.points_in_world[k].norm() / start.points_in_world[static_cast<std::size_t>(sample[k])].norm()));
+  for (std::size_t i = 0; i < directions.size(); ++i) {
+    std::vector<std::pair<double, std::size_t>> near;
+    for (std::size_t k = 0; k < sample.size(); ++k)
+      near.emplace_back((directions[static_cast<std::size_t>(sample[k])] - directions[i]).norm(), k);
+    const std::size_t count = std::min(kNearest, near.size());
+    std::partial_sort(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(count), near.end());
+    double weights = 0;
+    double change = 0;
+    Eigen::Matrix3Xd modes = Eigen::Matrix3Xd::Zero(3, part.courses.rows());
+    for (std::size_t n = 0; n < count; ++n) {
+      const double weight = 1.0 / (near[n].first + kSameDirection);
+      weights += weight;
+      change += weight * changes[near[n].second];
+      modes += weight * part.modes[near[n].second];
+    }
+    all.points_in_world[i] *= std::exp(change / weights);
+    all.modes.emplace_back(modes / weights);
+  }
+  for (std::size_t k = 0; k < sample.size(); ++k) {
+    all.points_in_world[static_cast<std::size_t>(sample[k])] = part.points_in_world[k];
+    all.modes[static_cast<std::size_t>(sample[k])] = part.modes[k];
+  }
+  return all;
+}
+
+}  // namespace pliant

@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Parts of a deforming window's points, which are solved first: faster than all, and a check on one another.
+#pragma once
+
+#include <vector>
+
+#include "pliant/estimation/deforming_window.h"
+
+namespace pliant {
+
+using PointSample = std::vector<int>;  // indices of a window's points, ascending
+
+// Two samples without common points, each of at most `size` points spread evenly over the reference; with too few
+// points for two, one sample of all of them.
+std::vector<PointSample> SamplePoints(const DeformingWindow& window, int size);
+
+// The window of a sample's points, with their observations, without courses. Point k is sample[k].
+DeformingWindow PartOf(const DeformingWindow& window, const PointSample& sample);
+
+// All points of `start`, in the solved views of the sample `part` of it: depths are changed like those of the nearest
+// points of the sample, and modes are theirs.
+DeformingWindow ExtendToAll(const DeformingWindow& start, const DeformingWindow& part, const PointSample& sample);
+
+}  // namespace pliant
