@@ -30,6 +30,8 @@ constexpr double kStartShare = 0.8;
 constexpr double kLargestMotion = 3.0;
 // A lower rank explains the images less well in any case; it must explain the light better by so much.
 constexpr double kClearlyBetter = 0.85;
+// The solution with all points starts close to its minimum and takes this many times fewer steps than the others.
+constexpr int kFewer = 2;
 
 Status CheckStart(const DeformingWindow& start) {
   const std::size_t views = start.cams_from_world.size();
@@ -145,11 +147,11 @@ struct Candidate {
 enum class Views { kFree, kFixed };
 
 Result<Candidate> SolveFrom(const DeformingWindow& window, Views views, double focal_px,
-                            const DeformingWindowOptions& options) {
+                            const DeformingWindowOptions& options, int max_iterations) {
   Candidate candidate;
   candidate.problem = std::make_unique<DeformingProblem>(window, focal_px, options);
   if (views == Views::kFixed) candidate.problem->FixViews();
-  const auto cost = candidate.problem->Solve(options.max_iterations);
+  const auto cost = candidate.problem->Solve(max_iterations);
   if (!cost.ok()) return cost.status();
   candidate.solution.cost = *cost;
   candidate.solution.window = candidate.problem->Window();
@@ -167,13 +169,14 @@ SampleCandidates SolveSample(const DeformingWindow& start, const PointSample& sa
   SampleCandidates candidates;
   for (int of_rank = rank; of_rank >= std::max(1, rank - 1); --of_rank) {
     if (of_rank < rank) KeepStrongestCourses(of_rank, &part);
-    const auto solved = SolveFrom(part, Views::kFree, focal_px, options);
+    const auto solved = SolveFrom(part, Views::kFree, focal_px, options, options.max_iterations);
     if (!solved.ok()) {
       candidates.emplace_back(solved.status());
       return candidates;
     }
     part = solved->solution.window;
-    candidates.push_back(SolveFrom(ExtendToAll(start, part, sample), Views::kFixed, focal_px, options));
+    candidates.push_back(
+        SolveFrom(ExtendToAll(start, part, sample), Views::kFixed, focal_px, options, options.max_iterations));
   }
   return candidates;
 }
@@ -196,29 +199,28 @@ const Candidate* MostPlausible(const std::vector<SampleCandidates>& samples, std
   return best;
 }
 
-// (W10) Mean square of the differences of log distance between the samples' solutions of the same rank over the judged
-// views, but for a common scale: twice the variance of one of them, of which half is returned. Zeros for one sample.
-std::vector<double> VariancesBetween(const std::vector<SampleCandidates>& samples, std::size_t place) {
+// (W10) One a point; empty unless two samples have a solution with this place in their lists.
+std::vector<double> SigmasBetween(const std::vector<SampleCandidates>& samples, std::size_t place) {
   std::vector<const DeformingWindow*> windows;
   for (const SampleCandidates& candidates : samples)
     if (place < candidates.size() && candidates[place].ok()) windows.push_back(&candidates[place]->solution.window);
-  if (windows.empty()) return {};
+  if (windows.size() < 2) return {};
   const DeformingWindow& first = *windows.front();
-  std::vector<double> variances(first.points_in_world.size(), 0.0);
-  if (windows.size() < 2) return variances;
   const DeformingWindow& second = *windows.back();
-  for (const int view : JudgedViews(first)) {
+  Eigen::VectorXd squares = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(first.points_in_world.size()));
+  const std::array<int, 3> views = JudgedViews(first);
+  for (const int view : views) {
     const auto v = static_cast<std::size_t>(view);
     std::vector<double> differences;
-    for (std::size_t i = 0; i < variances.size(); ++i) {
-      const int point = static_cast<int>(i);
-      differences.push_back(std::log((first.cams_from_world[v] * first.Position(point, view)).norm() /
-                                     (second.cams_from_world[v] * second.Position(point, view)).norm()));
-    }
+    for (int i = 0; i < squares.size(); ++i)
+      differences.push_back(std::log((first.cams_from_world[v] * first.Position(i, view)).norm() /
+                                     (second.cams_from_world[v] * second.Position(i, view)).norm()));
     const double scale = Median(differences);
-    for (std::size_t i = 0; i < variances.size(); ++i) variances[i] += std::pow(differences[i] - scale, 2) / 6.0;
+    for (Eigen::Index i = 0; i < squares.size(); ++i)
+      squares[i] += std::pow(differences[static_cast<std::size_t>(i)] - scale, 2);
   }
-  return variances;
+  const Eigen::VectorXd sigmas = (squares / (2.0 * static_cast<double>(views.size()))).cwiseSqrt();
+  return {sigmas.begin(), sigmas.end()};
 }
 
 }  // namespace
@@ -267,14 +269,12 @@ Result<DeformingSolution> SolveDeformingWindow(const DeformingWindow& start, dou
     best = lower;
     place = 1;
   }
-  auto all = SolveFrom(best->solution.window, Views::kFree, focal_px, options);
+  auto all = SolveFrom(best->solution.window, Views::kFree, focal_px, options, options.max_iterations / kFewer);
   if (!all.ok()) return all.status();
   DeformingSolution& solution = all->solution;
   solution.errors_px = all->problem->ErrorsPx();
   solution.log_depth_sigmas = all->problem->LogDepthSigmas();
-  const std::vector<double> between = VariancesBetween(samples, place);
-  for (std::size_t i = 0; i < between.size(); ++i)
-    solution.log_depth_sigmas[i] = std::sqrt(std::pow(solution.log_depth_sigmas[i], 2) + between[i]);
+  solution.sample_sigmas = SigmasBetween(samples, place);
   return std::move(solution);
 }
 

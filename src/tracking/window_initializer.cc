@@ -48,8 +48,14 @@ class Attempt {
     if (Status status = Start(); !status.ok()) return status;
     auto solution = SolveDeformingWindow(start_, focal_px_, options_.window, input_.threads);
     if (!solution.ok()) return solution.status();
-    ChooseCertain(*solution);
-    if (Status status = EnoughCertain(when_uncertain); !status.ok()) return status;
+    ChooseCertain(*solution, solution->sample_sigmas);
+    Status status = EnoughCertain(when_uncertain);
+    if (!status.ok() && when_uncertain == WhenUncertain::kTakeTheCertain) {
+      // Better a map that only the prediction speaks for than none.
+      ChooseCertain(*solution, {});
+      status = EnoughCertain(when_uncertain);
+    }
+    if (!status.ok()) return status;
     return HandOver(*solution);
   }
 
@@ -170,13 +176,19 @@ class Attempt {
     }
   }
 
-  void ChooseCertain(const DeformingSolution& solution) {
+  // By what the solution predicts, and by `more_sigmas`, one a point or none.
+  void ChooseCertain(const DeformingSolution& solution, const std::vector<double>& more_sigmas) {
+    certain_.clear();
+    rejected_.clear();
+    sigmas_.clear();
     std::vector<double> distances;
     for (const Eigen::Vector3d& position : solution.window.points_in_world) distances.push_back(position.norm());
     const double median = Median(distances);
     std::vector<double> sigmas;
     for (std::size_t i = 0; i < ids_.size(); ++i) {
-      const double sigma = solution.log_depth_sigmas[i] * distances[i] / median;
+      const double relative = std::hypot(solution.log_depth_sigmas[i], more_sigmas.empty() ? 0.0 : more_sigmas[i]);
+      const double sigma = relative * distances[i] / median;
+      sigmas_[ids_[i]] = relative * distances[i];
       const bool contradicts = !(solution.errors_px[i] <= options_.max_error_px);
       certain_.push_back(!contradicts && sigma <= options_.max_depth_sigma ? 1 : 0);
       if (certain_.back() != 0)
@@ -243,9 +255,6 @@ class Attempt {
   }
 
   Status HandOver(const DeformingSolution& solution) {
-    std::map<PointId, double> sigmas;
-    for (std::size_t i = 0; i < ids_.size(); ++i)
-      sigmas[ids_[i]] = solution.log_depth_sigmas[i] * solution.window.points_in_world[i].norm();
     const auto located = LocateAllFrames(solution.window);
     if (!located.ok()) return located.status();
     std::vector<double> depths;
@@ -255,7 +264,7 @@ class Attempt {
     const double scale = nominal_depth_mm_ / median;
 
     for (std::size_t i = 0; i < ids_.size(); ++i) {
-      InitPoint point{ids_[i], scale * located->points_in_world[i], scale * sigmas[ids_[i]], 0.0};
+      InitPoint point{ids_[i], scale * located->points_in_world[i], scale * sigmas_.at(ids_[i]), 0.0};
       outcome_.points.push_back(point);
     }
     for (std::size_t k = 0; k < input_.frames.size(); ++k) {
@@ -287,9 +296,10 @@ class Attempt {
   const InitInput& input_;
   double focal_px_;
   InitOutcome& outcome_;
-  std::vector<std::size_t> views_;  // frames of the input
-  std::vector<PointId> ids_;        // of the problem's points, sorted
-  std::vector<char> certain_;       // one a point
+  std::vector<std::size_t> views_;    // frames of the input
+  std::vector<PointId> ids_;          // of the problem's points, sorted
+  std::vector<char> certain_;         // one a point
+  std::map<PointId, double> sigmas_;  // of the distance, map units
   std::vector<InitRejectedPoint> rejected_;
   DeformingWindow start_;
 };

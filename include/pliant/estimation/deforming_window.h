@@ -61,10 +61,12 @@ struct DeformingWindowOptions {
 
 struct DeformingSolution {
   DeformingWindow window;
-  // Standard deviation of log |X_i|, relative to the gauge (W7): predicted from noise of loss_scale_px, with what the
-  // deformation may be taken into account; and how far two samples of the points disagree there (W10). Infinite where
-  // it cannot be computed.
+  // Predicted standard deviation of log |X_i|, from noise of loss_scale_px, with what the deformation may be taken into
+  // account; relative to the gauge (W7). Infinite where it cannot be computed.
   std::vector<double> log_depth_sigmas;
+  // Standard deviation of log distance between the solutions of two samples of the points, over the window (W10): what
+  // the linear prediction does not see, another minimum. Empty where there were too few points for two samples.
+  std::vector<double> sample_sigmas;
   std::vector<double> errors_px;  // root mean square error of each point over its views but the reference
   double cost = 0;
   double light_error = 0;  // median deviation of log distance from what the light says (W8); 0: the light says nothing
