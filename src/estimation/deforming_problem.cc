@@ -9,7 +9,6 @@
 
 #include "estimation/ceres_support.h"
 #include "pliant/base/statistics.h"
-#include "pliant/geometry/triangulation.h"
 
 namespace pliant {
 namespace {
@@ -201,23 +200,6 @@ DeformingWindow DeformingProblem::Window() const {
     if (rank_ > 0) window.modes[i] = points_[i].modes.reshaped(3, rank_);
   }
   return window;
-}
-
-std::vector<double> DeformingProblem::ErrorsPx() const {
-  const DeformingWindow window = Window();
-  std::vector<double> sums(points_.size(), 0.0);
-  std::vector<int> counts(points_.size(), 0);
-  for (const DeformingObservation& observation : window.observations) {
-    if (observation.view_idx == 0) continue;  // which the start was made of
-    const auto i = static_cast<std::size_t>(observation.point_idx);
-    const Eigen::Vector3d x = window.cams_from_world[static_cast<std::size_t>(observation.view_idx)] *
-                              window.Position(observation.point_idx, observation.view_idx);
-    sums[i] += std::pow(focal_px_ * AngleBetween(x, observation.ray), 2);
-    ++counts[i];
-  }
-  for (std::size_t i = 0; i < sums.size(); ++i)
-    sums[i] = counts[i] > 0 ? std::sqrt(sums[i] / counts[i]) : std::numeric_limits<double>::infinity();
-  return sums;
 }
 
 }  // namespace pliant

@@ -29,7 +29,6 @@ class DeformingProblem {
   DeformingWindow Window() const;
 
   // One a point, at the present values. See DeformingSolution.
-  std::vector<double> ErrorsPx() const;
   std::vector<double> LogDepthSigmas();
 
  private:

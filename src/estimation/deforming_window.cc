@@ -18,6 +18,7 @@
 #include "estimation/ray_residuals.h"
 #include "estimation/window_samples.h"
 #include "pliant/base/statistics.h"
+#include "pliant/geometry/triangulation.h"
 
 namespace pliant {
 namespace {
@@ -272,7 +273,6 @@ Result<DeformingSolution> SolveDeformingWindow(const DeformingWindow& start, dou
   auto all = SolveFrom(best->solution.window, Views::kFree, focal_px, options, options.max_iterations / kFewer);
   if (!all.ok()) return all.status();
   DeformingSolution& solution = all->solution;
-  solution.errors_px = all->problem->ErrorsPx();
   solution.log_depth_sigmas = all->problem->LogDepthSigmas();
   solution.sample_sigmas = SigmasBetween(samples, place);
   return std::move(solution);
@@ -285,6 +285,22 @@ Result<DeformingWindow> LocateDeformingViews(const DeformingWindow& views, doubl
   problem.FixPoints();
   if (const auto cost = problem.Solve(options.max_iterations); !cost.ok()) return cost.status();
   return problem.Window();
+}
+
+std::vector<double> PointErrorsPx(const DeformingWindow& window, double focal_px) {
+  std::vector<double> sums(window.points_in_world.size(), 0.0);
+  std::vector<int> counts(sums.size(), 0);
+  for (const DeformingObservation& observation : window.observations) {
+    if (observation.view_idx == 0) continue;
+    const auto i = static_cast<std::size_t>(observation.point_idx);
+    const Eigen::Vector3d x = window.cams_from_world[static_cast<std::size_t>(observation.view_idx)] *
+                              window.Position(observation.point_idx, observation.view_idx);
+    sums[i] += std::pow(focal_px * AngleBetween(x, observation.ray), 2);
+    ++counts[i];
+  }
+  for (std::size_t i = 0; i < sums.size(); ++i)
+    sums[i] = counts[i] > 0 ? std::sqrt(sums[i] / counts[i]) : std::numeric_limits<double>::infinity();
+  return sums;
 }
 
 double LogDistanceFromLight(double brightness, double gamma) {

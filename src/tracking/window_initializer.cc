@@ -184,12 +184,13 @@ class Attempt {
     std::vector<double> distances;
     for (const Eigen::Vector3d& position : solution.window.points_in_world) distances.push_back(position.norm());
     const double median = Median(distances);
+    const std::vector<double> errors_px = PointErrorsPx(solution.window, focal_px_);
     std::vector<double> sigmas;
     for (std::size_t i = 0; i < ids_.size(); ++i) {
       const double relative = std::hypot(solution.log_depth_sigmas[i], more_sigmas.empty() ? 0.0 : more_sigmas[i]);
       const double sigma = relative * distances[i] / median;
       sigmas_[ids_[i]] = relative * distances[i];
-      const bool contradicts = !(solution.errors_px[i] <= options_.max_error_px);
+      const bool contradicts = !(errors_px[i] <= options_.max_error_px);
       certain_.push_back(!contradicts && sigma <= options_.max_depth_sigma ? 1 : 0);
       if (certain_.back() != 0)
         sigmas.push_back(sigma);
@@ -198,7 +199,7 @@ class Attempt {
     }
     outcome_.measured.inliers = static_cast<int>(sigmas.size());
     outcome_.measured.median_depth_sigma = sigmas.empty() ? 0.0 : Median(std::move(sigmas));
-    outcome_.measured.median_error_px = Median(solution.errors_px);
+    outcome_.measured.median_error_px = Median(errors_px);
   }
 
   Status EnoughCertain(WhenUncertain when_uncertain) const {
@@ -254,9 +255,31 @@ class Attempt {
     return LocateDeformingViews(all, focal_px_, options_.window);
   }
 
+  // Between the views of the problem a track may be wrong that was right in them, or that had a course to itself there.
+  void DropContradicting(DeformingWindow* all) {
+    const std::vector<double> errors_px = PointErrorsPx(*all, focal_px_);
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < ids_.size(); ++i) {
+      if (!(errors_px[i] <= options_.max_error_px)) {
+        rejected_.push_back({ids_[i], InitRejection::kReprojection});
+        continue;
+      }
+      ids_[kept] = ids_[i];
+      all->points_in_world[kept] = all->points_in_world[i];
+      all->modes[kept] = all->modes[i];
+      ++kept;
+    }
+    ids_.resize(kept);
+    all->points_in_world.resize(kept);
+    all->modes.resize(kept);
+    all->observations.clear();  // they count the points otherwise
+  }
+
   Status HandOver(const DeformingSolution& solution) {
-    const auto located = LocateAllFrames(solution.window);
+    auto located = LocateAllFrames(solution.window);
     if (!located.ok()) return located.status();
+    DropContradicting(&*located);
+    if (ids_.empty()) return {ErrorCode::kDegenerate, "no point agrees with the frames between the window's views"};
     std::vector<double> depths;
     for (const Eigen::Vector3d& position : located->points_in_world) depths.push_back(position.z());
     const double median = Median(std::move(depths));

@@ -103,7 +103,7 @@ TEST(DeformingWindow, FindsTheShapeOfASceneThatMovesAsFastAsTheCamera) {
   EXPECT_EQ(solution->window.courses.rows(), DeformingWindowOptions().rank);
   EXPECT_EQ(solution->light_error, 0);
   for (const int view : {0, 6, 12}) EXPECT_LT(Median(scene.DepthErrors(solution->window, view)), kShape) << view;
-  EXPECT_LT(Median(solution->errors_px), 2 * kNoisePx);
+  EXPECT_LT(Median(PointErrorsPx(solution->window, kFocalPx)), 2 * kNoisePx);
 }
 
 TEST(DeformingWindow, ARigidBundleAdjustmentOfThatSceneDoesNot) {

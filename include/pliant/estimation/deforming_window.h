@@ -67,7 +67,6 @@ struct DeformingSolution {
   // Standard deviation of log distance between the solutions of two samples of the points, over the window (W10): what
   // the linear prediction does not see, another minimum. Empty where there were too few points for two samples.
   std::vector<double> sample_sigmas;
-  std::vector<double> errors_px;  // root mean square error of each point over its views but the reference
   double cost = 0;
   double light_error = 0;  // median deviation of log distance from what the light says (W8); 0: the light says nothing
 };
@@ -88,6 +87,10 @@ Result<DeformingSolution> SolveDeformingWindow(const DeformingWindow& start, dou
 // start of every view's pose and courses. The first view stays as it is. Fails like SolveDeformingWindow.
 Result<DeformingWindow> LocateDeformingViews(const DeformingWindow& views, double focal_px,
                                              const DeformingWindowOptions& options);
+
+// Root mean square error of each point over its views but the reference, which the start was made of; infinite for a
+// point that no other view sees.
+std::vector<double> PointErrorsPx(const DeformingWindow& window, double focal_px);
 
 // -(gamma / 2) log(brightness / 255): log distance up to a constant, for a light at the camera, whose falloff is with
 // the square of the distance, and a response of `gamma`. NaN for a brightness that is not above 0.
