@@ -143,6 +143,23 @@ TEST(DeformingWindow, SaysHowUncertainItsDepthsAre) {
   EXPECT_GT(Median(shorter->log_depth_sigmas), 1.5 * Median(solution->log_depth_sigmas));
 }
 
+TEST(DeformingWindow, TwoSamplesOfThePointsCheckOneAnother) {
+  const Scene scene;
+  const auto solution = SolveDeformingWindow(scene.Start(0), kFocalPx, {});
+  const auto shorter = SolveDeformingWindow(Scene(6).Start(0), kFocalPx, {});
+  ASSERT_TRUE(solution.ok() && shorter.ok());
+  ASSERT_EQ(solution->sample_sigmas.size(), scene.points.size());
+  EXPECT_LT(Median(solution->sample_sigmas), kShape);
+  EXPECT_GT(Median(shorter->sample_sigmas), 1.5 * Median(solution->sample_sigmas));
+  // Fewer points than two samples take are solved all the same.
+  DeformingWindow few = scene.Start(0);
+  few.points_in_world.resize(70);
+  std::erase_if(few.observations, [](const DeformingObservation& seen) { return seen.point_idx >= 70; });
+  const auto one_sample = SolveDeformingWindow(few, kFocalPx, {});
+  ASSERT_TRUE(one_sample.ok());
+  EXPECT_TRUE(one_sample->sample_sigmas.empty());
+}
+
 TEST(DeformingWindow, TheLightTellsSolutionsApart) {
   const Scene scene;
   const auto solution = SolveDeformingWindow(scene.Start(0.1), kFocalPx, {});

@@ -3,7 +3,7 @@
 
 // The first map from one moving camera and a scene that deforms meanwhile: all frames since the reference, their poses,
 // the points and the points' motions in one problem (pliant/estimation/deforming_window.h; docs/method.md, eq. W1 to
-// W9). A map is sought every few frames; it answers with a map once most points are certain, or else when the window is
+// W10). A map is sought every few frames; it answers with a map once most points are certain, or else when the window is
 // as long as allowed. Points that are uncertain or contradict the solution stay out. The map is scaled once, so that
 // its median depth is nominal_depth_mm.
 #pragma once
