@@ -189,9 +189,10 @@ void Tracker::FollowReference(const TrackerFrame& frame, FrameReport* report) {
         Count(EnumName(track.failure), 1);
       }
     }
-    report->tracked = static_cast<int>(followed.observations.size());
+    const auto kept = static_cast<int>(followed.observations.size());
     if (initializer_->TakesLaterPoints() && init_frames_.size() % static_cast<std::size_t>(options_.top_up_frames) == 0)
-      AddCorners(frame, brightness, options_.corners.max_corners - report->tracked, &followed);
+      AddCorners(frame, brightness, options_.corners.max_corners - kept, &followed);
+    report->tracked = static_cast<int>(followed.observations.size());
     init_frames_.push_back(std::move(followed));
   }
   image_fault_ = ImageFault(frame, previous_);
@@ -210,7 +211,7 @@ InitOutcome Tracker::AskInitializer(const cv::Mat& depth_mm, InitMoment moment, 
 }
 
 void Tracker::EndSequence() {
-  if (state_ != TrackingState::kInitialising) return;
+  if (state_ != TrackingState::kInitialising || held_.empty()) return;
   const InitOutcome outcome = AskInitializer({}, InitMoment::kLastFrame, &held_.back());
   if (outcome.decision == InitDecision::kMap) CreateMap(outcome);
   held_.back().note = WithFault(outcome.reason, image_fault_);

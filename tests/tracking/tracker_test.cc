@@ -161,6 +161,82 @@ TEST_F(TrackerFromImages, FinishGivesTheFramesThatWaitedInVain) {
   EXPECT_TRUE(tracker.held().empty());
 }
 
+// The scene's right half is uncovered while the map is awaited.
+class UncoveredLater : public TrackerFromImages {
+ protected:
+  static constexpr int kUncovered = 4;
+
+  // All frames; a map is sought at the end alone.
+  static std::vector<FrameReport> Run(InitMethod method, Tracker* tracker) {
+    std::vector<FrameReport> done;
+    for (int i = 0; i < kFrames; ++i) {
+      cv::Mat image = (*images_)[static_cast<std::size_t>(i)].clone();
+      if (i < kUncovered) image.colRange(image.cols / 2, image.cols).setTo(cv::Scalar::all(0));
+      for (FrameReport& report : tracker->Process(PrepareFrame(i, NameOf(i), i / 30.0, image, {}, {})))
+        done.push_back(std::move(report));
+    }
+    EXPECT_TRUE(done.empty()) << "a map came before the end of method " << EnumName(method);
+    tracker->EndSequence();
+    return tracker->Finish();
+  }
+
+  static TrackerOptions Options(InitMethod method) {
+    TrackerOptions options;
+    options.init.method = method;
+    options.init.window.first_frame = kFrames;
+    options.init.window.max_depth_sigma = 0.3;     // the few frames are short of parallax
+    options.init.monocular.min_parallax_deg = 60;  // of the gated start: more than there is
+    options.top_up_frames = kUncovered;
+    return options;
+  }
+};
+
+TEST_F(UncoveredLater, PointsAreAddedAndComeIntoTheFirstMapWhereTheyAreSeen) {
+  Tracker tracker = MakeTracker(Options(InitMethod::kWindow));
+  const auto reports = Run(InitMethod::kWindow, &tracker);
+  ASSERT_EQ(reports.size(), kFrames);
+  std::set<PointId> in_reference;
+  for (const NewPoint& point : reports.front().new_points) in_reference.insert(point.id);
+  EXPECT_EQ(reports.front().observations.size(), in_reference.size());
+  std::set<PointId> map;
+  for (const FrameReport& report : reports)
+    for (const NewPoint& point : report.new_points) EXPECT_TRUE(map.insert(point.id).second);
+  for (int k = 0; k < kFrames; ++k) {
+    const FrameReport& report = reports[static_cast<std::size_t>(k)];
+    ExpectFromTheMap(report, map, *camera_);
+    const auto later = std::count_if(report.observations.begin(), report.observations.end(),
+                                     [&](const PointObservation& seen) { return !in_reference.contains(seen.id); });
+    if (k < kUncovered)
+      EXPECT_EQ(later, 0) << k;
+    else
+      EXPECT_GT(later, 20) << k;
+  }
+  EXPECT_EQ(tracker.state(), TrackingState::kTracking);
+  EXPECT_FALSE(tracker.map().landmarks.empty());
+}
+
+TEST_F(UncoveredLater, PointsAreNotAddedForAnInitialiserOfTwoViews) {
+  Tracker tracker = MakeTracker(Options(InitMethod::kGated));
+  const auto reports = Run(InitMethod::kGated, &tracker);
+  ASSERT_EQ(reports.size(), kFrames);
+  for (std::size_t k = 1; k < reports.size(); ++k) EXPECT_LE(reports[k].tracked, reports[k - 1].tracked) << k;
+}
+
+TEST_F(TrackerFromImages, TheEndOfASequenceWithoutAMapIsSaid) {
+  TrackerOptions options;
+  options.init.window.first_frame = kFrames;
+  Tracker tracker = MakeTracker(options);
+  for (int i = 0; i < kFrames; ++i) EXPECT_TRUE(Show(0, i, &tracker).empty());  // a camera that stands still
+  tracker.EndSequence();
+  EXPECT_EQ(tracker.state(), TrackingState::kInitialising);
+  const auto rest = tracker.Finish();
+  ASSERT_EQ(rest.size(), kFrames);
+  for (const FrameReport& report : rest) ExpectInitialising(report);
+  EXPECT_THAT(rest.back().note, HasSubstr("rotated or stood still"));
+  tracker.EndSequence();  // nothing is held: nothing happens
+  EXPECT_TRUE(tracker.Finish().empty());
+}
+
 TEST_F(TrackerFromImages, AFrameWithoutCornersIsReportedAtOnce) {
   Tracker tracker = MakeTracker();
   const cv::Mat black(images_->front().size(), CV_8UC3, cv::Scalar::all(0));

@@ -65,10 +65,10 @@ struct FrameReport {
   std::vector<PointObservation> observations;  // in state tracking; sorted by id
   std::vector<NewPoint> new_points;            // sorted by id
 
-  int tracked = 0;                                  // points followed into this frame
-  int optimized = 0;                                // points in the joint problem's solution, or in the first map
-  int lost = 0;                                     // points given up in this frame
-  int added = 0;                                    // points new in this frame
+  int tracked = 0;    // points followed into this frame; before the first map those found in it too
+  int optimized = 0;  // points in the joint problem's solution, or in the first map
+  int lost = 0;       // points given up in this frame
+  int added = 0;      // points new in this frame
   std::vector<std::pair<std::string, int>> losses;  // points given up by reason, in the order of the first of each
 
   FrameProblemCosts costs;  // at the solution
