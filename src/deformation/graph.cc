@@ -74,6 +74,7 @@ NeighborLists NearestNeighbors(Points points, int neighbors) {
   flann::Matrix<double> distance_rows(distances.data(), num_points, asked);
   index.knnSearch(data, index_rows, distance_rows, asked, flann::SearchParams(flann::FLANN_CHECKS_UNLIMITED));
 
+  std::vector<std::pair<double, int>> others;
   for (int i = 0; i < num_points; ++i) {
     const double* row = distance_rows[i];
     const bool contested = asked > count + 1 && row[count + 1] - row[count] <= kTie * row[count + 1];
@@ -81,8 +82,11 @@ NeighborLists NearestNeighbors(Points points, int neighbors) {
       lists[i] = NearestByScan(points, i, count);
       continue;
     }
-    for (int k = 0; k < asked && static_cast<int>(lists[i].size()) < count; ++k)
-      if (const int j = static_cast<int>(index_rows[i][k]); j != i) lists[i].push_back(j);
+    others.clear();
+    for (int k = 0; k < asked; ++k)
+      if (const int j = static_cast<int>(index_rows[i][k]); j != i) others.emplace_back(row[k], j);
+    std::sort(others.begin(), others.end());
+    for (int k = 0; k < count; ++k) lists[i].push_back(others[static_cast<std::size_t>(k)].second);
   }
   return lists;
 }

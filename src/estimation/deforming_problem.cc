@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "estimation/ceres_support.h"
 #include "pliant/base/statistics.h"
@@ -70,7 +71,10 @@ void DeformingProblem::AddObservations() {
     // Without a point in front the residual is undefined.
     const Eigen::Vector3d x = start_.cams_from_world[static_cast<std::size_t>(observation.view_idx)] *
                               start_.Position(observation.point_idx, observation.view_idx);
-    if (!(x.dot(observation.ray) > 0.0)) continue;
+    if (!(x.dot(observation.ray) > 0.0)) {
+      ++unmeasured_;
+      continue;
+    }
     std::vector<double*> blocks = {view.rotation.data(), view.translation.data(), point.parameters.data()};
     if (rank_ > 0) {
       blocks.push_back(view.courses.data());
@@ -133,7 +137,8 @@ void DeformingProblem::AddScale() {
     mean += blocks.back()[2];
   }
   mean /= static_cast<double>(blocks.size());
-  problem_->AddResidualBlock(new ScaleCost(static_cast<int>(blocks.size()), mean, kScaleWeight), nullptr, blocks);
+  scale_ =
+      problem_->AddResidualBlock(new ScaleCost(static_cast<int>(blocks.size()), mean, kScaleWeight), nullptr, blocks);
 }
 
 void DeformingProblem::AddLight() {
@@ -163,6 +168,7 @@ void DeformingProblem::FixPoints() {
 }
 
 void DeformingProblem::FixViews() {
+  problem_->RemoveResidualBlock(scale_);
   for (View& view : views_) {
     problem_->SetParameterBlockConstant(view.rotation.data());
     problem_->SetParameterBlockConstant(view.translation.data());
@@ -186,7 +192,9 @@ Result<double> DeformingProblem::Solve(int max_iterations) {
   ceres::Solve(options, problem_.get(), &summary);
   if (!summary.IsSolutionUsable())
     return Status(ErrorCode::kDegenerate, "the deforming window has no step that improves it");
-  return summary.final_cost;
+  // As if each were off by a right angle.
+  const double unmeasured = 0.5 * std::log1p(std::pow(0.5 * std::numbers::pi * focal_px_ / options_.loss_scale_px, 2));
+  return summary.final_cost + unmeasured_ * unmeasured;
 }
 
 DeformingWindow DeformingProblem::Window() const {

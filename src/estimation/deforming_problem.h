@@ -21,9 +21,9 @@ class DeformingProblem {
   DeformingProblem(const DeformingWindow& start, double focal_px, const DeformingWindowOptions& options);
 
   void FixPoints();  // and their modes
-  void FixViews();   // and their courses
+  void FixViews();   // and their courses; they hold the scale
 
-  // The cost at the solution; kDegenerate when there is no usable step.
+  // The cost at the solution, what could not be measured included; kDegenerate when there is no usable step.
   Result<double> Solve(int max_iterations);
 
   DeformingWindow Window() const;
@@ -59,12 +59,14 @@ class DeformingProblem {
   std::vector<Point> points_;
   NeighborLists neighbors_;  // of the points, at the start
   double light_offset_ = 0;
+  int unmeasured_ = 0;  // observations of which no point is in front at the start
 
   ceres::CauchyLoss cauchy_;
   ceres::ScaledLoss loss_;
   ceres::CauchyLoss light_loss_;
   ceres::EigenQuaternionManifold rotation_manifold_;
   std::unique_ptr<ceres::Problem> problem_;
+  ceres::ResidualBlockId scale_ = nullptr;
 };
 
 }  // namespace pliant

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <future>
 #include <limits>
-#include <memory>
 #include <string>
 
 #include <Eigen/Eigenvalues>
@@ -25,14 +25,15 @@ namespace {
 
 constexpr int kLeastViews = 3;
 constexpr int kLeastPoints = 12;
-// The courses are first sought in the motions of points seen in this share of the views ...
+// The courses are first sought in the motions of points seen in this share of the views, and of so many in any case ...
 constexpr double kStartShare = 0.8;
+constexpr std::size_t kLeastStartPoints = 12;
 // ... none of which counts for more than this many times the median one: a wrong track moves most.
 constexpr double kLargestMotion = 3.0;
 // A lower rank explains the images less well in any case; it must explain the light better by so much.
 constexpr double kClearlyBetter = 0.85;
-// The solution with all points starts close to its minimum and takes this many times fewer steps than the others.
-constexpr int kFewer = 2;
+// The last solution, with all points free, starts close to its minimum: its steps are at most max_iterations by this.
+constexpr int kLastDivisor = 2;
 
 Status CheckStart(const DeformingWindow& start) {
   const std::size_t views = start.cams_from_world.size();
@@ -45,10 +46,15 @@ Status CheckStart(const DeformingWindow& start) {
     return {ErrorCode::kInsufficient, "a deforming window takes at least " + std::to_string(kLeastViews) +
                                           " views and " + std::to_string(kLeastPoints) + " points; there are " +
                                           std::to_string(views) + " and " + std::to_string(points)};
+  const auto finite = [](const Eigen::Vector3d& vector) { return vector.allFinite(); };
+  if (!std::all_of(start.points_in_world.begin(), start.points_in_world.end(), finite))
+    return {ErrorCode::kInvalidArgument, "a point of the deforming window is not a finite number"};
   for (const DeformingObservation& observation : start.observations)
-    if (observation.view_idx < 0 || static_cast<std::size_t>(observation.view_idx) >= views ||
-        observation.point_idx < 0 || static_cast<std::size_t>(observation.point_idx) >= points)
-      return {ErrorCode::kInvalidArgument, "an observation of the window names a view or point that is not there"};
+    if (!observation.ray.allFinite() || observation.view_idx < 0 ||
+        static_cast<std::size_t>(observation.view_idx) >= views || observation.point_idx < 0 ||
+        static_cast<std::size_t>(observation.point_idx) >= points)
+      return {ErrorCode::kInvalidArgument,
+              "an observation of the window has no ray, or names a view or point that is not there"};
   return Status::Ok();
 }
 
@@ -60,10 +66,14 @@ Eigen::MatrixXd UnexplainedMotions(const DeformingWindow& start) {
   std::vector<int> seen(start.points_in_world.size(), 0);
   for (const DeformingObservation& observation : start.observations)
     ++seen[static_cast<std::size_t>(observation.point_idx)];
+  std::vector<int> most_seen = seen;
+  std::sort(most_seen.begin(), most_seen.end(), std::greater<>());
+  const double least = std::min(kStartShare * static_cast<double>(views),
+                                static_cast<double>(most_seen[std::min(seen.size(), kLeastStartPoints) - 1]));
   std::vector<Eigen::Index> row(seen.size(), -1);
   Eigen::Index rows = 0;
   for (std::size_t i = 0; i < seen.size(); ++i)
-    if (seen[i] >= kStartShare * static_cast<double>(views)) row[i] = 2 * rows++;
+    if (seen[i] >= least) row[i] = 2 * rows++;
 
   Eigen::MatrixXd motions = Eigen::MatrixXd::Constant(2 * rows, views, std::numeric_limits<double>::quiet_NaN());
   for (const DeformingObservation& observation : start.observations) {
@@ -122,8 +132,9 @@ std::array<int, 3> JudgedViews(const DeformingWindow& window) {
 
 // (W8) How far the window's shape in the judged views is from what the light says of it; 0: no light.
 double WindowLightError(const DeformingWindow& window) {
+  const std::array<int, 3> views = JudgedViews(window);
   double sum = 0;
-  for (const int view : JudgedViews(window)) {
+  for (const int view : views) {
     std::vector<Eigen::Vector3d> positions;
     std::vector<double> log_light;
     for (const DeformingObservation& observation : window.observations) {
@@ -134,94 +145,92 @@ double WindowLightError(const DeformingWindow& window) {
     }
     const double error = LightError(positions, log_light);
     if (!(error > 0.0)) return 0.0;
-    sum += error / 3.0;
+    sum += error;
   }
-  return sum;
+  return sum / static_cast<double>(views.size());
 }
 
-// A solution and its problem, which can still be asked how certain the points are.
-struct Candidate {
-  DeformingSolution solution;
-  std::unique_ptr<DeformingProblem> problem;
-};
-
-enum class Views { kFree, kFixed };
-
-Result<Candidate> SolveFrom(const DeformingWindow& window, Views views, double focal_px,
-                            const DeformingWindowOptions& options, int max_iterations) {
-  Candidate candidate;
-  candidate.problem = std::make_unique<DeformingProblem>(window, focal_px, options);
-  if (views == Views::kFixed) candidate.problem->FixViews();
-  const auto cost = candidate.problem->Solve(max_iterations);
+// The problem's solution. Its light error is filled in where there is light, its sigmas are not.
+Result<DeformingSolution> Solve(DeformingProblem* problem, int max_iterations) {
+  const auto cost = problem->Solve(max_iterations);
   if (!cost.ok()) return cost.status();
-  candidate.solution.cost = *cost;
-  candidate.solution.window = candidate.problem->Window();
-  candidate.solution.light_error = WindowLightError(candidate.solution.window);
-  return candidate;
+  DeformingSolution solution;
+  solution.cost = *cost;
+  solution.window = problem->Window();
+  solution.light_error = WindowLightError(solution.window);
+  return solution;
 }
 
-// A sample's solutions, extended to all points: of rank R, and where that is not the last one of rank R - 1.
-using SampleCandidates = std::vector<Result<Candidate>>;
+// A sample's solutions, each extended to all points: of `rank`, and then, each from the one before, down to
+// `last_rank`.
+using SampleSolutions = std::vector<Result<DeformingSolution>>;
 
-SampleCandidates SolveSample(const DeformingWindow& start, const PointSample& sample, int rank, double focal_px,
-                             const DeformingWindowOptions& options) {
+SampleSolutions SolveSample(const DeformingWindow& start, const PointSample& sample, int rank, int last_rank,
+                            double focal_px, const DeformingWindowOptions& options) {
   DeformingWindow part = PartOf(start, sample);
   SetCourses(rank, &part);
-  SampleCandidates candidates;
-  for (int of_rank = rank; of_rank >= std::max(1, rank - 1); --of_rank) {
+  SampleSolutions solutions;
+  for (int of_rank = rank; of_rank >= last_rank; --of_rank) {
     if (of_rank < rank) KeepStrongestCourses(of_rank, &part);
-    const auto solved = SolveFrom(part, Views::kFree, focal_px, options, options.max_iterations);
-    if (!solved.ok()) {
-      candidates.emplace_back(solved.status());
-      return candidates;
+    DeformingProblem problem(part, focal_px, options);
+    auto solution = Solve(&problem, options.max_iterations);
+    if (solution.ok()) {
+      part = solution->window;
+      if (sample.size() < start.points_in_world.size()) {
+        DeformingProblem all(ExtendToAll(start, part, sample), focal_px, options);
+        all.FixViews();
+        solution = Solve(&all, options.max_iterations);
+      }
     }
-    part = solved->solution.window;
-    candidates.push_back(
-        SolveFrom(ExtendToAll(start, part, sample), Views::kFixed, focal_px, options, options.max_iterations));
+    solutions.push_back(std::move(solution));
   }
-  return candidates;
+  return solutions;
 }
 
-// (W9) Minus the log likelihood of a solution by images and priors and by its light, if any, the latter as one
-// measurement a point of unknown spread.
-double Implausibility(const DeformingSolution& solution) {
-  const double light = solution.light_error > 0.0 ? std::log(solution.light_error) : 0.0;
-  return solution.cost + static_cast<double>(solution.window.points_in_world.size()) * light;
+// (W9) Whether `a` is the more plausible: minus the log likelihood by images and priors, and by the light, if both have
+// it, as one measurement a point of unknown spread.
+bool MorePlausible(const DeformingSolution& a, const DeformingSolution& b) {
+  double difference = a.cost - b.cost;
+  if (a.light_error > 0.0 && b.light_error > 0.0)
+    difference += static_cast<double>(a.window.points_in_world.size()) * std::log(a.light_error / b.light_error);
+  return difference < 0.0;
 }
 
-// The most plausible of the samples' solutions with this place in their lists, or none.
-const Candidate* MostPlausible(const std::vector<SampleCandidates>& samples, std::size_t place) {
-  const Candidate* best = nullptr;
-  for (const SampleCandidates& candidates : samples) {
-    if (place >= candidates.size() || !candidates[place].ok()) continue;
-    const Candidate& candidate = *candidates[place];
-    if (best == nullptr || Implausibility(candidate.solution) < Implausibility(best->solution)) best = &candidate;
-  }
+// The samples' solutions with this place in their lists; null where there is none.
+std::vector<const DeformingSolution*> SolutionsAt(std::size_t place, const std::vector<SampleSolutions>& samples) {
+  std::vector<const DeformingSolution*> found;
+  for (const SampleSolutions& solutions : samples)
+    found.push_back(place < solutions.size() && solutions[place].ok() ? &*solutions[place] : nullptr);
+  return found;
+}
+
+const DeformingSolution* MostPlausible(const std::vector<const DeformingSolution*>& solutions) {
+  const DeformingSolution* best = nullptr;
+  for (const DeformingSolution* solution : solutions)
+    if (solution != nullptr && (best == nullptr || MorePlausible(*solution, *best))) best = solution;
   return best;
 }
 
-// (W10) One a point; empty unless two samples have a solution with this place in their lists.
-std::vector<double> SigmasBetween(const std::vector<SampleCandidates>& samples, std::size_t place) {
-  std::vector<const DeformingWindow*> windows;
-  for (const SampleCandidates& candidates : samples)
-    if (place < candidates.size() && candidates[place].ok()) windows.push_back(&candidates[place]->solution.window);
-  if (windows.size() < 2) return {};
-  const DeformingWindow& first = *windows.front();
-  const DeformingWindow& second = *windows.back();
-  Eigen::VectorXd squares = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(first.points_in_world.size()));
+// (W10) One a point, of two samples' solutions; infinite where one has none, and empty for one sample.
+std::vector<double> SigmasBetween(const std::vector<const DeformingSolution*>& solutions, std::size_t points) {
+  if (solutions.size() < 2) return {};
+  if (solutions[0] == nullptr || solutions[1] == nullptr)
+    return std::vector<double>(points, std::numeric_limits<double>::infinity());
+  const DeformingWindow& first = solutions[0]->window;
+  const DeformingWindow& second = solutions[1]->window;
   const std::array<int, 3> views = JudgedViews(first);
+  std::vector<double> squares(points, 0.0);
   for (const int view : views) {
     const auto v = static_cast<std::size_t>(view);
     std::vector<double> differences;
-    for (int i = 0; i < squares.size(); ++i)
-      differences.push_back(std::log((first.cams_from_world[v] * first.Position(i, view)).norm() /
-                                     (second.cams_from_world[v] * second.Position(i, view)).norm()));
+    for (std::size_t i = 0; i < points; ++i)
+      differences.push_back(std::log((first.cams_from_world[v] * first.Position(static_cast<int>(i), view)).norm() /
+                                     (second.cams_from_world[v] * second.Position(static_cast<int>(i), view)).norm()));
     const double scale = Median(differences);
-    for (Eigen::Index i = 0; i < squares.size(); ++i)
-      squares[i] += std::pow(differences[static_cast<std::size_t>(i)] - scale, 2);
+    for (std::size_t i = 0; i < points; ++i) squares[i] += std::pow(differences[i] - scale, 2);
   }
-  const Eigen::VectorXd sigmas = (squares / (2.0 * static_cast<double>(views.size()))).cwiseSqrt();
-  return {sigmas.begin(), sigmas.end()};
+  for (double& square : squares) square = std::sqrt(square / (2.0 * static_cast<double>(views.size())));
+  return squares;
 }
 
 }  // namespace
@@ -253,29 +262,37 @@ void DeformingWindowOptions::List(OptionTable& table) {
 Result<DeformingSolution> SolveDeformingWindow(const DeformingWindow& start, double focal_px,
                                                const DeformingWindowOptions& options, int threads) {
   if (Status status = CheckStart(start); !status.ok()) return status;
+  if (options.rank < 1 || options.sample_points < 1)
+    return {ErrorCode::kInvalidArgument, "a deforming window takes a rank and a number of sample points of 1 or more"};
   const int rank = std::min(options.rank, static_cast<int>(start.times.size()) - 1);
-  std::vector<std::future<SampleCandidates>> solving;
+  const bool lit = std::any_of(start.observations.begin(), start.observations.end(),
+                               [](const auto& observation) { return std::isfinite(observation.log_light); });
+  const int last_rank = lit ? std::max(1, rank - 1) : rank;
+  std::vector<std::future<SampleSolutions>> solving;
   for (const PointSample& sample : SamplePoints(start, options.sample_points))
-    solving.push_back(std::async(threads > 1 ? std::launch::async : std::launch::deferred,
-                                 [&, sample] { return SolveSample(start, sample, rank, focal_px, options); }));
-  std::vector<SampleCandidates> samples;
-  for (std::future<SampleCandidates>& solved : solving) samples.push_back(solved.get());
+    solving.push_back(std::async(threads > 1 ? std::launch::async : std::launch::deferred, [&, sample] {
+      return SolveSample(start, sample, rank, last_rank, focal_px, options);
+    }));
+  std::vector<SampleSolutions> samples;
+  for (std::future<SampleSolutions>& solved : solving) samples.push_back(solved.get());
 
-  const Candidate* best = MostPlausible(samples, 0);
-  if (best == nullptr) return samples.front().front().status();
-  std::size_t place = 0;
-  if (const Candidate* lower = MostPlausible(samples, 1);
-      lower != nullptr && lower->solution.light_error > 0.0 &&
-      lower->solution.light_error < kClearlyBetter * best->solution.light_error) {
+  std::vector<const DeformingSolution*> of_rank = SolutionsAt(0, samples);
+  const DeformingSolution* best = MostPlausible(of_rank);
+  const DeformingSolution* lower = MostPlausible(SolutionsAt(1, samples));
+  const bool clearly_better = best != nullptr && lower != nullptr && lower->light_error > 0.0 &&
+                              lower->light_error < kClearlyBetter * best->light_error;
+  if (clearly_better || best == nullptr) {
     best = lower;
-    place = 1;
+    of_rank = SolutionsAt(1, samples);
   }
-  auto all = SolveFrom(best->solution.window, Views::kFree, focal_px, options, options.max_iterations / kFewer);
-  if (!all.ok()) return all.status();
-  DeformingSolution& solution = all->solution;
-  solution.log_depth_sigmas = all->problem->LogDepthSigmas();
-  solution.sample_sigmas = SigmasBetween(samples, place);
-  return std::move(solution);
+  if (best == nullptr) return samples.front().front().status();
+
+  DeformingProblem problem(best->window, focal_px, options);
+  auto solution = Solve(&problem, std::max(1, options.max_iterations / kLastDivisor));
+  if (!solution.ok()) return solution.status();
+  solution->log_depth_sigmas = problem.LogDepthSigmas();
+  solution->sample_sigmas = SigmasBetween(of_rank, start.points_in_world.size());
+  return solution;
 }
 
 Result<DeformingWindow> LocateDeformingViews(const DeformingWindow& views, double focal_px,

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -31,6 +32,7 @@ PointSample Spread(const Directions& directions, const PointSample& from, std::s
   std::size_t next = 0;
   while (chosen.size() < count) {
     chosen.push_back(from[next]);
+    nearest[next] = -1.0;  // not again
     for (std::size_t k = 0; k < from.size(); ++k)
       nearest[k] = std::min(
           nearest[k],

@@ -12,8 +12,8 @@ namespace pliant {
 
 using PointSample = std::vector<int>;  // indices of a window's points, ascending
 
-// Two samples without common points, each of at most `size` points spread evenly over the reference; with too few
-// points for two, one sample of all of them.
+// Two samples without common points, each of at most `size` points whose directions from the reference are spread
+// evenly; one sample of all points where two would have fewer than 60 each.
 std::vector<PointSample> SamplePoints(const DeformingWindow& window, int size);
 
 // The window of a sample's points, with their observations, without courses. Point k is sample[k].

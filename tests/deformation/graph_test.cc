@@ -48,6 +48,7 @@ void ExpectEdgesByDefinition(const Points& points, const GraphOptions& options) 
   ASSERT_TRUE(graph.ok());
   std::map<std::pair<int, int>, int> expected;
   const auto lists = NeighborsByDefinition(points, options.neighbors);
+  EXPECT_EQ(NearestNeighbors(points, options.neighbors), lists);
   for (int i = 0; i < static_cast<int>(lists.size()); ++i)
     for (const int j : lists[i]) ++expected[std::minmax(i, j)];
   ASSERT_EQ(graph->edges.size(), expected.size());

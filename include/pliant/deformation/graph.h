@@ -57,9 +57,8 @@ struct DeformationGraph {
   int cut = 0;                   // edges left out for their stretch
 };
 
-// The `count` nearest other points of each, nearest first; fewer where there are not as many, and none for positions
-// that are not all finite. Exact; who is among them does not depend on the order of the search, because neighbours at
-// equal distance are taken in the order of their index.
+// The `count` nearest other points of each, nearest first, at equal distance in the order of their index; fewer where
+// there are not as many, and none at all where a position is not finite. The search is exact.
 using NeighborLists = std::vector<std::vector<int>>;
 NeighborLists NearestNeighbors(std::span<const Eigen::Vector3d> positions, int count);
 

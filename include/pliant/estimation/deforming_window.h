@@ -46,7 +46,7 @@ struct DeformingWindow {
 };
 
 struct DeformingWindowOptions {
-  int rank = 3;                      // R; one less is tried too
+  int rank = 3;                      // R; with light one less is tried too
   double loss_scale_px = 0.15;       // Cauchy loss
   double gradient_sigma = 0.3;       // of neighbours' modes: standard deviation of their difference by their distance
   double mode_sigma = 0.2;           // of a mode's components by the median distance
@@ -54,7 +54,7 @@ struct DeformingWindowOptions {
   double light_sigma = 2.0;          // of log distance from brightness; large, because neighbours err alike
   int neighbors = 6;                 // of the smoothness over the surface
   int sample_points = 150;           // in each of the two samples that are solved first
-  int max_iterations = 30;           // of one solution
+  int max_iterations = 30;           // of one solution; half of it for the last
 
   void List(OptionTable& table);  // group "Window"
 };
@@ -65,7 +65,8 @@ struct DeformingSolution {
   // account; relative to the gauge (W7). Infinite where it cannot be computed.
   std::vector<double> log_depth_sigmas;
   // Standard deviation of log distance between the solutions of two samples of the points, over the window (W10): what
-  // the linear prediction does not see, another minimum. Empty where there were too few points for two samples.
+  // the linear prediction does not see, another minimum. Infinite where one sample has no solution, and empty where
+  // there were too few points for two samples.
   std::vector<double> sample_sigmas;
   double cost = 0;
   double light_error = 0;  // median deviation of log distance from what the light says (W8); 0: the light says nothing
@@ -75,11 +76,11 @@ struct DeformingSolution {
 // hardly tell one minimum from another, so there are several solutions to choose from. Two samples of the points are
 // solved each by itself: the courses are first sought in what the rigid scene leaves unexplained, then poses, points,
 // modes and courses are solved for together, with rank R and from there with R - 1; the other points join with the
-// views fixed. The most plausible by images and light is then solved with all points. It is of rank R unless the
-// light_error of rank R - 1 is clearly less.
+// views fixed. The most plausible by images and light is then solved with all points, in at most half as many steps. It
+// is of rank R unless the light_error of rank R - 1 is clearly less; without light R - 1 is not tried.
 //
-// `threads` never changes the result. Fails with kInvalidArgument for sizes and indices that do not fit, kInsufficient
-// below three views or twelve points, and kDegenerate when there is no usable step.
+// `threads` never changes the result. Fails with kInvalidArgument for sizes, indices, numbers and options that are
+// none, kInsufficient below three views or twelve points, and kDegenerate when there is no usable step.
 Result<DeformingSolution> SolveDeformingWindow(const DeformingWindow& start, double focal_px,
                                                const DeformingWindowOptions& options, int threads = 1);
 

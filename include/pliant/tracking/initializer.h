@@ -64,7 +64,7 @@ enum class InitRejection {
   kTooFewViews,     // seen too briefly, or left out where there were too many
   kEpipolar,        // contradicts the motion
   kCheirality,      // behind a camera, or its rays part
-  kUncertainDepth,  // predicted depth too uncertain: too little parallax
+  kUncertainDepth,  // depth too uncertain: too little parallax, or another solution as plausible
   kReprojection,    // contradicts the refined map
 };
 std::string_view InitRejectionName(InitRejection reason);
@@ -100,7 +100,7 @@ struct InitMeasurements {
   int inliers = 0;
   double rotation_only_share = 0;  // correspondences that a pure rotation explains, 0 to 1
   double median_parallax_deg = 0;  // rotation-compensated
-  double median_depth_sigma = 0;   // predicted sigma_z / z of the map
+  double median_depth_sigma = 0;   // sigma_z / z of the map, predicted or more
   double rival_cost_ratio = 0;     // robust cost of the second best motion over the best one's; infinite: no rival
   double median_error_px = 0;      // of the map in its frames
 };

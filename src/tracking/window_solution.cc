@@ -1,0 +1,156 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tracking/window_solution.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "pliant/base/statistics.h"
+#include "tracking/initial_map.h"
+
+namespace pliant {
+namespace {
+
+constexpr std::size_t kLeastPoints = 12;
+constexpr std::size_t kLeastFrames = 6;
+
+// Spread evenly over the first `frames` frames.
+std::vector<std::size_t> ChooseViews(std::size_t frames, std::size_t most) {
+  const std::size_t last = frames - 1;
+  const std::size_t count = std::min(frames, most);
+  std::vector<std::size_t> views;
+  for (std::size_t k = 0; k < count; ++k) views.push_back((k * last + (count - 1) / 2) / (count - 1));
+  return views;
+}
+
+// The points that are seen in enough views; where they are too many, those still seen, then those seen most.
+std::vector<PointId> ChoosePoints(const InitInput& input, const std::vector<std::size_t>& views,
+                                  const WindowInitOptions& options) {
+  std::map<PointId, int> seen;
+  for (const std::size_t view : views)
+    for (const InitObservation& observation : input.frames[view].observations) ++seen[observation.id];
+  const int least = std::min(options.min_views, static_cast<int>(views.size()));
+  const int bonus = static_cast<int>(views.size());
+  for (const InitObservation& observation : input.frames.back().observations)
+    if (const auto found = seen.find(observation.id); found != seen.end() && found->second >= least)
+      found->second += bonus;
+  std::vector<std::pair<int, PointId>> chosen;
+  for (const auto& [id, count] : seen)
+    if (count >= least) chosen.emplace_back(count, id);
+  std::stable_sort(chosen.begin(), chosen.end(), [](const auto& x, const auto& y) { return x.first > y.first; });
+  if (chosen.size() > static_cast<std::size_t>(options.max_points))
+    chosen.resize(static_cast<std::size_t>(options.max_points));
+  std::vector<PointId> ids;
+  for (const auto& [count, id] : chosen) ids.push_back(id);
+  std::sort(ids.begin(), ids.end());
+  return ids;
+}
+
+using Positions = std::map<PointId, Eigen::Vector3d>;  // world
+
+// Puts a frame's points that are not known yet at the distance that the light says, relative to the others.
+void AddNewPoints(const std::vector<DeformingObservation>& observations, const std::vector<PointId>& ids,
+                  const Rigid3& cam_from_world, double nominal_depth_mm, Positions* known) {
+  std::vector<double> lights;
+  std::vector<double> distances;
+  std::vector<double> offsets;  // log distance less the light's
+  for (const DeformingObservation& observation : observations) {
+    if (std::isfinite(observation.log_light)) lights.push_back(observation.log_light);
+    const auto found = known->find(ids[static_cast<std::size_t>(observation.point_idx)]);
+    if (found == known->end()) continue;
+    distances.push_back((cam_from_world * found->second).norm());
+    if (std::isfinite(observation.log_light)) offsets.push_back(std::log(distances.back()) - observation.log_light);
+  }
+  const double unlit = distances.empty() ? nominal_depth_mm : Median(distances);
+  double offset = 0;
+  if (!offsets.empty())
+    offset = Median(offsets);
+  else if (!lights.empty())
+    offset = std::log(nominal_depth_mm) - Median(lights);
+  for (const DeformingObservation& observation : observations) {
+    const double distance = std::isfinite(observation.log_light) ? std::exp(offset + observation.log_light) : unlit;
+    known->try_emplace(ids[static_cast<std::size_t>(observation.point_idx)],
+                       cam_from_world.Inverse() * (distance * observation.ray));
+  }
+}
+
+// Points where the light puts them, or all at one distance; views located against them as if nothing deformed. A
+// point that is first seen in a later view is put there, among those known already. `ids` becomes those of its points.
+Result<DeformingWindow> Start(const InitInput& input, const std::vector<std::size_t>& views,
+                              const WindowInitOptions& options, double nominal_depth_mm, std::vector<PointId>* ids) {
+  DeformingWindow start;
+  Positions known;
+  Rigid3 near;
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    const InitFrame& frame = input.frames[views[v]];
+    if (v > 0) {
+      InitialMap map;
+      for (const auto& [id, position] : known) {
+        map.ids.push_back(id);
+        map.positions.push_back(position);
+      }
+      const auto pose = LocateFrame(input.camera, frame, map, near, {});
+      if (!pose.ok()) return pose.status();
+      near = *pose;
+    }
+    start.cams_from_world.push_back(near);
+    start.times.push_back(frame.frame_idx - input.frames.front().frame_idx);
+    AddNewPoints(SeenIn(frame, input.camera, *ids, 0, options), *ids, near, nominal_depth_mm, &known);
+  }
+  ids->clear();
+  for (const auto& [id, position] : known) {
+    ids->push_back(id);
+    start.points_in_world.push_back(position);
+  }
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    const auto seen = SeenIn(input.frames[views[v]], input.camera, *ids, static_cast<int>(v), options);
+    start.observations.insert(start.observations.end(), seen.begin(), seen.end());
+  }
+  return start;
+}
+
+}  // namespace
+
+int PlaceOf(PointId id, const std::vector<PointId>& ids) {
+  const auto found = std::lower_bound(ids.begin(), ids.end(), id);
+  return found != ids.end() && *found == id ? static_cast<int>(found - ids.begin()) : -1;
+}
+
+std::vector<DeformingObservation> SeenIn(const InitFrame& frame, const Camera& camera, const std::vector<PointId>& ids,
+                                         int view_idx, const WindowInitOptions& options) {
+  std::vector<DeformingObservation> observations;
+  for (const InitObservation& observation : frame.observations) {
+    const int point = PlaceOf(observation.id, ids);
+    if (point < 0) continue;
+    const auto ray = camera.Unproject(observation.pixel);
+    if (!ray || !ray->allFinite()) continue;
+    const double light =
+        LogDistanceFromLight(options.light == LightCue::kOn ? observation.brightness : 0.0, options.gamma);
+    observations.push_back({view_idx, point, *ray, light});
+  }
+  return observations;
+}
+
+Result<SolvedWindow> SolveWindow(const InitInput& input, std::size_t frames, const WindowInitOptions& options,
+                                 double nominal_depth_mm) {
+  if (frames < kLeastFrames)
+    return {ErrorCode::kInsufficient, "a window takes at least " + std::to_string(kLeastFrames) + " frames"};
+  SolvedWindow window;
+  window.views = ChooseViews(frames, static_cast<std::size_t>(options.views));
+  window.ids = ChoosePoints(input, window.views, options);
+  if (window.ids.size() < kLeastPoints)
+    return {ErrorCode::kInsufficient,
+            "only " + std::to_string(window.ids.size()) + " points were followed long enough"};
+  const auto start = Start(input, window.views, options, nominal_depth_mm, &window.ids);
+  if (!start.ok()) return start.status();
+  auto solution = SolveDeformingWindow(*start, input.camera.MeanFocalLengthPx(), options.window, input.threads);
+  if (!solution.ok()) return solution.status();
+  window.solution = std::move(*solution);
+  return window;
+}
+
+}  // namespace pliant

@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// The deforming window of the frames since the reference: its views, its points, its start and its solution.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "pliant/base/status.h"
+#include "pliant/estimation/deforming_window.h"
+#include "pliant/tracking/initializer.h"
+#include "pliant/tracking/window_initializer.h"
+
+namespace pliant {
+
+struct SolvedWindow {
+  std::vector<std::size_t> views;  // frames of the input, ascending
+  std::vector<PointId> ids;        // of the window's points, sorted
+  DeformingSolution solution;
+};
+
+// The window of the input's first `frames` frames, solved. kInsufficient, kDegenerate: what is missing.
+Result<SolvedWindow> SolveWindow(const InitInput& input, std::size_t frames, const WindowInitOptions& options,
+                                 double nominal_depth_mm);
+
+// A point's place in the sorted `ids`, or -1.
+int PlaceOf(PointId id, const std::vector<PointId>& ids);
+
+// Those of `ids` that a frame sees, as observations of view `view_idx`; points are numbered by their place in `ids`.
+std::vector<DeformingObservation> SeenIn(const InitFrame& frame, const Camera& camera, const std::vector<PointId>& ids,
+                                         int view_idx, const WindowInitOptions& options);
+
+}  // namespace pliant
