@@ -91,8 +91,7 @@ std::vector<FrameReport> Tracker::Process(const TrackerFrame& frame) {
       break;
   }
   report.state = state_;
-  report.losses = losses_;
-  for (const auto& [reason, count] : losses_) report.lost += count;
+  ReportLosses(&report);
 
   const std::size_t waiting = state_ == TrackingState::kInitialising ? init_frames_.size() : 0;
   const auto first_held = held_.end() - static_cast<std::ptrdiff_t>(waiting);
@@ -109,6 +108,12 @@ void Tracker::Count(std::string_view reason, int count) {
       return;
     }
   losses_.emplace_back(reason, count);
+}
+
+void Tracker::ReportLosses(FrameReport* report) const {
+  report->losses = losses_;
+  report->lost = 0;
+  for (const auto& [reason, count] : losses_) report->lost += count;
 }
 
 // Adds corners away from the points that are there.
@@ -213,7 +218,10 @@ InitOutcome Tracker::AskInitializer(const cv::Mat& depth_mm, InitMoment moment, 
 void Tracker::EndSequence() {
   if (state_ != TrackingState::kInitialising || held_.empty()) return;
   const InitOutcome outcome = AskInitializer({}, InitMoment::kLastFrame, &held_.back());
-  if (outcome.decision == InitDecision::kMap) CreateMap(outcome);
+  if (outcome.decision == InitDecision::kMap) {
+    CreateMap(outcome);
+    ReportLosses(&held_.back());
+  }
   held_.back().note = WithFault(outcome.reason, image_fault_);
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include <Eigen/Geometry>
 #include <gmock/gmock.h>
@@ -177,6 +178,9 @@ TEST(DeformingWindow, DoesNotDependOnTheNumberOfThreads) {
   ASSERT_TRUE(one.ok() && two.ok());
   EXPECT_EQ(one->window.points_in_world, two->window.points_in_world);
   EXPECT_EQ(one->window.courses, two->window.courses);
+  EXPECT_EQ(one->log_depth_sigmas, two->log_depth_sigmas);
+  EXPECT_EQ(one->sample_sigmas, two->sample_sigmas);
+  EXPECT_EQ(one->light_error, two->light_error);
 }
 
 TEST(DeformingWindow, LocatesTheViewsBetween) {
@@ -203,6 +207,12 @@ TEST(DeformingWindow, RefusesWhatIsNoWindow) {
   DeformingWindow foreign = start;
   foreign.observations.front().point_idx = 1000;
   EXPECT_EQ(SolveDeformingWindow(foreign, kFocalPx, {}).status().code(), ErrorCode::kInvalidArgument);
+  DeformingWindow infinite = start;
+  infinite.points_in_world[3].x() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(SolveDeformingWindow(infinite, kFocalPx, {}).status().code(), ErrorCode::kInvalidArgument);
+  DeformingWindowOptions rigid;
+  rigid.rank = 0;
+  EXPECT_EQ(SolveDeformingWindow(start, kFocalPx, rigid).status().code(), ErrorCode::kInvalidArgument);
   DeformingWindow few;
   EXPECT_EQ(SolveDeformingWindow(few, kFocalPx, {}).status().code(), ErrorCode::kInsufficient);
 }

@@ -54,8 +54,15 @@ TEST(WindowSamples, FewPointsAreOneSample) {
   const auto samples = SamplePoints(window, 150);
   ASSERT_EQ(samples.size(), 1U);
   EXPECT_EQ(samples.front().size(), 100U);
-  window.points_in_world.resize(20, Eigen::Vector3d::UnitZ());
+  window.points_in_world.resize(20);
   EXPECT_EQ(SamplePoints(window, 150).front().size(), 20U);
+}
+
+TEST(WindowSamples, NoPointIsChosenTwiceWhereAllAreInOneDirection) {
+  DeformingWindow window = Grid();
+  for (Eigen::Vector3d& point : window.points_in_world) point = Eigen::Vector3d(0, 0, 50);
+  for (const PointSample& sample : SamplePoints(window, 100))
+    EXPECT_EQ(std::set<int>(sample.begin(), sample.end()).size(), 100U);
 }
 
 TEST(WindowSamples, APartHasItsPointsObservations) {

@@ -105,10 +105,12 @@ TEST(FirstMap, GivesEveryFrameItsOwnPositions) {
   EXPECT_EQ(later.position, DeformingStart::Position(2, 0));  // undeformed: as in the reference
 }
 
-// Every pixel shows a surface 40 mm away, from a camera that stands still.
+// Every pixel shows a surface 40 mm away, from a camera that goes 1 mm to the right a frame.
 class FlatTruth final : public TrackingTruth {
  public:
-  Rigid3 WorldFromCamera(int) const override { return {}; }
+  Rigid3 WorldFromCamera(int frame_idx) const override {
+    return {Eigen::Quaterniond::Identity(), Eigen::Vector3d(frame_idx, 0, 0)};
+  }
   std::vector<std::optional<double>> DepthsAt(int, std::span<const Eigen::Vector2d> pixels) override {
     return std::vector<std::optional<double>>(pixels.size(), 40.0);
   }
@@ -128,8 +130,12 @@ TEST(FirstMap, TakesItsUnitFromTheReferencesPointsAlone) {
   FlatTruth truth;
   OracleAnswers oracle({.poses = OracleSwitch::kOn}, &truth, 50.0);
   oracle.TakeWorld({start.camera, start.frames, {}}, &start.outcome);
-  for (const InitFrameState& frame : start.outcome.frames) EXPECT_TRUE(frame.cam_from_world.translation.isZero());
-  EXPECT_TRUE(oracle.Pose(22).has_value());
+  // The map has the surface at 50: so much is a millimetre.
+  for (const InitFrameState& frame : start.outcome.frames) {
+    const int since = frame.frame_idx - start.outcome.frames.front().frame_idx;
+    EXPECT_NEAR(frame.cam_from_world.translation.x(), -since * 50.0 / 40.0, kRounding);
+  }
+  ASSERT_TRUE(oracle.Pose(22));
 }
 
 }  // namespace

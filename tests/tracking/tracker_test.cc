@@ -213,6 +213,11 @@ TEST_F(UncoveredLater, PointsAreAddedAndComeIntoTheFirstMapWhereTheyAreSeen) {
   }
   EXPECT_EQ(tracker.state(), TrackingState::kTracking);
   EXPECT_FALSE(tracker.map().landmarks.empty());
+  // What the map left out is counted in the frame that made it.
+  EXPECT_GT(reports.back().lost, 0);
+  int lost = 0;
+  for (const auto& [reason, count] : reports.back().losses) lost += count;
+  EXPECT_EQ(reports.back().lost, lost);
 }
 
 TEST_F(UncoveredLater, PointsAreNotAddedForAnInitialiserOfTwoViews) {

@@ -125,6 +125,43 @@ TEST(WindowInitializer, LeavesOutAPointThatJumpsAbout) {
   EXPECT_EQ(jumping->reason, InitRejection::kReprojection);
 }
 
+TEST(WindowInitializer, LeavesOutAPointThatIsWrongBetweenTheViews) {
+  Sequence sequence(61);  // a view every 6 frames
+  for (std::size_t t = 0; t < sequence.frames.size(); ++t)
+    for (InitObservation& seen : sequence.frames[t].observations)
+      if (seen.id == PointId{42} && t % 6 != 0) seen.pixel.x() += 2 * std::sin(static_cast<double>(t * t));
+  const InitOutcome outcome = sequence.Try({});
+  ASSERT_EQ(outcome.decision, InitDecision::kMap) << outcome.reason;
+  const auto wrong = std::find_if(outcome.rejected.begin(), outcome.rejected.end(),
+                                  [](const InitRejectedPoint& point) { return point.id == PointId{42}; });
+  ASSERT_NE(wrong, outcome.rejected.end());
+  EXPECT_EQ(wrong->reason, InitRejection::kReprojection);
+  EXPECT_EQ(outcome.measured.inliers, static_cast<int>(outcome.points.size()));
+}
+
+TEST(WindowInitializer, MakesNoMapOfPointsThatAreAllWrongBetweenTheViews) {
+  Sequence sequence(46);
+  const std::set<std::size_t> views = {0, 5, 9, 14, 18, 23, 27, 32, 36, 41, 45};
+  Random random(6);
+  for (std::size_t t = 0; t < sequence.frames.size(); ++t)
+    for (InitObservation& seen : sequence.frames[t].observations)
+      if (!views.contains(t)) seen.pixel += 2 * Eigen::Vector2d(random.Normal(), random.Normal());
+  const InitOutcome outcome = sequence.Try({});
+  EXPECT_EQ(outcome.decision, InitDecision::kWait);
+  EXPECT_THAT(outcome.reason, HasSubstr("agree with the frames between"));
+  EXPECT_TRUE(outcome.points.empty());
+}
+
+TEST(WindowInitializer, WithoutAgreementOfTheSamplesThereIsAMapAtTheEndAlone) {
+  const Sequence sequence(31);  // too short for the samples to agree well
+  WindowInitOptions options;
+  options.max_depth_sigma = 0.04;
+  EXPECT_EQ(sequence.Try(options).decision, InitDecision::kWait);
+  const InitOutcome last = sequence.Try(options, InitMoment::kLastFrame);
+  ASSERT_EQ(last.decision, InitDecision::kMap) << last.reason;
+  EXPECT_THAT(last.reason, HasSubstr("samples of the points do not agree"));
+}
+
 TEST(WindowInitializer, WaitsWhileMostPointsAreUncertain) {
   const Sequence sequence(31);
   WindowInitOptions options;

@@ -122,6 +122,7 @@ class Tracker {
 
   void Apply(TrackingEvent event) { state_ = NextState(state_, event); }
   void Count(std::string_view reason, int count);
+  void ReportLosses(FrameReport* report) const;  // those counted so far
 
   // Reference and first map.
   void AddCorners(const TrackerFrame& frame, const LocalBrightness& brightness, int max_corners, InitFrame* points);
