@@ -5,7 +5,7 @@
 // poses, courses and modes are free and the priors stand for what is known of them.
 #include <cmath>
 #include <limits>
-#include <set>
+#include <vector>
 
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
@@ -15,18 +15,18 @@
 namespace pliant {
 
 std::vector<double> DeformingProblem::LogDepthSigmas() {
-  // Depths first: point i's is column 3 i + 2. Then everything else that is free.
+  // Depths first: point i's is column 3 i + 2. Then everything else that is free, in an order of our own: Ceres's is
+  // that of addresses.
   ceres::Problem::EvaluateOptions options;
   options.num_threads = 1;
-  std::set<const double*> depths;
-  for (Point& point : points_) {
-    options.parameter_blocks.push_back(point.parameters.data());
-    depths.insert(point.parameters.data());
-  }
-  std::vector<double*> blocks;
-  problem_->GetParameterBlocks(&blocks);
-  for (double* block : blocks)
-    if (!depths.contains(block) && !problem_->IsParameterBlockConstant(block))
+  for (Point& point : points_) options.parameter_blocks.push_back(point.parameters.data());
+  std::vector<double*> others;
+  for (Point& point : points_) others.push_back(point.modes.data());
+  for (View& view : views_)
+    others.insert(others.end(), {view.rotation.data(), view.translation.data(), view.courses.data()});
+  others.push_back(&light_offset_);
+  for (double* block : others)
+    if (problem_->HasParameterBlock(block) && !problem_->IsParameterBlockConstant(block))
       options.parameter_blocks.push_back(block);
 
   ceres::CRSMatrix rows;
