@@ -35,8 +35,6 @@ struct PairMotion {
   double cost = 0;  // robust, of the refined correspondences
 };
 
-std::string Percent(double share) { return Digits(100.0 * share, 0) + " %"; }
-
 bool SameMotion(const Rigid3& a, const Rigid3& b) {
   return AngleBetween(a.translation, b.translation) < kSameMotionRad &&
          RotationAngle(a.rotation * b.rotation.conjugate()) < kSameMotionRad;
@@ -79,15 +77,11 @@ class Attempt {
 
  private:
   Status MoreThanARotation() {
-    const auto rotation = FitRotation(matched_.rays0, matched_.rays1, focal_px_, options_.max_error_px);
+    const auto rotation =
+        CheckNotARotation(matched_, focal_px_, options_.max_error_px, options_.max_rotation_share, &outcome_.measured);
     if (!rotation.ok()) return rotation.status();
     rotation_only_ = rotation->cam1_from_cam0;
-    outcome_.measured.rotation_only_share =
-        static_cast<double>(rotation->num_inliers) / static_cast<double>(matched_.ids.size());
-    if (outcome_.measured.rotation_only_share <= options_.max_rotation_share) return Status::Ok();
-    return {ErrorCode::kDegenerate, "the camera rotated or stood still: a rotation alone explains " +
-                                        Percent(outcome_.measured.rotation_only_share) + " of the points to " +
-                                        Digits(options_.max_error_px, 1) + " px; move it sideways or forwards"};
+    return Status::Ok();
   }
 
   // RANSAC, then the motion refined on its inliers, twice, because a better motion has better inliers.

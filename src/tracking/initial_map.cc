@@ -34,6 +34,17 @@ MatchedRays MatchRays(const Camera& camera, const InitFrame& reference, const In
   return matched;
 }
 
+Result<RotationFit> CheckNotARotation(const MatchedRays& matched, double focal_px, double max_error_px,
+                                      double max_share, InitMeasurements* measured) {
+  auto rotation = FitRotation(matched.rays0, matched.rays1, focal_px, max_error_px);
+  if (!rotation.ok()) return rotation;
+  measured->rotation_only_share = static_cast<double>(rotation->num_inliers) / static_cast<double>(matched.ids.size());
+  if (measured->rotation_only_share <= max_share) return rotation;
+  return {ErrorCode::kDegenerate, "the camera rotated or stood still: a rotation alone explains " +
+                                      Percent(measured->rotation_only_share) + " of the points to " +
+                                      Digits(max_error_px, 1) + " px; move it sideways or forwards"};
+}
+
 std::vector<WindowObservation> ObservationsOf(const Camera& camera, const InitFrame& frame,
                                               const std::vector<PointId>& ids, int view_idx) {
   std::vector<WindowObservation> observations;
@@ -99,15 +110,20 @@ void FillRigidFrames(const InitInput& input, const std::vector<Rigid3>& cams_fro
   }
 }
 
-Status HandOver(const InitInput& input, const InitialMap& map, const std::vector<Rigid3>& cams_from_world,
-                std::vector<InitRejectedPoint> rejected, double nominal_depth_mm, InitOutcome* outcome) {
+Result<double> NominalScale(const std::vector<Eigen::Vector3d>& positions, double nominal_depth_mm) {
   std::vector<double> depths;
-  for (const Eigen::Vector3d& position : map.positions) depths.push_back(position.z());
+  for (const Eigen::Vector3d& position : positions) depths.push_back(position.z());
   const double median = depths.empty() ? 0.0 : Median(std::move(depths));
   if (!(median > 0.0))
     return {ErrorCode::kDegenerate, "the map's median depth is not in front of the camera, so it cannot be scaled"};
+  return nominal_depth_mm / median;
+}
 
-  const double scale = nominal_depth_mm / median;
+Status HandOver(const InitInput& input, const InitialMap& map, const std::vector<Rigid3>& cams_from_world,
+                std::vector<InitRejectedPoint> rejected, double nominal_depth_mm, InitOutcome* outcome) {
+  const auto nominal = NominalScale(map.positions, nominal_depth_mm);
+  if (!nominal.ok()) return nominal.status();
+  const double scale = *nominal;
   outcome->decision = InitDecision::kMap;
   for (std::size_t i = 0; i < map.ids.size(); ++i)
     outcome->points.push_back(
@@ -126,5 +142,7 @@ std::string Digits(double value, int digits) {
   std::snprintf(text.data(), text.size(), "%.*f", digits, value);
   return text.data();
 }
+
+std::string Percent(double share) { return Digits(100.0 * share, 0) + " %"; }
 
 }  // namespace pliant

@@ -11,6 +11,7 @@
 #include <Eigen/Core>
 
 #include "pliant/base/status.h"
+#include "pliant/estimation/two_view_models.h"
 #include "pliant/estimation/two_view_refinement.h"
 #include "pliant/tracking/initializer.h"
 
@@ -24,6 +25,11 @@ struct MatchedRays {
   std::vector<InitRejectedPoint> rejected;  // the reference's other points
 };
 MatchedRays MatchRays(const Camera& camera, const InitFrame& reference, const InitFrame& current);
+
+// The rotation that explains most; kDegenerate when it explains more than `max_share` of the points to `max_error_px`,
+// which leaves nothing to triangulate. Fills in the share measured.
+Result<RotationFit> CheckNotARotation(const MatchedRays& matched, double focal_px, double max_error_px,
+                                      double max_share, InitMeasurements* measured);
 
 // A map in the making; world = the reference camera, any scale.
 struct InitialMap {
@@ -56,12 +62,17 @@ Result<std::vector<Rigid3>> LocateFrames(const InitInput& input, const InitialMa
 // which it was seen. `cams_from_world`: one a frame of the input.
 void FillRigidFrames(const InitInput& input, const std::vector<Rigid3>& cams_from_world, InitOutcome* outcome);
 
+// Map units to mm: by it the median depth (z in the reference camera) is nominal_depth_mm. Fails with kDegenerate when
+// the median depth is not positive.
+Result<double> NominalScale(const std::vector<Eigen::Vector3d>& positions, double nominal_depth_mm);
+
 // Scales map and poses so that the median depth (z in the reference camera) is nominal_depth_mm, and fills the outcome
 // in as a map. Fails with kDegenerate when the median depth is not positive.
 Status HandOver(const InitInput& input, const InitialMap& map, const std::vector<Rigid3>& cams_from_world,
                 std::vector<InitRejectedPoint> rejected, double nominal_depth_mm, InitOutcome* outcome);
 
-// A number for a sentence, with so many digits after the point.
+// For a sentence: a number with so many digits after the point, and a share as whole percents.
 std::string Digits(double value, int digits);
+std::string Percent(double share);
 
 }  // namespace pliant

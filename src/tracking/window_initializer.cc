@@ -5,7 +5,6 @@
 
 #include <string>
 
-#include "pliant/estimation/two_view_models.h"
 #include "tracking/initial_map.h"
 #include "tracking/window_map.h"
 #include "tracking/window_solution.h"
@@ -20,13 +19,8 @@ constexpr double kMaxRotationShare = 0.8;
 Status MoreThanARotation(const InitInput& input, InitMeasurements* measured) {
   const MatchedRays matched = MatchRays(input.camera, input.frames.front(), input.frames.back());
   measured->correspondences = static_cast<int>(matched.ids.size());
-  const auto rotation = FitRotation(matched.rays0, matched.rays1, input.camera.MeanFocalLengthPx(), kRotationErrorPx);
-  if (!rotation.ok()) return rotation.status();
-  measured->rotation_only_share = rotation->num_inliers / static_cast<double>(matched.ids.size());
-  if (measured->rotation_only_share <= kMaxRotationShare) return Status::Ok();
-  return {ErrorCode::kDegenerate, "the camera rotated or stood still: a rotation alone explains " +
-                                      Digits(100.0 * measured->rotation_only_share, 0) +
-                                      " % of the points; move it sideways or forwards"};
+  return CheckNotARotation(matched, input.camera.MeanFocalLengthPx(), kRotationErrorPx, kMaxRotationShare, measured)
+      .status();
 }
 
 class WindowInitializer final : public Initializer {

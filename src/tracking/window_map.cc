@@ -23,6 +23,8 @@ struct CertainPoints {
   std::vector<double> depth_sigmas;  // of the distance, map units
   DeformingWindow all_frames;        // a view a frame of the input
   std::vector<InitRejectedPoint> rejected;
+  double median_distance = 0;  // of all the window's points
+  double median_error_px = 0;
 };
 
 CertainPoints ChooseCertain(const SolvedWindow& window, Certainty certainty, double focal_px,
@@ -30,16 +32,17 @@ CertainPoints ChooseCertain(const SolvedWindow& window, Certainty certainty, dou
   const DeformingSolution& solution = window.solution;
   std::vector<double> distances;
   for (const Eigen::Vector3d& position : solution.window.points_in_world) distances.push_back(position.norm());
-  const double median = Median(distances);
   const std::vector<double> errors_px = PointErrorsPx(solution.window, focal_px);
   const bool agreed = certainty == Certainty::kPredictedAndAgreed && !solution.sample_sigmas.empty();
   CertainPoints points;
+  points.median_distance = Median(distances);
+  points.median_error_px = Median(errors_px);
   for (std::size_t i = 0; i < window.ids.size(); ++i) {
     const double log_sigma = std::hypot(solution.log_depth_sigmas[i], agreed ? solution.sample_sigmas[i] : 0.0);
     const double sigma = log_sigma * distances[i];
     if (!(errors_px[i] <= options.max_error_px)) {
       points.rejected.push_back({window.ids[i], InitRejection::kReprojection});
-    } else if (!(sigma <= options.max_depth_sigma * median)) {
+    } else if (!(sigma <= options.max_depth_sigma * points.median_distance)) {
       points.rejected.push_back({window.ids[i], InitRejection::kUncertainDepth});
     } else {
       points.ids.push_back(window.ids[i]);
@@ -66,7 +69,7 @@ Status EnoughCertain(const InitInput& input, const SolvedWindow& window, const C
   if (certain >= options.min_points && (!share_matters || certain >= options.min_certain_share * seen))
     return Status::Ok();
   std::string needed = std::to_string(options.min_points);
-  if (share_matters) needed += " and " + Digits(100.0 * options.min_certain_share, 0) + " %";
+  if (share_matters) needed += " and " + Percent(options.min_certain_share);
   return {ErrorCode::kInsufficient, "the depth of " + std::to_string(certain) + " of " + std::to_string(seen) +
                                         " points is certain, at least " + needed +
                                         " are needed; move the camera sideways or forwards"};
@@ -125,13 +128,11 @@ void DropContradicting(double focal_px, double max_error_px, CertainPoints* poin
   all.modes.resize(kept);
 }
 
-void Measure(const SolvedWindow& window, const CertainPoints& points, double focal_px, InitMeasurements* measured) {
-  std::vector<double> distances;
-  for (const Eigen::Vector3d& position : window.solution.window.points_in_world) distances.push_back(position.norm());
+void Measure(const CertainPoints& points, InitMeasurements* measured) {
   measured->inliers = static_cast<int>(points.ids.size());
   measured->median_depth_sigma =
-      points.depth_sigmas.empty() ? 0.0 : Median(points.depth_sigmas) / Median(std::move(distances));
-  measured->median_error_px = Median(PointErrorsPx(window.solution.window, focal_px));
+      points.depth_sigmas.empty() ? 0.0 : Median(points.depth_sigmas) / points.median_distance;
+  measured->median_error_px = points.median_error_px;
 }
 
 // The points not in the map, each with why.
@@ -149,12 +150,9 @@ std::vector<InitRejectedPoint> AllRejected(const InitInput& input, CertainPoints
 
 Status FillOutcome(const InitInput& input, double nominal_depth_mm, CertainPoints* points, InitOutcome* outcome) {
   const DeformingWindow& all = points->all_frames;
-  std::vector<double> depths;
-  for (const Eigen::Vector3d& position : all.points_in_world) depths.push_back(position.z());
-  const double median = Median(std::move(depths));
-  if (!(median > 0.0)) return {ErrorCode::kDegenerate, "the map's median depth is not in front of the camera"};
-  const double scale = nominal_depth_mm / median;
-
+  const auto nominal = NominalScale(all.points_in_world, nominal_depth_mm);
+  if (!nominal.ok()) return nominal.status();
+  const double scale = *nominal;
   for (std::size_t i = 0; i < points->ids.size(); ++i)
     outcome->points.push_back({points->ids[i], scale * all.points_in_world[i], scale * points->depth_sigmas[i], 0.0});
   for (std::size_t k = 0; k < input.frames.size(); ++k) {
@@ -177,7 +175,7 @@ Status MakeWindowMap(const InitInput& input, const SolvedWindow& window, Certain
                      InitOutcome* outcome) {
   const double focal_px = input.camera.MeanFocalLengthPx();
   CertainPoints points = ChooseCertain(window, certainty, focal_px, options);
-  Measure(window, points, focal_px, &outcome->measured);
+  Measure(points, &outcome->measured);
   if (Status status = EnoughCertain(input, window, points, when_uncertain, options); !status.ok()) return status;
   if (Status status = LocateAllFrames(input, window, options, &points); !status.ok()) return status;
   DropContradicting(focal_px, options.max_error_px, &points);
@@ -185,7 +183,7 @@ Status MakeWindowMap(const InitInput& input, const SolvedWindow& window, Certain
     return {ErrorCode::kInsufficient, "only " + std::to_string(left) +
                                           " points agree with the frames between those of the window (at least " +
                                           std::to_string(options.min_points) + " must)"};
-  Measure(window, points, focal_px, &outcome->measured);
+  Measure(points, &outcome->measured);
   if (Status status = FillOutcome(input, nominal_depth_mm, &points, outcome); !status.ok()) return status;
   const bool agreed = certainty == Certainty::kPredictedAndAgreed;
   outcome->reason = "first map of " + std::to_string(points.ids.size()) + " points from a deforming window of " +

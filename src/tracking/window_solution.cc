@@ -123,14 +123,10 @@ int PlaceOf(PointId id, const std::vector<PointId>& ids) {
 std::vector<DeformingObservation> SeenIn(const InitFrame& frame, const Camera& camera, const std::vector<PointId>& ids,
                                          int view_idx, const WindowInitOptions& options) {
   std::vector<DeformingObservation> observations;
-  for (const InitObservation& observation : frame.observations) {
-    const int point = PlaceOf(observation.id, ids);
-    if (point < 0) continue;
-    const auto ray = camera.Unproject(observation.pixel);
-    if (!ray || !ray->allFinite()) continue;
-    const double light =
-        LogDistanceFromLight(options.light == LightCue::kOn ? observation.brightness : 0.0, options.gamma);
-    observations.push_back({view_idx, point, *ray, light});
+  for (const WindowObservation& seen : ObservationsOf(camera, frame, ids, view_idx)) {
+    const PointId id = ids[static_cast<std::size_t>(seen.point_idx)];
+    const double brightness = options.light == LightCue::kOn ? FindById(frame.observations, id)->brightness : 0.0;
+    observations.push_back({view_idx, seen.point_idx, seen.ray, LogDistanceFromLight(brightness, options.gamma)});
   }
   return observations;
 }

@@ -119,9 +119,8 @@ TEST(WindowInitializer, LeavesOutAPointThatJumpsAbout) {
       if (seen.id == PointId{42} && t > 0) seen.pixel.x() += 2 * std::sin(static_cast<double>(t * t));
   const InitOutcome outcome = sequence.Try({});
   ASSERT_EQ(outcome.decision, InitDecision::kMap) << outcome.reason;
-  const auto jumping = std::find_if(outcome.rejected.begin(), outcome.rejected.end(),
-                                    [](const InitRejectedPoint& point) { return point.id == PointId{42}; });
-  ASSERT_NE(jumping, outcome.rejected.end());
+  const InitRejectedPoint* jumping = FindById(outcome.rejected, PointId{42});
+  ASSERT_NE(jumping, nullptr);
   EXPECT_EQ(jumping->reason, InitRejection::kReprojection);
 }
 
@@ -132,9 +131,8 @@ TEST(WindowInitializer, LeavesOutAPointThatIsWrongBetweenTheViews) {
       if (seen.id == PointId{42} && t % 6 != 0) seen.pixel.x() += 2 * std::sin(static_cast<double>(t * t));
   const InitOutcome outcome = sequence.Try({});
   ASSERT_EQ(outcome.decision, InitDecision::kMap) << outcome.reason;
-  const auto wrong = std::find_if(outcome.rejected.begin(), outcome.rejected.end(),
-                                  [](const InitRejectedPoint& point) { return point.id == PointId{42}; });
-  ASSERT_NE(wrong, outcome.rejected.end());
+  const InitRejectedPoint* wrong = FindById(outcome.rejected, PointId{42});
+  ASSERT_NE(wrong, nullptr);
   EXPECT_EQ(wrong->reason, InitRejection::kReprojection);
   EXPECT_EQ(outcome.measured.inliers, static_cast<int>(outcome.points.size()));
 }
