@@ -5,14 +5,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <memory>
 #include <numeric>
+#include <optional>
 #include <string>
 
-#include <opengv/relative_pose/CentralRelativeAdapter.hpp>
+#include <opencv2/calib3d.hpp>
+#include <opengv/sac/Lmeds.hpp>
 #include <opengv/sac/Ransac.hpp>
-#include <opengv/sac_problems/relative_pose/CentralRelativePoseSacProblem.hpp>
 
+#include "estimation/relative_pose_problem.h"
+#include "pliant/estimation/two_view_models.h"
 #include "pliant/geometry/essential.h"
 #include "pliant/geometry/triangulation.h"
 
@@ -20,7 +24,6 @@ namespace pliant {
 namespace {
 
 using Rays = std::span<const Eigen::Vector3d>;
-using RansacProblem = opengv::sac_problems::relative_pose::CentralRelativePoseSacProblem;
 
 constexpr double kUnitTolerance = 1e-6;   // of a ray's squared length: single precision somewhere upstream is accepted
 constexpr double kStillAngleRad = 1e-10;  // two rays nearer than this are the same ray
@@ -68,39 +71,141 @@ std::vector<std::size_t> RandomOrder(std::size_t size, std::size_t count, Random
   return order;
 }
 
-struct RansacModel {
-  bool found = false;
-  Rigid3 cam1_from_cam0;
-  int iterations = 0;
+// The C library's generator, which OpenGV's eigensolver asks, at a fixed seed; the host's state comes back at the end.
+class FixedCRandom {
+ public:
+  FixedCRandom() : before_(initstate(1U, state_.data(), state_.size())) {}
+  ~FixedCRandom() { setstate(before_); }
+  FixedCRandom(const FixedCRandom&) = delete;
+  FixedCRandom& operator=(const FixedCRandom&) = delete;
+
+ private:
+  std::array<char, 128> state_{};
+  char* before_;
 };
 
-RansacModel RunRansac(Rays rays0, Rays rays1, double focal_px, Random random, const RelativePoseOptions& options) {
-  opengv::bearingVectors_t bearings0;
-  opengv::bearingVectors_t bearings1;
+// What a method finds: a motion whose translation has either sign.
+using Found = std::optional<Rigid3>;
+
+// The samples after which one is clean with the wanted confidence when half of the pairs are: LMedS does not know more.
+int SamplesForHalf(int sample_size, const RelativePoseOptions& options) {
+  const double needed = std::log(1.0 - options.confidence) / std::log(1.0 - std::pow(0.5, sample_size));
+  return static_cast<int>(std::min<double>(std::ceil(needed), options.max_iterations));
+}
+
+Found BySamples(Rays rays0, Rays rays1, double focal_px, Random random, const RelativePoseOptions& options) {
+  opengv::bearingVectors_t scored0;
+  opengv::bearingVectors_t scored1;
   for (const std::size_t i : RandomOrder(rays0.size(), std::min(rays0.size(), kMaxScored), random)) {
-    bearings0.push_back(rays0[i]);
-    bearings1.push_back(rays1[i]);
+    scored0.push_back(rays0[i]);
+    scored1.push_back(rays1[i]);
   }
-  opengv::relative_pose::CentralRelativeAdapter adapter(bearings0, bearings1);  // keeps references to both
-  opengv::sac::Ransac<RansacProblem> ransac(
-      options.max_iterations, 2.0 * (1.0 - std::cos(std::atan(options.max_error_px / focal_px))), options.confidence);
-  ransac.sac_model_ = std::make_shared<RansacProblem>(adapter, RansacProblem::NISTER, /*randomSeed=*/false);
-  RansacModel model;
-  model.found =
-      ransac.computeModel() && ransac.model_coefficients_.allFinite() && ransac.model_coefficients_.col(3).norm() > 0.0;
-  model.iterations = ransac.iterations_;
-  if (!model.found) return model;
-  // OpenGV's model maps its second view into its first, with a translation of any length.
-  const Rigid3 cam0_from_cam1(Eigen::Matrix3d(ransac.model_coefficients_.leftCols<3>()),
-                              ransac.model_coefficients_.col(3).normalized());
-  model.cam1_from_cam0 = cam0_from_cam1.Inverse();
-  return model;
+  const auto problem = std::make_shared<RelativePoseProblem>(std::move(scored0), std::move(scored1), focal_px, options);
+  const auto run = [&](auto loop) -> Found {
+    loop.sac_model_ = problem;
+    if (!loop.computeModel()) return std::nullopt;
+    return loop.model_coefficients_;
+  };
+  const FixedCRandom fixed;
+  if (options.robust == RobustLoop::kLmeds)
+    return run(opengv::sac::Lmeds<RelativePoseProblem>(SamplesForHalf(problem->getSampleSize(), options),
+                                                       problem->Threshold(), options.confidence));
+  return run(
+      opengv::sac::Ransac<RelativePoseProblem>(options.max_iterations, problem->Threshold(), options.confidence));
+}
+
+Found ByOpencv(Rays rays0, Rays rays1, double focal_px, Random random, const RelativePoseOptions& options) {
+  constexpr double kLeastZ = 0.05;  // beyond 87 degrees a pixel of the plane z = 1 means nothing
+  std::vector<cv::Point2d> points0;
+  std::vector<cv::Point2d> points1;
+  for (std::size_t i = 0; i < rays0.size(); ++i) {
+    if (rays0[i].z() < kLeastZ || rays1[i].z() < kLeastZ) continue;
+    points0.emplace_back(rays0[i].x() / rays0[i].z(), rays0[i].y() / rays0[i].z());
+    points1.emplace_back(rays1[i].x() / rays1[i].z(), rays1[i].y() / rays1[i].z());
+  }
+  if (points0.size() < static_cast<std::size_t>(kRelativePoseMinPoints)) return std::nullopt;
+  cv::UsacParams params;
+  params.confidence = options.confidence;
+  params.maxIterations = options.max_iterations;
+  params.threshold = options.max_error_px / focal_px;
+  params.score = cv::SCORE_METHOD_MAGSAC;
+  params.loMethod = cv::LOCAL_OPTIM_SIGMA;
+  params.sampler = cv::SAMPLING_UNIFORM;
+  params.isParallel = false;
+  params.randomGeneratorState = random.Index(1 << 30);
+  cv::Mat inliers;
+  const cv::Mat essential =
+      cv::findEssentialMat(points0, points1, cv::Mat::eye(3, 3, CV_64F), cv::Mat::eye(3, 3, CV_64F), cv::noArray(),
+                           cv::noArray(), inliers, params);
+  if (essential.rows < 3 || essential.cols != 3) return std::nullopt;
+  const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> e(essential.ptr<double>());
+  const auto motions = DecomposeEssential(e);
+  if (!motions.ok()) return std::nullopt;
+  return Rigid3(motions->rotations[0], motions->translation);
+}
+
+int CountAgreeing(const Rigid3& motion, Rays rays0, Rays rays1, double max_error_rad) {
+  int count = 0;
+  for (std::size_t i = 0; i < rays0.size(); ++i)
+    count += AgreesWithMotion(motion, rays0[i], rays1[i], max_error_rad) ? 1 : 0;
+  return count;
+}
+
+// The motion of the dominant plane that more points agree with; its sign is settled by the plane being in front.
+Result<Rigid3> ByHomography(Rays rays0, Rays rays1, double focal_px, double max_error_rad, Random random,
+                            const RelativePoseOptions& options) {
+  const auto plane = FitHomography(rays0, rays1, focal_px, options.max_error_px, random);
+  if (!plane.ok()) return plane.status();
+  const std::vector<Rigid3> motions = MotionsFromHomography(plane->cam1_from_cam0, rays0);
+  if (motions.empty()) return {ErrorCode::kDegenerate, "the homography of the views is a rotation: nothing moved"};
+  return *std::max_element(motions.begin(), motions.end(), [&](const Rigid3& a, const Rigid3& b) {
+    return CountAgreeing(a, rays0, rays1, max_error_rad) < CountAgreeing(b, rays0, rays1, max_error_rad);
+  });
+}
+
+// Of a motion with either sign the one with more of its inliers in front (docs/method.md, eq. I3).
+Result<Rigid3> FacingForwards(const Rigid3& motion, Rays rays0, Rays rays1, double max_error_rad) {
+  std::vector<Eigen::Vector3d> inliers0;
+  std::vector<Eigen::Vector3d> inliers1;
+  for (std::size_t i = 0; i < rays0.size(); ++i) {
+    if (std::abs(SampsonErrorRad(motion, rays0[i], rays1[i])) > std::sqrt(2.0) * max_error_rad) continue;
+    inliers0.push_back(rays0[i]);
+    inliers1.push_back(rays1[i]);
+  }
+  const auto choice = ChooseMotion(EssentialFromMotion(motion), inliers0, inliers1);
+  if (!choice.ok()) return choice.status();
+  return choice->cam1_from_cam0;
+}
+
+Result<Rigid3> FindMotion(Rays rays0, Rays rays1, double focal_px, double max_error_rad, Random random,
+                          const RelativePoseOptions& options) {
+  switch (options.solver) {
+    case RelativePoseSolver::kHomography:
+      return ByHomography(rays0, rays1, focal_px, max_error_rad, random, options);
+    case RelativePoseSolver::kRotationOnly: {
+      const auto rotation = FitRotation(rays0, rays1, focal_px, options.max_error_px);
+      if (!rotation.ok()) return rotation.status();
+      return Rigid3(rotation->cam1_from_cam0, Eigen::Vector3d::Zero());
+    }
+    default: {
+      const Found found = options.solver == RelativePoseSolver::kOpencvUsac
+                              ? ByOpencv(rays0, rays1, focal_px, random, options)
+                              : BySamples(rays0, rays1, focal_px, random, options);
+      if (!found)
+        return {ErrorCode::kInsufficient,
+                "no motion explains any sample of the " + std::to_string(rays0.size()) + " correspondences"};
+      return FacingForwards(*found, rays0, rays1, max_error_rad);
+    }
+  }
 }
 
 }  // namespace
 
 bool AgreesWithMotion(const Rigid3& cam1_from_cam0, const Eigen::Vector3d& ray0, const Eigen::Vector3d& ray1,
                       double max_error_rad) {
+  // Without a translation a pair's rays have to be one and the same: the error is shared by both.
+  if (cam1_from_cam0.translation.isZero(0.0))
+    return AngleBetween(cam1_from_cam0.rotation * ray0, ray1) <= 2.0 * max_error_rad;
   // Sampson's error joins both views, the threshold is per view.
   if (!(std::abs(SampsonErrorRad(cam1_from_cam0, ray0, ray1)) <= std::sqrt(2.0) * max_error_rad)) return false;
   // Rays that noise alone may have made parallel or divergent are not evidence against the motion.
@@ -111,25 +216,12 @@ bool AgreesWithMotion(const Rigid3& cam1_from_cam0, const Eigen::Vector3d& ray0,
 Result<RelativePose> EstimateRelativePose(Rays rays0, Rays rays1, double focal_px, Random random,
                                           const RelativePoseOptions& options) {
   if (Status status = CheckRays(rays0, rays1); !status.ok()) return status;
-  const RansacModel model = RunRansac(rays0, rays1, focal_px, random, options);
-  if (!model.found)
-    return Status(ErrorCode::kInsufficient,
-                  "no motion explains any sample of the " + std::to_string(rays0.size()) + " correspondences");
-
   const double max_error_rad = std::atan(options.max_error_px / focal_px);
-  RelativePose pose;
-  pose.iterations = model.iterations;
-  std::vector<Eigen::Vector3d> inliers0;
-  std::vector<Eigen::Vector3d> inliers1;
-  for (std::size_t i = 0; i < rays0.size(); ++i) {
-    if (std::abs(SampsonErrorRad(model.cam1_from_cam0, rays0[i], rays1[i])) > std::sqrt(2.0) * max_error_rad) continue;
-    inliers0.push_back(rays0[i]);
-    inliers1.push_back(rays1[i]);
-  }
-  const auto choice = ChooseMotion(EssentialFromMotion(model.cam1_from_cam0), inliers0, inliers1);
-  if (!choice.ok()) return choice.status();
-  pose.cam1_from_cam0 = choice->cam1_from_cam0;
+  const auto motion = FindMotion(rays0, rays1, focal_px, max_error_rad, random, options);
+  if (!motion.ok()) return motion.status();
 
+  RelativePose pose;
+  pose.cam1_from_cam0 = *motion;
   pose.inliers.resize(rays0.size());
   for (std::size_t i = 0; i < rays0.size(); ++i) {
     pose.inliers[i] = AgreesWithMotion(pose.cam1_from_cam0, rays0[i], rays1[i], max_error_rad) ? 1 : 0;

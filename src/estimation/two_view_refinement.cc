@@ -10,6 +10,8 @@
 
 #include <Eigen/Eigenvalues>
 #include <ceres/ceres.h>
+#include <opengv/relative_pose/CentralRelativeAdapter.hpp>
+#include <opengv/relative_pose/methods.hpp>
 
 #include "estimation/ceres_support.h"
 #include "estimation/ray_residuals.h"
@@ -20,9 +22,6 @@ namespace pliant {
 namespace {
 
 using Rays = std::span<const Eigen::Vector3d>;
-using RowMajor24 = Eigen::Matrix<double, 2, 4, Eigen::RowMajor>;
-using RowMajor23 = Eigen::Matrix<double, 2, 3, Eigen::RowMajor>;
-
 // Blocks: rotation (x, y, z, w), translation of unit length. Unit: px.
 class SampsonCost final : public ceres::SizedCostFunction<1, 4, 3> {
  public:
@@ -47,49 +46,23 @@ class SampsonCost final : public ceres::SizedCostFunction<1, 4, 3> {
   double focal_px_;
 };
 
-// Blocks: rotation (x, y, z, w), translation, point. Unit: px.
-class DirectionCost final : public ceres::SizedCostFunction<2, 4, 3, 3> {
- public:
-  DirectionCost(const Eigen::Vector3d& ray, double focal_px)
-      : ray_(ray), basis_(BasisAcross(ray)), focal_px_(focal_px) {}
-
-  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
-    DirectionResidual residual;
-    if (!EvaluateDirection(ReadQuaternion(parameters[0]), Eigen::Map<const Eigen::Vector3d>(parameters[1]),
-                           Eigen::Map<const Eigen::Vector3d>(parameters[2]), ray_, basis_, &residual))
-      return false;
-    Eigen::Map<Eigen::Vector2d>{residuals} = focal_px_ * residual.value;
-    if (jacobians == nullptr) return true;
-    if (jacobians[0] != nullptr) Eigen::Map<RowMajor24>{jacobians[0]} = focal_px_ * residual.by_rotation;
-    if (jacobians[1] != nullptr) Eigen::Map<RowMajor23>{jacobians[1]} = focal_px_ * residual.by_translation;
-    if (jacobians[2] != nullptr) Eigen::Map<RowMajor23>{jacobians[2]} = focal_px_ * residual.by_point;
-    return true;
-  }
-
- private:
-  Eigen::Vector3d ray_;
-  RayBasis basis_;
-  double focal_px_;
-};
-
-ceres::Solver::Options SolverOptions(ceres::LinearSolverType linear_solver, int max_iterations) {
-  ceres::Solver::Options options;
-  options.linear_solver_type = linear_solver;
-  options.max_num_iterations = max_iterations;
-  options.function_tolerance = 1e-10;
-  options.parameter_tolerance = 1e-12;
-  options.gradient_tolerance = 1e-14;
-  options.num_threads = 1;
-  options.max_trust_region_radius = 1e8;  // some damping stays, whatever a point's depth does
-  options.logging_type = ceres::SILENT;
-  return options;
+Status CheckRays(Rays rays0, Rays rays1) {
+  if (rays0.size() != rays1.size())
+    return {ErrorCode::kInvalidArgument, "the two views to refine have different numbers of rays"};
+  if (rays0.size() < 6)
+    return {ErrorCode::kInsufficient,
+            "refining a relative pose takes at least six correspondences; there are " + std::to_string(rays0.size())};
+  return Status::Ok();
 }
 
-// Adds the spread and the direction's covariance at the solution: the inverse of the weighted normal equations, the
-// rotation eliminated, times the errors' variance.
-void Assess(Rays rays0, Rays rays1, double focal_px, double loss_scale_px, TwoViewRefinement* refinement) {
-  const Eigen::Quaterniond& q = refinement->cam1_from_cam0.rotation;
-  const Eigen::Vector3d& t = refinement->cam1_from_cam0.translation;
+// The solution with its cost, its spread and the direction's covariance: the inverse of the weighted normal equations,
+// the rotation eliminated, times the errors' variance.
+TwoViewRefinement Assessed(const Rigid3& cam1_from_cam0, Rays rays0, Rays rays1, double focal_px,
+                           double loss_scale_px) {
+  TwoViewRefinement refinement;
+  refinement.cam1_from_cam0 = cam1_from_cam0;
+  const Eigen::Quaterniond& q = cam1_from_cam0.rotation;
+  const Eigen::Vector3d& t = cam1_from_cam0.translation;
   Eigen::Matrix<double, 4, 3, Eigen::RowMajor> q_plus;
   Eigen::Matrix<double, 3, 2, Eigen::RowMajor> t_plus;
   ceres::EigenQuaternionManifold().PlusJacobian(q.coeffs().data(), q_plus.data());
@@ -104,10 +77,12 @@ void Assess(Rays rays0, Rays rays1, double focal_px, double loss_scale_px, TwoVi
     errors_px.push_back(std::abs(error_px));
     Eigen::Matrix<double, 1, 5> row;
     row << residual.by_rotation * q_plus, residual.by_translation * t_plus;
-    const double weight = 1.0 / (1.0 + std::pow(error_px / loss_scale_px, 2));
+    const double relative = std::pow(error_px / loss_scale_px, 2);
+    const double weight = 1.0 / (1.0 + relative);
+    refinement.cost += 0.5 * loss_scale_px * loss_scale_px * std::log1p(relative);
     normal_equations += weight * focal_px * focal_px * row.transpose() * row;
   }
-  refinement->spread_px = errors_px.empty() ? 0.0 : kMedianToSigma * Median(errors_px);
+  refinement.spread_px = errors_px.empty() ? 0.0 : kMedianToSigma * Median(errors_px);
 
   const Eigen::Matrix2d direction =
       normal_equations.bottomRightCorner<2, 2>() -
@@ -115,141 +90,16 @@ void Assess(Rays rays0, Rays rays1, double focal_px, double loss_scale_px, TwoVi
           normal_equations.topLeftCorner<3, 3>().ldlt().solve(normal_equations.topRightCorner<3, 2>());
   const Eigen::Vector2d eigenvalues = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(direction).eigenvalues();
   for (int k = 0; k < 2; ++k)
-    refinement->direction_sigma_rad[k] = eigenvalues[k] > 0.0 ? refinement->spread_px / std::sqrt(eigenvalues[k])
-                                                              : std::numeric_limits<double>::infinity();
+    refinement.direction_sigma_rad[k] = eigenvalues[k] > 0.0 ? refinement.spread_px / std::sqrt(eigenvalues[k])
+                                                             : std::numeric_limits<double>::infinity();
+  return refinement;
 }
-
-Status CheckWindow(const Window& window, WindowPoints points) {
-  const int views = static_cast<int>(window.cams_from_world.size());
-  const int count = static_cast<int>(window.points_in_world.size());
-  if (views < 2 || count < 6)
-    return {ErrorCode::kInsufficient, "refining a window takes at least two views and six points; there are " +
-                                          std::to_string(views) + " and " + std::to_string(count)};
-  for (const WindowObservation& observation : window.observations) {
-    if (observation.view_idx < 0 || observation.view_idx >= views || observation.point_idx < 0 ||
-        observation.point_idx >= count)
-      return {ErrorCode::kInvalidArgument, "an observation of the window names a view or point that is not there"};
-    if (points == WindowPoints::kFixed) continue;  // filtered below
-    const Eigen::Vector3d x = window.cams_from_world[static_cast<std::size_t>(observation.view_idx)] *
-                              window.points_in_world[static_cast<std::size_t>(observation.point_idx)];
-    if (!(x.dot(observation.ray) > 0.0))
-      return {ErrorCode::kInvalidArgument, "a point of the window lies behind a camera that sees it"};
-  }
-  return Status::Ok();
-}
-
-// Parameter blocks of one view, as Ceres wants them.
-struct ViewBlocks {
-  Eigen::Vector4d rotation;
-  Eigen::Vector3d translation;
-};
-
-class WindowProblem {
- public:
-  WindowProblem(const Window& start, double focal_px, WindowPoints points, const RefinementOptions& options)
-      : window_(start),
-        focal_px_(focal_px),
-        points_(points),
-        options_(options),
-        loss_(options.loss_scale_px),
-        problem_(BorrowingOptions()) {
-    for (const Rigid3& cam_from_world : start.cams_from_world)
-      views_.push_back({cam_from_world.rotation.coeffs(), cam_from_world.translation});
-  }
-
-  Result<WindowRefinement> Solve() {
-    AddObservations();
-    FixGauge();
-    ceres::Solver::Options solver = SolverOptions(
-        points_ == WindowPoints::kRefined ? ceres::DENSE_SCHUR : ceres::DENSE_QR, options_.max_iterations);
-    if (points_ == WindowPoints::kRefined) solver.linear_solver_ordering = Ordering();
-    ceres::Solver::Summary summary;
-    ceres::Solve(solver, &problem_, &summary);
-    if (!summary.IsSolutionUsable())
-      return Status(ErrorCode::kDegenerate, "the refinement of the window found no step that improves it");
-
-    WindowRefinement refinement;
-    refinement.cost = summary.final_cost;
-    refinement.converged = summary.termination_type == ceres::CONVERGENCE;
-    for (std::size_t k = 0; k < views_.size(); ++k)
-      window_.cams_from_world[k] = Rigid3(ReadQuaternion(views_[k].rotation.data()), views_[k].translation);
-    refinement.window = std::move(window_);
-    refinement.median_error_px = MedianError(refinement.window);
-    return refinement;
-  }
-
- private:
-  void AddObservations() {
-    for (const WindowObservation& observation : window_.observations) {
-      ViewBlocks& view = views_[static_cast<std::size_t>(observation.view_idx)];
-      Eigen::Vector3d& point = window_.points_in_world[static_cast<std::size_t>(observation.point_idx)];
-      // Without a point in front the residual is undefined; only fixed points may come this way (see CheckWindow).
-      const Eigen::Vector3d x = ReadQuaternion(view.rotation.data()) * point + view.translation;
-      if (!(x.dot(observation.ray) > 0.0)) continue;
-      problem_.AddResidualBlock(new DirectionCost(observation.ray, focal_px_), &loss_, view.rotation.data(),
-                                view.translation.data(), point.data());
-    }
-  }
-
-  void FixGauge() {
-    for (ViewBlocks& view : views_) {
-      if (!problem_.HasParameterBlock(view.rotation.data())) continue;
-      problem_.SetManifold(view.rotation.data(), &rotation_manifold_);
-    }
-    if (problem_.HasParameterBlock(views_.front().rotation.data())) {
-      problem_.SetParameterBlockConstant(views_.front().rotation.data());
-      problem_.SetParameterBlockConstant(views_.front().translation.data());
-    }
-    if (points_ == WindowPoints::kFixed) {
-      for (Eigen::Vector3d& point : window_.points_in_world)
-        if (problem_.HasParameterBlock(point.data())) problem_.SetParameterBlockConstant(point.data());
-    } else if (problem_.HasParameterBlock(views_.back().translation.data())) {
-      problem_.SetManifold(views_.back().translation.data(), &scale_manifold_);
-    }
-  }
-
-  std::shared_ptr<ceres::ParameterBlockOrdering> Ordering() {
-    auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
-    for (Eigen::Vector3d& point : window_.points_in_world)
-      if (problem_.HasParameterBlock(point.data())) ordering->AddElementToGroup(point.data(), 0);
-    for (ViewBlocks& view : views_)
-      if (problem_.HasParameterBlock(view.rotation.data())) {
-        ordering->AddElementToGroup(view.rotation.data(), 1);
-        ordering->AddElementToGroup(view.translation.data(), 1);
-      }
-    return ordering;
-  }
-
-  double MedianError(const Window& window) const {
-    std::vector<double> errors_px;
-    for (const WindowObservation& observation : window.observations)
-      errors_px.push_back(focal_px_ *
-                          AngleBetween(window.cams_from_world[static_cast<std::size_t>(observation.view_idx)] *
-                                           window.points_in_world[static_cast<std::size_t>(observation.point_idx)],
-                                       observation.ray));
-    return errors_px.empty() ? 0.0 : Median(std::move(errors_px));
-  }
-
-  Window window_;
-  double focal_px_;
-  WindowPoints points_;
-  RefinementOptions options_;
-  std::vector<ViewBlocks> views_;
-  ceres::CauchyLoss loss_;
-  ceres::EigenQuaternionManifold rotation_manifold_;
-  ceres::SphereManifold<3> scale_manifold_;
-  ceres::Problem problem_;
-};
 
 }  // namespace
 
 Result<TwoViewRefinement> RefineTwoView(const Rigid3& start, Rays rays0, Rays rays1, double focal_px,
                                         const RefinementOptions& options) {
-  if (rays0.size() != rays1.size())
-    return Status(ErrorCode::kInvalidArgument, "the two views to refine have different numbers of rays");
-  if (rays0.size() < 6)
-    return Status(ErrorCode::kInsufficient, "refining a relative pose takes at least six correspondences; there are " +
-                                                std::to_string(rays0.size()));
+  if (Status status = CheckRays(rays0, rays1); !status.ok()) return status;
   Eigen::Vector4d rotation = start.rotation.coeffs();
   Eigen::Vector3d translation = start.translation.normalized();
   ceres::CauchyLoss loss(options.loss_scale_px);
@@ -263,21 +113,38 @@ Result<TwoViewRefinement> RefineTwoView(const Rigid3& start, Rays rays0, Rays ra
 
   ceres::Solver::Summary summary;
   // QR, because a rival's start may leave the normal equations singular, of which Ceres complains on stderr.
-  ceres::Solve(SolverOptions(ceres::DENSE_QR, options.max_iterations), &problem, &summary);
+  ceres::Solve(RigidSolverOptions(ceres::DENSE_QR, options.max_iterations), &problem, &summary);
   if (!summary.IsSolutionUsable())
     return Status(ErrorCode::kDegenerate, "the refinement of the relative pose found no step that improves it");
 
-  TwoViewRefinement refinement;
-  refinement.cam1_from_cam0 = Rigid3(ReadQuaternion(rotation.data()), translation.normalized());
-  refinement.cost = summary.final_cost;
-  Assess(rays0, rays1, focal_px, options.loss_scale_px, &refinement);
-  return refinement;
+  return Assessed(Rigid3(ReadQuaternion(rotation.data()), translation.normalized()), rays0, rays1, focal_px,
+                  options.loss_scale_px);
 }
 
-Result<WindowRefinement> RefineWindow(const Window& start, double focal_px, WindowPoints points,
-                                      const RefinementOptions& options) {
-  if (Status status = CheckWindow(start, points); !status.ok()) return status;
-  return WindowProblem(start, focal_px, points, options).Solve();
+Result<TwoViewRefinement> RefineTwoViewByOpengv(const Rigid3& start, Rays rays0, Rays rays1, double focal_px,
+                                                const RefinementOptions& options) {
+  if (Status status = CheckRays(rays0, rays1); !status.ok()) return status;
+  const opengv::bearingVectors_t bearings0(rays0.begin(), rays0.end());
+  const opengv::bearingVectors_t bearings1(rays1.begin(), rays1.end());
+  opengv::relative_pose::CentralRelativeAdapter adapter(bearings0, bearings1);  // keeps references to both
+  // One call stops after a few steps, wherever it is: with a length that is free and numeric derivatives it creeps.
+  constexpr int kCalls = 10;
+  constexpr double kAtRest = 1e-6;
+  Rigid3 cam0_from_cam1 = start.Inverse();
+  cam0_from_cam1.translation.normalize();
+  for (int call = 0; call < kCalls; ++call) {
+    adapter.setR12(cam0_from_cam1.RotationMatrix());
+    adapter.sett12(cam0_from_cam1.translation);
+    const opengv::transformation_t found = opengv::relative_pose::optimize_nonlinear(adapter);
+    if (!found.allFinite() || !(found.col(3).norm() > 0.0))
+      return Status(ErrorCode::kDegenerate, "OpenGV's refinement of the relative pose ended without a motion");
+    const Rigid3 next(Eigen::Matrix3d(found.leftCols<3>()), found.col(3).normalized());
+    const double change = (next.translation - cam0_from_cam1.translation).norm() +
+                          RotationAngle(next.rotation * cam0_from_cam1.rotation.conjugate());
+    cam0_from_cam1 = next;
+    if (change < kAtRest) break;
+  }
+  return Assessed(cam0_from_cam1.Inverse(), rays0, rays1, focal_px, options.loss_scale_px);
 }
 
 }  // namespace pliant

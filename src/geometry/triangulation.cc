@@ -4,11 +4,13 @@
 #include "pliant/geometry/triangulation.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <limits>
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/SVD>
 
 namespace pliant {
 namespace {
@@ -59,11 +61,47 @@ TriangulatedPoint TriangulateMidpoint(const Rigid3& cam1_from_cam0, const Eigen:
   return {TriangulationStatus::kOk, cam1_from_cam0.rotation.conjugate() * (point_in_cam1 - t)};
 }
 
+TriangulatedPoint TriangulateLinear(const Rigid3& cam1_from_cam0, const Eigen::Vector3d& ray0,
+                                    const Eigen::Vector3d& ray1) {
+  const Eigen::Vector3d& t = cam1_from_cam0.translation;
+  if (!std::isfinite(ray0.sum() + ray1.sum() + t.sum())) return Rejected(TriangulationStatus::kInvalidRay);
+  if ((cam1_from_cam0.rotation * ray0).cross(ray1).norm() < kParallelSine)
+    return Rejected(TriangulationStatus::kParallel);
+  Eigen::Matrix<double, 6, 4> equations;
+  equations << Skew(ray0), Eigen::Vector3d::Zero(), Skew(ray1) * cam1_from_cam0.RotationMatrix(), Skew(ray1) * t;
+  const Eigen::JacobiSVD<Eigen::Matrix<double, 6, 4>> svd(equations, Eigen::ComputeFullV);
+  const Eigen::Vector4d x = svd.matrixV().col(3);
+  if (std::abs(x[3]) < kParallelSine) return Rejected(TriangulationStatus::kParallel);
+  const Eigen::Vector3d point_in_cam0 = x.hnormalized();
+  if (!(point_in_cam0.dot(ray0) > 0.0 && (cam1_from_cam0 * point_in_cam0).dot(ray1) > 0.0))
+    return Rejected(TriangulationStatus::kCheirality);
+  return {TriangulationStatus::kOk, point_in_cam0};
+}
+
+TriangulatedPoint TriangulateOptimalL2(const Rigid3& cam1_from_cam0, const Eigen::Vector3d& ray0,
+                                       const Eigen::Vector3d& ray1) {
+  const Eigen::Vector3d y = cam1_from_cam0.rotation * ray0;
+  const double baseline = cam1_from_cam0.translation.norm();
+  if (!std::isfinite(y.sum() + ray1.sum() + baseline)) return Rejected(TriangulationStatus::kInvalidRay);
+  if (!(baseline > 0.0)) return Rejected(TriangulationStatus::kParallel);
+  // A plane through the baseline has its normal n in the plane spanned by a and b; the sines are n . y and n . f1.
+  const Eigen::Vector3d a = cam1_from_cam0.translation.unitOrthogonal();
+  const Eigen::Vector3d b = cam1_from_cam0.translation.cross(a) / baseline;
+  const Eigen::Vector2d u(a.dot(y), b.dot(y));
+  const Eigen::Vector2d v(a.dot(ray1), b.dot(ray1));
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(u * u.transpose() + v * v.transpose());
+  const Eigen::Vector3d n = solver.eigenvectors()(0, 0) * a + solver.eigenvectors()(1, 0) * b;
+  const Eigen::Vector3d y_in_plane = (y - n.dot(y) * n).normalized();
+  const Eigen::Vector3d f1_in_plane = (ray1 - n.dot(ray1) * n).normalized();
+  return TriangulateMidpoint(cam1_from_cam0, cam1_from_cam0.rotation.conjugate() * y_in_plane, f1_in_plane);
+}
+
 std::vector<TriangulatedPoint> Triangulate(TriangulationMethod method, const Rigid3& cam1_from_cam0,
                                            std::span<const Eigen::Vector3d> rays0,
                                            std::span<const Eigen::Vector3d> rays1) {
   assert(rays0.size() == rays1.size());
-  const auto triangulate = method == TriangulationMethod::kIdwm ? &TriangulateIdwm : &TriangulateMidpoint;
+  constexpr std::array kByName = {&TriangulateIdwm, &TriangulateMidpoint, &TriangulateLinear, &TriangulateOptimalL2};
+  const auto triangulate = kByName[static_cast<std::size_t>(method)];
   std::vector<TriangulatedPoint> points;
   points.reserve(rays0.size());
   for (std::size_t i = 0; i < rays0.size(); ++i) points.push_back(triangulate(cam1_from_cam0, rays0[i], rays1[i]));

@@ -10,7 +10,6 @@
 #include <numbers>
 
 #include "pliant/base/statistics.h"
-#include "pliant/estimation/relative_pose.h"
 #include "pliant/estimation/two_view_models.h"
 #include "pliant/geometry/triangulation.h"
 #include "tracking/initial_map.h"
@@ -86,9 +85,7 @@ class Attempt {
 
   // RANSAC, then the motion refined on its inliers, twice, because a better motion has better inliers.
   Status FindMotion() {
-    const auto ransac =
-        EstimateRelativePose(matched_.rays0, matched_.rays1, focal_px_, random_.Child("relative_pose"),
-                             {.max_error_px = options_.max_error_px, .max_iterations = options_.max_iterations});
+    const auto ransac = EstimateMotion(matched_, focal_px_, options_, random_);
     if (!ransac.ok()) return ransac.status();
     motion_ = {ransac->cam1_from_cam0, ransac->inliers, ransac->num_inliers, 0.0};
     if (options_.refinement != RigidRefinement::kNone) {
@@ -113,7 +110,8 @@ class Attempt {
       rays0.push_back(matched_.rays0[i]);
       rays1.push_back(matched_.rays1[i]);
     }
-    const auto refined = RefineTwoView(start, rays0, rays1, focal_px_, {});
+    const auto refine = options_.refinement == RigidRefinement::kOpengv ? &RefineTwoViewByOpengv : &RefineTwoView;
+    const auto refined = refine(start, rays0, rays1, focal_px_, {});
     if (!refined.ok()) return refined.status();
     PairMotion result;
     result.cam1_from_cam0 = FacingForwards(refined->cam1_from_cam0, rays0, rays1);

@@ -34,6 +34,19 @@ MatchedRays MatchRays(const Camera& camera, const InitFrame& reference, const In
   return matched;
 }
 
+Result<RelativePose> EstimateMotion(const MatchedRays& matched, double focal_px, const MonocularInitOptions& options,
+                                    Random random) {
+  auto pose = EstimateRelativePose(matched.rays0, matched.rays1, focal_px, random.Child("relative_pose"),
+                                   {.solver = options.solver,
+                                    .robust = options.robust,
+                                    .max_error_px = options.max_error_px,
+                                    .max_iterations = options.max_iterations});
+  if (pose.ok() && pose->cam1_from_cam0.translation.isZero(0.0))
+    return Status(ErrorCode::kDegenerate, "a rotation (Init.solver = " + std::string(EnumName(options.solver)) +
+                                              ") says nothing of depth: it is there to be compared");
+  return pose;
+}
+
 Result<RotationFit> CheckNotARotation(const MatchedRays& matched, double focal_px, double max_error_px,
                                       double max_share, InitMeasurements* measured) {
   auto rotation = FitRotation(matched.rays0, matched.rays1, focal_px, max_error_px);

@@ -11,9 +11,11 @@
 #include <Eigen/Core>
 
 #include "pliant/base/status.h"
+#include "pliant/estimation/relative_pose.h"
 #include "pliant/estimation/two_view_models.h"
-#include "pliant/estimation/two_view_refinement.h"
+#include "pliant/estimation/window_refinement.h"
 #include "pliant/tracking/initializer.h"
+#include "pliant/tracking/monocular_initializer.h"
 
 namespace pliant {
 
@@ -25,6 +27,11 @@ struct MatchedRays {
   std::vector<InitRejectedPoint> rejected;  // the reference's other points
 };
 MatchedRays MatchRays(const Camera& camera, const InitFrame& reference, const InitFrame& current);
+
+// The pair's motion by the method that the options name. Fails as EstimateRelativePose does, and with kDegenerate where
+// the method finds no translation.
+Result<RelativePose> EstimateMotion(const MatchedRays& matched, double focal_px, const MonocularInitOptions& options,
+                                    Random random);
 
 // The rotation that explains most; kDegenerate when it explains more than `max_share` of the points to `max_error_px`,
 // which leaves nothing to triangulate. Fills in the share measured.

@@ -8,9 +8,13 @@
 namespace pliant {
 
 void MonocularInitOptions::List(OptionTable& table) {
-  table.AddChoice(
-      "refinement", &refinement,
-      "gated: what follows RANSAC: nothing, the pair alone, or the points with window_frames of the frames since");
+  table.AddChoice("solver", &solver,
+                  "gated, paper: the motion of two views. OpenGV's essential matrices, OpenCV's MAGSAC, or a plane's; "
+                  "rotation_only never makes a map");
+  table.AddChoice("robust", &robust, "gated, paper: how samples make a motion; local: RANSAC that refines on inliers");
+  table.AddChoice("refinement", &refinement,
+                  "gated: what follows: nothing, the pair alone (by OpenGV; two_view: robustly), or the points with "
+                  "window_frames of the frames since");
   table.AddChoice("triangulation", &triangulation, "how a point comes from two rays");
   table.Add("nominal_depth_mm", &nominal_depth_mm, "mm", "the map is scaled once so that this is its median depth",
             1e-3, 1e6);

@@ -5,7 +5,6 @@
 #include <numbers>
 
 #include "pliant/base/statistics.h"
-#include "pliant/estimation/relative_pose.h"
 #include "tracking/initial_map.h"
 #include "tracking/monocular_methods.h"
 
@@ -38,9 +37,7 @@ class PaperInitializer final : public Initializer {
     MatchedRays matched = MatchRays(input.camera, input.frames.front(), input.frames.back());
     outcome->measured.correspondences = static_cast<int>(matched.ids.size());
     const double focal_px = input.camera.MeanFocalLengthPx();
-    const auto pose =
-        EstimateRelativePose(matched.rays0, matched.rays1, focal_px, random_.Child("relative_pose"),
-                             {.max_error_px = options_.max_error_px, .max_iterations = options_.max_iterations});
+    const auto pose = EstimateMotion(matched, focal_px, options_, random_);
     if (!pose.ok()) return pose.status();
     outcome->measured.inliers = pose->num_inliers;
 

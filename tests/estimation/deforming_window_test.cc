@@ -16,7 +16,7 @@
 #include "estimation/light_depth.h"
 #include "pliant/base/random.h"
 #include "pliant/base/statistics.h"
-#include "pliant/estimation/two_view_refinement.h"
+#include "pliant/estimation/window_refinement.h"
 #include "pliant/geometry/triangulation.h"
 
 namespace pliant {

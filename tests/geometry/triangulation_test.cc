@@ -3,6 +3,7 @@
 
 #include "pliant/geometry/triangulation.h"
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -18,17 +19,19 @@ namespace {
 constexpr double kRounding = 1e-9;  // of lengths of about 100
 constexpr double kDeg = std::numbers::pi / 180.0;
 
+constexpr std::array kAllMethods = {&TriangulateIdwm, &TriangulateMidpoint, &TriangulateLinear, &TriangulateOptimalL2};
+
 const Rigid3 kCam1FromCam0(RotationExp({0.05, -0.1, 0.2}), {4, -1, 2});
 
 Eigen::Vector3d RayIn(const Rigid3& cam_from_world, const Eigen::Vector3d& x) {
   return (cam_from_world * x).normalized();
 }
 
-TEST(Triangulation, BothMethodsRecoverExactPoints) {
+TEST(Triangulation, EveryMethodRecoversExactPoints) {
   Random random(3);
   for (int i = 0; i < 100; ++i) {
     const Eigen::Vector3d x(random.Uniform(-30, 30), random.Uniform(-30, 30), random.Uniform(20, 120));
-    for (const auto triangulate : {&TriangulateIdwm, &TriangulateMidpoint}) {
+    for (const auto triangulate : kAllMethods) {
       const TriangulatedPoint point = triangulate(kCam1FromCam0, x.normalized(), RayIn(kCam1FromCam0, x));
       ASSERT_TRUE(point.ok());
       EXPECT_LT((point.point_in_cam0 - x).norm(), kRounding * x.norm());
@@ -53,21 +56,86 @@ TEST(IdwmTriangulation, IsTheMeanOfTheDepthsOnBothRaysWeightedByInverseDepth) {
   EXPECT_LT((kCam1FromCam0 * point.point_in_cam0 - expected).norm(), kRounding);
 }
 
+// Rays that miss each other by about a degree.
+struct Skewed {
+  Eigen::Vector3d ray0;
+  Eigen::Vector3d ray1;
+};
+Skewed MakeSkewed(Random* random) {
+  const Eigen::Vector3d x(random->Uniform(-30, 30), random->Uniform(-30, 30), random->Uniform(20, 60));
+  const auto shaken = [&](const Eigen::Vector3d& ray) {
+    return (ray + 0.01 * Eigen::Vector3d(random->Normal(), random->Normal(), random->Normal())).normalized();
+  };
+  return {shaken(x.normalized()), shaken(RayIn(kCam1FromCam0, x))};
+}
+
+TEST(OptimalL2Triangulation, TurnsTheRaysLeastOfAllEpipolarPlanes) {
+  Random random(5);
+  const auto squared_sine = [](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+    return a.cross(b).squaredNorm() / b.squaredNorm();
+  };
+  int compared = 0;
+  for (int i = 0; i < 200; ++i) {
+    const auto [ray0, ray1] = MakeSkewed(&random);
+    const TriangulatedPoint point = TriangulateOptimalL2(kCam1FromCam0, ray0, ray1);
+    if (!point.ok()) continue;
+    ++compared;
+    const double cost =
+        squared_sine(ray0, point.point_in_cam0) + squared_sine(ray1, kCam1FromCam0 * point.point_in_cam0);
+    // The planes through the baseline, one by one: none turns the rays less.
+    const Eigen::Vector3d& t = kCam1FromCam0.translation;
+    const Eigen::Vector3d a = t.unitOrthogonal();
+    const Eigen::Vector3d b = t.normalized().cross(a);
+    double least = 1;
+    constexpr int kPlanes = 20000;
+    for (int k = 0; k < kPlanes; ++k) {
+      const double angle = k * std::numbers::pi / kPlanes;
+      const Eigen::Vector3d n = std::cos(angle) * a + std::sin(angle) * b;
+      least = std::min(least, std::pow(n.dot(kCam1FromCam0.rotation * ray0), 2) + std::pow(n.dot(ray1), 2));
+    }
+    EXPECT_LT(cost, least + 1e-9);
+    EXPECT_GT(cost, least - 1e-7);  // the steps between the planes
+  }
+  EXPECT_GT(compared, 100);
+}
+
+TEST(LinearTriangulation, LeavesTheLeastAlgebraicError) {
+  Random random(6);
+  int compared = 0;
+  for (int i = 0; i < 200; ++i) {
+    const auto [ray0, ray1] = MakeSkewed(&random);
+    const TriangulatedPoint point = TriangulateLinear(kCam1FromCam0, ray0, ray1);
+    if (!point.ok()) continue;
+    ++compared;
+    const auto error = [&](const Eigen::Vector3d& x) {
+      return (ray0.cross(x).squaredNorm() + ray1.cross(kCam1FromCam0 * x).squaredNorm()) / (1.0 + x.squaredNorm());
+    };
+    for (int k = 0; k < 20; ++k) {
+      const Eigen::Vector3d step(random.Normal(), random.Normal(), random.Normal());
+      EXPECT_LE(error(point.point_in_cam0), error(point.point_in_cam0 + 0.1 * step) * (1 + 1e-9));
+    }
+  }
+  EXPECT_GT(compared, 100);
+}
+
 TEST(Triangulation, RecoversPointAtLowParallax) {
   const Rigid3 nearly_still(Eigen::Quaterniond::Identity(), {0.005, 0, 0});  // 0.006 degrees at 50 mm
   const Eigen::Vector3d x(5, 5, 50);
-  const TriangulatedPoint point = TriangulateIdwm(nearly_still, x.normalized(), RayIn(nearly_still, x));
-  ASSERT_TRUE(point.ok());
-  EXPECT_LT((point.point_in_cam0 - x).norm(), 1e-7);  // rounding of the rays by the parallax of 1e-4
+  for (const auto triangulate : kAllMethods) {
+    const TriangulatedPoint point = triangulate(nearly_still, x.normalized(), RayIn(nearly_still, x));
+    ASSERT_TRUE(point.ok());
+    EXPECT_LT((point.point_in_cam0 - x).norm(), 1e-7);  // rounding of the rays by the parallax of 1e-4
+  }
 }
 
 TEST(Triangulation, RejectsDivergentRays) {
   const Rigid3 sideways(Eigen::Quaterniond::Identity(), {-1, 0, 0});  // cam1 lies to the right of cam0
   const Eigen::Vector3d left = Eigen::Vector3d(-0.1, 0, 1).normalized();
   const Eigen::Vector3d right = Eigen::Vector3d(0.1, 0, 1).normalized();
-  EXPECT_TRUE(TriangulateIdwm(sideways, right, left).ok());
-  EXPECT_EQ(TriangulateIdwm(sideways, left, right).status, TriangulationStatus::kCheirality);
-  EXPECT_EQ(TriangulateMidpoint(sideways, left, right).status, TriangulationStatus::kCheirality);
+  for (const auto triangulate : kAllMethods) {
+    EXPECT_TRUE(triangulate(sideways, right, left).ok());
+    EXPECT_EQ(triangulate(sideways, left, right).status, TriangulationStatus::kCheirality);
+  }
 }
 
 TEST(Triangulation, NamesParallelAndInvalidRays) {
@@ -75,7 +143,7 @@ TEST(Triangulation, NamesParallelAndInvalidRays) {
   const Eigen::Vector3d nan = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
   const Rigid3 sideways(Eigen::Quaterniond::Identity(), {1, 0, 0});
   const Rigid3 forward(Eigen::Quaterniond::Identity(), {0, 0, -1});
-  for (const auto triangulate : {&TriangulateIdwm, &TriangulateMidpoint}) {
+  for (const auto triangulate : kAllMethods) {
     EXPECT_EQ(triangulate(sideways, z, z).status, TriangulationStatus::kParallel);
     EXPECT_EQ(triangulate(forward, z, z).status, TriangulationStatus::kParallel);  // at the focus of expansion
     EXPECT_EQ(triangulate(sideways, nan, z).status, TriangulationStatus::kInvalidRay);

@@ -21,14 +21,18 @@
 namespace pliant {
 
 enum class TriangulationMethod {
-  kIdwm,      // inverse depth weighted midpoint: the better reprojection at low parallax and in forward motion
-  kMidpoint,  // the middle of the shortest segment between the rays
+  kIdwm,       // inverse depth weighted midpoint: the better reprojection at low parallax and in forward motion
+  kMidpoint,   // the middle of the shortest segment between the rays (OpenGV's triangulate2)
+  kLinear,     // the direct linear transform (OpenGV's triangulate)
+  kOptimalL2,  // the least sum of squared sines of the turns that make the rays meet
 };
 
 template <>
 struct EnumNames<TriangulationMethod> {
   static constexpr std::array kNames = {std::pair{TriangulationMethod::kIdwm, std::string_view("idwm")},
-                                        std::pair{TriangulationMethod::kMidpoint, std::string_view("midpoint")}};
+                                        std::pair{TriangulationMethod::kMidpoint, std::string_view("midpoint")},
+                                        std::pair{TriangulationMethod::kLinear, std::string_view("linear")},
+                                        std::pair{TriangulationMethod::kOptimalL2, std::string_view("optimal_l2")}};
 };
 
 enum class TriangulationStatus {
@@ -50,6 +54,15 @@ TriangulatedPoint TriangulateIdwm(const Rigid3& cam1_from_cam0, const Eigen::Vec
 // The midpoint of the common perpendicular; both feet have to lie in front of their cameras.
 TriangulatedPoint TriangulateMidpoint(const Rigid3& cam1_from_cam0, const Eigen::Vector3d& ray0,
                                       const Eigen::Vector3d& ray1);
+// The point x of least |A x|, |x| = 1, in homogeneous coordinates, A = the equations f1 x (R x + t) = 0 and f0 x x = 0
+// of unit rays (Hartley and Zisserman, "Multiple View Geometry", 12.2); it has to lie in front of both cameras.
+TriangulatedPoint TriangulateLinear(const Rigid3& cam1_from_cam0, const Eigen::Vector3d& ray0,
+                                    const Eigen::Vector3d& ray1);
+// Both rays are turned into one epipolar plane, the one for which the sum of squared sines of the turns is least; then
+// they meet (Oliensis, "Exact Two-Image Structure from Motion", PAMI 2002; Lee and Civera, ICCV 2019). Both have to
+// meet in front of their cameras.
+TriangulatedPoint TriangulateOptimalL2(const Rigid3& cam1_from_cam0, const Eigen::Vector3d& ray0,
+                                       const Eigen::Vector3d& ray1);
 // One result a pair of rays, by the method's name.
 std::vector<TriangulatedPoint> Triangulate(TriangulationMethod method, const Rigid3& cam1_from_cam0,
                                            std::span<const Eigen::Vector3d> rays0,

@@ -14,6 +14,7 @@
 
 #include "pliant/base/options.h"
 #include "pliant/base/random.h"
+#include "pliant/estimation/relative_pose.h"
 #include "pliant/estimation/two_view_refinement.h"
 #include "pliant/geometry/triangulation.h"
 #include "pliant/tracking/initializer.h"
@@ -23,6 +24,8 @@ namespace pliant {
 enum class MonocularGates { kGated, kPaper };
 
 struct MonocularInitOptions {
+  RelativePoseSolver solver = RelativePoseSolver::kNister;
+  RobustLoop robust = RobustLoop::kRansac;
   RigidRefinement refinement = RigidRefinement::kWindow;  // gated only
   TriangulationMethod triangulation = TriangulationMethod::kIdwm;
 

@@ -1,0 +1,173 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "estimation/relative_pose_problem.h"
+
+#include <cassert>
+#include <cmath>
+#include <numbers>
+
+#include <Eigen/SVD>
+#include <opengv/relative_pose/methods.hpp>
+
+#include "pliant/estimation/two_view_models.h"
+#include "pliant/estimation/two_view_refinement.h"
+#include "pliant/geometry/essential.h"
+
+namespace pliant {
+namespace {
+
+namespace gv = opengv::relative_pose;
+
+// A complex solution whose imaginary part is larger than this share of the real one is none.
+constexpr double kRealShare = 1e-6;
+// Of a better motion on its inliers; more inliers make the next round better.
+constexpr int kLocalRounds = 2;
+constexpr int kLocalIterations = 10;
+
+// OpenGV's essential matrices are f0' E f1 = 0, ours f1' E f0 = 0. The translation's sign is free here.
+void AddMotion(const Eigen::Matrix3d& opengv_essential, std::vector<Rigid3>* motions) {
+  const auto decomposed = DecomposeEssential(opengv_essential.transpose());
+  if (decomposed.ok()) motions->emplace_back(decomposed->rotations[0], decomposed->translation);
+}
+
+}  // namespace
+
+RelativePoseProblem::RelativePoseProblem(opengv::bearingVectors_t rays0, opengv::bearingVectors_t rays1,
+                                         double focal_px, const RelativePoseOptions& options)
+    : SampleConsensusProblem<Rigid3>(/*randomSeed=*/false),
+      rays0_(std::move(rays0)),
+      rays1_(std::move(rays1)),
+      adapter_(rays0_, rays1_),
+      focal_px_(focal_px),
+      max_error_rad_(std::atan(options.max_error_px / focal_px)),
+      options_(options) {
+  setUniformIndices(static_cast<int>(rays0_.size()));
+  if (options_.solver != RelativePoseSolver::kEigensolver) return;
+  const auto rotation = FitRotation(rays0_, rays1_, focal_px_, options_.max_error_px);  // where it starts from
+  if (rotation.ok()) adapter_.setR12(rotation->cam1_from_cam0.toRotationMatrix().transpose());
+}
+
+int RelativePoseProblem::SampleSize(RelativePoseSolver solver) {
+  switch (solver) {
+    case RelativePoseSolver::kSevenPoint:
+      return 7;
+    case RelativePoseSolver::kEightPoint:
+    case RelativePoseSolver::kEigensolver:
+      return 8;
+    default:
+      return 5;
+  }
+}
+
+double RelativePoseProblem::Threshold() const { return std::sqrt(2.0) * max_error_rad_; }
+
+bool RelativePoseProblem::computeModelCoefficients(const std::vector<int>& sample, Rigid3& cam1_from_cam0) const {
+  Candidate best;
+  for (const Rigid3& motion : MotionsThrough(sample)) {
+    if (!motion.rotation.coeffs().allFinite() || !motion.translation.allFinite()) continue;
+    Candidate candidate = Judged(motion, best.inliers.size());
+    if (candidate.inliers.size() > best.inliers.size()) best = std::move(candidate);
+  }
+  if (options_.robust == RobustLoop::kLocal && best.inliers.size() > most_inliers_) {
+    for (int round = 0; round < kLocalRounds; ++round) {
+      Candidate refined = Judged(Refined(best.inliers, best.cam1_from_cam0), 0);
+      if (refined.inliers.size() < best.inliers.size()) break;
+      best = std::move(refined);
+    }
+    most_inliers_ = best.inliers.size();
+  }
+  cam1_from_cam0 = best.cam1_from_cam0;
+  return !best.inliers.empty();
+}
+
+void RelativePoseProblem::optimizeModelCoefficients(const std::vector<int>& inliers, const Rigid3& start,
+                                                    Rigid3& refined) {
+  refined = Refined(inliers, start);
+}
+
+void RelativePoseProblem::getSelectedDistancesToModel(const Rigid3& cam1_from_cam0, const std::vector<int>& indices,
+                                                      std::vector<double>& errors_rad) const {
+  errors_rad.clear();
+  for (const int i : indices) {
+    const auto k = static_cast<std::size_t>(i);
+    const double error = std::abs(SampsonErrorRad(cam1_from_cam0, rays0_[k], rays1_[k]));
+    const bool behind = error <= Threshold() && !AgreesWithMotion(cam1_from_cam0, rays0_[k], rays1_[k], max_error_rad_);
+    errors_rad.push_back(behind ? std::numbers::pi : error);
+  }
+}
+
+std::vector<Rigid3> RelativePoseProblem::MotionsThrough(const std::vector<int>& sample) const {
+  std::vector<Rigid3> motions;
+  switch (options_.solver) {
+    case RelativePoseSolver::kNister:
+      for (const Eigen::Matrix3d& essential : gv::fivept_nister(adapter_, sample)) AddMotion(essential, &motions);
+      break;
+    case RelativePoseSolver::kStewenius:
+      for (const auto& essential : gv::fivept_stewenius(adapter_, sample))
+        if (essential.imag().norm() <= kRealShare * essential.real().norm()) AddMotion(essential.real(), &motions);
+      break;
+    case RelativePoseSolver::kKneip:
+      for (const Eigen::Matrix3d& rotation : gv::fivept_kneip(adapter_, sample))
+        motions.push_back(MotionWithRotation(rotation, sample));
+      break;
+    case RelativePoseSolver::kSevenPoint:
+      for (const Eigen::Matrix3d& essential : gv::sevenpt(adapter_, sample)) AddMotion(essential, &motions);
+      break;
+    case RelativePoseSolver::kEightPoint:
+      AddMotion(gv::eightpt(adapter_, sample), &motions);
+      break;
+    case RelativePoseSolver::kEigensolver:
+      motions.push_back(MotionWithRotation(gv::eigensolver(adapter_, sample), sample));
+      break;
+    default:
+      assert(false && "a solver with a loop of its own");
+  }
+  return motions;
+}
+
+// With the rotation known every pair's epipolar plane holds the translation: it is what all their normals miss.
+Rigid3 RelativePoseProblem::MotionWithRotation(const Eigen::Matrix3d& cam0_from_cam1,
+                                               const std::vector<int>& sample) const {
+  const Eigen::Matrix3d rotation = cam0_from_cam1.transpose();
+  Eigen::Matrix3d normals = Eigen::Matrix3d::Zero();
+  for (const int i : sample) {
+    const auto k = static_cast<std::size_t>(i);
+    const Eigen::Vector3d normal = (rotation * rays0_[k]).cross(rays1_[k]);
+    normals += normal * normal.transpose();
+  }
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(normals, Eigen::ComputeFullV);
+  return {rotation, svd.matrixV().col(2)};
+}
+
+// The pairs near the epipolar planes are those of both signs: where they are too few, no sign is asked for.
+RelativePoseProblem::Candidate RelativePoseProblem::Judged(const Rigid3& motion_of_any_sign,
+                                                           std::size_t to_beat) const {
+  std::vector<std::size_t> near;
+  for (std::size_t i = 0; i < rays0_.size(); ++i)
+    if (std::abs(SampsonErrorRad(motion_of_any_sign, rays0_[i], rays1_[i])) <= Threshold()) near.push_back(i);
+  Candidate best;
+  if (near.size() <= to_beat) return best;
+  for (const double sign : {1.0, -1.0}) {
+    Candidate candidate{{motion_of_any_sign.rotation, sign * motion_of_any_sign.translation}, {}};
+    for (const std::size_t i : near)
+      if (AgreesWithMotion(candidate.cam1_from_cam0, rays0_[i], rays1_[i], max_error_rad_))
+        candidate.inliers.push_back(static_cast<int>(i));
+    if (candidate.inliers.size() > best.inliers.size()) best = std::move(candidate);
+  }
+  return best;
+}
+
+Rigid3 RelativePoseProblem::Refined(const std::vector<int>& inliers, const Rigid3& start) const {
+  std::vector<Eigen::Vector3d> rays0;
+  std::vector<Eigen::Vector3d> rays1;
+  for (const int i : inliers) {
+    rays0.push_back(rays0_[static_cast<std::size_t>(i)]);
+    rays1.push_back(rays1_[static_cast<std::size_t>(i)]);
+  }
+  const auto refined = RefineTwoView(start, rays0, rays1, focal_px_,
+                                     {.loss_scale_px = options_.max_error_px, .max_iterations = kLocalIterations});
+  return refined.ok() ? refined->cam1_from_cam0 : start;
+}
+
+}  // namespace pliant
