@@ -5,17 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <memory>
-#include <numeric>
 #include <optional>
 #include <string>
 
 #include <opencv2/calib3d.hpp>
-#include <opengv/sac/Lmeds.hpp>
-#include <opengv/sac/Ransac.hpp>
 
-#include "estimation/relative_pose_problem.h"
+#include "estimation/opengv_relative_pose.h"
 #include "pliant/estimation/two_view_models.h"
 #include "pliant/geometry/essential.h"
 #include "pliant/geometry/triangulation.h"
@@ -27,9 +22,6 @@ using Rays = std::span<const Eigen::Vector3d>;
 
 constexpr double kUnitTolerance = 1e-6;   // of a ray's squared length: single precision somewhere upstream is accepted
 constexpr double kStillAngleRad = 1e-10;  // two rays nearer than this are the same ray
-
-// A hypothesis is scored on at most this many correspondences: beyond it the time grows and the choice does not change.
-constexpr std::size_t kMaxScored = 200;
 
 int CountApart(Rays a, Rays b) {
   int count = 0;
@@ -61,60 +53,9 @@ Status CheckRays(Rays rays0, Rays rays1) {
   return Status::Ok();
 }
 
-// The first `count` entries of a random order of 0 .. size - 1 (Fisher and Yates).
-std::vector<std::size_t> RandomOrder(std::size_t size, std::size_t count, Random random) {
-  std::vector<std::size_t> order(size);
-  std::iota(order.begin(), order.end(), 0);
-  for (std::size_t i = 0; i < count; ++i)
-    std::swap(order[i], order[i + static_cast<std::size_t>(random.Index(static_cast<int>(size - i)))]);
-  order.resize(count);
-  return order;
-}
-
-// The C library's generator, which OpenGV's eigensolver asks, at a fixed seed; the host's state comes back at the end.
-class FixedCRandom {
- public:
-  FixedCRandom() : before_(initstate(1U, state_.data(), state_.size())) {}
-  ~FixedCRandom() { setstate(before_); }
-  FixedCRandom(const FixedCRandom&) = delete;
-  FixedCRandom& operator=(const FixedCRandom&) = delete;
-
- private:
-  std::array<char, 128> state_{};
-  char* before_;
-};
-
-// What a method finds: a motion whose translation has either sign.
-using Found = std::optional<Rigid3>;
-
-// The samples after which one is clean with the wanted confidence when half of the pairs are: LMedS does not know more.
-int SamplesForHalf(int sample_size, const RelativePoseOptions& options) {
-  const double needed = std::log(1.0 - options.confidence) / std::log(1.0 - std::pow(0.5, sample_size));
-  return static_cast<int>(std::min<double>(std::ceil(needed), options.max_iterations));
-}
-
-Found BySamples(Rays rays0, Rays rays1, double focal_px, Random random, const RelativePoseOptions& options) {
-  opengv::bearingVectors_t scored0;
-  opengv::bearingVectors_t scored1;
-  for (const std::size_t i : RandomOrder(rays0.size(), std::min(rays0.size(), kMaxScored), random)) {
-    scored0.push_back(rays0[i]);
-    scored1.push_back(rays1[i]);
-  }
-  const auto problem = std::make_shared<RelativePoseProblem>(std::move(scored0), std::move(scored1), focal_px, options);
-  const auto run = [&](auto loop) -> Found {
-    loop.sac_model_ = problem;
-    if (!loop.computeModel()) return std::nullopt;
-    return loop.model_coefficients_;
-  };
-  const FixedCRandom fixed;
-  if (options.robust == RobustLoop::kLmeds)
-    return run(opengv::sac::Lmeds<RelativePoseProblem>(SamplesForHalf(problem->getSampleSize(), options),
-                                                       problem->Threshold(), options.confidence));
-  return run(
-      opengv::sac::Ransac<RelativePoseProblem>(options.max_iterations, problem->Threshold(), options.confidence));
-}
-
-Found ByOpencv(Rays rays0, Rays rays1, double focal_px, Random random, const RelativePoseOptions& options) {
+// A motion whose translation has either sign; none where there is none.
+std::optional<Rigid3> ByOpencv(Rays rays0, Rays rays1, double focal_px, Random random,
+                               const RelativePoseOptions& options) {
   constexpr double kLeastZ = 0.05;  // beyond 87 degrees a pixel of the plane z = 1 means nothing
   std::vector<cv::Point2d> points0;
   std::vector<cv::Point2d> points1;
@@ -188,9 +129,9 @@ Result<Rigid3> FindMotion(Rays rays0, Rays rays1, double focal_px, double max_er
       return Rigid3(rotation->cam1_from_cam0, Eigen::Vector3d::Zero());
     }
     default: {
-      const Found found = options.solver == RelativePoseSolver::kOpencvUsac
-                              ? ByOpencv(rays0, rays1, focal_px, random, options)
-                              : BySamples(rays0, rays1, focal_px, random, options);
+      const std::optional<Rigid3> found = options.solver == RelativePoseSolver::kOpencvUsac
+                                              ? ByOpencv(rays0, rays1, focal_px, random, options)
+                                              : SampleMotion(rays0, rays1, focal_px, random, options);
       if (!found)
         return {ErrorCode::kInsufficient,
                 "no motion explains any sample of the " + std::to_string(rays0.size()) + " correspondences"};

@@ -10,10 +10,9 @@
 
 #include <Eigen/Eigenvalues>
 #include <ceres/ceres.h>
-#include <opengv/relative_pose/CentralRelativeAdapter.hpp>
-#include <opengv/relative_pose/methods.hpp>
 
 #include "estimation/ceres_support.h"
+#include "estimation/opengv_relative_pose.h"
 #include "estimation/ray_residuals.h"
 #include "pliant/base/statistics.h"
 #include "pliant/geometry/triangulation.h"
@@ -124,27 +123,9 @@ Result<TwoViewRefinement> RefineTwoView(const Rigid3& start, Rays rays0, Rays ra
 Result<TwoViewRefinement> RefineTwoViewByOpengv(const Rigid3& start, Rays rays0, Rays rays1, double focal_px,
                                                 const RefinementOptions& options) {
   if (Status status = CheckRays(rays0, rays1); !status.ok()) return status;
-  const opengv::bearingVectors_t bearings0(rays0.begin(), rays0.end());
-  const opengv::bearingVectors_t bearings1(rays1.begin(), rays1.end());
-  opengv::relative_pose::CentralRelativeAdapter adapter(bearings0, bearings1);  // keeps references to both
-  // One call stops after a few steps, wherever it is: with a length that is free and numeric derivatives it creeps.
-  constexpr int kCalls = 10;
-  constexpr double kAtRest = 1e-6;
-  Rigid3 cam0_from_cam1 = start.Inverse();
-  cam0_from_cam1.translation.normalize();
-  for (int call = 0; call < kCalls; ++call) {
-    adapter.setR12(cam0_from_cam1.RotationMatrix());
-    adapter.sett12(cam0_from_cam1.translation);
-    const opengv::transformation_t found = opengv::relative_pose::optimize_nonlinear(adapter);
-    if (!found.allFinite() || !(found.col(3).norm() > 0.0))
-      return Status(ErrorCode::kDegenerate, "OpenGV's refinement of the relative pose ended without a motion");
-    const Rigid3 next(Eigen::Matrix3d(found.leftCols<3>()), found.col(3).normalized());
-    const double change = (next.translation - cam0_from_cam1.translation).norm() +
-                          RotationAngle(next.rotation * cam0_from_cam1.rotation.conjugate());
-    cam0_from_cam1 = next;
-    if (change < kAtRest) break;
-  }
-  return Assessed(cam0_from_cam1.Inverse(), rays0, rays1, focal_px, options.loss_scale_px);
+  const auto refined = RefineMotionByOpengv(start, rays0, rays1);
+  if (!refined.ok()) return refined.status();
+  return Assessed(*refined, rays0, rays1, focal_px, options.loss_scale_px);
 }
 
 }  // namespace pliant

@@ -1,14 +1,24 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "estimation/relative_pose_problem.h"
+#include "estimation/opengv_relative_pose.h"
 
+#include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
+#include <cstdlib>
+#include <memory>
 #include <numbers>
+#include <numeric>
+#include <vector>
 
 #include <Eigen/SVD>
+#include <opengv/relative_pose/CentralRelativeAdapter.hpp>
 #include <opengv/relative_pose/methods.hpp>
+#include <opengv/sac/Lmeds.hpp>
+#include <opengv/sac/Ransac.hpp>
+#include <opengv/sac/SampleConsensusProblem.hpp>
 
 #include "pliant/estimation/two_view_models.h"
 #include "pliant/estimation/two_view_refinement.h"
@@ -17,6 +27,7 @@
 namespace pliant {
 namespace {
 
+using Rays = std::span<const Eigen::Vector3d>;
 namespace gv = opengv::relative_pose;
 
 // A complex solution whose imaginary part is larger than this share of the real one is none.
@@ -31,7 +42,48 @@ void AddMotion(const Eigen::Matrix3d& opengv_essential, std::vector<Rigid3>* mot
   if (decomposed.ok()) motions->emplace_back(decomposed->rotations[0], decomposed->translation);
 }
 
-}  // namespace
+// A hypothesis is scored on at most this many correspondences: beyond it the time grows and the choice does not change.
+constexpr std::size_t kMaxScored = 200;
+
+// What OpenGV's robust loops sample and score: motions from a few pairs of rays, scored by the epipolar error
+// (docs/method.md, eq. I1).
+class RelativePoseProblem final : public opengv::sac::SampleConsensusProblem<Rigid3> {
+ public:
+  // Takes the rays as they are: unit vectors, of equal number. A sample's solutions, and the two signs of a
+  // translation, are told apart by the number of pairs that agree with them (AgreesWithMotion).
+  RelativePoseProblem(opengv::bearingVectors_t rays0, opengv::bearingVectors_t rays1, double focal_px,
+                      const RelativePoseOptions& options);
+
+  // The error (|I1|, radians) of a pair that agrees with a motion is at most this.
+  double Threshold() const;
+
+  // Pairs in a sample.
+  static int SampleSize(RelativePoseSolver solver);
+
+  int getSampleSize() const override { return SampleSize(options_.solver); }
+  bool computeModelCoefficients(const std::vector<int>& sample, Rigid3& cam1_from_cam0) const override;
+  void optimizeModelCoefficients(const std::vector<int>& inliers, const Rigid3& start, Rigid3& refined) override;
+  void getSelectedDistancesToModel(const Rigid3& cam1_from_cam0, const std::vector<int>& indices,
+                                   std::vector<double>& errors_rad) const override;
+
+ private:
+  std::vector<Rigid3> MotionsThrough(const std::vector<int>& sample) const;
+  Rigid3 MotionWithRotation(const Eigen::Matrix3d& cam0_from_cam1, const std::vector<int>& sample) const;
+  struct Candidate {
+    Rigid3 cam1_from_cam0;
+    std::vector<int> inliers;
+  };
+  Candidate Judged(const Rigid3& motion_of_any_sign, std::size_t to_beat) const;
+  Rigid3 Refined(const std::vector<int>& inliers, const Rigid3& start) const;
+
+  opengv::bearingVectors_t rays0_;
+  opengv::bearingVectors_t rays1_;
+  opengv::relative_pose::CentralRelativeAdapter adapter_;  // keeps references to both
+  double focal_px_;
+  double max_error_rad_;  // of one view
+  RelativePoseOptions options_;
+  mutable std::size_t most_inliers_ = 0;  // of any motion so far, for kLocal
+};
 
 RelativePoseProblem::RelativePoseProblem(opengv::bearingVectors_t rays0, opengv::bearingVectors_t rays1,
                                          double focal_px, const RelativePoseOptions& options)
@@ -168,6 +220,83 @@ Rigid3 RelativePoseProblem::Refined(const std::vector<int>& inliers, const Rigid
   const auto refined = RefineTwoView(start, rays0, rays1, focal_px_,
                                      {.loss_scale_px = options_.max_error_px, .max_iterations = kLocalIterations});
   return refined.ok() ? refined->cam1_from_cam0 : start;
+}
+
+// The first `count` entries of a random order of 0 .. size - 1 (Fisher and Yates).
+std::vector<std::size_t> RandomOrder(std::size_t size, std::size_t count, Random random) {
+  std::vector<std::size_t> order(size);
+  std::iota(order.begin(), order.end(), 0);
+  for (std::size_t i = 0; i < count; ++i)
+    std::swap(order[i], order[i + static_cast<std::size_t>(random.Index(static_cast<int>(size - i)))]);
+  order.resize(count);
+  return order;
+}
+
+// The C library's generator, which OpenGV's eigensolver asks, at a fixed seed; the host's state comes back at the end.
+class FixedCRandom {
+ public:
+  FixedCRandom() : before_(initstate(1U, state_.data(), state_.size())) {}
+  ~FixedCRandom() { setstate(before_); }
+  FixedCRandom(const FixedCRandom&) = delete;
+  FixedCRandom& operator=(const FixedCRandom&) = delete;
+
+ private:
+  std::array<char, 128> state_{};
+  char* before_;
+};
+
+// The samples after which one is clean with the wanted confidence when half of the pairs are: LMedS does not know more.
+int SamplesForHalf(int sample_size, const RelativePoseOptions& options) {
+  const double needed = std::log(1.0 - options.confidence) / std::log(1.0 - std::pow(0.5, sample_size));
+  return static_cast<int>(std::min<double>(std::ceil(needed), options.max_iterations));
+}
+
+}  // namespace
+
+std::optional<Rigid3> SampleMotion(Rays rays0, Rays rays1, double focal_px, Random random,
+                                   const RelativePoseOptions& options) {
+  opengv::bearingVectors_t scored0;
+  opengv::bearingVectors_t scored1;
+  for (const std::size_t i : RandomOrder(rays0.size(), std::min(rays0.size(), kMaxScored), random)) {
+    scored0.push_back(rays0[i]);
+    scored1.push_back(rays1[i]);
+  }
+  const auto problem = std::make_shared<RelativePoseProblem>(std::move(scored0), std::move(scored1), focal_px, options);
+  const auto run = [&](auto loop) -> std::optional<Rigid3> {
+    loop.sac_model_ = problem;
+    if (!loop.computeModel()) return std::nullopt;
+    return loop.model_coefficients_;
+  };
+  const FixedCRandom fixed;
+  if (options.robust == RobustLoop::kLmeds)
+    return run(opengv::sac::Lmeds<RelativePoseProblem>(SamplesForHalf(problem->getSampleSize(), options),
+                                                       problem->Threshold(), options.confidence));
+  return run(
+      opengv::sac::Ransac<RelativePoseProblem>(options.max_iterations, problem->Threshold(), options.confidence));
+}
+
+Result<Rigid3> RefineMotionByOpengv(const Rigid3& start, Rays rays0, Rays rays1) {
+  const opengv::bearingVectors_t bearings0(rays0.begin(), rays0.end());
+  const opengv::bearingVectors_t bearings1(rays1.begin(), rays1.end());
+  opengv::relative_pose::CentralRelativeAdapter adapter(bearings0, bearings1);  // keeps references to both
+  // One call stops after a few steps, wherever it is: with a length that is free and numeric derivatives it creeps.
+  constexpr int kCalls = 10;
+  constexpr double kAtRest = 1e-6;
+  Rigid3 cam0_from_cam1 = start.Inverse();
+  cam0_from_cam1.translation.normalize();
+  for (int call = 0; call < kCalls; ++call) {
+    adapter.setR12(cam0_from_cam1.RotationMatrix());
+    adapter.sett12(cam0_from_cam1.translation);
+    const opengv::transformation_t found = opengv::relative_pose::optimize_nonlinear(adapter);
+    if (!found.allFinite() || !(found.col(3).norm() > 0.0))
+      return Status(ErrorCode::kDegenerate, "OpenGV's refinement of the relative pose ended without a motion");
+    const Rigid3 next(Eigen::Matrix3d(found.leftCols<3>()), found.col(3).normalized());
+    const double change = (next.translation - cam0_from_cam1.translation).norm() +
+                          RotationAngle(next.rotation * cam0_from_cam1.rotation.conjugate());
+    cam0_from_cam1 = next;
+    if (change < kAtRest) break;
+  }
+  return cam0_from_cam1.Inverse();
 }
 
 }  // namespace pliant
