@@ -178,6 +178,37 @@ TEST(MonocularInitializer, WaitsForParallax) {
   EXPECT_NEAR(outcome.measured.median_parallax_deg, 1.0, 0.3);
 }
 
+// Every combination that is worth having.
+TEST(MonocularInitializer, MakesAMapByAnySolverLoopRefinementAndTriangulation) {
+  const SceneOptions options{
+      .motion = Motion::kSideways, .parallax_deg = kEnoughDeg, .noise_px = 0.3, .outlier_share = 0.2};
+  const auto median_error = [&](const MonocularInitOptions& init, MonocularGates gates) {
+    const InitOutcome outcome = Try(options, init, gates);
+    EXPECT_EQ(outcome.decision, InitDecision::kMap) << outcome.reason;
+    return outcome.decision == InitDecision::kMap ? ErrorOf(outcome, MakeScene(options)).median : 1.0;
+  };
+  for (const auto& [solver, solver_name] : EnumNames<RelativePoseSolver>::kNames) {
+    if (solver > RelativePoseSolver::kOpencvUsac) continue;  // of a rigid scene that is not flat
+    for (const auto& [robust, robust_name] : EnumNames<RobustLoop>::kNames) {
+      MonocularInitOptions init{.solver = solver, .robust = robust};
+      EXPECT_LT(median_error(init, MonocularGates::kGated), 0.015) << solver_name << " " << robust_name;
+      init.refinement = RigidRefinement::kOpengv;
+      EXPECT_LT(median_error(init, MonocularGates::kGated), 0.04) << solver_name << " " << robust_name;
+      EXPECT_LT(median_error(init, MonocularGates::kPaper), 0.25) << solver_name << " " << robust_name;
+    }
+  }
+  for (const auto& [triangulation, name] : EnumNames<TriangulationMethod>::kNames)
+    EXPECT_LT(median_error({.triangulation = triangulation}, MonocularGates::kGated), 0.015) << name;
+}
+
+TEST(MonocularInitializer, RefusesAMapFromARotationAlone) {
+  const InitOutcome outcome =
+      Try({.motion = Motion::kSideways, .parallax_deg = kEnoughDeg},
+          {.solver = RelativePoseSolver::kRotationOnly, .max_error_px = 50.0, .max_rotation_share = 1.0});
+  EXPECT_EQ(outcome.decision, InitDecision::kWait);
+  EXPECT_NE(outcome.reason.find("says nothing of depth"), std::string::npos) << outcome.reason;
+}
+
 TEST(MonocularInitializer, RefusesRotationAndStandstill) {
   for (const Motion motion : {Motion::kRotation, Motion::kStill}) {
     for (const double noise_px : {0.0, 0.3}) {
