@@ -8,6 +8,7 @@
 #include <cassert>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <memory>
 #include <numbers>
 #include <numeric>
@@ -50,7 +51,8 @@ constexpr std::size_t kMaxScored = 200;
 class RelativePoseProblem final : public opengv::sac::SampleConsensusProblem<Rigid3> {
  public:
   // Takes the rays as they are: unit vectors, of equal number. A sample's solutions, and the two signs of a
-  // translation, are told apart by the number of pairs that agree with them (AgreesWithMotion).
+  // translation, are told apart by the errors of the pairs that agree with them (AgreesWithMotion): where the views
+  // are near to each other, nearly all pairs agree with everything.
   RelativePoseProblem(opengv::bearingVectors_t rays0, opengv::bearingVectors_t rays1, double focal_px,
                       const RelativePoseOptions& options);
 
@@ -72,8 +74,9 @@ class RelativePoseProblem final : public opengv::sac::SampleConsensusProblem<Rig
   struct Candidate {
     Rigid3 cam1_from_cam0;
     std::vector<int> inliers;
+    double cost = std::numeric_limits<double>::infinity();  // squared errors, each at most the threshold's
   };
-  Candidate Judged(const Rigid3& motion_of_any_sign, std::size_t to_beat) const;
+  Candidate Judged(const Rigid3& motion_of_any_sign) const;
   Rigid3 Refined(const std::vector<int>& inliers, const Rigid3& start) const;
 
   opengv::bearingVectors_t rays0_;
@@ -118,13 +121,13 @@ bool RelativePoseProblem::computeModelCoefficients(const std::vector<int>& sampl
   Candidate best;
   for (const Rigid3& motion : MotionsThrough(sample)) {
     if (!motion.rotation.coeffs().allFinite() || !motion.translation.allFinite()) continue;
-    Candidate candidate = Judged(motion, best.inliers.size());
-    if (candidate.inliers.size() > best.inliers.size()) best = std::move(candidate);
+    Candidate candidate = Judged(motion);
+    if (candidate.cost < best.cost) best = std::move(candidate);
   }
   if (options_.robust == RobustLoop::kLocal && best.inliers.size() > most_inliers_) {
     for (int round = 0; round < kLocalRounds; ++round) {
-      Candidate refined = Judged(Refined(best.inliers, best.cam1_from_cam0), 0);
-      if (refined.inliers.size() < best.inliers.size()) break;
+      Candidate refined = Judged(Refined(best.inliers, best.cam1_from_cam0));
+      if (!(refined.cost < best.cost)) break;
       best = std::move(refined);
     }
     most_inliers_ = best.inliers.size();
@@ -192,20 +195,24 @@ Rigid3 RelativePoseProblem::MotionWithRotation(const Eigen::Matrix3d& cam0_from_
   return {rotation, svd.matrixV().col(2)};
 }
 
-// The pairs near the epipolar planes are those of both signs: where they are too few, no sign is asked for.
-RelativePoseProblem::Candidate RelativePoseProblem::Judged(const Rigid3& motion_of_any_sign,
-                                                           std::size_t to_beat) const {
-  std::vector<std::size_t> near;
+RelativePoseProblem::Candidate RelativePoseProblem::Judged(const Rigid3& motion_of_any_sign) const {
+  const double largest = std::pow(Threshold(), 2);
+  std::vector<std::pair<int, double>> near;  // to the epipolar planes, which are those of both signs
   for (std::size_t i = 0; i < rays0_.size(); ++i)
-    if (std::abs(SampsonErrorRad(motion_of_any_sign, rays0_[i], rays1_[i])) <= Threshold()) near.push_back(i);
+    if (const double squared = std::pow(SampsonErrorRad(motion_of_any_sign, rays0_[i], rays1_[i]), 2);
+        squared <= largest)
+      near.emplace_back(static_cast<int>(i), squared);
   Candidate best;
-  if (near.size() <= to_beat) return best;
   for (const double sign : {1.0, -1.0}) {
-    Candidate candidate{{motion_of_any_sign.rotation, sign * motion_of_any_sign.translation}, {}};
-    for (const std::size_t i : near)
-      if (AgreesWithMotion(candidate.cam1_from_cam0, rays0_[i], rays1_[i], max_error_rad_))
-        candidate.inliers.push_back(static_cast<int>(i));
-    if (candidate.inliers.size() > best.inliers.size()) best = std::move(candidate);
+    Candidate candidate{{motion_of_any_sign.rotation, sign * motion_of_any_sign.translation}, {}, 0.0};
+    candidate.cost = largest * static_cast<double>(rays0_.size());
+    for (const auto& [i, squared] : near) {
+      const auto k = static_cast<std::size_t>(i);
+      if (!AgreesWithMotion(candidate.cam1_from_cam0, rays0_[k], rays1_[k], max_error_rad_)) continue;
+      candidate.inliers.push_back(i);
+      candidate.cost += squared - largest;
+    }
+    if (candidate.cost < best.cost) best = std::move(candidate);
   }
   return best;
 }
