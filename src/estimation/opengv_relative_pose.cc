@@ -147,7 +147,7 @@ void RelativePoseProblem::getSelectedDistancesToModel(const Rigid3& cam1_from_ca
   for (const int i : indices) {
     const auto k = static_cast<std::size_t>(i);
     const double error = std::abs(SampsonErrorRad(cam1_from_cam0, rays0_[k], rays1_[k]));
-    const bool behind = error <= Threshold() && !AgreesWithMotion(cam1_from_cam0, rays0_[k], rays1_[k], max_error_rad_);
+    const bool behind = error <= Threshold() && !MeetInFront(cam1_from_cam0, rays0_[k], rays1_[k], max_error_rad_);
     errors_rad.push_back(behind ? std::numbers::pi : error);
   }
 }
@@ -208,7 +208,7 @@ RelativePoseProblem::Candidate RelativePoseProblem::Judged(const Rigid3& motion_
     candidate.cost = largest * static_cast<double>(rays0_.size());
     for (const auto& [i, squared] : near) {
       const auto k = static_cast<std::size_t>(i);
-      if (!AgreesWithMotion(candidate.cam1_from_cam0, rays0_[k], rays1_[k], max_error_rad_)) continue;
+      if (!MeetInFront(candidate.cam1_from_cam0, rays0_[k], rays1_[k], max_error_rad_)) continue;
       candidate.inliers.push_back(i);
       candidate.cost += squared - largest;
     }

@@ -142,6 +142,13 @@ Result<Rigid3> FindMotion(Rays rays0, Rays rays1, double focal_px, double max_er
 
 }  // namespace
 
+bool MeetInFront(const Rigid3& cam1_from_cam0, const Eigen::Vector3d& ray0, const Eigen::Vector3d& ray1,
+                 double max_error_rad) {
+  // Rays that noise alone may have made parallel or divergent are not evidence against the motion.
+  return ParallaxAngle(cam1_from_cam0.rotation, ray0, ray1) <= std::sqrt(2.0) * max_error_rad ||
+         TriangulateIdwm(cam1_from_cam0, ray0, ray1).ok();
+}
+
 bool AgreesWithMotion(const Rigid3& cam1_from_cam0, const Eigen::Vector3d& ray0, const Eigen::Vector3d& ray1,
                       double max_error_rad) {
   // Without a translation a pair's rays have to be one and the same: the error is shared by both.
@@ -149,9 +156,7 @@ bool AgreesWithMotion(const Rigid3& cam1_from_cam0, const Eigen::Vector3d& ray0,
     return AngleBetween(cam1_from_cam0.rotation * ray0, ray1) <= 2.0 * max_error_rad;
   // Sampson's error joins both views, the threshold is per view.
   if (!(std::abs(SampsonErrorRad(cam1_from_cam0, ray0, ray1)) <= std::sqrt(2.0) * max_error_rad)) return false;
-  // Rays that noise alone may have made parallel or divergent are not evidence against the motion.
-  return ParallaxAngle(cam1_from_cam0.rotation, ray0, ray1) <= std::sqrt(2.0) * max_error_rad ||
-         TriangulateIdwm(cam1_from_cam0, ray0, ray1).ok();
+  return MeetInFront(cam1_from_cam0, ray0, ray1, max_error_rad);
 }
 
 Result<RelativePose> EstimateRelativePose(Rays rays0, Rays rays1, double focal_px, Random random,

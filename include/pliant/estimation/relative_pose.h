@@ -25,7 +25,7 @@
 namespace pliant {
 
 enum class RelativePoseSolver {
-  // Essential matrices through OpenGV, each sample's best solution by its inliers.
+  // Essential matrices through OpenGV, each sample's best solution by its errors.
   kNister,       // five points, PAMI 2004
   kStewenius,    // five points by a Groebner basis, ISPRS 2006
   kKneip,        // five points for the rotation, ECCV 2012; the translation is that of the sample's epipolar planes
@@ -79,6 +79,10 @@ struct RelativePose {
   std::vector<char> inliers;  // one a correspondence, 0 or 1
   int num_inliers = 0;
 };
+
+// Whether a correspondence's rays meet in front of both cameras, or are too nearly parallel to say.
+bool MeetInFront(const Rigid3& cam1_from_cam0, const Eigen::Vector3d& ray0, const Eigen::Vector3d& ray1,
+                 double max_error_rad);
 
 // Whether a correspondence agrees with a motion: its epipolar error is at most max_error_rad a view, and its rays meet
 // in front of both cameras, or are too nearly parallel to say.
