@@ -19,6 +19,10 @@ Status WriteRunSummary(const std::string& path, const RunSummary& summary) {
   for (const auto& [reason, count] : summary.losses) losses[reason] = count;
   Json mean_ms = Json::object();
   for (const auto& [stage, ms] : summary.mean_ms) mean_ms[stage] = ms;
+  Json first_map;
+  if (summary.first_map)
+    first_map = {{"reference_frame", summary.first_map->reference_frame_idx},
+                 {"declared_frame", summary.first_map->declared_frame_idx}};
   const Json json = {
       {"program", kRunProgram},
       {"version", summary.description.program_version},
@@ -28,6 +32,7 @@ Status WriteRunSummary(const std::string& path, const RunSummary& summary) {
       {"oracles", summary.description.oracles},
       {"status", EnumName(summary.status)},
       {"note", summary.note},
+      {"first_map", first_map},
       {"counts",
        {{"frames_read", summary.frames_read},
         {"frames_tracked", summary.frames_tracked},
@@ -67,6 +72,9 @@ Result<RunSummary> ReadRunSummary(const std::string& path) {
     }
     if (!known) return Status(ErrorCode::kUnreadable, Quoted(path) + " has an unknown status " + Quoted(status));
     summary.note = json.at("note").get<std::string>();
+    // Runs of before this was written are read all the same.
+    if (const Json first_map = json.value("first_map", Json()); !first_map.is_null())
+      summary.first_map = {first_map.at("reference_frame").get<int>(), first_map.at("declared_frame").get<int>()};
     const Json& counts = json.at("counts");
     summary.frames_read = counts.at("frames_read").get<std::int64_t>();
     summary.frames_tracked = counts.at("frames_tracked").get<std::int64_t>();

@@ -181,6 +181,7 @@ void RunWriter::State::Count(const FrameReport& report) {
   last_frame_idx = report.frame_idx;
   ++summary.frames_read;
   if (report.cam_from_world) ++summary.frames_tracked;
+  if (report.first_map) summary.first_map = report.first_map;
   summary.observations += static_cast<std::int64_t>(report.observations.size());
   summary.points = static_cast<std::int64_t>(points.size());
   for (const auto& [reason, count] : report.losses) {

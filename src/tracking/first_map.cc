@@ -34,6 +34,7 @@ void ReportFirstMap(const Camera& camera, const std::vector<InitFrame>& frames, 
   assert(outcome.frames.size() == frames.size() && reports.size() == frames.size());
   for (std::size_t k = 0; k < frames.size(); ++k) {
     ReportFrame(camera, frames[k], outcome.frames[k], &reports[k]);
+    reports[k].first_map = FirstMapFrames{frames.front().frame_idx, frames.back().frame_idx};
     reports[k].note = "the pose came with the first map, which was made in frame " + reports.back().name;
   }
   // A point is new in the first frame that shows it.

@@ -25,7 +25,10 @@ constexpr int kPoints = 6;
 
 Camera TestCamera() { return Camera::Create("PINHOLE", 640, 480, std::vector<double>{500, 500, 319.5, 239.5}).value(); }
 
-// Frame 0 waits; from frame 1 on, odd points are seen in odd frames only.
+constexpr FirstMapFrames kFirstMap = {12, 14};
+
+// Frame 0 waits; frames 1 and 2 have their poses from the first map; from frame 1 on, odd points are seen in odd frames
+// only.
 FrameReport Report(int frame) {
   FrameReport report;
   report.frame_idx = 10 + 2 * frame;
@@ -36,6 +39,7 @@ FrameReport Report(int frame) {
   if (frame == 0) return report;
   report.state = TrackingState::kTracking;
   report.cam_from_world = Rigid3(RotationExp({0, 0.01 * frame, 0}), Eigen::Vector3d(0.1 * frame, 0, 0.5));
+  if (frame <= 2) report.first_map = kFirstMap;
   report.tracked = kPoints;
   for (int i = 0; i < kPoints; ++i) {
     const Eigen::Vector3d x(i - 2, 0.5 * i, 50 + 0.25 * frame);
@@ -74,6 +78,9 @@ TEST(RunFolder, ComesBackAsItWasReported) {
   EXPECT_EQ(run->summary->frames_read, 5);
   EXPECT_EQ(run->summary->frames_tracked, 4);
   EXPECT_EQ(run->summary->points, kPoints);
+  ASSERT_TRUE(run->summary->first_map);
+  EXPECT_EQ(run->summary->first_map->reference_frame_idx, kFirstMap.reference_frame_idx);
+  EXPECT_EQ(run->summary->first_map->declared_frame_idx, kFirstMap.declared_frame_idx);
   EXPECT_EQ(run->summary->losses,
             (std::vector<std::pair<std::string, std::int64_t>>{{"similarity", 10}, {"border", 5}}));
   EXPECT_NEAR(run->summary->mean_ms[1].second, 2.25, 1e-12);
@@ -116,6 +123,7 @@ TEST(RunFolder, SaysInterruptedUntilItIsFinishedAndKeepsItsRows) {
   const auto run = ReadRun(folder.Path("run"));
   ASSERT_TRUE(run.ok()) << run.status().message();
   EXPECT_EQ(run->summary->status, RunStatus::kInterrupted);
+  EXPECT_FALSE(run->summary->first_map);
   EXPECT_EQ(run->frames.size(), 4u);
   EXPECT_EQ(run->poses.size(), 3u);
 }

@@ -83,7 +83,9 @@ TEST(FirstMap, GivesEveryFrameItsOwnPositions) {
     const FrameReport& report = reports[t];
     EXPECT_EQ(report.state, TrackingState::kTracking);
     EXPECT_THAT(report.note, testing::HasSubstr("made in frame last.png"));
-    ASSERT_TRUE(report.cam_from_world);
+    ASSERT_TRUE(report.cam_from_world && report.first_map);
+    EXPECT_EQ(report.first_map->reference_frame_idx, start.frames.front().frame_idx);
+    EXPECT_EQ(report.first_map->declared_frame_idx, start.frames.back().frame_idx);
     EXPECT_EQ(report.optimized, t == 1 ? 3 : 2);
     ASSERT_EQ(static_cast<int>(report.observations.size()), report.optimized);
     EXPECT_LT(report.median_reprojection_error_px, kRounding);

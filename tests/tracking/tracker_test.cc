@@ -109,6 +109,9 @@ TEST_F(TrackerFromImages, TheFirstMapGivesEveryFrameSinceTheReferenceItsPoseAndP
     const FrameReport& report = done[static_cast<std::size_t>(k)];
     EXPECT_EQ(report.frame_idx, k);
     ExpectFromTheMap(report, map, *camera_);
+    ASSERT_TRUE(report.first_map);
+    EXPECT_EQ(report.first_map->reference_frame_idx, 0);
+    EXPECT_EQ(report.first_map->declared_frame_idx, shown);
     EXPECT_THAT(report.note, HasSubstr(k < shown ? "made in frame " + NameOf(shown) : "first map of"));
     EXPECT_EQ(report.new_points.empty(), k > 0);
   }
@@ -123,6 +126,7 @@ TEST_F(TrackerFromImages, TheFirstMapGivesEveryFrameSinceTheReferenceItsPoseAndP
   const auto next = Show(shown + 1, shown + 1, &tracker);
   ASSERT_EQ(next.size(), 1U);
   ExpectFromTheMap(next.front(), map, *camera_);
+  EXPECT_FALSE(next.front().first_map);
   EXPECT_GT(next.front().optimized, 0.9 * done.back().optimized);
   EXPECT_TRUE(tracker.Finish().empty());
 }

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -13,6 +14,7 @@
 
 #include "pliant/base/options.h"
 #include "pliant/base/status.h"
+#include "pliant/tracking/frame_report.h"
 
 namespace pliant {
 
@@ -44,7 +46,8 @@ struct RunDescription {
 struct RunSummary {
   RunDescription description;
   RunStatus status = RunStatus::kInterrupted;
-  std::string note;  // why the run ended, one sentence
+  std::string note;                         // why the run ended, one sentence
+  std::optional<FirstMapFrames> first_map;  // nothing: there is none, or the run was killed
 
   std::int64_t frames_read = 0;
   std::int64_t frames_tracked = 0;

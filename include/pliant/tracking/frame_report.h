@@ -54,6 +54,12 @@ struct NewPoint {
   std::array<std::uint8_t, 3> rgb = {128, 128, 128};
 };
 
+// From which frame to which a first map was made; these and all between have their poses and points from it.
+struct FirstMapFrames {
+  int reference_frame_idx = 0;  // whose camera is the world
+  int declared_frame_idx = 0;   // in which the map was made; tracking goes on from here
+};
+
 struct FrameReport {
   int frame_idx = 0;  // the sequence's own number
   std::string name;   // image name
@@ -64,6 +70,7 @@ struct FrameReport {
   std::optional<Rigid3> cam_from_world;        // exactly in state tracking
   std::vector<PointObservation> observations;  // in state tracking; sorted by id
   std::vector<NewPoint> new_points;            // sorted by id
+  std::optional<FirstMapFrames> first_map;     // where pose and points came with the first map
 
   int tracked = 0;    // points followed into this frame; before the first map those found in it too
   int optimized = 0;  // points in the joint problem's solution, or in the first map
