@@ -17,9 +17,11 @@ const Manual kManual = {
     "compare runs with the truth of their sequences",
     "Prints how far the points of a run lie from the true surface (the RMSE of the paper, plain and untrimmed, and the "
     "median), how far from the material points that they started on (simulated sequences: it tells drift apart from "
-    "shape), how far the camera path lies from the true one (ATE and RPE), and how long the tracks live. Beside every "
-    "error of points stands its null: the same pixels at one constant depth, through the same evaluation. A figure "
-    "that is not below its null says that nothing was reconstructed.\n\n"
+    "shape), how far the camera path lies from the true one (ATE and RPE), how good the first map was (relative error "
+    "of "
+    "its depths after one scale, in the frame that made it), and how long the tracks live. Beside every error of "
+    "points stands its null: the same pixels at one constant depth, through the same evaluation. A figure that is not "
+    "below its null says that nothing was reconstructed.\n\n"
     "--protocol compares the points in further ways of the literature: depth_trimmed (depth only, robust scale, the "
     "worst 5 % left out) and lmeds (least-median-of-squares scale, inliers). The plain figure is printed in any "
     "case.\n\n"
@@ -91,7 +93,7 @@ int EvaluateCommand(std::span<const std::string> args) {
   line.AddAlias("scale", "PointError.scale", "per_frame|global|none",
                 "what a run is multiplied with: the best scale of each frame (the paper's protocol after a monocular "
                 "start), one for all frames, or nothing (runs in true millimetres)");
-  line.AddAlias("parts", "Evaluation.parts", "surface|material|camera|all",
+  line.AddAlias("parts", "Evaluation.parts", "surface|material|camera|first_map|all",
                 "what to compute: one, several with commas, or all; an error where there is no truth for it. Without "
                 "it, all that there is truth for");
   line.Add("output_path", &request.output_path, "DIR", "folder for the JSON and CSV files", Need::kOptional);

@@ -61,6 +61,12 @@ Cells CellsOf(const Evaluation& e) {
     cells.emplace_back("rpe_translation_rmse_mm", FormatDouble(e.trajectory->rpe_translation_rmse_mm));
     cells.emplace_back("rpe_rotation_rmse_deg", FormatDouble(e.trajectory->rpe_rotation_rmse_deg));
   }
+  if (e.first_map) {
+    cells.emplace_back("first_map_frames_waited", std::to_string(e.first_map->frames_waited));
+    cells.emplace_back("first_map_median_relative_depth", FormatDouble(e.first_map->declared.estimate.median));
+    cells.emplace_back("first_map_null_median_relative_depth", FormatDouble(e.first_map->declared.null.median));
+    cells.emplace_back("first_map_rmse_relative_depth", FormatDouble(e.first_map->declared.estimate.rmse));
+  }
   return cells;
 }
 
@@ -111,7 +117,7 @@ Rows ProtocolRows(std::span<const Evaluation> evaluations, ErrorProtocol protoco
 
 std::string ComparisonTable(std::span<const Evaluation> evaluations) {
   Rows rows = {{"run", "frames", "points", "alive at 50, 100 %", "surface RMSE mm (null)", "material RMSE mm (null)",
-                "drift px", "drift mm", "ATE mm"}};
+                "drift px", "drift mm", "ATE mm", "first map % (null)"}};
   bool has_protocol[EnumNames<ErrorProtocol>::kNames.size()] = {};
   for (const Evaluation& e : evaluations) {
     const TrackSurvival& s = e.survival;
@@ -121,7 +127,10 @@ std::string ComparisonTable(std::span<const Evaluation> evaluations) {
          PointCell(e.surface ? &e.surface->plain : nullptr), PointCell(e.material ? &e.material->error.plain : nullptr),
          e.material ? FormatText("%.2f", e.material->drift.median_px) : "-",
          e.material && e.material->drift.points_mm > 0 ? FormatText("%.3f", e.material->drift.median_mm) : "-",
-         e.trajectory ? FormatText("%.3f", e.trajectory->ate_rmse_mm) : "-"});
+         e.trajectory ? FormatText("%.3f", e.trajectory->ate_rmse_mm) : "-",
+         e.first_map ? FormatText("%.2f (%.2f)", 100 * e.first_map->declared.estimate.median,
+                                  100 * e.first_map->declared.null.median)
+                     : "-"});
     if (!e.surface && !e.material) continue;
     for (const ProtocolError& protocol : e.surface ? e.surface->protocols : e.material->error.protocols)
       has_protocol[static_cast<std::size_t>(protocol.protocol)] = true;

@@ -16,6 +16,8 @@ struct CollectedTruth {
   std::vector<PairedFrame> surface;
   std::optional<MaterialErrorCollector> material;
   std::vector<PosePair> poses;
+  FirstMapTruth reference;  // of the first map
+  FirstMapTruth declared;
 };
 
 PairedFrame PairFrame(int frame_idx, const std::vector<TrackedPoint>& points, const Camera& camera,
@@ -29,25 +31,36 @@ PairedFrame PairFrame(int frame_idx, const std::vector<TrackedPoint>& points, co
   return PairWithSurface(frame_idx, points_in_cam, pixels, camera, depth_mm, max_depth_step);
 }
 
+// The frame is one of the two that the first map's error looks at, if that is wanted.
+bool IsOfFirstMap(const EvaluationFrame& frame, const EvaluationOptions& options) {
+  return options.Wants(EvaluationPart::kFirstMap) && frame.first_map &&
+         (frame.frame_idx == frame.first_map->reference_frame_idx ||
+          frame.frame_idx == frame.first_map->declared_frame_idx);
+}
+
 Status CollectFrame(const EvaluationFrame& frame, const Sequence& sequence, const EvaluationOptions& options,
                     CollectedTruth* truth) {
   std::vector<TrackedPoint> points;
   for (const PointObservation& observation : frame.observations)
     points.push_back({observation.id, observation.pixel, *frame.cam_from_world * observation.position});
+  const bool of_first_map = IsOfFirstMap(frame, options);
   cv::Mat depth_mm;
-  if (options.Wants(EvaluationPart::kSurface) || truth->material) {
+  if (options.Wants(EvaluationPart::kSurface) || truth->material || of_first_map) {
     const Result<std::optional<cv::Mat>> depth = sequence.Depth(frame.frame_idx);
     if (!depth.ok()) return depth.status();
     depth_mm = depth->value_or(cv::Mat());
   }
-  if (options.Wants(EvaluationPart::kSurface) && !depth_mm.empty())
-    truth->surface.push_back(
-        PairFrame(frame.frame_idx, points, sequence.camera(), depth_mm, options.points.max_depth_step));
+  FirstMapTruth known;
+  if ((options.Wants(EvaluationPart::kSurface) || of_first_map) && !depth_mm.empty())
+    known.surface = PairFrame(frame.frame_idx, points, sequence.camera(), depth_mm, options.points.max_depth_step);
+  if (const std::optional<Rigid3> world_from_cam = sequence.WorldFromCamera(frame.frame_idx))
+    known.poses = {frame.frame_idx, frame.cam_from_world->Inverse(), *world_from_cam};
   if (truth->material)
     if (Status status = truth->material->AddFrame(frame.frame_idx, points, depth_mm); !status.ok()) return status;
-  const std::optional<Rigid3> world_from_cam = sequence.WorldFromCamera(frame.frame_idx);
-  if (options.Wants(EvaluationPart::kCamera) && world_from_cam)
-    truth->poses.push_back({frame.frame_idx, frame.cam_from_world->Inverse(), *world_from_cam});
+  if (of_first_map && frame.frame_idx == frame.first_map->reference_frame_idx) truth->reference = known;
+  if (of_first_map && frame.frame_idx == frame.first_map->declared_frame_idx) truth->declared = known;
+  if (options.Wants(EvaluationPart::kCamera) && known.poses) truth->poses.push_back(*known.poses);
+  if (options.Wants(EvaluationPart::kSurface) && known.surface) truth->surface.push_back(*std::move(known.surface));
   return Status::Ok();
 }
 
@@ -77,8 +90,8 @@ Status Take(EvaluationPart name, Result<Part> result, const EvaluationOptions& o
   return Status::Ok();
 }
 
-Status ComputeParts(const CollectedTruth& truth, const Status& material_status, const EvaluationOptions& options,
-                    Evaluation* evaluation) {
+Status ComputeParts(const EvaluationInput& run, const CollectedTruth& truth, const Status& material_status,
+                    const EvaluationOptions& options, Evaluation* evaluation) {
   const auto missing = [](const char* what) { return Status(ErrorCode::kNotFound, what); };
   if (options.Wants(EvaluationPart::kSurface)) {
     Result<PointError> surface = truth.surface.empty()
@@ -101,9 +114,14 @@ Status ComputeParts(const CollectedTruth& truth, const Status& material_status, 
     Result<TrajectoryError> trajectory =
         truth.poses.empty() ? Result<TrajectoryError>(missing("the sequence has no pose for the tracked frames"))
                             : ComputeTrajectoryError(truth.poses, options.trajectory);
-    return Take(EvaluationPart::kCamera, std::move(trajectory), options, &evaluation->trajectory, &evaluation->notes);
+    if (Status status =
+            Take(EvaluationPart::kCamera, std::move(trajectory), options, &evaluation->trajectory, &evaluation->notes);
+        !status.ok())
+      return status;
   }
-  return Status::Ok();
+  if (!options.Wants(EvaluationPart::kFirstMap)) return Status::Ok();
+  return Take(EvaluationPart::kFirstMap, ComputeFirstMapError(run.frames, truth.reference, truth.declared), options,
+              &evaluation->first_map, &evaluation->notes);
 }
 
 Status CheckProtocols(const Evaluation& evaluation, const EvaluationOptions& options) {
@@ -155,7 +173,7 @@ Result<Evaluation> Evaluate(const EvaluationInput& run, const Sequence& sequence
     return Status(ErrorCode::kNotFound, "the sequence of the run " + run.name +
                                             " has no truth for the tracked frames: no depth/, no groundtruth.txt, no "
                                             "simulation.yaml; evaluate on a sequence that has one of them");
-  if (Status status = ComputeParts(truth, material.status(), options, &evaluation); !status.ok()) return status;
+  if (Status status = ComputeParts(run, truth, material.status(), options, &evaluation); !status.ok()) return status;
   if (Status status = CheckProtocols(evaluation, options); !status.ok()) return status;
   return evaluation;
 }

@@ -120,6 +120,39 @@ Json ToJson(const TrajectoryError& e) {
           {"frames", frames}};
 }
 
+Json ToJson(const RelativeDepthFigures& f) {
+  return {{"scale", f.scale},
+          {"median_relative_depth", f.median},
+          {"rmse_relative_depth", f.rmse},
+          {"p90_relative_depth", f.p90}};
+}
+
+Json ToJson(const FirstMapDepth& d) {
+  return {{"frame", d.frame_idx},
+          {"points", d.points},
+          {"estimate", ToJson(d.estimate)},
+          {"null", ToJson(d.null)},
+          {"left_out", ToJson(d.left_out)}};
+}
+
+Json ToJson(const FirstMapMotion& m) {
+  return {{"rotation_error_deg", m.rotation_error_deg},
+          {"true_rotation_deg", m.true_rotation_deg},
+          {"direction_error_deg", m.direction_error_deg ? Json(*m.direction_error_deg) : Json()},
+          {"true_translation_mm", m.true_translation_mm}};
+}
+
+Json ToJson(const FirstMapError& e) {
+  return {{"reference_frame", e.frames.reference_frame_idx},
+          {"declared_frame", e.frames.declared_frame_idx},
+          {"frames_waited", e.frames_waited},
+          {"frames_before", e.frames_before},
+          {"declared", ToJson(e.declared)},
+          {"reference", e.reference ? ToJson(*e.reference) : Json()},
+          {"motion", e.motion ? ToJson(*e.motion) : Json()},
+          {"initialiser_ms", {{"total", e.initialise_total_ms}, {"largest", e.initialise_largest_ms}}}};
+}
+
 Json ToJson(const TrackSurvival& s) {
   Json frames = Json::array();
   for (const TrackSurvival::Frame& frame : s.frames)
@@ -148,6 +181,7 @@ Json ToJson(const Evaluation& evaluation) {
           {"surface", evaluation.surface ? ToJson(*evaluation.surface) : Json()},
           {"material", evaluation.material ? ToJson(*evaluation.material) : Json()},
           {"trajectory", evaluation.trajectory ? ToJson(*evaluation.trajectory) : Json()},
+          {"first_map", evaluation.first_map ? ToJson(*evaluation.first_map) : Json()},
           {"survival", ToJson(evaluation.survival)},
           {"notes", evaluation.notes}};
 }

@@ -65,6 +65,31 @@ std::string TrajectoryTable(const TrajectoryError& e) {
   return text;
 }
 
+std::string DepthRows(const char* where, const FirstMapDepth& d) {
+  const std::string head = FormatText("  %s frame %d, %d points", where, d.frame_idx, d.points);
+  return FormatText("%-40s %10s %10s\n", head.c_str(), "estimate", "null") +
+         Row("relative depth, median, %", 100 * d.estimate.median, 100 * d.null.median) +
+         Row("relative depth, RMSE, %", 100 * d.estimate.rmse, 100 * d.null.rmse) +
+         Row("relative depth, 90 % below, %", 100 * d.estimate.p90, 100 * d.null.p90);
+}
+
+std::string FirstMapTable(const FirstMapError& e) {
+  std::string text = FormatText(
+      "first map (waited %d frames since its reference, %d since the first; initialiser %.0f ms, %.0f at once)\n",
+      e.frames_waited, e.frames_before, e.initialise_total_ms, e.initialise_largest_ms);
+  text += DepthRows("made in", e.declared);
+  if (e.reference && e.frames_waited > 0) text += DepthRows("reference", *e.reference);
+  if (e.motion) {
+    text += FormatText("  camera between the two: rotation error %.3f of %.3f deg", e.motion->rotation_error_deg,
+                       e.motion->true_rotation_deg);
+    if (e.motion->direction_error_deg)
+      text += FormatText(", direction %.2f deg over %.2f mm", *e.motion->direction_error_deg,
+                         e.motion->true_translation_mm);
+    text += "\n";
+  }
+  return text;
+}
+
 std::string SurvivalTable(const TrackSurvival& s) {
   std::string text = "tracks\n";
   text += FormatText("  frames tracked %d of %d\n", s.frames_tracked, s.frames_read);
@@ -84,6 +109,7 @@ std::string EvaluationTable(const Evaluation& evaluation) {
   if (evaluation.surface) text += PointTable("surface error", *evaluation.surface);
   if (evaluation.material) text += MaterialTable(*evaluation.material);
   if (evaluation.trajectory) text += TrajectoryTable(*evaluation.trajectory);
+  if (evaluation.first_map) text += FirstMapTable(*evaluation.first_map);
   text += SurvivalTable(evaluation.survival);
   for (const std::string& note : evaluation.notes) text += "note: " + note + "\n";
   return text;

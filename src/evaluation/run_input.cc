@@ -17,6 +17,8 @@ namespace {
 
 // Our runs write the sequence's times; only the digits written may differ.
 constexpr double kTimeToleranceS = 1e-3;
+// The tracker's name for what its initialiser takes.
+constexpr std::string_view kInitialiseStage = "initialise";
 
 using FrameMap = std::map<int, EvaluationFrame>;  // by frame number
 
@@ -25,6 +27,15 @@ EvaluationFrame& FrameAt(int frame_idx, double timestamp_s, FrameMap* frames) {
   frame.frame_idx = frame_idx;
   frame.timestamp_s = timestamp_s;
   return frame;
+}
+
+void TakeRow(const Run& run, const RunFrame& row, EvaluationFrame* frame) {
+  for (std::size_t i = 0; i < run.stage_names.size(); ++i)
+    if (run.stage_names[i] == kInitialiseStage) frame->initialise_ms = row.stage_ms[i];
+  if (!run.summary || !run.summary->first_map) return;
+  const FirstMapFrames& first_map = *run.summary->first_map;
+  if (first_map.reference_frame_idx <= row.frame_idx && row.frame_idx <= first_map.declared_frame_idx)
+    frame->first_map = first_map;
 }
 
 std::string Seconds(double value) { return FormatDouble(std::round(1e6 * value) / 1e6) + " s"; }
@@ -139,7 +150,11 @@ void MatchingOptions::List(OptionTable& table) {
 }
 
 EvaluationFrame FrameFromReport(const FrameReport& report) {
-  return {report.frame_idx, report.timestamp_s, report.cam_from_world, report.observations};
+  EvaluationFrame frame{report.frame_idx, report.timestamp_s, report.cam_from_world, report.observations,
+                        report.first_map};
+  for (const auto& [stage, ms] : report.stage_ms)
+    if (stage == kInitialiseStage) frame.initialise_ms = ms;
+  return frame;
 }
 
 Result<EvaluationInput> ReadEvaluationInput(const std::string& run_path, const Sequence& sequence,
@@ -153,7 +168,7 @@ Result<EvaluationInput> ReadEvaluationInput(const std::string& run_path, const S
   input.camera = *std::move(camera);
 
   FrameMap frames;
-  for (const RunFrame& row : run->frames) FrameAt(row.frame_idx, row.timestamp_s, &frames);
+  for (const RunFrame& row : run->frames) TakeRow(*run, row, &FrameAt(row.frame_idx, row.timestamp_s, &frames));
   const bool foreign = run->frames.empty() && !run->summary;
   if (foreign) {
     if (Status status = GivePosesFrames(run_path, run->poses, sequence, options.max_time_difference_s, &input, &frames);

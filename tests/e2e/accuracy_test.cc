@@ -12,8 +12,10 @@
 namespace pliant {
 namespace {
 
-constexpr double kMaxMedianFromTruth_mm = 0.3;  // with a true first map: what tracking and the joint problem add
-constexpr double kMaxRmseMonocular_mm = 2.0;    // plain, untrimmed, scale per frame
+constexpr double kMaxMedianFromTruth_mm = 0.3;       // with a true first map: what tracking and the joint problem add
+constexpr double kMaxRmseMonocular_mm = 2.0;         // plain, untrimmed, scale per frame
+constexpr double kMaxRelativeDepthOfTruth = 1e-3;    // depth images have steps of 0.005 mm; interpolation adds the rest
+constexpr double kMaxRelativeDepthMonocular = 0.03;  // median, in the frame that made the map
 
 std::string Text(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
@@ -27,6 +29,10 @@ TEST(RigidScene, WithATrueFirstMapTheMedianErrorStaysSmall) {
   EXPECT_EQ(summary.frames_tracked, 60);
   const Evaluation evaluation = EvaluateRun(folder.Path("run"), kSequence, ErrorScale::kNone);
   EXPECT_LT(evaluation.surface->plain.estimate.pooled_median_mm, kMaxMedianFromTruth_mm);
+  ASSERT_TRUE(evaluation.first_map);
+  EXPECT_EQ(evaluation.first_map->frames_waited, 0);
+  EXPECT_EQ(evaluation.first_map->declared.frame_idx, 0);
+  EXPECT_LT(evaluation.first_map->declared.estimate.p90, kMaxRelativeDepthOfTruth);
 }
 
 TEST(RigidScene, FromAMonocularStartThePlainErrorStaysBelowTwoMillimetres) {
@@ -36,6 +42,15 @@ TEST(RigidScene, FromAMonocularStartThePlainErrorStaysBelowTwoMillimetres) {
   EXPECT_EQ(summary.frames_tracked, 60);  // those that waited for parallax got their poses with the map
   const Evaluation evaluation = EvaluateRun(folder.Path("run"), kSequence, ErrorScale::kPerFrame);
   EXPECT_LT(evaluation.surface->plain.estimate.mean_rmse_mm, kMaxRmseMonocular_mm);
+  ASSERT_TRUE(evaluation.first_map && evaluation.first_map->reference);
+  const FirstMapError& first_map = *evaluation.first_map;
+  EXPECT_EQ(first_map.reference->frame_idx, 0);
+  EXPECT_EQ(first_map.declared.frame_idx, first_map.frames_waited);
+  EXPECT_GE(first_map.frames_waited, TrackerOptions().init.window.first_frame);
+  EXPECT_LT(first_map.declared.estimate.median, kMaxRelativeDepthMonocular);
+  EXPECT_LT(first_map.declared.estimate.median, 0.5 * first_map.declared.null.median);
+  EXPECT_GT(first_map.initialise_largest_ms, 0);
+  EXPECT_GE(first_map.initialise_total_ms, first_map.initialise_largest_ms);
 }
 
 TEST(RigidScene, OneAndTwoThreadsAndTheSameSeedTwiceGiveIdenticalFiles) {

@@ -57,6 +57,7 @@ TEST(Evaluate, TellsWhatIsMissingAndGoesOnWithTheRest) {
   ASSERT_TRUE(poses.ok());
   EXPECT_TRUE(!poses->surface && poses->trajectory);
   EXPECT_THAT(EvaluationTable(*poses), HasSubstr("no surface error"));
+  EXPECT_THAT(poses->notes.back(), HasSubstr("no depth for frame 4, in which it was made"));
   const auto none = Evaluate(MakeRun(8, 1, 1), TruthSequence(8, TruthSequence::Truth::kNone), kNoMaterial, {});
   EXPECT_EQ(none.status().code(), ErrorCode::kNotFound);
 }
@@ -156,6 +157,13 @@ TEST(EvaluationReport, TableJsonAndCsvSayTheSame) {
   EXPECT_EQ(json["material"]["drift"]["median_px"], evaluation->material->drift.median_px);
   EXPECT_EQ(json["trajectory"]["ate_rmse_mm"], evaluation->trajectory->ate_rmse_mm);
   EXPECT_EQ(json["survival"]["alive_share_50"], 1);
+  const FirstMapError& first_map = *evaluation->first_map;
+  EXPECT_EQ(json["first_map"]["declared_frame"], kFirstMap.declared_frame_idx);
+  EXPECT_EQ(json["first_map"]["declared"]["estimate"]["median_relative_depth"], first_map.declared.estimate.median);
+  EXPECT_EQ(json["first_map"]["declared"]["null"]["p90_relative_depth"], first_map.declared.null.p90);
+  EXPECT_EQ(json["first_map"]["reference"]["estimate"]["rmse_relative_depth"], first_map.reference->estimate.rmse);
+  EXPECT_EQ(json["first_map"]["motion"]["direction_error_deg"], *first_map.motion->direction_error_deg);
+  EXPECT_EQ(json["first_map"]["initialiser_ms"]["total"], 15);
   EXPECT_EQ(json["surface"]["frames"].size(), 7U);
   EXPECT_EQ(json["survival"]["frames"][0]["tracked"], false);
 
@@ -205,9 +213,10 @@ TEST(ComparisonReport, HasARowARunAndEmptyCellsWhereARunHasNoFigure) {
   EXPECT_THAT(header, StartsWith("run,sequence,frames_read,frames_tracked,"));
   EXPECT_THAT(header, HasSubstr(",surface_mean_rmse_mm,surface_null_mean_rmse_mm,"));
   EXPECT_THAT(header, HasSubstr(",surface_depth_trimmed_mean_rmse_mm,"));
+  EXPECT_THAT(header, HasSubstr(",rpe_rotation_rmse_deg,first_map_frames_waited,first_map_median_relative_depth,"));
   EXPECT_THAT(first, HasSubstr(FormatDouble(evaluations[0].trajectory->ate_rmse_mm)));
   EXPECT_THAT(second, StartsWith("\"a, b\",,8,7,"));
-  EXPECT_THAT(second, testing::EndsWith(",,,"));
+  EXPECT_THAT(second, HasSubstr(",,,,3,"));  // no camera error, then the first map's three frames of waiting
   EXPECT_EQ(std::count(first.begin(), first.end(), ','), std::count(header.begin(), header.end(), ','));
 
   const std::string table = ComparisonTable(evaluations);
@@ -227,11 +236,13 @@ TEST(Evaluate, TakesFrameReportsAsTheyAre) {
     report.timestamp_s = frame.timestamp_s;
     report.cam_from_world = frame.cam_from_world;
     report.observations = frame.observations;
+    report.first_map = frame.first_map;
+    report.stage_ms = {{"initialise", frame.initialise_ms}};
     frame = FrameFromReport(report);
   }
   const auto evaluation = Evaluate(run, TruthSequence(8), kNoMaterial, {});
   ASSERT_TRUE(expected.ok() && evaluation.ok());
-  EXPECT_EQ(EvaluationCsv(*evaluation), EvaluationCsv(*expected));
+  EXPECT_EQ(EvaluationJson(*evaluation), EvaluationJson(*expected));
 }
 
 TEST(EvaluationReport, JsonTakesARunWhoseNameIsNotUtf8) {

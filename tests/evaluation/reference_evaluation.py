@@ -2,16 +2,18 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The figures of `pliant evaluate` once more, in NumPy alone and from its documentation; printed as JSON.
 
-Usage: reference_evaluation.py RUN DEPTH_FOLDER GROUNDTRUTH fx fy cx cy [A omega wavelength fps]
+Usage: reference_evaluation.py RUN DEPTH_FOLDER GROUNDTRUTH fx fy cx cy [A omega wavelength fps | REFERENCE DECLARED]
 Depth: float32 files NNNNNN.npy, mm. With the deformation's four numbers the material error too: its truth is the depth
-of a track's first frame, moved by the formula V_y + A sin(omega t + k (V_x + V_y + V_z)).
+of a track's first frame, moved by the formula V_y + A sin(omega t + k (V_x + V_y + V_z)). With the two frames of a first
+map its error too.
 """
 import json
 import sys
 import numpy as np
 
 run, depth, truth, fx, fy, cx, cy = sys.argv[1:4] + [float(a) for a in sys.argv[4:8]]
-motion = [float(a) for a in sys.argv[8:]]
+motion = [float(a) for a in sys.argv[8:]] if len(sys.argv) == 12 else []
+first_map = [int(a) for a in sys.argv[8:]] if len(sys.argv) == 10 else []
 poses, true_poses = np.loadtxt(f"{run}/trajectory.txt"), np.loadtxt(truth)
 rows = np.loadtxt(f"{run}/observations.csv", delimiter=",", skiprows=1)
 
@@ -85,6 +87,21 @@ def figures(frames):
     return result
 
 
+def first_map_depth(estimate, null, truth):
+    result = {}
+    for name, points in (("estimate", estimate), ("null", null)):
+        ratios = points[:, 2] / truth[:, 2]
+        errors = np.abs(ratios / np.median(ratios) - 1)
+        result[name] = {"scale": 1 / np.median(ratios), "median_relative_depth": np.median(errors),
+                        "rmse_relative_depth": np.sqrt((errors ** 2).mean()),
+                        "p90_relative_depth": np.quantile(errors, 0.9)}
+    return result
+
+
+def angle_deg(a, b):
+    return np.degrees(np.arccos(np.clip(a @ b / np.linalg.norm(a) / np.linalg.norm(b), -1, 1)))
+
+
 on_surface, on_material, drift_mm, drift_px, rest_of = [], [], [], [], {}
 for pose, true_pose, frame in zip(poses, true_poses, np.unique(rows[:, 0])):
     points = rows[rows[:, 0] == frame]
@@ -131,4 +148,13 @@ if motion:
     result["material"] = figures(on_material)
     result["drift"] = {"median_mm": np.median(drift_mm), "rmse_mm": np.sqrt(np.mean(np.square(drift_mm))),
                        "median_px": np.median(drift_px), "p95_px": np.quantile(drift_px, 0.95)}
+if first_map:
+    numbers = list(np.unique(rows[:, 0]).astype(int))
+    reference, declared = [numbers.index(frame) for frame in first_map]
+    result["first_map"] = {name: first_map_depth(on_surface[i][0], on_surface[i][2], on_surface[i][1])
+                           for name, i in (("reference", reference), ("declared", declared))}
+    P, Q = (np.linalg.inv(poses_of[reference]) @ poses_of[declared] for poses_of in (P, Q))
+    result["first_map"]["motion"] = {
+        "rotation_error_deg": np.degrees(np.arccos(np.clip((np.trace(Q[:3, :3].T @ P[:3, :3]) - 1) / 2, -1, 1))),
+        "direction_error_deg": angle_deg(P[:3, 3], Q[:3, 3]), "true_translation_mm": np.linalg.norm(Q[:3, 3])}
 json.dump(result, sys.stdout, indent=1)

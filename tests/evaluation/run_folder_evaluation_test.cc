@@ -80,8 +80,8 @@ class RunFolderEvaluation : public testing::Test {
   }
 
   // The script's figures of the run on disk, or nothing where there is no NumPy. Writes depth and poses for it from
-  // frame `first` on. `motion`: its last arguments.
-  std::optional<nlohmann::json> Reference(const Sequence& sequence, int first, const std::string& motion) const {
+  // frame `first` on. `more`: its last arguments.
+  std::optional<nlohmann::json> Reference(const Sequence& sequence, int first, const std::string& more) const {
     std::string python;
     for (const char* candidate : {"python3", "/usr/bin/python3"})
       if (std::system((std::string(candidate) + " -c 'import numpy' >/dev/null 2>&1").c_str()) == 0) python = candidate;
@@ -97,7 +97,7 @@ class RunFolderEvaluation : public testing::Test {
     const std::string out = (root_ / "out.json").string();
     const std::string command = python + " '" PLIANT_TEST_SOURCE_DIR "/reference_evaluation.py' '" + Run() + "' '" +
                                 (root_ / "depth").string() + "' '" + (root_ / "groundtruth.txt").string() + "'" +
-                                camera + " " + motion + " > '" + out + "'";
+                                camera + " " + more + " > '" + out + "'";
     EXPECT_EQ(std::system(command.c_str()), 0);
     std::ifstream file(out);
     return nlohmann::json::parse(file);
@@ -191,14 +191,18 @@ TEST_F(RunFolderEvaluation, AgreesWithAnIndependentNumPyScript) {
       if (outlier.id.value % 10 == 0) outlier.position += Eigen::Vector3d(10, -3, 20);
   WriteRun(run);
   const TruthSequence sequence(kFrames);
-  const auto script = Reference(sequence, 1, "");
+  const std::string first_map_frames =
+      std::to_string(kFirstMap.reference_frame_idx) + " " + std::to_string(kFirstMap.declared_frame_idx);
+  const auto script = Reference(sequence, 1, first_map_frames);
   if (!script) GTEST_SKIP() << "needs python3 with numpy (python3-numpy)";
 
   EvaluationOptions options;
   options.points.max_depth_step = 10;  // the script refuses nothing
   options.points.protocols = {ErrorProtocol::kPaper, ErrorProtocol::kDepthTrimmed, ErrorProtocol::kLmeds};
-  const auto read = ReadEvaluationInput(Run(), sequence, options.matching);
+  auto read = ReadEvaluationInput(Run(), sequence, options.matching);
   ASSERT_TRUE(read.ok()) << read.status().message();
+  read->frames.front().first_map = kFirstMap;  // what another program's result does not say
+  read->frames[kFirstMap.declared_frame_idx - kFirstMap.reference_frame_idx].first_map = kFirstMap;
   const auto evaluation = Evaluate(*read, sequence, kNoMaterial, options);
   ASSERT_TRUE(evaluation.ok()) << evaluation.status().message();
   const auto ours = nlohmann::json::parse(EvaluationJson(*evaluation));
@@ -206,6 +210,15 @@ TEST_F(RunFolderEvaluation, AgreesWithAnIndependentNumPyScript) {
   ExpectSame(ours["surface"], (*script)["surface"], kAgreement);
   for (const char* name : {"ate_rmse_mm", "rpe_translation_rmse_mm", "rpe_rotation_rmse_deg"})
     EXPECT_NEAR(ours["trajectory"][name].get<double>(), (*script)[name].get<double>(), kAgreement) << name;
+  const nlohmann::json& first_map = (*script)["first_map"];
+  for (const char* frame : {"declared", "reference"})
+    for (const char* side : {"estimate", "null"})
+      for (const auto& [name, value] : first_map[frame][side].items())
+        EXPECT_NEAR(ours["first_map"][frame][side][name].get<double>(), value.get<double>(), kAgreement)
+            << frame << " " << side << " " << name;
+  for (const auto& [name, value] : first_map["motion"].items())
+    EXPECT_NEAR(ours["first_map"]["motion"][name].get<double>(), value.get<double>(), kAgreement) << name;
+  EXPECT_GT(first_map["declared"]["estimate"]["median_relative_depth"], 0.01);
   EXPECT_GT((*script)["surface"]["paper_estimate"]["mean_rmse_mm"], 1.0);
   EXPECT_GT((*script)["surface"]["lmeds_estimate"]["left_out_share"], 0.0);
   EXPECT_GT((*script)["ate_rmse_mm"], 0.5);

@@ -103,8 +103,12 @@ class WallMaterial final : public MaterialTruth {
   std::vector<std::pair<int, Eigen::Vector2d>> starts_;
 };
 
+// The first map of MakeRun's runs, which are longer than this.
+inline constexpr FirstMapFrames kFirstMap = {1, 4};
+
 // A run on TruthSequence: frame 0 is not tracked, the others are. Map units are mm / scale; noise in mm. Every point is
-// at another pixel of the wall in every frame, as if it slid.
+// at another pixel of the wall in every frame, as if it slid. The initialiser takes one millisecond a frame more than
+// in the frame before, from one in frame 0 on.
 inline EvaluationInput MakeRun(int count, double scale, double noise_mm) {
   const TruthSequence truth(count);
   const Random seed(17);
@@ -114,7 +118,9 @@ inline EvaluationInput MakeRun(int count, double scale, double noise_mm) {
     EvaluationFrame& frame = run.frames.emplace_back();
     frame.frame_idx = idx;
     frame.timestamp_s = idx / kFps;
+    frame.initialise_ms = idx <= kFirstMap.declared_frame_idx ? idx + 1 : 0;
     if (idx == 0) continue;
+    if (idx <= kFirstMap.declared_frame_idx) frame.first_map = kFirstMap;
     Random random = seed.Child(std::to_string(idx));
     const auto noise = [&random, noise_mm] {
       return Eigen::Vector3d(random.Normal(noise_mm), random.Normal(noise_mm), random.Normal(noise_mm));

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// A run against the truth of its sequence: surface error, material error, camera error, survival of the tracks, as
-// values. report.h prints them.
+// A run against the truth of its sequence: surface error, material error, camera error, error of the first map,
+// survival of the tracks, as values. report.h prints them.
 #pragma once
 
 #include <array>
@@ -15,6 +15,7 @@
 #include "pliant/base/options.h"
 #include "pliant/base/status.h"
 #include "pliant/datasets/sequence.h"
+#include "pliant/evaluation/first_map_error.h"
 #include "pliant/evaluation/material_error.h"
 #include "pliant/evaluation/point_error.h"
 #include "pliant/evaluation/run_input.h"
@@ -23,13 +24,14 @@
 
 namespace pliant {
 
-enum class EvaluationPart { kSurface, kMaterial, kCamera };
+enum class EvaluationPart { kSurface, kMaterial, kCamera, kFirstMap };
 
 template <>
 struct EnumNames<EvaluationPart> {
   static constexpr std::array kNames = {std::pair{EvaluationPart::kSurface, std::string_view("surface")},
                                         std::pair{EvaluationPart::kMaterial, std::string_view("material")},
-                                        std::pair{EvaluationPart::kCamera, std::string_view("camera")}};
+                                        std::pair{EvaluationPart::kCamera, std::string_view("camera")},
+                                        std::pair{EvaluationPart::kFirstMap, std::string_view("first_map")}};
 };
 
 struct EvaluationOptions {
@@ -50,6 +52,7 @@ struct Evaluation {
   std::optional<PointError> surface;          // where the sequence has depth
   std::optional<MaterialError> material;      // where it knows its material
   std::optional<TrajectoryError> trajectory;  // where it has poses
+  std::optional<FirstMapError> first_map;     // where it has depth and the run says which frames it is from
   TrackSurvival survival;
   std::vector<std::string> notes;  // why a part is missing, what was left out; one sentence each
 };

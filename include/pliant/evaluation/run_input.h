@@ -28,6 +28,8 @@ struct EvaluationFrame {
   double timestamp_s = 0;
   std::optional<Rigid3> cam_from_world;        // nothing: not tracked
   std::vector<PointObservation> observations;  // sorted by id
+  std::optional<FirstMapFrames> first_map;     // where pose and points came with the first map, and the run says so
+  double initialise_ms = 0;                    // wall time that the initialiser took; 0 where the run does not say
 };
 
 struct EvaluationInput {
