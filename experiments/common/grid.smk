@@ -76,10 +76,11 @@ rule evaluate:
     params:
         sequence=lambda wildcards, input: os.path.dirname(input.done),
         run="runs/{variant}/{scene}",
+        options=config.get("evaluate_options", ""),
     shell:
         "if grep -q '\"frames_tracked\": 0' {input.run}; then echo '{{}}' >{output}; else"
         " {input.program} evaluate --run {params.run} --sequence {params.sequence}"
-        " --output_path {params.run}/evaluation --quiet; fi"
+        " --output_path {params.run}/evaluation --quiet {params.options}; fi"
 
 
 rule figures:
