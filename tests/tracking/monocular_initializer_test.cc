@@ -4,7 +4,6 @@
 #include "pliant/tracking/monocular_initializer.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -12,44 +11,28 @@
 #include <gtest/gtest.h>
 
 #include "pliant/base/statistics.h"
+#include "support/synthetic_frames.h"
 #include "support/synthetic_scene.h"
 
 namespace pliant {
 namespace {
 
+using test::FramesOf;
 using test::MakeScene;
 using test::Motion;
 using test::Scene;
+using test::SceneCamera;
 using test::SceneOptions;
 using test::Surface;
 
+// A sequence need not begin where the reference is taken.
+constexpr int kFirstIdx = 10;
 // Of all points; those that move most leave the image in forward motion, and the median of the rest is about 4.
 constexpr double kEnoughDeg = 6.0;
 
-Camera SceneCamera(const SceneOptions& options) {
-  const std::array params = {options.focal_px, 0.5 * (options.width - 1), 0.5 * (options.height - 1)};
-  return Camera::Create(CameraModelId::kSimplePinhole, options.width, options.height, params).value();
-}
-
-// What a tracker would hand over: a point that leaves the image is lost from then on.
-std::vector<InitFrame> FramesOf(const Scene& scene, const SceneOptions& options) {
-  const Camera camera = SceneCamera(options);
-  std::vector<char> alive(scene.points.size(), 1);
-  std::vector<InitFrame> frames;
-  for (std::size_t k = 0; k < scene.pixels.size(); ++k) {
-    InitFrame& frame = frames.emplace_back();
-    frame.frame_idx = 10 + static_cast<int>(k);
-    for (std::size_t i = 0; i < scene.points.size(); ++i) {
-      if (!camera.Contains(scene.pixels[k][i])) alive[i] = 0;
-      if (alive[i] != 0) frame.observations.push_back({PointId{static_cast<std::int64_t>(i)}, scene.pixels[k][i]});
-    }
-  }
-  return frames;
-}
-
 InitOutcome Try(const SceneOptions& options, const MonocularInitOptions& init = {},
                 MonocularGates gates = MonocularGates::kGated) {
-  const auto frames = FramesOf(MakeScene(options), options);
+  const auto frames = FramesOf(MakeScene(options), options, kFirstIdx);
   return MakeMonocularInitializer(init, gates, Random(1))->Try({SceneCamera(options), frames, {}});
 }
 
@@ -86,7 +69,7 @@ TEST(MonocularInitializer, RecoversTheSceneExactlyWithoutNoise) {
     }
     ASSERT_EQ(outcome.frames.size(), scene.cams_from_world.size());
     for (std::size_t k = 0; k < outcome.frames.size(); ++k) {
-      EXPECT_EQ(outcome.frames[k].frame_idx, 10 + static_cast<int>(k));
+      EXPECT_EQ(outcome.frames[k].frame_idx, kFirstIdx + static_cast<int>(k));
       EXPECT_LT((outcome.frames[k].cam_from_world.translation - scale * scene.cams_from_world[k].translation).norm(),
                 1e-3);
     }
@@ -97,7 +80,7 @@ TEST(MonocularInitializer, PlacesItsPointsInEveryFrameInWhichTheyWereSeen) {
   constexpr double kExactPx = 1e-3;  // as above: 1e-5 of the distance, 450 px focal length, 6 degrees of parallax
   const SceneOptions options{.parallax_deg = kEnoughDeg};
   const Camera camera = SceneCamera(options);
-  auto frames = FramesOf(MakeScene(options), options);
+  auto frames = FramesOf(MakeScene(options), options, kFirstIdx);
   // One point is seen in the reference and the current frame, but not in the second.
   const PointId hidden = frames.back().observations[7].id;
   std::erase_if(frames[1].observations, [&](const InitObservation& seen) { return seen.id == hidden; });
@@ -154,7 +137,7 @@ TEST(MonocularInitializer, AccountsForEveryPointOfTheReference) {
   std::set<PointId> ids;
   for (const InitPoint& point : outcome.points) ids.insert(point.id);
   for (const InitRejectedPoint& point : outcome.rejected) EXPECT_TRUE(ids.insert(point.id).second);
-  EXPECT_EQ(ids.size(), FramesOf(MakeScene(options), options).front().observations.size());
+  EXPECT_EQ(ids.size(), FramesOf(MakeScene(options), options, kFirstIdx).front().observations.size());
   const auto by_id = [](const auto& a, const auto& b) { return a.id < b.id; };
   EXPECT_TRUE(std::is_sorted(outcome.points.begin(), outcome.points.end(), by_id));
   EXPECT_TRUE(std::is_sorted(outcome.rejected.begin(), outcome.rejected.end(), by_id));
@@ -266,7 +249,7 @@ TEST(MonocularInitializer, GivesUpAReferenceThatDoesNotServe) {
   EXPECT_NE(spent.reason.find("given up after 8 frames"), std::string::npos) << spent.reason;
 
   const SceneOptions options;
-  auto frames = FramesOf(MakeScene(options), options);
+  auto frames = FramesOf(MakeScene(options), options, kFirstIdx);
   frames.back().observations.resize(100);
   const InitOutcome few =
       MakeMonocularInitializer({}, MonocularGates::kGated, Random(1))->Try({SceneCamera(options), frames, {}});
@@ -279,7 +262,7 @@ TEST(MonocularInitializer, GivesUpAReferenceThatDoesNotServe) {
 
 TEST(MonocularInitializer, SurvivesNotANumberAndEqualPixels) {
   const SceneOptions options{.num_points = 100};
-  auto frames = FramesOf(MakeScene(options), options);
+  auto frames = FramesOf(MakeScene(options), options, kFirstIdx);
   frames.back().observations[5].pixel.x() = std::numeric_limits<double>::quiet_NaN();
   const auto initializer = MakeMonocularInitializer({}, MonocularGates::kGated, Random(1));
   const InitOutcome outcome = initializer->Try({SceneCamera(options), frames, {}});
