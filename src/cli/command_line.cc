@@ -46,6 +46,15 @@ std::string ArgumentError(const CLI::ParseError& error) {
   return name + (text.find("missing") != std::string::npos ? " needs a value" : " is given more than once; leave one");
 }
 
+std::string NameOf(std::string_view program, std::string_view command) {
+  return std::string(program) + (command.empty() ? "" : " ") + std::string(command);
+}
+
+// How it is called: "pliant track".
+std::string NameOf(const Manual& manual) { return NameOf(manual.program, manual.command); }
+
+void Say(std::string_view name, std::string_view sentence) { std::cerr << name << ": " << sentence << std::endl; }
+
 // Paragraphs, separated by empty lines as they come.
 std::string WrapParagraphs(std::string_view text, std::size_t indent) {
   std::string wrapped;
@@ -59,9 +68,7 @@ std::string WrapParagraphs(std::string_view text, std::size_t indent) {
 
 }  // namespace
 
-void SayError(std::string_view command, std::string_view sentence) {
-  std::cerr << "pliant" << (command.empty() ? "" : " ") << command << ": " << sentence << std::endl;
-}
+void SayError(std::string_view command, std::string_view sentence) { Say(NameOf("pliant", command), sentence); }
 
 CommandLine::CommandLine(Manual manual) : manual_(std::move(manual)) {}
 
@@ -160,8 +167,7 @@ Status CommandLine::ApplyFlags(OptionTable& options) const {
     const std::string& token = extras_[i];
     if (!token.starts_with("--") || token.size() == 2) {
       return {ErrorCode::kInvalidArgument, "does not know what to do with " + Quote(token) +
-                                               "; arguments are --name value, see pliant " +
-                                               std::string(manual_.command) + " --help"};
+                                               "; arguments are --name value, see " + NameOf(manual_) + " --help"};
     }
     const std::size_t equals = token.find('=');
     const std::string name = token.substr(2, equals == std::string::npos ? equals : equals - 2);
@@ -199,19 +205,24 @@ std::optional<int> CommandLine::Resolve(OptionTable& options) {
   }
   for (const Argument& argument : arguments_) {
     if (argument.need == Need::kRequired && argument.given.empty())
-      return UsageError("--" + argument.name + " " + argument.placeholder + " is missing; see pliant " +
-                        std::string(manual_.command) + " --help");
+      return UsageError("--" + argument.name + " " + argument.placeholder + " is missing; see " + NameOf(manual_) +
+                        " --help");
   }
   return std::nullopt;
 }
 
 int CommandLine::UsageError(std::string_view sentence) const {
-  SayError(manual_.command, sentence);
+  Say(NameOf(manual_), sentence);
   return kExitUsage;
 }
 
+int CommandLine::Failure(std::string_view sentence) const {
+  Say(NameOf(manual_), sentence);
+  return kExitFailed;
+}
+
 std::string CommandLine::ManualText(const OptionTable& options) const {
-  const std::string program = "pliant " + std::string(manual_.command);
+  const std::string program = NameOf(manual_);
   std::string usage = program;
   std::string arguments;
   for (const Argument& argument : arguments_) {

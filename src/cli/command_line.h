@@ -29,10 +29,11 @@ inline constexpr int kExitFailed = 1;  // the command was understood, but could 
 inline constexpr int kExitUsage = 2;   // the command line or an option file is wrong
 
 struct Manual {
-  std::string_view command;  // "track"
+  std::string_view command;  // "track"; empty for a program that does one thing
   std::string_view summary;  // one line, no full stop
   std::string_view text;     // what it does, what it reads, what it leaves; paragraphs separated by an empty line
   std::vector<std::string_view> examples;
+  std::string_view program = "pliant";
 };
 
 enum class Need { kRequired, kOptional };
@@ -79,6 +80,9 @@ class CommandLine {
 
   // For errors in the values of arguments that the command itself finds: says it and gives kExitUsage.
   int UsageError(std::string_view sentence) const;
+
+  // For what could not be carried out: says it and gives kExitFailed.
+  int Failure(std::string_view sentence) const;
 
   // The manual of `--help`.
   std::string ManualText(const OptionTable& options) const;

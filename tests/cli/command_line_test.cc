@@ -198,5 +198,15 @@ TEST(CommandLine, HelpIsAManualOfEveryArgumentAndOption) {
   for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 100) << line;
 }
 
+TEST(CommandLine, AProgramThatDoesOneThingSpeaksUnderItsOwnName) {
+  CommandLine line({.command = "", .summary = "peel", .text = "Peels.", .examples = {}, .program = "peeler"});
+  const OptionTable none;
+  EXPECT_THAT(line.ManualText(none), testing::StartsWith("peeler - peel\n\nUSAGE\n  peeler [ARGUMENTS]"));
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(line.UsageError("no fruit"), kExitUsage);
+  EXPECT_EQ(line.Failure("no knife"), kExitFailed);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "peeler: no fruit\npeeler: no knife\n");
+}
+
 }  // namespace
 }  // namespace pliant::cli
