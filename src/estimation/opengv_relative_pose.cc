@@ -59,9 +59,6 @@ class RelativePoseProblem final : public opengv::sac::SampleConsensusProblem<Rig
   // The error (|I1|, radians) of a pair that agrees with a motion is at most this.
   double Threshold() const;
 
-  // Pairs in a sample.
-  static int SampleSize(RelativePoseSolver solver);
-
   int getSampleSize() const override { return SampleSize(options_.solver); }
   bool computeModelCoefficients(const std::vector<int>& sample, Rigid3& cam1_from_cam0) const override;
   void optimizeModelCoefficients(const std::vector<int>& inliers, const Rigid3& start, Rigid3& refined) override;
@@ -101,18 +98,6 @@ RelativePoseProblem::RelativePoseProblem(opengv::bearingVectors_t rays0, opengv:
   if (options_.solver != RelativePoseSolver::kEigensolver) return;
   const auto rotation = FitRotation(rays0_, rays1_, focal_px_, options_.max_error_px);  // where it starts from
   if (rotation.ok()) adapter_.setR12(rotation->cam1_from_cam0.toRotationMatrix().transpose());
-}
-
-int RelativePoseProblem::SampleSize(RelativePoseSolver solver) {
-  switch (solver) {
-    case RelativePoseSolver::kSevenPoint:
-      return 7;
-    case RelativePoseSolver::kEightPoint:
-    case RelativePoseSolver::kEigensolver:
-      return 8;
-    default:
-      return 5;
-  }
 }
 
 double RelativePoseProblem::Threshold() const { return std::sqrt(2.0) * max_error_rad_; }
@@ -259,6 +244,22 @@ int SamplesForHalf(int sample_size, const RelativePoseOptions& options) {
 }
 
 }  // namespace
+
+int SampleSize(RelativePoseSolver solver) {
+  switch (solver) {
+    case RelativePoseSolver::kHomography:
+      return 4;
+    case RelativePoseSolver::kSevenPoint:
+      return 7;
+    case RelativePoseSolver::kEightPoint:
+    case RelativePoseSolver::kEigensolver:
+      return 8;
+    case RelativePoseSolver::kRotationOnly:
+      return 0;
+    default:
+      return 5;
+  }
+}
 
 std::optional<Rigid3> SampleMotion(Rays rays0, Rays rays1, double focal_px, Random random,
                                    const RelativePoseOptions& options) {

@@ -17,6 +17,9 @@
 
 namespace pliant {
 
+// Pairs in a sample, of any solver; 0 for one that takes all pairs at once.
+int SampleSize(RelativePoseSolver solver);
+
 // The best motion by options.robust over samples of options.solver, one of those through OpenGV; none where no sample
 // has a motion.
 std::optional<Rigid3> SampleMotion(std::span<const Eigen::Vector3d> rays0, std::span<const Eigen::Vector3d> rays1,

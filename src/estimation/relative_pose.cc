@@ -140,6 +140,14 @@ Result<Rigid3> FindMotion(Rays rays0, Rays rays1, double focal_px, double max_er
   }
 }
 
+// Whether samples can have found what a share of the pairs agrees on: one of them was clean with some probability. A
+// few pairs agree with any motion, and the best of many motions has more of them.
+bool CanBeFound(double inlier_share, const RelativePoseOptions& options) {
+  constexpr double kLeastProbability = 0.01;
+  const double clean = std::pow(inlier_share, SampleSize(options.solver));
+  return 1.0 - std::pow(1.0 - clean, options.max_iterations) >= kLeastProbability;
+}
+
 }  // namespace
 
 bool MeetInFront(const Rigid3& cam1_from_cam0, const Eigen::Vector3d& ray0, const Eigen::Vector3d& ray1,
@@ -176,6 +184,11 @@ Result<RelativePose> EstimateRelativePose(Rays rays0, Rays rays1, double focal_p
   if (pose.num_inliers < kRelativePoseMinPoints)
     return Status(ErrorCode::kInsufficient, "only " + std::to_string(pose.num_inliers) + " of " +
                                                 std::to_string(rays0.size()) + " correspondences share one motion");
+  if (!CanBeFound(static_cast<double>(pose.num_inliers) / static_cast<double>(rays0.size()), options))
+    return Status(ErrorCode::kInsufficient,
+                  "only " + std::to_string(pose.num_inliers) + " of " + std::to_string(rays0.size()) +
+                      " correspondences share one motion: so few agree by chance, and a motion that they alone "
+                      "determine is hardly ever sampled");
   return pose;
 }
 

@@ -176,6 +176,18 @@ TEST(RelativePose, RotationOnlyFindsARotationAndNoTranslation) {
   EXPECT_GT(pose->num_inliers, 340);
 }
 
+// 300 samples of five pairs hold a clean one in 300 runs of a hundred thousand. A few pairs agree with every motion,
+// and the best of many motions is no answer.
+TEST_P(EveryRelativePose, RefusesWhatItsSamplesCannotFind) {
+  if (GetParam().solver == RelativePoseSolver::kRotationOnly) return;  // takes no samples
+  for (const Surface surface : {Surface::kTube, Surface::kBlob})
+    for (std::uint64_t seed = 1; seed <= 2; ++seed) {
+      const Pair pair = MakePair({.surface = surface, .noise_px = 0.3, .outlier_share = 0.9, .seed = seed});
+      const auto pose = Estimate(pair, GetParam());
+      EXPECT_FALSE(pose.ok()) << pose->num_inliers << " inliers";
+    }
+}
+
 TEST_P(EveryRelativePose, RefusesBadInputQuietly) {
   Pair pair = MakePair({.num_points = 20});
   const auto code = [&] { return Estimate(pair, GetParam()).status().code(); };
