@@ -116,11 +116,12 @@ class Crosses:
         columns = self.values(cross)[options["columns"]]
         header = [*options["rows"], *(f"{options['columns']} {value}" for value in columns), "refused", "rotation deg",
                   "direction deg", "depth", "depth RMSE", "one distance", "ms"]
+        share = SHARES[options.get("shares", "success")]
         lines = []
         for key, trials in grouped(rows, options["rows"]).items():
             by_column = grouped(trials, [options["columns"]])
             all_of_them = figures(trials)
-            lines.append([*key, *(percent(success_share(by_column.get((value,), []))) for value in columns),
+            lines.append([*key, *(percent(share(by_column.get((value,), []))) for value in columns),
                           percent(all_of_them["refused"]), number(all_of_them["rotation_deg"]),
                           number(all_of_them["direction_deg"]), percent(all_of_them["median_depth_error"], 1),
                           percent(all_of_them["depth_rmse"], 1), percent(all_of_them["null_depth_error"], 1),
@@ -148,6 +149,14 @@ def success_share(trials):
     return sum(map(is_success, trials)) / len(trials) if trials else math.nan
 
 
+def refused_share(trials):
+    return sum(row["status"] != "made" for row in trials) / len(trials) if trials else math.nan
+
+
+# What a table gives for each value of a factor.
+SHARES = {"success": success_share, "refused": refused_share}
+
+
 def median_of(trials, column):
     """Over the trials that have the figure; not a number where none has."""
     values = [float(row[column]) for row in trials if row[column] != ""]
@@ -157,7 +166,7 @@ def median_of(trials, column):
 def figures(trials):
     """Shares of all trials; medians over those with a map, of the time over all."""
     made = [row for row in trials if row["status"] == "made"]
-    return {"trials": len(trials), "success": success_share(trials), "refused": 1 - len(made) / len(trials),
+    return {"trials": len(trials), "success": success_share(trials), "refused": refused_share(trials),
             **{column: median_of(made, column) for column in FIGURES[3:-1]}, "ms": median_of(trials, "ms")}
 
 

@@ -7,7 +7,9 @@ import math
 import matplotlib
 
 matplotlib.use("Agg")
+matplotlib.rcParams["svg.hashsalt"] = "two_views"
 import matplotlib.pyplot as plt
+import matplotlib.ticker
 
 import two_views
 
@@ -59,8 +61,9 @@ def draw(crosses, name, csv_path, image_paths):
             if column == 0:
                 axis.set_ylabel(LABELS[y], fontsize=8)
             axis.tick_params(labelsize=7)
-    figure.legend(*axes[0][0].get_legend_handles_labels(), loc="outside upper center", ncols=len(lines), fontsize=8,
-                  frameon=False)
+    figure.legend(*axes[0][0].get_legend_handles_labels(), loc="lower center", bbox_to_anchor=(0.5, 1.0),
+                  ncols=len(lines), fontsize=8, frameon=False)
     for path in image_paths:
-        figure.savefig(path, dpi=130, metadata={"Date": None} if str(path).endswith(".svg") else None)
+        # Without a date, so that the same rows give the same file.
+        figure.savefig(path, dpi=130, bbox_inches="tight", metadata={"Date": None} if path.endswith(".svg") else None)
     plt.close(figure)

@@ -3,7 +3,7 @@
 """The experiments' workflows on grids small enough for a test.
 
 usage: experiments_test.py dry_run|tables|choices|first_maps|first_map_plots|tiny_grid|tiny_first_maps|slurm|
-                           two_views|two_views_program PLIANT
+                           two_views|two_views_program|two_views_workflow PLIANT
 """
 
 import csv
@@ -328,6 +328,27 @@ def two_views_program(folder):
         assert result.stderr.startswith("pliant_two_views: "), result
     result = call("--seeds", "1", "--output_path", str(folder / "none/rows.csv"))
     assert result.returncode == 1 and "cannot write" in result.stderr, result
+
+
+def two_views_workflow(folder):
+    """Rows, table and plot of one cross; a second call has nothing to do."""
+    need("snakemake")
+    config = folder / "small.yaml"
+    config.write_text("two_views: {crosses: refinements, seeds: 1, factors: {noise_px: {'0.1': --Scene.points 100}}}\n",
+                      encoding="utf-8")
+    arguments = ["initialisation", folder, "two_views/refinements.svg", "two_views/table.md", "--configfile", str(config)]
+    try:
+        snakemake(*arguments)
+    except AssertionError as error:
+        if "No module named 'matplotlib'" not in str(error):
+            raise
+        print("skipped: Snakemake's Python has no matplotlib")
+        sys.exit(SKIPPED)
+    with open(folder / "two_views/refinements.csv", newline="", encoding="utf-8") as file:
+        assert len(list(csv.DictReader(file))) == 4 * 2 * 3 * 2
+    assert "| window | sideways | " in (folder / "two_views/table.md").read_text(encoding="utf-8")
+    assert (folder / "two_views/refinements.png").stat().st_size > 10000
+    assert "Nothing to be done" in snakemake(*arguments)
 
 
 if __name__ == "__main__":
