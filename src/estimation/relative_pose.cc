@@ -143,7 +143,7 @@ Result<Rigid3> FindMotion(Rays rays0, Rays rays1, double focal_px, double max_er
 // Whether samples can have found what a share of the pairs agrees on: one of them was clean with some probability. A
 // few pairs agree with any motion, and the best of many motions has more of them.
 bool CanBeFound(double inlier_share, const RelativePoseOptions& options) {
-  constexpr double kLeastProbability = 0.01;
+  constexpr double kLeastProbability = 0.001;
   const double clean = std::pow(inlier_share, SampleSize(options.solver));
   return 1.0 - std::pow(1.0 - clean, options.max_iterations) >= kLeastProbability;
 }
