@@ -114,8 +114,8 @@ class Crosses:
     def table(self, cross, rows):
         options = self.config["cross_options"][cross]
         columns = self.values(cross)[options["columns"]]
-        header = [*options["rows"], *(f"{options['columns']} {value}" for value in columns), "refused", "rotation deg",
-                  "direction deg", "depth", "depth RMSE", "one distance", "ms"]
+        header = [*options["rows"], *(column_title(options["columns"], value) for value in columns), "refused",
+                  "rotation deg", "direction deg", "depth", "depth RMSE", "one distance", "ms"]
         share = SHARES[options.get("shares", "success")]
         lines = []
         for key, trials in grouped(rows, options["rows"]).items():
@@ -127,6 +127,11 @@ class Crosses:
                           percent(all_of_them["depth_rmse"], 1), percent(all_of_them["null_depth_error"], 1),
                           number(all_of_them["ms"])])
         return grid.markdown(header, lines)
+
+
+def column_title(factor, value):
+    """A number says nothing without its factor."""
+    return f"{factor} {value}" if value[0].isdigit() else value
 
 
 def grouped(rows, factors):
