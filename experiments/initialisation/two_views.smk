@@ -37,6 +37,8 @@ rule two_views_rows:
         "two_views/{cross}.csv",
     input:
         TWO_VIEWS_PROGRAM,
+    wildcard_constraints:
+        cross="|".join(TWO_VIEWS.names),
     params:
         definition=lambda wildcards: TWO_VIEWS.definition(wildcards.cross),
     threads: workflow.cores
@@ -60,6 +62,8 @@ rule two_views_plot:
         "two_views/{plot}.svg",
     input:
         lambda wildcards: f"two_views/{TWO_VIEWS.plots[wildcards.plot]['cross']}.csv",
+    wildcard_constraints:
+        plot="|".join(TWO_VIEWS.plots) or "none",
     run:
         import two_views_plot
 

@@ -176,8 +176,8 @@ TEST(RelativePose, RotationOnlyFindsARotationAndNoTranslation) {
   EXPECT_GT(pose->num_inliers, 340);
 }
 
-// 300 samples of five pairs hold a clean one in 300 runs of a hundred thousand. A few pairs agree with every motion,
-// and the best of many motions is no answer.
+// With nine tenths outliers 300 samples of five pairs hold a clean one once in 300 times. A few pairs agree with any
+// motion, and the best of many motions is no answer.
 TEST_P(EveryRelativePose, RefusesWhatItsSamplesCannotFind) {
   if (GetParam().solver == RelativePoseSolver::kRotationOnly) return;  // takes no samples
   for (const Surface surface : {Surface::kTube, Surface::kBlob})
