@@ -128,4 +128,11 @@ Result<TwoViewRefinement> RefineTwoViewByOpengv(const Rigid3& start, Rays rays0,
   return Assessed(*refined, rays0, rays1, focal_px, options.loss_scale_px);
 }
 
+Result<TwoViewRefinement> AssessTwoView(const Rigid3& cam1_from_cam0, Rays rays0, Rays rays1, double focal_px,
+                                        const RefinementOptions& options) {
+  if (Status status = CheckRays(rays0, rays1); !status.ok()) return status;
+  return Assessed(Rigid3(cam1_from_cam0.rotation, cam1_from_cam0.translation.normalized()), rays0, rays1, focal_px,
+                  options.loss_scale_px);
+}
+
 }  // namespace pliant

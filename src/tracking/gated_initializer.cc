@@ -31,8 +31,20 @@ struct PairMotion {
   Rigid3 cam1_from_cam0;
   std::vector<char> inliers;
   int num_inliers = 0;
-  double cost = 0;  // robust, of the refined correspondences
+  double cost = 0;  // robust, of the correspondences compared
 };
+
+// What a pair's motion goes through before its cost is compared.
+auto PairRefinement(RigidRefinement refinement) {
+  switch (refinement) {
+    case RigidRefinement::kNone:
+      return &AssessTwoView;
+    case RigidRefinement::kOpengv:
+      return &RefineTwoViewByOpengv;
+    default:
+      return &RefineTwoView;
+  }
+}
 
 bool SameMotion(const Rigid3& a, const Rigid3& b) {
   return AngleBetween(a.translation, b.translation) < kSameMotionRad &&
@@ -69,8 +81,7 @@ class Attempt {
     if (Status status = MoreThanARotation(); !status.ok()) return status;
     if (Status status = FindMotion(); !status.ok()) return status;
     if (Status status = EnoughParallax(); !status.ok()) return status;
-    if (options_.refinement != RigidRefinement::kNone)
-      if (Status status = BeatRivals(); !status.ok()) return status;
+    if (Status status = BeatRivals(); !status.ok()) return status;
     return MakeMap();
   }
 
@@ -83,16 +94,14 @@ class Attempt {
     return Status::Ok();
   }
 
-  // RANSAC, then the motion refined on its inliers, twice, because a better motion has better inliers.
+  // RANSAC, then the motion refined by the options on its inliers, twice: a better motion has better inliers.
   Status FindMotion() {
     const auto ransac = EstimateMotion(matched_, focal_px_, options_, random_);
     if (!ransac.ok()) return ransac.status();
     motion_ = {ransac->cam1_from_cam0, ransac->inliers, ransac->num_inliers, 0.0};
-    if (options_.refinement != RigidRefinement::kNone) {
-      constexpr int kRounds = 2;
-      for (int round = 0; round < kRounds; ++round)
-        if (Status status = Refine(motion_.cam1_from_cam0, motion_.inliers, &motion_); !status.ok()) return status;
-    }
+    constexpr int kRounds = 2;
+    for (int round = 0; round < kRounds; ++round)
+      if (Status status = Refine(motion_.cam1_from_cam0, motion_.inliers, &motion_); !status.ok()) return status;
     outcome_.measured.inliers = motion_.num_inliers;
     const double share = static_cast<double>(motion_.num_inliers) / static_cast<double>(matched_.ids.size());
     if (share >= options_.min_inlier_share && motion_.num_inliers >= options_.min_points) return Status::Ok();
@@ -101,7 +110,7 @@ class Attempt {
                 " points agree with one rigid motion (at least " + Percent(options_.min_inlier_share) + " must)"};
   }
 
-  // Refines `start` on the correspondences flagged in `used` and judges all correspondences by the result.
+  // Refines `start` by the options on those flagged in `used` and judges all correspondences by the result.
   Status Refine(const Rigid3& start, const std::vector<char>& used, PairMotion* motion) const {
     std::vector<Eigen::Vector3d> rays0;
     std::vector<Eigen::Vector3d> rays1;
@@ -110,8 +119,7 @@ class Attempt {
       rays0.push_back(matched_.rays0[i]);
       rays1.push_back(matched_.rays1[i]);
     }
-    const auto refine = options_.refinement == RigidRefinement::kOpengv ? &RefineTwoViewByOpengv : &RefineTwoView;
-    const auto refined = refine(start, rays0, rays1, focal_px_, {});
+    const auto refined = PairRefinement(options_.refinement)(start, rays0, rays1, focal_px_, {});
     if (!refined.ok()) return refined.status();
     PairMotion result;
     result.cam1_from_cam0 = FacingForwards(refined->cam1_from_cam0, rays0, rays1);

@@ -136,6 +136,28 @@ TEST(TwoViewRefinement, IsRobustWhereOpengvsIsNot) {
   EXPECT_GT(error(RefineTwoViewByOpengv), 2.0 * error(RefineTwoView));
 }
 
+TEST(TwoViewRefinement, AssessesAMotionOnTheSameTermsAndLeavesIt) {
+  const SceneOptions options{.noise_px = 0.3};
+  const Scene scene = MakeScene(options);
+  const auto rays0 = RaysOf(scene, options, 0);
+  const auto rays1 = RaysOf(scene, options, 8);
+  const Rigid3 start = Disturbed(scene.cams_from_world.back());
+  const auto refined = RefineTwoView(start, rays0, rays1, options.focal_px, {});
+  ASSERT_TRUE(refined.ok());
+  const Rigid3& motion = refined->cam1_from_cam0;
+  const auto same = AssessTwoView({motion.rotation, 3.0 * motion.translation}, rays0, rays1, options.focal_px, {});
+  ASSERT_TRUE(same.ok());
+  constexpr double kRounding = 1e-9;  // relative
+  EXPECT_NEAR(same->cost, refined->cost, kRounding * refined->cost);
+  EXPECT_NEAR(same->spread_px, refined->spread_px, kRounding);
+  EXPECT_LT((same->direction_sigma_rad - refined->direction_sigma_rad).norm(), kRounding);
+  EXPECT_LT((same->cam1_from_cam0.translation - motion.translation).norm(), kRounding);
+  const auto worse = AssessTwoView(start, rays0, rays1, options.focal_px, {});
+  ASSERT_TRUE(worse.ok());
+  EXPECT_GT(worse->cost, 2.0 * refined->cost);
+  EXPECT_EQ(worse->cam1_from_cam0.rotation.coeffs(), start.rotation.coeffs());
+}
+
 TEST(TwoViewRefinement, PredictsTheDirectionsSpread) {
   constexpr int kTrials = 40;
   double predicted = 0;
@@ -158,7 +180,7 @@ TEST(TwoViewRefinement, PredictsTheDirectionsSpread) {
 
 TEST(TwoViewRefinement, RefusesTooFewPoints) {
   const std::vector<Eigen::Vector3d> rays(5, Eigen::Vector3d::UnitZ());
-  for (const auto refine : {&RefineTwoView, &RefineTwoViewByOpengv})
+  for (const auto refine : {&RefineTwoView, &RefineTwoViewByOpengv, &AssessTwoView})
     EXPECT_EQ(refine({}, rays, rays, 450, {}).status().code(), ErrorCode::kInsufficient);
 }
 

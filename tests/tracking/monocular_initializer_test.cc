@@ -221,6 +221,24 @@ TEST(MonocularInitializer, RefusesThePlaneOnlyWhereASecondMotionExplainsIt) {
   }
 }
 
+// With motions as the samples gave them, too: rivals are then compared as they are.
+TEST(MonocularInitializer, AsksForRivalsWhateverTheRefinement) {
+  for (const auto& [refinement, name] : EnumNames<RigidRefinement>::kNames) {
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+      SceneOptions options{.surface = Surface::kPlane, .noise_px = 0.3, .seed = seed};
+      const InitOutcome ahead = Try(options, {.refinement = refinement});
+      EXPECT_EQ(ahead.decision, InitDecision::kWait) << name;
+      EXPECT_NE(ahead.reason.find("second camera motion"), std::string::npos) << name << ": " << ahead.reason;
+      const double ratio = ahead.measured.rival_cost_ratio;
+      EXPECT_TRUE(ratio >= 1.0 && ratio < MonocularInitOptions().min_rival_cost_ratio) << name << ": " << ratio;
+      options.motion = Motion::kSideways;
+      const InitOutcome aside = Try(options, {.refinement = refinement});
+      ASSERT_EQ(aside.decision, InitDecision::kMap) << name << ": " << aside.reason;
+      EXPECT_GE(aside.measured.rival_cost_ratio, MonocularInitOptions().min_rival_cost_ratio) << name;
+    }
+  }
+}
+
 TEST(MonocularInitializer, TheWindowReducesTheDepthNoiseOfTwoViews) {
   constexpr int kSeeds = 12;
   double two_view = 0;

@@ -20,7 +20,7 @@
 namespace pliant {
 
 enum class RigidRefinement {
-  kNone,     // RANSAC's motion as it is
+  kNone,     // the pair's motion as the samples gave it
   kOpengv,   // the pair's motion by OpenGV, all inliers alike
   kTwoView,  // the pair's motion by its epipolar errors, robustly
   kWindow,   // kTwoView, then several frames since the reference, their poses and the points together
@@ -60,5 +60,11 @@ Result<TwoViewRefinement> RefineTwoView(const Rigid3& start, std::span<const Eig
 Result<TwoViewRefinement> RefineTwoViewByOpengv(const Rigid3& start, std::span<const Eigen::Vector3d> rays0,
                                                 std::span<const Eigen::Vector3d> rays1, double focal_px,
                                                 const RefinementOptions& options);
+
+// The motion as it is, but for its length, judged on the same terms, to be compared with refined ones. Fails with
+// kInsufficient below six correspondences.
+Result<TwoViewRefinement> AssessTwoView(const Rigid3& cam1_from_cam0, std::span<const Eigen::Vector3d> rays0,
+                                        std::span<const Eigen::Vector3d> rays1, double focal_px,
+                                        const RefinementOptions& options);
 
 }  // namespace pliant
