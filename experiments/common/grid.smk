@@ -16,6 +16,8 @@ ROOT = EXPERIMENT.parent.parent
 GRID = grid.Grid(config)
 PROGRAM = os.environ.get("PLIANT_PROGRAM") or str(ROOT / config["program"])
 THREADS = int(config["threads"])
+# Which table stands in which document of the experiment; one with more documents adds them.
+DOCUMENTS = {"README.md": "table.md"}
 
 
 # The mark of a whole sequence: among those that were rendered elsewhere, or here.
@@ -92,9 +94,10 @@ rule figures:
         grid.write_rows(output[0], grid.COLUMNS, [grid.figures_of(run) for run in GRID.runs()])
 
 
-# On request: the table in the experiment's README is the one just made.
+# On request: the tables in the experiment's documents are those just made.
 rule readme:
     input:
-        "table.md",
+        lambda wildcards: DOCUMENTS.values(),
     run:
-        grid.put_into_readme(EXPERIMENT / "README.md", input[0])
+        for document, table in DOCUMENTS.items():
+            grid.put_into_readme(EXPERIMENT / document, table)

@@ -71,6 +71,9 @@ def dry_run(folder):
     counts = {line.split()[0]: line.split()[1] for line in text.splitlines() if len(line.split()) > 1}
     assert counts["simulate"] == "32" and counts["track"] == counts["evaluate"] == str(32 * 11), text
     assert "two_views_rows" in text and "two_views_plot" in text, text
+    text = snakemake("initialisation", folder / "initialisation", "readme", "--dry-run", "--quiet", "--config",
+                     "sequences=", "seeds=1")
+    assert "first_maps" in text and "two_views_table" in text, text  # a table for each document
 
 
 def tables(folder):
