@@ -27,27 +27,29 @@ def words(value):
     return str(value).replace(",", " ").split()
 
 
+def selected(names, defined, what):
+    """The named ones of what is defined, in the order of the names; `all` are all."""
+    names = words(names)
+    if names == ["all"]:
+        return list(defined)
+    unknown = [name for name in names if name not in defined]
+    if unknown:
+        raise ValueError(f"{what}: '{unknown[0]}' is not one of {', '.join(defined)}")
+    return names
+
+
 class Grid:
     """The selected part of what an experiment's config.yaml defines; a name that it does not define is an error."""
 
     def __init__(self, config):
         self.config = config
-        self.sets = self._select("sets", config["set_options"])
-        self.variants = self._select("variants", config["variant_options"])
+        self.sets = selected(config["sets"], config["set_options"], "sets")
+        self.variants = selected(config["variants"], config["variant_options"], "variants")
         self.cells = [tuple(cell.split(":")) for cell in words(config["cells"])]
         for cell in self.cells:
             if len(cell) != 2:
                 raise ValueError(f"a cell is AMPLITUDE:OMEGA, not '{':'.join(cell)}'")
         self.seeds = words(config["seeds"])
-
-    def _select(self, key, defined):
-        names = words(self.config[key])
-        if names == ["all"]:
-            return list(defined)
-        unknown = [name for name in names if name not in defined]
-        if unknown:
-            raise ValueError(f"{key}: '{unknown[0]}' is not one of {', '.join(defined)}")
-        return names
 
     def scenes(self):
         return [f"{name}_A{amplitude}_w{omega}_s{seed}" for name in self.sets for amplitude, omega in self.cells

@@ -28,24 +28,13 @@ FIGURES = ["trials", "success", "refused", "rotation_deg", "direction_deg", "med
            "null_depth_error", "map_points", "inlier_share", "ms"]
 
 
-def selected(names, defined, what):
-    """The named ones of what is defined, in the order of the names; `all` are all."""
-    names = grid.words(names)
-    if names == ["all"]:
-        return list(defined)
-    unknown = [name for name in names if name not in defined]
-    if unknown:
-        raise ValueError(f"{what}: '{unknown[0]}' is not one of {', '.join(defined)}")
-    return names
-
-
 class Crosses:
     """What two_views.yaml defines; a name that it does not define is an error."""
 
     def __init__(self, config):
         self.config = config
         self.factors = config["factors"]
-        self.names = selected(config["crosses"], config["cross_options"], "crosses")
+        self.names = grid.selected(config["crosses"], config["cross_options"], "crosses")
         self.plots = {name: plot for name, plot in config["plots"].items() if plot["cross"] in self.names}
         for name in self.names:
             self.values(name)
@@ -58,8 +47,8 @@ class Crosses:
     def values(self, cross):
         """{factor: [its values in this cross]}"""
         factors = self.config["cross_options"][cross]["factors"]
-        selected(list(factors), self.factors, f"factors of {cross}")
-        return {factor: selected(names, self.factors[factor], f"{factor} of {cross}")
+        grid.selected(list(factors), self.factors, f"factors of {cross}")
+        return {factor: grid.selected(names, self.factors[factor], f"{factor} of {cross}")
                 for factor, names in factors.items()}
 
     def seeds(self, cross):
