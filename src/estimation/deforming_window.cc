@@ -15,6 +15,7 @@
 
 #include "estimation/deforming_problem.h"
 #include "estimation/light_depth.h"
+#include "estimation/mode_basis.h"
 #include "estimation/ray_residuals.h"
 #include "estimation/window_samples.h"
 #include "pliant/base/statistics.h"
@@ -34,6 +35,9 @@ constexpr double kLargestMotion = 3.0;
 constexpr double kClearlyBetter = 0.85;
 // The last solution, with all points free, starts close to its minimum: its steps are at most max_iterations by this.
 constexpr int kLastDivisor = 2;
+// Steps of a rigid solution by max_iterations: they are cheap, and one that has not arrived looks like a deforming
+// scene.
+constexpr int kRigidFactor = 4;
 
 Status CheckStart(const DeformingWindow& start) {
   const std::size_t views = start.cams_from_world.size();
@@ -93,7 +97,7 @@ Eigen::MatrixXd UnexplainedMotions(const DeformingWindow& start) {
 
 // The courses that explain most of what the rigid start leaves unexplained, of unit mean square about their mean. A
 // wrong depth looks like a motion too, the same course for all, so it does no harm here.
-void SetCourses(int rank, DeformingWindow* window) {
+void SetCourses(int rank, DeformingWindow* window, SurfaceNodes* nodes) {
   Eigen::MatrixXd motions = UnexplainedMotions(*window);
   std::vector<double> sizes;
   for (Eigen::Index k = 0; k + 1 < motions.rows(); k += 2) sizes.push_back(motions.middleRows<2>(k).norm());
@@ -106,11 +110,12 @@ void SetCourses(int rank, DeformingWindow* window) {
   window->courses.colwise() -= Eigen::VectorXd(window->courses.col(0));
   window->modes.resize(window->points_in_world.size());
   for (Eigen::Matrix3Xd& modes : window->modes) modes.setZero(3, rank);
+  nodes->modes.setZero(3 * rank, static_cast<Eigen::Index>(nodes->positions.size()));
 }
 
 // The R strongest courses of all the points' motions, of unit mean square, and the modes that go with them: the best
 // approximation of rank R (Eckart, Young). Courses of rank R of a window that starts from zero start from zero.
-void KeepStrongestCourses(int rank, DeformingWindow* window) {
+void KeepStrongestCourses(int rank, DeformingWindow* window, SurfaceNodes* nodes) {
   const Eigen::Index views = window->courses.cols();
   Eigen::MatrixXd second_moment = Eigen::MatrixXd::Zero(window->courses.rows(), window->courses.rows());
   for (const Eigen::Matrix3Xd& modes : window->modes) second_moment += modes.transpose() * modes;
@@ -120,6 +125,10 @@ void KeepStrongestCourses(int rank, DeformingWindow* window) {
   const double length = std::sqrt(static_cast<double>(views));
   const Eigen::MatrixXd change = window->courses * strongest / length;
   for (Eigen::Matrix3Xd& modes : window->modes) modes = Eigen::Matrix3Xd(modes * change);
+  Eigen::MatrixXd node_modes(3 * rank, nodes->modes.cols());
+  for (Eigen::Index n = 0; n < node_modes.cols(); ++n)
+    node_modes.col(n) = (nodes->modes.col(n).reshaped(3, change.rows()) * change).reshaped();
+  nodes->modes = node_modes;
   window->courses = length * strongest.transpose();
   window->courses.col(0).setZero();  // but for rounding it is
 }
@@ -130,10 +139,11 @@ std::array<int, 3> JudgedViews(const DeformingWindow& window) {
   return {0, views / 2, views - 1};
 }
 
-// (W8) How far the window's shape in the judged views is from what the light says of it; 0: no light.
-double WindowLightError(const DeformingWindow& window) {
+// (W8) How far the window's shape in the judged views is from what the light says of it, and from one distance for all;
+// zeros: no light.
+LightFit CompareWindowWithLight(const DeformingWindow& window) {
   const std::array<int, 3> views = JudgedViews(window);
-  double sum = 0;
+  LightFit mean;
   for (const int view : views) {
     std::vector<Eigen::Vector3d> positions;
     std::vector<double> log_light;
@@ -143,46 +153,75 @@ double WindowLightError(const DeformingWindow& window) {
                           window.Position(observation.point_idx, view));
       log_light.push_back(observation.log_light);
     }
-    const double error = LightError(positions, log_light);
-    if (!(error > 0.0)) return 0.0;
-    sum += error;
+    const LightFit fit = CompareWithLight(positions, log_light);
+    if (!(fit.error > 0.0)) return {};
+    mean.error += fit.error / static_cast<double>(views.size());
+    mean.spread += fit.spread / static_cast<double>(views.size());
   }
-  return sum / static_cast<double>(views.size());
+  return mean;
 }
 
-// The problem's solution. Its light error is filled in where there is light, its sigmas are not.
-Result<DeformingSolution> Solve(DeformingProblem* problem, int max_iterations) {
-  const auto cost = problem->Solve(max_iterations);
-  if (!cost.ok()) return cost.status();
+// A solution with its nodes. Its light error is filled in where there is light, its sigmas are not.
+struct SolvedPart {
   DeformingSolution solution;
-  solution.cost = *cost;
-  solution.window = problem->Window();
-  solution.light_error = WindowLightError(solution.window);
-  return solution;
+  SurfaceNodes nodes;
+};
+
+SolvedPart Taken(const DeformingProblem& problem, double cost, SurfaceNodes nodes) {
+  SolvedPart part;
+  part.solution.cost = cost;
+  part.solution.window = problem.Window();
+  const LightFit light = CompareWindowWithLight(part.solution.window);
+  part.solution.light_error = light.error;
+  part.solution.log_distance_spread = light.spread;
+  part.nodes = std::move(nodes);
+  part.nodes.modes = problem.NodeModes();
+  return part;
 }
 
 // A sample's solutions, each extended to all points: of `rank`, and then, each from the one before, down to
 // `last_rank`.
-using SampleSolutions = std::vector<Result<DeformingSolution>>;
+using SampleSolutions = std::vector<Result<SolvedPart>>;
 
-SampleSolutions SolveSample(const DeformingWindow& start, const PointSample& sample, int rank, int last_rank,
-                            double focal_px, const DeformingWindowOptions& options) {
-  DeformingWindow part = PartOf(start, sample);
-  SetCourses(rank, &part);
+// What all samples of a window have in common.
+struct SampleProblem {
+  const DeformingWindow& start;
+  PointSample node_points;
+  double focal_px;
+  const DeformingWindowOptions& options;
+};
+
+// All points, in the views of a part of them.
+Result<SolvedPart> Extended(const SampleProblem& common, const SolvedPart& part, const PointSample& sample) {
+  const DeformingWindow all = ExtendToAll(common.start, part.solution.window, sample);
+  SurfaceNodes nodes = NodesAt(all.points_in_world, common.node_points);
+  nodes.modes = part.nodes.modes;
+  DeformingProblem problem(all, nodes, common.focal_px, common.options);
+  const auto cost = problem.SettlePoints();
+  if (!cost.ok()) return cost.status();
+  return Taken(problem, *cost, std::move(nodes));
+}
+
+SampleSolutions SolveSample(const SampleProblem& common, const PointSample& sample, int rank, int last_rank) {
+  SurfaceNodes nodes = NodesAt(common.start.points_in_world, common.node_points);
+  DeformingWindow part = PartOf(common.start, sample);
+  SetCourses(rank, &part, &nodes);
   SampleSolutions solutions;
   for (int of_rank = rank; of_rank >= last_rank; --of_rank) {
-    if (of_rank < rank) KeepStrongestCourses(of_rank, &part);
-    DeformingProblem problem(part, focal_px, options);
-    auto solution = Solve(&problem, options.max_iterations);
-    if (solution.ok()) {
-      part = solution->window;
-      if (sample.size() < start.points_in_world.size()) {
-        DeformingProblem all(ExtendToAll(start, part, sample), focal_px, options);
-        all.FixViews();
-        solution = Solve(&all, options.max_iterations);
-      }
+    if (of_rank < rank) KeepStrongestCourses(of_rank, &part, &nodes);
+    DeformingProblem problem(part, nodes, common.focal_px, common.options);
+    const auto cost = problem.Solve(common.options.max_iterations);
+    if (!cost.ok()) {
+      solutions.emplace_back(cost.status());
+      continue;
     }
-    solutions.push_back(std::move(solution));
+    SolvedPart solved = Taken(problem, *cost, std::move(nodes));
+    part = solved.solution.window;
+    nodes = solved.nodes;
+    if (sample.size() < common.start.points_in_world.size())
+      solutions.push_back(Extended(common, solved, sample));
+    else
+      solutions.emplace_back(std::move(solved));
   }
   return solutions;
 }
@@ -197,27 +236,29 @@ bool MorePlausible(const DeformingSolution& a, const DeformingSolution& b) {
 }
 
 // The samples' solutions with this place in their lists; null where there is none.
-std::vector<const DeformingSolution*> SolutionsAt(std::size_t place, const std::vector<SampleSolutions>& samples) {
-  std::vector<const DeformingSolution*> found;
+using SolvedParts = std::vector<const SolvedPart*>;
+
+SolvedParts SolutionsAt(std::size_t place, const std::vector<SampleSolutions>& samples) {
+  SolvedParts found;
   for (const SampleSolutions& solutions : samples)
     found.push_back(place < solutions.size() && solutions[place].ok() ? &*solutions[place] : nullptr);
   return found;
 }
 
-const DeformingSolution* MostPlausible(const std::vector<const DeformingSolution*>& solutions) {
-  const DeformingSolution* best = nullptr;
-  for (const DeformingSolution* solution : solutions)
-    if (solution != nullptr && (best == nullptr || MorePlausible(*solution, *best))) best = solution;
+const SolvedPart* MostPlausible(const SolvedParts& parts) {
+  const SolvedPart* best = nullptr;
+  for (const SolvedPart* part : parts)
+    if (part != nullptr && (best == nullptr || MorePlausible(part->solution, best->solution))) best = part;
   return best;
 }
 
 // (W10) One a point, of two samples' solutions; infinite where one has none, and empty for one sample.
-std::vector<double> SigmasBetween(const std::vector<const DeformingSolution*>& solutions, std::size_t points) {
-  if (solutions.size() < 2) return {};
-  if (solutions[0] == nullptr || solutions[1] == nullptr)
+std::vector<double> SigmasBetween(const SolvedParts& parts, std::size_t points) {
+  if (parts.size() < 2) return {};
+  if (parts[0] == nullptr || parts[1] == nullptr)
     return std::vector<double>(points, std::numeric_limits<double>::infinity());
-  const DeformingWindow& first = solutions[0]->window;
-  const DeformingWindow& second = solutions[1]->window;
+  const DeformingWindow& first = parts[0]->solution.window;
+  const DeformingWindow& second = parts[1]->solution.window;
   const std::array<int, 3> views = JudgedViews(first);
   std::vector<double> squares(points, 0.0);
   for (const int view : views) {
@@ -233,6 +274,31 @@ std::vector<double> SigmasBetween(const std::vector<const DeformingSolution*>& s
   return squares;
 }
 
+// Of a solution by what it turned out to be: its own errors as the noise, its own modes' sizes and differences as what
+// was to be expected of them, each times kCaution, because a solution adapts to the noise, and modes to their priors.
+std::vector<double> LogDepthSigmas(const SolvedPart& part, double focal_px, const DeformingWindowOptions& options) {
+  constexpr double kCaution = 2.0;
+  constexpr double kLeastNoisePx = 0.05;
+  constexpr double kLeastSigma = 0.01;
+  DeformingWindowOptions found = options;
+  const DeformingWindow& window = part.solution.window;
+  found.loss_scale_px = std::max(kLeastNoisePx, kCaution * Median(PointErrorsPx(window, focal_px)));
+  if (window.courses.rows() > 0) {
+    const ModeSizes sizes = SizesOf(part.nodes);
+    std::vector<double> distances;
+    for (const Eigen::Vector3d& point : window.points_in_world) distances.push_back(point.norm());
+    found.mode_sigma = std::max(kLeastSigma, kCaution * sizes.size / Median(std::move(distances)));
+    found.gradient_sigma = std::max(kLeastSigma, kCaution * sizes.gradient);
+  }
+  return DeformingProblem(window, part.nodes, focal_px, found).LogDepthSigmas();
+}
+
+DeformingSolution Judged(SolvedPart part, double focal_px, const DeformingWindowOptions& options) {
+  part.solution.log_depth_sigmas = LogDepthSigmas(part, focal_px, options);
+  part.solution.residual_correlation = ResidualCorrelation(part.solution.window);
+  return std::move(part.solution);
+}
+
 }  // namespace
 
 Eigen::Vector3d DeformingWindow::Position(int point_idx, int view_idx) const {
@@ -243,7 +309,8 @@ Eigen::Vector3d DeformingWindow::Position(int point_idx, int view_idx) const {
 
 void DeformingWindowOptions::List(OptionTable& table) {
   table.BeginGroup("Window", "the deforming window from which the first map is made");
-  table.Add("rank", &rank, "-", "ways in which the scene moves at a time: courses in time common to all points", 1, 12);
+  table.Add("rank", &rank, "-", "ways in which the scene moves at a time: courses in time common to all points", 1,
+            kMaxWindowRank);
   table.Add("loss_scale_px", &loss_scale_px, "px", "scale of the Cauchy loss: about a tracked pixel's noise", 1e-3,
             100);
   table.Add("gradient_sigma", &gradient_sigma, "-",
@@ -254,6 +321,8 @@ void DeformingWindowOptions::List(OptionTable& table) {
   table.Add("light_sigma", &light_sigma, "-",
             "log distance from brightness, standard deviation; large, because neighbours err alike", 1e-3, 1e6);
   table.Add("neighbors", &neighbors, "-", "neighbours with which a point's modes are compared", 1, 100);
+  table.Add("nodes", &nodes, "-", "of the surface, at which modes are free; between them they are interpolated", 4,
+            1000);
   table.Add("sample_points", &sample_points, "-",
             "points in each of the two samples that are solved before all; fewer is faster", 60, 100000);
   table.Add("max_iterations", &max_iterations, "-", "most iterations of one solution", 1, 10000);
@@ -262,62 +331,70 @@ void DeformingWindowOptions::List(OptionTable& table) {
 Result<DeformingSolution> SolveDeformingWindow(const DeformingWindow& start, double focal_px,
                                                const DeformingWindowOptions& options, int threads) {
   if (Status status = CheckStart(start); !status.ok()) return status;
-  if (options.rank < 1 || options.sample_points < 1)
-    return {ErrorCode::kInvalidArgument, "a deforming window takes a rank and a number of sample points of 1 or more"};
+  if (options.rank < 1 || options.rank > kMaxWindowRank || options.sample_points < 1)
+    return {ErrorCode::kInvalidArgument, "a deforming window takes a rank from 1 to " + std::to_string(kMaxWindowRank) +
+                                             " and 1 sample point or more"};
   const int rank = std::min(options.rank, static_cast<int>(start.times.size()) - 1);
   const bool lit = std::any_of(start.observations.begin(), start.observations.end(),
                                [](const auto& observation) { return std::isfinite(observation.log_light); });
   const int last_rank = lit ? std::max(1, rank - 1) : rank;
+  const SampleProblem common{start, SpreadPoints(start.points_in_world, options.nodes), focal_px, options};
   std::vector<std::future<SampleSolutions>> solving;
   for (const PointSample& sample : SamplePoints(start, options.sample_points))
-    solving.push_back(std::async(threads > 1 ? std::launch::async : std::launch::deferred, [&, sample] {
-      return SolveSample(start, sample, rank, last_rank, focal_px, options);
-    }));
+    solving.push_back(std::async(threads > 1 ? std::launch::async : std::launch::deferred,
+                                 [&, sample] { return SolveSample(common, sample, rank, last_rank); }));
   std::vector<SampleSolutions> samples;
   for (std::future<SampleSolutions>& solved : solving) samples.push_back(solved.get());
 
-  std::vector<const DeformingSolution*> of_rank = SolutionsAt(0, samples);
-  const DeformingSolution* best = MostPlausible(of_rank);
-  const DeformingSolution* lower = MostPlausible(SolutionsAt(1, samples));
-  const bool clearly_better = best != nullptr && lower != nullptr && lower->light_error > 0.0 &&
-                              lower->light_error < kClearlyBetter * best->light_error;
+  SolvedParts of_rank = SolutionsAt(0, samples);
+  const SolvedPart* best = MostPlausible(of_rank);
+  const SolvedPart* lower = MostPlausible(SolutionsAt(1, samples));
+  const bool clearly_better = best != nullptr && lower != nullptr && lower->solution.light_error > 0.0 &&
+                              lower->solution.light_error < kClearlyBetter * best->solution.light_error;
   if (clearly_better || best == nullptr) {
     best = lower;
     of_rank = SolutionsAt(1, samples);
   }
   if (best == nullptr) return samples.front().front().status();
 
-  DeformingProblem problem(best->window, focal_px, options);
-  auto solution = Solve(&problem, std::max(1, options.max_iterations / kLastDivisor));
-  if (!solution.ok()) return solution.status();
-  solution->log_depth_sigmas = problem.LogDepthSigmas();
-  solution->sample_sigmas = SigmasBetween(of_rank, start.points_in_world.size());
+  DeformingProblem problem(best->solution.window, best->nodes, focal_px, options);
+  const auto cost = problem.Solve(std::max(1, options.max_iterations / kLastDivisor));
+  if (!cost.ok()) return cost.status();
+  DeformingSolution solution = Judged(Taken(problem, *cost, best->nodes), focal_px, options);
+  solution.sample_sigmas = SigmasBetween(of_rank, start.points_in_world.size());
   return solution;
+}
+
+Result<DeformingSolution> SolveRigidWindow(const DeformingWindow& start, double focal_px,
+                                           const DeformingWindowOptions& options) {
+  if (Status status = CheckStart(start); !status.ok()) return status;
+  DeformingWindow rigid = start;
+  rigid.courses.resize(0, static_cast<Eigen::Index>(rigid.times.size()));
+  rigid.modes.clear();
+  DeformingProblem problem(rigid, {}, focal_px, options);
+  const auto cost = problem.Solve(kRigidFactor * options.max_iterations);
+  if (!cost.ok()) return cost.status();
+  return Judged(Taken(problem, *cost, {}), focal_px, options);
+}
+
+Result<double> RigidResidualCorrelation(const DeformingWindow& start, double focal_px,
+                                        const DeformingWindowOptions& options) {
+  if (Status status = CheckStart(start); !status.ok()) return status;
+  const DeformingWindow part = PartOf(start, SamplePoints(start, options.sample_points).front());
+  DeformingProblem problem(part, {}, focal_px, options);
+  const auto cost = problem.Solve(kRigidFactor * options.max_iterations);
+  if (!cost.ok()) return cost.status();
+  return ResidualCorrelation(problem.Window());
 }
 
 Result<DeformingWindow> LocateDeformingViews(const DeformingWindow& views, double focal_px,
                                              const DeformingWindowOptions& options) {
   if (Status status = CheckStart(views); !status.ok()) return status;
-  DeformingProblem problem(views, focal_px, options);
-  problem.FixPoints();
-  if (const auto cost = problem.Solve(options.max_iterations); !cost.ok()) return cost.status();
+  SurfaceNodes none = NodesAt(views.points_in_world, {0});
+  none.modes.setZero(3 * views.courses.rows(), 1);
+  DeformingProblem problem(views, none, focal_px, options);
+  if (const auto cost = problem.Solve(options.max_iterations, FreeParts::kViews); !cost.ok()) return cost.status();
   return problem.Window();
-}
-
-std::vector<double> PointErrorsPx(const DeformingWindow& window, double focal_px) {
-  std::vector<double> sums(window.points_in_world.size(), 0.0);
-  std::vector<int> counts(sums.size(), 0);
-  for (const DeformingObservation& observation : window.observations) {
-    if (observation.view_idx == 0) continue;
-    const auto i = static_cast<std::size_t>(observation.point_idx);
-    const Eigen::Vector3d x = window.cams_from_world[static_cast<std::size_t>(observation.view_idx)] *
-                              window.Position(observation.point_idx, observation.view_idx);
-    sums[i] += std::pow(focal_px * AngleBetween(x, observation.ray), 2);
-    ++counts[i];
-  }
-  for (std::size_t i = 0; i < sums.size(); ++i)
-    sums[i] = counts[i] > 0 ? std::sqrt(sums[i] / counts[i]) : std::numeric_limits<double>::infinity();
-  return sums;
 }
 
 double LogDistanceFromLight(double brightness, double gamma) {

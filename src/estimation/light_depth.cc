@@ -20,6 +20,12 @@ constexpr double kLeastCosine = 0.12;  // steeper slopes are not trusted
 constexpr double kFar = 1.8;           // times the median distance: beyond, dark noise and the ambient light count
 constexpr std::size_t kLeastLit = 20;
 
+double MedianDeviation(std::vector<double> values) {
+  const double center = Median(values);
+  for (double& value : values) value = std::abs(value - center);
+  return Median(std::move(values));
+}
+
 }  // namespace
 
 std::vector<double> CorrectForSlope(const std::vector<Eigen::Vector3d>& positions_in_cam,
@@ -53,21 +59,22 @@ std::vector<double> CorrectForSlope(const std::vector<Eigen::Vector3d>& position
   return corrected;
 }
 
-double LightError(const std::vector<Eigen::Vector3d>& positions_in_cam, const std::vector<double>& log_light) {
-  if (positions_in_cam.empty()) return 0.0;
+LightFit CompareWithLight(const std::vector<Eigen::Vector3d>& positions_in_cam, const std::vector<double>& log_light) {
+  if (positions_in_cam.empty()) return {};
   const std::vector<double> light =
       CorrectForSlope(positions_in_cam, NearestNeighbors(positions_in_cam, kSlopeNeighbors), log_light);
   std::vector<double> distances;
   for (const Eigen::Vector3d& position : positions_in_cam) distances.push_back(position.norm());
   const double far = kFar * Median(distances);
   std::vector<double> offsets;
-  for (std::size_t i = 0; i < light.size(); ++i)
-    if (std::isfinite(light[i]) && distances[i] > 0.0 && distances[i] < far)
-      offsets.push_back(std::log(distances[i]) - light[i]);
-  if (offsets.size() < kLeastLit) return 0.0;
-  const double center = Median(offsets);
-  for (double& offset : offsets) offset = std::abs(offset - center);
-  return Median(std::move(offsets));
+  std::vector<double> logs;
+  for (std::size_t i = 0; i < light.size(); ++i) {
+    if (!std::isfinite(light[i]) || !(distances[i] > 0.0) || distances[i] >= far) continue;
+    logs.push_back(std::log(distances[i]));
+    offsets.push_back(logs.back() - light[i]);
+  }
+  if (offsets.size() < kLeastLit) return {};
+  return {MedianDeviation(std::move(offsets)), MedianDeviation(std::move(logs))};
 }
 
 }  // namespace pliant

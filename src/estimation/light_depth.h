@@ -21,8 +21,11 @@ inline constexpr int kSlopeNeighbors = 12;  // whose plane is the surface
 std::vector<double> CorrectForSlope(const std::vector<Eigen::Vector3d>& positions_in_cam,
                                     const NeighborLists& neighbors, const std::vector<double>& log_light);
 
-// Median absolute deviation of log |x| - light from its median, over the lit points that are not far; 0 where fewer
-// than twenty are lit.
-double LightError(const std::vector<Eigen::Vector3d>& positions_in_cam, const std::vector<double>& log_light);
+// Median absolute deviations from the median, over the lit points that are not far; 0 where fewer than twenty are lit.
+struct LightFit {
+  double error = 0;   // of log |x| - light
+  double spread = 0;  // of log |x| alone: what a light that says nothing leaves
+};
+LightFit CompareWithLight(const std::vector<Eigen::Vector3d>& positions_in_cam, const std::vector<double>& log_light);
 
 }  // namespace pliant

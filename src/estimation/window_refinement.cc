@@ -85,7 +85,7 @@ class WindowProblem {
     AddObservations();
     FixGauge();
     ceres::Solver::Options solver = RigidSolverOptions(
-        points_ == WindowPoints::kRefined ? ceres::DENSE_SCHUR : ceres::DENSE_QR, options_.max_iterations);
+        points_ == WindowPoints::kRefined ? ceres::DENSE_SCHUR : ceres::DENSE_NORMAL_CHOLESKY, options_.max_iterations);
     if (points_ == WindowPoints::kRefined) solver.linear_solver_ordering = Ordering();
     ceres::Solver::Summary summary;
     ceres::Solve(solver, &problem_, &summary);

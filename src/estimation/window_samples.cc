@@ -19,10 +19,16 @@ constexpr double kSameDirection = 1e-3;  // rad, below which nearer does not cou
 
 using Directions = std::vector<Eigen::Vector3d>;
 
-Directions DirectionsOf(const DeformingWindow& window) {
+Directions DirectionsOf(const std::vector<Eigen::Vector3d>& points) {
   Directions directions;
-  for (const Eigen::Vector3d& point : window.points_in_world) directions.push_back(point.normalized());
+  for (const Eigen::Vector3d& point : points) directions.push_back(point.normalized());
   return directions;
+}
+
+PointSample AllOf(const Directions& directions) {
+  PointSample all(directions.size());
+  std::iota(all.begin(), all.end(), 0);
+  return all;
 }
 
 // Farthest point sampling: each next one is the farthest from those chosen.
@@ -45,10 +51,14 @@ PointSample Spread(const Directions& directions, const PointSample& from, std::s
 
 }  // namespace
 
+PointSample SpreadPoints(const std::vector<Eigen::Vector3d>& points_in_world, int count) {
+  const Directions directions = DirectionsOf(points_in_world);
+  return Spread(directions, AllOf(directions), std::min(static_cast<std::size_t>(count), directions.size()));
+}
+
 std::vector<PointSample> SamplePoints(const DeformingWindow& window, int size) {
-  const Directions directions = DirectionsOf(window);
-  PointSample all(directions.size());
-  std::iota(all.begin(), all.end(), 0);
+  const Directions directions = DirectionsOf(window.points_in_world);
+  const PointSample all = AllOf(directions);
   const std::size_t count = std::min(static_cast<std::size_t>(size), all.size() / 2);
   if (count < kLeastSample) return {all};
   PointSample first = Spread(directions, all, count);
@@ -79,7 +89,7 @@ DeformingWindow ExtendToAll(const DeformingWindow& start, const DeformingWindow&
   all.cams_from_world = part.cams_from_world;
   all.courses = part.courses;
   all.modes.clear();
-  const Directions directions = DirectionsOf(start);
+  const Directions directions = DirectionsOf(start.points_in_world);
   std::vector<double> changes;  // of log distance
   for (std::size_t k = 0; k < sample.size(); ++k)
     changes.push_back(

@@ -12,6 +12,10 @@ namespace pliant {
 
 using PointSample = std::vector<int>;  // indices of a window's points, ascending
 
+// `count` of the points, of which there are as many, whose directions from the reference are spread evenly (farthest
+// point sampling); ascending.
+PointSample SpreadPoints(const std::vector<Eigen::Vector3d>& points_in_world, int count);
+
 // Two samples without common points, each of at most `size` points whose directions from the reference are spread
 // evenly; one sample of all points where two would have fewer than 60 each.
 std::vector<PointSample> SamplePoints(const DeformingWindow& window, int size);

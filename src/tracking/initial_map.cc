@@ -11,6 +11,26 @@
 #include "pliant/base/statistics.h"
 
 namespace pliant {
+namespace {
+
+constexpr double kWideLossPx = 10.0;  // frames may lie tens of pixels apart
+
+Result<Rigid3> LocateOnce(const Camera& camera, const InitFrame& frame, const InitialMap& map, const Rigid3& near,
+                          const RefinementOptions& options) {
+  constexpr std::size_t kLeastPoints = 6;
+  Window window;
+  window.cams_from_world = {Rigid3(), near};
+  window.points_in_world = map.positions;
+  window.observations = ObservationsOf(camera, frame, map.ids, 1);
+  if (window.observations.size() < kLeastPoints)
+    return Status(ErrorCode::kInsufficient, "frame " + std::to_string(frame.frame_idx) + " sees only " +
+                                                std::to_string(window.observations.size()) + " points of the map");
+  const auto located = RefineWindow(window, camera.MeanFocalLengthPx(), WindowPoints::kFixed, options);
+  if (!located.ok()) return located.status();
+  return located->window.cams_from_world.back();
+}
+
+}  // namespace
 
 MatchedRays MatchRays(const Camera& camera, const InitFrame& reference, const InitFrame& current) {
   MatchedRays matched;
@@ -72,24 +92,19 @@ std::vector<WindowObservation> ObservationsOf(const Camera& camera, const InitFr
   return observations;
 }
 
+Result<Rigid3> LocateFrameRoughly(const Camera& camera, const InitFrame& frame, const InitialMap& map,
+                                  const Rigid3& near) {
+  constexpr int kFewIterations = 5;
+  return LocateOnce(camera, frame, map, near, {.loss_scale_px = kWideLossPx, .max_iterations = kFewIterations});
+}
+
 Result<Rigid3> LocateFrame(const Camera& camera, const InitFrame& frame, const InitialMap& map, const Rigid3& near,
                            const RefinementOptions& options) {
-  constexpr double kWideLoss = 20.0;  // times the loss: 10 px of the default 0.5
-  constexpr std::size_t kLeastPoints = 6;
-  Window window;
-  window.cams_from_world = {Rigid3(), near};
-  window.points_in_world = map.positions;
-  window.observations = ObservationsOf(camera, frame, map.ids, 1);
-  if (window.observations.size() < kLeastPoints)
-    return Status(ErrorCode::kInsufficient, "frame " + std::to_string(frame.frame_idx) + " sees only " +
-                                                std::to_string(window.observations.size()) + " points of the map");
   RefinementOptions wide = options;
-  wide.loss_scale_px *= kWideLoss;
-  const double focal_px = camera.MeanFocalLengthPx();
-  auto located = RefineWindow(window, focal_px, WindowPoints::kFixed, wide);
-  if (located.ok()) located = RefineWindow(located->window, focal_px, WindowPoints::kFixed, options);
+  wide.loss_scale_px = kWideLossPx;
+  const auto located = LocateOnce(camera, frame, map, near, wide);
   if (!located.ok()) return located.status();
-  return located->window.cams_from_world.back();
+  return LocateOnce(camera, frame, map, *located, options);
 }
 
 Result<std::vector<Rigid3>> LocateFrames(const InitInput& input, const InitialMap& map, std::vector<KnownPose> known,

@@ -56,6 +56,10 @@ std::vector<WindowObservation> ObservationsOf(const Camera& camera, const InitFr
 Result<Rigid3> LocateFrame(const Camera& camera, const InitFrame& frame, const InitialMap& map, const Rigid3& near,
                            const RefinementOptions& options);
 
+// The same with the wide loss alone, in few iterations: against points whose depths are rough themselves.
+Result<Rigid3> LocateFrameRoughly(const Camera& camera, const InitFrame& frame, const InitialMap& map,
+                                  const Rigid3& near);
+
 // Poses of all frames. `known[k]` is frame k's pose if it has one; the first and the last must. A frame without one is
 // located from the next later one.
 struct KnownPose {

@@ -3,6 +3,8 @@
 
 #include "pliant/tracking/window_initializer.h"
 
+#include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "tracking/initial_map.h"
@@ -52,7 +54,7 @@ class WindowInitializer final : public Initializer {
     }
     const bool last = ends || since + options_.every > options_.last_frame;
     Status status = MoreThanARotation(input, &outcome.measured);
-    if (status.ok()) status = last ? LastAttempt(input, &outcome) : Attempt(input, &outcome);
+    if (status.ok()) status = last ? LastAttempt(input, &outcome) : Attempt(input, since, &outcome);
     if (!status.ok()) {
       outcome.decision = last ? InitDecision::kNewReference : InitDecision::kWait;
       outcome.reason = status.message();
@@ -63,31 +65,54 @@ class WindowInitializer final : public Initializer {
 
  private:
   // What is missing for a map; ok when the outcome is one.
-  Status Attempt(const InitInput& input, InitOutcome* outcome) const {
-    const auto window = SolveWindow(input, input.frames.size(), options_, nominal_depth_mm_);
-    return Make(input, window, Certainty::kPredictedAndAgreed, WhenUncertain::kWait, outcome);
+  Status Attempt(const InitInput& input, int since, InitOutcome* outcome) const {
+    const auto window = PrepareWindow(input, input.frames.size(), options_, nominal_depth_mm_);
+    if (!window.ok()) return window.status();
+    const auto rigid = SolveRigid(input, *window, options_);
+    if (rigid.ok() || since < options_.deforming_frame) return Make(input, rigid, DemandsAfter(since), outcome);
+    return Make(input, SolveDeforming(input, *window, options_, nominal_depth_mm_), DemandsAfter(since), outcome);
   }
 
   Status LastAttempt(const InitInput& input, InitOutcome* outcome) const {
     const std::size_t frames = input.frames.size();
-    const auto whole = SolveWindow(input, frames, options_, nominal_depth_mm_);
-    Status status = Make(input, whole, Certainty::kPredictedAndAgreed, WhenUncertain::kTakeTheCertain, outcome);
+    const MapDemands least = DemandsAfter(options_.last_frame);
+    const auto whole = Solve(input, frames);
+    Status status = Make(input, whole, least, outcome);
     if (status.ok()) return status;
     // The longer the window the more it holds, and the more there is to go wrong.
-    const auto shorter = SolveWindow(input, 2 * frames / 3, options_, nominal_depth_mm_);
-    if (Make(input, shorter, Certainty::kPredictedAndAgreed, WhenUncertain::kTakeTheCertain, outcome).ok())
-      return Status::Ok();
-    // Better a map that only the prediction speaks for than none.
+    const auto shorter = Solve(input, 2 * frames / 3);
+    if (Make(input, shorter, least, outcome).ok()) return Status::Ok();
+    // Where the samples do not agree the prediction must be good.
+    const MapDemands predicted{Certainty::kPredicted, options_.certain_depth_sigma, options_.max_depth_sigma, 0.0};
     for (const auto* window : {&whole, &shorter})
-      if (Make(input, *window, Certainty::kPredicted, WhenUncertain::kTakeTheCertain, outcome).ok())
-        return Status::Ok();
+      if (Make(input, *window, predicted, outcome).ok()) return Status::Ok();
     return status;
   }
 
-  Status Make(const InitInput& input, const Result<SolvedWindow>& window, Certainty certainty,
-              WhenUncertain when_uncertain, InitOutcome* outcome) const {
+  // The longer the wait the less it still gives, and the more points leave the image.
+  MapDemands DemandsAfter(int since) const {
+    const double waited = std::clamp(static_cast<double>(since - options_.deforming_frame) /
+                                         std::max(1, options_.last_frame - options_.deforming_frame),
+                                     0.0, 1.0);
+    const double relaxed = waited * waited;
+    const double certain_sigma = std::lerp(options_.certain_depth_sigma, options_.last_depth_sigma, relaxed);
+    return {.certain_sigma = certain_sigma,
+            .max_sigma = std::max(certain_sigma, options_.max_depth_sigma),
+            .certain_share = (1.0 - relaxed) * options_.min_certain_share};
+  }
+
+  // Of a rigid scene if it is one.
+  Result<SolvedWindow> Solve(const InitInput& input, std::size_t frames) const {
+    const auto window = PrepareWindow(input, frames, options_, nominal_depth_mm_);
     if (!window.ok()) return window.status();
-    return MakeWindowMap(input, *window, certainty, when_uncertain, options_, nominal_depth_mm_, outcome);
+    auto rigid = SolveRigid(input, *window, options_);
+    return rigid.ok() ? rigid : SolveDeforming(input, *window, options_, nominal_depth_mm_);
+  }
+
+  Status Make(const InitInput& input, const Result<SolvedWindow>& window, const MapDemands& demands,
+              InitOutcome* outcome) const {
+    if (!window.ok()) return window.status();
+    return MakeWindowMap(input, *window, demands, options_, nominal_depth_mm_, outcome);
   }
 
   WindowInitOptions options_;
@@ -100,16 +125,24 @@ void WindowInitOptions::List(OptionTable& table) {
   table.BeginGroup("WindowInit", "the first map from a deforming window (Init.method = window)");
   table.Add("first_frame", &first_frame, "frames", "a map is first sought so long after the reference", 2, 100000);
   table.Add("every", &every, "frames", "from one attempt to the next", 1, 100000);
+  table.Add("deforming_frame", &deforming_frame, "frames",
+            "after the reference: before it a map is sought of a rigid scene alone", 2, 100000);
   table.Add("last_frame", &last_frame, "frames", "a reference that made no map by then is given up", 2, 100000);
   table.Add("views", &views, "frames", "in the problem, spread evenly since the reference", 3, 1000);
   table.Add("min_views", &min_views, "frames", "of them in which a point must be seen", 2, 1000);
   table.Add("max_points", &max_points, "-", "in the problem: time grows with them", 12, 100000);
   table.Add("min_points", &min_points, "-", "fewer certain points in the last frame make no map", 12, 100000);
+  table.Add("max_correlation", &max_correlation, "-",
+            "of the errors of neighbours under a rigid motion: above, the scene deforms", -1, 1);
+  table.Add("certain_depth_sigma", &certain_depth_sigma, "-",
+            "a point is certain whose standard deviation of depth by the median depth is not larger", 1e-4, 10);
+  table.Add("last_depth_sigma", &last_depth_sigma, "-", "the same at last_frame: it grows from deforming_frame on",
+            1e-4, 10);
   table.Add("max_depth_sigma", &max_depth_sigma, "-",
-            "a point whose standard deviation of depth by the median depth is larger stays out", 1e-4, 10);
+            "a point that is less certain than this, and than those two, stays out of the map", 1e-4, 10);
   table.Add("max_error_px", &max_error_px, "px", "a point with a larger error in the window stays out", 1e-3, 100);
   table.Add("min_certain_share", &min_certain_share, "-",
-            "wait while a smaller share of the points still seen is certain", 0, 1);
+            "wait while a smaller share of the points still seen is certain; it falls to 0 at last_frame", 0, 1);
   table.AddChoice("light", &light, "brightness as a hint of distance: the light is at the camera");
   table.Add("gamma", &gamma, "-", "of the camera's response, for the light", 0.1, 10);
   window.List(table);

@@ -5,12 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "pliant/base/statistics.h"
+#include "pliant/geometry/triangulation.h"
 #include "tracking/initial_map.h"
 
 namespace pliant {
@@ -27,28 +29,29 @@ struct CertainPoints {
   double median_error_px = 0;
 };
 
-CertainPoints ChooseCertain(const SolvedWindow& window, Certainty certainty, double focal_px,
-                            const WindowInitOptions& options) {
+CertainPoints ChooseCertain(const SolvedWindow& window, const MapDemands& demands, double focal_px,
+                            double max_error_px) {
   const DeformingSolution& solution = window.solution;
   std::vector<double> distances;
   for (const Eigen::Vector3d& position : solution.window.points_in_world) distances.push_back(position.norm());
   const std::vector<double> errors_px = PointErrorsPx(solution.window, focal_px);
-  const bool agreed = certainty == Certainty::kPredictedAndAgreed && !solution.sample_sigmas.empty();
+  const bool agreed = demands.certainty == Certainty::kPredictedAndAgreed && !solution.sample_sigmas.empty();
+  const bool deforms = !solution.window.modes.empty();
   CertainPoints points;
   points.median_distance = Median(distances);
   points.median_error_px = Median(errors_px);
   for (std::size_t i = 0; i < window.ids.size(); ++i) {
     const double log_sigma = std::hypot(solution.log_depth_sigmas[i], agreed ? solution.sample_sigmas[i] : 0.0);
     const double sigma = log_sigma * distances[i];
-    if (!(errors_px[i] <= options.max_error_px)) {
+    if (!(errors_px[i] <= max_error_px)) {
       points.rejected.push_back({window.ids[i], InitRejection::kReprojection});
-    } else if (!(sigma <= options.max_depth_sigma * points.median_distance)) {
+    } else if (!(sigma <= demands.max_sigma * points.median_distance)) {
       points.rejected.push_back({window.ids[i], InitRejection::kUncertainDepth});
     } else {
       points.ids.push_back(window.ids[i]);
       points.depth_sigmas.push_back(sigma);
       points.all_frames.points_in_world.push_back(solution.window.points_in_world[i]);
-      points.all_frames.modes.push_back(solution.window.modes[i]);
+      if (deforms) points.all_frames.modes.push_back(solution.window.modes[i]);
     }
   }
   return points;
@@ -62,17 +65,20 @@ int CountSeen(const InitFrame& frame, const std::vector<PointId>& ids) {
 }
 
 Status EnoughCertain(const InitInput& input, const SolvedWindow& window, const CertainPoints& points,
-                     WhenUncertain when_uncertain, const WindowInitOptions& options) {
+                     const MapDemands& demands, int min_points, double median_parallax_deg) {
+  std::vector<PointId> certain_ids;
+  for (std::size_t k = 0; k < points.ids.size(); ++k)
+    if (points.depth_sigmas[k] <= demands.certain_sigma * points.median_distance) certain_ids.push_back(points.ids[k]);
   const int seen = CountSeen(input.frames.back(), window.ids);
-  const int certain = CountSeen(input.frames.back(), points.ids);
-  const bool share_matters = when_uncertain == WhenUncertain::kWait;
-  if (certain >= options.min_points && (!share_matters || certain >= options.min_certain_share * seen))
-    return Status::Ok();
-  std::string needed = std::to_string(options.min_points);
-  if (share_matters) needed += " and " + Percent(options.min_certain_share);
+  const int certain = CountSeen(input.frames.back(), certain_ids);
+  if (certain >= min_points && certain >= demands.certain_share * seen) return Status::Ok();
+  std::string needed = std::to_string(min_points);
+  if (demands.certain_share > 0.0) needed += " and " + Percent(demands.certain_share);
   return {ErrorCode::kInsufficient, "the depth of " + std::to_string(certain) + " of " + std::to_string(seen) +
-                                        " points is certain, at least " + needed +
-                                        " are needed; move the camera sideways or forwards"};
+                                        " points is known to " + Digits(100.0 * demands.certain_sigma, 1) +
+                                        " % of the median depth, at least " + needed +
+                                        " must be; the median parallax is " + Digits(median_parallax_deg, 1) +
+                                        " deg: move the camera sideways or forwards"};
 }
 
 // Poses and courses of all frames, the points fixed.
@@ -119,13 +125,21 @@ void DropContradicting(double focal_px, double max_error_px, CertainPoints* poin
     points->ids[kept] = points->ids[i];
     points->depth_sigmas[kept] = points->depth_sigmas[i];
     all.points_in_world[kept] = all.points_in_world[i];
-    all.modes[kept] = all.modes[i];
+    if (!all.modes.empty()) all.modes[kept] = all.modes[i];
     ++kept;
   }
   points->ids.resize(kept);
   points->depth_sigmas.resize(kept);
   all.points_in_world.resize(kept);
-  all.modes.resize(kept);
+  if (!all.modes.empty()) all.modes.resize(kept);
+}
+
+// At the points of the solution, between the reference and the last view.
+double MedianParallaxDeg(const DeformingWindow& window) {
+  const Eigen::Vector3d center = window.cams_from_world.back().OriginInSource();
+  std::vector<double> angles;
+  for (const Eigen::Vector3d& point : window.points_in_world) angles.push_back(AngleBetween(point, point - center));
+  return Median(std::move(angles)) * 180.0 / std::numbers::pi;
 }
 
 void Measure(const CertainPoints& points, InitMeasurements* measured) {
@@ -170,13 +184,16 @@ Status FillOutcome(const InitInput& input, double nominal_depth_mm, CertainPoint
 
 }  // namespace
 
-Status MakeWindowMap(const InitInput& input, const SolvedWindow& window, Certainty certainty,
-                     WhenUncertain when_uncertain, const WindowInitOptions& options, double nominal_depth_mm,
-                     InitOutcome* outcome) {
+Status MakeWindowMap(const InitInput& input, const SolvedWindow& window, const MapDemands& demands,
+                     const WindowInitOptions& options, double nominal_depth_mm, InitOutcome* outcome) {
   const double focal_px = input.camera.MeanFocalLengthPx();
-  CertainPoints points = ChooseCertain(window, certainty, focal_px, options);
+  CertainPoints points = ChooseCertain(window, demands, focal_px, options.max_error_px);
   Measure(points, &outcome->measured);
-  if (Status status = EnoughCertain(input, window, points, when_uncertain, options); !status.ok()) return status;
+  outcome->measured.median_parallax_deg = MedianParallaxDeg(window.solution.window);
+  if (Status status =
+          EnoughCertain(input, window, points, demands, options.min_points, outcome->measured.median_parallax_deg);
+      !status.ok())
+    return status;
   if (Status status = LocateAllFrames(input, window, options, &points); !status.ok()) return status;
   DropContradicting(focal_px, options.max_error_px, &points);
   if (const int left = CountSeen(input.frames.back(), points.ids); left < options.min_points)
@@ -185,10 +202,12 @@ Status MakeWindowMap(const InitInput& input, const SolvedWindow& window, Certain
                                           std::to_string(options.min_points) + " must)"};
   Measure(points, &outcome->measured);
   if (Status status = FillOutcome(input, nominal_depth_mm, &points, outcome); !status.ok()) return status;
-  const bool agreed = certainty == Certainty::kPredictedAndAgreed;
-  outcome->reason = "first map of " + std::to_string(points.ids.size()) + " points from a deforming window of " +
+  const bool agreed = demands.certainty == Certainty::kPredictedAndAgreed;
+  outcome->reason = "first map of " + std::to_string(points.ids.size()) + " points from a " +
+                    (window.solution.window.modes.empty() ? "rigid" : "deforming") + " window of " +
                     std::to_string(input.frames.size()) + " frames, " + (agreed ? "" : "predicted ") + "depth noise " +
                     Digits(100.0 * outcome->measured.median_depth_sigma, 1) + " % of the median depth";
+  if (window.light_is_of_no_use) outcome->reason += ", without light, which says nothing of distance here";
   if (!agreed) outcome->reason += ", on which samples of the points do not agree";
   return Status::Ok();
 }

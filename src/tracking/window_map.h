@@ -11,16 +11,21 @@
 
 namespace pliant {
 
-// Whether to wait while many points are uncertain.
-enum class WhenUncertain { kWait, kTakeTheCertain };
-
 // By what a point is certain: the solution's prediction, and whether two samples of the points agree on it.
 enum class Certainty { kPredictedAndAgreed, kPredicted };
 
+// What a map must be.
+struct MapDemands {
+  Certainty certainty = Certainty::kPredictedAndAgreed;
+  // Of a point by the median depth: at most so much for it to be certain, and to enter the map.
+  double certain_sigma = 0;
+  double max_sigma = 0;
+  double certain_share = 0;  // of the points still seen, at least
+};
+
 // Fills the outcome in as a map of the whole input, scaled to the nominal depth. What is missing for one else: then
 // only the outcome's measurements are filled in.
-Status MakeWindowMap(const InitInput& input, const SolvedWindow& window, Certainty certainty,
-                     WhenUncertain when_uncertain, const WindowInitOptions& options, double nominal_depth_mm,
-                     InitOutcome* outcome);
+Status MakeWindowMap(const InitInput& input, const SolvedWindow& window, const MapDemands& demands,
+                     const WindowInitOptions& options, double nominal_depth_mm, InitOutcome* outcome);
 
 }  // namespace pliant

@@ -17,6 +17,8 @@ namespace {
 
 constexpr std::size_t kLeastPoints = 12;
 constexpr std::size_t kLeastFrames = 6;
+// A light that leaves more of the spread of log distances than this says nothing of distance.
+constexpr double kMostOfSpread = 0.8;
 
 // Spread evenly over the first `frames` frames.
 std::vector<std::size_t> ChooseViews(std::size_t frames, std::size_t most) {
@@ -93,7 +95,7 @@ Result<DeformingWindow> Start(const InitInput& input, const std::vector<std::siz
         map.ids.push_back(id);
         map.positions.push_back(position);
       }
-      const auto pose = LocateFrame(input.camera, frame, map, near, {});
+      const auto pose = LocateFrameRoughly(input.camera, frame, map, near);
       if (!pose.ok()) return pose.status();
       near = *pose;
     }
@@ -111,6 +113,14 @@ Result<DeformingWindow> Start(const InitInput& input, const std::vector<std::siz
     start.observations.insert(start.observations.end(), seen.begin(), seen.end());
   }
   return start;
+}
+
+// Of the points' log distances, as predicted and between samples.
+double MedianSigma(const DeformingSolution& solution) {
+  std::vector<double> sigmas = solution.log_depth_sigmas;
+  for (std::size_t i = 0; i < solution.sample_sigmas.size(); ++i)
+    sigmas[i] = std::hypot(sigmas[i], solution.sample_sigmas[i]);
+  return Median(std::move(sigmas));
 }
 
 }  // namespace
@@ -131,22 +141,55 @@ std::vector<DeformingObservation> SeenIn(const InitFrame& frame, const Camera& c
   return observations;
 }
 
-Result<SolvedWindow> SolveWindow(const InitInput& input, std::size_t frames, const WindowInitOptions& options,
-                                 double nominal_depth_mm) {
+Result<PreparedWindow> PrepareWindow(const InitInput& input, std::size_t frames, const WindowInitOptions& options,
+                                     double nominal_depth_mm) {
   if (frames < kLeastFrames)
     return {ErrorCode::kInsufficient, "a window takes at least " + std::to_string(kLeastFrames) + " frames"};
-  SolvedWindow window;
+  PreparedWindow window;
   window.views = ChooseViews(frames, static_cast<std::size_t>(options.views));
   window.ids = ChoosePoints(input, window.views, options);
   if (window.ids.size() < kLeastPoints)
     return {ErrorCode::kInsufficient,
             "only " + std::to_string(window.ids.size()) + " points were followed long enough"};
-  const auto start = Start(input, window.views, options, nominal_depth_mm, &window.ids);
+  auto start = Start(input, window.views, options, nominal_depth_mm, &window.ids);
   if (!start.ok()) return start.status();
-  auto solution = SolveDeformingWindow(*start, input.camera.MeanFocalLengthPx(), options.window, input.threads);
-  if (!solution.ok()) return solution.status();
-  window.solution = std::move(*solution);
+  window.start = std::move(*start);
   return window;
+}
+
+Result<SolvedWindow> SolveDeforming(const InitInput& input, const PreparedWindow& window,
+                                    const WindowInitOptions& options, double nominal_depth_mm) {
+  auto solution = SolveDeformingWindow(window.start, input.camera.MeanFocalLengthPx(), options.window, input.threads);
+  if (!solution.ok()) return solution.status();
+  SolvedWindow lit{window.views, window.ids, std::move(*solution), false};
+  if (lit.solution.light_error <= kMostOfSpread * lit.solution.log_distance_spread) return lit;
+  // The solution is wrong, or the light is: not at the camera, of another response, on tissue of many colours.
+  WindowInitOptions without = options;
+  without.light = LightCue::kOff;
+  const auto prepared = PrepareWindow(input, window.views.back() + 1, without, nominal_depth_mm);
+  if (!prepared.ok()) return lit;
+  auto unlit = SolveDeforming(input, *prepared, without, nominal_depth_mm);
+  if (!unlit.ok() || MedianSigma(unlit->solution) > MedianSigma(lit.solution)) return lit;
+  unlit->light_is_of_no_use = true;
+  return unlit;
+}
+
+Result<SolvedWindow> SolveRigid(const InitInput& input, const PreparedWindow& window,
+                                const WindowInitOptions& options) {
+  const double focal_px = input.camera.MeanFocalLengthPx();
+  const auto deforms = [&](double correlation) {
+    return Status(ErrorCode::kDegenerate,
+                  "the scene deforms: the errors of neighbours under a rigid motion are alike "
+                  "(correlation " +
+                      Digits(correlation, 2) + ")");
+  };
+  const auto correlation = RigidResidualCorrelation(window.start, focal_px, options.window);
+  if (!correlation.ok()) return correlation.status();
+  if (*correlation > options.max_correlation) return deforms(*correlation);
+  auto solution = SolveRigidWindow(window.start, focal_px, options.window);
+  if (!solution.ok()) return solution.status();
+  if (solution->residual_correlation > options.max_correlation) return deforms(solution->residual_correlation);
+  return SolvedWindow{window.views, window.ids, std::move(*solution), false};
 }
 
 }  // namespace pliant

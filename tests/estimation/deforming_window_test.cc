@@ -12,8 +12,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "estimation/deforming_costs.h"
+#include "estimation/deforming_equations.h"
+#include "estimation/deforming_terms.h"
 #include "estimation/light_depth.h"
+#include "estimation/mode_basis.h"
 #include "pliant/base/random.h"
 #include "pliant/base/statistics.h"
 #include "pliant/estimation/window_refinement.h"
@@ -217,40 +219,151 @@ TEST(DeformingWindow, RefusesWhatIsNoWindow) {
   EXPECT_EQ(SolveDeformingWindow(few, kFocalPx, {}).status().code(), ErrorCode::kInsufficient);
 }
 
-TEST(DeformingCosts, DerivativesMatchDifferences) {
-  const PointChart chart = PointChart::Across(Eigen::Vector3d(0.3, -0.2, 1).normalized());
-  const DeformingDirectionCost cost(chart, Eigen::Vector3d(0.25, -0.1, 1).normalized(), kFocalPx, 2);
-  const Eigen::Vector4d rotation = RotationExp(Eigen::Vector3d(0.1, -0.2, 0.05)).coeffs();
-  const Eigen::Vector3d translation(1, -2, 3);
-  const Eigen::Vector3d point(0.01, -0.02, std::log(50.0));
-  const Eigen::Vector2d courses(0.7, -1.1);
-  const Eigen::Matrix<double, 6, 1> modes = Eigen::Matrix<double, 6, 1>::LinSpaced(-2, 3);
-  std::array<Eigen::VectorXd, 5> blocks = {rotation, translation, point, courses, modes};
-  const auto evaluate = [&](std::array<double*, 5> jacobians) {
-    std::array<const double*, 5> parameters{};
-    for (std::size_t b = 0; b < 5; ++b) parameters[b] = blocks[b].data();
-    Eigen::Vector2d value;
-    EXPECT_TRUE(cost.Evaluate(parameters.data(), value.data(), jacobians[0] == nullptr ? nullptr : jacobians.data()));
-    return value;
-  };
-  std::array<Eigen::Matrix<double, 2, Eigen::Dynamic, Eigen::RowMajor>, 5> analytic;
-  std::array<double*, 5> pointers{};
-  for (std::size_t b = 0; b < 5; ++b) {
-    analytic[b].resize(2, blocks[b].size());
-    pointers[b] = analytic[b].data();
+// A window in the middle of things: courses, modes and nodes of a solution, everything a little off.
+struct Unsettled {
+  DeformingWindow window;
+  SurfaceNodes nodes;
+
+  Unsettled() {
+    const Scene scene(6);
+    window = scene.Start(0.1);
+    Random random(7);
+    const auto noise = [&](Eigen::Index rows, Eigen::Index cols, double sigma) {
+      return Eigen::MatrixXd::NullaryExpr(rows, cols, [&] { return random.Normal(sigma); }).eval();
+    };
+    window.courses = noise(2, 6, 1.0);
+    window.courses.col(0).setZero();
+    for (std::size_t i = 0; i < window.points_in_world.size(); ++i) window.modes.push_back(noise(3, 2, 0.2));
+    nodes = NodesAt(window.points_in_world, {0, 20, 40, 60, 80, 100});
+    nodes.modes = noise(6, 6, 0.2);
   }
-  evaluate(pointers);
-  for (std::size_t b = 1; b < 5; ++b)  // a quaternion's are derivatives on the sphere alone, tested with RayResiduals
-    for (Eigen::Index k = 0; k < blocks[b].size(); ++k) {
-      const double kept = blocks[b][k];
-      blocks[b][k] = kept + kStep;
-      const Eigen::Vector2d after = evaluate({});
-      blocks[b][k] = kept - kStep;
-      const Eigen::Vector2d before = evaluate({});
-      blocks[b][k] = kept;
-      const Eigen::Vector2d difference = (after - before) / (2 * kStep);
-      EXPECT_LT((difference - analytic[b].col(k)).norm(), kDifference * (1 + difference.norm())) << b << " " << k;
+};
+
+TEST(DeformingTerms, GradientsMatchDifferences) {
+  const Unsettled start;
+  const DeformingTerms terms(start.window, start.nodes, kFocalPx, {});
+  DeformingState state = terms.Start();
+  for (const std::size_t point : {std::size_t{3}, std::size_t{77}}) {
+    const PointVector gradient = terms.Linearised(point, state, nullptr).gradient;
+    for (Eigen::Index k = 0; k < gradient.size(); ++k) {
+      double& value = state.points(k, static_cast<Eigen::Index>(point));
+      const double kept = value;
+      value = kept + kStep;
+      const double after = terms.PointCost(point, state).value();
+      value = kept - kStep;
+      const double before = terms.PointCost(point, state).value();
+      value = kept;
+      EXPECT_NEAR((after - before) / (2 * kStep), gradient[k], kDifference * gradient.norm()) << point << " " << k;
     }
+  }
+}
+
+// Where every point is at its best, the cost's slope by the rest is the same whether the points follow or not.
+TEST(DeformingEquations, SlopeMatchesDifferencesWhereThePointsAreSettled) {
+  const Unsettled start;
+  const DeformingTerms terms(start.window, start.nodes, kFocalPx, {});
+  DeformingState state = terms.Start();
+  for (std::size_t i = 0; i < terms.num_points(); ++i)
+    for (int sweep = 0; sweep < 200; ++sweep) {
+      const PointEquations equations = terms.Linearised(i, state, nullptr);
+      auto column = state.points.col(static_cast<Eigen::Index>(i));
+      const PointVector kept = column;
+      const PointVector step = equations.own.llt().solve(equations.gradient);
+      const double cost = terms.PointCost(i, state).value();
+      for (double share = 1.0; share > 1e-6; share *= 0.5) {
+        column = kept - share * step;
+        if (const auto after = terms.PointCost(i, state); after && *after <= cost) break;
+        column = kept;
+      }
+    }
+  for (const FreeParts free : {FreeParts::kAll, FreeParts::kViews}) {
+    const auto equations = DeformingEquations::At(terms, state, free, {});
+    ASSERT_TRUE(equations.has_value());
+    Random random(5);
+    for (int trial = 0; trial < 10; ++trial) {
+      Eigen::VectorXd direction(equations->slope().size());
+      for (double& value : direction) value = random.Normal(1.0);
+      const double after = terms.Cost(equations->Moved(state, kStep * direction)).value();
+      const double before = terms.Cost(equations->Moved(state, -kStep * direction)).value();
+      EXPECT_NEAR((after - before) / (2 * kStep), equations->slope().dot(direction),
+                  1e-4 * equations->slope().norm() * direction.norm());
+    }
+  }
+}
+
+TEST(DeformingEquations, EliminatingThePointsChangesNoStep) {
+  // The same equations, whole: by differences of the gradient they would be Newton's, so they are put together from the
+  // points' and the views' shares here.
+  const Unsettled start;
+  const DeformingTerms terms(start.window, start.nodes, kFocalPx, {});
+  const DeformingState state = terms.Start();
+  const auto equations = DeformingEquations::At(terms, state, FreeParts::kAll, {});
+  ASSERT_TRUE(equations.has_value());
+  const Eigen::VectorXd step = equations->NewtonStep();
+  const Eigen::MatrixXd point_steps = equations->PointSteps(step);
+  // A point's own row: own * dx + sum_v by_point' by_view dv + nodes + offset = - gradient.
+  for (const std::size_t point : {std::size_t{3}, std::size_t{77}}) {
+    std::vector<SeenEquations> seen;
+    const PointEquations own = terms.Linearised(point, state, &seen);
+    PointVector row = own.own * point_steps.col(static_cast<Eigen::Index>(point));
+    for (std::size_t k = 0; k < seen.size(); ++k)
+      if (const int view = terms.seen(point)[k].view_idx; view > 0)
+        row += seen[k].by_point.transpose() *
+               (seen[k].by_view * step.segment((view - 1) * terms.view_size(), terms.view_size()));
+    const Eigen::Index nodes_at = (terms.num_views() - 1) * terms.view_size();
+    for (const NodeWeight& node : terms.nodes(point))
+      row.tail(terms.modes_size()) -= terms.node_pull(point) * node.weight *
+                                      step.segment(nodes_at + node.node_idx * terms.modes_size(), terms.modes_size());
+    row[2] += own.by_offset * step[step.size() - 1];
+    EXPECT_LT((row + own.gradient).norm(), 1e-5 * own.gradient.norm()) << point;
+  }
+}
+
+TEST(DeformingWindow, TellsARigidSceneFromOneThatDeformsALittle) {
+  Scene rigid;
+  rigid.amplitude_mm = 0;
+  Scene breathing;
+  breathing.amplitude_mm = 0.3;
+  const auto still = RigidResidualCorrelation(rigid.Start(0), kFocalPx, {});
+  const auto moving = RigidResidualCorrelation(breathing.Start(0), kFocalPx, {});
+  ASSERT_TRUE(still.ok() && moving.ok());
+  EXPECT_LT(*still, 0.15);
+  EXPECT_GT(*moving, 0.5);
+}
+
+TEST(DeformingWindow, SolvesARigidSceneAsOne) {
+  Scene scene;
+  scene.amplitude_mm = 0;
+  const auto solution = SolveRigidWindow(scene.Start(0), kFocalPx, {});
+  ASSERT_TRUE(solution.ok()) << solution.status().message();
+  EXPECT_EQ(solution->window.courses.rows(), 0);
+  EXPECT_LT(std::abs(solution->residual_correlation), 0.15);
+  for (const int view : {0, 12}) {
+    const std::vector<double> errors = scene.DepthErrors(solution->window, view);
+    EXPECT_LT(Median(errors), 0.1 * kShape);
+    int within = 0;
+    for (std::size_t i = 0; i < errors.size(); ++i) within += errors[i] < 3 * solution->log_depth_sigmas[i] ? 1 : 0;
+    EXPECT_GT(within, 0.95 * static_cast<double>(errors.size()));
+  }
+}
+
+TEST(SurfaceNodes, WeightsSumToOneAndANodesOwnPointIsItsAlone) {
+  const Scene scene;
+  const SurfaceNodes nodes = NodesAt(scene.points, {0, 20, 40, 60, 80, 100, 120});
+  const std::vector<NodesOfPoint> around = NodesAround(scene.points, nodes.positions);
+  for (const NodesOfPoint& of : around) {
+    double sum = 0;
+    for (const NodeWeight& weight : of.weights) sum += weight.weight;
+    EXPECT_NEAR(sum, 1.0, kRounding);
+    EXPECT_LE(of.weights.size(), 4U);
+  }
+  EXPECT_EQ(around[20].distance, 0.0);
+  EXPECT_EQ(around[20].weights.front().node_idx, 1);
+  // A linear field's gradient is found.
+  SurfaceNodes linear = nodes;
+  linear.modes.resize(3, 7);
+  for (Eigen::Index n = 0; n < 7; ++n) linear.modes.col(n) = 0.5 * linear.positions[static_cast<std::size_t>(n)];
+  EXPECT_NEAR(SizesOf(linear).gradient, 0.5 / std::sqrt(3.0), kRounding);
 }
 
 TEST(LightDepth, ATiltedSurfaceIsDarkerNotFurther) {
@@ -264,14 +377,14 @@ TEST(LightDepth, ATiltedSurfaceIsDarkerNotFurther) {
     positions.push_back(-50.0 / normal.dot(ray) * ray);
     light.push_back(std::log(positions.back().norm()) - 0.4 * std::log(std::abs(normal.dot(ray))));
   }
-  EXPECT_LT(LightError(positions, light), 0.01);
+  EXPECT_LT(CompareWithLight(positions, light).error, 0.01);
   // A surface at the same rays that is another one does not fit.
   std::vector<Eigen::Vector3d> flat;
   for (const Eigen::Vector3d& position : positions) flat.push_back(50 * position.normalized());
-  EXPECT_GT(LightError(flat, light), 0.05);
+  EXPECT_GT(CompareWithLight(flat, light).error, 0.05);
   light.resize(10);
   positions.resize(10);
-  EXPECT_EQ(LightError(positions, light), 0);
+  EXPECT_EQ(CompareWithLight(positions, light).error, 0);
 }
 
 TEST(LightDepth, BrightnessFallsWithTheSquareOfTheDistance) {

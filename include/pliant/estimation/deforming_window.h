@@ -45,6 +45,8 @@ struct DeformingWindow {
   Eigen::Vector3d Position(int point_idx, int view_idx) const;
 };
 
+constexpr int kMaxWindowRank = 4;
+
 struct DeformingWindowOptions {
   int rank = 3;                      // R; with light one less is tried too
   double loss_scale_px = 0.15;       // Cauchy loss
@@ -53,23 +55,28 @@ struct DeformingWindowOptions {
   double acceleration_sigma = 0.02;  // of a course's second derivative, 1/frame^2
   double light_sigma = 2.0;          // of log distance from brightness; large, because neighbours err alike
   int neighbors = 6;                 // of the smoothness over the surface
-  int sample_points = 150;           // in each of the two samples that are solved first
-  int max_iterations = 30;           // of one solution; half of it for the last
+  int nodes = 16;                    // of the surface, at which modes are free; between them they are interpolated
+  int sample_points = 80;            // in each of the two samples that are solved first
+  int max_iterations = 12;           // of one solution; half of it for the last
 
   void List(OptionTable& table);  // group "Window"
 };
 
 struct DeformingSolution {
   DeformingWindow window;
-  // Predicted standard deviation of log |X_i|, from noise of loss_scale_px, with what the deformation may be taken into
-  // account; relative to the gauge (W7). Infinite where it cannot be computed.
+  // Predicted standard deviation of log |X_i|, with noise and deformation of the sizes that were found (W12); relative
+  // to the gauge (W7). Infinite where it cannot be computed.
   std::vector<double> log_depth_sigmas;
   // Standard deviation of log distance between the solutions of two samples of the points, over the window (W10): what
   // the linear prediction does not see, another minimum. Infinite where one sample has no solution, and empty where
   // there were too few points for two samples.
   std::vector<double> sample_sigmas;
   double cost = 0;
-  double light_error = 0;  // median deviation of log distance from what the light says (W8); 0: the light says nothing
+  // How much alike the errors of neighbours are (W11): about 0 where the window explains all but noise, near 1 where
+  // the scene moves in ways that it has not.
+  double residual_correlation = 0;
+  double light_error = 0;  // median deviation of log distance from what the light says (W8); 0: there is no light
+  double log_distance_spread = 0;  // the same from one distance for all: a light that says something is well below it
 };
 
 // Solves the window from a rigid start: `start` has times, poses, points and observations, and no courses. Images alone
@@ -84,6 +91,15 @@ struct DeformingSolution {
 Result<DeformingSolution> SolveDeformingWindow(const DeformingWindow& start, double focal_px,
                                                const DeformingWindowOptions& options, int threads = 1);
 
+// The same of a scene that does not deform: no courses, and no samples.
+Result<DeformingSolution> SolveRigidWindow(const DeformingWindow& start, double focal_px,
+                                           const DeformingWindowOptions& options);
+
+// Whether a scene is rigid, asked of a sample of its points alone: their residual_correlation (W11) in the rigid
+// solution.
+Result<double> RigidResidualCorrelation(const DeformingWindow& start, double focal_px,
+                                        const DeformingWindowOptions& options);
+
 // Poses and courses of more views of a solved window's points, which stay as they are with their modes: `views` has a
 // start of every view's pose and courses. The first view stays as it is. Fails like SolveDeformingWindow.
 Result<DeformingWindow> LocateDeformingViews(const DeformingWindow& views, double focal_px,
@@ -92,6 +108,9 @@ Result<DeformingWindow> LocateDeformingViews(const DeformingWindow& views, doubl
 // Root mean square error of each point over its views but the reference, which the start was made of; infinite for a
 // point that no other view sees.
 std::vector<double> PointErrorsPx(const DeformingWindow& window, double focal_px);
+
+// Correlation of the errors of points that are neighbours in the reference, over all views, from -1 to 1.
+double ResidualCorrelation(const DeformingWindow& window);
 
 // -(gamma / 2) log(brightness / 255): log distance up to a constant, for a light at the camera, whose falloff is with
 // the square of the distance, and a response of `gamma`. NaN for a brightness that is not above 0.

@@ -1,0 +1,81 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// The normal equations of a deforming window with the points eliminated (Schur complement): what is left, views,
+// courses, modes of the nodes and the light's offset, is small and dense. Scale is free in them; steps and variances
+// are those that keep the mean log distance of the gauge's points.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <Eigen/Cholesky>
+
+#include "estimation/deforming_terms.h"
+
+namespace pliant {
+
+enum class FreeParts {
+  kAll,    // but the first view
+  kViews,  // and their courses
+};
+
+class DeformingEquations {
+ public:
+  // Nothing where they have no solution. `gauge`: points; none for FreeParts::kViews.
+  static std::optional<DeformingEquations> At(const DeformingTerms& terms, const DeformingState& state, FreeParts free,
+                                              const std::vector<int>& gauge);
+
+  // Of the cost as a function of what is left, the points following: slope, and curvature L L'.
+  const Eigen::VectorXd& slope() const { return slope_; }
+  Eigen::VectorXd CurvatureTimes(const Eigen::VectorXd& x) const;
+  Eigen::VectorXd CurvatureDiagonal() const;
+  // By how much the linear model says that the cost falls when the points alone follow.
+  double settled() const { return settled_; }
+
+  Eigen::VectorXd NewtonStep() const;
+  // `step` without its part that changes the scale, in the metric of the diagonal `metric`.
+  Eigen::VectorXd WithoutScale(const Eigen::VectorXd& step, const Eigen::VectorXd& metric) const;
+  // The points' steps that go with one of the rest, a column each.
+  Eigen::MatrixXd PointSteps(const Eigen::VectorXd& step) const;
+  // Of the log distances.
+  std::vector<double> Variances() const;
+
+  // The state after a step of what is left, and of the points.
+  DeformingState Moved(const DeformingState& state, const Eigen::VectorXd& step) const;
+
+ private:
+  DeformingEquations(const DeformingTerms& terms, FreeParts free) : terms_(&terms), free_(free) {}
+
+  Eigen::Index ViewPlace(int view_idx) const { return (view_idx - 1) * terms_->view_size(); }  // negative: not free
+  Eigen::Index NodePlace(Eigen::Index node) const;
+  Eigen::Index OffsetPlace() const { return NodePlace(terms_->num_nodes()); }
+  Eigen::Index Size() const { return free_ == FreeParts::kAll ? OffsetPlace() + 1 : NodePlace(0); }
+
+  void AddPriors(const DeformingState& state);
+  void AddViews(std::size_t point, const std::vector<SeenEquations>& seen);
+  bool Eliminate(std::size_t point, const PointEquations& own, const std::vector<SeenEquations>& seen);
+  bool Factorise(const std::vector<int>& gauge);
+  Eigen::VectorXd ByPoint(std::size_t point, const PointVector& factor) const;
+  PointVector ByRest(std::size_t point, const Eigen::VectorXd& step) const;
+
+  // A point's equations: its inverse, and what couples it to the rest.
+  struct Point {
+    PointMatrix inverse;
+    PointVector gradient;
+    Eigen::MatrixXd by_views;  // columns of the free views that see it, in their order
+    double by_offset = 0;
+  };
+
+  const DeformingTerms* terms_;
+  FreeParts free_;
+  std::vector<Point> points_;
+  Eigen::MatrixXd curvature_;  // the lower triangle
+  Eigen::VectorXd slope_;
+  Eigen::LLT<Eigen::MatrixXd> factors_;
+  double settled_ = 0;
+  std::vector<int> gauge_;
+  Eigen::VectorXd scale_;  // what is left of the mean log distance of the gauge's points, by what is left
+};
+
+}  // namespace pliant

@@ -1,0 +1,121 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// The terms of a deforming window (docs/method.md, eq. W2 to W6): their cost, and their linear equations a point.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "estimation/light_depth.h"
+#include "estimation/mode_basis.h"
+#include "estimation/point_chart.h"
+#include "pliant/estimation/deforming_window.h"
+
+namespace pliant {
+
+constexpr int kMaxPointSize = 3 + 3 * kMaxWindowRank;
+constexpr int kMaxViewSize = 6 + kMaxWindowRank;
+template <int kRows, int kMaxRows, int kMaxCols>
+using SmallMatrix = Eigen::Matrix<double, kRows, Eigen::Dynamic, Eigen::ColMajor, kMaxRows, kMaxCols>;
+using PointVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxPointSize, 1>;
+using PointMatrix = SmallMatrix<Eigen::Dynamic, kMaxPointSize, kMaxPointSize>;
+
+// What is solved for.
+struct DeformingState {
+  std::vector<Rigid3> cams_from_world;
+  Eigen::MatrixXd courses;     // R x views
+  Eigen::MatrixXd points;      // a column a point: its chart's parameters, then its modes, column by column
+  Eigen::MatrixXd node_modes;  // a column a node
+  double light_offset = 0;
+};
+
+// A point's observation in units of its standard deviation, its loss taken in: error and derivatives by the point and
+// by the view (a turn of the camera, translation, courses).
+struct SeenEquations {
+  Eigen::Vector2d error;
+  SmallMatrix<2, 2, kMaxPointSize> by_point;
+  SmallMatrix<2, 2, kMaxViewSize> by_view;
+};
+
+// A point's share of the normal equations but for the views.
+struct PointEquations {
+  PointMatrix own;
+  PointVector gradient;
+  double by_offset = 0;         // second derivative by its log distance and the light's offset
+  double offset_gradient = 0;   // by the light's offset
+  PointVector node_difference;  // of its modes from what the nodes say; nothing where there are no courses
+};
+
+class DeformingTerms {
+ public:
+  // Slopes, sizes and the nodes around a point are those of `start`.
+  DeformingTerms(const DeformingWindow& start, const SurfaceNodes& nodes, double focal_px,
+                 const DeformingWindowOptions& options);
+
+  // An observation that is measured, of the point in whose list it is.
+  struct Seen {
+    int view_idx = 0;
+    Eigen::Vector3d ray;
+    RayBasis basis;
+  };
+
+  int rank() const { return rank_; }
+  Eigen::Index num_views() const { return static_cast<Eigen::Index>(start_.times.size()); }
+  Eigen::Index num_nodes() const { return node_form_.rows(); }
+  std::size_t num_points() const { return charts_.size(); }
+  Eigen::Index view_size() const { return 6 + rank_; }
+  Eigen::Index modes_size() const { return 3 * rank_; }
+  Eigen::Index point_size() const { return 3 + 3 * rank_; }
+  const std::vector<Seen>& seen(std::size_t point) const { return seen_[point]; }  // by view
+  const std::vector<NodeWeight>& nodes(std::size_t point) const { return around_[point].weights; }
+  double node_pull(std::size_t point) const { return node_pull_[point]; }  // 1 / variance of node_difference
+  const Eigen::MatrixXd& node_form() const { return node_form_; }          // (W3), (W4) of one component, nodes square
+  const Eigen::MatrixXd& course_form() const { return course_form_; }      // (W5), all views but the first
+  double unmeasured_cost() const;  // of the observations of which no point is in front at the start
+
+  DeformingState Start() const;
+  DeformingWindow Window(const DeformingState& state) const;
+
+  // Nothing where a point is not in front of a ray.
+  std::optional<double> Cost(const DeformingState& state) const;
+  std::optional<double> PointCost(std::size_t point, const DeformingState& state) const;
+
+  // `seen` may be null; else it becomes one a measured observation.
+  PointEquations Linearised(std::size_t point, const DeformingState& state, std::vector<SeenEquations>* seen) const;
+
+ private:
+  struct Light {
+    double log_distance = 0;
+    double sigma = 1;
+    bool lit = false;
+  };
+
+  void TakeObservations();
+  void PrepareNodes(const SurfaceNodes& nodes);
+  void PrepareCourses();
+  void PrepareLight();
+  Eigen::Vector3d Position(std::size_t point, int view_idx, const Eigen::Vector3d& rest,
+                           const DeformingState& state) const;
+  PointVector NodeDifference(std::size_t point, const DeformingState& state) const;
+
+  DeformingWindow start_;
+  DeformingWindowOptions options_;
+  int rank_;
+  double scale_;  // pixels of an angle by their standard deviation
+  double median_distance_ = 1;
+  std::vector<PointChart> charts_;
+  std::vector<std::vector<Seen>> seen_;
+  int unmeasured_ = 0;
+  std::vector<NodesOfPoint> around_;
+  std::vector<double> node_pull_;
+  Eigen::MatrixXd node_modes_;  // at the start
+  Eigen::MatrixXd node_form_;
+  Eigen::MatrixXd course_form_;
+  std::vector<Light> lights_;
+  double light_offset_ = 0;  // at the start
+};
+
+}  // namespace pliant

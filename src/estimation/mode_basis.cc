@@ -1,0 +1,73 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "estimation/mode_basis.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace pliant {
+namespace {
+
+constexpr std::size_t kNearest = 4;
+
+}  // namespace
+
+SurfaceNodes NodesAt(const std::vector<Eigen::Vector3d>& points_in_world, const std::vector<int>& at) {
+  SurfaceNodes nodes;
+  for (const int point : at) nodes.positions.push_back(points_in_world[static_cast<std::size_t>(point)]);
+  return nodes;
+}
+
+ModeSizes SizesOf(const SurfaceNodes& nodes) {
+  const std::size_t count = nodes.positions.size();
+  if (count < 2) return {};
+  double gradients = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    double least = std::numeric_limits<double>::infinity();
+    std::size_t nearest = i;
+    for (std::size_t j = 0; j < count; ++j) {
+      const double distance = (nodes.positions[i] - nodes.positions[j]).norm();
+      if (j == i || !(distance > 0.0) || distance >= least) continue;
+      least = distance;
+      nearest = j;
+    }
+    gradients += (nodes.modes.col(static_cast<Eigen::Index>(i)) - nodes.modes.col(static_cast<Eigen::Index>(nearest)))
+                     .squaredNorm() /
+                 (least * least);
+  }
+  const auto entries = static_cast<double>(nodes.modes.size());
+  return {std::sqrt(nodes.modes.squaredNorm() / entries), std::sqrt(gradients / entries)};
+}
+
+std::vector<NodesOfPoint> NodesAround(const std::vector<Eigen::Vector3d>& points_in_world,
+                                      const std::vector<Eigen::Vector3d>& nodes_in_world) {
+  std::vector<NodesOfPoint> around;
+  for (const Eigen::Vector3d& point : points_in_world) {
+    std::vector<std::pair<double, int>> near;
+    for (std::size_t n = 0; n < nodes_in_world.size(); ++n)
+      near.emplace_back((nodes_in_world[n] - point).norm(), static_cast<int>(n));
+    const std::size_t count = std::min(kNearest + 1, near.size());
+    std::partial_sort(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(count), near.end());
+    NodesOfPoint of{.weights = {}, .distance = near.front().first};
+    const double reach = near[count - 1].first;
+    double sum = 0;
+    for (std::size_t k = 0; k + 1 < count; ++k) {
+      const double weight = std::pow(1.0 - near[k].first / reach, 2);
+      if (!(weight > 0.0)) continue;
+      of.weights.push_back({near[k].second, weight});
+      sum += weight;
+    }
+    if (of.weights.empty()) {  // all as far, or a single one
+      of.weights.push_back({near.front().second, 1.0});
+      sum = 1.0;
+    }
+    for (NodeWeight& weight : of.weights) weight.weight /= sum;
+    around.push_back(std::move(of));
+  }
+  return around;
+}
+
+}  // namespace pliant

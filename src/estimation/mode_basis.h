@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Modes that vary smoothly over the surface: what a point's modes are expected to be, from those of the nodes around it
+// (docs/method.md, eq. W3).
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace pliant {
+
+// Places of the surface with modes of their own.
+struct SurfaceNodes {
+  std::vector<Eigen::Vector3d> positions;  // world, in the reference
+  Eigen::MatrixXd modes;                   // a column a node: 3 x R, column by column
+};
+
+// At some of the points, without modes.
+SurfaceNodes NodesAt(const std::vector<Eigen::Vector3d>& points_in_world, const std::vector<int>& at);
+
+// Root mean squares over the nodes: of a mode's components, and of their difference from those of the nearest other
+// node by the distance to it. 0 where there are no two nodes.
+struct ModeSizes {
+  double size = 0;
+  double gradient = 0;
+};
+ModeSizes SizesOf(const SurfaceNodes& nodes);
+
+struct NodeWeight {
+  int node_idx = 0;
+  double weight = 0;
+};
+
+struct NodesOfPoint {
+  std::vector<NodeWeight> weights;  // of its nearest nodes; they sum to 1
+  double distance = 0;              // to the nearest one
+};
+
+// Weights that fall with the distance and vanish where a node ceases to be among the four nearest (Shepard).
+std::vector<NodesOfPoint> NodesAround(const std::vector<Eigen::Vector3d>& points_in_world,
+                                      const std::vector<Eigen::Vector3d>& nodes_in_world);
+
+}  // namespace pliant

@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Where a trust region's step is sought: in the plane of Newton's step and of steepest descent (Byrd, Schnabel, Shultz,
+// Mathematical Programming 1988).
+#pragma once
+
+#include <Eigen/Core>
+
+#include "estimation/deforming_equations.h"
+
+namespace pliant {
+
+class TrustPlane {
+ public:
+  explicit TrustPlane(const DeformingEquations& equations);
+
+  // In the metric of the curvature's diagonal.
+  double newton_length() const { return newton_length_; }
+
+  struct Step {
+    Eigen::VectorXd step;
+    double length = 0;
+    double change = 0;  // of the model's cost; negative
+  };
+  // The model's minimum within `radius`.
+  Step Best(double radius) const;
+
+ private:
+  double Change(const Eigen::Vector2d& x) const { return slope_.dot(x) + 0.5 * x.dot(curvature_ * x); }
+
+  Eigen::MatrixX2d axes_;  // orthonormal in the metric; the first is along Newton's step
+  Eigen::Vector2d slope_;
+  Eigen::Matrix2d curvature_;
+  double newton_length_ = 0;
+};
+
+}  // namespace pliant
