@@ -185,8 +185,7 @@ class Attempt {
     }
     double ratio = std::numeric_limits<double>::infinity();
     for (const PairMotion& rival : rivals)
-      if (!SameMotion(rival.cam1_from_cam0, motion_.cam1_from_cam0))
-        ratio = std::min(ratio, (rival.cost + floor) / (motion_.cost + floor));
+      if (!SameMotion(rival.cam1_from_cam0, motion_.cam1_from_cam0)) ratio = std::min(ratio, CostRatio(rival, floor));
     outcome_.measured.rival_cost_ratio = ratio;
     outcome_.measured.inliers = motion_.num_inliers;
     if (ratio >= options_.min_rival_cost_ratio) return EnoughParallax();
@@ -194,6 +193,22 @@ class Attempt {
             "a second camera motion fits as well (" + Digits(ratio, 2) + " times the cost, " +
                 Digits(options_.min_rival_cost_ratio, 2) +
                 " are needed): the points lie in a plane or move too little; more parallax or relief is needed"};
+  }
+
+  // Over the pairs that both agree with: an outlier that agrees with one alone, by chance, is no evidence.
+  double CostRatio(const PairMotion& rival, double floor) const {
+    std::vector<Eigen::Vector3d> rays0;
+    std::vector<Eigen::Vector3d> rays1;
+    for (std::size_t i = 0; i < rival.inliers.size(); ++i) {
+      if (rival.inliers[i] == 0 || motion_.inliers[i] == 0) continue;
+      rays0.push_back(matched_.rays0[i]);
+      rays1.push_back(matched_.rays1[i]);
+    }
+    const auto cost = [&](const PairMotion& motion) {
+      const auto assessed = AssessTwoView(motion.cam1_from_cam0, rays0, rays1, focal_px_, {});
+      return assessed.ok() ? assessed->cost + floor : std::numeric_limits<double>::infinity();
+    };
+    return cost(rival) / cost(motion_);
   }
 
   Status MakeMap() {

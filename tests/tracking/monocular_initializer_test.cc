@@ -239,6 +239,17 @@ TEST(MonocularInitializer, AsksForRivalsWhateverTheRefinement) {
   }
 }
 
+// Outliers that agree with one of a plane's two motions by chance are no evidence for it.
+TEST(MonocularInitializer, OutliersDoNotDecideBetweenAPlanesMotions) {
+  int maps = 0;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed)
+    for (const double noise_px : {0.1, 0.3}) {
+      const SceneOptions options{.surface = Surface::kPlane, .noise_px = noise_px, .outlier_share = 0.3, .seed = seed};
+      maps += Try(options, {.refinement = RigidRefinement::kTwoView}).decision == InitDecision::kMap ? 1 : 0;
+    }
+  EXPECT_LE(maps, 1);
+}
+
 TEST(MonocularInitializer, TheWindowReducesTheDepthNoiseOfTwoViews) {
   constexpr int kSeeds = 12;
   double two_view = 0;
