@@ -41,7 +41,7 @@ class DeformingEquations {
   // Of the log distances.
   std::vector<double> Variances() const;
 
-  // The state after a step of what is left, and of the points.
+  // The state after a step of what is left; the points stay.
   DeformingState Moved(const DeformingState& state, const Eigen::VectorXd& step) const;
 
  private:

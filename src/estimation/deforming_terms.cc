@@ -20,12 +20,6 @@ constexpr double kLeastSpacing = 0.04;
 constexpr double kFarSigma = 100.0;
 constexpr double kLightLoss = 1.5;  // in standard deviations
 
-double MedianDistance(const std::vector<Eigen::Vector3d>& positions) {
-  std::vector<double> distances;
-  for (const Eigen::Vector3d& position : positions) distances.push_back(position.norm());
-  return Median(std::move(distances));
-}
-
 // Cauchy's loss of a squared error in units of its scale, of unit curvature at zero, and its derivative.
 double Loss(double squared) { return std::log1p(squared); }
 double LossWeight(double squared) { return 1.0 / (1.0 + squared); }
@@ -35,6 +29,12 @@ double LightLoss(double error) { return kLightLoss * kLightLoss * Loss(std::pow(
 double LightWeight(double error) { return LossWeight(std::pow(error / kLightLoss, 2)); }
 
 }  // namespace
+
+double MedianDistance(const std::vector<Eigen::Vector3d>& positions) {
+  std::vector<double> distances;
+  for (const Eigen::Vector3d& position : positions) distances.push_back(position.norm());
+  return Median(std::move(distances));
+}
 
 DeformingTerms::DeformingTerms(const DeformingWindow& start, const SurfaceNodes& nodes, double focal_px,
                                const DeformingWindowOptions& options)

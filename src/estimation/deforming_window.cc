@@ -191,11 +191,12 @@ struct SampleProblem {
   const DeformingWindowOptions& options;
 };
 
-// All points, in the views of a part of them.
-Result<SolvedPart> Extended(const SampleProblem& common, const SolvedPart& part, const PointSample& sample) {
-  const DeformingWindow all = ExtendToAll(common.start, part.solution.window, sample);
+// All points, in the views of a part of them, with that part's modes at the nodes.
+Result<SolvedPart> Extended(const SampleProblem& common, const DeformingWindow& part, const Eigen::MatrixXd& node_modes,
+                            const PointSample& sample) {
+  const DeformingWindow all = ExtendToAll(common.start, part, sample);
   SurfaceNodes nodes = NodesAt(all.points_in_world, common.node_points);
-  nodes.modes = part.nodes.modes;
+  nodes.modes = node_modes;
   DeformingProblem problem(all, nodes, common.focal_px, common.options);
   const auto cost = problem.SettlePoints();
   if (!cost.ok()) return cost.status();
@@ -215,13 +216,12 @@ SampleSolutions SolveSample(const SampleProblem& common, const PointSample& samp
       solutions.emplace_back(cost.status());
       continue;
     }
-    SolvedPart solved = Taken(problem, *cost, std::move(nodes));
-    part = solved.solution.window;
-    nodes = solved.nodes;
+    part = problem.Window();
+    nodes.modes = problem.NodeModes();
     if (sample.size() < common.start.points_in_world.size())
-      solutions.push_back(Extended(common, solved, sample));
+      solutions.push_back(Extended(common, part, nodes.modes, sample));
     else
-      solutions.emplace_back(std::move(solved));
+      solutions.emplace_back(Taken(problem, *cost, nodes));
   }
   return solutions;
 }
@@ -285,9 +285,7 @@ std::vector<double> LogDepthSigmas(const SolvedPart& part, double focal_px, cons
   found.loss_scale_px = std::max(kLeastNoisePx, kCaution * Median(PointErrorsPx(window, focal_px)));
   if (window.courses.rows() > 0) {
     const ModeSizes sizes = SizesOf(part.nodes);
-    std::vector<double> distances;
-    for (const Eigen::Vector3d& point : window.points_in_world) distances.push_back(point.norm());
-    found.mode_sigma = std::max(kLeastSigma, kCaution * sizes.size / Median(std::move(distances)));
+    found.mode_sigma = std::max(kLeastSigma, kCaution * sizes.size / MedianDistance(window.points_in_world));
     found.gradient_sigma = std::max(kLeastSigma, kCaution * sizes.gradient);
   }
   return DeformingProblem(window, part.nodes, focal_px, found).LogDepthSigmas();
@@ -305,6 +303,10 @@ Eigen::Vector3d DeformingWindow::Position(int point_idx, int view_idx) const {
   const Eigen::Vector3d& rest = points_in_world[static_cast<std::size_t>(point_idx)];
   if (courses.rows() == 0) return rest;
   return rest + modes[static_cast<std::size_t>(point_idx)] * courses.col(view_idx);
+}
+
+double DeformingSolution::LogDepthSigma(std::size_t point) const {
+  return sample_sigmas.empty() ? log_depth_sigmas[point] : std::hypot(log_depth_sigmas[point], sample_sigmas[point]);
 }
 
 void DeformingWindowOptions::List(OptionTable& table) {

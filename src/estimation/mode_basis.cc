@@ -5,8 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
+
+#include "pliant/deformation/graph.h"
 
 namespace pliant {
 namespace {
@@ -22,21 +23,15 @@ SurfaceNodes NodesAt(const std::vector<Eigen::Vector3d>& points_in_world, const 
 }
 
 ModeSizes SizesOf(const SurfaceNodes& nodes) {
-  const std::size_t count = nodes.positions.size();
-  if (count < 2) return {};
+  if (nodes.positions.size() < 2) return {};
+  const NeighborLists nearest = NearestNeighbors(nodes.positions, 1);
   double gradients = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    double least = std::numeric_limits<double>::infinity();
-    std::size_t nearest = i;
-    for (std::size_t j = 0; j < count; ++j) {
-      const double distance = (nodes.positions[i] - nodes.positions[j]).norm();
-      if (j == i || !(distance > 0.0) || distance >= least) continue;
-      least = distance;
-      nearest = j;
-    }
-    gradients += (nodes.modes.col(static_cast<Eigen::Index>(i)) - nodes.modes.col(static_cast<Eigen::Index>(nearest)))
-                     .squaredNorm() /
-                 (least * least);
+  for (std::size_t i = 0; i < nodes.positions.size(); ++i) {
+    if (nearest[i].empty()) continue;
+    const int j = nearest[i].front();
+    const double squared = (nodes.positions[i] - nodes.positions[static_cast<std::size_t>(j)]).squaredNorm();
+    if (squared > 0.0)
+      gradients += (nodes.modes.col(static_cast<Eigen::Index>(i)) - nodes.modes.col(j)).squaredNorm() / squared;
   }
   const auto entries = static_cast<double>(nodes.modes.size());
   return {std::sqrt(nodes.modes.squaredNorm() / entries), std::sqrt(gradients / entries)};

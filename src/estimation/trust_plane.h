@@ -15,15 +15,12 @@ class TrustPlane {
  public:
   explicit TrustPlane(const DeformingEquations& equations);
 
-  // In the metric of the curvature's diagonal.
-  double newton_length() const { return newton_length_; }
-
   struct Step {
     Eigen::VectorXd step;
     double length = 0;
     double change = 0;  // of the model's cost; negative
   };
-  // The model's minimum within `radius`.
+  // The model's minimum within `radius`; lengths are in the metric of the curvature's diagonal.
   Step Best(double radius) const;
 
  private:

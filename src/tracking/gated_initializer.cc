@@ -5,6 +5,7 @@
 // every frame while waiting: counts, then the pure rotation, then RANSAC, refinement, parallax, rival motions; the
 // map's own refinement over all frames runs once, when everything else has passed.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -110,15 +111,20 @@ class Attempt {
                 " points agree with one rigid motion (at least " + Percent(options_.min_inlier_share) + " must)"};
   }
 
-  // Refines `start` by the options on those flagged in `used` and judges all correspondences by the result.
-  Status Refine(const Rigid3& start, const std::vector<char>& used, PairMotion* motion) const {
-    std::vector<Eigen::Vector3d> rays0;
-    std::vector<Eigen::Vector3d> rays1;
+  // The rays in both views of the correspondences flagged in `used`.
+  std::array<std::vector<Eigen::Vector3d>, 2> RaysOf(const std::vector<char>& used) const {
+    std::array<std::vector<Eigen::Vector3d>, 2> rays;
     for (std::size_t i = 0; i < used.size(); ++i) {
       if (used[i] == 0) continue;
-      rays0.push_back(matched_.rays0[i]);
-      rays1.push_back(matched_.rays1[i]);
+      rays[0].push_back(matched_.rays0[i]);
+      rays[1].push_back(matched_.rays1[i]);
     }
+    return rays;
+  }
+
+  // Refines `start` by the options on those flagged in `used` and judges all correspondences by the result.
+  Status Refine(const Rigid3& start, const std::vector<char>& used, PairMotion* motion) const {
+    const auto [rays0, rays1] = RaysOf(used);
     const auto refined = PairRefinement(options_.refinement)(start, rays0, rays1, focal_px_, {});
     if (!refined.ok()) return refined.status();
     PairMotion result;
@@ -197,13 +203,9 @@ class Attempt {
 
   // Over the pairs that both agree with: an outlier that agrees with one alone, by chance, is no evidence.
   double CostRatio(const PairMotion& rival, double floor) const {
-    std::vector<Eigen::Vector3d> rays0;
-    std::vector<Eigen::Vector3d> rays1;
-    for (std::size_t i = 0; i < rival.inliers.size(); ++i) {
-      if (rival.inliers[i] == 0 || motion_.inliers[i] == 0) continue;
-      rays0.push_back(matched_.rays0[i]);
-      rays1.push_back(matched_.rays1[i]);
-    }
+    std::vector<char> both = rival.inliers;
+    for (std::size_t i = 0; i < both.size(); ++i) both[i] &= motion_.inliers[i];
+    const auto [rays0, rays1] = RaysOf(both);
     const auto cost = [&](const PairMotion& motion) {
       const auto assessed = AssessTwoView(motion.cam1_from_cam0, rays0, rays1, focal_px_, {});
       return assessed.ok() ? assessed->cost + floor : std::numeric_limits<double>::infinity();

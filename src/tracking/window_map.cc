@@ -35,14 +35,13 @@ CertainPoints ChooseCertain(const SolvedWindow& window, const MapDemands& demand
   std::vector<double> distances;
   for (const Eigen::Vector3d& position : solution.window.points_in_world) distances.push_back(position.norm());
   const std::vector<double> errors_px = PointErrorsPx(solution.window, focal_px);
-  const bool agreed = demands.certainty == Certainty::kPredictedAndAgreed && !solution.sample_sigmas.empty();
+  const bool agreed = demands.certainty == Certainty::kPredictedAndAgreed;
   const bool deforms = !solution.window.modes.empty();
   CertainPoints points;
   points.median_distance = Median(distances);
   points.median_error_px = Median(errors_px);
   for (std::size_t i = 0; i < window.ids.size(); ++i) {
-    const double log_sigma = std::hypot(solution.log_depth_sigmas[i], agreed ? solution.sample_sigmas[i] : 0.0);
-    const double sigma = log_sigma * distances[i];
+    const double sigma = (agreed ? solution.LogDepthSigma(i) : solution.log_depth_sigmas[i]) * distances[i];
     if (!(errors_px[i] <= max_error_px)) {
       points.rejected.push_back({window.ids[i], InitRejection::kReprojection});
     } else if (!(sigma <= demands.max_sigma * points.median_distance)) {

@@ -115,11 +115,9 @@ Result<DeformingWindow> Start(const InitInput& input, const std::vector<std::siz
   return start;
 }
 
-// Of the points' log distances, as predicted and between samples.
 double MedianSigma(const DeformingSolution& solution) {
-  std::vector<double> sigmas = solution.log_depth_sigmas;
-  for (std::size_t i = 0; i < solution.sample_sigmas.size(); ++i)
-    sigmas[i] = std::hypot(sigmas[i], solution.sample_sigmas[i]);
+  std::vector<double> sigmas;
+  for (std::size_t i = 0; i < solution.log_depth_sigmas.size(); ++i) sigmas.push_back(solution.LogDepthSigma(i));
   return Median(std::move(sigmas));
 }
 

@@ -13,6 +13,7 @@
 // Scale is free in a monocular window; it stays that of the start (W7).
 #pragma once
 
+#include <cstddef>
 #include <limits>
 #include <vector>
 
@@ -77,6 +78,9 @@ struct DeformingSolution {
   double residual_correlation = 0;
   double light_error = 0;  // median deviation of log distance from what the light says (W8); 0: there is no light
   double log_distance_spread = 0;  // the same from one distance for all: a light that says something is well below it
+
+  // A point's log_depth_sigmas and, where there are samples, sample_sigmas together.
+  double LogDepthSigma(std::size_t point) const;
 };
 
 // Solves the window from a rigid start: `start` has times, poses, points and observations, and no courses. Images alone
