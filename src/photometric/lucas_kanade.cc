@@ -9,7 +9,7 @@
 #include <cmath>
 
 #include "photometric/patch_solution.h"
-#include "pliant/photometric/parallel.h"
+#include "pliant/base/parallel.h"
 #include "pliant/photometric/ssim.h"
 
 namespace pliant {

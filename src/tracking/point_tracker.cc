@@ -11,7 +11,7 @@
 #include <Eigen/LU>
 #include <Eigen/SVD>
 
-#include "pliant/photometric/parallel.h"
+#include "pliant/base/parallel.h"
 
 namespace pliant {
 namespace {
