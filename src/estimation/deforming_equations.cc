@@ -8,12 +8,16 @@
 #include <limits>
 #include <utility>
 
+#include "pliant/base/parallel.h"
+
 namespace pliant {
 namespace {
 
 // Keeps what nothing speaks of from making the equations singular; relative to the diagonal.
 constexpr double kLeastRidge = 1e-9;
 constexpr double kMostRidge = 1.0;
+// Parts of the points that are summed by themselves, on whatever threads there are.
+constexpr std::size_t kParts = 4;
 
 }  // namespace
 
@@ -22,17 +26,23 @@ Eigen::Index DeformingEquations::NodePlace(Eigen::Index node) const {
 }
 
 std::optional<DeformingEquations> DeformingEquations::At(const DeformingTerms& terms, const DeformingState& state,
-                                                         FreeParts free, const std::vector<int>& gauge) {
+                                                         FreeParts free, const std::vector<int>& gauge, int threads) {
   DeformingEquations equations(terms, free);
   equations.curvature_.setZero(equations.Size(), equations.Size());
   equations.slope_.setZero(equations.Size());
   equations.AddPriors(state);
-  equations.points_.resize(free == FreeParts::kAll ? terms.num_points() : 0);
-  std::vector<SeenEquations> seen;
-  for (std::size_t i = 0; i < terms.num_points(); ++i) {
-    const PointEquations own = terms.Linearised(i, state, &seen);
-    equations.AddViews(i, seen);
-    if (free == FreeParts::kAll && !equations.Eliminate(i, own, seen)) return std::nullopt;
+  equations.points_.resize(terms.num_points());
+  std::vector<Sums> parts(kParts);
+  ParallelFor(
+      static_cast<int>(kParts), threads,
+      [&](int part) {
+        parts[static_cast<std::size_t>(part)] = equations.SumOfPart(static_cast<std::size_t>(part), state);
+      },
+      1);
+  for (const Sums& part : parts) {
+    equations.curvature_ += part.curvature;
+    equations.slope_ += part.slope;
+    equations.settled_ += part.settled;
   }
   if (!equations.Factorise(gauge)) return std::nullopt;
   return equations;
@@ -60,18 +70,32 @@ void DeformingEquations::AddPriors(const DeformingState& state) {
   }
 }
 
-void DeformingEquations::AddViews(std::size_t point, const std::vector<SeenEquations>& seen) {
+DeformingEquations::Sums DeformingEquations::SumOfPart(std::size_t part, const DeformingState& state) {
+  Sums sums;
+  sums.curvature.setZero(Size(), Size());
+  sums.slope.setZero(Size());
+  const std::size_t count = terms_->num_points();
+  for (std::size_t i = part * count / kParts; i < (part + 1) * count / kParts; ++i) {
+    const PointEquations own = terms_->Linearised(i, state, &points_[i].seen);
+    AddViews(i, &sums);
+    if (free_ == FreeParts::kAll) Eliminate(i, own, &sums);
+  }
+  return sums;
+}
+
+void DeformingEquations::AddViews(std::size_t point, Sums* sums) const {
   const Eigen::Index size = terms_->view_size();
+  const std::vector<SeenEquations>& seen = points_[point].seen;
   for (std::size_t k = 0; k < seen.size(); ++k) {
     const Eigen::Index place = ViewPlace(terms_->seen(point)[k].view_idx);
     if (place < 0) continue;
-    curvature_.block(place, place, size, size).noalias() += seen[k].by_view.transpose().lazyProduct(seen[k].by_view);
-    slope_.segment(place, size).noalias() += seen[k].by_view.transpose().lazyProduct(seen[k].error);
+    sums->curvature.block(place, place, size, size).noalias() +=
+        seen[k].by_view.transpose().lazyProduct(seen[k].by_view);
+    sums->slope.segment(place, size).noalias() += seen[k].by_view.transpose().lazyProduct(seen[k].error);
   }
 }
 
-bool DeformingEquations::Eliminate(std::size_t point, const PointEquations& own,
-                                   const std::vector<SeenEquations>& seen) {
+void DeformingEquations::Eliminate(std::size_t point, const PointEquations& own, Sums* sums) {
   const Eigen::Index view_size = terms_->view_size();
   const Eigen::Index modes_size = terms_->modes_size();
   const Eigen::Index point_size = terms_->point_size();
@@ -79,58 +103,62 @@ bool DeformingEquations::Eliminate(std::size_t point, const PointEquations& own,
   PointMatrix damped = own.own;
   damped.diagonal() *= 1.0 + kLeastRidge;
   const Eigen::LLT<PointMatrix> factors(damped);
-  if (factors.info() != Eigen::Success) return false;
-  of.inverse = factors.solve(PointMatrix::Identity(point_size, point_size));
   of.gradient = own.gradient;
   of.by_offset = own.by_offset;
-  const PointVector settled = of.inverse * of.gradient;
-  settled_ += 0.5 * settled.dot(of.gradient);
-
-  // Views are ascending, the first one is not free.
-  std::vector<Eigen::Index> places;
-  of.by_views.resize(point_size, static_cast<Eigen::Index>(seen.size()) * view_size);
-  for (std::size_t k = 0; k < seen.size(); ++k) {
-    const Eigen::Index place = ViewPlace(terms_->seen(point)[k].view_idx);
-    if (place < 0) continue;
-    of.by_views.middleCols(static_cast<Eigen::Index>(places.size()) * view_size, view_size).noalias() =
-        seen[k].by_point.transpose().lazyProduct(seen[k].by_view);
-    places.push_back(place);
+  if (factors.info() != Eigen::Success) {
+    of.inverse.setZero(point_size, point_size);
+    return;
   }
-  of.by_views.conservativeResize(Eigen::NoChange, static_cast<Eigen::Index>(places.size()) * view_size);
-  const Eigen::MatrixXd weighted = of.inverse * of.by_views;
-  Eigen::MatrixXd product(of.by_views.cols(), of.by_views.cols());
-  product.triangularView<Eigen::Lower>() = of.by_views.transpose() * weighted;
-  for (std::size_t a = 0; a < places.size(); ++a)
-    for (std::size_t b = 0; b <= a; ++b)
-      curvature_.block(places[a], places[b], view_size, view_size) -= product.block(
-          static_cast<Eigen::Index>(a) * view_size, static_cast<Eigen::Index>(b) * view_size, view_size, view_size);
+  of.inverse = factors.solve(PointMatrix::Identity(point_size, point_size));
+  const PointVector settled = of.inverse * of.gradient;
+  sums->settled += 0.5 * settled.dot(of.gradient);
 
+  // What couples a point to a view has two rows, as the observation has: products are taken of those. Views are
+  // ascending, the first one is not free.
   const Eigen::Index offset = OffsetPlace();
-  for (std::size_t k = 0; k < places.size(); ++k)
-    curvature_.row(offset).segment(places[k], view_size) -=
-        of.by_offset * weighted.row(2).segment(static_cast<Eigen::Index>(k) * view_size, view_size);
-  curvature_(offset, offset) -= own.by_offset + of.by_offset * of.by_offset * of.inverse(2, 2);
-  slope_[offset] += own.offset_gradient;
-  if (modes_size > 0) {
-    const double pull = terms_->node_pull(point);
+  const double pull = modes_size > 0 ? terms_->node_pull(point) : 0.0;
+  SmallMatrix<Eigen::Dynamic, kMaxPointSize, 2> inverse_by_a(point_size, 2);
+  SmallMatrix<2, 2, kMaxViewSize> weighted(2, view_size);
+  SmallMatrix<Eigen::Dynamic, kMaxPointSize, kMaxViewSize> modes_by_a(modes_size, view_size);
+  for (std::size_t a = 0; a < of.seen.size(); ++a) {
+    const Eigen::Index place_a = ViewPlace(terms_->seen(point)[a].view_idx);
+    if (place_a < 0) continue;
+    const SeenEquations& of_a = of.seen[a];
+    inverse_by_a.noalias() = of.inverse.lazyProduct(of_a.by_point.transpose());
+    for (std::size_t b = 0; b <= a; ++b) {
+      const Eigen::Index place_b = ViewPlace(terms_->seen(point)[b].view_idx);
+      if (place_b < 0) continue;
+      const SeenEquations& of_b = of.seen[b];
+      const Eigen::Matrix2d between = inverse_by_a.transpose().lazyProduct(of_b.by_point.transpose());
+      weighted.noalias() = between.lazyProduct(of_b.by_view);
+      sums->curvature.block(place_a, place_b, view_size, view_size).noalias() -=
+          of_a.by_view.transpose().lazyProduct(weighted);
+    }
+    sums->curvature.row(offset).segment(place_a, view_size).noalias() -=
+        of.by_offset * inverse_by_a.row(2).lazyProduct(of_a.by_view);
+    if (modes_size == 0) continue;
+    modes_by_a.noalias() = pull * inverse_by_a.bottomRows(modes_size).lazyProduct(of_a.by_view);
+    for (const NodeWeight& node : terms_->nodes(point))
+      sums->curvature.block(NodePlace(node.node_idx), place_a, modes_size, view_size) += node.weight * modes_by_a;
+  }
+
+  sums->curvature(offset, offset) -= own.by_offset + of.by_offset * of.by_offset * of.inverse(2, 2);
+  sums->slope[offset] += own.offset_gradient;
+  if (modes_size > 0)
     for (const NodeWeight& a : terms_->nodes(point)) {
       const Eigen::Index place = NodePlace(a.node_idx);
       const double of_a = pull * a.weight;
-      slope_.segment(place, modes_size) -= of_a * own.node_difference;
-      for (std::size_t k = 0; k < places.size(); ++k)
-        curvature_.block(place, places[k], modes_size, view_size) +=
-            of_a * weighted.block(3, static_cast<Eigen::Index>(k) * view_size, modes_size, view_size);
+      sums->slope.segment(place, modes_size) -= of_a * own.node_difference;
       for (const NodeWeight& b : terms_->nodes(point)) {
         if (a.node_idx < b.node_idx) continue;
-        auto block = curvature_.block(place, NodePlace(b.node_idx), modes_size, modes_size);
+        auto block = sums->curvature.block(place, NodePlace(b.node_idx), modes_size, modes_size);
         block.diagonal().array() += of_a * b.weight;
         block -= of_a * pull * b.weight * of.inverse.bottomRightCorner(modes_size, modes_size);
       }
-      curvature_.row(offset).segment(place, modes_size) += of_a * of.by_offset * of.inverse.row(2).tail(modes_size);
+      sums->curvature.row(offset).segment(place, modes_size) +=
+          of_a * of.by_offset * of.inverse.row(2).tail(modes_size);
     }
-  }
-  slope_ -= ByPoint(point, settled);
-  return true;
+  sums->slope -= ByPoint(point, settled);
 }
 
 bool DeformingEquations::Factorise(const std::vector<int>& gauge) {
@@ -150,16 +178,14 @@ bool DeformingEquations::Factorise(const std::vector<int>& gauge) {
 
 // A point's share W' x of the equations that are left, and W x of its own.
 Eigen::VectorXd DeformingEquations::ByPoint(std::size_t point, const PointVector& factor) const {
-  const Eigen::Index view_size = terms_->view_size();
   const Eigen::Index modes_size = terms_->modes_size();
   const Point& of = points_[point];
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(Size());
-  Eigen::Index column = 0;
-  for (const DeformingTerms::Seen& seen : terms_->seen(point)) {
-    const Eigen::Index place = ViewPlace(seen.view_idx);
+  for (std::size_t k = 0; k < of.seen.size(); ++k) {
+    const Eigen::Index place = ViewPlace(terms_->seen(point)[k].view_idx);
     if (place < 0) continue;
-    sum.segment(place, view_size).noalias() += of.by_views.middleCols(column, view_size).transpose() * factor;
-    column += view_size;
+    const Eigen::Vector2d seen = of.seen[k].by_point.lazyProduct(factor);
+    sum.segment(place, terms_->view_size()).noalias() += of.seen[k].by_view.transpose().lazyProduct(seen);
   }
   if (modes_size > 0)
     for (const NodeWeight& node : terms_->nodes(point))
@@ -170,16 +196,14 @@ Eigen::VectorXd DeformingEquations::ByPoint(std::size_t point, const PointVector
 }
 
 PointVector DeformingEquations::ByRest(std::size_t point, const Eigen::VectorXd& step) const {
-  const Eigen::Index view_size = terms_->view_size();
   const Eigen::Index modes_size = terms_->modes_size();
   const Point& of = points_[point];
   PointVector sum = PointVector::Zero(terms_->point_size());
-  Eigen::Index column = 0;
-  for (const DeformingTerms::Seen& seen : terms_->seen(point)) {
-    const Eigen::Index place = ViewPlace(seen.view_idx);
+  for (std::size_t k = 0; k < of.seen.size(); ++k) {
+    const Eigen::Index place = ViewPlace(terms_->seen(point)[k].view_idx);
     if (place < 0) continue;
-    sum.noalias() += of.by_views.middleCols(column, view_size) * step.segment(place, view_size);
-    column += view_size;
+    const Eigen::Vector2d seen = of.seen[k].by_view.lazyProduct(step.segment(place, terms_->view_size()));
+    sum.noalias() += of.seen[k].by_point.transpose().lazyProduct(seen);
   }
   if (modes_size > 0)
     for (const NodeWeight& node : terms_->nodes(point))
@@ -208,14 +232,11 @@ Eigen::VectorXd DeformingEquations::WithoutScale(const Eigen::VectorXd& step, co
   return step - scale_.dot(step) / scale_.dot(by_scale) * by_scale;
 }
 
-Eigen::MatrixXd DeformingEquations::PointSteps(const Eigen::VectorXd& step) const {
-  Eigen::MatrixXd steps(terms_->point_size(), static_cast<Eigen::Index>(points_.size()));
-  for (std::size_t i = 0; i < points_.size(); ++i)
-    steps.col(static_cast<Eigen::Index>(i)) = points_[i].inverse * (-points_[i].gradient - ByRest(i, step));
-  return steps;
+PointVector DeformingEquations::PointStep(std::size_t point, const Eigen::VectorXd& step) const {
+  return points_[point].inverse * (-points_[point].gradient - ByRest(point, step));
 }
 
-std::vector<double> DeformingEquations::Variances() const {
+std::vector<double> DeformingEquations::Variances(int threads) const {
   // Of the whole equations' inverse the column of the gauge, by which the free scale is taken off.
   const Eigen::VectorXd rest_by_scale = -factors_.solve(scale_);
   Eigen::VectorXd by_scale(static_cast<Eigen::Index>(points_.size()));
@@ -226,14 +247,15 @@ std::vector<double> DeformingEquations::Variances() const {
     by_scale[i] += points_[static_cast<std::size_t>(i)].inverse(2, 2);
     scale_variance += by_scale[i];
   }
-  std::vector<double> variances;
-  for (std::size_t i = 0; i < points_.size(); ++i) {
-    const PointVector own = points_[i].inverse.col(2);
-    const Eigen::VectorXd half = factors_.matrixL().solve(ByPoint(i, own));
+  std::vector<double> variances(points_.size());
+  ParallelFor(static_cast<int>(points_.size()), threads, [&](int i) {
+    const auto point = static_cast<std::size_t>(i);
+    const PointVector own = points_[point].inverse.col(2);
+    const Eigen::VectorXd half = factors_.matrixL().solve(ByPoint(point, own));
     double variance = own[2] + half.squaredNorm();
-    if (!gauge_.empty()) variance -= std::pow(by_scale[static_cast<Eigen::Index>(i)], 2) / scale_variance;
-    variances.push_back(variance > 0.0 ? variance : std::numeric_limits<double>::infinity());
-  }
+    if (!gauge_.empty()) variance -= std::pow(by_scale[i], 2) / scale_variance;
+    variances[point] = own[2] > 0.0 && variance > 0.0 ? variance : std::numeric_limits<double>::infinity();
+  });
   return variances;
 }
 

@@ -23,8 +23,9 @@ enum class FreeParts {
 class DeformingEquations {
  public:
   // Nothing where they have no solution. `gauge`: points; none for FreeParts::kViews.
+  // `threads` never changes the result.
   static std::optional<DeformingEquations> At(const DeformingTerms& terms, const DeformingState& state, FreeParts free,
-                                              const std::vector<int>& gauge);
+                                              const std::vector<int>& gauge, int threads = 1);
 
   // Of the cost as a function of what is left, the points following: slope, and curvature L L'.
   const Eigen::VectorXd& slope() const { return slope_; }
@@ -36,10 +37,10 @@ class DeformingEquations {
   Eigen::VectorXd NewtonStep() const;
   // `step` without its part that changes the scale, in the metric of the diagonal `metric`.
   Eigen::VectorXd WithoutScale(const Eigen::VectorXd& step, const Eigen::VectorXd& metric) const;
-  // The points' steps that go with one of the rest, a column each.
-  Eigen::MatrixXd PointSteps(const Eigen::VectorXd& step) const;
-  // Of the log distances.
-  std::vector<double> Variances() const;
+  // A point's step that goes with one of the rest.
+  PointVector PointStep(std::size_t point, const Eigen::VectorXd& step) const;
+  // Of the log distances; infinite for a point that nothing determines.
+  std::vector<double> Variances(int threads = 1) const;
 
   // The state after a step of what is left; the points stay.
   DeformingState Moved(const DeformingState& state, const Eigen::VectorXd& step) const;
@@ -52,18 +53,26 @@ class DeformingEquations {
   Eigen::Index OffsetPlace() const { return NodePlace(terms_->num_nodes()); }
   Eigen::Index Size() const { return free_ == FreeParts::kAll ? OffsetPlace() + 1 : NodePlace(0); }
 
+  // What some of the points add.
+  struct Sums {
+    Eigen::MatrixXd curvature;  // the lower triangle
+    Eigen::VectorXd slope;
+    double settled = 0;
+  };
+
   void AddPriors(const DeformingState& state);
-  void AddViews(std::size_t point, const std::vector<SeenEquations>& seen);
-  bool Eliminate(std::size_t point, const PointEquations& own, const std::vector<SeenEquations>& seen);
+  Sums SumOfPart(std::size_t part, const DeformingState& state);
+  void AddViews(std::size_t point, Sums* sums) const;
+  void Eliminate(std::size_t point, const PointEquations& own, Sums* sums);
   bool Factorise(const std::vector<int>& gauge);
   Eigen::VectorXd ByPoint(std::size_t point, const PointVector& factor) const;
   PointVector ByRest(std::size_t point, const Eigen::VectorXd& step) const;
 
-  // A point's equations: its inverse, and what couples it to the rest.
+  // A point's equations: their inverse, and what couples it to the rest.
   struct Point {
-    PointMatrix inverse;
+    PointMatrix inverse;  // zero: nothing determines it, it stays where it is
     PointVector gradient;
-    Eigen::MatrixXd by_views;  // columns of the free views that see it, in their order
+    std::vector<SeenEquations> seen;
     double by_offset = 0;
   };
 

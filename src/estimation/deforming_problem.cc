@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include <Eigen/Cholesky>
 
 #include "estimation/trust_plane.h"
+#include "pliant/base/parallel.h"
 #include "pliant/base/statistics.h"
 
 namespace pliant {
@@ -29,19 +31,50 @@ PointVector Limited(const PointVector& step) {
   return kMostLogDepth / change * step;
 }
 
+constexpr int kLeastViews = 3;
+constexpr int kLeastPoints = 12;
+
 Status NoStart() { return {ErrorCode::kDegenerate, "the deforming window has no finite cost at its start"}; }
 
 }  // namespace
 
+Status CheckWindow(const DeformingWindow& window) {
+  const std::size_t views = window.cams_from_world.size();
+  const std::size_t points = window.points_in_world.size();
+  if (window.times.size() != views ||
+      (window.courses.rows() > 0 && window.courses.cols() != static_cast<Eigen::Index>(views)) ||
+      (window.courses.rows() > 0 && window.modes.size() != points))
+    return {ErrorCode::kInvalidArgument, "the parts of the deforming window differ in size"};
+  if (static_cast<int>(views) < kLeastViews || static_cast<int>(points) < kLeastPoints)
+    return {ErrorCode::kInsufficient, "a deforming window takes at least " + std::to_string(kLeastViews) +
+                                          " views and " + std::to_string(kLeastPoints) + " points; there are " +
+                                          std::to_string(views) + " and " + std::to_string(points)};
+  const auto finite = [](const Eigen::Vector3d& vector) { return vector.allFinite(); };
+  if (!std::all_of(window.points_in_world.begin(), window.points_in_world.end(), finite))
+    return {ErrorCode::kInvalidArgument, "a point of the deforming window is not a finite number"};
+  return CheckObservations(window.observations, views, points);
+}
+
+Status CheckObservations(const std::vector<DeformingObservation>& observations, std::size_t views, std::size_t points) {
+  for (const DeformingObservation& observation : observations)
+    if (!observation.ray.allFinite() || observation.view_idx < 0 ||
+        static_cast<std::size_t>(observation.view_idx) >= views || observation.point_idx < 0 ||
+        static_cast<std::size_t>(observation.point_idx) >= points)
+      return {ErrorCode::kInvalidArgument,
+              "an observation of the window has no ray, or names a view or point that is not there"};
+  return Status::Ok();
+}
+
 DeformingProblem::DeformingProblem(const DeformingWindow& start, const SurfaceNodes& nodes, double focal_px,
-                                   const DeformingWindowOptions& options)
-    : terms_(start, nodes, focal_px, options), state_(terms_.Start()), gauge_(GaugePoints(start)) {
+                                   const DeformingWindowOptions& options, std::size_t gauge_points)
+    : terms_(start, nodes, focal_px, options), state_(terms_.Start()), gauge_(GaugePoints(start, gauge_points)) {
   gauge_mean_ = GaugeMean(state_);
 }
 
-std::vector<int> DeformingProblem::GaugePoints(const DeformingWindow& start) const {
+std::vector<int> DeformingProblem::GaugePoints(const DeformingWindow& start, std::size_t candidates) const {
   std::vector<double> logs;
-  for (const Eigen::Vector3d& position : start.points_in_world) logs.push_back(std::log(position.norm()));
+  for (std::size_t i = 0; i < std::min(candidates, start.points_in_world.size()); ++i)
+    logs.push_back(std::log(start.points_in_world[i].norm()));
   const double farthest = Median(logs) + kGaugeReach;
   std::vector<int> near;
   for (std::size_t i = 0; i < logs.size(); ++i)
@@ -68,7 +101,23 @@ void DeformingProblem::HoldScale(DeformingState* state) const {
   for (Rigid3& pose : state->cams_from_world) pose.translation *= std::exp(change);
 }
 
-// A point by itself, everything else held: from where it is or where it was before, whichever is better, one step.
+// A point by itself, everything else held, one step from where it is at `cost`: what it costs then; nothing where none
+// is better.
+std::optional<double> DeformingProblem::Settled(std::size_t point, double cost, DeformingState* state) const {
+  auto column = state->points.col(static_cast<Eigen::Index>(point));
+  const PointVector values = column;
+  const PointEquations equations = terms_.Linearised(point, *state, nullptr);
+  const PointVector step = Limited(equations.own.llt().solve(equations.gradient));
+  for (const double share : {1.0, 0.5, 0.25}) {
+    column = values - share * step;
+    const auto after = terms_.PointCost(point, *state);
+    if (after && *after < cost) return after;
+  }
+  column = values;
+  return std::nullopt;
+}
+
+// From where a point is or where it was before, whichever is better, one step.
 void DeformingProblem::Settle(std::size_t point, const DeformingState& before, DeformingState* state) const {
   auto column = state->points.col(static_cast<Eigen::Index>(point));
   PointVector values = column;
@@ -80,33 +129,24 @@ void DeformingProblem::Settle(std::size_t point, const DeformingState& before, D
     cost = cost_before;
   }
   column = values;
-  if (!cost) return;
-  const PointEquations equations = terms_.Linearised(point, *state, nullptr);
-  const PointVector step = Limited(equations.own.llt().solve(equations.gradient));
-  for (const double share : {1.0, 0.5, 0.25}) {
-    column = values - share * step;
-    const auto after = terms_.PointCost(point, *state);
-    if (after && *after < *cost) return;
-  }
-  column = values;
+  if (cost) Settled(point, *cost, state);
 }
 
 // The points follow a step of the others: where the linear equations put them, then each by itself.
-DeformingState DeformingProblem::Moved(const DeformingEquations& equations, const Eigen::VectorXd& step,
-                                       FreeParts free) const {
+DeformingState DeformingProblem::Moved(const DeformingEquations& equations, const Eigen::VectorXd& step, FreeParts free,
+                                       int threads) const {
   DeformingState moved = equations.Moved(state_, step);
   if (free != FreeParts::kAll) return moved;
-  const Eigen::MatrixXd steps = equations.PointSteps(step);
-  for (std::size_t i = 0; i < terms_.num_points(); ++i) {
-    const auto column = static_cast<Eigen::Index>(i);
-    moved.points.col(column) += Limited(steps.col(column));
-    Settle(i, state_, &moved);
-  }
+  ParallelFor(static_cast<int>(terms_.num_points()), threads, [&](int i) {
+    const auto point = static_cast<std::size_t>(i);
+    moved.points.col(i) += Limited(equations.PointStep(point, step));
+    Settle(point, state_, &moved);
+  });
   HoldScale(&moved);
   return moved;
 }
 
-Result<double> DeformingProblem::Solve(int max_iterations, FreeParts free) {
+Result<double> DeformingProblem::Solve(int max_iterations, FreeParts free, int threads) {
   constexpr double kFirstRadius = 1e4;
   constexpr double kLeastRadius = 1e-12;
   constexpr double kLeastGain = 0.05;  // by what the linear model predicts: less is no step
@@ -119,13 +159,13 @@ Result<double> DeformingProblem::Solve(int max_iterations, FreeParts free) {
   double radius = kFirstRadius;
   bool done = false;
   for (int iteration = 0; iteration < max_iterations && !done; ++iteration) {
-    const auto equations = DeformingEquations::At(terms_, state_, free, gauge);
+    const auto equations = DeformingEquations::At(terms_, state_, free, gauge, threads);
     if (!equations) break;
     const TrustPlane plane(*equations);
     for (bool accepted = false; !accepted && !done;) {
       const TrustPlane::Step best = plane.Best(radius);
       const double predicted = equations->settled() - best.change;
-      const DeformingState candidate = Moved(*equations, best.step, free);
+      const DeformingState candidate = Moved(*equations, best.step, free, threads);
       const auto candidate_cost = terms_.Cost(candidate);
       const double gain = candidate_cost && predicted > 0.0 ? (*cost - *candidate_cost) / predicted : -1.0;
       accepted = gain > kLeastGain;
@@ -145,25 +185,30 @@ Result<double> DeformingProblem::Solve(int max_iterations, FreeParts free) {
   return *cost + terms_.unmeasured_cost();
 }
 
-Result<double> DeformingProblem::SettlePoints() {
-  constexpr int kMostSweeps = 10;
+Result<double> DeformingProblem::SettlePoints(int threads) {
+  constexpr int kMostSteps = 10;
   constexpr double kEnough = 10.0 * kTolerance;
-  auto cost = terms_.Cost(state_);
+  if (!terms_.Cost(state_)) return NoStart();
+  ParallelFor(static_cast<int>(terms_.num_points()), threads, [&](int i) {
+    const auto point = static_cast<std::size_t>(i);
+    double cost = *terms_.PointCost(point, state_);
+    for (int step = 0; step < kMostSteps; ++step) {
+      const auto after = Settled(point, cost, &state_);
+      if (!after) break;
+      const bool done = cost - *after < kEnough * cost;
+      cost = *after;
+      if (done) break;
+    }
+  });
+  const auto cost = terms_.Cost(state_);
   if (!cost) return NoStart();
-  for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
-    for (std::size_t i = 0; i < terms_.num_points(); ++i) Settle(i, state_, &state_);
-    const auto after = terms_.Cost(state_);
-    const bool done = !after || *cost - *after < kEnough * *cost;
-    if (after) cost = after;
-    if (done) break;
-  }
   return *cost + terms_.unmeasured_cost();
 }
 
-std::vector<double> DeformingProblem::LogDepthSigmas() const {
-  const auto equations = DeformingEquations::At(terms_, state_, FreeParts::kAll, gauge_);
+std::vector<double> DeformingProblem::LogDepthSigmas(int threads) const {
+  const auto equations = DeformingEquations::At(terms_, state_, FreeParts::kAll, gauge_, threads);
   if (!equations) return std::vector<double>(terms_.num_points(), std::numeric_limits<double>::infinity());
-  std::vector<double> sigmas = equations->Variances();
+  std::vector<double> sigmas = equations->Variances(threads);
   for (double& sigma : sigmas) sigma = std::sqrt(sigma);
   return sigmas;
 }

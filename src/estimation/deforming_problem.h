@@ -5,6 +5,8 @@
 // steps in a trust region, the points following each: several times as fast here as a general sparse solver.
 #pragma once
 
+#include <cstddef>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -15,29 +17,38 @@
 
 namespace pliant {
 
+// What a problem can be made of: kInvalidArgument for sizes, indices and numbers that are none, kInsufficient below
+// three views or twelve points.
+Status CheckWindow(const DeformingWindow& window);
+Status CheckObservations(const std::vector<DeformingObservation>& observations, std::size_t views, std::size_t points);
+
 class DeformingProblem {
  public:
-  // `nodes` have modes if the window has courses.
+  // `nodes` have modes if the window has courses. The scale is held by some of the first `gauge_points` points (W7).
   DeformingProblem(const DeformingWindow& start, const SurfaceNodes& nodes, double focal_px,
-                   const DeformingWindowOptions& options);
+                   const DeformingWindowOptions& options,
+                   std::size_t gauge_points = std::numeric_limits<std::size_t>::max());
 
   // The cost at the solution, what could not be measured included; kDegenerate when there is no finite start.
-  Result<double> Solve(int max_iterations, FreeParts free = FreeParts::kAll);
-  // As Solve, for the points and their modes alone; the rest stays and holds the scale.
-  Result<double> SettlePoints();
+  // `threads` never changes the result.
+  Result<double> Solve(int max_iterations, FreeParts free = FreeParts::kAll, int threads = 1);
+  // As Solve, for the points and their modes alone, each by itself; the rest stays and holds the scale.
+  Result<double> SettlePoints(int threads = 1);
 
   DeformingWindow Window() const { return terms_.Window(state_); }
   const Eigen::MatrixXd& NodeModes() const { return state_.node_modes; }
 
   // One a point, at the present values. See DeformingSolution.
-  std::vector<double> LogDepthSigmas() const;
+  std::vector<double> LogDepthSigmas(int threads = 1) const;
 
  private:
-  std::vector<int> GaugePoints(const DeformingWindow& start) const;
+  std::vector<int> GaugePoints(const DeformingWindow& start, std::size_t candidates) const;
   double GaugeMean(const DeformingState& state) const;
   void HoldScale(DeformingState* state) const;
+  std::optional<double> Settled(std::size_t point, double cost, DeformingState* state) const;
   void Settle(std::size_t point, const DeformingState& before, DeformingState* state) const;
-  DeformingState Moved(const DeformingEquations& equations, const Eigen::VectorXd& step, FreeParts free) const;
+  DeformingState Moved(const DeformingEquations& equations, const Eigen::VectorXd& step, FreeParts free,
+                       int threads) const;
 
   DeformingTerms terms_;
   DeformingState state_;

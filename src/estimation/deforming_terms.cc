@@ -30,19 +30,13 @@ double LightWeight(double error) { return LossWeight(std::pow(error / kLightLoss
 
 }  // namespace
 
-double MedianDistance(const std::vector<Eigen::Vector3d>& positions) {
-  std::vector<double> distances;
-  for (const Eigen::Vector3d& position : positions) distances.push_back(position.norm());
-  return Median(std::move(distances));
-}
-
 DeformingTerms::DeformingTerms(const DeformingWindow& start, const SurfaceNodes& nodes, double focal_px,
                                const DeformingWindowOptions& options)
     : start_(start),
       options_(options),
       rank_(static_cast<int>(start.courses.rows())),
       scale_(focal_px / options.loss_scale_px),
-      median_distance_(MedianDistance(start.points_in_world)) {
+      median_distance_(start.MedianDistance()) {
   for (const Eigen::Vector3d& position : start_.points_in_world)
     charts_.push_back(PointChart::Across(position.normalized()));
   TakeObservations();

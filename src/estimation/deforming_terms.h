@@ -23,9 +23,6 @@ using SmallMatrix = Eigen::Matrix<double, kRows, Eigen::Dynamic, Eigen::ColMajor
 using PointVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxPointSize, 1>;
 using PointMatrix = SmallMatrix<Eigen::Dynamic, kMaxPointSize, kMaxPointSize>;
 
-// Of the positions from the origin; there is at least one.
-double MedianDistance(const std::vector<Eigen::Vector3d>& positions);
-
 // What is solved for.
 struct DeformingState {
   std::vector<Rigid3> cams_from_world;

@@ -4,17 +4,17 @@
 #include "pliant/estimation/deforming_window.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 #include <future>
 #include <limits>
 #include <string>
+#include <utility>
 
 #include <Eigen/Eigenvalues>
 
+#include "estimation/deforming_judgement.h"
 #include "estimation/deforming_problem.h"
-#include "estimation/light_depth.h"
 #include "estimation/mode_basis.h"
 #include "estimation/ray_residuals.h"
 #include "estimation/window_samples.h"
@@ -24,8 +24,6 @@
 namespace pliant {
 namespace {
 
-constexpr int kLeastViews = 3;
-constexpr int kLeastPoints = 12;
 // The courses are first sought in the motions of points seen in this share of the views, and of so many in any case ...
 constexpr double kStartShare = 0.8;
 constexpr std::size_t kLeastStartPoints = 12;
@@ -37,30 +35,7 @@ constexpr double kClearlyBetter = 0.85;
 constexpr int kLastDivisor = 2;
 // Steps of a rigid solution by max_iterations: they are cheap, and one that has not arrived looks like a deforming
 // scene.
-constexpr int kRigidFactor = 4;
-
-Status CheckStart(const DeformingWindow& start) {
-  const std::size_t views = start.cams_from_world.size();
-  const std::size_t points = start.points_in_world.size();
-  if (start.times.size() != views ||
-      (start.courses.rows() > 0 && start.courses.cols() != static_cast<Eigen::Index>(views)) ||
-      (start.courses.rows() > 0 && start.modes.size() != points))
-    return {ErrorCode::kInvalidArgument, "the parts of the deforming window differ in size"};
-  if (static_cast<int>(views) < kLeastViews || static_cast<int>(points) < kLeastPoints)
-    return {ErrorCode::kInsufficient, "a deforming window takes at least " + std::to_string(kLeastViews) +
-                                          " views and " + std::to_string(kLeastPoints) + " points; there are " +
-                                          std::to_string(views) + " and " + std::to_string(points)};
-  const auto finite = [](const Eigen::Vector3d& vector) { return vector.allFinite(); };
-  if (!std::all_of(start.points_in_world.begin(), start.points_in_world.end(), finite))
-    return {ErrorCode::kInvalidArgument, "a point of the deforming window is not a finite number"};
-  for (const DeformingObservation& observation : start.observations)
-    if (!observation.ray.allFinite() || observation.view_idx < 0 ||
-        static_cast<std::size_t>(observation.view_idx) >= views || observation.point_idx < 0 ||
-        static_cast<std::size_t>(observation.point_idx) >= points)
-      return {ErrorCode::kInvalidArgument,
-              "an observation of the window has no ray, or names a view or point that is not there"};
-  return Status::Ok();
-}
+constexpr int kRigidFactor = 2;
 
 // Motions of the points across their first rays that the start's rigid scene leaves unexplained, in map units: two rows
 // a point, a column a view. Points seen in most views alone; where one is not seen, its motion is that of the view
@@ -133,55 +108,9 @@ void KeepStrongestCourses(int rank, DeformingWindow* window, SurfaceNodes* nodes
   window->courses.col(0).setZero();  // but for rounding it is
 }
 
-// The views by which a window's shape is judged: the first, the middle and the last.
-std::array<int, 3> JudgedViews(const DeformingWindow& window) {
-  const int views = static_cast<int>(window.cams_from_world.size());
-  return {0, views / 2, views - 1};
-}
-
-// (W8) How far the window's shape in the judged views is from what the light says of it, and from one distance for all;
-// zeros: no light.
-LightFit CompareWindowWithLight(const DeformingWindow& window) {
-  const std::array<int, 3> views = JudgedViews(window);
-  LightFit mean;
-  for (const int view : views) {
-    std::vector<Eigen::Vector3d> positions;
-    std::vector<double> log_light;
-    for (const DeformingObservation& observation : window.observations) {
-      if (observation.view_idx != view) continue;
-      positions.push_back(window.cams_from_world[static_cast<std::size_t>(view)] *
-                          window.Position(observation.point_idx, view));
-      log_light.push_back(observation.log_light);
-    }
-    const LightFit fit = CompareWithLight(positions, log_light);
-    if (!(fit.error > 0.0)) return {};
-    mean.error += fit.error / static_cast<double>(views.size());
-    mean.spread += fit.spread / static_cast<double>(views.size());
-  }
-  return mean;
-}
-
-// A solution with its nodes. Its light error is filled in where there is light, its sigmas are not.
-struct SolvedPart {
-  DeformingSolution solution;
-  SurfaceNodes nodes;
-};
-
-SolvedPart Taken(const DeformingProblem& problem, double cost, SurfaceNodes nodes) {
-  SolvedPart part;
-  part.solution.cost = cost;
-  part.solution.window = problem.Window();
-  const LightFit light = CompareWindowWithLight(part.solution.window);
-  part.solution.light_error = light.error;
-  part.solution.log_distance_spread = light.spread;
-  part.nodes = std::move(nodes);
-  part.nodes.modes = problem.NodeModes();
-  return part;
-}
-
 // A sample's solutions, each extended to all points: of `rank`, and then, each from the one before, down to
 // `last_rank`.
-using SampleSolutions = std::vector<Result<SolvedPart>>;
+using SampleSolutions = std::vector<Result<DeformingSolution>>;
 
 // What all samples of a window have in common.
 struct SampleProblem {
@@ -192,15 +121,15 @@ struct SampleProblem {
 };
 
 // All points, in the views of a part of them, with that part's modes at the nodes.
-Result<SolvedPart> Extended(const SampleProblem& common, const DeformingWindow& part, const Eigen::MatrixXd& node_modes,
-                            const PointSample& sample) {
+Result<DeformingSolution> Extended(const SampleProblem& common, const DeformingWindow& part,
+                                   const Eigen::MatrixXd& node_modes, const PointSample& sample) {
   const DeformingWindow all = ExtendToAll(common.start, part, sample);
   SurfaceNodes nodes = NodesAt(all.points_in_world, common.node_points);
   nodes.modes = node_modes;
   DeformingProblem problem(all, nodes, common.focal_px, common.options);
   const auto cost = problem.SettlePoints();
   if (!cost.ok()) return cost.status();
-  return Taken(problem, *cost, std::move(nodes));
+  return Taken(problem, *cost, nodes);
 }
 
 SampleSolutions SolveSample(const SampleProblem& common, const PointSample& sample, int rank, int last_rank) {
@@ -226,75 +155,30 @@ SampleSolutions SolveSample(const SampleProblem& common, const PointSample& samp
   return solutions;
 }
 
-// (W9) Whether `a` is the more plausible: minus the log likelihood by images and priors, and by the light, if both have
-// it, as one measurement a point of unknown spread.
-bool MorePlausible(const DeformingSolution& a, const DeformingSolution& b) {
-  double difference = a.cost - b.cost;
-  if (a.light_error > 0.0 && b.light_error > 0.0)
-    difference += static_cast<double>(a.window.points_in_world.size()) * std::log(a.light_error / b.light_error);
-  return difference < 0.0;
-}
-
 // The samples' solutions with this place in their lists; null where there is none.
-using SolvedParts = std::vector<const SolvedPart*>;
+using Solutions = std::vector<const DeformingSolution*>;
 
-SolvedParts SolutionsAt(std::size_t place, const std::vector<SampleSolutions>& samples) {
-  SolvedParts found;
+Solutions SolutionsAt(std::size_t place, const std::vector<SampleSolutions>& samples) {
+  Solutions found;
   for (const SampleSolutions& solutions : samples)
     found.push_back(place < solutions.size() && solutions[place].ok() ? &*solutions[place] : nullptr);
   return found;
 }
 
-const SolvedPart* MostPlausible(const SolvedParts& parts) {
-  const SolvedPart* best = nullptr;
-  for (const SolvedPart* part : parts)
-    if (part != nullptr && (best == nullptr || MorePlausible(part->solution, best->solution))) best = part;
+const DeformingSolution* MostPlausible(const Solutions& solutions) {
+  const DeformingSolution* best = nullptr;
+  for (const DeformingSolution* solution : solutions)
+    if (solution != nullptr && (best == nullptr || MorePlausible(*solution, *best))) best = solution;
   return best;
 }
 
-// (W10) One a point, of two samples' solutions; infinite where one has none, and empty for one sample.
-std::vector<double> SigmasBetween(const SolvedParts& parts, std::size_t points) {
-  if (parts.size() < 2) return {};
-  if (parts[0] == nullptr || parts[1] == nullptr)
-    return std::vector<double>(points, std::numeric_limits<double>::infinity());
-  const DeformingWindow& first = parts[0]->solution.window;
-  const DeformingWindow& second = parts[1]->solution.window;
-  const std::array<int, 3> views = JudgedViews(first);
-  std::vector<double> squares(points, 0.0);
-  for (const int view : views) {
-    const auto v = static_cast<std::size_t>(view);
-    std::vector<double> differences;
-    for (std::size_t i = 0; i < points; ++i)
-      differences.push_back(std::log((first.cams_from_world[v] * first.Position(static_cast<int>(i), view)).norm() /
-                                     (second.cams_from_world[v] * second.Position(static_cast<int>(i), view)).norm()));
-    const double scale = Median(differences);
-    for (std::size_t i = 0; i < points; ++i) squares[i] += std::pow(differences[i] - scale, 2);
-  }
-  for (double& square : squares) square = std::sqrt(square / (2.0 * static_cast<double>(views.size())));
-  return squares;
-}
-
-// Of a solution by what it turned out to be: its own errors as the noise, its own modes' sizes and differences as what
-// was to be expected of them, each times kCaution, because a solution adapts to the noise, and modes to their priors.
-std::vector<double> LogDepthSigmas(const SolvedPart& part, double focal_px, const DeformingWindowOptions& options) {
-  constexpr double kCaution = 2.0;
-  constexpr double kLeastNoisePx = 0.05;
-  constexpr double kLeastSigma = 0.01;
-  DeformingWindowOptions found = options;
-  const DeformingWindow& window = part.solution.window;
-  found.loss_scale_px = std::max(kLeastNoisePx, kCaution * Median(PointErrorsPx(window, focal_px)));
-  if (window.courses.rows() > 0) {
-    const ModeSizes sizes = SizesOf(part.nodes);
-    found.mode_sigma = std::max(kLeastSigma, kCaution * sizes.size / MedianDistance(window.points_in_world));
-    found.gradient_sigma = std::max(kLeastSigma, kCaution * sizes.gradient);
-  }
-  return DeformingProblem(window, part.nodes, focal_px, found).LogDepthSigmas();
-}
-
-DeformingSolution Judged(SolvedPart part, double focal_px, const DeformingWindowOptions& options) {
-  part.solution.log_depth_sigmas = LogDepthSigmas(part, focal_px, options);
-  part.solution.residual_correlation = ResidualCorrelation(part.solution.window);
-  return std::move(part.solution);
+// With what a solution says of itself.
+DeformingSolution Judged(DeformingSolution solution, double focal_px, const DeformingWindowOptions& options,
+                         int threads) {
+  solution.log_depth_sigmas = FoundLogDepthSigmas(solution, FoundNoisePx(solution.window, focal_px),
+                                                  solution.window.points_in_world.size(), focal_px, options, threads);
+  solution.residual_correlation = ResidualCorrelation(solution.window);
+  return solution;
 }
 
 }  // namespace
@@ -303,6 +187,12 @@ Eigen::Vector3d DeformingWindow::Position(int point_idx, int view_idx) const {
   const Eigen::Vector3d& rest = points_in_world[static_cast<std::size_t>(point_idx)];
   if (courses.rows() == 0) return rest;
   return rest + modes[static_cast<std::size_t>(point_idx)] * courses.col(view_idx);
+}
+
+double DeformingWindow::MedianDistance() const {
+  std::vector<double> distances;
+  for (const Eigen::Vector3d& position : points_in_world) distances.push_back(position.norm());
+  return Median(std::move(distances));
 }
 
 double DeformingSolution::LogDepthSigma(std::size_t point) const {
@@ -332,7 +222,7 @@ void DeformingWindowOptions::List(OptionTable& table) {
 
 Result<DeformingSolution> SolveDeformingWindow(const DeformingWindow& start, double focal_px,
                                                const DeformingWindowOptions& options, int threads) {
-  if (Status status = CheckStart(start); !status.ok()) return status;
+  if (Status status = CheckWindow(start); !status.ok()) return status;
   if (options.rank < 1 || options.rank > kMaxWindowRank || options.sample_points < 1)
     return {ErrorCode::kInvalidArgument, "a deforming window takes a rank from 1 to " + std::to_string(kMaxWindowRank) +
                                              " and 1 sample point or more"};
@@ -348,55 +238,45 @@ Result<DeformingSolution> SolveDeformingWindow(const DeformingWindow& start, dou
   std::vector<SampleSolutions> samples;
   for (std::future<SampleSolutions>& solved : solving) samples.push_back(solved.get());
 
-  SolvedParts of_rank = SolutionsAt(0, samples);
-  const SolvedPart* best = MostPlausible(of_rank);
-  const SolvedPart* lower = MostPlausible(SolutionsAt(1, samples));
-  const bool clearly_better = best != nullptr && lower != nullptr && lower->solution.light_error > 0.0 &&
-                              lower->solution.light_error < kClearlyBetter * best->solution.light_error;
+  Solutions of_rank = SolutionsAt(0, samples);
+  const DeformingSolution* best = MostPlausible(of_rank);
+  const DeformingSolution* lower = MostPlausible(SolutionsAt(1, samples));
+  const bool clearly_better = best != nullptr && lower != nullptr && lower->light_error > 0.0 &&
+                              lower->light_error < kClearlyBetter * best->light_error;
   if (clearly_better || best == nullptr) {
     best = lower;
     of_rank = SolutionsAt(1, samples);
   }
   if (best == nullptr) return samples.front().front().status();
 
-  DeformingProblem problem(best->solution.window, best->nodes, focal_px, options);
-  const auto cost = problem.Solve(std::max(1, options.max_iterations / kLastDivisor));
+  DeformingProblem problem(best->window, best->nodes, focal_px, options);
+  const auto cost = problem.Solve(std::max(1, options.max_iterations / kLastDivisor), FreeParts::kAll, threads);
   if (!cost.ok()) return cost.status();
-  DeformingSolution solution = Judged(Taken(problem, *cost, best->nodes), focal_px, options);
+  DeformingSolution solution = Judged(Taken(problem, *cost, best->nodes), focal_px, options, threads);
   solution.sample_sigmas = SigmasBetween(of_rank, start.points_in_world.size());
   return solution;
 }
 
 Result<DeformingSolution> SolveRigidWindow(const DeformingWindow& start, double focal_px,
-                                           const DeformingWindowOptions& options) {
-  if (Status status = CheckStart(start); !status.ok()) return status;
+                                           const DeformingWindowOptions& options, int threads) {
+  if (Status status = CheckWindow(start); !status.ok()) return status;
   DeformingWindow rigid = start;
   rigid.courses.resize(0, static_cast<Eigen::Index>(rigid.times.size()));
   rigid.modes.clear();
   DeformingProblem problem(rigid, {}, focal_px, options);
-  const auto cost = problem.Solve(kRigidFactor * options.max_iterations);
+  const auto cost = problem.Solve(kRigidFactor * options.max_iterations, FreeParts::kAll, threads);
   if (!cost.ok()) return cost.status();
-  return Judged(Taken(problem, *cost, {}), focal_px, options);
+  return Judged(Taken(problem, *cost, {}), focal_px, options, threads);
 }
 
 Result<double> RigidResidualCorrelation(const DeformingWindow& start, double focal_px,
                                         const DeformingWindowOptions& options) {
-  if (Status status = CheckStart(start); !status.ok()) return status;
+  if (Status status = CheckWindow(start); !status.ok()) return status;
   const DeformingWindow part = PartOf(start, SamplePoints(start, options.sample_points).front());
   DeformingProblem problem(part, {}, focal_px, options);
   const auto cost = problem.Solve(kRigidFactor * options.max_iterations);
   if (!cost.ok()) return cost.status();
   return ResidualCorrelation(problem.Window());
-}
-
-Result<DeformingWindow> LocateDeformingViews(const DeformingWindow& views, double focal_px,
-                                             const DeformingWindowOptions& options) {
-  if (Status status = CheckStart(views); !status.ok()) return status;
-  SurfaceNodes none = NodesAt(views.points_in_world, {0});
-  none.modes.setZero(3 * views.courses.rows(), 1);
-  DeformingProblem problem(views, none, focal_px, options);
-  if (const auto cost = problem.Solve(options.max_iterations, FreeParts::kViews); !cost.ok()) return cost.status();
-  return problem.Window();
 }
 
 double LogDistanceFromLight(double brightness, double gamma) {

@@ -9,13 +9,9 @@
 
 #include <Eigen/Core>
 
-namespace pliant {
+#include "pliant/estimation/deforming_window.h"
 
-// Places of the surface with modes of their own.
-struct SurfaceNodes {
-  std::vector<Eigen::Vector3d> positions;  // world, in the reference
-  Eigen::MatrixXd modes;                   // a column a node: 3 x R, column by column
-};
+namespace pliant {
 
 // At some of the points, without modes.
 SurfaceNodes NodesAt(const std::vector<Eigen::Vector3d>& points_in_world, const std::vector<int>& at);

@@ -19,12 +19,6 @@ constexpr double kSameDirection = 1e-3;  // rad, below which nearer does not cou
 
 using Directions = std::vector<Eigen::Vector3d>;
 
-Directions DirectionsOf(const std::vector<Eigen::Vector3d>& points) {
-  Directions directions;
-  for (const Eigen::Vector3d& point : points) directions.push_back(point.normalized());
-  return directions;
-}
-
 PointSample AllOf(const Directions& directions) {
   PointSample all(directions.size());
   std::iota(all.begin(), all.end(), 0);
@@ -50,6 +44,50 @@ PointSample Spread(const Directions& directions, const PointSample& from, std::s
 }
 
 }  // namespace
+
+std::vector<Eigen::Vector3d> DirectionsOf(const std::vector<Eigen::Vector3d>& positions) {
+  std::vector<Eigen::Vector3d> directions;
+  for (const Eigen::Vector3d& position : positions) directions.push_back(position.normalized());
+  return directions;
+}
+
+std::vector<NearPoint> NearestPoints(const std::vector<Eigen::Vector3d>& directions, const Eigen::Vector3d& direction) {
+  std::vector<std::pair<double, std::size_t>> near;
+  for (std::size_t k = 0; k < directions.size(); ++k) near.emplace_back((directions[k] - direction).norm(), k);
+  const std::size_t count = std::min(kNearest, near.size());
+  std::partial_sort(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(count), near.end());
+  std::vector<NearPoint> nearest;
+  double sum = 0;
+  for (std::size_t n = 0; n < count; ++n) {
+    nearest.push_back({near[n].second, 1.0 / (near[n].first + kSameDirection)});
+    sum += nearest.back().weight;
+  }
+  for (NearPoint& point : nearest) point.weight /= sum;
+  return nearest;
+}
+
+DeformingWindow InSomeViews(const DeformingWindow& window, int count) {
+  const int views = static_cast<int>(window.times.size());
+  if (views <= count) return window;
+  DeformingWindow some = window;
+  some.times.clear();
+  some.cams_from_world.clear();
+  some.courses.resize(window.courses.rows(), count);
+  some.observations.clear();
+  std::vector<int> place(window.times.size(), -1);
+  for (int k = 0; k < count; ++k) {
+    const int view = (k * (views - 1) + (count - 1) / 2) / (count - 1);
+    place[static_cast<std::size_t>(view)] = k;
+    some.times.push_back(window.times[static_cast<std::size_t>(view)]);
+    some.cams_from_world.push_back(window.cams_from_world[static_cast<std::size_t>(view)]);
+    some.courses.col(k) = window.courses.col(view);
+  }
+  for (DeformingObservation observation : window.observations) {
+    observation.view_idx = place[static_cast<std::size_t>(observation.view_idx)];
+    if (observation.view_idx >= 0) some.observations.push_back(observation);
+  }
+  return some;
+}
 
 PointSample SpreadPoints(const std::vector<Eigen::Vector3d>& points_in_world, int count) {
   const Directions directions = DirectionsOf(points_in_world);
@@ -89,28 +127,21 @@ DeformingWindow ExtendToAll(const DeformingWindow& start, const DeformingWindow&
   all.cams_from_world = part.cams_from_world;
   all.courses = part.courses;
   all.modes.clear();
-  const Directions directions = DirectionsOf(start.points_in_world);
+  Directions sampled;
+  for (const int i : sample) sampled.push_back(start.points_in_world[static_cast<std::size_t>(i)].normalized());
   std::vector<double> changes;  // of log distance
   for (std::size_t k = 0; k < sample.size(); ++k)
     changes.push_back(
         std::log(part.points_in_world[k].norm() / start.points_in_world[static_cast<std::size_t>(sample[k])].norm()));
-  for (std::size_t i = 0; i < directions.size(); ++i) {
-    std::vector<std::pair<double, std::size_t>> near;
-    for (std::size_t k = 0; k < sample.size(); ++k)
-      near.emplace_back((directions[static_cast<std::size_t>(sample[k])] - directions[i]).norm(), k);
-    const std::size_t count = std::min(kNearest, near.size());
-    std::partial_sort(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(count), near.end());
-    double weights = 0;
+  for (Eigen::Vector3d& position : all.points_in_world) {
     double change = 0;
     Eigen::Matrix3Xd modes = Eigen::Matrix3Xd::Zero(3, part.courses.rows());
-    for (std::size_t n = 0; n < count; ++n) {
-      const double weight = 1.0 / (near[n].first + kSameDirection);
-      weights += weight;
-      change += weight * changes[near[n].second];
-      modes += weight * part.modes[near[n].second];
+    for (const NearPoint& near : NearestPoints(sampled, position.normalized())) {
+      change += near.weight * changes[near.idx];
+      modes += near.weight * part.modes[near.idx];
     }
-    all.points_in_world[i] *= std::exp(change / weights);
-    all.modes.emplace_back(modes / weights);
+    position *= std::exp(change);
+    all.modes.push_back(std::move(modes));
   }
   for (std::size_t k = 0; k < sample.size(); ++k) {
     all.points_in_world[static_cast<std::size_t>(sample[k])] = part.points_in_world[k];

@@ -112,7 +112,9 @@ class WindowInitializer final : public Initializer {
   Status Make(const InitInput& input, const Result<SolvedWindow>& window, const MapDemands& demands,
               InitOutcome* outcome) const {
     if (!window.ok()) return window.status();
-    return MakeWindowMap(input, *window, demands, options_, nominal_depth_mm_, outcome);
+    // Where the light contradicts, the solution may be wrong as well: it must be certain by itself.
+    const MapDemands& least = window->light_is_of_no_use ? DemandsAfter(0) : demands;
+    return MakeWindowMap(input, *window, least, options_, nominal_depth_mm_, outcome);
   }
 
   WindowInitOptions options_;
@@ -130,6 +132,8 @@ void WindowInitOptions::List(OptionTable& table) {
   table.Add("last_frame", &last_frame, "frames", "a reference that made no map by then is given up", 2, 100000);
   table.Add("views", &views, "frames", "in the problem, spread evenly since the reference", 3, 1000);
   table.Add("min_views", &min_views, "frames", "of them in which a point must be seen", 2, 1000);
+  table.Add("min_frame_share", &min_frame_share, "-",
+            "of the frames since the reference, in which a point must be seen to join the map", 0, 1);
   table.Add("max_points", &max_points, "-", "in the problem: time grows with them", 12, 100000);
   table.Add("min_points", &min_points, "-", "fewer certain points in the last frame make no map", 12, 100000);
   table.Add("max_correlation", &max_correlation, "-",

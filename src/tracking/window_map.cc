@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <numeric>
 #include <set>
 #include <string>
 #include <utility>
@@ -18,42 +20,52 @@
 namespace pliant {
 namespace {
 
-// Some of a window's points, sorted by id; one entry each in `ids` and `depth_sigmas`, and in the points and modes of
-// `all_frames`.
-struct CertainPoints {
+// Some of a window's points; `solution` has one each, in the same order.
+struct MapPoints {
   std::vector<PointId> ids;
   std::vector<double> depth_sigmas;  // of the distance, map units
-  DeformingWindow all_frames;        // a view a frame of the input
-  std::vector<InitRejectedPoint> rejected;
-  double median_distance = 0;  // of all the window's points
-  double median_error_px = 0;
+  DeformingSolution solution;
 };
 
-CertainPoints ChooseCertain(const SolvedWindow& window, const MapDemands& demands, double focal_px,
-                            double max_error_px) {
-  const DeformingSolution& solution = window.solution;
-  std::vector<double> distances;
-  for (const Eigen::Vector3d& position : solution.window.points_in_world) distances.push_back(position.norm());
-  const std::vector<double> errors_px = PointErrorsPx(solution.window, focal_px);
-  const bool agreed = demands.certainty == Certainty::kPredictedAndAgreed;
-  const bool deforms = !solution.window.modes.empty();
-  CertainPoints points;
-  points.median_distance = Median(distances);
-  points.median_error_px = Median(errors_px);
-  for (std::size_t i = 0; i < window.ids.size(); ++i) {
-    const double sigma = (agreed ? solution.LogDepthSigma(i) : solution.log_depth_sigmas[i]) * distances[i];
-    if (!(errors_px[i] <= max_error_px)) {
-      points.rejected.push_back({window.ids[i], InitRejection::kReprojection});
-    } else if (!(sigma <= demands.max_sigma * points.median_distance)) {
-      points.rejected.push_back({window.ids[i], InitRejection::kUncertainDepth});
-    } else {
-      points.ids.push_back(window.ids[i]);
-      points.depth_sigmas.push_back(sigma);
-      points.all_frames.points_in_world.push_back(solution.window.points_in_world[i]);
-      if (deforms) points.all_frames.modes.push_back(solution.window.modes[i]);
+// Sigmas of the points' distances, map units.
+std::vector<double> DepthSigmas(const DeformingSolution& solution, Certainty certainty) {
+  std::vector<double> sigmas;
+  for (std::size_t i = 0; i < solution.window.points_in_world.size(); ++i)
+    sigmas.push_back(
+        (certainty == Certainty::kPredictedAndAgreed ? solution.LogDepthSigma(i) : solution.log_depth_sigmas[i]) *
+        solution.window.points_in_world[i].norm());
+  return sigmas;
+}
+
+// Those whose errors and sigmas are small enough, sorted by id, without their observations; `rejected`, which may be
+// null, becomes the others.
+MapPoints ChooseCertain(const MapPoints& points, double max_sigma, const WindowInitOptions& options, double focal_px,
+                        std::vector<InitRejectedPoint>* rejected) {
+  const DeformingSolution& from = points.solution;
+  const std::vector<double> errors_px = PointErrorsPx(from.window, focal_px);
+  std::vector<std::size_t> order(points.ids.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return points.ids[a] < points.ids[b]; });
+  MapPoints chosen;
+  DeformingSolution& to = chosen.solution;
+  to.nodes = from.nodes;
+  to.window.times = from.window.times;
+  to.window.cams_from_world = from.window.cams_from_world;
+  to.window.courses = from.window.courses;
+  for (const std::size_t i : order) {
+    const bool agrees = errors_px[i] <= options.max_error_px;
+    if (!agrees || !(points.depth_sigmas[i] <= max_sigma)) {
+      if (rejected != nullptr)
+        rejected->push_back({points.ids[i], agrees ? InitRejection::kUncertainDepth : InitRejection::kReprojection});
+      continue;
     }
+    chosen.ids.push_back(points.ids[i]);
+    chosen.depth_sigmas.push_back(points.depth_sigmas[i]);
+    to.window.points_in_world.push_back(from.window.points_in_world[i]);
+    if (!from.window.modes.empty()) to.window.modes.push_back(from.window.modes[i]);
+    if (!from.sample_sigmas.empty()) to.sample_sigmas.push_back(from.sample_sigmas[i]);
   }
-  return points;
+  return chosen;
 }
 
 // How many of `ids` a frame sees.
@@ -63,11 +75,11 @@ int CountSeen(const InitFrame& frame, const std::vector<PointId>& ids) {
                     [&](const InitObservation& observation) { return PlaceOf(observation.id, ids) >= 0; }));
 }
 
-Status EnoughCertain(const InitInput& input, const SolvedWindow& window, const CertainPoints& points,
-                     const MapDemands& demands, int min_points, double median_parallax_deg) {
+Status EnoughCertain(const InitInput& input, const SolvedWindow& window, const MapPoints& points,
+                     const MapDemands& demands, int min_points, double median_distance, double median_parallax_deg) {
   std::vector<PointId> certain_ids;
   for (std::size_t k = 0; k < points.ids.size(); ++k)
-    if (points.depth_sigmas[k] <= demands.certain_sigma * points.median_distance) certain_ids.push_back(points.ids[k]);
+    if (points.depth_sigmas[k] <= demands.certain_sigma * median_distance) certain_ids.push_back(points.ids[k]);
   const int seen = CountSeen(input.frames.back(), window.ids);
   const int certain = CountSeen(input.frames.back(), certain_ids);
   if (certain >= min_points && certain >= demands.certain_share * seen) return Status::Ok();
@@ -80,11 +92,13 @@ Status EnoughCertain(const InitInput& input, const SolvedWindow& window, const C
                                         " deg: move the camera sideways or forwards"};
 }
 
-// Poses and courses of all frames, the points fixed.
+// The points in all frames of the input, fixed; poses and courses start between those of the solved views.
 Status LocateAllFrames(const InitInput& input, const SolvedWindow& window, const WindowInitOptions& options,
-                       CertainPoints* points) {
+                       MapPoints* points) {
   const DeformingWindow& solved = window.solution.window;
-  DeformingWindow& all = points->all_frames;
+  DeformingWindow all;
+  all.points_in_world = points->solution.window.points_in_world;
+  all.modes = points->solution.window.modes;
   all.courses.resize(solved.courses.rows(), static_cast<Eigen::Index>(input.frames.size()));
   std::size_t next = 0;  // the first solved view that is not before the frame
   for (std::size_t k = 0; k < input.frames.size(); ++k) {
@@ -104,33 +118,43 @@ Status LocateAllFrames(const InitInput& input, const SolvedWindow& window, const
     const auto seen = SeenIn(input.frames[k], input.camera, points->ids, static_cast<int>(k), options);
     all.observations.insert(all.observations.end(), seen.begin(), seen.end());
   }
-  auto located = LocateDeformingViews(all, input.camera.MeanFocalLengthPx(), options.window);
+  auto located = LocateDeformingViews(all, input.camera.MeanFocalLengthPx(), options.window, input.threads);
   if (!located.ok()) return located.status();
-  all = std::move(*located);
+  points->solution.window = std::move(*located);
   return Status::Ok();
 }
 
-// Between the views of the problem a track may be wrong that was right in them, or that had a course to itself there.
-void DropContradicting(double focal_px, double max_error_px, CertainPoints* points) {
-  DeformingWindow& all = points->all_frames;
-  const std::vector<double> errors_px = PointErrorsPx(all, focal_px);
-  all.observations.clear();  // they number the points
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < errors_px.size(); ++i) {
-    if (!(errors_px[i] <= max_error_px)) {
-      points->rejected.push_back({points->ids[i], InitRejection::kReprojection});
-      continue;
-    }
-    points->ids[kept] = points->ids[i];
-    points->depth_sigmas[kept] = points->depth_sigmas[i];
-    all.points_in_world[kept] = all.points_in_world[i];
-    if (!all.modes.empty()) all.modes[kept] = all.modes[i];
-    ++kept;
+// The points that are seen in enough frames to join those of the map, sorted.
+std::vector<PointId> PointsToJoin(const InitInput& input, const MapPoints& points, double min_frame_share) {
+  std::map<PointId, int> seen;
+  for (const InitFrame& frame : input.frames)
+    for (const InitObservation& observation : frame.observations) ++seen[observation.id];
+  std::vector<PointId> ids;
+  for (const auto& [id, count] : seen)
+    if (count >= min_frame_share * static_cast<double>(input.frames.size()) && PlaceOf(id, points.ids) < 0)
+      ids.push_back(id);
+  return ids;
+}
+
+// All points anew by all frames, poses and courses fixed; others that were seen in enough frames join them. What is
+// uncertain, or wrong between the views of the problem, is then left out.
+Status SettlePoints(const InitInput& input, const MapDemands& demands, const WindowInitOptions& options,
+                    MapPoints* points, std::vector<InitRejectedPoint>* rejected) {
+  const double focal_px = input.camera.MeanFocalLengthPx();
+  const std::vector<PointId> joining = PointsToJoin(input, *points, options.min_frame_share);
+  std::vector<DeformingObservation> observations;
+  for (std::size_t k = 0; k < input.frames.size(); ++k) {
+    const auto seen = SeenIn(input.frames[k], input.camera, joining, static_cast<int>(k), options);
+    observations.insert(observations.end(), seen.begin(), seen.end());
   }
-  points->ids.resize(kept);
-  points->depth_sigmas.resize(kept);
-  all.points_in_world.resize(kept);
-  if (!all.modes.empty()) all.modes.resize(kept);
+  auto settled = SettleDeformingPoints(points->solution, observations, static_cast<int>(joining.size()), focal_px,
+                                       options.window, input.threads);
+  if (!settled.ok()) return settled.status();
+  MapPoints all{points->ids, {}, std::move(*settled)};
+  all.ids.insert(all.ids.end(), joining.begin(), joining.end());
+  all.depth_sigmas = DepthSigmas(all.solution, demands.certainty);
+  *points = ChooseCertain(all, demands.max_sigma * all.solution.window.MedianDistance(), options, focal_px, rejected);
+  return Status::Ok();
 }
 
 // At the points of the solution, between the reference and the last view.
@@ -141,42 +165,35 @@ double MedianParallaxDeg(const DeformingWindow& window) {
   return Median(std::move(angles)) * 180.0 / std::numbers::pi;
 }
 
-void Measure(const CertainPoints& points, InitMeasurements* measured) {
-  measured->inliers = static_cast<int>(points.ids.size());
-  measured->median_depth_sigma =
-      points.depth_sigmas.empty() ? 0.0 : Median(points.depth_sigmas) / points.median_distance;
-  measured->median_error_px = points.median_error_px;
-}
-
 // The points not in the map, each with why.
-std::vector<InitRejectedPoint> AllRejected(const InitInput& input, CertainPoints* points) {
+std::vector<InitRejectedPoint> AllRejected(const InitInput& input, const MapPoints& points,
+                                           std::vector<InitRejectedPoint> rejected) {
   std::set<PointId> others;
   for (const InitFrame& frame : input.frames)
     for (const InitObservation& observation : frame.observations) others.insert(observation.id);
-  for (const PointId id : points->ids) others.erase(id);
-  for (const InitRejectedPoint& rejected : points->rejected) others.erase(rejected.id);
-  for (const PointId id : others) points->rejected.push_back({id, InitRejection::kTooFewViews});
-  std::sort(points->rejected.begin(), points->rejected.end(),
+  for (const PointId id : points.ids) others.erase(id);
+  for (const InitRejectedPoint& point : rejected) others.erase(point.id);
+  for (const PointId id : others) rejected.push_back({id, InitRejection::kTooFewViews});
+  std::sort(rejected.begin(), rejected.end(),
             [](const InitRejectedPoint& a, const InitRejectedPoint& b) { return a.id < b.id; });
-  return std::move(points->rejected);
+  return rejected;
 }
 
-Status FillOutcome(const InitInput& input, double nominal_depth_mm, CertainPoints* points, InitOutcome* outcome) {
-  const DeformingWindow& all = points->all_frames;
+Status FillOutcome(const InitInput& input, double nominal_depth_mm, const MapPoints& points, InitOutcome* outcome) {
+  const DeformingWindow& all = points.solution.window;
   const auto nominal = NominalScale(all.points_in_world, nominal_depth_mm);
   if (!nominal.ok()) return nominal.status();
   const double scale = *nominal;
-  for (std::size_t i = 0; i < points->ids.size(); ++i)
-    outcome->points.push_back({points->ids[i], scale * all.points_in_world[i], scale * points->depth_sigmas[i], 0.0});
+  for (std::size_t i = 0; i < points.ids.size(); ++i)
+    outcome->points.push_back({points.ids[i], scale * all.points_in_world[i], scale * points.depth_sigmas[i], 0.0});
   for (std::size_t k = 0; k < input.frames.size(); ++k) {
     const Rigid3& pose = all.cams_from_world[k];
     InitFrameState state{input.frames[k].frame_idx, Rigid3(pose.rotation, scale * pose.translation), {}};
     for (const InitObservation& observation : input.frames[k].observations)
-      if (const int point = PlaceOf(observation.id, points->ids); point >= 0)
+      if (const int point = PlaceOf(observation.id, points.ids); point >= 0)
         state.positions.push_back({observation.id, scale * all.Position(point, static_cast<int>(k))});
     outcome->frames.push_back(std::move(state));
   }
-  outcome->rejected = AllRejected(input, points);
   outcome->decision = InitDecision::kMap;
   return Status::Ok();
 }
@@ -186,21 +203,31 @@ Status FillOutcome(const InitInput& input, double nominal_depth_mm, CertainPoint
 Status MakeWindowMap(const InitInput& input, const SolvedWindow& window, const MapDemands& demands,
                      const WindowInitOptions& options, double nominal_depth_mm, InitOutcome* outcome) {
   const double focal_px = input.camera.MeanFocalLengthPx();
-  CertainPoints points = ChooseCertain(window, demands, focal_px, options.max_error_px);
-  Measure(points, &outcome->measured);
+  const MapPoints all{window.ids, DepthSigmas(window.solution, demands.certainty), window.solution};
+  const double median_distance = window.solution.window.MedianDistance();
+  MapPoints points = ChooseCertain(all, demands.max_sigma * median_distance, options, focal_px, nullptr);
+  const auto measure = [&] {
+    outcome->measured.inliers = static_cast<int>(points.ids.size());
+    outcome->measured.median_depth_sigma =
+        points.ids.empty() ? 0.0 : Median(points.depth_sigmas) / points.solution.window.MedianDistance();
+  };
+  measure();
+  outcome->measured.median_error_px = Median(PointErrorsPx(window.solution.window, focal_px));
   outcome->measured.median_parallax_deg = MedianParallaxDeg(window.solution.window);
-  if (Status status =
-          EnoughCertain(input, window, points, demands, options.min_points, outcome->measured.median_parallax_deg);
+  if (Status status = EnoughCertain(input, window, points, demands, options.min_points, median_distance,
+                                    outcome->measured.median_parallax_deg);
       !status.ok())
     return status;
   if (Status status = LocateAllFrames(input, window, options, &points); !status.ok()) return status;
-  DropContradicting(focal_px, options.max_error_px, &points);
+  std::vector<InitRejectedPoint> rejected;
+  if (Status status = SettlePoints(input, demands, options, &points, &rejected); !status.ok()) return status;
   if (const int left = CountSeen(input.frames.back(), points.ids); left < options.min_points)
     return {ErrorCode::kInsufficient, "only " + std::to_string(left) +
                                           " points agree with the frames between those of the window (at least " +
                                           std::to_string(options.min_points) + " must)"};
-  Measure(points, &outcome->measured);
-  if (Status status = FillOutcome(input, nominal_depth_mm, &points, outcome); !status.ok()) return status;
+  measure();
+  if (Status status = FillOutcome(input, nominal_depth_mm, points, outcome); !status.ok()) return status;
+  outcome->rejected = AllRejected(input, points, std::move(rejected));
   const bool agreed = demands.certainty == Certainty::kPredictedAndAgreed;
   outcome->reason = "first map of " + std::to_string(points.ids.size()) + " points from a " +
                     (window.solution.window.modes.empty() ? "rigid" : "deforming") + " window of " +

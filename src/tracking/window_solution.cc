@@ -184,7 +184,7 @@ Result<SolvedWindow> SolveRigid(const InitInput& input, const PreparedWindow& wi
   const auto correlation = RigidResidualCorrelation(window.start, focal_px, options.window);
   if (!correlation.ok()) return correlation.status();
   if (*correlation > options.max_correlation) return deforms(*correlation);
-  auto solution = SolveRigidWindow(window.start, focal_px, options.window);
+  auto solution = SolveRigidWindow(window.start, focal_px, options.window, input.threads);
   if (!solution.ok()) return solution.status();
   if (solution->residual_correlation > options.max_correlation) return deforms(solution->residual_correlation);
   return SolvedWindow{window.views, window.ids, std::move(*solution), false};

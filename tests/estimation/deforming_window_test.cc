@@ -16,6 +16,7 @@
 #include "estimation/deforming_terms.h"
 #include "estimation/light_depth.h"
 #include "estimation/mode_basis.h"
+#include "estimation/window_samples.h"
 #include "pliant/base/random.h"
 #include "pliant/base/statistics.h"
 #include "pliant/estimation/window_refinement.h"
@@ -200,6 +201,103 @@ TEST(DeformingWindow, LocatesTheViewsBetween) {
   }
 }
 
+// A scene's solution, and what becomes of every fifth of its points when the others are solved without them.
+struct JoiningScene {
+  JoiningScene() {
+    const DeformingWindow start = scene.Start(0);
+    PointSample known;
+    for (int i = 0; i < static_cast<int>(scene.points.size()); ++i) (i % 5 == 0 ? joining_points : known).push_back(i);
+    std::vector<int> place(scene.points.size(), -1);
+    for (std::size_t k = 0; k < joining_points.size(); ++k)
+      place[static_cast<std::size_t>(joining_points[k])] = static_cast<int>(k);
+    for (DeformingObservation seen : start.observations) {
+      seen.point_idx = place[static_cast<std::size_t>(seen.point_idx)];
+      if (seen.point_idx >= 0 && seen.view_idx >= 4) joining.push_back(seen);
+    }
+    solution = SolveDeformingWindow(PartOf(start, known), kFocalPx, {});
+    order = known;
+    order.insert(order.end(), joining_points.begin(), joining_points.end());
+  }
+
+  Scene scene;
+  PointSample joining_points;
+  std::vector<DeformingObservation> joining;  // without the first four views
+  PointSample order;                          // the scene's points, those that join last
+  Result<DeformingSolution> solution = Status(ErrorCode::kInsufficient, "");
+};
+
+TEST(DeformingWindow, PointsJoinASolutionWhereTheirRaysAndNeighboursPutThem) {
+  const JoiningScene of;
+  ASSERT_TRUE(of.solution.ok());
+  const auto num_joining = static_cast<int>(of.joining_points.size());
+  const auto settled = SettleDeformingPoints(*of.solution, of.joining, num_joining, kFocalPx, {});
+  ASSERT_TRUE(settled.ok()) << settled.status().message();
+  ASSERT_EQ(settled->window.points_in_world.size(), of.scene.points.size());
+  DeformingWindow in_order = settled->window;
+  std::vector<double> sigmas(of.order.size());
+  for (std::size_t k = 0; k < of.order.size(); ++k) {
+    const auto i = static_cast<std::size_t>(of.order[k]);
+    in_order.points_in_world[i] = settled->window.points_in_world[k];
+    in_order.modes[i] = settled->window.modes[k];
+    sigmas[i] = settled->LogDepthSigma(k);
+  }
+  const std::vector<double> errors = of.scene.DepthErrors(in_order, 12);
+  std::vector<double> joined;
+  int within = 0;
+  for (const int i : of.joining_points) {
+    joined.push_back(errors[static_cast<std::size_t>(i)]);
+    within += joined.back() < 3 * sigmas[static_cast<std::size_t>(i)] ? 1 : 0;
+  }
+  EXPECT_LT(Median(joined), kShape);
+  EXPECT_GT(within, 0.95 * num_joining);
+  EXPECT_LT(Median(errors), kShape);
+  // Views, courses and nodes are held.
+  EXPECT_EQ(settled->window.courses, of.solution->window.courses);
+  EXPECT_EQ(settled->nodes.modes, of.solution->nodes.modes);
+}
+
+TEST(DeformingWindow, WhatJoinsMakesTheOthersNoLessCertain) {
+  const JoiningScene of;
+  ASSERT_TRUE(of.solution.ok());
+  const auto alone = SettleDeformingPoints(*of.solution, {}, 0, kFocalPx, {});
+  std::vector<DeformingObservation> in_two_views = of.joining;
+  std::erase_if(in_two_views, [](const DeformingObservation& seen) { return seen.view_idx > 5; });
+  const auto with =
+      SettleDeformingPoints(*of.solution, in_two_views, static_cast<int>(of.joining_points.size()), kFocalPx, {});
+  ASSERT_TRUE(alone.ok() && with.ok());
+  const std::size_t known = alone->log_depth_sigmas.size();
+  ASSERT_GT(with->log_depth_sigmas.size(), known);
+  for (std::size_t i = 0; i < known; ++i)
+    EXPECT_LT((with->window.points_in_world[i] - alone->window.points_in_world[i]).norm(), 0.05) << i;
+  const std::vector<double> sigmas(with->log_depth_sigmas.begin(),
+                                   with->log_depth_sigmas.begin() + static_cast<std::ptrdiff_t>(known));
+  EXPECT_LT(Median(sigmas), 1.1 * Median(alone->log_depth_sigmas));
+}
+
+TEST(DeformingWindow, JoiningDoesNotDependOnTheNumberOfThreads) {
+  const JoiningScene of;
+  ASSERT_TRUE(of.solution.ok());
+  const auto num_joining = static_cast<int>(of.joining_points.size());
+  const auto one = SettleDeformingPoints(*of.solution, of.joining, num_joining, kFocalPx, {}, 1);
+  const auto two = SettleDeformingPoints(*of.solution, of.joining, num_joining, kFocalPx, {}, 2);
+  ASSERT_TRUE(one.ok() && two.ok());
+  EXPECT_EQ(one->window.points_in_world, two->window.points_in_world);
+  EXPECT_EQ(one->log_depth_sigmas, two->log_depth_sigmas);
+}
+
+TEST(DeformingWindow, RefusesAPointThatJoinsFromNowhere) {
+  const JoiningScene of;
+  ASSERT_TRUE(of.solution.ok());
+  std::vector<DeformingObservation> joining = of.joining;
+  joining.front().point_idx = 1000;
+  EXPECT_EQ(SettleDeformingPoints(*of.solution, joining, 40, kFocalPx, {}).status().code(),
+            ErrorCode::kInvalidArgument);
+  // One that is not seen keeps a place, and no certainty.
+  const auto unseen = SettleDeformingPoints(*of.solution, {}, 1, kFocalPx, {});
+  ASSERT_TRUE(unseen.ok());
+  EXPECT_GT(unseen->LogDepthSigma(of.solution->window.points_in_world.size()), 1.0);
+}
+
 TEST(DeformingWindow, RefusesWhatIsNoWindow) {
   const Scene scene;
   DeformingWindow start = scene.Start(0);
@@ -300,12 +398,11 @@ TEST(DeformingEquations, EliminatingThePointsChangesNoStep) {
   const auto equations = DeformingEquations::At(terms, state, FreeParts::kAll, {});
   ASSERT_TRUE(equations.has_value());
   const Eigen::VectorXd step = equations->NewtonStep();
-  const Eigen::MatrixXd point_steps = equations->PointSteps(step);
   // A point's own row: own * dx + sum_v by_point' by_view dv + nodes + offset = - gradient.
   for (const std::size_t point : {std::size_t{3}, std::size_t{77}}) {
     std::vector<SeenEquations> seen;
     const PointEquations own = terms.Linearised(point, state, &seen);
-    PointVector row = own.own * point_steps.col(static_cast<Eigen::Index>(point));
+    PointVector row = own.own * equations->PointStep(point, step);
     for (std::size_t k = 0; k < seen.size(); ++k)
       if (const int view = terms.seen(point)[k].view_idx; view > 0)
         row += seen[k].by_point.transpose() *

@@ -48,6 +48,39 @@ TEST(WindowSamples, AreTwoWithoutCommonPointsSpreadOverTheImage) {
   EXPECT_EQ(all.size(), 200U);
 }
 
+TEST(WindowSamples, NearestPointsHaveWeightsThatSumToOne) {
+  const std::vector<Eigen::Vector3d> directions = DirectionsOf(Grid().points_in_world);
+  const auto nearest = NearestPoints(directions, directions[123]);
+  ASSERT_EQ(nearest.size(), 4U);
+  EXPECT_EQ(nearest.front().idx, 123U);
+  double sum = 0;
+  for (const NearPoint& near : nearest) sum += near.weight;
+  EXPECT_NEAR(sum, 1, 1e-12);
+  EXPECT_GT(nearest.front().weight, 0.8);
+  EXPECT_EQ(NearestPoints({Eigen::Vector3d::UnitX()}, Eigen::Vector3d::UnitZ()).front().weight, 1);
+}
+
+TEST(WindowSamples, SomeViewsAreTheFirstTheLastAndThoseBetween) {
+  DeformingWindow window;
+  window.courses.resize(2, 9);
+  for (int v = 0; v < 9; ++v) {
+    window.times.push_back(5 * v);
+    window.cams_from_world.emplace_back(Eigen::Quaterniond::Identity(), Eigen::Vector3d(v, 0, 0));
+    window.courses.col(v).setConstant(v);
+    window.observations.push_back({v, 0, Eigen::Vector3d::UnitZ()});
+  }
+  window.points_in_world.emplace_back(0, 0, 50);
+  const DeformingWindow some = InSomeViews(window, 3);
+  EXPECT_EQ(some.times, (std::vector<double>{0, 20, 40}));
+  ASSERT_EQ(some.observations.size(), 3U);
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_EQ(some.observations[static_cast<std::size_t>(k)].view_idx, k);
+    EXPECT_EQ(some.cams_from_world[static_cast<std::size_t>(k)].translation.x(), 4 * k);
+    EXPECT_EQ(some.courses(1, k), 4 * k);
+  }
+  EXPECT_EQ(InSomeViews(window, 20).times.size(), 9U);
+}
+
 TEST(WindowSamples, FewPointsAreOneSample) {
   DeformingWindow window = Grid();
   window.points_in_world.resize(100);

@@ -240,6 +240,7 @@ TEST(WindowInitializer, APointThatIsNoNumberMakesNoDifference) {
   const InitOutcome outcome = sequence.Try({});
   ASSERT_EQ(outcome.decision, InitDecision::kMap) << outcome.reason;
   EXPECT_EQ(FindById(outcome.points, PointId{42}), nullptr);
+  EXPECT_GT(outcome.points.size(), 100U);
   for (const InitPoint& point : outcome.points) EXPECT_TRUE(point.position.allFinite());
 }
 

@@ -44,6 +44,8 @@ struct DeformingWindow {
 
   // X_i(v), world frame.
   Eigen::Vector3d Position(int point_idx, int view_idx) const;
+  // Median of |X_i|; there is at least one point.
+  double MedianDistance() const;
 };
 
 constexpr int kMaxWindowRank = 4;
@@ -63,8 +65,15 @@ struct DeformingWindowOptions {
   void List(OptionTable& table);  // group "Window"
 };
 
+// Places of the surface with modes of their own, by which those of the points around them are held together (W3).
+struct SurfaceNodes {
+  std::vector<Eigen::Vector3d> positions;  // world, in the reference
+  Eigen::MatrixXd modes;                   // a column a node: 3 x R, column by column
+};
+
 struct DeformingSolution {
   DeformingWindow window;
+  SurfaceNodes nodes;  // none where there are no courses
   // Predicted standard deviation of log |X_i|, with noise and deformation of the sizes that were found (W12); relative
   // to the gauge (W7). Infinite where it cannot be computed.
   std::vector<double> log_depth_sigmas;
@@ -97,7 +106,7 @@ Result<DeformingSolution> SolveDeformingWindow(const DeformingWindow& start, dou
 
 // The same of a scene that does not deform: no courses, and no samples.
 Result<DeformingSolution> SolveRigidWindow(const DeformingWindow& start, double focal_px,
-                                           const DeformingWindowOptions& options);
+                                           const DeformingWindowOptions& options, int threads = 1);
 
 // Whether a scene is rigid, asked of a sample of its points alone: their residual_correlation (W11) in the rigid
 // solution.
@@ -107,7 +116,18 @@ Result<double> RigidResidualCorrelation(const DeformingWindow& start, double foc
 // Poses and courses of more views of a solved window's points, which stay as they are with their modes: `views` has a
 // start of every view's pose and courses. The first view stays as it is. Fails like SolveDeformingWindow.
 Result<DeformingWindow> LocateDeformingViews(const DeformingWindow& views, double focal_px,
-                                             const DeformingWindowOptions& options);
+                                             const DeformingWindowOptions& options, int threads = 1);
+
+// A solution whose views were located anew, and more points in it: every point and its modes by itself, with views,
+// courses and nodes held. `joining` are observations of `num_joining` other points, numbered from 0 and ordered by
+// view. They come after the solution's own, and start at the distance and with the modes of those nearest to their
+// first ray. log_depth_sigmas are by at most eight of the views; sample_sigmas of those that join are their
+// neighbours', and infinite for one that no view sees; the rest is the solution's. `threads` never changes the result.
+// Fails like SolveDeformingWindow.
+Result<DeformingSolution> SettleDeformingPoints(const DeformingSolution& located,
+                                                const std::vector<DeformingObservation>& joining, int num_joining,
+                                                double focal_px, const DeformingWindowOptions& options,
+                                                int threads = 1);
 
 // Root mean square error of each point over its views but the reference, which the start was made of; infinite for a
 // point that no other view sees.

@@ -3,8 +3,8 @@
 
 // The first map from one moving camera and a scene that deforms meanwhile: all frames since the reference, their poses,
 // the points and the points' motions in one problem (pliant/estimation/deforming_window.h; docs/method.md, eq. W1 to
-// W12). A map is sought every few frames, first of a rigid scene, and if it is none of one that deforms; it answers with
-// a map once most points are certain, and demands less of them the longer it waits. Points that are uncertain or
+// W12). A map is sought every few frames, first of a rigid scene, and if it is none of one that deforms; it answers
+// with a map once most points are certain, and demands less of them the longer it waits. Points that are uncertain or
 // contradict the solution stay out. The map is scaled once, so that its median depth is nominal_depth_mm.
 #pragma once
 
@@ -33,6 +33,7 @@ struct WindowInitOptions {
   int last_frame = 60;                // after so many a reference is given up
   int views = 8;                      // frames in the problem, spread evenly
   int min_views = 5;                  // a point must be seen in as many of them
+  double min_frame_share = 0.375;     // of all frames, in which a point must be seen to join the map
   int max_points = 600;               // in the problem
   int min_points = 40;                // fewer certain points in the last frame make no map
   double max_correlation = 0.25;      // of neighbours' errors under a rigid motion: above, the scene deforms
