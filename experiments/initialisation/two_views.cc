@@ -197,6 +197,7 @@ Trial Run(const Setting& setting, std::uint64_t seed) {
   init.monocular.paper_frames = since;
   init.monocular.max_window = since + 1;
   init.window.first_frame = since;
+  init.window.deforming_frame = std::min(init.window.deforming_frame, since);
   init.window.last_frame = since + init.window.every;
   const auto initializer = MakeInitializer(init, Random(seed).Child("samples"));
   const Camera camera = SceneCamera(options);

@@ -16,6 +16,7 @@
 #include "estimation/deforming_judgement.h"
 #include "estimation/deforming_problem.h"
 #include "estimation/mode_basis.h"
+#include "estimation/plane_rival.h"
 #include "estimation/ray_residuals.h"
 #include "estimation/window_samples.h"
 #include "pliant/base/statistics.h"
@@ -36,6 +37,8 @@ constexpr int kLastDivisor = 2;
 // Steps of a rigid solution by max_iterations: they are cheap, and one that has not arrived looks like a deforming
 // scene.
 constexpr int kRigidFactor = 2;
+// A rigid solution by the other motion of a plane is none if it costs so many times more.
+constexpr double kClearlyWorse = 1.3;
 
 // Motions of the points across their first rays that the start's rigid scene leaves unexplained, in map units: two rows
 // a point, a column a view. Points seen in most views alone; where one is not seen, its motion is that of the view
@@ -181,6 +184,14 @@ DeformingSolution Judged(DeformingSolution solution, double focal_px, const Defo
   return solution;
 }
 
+Result<DeformingSolution> SolvedRigid(const DeformingWindow& start, double focal_px,
+                                      const DeformingWindowOptions& options, int threads) {
+  DeformingProblem problem(start, {}, focal_px, options);
+  const auto cost = problem.Solve(kRigidFactor * options.max_iterations, FreeParts::kAll, threads);
+  if (!cost.ok()) return cost.status();
+  return Taken(problem, *cost, {});
+}
+
 }  // namespace
 
 Eigen::Vector3d DeformingWindow::Position(int point_idx, int view_idx) const {
@@ -263,10 +274,20 @@ Result<DeformingSolution> SolveRigidWindow(const DeformingWindow& start, double 
   DeformingWindow rigid = start;
   rigid.courses.resize(0, static_cast<Eigen::Index>(rigid.times.size()));
   rigid.modes.clear();
-  DeformingProblem problem(rigid, {}, focal_px, options);
-  const auto cost = problem.Solve(kRigidFactor * options.max_iterations, FreeParts::kAll, threads);
-  if (!cost.ok()) return cost.status();
-  return Judged(Taken(problem, *cost, {}), focal_px, options, threads);
+  auto solution = SolvedRigid(rigid, focal_px, options, threads);
+  if (!solution.ok()) return solution.status();
+  std::vector<double> rival_sigmas;
+  if (const auto rival_start = OtherMotionOfThePlane(solution->window, focal_px, options)) {
+    auto rival = SolvedRigid(*rival_start, focal_px, options, threads);
+    if (rival.ok()) {
+      if (rival->cost < solution->cost) std::swap(*rival, *solution);
+      if (rival->cost < kClearlyWorse * solution->cost)
+        rival_sigmas = SigmasBetween({&*solution, &*rival}, start.points_in_world.size());
+    }
+  }
+  DeformingSolution judged = Judged(std::move(*solution), focal_px, options, threads);
+  judged.sample_sigmas = std::move(rival_sigmas);
+  return judged;
 }
 
 Result<double> RigidResidualCorrelation(const DeformingWindow& start, double focal_px,

@@ -104,7 +104,9 @@ struct DeformingSolution {
 Result<DeformingSolution> SolveDeformingWindow(const DeformingWindow& start, double focal_px,
                                                const DeformingWindowOptions& options, int threads = 1);
 
-// The same of a scene that does not deform: no courses, and no samples.
+// The same of a scene that does not deform: no courses, and no samples. It is also solved by the other motion that
+// explains the plane nearest to its points, and the one that costs less is taken; sample_sigmas are then of these two,
+// and empty where the other costs clearly more.
 Result<DeformingSolution> SolveRigidWindow(const DeformingWindow& start, double focal_px,
                                            const DeformingWindowOptions& options, int threads = 1);
 

@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "estimation/plane_rival.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Cholesky>
+#include <Eigen/SVD>
+
+#include "estimation/window_samples.h"
+#include "pliant/estimation/two_view_models.h"
+#include "pliant/geometry/triangulation.h"
+
+namespace pliant {
+namespace {
+
+// m with m . X = 1 for the plane nearest to the points, reweighted by their distances to it (Cauchy).
+Eigen::Vector3d NearestPlane(const std::vector<Eigen::Vector3d>& points) {
+  constexpr int kRounds = 10;
+  constexpr double kScale = 0.05;
+  Eigen::Vector3d plane = Eigen::Vector3d::Zero();
+  for (int round = 0; round < kRounds; ++round) {
+    Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (const Eigen::Vector3d& point : points) {
+      const double error = round == 0 ? 0.0 : (plane.dot(point) - 1.0) / kScale;
+      const double weight = 1.0 / (1.0 + error * error);
+      squares += weight * point * point.transpose();
+      sum += weight * point;
+    }
+    plane = squares.ldlt().solve(sum);
+  }
+  return plane;
+}
+
+}  // namespace
+
+std::optional<DeformingWindow> OtherMotionOfThePlane(const DeformingWindow& solved, double focal_px,
+                                                     const DeformingWindowOptions& options) {
+  constexpr double kLeastCosine =
+      0.1;  // of a ray and the plane's normal; points further out stay at this one's distance
+  const Rigid3& last = solved.cams_from_world.back();
+  if (last.translation.norm() == 0.0) return std::nullopt;
+  const Eigen::Matrix3d any_scale =
+      last.rotation.toRotationMatrix() + last.translation * NearestPlane(solved.points_in_world).transpose();
+  const Eigen::Matrix3d homography = any_scale / Eigen::JacobiSVD<Eigen::Matrix3d>(any_scale).singularValues()[1];
+  const std::vector<Rigid3> motions = MotionsFromHomography(homography, DirectionsOf(solved.points_in_world));
+  if (motions.size() < 2) return std::nullopt;
+  const auto difference = [&](const Rigid3& motion) {
+    return RotationAngle(motion.rotation * last.rotation.conjugate()) +
+           AngleBetween(motion.translation, last.translation);
+  };
+  const Rigid3& other = difference(motions[0]) > difference(motions[1]) ? motions[0] : motions[1];
+  // H = R + t m', |t| = 1, and the plane is m . X = 1.
+  const Eigen::Vector3d plane = (homography - other.rotation.toRotationMatrix()).transpose() * other.translation;
+  if (!(plane.norm() > 0.0)) return std::nullopt;
+
+  DeformingWindow start = solved;
+  for (Eigen::Vector3d& point : start.points_in_world) {
+    const Eigen::Vector3d direction = point.normalized();
+    point = direction / std::max(plane.dot(direction), kLeastCosine * plane.norm());
+  }
+  const double scale = solved.MedianDistance() / start.MedianDistance();
+  for (Eigen::Vector3d& point : start.points_in_world) point *= scale;
+  auto located = LocateDeformingViews(start, focal_px, options);
+  if (!located.ok()) return std::nullopt;
+  return std::move(*located);
+}
+
+}  // namespace pliant
