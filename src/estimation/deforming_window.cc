@@ -32,8 +32,9 @@ constexpr std::size_t kLeastStartPoints = 12;
 constexpr double kLargestMotion = 3.0;
 // A lower rank explains the images less well in any case; it must explain the light better by so much.
 constexpr double kClearlyBetter = 0.85;
-// The last solution, with all points free, starts close to its minimum: its steps are at most max_iterations by this.
-constexpr int kLastDivisor = 2;
+// The last solution, with all points free, starts close to its minimum, and all frames settle its points later: its
+// steps are at most max_iterations by this.
+constexpr int kLastDivisor = 6;
 // Steps of a rigid solution by max_iterations: they are cheap, and one that has not arrived looks like a deforming
 // scene.
 constexpr int kRigidFactor = 2;

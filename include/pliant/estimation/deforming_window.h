@@ -60,7 +60,7 @@ struct DeformingWindowOptions {
   int neighbors = 6;                 // of the smoothness over the surface
   int nodes = 16;                    // of the surface, at which modes are free; between them they are interpolated
   int sample_points = 80;            // in each of the two samples that are solved first
-  int max_iterations = 12;           // of one solution; half of it for the last
+  int max_iterations = 12;           // of one solution; a sixth of it for the last
 
   void List(OptionTable& table);  // group "Window"
 };
@@ -96,8 +96,8 @@ struct DeformingSolution {
 // hardly tell one minimum from another, so there are several solutions to choose from. Two samples of the points are
 // solved each by itself: the courses are first sought in what the rigid scene leaves unexplained, then poses, points,
 // modes and courses are solved for together, with rank R and from there with R - 1; the other points join with the
-// views fixed. The most plausible by images and light is then solved with all points, in at most half as many steps. It
-// is of rank R unless the light_error of rank R - 1 is clearly less; without light R - 1 is not tried.
+// views fixed. The most plausible by images and light is then solved with all points, in at most a sixth of the steps.
+// It is of rank R unless the light_error of rank R - 1 is clearly less; without light R - 1 is not tried.
 //
 // `threads` never changes the result. Fails with kInvalidArgument for sizes, indices, numbers and options that are
 // none, kInsufficient below three views or twelve points, and kDegenerate when there is no usable step.
