@@ -8,6 +8,7 @@
 #include <functional>
 #include <future>
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -38,7 +39,7 @@ constexpr int kLastDivisor = 6;
 // Steps of a rigid solution by max_iterations: they are cheap, and one that has not arrived looks like a deforming
 // scene.
 constexpr int kRigidFactor = 2;
-// A rigid solution by the other motion of a plane is none if it costs so many times more.
+// A solution by the other motion of a plane is none if it explains images or light so many times worse.
 constexpr double kClearlyWorse = 1.3;
 
 // Motions of the points across their first rays that the start's rigid scene leaves unexplained, in map units: two rows
@@ -193,6 +194,32 @@ Result<DeformingSolution> SolvedRigid(const DeformingWindow& start, double focal
   return Taken(problem, *cost, {});
 }
 
+// The sample solved from the other motion of the plane, where the points of the best solution are close to one.
+std::optional<DeformingSolution> SolvedFromOtherMotion(const DeformingSolution& best, const SampleProblem& common,
+                                                       const PointSample& sample) {
+  if (!NearlyFlat(best.window.points_in_world)) return std::nullopt;
+  const int rank = static_cast<int>(best.window.courses.rows());
+  DeformingWindow rigid = best.window;
+  rigid.courses.resize(0, rigid.courses.cols());
+  rigid.modes.clear();
+  const auto start = OtherMotionOfThePlane(rigid, common.focal_px, common.options);
+  if (!start) return std::nullopt;
+  auto solved = SolveSample({*start, common.node_points, common.focal_px, common.options}, sample, rank, rank);
+  if (!solved.front().ok()) return std::nullopt;
+  return std::move(*solved.front());
+}
+
+bool ClearlyWorse(const DeformingSolution& a, const DeformingSolution& b) {
+  return a.cost >= kClearlyWorse * b.cost || (b.light_error > 0.0 && a.light_error >= kClearlyWorse * b.light_error);
+}
+
+// The larger of two; either may be empty.
+std::vector<double> LargerOf(std::vector<double> a, const std::vector<double>& b) {
+  if (a.empty()) return b;
+  for (std::size_t i = 0; i < b.size(); ++i) a[i] = std::max(a[i], b[i]);
+  return a;
+}
+
 }  // namespace
 
 Eigen::Vector3d DeformingWindow::Position(int point_idx, int view_idx) const {
@@ -243,8 +270,9 @@ Result<DeformingSolution> SolveDeformingWindow(const DeformingWindow& start, dou
                                [](const auto& observation) { return std::isfinite(observation.log_light); });
   const int last_rank = lit ? std::max(1, rank - 1) : rank;
   const SampleProblem common{start, SpreadPoints(start.points_in_world, options.nodes), focal_px, options};
+  const std::vector<PointSample> point_samples = SamplePoints(start, options.sample_points);
   std::vector<std::future<SampleSolutions>> solving;
-  for (const PointSample& sample : SamplePoints(start, options.sample_points))
+  for (const PointSample& sample : point_samples)
     solving.push_back(std::async(threads > 1 ? std::launch::async : std::launch::deferred,
                                  [&, sample] { return SolveSample(common, sample, rank, last_rank); }));
   std::vector<SampleSolutions> samples;
@@ -260,12 +288,20 @@ Result<DeformingSolution> SolveDeformingWindow(const DeformingWindow& start, dou
     of_rank = SolutionsAt(1, samples);
   }
   if (best == nullptr) return samples.front().front().status();
+  std::vector<double> sigmas = SigmasBetween(of_rank, start.points_in_world.size());
+  const auto rival = SolvedFromOtherMotion(*best, common, point_samples.front());
+  if (rival) {
+    const bool wins = MorePlausible(*rival, *best);
+    if (!ClearlyWorse(wins ? *best : *rival, wins ? *rival : *best))
+      sigmas = LargerOf(std::move(sigmas), SigmasBetween({best, &*rival}, start.points_in_world.size()));
+    if (wins) best = &*rival;
+  }
 
   DeformingProblem problem(best->window, best->nodes, focal_px, options);
   const auto cost = problem.Solve(std::max(1, options.max_iterations / kLastDivisor), FreeParts::kAll, threads);
   if (!cost.ok()) return cost.status();
   DeformingSolution solution = Judged(Taken(problem, *cost, best->nodes), focal_px, options, threads);
-  solution.sample_sigmas = SigmasBetween(of_rank, start.points_in_world.size());
+  solution.sample_sigmas = std::move(sigmas);
   return solution;
 }
 
@@ -282,7 +318,7 @@ Result<DeformingSolution> SolveRigidWindow(const DeformingWindow& start, double 
     auto rival = SolvedRigid(*rival_start, focal_px, options, threads);
     if (rival.ok()) {
       if (rival->cost < solution->cost) std::swap(*rival, *solution);
-      if (rival->cost < kClearlyWorse * solution->cost)
+      if (!ClearlyWorse(*rival, *solution))
         rival_sigmas = SigmasBetween({&*solution, &*rival}, start.points_in_world.size());
     }
   }

@@ -12,6 +12,7 @@
 #include <Eigen/SVD>
 
 #include "estimation/window_samples.h"
+#include "pliant/base/statistics.h"
 #include "pliant/estimation/two_view_models.h"
 #include "pliant/geometry/triangulation.h"
 
@@ -39,10 +40,18 @@ Eigen::Vector3d NearestPlane(const std::vector<Eigen::Vector3d>& points) {
 
 }  // namespace
 
+bool NearlyFlat(const std::vector<Eigen::Vector3d>& points_in_world) {
+  constexpr double kFlat = 0.1;  // median distance from the plane along the ray, by the plane's distance there
+  const Eigen::Vector3d plane = NearestPlane(points_in_world);
+  std::vector<double> distances;
+  for (const Eigen::Vector3d& point : points_in_world) distances.push_back(std::abs(plane.dot(point) - 1.0));
+  return Median(std::move(distances)) < kFlat;
+}
+
 std::optional<DeformingWindow> OtherMotionOfThePlane(const DeformingWindow& solved, double focal_px,
                                                      const DeformingWindowOptions& options) {
-  constexpr double kLeastCosine =
-      0.1;  // of a ray and the plane's normal; points further out stay at this one's distance
+  // Of a ray and the plane's normal; points further out stay at this one's distance.
+  constexpr double kLeastCosine = 0.1;
   const Rigid3& last = solved.cams_from_world.back();
   if (last.translation.norm() == 0.0) return std::nullopt;
   const Eigen::Matrix3d any_scale =

@@ -6,10 +6,16 @@
 #pragma once
 
 #include <optional>
+#include <vector>
+
+#include <Eigen/Core>
 
 #include "pliant/estimation/deforming_window.h"
 
 namespace pliant {
+
+// Whether the points are so close to a plane that a scene which deforms hardly tells its two motions apart.
+bool NearlyFlat(const std::vector<Eigen::Vector3d>& points_in_world);
 
 // A solved rigid window's views and points as they would be by the other motion from the first view to the last that
 // carries the plane nearest to the points: a start for its other minimum. Nothing where there is no other motion.

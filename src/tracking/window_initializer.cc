@@ -74,19 +74,17 @@ class WindowInitializer final : public Initializer {
   }
 
   Status LastAttempt(const InitInput& input, InitOutcome* outcome) const {
-    const std::size_t frames = input.frames.size();
-    const MapDemands least = DemandsAfter(options_.last_frame);
-    const auto whole = Solve(input, frames);
-    Status status = Make(input, whole, least, outcome);
-    if (status.ok()) return status;
+    const auto since = static_cast<int>(input.frames.size()) - 1;
+    const Status status = LastAttempt(input, since, outcome);
     // The longer the window the more it holds, and the more there is to go wrong.
-    const auto shorter = Solve(input, 2 * frames / 3);
-    if (Make(input, shorter, least, outcome).ok()) return Status::Ok();
-    // Where the samples do not agree the prediction must be good.
-    const MapDemands predicted{Certainty::kPredicted, options_.certain_depth_sigma, options_.max_depth_sigma, 0.0};
-    for (const auto* window : {&whole, &shorter})
-      if (Make(input, *window, predicted, outcome).ok()) return Status::Ok();
+    if (status.ok() || LastAttempt(input, 2 * (since + 1) / 3 - 1, outcome).ok()) return Status::Ok();
     return status;
+  }
+
+  // A sequence may end so early that its map must be certain all the same.
+  Status LastAttempt(const InitInput& input, int since, InitOutcome* outcome) const {
+    const MapDemands demands = DemandsAfter(since < options_.deforming_frame ? since : options_.last_frame);
+    return Make(input, Solve(input, static_cast<std::size_t>(since) + 1), demands, outcome);
   }
 
   // The longer the wait the less it still gives, and the more points leave the image.
@@ -101,7 +99,7 @@ class WindowInitializer final : public Initializer {
             .certain_share = (1.0 - relaxed) * options_.min_certain_share};
   }
 
-  // Of a rigid scene if it is one.
+  // Of the first frames; of a rigid scene if it is one.
   Result<SolvedWindow> Solve(const InitInput& input, std::size_t frames) const {
     const auto window = PrepareWindow(input, frames, options_, nominal_depth_mm_);
     if (!window.ok()) return window.status();

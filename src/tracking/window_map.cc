@@ -28,12 +28,10 @@ struct MapPoints {
 };
 
 // Sigmas of the points' distances, map units.
-std::vector<double> DepthSigmas(const DeformingSolution& solution, Certainty certainty) {
+std::vector<double> DepthSigmas(const DeformingSolution& solution) {
   std::vector<double> sigmas;
   for (std::size_t i = 0; i < solution.window.points_in_world.size(); ++i)
-    sigmas.push_back(
-        (certainty == Certainty::kPredictedAndAgreed ? solution.LogDepthSigma(i) : solution.log_depth_sigmas[i]) *
-        solution.window.points_in_world[i].norm());
+    sigmas.push_back(solution.LogDepthSigma(i) * solution.window.points_in_world[i].norm());
   return sigmas;
 }
 
@@ -152,7 +150,7 @@ Status SettlePoints(const InitInput& input, const MapDemands& demands, const Win
   if (!settled.ok()) return settled.status();
   MapPoints all{points->ids, {}, std::move(*settled)};
   all.ids.insert(all.ids.end(), joining.begin(), joining.end());
-  all.depth_sigmas = DepthSigmas(all.solution, demands.certainty);
+  all.depth_sigmas = DepthSigmas(all.solution);
   *points = ChooseCertain(all, demands.max_sigma * all.solution.window.MedianDistance(), options, focal_px, rejected);
   return Status::Ok();
 }
@@ -203,7 +201,7 @@ Status FillOutcome(const InitInput& input, double nominal_depth_mm, const MapPoi
 Status MakeWindowMap(const InitInput& input, const SolvedWindow& window, const MapDemands& demands,
                      const WindowInitOptions& options, double nominal_depth_mm, InitOutcome* outcome) {
   const double focal_px = input.camera.MeanFocalLengthPx();
-  const MapPoints all{window.ids, DepthSigmas(window.solution, demands.certainty), window.solution};
+  const MapPoints all{window.ids, DepthSigmas(window.solution), window.solution};
   const double median_distance = window.solution.window.MedianDistance();
   MapPoints points = ChooseCertain(all, demands.max_sigma * median_distance, options, focal_px, nullptr);
   const auto measure = [&] {
@@ -228,13 +226,11 @@ Status MakeWindowMap(const InitInput& input, const SolvedWindow& window, const M
   measure();
   if (Status status = FillOutcome(input, nominal_depth_mm, points, outcome); !status.ok()) return status;
   outcome->rejected = AllRejected(input, points, std::move(rejected));
-  const bool agreed = demands.certainty == Certainty::kPredictedAndAgreed;
   outcome->reason = "first map of " + std::to_string(points.ids.size()) + " points from a " +
                     (window.solution.window.modes.empty() ? "rigid" : "deforming") + " window of " +
-                    std::to_string(input.frames.size()) + " frames, " + (agreed ? "" : "predicted ") + "depth noise " +
+                    std::to_string(input.frames.size()) + " frames, depth noise " +
                     Digits(100.0 * outcome->measured.median_depth_sigma, 1) + " % of the median depth";
   if (window.light_is_of_no_use) outcome->reason += ", without light, which says nothing of distance here";
-  if (!agreed) outcome->reason += ", on which samples of the points do not agree";
   return Status::Ok();
 }
 

@@ -11,12 +11,8 @@
 
 namespace pliant {
 
-// By what a point is certain: the solution's prediction, and whether two samples of the points agree on it.
-enum class Certainty { kPredictedAndAgreed, kPredicted };
-
 // What a map must be.
 struct MapDemands {
-  Certainty certainty = Certainty::kPredictedAndAgreed;
   // Of a point by the median depth: at most so much for it to be certain, and to enter the map.
   double certain_sigma = 0;
   double max_sigma = 0;

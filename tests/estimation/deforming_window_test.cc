@@ -38,12 +38,12 @@ struct Scene {
   std::vector<Rigid3> poses;
   double amplitude_mm = 4;
 
-  explicit Scene(int views = 13) {
+  explicit Scene(int views = 13, double relief_mm = 15) {
     Random random(3);
     for (int i = 0; i < 150; ++i) {
       const double x = random.Uniform(-35, 35);
       const double y = random.Uniform(-25, 25);
-      points.emplace_back(x, y, 60 + 15 * std::sin(x / 14) * std::cos(y / 18));
+      points.emplace_back(x, y, 60 + relief_mm * std::sin(x / 14) * std::cos(y / 18));
     }
     for (int v = 0; v < views; ++v) {
       const double t = 5.0 * v;
@@ -156,12 +156,19 @@ TEST(DeformingWindow, TwoSamplesOfThePointsCheckOneAnother) {
   EXPECT_LT(Median(solution->sample_sigmas), kShape);
   EXPECT_GT(Median(shorter->sample_sigmas), 1.5 * Median(solution->sample_sigmas));
   // Fewer points than two samples take are solved all the same.
-  DeformingWindow few = scene.Start(0);
-  few.points_in_world.resize(70);
-  std::erase_if(few.observations, [](const DeformingObservation& seen) { return seen.point_idx >= 70; });
-  const auto one_sample = SolveDeformingWindow(few, kFocalPx, {});
+  const auto few = [](const Scene& of) {
+    DeformingWindow start = of.Start(0);
+    start.points_in_world.resize(70);
+    std::erase_if(start.observations, [](const DeformingObservation& seen) { return seen.point_idx >= 70; });
+    return start;
+  };
+  const auto one_sample = SolveDeformingWindow(few(Scene(13, 45)), kFocalPx, {});
   ASSERT_TRUE(one_sample.ok());
   EXPECT_TRUE(one_sample->sample_sigmas.empty());
+  // ... and compared with the other motion of the plane where they are close to one.
+  const auto nearly_flat = SolveDeformingWindow(few(Scene(13, 5)), kFocalPx, {});
+  ASSERT_TRUE(nearly_flat.ok());
+  EXPECT_EQ(nearly_flat->sample_sigmas.size(), 70U);
 }
 
 TEST(DeformingWindow, TheLightTellsSolutionsApart) {

@@ -78,8 +78,8 @@ struct DeformingSolution {
   // to the gauge (W7). Infinite where it cannot be computed.
   std::vector<double> log_depth_sigmas;
   // Standard deviation of log distance between the solutions of two samples of the points, over the window (W10): what
-  // the linear prediction does not see, another minimum. Infinite where one sample has no solution, and empty where
-  // there were too few points for two samples.
+  // the linear prediction does not see, another minimum. Where it is larger, that between the two motions of a scene
+  // that is nearly flat. Infinite where one sample has no solution, and empty where there is nothing to compare.
   std::vector<double> sample_sigmas;
   double cost = 0;
   // How much alike the errors of neighbours are (W11): about 0 where the window explains all but noise, near 1 where
@@ -97,7 +97,8 @@ struct DeformingSolution {
 // solved each by itself: the courses are first sought in what the rigid scene leaves unexplained, then poses, points,
 // modes and courses are solved for together, with rank R and from there with R - 1; the other points join with the
 // views fixed. The most plausible by images and light is then solved with all points, in at most a sixth of the steps.
-// It is of rank R unless the light_error of rank R - 1 is clearly less; without light R - 1 is not tried.
+// It is of rank R unless the light_error of rank R - 1 is clearly less; without light R - 1 is not tried. Of a scene
+// that is nearly flat a sample is also solved from the other motion that explains its plane.
 //
 // `threads` never changes the result. Fails with kInvalidArgument for sizes, indices, numbers and options that are
 // none, kInsufficient below three views or twelve points, and kDegenerate when there is no usable step.
