@@ -110,8 +110,13 @@ class WindowInitializer final : public Initializer {
   Status Make(const InitInput& input, const Result<SolvedWindow>& window, const MapDemands& demands,
               InitOutcome* outcome) const {
     if (!window.ok()) return window.status();
-    // Where the light contradicts, the solution may be wrong as well: it must be certain by itself.
-    const MapDemands& least = window->light_is_of_no_use ? DemandsAfter(0) : demands;
+    MapDemands least = demands;
+    if (options_.light == LightCue::kOff || window->light_is_of_no_use) {
+      // Another minimum than the right one may look as certain: what no light confirms must be more so.
+      const double unrelaxed = std::max(options_.certain_depth_sigma, options_.max_depth_sigma);
+      least.certain_sigma = std::min(least.certain_sigma, unrelaxed);
+      least.max_sigma = std::min(least.max_sigma, unrelaxed);
+    }
     return MakeWindowMap(input, *window, least, options_, nominal_depth_mm_, outcome);
   }
 
