@@ -74,11 +74,13 @@ CommandLine::CommandLine(Manual manual) : manual_(std::move(manual)) {}
 
 void CommandLine::AddArgument(Argument argument) { arguments_.push_back(std::move(argument)); }
 
-void CommandLine::Add(std::string name, std::string* value, std::string placeholder, std::string why, Need need) {
+void CommandLine::Add(std::string name, std::string* value, std::string placeholder, std::string why, Need need,
+                      Place place) {
   AddArgument({std::move(name), placeholder, std::move(why), placeholder, *value, need, [value](std::string_view text) {
                  *value = text;
                  return !text.empty();
                }});
+  arguments_.back().place = place;
 }
 
 void CommandLine::Add(std::string name, int* value, std::string why, int low, int high) {
@@ -125,8 +127,9 @@ Status CommandLine::ReadArguments(std::span<const std::string> args) {
              "--" + argument.name, [&argument](const std::vector<std::string>& values) { argument.given = values; })
           ->allow_extra_args(false);  // one value each time it is given
     } else {
-      app.add_option_function<std::string>("--" + argument.name,
-                                           [&argument](const std::string& value) { argument.given = {value}; });
+      app.add_option_function<std::string>(
+          (argument.place == Place::kFirst ? argument.name + "," : std::string()) + "--" + argument.name,
+          [&argument](const std::string& value) { argument.given = {value}; });
     }
   }
   try {
@@ -227,6 +230,7 @@ std::string CommandLine::ManualText(const OptionTable& options) const {
   std::string arguments;
   for (const Argument& argument : arguments_) {
     std::string flag = "--" + argument.name + (argument.placeholder.empty() ? "" : " ") + argument.placeholder;
+    if (argument.place == Place::kFirst) flag = "[--" + argument.name + "] " + argument.placeholder;
     if (argument.need == Need::kRequired) usage += " " + flag;
     if (argument.times == Times::kSeveral) flag += " [--" + argument.name + " ...]";
     std::string why = argument.why;

@@ -38,6 +38,9 @@ struct Manual {
 
 enum class Need { kRequired, kOptional };
 
+// Whether an argument may also be given without its name.
+enum class Place { kNamed, kFirst };
+
 // Says "pliant COMMAND: sentence" on standard error.
 void SayError(std::string_view command, std::string_view sentence);
 
@@ -46,7 +49,8 @@ class CommandLine {
   explicit CommandLine(Manual manual);
 
   // An argument `--name VALUE`. The value at the time of the call is its default in the manual.
-  void Add(std::string name, std::string* value, std::string placeholder, std::string why, Need need);
+  void Add(std::string name, std::string* value, std::string placeholder, std::string why, Need need,
+           Place place = Place::kNamed);
   void Add(std::string name, int* value, std::string why, int low, int high);
   // An argument that may be given several times; the values in the order given.
   void Add(std::string name, std::vector<std::string>* values, std::string placeholder, std::string why, Need need);
@@ -99,6 +103,7 @@ class CommandLine {
     std::function<bool(std::string_view)> set;  // false: a value that it does not accept
     std::vector<std::string> given = {};        // what the command line gave: values, or one entry for a flag
     Times times = Times::kOnce;
+    Place place = Place::kNamed;
   };
 
   void AddArgument(Argument argument);

@@ -14,6 +14,8 @@ int TrackCommand(std::span<const std::string> args);
 int SimulateCommand(std::span<const std::string> args);
 int EvaluateCommand(std::span<const std::string> args);
 int TruthCommand(std::span<const std::string> args);
+int ExportCommand(std::span<const std::string> args);
+int ModelCommand(std::span<const std::string> args);
 int DemoCommand(std::span<const std::string> args);
 
 }  // namespace pliant::cli

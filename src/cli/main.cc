@@ -33,6 +33,8 @@ constexpr std::array kCommands = {
             SimulateCommand},
     Command{"evaluate", "compare runs with the truth of their sequences", EvaluateCommand},
     Command{"truth", "follow the material that pixels of a simulated sequence show", TruthCommand},
+    Command{"export", "write a run in other programs' formats: COLMAP, PLY, TUM", ExportCommand},
+    Command{"model", "check a COLMAP model, or convert it between text and binary", ModelCommand},
     Command{"demo", "simulate, track and evaluate a small sequence", DemoCommand},
 };
 

@@ -9,7 +9,7 @@
 #include <map>
 #include <utility>
 
-#include "pliant/io/colmap.h"
+#include "pliant/colmap/convert.h"
 #include "pliant/io/run_reader.h"
 
 namespace pliant {
@@ -103,9 +103,9 @@ Result<std::optional<Camera>> ReadRunCamera(const std::string& run_path) {
     const std::filesystem::path path = std::filesystem::path(run_path) / "sparse" / name;
     std::error_code error;
     if (!std::filesystem::exists(path, error)) continue;
-    const Result<std::vector<ColmapCamera>> cameras = ReadColmapCameras(path.string());
-    if (!cameras.ok()) return cameras.status();
-    if (!cameras->empty()) return std::optional<Camera>(cameras->front().camera);
+    auto camera = colmap::ReadCamera(path.string());
+    if (!camera.ok()) return camera.status();
+    return std::optional<Camera>(std::move(camera).value());
   }
   return std::optional<Camera>();
 }

@@ -10,9 +10,9 @@
 #include <opencv2/core.hpp>
 
 #include "io/opencv_calibration.h"
-#include "io/text.h"
+#include "pliant/base/text.h"
 #include "io/yaml.h"
-#include "pliant/io/colmap.h"
+#include "pliant/colmap/convert.h"
 
 namespace pliant {
 namespace {
@@ -175,27 +175,15 @@ Result<CameraFile> ReadYaml(const std::string& path, std::string text, const Cam
   return FromOpenCv(path, EntriesOf(*root), options);
 }
 
-Result<CameraFile> FromColmap(const std::string& path, const CameraFileOptions& options) {
-  auto cameras = ReadColmapCameras(path);
-  if (!cameras.ok()) return cameras.status();
-  if (cameras->empty()) return Status(ErrorCode::kUnreadable, Quoted(path) + " holds no camera");
-  std::string ids;
-  for (const ColmapCamera& camera : *cameras) {
-    ids += (ids.empty() ? "" : ", ") + std::to_string(camera.id);
-    if (options.camera_id ? camera.id == *options.camera_id : cameras->size() == 1) return CameraFile{camera.camera};
-  }
-  return Status(ErrorCode::kInvalidArgument,
-                options.camera_id
-                    ? Quoted(path) + " has no camera " + std::to_string(*options.camera_id) + ", but " + ids
-                    : Quoted(path) + " holds " + std::to_string(cameras->size()) + " cameras (" + ids +
-                          "); choose one by its id, or leave one in the file");
-}
-
 }  // namespace
 
 Result<CameraFile> ReadCameraFile(const std::string& path, const CameraFileOptions& options) {
   const std::string extension = std::filesystem::path(path).extension();
-  if (extension == ".bin" || extension == ".txt") return FromColmap(path, options);
+  if (extension == ".bin" || extension == ".txt") {
+    auto camera = colmap::ReadCamera(path, options.camera_id);
+    if (!camera.ok()) return camera.status();
+    return CameraFile{std::move(camera).value()};
+  }
   auto text = ReadFile(path);
   if (!text.ok()) return text.status();
   const std::size_t first = text->find_first_not_of(" \t\r\n");

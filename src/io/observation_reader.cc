@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "io/run_format.h"
-#include "io/text.h"
+#include "pliant/base/text.h"
 #include "pliant/io/run_reader.h"
 
 namespace pliant {

@@ -12,7 +12,7 @@
 #include <Eigen/LU>
 #include <opencv2/calib3d.hpp>
 
-#include "io/text.h"
+#include "pliant/base/text.h"
 
 namespace pliant {
 namespace {

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "io/text.h"
+#include "pliant/base/text.h"
 #include "io/yaml.h"
 
 namespace pliant {

@@ -3,7 +3,7 @@
 
 #include "pliant/io/ply.h"
 
-#include "io/text.h"
+#include "pliant/base/text.h"
 
 namespace pliant {
 

@@ -7,7 +7,7 @@
 #include <filesystem>
 
 #include "io/run_format.h"
-#include "io/text.h"
+#include "pliant/base/text.h"
 #include "io/tum_line.h"
 
 namespace pliant {

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "io/run_format.h"
-#include "io/text.h"
+#include "pliant/base/text.h"
 
 namespace pliant {
 

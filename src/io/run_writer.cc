@@ -9,7 +9,7 @@
 #include <filesystem>
 
 #include "io/run_format.h"
-#include "io/text.h"
+#include "pliant/base/text.h"
 #include "io/tum_line.h"
 #include "pliant/io/ply.h"
 
@@ -46,9 +46,9 @@ bool IsFinite(const PointObservation& o) {
 }
 
 // The point's entry, or null.
-ColmapPoint* Find(std::vector<ColmapPoint>& points, PointId id) {
+CanonicalPoint* Find(std::vector<CanonicalPoint>& points, PointId id) {
   const auto it = std::lower_bound(points.begin(), points.end(), id,
-                                   [](const ColmapPoint& p, PointId wanted) { return p.point.id < wanted; });
+                                   [](const CanonicalPoint& p, PointId wanted) { return p.point.id < wanted; });
   return it == points.end() || it->point.id != id ? nullptr : &*it;
 }
 
@@ -81,8 +81,8 @@ struct RunWriter::State {
   OutputFile observations;
   RunSummary summary = {};
   // What the sparse model needs beside observations.csv: one entry a tracked frame and one a point.
-  std::vector<ColmapImage> images = {};
-  std::vector<ColmapPoint> points = {};
+  std::vector<CanonicalImage> images = {};
+  std::vector<CanonicalPoint> points = {};
   std::vector<double> stage_total_ms = {};
   int last_frame_idx = -1;
   std::chrono::steady_clock::time_point begin = std::chrono::steady_clock::now();
@@ -165,7 +165,7 @@ Status RunWriter::State::AddPoints(const FrameReport& report) {
     points.push_back({point, 0.0, 0});
   }
   for (const PointObservation& o : report.observations) {
-    ColmapPoint* point = Find(points, o.id);
+    CanonicalPoint* point = Find(points, o.id);
     if (point == nullptr)
       return {ErrorCode::kInvalidArgument, "frame " + std::to_string(report.frame_idx) + ": point " +
                                                std::to_string(o.id.value) + " is observed but was never new"};
@@ -248,12 +248,12 @@ Status RunWriter::Write(const FrameReport& report) {
 
 Status RunWriter::State::FinishSparse() const {
   std::vector<NewPoint> map;
-  for (const ColmapPoint& point : points) map.push_back(point.point);
+  for (const CanonicalPoint& point : points) map.push_back(point.point);
   if (Status status = WritePly(path + "/map.ply", map); !status.ok()) return status;
   std::error_code error;
   fs::create_directories(path + "/sparse", error);
   if (error) return Unwritable(path + "/sparse", error);
-  Status status = WriteColmapModel(path + "/sparse", options.sparse_format, camera, images, points, path);
+  Status status = WriteCanonicalModel(path + "/sparse", options.sparse_format, camera, images, points, path);
   if (!status.ok()) fs::remove_all(path + "/sparse", error);  // half a model reads as a whole one or not at all
   return status;
 }

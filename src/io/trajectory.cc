@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "io/text.h"
+#include "pliant/base/text.h"
 #include "io/tum_line.h"
 
 namespace pliant {

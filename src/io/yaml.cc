@@ -5,7 +5,7 @@
 
 #include <set>
 
-#include "io/text.h"
+#include "pliant/base/text.h"
 
 namespace pliant {
 

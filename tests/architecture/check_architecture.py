@@ -16,8 +16,8 @@ import pathlib
 import re
 import sys
 
-ROOMS = ("base geometry image camera photometric scene deformation residuals estimation tracking io datasets simulation "
-         "evaluation pipeline cli").split()
+ROOMS = ("base geometry image camera colmap photometric scene deformation residuals estimation tracking io datasets simulation "
+         "evaluation exchange pipeline cli").split()
 ONE_FILE_ONLY = {"flann": "deformation", "opengv": "estimation", "assimp": "simulation"}
 SPDX = ("SPDX-FileCopyrightText: ", "SPDX-License-Identifier: BSD-3-Clause")
 SPDX_SUFFIXES = {".h", ".cc", ".py", ".cmake", ".sh"}

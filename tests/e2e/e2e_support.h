@@ -14,10 +14,10 @@
 #include <gtest/gtest.h>
 #include <opencv2/imgcodecs.hpp>
 
-#include "io/test_folder.h"
 #include "pliant/evaluation/evaluation.h"
 #include "pliant/io/run_reader.h"
 #include "pliant/pipeline/track.h"
+#include "support/test_folder.h"
 
 namespace pliant {
 

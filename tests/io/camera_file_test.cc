@@ -8,8 +8,8 @@
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core.hpp>
 
-#include "io/test_folder.h"
-#include "pliant/io/colmap.h"
+#include "pliant/io/canonical_model.h"
+#include "support/test_folder.h"
 
 namespace pliant {
 namespace {
@@ -81,11 +81,13 @@ INSTANTIATE_TEST_SUITE_P(
         BadFile{"Fps", "c.yaml", "model: PINHOLE\nwidth: 64\nheight: 48\nparams: [50, 50, 32, 24]\nfps: 0\n", "fps"},
         BadFile{"Unit", "c.yaml", "model: PINHOLE\nwidth: 64\nheight: 48\nparams: [50, 50, 32, 24]\nunit: m\n",
                 ":5: unit must be mm"},
-        BadFile{"ColmapText", "cameras.txt", "# x\n1 PINHOLE 64 48 1 2 nan 4\n", ":2: 'nan' is not a finite"},
-        BadFile{"ColmapModel", "cameras.txt", "1 FOV 64 48 1 2 3 4 5\n", "no camera model 'FOV'"},
+        BadFile{"ColmapText", "cameras.txt", "# x\n1 PINHOLE 64 48 1 2 nan 4\n",
+                "camera 1: the PINHOLE camera has a parameter that is not a finite number: number 3"},
+        BadFile{"ColmapModel", "cameras.txt", "1 FOV 64 48 1 2 3 4 5\n", "camera model FOV is not one of Pliant's"},
         BadFile{"ColmapSeveral", "cameras.txt", "3 PINHOLE 64 48 50 50 32 24\n7 PINHOLE 64 48 50 50 32 24\n",
                 "2 cameras (3, 7); choose one by its id"},
-        BadFile{"ColmapTruncated", "cameras.bin", std::string("\1\0\0\0\0\0\0\0\1\0\0\0", 12), "ends too early"},
+        BadFile{"ColmapTruncated", "cameras.bin", std::string("\1\0\0\0\0\0\0\0\1\0\0\0", 12),
+                "it says that there are 1 cameras, but has only 4"},
         BadFile{"OpenCvThin", "k.yaml", kMatrix + "D: [0.1, 0, 0, 0, 0, 0, 0, 0, 0.01, 0, 0, 0]\n",
                 "coefficient s1 is 0.01"},
         BadFile{"OpenCvCount", "k.yaml", kMatrix + "D: [0.1, 0, 0]\n", "3 distortion coefficients"},
@@ -120,7 +122,7 @@ TEST(ColmapCameras, ComeBackAsTheyWereWrittenInBothFormats) {
       Camera::Create("OPENCV_FISHEYE", 800, 600, std::vector<double>{300.125, 301, 399.5, 299.25, 0.01, 0, 0, 1e-4})
           .value();
   folder.Write("observations.csv", "frame,point_id,u_px,v_px,x,y,z,ssim\n");
-  ASSERT_TRUE(WriteColmapModel(folder.Path(""), ColmapFormat::kBoth, camera, {}, {}, folder.Path("")).ok());
+  ASSERT_TRUE(WriteCanonicalModel(folder.Path(""), colmap::Format::kBoth, camera, {}, {}, folder.Path("")).ok());
   for (const char* name : {"cameras.txt", "cameras.bin"}) {
     const auto read = ReadCamera(folder.Path(name));
     ASSERT_TRUE(read.ok()) << read.status().message();

@@ -11,9 +11,9 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
-#include "io/test_folder.h"
 #include "pliant/io/run_reader.h"
 #include "pliant/io/run_writer.h"
+#include "support/test_folder.h"
 
 namespace pliant {
 namespace {

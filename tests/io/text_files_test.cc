@@ -7,11 +7,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "io/test_folder.h"
-#include "io/text.h"
+#include "pliant/base/text.h"
 #include "pliant/io/options_file.h"
 #include "pliant/io/ply.h"
 #include "pliant/io/trajectory.h"
+#include "support/test_folder.h"
 
 namespace pliant {
 namespace {

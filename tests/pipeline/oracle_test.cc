@@ -9,12 +9,12 @@
 
 #include <gmock/gmock.h>
 
-#include "io/test_folder.h"
 #include "pliant/io/run_summary.h"
 #include "pliant/pipeline/track.h"
 #include "pliant/simulation/simulator.h"
 #include "pliant/simulation/write_sequence.h"
 #include "simulation/small_scene.h"
+#include "support/test_folder.h"
 
 namespace pliant {
 namespace {

@@ -22,7 +22,7 @@
 #include "pliant/base/options.h"
 #include "pliant/base/status.h"
 #include "pliant/camera/camera.h"
-#include "pliant/io/colmap.h"
+#include "pliant/io/canonical_model.h"
 #include "pliant/io/run_summary.h"
 #include "pliant/tracking/frame_report.h"
 
@@ -41,7 +41,7 @@ struct EnumNames<RunTimings> {
 
 struct RunWriterOptions {
   RunTimings timings = RunTimings::kWritten;
-  ColmapFormat sparse_format = ColmapFormat::kBoth;
+  colmap::Format sparse_format = colmap::Format::kBoth;
 };
 
 class RunWriter {

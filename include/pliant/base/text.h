@@ -26,6 +26,8 @@ std::string At(const std::string& path, std::int64_t line);
 void AppendInt(std::string* out, std::int64_t value);
 // Rounded to `decimals` (at most 9) places after the point; never "-0.0".
 void AppendFixed(std::string* out, double value, int decimals);
+// With 17 significant digits, like C's %.17g: what is read back is the same number.
+void AppendExact(std::string* out, double value);
 // The bytes of a number, little-endian.
 void AppendBytes(std::string* out, std::uint64_t value, int num_bytes);
 void AppendDouble(std::string* out, double value);
@@ -49,6 +51,23 @@ class OutputFile {
 
   std::string path_;
   std::unique_ptr<std::FILE, Closer> file_;
+};
+
+// Files that appear together or not at all: each is written beside its place, and Commit renames them. What is not
+// committed is deleted. Between the renames of several files a reader can see some of them.
+class FileGroup {
+ public:
+  FileGroup() = default;
+  FileGroup(const FileGroup&) = delete;
+  FileGroup& operator=(const FileGroup&) = delete;
+  ~FileGroup();
+
+  // A new file of the group, which is to become `path`; the caller closes it before Commit.
+  Result<OutputFile> Create(const std::string& path);
+  Status Commit();
+
+ private:
+  std::vector<std::string> paths_;
 };
 
 // Replaces a whole file: a reader sees the old one or the new one.
@@ -85,5 +104,6 @@ std::vector<std::string_view> Split(std::string_view text, char separator);
 // Finite numbers only.
 bool ParseFinite(std::string_view text, double* value);
 bool ParseInt64(std::string_view text, std::int64_t* value);
+bool ParseUint64(std::string_view text, std::uint64_t* value);
 
 }  // namespace pliant

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "io/text.h"
+#include "pliant/base/text.h"
 
 #include <array>
 #include <bit>
@@ -18,6 +18,15 @@ namespace pliant {
 namespace {
 
 constexpr std::size_t kLargeBuffer = 1 << 20;
+
+// Where a file is written before it takes its place.
+std::string Beside(const std::string& path) { return path + ".tmp"; }
+
+template <class Integer>
+bool ParseWhole(std::string_view text, Integer* value) {
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), *value);
+  return error == std::errc() && end == text.data() + text.size();
+}
 
 std::string Reason(int error) { return std::generic_category().message(error); }
 
@@ -54,6 +63,13 @@ void AppendFixed(std::string* out, double value, int decimals) {
     digits[static_cast<std::size_t>(i)] = static_cast<char>('0' + rest % 10);
   digits[0] = '.';
   out->append(digits.data(), static_cast<std::size_t>(decimals) + 1);
+}
+
+void AppendExact(std::string* out, double value) {
+  std::array<char, 40> buffer;
+  const auto [end, error] =
+      std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::general, 17);
+  out->append(buffer.data(), end);
 }
 
 void AppendBytes(std::string* out, std::uint64_t value, int num_bytes) {
@@ -98,19 +114,34 @@ Status OutputFile::Close() {
   return Status::Ok();
 }
 
-Status WriteFileAtomically(const std::string& path, std::string_view text) {
-  const std::string beside = path + ".tmp";
-  auto file = OutputFile::Create(beside);
-  if (!file.ok()) return file.status();
-  Status status = file->Append(text);
-  if (const Status closed = file->Close(); status.ok()) status = closed;
+FileGroup::~FileGroup() {
   std::error_code error;
-  if (status.ok()) {
-    std::filesystem::rename(beside, path, error);
-    if (error) status = {ErrorCode::kUnwritable, "cannot write " + Quoted(path) + ": " + error.message()};
+  for (const std::string& path : paths_) std::filesystem::remove(Beside(path), error);
+}
+
+Result<OutputFile> FileGroup::Create(const std::string& path) {
+  auto file = OutputFile::Create(Beside(path));
+  if (file.ok()) paths_.push_back(path);
+  return file;
+}
+
+Status FileGroup::Commit() {
+  while (!paths_.empty()) {
+    std::error_code error;
+    std::filesystem::rename(Beside(paths_.front()), paths_.front(), error);
+    if (error) return {ErrorCode::kUnwritable, "cannot write " + Quoted(paths_.front()) + ": " + error.message()};
+    paths_.erase(paths_.begin());
   }
-  if (!status.ok()) std::filesystem::remove(beside, error);
-  return status;
+  return Status::Ok();
+}
+
+Status WriteFileAtomically(const std::string& path, std::string_view text) {
+  FileGroup group;
+  auto file = group.Create(path);
+  if (!file.ok()) return file.status();
+  if (Status status = file->Append(text); !status.ok()) return status;
+  if (Status status = file->Close(); !status.ok()) return status;
+  return group.Commit();
 }
 
 Status OverwriteFile(const std::string& path, std::string_view text) {
@@ -173,9 +204,8 @@ bool ParseFinite(std::string_view text, double* value) {
   return ParseDouble(text, value) && std::isfinite(*value);
 }
 
-bool ParseInt64(std::string_view text, std::int64_t* value) {
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), *value);
-  return error == std::errc() && end == text.data() + text.size();
-}
+bool ParseInt64(std::string_view text, std::int64_t* value) { return ParseWhole(text, value); }
+
+bool ParseUint64(std::string_view text, std::uint64_t* value) { return ParseWhole(text, value); }
 
 }  // namespace pliant

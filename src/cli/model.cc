@@ -1,0 +1,109 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/colmap/model.h"
+
+#include <iostream>
+
+#include "cli/command_line.h"
+#include "cli/commands.h"
+#include "pliant/base/text.h"
+#include "pliant/colmap/check.h"
+
+namespace pliant::cli {
+namespace {
+
+const Manual kCheckManual = {
+    "model check",
+    "say what is wrong with a COLMAP model",
+    "Reads a folder with cameras, images and points3D, .bin or .txt (where both are there the binary ones, as COLMAP "
+    "does), since COLMAP 3.12 also rigs and frames. Prints how many of each there are, and then a line for everything "
+    "that is wrong: how many have it, and the first of them.\n\n"
+    "An error is what COLMAP or another reader trips over: tracks and keypoints that point nowhere or not at each "
+    "other, numbers that are none, images without their camera. A warning is what is allowed, but hardly meant: points "
+    "seen in one image alone, or behind a camera. COLMAP's model_analyzer finds none of it.\n\n"
+    "Ends with 1 if there is an error, or the model cannot be read.",
+    {"pliant model check run/sparse", "pliant model check reconstruction/sparse/0"},
+};
+
+const Manual kConvertManual = {
+    "model convert",
+    "write a COLMAP model as text or binary",
+    "Reads a folder with cameras, images and points3D, and writes them into another, as COLMAP itself does: a model "
+    "that COLMAP wrote comes back byte for byte. All files appear at the end, or none. --rigs writes rigs and frames "
+    "too, where there are some; without it the model is one that every version of COLMAP reads.",
+    {"pliant model convert --input_path sparse/0 --output_path text --format text"},
+};
+
+std::string Counts(const colmap::Model& model) {
+  std::size_t observations = 0;
+  for (const colmap::Point3D& point : model.points3D) observations += point.track.size();
+  std::string text = std::to_string(model.cameras.size()) + " cameras, " + std::to_string(model.images.size()) +
+                     " images, " + std::to_string(model.points3D.size()) + " points, " + std::to_string(observations) +
+                     " observations";
+  if (!model.rigs.empty() || !model.frames.empty())
+    text += ", " + std::to_string(model.rigs.size()) + " rigs, " + std::to_string(model.frames.size()) + " frames";
+  return text;
+}
+
+int CheckCommand(std::span<const std::string> args) {
+  std::string path;
+  CommandLine line(kCheckManual);
+  line.Add("path", &path, "DIR", "folder of the model", Need::kRequired, Place::kFirst);
+  if (const auto exit = line.Parse(args)) return *exit;
+  OptionTable no_options;
+  if (const auto exit = line.Resolve(no_options)) return *exit;
+
+  const auto model = colmap::ReadModel(path);
+  if (!model.ok()) return line.Failure(model.status().message());
+  std::cout << Counts(*model) << "\n";
+  const std::vector<colmap::Finding> findings = colmap::CheckModel(*model);
+  for (const colmap::Finding& finding : findings)
+    std::cout << (finding.severity == colmap::Severity::kError ? "error: " : "warning: ") << finding.what << ": "
+              << finding.count << ", the first: " << finding.example << "\n";
+  const auto format = colmap::FindModel(path);
+  if (format.ok() && *format == colmap::Format::kBoth)
+    std::cout << "note: there are text files too; COLMAP reads the binary ones\n";
+  if (findings.empty()) std::cout << "nothing is wrong\n";
+  return colmap::IsValid(findings) ? kExitOk : kExitFailed;
+}
+
+int ConvertCommand(std::span<const std::string> args) {
+  std::string input_path;
+  std::string output_path;
+  colmap::Format format = colmap::Format::kBinary;
+  bool with_rigs = false;
+  CommandLine line(kConvertManual);
+  line.Add("input_path", &input_path, "DIR", "folder of the model", Need::kRequired);
+  line.Add("output_path", &output_path, "DIR", "folder to write, made if need be", Need::kRequired);
+  line.AddChoice("format", &format, "what to write");
+  line.AddFlag("rigs", &with_rigs, "write rigs and frames too (COLMAP 3.12 and later)");
+  if (const auto exit = line.Parse(args)) return *exit;
+  OptionTable no_options;
+  if (const auto exit = line.Resolve(no_options)) return *exit;
+
+  const auto model = colmap::ReadModel(input_path);
+  if (!model.ok()) return line.Failure(model.status().message());
+  const colmap::Rigs rigs = with_rigs && !model->rigs.empty() ? colmap::Rigs::kWritten : colmap::Rigs::kLeftOut;
+  const Status status = colmap::WriteModel(output_path, *model, format, rigs);
+  return status.ok() ? kExitOk : line.Failure(status.message());
+}
+
+}  // namespace
+
+int ModelCommand(std::span<const std::string> args) {
+  const std::string verb = args.empty() ? "" : args.front();
+  if (verb == "check") return CheckCommand(args.subspan(1));
+  if (verb == "convert") return ConvertCommand(args.subspan(1));
+  const std::string usage =
+      "usage: pliant model check DIR\n       pliant model convert --input_path DIR --output_path DIR\n\n"
+      "pliant model check --help and pliant model convert --help are the manuals.\n";
+  if (verb == "--help" || verb == "help") {
+    std::cout << usage;
+    return kExitOk;
+  }
+  std::cerr << usage;
+  return kExitUsage;
+}
+
+}  // namespace pliant::cli

@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "colmap/model_file.h"
+
+#include <utility>
+
+namespace pliant::colmap {
+namespace {
+
+Status Put(std::optional<OutputFile>& file, std::string* buffer) {
+  if (file) return file->AppendWhenLarge(buffer);
+  buffer->clear();
+  return Status::Ok();
+}
+
+Status End(std::optional<OutputFile>& file, const std::string& rest) {
+  if (!file) return Status::Ok();
+  if (Status status = file->Append(rest); !status.ok()) return status;
+  return file->Close();
+}
+
+}  // namespace
+
+Result<ModelFile> ModelFile::Create(FileGroup& group, const std::string& folder, const std::string& name,
+                                    Format format) {
+  ModelFile file;
+  if (format != Format::kBinary) {
+    auto text = group.Create(folder + "/" + name + ".txt");
+    if (!text.ok()) return text.status();
+    file.text_file_ = std::move(text).value();
+  }
+  if (format != Format::kText) {
+    auto binary = group.Create(folder + "/" + name + ".bin");
+    if (!binary.ok()) return binary.status();
+    file.binary_file_ = std::move(binary).value();
+  }
+  return file;
+}
+
+Status ModelFile::Flush() {
+  if (Status status = Put(text_file_, &text); !status.ok()) return status;
+  return Put(binary_file_, &binary);
+}
+
+Status ModelFile::Close() {
+  if (Status status = End(text_file_, text); !status.ok()) return status;
+  return End(binary_file_, binary);
+}
+
+}  // namespace pliant::colmap

@@ -1,0 +1,89 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/exchange/export.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "exchange/exports.h"
+#include "pliant/base/text.h"
+#include "pliant/io/trajectory.h"
+
+namespace pliant {
+namespace {
+
+Status Export(const RunSource& source, const ExportRequest& request, const ExportOptions& options) {
+  const std::string& folder = request.output_path;
+  switch (request.format) {
+    case ExportFormat::kCanonical:
+      return ExportCanonical(source, options, folder);
+    case ExportFormat::kSpacetime:
+      return ExportSpacetime(source, options, folder);
+    case ExportFormat::kFrames:
+      return ExportFrames(source, options, folder);
+    case ExportFormat::kPly:
+      return ExportPly(source, folder);
+    case ExportFormat::kTrajectories:
+      return ExportTrajectories(source, folder);
+    case ExportFormat::kTum:
+      return ExportTum(source, folder);
+    case ExportFormat::kColmap4d:
+      return ExportColmap4d(source, options, folder);
+    case ExportFormat::kDatabase:
+      return ExportDatabase(source, options, folder);
+  }
+  return Status::Ok();
+}
+
+}  // namespace
+
+void ExportOptions::List(OptionTable& table) {
+  table.BeginGroup("Export", "what is exported of a run");
+  table.AddChoice("files", &files, "of COLMAP's models");
+  table.Add("stride", &stride, "frames", "every so manieth tracked frame", 1, 100000);
+  table.Add("min_matches", &min_matches, "-", "database: images that share fewer tracks are not matched", 1, 1000000);
+}
+
+std::array<std::uint8_t, 3> TimeColor(double time) {
+  // Nine of viridis' 256 colours, evenly spaced.
+  constexpr std::array<std::array<double, 3>, 9> kColors = {{{68, 1, 84},
+                                                             {71, 44, 122},
+                                                             {59, 81, 139},
+                                                             {44, 113, 142},
+                                                             {33, 144, 141},
+                                                             {39, 173, 129},
+                                                             {92, 200, 99},
+                                                             {170, 220, 50},
+                                                             {253, 231, 37}}};
+  const double place = std::clamp(time, 0.0, 1.0) * (kColors.size() - 1);
+  const auto below = std::min(static_cast<std::size_t>(place), kColors.size() - 2);
+  std::array<std::uint8_t, 3> color{};
+  for (std::size_t c = 0; c < 3; ++c)
+    color[c] = static_cast<std::uint8_t>(
+        std::lround(std::lerp(kColors[below][c], kColors[below + 1][c], place - static_cast<double>(below))));
+  return color;
+}
+
+Status ExportTum(const RunSource& source, const std::string& folder) {
+  std::string lines;
+  for (const SourceFrame& frame : source.frames)
+    AppendTumLine(&lines, frame.timestamp_s, frame.cam_from_world.Inverse());
+  return WriteFileAtomically(folder + "/trajectory.txt", lines);
+}
+
+Result<ExportSummary> ExportRun(const ExportRequest& request, const ExportOptions& options) {
+  const auto source = ReadRunSource(request.run_path, request.sequence_path, options.stride);
+  if (!source.ok()) return source.status();
+  std::error_code error;
+  std::filesystem::create_directories(request.output_path, error);
+  if (error)
+    return Status(ErrorCode::kUnwritable,
+                  "cannot make the folder " + Quoted(request.output_path) + ": " + error.message());
+  if (Status status = Export(*source, request, options); !status.ok()) return status;
+  return ExportSummary{static_cast<int>(source->frames.size()), static_cast<int>(source->points.size()),
+                       source->num_observations, source->notes};
+}
+
+}  // namespace pliant

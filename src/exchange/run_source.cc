@@ -1,0 +1,161 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "exchange/run_source.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "pliant/base/text.h"
+#include "pliant/colmap/convert.h"
+#include "pliant/datasets/open_sequence.h"
+
+namespace pliant {
+namespace {
+
+// What sparse/ or the sequence says of a run's images and points.
+struct Known {
+  std::optional<Camera> camera;
+  std::map<int, std::string> names;  // by frame
+  std::map<PointId, NewPoint> points;
+};
+
+Result<Known> KnownFromSparse(const std::string& folder) {
+  const auto model = colmap::ReadModel(folder, colmap::Observations::kSkipped);
+  if (!model.ok()) return model.status();
+  if (model->cameras.size() != 1)
+    return Status(ErrorCode::kMismatch,
+                  Quoted(folder) + " is not a run's: it has " + std::to_string(model->cameras.size()) + " cameras");
+  auto camera = colmap::ToPliant(model->cameras.front());
+  if (!camera.ok()) return camera.status();
+  Known known;
+  known.camera = std::move(camera).value();
+  for (const colmap::Image& image : model->images) known.names.emplace(static_cast<int>(image.id) - 1, image.name);
+  for (const colmap::Point3D& point : model->points3D) {
+    const PointId id{static_cast<std::int64_t>(point.id)};
+    known.points.emplace(id, NewPoint{id, Eigen::Vector3d(point.xyz[0], point.xyz[1], point.xyz[2]), point.rgb});
+  }
+  return known;
+}
+
+// Decodes every image: only of a run that was killed, or another program's.
+Result<Known> KnownFromSequence(const std::string& path) {
+  SequenceRequest request;
+  request.image_path = path;
+  auto sequence = OpenSequence(request);
+  if (!sequence.ok()) return sequence.status();
+  Known known;
+  known.camera = (*sequence)->camera();
+  while (true) {
+    auto frame = (*sequence)->Next();
+    if (!frame.ok()) continue;  // it cannot have been tracked
+    if (!frame->has_value()) return known;
+    known.names.emplace((*frame)->frame_idx, (*frame)->name);
+  }
+}
+
+Result<Known> ReadKnown(const std::string& run_path, const std::string& sequence_path, const Run& run) {
+  const std::string sparse = run_path + "/sparse";
+  std::error_code error;
+  if (std::filesystem::is_directory(sparse, error)) return KnownFromSparse(sparse);
+  const std::string path = !sequence_path.empty() ? sequence_path : run.summary ? run.summary->description.input : "";
+  if (!path.empty()) {
+    auto known = KnownFromSequence(path);
+    if (known.ok()) return known;
+    return Status(known.status().code(), "the run has no sparse/ to take the camera and the images' names from, and " +
+                                             known.status().message());
+  }
+  return Status(ErrorCode::kNotFound, Quoted(run_path) +
+                                          " has no sparse/ to take the camera and the images' names "
+                                          "from; name its sequence with --sequence");
+}
+
+// Counts and mean errors, and the first position of points that sparse/ does not have.
+Status AddPoints(const Known& known, RunSource* source) {
+  std::map<PointId, CanonicalPoint> points;
+  std::size_t unknown = 0;
+  const Status status = ForEachFrame(*source, [&](const SourceFrame& frame, const auto& observations) {
+    for (const PointObservation& o : observations) {
+      const auto [entry, added] = points.try_emplace(o.id);
+      CanonicalPoint& point = entry->second;
+      if (added) {
+        const auto found = known.points.find(o.id);
+        point.point = found != known.points.end() ? found->second : NewPoint{o.id, o.position};
+        unknown += found == known.points.end() ? 1 : 0;
+      }
+      ++point.num_observations;
+      ++source->num_observations;
+      const auto pixel = source->camera.Project(frame.cam_from_world * o.position);
+      if (pixel) point.error_px += (*pixel - o.pixel).norm();
+    }
+    return Status::Ok();
+  });
+  if (!status.ok()) return status;
+  for (auto& [id, point] : points) {
+    point.error_px /= static_cast<double>(point.num_observations);
+    source->points.push_back(point);
+  }
+  if (unknown > 0)
+    source->notes.push_back(std::to_string(unknown) + " of " + std::to_string(points.size()) +
+                            " points have no undeformed position or colour in the run; their first position stands for "
+                            "it, in grey");
+  return Status::Ok();
+}
+
+}  // namespace
+
+const CanonicalPoint* RunSource::Find(PointId id) const {
+  const auto found =
+      std::lower_bound(points.begin(), points.end(), id,
+                       [](const CanonicalPoint& point, PointId wanted) { return point.point.id < wanted; });
+  return found != points.end() && found->point.id == id ? &*found : nullptr;
+}
+
+Result<RunSource> ReadRunSource(const std::string& run_path, const std::string& sequence_path, int stride) {
+  const auto run = ReadRun(run_path);
+  if (!run.ok()) return run.status();
+  if (run->poses.empty())
+    return Status(ErrorCode::kInsufficient,
+                  "no frame of the run " + Quoted(run_path) + " was tracked; there is nothing to export");
+  auto known = ReadKnown(run_path, sequence_path, *run);
+  if (!known.ok()) return known.status();
+  RunSource source{run_path, *known->camera, {}, {}, 0, {}};
+  for (std::size_t i = 0; i < run->poses.size(); i += static_cast<std::size_t>(stride)) {
+    const RunPose& pose = run->poses[i];
+    if (!pose.frame_idx)
+      return Status(ErrorCode::kMismatch, Quoted(run_path) + " has no frames.csv, which says the frames of its poses");
+    const auto name = known->names.find(*pose.frame_idx);
+    if (name == known->names.end())
+      return Status(ErrorCode::kMismatch, "frame " + std::to_string(*pose.frame_idx) + " of the run " +
+                                              Quoted(run_path) + " has no image; is this its sequence?");
+    source.frames.push_back({*pose.frame_idx, pose.timestamp_s, name->second, pose.world_from_cam.Inverse()});
+  }
+  if (run->cut_lines > 0) source.notes.push_back("the run was killed; what it left whole is exported");
+  if (Status status = AddPoints(*known, &source); !status.ok()) return status;
+  return source;
+}
+
+Status ForEachFrame(const RunSource& source, const FrameFunction& function) {
+  auto reader = ObservationReader::Open(source.run_path);
+  if (!reader.ok()) return reader.status();
+  std::size_t next = 0;
+  const auto until = [&](int frame_idx) {
+    for (; next < source.frames.size() && source.frames[next].frame_idx < frame_idx; ++next)
+      if (Status status = function(source.frames[next], {}); !status.ok()) return status;
+    return Status::Ok();
+  };
+  while (next < source.frames.size()) {
+    auto rows = reader->Next();
+    if (!rows.ok()) return rows.status();
+    if (!rows->has_value()) break;
+    if (Status status = until((*rows)->frame_idx); !status.ok()) return status;
+    if (next == source.frames.size() || source.frames[next].frame_idx != (*rows)->frame_idx) continue;
+    if (Status status = function(source.frames[next++], (*rows)->observations); !status.ok()) return status;
+  }
+  return until(source.frames.empty() ? 0 : source.frames.back().frame_idx + 1);
+}
+
+}  // namespace pliant

@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// A run as its exports see it: what there is of frames and points, and the observations as a stream.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "pliant/base/status.h"
+#include "pliant/camera/camera.h"
+#include "pliant/geometry/rigid3.h"
+#include "pliant/io/canonical_model.h"
+#include "pliant/io/run_reader.h"
+
+namespace pliant {
+
+struct SourceFrame {
+  int frame_idx = 0;
+  double timestamp_s = 0;
+  std::string name;
+  Rigid3 cam_from_world;
+};
+
+struct RunSource {
+  std::string run_path;
+  Camera camera;
+  std::vector<SourceFrame> frames;     // that are exported, by frame_idx
+  std::vector<CanonicalPoint> points;  // seen in one of them, by id
+  std::int64_t num_observations = 0;   // in all of them
+  std::vector<std::string> notes;
+
+  const CanonicalPoint* Find(PointId id) const;
+};
+
+// Every `stride`-th tracked frame of a run. Fails as ExportRun does.
+Result<RunSource> ReadRunSource(const std::string& run_path, const std::string& sequence_path, int stride);
+
+// Calls `function(frame, observations)` for every frame of the source, in order, also for those that see nothing.
+using FrameFunction = std::function<Status(const SourceFrame&, const std::vector<PointObservation>&)>;
+Status ForEachFrame(const RunSource& source, const FrameFunction& function);
+
+}  // namespace pliant

@@ -1,0 +1,98 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "exchange/sqlite.h"
+
+#include <algorithm>
+
+#include <sqlite3.h>
+
+#include "pliant/base/text.h"
+
+namespace pliant {
+namespace {
+
+constexpr int kBusyMs = 2000;  // how long another process may hold a lock
+
+int Bind(sqlite3_stmt* statement, int place, const SqliteValue& value) {
+  if (const auto* whole = std::get_if<std::int64_t>(&value)) return sqlite3_bind_int64(statement, place, *whole);
+  if (const auto* number = std::get_if<double>(&value)) return sqlite3_bind_double(statement, place, *number);
+  if (const auto* text = std::get_if<std::string>(&value))
+    return sqlite3_bind_text64(statement, place, text->data(), text->size(), SQLITE_TRANSIENT, SQLITE_UTF8);
+  if (const auto* blob = std::get_if<SqliteBlob>(&value))
+    return sqlite3_bind_blob64(statement, place, blob->data(), blob->size(), SQLITE_TRANSIENT);
+  return sqlite3_bind_null(statement, place);
+}
+
+}  // namespace
+
+void SqliteDatabase::Closer::operator()(sqlite3* database) const { sqlite3_close_v2(database); }
+void SqliteInsert::Finalizer::operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
+
+Status SqliteDatabase::Failure(const std::string& what) const {
+  const int code = sqlite3_errcode(database_.get());
+  const std::string message =
+      "cannot " + what + " the database " + Quoted(path_) + ": " + sqlite3_errmsg(database_.get());
+  if (code == SQLITE_BUSY || code == SQLITE_LOCKED)
+    return {ErrorCode::kUnwritable, message + "; another program has it open, close that first"};
+  if (code == SQLITE_NOTADB || code == SQLITE_CORRUPT) return {ErrorCode::kUnreadable, message};
+  return {ErrorCode::kUnwritable, message};
+}
+
+Result<SqliteDatabase> SqliteDatabase::Open(const std::string& path) {
+  sqlite3* handle = nullptr;
+  const int code = sqlite3_open_v2(path.c_str(), &handle, SQLITE_OPEN_READWRITE, nullptr);
+  SqliteDatabase database(path, handle);
+  if (code != SQLITE_OK) return database.Failure("open");
+  sqlite3_busy_timeout(handle, kBusyMs);
+  return database;
+}
+
+Status SqliteDatabase::Execute(const std::string& sql) {
+  if (sqlite3_exec(database_.get(), sql.c_str(), nullptr, nullptr, nullptr) != SQLITE_OK) return Failure("write");
+  return Status::Ok();
+}
+
+Result<std::vector<std::string>> SqliteDatabase::Columns(const std::string& table) {
+  sqlite3_stmt* handle = nullptr;
+  if (sqlite3_prepare_v2(database_.get(), "SELECT name FROM pragma_table_info(?)", -1, &handle, nullptr) != SQLITE_OK)
+    return Failure("read");
+  const std::unique_ptr<sqlite3_stmt, SqliteInsert::Finalizer> statement(handle);
+  sqlite3_bind_text(handle, 1, table.c_str(), -1, SQLITE_TRANSIENT);
+  std::vector<std::string> names;
+  int code = SQLITE_OK;
+  while ((code = sqlite3_step(handle)) == SQLITE_ROW)
+    names.emplace_back(reinterpret_cast<const char*>(sqlite3_column_text(handle, 0)));
+  if (code != SQLITE_DONE) return Failure("read");
+  return names;
+}
+
+Result<SqliteInsert> SqliteInsert::Create(SqliteDatabase& database, const std::string& table,
+                                          const std::vector<std::string>& columns) {
+  const auto known = database.Columns(table);
+  if (!known.ok()) return known.status();
+  std::string names;
+  std::string places;
+  for (const std::string& column : columns) {
+    if (std::find(known->begin(), known->end(), column) == known->end())
+      return Status(ErrorCode::kMismatch, "the database " + Quoted(database.path_) + " has no column " + column +
+                                              " in a table " + table + "; it is not one that this version knows");
+    names += (names.empty() ? "" : ", ") + column;
+    places += places.empty() ? "?" : ", ?";
+  }
+  sqlite3_stmt* handle = nullptr;
+  const std::string sql = "INSERT INTO " + table + " (" + names + ") VALUES (" + places + ")";
+  if (sqlite3_prepare_v2(database.database_.get(), sql.c_str(), -1, &handle, nullptr) != SQLITE_OK)
+    return database.Failure("write");
+  return SqliteInsert(database, handle);
+}
+
+Status SqliteInsert::Add(const std::vector<SqliteValue>& values) {
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (Bind(statement_.get(), static_cast<int>(i) + 1, values[i]) != SQLITE_OK) return database_->Failure("write");
+  if (sqlite3_step(statement_.get()) != SQLITE_DONE) return database_->Failure("write");
+  sqlite3_reset(statement_.get());
+  return Status::Ok();
+}
+
+}  // namespace pliant

@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// A SQLite database that is filled row by row, columns by name.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "pliant/base/status.h"
+
+struct sqlite3;
+struct sqlite3_stmt;
+
+namespace pliant {
+
+using SqliteBlob = std::vector<std::uint8_t>;
+using SqliteValue = std::variant<std::nullptr_t, std::int64_t, double, std::string, SqliteBlob>;
+
+class SqliteDatabase {
+ public:
+  // A database that is there. Fails with kUnreadable if it is none, kUnwritable if it cannot be written or is locked.
+  static Result<SqliteDatabase> Open(const std::string& path);
+
+  // Names of a table's columns; empty: there is no such table.
+  Result<std::vector<std::string>> Columns(const std::string& table);
+  Status Execute(const std::string& sql);
+
+ private:
+  friend class SqliteInsert;
+  struct Closer {
+    void operator()(sqlite3* database) const;
+  };
+  SqliteDatabase(std::string path, sqlite3* database) : path_(std::move(path)), database_(database) {}
+  Status Failure(const std::string& what) const;
+
+  std::string path_;
+  std::unique_ptr<sqlite3, Closer> database_;
+};
+
+// One prepared row: INSERT INTO table (columns) VALUES (?, ...).
+class SqliteInsert {
+ public:
+  // Fails with kMismatch if the table does not have one of the columns.
+  static Result<SqliteInsert> Create(SqliteDatabase& database, const std::string& table,
+                                     const std::vector<std::string>& columns);
+  Status Add(const std::vector<SqliteValue>& values);
+
+  struct Finalizer {
+    void operator()(sqlite3_stmt* statement) const;
+  };
+
+ private:
+  SqliteInsert(SqliteDatabase& database, sqlite3_stmt* statement) : database_(&database), statement_(statement) {}
+
+  SqliteDatabase* database_;
+  std::unique_ptr<sqlite3_stmt, Finalizer> statement_;
+};
+
+}  // namespace pliant
