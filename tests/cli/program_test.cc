@@ -347,5 +347,46 @@ TEST(Program, TruthFollowsMaterialThroughASequence) {
   EXPECT_THAT(Pliant(truth + "--grid_px 8 --points '" + points + "'").err, HasSubstr("give either"));
 }
 
+TEST(Program, ModelCheckSaysWhatIsWrongAndExitsWithOne) {
+  const std::filesystem::path folder = Temporary("model");
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder / "cameras.txt") << "1 PINHOLE 64 48 50 50 32 24\n";
+  std::ofstream(folder / "images.txt") << "1 1 0 0 0 0 0 0 1 a.png\n10 20 7\n2 1 0 0 0 0 0 0 1 b.png\n30 20 7\n";
+  std::ofstream(folder / "points3D.txt") << "7 0 0 5 1 2 3 0.5 1 0 2 0\n";
+  const Outcome good = Pliant("model check '" + folder.string() + "'");
+  EXPECT_EQ(good.exit, 0) << good.err;
+  EXPECT_EQ(good.out, "1 cameras, 2 images, 1 points, 2 observations\nnothing is wrong\n");
+
+  const std::string binary = Temporary("binary").string();
+  EXPECT_EQ(Pliant("model convert --input_path '" + folder.string() + "' --output_path '" + binary + "'").exit, 0);
+  EXPECT_EQ(Pliant("model check --path '" + binary + "'").out, good.out);
+  const Outcome beside =
+      Pliant("model convert --format text --input_path '" + folder.string() + "' --output_path '" + binary + "'");
+  EXPECT_EQ(beside.exit, 1);
+  EXPECT_THAT(beside.err, HasSubstr("cameras.bin"));
+
+  std::ofstream(folder / "points3D.txt") << "7 0 0 5 1 2 3 0.5 1 0 3 0\n";
+  const Outcome bad = Pliant("model check '" + folder.string() + "'");
+  EXPECT_EQ(bad.exit, 1);
+  EXPECT_THAT(
+      bad.out,
+      HasSubstr("error: tracks have an image that is not there: 1, the first: point 7, keypoint 0 of image 3\n"));
+  EXPECT_THAT(bad.out, HasSubstr("error: keypoints have a point whose track does not have them: 1"));
+
+  EXPECT_EQ(Pliant("model check").exit, 2);
+  EXPECT_EQ(Pliant("model").exit, 2);
+  EXPECT_EQ(Pliant("model check /nowhere").exit, 1);
+}
+
+TEST(Program, ExportSaysInOneSentenceWhatIsMissing) {
+  const Outcome nothing =
+      Pliant("export --run /nowhere --format tum --output_path '" + Temporary("out").string() + "'");
+  EXPECT_EQ(nothing.exit, 1);
+  EXPECT_EQ(nothing.err, "pliant export: there is no run folder '/nowhere'; check the path\n");
+  const Outcome format = Pliant("export --run a --format collada --output_path b");
+  EXPECT_EQ(format.exit, 2);
+  EXPECT_THAT(format.err, HasSubstr("canonical|spacetime|frames"));
+}
+
 }  // namespace
 }  // namespace pliant
