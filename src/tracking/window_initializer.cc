@@ -111,8 +111,10 @@ class WindowInitializer final : public Initializer {
               InitOutcome* outcome) const {
     if (!window.ok()) return window.status();
     MapDemands least = demands;
-    if (options_.light == LightCue::kOff || window->light_is_of_no_use) {
-      // Another minimum than the right one may look as certain: what no light confirms must be more so.
+    // Another minimum than the right one may look as certain: what no light confirms must be more so, and most of all
+    // what the light contradicts.
+    if (window->light_is_of_no_use) least = DemandsAfter(0);
+    if (options_.light == LightCue::kOff) {
       const double unrelaxed = std::max(options_.certain_depth_sigma, options_.max_depth_sigma);
       least.certain_sigma = std::min(least.certain_sigma, unrelaxed);
       least.max_sigma = std::min(least.max_sigma, unrelaxed);
