@@ -153,26 +153,27 @@ void CheckPoint(const Point3D& point, const ImagesById& images, const CamerasByI
   if (point.track.size() < 2) findings->Warn("points are seen in fewer than two images", name);
   std::set<std::pair<std::uint32_t, std::uint32_t>> seen;
   for (const TrackElement& element : point.track) {
-    const std::string place =
-        name + ", " + Named("keypoint", element.point2D_idx) + " of " + Named("image", element.image_id);
+    const auto place = [&] {
+      return name + ", " + Named("keypoint", element.point2D_idx) + " of " + Named("image", element.image_id);
+    };
     if (!seen.insert({element.image_id, element.point2D_idx}).second)
-      findings->Error("tracks have a keypoint twice", place);
+      findings->Error("tracks have a keypoint twice", place());
     const auto image = images.find(element.image_id);
     if (image == images.end()) {
-      findings->Error("tracks have an image that is not there", place);
+      findings->Error("tracks have an image that is not there", place());
       continue;
     }
     const std::vector<Point2D>& keypoints = image->second->points2D;
     if (element.point2D_idx >= keypoints.size())
-      findings->Error("tracks have a keypoint that is not there", place);
+      findings->Error("tracks have a keypoint that is not there", place());
     else if (keypoints[element.point2D_idx].point3D_id != point.id)
-      findings->Error("tracks have a keypoint that belongs to another point, or to none", place);
+      findings->Error("tracks have a keypoint that belongs to another point, or to none", place());
     const auto camera = cameras.find(image->second->camera_id);
     // A fisheye sees what is beside and behind it.
     const bool perspective =
         camera != cameras.end() && camera->second->model_id < static_cast<int>(CameraModelId::kOpenCvFisheye);
     if (perspective && IsBehind(point, image->second->cam_from_world))
-      findings->Warn("points are behind a camera that sees them", place);
+      findings->Warn("points are behind a camera that sees them", place());
   }
 }
 

@@ -5,6 +5,8 @@
 
 #include <utility>
 
+#include "colmap/rows.h"
+
 namespace pliant::colmap {
 namespace {
 
@@ -46,6 +48,16 @@ Status ModelFile::Flush() {
 Status ModelFile::Close() {
   if (Status status = End(text_file_, text); !status.ok()) return status;
   return End(binary_file_, binary);
+}
+
+Status WriteCamera(FileGroup& group, const std::string& folder, Format format, const Camera& camera) {
+  auto file = ModelFile::Create(group, folder, "cameras", format);
+  if (!file.ok()) return file.status();
+  file->text = CamerasHeader(1) + "\n";
+  AppendTextCamera(camera, &file->text);
+  AppendBytes(&file->binary, 1, 8);
+  AppendBinaryCamera(camera, &file->binary);
+  return file->Close();
 }
 
 }  // namespace pliant::colmap

@@ -31,4 +31,7 @@ class ModelFile {
   std::optional<OutputFile> binary_file_;
 };
 
+// The file cameras of a model that has this one.
+Status WriteCamera(FileGroup& group, const std::string& folder, Format format, const Camera& camera);
+
 }  // namespace pliant::colmap

@@ -17,33 +17,26 @@ namespace {
 
 constexpr std::uint64_t kPointsAFrame = 1'000'000;  // ids of a spacetime model: frame * this + track
 
-std::uint32_t ImageId(const SourceFrame& frame) { return static_cast<std::uint32_t>(frame.frame_idx) + 1; }
-
 std::uint64_t SpacetimeId(const SourceFrame& frame, PointId point) {
   return static_cast<std::uint64_t>(frame.frame_idx) * kPointsAFrame + static_cast<std::uint64_t>(point.value);
 }
 
-// cameras, images and points3D of one model, written as a stream.
+// A model whose images and points3D are written as a stream.
 class ModelStream {
  public:
   static Result<ModelStream> Create(FileGroup& group, const std::string& folder, colmap::Format format,
                                     const Camera& camera, std::uint64_t num_images, std::uint64_t num_points) {
-    auto cameras = colmap::ModelFile::Create(group, folder, "cameras", format);
-    if (!cameras.ok()) return cameras.status();
+    if (Status status = colmap::WriteCamera(group, folder, format, colmap::FromPliant(camera, 1)); !status.ok())
+      return status;
     auto images = colmap::ModelFile::Create(group, folder, "images", format);
     if (!images.ok()) return images.status();
     auto points = colmap::ModelFile::Create(group, folder, "points3D", format);
     if (!points.ok()) return points.status();
-    const colmap::Camera converted = colmap::FromPliant(camera, 1);
-    cameras->text = colmap::CamerasHeader(1) + "\n";
-    AppendTextCamera(converted, &cameras->text);
-    AppendBytes(&cameras->binary, 1, 8);
-    AppendBinaryCamera(converted, &cameras->binary);
     images->text = colmap::ImagesHeader(num_images) + "\n";
     AppendBytes(&images->binary, num_images, 8);
     points->text = colmap::PointsHeader(num_points) + "\n";
     AppendBytes(&points->binary, num_points, 8);
-    return ModelStream{std::move(*cameras), std::move(*images), std::move(*points)};
+    return ModelStream{std::move(*images), std::move(*points)};
   }
 
   Status Add(const colmap::Image& image) {
@@ -57,12 +50,11 @@ class ModelStream {
     return points.Flush();
   }
   Status Close() {
-    for (colmap::ModelFile* file : {&cameras, &images, &points})
+    for (colmap::ModelFile* file : {&images, &points})
       if (Status status = file->Close(); !status.ok()) return status;
     return Status::Ok();
   }
 
-  colmap::ModelFile cameras;
   colmap::ModelFile images;
   colmap::ModelFile points;
 };
@@ -77,13 +69,13 @@ double ErrorPx(const RunSource& source, const SourceFrame& frame, const PointObs
 template <class IdOf>
 Status AddFrame(const RunSource& source, const SourceFrame& frame, const std::vector<PointObservation>& observations,
                 const IdOf& id_of, const std::optional<std::array<std::uint8_t, 3>>& color, ModelStream* model) {
-  colmap::Image image{ImageId(frame), colmap::FromPliant(frame.cam_from_world), 1, frame.name, {}};
+  colmap::Image image{ColmapImageId(frame.frame_idx), colmap::FromPliant(frame.cam_from_world), 1, frame.name, {}};
   for (const PointObservation& o : observations) {
     const auto idx = static_cast<std::uint32_t>(image.points2D.size());
     image.points2D.push_back(colmap::FromPliant(o.pixel, id_of(o.id)));
     const colmap::Point3D point{id_of(o.id),
                                 {o.position.x(), o.position.y(), o.position.z()},
-                                color ? *color : source.Find(o.id)->point.rgb,
+                                color ? *color : FindPoint(source.points, o.id)->point.rgb,
                                 ErrorPx(source, frame, o),
                                 {{image.id, idx}}};
     if (Status status = model->Add(point); !status.ok()) return status;
@@ -91,16 +83,16 @@ Status AddFrame(const RunSource& source, const SourceFrame& frame, const std::ve
   return model->Add(image);
 }
 
-Status WriteSpacetime(const RunSource& source, colmap::Format format, const std::string& folder, FileGroup& group) {
+// Calls `also` for every frame.
+Status WriteSpacetime(const RunSource& source, colmap::Format format, const std::string& folder, FileGroup& group,
+                      const FrameFunction& also) {
   auto model = ModelStream::Create(group, folder, format, source.camera, source.frames.size(),
                                    static_cast<std::uint64_t>(source.num_observations));
   if (!model.ok()) return model.status();
-  const double first = source.frames.front().frame_idx;
-  const double length = std::max(1.0, source.frames.back().frame_idx - first);
   const Status status = ForEachFrame(source, [&](const SourceFrame& frame, const auto& observations) {
-    return AddFrame(
-        source, frame, observations, [&](PointId id) { return SpacetimeId(frame, id); },
-        TimeColor((frame.frame_idx - first) / length), &*model);
+    const auto id_of = [&](PointId id) { return SpacetimeId(frame, id); };
+    Status added = AddFrame(source, frame, observations, id_of, TimeColor(source, frame), &*model);
+    return added.ok() ? also(frame, observations) : added;
   });
   return status.ok() ? model->Close() : status;
 }
@@ -119,15 +111,14 @@ Status ExportCanonical(const RunSource& source, const ExportOptions& options, co
 Status ExportSpacetime(const RunSource& source, const ExportOptions& options, const std::string& folder) {
   if (Status status = colmap::CheckFolder(folder, options.files); !status.ok()) return status;
   FileGroup group;
-  if (Status status = WriteSpacetime(source, options.files, folder, group); !status.ok()) return status;
+  const auto nothing_else = [](const SourceFrame&, const auto&) { return Status::Ok(); };
+  if (Status status = WriteSpacetime(source, options.files, folder, group, nothing_else); !status.ok()) return status;
   return group.Commit();
 }
 
 Status ExportFrames(const RunSource& source, const ExportOptions& options, const std::string& folder) {
   return ForEachFrame(source, [&](const SourceFrame& frame, const auto& observations) {
-    std::string name = std::to_string(frame.frame_idx);
-    name.insert(0, 6 - std::min<std::size_t>(6, name.size()), '0');
-    const std::string place = folder + "/" + name;
+    const std::string place = folder + "/" + NumberOf(frame);
     std::error_code error;
     std::filesystem::create_directories(place, error);
     if (error)
@@ -147,7 +138,6 @@ Status ExportFrames(const RunSource& source, const ExportOptions& options, const
 Status ExportColmap4d(const RunSource& source, const ExportOptions& options, const std::string& folder) {
   if (Status status = colmap::CheckFolder(folder, options.files); !status.ok()) return status;
   FileGroup group;
-  if (Status status = WriteSpacetime(source, options.files, folder, group); !status.ok()) return status;
   auto times = group.Create(folder + "/times.bin");
   if (!times.ok()) return times.status();
   auto points = group.Create(folder + "/points_t.bin");
@@ -156,17 +146,17 @@ Status ExportColmap4d(const RunSource& source, const ExportOptions& options, con
   std::string point_rows;
   AppendBytes(&image_rows, source.frames.size(), 8);
   AppendBytes(&point_rows, static_cast<std::uint64_t>(source.num_observations), 8);
-  const Status status = ForEachFrame(source, [&](const SourceFrame& frame, const auto& observations) {
+  const auto add_times = [&](const SourceFrame& frame, const std::vector<PointObservation>& observations) {
     const auto time = static_cast<std::uint64_t>(Nanoseconds(frame.timestamp_s));
-    AppendBytes(&image_rows, ImageId(frame), 4);
+    AppendBytes(&image_rows, ColmapImageId(frame.frame_idx), 4);
     AppendBytes(&image_rows, time, 8);
     for (const PointObservation& o : observations) {
       AppendBytes(&point_rows, SpacetimeId(frame, o.id), 8);
       AppendBytes(&point_rows, time, 8);
     }
     return points->AppendWhenLarge(&point_rows);
-  });
-  if (!status.ok()) return status;
+  };
+  if (Status status = WriteSpacetime(source, options.files, folder, group, add_times); !status.ok()) return status;
   for (const auto& [file, rows] : {std::pair(&*times, &image_rows), std::pair(&*points, &point_rows)}) {
     if (Status written = file->Append(*rows); !written.ok()) return written;
     if (Status closed = file->Close(); !closed.ok()) return closed;

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include <algorithm>
-#include <bit>
-#include <cstring>
 #include <filesystem>
 #include <utility>
 
@@ -20,15 +18,7 @@ constexpr std::int64_t kPairFactor = 2147483647;  // pair_id = this * smaller im
 constexpr std::int64_t kCalibrated = 2;           // TwoViewGeometry::CALIBRATED
 constexpr std::int64_t kCameraSensor = 0;
 
-template <class Number>
-void AppendNumber(Number value, SqliteBlob* blob) {
-  const std::size_t at = blob->size();
-  blob->resize(at + sizeof(value));
-  std::memcpy(blob->data() + at, &value, sizeof(value));
-}
-static_assert(std::endian::native == std::endian::little, "COLMAP's blobs are little-endian");
-
-std::int64_t ImageId(const SourceFrame& frame) { return std::int64_t{frame.frame_idx} + 1; }
+std::int64_t ImageId(const SourceFrame& frame) { return ColmapImageId(frame.frame_idx); }
 
 // Which keypoint a frame's tracks have, by track.
 using FrameTracks = std::vector<std::pair<PointId, std::uint32_t>>;
@@ -41,8 +31,8 @@ SqliteBlob Matches(const FrameTracks& a, const FrameTracks& b, std::int64_t* cou
     while (in_b != b.end() && in_b->first < id) ++in_b;
     if (in_b == b.end()) break;
     if (in_b->first != id) continue;
-    AppendNumber(keypoint, &blob);
-    AppendNumber(in_b->second, &blob);
+    AppendBytes(&blob.bytes, keypoint, 4);
+    AppendBytes(&blob.bytes, in_b->second, 4);
     ++*count;
   }
   return blob;
@@ -54,7 +44,7 @@ Status AddCamera(SqliteDatabase& database, const Camera& camera) {
   if (!row.ok()) return row.status();
   const colmap::Camera converted = colmap::FromPliant(camera, 1);
   SqliteBlob params;
-  for (const double param : converted.params) AppendNumber(param, &params);
+  for (const double param : converted.params) AppendDouble(&params.bytes, param);
   return row->Add({std::int64_t{1}, std::int64_t{converted.model_id}, static_cast<std::int64_t>(converted.width),
                    static_cast<std::int64_t>(converted.height), params, std::int64_t{1}});
 }
@@ -93,8 +83,8 @@ Result<std::vector<FrameTracks>> AddImages(SqliteDatabase& database, const RunSo
     for (const PointObservation& o : observations) {
       of_frame.emplace_back(o.id, static_cast<std::uint32_t>(of_frame.size()));
       const colmap::Point2D point = colmap::FromPliant(o.pixel, 0);
-      AppendNumber(static_cast<float>(point.x), &pixels);
-      AppendNumber(static_cast<float>(point.y), &pixels);
+      AppendFloat(&pixels.bytes, static_cast<float>(point.x));
+      AppendFloat(&pixels.bytes, static_cast<float>(point.y));
     }
     std::sort(of_frame.begin(), of_frame.end());
     return keypoints->Add(

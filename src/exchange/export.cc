@@ -46,7 +46,7 @@ void ExportOptions::List(OptionTable& table) {
   table.Add("min_matches", &min_matches, "-", "database: images that share fewer tracks are not matched", 1, 1000000);
 }
 
-std::array<std::uint8_t, 3> TimeColor(double time) {
+std::array<std::uint8_t, 3> TimeColor(const RunSource& source, const SourceFrame& frame) {
   // Nine of viridis' 256 colours, evenly spaced.
   constexpr std::array<std::array<double, 3>, 9> kColors = {{{68, 1, 84},
                                                              {71, 44, 122},
@@ -57,13 +57,20 @@ std::array<std::uint8_t, 3> TimeColor(double time) {
                                                              {92, 200, 99},
                                                              {170, 220, 50},
                                                              {253, 231, 37}}};
-  const double place = std::clamp(time, 0.0, 1.0) * (kColors.size() - 1);
+  const double first = source.frames.front().frame_idx;
+  const double length = std::max(1.0, source.frames.back().frame_idx - first);
+  const double place = (frame.frame_idx - first) / length * (kColors.size() - 1);
   const auto below = std::min(static_cast<std::size_t>(place), kColors.size() - 2);
   std::array<std::uint8_t, 3> color{};
   for (std::size_t c = 0; c < 3; ++c)
     color[c] = static_cast<std::uint8_t>(
         std::lround(std::lerp(kColors[below][c], kColors[below + 1][c], place - static_cast<double>(below))));
   return color;
+}
+
+std::string NumberOf(const SourceFrame& frame) {
+  std::string text = std::to_string(frame.frame_idx);
+  return text.insert(0, 6 - std::min<std::size_t>(6, text.size()), '0');
 }
 
 Status ExportTum(const RunSource& source, const std::string& folder) {

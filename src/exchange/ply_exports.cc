@@ -20,11 +20,6 @@ void AppendColor(const std::array<std::uint8_t, 3>& rgb, std::string* out) {
   for (const std::uint8_t channel : rgb) AppendBytes(out, channel, 1);
 }
 
-std::string Padded(int number) {
-  std::string text = std::to_string(number);
-  return text.insert(0, 6 - std::min<std::size_t>(6, text.size()), '0');
-}
-
 }  // namespace
 
 Status ExportPly(const RunSource& source, const std::string& folder) {
@@ -35,13 +30,13 @@ Status ExportPly(const RunSource& source, const std::string& folder) {
            "property uchar blue\nproperty int track\nproperty float dx\nproperty float dy\nproperty float dz\n"
            "end_header\n";
     for (const PointObservation& o : observations) {
-      const NewPoint& point = source.Find(o.id)->point;
+      const NewPoint& point = FindPoint(source.points, o.id)->point;
       AppendPosition(o.position, &out);
       AppendColor(point.rgb, &out);
       AppendBytes(&out, static_cast<std::uint64_t>(o.id.value), 4);
       AppendPosition(o.position - point.position, &out);
     }
-    return WriteFileAtomically(folder + "/" + Padded(frame.frame_idx) + ".ply", out);
+    return WriteFileAtomically(folder + "/" + NumberOf(frame) + ".ply", out);
   });
 }
 
@@ -55,10 +50,8 @@ Status ExportTrajectories(const RunSource& source, const std::string& folder) {
          "\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\nproperty uchar green\n"
          "property uchar blue\nproperty int track\nproperty int frame\nelement edge " +
          std::to_string(edges) + "\nproperty int vertex1\nproperty int vertex2\nend_header\n";
-  const double first = source.frames.front().frame_idx;
-  const double length = std::max(1.0, source.frames.back().frame_idx - first);
   Status status = ForEachFrame(source, [&](const SourceFrame& frame, const auto& observations) {
-    const auto color = TimeColor((frame.frame_idx - first) / length);
+    const auto color = TimeColor(source, frame);
     for (const PointObservation& o : observations) {
       AppendPosition(o.position, &out);
       AppendColor(color, &out);

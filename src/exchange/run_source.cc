@@ -86,18 +86,13 @@ Status AddPoints(const Known& known, RunSource* source) {
         point.point = found != known.points.end() ? found->second : NewPoint{o.id, o.position};
         unknown += found == known.points.end() ? 1 : 0;
       }
-      ++point.num_observations;
+      CountObservation(source->camera, frame.cam_from_world, o, &point);
       ++source->num_observations;
-      const auto pixel = source->camera.Project(frame.cam_from_world * o.position);
-      if (pixel) point.error_px += (*pixel - o.pixel).norm();
     }
     return Status::Ok();
   });
   if (!status.ok()) return status;
-  for (auto& [id, point] : points) {
-    point.error_px /= static_cast<double>(point.num_observations);
-    source->points.push_back(point);
-  }
+  for (const auto& [id, point] : points) source->points.push_back(point);
   if (unknown > 0)
     source->notes.push_back(std::to_string(unknown) + " of " + std::to_string(points.size()) +
                             " points have no undeformed position or colour in the run; their first position stands for "
@@ -106,13 +101,6 @@ Status AddPoints(const Known& known, RunSource* source) {
 }
 
 }  // namespace
-
-const CanonicalPoint* RunSource::Find(PointId id) const {
-  const auto found =
-      std::lower_bound(points.begin(), points.end(), id,
-                       [](const CanonicalPoint& point, PointId wanted) { return point.point.id < wanted; });
-  return found != points.end() && found->point.id == id ? &*found : nullptr;
-}
 
 Result<RunSource> ReadRunSource(const std::string& run_path, const std::string& sequence_path, int stride) {
   const auto run = ReadRun(run_path);

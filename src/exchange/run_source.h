@@ -31,8 +31,6 @@ struct RunSource {
   std::vector<CanonicalPoint> points;  // seen in one of them, by id
   std::int64_t num_observations = 0;   // in all of them
   std::vector<std::string> notes;
-
-  const CanonicalPoint* Find(PointId id) const;
 };
 
 // Every `stride`-th tracked frame of a run. Fails as ExportRun does.

@@ -20,7 +20,7 @@ int Bind(sqlite3_stmt* statement, int place, const SqliteValue& value) {
   if (const auto* text = std::get_if<std::string>(&value))
     return sqlite3_bind_text64(statement, place, text->data(), text->size(), SQLITE_TRANSIENT, SQLITE_UTF8);
   if (const auto* blob = std::get_if<SqliteBlob>(&value))
-    return sqlite3_bind_blob64(statement, place, blob->data(), blob->size(), SQLITE_TRANSIENT);
+    return sqlite3_bind_blob64(statement, place, blob->bytes.data(), blob->bytes.size(), SQLITE_TRANSIENT);
   return sqlite3_bind_null(statement, place);
 }
 

@@ -19,7 +19,9 @@ struct sqlite3_stmt;
 
 namespace pliant {
 
-using SqliteBlob = std::vector<std::uint8_t>;
+struct SqliteBlob {
+  std::string bytes;
+};
 using SqliteValue = std::variant<std::nullptr_t, std::int64_t, double, std::string, SqliteBlob>;
 
 class SqliteDatabase {

@@ -18,21 +18,8 @@ namespace {
 // Track elements held at once: 8 bytes each.
 constexpr std::int64_t kMostTrackElements = 4'000'000;
 
-Status WriteCamera(FileGroup& group, const std::string& folder, colmap::Format format, const Camera& camera) {
-  auto file = colmap::ModelFile::Create(group, folder, "cameras", format);
-  if (!file.ok()) return file.status();
-  const colmap::Camera converted = colmap::FromPliant(camera, 1);
-  file->text = colmap::CamerasHeader(1) + "\n";
-  colmap::AppendTextCamera(converted, &file->text);
-  AppendBytes(&file->binary, 1, 8);
-  colmap::AppendBinaryCamera(converted, &file->binary);
-  return file->Close();
-}
-
-std::uint32_t ImageId(int frame_idx) { return static_cast<std::uint32_t>(frame_idx) + 1; }
-
 void AppendImage(colmap::ModelFile* file, const CanonicalImage& image, std::span<const PointObservation> observations) {
-  colmap::Image converted{ImageId(image.frame_idx), colmap::FromPliant(image.cam_from_world), 1, image.name, {}};
+  colmap::Image converted{ColmapImageId(image.frame_idx), colmap::FromPliant(image.cam_from_world), 1, image.name, {}};
   for (const PointObservation& o : observations)
     converted.points2D.push_back(colmap::FromPliant(o.pixel, static_cast<std::uint64_t>(o.id.value)));
   colmap::AppendTextImage(converted, colmap::Digits::kRounded, &file->text);
@@ -101,7 +88,7 @@ Result<std::vector<TrackElement>> Tracks(std::span<const CanonicalPoint> points,
       if (point->point.id != id) continue;
       const auto idx = static_cast<std::size_t>(point - points.begin());
       if (next[idx] == limit[idx]) return mismatch;
-      elements[static_cast<std::size_t>(next[idx]++)] = {ImageId(frame.frame_idx), static_cast<std::uint32_t>(i)};
+      elements[static_cast<std::size_t>(next[idx]++)] = {ColmapImageId(frame.frame_idx), static_cast<std::uint32_t>(i)};
     }
     return Status::Ok();
   });
@@ -156,11 +143,20 @@ Status WritePoints(FileGroup& group, const std::string& folder, colmap::Format f
 
 }  // namespace
 
+void CountObservation(const Camera& camera, const Rigid3& cam_from_world, const PointObservation& observation,
+                      CanonicalPoint* point) {
+  ++point->num_observations;
+  if (const auto pixel = camera.Project(cam_from_world * observation.position))
+    point->error_px +=
+        ((*pixel - observation.pixel).norm() - point->error_px) / static_cast<double>(point->num_observations);
+}
+
 Status WriteCanonicalModel(const std::string& folder, colmap::Format format, const Camera& camera,
                            std::span<const CanonicalImage> images, std::span<const CanonicalPoint> points,
                            const std::string& run_path) {
   FileGroup group;
-  if (Status status = WriteCamera(group, folder, format, camera); !status.ok()) return status;
+  if (Status status = colmap::WriteCamera(group, folder, format, colmap::FromPliant(camera, 1)); !status.ok())
+    return status;
   if (Status status = WriteImages(group, folder, format, images, run_path); !status.ok()) return status;
   if (Status status = WritePoints(group, folder, format, points, images, run_path); !status.ok()) return status;
   return group.Commit();

@@ -9,8 +9,8 @@
 #include <filesystem>
 
 #include "io/run_format.h"
-#include "pliant/base/text.h"
 #include "io/tum_line.h"
+#include "pliant/base/text.h"
 #include "pliant/io/ply.h"
 
 namespace pliant {
@@ -43,13 +43,6 @@ Status PrepareFolder(const std::string& path) {
 
 bool IsFinite(const PointObservation& o) {
   return o.pixel.allFinite() && o.position.allFinite() && std::isfinite(o.ssim);
-}
-
-// The point's entry, or null.
-CanonicalPoint* Find(std::vector<CanonicalPoint>& points, PointId id) {
-  const auto it = std::lower_bound(points.begin(), points.end(), id,
-                                   [](const CanonicalPoint& p, PointId wanted) { return p.point.id < wanted; });
-  return it == points.end() || it->point.id != id ? nullptr : &*it;
 }
 
 void AppendObservation(std::string* out, int frame_idx, const PointObservation& o) {
@@ -165,14 +158,11 @@ Status RunWriter::State::AddPoints(const FrameReport& report) {
     points.push_back({point, 0.0, 0});
   }
   for (const PointObservation& o : report.observations) {
-    CanonicalPoint* point = Find(points, o.id);
+    CanonicalPoint* point = FindPoint(points, o.id);
     if (point == nullptr)
       return {ErrorCode::kInvalidArgument, "frame " + std::to_string(report.frame_idx) + ": point " +
                                                std::to_string(o.id.value) + " is observed but was never new"};
-    // A running mean; a point that does not project there adds nothing to it.
-    ++point->num_observations;
-    if (const auto pixel = camera.Project(*report.cam_from_world * o.position))
-      point->error_px += ((*pixel - o.pixel).norm() - point->error_px) / static_cast<double>(point->num_observations);
+    CountObservation(camera, *report.cam_from_world, o, point);
   }
   return Status::Ok();
 }

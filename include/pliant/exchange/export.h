@@ -11,9 +11,7 @@
 //   trajectories  one PLY: every point in every frame, a track's joined by edges, coloured by time
 //   tum           trajectory.txt, with which evo compares
 //   colmap4d      a spacetime model and its times: times.bin, points_t.bin, time_meta.json (colmap4d 1.0)
-//   database      COLMAP's database (SQLite): tracks as keypoints and verified matches, so that COLMAP reconstructs
-//   from
-//                 our data association
+//   database      COLMAP's database (SQLite): tracks as keypoints and verified matches, from which COLMAP reconstructs
 // Units are the run's (map units, mm). Observations are streamed: memory grows with points and frames, not with the
 // number of observations.
 #pragma once

@@ -5,6 +5,7 @@
 // keypoints. It shows a run in COLMAP's viewers; it is not consistent with bundle adjustment, because the scene moved.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -29,6 +30,21 @@ struct CanonicalPoint {
   double error_px = 0;                // mean reprojection error over its observations
   std::int64_t num_observations = 0;  // that it has in the images; 0: it is left out
 };
+
+inline std::uint32_t ColmapImageId(int frame_idx) { return static_cast<std::uint32_t>(frame_idx) + 1; }
+
+// The point with this id in a vector that is sorted by it, or null.
+template <class Points>
+auto FindPoint(Points& points, PointId id) -> decltype(points.data()) {
+  const auto found =
+      std::lower_bound(points.begin(), points.end(), id,
+                       [](const CanonicalPoint& point, PointId wanted) { return point.point.id < wanted; });
+  return found != points.end() && found->point.id == id ? &*found : nullptr;
+}
+
+// Counts one more observation; a point that does not project there adds nothing to its mean error.
+void CountObservation(const Camera& camera, const Rigid3& cam_from_world, const PointObservation& observation,
+                      CanonicalPoint* point);
 
 // Writes cameras, images and points3D into `folder`, which must exist. `images` are sorted by frame, `points` by id;
 // the keypoints are streamed from observations.csv in `run_path`, several times if need be, so that memory stays
