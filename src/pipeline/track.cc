@@ -10,6 +10,7 @@
 
 #include <opencv2/core.hpp>
 
+#include "pipeline/model_start.h"
 #include "pipeline/simulation_truth.h"
 #include "pliant/base/prefetcher.h"
 #include "pliant/base/version.h"
@@ -25,14 +26,16 @@ struct ReadFrame {
 };
 
 // Reads and prepares the next frame; nothing at the end.
-std::optional<Result<ReadFrame>> NextFrame(Sequence& sequence, const TrackerOptions& options,
+std::optional<Result<ReadFrame>> NextFrame(Sequence& sequence, const TrackerOptions& options, const ModelStart* model,
                                            const std::atomic<bool>& wants_depth) {
   auto next = sequence.Next();
   if (!next.ok()) return next.status();
   if (!next->has_value()) return std::nullopt;
   const SequenceFrame& frame = **next;
   ReadFrame read{PrepareFrame(frame.frame_idx, frame.name, frame.timestamp_s, frame.image, frame.mask, options), {}};
-  if (wants_depth) {
+  if (wants_depth && model != nullptr) {
+    read.frame.known_points = model->PointsIn(frame.name);
+  } else if (wants_depth) {
     const auto depth = sequence.Depth(frame.frame_idx);
     read.depth = depth.status();
     if (depth.ok() && depth->has_value()) read.frame.depth_mm = **depth;
@@ -83,11 +86,11 @@ Ending AtTheEnd(TrackingState state, int frames, const std::string& last_note) {
   return {RunStatus::kFailed, "the sequence ended without a first map: " + last_note};
 }
 
-Ending TrackFrames(Sequence& sequence, const RunRequest& request, const TrackOptions& options, Tracker& tracker,
-                   Recorder& recorder) {
+Ending TrackFrames(Sequence& sequence, const RunRequest& request, const TrackOptions& options, const ModelStart* model,
+                   Tracker& tracker, Recorder& recorder) {
   // Once there is a map no depth image is read any more; those read ahead in the meantime change nothing.
   std::atomic<bool> wants_depth = tracker.WantsDepth();
-  Prefetcher<Result<ReadFrame>> frames([&] { return NextFrame(sequence, options.tracker, wants_depth); },
+  Prefetcher<Result<ReadFrame>> frames([&] { return NextFrame(sequence, options.tracker, model, wants_depth); },
                                        options.threads > 1 ? kFramesAhead : 0);
   std::string last_note = "the sequence has no frames";
   int count = 0;
@@ -113,11 +116,12 @@ Ending TrackFrames(Sequence& sequence, const RunRequest& request, const TrackOpt
   return AtTheEnd(tracker.state(), count, last_note);
 }
 
-Ending TrackSequence(Sequence& sequence, const RunRequest& request, const TrackOptions& options, TrackingTruth* truth,
-                     RunWriter& writer, std::span<TrackObserver* const> observers) {
+Ending TrackSequence(Sequence& sequence, const RunRequest& request, const TrackOptions& options,
+                     const ModelStart* model, TrackingTruth* truth, RunWriter& writer,
+                     std::span<TrackObserver* const> observers) {
   Tracker tracker(sequence.camera(), options.tracker, static_cast<std::uint64_t>(options.seed), options.threads, truth);
   Recorder recorder(writer, observers);
-  const Ending ending = TrackFrames(sequence, request, options, tracker, recorder);
+  const Ending ending = TrackFrames(sequence, request, options, model, tracker, recorder);
   // Whatever the ending: the frames that waited for a map are written too.
   const Status recorded = recorder.Record(tracker.Finish());
   return recorded.ok() || ending.status == RunStatus::kFailed ? ending : Ending{RunStatus::kFailed, recorded.message()};
@@ -168,6 +172,13 @@ Result<RunSummary> RunTrack(const RunRequest& request, const TrackOptions& optio
     truth = *std::move(opened);
   }
 
+  std::optional<ModelStart> model;
+  if (options.tracker.init.method == InitMethod::kColmapModel) {
+    auto opened = ModelStart::Open(options.tracker.init.model.path, (*sequence)->camera());
+    if (!opened.ok()) return opened.status();
+    model = *std::move(opened);
+  }
+
   OptionTable table;
   TrackOptions listed = options;
   listed.List(table);
@@ -184,7 +195,8 @@ Result<RunSummary> RunTrack(const RunRequest& request, const TrackOptions& optio
   if (!writer.ok()) return writer.status();
 
   for (TrackObserver* observer : observers) observer->OnStart((*sequence)->size());
-  const Ending ending = TrackSequence(**sequence, request, usable, truth.get(), *writer, observers);
+  const Ending ending =
+      TrackSequence(**sequence, request, usable, model ? &*model : nullptr, truth.get(), *writer, observers);
   const Status finished = writer->Finish(ending.status, ending.note);
   RunSummary summary = writer->summary();
   if (!finished.ok()) {

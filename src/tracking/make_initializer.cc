@@ -10,9 +10,10 @@ void InitOptions::List(OptionTable& table) {
   table.AddChoice("method", &method,
                   "window: all frames since the reference, the scene deforming; gated: waits until two views can carry "
                   "a map; paper: 3 frames apart, as published; depth: the "
-                  "sequence's own depth image");
+                  "sequence's own depth image; colmap_model: the points of a COLMAP model");
   monocular.List(table);
   depth.List(table);
+  model.List(table);
   window.List(table);
 }
 
@@ -20,6 +21,8 @@ std::unique_ptr<Initializer> MakeInitializer(const InitOptions& options, Random 
   switch (options.method) {
     case InitMethod::kDepth:
       return MakeDepthInitializer(options.depth);
+    case InitMethod::kColmapModel:
+      return MakeModelInitializer(options.model, options.monocular.nominal_depth_mm);
     case InitMethod::kPaper:
       return MakeMonocularInitializer(options.monocular, MonocularGates::kPaper, random);
     case InitMethod::kGated:

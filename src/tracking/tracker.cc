@@ -63,8 +63,8 @@ Tracker::Tracker(const Camera& camera, const TrackerOptions& options, std::uint6
       point_tracker_(options.point_tracker),
       oracle_(std::make_unique<OracleAnswers>(
           options.oracle, truth,
-          IsMetric(options.init.method) ? std::nullopt : std::optional(options.init.monocular.nominal_depth_mm))) {
-  if (IsMetric(options_.init.method)) options_.graph.sigma_mm = options_.sigma_metric_mm;
+          options.init.IsMetric() ? std::nullopt : std::optional(options.init.monocular.nominal_depth_mm))) {
+  if (options_.init.IsMetric()) options_.graph.sigma_mm = options_.sigma_metric_mm;
 }
 
 Tracker::~Tracker() = default;
@@ -136,6 +136,18 @@ void Tracker::AddCorners(const TrackerFrame& frame, const LocalBrightness& brigh
   points->observations.insert(points->observations.end(), added.observations.begin(), added.observations.end());
 }
 
+void Tracker::AddKnownPoints(const TrackerFrame& frame, const LocalBrightness& brightness, InitFrame* points) {
+  for (const PixelDepth& known : frame.known_points) {
+    if (static_cast<int>(points->observations.size()) == options_.corners.max_corners) break;
+    const PointId id{next_id_};
+    if (point_tracker_.Add(id, known.pixel, frame.pyramid, frame.mask) != PatchFailure::kNone) continue;
+    points->observations.push_back(
+        {id, known.pixel, 1.0, brightness.At(known.pixel), ColourAt(frame.image, known.pixel)});
+    known_depths_.push_back(known.depth);
+    ++next_id_;
+  }
+}
+
 void Tracker::TakeReference(const TrackerFrame& frame, FrameReport* report) {
   {
     const StageTimer timer(report, "initialise");
@@ -143,13 +155,20 @@ void Tracker::TakeReference(const TrackerFrame& frame, FrameReport* report) {
     init_frames_.clear();
     point_tracker_.Clear();
     InitFrame reference{frame.frame_idx, {}};
-    AddCorners(frame, LocalBrightness(frame.image, frame.mask.valid()), options_.corners.max_corners, &reference);
+    const LocalBrightness brightness(frame.image, frame.mask.valid());
+    known_depths_.clear();
+    if (options_.init.method == InitMethod::kColmapModel)
+      AddKnownPoints(frame, brightness, &reference);
+    else
+      AddCorners(frame, brightness, options_.corners.max_corners, &reference);
     report->tracked = static_cast<int>(reference.observations.size());
     init_frames_.push_back(std::move(reference));
   }
   if (report->tracked < options_.min_corners) {
     Apply(TrackingEvent::kTooFewCorners);
-    report->note = WithFault("no reference yet: " + std::to_string(report->tracked) + " corners, of at least " +
+    const bool from_model = options_.init.method == InitMethod::kColmapModel;
+    report->note = WithFault("no reference yet: " + std::to_string(report->tracked) +
+                                 (from_model ? " points of the model" : " corners") + ", of at least " +
                                  std::to_string(options_.min_corners),
                              ImageFault(frame, previous_));
   } else if (TryInitialize(frame, report) == InitDecision::kWait) {
@@ -208,7 +227,7 @@ void Tracker::FollowReference(const TrackerFrame& frame, FrameReport* report) {
 
 InitOutcome Tracker::AskInitializer(const cv::Mat& depth_mm, InitMoment moment, FrameReport* report) {
   const StageTimer timer(report, "initialise");
-  const InitInput input{camera_, init_frames_, depth_mm, moment, threads_};
+  const InitInput input{camera_, init_frames_, depth_mm, moment, threads_, known_depths_};
   InitOutcome outcome =
       oracle_->gives_first_map() ? oracle_->FirstMap(input, options_.min_points) : initializer_->Try(input);
   if (outcome.decision == InitDecision::kMap) oracle_->TakeWorld(input, &outcome);

@@ -11,31 +11,38 @@
 
 #include "pliant/base/random.h"
 #include "pliant/tracking/depth_initializer.h"
+#include "pliant/tracking/model_initializer.h"
 #include "pliant/tracking/monocular_initializer.h"
 #include "pliant/tracking/window_initializer.h"
 
 namespace pliant {
 
-enum class InitMethod { kWindow, kGated, kPaper, kDepth };
+enum class InitMethod { kWindow, kGated, kPaper, kDepth, kColmapModel };
 template <>
 struct EnumNames<InitMethod> {
   static constexpr std::array kNames = {std::pair{InitMethod::kWindow, std::string_view("window")},
                                         std::pair{InitMethod::kGated, std::string_view("gated")},
                                         std::pair{InitMethod::kPaper, std::string_view("paper")},
-                                        std::pair{InitMethod::kDepth, std::string_view("depth")}};
+                                        std::pair{InitMethod::kDepth, std::string_view("depth")},
+                                        std::pair{InitMethod::kColmapModel, std::string_view("colmap_model")}};
 };
 
 struct InitOptions {
   InitMethod method = InitMethod::kWindow;
   MonocularInitOptions monocular;
   DepthInitOptions depth;
+  ModelInitOptions model;
   WindowInitOptions window;
+
+  // Whether the map has true units (then the published sigma for metric starts applies).
+  bool IsMetric() const {
+    return method == InitMethod::kDepth || (method == InitMethod::kColmapModel && model.unit_mm > 0);
+  }
+  // Whether the map comes from what is known of the reference image, which therefore has to be read.
+  bool TakesKnownDepth() const { return method == InitMethod::kDepth || method == InitMethod::kColmapModel; }
 
   void List(OptionTable& table);  // groups "Init", "WindowInit", "Window"
 };
-
-// Whether a map from this method has true units (then the published sigma for metric starts applies).
-inline bool IsMetric(InitMethod method) { return method == InitMethod::kDepth; }
 
 std::unique_ptr<Initializer> MakeInitializer(const InitOptions& options, Random random);
 

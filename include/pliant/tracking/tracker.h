@@ -71,6 +71,12 @@ struct TrackerOptions {
   void List(OptionTable& table);
 };
 
+// A point whose depth is known before it is tracked.
+struct PixelDepth {
+  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
+  double depth = 0;  // z along the optical axis, in its source's unit, > 0
+};
+
 // An image made ready: everything that depends on the image alone, so that it can be done ahead on another thread.
 struct TrackerFrame {
   int frame_idx = 0;
@@ -80,8 +86,9 @@ struct TrackerFrame {
   cv::Mat grey;   // CV_8UC1
   ImagePyramid pyramid;
   SupportMask mask;
-  cv::Mat depth_mm;       // CV_32FC1 or empty; only a start from depth uses it
-  double prepare_ms = 0;  // wall time of PrepareFrame
+  cv::Mat depth_mm;                      // CV_32FC1 or empty; only a start from depth uses it
+  std::vector<PixelDepth> known_points;  // only a start from a model uses them: instead of corners, the best first
+  double prepare_ms = 0;                 // wall time of PrepareFrame
 };
 
 // `image` has the camera's size; `mask` is empty or CV_8UC1 of that size, 0 = ignore.
@@ -109,8 +116,9 @@ class Tracker {
   // To be called when no more frames come, whatever the reason: the reports held back become final as they are.
   std::vector<FrameReport> Finish() { return std::exchange(held_, {}); }
 
-  // Whether a frame's depth image can still be of use: before the first map, when that is to come from depth.
-  bool WantsDepth() const { return options_.init.method == InitMethod::kDepth && map_.landmarks.empty(); }
+  // Whether a frame's depth image or known points can still be of use: before the first map, when that is to come from
+  // them.
+  bool WantsDepth() const { return options_.init.TakesKnownDepth() && map_.landmarks.empty(); }
 
   TrackingState state() const { return state_; }
   const Map& map() const { return map_; }
@@ -126,6 +134,7 @@ class Tracker {
 
   // Reference and first map.
   void AddCorners(const TrackerFrame& frame, const LocalBrightness& brightness, int max_corners, InitFrame* points);
+  void AddKnownPoints(const TrackerFrame& frame, const LocalBrightness& brightness, InitFrame* points);
   void TakeReference(const TrackerFrame& frame, FrameReport* report);
   void FollowReference(const TrackerFrame& frame, FrameReport* report);
   InitOutcome AskInitializer(const cv::Mat& depth_mm, InitMoment moment, FrameReport* report);
@@ -154,6 +163,7 @@ class Tracker {
   TrackingState state_ = TrackingState::kWaitingForReference;
   Map map_;
   std::vector<InitFrame> init_frames_;  // since the reference
+  std::vector<double> known_depths_;    // of the reference's points, where they are known
   std::string image_fault_;             // of the last of them
   std::vector<FrameReport> held_;  // of init_frames_ while initialising; within Process the present frame's is the last
   TrackerFrame previous_;          // the last frame in which points were seen

@@ -1,0 +1,123 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Runs that start from a COLMAP model: here the one that a start from true depth leaves, of a rigid scene.
+#include <algorithm>
+#include <filesystem>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "pliant/colmap/model.h"
+#include "pliant/evaluation/evaluation.h"
+#include "pliant/pipeline/track.h"
+#include "pliant/simulation/write_sequence.h"
+#include "simulation/small_scene.h"
+#include "support/test_folder.h"
+
+namespace pliant {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr int kFrames = 12;
+
+class ModelStartTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    SimulationOptions scene = simulation_test::SmallScene(TrajectoryKind::kSway, kFrames);
+    scene.camera.width = 320;
+    scene.camera.height = 240;
+    scene.trajectory.sway_period_s = 2.0;
+    const Status written = WriteSequence(scene, folder_.Path("sequence"));
+    ASSERT_TRUE(written.ok()) << written.message();
+    const auto summary = Track(InitMethod::kDepth, "true", {});
+    ASSERT_TRUE(summary.ok()) << summary.status().message();
+  }
+
+  Result<RunSummary> Track(InitMethod method, const std::string& output, const ModelInitOptions& model) const {
+    RunRequest request;
+    request.input.image_path = folder_.Path("sequence");
+    request.output_path = folder_.Path(output);
+    TrackOptions options;
+    options.tracker.init.method = method;
+    options.tracker.init.model = model;
+    return RunTrack(request, options, {});
+  }
+  ModelInitOptions Model() const { return {folder_.Path("true/sparse"), 1.0, 40}; }
+
+  // Without a scale: as it is, in mm.
+  double RmseMm(const std::string& run_path) const {
+    SequenceRequest request;
+    request.image_path = folder_.Path("sequence");
+    const auto sequence = OpenSequence(request);
+    EvaluationOptions options;
+    options.parts = {EvaluationPart::kSurface};
+    options.points.scale = ErrorScale::kNone;
+    const auto input = ReadEvaluationInput(folder_.Path(run_path), **sequence, options.matching);
+    const auto evaluation = Evaluate(*input, **sequence, Status(ErrorCode::kNotFound, "not asked for"), options);
+    EXPECT_TRUE(evaluation.ok()) << evaluation.status().message();
+    return evaluation.ok() ? evaluation->surface->plain.estimate.mean_rmse_mm : 1e9;
+  }
+
+  TestFolder folder_;
+};
+
+TEST_F(ModelStartTest, ItsPointsAreTrackedAsThoseOfTrueDepth) {
+  const auto summary = Track(InitMethod::kColmapModel, "run", Model());
+  ASSERT_TRUE(summary.ok()) << summary.status().message();
+  EXPECT_EQ(summary->status, RunStatus::kCompleted) << summary->note;
+  EXPECT_EQ(summary->frames_tracked, kFrames);
+  EXPECT_EQ(summary->first_map->declared_frame_idx, 0);
+  EXPECT_LT(RmseMm("run"), RmseMm("true") + 0.05);
+}
+
+TEST_F(ModelStartTest, AModelOfUnknownUnitIsScaledToTheNominalDepth) {
+  ModelInitOptions model = Model();
+  model.unit_mm = 0;
+  ASSERT_TRUE(Track(InitMethod::kColmapModel, "run", model).ok());
+  const auto map = colmap::ReadModel(folder_.Path("run/sparse"));
+  ASSERT_TRUE(map.ok());
+  std::vector<double> depths;
+  for (const colmap::Point3D& point : map->points3D) depths.push_back(point.xyz[2]);
+  std::nth_element(depths.begin(), depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2), depths.end());
+  EXPECT_NEAR(depths[depths.size() / 2], MonocularInitOptions().nominal_depth_mm, 1.0);
+}
+
+TEST_F(ModelStartTest, WaitsForAnImageThatTheModelHas) {
+  auto model = colmap::ReadModel(folder_.Path("true/sparse"));
+  ASSERT_TRUE(model.ok());
+  for (int frame = 0; frame < 3; ++frame)
+    model->images[static_cast<std::size_t>(frame)].name = "elsewhere" + std::to_string(frame);
+  ASSERT_TRUE(colmap::WriteModel(folder_.Path("late"), *model, colmap::Format::kBinary).ok());
+  ModelInitOptions late = Model();
+  late.path = folder_.Path("late");
+  const auto summary = Track(InitMethod::kColmapModel, "run", late);
+  ASSERT_TRUE(summary.ok());
+  EXPECT_EQ(summary->frames_tracked, kFrames - 3);
+  EXPECT_EQ(summary->first_map->reference_frame_idx, 3);
+}
+
+TEST_F(ModelStartTest, WhatIsNoModelOfThisSequenceIsRefusedInOneSentence) {
+  const auto refused = [&](const std::string& path, ErrorCode code, const char* what) {
+    ModelInitOptions model = Model();
+    model.path = path;
+    const Status status = Track(InitMethod::kColmapModel, "run", model).status();
+    EXPECT_EQ(status.code(), code);
+    EXPECT_THAT(status.message(), HasSubstr(what));
+    EXPECT_FALSE(std::filesystem::exists(folder_.Path("run")));
+  };
+  refused("", ErrorCode::kInvalidArgument, "--Init.model_path");
+  refused(folder_.Path("nowhere"), ErrorCode::kNotFound, "nowhere");
+  auto model = colmap::ReadModel(folder_.Path("true/sparse"));
+  ASSERT_TRUE(model.ok());
+  model->cameras[0].width = 640;
+  ASSERT_TRUE(colmap::WriteModel(folder_.Path("wide"), *model, colmap::Format::kBinary).ok());
+  refused(folder_.Path("wide"), ErrorCode::kMismatch, "640x240");
+  model->points3D.pop_back();
+  ASSERT_TRUE(colmap::WriteModel(folder_.Path("dangling"), *model, colmap::Format::kBinary).ok());
+  refused(folder_.Path("dangling"), ErrorCode::kUnreadable, "is damaged");
+}
+
+}  // namespace
+}  // namespace pliant
