@@ -47,7 +47,15 @@ Cells CellsOf(const Evaluation& e) {
                  {"alive_share_25", FormatDouble(e.survival.alive_shares[0])},
                  {"alive_share_50", FormatDouble(e.survival.alive_shares[1])},
                  {"alive_share_75", FormatDouble(e.survival.alive_shares[2])},
-                 {"alive_share_100", FormatDouble(e.survival.alive_shares[3])}};
+                 {"alive_share_100", FormatDouble(e.survival.alive_shares[3])},
+                 {"tracks", std::to_string(e.survival.tracks)},
+                 {"mean_track_length", FormatDouble(e.survival.mean_track_length)}};
+  if (e.material) cells.emplace_back("continuing_tracks", std::to_string(e.material->continuing_tracks));
+  if (e.reprojection) {
+    cells.emplace_back("reprojection_median_px", FormatDouble(e.reprojection->median_px));
+    cells.emplace_back("reprojection_rmse_px", FormatDouble(e.reprojection->rmse_px));
+  }
+  if (e.run_seconds) cells.emplace_back("run_seconds", FormatDouble(*e.run_seconds));
   if (e.surface) AddPoints(*e.surface, "surface_", &cells);
   if (e.material) {
     AddPoints(e.material->error, "material_", &cells);
@@ -113,17 +121,31 @@ Rows ProtocolRows(std::span<const Evaluation> evaluations, ErrorProtocol protoco
   return rows;
 }
 
+// What there is to look at before any error: how much was reconstructed, of how many pieces, in what time.
+Rows ReconstructionRows(std::span<const Evaluation> evaluations) {
+  Rows rows = {
+      {"run", "frames", "points a frame", "tracks", "mean length", "go on with another", "reprojection px", "seconds"}};
+  for (const Evaluation& e : evaluations) {
+    const TrackSurvival& s = e.survival;
+    rows.push_back({e.run, FormatText("%d/%d", s.frames_tracked, s.frames_read), FormatText("%.0f", s.mean_points),
+                    std::to_string(s.tracks), FormatText("%.1f", s.mean_track_length),
+                    e.material ? std::to_string(e.material->continuing_tracks) : "-",
+                    e.reprojection ? FormatText("%.2f", e.reprojection->median_px) : "-",
+                    e.run_seconds ? FormatText("%.1f", *e.run_seconds) : "-"});
+  }
+  return rows;
+}
+
 }  // namespace
 
 std::string ComparisonTable(std::span<const Evaluation> evaluations) {
-  Rows rows = {{"run", "frames", "points", "alive at 50, 100 %", "surface RMSE mm (null)", "material RMSE mm (null)",
-                "drift px", "drift mm", "ATE mm", "first map % (null)"}};
+  Rows rows = {{"run", "alive at 50, 100 %", "surface RMSE mm (null)", "material RMSE mm (null)", "drift px",
+                "drift mm", "ATE mm", "first map % (null)"}};
   bool has_protocol[EnumNames<ErrorProtocol>::kNames.size()] = {};
   for (const Evaluation& e : evaluations) {
     const TrackSurvival& s = e.survival;
     rows.push_back(
-        {e.run, FormatText("%d/%d", s.frames_tracked, s.frames_read), FormatText("%.0f", s.mean_points),
-         FormatText("%.0f, %.0f", 100 * s.alive_shares[1], 100 * s.alive_shares[3]),
+        {e.run, FormatText("%.0f, %.0f", 100 * s.alive_shares[1], 100 * s.alive_shares[3]),
          PointCell(e.surface ? &e.surface->plain : nullptr), PointCell(e.material ? &e.material->error.plain : nullptr),
          e.material ? FormatText("%.2f", e.material->drift.median_px) : "-",
          e.material && e.material->drift.points_mm > 0 ? FormatText("%.3f", e.material->drift.median_mm) : "-",
@@ -135,7 +157,7 @@ std::string ComparisonTable(std::span<const Evaluation> evaluations) {
     for (const ProtocolError& protocol : e.surface ? e.surface->protocols : e.material->error.protocols)
       has_protocol[static_cast<std::size_t>(protocol.protocol)] = true;
   }
-  std::string text = Print(rows);
+  std::string text = Print(ReconstructionRows(evaluations)) + "\n" + Print(rows);
   for (const auto& [protocol, name] : EnumNames<ErrorProtocol>::kNames)
     if (protocol != ErrorProtocol::kPaper && has_protocol[static_cast<std::size_t>(protocol)])
       text += "\n" + Print(ProtocolRows(evaluations, protocol));

@@ -158,6 +158,8 @@ Result<Evaluation> Evaluate(const EvaluationInput& run, const Sequence& sequence
   evaluation.run = run.name;
   evaluation.notes = run.notes;
   evaluation.survival = Survival(run);
+  evaluation.reprojection = ComputeReprojectionError(run, run.camera ? *run.camera : sequence.camera());
+  evaluation.run_seconds = run.seconds;
   if (evaluation.survival.frames_tracked == 0)
     return Status(ErrorCode::kInsufficient, "the run " + run.name + " has no tracked frame among the " +
                                                 std::to_string(run.frames.size()) +

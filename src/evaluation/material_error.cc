@@ -11,7 +11,8 @@
 namespace pliant {
 namespace {
 
-constexpr double kHigh = 0.95;  // the quantile that is reported
+constexpr double kHigh = 0.95;      // the quantile that is reported
+constexpr double kSamePlacePx = 2;  // two tracks this near show one place
 
 }  // namespace
 
@@ -43,6 +44,7 @@ Status MaterialErrorCollector::StartTracks(int frame_idx, std::span<const Tracke
     if (tracks_.contains(point.id)) continue;
     Track& track = tracks_[point.id];
     track.first_pixel = point.pixel;
+    track.first_frame_idx = frame_idx;
     if (!camera_.Contains(point.pixel)) {
       track.start = Start::kOutsideImage;
     } else if (!depth_mm.empty() &&
@@ -98,7 +100,8 @@ Status MaterialErrorCollector::AddFrame(int frame_idx, std::span<const TrackedPo
   std::vector<const TrackedPoint*> followed;
   std::vector<Eigen::Vector2d> pixels;
   for (const TrackedPoint& point : points) {
-    const Track& track = tracks_.at(point.id);
+    Track& track = tracks_.at(point.id);
+    track.last_frame_idx = frame_idx;
     if (track.start == Start::kOutsideImage) ++frame.paired.left_out.outside_image;
     if (track.start == Start::kDepthStep) ++frame.paired.left_out.depth_step;
     if (track.start == Start::kNothing) ++frame.paired.left_out.no_depth;
@@ -120,13 +123,55 @@ Status MaterialErrorCollector::AddFrame(int frame_idx, std::span<const TrackedPo
   return Status::Ok();
 }
 
+Result<int> MaterialErrorCollector::CountContinuingTracks() const {
+  std::map<int, std::vector<const Track*>> starting;  // by frame
+  std::vector<const Track*> open;                     // whose continuation has not been found
+  for (const auto& [id, track] : tracks_) {
+    if (track.start != Start::kOk) continue;
+    starting[track.first_frame_idx].push_back(&track);
+    open.push_back(&track);
+  }
+  int count = 0;
+  for (const auto& [frame_idx, tracks] : starting) {
+    std::vector<const Track*> ended;
+    std::vector<MaterialId> materials;
+    for (const Track* track : open) {
+      if (track->last_frame_idx >= frame_idx) continue;
+      ended.push_back(track);
+      materials.push_back(track->material);
+    }
+    const auto states = truth_.Observe(frame_idx, materials);
+    if (!states.ok()) return states.status();
+    std::set<const Track*> continued;
+    for (const Track* track : tracks) {
+      const Track* nearest = nullptr;
+      double least_px = kSamePlacePx;
+      for (std::size_t i = 0; i < ended.size(); ++i) {
+        const auto& state = (*states)[i];
+        if (!state || !state->pixel || state->visibility != MaterialVisibility::kVisible) continue;
+        const double distance_px = (*state->pixel - track->first_pixel).norm();
+        if (distance_px > least_px || continued.contains(ended[i])) continue;
+        least_px = distance_px;
+        nearest = ended[i];
+      }
+      if (nearest != nullptr) continued.insert(nearest);
+    }
+    count += static_cast<int>(continued.size());
+    std::erase_if(open, [&](const Track* track) { return continued.contains(track); });
+  }
+  return count;
+}
+
 Result<MaterialError> MaterialErrorCollector::Compute(const PointErrorOptions& options) const {
   std::vector<PairedFrame> paired;
   for (const Frame& frame : frames_) paired.push_back(frame.paired);
   Result<PointError> error = ComputePointError(paired, options);
   if (!error.ok()) return error.status();
 
+  const Result<int> continuing = CountContinuingTracks();
+  if (!continuing.ok()) return continuing.status();
   MaterialError result;
+  result.continuing_tracks = *continuing;
   result.error = *std::move(error);
   Drift all;
   std::set<PointId> occluded;

@@ -84,6 +84,7 @@ Json ToJson(const MaterialError& e) {
   Json json = ToJson(e.error);
   json["drift"] = ToJson(e.drift);
   json["tracks"] = e.tracks;
+  json["continuing_tracks"] = e.continuing_tracks;
   json["occluded"] = e.occluded;
   json["tracks_occluded"] = e.tracks_occluded;
   json["outside_image"] = e.outside_image;
@@ -172,7 +173,12 @@ Json ToJson(const TrackSurvival& s) {
           {"alive_share_100", s.alive_shares[3]},
           {"tracks", s.tracks},
           {"median_track_length", s.median_track_length},
+          {"mean_track_length", s.mean_track_length},
           {"frames", frames}};
+}
+
+Json ToJson(const ReprojectionError& e) {
+  return {{"points", e.points}, {"median_px", e.median_px}, {"rmse_px", e.rmse_px}};
 }
 
 Json ToJson(const Evaluation& evaluation) {
@@ -182,7 +188,9 @@ Json ToJson(const Evaluation& evaluation) {
           {"material", evaluation.material ? ToJson(*evaluation.material) : Json()},
           {"trajectory", evaluation.trajectory ? ToJson(*evaluation.trajectory) : Json()},
           {"first_map", evaluation.first_map ? ToJson(*evaluation.first_map) : Json()},
+          {"reprojection", evaluation.reprojection ? ToJson(*evaluation.reprojection) : Json()},
           {"survival", ToJson(evaluation.survival)},
+          {"run_seconds", evaluation.run_seconds ? Json(*evaluation.run_seconds) : Json()},
           {"notes", evaluation.notes}};
 }
 

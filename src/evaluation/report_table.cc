@@ -50,8 +50,9 @@ std::string MaterialTable(const MaterialError& e) {
                        d.rmse_mm, d.p95_mm);
   return text + FormatText(
                     "  tracked while truly occluded: %d times, %d tracks; outside the image: %d times, %d tracks; of "
-                    "%d tracks\n",
-                    e.occluded, e.tracks_occluded, e.outside_image, e.tracks_outside_image, e.tracks);
+                    "%d tracks\n  %d tracks go on with another one that had ended at their place\n",
+                    e.occluded, e.tracks_occluded, e.outside_image, e.tracks_outside_image, e.tracks,
+                    e.continuing_tracks);
 }
 
 std::string TrajectoryTable(const TrajectoryError& e) {
@@ -90,6 +91,10 @@ std::string FirstMapTable(const FirstMapError& e) {
   return text;
 }
 
+std::string ReprojectionTable(const ReprojectionError& e) {
+  return FormatText("reprojection of its own points, px: median %.3f, RMSE %.3f\n", e.median_px, e.rmse_px);
+}
+
 std::string SurvivalTable(const TrackSurvival& s) {
   std::string text = "tracks\n";
   text += FormatText("  frames tracked %d of %d\n", s.frames_tracked, s.frames_read);
@@ -98,7 +103,8 @@ std::string SurvivalTable(const TrackSurvival& s) {
   text +=
       FormatText(" alive after 25, 50, 75, 100 %% of the frames: %.0f, %.0f, %.0f, %.0f %%\n", 100 * s.alive_shares[0],
                  100 * s.alive_shares[1], 100 * s.alive_shares[2], 100 * s.alive_shares[3]);
-  text += FormatText("  %d tracks, median length %.1f frames\n", s.tracks, s.median_track_length);
+  text += FormatText("  %d tracks, length in frames: median %.1f, mean %.1f\n", s.tracks, s.median_track_length,
+                     s.mean_track_length);
   return text;
 }
 
@@ -110,6 +116,7 @@ std::string EvaluationTable(const Evaluation& evaluation) {
   if (evaluation.material) text += MaterialTable(*evaluation.material);
   if (evaluation.trajectory) text += TrajectoryTable(*evaluation.trajectory);
   if (evaluation.first_map) text += FirstMapTable(*evaluation.first_map);
+  if (evaluation.reprojection) text += ReprojectionTable(*evaluation.reprojection);
   text += SurvivalTable(evaluation.survival);
   for (const std::string& note : evaluation.notes) text += "note: " + note + "\n";
   return text;

@@ -63,6 +63,7 @@ TrackSurvival ComputeTrackSurvival(std::span<const FrameTracks> frames) {
   survival.tracks = static_cast<int>(length_of_track.size());
   std::vector<double> lengths;
   for (const auto& entry : length_of_track) lengths.push_back(entry.second);
+  survival.mean_track_length = Mean(lengths);
   survival.median_track_length = Median(std::move(lengths));
   return survival;
 }

@@ -44,6 +44,11 @@ TEST(Evaluate, IsZeroWithoutNoiseWhateverTheScale) {
   EXPECT_EQ(evaluation->survival.frames_read, 8);
   EXPECT_EQ(evaluation->survival.frames_tracked, 7);
   EXPECT_EQ(evaluation->survival.median_track_length, 7);
+  EXPECT_EQ(evaluation->survival.mean_track_length, 7);
+  ASSERT_TRUE(evaluation->reprojection.has_value());
+  EXPECT_EQ(evaluation->reprojection->points, 7 * 40);
+  EXPECT_LT(evaluation->reprojection->rmse_px, 1e-9);
+  EXPECT_FALSE(evaluation->run_seconds.has_value());
   EXPECT_THAT(evaluation->notes, testing::ElementsAre(HasSubstr("no material error")));
 }
 

@@ -104,6 +104,29 @@ TEST_F(MaterialErrorTest, LeavesOutTracksThatStartWhereThereIsNoMaterialPoint) {
   EXPECT_EQ(error->drift.points_mm, 1);  // on the step there is no surface to drift along
 }
 
+// A place is followed by tracks 0 and 1 one after the other, by 2 while 0 lives, and found again by 3 after a gap.
+TEST_F(MaterialErrorTest, CountsTracksThatGoOnWithOneThatEnded) {
+  const Eigen::Vector2d place(20, 20);
+  const auto at = [&](int frame_idx, int id, const Eigen::Vector2d& off) {
+    const Eigen::Vector2d pixel = WallMaterial::PixelIn(frame_idx, 0, place) + off;
+    return TrackedPoint{PointId{id}, pixel, wall_.PointIn(frame_idx, pixel)};
+  };
+  const Eigen::Vector2d none(0, 0);
+  MaterialErrorCollector collector(wall_, sequence_.camera(), 0.05);
+  const auto add = [&](int frame_idx, const std::vector<TrackedPoint>& points) {
+    ASSERT_TRUE(collector.AddFrame(frame_idx, points, **sequence_.Depth(frame_idx)).ok());
+  };
+  add(0, {at(0, 0, none), at(0, 9, {20, 0})});
+  add(1, {at(1, 0, none), at(1, 2, {1, 0})});  // 2 starts where 0 still is: another one
+  add(2, {at(2, 1, {1.5, 0})});                // goes on with 0 or with 2
+  add(3, {at(3, 4, {0, 2.5})});                // too far from all
+  add(5, {at(5, 3, {0.5, 0})});                // goes on with the one that is left, or with 1
+  const auto error = collector.Compute({});
+  ASSERT_TRUE(error.ok()) << error.status().message();
+  EXPECT_EQ(error->tracks, 6);
+  EXPECT_EQ(error->continuing_tracks, 2);
+}
+
 TEST_F(MaterialErrorTest, NeedsATrackWithAMaterialPoint) {
   MaterialErrorCollector collector(wall_, sequence_.camera(), 0.05);
   EXPECT_EQ(collector.Compute({}).status().code(), ErrorCode::kInsufficient);

@@ -18,6 +18,7 @@
 #include "pliant/evaluation/first_map_error.h"
 #include "pliant/evaluation/material_error.h"
 #include "pliant/evaluation/point_error.h"
+#include "pliant/evaluation/reprojection_error.h"
 #include "pliant/evaluation/run_input.h"
 #include "pliant/evaluation/track_survival.h"
 #include "pliant/evaluation/trajectory_error.h"
@@ -48,13 +49,15 @@ struct EvaluationOptions {
 
 struct Evaluation {
   std::string run;
-  std::string sequence;                       // for reports; the caller's word for it, may be empty
-  std::optional<PointError> surface;          // where the sequence has depth
-  std::optional<MaterialError> material;      // where it knows its material
-  std::optional<TrajectoryError> trajectory;  // where it has poses
-  std::optional<FirstMapError> first_map;     // where it has depth and the run says which frames it is from
+  std::string sequence;                           // for reports; the caller's word for it, may be empty
+  std::optional<PointError> surface;              // where the sequence has depth
+  std::optional<MaterialError> material;          // where it knows its material
+  std::optional<TrajectoryError> trajectory;      // where it has poses
+  std::optional<FirstMapError> first_map;         // where it has depth and the run says which frames it is from
+  std::optional<ReprojectionError> reprojection;  // where it has points
   TrackSurvival survival;
-  std::vector<std::string> notes;  // why a part is missing, what was left out; one sentence each
+  std::optional<double> run_seconds;  // that the run took, where it says so
+  std::vector<std::string> notes;     // why a part is missing, what was left out; one sentence each
 };
 
 // `sequence` is used for its truth alone: open it without start, end and stride. `material` is the truth of its

@@ -9,6 +9,9 @@
 // camera's frame of the moment. Drift is given in millimetres, |S(u) - P| (the straight line between two places of the
 // surface; where S(u) has no truth, at a depth step, there is none), and in pixels, |u - project(P)|. A track that
 // starts on a depth step belongs to no one material point and is left out.
+//
+// Tracks that split: a track that starts where the material point of another one is seen at that moment, after that one
+// has ended, goes on with it under a new name. A rigid reconstruction of a scene that moves lives on such splits.
 #pragma once
 
 #include <map>
@@ -64,6 +67,7 @@ struct MaterialError {
   int outside_image = 0;
   int tracks_occluded = 0;  // tracks with at least one such observation
   int tracks_outside_image = 0;
+  int continuing_tracks = 0;  // that go on with another one: the tracks minus these is the number of places followed
 };
 
 // Collects a run's frames, which come in order, and computes. `truth` and `camera` must outlive it.
@@ -85,6 +89,8 @@ class MaterialErrorCollector {
     Start start = Start::kOk;
     MaterialId material;
     Eigen::Vector2d first_pixel;
+    int first_frame_idx = 0;
+    int last_frame_idx = 0;
   };
   struct Drift {  // distances of one frame, or of many
     std::vector<double> px;
@@ -102,6 +108,7 @@ class MaterialErrorCollector {
   };
 
   Status StartTracks(int frame_idx, std::span<const TrackedPoint> points, const cv::Mat& depth_mm);
+  Result<int> CountContinuingTracks() const;
   void AddPoint(const TrackedPoint& point, const Track& track, const MaterialState& state,
                 const std::optional<Eigen::Vector3d>& ray, const cv::Mat& depth_mm, Frame* frame) const;
 

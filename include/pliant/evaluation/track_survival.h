@@ -37,7 +37,8 @@ struct TrackSurvival {
   std::array<double, 4> alive_shares = {0, 0, 0, 0};
   int tracks = 0;                  // different points in all
   double median_track_length = 0;  // frames in which a point was seen
-  std::vector<Frame> frames;       // one a frame read
+  double mean_track_length = 0;
+  std::vector<Frame> frames;  // one a frame read
 };
 
 TrackSurvival ComputeTrackSurvival(std::span<const FrameTracks> frames);
