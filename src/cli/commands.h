@@ -13,7 +13,9 @@ namespace pliant::cli {
 int TrackCommand(std::span<const std::string> args);
 int SimulateCommand(std::span<const std::string> args);
 int EvaluateCommand(std::span<const std::string> args);
+int CompareCommand(std::span<const std::string> args);
 int TruthCommand(std::span<const std::string> args);
+int ImportCommand(std::span<const std::string> args);
 int ExportCommand(std::span<const std::string> args);
 int ModelCommand(std::span<const std::string> args);
 int DemoCommand(std::span<const std::string> args);

@@ -13,6 +13,17 @@
 
 namespace pliant::cli {
 
+void AddEvaluationArguments(CommandLine* line) {
+  line->AddAlias("protocol", "PointError.protocol", "paper|depth_trimmed|lmeds|all",
+                 "how points are compared: one, several with commas, or all");
+  line->AddAlias("scale", "PointError.scale", "per_frame|global|none",
+                 "what a run is multiplied with: the best scale of each frame (the paper's protocol after a monocular "
+                 "start), one for all frames, or nothing (runs in true millimetres)");
+  line->AddAlias("parts", "Evaluation.parts", "surface|material|camera|first_map|all",
+                 "what to compute: one, several with commas, or all; an error where there is no truth for it. Without "
+                 "it, all that there is truth for");
+}
+
 Result<OpenedTruth> OpenTruth(const std::string& sequence_path, const EvaluationOptions& options) {
   OpenedTruth truth;
   truth.sequence_path = sequence_path;

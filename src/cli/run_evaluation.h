@@ -7,11 +7,15 @@
 #include <memory>
 #include <string>
 
+#include "cli/command_line.h"
 #include "pliant/base/status.h"
 #include "pliant/datasets/sequence.h"
 #include "pliant/evaluation/evaluation.h"
 
 namespace pliant::cli {
+
+// --protocol, --scale, --parts.
+void AddEvaluationArguments(CommandLine* line);
 
 // A sequence opened for its truth. Opening a simulated one builds its scene again, so it serves several runs.
 struct OpenedTruth {

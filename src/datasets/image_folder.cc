@@ -63,6 +63,11 @@ std::optional<double> ImageFolder::TimestampS(int frame_idx) const {
   return timestamps_s_.empty() ? frame_idx / calibration_.fps : timestamps_s_[static_cast<std::size_t>(frame_idx)];
 }
 
+std::optional<std::string> ImageFolder::Name(int frame_idx) const {
+  if (frame_idx < 0 || frame_idx >= source_count()) return std::nullopt;
+  return files_[static_cast<std::size_t>(frame_idx)].filename().string();
+}
+
 Result<std::optional<SequenceFrame>> ImageFolder::Next() {
   if (next_idx_ >= range_.end) return std::optional<SequenceFrame>();
   Result<SequenceFrame> frame = ReadFrame(next_idx_);
@@ -83,7 +88,7 @@ Result<SequenceFrame> ImageFolder::ReadFrame(int frame_idx) const {
                                             "; the size may not change within a sequence");
   SequenceFrame frame;
   frame.frame_idx = frame_idx;
-  frame.name = file.filename().string();
+  frame.name = *Name(frame_idx);
   frame.timestamp_s = *TimestampS(frame_idx);
   frame.image = *std::move(image);
   if (masks_) {

@@ -28,6 +28,7 @@ class ImageFolder final : public Sequence {
   Result<std::optional<cv::Mat>> Depth(int /*frame_idx*/) const override { return std::optional<cv::Mat>(); }
   std::optional<Rigid3> WorldFromCamera(int /*frame_idx*/) const override { return std::nullopt; }
   std::optional<double> TimestampS(int frame_idx) const override;
+  std::optional<std::string> Name(int frame_idx) const override;
 
   // Of the whole folder, whatever the range.
   int source_count() const { return static_cast<int>(files_.size()); }

@@ -31,6 +31,7 @@ class NativeSequence final : public Sequence {
   Result<std::optional<cv::Mat>> Depth(int frame_idx) const override;
   std::optional<Rigid3> WorldFromCamera(int frame_idx) const override;
   std::optional<double> TimestampS(int frame_idx) const override { return images_->TimestampS(frame_idx); }
+  std::optional<std::string> Name(int frame_idx) const override { return images_->Name(frame_idx); }
 
  private:
   NativeSequence(std::unique_ptr<ImageFolder> images, double depth_scale)

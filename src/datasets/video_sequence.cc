@@ -84,6 +84,10 @@ std::optional<double> VideoSequence::TimestampS(int frame_idx) const {
   return frame_idx / fps_;
 }
 
+std::optional<std::string> VideoSequence::Name(int frame_idx) const {
+  return TimestampS(frame_idx) ? std::optional(FrameName(frame_idx)) : std::nullopt;
+}
+
 Status VideoSequence::Truncated() const {
   return {ErrorCode::kUnreadable, "the video " + file_.string() + " breaks off: frame " + std::to_string(read_count_) +
                                       " of " + std::to_string(container_count_) +

@@ -32,6 +32,7 @@ class VideoSequence final : public Sequence {
   Result<std::optional<cv::Mat>> Depth(int /*frame_idx*/) const override { return std::optional<cv::Mat>(); }
   std::optional<Rigid3> WorldFromCamera(int /*frame_idx*/) const override { return std::nullopt; }
   std::optional<double> TimestampS(int frame_idx) const override;
+  std::optional<std::string> Name(int frame_idx) const override;
 
  private:
   VideoSequence(std::filesystem::path file, SourceCalibration calibration, const FrameRange& range)

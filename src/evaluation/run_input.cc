@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "pliant/colmap/convert.h"
+#include "pliant/datasets/match_poses.h"
 #include "pliant/io/run_reader.h"
 
 namespace pliant {
@@ -40,36 +41,18 @@ void TakeRow(const Run& run, const RunFrame& row, EvaluationFrame* frame) {
 
 std::string Seconds(double value) { return FormatDouble(std::round(1e6 * value) / 1e6) + " s"; }
 
-// The frame nearest in time to each pose; of two poses near the same frame the nearer one.
+// The poses of another system's result.
 Status GivePosesFrames(const std::string& name, const std::vector<RunPose>& poses, const Sequence& sequence,
                        double max_difference_s, EvaluationInput* input, FrameMap* frames) {
-  std::map<double, int> frame_at;  // the sequence's frames by time
-  for (int i = 0; i < sequence.size(); ++i)
-    if (const auto time_s = sequence.TimestampS(i)) frame_at.emplace(*time_s, i);
-  if (frame_at.empty())
-    return {ErrorCode::kMismatch, "the sequence has no times to which the poses of " + name + " could be matched"};
-  std::map<int, std::pair<double, const RunPose*>> nearest;  // by frame number
-  for (const RunPose& pose : poses) {
-    auto after = frame_at.lower_bound(pose.timestamp_s);
-    if (after == frame_at.end() ||
-        (after != frame_at.begin() && pose.timestamp_s - std::prev(after)->first < after->first - pose.timestamp_s))
-      --after;
-    const double difference_s = std::abs(after->first - pose.timestamp_s);
-    if (difference_s > max_difference_s) continue;
-    const auto [it, is_new] = nearest.try_emplace(after->second, difference_s, &pose);
-    if (!is_new && difference_s < it->second.first) it->second = {difference_s, &pose};
-  }
-  if (nearest.empty() && !poses.empty())
-    return {ErrorCode::kMismatch, "no pose of " + name + " is within " + Seconds(max_difference_s) +
-                                      " of a frame: its times go from " + Seconds(poses.front().timestamp_s) + " to " +
-                                      Seconds(poses.back().timestamp_s) + ", the sequence's from " +
-                                      Seconds(frame_at.begin()->first) + " to " + Seconds(frame_at.rbegin()->first) +
-                                      "; write times in seconds of the sequence's clock"};
-  for (const auto& [frame_idx, match] : nearest)
-    FrameAt(frame_idx, *sequence.TimestampS(frame_idx), frames).cam_from_world = match.second->world_from_cam.Inverse();
-  if (nearest.size() < poses.size())
-    input->notes.push_back(std::to_string(poses.size() - nearest.size()) + " of " + std::to_string(poses.size()) +
-                           " poses of " + name + " are near no frame in time and are left out");
+  std::vector<TimedPose> timed;
+  for (const RunPose& pose : poses) timed.push_back({pose.timestamp_s, pose.world_from_cam});
+  const auto matched = MatchPoses(timed, sequence, max_difference_s, name);
+  if (!matched.ok()) return matched.status();
+  for (const auto& [frame_idx, world_from_cam] : matched->world_from_cam)
+    FrameAt(frame_idx, *sequence.TimestampS(frame_idx), frames).cam_from_world = world_from_cam.Inverse();
+  if (matched->left_out > 0)
+    input->notes.push_back(std::to_string(matched->left_out) + " of " + std::to_string(poses.size()) + " poses of " +
+                           name + " are near no frame in time and are left out");
   return Status::Ok();
 }
 
@@ -166,6 +149,7 @@ Result<EvaluationInput> ReadEvaluationInput(const std::string& run_path, const S
   Result<std::optional<Camera>> camera = ReadRunCamera(run_path);
   if (!camera.ok()) return camera.status();
   input.camera = *std::move(camera);
+  if (run->summary && run->summary->total_s > 0) input.seconds = run->summary->total_s;
 
   FrameMap frames;
   for (const RunFrame& row : run->frames) TakeRow(*run, row, &FrameAt(row.frame_idx, row.timestamp_s, &frames));

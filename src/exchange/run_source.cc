@@ -41,20 +41,16 @@ Result<Known> KnownFromSparse(const std::string& folder) {
   return known;
 }
 
-// Decodes every image: only of a run that was killed, or another program's.
-Result<Known> KnownFromSequence(const std::string& path) {
+Result<Known> KnownFromSequence(const std::string& path, const Run& run) {
   SequenceRequest request;
   request.image_path = path;
-  auto sequence = OpenSequence(request);
+  const auto sequence = OpenSequence(request);
   if (!sequence.ok()) return sequence.status();
   Known known;
   known.camera = (*sequence)->camera();
-  while (true) {
-    auto frame = (*sequence)->Next();
-    if (!frame.ok()) continue;  // it cannot have been tracked
-    if (!frame->has_value()) return known;
-    known.names.emplace((*frame)->frame_idx, (*frame)->name);
-  }
+  for (const RunFrame& frame : run.frames)
+    if (auto name = (*sequence)->Name(frame.frame_idx)) known.names.emplace(frame.frame_idx, *std::move(name));
+  return known;
 }
 
 Result<Known> ReadKnown(const std::string& run_path, const std::string& sequence_path, const Run& run) {
@@ -63,7 +59,7 @@ Result<Known> ReadKnown(const std::string& run_path, const std::string& sequence
   if (std::filesystem::is_directory(sparse, error)) return KnownFromSparse(sparse);
   const std::string path = !sequence_path.empty() ? sequence_path : run.summary ? run.summary->description.input : "";
   if (!path.empty()) {
-    auto known = KnownFromSequence(path);
+    auto known = KnownFromSequence(path, run);
     if (known.ok()) return known;
     return Status(known.status().code(), "the run has no sparse/ to take the camera and the images' names from, and " +
                                              known.status().message());
@@ -114,7 +110,9 @@ Result<RunSource> ReadRunSource(const std::string& run_path, const std::string& 
   for (std::size_t i = 0; i < run->poses.size(); i += static_cast<std::size_t>(stride)) {
     const RunPose& pose = run->poses[i];
     if (!pose.frame_idx)
-      return Status(ErrorCode::kMismatch, Quoted(run_path) + " has no frames.csv, which says the frames of its poses");
+      return Status(ErrorCode::kMismatch, Quoted(run_path) +
+                                              " has no frames.csv, so it is another program's; make it a run with "
+                                              "pliant import --format result");
     const auto name = known->names.find(*pose.frame_idx);
     if (name == known->names.end())
       return Status(ErrorCode::kMismatch, "frame " + std::to_string(*pose.frame_idx) + " of the run " +

@@ -254,7 +254,8 @@ Status RunWriter::Finish(RunStatus run_status, const std::string& note) {
   for (OutputFile* file : {&s.observations, &s.trajectory, &s.frames})
     if (Status closed = file->Close(); status.ok()) status = closed;
   if (s.options.timings == RunTimings::kWritten) {
-    s.summary.total_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - s.begin).count();
+    s.summary.total_s = s.options.total_s.value_or(
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - s.begin).count());
     if (s.summary.total_s > 0)
       s.summary.frames_per_second = static_cast<double>(s.summary.frames_read) / s.summary.total_s;
   }

@@ -6,10 +6,70 @@
 #include <array>
 #include <cmath>
 
-#include "pliant/base/text.h"
+#include <Eigen/Geometry>
+
 #include "io/tum_line.h"
+#include "pliant/base/text.h"
 
 namespace pliant {
+namespace {
+
+constexpr double kLargestNormError = 1e-2;  // files with three decimals pass, a file in another order does not
+
+Status ParseNumbers(std::span<const std::string_view> fields, std::span<double> numbers) {
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+    if (!ParseFinite(fields[i], &numbers[i]))
+      return {ErrorCode::kUnreadable, Quoted(fields[i]) + " is not a finite number"};
+  return Status::Ok();
+}
+
+Result<TimedPose> MakePose(double timestamp_s, const Eigen::Vector3d& position, const Eigen::Quaterniond& rotation) {
+  if (!(std::abs(rotation.norm() - 1.0) < kLargestNormError))
+    return Status(ErrorCode::kUnreadable, "the quaternion has length " + std::to_string(rotation.norm()) + ", not 1");
+  return TimedPose{timestamp_s, Rigid3(rotation, position)};
+}
+
+bool IsComment(std::string_view line) { return line.starts_with('#') || Split(line, ' ').empty(); }
+
+Status CheckLater(const LineReader& reader, const std::vector<TimedPose>& poses, const TimedPose& pose) {
+  if (poses.empty() || pose.timestamp_s > poses.back().timestamp_s) return Status::Ok();
+  return reader.Error("the time is not after the line before; sort the lines by time");
+}
+
+Result<TimedPose> ParseEurocLine(std::string_view line) {
+  std::vector<std::string_view> fields = Split(line, ',');
+  if (fields.size() < 8)
+    return Status(
+        ErrorCode::kUnreadable,
+        "a line begins with 8 numbers and commas between them (timestamp, position, quaternion w x y z), this "
+        "one has " +
+            std::to_string(fields.size()));
+  fields.resize(8);
+  for (std::string_view& field : fields) {
+    const std::vector<std::string_view> words = Split(field, ' ');
+    field = words.size() == 1 ? words.front() : std::string_view();
+  }
+  std::array<double, 8> v;
+  if (Status status = ParseNumbers(fields, v); !status.ok()) return status;
+  return MakePose(1e-9 * v[0], {v[1], v[2], v[3]}, Eigen::Quaterniond(v[4], v[5], v[6], v[7]));
+}
+
+Result<Rigid3> ParseKittiLine(std::string_view line) {
+  const std::vector<std::string_view> fields = Split(line, ' ');
+  if (fields.size() != 12)
+    return Status(ErrorCode::kUnreadable, "a line has 12 numbers (the matrix [R t], row by row), this one has " +
+                                              std::to_string(fields.size()));
+  std::array<double, 12> v;
+  if (Status status = ParseNumbers(fields, v); !status.ok()) return status;
+  const Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>> matrix(v.data());
+  const Eigen::Matrix3d rotation = matrix.leftCols<3>();
+  const Eigen::Matrix3d error = rotation * rotation.transpose() - Eigen::Matrix3d::Identity();
+  if (!(error.norm() < kLargestNormError) || !(rotation.determinant() > 0))
+    return Status(ErrorCode::kUnreadable, "the first three columns of its matrix are not a rotation");
+  return Rigid3(Eigen::Quaterniond(rotation), matrix.col(3));
+}
+
+}  // namespace
 
 void AppendTumLine(std::string* out, double timestamp_s, const Rigid3& world_from_cam) {
   AppendFixed(out, timestamp_s, 6);
@@ -25,19 +85,13 @@ void AppendTumLine(std::string* out, double timestamp_s, const Rigid3& world_fro
 }
 
 Result<TimedPose> ParseTumLine(std::string_view line) {
-  constexpr double kLargestNormError = 1e-2;  // files with three decimals pass, a file in another order does not
   const std::vector<std::string_view> fields = Split(line, ' ');
-  const auto invalid = [](const std::string& what) { return Status(ErrorCode::kUnreadable, what); };
   if (fields.size() != 8)
-    return invalid("a line has 8 numbers (timestamp tx ty tz qx qy qz qw), this one has " +
-                   std::to_string(fields.size()));
+    return Status(ErrorCode::kUnreadable, "a line has 8 numbers (timestamp tx ty tz qx qy qz qw), this one has " +
+                                              std::to_string(fields.size()));
   std::array<double, 8> v;
-  for (std::size_t i = 0; i < 8; ++i)
-    if (!ParseFinite(fields[i], &v[i])) return invalid(Quoted(fields[i]) + " is not a finite number");
-  const Eigen::Quaterniond rotation(v[7], v[4], v[5], v[6]);
-  if (!(std::abs(rotation.norm() - 1.0) < kLargestNormError))
-    return invalid("the quaternion has length " + std::to_string(rotation.norm()) + ", not 1");
-  return TimedPose{v[0], Rigid3(rotation, Eigen::Vector3d(v[1], v[2], v[3]))};
+  if (Status status = ParseNumbers(fields, v); !status.ok()) return status;
+  return MakePose(v[0], {v[1], v[2], v[3]}, Eigen::Quaterniond(v[7], v[4], v[5], v[6]));
 }
 
 Result<std::vector<TimedPose>> ReadTumTrajectory(const std::string& path) {
@@ -50,15 +104,41 @@ Result<std::vector<TimedPose>> ReadTumTrajectory(const std::string& path, OpenLa
   if (!reader.ok()) return reader.status();
   std::vector<TimedPose> poses;
   for (std::string_view line; reader->Next(&line);) {
-    if (line.starts_with('#') || Split(line, ' ').empty()) continue;
+    if (IsComment(line)) continue;
     if (!reader->ended() && open_last_line == OpenLastLine::kIsCut) {
       ++*cut_lines;
       break;
     }
     const auto pose = ParseTumLine(line);
     if (!pose.ok()) return reader->Error(pose.status().message());
-    if (!poses.empty() && !(pose->timestamp_s > poses.back().timestamp_s))
-      return reader->Error("the time is not after the line before; sort the lines by time");
+    if (Status status = CheckLater(*reader, poses, *pose); !status.ok()) return status;
+    poses.push_back(*pose);
+  }
+  return poses;
+}
+
+Result<std::vector<TimedPose>> ReadEurocTrajectory(const std::string& path) {
+  auto reader = LineReader::Open(path);
+  if (!reader.ok()) return reader.status();
+  std::vector<TimedPose> poses;
+  for (std::string_view line; reader->Next(&line);) {
+    if (IsComment(line)) continue;
+    const auto pose = ParseEurocLine(line);
+    if (!pose.ok()) return reader->Error(pose.status().message());
+    if (Status status = CheckLater(*reader, poses, *pose); !status.ok()) return status;
+    poses.push_back(*pose);
+  }
+  return poses;
+}
+
+Result<std::vector<Rigid3>> ReadKittiPoses(const std::string& path) {
+  auto reader = LineReader::Open(path);
+  if (!reader.ok()) return reader.status();
+  std::vector<Rigid3> poses;
+  for (std::string_view line; reader->Next(&line);) {
+    if (IsComment(line)) continue;
+    const auto pose = ParseKittiLine(line);
+    if (!pose.ok()) return reader->Error(pose.status().message());
     poses.push_back(*pose);
   }
   return poses;

@@ -252,13 +252,13 @@ std::string ForeignResult(const std::string& name, int frames) {
   return folder.string();
 }
 
-TEST(Program, EvaluateComparesRunsOfOtherSystemsSideBySide) {
+TEST(Program, CompareSetsRunsOfOtherSystemsSideBySide) {
   const std::string sequence = Temporary("seq").string();
   ASSERT_EQ(Pliant("simulate --quiet --Trajectory.frames 4" + kCoarse + "--output_path '" + sequence + "'").exit, 0);
   const std::string a = ForeignResult("a", 4);
   const std::string b = ForeignResult("b", 3);
   const std::string out = Temporary("out").string();
-  const Outcome both = Pliant("evaluate --run '" + a + "' --run '" + b + "' --sequence '" + sequence +
+  const Outcome both = Pliant("compare --run '" + a + "' --run '" + b + "' --sequence '" + sequence +
                               "' --protocol all --output_path '" + out + "'");
   ASSERT_EQ(both.exit, 0) << both.err;
   EXPECT_THAT(both.out, HasSubstr(a));
@@ -274,16 +274,16 @@ TEST(Program, EvaluateComparesRunsOfOtherSystemsSideBySide) {
   EXPECT_THAT(one.out, testing::Not(HasSubstr("surface error")));
 
   // One that is not there does not keep the other from its row.
-  const Outcome half = Pliant("evaluate --run '" + a + "' --run '" + b + "x' --sequence '" + sequence + "'");
+  const Outcome half = Pliant("compare --run '" + a + "' --run '" + b + "x' --sequence '" + sequence + "'");
   EXPECT_EQ(half.exit, 1);
   EXPECT_THAT(half.err, HasSubstr(b + "x"));
   EXPECT_EQ(std::count(half.err.begin(), half.err.end(), '\n'), 1) << half.err;
   EXPECT_THAT(half.out, HasSubstr("4/4"));
 
-  const Outcome pairs = Pliant("evaluate --run a --run b --run c --sequence d --sequence e");
+  const Outcome pairs = Pliant("compare --run a --run b --run c --sequence d --sequence e");
   EXPECT_EQ(pairs.exit, 2);
   EXPECT_EQ(pairs.err,
-            "pliant evaluate: --sequence is given 2 times for 3 runs; give one for all of them, or one for each\n");
+            "pliant compare: --sequence is given 2 times for 3 runs; give one for all of them, or one for each\n");
 }
 
 TEST(Program, EvaluateSaysInOneSentenceThatThereIsNoTruthForWhatWasAsked) {

@@ -104,6 +104,8 @@ TEST_F(OpenSequenceTest, AppliesStartEndAndStrideToSourceNumbers) {
   EXPECT_THAT(Indices(*sequence), ElementsAre(2, 5, 8));
   EXPECT_DOUBLE_EQ(*sequence->TimestampS(0), 0.0);  // truth is there for the whole source
   EXPECT_FALSE(sequence->TimestampS(10).has_value());
+  EXPECT_EQ(sequence->Name(0), Name(0));
+  EXPECT_FALSE(sequence->Name(10).has_value());
 }
 
 TEST_F(OpenSequenceTest, TakesOneFrameWithTheLargestStride) {

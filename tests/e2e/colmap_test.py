@@ -10,6 +10,7 @@ SEQUENCE is a simulated, rigid one, so that its undeformed map is a rigid recons
 where there is no COLMAP.
 """
 
+import json
 import os
 import pathlib
 import shutil
@@ -110,6 +111,30 @@ class ColmapOpens(unittest.TestCase):
         self.assertGreater(figures["Registered images"], 40)
         self.assertLess(figures["Mean reprojection error"], 0.3)
         run(PLIANT, "model", "check", mapped / "0")
+        self.compare_with_ours(mapped / "0")
+        self.start_from(mapped / "0")
+
+    def compare_with_ours(self, model):
+        """A rigid scene: COLMAP's answer on our tracks and ours are one."""
+        imported = WORK / "imported"
+        run(PLIANT, "import", "--input_path", model, "--sequence", SEQUENCE, "--output_path", imported, "--quiet")
+        compared = WORK / "compared"
+        run(PLIANT, "compare", "--run", self.run_path, "--run", imported, "--sequence", SEQUENCE, "--output_path", compared,
+            "--quiet")
+        ours, theirs = json.loads((compared / "comparison.json").read_text())["runs"]
+        self.assertGreater(theirs["survival"]["frames_tracked"], 40)
+        self.assertLess(theirs["surface"]["estimate"]["mean_rmse_mm"], 1)
+        self.assertLess(theirs["material"]["drift"]["median_px"], 0.3)
+        self.assertLess(ours["surface"]["estimate"]["mean_rmse_mm"], 1)
+        self.assertLess(theirs["trajectory"]["ate_rmse_mm"], 0.01 * theirs["trajectory"]["true_path_length_mm"])
+
+    def start_from(self, model):
+        started = WORK / "started"
+        run(PLIANT, "track", "--image_path", SEQUENCE, "--output_path", started, "--Init.method", "colmap_model",
+            "--Init.model_path", model, "--quiet")
+        summary = json.loads((started / "run.json").read_text())
+        self.assertEqual(summary["status"], "completed")
+        self.assertEqual(summary["first_map"]["reference_frame"], summary["first_map"]["declared_frame"])
 
     def test_undistortion(self):
         undistorted = folder("undistorted")

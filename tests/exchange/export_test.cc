@@ -11,6 +11,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "exchange/small_run.h"
 #include "pliant/colmap/check.h"
 #include "pliant/colmap/convert.h"
 #include "pliant/io/run_reader.h"
@@ -22,46 +23,6 @@ namespace pliant {
 namespace {
 
 using testing::HasSubstr;
-
-constexpr int kFrames = 5;  // frames 10, 12, ... 18
-constexpr int kPoints = 8;  // ids 0, 3, ...; odd ones are seen in every second frame
-
-Camera TestCamera() { return Camera::Create("PINHOLE", 640, 480, std::vector<double>{500, 500, 319.5, 239.5}).value(); }
-
-Eigen::Vector3d Undeformed(int point) { return {point - 3.0, 0.5 * point - 2, 50}; }
-Eigen::Vector3d PositionAt(int point, int frame) { return Undeformed(point) + Eigen::Vector3d(0, 0.25 * frame, 0); }
-Rigid3 PoseAt(int frame) { return {RotationExp({0, 0.01 * frame, 0}), Eigen::Vector3d(0.1 * frame, 0, 0.5)}; }
-
-FrameReport Report(int frame) {
-  FrameReport report;
-  report.frame_idx = 10 + 2 * frame;
-  report.name = std::to_string(report.frame_idx) + ".png";
-  report.timestamp_s = frame / 25.0;
-  report.state = TrackingState::kTracking;
-  report.cam_from_world = PoseAt(frame);
-  for (int i = 0; i < kPoints; ++i) {
-    if (frame == 0)
-      report.new_points.push_back({PointId{3 * i}, Undeformed(i), {10, 20, static_cast<std::uint8_t>(i)}});
-    if (i % 2 == 1 && frame % 2 == 1) continue;
-    const Eigen::Vector3d x = PositionAt(i, frame);
-    report.observations.push_back({PointId{3 * i}, *TestCamera().Project(*report.cam_from_world * x), x, 0.9});
-  }
-  return report;
-}
-
-enum class End { kFinished, kKilled };
-
-// A run in `folder`/run; without deformation at frame 0.
-void WriteRun(const TestFolder& folder, End end = End::kFinished) {
-  auto writer =
-      RunWriter::Create(folder.Path("run"), TestCamera(), {"0.1.0", {"pliant"}, 7, "nowhere", {}}, "Track:\n", {});
-  ASSERT_TRUE(writer.ok()) << writer.status().message();
-  for (int frame = 0; frame < kFrames; ++frame) ASSERT_TRUE(writer->Write(Report(frame)).ok());
-  if (end == End::kKilled) return;
-  ASSERT_TRUE(writer->Finish(RunStatus::kCompleted, "").ok());
-}
-
-constexpr int kObservations = 3 * kPoints + 2 * (kPoints / 2);
 
 Result<ExportSummary> Export(const TestFolder& folder, ExportFormat format, const ExportOptions& options = {}) {
   return ExportRun({folder.Path("run"), "", format, folder.Path("out")}, options);
@@ -86,16 +47,16 @@ TEST(Export, CanonicalHasOnePointATrackAtItsUndeformedPosition) {
     options.files = files;
     const auto summary = Export(folder, ExportFormat::kCanonical, options);
     ASSERT_TRUE(summary.ok()) << summary.status().message();
-    EXPECT_EQ(summary->frames, kFrames);
-    EXPECT_EQ(summary->points, kPoints);
-    EXPECT_EQ(summary->observations, kObservations);
+    EXPECT_EQ(summary->frames, kRunFrames);
+    EXPECT_EQ(summary->points, kRunPoints);
+    EXPECT_EQ(summary->observations, kRunObservations);
     EXPECT_TRUE(summary->notes.empty());
     EXPECT_EQ(colmap::FindModel(folder.Path("out")).value(), files);
     const colmap::Model model = ReadValidModel(folder.Path("out"));
-    ASSERT_EQ(model.images.size(), static_cast<std::size_t>(kFrames));
+    ASSERT_EQ(model.images.size(), static_cast<std::size_t>(kRunFrames));
     EXPECT_EQ(model.images[1].name, "12.png");
-    ASSERT_EQ(model.points3D.size(), static_cast<std::size_t>(kPoints));
-    for (int i = 0; i < kPoints; ++i) {
+    ASSERT_EQ(model.points3D.size(), static_cast<std::size_t>(kRunPoints));
+    for (int i = 0; i < kRunPoints; ++i) {
       const colmap::Point3D& point = model.points3D[static_cast<std::size_t>(i)];
       EXPECT_EQ(point.id, static_cast<std::uint64_t>(3 * i));
       EXPECT_LT((PositionOf(point) - Undeformed(i)).norm(), 1e-6);
@@ -111,7 +72,7 @@ TEST(Export, SpacetimeHasOnePointATrackAndFrameColouredByTime) {
   WriteRun(folder);
   ASSERT_TRUE(Export(folder, ExportFormat::kSpacetime).ok());
   const colmap::Model model = ReadValidModel(folder.Path("out"));
-  ASSERT_EQ(model.points3D.size(), static_cast<std::size_t>(kObservations));
+  ASSERT_EQ(model.points3D.size(), static_cast<std::size_t>(kRunObservations));
   for (const colmap::Point3D& point : model.points3D) {
     const auto frame = (static_cast<int>(point.id / 1'000'000) - 10) / 2;
     const auto track = static_cast<int>(point.id % 1'000'000) / 3;
@@ -127,7 +88,7 @@ TEST(Export, FramesHasAModelAFrameThatReprojectsExactly) {
   const TestFolder folder;
   WriteRun(folder);
   ASSERT_TRUE(Export(folder, ExportFormat::kFrames).ok());
-  for (int frame = 0; frame < kFrames; ++frame) {
+  for (int frame = 0; frame < kRunFrames; ++frame) {
     const colmap::Model model = ReadValidModel(folder.Path("out/0000" + std::to_string(10 + 2 * frame)));
     ASSERT_EQ(model.images.size(), 1U);
     const colmap::Image& image = model.images[0];
@@ -161,19 +122,19 @@ TEST(Export, TrajectoriesJoinATracksPositions) {
   WriteRun(folder);
   ASSERT_TRUE(Export(folder, ExportFormat::kTrajectories).ok());
   const std::string ply = folder.Read("out/trajectories.ply");
-  EXPECT_THAT(ply, HasSubstr("element vertex " + std::to_string(kObservations) + "\n"));
-  EXPECT_THAT(ply, HasSubstr("element edge " + std::to_string(kObservations - kPoints) + "\n"));
+  EXPECT_THAT(ply, HasSubstr("element vertex " + std::to_string(kRunObservations) + "\n"));
+  EXPECT_THAT(ply, HasSubstr("element edge " + std::to_string(kRunObservations - kRunPoints) + "\n"));
   const std::size_t at = ply.find("end_header\n") + 11;
   constexpr std::size_t kVertex = 3 * 4 + 3 + 4 + 4;
-  ASSERT_EQ(ply.size(), at + kObservations * kVertex + (kObservations - kPoints) * 8U);
+  ASSERT_EQ(ply.size(), at + kRunObservations * kVertex + (kRunObservations - kRunPoints) * 8U);
   const auto track_of = [&](std::uint32_t vertex) {
     std::int32_t track = 0;
     std::memcpy(&track, ply.data() + at + vertex * kVertex + 15, 4);
     return track;
   };
-  for (std::size_t edge = 0; edge < static_cast<std::size_t>(kObservations - kPoints); ++edge) {
+  for (std::size_t edge = 0; edge < static_cast<std::size_t>(kRunObservations - kRunPoints); ++edge) {
     std::array<std::uint32_t, 2> ends{};
-    std::memcpy(ends.data(), ply.data() + at + kObservations * kVertex + edge * 8, 8);
+    std::memcpy(ends.data(), ply.data() + at + kRunObservations * kVertex + edge * 8, 8);
     ASSERT_LT(ends[0], ends[1]);
     EXPECT_EQ(track_of(ends[0]), track_of(ends[1]));
   }
@@ -185,7 +146,7 @@ TEST(Export, TumIsTheRunsPath) {
   ASSERT_TRUE(Export(folder, ExportFormat::kTum).ok());
   const auto poses = ReadTumTrajectory(folder.Path("out/trajectory.txt"));
   ASSERT_TRUE(poses.ok());
-  ASSERT_EQ(poses->size(), static_cast<std::size_t>(kFrames));
+  ASSERT_EQ(poses->size(), static_cast<std::size_t>(kRunFrames));
   EXPECT_LT(((*poses)[2].world_from_cam.translation - PoseAt(2).Inverse().translation).norm(), 2e-6);
   EXPECT_EQ(folder.Read("out/trajectory.txt"), folder.Read("run/trajectory.txt"));
 }
@@ -194,13 +155,13 @@ TEST(Export, Colmap4dHasATimeForEveryImageAndPoint) {
   const TestFolder folder;
   WriteRun(folder);
   ASSERT_TRUE(Export(folder, ExportFormat::kColmap4d).ok());
-  EXPECT_EQ(folder.Read("out/times.bin").size(), 8U + kFrames * 12U);
-  EXPECT_EQ(folder.Read("out/points_t.bin").size(), 8U + kObservations * 16U);
+  EXPECT_EQ(folder.Read("out/times.bin").size(), 8U + kRunFrames * 12U);
+  EXPECT_EQ(folder.Read("out/points_t.bin").size(), 8U + kRunObservations * 16U);
   std::int64_t time_ns = 0;
   std::memcpy(&time_ns, folder.Read("out/times.bin").data() + 8 + 12 + 4, 8);
   EXPECT_EQ(time_ns, 40'000'000);
   EXPECT_THAT(folder.Read("out/time_meta.json"), HasSubstr("\"time_convention\": \"mid_exposure\""));
-  EXPECT_EQ(ReadValidModel(folder.Path("out")).images.size(), static_cast<std::size_t>(kFrames));
+  EXPECT_EQ(ReadValidModel(folder.Path("out")).images.size(), static_cast<std::size_t>(kRunFrames));
 }
 
 TEST(Export, AStrideLeavesFramesOut) {

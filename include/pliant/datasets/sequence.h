@@ -45,6 +45,10 @@ class Sequence {
   // When the source's frame of this index was taken, seconds; nothing where the source has no such frame or cannot say
   // without reading it. It tells whether a run belongs to this sequence.
   virtual std::optional<double> TimestampS(int /*frame_idx*/) const { return std::nullopt; }
+
+  // The name that Next gives the source's frame of this index; nothing where the source has no such frame or cannot say
+  // without reading it.
+  virtual std::optional<std::string> Name(int /*frame_idx*/) const { return std::nullopt; }
 };
 
 }  // namespace pliant

@@ -36,6 +36,7 @@ struct EvaluationInput {
   std::string name;                     // for messages: the run's folder
   std::vector<EvaluationFrame> frames;  // every frame read, in order
   std::optional<Camera> camera;         // where the folder has one (sparse/cameras)
+  std::optional<double> seconds;        // that the run took, where it says so (run.json)
   std::vector<std::string> notes;       // what was left out in reading, one sentence each
 };
 

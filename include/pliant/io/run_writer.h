@@ -14,6 +14,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -42,6 +43,7 @@ struct EnumNames<RunTimings> {
 struct RunWriterOptions {
   RunTimings timings = RunTimings::kWritten;
   colmap::Format sparse_format = colmap::Format::kBoth;
+  std::optional<double> total_s = std::nullopt;  // what the run took; nothing: the time from Create to Finish
 };
 
 class RunWriter {

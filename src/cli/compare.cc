@@ -1,0 +1,103 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include <iostream>
+#include <optional>
+
+#include "cli/command_line.h"
+#include "cli/commands.h"
+#include "cli/run_evaluation.h"
+#include "pliant/evaluation/report.h"
+
+namespace pliant::cli {
+namespace {
+
+const Manual kManual = {
+    "compare",
+    "set runs side by side, each against the truth of its sequence",
+    "Prints two tables with a row a run. The first says what was reconstructed: frames with a pose, points in a frame, "
+    "tracks and their mean length in frames, tracks that go on with another one that had ended at the same place of "
+    "the material (simulated sequences), the reprojection error of the run's own points, and the time it took. The "
+    "second says how far it is from the truth: pliant evaluate --help explains its figures and their nulls.\n\n"
+    "Reads --run, two or more: run folders that pliant track or pliant import left, or other systems' results. Reads "
+    "--sequence, one for all of them, or one for each in their order.\n\n"
+    "Leaves, where --output_path is given: comparison.json, comparison.csv (one row a run), and evaluation.json and "
+    "evaluation.csv of each run in 0/, 1/, ... in their order.\n\n"
+    "A run that cannot be evaluated is said on standard error; the others are compared, and the command ends with 1.",
+    {"pliant compare --run ours --run rigid --sequence colon",
+     "pliant compare --run ours --run theirs --sequence colon --protocol all --output_path comparison"},
+};
+
+struct Request {
+  std::vector<std::string> run_paths;
+  std::vector<std::string> sequence_paths;  // one, or as many as runs
+  std::string output_path;
+};
+
+// A sequence that several runs in a row share is opened once.
+std::vector<std::optional<Evaluation>> EvaluateAll(const Request& request, const EvaluationOptions& options) {
+  std::vector<std::optional<Evaluation>> evaluations(request.run_paths.size());
+  std::optional<Result<OpenedTruth>> truth;
+  std::string opened_path;
+  for (std::size_t i = 0; i < request.run_paths.size(); ++i) {
+    const std::string& sequence_path = request.sequence_paths[request.sequence_paths.size() == 1 ? 0 : i];
+    if (!truth || sequence_path != opened_path) {
+      truth = OpenTruth(sequence_path, options);
+      opened_path = sequence_path;
+      if (!truth->ok()) SayError(kManual.command, truth->status().message());
+    }
+    if (!truth->ok()) continue;
+    Result<Evaluation> evaluation = EvaluateRun(request.run_paths[i], **truth, options);
+    if (evaluation.ok())
+      evaluations[i] = *std::move(evaluation);
+    else
+      SayError(kManual.command, evaluation.status().message());
+  }
+  return evaluations;
+}
+
+Status WriteAll(const std::vector<std::optional<Evaluation>>& evaluations, const std::vector<Evaluation>& good,
+                const std::string& folder) {
+  for (std::size_t i = 0; i < evaluations.size(); ++i)
+    if (evaluations[i])
+      if (Status status = WriteEvaluation(*evaluations[i], folder + "/" + std::to_string(i)); !status.ok())
+        return status;
+  if (Status status = WriteReport(folder, "comparison.json", ComparisonJson(good)); !status.ok()) return status;
+  return WriteReport(folder, "comparison.csv", ComparisonCsv(good));
+}
+
+}  // namespace
+
+int CompareCommand(std::span<const std::string> args) {
+  Request request;
+  EvaluationOptions options;
+  bool quiet = false;
+  CommandLine line(kManual);
+  line.Add("run", &request.run_paths, "DIR", "run folder", Need::kRequired);
+  line.Add("sequence", &request.sequence_paths, "DIR", "native sequence with truth; one for all runs, or one for each",
+           Need::kRequired);
+  AddEvaluationArguments(&line);
+  line.Add("output_path", &request.output_path, "DIR", "folder for the JSON and CSV files", Need::kOptional);
+  line.AddFlag("quiet", &quiet, "print no table");
+  if (const auto exit = line.Parse(args)) return *exit;
+
+  OptionTable table;
+  options.List(table);
+  if (const auto exit = line.Resolve(table)) return *exit;
+  if (request.sequence_paths.size() != 1 && request.sequence_paths.size() != request.run_paths.size())
+    return line.UsageError("--sequence is given " + std::to_string(request.sequence_paths.size()) + " times for " +
+                           std::to_string(request.run_paths.size()) +
+                           " runs; give one for all of them, or one for each");
+
+  const std::vector<std::optional<Evaluation>> evaluations = EvaluateAll(request, options);
+  std::vector<Evaluation> good;
+  for (const std::optional<Evaluation>& evaluation : evaluations)
+    if (evaluation) good.push_back(*evaluation);
+  if (!request.output_path.empty())
+    if (const Status status = WriteAll(evaluations, good, request.output_path); !status.ok())
+      return line.Failure(status.message());
+  if (!quiet && !good.empty()) std::cout << ComparisonTable(good) << std::flush;
+  return good.size() == evaluations.size() ? kExitOk : kExitFailed;
+}
+
+}  // namespace pliant::cli
