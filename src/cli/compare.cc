@@ -14,11 +14,12 @@ namespace {
 
 const Manual kManual = {
     "compare",
-    "set runs side by side, each against the truth of its sequence",
+    "set runs side by side, and against the truth where there is one",
     "Prints two tables with a row a run. The first says what was reconstructed: frames with a pose, points in a frame, "
     "tracks and their mean length in frames, tracks that go on with another one that had ended at the same place of "
     "the material (simulated sequences), the reprojection error of the run's own points, and the time it took. The "
-    "second says how far it is from the truth: pliant evaluate --help explains its figures and their nulls.\n\n"
+    "second says how far it is from the truth, where the sequence has one: pliant evaluate --help explains its figures "
+    "and their nulls.\n\n"
     "Reads --run, two or more: run folders that pliant track or pliant import left, or other systems' results. Reads "
     "--sequence, one for all of them, or one for each in their order.\n\n"
     "Leaves, where --output_path is given: comparison.json, comparison.csv (one row a run), and evaluation.json and "
@@ -71,11 +72,12 @@ Status WriteAll(const std::vector<std::optional<Evaluation>>& evaluations, const
 int CompareCommand(std::span<const std::string> args) {
   Request request;
   EvaluationOptions options;
+  options.needs_truth = false;
   bool quiet = false;
   CommandLine line(kManual);
   line.Add("run", &request.run_paths, "DIR", "run folder", Need::kRequired);
-  line.Add("sequence", &request.sequence_paths, "DIR", "native sequence with truth; one for all runs, or one for each",
-           Need::kRequired);
+  line.Add("sequence", &request.sequence_paths, "DIR",
+           "the images, with truth where there is; one for all runs, or one for each", Need::kRequired);
   AddEvaluationArguments(&line);
   line.Add("output_path", &request.output_path, "DIR", "folder for the JSON and CSV files", Need::kOptional);
   line.AddFlag("quiet", &quiet, "print no table");

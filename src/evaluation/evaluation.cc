@@ -171,7 +171,7 @@ Result<Evaluation> Evaluate(const EvaluationInput& run, const Sequence& sequence
     if (!frame.cam_from_world) continue;
     if (Status status = CollectFrame(frame, sequence, options, &truth); !status.ok()) return status;
   }
-  if (truth.surface.empty() && !truth.material && truth.poses.empty() && options.parts.empty())
+  if (truth.surface.empty() && !truth.material && truth.poses.empty() && options.parts.empty() && options.needs_truth)
     return Status(ErrorCode::kNotFound, "the sequence of the run " + run.name +
                                             " has no truth for the tracked frames: no depth/, no groundtruth.txt, no "
                                             "simulation.yaml; evaluate on a sequence that has one of them");

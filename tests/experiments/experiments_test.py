@@ -74,6 +74,9 @@ def dry_run(folder):
     text = snakemake("initialisation", folder / "initialisation", "readme", "--dry-run", "--quiet", "--config",
                      "sequences=", "seeds=1")
     assert "first_maps" in text and "two_views_table" in text, text  # a table for each document
+    text = snakemake("rigid_baseline", folder / "baseline", "--dry-run", "--quiet", "--config", "sequences=", "seeds=1,2")
+    counts = {line.split()[0]: line.split()[1] for line in text.splitlines() if len(line.split()) > 1}
+    assert counts["track"] == "10" and counts["reconstruct"] == "20" and counts["evaluate"] == "30", text
 
 
 def tables(folder):
@@ -356,7 +359,7 @@ def two_views_workflow(folder):
 
 if __name__ == "__main__":
     with tempfile.TemporaryDirectory() as temporary:
-        for part in ("colon", "regularisers", "initialisation", "cache", "grid"):
+        for part in ("colon", "regularisers", "initialisation", "baseline", "cache", "grid"):
             (pathlib.Path(temporary) / part).mkdir()
         globals()[sys.argv[1]](pathlib.Path(temporary))
     print("passed")
