@@ -14,7 +14,8 @@ add_library(pliant_warnings INTERFACE)
 target_compile_options(pliant_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
                        -Woverloaded-virtual -Wcast-align -Wunused
                        # False alarms of GCC 12 inside std::string and Eigen.
-                       -Wno-restrict $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
+                       $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
+                       $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
 if(PROJECT_IS_TOP_LEVEL)
   target_compile_options(pliant_warnings INTERFACE -Werror)
 endif()
