@@ -286,6 +286,27 @@ TEST(Program, CompareSetsRunsOfOtherSystemsSideBySide) {
             "pliant compare: --sequence is given 2 times for 3 runs; give one for all of them, or one for each\n");
 }
 
+TEST(Program, ImportMakesARunOfACameraPathAndSaysWhatItCannotRead) {
+  const std::string sequence = Temporary("seq").string();
+  ASSERT_EQ(Pliant("simulate --quiet --Trajectory.frames 4" + kCoarse + "--output_path '" + sequence + "'").exit, 0);
+  const std::string out = Temporary("out").string();
+  const std::string import = "import --sequence '" + sequence + "' --output_path '" + out + "' ";
+  const Outcome tum = Pliant(import + "--format tum --input_path '" + sequence + "/groundtruth.txt'");
+  ASSERT_EQ(tum.exit, 0) << tum.err;
+  EXPECT_THAT(tum.out, HasSubstr("4 of 4 frames, 0 points"));
+  EXPECT_THAT(ReadText(out + "/run.json"), HasSubstr("\"import\""));
+  const Outcome path = Pliant("evaluate --parts camera --run '" + out + "' --sequence '" + sequence + "'");
+  EXPECT_EQ(path.exit, 0) << path.err;
+  EXPECT_THAT(path.out, HasSubstr("ATE RMSE 0.000"));
+
+  const Outcome none = Pliant(import + "--input_path '" + sequence + "/nowhere'");
+  EXPECT_EQ(none.exit, 1);
+  EXPECT_EQ(std::count(none.err.begin(), none.err.end(), '\n'), 1) << none.err;
+  EXPECT_THAT(none.err, StartsWith("pliant import: "));
+  EXPECT_EQ(Pliant(import + "--format ply --input_path x").exit, 2);
+  EXPECT_EQ(Pliant("import --sequence x --output_path y").exit, 2);
+}
+
 TEST(Program, EvaluateSaysInOneSentenceThatThereIsNoTruthForWhatWasAsked) {
   const std::string sequence = Temporary("seq").string();
   ASSERT_EQ(Pliant("simulate --quiet --Trajectory.frames 4" + kCoarse + "--output_path '" + sequence + "'").exit, 0);
