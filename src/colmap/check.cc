@@ -231,4 +231,15 @@ bool IsValid(const std::vector<Finding>& findings) {
                       [](const Finding& finding) { return finding.severity == Severity::kError; });
 }
 
+Result<Model> ReadValidModel(const std::string& folder) {
+  auto model = ReadModel(folder);
+  if (!model.ok()) return model;
+  for (const Finding& finding : CheckModel(*model))
+    if (finding.severity == Severity::kError)
+      return Status(ErrorCode::kUnreadable, "the model " + Quoted(folder) + " is damaged: " + finding.what +
+                                                ", the first: " + finding.example +
+                                                "; pliant model check says all that is wrong");
+  return model;
+}
+
 }  // namespace pliant::colmap

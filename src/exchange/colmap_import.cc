@@ -45,14 +45,6 @@ class FrameNames {
   std::string first_;
 };
 
-Status CheckIsWhole(const colmap::Model& model, const std::string& folder) {
-  for (const colmap::Finding& finding : colmap::CheckModel(model))
-    if (finding.severity == colmap::Severity::kError)
-      return {ErrorCode::kUnreadable, "the model " + Quoted(folder) + " is damaged: " + finding.what +
-                                          ", the first: " + finding.example + "; pliant model check says it all"};
-  return Status::Ok();
-}
-
 Result<Camera> TheCamera(const colmap::Model& model, const std::string& folder) {
   if (model.cameras.size() != 1)
     return Status(ErrorCode::kInvalidArgument,
@@ -125,9 +117,8 @@ Status AddImages(const colmap::Model& model, const Sequence& sequence, const std
 }  // namespace
 
 Result<Imported> ReadColmapModel(const std::string& folder, const Sequence& sequence) {
-  const auto model = colmap::ReadModel(folder);
+  const auto model = colmap::ReadValidModel(folder);
   if (!model.ok()) return model.status();
-  if (Status status = CheckIsWhole(*model, folder); !status.ok()) return status;
   const auto camera = TheCamera(*model, folder);
   if (!camera.ok()) return camera.status();
   Imported imported;

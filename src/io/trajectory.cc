@@ -29,8 +29,6 @@ Result<TimedPose> MakePose(double timestamp_s, const Eigen::Vector3d& position, 
   return TimedPose{timestamp_s, Rigid3(rotation, position)};
 }
 
-bool IsComment(std::string_view line) { return line.starts_with('#') || Split(line, ' ').empty(); }
-
 Status CheckLater(const LineReader& reader, const std::vector<TimedPose>& poses, const TimedPose& pose) {
   if (poses.empty() || pose.timestamp_s > poses.back().timestamp_s) return Status::Ok();
   return reader.Error("the time is not after the line before; sort the lines by time");
@@ -69,6 +67,27 @@ Result<Rigid3> ParseKittiLine(std::string_view line) {
   return Rigid3(Eigen::Quaterniond(rotation), matrix.col(3));
 }
 
+// A value a line, comments aside. `check` sees each value with those before it.
+template <class Value, class Parse, class Check>
+Result<std::vector<Value>> ReadLines(const std::string& path, Parse parse, Check check, OpenLastLine open_last_line,
+                                     int* cut_lines) {
+  auto reader = LineReader::Open(path);
+  if (!reader.ok()) return reader.status();
+  std::vector<Value> values;
+  for (std::string_view line; reader->Next(&line);) {
+    if (line.starts_with('#') || Split(line, ' ').empty()) continue;
+    if (!reader->ended() && open_last_line == OpenLastLine::kIsCut) {
+      ++*cut_lines;
+      break;
+    }
+    const auto value = parse(line);
+    if (!value.ok()) return reader->Error(value.status().message());
+    if (Status status = check(*reader, values, *value); !status.ok()) return status;
+    values.push_back(*value);
+  }
+  return values;
+}
+
 }  // namespace
 
 void AppendTumLine(std::string* out, double timestamp_s, const Rigid3& world_from_cam) {
@@ -100,48 +119,18 @@ Result<std::vector<TimedPose>> ReadTumTrajectory(const std::string& path) {
 }
 
 Result<std::vector<TimedPose>> ReadTumTrajectory(const std::string& path, OpenLastLine open_last_line, int* cut_lines) {
-  auto reader = LineReader::Open(path);
-  if (!reader.ok()) return reader.status();
-  std::vector<TimedPose> poses;
-  for (std::string_view line; reader->Next(&line);) {
-    if (IsComment(line)) continue;
-    if (!reader->ended() && open_last_line == OpenLastLine::kIsCut) {
-      ++*cut_lines;
-      break;
-    }
-    const auto pose = ParseTumLine(line);
-    if (!pose.ok()) return reader->Error(pose.status().message());
-    if (Status status = CheckLater(*reader, poses, *pose); !status.ok()) return status;
-    poses.push_back(*pose);
-  }
-  return poses;
+  return ReadLines<TimedPose>(path, ParseTumLine, CheckLater, open_last_line, cut_lines);
 }
 
 Result<std::vector<TimedPose>> ReadEurocTrajectory(const std::string& path) {
-  auto reader = LineReader::Open(path);
-  if (!reader.ok()) return reader.status();
-  std::vector<TimedPose> poses;
-  for (std::string_view line; reader->Next(&line);) {
-    if (IsComment(line)) continue;
-    const auto pose = ParseEurocLine(line);
-    if (!pose.ok()) return reader->Error(pose.status().message());
-    if (Status status = CheckLater(*reader, poses, *pose); !status.ok()) return status;
-    poses.push_back(*pose);
-  }
-  return poses;
+  int cut_lines = 0;
+  return ReadLines<TimedPose>(path, ParseEurocLine, CheckLater, OpenLastLine::kIsRead, &cut_lines);
 }
 
 Result<std::vector<Rigid3>> ReadKittiPoses(const std::string& path) {
-  auto reader = LineReader::Open(path);
-  if (!reader.ok()) return reader.status();
-  std::vector<Rigid3> poses;
-  for (std::string_view line; reader->Next(&line);) {
-    if (IsComment(line)) continue;
-    const auto pose = ParseKittiLine(line);
-    if (!pose.ok()) return reader->Error(pose.status().message());
-    poses.push_back(*pose);
-  }
-  return poses;
+  int cut_lines = 0;
+  const auto any = [](const LineReader&, const std::vector<Rigid3>&, const Rigid3&) { return Status::Ok(); };
+  return ReadLines<Rigid3>(path, ParseKittiLine, any, OpenLastLine::kIsRead, &cut_lines);
 }
 
 Status WriteTumTrajectory(const std::string& path, std::span<const TimedPose> poses) {

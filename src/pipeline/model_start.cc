@@ -43,12 +43,8 @@ Result<ModelStart> ModelStart::Open(const std::string& folder, const Camera& cam
   if (folder.empty())
     return Status(ErrorCode::kInvalidArgument,
                   "a start from a COLMAP model needs its folder; name it with --Init.model_path");
-  const auto model = colmap::ReadModel(folder);
+  const auto model = colmap::ReadValidModel(folder);
   if (!model.ok()) return model.status();
-  for (const colmap::Finding& finding : colmap::CheckModel(*model))
-    if (finding.severity == colmap::Severity::kError)
-      return Status(ErrorCode::kUnreadable,
-                    "the model " + Quoted(folder) + " is damaged: " + finding.what + ", the first: " + finding.example);
   for (const colmap::Camera& own : model->cameras)
     if (own.width != static_cast<std::uint64_t>(camera.width()) ||
         own.height != static_cast<std::uint64_t>(camera.height()))

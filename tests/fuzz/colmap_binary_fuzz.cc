@@ -1,56 +1,35 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "colmap/readers.h"
-#include "colmap/rows.h"
 #include "colmap_fuzz.h"
 #include "pliant/base/text.h"
 
-using namespace pliant;          // NOLINT(google-build-using-namespace): a file that is one function
-using namespace pliant::colmap;  // NOLINT(google-build-using-namespace)
-
+namespace pliant::colmap {
 namespace {
 
-template <class Rows, class Append>
-std::string File(const Rows& rows, Append append) {
-  std::string file;
-  AppendBytes(&file, rows.size(), 8);
-  for (const auto& row : rows) append(row, &file);
-  return file;
-}
+struct Binary {
+  static constexpr auto Cameras = ReadBinaryCameras;
+  static auto Images(const std::string& path) { return ReadBinaryImages(path, Observations::kRead); }
+  static auto Points(const std::string& path) { return ReadBinaryPoints(path, Observations::kRead); }
+  static constexpr auto Rigs = ReadBinaryRigs;
+  static constexpr auto Frames = ReadBinaryFrames;
+
+  static std::string Begin(std::size_t count) {
+    std::string file;
+    AppendBytes(&file, count, 8);
+    return file;
+  }
+  static constexpr auto AppendCamera = AppendBinaryCamera;
+  static constexpr auto AppendImage = AppendBinaryImage;
+  static void AppendPoint(const Point3D& point, std::string* out) { AppendBinaryPoint(point, point.track, out); }
+  static constexpr auto AppendRig = AppendBinaryRig;
+  static constexpr auto AppendFrame = AppendBinaryFrame;
+};
 
 }  // namespace
+}  // namespace pliant::colmap
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const FuzzInput input(data, size, 5);
-  const std::string path = WriteFuzzFile("file.bin", input.bytes);
-  const auto images = [](const std::string& p) { return ReadBinaryImages(p, Observations::kRead); };
-  const auto points = [](const std::string& p) { return ReadBinaryPoints(p, Observations::kRead); };
-  switch (input.choice) {
-    case 0:
-      CheckComesBack(
-          ReadBinaryCameras(path), [](const auto& rows) { return File(rows, AppendBinaryCamera); }, ReadBinaryCameras);
-      break;
-    case 1:
-      CheckComesBack(
-          images(path), [](const auto& rows) { return File(rows, AppendBinaryImage); }, images);
-      break;
-    case 2:
-      CheckComesBack(
-          points(path),
-          [](const auto& rows) {
-            return File(rows,
-                        [](const Point3D& point, std::string* out) { AppendBinaryPoint(point, point.track, out); });
-          },
-          points);
-      break;
-    case 3:
-      CheckComesBack(
-          ReadBinaryRigs(path), [](const auto& rows) { return File(rows, AppendBinaryRig); }, ReadBinaryRigs);
-      break;
-    default:
-      CheckComesBack(
-          ReadBinaryFrames(path), [](const auto& rows) { return File(rows, AppendBinaryFrame); }, ReadBinaryFrames);
-  }
+  pliant::colmap::CheckColmapFile<pliant::colmap::Binary>(data, size);
   return 0;
 }

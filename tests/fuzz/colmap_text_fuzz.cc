@@ -1,59 +1,32 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "colmap/readers.h"
-#include "colmap/rows.h"
 #include "colmap_fuzz.h"
 
-using namespace pliant;          // NOLINT(google-build-using-namespace): a file that is one function
-using namespace pliant::colmap;  // NOLINT(google-build-using-namespace)
-
+namespace pliant::colmap {
 namespace {
 
-template <class Rows, class Append>
-std::string File(const Rows& rows, Append append) {
-  std::string file;
-  for (const auto& row : rows) append(row, &file);
-  return file;
-}
+struct Text {
+  static constexpr auto Cameras = ReadTextCameras;
+  static auto Images(const std::string& path) { return ReadTextImages(path, Observations::kRead); }
+  static auto Points(const std::string& path) { return ReadTextPoints(path, Observations::kRead); }
+  static constexpr auto Rigs = ReadTextRigs;
+  static constexpr auto Frames = ReadTextFrames;
+
+  static std::string Begin(std::size_t /*count*/) { return {}; }
+  static constexpr auto AppendCamera = AppendTextCamera;
+  static void AppendImage(const Image& image, std::string* out) { AppendTextImage(image, Digits::kExact, out); }
+  static void AppendPoint(const Point3D& point, std::string* out) {
+    AppendTextPoint(point, point.track, Digits::kExact, out);
+  }
+  static constexpr auto AppendRig = AppendTextRig;
+  static constexpr auto AppendFrame = AppendTextFrame;
+};
 
 }  // namespace
+}  // namespace pliant::colmap
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const FuzzInput input(data, size, 5);
-  const std::string path = WriteFuzzFile("file.txt", input.bytes);
-  const auto images = [](const std::string& p) { return ReadTextImages(p, Observations::kRead); };
-  const auto points = [](const std::string& p) { return ReadTextPoints(p, Observations::kRead); };
-  switch (input.choice) {
-    case 0:
-      CheckComesBack(
-          ReadTextCameras(path), [](const auto& rows) { return File(rows, AppendTextCamera); }, ReadTextCameras);
-      break;
-    case 1:
-      CheckComesBack(
-          images(path),
-          [](const auto& rows) {
-            return File(rows, [](const Image& row, std::string* out) { AppendTextImage(row, Digits::kExact, out); });
-          },
-          images);
-      break;
-    case 2:
-      CheckComesBack(
-          points(path),
-          [](const auto& rows) {
-            return File(rows, [](const Point3D& row, std::string* out) {
-              AppendTextPoint(row, row.track, Digits::kExact, out);
-            });
-          },
-          points);
-      break;
-    case 3:
-      CheckComesBack(
-          ReadTextRigs(path), [](const auto& rows) { return File(rows, AppendTextRig); }, ReadTextRigs);
-      break;
-    default:
-      CheckComesBack(
-          ReadTextFrames(path), [](const auto& rows) { return File(rows, AppendTextFrame); }, ReadTextFrames);
-  }
+  pliant::colmap::CheckColmapFile<pliant::colmap::Text>(data, size);
   return 0;
 }

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "pliant/base/status.h"
 #include "pliant/colmap/model.h"
 
 namespace pliant::colmap {
@@ -36,5 +37,8 @@ std::vector<Finding> CheckModel(const Model& model);
 
 // Whether none of the findings is an error.
 bool IsValid(const std::vector<Finding>& findings);
+
+// ReadModel, and kUnreadable with the first error that CheckModel finds.
+Result<Model> ReadValidModel(const std::string& folder);
 
 }  // namespace pliant::colmap
