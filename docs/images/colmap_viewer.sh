@@ -19,9 +19,10 @@ window=$(xdotool search --onlyvisible --name COLMAP | tail -1)
 xdotool windowsize "$window" 1400 900 mousemove 550 480
 sleep 2
 times() { for _ in $(seq "$1"); do xdotool "${@:2}"; sleep 0.2; done; }
-times 12 keydown alt click 4 keyup alt                                       # larger points
+times 8 keydown ctrl click 4 keyup ctrl                                      # larger points
+times 14 keydown alt click 4 keyup alt                                        # and cameras
 times "${STEPS_AWAY:-9}" click 5                                             # from further away
 xdotool mousedown 1; times 12 mousemove_relative -- 10 3; xdotool mouseup 1  # from the side
 xdotool mousemove 350 300 mousedown 3; times 15 mousemove_relative -- 14 10; xdotool mouseup 3
 sleep 2
-import -window root -crop 1100x810+0+60 +repage "$4"
+import -window root -crop 720x520+160+170 +repage "$4"
