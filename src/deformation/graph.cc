@@ -21,16 +21,61 @@ bool AllFinite(Points points) {
   return std::all_of(points.begin(), points.end(), [](const Eigen::Vector3d& x) { return x.allFinite(); });
 }
 
-// The `count` nearest of point i, by distance and then by index: settles ties, at the price of a look at every point.
-std::vector<int> NearestByScan(Points points, int i, int count) {
+constexpr int kNobody = -1;
+
+// The `count` nearest to a place, by distance and then by index, without one of them: settles ties, at the price of a
+// look at every point.
+std::vector<int> NearestByScan(Points points, const Eigen::Vector3d& place, int without, int count) {
   std::vector<std::pair<double, int>> others;
   others.reserve(points.size());
   for (int j = 0; j < static_cast<int>(points.size()); ++j)
-    if (j != i) others.emplace_back((points[j] - points[i]).squaredNorm(), j);
+    if (j != without) others.emplace_back((points[j] - place).squaredNorm(), j);
   std::partial_sort(others.begin(), others.begin() + count, others.end());
   std::vector<int> nearest;
   for (int k = 0; k < count; ++k) nearest.push_back(others[k].second);
   return nearest;
+}
+
+// The nearest points of each place; where `places_are_points`, each place is the point of its index, which is left out.
+NeighborLists Nearest(Points points, Points places, bool places_are_points, int neighbors) {
+  const int num_points = static_cast<int>(points.size());
+  const int num_places = static_cast<int>(places.size());
+  const int count = std::min(neighbors, num_points - (places_are_points ? 1 : 0));
+  NeighborLists lists(num_places);
+  if (count < 1 || num_places == 0 || !AllFinite(points) || !AllFinite(places)) return lists;
+
+  // FLANN does not write to its input, but takes it without const. Vector3d has no padding: rows of three doubles.
+  static_assert(sizeof(Eigen::Vector3d) == 3 * sizeof(double));
+  const flann::Matrix<double> data(const_cast<double*>(points.data()->data()), num_points, 3);
+  const flann::Matrix<double> queries(const_cast<double*>(places.data()->data()), num_places, 3);
+  flann::KDTreeSingleIndex<flann::L2_Simple<double>> index(data, flann::KDTreeSingleIndexParams());
+  index.buildIndex();
+
+  // A point itself comes back too, and one more tells whether the last place is contested.
+  const int wanted = count + (places_are_points ? 1 : 0);
+  const int asked = std::min(wanted + 1, num_points);
+  std::vector<std::size_t> indices(static_cast<std::size_t>(num_places) * asked);
+  std::vector<double> distances(indices.size());
+  flann::Matrix<std::size_t> index_rows(indices.data(), num_places, asked);
+  flann::Matrix<double> distance_rows(distances.data(), num_places, asked);
+  index.knnSearch(queries, index_rows, distance_rows, asked, flann::SearchParams(flann::FLANN_CHECKS_UNLIMITED));
+
+  std::vector<std::pair<double, int>> others;
+  for (int i = 0; i < num_places; ++i) {
+    const int itself = places_are_points ? i : kNobody;
+    const double* row = distance_rows[i];
+    const bool contested = asked > wanted && row[wanted] - row[wanted - 1] <= kTie * row[wanted];
+    if (contested) {
+      lists[i] = NearestByScan(points, places[i], itself, count);
+      continue;
+    }
+    others.clear();
+    for (int k = 0; k < asked; ++k)
+      if (const int j = static_cast<int>(index_rows[i][k]); j != itself) others.emplace_back(row[k], j);
+    std::sort(others.begin(), others.end());
+    for (int k = 0; k < count; ++k) lists[i].push_back(others[static_cast<std::size_t>(k)].second);
+  }
+  return lists;
 }
 
 // The directed pairs of the lists as edges i < j in ascending order, each with the number of its directions.
@@ -54,41 +99,10 @@ std::vector<GraphEdge> MergeDirections(const NeighborLists& lists) {
 
 }  // namespace
 
-NeighborLists NearestNeighbors(Points points, int neighbors) {
-  const int num_points = static_cast<int>(points.size());
-  const int count = std::min(neighbors, num_points - 1);
-  NeighborLists lists(num_points);
-  if (count < 1 || !AllFinite(points)) return lists;
+NeighborLists NearestNeighbors(Points positions, int count) { return Nearest(positions, positions, true, count); }
 
-  // FLANN does not write to its input, but takes it without const. Vector3d has no padding: rows of three doubles.
-  static_assert(sizeof(Eigen::Vector3d) == 3 * sizeof(double));
-  const flann::Matrix<double> data(const_cast<double*>(points.data()->data()), num_points, 3);
-  flann::KDTreeSingleIndex<flann::L2_Simple<double>> index(data, flann::KDTreeSingleIndexParams());
-  index.buildIndex();
-
-  // The point itself comes back too, and one more tells whether the K-th place is contested.
-  const int asked = std::min(count + 2, num_points);
-  std::vector<std::size_t> indices(static_cast<std::size_t>(num_points) * asked);
-  std::vector<double> distances(indices.size());
-  flann::Matrix<std::size_t> index_rows(indices.data(), num_points, asked);
-  flann::Matrix<double> distance_rows(distances.data(), num_points, asked);
-  index.knnSearch(data, index_rows, distance_rows, asked, flann::SearchParams(flann::FLANN_CHECKS_UNLIMITED));
-
-  std::vector<std::pair<double, int>> others;
-  for (int i = 0; i < num_points; ++i) {
-    const double* row = distance_rows[i];
-    const bool contested = asked > count + 1 && row[count + 1] - row[count] <= kTie * row[count + 1];
-    if (contested) {
-      lists[i] = NearestByScan(points, i, count);
-      continue;
-    }
-    others.clear();
-    for (int k = 0; k < asked; ++k)
-      if (const int j = static_cast<int>(index_rows[i][k]); j != i) others.emplace_back(row[k], j);
-    std::sort(others.begin(), others.end());
-    for (int k = 0; k < count; ++k) lists[i].push_back(others[static_cast<std::size_t>(k)].second);
-  }
-  return lists;
+NeighborLists NearestNeighbors(Points positions, Points places, int count) {
+  return Nearest(positions, places, false, count);
 }
 
 void GraphOptions::List(OptionTable& table) {

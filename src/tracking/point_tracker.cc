@@ -160,18 +160,45 @@ PointTrack PointTracker::TrackOne(const PointPrediction& prediction, const Image
       track.failure = PatchFailure::kForwardBackward;
     if (track.failure != PatchFailure::kNone) return track;
     std::swap(cut, point->next.latest);
-    point->next.patch = Step::Patch::kLatest;
+    PrepareStep(track, match, refresh ? Step::Patch::kReference : Step::Patch::kLatest, point);
   } else {
-    point->next.patch = Step::Patch::kKept;
+    PrepareStep(track, match, Step::Patch::kKept, point);
   }
-  if (refresh) {
-    point->next.patch = Step::Patch::kReference;
-    track.refreshed = Refreshed::kYes;
-  }
+  track.refreshed = refresh ? Refreshed::kYes : Refreshed::kNo;
+  return track;
+}
+
+void PointTracker::PrepareStep(const PointTrack& track, const PatchMatch& match, Step::Patch patch,
+                               Point* point) const {
+  point->next.patch = patch;
   point->next.pixel = track.pixel;
   point->next.affine_from_reference = ToMatrix(match.affine);
   point->next.affine_from_first = track.affine_from_first;
   point->next.pending = true;
+}
+
+PointTrack PointTracker::FindOne(const PointPrediction& prediction, const Images& images, Point* point) const {
+  const Eigen::Matrix2d expected = prediction.affine_from_latest * point->affine_from_reference;
+  PointTrack track;
+  track.id = prediction.id;
+  track.pixel = prediction.pixel;
+  track.failure = PatchFailure::kLowSimilarity;
+  if (options_.patch_policy != PatchPolicy::kAdaptive) return track;
+  PatchMatch match =
+      TrackPatch(point->latest, images.current, images.current_mask, ToPixel(prediction.pixel), options_.lucas_kanade);
+  track.failure = match.failure;
+  if (track.failure != PatchFailure::kNone) return track;
+  match = Realign(*point, match, expected, images);
+  track.failure = match.failure;
+  track.pixel = ToVector(match.pixel);
+  track.ssim = match.ssim;
+  track.gain = match.gain;
+  track.bias = match.bias;
+  track.affine_from_first = ToMatrix(match.affine) * point->reference_affine_from_first;
+  if (track.failure != PatchFailure::kNone) return track;
+  track.failure = CutReferencePatch(images.current, images.current_mask, match.pixel, options_.lucas_kanade,
+                                    AffineSolution::kWithout, &point->next.latest);
+  if (track.failure == PatchFailure::kNone) PrepareStep(track, match, Step::Patch::kLatest, point);
   return track;
 }
 
@@ -190,6 +217,10 @@ void PointTracker::Point::TakeStep() {
   age = 0;
 }
 
+void PointTracker::Undo(PointId id) {
+  if (const auto found = points_.find(id); found != points_.end()) found->second.next.pending = false;
+}
+
 void PointTracker::Undo() {
   for (auto& [id, point] : points_) point.next.pending = false;
 }
@@ -198,6 +229,24 @@ std::vector<PointTrack> PointTracker::Track(const ImagePyramid& previous, const 
                                             const ImagePyramid& current, const SupportMask& current_mask,
                                             std::span<const PointPrediction> predictions, int threads) {
   const Images images{previous, previous_mask, current, current_mask};
+  return ForEach(predictions, threads, [&](const PointPrediction& prediction, Point* point) {
+    point->TakeStep();
+    return TrackOne(prediction, images, point);
+  });
+}
+
+std::vector<PointTrack> PointTracker::Find(const ImagePyramid& current, const SupportMask& current_mask,
+                                           std::span<const PointPrediction> predictions, int threads) {
+  const Images images{current, current_mask, current, current_mask};
+  return ForEach(predictions, threads, [&](const PointPrediction& prediction, Point* point) {
+    point->TakeStep();
+    return FindOne(prediction, images, point);
+  });
+}
+
+template <class Function>
+std::vector<PointTrack> PointTracker::ForEach(std::span<const PointPrediction> predictions, int threads,
+                                              const Function& function) {
   std::vector<Point*> points;
   points.reserve(predictions.size());
   for (const PointPrediction& prediction : predictions) {
@@ -207,15 +256,13 @@ std::vector<PointTrack> PointTracker::Track(const ImagePyramid& previous, const 
   std::vector<PointTrack> tracks(predictions.size());
   ParallelFor(static_cast<int>(predictions.size()), threads, [&](int i) {
     const auto idx = static_cast<std::size_t>(i);
-    PointTrack& track = tracks[idx];
     if (points[idx] != nullptr) {
-      points[idx]->TakeStep();
-      track = TrackOne(predictions[idx], images, points[idx]);
-    } else {
-      track.id = predictions[idx].id;
-      track.pixel = predictions[idx].pixel;
-      track.failure = PatchFailure::kUnknownPoint;
+      tracks[idx] = function(predictions[idx], points[idx]);
+      return;
     }
+    tracks[idx].id = predictions[idx].id;
+    tracks[idx].pixel = predictions[idx].pixel;
+    tracks[idx].failure = PatchFailure::kUnknownPoint;
   });
   return tracks;
 }

@@ -9,6 +9,7 @@
 
 #include "pliant/image/brightness.h"
 #include "tracking/first_map.h"
+#include "tracking/lost_points.h"
 #include "tracking/oracle_answers.h"
 #include "tracking/tracker_support.h"
 
@@ -27,6 +28,11 @@ void TrackerOptions::List(OptionTable& table) {
             "instead of Deformation.sigma_mm after a start from metric depth, as published", 0.1, 1e6);
   table.AddChoice("neighbor_agreement", &neighbor_agreement, "drop points that move as none of their neighbours does");
   agreement.List(table);
+  table.AddChoice("find_lost", &find_lost,
+                  "look for points that were lost where the points around them took them; needs adaptive patches");
+  table.Add("max_searches", &max_searches, "-", "lost points that are looked for in a frame", 0, 1000000);
+  table.Add("max_search_px", &max_search_px, "px",
+            "a lost point that is found further from where it is expected is another one", 0, 1000);
   table.Add("max_reprojection_px", &max_reprojection_px, "px",
             "a point further than this from its measurement after the joint problem is dropped", 0.1, 1e6);
   table.Add("min_points", &min_points, "-", "fewer points in a frame: lost", 4, 100000);
@@ -63,7 +69,8 @@ Tracker::Tracker(const Camera& camera, const TrackerOptions& options, std::uint6
       point_tracker_(options.point_tracker),
       oracle_(std::make_unique<OracleAnswers>(
           options.oracle, truth,
-          options.init.IsMetric() ? std::nullopt : std::optional(options.init.monocular.nominal_depth_mm))) {
+          options.init.IsMetric() ? std::nullopt : std::optional(options.init.monocular.nominal_depth_mm))),
+      lost_points_(std::make_unique<LostPoints>()) {
   if (options_.init.IsMetric()) options_.graph.sigma_mm = options_.sigma_metric_mm;
 }
 
@@ -154,6 +161,7 @@ void Tracker::TakeReference(const TrackerFrame& frame, FrameReport* report) {
     map_.landmarks.clear();
     init_frames_.clear();
     point_tracker_.Clear();
+    lost_points_->Clear();
     InitFrame reference{frame.frame_idx, {}};
     const LocalBrightness brightness(frame.image, frame.mask.valid());
     known_depths_.clear();

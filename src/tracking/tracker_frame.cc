@@ -7,6 +7,7 @@
 
 #include "pliant/base/statistics.h"
 #include "pliant/tracking/tracker.h"
+#include "tracking/lost_points.h"
 #include "tracking/oracle_answers.h"
 #include "tracking/tracker_support.h"
 
@@ -14,14 +15,26 @@ namespace pliant {
 
 // The landmarks that were followed into this frame: element k of each belongs to the same one.
 struct Tracker::Followed {
-  std::vector<int> landmark_idx;
+  std::vector<PointId> ids;                     // ascending
   std::vector<Eigen::Vector3d> positions;       // X_i^{t-1}
   std::vector<Eigen::Vector3d> rest_positions;  // undeformed
   std::vector<Eigen::Vector2d> pixels;
   std::vector<double> ssim;
   std::vector<FramePoint> solved;  // of the joint problem, once there is a solution
 
+  std::vector<PointId> unseen;  // landmarks that were not found in this image, ascending
+  std::vector<PointId> found;   // lost points that were
+
   std::size_t size() const { return positions.size(); }
+
+  void Add(const Landmark& landmark, const PointTrack& track) {
+    const auto place = std::lower_bound(ids.begin(), ids.end(), landmark.id) - ids.begin();
+    ids.insert(ids.begin() + place, landmark.id);
+    positions.insert(positions.begin() + place, landmark.position);
+    rest_positions.insert(rest_positions.begin() + place, landmark.rest_position);
+    pixels.insert(pixels.begin() + place, track.pixel);
+    ssim.insert(ssim.begin() + place, track.ssim);
+  }
 
   // Keeps the elements whose flag is set.
   void Keep(const std::vector<char>& keep) {
@@ -32,7 +45,7 @@ struct Tracker::Followed {
         if (keep[k] != 0) values[kept++] = values[k];
       values.resize(kept);
     };
-    filter(landmark_idx);
+    filter(ids);
     filter(positions);
     filter(rest_positions);
     filter(pixels);
@@ -63,6 +76,11 @@ void Tracker::TrackFrame(const TrackerFrame& frame, FrameReport* report) {
     const auto estimate =
         EstimateCameraPose(camera_, followed.positions, followed.pixels, predicted, options_.pose);  // (E7)
     if (estimate.ok()) pose = estimate->cam_from_world;
+  }
+  if (options_.find_lost == Detection::kOn && !oracle_->gives_tracks()) {
+    const StageTimer timer(report, "photometric");
+    FindLost(frame, pose, &followed);  // (R2)
+    report->tracked = static_cast<int>(followed.size());
   }
   DeformationGraph graph = TieNeighbours(followed, report);  // (D1)
   if (options_.neighbor_agreement == NeighbourAgreement::kOn) {
@@ -123,16 +141,28 @@ Tracker::Followed Tracker::FollowPoints(const TrackerFrame& frame, const std::ve
   for (std::size_t k = 0; k < tracks.size(); ++k) {
     if (tracks[k].failure != PatchFailure::kNone) {
       Count(EnumName(tracks[k].failure), 1);
-      continue;
+      followed.unseen.push_back(tracks[k].id);
+    } else {
+      followed.Add(map_.landmarks[k], tracks[k]);
     }
-    const Landmark& landmark = map_.landmarks[k];
-    followed.landmark_idx.push_back(static_cast<int>(k));
-    followed.positions.push_back(landmark.position);
-    followed.rest_positions.push_back(landmark.rest_position);
-    followed.pixels.push_back(tracks[k].pixel);
-    followed.ssim.push_back(tracks[k].ssim);
   }
   return followed;
+}
+
+// Lost points that are where they are expected (R2). They take part in the frame's problem like the others.
+void Tracker::FindLost(const TrackerFrame& frame, const Rigid3& cam_from_world, Followed* followed) {
+  const std::vector<PointPrediction> expected =
+      lost_points_->Expected(camera_, cam_from_world, static_cast<std::size_t>(options_.max_searches));
+  const std::vector<PointTrack> tracks = point_tracker_.Find(frame.pyramid, frame.mask, expected, threads_);
+  for (std::size_t k = 0; k < tracks.size(); ++k) {
+    if (tracks[k].failure != PatchFailure::kNone) continue;
+    if ((tracks[k].pixel - expected[k].pixel).norm() > options_.max_search_px) {
+      point_tracker_.Undo(tracks[k].id);
+    } else {
+      followed->Add(*lost_points_->Find(tracks[k].id), tracks[k]);
+      followed->found.push_back(tracks[k].id);
+    }
+  }
 }
 
 // An empty graph where there is none: the points are then tied to nothing.
@@ -183,12 +213,15 @@ void Tracker::DropUnexplained(Followed* followed) {
   followed->Keep(keep);
 }
 
-// The only place where a frame changes the map.
+// The only place where a frame changes the map. What was not found in the image is lost, and may be found again; what
+// was found and contradicts the rest is forgotten.
 void Tracker::Commit(const FrameSolution& solution, const Followed& followed, FrameReport* report) {
   Map next;
   std::vector<double> errors;
   for (std::size_t k = 0; k < followed.size(); ++k) {
-    Landmark landmark = map_.landmarks[followed.landmark_idx[k]];
+    const Landmark* before = map_.Find(followed.ids[k]);
+    Landmark landmark = before != nullptr ? *before : *lost_points_->Find(followed.ids[k]);
+    lost_points_->Remove(landmark.id);
     landmark.last_motion = followed.solved[k].position - landmark.position;
     landmark.position = followed.solved[k].position;
     landmark.pixel = followed.pixels[k];
@@ -196,9 +229,18 @@ void Tracker::Commit(const FrameSolution& solution, const Followed& followed, Fr
     report->observations.push_back({landmark.id, landmark.pixel, landmark.position, followed.ssim[k]});
     errors.push_back(followed.solved[k].reprojection_error_px);
   }
-  for (const Landmark& landmark : map_.landmarks)
-    if (next.Find(landmark.id) == nullptr) point_tracker_.Remove(landmark.id);
+  for (const Landmark& landmark : map_.landmarks) {
+    if (next.Find(landmark.id) != nullptr) continue;
+    const bool unseen = std::binary_search(followed.unseen.begin(), followed.unseen.end(), landmark.id);
+    if (unseen && options_.find_lost == Detection::kOn)
+      lost_points_->Add(landmark, last_cam_from_world_);
+    else
+      point_tracker_.Remove(landmark.id);
+  }
+  for (const PointId id : followed.found)
+    if (next.Find(id) == nullptr) point_tracker_.Undo(id);  // it was another one; the point stays lost
   map_ = std::move(next);
+  lost_points_->Move(map_.landmarks);  // (R1)
   before_last_cam_from_world_ =
       state_ == TrackingState::kTracking ? last_cam_from_world_ : solution.cam_from_world;  // no velocity after a gap
   last_cam_from_world_ = solution.cam_from_world;

@@ -62,6 +62,23 @@ void ExpectEdgesByDefinition(const Points& points, const GraphOptions& options) 
 
 TEST(DeformationGraph, HasTheNearestNeighboursOfEveryPoint) { ExpectEdgesByDefinition(RandomPoints(400, 1), {}); }
 
+TEST(NearestNeighbors, OfPlacesAreAsOfPoints) {
+  const Points points = RandomPoints(300, 1);
+  Points places = RandomPoints(40, 2);
+  places.push_back(points[7]);
+  const NeighborLists lists = NearestNeighbors(points, places, 8);
+  ASSERT_EQ(lists.size(), places.size());
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    Points all = points;  // the place is one point more, whose neighbours they are
+    all.push_back(places[i]);
+    EXPECT_EQ(lists[i], NeighborsByDefinition(all, 8).back()) << i;
+  }
+  EXPECT_EQ(lists.back().front(), 7);  // a place that is a point finds it
+  EXPECT_EQ(NearestNeighbors(points, Points{}, 8).size(), 0U);
+  EXPECT_EQ(NearestNeighbors(Points{{0, 0, 0}}, Points{{1, 0, 0}}, 8), (NeighborLists{{0}}));
+  EXPECT_EQ(NearestNeighbors(Points{}, Points{{1, 0, 0}}, 8), (NeighborLists{{}}));
+}
+
 TEST(DeformationGraph, SettlesTiesByIndex) {
   Points grid;  // every neighbourhood of a regular grid is full of ties
   for (int y = 0; y < 12; ++y)

@@ -199,6 +199,45 @@ TEST(PointTracker, AfterUndoItGoesOnAsIfTheImageHadNotBeen) {
   EXPECT_EQ(found.pixel, expected.pixel);
 }
 
+// A point that is not followed for twelve images of a zoom is found again near where it is expected, and goes on.
+TEST(PointTracker, FindsAPointThatWasOutOfSight) {
+  const Sequence sequence = Zoom();
+  const Eigen::Vector2d start(90, 80);
+  const auto truth = [&](int t) {
+    const cv::Point2d p = sequence.image_from_first({start.x(), start.y()}, t);
+    return Eigen::Vector2d(p.x, p.y);
+  };
+  const auto see = [&](const Eigen::Vector2d& pixel, const Eigen::Matrix2d& affine) {
+    return std::vector<PointPrediction>{{PointId{0}, pixel, affine}};
+  };
+  const Eigen::Matrix2d none = Eigen::Matrix2d::Identity();
+  PointTracker tracker{PointTrackerOptions{}};
+  ASSERT_EQ(tracker.Add(PointId{0}, start, sequence.Image(0), {}), PatchFailure::kNone);
+  ASSERT_EQ(tracker.Track(sequence.Image(0), {}, sequence.Image(1), {}, see(truth(1), none), 1)[0].failure,
+            PatchFailure::kNone);
+  const Eigen::Matrix2d zoomed = std::pow(1.6, 12.0 / kZoomImages) * none;
+  const Eigen::Vector2d near = truth(13) + Eigen::Vector2d(3, -2);
+  const PointTrack elsewhere = tracker.Find(sequence.Image(13), {}, see({150, 120}, zoomed), 1)[0];
+  EXPECT_NE(elsewhere.failure, PatchFailure::kNone);
+  PointTrack found = tracker.Find(sequence.Image(13), {}, see(near, zoomed), 1)[0];
+  ASSERT_EQ(found.failure, PatchFailure::kNone);
+  EXPECT_LT((found.pixel - truth(13)).norm(), 0.3);
+  EXPECT_GT(found.ssim, 0.8);
+  // Taken back, it is where it was seen last; found again, it goes on from there.
+  tracker.Undo(PointId{0});
+  found = tracker.Find(sequence.Image(13), {}, see(near, zoomed), 1)[0];
+  ASSERT_EQ(found.failure, PatchFailure::kNone);
+  const PointTrack next = tracker.Track(sequence.Image(13), {}, sequence.Image(14), {}, see(found.pixel, none), 1)[0];
+  ASSERT_EQ(next.failure, PatchFailure::kNone);
+  EXPECT_LT((next.pixel - truth(14)).norm(), 0.3);
+
+  PointTrackerOptions periodic;
+  periodic.patch_policy = PatchPolicy::kPeriodic;
+  PointTracker without{periodic};
+  ASSERT_EQ(without.Add(PointId{0}, start, sequence.Image(0), {}), PatchFailure::kNone);
+  EXPECT_NE(without.Find(sequence.Image(0), {}, see(start, none), 1)[0].failure, PatchFailure::kNone);
+}
+
 TEST(PointTracker, UnknownAndRemovedPointsAreSaidToBeUnknown) {
   const Sequence still = Still();
   PointTracker tracker({});

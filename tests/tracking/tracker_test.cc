@@ -35,10 +35,12 @@ class TrackerFromImages : public testing::Test {
     camera_ = new Camera(simulator.camera());
     images_ = new std::vector<cv::Mat>();
     for (int i = 0; i < kFrames; ++i) images_->push_back(simulator.Render(i).image.clone());
+    depth_ = new cv::Mat(simulator.Render(0).depth.clone());
   }
   static void TearDownTestSuite() {
     delete camera_;
     delete images_;
+    delete depth_;
   }
 
   static Tracker MakeTracker(const TrackerOptions& options = {}) { return {*camera_, options, 1, 1}; }
@@ -51,6 +53,7 @@ class TrackerFromImages : public testing::Test {
 
   static inline const Camera* camera_ = nullptr;
   static inline std::vector<cv::Mat>* images_ = nullptr;
+  static inline cv::Mat* depth_ = nullptr;  // of the first image
 };
 
 void ExpectInitialising(const FrameReport& report) {
@@ -244,6 +247,44 @@ TEST_F(TrackerFromImages, TheEndOfASequenceWithoutAMapIsSaid) {
   EXPECT_THAT(rest.back().note, HasSubstr("rotated or stood still"));
   tracker.EndSequence();  // nothing is held: nothing happens
   EXPECT_TRUE(tracker.Finish().empty());
+}
+
+// Something passes over the left half of the view for four frames. The points there come back as the same points.
+TEST_F(TrackerFromImages, PointsThatWereHiddenComeBack) {
+  constexpr int kFirstHidden = 4;
+  constexpr int kLastHidden = 7;
+  enum class View { kOpen, kHidden };
+  const auto run = [&](Detection find_lost, View view) {
+    TrackerOptions options;
+    options.init.method = InitMethod::kDepth;
+    options.find_lost = find_lost;
+    Tracker tracker = MakeTracker(options);
+    std::vector<FrameReport> reports;
+    for (int i = 0; i < kFrames; ++i) {
+      cv::Mat mask(images_->front().size(), CV_8UC1, cv::Scalar(255));
+      if (view == View::kHidden && i >= kFirstHidden && i <= kLastHidden) mask.colRange(0, mask.cols / 2) = 0;
+      TrackerFrame frame = PrepareFrame(i, NameOf(i), i / 30.0, (*images_)[static_cast<std::size_t>(i)], mask, options);
+      frame.depth_mm = *depth_;
+      for (FrameReport& report : tracker.Process(frame)) reports.push_back(std::move(report));
+    }
+    return reports;
+  };
+  const auto on_the_left = [](const FrameReport& report) {
+    return std::count_if(report.observations.begin(), report.observations.end(),
+                         [](const PointObservation& seen) { return seen.pixel.x() < 140; });
+  };
+  const auto open = run(Detection::kOn, View::kOpen);
+  const auto without = run(Detection::kOff, View::kHidden);
+  const auto with = run(Detection::kOn, View::kHidden);
+  ASSERT_EQ(with.size(), static_cast<std::size_t>(kFrames));
+  ASSERT_GT(on_the_left(open.back()), 100);
+  EXPECT_EQ(on_the_left(with[kLastHidden]), 0);
+  EXPECT_EQ(on_the_left(without.back()), 0);
+  EXPECT_GT(on_the_left(with[kLastHidden + 1]), 0.8 * on_the_left(open[kLastHidden + 1]));  // at once
+  EXPECT_GT(on_the_left(with.back()), 0.8 * on_the_left(open.back()));
+  std::set<PointId> map;
+  for (const NewPoint& point : with.front().new_points) map.insert(point.id);
+  for (const FrameReport& report : with) ExpectFromTheMap(report, map, *camera_);
 }
 
 TEST_F(TrackerFromImages, AFrameWithoutCornersIsReportedAtOnce) {

@@ -62,6 +62,10 @@ struct DeformationGraph {
 using NeighborLists = std::vector<std::vector<int>>;
 NeighborLists NearestNeighbors(std::span<const Eigen::Vector3d> positions, int count);
 
+// The `count` nearest of `positions` to each of `places`, nearest first; otherwise as above.
+NeighborLists NearestNeighbors(std::span<const Eigen::Vector3d> positions, std::span<const Eigen::Vector3d> places,
+                               int count);
+
 // The graph of `positions` (mm, any one frame). `rest_positions` are the same points undeformed; they may be empty when
 // nothing asks for them, and then rest lengths are the present lengths and no edge is cut. The search is exact, and
 // neighbours at equal distance are taken in the order of their index, so the answer depends on nothing but the input.

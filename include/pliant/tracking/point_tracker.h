@@ -85,6 +85,15 @@ class PointTracker {
                                 const ImagePyramid& current, const SupportMask& current_mask,
                                 std::span<const PointPrediction> predictions, int threads);
 
+  // Looks for points that are known but were not seen in the latest image, around the predicted pixels, each as it was
+  // when it was last seen, changed by `affine_from_latest`. Only what resembles a point's reference patch is that point
+  // again; one that was found goes on with the next Track, unless its step is taken back. Periodic patches find
+  // nothing.
+  std::vector<PointTrack> Find(const ImagePyramid& current, const SupportMask& current_mask,
+                               std::span<const PointPrediction> predictions, int threads);
+  // Takes the last Find of a point back.
+  void Undo(PointId id);
+
   // Takes the last Track back: every point is again where it was before. For an image whose result is not used; the
   // next Track then starts from the same `previous` as the one taken back.
   void Undo();
@@ -120,6 +129,10 @@ class PointTracker {
   bool Returns(const ReferencePatch& patch, const Eigen::Vector2d& expected_motion, const Eigen::Vector2d& origin,
                const Images& images) const;
   PointTrack TrackOne(const PointPrediction& prediction, const Images& images, Point* point) const;
+  PointTrack FindOne(const PointPrediction& prediction, const Images& images, Point* point) const;
+  template <class Function>
+  std::vector<PointTrack> ForEach(std::span<const PointPrediction> predictions, int threads, const Function& function);
+  void PrepareStep(const PointTrack& track, const PatchMatch& match, Step::Patch patch, Point* point) const;
 
   PointTrackerOptions options_;
   std::map<PointId, Point> points_;

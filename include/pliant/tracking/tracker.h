@@ -38,6 +38,7 @@
 namespace pliant {
 
 class LocalBrightness;
+class LostPoints;
 class OracleAnswers;
 
 enum class NeighbourAgreement { kOff, kOn };
@@ -60,11 +61,14 @@ struct TrackerOptions {
 
   double sigma_metric_mm = 55.0;  // instead of graph.sigma_mm after a start from metric depth, as published
   NeighbourAgreement neighbor_agreement = NeighbourAgreement::kOn;
-  double max_reprojection_px = 2.4477;  // square root of the 95 % quantile of chi-square at 2 degrees of freedom
-  int min_points = 12;                  // fewer: lost
-  int min_corners = 40;                 // fewer in an image: it is no reference
-  int top_up_frames = 10;               // while the first map is awaited, corners are added so often
-  int max_lost_frames = 10;             // after so many frames in a row without enough points the tracker gives up
+  Detection find_lost = Detection::kOff;  // points that were lost are looked for where their neighbours took them
+  int max_searches = 200;                 // a frame, for lost points
+  double max_search_px = 8;               // a lost point found farther from where it is expected is another one
+  double max_reprojection_px = 2.4477;    // square root of the 95 % quantile of chi-square at 2 degrees of freedom
+  int min_points = 12;                    // fewer: lost
+  int min_corners = 40;                   // fewer in an image: it is no reference
+  int top_up_frames = 10;                 // while the first map is awaited, corners are added so often
+  int max_lost_frames = 10;               // after so many frames in a row without enough points the tracker gives up
 
   // Groups Corners, Masks, LucasKanade, PointTracker, Init, CameraPose, Deformation, Optimization, Tracking,
   // Oracle.
@@ -146,6 +150,7 @@ class Tracker {
   std::vector<PointTrack> TrackPixels(const TrackerFrame& frame, const std::vector<PointPrediction>& predictions);
   std::vector<PointPrediction> PredictPixels(const Rigid3& predicted_cam_from_world) const;
   Followed FollowPoints(const TrackerFrame& frame, const std::vector<PointPrediction>& predictions);
+  void FindLost(const TrackerFrame& frame, const Rigid3& cam_from_world, Followed* followed);
   DeformationGraph TieNeighbours(const Followed& followed, FrameReport* report) const;
   void DropContradicted(const Rigid3& cam_from_world, const DeformationGraph& graph, Followed* followed);
   void DropUnexplained(Followed* followed);
@@ -159,6 +164,7 @@ class Tracker {
   std::unique_ptr<Initializer> initializer_;
   PointTracker point_tracker_;
   std::unique_ptr<OracleAnswers> oracle_;
+  std::unique_ptr<LostPoints> lost_points_;
 
   TrackingState state_ = TrackingState::kWaitingForReference;
   Map map_;

@@ -1,0 +1,88 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tracking/lost_points.h"
+
+#include <algorithm>
+
+#include <Eigen/LU>
+
+#include "pliant/deformation/graph.h"
+
+namespace pliant {
+namespace {
+
+constexpr int kNeighbors = 8;
+
+// The change of a neighbourhood that faces the camera, between two poses that see it at these places.
+Eigen::Matrix2d FacingAffine(const Rigid3& before, const Eigen::Vector3d& place_before, const Rigid3& now,
+                             const Eigen::Vector3d& place_now) {
+  const double scale = (before * place_before).z() / (now * place_now).z();
+  const Eigen::Matrix3d turn = now.RotationMatrix() * before.RotationMatrix().transpose();
+  return scale * turn.topLeftCorner<2, 2>();
+}
+
+}  // namespace
+
+void LostPoints::Add(const Landmark& landmark, const Rigid3& cam_from_world) {
+  points_[landmark.id] = {landmark, cam_from_world, landmark.position, Eigen::Vector3d::Zero(), false, 0};
+}
+
+void LostPoints::Move(const std::vector<Landmark>& seen) {
+  if (points_.empty() || seen.empty()) return;
+  std::vector<Eigen::Vector3d> anchors;
+  std::vector<Eigen::Vector3d> wanted;
+  for (const Landmark& landmark : seen) anchors.push_back(landmark.rest_position);
+  for (const auto& [id, point] : points_) wanted.push_back(point.landmark.rest_position);
+  const NeighborLists nearest = NearestNeighbors(anchors, wanted, kNeighbors);
+  auto list = nearest.begin();
+  for (auto& [id, point] : points_) {
+    // Inverse-distance weights: where the point itself is a neighbour's rest, it moves as that one does.
+    Eigen::Vector3d displacement = Eigen::Vector3d::Zero();
+    double sum = 0;
+    for (const int j : *list) {
+      const double weight = 1.0 / (1e-6 + (seen[j].rest_position - point.landmark.rest_position).squaredNorm());
+      displacement += weight * (seen[j].position - seen[j].rest_position);
+      sum += weight;
+    }
+    ++list;
+    if (sum == 0) continue;
+    displacement /= sum;
+    if (!point.has_share) {
+      point.own_share = point.landmark.position - point.landmark.rest_position - displacement;
+      point.has_share = true;
+    }
+    point.landmark.position = point.landmark.rest_position + displacement + point.own_share;
+  }
+}
+
+std::vector<PointPrediction> LostPoints::Expected(const Camera& camera, const Rigid3& cam_from_world,
+                                                  std::size_t count) {
+  std::vector<std::pair<int, PointPrediction>> expected;  // by how often it was looked for
+  for (const auto& [id, point] : points_) {
+    const Eigen::Vector3d& place = point.landmark.position;
+    if (!((cam_from_world * place).z() > 0)) continue;
+    const auto pixel = camera.Project(cam_from_world * place);
+    if (!pixel || !camera.Contains(*pixel)) continue;
+    expected.push_back(
+        {point.searches, {id, *pixel, FacingAffine(point.cam_from_world, point.seen_at, cam_from_world, place)}});
+  }
+  const auto rarest = [](const auto& a, const auto& b) {
+    return a.first != b.first ? a.first < b.first : a.second.id < b.second.id;
+  };
+  std::sort(expected.begin(), expected.end(), rarest);
+  expected.resize(std::min(expected.size(), count));
+  std::vector<PointPrediction> predictions;
+  for (const auto& [searches, prediction] : expected) {
+    ++points_.at(prediction.id).searches;
+    predictions.push_back(prediction);
+  }
+  return predictions;
+}
+
+const Landmark* LostPoints::Find(PointId id) const {
+  const auto found = points_.find(id);
+  return found == points_.end() ? nullptr : &found->second.landmark;
+}
+
+}  // namespace pliant

@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Points of the map that are out of sight. Each stays what it was, with its id and its patch, and is taken along by the
+// points around it that are seen (docs/method.md, eq. R1), so that it is known where to look for it when it comes back.
+#pragma once
+
+#include <map>
+#include <vector>
+
+#include "pliant/camera/camera.h"
+#include "pliant/geometry/rigid3.h"
+#include "pliant/scene/map.h"
+#include "pliant/tracking/point_tracker.h"
+
+namespace pliant {
+
+class LostPoints {
+ public:
+  // Takes a landmark over that was last seen by a camera at this pose.
+  void Add(const Landmark& landmark, const Rigid3& cam_from_world);
+  // Lets go of a point that was found, or that is to be forgotten.
+  void Remove(PointId id) { points_.erase(id); }
+  void Clear() { points_.clear(); }
+  std::size_t size() const { return points_.size(); }
+
+  // Where each is now, as the landmarks that are seen say (R1). `seen` sorted by id.
+  void Move(const std::vector<Landmark>& seen);
+
+  // Those that a camera at this pose should see, at most `count`, and where: those looked for least often first. The
+  // affine change is that of a surface that faces the camera.
+  std::vector<PointPrediction> Expected(const Camera& camera, const Rigid3& cam_from_world, std::size_t count);
+
+  // Null where it is not lost.
+  const Landmark* Find(PointId id) const;
+
+ private:
+  struct Point {
+    Landmark landmark;          // `position` is where it is thought to be now
+    Rigid3 cam_from_world;      // when it was last seen
+    Eigen::Vector3d seen_at;    // where it was then
+    Eigen::Vector3d own_share;  // of its displacement then: what its neighbours did not share
+    bool has_share = false;     // set by the first Move
+    int searches = 0;
+  };
+  std::map<PointId, Point> points_;
+};
+
+}  // namespace pliant

@@ -1,0 +1,92 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tracking/lost_points.h"
+
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace pliant {
+namespace {
+
+constexpr double kRounding = 1e-9;
+
+Camera TestCamera() { return *Camera::Create("PINHOLE", 640, 480, std::vector<double>{500, 500, 319.5, 239.5}); }
+
+// What the wall has done by time t: it slides and bends, evenly over the few millimetres between points.
+Eigen::Vector3d Displaced(const Eigen::Vector3d& rest, double t) {
+  return rest + t * Eigen::Vector3d(1 + 0.02 * rest.x(), 0.5, 0.01 * rest.y());
+}
+
+std::vector<Landmark> Wall(double t) {
+  std::vector<Landmark> seen;
+  for (int y = -4; y <= 4; ++y)
+    for (int x = -4; x <= 4; ++x) {
+      const Eigen::Vector3d rest(2 * x, 2 * y, 50);
+      seen.push_back({PointId{static_cast<std::int64_t>(seen.size())}, rest, Displaced(rest, t)});
+    }
+  return seen;
+}
+
+Landmark PointAt(const Eigen::Vector3d& rest, const Eigen::Vector3d& own_share, double t) {
+  return {PointId{1000}, rest, Displaced(rest, t) + own_share};
+}
+
+TEST(LostPoints, AreTakenAlongByThePointsAroundThem) {
+  constexpr double kBend = 0.05;  // mm: what interpolation over 2 mm misses of the bending, at t = 3
+  const Eigen::Vector3d rest(1.2, -0.7, 50);
+  const Eigen::Vector3d own_share(0.1, -0.2, 0.3);
+  LostPoints lost;
+  lost.Add(PointAt(rest, own_share, 1), Rigid3());
+  lost.Move(Wall(1));
+  EXPECT_LT((lost.Find(PointId{1000})->position - PointAt(rest, own_share, 1).position).norm(), kRounding);
+  lost.Move(Wall(3));
+  EXPECT_LT((lost.Find(PointId{1000})->position - PointAt(rest, own_share, 3).position).norm(), kBend);
+  lost.Move(Wall(1));  // nothing adds up on the way
+  EXPECT_LT((lost.Find(PointId{1000})->position - PointAt(rest, own_share, 1).position).norm(), kRounding);
+}
+
+TEST(LostPoints, AreWhereTheyWereAmongNobody) {
+  LostPoints lost;
+  lost.Add(PointAt({0, 0, 50}, {0, 0, 0}, 2), Rigid3());
+  lost.Move({});
+  EXPECT_EQ(lost.Find(PointId{1000})->position, Displaced({0, 0, 50}, 2));
+}
+
+TEST(LostPoints, AreExpectedWhereTheCameraShouldSeeThem) {
+  LostPoints lost;
+  const auto add = [&](int id, const Eigen::Vector3d& place) { lost.Add({PointId{id}, place, place}, Rigid3()); };
+  add(1, {0, 0, 50});
+  add(2, {100, 0, 50});  // outside of the image
+  add(3, {0, 0, 10});    // behind the camera, once that has gone 25 mm ahead
+  add(4, {5, 0, 50});
+  const Rigid3 ahead(Eigen::Quaterniond::Identity(), Eigen::Vector3d(0, 0, -25));
+  const auto expected = lost.Expected(TestCamera(), ahead, 10);
+  ASSERT_EQ(expected.size(), 2U);
+  EXPECT_EQ(expected[0].id, PointId{1});
+  EXPECT_LT((expected[0].pixel - Eigen::Vector2d(319.5, 239.5)).norm(), kRounding);
+  EXPECT_LT((expected[0].affine_from_latest - 2 * Eigen::Matrix2d::Identity()).norm(), kRounding);  // half as far
+  EXPECT_LT((expected[1].pixel - Eigen::Vector2d(419.5, 239.5)).norm(), kRounding);
+  // A camera that has turned about its axis by a quarter.
+  const Rigid3 turned(RotationExp({0, 0, EIGEN_PI / 2}), Eigen::Vector3d::Zero());
+  Eigen::Matrix2d quarter;
+  quarter << 0, -1, 1, 0;
+  EXPECT_LT((lost.Expected(TestCamera(), turned, 10)[0].affine_from_latest - quarter).norm(), kRounding);
+}
+
+TEST(LostPoints, AreLookedForInTurn) {
+  LostPoints lost;
+  for (int id = 0; id < 5; ++id) lost.Add({PointId{id}, {0, 0, 50}, {0, 0, 50}}, Rigid3());
+  std::vector<std::int64_t> asked;
+  for (int frame = 0; frame < 5; ++frame)
+    for (const PointPrediction& prediction : lost.Expected(TestCamera(), Rigid3(), 2))
+      asked.push_back(prediction.id.value);
+  EXPECT_EQ(asked, (std::vector<std::int64_t>{0, 1, 2, 3, 4, 0, 1, 2, 3, 4}));
+  lost.Remove(PointId{1});
+  EXPECT_EQ(lost.size(), 4U);
+  EXPECT_EQ(lost.Find(PointId{1}), nullptr);
+}
+
+}  // namespace
+}  // namespace pliant
