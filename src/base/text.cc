@@ -32,6 +32,13 @@ std::string Reason(int error) { return std::generic_category().message(error); }
 
 }  // namespace
 
+std::string Seconds(double seconds) { return FormatDouble(std::round(1e6 * seconds) / 1e6) + " s"; }
+
+bool Exists(const std::string& path) {
+  std::error_code error;
+  return std::filesystem::exists(path, error);
+}
+
 std::string At(const std::string& path, std::int64_t line) { return path + ":" + std::to_string(line); }
 
 void AppendInt(std::string* out, std::int64_t value) {

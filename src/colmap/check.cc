@@ -44,18 +44,6 @@ bool Finite(std::span<const double> values) {
   return std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
 }
 
-// Rows by their ids.
-template <class Row>
-auto ById(const std::vector<Row>& rows) {
-  std::unordered_map<decltype(Row::id), const Row*> by_id;
-  for (const Row& row : rows) by_id.emplace(row.id, &row);
-  return by_id;
-}
-
-using CamerasById = std::unordered_map<std::uint32_t, const Camera*>;
-using ImagesById = std::unordered_map<std::uint32_t, const Image*>;
-using PointsById = std::unordered_map<std::uint64_t, const Point3D*>;
-
 std::string Named(std::string_view what, std::uint64_t id) { return std::string(what) + " " + std::to_string(id); }
 std::string Named(const Image& image) { return Named("image", image.id) + " (" + image.name + ")"; }
 std::string KeypointOf(const Image& image, std::size_t idx) { return Named("keypoint", idx) + " of " + Named(image); }

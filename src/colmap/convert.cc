@@ -71,6 +71,8 @@ Pose FromPliant(const Rigid3& pose) {
   return {{q.w(), q.x(), q.y(), q.z()}, {t.x(), t.y(), t.z()}};
 }
 
+Eigen::Vector3d ToPliant(const Point3D& point) { return {point.xyz[0], point.xyz[1], point.xyz[2]}; }
+
 Eigen::Vector2d ToPliant(const Point2D& point) { return {point.x - kPixelShift, point.y - kPixelShift}; }
 
 Point2D FromPliant(const Eigen::Vector2d& pixel, std::uint64_t point3D_id) {

@@ -27,11 +27,6 @@ constexpr std::array kCameraModels = {CameraModelInfo{0, "SIMPLE_PINHOLE", 3},
                                       CameraModelInfo{11, "RAD_TAN_THIN_PRISM_FISHEYE", 16}};
 constexpr std::array<std::string_view, 3> kFiles = {"cameras", "images", "points3D"};
 
-bool Exists(const std::string& path) {
-  std::error_code error;
-  return std::filesystem::exists(path, error);
-}
-
 // What is missing of a format's three files; empty: nothing.
 std::string MissingFile(const std::string& folder, std::string_view extension) {
   for (const std::string_view name : kFiles) {

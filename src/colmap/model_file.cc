@@ -40,23 +40,44 @@ Result<ModelFile> ModelFile::Create(FileGroup& group, const std::string& folder,
   return file;
 }
 
+void ModelFile::Begin(const std::string& header, std::uint64_t count) {
+  text_ = header + "\n";
+  AppendBytes(&binary_, count, 8);
+}
+
+Status ModelFile::Add(const Camera& camera) {
+  AppendTextCamera(camera, &text_);
+  AppendBinaryCamera(camera, &binary_);
+  return Flush();
+}
+
+Status ModelFile::Add(const Image& image) {
+  AppendTextImage(image, Digits::kRounded, &text_);
+  AppendBinaryImage(image, &binary_);
+  return Flush();
+}
+
+Status ModelFile::Add(const Point3D& point, std::span<const TrackElement> track) {
+  AppendTextPoint(point, track, Digits::kRounded, &text_);
+  AppendBinaryPoint(point, track, &binary_);
+  return Flush();
+}
+
 Status ModelFile::Flush() {
-  if (Status status = Put(text_file_, &text); !status.ok()) return status;
-  return Put(binary_file_, &binary);
+  if (Status status = Put(text_file_, &text_); !status.ok()) return status;
+  return Put(binary_file_, &binary_);
 }
 
 Status ModelFile::Close() {
-  if (Status status = End(text_file_, text); !status.ok()) return status;
-  return End(binary_file_, binary);
+  if (Status status = End(text_file_, text_); !status.ok()) return status;
+  return End(binary_file_, binary_);
 }
 
 Status WriteCamera(FileGroup& group, const std::string& folder, Format format, const Camera& camera) {
   auto file = ModelFile::Create(group, folder, "cameras", format);
   if (!file.ok()) return file.status();
-  file->text = CamerasHeader(1) + "\n";
-  AppendTextCamera(camera, &file->text);
-  AppendBytes(&file->binary, 1, 8);
-  AppendBinaryCamera(camera, &file->binary);
+  file->Begin(CamerasHeader(1), 1);
+  if (Status status = file->Add(camera); !status.ok()) return status;
   return file->Close();
 }
 

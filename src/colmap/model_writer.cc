@@ -98,8 +98,7 @@ Status CheckFolder(const std::string& folder, Format format) {
   const std::string other = format == Format::kText ? ".bin" : ".txt";
   for (const char* name : {"cameras", "images", "points3D", "rigs", "frames"}) {
     const std::string path = folder + "/" + name + other;
-    std::error_code error;
-    if (std::filesystem::exists(path, error))
+    if (Exists(path))
       return {ErrorCode::kInvalidArgument, "there is " + Quoted(path) +
                                                ", of a model in another format, which would be read instead; delete it "
                                                "or choose another folder"};

@@ -7,15 +7,9 @@
 #include <iterator>
 #include <utility>
 
-#include "pliant/base/options.h"
+#include "pliant/base/text.h"
 
 namespace pliant {
-namespace {
-
-std::string Seconds(double value) { return FormatDouble(std::round(1e6 * value) / 1e6) + " s"; }
-
-}  // namespace
-
 Result<MatchedPoses> MatchPoses(std::span<const TimedPose> poses, const Sequence& sequence, double max_difference_s,
                                 const std::string& name) {
   std::map<double, int> frame_at;  // the sequence's frames by time

@@ -9,17 +9,13 @@
 
 #include "datasets/image_file.h"
 #include "pliant/base/options.h"
+#include "pliant/base/text.h"
 #include "pliant/io/trajectory.h"
 
 namespace pliant {
 namespace {
 
 namespace fs = std::filesystem;
-
-bool Exists(const fs::path& path) {
-  std::error_code error;
-  return fs::exists(path, error);
-}
 
 Status CheckLineCount(const fs::path& file, const std::string& what, std::size_t lines, int images) {
   if (lines == static_cast<std::size_t>(images)) return Status::Ok();

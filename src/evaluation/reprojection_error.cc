@@ -14,8 +14,8 @@ std::optional<ReprojectionError> ComputeReprojectionError(const EvaluationInput&
   for (const EvaluationFrame& frame : run.frames) {
     if (!frame.cam_from_world) continue;
     for (const PointObservation& observation : frame.observations)
-      if (const auto pixel = camera.Project(*frame.cam_from_world * observation.position))
-        errors_px.push_back((*pixel - observation.pixel).norm());
+      if (const auto error_px = ReprojectionErrorPx(camera, *frame.cam_from_world, observation))
+        errors_px.push_back(*error_px);
   }
   if (errors_px.empty()) return std::nullopt;
   ReprojectionError error;

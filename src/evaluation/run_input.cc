@@ -9,6 +9,7 @@
 #include <map>
 #include <utility>
 
+#include "pliant/base/text.h"
 #include "pliant/colmap/convert.h"
 #include "pliant/datasets/match_poses.h"
 #include "pliant/io/run_reader.h"
@@ -38,8 +39,6 @@ void TakeRow(const Run& run, const RunFrame& row, EvaluationFrame* frame) {
   if (first_map.reference_frame_idx <= row.frame_idx && row.frame_idx <= first_map.declared_frame_idx)
     frame->first_map = first_map;
 }
-
-std::string Seconds(double value) { return FormatDouble(std::round(1e6 * value) / 1e6) + " s"; }
 
 // The poses of another system's result.
 Status GivePosesFrames(const std::string& name, const std::vector<RunPose>& poses, const Sequence& sequence,

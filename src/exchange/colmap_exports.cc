@@ -32,23 +32,11 @@ class ModelStream {
     if (!images.ok()) return images.status();
     auto points = colmap::ModelFile::Create(group, folder, "points3D", format);
     if (!points.ok()) return points.status();
-    images->text = colmap::ImagesHeader(num_images) + "\n";
-    AppendBytes(&images->binary, num_images, 8);
-    points->text = colmap::PointsHeader(num_points) + "\n";
-    AppendBytes(&points->binary, num_points, 8);
+    images->Begin(colmap::ImagesHeader(num_images), num_images);
+    points->Begin(colmap::PointsHeader(num_points), num_points);
     return ModelStream{std::move(*images), std::move(*points)};
   }
 
-  Status Add(const colmap::Image& image) {
-    AppendTextImage(image, colmap::Digits::kRounded, &images.text);
-    AppendBinaryImage(image, &images.binary);
-    return images.Flush();
-  }
-  Status Add(const colmap::Point3D& point) {
-    AppendTextPoint(point, point.track, colmap::Digits::kRounded, &points.text);
-    AppendBinaryPoint(point, point.track, &points.binary);
-    return points.Flush();
-  }
   Status Close() {
     for (colmap::ModelFile* file : {&images, &points})
       if (Status status = file->Close(); !status.ok()) return status;
@@ -58,12 +46,6 @@ class ModelStream {
   colmap::ModelFile images;
   colmap::ModelFile points;
 };
-
-// How far a point is seen from where it should be, px.
-double ErrorPx(const RunSource& source, const SourceFrame& frame, const PointObservation& observation) {
-  const auto pixel = source.camera.Project(frame.cam_from_world * observation.position);
-  return pixel ? (*pixel - observation.pixel).norm() : 0.0;
-}
 
 // A frame's image and points, each point as it was then and seen in this image alone; ids by `id_of`.
 template <class IdOf>
@@ -76,11 +58,11 @@ Status AddFrame(const RunSource& source, const SourceFrame& frame, const std::ve
     const colmap::Point3D point{id_of(o.id),
                                 {o.position.x(), o.position.y(), o.position.z()},
                                 color ? *color : FindPoint(source.points, o.id)->point.rgb,
-                                ErrorPx(source, frame, o),
+                                ReprojectionErrorPx(source.camera, frame.cam_from_world, o).value_or(0.0),
                                 {{image.id, idx}}};
-    if (Status status = model->Add(point); !status.ok()) return status;
+    if (Status status = model->points.Add(point, point.track); !status.ok()) return status;
   }
-  return model->Add(image);
+  return model->images.Add(image);
 }
 
 // Calls `also` for every frame.

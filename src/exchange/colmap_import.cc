@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <filesystem>
 #include <limits>
-#include <unordered_map>
 #include <utility>
 
 #include "exchange/imported.h"
@@ -56,16 +55,14 @@ Result<Camera> TheCamera(const colmap::Model& model, const std::string& folder) 
   return Status(camera.status().code(), "the model " + Quoted(folder) + ": " + camera.status().message());
 }
 
-using Points = std::unordered_map<std::uint64_t, const colmap::Point3D*>;
-
 // Keypoints with a point, sorted by it; where an image sees a point twice, as COLMAP's may, the first stands.
-std::vector<PointObservation> ObservationsOf(const colmap::Image& image, const Points& points, int* repeated) {
+std::vector<PointObservation> ObservationsOf(const colmap::Image& image, const colmap::PointsById& points,
+                                             int* repeated) {
   std::vector<PointObservation> observations;
   for (const colmap::Point2D& keypoint : image.points2D) {
     if (keypoint.point3D_id == colmap::kNoPoint3D) continue;
-    const auto& xyz = points.at(keypoint.point3D_id)->xyz;
     observations.push_back({PointId{static_cast<std::int64_t>(keypoint.point3D_id)}, colmap::ToPliant(keypoint),
-                            Eigen::Vector3d(xyz[0], xyz[1], xyz[2]), 0});
+                            colmap::ToPliant(*points.at(keypoint.point3D_id)), 0});
   }
   const auto same = [](const PointObservation& a, const PointObservation& b) { return a.id == b.id; };
   std::stable_sort(observations.begin(), observations.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
@@ -76,12 +73,11 @@ std::vector<PointObservation> ObservationsOf(const colmap::Image& image, const P
 }
 
 Status AddImages(const colmap::Model& model, const Sequence& sequence, const std::string& folder, Imported* imported) {
-  Points points;
+  const colmap::PointsById points = colmap::ById(model.points3D);
   for (const colmap::Point3D& point : model.points3D) {
     if (point.id > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max()))
       return {ErrorCode::kUnreadable, "the model " + Quoted(folder) + " has a point with the id " +
                                           std::to_string(point.id) + ", which is beyond reason; it is damaged"};
-    points.emplace(point.id, &point);
     imported->colors.emplace(PointId{static_cast<std::int64_t>(point.id)}, point.rgb);
   }
   const FrameNames names(sequence);

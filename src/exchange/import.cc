@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "exchange/imported.h"
-#include "pliant/base/statistics.h"
 #include "pliant/base/text.h"
 #include "pliant/base/version.h"
 #include "pliant/datasets/open_sequence.h"
@@ -21,11 +20,6 @@ namespace pliant {
 namespace {
 
 namespace fs = std::filesystem;
-
-bool Exists(const fs::path& path) {
-  std::error_code error;
-  return fs::exists(path, error);
-}
 
 Result<std::unique_ptr<Sequence>> OpenImages(const ImportRequest& request) {
   SequenceRequest images;
@@ -58,14 +52,6 @@ void MultiplyUnit(double unit_mm, Imported* imported) {
     frame.cam_from_world.translation *= unit_mm;
     for (PointObservation& observation : frame.observations) observation.position *= unit_mm;
   }
-}
-
-double MedianReprojectionErrorPx(const Camera& camera, const ImportedFrame& frame) {
-  std::vector<double> errors_px;
-  for (const PointObservation& observation : frame.observations)
-    if (const auto pixel = camera.Project(frame.cam_from_world * observation.position))
-      errors_px.push_back((*pixel - observation.pixel).norm());
-  return Median(std::move(errors_px));
 }
 
 // Frames in order of time become reports as a tracker would give them. The map is there as a whole: the first frame
@@ -110,7 +96,7 @@ class Reporter {
     report.new_points = std::exchange(new_points_, {});
     report.tracked = report.optimized = static_cast<int>(report.observations.size());
     report.added = static_cast<int>(report.new_points.size());
-    report.median_reprojection_error_px = MedianReprojectionErrorPx(camera_, frame);
+    report.median_reprojection_error_px = MedianReprojectionErrorPx(camera_, frame.cam_from_world, frame.observations);
     return report;
   }
 

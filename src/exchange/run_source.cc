@@ -36,7 +36,7 @@ Result<Known> KnownFromSparse(const std::string& folder) {
   for (const colmap::Image& image : model->images) known.names.emplace(static_cast<int>(image.id) - 1, image.name);
   for (const colmap::Point3D& point : model->points3D) {
     const PointId id{static_cast<std::int64_t>(point.id)};
-    known.points.emplace(id, NewPoint{id, Eigen::Vector3d(point.xyz[0], point.xyz[1], point.xyz[2]), point.rgb});
+    known.points.emplace(id, NewPoint{id, colmap::ToPliant(point), point.rgb});
   }
   return known;
 }
@@ -125,23 +125,11 @@ Result<RunSource> ReadRunSource(const std::string& run_path, const std::string& 
 }
 
 Status ForEachFrame(const RunSource& source, const FrameFunction& function) {
-  auto reader = ObservationReader::Open(source.run_path);
-  if (!reader.ok()) return reader.status();
-  std::size_t next = 0;
-  const auto until = [&](int frame_idx) {
-    for (; next < source.frames.size() && source.frames[next].frame_idx < frame_idx; ++next)
-      if (Status status = function(source.frames[next], {}); !status.ok()) return status;
-    return Status::Ok();
-  };
-  while (next < source.frames.size()) {
-    auto rows = reader->Next();
-    if (!rows.ok()) return rows.status();
-    if (!rows->has_value()) break;
-    if (Status status = until((*rows)->frame_idx); !status.ok()) return status;
-    if (next == source.frames.size() || source.frames[next].frame_idx != (*rows)->frame_idx) continue;
-    if (Status status = function(source.frames[next++], (*rows)->observations); !status.ok()) return status;
-  }
-  return until(source.frames.empty() ? 0 : source.frames.back().frame_idx + 1);
+  std::vector<int> frames_idx;
+  for (const SourceFrame& frame : source.frames) frames_idx.push_back(frame.frame_idx);
+  return ForEachFrame(source.run_path, frames_idx, [&](std::size_t k, const auto& observations) {
+    return function(source.frames[k], observations);
+  });
 }
 
 }  // namespace pliant

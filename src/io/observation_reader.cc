@@ -111,4 +111,24 @@ Result<std::optional<FrameObservations>> ObservationReader::Next() {
 
 int ObservationReader::cut_lines() const { return state_->cut_lines; }
 
+Status ForEachFrame(const std::string& run_path, std::span<const int> frames_idx,
+                    const ObservationsFunction& function) {
+  auto reader = ObservationReader::Open(run_path);
+  if (!reader.ok()) return reader.status();
+  std::optional<FrameObservations> rows;
+  bool ended = false;
+  for (std::size_t k = 0; k < frames_idx.size(); ++k) {
+    while (!ended && (!rows || rows->frame_idx < frames_idx[k])) {
+      auto next = reader->Next();
+      if (!next.ok()) return next.status();
+      rows = std::move(next).value();
+      ended = !rows.has_value();
+    }
+    const bool has_rows = rows && rows->frame_idx == frames_idx[k];
+    if (Status status = function(k, has_rows ? rows->observations : std::vector<PointObservation>()); !status.ok())
+      return status;
+  }
+  return Status::Ok();
+}
+
 }  // namespace pliant

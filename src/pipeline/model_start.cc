@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
-#include <unordered_map>
 
 #include "pliant/base/text.h"
 #include "pliant/colmap/check.h"
@@ -18,16 +17,14 @@ namespace {
 
 std::string StemOf(const std::string& image_name) { return std::filesystem::path(image_name).stem().string(); }
 
-using Points = std::unordered_map<std::uint64_t, const colmap::Point3D*>;
-
-Result<std::vector<PixelDepth>> PointsOf(const colmap::Image& image, const Points& points) {
+Result<std::vector<PixelDepth>> PointsOf(const colmap::Image& image, const colmap::PointsById& points) {
   const auto cam_from_world = colmap::ToPliant(image.cam_from_world);
   if (!cam_from_world.ok()) return cam_from_world.status();
   std::vector<std::pair<const colmap::Point3D*, PixelDepth>> seen;
   for (const colmap::Point2D& keypoint : image.points2D) {
     if (keypoint.point3D_id == colmap::kNoPoint3D) continue;
     const colmap::Point3D* point = points.at(keypoint.point3D_id);
-    const double depth = (*cam_from_world * Eigen::Vector3d(point->xyz[0], point->xyz[1], point->xyz[2])).z();
+    const double depth = (*cam_from_world * colmap::ToPliant(*point)).z();
     if (depth > 0) seen.push_back({point, {colmap::ToPliant(keypoint), depth}});
   }
   std::stable_sort(seen.begin(), seen.end(),
@@ -52,8 +49,7 @@ Result<ModelStart> ModelStart::Open(const std::string& folder, const Camera& cam
                                               std::to_string(own.width) + "x" + std::to_string(own.height) +
                                               ", and the sequence has " + std::to_string(camera.width()) + "x" +
                                               std::to_string(camera.height()));
-  Points points;
-  for (const colmap::Point3D& point : model->points3D) points.emplace(point.id, &point);
+  const colmap::PointsById points = colmap::ById(model->points3D);
   ModelStart start;
   for (const colmap::Image& image : model->images) {
     auto of_image = PointsOf(image, points);

@@ -3,7 +3,9 @@
 
 #include "pliant/tracking/depth_initializer.h"
 
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "pliant/image/depth_lookup.h"
 #include "tracking/initial_map.h"
@@ -19,15 +21,17 @@ class DepthInitializer final : public Initializer {
 
   InitOutcome Try(const InitInput& input) const override {
     InitOutcome outcome;
-    const InitFrame& reference = input.frames.front();
     if (input.reference_depth_mm.empty()) {
       outcome.decision = InitDecision::kNewReference;
       outcome.reason = "the frame has no depth image, which a start from depth needs; choose another Init.method";
       return outcome;
     }
-    for (const InitObservation& observation : reference.observations) AddPoint(input, observation, &outcome);
-    outcome.measured.correspondences = static_cast<int>(reference.observations.size());
-    outcome.measured.inliers = static_cast<int>(outcome.points.size());
+    std::vector<std::optional<double>> depths_mm;
+    for (const InitObservation& observation : input.frames.front().observations) {
+      const DepthAtPixel depth = LookUpDepth(input.reference_depth_mm, observation.pixel, options_.max_depth_step);
+      depths_mm.push_back(depth.lookup == DepthLookup::kOk ? std::optional(depth.depth_mm) : std::nullopt);
+    }
+    PlaceAtDepths(input, depths_mm, &outcome);
     const std::string count = std::to_string(outcome.points.size());
     if (outcome.measured.inliers < options_.min_points) {
       outcome.decision = InitDecision::kNewReference;
@@ -42,21 +46,6 @@ class DepthInitializer final : public Initializer {
   }
 
  private:
-  void AddPoint(const InitInput& input, const InitObservation& observation, InitOutcome* outcome) const {
-    const auto ray = input.camera.Unproject(observation.pixel);
-    if (!ray || ray->z() <= 0) {
-      outcome->rejected.push_back({observation.id, InitRejection::kNoRay});
-      return;
-    }
-    const DepthAtPixel depth = LookUpDepth(input.reference_depth_mm, observation.pixel, options_.max_depth_step);
-    if (depth.lookup != DepthLookup::kOk) {
-      outcome->rejected.push_back({observation.id, InitRejection::kUncertainDepth});
-      return;
-    }
-    const Eigen::Vector3d position = *ray * (depth.depth_mm / ray->z());
-    outcome->points.push_back({observation.id, position, 0.0, 0.0});
-  }
-
   DepthInitOptions options_;
 };
 

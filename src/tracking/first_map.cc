@@ -8,23 +8,18 @@
 #include <set>
 #include <utility>
 
-#include "pliant/base/statistics.h"
-
 namespace pliant {
 namespace {
 
 void ReportFrame(const Camera& camera, const InitFrame& frame, const InitFrameState& state, FrameReport* report) {
-  std::vector<double> errors;
   for (const InitPosition& point : state.positions) {
     const InitObservation& seen = *FindById(frame.observations, point.id);
     report->observations.push_back({point.id, seen.pixel, point.position, seen.ssim});
-    if (const auto projected = camera.Project(state.cam_from_world * point.position))
-      errors.push_back((*projected - seen.pixel).norm());
   }
   report->state = TrackingState::kTracking;
   report->cam_from_world = state.cam_from_world;
   report->optimized = static_cast<int>(state.positions.size());
-  report->median_reprojection_error_px = errors.empty() ? 0 : Median(std::move(errors));
+  report->median_reprojection_error_px = MedianReprojectionErrorPx(camera, state.cam_from_world, report->observations);
 }
 
 }  // namespace

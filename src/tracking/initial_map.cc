@@ -138,6 +138,21 @@ void FillRigidFrames(const InitInput& input, const std::vector<Rigid3>& cams_fro
   }
 }
 
+void PlaceAtDepths(const InitInput& input, const std::vector<std::optional<double>>& depths, InitOutcome* outcome) {
+  const std::vector<InitObservation>& observations = input.frames.front().observations;
+  for (std::size_t i = 0; i < observations.size(); ++i) {
+    const auto ray = input.camera.Unproject(observations[i].pixel);
+    if (!ray || ray->z() <= 0)
+      outcome->rejected.push_back({observations[i].id, InitRejection::kNoRay});
+    else if (!depths[i])
+      outcome->rejected.push_back({observations[i].id, InitRejection::kUncertainDepth});
+    else
+      outcome->points.push_back({observations[i].id, *ray * (*depths[i] / ray->z()), 0.0, 0.0});
+  }
+  outcome->measured.correspondences = static_cast<int>(observations.size());
+  outcome->measured.inliers = static_cast<int>(outcome->points.size());
+}
+
 Result<double> NominalScale(const std::vector<Eigen::Vector3d>& positions, double nominal_depth_mm) {
   std::vector<double> depths;
   for (const Eigen::Vector3d& position : positions) depths.push_back(position.z());

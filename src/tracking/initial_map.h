@@ -5,6 +5,7 @@
 // reference and the current frame, place the frames between them, scale the map and hand it over.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -72,6 +73,10 @@ Result<std::vector<Rigid3>> LocateFrames(const InitInput& input, const InitialMa
 // Fills in the frames of an outcome whose points are there and stand still: each at its one position in every frame in
 // which it was seen. `cams_from_world`: one a frame of the input.
 void FillRigidFrames(const InitInput& input, const std::vector<Rigid3>& cams_from_world, InitOutcome* outcome);
+
+// The points of a reference whose depths are known: each on its pixel's ray at its z, in the order of the reference's
+// observations; where there is no depth, or no ray, the point is rejected. Counts them.
+void PlaceAtDepths(const InitInput& input, const std::vector<std::optional<double>>& depths, InitOutcome* outcome);
 
 // Map units to mm: by it the median depth (z in the reference camera) is nominal_depth_mm. Fails with kDegenerate when
 // the median depth is not positive.

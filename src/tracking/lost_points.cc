@@ -25,7 +25,7 @@ Eigen::Matrix2d FacingAffine(const Rigid3& before, const Eigen::Vector3d& place_
 }  // namespace
 
 void LostPoints::Add(const Landmark& landmark, const Rigid3& cam_from_world) {
-  points_[landmark.id] = {landmark, cam_from_world, landmark.position, Eigen::Vector3d::Zero(), false, 0};
+  points_[landmark.id] = {landmark, cam_from_world, landmark.position, {}, 0};
 }
 
 void LostPoints::Move(const std::vector<Landmark>& seen) {
@@ -48,11 +48,8 @@ void LostPoints::Move(const std::vector<Landmark>& seen) {
     ++list;
     if (sum == 0) continue;
     displacement /= sum;
-    if (!point.has_share) {
-      point.own_share = point.landmark.position - point.landmark.rest_position - displacement;
-      point.has_share = true;
-    }
-    point.landmark.position = point.landmark.rest_position + displacement + point.own_share;
+    if (!point.own_share) point.own_share = point.landmark.position - point.landmark.rest_position - displacement;
+    point.landmark.position = point.landmark.rest_position + displacement + *point.own_share;
   }
 }
 

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "pliant/camera/camera.h"
@@ -36,11 +37,11 @@ class LostPoints {
 
  private:
   struct Point {
-    Landmark landmark;          // `position` is where it is thought to be now
-    Rigid3 cam_from_world;      // when it was last seen
-    Eigen::Vector3d seen_at;    // where it was then
-    Eigen::Vector3d own_share;  // of its displacement then: what its neighbours did not share
-    bool has_share = false;     // set by the first Move
+    Landmark landmark;        // `position` is where it is thought to be now
+    Rigid3 cam_from_world;    // when it was last seen
+    Eigen::Vector3d seen_at;  // where it was then
+    // Of its displacement then: what its neighbours did not share. Set by the first Move.
+    std::optional<Eigen::Vector3d> own_share;
     int searches = 0;
   };
   std::map<PointId, Point> points_;

@@ -16,22 +16,15 @@ class ModelInitializer final : public Initializer {
       : options_(options), nominal_depth_mm_(nominal_depth_mm) {}
 
   std::string_view name() const override { return "colmap_model"; }
+  bool TakesKnownPoints() const override { return true; }
 
   InitOutcome Try(const InitInput& input) const override {
     InitOutcome outcome;
-    const std::vector<InitObservation>& observations = input.frames.front().observations;
-    outcome.measured.correspondences = static_cast<int>(observations.size());
+    std::vector<std::optional<double>> depths(input.reference_depths.begin(), input.reference_depths.end());
+    depths.resize(input.frames.front().observations.size());
+    PlaceAtDepths(input, depths, &outcome);
     std::vector<Eigen::Vector3d> positions;
-    for (std::size_t i = 0; i < observations.size() && i < input.reference_depths.size(); ++i) {
-      const auto ray = input.camera.Unproject(observations[i].pixel);
-      if (!ray || !(ray->z() > 0)) {
-        outcome.rejected.push_back({observations[i].id, InitRejection::kNoRay});
-        continue;
-      }
-      positions.emplace_back(*ray * (input.reference_depths[i] / ray->z()));
-      outcome.points.push_back({observations[i].id, positions.back(), 0.0, 0.0});
-    }
-    outcome.measured.inliers = static_cast<int>(positions.size());
+    for (const InitPoint& point : outcome.points) positions.push_back(point.position);
     const std::string count = std::to_string(positions.size());
     const auto scale =
         options_.unit_mm > 0 ? Result<double>(options_.unit_mm) : NominalScale(positions, nominal_depth_mm_);

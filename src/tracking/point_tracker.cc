@@ -123,6 +123,14 @@ bool PointTracker::Returns(const ReferencePatch& patch, const Eigen::Vector2d& e
          (ToVector(back.pixel) - origin).norm() <= options_.max_forward_backward_px;
 }
 
+void PointTracker::TakeMatch(const PatchMatch& match, const Point& point, PointTrack* track) {
+  track->pixel = ToVector(match.pixel);
+  track->ssim = match.ssim;
+  track->gain = match.gain;
+  track->bias = match.bias;
+  track->affine_from_first = ToMatrix(match.affine) * point.reference_affine_from_first;
+}
+
 PointTrack PointTracker::TrackOne(const PointPrediction& prediction, const Images& images, Point* point) const {
   const bool adaptive = options_.patch_policy == PatchPolicy::kAdaptive;
   const Eigen::Matrix2d expected = prediction.affine_from_latest * point->affine_from_reference;
@@ -141,11 +149,7 @@ PointTrack PointTracker::TrackOne(const PointPrediction& prediction, const Image
     if (found) match = aligned;
     refresh = !found || match.ssim < options_.refresh_ssim || !WithinScale(ToMatrix(match.affine), options_.max_scale);
   }
-  track.pixel = ToVector(match.pixel);
-  track.ssim = match.ssim;
-  track.gain = match.gain;
-  track.bias = match.bias;
-  track.affine_from_first = ToMatrix(match.affine) * point->reference_affine_from_first;
+  TakeMatch(match, *point, &track);
   if (track.failure != PatchFailure::kNone) return track;
 
   thread_local ReferencePatch cut;  // takes over the memory of the patch that it replaces
@@ -168,8 +172,7 @@ PointTrack PointTracker::TrackOne(const PointPrediction& prediction, const Image
   return track;
 }
 
-void PointTracker::PrepareStep(const PointTrack& track, const PatchMatch& match, Step::Patch patch,
-                               Point* point) const {
+void PointTracker::PrepareStep(const PointTrack& track, const PatchMatch& match, Step::Patch patch, Point* point) {
   point->next.patch = patch;
   point->next.pixel = track.pixel;
   point->next.affine_from_reference = ToMatrix(match.affine);
@@ -190,11 +193,7 @@ PointTrack PointTracker::FindOne(const PointPrediction& prediction, const Images
   if (track.failure != PatchFailure::kNone) return track;
   match = Realign(*point, match, expected, images);
   track.failure = match.failure;
-  track.pixel = ToVector(match.pixel);
-  track.ssim = match.ssim;
-  track.gain = match.gain;
-  track.bias = match.bias;
-  track.affine_from_first = ToMatrix(match.affine) * point->reference_affine_from_first;
+  TakeMatch(match, *point, &track);
   if (track.failure != PatchFailure::kNone) return track;
   track.failure = CutReferencePatch(images.current, images.current_mask, match.pixel, options_.lucas_kanade,
                                     AffineSolution::kWithout, &point->next.latest);

@@ -165,7 +165,7 @@ void Tracker::TakeReference(const TrackerFrame& frame, FrameReport* report) {
     InitFrame reference{frame.frame_idx, {}};
     const LocalBrightness brightness(frame.image, frame.mask.valid());
     known_depths_.clear();
-    if (options_.init.method == InitMethod::kColmapModel)
+    if (initializer_->TakesKnownPoints())
       AddKnownPoints(frame, brightness, &reference);
     else
       AddCorners(frame, brightness, options_.corners.max_corners, &reference);
@@ -174,10 +174,9 @@ void Tracker::TakeReference(const TrackerFrame& frame, FrameReport* report) {
   }
   if (report->tracked < options_.min_corners) {
     Apply(TrackingEvent::kTooFewCorners);
-    const bool from_model = options_.init.method == InitMethod::kColmapModel;
     report->note = WithFault("no reference yet: " + std::to_string(report->tracked) +
-                                 (from_model ? " points of the model" : " corners") + ", of at least " +
-                                 std::to_string(options_.min_corners),
+                                 (initializer_->TakesKnownPoints() ? " points of the model" : " corners") +
+                                 ", of at least " + std::to_string(options_.min_corners),
                              ImageFault(frame, previous_));
   } else if (TryInitialize(frame, report) == InitDecision::kWait) {
     Apply(TrackingEvent::kReferenceFound);

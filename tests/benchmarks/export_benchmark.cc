@@ -19,6 +19,7 @@
 #include "pliant/camera/camera.h"
 #include "pliant/exchange/export.h"
 #include "pliant/io/run_writer.h"
+#include "support/temporary_folder.h"
 
 namespace pliant {
 namespace {
@@ -27,24 +28,6 @@ constexpr int kFrames = 1000;
 constexpr int kPoints = 10000;
 constexpr int kColumns = 100;
 constexpr double kMillions = 1e-6 * kFrames * kPoints;
-
-// A folder of this process's own, deleted at its end.
-class TemporaryFolder {
- public:
-  TemporaryFolder()
-      : path_(std::filesystem::temp_directory_path() / ("pliant_export_benchmark_" + std::to_string(getpid()))) {
-    std::error_code ignored;
-    std::filesystem::create_directories(path_, ignored);
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  std::string Path(const std::string& name) const { return (path_ / name).string(); }
-
- private:
-  std::filesystem::path path_;
-};
 
 // Runs `work` in a process of its own; its largest resident memory, or nothing where it failed.
 template <class Work>
@@ -91,7 +74,7 @@ const std::string& RunPath(const TemporaryFolder& folder) {
 }
 
 void BM_Export(benchmark::State& state, ExportFormat format) {
-  static const TemporaryFolder folder;
+  static const TemporaryFolder folder("export_benchmark");
   if (RunPath(folder).empty()) {
     state.SkipWithError("the run could not be written");
     return;

@@ -20,6 +20,7 @@
 
 #include "pliant/pipeline/track.h"
 #include "pliant/simulation/write_sequence.h"
+#include "support/temporary_folder.h"
 
 namespace pliant {
 namespace {
@@ -34,31 +35,16 @@ double ResidentMb() {
   return resident_pages * static_cast<double>(sysconf(_SC_PAGESIZE)) * 1e-6;
 }
 
-// A folder of this process's own, deleted at its end.
-class TemporaryFolder {
- public:
-  TemporaryFolder()
-      : path_(std::filesystem::temp_directory_path() / ("pliant_run_benchmark_" + std::to_string(getpid()))) {}
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
-
 // The sequence, rendered once; empty when that failed.
 const std::filesystem::path& SequencePath() {
-  static const TemporaryFolder folder;
+  static const TemporaryFolder folder("run_benchmark");
   static const std::filesystem::path path = [] {
     SimulationOptions options;
     options.trajectory.kind = TrajectoryKind::kHold;
     options.trajectory.frames = kFrames;
     options.deformation.amplitude_mm = 1.0;
     options.sensor.samples = 1;
-    const std::filesystem::path sequence = folder.path() / "sequence";
+    const std::filesystem::path sequence = folder.Path("sequence");
     const bool written = WriteSequence(options, sequence).ok();
     malloc_trim(0);  // the renderer's memory is not the tracker's
     return written ? sequence : std::filesystem::path();

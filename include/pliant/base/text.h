@@ -20,6 +20,12 @@ namespace pliant {
 
 inline std::string Quoted(std::string_view text) { return "'" + std::string(text) + "'"; }
 
+// "1.25 s", to a microsecond.
+std::string Seconds(double seconds);
+
+// Whether something is there that can be seen; never throws.
+bool Exists(const std::string& path);
+
 // `path:line`, as compilers write it.
 std::string At(const std::string& path, std::int64_t line);
 

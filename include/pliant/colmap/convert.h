@@ -26,6 +26,7 @@ Camera FromPliant(const pliant::Camera& camera, std::uint32_t id);
 Result<Rigid3> ToPliant(const Pose& pose);
 Pose FromPliant(const Rigid3& pose);
 
+Eigen::Vector3d ToPliant(const Point3D& point);  // where it is
 Eigen::Vector2d ToPliant(const Point2D& point);
 Point2D FromPliant(const Eigen::Vector2d& pixel, std::uint64_t point3D_id);
 

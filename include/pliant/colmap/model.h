@@ -15,6 +15,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -113,6 +114,17 @@ struct Model {
   std::vector<Rig> rigs;      // none before 3.12
   std::vector<Frame> frames;  // none before 3.12
 };
+
+// Rows by their ids; they stay where they are.
+template <class Row>
+std::unordered_map<decltype(Row::id), const Row*> ById(const std::vector<Row>& rows) {
+  std::unordered_map<decltype(Row::id), const Row*> by_id;
+  for (const Row& row : rows) by_id.emplace(row.id, &row);
+  return by_id;
+}
+using CamerasById = std::unordered_map<std::uint32_t, const Camera*>;
+using ImagesById = std::unordered_map<std::uint32_t, const Image*>;
+using PointsById = std::unordered_map<std::uint64_t, const Point3D*>;
 
 enum class Format { kText, kBinary, kBoth };
 

@@ -6,8 +6,11 @@
 // Anything else that cannot be read is an error with file and line.
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -75,5 +78,10 @@ class ObservationReader {
   explicit ObservationReader(std::unique_ptr<State> state);
   std::unique_ptr<State> state_;
 };
+
+// Calls `function(k, observations)` for each of a run's frames `frames_idx`, which grow, in order: with what
+// observations.csv has of frame `frames_idx[k]`, or with nothing. Fails as the reader does, or as `function`.
+using ObservationsFunction = std::function<Status(std::size_t, const std::vector<PointObservation>&)>;
+Status ForEachFrame(const std::string& run_path, std::span<const int> frames_idx, const ObservationsFunction& function);
 
 }  // namespace pliant

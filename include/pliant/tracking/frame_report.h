@@ -18,6 +18,7 @@
 
 #include "pliant/base/ids.h"
 #include "pliant/base/options.h"
+#include "pliant/camera/camera.h"
 #include "pliant/estimation/frame_problem.h"
 #include "pliant/geometry/rigid3.h"
 
@@ -46,6 +47,13 @@ struct PointObservation {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  // where the point was IN THIS FRAME, world frame, map units
   double ssim = 0;                                     // similarity to its reference patch, at most 1
 };
+
+// How far it was measured from where a camera at this pose should see it; nothing where it does not project.
+std::optional<double> ReprojectionErrorPx(const Camera& camera, const Rigid3& cam_from_world,
+                                          const PointObservation& observation);
+// Over the observations that project; 0 where there are none.
+double MedianReprojectionErrorPx(const Camera& camera, const Rigid3& cam_from_world,
+                                 const std::vector<PointObservation>& observations);
 
 // A point that this frame added to the map.
 struct NewPoint {

@@ -125,6 +125,8 @@ class Initializer {
   virtual InitOutcome Try(const InitInput& input) const = 0;
   // Whether points that are first seen after the reference are of use.
   virtual bool TakesLaterPoints() const { return false; }
+  // Whether the reference's points are those whose depths are known (InitInput::reference_depths), in place of corners.
+  virtual bool TakesKnownPoints() const { return false; }
 };
 
 }  // namespace pliant

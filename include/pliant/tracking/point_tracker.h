@@ -132,7 +132,8 @@ class PointTracker {
   PointTrack FindOne(const PointPrediction& prediction, const Images& images, Point* point) const;
   template <class Function>
   std::vector<PointTrack> ForEach(std::span<const PointPrediction> predictions, int threads, const Function& function);
-  void PrepareStep(const PointTrack& track, const PatchMatch& match, Step::Patch patch, Point* point) const;
+  static void TakeMatch(const PatchMatch& match, const Point& point, PointTrack* track);
+  static void PrepareStep(const PointTrack& track, const PatchMatch& match, Step::Patch patch, Point* point);
 
   PointTrackerOptions options_;
   std::map<PointId, Point> points_;

@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/tracking/frame_report.h"
+
+#include "pliant/base/statistics.h"
+
+namespace pliant {
+
+std::optional<double> ReprojectionErrorPx(const Camera& camera, const Rigid3& cam_from_world,
+                                          const PointObservation& observation) {
+  const auto pixel = camera.Project(cam_from_world * observation.position);
+  if (!pixel) return std::nullopt;
+  return (*pixel - observation.pixel).norm();
+}
+
+double MedianReprojectionErrorPx(const Camera& camera, const Rigid3& cam_from_world,
+                                 const std::vector<PointObservation>& observations) {
+  std::vector<double> errors_px;
+  for (const PointObservation& observation : observations)
+    if (const auto error_px = ReprojectionErrorPx(camera, cam_from_world, observation)) errors_px.push_back(*error_px);
+  return errors_px.empty() ? 0.0 : Median(std::move(errors_px));
+}
+
+}  // namespace pliant
