@@ -19,8 +19,9 @@ const Manual kManual = {
     "track",
     "camera pose and the motion of every point, from a folder of images or a video",
     "Follows points through the images of one moving, calibrated camera in a scene that deforms, and estimates for "
-    "every frame where the camera is and where every point is. A first map comes from two close frames; it has no "
-    "scale of its own and is scaled once, so that its median depth is the configured nominal depth.\n\n"
+    "every frame where the camera is and where every point is. A first map comes from the first frames in which the "
+    "camera has moved enough (Init.method); it has no scale of its own and is scaled once, so that its median depth is "
+    "the configured nominal depth.\n\n"
     "Reads --image_path: a native sequence (a folder with images/ and camera.yaml), any folder of png, jpg, bmp or tif "
     "images in natural order, or a video file. Reads --camera: camera.yaml, COLMAP's cameras.txt or cameras.bin, or an "
     "OpenCV calibration in YAML or XML; without it, camera.yaml in the folder or beside the video. Pixel (0, 0) is the "

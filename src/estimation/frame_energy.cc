@@ -42,7 +42,7 @@ bool FrameEnergy::Evaluate(const Points& points_in_cam, const Vector6d& incremen
   }
   *energy += AddTemporal();
   *energy += AddSpatial();
-  if (terms_.options.edge_length == EdgeLengthTerm::kOn) *energy += AddEdgeLength(points_in_cam, by_points);
+  if (terms_.options.edge_length == Switch::kOn) *energy += AddEdgeLength(points_in_cam, by_points);
 
   // A rotation by phi moves e_i by -phi x rotated_arm_i, a translation by -tau.
   Eigen::Vector3d by_rotation = Eigen::Vector3d::Zero();

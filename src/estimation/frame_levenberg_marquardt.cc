@@ -46,7 +46,7 @@ void AddTerms(const FrameTerms& terms, const Losses& losses, Vector6d* increment
     double* delta_j = (*deltas)[edge.j].data();
     problem->AddResidualBlock(NewSpatialCost(edge.weight, options.sigma_spa_mm),
                               losses.spa[edge.multiplicity - 1].get(), delta_i, delta_j);
-    if (options.edge_length == EdgeLengthTerm::kOff) continue;
+    if (options.edge_length == Switch::kOff) continue;
     problem->AddResidualBlock(
         NewEdgeLengthCost(terms.positions[edge.i], terms.positions[edge.j], edge.rest_length_mm, options.sigma_len_mm),
         losses.len[edge.multiplicity - 1].get(), delta_i, delta_j);

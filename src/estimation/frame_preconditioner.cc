@@ -26,7 +26,7 @@ struct EdgeStiffness {
 EdgeStiffness StiffnessOf(const FrameProblemOptions& options, const GraphEdge& edge, const Points& points) {
   const double scale = SpatialKernel(edge.weight, options.sigma_spa_mm).scale();
   EdgeStiffness stiffness{options.lambda_spa * edge.multiplicity * scale * scale, 0.0, Eigen::Vector3d::Zero()};
-  if (options.edge_length == EdgeLengthTerm::kOn) {
+  if (options.edge_length == Switch::kOn) {
     stiffness.u = EdgeLengthKernel(edge.rest_length_mm, options.sigma_len_mm).Jacobian(points[edge.i], points[edge.j]);
     stiffness.length = options.lambda_len * edge.multiplicity;
   }

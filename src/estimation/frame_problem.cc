@@ -104,7 +104,7 @@ bool AddCosts(const FrameTerms& terms, const Rigid3& cam_from_world, const std::
                                                               positions[edge.j] - terms.positions[edge.j]);
     costs->spatial +=
         0.5 * options.lambda_spa * edge.multiplicity * Huber(residual.squaredNorm(), options.chi2_spa).rho;
-    if (options.edge_length == EdgeLengthTerm::kOff) continue;
+    if (options.edge_length == Switch::kOff) continue;
     const EdgeLengthKernel kernel(edge.rest_length_mm, options.sigma_len_mm);
     const double length = kernel.Residual<double>(positions[edge.i], positions[edge.j]);
     costs->edge_length += 0.5 * options.lambda_len * edge.multiplicity * Huber(length * length, options.chi2_len).rho;

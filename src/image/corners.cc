@@ -61,7 +61,7 @@ void DropContours(const cv::Mat& grey, const CornerOptions& options, std::vector
   for (const Corner& corner : *corners) pixels.push_back(corner.pixel);
   const std::vector<double> measures = ContourMeasure(grey, pixels, options.contour_radius_px);
   for (std::size_t i = 0; i < corners->size(); ++i) (*corners)[i].contour = measures[i];
-  if (options.contour_filter == Detection::kOn)
+  if (options.contour_filter == Switch::kOn)
     std::erase_if(*corners, [&](const Corner& c) { return c.contour > options.contour_threshold; });
 }
 

@@ -131,8 +131,8 @@ cv::Mat ValidMask(const cv::Mat& image, const cv::Mat& given, const MaskOptions&
   assert(given.empty() || (given.type() == CV_8UC1 && given.size() == image.size()));
   cv::Mat valid(image.size(), CV_8UC1, cv::Scalar(255));
   if (!given.empty()) valid.setTo(0, given == 0);
-  if (options.highlights == Detection::kOn) valid.setTo(0, HighlightMask(image, options));
-  if (options.border == Detection::kOn) valid.setTo(0, DarkBorderMask(ToGrey(image), options));
+  if (options.highlights == Switch::kOn) valid.setTo(0, HighlightMask(image, options));
+  if (options.border == Switch::kOn) valid.setTo(0, DarkBorderMask(ToGrey(image), options));
   return valid;
 }
 

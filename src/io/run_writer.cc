@@ -138,6 +138,7 @@ Status RunWriter::State::Check(const FrameReport& report) {
     finite = finite && report.cam_from_world->rotation.coeffs().allFinite() &&
              report.cam_from_world->translation.allFinite();
   for (const NewPoint& point : report.new_points) finite = finite && point.position.allFinite();
+  for (const RefinedPoint& point : report.refined_points) finite = finite && point.position.allFinite();
   for (const PointObservation& o : report.observations) finite = finite && IsFinite(o);
   for (const auto& [stage, ms] : report.stage_ms) {
     finite = finite && std::isfinite(ms);
@@ -157,11 +158,18 @@ Status RunWriter::State::AddPoints(const FrameReport& report) {
               "frame " + std::to_string(report.frame_idx) + ": new points must have ids above all former ones"};
     points.push_back({point, 0.0, 0});
   }
+  const auto never_new = [&](PointId id, const std::string& what) {
+    return Status(ErrorCode::kInvalidArgument, "frame " + std::to_string(report.frame_idx) + ": point " +
+                                                   std::to_string(id.value) + " is " + what + " but was never new");
+  };
+  for (const RefinedPoint& refined : report.refined_points) {
+    CanonicalPoint* point = FindPoint(points, refined.id);
+    if (point == nullptr) return never_new(refined.id, "refined");
+    point->point.position = refined.position;
+  }
   for (const PointObservation& o : report.observations) {
     CanonicalPoint* point = FindPoint(points, o.id);
-    if (point == nullptr)
-      return {ErrorCode::kInvalidArgument, "frame " + std::to_string(report.frame_idx) + ": point " +
-                                               std::to_string(o.id.value) + " is observed but was never new"};
+    if (point == nullptr) return never_new(o.id, "observed");
     CountObservation(camera, *report.cam_from_world, o, point);
   }
   return Status::Ok();
@@ -254,8 +262,8 @@ Status RunWriter::Finish(RunStatus run_status, const std::string& note) {
   for (OutputFile* file : {&s.observations, &s.trajectory, &s.frames})
     if (Status closed = file->Close(); status.ok()) status = closed;
   if (s.options.timings == RunTimings::kWritten) {
-    s.summary.total_s = s.options.total_s.value_or(
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - s.begin).count());
+    s.summary.total_s =
+        s.options.total_s.value_or(std::chrono::duration<double>(std::chrono::steady_clock::now() - s.begin).count());
     if (s.summary.total_s > 0)
       s.summary.frames_per_second = static_cast<double>(s.summary.frames_read) / s.summary.total_s;
   }

@@ -118,7 +118,7 @@ void Judge(const Finest& f, const float* found, const float* weights, PatchMatch
   const double dy = sums.y / w;
   const PatchMoments moments{origin + dx, origin + dy, sums.xx / w - dx * dx, sums.yy / w - dy * dy,
                              sums.xy / w - dx * dy};
-  if (f.options.gain_bias == GainBias::kOn) {
+  if (f.options.gain_bias == Switch::kOn) {
     match->gain = moments.var_y > 1e-6 ? moments.cov / moments.var_y : 0;
     match->bias = moments.mean_x - match->gain * moments.mean_y;
   }

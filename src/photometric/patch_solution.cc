@@ -44,7 +44,7 @@ PatchFailure SolvePatch(const float* values, const float* weights, BasisKind kin
   const int motion = kind == BasisKind::kAffine ? 6 : 2;
   const bool plane = level == 0 && options.shading == Shading::kPlane;
   const int blocks = motion + (plane ? 4 : 2);  // and gain, bias, the two slopes of the shading
-  const int used = options.gain_bias == GainBias::kOff ? motion : blocks;
+  const int used = options.gain_bias == Switch::kOff ? motion : blocks;
   alignas(64) std::array<float, static_cast<std::size_t>(kMaxBlocks) * kMaxBlock> basis;
   std::array<float, kMaxBlocks * kMaxBlocks> gram;
   const float* centre = values + shape.row_stride + 1;
@@ -69,7 +69,7 @@ PatchFailure SolvePatch(const float* values, const float* weights, BasisKind kin
           static_cast<float>(inverse[static_cast<std::size_t>(i * used + j)]);
   CombineBlocks(basis.data(), blocks, coefficients.data(), rows, shape, solve);
   std::fill(offsets, offsets + rows, 0.0F);
-  if (options.gain_bias == GainBias::kOff) {
+  if (options.gain_bias == Switch::kOff) {
     // Only the difference to the patch moves it, and the gain is 1.
     SolveOnValues(centre, solve, motion, shape, offsets);
     offsets[motion] = -1;

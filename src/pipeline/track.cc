@@ -144,16 +144,16 @@ TrackOptions MakeTrackOptions(Preset preset) {
   TrackOptions options;
   if (preset == Preset::kDefault) return options;
   TrackerOptions& tracker = options.tracker;
-  tracker.corners.contour_filter = Detection::kOff;
-  tracker.masks.highlights = Detection::kOff;
-  tracker.masks.border = Detection::kOff;
+  tracker.corners.contour_filter = Switch::kOff;
+  tracker.masks.highlights = Switch::kOff;
+  tracker.masks.border = Switch::kOff;
   tracker.point_tracker.patch_policy = PatchPolicy::kPeriodic;
-  tracker.point_tracker.forward_backward = Detection::kOff;
+  tracker.point_tracker.forward_backward = Switch::kOff;
   tracker.point_tracker.lucas_kanade.patch_size = 21;
   tracker.point_tracker.lucas_kanade.shading = Shading::kNone;
   tracker.point_tracker.lucas_kanade.similarity = SimilarityMode::kPlain;
   tracker.init.method = InitMethod::kPaper;
-  tracker.neighbor_agreement = NeighbourAgreement::kOff;
+  tracker.neighbor_agreement = Switch::kOff;
   return options;
 }
 

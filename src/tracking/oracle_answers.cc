@@ -25,9 +25,9 @@ bool OracleOptions::Any() const { return !Names().empty(); }
 
 std::vector<std::string_view> OracleOptions::Names() const {
   std::vector<std::string_view> names;
-  if (first_map == OracleSwitch::kOn) names.emplace_back("first_map");
-  if (tracks == OracleSwitch::kOn) names.emplace_back("tracks");
-  if (poses == OracleSwitch::kOn) names.emplace_back("poses");
+  if (first_map == Switch::kOn) names.emplace_back("first_map");
+  if (tracks == Switch::kOn) names.emplace_back("tracks");
+  if (poses == Switch::kOn) names.emplace_back("poses");
   return names;
 }
 

@@ -21,9 +21,9 @@ class OracleAnswers {
   // depth is scaled to; nothing for a method whose maps are metric.
   OracleAnswers(const OracleOptions& options, TrackingTruth* truth, std::optional<double> nominal_depth_mm);
 
-  bool gives_first_map() const { return options_.first_map == OracleSwitch::kOn; }
-  bool gives_tracks() const { return options_.tracks == OracleSwitch::kOn; }
-  bool gives_poses() const { return options_.poses == OracleSwitch::kOn; }
+  bool gives_first_map() const { return options_.first_map == Switch::kOn; }
+  bool gives_tracks() const { return options_.tracks == Switch::kOn; }
+  bool gives_poses() const { return options_.poses == Switch::kOn; }
 
   // The map from the reference alone, the input's one frame; a new reference where fewer than `min_points` corners show
   // the surface.

@@ -153,13 +153,13 @@ PointTrack PointTracker::TrackOne(const PointPrediction& prediction, const Image
   if (track.failure != PatchFailure::kNone) return track;
 
   thread_local ReferencePatch cut;  // takes over the memory of the patch that it replaces
-  if (adaptive || refresh || options_.forward_backward == Detection::kOn) {
+  if (adaptive || refresh || options_.forward_backward == Switch::kOn) {
     const AffineSolution affine = adaptive && refresh ? AffineSolution::kWith : AffineSolution::kWithout;
     track.failure =
         CutReferencePatch(images.current, images.current_mask, match.pixel, options_.lucas_kanade, affine, &cut);
     // The way back is that of the latest patch: what re-alignment corrected is not held against the point.
     const Eigen::Vector2d origin = point->pixel + track.pixel - ToVector(by_latest);
-    if (track.failure == PatchFailure::kNone && options_.forward_backward == Detection::kOn &&
+    if (track.failure == PatchFailure::kNone && options_.forward_backward == Switch::kOn &&
         !Returns(cut, expected_motion, origin, images))
       track.failure = PatchFailure::kForwardBackward;
     if (track.failure != PatchFailure::kNone) return track;

@@ -11,6 +11,7 @@
 #include "tracking/first_map.h"
 #include "tracking/lost_points.h"
 #include "tracking/oracle_answers.h"
+#include "tracking/rigid_history.h"
 #include "tracking/tracker_support.h"
 
 namespace pliant {
@@ -70,7 +71,8 @@ Tracker::Tracker(const Camera& camera, const TrackerOptions& options, std::uint6
       oracle_(std::make_unique<OracleAnswers>(
           options.oracle, truth,
           options.init.IsMetric() ? std::nullopt : std::optional(options.init.monocular.nominal_depth_mm))),
-      lost_points_(std::make_unique<LostPoints>()) {
+      lost_points_(std::make_unique<LostPoints>()),
+      rigid_history_(std::make_unique<RigidHistory>()) {
   if (options_.init.IsMetric()) options_.graph.sigma_mm = options_.sigma_metric_mm;
 }
 
@@ -162,6 +164,7 @@ void Tracker::TakeReference(const TrackerFrame& frame, FrameReport* report) {
     init_frames_.clear();
     point_tracker_.Clear();
     lost_points_->Clear();
+    rigid_history_->Stop();
     InitFrame reference{frame.frame_idx, {}};
     const LocalBrightness brightness(frame.image, frame.mask.valid());
     known_depths_.clear();
@@ -288,6 +291,7 @@ void Tracker::CreateMap(const InitOutcome& outcome) {
   last_cam_from_world_ = outcome.frames.back().cam_from_world;
   before_last_cam_from_world_ =
       outcome.frames.size() >= 2 ? outcome.frames[outcome.frames.size() - 2].cam_from_world : last_cam_from_world_;
+  if (outcome.refinable && !oracle_->gives_poses()) rigid_history_->Start(std::move(init_frames_));
   init_frames_.clear();
   Apply(TrackingEvent::kMapCreated);
 }

@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <vector>
 
+#include "pliant/base/statistics.h"
 #include "tracking/initial_map.h"
 #include "tracking/window_map.h"
 #include "tracking/window_solution.h"
@@ -17,6 +19,8 @@ namespace {
 // A rotation that explains this share of the points to this error leaves nothing to triangulate.
 constexpr double kRotationErrorPx = 1.5;
 constexpr double kMaxRotationShare = 0.8;
+// Of a point's error in a refined map by the median error.
+constexpr double kMaxErrorRatio = 4.0;
 
 Status MoreThanARotation(const InitInput& input, InitMeasurements* measured) {
   const MatchedRays matched = MatchRays(input.camera, input.frames.front(), input.frames.back());
@@ -63,7 +67,33 @@ class WindowInitializer final : public Initializer {
     return outcome;
   }
 
+  InitOutcome Refine(const InitInput& input) const override {
+    InitOutcome outcome;
+    outcome.decision = InitDecision::kNewReference;
+    const auto rigid = Rigid(input);
+    if (!rigid.ok()) {
+      outcome.reason = rigid.status().message();
+      return outcome;
+    }
+    // What slides along a contour or over the surface, little at a time, contradicts the others in the end.
+    WindowInitOptions strict = options_;
+    const std::vector<double> errors_px = PointErrorsPx(rigid->solution.window, input.camera.MeanFocalLengthPx());
+    strict.max_error_px = std::min(options_.max_error_px, kMaxErrorRatio * Median(errors_px));
+    const Status status = MakeWindowMap(input, *rigid, DemandsAfter(0), strict, nominal_depth_mm_, &outcome);
+    if (!status.ok()) {
+      outcome.decision = InitDecision::kWait;
+      outcome.reason = status.message();
+    }
+    return outcome;
+  }
+
  private:
+  Result<SolvedWindow> Rigid(const InitInput& input) const {
+    const auto window = PrepareWindow(input, input.frames.size(), options_, nominal_depth_mm_);
+    if (!window.ok()) return window.status();
+    return SolveRigid(input, *window, options_);
+  }
+
   // What is missing for a map; ok when the outcome is one.
   Status Attempt(const InitInput& input, int since, InitOutcome* outcome) const {
     const auto window = PrepareWindow(input, input.frames.size(), options_, nominal_depth_mm_);
@@ -114,11 +144,12 @@ class WindowInitializer final : public Initializer {
     // Another minimum than the right one may look as certain: what no light confirms must be more so, and most of all
     // what the light contradicts.
     if (window->light_is_of_no_use) least = DemandsAfter(0);
-    if (options_.light == LightCue::kOff) {
+    if (options_.light == Switch::kOff) {
       const double unrelaxed = std::max(options_.certain_depth_sigma, options_.max_depth_sigma);
       least.certain_sigma = std::min(least.certain_sigma, unrelaxed);
       least.max_sigma = std::min(least.max_sigma, unrelaxed);
     }
+    outcome->refinable = options_.refine_rigid == Switch::kOn && window->solution.window.courses.rows() == 0;
     return MakeWindowMap(input, *window, least, options_, nominal_depth_mm_, outcome);
   }
 
@@ -154,6 +185,8 @@ void WindowInitOptions::List(OptionTable& table) {
             "wait while a smaller share of the points still seen is certain; it falls to 0 at last_frame", 0, 1);
   table.AddChoice("light", &light, "brightness as a hint of distance: the light is at the camera");
   table.Add("gamma", &gamma, "-", "of the camera's response, for the light", 0.1, 10);
+  table.AddChoice("refine_rigid", &refine_rigid,
+                  "while the scene is rigid the map is made again of all frames since the reference");
   window.List(table);
 }
 

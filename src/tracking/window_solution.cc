@@ -133,7 +133,7 @@ std::vector<DeformingObservation> SeenIn(const InitFrame& frame, const Camera& c
   std::vector<DeformingObservation> observations;
   for (const WindowObservation& seen : ObservationsOf(camera, frame, ids, view_idx)) {
     const PointId id = ids[static_cast<std::size_t>(seen.point_idx)];
-    const double brightness = options.light == LightCue::kOn ? FindById(frame.observations, id)->brightness : 0.0;
+    const double brightness = options.light == Switch::kOn ? FindById(frame.observations, id)->brightness : 0.0;
     observations.push_back({view_idx, seen.point_idx, seen.ray, LogDistanceFromLight(brightness, options.gamma)});
   }
   return observations;
@@ -163,7 +163,7 @@ Result<SolvedWindow> SolveDeforming(const InitInput& input, const PreparedWindow
   if (lit.solution.light_error <= kMostOfSpread * lit.solution.log_distance_spread) return lit;
   // The solution is wrong, or the light is: not at the camera, of another response, on tissue of many colours.
   WindowInitOptions without = options;
-  without.light = LightCue::kOff;
+  without.light = Switch::kOff;
   const auto prepared = PrepareWindow(input, window.views.back() + 1, without, nominal_depth_mm);
   if (!prepared.ok()) return lit;
   auto unlit = SolveDeforming(input, *prepared, without, nominal_depth_mm);

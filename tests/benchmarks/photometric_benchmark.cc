@@ -81,7 +81,7 @@ struct Scene {
     cv::buildOpticalFlowPyramid(current, current_cv, {kPatch_px, kPatch_px}, kLevels - 1, true);
     CornerOptions corners;
     corners.max_corners = kPoints;
-    corners.contour_filter = Detection::kOff;
+    corners.contour_filter = Switch::kOff;
     for (const Corner& corner : DetectCorners(previous, {}, {}, corners)) {
       points.emplace_back(static_cast<float>(corner.pixel.x()), static_cast<float>(corner.pixel.y()));
       patches.emplace_back();

@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kMaxMedianFromTruth_mm = 0.3;       // with a true first map: what tracking and the joint problem add
 constexpr double kMaxRmseMonocular_mm = 2.0;         // plain, untrimmed, scale per frame
+constexpr double kRefinedShare = 0.8;                // of the error without refinement; over all frames it is 0.66
 constexpr double kMaxRelativeDepthOfTruth = 1e-3;    // depth images have steps of 0.005 mm; interpolation adds the rest
 constexpr double kMaxRelativeDepthMonocular = 0.03;  // median, in the frame that made the map
 
@@ -53,6 +54,19 @@ TEST(RigidScene, FromAMonocularStartThePlainErrorStaysBelowTwoMillimetres) {
   EXPECT_GE(first_map.initialise_total_ms, first_map.initialise_largest_ms);
 }
 
+TEST(RigidScene, FramesAfterTheFirstMapMakeItBetter) {
+  const TestFolder folder;
+  TrackOptions once;
+  once.tracker.init.window.refine_rigid = Switch::kOff;
+  std::vector<double> rmse_mm;
+  for (const auto& [run, options] : {std::pair{"refined", TrackOptions()}, {"once", once}}) {
+    ASSERT_EQ(TrackSequenceAt(kSequence, folder.Path(run), options).status, RunStatus::kCompleted);
+    const Evaluation evaluation = EvaluateRun(folder.Path(run), kSequence, ErrorScale::kPerFrame);
+    rmse_mm.push_back(evaluation.surface->plain.estimate.mean_rmse_mm);
+  }
+  EXPECT_LT(rmse_mm[0], kRefinedShare * rmse_mm[1]);
+}
+
 TEST(RigidScene, OneAndTwoThreadsAndTheSameSeedTwiceGiveIdenticalFiles) {
   const TestFolder folder;
   TrackOptions options;
@@ -81,8 +95,8 @@ TEST(RigidScene, OneAndTwoThreadsAndTheSameSeedTwiceGiveIdenticalFiles) {
 TEST(RigidScene, KeepingContoursOutLowersThePlainErrorByATenthAtLeast) {
   const TestFolder folder;
   TrackOptions without;
-  without.tracker.corners.contour_filter = Detection::kOff;
-  without.tracker.neighbor_agreement = NeighbourAgreement::kOff;
+  without.tracker.corners.contour_filter = Switch::kOff;
+  without.tracker.neighbor_agreement = Switch::kOff;
   TrackSequenceAt(kSequence, folder.Path("with"), TrackOptions());
   TrackSequenceAt(kSequence, folder.Path("without"), without);
   const Evaluation good = EvaluateRun(folder.Path("with"), kSequence, ErrorScale::kPerFrame);

@@ -176,11 +176,11 @@ INSTANTIATE_TEST_SUITE_P(
         // The edge-length term is not convex: with noise the solvers may end in different minima.
         Variant{"EdgeLength",
                 {.pixel_noise_px = 0, .outlier_ratio = 0},
-                [](FrameProblemOptions* o) { o->edge_length = EdgeLengthTerm::kOn; }},
+                [](FrameProblemOptions* o) { o->edge_length = Switch::kOn; }},
         Variant{"StiffEdgeLength",
                 {},
                 [](FrameProblemOptions* o) {
-                  o->edge_length = EdgeLengthTerm::kOn;
+                  o->edge_length = Switch::kOn;
                   o->sigma_len_mm = 0.1;
                 }},
         Variant{"Weighted",
@@ -218,7 +218,7 @@ TEST(FrameProblem, GradientOfTheEnergyIsThatOfTheResidualBlocks) {
   const FrameScene scene = MakeFrameScene({.num_points = 40, .deformation_mm = 2});
   FrameTerms terms;
   terms.camera = &scene.camera;
-  terms.options.edge_length = EdgeLengthTerm::kOn;
+  terms.options.edge_length = Switch::kOn;
   terms.options.sigma_spa_mm = terms.options.sigma_tmp_mm = 0.5;
   terms.positions = scene.positions;
   terms.pixels = scene.pixels;

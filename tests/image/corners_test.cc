@@ -84,7 +84,7 @@ std::vector<Corner> SquareCorners(int shift) {
   cv::resize(large, image, kSize, 0, 0, cv::INTER_AREA);
   cv::GaussianBlur(image, image, cv::Size(), 1.5);  // as a lens does
   CornerOptions options = Options(4);
-  options.contour_filter = Detection::kOff;
+  options.contour_filter = Switch::kOff;
   options.quality_level = 0.3;
   return DetectCorners(image, {}, {}, options);
 }
@@ -143,7 +143,7 @@ TEST(DetectCorners, ContourFilterKeepsCornersOffAnOccludingContour) {
   };
   CornerOptions options = Options(400);
   EXPECT_EQ(on_contour(options), 0);
-  options.contour_filter = Detection::kOff;
+  options.contour_filter = Switch::kOff;
   EXPECT_GT(on_contour(options), 5);
 }
 

@@ -86,8 +86,8 @@ TEST(ValidMask, CombinesGivenAndFoundMasksAndHonoursTheSwitches) {
   EXPECT_EQ(At(valid, 3, 3), 0);
   EXPECT_EQ(At(valid, 160, 60), 255);
   MaskOptions off;
-  off.highlights = Detection::kOff;
-  off.border = Detection::kOff;
+  off.highlights = Switch::kOff;
+  off.border = Switch::kOff;
   EXPECT_EQ(cv::countNonZero(ValidMask(image, {}, off)), kSize.area());
 }
 

@@ -233,7 +233,26 @@ TEST(RunWriter, RefusesReportsThatCannotBeMeant) {
   EXPECT_THAT(writer.Write(report).message(), HasSubstr("no stage 'other'"));
   report = Report(1);
   report.new_points.clear();
-  EXPECT_THAT(writer.Write(report).message(), HasSubstr("never new"));
+  EXPECT_THAT(writer.Write(report).message(), HasSubstr("observed but was never new"));
+  report = Report(1);
+  report.refined_points = {{PointId{1}, Eigen::Vector3d(1, 2, 3)}};
+  EXPECT_THAT(writer.Write(report).message(), HasSubstr("refined but was never new"));
+  report.refined_points = {{report.observations[0].id, Eigen::Vector3d(1, std::nan(""), 3)}};
+  EXPECT_THAT(writer.Write(report).message(), HasSubstr("not finite"));
+}
+
+TEST(RunWriter, TheMapHasPointsWhereTheyWereLastRefinedTo) {
+  const TestFolder folder;
+  RunWriter writer = Writer(folder.Path("run"));
+  for (int frame = 1; frame <= 3; ++frame) {
+    FrameReport report = Report(frame);
+    if (frame > 1) report.refined_points = {{PointId{0}, Eigen::Vector3d(0.125, 0.25, 70.5 + frame)}};
+    ASSERT_TRUE(writer.Write(report).ok());
+  }
+  ASSERT_TRUE(writer.Finish(RunStatus::kCompleted, "").ok());
+  const std::string points = folder.Read("run/sparse/points3D.txt");
+  EXPECT_THAT(points, HasSubstr("\n0 0.125000 0.250000 73.500000 "));
+  EXPECT_THAT(points, HasSubstr("\n3 -1.000000 0.500000 50.250000 ")) << "the others stay";
 }
 
 TEST(RunWriter, ReportsAFullDiskAndKeepsWhatItWrote) {

@@ -57,7 +57,7 @@ TEST(TrackPatch, RecoversGainAndBias) {
 
 TEST(TrackPatch, WithoutGainAndBiasABrightnessChangePullsThePatchAside) {
   LucasKanadeOptions off;
-  off.gain_bias = GainBias::kOff;
+  off.gain_bias = Switch::kOff;
   off.min_ssim = -1;
   const ImagePyramid reference = View({0, 0});
   const ReferencePatch patch = Cut(reference, off);

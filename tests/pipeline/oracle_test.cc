@@ -110,7 +110,7 @@ class Oracles : public testing::Test {
   SimulationOptions scene_;
 };
 
-OracleOptions All() { return {OracleSwitch::kOn, OracleSwitch::kOn, OracleSwitch::kOn}; }
+OracleOptions All() { return {Switch::kOn, Switch::kOn, Switch::kOn}; }
 
 TEST_F(Oracles, WithAllOfThemARigidSceneIsExactFromTheFirstFrame) {
   Render(0.0);
@@ -131,9 +131,8 @@ TEST_F(Oracles, WithAllOfThemADeformingSceneIsNearlyExact) {
 TEST_F(Oracles, EachAloneIsNotWorseThanNone) {
   Render(2.5);
   const Outcome none = Track({});
-  for (const OracleOptions& oracle :
-       {OracleOptions{.first_map = OracleSwitch::kOn}, OracleOptions{.tracks = OracleSwitch::kOn},
-        OracleOptions{.poses = OracleSwitch::kOn}}) {
+  for (const OracleOptions& oracle : {OracleOptions{.first_map = Switch::kOn}, OracleOptions{.tracks = Switch::kOn},
+                                      OracleOptions{.poses = Switch::kOn}}) {
     const Outcome outcome = Track(oracle);
     EXPECT_GE(outcome.frames, none.frames) << oracle.Names().front();
     EXPECT_LE(outcome.rmse_mm, kAsGood * none.rmse_mm) << oracle.Names().front();
@@ -166,7 +165,7 @@ TEST_F(Oracles, ThePosesAreTrueInTheFramesThatWaitedForTheMapToo) {
   request.input.image_path = folder_.Path("sequence");
   request.output_path = folder_.Path("run");
   TrackOptions options;
-  options.tracker.oracle.poses = OracleSwitch::kOn;
+  options.tracker.oracle.poses = Switch::kOn;
   RotationError error(scene_);
   ASSERT_TRUE(RunTrack(request, options, std::array<TrackObserver*, 1>{&error}).ok());
   EXPECT_GT(error.held, 1);
@@ -182,7 +181,7 @@ TEST_F(Oracles, WithAllOfThemPointsAreLostOnlyWhenOccludedOrOutsideTheImage) {
 
 TEST_F(Oracles, ThoseUsedAreInRunJsonAndConfigYaml) {
   Render(0.0);
-  Track({.tracks = OracleSwitch::kOn, .poses = OracleSwitch::kOn});
+  Track({.tracks = Switch::kOn, .poses = Switch::kOn});
   const auto summary = ReadRunSummary(folder_.Path("run/run.json"));
   ASSERT_TRUE(summary.ok()) << summary.status().message();
   EXPECT_THAT(summary->description.oracles, testing::ElementsAre("tracks", "poses"));
@@ -192,7 +191,7 @@ TEST_F(Oracles, ThoseUsedAreInRunJsonAndConfigYaml) {
 TEST_F(Oracles, WithoutTheSimulationOrWithAnotherCameraAreRefusedInOneSentence) {
   Render(0.0);
   TrackOptions options;
-  options.tracker.oracle.poses = OracleSwitch::kOn;
+  options.tracker.oracle.poses = Switch::kOn;
   RunRequest request;
   request.input.image_path = folder_.Path("sequence");
   request.output_path = folder_.Path("run");

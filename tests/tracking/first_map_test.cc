@@ -130,7 +130,7 @@ TEST(FirstMap, TakesItsUnitFromTheReferencesPointsAlone) {
   start.frames[0].observations.resize(2);
   start.outcome.points.push_back({PointId{7}, Eigen::Vector3d(0, 0, 500)});
   FlatTruth truth;
-  OracleAnswers oracle({.poses = OracleSwitch::kOn}, &truth, 50.0);
+  OracleAnswers oracle({.poses = Switch::kOn}, &truth, 50.0);
   oracle.TakeWorld({start.camera, start.frames, {}}, &start.outcome);
   // The map has the surface at 50: so much is a millimetre.
   for (const InitFrameState& frame : start.outcome.frames) {

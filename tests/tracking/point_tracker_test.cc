@@ -172,7 +172,7 @@ TEST(PointTracker, ForwardBackwardRefusesATrackThatDoesNotReturn) {
   const auto tracks = tracker.Track(other.Image(0), {}, still.Image(0), {}, std::vector{prediction}, 1);
   EXPECT_EQ(tracks[0].failure, PatchFailure::kForwardBackward);
   PointTrackerOptions off;
-  off.forward_backward = Detection::kOff;
+  off.forward_backward = Switch::kOff;
   PointTracker trusting(off);
   ASSERT_EQ(trusting.Add({0}, {110, 95}, still.Image(0), {}), PatchFailure::kNone);
   EXPECT_EQ(trusting.Track(other.Image(0), {}, still.Image(0), {}, std::vector{prediction}, 1)[0].failure,

@@ -254,7 +254,7 @@ TEST_F(TrackerFromImages, PointsThatWereHiddenComeBack) {
   constexpr int kFirstHidden = 4;
   constexpr int kLastHidden = 7;
   enum class View { kOpen, kHidden };
-  const auto run = [&](Detection find_lost, View view) {
+  const auto run = [&](Switch find_lost, View view) {
     TrackerOptions options;
     options.init.method = InitMethod::kDepth;
     options.find_lost = find_lost;
@@ -273,9 +273,9 @@ TEST_F(TrackerFromImages, PointsThatWereHiddenComeBack) {
     return std::count_if(report.observations.begin(), report.observations.end(),
                          [](const PointObservation& seen) { return seen.pixel.x() < 140; });
   };
-  const auto open = run(Detection::kOn, View::kOpen);
-  const auto without = run(Detection::kOff, View::kHidden);
-  const auto with = run(Detection::kOn, View::kHidden);
+  const auto open = run(Switch::kOn, View::kOpen);
+  const auto without = run(Switch::kOff, View::kHidden);
+  const auto with = run(Switch::kOn, View::kHidden);
   ASSERT_EQ(with.size(), static_cast<std::size_t>(kFrames));
   ASSERT_GT(on_the_left(open.back()), 100);
   EXPECT_EQ(on_the_left(with[kLastHidden]), 0);

@@ -73,6 +73,10 @@ struct Sequence {
     return MakeWindowInitializer(options, kNominalMm)->Try({camera, frames, {}, moment});
   }
 
+  InitOutcome Refine(const WindowInitOptions& options = {}) const {
+    return MakeWindowInitializer(options, kNominalMm)->Refine({camera, frames, {}});
+  }
+
   // Median relative depth error of a frame's positions, after the best scale.
   double ShapeError(const InitOutcome& outcome, int t) const {
     const InitFrameState& state = outcome.frames[static_cast<std::size_t>(t)];
@@ -217,6 +221,46 @@ TEST(WindowInitializer, ARigidSceneNeedsTenFrames) {
   const InitOutcome breathing = Sequence(11, CameraMotion::kForwards, 0.3).Try({});
   EXPECT_EQ(breathing.decision, InitDecision::kWait);
   EXPECT_THAT(breathing.reason, HasSubstr("the scene deforms"));
+}
+
+TEST(WindowInitializer, RefinesTheMapOfARigidSceneByTheFramesThatFollow) {
+  const Sequence start(11, CameraMotion::kForwards, 0.0);
+  const InitOutcome first = start.Try({});
+  ASSERT_EQ(first.decision, InitDecision::kMap) << first.reason;
+  EXPECT_TRUE(first.refinable);
+  const Sequence longer(61, CameraMotion::kForwards, 0.0);
+  const InitOutcome refined = longer.Refine();
+  ASSERT_EQ(refined.decision, InitDecision::kMap) << refined.reason;
+  EXPECT_EQ(refined.frames.size(), 61U);
+  EXPECT_LT(longer.ShapeError(refined, 0), 0.5 * start.ShapeError(first, 0));
+  EXPECT_LT(longer.ShapeError(refined, 60), 0.5 * start.ShapeError(first, 0));
+
+  WindowInitOptions once;
+  once.refine_rigid = Switch::kOff;
+  EXPECT_FALSE(start.Try(once).refinable);
+}
+
+TEST(WindowInitializer, RefinesNoMapOfASceneThatDeforms) {
+  const Sequence sequence(61);
+  const InitOutcome first = sequence.Try({});
+  ASSERT_EQ(first.decision, InitDecision::kMap) << first.reason;
+  EXPECT_FALSE(first.refinable);
+  const InitOutcome refined = sequence.Refine();
+  EXPECT_EQ(refined.decision, InitDecision::kNewReference);
+  EXPECT_THAT(refined.reason, HasSubstr("the scene deforms"));
+}
+
+// A tenth of a pixel a frame at most: what it tells the first map is no worse than noise.
+TEST(WindowInitializer, APointThatSlidesStaysOutOfARefinedMap) {
+  Sequence sequence(61, CameraMotion::kForwards, 0.0);
+  for (InitFrame& frame : sequence.frames)
+    for (InitObservation& seen : frame.observations)
+      if (seen.id == PointId{42}) seen.pixel.x() += 0.5 * std::sin(0.2 * (frame.frame_idx - 100));
+  const InitOutcome refined = sequence.Refine();
+  ASSERT_EQ(refined.decision, InitDecision::kMap) << refined.reason;
+  EXPECT_EQ(FindById(refined.points, PointId{42}), nullptr);
+  EXPECT_EQ(FindById(refined.rejected, PointId{42})->reason, InitRejection::kReprojection);
+  EXPECT_GT(refined.points.size(), 100U);
 }
 
 TEST(WindowInitializer, MakesNoMapOfNoise) {

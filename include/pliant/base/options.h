@@ -41,6 +41,14 @@ std::string_view EnumName(Enum value) {
   return "?";
 }
 
+// A choice that has no other names.
+enum class Switch { kOff, kOn };
+template <>
+struct EnumNames<Switch> {
+  static constexpr std::array kNames = {std::pair{Switch::kOff, std::string_view("off")},
+                                        std::pair{Switch::kOn, std::string_view("on")}};
+};
+
 class OptionTable {
  public:
   // The fields added from here on belong to this group; `why` describes it in one line.

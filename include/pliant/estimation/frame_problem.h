@@ -33,14 +33,6 @@
 
 namespace pliant {
 
-enum class EdgeLengthTerm { kOff, kOn };
-
-template <>
-struct EnumNames<EdgeLengthTerm> {
-  static constexpr std::array kNames = {std::pair{EdgeLengthTerm::kOff, std::string_view("off")},
-                                        std::pair{EdgeLengthTerm::kOn, std::string_view("on")}};
-};
-
 // Both are Ceres' and end in the same minimum.
 enum class FrameSolver {
   kLbfgs,               // line search in variables that make the Hessian nearly the identity; fast
@@ -64,7 +56,7 @@ struct FrameProblemOptions {
   double chi2_rep = 5.991;  // Huber thresholds: 95 % quantiles of chi-square with 2, 3, 3 degrees of freedom
   double chi2_spa = 7.815;
   double chi2_tmp = 7.815;
-  EdgeLengthTerm edge_length = EdgeLengthTerm::kOff;
+  Switch edge_length = Switch::kOff;
   double lambda_len = 1.0;
   double sigma_len_mm = 1.0;
   double chi2_len = 3.841;  // 95 % at 1 degree of freedom

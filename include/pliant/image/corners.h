@@ -22,7 +22,7 @@ struct CornerOptions {
   double min_distance_px = 8;    // between two corners, and to points that exist already
   int border_px = 12;            // to the image's edge and to masked pixels: half a patch and a little
   int block_size_px = 7;         // window of the structure tensor
-  Detection contour_filter = Detection::kOn;
+  Switch contour_filter = Switch::kOn;
   double contour_threshold = 0.35;  // ContourMeasure above which a corner counts as lying on an occluding contour
   int contour_radius_px = 24;       // how far to each side the surroundings are compared
 

@@ -12,21 +12,14 @@
 
 namespace pliant {
 
-enum class Detection { kOff, kOn };
-template <>
-struct EnumNames<Detection> {
-  static constexpr std::array kNames = {std::pair{Detection::kOff, std::string_view("off")},
-                                        std::pair{Detection::kOn, std::string_view("on")}};
-};
-
 struct MaskOptions {
-  Detection highlights = Detection::kOn;
+  Switch highlights = Switch::kOn;
   int highlight_level = 235;           // grey levels: brighter is saturated, whatever its colour
   int highlight_near_level = 190;      // grey levels: brighter AND pale AND brighter than its surroundings
   double highlight_saturation = 0.25;  // (max - min) / max of B, G, R: below this a bright pixel is pale
   double highlight_contrast = 40;      // grey levels above the local median that make a near-saturated pixel specular
   int highlight_dilation_px = 3;       // the halo of a highlight moves with it
-  Detection border = Detection::kOn;
+  Switch border = Switch::kOn;
   int border_level = 16;       // grey levels: the surroundings are darker than this
   int border_dilation_px = 4;  // the rim is blurred and does not move with the scene
 

@@ -52,13 +52,6 @@ struct EnumNames<PatchFailure> {
                                         std::pair{PatchFailure::kOccluded, std::string_view("occluded")}};
 };
 
-enum class GainBias { kOff, kOn };
-template <>
-struct EnumNames<GainBias> {
-  static constexpr std::array kNames = {std::pair{GainBias::kOff, std::string_view("off")},
-                                        std::pair{GainBias::kOn, std::string_view("on")}};
-};
-
 // Light at the camera shades a patch more on one side after the camera has moved. Without a model of it that slope
 // pulls the patch aside. kPlane lets brightness differ by a plane over the patch, beside gain and bias.
 enum class Shading { kNone, kPlane };
@@ -84,7 +77,7 @@ struct LucasKanadeOptions {
   int levels = 4;            // pyramid levels, 1: the image alone
   int max_iterations = 15;   // on each level
   double epsilon_px = 0.01;  // a smaller step ends a level (in pixels of that level)
-  GainBias gain_bias = GainBias::kOn;
+  Switch gain_bias = Switch::kOn;
   Shading shading = Shading::kPlane;  // with gain_bias only
   double max_gain = 4;                // gains outside [1 / max_gain, max_gain] are refused
   double min_texture = 0.5;           // grey levels / px: root of the smaller eigenvalue of the mean gradient tensor

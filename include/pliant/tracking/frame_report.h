@@ -62,6 +62,12 @@ struct NewPoint {
   std::array<std::uint8_t, 3> rgb = {128, 128, 128};
 };
 
+// A point of the map whose undeformed position has become better known.
+struct RefinedPoint {
+  PointId id;
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  // undeformed, world frame, map units
+};
+
 // From which frame to which a first map was made; these and all between have their poses and points from it.
 struct FirstMapFrames {
   int reference_frame_idx = 0;  // whose camera is the world
@@ -78,6 +84,7 @@ struct FrameReport {
   std::optional<Rigid3> cam_from_world;        // exactly in state tracking
   std::vector<PointObservation> observations;  // in state tracking; sorted by id
   std::vector<NewPoint> new_points;            // sorted by id
+  std::vector<RefinedPoint> refined_points;    // sorted by id
   std::optional<FirstMapFrames> first_map;     // where pose and points came with the first map
 
   int tracked = 0;    // points followed into this frame; before the first map those found in it too

@@ -11,11 +11,9 @@
 //              unit: the map's own, one unit being worth the median of the points' estimated by true depths.
 #pragma once
 
-#include <array>
 #include <optional>
 #include <span>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -27,17 +25,10 @@
 
 namespace pliant {
 
-enum class OracleSwitch { kOff, kOn };
-template <>
-struct EnumNames<OracleSwitch> {
-  static constexpr std::array kNames = {std::pair{OracleSwitch::kOff, std::string_view("off")},
-                                        std::pair{OracleSwitch::kOn, std::string_view("on")}};
-};
-
 struct OracleOptions {
-  OracleSwitch first_map = OracleSwitch::kOff;
-  OracleSwitch tracks = OracleSwitch::kOff;
-  OracleSwitch poses = OracleSwitch::kOff;
+  Switch first_map = Switch::kOff;
+  Switch tracks = Switch::kOff;
+  Switch poses = Switch::kOff;
 
   bool Any() const;
   std::vector<std::string_view> Names() const;  // of those that are on, in the order above

@@ -38,7 +38,7 @@ struct PointTrackerOptions {
   AlignmentModel realignment = AlignmentModel::kAffine;  // adaptive: what is refined against the first patch
   double max_realignment_px = 1.5;  // adaptive: a re-alignment that jumps farther from the latest patch is refused
   double max_scale = 2;             // adaptive: a neighbourhood stretched or shrunk by more gets a new first patch
-  Detection forward_backward = Detection::kOn;
+  Switch forward_backward = Switch::kOn;
   double max_forward_backward_px = 0.75;
 
   void List(OptionTable& table);  // groups "LucasKanade" and "PointTracker"

@@ -40,13 +40,7 @@ namespace pliant {
 class LocalBrightness;
 class LostPoints;
 class OracleAnswers;
-
-enum class NeighbourAgreement { kOff, kOn };
-template <>
-struct EnumNames<NeighbourAgreement> {
-  static constexpr std::array kNames = {std::pair{NeighbourAgreement::kOff, std::string_view("off")},
-                                        std::pair{NeighbourAgreement::kOn, std::string_view("on")}};
-};
+class RigidHistory;
 
 struct TrackerOptions {
   CornerOptions corners;
@@ -60,15 +54,15 @@ struct TrackerOptions {
   OracleOptions oracle;
 
   double sigma_metric_mm = 55.0;  // instead of graph.sigma_mm after a start from metric depth, as published
-  NeighbourAgreement neighbor_agreement = NeighbourAgreement::kOn;
-  Detection find_lost = Detection::kOff;  // points that were lost are looked for where their neighbours took them
-  int max_searches = 200;                 // a frame, for lost points
-  double max_search_px = 8;               // a lost point found farther from where it is expected is another one
-  double max_reprojection_px = 2.4477;    // square root of the 95 % quantile of chi-square at 2 degrees of freedom
-  int min_points = 12;                    // fewer: lost
-  int min_corners = 40;                   // fewer in an image: it is no reference
-  int top_up_frames = 10;                 // while the first map is awaited, corners are added so often
-  int max_lost_frames = 10;               // after so many frames in a row without enough points the tracker gives up
+  Switch neighbor_agreement = Switch::kOn;
+  Switch find_lost = Switch::kOff;      // points that were lost are looked for where their neighbours took them
+  int max_searches = 200;               // a frame, for lost points
+  double max_search_px = 8;             // a lost point found farther from where it is expected is another one
+  double max_reprojection_px = 2.4477;  // square root of the 95 % quantile of chi-square at 2 degrees of freedom
+  int min_points = 12;                  // fewer: lost
+  int min_corners = 40;                 // fewer in an image: it is no reference
+  int top_up_frames = 10;               // while the first map is awaited, corners are added so often
+  int max_lost_frames = 10;             // after so many frames in a row without enough points the tracker gives up
 
   // Groups Corners, Masks, LucasKanade, PointTracker, Init, CameraPose, Deformation, Optimization, Tracking,
   // Oracle.
@@ -155,6 +149,8 @@ class Tracker {
   void DropContradicted(const Rigid3& cam_from_world, const DeformationGraph& graph, Followed* followed);
   void DropUnexplained(Followed* followed);
   void Commit(const FrameSolution& solution, const Followed& followed, FrameReport* report);
+  void RefineMap(FrameReport* report);
+  void DropRejected(const InitOutcome& outcome, FrameReport* report);
   std::string Found(int count) const;
   void ReportLost(const TrackerFrame& frame, const std::string& reason, FrameReport* report);
 
@@ -165,6 +161,7 @@ class Tracker {
   PointTracker point_tracker_;
   std::unique_ptr<OracleAnswers> oracle_;
   std::unique_ptr<LostPoints> lost_points_;
+  std::unique_ptr<RigidHistory> rigid_history_;
 
   TrackingState state_ = TrackingState::kWaitingForReference;
   Map map_;

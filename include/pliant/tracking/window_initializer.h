@@ -8,23 +8,13 @@
 // contradict the solution stay out. The map is scaled once, so that its median depth is nominal_depth_mm.
 #pragma once
 
-#include <array>
 #include <memory>
-#include <string_view>
-#include <utility>
 
 #include "pliant/base/options.h"
 #include "pliant/estimation/deforming_window.h"
 #include "pliant/tracking/initializer.h"
 
 namespace pliant {
-
-enum class LightCue { kOff, kOn };
-template <>
-struct EnumNames<LightCue> {
-  static constexpr std::array kNames = {std::pair{LightCue::kOff, std::string_view("off")},
-                                        std::pair{LightCue::kOn, std::string_view("on")}};
-};
 
 struct WindowInitOptions {
   int first_frame = 10;               // frames after the reference at which a map is first sought
@@ -42,8 +32,9 @@ struct WindowInitOptions {
   double max_depth_sigma = 0.03;      // a point that is less certain than this, and than those, stays out
   double max_error_px = 0.5;          // root mean square, of a point
   double min_certain_share = 0.65;    // of the points still seen
-  LightCue light = LightCue::kOn;
+  Switch light = Switch::kOn;
   double gamma = 2.2;
+  Switch refine_rigid = Switch::kOn;  // the map is made again as the window grows, while the scene is rigid
   DeformingWindowOptions window;
 
   void List(OptionTable& table);  // group "WindowInit", and "Window"

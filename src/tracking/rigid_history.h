@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// While nothing contradicts that the scene is rigid, every frame since the reference tells of the same points, and the
+// map is made again of all of them whenever they have become more by a share (docs/method.md, eq. W13).
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "pliant/geometry/rigid3.h"
+#include "pliant/scene/map.h"
+#include "pliant/tracking/frame_report.h"
+#include "pliant/tracking/initializer.h"
+
+namespace pliant {
+
+// The frames of which the map can be made again. When they get too many every other one is left out, of those there are
+// and of those that follow.
+class RigidHistory {
+ public:
+  // `frames` are those of which the map was made, the reference first.
+  void Start(std::vector<InitFrame> frames);
+  // One that follows. Whether the map should now be made again of frames(), of which this is the last; never after
+  // Stop.
+  bool Add(InitFrame frame);
+  void Stop();
+
+  bool empty() const { return frames_.empty(); }
+  const std::vector<InitFrame>& frames() const { return frames_; }
+
+ private:
+  void Thin();
+
+  std::vector<InitFrame> frames_;
+  int every_ = 1;         // frame is taken
+  int seen_ = 0;          // frames since the reference
+  int next_attempt_ = 0;  // due when so many are seen
+};
+
+// Puts a map made again in the place of the one there is, in its unit: the points are as far from the camera, in the
+// median, as they were. The last of the outcome's frames is the present one, in which the camera was at
+// `cam_from_world`. Points that it does not have stay where the camera sees them. Returns the camera's pose, and
+// appends the points that have a new undeformed position; nothing happens when the two have no point in common.
+std::optional<Rigid3> ReplaceMap(const InitOutcome& outcome, const Rigid3& cam_from_world, Map* map,
+                                 std::vector<RefinedPoint>* refined);
+
+}  // namespace pliant
