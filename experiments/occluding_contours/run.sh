@@ -34,7 +34,8 @@ track() {
   if [[ $start == depth ]]; then scale=none; fi
   rm -rf "$run"
   "$pliant" track --image_path "$scene" --output_path "$run" --quiet --Init.method "$start" \
-    --Corners.contour_filter "$filter" --Tracking.neighbor_agreement "$agreement"
+    --Corners.contour_filter "$filter" --Tracking.neighbor_agreement "$agreement" \
+    --Growth.grow off --Tracking.find_lost off
   # A run that never found a first map has nothing to evaluate; the table counts it as such.
   "$pliant" evaluate --run "$run" --sequence "$scene" --scale "$scale" --output_path "$run/evaluation" --quiet ||
     echo "not evaluated: $run" >&2

@@ -15,6 +15,8 @@
 namespace pliant {
 namespace {
 
+// COLMAP's own programs end where they meet a shorter track.
+constexpr std::int64_t kLeastObservations = 2;
 // Track elements held at once: 8 bytes each.
 constexpr std::int64_t kMostTrackElements = 4'000'000;
 
@@ -25,7 +27,8 @@ std::vector<int> FramesOf(std::span<const CanonicalImage> images) {
 }
 
 Status WriteImages(FileGroup& group, const std::string& folder, colmap::Format format,
-                   std::span<const CanonicalImage> images, const std::string& run_path) {
+                   std::span<const CanonicalPoint> points, std::span<const CanonicalImage> images,
+                   const std::string& run_path) {
   auto file = colmap::ModelFile::Create(group, folder, "images", format);
   if (!file.ok()) return file.status();
   file->Begin(colmap::ImagesHeader(images.size()), images.size());
@@ -34,7 +37,8 @@ Status WriteImages(FileGroup& group, const std::string& folder, colmap::Format f
     colmap::Image converted{
         ColmapImageId(image.frame_idx), colmap::FromPliant(image.cam_from_world), 1, image.name, {}};
     for (const PointObservation& o : observations)
-      converted.points2D.push_back(colmap::FromPliant(o.pixel, static_cast<std::uint64_t>(o.id.value)));
+      converted.points2D.push_back(colmap::FromPliant(
+          o.pixel, FindPoint(points, o.id) != nullptr ? static_cast<std::uint64_t>(o.id.value) : colmap::kNoPoint3D));
     return file->Add(converted);
   });
   if (!status.ok()) return status;
@@ -85,13 +89,10 @@ colmap::Point3D Converted(const CanonicalPoint& point) {
 }
 
 Status WritePoints(FileGroup& group, const std::string& folder, colmap::Format format,
-                   std::span<const CanonicalPoint> all_points, std::span<const CanonicalImage> images,
+                   std::span<const CanonicalPoint> points, std::span<const CanonicalImage> images,
                    const std::string& run_path) {
   auto file = colmap::ModelFile::Create(group, folder, "points3D", format);
   if (!file.ok()) return file.status();
-  std::vector<CanonicalPoint> points;
-  for (const CanonicalPoint& point : all_points)
-    if (point.num_observations > 0) points.push_back(point);
   file->Begin(colmap::PointsHeader(points.size()) +
                   "\n# Positions are undeformed: the scene moved, so this model is not consistent with bundle "
                   "adjustment",
@@ -132,8 +133,11 @@ Status WriteCanonicalModel(const std::string& folder, colmap::Format format, con
   FileGroup group;
   if (Status status = colmap::WriteCamera(group, folder, format, colmap::FromPliant(camera, 1)); !status.ok())
     return status;
-  if (Status status = WriteImages(group, folder, format, images, run_path); !status.ok()) return status;
-  if (Status status = WritePoints(group, folder, format, points, images, run_path); !status.ok()) return status;
+  std::vector<CanonicalPoint> shown;
+  for (const CanonicalPoint& point : points)
+    if (point.num_observations >= kLeastObservations) shown.push_back(point);
+  if (Status status = WriteImages(group, folder, format, shown, images, run_path); !status.ok()) return status;
+  if (Status status = WritePoints(group, folder, format, shown, images, run_path); !status.ok()) return status;
   return group.Commit();
 }
 

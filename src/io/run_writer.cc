@@ -153,10 +153,12 @@ Status RunWriter::State::Check(const FrameReport& report) {
 
 Status RunWriter::State::AddPoints(const FrameReport& report) {
   for (const NewPoint& point : report.new_points) {
-    if (!points.empty() && point.id <= points.back().point.id)
-      return {ErrorCode::kInvalidArgument,
-              "frame " + std::to_string(report.frame_idx) + ": new points must have ids above all former ones"};
-    points.push_back({point, 0.0, 0});
+    const auto place = std::lower_bound(points.begin(), points.end(), point.id,
+                                        [](const CanonicalPoint& known, PointId id) { return known.point.id < id; });
+    if (place != points.end() && place->point.id == point.id)
+      return {ErrorCode::kInvalidArgument, "frame " + std::to_string(report.frame_idx) + ": point " +
+                                               std::to_string(point.id.value) + " is new for the second time"};
+    points.insert(place, {point, 0.0, 0});
   }
   const auto never_new = [&](PointId id, const std::string& what) {
     return Status(ErrorCode::kInvalidArgument, "frame " + std::to_string(report.frame_idx) + ": point " +

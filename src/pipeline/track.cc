@@ -154,6 +154,8 @@ TrackOptions MakeTrackOptions(Preset preset) {
   tracker.point_tracker.lucas_kanade.similarity = SimilarityMode::kPlain;
   tracker.init.method = InitMethod::kPaper;
   tracker.neighbor_agreement = Switch::kOff;
+  tracker.find_lost = Switch::kOff;
+  tracker.growth.grow = Switch::kOff;
   return options;
 }
 

@@ -53,14 +53,30 @@ void LostPoints::Move(const std::vector<Landmark>& seen) {
   }
 }
 
+namespace {
+
+std::optional<Eigen::Vector2d> PixelOf(const Camera& camera, const Eigen::Vector3d& in_cam) {
+  if (!(in_cam.z() > 0)) return std::nullopt;
+  const auto pixel = camera.Project(in_cam);
+  return pixel && camera.Contains(*pixel) ? pixel : std::nullopt;
+}
+
+}  // namespace
+
+std::vector<Eigen::Vector2d> LostPoints::Pixels(const Camera& camera, const Rigid3& cam_from_world) const {
+  std::vector<Eigen::Vector2d> pixels;
+  for (const auto& [id, point] : points_)
+    if (const auto pixel = PixelOf(camera, cam_from_world * point.landmark.position)) pixels.push_back(*pixel);
+  return pixels;
+}
+
 std::vector<PointPrediction> LostPoints::Expected(const Camera& camera, const Rigid3& cam_from_world,
                                                   std::size_t count) {
   std::vector<std::pair<int, PointPrediction>> expected;  // by how often it was looked for
   for (const auto& [id, point] : points_) {
     const Eigen::Vector3d& place = point.landmark.position;
-    if (!((cam_from_world * place).z() > 0)) continue;
-    const auto pixel = camera.Project(cam_from_world * place);
-    if (!pixel || !camera.Contains(*pixel)) continue;
+    const auto pixel = PixelOf(camera, cam_from_world * place);
+    if (!pixel) continue;
     expected.push_back(
         {point.searches, {id, *pixel, FacingAffine(point.cam_from_world, point.seen_at, cam_from_world, place)}});
   }

@@ -32,6 +32,9 @@ class LostPoints {
   // affine change is that of a surface that faces the camera.
   std::vector<PointPrediction> Expected(const Camera& camera, const Rigid3& cam_from_world, std::size_t count);
 
+  // Where a camera at this pose should see them.
+  std::vector<Eigen::Vector2d> Pixels(const Camera& camera, const Rigid3& cam_from_world) const;
+
   // Null where it is not lost.
   const Landmark* Find(PointId id) const;
 

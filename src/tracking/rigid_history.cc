@@ -6,8 +6,6 @@
 #include <cmath>
 #include <utility>
 
-#include "pliant/base/statistics.h"
-
 namespace pliant {
 namespace {
 
@@ -46,28 +44,6 @@ void RigidHistory::Thin() {
   }
   frames_.resize(kept);
   every_ *= 2;
-}
-
-std::optional<Rigid3> ReplaceMap(const InitOutcome& outcome, const Rigid3& cam_from_world, Map* map,
-                                 std::vector<RefinedPoint>* refined) {
-  const InitFrameState& now = outcome.frames.back();
-  std::vector<double> ratios;
-  for (const Landmark& landmark : map->landmarks)
-    if (const InitPosition* point = FindById(now.positions, landmark.id); point != nullptr)
-      ratios.push_back((cam_from_world * landmark.position).norm() / (now.cam_from_world * point->position).norm());
-  if (ratios.empty()) return std::nullopt;
-  const double scale = Median(std::move(ratios));
-  const Rigid3 now_from_world(now.cam_from_world.rotation, scale * now.cam_from_world.translation);
-  const Rigid3 now_from_before = now_from_world.Inverse() * cam_from_world;
-  for (Landmark& landmark : map->landmarks) {
-    const InitPosition* point = FindById(now.positions, landmark.id);
-    const Eigen::Vector3d position = point != nullptr ? scale * point->position : now_from_before * landmark.position;
-    landmark.rest_position = point != nullptr ? position : landmark.rest_position + position - landmark.position;
-    landmark.position = position;
-    landmark.last_motion.setZero();
-    refined->push_back({landmark.id, landmark.rest_position});
-  }
-  return now_from_world;
 }
 
 }  // namespace pliant

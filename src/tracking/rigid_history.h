@@ -6,12 +6,8 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
 #include <vector>
 
-#include "pliant/geometry/rigid3.h"
-#include "pliant/scene/map.h"
-#include "pliant/tracking/frame_report.h"
 #include "pliant/tracking/initializer.h"
 
 namespace pliant {
@@ -38,12 +34,5 @@ class RigidHistory {
   int seen_ = 0;          // frames since the reference
   int next_attempt_ = 0;  // due when so many are seen
 };
-
-// Puts a map made again in the place of the one there is, in its unit: the points are as far from the camera, in the
-// median, as they were. The last of the outcome's frames is the present one, in which the camera was at
-// `cam_from_world`. Points that it does not have stay where the camera sees them. Returns the camera's pose, and
-// appends the points that have a new undeformed position; nothing happens when the two have no point in common.
-std::optional<Rigid3> ReplaceMap(const InitOutcome& outcome, const Rigid3& cam_from_world, Map* map,
-                                 std::vector<RefinedPoint>* refined);
 
 }  // namespace pliant

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "pliant/image/brightness.h"
+#include "tracking/candidates.h"
 #include "tracking/first_map.h"
 #include "tracking/lost_points.h"
 #include "tracking/oracle_answers.h"
@@ -43,6 +44,7 @@ void TrackerOptions::List(OptionTable& table) {
             1000000);
   table.Add("max_lost_frames", &max_lost_frames, "frames", "lost for so many frames in a row, the run ends", 1,
             1000000);
+  growth.List(table);
   oracle.List(table);
 }
 
@@ -61,6 +63,14 @@ TrackerFrame PrepareFrame(int frame_idx, std::string name, double timestamp_s, c
   return frame;
 }
 
+// The map is made anew by the deforming window, however the first one was made, and whenever it is asked for.
+std::unique_ptr<Initializer> MakeRemaker(const TrackerOptions& options) {
+  WindowInitOptions window = options.init.window;
+  window.first_frame = options.growth.window;
+  window.every = 1;
+  return MakeWindowInitializer(window, options.init.monocular.nominal_depth_mm);
+}
+
 Tracker::Tracker(const Camera& camera, const TrackerOptions& options, std::uint64_t seed, int threads,
                  TrackingTruth* truth)
     : camera_(camera),
@@ -72,7 +82,9 @@ Tracker::Tracker(const Camera& camera, const TrackerOptions& options, std::uint6
           options.oracle, truth,
           options.init.IsMetric() ? std::nullopt : std::optional(options.init.monocular.nominal_depth_mm))),
       lost_points_(std::make_unique<LostPoints>()),
-      rigid_history_(std::make_unique<RigidHistory>()) {
+      rigid_history_(std::make_unique<RigidHistory>()),
+      candidates_(std::make_unique<Candidates>(camera_, options.growth)),
+      remaker_(MakeRemaker(options)) {
   if (options_.init.IsMetric()) options_.graph.sigma_mm = options_.sigma_metric_mm;
 }
 
@@ -165,6 +177,8 @@ void Tracker::TakeReference(const TrackerFrame& frame, FrameReport* report) {
     point_tracker_.Clear();
     lost_points_->Clear();
     rigid_history_->Stop();
+    candidates_->Clear();
+    window_frames_.clear();
     InitFrame reference{frame.frame_idx, {}};
     const LocalBrightness brightness(frame.image, frame.mask.valid());
     known_depths_.clear();
@@ -278,19 +292,31 @@ InitDecision Tracker::TryInitialize(const TrackerFrame& frame, FrameReport* repo
   return outcome.decision;
 }
 
-// Every frame since the reference gets its pose and points; tracking goes on from the last one.
-void Tracker::CreateMap(const InitOutcome& outcome) {
-  for (const InitRejectedPoint& rejected : outcome.rejected) {
-    if (rejected.reason != InitRejection::kLostOnTheWay) Count(InitRejectionName(rejected.reason), 1);
-    point_tracker_.Remove(rejected.id);
-  }
-  ReportFirstMap(camera_, init_frames_, outcome, std::span(held_).last(init_frames_.size()));
-  map_ = MakeFirstMap(init_frames_, outcome);
+// Of the points that the map does not have, those may still enter it whose depth is uncertain so far.
+void Tracker::KeepCandidates(const InitOutcome& outcome) {
   for (const InitPoint& point : outcome.points)
     if (map_.Find(point.id) == nullptr) point_tracker_.Remove(point.id);
+  for (const InitRejectedPoint& rejected : outcome.rejected) {
+    const InitObservation* seen = FindById(init_frames_.back().observations, rejected.id);
+    const bool uncertain =
+        rejected.reason == InitRejection::kUncertainDepth || rejected.reason == InitRejection::kTooFewViews;
+    if (!GrowsMap() || !uncertain || seen == nullptr ||
+        !candidates_->Add({seen->id, seen->pixel, seen->ssim, seen->rgb}, last_cam_from_world_, map_))
+      point_tracker_.Remove(rejected.id);
+  }
+  window_frames_ = init_frames_;
+}
+
+// Every frame since the reference gets its pose and points; tracking goes on from the last one.
+void Tracker::CreateMap(const InitOutcome& outcome) {
+  for (const InitRejectedPoint& rejected : outcome.rejected)
+    if (rejected.reason != InitRejection::kLostOnTheWay) Count(InitRejectionName(rejected.reason), 1);
+  ReportFirstMap(camera_, init_frames_, outcome, std::span(held_).last(init_frames_.size()));
+  map_ = MakeFirstMap(init_frames_, outcome);
   last_cam_from_world_ = outcome.frames.back().cam_from_world;
   before_last_cam_from_world_ =
       outcome.frames.size() >= 2 ? outcome.frames[outcome.frames.size() - 2].cam_from_world : last_cam_from_world_;
+  KeepCandidates(outcome);
   if (outcome.refinable && !oracle_->gives_poses()) rigid_history_->Start(std::move(init_frames_));
   init_frames_.clear();
   Apply(TrackingEvent::kMapCreated);

@@ -9,7 +9,6 @@
 #include "pliant/tracking/tracker.h"
 #include "tracking/lost_points.h"
 #include "tracking/oracle_answers.h"
-#include "tracking/rigid_history.h"
 #include "tracking/tracker_support.h"
 
 namespace pliant {
@@ -110,6 +109,7 @@ void Tracker::TrackFrame(const TrackerFrame& frame, FrameReport* report) {
   Commit(*solution, followed, report);
   Apply(TrackingEvent::kFrameTracked);
   RefineMap(report);
+  GrowMap(frame, report);
   report->note = WithFault(report->note, ImageFault(frame, previous_));
   previous_ = frame;
 }
@@ -252,44 +252,6 @@ void Tracker::Commit(const FrameSolution& solution, const Followed& followed, Fr
   report->optimized = static_cast<int>(followed.size());
   report->median_reprojection_error_px = Median(std::move(errors));
   report->costs = solution.costs;
-}
-
-// Points that contradict the others over all frames since the reference.
-void Tracker::DropRejected(const InitOutcome& outcome, FrameReport* report) {
-  for (const InitRejectedPoint& rejected : outcome.rejected) {
-    if (rejected.reason != InitRejection::kReprojection || map_.Find(rejected.id) == nullptr) continue;
-    Count(InitRejectionName(rejected.reason), 1);
-    point_tracker_.Remove(rejected.id);
-    std::erase_if(map_.landmarks, [&](const Landmark& landmark) { return landmark.id == rejected.id; });
-    std::erase_if(report->observations, [&](const PointObservation& seen) { return seen.id == rejected.id; });
-  }
-  report->optimized = static_cast<int>(report->observations.size());
-}
-
-// While the scene is rigid (W13).
-void Tracker::RefineMap(FrameReport* report) {
-  if (rigid_history_->empty()) return;
-  const StageTimer timer(report, "initialise");
-  InitFrame frame{report->frame_idx, {}};
-  for (const PointObservation& seen : report->observations)
-    frame.observations.push_back({.id = seen.id, .pixel = seen.pixel, .ssim = seen.ssim});
-  if (!rigid_history_->Add(std::move(frame))) return;
-  const InitOutcome outcome =
-      initializer_->Refine({camera_, rigid_history_->frames(), {}, InitMoment::kMoreFollow, threads_});
-  if (outcome.decision == InitDecision::kNewReference) {
-    rigid_history_->Stop();
-    report->note = "the map is not refined any more: " + outcome.reason;
-  }
-  if (outcome.decision != InitDecision::kMap) return;
-  DropRejected(outcome, report);
-  const auto cam_from_world = ReplaceMap(outcome, last_cam_from_world_, &map_, &report->refined_points);
-  if (!cam_from_world) return;
-  before_last_cam_from_world_ = before_last_cam_from_world_ * last_cam_from_world_.Inverse() * *cam_from_world;
-  last_cam_from_world_ = *cam_from_world;
-  report->cam_from_world = cam_from_world;
-  for (PointObservation& seen : report->observations) seen.position = map_.Find(seen.id)->position;
-  report->median_reprojection_error_px = MedianReprojectionErrorPx(camera_, *cam_from_world, report->observations);
-  report->note = "the map was refined: " + outcome.reason;
 }
 
 // Too few points, as a sentence.

@@ -15,6 +15,8 @@ namespace {
 constexpr double kMaxMedianFromTruth_mm = 0.3;       // with a true first map: what tracking and the joint problem add
 constexpr double kMaxRmseMonocular_mm = 2.0;         // plain, untrimmed, scale per frame
 constexpr double kRefinedShare = 0.8;                // of the error without refinement; over all frames it is 0.66
+constexpr int kMinGrown = 150;                       // points in the last frame, where few of the first map are left
+constexpr double kMaxGrownRmse_mm = 0.6;             // mean over the frames
 constexpr double kMaxRelativeDepthOfTruth = 1e-3;    // depth images have steps of 0.005 mm; interpolation adds the rest
 constexpr double kMaxRelativeDepthMonocular = 0.03;  // median, in the frame that made the map
 
@@ -65,6 +67,21 @@ TEST(RigidScene, FramesAfterTheFirstMapMakeItBetter) {
     rmse_mm.push_back(evaluation.surface->plain.estimate.mean_rmse_mm);
   }
   EXPECT_LT(rmse_mm[0], kRefinedShare * rmse_mm[1]);
+}
+
+TEST(RigidScene, TheMapGrowsAsTheCameraGoesOn) {
+  const TestFolder folder;
+  TrackOptions first_alone;
+  first_alone.tracker.growth.grow = Switch::kOff;
+  ASSERT_EQ(TrackSequenceAt(kSequence, folder.Path("first"), first_alone).status, RunStatus::kCompleted);
+  ASSERT_EQ(TrackSequenceAt(kSequence, folder.Path("grown"), TrackOptions()).status, RunStatus::kCompleted);
+  const auto first = ReadRun(folder.Path("first"));
+  const auto grown = ReadRun(folder.Path("grown"));
+  ASSERT_TRUE(first.ok() && grown.ok());
+  EXPECT_LT(first->frames.back().optimized, kMinGrown);
+  EXPECT_GT(grown->frames.back().optimized, kMinGrown);
+  const Evaluation evaluation = EvaluateRun(folder.Path("grown"), kSequence, ErrorScale::kPerFrame);
+  EXPECT_LT(evaluation.surface->plain.estimate.mean_rmse_mm, kMaxGrownRmse_mm);
 }
 
 TEST(RigidScene, OneAndTwoThreadsAndTheSameSeedTwiceGiveIdenticalFiles) {

@@ -10,8 +10,6 @@
 namespace pliant {
 namespace {
 
-constexpr double kRounding = 1e-9;
-
 std::vector<InitFrame> Frames(int count) {
   std::vector<InitFrame> frames;
   for (int t = 0; t < count; ++t) frames.push_back({t, {}});
@@ -56,75 +54,6 @@ TEST(RigidHistory, ThatWasStoppedStaysEmpty) {
   history.Stop();
   for (int t = 11; t < 100; ++t) EXPECT_FALSE(history.Add({t, {}}));
   EXPECT_TRUE(history.empty());
-}
-
-// The map made again is right, in a unit of its own; the one there is has wrong depths, and points of its own.
-struct TwoMaps {
-  Rigid3 before = Rigid3(RotationExp(Eigen::Vector3d(0.1, -0.2, 0.05)), Eigen::Vector3d(3, -2, -10));
-  Rigid3 after = Rigid3(RotationExp(Eigen::Vector3d(0.11, -0.2, 0.05)), Eigen::Vector3d(1.4, -1, -5));
-  Map map;
-  InitOutcome outcome;
-
-  TwoMaps() {
-    outcome.frames.push_back({0, Rigid3(), {}});
-    outcome.frames.push_back({9, after, {}});
-    for (int i = 0; i < 9; ++i) {
-      const Eigen::Vector3d in_cam(2.0 * i - 8, 0.5 * i, 40 + i);
-      const Eigen::Vector3d position = before.Inverse() * in_cam;
-      map.landmarks.push_back({PointId{i}, position - Eigen::Vector3d(0, 0, 1), position, Eigen::Vector3d(1, 1, 1)});
-      // Half as large as the other; those to either side of the middle nearer and farther.
-      if (i != 3)
-        outcome.frames[1].positions.push_back(
-            {PointId{i}, after.Inverse() * Eigen::Vector3d((0.5 + 0.01 * (i - 4)) * in_cam)});
-    }
-    outcome.frames[1].positions.push_back({PointId{20}, Eigen::Vector3d(0, 0, 50)});
-  }
-};
-
-TEST(ReplaceMap, KeepsTheUnit) {
-  TwoMaps maps;
-  const Map old = maps.map;
-  std::vector<RefinedPoint> refined;
-  const auto pose = ReplaceMap(maps.outcome, maps.before, &maps.map, &refined);
-  ASSERT_TRUE(pose);
-  // Of the eight in both the median is between the fifth and the sixth: 0.505.
-  const double scale = 0.5 * (1 / 0.50 + 1 / 0.51);
-  EXPECT_LT((pose->translation - scale * maps.after.translation).norm(), kRounding);
-  EXPECT_LT(pose->rotation.angularDistance(maps.after.rotation), kRounding);
-  ASSERT_EQ(maps.map.landmarks.size(), 9U);
-  ASSERT_EQ(refined.size(), 9U);
-  for (const InitPosition& point : maps.outcome.frames[1].positions) {
-    const Landmark* landmark = maps.map.Find(point.id);
-    if (landmark == nullptr) {
-      EXPECT_EQ(point.id, PointId{20});
-      continue;
-    }
-    EXPECT_LT((landmark->position - scale * point.position).norm(), kRounding);
-    EXPECT_EQ(landmark->rest_position, landmark->position);
-    EXPECT_EQ(FindById(refined, point.id)->position, landmark->rest_position);
-    EXPECT_EQ(landmark->last_motion, Eigen::Vector3d::Zero());
-  }
-}
-
-TEST(ReplaceMap, LeavesThePointsThatItDoesNotHaveWhereTheCameraSeesThem) {
-  TwoMaps maps;
-  const Landmark old = *maps.map.Find(PointId{3});
-  std::vector<RefinedPoint> refined;
-  const auto pose = ReplaceMap(maps.outcome, maps.before, &maps.map, &refined);
-  ASSERT_TRUE(pose);
-  const Landmark& left = *maps.map.Find(PointId{3});
-  EXPECT_LT((*pose * left.position - maps.before * old.position).norm(), kRounding);
-  EXPECT_LT((left.position - left.rest_position - (old.position - old.rest_position)).norm(), kRounding);
-}
-
-TEST(ReplaceMap, OfOtherPointsChangesNothing) {
-  TwoMaps maps;
-  maps.outcome.frames[1].positions = {{PointId{20}, Eigen::Vector3d(0, 0, 50)}};
-  const Eigen::Vector3d first = maps.map.landmarks.front().position;
-  std::vector<RefinedPoint> refined;
-  EXPECT_FALSE(ReplaceMap(maps.outcome, maps.before, &maps.map, &refined));
-  EXPECT_EQ(maps.map.landmarks.front().position, first);
-  EXPECT_TRUE(refined.empty());
 }
 
 }  // namespace

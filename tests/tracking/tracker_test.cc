@@ -258,6 +258,7 @@ TEST_F(TrackerFromImages, PointsThatWereHiddenComeBack) {
     TrackerOptions options;
     options.init.method = InitMethod::kDepth;
     options.find_lost = find_lost;
+    options.growth.grow = Switch::kOff;
     Tracker tracker = MakeTracker(options);
     std::vector<FrameReport> reports;
     for (int i = 0; i < kFrames; ++i) {
@@ -285,6 +286,41 @@ TEST_F(TrackerFromImages, PointsThatWereHiddenComeBack) {
   std::set<PointId> map;
   for (const NewPoint& point : with.front().new_points) map.insert(point.id);
   for (const FrameReport& report : with) ExpectFromTheMap(report, map, *camera_);
+}
+
+// The right half is dark while the first map is made, and comes into view afterwards.
+TEST_F(TrackerFromImages, TheMapGrowsWhereTheImageShowsMore) {
+  constexpr int kFirstOpen = 3;
+  const auto run = [&](Switch grow) {
+    TrackerOptions options;
+    options.init.method = InitMethod::kDepth;
+    options.growth.grow = grow;
+    options.growth.every = 1;
+    options.growth.max_depth_sigma = 0.2;  // the few frames are short of parallax
+    Tracker tracker = MakeTracker(options);
+    std::vector<FrameReport> reports;
+    for (int i = 0; i < kFrames; ++i) {
+      cv::Mat mask(images_->front().size(), CV_8UC1, cv::Scalar(255));
+      if (i < kFirstOpen) mask.colRange(mask.cols / 2, mask.cols) = 0;
+      TrackerFrame frame = PrepareFrame(i, NameOf(i), i / 30.0, (*images_)[static_cast<std::size_t>(i)], mask, options);
+      frame.depth_mm = *depth_;
+      for (FrameReport& report : tracker.Process(frame)) reports.push_back(std::move(report));
+    }
+    return reports;
+  };
+  const auto on_the_right = [](const FrameReport& report) {
+    return std::count_if(report.observations.begin(), report.observations.end(),
+                         [](const PointObservation& seen) { return seen.pixel.x() > 180; });
+  };
+  EXPECT_EQ(on_the_right(run(Switch::kOff).back()), 0);
+  const auto grown = run(Switch::kOn);
+  EXPECT_GT(on_the_right(grown.back()), 30);
+  std::set<PointId> map;
+  for (const FrameReport& report : grown) {
+    EXPECT_EQ(report.added, static_cast<int>(report.new_points.size()));
+    for (const NewPoint& point : report.new_points) EXPECT_TRUE(map.insert(point.id).second) << "twice";
+    ExpectFromTheMap(report, map, *camera_);
+  }
 }
 
 TEST_F(TrackerFromImages, AFrameWithoutCornersIsReportedAtOnce) {

@@ -28,7 +28,7 @@ struct CanonicalImage {
 struct CanonicalPoint {
   NewPoint point;                     // the point's id is the COLMAP point's
   double error_px = 0;                // mean reprojection error over its observations
-  std::int64_t num_observations = 0;  // that it has in the images; 0: it is left out
+  std::int64_t num_observations = 0;  // that it has in the images; below 2 it is left out
 };
 
 inline std::uint32_t ColmapImageId(int frame_idx) { return static_cast<std::uint32_t>(frame_idx) + 1; }

@@ -28,6 +28,7 @@
 #include "pliant/image/pyramid.h"
 #include "pliant/scene/map.h"
 #include "pliant/tracking/frame_report.h"
+#include "pliant/tracking/growth_options.h"
 #include "pliant/tracking/initializer.h"
 #include "pliant/tracking/make_initializer.h"
 #include "pliant/tracking/neighbour_agreement.h"
@@ -37,6 +38,7 @@
 
 namespace pliant {
 
+class Candidates;
 class LocalBrightness;
 class LostPoints;
 class OracleAnswers;
@@ -51,11 +53,12 @@ struct TrackerOptions {
   GraphOptions graph;
   FrameProblemOptions problem;
   AgreementOptions agreement;
+  GrowthOptions growth;
   OracleOptions oracle;
 
   double sigma_metric_mm = 55.0;  // instead of graph.sigma_mm after a start from metric depth, as published
   Switch neighbor_agreement = Switch::kOn;
-  Switch find_lost = Switch::kOff;      // points that were lost are looked for where their neighbours took them
+  Switch find_lost = Switch::kOn;       // points that were lost are looked for where their neighbours took them
   int max_searches = 200;               // a frame, for lost points
   double max_search_px = 8;             // a lost point found farther from where it is expected is another one
   double max_reprojection_px = 2.4477;  // square root of the 95 % quantile of chi-square at 2 degrees of freedom
@@ -138,6 +141,7 @@ class Tracker {
   InitOutcome AskInitializer(const cv::Mat& depth_mm, InitMoment moment, FrameReport* report);
   InitDecision TryInitialize(const TrackerFrame& frame, FrameReport* report);
   void CreateMap(const InitOutcome& outcome);
+  void KeepCandidates(const InitOutcome& outcome);
 
   // One frame.
   void TrackFrame(const TrackerFrame& frame, FrameReport* report);
@@ -149,10 +153,18 @@ class Tracker {
   void DropContradicted(const Rigid3& cam_from_world, const DeformationGraph& graph, Followed* followed);
   void DropUnexplained(Followed* followed);
   void Commit(const FrameSolution& solution, const Followed& followed, FrameReport* report);
-  void RefineMap(FrameReport* report);
-  void DropRejected(const InitOutcome& outcome, FrameReport* report);
   std::string Found(int count) const;
   void ReportLost(const TrackerFrame& frame, const std::string& reason, FrameReport* report);
+
+  // The map between frames.
+  void DropFromMap(PointId id, FrameReport* report);
+  void RefineMap(FrameReport* report);
+  bool GrowsMap() const;
+  void GrowMap(const TrackerFrame& frame, FrameReport* report);
+  void FollowCandidates(const TrackerFrame& frame);
+  void Promote(PointId id, const Eigen::Vector3d& position, FrameReport* report);
+  void LookForCandidates(const TrackerFrame& frame);
+  void RemakeMap(const TrackerFrame& frame, FrameReport* report);
 
   Camera camera_;
   TrackerOptions options_;
@@ -162,12 +174,15 @@ class Tracker {
   std::unique_ptr<OracleAnswers> oracle_;
   std::unique_ptr<LostPoints> lost_points_;
   std::unique_ptr<RigidHistory> rigid_history_;
+  std::unique_ptr<Candidates> candidates_;
+  std::unique_ptr<Initializer> remaker_;  // of the map, from window_frames_
 
   TrackingState state_ = TrackingState::kWaitingForReference;
   Map map_;
-  std::vector<InitFrame> init_frames_;  // since the reference
-  std::vector<double> known_depths_;    // of the reference's points, where they are known
-  std::string image_fault_;             // of the last of them
+  std::vector<InitFrame> init_frames_;    // since the reference
+  std::vector<InitFrame> window_frames_;  // the last ones in which there was a map, with their candidates
+  std::vector<double> known_depths_;      // of the reference's points, where they are known
+  std::string image_fault_;               // of the last of them
   std::vector<FrameReport> held_;  // of init_frames_ while initialising; within Process the present frame's is the last
   TrackerFrame previous_;          // the last frame in which points were seen
   Rigid3 last_cam_from_world_;

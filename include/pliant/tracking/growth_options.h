@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// How the map grows, and how it is kept right, while it is tracked.
+#pragma once
+
+#include "pliant/base/options.h"
+
+namespace pliant {
+
+struct GrowthOptions {
+  Switch grow = Switch::kOn;
+  int every = 5;                  // frames from one look for new corners to the next
+  int min_views = 8;              // of a candidate, before it can enter the map
+  int max_views = 60;             // a candidate that is no more certain by then is given up
+  int neighbors = 8;              // landmarks near it in the image, which say how its surroundings move
+  double noise_px = 0.5;          // of a candidate's pixel, with what the poses are off
+  double max_depth_sigma = 0.02;  // standard deviation of its distance, by the median of the map
+  double max_error = 1.5;         // root mean square of its residuals, in standard deviations
+  double max_error_ratio = 2.0;   // the same by its median over the candidates
+  int window = 45;                // frames of which the map is made anew; 0: never
+  int remake_every = 10;          // frames
+
+  void List(OptionTable& table);  // group "Growth"
+};
+
+}  // namespace pliant

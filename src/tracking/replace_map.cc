@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tracking/replace_map.h"
+
+#include <utility>
+
+#include "pliant/base/statistics.h"
+
+namespace pliant {
+namespace {
+
+// (W13) The map's unit in the outcome's; nothing when fewer than `min_common` points are in both.
+std::optional<double> UnitOf(const InitFrameState& now, const Rigid3& cam_from_world, const Map& map, int min_common) {
+  std::vector<double> ratios;
+  for (const Landmark& landmark : map.landmarks)
+    if (const InitPosition* point = FindById(now.positions, landmark.id); point != nullptr)
+      ratios.push_back((cam_from_world * landmark.position).norm() / (now.cam_from_world * point->position).norm());
+  if (static_cast<int>(ratios.size()) < min_common) return std::nullopt;
+  return Median(std::move(ratios));
+}
+
+}  // namespace
+
+std::optional<Rigid3> ReplaceMap(const InitOutcome& outcome, const Rigid3& cam_from_world, Map* map,
+                                 std::vector<RefinedPoint>* refined) {
+  const InitFrameState& now = outcome.frames.back();
+  const auto unit = UnitOf(now, cam_from_world, *map, 1);
+  if (!unit) return std::nullopt;
+  const Rigid3 now_from_world(now.cam_from_world.rotation, *unit * now.cam_from_world.translation);
+  const Rigid3 now_from_before = now_from_world.Inverse() * cam_from_world;
+  for (Landmark& landmark : map->landmarks) {
+    const InitPosition* point = FindById(now.positions, landmark.id);
+    const Eigen::Vector3d position = point != nullptr ? *unit * point->position : now_from_before * landmark.position;
+    landmark.rest_position = point != nullptr ? position : landmark.rest_position + position - landmark.position;
+    landmark.position = position;
+    landmark.last_motion.setZero();
+    refined->push_back({landmark.id, landmark.rest_position});
+  }
+  return now_from_world;
+}
+
+std::vector<InitPosition> RemadePositions(const InitOutcome& outcome, const Rigid3& cam_from_world, const Map& map,
+                                          int min_common) {
+  const InitFrameState& now = outcome.frames.back();
+  const auto unit = UnitOf(now, cam_from_world, map, min_common);
+  if (!unit) return {};
+  const Rigid3 world_from_cam = cam_from_world.Inverse();
+  std::vector<InitPosition> positions;
+  for (const InitPosition& point : now.positions)
+    positions.push_back({point.id, world_from_cam * Eigen::Vector3d(*unit * (now.cam_from_world * point.position))});
+  return positions;
+}
+
+}  // namespace pliant

@@ -1,0 +1,103 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/estimation/moving_point.h"
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "pliant/base/random.h"
+
+namespace pliant {
+namespace {
+
+constexpr double kNoiseRad = 0.5 / 450;
+const Eigen::Vector3d kPoint(8, -5, 60);
+
+// A camera that goes sideways and turns sees a point that swings with its surroundings.
+std::vector<MovingPointView> Views(int count, double step_mm, double swing_mm, Random* random) {
+  std::vector<MovingPointView> views;
+  for (int k = 0; k < count; ++k) {
+    MovingPointView view;
+    view.cam_from_world =
+        Rigid3(RotationExp(Eigen::Vector3d(0.01 * k, 0.005 * k, 0)), Eigen::Vector3d(-step_mm * k, 0, 0));
+    view.displacement = swing_mm * std::sin(0.4 * k) * Eigen::Vector3d(0.3, 1, 0.2);
+    const Eigen::Vector3d in_cam = view.cam_from_world * (kPoint + view.displacement);
+    const Eigen::Vector3d noise(random->Normal(kNoiseRad), random->Normal(kNoiseRad), random->Normal(kNoiseRad));
+    view.ray = (in_cam.normalized() + noise).normalized();
+    views.push_back(view);
+  }
+  return views;
+}
+
+double LogDistanceError(const MovingPoint& point) { return std::log(point.position.norm() / kPoint.norm()); }
+
+TEST(MovingPoint, IsPlacedWhereItWasInTheFirstView) {
+  Random random(1);
+  const auto placed = PlaceMovingPoint(Views(10, 1.0, 3.0, &random), 30.0, kNoiseRad);
+  ASSERT_TRUE(placed.ok()) << placed.status().message();
+  EXPECT_LT(std::abs(LogDistanceError(*placed)), 4 * placed->log_distance_sigma);
+  EXPECT_LT(placed->log_distance_sigma, 0.02);
+  EXPECT_LT(placed->rms, 1.5);
+}
+
+TEST(MovingPoint, ItsSigmaIsThatOfItsErrors) {
+  Random random(2);
+  double squares = 0;
+  constexpr int kTrials = 200;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    const auto placed = PlaceMovingPoint(Views(10, 1.0, 3.0, &random), 50.0, kNoiseRad);
+    ASSERT_TRUE(placed.ok());
+    squares += std::pow(LogDistanceError(*placed) / placed->log_distance_sigma, 2);
+  }
+  EXPECT_NEAR(std::sqrt(squares / kTrials), 1.0, 0.2);
+}
+
+TEST(MovingPoint, SurroundingsThatAreLessKnownMakeItLessCertain) {
+  Random random(3);
+  std::vector<MovingPointView> views = Views(10, 1.0, 3.0, &random);
+  const auto known = PlaceMovingPoint(views, 50.0, kNoiseRad);
+  for (std::size_t k = 0; k < views.size(); ++k) views[k].displacement_sigma = 0.05 * static_cast<double>(k);
+  const auto unsure = PlaceMovingPoint(views, 50.0, kNoiseRad);
+  ASSERT_TRUE(known.ok() && unsure.ok());
+  EXPECT_GT(unsure->log_distance_sigma, 2 * known->log_distance_sigma);
+}
+
+TEST(MovingPoint, AMotionThatItsSurroundingsDoNotShareShows) {
+  Random random(4);
+  std::vector<MovingPointView> views = Views(10, 1.0, 3.0, &random);
+  for (MovingPointView& view : views) view.displacement.setZero();
+  const auto placed = PlaceMovingPoint(views, 50.0, kNoiseRad);
+  EXPECT_TRUE(!placed.ok() || placed->rms > 1.5);
+}
+
+TEST(MovingPoint, OneWrongViewCountsForLittle) {
+  Random random(5);
+  std::vector<MovingPointView> views = Views(20, 1.0, 0.0, &random);
+  views[7].ray = (views[7].ray + Eigen::Vector3d(0.02, 0.01, 0)).normalized();  // 9 px
+  const auto placed = PlaceMovingPoint(views, 50.0, kNoiseRad);
+  ASSERT_TRUE(placed.ok());
+  EXPECT_LT(std::abs(LogDistanceError(*placed)), 5 * placed->log_distance_sigma);
+}
+
+TEST(MovingPoint, SaysWhatIsMissing) {
+  Random random(6);
+  EXPECT_EQ(PlaceMovingPoint(Views(1, 1.0, 0.0, &random), 50.0, kNoiseRad).status().code(), ErrorCode::kInsufficient);
+  EXPECT_EQ(PlaceMovingPoint(Views(5, 1.0, 0.0, &random), 0.0, kNoiseRad).status().code(), ErrorCode::kInvalidArgument);
+  EXPECT_EQ(PlaceMovingPoint(Views(5, 1.0, 0.0, &random), 50.0, 0.0).status().code(), ErrorCode::kInvalidArgument);
+  // A camera that does not move: either it is said, or the sigma says it.
+  const auto still = PlaceMovingPoint(Views(10, 0.0, 0.0, &random), 50.0, kNoiseRad);
+  EXPECT_TRUE(!still.ok() || still->log_distance_sigma > 1.0);
+  std::vector<MovingPointView> views = Views(5, 1.0, 0.0, &random);
+  views[2].ray.x() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(PlaceMovingPoint(views, 50.0, kNoiseRad).ok());
+  views = Views(5, 1.0, 0.0, &random);
+  views[2].ray = -views[2].ray;
+  EXPECT_EQ(PlaceMovingPoint(views, 50.0, kNoiseRad).status().code(), ErrorCode::kDegenerate);
+}
+
+}  // namespace
+}  // namespace pliant

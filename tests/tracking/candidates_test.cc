@@ -1,0 +1,155 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tracking/candidates.h"
+
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace pliant {
+namespace {
+
+constexpr PointId kCandidate{1000};
+constexpr double kRounding = 1e-9;
+
+Camera TestCamera() { return *Camera::Create("PINHOLE", 640, 480, std::vector<double>{450, 450, 319.5, 239.5}); }
+
+// A wall that bends to and fro, and a camera that passes by.
+struct Scene {
+  Camera camera = TestCamera();
+  GrowthOptions options;
+  double bend = 0.02;  // gradient of the displacement
+
+  static Rigid3 Pose(int t) { return {Eigen::Quaterniond::Identity(), Eigen::Vector3d(-0.8 * t, 0, 0.1 * t)}; }
+  Eigen::Vector3d Displaced(const Eigen::Vector3d& rest, int t) const {
+    return rest + std::sin(0.2 * t) * Eigen::Vector3d(0.5, 1.0 + bend * rest.x(), 0.3);
+  }
+  Map MapAt(int t) const {
+    Map map;
+    for (int y = -3; y <= 3; ++y)
+      for (int x = -3; x <= 3; ++x) {
+        Landmark landmark;
+        landmark.id = PointId{static_cast<std::int64_t>(map.landmarks.size())};
+        landmark.rest_position = Eigen::Vector3d(5 * x, 5 * y, 60);
+        landmark.position = Displaced(landmark.rest_position, t);
+        landmark.last_motion = landmark.position - Displaced(landmark.rest_position, t - 1);
+        landmark.pixel = *camera.Project(Pose(t) * landmark.position);
+        map.landmarks.push_back(landmark);
+      }
+    return map;
+  }
+  // Follows a point through frames 0 to `last`.
+  Candidates Follow(const Eigen::Vector3d& rest, int last) const {
+    Candidates candidates(camera, options);
+    EXPECT_TRUE(candidates.Add({kCandidate, Pixel(rest, 0)}, Pose(0), MapAt(0)));
+    for (int t = 1; t <= last; ++t) {
+      PointTrack track;
+      track.id = kCandidate;
+      track.pixel = Pixel(rest, t);
+      track.ssim = 0.9;
+      if (!candidates.See(track, Pose(t), MapAt(t))) break;
+    }
+    return candidates;
+  }
+  std::vector<std::pair<PointId, Eigen::Vector3d>> CertainAfter(const Eigen::Vector3d& rest, int last) const {
+    return Follow(rest, last).Certain(Pose(last), MapAt(last));
+  }
+  Eigen::Vector2d Pixel(const Eigen::Vector3d& rest, int t) const {
+    return *camera.Project(Pose(t) * Displaced(rest, t));
+  }
+};
+
+TEST(Candidates, BecomeCertainAtTheRightPlaceWhereTheSceneDeforms) {
+  const Scene scene;
+  const Eigen::Vector3d rest(3, -4, 55);
+  constexpr int kLast = 20;
+  const auto certain = scene.CertainAfter(rest, kLast);
+  ASSERT_EQ(certain.size(), 1U);
+  EXPECT_EQ(certain[0].first, kCandidate);
+  const Eigen::Vector3d truth = scene.Displaced(rest, kLast);
+  EXPECT_LT((certain[0].second - truth).norm(), 0.01 * truth.norm());
+}
+
+TEST(Candidates, AreNotCertainAtOnce) {
+  const Scene scene;
+  EXPECT_TRUE(scene.CertainAfter(Eigen::Vector3d(3, -4, 55), scene.options.min_views - 2).empty());
+  GrowthOptions at_once;
+  at_once.min_views = 2;
+  Scene hasty;
+  hasty.options = at_once;
+  EXPECT_TRUE(hasty.CertainAfter(Eigen::Vector3d(3, -4, 55), 1).empty()) << "0.8 mm of parallax";
+}
+
+// What its surroundings do is known of a far point only as far as they all do the same.
+TEST(Candidates, FarFromTheMapTheyStayUncertainWhereItBends) {
+  const Eigen::Vector3d far(3, -4, 200);
+  constexpr int kLast = 40;
+  Scene stiff;
+  stiff.bend = 0;
+  stiff.options.noise_px = 0.05;
+  EXPECT_EQ(stiff.CertainAfter(far, kLast).size(), 1U);
+  Scene soft = stiff;
+  soft.bend = 0.05;
+  EXPECT_TRUE(soft.CertainAfter(far, kLast).empty());
+}
+
+TEST(Candidates, AreGivenUpWhenTheyAreOld) {
+  Scene scene;
+  scene.options.max_views = 10;
+  EXPECT_EQ(scene.Follow(Eigen::Vector3d(3, -4, 55), 9).size(), 1U);
+  EXPECT_EQ(scene.Follow(Eigen::Vector3d(3, -4, 55), 10).size(), 0U);
+}
+
+TEST(Candidates, AsALandmarkOneHasTheRestAndTheMotionOfItsSurroundings) {
+  Scene scene;
+  scene.bend = 0;
+  constexpr int kLast = 12;
+  const Eigen::Vector3d rest(3, -4, 55);
+  Candidates candidates = scene.Follow(rest, kLast);
+  const auto landmark = candidates.AsLandmark(kCandidate, scene.Displaced(rest, kLast), scene.MapAt(kLast));
+  ASSERT_TRUE(landmark);
+  EXPECT_LT((landmark->rest_position - rest).norm(), kRounding);
+  EXPECT_LT((landmark->last_motion - (scene.Displaced(rest, kLast) - scene.Displaced(rest, kLast - 1))).norm(),
+            kRounding);
+  EXPECT_EQ(landmark->pixel, scene.Pixel(rest, kLast));
+  EXPECT_FALSE(candidates.AsLandmark(kCandidate, rest, Map()));
+}
+
+TEST(Candidates, AreExpectedWhereTheCameraWillSeeThem) {
+  const Scene scene;
+  const Eigen::Vector3d rest(3, -4, 55);
+  Candidates candidates = scene.Follow(rest, 20);
+  ASSERT_EQ(candidates.Certain(Scene::Pose(20), scene.MapAt(20)).size(), 1U);  // its place is now the best guess
+  const auto expected = candidates.Predict(Scene::Pose(21));
+  ASSERT_EQ(expected.size(), 1U);
+  EXPECT_LT((expected[0].pixel - *scene.camera.Project(Scene::Pose(21) * scene.Displaced(rest, 20))).norm(), 0.5);
+}
+
+TEST(Candidates, ACorrectionOfTheMapIsNoMotion) {
+  const Scene scene;
+  const Eigen::Vector3d rest(3, -4, 55);
+  constexpr int kLast = 20;
+  Candidates candidates = scene.Follow(rest, kLast);
+  const Map before = scene.MapAt(kLast);
+  Map after = before;
+  for (Landmark& landmark : after.landmarks) landmark.position += Eigen::Vector3d(0, 0, 4);
+  candidates.TakeCorrection(before, after);
+  PointTrack track;
+  track.id = kCandidate;
+  track.pixel = scene.Pixel(rest, kLast);
+  ASSERT_TRUE(candidates.See(track, Scene::Pose(kLast), after));
+  const auto certain = candidates.Certain(Scene::Pose(kLast), after);
+  ASSERT_EQ(certain.size(), 1U);
+  EXPECT_LT((certain[0].second - scene.Displaced(rest, kLast)).norm(), 0.01 * rest.norm());
+}
+
+TEST(Candidates, NeedAMap) {
+  Candidates candidates(TestCamera(), GrowthOptions());
+  EXPECT_FALSE(candidates.Add({kCandidate, Eigen::Vector2d(100, 100)}, Rigid3(), Map()));
+  EXPECT_EQ(candidates.size(), 0U);
+}
+
+}  // namespace
+}  // namespace pliant
