@@ -25,7 +25,13 @@ Eigen::Matrix2d FacingAffine(const Rigid3& before, const Eigen::Vector3d& place_
 }  // namespace
 
 void LostPoints::Add(const Landmark& landmark, const Rigid3& cam_from_world) {
-  points_[landmark.id] = {landmark, cam_from_world, landmark.position, {}, 0};
+  points_[landmark.id] = {landmark, cam_from_world, landmark.position, {}, 0, next_order_++};
+}
+
+PointId LostPoints::Oldest() const {
+  return std::min_element(points_.begin(), points_.end(),
+                          [](const auto& a, const auto& b) { return a.second.order < b.second.order; })
+      ->first;
 }
 
 void LostPoints::Move(const std::vector<Landmark>& seen) {

@@ -5,6 +5,7 @@
 // points around it that are seen (docs/method.md, eq. R1), so that it is known where to look for it when it comes back.
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <vector>
@@ -24,6 +25,8 @@ class LostPoints {
   void Remove(PointId id) { points_.erase(id); }
   void Clear() { points_.clear(); }
   std::size_t size() const { return points_.size(); }
+  // The one that has been lost the longest; there has to be one.
+  PointId Oldest() const;
 
   // Where each is now, as the landmarks that are seen say (R1). `seen` sorted by id.
   void Move(const std::vector<Landmark>& seen);
@@ -46,8 +49,10 @@ class LostPoints {
     // Of its displacement then: what its neighbours did not share. Set by the first Move.
     std::optional<Eigen::Vector3d> own_share;
     int searches = 0;
+    std::int64_t order = 0;  // in which they were lost
   };
   std::map<PointId, Point> points_;
+  std::int64_t next_order_ = 0;
 };
 
 }  // namespace pliant

@@ -32,6 +32,8 @@ void TrackerOptions::List(OptionTable& table) {
   agreement.List(table);
   table.AddChoice("find_lost", &find_lost,
                   "look for points that were lost where the points around them took them; needs adaptive patches");
+  table.Add("max_lost_points", &max_lost_points, "-", "lost points that are remembered; memory grows with them", 0,
+            1000000);
   table.Add("max_searches", &max_searches, "-", "lost points that are looked for in a frame", 0, 1000000);
   table.Add("max_search_px", &max_search_px, "px",
             "a lost point that is found further from where it is expected is another one", 0, 1000);

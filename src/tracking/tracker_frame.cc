@@ -239,6 +239,9 @@ void Tracker::Commit(const FrameSolution& solution, const Followed& followed, Fr
     else
       point_tracker_.Remove(landmark.id);
   }
+  for (; static_cast<int>(lost_points_->size()) > options_.max_lost_points;
+       lost_points_->Remove(lost_points_->Oldest()))
+    point_tracker_.Remove(lost_points_->Oldest());
   for (const PointId id : followed.found)
     if (next.Find(id) == nullptr) point_tracker_.Undo(id);  // it was another one; the point stays lost
   map_ = std::move(next);

@@ -47,6 +47,17 @@ TEST(LostPoints, AreTakenAlongByThePointsAroundThem) {
   EXPECT_LT((lost.Find(PointId{1000})->position - PointAt(rest, own_share, 1).position).norm(), kRounding);
 }
 
+TEST(LostPoints, TheOldestIsTheOneLostFirst) {
+  LostPoints lost;
+  for (const std::int64_t id : {7, 3, 5}) lost.Add({.id = PointId{id}}, Rigid3());
+  EXPECT_EQ(lost.Oldest(), PointId{7});
+  lost.Remove(PointId{7});
+  EXPECT_EQ(lost.Oldest(), PointId{3});
+  lost.Remove(PointId{3});  // found
+  lost.Add({.id = PointId{3}}, Rigid3());
+  EXPECT_EQ(lost.Oldest(), PointId{5});
+}
+
 TEST(LostPoints, AreWhereTheyWereAmongNobody) {
   LostPoints lost;
   lost.Add(PointAt({0, 0, 50}, {0, 0, 0}, 2), Rigid3());

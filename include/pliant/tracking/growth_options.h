@@ -19,7 +19,7 @@ struct GrowthOptions {
   double max_error = 1.5;         // root mean square of its residuals, in standard deviations
   double max_error_ratio = 2.0;   // the same by its median over the candidates
   int window = 45;                // frames of which the map is made anew; 0: never
-  int remake_every = 10;          // frames
+  int remake_every = 20;          // frames
 
   void List(OptionTable& table);  // group "Growth"
 };

@@ -60,6 +60,7 @@ struct TrackerOptions {
   Switch neighbor_agreement = Switch::kOn;
   Switch find_lost = Switch::kOn;       // points that were lost are looked for where their neighbours took them
   int max_searches = 200;               // a frame, for lost points
+  int max_lost_points = 500;            // that are remembered: the oldest is forgotten first
   double max_search_px = 8;             // a lost point found farther from where it is expected is another one
   double max_reprojection_px = 2.4477;  // square root of the 95 % quantile of chi-square at 2 degrees of freedom
   int min_points = 12;                  // fewer: lost
