@@ -5,6 +5,8 @@
 #include <array>
 #include <filesystem>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include "io/run_format.h"
 #include "pliant/base/text.h"
@@ -115,6 +117,7 @@ Status ForEachFrame(const std::string& run_path, std::span<const int> frames_idx
                     const ObservationsFunction& function) {
   auto reader = ObservationReader::Open(run_path);
   if (!reader.ok()) return reader.status();
+  const std::vector<PointObservation> none;
   std::optional<FrameObservations> rows;
   bool ended = false;
   for (std::size_t k = 0; k < frames_idx.size(); ++k) {
@@ -125,8 +128,7 @@ Status ForEachFrame(const std::string& run_path, std::span<const int> frames_idx
       ended = !rows.has_value();
     }
     const bool has_rows = rows && rows->frame_idx == frames_idx[k];
-    if (Status status = function(k, has_rows ? rows->observations : std::vector<PointObservation>()); !status.ok())
-      return status;
+    if (Status status = function(k, has_rows ? std::as_const(rows->observations) : none); !status.ok()) return status;
   }
   return Status::Ok();
 }

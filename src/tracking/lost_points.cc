@@ -22,6 +22,13 @@ Eigen::Matrix2d FacingAffine(const Rigid3& before, const Eigen::Vector3d& place_
   return scale * turn.topLeftCorner<2, 2>();
 }
 
+// Where the camera sees a place, if it does.
+std::optional<Eigen::Vector2d> PixelOf(const Camera& camera, const Eigen::Vector3d& in_cam) {
+  if (!(in_cam.z() > 0)) return std::nullopt;
+  const auto pixel = camera.Project(in_cam);
+  return pixel && camera.Contains(*pixel) ? pixel : std::nullopt;
+}
+
 }  // namespace
 
 void LostPoints::Add(const Landmark& landmark, const Rigid3& cam_from_world) {
@@ -58,16 +65,6 @@ void LostPoints::Move(const std::vector<Landmark>& seen) {
     point.landmark.position = point.landmark.rest_position + displacement + *point.own_share;
   }
 }
-
-namespace {
-
-std::optional<Eigen::Vector2d> PixelOf(const Camera& camera, const Eigen::Vector3d& in_cam) {
-  if (!(in_cam.z() > 0)) return std::nullopt;
-  const auto pixel = camera.Project(in_cam);
-  return pixel && camera.Contains(*pixel) ? pixel : std::nullopt;
-}
-
-}  // namespace
 
 std::vector<Eigen::Vector2d> LostPoints::Pixels(const Camera& camera, const Rigid3& cam_from_world) const {
   std::vector<Eigen::Vector2d> pixels;

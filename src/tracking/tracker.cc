@@ -16,6 +16,17 @@
 #include "tracking/tracker_support.h"
 
 namespace pliant {
+namespace {
+
+// The map is made anew by the deforming window, however the first one was made, and whenever it is asked for.
+std::unique_ptr<Initializer> MakeRemaker(const TrackerOptions& options) {
+  WindowInitOptions window = options.init.window;
+  window.first_frame = options.growth.window;
+  window.every = 1;
+  return MakeWindowInitializer(window, options.init.monocular.nominal_depth_mm);
+}
+
+}  // namespace
 
 void TrackerOptions::List(OptionTable& table) {
   corners.List(table);
@@ -63,14 +74,6 @@ TrackerFrame PrepareFrame(int frame_idx, std::string name, double timestamp_s, c
   frame.mask = SupportMask(ValidMask(image, mask, options.masks));
   frame.prepare_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   return frame;
-}
-
-// The map is made anew by the deforming window, however the first one was made, and whenever it is asked for.
-std::unique_ptr<Initializer> MakeRemaker(const TrackerOptions& options) {
-  WindowInitOptions window = options.init.window;
-  window.first_frame = options.growth.window;
-  window.every = 1;
-  return MakeWindowInitializer(window, options.init.monocular.nominal_depth_mm);
 }
 
 Tracker::Tracker(const Camera& camera, const TrackerOptions& options, std::uint64_t seed, int threads,

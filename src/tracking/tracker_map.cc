@@ -141,6 +141,7 @@ void Tracker::RemakeMap(const TrackerFrame& frame, FrameReport* report) {
   const InitOutcome outcome = remaker_->Try({camera_, window_frames_, {}, InitMoment::kMoreFollow, threads_});
   if (outcome.decision != InitDecision::kMap) return;
   const auto positions = RemadePositions(outcome, last_cam_from_world_, map_);
+  if (positions.empty()) return;
   const Map before = map_;
   for (const InitPosition& point : positions)
     if (Landmark* landmark = map_.Find(point.id); landmark != nullptr) {

@@ -70,7 +70,7 @@ class WindowInitializer final : public Initializer {
   InitOutcome Refine(const InitInput& input) const override {
     InitOutcome outcome;
     outcome.decision = InitDecision::kNewReference;
-    const auto rigid = Rigid(input);
+    const auto rigid = Solve(input, input.frames.size(), Scene::kRigid);
     if (!rigid.ok()) {
       outcome.reason = rigid.status().message();
       return outcome;
@@ -88,19 +88,12 @@ class WindowInitializer final : public Initializer {
   }
 
  private:
-  Result<SolvedWindow> Rigid(const InitInput& input) const {
-    const auto window = PrepareWindow(input, input.frames.size(), options_, nominal_depth_mm_);
-    if (!window.ok()) return window.status();
-    return SolveRigid(input, *window, options_);
-  }
+  enum class Scene { kRigid, kAny };
 
   // What is missing for a map; ok when the outcome is one.
   Status Attempt(const InitInput& input, int since, InitOutcome* outcome) const {
-    const auto window = PrepareWindow(input, input.frames.size(), options_, nominal_depth_mm_);
-    if (!window.ok()) return window.status();
-    const auto rigid = SolveRigid(input, *window, options_);
-    if (rigid.ok() || since < options_.deforming_frame) return Make(input, rigid, DemandsAfter(since), outcome);
-    return Make(input, SolveDeforming(input, *window, options_, nominal_depth_mm_), DemandsAfter(since), outcome);
+    const Scene scene = since < options_.deforming_frame ? Scene::kRigid : Scene::kAny;
+    return Make(input, Solve(input, input.frames.size(), scene), DemandsAfter(since), outcome);
   }
 
   Status LastAttempt(const InitInput& input, InitOutcome* outcome) const {
@@ -114,7 +107,7 @@ class WindowInitializer final : public Initializer {
   // A sequence may end so early that its map must be certain all the same.
   Status LastAttempt(const InitInput& input, int since, InitOutcome* outcome) const {
     const MapDemands demands = DemandsAfter(since < options_.deforming_frame ? since : options_.last_frame);
-    return Make(input, Solve(input, static_cast<std::size_t>(since) + 1), demands, outcome);
+    return Make(input, Solve(input, static_cast<std::size_t>(since) + 1, Scene::kAny), demands, outcome);
   }
 
   // The longer the wait the less it still gives, and the more points leave the image.
@@ -129,12 +122,12 @@ class WindowInitializer final : public Initializer {
             .certain_share = (1.0 - relaxed) * options_.min_certain_share};
   }
 
-  // Of the first frames; of a rigid scene if it is one.
-  Result<SolvedWindow> Solve(const InitInput& input, std::size_t frames) const {
+  // Of the first frames; of a rigid scene if it is one, and where it has to be.
+  Result<SolvedWindow> Solve(const InitInput& input, std::size_t frames, Scene scene) const {
     const auto window = PrepareWindow(input, frames, options_, nominal_depth_mm_);
     if (!window.ok()) return window.status();
     auto rigid = SolveRigid(input, *window, options_);
-    return rigid.ok() ? rigid : SolveDeforming(input, *window, options_, nominal_depth_mm_);
+    return rigid.ok() || scene == Scene::kRigid ? rigid : SolveDeforming(input, *window, options_, nominal_depth_mm_);
   }
 
   Status Make(const InitInput& input, const Result<SolvedWindow>& window, const MapDemands& demands,

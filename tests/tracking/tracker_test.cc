@@ -51,6 +51,21 @@ class TrackerFromImages : public testing::Test {
                                          (*images_)[static_cast<std::size_t>(image_idx)], {}, {}));
   }
 
+  // All images, from the depth of the first one. `hide` (frame, mask) sets to 0 what a frame does not show.
+  template <class Function>
+  static std::vector<FrameReport> RunMasked(const TrackerOptions& options, const Function& hide) {
+    Tracker tracker = MakeTracker(options);
+    std::vector<FrameReport> reports;
+    for (int i = 0; i < kFrames; ++i) {
+      cv::Mat mask(images_->front().size(), CV_8UC1, cv::Scalar(255));
+      hide(i, mask);
+      TrackerFrame frame = PrepareFrame(i, NameOf(i), i / 30.0, (*images_)[static_cast<std::size_t>(i)], mask, options);
+      frame.depth_mm = *depth_;
+      for (FrameReport& report : tracker.Process(frame)) reports.push_back(std::move(report));
+    }
+    return reports;
+  }
+
   static inline const Camera* camera_ = nullptr;
   static inline std::vector<cv::Mat>* images_ = nullptr;
   static inline cv::Mat* depth_ = nullptr;  // of the first image
@@ -259,16 +274,9 @@ TEST_F(TrackerFromImages, PointsThatWereHiddenComeBack) {
     options.init.method = InitMethod::kDepth;
     options.find_lost = find_lost;
     options.growth.grow = Switch::kOff;
-    Tracker tracker = MakeTracker(options);
-    std::vector<FrameReport> reports;
-    for (int i = 0; i < kFrames; ++i) {
-      cv::Mat mask(images_->front().size(), CV_8UC1, cv::Scalar(255));
+    return RunMasked(options, [&](int i, cv::Mat mask) {
       if (view == View::kHidden && i >= kFirstHidden && i <= kLastHidden) mask.colRange(0, mask.cols / 2) = 0;
-      TrackerFrame frame = PrepareFrame(i, NameOf(i), i / 30.0, (*images_)[static_cast<std::size_t>(i)], mask, options);
-      frame.depth_mm = *depth_;
-      for (FrameReport& report : tracker.Process(frame)) reports.push_back(std::move(report));
-    }
-    return reports;
+    });
   };
   const auto on_the_left = [](const FrameReport& report) {
     return std::count_if(report.observations.begin(), report.observations.end(),
@@ -297,16 +305,9 @@ TEST_F(TrackerFromImages, TheMapGrowsWhereTheImageShowsMore) {
     options.growth.grow = grow;
     options.growth.every = 1;
     options.growth.max_depth_sigma = 0.2;  // the few frames are short of parallax
-    Tracker tracker = MakeTracker(options);
-    std::vector<FrameReport> reports;
-    for (int i = 0; i < kFrames; ++i) {
-      cv::Mat mask(images_->front().size(), CV_8UC1, cv::Scalar(255));
+    return RunMasked(options, [&](int i, cv::Mat mask) {
       if (i < kFirstOpen) mask.colRange(mask.cols / 2, mask.cols) = 0;
-      TrackerFrame frame = PrepareFrame(i, NameOf(i), i / 30.0, (*images_)[static_cast<std::size_t>(i)], mask, options);
-      frame.depth_mm = *depth_;
-      for (FrameReport& report : tracker.Process(frame)) reports.push_back(std::move(report));
-    }
-    return reports;
+    });
   };
   const auto on_the_right = [](const FrameReport& report) {
     return std::count_if(report.observations.begin(), report.observations.end(),
