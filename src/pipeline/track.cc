@@ -156,6 +156,8 @@ TrackOptions MakeTrackOptions(Preset preset) {
   tracker.neighbor_agreement = Switch::kOff;
   tracker.find_lost = Switch::kOff;
   tracker.growth.grow = Switch::kOff;
+  tracker.relocalization.relocalize = Switch::kOff;
+  tracker.track_blurred = Switch::kOff;
   return options;
 }
 

@@ -78,6 +78,16 @@ void SimulationOptions::List(OptionTable& table) {
   table.Add("drops", &sensor.drops, "-", "drops of fluid on the lens at a time, in the mean; in no truth", 0, 50);
   table.Add("debris", &sensor.debris, "-", "pieces that float before the lens, in the mean; in no truth", 0, 200);
 
+  table.BeginGroup("Interruption", "what takes the view away for a while; in no truth");
+  table.Add("blackout_period_s", &interruption.blackout_period_s, "s", "from one to the next; 0: none", 0, 1e6);
+  table.Add("blackout_s", &interruption.blackout_s, "s", "how long the image stays black", 0, 1e6);
+  table.Add("tool_period_s", &interruption.tool_period_s, "s", "from one tool that passes to the next; 0: none", 0,
+            1e6);
+  table.Add("tool_s", &interruption.tool_s, "s", "how long it is in the image", 0, 1e6);
+  table.Add("blur_period_s", &interruption.blur_period_s, "s", "from one loss of focus to the next; 0: none", 0, 1e6);
+  table.Add("blur_s", &interruption.blur_s, "s", "how long it is out of focus", 0, 1e6);
+  table.Add("blur_px", &interruption.blur_px, "px", "standard deviation of the blur", 0, 100);
+
   table.BeginGroup("Camera", "the camera that films");
   table.AddChoice("model", &camera.model, "projection");
   table.Add("width", &camera.width, "px", "of the image", 16, 8192);

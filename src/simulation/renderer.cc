@@ -8,6 +8,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include "simulation/interruptions.h"
 #include "simulation/lens.h"
 #include "simulation/sensor.h"
 
@@ -157,6 +158,7 @@ SimulatedFrame Renderer::Render(int frame_idx, const RayScene& posed,
     tbb::parallel_for(0, size.height, [&](int y) { RenderRow(shot, y, light.ptr<cv::Vec3f>(y), depth.ptr<float>(y)); });
     if (eye == Eye::kLeft) frame.depth = depth;
     CoverLens(options_, camera_.MeanFocalLengthPx(), gains_[frame_idx], shot.time_s, eye, &light);
+    Interrupt(options_, gains_[frame_idx], shot.time_s, &light);
     return Develop(options_.sensor, light, gains_[frame_idx], NoiseSeed(options_.scene.seed, frame_idx, eye));
   };
   frame.image = photograph(Eye::kLeft);

@@ -26,21 +26,25 @@ void ReportFrame(const Camera& camera, const InitFrame& frame, const InitFrameSt
 
 void ReportFirstMap(const Camera& camera, const std::vector<InitFrame>& frames, const InitOutcome& outcome,
                     std::span<FrameReport> reports) {
-  assert(outcome.frames.size() == frames.size() && reports.size() == frames.size());
-  for (std::size_t k = 0; k < frames.size(); ++k) {
-    ReportFrame(camera, frames[k], outcome.frames[k], &reports[k]);
-    reports[k].first_map = FirstMapFrames{frames.front().frame_idx, frames.back().frame_idx};
-    reports[k].note = "the pose came with the first map, which was made in frame " + reports.back().name;
-  }
-  // A point is new in the first frame that shows it.
+  assert(outcome.frames.size() == frames.size());
   std::set<PointId> known;
-  for (std::size_t k = 0; k < frames.size(); ++k) {
-    for (const InitPosition& seen : outcome.frames[k].positions) {
+  for (FrameReport& report : reports) {
+    const auto frame = std::ranges::find(frames, report.frame_idx, &InitFrame::frame_idx);
+    if (frame == frames.end()) {
+      report.state = TrackingState::kLost;
+      continue;
+    }
+    report.first_map = FirstMapFrames{frames.front().frame_idx, frames.back().frame_idx};
+    const InitFrameState& state = outcome.frames[static_cast<std::size_t>(frame - frames.begin())];
+    ReportFrame(camera, *frame, state, &report);
+    report.note = "the pose came with the first map, which was made in frame " + reports.back().name;
+    // A point is new in the first frame that shows it.
+    for (const InitPosition& seen : state.positions) {
       if (!known.insert(seen.id).second) continue;
       const InitPoint& point = *FindById(outcome.points, seen.id);
-      reports[k].new_points.push_back({point.id, point.position, FindById(frames[k].observations, point.id)->rgb});
+      report.new_points.push_back({point.id, point.position, FindById(frame->observations, point.id)->rgb});
     }
-    reports[k].added = static_cast<int>(reports[k].new_points.size());
+    report.added = static_cast<int>(report.new_points.size());
   }
 }
 

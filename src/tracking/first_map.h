@@ -15,8 +15,9 @@
 
 namespace pliant {
 
-// Completes one report a frame, in their order: state tracking, pose, observations; a point is new in the
-// first frame that shows it, coloured as there. The notes say that the map came later.
+// Completes the reports since the reference, in order of time: state tracking, pose, observations; a point is new in
+// the first frame that shows it, coloured as there. The notes say that the map came later. A report that is of none of
+// the frames, which was passed over, becomes lost.
 void ReportFirstMap(const Camera& camera, const std::vector<InitFrame>& frames, const InitOutcome& outcome,
                     std::span<FrameReport> reports);
 

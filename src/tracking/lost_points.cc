@@ -96,6 +96,12 @@ std::vector<PointPrediction> LostPoints::Expected(const Camera& camera, const Ri
   return predictions;
 }
 
+std::vector<Landmark> LostPoints::landmarks() const {
+  std::vector<Landmark> landmarks;
+  for (const auto& [id, point] : points_) landmarks.push_back(point.landmark);
+  return landmarks;
+}
+
 const Landmark* LostPoints::Find(PointId id) const {
   const auto found = points_.find(id);
   return found == points_.end() ? nullptr : &found->second.landmark;

@@ -38,6 +38,8 @@ class LostPoints {
   // Where a camera at this pose should see them.
   std::vector<Eigen::Vector2d> Pixels(const Camera& camera, const Rigid3& cam_from_world) const;
 
+  // All of them, each where it is thought to be now; sorted by id.
+  std::vector<Landmark> landmarks() const;
   // Null where it is not lost.
   const Landmark* Find(PointId id) const;
 

@@ -220,6 +220,10 @@ void PointTracker::Undo(PointId id) {
   if (const auto found = points_.find(id); found != points_.end()) found->second.next.pending = false;
 }
 
+void PointTracker::Keep() {
+  for (auto& [id, point] : points_) point.TakeStep();
+}
+
 void PointTracker::Undo() {
   for (auto& [id, point] : points_) point.next.pending = false;
 }

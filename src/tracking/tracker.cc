@@ -3,15 +3,18 @@
 
 #include "pliant/tracking/tracker.h"
 
+#include <algorithm>
 #include <chrono>
 #include <iterator>
 #include <span>
 
 #include "pliant/image/brightness.h"
+#include "pliant/image/sharpness.h"
 #include "tracking/candidates.h"
 #include "tracking/first_map.h"
 #include "tracking/lost_points.h"
 #include "tracking/oracle_answers.h"
+#include "tracking/places.h"
 #include "tracking/rigid_history.h"
 #include "tracking/tracker_support.h"
 
@@ -55,9 +58,15 @@ void TrackerOptions::List(OptionTable& table) {
   table.Add("top_up_frames", &top_up_frames, "frames",
             "while the first map is awaited, corners are added where there are none so often (Init.method = window)", 1,
             1000000);
-  table.Add("max_lost_frames", &max_lost_frames, "frames", "lost for so many frames in a row, the run ends", 1,
+  table.AddChoice("track_blurred", &track_blurred,
+                  "follow the points into blurred images; before the first map pass over these");
+  table.Add("min_sharpness", &min_sharpness, "-", "less than this of the last sharp image's: blurred, or dark", 0, 1);
+  table.Add("max_blurred_frames", &max_blurred_frames, "frames", "after so many in a row the blur is taken to stay", 0,
             1000000);
+  table.Add("max_lost_frames", &max_lost_frames, "frames",
+            "lost for so many frames in a row that are not dark, the run ends", 1, 1000000);
   growth.List(table);
+  relocalization.List(table);
   oracle.List(table);
 }
 
@@ -72,6 +81,7 @@ TrackerFrame PrepareFrame(int frame_idx, std::string name, double timestamp_s, c
   frame.grey = ToGrey(image);
   frame.pyramid = ImagePyramid(frame.grey, options.point_tracker.lucas_kanade.levels);
   frame.mask = SupportMask(ValidMask(image, mask, options.masks));
+  frame.sharpness = Sharpness(frame.grey, frame.mask.valid());
   frame.prepare_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   return frame;
 }
@@ -89,6 +99,7 @@ Tracker::Tracker(const Camera& camera, const TrackerOptions& options, std::uint6
       lost_points_(std::make_unique<LostPoints>()),
       rigid_history_(std::make_unique<RigidHistory>()),
       candidates_(std::make_unique<Candidates>(camera_, options.growth)),
+      places_(std::make_unique<Places>(options.corners, options.relocalization)),
       remaker_(MakeRemaker(options)) {
   if (options_.init.IsMetric()) options_.graph.sigma_mm = options_.sigma_metric_mm;
 }
@@ -119,8 +130,9 @@ std::vector<FrameReport> Tracker::Process(const TrackerFrame& frame) {
   report.state = state_;
   ReportLosses(&report);
 
-  const std::size_t waiting = state_ == TrackingState::kInitialising ? init_frames_.size() : 0;
-  const auto first_held = held_.end() - static_cast<std::ptrdiff_t>(waiting);
+  const auto first_held = state_ == TrackingState::kInitialising
+                              ? std::ranges::find(held_, init_frames_.front().frame_idx, &FrameReport::frame_idx)
+                              : held_.end();
   std::vector<FrameReport> done(std::make_move_iterator(held_.begin()), std::make_move_iterator(first_held));
   held_.erase(held_.begin(), first_held);
   return done;
@@ -183,6 +195,8 @@ void Tracker::TakeReference(const TrackerFrame& frame, FrameReport* report) {
     lost_points_->Clear();
     rigid_history_->Stop();
     candidates_->Clear();
+    places_->Clear();
+    recent_poses_.clear();
     window_frames_.clear();
     InitFrame reference{frame.frame_idx, {}};
     const LocalBrightness brightness(frame.image, frame.mask.valid());
@@ -207,33 +221,47 @@ void Tracker::TakeReference(const TrackerFrame& frame, FrameReport* report) {
   previous_ = frame;
 }
 
+// Constant velocity in the image: there is no map yet.
+std::vector<PointPrediction> Tracker::PredictWithoutMap(int frame_idx) const {
+  const std::vector<InitObservation>& last = init_frames_.back().observations;
+  std::vector<Eigen::Vector2d> from;
+  std::vector<Eigen::Vector2d> to;
+  for (const InitObservation& observation : last) {
+    from.push_back(observation.pixel);
+    to.push_back(observation.pixel);
+  }
+  if (init_frames_.size() >= 2) {
+    const InitFrame& earlier = init_frames_[init_frames_.size() - 2];
+    const double steps = static_cast<double>(frame_idx - init_frames_.back().frame_idx) /
+                         (init_frames_.back().frame_idx - earlier.frame_idx);
+    for (std::size_t k = 0; k < last.size(); ++k)
+      if (const InitObservation* before = FindById(earlier.observations, last[k].id); before != nullptr)
+        to[k] = (1 + steps) * last[k].pixel - steps * before->pixel;
+  }
+  const std::vector<Eigen::Matrix2d> affines = NeighbourhoodAffines(from, to);
+  std::vector<PointPrediction> predictions;
+  for (std::size_t k = 0; k < last.size(); ++k) predictions.push_back({last[k].id, to[k], affines[k]});
+  return predictions;
+}
+
+// A dark or blurred frame is passed over: the points are sought again in the next one.
+bool Tracker::PassOver(const TrackerFrame& frame, FrameReport* report) {
+  if (options_.track_blurred == Switch::kOff || !IsBlurred(frame)) return false;
+  ++blurred_frames_;
+  report->tracked = static_cast<int>(init_frames_.back().observations.size());
+  report->note = WithFault("passed over: the image is blurred or dark", ImageFault(frame, previous_));
+  return true;
+}
+
 void Tracker::FollowReference(const TrackerFrame& frame, FrameReport* report) {
   {
     const StageTimer timer(report, "photometric");
-    // Constant velocity in the image: there is no map yet.
-    const std::vector<InitObservation>& last = init_frames_.back().observations;
-    std::vector<Eigen::Vector2d> from;
-    std::vector<Eigen::Vector2d> to;
-    for (const InitObservation& observation : last) {
-      from.push_back(observation.pixel);
-      to.push_back(observation.pixel);
-    }
-    if (init_frames_.size() >= 2) {
-      const std::vector<InitObservation>& earlier = init_frames_[init_frames_.size() - 2].observations;
-      auto before = earlier.begin();
-      const auto end = earlier.end();
-      for (std::size_t k = 0; k < last.size(); ++k) {
-        while (before != end && before->id < last[k].id) ++before;
-        if (before != end && before->id == last[k].id) to[k] = 2 * last[k].pixel - before->pixel;
-      }
-    }
-    const std::vector<Eigen::Matrix2d> affines = NeighbourhoodAffines(from, to);
-    std::vector<PointPrediction> predictions;
-    for (std::size_t k = 0; k < last.size(); ++k) predictions.push_back({last[k].id, to[k], affines[k]});
-
+    if (PassOver(frame, report)) return;
+    blurred_frames_ = 0;
+    const std::vector<PointTrack> tracks = TrackPixels(frame, PredictWithoutMap(frame.frame_idx));
     InitFrame followed{frame.frame_idx, {}};
     const LocalBrightness brightness(frame.image, frame.mask.valid());
-    for (const PointTrack& track : TrackPixels(frame, predictions)) {
+    for (const PointTrack& track : tracks) {
       if (track.failure == PatchFailure::kNone) {
         followed.observations.push_back(
             {track.id, track.pixel, track.ssim, brightness.At(track.pixel), ColourAt(frame.image, track.pixel)});
@@ -247,6 +275,7 @@ void Tracker::FollowReference(const TrackerFrame& frame, FrameReport* report) {
       AddCorners(frame, brightness, options_.corners.max_corners - kept, &followed);
     report->tracked = static_cast<int>(followed.observations.size());
     init_frames_.push_back(std::move(followed));
+    point_tracker_.Keep();
   }
   image_fault_ = ImageFault(frame, previous_);
   TryInitialize(frame, report);
@@ -316,7 +345,7 @@ void Tracker::KeepCandidates(const InitOutcome& outcome) {
 void Tracker::CreateMap(const InitOutcome& outcome) {
   for (const InitRejectedPoint& rejected : outcome.rejected)
     if (rejected.reason != InitRejection::kLostOnTheWay) Count(InitRejectionName(rejected.reason), 1);
-  ReportFirstMap(camera_, init_frames_, outcome, std::span(held_).last(init_frames_.size()));
+  ReportFirstMap(camera_, init_frames_, outcome, held_);
   map_ = MakeFirstMap(init_frames_, outcome);
   last_cam_from_world_ = outcome.frames.back().cam_from_world;
   before_last_cam_from_world_ =

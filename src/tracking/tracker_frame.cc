@@ -7,65 +7,26 @@
 
 #include "pliant/base/statistics.h"
 #include "pliant/tracking/tracker.h"
+#include "tracking/blurred_tracks.h"
+#include "tracking/followed.h"
 #include "tracking/lost_points.h"
 #include "tracking/oracle_answers.h"
 #include "tracking/tracker_support.h"
 
 namespace pliant {
 
-// The landmarks that were followed into this frame: element k of each belongs to the same one.
-struct Tracker::Followed {
-  std::vector<PointId> ids;                     // ascending
-  std::vector<Eigen::Vector3d> positions;       // X_i^{t-1}
-  std::vector<Eigen::Vector3d> rest_positions;  // undeformed
-  std::vector<Eigen::Vector2d> pixels;
-  std::vector<double> ssim;
-  std::vector<FramePoint> solved;  // of the joint problem, once there is a solution
-
-  std::vector<PointId> unseen;  // landmarks that were not found in this image, ascending
-  std::vector<PointId> found;   // lost points that were
-
-  std::size_t size() const { return positions.size(); }
-
-  void Add(const Landmark& landmark, const PointTrack& track) {
-    const auto place = std::lower_bound(ids.begin(), ids.end(), landmark.id) - ids.begin();
-    ids.insert(ids.begin() + place, landmark.id);
-    positions.insert(positions.begin() + place, landmark.position);
-    rest_positions.insert(rest_positions.begin() + place, landmark.rest_position);
-    pixels.insert(pixels.begin() + place, track.pixel);
-    ssim.insert(ssim.begin() + place, track.ssim);
-  }
-
-  // Keeps the elements whose flag is set.
-  void Keep(const std::vector<char>& keep) {
-    const auto filter = [&](auto& values) {
-      if (values.empty()) return;  // not filled in yet
-      std::size_t kept = 0;
-      for (std::size_t k = 0; k < keep.size(); ++k)
-        if (keep[k] != 0) values[kept++] = values[k];
-      values.resize(kept);
-    };
-    filter(ids);
-    filter(positions);
-    filter(rest_positions);
-    filter(pixels);
-    filter(ssim);
-    filter(solved);
-  }
-};
-
 // One frame, as in the paper; the names in brackets are those of docs/method.md.
 void Tracker::TrackFrame(const TrackerFrame& frame, FrameReport* report) {
-  // While lost, the camera's velocity is not known.
-  Rigid3 predicted = state_ == TrackingState::kTracking
-                         ? PredictCameraPose(before_last_cam_from_world_, last_cam_from_world_)  // (E6)
-                         : last_cam_from_world_;
+  Rigid3 predicted = PredictCameraPose(before_last_cam_from_world_, last_cam_from_world_);  // (E6)
   const std::optional<Rigid3> true_pose = oracle_->Pose(frame.frame_idx);
   if (true_pose) predicted = *true_pose;
   Followed followed;
   {
     const StageTimer timer(report, "photometric");
-    followed = FollowPoints(frame, PredictPixels(predicted));  // (P1)
+    if (state_ == TrackingState::kTracking || true_pose)
+      followed = FollowPoints(frame, PredictPixels(predicted));  // (P1)
+    else
+      followed = Relocalize(frame, &predicted);  // (R3)
     report->tracked = static_cast<int>(followed.size());
   }
   if (report->tracked < options_.min_points) return ReportLost(frame, Found(report->tracked), report);
@@ -77,7 +38,8 @@ void Tracker::TrackFrame(const TrackerFrame& frame, FrameReport* report) {
         EstimateCameraPose(camera_, followed.positions, followed.pixels, predicted, options_.pose);  // (E7)
     if (estimate.ok()) pose = estimate->cam_from_world;
   }
-  if (options_.find_lost == Switch::kOn && !oracle_->gives_tracks()) {
+  if (options_.find_lost == Switch::kOn && !oracle_->gives_tracks() && !followed.in_blur &&
+      state_ == TrackingState::kTracking) {
     const StageTimer timer(report, "photometric");
     FindLost(frame, pose, &followed);  // (R2)
     report->tracked = static_cast<int>(followed.size());
@@ -108,8 +70,16 @@ void Tracker::TrackFrame(const TrackerFrame& frame, FrameReport* report) {
     return ReportLost(frame, Found(static_cast<int>(followed.size())), report);
   Commit(*solution, followed, report);
   Apply(TrackingEvent::kFrameTracked);
+  if (followed.in_blur) {
+    ++blurred_frames_;
+    report->note = "the image is blurred";
+    return;
+  }
+  blurred_frames_ = 0;
+  Remember(frame, *report);
   RefineMap(report);
   GrowMap(frame, report);
+  point_tracker_.Keep();
   report->note = WithFault(report->note, ImageFault(frame, previous_));
   previous_ = frame;
 }
@@ -137,9 +107,24 @@ std::vector<PointTrack> Tracker::TrackPixels(const TrackerFrame& frame,
   return point_tracker_.Track(previous_.pyramid, previous_.mask, frame.pyramid, frame.mask, predictions, threads_);
 }
 
+// Against the last sharp image. Of many such images in a row the later ones are taken as they are: the blur stays.
+bool Tracker::IsBlurred(const TrackerFrame& frame) const {
+  return blurred_frames_ < options_.max_blurred_frames &&
+         frame.sharpness < options_.min_sharpness * previous_.sharpness;
+}
+
+std::vector<PointTrack> Tracker::TrackPixelsIntoBlur(const TrackerFrame& frame,
+                                                     const std::vector<PointPrediction>& predictions) const {
+  std::vector<Eigen::Vector2d> pixels;
+  for (const PointPrediction& prediction : predictions) pixels.push_back(point_tracker_.PixelOf(prediction.id));
+  return TrackIntoBlur(previous_, frame, pixels, predictions, options_.point_tracker, threads_);
+}
+
 Tracker::Followed Tracker::FollowPoints(const TrackerFrame& frame, const std::vector<PointPrediction>& predictions) {
-  const std::vector<PointTrack> tracks = TrackPixels(frame, predictions);
   Followed followed;
+  followed.in_blur = options_.track_blurred == Switch::kOn && !oracle_->gives_tracks() && IsBlurred(frame);
+  const std::vector<PointTrack> tracks =
+      followed.in_blur ? TrackPixelsIntoBlur(frame, predictions) : TrackPixels(frame, predictions);  // (P10)
   for (std::size_t k = 0; k < tracks.size(); ++k) {
     if (tracks[k].failure != PatchFailure::kNone) {
       Count(EnumName(tracks[k].failure), 1);
@@ -151,8 +136,9 @@ Tracker::Followed Tracker::FollowPoints(const TrackerFrame& frame, const std::ve
   return followed;
 }
 
-// Lost points that are where they are expected (R2). They take part in the frame's problem like the others.
-void Tracker::FindLost(const TrackerFrame& frame, const Rigid3& cam_from_world, Followed* followed) {
+// Lost points that are where they are expected (R2). They take part in the frame's problem like the others. Returns how
+// many were looked for.
+int Tracker::FindLost(const TrackerFrame& frame, const Rigid3& cam_from_world, Followed* followed) {
   const std::vector<PointPrediction> expected =
       lost_points_->Expected(camera_, cam_from_world, static_cast<std::size_t>(options_.max_searches));
   const std::vector<PointTrack> tracks = point_tracker_.Find(frame.pyramid, frame.mask, expected, threads_);
@@ -165,6 +151,7 @@ void Tracker::FindLost(const TrackerFrame& frame, const Rigid3& cam_from_world, 
       followed->found.push_back(tracks[k].id);
     }
   }
+  return static_cast<int>(expected.size());
 }
 
 // An empty graph where there is none: the points are then tied to nothing.
@@ -265,11 +252,13 @@ std::string Tracker::Found(int count) const {
 
 // Nothing is given up: the map and the patches stay as they were in the last good frame.
 void Tracker::ReportLost(const TrackerFrame& frame, const std::string& reason, FrameReport* report) {
+  if (state_ == TrackingState::kTracking) RememberLastView();
   Apply(TrackingEvent::kTooFewPoints);
-  ++lost_frames_;
+  const std::string fault = ImageFault(frame, previous_);
+  if (fault.empty()) ++lost_frames_;
   losses_.clear();
   point_tracker_.Undo();
-  report->note = WithFault("lost: " + reason, ImageFault(frame, previous_));
+  report->note = WithFault("lost: " + reason, fault);
 }
 
 }  // namespace pliant

@@ -147,6 +147,7 @@ void Tracker::RemakeMap(const TrackerFrame& frame, FrameReport* report) {
     if (Landmark* landmark = map_.Find(point.id); landmark != nullptr) {
       landmark->rest_position += point.position - landmark->position;
       landmark->position = point.position;
+      report->refined_points.push_back({landmark->id, landmark->rest_position});
     }
   candidates_->TakeCorrection(before, map_);
   for (const InitPosition& point : positions)

@@ -21,16 +21,21 @@ StageTimer::~StageTimer() {
   *ms_ += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
 }
 
-std::string ImageFault(const TrackerFrame& frame, const TrackerFrame& previous) {
+std::string Blankness(const cv::Mat& grey) {
   constexpr double kBlack = 8;        // grey levels, mean
   constexpr double kWhite = 247;      // grey levels, mean
   constexpr double kFeatureless = 2;  // grey levels, standard deviation: the noise of a sensor
   cv::Scalar mean;
   cv::Scalar deviation;
-  cv::meanStdDev(frame.grey, mean, deviation);
+  cv::meanStdDev(grey, mean, deviation);
   if (mean[0] < kBlack) return "the image is black";
   if (mean[0] > kWhite) return "the image is white";
   if (deviation[0] < kFeatureless) return "the image is of one colour";
+  return {};
+}
+
+std::string ImageFault(const TrackerFrame& frame, const TrackerFrame& previous) {
+  if (const std::string blank = Blankness(frame.grey); !blank.empty()) return blank;
   if (previous.grey.size() == frame.grey.size() && cv::norm(frame.grey, previous.grey, cv::NORM_INF) == 0)
     return "the image is the same as the one before (frozen)";
   return {};

@@ -29,6 +29,9 @@ class StageTimer {
   double* ms_ = nullptr;
 };
 
+// That an image shows nothing: it is black, white, or of one colour; empty where it shows something.
+std::string Blankness(const cv::Mat& grey);
+
 // What is wrong with an image in which nothing can be followed; empty when nothing is.
 std::string ImageFault(const TrackerFrame& frame, const TrackerFrame& previous);
 

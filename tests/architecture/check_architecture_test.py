@@ -47,6 +47,12 @@ class Rules(unittest.TestCase):
         found = violations({"src/geometry/a.cc": "#include <opengv/types.hpp>\n"})
         self.assertEqual(found, ["src/geometry/a.cc:3: opengv may be included in room estimation only"])
 
+    def test_opengv_in_a_file_of_another_name_is_found(self):
+        found = violations({"src/estimation/a.cc": "#include <opengv/types.hpp>\n",
+                            "src/estimation/opengv_a.cc": "#include <opengv/types.hpp>\n",
+                            "src/estimation/opengv_b.cc": "#include <opengv/types.hpp>\n"})
+        self.assertEqual(found, ["src/estimation/a.cc:3: opengv may be included in files opengv_* only"])
+
     def test_printing_and_ending_the_process_are_found(self):
         for call in ("std::cout << 1;", "std::cerr << 1;", 'printf("x");', "exit(1);", "std::exit(1);", "abort();",
                      "std::abort();", 'spdlog::info("x");'):

@@ -134,6 +134,48 @@ TEST(Sensor, DropsCoverPartOfTheImageAndNoTruth) { ExpectCovers(&SimulationOptio
 
 TEST(Sensor, DebrisCoversPartOfTheImageAndNoTruth) { ExpectCovers(&SimulationOptions::Sensor::debris); }
 
+// Each interruption has its time, covers what it should then and nothing otherwise, and is in no truth.
+TEST(Sensor, InterruptionsComeByTheClock) {
+  SimulationOptions options = LinearScene(TrajectoryKind::kSway, 31);
+  Simulator clear = Make(options);
+  options.interruption.blackout_period_s = 0.3;  // frames 9 to 11, 18 to 20, ...
+  options.interruption.blackout_s = 0.1;
+  Simulator dark = Make(options);
+  options.interruption.blackout_period_s = 0;
+  options.interruption.tool_period_s = 0.5;  // frames 15 to 23
+  options.interruption.tool_s = 0.3;
+  Simulator tool = Make(options);
+  options.interruption.tool_period_s = 0;
+  options.interruption.blur_period_s = 0.4;  // frames 12 to 14, ...
+  options.interruption.blur_s = 0.1;
+  Simulator blurred = Make(options);
+  for (const int frame_idx : {0, 8, 9, 11, 12, 14, 15, 19, 23, 24}) {
+    const SimulatedFrame open = clear.Render(frame_idx);
+    const auto share = [&](Simulator& simulator) {
+      const SimulatedFrame frame = simulator.Render(frame_idx);
+      EXPECT_TRUE(SamePixels(frame.depth, open.depth)) << frame_idx;
+      return cv::countNonZero(Changed(frame.image, open.image)) / static_cast<double>(open.depth.total());
+    };
+    const bool is_dark = frame_idx % 9 < 3 && frame_idx >= 9;
+    if (is_dark)
+      EXPECT_EQ(cv::norm(dark.Render(frame_idx).image, cv::NORM_INF), 0) << frame_idx;
+    else
+      EXPECT_EQ(share(dark), 0) << frame_idx;
+    const double covered = share(tool);
+    if (frame_idx == 19) {
+      EXPECT_GT(covered, 0.05);
+      EXPECT_LT(covered, 0.4);
+    } else if (frame_idx < 15 || frame_idx > 23) {
+      EXPECT_EQ(covered, 0) << frame_idx;
+    }
+    const double sharper = share(blurred);
+    if (frame_idx == 12 || frame_idx == 14 || frame_idx == 24)
+      EXPECT_GT(sharper, 0.3) << frame_idx;
+    else
+      EXPECT_EQ(sharper, 0) << frame_idx;
+  }
+}
+
 TEST(Sensor, TheRightCameraSeesTheSceneShiftedByTheDisparity) {
   SimulationOptions options = SmallScene(TrajectoryKind::kSway, 10);
   options.camera.baseline_mm = 4.0;

@@ -77,6 +77,7 @@ TEST(FirstMap, GivesEveryFrameItsOwnPositions) {
   start.frames[0].observations.erase(start.frames[0].observations.begin() + 2);
   start.outcome.frames[0].positions.erase(start.outcome.frames[0].positions.begin() + 2);
   std::vector<FrameReport> reports(3);
+  for (int t = 0; t < 3; ++t) reports[t].frame_idx = start.frames[t].frame_idx;
   reports.back().name = "last.png";
   ReportFirstMap(start.camera, start.frames, start.outcome, reports);
   for (int t = 0; t < 3; ++t) {
@@ -138,6 +139,20 @@ TEST(FirstMap, TakesItsUnitFromTheReferencesPointsAlone) {
     EXPECT_NEAR(frame.cam_from_world.translation.x(), -since * 50.0 / 40.0, kRounding);
   }
   ASSERT_TRUE(oracle.Pose(22));
+}
+
+TEST(FirstMap, MakesAFrameThatWasPassedOverLost) {
+  DeformingStart start;
+  start.frames[2].frame_idx = start.outcome.frames[2].frame_idx = 23;
+  std::vector<FrameReport> reports(4);
+  for (int t = 0; t < 4; ++t) reports[t].frame_idx = 20 + t;
+  reports[2].note = "passed over";
+  ReportFirstMap(start.camera, start.frames, start.outcome, reports);
+  for (const int t : {0, 1, 3}) EXPECT_EQ(reports[t].state, TrackingState::kTracking);
+  EXPECT_EQ(reports[2].state, TrackingState::kLost);
+  EXPECT_EQ(reports[2].note, "passed over");
+  EXPECT_FALSE(reports[2].cam_from_world || reports[2].first_map);
+  EXPECT_TRUE(reports[2].observations.empty() && reports[2].new_points.empty());
 }
 
 }  // namespace

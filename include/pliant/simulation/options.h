@@ -120,6 +120,18 @@ struct SimulationOptions {
     double debris = 0.0;            // pieces that float before the lens at a time, in the mean; not in any truth
   } sensor;
 
+  // What takes the view away for a while, in part or in whole; in no truth. A period of 0: never; the first comes when
+  // the period has passed once.
+  struct Interruption {
+    double blackout_period_s = 0.0;
+    double blackout_s = 1.0 / 3;
+    double tool_period_s = 0.0;
+    double tool_s = 1.0;
+    double blur_period_s = 0.0;
+    double blur_s = 0.2;
+    double blur_px = 6.0;  // standard deviation
+  } interruption;
+
   struct CameraModel {
     CameraModelId model = CameraModelId::kPinhole;
     int width = 640;

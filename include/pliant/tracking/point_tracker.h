@@ -77,6 +77,8 @@ class PointTracker {
   void Clear() { points_.clear(); }
   std::size_t size() const { return points_.size(); }
   bool Contains(PointId id) const { return points_.contains(id); }
+  // Where a known point was last seen, as far as it is kept.
+  const Eigen::Vector2d& PixelOf(PointId id) const { return points_.at(id).pixel; }
 
   // Follows the predicted points from the image they were last seen in (`previous`; every predicted point must have
   // been added or tracked there) into `current`. One result a prediction, in their order, whatever the number of
@@ -94,12 +96,14 @@ class PointTracker {
   // Takes the last Find of a point back.
   void Undo(PointId id);
 
-  // Takes the last Track back: every point is again where it was before. For an image whose result is not used; the
-  // next Track then starts from the same `previous` as the one taken back.
+  // What was found since the last Keep is right: Undo no longer takes it back.
+  void Keep();
+  // Takes back what was found since the last Keep: every point is again where it was then. For an image whose result is
+  // not used; the next Track then starts from the same `previous` as the one taken back.
   void Undo();
 
  private:
-  // What the latest Track found of a point; it becomes the point's own with the next Track.
+  // What the latest Track found of a point; it becomes the point's own with Keep, or with the next Track.
   struct Step {
     enum class Patch { kKept, kLatest, kReference };  // what was cut anew: nothing, the latest, the reference as well
     bool pending = false;

@@ -34,6 +34,7 @@
 #include "pliant/tracking/neighbour_agreement.h"
 #include "pliant/tracking/oracle.h"
 #include "pliant/tracking/point_tracker.h"
+#include "pliant/tracking/relocalization_options.h"
 #include "pliant/tracking/state.h"
 
 namespace pliant {
@@ -42,6 +43,7 @@ class Candidates;
 class LocalBrightness;
 class LostPoints;
 class OracleAnswers;
+class Places;
 class RigidHistory;
 
 struct TrackerOptions {
@@ -54,6 +56,7 @@ struct TrackerOptions {
   FrameProblemOptions problem;
   AgreementOptions agreement;
   GrowthOptions growth;
+  RelocalizationOptions relocalization;
   OracleOptions oracle;
 
   double sigma_metric_mm = 55.0;  // instead of graph.sigma_mm after a start from metric depth, as published
@@ -66,10 +69,13 @@ struct TrackerOptions {
   int min_points = 12;                  // fewer: lost
   int min_corners = 40;                 // fewer in an image: it is no reference
   int top_up_frames = 10;               // while the first map is awaited, corners are added so often
-  int max_lost_frames = 10;             // after so many frames in a row without enough points the tracker gives up
+  Switch track_blurred = Switch::kOn;   // into blurred images too; before the first map these are passed over
+  double min_sharpness = 0.6;           // by that of the last sharp image: less is blurred, or dark
+  int max_blurred_frames = 30;          // in a row: then the blur is taken to stay
+  int max_lost_frames = 10;             // after so many lost frames in a row that show something the tracker gives up
 
-  // Groups Corners, Masks, LucasKanade, PointTracker, Init, CameraPose, Deformation, Optimization, Tracking,
-  // Oracle.
+  // Groups Corners, Masks, LucasKanade, PointTracker, Init, CameraPose, Deformation, Optimization, Tracking, Growth,
+  // Relocalization, AbsolutePose, Oracle, and those of the initialisers.
   void List(OptionTable& table);
 };
 
@@ -90,6 +96,7 @@ struct TrackerFrame {
   SupportMask mask;
   cv::Mat depth_mm;                      // CV_32FC1 or empty; only a start from depth uses it
   std::vector<PixelDepth> known_points;  // only a start from a model uses them: instead of corners, the best first
+  double sharpness = 0;                  // of the image, grey levels
   double prepare_ms = 0;                 // wall time of PrepareFrame
 };
 
@@ -124,7 +131,7 @@ class Tracker {
 
   TrackingState state() const { return state_; }
   const Map& map() const { return map_; }
-  // Lost for max_lost_frames frames: further frames will not help.
+  // Lost for max_lost_frames frames that are neither dark nor frozen: further frames will not help.
   bool GaveUp() const { return lost_frames_ >= options_.max_lost_frames; }
 
  private:
@@ -138,6 +145,8 @@ class Tracker {
   void AddCorners(const TrackerFrame& frame, const LocalBrightness& brightness, int max_corners, InitFrame* points);
   void AddKnownPoints(const TrackerFrame& frame, const LocalBrightness& brightness, InitFrame* points);
   void TakeReference(const TrackerFrame& frame, FrameReport* report);
+  std::vector<PointPrediction> PredictWithoutMap(int frame_idx) const;
+  bool PassOver(const TrackerFrame& frame, FrameReport* report);
   void FollowReference(const TrackerFrame& frame, FrameReport* report);
   InitOutcome AskInitializer(const cv::Mat& depth_mm, InitMoment moment, FrameReport* report);
   InitDecision TryInitialize(const TrackerFrame& frame, FrameReport* report);
@@ -147,15 +156,26 @@ class Tracker {
   // One frame.
   void TrackFrame(const TrackerFrame& frame, FrameReport* report);
   std::vector<PointTrack> TrackPixels(const TrackerFrame& frame, const std::vector<PointPrediction>& predictions);
+  bool IsBlurred(const TrackerFrame& frame) const;
+  std::vector<PointTrack> TrackPixelsIntoBlur(const TrackerFrame& frame,
+                                              const std::vector<PointPrediction>& predictions) const;
   std::vector<PointPrediction> PredictPixels(const Rigid3& predicted_cam_from_world) const;
   Followed FollowPoints(const TrackerFrame& frame, const std::vector<PointPrediction>& predictions);
-  void FindLost(const TrackerFrame& frame, const Rigid3& cam_from_world, Followed* followed);
+  int FindLost(const TrackerFrame& frame, const Rigid3& cam_from_world, Followed* followed);
   DeformationGraph TieNeighbours(const Followed& followed, FrameReport* report) const;
   void DropContradicted(const Rigid3& cam_from_world, const DeformationGraph& graph, Followed* followed);
   void DropUnexplained(Followed* followed);
   void Commit(const FrameSolution& solution, const Followed& followed, FrameReport* report);
   std::string Found(int count) const;
   void ReportLost(const TrackerFrame& frame, const std::string& reason, FrameReport* report);
+
+  // The way back after a loss.
+  void Remember(const TrackerFrame& frame, const FrameReport& report);
+  void RememberLastView();
+  std::vector<Landmark> KnownLandmarks() const;
+  std::vector<Rigid3> GuessPoses(int frame_idx) const;
+  Followed FollowFrom(const TrackerFrame& frame, Rigid3* cam_from_world);
+  Followed Relocalize(const TrackerFrame& frame, Rigid3* cam_from_world);
 
   // The map between frames.
   void DropFromMap(PointId id, FrameReport* report);
@@ -176,6 +196,7 @@ class Tracker {
   std::unique_ptr<LostPoints> lost_points_;
   std::unique_ptr<RigidHistory> rigid_history_;
   std::unique_ptr<Candidates> candidates_;
+  std::unique_ptr<Places> places_;
   std::unique_ptr<Initializer> remaker_;  // of the map, from window_frames_
 
   TrackingState state_ = TrackingState::kWaitingForReference;
@@ -188,8 +209,10 @@ class Tracker {
   TrackerFrame previous_;          // the last frame in which points were seen
   Rigid3 last_cam_from_world_;
   Rigid3 before_last_cam_from_world_;
+  std::vector<std::pair<int, Rigid3>> recent_poses_;  // by frame_idx, of the last frames in a row that were tracked
   std::int64_t next_id_ = 0;
   int lost_frames_ = 0;
+  int blurred_frames_ = 0;                           // in a row, up to now
   std::vector<std::pair<std::string, int>> losses_;  // of the present frame, by reason
 };
 

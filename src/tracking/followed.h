@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// The points that were followed into one frame, on their way from their pixels to the committed solution.
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "pliant/tracking/tracker.h"
+
+namespace pliant {
+
+// Element k of each belongs to the same landmark.
+struct Tracker::Followed {
+  std::vector<PointId> ids;                     // ascending
+  std::vector<Eigen::Vector3d> positions;       // X_i^{t-1}
+  std::vector<Eigen::Vector3d> rest_positions;  // undeformed
+  std::vector<Eigen::Vector2d> pixels;
+  std::vector<double> ssim;
+  std::vector<FramePoint> solved;  // of the joint problem, once there is a solution
+
+  std::vector<PointId> unseen;  // landmarks that were not found in this image, ascending
+  std::vector<PointId> found;   // lost points that were
+  bool in_blur = false;         // the image is blurred; the patches stay those of the last sharp one
+
+  std::size_t size() const { return positions.size(); }
+
+  void Add(const Landmark& landmark, const PointTrack& track) {
+    const auto place = std::lower_bound(ids.begin(), ids.end(), landmark.id) - ids.begin();
+    ids.insert(ids.begin() + place, landmark.id);
+    positions.insert(positions.begin() + place, landmark.position);
+    rest_positions.insert(rest_positions.begin() + place, landmark.rest_position);
+    pixels.insert(pixels.begin() + place, track.pixel);
+    ssim.insert(ssim.begin() + place, track.ssim);
+  }
+
+  // Keeps the elements whose flag is set.
+  void Keep(const std::vector<char>& keep) {
+    const auto filter = [&](auto& values) {
+      if (values.empty()) return;  // not filled in yet
+      std::size_t kept = 0;
+      for (std::size_t k = 0; k < keep.size(); ++k)
+        if (keep[k] != 0) values[kept++] = values[k];
+      values.resize(kept);
+    };
+    filter(ids);
+    filter(positions);
+    filter(rest_positions);
+    filter(pixels);
+    filter(ssim);
+    filter(solved);
+  }
+};
+
+}  // namespace pliant

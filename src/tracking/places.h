@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// What the map's points looked like, to recognise them in an image of which nothing is known (docs/method.md, eq. R3).
+#pragma once
+
+#include <map>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+#include <opencv2/core/mat.hpp>
+
+#include "pliant/base/ids.h"
+#include "pliant/base/status.h"
+#include "pliant/camera/camera.h"
+#include "pliant/estimation/absolute_pose.h"
+#include "pliant/image/corners.h"
+#include "pliant/image/masks.h"
+#include "pliant/scene/map.h"
+#include "pliant/tracking/relocalization_options.h"
+
+namespace pliant {
+
+class Places {
+ public:
+  Places(const CornerOptions& corners, const RelocalizationOptions& options);
+
+  void Clear() { seen_.clear(); }
+  // The landmarks as they look in an image, each at its pixel; what was known of them is replaced.
+  void See(const cv::Mat& grey, const std::vector<Landmark>& landmarks);
+  // Forgets all points but these. Sorted.
+  void Keep(const std::vector<PointId>& known);
+
+  // The camera of an image that sees some of these landmarks, wherever it may be. Fails as EstimateAbsolutePose does.
+  Result<AbsolutePose> Recognize(const cv::Mat& grey, const SupportMask& mask, const Camera& camera,
+                                 const std::vector<Landmark>& landmarks) const;
+
+ private:
+  CornerOptions corners_;
+  RelocalizationOptions options_;
+  std::map<PointId, cv::Mat> seen_;  // one row each
+};
+
+}  // namespace pliant

@@ -1,0 +1,178 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Images in which the scene is not seen, or badly, on the way: before the first map, and after it.
+#include <algorithm>
+#include <set>
+
+#include <gmock/gmock.h>
+#include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "tracking/tracker_from_images.h"
+
+namespace pliant {
+namespace {
+
+using testing::HasSubstr;
+using tracking_test::kFrames;
+
+class LossOfTheView : public tracking_test::TrackerFromImages {
+ protected:
+  static cv::Mat Image(int idx) { return (*images_)[static_cast<std::size_t>(idx)]; }
+  static cv::Mat Black() { return {images_->front().size(), CV_8UC3, cv::Scalar::all(0)}; }
+  static cv::Mat Blurred(int idx, double sigma_px) {
+    cv::Mat blurred;
+    cv::GaussianBlur(Image(idx), blurred, cv::Size(), sigma_px);
+    return blurred;
+  }
+  // Neither dark nor anything that was seen before.
+  static cv::Mat Noise(int seed) {
+    cv::Mat noise(images_->front().size(), CV_8UC3);
+    cv::RNG rng(static_cast<std::uint64_t>(seed) + 1);
+    rng.fill(noise, cv::RNG::UNIFORM, 40, 220);
+    return noise;
+  }
+  static std::vector<cv::Mat> AllImages() {
+    std::vector<cv::Mat> images;
+    for (const cv::Mat& image : *images_) images.push_back(image.clone());
+    return images;
+  }
+
+  static std::vector<FrameReport> Run(const TrackerOptions& options, const std::vector<cv::Mat>& images) {
+    Tracker tracker = MakeTracker(options);
+    std::vector<FrameReport> reports;
+    const auto take = [&](std::vector<FrameReport> done) {
+      for (FrameReport& report : done) reports.push_back(std::move(report));
+    };
+    for (std::size_t i = 0; i < images.size(); ++i) {
+      const int idx = static_cast<int>(i);
+      TrackerFrame frame = PrepareFrame(idx, NameOf(idx), idx / 30.0, images[i], {}, options);
+      frame.depth_mm = *depth_;
+      take(tracker.Process(frame));
+    }
+    take(tracker.Finish());
+    return reports;
+  }
+  // A start from depth: there is a map from the first frame on.
+  static TrackerOptions FromDepth() {
+    TrackerOptions options;
+    options.init.method = InitMethod::kDepth;
+    return options;
+  }
+};
+
+double DistanceMm(const FrameReport& a, const FrameReport& b) {
+  return (a.cam_from_world->OriginInSource() - b.cam_from_world->OriginInSource()).norm();
+}
+
+std::vector<int> FramesThat(const std::vector<FrameReport>& reports, TrackingState state) {
+  std::vector<int> frames;
+  for (const FrameReport& report : reports)
+    if (report.state == state) frames.push_back(report.frame_idx);
+  return frames;
+}
+
+TEST_F(LossOfTheView, DarkAndBlurredImagesBeforeTheMapArePassedOver) {
+  TrackerOptions options;
+  options.init.method = InitMethod::kGated;
+  std::vector<cv::Mat> images = AllImages();
+  images[2] = Black();
+  images[3] = Blurred(3, 5);
+  const auto reports = Run(options, images);
+  ASSERT_EQ(static_cast<int>(reports.size()), kFrames);
+  EXPECT_EQ(FramesThat(reports, TrackingState::kLost), (std::vector<int>{2, 3}));
+  EXPECT_EQ(static_cast<int>(FramesThat(reports, TrackingState::kTracking).size()), kFrames - 2);
+  EXPECT_THAT(reports[2].note, HasSubstr("passed over"));
+  EXPECT_THAT(reports[2].note, HasSubstr("black"));
+  for (const int idx : {2, 3}) {
+    const FrameReport& lost = reports[static_cast<std::size_t>(idx)];
+    EXPECT_FALSE(lost.cam_from_world);
+    EXPECT_FALSE(lost.first_map);
+    EXPECT_TRUE(lost.observations.empty());
+  }
+  const auto undisturbed = Run(options, AllImages());
+  // The unit of both is the nominal depth.
+  EXPECT_LT(DistanceMm(reports.back(), undisturbed.back()), 0.1 * DistanceMm(undisturbed.front(), undisturbed.back()));
+}
+
+TEST_F(LossOfTheView, ABlurThatStaysIsTakenAsItIs) {
+  TrackerOptions options;
+  options.max_blurred_frames = 3;
+  std::vector<cv::Mat> images = AllImages();
+  for (int i = 2; i < kFrames; ++i) images[static_cast<std::size_t>(i)] = Blurred(i, 2);
+  const auto reports = Run(options, images);
+  for (std::size_t i = 0; i < reports.size(); ++i)
+    EXPECT_EQ(reports[i].note.find("passed over") != std::string::npos, i >= 2 && i < 5) << i << reports[i].note;
+}
+
+// A sway: after a gap the camera is elsewhere, and going another way.
+TEST_F(LossOfTheView, TheCameraIsFoundWhereverItIsAfterTheDark) {
+  const auto undisturbed = Run(FromDepth(), AllImages());
+  constexpr int kLastSeen = 4;
+  for (const int found : {7, 10, 13}) {
+    std::vector<cv::Mat> images = AllImages();
+    images.resize(static_cast<std::size_t>(found) + 1);
+    for (int i = kLastSeen + 1; i < found; ++i) images[static_cast<std::size_t>(i)] = Black();
+    const auto reports = Run(FromDepth(), images);
+    EXPECT_EQ(static_cast<int>(FramesThat(reports, TrackingState::kLost).size()), found - kLastSeen - 1);
+    const FrameReport& back = reports.back();
+    ASSERT_EQ(back.state, TrackingState::kTracking) << found << ": " << back.note;
+    const FrameReport& there = undisturbed[static_cast<std::size_t>(found)];
+    EXPECT_LT(DistanceMm(back, there),
+              0.05 * DistanceMm(undisturbed[static_cast<std::size_t>(kLastSeen)], there) + 0.05)
+        << found;
+    std::set<PointId> before;
+    for (const PointObservation& seen : reports[kLastSeen].observations) before.insert(seen.id);
+    const auto same = std::ranges::count_if(back.observations,
+                                            [&](const PointObservation& seen) { return before.contains(seen.id); });
+    EXPECT_GT(static_cast<double>(same), 0.5 * static_cast<double>(before.size())) << found;
+  }
+}
+
+TEST_F(LossOfTheView, TheCameraIsNotFoundInAnImageOfSomethingElse) {
+  std::vector<cv::Mat> images = AllImages();
+  images.resize(8);
+  images[4] = images[5] = Black();
+  images[6] = Noise(6);
+  cv::flip(Image(7), images[7], 0);  // as bright and as textured as the scene, and not a view of it
+  const auto reports = Run(FromDepth(), images);
+  EXPECT_EQ(FramesThat(reports, TrackingState::kLost), (std::vector<int>{4, 5, 6, 7}));
+}
+
+TEST_F(LossOfTheView, PointsAreFollowedIntoBlurredImages) {
+  const auto undisturbed = Run(FromDepth(), AllImages());
+  std::vector<cv::Mat> images = AllImages();
+  for (int i = 5; i < 8; ++i) images[static_cast<std::size_t>(i)] = Blurred(i, 4);
+  TrackerOptions options = FromDepth();
+  const auto reports = Run(options, images);
+  EXPECT_TRUE(FramesThat(reports, TrackingState::kLost).empty());
+  for (int i = 5; i < kFrames; ++i) {
+    const auto idx = static_cast<std::size_t>(i);
+    EXPECT_LT(DistanceMm(reports[idx], undisturbed[idx]), 0.4) << i;
+    EXPECT_EQ(reports[idx].note.find("blurred") != std::string::npos, i < 8) << i;
+  }
+  EXPECT_GT(static_cast<double>(reports.back().optimized), 0.8 * static_cast<double>(undisturbed.back().optimized));
+
+  options.track_blurred = Switch::kOff;
+  EXPECT_FALSE(FramesThat(Run(options, images), TrackingState::kLost).empty());
+}
+
+TEST_F(LossOfTheView, OnlyFramesThatShowSomethingEndTheRun) {
+  TrackerOptions options = FromDepth();
+  options.max_lost_frames = 2;
+  Tracker tracker = MakeTracker(options);
+  const auto show = [&](const cv::Mat& image) {
+    TrackerFrame frame = PrepareFrame(0, NameOf(0), 0, image, {}, options);
+    frame.depth_mm = *depth_;
+    tracker.Process(frame);
+  };
+  show(Image(0));
+  for (int i = 0; i < 5; ++i) show(Black());
+  EXPECT_FALSE(tracker.GaveUp());
+  for (int i = 0; i < 2; ++i) show(Noise(i));
+  EXPECT_TRUE(tracker.GaveUp());
+}
+
+}  // namespace
+}  // namespace pliant
