@@ -54,7 +54,7 @@ Status CollectFrame(const EvaluationFrame& frame, const Sequence& sequence, cons
   if ((options.Wants(EvaluationPart::kSurface) || of_first_map) && !depth_mm.empty())
     known.surface = PairFrame(frame.frame_idx, points, sequence.camera(), depth_mm, options.points.max_depth_step);
   if (const std::optional<Rigid3> world_from_cam = sequence.WorldFromCamera(frame.frame_idx))
-    known.poses = {frame.frame_idx, frame.cam_from_world->Inverse(), *world_from_cam};
+    known.poses = {frame.frame_idx, frame.cam_from_world->Inverse(), *world_from_cam, frame.submap};
   if (truth->material)
     if (Status status = truth->material->AddFrame(frame.frame_idx, points, depth_mm); !status.ok()) return status;
   if (of_first_map && frame.frame_idx == frame.first_map->reference_frame_idx) truth->reference = known;

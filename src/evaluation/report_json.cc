@@ -103,6 +103,7 @@ Json ToJson(const TrajectoryError& e) {
     frames.push_back({{"frame", e.frame_idx[i]}, {"ate_mm", e.ate_mm[i]}});
   return {{"alignment", EnumName(e.alignment)},
           {"poses", e.poses},
+          {"submaps", e.submaps},
           {"ate_rmse_mm", e.ate_rmse_mm},
           {"ate_mean_mm", e.ate_mean_mm},
           {"ate_median_mm", e.ate_median_mm},

@@ -32,6 +32,7 @@ EvaluationFrame& FrameAt(int frame_idx, double timestamp_s, FrameMap* frames) {
 }
 
 void TakeRow(const Run& run, const RunFrame& row, EvaluationFrame* frame) {
+  frame->submap = row.submap;
   for (std::size_t i = 0; i < run.stage_names.size(); ++i)
     if (run.stage_names[i] == kInitialiseStage) frame->initialise_ms = row.stage_ms[i];
   if (!run.summary || !run.summary->first_map) return;
@@ -81,7 +82,7 @@ Status ReadPoints(const std::string& run_path, bool foreign, const Sequence& seq
 }
 
 Result<std::optional<Camera>> ReadRunCamera(const std::string& run_path) {
-  for (const char* name : {"cameras.txt", "cameras.bin"}) {
+  for (const char* name : {"cameras.txt", "cameras.bin", "0/cameras.txt", "0/cameras.bin"}) {
     const std::filesystem::path path = std::filesystem::path(run_path) / "sparse" / name;
     std::error_code error;
     if (!std::filesystem::exists(path, error)) continue;
@@ -136,6 +137,7 @@ EvaluationFrame FrameFromReport(const FrameReport& report) {
                         report.first_map};
   for (const auto& [stage, ms] : report.stage_ms)
     if (stage == kInitialiseStage) frame.initialise_ms = ms;
+  frame.submap = report.submap;
   return frame;
 }
 

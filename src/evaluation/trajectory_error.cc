@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <string>
 
@@ -28,23 +29,60 @@ Rigid3 Aligned(const Sim3& truth_from_run, const Rigid3& world_from_cam) {
   return {truth_from_run.rotation * world_from_cam.rotation, truth_from_run * world_from_cam.translation};
 }
 
-void AddRelativeErrors(std::span<const Rigid3> aligned, std::span<const Rigid3> truth, RelativePairs pairs,
-                       TrajectoryError* error) {
-  std::vector<double> translations;
-  std::vector<double> rotations;
-  const auto delta = static_cast<std::size_t>(error->rpe_delta);
-  const std::size_t step = pairs == RelativePairs::kAll ? 1 : delta;
+// What the submaps together give.
+struct Pooled {
+  std::vector<double> rotations_deg;
+  std::vector<double> relative_mm;
+  std::vector<double> relative_deg;
+};
+
+void AddRelativeErrors(std::span<const Rigid3> aligned, std::span<const Rigid3> truth,
+                       const TrajectoryErrorOptions& options, Pooled* pooled) {
+  const auto delta = static_cast<std::size_t>(options.rpe_delta);
+  const std::size_t step = options.rpe_pairs == RelativePairs::kAll ? 1 : delta;
   for (std::size_t i = 0; i + delta < truth.size(); i += step) {
     const Rigid3 true_motion = truth[i].Inverse() * truth[i + delta];
     const Rigid3 motion = aligned[i].Inverse() * aligned[i + delta];
     const Rigid3 difference = true_motion.Inverse() * motion;
-    translations.push_back(difference.translation.norm());
-    rotations.push_back(AngleDeg(difference.rotation));
+    pooled->relative_mm.push_back(difference.translation.norm());
+    pooled->relative_deg.push_back(AngleDeg(difference.rotation));
   }
-  error->rpe_pairs = static_cast<int>(translations.size());
-  error->rpe_translation_rmse_mm = Rms(translations);
-  error->rpe_translation_mean_mm = Mean(translations);
-  error->rpe_rotation_rmse_deg = Rms(rotations);
+}
+
+Result<Sim3> Align(std::span<const PosePair> pairs, TrajectoryAlignment alignment) {
+  if (pairs.size() < 3)
+    return Status(ErrorCode::kInsufficient, "a camera path is compared from three poses on; " +
+                                                std::to_string(pairs.size()) + " tracked frames have a true pose");
+  std::vector<Eigen::Vector3d> run_centres;
+  std::vector<Eigen::Vector3d> true_centres;
+  for (const PosePair& pair : pairs) {
+    run_centres.push_back(pair.world_from_cam.translation);
+    true_centres.push_back(pair.true_world_from_cam.translation);
+  }
+  const Result<Sim3> truth_from_run =
+      AlignPoints(run_centres, true_centres,
+                  alignment == TrajectoryAlignment::kSim3 ? AlignmentScale::kEstimated : AlignmentScale::kFixedAtOne);
+  if (truth_from_run.ok()) return truth_from_run;
+  return Status(truth_from_run.status().code(),
+                "the camera paths cannot be aligned, since one of the two cameras does not move (" +
+                    truth_from_run.status().message() + "); read the surface error alone");
+}
+
+void AddSubmap(std::span<const PosePair> pairs, const Sim3& truth_from_run, const TrajectoryErrorOptions& options,
+               TrajectoryError* error, Pooled* pooled) {
+  std::vector<Rigid3> aligned;
+  std::vector<Rigid3> truth;
+  for (const PosePair& pair : pairs) {
+    truth.push_back(pair.true_world_from_cam);
+    aligned.push_back(Aligned(truth_from_run, pair.world_from_cam));
+    error->frame_idx.push_back(pair.frame_idx);
+    error->ate_mm.push_back((aligned.back().translation - truth.back().translation).norm());
+    pooled->rotations_deg.push_back(AngleDeg(truth.back().rotation.conjugate() * aligned.back().rotation));
+  }
+  error->true_path_length_mm += PathLength(truth);
+  error->path_length_mm += PathLength(aligned);
+  AddRelativeErrors(aligned, truth, options, pooled);
+  ++error->submaps;
 }
 
 }  // namespace
@@ -56,38 +94,26 @@ void TrajectoryErrorOptions::List(OptionTable& table) {
 }
 
 Result<TrajectoryError> ComputeTrajectoryError(std::span<const PosePair> pairs, const TrajectoryErrorOptions& options) {
-  if (pairs.size() < 3)
-    return Status(ErrorCode::kInsufficient, "a camera path is compared from three poses on; " +
-                                                std::to_string(pairs.size()) + " tracked frames have a true pose");
-  std::vector<Eigen::Vector3d> run_centres;
-  std::vector<Eigen::Vector3d> true_centres;
-  for (const PosePair& pair : pairs) {
-    run_centres.push_back(pair.world_from_cam.translation);
-    true_centres.push_back(pair.true_world_from_cam.translation);
-  }
-  const AlignmentScale scale =
-      options.alignment == TrajectoryAlignment::kSim3 ? AlignmentScale::kEstimated : AlignmentScale::kFixedAtOne;
-  const Result<Sim3> truth_from_run = AlignPoints(run_centres, true_centres, scale);
-  if (!truth_from_run.ok())
-    return Status(truth_from_run.status().code(),
-                  "the camera paths cannot be aligned, since one of the two cameras does not move (" +
-                      truth_from_run.status().message() + "); read the surface error alone");
-
   TrajectoryError error;
   error.alignment = options.alignment;
-  error.poses = static_cast<int>(pairs.size());
   error.rpe_delta = options.rpe_delta;
-  error.truth_from_run = *truth_from_run;
-  std::vector<Rigid3> aligned;
-  std::vector<Rigid3> truth;
-  std::vector<double> rotations_deg;
-  for (const PosePair& pair : pairs) {
-    truth.push_back(pair.true_world_from_cam);
-    aligned.push_back(Aligned(*truth_from_run, pair.world_from_cam));
-    error.frame_idx.push_back(pair.frame_idx);
-    error.ate_mm.push_back((aligned.back().translation - truth.back().translation).norm());
-    rotations_deg.push_back(AngleDeg(truth.back().rotation.conjugate() * aligned.back().rotation));
+  Pooled pooled;
+  Status failure(ErrorCode::kInsufficient, "a camera path is compared from three poses on; there is none");
+  std::map<int, std::vector<PosePair>> submaps;
+  for (const PosePair& pair : pairs) submaps[pair.submap].push_back(pair);
+  std::size_t most = 0;
+  for (const auto& [idx, submap] : submaps) {
+    const Result<Sim3> truth_from_run = Align(submap, options.alignment);
+    if (!truth_from_run.ok()) {
+      failure = truth_from_run.status();
+      continue;
+    }
+    AddSubmap(submap, *truth_from_run, options, &error, &pooled);
+    if (submap.size() > most) error.truth_from_run = *truth_from_run;
+    most = std::max(most, submap.size());
   }
+  if (error.submaps == 0) return failure;
+  error.poses = static_cast<int>(error.ate_mm.size());
   error.ate_rmse_mm = Rms(error.ate_mm);
   error.ate_mean_mm = Mean(error.ate_mm);
   error.ate_std_mm =
@@ -95,10 +121,11 @@ Result<TrajectoryError> ComputeTrajectoryError(std::span<const PosePair> pairs, 
   error.ate_min_mm = *std::min_element(error.ate_mm.begin(), error.ate_mm.end());
   error.ate_median_mm = Median(error.ate_mm);
   error.ate_max_mm = *std::max_element(error.ate_mm.begin(), error.ate_mm.end());
-  error.rotation_rmse_deg = Rms(rotations_deg);
-  error.true_path_length_mm = PathLength(truth);
-  error.path_length_mm = PathLength(aligned);
-  AddRelativeErrors(aligned, truth, options.rpe_pairs, &error);
+  error.rotation_rmse_deg = Rms(pooled.rotations_deg);
+  error.rpe_pairs = static_cast<int>(pooled.relative_mm.size());
+  error.rpe_translation_rmse_mm = Rms(pooled.relative_mm);
+  error.rpe_translation_mean_mm = Mean(pooled.relative_mm);
+  error.rpe_rotation_rmse_deg = Rms(pooled.relative_deg);
   return error;
 }
 

@@ -14,9 +14,11 @@
 namespace pliant {
 namespace {
 
-Status Export(const RunSource& source, const ExportRequest& request, const ExportOptions& options) {
-  const std::string& folder = request.output_path;
-  switch (request.format) {
+Status Export(const RunSource& source, ExportFormat format, const std::string& folder, const ExportOptions& options) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) return {ErrorCode::kUnwritable, "cannot make the folder " + Quoted(folder) + ": " + error.message()};
+  switch (format) {
     case ExportFormat::kCanonical:
       return ExportCanonical(source, options, folder);
     case ExportFormat::kSpacetime:
@@ -81,16 +83,23 @@ Status ExportTum(const RunSource& source, const std::string& folder) {
 }
 
 Result<ExportSummary> ExportRun(const ExportRequest& request, const ExportOptions& options) {
-  const auto source = ReadRunSource(request.run_path, request.sequence_path, options.stride);
-  if (!source.ok()) return source.status();
-  std::error_code error;
-  std::filesystem::create_directories(request.output_path, error);
-  if (error)
-    return Status(ErrorCode::kUnwritable,
-                  "cannot make the folder " + Quoted(request.output_path) + ": " + error.message());
-  if (Status status = Export(*source, request, options); !status.ok()) return status;
-  return ExportSummary{static_cast<int>(source->frames.size()), static_cast<int>(source->points.size()),
-                       source->num_observations, source->notes};
+  const auto sources = ReadRunSources(request.run_path, request.sequence_path, options.stride);
+  if (!sources.ok()) return sources.status();
+  ExportSummary summary;
+  for (std::size_t k = 0; k < sources->size(); ++k) {
+    const RunSource& source = (*sources)[k];
+    const std::string folder =
+        sources->size() > 1 ? request.output_path + "/" + std::to_string(k) : request.output_path;
+    if (Status status = Export(source, request.format, folder, options); !status.ok()) return status;
+    summary.frames += static_cast<int>(source.frames.size());
+    summary.points += static_cast<int>(source.points.size());
+    summary.observations += source.num_observations;
+    summary.notes.insert(summary.notes.end(), source.notes.begin(), source.notes.end());
+  }
+  if (sources->size() > 1)
+    summary.notes.push_back("the run has " + std::to_string(sources->size()) +
+                            " submaps, each with its own world and unit: one folder each");
+  return summary;
 }
 
 }  // namespace pliant

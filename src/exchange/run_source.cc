@@ -23,7 +23,7 @@ struct Known {
   std::map<PointId, NewPoint> points;
 };
 
-Result<Known> KnownFromSparse(const std::string& folder) {
+Status AddSparse(const std::string& folder, Known* known) {
   const auto model = colmap::ReadModel(folder, colmap::Observations::kSkipped);
   if (!model.ok()) return model.status();
   if (model->cameras.size() != 1)
@@ -31,13 +31,21 @@ Result<Known> KnownFromSparse(const std::string& folder) {
                   Quoted(folder) + " is not a run's: it has " + std::to_string(model->cameras.size()) + " cameras");
   auto camera = colmap::ToPliant(model->cameras.front());
   if (!camera.ok()) return camera.status();
-  Known known;
-  known.camera = std::move(camera).value();
-  for (const colmap::Image& image : model->images) known.names.emplace(static_cast<int>(image.id) - 1, image.name);
+  known->camera = std::move(camera).value();
+  for (const colmap::Image& image : model->images) known->names.emplace(static_cast<int>(image.id) - 1, image.name);
   for (const colmap::Point3D& point : model->points3D) {
     const PointId id{static_cast<std::int64_t>(point.id)};
-    known.points.emplace(id, NewPoint{id, colmap::ToPliant(point), point.rgb});
+    known->points.emplace(id, NewPoint{id, colmap::ToPliant(point), point.rgb});
   }
+  return Status::Ok();
+}
+
+Result<Known> KnownFromSparse(const std::string& folder, const Run& run) {
+  Known known;
+  const int submaps = run.summary ? run.summary->submaps : 1;
+  for (int submap = 0; submap < std::max(1, submaps); ++submap)
+    if (Status status = AddSparse(submaps > 1 ? folder + "/" + std::to_string(submap) : folder, &known); !status.ok())
+      return status;
   return known;
 }
 
@@ -56,7 +64,7 @@ Result<Known> KnownFromSequence(const std::string& path, const Run& run) {
 Result<Known> ReadKnown(const std::string& run_path, const std::string& sequence_path, const Run& run) {
   const std::string sparse = run_path + "/sparse";
   std::error_code error;
-  if (std::filesystem::is_directory(sparse, error)) return KnownFromSparse(sparse);
+  if (std::filesystem::is_directory(sparse, error)) return KnownFromSparse(sparse, run);
   const std::string path = !sequence_path.empty() ? sequence_path : run.summary ? run.summary->description.input : "";
   if (!path.empty()) {
     auto known = KnownFromSequence(path, run);
@@ -98,7 +106,8 @@ Status AddPoints(const Known& known, RunSource* source) {
 
 }  // namespace
 
-Result<RunSource> ReadRunSource(const std::string& run_path, const std::string& sequence_path, int stride) {
+Result<std::vector<RunSource>> ReadRunSources(const std::string& run_path, const std::string& sequence_path,
+                                              int stride) {
   const auto run = ReadRun(run_path);
   if (!run.ok()) return run.status();
   if (run->poses.empty())
@@ -106,7 +115,7 @@ Result<RunSource> ReadRunSource(const std::string& run_path, const std::string& 
                   "no frame of the run " + Quoted(run_path) + " was tracked; there is nothing to export");
   auto known = ReadKnown(run_path, sequence_path, *run);
   if (!known.ok()) return known.status();
-  RunSource source{run_path, *known->camera, {}, {}, 0, {}};
+  std::map<int, RunSource> sources;  // by submap
   for (std::size_t i = 0; i < run->poses.size(); i += static_cast<std::size_t>(stride)) {
     const RunPose& pose = run->poses[i];
     if (!pose.frame_idx)
@@ -117,11 +126,17 @@ Result<RunSource> ReadRunSource(const std::string& run_path, const std::string& 
     if (name == known->names.end())
       return Status(ErrorCode::kMismatch, "frame " + std::to_string(*pose.frame_idx) + " of the run " +
                                               Quoted(run_path) + " has no image; is this its sequence?");
+    RunSource& source =
+        sources.try_emplace(pose.submap, RunSource{run_path, *known->camera, {}, {}, 0, {}}).first->second;
     source.frames.push_back({*pose.frame_idx, pose.timestamp_s, name->second, pose.world_from_cam.Inverse()});
   }
-  if (run->cut_lines > 0) source.notes.push_back("the run was killed; what it left whole is exported");
-  if (Status status = AddPoints(*known, &source); !status.ok()) return status;
-  return source;
+  std::vector<RunSource> in_order;
+  for (auto& [submap, source] : sources) {
+    if (Status status = AddPoints(*known, &source); !status.ok()) return status;
+    in_order.push_back(std::move(source));
+  }
+  if (run->cut_lines > 0) in_order.front().notes.emplace_back("the run was killed; what it left whole is exported");
+  return in_order;
 }
 
 Status ForEachFrame(const RunSource& source, const FrameFunction& function) {

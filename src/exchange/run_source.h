@@ -33,8 +33,9 @@ struct RunSource {
   std::vector<std::string> notes;
 };
 
-// Every `stride`-th tracked frame of a run. Fails as ExportRun does.
-Result<RunSource> ReadRunSource(const std::string& run_path, const std::string& sequence_path, int stride);
+// Every `stride`-th tracked frame of a run, one source a submap, in their order. Fails as ExportRun does.
+Result<std::vector<RunSource>> ReadRunSources(const std::string& run_path, const std::string& sequence_path,
+                                              int stride);
 
 // Calls `function(frame, observations)` for every frame of the source, in order, also for those that see nothing.
 using FrameFunction = std::function<Status(const SourceFrame&, const std::vector<PointObservation>&)>;

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <array>
+#include <string>
 #include <string_view>
 
 namespace pliant {
@@ -14,15 +15,23 @@ inline constexpr std::string_view kObservationColumns = "frame,point_id,u_px,v_p
 inline constexpr std::string_view kObservationColumnsWithoutSsim = "frame,point_id,u_px,v_px,x,y,z";
 inline constexpr std::string_view kFrameColumns =
     "frame,timestamp,state,tracked,optimized,lost,added,cost_reprojection,cost_spatial,cost_temporal,cost_edge_length,"
-    "median_reprojection_error_px";
-inline constexpr int kNumFrameColumns = 12;
+    "median_reprojection_error_px,submap";
+inline constexpr int kNumFrameColumns = 13;
 inline constexpr std::string_view kStagePrefix = "ms_";
 
-// Everything that a run may leave, which the next one in the same folder deletes.
-inline constexpr std::array<std::string_view, 14> kRunFiles = {
-    "config.yaml",         "run.json",          "run.json.tmp",      "trajectory.txt",
-    "frames.csv",          "observations.csv",  "map.ply",           "sparse/cameras.txt",
-    "sparse/cameras.bin",  "sparse/images.txt", "sparse/images.bin", "sparse/points3D.txt",
-    "sparse/points3D.bin", "config.yaml.tmp"};
+// Runs of before there were submaps have no such column: theirs is 0.
+inline constexpr std::string_view kSubmapColumn = ",submap";
+
+// Everything that a run may leave, which the next one in the same folder deletes; of several submaps also map_K.ply and
+// models in sparse/K.
+inline constexpr std::array<std::string_view, 8> kRunFiles = {"config.yaml",      "config.yaml.tmp", "run.json",
+                                                              "run.json.tmp",     "trajectory.txt",  "frames.csv",
+                                                              "observations.csv", "map.ply"};
+inline constexpr std::array<std::string_view, 6> kModelFiles = {"cameras.txt", "cameras.bin",  "images.txt",
+                                                                "images.bin",  "points3D.txt", "points3D.bin"};
+inline std::string SubmapPly(int submap) { return submap == 0 ? "map.ply" : "map_" + std::to_string(submap) + ".ply"; }
+inline std::string SubmapModel(int submap, int submaps) {
+  return submaps > 1 ? "sparse/" + std::to_string(submap) : "sparse";
+}
 
 }  // namespace pliant

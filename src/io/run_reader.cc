@@ -7,31 +7,32 @@
 #include <filesystem>
 
 #include "io/run_format.h"
-#include "pliant/base/text.h"
 #include "io/tum_line.h"
+#include "pliant/base/text.h"
 
 namespace pliant {
 namespace {
 
 // Empty: the row is right; else what is wrong with it.
-std::string ParseFrame(std::string_view line, std::size_t num_stages, RunFrame* frame) {
+std::string ParseFrame(std::string_view line, std::size_t num_columns, std::size_t num_stages, RunFrame* frame) {
   const std::vector<std::string_view> fields = Split(line, ',');
-  if (fields.size() != kNumFrameColumns + num_stages)
-    return "a row has " + std::to_string(kNumFrameColumns + num_stages) + " columns, this one has " +
+  if (fields.size() != num_columns + num_stages)
+    return "a row has " + std::to_string(num_columns + num_stages) + " columns, this one has " +
            std::to_string(fields.size());
   const auto state = std::find_if(EnumNames<TrackingState>::kNames.begin(), EnumNames<TrackingState>::kNames.end(),
                                   [&](const auto& entry) { return entry.second == fields[2]; });
   if (state == EnumNames<TrackingState>::kNames.end()) return Quoted(fields[2]) + " is not a state";
   frame->state = state->first;
-  const std::array<std::pair<std::size_t, int*>, 5> counts = {
-      {{0, &frame->frame_idx}, {3, &frame->tracked}, {4, &frame->optimized}, {5, &frame->lost}, {6, &frame->added}}};
+  std::vector<std::pair<std::size_t, int*>> counts = {
+      {0, &frame->frame_idx}, {3, &frame->tracked}, {4, &frame->optimized}, {5, &frame->lost}, {6, &frame->added}};
+  if (num_columns == kNumFrameColumns) counts.emplace_back(num_columns - 1, &frame->submap);
   for (const auto& [column, value] : counts)
     if (!ParseInt(fields[column], value) || *value < 0) return Quoted(fields[column]) + " is not a whole number";
   frame->stage_ms.resize(num_stages);
   std::vector<std::pair<std::size_t, double*>> numbers = {
       {1, &frame->timestamp_s},    {7, &frame->costs.reprojection}, {8, &frame->costs.spatial},
       {9, &frame->costs.temporal}, {10, &frame->costs.edge_length}, {11, &frame->median_reprojection_error_px}};
-  for (std::size_t i = 0; i < num_stages; ++i) numbers.emplace_back(kNumFrameColumns + i, &frame->stage_ms[i]);
+  for (std::size_t i = 0; i < num_stages; ++i) numbers.emplace_back(num_columns + i, &frame->stage_ms[i]);
   for (const auto& [column, value] : numbers)
     if (!ParseFinite(fields[column], value)) return Quoted(fields[column]) + " is not a finite number";
   return {};
@@ -43,13 +44,15 @@ Status ReadFrames(const std::string& path, Run* run) {
   std::string_view line;
   if (!lines->Next(&line) || !lines->ended()) return Status::Ok();  // killed before the first row
   const std::vector<std::string_view> columns = Split(line, ',');
-  const bool known = line.starts_with(kFrameColumns) &&
-                     std::all_of(columns.begin() + kNumFrameColumns, columns.end(),
+  // Runs of before there were submaps.
+  const std::size_t num_columns = kNumFrameColumns - (line.starts_with(kFrameColumns) ? 0 : 1);
+  const bool known = line.starts_with(kFrameColumns.substr(0, kFrameColumns.size() - kSubmapColumn.size())) &&
+                     std::all_of(columns.begin() + static_cast<std::ptrdiff_t>(num_columns), columns.end(),
                                  [](std::string_view column) { return column.starts_with(kStagePrefix); });
   if (!known)
     return lines->Error("the first line must begin with " + Quoted(kFrameColumns) + ", then stages " +
                         Quoted(kStagePrefix) + "...");
-  for (std::size_t i = kNumFrameColumns; i < columns.size(); ++i)
+  for (std::size_t i = num_columns; i < columns.size(); ++i)
     run->stage_names.emplace_back(columns[i].substr(kStagePrefix.size()));
   while (lines->Next(&line)) {
     if (!lines->ended()) {
@@ -57,7 +60,7 @@ Status ReadFrames(const std::string& path, Run* run) {
       break;
     }
     RunFrame frame;
-    if (const std::string wrong = ParseFrame(line, run->stage_names.size(), &frame); !wrong.empty())
+    if (const std::string wrong = ParseFrame(line, num_columns, run->stage_names.size(), &frame); !wrong.empty())
       return lines->Error(wrong);
     if (!run->frames.empty() && frame.frame_idx <= run->frames.back().frame_idx)
       return lines->Error("frame " + std::to_string(frame.frame_idx) + " is not after the row before");
@@ -68,17 +71,20 @@ Status ReadFrames(const std::string& path, Run* run) {
 
 // Gives the poses the frames of frames.csv that were tracked.
 Status NumberPoses(const std::string& path, Run* run) {
-  std::vector<int> frame_idxs;
+  std::vector<const RunFrame*> tracked;
   for (const RunFrame& frame : run->frames)
-    if (frame.state == TrackingState::kTracking) frame_idxs.push_back(frame.frame_idx);
+    if (frame.state == TrackingState::kTracking) tracked.push_back(&frame);
   // A frame's row in frames.csv is written last: a killed run may have a pose or two more than rows.
-  const bool belong = run->summary ? run->poses.size() >= frame_idxs.size() : run->poses.size() == frame_idxs.size();
+  const bool belong = run->summary ? run->poses.size() >= tracked.size() : run->poses.size() == tracked.size();
   if (!belong)
     return {ErrorCode::kMismatch, "the folder " + Quoted(path) + " has " + std::to_string(run->poses.size()) +
-                                      " poses in trajectory.txt for " + std::to_string(frame_idxs.size()) +
+                                      " poses in trajectory.txt for " + std::to_string(tracked.size()) +
                                       " tracked frames in frames.csv; each tracked frame needs one"};
-  run->poses.resize(frame_idxs.size());
-  for (std::size_t i = 0; i < frame_idxs.size(); ++i) run->poses[i].frame_idx = frame_idxs[i];
+  run->poses.resize(tracked.size());
+  for (std::size_t i = 0; i < tracked.size(); ++i) {
+    run->poses[i].frame_idx = tracked[i]->frame_idx;
+    run->poses[i].submap = tracked[i]->submap;
+  }
   return Status::Ok();
 }
 

@@ -36,6 +36,7 @@ Status WriteRunSummary(const std::string& path, const RunSummary& summary) {
       {"counts",
        {{"frames_read", summary.frames_read},
         {"frames_tracked", summary.frames_tracked},
+        {"submaps", summary.submaps},
         {"points", summary.points},
         {"observations", summary.observations},
         {"losses", losses}}},
@@ -78,6 +79,7 @@ Result<RunSummary> ReadRunSummary(const std::string& path) {
     const Json& counts = json.at("counts");
     summary.frames_read = counts.at("frames_read").get<std::int64_t>();
     summary.frames_tracked = counts.at("frames_tracked").get<std::int64_t>();
+    summary.submaps = counts.value("submaps", summary.frames_tracked > 0 ? 1 : 0);
     summary.points = counts.at("points").get<std::int64_t>();
     summary.observations = counts.at("observations").get<std::int64_t>();
     for (const auto& [reason, count] : counts.at("losses").items())

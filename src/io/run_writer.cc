@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 
 #include "io/run_format.h"
 #include "io/tum_line.h"
@@ -23,6 +24,18 @@ Status Unwritable(const std::string& path, const std::error_code& error) {
                                       "; choose another place or change its permissions"};
 }
 
+// A killed run says of no submaps, and has no models.
+std::vector<std::string> FilesOfRun(int submaps) {
+  std::vector<std::string> files(kRunFiles.begin(), kRunFiles.end());
+  for (int submap = 0; submap < std::max(1, submaps); ++submap) {
+    if (submap > 0) files.push_back(SubmapPly(submap));
+    for (const std::string_view name : kModelFiles)
+      files.push_back(SubmapModel(submap, submaps) + "/" + std::string(name));
+    if (submaps > 1) files.push_back(SubmapModel(submap, submaps));
+  }
+  return files;
+}
+
 // Makes the folder, or empties it of a former run.
 Status PrepareFolder(const std::string& path) {
   std::error_code error;
@@ -31,11 +44,13 @@ Status PrepareFolder(const std::string& path) {
   const bool empty = fs::is_empty(path, error);
   if (error) return Unwritable(path, error);
   if (empty) return Status::Ok();
-  if (!ReadRunSummary(path + "/run.json").ok())
+  const auto run = ReadRunSummary(path + "/run.json");
+  if (!run.ok())
     return {ErrorCode::kInvalidArgument,
             "the folder " + Quoted(path) + " holds files that are not a run's; give a new or an empty folder"};
-  for (const std::string_view name : kRunFiles) {
+  for (const std::string& name : FilesOfRun(run->submaps)) {
     fs::remove(fs::path(path) / name, error);
+    if (error == std::errc::directory_not_empty) continue;  // with somebody else's files
     if (error) return Unwritable(path, error);
   }
   return Status::Ok();
@@ -87,6 +102,7 @@ struct RunWriter::State {
   void Count(const FrameReport& report);
   void AppendFrameRow(const FrameReport& report);
   Status WriteRows(const FrameReport& report);
+  Status WriteSubmap(int submap) const;
   Status FinishSparse() const;
 };
 
@@ -158,7 +174,7 @@ Status RunWriter::State::AddPoints(const FrameReport& report) {
     if (place != points.end() && place->point.id == point.id)
       return {ErrorCode::kInvalidArgument, "frame " + std::to_string(report.frame_idx) + ": point " +
                                                std::to_string(point.id.value) + " is new for the second time"};
-    points.insert(place, {point, 0.0, 0});
+    points.insert(place, {point, 0.0, 0, report.submap});
   }
   const auto never_new = [&](PointId id, const std::string& what) {
     return Status(ErrorCode::kInvalidArgument, "frame " + std::to_string(report.frame_idx) + ": point " +
@@ -172,6 +188,10 @@ Status RunWriter::State::AddPoints(const FrameReport& report) {
   for (const PointObservation& o : report.observations) {
     CanonicalPoint* point = FindPoint(points, o.id);
     if (point == nullptr) return never_new(o.id, "observed");
+    if (point->submap != report.submap)
+      return {ErrorCode::kInvalidArgument, "frame " + std::to_string(report.frame_idx) + " of submap " +
+                                               std::to_string(report.submap) + ": point " + std::to_string(o.id.value) +
+                                               " is of submap " + std::to_string(point->submap)};
     CountObservation(camera, *report.cam_from_world, o, point);
   }
   return Status::Ok();
@@ -181,7 +201,8 @@ void RunWriter::State::Count(const FrameReport& report) {
   last_frame_idx = report.frame_idx;
   ++summary.frames_read;
   if (report.cam_from_world) ++summary.frames_tracked;
-  if (report.first_map) summary.first_map = report.first_map;
+  if (report.first_map && !summary.first_map) summary.first_map = report.first_map;
+  if (report.cam_from_world) summary.submaps = std::max(summary.submaps, report.submap + 1);
   summary.observations += static_cast<std::int64_t>(report.observations.size());
   summary.points = static_cast<std::int64_t>(points.size());
   for (const auto& [reason, count] : report.losses) {
@@ -211,6 +232,7 @@ void RunWriter::State::AppendFrameRow(const FrameReport& report) {
   const FrameProblemCosts& c = report.costs;
   for (const double cost : {c.reprojection, c.spatial, c.temporal, c.edge_length}) number(cost, 6);
   number(report.median_reprojection_error_px, 4);
+  integer(report.submap);
   for (std::size_t i = 0; i < stage_names.size(); ++i) {
     double ms = 0;
     for (const auto& [stage, value] : report.stage_ms)
@@ -229,7 +251,7 @@ Status RunWriter::State::WriteRows(const FrameReport& report) {
     rows.clear();
     AppendTumLine(&rows, report.timestamp_s, report.cam_from_world->Inverse());
     if (Status status = trajectory.Append(rows); !status.ok()) return status;
-    images.push_back({report.frame_idx, report.name, *report.cam_from_world});
+    images.push_back({report.frame_idx, report.name, *report.cam_from_world, report.submap});
   }
   rows.clear();
   AppendFrameRow(report);
@@ -246,14 +268,29 @@ Status RunWriter::Write(const FrameReport& report) {
   return s.failure;
 }
 
-Status RunWriter::State::FinishSparse() const {
+// Of one submap: its points, and its model.
+Status RunWriter::State::WriteSubmap(int submap) const {
+  const auto of_submap = [&](const auto& element) { return element.submap == submap; };
+  std::vector<CanonicalPoint> own_points;
+  std::vector<CanonicalImage> own_images;
+  std::ranges::copy_if(points, std::back_inserter(own_points), of_submap);
+  std::ranges::copy_if(images, std::back_inserter(own_images), of_submap);
   std::vector<NewPoint> map;
-  for (const CanonicalPoint& point : points) map.push_back(point.point);
-  if (Status status = WritePly(path + "/map.ply", map); !status.ok()) return status;
+  for (const CanonicalPoint& point : own_points) map.push_back(point.point);
+  if (Status status = WritePly(path + "/" + SubmapPly(submap), map); !status.ok()) return status;
+  const std::string folder = path + "/" + SubmapModel(submap, summary.submaps);
   std::error_code error;
-  fs::create_directories(path + "/sparse", error);
-  if (error) return Unwritable(path + "/sparse", error);
-  Status status = WriteCanonicalModel(path + "/sparse", options.sparse_format, camera, images, points, path);
+  fs::create_directories(folder, error);
+  if (error) return Unwritable(folder, error);
+  return WriteCanonicalModel(folder, options.sparse_format, camera, own_images, own_points, path);
+}
+
+// A run of one submap has its model in sparse/, as COLMAP's programs expect one; of several each has its own, as
+// COLMAP's mapper leaves them.
+Status RunWriter::State::FinishSparse() const {
+  Status status;
+  for (int submap = 0; submap < std::max(1, summary.submaps) && status.ok(); ++submap) status = WriteSubmap(submap);
+  std::error_code error;
   if (!status.ok()) fs::remove_all(path + "/sparse", error);  // half a model reads as a whole one or not at all
   return status;
 }

@@ -46,6 +46,25 @@ TEST(TrajectoryError, IsZeroForTheTruePathInAnotherFrameAndScale) {
   EXPECT_EQ(error->rpe_pairs, 29);
 }
 
+TEST(TrajectoryError, AlignsEverySubmapByItself) {
+  auto pairs = MovedPath({0.4, RotationExp({1, -2, 0.5}), {7, 8, 9}});
+  const auto other = MovedPath({1.7, RotationExp({-1, 0.2, 0.5}), {-70, 8, 0}});
+  const std::size_t size = pairs.size();
+  for (std::size_t i = 0; i < size; ++i)
+    if (i % 10 >= 6) {  // goes and comes back, several times
+      pairs[i] = other[i];
+      pairs[i].submap = 1;
+    }
+  pairs.back().submap = 2;  // too short to be aligned
+  const auto error = ComputeTrajectoryError(pairs, {});
+  ASSERT_TRUE(error.ok());
+  EXPECT_EQ(error->submaps, 2);
+  EXPECT_EQ(error->poses, static_cast<int>(size) - 1);
+  EXPECT_LT(error->ate_max_mm, kRounding);
+  EXPECT_NEAR(error->truth_from_run.scale, 2.5, kRounding);  // of the one with more poses
+  EXPECT_NEAR(error->path_length_mm, error->true_path_length_mm, 1e-8);
+}
+
 TEST(TrajectoryError, CountsAWrongScaleUnderSe3) {
   const auto pairs = MovedPath({0.4, RotationExp({1, -2, 0.5}), {7, 8, 9}});
   const auto error = ComputeTrajectoryError(pairs, {.alignment = TrajectoryAlignment::kSe3});

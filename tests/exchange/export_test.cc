@@ -177,6 +177,31 @@ TEST(Export, AStrideLeavesFramesOut) {
   for (const colmap::Point3D& point : model.points3D) EXPECT_EQ(point.track.size(), 3U);
 }
 
+TEST(Export, EverySubmapHasAFolder) {
+  for (const auto& [format, file] :
+       {std::pair{ExportFormat::kCanonical, "points3D.bin"}, std::pair{ExportFormat::kTum, "trajectory.txt"},
+        std::pair{ExportFormat::kPly, "000010.ply"}, std::pair{ExportFormat::kTrajectories, "trajectories.ply"}}) {
+    const TestFolder folder;
+    WriteRunOfTwoSubmaps(folder);
+    const auto summary = Export(folder, format);
+    ASSERT_TRUE(summary.ok()) << summary.status().message();
+    EXPECT_EQ(summary->frames, 2 * kRunFrames);
+    EXPECT_EQ(summary->points, 2 * kRunPoints);
+    EXPECT_EQ(summary->observations, 2 * kRunObservations);
+    ASSERT_EQ(summary->notes.size(), 1U);
+    EXPECT_THAT(summary->notes[0], HasSubstr("2 submaps"));
+    EXPECT_TRUE(std::filesystem::exists(folder.Path("out/0/" + std::string(file)))) << file;
+    EXPECT_FALSE(std::filesystem::exists(folder.Path("out/" + std::string(file)))) << file;
+    if (format != ExportFormat::kCanonical) continue;
+    const colmap::Model second = ReadValidModel(folder.Path("out/1"));
+    ASSERT_EQ(second.images.size(), static_cast<std::size_t>(kRunFrames));
+    EXPECT_EQ(second.images[0].name, "20.png");
+    ASSERT_EQ(second.points3D.size(), static_cast<std::size_t>(kRunPoints));
+    EXPECT_EQ(second.points3D[1].id, 103U);
+    EXPECT_LT((PositionOf(second.points3D[1]) - Undeformed(1)).norm(), 1e-6);
+  }
+}
+
 TEST(Export, ARunThatWasKilledNeedsItsSequence) {
   const TestFolder folder;
   WriteRun(folder, End::kKilled);

@@ -59,6 +59,27 @@ inline void WriteRun(const TestFolder& folder, End end = End::kFinished) {
   ASSERT_TRUE(writer->Finish(RunStatus::kCompleted, "").ok());
 }
 
+// The same twice over: from the sixth frame on as a submap of its own, whose points are others.
+inline FrameReport ReportOfSecondSubmap(int frame) {
+  FrameReport report = Report(frame);
+  report.frame_idx += 2 * kRunFrames;
+  report.name = std::to_string(report.frame_idx) + ".png";
+  report.timestamp_s += kRunFrames / 25.0;
+  report.submap = 1;
+  for (NewPoint& point : report.new_points) point.id.value += 100;
+  for (PointObservation& seen : report.observations) seen.id.value += 100;
+  return report;
+}
+
+inline void WriteRunOfTwoSubmaps(const TestFolder& folder) {
+  auto writer =
+      RunWriter::Create(folder.Path("run"), TestCamera(), {"0.1.0", {"pliant"}, 7, "nowhere", {}}, "Track:\n", {});
+  ASSERT_TRUE(writer.ok()) << writer.status().message();
+  for (int frame = 0; frame < kRunFrames; ++frame) ASSERT_TRUE(writer->Write(Report(frame)).ok());
+  for (int frame = 0; frame < kRunFrames; ++frame) ASSERT_TRUE(writer->Write(ReportOfSecondSubmap(frame)).ok());
+  ASSERT_TRUE(writer->Finish(RunStatus::kCompleted, "").ok());
+}
+
 inline constexpr int kRunObservations = 3 * kRunPoints + 2 * (kRunPoints / 2);  // of that run
 
 }  // namespace pliant

@@ -255,6 +255,57 @@ TEST(RunWriter, TheMapHasPointsWhereTheyWereLastRefinedTo) {
   EXPECT_THAT(points, HasSubstr("\n3 -1.000000 0.500000 50.250000 ")) << "the others stay";
 }
 
+TEST(RunWriter, EverySubmapHasItsOwnMapAndModel) {
+  const TestFolder folder;
+  {
+    RunWriter writer = Writer(folder.Path("run"));
+    ASSERT_TRUE(writer.Write(Report(1)).ok());
+    FrameReport second = Report(2);
+    second.submap = 1;
+    EXPECT_THAT(writer.Write(second).message(), HasSubstr("is of submap 0"));
+    second.new_points = Report(1).new_points;
+    for (NewPoint& point : second.new_points) point.id.value += 50;
+    for (PointObservation& seen : second.observations) seen.id.value += 50;
+    ASSERT_TRUE(writer.Write(second).ok());
+    FrameReport back = Report(3);  // the first one again
+    ASSERT_TRUE(writer.Write(back).ok());
+    ASSERT_TRUE(writer.Finish(RunStatus::kCompleted, "").ok());
+  }
+  for (const char* name : {"map.ply", "map_1.ply", "sparse/0/points3D.txt", "sparse/1/points3D.bin"})
+    EXPECT_TRUE(std::filesystem::exists(folder.Path("run/" + std::string(name)))) << name;
+  EXPECT_FALSE(std::filesystem::exists(folder.Path("run/sparse/points3D.txt")));
+  EXPECT_THAT(folder.Read("run/sparse/1/points3D.txt"), testing::Not(HasSubstr("\n0 ")));
+  const auto run = ReadRun(folder.Path("run"));
+  ASSERT_TRUE(run.ok()) << run.status().message();
+  EXPECT_EQ(run->summary->submaps, 2);
+  ASSERT_EQ(run->poses.size(), 3U);
+  for (const std::size_t i : {0, 1, 2}) {
+    EXPECT_EQ(run->poses[i].submap, i == 1 ? 1 : 0);
+    EXPECT_EQ(run->frames[i].submap, i == 1 ? 1 : 0);
+  }
+  WriteRun(folder.Path("run"), 5);  // one map again
+  EXPECT_FALSE(std::filesystem::exists(folder.Path("run/map_1.ply")));
+  EXPECT_FALSE(std::filesystem::exists(folder.Path("run/sparse/1")));
+}
+
+TEST(RunFolder, OfBeforeThereWereSubmapsIsRead) {
+  const TestFolder folder;
+  WriteRun(folder.Path("run"), 5);
+  std::string frames;
+  std::istringstream lines(folder.Read("run/frames.csv"));
+  for (std::string line; std::getline(lines, line);) {
+    std::size_t at = 0;
+    for (int column = 0; column < 12; ++column) at = line.find(',', at) + 1;
+    frames += line.substr(0, at) + line.substr(line.find(',', at) + 1) + "\n";
+  }
+  folder.Write("run/frames.csv", frames);
+  const auto run = ReadRun(folder.Path("run"));
+  ASSERT_TRUE(run.ok()) << run.status().message();
+  EXPECT_EQ(run->frames.size(), 5U);
+  EXPECT_EQ(run->frames[2].submap, 0);
+  EXPECT_EQ(run->stage_names, kStages);
+}
+
 TEST(RunWriter, ReportsAFullDiskAndKeepsWhatItWrote) {
   const TestFolder folder;
   RunWriter writer = Writer(folder.Path("run"));

@@ -59,11 +59,13 @@ struct PosePair {
   int frame_idx = 0;
   Rigid3 world_from_cam;       // the run's, in map units
   Rigid3 true_world_from_cam;  // the truth, mm
+  int submap = 0;              // whose world the run's pose is in
 };
 
 struct TrajectoryError {
   TrajectoryAlignment alignment = TrajectoryAlignment::kSim3;
-  int poses = 0;
+  int poses = 0;    // that are compared
+  int submaps = 0;  // that they are in: each is aligned by itself, and has an RPE and a length of its own
   double ate_rmse_mm = 0;
   double ate_mean_mm = 0;
   double ate_median_mm = 0;
@@ -78,12 +80,13 @@ struct TrajectoryError {
   double rpe_rotation_rmse_deg = 0;
   double true_path_length_mm = 0;  // over the frames compared
   double path_length_mm = 0;       // of the aligned estimate
-  Sim3 truth_from_run;             // the alignment
+  Sim3 truth_from_run;             // the alignment of the submap with the most poses
   std::vector<int> frame_idx;      // the frames compared
   std::vector<double> ate_mm;      // of each of them
 };
 
-// Fails with kInsufficient below three poses, with kDegenerate where either camera never moves.
+// A submap that cannot be aligned is left out where another can. Fails with kInsufficient below three poses, with
+// kDegenerate where either camera never moves.
 Result<TrajectoryError> ComputeTrajectoryError(std::span<const PosePair> pairs, const TrajectoryErrorOptions& options);
 
 }  // namespace pliant

@@ -23,12 +23,14 @@ struct CanonicalImage {
   int frame_idx = 0;  // its observations carry this; the image's id is frame_idx + 1
   std::string name;
   Rigid3 cam_from_world;
+  int submap = 0;
 };
 
 struct CanonicalPoint {
   NewPoint point;                     // the point's id is the COLMAP point's
   double error_px = 0;                // mean reprojection error over its observations
   std::int64_t num_observations = 0;  // that it has in the images; below 2 it is left out
+  int submap = 0;
 };
 
 inline std::uint32_t ColmapImageId(int frame_idx) { return static_cast<std::uint32_t>(frame_idx) + 1; }

@@ -32,6 +32,7 @@ struct RunFrame {
   int added = 0;
   FrameProblemCosts costs;
   double median_reprojection_error_px = 0;
+  int submap = 0;                // whose world the frame's pose and points are in
   std::vector<double> stage_ms;  // as Run::stage_names
 };
 
@@ -39,6 +40,7 @@ struct RunPose {
   std::optional<int> frame_idx;  // nothing in another program's result: its time tells the frame
   double timestamp_s = 0;
   Rigid3 world_from_cam;
+  int submap = 0;
 };
 
 struct Run {

@@ -51,6 +51,7 @@ struct RunSummary {
 
   std::int64_t frames_read = 0;
   std::int64_t frames_tracked = 0;
+  int submaps = 0;  // maps with a world of their own, one after the other
   std::int64_t points = 0;
   std::int64_t observations = 0;
   std::vector<std::pair<std::string, std::int64_t>> losses;  // points given up, by reason

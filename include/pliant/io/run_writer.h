@@ -8,7 +8,7 @@
 //   trajectory.txt    a line a tracked frame
 //   observations.csv  a row a point and tracked frame
 //   frames.csv        a row a frame, written after the frame's other rows
-//   map.ply, sparse/  by Finish
+//   map.ply, sparse/  by Finish; of several submaps map.ply, map_1.ply, ... and sparse/0, sparse/1, ...
 // Units: pixels to 1e-4, positions (map units, mm) and times (s) to 1e-6, quaternions to 1e-9.
 #pragma once
 
