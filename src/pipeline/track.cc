@@ -71,8 +71,8 @@ class Recorder {
 };
 
 // The ending at the sequence's end.
-Ending AtTheEnd(TrackingState state, int frames, const std::string& last_note) {
-  switch (state) {
+Ending AtTheEnd(const Tracker& tracker, int frames, const std::string& last_note) {
+  switch (tracker.state()) {
     case TrackingState::kTracking:
       return {RunStatus::kCompleted, "the sequence's end was reached"};
     case TrackingState::kLost:
@@ -81,6 +81,7 @@ Ending AtTheEnd(TrackingState state, int frames, const std::string& last_note) {
     case TrackingState::kInitialising:
       break;
   }
+  if (tracker.LeftAMap()) return {RunStatus::kLost, last_note + "; then the sequence ended"};
   if (frames == 1)
     return {RunStatus::kFailed, "one frame carries no map; give two or more, between which the camera moved"};
   return {RunStatus::kFailed, "the sequence ended without a first map: " + last_note};
@@ -98,7 +99,7 @@ Ending TrackFrames(Sequence& sequence, const RunRequest& request, const TrackOpt
     if (!frame->ok()) return {RunStatus::kFailed, frame->status().message()};
     const ReadFrame& read = **frame;
     // What was read ahead for nothing cannot end the run, or the number of threads would decide.
-    if (tracker.WantsDepth() && !read.depth.ok()) return {RunStatus::kFailed, read.depth.message()};
+    if (tracker.NeedsDepth() && !read.depth.ok()) return {RunStatus::kFailed, read.depth.message()};
     const std::vector<FrameReport> done = tracker.Process(read.frame);
     ++count;
     wants_depth = tracker.WantsDepth();
@@ -113,7 +114,7 @@ Ending TrackFrames(Sequence& sequence, const RunRequest& request, const TrackOpt
   }
   tracker.EndSequence();
   if (!tracker.held().empty()) last_note = tracker.held().back().note;
-  return AtTheEnd(tracker.state(), count, last_note);
+  return AtTheEnd(tracker, count, last_note);
 }
 
 Ending TrackSequence(Sequence& sequence, const RunRequest& request, const TrackOptions& options,
@@ -158,6 +159,7 @@ TrackOptions MakeTrackOptions(Preset preset) {
   tracker.growth.grow = Switch::kOff;
   tracker.relocalization.relocalize = Switch::kOff;
   tracker.track_blurred = Switch::kOff;
+  tracker.submaps = Switch::kOff;
   return options;
 }
 

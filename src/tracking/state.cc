@@ -10,15 +10,19 @@ TrackingState NextState(TrackingState state, TrackingEvent event) {
     case TrackingState::kWaitingForReference:
       if (event == TrackingEvent::kReferenceFound) return TrackingState::kInitialising;
       if (event == TrackingEvent::kMapCreated) return TrackingState::kTracking;
+      if (event == TrackingEvent::kMapFoundAgain) return TrackingState::kLost;
       return state;
     case TrackingState::kInitialising:
       if (event == TrackingEvent::kMapCreated) return TrackingState::kTracking;
       if (event == TrackingEvent::kReferenceSpent) return TrackingState::kWaitingForReference;
+      if (event == TrackingEvent::kMapFoundAgain) return TrackingState::kLost;
       return state;
     case TrackingState::kTracking:
       return event == TrackingEvent::kTooFewPoints ? TrackingState::kLost : state;
     case TrackingState::kLost:
-      return event == TrackingEvent::kFrameTracked ? TrackingState::kTracking : state;
+      if (event == TrackingEvent::kFrameTracked) return TrackingState::kTracking;
+      if (event == TrackingEvent::kMapLeft) return TrackingState::kWaitingForReference;
+      return state;
   }
   return state;
 }

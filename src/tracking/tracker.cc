@@ -16,6 +16,7 @@
 #include "tracking/oracle_answers.h"
 #include "tracking/places.h"
 #include "tracking/rigid_history.h"
+#include "tracking/submap.h"
 #include "tracking/tracker_support.h"
 
 namespace pliant {
@@ -64,7 +65,8 @@ void TrackerOptions::List(OptionTable& table) {
   table.Add("max_blurred_frames", &max_blurred_frames, "frames", "after so many in a row the blur is taken to stay", 0,
             1000000);
   table.Add("max_lost_frames", &max_lost_frames, "frames",
-            "lost for so many frames in a row that are not dark, the run ends", 1, 1000000);
+            "lost for so many frames in a row that are not dark, the map is left", 1, 1000000);
+  table.AddChoice("submaps", &submaps, "when the map is left begin another one; off: the run ends");
   growth.List(table);
   relocalization.List(table);
   oracle.List(table);
@@ -114,6 +116,8 @@ std::vector<FrameReport> Tracker::Process(const TrackerFrame& frame) {
   for (const std::string_view stage : kStages) report.stage_ms.emplace_back(stage, 0.0);
   report.stage_ms.front().second = frame.prepare_ms;
   losses_.clear();
+  if (LeavesMap() && options_.submaps == Switch::kOn) LeaveMap();
+  FindMapAgain(frame);
 
   switch (state_) {
     case TrackingState::kWaitingForReference:
@@ -128,6 +132,7 @@ std::vector<FrameReport> Tracker::Process(const TrackerFrame& frame) {
       break;
   }
   report.state = state_;
+  report.submap = submap_;
   ReportLosses(&report);
 
   const auto first_held = state_ == TrackingState::kInitialising

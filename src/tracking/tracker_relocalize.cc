@@ -11,6 +11,7 @@
 #include "tracking/lost_points.h"
 #include "tracking/oracle_answers.h"
 #include "tracking/places.h"
+#include "tracking/submap.h"
 #include "tracking/tracker_support.h"
 
 namespace pliant {
@@ -29,6 +30,8 @@ void RelocalizationOptions::List(OptionTable& table) {
   table.AddChoice("relocalize", &relocalize,
                   "look for the map's points wherever the camera may be; off: only where it was");
   table.Add("remember_every", &remember_every, "frames", "from one description of the points in view to the next", 1,
+            1000000);
+  table.Add("seek_every", &seek_every, "frames", "while another map is awaited, those left are looked for so often", 1,
             1000000);
   table.Add("velocity_frames", &velocity_frames, "frames", "over which the camera's velocity before the loss is taken",
             1, 1000);
@@ -120,6 +123,58 @@ Tracker::Followed Tracker::Relocalize(const TrackerFrame& frame, Rigid3* cam_fro
   if (!recognized.ok()) return {};
   *cam_from_world = recognized->cam_from_world;
   return FollowFrom(frame, cam_from_world);
+}
+
+// The present map changes places with another one.
+void Tracker::Exchange(Submap* other) {
+  std::swap(submap_, other->idx);
+  std::swap(map_, other->map);
+  std::swap(point_tracker_, other->point_tracker);
+  std::swap(lost_points_, other->lost_points);
+  std::swap(rigid_history_, other->rigid_history);
+  std::swap(candidates_, other->candidates);
+  std::swap(places_, other->places);
+  std::swap(window_frames_, other->window_frames);
+  std::swap(previous_, other->previous);
+  std::swap(last_cam_from_world_, other->last_cam_from_world);
+  std::swap(before_last_cam_from_world_, other->before_last_cam_from_world);
+  std::swap(recent_poses_, other->recent_poses);
+}
+
+// The next map has its own world, unit and points.
+void Tracker::LeaveMap() {
+  auto next = std::make_unique<Submap>(options_.point_tracker);
+  next->idx = static_cast<int>(left_.size()) + 1;
+  next->lost_points = std::make_unique<LostPoints>();
+  next->rigid_history = std::make_unique<RigidHistory>();
+  next->candidates = std::make_unique<Candidates>(camera_, options_.growth);
+  next->places = std::make_unique<Places>(options_.corners, options_.relocalization);
+  Exchange(next.get());
+  left_.push_back(std::move(next));
+  lost_frames_ = 0;
+  blurred_frames_ = 0;
+  Apply(TrackingEvent::kMapLeft);
+}
+
+// While the present map is lost, or another one awaited, those that were left are looked for, the last one first. What
+// there is of one that is awaited is let go of.
+void Tracker::FindMapAgain(const TrackerFrame& frame) {
+  if (state_ == TrackingState::kTracking || frame.frame_idx % options_.relocalization.seek_every != 0) return;
+  for (std::size_t k = left_.size(); k-- > 0;) {
+    Exchange(left_[k].get());
+    Rigid3 cam_from_world;
+    const bool found = Relocalize(frame, &cam_from_world).size() > 0;
+    losses_.clear();
+    point_tracker_.Undo();
+    if (found) {
+      if (state_ != TrackingState::kLost) left_.erase(left_.begin() + static_cast<std::ptrdiff_t>(k));
+      init_frames_.clear();
+      lost_frames_ = 0;
+      Apply(TrackingEvent::kMapFoundAgain);
+      return;
+    }
+    Exchange(left_[k].get());
+  }
 }
 
 }  // namespace pliant

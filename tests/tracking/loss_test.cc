@@ -3,6 +3,7 @@
 
 // Images in which the scene is not seen, or badly, on the way: before the first map, and after it.
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include <gmock/gmock.h>
@@ -32,6 +33,12 @@ class LossOfTheView : public tracking_test::TrackerFromImages {
     cv::RNG rng(static_cast<std::uint64_t>(seed) + 1);
     rng.fill(noise, cv::RNG::UNIFORM, 40, 220);
     return noise;
+  }
+  // Bright, and without a corner.
+  static cv::Mat Ramp() {
+    cv::Mat ramp(images_->front().size(), CV_8UC3);
+    for (int x = 0; x < ramp.cols; ++x) ramp.col(x) = cv::Scalar::all(60 + 120.0 * x / ramp.cols);
+    return ramp;
   }
   static std::vector<cv::Mat> AllImages() {
     std::vector<cv::Mat> images;
@@ -158,9 +165,49 @@ TEST_F(LossOfTheView, PointsAreFollowedIntoBlurredImages) {
   EXPECT_FALSE(FramesThat(Run(options, images), TrackingState::kLost).empty());
 }
 
+// Somewhere else for a while: the images upside down, which no view of the scene resembles.
+TEST_F(LossOfTheView, AMapThatIsLeftIsFoundAgain) {
+  TrackerOptions options = FromDepth();
+  options.max_lost_frames = 2;
+  options.relocalization.seek_every = 1;
+  std::vector<cv::Mat> images = AllImages();
+  constexpr int kElsewhere = 4;
+  constexpr int kBack = 10;
+  for (std::size_t i = kElsewhere; i < kBack; ++i) cv::flip((*images_)[i], images[i], 0);
+  const auto reports = Run(options, images);
+  ASSERT_EQ(static_cast<int>(reports.size()), kFrames);
+  EXPECT_EQ(FramesThat(reports, TrackingState::kLost), (std::vector<int>{kElsewhere, kElsewhere + 1, kBack}));
+  std::map<PointId, int> submap_of;
+  for (const FrameReport& report : reports) {
+    const bool second = report.frame_idx >= kElsewhere + 2 && report.frame_idx <= kBack;
+    EXPECT_EQ(report.submap, second ? 1 : 0) << report.frame_idx;
+    for (const PointObservation& seen : report.observations)
+      EXPECT_EQ(submap_of.try_emplace(seen.id, report.submap).first->second, report.submap) << "an id in two maps";
+  }
+  const auto undisturbed = Run(options, AllImages());
+  EXPECT_LT(DistanceMm(reports.back(), undisturbed.back()), 0.4);
+}
+
+TEST_F(LossOfTheView, AMapThatIsFoundAgainEndsTheWaitForAnother) {
+  TrackerOptions options = FromDepth();
+  options.max_lost_frames = 1;
+  options.relocalization.seek_every = 1;
+  options.min_corners = 100;
+  std::vector<cv::Mat> images = AllImages();
+  for (std::size_t i = 4; i < 10; ++i) images[i] = Ramp();
+  const auto reports = Run(options, images);
+  for (const FrameReport& report : reports) {
+    const bool awaited = report.frame_idx >= 5 && report.frame_idx < 10;
+    EXPECT_EQ(report.state == TrackingState::kTracking, report.frame_idx < 4 || report.frame_idx >= 10)
+        << report.frame_idx << report.note;
+    EXPECT_EQ(report.submap, awaited ? 1 : 0) << report.frame_idx;
+  }
+}
+
 TEST_F(LossOfTheView, OnlyFramesThatShowSomethingEndTheRun) {
   TrackerOptions options = FromDepth();
   options.max_lost_frames = 2;
+  options.submaps = Switch::kOff;
   Tracker tracker = MakeTracker(options);
   const auto show = [&](const cv::Mat& image) {
     TrackerFrame frame = PrepareFrame(0, NameOf(0), 0, image, {}, options);

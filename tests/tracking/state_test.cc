@@ -21,6 +21,9 @@ TEST(TrackingStates, FollowTheTable) {
       {{S::kInitialising, E::kReferenceSpent}, S::kWaitingForReference},
       {{S::kTracking, E::kTooFewPoints}, S::kLost},
       {{S::kLost, E::kFrameTracked}, S::kTracking},
+      {{S::kLost, E::kMapLeft}, S::kWaitingForReference},
+      {{S::kWaitingForReference, E::kMapFoundAgain}, S::kLost},
+      {{S::kInitialising, E::kMapFoundAgain}, S::kLost},
   };
   for (const auto& [state, state_name] : EnumNames<S>::kNames) {
     for (const auto& [event, event_name] : EnumNames<E>::kNames) {

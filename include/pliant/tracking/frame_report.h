@@ -80,8 +80,8 @@ struct FrameReport {
   double timestamp_s = 0;
   TrackingState state = TrackingState::kWaitingForReference;
   std::string note;  // why the state is what it is, where there is something to say; one sentence, else empty
-  // Which map the frame belongs to, counted from 0: each has its own world and unit. Of a frame that has no pose, the map
-  // that is there, or awaited.
+  // Which map the frame belongs to, counted from 0: each has its own world and unit. Of a frame that has no pose, the
+  // map that is there, or awaited.
   int submap = 0;
 
   std::optional<Rigid3> cam_from_world;        // exactly in state tracking

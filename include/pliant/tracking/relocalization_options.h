@@ -12,6 +12,7 @@ namespace pliant {
 struct RelocalizationOptions {
   Switch relocalize = Switch::kOn;
   int remember_every = 20;   // frames from one description of the points in view to the next
+  int seek_every = 5;        // frames, for maps that were left, while another one is awaited
   int velocity_frames = 10;  // over which the camera's velocity before the loss is taken
   int max_corners = 1000;    // of a lost frame, to compare with the map's points
   double max_ratio = 0.85;   // nearest by second nearest description

@@ -21,6 +21,8 @@ enum class TrackingEvent {
   kMapCreated,      // the first map exists
   kFrameTracked,    // pose and deformation were found
   kTooFewPoints,    // too few points could be followed or explained
+  kMapLeft,         // the map was not found again for so long that another one is begun
+  kMapFoundAgain,   // an earlier map was
 };
 
 template <>
@@ -31,13 +33,16 @@ struct EnumNames<TrackingEvent> {
                                         std::pair{TrackingEvent::kReferenceSpent, std::string_view("reference_spent")},
                                         std::pair{TrackingEvent::kMapCreated, std::string_view("map_created")},
                                         std::pair{TrackingEvent::kFrameTracked, std::string_view("frame_tracked")},
-                                        std::pair{TrackingEvent::kTooFewPoints, std::string_view("too_few_points")}};
+                                        std::pair{TrackingEvent::kTooFewPoints, std::string_view("too_few_points")},
+                                        std::pair{TrackingEvent::kMapLeft, std::string_view("map_left")},
+                                        std::pair{TrackingEvent::kMapFoundAgain, std::string_view("map_found_again")}};
 };
 
 // The state after `event` in `state`. Events that cannot happen in a state leave it as it is.
 //   waiting       --reference_found-->  initialising     --map_created--> tracking
 //   initialising  --reference_spent-->  waiting          (or straight to tracking from waiting: a start from depth)
 //   tracking      --too_few_points-->   lost             lost --frame_tracked--> tracking
+//   lost          --map_left-->         waiting          waiting, initialising --map_found_again--> lost
 TrackingState NextState(TrackingState state, TrackingEvent event);
 
 }  // namespace pliant

@@ -72,7 +72,8 @@ struct TrackerOptions {
   Switch track_blurred = Switch::kOn;   // into blurred images too; before the first map these are passed over
   double min_sharpness = 0.6;           // by that of the last sharp image: less is blurred, or dark
   int max_blurred_frames = 30;          // in a row: then the blur is taken to stay
-  int max_lost_frames = 10;             // after so many lost frames in a row that show something the tracker gives up
+  int max_lost_frames = 10;             // after so many lost frames in a row that show something the map is left
+  Switch submaps = Switch::kOn;         // another one is begun then; off: the tracker gives up
 
   // Groups Corners, Masks, LucasKanade, PointTracker, Init, CameraPose, Deformation, Optimization, Tracking, Growth,
   // Relocalization, AbsolutePose, Oracle, and those of the initialisers.
@@ -125,17 +126,24 @@ class Tracker {
   // To be called when no more frames come, whatever the reason: the reports held back become final as they are.
   std::vector<FrameReport> Finish() { return std::exchange(held_, {}); }
 
-  // Whether a frame's depth image or known points can still be of use: before the first map, when that is to come from
-  // them.
-  bool WantsDepth() const { return options_.init.TakesKnownDepth() && map_.landmarks.empty(); }
+  // Whether the next frames' depth images or known points can be of use: before the first map, when that is to come
+  // from them, and while another one may be begun.
+  bool WantsDepth() const {
+    return options_.init.TakesKnownDepth() && (map_.landmarks.empty() || options_.submaps == Switch::kOn);
+  }
+  // Whether the next one's is.
+  bool NeedsDepth() const { return options_.init.TakesKnownDepth() && map_.landmarks.empty(); }
 
   TrackingState state() const { return state_; }
+  // Whether there was a map before the present one, or before the one that is awaited.
+  bool LeftAMap() const { return !left_.empty(); }
   const Map& map() const { return map_; }
-  // Lost for max_lost_frames frames that are neither dark nor frozen: further frames will not help.
-  bool GaveUp() const { return lost_frames_ >= options_.max_lost_frames; }
+  // Lost for max_lost_frames frames that are neither dark nor frozen, and no new map is to be begun.
+  bool GaveUp() const { return LeavesMap() && options_.submaps == Switch::kOff; }
 
  private:
   struct Followed;  // the landmarks that were followed into a frame, side by side
+  struct Submap;    // a map with all that belongs to it
 
   void Apply(TrackingEvent event) { state_ = NextState(state_, event); }
   void Count(std::string_view reason, int count);
@@ -170,6 +178,10 @@ class Tracker {
   void ReportLost(const TrackerFrame& frame, const std::string& reason, FrameReport* report);
 
   // The way back after a loss.
+  bool LeavesMap() const { return lost_frames_ >= options_.max_lost_frames; }
+  void LeaveMap();
+  void FindMapAgain(const TrackerFrame& frame);
+  void Exchange(Submap* other);
   void Remember(const TrackerFrame& frame, const FrameReport& report);
   void RememberLastView();
   std::vector<Landmark> KnownLandmarks() const;
@@ -211,6 +223,8 @@ class Tracker {
   Rigid3 before_last_cam_from_world_;
   std::vector<std::pair<int, Rigid3>> recent_poses_;  // by frame_idx, of the last frames in a row that were tracked
   std::int64_t next_id_ = 0;
+  std::vector<std::unique_ptr<Submap>> left_;  // maps that were left, the last one last
+  int submap_ = 0;                             // the present one, or the one that is awaited
   int lost_frames_ = 0;
   int blurred_frames_ = 0;                           // in a row, up to now
   std::vector<std::pair<std::string, int>> losses_;  // of the present frame, by reason
