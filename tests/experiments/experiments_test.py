@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The experiments' workflows on grids small enough for a test.
 
-usage: experiments_test.py dry_run|tables|choices|first_maps|first_map_plots|tiny_grid|tiny_first_maps|slurm|
+usage: experiments_test.py dry_run|tables|choices|staying|first_maps|first_map_plots|tiny_grid|tiny_first_maps|slurm|
                            two_views|two_views_program|two_views_workflow PLIANT
 """
 
@@ -25,6 +25,7 @@ sys.path.insert(0, str(ROOT / "experiments/common"))
 sys.path.insert(0, str(ROOT / "experiments/simulated_colon"))
 sys.path.insert(0, str(ROOT / "experiments/regularisers"))
 sys.path.insert(0, str(ROOT / "experiments/initialisation"))
+sys.path.insert(0, str(ROOT / "experiments/long_sequences"))
 
 
 def need(*programs):
@@ -77,6 +78,44 @@ def dry_run(folder):
     text = snakemake("rigid_baseline", folder / "baseline", "--dry-run", "--quiet", "--config", "sequences=", "seeds=1,2")
     counts = {line.split()[0]: line.split()[1] for line in text.splitlines() if len(line.split()) > 1}
     assert counts["track"] == "10" and counts["reconstruct"] == "20" and counts["evaluate"] == "30", text
+    text = snakemake("long_sequences", folder / "long", "--dry-run", "--quiet", "--config", "variants=all")
+    counts = {line.split()[0]: line.split()[1] for line in text.splitlines() if len(line.split()) > 1}
+    assert counts["simulate"] == "12" and counts["track"] == counts["evaluate"] == str(12 * 7), text
+
+
+def staying(folder):
+    """What counts as visible, as survived, and as an end-point's error; of a run and a sequence made by hand."""
+    import staying as figures
+
+    sequence, run = folder / "seq", folder / "runs/default/loop_A2.5_w2.5_s3"
+    (run / "evaluation").mkdir(parents=True)
+    sequence.mkdir()
+    (sequence / "simulation.yaml").write_text(
+        "Sensor:  # levels\n  blackout_period_s: 9\nInterruption:  # what\n  blackout_period_s: 1  # [s] how often\n"
+        "  blackout_s: 0.2  # [s]\n  blur_period_s: 0\n  blur_s: 1\nCamera:\n  blackout_s: 7\n", encoding="utf-8")
+    times = [0.1 * i for i in range(32)]
+    (sequence / "groundtruth.txt").write_text("".join(f"{t:.6f} {t:.6f} 0 0 0 0 0 1\n" for t in times), encoding="utf-8")
+    dark = {10, 11, 20, 21, 30, 31}
+    # Lost in the dark; after the second black-out another map is there, after the third nothing follows.
+    rows = [{"frame": i, "state": "lost" if i in dark or i == 22 else "tracking", "submap": int(i > 22),
+             "optimized": 0 if i in dark else 100 + i, "ms_a": 3, "ms_b": 4} for i in range(32)]
+    figures.grid.write_rows(run / "frames.csv", list(rows[0]), rows)
+    (run / "run.json").write_text('{"counts": {"submaps": 1}}', encoding="utf-8")
+    (run / "trajectory.txt").write_text("".join(f"{t:.6f} {2.1 * t:.6f} 0 0 0 0 0 1\n" for i, t in enumerate(times)
+                                                if rows[i]["state"] == "tracking"), encoding="utf-8")
+    (run / "evaluation/evaluation.json").write_text(
+        '{"surface": {"estimate": {"mean_rmse_mm": 1.5}}, "trajectory": {"scale": 0.5}}', encoding="utf-8")
+    figures.grid.write_rows(run / "evaluation/evaluation.csv", ["frame", "rmse_mm", "scale"],
+                            [{"frame": i, "rmse_mm": 1 + i, "scale": 2} for i in range(30) if i not in dark])
+    row = figures.figures_of(run, sequence)
+    assert row["visible_frames"] == 26 and row["tracked_visible"] == 25, row
+    assert row["blackouts"] == 3 and row["blackouts_survived"] == 1, row
+    assert row["fewest_points"] == 100 and row["ms_per_frame"] == 7, row
+    assert abs(row["path_mm"] - 2.9) < 1e-9 and abs(row["end_point_mm"] - 0.05 * 2.9) < 1e-9, row
+    assert row["scale_drift"] == 0 and row["rmse_mm"] == 1.5, row
+    figures.write([(run, sequence)], folder / "table.md", folder / "table.csv")
+    line = (folder / "table.md").read_text(encoding="utf-8").splitlines()[2]
+    assert line.startswith("| loop | 2.5 | default | 96.2 | 1 of 3 | 1.0 |") and line.endswith("| 5.00 |"), line
 
 
 def tables(folder):
