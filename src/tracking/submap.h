@@ -1,10 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// A map with all that belongs to it, while another one is the present one.
+// A map with all that belongs to it: what the tracker goes on with, and what it keeps of a map that it left.
 #pragma once
 
-#include <memory>
 #include <utility>
 #include <vector>
 
@@ -17,20 +16,24 @@
 namespace pliant {
 
 struct Tracker::Submap {
-  explicit Submap(const PointTrackerOptions& options) : point_tracker(options) {}
+  Submap(int submap_idx, const Camera& camera, const TrackerOptions& options)
+      : idx(submap_idx),
+        point_tracker(options.point_tracker),
+        candidates(camera, options.growth),
+        places(options.corners, options.relocalization) {}
 
-  int idx = 0;
+  int idx;
   Map map;
   PointTracker point_tracker;
-  std::unique_ptr<LostPoints> lost_points;
-  std::unique_ptr<RigidHistory> rigid_history;
-  std::unique_ptr<Candidates> candidates;
-  std::unique_ptr<Places> places;
-  std::vector<InitFrame> window_frames;
-  TrackerFrame previous;
+  LostPoints lost_points;
+  RigidHistory rigid_history;
+  Candidates candidates;
+  Places places;
+  std::vector<InitFrame> window_frames;  // the last ones in which there was a map, with their candidates
+  TrackerFrame previous;                 // the last frame in which points were seen
   Rigid3 last_cam_from_world;
   Rigid3 before_last_cam_from_world;
-  std::vector<std::pair<int, Rigid3>> recent_poses;
+  std::vector<std::pair<int, Rigid3>> recent_poses;  // by frame_idx, of the last frames in a row that were tracked
 };
 
 }  // namespace pliant

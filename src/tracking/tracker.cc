@@ -94,19 +94,23 @@ Tracker::Tracker(const Camera& camera, const TrackerOptions& options, std::uint6
       options_(options),
       threads_(threads),
       initializer_(MakeInitializer(options.init, Random(seed).Child("initializer"))),
-      point_tracker_(options.point_tracker),
       oracle_(std::make_unique<OracleAnswers>(
           options.oracle, truth,
           options.init.IsMetric() ? std::nullopt : std::optional(options.init.monocular.nominal_depth_mm))),
-      lost_points_(std::make_unique<LostPoints>()),
-      rigid_history_(std::make_unique<RigidHistory>()),
-      candidates_(std::make_unique<Candidates>(camera_, options.growth)),
-      places_(std::make_unique<Places>(options.corners, options.relocalization)),
-      remaker_(MakeRemaker(options)) {
+      remaker_(MakeRemaker(options)),
+      now_(std::make_unique<Submap>(0, camera_, options)) {
   if (options_.init.IsMetric()) options_.graph.sigma_mm = options_.sigma_metric_mm;
 }
 
 Tracker::~Tracker() = default;
+
+const Map& Tracker::map() const { return now_->map; }
+
+bool Tracker::NeedsDepth() const { return options_.init.TakesKnownDepth() && map().landmarks.empty(); }
+
+bool Tracker::WantsDepth() const {
+  return NeedsDepth() || (options_.init.TakesKnownDepth() && options_.submaps == Switch::kOn);
+}
 
 std::vector<FrameReport> Tracker::Process(const TrackerFrame& frame) {
   FrameReport& report = held_.emplace_back();
@@ -132,7 +136,7 @@ std::vector<FrameReport> Tracker::Process(const TrackerFrame& frame) {
       break;
   }
   report.state = state_;
-  report.submap = submap_;
+  report.submap = now_->idx;
   ReportLosses(&report);
 
   const auto first_held = state_ == TrackingState::kInitialising
@@ -170,7 +174,7 @@ void Tracker::AddCorners(const TrackerFrame& frame, const LocalBrightness& brigh
   InitFrame added{frame.frame_idx, {}};
   for (const Corner& corner : DetectCorners(frame.grey, frame.mask.valid(), existing, corners)) {
     const PointId id{next_id_};
-    if (point_tracker_.Add(id, corner.pixel, frame.pyramid, frame.mask) != PatchFailure::kNone) continue;
+    if (now_->point_tracker.Add(id, corner.pixel, frame.pyramid, frame.mask) != PatchFailure::kNone) continue;
     added.observations.push_back(
         {id, corner.pixel, 1.0, brightness.At(corner.pixel), ColourAt(frame.image, corner.pixel)});
     ++next_id_;
@@ -183,7 +187,7 @@ void Tracker::AddKnownPoints(const TrackerFrame& frame, const LocalBrightness& b
   for (const PixelDepth& known : frame.known_points) {
     if (static_cast<int>(points->observations.size()) == options_.corners.max_corners) break;
     const PointId id{next_id_};
-    if (point_tracker_.Add(id, known.pixel, frame.pyramid, frame.mask) != PatchFailure::kNone) continue;
+    if (now_->point_tracker.Add(id, known.pixel, frame.pyramid, frame.mask) != PatchFailure::kNone) continue;
     points->observations.push_back(
         {id, known.pixel, 1.0, brightness.At(known.pixel), ColourAt(frame.image, known.pixel)});
     known_depths_.push_back(known.depth);
@@ -194,15 +198,15 @@ void Tracker::AddKnownPoints(const TrackerFrame& frame, const LocalBrightness& b
 void Tracker::TakeReference(const TrackerFrame& frame, FrameReport* report) {
   {
     const StageTimer timer(report, "initialise");
-    map_.landmarks.clear();
+    now_->map.landmarks.clear();
     init_frames_.clear();
-    point_tracker_.Clear();
-    lost_points_->Clear();
-    rigid_history_->Stop();
-    candidates_->Clear();
-    places_->Clear();
-    recent_poses_.clear();
-    window_frames_.clear();
+    now_->point_tracker.Clear();
+    now_->lost_points.Clear();
+    now_->rigid_history.Stop();
+    now_->candidates.Clear();
+    now_->places.Clear();
+    now_->recent_poses.clear();
+    now_->window_frames.clear();
     InitFrame reference{frame.frame_idx, {}};
     const LocalBrightness brightness(frame.image, frame.mask.valid());
     known_depths_.clear();
@@ -218,12 +222,12 @@ void Tracker::TakeReference(const TrackerFrame& frame, FrameReport* report) {
     report->note = WithFault("no reference yet: " + std::to_string(report->tracked) +
                                  (initializer_->TakesKnownPoints() ? " points of the model" : " corners") +
                                  ", of at least " + std::to_string(options_.min_corners),
-                             ImageFault(frame, previous_));
+                             ImageFault(frame, now_->previous));
   } else if (TryInitialize(frame, report) == InitDecision::kWait) {
     Apply(TrackingEvent::kReferenceFound);
     report->note = "reference with " + std::to_string(report->tracked) + " corners";
   }
-  previous_ = frame;
+  now_->previous = frame;
 }
 
 // Constant velocity in the image: there is no map yet.
@@ -254,7 +258,7 @@ bool Tracker::PassOver(const TrackerFrame& frame, FrameReport* report) {
   if (options_.track_blurred == Switch::kOff || !IsBlurred(frame)) return false;
   ++blurred_frames_;
   report->tracked = static_cast<int>(init_frames_.back().observations.size());
-  report->note = WithFault("passed over: the image is blurred or dark", ImageFault(frame, previous_));
+  report->note = WithFault("passed over: the image is blurred or dark", ImageFault(frame, now_->previous));
   return true;
 }
 
@@ -271,7 +275,7 @@ void Tracker::FollowReference(const TrackerFrame& frame, FrameReport* report) {
         followed.observations.push_back(
             {track.id, track.pixel, track.ssim, brightness.At(track.pixel), ColourAt(frame.image, track.pixel)});
       } else {
-        point_tracker_.Remove(track.id);
+        now_->point_tracker.Remove(track.id);
         Count(EnumName(track.failure), 1);
       }
     }
@@ -280,12 +284,12 @@ void Tracker::FollowReference(const TrackerFrame& frame, FrameReport* report) {
       AddCorners(frame, brightness, options_.corners.max_corners - kept, &followed);
     report->tracked = static_cast<int>(followed.observations.size());
     init_frames_.push_back(std::move(followed));
-    point_tracker_.Keep();
+    now_->point_tracker.Keep();
   }
-  image_fault_ = ImageFault(frame, previous_);
+  image_fault_ = ImageFault(frame, now_->previous);
   TryInitialize(frame, report);
   report->note = WithFault(report->note, image_fault_);
-  previous_ = frame;
+  now_->previous = frame;
 }
 
 InitOutcome Tracker::AskInitializer(const cv::Mat& depth_mm, InitMoment moment, FrameReport* report) {
@@ -334,16 +338,16 @@ InitDecision Tracker::TryInitialize(const TrackerFrame& frame, FrameReport* repo
 // Of the points that the map does not have, those may still enter it whose depth is uncertain so far.
 void Tracker::KeepCandidates(const InitOutcome& outcome) {
   for (const InitPoint& point : outcome.points)
-    if (map_.Find(point.id) == nullptr) point_tracker_.Remove(point.id);
+    if (now_->map.Find(point.id) == nullptr) now_->point_tracker.Remove(point.id);
   for (const InitRejectedPoint& rejected : outcome.rejected) {
     const InitObservation* seen = FindById(init_frames_.back().observations, rejected.id);
     const bool uncertain =
         rejected.reason == InitRejection::kUncertainDepth || rejected.reason == InitRejection::kTooFewViews;
     if (!GrowsMap() || !uncertain || seen == nullptr ||
-        !candidates_->Add({seen->id, seen->pixel, seen->ssim, seen->rgb}, last_cam_from_world_, map_))
-      point_tracker_.Remove(rejected.id);
+        !now_->candidates.Add({seen->id, seen->pixel, seen->ssim, seen->rgb}, now_->last_cam_from_world, now_->map))
+      now_->point_tracker.Remove(rejected.id);
   }
-  window_frames_ = init_frames_;
+  now_->window_frames = init_frames_;
 }
 
 // Every frame since the reference gets its pose and points; tracking goes on from the last one.
@@ -351,12 +355,12 @@ void Tracker::CreateMap(const InitOutcome& outcome) {
   for (const InitRejectedPoint& rejected : outcome.rejected)
     if (rejected.reason != InitRejection::kLostOnTheWay) Count(InitRejectionName(rejected.reason), 1);
   ReportFirstMap(camera_, init_frames_, outcome, held_);
-  map_ = MakeFirstMap(init_frames_, outcome);
-  last_cam_from_world_ = outcome.frames.back().cam_from_world;
-  before_last_cam_from_world_ =
-      outcome.frames.size() >= 2 ? outcome.frames[outcome.frames.size() - 2].cam_from_world : last_cam_from_world_;
+  now_->map = MakeFirstMap(init_frames_, outcome);
+  now_->last_cam_from_world = outcome.frames.back().cam_from_world;
+  now_->before_last_cam_from_world =
+      outcome.frames.size() >= 2 ? outcome.frames[outcome.frames.size() - 2].cam_from_world : now_->last_cam_from_world;
   KeepCandidates(outcome);
-  if (outcome.refinable && !oracle_->gives_poses()) rigid_history_->Start(std::move(init_frames_));
+  if (outcome.refinable && !oracle_->gives_poses()) now_->rigid_history.Start(std::move(init_frames_));
   init_frames_.clear();
   Apply(TrackingEvent::kMapCreated);
 }

@@ -11,13 +11,14 @@
 #include "tracking/followed.h"
 #include "tracking/lost_points.h"
 #include "tracking/oracle_answers.h"
+#include "tracking/submap.h"
 #include "tracking/tracker_support.h"
 
 namespace pliant {
 
 // One frame, as in the paper; the names in brackets are those of docs/method.md.
 void Tracker::TrackFrame(const TrackerFrame& frame, FrameReport* report) {
-  Rigid3 predicted = PredictCameraPose(before_last_cam_from_world_, last_cam_from_world_);  // (E6)
+  Rigid3 predicted = PredictCameraPose(now_->before_last_cam_from_world, now_->last_cam_from_world);  // (E6)
   const std::optional<Rigid3> true_pose = oracle_->Pose(frame.frame_idx);
   if (true_pose) predicted = *true_pose;
   Followed followed;
@@ -79,24 +80,24 @@ void Tracker::TrackFrame(const TrackerFrame& frame, FrameReport* report) {
   Remember(frame, *report);
   RefineMap(report);
   GrowMap(frame, report);
-  point_tracker_.Keep();
-  report->note = WithFault(report->note, ImageFault(frame, previous_));
-  previous_ = frame;
+  now_->point_tracker.Keep();
+  report->note = WithFault(report->note, ImageFault(frame, now_->previous));
+  now_->previous = frame;
 }
 
 // Where each landmark is expected (P6): its last pixel, moved as the map says that camera and point move it.
 std::vector<PointPrediction> Tracker::PredictPixels(const Rigid3& predicted_cam_from_world) const {
   std::vector<Eigen::Vector2d> from;
   std::vector<Eigen::Vector2d> to;
-  for (const Landmark& landmark : map_.landmarks) {
-    const auto now = camera_.Project(last_cam_from_world_ * landmark.position);
+  for (const Landmark& landmark : now_->map.landmarks) {
+    const auto now = camera_.Project(now_->last_cam_from_world * landmark.position);
     const auto next = camera_.Project(predicted_cam_from_world * (landmark.position + landmark.last_motion));
     from.push_back(landmark.pixel);
     to.push_back(now && next ? Eigen::Vector2d(landmark.pixel + *next - *now) : landmark.pixel);
   }
   const std::vector<Eigen::Matrix2d> affines = NeighbourhoodAffines(from, to);
   std::vector<PointPrediction> predictions;
-  for (std::size_t k = 0; k < to.size(); ++k) predictions.push_back({map_.landmarks[k].id, to[k], affines[k]});
+  for (std::size_t k = 0; k < to.size(); ++k) predictions.push_back({now_->map.landmarks[k].id, to[k], affines[k]});
   return predictions;
 }
 
@@ -104,20 +105,21 @@ std::vector<PointPrediction> Tracker::PredictPixels(const Rigid3& predicted_cam_
 std::vector<PointTrack> Tracker::TrackPixels(const TrackerFrame& frame,
                                              const std::vector<PointPrediction>& predictions) {
   if (oracle_->gives_tracks()) return oracle_->Tracks(frame.frame_idx, predictions);
-  return point_tracker_.Track(previous_.pyramid, previous_.mask, frame.pyramid, frame.mask, predictions, threads_);
+  return now_->point_tracker.Track(now_->previous.pyramid, now_->previous.mask, frame.pyramid, frame.mask, predictions,
+                                   threads_);
 }
 
 // Against the last sharp image. Of many such images in a row the later ones are taken as they are: the blur stays.
 bool Tracker::IsBlurred(const TrackerFrame& frame) const {
   return blurred_frames_ < options_.max_blurred_frames &&
-         frame.sharpness < options_.min_sharpness * previous_.sharpness;
+         frame.sharpness < options_.min_sharpness * now_->previous.sharpness;
 }
 
 std::vector<PointTrack> Tracker::TrackPixelsIntoBlur(const TrackerFrame& frame,
                                                      const std::vector<PointPrediction>& predictions) const {
   std::vector<Eigen::Vector2d> pixels;
-  for (const PointPrediction& prediction : predictions) pixels.push_back(point_tracker_.PixelOf(prediction.id));
-  return TrackIntoBlur(previous_, frame, pixels, predictions, options_.point_tracker, threads_);
+  for (const PointPrediction& prediction : predictions) pixels.push_back(now_->point_tracker.PixelOf(prediction.id));
+  return TrackIntoBlur(now_->previous, frame, pixels, predictions, options_.point_tracker, threads_);
 }
 
 Tracker::Followed Tracker::FollowPoints(const TrackerFrame& frame, const std::vector<PointPrediction>& predictions) {
@@ -130,7 +132,7 @@ Tracker::Followed Tracker::FollowPoints(const TrackerFrame& frame, const std::ve
       Count(EnumName(tracks[k].failure), 1);
       followed.unseen.push_back(tracks[k].id);
     } else {
-      followed.Add(map_.landmarks[k], tracks[k]);
+      followed.Add(now_->map.landmarks[k], tracks[k]);
     }
   }
   return followed;
@@ -140,14 +142,14 @@ Tracker::Followed Tracker::FollowPoints(const TrackerFrame& frame, const std::ve
 // many were looked for.
 int Tracker::FindLost(const TrackerFrame& frame, const Rigid3& cam_from_world, Followed* followed) {
   const std::vector<PointPrediction> expected =
-      lost_points_->Expected(camera_, cam_from_world, static_cast<std::size_t>(options_.max_searches));
-  const std::vector<PointTrack> tracks = point_tracker_.Find(frame.pyramid, frame.mask, expected, threads_);
+      now_->lost_points.Expected(camera_, cam_from_world, static_cast<std::size_t>(options_.max_searches));
+  const std::vector<PointTrack> tracks = now_->point_tracker.Find(frame.pyramid, frame.mask, expected, threads_);
   for (std::size_t k = 0; k < tracks.size(); ++k) {
     if (tracks[k].failure != PatchFailure::kNone) continue;
     if ((tracks[k].pixel - expected[k].pixel).norm() > options_.max_search_px) {
-      point_tracker_.Undo(tracks[k].id);
+      now_->point_tracker.Undo(tracks[k].id);
     } else {
-      followed->Add(*lost_points_->Find(tracks[k].id), tracks[k]);
+      followed->Add(*now_->lost_points.Find(tracks[k].id), tracks[k]);
       followed->found.push_back(tracks[k].id);
     }
   }
@@ -208,9 +210,9 @@ void Tracker::Commit(const FrameSolution& solution, const Followed& followed, Fr
   Map next;
   std::vector<double> errors;
   for (std::size_t k = 0; k < followed.size(); ++k) {
-    const Landmark* before = map_.Find(followed.ids[k]);
-    Landmark landmark = before != nullptr ? *before : *lost_points_->Find(followed.ids[k]);
-    lost_points_->Remove(landmark.id);
+    const Landmark* before = now_->map.Find(followed.ids[k]);
+    Landmark landmark = before != nullptr ? *before : *now_->lost_points.Find(followed.ids[k]);
+    now_->lost_points.Remove(landmark.id);
     landmark.last_motion = followed.solved[k].position - landmark.position;
     landmark.position = followed.solved[k].position;
     landmark.pixel = followed.pixels[k];
@@ -218,24 +220,25 @@ void Tracker::Commit(const FrameSolution& solution, const Followed& followed, Fr
     report->observations.push_back({landmark.id, landmark.pixel, landmark.position, followed.ssim[k]});
     errors.push_back(followed.solved[k].reprojection_error_px);
   }
-  for (const Landmark& landmark : map_.landmarks) {
+  for (const Landmark& landmark : now_->map.landmarks) {
     if (next.Find(landmark.id) != nullptr) continue;
     const bool unseen = std::binary_search(followed.unseen.begin(), followed.unseen.end(), landmark.id);
     if (unseen && options_.find_lost == Switch::kOn)
-      lost_points_->Add(landmark, last_cam_from_world_);
+      now_->lost_points.Add(landmark, now_->last_cam_from_world);
     else
-      point_tracker_.Remove(landmark.id);
+      now_->point_tracker.Remove(landmark.id);
   }
-  for (; static_cast<int>(lost_points_->size()) > options_.max_lost_points;
-       lost_points_->Remove(lost_points_->Oldest()))
-    point_tracker_.Remove(lost_points_->Oldest());
+  for (; static_cast<int>(now_->lost_points.size()) > options_.max_lost_points;
+       now_->lost_points.Remove(now_->lost_points.Oldest()))
+    now_->point_tracker.Remove(now_->lost_points.Oldest());
   for (const PointId id : followed.found)
-    if (next.Find(id) == nullptr) point_tracker_.Undo(id);  // it was another one; the point stays lost
-  map_ = std::move(next);
-  lost_points_->Move(map_.landmarks);  // (R1)
-  before_last_cam_from_world_ =
-      state_ == TrackingState::kTracking ? last_cam_from_world_ : solution.cam_from_world;  // no velocity after a gap
-  last_cam_from_world_ = solution.cam_from_world;
+    if (next.Find(id) == nullptr) now_->point_tracker.Undo(id);  // it was another one; the point stays lost
+  now_->map = std::move(next);
+  now_->lost_points.Move(now_->map.landmarks);  // (R1)
+  now_->before_last_cam_from_world = state_ == TrackingState::kTracking
+                                         ? now_->last_cam_from_world
+                                         : solution.cam_from_world;  // no velocity after a gap
+  now_->last_cam_from_world = solution.cam_from_world;
   lost_frames_ = 0;
 
   report->cam_from_world = solution.cam_from_world;
@@ -246,7 +249,7 @@ void Tracker::Commit(const FrameSolution& solution, const Followed& followed, Fr
 
 // Too few points, as a sentence.
 std::string Tracker::Found(int count) const {
-  return std::to_string(count) + " of " + std::to_string(map_.landmarks.size()) +
+  return std::to_string(count) + " of " + std::to_string(now_->map.landmarks.size()) +
          " points could be followed, of at least " + std::to_string(options_.min_points);
 }
 
@@ -254,10 +257,10 @@ std::string Tracker::Found(int count) const {
 void Tracker::ReportLost(const TrackerFrame& frame, const std::string& reason, FrameReport* report) {
   if (state_ == TrackingState::kTracking) RememberLastView();
   Apply(TrackingEvent::kTooFewPoints);
-  const std::string fault = ImageFault(frame, previous_);
+  const std::string fault = ImageFault(frame, now_->previous);
   if (fault.empty()) ++lost_frames_;
   losses_.clear();
-  point_tracker_.Undo();
+  now_->point_tracker.Undo();
   report->note = WithFault("lost: " + reason, fault);
 }
 

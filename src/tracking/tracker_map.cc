@@ -13,46 +13,48 @@
 #include "tracking/oracle_answers.h"
 #include "tracking/replace_map.h"
 #include "tracking/rigid_history.h"
+#include "tracking/submap.h"
 #include "tracking/tracker_support.h"
 
 namespace pliant {
 
 void Tracker::DropFromMap(PointId id, FrameReport* report) {
-  point_tracker_.Remove(id);
-  std::erase_if(map_.landmarks, [&](const Landmark& landmark) { return landmark.id == id; });
+  now_->point_tracker.Remove(id);
+  std::erase_if(now_->map.landmarks, [&](const Landmark& landmark) { return landmark.id == id; });
   std::erase_if(report->observations, [&](const PointObservation& seen) { return seen.id == id; });
   report->optimized = static_cast<int>(report->observations.size());
 }
 
 // While the scene is rigid (W13).
 void Tracker::RefineMap(FrameReport* report) {
-  if (rigid_history_->empty()) return;
+  if (now_->rigid_history.empty()) return;
   const StageTimer timer(report, "initialise");
   InitFrame frame{report->frame_idx, {}};
   for (const PointObservation& seen : report->observations)
     frame.observations.push_back({.id = seen.id, .pixel = seen.pixel, .ssim = seen.ssim});
-  if (!rigid_history_->Add(std::move(frame))) return;
+  if (!now_->rigid_history.Add(std::move(frame))) return;
   const InitOutcome outcome =
-      initializer_->Refine({camera_, rigid_history_->frames(), {}, InitMoment::kMoreFollow, threads_});
+      initializer_->Refine({camera_, now_->rigid_history.frames(), {}, InitMoment::kMoreFollow, threads_});
   if (outcome.decision == InitDecision::kNewReference) {
-    rigid_history_->Stop();
+    now_->rigid_history.Stop();
     report->note = "the map is not refined any more: " + outcome.reason;
   }
   if (outcome.decision != InitDecision::kMap) return;
   // Points that contradict the others over all frames since the reference.
   for (const InitRejectedPoint& rejected : outcome.rejected)
-    if (rejected.reason == InitRejection::kReprojection && map_.Find(rejected.id) != nullptr) {
+    if (rejected.reason == InitRejection::kReprojection && now_->map.Find(rejected.id) != nullptr) {
       Count(InitRejectionName(rejected.reason), 1);
       DropFromMap(rejected.id, report);
     }
-  const Map before = map_;
-  const auto cam_from_world = ReplaceMap(outcome, last_cam_from_world_, &map_, &report->refined_points);
+  const Map before = now_->map;
+  const auto cam_from_world = ReplaceMap(outcome, now_->last_cam_from_world, &now_->map, &report->refined_points);
   if (!cam_from_world) return;
-  candidates_->TakeCorrection(before, map_);
-  before_last_cam_from_world_ = before_last_cam_from_world_ * last_cam_from_world_.Inverse() * *cam_from_world;
-  last_cam_from_world_ = *cam_from_world;
+  now_->candidates.TakeCorrection(before, now_->map);
+  now_->before_last_cam_from_world =
+      now_->before_last_cam_from_world * now_->last_cam_from_world.Inverse() * *cam_from_world;
+  now_->last_cam_from_world = *cam_from_world;
   report->cam_from_world = cam_from_world;
-  for (PointObservation& seen : report->observations) seen.position = map_.Find(seen.id)->position;
+  for (PointObservation& seen : report->observations) seen.position = now_->map.Find(seen.id)->position;
   report->median_reprojection_error_px = MedianReprojectionErrorPx(camera_, *cam_from_world, report->observations);
   report->note = "the map was refined: " + outcome.reason;
 }
@@ -68,26 +70,28 @@ void Tracker::GrowMap(const TrackerFrame& frame, FrameReport* report) {
     FollowCandidates(frame);
   }
   const StageTimer timer(report, "initialise");
-  for (const auto& [id, position] : candidates_->Certain(last_cam_from_world_, map_)) Promote(id, position, report);
+  for (const auto& [id, position] : now_->candidates.Certain(now_->last_cam_from_world, now_->map))
+    Promote(id, position, report);
   RemakeMap(frame, report);
   if (frame.frame_idx % options_.growth.every == 0) LookForCandidates(frame);
 }
 
 void Tracker::FollowCandidates(const TrackerFrame& frame) {
-  const std::vector<PointPrediction> predictions = candidates_->Predict(last_cam_from_world_);
-  for (const PointTrack& track :
-       point_tracker_.Track(previous_.pyramid, previous_.mask, frame.pyramid, frame.mask, predictions, threads_)) {
-    if (track.failure == PatchFailure::kNone && candidates_->See(track, last_cam_from_world_, map_)) continue;
-    candidates_->Remove(track.id);
-    point_tracker_.Remove(track.id);
+  const std::vector<PointPrediction> predictions = now_->candidates.Predict(now_->last_cam_from_world);
+  for (const PointTrack& track : now_->point_tracker.Track(now_->previous.pyramid, now_->previous.mask, frame.pyramid,
+                                                           frame.mask, predictions, threads_)) {
+    if (track.failure == PatchFailure::kNone && now_->candidates.See(track, now_->last_cam_from_world, now_->map))
+      continue;
+    now_->candidates.Remove(track.id);
+    now_->point_tracker.Remove(track.id);
   }
 }
 
 // A candidate becomes a point of the map.
 void Tracker::Promote(PointId id, const Eigen::Vector3d& position, FrameReport* report) {
-  const auto landmark = candidates_->AsLandmark(id, position, map_);
+  const auto landmark = now_->candidates.AsLandmark(id, position, now_->map);
   if (!landmark) return;
-  const CandidateTrack& track = candidates_->track(id);
+  const CandidateTrack& track = now_->candidates.track(id);
   const auto insert = [](auto& sorted, auto element) {
     const auto place = std::upper_bound(sorted.begin(), sorted.end(), element,
                                         [](const auto& a, const auto& b) { return a.id < b.id; });
@@ -95,28 +99,30 @@ void Tracker::Promote(PointId id, const Eigen::Vector3d& position, FrameReport* 
   };
   insert(report->new_points, NewPoint{id, landmark->rest_position, track.rgb});
   insert(report->observations, PointObservation{id, track.pixel, landmark->position, track.ssim});
-  insert(map_.landmarks, *landmark);
+  insert(now_->map.landmarks, *landmark);
   ++report->tracked;
   ++report->optimized;
   ++report->added;
-  candidates_->Remove(id);
+  now_->candidates.Remove(id);
 }
 
 // Corners where there is neither a point of the map, nor a candidate, nor a lost point.
 void Tracker::LookForCandidates(const TrackerFrame& frame) {
-  const auto room = options_.corners.max_corners - static_cast<int>(map_.landmarks.size() + candidates_->size());
+  const auto room =
+      options_.corners.max_corners - static_cast<int>(now_->map.landmarks.size() + now_->candidates.size());
   if (room <= 0) return;
-  std::vector<Eigen::Vector2d> taken = lost_points_->Pixels(camera_, last_cam_from_world_);
-  for (const Landmark& landmark : map_.landmarks) taken.push_back(landmark.pixel);
-  for (const CandidateTrack& track : candidates_->tracks()) taken.push_back(track.pixel);
+  std::vector<Eigen::Vector2d> taken = now_->lost_points.Pixels(camera_, now_->last_cam_from_world);
+  for (const Landmark& landmark : now_->map.landmarks) taken.push_back(landmark.pixel);
+  for (const CandidateTrack& track : now_->candidates.tracks()) taken.push_back(track.pixel);
   CornerOptions corners = options_.corners;
   corners.max_corners = room;
   for (const Corner& corner : DetectCorners(frame.grey, frame.mask.valid(), taken, corners)) {
     const PointId id{next_id_};
-    if (point_tracker_.Add(id, corner.pixel, frame.pyramid, frame.mask) != PatchFailure::kNone) continue;
+    if (now_->point_tracker.Add(id, corner.pixel, frame.pyramid, frame.mask) != PatchFailure::kNone) continue;
     ++next_id_;
-    if (!candidates_->Add({id, corner.pixel, 1.0, ColourAt(frame.image, corner.pixel)}, last_cam_from_world_, map_))
-      point_tracker_.Remove(id);
+    if (!now_->candidates.Add({id, corner.pixel, 1.0, ColourAt(frame.image, corner.pixel)}, now_->last_cam_from_world,
+                              now_->map))
+      now_->point_tracker.Remove(id);
   }
 }
 
@@ -128,31 +134,32 @@ void Tracker::RemakeMap(const TrackerFrame& frame, FrameReport* report) {
   InitFrame seen{frame.frame_idx, {}};
   for (const PointObservation& point : report->observations)
     seen.observations.push_back({point.id, point.pixel, point.ssim, brightness.At(point.pixel)});
-  for (const CandidateTrack& track : candidates_->tracks())
+  for (const CandidateTrack& track : now_->candidates.tracks())
     seen.observations.push_back({track.id, track.pixel, track.ssim, brightness.At(track.pixel)});
   std::sort(seen.observations.begin(), seen.observations.end(),
             [](const InitObservation& a, const InitObservation& b) { return a.id < b.id; });
-  window_frames_.push_back(std::move(seen));
-  if (window_frames_.size() > length + 1)
-    window_frames_.erase(window_frames_.begin(), window_frames_.end() - static_cast<std::ptrdiff_t>(length + 1));
-  if (window_frames_.size() <= length || !rigid_history_->empty() ||
+  now_->window_frames.push_back(std::move(seen));
+  if (now_->window_frames.size() > length + 1)
+    now_->window_frames.erase(now_->window_frames.begin(),
+                              now_->window_frames.end() - static_cast<std::ptrdiff_t>(length + 1));
+  if (now_->window_frames.size() <= length || !now_->rigid_history.empty() ||
       frame.frame_idx % options_.growth.remake_every != 0)
     return;
-  const InitOutcome outcome = remaker_->Try({camera_, window_frames_, {}, InitMoment::kMoreFollow, threads_});
+  const InitOutcome outcome = remaker_->Try({camera_, now_->window_frames, {}, InitMoment::kMoreFollow, threads_});
   if (outcome.decision != InitDecision::kMap) return;
-  const auto positions = RemadePositions(outcome, last_cam_from_world_, map_);
+  const auto positions = RemadePositions(outcome, now_->last_cam_from_world, now_->map);
   if (positions.empty()) return;
-  const Map before = map_;
+  const Map before = now_->map;
   for (const InitPosition& point : positions)
-    if (Landmark* landmark = map_.Find(point.id); landmark != nullptr) {
+    if (Landmark* landmark = now_->map.Find(point.id); landmark != nullptr) {
       landmark->rest_position += point.position - landmark->position;
       landmark->position = point.position;
       report->refined_points.push_back({landmark->id, landmark->rest_position});
     }
-  candidates_->TakeCorrection(before, map_);
+  now_->candidates.TakeCorrection(before, now_->map);
   for (const InitPosition& point : positions)
-    if (map_.Find(point.id) == nullptr) Promote(point.id, point.position, report);
-  for (PointObservation& point : report->observations) point.position = map_.Find(point.id)->position;
+    if (now_->map.Find(point.id) == nullptr) Promote(point.id, point.position, report);
+  for (PointObservation& point : report->observations) point.position = now_->map.Find(point.id)->position;
   report->note = "the map was made anew: " + outcome.reason;
 }
 

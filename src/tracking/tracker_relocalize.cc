@@ -5,6 +5,7 @@
 // the image confirms.
 #include <algorithm>
 #include <ranges>
+#include <utility>
 
 #include "pliant/tracking/tracker.h"
 #include "tracking/followed.h"
@@ -45,38 +46,38 @@ void RelocalizationOptions::List(OptionTable& table) {
 // Of the frames in a row that led to this one, the poses.
 void Tracker::Remember(const TrackerFrame& frame, const FrameReport& report) {
   const auto length = static_cast<std::size_t>(options_.relocalization.velocity_frames) + 1;
-  if (!recent_poses_.empty() && recent_poses_.back().first + 1 != frame.frame_idx) recent_poses_.clear();
-  recent_poses_.emplace_back(frame.frame_idx, *report.cam_from_world);
-  if (recent_poses_.size() > length) recent_poses_.erase(recent_poses_.begin());
+  if (!now_->recent_poses.empty() && now_->recent_poses.back().first + 1 != frame.frame_idx) now_->recent_poses.clear();
+  now_->recent_poses.emplace_back(frame.frame_idx, *report.cam_from_world);
+  if (now_->recent_poses.size() > length) now_->recent_poses.erase(now_->recent_poses.begin());
   if (options_.relocalization.relocalize == Switch::kOff || oracle_->gives_tracks()) return;
   if (frame.frame_idx % options_.relocalization.remember_every != 0) return;
-  places_->See(frame.grey, map_.landmarks);
+  now_->places.See(frame.grey, now_->map.landmarks);
   std::vector<PointId> known;
   for (const Landmark& landmark : KnownLandmarks()) known.push_back(landmark.id);
   std::sort(known.begin(), known.end());
-  places_->Keep(known);
+  now_->places.Keep(known);
 }
 
 // Those in sight and those that were lost.
 std::vector<Landmark> Tracker::KnownLandmarks() const {
-  std::vector<Landmark> known = map_.landmarks;
-  const std::vector<Landmark> lost = lost_points_->landmarks();
+  std::vector<Landmark> known = now_->map.landmarks;
+  const std::vector<Landmark> lost = now_->lost_points.landmarks();
   known.insert(known.end(), lost.begin(), lost.end());
   return known;
 }
 
 void Tracker::RememberLastView() {
-  if (options_.relocalization.relocalize == Switch::kOn) places_->See(previous_.grey, map_.landmarks);
+  if (options_.relocalization.relocalize == Switch::kOn) now_->places.See(now_->previous.grey, now_->map.landmarks);
 }
 
 // Where the camera may be in this frame: where it was, and where it would be had it gone on as it went.
 std::vector<Rigid3> Tracker::GuessPoses(int frame_idx) const {
-  std::vector<Rigid3> guesses = {last_cam_from_world_};
-  if (options_.relocalization.relocalize == Switch::kOff || recent_poses_.size() < 2) return guesses;
-  const auto& [first_idx, first] = recent_poses_.front();
-  const auto& [last_idx, last] = recent_poses_.back();
+  std::vector<Rigid3> guesses = {now_->last_cam_from_world};
+  if (options_.relocalization.relocalize == Switch::kOff || now_->recent_poses.size() < 2) return guesses;
+  const auto& [first_idx, first] = now_->recent_poses.front();
+  const auto& [last_idx, last] = now_->recent_poses.back();
   const double frames = static_cast<double>(frame_idx - last_idx) / (last_idx - first_idx);
-  guesses.insert(guesses.begin(), Repeated(last * first.Inverse(), frames) * last_cam_from_world_);
+  guesses.insert(guesses.begin(), Repeated(last * first.Inverse(), frames) * now_->last_cam_from_world);
   return guesses;
 }
 
@@ -85,7 +86,7 @@ std::vector<Rigid3> Tracker::GuessPoses(int frame_idx) const {
 Tracker::Followed Tracker::FollowFrom(const TrackerFrame& frame, Rigid3* cam_from_world) {
   const RelocalizationOptions& options = options_.relocalization;
   losses_.clear();
-  point_tracker_.Undo();
+  now_->point_tracker.Undo();
   Followed followed = FollowPoints(frame, PredictPixels(*cam_from_world));
   if (options.relocalize == Switch::kOff) return followed;
   const auto improve = [&] {
@@ -95,7 +96,7 @@ Tracker::Followed Tracker::FollowFrom(const TrackerFrame& frame, Rigid3* cam_fro
   // Once more, from a better pose.
   if (static_cast<int>(followed.size()) >= options_.min_points) improve();
   losses_.clear();
-  point_tracker_.Undo();
+  now_->point_tracker.Undo();
   const std::vector<PointPrediction> predictions = PredictPixels(*cam_from_world);
   followed = FollowPoints(frame, predictions);
   auto expected = std::count_if(predictions.begin(), predictions.end(),
@@ -119,38 +120,16 @@ Tracker::Followed Tracker::Relocalize(const TrackerFrame& frame, Rigid3* cam_fro
     if (Followed followed = FollowFrom(frame, cam_from_world); followed.size() > 0) return followed;
   }
   if (options_.relocalization.relocalize == Switch::kOff) return {};
-  const auto recognized = places_->Recognize(frame.grey, frame.mask, camera_, KnownLandmarks());
+  const auto recognized = now_->places.Recognize(frame.grey, frame.mask, camera_, KnownLandmarks());
   if (!recognized.ok()) return {};
   *cam_from_world = recognized->cam_from_world;
   return FollowFrom(frame, cam_from_world);
 }
 
-// The present map changes places with another one.
-void Tracker::Exchange(Submap* other) {
-  std::swap(submap_, other->idx);
-  std::swap(map_, other->map);
-  std::swap(point_tracker_, other->point_tracker);
-  std::swap(lost_points_, other->lost_points);
-  std::swap(rigid_history_, other->rigid_history);
-  std::swap(candidates_, other->candidates);
-  std::swap(places_, other->places);
-  std::swap(window_frames_, other->window_frames);
-  std::swap(previous_, other->previous);
-  std::swap(last_cam_from_world_, other->last_cam_from_world);
-  std::swap(before_last_cam_from_world_, other->before_last_cam_from_world);
-  std::swap(recent_poses_, other->recent_poses);
-}
-
 // The next map has its own world, unit and points.
 void Tracker::LeaveMap() {
-  auto next = std::make_unique<Submap>(options_.point_tracker);
-  next->idx = static_cast<int>(left_.size()) + 1;
-  next->lost_points = std::make_unique<LostPoints>();
-  next->rigid_history = std::make_unique<RigidHistory>();
-  next->candidates = std::make_unique<Candidates>(camera_, options_.growth);
-  next->places = std::make_unique<Places>(options_.corners, options_.relocalization);
-  Exchange(next.get());
-  left_.push_back(std::move(next));
+  auto next = std::make_unique<Submap>(static_cast<int>(left_.size()) + 1, camera_, options_);
+  left_.push_back(std::exchange(now_, std::move(next)));
   lost_frames_ = 0;
   blurred_frames_ = 0;
   Apply(TrackingEvent::kMapLeft);
@@ -161,11 +140,11 @@ void Tracker::LeaveMap() {
 void Tracker::FindMapAgain(const TrackerFrame& frame) {
   if (state_ == TrackingState::kTracking || frame.frame_idx % options_.relocalization.seek_every != 0) return;
   for (std::size_t k = left_.size(); k-- > 0;) {
-    Exchange(left_[k].get());
+    std::swap(now_, left_[k]);
     Rigid3 cam_from_world;
     const bool found = Relocalize(frame, &cam_from_world).size() > 0;
     losses_.clear();
-    point_tracker_.Undo();
+    now_->point_tracker.Undo();
     if (found) {
       if (state_ != TrackingState::kLost) left_.erase(left_.begin() + static_cast<std::ptrdiff_t>(k));
       init_frames_.clear();
@@ -173,7 +152,7 @@ void Tracker::FindMapAgain(const TrackerFrame& frame) {
       Apply(TrackingEvent::kMapFoundAgain);
       return;
     }
-    Exchange(left_[k].get());
+    std::swap(now_, left_[k]);
   }
 }
 

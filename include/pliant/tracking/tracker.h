@@ -39,12 +39,8 @@
 
 namespace pliant {
 
-class Candidates;
 class LocalBrightness;
-class LostPoints;
 class OracleAnswers;
-class Places;
-class RigidHistory;
 
 struct TrackerOptions {
   CornerOptions corners;
@@ -128,16 +124,14 @@ class Tracker {
 
   // Whether the next frames' depth images or known points can be of use: before the first map, when that is to come
   // from them, and while another one may be begun.
-  bool WantsDepth() const {
-    return options_.init.TakesKnownDepth() && (map_.landmarks.empty() || options_.submaps == Switch::kOn);
-  }
+  bool WantsDepth() const;
   // Whether the next one's is.
-  bool NeedsDepth() const { return options_.init.TakesKnownDepth() && map_.landmarks.empty(); }
+  bool NeedsDepth() const;
 
   TrackingState state() const { return state_; }
   // Whether there was a map before the present one, or before the one that is awaited.
   bool LeftAMap() const { return !left_.empty(); }
-  const Map& map() const { return map_; }
+  const Map& map() const;
   // Lost for max_lost_frames frames that are neither dark nor frozen, and no new map is to be begun.
   bool GaveUp() const { return LeavesMap() && options_.submaps == Switch::kOff; }
 
@@ -181,7 +175,6 @@ class Tracker {
   bool LeavesMap() const { return lost_frames_ >= options_.max_lost_frames; }
   void LeaveMap();
   void FindMapAgain(const TrackerFrame& frame);
-  void Exchange(Submap* other);
   void Remember(const TrackerFrame& frame, const FrameReport& report);
   void RememberLastView();
   std::vector<Landmark> KnownLandmarks() const;
@@ -203,28 +196,17 @@ class Tracker {
   TrackerOptions options_;
   int threads_;
   std::unique_ptr<Initializer> initializer_;
-  PointTracker point_tracker_;
   std::unique_ptr<OracleAnswers> oracle_;
-  std::unique_ptr<LostPoints> lost_points_;
-  std::unique_ptr<RigidHistory> rigid_history_;
-  std::unique_ptr<Candidates> candidates_;
-  std::unique_ptr<Places> places_;
-  std::unique_ptr<Initializer> remaker_;  // of the map, from window_frames_
+  std::unique_ptr<Initializer> remaker_;  // of the map, from the last frames
 
   TrackingState state_ = TrackingState::kWaitingForReference;
-  Map map_;
-  std::vector<InitFrame> init_frames_;    // since the reference
-  std::vector<InitFrame> window_frames_;  // the last ones in which there was a map, with their candidates
-  std::vector<double> known_depths_;      // of the reference's points, where they are known
-  std::string image_fault_;               // of the last of them
+  std::vector<InitFrame> init_frames_;  // since the reference
+  std::vector<double> known_depths_;    // of the reference's points, where they are known
+  std::string image_fault_;             // of the last of them
   std::vector<FrameReport> held_;  // of init_frames_ while initialising; within Process the present frame's is the last
-  TrackerFrame previous_;          // the last frame in which points were seen
-  Rigid3 last_cam_from_world_;
-  Rigid3 before_last_cam_from_world_;
-  std::vector<std::pair<int, Rigid3>> recent_poses_;  // by frame_idx, of the last frames in a row that were tracked
   std::int64_t next_id_ = 0;
+  std::unique_ptr<Submap> now_;                // the present map, or the one that is awaited
   std::vector<std::unique_ptr<Submap>> left_;  // maps that were left, the last one last
-  int submap_ = 0;                             // the present one, or the one that is awaited
   int lost_frames_ = 0;
   int blurred_frames_ = 0;                           // in a row, up to now
   std::vector<std::pair<std::string, int>> losses_;  // of the present frame, by reason
