@@ -8,11 +8,13 @@
 #include <cmath>
 #include <filesystem>
 #include <iterator>
+#include <set>
 
 #include "io/run_format.h"
-#include "io/tum_line.h"
+#include "io/run_rows.h"
 #include "pliant/base/text.h"
 #include "pliant/io/ply.h"
+#include "pliant/io/trajectory.h"
 
 namespace pliant {
 namespace {
@@ -60,23 +62,6 @@ bool IsFinite(const PointObservation& o) {
   return o.pixel.allFinite() && o.position.allFinite() && std::isfinite(o.ssim);
 }
 
-void AppendObservation(std::string* out, int frame_idx, const PointObservation& o) {
-  AppendInt(out, frame_idx);
-  out->push_back(',');
-  AppendInt(out, o.id.value);
-  for (const double pixel : o.pixel) {
-    out->push_back(',');
-    AppendFixed(out, pixel, 4);
-  }
-  for (const double coordinate : o.position) {
-    out->push_back(',');
-    AppendFixed(out, coordinate, 6);
-  }
-  out->push_back(',');
-  AppendFixed(out, o.ssim, 4);
-  out->push_back('\n');
-}
-
 }  // namespace
 
 struct RunWriter::State {
@@ -91,6 +76,7 @@ struct RunWriter::State {
   // What the sparse model needs beside observations.csv: one entry a tracked frame and one a point.
   std::vector<CanonicalImage> images = {};
   std::vector<CanonicalPoint> points = {};
+  std::vector<RunFrameWorld> worlds = {};  // one entry a frame
   std::vector<double> stage_total_ms = {};
   int last_frame_idx = -1;
   std::chrono::steady_clock::time_point begin = std::chrono::steady_clock::now();
@@ -99,6 +85,8 @@ struct RunWriter::State {
 
   Status Check(const FrameReport& report);
   Status AddPoints(const FrameReport& report);
+  void Join(const SubmapJoin& join);
+  void NumberSubmaps();
   void Count(const FrameReport& report);
   void AppendFrameRow(const FrameReport& report);
   Status WriteRows(const FrameReport& report);
@@ -202,7 +190,6 @@ void RunWriter::State::Count(const FrameReport& report) {
   ++summary.frames_read;
   if (report.cam_from_world) ++summary.frames_tracked;
   if (report.first_map && !summary.first_map) summary.first_map = report.first_map;
-  if (report.cam_from_world) summary.submaps = std::max(summary.submaps, report.submap + 1);
   summary.observations += static_cast<std::int64_t>(report.observations.size());
   summary.points = static_cast<std::int64_t>(points.size());
   for (const auto& [reason, count] : report.losses) {
@@ -253,6 +240,7 @@ Status RunWriter::State::WriteRows(const FrameReport& report) {
     if (Status status = trajectory.Append(rows); !status.ok()) return status;
     images.push_back({report.frame_idx, report.name, *report.cam_from_world, report.submap});
   }
+  worlds.push_back({report.frame_idx, report.submap, report.submap, std::nullopt});
   rows.clear();
   AppendFrameRow(report);
   return frames.Append(rows);
@@ -265,7 +253,41 @@ Status RunWriter::Write(const FrameReport& report) {
   if (Status status = s.AddPoints(report); !status.ok()) return status;
   s.Count(report);
   s.failure = s.WriteRows(report);
+  if (report.join) s.Join(*report.join);
   return s.failure;
+}
+
+// The rows that are on disk stay as they are until Finish.
+void RunWriter::State::Join(const SubmapJoin& join) {
+  for (CanonicalImage& image : images)
+    if (image.submap == join.submap) {
+      image.cam_from_world = PoseInWorld(join.into_from_submap, image.cam_from_world);
+      image.submap = join.into;
+    }
+  for (CanonicalPoint& point : points)
+    if (point.submap == join.submap) {
+      point.point.position = join.into_from_submap * point.point.position;
+      point.submap = join.into;
+    }
+  for (RunFrameWorld& world : worlds)
+    if (world.submap == join.submap) {
+      world.moved_by = world.moved_by ? join.into_from_submap * *world.moved_by : join.into_from_submap;
+      world.submap = join.into;
+    }
+}
+
+// From 0 on, without those that went into others or that never came to be. A frame that waited for one of the latter
+// gets the number it would have had.
+void RunWriter::State::NumberSubmaps() {
+  std::set<int> used;
+  for (const CanonicalImage& image : images) used.insert(image.submap);
+  const auto number = [&](int submap) {
+    return static_cast<int>(std::distance(used.begin(), used.lower_bound(submap)));
+  };
+  for (CanonicalImage& image : images) image.submap = number(image.submap);
+  for (CanonicalPoint& point : points) point.submap = number(point.submap);
+  for (RunFrameWorld& world : worlds) world.submap = number(world.submap);
+  summary.submaps = static_cast<int>(used.size());
 }
 
 // Of one submap: its points, and its model.
@@ -309,6 +331,8 @@ Status RunWriter::Finish(RunStatus run_status, const std::string& note) {
   for (std::size_t i = 0; i < s.stage_names.size(); ++i)
     s.summary.mean_ms.emplace_back(
         s.stage_names[i], s.stage_total_ms[i] / static_cast<double>(std::max<std::int64_t>(s.summary.frames_read, 1)));
+  s.NumberSubmaps();
+  if (status.ok()) status = MoveRunRows(s.path, s.worlds, s.images);
   if (status.ok()) status = s.FinishSparse();
   s.summary.status = status.ok() ? run_status : RunStatus::kFailed;
   s.summary.note = status.ok() ? note : status.message();

@@ -35,6 +35,24 @@ void LostPoints::Add(const Landmark& landmark, const Rigid3& cam_from_world) {
   points_[landmark.id] = {landmark, cam_from_world, landmark.position, {}, 0, next_order_++};
 }
 
+void LostPoints::MoveInto(const Sim3& other_from_world) {
+  for (auto& [id, point] : points_) {
+    point.landmark = Moved(other_from_world, point.landmark);
+    point.cam_from_world = PoseInWorld(other_from_world, point.cam_from_world);
+    point.seen_at = other_from_world * point.seen_at;
+    if (point.own_share) point.own_share = other_from_world.Turn(*point.own_share);
+  }
+}
+
+void LostPoints::TakeOver(LostPoints&& other) {
+  for (auto& [id, point] : other.points_) {
+    point.order += next_order_;
+    point.own_share.reset();  // it was told by its own map's points
+  }
+  next_order_ += other.next_order_;
+  points_.merge(other.points_);
+}
+
 PointId LostPoints::Oldest() const {
   return std::min_element(points_.begin(), points_.end(),
                           [](const auto& a, const auto& b) { return a.second.order < b.second.order; })

@@ -12,6 +12,7 @@
 
 #include "pliant/camera/camera.h"
 #include "pliant/geometry/rigid3.h"
+#include "pliant/geometry/sim3.h"
 #include "pliant/scene/map.h"
 #include "pliant/tracking/point_tracker.h"
 
@@ -27,6 +28,11 @@ class LostPoints {
   std::size_t size() const { return points_.size(); }
   // The one that has been lost the longest; there has to be one.
   PointId Oldest() const;
+
+  // Into another world.
+  void MoveInto(const Sim3& other_from_world);
+  // All of `other`, which is in the same world and has other ids; as if they were lost now.
+  void TakeOver(LostPoints&& other);
 
   // Where each is now, as the landmarks that are seen say (R1). `seen` sorted by id.
   void Move(const std::vector<Landmark>& seen);

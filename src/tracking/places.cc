@@ -9,9 +9,14 @@
 
 namespace pliant {
 
-Places::Places(const CornerOptions& corners, const RelocalizationOptions& options)
-    : corners_(corners), options_(options) {
-  corners_.max_corners = options.max_corners;
+DescribedImage Describe(const cv::Mat& grey, const SupportMask& mask, const CornerOptions& corners,
+                        const RelocalizationOptions& options) {
+  CornerOptions as_many = corners;
+  as_many.max_corners = options.max_corners;
+  DescribedImage image;
+  for (const Corner& corner : DetectCorners(grey, mask.valid(), {}, as_many)) image.pixels.push_back(corner.pixel);
+  image.descriptors = DescribePixels(grey, image.pixels);
+  return image;
 }
 
 void Places::See(const cv::Mat& grey, const std::vector<Landmark>& landmarks) {
@@ -26,10 +31,8 @@ void Places::Keep(const std::vector<PointId>& known) {
   std::erase_if(seen_, [&](const auto& entry) { return !std::binary_search(known.begin(), known.end(), entry.first); });
 }
 
-Result<AbsolutePose> Places::Recognize(const cv::Mat& grey, const SupportMask& mask, const Camera& camera,
+Result<AbsolutePose> Places::Recognize(const DescribedImage& image, const Camera& camera,
                                        const std::vector<Landmark>& landmarks) const {
-  std::vector<Eigen::Vector2d> pixels;
-  for (const Corner& corner : DetectCorners(grey, mask.valid(), {}, corners_)) pixels.push_back(corner.pixel);
   cv::Mat known;
   std::vector<const Landmark*> described;
   for (const Landmark& landmark : landmarks)
@@ -39,8 +42,8 @@ Result<AbsolutePose> Places::Recognize(const cv::Mat& grey, const SupportMask& m
     }
   std::vector<Eigen::Vector3d> points;
   std::vector<Eigen::Vector3d> rays;
-  for (const auto& [corner, point] : MatchDescriptors(DescribePixels(grey, pixels), known, options_.max_ratio)) {
-    const auto ray = camera.Unproject(pixels[static_cast<std::size_t>(corner)]);
+  for (const auto& [corner, point] : MatchDescriptors(image.descriptors, known, options_.max_ratio)) {
+    const auto ray = camera.Unproject(image.pixels[static_cast<std::size_t>(corner)]);
     if (!ray) continue;
     points.push_back(described[static_cast<std::size_t>(point)]->position);
     rays.push_back(*ray);

@@ -22,22 +22,31 @@
 
 namespace pliant {
 
+// The corners of an image, and what they look like, a row each.
+struct DescribedImage {
+  std::vector<Eigen::Vector2d> pixels;
+  cv::Mat descriptors;
+};
+DescribedImage Describe(const cv::Mat& grey, const SupportMask& mask, const CornerOptions& corners,
+                        const RelocalizationOptions& options);
+
 class Places {
  public:
-  Places(const CornerOptions& corners, const RelocalizationOptions& options);
+  explicit Places(const RelocalizationOptions& options) : options_(options) {}
 
   void Clear() { seen_.clear(); }
   // The landmarks as they look in an image, each at its pixel; what was known of them is replaced.
   void See(const cv::Mat& grey, const std::vector<Landmark>& landmarks);
+  // All that `other` knows of other points.
+  void TakeOver(Places&& other) { seen_.merge(other.seen_); }
   // Forgets all points but these. Sorted.
   void Keep(const std::vector<PointId>& known);
 
   // The camera of an image that sees some of these landmarks, wherever it may be. Fails as EstimateAbsolutePose does.
-  Result<AbsolutePose> Recognize(const cv::Mat& grey, const SupportMask& mask, const Camera& camera,
+  Result<AbsolutePose> Recognize(const DescribedImage& image, const Camera& camera,
                                  const std::vector<Landmark>& landmarks) const;
 
  private:
-  CornerOptions corners_;
   RelocalizationOptions options_;
   std::map<PointId, cv::Mat> seen_;  // one row each
 };

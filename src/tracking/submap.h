@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "pliant/geometry/sim3.h"
 #include "pliant/tracking/tracker.h"
 #include "tracking/candidates.h"
 #include "tracking/lost_points.h"
@@ -20,7 +21,13 @@ struct Tracker::Submap {
       : idx(submap_idx),
         point_tracker(options.point_tracker),
         candidates(camera, options.growth),
-        places(options.corners, options.relocalization) {}
+        places(options.relocalization) {}
+
+  // Into another world; where the two are one.
+  void MoveInto(const Sim3& other_from_world);
+  // All that `other`, which is in the same world, knows besides: its points are lost ones, which are found where they
+  // are in sight. The candidates of both are let go of.
+  void TakeOver(Submap&& other);
 
   int idx;
   Map map;

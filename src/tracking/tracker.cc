@@ -120,6 +120,7 @@ std::vector<FrameReport> Tracker::Process(const TrackerFrame& frame) {
   for (const std::string_view stage : kStages) report.stage_ms.emplace_back(stage, 0.0);
   report.stage_ms.front().second = frame.prepare_ms;
   losses_.clear();
+  described_.reset();
   if (LeavesMap() && options_.submaps == Switch::kOn) LeaveMap();
   FindMapAgain(frame);
 
@@ -138,6 +139,7 @@ std::vector<FrameReport> Tracker::Process(const TrackerFrame& frame) {
   report.state = state_;
   report.submap = now_->idx;
   ReportLosses(&report);
+  JoinMaps(frame, &report);
 
   const auto first_held = state_ == TrackingState::kInitialising
                               ? std::ranges::find(held_, init_frames_.front().frame_idx, &FrameReport::frame_idx)
@@ -362,6 +364,7 @@ void Tracker::CreateMap(const InitOutcome& outcome) {
   KeepCandidates(outcome);
   if (outcome.refinable && !oracle_->gives_poses()) now_->rigid_history.Start(std::move(init_frames_));
   init_frames_.clear();
+  ++maps_made_;
   Apply(TrackingEvent::kMapCreated);
 }
 

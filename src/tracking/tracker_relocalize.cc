@@ -34,6 +34,11 @@ void RelocalizationOptions::List(OptionTable& table) {
             1000000);
   table.Add("seek_every", &seek_every, "frames", "while another map is awaited, those left are looked for so often", 1,
             1000000);
+  table.AddChoice("join", &join, "maps become one when a map that was left is found in the image of another");
+  table.Add("join_every", &join_every, "frames", "while another map is tracked, those left are looked for so often", 1,
+            1000000);
+  table.Add("max_unit_spread", &max_unit_spread, "-",
+            "two maps are joined whose points agree on their units: median deviation of the ratio's logarithm", 0, 10);
   table.Add("velocity_frames", &velocity_frames, "frames", "over which the camera's velocity before the loss is taken",
             1, 1000);
   table.Add("max_corners", &max_corners, "-", "of a lost frame, to compare with the map's points", 8, 100000);
@@ -120,7 +125,10 @@ Tracker::Followed Tracker::Relocalize(const TrackerFrame& frame, Rigid3* cam_fro
     if (Followed followed = FollowFrom(frame, cam_from_world); followed.size() > 0) return followed;
   }
   if (options_.relocalization.relocalize == Switch::kOff) return {};
-  const auto recognized = now_->places.Recognize(frame.grey, frame.mask, camera_, KnownLandmarks());
+  if (described_ == nullptr)
+    described_ =
+        std::make_unique<DescribedImage>(Describe(frame.grey, frame.mask, options_.corners, options_.relocalization));
+  const auto recognized = now_->places.Recognize(*described_, camera_, KnownLandmarks());
   if (!recognized.ok()) return {};
   *cam_from_world = recognized->cam_from_world;
   return FollowFrom(frame, cam_from_world);
@@ -128,7 +136,7 @@ Tracker::Followed Tracker::Relocalize(const TrackerFrame& frame, Rigid3* cam_fro
 
 // The next map has its own world, unit and points.
 void Tracker::LeaveMap() {
-  auto next = std::make_unique<Submap>(static_cast<int>(left_.size()) + 1, camera_, options_);
+  auto next = std::make_unique<Submap>(maps_made_, camera_, options_);
   left_.push_back(std::exchange(now_, std::move(next)));
   lost_frames_ = 0;
   blurred_frames_ = 0;

@@ -95,19 +95,23 @@ TEST(TrackProgress, ShowsAFrameWhenItIsProcessedAndNotAgainWhenItIsFinal) {
   testing::internal::CaptureStderr();
   {
     TrackProgress progress(ProgressStyle::kBar);
-    progress.OnStart(3);
+    progress.OnStart(4);
     progress.OnHeld(Report(0, TrackingState::kInitialising, "reference"));
     progress.OnHeld(Report(1, TrackingState::kInitialising, "parallax"));
     progress.OnFrame(Report(0, TrackingState::kTracking, "from the map"));
     progress.OnFrame(Report(1, TrackingState::kTracking, "from the map"));
     progress.OnFrame(Report(2, TrackingState::kTracking, "first map"));
+    FrameReport joins = Report(3, TrackingState::kTracking, "two maps are one");
+    joins.join = SubmapJoin();
+    progress.OnFrame(joins);
   }
   const std::string text = testing::internal::GetCapturedStderr();
   EXPECT_NE(text.find("frame 0.png: initialising (reference)\n"), std::string::npos) << text;
   EXPECT_NE(text.find("frame 2.png: tracking (first map)\n"), std::string::npos) << text;
   EXPECT_EQ(text.find("from the map"), std::string::npos) << text;
-  EXPECT_NE(text.find("1/3"), std::string::npos) << "a frame that waits moves the bar: " << text;
-  EXPECT_NE(text.find("3/3"), std::string::npos) << text;
+  EXPECT_NE(text.find("1/4"), std::string::npos) << "a frame that waits moves the bar: " << text;
+  EXPECT_NE(text.find("frame 3.png: tracking (two maps are one)\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("4/4"), std::string::npos) << text;
 }
 
 }  // namespace

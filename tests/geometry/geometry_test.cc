@@ -30,6 +30,26 @@ TEST(Rigid3, ExponentialMapMatchesAngleAxis) {
   }
 }
 
+TEST(Sim3, ComposesAndInverts) {
+  const Sim3 b_from_a{2.5, RotationExp({0.3, -0.2, 0.9}), {1, 2, 3}};
+  const Sim3 c_from_b{0.25, RotationExp({-1.0, 0.4, 0.1}), {-5, 0, 7}};
+  const Eigen::Vector3d x(4, -2, 8);
+  const Eigen::Vector3d y(1, 0, -3);
+  EXPECT_LT(((c_from_b * b_from_a) * x - c_from_b * (b_from_a * x)).norm(), kRounding);
+  EXPECT_LT((b_from_a.Inverse() * (b_from_a * x) - x).norm(), kRounding);
+  EXPECT_LT((b_from_a.Turn(x - y) - (b_from_a * x - b_from_a * y)).norm(), kRounding);
+}
+
+TEST(Sim3, MovesACameraWithWhatItSees) {
+  const Sim3 b_from_a{2.5, RotationExp({0.3, -0.2, 0.9}), {1, 2, 3}};
+  const Rigid3 cam_from_a(RotationExp({-1.0, 0.4, 0.1}), {-5, 0, 7});
+  const Eigen::Vector3d x(4, -2, 8);
+  const Rigid3 cam_from_b = PoseInWorld(b_from_a, cam_from_a);
+  EXPECT_LT((cam_from_b * (b_from_a * x) - b_from_a.scale * (cam_from_a * x)).norm(), kRounding);
+  const Sim3 found = WorldFromPoses(cam_from_b, cam_from_a, b_from_a.scale);
+  EXPECT_LT((found * x - b_from_a * x).norm(), kRounding);
+}
+
 TEST(AlignPoints, RecoversASimilarity) {
   Random random(5);
   const Sim3 truth{2.5, RotationExp({0.5, 1.5, -0.3}), {10, -20, 30}};

@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
+#include "io/run_reports.h"
 #include "pliant/io/run_reader.h"
 #include "pliant/io/run_writer.h"
 #include "support/test_folder.h"
@@ -18,51 +19,8 @@
 namespace pliant {
 namespace {
 
+using namespace run_reports;
 using testing::HasSubstr;
-
-const std::vector<std::string> kStages = {"pyramid", "tracking"};
-constexpr int kPoints = 6;
-
-Camera TestCamera() { return Camera::Create("PINHOLE", 640, 480, std::vector<double>{500, 500, 319.5, 239.5}).value(); }
-
-constexpr FirstMapFrames kFirstMap = {12, 14};
-
-// Frame 0 waits; frames 1 and 2 have their poses from the first map; from frame 1 on, odd points are seen in odd frames
-// only.
-FrameReport Report(int frame) {
-  FrameReport report;
-  report.frame_idx = 10 + 2 * frame;
-  report.name = std::to_string(report.frame_idx) + ".png";
-  report.timestamp_s = frame / 25.0;
-  report.stage_ms = {{"pyramid", 1.5}, {"tracking", 2.25}};
-  report.losses = {{"similarity", frame}, {"border", 1}};
-  if (frame == 0) return report;
-  report.state = TrackingState::kTracking;
-  report.cam_from_world = Rigid3(RotationExp({0, 0.01 * frame, 0}), Eigen::Vector3d(0.1 * frame, 0, 0.5));
-  if (frame <= 2) report.first_map = kFirstMap;
-  report.tracked = kPoints;
-  for (int i = 0; i < kPoints; ++i) {
-    const Eigen::Vector3d x(i - 2, 0.5 * i, 50 + 0.25 * frame);
-    if (frame == 1) report.new_points.push_back({PointId{3 * i}, x, {10, 20, static_cast<std::uint8_t>(i)}});
-    if (i % 2 == 1 && frame % 2 == 0) continue;
-    report.observations.push_back({PointId{3 * i}, *TestCamera().Project(*report.cam_from_world * x), x, 0.9});
-  }
-  report.costs.spatial = 0.125;
-  return report;
-}
-
-RunWriter Writer(const std::string& path, const RunWriterOptions& options = {}) {
-  auto writer = RunWriter::Create(path, TestCamera(), {"0.1.0", {"pliant", "track"}, 7, "clip.mp4", {"tracks"}},
-                                  "Track:\n", kStages, options);
-  EXPECT_TRUE(writer.ok()) << writer.status().message();
-  return std::move(writer).value();
-}
-
-void WriteRun(const std::string& path, int frames, const RunWriterOptions& options = {}) {
-  RunWriter writer = Writer(path, options);
-  for (int i = 0; i < frames; ++i) ASSERT_TRUE(writer.Write(Report(i)).ok());
-  ASSERT_TRUE(writer.Finish(RunStatus::kLost, "too few points").ok());
-}
 
 TEST(RunFolder, ComesBackAsItWasReported) {
   const TestFolder folder;
@@ -253,57 +211,6 @@ TEST(RunWriter, TheMapHasPointsWhereTheyWereLastRefinedTo) {
   const std::string points = folder.Read("run/sparse/points3D.txt");
   EXPECT_THAT(points, HasSubstr("\n0 0.125000 0.250000 73.500000 "));
   EXPECT_THAT(points, HasSubstr("\n3 -1.000000 0.500000 50.250000 ")) << "the others stay";
-}
-
-TEST(RunWriter, EverySubmapHasItsOwnMapAndModel) {
-  const TestFolder folder;
-  {
-    RunWriter writer = Writer(folder.Path("run"));
-    ASSERT_TRUE(writer.Write(Report(1)).ok());
-    FrameReport second = Report(2);
-    second.submap = 1;
-    EXPECT_THAT(writer.Write(second).message(), HasSubstr("is of submap 0"));
-    second.new_points = Report(1).new_points;
-    for (NewPoint& point : second.new_points) point.id.value += 50;
-    for (PointObservation& seen : second.observations) seen.id.value += 50;
-    ASSERT_TRUE(writer.Write(second).ok());
-    FrameReport back = Report(3);  // the first one again
-    ASSERT_TRUE(writer.Write(back).ok());
-    ASSERT_TRUE(writer.Finish(RunStatus::kCompleted, "").ok());
-  }
-  for (const char* name : {"map.ply", "map_1.ply", "sparse/0/points3D.txt", "sparse/1/points3D.bin"})
-    EXPECT_TRUE(std::filesystem::exists(folder.Path("run/" + std::string(name)))) << name;
-  EXPECT_FALSE(std::filesystem::exists(folder.Path("run/sparse/points3D.txt")));
-  EXPECT_THAT(folder.Read("run/sparse/1/points3D.txt"), testing::Not(HasSubstr("\n0 ")));
-  const auto run = ReadRun(folder.Path("run"));
-  ASSERT_TRUE(run.ok()) << run.status().message();
-  EXPECT_EQ(run->summary->submaps, 2);
-  ASSERT_EQ(run->poses.size(), 3U);
-  for (const std::size_t i : {0, 1, 2}) {
-    EXPECT_EQ(run->poses[i].submap, i == 1 ? 1 : 0);
-    EXPECT_EQ(run->frames[i].submap, i == 1 ? 1 : 0);
-  }
-  WriteRun(folder.Path("run"), 5);  // one map again
-  EXPECT_FALSE(std::filesystem::exists(folder.Path("run/map_1.ply")));
-  EXPECT_FALSE(std::filesystem::exists(folder.Path("run/sparse/1")));
-}
-
-TEST(RunFolder, OfBeforeThereWereSubmapsIsRead) {
-  const TestFolder folder;
-  WriteRun(folder.Path("run"), 5);
-  std::string frames;
-  std::istringstream lines(folder.Read("run/frames.csv"));
-  for (std::string line; std::getline(lines, line);) {
-    std::size_t at = 0;
-    for (int column = 0; column < 12; ++column) at = line.find(',', at) + 1;
-    frames += line.substr(0, at) + line.substr(line.find(',', at) + 1) + "\n";
-  }
-  folder.Write("run/frames.csv", frames);
-  const auto run = ReadRun(folder.Path("run"));
-  ASSERT_TRUE(run.ok()) << run.status().message();
-  EXPECT_EQ(run->frames.size(), 5U);
-  EXPECT_EQ(run->frames[2].submap, 0);
-  EXPECT_EQ(run->stage_names, kStages);
 }
 
 TEST(RunWriter, ReportsAFullDiskAndKeepsWhatItWrote) {

@@ -170,6 +170,7 @@ TEST_F(LossOfTheView, AMapThatIsLeftIsFoundAgain) {
   TrackerOptions options = FromDepth();
   options.max_lost_frames = 2;
   options.relocalization.seek_every = 1;
+  options.relocalization.join_every = 1;
   std::vector<cv::Mat> images = AllImages();
   constexpr int kElsewhere = 4;
   constexpr int kBack = 10;
@@ -186,6 +187,84 @@ TEST_F(LossOfTheView, AMapThatIsLeftIsFoundAgain) {
   }
   const auto undisturbed = Run(options, AllImages());
   EXPECT_LT(DistanceMm(reports.back(), undisturbed.back()), 0.4);
+}
+
+// The same images twice, with something else between: the second time another map is begun, of twice the unit.
+class MapsThatMeet : public LossOfTheView {
+ protected:
+  static constexpr int kElsewhere = 6;
+  static constexpr int kAgain = 8;
+  static constexpr int kJoined = 15;
+
+  static TrackerOptions Options() {
+    TrackerOptions options = FromDepth();
+    options.max_lost_frames = kAgain - kElsewhere;
+    options.relocalization.seek_every = 1000;
+    options.relocalization.join_every = kJoined;
+    return options;
+  }
+  static std::vector<FrameReport> RunTwice(const TrackerOptions& options) {
+    Tracker tracker = MakeTracker(options);
+    std::vector<FrameReport> reports;
+    for (int idx = 0; idx < kAgain + kFrames; ++idx) {
+      const bool again = idx >= kAgain;
+      TrackerFrame frame = PrepareFrame(idx, NameOf(idx), idx / 30.0,
+                                        again              ? Image(idx - kAgain)
+                                        : idx < kElsewhere ? Image(idx)
+                                                           : Noise(idx),
+                                        {}, options);
+      frame.depth_mm = again ? cv::Mat(*depth_ * 2) : *depth_;
+      for (FrameReport& report : tracker.Process(frame)) reports.push_back(std::move(report));
+    }
+    return reports;
+  }
+};
+
+TEST_F(MapsThatMeet, BecomeOne) {
+  const auto reports = RunTwice(Options());
+  ASSERT_EQ(static_cast<int>(reports.size()), kAgain + kFrames);
+  for (const FrameReport& report : reports) {
+    EXPECT_EQ(report.submap, report.frame_idx >= kAgain && report.frame_idx <= kJoined ? 1 : 0) << report.frame_idx;
+    EXPECT_EQ(report.join.has_value(), report.frame_idx == kJoined) << report.frame_idx;
+  }
+  const SubmapJoin& join = *reports[kJoined].join;
+  EXPECT_THAT(reports[kJoined].note, HasSubstr("map 1 is now part of map 0"));
+  EXPECT_EQ(join.submap, 1);
+  EXPECT_EQ(join.into, 0);
+  EXPECT_NEAR(join.into_from_submap.scale, 0.5, 0.01);
+  const auto undisturbed = Run(FromDepth(), AllImages());
+  const double path_mm = DistanceMm(undisturbed.front(), undisturbed[7]);
+  for (int image = 0; image < kFrames; ++image) {
+    FrameReport again = reports[static_cast<std::size_t>(kAgain + image)];
+    ASSERT_EQ(again.state, TrackingState::kTracking) << image;
+    if (again.submap == 1) again.cam_from_world = PoseInWorld(join.into_from_submap, *again.cam_from_world);
+    EXPECT_LT(DistanceMm(again, undisturbed[static_cast<std::size_t>(image)]), 0.05 * path_mm) << image;
+  }
+  // The points of both are in sight.
+  std::set<PointId> first;
+  for (const PointObservation& seen : reports[kElsewhere - 1].observations) first.insert(seen.id);
+  std::set<PointId> second;
+  for (const PointObservation& seen : reports[kJoined].observations) second.insert(seen.id);
+  std::size_t of_first = 0;
+  std::size_t of_second = 0;
+  for (const PointObservation& seen : reports.back().observations) {
+    of_first += first.count(seen.id);
+    of_second += second.count(seen.id);
+  }
+  EXPECT_GT(2 * of_first, first.size());
+  EXPECT_GT(2 * of_second, second.size());
+}
+
+TEST_F(MapsThatMeet, StayTwoWhereTheyAreNotToBeJoinedOrContradictEachOther) {
+  TrackerOptions off = Options();
+  off.relocalization.join = Switch::kOff;
+  TrackerOptions doubtful = Options();
+  doubtful.relocalization.max_unit_spread = 0;
+  for (const TrackerOptions& options : {off, doubtful})
+    for (const FrameReport& report : RunTwice(options)) {
+      EXPECT_FALSE(report.join);
+      EXPECT_EQ(report.submap, report.frame_idx >= kAgain ? 1 : 0);
+    }
 }
 
 TEST_F(LossOfTheView, AMapThatIsFoundAgainEndsTheWaitForAnother) {

@@ -99,5 +99,43 @@ TEST(LostPoints, AreLookedForInTurn) {
   EXPECT_EQ(lost.Find(PointId{1}), nullptr);
 }
 
+TEST(LostPoints, AreExpectedAtTheSamePixelsInAnotherWorld) {
+  const Sim3 other_from_world{2.5, RotationExp({0.3, -0.2, 0.9}), {1, 2, 3}};
+  const Rigid3 ahead(RotationExp({0, 0.1, 0}), Eigen::Vector3d(0, 0, -25));
+  const auto in_other = [&](std::vector<Landmark> seen) {
+    for (Landmark& landmark : seen) landmark = Moved(other_from_world, landmark);
+    return seen;
+  };
+  LostPoints lost;
+  lost.Add(PointAt({1.2, -0.7, 50}, {0.1, -0.2, 0.3}, 1), Rigid3());
+  lost.Move(Wall(1));
+  LostPoints moved = lost;
+  moved.MoveInto(other_from_world);
+  const auto expect_same = [&] {
+    const auto here = lost.Expected(TestCamera(), ahead, 1);
+    const auto there = moved.Expected(TestCamera(), PoseInWorld(other_from_world, ahead), 1);
+    ASSERT_EQ(there.size(), here.size());
+    EXPECT_LT((there[0].pixel - here[0].pixel).norm(), 1e-6);
+    EXPECT_LT((there[0].affine_from_latest - here[0].affine_from_latest).norm(), 1e-6);
+  };
+  expect_same();
+  lost.Move(Wall(3));
+  moved.Move(in_other(Wall(3)));
+  expect_same();
+}
+
+TEST(LostPoints, OfAnotherMapAreLostLast) {
+  LostPoints lost;
+  for (const std::int64_t id : {7, 3}) lost.Add({.id = PointId{id}}, Rigid3());
+  LostPoints other;
+  for (const std::int64_t id : {6, 2}) other.Add({.id = PointId{id}}, Rigid3());
+  lost.TakeOver(std::move(other));
+  lost.Add({.id = PointId{1}}, Rigid3());
+  for (const std::int64_t id : {7, 3, 6, 2, 1}) {
+    EXPECT_EQ(lost.Oldest(), PointId{id});
+    lost.Remove(PointId{id});
+  }
+}
+
 }  // namespace
 }  // namespace pliant

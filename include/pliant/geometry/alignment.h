@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Similarity transforms and least-squares alignment of point sets (Umeyama, PAMI 1991).
+// Least-squares alignment of point sets (Umeyama, PAMI 1991).
 #pragma once
 
 #include <span>
@@ -9,18 +9,9 @@
 #include <Eigen/Core>
 
 #include "pliant/base/status.h"
-#include "pliant/geometry/rigid3.h"
+#include "pliant/geometry/sim3.h"
 
 namespace pliant {
-
-// x_in_b = scale * (rotation * x_in_a) + translation.
-struct Sim3 {
-  double scale = 1.0;
-  Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
-  Eigen::Vector3d translation = Eigen::Vector3d::Zero();
-
-  Eigen::Vector3d operator*(const Eigen::Vector3d& x) const { return scale * (rotation * x) + translation; }
-};
 
 enum class AlignmentScale { kEstimated, kFixedAtOne };
 

@@ -11,6 +11,7 @@
 #include <Eigen/Core>
 
 #include "pliant/base/ids.h"
+#include "pliant/geometry/sim3.h"
 
 namespace pliant {
 
@@ -21,6 +22,9 @@ struct Landmark {
   Eigen::Vector3d last_motion = Eigen::Vector3d::Zero();    // delta_i of the last tracked frame
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();          // where it was last measured
 };
+
+// A landmark in another world.
+Landmark Moved(const Sim3& other_from_world, const Landmark& landmark);
 
 // Landmarks that are alive, sorted by id.
 struct Map {

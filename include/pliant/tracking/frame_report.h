@@ -21,6 +21,7 @@
 #include "pliant/camera/camera.h"
 #include "pliant/estimation/frame_problem.h"
 #include "pliant/geometry/rigid3.h"
+#include "pliant/geometry/sim3.h"
 
 namespace pliant {
 
@@ -74,6 +75,14 @@ struct FirstMapFrames {
   int declared_frame_idx = 0;   // in which the map was made; tracking goes on from here
 };
 
+// Two maps have become one: the world of `submap`, with all that was said of it up to this frame, goes into that of
+// `into`; the frames that follow are reported in `into`.
+struct SubmapJoin {
+  int submap = 0;
+  int into = 0;  // the older one
+  Sim3 into_from_submap;
+};
+
 struct FrameReport {
   int frame_idx = 0;  // the sequence's own number
   std::string name;   // image name
@@ -83,6 +92,7 @@ struct FrameReport {
   // Which map the frame belongs to, counted from 0: each has its own world and unit. Of a frame that has no pose, the
   // map that is there, or awaited.
   int submap = 0;
+  std::optional<SubmapJoin> join;  // in state tracking; the frame itself is still reported as before it
 
   std::optional<Rigid3> cam_from_world;        // exactly in state tracking
   std::vector<PointObservation> observations;  // in state tracking; sorted by id

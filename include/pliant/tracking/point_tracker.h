@@ -75,6 +75,8 @@ class PointTracker {
   PatchFailure Add(PointId id, const Eigen::Vector2d& pixel, const ImagePyramid& pyramid, const SupportMask& mask);
   void Remove(PointId id) { points_.erase(id); }
   void Clear() { points_.clear(); }
+  // All points of `other`, whose ids are others.
+  void TakeOver(PointTracker&& other) { points_.merge(other.points_); }
   std::size_t size() const { return points_.size(); }
   bool Contains(PointId id) const { return points_.contains(id); }
   // Where a known point was last seen, as far as it is kept.

@@ -23,6 +23,7 @@
 #include "pliant/deformation/graph.h"
 #include "pliant/estimation/camera_pose.h"
 #include "pliant/estimation/frame_problem.h"
+#include "pliant/geometry/sim3.h"
 #include "pliant/image/corners.h"
 #include "pliant/image/masks.h"
 #include "pliant/image/pyramid.h"
@@ -41,6 +42,7 @@ namespace pliant {
 
 class LocalBrightness;
 class OracleAnswers;
+struct DescribedImage;
 
 struct TrackerOptions {
   CornerOptions corners;
@@ -175,6 +177,8 @@ class Tracker {
   bool LeavesMap() const { return lost_frames_ >= options_.max_lost_frames; }
   void LeaveMap();
   void FindMapAgain(const TrackerFrame& frame);
+  void JoinMaps(const TrackerFrame& frame, FrameReport* report);
+  std::optional<Sim3> SeenWithPresent(const TrackerFrame& frame, std::unique_ptr<Submap>* left);
   void Remember(const TrackerFrame& frame, const FrameReport& report);
   void RememberLastView();
   std::vector<Landmark> KnownLandmarks() const;
@@ -207,9 +211,11 @@ class Tracker {
   std::int64_t next_id_ = 0;
   std::unique_ptr<Submap> now_;                // the present map, or the one that is awaited
   std::vector<std::unique_ptr<Submap>> left_;  // maps that were left, the last one last
+  int maps_made_ = 0;                          // up to now
   int lost_frames_ = 0;
   int blurred_frames_ = 0;                           // in a row, up to now
   std::vector<std::pair<std::string, int>> losses_;  // of the present frame, by reason
+  std::unique_ptr<DescribedImage> described_;        // the present frame, once a map was looked for by descriptors
 };
 
 }  // namespace pliant

@@ -1,0 +1,108 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "io/run_rows.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "io/run_format.h"
+#include "io/tum_line.h"
+#include "pliant/base/text.h"
+#include "pliant/io/run_reader.h"
+
+namespace pliant {
+namespace {
+
+// The rows of a file without those of `begin` at its beginning, each through `change`, which has its number from 0.
+template <class Change>
+Status RewriteLines(FileGroup& group, const std::string& path, std::size_t begin, const Change& change) {
+  auto lines = LineReader::Open(path);
+  if (!lines.ok()) return lines.status();
+  auto file = group.Create(path);
+  if (!file.ok()) return file.status();
+  std::string rows;
+  std::size_t number = 0;
+  for (std::string_view line; lines->Next(&line); ++number) {
+    if (number < begin)
+      rows.append(line).push_back('\n');
+    else if (const Status status = change(number - begin, line, &rows); !status.ok())
+      return status;
+    if (const Status status = file->AppendWhenLarge(&rows); !status.ok()) return status;
+  }
+  if (const Status status = file->Append(rows); !status.ok()) return status;
+  return file->Close();
+}
+
+Status MoveTrajectory(FileGroup& group, const std::string& path, std::span<const CanonicalImage> images) {
+  return RewriteLines(group, path, 0, [&](std::size_t k, std::string_view line, std::string* rows) {
+    const auto pose = ParseTumLine(line);
+    if (!pose.ok() || k >= images.size()) return Status(ErrorCode::kMismatch, Quoted(path) + " was changed meanwhile");
+    AppendTumLine(rows, pose->timestamp_s, images[k].cam_from_world.Inverse());
+    return Status::Ok();
+  });
+}
+
+Status MoveFrames(FileGroup& group, const std::string& path, std::span<const RunFrameWorld> worlds) {
+  return RewriteLines(group, path, 1, [&](std::size_t k, std::string_view line, std::string* rows) {
+    const std::vector<std::string_view> fields = Split(line, ',');
+    if (fields.size() < kNumFrameColumns || k >= worlds.size())
+      return Status(ErrorCode::kMismatch, Quoted(path) + " was changed meanwhile");
+    const std::string submap = std::to_string(worlds[k].submap);
+    const auto begin = static_cast<std::size_t>(fields[kNumFrameColumns - 1].data() - line.data());
+    rows->append(line.substr(0, begin)).append(submap);
+    rows->append(line.substr(begin + fields[kNumFrameColumns - 1].size())).push_back('\n');
+    return Status::Ok();
+  });
+}
+
+Status MoveObservations(FileGroup& group, const std::string& run_path, std::span<const RunFrameWorld> worlds) {
+  auto file = group.Create(run_path + "/observations.csv");
+  if (!file.ok()) return file.status();
+  std::string rows = std::string(kObservationColumns) + "\n";
+  std::vector<int> frames_idx;
+  for (const RunFrameWorld& world : worlds) frames_idx.push_back(world.frame_idx);
+  const Status status = ForEachFrame(run_path, frames_idx, [&](std::size_t k, const auto& observations) {
+    for (PointObservation seen : observations) {
+      if (worlds[k].moved_by) seen.position = *worlds[k].moved_by * seen.position;
+      AppendObservation(&rows, worlds[k].frame_idx, seen);
+    }
+    return file->AppendWhenLarge(&rows);
+  });
+  if (!status.ok()) return status;
+  if (const Status written = file->Append(rows); !written.ok()) return written;
+  return file->Close();
+}
+
+}  // namespace
+
+void AppendObservation(std::string* out, int frame_idx, const PointObservation& o) {
+  AppendInt(out, frame_idx);
+  out->push_back(',');
+  AppendInt(out, o.id.value);
+  for (const double pixel : o.pixel) {
+    out->push_back(',');
+    AppendFixed(out, pixel, 4);
+  }
+  for (const double coordinate : o.position) {
+    out->push_back(',');
+    AppendFixed(out, coordinate, 6);
+  }
+  out->push_back(',');
+  AppendFixed(out, o.ssim, 4);
+  out->push_back('\n');
+}
+
+Status MoveRunRows(const std::string& run_path, std::span<const RunFrameWorld> worlds,
+                   std::span<const CanonicalImage> images) {
+  const bool changed = std::ranges::any_of(
+      worlds, [](const RunFrameWorld& world) { return world.moved_by || world.submap != world.written_submap; });
+  if (!changed) return Status::Ok();
+  FileGroup group;
+  if (Status status = MoveTrajectory(group, run_path + "/trajectory.txt", images); !status.ok()) return status;
+  if (Status status = MoveFrames(group, run_path + "/frames.csv", worlds); !status.ok()) return status;
+  if (Status status = MoveObservations(group, run_path, worlds); !status.ok()) return status;
+  return group.Commit();
+}
+
+}  // namespace pliant

@@ -1,0 +1,113 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Maps that meet become one (docs/method.md, eq. R4): an image in which a map that was left is found, while another one
+// is tracked, has a pose in both worlds, and points whose depths tell the one's unit in the other's.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "pliant/base/statistics.h"
+#include "pliant/tracking/tracker.h"
+#include "tracking/followed.h"
+#include "tracking/oracle_answers.h"
+#include "tracking/submap.h"
+#include "tracking/tracker_support.h"
+
+namespace pliant {
+namespace {
+
+constexpr std::size_t kNearest = 3;     // landmarks that tell the depth of a pixel
+constexpr double kFarthestShare = 0.1;  // of the image's width, they are away from it
+
+// A pixel of the image, and how far from the camera what it shows is.
+struct PixelDistance {
+  Eigen::Vector2d pixel;
+  double distance;
+};
+
+// The logarithm of the distance at a pixel, from the nearest of those that are known, the nearer the more; nothing
+// where there are none.
+std::optional<double> LogDistanceAt(const Eigen::Vector2d& pixel, std::vector<PixelDistance>& known, double radius_px) {
+  const auto nearer = [&](const PixelDistance& a, const PixelDistance& b) {
+    return (a.pixel - pixel).squaredNorm() < (b.pixel - pixel).squaredNorm();
+  };
+  if (known.size() < kNearest) return std::nullopt;
+  std::partial_sort(known.begin(), known.begin() + kNearest, known.end(), nearer);
+  double sum = 0;
+  double weights = 0;
+  for (std::size_t k = 0; k < kNearest; ++k) {
+    const double squared = (known[k].pixel - pixel).squaredNorm();
+    if (squared > radius_px * radius_px) return std::nullopt;
+    const double weight = 1 / (1 + squared);
+    sum += weight * std::log(known[k].distance);
+    weights += weight;
+  }
+  return sum / weights;
+}
+
+// How many of the first one's units one of the second's is: the median over the first one's pixels. Nothing where fewer
+// than `min_points` pixels tell it, or where they differ too much.
+std::optional<double> UnitRatio(const std::vector<PixelDistance>& first, std::vector<PixelDistance> second,
+                                double radius_px, int min_points, double max_spread) {
+  std::vector<double> logs;
+  for (const PixelDistance& point : first)
+    if (const auto log_distance = LogDistanceAt(point.pixel, second, radius_px))
+      logs.push_back(std::log(point.distance) - *log_distance);
+  if (static_cast<int>(logs.size()) < min_points) return std::nullopt;
+  const double median = Median(logs);
+  for (double& log : logs) log = std::abs(log - median);
+  if (Median(std::move(logs)) > max_spread) return std::nullopt;
+  return std::exp(median);
+}
+
+}  // namespace
+
+// A map that was left, if it is found in the image that the present one has a pose in: left_from_now.
+std::optional<Sim3> Tracker::SeenWithPresent(const TrackerFrame& frame, std::unique_ptr<Submap>* left) {
+  std::swap(now_, *left);
+  Rigid3 cam_from_left;
+  const Followed followed = Relocalize(frame, &cam_from_left);
+  losses_.clear();
+  now_->point_tracker.Undo();
+  std::swap(now_, *left);
+  if (followed.size() == 0) return std::nullopt;
+
+  std::vector<PixelDistance> in_left;
+  for (std::size_t k = 0; k < followed.size(); ++k)
+    in_left.push_back({followed.pixels[k], (cam_from_left * followed.positions[k]).norm()});
+  std::vector<PixelDistance> in_now;
+  for (const Landmark& landmark : now_->map.landmarks)
+    in_now.push_back({landmark.pixel, (now_->last_cam_from_world * landmark.position).norm()});
+  const auto unit = UnitRatio(in_left, std::move(in_now), kFarthestShare * camera_.width(), options_.min_points,
+                              options_.relocalization.max_unit_spread);
+  if (!unit) return std::nullopt;
+  return WorldFromPoses(cam_from_left, now_->last_cam_from_world, *unit);
+}
+
+// The older map's world stays.
+void Tracker::JoinMaps(const TrackerFrame& frame, FrameReport* report) {
+  const RelocalizationOptions& options = options_.relocalization;
+  const bool due = options.join == Switch::kOn && frame.frame_idx % options.join_every == 0;
+  if (!due || left_.empty() || state_ != TrackingState::kTracking || blurred_frames_ > 0) return;
+  const StageTimer timer(report, "initialise");
+  for (auto left = left_.rbegin(); left != left_.rend(); ++left) {
+    const auto left_from_now = SeenWithPresent(frame, &*left);
+    if (!left_from_now) continue;
+    if ((*left)->idx < now_->idx) {
+      report->join = {now_->idx, (*left)->idx, *left_from_now};
+      now_->MoveInto(*left_from_now);
+    } else {
+      report->join = {(*left)->idx, now_->idx, left_from_now->Inverse()};
+      (*left)->MoveInto(left_from_now->Inverse());
+    }
+    now_->idx = report->join->into;
+    now_->TakeOver(std::move(**left));
+    left_.erase(std::next(left).base());
+    report->note = "map " + std::to_string(report->join->submap) + " is now part of map " +
+                   std::to_string(report->join->into) + ", which this image shows too";
+    return;
+  }
+}
+
+}  // namespace pliant

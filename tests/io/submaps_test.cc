@@ -1,0 +1,147 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Runs of several maps, and of maps that became one.
+#include <filesystem>
+#include <sstream>
+
+#include <gmock/gmock.h>
+
+#include "io/run_reports.h"
+#include "pliant/io/run_reader.h"
+#include "support/test_folder.h"
+
+namespace pliant {
+namespace {
+
+using namespace run_reports;
+using testing::HasSubstr;
+
+// A frame of another map: other ids, all of them new.
+FrameReport ReportOf(int frame, int submap) {
+  FrameReport report = Report(frame);
+  report.submap = submap;
+  report.new_points = Report(1).new_points;
+  for (NewPoint& point : report.new_points) point.id.value += 50 * submap;
+  for (PointObservation& seen : report.observations) seen.id.value += 50 * submap;
+  return report;
+}
+
+TEST(RunWriter, EverySubmapHasItsOwnMapAndModel) {
+  const TestFolder folder;
+  {
+    RunWriter writer = Writer(folder.Path("run"));
+    ASSERT_TRUE(writer.Write(Report(1)).ok());
+    FrameReport second = Report(2);
+    second.submap = 1;
+    EXPECT_THAT(writer.Write(second).message(), HasSubstr("is of submap 0"));
+    ASSERT_TRUE(writer.Write(ReportOf(2, 1)).ok());
+    FrameReport back = Report(3);  // the first one again
+    ASSERT_TRUE(writer.Write(back).ok());
+    ASSERT_TRUE(writer.Finish(RunStatus::kCompleted, "").ok());
+  }
+  for (const char* name : {"map.ply", "map_1.ply", "sparse/0/points3D.txt", "sparse/1/points3D.bin"})
+    EXPECT_TRUE(std::filesystem::exists(folder.Path("run/" + std::string(name)))) << name;
+  EXPECT_FALSE(std::filesystem::exists(folder.Path("run/sparse/points3D.txt")));
+  EXPECT_THAT(folder.Read("run/sparse/1/points3D.txt"), testing::Not(HasSubstr("\n0 ")));
+  const auto run = ReadRun(folder.Path("run"));
+  ASSERT_TRUE(run.ok()) << run.status().message();
+  EXPECT_EQ(run->summary->submaps, 2);
+  ASSERT_EQ(run->poses.size(), 3U);
+  for (const std::size_t i : {0, 1, 2}) {
+    EXPECT_EQ(run->poses[i].submap, i == 1 ? 1 : 0);
+    EXPECT_EQ(run->frames[i].submap, i == 1 ? 1 : 0);
+  }
+  WriteRun(folder.Path("run"), 5);  // one map again
+  EXPECT_FALSE(std::filesystem::exists(folder.Path("run/map_1.ply")));
+  EXPECT_FALSE(std::filesystem::exists(folder.Path("run/sparse/1")));
+}
+
+// Of three maps the second goes into the first.
+class JoinedSubmaps : public testing::Test {
+ protected:
+  JoinedSubmaps() : writer_(Writer(folder_.Path("run"))) {
+    FrameReport second = ReportOf(2, 1);
+    second.join = {1, 0, into_from_submap_};
+    FrameReport after = Report(3);
+    after.observations.push_back(ReportOf(3, 1).observations[0]);
+    for (const FrameReport& report : {Report(1), second, after, ReportOf(4, 2)})
+      EXPECT_TRUE(writer_.Write(report).ok()) << report.frame_idx;
+  }
+
+  const Sim3 into_from_submap_{2, RotationExp({0, 0, EIGEN_PI / 2}), {10, 0, 0}};
+  const TestFolder folder_;
+  RunWriter writer_;
+};
+
+TEST_F(JoinedSubmaps, AreOneInTheEnd) {
+  ASSERT_TRUE(writer_.Finish(RunStatus::kCompleted, "").ok());
+  const auto run = ReadRun(folder_.Path("run"));
+  ASSERT_TRUE(run.ok()) << run.status().message();
+  EXPECT_EQ(run->summary->submaps, 2);
+  ASSERT_EQ(run->poses.size(), 4U);
+  for (const std::size_t i : {0, 1, 2, 3}) {
+    EXPECT_EQ(run->poses[i].submap, i == 3 ? 1 : 0) << i;
+    const Rigid3 reported = *Report(static_cast<int>(i) + 1).cam_from_world;
+    const Rigid3 expected = (i == 1 ? PoseInWorld(into_from_submap_, reported) : reported).Inverse();
+    EXPECT_LT((run->poses[i].world_from_cam.translation - expected.translation).norm(), 2e-6) << i;
+    EXPECT_LT(run->poses[i].world_from_cam.rotation.angularDistance(expected.rotation), 1e-8) << i;
+    EXPECT_NEAR(run->poses[i].timestamp_s, (static_cast<double>(i) + 1) / 25.0, 1e-6);
+    EXPECT_EQ(run->frames[i].stage_ms, (std::vector<double>{1.5, 2.25})) << "the other columns stay";
+  }
+  std::vector<int> frames_idx;
+  for (const RunFrame& frame : run->frames) frames_idx.push_back(frame.frame_idx);
+  const Status status = ForEachFrame(folder_.Path("run"), frames_idx, [&](std::size_t i, const auto& observations) {
+    const FrameReport reported = i == 3 ? ReportOf(4, 2) : i == 1 ? ReportOf(2, 1) : Report(static_cast<int>(i) + 1);
+    for (std::size_t k = 0; k < reported.observations.size(); ++k) {
+      const Eigen::Vector3d& position = reported.observations[k].position;
+      EXPECT_EQ(observations[k].id, reported.observations[k].id);
+      EXPECT_LT((observations[k].position - (i == 1 ? into_from_submap_ * position : position)).norm(), 2e-6);
+      EXPECT_LT((observations[k].pixel - reported.observations[k].pixel).norm(), 1e-4);
+    }
+    return Status::Ok();
+  });
+  EXPECT_TRUE(status.ok()) << status.message();
+}
+
+TEST_F(JoinedSubmaps, HaveOneModel) {
+  ASSERT_TRUE(writer_.Finish(RunStatus::kCompleted, "").ok());
+  // (-2, 0, 50.25) of the second map.
+  EXPECT_THAT(folder_.Read("run/sparse/0/points3D.txt"), HasSubstr("\n50 10.000000 -4.000000 100.500000 "));
+  EXPECT_TRUE(std::filesystem::exists(folder_.Path("run/sparse/1/images.txt")));
+  EXPECT_FALSE(std::filesystem::exists(folder_.Path("run/sparse/2")));
+  EXPECT_THAT(folder_.Read("run/map.ply"), HasSubstr("element vertex 12\n"));
+  for (const char* name : {"frames.csv", "observations.csv", "trajectory.txt"})
+    EXPECT_FALSE(std::filesystem::exists(folder_.Path("run/" + std::string(name) + ".tmp"))) << name;
+}
+
+TEST_F(JoinedSubmaps, OfARunThatWasKilledAreSeveral) {
+  const auto run = ReadRun(folder_.Path("run"));
+  ASSERT_TRUE(run.ok()) << run.status().message();
+  for (const std::size_t i : {0, 1, 2, 3}) {
+    EXPECT_EQ(run->frames[i].submap, (std::vector<int>{0, 1, 0, 2})[i]);
+    const Rigid3 reported = Report(static_cast<int>(i) + 1).cam_from_world->Inverse();
+    EXPECT_LT((run->poses[i].world_from_cam.translation - reported.translation).norm(), 2e-6);
+  }
+}
+
+TEST(RunFolder, OfBeforeThereWereSubmapsIsRead) {
+  const TestFolder folder;
+  WriteRun(folder.Path("run"), 5);
+  std::string frames;
+  std::istringstream lines(folder.Read("run/frames.csv"));
+  for (std::string line; std::getline(lines, line);) {
+    std::size_t at = 0;
+    for (int column = 0; column < 12; ++column) at = line.find(',', at) + 1;
+    frames += line.substr(0, at) + line.substr(line.find(',', at) + 1) + "\n";
+  }
+  folder.Write("run/frames.csv", frames);
+  const auto run = ReadRun(folder.Path("run"));
+  ASSERT_TRUE(run.ok()) << run.status().message();
+  EXPECT_EQ(run->frames.size(), 5U);
+  EXPECT_EQ(run->frames[2].submap, 0);
+  EXPECT_EQ(run->stage_names, kStages);
+}
+
+}  // namespace
+}  // namespace pliant
