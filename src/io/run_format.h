@@ -24,9 +24,10 @@ inline constexpr std::string_view kSubmapColumn = ",submap";
 
 // Everything that a run may leave, which the next one in the same folder deletes; of several submaps also map_K.ply and
 // models in sparse/K.
-inline constexpr std::array<std::string_view, 8> kRunFiles = {"config.yaml",      "config.yaml.tmp", "run.json",
-                                                              "run.json.tmp",     "trajectory.txt",  "frames.csv",
-                                                              "observations.csv", "map.ply"};
+inline constexpr std::array<std::string_view, 11> kRunFiles = {
+    "config.yaml",      "config.yaml.tmp",      "run.json",   "run.json.tmp",
+    "trajectory.txt",   "trajectory.txt.tmp",   "frames.csv", "frames.csv.tmp",
+    "observations.csv", "observations.csv.tmp", "map.ply"};
 inline constexpr std::array<std::string_view, 6> kModelFiles = {"cameras.txt", "cameras.bin",  "images.txt",
                                                                 "images.bin",  "points3D.txt", "points3D.bin"};
 inline std::string SubmapPly(int submap) { return submap == 0 ? "map.ply" : "map_" + std::to_string(submap) + ".ply"; }

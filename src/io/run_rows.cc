@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "io/run_format.h"
-#include "io/tum_line.h"
 #include "pliant/base/text.h"
 #include "pliant/io/run_reader.h"
+#include "pliant/io/trajectory.h"
 
 namespace pliant {
 namespace {
@@ -36,9 +36,10 @@ Status RewriteLines(FileGroup& group, const std::string& path, std::size_t begin
 
 Status MoveTrajectory(FileGroup& group, const std::string& path, std::span<const CanonicalImage> images) {
   return RewriteLines(group, path, 0, [&](std::size_t k, std::string_view line, std::string* rows) {
-    const auto pose = ParseTumLine(line);
-    if (!pose.ok() || k >= images.size()) return Status(ErrorCode::kMismatch, Quoted(path) + " was changed meanwhile");
-    AppendTumLine(rows, pose->timestamp_s, images[k].cam_from_world.Inverse());
+    double timestamp_s = 0;
+    if (!ParseFinite(line.substr(0, line.find(' ')), &timestamp_s) || k >= images.size())
+      return Status(ErrorCode::kMismatch, Quoted(path) + " was changed meanwhile");
+    AppendTumLine(rows, timestamp_s, images[k].cam_from_world.Inverse());
     return Status::Ok();
   });
 }

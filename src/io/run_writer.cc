@@ -141,6 +141,11 @@ Status RunWriter::State::Check(const FrameReport& report) {
   if (report.cam_from_world)
     finite = finite && report.cam_from_world->rotation.coeffs().allFinite() &&
              report.cam_from_world->translation.allFinite();
+  if (report.join) {
+    const Sim3& move = report.join->into_from_submap;
+    finite = finite && std::isfinite(move.scale) && move.rotation.coeffs().allFinite() && move.translation.allFinite();
+    if (!(move.scale > 0) || report.join->submap == report.join->into) return invalid("a join that cannot be");
+  }
   for (const NewPoint& point : report.new_points) finite = finite && point.position.allFinite();
   for (const RefinedPoint& point : report.refined_points) finite = finite && point.position.allFinite();
   for (const PointObservation& o : report.observations) finite = finite && IsFinite(o);
@@ -190,6 +195,7 @@ void RunWriter::State::Count(const FrameReport& report) {
   ++summary.frames_read;
   if (report.cam_from_world) ++summary.frames_tracked;
   if (report.first_map && !summary.first_map) summary.first_map = report.first_map;
+  if (report.cam_from_world) summary.submaps = std::max(summary.submaps, report.submap + 1);
   summary.observations += static_cast<std::int64_t>(report.observations.size());
   summary.points = static_cast<std::int64_t>(points.size());
   for (const auto& [reason, count] : report.losses) {
@@ -331,8 +337,12 @@ Status RunWriter::Finish(RunStatus run_status, const std::string& note) {
   for (std::size_t i = 0; i < s.stage_names.size(); ++i)
     s.summary.mean_ms.emplace_back(
         s.stage_names[i], s.stage_total_ms[i] / static_cast<double>(std::max<std::int64_t>(s.summary.frames_read, 1)));
-  s.NumberSubmaps();
-  if (status.ok()) status = MoveRunRows(s.path, s.worlds, s.images);
+  if (status.ok()) {
+    const int submaps_as_reported = s.summary.submaps;
+    s.NumberSubmaps();
+    status = MoveRunRows(s.path, s.worlds, s.images);
+    if (!status.ok()) s.summary.submaps = submaps_as_reported;
+  }
   if (status.ok()) status = s.FinishSparse();
   s.summary.status = status.ok() ? run_status : RunStatus::kFailed;
   s.summary.note = status.ok() ? note : status.message();

@@ -31,6 +31,35 @@ std::optional<Eigen::Vector2d> PixelOf(const Camera& camera, const Eigen::Vector
 
 }  // namespace
 
+std::vector<Eigen::Vector3d> DisplacementsAt(const std::vector<Landmark>& landmarks,
+                                             const std::vector<Eigen::Vector3d>& anchors,
+                                             const std::vector<Eigen::Vector3d>& places) {
+  std::vector<Eigen::Vector3d> displacements(places.size(), Eigen::Vector3d::Zero());
+  if (landmarks.empty()) return displacements;
+  const NeighborLists nearest = NearestNeighbors(anchors, places, kNeighbors);
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    // Inverse-distance weights: at an anchor the displacement is that landmark's.
+    double sum = 0;
+    for (const int j : nearest[k]) {
+      const double weight = 1.0 / (1e-6 + (anchors[j] - places[k]).squaredNorm());
+      displacements[k] += weight * (landmarks[j].position - landmarks[j].rest_position);
+      sum += weight;
+    }
+    if (sum > 0) displacements[k] /= sum;
+  }
+  return displacements;
+}
+
+void TakeRestFrom(const std::vector<Landmark>& seen, std::vector<Landmark>* others) {
+  std::vector<Eigen::Vector3d> anchors;
+  std::vector<Eigen::Vector3d> places;
+  for (const Landmark& landmark : seen) anchors.push_back(landmark.position);
+  for (const Landmark& landmark : *others) places.push_back(landmark.position);
+  const std::vector<Eigen::Vector3d> displacements = DisplacementsAt(seen, anchors, places);
+  for (std::size_t k = 0; k < others->size(); ++k)
+    (*others)[k].rest_position = (*others)[k].position - displacements[k];
+}
+
 void LostPoints::Add(const Landmark& landmark, const Rigid3& cam_from_world) {
   points_[landmark.id] = {landmark, cam_from_world, landmark.position, {}, 0, next_order_++};
 }
@@ -44,12 +73,16 @@ void LostPoints::MoveInto(const Sim3& other_from_world) {
   }
 }
 
-void LostPoints::TakeOver(LostPoints&& other) {
-  for (auto& [id, point] : other.points_) {
-    point.order += next_order_;
+void LostPoints::TakeOver(LostPoints&& other, const std::vector<Landmark>& seen) {
+  for (auto& [id, point] : points_) point.order += other.next_order_;
+  next_order_ += other.next_order_;
+  std::vector<Landmark> others = other.landmarks();
+  TakeRestFrom(seen, &others);
+  for (const Landmark& landmark : others) {
+    Point& point = other.points_.at(landmark.id);
+    point.landmark = landmark;
     point.own_share.reset();  // it was told by its own map's points
   }
-  next_order_ += other.next_order_;
   points_.merge(other.points_);
 }
 
@@ -65,22 +98,12 @@ void LostPoints::Move(const std::vector<Landmark>& seen) {
   std::vector<Eigen::Vector3d> wanted;
   for (const Landmark& landmark : seen) anchors.push_back(landmark.rest_position);
   for (const auto& [id, point] : points_) wanted.push_back(point.landmark.rest_position);
-  const NeighborLists nearest = NearestNeighbors(anchors, wanted, kNeighbors);
-  auto list = nearest.begin();
+  const std::vector<Eigen::Vector3d> displacements = DisplacementsAt(seen, anchors, wanted);
+  auto displacement = displacements.begin();
   for (auto& [id, point] : points_) {
-    // Inverse-distance weights: where the point itself is a neighbour's rest, it moves as that one does.
-    Eigen::Vector3d displacement = Eigen::Vector3d::Zero();
-    double sum = 0;
-    for (const int j : *list) {
-      const double weight = 1.0 / (1e-6 + (seen[j].rest_position - point.landmark.rest_position).squaredNorm());
-      displacement += weight * (seen[j].position - seen[j].rest_position);
-      sum += weight;
-    }
-    ++list;
-    if (sum == 0) continue;
-    displacement /= sum;
-    if (!point.own_share) point.own_share = point.landmark.position - point.landmark.rest_position - displacement;
-    point.landmark.position = point.landmark.rest_position + displacement + *point.own_share;
+    if (!point.own_share) point.own_share = point.landmark.position - point.landmark.rest_position - *displacement;
+    point.landmark.position = point.landmark.rest_position + *displacement + *point.own_share;
+    ++displacement;
   }
 }
 

@@ -18,6 +18,16 @@
 
 namespace pliant {
 
+// What the landmarks around places have moved by since their rest (weights as in R1). Places are looked for among
+// `anchors`, one a landmark: where it is now, or at rest. Zero where there are no landmarks.
+std::vector<Eigen::Vector3d> DisplacementsAt(const std::vector<Landmark>& landmarks,
+                                             const std::vector<Eigen::Vector3d>& anchors,
+                                             const std::vector<Eigen::Vector3d>& places);
+
+// Landmarks of another map as if these had always been around them: each is where it is, and at rest where it would be
+// had it moved as they have.
+void TakeRestFrom(const std::vector<Landmark>& seen, std::vector<Landmark>* others);
+
 class LostPoints {
  public:
   // Takes a landmark over that was last seen by a camera at this pose.
@@ -31,8 +41,9 @@ class LostPoints {
 
   // Into another world.
   void MoveInto(const Sim3& other_from_world);
-  // All of `other`, which is in the same world and has other ids; as if they were lost now.
-  void TakeOver(LostPoints&& other);
+  // All of `other`, which is in the same world and has other ids; as if they had been lost before these. Each is at
+  // rest where it would be had it moved as the landmarks around it that are seen.
+  void TakeOver(LostPoints&& other, const std::vector<Landmark>& seen);
 
   // Where each is now, as the landmarks that are seen say (R1). `seen` sorted by id.
   void Move(const std::vector<Landmark>& seen);

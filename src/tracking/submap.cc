@@ -20,7 +20,8 @@ void Tracker::Submap::TakeOver(Submap&& other) {
   }
   point_tracker.TakeOver(std::move(other.point_tracker));
   places.TakeOver(std::move(other.places));
-  lost_points.TakeOver(std::move(other.lost_points));
+  lost_points.TakeOver(std::move(other.lost_points), map.landmarks);
+  TakeRestFrom(map.landmarks, &other.map.landmarks);
   for (const Landmark& landmark : other.map.landmarks) lost_points.Add(landmark, other.last_cam_from_world);
 }
 

@@ -63,15 +63,18 @@ std::optional<double> UnitRatio(const std::vector<PixelDistance>& first, std::ve
 
 }  // namespace
 
+// Where the points of a map that was left are found in the image like lost ones.
+bool Tracker::JoinsMaps() const {
+  return options_.relocalization.join == Switch::kOn && options_.relocalization.relocalize == Switch::kOn &&
+         options_.find_lost == Switch::kOn && options_.point_tracker.patch_policy == PatchPolicy::kAdaptive &&
+         !options_.oracle.Any();
+}
+
 // A map that was left, if it is found in the image that the present one has a pose in: left_from_now.
 std::optional<Sim3> Tracker::SeenWithPresent(const TrackerFrame& frame, std::unique_ptr<Submap>* left) {
-  std::swap(now_, *left);
   Rigid3 cam_from_left;
-  const Followed followed = Relocalize(frame, &cam_from_left);
-  losses_.clear();
-  now_->point_tracker.Undo();
-  std::swap(now_, *left);
-  if (followed.size() == 0) return std::nullopt;
+  const Followed followed = LookFor(left, frame, &cam_from_left);
+  if (followed.size() == 0 || followed.in_blur) return std::nullopt;
 
   std::vector<PixelDistance> in_left;
   for (std::size_t k = 0; k < followed.size(); ++k)
@@ -85,29 +88,25 @@ std::optional<Sim3> Tracker::SeenWithPresent(const TrackerFrame& frame, std::uni
   return WorldFromPoses(cam_from_left, now_->last_cam_from_world, *unit);
 }
 
-// The older map's world stays.
+// The older map's world stays. One map that was left is looked for at a time, in turn.
 void Tracker::JoinMaps(const TrackerFrame& frame, FrameReport* report) {
-  const RelocalizationOptions& options = options_.relocalization;
-  const bool due = options.join == Switch::kOn && frame.frame_idx % options.join_every == 0;
-  if (!due || left_.empty() || state_ != TrackingState::kTracking || blurred_frames_ > 0) return;
+  const int every = options_.relocalization.join_every;
+  if (!JoinsMaps() || left_.empty() || frame.frame_idx % every != 0) return;
+  if (state_ != TrackingState::kTracking || blurred_frames_ > 0) return;
   const StageTimer timer(report, "initialise");
-  for (auto left = left_.rbegin(); left != left_.rend(); ++left) {
-    const auto left_from_now = SeenWithPresent(frame, &*left);
-    if (!left_from_now) continue;
-    if ((*left)->idx < now_->idx) {
-      report->join = {now_->idx, (*left)->idx, *left_from_now};
-      now_->MoveInto(*left_from_now);
-    } else {
-      report->join = {(*left)->idx, now_->idx, left_from_now->Inverse()};
-      (*left)->MoveInto(left_from_now->Inverse());
-    }
-    now_->idx = report->join->into;
-    now_->TakeOver(std::move(**left));
-    left_.erase(std::next(left).base());
-    report->note = "map " + std::to_string(report->join->submap) + " is now part of map " +
-                   std::to_string(report->join->into) + ", which this image shows too";
-    return;
-  }
+  const auto left = left_.begin() + static_cast<std::ptrdiff_t>(frame.frame_idx / every % left_.size());
+  const auto left_from_now = SeenWithPresent(frame, &*left);
+  if (!left_from_now) return;
+  const bool left_is_older = (*left)->idx < now_->idx;
+  Submap& younger = left_is_older ? *now_ : **left;
+  const int older_idx = std::min((*left)->idx, now_->idx);
+  report->join = {younger.idx, older_idx, left_is_older ? *left_from_now : left_from_now->Inverse()};
+  younger.MoveInto(report->join->into_from_submap);
+  now_->idx = older_idx;
+  now_->TakeOver(std::move(**left));
+  left_.erase(left);
+  report->note = WithFault(report->note, "map " + std::to_string(report->join->submap) + " is now part of map " +
+                                             std::to_string(older_idx) + ", which this image shows too");
 }
 
 }  // namespace pliant

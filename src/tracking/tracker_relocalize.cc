@@ -34,9 +34,12 @@ void RelocalizationOptions::List(OptionTable& table) {
             1000000);
   table.Add("seek_every", &seek_every, "frames", "while another map is awaited, those left are looked for so often", 1,
             1000000);
-  table.AddChoice("join", &join, "maps become one when a map that was left is found in the image of another");
-  table.Add("join_every", &join_every, "frames", "while another map is tracked, those left are looked for so often", 1,
-            1000000);
+  table.Add("max_left", &max_left, "-", "maps that were left and are remembered; memory grows with them", 1, 1000);
+  table.AddChoice("join", &join,
+                  "maps become one when a map that was left is found in the image of another; needs relocalize, "
+                  "find_lost and adaptive patches, and no oracle");
+  table.Add("join_every", &join_every, "frames",
+            "while another map is tracked, one of those left is looked for so often", 1, 1000000);
   table.Add("max_unit_spread", &max_unit_spread, "-",
             "two maps are joined whose points agree on their units: median deviation of the ratio's logarithm", 0, 10);
   table.Add("velocity_frames", &velocity_frames, "frames", "over which the camera's velocity before the loss is taken",
@@ -138,9 +141,20 @@ Tracker::Followed Tracker::Relocalize(const TrackerFrame& frame, Rigid3* cam_fro
 void Tracker::LeaveMap() {
   auto next = std::make_unique<Submap>(maps_made_, camera_, options_);
   left_.push_back(std::exchange(now_, std::move(next)));
+  if (static_cast<int>(left_.size()) > options_.relocalization.max_left) left_.erase(left_.begin());
   lost_frames_ = 0;
   blurred_frames_ = 0;
   Apply(TrackingEvent::kMapLeft);
+}
+
+// The points of a map that was left in this image, and its camera's pose; the map stays as it was.
+Tracker::Followed Tracker::LookFor(std::unique_ptr<Submap>* left, const TrackerFrame& frame, Rigid3* cam_from_world) {
+  std::swap(now_, *left);
+  Followed followed = Relocalize(frame, cam_from_world);
+  losses_.clear();
+  now_->point_tracker.Undo();
+  std::swap(now_, *left);
+  return followed;
 }
 
 // While the present map is lost, or another one awaited, those that were left are looked for, the last one first. What
@@ -148,19 +162,14 @@ void Tracker::LeaveMap() {
 void Tracker::FindMapAgain(const TrackerFrame& frame) {
   if (state_ == TrackingState::kTracking || frame.frame_idx % options_.relocalization.seek_every != 0) return;
   for (std::size_t k = left_.size(); k-- > 0;) {
-    std::swap(now_, left_[k]);
     Rigid3 cam_from_world;
-    const bool found = Relocalize(frame, &cam_from_world).size() > 0;
-    losses_.clear();
-    now_->point_tracker.Undo();
-    if (found) {
-      if (state_ != TrackingState::kLost) left_.erase(left_.begin() + static_cast<std::ptrdiff_t>(k));
-      init_frames_.clear();
-      lost_frames_ = 0;
-      Apply(TrackingEvent::kMapFoundAgain);
-      return;
-    }
+    if (LookFor(&left_[k], frame, &cam_from_world).size() == 0) continue;
     std::swap(now_, left_[k]);
+    if (state_ != TrackingState::kLost) left_.erase(left_.begin() + static_cast<std::ptrdiff_t>(k));
+    init_frames_.clear();
+    lost_frames_ = 0;
+    Apply(TrackingEvent::kMapFoundAgain);
+    return;
   }
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // Runs of several maps, and of maps that became one.
+#include <cmath>
 #include <filesystem>
 #include <sstream>
 
@@ -123,6 +124,60 @@ TEST_F(JoinedSubmaps, OfARunThatWasKilledAreSeveral) {
     const Rigid3 reported = Report(static_cast<int>(i) + 1).cam_from_world->Inverse();
     EXPECT_LT((run->poses[i].world_from_cam.translation - reported.translation).norm(), 2e-6);
   }
+}
+
+// The third goes into the second, and that into the first.
+TEST(RunWriter, AWorldIsMovedAsOftenAsItIsJoined) {
+  const TestFolder folder;
+  const Sim3 first_from_second{2, RotationExp({0, 0, EIGEN_PI / 2}), {10, 0, 0}};
+  const Sim3 second_from_third{0.5, RotationExp({0.3, 0, 0}), {0, 1, 0}};
+  {
+    RunWriter writer = Writer(folder.Path("run"));
+    FrameReport third = ReportOf(3, 2);
+    third.join = {2, 1, second_from_third};
+    FrameReport again = Report(4);
+    again.join = {1, 0, first_from_second};
+    for (const FrameReport& report : {Report(1), ReportOf(2, 1), third, again})
+      ASSERT_TRUE(writer.Write(report).ok()) << report.frame_idx;
+    ASSERT_TRUE(writer.Finish(RunStatus::kCompleted, "").ok());
+  }
+  const auto run = ReadRun(folder.Path("run"));
+  ASSERT_TRUE(run.ok()) << run.status().message();
+  EXPECT_EQ(run->summary->submaps, 1);
+  const Rigid3 expected = PoseInWorld(first_from_second * second_from_third, *Report(3).cam_from_world).Inverse();
+  EXPECT_LT((run->poses[2].world_from_cam.translation - expected.translation).norm(), 2e-6);
+  EXPECT_LT(run->poses[2].world_from_cam.rotation.angularDistance(expected.rotation), 1e-8);
+  EXPECT_TRUE(std::filesystem::exists(folder.Path("run/sparse/images.txt")));
+}
+
+TEST(RunWriter, RefusesAJoinThatCannotBe) {
+  const TestFolder folder;
+  RunWriter writer = Writer(folder.Path("run"));
+  FrameReport report = Report(1);
+  report.join = {1, 0, Sim3{0}};
+  EXPECT_THAT(writer.Write(report).message(), HasSubstr("a join that cannot be"));
+  report.join = {0, 0, Sim3()};
+  EXPECT_THAT(writer.Write(report).message(), HasSubstr("a join that cannot be"));
+  report.join = {1, 0, Sim3{1, Eigen::Quaterniond::Identity(), {0, std::nan(""), 0}}};
+  EXPECT_THAT(writer.Write(report).message(), HasSubstr("not finite"));
+}
+
+TEST(RunWriter, ARunThatFailsAtItsEndHasItsMapsAsReported) {
+  const TestFolder folder;
+  {
+    RunWriter writer = Writer(folder.Path("run"));
+    FrameReport second = ReportOf(2, 1);
+    second.join = {1, 0, Sim3()};
+    for (const FrameReport& report : {Report(1), second}) ASSERT_TRUE(writer.Write(report).ok());
+    std::filesystem::create_directory(folder.Path("run/frames.csv.tmp"));  // in the way
+    EXPECT_FALSE(writer.Finish(RunStatus::kCompleted, "").ok());
+  }
+  std::filesystem::remove(folder.Path("run/frames.csv.tmp"));
+  const auto run = ReadRun(folder.Path("run"));
+  ASSERT_TRUE(run.ok()) << run.status().message();
+  EXPECT_EQ(run->summary->status, RunStatus::kFailed);
+  EXPECT_EQ(run->summary->submaps, 2);
+  EXPECT_EQ(run->frames[1].submap, 1);
 }
 
 TEST(RunFolder, OfBeforeThereWereSubmapsIsRead) {

@@ -203,25 +203,38 @@ class MapsThatMeet : public LossOfTheView {
     options.relocalization.join_every = kJoined;
     return options;
   }
-  static std::vector<FrameReport> RunTwice(const TrackerOptions& options) {
+  // The image that each frame shows; below 0 none.
+  static std::vector<int> Twice() {
+    std::vector<int> shown;
+    for (int idx = 0; idx < kAgain + kFrames; ++idx)
+      shown.push_back(idx >= kAgain ? idx - kAgain : idx < kElsewhere ? idx : -1);
+    return shown;
+  }
+  static std::vector<FrameReport> Show(const TrackerOptions& options, const std::vector<int>& images) {
     Tracker tracker = MakeTracker(options);
     std::vector<FrameReport> reports;
-    for (int idx = 0; idx < kAgain + kFrames; ++idx) {
-      const bool again = idx >= kAgain;
-      TrackerFrame frame = PrepareFrame(idx, NameOf(idx), idx / 30.0,
-                                        again              ? Image(idx - kAgain)
-                                        : idx < kElsewhere ? Image(idx)
-                                                           : Noise(idx),
-                                        {}, options);
-      frame.depth_mm = again ? cv::Mat(*depth_ * 2) : *depth_;
+    for (std::size_t i = 0; i < images.size(); ++i) {
+      const int idx = static_cast<int>(i);
+      TrackerFrame frame =
+          PrepareFrame(idx, NameOf(idx), idx / 30.0, images[i] < 0 ? Noise(idx) : Image(images[i]), {}, options);
+      frame.depth_mm = idx > kElsewhere ? cv::Mat(*depth_ * 2) : *depth_;
       for (FrameReport& report : tracker.Process(frame)) reports.push_back(std::move(report));
     }
     return reports;
   }
+  // Of two reports of one image, one in each map: that the join takes the one's world into the other's.
+  static void ExpectOnePlace(FrameReport of_younger, const FrameReport& of_older, const SubmapJoin& join) {
+    of_younger.cam_from_world = PoseInWorld(join.into_from_submap, *of_younger.cam_from_world);
+    EXPECT_LT(DistanceMm(of_younger, of_older), kPlace_mm) << of_younger.frame_idx;
+  }
+
+  static constexpr double kPlace_mm = 0.1;
+  static constexpr double kHalf = 0.5;  // the second map's unit
+  static constexpr double kUnit = 0.01;
 };
 
 TEST_F(MapsThatMeet, BecomeOne) {
-  const auto reports = RunTwice(Options());
+  const auto reports = Show(Options(), Twice());
   ASSERT_EQ(static_cast<int>(reports.size()), kAgain + kFrames);
   for (const FrameReport& report : reports) {
     EXPECT_EQ(report.submap, report.frame_idx >= kAgain && report.frame_idx <= kJoined ? 1 : 0) << report.frame_idx;
@@ -231,37 +244,62 @@ TEST_F(MapsThatMeet, BecomeOne) {
   EXPECT_THAT(reports[kJoined].note, HasSubstr("map 1 is now part of map 0"));
   EXPECT_EQ(join.submap, 1);
   EXPECT_EQ(join.into, 0);
-  EXPECT_NEAR(join.into_from_submap.scale, 0.5, 0.01);
+  EXPECT_NEAR(join.into_from_submap.scale, kHalf, kUnit);
   const auto undisturbed = Run(FromDepth(), AllImages());
-  const double path_mm = DistanceMm(undisturbed.front(), undisturbed[7]);
   for (int image = 0; image < kFrames; ++image) {
-    FrameReport again = reports[static_cast<std::size_t>(kAgain + image)];
+    const FrameReport& again = reports[static_cast<std::size_t>(kAgain + image)];
+    const FrameReport& there = undisturbed[static_cast<std::size_t>(image)];
     ASSERT_EQ(again.state, TrackingState::kTracking) << image;
-    if (again.submap == 1) again.cam_from_world = PoseInWorld(join.into_from_submap, *again.cam_from_world);
-    EXPECT_LT(DistanceMm(again, undisturbed[static_cast<std::size_t>(image)]), 0.05 * path_mm) << image;
+    if (again.submap == 1)
+      ExpectOnePlace(again, there, join);
+    else
+      EXPECT_LT(DistanceMm(again, there), kPlace_mm) << image;
   }
   // The points of both are in sight.
-  std::set<PointId> first;
-  for (const PointObservation& seen : reports[kElsewhere - 1].observations) first.insert(seen.id);
-  std::set<PointId> second;
-  for (const PointObservation& seen : reports[kJoined].observations) second.insert(seen.id);
-  std::size_t of_first = 0;
-  std::size_t of_second = 0;
-  for (const PointObservation& seen : reports.back().observations) {
-    of_first += first.count(seen.id);
-    of_second += second.count(seen.id);
+  const auto ids = [](const FrameReport& report) {
+    std::set<PointId> seen;
+    for (const PointObservation& observation : report.observations) seen.insert(observation.id);
+    return seen;
+  };
+  const std::set<PointId> last = ids(reports.back());
+  for (const int frame : {kElsewhere - 1, kJoined}) {
+    const std::set<PointId> before = ids(reports[static_cast<std::size_t>(frame)]);
+    EXPECT_GT(2 * std::ranges::count_if(before, [&](PointId id) { return last.contains(id); }),
+              static_cast<std::ptrdiff_t>(before.size()))
+        << frame;
   }
-  EXPECT_GT(2 * of_first, first.size());
-  EXPECT_GT(2 * of_second, second.size());
+}
+
+// The older map is found again while the younger one is lost; then that is found in its image.
+TEST_F(MapsThatMeet, BecomeOneWhicheverIsTracked) {
+  constexpr int kBack = 17;
+  constexpr int kDue = 20;
+  TrackerOptions options = Options();
+  options.max_lost_frames = 3;
+  options.relocalization.seek_every = kBack;
+  options.relocalization.join_every = kDue;
+  const auto reports =
+      Show(options, {0, 1, 2, 3, 4, 5, -1, -1, -1, 0, 1, 2, 3, 4, 5, -1, -1, 6, 7, 8, 9, 10, 11, 12, 13});
+  for (const FrameReport& report : reports) {
+    EXPECT_EQ(report.submap, report.frame_idx >= 9 && report.frame_idx < kBack ? 1 : 0) << report.frame_idx;
+    EXPECT_EQ(report.join.has_value(), report.frame_idx == kDue) << report.frame_idx;
+  }
+  const SubmapJoin& join = *reports[kDue].join;
+  EXPECT_EQ(join.submap, 1);
+  EXPECT_EQ(join.into, 0);
+  EXPECT_NEAR(join.into_from_submap.scale, kHalf, kUnit);
+  ExpectOnePlace(reports[12], reports[3], join);
+  EXPECT_EQ(reports.back().state, TrackingState::kTracking);
 }
 
 TEST_F(MapsThatMeet, StayTwoWhereTheyAreNotToBeJoinedOrContradictEachOther) {
-  TrackerOptions off = Options();
-  off.relocalization.join = Switch::kOff;
-  TrackerOptions doubtful = Options();
-  doubtful.relocalization.max_unit_spread = 0;
-  for (const TrackerOptions& options : {off, doubtful})
-    for (const FrameReport& report : RunTwice(options)) {
+  std::vector<TrackerOptions> unjoined(4, Options());
+  unjoined[0].relocalization.join = Switch::kOff;
+  unjoined[1].relocalization.max_unit_spread = 0;
+  unjoined[2].relocalization.relocalize = Switch::kOff;
+  unjoined[3].find_lost = Switch::kOff;
+  for (const TrackerOptions& options : unjoined)
+    for (const FrameReport& report : Show(options, Twice())) {
       EXPECT_FALSE(report.join);
       EXPECT_EQ(report.submap, report.frame_idx >= kAgain ? 1 : 0);
     }

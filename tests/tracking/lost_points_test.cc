@@ -124,14 +124,30 @@ TEST(LostPoints, AreExpectedAtTheSamePixelsInAnotherWorld) {
   expect_same();
 }
 
-TEST(LostPoints, OfAnotherMapAreLostLast) {
+// Their map was made at time 1, and these points' at 0.
+TEST(LostPoints, OfAnotherMapGetTheRestThatTheyWouldHaveHadInThisOne) {
+  constexpr double kBend = 0.05;  // mm
+  const Eigen::Vector3d rest(1.2, -0.7, 50);
+  LostPoints other;
+  other.Add({PointId{1000}, Displaced(rest, 1), Displaced(rest, 2)}, Rigid3());
+  other.Move(Wall(1));
+  LostPoints lost;
+  lost.TakeOver(std::move(other), Wall(2));
+  EXPECT_LT((lost.Find(PointId{1000})->rest_position - rest).norm(), kBend);
+  for (const double t : {2.0, 3.0}) {
+    lost.Move(Wall(t));
+    EXPECT_LT((lost.Find(PointId{1000})->position - Displaced(rest, t)).norm(), kBend) << t;
+  }
+}
+
+TEST(LostPoints, OfAnotherMapAreLostFirst) {
   LostPoints lost;
   for (const std::int64_t id : {7, 3}) lost.Add({.id = PointId{id}}, Rigid3());
   LostPoints other;
   for (const std::int64_t id : {6, 2}) other.Add({.id = PointId{id}}, Rigid3());
-  lost.TakeOver(std::move(other));
+  lost.TakeOver(std::move(other), {});
   lost.Add({.id = PointId{1}}, Rigid3());
-  for (const std::int64_t id : {7, 3, 6, 2, 1}) {
+  for (const std::int64_t id : {6, 2, 7, 3, 1}) {
     EXPECT_EQ(lost.Oldest(), PointId{id});
     lost.Remove(PointId{id});
   }

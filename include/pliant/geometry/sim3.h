@@ -39,7 +39,7 @@ inline Rigid3 PoseInWorld(const Sim3& b_from_a, const Rigid3& cam_from_a) {
   return {rotation, b_from_a.scale * cam_from_a.translation - rotation * b_from_a.translation};
 }
 
-// What takes world b to world a when one camera has these poses in them, and `scale` is a's unit for a length of b's 1.
+// a_from_b of two worlds in which one camera has these poses; a length of 1 in b is `scale` in a.
 inline Sim3 WorldFromPoses(const Rigid3& cam_from_a, const Rigid3& cam_from_b, double scale) {
   const Rigid3 a_from_cam = cam_from_a.Inverse();
   return {scale, (a_from_cam.rotation * cam_from_b.rotation).normalized(),

@@ -58,7 +58,8 @@ class TrackObserver {
   virtual ~TrackObserver() = default;
   // Before the first frame; `frames` is what the sequence says of its length.
   virtual void OnStart(int frames) = 0;
-  // After a frame's rows are on disk: once a frame, in order of time.
+  // After a frame's rows are on disk: once a frame, in order of time. A later report's `join` may move it into another
+  // world; the run folder has it there in the end.
   virtual void OnFrame(const FrameReport& report) = 0;
   // A frame was processed whose report waits for the first map: what is known so far. Its OnFrame follows later.
   virtual void OnHeld(const FrameReport& /*report*/) {}

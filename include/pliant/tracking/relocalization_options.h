@@ -14,6 +14,7 @@ struct RelocalizationOptions {
   int remember_every = 20;       // frames from one description of the points in view to the next
   int seek_every = 5;            // frames, for maps that were left, while another one is awaited
   Switch join = Switch::kOn;     // maps that meet become one
+  int max_left = 10;             // maps that were left and are remembered
   int join_every = 20;           // frames, for maps that were left, while another one is tracked
   double max_unit_spread = 0.2;  // of two maps' units: median deviation of its logarithm over the points
   int velocity_frames = 10;      // over which the camera's velocity before the loss is taken

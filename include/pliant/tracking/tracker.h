@@ -131,7 +131,7 @@ class Tracker {
   bool NeedsDepth() const;
 
   TrackingState state() const { return state_; }
-  // Whether there was a map before the present one, or before the one that is awaited.
+  // Whether there are maps that were left, and neither found again nor joined.
   bool LeftAMap() const { return !left_.empty(); }
   const Map& map() const;
   // Lost for max_lost_frames frames that are neither dark nor frozen, and no new map is to be begun.
@@ -177,6 +177,8 @@ class Tracker {
   bool LeavesMap() const { return lost_frames_ >= options_.max_lost_frames; }
   void LeaveMap();
   void FindMapAgain(const TrackerFrame& frame);
+  Followed LookFor(std::unique_ptr<Submap>* left, const TrackerFrame& frame, Rigid3* cam_from_world);
+  bool JoinsMaps() const;
   void JoinMaps(const TrackerFrame& frame, FrameReport* report);
   std::optional<Sim3> SeenWithPresent(const TrackerFrame& frame, std::unique_ptr<Submap>* left);
   void Remember(const TrackerFrame& frame, const FrameReport& report);
