@@ -10,6 +10,7 @@
 
 #include <opencv2/core.hpp>
 
+#include "pipeline/frames_before.h"
 #include "pipeline/model_start.h"
 #include "pipeline/simulation_truth.h"
 #include "pliant/base/prefetcher.h"
@@ -52,22 +53,28 @@ struct Ending {
 // Final reports on their way to the run folder and then to the observers.
 class Recorder {
  public:
-  Recorder(RunWriter& writer, std::span<TrackObserver* const> observers) : writer_(writer), observers_(observers) {}
+  Recorder(RunWriter& writer, std::span<TrackObserver* const> observers, FramesBefore before)
+      : writer_(writer), observers_(observers), before_(std::move(before)) {}
 
-  Status Record(const std::vector<FrameReport>& reports) {
+  Status Record(std::vector<FrameReport> reports) { return Write(before_.Pass(std::move(reports))); }
+  // No map comes any more.
+  Status Finish() { return Write(before_.Finish()); }
+  void Announce(const FrameReport& held) {
+    for (TrackObserver* observer : observers_) observer->OnHeld(held);
+  }
+
+ private:
+  Status Write(const std::vector<FrameReport>& reports) {
     for (const FrameReport& report : reports) {
       if (Status written = writer_.Write(report); !written.ok()) return written;
       for (TrackObserver* observer : observers_) observer->OnFrame(report);
     }
     return Status::Ok();
   }
-  void Announce(const FrameReport& held) {
-    for (TrackObserver* observer : observers_) observer->OnHeld(held);
-  }
 
- private:
   RunWriter& writer_;
   std::span<TrackObserver* const> observers_;
+  FramesBefore before_;
 };
 
 // The ending at the sequence's end.
@@ -100,17 +107,17 @@ Ending TrackFrames(Sequence& sequence, const RunRequest& request, const TrackOpt
     const ReadFrame& read = **frame;
     // What was read ahead for nothing cannot end the run, or the number of threads would decide.
     if (tracker.NeedsDepth() && !read.depth.ok()) return {RunStatus::kFailed, read.depth.message()};
-    const std::vector<FrameReport> done = tracker.Process(read.frame);
+    std::vector<FrameReport> done = tracker.Process(read.frame);
     ++count;
     wants_depth = tracker.WantsDepth();
-    if (const Status recorded = recorder.Record(done); !recorded.ok()) return {RunStatus::kFailed, recorded.message()};
-    const bool held = !tracker.held().empty();
-    const FrameReport& present = held ? tracker.held().back() : done.back();
-    if (held) recorder.Announce(present);
+    const FrameReport& present = tracker.held().empty() ? done.back() : tracker.held().back();
+    if (AwaitsAMap(present)) recorder.Announce(present);
     last_note = present.note;
-    if (tracker.GaveUp()) return {RunStatus::kLost, "frame " + present.name + ": " + present.note};
+    if (const Status recorded = recorder.Record(std::move(done)); !recorded.ok())
+      return {RunStatus::kFailed, recorded.message()};
+    if (tracker.GaveUp()) return {RunStatus::kLost, "frame " + read.frame.name + ": " + last_note};
     if (request.stop != nullptr && *request.stop)
-      return {RunStatus::kInterrupted, "stopped on request after frame " + present.name};
+      return {RunStatus::kInterrupted, "stopped on request after frame " + read.frame.name};
   }
   tracker.EndSequence();
   if (!tracker.held().empty()) last_note = tracker.held().back().note;
@@ -121,10 +128,11 @@ Ending TrackSequence(Sequence& sequence, const RunRequest& request, const TrackO
                      const ModelStart* model, TrackingTruth* truth, RunWriter& writer,
                      std::span<TrackObserver* const> observers) {
   Tracker tracker(sequence.camera(), options.tracker, static_cast<std::uint64_t>(options.seed), options.threads, truth);
-  Recorder recorder(writer, observers);
+  Recorder recorder(writer, observers, {request.input, options});
   const Ending ending = TrackFrames(sequence, request, options, model, tracker, recorder);
   // Whatever the ending: the frames that waited for a map are written too.
-  const Status recorded = recorder.Record(tracker.Finish());
+  Status recorded = recorder.Record(tracker.Finish());
+  if (recorded.ok()) recorded = recorder.Finish();
   return recorded.ok() || ending.status == RunStatus::kFailed ? ending : Ending{RunStatus::kFailed, recorded.message()};
 }
 
@@ -137,6 +145,8 @@ void TrackOptions::List(OptionTable& table) {
             "1: everything on one thread; 2 and more: images are read ahead, points followed in parallel; never "
             "changes the result",
             1, 1024);
+  table.Add("max_frames_back", &max_frames_back, "frames",
+            "before the reference of a first map, that are tracked from it back in time", 0, 100000);
   table.AddChoice("timings", &timings, "none: wall times are written as 0, so that two runs are equal byte for byte");
   tracker.List(table);
 }
@@ -144,6 +154,7 @@ void TrackOptions::List(OptionTable& table) {
 TrackOptions MakeTrackOptions(Preset preset) {
   TrackOptions options;
   if (preset == Preset::kDefault) return options;
+  options.max_frames_back = 0;
   TrackerOptions& tracker = options.tracker;
   tracker.corners.contour_filter = Switch::kOff;
   tracker.masks.highlights = Switch::kOff;

@@ -112,6 +112,22 @@ bool Tracker::WantsDepth() const {
   return NeedsDepth() || (options_.init.TakesKnownDepth() && options_.submaps == Switch::kOn);
 }
 
+void Tracker::TakeMap(const TrackerFrame& frame, const FrameReport& report) {
+  for (const PointObservation& seen : report.observations) {
+    const auto point = std::ranges::find(report.new_points, seen.id, &NewPoint::id);
+    if (now_->point_tracker.Add(seen.id, seen.pixel, frame.pyramid, frame.mask) != PatchFailure::kNone) continue;
+    Landmark landmark{.id = seen.id, .rest_position = seen.position, .position = seen.position, .pixel = seen.pixel};
+    if (point != report.new_points.end()) landmark.rest_position = point->position;
+    now_->map.landmarks.push_back(landmark);
+  }
+  now_->idx = report.submap;
+  now_->last_cam_from_world = *report.cam_from_world;
+  now_->before_last_cam_from_world = *report.cam_from_world;
+  now_->previous = frame;
+  ++maps_made_;
+  Apply(TrackingEvent::kMapCreated);
+}
+
 std::vector<FrameReport> Tracker::Process(const TrackerFrame& frame) {
   FrameReport& report = held_.emplace_back();
   report.frame_idx = frame.frame_idx;

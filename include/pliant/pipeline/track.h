@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // The main job: a sequence in, a run folder out (docs/formats.md). A frame is on disk as soon as its report is final,
-// so that a run which is lost, interrupted, killed or fails leaves what it had. The frames from the reference on are
-// final when the first map is made or given up; a run that is interrupted or fails before writes them without poses,
-// and one that is killed has not written them.
+// so that a run which is lost, interrupted, killed or fails leaves what it had. The frames that wait for the first map are
+// final when it is made, and so are the last ones before its reference, which are then tracked back from it; a run that
+// is interrupted or fails before writes them without poses, and one that is killed has not written them.
 #pragma once
 
 #include <array>
@@ -39,6 +39,7 @@ struct TrackOptions {
   int seed = 1;
   int threads = 2;  // 1: everything on one thread; 2 and more: images are read ahead, points are followed in parallel
   RunTimings timings = RunTimings::kWritten;
+  int max_frames_back = 60;  // before the reference of a first map, that are tracked from it back in time
   TrackerOptions tracker;
 
   void List(OptionTable& table);  // group "General" and the tracker's

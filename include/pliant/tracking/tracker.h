@@ -114,6 +114,11 @@ class Tracker {
           TrackingTruth* truth = nullptr);
   ~Tracker();
 
+  // Begins with the map that was reported in this frame, in place of a first map of its own: the points that are
+  // observed there, at rest where they are new. To be called before any Process; the frames that follow may come in any
+  // order of time.
+  void TakeMap(const TrackerFrame& frame, const FrameReport& report);
+
   // The reports that became final with this frame, in order of time; each frame is reported once.
   std::vector<FrameReport> Process(const TrackerFrame& frame);
   // The reports that are held back, in order of time, the last processed frame's last: those since the reference while

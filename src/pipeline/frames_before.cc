@@ -1,0 +1,115 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pipeline/frames_before.h"
+
+#include <algorithm>
+#include <iterator>
+#include <memory>
+#include <utility>
+
+namespace pliant {
+namespace {
+
+// Frames that are read and prepared at once, and then tracked in reverse order.
+constexpr std::size_t kChunk = 10;
+
+// The frame's own time was spent as well.
+void AddTimes(const FrameReport& before, FrameReport* report) {
+  for (auto& [stage, ms] : report->stage_ms)
+    for (const auto& [stage_before, ms_before] : before.stage_ms)
+      if (stage_before == stage) ms += ms_before;
+}
+
+}  // namespace
+
+bool AwaitsAMap(const FrameReport& report) {
+  return report.state == TrackingState::kWaitingForReference || report.state == TrackingState::kInitialising;
+}
+
+FramesBefore::FramesBefore(const SequenceRequest& input, const TrackOptions& options)
+    : input_(input), options_(options) {
+  // What the map shows is followed, and nothing more.
+  options_.tracker.growth.grow = Switch::kOff;
+  options_.tracker.submaps = Switch::kOff;
+  if (options_.tracker.oracle.Any()) options_.max_frames_back = 0;
+}
+
+std::vector<FrameReport> FramesBefore::Pass(std::vector<FrameReport> reports) {
+  std::vector<FrameReport> final_reports;
+  const auto release = [&](std::size_t count) {
+    const auto end = waiting_.begin() + static_cast<std::ptrdiff_t>(count);
+    std::move(waiting_.begin(), end, std::back_inserter(final_reports));
+    waiting_.erase(waiting_.begin(), end);
+  };
+  for (FrameReport& report : reports) {
+    if (AwaitsAMap(report)) {
+      waiting_.push_back(std::move(report));
+      if (static_cast<int>(waiting_.size()) > options_.max_frames_back) release(1);
+      continue;
+    }
+    if (report.first_map && !waiting_.empty()) TrackBack(&report);
+    release(waiting_.size());
+    final_reports.push_back(std::move(report));
+  }
+  return final_reports;
+}
+
+std::vector<FrameReport> FramesBefore::Finish() { return std::exchange(waiting_, {}); }
+
+// An image that cannot be read, or a map that is lost on the way, leaves the frames before it as they are.
+void FramesBefore::TrackBack(FrameReport* reference) {
+  std::vector<int> frames_idx;
+  for (const FrameReport& report : waiting_) frames_idx.push_back(report.frame_idx);
+  frames_idx.push_back(reference->frame_idx);
+  std::unique_ptr<Tracker> tracker;
+  for (std::size_t end = frames_idx.size(); end > 0;) {
+    const std::size_t begin = end - std::min(end, kChunk);
+    SequenceRequest request = input_;
+    request.start = frames_idx[begin];
+    request.end = frames_idx[end - 1] + 1;
+    auto sequence = OpenSequence(request);
+    if (!sequence.ok()) break;
+    std::vector<TrackerFrame> frames;
+    for (std::size_t k = begin; k < end; ++k) {
+      auto next = (*sequence)->Next();
+      if (!next.ok() || !next->has_value()) return MoveNewPoints(reference);
+      const SequenceFrame& frame = **next;
+      frames.push_back(
+          PrepareFrame(frame.frame_idx, frame.name, frame.timestamp_s, frame.image, frame.mask, options_.tracker));
+    }
+    for (std::size_t k = end; k-- > begin;) {
+      const TrackerFrame& frame = frames[k - begin];
+      if (tracker == nullptr) {
+        tracker = std::make_unique<Tracker>((*sequence)->camera(), options_.tracker, 0, options_.threads);
+        tracker->TakeMap(frame, *reference);
+        continue;
+      }
+      FrameReport back = std::move(tracker->Process(frame).front());
+      if (tracker->GaveUp()) return MoveNewPoints(reference);
+      if (!back.cam_from_world) continue;
+      AddTimes(waiting_[k], &back);
+      back.note = "tracked back from frame " + reference->name + ", the reference of the first map";
+      waiting_[k] = std::move(back);
+    }
+    end = begin;
+  }
+  MoveNewPoints(reference);
+}
+
+// A point is new in the first frame that shows it.
+void FramesBefore::MoveNewPoints(FrameReport* reference) {
+  std::vector<NewPoint>& points = reference->new_points;
+  for (FrameReport& report : waiting_) {
+    for (const PointObservation& seen : report.observations) {
+      const auto point = std::ranges::find(points, seen.id, &NewPoint::id);
+      if (point == points.end()) continue;
+      report.new_points.push_back(*point);
+      points.erase(point);
+    }
+    report.added = static_cast<int>(report.new_points.size());
+  }
+  reference->added = static_cast<int>(points.size());
+}
+
+}  // namespace pliant

@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// The frames before a first map: those that had no reference, or one that was given up. When a map has come they are
+// read once more and tracked from its reference frame back in time, so that they too have poses and points.
+#pragma once
+
+#include <vector>
+
+#include "pliant/datasets/open_sequence.h"
+#include "pliant/pipeline/track.h"
+#include "pliant/tracking/frame_report.h"
+
+namespace pliant {
+
+// Whether the frame has no map, so far.
+bool AwaitsAMap(const FrameReport& report);
+
+class FramesBefore {
+ public:
+  FramesBefore(const SequenceRequest& input, const TrackOptions& options);
+
+  // Takes the tracker's final reports, in order of time, and answers with those that are to be written, in order of
+  // time: the ones that may still get a pose wait here, at most `General.max_frames_back` of them.
+  std::vector<FrameReport> Pass(std::vector<FrameReport> reports);
+  // Those that wait, as they are: no map comes any more.
+  std::vector<FrameReport> Finish();
+
+ private:
+  void TrackBack(FrameReport* reference);
+  void MoveNewPoints(FrameReport* reference);
+
+  SequenceRequest input_;
+  TrackOptions options_;
+  std::vector<FrameReport> waiting_;
+};
+
+}  // namespace pliant
