@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <memory>
 #include <utility>
 
 namespace pliant {
@@ -27,8 +26,8 @@ bool AwaitsAMap(const FrameReport& report) {
   return report.state == TrackingState::kWaitingForReference || report.state == TrackingState::kInitialising;
 }
 
-FramesBefore::FramesBefore(const SequenceRequest& input, const TrackOptions& options)
-    : input_(input), options_(options) {
+FramesBefore::FramesBefore(const SequenceRequest& input, const Camera& camera, const TrackOptions& options)
+    : input_(input), camera_(camera), options_(options) {
   // What the map shows is followed, and nothing more.
   options_.tracker.growth.grow = Switch::kOff;
   options_.tracker.submaps = Switch::kOff;
@@ -48,7 +47,10 @@ std::vector<FrameReport> FramesBefore::Pass(std::vector<FrameReport> reports) {
       if (static_cast<int>(waiting_.size()) > options_.max_frames_back) release(1);
       continue;
     }
-    if (report.first_map && !waiting_.empty()) TrackBack(&report);
+    if (report.first_map && !waiting_.empty()) {
+      TrackBack(report);
+      MoveNewPoints(&report);
+    }
     release(waiting_.size());
     final_reports.push_back(std::move(report));
   }
@@ -57,44 +59,44 @@ std::vector<FrameReport> FramesBefore::Pass(std::vector<FrameReport> reports) {
 
 std::vector<FrameReport> FramesBefore::Finish() { return std::exchange(waiting_, {}); }
 
-// An image that cannot be read, or a map that is lost on the way, leaves the frames before it as they are.
-void FramesBefore::TrackBack(FrameReport* reference) {
-  std::vector<int> frames_idx;
-  for (const FrameReport& report : waiting_) frames_idx.push_back(report.frame_idx);
-  frames_idx.push_back(reference->frame_idx);
-  std::unique_ptr<Tracker> tracker;
-  for (std::size_t end = frames_idx.size(); end > 0;) {
-    const std::size_t begin = end - std::min(end, kChunk);
-    SequenceRequest request = input_;
-    request.start = frames_idx[begin];
-    request.end = frames_idx[end - 1] + 1;
-    auto sequence = OpenSequence(request);
-    if (!sequence.ok()) break;
-    std::vector<TrackerFrame> frames;
-    for (std::size_t k = begin; k < end; ++k) {
-      auto next = (*sequence)->Next();
-      if (!next.ok() || !next->has_value()) return MoveNewPoints(reference);
-      const SequenceFrame& frame = **next;
-      frames.push_back(
-          PrepareFrame(frame.frame_idx, frame.name, frame.timestamp_s, frame.image, frame.mask, options_.tracker));
-    }
-    for (std::size_t k = end; k-- > begin;) {
-      const TrackerFrame& frame = frames[k - begin];
-      if (tracker == nullptr) {
-        tracker = std::make_unique<Tracker>((*sequence)->camera(), options_.tracker, 0, options_.threads);
-        tracker->TakeMap(frame, *reference);
-        continue;
-      }
-      FrameReport back = std::move(tracker->Process(frame).front());
-      if (tracker->GaveUp()) return MoveNewPoints(reference);
-      if (!back.cam_from_world) continue;
-      AddTimes(waiting_[k], &back);
-      back.note = "tracked back from frame " + reference->name + ", the reference of the first map";
-      waiting_[k] = std::move(back);
-    }
-    end = begin;
+// Frames `first` to `last` of the source, prepared; nothing when one of them cannot be read.
+std::vector<TrackerFrame> FramesBefore::Read(int first, int last, std::size_t count) const {
+  SequenceRequest request = input_;
+  request.start = first;
+  request.end = last + 1;
+  const auto sequence = OpenSequence(request);
+  if (!sequence.ok()) return {};
+  std::vector<TrackerFrame> frames;
+  while (frames.size() < count) {
+    const auto next = (*sequence)->Next();
+    if (!next.ok() || !next->has_value()) return {};
+    const SequenceFrame& frame = **next;
+    frames.push_back(
+        PrepareFrame(frame.frame_idx, frame.name, frame.timestamp_s, frame.image, frame.mask, options_.tracker));
   }
-  MoveNewPoints(reference);
+  return frames;
+}
+
+// An image that cannot be read, or a map that is lost on the way, leaves the frames before it as they are.
+void FramesBefore::TrackBack(const FrameReport& reference) {
+  const std::vector<TrackerFrame> at_reference = Read(reference.frame_idx, reference.frame_idx, 1);
+  if (at_reference.empty()) return;
+  Tracker tracker(camera_, options_.tracker, 0, options_.threads);
+  tracker.TakeMap(at_reference.front(), reference);
+  for (std::size_t end = waiting_.size(); end > 0;) {
+    const std::size_t begin = end - std::min(end, kChunk);
+    const auto frames = Read(waiting_[begin].frame_idx, waiting_[end - 1].frame_idx, end - begin);
+    if (frames.empty()) return;
+    for (; end > begin; --end) {
+      FrameReport& waiting = waiting_[end - 1];
+      FrameReport back = std::move(tracker.Process(frames[end - 1 - begin]).front());
+      if (tracker.GaveUp()) return;
+      if (!back.cam_from_world) continue;
+      AddTimes(waiting, &back);
+      back.note = "tracked back from frame " + reference.name + ", the reference of the first map";
+      waiting = std::move(back);
+    }
+  }
 }
 
 // A point is new in the first frame that shows it.

@@ -5,11 +5,14 @@
 // read once more and tracked from its reference frame back in time, so that they too have poses and points.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
+#include "pliant/camera/camera.h"
 #include "pliant/datasets/open_sequence.h"
 #include "pliant/pipeline/track.h"
 #include "pliant/tracking/frame_report.h"
+#include "pliant/tracking/tracker.h"
 
 namespace pliant {
 
@@ -18,7 +21,7 @@ bool AwaitsAMap(const FrameReport& report);
 
 class FramesBefore {
  public:
-  FramesBefore(const SequenceRequest& input, const TrackOptions& options);
+  FramesBefore(const SequenceRequest& input, const Camera& camera, const TrackOptions& options);
 
   // Takes the tracker's final reports, in order of time, and answers with those that are to be written, in order of
   // time: the ones that may still get a pose wait here, at most `General.max_frames_back` of them.
@@ -27,10 +30,12 @@ class FramesBefore {
   std::vector<FrameReport> Finish();
 
  private:
-  void TrackBack(FrameReport* reference);
+  std::vector<TrackerFrame> Read(int first, int last, std::size_t count) const;
+  void TrackBack(const FrameReport& reference);
   void MoveNewPoints(FrameReport* reference);
 
   SequenceRequest input_;
+  Camera camera_;
   TrackOptions options_;
   std::vector<FrameReport> waiting_;
 };

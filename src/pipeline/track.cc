@@ -128,7 +128,7 @@ Ending TrackSequence(Sequence& sequence, const RunRequest& request, const TrackO
                      const ModelStart* model, TrackingTruth* truth, RunWriter& writer,
                      std::span<TrackObserver* const> observers) {
   Tracker tracker(sequence.camera(), options.tracker, static_cast<std::uint64_t>(options.seed), options.threads, truth);
-  Recorder recorder(writer, observers, {request.input, options});
+  Recorder recorder(writer, observers, {request.input, sequence.camera(), options});
   const Ending ending = TrackFrames(sequence, request, options, model, tracker, recorder);
   // Whatever the ending: the frames that waited for a map are written too.
   Status recorded = recorder.Record(tracker.Finish());

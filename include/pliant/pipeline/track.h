@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // The main job: a sequence in, a run folder out (docs/formats.md). A frame is on disk as soon as its report is final,
-// so that a run which is lost, interrupted, killed or fails leaves what it had. The frames that wait for the first map are
-// final when it is made, and so are the last ones before its reference, which are then tracked back from it; a run that
-// is interrupted or fails before writes them without poses, and one that is killed has not written them.
+// so that a run which is lost, interrupted, killed or fails leaves what it had. The frames that wait for the first map
+// are final when it is made, and so are the last ones before its reference, which are then tracked back from it; a run
+// that is interrupted or fails before writes them without poses, and one that is killed has not written them.
 #pragma once
 
 #include <array>
