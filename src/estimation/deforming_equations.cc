@@ -25,27 +25,27 @@ Eigen::Index DeformingEquations::NodePlace(Eigen::Index node) const {
   return (terms_->num_views() - 1) * terms_->view_size() + node * terms_->modes_size();
 }
 
-std::optional<DeformingEquations> DeformingEquations::At(const DeformingTerms& terms, const DeformingState& state,
-                                                         FreeParts free, const std::vector<int>& gauge, int threads) {
-  DeformingEquations equations(terms, free);
-  equations.curvature_.setZero(equations.Size(), equations.Size());
-  equations.slope_.setZero(equations.Size());
-  equations.AddPriors(state);
-  equations.points_.resize(terms.num_points());
-  std::vector<Sums> parts(kParts);
+DeformingEquations::DeformingEquations(const DeformingTerms& terms, FreeParts free, std::vector<int> gauge, int threads)
+    : terms_(&terms),
+      free_(free),
+      gauge_(std::move(gauge)),
+      threads_(threads),
+      points_(terms.num_points()),
+      parts_(kParts) {}
+
+bool DeformingEquations::Linearise(const DeformingState& state) {
+  curvature_.setZero(Size(), Size());
+  slope_.setZero(Size());
+  settled_ = 0;
+  AddPriors(state);
   ParallelFor(
-      static_cast<int>(kParts), threads,
-      [&](int part) {
-        parts[static_cast<std::size_t>(part)] = equations.SumOfPart(static_cast<std::size_t>(part), state);
-      },
-      1);
-  for (const Sums& part : parts) {
-    equations.curvature_ += part.curvature;
-    equations.slope_ += part.slope;
-    equations.settled_ += part.settled;
+      static_cast<int>(kParts), threads_, [&](int part) { SumPart(static_cast<std::size_t>(part), state); }, 1);
+  for (const Sums& part : parts_) {
+    curvature_ += part.curvature;
+    slope_ += part.slope;
+    settled_ += part.settled;
   }
-  if (!equations.Factorise(gauge)) return std::nullopt;
-  return equations;
+  return Factorise();
 }
 
 void DeformingEquations::AddPriors(const DeformingState& state) {
@@ -70,22 +70,23 @@ void DeformingEquations::AddPriors(const DeformingState& state) {
   }
 }
 
-DeformingEquations::Sums DeformingEquations::SumOfPart(std::size_t part, const DeformingState& state) {
-  Sums sums;
+void DeformingEquations::SumPart(std::size_t part, const DeformingState& state) {
+  Sums& sums = parts_[part];
   sums.curvature.setZero(Size(), Size());
   sums.slope.setZero(Size());
+  sums.settled = 0;
   const std::size_t count = terms_->num_points();
+  std::vector<SeenEquations> forgotten;
   for (std::size_t i = part * count / kParts; i < (part + 1) * count / kParts; ++i) {
-    const PointEquations own = terms_->Linearised(i, state, &points_[i].seen);
-    AddViews(i, &sums);
+    std::vector<SeenEquations>& seen = free_ == FreeParts::kAll ? points_[i].seen : forgotten;
+    const PointEquations own = terms_->Linearised(i, state, &seen);
+    AddViews(i, seen, &sums);
     if (free_ == FreeParts::kAll) Eliminate(i, own, &sums);
   }
-  return sums;
 }
 
-void DeformingEquations::AddViews(std::size_t point, Sums* sums) const {
+void DeformingEquations::AddViews(std::size_t point, const std::vector<SeenEquations>& seen, Sums* sums) const {
   const Eigen::Index size = terms_->view_size();
-  const std::vector<SeenEquations>& seen = points_[point].seen;
   for (std::size_t k = 0; k < seen.size(); ++k) {
     const Eigen::Index place = ViewPlace(terms_->seen(point)[k].view_idx);
     if (place < 0) continue;
@@ -161,7 +162,7 @@ void DeformingEquations::Eliminate(std::size_t point, const PointEquations& own,
   sums->slope -= ByPoint(point, settled);
 }
 
-bool DeformingEquations::Factorise(const std::vector<int>& gauge) {
+bool DeformingEquations::Factorise() {
   const Eigen::VectorXd diagonal = curvature_.diagonal();
   for (double ridge = kLeastRidge; ridge < kMostRidge; ridge *= 10.0) {
     curvature_.diagonal() = (1.0 + ridge) * diagonal;
@@ -169,7 +170,6 @@ bool DeformingEquations::Factorise(const std::vector<int>& gauge) {
     if (factors_.info() == Eigen::Success) break;
   }
   if (factors_.info() != Eigen::Success) return false;
-  gauge_ = gauge;
   scale_.setZero(Size());
   for (const int i : gauge_)
     scale_ += ByPoint(static_cast<std::size_t>(i), points_[static_cast<std::size_t>(i)].inverse.col(2));
@@ -236,7 +236,7 @@ PointVector DeformingEquations::PointStep(std::size_t point, const Eigen::Vector
   return points_[point].inverse * (-points_[point].gradient - ByRest(point, step));
 }
 
-std::vector<double> DeformingEquations::Variances(int threads) const {
+std::vector<double> DeformingEquations::Variances() const {
   // Of the whole equations' inverse the column of the gauge, by which the free scale is taken off.
   const Eigen::VectorXd rest_by_scale = -factors_.solve(scale_);
   Eigen::VectorXd by_scale(static_cast<Eigen::Index>(points_.size()));
@@ -248,7 +248,7 @@ std::vector<double> DeformingEquations::Variances(int threads) const {
     scale_variance += by_scale[i];
   }
   std::vector<double> variances(points_.size());
-  ParallelFor(static_cast<int>(points_.size()), threads, [&](int i) {
+  ParallelFor(static_cast<int>(points_.size()), threads_, [&](int i) {
     const auto point = static_cast<std::size_t>(i);
     const PointVector own = points_[point].inverse.col(2);
     const Eigen::VectorXd half = factors_.matrixL().solve(ByPoint(point, own));

@@ -6,7 +6,6 @@
 // are those that keep the mean log distance of the gauge's points.
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include <Eigen/Cholesky>
@@ -22,10 +21,11 @@ enum class FreeParts {
 
 class DeformingEquations {
  public:
-  // Nothing where they have no solution. `gauge`: points; none for FreeParts::kViews.
-  // `threads` never changes the result.
-  static std::optional<DeformingEquations> At(const DeformingTerms& terms, const DeformingState& state, FreeParts free,
-                                              const std::vector<int>& gauge, int threads = 1);
+  // `gauge`: points; none for FreeParts::kViews. `threads` never changes the result.
+  DeformingEquations(const DeformingTerms& terms, FreeParts free, std::vector<int> gauge, int threads = 1);
+
+  // Makes them those of `state`, in the memory of those before; false where they have no solution. All below is theirs.
+  bool Linearise(const DeformingState& state);
 
   // Of the cost as a function of what is left, the points following: slope, and curvature L L'.
   const Eigen::VectorXd& slope() const { return slope_; }
@@ -40,14 +40,12 @@ class DeformingEquations {
   // A point's step that goes with one of the rest.
   PointVector PointStep(std::size_t point, const Eigen::VectorXd& step) const;
   // Of the log distances; infinite for a point that nothing determines.
-  std::vector<double> Variances(int threads = 1) const;
+  std::vector<double> Variances() const;
 
   // The state after a step of what is left; the points stay.
   DeformingState Moved(const DeformingState& state, const Eigen::VectorXd& step) const;
 
  private:
-  DeformingEquations(const DeformingTerms& terms, FreeParts free) : terms_(&terms), free_(free) {}
-
   Eigen::Index ViewPlace(int view_idx) const { return (view_idx - 1) * terms_->view_size(); }  // negative: not free
   Eigen::Index NodePlace(Eigen::Index node) const;
   Eigen::Index OffsetPlace() const { return NodePlace(terms_->num_nodes()); }
@@ -61,10 +59,10 @@ class DeformingEquations {
   };
 
   void AddPriors(const DeformingState& state);
-  Sums SumOfPart(std::size_t part, const DeformingState& state);
-  void AddViews(std::size_t point, Sums* sums) const;
+  void SumPart(std::size_t part, const DeformingState& state);
+  void AddViews(std::size_t point, const std::vector<SeenEquations>& seen, Sums* sums) const;
   void Eliminate(std::size_t point, const PointEquations& own, Sums* sums);
-  bool Factorise(const std::vector<int>& gauge);
+  bool Factorise();
   Eigen::VectorXd ByPoint(std::size_t point, const PointVector& factor) const;
   PointVector ByRest(std::size_t point, const Eigen::VectorXd& step) const;
 
@@ -78,12 +76,14 @@ class DeformingEquations {
 
   const DeformingTerms* terms_;
   FreeParts free_;
+  std::vector<int> gauge_;
+  int threads_;
   std::vector<Point> points_;
+  std::vector<Sums> parts_;
   Eigen::MatrixXd curvature_;  // the lower triangle
   Eigen::VectorXd slope_;
   Eigen::LLT<Eigen::MatrixXd> factors_;
   double settled_ = 0;
-  std::vector<int> gauge_;
   Eigen::VectorXd scale_;  // what is left of the mean log distance of the gauge's points, by what is left
 };
 

@@ -155,17 +155,16 @@ Result<double> DeformingProblem::Solve(int max_iterations, FreeParts free, int t
   constexpr double kNoPromise = 1e-3 * kTolerance;
   auto cost = terms_.Cost(state_);
   if (!cost) return NoStart();
-  const std::vector<int> gauge = free == FreeParts::kAll ? gauge_ : std::vector<int>();
+  DeformingEquations equations(terms_, free, free == FreeParts::kAll ? gauge_ : std::vector<int>(), threads);
   double radius = kFirstRadius;
   bool done = false;
   for (int iteration = 0; iteration < max_iterations && !done; ++iteration) {
-    const auto equations = DeformingEquations::At(terms_, state_, free, gauge, threads);
-    if (!equations) break;
-    const TrustPlane plane(*equations);
+    if (!equations.Linearise(state_)) break;
+    const TrustPlane plane(equations);
     for (bool accepted = false; !accepted && !done;) {
       const TrustPlane::Step best = plane.Best(radius);
-      const double predicted = equations->settled() - best.change;
-      const DeformingState candidate = Moved(*equations, best.step, free, threads);
+      const double predicted = equations.settled() - best.change;
+      const DeformingState candidate = Moved(equations, best.step, free, threads);
       const auto candidate_cost = terms_.Cost(candidate);
       const double gain = candidate_cost && predicted > 0.0 ? (*cost - *candidate_cost) / predicted : -1.0;
       accepted = gain > kLeastGain;
@@ -206,9 +205,9 @@ Result<double> DeformingProblem::SettlePoints(int threads) {
 }
 
 std::vector<double> DeformingProblem::LogDepthSigmas(int threads) const {
-  const auto equations = DeformingEquations::At(terms_, state_, FreeParts::kAll, gauge_, threads);
-  if (!equations) return std::vector<double>(terms_.num_points(), std::numeric_limits<double>::infinity());
-  std::vector<double> sigmas = equations->Variances(threads);
+  DeformingEquations equations(terms_, FreeParts::kAll, gauge_, threads);
+  if (!equations.Linearise(state_)) return std::vector<double>(terms_.num_points(), std::numeric_limits<double>::infinity());
+  std::vector<double> sigmas = equations.Variances();
   for (double& sigma : sigmas) sigma = std::sqrt(sigma);
   return sigmas;
 }

@@ -382,16 +382,17 @@ TEST(DeformingEquations, SlopeMatchesDifferencesWhereThePointsAreSettled) {
       }
     }
   for (const FreeParts free : {FreeParts::kAll, FreeParts::kViews}) {
-    const auto equations = DeformingEquations::At(terms, state, free, {});
-    ASSERT_TRUE(equations.has_value());
+    DeformingEquations equations(terms, free, {});
+    ASSERT_TRUE(equations.Linearise(terms.Start()));  // of which nothing may be left
+    ASSERT_TRUE(equations.Linearise(state));
     Random random(5);
     for (int trial = 0; trial < 10; ++trial) {
-      Eigen::VectorXd direction(equations->slope().size());
+      Eigen::VectorXd direction(equations.slope().size());
       for (double& value : direction) value = random.Normal(1.0);
-      const double after = terms.Cost(equations->Moved(state, kStep * direction)).value();
-      const double before = terms.Cost(equations->Moved(state, -kStep * direction)).value();
-      EXPECT_NEAR((after - before) / (2 * kStep), equations->slope().dot(direction),
-                  1e-4 * equations->slope().norm() * direction.norm());
+      const double after = terms.Cost(equations.Moved(state, kStep * direction)).value();
+      const double before = terms.Cost(equations.Moved(state, -kStep * direction)).value();
+      EXPECT_NEAR((after - before) / (2 * kStep), equations.slope().dot(direction),
+                  1e-4 * equations.slope().norm() * direction.norm());
     }
   }
 }
@@ -402,14 +403,14 @@ TEST(DeformingEquations, EliminatingThePointsChangesNoStep) {
   const Unsettled start;
   const DeformingTerms terms(start.window, start.nodes, kFocalPx, {});
   const DeformingState state = terms.Start();
-  const auto equations = DeformingEquations::At(terms, state, FreeParts::kAll, {});
-  ASSERT_TRUE(equations.has_value());
-  const Eigen::VectorXd step = equations->NewtonStep();
+  DeformingEquations equations(terms, FreeParts::kAll, {});
+  ASSERT_TRUE(equations.Linearise(state));
+  const Eigen::VectorXd step = equations.NewtonStep();
   // A point's own row: own * dx + sum_v by_point' by_view dv + nodes + offset = - gradient.
   for (const std::size_t point : {std::size_t{3}, std::size_t{77}}) {
     std::vector<SeenEquations> seen;
     const PointEquations own = terms.Linearised(point, state, &seen);
-    PointVector row = own.own * equations->PointStep(point, step);
+    PointVector row = own.own * equations.PointStep(point, step);
     for (std::size_t k = 0; k < seen.size(); ++k)
       if (const int view = terms.seen(point)[k].view_idx; view > 0)
         row += seen[k].by_point.transpose() *
