@@ -102,6 +102,13 @@ Result<FrameRange> FrameRange::Within(int count, const fs::path& source) const {
   return FrameRange{start, end == -1 ? count : std::min(end, count), stride};
 }
 
+std::vector<std::string> Stems(const ImageStream& images) {
+  std::vector<std::string> stems;
+  for (int idx = 0; idx < std::max(images.count(), 1); ++idx)
+    stems.push_back(fs::path(images.Name(idx)).stem().string());
+  return stems;
+}
+
 Result<CompanionImages> CompanionImages::Open(std::string what, const fs::path& path,
                                               const std::vector<std::string>& frame_stems, Counts counts) {
   CompanionImages companion;

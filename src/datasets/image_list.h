@@ -12,6 +12,7 @@
 
 #include <opencv2/core/mat.hpp>
 
+#include "datasets/image_stream.h"
 #include "pliant/base/status.h"
 #include "pliant/datasets/open_sequence.h"
 
@@ -38,6 +39,9 @@ struct FrameRange {
   // Number of frames of a bounded range.
   int Count() const { return end > start ? 1 + (end - start - 1) / stride : 0; }
 };
+
+// The names of a stream's images without their ending; of one whose count is not known the first one's.
+std::vector<std::string> Stems(const ImageStream& images);
 
 // The image file of every frame in one folder, by stem, or by order where no stem agrees.
 class CompanionImages {

@@ -42,6 +42,13 @@ class Sequence {
   virtual Result<std::optional<cv::Mat>> Depth(int frame_idx) const = 0;
   virtual std::optional<Rigid3> WorldFromCamera(int frame_idx) const = 0;
 
+  // The distance of the cameras of a rectified pair, the right one at +x of the left one, whose images Next gives;
+  // nothing where the source has no pairs.
+  virtual std::optional<double> BaselineMm() const { return std::nullopt; }
+  // The right image of the frame that Next gave last, rectified like it, of its size; nothing where there is none.
+  // Fails as Next.
+  virtual Result<std::optional<cv::Mat>> Right() { return std::optional<cv::Mat>(); }
+
   // When the source's frame of this index was taken, seconds; nothing where the source has no such frame or cannot say
   // without reading it. It tells whether a run belongs to this sequence.
   virtual std::optional<double> TimestampS(int /*frame_idx*/) const { return std::nullopt; }

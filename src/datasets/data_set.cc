@@ -1,0 +1,179 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "datasets/data_set.h"
+
+#include <algorithm>
+#include <string>
+
+#include "datasets/image_file.h"
+#include "datasets/image_list.h"
+#include "pliant/io/camera_file.h"
+
+namespace pliant {
+namespace {
+
+namespace fs = std::filesystem;
+
+class DataSetSequence final : public Sequence {
+ public:
+  DataSetSequence(DataSet data_set, const FrameRange& range)
+      : data_set_(std::move(data_set)), range_(range), next_idx_(range.start) {}
+
+  Status CheckFirstImage() const;
+  Status OpenMasks();
+
+  const Camera& camera() const override { return data_set_.calibration.camera; }
+  int size() const override { return range_.Count(); }
+  Result<std::optional<SequenceFrame>> Next() override;
+  std::optional<double> BaselineMm() const override;
+  Result<std::optional<cv::Mat>> Right() override;
+  Result<std::optional<cv::Mat>> Depth(int frame_idx) const override;
+  std::optional<Rigid3> WorldFromCamera(int frame_idx) const override;
+  std::optional<double> TimestampS(int frame_idx) const override;
+  std::optional<std::string> Name(int frame_idx) const override;
+
+ private:
+  ImageStream& images() const { return *data_set_.images; }
+  Status CheckSize(const cv::Mat& image, const std::string& title) const;
+
+  DataSet data_set_;
+  FrameRange range_;
+  int next_idx_;
+  int last_idx_ = -1;  // the frame that Next gave last
+  std::optional<CompanionImages> masks_;
+};
+
+// A calibration of other images is the commonest mistake: it is told before anything runs. A first image that cannot
+// be decoded is Next's to report.
+Status DataSetSequence::CheckFirstImage() const {
+  const std::optional<cv::Size> size = images().SizeAt(range_.start);
+  if (!size || *size == cv::Size(camera().width(), camera().height())) return Status::Ok();
+  return {ErrorCode::kMismatch, "the calibration " + data_set_.calibration.path.string() + " is for images of " +
+                                    SizeText(camera().width(), camera().height()) + ", but " +
+                                    images().Title(range_.start) + " is " + SizeText(size->width, size->height) +
+                                    "; give the calibration of these images"};
+}
+
+Status DataSetSequence::OpenMasks() {
+  if (data_set_.mask_path.empty()) return Status::Ok();
+  const auto counts =
+      images().count_is_exact() ? CompanionImages::Counts::kMustAgree : CompanionImages::Counts::kMayDiffer;
+  Result<CompanionImages> masks = CompanionImages::Open("mask", data_set_.mask_path, Stems(images()), counts);
+  if (!masks.ok()) return masks.status();
+  if (images().count_is_exact())
+    for (int idx = range_.start; idx < range_.end; idx += range_.stride)
+      if (const auto found = masks->Require(idx, images().Name(idx)); !found.ok()) return found.status();
+  masks_ = *std::move(masks);
+  return Status::Ok();
+}
+
+Status DataSetSequence::CheckSize(const cv::Mat& image, const std::string& title) const {
+  if (image.cols == camera().width() && image.rows == camera().height()) return Status::Ok();
+  return {ErrorCode::kMismatch, title + " is " + SizeText(image) + ", but the calibration and the first image are " +
+                                    SizeText(camera().width(), camera().height()) +
+                                    "; the size may not change within a sequence"};
+}
+
+Result<std::optional<SequenceFrame>> DataSetSequence::Next() {
+  if (range_.end != -1 && next_idx_ >= range_.end) return std::optional<SequenceFrame>();
+  const int idx = std::exchange(next_idx_, next_idx_ + range_.stride);  // also where it fails: the next may be read
+  last_idx_ = idx;
+  Result<std::optional<cv::Mat>> image = images().Read(idx);
+  if (!image.ok()) return image.status();
+  if (!image->has_value()) return std::optional<SequenceFrame>();
+  if (Status status = CheckSize(**image, images().Title(idx)); !status.ok()) return status;
+  SequenceFrame frame;
+  frame.frame_idx = idx;
+  frame.name = images().Name(idx);
+  frame.timestamp_s = data_set_.timestamps_s.empty() ? idx / data_set_.calibration.fps
+                                                     : data_set_.timestamps_s[static_cast<std::size_t>(idx)];
+  frame.image = **std::move(image);
+  if (masks_) {
+    Result<cv::Mat> mask = ReadFrameMask(*masks_, idx, frame.name, camera().width(), camera().height());
+    if (!mask.ok()) return mask.status();
+    frame.mask = *std::move(mask);
+  }
+  return std::optional<SequenceFrame>(std::move(frame));
+}
+
+std::optional<double> DataSetSequence::BaselineMm() const {
+  return data_set_.right ? data_set_.calibration.baseline_mm : std::nullopt;
+}
+
+Result<std::optional<cv::Mat>> DataSetSequence::Right() {
+  if (!BaselineMm() || last_idx_ < 0) return std::optional<cv::Mat>();
+  Result<std::optional<cv::Mat>> right = data_set_.right->Read(last_idx_);
+  if (!right.ok() || !right->has_value()) return right;
+  if (Status status = CheckSize(**right, data_set_.right->Title(last_idx_)); !status.ok()) return status;
+  return right;
+}
+
+Result<std::optional<cv::Mat>> DataSetSequence::Depth(int frame_idx) const {
+  if (!data_set_.depth_mm || !TimestampS(frame_idx)) return std::optional<cv::Mat>();
+  Result<std::optional<cv::Mat>> depth_mm = data_set_.depth_mm(frame_idx);
+  if (depth_mm.ok() && depth_mm->has_value() &&
+      ((*depth_mm)->cols != camera().width() || (*depth_mm)->rows != camera().height()))
+    return Status(ErrorCode::kMismatch, "the depth image of " + images().Title(frame_idx) + " is " +
+                                            SizeText(**depth_mm) + ", but the images are " +
+                                            SizeText(camera().width(), camera().height()) +
+                                            "; depth has the images' size");
+  return depth_mm;
+}
+
+std::optional<Rigid3> DataSetSequence::WorldFromCamera(int frame_idx) const {
+  if (frame_idx < 0 || frame_idx >= static_cast<int>(data_set_.world_from_cam.size())) return std::nullopt;
+  return data_set_.world_from_cam[static_cast<std::size_t>(frame_idx)];
+}
+
+std::optional<double> DataSetSequence::TimestampS(int frame_idx) const {
+  if (frame_idx < 0 || (images().count() > 0 && frame_idx >= images().count())) return std::nullopt;
+  return data_set_.timestamps_s.empty() ? frame_idx / data_set_.calibration.fps
+                                        : data_set_.timestamps_s[static_cast<std::size_t>(frame_idx)];
+}
+
+std::optional<std::string> DataSetSequence::Name(int frame_idx) const {
+  return TimestampS(frame_idx) ? std::optional(images().Name(frame_idx)) : std::nullopt;
+}
+
+Result<fs::path> FindCalibration(const SequenceRequest& request) {
+  if (!request.camera_path.empty()) return request.camera_path;
+  std::error_code error;
+  const fs::path beside =
+      fs::is_directory(request.image_path, error) ? request.image_path : request.image_path.parent_path();
+  fs::path file = beside / "camera.yaml";
+  if (!fs::is_regular_file(file, error))
+    return Status(ErrorCode::kNotFound, "there is no calibration for " + request.image_path.string() + ": no file " +
+                                            file.string() + "; write one, or name a calibration file");
+  return file;
+}
+
+}  // namespace
+
+Result<SourceCalibration> ReadCalibration(const SequenceRequest& request, const ImageStream& images) {
+  const Result<fs::path> path = FindCalibration(request);
+  if (!path.ok()) return path.status();
+  CameraFileOptions options;
+  if (const auto size = images.SizeAt(0)) options.image_size = ImageSize{size->width, size->height};
+  const Result<CameraFile> file = ReadCameraFile(path->string(), options);
+  if (!file.ok()) return file.status();
+  SourceCalibration calibration{file->camera, *path};
+  if (file->fps) calibration.fps = *file->fps;
+  if (images.fps()) calibration.fps = *images.fps();
+  if (file->depth_scale) calibration.depth_scale = *file->depth_scale;
+  calibration.baseline_mm = file->baseline_mm;
+  return calibration;
+}
+
+Result<std::unique_ptr<Sequence>> ReadDataSet(DataSet data_set, const SequenceRequest& request) {
+  Result<FrameRange> range = FrameRange::From(request);
+  if (range.ok() && data_set.images->count() > 0)
+    range = range->Within(data_set.images->count(), data_set.images->path());
+  if (!range.ok()) return range.status();
+  auto sequence = std::make_unique<DataSetSequence>(std::move(data_set), *range);
+  if (Status status = sequence->CheckFirstImage(); !status.ok()) return status;
+  if (Status status = sequence->OpenMasks(); !status.ok()) return status;
+  return std::unique_ptr<Sequence>(std::move(sequence));
+}
+
+}  // namespace pliant

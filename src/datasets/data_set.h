@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// What the reader of a data set finds: where its images come from, what becomes of them, and the truth. One file a data
+// set fills it; one sequence reads it, whatever it is of.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <opencv2/core/mat.hpp>
+
+#include "datasets/image_stream.h"
+#include "pliant/base/status.h"
+#include "pliant/camera/camera.h"
+#include "pliant/datasets/open_sequence.h"
+#include "pliant/geometry/rigid3.h"
+
+namespace pliant {
+
+// What a calibration file says of a sequence besides the camera.
+struct SourceCalibration {
+  Camera camera;
+  std::filesystem::path path;                        // for messages
+  double fps = 30.0;                                 // of sources that carry no time of their own
+  double depth_scale = 1.0;                          // mm a unit of the depth images
+  std::optional<double> baseline_mm = std::nullopt;  // of rectified pairs
+};
+
+// The request's calibration file, else camera.yaml in the folder or beside the file. A calibration that does not say
+// its images' size takes that of the stream.
+Result<SourceCalibration> ReadCalibration(const SequenceRequest& request, const ImageStream& images);
+
+struct DataSet {
+  SourceCalibration calibration;  // of the images as they are given
+  std::unique_ptr<ImageStream> images;
+  std::unique_ptr<ImageStream> right = nullptr;            // of rectified pairs; null: none
+  std::filesystem::path mask_path = {};                    // a folder, or one image for all; empty: no masks
+  std::vector<double> timestamps_s = {};                   // one an image; empty: number / fps
+  std::vector<std::optional<Rigid3>> world_from_cam = {};  // one an image, mm; empty: no truth
+  std::function<Result<std::optional<cv::Mat>>(int)> depth_mm = nullptr;  // of an image; null: no truth
+};
+
+// Masks belong to images by file stem, or by order where no stem agrees; where the number of images is exact every one
+// must have its own. Errors as OpenSequence.
+Result<std::unique_ptr<Sequence>> ReadDataSet(DataSet data_set, const SequenceRequest& request);
+
+}  // namespace pliant

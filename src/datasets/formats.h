@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// The data sets that are known, each with a file of its own: how one is recognised, and how it is opened.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string_view>
+
+#include "datasets/data_set.h"
+
+namespace pliant {
+
+struct DataSetFormat {
+  std::string_view name;  // as in docs/formats.md
+  std::string_view what;  // for people
+  bool (*is_at)(const std::filesystem::path& path);
+  Result<DataSet> (*open)(const SequenceRequest& request);
+};
+
+// In the order in which they are asked; the last two, a folder of images and a video, take what no other does.
+std::span<const DataSetFormat> DataSetFormats();
+
+bool IsNativeSequence(const std::filesystem::path& path);
+Result<DataSet> OpenNativeSequence(const SequenceRequest& request);
+
+bool IsFolder(const std::filesystem::path& path);
+Result<DataSet> OpenImageFolder(const SequenceRequest& request);
+
+bool IsFile(const std::filesystem::path& path);
+Result<DataSet> OpenVideo(const SequenceRequest& request);
+
+}  // namespace pliant

@@ -1,0 +1,129 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// The native sequence: camera.yaml, images/ and what may stand beside them (docs/formats.md).
+#include <cmath>
+#include <fstream>
+#include <string>
+#include <utility>
+
+#include "datasets/formats.h"
+#include "datasets/image_file.h"
+#include "datasets/image_list.h"
+#include "pliant/base/options.h"
+#include "pliant/base/text.h"
+#include "pliant/io/trajectory.h"
+
+namespace pliant {
+namespace {
+
+namespace fs = std::filesystem;
+
+Status CheckLineCount(const fs::path& file, const std::string& what, std::size_t lines, int images) {
+  if (lines == static_cast<std::size_t>(images)) return Status::Ok();
+  return {ErrorCode::kMismatch, "the file " + file.string() + " has " + std::to_string(lines) + " " + what + " for " +
+                                    std::to_string(images) + " images; it needs one line an image"};
+}
+
+std::string Trimmed(const std::string& text) {
+  const std::size_t begin = text.find_first_not_of(" \t\r");
+  if (begin == std::string::npos) return {};
+  return text.substr(begin, text.find_last_not_of(" \t\r") - begin + 1);
+}
+
+// One time a line, seconds, growing; lines that start with # are comments.
+Result<std::vector<double>> ReadTimes(const fs::path& file) {
+  std::ifstream stream(file);
+  if (!stream || !IsFile(file))
+    return Status(ErrorCode::kUnreadable, "cannot open " + file.string() + "; check that it is a readable file");
+  std::vector<double> times_s;
+  std::string line;
+  for (int number = 1; std::getline(stream, line); ++number) {
+    const std::string text = Trimmed(line);
+    if (text.empty() || text.front() == '#') continue;
+    const std::string where = file.string() + ":" + std::to_string(number) + ": ";
+    double time_s = 0;
+    if (!ParseDouble(text, &time_s) || !std::isfinite(time_s))
+      return Status(ErrorCode::kUnreadable, where + "'" + text + "' is not a time; a line has one number, in seconds");
+    if (!times_s.empty() && !(time_s > times_s.back()))
+      return Status(ErrorCode::kUnreadable, where + "the time is not after the line before; times grow");
+    times_s.push_back(time_s);
+  }
+  return times_s;
+}
+
+// The images of one of the sequence's folders, by the names of its frames.
+Result<CompanionImages> OpenCompanions(const std::string& what, const fs::path& folder, const ImageStream& images) {
+  if (!IsFolder(folder))  // one image may mask every frame, but is not the depth of every frame
+    return Status(ErrorCode::kUnreadable, folder.string() + " is a file where a folder of images is expected");
+  return CompanionImages::Open(what, folder, Stems(images), CompanionImages::Counts::kMustAgree);
+}
+
+Status AddTimesAndTruth(const fs::path& folder, DataSet* data_set) {
+  const int count = data_set->images->count();
+  if (const fs::path file = folder / "times.txt"; Exists(file)) {
+    Result<std::vector<double>> times_s = ReadTimes(file);
+    if (!times_s.ok()) return times_s.status();
+    if (Status status = CheckLineCount(file, "times", times_s->size(), count); !status.ok()) return status;
+    data_set->timestamps_s = *std::move(times_s);
+  }
+  if (const fs::path file = folder / "groundtruth.txt"; Exists(file)) {
+    const Result<std::vector<TimedPose>> poses = ReadTumTrajectory(file.string());
+    if (!poses.ok()) return poses.status();
+    if (Status status = CheckLineCount(file, "poses", poses->size(), count); !status.ok()) return status;
+    for (const TimedPose& pose : *poses) data_set->world_from_cam.emplace_back(pose.world_from_cam);
+  }
+  return Status::Ok();
+}
+
+Status AddDepth(const fs::path& folder, DataSet* data_set) {
+  if (!Exists(folder)) return Status::Ok();
+  Result<CompanionImages> depth = OpenCompanions("depth", folder, *data_set->images);
+  if (!depth.ok()) return depth.status();
+  data_set->depth_mm = [files = *std::move(depth), stems = Stems(*data_set->images),
+                        scale = data_set->calibration.depth_scale](int idx) -> Result<std::optional<cv::Mat>> {
+    const fs::path file = files.Find(idx, stems[static_cast<std::size_t>(idx)]);
+    if (file.empty()) return std::optional<cv::Mat>();
+    Result<cv::Mat> depth_mm = ReadDepthImage(file, scale);
+    if (!depth_mm.ok()) return depth_mm.status();
+    return std::optional<cv::Mat>(*std::move(depth_mm));
+  };
+  return Status::Ok();
+}
+
+// Rectified right images, one a frame; without a baseline they say nothing of depth.
+Status AddRight(const fs::path& folder, DataSet* data_set) {
+  if (!Exists(folder) || !data_set->calibration.baseline_mm) return Status::Ok();
+  const Result<CompanionImages> right = OpenCompanions("right", folder, *data_set->images);
+  if (!right.ok()) return right.status();
+  std::vector<fs::path> files;
+  for (int idx = 0; idx < data_set->images->count(); ++idx) {
+    const Result<fs::path> file = right->Require(idx, data_set->images->Name(idx));
+    if (!file.ok()) return file.status();
+    files.push_back(*file);
+  }
+  data_set->right = StreamFiles(folder, std::move(files));
+  return Status::Ok();
+}
+
+}  // namespace
+
+bool IsNativeSequence(const fs::path& path) { return IsFolder(path / "images"); }
+
+Result<DataSet> OpenNativeSequence(const SequenceRequest& request) {
+  const fs::path& folder = request.image_path;
+  Result<std::unique_ptr<ImageStream>> images = StreamFolder(folder / "images");
+  if (!images.ok()) return images.status();
+  Result<SourceCalibration> calibration = ReadCalibration(request, **images);
+  if (!calibration.ok()) return calibration.status();
+  const bool own_masks = request.mask_path.empty() && Exists(folder / "masks");
+  DataSet data_set{.calibration = *std::move(calibration),
+                   .images = *std::move(images),
+                   .mask_path = own_masks ? folder / "masks" : request.mask_path};
+  for (const Status& status : {AddTimesAndTruth(folder, &data_set), AddDepth(folder / "depth", &data_set),
+                               AddRight(folder / "right", &data_set)})
+    if (!status.ok()) return status;
+  return data_set;
+}
+
+}  // namespace pliant
