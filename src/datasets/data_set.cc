@@ -8,6 +8,7 @@
 
 #include "datasets/image_file.h"
 #include "datasets/image_list.h"
+#include "datasets/pair_streams.h"
 #include "pliant/io/camera_file.h"
 
 namespace pliant {
@@ -36,6 +37,7 @@ class DataSetSequence final : public Sequence {
  private:
   ImageStream& images() const { return *data_set_.images; }
   Status CheckSize(const cv::Mat& image, const std::string& title) const;
+  Result<cv::Mat> Mask(int idx, const std::string& name) const;
 
   DataSet data_set_;
   FrameRange range_;
@@ -89,12 +91,20 @@ Result<std::optional<SequenceFrame>> DataSetSequence::Next() {
   frame.timestamp_s = data_set_.timestamps_s.empty() ? idx / data_set_.calibration.fps
                                                      : data_set_.timestamps_s[static_cast<std::size_t>(idx)];
   frame.image = **std::move(image);
-  if (masks_) {
-    Result<cv::Mat> mask = ReadFrameMask(*masks_, idx, frame.name, camera().width(), camera().height());
-    if (!mask.ok()) return mask.status();
-    frame.mask = *std::move(mask);
-  }
+  Result<cv::Mat> mask = Mask(idx, frame.name);
+  if (!mask.ok()) return mask.status();
+  frame.mask = *std::move(mask);
   return std::optional<SequenceFrame>(std::move(frame));
+}
+
+Result<cv::Mat> DataSetSequence::Mask(int idx, const std::string& name) const {
+  if (!masks_) return data_set_.inside;
+  const auto& warp = data_set_.mask_warp;
+  Result<cv::Mat> mask = ReadFrameMask(*masks_, idx, name, warp ? warp->raw.width : camera().width(),
+                                       warp ? warp->raw.height : camera().height());
+  if (mask.ok() && warp) mask = warp->ApplyNearest(*mask);
+  if (mask.ok() && !data_set_.inside.empty()) mask = cv::Mat(*mask & data_set_.inside);
+  return mask;
 }
 
 std::optional<double> DataSetSequence::BaselineMm() const {
@@ -150,19 +160,44 @@ Result<fs::path> FindCalibration(const SequenceRequest& request) {
 
 }  // namespace
 
-Result<SourceCalibration> ReadCalibration(const SequenceRequest& request, const ImageStream& images) {
+Result<DataSet> RectifiedPairs(const StereoCalibration& calibration, const fs::path& calibration_path, cv::Size image,
+                               PairLayout layout, EyeStreams eyes) {
+  auto pair = RectifyPair(calibration, EyeSize(layout, image));
+  if (!pair.ok()) return Status(pair.status().code(), calibration_path.string() + ": " + pair.status().message());
+  DataSet data_set{.calibration = {pair->camera, calibration_path}, .images = nullptr};
+  data_set.calibration.baseline_mm = pair->baseline_mm;
+  if (eyes.left->fps()) data_set.calibration.fps = *eyes.left->fps();
+  data_set.inside = pair->left.Inside();
+  data_set.images = Warped(std::move(eyes.left), std::move(pair->left));
+  data_set.right = Warped(std::move(eyes.right), std::move(pair->right));
+  return data_set;
+}
+
+Result<DataSet> Calibrated(const SequenceRequest& request, std::unique_ptr<ImageStream> images) {
   const Result<fs::path> path = FindCalibration(request);
   if (!path.ok()) return path.status();
+  const std::optional<cv::Size> size = images->SizeAt(0);
+  const auto stereo = ReadStereoCalibration(path->string());
+  if (!stereo.ok()) return stereo.status();
+  if (stereo->has_value() && size) {
+    const auto layout = LayoutOf(**stereo, *size);
+    if (!layout.ok()) return Status(layout.status().code(), path->string() + ": " + layout.status().message());
+    if (*layout != PairLayout::kApart) {
+      auto pairs = RectifiedPairs(**stereo, *path, *size, *layout, SplitEyes(std::move(images), *layout, *size));
+      if (pairs.ok()) pairs->mask_path = request.mask_path;
+      return pairs;
+    }
+  }
   CameraFileOptions options;
-  if (const auto size = images.SizeAt(0)) options.image_size = ImageSize{size->width, size->height};
+  if (size) options.image_size = ImageSize{size->width, size->height};
   const Result<CameraFile> file = ReadCameraFile(path->string(), options);
   if (!file.ok()) return file.status();
   SourceCalibration calibration{file->camera, *path};
   if (file->fps) calibration.fps = *file->fps;
-  if (images.fps()) calibration.fps = *images.fps();
+  if (images->fps()) calibration.fps = *images->fps();
   if (file->depth_scale) calibration.depth_scale = *file->depth_scale;
   calibration.baseline_mm = file->baseline_mm;
-  return calibration;
+  return DataSet{.calibration = std::move(calibration), .images = std::move(images), .mask_path = request.mask_path};
 }
 
 Result<std::unique_ptr<Sequence>> ReadDataSet(DataSet data_set, const SequenceRequest& request) {

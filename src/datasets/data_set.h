@@ -15,6 +15,8 @@
 #include <opencv2/core/mat.hpp>
 
 #include "datasets/image_stream.h"
+#include "datasets/pair_streams.h"
+#include "datasets/rectify.h"
 #include "pliant/base/status.h"
 #include "pliant/camera/camera.h"
 #include "pliant/datasets/open_sequence.h"
@@ -31,19 +33,26 @@ struct SourceCalibration {
   std::optional<double> baseline_mm = std::nullopt;  // of rectified pairs
 };
 
-// The request's calibration file, else camera.yaml in the folder or beside the file. A calibration that does not say
-// its images' size takes that of the stream.
-Result<SourceCalibration> ReadCalibration(const SequenceRequest& request, const ImageStream& images);
-
 struct DataSet {
   SourceCalibration calibration;  // of the images as they are given
   std::unique_ptr<ImageStream> images;
-  std::unique_ptr<ImageStream> right = nullptr;            // of rectified pairs; null: none
-  std::filesystem::path mask_path = {};                    // a folder, or one image for all; empty: no masks
-  std::vector<double> timestamps_s = {};                   // one an image; empty: number / fps
-  std::vector<std::optional<Rigid3>> world_from_cam = {};  // one an image, mm; empty: no truth
+  std::unique_ptr<ImageStream> right = nullptr;                           // of rectified pairs; null: none
+  cv::Mat inside = {};                                                    // 0 where no image has anything; empty: none
+  std::filesystem::path mask_path = {};                                   // a folder, or one image; empty: no masks
+  std::optional<ImageWarp> mask_warp = std::nullopt;                      // of masks of the raw images
+  std::vector<double> timestamps_s = {};                                  // one an image; empty: number / fps
+  std::vector<std::optional<Rigid3>> world_from_cam = {};                 // one an image, mm; empty: no truth
   std::function<Result<std::optional<cv::Mat>>(int)> depth_mm = nullptr;  // of an image; null: no truth
 };
+
+// These images with the calibration that belongs to them: the request's file, else camera.yaml in the folder or beside
+// the file. One that does not say its images' size takes that of the stream; one of two cameras rectifies the pairs
+// that the images hold. The request's masks are of the images as they are given.
+Result<DataSet> Calibrated(const SequenceRequest& request, std::unique_ptr<ImageStream> images);
+
+// Raw pairs, rectified; `image` is the size of the images that held them.
+Result<DataSet> RectifiedPairs(const StereoCalibration& calibration, const std::filesystem::path& calibration_path,
+                               cv::Size image, PairLayout layout, EyeStreams eyes);
 
 // Masks belong to images by file stem, or by order where no stem agrees; where the number of images is exact every one
 // must have its own. Errors as OpenSequence.

@@ -27,23 +27,16 @@ bool IsFile(const std::filesystem::path& path) {
   return std::filesystem::is_regular_file(path, error);
 }
 
-namespace {
-
-Result<DataSet> WithCalibration(const SequenceRequest& request, Result<std::unique_ptr<ImageStream>> images) {
-  if (!images.ok()) return images.status();  // "no images here" says more than "no calibration here"
-  Result<SourceCalibration> calibration = ReadCalibration(request, **images);
-  if (!calibration.ok()) return calibration.status();
-  return DataSet{.calibration = *std::move(calibration), .images = *std::move(images), .mask_path = request.mask_path};
-}
-
-}  // namespace
-
 Result<DataSet> OpenImageFolder(const SequenceRequest& request) {
-  return WithCalibration(request, StreamFolder(request.image_path));
+  auto images = StreamFolder(request.image_path);
+  if (!images.ok()) return images.status();  // "no images here" says more than "no calibration here"
+  return Calibrated(request, *std::move(images));
 }
 
 Result<DataSet> OpenVideo(const SequenceRequest& request) {
-  return WithCalibration(request, StreamVideo(request.image_path));
+  auto video = StreamVideo(request.image_path);
+  if (!video.ok()) return video.status();
+  return Calibrated(request, *std::move(video));
 }
 
 }  // namespace pliant

@@ -114,14 +114,11 @@ Result<DataSet> OpenNativeSequence(const SequenceRequest& request) {
   const fs::path& folder = request.image_path;
   Result<std::unique_ptr<ImageStream>> images = StreamFolder(folder / "images");
   if (!images.ok()) return images.status();
-  Result<SourceCalibration> calibration = ReadCalibration(request, **images);
-  if (!calibration.ok()) return calibration.status();
-  const bool own_masks = request.mask_path.empty() && Exists(folder / "masks");
-  DataSet data_set{.calibration = *std::move(calibration),
-                   .images = *std::move(images),
-                   .mask_path = own_masks ? folder / "masks" : request.mask_path};
-  for (const Status& status : {AddTimesAndTruth(folder, &data_set), AddDepth(folder / "depth", &data_set),
-                               AddRight(folder / "right", &data_set)})
+  Result<DataSet> data_set = Calibrated(request, *std::move(images));
+  if (!data_set.ok()) return data_set.status();
+  if (request.mask_path.empty() && Exists(folder / "masks")) data_set->mask_path = folder / "masks";
+  for (const Status& status : {AddTimesAndTruth(folder, &*data_set), AddDepth(folder / "depth", &*data_set),
+                               AddRight(folder / "right", &*data_set)})
     if (!status.ok()) return status;
   return data_set;
 }

@@ -10,8 +10,8 @@
 #include <opencv2/core.hpp>
 
 #include "io/opencv_calibration.h"
-#include "pliant/base/text.h"
 #include "io/yaml.h"
+#include "pliant/base/text.h"
 #include "pliant/colmap/convert.h"
 
 namespace pliant {
@@ -156,41 +156,79 @@ Result<CameraFile> FromOpenCv(const std::string& path, const CalibrationEntries&
   return file;
 }
 
-Result<CameraFile> ReadXml(const std::string& path, const std::string& text, const CameraFileOptions& options) {
-  try {
-    const cv::FileStorage storage(text, cv::FileStorage::READ | cv::FileStorage::MEMORY | cv::FileStorage::FORMAT_XML);
-    return FromOpenCv(path, EntriesOf(storage), options);
-  } catch (const cv::Exception& error) {
-    return Status(ErrorCode::kUnreadable, Quoted(path) + " is not an OpenCV calibration: " + error.err);
-  }
-}
+// A file's entries, and what they lie in.
+struct CalibrationText {
+  std::string text;
+  bool is_xml = false;
+};
 
-Result<CameraFile> ReadYaml(const std::string& path, std::string text, const CameraFileOptions& options) {
-  // OpenCV writes a first line that YAML does not allow; a comment keeps the line numbers.
-  if (text.starts_with("%YAML")) text[0] = '#';
-  const auto root = ParseYamlMap(path, text);
-  if (!root.ok()) return root.status();
-  if (root->IsMap() && ((*root)["params"] || ((*root)["model"] && !HasCameraMatrix(EntriesOf(*root)))))
-    return FromPliant(path, *root);
-  return FromOpenCv(path, EntriesOf(*root), options);
-}
-
-}  // namespace
-
-Result<CameraFile> ReadCameraFile(const std::string& path, const CameraFileOptions& options) {
-  const std::string extension = std::filesystem::path(path).extension();
-  if (extension == ".bin" || extension == ".txt") {
-    auto camera = colmap::ReadCamera(path, options.camera_id);
-    if (!camera.ok()) return camera.status();
-    return CameraFile{std::move(camera).value()};
-  }
+Result<CalibrationText> ReadText(const std::string& path) {
   auto text = ReadFile(path);
   if (!text.ok()) return text.status();
   const std::size_t first = text->find_first_not_of(" \t\r\n");
   if (first == std::string::npos) return Status(ErrorCode::kUnreadable, Quoted(path) + " is empty; give a calibration");
   if (text->find('\0') != std::string::npos)
     return Status(ErrorCode::kUnreadable, Quoted(path) + " is a binary file; COLMAP's cameras end in .bin");
-  return (*text)[first] == '<' ? ReadXml(path, *text, options) : ReadYaml(path, std::move(*text), options);
+  const bool is_xml = (*text)[first] == '<';
+  // OpenCV writes a first line that YAML does not allow; a comment keeps the line numbers.
+  if (text->starts_with("%YAML")) (*text)[0] = '#';
+  return CalibrationText{*std::move(text), is_xml};
+}
+
+// What `read` makes of an OpenCV file's entries.
+template <class Read>
+auto FromXml(const std::string& path, const std::string& text, const Read& read)
+    -> decltype(read(CalibrationEntries())) {
+  try {
+    const cv::FileStorage storage(text, cv::FileStorage::READ | cv::FileStorage::MEMORY | cv::FileStorage::FORMAT_XML);
+    return read(EntriesOf(storage));
+  } catch (const cv::Exception& error) {
+    return Status(ErrorCode::kUnreadable, Quoted(path) + " is not an OpenCV calibration: " + error.err);
+  }
+}
+
+bool IsPliants(const YAML::Node& root) {
+  return root.IsMap() && (root["params"] || (root["model"] && !HasCameraMatrix(EntriesOf(root))));
+}
+
+bool IsColmaps(const std::string& path) {
+  const std::string extension = std::filesystem::path(path).extension();
+  return extension == ".bin" || extension == ".txt";
+}
+
+}  // namespace
+
+Result<CameraFile> ReadCameraFile(const std::string& path, const CameraFileOptions& options) {
+  if (IsColmaps(path)) {
+    auto camera = colmap::ReadCamera(path, options.camera_id);
+    if (!camera.ok()) return camera.status();
+    return CameraFile{std::move(camera).value()};
+  }
+  const auto file = ReadText(path);
+  if (!file.ok()) return file.status();
+  const auto read = [&](const CalibrationEntries& entries) { return FromOpenCv(path, entries, options); };
+  if (file->is_xml) return FromXml(path, file->text, read);
+  const auto root = ParseYamlMap(path, file->text);
+  if (!root.ok()) return root.status();
+  return IsPliants(*root) ? FromPliant(path, *root) : read(EntriesOf(*root));
+}
+
+Result<std::optional<StereoCalibration>> ReadStereoCalibration(const std::string& path) {
+  if (IsColmaps(path)) return std::optional<StereoCalibration>();
+  const auto file = ReadText(path);
+  if (!file.ok()) return file.status();
+  const auto read = [&](const CalibrationEntries& entries) {
+    auto pair = StereoFromOpenCv(entries);
+    if (!pair.ok())
+      return Result<std::optional<StereoCalibration>>(
+          Status(pair.status().code(), Quoted(path) + ": " + pair.status().message()));
+    return pair;
+  };
+  if (file->is_xml) return FromXml(path, file->text, read);
+  const auto root = ParseYamlMap(path, file->text);
+  if (!root.ok()) return root.status();
+  if (IsPliants(*root)) return std::optional<StereoCalibration>();
+  return read(EntriesOf(*root));
 }
 
 Result<Camera> ReadCamera(const std::string& path, const CameraFileOptions& options) {

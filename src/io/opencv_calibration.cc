@@ -25,6 +25,8 @@ constexpr std::array<std::string_view, 10> kDistortionNames = {"D1",          "d
                                                                "distCoeffs1", "dist_coeffs",
                                                                "D",           "dist_coeff",
                                                                "distortion",  "distortionCoefficients"};
+constexpr std::array<std::string_view, 4> kSecondMatrixNames = {"M2", "K2", "cameraMatrix2", "camera_matrix2"};
+constexpr std::array<std::string_view, 3> kSecondDistortionNames = {"D2", "distCoeffs2", "dist_coeffs2"};
 // OpenCV's order of distortion coefficients.
 constexpr std::array<std::string_view, 14> kCoefficients = {"k1", "k2", "p1", "p2", "k3", "k4",    "k5",
                                                             "k6", "s1", "s2", "s3", "s4", "tau_x", "tau_y"};
@@ -180,19 +182,80 @@ Result<CameraFile> Perspective(const std::vector<double>& k, std::vector<double>
 
 bool HasCameraMatrix(const CalibrationEntries& entries) { return !FirstOf(entries, kMatrixNames).empty(); }
 
-Result<CameraFile> CameraFromOpenCv(const CalibrationEntries& entries, const CameraFileOptions& options) {
-  const std::vector<double> k = FirstOf(entries, kMatrixNames);
-  const std::vector<double> d = FirstOf(entries, kDistortionNames);
+namespace {
+
+Status CheckCameraMatrix(const std::vector<double>& k) {
   if (k.size() != 9) return Invalid("the camera matrix has " + std::to_string(k.size()) + " numbers, not 3 x 3");
   for (const double value : k)
     if (!std::isfinite(value)) return Invalid("the camera matrix has an entry that is not a finite number");
-  for (std::size_t i = 0; i < d.size(); ++i)
-    if (!std::isfinite(d[i]))
-      return Invalid("the distortion coefficient number " + std::to_string(i + 1) + " is not a finite number");
   if (k[1] != 0.0)
     return Invalid("the camera matrix has a skew of " + FormatDouble(k[1]) + "; no camera model has one");
   if (k[3] != 0.0 || k[6] != 0.0 || k[7] != 0.0 || k[8] != 1.0)
     return Invalid("the camera matrix is not of the form [fx 0 cx; 0 fy cy; 0 0 1]");
+  return Status::Ok();
+}
+
+Status CheckDistortion(const std::vector<double>& d) {
+  for (std::size_t i = 0; i < d.size(); ++i)
+    if (!std::isfinite(d[i]))
+      return Invalid("the distortion coefficient number " + std::to_string(i + 1) + " is not a finite number");
+  return Status::Ok();
+}
+
+Result<StereoCalibration::Eye> EyeOf(const std::vector<double>& k, const std::vector<double>& d) {
+  for (const Status& status : {CheckCameraMatrix(k), CheckDistortion(d)})
+    if (!status.ok()) return status;
+  if (!(k[0] > 0.0 && k[4] > 0.0)) return Invalid("a focal length of the camera matrix is not positive");
+  return StereoCalibration::Eye{k[0], k[4], k[2], k[5], d};
+}
+
+}  // namespace
+
+Result<std::optional<StereoCalibration>> StereoFromOpenCv(const CalibrationEntries& entries) {
+  const std::vector<double> second = FirstOf(entries, kSecondMatrixNames);
+  if (second.empty() || !HasCameraMatrix(entries)) return std::optional<StereoCalibration>();
+  const auto lens = LensOf(entries);
+  if (!lens.ok()) return lens.status();
+  if (*lens == Lens::kFisheye)
+    return Invalid(
+        "it is of a pair of fisheye cameras, which cannot be rectified; give the calibration of one of them");
+  const auto left = EyeOf(FirstOf(entries, kMatrixNames), FirstOf(entries, kDistortionNames));
+  if (!left.ok()) return left.status();
+  const auto right = EyeOf(second, FirstOf(entries, kSecondDistortionNames));
+  if (!right.ok()) return right.status();
+  StereoCalibration pair{*left, *right, {}, {}, false};
+  const std::vector<double> r = entries.numbers("R");
+  const std::vector<double> t = entries.numbers("T");
+  if (t.size() != 3 || (r.size() != 9 && r.size() != 3))
+    return Invalid("a stereo calibration has R (3 x 3, or a rotation vector) and T (3 numbers); here they have " +
+                   std::to_string(r.size()) + " and " + std::to_string(t.size()));
+  for (const std::vector<double>& values : {r, t})
+    for (const double value : values)
+      if (!std::isfinite(value))
+        return Invalid("R or T of the stereo calibration has an entry that is not a finite number");
+  Eigen::Matrix3d turn;
+  if (r.size() == 3)
+    turn = RotationExp({r[0], r[1], r[2]}).toRotationMatrix();
+  else
+    turn << r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7], r[8];
+  constexpr double kRounding = 1e-3;
+  if (!(turn * turn.transpose()).isIdentity(kRounding) || !(turn.determinant() > 0.0))
+    return Invalid("R of the stereo calibration is not a rotation");
+  Eigen::Vector3d translation(t[0], t[1], t[2]);
+  if (translation.norm() < kShortestBaseline_mm) {
+    translation *= 1e3;
+    pair.was_in_metres = true;
+  }
+  pair.right_from_left = Rigid3(turn, translation);
+  if (const auto size = Size(entries, {}); size.ok()) pair.image_size = *size;
+  return std::optional<StereoCalibration>(pair);
+}
+
+Result<CameraFile> CameraFromOpenCv(const CalibrationEntries& entries, const CameraFileOptions& options) {
+  const std::vector<double> k = FirstOf(entries, kMatrixNames);
+  const std::vector<double> d = FirstOf(entries, kDistortionNames);
+  for (const Status& status : {CheckCameraMatrix(k), CheckDistortion(d)})
+    if (!status.ok()) return status;
   const auto lens = LensOf(entries);
   if (!lens.ok()) return lens.status();
   const auto size = Size(entries, options);

@@ -27,4 +27,7 @@ bool HasCameraMatrix(const CalibrationEntries& entries);
 // Messages do not name the file.
 Result<CameraFile> CameraFromOpenCv(const CalibrationEntries& entries, const CameraFileOptions& options);
 
+// Nothing where the entries have no second camera matrix.
+Result<std::optional<StereoCalibration>> StereoFromOpenCv(const CalibrationEntries& entries);
+
 }  // namespace pliant

@@ -14,9 +14,11 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "pliant/base/status.h"
 #include "pliant/camera/camera.h"
+#include "pliant/geometry/rigid3.h"
 
 namespace pliant {
 
@@ -43,6 +45,25 @@ struct CameraFile {
 };
 
 inline constexpr double kLargestRefitPx = 0.1;
+
+// A stereo calibration of raw images, as OpenCV writes one: M1, D1, M2, D2, R, T. A point x of the left camera is at
+// R x + T in the right one. Where T is shorter than kShortestBaseline_mm it is taken to be in metres.
+struct StereoCalibration {
+  struct Eye {
+    double fx = 0, fy = 0, cx = 0, cy = 0;  // px
+    std::vector<double> distortion;         // OpenCV's, any number of coefficients
+  };
+  Eye left;
+  Eye right;
+  Rigid3 right_from_left;  // mm
+  std::optional<ImageSize> image_size;
+  bool was_in_metres = false;
+};
+
+inline constexpr double kShortestBaseline_mm = 0.5;
+
+// Nothing where the file is the calibration of one camera. Errors as ReadCameraFile.
+Result<std::optional<StereoCalibration>> ReadStereoCalibration(const std::string& path);
 
 // Fails with kNotFound, kUnreadable (not a calibration, or damaged) or kInvalidArgument (a calibration that cannot be
 // meant: a wrong number of parameters, not-a-number, an unknown model, no image size, several cameras).
