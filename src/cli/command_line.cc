@@ -70,6 +70,20 @@ std::string WrapParagraphs(std::string_view text, std::size_t indent) {
 
 void SayError(std::string_view command, std::string_view sentence) { Say(NameOf("pliant", command), sentence); }
 
+int RunVerb(std::string_view command, std::span<const Verb> verbs, std::span<const std::string> args) {
+  const std::string name = args.empty() ? "" : args.front();
+  for (const Verb& verb : verbs)
+    if (name == verb.name) return verb.run(args.subspan(1));
+  std::string usage;
+  for (const Verb& verb : verbs)
+    usage += (usage.empty() ? "usage: " : "       ") + ("pliant " + std::string(command)) + " " +
+             std::string(verb.name) + " " + std::string(verb.arguments) + "\n";
+  usage += "\nWith --help each of them prints its manual.\n";
+  const bool asked = name == "--help" || name == "help";
+  (asked ? std::cout : std::cerr) << usage;
+  return asked ? kExitOk : kExitUsage;
+}
+
 CommandLine::CommandLine(Manual manual) : manual_(std::move(manual)) {}
 
 void CommandLine::AddArgument(Argument argument) { arguments_.push_back(std::move(argument)); }

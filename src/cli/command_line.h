@@ -44,6 +44,16 @@ enum class Place { kNamed, kFirst };
 // Says "pliant COMMAND: sentence" on standard error.
 void SayError(std::string_view command, std::string_view sentence);
 
+// A command of commands: pliant model check.
+struct Verb {
+  std::string_view name;
+  std::string_view arguments;  // for the usage: "DIR"
+  int (*run)(std::span<const std::string> args);
+};
+
+// The verb that the first of `args` names, with the others; else the usage, as an error unless --help asked for it.
+int RunVerb(std::string_view command, std::span<const Verb> verbs, std::span<const std::string> args);
+
 class CommandLine {
  public:
   explicit CommandLine(Manual manual);

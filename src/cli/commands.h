@@ -17,6 +17,7 @@ int CompareCommand(std::span<const std::string> args);
 int TruthCommand(std::span<const std::string> args);
 int ImportCommand(std::span<const std::string> args);
 int ExportCommand(std::span<const std::string> args);
+int DatasetCommand(std::span<const std::string> args);
 int ModelCommand(std::span<const std::string> args);
 int DemoCommand(std::span<const std::string> args);
 

@@ -92,18 +92,9 @@ int ConvertCommand(std::span<const std::string> args) {
 }  // namespace
 
 int ModelCommand(std::span<const std::string> args) {
-  const std::string verb = args.empty() ? "" : args.front();
-  if (verb == "check") return CheckCommand(args.subspan(1));
-  if (verb == "convert") return ConvertCommand(args.subspan(1));
-  const std::string usage =
-      "usage: pliant model check DIR\n       pliant model convert --input_path DIR --output_path DIR\n\n"
-      "pliant model check --help and pliant model convert --help are the manuals.\n";
-  if (verb == "--help" || verb == "help") {
-    std::cout << usage;
-    return kExitOk;
-  }
-  std::cerr << usage;
-  return kExitUsage;
+  constexpr Verb kVerbs[] = {{"check", "DIR", CheckCommand},
+                             {"convert", "--input_path DIR --output_path DIR", ConvertCommand}};
+  return RunVerb("model", kVerbs, args);
 }
 
 }  // namespace pliant::cli

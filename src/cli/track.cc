@@ -10,6 +10,7 @@
 #include "cli/command_line.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
+#include "cli/sequence_arguments.h"
 #include "cli/track_progress.h"
 
 namespace pliant::cli {
@@ -36,29 +37,15 @@ const Manual kManual = {
 };
 
 struct TrackArguments {
-  std::string image_path;
-  std::string camera_path;
-  std::string mask_path;
+  SequenceArguments input;
   std::string output_path;
-  int start = 0;
-  int end = -1;
-  int stride = 1;
   Preset preset = Preset::kDefault;
   bool quiet = false;
 };
 
 void AddArguments(TrackArguments* arguments, CommandLine* line) {
-  constexpr int kMost = 2147483647;
-  line->Add("image_path", &arguments->image_path, "PATH", "folder of images, native sequence or video",
-            Need::kRequired);
+  arguments->input.AddTo(line, "image_path");
   line->Add("output_path", &arguments->output_path, "DIR", "run folder; made where it is not there", Need::kRequired);
-  line->Add("camera", &arguments->camera_path, "FILE",
-            "calibration; not needed where camera.yaml lies in the folder or beside the video", Need::kOptional);
-  line->Add("mask_path", &arguments->mask_path, "PATH",
-            "folder of masks, or one image for all frames; 0 = ignore this pixel", Need::kOptional);
-  line->Add("start", &arguments->start, "first frame, by its number in the source", 0, kMost);
-  line->Add("end", &arguments->end, "one past the last frame; -1: to the end", -1, kMost);
-  line->Add("stride", &arguments->stride, "take every Nth frame", 1, kMost);
   line->AddChoice("preset", &arguments->preset,
                   "the defaults of the options: ours, or every choice and constant as published in the paper");
   line->AddFlag("quiet", &arguments->quiet, "say nothing but errors");
@@ -88,25 +75,16 @@ int TrackCommand(std::span<const std::string> args) {
   AddArguments(&arguments, &line);
   if (const auto exit = line.Parse(args)) return *exit;
 
-  if (arguments.end != -1 && arguments.end <= arguments.start)
-    return line.UsageError("--end is " + std::to_string(arguments.end) + " and --start is " +
-                           std::to_string(arguments.start) + "; --end is one past the last frame, or -1 for all");
+  if (const auto exit = arguments.input.Check(line)) return *exit;
 
   TrackOptions options = MakeTrackOptions(arguments.preset);
   OptionTable table;
   options.List(table);
   if (const auto exit = line.Resolve(table)) return *exit;
-  if (arguments.end != -1 && arguments.end <= arguments.start)
-    return line.UsageError("--end is " + std::to_string(arguments.end) + " and --start is " +
-                           std::to_string(arguments.start) + "; --end is one past the last frame, or -1 for all");
+  if (const auto exit = arguments.input.Check(line)) return *exit;
 
   RunRequest request;
-  request.input.image_path = arguments.image_path;
-  request.input.camera_path = arguments.camera_path;
-  request.input.mask_path = arguments.mask_path;
-  request.input.start = arguments.start;
-  request.input.end = arguments.end;
-  request.input.stride = arguments.stride;
+  request.input = arguments.input.Request();
   request.output_path = arguments.output_path;
   request.command_line = {"pliant", "track"};
   request.command_line.insert(request.command_line.end(), args.begin(), args.end());

@@ -12,6 +12,7 @@
 #include "datasets/image_list.h"
 #include "pliant/base/options.h"
 #include "pliant/base/text.h"
+#include "pliant/datasets/native_layout.h"
 #include "pliant/io/trajectory.h"
 
 namespace pliant {
@@ -61,13 +62,13 @@ Result<CompanionImages> OpenCompanions(const std::string& what, const fs::path& 
 
 Status AddTimesAndTruth(const fs::path& folder, DataSet* data_set) {
   const int count = data_set->images->count();
-  if (const fs::path file = folder / "times.txt"; Exists(file)) {
+  if (const fs::path file = folder / native::kTimesFile; Exists(file)) {
     Result<std::vector<double>> times_s = ReadTimes(file);
     if (!times_s.ok()) return times_s.status();
     if (Status status = CheckLineCount(file, "times", times_s->size(), count); !status.ok()) return status;
     data_set->timestamps_s = *std::move(times_s);
   }
-  if (const fs::path file = folder / "groundtruth.txt"; Exists(file)) {
+  if (const fs::path file = folder / native::kPosesFile; Exists(file)) {
     const Result<std::vector<TimedPose>> poses = ReadTumTrajectory(file.string());
     if (!poses.ok()) return poses.status();
     if (Status status = CheckLineCount(file, "poses", poses->size(), count); !status.ok()) return status;
@@ -108,17 +109,19 @@ Status AddRight(const fs::path& folder, DataSet* data_set) {
 
 }  // namespace
 
-bool IsNativeSequence(const fs::path& path) { return IsFolder(path / "images"); }
+bool IsNativeSequence(const fs::path& path) { return IsFolder(path / native::kImageFolder); }
 
 Result<DataSet> OpenNativeSequence(const SequenceRequest& request) {
   const fs::path& folder = request.image_path;
-  Result<std::unique_ptr<ImageStream>> images = StreamFolder(folder / "images");
+  Result<std::unique_ptr<ImageStream>> images = StreamFolder(folder / native::kImageFolder);
   if (!images.ok()) return images.status();
   Result<DataSet> data_set = Calibrated(request, *std::move(images));
   if (!data_set.ok()) return data_set.status();
-  if (request.mask_path.empty() && Exists(folder / "masks")) data_set->mask_path = folder / "masks";
-  for (const Status& status : {AddTimesAndTruth(folder, &*data_set), AddDepth(folder / "depth", &*data_set),
-                               AddRight(folder / "right", &*data_set)})
+  if (request.mask_path.empty() && Exists(folder / native::kMaskFolder))
+    data_set->mask_path = folder / native::kMaskFolder;
+  for (const Status& status :
+       {AddTimesAndTruth(folder, &*data_set), AddDepth(folder / native::kDepthFolder, &*data_set),
+        AddRight(folder / native::kRightFolder, &*data_set)})
     if (!status.ok()) return status;
   return data_set;
 }

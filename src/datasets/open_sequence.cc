@@ -10,22 +10,35 @@
 
 namespace pliant {
 
-Result<std::unique_ptr<Sequence>> OpenSequence(const SequenceRequest& request) {
-  const std::filesystem::path& path = request.image_path;
+namespace {
+
+Result<const DataSetFormat*> FormatAt(const std::filesystem::path& path) {
   std::error_code error;
   if (path.empty() || !std::filesystem::exists(path, error))
     return Status(ErrorCode::kNotFound, "there is nothing at the image path '" + path.string() +
                                             "'; give a folder of images, a video or a sequence");
-  if (const Result<FrameRange> range = FrameRange::From(request); !range.ok()) return range.status();
-  for (const DataSetFormat& format : DataSetFormats()) {
-    if (!format.is_at(path)) continue;
-    Result<DataSet> data_set = format.open(request);
-    if (!data_set.ok()) return data_set.status();
-    return ReadDataSet(*std::move(data_set), request);
-  }
+  for (const DataSetFormat& format : DataSetFormats())
+    if (format.is_at(path)) return &format;
   return Status(ErrorCode::kUnreadable, path.string() +
                                             " is neither a folder nor a file; give a folder of images, "
                                             "a video or a sequence");
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Sequence>> OpenSequence(const SequenceRequest& request) {
+  const auto format = FormatAt(request.image_path);
+  if (!format.ok()) return format.status();
+  if (const Result<FrameRange> range = FrameRange::From(request); !range.ok()) return range.status();
+  Result<DataSet> data_set = (*format)->open(request);
+  if (!data_set.ok()) return data_set.status();
+  return ReadDataSet(*std::move(data_set), request);
+}
+
+Result<DataSetKind> RecognizeDataSet(const std::filesystem::path& path) {
+  const auto format = FormatAt(path);
+  if (!format.ok()) return format.status();
+  return DataSetKind{(*format)->name, (*format)->what};
 }
 
 }  // namespace pliant

@@ -11,6 +11,7 @@
 
 #include <opencv2/imgcodecs.hpp>
 
+#include "pliant/datasets/native_layout.h"
 #include "pliant/io/camera_file.h"
 #include "pliant/io/options_file.h"
 #include "pliant/io/trajectory.h"
@@ -29,7 +30,7 @@ Status Foreign(const fs::path& folder, const std::string& what) {
 }
 
 Status CheckCamera(const fs::path& folder, const Simulator& simulator) {
-  const Result<CameraFile> file = ReadCameraFile((folder / simulation::kCameraFile).string());
+  const Result<CameraFile> file = ReadCameraFile((folder / native::kCameraFile).string());
   if (!file.ok()) return file.status();
   const Camera& there = file->camera;
   const Camera& here = simulator.camera();
@@ -44,7 +45,7 @@ Status CheckPoses(const fs::path& folder, const Simulator& simulator) {
   // Half a step of the decimals in the file, each way, of three and four numbers.
   constexpr double kTranslationMm = 2e-6;
   constexpr double kQuaternion = 2e-9;
-  const auto poses = ReadTumTrajectory((folder / simulation::kPosesFile).string());
+  const auto poses = ReadTumTrajectory((folder / native::kPosesFile).string());
   if (!poses.ok()) return poses.status();
   if (std::ssize(*poses) > simulator.frame_count())
     return Foreign(folder, "groundtruth.txt has " + std::to_string(poses->size()) +
@@ -64,7 +65,7 @@ Status CheckPoses(const fs::path& folder, const Simulator& simulator) {
 Status CheckDepth(const fs::path& folder, Simulator& simulator) {
   constexpr int kAcross = 16;
   constexpr int kDown = 12;
-  const fs::path path = folder / simulation::kDepthFolder / simulation::FrameFileName(0);
+  const fs::path path = folder / native::kDepthFolder / native::FrameFileName(0);
   std::error_code error;
   if (!fs::exists(path, error)) return Foreign(folder, path.string() + " is not there");
   const cv::Mat steps = cv::imread(path.string(), cv::IMREAD_UNCHANGED);

@@ -97,15 +97,4 @@ cv::Mat Develop(const SimulationOptions::Sensor& options, const cv::Mat& radianc
   return image;
 }
 
-cv::Mat QuantiseDepth(const cv::Mat& depth_mm, double depth_scale_mm) {
-  cv::Mat steps(depth_mm.size(), CV_16UC1);
-  for (int y = 0; y < depth_mm.rows; ++y) {
-    for (int x = 0; x < depth_mm.cols; ++x) {
-      const double value = std::round(depth_mm.at<float>(y, x) / depth_scale_mm);
-      steps.at<std::uint16_t>(y, x) = value >= 1 && value <= 65535 ? static_cast<std::uint16_t>(value) : 0;
-    }
-  }
-  return steps;
-}
-
 }  // namespace pliant::simulation

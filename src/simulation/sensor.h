@@ -30,7 +30,4 @@ std::uint64_t NoiseSeed(int seed, int frame_idx, Eye eye);
 cv::Mat Develop(const SimulationOptions::Sensor& options, const cv::Mat& radiance, double gain,
                 std::uint64_t noise_seed);
 
-// CV_32FC1 mm -> CV_16UC1 steps of depth_scale_mm; 0 where there is none or it is out of range.
-cv::Mat QuantiseDepth(const cv::Mat& depth_mm, double depth_scale_mm);
-
 }  // namespace pliant::simulation

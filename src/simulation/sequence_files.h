@@ -1,26 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// What the files of a simulated sequence are called (docs/formats.md).
+// What a simulated sequence has that others have not (docs/formats.md).
 #pragma once
-
-#include <cstdio>
-#include <string>
 
 namespace pliant::simulation {
 
 inline constexpr const char* kOptionsFile = "simulation.yaml";
-inline constexpr const char* kCameraFile = "camera.yaml";
-inline constexpr const char* kPosesFile = "groundtruth.txt";
-inline constexpr const char* kTimesFile = "times.txt";
-inline constexpr const char* kImageFolder = "images";
-inline constexpr const char* kRightFolder = "right";
-inline constexpr const char* kDepthFolder = "depth";
-
-inline std::string FrameFileName(int frame_idx) {
-  char name[32];
-  std::snprintf(name, sizeof(name), "%06d.png", frame_idx);
-  return name;
-}
 
 }  // namespace pliant::simulation

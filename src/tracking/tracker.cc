@@ -27,6 +27,8 @@ std::unique_ptr<Initializer> MakeRemaker(const TrackerOptions& options) {
   WindowInitOptions window = options.init.window;
   window.first_frame = options.growth.window;
   window.every = 1;
+  // There is a map already, so a less certain one is not worth having.
+  window.last_frame = 2 * options.growth.window;
   return MakeWindowInitializer(window, options.init.monocular.nominal_depth_mm);
 }
 

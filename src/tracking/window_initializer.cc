@@ -115,7 +115,7 @@ class WindowInitializer final : public Initializer {
     const double waited = std::clamp(static_cast<double>(since - options_.deforming_frame) /
                                          std::max(1, options_.last_frame - options_.deforming_frame),
                                      0.0, 1.0);
-    const double relaxed = waited * waited;
+    const double relaxed = waited * waited * waited;
     const double certain_sigma = std::lerp(options_.certain_depth_sigma, options_.last_depth_sigma, relaxed);
     return {.certain_sigma = certain_sigma,
             .max_sigma = std::max(certain_sigma, options_.max_depth_sigma),

@@ -14,6 +14,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <string_view>
 
 #include "pliant/base/status.h"
 #include "pliant/datasets/sequence.h"
@@ -37,5 +38,13 @@ struct SequenceRequest {
 // kInvalidArgument (start, end, stride).
 // Next() of the result fails for the frame that cannot be read and goes on after it; a video ends there.
 Result<std::unique_ptr<Sequence>> OpenSequence(const SequenceRequest& request);
+
+struct DataSetKind {
+  std::string_view name;  // as in docs/datasets.md
+  std::string_view what;  // for people
+};
+
+// What lies at a path, without reading it. Fails with kNotFound or kUnreadable.
+Result<DataSetKind> RecognizeDataSet(const std::filesystem::path& path);
 
 }  // namespace pliant

@@ -20,7 +20,7 @@ struct WindowInitOptions {
   int first_frame = 10;               // frames after the reference at which a map is first sought
   int every = 5;                      // frames from one attempt to the next
   int deforming_frame = 20;           // before it a map is sought of a rigid scene alone
-  int last_frame = 60;                // after so many a reference is given up
+  int last_frame = 50;                // after so many a reference is given up
   int views = 8;                      // frames in the problem, spread evenly
   int min_views = 5;                  // a point must be seen in as many of them
   double min_frame_share = 0.375;     // of all frames, in which a point must be seen to join the map

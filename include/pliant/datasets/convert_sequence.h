@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Any sequence written in Pliant's own layout.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+
+#include "pliant/base/status.h"
+#include "pliant/datasets/sequence.h"
+
+namespace pliant {
+
+struct ConvertSummary {
+  int frames = 0;
+  int right = 0;
+  int masks = 0;
+  int depths = 0;
+  int poses = 0;  // all frames' or none: where one has no pose, none is written
+};
+
+// Called after each frame is on disk; false asks to stop.
+using ConvertProgress = std::function<bool(int frames_done)>;
+
+// Reads `sequence` to its end. The folder must be new or empty (kInvalidArgument). Fails as Sequence::Next and
+// NativeWriter, and with kInterrupted; what was written until then is readable.
+Result<ConvertSummary> ConvertSequence(Sequence& sequence, const std::filesystem::path& folder,
+                                       const ConvertProgress& progress = {});
+
+}  // namespace pliant

@@ -1,0 +1,176 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include <algorithm>
+#include <cstdio>
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include <opencv2/core.hpp>
+
+#include "cli/command_line.h"
+#include "cli/commands.h"
+#include "cli/interrupt.h"
+#include "cli/progress.h"
+#include "cli/sequence_arguments.h"
+#include "pliant/base/statistics.h"
+#include "pliant/datasets/check_sequence.h"
+#include "pliant/datasets/convert_sequence.h"
+#include "pliant/datasets/open_sequence.h"
+
+namespace pliant::cli {
+namespace {
+
+const Manual kInfoManual = {
+    "dataset info",
+    "say what a data set holds, and what is wrong with it",
+    "Recognises the kind of what lies at PATH and prints its frames, camera, pairs, depth and poses, in millimetres. "
+    "Then it asks the images themselves. They are warped into each other by depth and poses, read in every way in "
+    "which "
+    "poses are usually meant, so that a flipped handedness, a wrong unit and a transposed matrix show and are told "
+    "apart; points are matched between the images of pairs, so that pairs that are swapped or not rectified show; and "
+    "depth is compared with what the baseline says.\n\n"
+    "Ends with 1 if something is wrong, or the data set cannot be read.",
+    {"pliant dataset info seq", "pliant dataset info clip.mp4 --camera stereo.yaml"},
+};
+
+const Manual kConvertManual = {
+    "dataset convert",
+    "write a data set as a native sequence",
+    "Reads what lies at --input_path and writes images, right images, masks, depth, poses and times in Pliant's own "
+    "layout: millimetres, right-handed world from camera, rectified pairs, 16-bit depth. The folder must be new or "
+    "empty.",
+    {"pliant dataset convert --input_path clip.mp4 --camera stereo.yaml --output_path seq --start 100 --end 400"},
+};
+
+template <class... Values>
+std::string Text(const char* format, Values... values) {
+  char text[256];
+  std::snprintf(text, sizeof text, format, values...);
+  return text;
+}
+
+void PrintLine(const std::string& name, const std::string& text) {
+  std::cout << name << std::string(std::max<std::size_t>(1, 10 - name.size()), ' ') << text << "\n";
+}
+
+std::string DepthText(const Sequence& sequence, int frame_idx) {
+  const auto depth_mm = sequence.Depth(frame_idx);
+  if (!depth_mm.ok()) return depth_mm.status().message();
+  if (!depth_mm->has_value()) return "none";
+  std::vector<double> depths;
+  for (int v = 0; v < (*depth_mm)->rows; ++v)
+    for (int u = 0; u < (*depth_mm)->cols; ++u)
+      if (const float depth = (*depth_mm)->at<float>(v, u); depth > 0) depths.push_back(depth);
+  if (depths.empty()) return "none in the first frame";
+  const auto [low, high] = std::minmax_element(depths.begin(), depths.end());
+  return Text("%.1f to %.1f mm in the first frame, ", *low, *high) + Text("%.1f mm in the median", Median(depths));
+}
+
+std::string PosesText(const Sequence& sequence, const SequenceRequest& request) {
+  int poses = 0;
+  double path_mm = 0;
+  std::optional<Rigid3> last;
+  for (int k = 0; k < sequence.size(); ++k) {
+    const auto pose = sequence.WorldFromCamera(request.start + k * request.stride);
+    if (!pose) continue;
+    if (last) path_mm += (pose->translation - last->translation).norm();
+    last = pose;
+    ++poses;
+  }
+  if (poses == 0) return "none";
+  return Text("%d of %d, a path of %.1f mm", poses, sequence.size(), path_mm);
+}
+
+void PrintDescription(const Sequence& sequence, const SequenceRequest& request) {
+  const Camera& camera = sequence.camera();
+  const auto kind = RecognizeDataSet(request.image_path);
+  PrintLine("kind", std::string(kind->name) + ": " + std::string(kind->what));
+  std::string frames = std::to_string(sequence.size());
+  const auto first = sequence.TimestampS(request.start);
+  const auto second = sequence.TimestampS(request.start + request.stride);
+  if (first && second && *second > *first) frames += Text(", %.3g a second", 1.0 / (*second - *first));
+  PrintLine("frames", frames);
+  PrintLine("camera", std::string(camera.model_name()) + Text(" %dx%d, focal length %.1f px", camera.width(),
+                                                              camera.height(), camera.MeanFocalLengthPx()));
+  PrintLine("pairs", sequence.BaselineMm() ? Text("rectified, baseline %.4g mm", *sequence.BaselineMm()) : "none");
+  PrintLine("depth", DepthText(sequence, request.start));
+  PrintLine("poses", PosesText(sequence, request));
+}
+
+void PrintCheck(const SequenceCheck& check) {
+  if (check.poses) {
+    const PoseCheck& poses = *check.poses;
+    std::string text =
+        Text("%d pairs of images, warped by depth and poses, agree to %.2f", poses.pairs, poses.as_given.correlation);
+    if (!poses.right) text += ", which tells nothing: too little motion or structure";
+    PrintLine("checked", text);
+  }
+  if (check.stereo)
+    PrintLine("checked", Text("%d points in pairs, rows differ by %.2f px in the median", check.stereo->matches,
+                              check.stereo->median_row_error_px));
+  if (check.stereo && check.stereo->depth_ratio)
+    PrintLine("checked", Text("depth is %.3f of what the baseline says", *check.stereo->depth_ratio));
+  for (const std::string& wrong : check.wrong) PrintLine("wrong", wrong);
+  if (check.wrong.empty()) std::cout << "nothing is wrong\n";
+}
+
+int InfoCommand(std::span<const std::string> args) {
+  SequenceArguments arguments;
+  CommandLine line(kInfoManual);
+  arguments.AddTo(&line, "path", Place::kFirst);
+  if (const auto exit = line.Parse(args)) return *exit;
+  OptionTable no_options;
+  if (const auto exit = line.Resolve(no_options)) return *exit;
+  if (const auto exit = arguments.Check(line)) return *exit;
+
+  const SequenceRequest request = arguments.Request();
+  const auto sequence = OpenSequence(request);
+  if (!sequence.ok()) return line.Failure(sequence.status().message());
+  PrintDescription(**sequence, request);
+  const auto check = CheckSequence(**sequence);
+  if (!check.ok()) return line.Failure(check.status().message());
+  PrintCheck(*check);
+  return check->wrong.empty() ? kExitOk : kExitFailed;
+}
+
+int ConvertCommand(std::span<const std::string> args) {
+  SequenceArguments arguments;
+  std::string output_path;
+  bool quiet = false;
+  CommandLine line(kConvertManual);
+  arguments.AddTo(&line, "input_path");
+  line.Add("output_path", &output_path, "DIR", "folder of the new sequence", Need::kRequired);
+  line.AddFlag("quiet", &quiet, "say nothing but errors");
+  if (const auto exit = line.Parse(args)) return *exit;
+  OptionTable no_options;
+  if (const auto exit = line.Resolve(no_options)) return *exit;
+  if (const auto exit = arguments.Check(line)) return *exit;
+
+  const auto sequence = OpenSequence(arguments.Request());
+  if (!sequence.ok()) return line.Failure(sequence.status().message());
+  const std::atomic<bool>& stop = StopOnSignals();
+  Progress progress(std::cerr, quiet ? ProgressStyle::kQuiet : ProgressStyleOfStandardError(), "convert",
+                    (*sequence)->size());
+  const auto summary = ConvertSequence(**sequence, output_path, [&](int done) {
+    progress.Update(done, "");
+    return !stop;
+  });
+  if (!summary.ok()) return line.Failure(summary.status().message());
+  if (!quiet)
+    std::cout << Text("%d frames, %d pairs, %d masks, %d depth images, %d poses in ", summary->frames, summary->right,
+                      summary->masks, summary->depths, summary->poses)
+              << output_path << std::endl;
+  return kExitOk;
+}
+
+}  // namespace
+
+int DatasetCommand(std::span<const std::string> args) {
+  constexpr Verb kVerbs[] = {{"info", "PATH", InfoCommand},
+                             {"convert", "--input_path PATH --output_path DIR", ConvertCommand}};
+  return RunVerb("dataset", kVerbs, args);
+}
+
+}  // namespace pliant::cli

@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "cli/sequence_arguments.h"
+
+namespace pliant::cli {
+
+void SequenceArguments::AddTo(CommandLine* line, const std::string& name, Place place) {
+  constexpr int kMost = 2147483647;
+  line->Add(name, &path, "PATH", "a data set: folder of images, native sequence, video or another (docs/datasets.md)",
+            Need::kRequired, place);
+  line->Add("camera", &camera_path, "FILE",
+            "calibration; not needed where camera.yaml lies in the folder or beside the video", Need::kOptional);
+  line->Add("mask_path", &mask_path, "PATH", "folder of masks, or one image for all frames; 0 = ignore this pixel",
+            Need::kOptional);
+  line->Add("start", &start, "first frame, by its number in the source", 0, kMost);
+  line->Add("end", &end, "one past the last frame; -1: to the end", -1, kMost);
+  line->Add("stride", &stride, "take every Nth frame", 1, kMost);
+}
+
+std::optional<int> SequenceArguments::Check(const CommandLine& line) const {
+  if (end == -1 || end > start) return std::nullopt;
+  return line.UsageError("--end is " + std::to_string(end) + " and --start is " + std::to_string(start) +
+                         "; --end is one past the last frame, or -1 for all");
+}
+
+SequenceRequest SequenceArguments::Request() const {
+  return {.image_path = path,
+          .camera_path = camera_path,
+          .mask_path = mask_path,
+          .start = start,
+          .end = end,
+          .stride = stride};
+}
+
+}  // namespace pliant::cli

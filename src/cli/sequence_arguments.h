@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// What every command that reads images asks for: where they are, and which part of them.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "cli/command_line.h"
+#include "pliant/datasets/open_sequence.h"
+
+namespace pliant::cli {
+
+struct SequenceArguments {
+  std::string path;
+  std::string camera_path;
+  std::string mask_path;
+  int start = 0;
+  int end = -1;
+  int stride = 1;
+
+  // `name` of the path's argument.
+  void AddTo(CommandLine* line, const std::string& name, Place place = Place::kNamed);
+  // An exit code where the arguments contradict each other (the sentence has been said).
+  std::optional<int> Check(const CommandLine& line) const;
+  SequenceRequest Request() const;
+};
+
+}  // namespace pliant::cli

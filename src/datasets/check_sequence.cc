@@ -1,0 +1,121 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/datasets/check_sequence.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "datasets/check_poses.h"
+#include "datasets/check_stereo.h"
+
+namespace pliant {
+namespace {
+
+// From a base frame to those that are compared with it: near ones overlap in any case, far ones tell readings apart.
+constexpr int kGaps[] = {1, 4, 12};
+constexpr double kMostRowError_px = 1.0;
+constexpr double kMostDepthError = 0.25;  // of the ratio
+// Readings that fit less than this do not fit; one that fits by this much less than the best one is wrong.
+constexpr double kLeastCorrelation = 0.25;
+constexpr double kClearlyLess = 0.8;
+
+std::vector<int> BaseFrames(int frames, int count) {
+  std::vector<int> bases;
+  const int last = std::max(0, frames - 1 - kGaps[std::size(kGaps) - 1]);
+  const int most = std::min(count, last + 1);
+  for (int k = 0; k < most; ++k) bases.push_back(most == 1 ? 0 : k * last / (most - 1));
+  return bases;
+}
+
+std::string Number(const char* format, double value) {
+  char text[64];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+
+std::string Described(const PoseReading& reading) {
+  std::string text = reading.name;
+  if (reading.scale != 1.0)
+    text += (text.empty() ? "" : ", and ") + ("lengths are " + Number("%g", reading.scale)) + " times as long";
+  return text;
+}
+
+}  // namespace
+
+Result<SequenceCheck> CheckSequence(Sequence& sequence, const CheckOptions& options) {
+  const std::vector<int> bases = BaseFrames(sequence.size(), options.base_frames);
+  std::map<int, std::set<int>> compared;  // base, and the frames that are compared with it, by position in the sequence
+  std::set<int> wanted;
+  for (const int base : bases)
+    for (const int gap : kGaps)
+      if (base + gap < sequence.size()) {
+        compared[base].insert(base + gap);
+        wanted.insert({base, base + gap});
+      }
+  SequenceCheck check;
+  std::map<int, PosedImage> images;
+  StereoMatches matches;
+  for (int position = 0;; ++position) {
+    auto frame = sequence.Next();
+    if (!frame.ok()) return frame.status();
+    if (!frame->has_value()) break;
+    const bool is_base = std::find(bases.begin(), bases.end(), position) != bases.end();
+    if (!is_base && !wanted.contains(position)) continue;
+    const auto depth = sequence.Depth((*frame)->frame_idx);
+    if (!depth.ok()) return depth.status();
+    if (is_base && sequence.BaselineMm()) {
+      const auto right = sequence.Right();
+      if (!right.ok()) return right.status();
+      if (right->has_value())
+        matches.Add((*frame)->image, **right, depth->value_or(cv::Mat()), sequence.camera(), *sequence.BaselineMm());
+    }
+    const auto pose = sequence.WorldFromCamera((*frame)->frame_idx);
+    if (pose && depth->has_value())
+      images.emplace(position, PosedImage{FineStructure((*frame)->image), **depth, *pose});
+  }
+  std::vector<std::pair<const PosedImage*, const PosedImage*>> pairs;
+  for (const auto& [base, others] : compared)
+    for (const int other : others)
+      if (images.contains(base) && images.contains(other)) pairs.emplace_back(&images.at(base), &images.at(other));
+  if (!pairs.empty()) {
+    const std::vector<PoseReading> readings = CorrelateReadings(pairs, sequence.camera(), options.max_points);
+    PoseCheck& poses = check.poses.emplace();
+    poses.pairs = static_cast<int>(pairs.size());
+    poses.as_given = readings.front();
+    poses.best = *std::max_element(readings.begin(), readings.end(), [](const PoseReading& a, const PoseReading& b) {
+      return a.correlation < b.correlation;
+    });
+    const auto worse = std::count_if(readings.begin(), readings.end(), [&](const PoseReading& reading) {
+      return reading.correlation < kClearlyLess * poses.best.correlation;
+    });
+    const bool tells = poses.best.correlation >= kLeastCorrelation && 2 * worse > static_cast<long>(readings.size());
+    if (tells) poses.right = poses.as_given.correlation >= kClearlyLess * poses.best.correlation;
+    if (poses.right == false)
+      check.wrong.push_back("the poses do not fit the depth: the images agree to " +
+                            Number("%.2f", poses.as_given.correlation) + " as they are, and to " +
+                            Number("%.2f", poses.best.correlation) + " if " + Described(poses.best) +
+                            "; write the poses as right-handed ones of world from camera, in millimetres");
+  }
+  if (matches.count() > 0) {
+    const StereoCheck& stereo = check.stereo.emplace(matches.Check());
+    if (stereo.share_right_way < 0.5)
+      check.wrong.push_back("left and right are swapped: of " + std::to_string(stereo.matches) + " points " +
+                            Number("%.0f", 100.0 * (1.0 - stereo.share_right_way)) +
+                            " % lie farther right in the right image; exchange the images");
+    if (stereo.median_row_error_px > kMostRowError_px)
+      check.wrong.push_back("the pairs are not rectified: the rows of " + std::to_string(stereo.matches) +
+                            " points differ by " + Number("%.1f", stereo.median_row_error_px) +
+                            " px in the median; give the calibration of these cameras");
+    if (stereo.depth_ratio && std::abs(std::log(*stereo.depth_ratio)) > std::log1p(kMostDepthError))
+      check.wrong.push_back("depth and baseline disagree: the depth images say " + Number("%.3g", *stereo.depth_ratio) +
+                            " times what disparity and baseline say; give both in millimetres");
+  }
+  return check;
+}
+
+}  // namespace pliant

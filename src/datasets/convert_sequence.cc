@@ -1,0 +1,90 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/datasets/convert_sequence.h"
+
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <opencv2/core.hpp>
+
+#include "pliant/datasets/native_layout.h"
+#include "pliant/datasets/native_writer.h"
+
+namespace pliant {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Depth is written in the finest of these steps in which so many times the first frame's largest depth fits.
+constexpr double kDepthScales_mm[] = {0.001, 0.01, 0.1, 1.0};
+constexpr double kDepthHeadroom = 4.0;
+constexpr double kMostSteps = 65535.0;
+
+double DepthScaleFor(const cv::Mat& depth_mm) {
+  double largest_mm = 0;
+  cv::minMaxLoc(depth_mm, nullptr, &largest_mm);
+  for (const double scale : kDepthScales_mm)
+    if (kDepthHeadroom * largest_mm <= kMostSteps * scale) return scale;
+  return kDepthHeadroom * largest_mm / kMostSteps;
+}
+
+// The frame that Next gave, with all that belongs to it.
+Result<NativeFrame> Gather(Sequence& sequence, SequenceFrame frame) {
+  NativeFrame gathered{
+      .timestamp_s = frame.timestamp_s, .image = std::move(frame.image), .mask = std::move(frame.mask)};
+  auto right = sequence.Right();
+  if (!right.ok()) return right.status();
+  gathered.right = std::move(*right).value_or(cv::Mat());
+  auto depth_mm = sequence.Depth(frame.frame_idx);
+  if (!depth_mm.ok()) return depth_mm.status();
+  gathered.depth_mm = std::move(*depth_mm).value_or(cv::Mat());
+  gathered.world_from_cam = sequence.WorldFromCamera(frame.frame_idx);
+  return gathered;
+}
+
+Result<NativeWriter> MakeWriter(const Sequence& sequence, const NativeFrame& first, const fs::path& folder) {
+  CameraFile camera{.camera = sequence.camera()};
+  camera.baseline_mm = sequence.BaselineMm();
+  if (!first.depth_mm.empty()) camera.depth_scale = DepthScaleFor(first.depth_mm);
+  return NativeWriter::Create(folder, camera);
+}
+
+}  // namespace
+
+Result<ConvertSummary> ConvertSequence(Sequence& sequence, const fs::path& folder, const ConvertProgress& progress) {
+  std::error_code error;
+  if (fs::exists(folder, error) && !(fs::is_directory(folder, error) && fs::is_empty(folder, error)))
+    return Status(ErrorCode::kInvalidArgument,
+                  folder.string() + " is there and is not an empty folder; give a new one");
+  ConvertSummary summary;
+  std::optional<NativeWriter> writer;
+  for (;;) {
+    auto next = sequence.Next();
+    if (!next.ok()) return next.status();
+    if (!next->has_value()) break;
+    auto frame = Gather(sequence, **std::move(next));
+    if (!frame.ok()) return frame.status();
+    if (!writer) {
+      auto made = MakeWriter(sequence, *frame, folder);
+      if (!made.ok()) return made.status();
+      writer = *std::move(made);
+    }
+    // A trajectory with gaps would be read against the wrong images.
+    if (!frame->world_from_cam && summary.poses > 0) fs::remove(folder / native::kPosesFile, error);
+    if (summary.poses != summary.frames) frame->world_from_cam.reset();
+    if (Status status = writer->Write(*frame); !status.ok()) return status;
+    ++summary.frames;
+    summary.poses = frame->world_from_cam ? summary.poses + 1 : 0;
+    summary.right += frame->right.empty() ? 0 : 1;
+    summary.masks += frame->mask.empty() ? 0 : 1;
+    summary.depths += frame->depth_mm.empty() ? 0 : 1;
+    if (progress && !progress(summary.frames))
+      return Status(ErrorCode::kInterrupted,
+                    "stopped after " + std::to_string(summary.frames) + " frames; they are in " + folder.string());
+  }
+  return summary;
+}
+
+}  // namespace pliant

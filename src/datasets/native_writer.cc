@@ -1,0 +1,109 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/datasets/native_writer.h"
+
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <utility>
+#include <vector>
+
+#include <opencv2/imgcodecs.hpp>
+
+#include "pliant/base/options.h"
+#include "pliant/datasets/native_layout.h"
+#include "pliant/io/trajectory.h"
+
+namespace pliant {
+namespace {
+
+namespace fs = std::filesystem;
+
+Status Unwritable(const fs::path& path) {
+  return {ErrorCode::kUnwritable,
+          "cannot write " + path.string() + "; is the folder writable and is there room on the disk?"};
+}
+
+Status WriteBytes(const fs::path& path, const std::vector<unsigned char>& bytes) {
+  std::ofstream file(path, std::ios::binary);
+  file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  file.close();
+  if (file) return Status::Ok();
+  std::error_code error;
+  fs::remove(path, error);  // half a file would be read as a damaged one
+  return Unwritable(path);
+}
+
+// Little compression: noise does not compress.
+Status WritePng(const fs::path& path, const cv::Mat& image) {
+  std::vector<unsigned char> bytes;
+  if (!cv::imencode(".png", image, bytes, {cv::IMWRITE_PNG_COMPRESSION, 1})) return Unwritable(path);
+  return WriteBytes(path, bytes);
+}
+
+// Frames that an earlier sequence left would be read as part of this one. A folder that holds anything else stays.
+Status RemoveFrames(const fs::path& folder) {
+  std::error_code error;
+  if (!fs::exists(folder, error)) return Status::Ok();
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
+    if (entry.path().extension() == ".png" && !fs::remove(entry.path(), error)) return Unwritable(entry.path());
+  if (error) return Unwritable(folder);
+  fs::remove(folder, error);
+  return Status::Ok();
+}
+
+}  // namespace
+
+cv::Mat QuantiseDepth(const cv::Mat& depth_mm, double depth_scale_mm) {
+  cv::Mat steps(depth_mm.size(), CV_16UC1);
+  for (int y = 0; y < depth_mm.rows; ++y) {
+    for (int x = 0; x < depth_mm.cols; ++x) {
+      const double value = std::round(depth_mm.at<float>(y, x) / depth_scale_mm);
+      steps.at<std::uint16_t>(y, x) = value >= 1 && value <= 65535 ? static_cast<std::uint16_t>(value) : 0;
+    }
+  }
+  return steps;
+}
+
+Result<NativeWriter> NativeWriter::Create(fs::path folder, const CameraFile& camera) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) return Unwritable(folder);
+  for (const char* kind : {native::kImageFolder, native::kRightFolder, native::kDepthFolder, native::kMaskFolder})
+    if (Status status = RemoveFrames(folder / kind); !status.ok()) return status;
+  for (const char* file : {native::kPosesFile, native::kTimesFile}) fs::remove(folder / file, error);
+  if (Status status = WriteCameraFile((folder / native::kCameraFile).string(), camera); !status.ok()) return status;
+  return NativeWriter(std::move(folder), camera.depth_scale.value_or(1.0));
+}
+
+Status NativeWriter::WriteImage(const char* kind, const cv::Mat& image) {
+  if (image.empty()) return Status::Ok();
+  const fs::path folder = folder_ / kind;
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) return Unwritable(folder);
+  return WritePng(folder / native::FrameFileName(frames_), image);
+}
+
+Status NativeWriter::Write(const NativeFrame& frame) {
+  const cv::Mat depth = frame.depth_mm.empty() ? cv::Mat() : QuantiseDepth(frame.depth_mm, depth_scale_);
+  for (const auto& [kind, image] :
+       {std::pair(native::kImageFolder, &frame.image), std::pair(native::kRightFolder, &frame.right),
+        std::pair(native::kMaskFolder, &frame.mask), std::pair(native::kDepthFolder, &depth)})
+    if (Status status = WriteImage(kind, *image); !status.ok()) return status;
+  if (frame.world_from_cam) {
+    if (!poses_.is_open()) poses_.open(folder_ / native::kPosesFile);
+    std::string pose;
+    AppendTumLine(&pose, frame.timestamp_s, *frame.world_from_cam);
+    poses_ << pose << std::flush;
+    if (!poses_) return Unwritable(folder_ / native::kPosesFile);
+  }
+  if (!times_.is_open()) times_.open(folder_ / native::kTimesFile);
+  times_ << FormatDouble(frame.timestamp_s) << std::endl;
+  if (!times_) return Unwritable(folder_ / native::kTimesFile);
+  ++frames_;
+  return Status::Ok();
+}
+
+}  // namespace pliant
