@@ -3,6 +3,7 @@
 
 #include "pliant/datasets/convert_sequence.h"
 
+#include <cmath>
 #include <optional>
 #include <string>
 #include <utility>
@@ -17,17 +18,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Depth is written in the finest of these steps in which so many times the first frame's largest depth fits.
-constexpr double kDepthScales_mm[] = {0.001, 0.01, 0.1, 1.0};
-constexpr double kDepthHeadroom = 4.0;
+// Depth is written in the finest step of 1, 2, 5, 10, ... in which so many times the first frame's largest depth fits.
+constexpr double kDepthHeadroom = 2.0;
 constexpr double kMostSteps = 65535.0;
 
 double DepthScaleFor(const cv::Mat& depth_mm) {
   double largest_mm = 0;
   cv::minMaxLoc(depth_mm, nullptr, &largest_mm);
-  for (const double scale : kDepthScales_mm)
-    if (kDepthHeadroom * largest_mm <= kMostSteps * scale) return scale;
-  return kDepthHeadroom * largest_mm / kMostSteps;
+  if (!(largest_mm > 0)) return 1.0;
+  const double least = kDepthHeadroom * largest_mm / kMostSteps;
+  const double power = std::pow(10.0, std::floor(std::log10(least)));
+  for (const double step : {1.0, 2.0, 5.0})
+    if (least <= step * power) return step * power;
+  return 10.0 * power;
 }
 
 // The frame that Next gave, with all that belongs to it.

@@ -22,12 +22,12 @@
 namespace pliant {
 
 struct SequenceRequest {
-  std::filesystem::path image_path;   // folder of images, video file or native sequence
-  std::filesystem::path camera_path;  // calibration; empty: camera.yaml in image_path, for a video beside the file
-  std::filesystem::path mask_path;    // folder of masks, or one image for all frames; empty: the sequence's masks/
-  int start = 0;                      // first frame, by its number in the source
-  int end = -1;                       // one past the last frame; -1: to the end
-  int stride = 1;                     // every stride-th frame from `start` on
+  std::filesystem::path image_path = {};   // folder of images, video file or native sequence
+  std::filesystem::path camera_path = {};  // calibration; empty: camera.yaml in image_path, for a video beside the file
+  std::filesystem::path mask_path = {};    // folder of masks, or one image for all frames; empty: the sequence's masks/
+  int start = 0;                           // first frame, by its number in the source
+  int end = -1;                            // one past the last frame; -1: to the end
+  int stride = 1;                          // every stride-th frame from `start` on
 };
 
 // Opens the source and checks all that can be seen without decoding every frame: the calibration, the first image's

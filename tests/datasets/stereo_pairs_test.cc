@@ -1,0 +1,251 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Pairs of images: apart, in one image, raw and rectified.
+#include <memory>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <opencv2/imgproc.hpp>
+
+#include "datasets/rendered_sequence.h"
+#include "datasets/sequence_files.h"
+#include "pliant/datasets/check_sequence.h"
+#include "pliant/datasets/convert_sequence.h"
+#include "pliant/datasets/open_sequence.h"
+
+namespace pliant {
+namespace {
+
+using testing::HasSubstr;
+
+class StereoPairs : public SequenceFiles {
+ protected:
+  static constexpr int kFrames = 14;
+
+  // The scene's pairs in one image each, rows closer together by `squeeze`.
+  void WritePairs(bool top_bottom, double squeeze = 1.0) const {
+    for (int k = 0; k < kFrames; ++k) {
+      const SimulatedFrame& frame = Rendered().frames[static_cast<std::size_t>(k)];
+      cv::Mat pair;
+      if (top_bottom)
+        cv::vconcat(frame.image, frame.right, pair);
+      else
+        cv::hconcat(frame.image, frame.right, pair);
+      if (squeeze != 1.0) cv::resize(pair, pair, {}, 1.0, 1.0 / squeeze, cv::INTER_AREA);
+      Write("pairs/" + Name(k), pair);
+    }
+  }
+  // OpenCV's calibration of it; the left camera's centre of projection in half an image.
+  void WriteStereo(double squeeze = 1.0, const std::string& t = "[-5, 0, 0]", const std::string& more = "") const {
+    const auto& p = Rendered().camera.params();
+    const std::string matrix = "[" + std::to_string(p[0]) + ", 0, " + std::to_string(p[2]) + ", 0, " +
+                               std::to_string(p[1] / squeeze) + ", " + std::to_string((p[3] + 0.5) / squeeze - 0.5) +
+                               ", 0, 0, 1]";
+    Text("stereo.yaml", "M1: " + matrix + "\nD1: [0, 0, 0, 0]\nM2: " + matrix +
+                            "\nD2: [0, 0, 0, 0]\nR: [1, 0, 0, 0, 1, 0, 0, 0, 1]\nT: " + t + "\n" + more);
+  }
+  Result<std::unique_ptr<Sequence>> Open() const {
+    return OpenSequence({.image_path = Path("pairs"), .camera_path = Path("stereo.yaml")});
+  }
+  // Frame by frame what the simulator rendered, away from the edge, in grey levels.
+  static void ExpectTheScene(Sequence& sequence, double most_difference) {
+    const RenderedScene& scene = Rendered();
+    EXPECT_EQ(sequence.camera().width(), scene.camera.width());
+    EXPECT_EQ(sequence.camera().height(), scene.camera.height());
+    for (std::size_t p = 0; p < 4; ++p) EXPECT_NEAR(sequence.camera().params()[p], scene.camera.params()[p], 0.5) << p;
+    EXPECT_NEAR(sequence.BaselineMm().value_or(0), scene.baseline_mm, 1e-9);
+    for (int k = 0; k < kFrames; ++k) {
+      const auto frame = sequence.Next();
+      ASSERT_TRUE(frame.ok() && frame->has_value()) << k << frame.status().message();
+      const auto right = sequence.Right();
+      ASSERT_TRUE(right.ok() && right->has_value()) << k;
+      const cv::Rect inside(8, 8, scene.camera.width() - 16, scene.camera.height() - 16);
+      const SimulatedFrame& truth = scene.frames[static_cast<std::size_t>(k)];
+      EXPECT_LT(cv::norm((*frame)->image(inside), truth.image(inside), cv::NORM_L1) / inside.area() / 3,
+                most_difference);
+      EXPECT_LT(cv::norm((**right)(inside), truth.right(inside), cv::NORM_L1) / inside.area() / 3, most_difference);
+    }
+    const auto end = sequence.Next();
+    ASSERT_TRUE(end.ok());
+    EXPECT_FALSE(end->has_value());
+  }
+};
+
+TEST_F(StereoPairs, OfANativeSequenceAreItsRightImages) {
+  RenderedSequence rendered;
+  rendered.mono = false;
+  const auto summary = ConvertSequence(rendered, Path("seq"));
+  ASSERT_TRUE(summary.ok()) << summary.status().message();
+  EXPECT_EQ(summary->right, summary->frames);
+  auto sequence = OpenSequence({.image_path = Path("seq"), .end = kFrames});
+  ASSERT_TRUE(sequence.ok()) << sequence.status().message();
+  ExpectTheScene(**sequence, 1e-9);
+}
+
+TEST_F(StereoPairs, SideBySideAreSplitByTheirCalibration) {
+  WritePairs(/*top_bottom=*/false);
+  WriteStereo();
+  auto sequence = Open();
+  ASSERT_TRUE(sequence.ok()) << sequence.status().message();
+  ExpectTheScene(**sequence, 1.0);
+}
+
+TEST_F(StereoPairs, OneAboveTheOtherAreSplitByTheirCalibration) {
+  WritePairs(/*top_bottom=*/true);
+  WriteStereo();
+  auto sequence = Open();
+  ASSERT_TRUE(sequence.ok()) << sequence.status().message();
+  ExpectTheScene(**sequence, 1.0);
+}
+
+TEST_F(StereoPairs, WithRowsTooCloseTogetherBecomeAsHighAsTheyAreToBe) {
+  WritePairs(/*top_bottom=*/false, 2.0);
+  WriteStereo(2.0);
+  auto sequence = Open();
+  ASSERT_TRUE(sequence.ok()) << sequence.status().message();
+  ExpectTheScene(**sequence, 8.0);  // half of the rows are lost for good
+}
+
+TEST_F(StereoPairs, OfCamerasThatLookApartAreRectified) {
+  // The right camera turned by 2 degrees about x and 1 about z: its image is that of a homography.
+  const Eigen::Matrix3d turn = RotationExp({0.035, 0, 0.0175}).toRotationMatrix();
+  const auto& p = Rendered().camera.params();
+  const Eigen::Matrix3d k{{p[0], 0, p[2]}, {0, p[1], p[3]}, {0, 0, 1}};
+  const Eigen::Matrix3d h = k * turn * k.inverse();
+  cv::Matx33d homography;
+  for (int row = 0; row < 3; ++row)
+    for (int col = 0; col < 3; ++col) homography(row, col) = h(row, col);
+  for (int i = 0; i < kFrames; ++i) {
+    const SimulatedFrame& frame = Rendered().frames[static_cast<std::size_t>(i)];
+    cv::Mat turned;
+    cv::warpPerspective(frame.right, turned, homography, frame.right.size());
+    cv::Mat pair;
+    cv::hconcat(frame.image, turned, pair);
+    Write("pairs/" + Name(i), pair);
+  }
+  const Eigen::Vector3d t = turn * Eigen::Vector3d(-5, 0, 0);
+  WriteStereo(1.0, "[" + std::to_string(t.x()) + ", " + std::to_string(t.y()) + ", " + std::to_string(t.z()) + "]");
+  const auto unrectified = Open();
+  ASSERT_TRUE(unrectified.ok());
+  const auto check_unrectified = CheckSequence(**unrectified);
+  ASSERT_TRUE(check_unrectified.ok() && check_unrectified->stereo);
+  EXPECT_GT(check_unrectified->stereo->median_row_error_px, 2.0) << "R says that they look alike";
+
+  std::string r;
+  for (int row = 0; row < 3; ++row)
+    for (int col = 0; col < 3; ++col) r += (r.empty() ? "" : ", ") + std::to_string(turn(row, col));
+  const std::string matrix = "[" + std::to_string(p[0]) + ", 0, " + std::to_string(p[2]) + ", 0, " +
+                             std::to_string(p[1]) + ", " + std::to_string(p[3]) + ", 0, 0, 1]";
+  Text("stereo.yaml", "M1: " + matrix + "\nD1: [0, 0, 0, 0]\nM2: " + matrix + "\nD2: [0, 0, 0, 0]\nR: [" + r +
+                          "]\nT: [" + std::to_string(t.x()) + ", " + std::to_string(t.y()) + ", " +
+                          std::to_string(t.z()) + "]\n");
+  const auto sequence = Open();
+  ASSERT_TRUE(sequence.ok()) << sequence.status().message();
+  EXPECT_NEAR((*sequence)->BaselineMm().value(), 5.0, 1e-3);
+  const auto check = CheckSequence(**sequence);
+  ASSERT_TRUE(check.ok() && check->stereo);
+  EXPECT_LT(check->stereo->median_row_error_px, 0.2);
+  EXPECT_GT(check->stereo->share_right_way, 0.98);
+}
+
+TEST_F(StereoPairs, AreMaskedWhereTheRawImageHasNothing) {
+  WritePairs(/*top_bottom=*/false);
+  WriteStereo(1.0, "[-5, 0.6, 0]");  // the rectified cameras are turned
+  auto sequence = Open();
+  ASSERT_TRUE(sequence.ok()) << sequence.status().message();
+  const auto frame = (*sequence)->Next();
+  ASSERT_TRUE(frame.ok() && frame->has_value());
+  ASSERT_FALSE((*frame)->mask.empty());
+  const int masked = static_cast<int>((*frame)->mask.total()) - cv::countNonZero((*frame)->mask);
+  EXPECT_GT(masked, 300);
+  EXPECT_LT(masked, static_cast<int>((*frame)->mask.total()) / 2);
+}
+
+TEST_F(StereoPairs, ABaselineInMetresIsUnderstood) {
+  WritePairs(/*top_bottom=*/false);
+  WriteStereo(1.0, "[-0.005, 0, 0]");
+  auto sequence = Open();
+  ASSERT_TRUE(sequence.ok()) << sequence.status().message();
+  EXPECT_NEAR((*sequence)->BaselineMm().value(), 5.0, 1e-9);
+}
+
+TEST_F(StereoPairs, ACalibrationThatCannotBeMeantIsRefused) {
+  WritePairs(/*top_bottom=*/false);
+  struct Case {
+    std::string t, more;
+    ErrorCode code;
+    std::string said;
+  };
+  for (const Case& wrong :
+       {Case{"[5, 0, 0]", "", ErrorCode::kInvalidArgument, "to the left of the left one"},
+        Case{"[0, 0, 0]", "", ErrorCode::kInvalidArgument, "no baseline"},
+        Case{"[0, -5, 0]", "", ErrorCode::kInvalidArgument, "one above the other"},
+        Case{"[-5, 0]", "", ErrorCode::kInvalidArgument, "9 and 2"},
+        Case{"[.nan, 0, 0]", "", ErrorCode::kInvalidArgument, "not a finite number"},
+        Case{"[-5, 0, 0]", "image_width: 200\nimage_height: 200\n", ErrorCode::kMismatch, "fits no image of 640x240"},
+        Case{"[-5, 0, 0]", "camera_model: fisheye\n", ErrorCode::kInvalidArgument, "fisheye"}}) {
+    WriteStereo(1.0, wrong.t, wrong.more);
+    const auto sequence = Open();
+    ASSERT_FALSE(sequence.ok()) << wrong.said;
+    EXPECT_EQ(sequence.status().code(), wrong.code) << sequence.status().message();
+    EXPECT_THAT(sequence.status().message(), HasSubstr(wrong.said));
+    EXPECT_THAT(sequence.status().message(), HasSubstr("stereo.yaml"));
+  }
+}
+
+TEST_F(StereoPairs, AnImageOfAnotherSizeIsNamed) {
+  WritePairs(/*top_bottom=*/false);
+  Write("pairs/" + Name(3), cv::Mat(100, 100, CV_8UC3, cv::Scalar::all(9)));
+  WriteStereo();
+  auto sequence = Open();
+  ASSERT_TRUE(sequence.ok()) << sequence.status().message();
+  for (int k = 0; k < 5; ++k) {
+    const auto frame = (*sequence)->Next();
+    EXPECT_EQ(frame.ok(), k != 3);
+    if (k == 3) {
+      EXPECT_THAT(frame.status().message(), HasSubstr("000003.png is 100x100"));
+    }
+  }
+}
+
+TEST_F(StereoPairs, ANativeSequenceWithoutOneOfItsRightImagesIsRefused) {
+  RenderedSequence rendered;
+  rendered.mono = false;
+  ASSERT_TRUE(ConvertSequence(rendered, Path("seq")).ok());
+  std::filesystem::remove(Path("seq/right/000007.png"));
+  const auto sequence = OpenSequence({.image_path = Path("seq")});
+  ASSERT_FALSE(sequence.ok());
+  EXPECT_EQ(sequence.status().code(), ErrorCode::kNotFound);
+  EXPECT_THAT(sequence.status().message(), HasSubstr("no right for the frame 000007.png"));
+}
+
+TEST_F(StereoPairs, AllThatASequenceHasComesBackFromItsNativeCopy) {
+  RenderedSequence rendered;
+  rendered.mono = false;
+  const auto summary = ConvertSequence(rendered, Path("seq"));
+  ASSERT_TRUE(summary.ok()) << summary.status().message();
+  EXPECT_EQ(summary->frames, rendered.size());
+  EXPECT_EQ(summary->depths, rendered.size());
+  EXPECT_EQ(summary->poses, rendered.size());
+  EXPECT_EQ(summary->masks, 0);
+  auto sequence = OpenSequence({.image_path = Path("seq")});
+  ASSERT_TRUE(sequence.ok()) << sequence.status().message();
+  for (int k = 0; k < rendered.size(); ++k) {
+    const auto frame = (*sequence)->Next();
+    ASSERT_TRUE(frame.ok() && frame->has_value());
+    EXPECT_NEAR((*frame)->timestamp_s, k / 30.0, 1e-9);
+    const auto depth = (*sequence)->Depth(k);
+    ASSERT_TRUE(depth.ok() && depth->has_value());
+    EXPECT_LT(cv::norm(**depth, Rendered().frames[static_cast<std::size_t>(k)].depth, cv::NORM_INF), 0.011);
+    const Rigid3 error =
+        (*sequence)->WorldFromCamera(k)->Inverse() * Rendered().world_from_cam[static_cast<std::size_t>(k)];
+    EXPECT_LT(error.translation.norm() + RotationAngle(error.rotation), 1e-6);
+  }
+  const auto again = ConvertSequence(**sequence, Path("seq"));
+  EXPECT_EQ(again.status().code(), ErrorCode::kInvalidArgument) << "the folder is not empty";
+}
+
+}  // namespace
+}  // namespace pliant
