@@ -97,6 +97,7 @@ void PrintDescription(const Sequence& sequence, const SequenceRequest& request) 
   PrintLine("pairs", sequence.BaselineMm() ? Text("rectified, baseline %.4g mm", *sequence.BaselineMm()) : "none");
   PrintLine("depth", DepthText(sequence, request.start));
   PrintLine("poses", PosesText(sequence, request));
+  for (const std::string& warning : sequence.Warnings()) PrintLine("warning", warning);
 }
 
 void PrintCheck(const SequenceCheck& check) {

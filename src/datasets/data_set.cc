@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <string>
 
+#include <opencv2/imgproc.hpp>
+
 #include "datasets/image_file.h"
 #include "datasets/image_list.h"
 #include "datasets/pair_streams.h"
@@ -33,11 +35,13 @@ class DataSetSequence final : public Sequence {
   std::optional<Rigid3> WorldFromCamera(int frame_idx) const override;
   std::optional<double> TimestampS(int frame_idx) const override;
   std::optional<std::string> Name(int frame_idx) const override;
+  std::vector<std::string> Warnings() const override { return data_set_.warnings; }
 
  private:
   ImageStream& images() const { return *data_set_.images; }
   Status CheckSize(const cv::Mat& image, const std::string& title) const;
   Result<cv::Mat> Mask(int idx, const std::string& name) const;
+  Result<cv::Mat> RawMask(int idx) const;
 
   DataSet data_set_;
   FrameRange range_;
@@ -98,12 +102,23 @@ Result<std::optional<SequenceFrame>> DataSetSequence::Next() {
 }
 
 Result<cv::Mat> DataSetSequence::Mask(int idx, const std::string& name) const {
-  if (!masks_) return data_set_.inside;
-  const auto& warp = data_set_.mask_warp;
-  Result<cv::Mat> mask = ReadFrameMask(*masks_, idx, name, warp ? warp->raw.width : camera().width(),
-                                       warp ? warp->raw.height : camera().height());
-  if (mask.ok() && warp) mask = warp->ApplyNearest(*mask);
+  if (!masks_) return RawMask(idx);
+  Result<cv::Mat> mask = ReadFrameMask(*masks_, idx, name, camera().width(), camera().height());
   if (mask.ok() && !data_set_.inside.empty()) mask = cv::Mat(*mask & data_set_.inside);
+  return mask;
+}
+
+// Of the size of the raw images, or smaller; as they are given.
+Result<cv::Mat> DataSetSequence::RawMask(int idx) const {
+  const auto file = data_set_.raw_masks.find(idx);
+  if (file == data_set_.raw_masks.end()) return data_set_.inside;
+  Result<cv::Mat> raw = ReadMaskImage(file->second);
+  if (!raw.ok()) return raw;
+  cv::Mat mask;
+  cv::resize(*raw, mask, data_set_.warp ? data_set_.warp->raw : cv::Size(camera().width(), camera().height()), 0, 0,
+             cv::INTER_NEAREST);
+  if (data_set_.warp) mask = data_set_.warp->ApplyNearest(mask);
+  if (!data_set_.inside.empty()) mask &= data_set_.inside;
   return mask;
 }
 
@@ -168,13 +183,21 @@ Result<DataSet> RectifiedPairs(const StereoCalibration& calibration, const fs::p
   data_set.calibration.baseline_mm = pair->baseline_mm;
   if (eyes.left->fps()) data_set.calibration.fps = *eyes.left->fps();
   data_set.inside = pair->left.Inside();
+  data_set.warp = pair->left;
+  data_set.raw_from_given = Rigid3(Eigen::Matrix3d(pair->rectified_from_left.transpose()), Eigen::Vector3d::Zero());
   data_set.images = Warped(std::move(eyes.left), std::move(pair->left));
   data_set.right = Warped(std::move(eyes.right), std::move(pair->right));
   return data_set;
 }
 
-Result<DataSet> Calibrated(const SequenceRequest& request, std::unique_ptr<ImageStream> images) {
+Result<DataSet> Calibrated(const SequenceRequest& request, std::unique_ptr<ImageStream> images,
+                           const std::optional<SourceCalibration>& published) {
   const Result<fs::path> path = FindCalibration(request);
+  if (!path.ok() && published) {
+    DataSet data_set{.calibration = *published, .images = std::move(images), .mask_path = request.mask_path};
+    if (data_set.images->fps()) data_set.calibration.fps = *data_set.images->fps();
+    return data_set;
+  }
   if (!path.ok()) return path.status();
   const std::optional<cv::Size> size = images->SizeAt(0);
   const auto stereo = ReadStereoCalibration(path->string());

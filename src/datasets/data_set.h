@@ -7,8 +7,10 @@
 
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -39,16 +41,21 @@ struct DataSet {
   std::unique_ptr<ImageStream> right = nullptr;                           // of rectified pairs; null: none
   cv::Mat inside = {};                                                    // 0 where no image has anything; empty: none
   std::filesystem::path mask_path = {};                                   // a folder, or one image; empty: no masks
-  std::optional<ImageWarp> mask_warp = std::nullopt;                      // of masks of the raw images
+  std::map<int, std::filesystem::path> raw_masks = {};                    // of the raw images; frames without: no mask
+  std::optional<ImageWarp> warp = std::nullopt;                           // from the raw left images, where they are
+  Rigid3 raw_from_given = {};                                             // the camera of the raw images, likewise
   std::vector<double> timestamps_s = {};                                  // one an image; empty: number / fps
   std::vector<std::optional<Rigid3>> world_from_cam = {};                 // one an image, mm; empty: no truth
   std::function<Result<std::optional<cv::Mat>>(int)> depth_mm = nullptr;  // of an image; null: no truth
+  std::vector<std::string> warnings = {};                                 // a sentence each
 };
 
 // These images with the calibration that belongs to them: the request's file, else camera.yaml in the folder or beside
 // the file. One that does not say its images' size takes that of the stream; one of two cameras rectifies the pairs
-// that the images hold. The request's masks are of the images as they are given.
-Result<DataSet> Calibrated(const SequenceRequest& request, std::unique_ptr<ImageStream> images);
+// that the images hold. Where there is no file, `published` is taken, the data set's own. The request's masks are of
+// the images as they are given.
+Result<DataSet> Calibrated(const SequenceRequest& request, std::unique_ptr<ImageStream> images,
+                           const std::optional<SourceCalibration>& published = {});
 
 // Raw pairs, rectified; `image` is the size of the images that held them.
 Result<DataSet> RectifiedPairs(const StereoCalibration& calibration, const std::filesystem::path& calibration_path,

@@ -9,8 +9,19 @@
 namespace pliant {
 
 std::span<const DataSetFormat> DataSetFormats() {
-  static constexpr std::array<DataSetFormat, 3> kFormats = {{
+  static constexpr std::array<DataSetFormat, 14> kFormats = {{
+      {"colmap", "a folder of COLMAP, images/ and a model in sparse/", IsColmapFolder, OpenColmapFolder},
       {"native", "a sequence in Pliant's own layout", IsNativeSequence, OpenNativeSequence},
+      {"c3vd", "C3VD or C3VDv2, a colonoscope in a phantom", IsC3vd, OpenC3vd},
+      {"endomapper", "Endomapper, a real procedure", IsEndomapper, OpenEndomapper},
+      {"endomapper_simulated", "Endomapper, a simulated sequence", IsEndomapperSimulated, OpenEndomapperSimulated},
+      {"endoslam", "EndoSLAM's UnityCam", IsEndoSlam, OpenEndoSlam},
+      {"euroc", "EuRoC MAV", IsEuroc, OpenEuroc},
+      {"hamlyn_rectified", "Hamlyn's videos, rectified", IsHamlynRectified, OpenHamlynRectified},
+      {"scared", "SCARED, a keyframe", IsScared, OpenScared},
+      {"simcol", "SimCol3D", IsSimCol, OpenSimCol},
+      {"stereomis", "StereoMIS", IsStereoMis, OpenStereoMis},
+      {"tum_rgbd", "TUM RGB-D", IsTumRgbd, OpenTumRgbd},
       {"images", "a folder of images", IsFolder, OpenImageFolder},
       {"video", "a video", IsFile, OpenVideo},
   }};

@@ -25,6 +25,39 @@ std::span<const DataSetFormat> DataSetFormats();
 bool IsNativeSequence(const std::filesystem::path& path);
 Result<DataSet> OpenNativeSequence(const SequenceRequest& request);
 
+bool IsColmapFolder(const std::filesystem::path& path);
+Result<DataSet> OpenColmapFolder(const SequenceRequest& request);
+
+bool IsC3vd(const std::filesystem::path& path);
+Result<DataSet> OpenC3vd(const SequenceRequest& request);
+
+bool IsEndomapper(const std::filesystem::path& path);
+Result<DataSet> OpenEndomapper(const SequenceRequest& request);
+
+bool IsEndomapperSimulated(const std::filesystem::path& path);
+Result<DataSet> OpenEndomapperSimulated(const SequenceRequest& request);
+
+bool IsEndoSlam(const std::filesystem::path& path);
+Result<DataSet> OpenEndoSlam(const SequenceRequest& request);
+
+bool IsEuroc(const std::filesystem::path& path);
+Result<DataSet> OpenEuroc(const SequenceRequest& request);
+
+bool IsHamlynRectified(const std::filesystem::path& path);
+Result<DataSet> OpenHamlynRectified(const SequenceRequest& request);
+
+bool IsScared(const std::filesystem::path& path);
+Result<DataSet> OpenScared(const SequenceRequest& request);
+
+bool IsSimCol(const std::filesystem::path& path);
+Result<DataSet> OpenSimCol(const SequenceRequest& request);
+
+bool IsStereoMis(const std::filesystem::path& path);
+Result<DataSet> OpenStereoMis(const SequenceRequest& request);
+
+bool IsTumRgbd(const std::filesystem::path& path);
+Result<DataSet> OpenTumRgbd(const SequenceRequest& request);
+
 bool IsFolder(const std::filesystem::path& path);
 Result<DataSet> OpenImageFolder(const SequenceRequest& request);
 

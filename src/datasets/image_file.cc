@@ -117,6 +117,8 @@ bool IsPng(const Bytes& bytes) { return StartsWith(bytes, "\x89PNG\r\n\x1a\n"); 
 bool IsBmp(const Bytes& bytes) { return StartsWith(bytes, "BM"); }
 bool IsJpeg(const Bytes& bytes) { return StartsWith(bytes, "\xFF\xD8"); }
 
+bool IsExr(const Bytes& bytes) { return StartsWith(bytes, "\x76\x2f\x31\x01"); }
+
 struct DecodedImage {
   cv::Mat image;  // as stored: any depth, any number of channels
   bool lossy = false;
@@ -139,6 +141,11 @@ Result<DecodedImage> Decode(const std::filesystem::path& path) {
   } catch (const cv::Exception&) {
     decoded.image.release();
   }
+  if (decoded.image.empty() && IsExr(*bytes))
+    return Status(ErrorCode::kUnreadable, "the image " + path.string() +
+                                              " is an EXR that OpenCV cannot decode: it is damaged, or this OpenCV was "
+                                              "built without OpenEXR (set OPENCV_IO_ENABLE_OPENEXR=1 where it is only "
+                                              "switched off)");
   if (decoded.image.empty())
     return Status(ErrorCode::kUnreadable,
                   "the image " + path.string() + " cannot be decoded (damaged, or not an image)" + advice);
@@ -184,6 +191,12 @@ Result<cv::Mat> ReadMaskImage(const std::filesystem::path& path) {
              cv::REDUCE_MAX);
   const cv::Mat mask = strongest.reshape(1, image.rows) > (decoded->lossy ? 127 : 0);
   return mask;
+}
+
+Result<cv::Mat> ReadStoredImage(const std::filesystem::path& path) {
+  Result<DecodedImage> decoded = Decode(path);
+  if (!decoded.ok()) return decoded.status();
+  return decoded->image;
 }
 
 Result<cv::Mat> ReadDepthImage(const std::filesystem::path& path, double depth_scale) {

@@ -26,6 +26,9 @@ Result<cv::Mat> ReadImage(const std::filesystem::path& path);
 // exact) at least 128.
 Result<cv::Mat> ReadMaskImage(const std::filesystem::path& path);
 
+// As the file has it: any depth, any number of channels (BGR); EXR too. Fails with kNotFound or kUnreadable.
+Result<cv::Mat> ReadStoredImage(const std::filesystem::path& path);
+
 // CV_32FC1, millimetres: value * depth_scale. Fails with kMismatch unless the file is 16-bit with one channel.
 Result<cv::Mat> ReadDepthImage(const std::filesystem::path& path, double depth_scale);
 

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <opencv2/core/mat.hpp>
 
@@ -56,6 +57,9 @@ class Sequence {
   // The name that Next gives the source's frame of this index; nothing where the source has no such frame or cannot say
   // without reading it.
   virtual std::optional<std::string> Name(int /*frame_idx*/) const { return std::nullopt; }
+
+  // What is odd about the source, one sentence each, and was read all the same.
+  virtual std::vector<std::string> Warnings() const { return {}; }
 };
 
 }  // namespace pliant

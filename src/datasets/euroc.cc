@@ -1,0 +1,168 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// EuRoC MAV (Burri et al., IJRR 2016) and what is written like it: mav0/cam0 and mav0/cam1 with data.csv (ns, file),
+// data/ and sensor.yaml; mav0/state_groundtruth_estimate0/data.csv, world from body, metres. A pose belongs to the
+// image nearest in time, within 20 ms.
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include <yaml-cpp/yaml.h>
+
+#include "datasets/formats.h"
+#include "datasets/set_files.h"
+#include "pliant/base/options.h"
+#include "pliant/base/text.h"
+#include "pliant/io/trajectory.h"
+
+namespace pliant {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kMostDifference_s = 0.02;
+constexpr double kMetre_mm = 1000.0;
+constexpr double kNanosecond_s = 1e-9;
+
+fs::path RootOf(const fs::path& path) { return IsFolder(path / "mav0") ? path / "mav0" : path; }
+
+struct Eye {
+  StereoCalibration::Eye lens;
+  bool fisheye = false;
+  ImageSize size;
+  Rigid3 body_from_cam;  // mm
+  fs::path file;
+};
+
+std::vector<double> NumbersOf(const YAML::Node& node) {
+  std::vector<double> numbers;
+  if (!node.IsSequence()) return numbers;
+  for (const YAML::Node& value : node) {
+    double number = 0;
+    if (!value.IsScalar() || !ParseDouble(value.Scalar(), &number)) return {};
+    numbers.push_back(number);
+  }
+  return numbers;
+}
+
+Result<Eye> ReadSensor(const fs::path& file) {
+  const Status unreadable(ErrorCode::kUnreadable,
+                          file.string() +
+                              " is not EuRoC's description of a camera: it has resolution, intrinsics, "
+                              "distortion_model, distortion_coefficients and T_BS");
+  YAML::Node root;
+  auto text = ReadFile(file.string());
+  if (!text.ok()) return text.status();
+  if (text->starts_with("%YAML")) (*text)[0] = '#';
+  try {
+    root = YAML::Load(*text);
+  } catch (const YAML::Exception&) {
+    return unreadable;
+  }
+  if (!root.IsMap()) return unreadable;
+  const auto size = NumbersOf(root["resolution"]);
+  const auto lens = NumbersOf(root["intrinsics"]);
+  const auto distortion = NumbersOf(root["distortion_coefficients"]);
+  const auto body_from_cam =
+      root["T_BS"] && root["T_BS"].IsMap() ? NumbersOf(root["T_BS"]["data"]) : std::vector<double>();
+  if (size.size() != 2 || lens.size() != 4 || distortion.size() != 4 || body_from_cam.size() != 16) return unreadable;
+  auto pose = PoseOfMatrix(file.string() + ": T_BS", body_from_cam);
+  if (!pose.ok()) return pose.status();
+  pose->translation *= kMetre_mm;
+  const YAML::Node model = root["distortion_model"];
+  return Eye{{lens[0], lens[1], lens[2], lens[3], distortion},
+             model && model.IsScalar() && model.Scalar() == "equidistant",
+             {static_cast<int>(size[0]), static_cast<int>(size[1])},
+             *pose,
+             file};
+}
+
+struct Listed {
+  std::vector<double> times_s;
+  std::vector<fs::path> files;
+};
+
+Result<Listed> ReadList(const fs::path& camera) {
+  auto reader = LineReader::Open((camera / "data.csv").string());
+  if (!reader.ok()) return reader.status();
+  Listed list;
+  std::string_view line;
+  while (reader->Next(&line)) {
+    if (line.empty() || line.front() == '#') continue;
+    const auto fields = Split(line, ',');
+    double time_ns = 0;
+    if (fields.size() < 2 || !ParseDouble(fields[0], &time_ns))
+      return reader->Error("a line has a time in ns and a file");
+    const auto name = Split(fields[1], ' ');
+    if (name.empty()) return reader->Error("a line has a time in ns and a file");
+    list.times_s.push_back(kNanosecond_s * time_ns);
+    list.files.push_back(camera / "data" / name.front());
+  }
+  if (list.files.empty())
+    return Status(ErrorCode::kNotFound, (camera / "data.csv").string() + " names no image; check the path");
+  return list;
+}
+
+Status AddPoses(const fs::path& file, const Rigid3& body_from_cam, DataSet* data_set) {
+  const auto poses = ReadEurocTrajectory(file.string());
+  if (!poses.ok()) return poses.status();
+  std::map<double, Rigid3> by_time;
+  for (const TimedPose& pose : *poses)
+    by_time.emplace(pose.timestamp_s,
+                    Rigid3(pose.world_from_cam.rotation, kMetre_mm * pose.world_from_cam.translation) * body_from_cam);
+  for (const double time_s : data_set->timestamps_s) {
+    const Rigid3* nearest = NearestInTime(by_time, time_s, kMostDifference_s);
+    data_set->world_from_cam.push_back(nearest != nullptr ? std::optional(*nearest) : std::nullopt);
+  }
+  return Status::Ok();
+}
+
+Result<DataSet> OpenMono(const SequenceRequest& request, const Eye& eye, std::unique_ptr<ImageStream> images) {
+  std::vector<double> params = {eye.lens.fx, eye.lens.fy, eye.lens.cx, eye.lens.cy};
+  params.insert(params.end(), eye.lens.distortion.begin(), eye.lens.distortion.end());
+  auto camera = Camera::Create(eye.fisheye ? CameraModelId::kOpenCvFisheye : CameraModelId::kOpenCv, eye.size.width,
+                               eye.size.height, params);
+  if (!camera.ok()) return Status(camera.status().code(), eye.file.string() + ": " + camera.status().message());
+  return Calibrated(request, std::move(images), SourceCalibration{*std::move(camera), eye.file});
+}
+
+}  // namespace
+
+bool IsEuroc(const fs::path& path) { return IsFile(RootOf(path) / "cam0" / "data.csv"); }
+
+Result<DataSet> OpenEuroc(const SequenceRequest& request) {
+  const fs::path root = RootOf(request.image_path);
+  auto left_list = ReadList(root / "cam0");
+  if (!left_list.ok()) return left_list.status();
+  const auto left = ReadSensor(root / "cam0" / "sensor.yaml");
+  if (!left.ok()) return left.status();
+  auto images = StreamFiles(root / "cam0" / "data", left_list->files);
+  Result<DataSet> data_set = Status(ErrorCode::kNotFound, "");
+  const bool pairs = IsFile(root / "cam1" / "data.csv") && !left->fisheye && request.camera_path.empty();
+  if (pairs) {
+    const auto right_list = ReadList(root / "cam1");
+    if (!right_list.ok()) return right_list.status();
+    if (right_list->files.size() != left_list->files.size())
+      return Status(ErrorCode::kMismatch, root.string() + " has " + std::to_string(left_list->files.size()) +
+                                              " images of cam0 and " + std::to_string(right_list->files.size()) +
+                                              " of cam1; pairs have one each");
+    const auto right = ReadSensor(root / "cam1" / "sensor.yaml");
+    if (!right.ok()) return right.status();
+    const StereoCalibration calibration{left->lens, right->lens, right->body_from_cam.Inverse() * left->body_from_cam,
+                                        left->size, false};
+    data_set = RectifiedPairs(calibration, left->file, {left->size.width, left->size.height}, PairLayout::kApart,
+                              {std::move(images), StreamFiles(root / "cam1" / "data", right_list->files)});
+    if (data_set.ok()) data_set->mask_path = request.mask_path;
+  } else {
+    data_set = OpenMono(request, *left, std::move(images));
+  }
+  if (!data_set.ok()) return data_set.status();
+  data_set->timestamps_s = std::move(left_list->times_s);
+  if (const fs::path file = root / "state_groundtruth_estimate0" / "data.csv"; IsFile(file))
+    if (Status status = AddPoses(file, left->body_from_cam * data_set->raw_from_given, &*data_set); !status.ok())
+      return status;
+  return data_set;
+}
+
+}  // namespace pliant

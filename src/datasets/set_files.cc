@@ -1,0 +1,130 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "datasets/set_files.h"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <utility>
+
+#include "pliant/base/options.h"
+#include "pliant/base/text.h"
+
+namespace pliant {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<fs::path> FilesOf(const fs::path& folder) {
+  std::vector<fs::path> files;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error); !error && entry != fs::directory_iterator(); entry.increment(error))
+    if (std::error_code ignored; entry->is_regular_file(ignored)) files.push_back(entry->path());
+  return files;
+}
+
+// The fields of a line, whatever separates them.
+std::vector<std::string> Fields(std::string_view line) {
+  std::string blanks(line);
+  std::replace_if(
+      blanks.begin(), blanks.end(), [](char c) { return c == ',' || c == ';' || c == '\t'; }, ' ');
+  std::vector<std::string> fields;
+  for (const std::string_view field : Split(blanks, ' ')) fields.emplace_back(field);
+  return fields;
+}
+
+std::optional<std::vector<double>> Numbers(const std::vector<std::string>& fields) {
+  std::vector<double> numbers;
+  for (const std::string& field : fields) {
+    double value = 0;
+    if (!ParseDouble(field, &value) || !std::isfinite(value)) return std::nullopt;
+    numbers.push_back(value);
+  }
+  return numbers;
+}
+
+constexpr double kQuaternionError = 0.01;
+
+}  // namespace
+
+std::map<int, fs::path> NumberedFiles(const fs::path& folder, std::string_view prefix, std::string_view suffix) {
+  std::map<int, fs::path> found;
+  for (const fs::path& file : FilesOf(folder)) {
+    const std::string name = file.filename().string();
+    if (name.size() <= prefix.size() + suffix.size() || !name.starts_with(prefix) || !name.ends_with(suffix)) continue;
+    const char* begin = name.data() + prefix.size();
+    const char* end = name.data() + name.size() - suffix.size();
+    int number = 0;
+    const auto parsed = std::from_chars(begin, end, number);
+    if (parsed.ec == std::errc() && parsed.ptr == end && number >= 0) found.emplace(number, file);
+  }
+  return found;
+}
+
+fs::path OnlyFile(const fs::path& folder, std::string_view suffix) {
+  fs::path only;
+  for (const fs::path& file : FilesOf(folder)) {
+    const std::string name = file.filename().string();
+    if (!name.ends_with(suffix) || name.starts_with(".")) continue;
+    if (!only.empty()) return {};
+    only = file;
+  }
+  return only;
+}
+
+Result<std::vector<NumberRow>> ReadNumberRows(const fs::path& file, std::size_t columns) {
+  auto reader = LineReader::Open(file.string());
+  if (!reader.ok()) return reader.status();
+  std::vector<NumberRow> rows;
+  std::string_view line;
+  bool first = true;
+  while (reader->Next(&line)) {
+    const std::vector<std::string> fields = Fields(line);
+    if (fields.empty() || fields.front().starts_with('#')) continue;
+    auto numbers = Numbers(fields);
+    const bool is_header = first && !numbers && std::isalpha(static_cast<unsigned char>(fields.front().front())) != 0;
+    first = false;
+    if (is_header) continue;
+    if (!numbers || numbers->size() < columns)
+      return reader->Error("a line has " + std::to_string(columns) + " numbers; '" + std::string(line.substr(0, 60)) +
+                           "' has not");
+    rows.push_back({reader->number(), *std::move(numbers)});
+  }
+  return rows;
+}
+
+Result<Rigid3> PoseOfRow(const fs::path& file, const NumberRow& row, const PoseColumns& columns) {
+  const std::vector<double>& n = row.numbers;
+  const Eigen::Quaterniond rotation(n[columns.qw], n[columns.qx], n[columns.qx + 1], n[columns.qx + 2]);
+  if (!(std::abs(rotation.norm() - 1.0) < kQuaternionError))
+    return Status(ErrorCode::kUnreadable, At(file.string(), row.line) + ": the quaternion is not of unit length");
+  return Rigid3(rotation, Eigen::Vector3d(n[columns.tx], n[columns.tx + 1], n[columns.tx + 2]));
+}
+
+Result<Rigid3> PoseOfMatrix(const std::string& where, const std::vector<double>& m) {
+  Eigen::Matrix3d rotation;
+  rotation << m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10];
+  if (!(rotation * rotation.transpose()).isIdentity(kQuaternionError) || !(rotation.determinant() > 0.0))
+    return Status(ErrorCode::kUnreadable, where + ": the matrix is not a pose; its rotation is none");
+  return Rigid3(rotation, Eigen::Vector3d(m[3], m[7], m[11]));
+}
+
+Rigid3 FromUnity(const Rigid3& world_from_cam) {
+  const Eigen::Vector3d turn(1, -1, 1);
+  return {Eigen::Matrix3d(turn.asDiagonal() * world_from_cam.RotationMatrix() * turn.asDiagonal()),
+          turn.cwiseProduct(world_from_cam.translation)};
+}
+
+std::function<Result<std::optional<cv::Mat>>(int)> DepthFiles(std::vector<fs::path> files, ReadDepth read) {
+  return [files = std::move(files), read = std::move(read)](int idx) -> Result<std::optional<cv::Mat>> {
+    if (idx < 0 || idx >= static_cast<int>(files.size()) || files[static_cast<std::size_t>(idx)].empty())
+      return std::optional<cv::Mat>();
+    Result<cv::Mat> depth_mm = read(files[static_cast<std::size_t>(idx)]);
+    if (!depth_mm.ok()) return depth_mm.status();
+    return std::optional<cv::Mat>(*std::move(depth_mm));
+  };
+}
+
+}  // namespace pliant

@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// What the files of other people's data sets have in common: numbers in names, tables of numbers, depth images.
+#pragma once
+
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <iterator>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <opencv2/core/mat.hpp>
+
+#include "pliant/base/status.h"
+#include "pliant/geometry/rigid3.h"
+
+namespace pliant {
+
+// The files of a folder that are called PREFIX, digits, SUFFIX, by number; none where there is no folder.
+std::map<int, std::filesystem::path> NumberedFiles(const std::filesystem::path& folder, std::string_view prefix,
+                                                   std::string_view suffix);
+// The only file in a folder with this ending, "" where there is none or several.
+std::filesystem::path OnlyFile(const std::filesystem::path& folder, std::string_view suffix);
+
+struct NumberRow {
+  std::int64_t line = 0;  // in the file
+  std::vector<double> numbers;
+};
+
+// Lines of at least `columns` numbers between blanks, commas or semicolons; empty lines, comments with # and a first
+// line of names are passed over. Fails with kNotFound, and with kUnreadable for a line that is none.
+Result<std::vector<NumberRow>> ReadNumberRows(const std::filesystem::path& file, std::size_t columns);
+
+// A pose of position and quaternion. Fails with kUnreadable and the line for a quaternion that is none.
+struct PoseColumns {
+  std::size_t tx = 0;
+  std::size_t qx = 3;
+  std::size_t qw = 6;  // before qx: qw qx qy qz
+};
+Result<Rigid3> PoseOfRow(const std::filesystem::path& file, const NumberRow& row, const PoseColumns& columns);
+
+// Of a 4 x 4 matrix, rows first. Fails with kUnreadable where its rotation is none.
+Result<Rigid3> PoseOfMatrix(const std::string& where, const std::vector<double>& matrix);
+
+// The value nearest in time; null where none is within `most_s`.
+template <class Value>
+const Value* NearestInTime(const std::map<double, Value>& values, double time_s, double most_s) {
+  auto nearest = values.lower_bound(time_s);
+  if (nearest != values.begin() &&
+      (nearest == values.end() || time_s - std::prev(nearest)->first < nearest->first - time_s))
+    --nearest;
+  return nearest != values.end() && std::abs(nearest->first - time_s) <= most_s ? &nearest->second : nullptr;
+}
+
+// A world and a camera whose y axes are turned round: Unity's left-handed ones, right-handed.
+Rigid3 FromUnity(const Rigid3& world_from_cam);
+
+// Depth images, one a frame (an empty path: none). `read` makes millimetres of what a file holds.
+using ReadDepth = std::function<Result<cv::Mat>(const std::filesystem::path& file)>;
+std::function<Result<std::optional<cv::Mat>>(int)> DepthFiles(std::vector<std::filesystem::path> files, ReadDepth read);
+
+}  // namespace pliant

@@ -1,0 +1,76 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// SimCol3D (Rau et al., Medical Image Analysis 2024): rendered colonoscopy. FrameBuffer_NNNN.png, Depth_NNNN.png of 16
+// bits whose full scale is 20 cm, and, beside the folder, SavedPosition_NAME.txt in cm and
+// SavedRotationQuaternion_NAME.txt (x y z w), a line a frame, in Unity's left-handed world.
+#include "datasets/formats.h"
+#include "datasets/image_file.h"
+#include "datasets/set_frames.h"
+#include "pliant/base/text.h"
+
+namespace pliant {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kFullScale_mm = 200.0;
+constexpr double kSteps = 65536.0;  // as its authors divide
+constexpr double kMillimetres = 10.0;
+
+// Frames_S1 lies beside SavedPosition_S1.txt.
+std::string NameOf(const fs::path& folder) {
+  const std::string name = fs::path(folder / ".").parent_path().filename().string();
+  constexpr std::string_view kPrefix = "Frames_";
+  return name.starts_with(kPrefix) ? name.substr(kPrefix.size()) : name;
+}
+
+fs::path FindBeside(const fs::path& folder, const std::string& prefix) {
+  const std::string name = prefix + NameOf(folder) + ".txt";
+  for (const fs::path& where : {folder, fs::path(folder / ".").parent_path().parent_path()})
+    if (Exists((where / name).string())) return where / name;
+  return {};
+}
+
+Result<std::map<int, Rigid3>> ReadPoses(const fs::path& positions, const fs::path& rotations) {
+  const auto places = ReadNumberRows(positions, 3);
+  if (!places.ok()) return places.status();
+  const auto turns = ReadNumberRows(rotations, 4);
+  if (!turns.ok()) return turns.status();
+  if (places->size() != turns->size())
+    return Status(ErrorCode::kMismatch, positions.string() + " has " + std::to_string(places->size()) + " lines and " +
+                                            rotations.string() + " has " + std::to_string(turns->size()));
+  std::map<int, Rigid3> poses;
+  for (std::size_t k = 0; k < places->size(); ++k) {
+    NumberRow row = (*turns)[k];
+    for (int c = 0; c < 3; ++c) row.numbers.push_back(kMillimetres * (*places)[k].numbers[static_cast<std::size_t>(c)]);
+    const auto pose = PoseOfRow(rotations, row, {.tx = row.numbers.size() - 3, .qx = 0, .qw = 3});
+    if (!pose.ok()) return pose.status();
+    poses.emplace(static_cast<int>(k), FromUnity(*pose));
+  }
+  return poses;
+}
+
+}  // namespace
+
+bool IsSimCol(const fs::path& path) { return !NumberedFiles(path, "FrameBuffer_", ".png").empty(); }
+
+Result<DataSet> OpenSimCol(const SequenceRequest& request) {
+  const fs::path& folder = request.image_path;
+  NumberedSet set{.folder = folder,
+                  .images = NumberedFiles(folder, "FrameBuffer_", ".png"),
+                  .depth = NumberedFiles(folder, "Depth_", ".png"),
+                  .read_depth = [](const fs::path& file) { return ReadDepthImage(file, kFullScale_mm / kSteps); }};
+  const fs::path positions = FindBeside(folder, "SavedPosition_");
+  const fs::path rotations = FindBeside(folder, "SavedRotationQuaternion_");
+  if (!positions.empty() && !rotations.empty()) {
+    auto poses = ReadPoses(positions, rotations);
+    if (!poses.ok()) return poses.status();
+    set.world_from_cam = *std::move(poses);
+  }
+  const auto camera = PublishedCamera("SimCol3D", CameraModelId::kPinhole, 475, 475, {227.604, 227.604, 237.5, 237.5});
+  if (!camera.ok()) return camera.status();
+  return OpenNumberedSet(request, std::move(set), *camera);
+}
+
+}  // namespace pliant

@@ -1,0 +1,149 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// StereoMIS (Hayoz et al., IJCARS 2023): da Vinci recordings. One video, left eye on top of the right one;
+// StereoCalibration.ini; groundtruth.txt, `frame tx ty tz qx qy qz qw`, world from left camera, metres, of the robot's
+// kinematics; masks/NNNNNNl.png, 0 = an instrument, of some of the frames and not always of the video's size.
+#include <fstream>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "datasets/formats.h"
+#include "datasets/set_files.h"
+#include "pliant/base/options.h"
+#include "pliant/base/text.h"
+
+namespace pliant {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kCalibration = "StereoCalibration.ini";
+constexpr double kMetre_mm = 1000.0;
+
+std::string Trimmed(std::string_view text) {
+  const std::size_t begin = text.find_first_not_of(" \t\r");
+  if (begin == std::string_view::npos) return {};
+  return std::string(text.substr(begin, text.find_last_not_of(" \t\r") - begin + 1));
+}
+
+// "[Section]" and "key = value" lines: numbers by "Section.key"; what is no number is passed over.
+Result<std::map<std::string, double>> ReadIni(const fs::path& file) {
+  auto reader = LineReader::Open(file.string());
+  if (!reader.ok()) return reader.status();
+  std::map<std::string, double> values;
+  std::string section;
+  std::string_view line;
+  while (reader->Next(&line)) {
+    const std::string text = Trimmed(line);
+    if (text.empty() || text.front() == ';' || text.front() == '#') continue;
+    if (text.front() == '[' && text.back() == ']') {
+      section = Trimmed(std::string_view(text).substr(1, text.size() - 2));
+      continue;
+    }
+    const std::size_t equals = text.find('=');
+    double value = 0;
+    if (equals != std::string::npos && ParseDouble(Trimmed(std::string_view(text).substr(equals + 1)), &value))
+      values[section + "." + Trimmed(std::string_view(text).substr(0, equals))] = value;
+  }
+  return values;
+}
+
+class Ini {
+ public:
+  Ini(fs::path file, std::map<std::string, double> values) : file_(std::move(file)), values_(std::move(values)) {}
+
+  double Get(const std::string& key) {
+    const auto found = values_.find(key);
+    if (found != values_.end()) return found->second;
+    if (missing_.empty()) missing_ = key;
+    return 0;
+  }
+  bool Has(const std::string& key) const { return values_.contains(key); }
+  Status Complete() const {
+    if (missing_.empty()) return Status::Ok();
+    return {ErrorCode::kUnreadable, file_.string() + " has no number " + Quoted(missing_) + "; copy it anew"};
+  }
+
+ private:
+  fs::path file_;
+  std::map<std::string, double> values_;
+  std::string missing_;
+};
+
+StereoCalibration::Eye EyeOf(const std::string& section, Ini* ini) {
+  constexpr int kMostCoefficients = 8;
+  StereoCalibration::Eye eye{ini->Get(section + ".fc_x"),
+                             ini->Get(section + ".fc_y"),
+                             ini->Get(section + ".cc_x"),
+                             ini->Get(section + ".cc_y"),
+                             {}};
+  for (int k = 0; k < kMostCoefficients && ini->Has(section + ".kc_" + std::to_string(k)); ++k)
+    eye.distortion.push_back(ini->Get(section + ".kc_" + std::to_string(k)));
+  // OpenCV takes 4, 5 or 8.
+  if (eye.distortion.size() < 4)
+    eye.distortion.resize(4, 0.0);
+  else if (eye.distortion.size() > 5)
+    eye.distortion.resize(8, 0.0);
+  return eye;
+}
+
+Result<StereoCalibration> ReadCalibration(const fs::path& file) {
+  auto values = ReadIni(file);
+  if (!values.ok()) return values.status();
+  Ini ini(file, *std::move(values));
+  StereoCalibration calibration{EyeOf("StereoLeft", &ini), EyeOf("StereoRight", &ini), {}, {}, false};
+  Eigen::Matrix3d turn;
+  for (int k = 0; k < 9; ++k) turn(k / 3, k % 3) = ini.Get("StereoRight.R_" + std::to_string(k));
+  Eigen::Vector3d t;
+  for (int k = 0; k < 3; ++k) t[k] = ini.Get("StereoRight.T_" + std::to_string(k));
+  calibration.image_size =
+      ImageSize{static_cast<int>(ini.Get("StereoLeft.res_x")), static_cast<int>(ini.Get("StereoLeft.res_y"))};
+  if (Status status = ini.Complete(); !status.ok()) return status;
+  if (!(turn * turn.transpose()).isIdentity(1e-3))
+    return Status(ErrorCode::kUnreadable, file.string() + ": R_0 to R_8 of StereoRight are not a rotation");
+  calibration.was_in_metres = t.norm() < kShortestBaseline_mm;
+  calibration.right_from_left = Rigid3(turn, calibration.was_in_metres ? Eigen::Vector3d(kMetre_mm * t) : t);
+  return calibration;
+}
+
+Status AddPoses(const fs::path& file, DataSet* data_set) {
+  const auto rows = ReadNumberRows(file, 8);
+  if (!rows.ok()) return rows.status();
+  std::map<int, Rigid3> poses;
+  for (const NumberRow& row : *rows) {
+    auto pose = PoseOfRow(file, row, {.tx = 1, .qx = 4, .qw = 7});
+    if (!pose.ok()) return pose.status();
+    pose->translation *= kMetre_mm;
+    poses[static_cast<int>(row.numbers[0])] = *pose * data_set->raw_from_given;
+  }
+  if (poses.empty()) return Status::Ok();
+  for (int idx = 0; idx <= poses.rbegin()->first; ++idx)
+    data_set->world_from_cam.push_back(poses.contains(idx) ? std::optional(poses.at(idx)) : std::nullopt);
+  return Status::Ok();
+}
+
+}  // namespace
+
+bool IsStereoMis(const fs::path& path) { return IsFile(path / kCalibration) && !OnlyFile(path, ".mp4").empty(); }
+
+Result<DataSet> OpenStereoMis(const SequenceRequest& request) {
+  const fs::path& folder = request.image_path;
+  auto video = StreamVideo(OnlyFile(folder, ".mp4"));
+  if (!video.ok()) return video.status();
+  const fs::path file = request.camera_path.empty() ? folder / kCalibration : request.camera_path;
+  const auto calibration = ReadCalibration(file);
+  if (!calibration.ok()) return calibration.status();
+  const cv::Size image = (*video)->SizeAt(0).value_or(cv::Size());
+  constexpr PairLayout kLayout = PairLayout::kTopBottom;
+  auto data_set = RectifiedPairs(*calibration, file, image, kLayout, SplitEyes(*std::move(video), kLayout, image));
+  if (!data_set.ok()) return data_set.status();
+  data_set->mask_path = request.mask_path;
+  if (request.mask_path.empty()) data_set->raw_masks = NumberedFiles(folder / "masks", "", "l.png");
+  if (IsFile(folder / "groundtruth.txt"))
+    if (Status status = AddPoses(folder / "groundtruth.txt", &*data_set); !status.ok()) return status;
+  return data_set;
+}
+
+}  // namespace pliant

@@ -1,0 +1,88 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// TUM RGB-D (Sturm et al., IROS 2012) and what is written like it: rgb.txt and depth.txt, `timestamp file` a line,
+// depth of 16 bits, 5000 a metre; groundtruth.txt, world from camera, metres. Depth and poses belong to the image
+// nearest in time, within 20 ms.
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "datasets/formats.h"
+#include "datasets/image_file.h"
+#include "datasets/set_files.h"
+#include "pliant/base/options.h"
+#include "pliant/base/text.h"
+#include "pliant/io/trajectory.h"
+
+namespace pliant {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kMostDifference_s = 0.02;
+constexpr double kDepthUnit_mm = 0.2;
+constexpr double kMetre_mm = 1000.0;
+
+Result<std::map<double, fs::path>> ReadList(const fs::path& file) {
+  auto reader = LineReader::Open(file.string());
+  if (!reader.ok()) return reader.status();
+  std::map<double, fs::path> list;
+  std::string_view line;
+  while (reader->Next(&line)) {
+    const auto fields = Split(line, ' ');
+    if (fields.empty() || fields[0].starts_with('#')) continue;
+    double time_s = 0;
+    if (fields.size() < 2 || !ParseDouble(fields[0], &time_s) || !std::isfinite(time_s))
+      return reader->Error("a line has a time and a file");
+    list.emplace(time_s, file.parent_path() / fields[1]);
+  }
+  return list;
+}
+
+}  // namespace
+
+bool IsTumRgbd(const fs::path& path) { return IsFile(path / "rgb.txt"); }
+
+Result<DataSet> OpenTumRgbd(const SequenceRequest& request) {
+  const fs::path& folder = request.image_path;
+  const auto images = ReadList(folder / "rgb.txt");
+  if (!images.ok()) return images.status();
+  if (images->empty())
+    return Status(ErrorCode::kNotFound, (folder / "rgb.txt").string() + " names no image; check the path");
+  std::vector<fs::path> files;
+  std::vector<double> times_s;
+  for (const auto& [time_s, file] : *images) {
+    files.push_back(file);
+    times_s.push_back(time_s);
+  }
+  auto data_set = Calibrated(request, StreamFiles(folder, files));
+  if (!data_set.ok()) return data_set.status();
+  if (IsFile(folder / "depth.txt")) {
+    const auto depths = ReadList(folder / "depth.txt");
+    if (!depths.ok()) return depths.status();
+    std::vector<fs::path> depth_files;
+    for (const double time_s : times_s) {
+      const fs::path* nearest = NearestInTime(*depths, time_s, kMostDifference_s);
+      depth_files.push_back(nearest != nullptr ? *nearest : fs::path());
+    }
+    data_set->depth_mm =
+        DepthFiles(std::move(depth_files), [](const fs::path& file) { return ReadDepthImage(file, kDepthUnit_mm); });
+  }
+  if (IsFile(folder / "groundtruth.txt")) {
+    const auto poses = ReadTumTrajectory((folder / "groundtruth.txt").string());
+    if (!poses.ok()) return poses.status();
+    std::map<double, Rigid3> by_time;
+    for (const TimedPose& pose : *poses)
+      by_time.emplace(pose.timestamp_s,
+                      Rigid3(pose.world_from_cam.rotation, kMetre_mm * pose.world_from_cam.translation));
+    for (const double time_s : times_s) {
+      const Rigid3* nearest = NearestInTime(by_time, time_s, kMostDifference_s);
+      data_set->world_from_cam.push_back(nearest != nullptr ? std::optional(*nearest) : std::nullopt);
+    }
+  }
+  data_set->timestamps_s = std::move(times_s);
+  return data_set;
+}
+
+}  // namespace pliant

@@ -1,0 +1,133 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Endoscopes rendered by VR-Caps in Unity. Endomapper's simulated sequences (Azagra et al., Scientific Data 2023):
+// rgb/image_NNNN.png, depth/aov_image_NNNN.exr, trajectory.csv in dm. EndoSLAM's UnityCam (Ozyoruk et al., Medical
+// Image Analysis 2021): Frames/image_NNNN.png, "Pixelwise Depths/aov_image_NNNN.png" in cm, a table of poses in m.
+// Poses are tX tY tZ rX rY rZ rW time, a line a frame, in Unity's left-handed world.
+#include <limits>
+#include <vector>
+
+#include <opencv2/core.hpp>
+
+#include "datasets/formats.h"
+#include "datasets/image_file.h"
+#include "datasets/set_frames.h"
+#include "pliant/base/text.h"
+
+namespace pliant {
+namespace {
+
+namespace fs = std::filesystem;
+
+Result<std::map<int, Rigid3>> ReadPoses(const fs::path& file, double unit_mm) {
+  const auto rows = ReadNumberRows(file, 7);
+  if (!rows.ok()) return rows.status();
+  std::map<int, Rigid3> poses;
+  for (std::size_t k = 0; k < rows->size(); ++k) {
+    auto pose = PoseOfRow(file, (*rows)[k], {.tx = 0, .qx = 3, .qw = 6});
+    if (!pose.ok()) return pose.status();
+    pose->translation *= unit_mm;
+    poses.emplace(static_cast<int>(k), FromUnity(*pose));
+  }
+  return poses;
+}
+
+// Poses are a line an image, whatever number the first image has.
+void CountFromFirst(NumberedSet* set) {
+  if (set->images.empty() || set->world_from_cam.empty()) return;
+  const int first = set->images.begin()->first;
+  std::map<int, Rigid3> shifted;
+  for (const auto& [number, pose] : set->world_from_cam) shifted.emplace(number + first, pose);
+  set->world_from_cam = std::move(shifted);
+}
+
+// The first of three or four channels as they are stored: red, which OpenCV has last.
+cv::Mat RedOf(const cv::Mat& stored) {
+  if (stored.channels() == 1) return stored;
+  cv::Mat red;
+  cv::extractChannel(stored, red, 2);
+  return red;
+}
+
+// The depth buffer runs from 1 at the near plane to 0 at the far one: 1 / z = 0.25 + 99.75 d, z in dm.
+Result<cv::Mat> ReadReversedDepth(const fs::path& file) {
+  const auto stored = ReadStoredImage(file);
+  if (!stored.ok()) return stored.status();
+  if (stored->depth() != CV_32F)
+    return Status(ErrorCode::kMismatch, "the depth image " + file.string() + " has no floating-point channel");
+  constexpr float kFar = 0.25F;
+  constexpr float kRange = 99.75F;
+  constexpr float kDecimetre_mm = 100.0F;
+  const cv::Mat buffer = RedOf(*stored);
+  cv::Mat depth_mm(buffer.size(), CV_32FC1);
+  for (int v = 0; v < buffer.rows; ++v)
+    for (int u = 0; u < buffer.cols; ++u) {
+      const float d = buffer.at<float>(v, u);
+      depth_mm.at<float>(v, u) = d > 0 && d <= 1 ? kDecimetre_mm / (kFar + kRange * d) : 0.0F;
+    }
+  return depth_mm;
+}
+
+Result<cv::Mat> ReadCentimetres(const fs::path& file) {
+  const auto stored = ReadStoredImage(file);
+  if (!stored.ok()) return stored.status();
+  cv::Mat depth_mm;
+  RedOf(*stored).convertTo(depth_mm, CV_32F, 10.0);
+  return depth_mm;
+}
+
+constexpr const char* kPixelwise = "Pixelwise Depths";
+
+fs::path EndoSlamPoses(const fs::path& folder) {
+  for (const fs::path& where : {folder / "Poses", folder})
+    if (fs::path file = OnlyFile(where, ".csv"); !file.empty()) return file;
+  return {};
+}
+
+}  // namespace
+
+bool IsEndomapperSimulated(const fs::path& path) { return !NumberedFiles(path / "rgb", "image_", ".png").empty(); }
+
+Result<DataSet> OpenEndomapperSimulated(const SequenceRequest& request) {
+  constexpr double kDecimetre_mm = 100.0;
+  const fs::path& folder = request.image_path;
+  NumberedSet set{.folder = folder / "rgb",
+                  .images = NumberedFiles(folder / "rgb", "image_", ".png"),
+                  .depth = NumberedFiles(folder / "depth", "aov_image_", ".exr"),
+                  .read_depth = ReadReversedDepth};
+  if (IsFile(folder / "trajectory.csv")) {
+    auto poses = ReadPoses(folder / "trajectory.csv", kDecimetre_mm);
+    if (!poses.ok()) return poses.status();
+    set.world_from_cam = *std::move(poses);
+    CountFromFirst(&set);
+  }
+  const auto camera =
+      PublishedCamera("Endomapper", CameraModelId::kPinhole, 960, 720, {472.6496, 472.6496, 479.5, 359.5});
+  if (!camera.ok()) return camera.status();
+  return OpenNumberedSet(request, std::move(set), *camera);
+}
+
+bool IsEndoSlam(const fs::path& path) { return IsFolder(path / "Frames") && IsFolder(path / kPixelwise); }
+
+Result<DataSet> OpenEndoSlam(const SequenceRequest& request) {
+  constexpr double kMetre_mm = 1000.0;
+  const fs::path& folder = request.image_path;
+  NumberedSet set{.folder = folder / "Frames",
+                  .images = NumberedFiles(folder / "Frames", "image_", ".png"),
+                  .depth = NumberedFiles(folder / kPixelwise, "aov_image_", ".png"),
+                  .read_depth = ReadCentimetres};
+  if (set.images.empty()) set.images = NumberedFiles(folder / "Frames", "image_", ".jpg");
+  if (const fs::path file = EndoSlamPoses(folder); !file.empty()) {
+    auto poses = ReadPoses(file, kMetre_mm);
+    if (!poses.ok()) return poses.status();
+    set.world_from_cam = *std::move(poses);
+    CountFromFirst(&set);
+  }
+  const auto camera =
+      PublishedCamera("EndoSLAM", CameraModelId::kPinhole, 320, 320, {156.0418, 155.7529, 178.5604, 181.8043});
+  if (!camera.ok()) return camera.status();
+  return OpenNumberedSet(request, std::move(set), *camera);
+}
+
+}  // namespace pliant
