@@ -6,9 +6,15 @@
 #include <iostream>
 #include <string>
 
+#include "cli/command_line.h"
+
 namespace pliant::cli {
 
 void TrackProgress::OnStart(int frames) { progress_.emplace(std::cerr, style_, "track", frames); }
+
+void TrackProgress::OnWarning(const std::string& sentence) {
+  if (style_ != ProgressStyle::kQuiet) SayError("track", "warning: " + sentence);
+}
 
 // A frame that was shown when it was processed is not shown again when its report is final.
 void TrackProgress::OnFrame(const FrameReport& report) {

@@ -14,6 +14,7 @@ namespace pliant::cli {
 class TrackProgress : public TrackObserver {
  public:
   explicit TrackProgress(ProgressStyle style) : style_(style) {}
+  void OnWarning(const std::string& sentence) override;
   void OnStart(int frames) override;
   void OnFrame(const FrameReport& report) override;
   void OnHeld(const FrameReport& report) override;

@@ -211,7 +211,10 @@ Result<RunSummary> RunTrack(const RunRequest& request, const TrackOptions& optio
                                   table.ToYaml(), {Tracker::kStages.begin(), Tracker::kStages.end()}, writer_options);
   if (!writer.ok()) return writer.status();
 
-  for (TrackObserver* observer : observers) observer->OnStart((*sequence)->size());
+  for (TrackObserver* observer : observers) {
+    for (const std::string& warning : (*sequence)->Warnings()) observer->OnWarning(warning);
+    observer->OnStart((*sequence)->size());
+  }
   const Ending ending =
       TrackSequence(**sequence, request, usable, model ? &*model : nullptr, truth.get(), *writer, observers);
   const Status finished = writer->Finish(ending.status, ending.note);

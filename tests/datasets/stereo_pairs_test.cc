@@ -150,6 +150,19 @@ TEST_F(StereoPairs, OfCamerasThatLookApartAreRectified) {
   EXPECT_GT(check->stereo->share_right_way, 0.98);
 }
 
+TEST_F(StereoPairs, OfHamlynsRecordingsAreReadWithTheCalibrationThatIsShipped) {
+  for (int k = 0; k < 2; ++k) Write("hamlyn/" + Name(k), Image(k, 1440, 288));
+  auto sequence = OpenSequence({.image_path = Path("hamlyn"), .camera_path = PLIANT_HAMLYN_CALIBRATION});
+  ASSERT_TRUE(sequence.ok()) << sequence.status().message();
+  const Camera& camera = (*sequence)->camera();
+  EXPECT_EQ(camera.width(), 720);
+  EXPECT_NEAR(camera.height(), 1.79 * 288, 3);
+  // One published rectification of it: f 747.29, f times baseline 3886.37.
+  EXPECT_NEAR(camera.params()[0], 747.29, 15);
+  EXPECT_NEAR(camera.params()[0], camera.params()[1], 1e-9);
+  EXPECT_NEAR(camera.params()[0] * (*sequence)->BaselineMm().value(), 3886.37, 80);
+}
+
 TEST_F(StereoPairs, AreMaskedWhereTheRawImageHasNothing) {
   WritePairs(/*top_bottom=*/false);
   WriteStereo(1.0, "[-5, 0.6, 0]");  // the rectified cameras are turned

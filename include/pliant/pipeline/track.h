@@ -59,6 +59,8 @@ class TrackObserver {
   virtual ~TrackObserver() = default;
   // Before the first frame; `frames` is what the sequence says of its length.
   virtual void OnStart(int frames) = 0;
+  // What is odd about the sequence, before OnStart; a sentence each.
+  virtual void OnWarning(const std::string& /*sentence*/) {}
   // After a frame's rows are on disk: once a frame, in order of time. A later report's `join` may move it into another
   // world; the run folder has it there in the end.
   virtual void OnFrame(const FrameReport& report) = 0;
