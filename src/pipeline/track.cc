@@ -13,6 +13,7 @@
 #include "pipeline/frames_before.h"
 #include "pipeline/model_start.h"
 #include "pipeline/simulation_truth.h"
+#include "pipeline/stereo_points.h"
 #include "pliant/base/prefetcher.h"
 #include "pliant/base/version.h"
 
@@ -23,20 +24,27 @@ constexpr int kFramesAhead = 3;
 
 struct ReadFrame {
   TrackerFrame frame;
-  Status depth;  // of reading its depth image; matters only while the tracker wants depth
+  Status depth;  // of reading its depth image, or its right one; matters only while the tracker wants depth
 };
 
 // Reads and prepares the next frame; nothing at the end.
-std::optional<Result<ReadFrame>> NextFrame(Sequence& sequence, const TrackerOptions& options, const ModelStart* model,
-                                           const std::atomic<bool>& wants_depth) {
+std::optional<Result<ReadFrame>> NextFrame(Sequence& sequence, const TrackerOptions& options, int threads,
+                                           const ModelStart* model, const std::atomic<bool>& wants_depth) {
   auto next = sequence.Next();
   if (!next.ok()) return next.status();
   if (!next->has_value()) return std::nullopt;
   const SequenceFrame& frame = **next;
   ReadFrame read{PrepareFrame(frame.frame_idx, frame.name, frame.timestamp_s, frame.image, frame.mask, options), {}};
-  if (wants_depth && model != nullptr) {
+  if (!wants_depth) return read;
+  if (options.init.method == InitMethod::kColmapModel) {
     read.frame.known_points = model->PointsIn(frame.name);
-  } else if (wants_depth) {
+  } else if (options.init.method == InitMethod::kStereo) {
+    const auto right = sequence.Right();
+    read.depth = right.status();
+    if (right.ok() && right->has_value())
+      read.frame.known_points =
+          PointsOfPair(read.frame, **right, sequence.camera(), sequence.BaselineMm().value_or(0.0), options, threads);
+  } else {
     const auto depth = sequence.Depth(frame.frame_idx);
     read.depth = depth.status();
     if (depth.ok() && depth->has_value()) read.frame.depth_mm = **depth;
@@ -98,8 +106,9 @@ Ending TrackFrames(Sequence& sequence, const RunRequest& request, const TrackOpt
                    Tracker& tracker, Recorder& recorder) {
   // Once there is a map no depth image is read any more; those read ahead in the meantime change nothing.
   std::atomic<bool> wants_depth = tracker.WantsDepth();
-  Prefetcher<Result<ReadFrame>> frames([&] { return NextFrame(sequence, options.tracker, model, wants_depth); },
-                                       options.threads > 1 ? kFramesAhead : 0);
+  Prefetcher<Result<ReadFrame>> frames(
+      [&] { return NextFrame(sequence, options.tracker, options.threads, model, wants_depth); },
+      options.threads > 1 ? kFramesAhead : 0);
   std::string last_note = "the sequence has no frames";
   int count = 0;
   while (auto frame = frames.Next()) {
@@ -195,6 +204,11 @@ Result<RunSummary> RunTrack(const RunRequest& request, const TrackOptions& optio
     if (!opened.ok()) return opened.status();
     model = *std::move(opened);
   }
+
+  if (options.tracker.init.method == InitMethod::kStereo && !(*sequence)->BaselineMm())
+    return Status(ErrorCode::kMismatch,
+                  "a start from a pair of images needs pairs: " + request.input.image_path.string() +
+                      " has no right images with a baseline; choose another Init.method, or give a stereo calibration");
 
   OptionTable table;
   TrackOptions listed = options;

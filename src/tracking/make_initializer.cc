@@ -9,9 +9,10 @@ void InitOptions::List(OptionTable& table) {
   table.BeginGroup("Init", "the first map");
   table.AddChoice("method", &method,
                   "window: all frames since the reference, the scene deforming; gated: waits until two views can carry "
-                  "a map; paper: 3 frames apart, as published; depth: the "
+                  "a map; paper: 3 frames apart, as published; stereo: a pair of images; depth: the "
                   "sequence's own depth image; colmap_model: the points of a COLMAP model");
   monocular.List(table);
+  stereo.List(table);
   depth.List(table);
   model.List(table);
   window.List(table);
@@ -19,10 +20,18 @@ void InitOptions::List(OptionTable& table) {
 
 std::unique_ptr<Initializer> MakeInitializer(const InitOptions& options, Random random) {
   switch (options.method) {
+    case InitMethod::kStereo:
+      return MakeKnownPointsInitializer(
+          {.name = "stereo", .source = "the pair of images", .unit_mm = 1.0, .min_points = options.stereo.min_points},
+          options.monocular.nominal_depth_mm);
     case InitMethod::kDepth:
       return MakeDepthInitializer(options.depth);
     case InitMethod::kColmapModel:
-      return MakeModelInitializer(options.model, options.monocular.nominal_depth_mm);
+      return MakeKnownPointsInitializer({.name = "colmap_model",
+                                         .source = "the model",
+                                         .unit_mm = options.model.unit_mm,
+                                         .min_points = options.model.min_points},
+                                        options.monocular.nominal_depth_mm);
     case InitMethod::kPaper:
       return MakeMonocularInitializer(options.monocular, MonocularGates::kPaper, random);
     case InitMethod::kGated:

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
 
-#include "datasets/rendered_sequence.h"
+#include "support/rendered_sequence.h"
 
 namespace pliant {
 namespace {

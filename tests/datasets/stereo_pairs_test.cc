@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
 
-#include "datasets/rendered_sequence.h"
+#include "support/rendered_sequence.h"
 #include "datasets/sequence_files.h"
 #include "pliant/datasets/check_sequence.h"
 #include "pliant/datasets/convert_sequence.h"

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "pliant/tracking/model_initializer.h"
+#include "pliant/tracking/known_points_initializer.h"
 
 #include <vector>
 
@@ -10,12 +10,12 @@
 namespace pliant {
 namespace {
 
-class ModelInitializer final : public Initializer {
+class KnownPointsInitializer final : public Initializer {
  public:
-  ModelInitializer(const ModelInitOptions& options, double nominal_depth_mm)
-      : options_(options), nominal_depth_mm_(nominal_depth_mm) {}
+  KnownPointsInitializer(const KnownPoints& known, double nominal_depth_mm)
+      : known_(known), nominal_depth_mm_(nominal_depth_mm) {}
 
-  std::string_view name() const override { return "colmap_model"; }
+  std::string_view name() const override { return known_.name; }
   bool TakesKnownPoints() const override { return true; }
 
   InitOutcome Try(const InitInput& input) const override {
@@ -26,23 +26,23 @@ class ModelInitializer final : public Initializer {
     std::vector<Eigen::Vector3d> positions;
     for (const InitPoint& point : outcome.points) positions.push_back(point.position);
     const std::string count = std::to_string(positions.size());
-    const auto scale =
-        options_.unit_mm > 0 ? Result<double>(options_.unit_mm) : NominalScale(positions, nominal_depth_mm_);
-    if (outcome.measured.inliers < options_.min_points || !scale.ok()) {
+    const auto scale = known_.unit_mm > 0 ? Result<double>(known_.unit_mm) : NominalScale(positions, nominal_depth_mm_);
+    if (outcome.measured.inliers < known_.min_points || !scale.ok()) {
       outcome.decision = InitDecision::kNewReference;
-      outcome.reason = "the model has only " + count + " usable points in this image, of at least " +
-                       std::to_string(options_.min_points) + " that a map needs";
+      outcome.reason = std::string(known_.source) + " has only " + count +
+                       " usable points in this image, of at least " + std::to_string(known_.min_points) +
+                       " that a map needs";
       return outcome;
     }
     for (InitPoint& point : outcome.points) point.position *= *scale;
     outcome.decision = InitDecision::kMap;
-    outcome.reason = "first map of " + count + " points from the model";
+    outcome.reason = "first map of " + count + " points from " + std::string(known_.source);
     FillRigidFrames(input, {Rigid3()}, &outcome);  // the reference alone: this start never waits
     return outcome;
   }
 
  private:
-  ModelInitOptions options_;
+  KnownPoints known_;
   double nominal_depth_mm_;
 };
 
@@ -57,8 +57,8 @@ void ModelInitOptions::List(OptionTable& table) {
   table.Add("model_min_points", &min_points, "-", "colmap_model: fewer points in an image make no map", 4, 100000);
 }
 
-std::unique_ptr<Initializer> MakeModelInitializer(const ModelInitOptions& options, double nominal_depth_mm) {
-  return std::make_unique<ModelInitializer>(options, nominal_depth_mm);
+std::unique_ptr<Initializer> MakeKnownPointsInitializer(const KnownPoints& known, double nominal_depth_mm) {
+  return std::make_unique<KnownPointsInitializer>(known, nominal_depth_mm);
 }
 
 }  // namespace pliant

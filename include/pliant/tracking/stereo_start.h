@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// The first map from one rectified pair: corners of the left image, found in the right one along their row, at once and
+// in true millimetres (docs/method.md, eq. S1 to S4). What follows is tracked with the left images alone.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+#include <opencv2/core/mat.hpp>
+
+#include "pliant/base/options.h"
+#include "pliant/image/masks.h"
+#include "pliant/image/pyramid.h"
+#include "pliant/photometric/patch.h"
+
+namespace pliant {
+
+enum class StereoMatcher {
+  kPhotometric,  // correlation along the row, then the tracker's own alignment with gain, bias and shading
+  kSgbm,         // OpenCV's semi-global matching (Hirschmueller, PAMI 2008) of the whole image, read at the corners
+};
+template <>
+struct EnumNames<StereoMatcher> {
+  static constexpr std::array kNames = {std::pair{StereoMatcher::kPhotometric, std::string_view("photometric")},
+                                        std::pair{StereoMatcher::kSgbm, std::string_view("sgbm")}};
+};
+
+struct StereoStartOptions {
+  StereoMatcher matcher = StereoMatcher::kPhotometric;
+  double min_disparity_px = 1;
+  double max_disparity_share = 0.25;  // of the image's width
+  double max_row_px = 1;              // difference of the rows
+  double max_left_right_px = 0.5;     // followed back, it returns so near
+  double min_correlation = 0.7;       // of the best place along the row
+  double max_ambiguity = 0.8;         // 1 - correlation of the best place by that of the second best
+  int min_points = 40;                // fewer matches make no map
+
+  void List(OptionTable& table);  // appended to the group "Init"
+};
+
+// The disparity at each pixel of the left image, x_left - x_right, px; nothing where no match is certain. Images are of
+// one size, rectified. The same input gives the same answer on any number of threads.
+std::vector<std::optional<double>> MatchAlongRows(const ImagePyramid& left, const SupportMask& left_mask,
+                                                  const ImagePyramid& right, const SupportMask& right_mask,
+                                                  std::span<const Eigen::Vector2d> pixels,
+                                                  const StereoStartOptions& options,
+                                                  const LucasKanadeOptions& lucas_kanade, int threads);
+
+}  // namespace pliant

@@ -1,0 +1,21 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// A pair of images as the start of a run.
+#pragma once
+
+#include <vector>
+
+#include <opencv2/core/mat.hpp>
+
+#include "pliant/camera/camera.h"
+#include "pliant/tracking/tracker.h"
+
+namespace pliant {
+
+// Corners of the left image with their depths in mm (docs/method.md, eq. S5), the strongest first; `camera` is the
+// rectified pinhole one of both. Of at most options.corners.max_corners corners those that the right image shows.
+std::vector<PixelDepth> PointsOfPair(const TrackerFrame& left, const cv::Mat& right, const Camera& camera,
+                                     double baseline_mm, const TrackerOptions& options, int threads);
+
+}  // namespace pliant

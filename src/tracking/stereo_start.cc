@@ -1,0 +1,154 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/tracking/stereo_start.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <opencv2/calib3d.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "pliant/base/parallel.h"
+#include "pliant/photometric/lucas_kanade.h"
+
+namespace pliant {
+namespace {
+
+constexpr int kRows = 1;     // above and below that are searched as well
+constexpr int kPeak_px = 2;  // places so near to the best one are that one
+
+int MostDisparity(const StereoStartOptions& options, int width) {
+  return std::max(1, static_cast<int>(options.max_disparity_share * width));
+}
+
+// (S1) Where along its row a patch of the left image resembles the right one most, whole pixels; nothing where too
+// little, or where another place does nearly as much.
+std::optional<double> SearchRow(const cv::Mat& left, const cv::Mat& right, const Eigen::Vector2d& pixel, int patch_size,
+                                const StereoStartOptions& options) {
+  const int half = patch_size / 2;
+  const cv::Point centre(static_cast<int>(std::lround(pixel.x())), static_cast<int>(std::lround(pixel.y())));
+  const cv::Rect patch(centre.x - half, centre.y - half, 2 * half + 1, 2 * half + 1);
+  const int farthest = std::min(MostDisparity(options, left.cols), patch.x);
+  const int nearest = static_cast<int>(std::floor(options.min_disparity_px));
+  const cv::Rect strip(patch.x - farthest, patch.y - kRows, farthest - nearest + patch.width, patch.height + 2 * kRows);
+  const cv::Rect image(0, 0, left.cols, left.rows);
+  if (farthest < nearest || (patch & image) != patch || (strip & image) != strip) return std::nullopt;
+  cv::Mat correlation;  // rows: -kRows to kRows; columns: disparities from `farthest` to `nearest`
+  cv::matchTemplate(right(strip), left(patch), correlation, cv::TM_CCOEFF_NORMED);
+  cv::Mat best_of_column;
+  cv::reduce(correlation, best_of_column, 0, cv::REDUCE_MAX);
+  double best = 0;
+  cv::Point place;
+  cv::minMaxLoc(best_of_column, nullptr, &best, nullptr, &place);
+  if (!(best >= options.min_correlation)) return std::nullopt;
+  double second = -1;
+  for (int column = 0; column < best_of_column.cols; ++column)
+    if (std::abs(column - place.x) > kPeak_px)
+      second = std::max(second, static_cast<double>(best_of_column.at<float>(0, column)));
+  if (1.0 - best >= options.max_ambiguity * (1.0 - second)) return std::nullopt;
+  return farthest - place.x;
+}
+
+struct Side {
+  const ImagePyramid& pyramid;
+  const SupportMask& mask;
+};
+
+std::optional<Pixel> Align(const Side& from, Pixel pixel, const Side& to, Pixel start,
+                           const LucasKanadeOptions& options) {
+  ReferencePatch patch;
+  if (CutReferencePatch(from.pyramid, from.mask, pixel, options, AffineSolution::kWith, &patch) != PatchFailure::kNone)
+    return std::nullopt;
+  const PatchMatch match = AlignPatch(patch, to.pyramid, to.mask, start, {}, AlignmentModel::kAffine, options);
+  if (match.failure != PatchFailure::kNone) return std::nullopt;
+  return match.pixel;
+}
+
+// (S2) to (S4)
+std::optional<double> Refine(const Side& left, const Side& right, const Eigen::Vector2d& pixel, double disparity_px,
+                             const StereoStartOptions& options, const LucasKanadeOptions& lucas_kanade) {
+  const Pixel from{pixel.x(), pixel.y()};
+  const auto found = Align(left, from, right, {from.x - disparity_px, from.y}, lucas_kanade);
+  if (!found || std::abs(found->y - from.y) > options.max_row_px) return std::nullopt;
+  const auto back = Align(right, *found, left, from, lucas_kanade);
+  if (!back || std::hypot(back->x - from.x, back->y - from.y) > options.max_left_right_px) return std::nullopt;
+  const double refined_px = from.x - found->x;
+  if (refined_px < options.min_disparity_px) return std::nullopt;
+  return refined_px;
+}
+
+// Semi-global matching's disparity between four pixels; nothing where one of them has none or they differ.
+std::optional<double> Between(const cv::Mat& disparities, const Eigen::Vector2d& pixel) {
+  constexpr float kStep = 1.0F / 16;
+  constexpr float kMostDifference_px = 1;
+  const int u = static_cast<int>(std::floor(pixel.x()));
+  const int v = static_cast<int>(std::floor(pixel.y()));
+  if (u < 0 || v < 0 || u + 1 >= disparities.cols || v + 1 >= disparities.rows) return std::nullopt;
+  cv::Mat four;
+  disparities(cv::Rect(u, v, 2, 2)).convertTo(four, CV_32F, kStep);
+  double low = 0;
+  double high = 0;
+  cv::minMaxLoc(four, &low, &high);
+  if (low <= 0 || high - low > kMostDifference_px) return std::nullopt;
+  return SampleBilinear(four, pixel.x() - u, pixel.y() - v);
+}
+
+cv::Mat SemiGlobalDisparities(const cv::Mat& left, const cv::Mat& right, const StereoStartOptions& options) {
+  constexpr int kBlock = 5;
+  constexpr int kSmall = 8 * kBlock * kBlock;   // of a change by one, as OpenCV advises
+  constexpr int kLarge = 32 * kBlock * kBlock;  // of a larger one
+  constexpr int kUnique_percent = 10;
+  constexpr int kSpeckle = 100;
+  const int count = (MostDisparity(options, left.cols) + 15) / 16 * 16;
+  const auto matcher = cv::StereoSGBM::create(0, count, kBlock, kSmall, kLarge, /*disp12MaxDiff=*/1,
+                                              /*preFilterCap=*/31, kUnique_percent, kSpeckle, /*speckleRange=*/2);
+  cv::Mat disparities;
+  matcher->compute(left, right, disparities);
+  return disparities;
+}
+
+}  // namespace
+
+void StereoStartOptions::List(OptionTable& table) {
+  table.AddChoice("stereo_matcher", &matcher,
+                  "stereo: photometric, correlation along the row and the tracker's alignment; sgbm, OpenCV's "
+                  "semi-global matching");
+  table.Add("stereo_min_disparity_px", &min_disparity_px, "px", "stereo: smaller disparities are no match", 0.1, 1e4);
+  table.Add("stereo_max_disparity_share", &max_disparity_share, "-",
+            "stereo: nor larger ones than this share of the image's width", 0.001, 1);
+  table.Add("stereo_max_row_px", &max_row_px, "px", "stereo: largest difference of the rows", 0.01, 100);
+  table.Add("stereo_max_left_right_px", &max_left_right_px, "px", "stereo: followed back, a match returns so near",
+            0.01, 100);
+  table.Add("stereo_min_correlation", &min_correlation, "-", "stereo: of a patch with the best place along its row", 0,
+            1);
+  table.Add("stereo_max_ambiguity", &max_ambiguity, "-",
+            "stereo: 1 - correlation of the best place by that of the second best; 1: all are taken", 0, 1);
+  table.Add("stereo_min_points", &min_points, "-", "stereo: fewer matches make no map", 4, 100000);
+}
+
+std::vector<std::optional<double>> MatchAlongRows(const ImagePyramid& left, const SupportMask& left_mask,
+                                                  const ImagePyramid& right, const SupportMask& right_mask,
+                                                  std::span<const Eigen::Vector2d> pixels,
+                                                  const StereoStartOptions& options,
+                                                  const LucasKanadeOptions& lucas_kanade, int threads) {
+  const cv::Mat left_image = left.Level(0);
+  const cv::Mat right_image = right.Level(0);
+  std::vector<std::optional<double>> disparities(pixels.size());
+  if (options.matcher == StereoMatcher::kSgbm) {
+    const cv::Mat dense = SemiGlobalDisparities(left_image, right_image, options);
+    std::transform(pixels.begin(), pixels.end(), disparities.begin(),
+                   [&](const Eigen::Vector2d& pixel) { return Between(dense, pixel); });
+    return disparities;
+  }
+  ParallelFor(static_cast<int>(pixels.size()), threads, [&](int i) {
+    const Eigen::Vector2d& pixel = pixels[static_cast<std::size_t>(i)];
+    const auto whole = SearchRow(left_image, right_image, pixel, lucas_kanade.patch_size, options);
+    if (whole)
+      disparities[static_cast<std::size_t>(i)] =
+          Refine({left, left_mask}, {right, right_mask}, pixel, *whole, options, lucas_kanade);
+  });
+  return disparities;
+}
+
+}  // namespace pliant

@@ -1,0 +1,103 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Runs that start from a pair of images.
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "pliant/base/statistics.h"
+#include "pliant/datasets/convert_sequence.h"
+#include "pliant/io/trajectory.h"
+#include "pliant/pipeline/track.h"
+#include "support/rendered_sequence.h"
+#include "support/test_folder.h"
+
+namespace pliant {
+namespace {
+
+using testing::HasSubstr;
+
+class Observer final : public TrackObserver {
+ public:
+  void OnStart(int /*frames*/) override {}
+  void OnFrame(const FrameReport& report) override { reports.push_back(report); }
+  std::vector<FrameReport> reports;
+};
+
+TrackOptions StereoOptions() {
+  TrackOptions options = MakeTrackOptions(Preset::kDefault);
+  options.tracker.init.method = InitMethod::kStereo;
+  options.threads = 2;
+  return options;
+}
+
+class StereoRun : public testing::Test {
+ protected:
+  std::string Sequence(bool mono) const {
+    RenderedSequence rendered;
+    rendered.mono = mono;
+    const std::string path = folder_.Path(mono ? "mono" : "stereo");
+    EXPECT_TRUE(ConvertSequence(rendered, path).ok());
+    return path;
+  }
+
+  TestFolder folder_;
+};
+
+TEST_F(StereoRun, HasTrueMillimetresFromTheFirstFrameOn) {
+  RunRequest request;
+  request.input.image_path = Sequence(/*mono=*/false);
+  request.output_path = folder_.Path("run");
+  Observer observer;
+  TrackObserver* const observers[] = {&observer};
+  const auto summary = RunTrack(request, StereoOptions(), observers);
+  ASSERT_TRUE(summary.ok()) << summary.status().message();
+  EXPECT_EQ(summary->status, RunStatus::kCompleted) << summary->note;
+  ASSERT_EQ(observer.reports.size(), Rendered().frames.size());
+  std::vector<double> errors;  // relative, of depths
+  for (std::size_t k = 0; k < observer.reports.size(); ++k) {
+    const FrameReport& report = observer.reports[k];
+    ASSERT_EQ(report.state, TrackingState::kTracking) << k;
+    for (const PointObservation& seen : report.observations) {
+      const auto depth_mm = SampleBilinear(Rendered().frames[k].depth, seen.pixel.x(), seen.pixel.y());
+      if (depth_mm && *depth_mm > 0)
+        errors.push_back(std::abs((*report.cam_from_world * seen.position).z() / *depth_mm - 1.0));
+    }
+    // The reference is the world, and the camera's way is in mm as well.
+    const Rigid3 truth = Rendered().world_from_cam[0].Inverse() * Rendered().world_from_cam[k];
+    EXPECT_LT((report.cam_from_world->Inverse().translation - truth.translation).norm(), 2.0) << k;
+  }
+  EXPECT_GT(observer.reports[0].observations.size(), 60U);
+  EXPECT_LT(Median(errors), 0.015);
+}
+
+TEST_F(StereoRun, OfASequenceWithoutPairsIsRefusedBeforeItStarts) {
+  RunRequest request;
+  request.input.image_path = Sequence(/*mono=*/true);
+  request.output_path = folder_.Path("run");
+  const auto summary = RunTrack(request, StereoOptions(), {});
+  ASSERT_FALSE(summary.ok());
+  EXPECT_EQ(summary.status().code(), ErrorCode::kMismatch);
+  EXPECT_THAT(summary.status().message(), HasSubstr("needs pairs"));
+  EXPECT_FALSE(std::filesystem::exists(request.output_path));
+}
+
+TEST_F(StereoRun, FailsWithItsReasonWhereARightImageCannotBeRead) {
+  RunRequest request;
+  request.input.image_path = Sequence(/*mono=*/false);
+  request.output_path = folder_.Path("run");
+  std::filesystem::resize_file(std::filesystem::path(request.input.image_path) / "right/000000.png", 500);
+  const auto summary = RunTrack(request, StereoOptions(), {});
+  ASSERT_TRUE(summary.ok()) << summary.status().message();
+  EXPECT_EQ(summary->status, RunStatus::kFailed);
+  EXPECT_THAT(summary->note, HasSubstr("right/000000.png is truncated"));
+}
+
+}  // namespace
+}  // namespace pliant
