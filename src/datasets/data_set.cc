@@ -220,6 +220,7 @@ Result<DataSet> Calibrated(const SequenceRequest& request, std::unique_ptr<Image
   if (images->fps()) calibration.fps = *images->fps();
   if (file->depth_scale) calibration.depth_scale = *file->depth_scale;
   calibration.baseline_mm = file->baseline_mm;
+  calibration.unit_mm = file->unit_mm;
   return DataSet{.calibration = std::move(calibration), .images = std::move(images), .mask_path = request.mask_path};
 }
 

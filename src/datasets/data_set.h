@@ -33,6 +33,7 @@ struct SourceCalibration {
   double fps = 30.0;                                 // of sources that carry no time of their own
   double depth_scale = 1.0;                          // mm a unit of the depth images
   std::optional<double> baseline_mm = std::nullopt;  // of rectified pairs
+  double unit_mm = 1.0;                              // of the poses beside the file
 };
 
 struct DataSet {

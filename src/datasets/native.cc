@@ -72,7 +72,10 @@ Status AddTimesAndTruth(const fs::path& folder, DataSet* data_set) {
     const Result<std::vector<TimedPose>> poses = ReadTumTrajectory(file.string());
     if (!poses.ok()) return poses.status();
     if (Status status = CheckLineCount(file, "poses", poses->size(), count); !status.ok()) return status;
-    for (const TimedPose& pose : *poses) data_set->world_from_cam.emplace_back(pose.world_from_cam);
+    const double unit_mm = data_set->calibration.unit_mm;
+    for (const TimedPose& pose : *poses)
+      data_set->world_from_cam.emplace_back(
+          Rigid3(pose.world_from_cam.rotation, unit_mm * pose.world_from_cam.translation));
   }
   return Status::Ok();
 }

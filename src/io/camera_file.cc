@@ -85,8 +85,13 @@ Result<CameraFile> FromPliant(const std::string& path, const YAML::Node& root) {
     if (field->given && !(field->value > 0.0))
       return invalid(Quoted(path), std::string(field->name) + " must be positive");
 
-  if (const YAML::Node unit = root["unit"]; unit && !(unit.IsScalar() && unit.Scalar() == "mm"))
-    return invalid(At(path, unit), "unit must be mm; scale depth_scale, baseline and groundtruth.txt to millimetres");
+  double unit_mm = 1.0;
+  if (const YAML::Node unit = root["unit"]; unit) {
+    if (!unit.IsScalar() || (unit.Scalar() != "mm" && unit.Scalar() != "m"))
+      return invalid(At(path, unit),
+                     "unit must be mm or m; scale depth_scale, baseline and groundtruth.txt to one of them");
+    unit_mm = unit.Scalar() == "m" ? 1000.0 : 1.0;
+  }
 
   const auto params = Params(path, root["params"]);
   if (!params.ok()) return params.status();
@@ -96,8 +101,9 @@ Result<CameraFile> FromPliant(const std::string& path, const YAML::Node& root) {
   if (!camera.ok()) return invalid(Quoted(path), camera.status().message());
   CameraFile file{std::move(camera).value()};
   if (fps.given) file.fps = fps.value;
-  if (depth_scale.given) file.depth_scale = depth_scale.value;
-  if (baseline.given) file.baseline_mm = baseline.value;
+  if (depth_scale.given) file.depth_scale = unit_mm * depth_scale.value;
+  if (baseline.given) file.baseline_mm = unit_mm * baseline.value;
+  file.unit_mm = unit_mm;
   return file;
 }
 

@@ -10,12 +10,14 @@
 
 #include <opencv2/core.hpp>
 
+#include "pipeline/cloud_depth.h"
 #include "pipeline/frames_before.h"
 #include "pipeline/model_start.h"
 #include "pipeline/simulation_truth.h"
 #include "pipeline/stereo_points.h"
 #include "pliant/base/prefetcher.h"
 #include "pliant/base/version.h"
+#include "pliant/io/point_cloud.h"
 
 namespace pliant {
 namespace {
@@ -27,9 +29,42 @@ struct ReadFrame {
   Status depth;  // of reading its depth image, or its right one; matters only while the tracker wants depth
 };
 
+// What a run starts from besides its images.
+struct RunStart {
+  std::optional<ModelStart> model;
+  cv::Mat cloud_depth_mm;  // of the first frame; empty: there is no cloud
+  int first_frame_idx = 0;
+};
+
+Result<RunStart> ReadStart(const RunRequest& request, const InitOptions& init, const Sequence& sequence) {
+  RunStart start;
+  start.first_frame_idx = request.input.start;
+  if (init.method == InitMethod::kColmapModel) {
+    auto model = ModelStart::Open(init.model.path, sequence.camera());
+    if (!model.ok()) return model.status();
+    start.model = *std::move(model);
+  }
+  if (init.method == InitMethod::kDepth && !init.depth.cloud_path.empty()) {
+    auto points = ReadPointCloud(init.depth.cloud_path);
+    if (!points.ok()) return points.status();
+    for (Eigen::Vector3d& point : *points) point *= init.depth.cloud_unit_mm;
+    start.cloud_depth_mm = DepthOfCloud(*points, sequence.camera());
+    if (cv::countNonZero(start.cloud_depth_mm) == 0)
+      return Status(ErrorCode::kMismatch,
+                    "the point cloud '" + init.depth.cloud_path +
+                        "' has nothing in front of the camera and in its image; give it in the first frame's camera, x "
+                        "right, y down, z ahead");
+  }
+  if (init.method == InitMethod::kStereo && !sequence.BaselineMm())
+    return Status(ErrorCode::kMismatch,
+                  "a start from a pair of images needs pairs: " + request.input.image_path.string() +
+                      " has no right images with a baseline; choose another Init.method, or give a stereo calibration");
+  return start;
+}
+
 // Reads and prepares the next frame; nothing at the end.
 std::optional<Result<ReadFrame>> NextFrame(Sequence& sequence, const TrackerOptions& options, int threads,
-                                           const ModelStart* model, const std::atomic<bool>& wants_depth) {
+                                           const RunStart& start, const std::atomic<bool>& wants_depth) {
   auto next = sequence.Next();
   if (!next.ok()) return next.status();
   if (!next->has_value()) return std::nullopt;
@@ -37,7 +72,9 @@ std::optional<Result<ReadFrame>> NextFrame(Sequence& sequence, const TrackerOpti
   ReadFrame read{PrepareFrame(frame.frame_idx, frame.name, frame.timestamp_s, frame.image, frame.mask, options), {}};
   if (!wants_depth) return read;
   if (options.init.method == InitMethod::kColmapModel) {
-    read.frame.known_points = model->PointsIn(frame.name);
+    read.frame.known_points = start.model->PointsIn(frame.name);
+  } else if (!start.cloud_depth_mm.empty()) {
+    if (frame.frame_idx == start.first_frame_idx) read.frame.depth_mm = start.cloud_depth_mm;
   } else if (options.init.method == InitMethod::kStereo) {
     const auto right = sequence.Right();
     read.depth = right.status();
@@ -102,12 +139,12 @@ Ending AtTheEnd(const Tracker& tracker, int frames, const std::string& last_note
   return {RunStatus::kFailed, "the sequence ended without a first map: " + last_note};
 }
 
-Ending TrackFrames(Sequence& sequence, const RunRequest& request, const TrackOptions& options, const ModelStart* model,
+Ending TrackFrames(Sequence& sequence, const RunRequest& request, const TrackOptions& options, const RunStart& start,
                    Tracker& tracker, Recorder& recorder) {
   // Once there is a map no depth image is read any more; those read ahead in the meantime change nothing.
   std::atomic<bool> wants_depth = tracker.WantsDepth();
   Prefetcher<Result<ReadFrame>> frames(
-      [&] { return NextFrame(sequence, options.tracker, options.threads, model, wants_depth); },
+      [&] { return NextFrame(sequence, options.tracker, options.threads, start, wants_depth); },
       options.threads > 1 ? kFramesAhead : 0);
   std::string last_note = "the sequence has no frames";
   int count = 0;
@@ -133,12 +170,11 @@ Ending TrackFrames(Sequence& sequence, const RunRequest& request, const TrackOpt
   return AtTheEnd(tracker, count, last_note);
 }
 
-Ending TrackSequence(Sequence& sequence, const RunRequest& request, const TrackOptions& options,
-                     const ModelStart* model, TrackingTruth* truth, RunWriter& writer,
-                     std::span<TrackObserver* const> observers) {
+Ending TrackSequence(Sequence& sequence, const RunRequest& request, const TrackOptions& options, const RunStart& start,
+                     TrackingTruth* truth, RunWriter& writer, std::span<TrackObserver* const> observers) {
   Tracker tracker(sequence.camera(), options.tracker, static_cast<std::uint64_t>(options.seed), options.threads, truth);
   Recorder recorder(writer, observers, {request.input, sequence.camera(), options});
-  const Ending ending = TrackFrames(sequence, request, options, model, tracker, recorder);
+  const Ending ending = TrackFrames(sequence, request, options, start, tracker, recorder);
   // Whatever the ending: the frames that waited for a map are written too.
   Status recorded = recorder.Record(tracker.Finish());
   if (recorded.ok()) recorded = recorder.Finish();
@@ -198,17 +234,8 @@ Result<RunSummary> RunTrack(const RunRequest& request, const TrackOptions& optio
     truth = *std::move(opened);
   }
 
-  std::optional<ModelStart> model;
-  if (options.tracker.init.method == InitMethod::kColmapModel) {
-    auto opened = ModelStart::Open(options.tracker.init.model.path, (*sequence)->camera());
-    if (!opened.ok()) return opened.status();
-    model = *std::move(opened);
-  }
-
-  if (options.tracker.init.method == InitMethod::kStereo && !(*sequence)->BaselineMm())
-    return Status(ErrorCode::kMismatch,
-                  "a start from a pair of images needs pairs: " + request.input.image_path.string() +
-                      " has no right images with a baseline; choose another Init.method, or give a stereo calibration");
+  const auto start = ReadStart(request, options.tracker.init, **sequence);
+  if (!start.ok()) return start.status();
 
   OptionTable table;
   TrackOptions listed = options;
@@ -229,8 +256,7 @@ Result<RunSummary> RunTrack(const RunRequest& request, const TrackOptions& optio
     for (const std::string& warning : (*sequence)->Warnings()) observer->OnWarning(warning);
     observer->OnStart((*sequence)->size());
   }
-  const Ending ending =
-      TrackSequence(**sequence, request, usable, model ? &*model : nullptr, truth.get(), *writer, observers);
+  const Ending ending = TrackSequence(**sequence, request, usable, *start, truth.get(), *writer, observers);
   const Status finished = writer->Finish(ending.status, ending.note);
   RunSummary summary = writer->summary();
   if (!finished.ok()) {

@@ -47,6 +47,9 @@ void TrackerOptions::List(OptionTable& table) {
             "instead of Deformation.sigma_mm after a start from metric depth, as published", 0.1, 1e6);
   table.AddChoice("neighbor_agreement", &neighbor_agreement, "drop points that move as none of their neighbours does");
   agreement.List(table);
+  table.AddChoice(
+      "camera_motion", &camera_motion,
+      "free: estimated in every frame; none: the camera is known to stand still, all motion is the scene's");
   table.AddChoice("find_lost", &find_lost,
                   "look for points that were lost where the points around them took them; needs adaptive patches");
   table.Add("max_lost_points", &max_lost_points, "-", "lost points that are remembered; memory grows with them", 0,
@@ -380,7 +383,8 @@ void Tracker::CreateMap(const InitOutcome& outcome) {
   now_->before_last_cam_from_world =
       outcome.frames.size() >= 2 ? outcome.frames[outcome.frames.size() - 2].cam_from_world : now_->last_cam_from_world;
   KeepCandidates(outcome);
-  if (outcome.refinable && !oracle_->gives_poses()) now_->rigid_history.Start(std::move(init_frames_));
+  if (outcome.refinable && !oracle_->gives_poses() && options_.camera_motion == CameraMotion::kFree)
+    now_->rigid_history.Start(std::move(init_frames_));
   init_frames_.clear();
   ++maps_made_;
   Apply(TrackingEvent::kMapCreated);

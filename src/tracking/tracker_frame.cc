@@ -19,12 +19,12 @@ namespace pliant {
 // One frame, as in the paper; the names in brackets are those of docs/method.md.
 void Tracker::TrackFrame(const TrackerFrame& frame, FrameReport* report) {
   Rigid3 predicted = PredictCameraPose(now_->before_last_cam_from_world, now_->last_cam_from_world);  // (E6)
-  const std::optional<Rigid3> true_pose = oracle_->Pose(frame.frame_idx);
-  if (true_pose) predicted = *true_pose;
+  const std::optional<Rigid3> known_pose = KnownPose(frame.frame_idx);
+  if (known_pose) predicted = *known_pose;
   Followed followed;
   {
     const StageTimer timer(report, "photometric");
-    if (state_ == TrackingState::kTracking || true_pose)
+    if (state_ == TrackingState::kTracking || known_pose)
       followed = FollowPoints(frame, PredictPixels(predicted));  // (P1)
     else
       followed = Relocalize(frame, &predicted);  // (R3)
@@ -33,7 +33,7 @@ void Tracker::TrackFrame(const TrackerFrame& frame, FrameReport* report) {
   if (report->tracked < options_.min_points) return ReportLost(frame, Found(report->tracked), report);
 
   Rigid3 pose = predicted;
-  if (!true_pose) {
+  if (!known_pose) {
     const StageTimer timer(report, "pose");
     const auto estimate =
         EstimateCameraPose(camera_, followed.positions, followed.pixels, predicted, options_.pose);  // (E7)
@@ -59,7 +59,7 @@ void Tracker::TrackFrame(const TrackerFrame& frame, FrameReport* report) {
     const StageTimer timer(report, "joint");
     solution = SolveFrameProblem(
         camera_,
-        {followed.positions, followed.pixels, graph.edges, pose, true_pose ? FramePose::kHeld : FramePose::kEstimated},
+        {followed.positions, followed.pixels, graph.edges, pose, known_pose ? FramePose::kHeld : FramePose::kEstimated},
         options_.problem);  // (E5)
   }
   if (solution.ok()) {
@@ -83,6 +83,12 @@ void Tracker::TrackFrame(const TrackerFrame& frame, FrameReport* report) {
   now_->point_tracker.Keep();
   report->note = WithFault(report->note, ImageFault(frame, now_->previous));
   now_->previous = frame;
+}
+
+// Of the truth, or of a camera that stands still.
+std::optional<Rigid3> Tracker::KnownPose(int frame_idx) const {
+  if (options_.camera_motion == CameraMotion::kNone) return now_->last_cam_from_world;
+  return oracle_->Pose(frame_idx);
 }
 
 // Where each landmark is expected (P6): its last pixel, moved as the map says that camera and point move it.

@@ -59,8 +59,11 @@ void Tracker::RefineMap(FrameReport* report) {
   report->note = "the map was refined: " + outcome.reason;
 }
 
-// Tracks from the truth are those of the map's points.
-bool Tracker::GrowsMap() const { return options_.growth.grow == Switch::kOn && !oracle_->gives_tracks(); }
+// Tracks from the truth are those of the map's points; a camera that stands still tells nothing of a new one's depth.
+bool Tracker::GrowsMap() const {
+  return options_.growth.grow == Switch::kOn && options_.camera_motion == CameraMotion::kFree &&
+         !oracle_->gives_tracks();
+}
 
 // Candidates are followed with the pose and the deformation that the map has given; those that are certain enter it.
 void Tracker::GrowMap(const TrackerFrame& frame, FrameReport* report) {

@@ -3,8 +3,13 @@
 
 // Real recordings, where they are at hand: the tests are skipped where they are not.
 #include <gmock/gmock.h>
+#include <opencv2/core.hpp>
 
 #include "e2e/e2e_support.h"
+#include "pliant/base/statistics.h"
+#include "pliant/image/pyramid.h"
+#include "pliant/io/camera_file.h"
+#include "pliant/io/point_cloud.h"
 
 namespace pliant {
 namespace {
@@ -42,6 +47,82 @@ TEST(Recordings, TenNearlyStillImagesSayWhyTheyCarryNoMap) {
     EXPECT_THAT(summary.note, testing::HasSubstr("parallax"));
   }
   EXPECT_TRUE(ReadRun(folder.Path("run")).ok());
+}
+
+// What a run has of one frame.
+std::vector<PointObservation> ObservationsOf(const std::string& run, int frame_idx) {
+  auto reader = ObservationReader::Open(run);
+  EXPECT_TRUE(reader.ok()) << reader.status().message();
+  while (reader.ok()) {
+    const auto frame = reader->Next();
+    EXPECT_TRUE(frame.ok()) << frame.status().message();
+    if (!frame.ok() || !frame->has_value()) break;
+    if ((*frame)->frame_idx == frame_idx) return (*frame)->observations;
+  }
+  return {};
+}
+
+// Between four pixels of an 8-bit disparity map; nothing where one has none.
+std::optional<double> DisparityAt(const cv::Mat& disparities, const Eigen::Vector2d& pixel) {
+  const int u = static_cast<int>(pixel.x());
+  const int v = static_cast<int>(pixel.y());
+  if (u < 0 || v < 0 || u + 1 >= disparities.cols || v + 1 >= disparities.rows) return std::nullopt;
+  double least = 0;
+  cv::minMaxLoc(disparities(cv::Rect(u, v, 2, 2)), &least);
+  if (least <= 0) return std::nullopt;
+  return SampleBilinear(disparities, pixel.x(), pixel.y());
+}
+
+TEST(Recordings, TheStereoMapOfThePorcinePairIsThatOfItsDisparities) {
+  const std::string folder_path = RecordingOrSkip("porcine_stereo");
+  if (folder_path.empty()) GTEST_SKIP() << "no recordings at " << PLIANT_TEST_RECORDINGS;
+  const cv::Mat disparities = cv::imread(folder_path + "/disparity_0000.png", cv::IMREAD_GRAYSCALE);
+  ASSERT_FALSE(disparities.empty());
+  const TestFolder folder;
+  TrackOptions options;
+  options.tracker.init.method = InitMethod::kStereo;
+  const RunSummary summary = TrackSequenceAt(folder_path, folder.Path("run"), options);
+  EXPECT_EQ(summary.frames_tracked, 10) << summary.note;
+  std::vector<double> errors;
+  for (const PointObservation& seen : ObservationsOf(folder.Path("run"), 0)) {
+    constexpr double kFocalBaseline = 1120.2260379 * 4.1434591;
+    if (const auto disparity = DisparityAt(disparities, seen.pixel))
+      errors.push_back(std::abs(seen.position.z() * *disparity / kFocalBaseline - 1.0));
+  }
+  ASSERT_GT(errors.size(), 200U);
+  EXPECT_LT(Median(errors), 0.01);
+}
+
+TEST(Recordings, TheClothIsTrackedFromItsFirstCloudBeforeACameraThatStandsStill) {
+  const std::string folder_path = RecordingOrSkip("cloth");
+  if (folder_path.empty()) GTEST_SKIP() << "no recordings at " << PLIANT_TEST_RECORDINGS;
+  const TestFolder folder;
+  TrackOptions options;
+  options.tracker.init.method = InitMethod::kDepth;
+  options.tracker.init.depth.cloud_path = folder_path + "/clouds/000000.npy";
+  options.tracker.init.depth.cloud_unit_mm = 1000;
+  options.tracker.camera_motion = CameraMotion::kNone;
+  options.tracker.problem.edge_length = Switch::kOn;
+  const RunSummary summary = TrackSequenceAt(folder_path, folder.Path("run"), options);
+  EXPECT_EQ(summary.status, RunStatus::kCompleted) << summary.note;
+  EXPECT_EQ(summary.frames_tracked, 50);
+  const auto camera = ReadCamera(folder_path + "/camera.yaml");
+  ASSERT_TRUE(camera.ok()) << camera.status().message();
+  const auto cloud = ReadPointCloud(folder_path + "/clouds/000049.npy");
+  ASSERT_TRUE(cloud.ok()) << cloud.status().message();
+  std::vector<double> errors;  // along the rays, by the point of the cloud that is nearest in the image
+  for (const PointObservation& seen : ObservationsOf(folder.Path("run"), 49)) {
+    double nearest_px = 3.0;
+    double depth_mm = 0;
+    for (const Eigen::Vector3d& point : *cloud)
+      if (const auto pixel = camera->Project(point); pixel && (*pixel - seen.pixel).norm() < nearest_px) {
+        nearest_px = (*pixel - seen.pixel).norm();
+        depth_mm = 1000.0 * point.z();
+      }
+    if (depth_mm > 0) errors.push_back(std::abs(seen.position.z() / depth_mm - 1.0));
+  }
+  ASSERT_GT(errors.size(), 300U);
+  EXPECT_LT(Median(errors), 0.02);
 }
 
 }  // namespace

@@ -43,6 +43,18 @@ TEST(CameraFile, LeavesOutWhatIsNotGiven) {
   EXPECT_FALSE(read->fps || read->depth_scale || read->baseline_mm);
 }
 
+TEST(CameraFile, InMetresIsReadInMillimetres) {
+  const TestFolder folder;
+  const auto read = ReadCameraFile(
+      folder.Write("c.yaml",
+                   "model: PINHOLE\nwidth: 64\nheight: 48\nparams: [50, 51, 32, 24]\ndepth_scale: 0.0002\nbaseline: "
+                   "0.11\nunit: m\n"));
+  ASSERT_TRUE(read.ok()) << read.status().message();
+  EXPECT_DOUBLE_EQ(read->depth_scale.value(), 0.2);
+  EXPECT_DOUBLE_EQ(read->baseline_mm.value(), 110);
+  EXPECT_EQ(read->unit_mm, 1000);
+}
+
 struct BadFile {
   std::string label;
   std::string name;
@@ -79,8 +91,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadFile{"Key", "c.yaml", "model: PINHOLE\nwidth: 64\nheight: 48\nparams: [1, 2, 3, 4]\nbase: 3\n", ":5: "},
         BadFile{"Twice", "c.yaml", "model: PINHOLE\nwidth: 64\nwidth: 64\nheight: 48\nparams: [1, 2, 3, 4]\n", "twice"},
         BadFile{"Fps", "c.yaml", "model: PINHOLE\nwidth: 64\nheight: 48\nparams: [50, 50, 32, 24]\nfps: 0\n", "fps"},
-        BadFile{"Unit", "c.yaml", "model: PINHOLE\nwidth: 64\nheight: 48\nparams: [50, 50, 32, 24]\nunit: m\n",
-                ":5: unit must be mm"},
+        BadFile{"Unit", "c.yaml", "model: PINHOLE\nwidth: 64\nheight: 48\nparams: [50, 50, 32, 24]\nunit: inch\n",
+                ":5: unit must be mm or m"},
         BadFile{"ColmapText", "cameras.txt", "# x\n1 PINHOLE 64 48 1 2 nan 4\n",
                 "camera 1: the PINHOLE camera has a parameter that is not a finite number: number 3"},
         BadFile{"ColmapModel", "cameras.txt", "1 FOV 64 48 1 2 3 4 5\n", "camera model FOV is not one of Pliant's"},

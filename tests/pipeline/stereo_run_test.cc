@@ -77,6 +77,28 @@ TEST_F(StereoRun, HasTrueMillimetresFromTheFirstFrameOn) {
   EXPECT_LT(Median(errors), 0.015);
 }
 
+TEST_F(StereoRun, KeepsACameraWhereItIsSaidToStandStill) {
+  RunRequest request;
+  request.input.image_path = Sequence(/*mono=*/false);
+  request.input.end = 8;
+  request.output_path = folder_.Path("run");
+  TrackOptions options = StereoOptions();
+  options.tracker.camera_motion = CameraMotion::kNone;
+  Observer observer;
+  TrackObserver* const observers[] = {&observer};
+  const auto summary = RunTrack(request, options, observers);
+  ASSERT_TRUE(summary.ok()) << summary.status().message();
+  ASSERT_EQ(observer.reports.size(), 8U);
+  for (const FrameReport& report : observer.reports) {
+    ASSERT_EQ(report.state, TrackingState::kTracking);
+    EXPECT_EQ(report.cam_from_world->translation.norm(), 0.0);
+    EXPECT_EQ(RotationAngle(report.cam_from_world->rotation), 0.0);
+    EXPECT_TRUE(report.frame_idx == 0 || report.new_points.empty()) << "nothing tells the depth of a new point";
+  }
+  // All motion is the scene's: the points are where the last image has them.
+  EXPECT_LT(observer.reports.back().median_reprojection_error_px, 0.5);
+}
+
 TEST_F(StereoRun, OfASequenceWithoutPairsIsRefusedBeforeItStarts) {
   RunRequest request;
   request.input.image_path = Sequence(/*mono=*/true);

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // Calibration files. Three kinds are recognised by what they contain, whatever they are called:
-// - Pliant's camera.yaml: model, width, height, params, and optionally fps, depth_scale, baseline, unit (mm,
-//   the only one there is);
+// - Pliant's camera.yaml: model, width, height, params, and optionally fps, depth_scale, baseline, unit (mm, or m: of
+//   depth_scale, baseline and the poses beside it, which become mm);
 // - COLMAP's cameras.txt and cameras.bin, whose first pixel's centre is (0.5, 0.5): the half pixel is taken off here;
 // - OpenCV's calibrations, YAML or XML: a camera matrix (M1, K1, K, M, camera_matrix, cameraMatrix, ...), distortion
 //   coefficients (D1, D, distortion_coefficients, distCoeffs, ...) and, where they are written, the image size and
@@ -38,6 +38,7 @@ struct CameraFile {
   std::optional<double> depth_scale = std::nullopt;  // mm per unit of a depth image
   // The right camera's centre is at +baseline on the left one's x axis.
   std::optional<double> baseline_mm = std::nullopt;
+  double unit_mm = 1.0;  // of the poses beside the file, mm
   // OpenCV's k3 to k6 have no place in the OPENCV model. Where they are small, k1 and k2 are fitted again to the whole
   // distortion over the image, and this is the largest difference that is left, px; 0: nothing had to be fitted. Above
   // kLargestRefitPx the file is refused.

@@ -44,6 +44,17 @@ class LocalBrightness;
 class OracleAnswers;
 struct DescribedImage;
 
+// What is known of the camera's way after the first map.
+enum class CameraMotion {
+  kFree,  // nothing: its pose is estimated in every frame
+  kNone,  // it stands still
+};
+template <>
+struct EnumNames<CameraMotion> {
+  static constexpr std::array kNames = {std::pair{CameraMotion::kFree, std::string_view("free")},
+                                        std::pair{CameraMotion::kNone, std::string_view("none")}};
+};
+
 struct TrackerOptions {
   CornerOptions corners;
   MaskOptions masks;
@@ -58,6 +69,7 @@ struct TrackerOptions {
   OracleOptions oracle;
 
   double sigma_metric_mm = 55.0;  // instead of graph.sigma_mm after a start from metric depth, as published
+  CameraMotion camera_motion = CameraMotion::kFree;
   Switch neighbor_agreement = Switch::kOn;
   Switch find_lost = Switch::kOn;       // points that were lost are looked for where their neighbours took them
   int max_searches = 200;               // a frame, for lost points
@@ -168,6 +180,7 @@ class Tracker {
   bool IsBlurred(const TrackerFrame& frame) const;
   std::vector<PointTrack> TrackPixelsIntoBlur(const TrackerFrame& frame,
                                               const std::vector<PointPrediction>& predictions) const;
+  std::optional<Rigid3> KnownPose(int frame_idx) const;
   std::vector<PointPrediction> PredictPixels(const Rigid3& predicted_cam_from_world) const;
   Followed FollowPoints(const TrackerFrame& frame, const std::vector<PointPrediction>& predictions);
   int FindLost(const TrackerFrame& frame, const Rigid3& cam_from_world, Followed* followed);
