@@ -159,6 +159,14 @@ int ConvertCommand(std::span<const std::string> args) {
     return !stop;
   });
   if (!summary.ok()) return line.Failure(summary.status().message());
+  for (const std::string& warning : (*sequence)->Warnings()) SayError(kConvertManual.command, "warning: " + warning);
+  if (summary->poses == 0 && summary->first_without_pose > arguments.start)
+    SayError(kConvertManual.command,
+             "warning: frame " + std::to_string(summary->first_without_pose) +
+                 " has no pose, so none are written; convert the frames before it by themselves");
+  if (summary->clipped_depths > 0)
+    SayError(kConvertManual.command, "warning: " + std::to_string(summary->clipped_depths) +
+                                         " pixels are too far away for 16 bits and have no depth");
   if (!quiet)
     std::cout << Text("%d frames, %d pairs, %d masks, %d depth images, %d poses in ", summary->frames, summary->right,
                       summary->masks, summary->depths, summary->poses)

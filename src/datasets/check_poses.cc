@@ -56,9 +56,10 @@ constexpr Meaning kAxes[] = {
 };
 
 std::optional<float> Sample(const cv::Mat& image, const Eigen::Vector2d& pixel) {
-  const int u = static_cast<int>(std::floor(pixel.x()));
-  const int v = static_cast<int>(std::floor(pixel.y()));
-  if (u < 0 || v < 0 || u + 1 >= image.cols || v + 1 >= image.rows) return std::nullopt;
+  if (!(pixel.x() >= 0 && pixel.y() >= 0 && pixel.x() < image.cols - 1 && pixel.y() < image.rows - 1))
+    return std::nullopt;
+  const int u = static_cast<int>(pixel.x());
+  const int v = static_cast<int>(pixel.y());
   const auto a = static_cast<float>(pixel.x() - u);
   const auto b = static_cast<float>(pixel.y() - v);
   const float* upper = image.ptr<float>(v);

@@ -19,6 +19,7 @@ namespace {
 // From a base frame to those that are compared with it: near ones overlap in any case, far ones tell readings apart.
 constexpr int kGaps[] = {1, 4, 12};
 constexpr double kMostRowError_px = 1.0;
+constexpr int kLeastMatches = 20;         // fewer say nothing
 constexpr double kMostDepthError = 0.25;  // of the ratio
 // Readings that fit less than this do not fit; one that fits by this much less than the best one is wrong.
 constexpr double kLeastCorrelation = 0.25;
@@ -60,7 +61,8 @@ Result<SequenceCheck> CheckSequence(Sequence& sequence, const CheckOptions& opti
   SequenceCheck check;
   std::map<int, PosedImage> images;
   StereoMatches matches;
-  for (int position = 0;; ++position) {
+  const int last = wanted.empty() ? (bases.empty() ? -1 : bases.back()) : *wanted.rbegin();
+  for (int position = 0; position <= last; ++position) {
     auto frame = sequence.Next();
     if (!frame.ok()) return frame.status();
     if (!frame->has_value()) break;
@@ -103,15 +105,16 @@ Result<SequenceCheck> CheckSequence(Sequence& sequence, const CheckOptions& opti
   }
   if (matches.count() > 0) {
     const StereoCheck& stereo = check.stereo.emplace(matches.Check());
-    if (stereo.share_right_way < 0.5)
+    const bool enough = stereo.matches >= kLeastMatches;
+    if (enough && stereo.share_right_way < 0.5)
       check.wrong.push_back("left and right are swapped: of " + std::to_string(stereo.matches) + " points " +
                             Number("%.0f", 100.0 * (1.0 - stereo.share_right_way)) +
                             " % lie farther right in the right image; exchange the images");
-    if (stereo.median_row_error_px > kMostRowError_px)
+    if (enough && stereo.median_row_error_px > kMostRowError_px)
       check.wrong.push_back("the pairs are not rectified: the rows of " + std::to_string(stereo.matches) +
                             " points differ by " + Number("%.1f", stereo.median_row_error_px) +
                             " px in the median; give the calibration of these cameras");
-    if (stereo.depth_ratio && std::abs(std::log(*stereo.depth_ratio)) > std::log1p(kMostDepthError))
+    if (enough && stereo.depth_ratio && std::abs(std::log(*stereo.depth_ratio)) > std::log1p(kMostDepthError))
       check.wrong.push_back("depth and baseline disagree: the depth images say " + Number("%.3g", *stereo.depth_ratio) +
                             " times what disparity and baseline say; give both in millimetres");
   }

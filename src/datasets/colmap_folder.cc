@@ -29,6 +29,7 @@ bool IsColmapFolder(const fs::path& path) {
 }
 
 Result<DataSet> OpenColmapFolder(const SequenceRequest& request) {
+  if (!request.camera_path.empty()) return OpenNativeSequence(request);  // the model is then something else beside it
   const fs::path folder = ModelOf(request.image_path);
   auto images = StreamFolder(request.image_path / "images");
   if (!images.ok()) return images.status();
@@ -48,6 +49,8 @@ Result<DataSet> OpenColmapFolder(const SequenceRequest& request) {
   }
   auto data_set = Calibrated(request, *std::move(images), SourceCalibration{*camera, folder});
   if (!data_set.ok()) return data_set.status();
+  if (request.mask_path.empty() && IsFolder(request.image_path / "masks"))
+    data_set->mask_path = request.image_path / "masks";
   for (int idx = 0; idx < data_set->images->count(); ++idx) {
     const auto pose = poses.find(data_set->images->Name(idx));
     data_set->world_from_cam.push_back(pose == poses.end() ? std::nullopt : std::optional(pose->second));

@@ -3,6 +3,7 @@
 
 #include "pliant/datasets/convert_sequence.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -18,13 +19,22 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Depth is written in the finest step of 1, 2, 5, 10, ... in which so many times the first frame's largest depth fits.
+// Depth is written in the finest step of 1, 2, 5, 10, ... in which so many times the largest depth of frames from all
+// over the sequence fits.
 constexpr double kDepthHeadroom = 2.0;
 constexpr double kMostSteps = 65535.0;
+constexpr int kDepthsLookedAt = 50;
 
-double DepthScaleFor(const cv::Mat& depth_mm) {
+double DepthScaleFor(const Sequence& sequence, int first_frame_idx, int last_frame_idx) {
   double largest_mm = 0;
-  cv::minMaxLoc(depth_mm, nullptr, &largest_mm);
+  for (int k = 0; k < kDepthsLookedAt; ++k) {
+    const int frame_idx = first_frame_idx + (last_frame_idx - first_frame_idx) * k / (kDepthsLookedAt - 1);
+    const auto depth_mm = sequence.Depth(frame_idx);
+    if (!depth_mm.ok() || !depth_mm->has_value()) continue;
+    double largest_of_frame_mm = 0;
+    cv::minMaxLoc(**depth_mm, nullptr, &largest_of_frame_mm);
+    if (std::isfinite(largest_of_frame_mm)) largest_mm = std::max(largest_mm, largest_of_frame_mm);
+  }
   if (!(largest_mm > 0)) return 1.0;
   const double least = kDepthHeadroom * largest_mm / kMostSteps;
   const double power = std::pow(10.0, std::floor(std::log10(least)));
@@ -47,10 +57,10 @@ Result<NativeFrame> Gather(Sequence& sequence, SequenceFrame frame) {
   return gathered;
 }
 
-Result<NativeWriter> MakeWriter(const Sequence& sequence, const NativeFrame& first, const fs::path& folder) {
+Result<NativeWriter> MakeWriter(const Sequence& sequence, int first_frame_idx, const fs::path& folder) {
   CameraFile camera{.camera = sequence.camera()};
   camera.baseline_mm = sequence.BaselineMm();
-  if (!first.depth_mm.empty()) camera.depth_scale = DepthScaleFor(first.depth_mm);
+  camera.depth_scale = DepthScaleFor(sequence, first_frame_idx, first_frame_idx + std::max(0, sequence.size() - 1));
   return NativeWriter::Create(folder, camera);
 }
 
@@ -67,10 +77,11 @@ Result<ConvertSummary> ConvertSequence(Sequence& sequence, const fs::path& folde
     auto next = sequence.Next();
     if (!next.ok()) return next.status();
     if (!next->has_value()) break;
+    const int frame_idx = (*next)->frame_idx;
     auto frame = Gather(sequence, **std::move(next));
     if (!frame.ok()) return frame.status();
     if (!writer) {
-      auto made = MakeWriter(sequence, *frame, folder);
+      auto made = MakeWriter(sequence, frame_idx, folder);
       if (!made.ok()) return made.status();
       writer = *std::move(made);
     }
@@ -78,6 +89,8 @@ Result<ConvertSummary> ConvertSequence(Sequence& sequence, const fs::path& folde
     if (!frame->world_from_cam && summary.poses > 0) fs::remove(folder / native::kPosesFile, error);
     if (summary.poses != summary.frames) frame->world_from_cam.reset();
     if (Status status = writer->Write(*frame); !status.ok()) return status;
+    summary.clipped_depths += writer->OutOfRange(frame->depth_mm);
+    if (!frame->world_from_cam && summary.first_without_pose < 0) summary.first_without_pose = frame_idx;
     ++summary.frames;
     summary.poses = frame->world_from_cam ? summary.poses + 1 : 0;
     summary.right += frame->right.empty() ? 0 : 1;

@@ -177,7 +177,13 @@ Result<fs::path> FindCalibration(const SequenceRequest& request) {
 
 Result<DataSet> RectifiedPairs(const StereoCalibration& calibration, const fs::path& calibration_path, cv::Size image,
                                PairLayout layout, EyeStreams eyes) {
-  auto pair = RectifyPair(calibration, EyeSize(layout, image));
+  const cv::Size eye = EyeSize(layout, image);
+  if (calibration.image_size && eye != cv::Size(calibration.image_size->width, calibration.image_size->height))
+    return Status(ErrorCode::kMismatch, "the calibration " + calibration_path.string() + " is for images of " +
+                                            SizeText(calibration.image_size->width, calibration.image_size->height) +
+                                            ", but those of one eye are " + SizeText(eye.width, eye.height) +
+                                            "; give the calibration of these images");
+  auto pair = RectifyPair(calibration, eye);
   if (!pair.ok()) return Status(pair.status().code(), calibration_path.string() + ": " + pair.status().message());
   DataSet data_set{.calibration = {pair->camera, calibration_path}, .images = nullptr};
   data_set.calibration.baseline_mm = pair->baseline_mm;

@@ -77,6 +77,10 @@ Result<NativeWriter> NativeWriter::Create(fs::path folder, const CameraFile& cam
   return NativeWriter(std::move(folder), camera.depth_scale.value_or(1.0));
 }
 
+int NativeWriter::OutOfRange(const cv::Mat& depth_mm) const {
+  return depth_mm.empty() ? 0 : cv::countNonZero(depth_mm > 65535.0 * depth_scale_);
+}
+
 Status NativeWriter::WriteImage(const char* kind, const cv::Mat& image) {
   if (image.empty()) return Status::Ok();
   const fs::path folder = folder_ / kind;

@@ -20,6 +20,8 @@ namespace {
 constexpr double kMostOffCentre = 0.2;
 // fx and fy that differ by less are those of square pixels.
 constexpr double kSquare = 0.01;
+// Pixels that are said to be this many times as high as wide are a mistake.
+constexpr double kMostStretch = 4.0;
 
 using Eye = StereoCalibration::Eye;
 
@@ -74,6 +76,12 @@ Result<RectifiedPair> RectifyPair(const StereoCalibration& calibration, cv::Size
         "the right camera)");
   if (std::abs(t.x()) < std::abs(t.y()))
     return invalid("the cameras of the stereo calibration are one above the other; only pairs side by side are read");
+  for (const Eye* eye : {&calibration.left, &calibration.right})
+    if (!(eye->fx > 0 && eye->fy > 0 && eye->fx / eye->fy > 1.0 / kMostStretch && eye->fx / eye->fy < kMostStretch))
+      return invalid(
+          "the stereo calibration has focal lengths that are not positive, or too different along rows and "
+          "columns");
+  if (raw.width < 1 || raw.height < 1) return invalid("the images to be rectified have no size");
   const double ratio = calibration.left.fx / calibration.left.fy;
   cv::Size size = raw;
   if (std::abs(ratio - 1.0) > kSquare) size.height = static_cast<int>(std::lround(raw.height * ratio));

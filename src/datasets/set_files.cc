@@ -46,6 +46,8 @@ std::optional<std::vector<double>> Numbers(const std::vector<std::string>& field
 }
 
 constexpr double kQuaternionError = 0.01;
+constexpr double kRounding = 1e-6;
+constexpr int kMostFrames = 10'000'000;
 
 }  // namespace
 
@@ -58,7 +60,8 @@ std::map<int, fs::path> NumberedFiles(const fs::path& folder, std::string_view p
     const char* end = name.data() + name.size() - suffix.size();
     int number = 0;
     const auto parsed = std::from_chars(begin, end, number);
-    if (parsed.ec == std::errc() && parsed.ptr == end && number >= 0) found.emplace(number, file);
+    if (parsed.ec == std::errc() && parsed.ptr == end && number >= 0 && number < kMostFrames)
+      found.emplace(number, file);
   }
   return found;
 }
@@ -104,6 +107,9 @@ Result<Rigid3> PoseOfRow(const fs::path& file, const NumberRow& row, const PoseC
 }
 
 Result<Rigid3> PoseOfMatrix(const std::string& where, const std::vector<double>& m) {
+  const Eigen::RowVector4d last(m[12], m[13], m[14], m[15]);
+  if ((last - Eigen::RowVector4d(0, 0, 0, 1)).norm() > kRounding)
+    return Status(ErrorCode::kUnreadable, where + ": the matrix is not a pose; its last row is not 0 0 0 1");
   Eigen::Matrix3d rotation;
   rotation << m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10];
   if (!(rotation * rotation.transpose()).isIdentity(kQuaternionError) || !(rotation.determinant() > 0.0))

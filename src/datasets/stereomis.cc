@@ -4,6 +4,7 @@
 // StereoMIS (Hayoz et al., IJCARS 2023): da Vinci recordings. One video, left eye on top of the right one;
 // StereoCalibration.ini; groundtruth.txt, `frame tx ty tz qx qy qz qw`, world from left camera, metres, of the robot's
 // kinematics; masks/NNNNNNl.png, 0 = an instrument, of some of the frames and not always of the video's size.
+#include <cmath>
 #include <fstream>
 #include <map>
 #include <string>
@@ -21,6 +22,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kCalibration = "StereoCalibration.ini";
 constexpr double kMetre_mm = 1000.0;
+constexpr double kMostFrames = 1e7;
 
 std::string Trimmed(std::string_view text) {
   const std::size_t begin = text.find_first_not_of(" \t\r");
@@ -116,7 +118,10 @@ Status AddPoses(const fs::path& file, DataSet* data_set) {
     auto pose = PoseOfRow(file, row, {.tx = 1, .qx = 4, .qw = 7});
     if (!pose.ok()) return pose.status();
     pose->translation *= kMetre_mm;
-    poses[static_cast<int>(row.numbers[0])] = *pose * data_set->raw_from_given;
+    const double frame = row.numbers[0];
+    if (!(frame >= 0 && frame < kMostFrames && frame == std::floor(frame)))
+      return {ErrorCode::kUnreadable, At(file.string(), row.line) + ": a line begins with the number of a frame"};
+    poses[static_cast<int>(frame)] = *pose * data_set->raw_from_given;
   }
   if (poses.empty()) return Status::Ok();
   for (int idx = 0; idx <= poses.rbegin()->first; ++idx)

@@ -214,11 +214,11 @@ Result<StereoCalibration::Eye> EyeOf(const std::vector<double>& k, const std::ve
 Result<std::optional<StereoCalibration>> StereoFromOpenCv(const CalibrationEntries& entries) {
   const std::vector<double> second = FirstOf(entries, kSecondMatrixNames);
   if (second.empty() || !HasCameraMatrix(entries)) return std::optional<StereoCalibration>();
+  // Without R and T, and of fisheyes, which cannot be rectified, it is the calibration of its first camera.
   const auto lens = LensOf(entries);
   if (!lens.ok()) return lens.status();
-  if (*lens == Lens::kFisheye)
-    return Invalid(
-        "it is of a pair of fisheye cameras, which cannot be rectified; give the calibration of one of them");
+  if (*lens == Lens::kFisheye || (entries.numbers("R").empty() && entries.numbers("T").empty()))
+    return std::optional<StereoCalibration>();
   const auto left = EyeOf(FirstOf(entries, kMatrixNames), FirstOf(entries, kDistortionNames));
   if (!left.ok()) return left.status();
   const auto right = EyeOf(second, FirstOf(entries, kSecondDistortionNames));

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "pliant/base/text.h"
 #include "io/yaml.h"
+#include "pliant/base/text.h"
 
 namespace pliant {
 namespace {

@@ -58,7 +58,7 @@ Result<Points> ReadNpy(const std::string& path, std::string_view bytes) {
   double cols = 0;
   if ((type != "<f4" && type != "<f8") || header.find("'fortran_order': False") == std::string::npos ||
       sizes.size() < 2 || !ParseDouble(sizes[0], &rows) || Split(sizes[1], ' ').empty() ||
-      !ParseDouble(Split(sizes[1], ' ')[0], &cols) || cols < 3 || cols > 64 || rows < 0 || rows > 1e9)
+      !ParseDouble(Split(sizes[1], ' ')[0], &cols) || !(cols >= 3 && cols <= 64 && rows >= 0 && rows <= 1e9))
     return Unreadable(path, "is not an array of N x 3 floats, rows first; save it as np.float32 of this shape");
   const std::size_t width = type == "<f4" ? 4 : 8;
   const auto stride = static_cast<std::size_t>(cols) * width;
@@ -128,7 +128,7 @@ Result<PlyHeader> ReadPlyHeader(const std::string& path, std::string_view bytes)
     } else if (words[0] == "element" && words.size() > 2) {
       in_vertex = words[1] == "vertex";
       double count = 0;
-      if (in_vertex && (!first_element || !ParseDouble(words[2], &count) || count < 0 || count > 1e9))
+      if (in_vertex && (!first_element || !ParseDouble(words[2], &count) || !(count >= 0 && count <= 1e9)))
         return Unreadable(path, "has no sound number of vertices at its beginning");
       if (in_vertex) header.vertices = static_cast<std::size_t>(count);
       first_element = false;

@@ -55,6 +55,14 @@ Result<RunStart> ReadStart(const RunRequest& request, const InitOptions& init, c
                         "' has nothing in front of the camera and in its image; give it in the first frame's camera, x "
                         "right, y down, z ahead");
   }
+  const CameraModelId model = sequence.camera().model_id();
+  if (init.method == InitMethod::kStereo && sequence.BaselineMm() &&
+      (!(*sequence.BaselineMm() > 0) || (model != CameraModelId::kPinhole && model != CameraModelId::kSimplePinhole)))
+    return Status(ErrorCode::kMismatch,
+                  "a start from a pair of images needs rectified ones: a PINHOLE camera, and a baseline above 0; " +
+                      request.input.image_path.string() + " has a camera " +
+                      std::string(sequence.camera().model_name()) + " and a baseline of " +
+                      FormatDouble(*sequence.BaselineMm()) + " mm");
   if (init.method == InitMethod::kStereo && !sequence.BaselineMm())
     return Status(ErrorCode::kMismatch,
                   "a start from a pair of images needs pairs: " + request.input.image_path.string() +

@@ -13,10 +13,10 @@
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
 
-#include "support/rendered_sequence.h"
 #include "datasets/sequence_files.h"
 #include "pliant/datasets/check_sequence.h"
 #include "pliant/datasets/open_sequence.h"
+#include "support/rendered_sequence.h"
 
 namespace pliant {
 namespace {
@@ -409,6 +409,34 @@ TEST_F(DataSets, Colmap) {
   Text("room/sparse/0/images.txt", images);
   Text("room/sparse/0/points3D.txt", "");
   ExpectTheScene(Path("room"), {.kind = "colmap"});
+}
+
+TEST_F(DataSets, ImagesBesideAModelAreNativeWhenTheyHaveTheirOwnCalibration) {
+  WriteImages(3, "room/images");
+  for (int k = 0; k < 3; ++k)
+    Write("room/masks/" + Name(k), cv::Mat(kHeight, kWidth, CV_8U, cv::Scalar(k == 1 ? 0 : 255)));
+  Text("room/sparse/0/cameras.txt", "1 PINHOLE 64 48 60 60 32 24\n2 PINHOLE 64 48 60 60 32 24\n");
+  Text("room/sparse/0/images.txt", "");
+  Text("room/sparse/0/points3D.txt", "");
+  WriteCamera("camera.yaml");
+  const auto sequence = OpenSequence({.image_path = Path("room"), .camera_path = Path("camera.yaml")});
+  ASSERT_TRUE(sequence.ok()) << sequence.status().message();
+  ASSERT_TRUE((*sequence)->Next().ok());
+  const auto second = (*sequence)->Next();
+  ASSERT_TRUE(second.ok() && second->has_value());
+  EXPECT_EQ(cv::countNonZero((*second)->mask), 0);
+  const auto without = OpenSequence({.image_path = Path("room")});
+  ASSERT_FALSE(without.ok());
+  EXPECT_THAT(without.status().message(), HasSubstr("has 2 cameras"));
+}
+
+TEST_F(DataSets, APoseThatIsNotTransposedIsRefused) {
+  Write("c3vd/0_color.png", Image(0));
+  WriteCamera("c3vd/camera.yaml");
+  Text("c3vd/pose.txt", "1,0,0,5,0,1,0,6,0,0,1,7,0,0,0,1\n");
+  const auto sequence = OpenSequence({.image_path = Path("c3vd")});
+  ASSERT_FALSE(sequence.ok());
+  EXPECT_THAT(sequence.status().message(), HasSubstr("last row is not 0 0 0 1"));
 }
 
 TEST_F(DataSets, FramesMissingInTheMiddleAreSaid) {

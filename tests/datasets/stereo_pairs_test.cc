@@ -9,11 +9,11 @@
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
 
-#include "support/rendered_sequence.h"
 #include "datasets/sequence_files.h"
 #include "pliant/datasets/check_sequence.h"
 #include "pliant/datasets/convert_sequence.h"
 #include "pliant/datasets/open_sequence.h"
+#include "support/rendered_sequence.h"
 
 namespace pliant {
 namespace {
@@ -191,14 +191,13 @@ TEST_F(StereoPairs, ACalibrationThatCannotBeMeantIsRefused) {
     ErrorCode code;
     std::string said;
   };
-  for (const Case& wrong :
-       {Case{"[5, 0, 0]", "", ErrorCode::kInvalidArgument, "to the left of the left one"},
-        Case{"[0, 0, 0]", "", ErrorCode::kInvalidArgument, "no baseline"},
-        Case{"[0, -5, 0]", "", ErrorCode::kInvalidArgument, "one above the other"},
-        Case{"[-5, 0]", "", ErrorCode::kInvalidArgument, "9 and 2"},
-        Case{"[.nan, 0, 0]", "", ErrorCode::kInvalidArgument, "not a finite number"},
-        Case{"[-5, 0, 0]", "image_width: 200\nimage_height: 200\n", ErrorCode::kMismatch, "fits no image of 640x240"},
-        Case{"[-5, 0, 0]", "camera_model: fisheye\n", ErrorCode::kInvalidArgument, "fisheye"}}) {
+  for (const Case& wrong : {Case{"[5, 0, 0]", "", ErrorCode::kInvalidArgument, "to the left of the left one"},
+                            Case{"[0, 0, 0]", "", ErrorCode::kInvalidArgument, "no baseline"},
+                            Case{"[0, -5, 0]", "", ErrorCode::kInvalidArgument, "one above the other"},
+                            Case{"[-5, 0]", "", ErrorCode::kInvalidArgument, "9 and 2"},
+                            Case{"[.nan, 0, 0]", "", ErrorCode::kInvalidArgument, "not a finite number"},
+                            Case{"[-5, 0, 0]", "image_width: 200\nimage_height: 200\n", ErrorCode::kMismatch,
+                                 "fits no image of 640x240"}}) {
     WriteStereo(1.0, wrong.t, wrong.more);
     const auto sequence = Open();
     ASSERT_FALSE(sequence.ok()) << wrong.said;
@@ -206,6 +205,17 @@ TEST_F(StereoPairs, ACalibrationThatCannotBeMeantIsRefused) {
     EXPECT_THAT(sequence.status().message(), HasSubstr(wrong.said));
     EXPECT_THAT(sequence.status().message(), HasSubstr("stereo.yaml"));
   }
+}
+
+TEST_F(StereoPairs, ACalibrationOfTwoCamerasWithoutRAndTIsThatOfTheFirst) {
+  for (int k = 0; k < 2; ++k) Write("pairs/" + Name(k), Image(k, 320, 240));
+  Text("stereo.yaml",
+       "M1: [230, 0, 159.5, 0, 230, 119.5, 0, 0, 1]\nD1: [0.1, 0, 0, 0]\nM2: [231, 0, 160, 0, 231, 120, 0, 0, 1]\n"
+       "D2: [0, 0, 0, 0]\n");
+  auto sequence = Open();
+  ASSERT_TRUE(sequence.ok()) << sequence.status().message();
+  EXPECT_EQ((*sequence)->camera().model_name(), "OPENCV");
+  EXPECT_FALSE((*sequence)->BaselineMm().has_value());
 }
 
 TEST_F(StereoPairs, AnImageOfAnotherSizeIsNamed) {

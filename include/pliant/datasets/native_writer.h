@@ -37,6 +37,8 @@ class NativeWriter {
   // Fails with kUnwritable; half a file is removed.
   Status Write(const NativeFrame& frame);
 
+  // How many of these depths Write makes none, because they are too large.
+  int OutOfRange(const cv::Mat& depth_mm) const;
   int frames() const { return frames_; }
 
  private:

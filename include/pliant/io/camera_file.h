@@ -63,7 +63,8 @@ struct StereoCalibration {
 
 inline constexpr double kShortestBaseline_mm = 0.5;
 
-// Nothing where the file is the calibration of one camera. Errors as ReadCameraFile.
+// Nothing where the file is the calibration of one camera, of two without R and T, or of fisheyes, which cannot be
+// rectified. Errors as ReadCameraFile.
 Result<std::optional<StereoCalibration>> ReadStereoCalibration(const std::string& path);
 
 // Fails with kNotFound, kUnreadable (not a calibration, or damaged) or kInvalidArgument (a calibration that cannot be
