@@ -104,6 +104,25 @@ Result<Listed> ReadList(const fs::path& camera) {
   return list;
 }
 
+// Those of both that were taken at the same time; how many others there were.
+std::size_t KeepPairs(Listed* left, Listed* right) {
+  const std::size_t before = left->files.size() + right->files.size();
+  std::map<double, fs::path> right_at;
+  for (std::size_t i = 0; i < right->files.size(); ++i) right_at.emplace(right->times_s[i], right->files[i]);
+  Listed pairs[2];
+  for (std::size_t i = 0; i < left->files.size(); ++i) {
+    const auto found = right_at.find(left->times_s[i]);
+    if (found == right_at.end()) continue;
+    pairs[0].times_s.push_back(left->times_s[i]);
+    pairs[0].files.push_back(left->files[i]);
+    pairs[1].times_s.push_back(found->first);
+    pairs[1].files.push_back(found->second);
+  }
+  *left = std::move(pairs[0]);
+  *right = std::move(pairs[1]);
+  return before - left->files.size() - right->files.size();
+}
+
 Status AddPoses(const fs::path& file, const Rigid3& body_from_cam, DataSet* data_set) {
   const auto poses = ReadEurocTrajectory(file.string());
   if (!poses.ok()) return poses.status();
@@ -139,14 +158,15 @@ Result<DataSet> OpenEuroc(const SequenceRequest& request) {
   if (!left.ok()) return left.status();
   auto images = StreamFiles(root / "cam0" / "data", left_list->files);
   Result<DataSet> data_set = Status(ErrorCode::kNotFound, "");
+  std::size_t left_over = 0;
   const bool pairs = IsFile(root / "cam1" / "data.csv") && !left->fisheye && request.camera_path.empty();
   if (pairs) {
-    const auto right_list = ReadList(root / "cam1");
+    auto right_list = ReadList(root / "cam1");
     if (!right_list.ok()) return right_list.status();
-    if (right_list->files.size() != left_list->files.size())
-      return Status(ErrorCode::kMismatch, root.string() + " has " + std::to_string(left_list->files.size()) +
-                                              " images of cam0 and " + std::to_string(right_list->files.size()) +
-                                              " of cam1; pairs have one each");
+    left_over = KeepPairs(&*left_list, &*right_list);
+    if (left_list->files.empty())
+      return Status(ErrorCode::kMismatch, root.string() + " has no image of cam0 and cam1 of the same time");
+    images = StreamFiles(root / "cam0" / "data", left_list->files);
     const auto right = ReadSensor(root / "cam1" / "sensor.yaml");
     if (!right.ok()) return right.status();
     const StereoCalibration calibration{left->lens, right->lens, right->body_from_cam.Inverse() * left->body_from_cam,
@@ -158,6 +178,9 @@ Result<DataSet> OpenEuroc(const SequenceRequest& request) {
     data_set = OpenMono(request, *left, std::move(images));
   }
   if (!data_set.ok()) return data_set.status();
+  if (left_over > 0)
+    data_set->warnings.push_back(std::to_string(left_over) + " images of cam0 or cam1 in " + root.string() +
+                                 " have none of the other of the same time; they are passed over");
   data_set->timestamps_s = std::move(left_list->times_s);
   if (const fs::path file = root / "state_groundtruth_estimate0" / "data.csv"; IsFile(file))
     if (Status status = AddPoses(file, left->body_from_cam * data_set->raw_from_given, &*data_set); !status.ok())

@@ -304,6 +304,21 @@ TEST_F(DataSets, EuRoC) {
   }
   Text("mav/mav0/state_groundtruth_estimate0/data.csv", poses);
   ExpectTheScene(Path("mav"), {.kind = "euroc", .pairs = true});
+
+  // An image that one of the cameras dropped has no pair; the others keep theirs.
+  const std::string first_ns = list.substr(list.find('\n') + 1, 19);
+  std::string without_first = list;
+  without_first.erase(list.find('\n') + 1, list.find('\n', list.find('\n') + 1) - list.find('\n'));
+  Text("mav/mav0/cam1/data.csv", without_first);
+  const auto sequence = OpenSequence({.image_path = Path("mav")});
+  ASSERT_TRUE(sequence.ok()) << sequence.status().message();
+  EXPECT_THAT((*sequence)->Warnings(), ElementsAre(HasSubstr("1 images of cam0 or cam1")));
+  EXPECT_EQ((*sequence)->size(), Frames() - 1);
+  ASSERT_TRUE((*sequence)->Next().ok());
+  EXPECT_NE((*sequence)->Name(0), first_ns + ".png");
+  const auto right = (*sequence)->Right();
+  ASSERT_TRUE(right.ok() && right->has_value());
+  EXPECT_LT(cv::norm(**right, Frame(1).right, cv::NORM_L1) / static_cast<double>(right->value().total()) / 3, 1.0);
 }
 
 TEST_F(DataSets, StereoMis) {
