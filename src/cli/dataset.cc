@@ -95,6 +95,9 @@ void PrintDescription(const Sequence& sequence, const SequenceRequest& request) 
   PrintLine("camera", std::string(camera.model_name()) + Text(" %dx%d, focal length %.1f px", camera.width(),
                                                               camera.height(), camera.MeanFocalLengthPx()));
   PrintLine("pairs", sequence.BaselineMm() ? Text("rectified, baseline %.4g mm", *sequence.BaselineMm()) : "none");
+  if (const auto light = sequence.Photometric())
+    PrintLine("light",
+              Text("gamma %.3g, vignetting %.3g, spread %.3g", light->gamma, light->vignetting, light->light_spread));
   PrintLine("depth", DepthText(sequence, request.start));
   PrintLine("poses", PosesText(sequence, request));
   for (const std::string& warning : sequence.Warnings()) PrintLine("warning", warning);
@@ -105,16 +108,22 @@ void PrintCheck(const SequenceCheck& check) {
     const PoseCheck& poses = *check.poses;
     std::string text =
         Text("%d pairs of images, warped by depth and poses, agree to %.2f", poses.pairs, poses.as_given.correlation);
-    if (!poses.right) text += ", which tells nothing: too little motion or structure";
-    PrintLine("checked", text);
+    PrintLine(poses.right ? "checked" : "unchecked",
+              poses.right ? text : text + ", which tells nothing of the poses: too little motion or structure");
+  } else {
+    PrintLine("unchecked", "poses: there are none with depth to warp images by");
   }
   if (check.stereo)
-    PrintLine("checked", Text("%d points in pairs, rows differ by %.2f px in the median", check.stereo->matches,
-                              check.stereo->median_row_error_px));
+    PrintLine(check.stereo->enough ? "checked" : "unchecked",
+              Text("%d points in pairs, rows differ by %.2f px in the median", check.stereo->matches,
+                   check.stereo->median_row_error_px));
   if (check.stereo && check.stereo->depth_ratio)
     PrintLine("checked", Text("depth is %.3f of what the baseline says", *check.stereo->depth_ratio));
   for (const std::string& wrong : check.wrong) PrintLine("wrong", wrong);
-  if (check.wrong.empty()) std::cout << "nothing is wrong\n";
+  const bool checked = (check.poses && check.poses->right) || (check.stereo && check.stereo->enough);
+  if (check.wrong.empty())
+    std::cout << (checked ? "nothing is wrong with what was checked\n"
+                          : "nothing could be checked: that takes pairs of images, or poses and depth\n");
 }
 
 int InfoCommand(std::span<const std::string> args) {
@@ -160,10 +169,6 @@ int ConvertCommand(std::span<const std::string> args) {
   });
   if (!summary.ok()) return line.Failure(summary.status().message());
   for (const std::string& warning : (*sequence)->Warnings()) SayError(kConvertManual.command, "warning: " + warning);
-  if (summary->poses == 0 && summary->first_without_pose > arguments.start)
-    SayError(kConvertManual.command,
-             "warning: frame " + std::to_string(summary->first_without_pose) +
-                 " has no pose, so none are written; convert the frames before it by themselves");
   if (summary->clipped_depths > 0)
     SayError(kConvertManual.command, "warning: " + std::to_string(summary->clipped_depths) +
                                          " pixels are too far away for 16 bits and have no depth");

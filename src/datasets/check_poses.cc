@@ -9,6 +9,9 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "datasets/set_files.h"
+#include "pliant/image/pyramid.h"
+
 namespace pliant {
 namespace {
 
@@ -21,11 +24,6 @@ struct Meaning {
   const char* name;
   Rigid3 (*read)(const Rigid3& given);
 };
-
-Rigid3 Mirrored(const Rigid3& pose, const Eigen::Vector3d& mirror) {
-  return {Eigen::Matrix3d(mirror.asDiagonal() * pose.RotationMatrix() * mirror.asDiagonal()),
-          mirror.cwiseProduct(pose.translation)};
-}
 
 constexpr Meaning kOrders[] = {
     {"", [](const Rigid3& given) { return given; }},
@@ -54,18 +52,6 @@ constexpr Meaning kAxes[] = {
                      given.translation);
      }},
 };
-
-std::optional<float> Sample(const cv::Mat& image, const Eigen::Vector2d& pixel) {
-  if (!(pixel.x() >= 0 && pixel.y() >= 0 && pixel.x() < image.cols - 1 && pixel.y() < image.rows - 1))
-    return std::nullopt;
-  const int u = static_cast<int>(pixel.x());
-  const int v = static_cast<int>(pixel.y());
-  const auto a = static_cast<float>(pixel.x() - u);
-  const auto b = static_cast<float>(pixel.y() - v);
-  const float* upper = image.ptr<float>(v);
-  const float* lower = image.ptr<float>(v + 1);
-  return (1 - b) * ((1 - a) * upper[u] + a * upper[u + 1]) + b * ((1 - a) * lower[u] + a * lower[u + 1]);
-}
 
 struct SurfacePoint {
   Eigen::Vector3d position;  // in the camera of its image
@@ -96,7 +82,7 @@ double Correlation(const std::vector<SurfacePoint>& points, const PosedImage& ot
   for (const SurfacePoint& point : points) {
     all_a += point.structure * point.structure;
     const auto pixel = camera.Project(other_from_cam * point.position);
-    const auto there = pixel ? Sample(other.structure, *pixel) : std::nullopt;
+    const auto there = pixel ? SampleBilinear(other.structure, pixel->x(), pixel->y()) : std::nullopt;
     if (!there) continue;
     squares_a += point.structure * point.structure;
     squares_b += *there * *there;
@@ -109,13 +95,8 @@ double Correlation(const std::vector<SurfacePoint>& points, const PosedImage& ot
 }  // namespace
 
 cv::Mat FineStructure(const cv::Mat& image) {
-  cv::Mat grey;
-  if (image.channels() == 3)
-    cv::cvtColor(image, grey, cv::COLOR_BGR2GRAY);
-  else
-    grey = image;
   cv::Mat fine;
-  grey.convertTo(fine, CV_32F);
+  ToGrey(image).convertTo(fine, CV_32F);
   cv::Mat coarse;
   cv::GaussianBlur(fine, coarse, {}, kCoarse_px);
   cv::GaussianBlur(fine, fine, {}, kFine_px);

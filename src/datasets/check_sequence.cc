@@ -104,17 +104,17 @@ Result<SequenceCheck> CheckSequence(Sequence& sequence, const CheckOptions& opti
                             "; write the poses as right-handed ones of world from camera, in millimetres");
   }
   if (matches.count() > 0) {
-    const StereoCheck& stereo = check.stereo.emplace(matches.Check());
-    const bool enough = stereo.matches >= kLeastMatches;
-    if (enough && stereo.share_right_way < 0.5)
+    StereoCheck& stereo = check.stereo.emplace(matches.Check());
+    stereo.enough = stereo.matches >= kLeastMatches;
+    if (stereo.enough && stereo.share_right_way < 0.5)
       check.wrong.push_back("left and right are swapped: of " + std::to_string(stereo.matches) + " points " +
                             Number("%.0f", 100.0 * (1.0 - stereo.share_right_way)) +
                             " % lie farther right in the right image; exchange the images");
-    if (enough && stereo.median_row_error_px > kMostRowError_px)
+    if (stereo.enough && stereo.median_row_error_px > kMostRowError_px)
       check.wrong.push_back("the pairs are not rectified: the rows of " + std::to_string(stereo.matches) +
                             " points differ by " + Number("%.1f", stereo.median_row_error_px) +
                             " px in the median; give the calibration of these cameras");
-    if (enough && stereo.depth_ratio && std::abs(std::log(*stereo.depth_ratio)) > std::log1p(kMostDepthError))
+    if (stereo.enough && stereo.depth_ratio && std::abs(std::log(*stereo.depth_ratio)) > std::log1p(kMostDepthError))
       check.wrong.push_back("depth and baseline disagree: the depth images say " + Number("%.3g", *stereo.depth_ratio) +
                             " times what disparity and baseline say; give both in millimetres");
   }

@@ -10,6 +10,7 @@
 
 #include "pliant/base/statistics.h"
 #include "pliant/image/descriptors.h"
+#include "pliant/image/pyramid.h"
 
 namespace pliant {
 namespace {
@@ -23,13 +24,6 @@ constexpr int kWindow_px = 21;
 constexpr double kMostRefinement_px = 4;
 // Disparities below say nothing exact of depth.
 constexpr double kLeastDisparity_px = 2;
-
-cv::Mat GreyOf(const cv::Mat& image) {
-  if (image.channels() == 1) return image;
-  cv::Mat grey;
-  cv::cvtColor(image, grey, cv::COLOR_BGR2GRAY);
-  return grey;
-}
 
 std::vector<cv::Point2f> CornersOf(const cv::Mat& grey) {
   std::vector<cv::Point2f> corners;
@@ -47,7 +41,7 @@ cv::Mat Described(const cv::Mat& grey, const std::vector<cv::Point2f>& corners) 
 
 void StereoMatches::Add(const cv::Mat& left, const cv::Mat& right, const cv::Mat& depth_mm, const Camera& camera,
                         double baseline_mm) {
-  const cv::Mat greys[] = {GreyOf(left), GreyOf(right)};
+  const cv::Mat greys[] = {ToGrey(left), ToGrey(right)};
   const std::vector<cv::Point2f> corners[] = {CornersOf(greys[0]), CornersOf(greys[1])};
   std::vector<cv::Point2f> from;
   std::vector<cv::Point2f> to;

@@ -60,6 +60,7 @@ Result<NativeFrame> Gather(Sequence& sequence, SequenceFrame frame) {
 Result<NativeWriter> MakeWriter(const Sequence& sequence, int first_frame_idx, const fs::path& folder) {
   CameraFile camera{.camera = sequence.camera()};
   camera.baseline_mm = sequence.BaselineMm();
+  camera.photometric = sequence.Photometric();
   camera.depth_scale = DepthScaleFor(sequence, first_frame_idx, first_frame_idx + std::max(0, sequence.size() - 1));
   return NativeWriter::Create(folder, camera);
 }
@@ -85,14 +86,10 @@ Result<ConvertSummary> ConvertSequence(Sequence& sequence, const fs::path& folde
       if (!made.ok()) return made.status();
       writer = *std::move(made);
     }
-    // A trajectory with gaps would be read against the wrong images.
-    if (!frame->world_from_cam && summary.poses > 0) fs::remove(folder / native::kPosesFile, error);
-    if (summary.poses != summary.frames) frame->world_from_cam.reset();
     if (Status status = writer->Write(*frame); !status.ok()) return status;
     summary.clipped_depths += writer->OutOfRange(frame->depth_mm);
-    if (!frame->world_from_cam && summary.first_without_pose < 0) summary.first_without_pose = frame_idx;
     ++summary.frames;
-    summary.poses = frame->world_from_cam ? summary.poses + 1 : 0;
+    summary.poses += frame->world_from_cam ? 1 : 0;
     summary.right += frame->right.empty() ? 0 : 1;
     summary.masks += frame->mask.empty() ? 0 : 1;
     summary.depths += frame->depth_mm.empty() ? 0 : 1;

@@ -29,6 +29,7 @@ class DataSetSequence final : public Sequence {
   const Camera& camera() const override { return data_set_.calibration.camera; }
   int size() const override { return range_.Count(); }
   Result<std::optional<SequenceFrame>> Next() override;
+  std::optional<PhotometricCalibration> Photometric() const override { return data_set_.calibration.photometric; }
   std::optional<double> BaselineMm() const override;
   Result<std::optional<cv::Mat>> Right() override;
   Result<std::optional<cv::Mat>> Depth(int frame_idx) const override;
@@ -187,6 +188,10 @@ Result<DataSet> RectifiedPairs(const StereoCalibration& calibration, const fs::p
   if (!pair.ok()) return Status(pair.status().code(), calibration_path.string() + ": " + pair.status().message());
   DataSet data_set{.calibration = {pair->camera, calibration_path}, .images = nullptr};
   data_set.calibration.baseline_mm = pair->baseline_mm;
+  if (calibration.was_in_metres)
+    data_set.warnings.push_back("the calibration " + calibration_path.string() + " has no unit and cameras less than " +
+                                FormatDouble(kShortestBaseline_mm) + " apart: it is read as metres, a baseline of " +
+                                FormatDouble(pair->baseline_mm) + " mm");
   if (eyes.left->fps()) data_set.calibration.fps = *eyes.left->fps();
   data_set.inside = pair->left.Inside();
   data_set.warp = pair->left;
@@ -194,6 +199,12 @@ Result<DataSet> RectifiedPairs(const StereoCalibration& calibration, const fs::p
   data_set.images = Warped(std::move(eyes.left), std::move(pair->left));
   data_set.right = Warped(std::move(eyes.right), std::move(pair->right));
   return data_set;
+}
+
+Result<DataSet> RectifiedHalves(const StereoCalibration& calibration, const fs::path& calibration_path,
+                                PairLayout layout, std::unique_ptr<ImageStream> images) {
+  const cv::Size image = images->SizeAt(0).value_or(cv::Size());
+  return RectifiedPairs(calibration, calibration_path, image, layout, SplitEyes(std::move(images), layout, image));
 }
 
 Result<DataSet> Calibrated(const SequenceRequest& request, std::unique_ptr<ImageStream> images,
@@ -212,7 +223,7 @@ Result<DataSet> Calibrated(const SequenceRequest& request, std::unique_ptr<Image
     const auto layout = LayoutOf(**stereo, *size);
     if (!layout.ok()) return Status(layout.status().code(), path->string() + ": " + layout.status().message());
     if (*layout != PairLayout::kApart) {
-      auto pairs = RectifiedPairs(**stereo, *path, *size, *layout, SplitEyes(std::move(images), *layout, *size));
+      auto pairs = RectifiedHalves(**stereo, *path, *layout, std::move(images));
       if (pairs.ok()) pairs->mask_path = request.mask_path;
       return pairs;
     }
@@ -227,6 +238,7 @@ Result<DataSet> Calibrated(const SequenceRequest& request, std::unique_ptr<Image
   if (file->depth_scale) calibration.depth_scale = *file->depth_scale;
   calibration.baseline_mm = file->baseline_mm;
   calibration.unit_mm = file->unit_mm;
+  calibration.photometric = file->photometric;
   return DataSet{.calibration = std::move(calibration), .images = std::move(images), .mask_path = request.mask_path};
 }
 

@@ -34,6 +34,7 @@ struct SourceCalibration {
   double depth_scale = 1.0;                          // mm a unit of the depth images
   std::optional<double> baseline_mm = std::nullopt;  // of rectified pairs
   double unit_mm = 1.0;                              // of the poses beside the file
+  std::optional<PhotometricCalibration> photometric = std::nullopt;
 };
 
 struct DataSet {
@@ -57,6 +58,10 @@ struct DataSet {
 // the images as they are given.
 Result<DataSet> Calibrated(const SequenceRequest& request, std::unique_ptr<ImageStream> images,
                            const std::optional<SourceCalibration>& published = {});
+
+// Pairs that each of the images holds, split and rectified.
+Result<DataSet> RectifiedHalves(const StereoCalibration& calibration, const std::filesystem::path& calibration_path,
+                                PairLayout layout, std::unique_ptr<ImageStream> images);
 
 // Raw pairs, rectified; `image` is the size of the images that held them.
 Result<DataSet> RectifiedPairs(const StereoCalibration& calibration, const std::filesystem::path& calibration_path,

@@ -2,14 +2,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // Endomapper, real (Azagra et al., Scientific Data 2023): a procedure's folder Seq_NNN with Seq_NNN.mov, and calibu's
-// calibration of the endoscope, *_geometrical.xml, in the folder or in Calibrations/Endoscope_NN/ beside Sequences/,
-// where Seq_NNN_info.json says the endoscope's number.
+// calibration of the endoscope, *_geometrical.xml and perhaps *_photometrical.xml, in the folder or in
+// Calibrations/Endoscope_NN/ beside Sequences/, where Seq_NNN_info.json says the endoscope's number.
+#include <algorithm>
 #include <cstdio>
-#include <regex>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include <nlohmann/json.hpp>
+#include <pugixml.hpp>
 
 #include "datasets/formats.h"
 #include "datasets/set_files.h"
@@ -22,6 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kGeometry = "_geometrical.xml";
+constexpr const char* kPhotometry = "_photometrical.xml";
 
 fs::path VideoOf(const fs::path& folder) { return OnlyFile(folder, ".mov"); }
 
@@ -38,71 +41,116 @@ std::optional<int> EndoscopeOf(const fs::path& folder) {
   return std::nullopt;
 }
 
-fs::path GeometryOf(const fs::path& folder) {
-  if (fs::path own = OnlyFile(folder, kGeometry); !own.empty()) return own;
+// The calibration file with this ending that belongs to a procedure.
+fs::path CalibrationOf(const fs::path& folder, const char* suffix) {
+  if (fs::path own = OnlyFile(folder, suffix); !own.empty()) return own;
   const auto endoscope = EndoscopeOf(folder);
   if (!endoscope) return {};
   char name[32];
   std::snprintf(name, sizeof name, "Endoscope_%02d", *endoscope);
   std::error_code error;
   const fs::path root = fs::weakly_canonical(folder, error).parent_path().parent_path();
-  return OnlyFile(root / "Calibrations" / name, kGeometry);
+  return OnlyFile(root / "Calibrations" / name, suffix);
 }
 
-std::string Between(const std::string& text, const std::string& tag) {
-  const std::size_t begin = text.find("<" + tag + ">");
-  const std::size_t end = text.find("</" + tag + ">");
-  if (begin == std::string::npos || end == std::string::npos || end < begin) return {};
-  return text.substr(begin + tag.size() + 2, end - begin - tag.size() - 2);
-}
-
-std::vector<double> NumbersIn(const std::string& text) {
-  static const std::regex kNumber(R"([-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?)");
+// Numbers between brackets, semicolons, commas and blanks; none where something else is among them.
+std::vector<double> NumbersIn(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return std::string_view("[];,\t\r\n").find(c) != std::string_view::npos; },
+      ' ');
   std::vector<double> numbers;
-  for (std::sregex_iterator it(text.begin(), text.end(), kNumber); it != std::sregex_iterator(); ++it)
-    if (double value = 0; ParseDouble(it->str().front() == '+' ? it->str().substr(1) : it->str(), &value))
+  for (const std::string_view word : Split(text, ' '))
+    if (double value = 0; ParseDouble(word, &value))
       numbers.push_back(value);
+    else
+      return {};
   return numbers;
 }
 
-// Calibu's <camera_model type=...> with <width>, <height>, <params> [ fu; fv; u0; v0; ... ].
-Result<SourceCalibration> ReadCalibu(const fs::path& file) {
+std::vector<double> NumbersOf(const pugi::xml_node& parent, const char* name) {
+  return NumbersIn(parent.child_value(name));
+}
+
+// The first element of this name in an XML file.
+struct Element {
+  pugi::xml_document document;
+  pugi::xml_node node;
+};
+Result<Element> ReadElement(const fs::path& file, const char* name) {
   const auto text = ReadFile(file.string());
   if (!text.ok()) return text.status();
-  static const std::regex kType(R"re(<camera_model[^>]*\btype\s*=\s*"([^"]*)")re");
-  std::smatch type;
-  const std::vector<double> width = NumbersIn(Between(*text, "width"));
-  const std::vector<double> height = NumbersIn(Between(*text, "height"));
-  const std::vector<double> params = NumbersIn(Between(*text, "params"));
-  if (!std::regex_search(*text, type, kType) || width.size() != 1 || height.size() != 1)
-    return Status(
-        ErrorCode::kUnreadable,
-        file.string() + " is not a calibration of calibu: it has no camera_model with type, width and height");
-  CameraModelId model = CameraModelId::kOpenCvFisheye;
-  if (type[1] == "calibu_fu_fv_u0_v0")
-    model = CameraModelId::kPinhole;
-  else if (type[1] != "calibu_fu_fv_u0_v0_kb4")
-    return Status(ErrorCode::kInvalidArgument, file.string() + " has a camera of the type " + Quoted(type[1].str()) +
+  Element element;
+  if (const auto parsed = element.document.load_buffer(text->data(), text->size()); !parsed)
+    return Status(ErrorCode::kUnreadable, file.string() + " is no XML: " + parsed.description());
+  element.node =
+      element.document.find_node([&](const pugi::xml_node& node) { return node.name() == std::string_view(name); });
+  if (!element.node)
+    return Status(ErrorCode::kUnreadable, file.string() + " is not a calibration of an endoscope: it has no " + name);
+  return element;
+}
+
+// Calibu's <camera_model type=...> with <width>, <height>, <params> [ fu; fv; u0; v0; ... ].
+Result<Camera> ReadGeometry(const fs::path& file) {
+  const auto element = ReadElement(file, "camera_model");
+  if (!element.ok()) return element.status();
+  const std::vector<double> width = NumbersOf(element->node, "width");
+  const std::vector<double> height = NumbersOf(element->node, "height");
+  if (width.size() != 1 || height.size() != 1 || !IsImageSize(width[0], height[0]))
+    return Status(ErrorCode::kUnreadable,
+                  file.string() + " is not a calibration of calibu: its camera_model has no width and height");
+  const std::string type = element->node.attribute("type").value();
+  if (type != "calibu_fu_fv_u0_v0" && type != "calibu_fu_fv_u0_v0_kb4")
+    return Status(ErrorCode::kInvalidArgument, file.string() + " has a camera of the type " + Quoted(type) +
                                                    ", which is not known; calibu_fu_fv_u0_v0_kb4 is");
-  auto camera = Camera::Create(model, static_cast<int>(width[0]), static_cast<int>(height[0]), params);
+  const CameraModelId model = type == "calibu_fu_fv_u0_v0" ? CameraModelId::kPinhole : CameraModelId::kOpenCvFisheye;
+  auto camera = Camera::Create(model, static_cast<int>(width[0]), static_cast<int>(height[0]),
+                               NumbersOf(element->node, "params"));
   if (!camera.ok()) return Status(camera.status().code(), file.string() + ": " + camera.status().message());
-  return SourceCalibration{*std::move(camera), file};
+  return camera;
+}
+
+// <camera_model type="gamma"> with <gamma> and perhaps <vignetting>, <light_model type="sls"> with the spread <mu> and
+// the direction <D>. Where the light is, millimetres from the lens, is not used.
+Result<PhotometricCalibration> ReadPhotometry(const fs::path& file) {
+  const auto camera = ReadElement(file, "camera_model");
+  if (!camera.ok()) return camera.status();
+  PhotometricCalibration calibration;
+  const std::vector<double> gamma = NumbersOf(camera->node, "gamma");
+  if (gamma.size() != 1)
+    return Status(ErrorCode::kUnreadable, file.string() + " has no gamma of the camera's response");
+  calibration.gamma = gamma[0];
+  if (const auto vignetting = NumbersOf(camera->node, "vignetting"); vignetting.size() == 1)
+    calibration.vignetting = vignetting[0];
+  if (const auto light = ReadElement(file, "light_model"); light.ok()) {
+    if (const auto spread = NumbersOf(light->node, "mu"); spread.size() == 1) calibration.light_spread = spread[0];
+    if (const auto axis = NumbersOf(light->node, "D"); axis.size() == 3)
+      calibration.light_axis = {axis[0], axis[1], axis[2]};
+  }
+  if (Status status = CheckPhotometric(calibration); !status.ok())
+    return Status(status.code(), file.string() + ": " + status.message());
+  return calibration;
 }
 
 }  // namespace
 
 bool IsEndomapper(const fs::path& path) {
-  return !VideoOf(path).empty() && (!GeometryOf(path).empty() || !OnlyFile(path, "_info.json").empty());
+  return !VideoOf(path).empty() && (!CalibrationOf(path, kGeometry).empty() || !OnlyFile(path, "_info.json").empty());
 }
 
 Result<DataSet> OpenEndomapper(const SequenceRequest& request) {
   auto video = StreamVideo(VideoOf(request.image_path));
   if (!video.ok()) return video.status();
-  const fs::path geometry = GeometryOf(request.image_path);
+  const fs::path geometry = CalibrationOf(request.image_path, kGeometry);
   if (geometry.empty() || !request.camera_path.empty()) return Calibrated(request, *std::move(video));
-  const auto calibration = ReadCalibu(geometry);
-  if (!calibration.ok()) return calibration.status();
-  return Calibrated(request, *std::move(video), *calibration);
+  auto camera = ReadGeometry(geometry);
+  if (!camera.ok()) return camera.status();
+  SourceCalibration calibration{*std::move(camera), geometry};
+  if (const fs::path photometry = CalibrationOf(request.image_path, kPhotometry); !photometry.empty()) {
+    const auto read = ReadPhotometry(photometry);
+    if (!read.ok()) return read.status();
+    calibration.photometric = *read;
+  }
+  return Calibrated(request, *std::move(video), calibration);
 }
 
 }  // namespace pliant

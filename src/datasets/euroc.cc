@@ -66,13 +66,20 @@ Result<Eye> ReadSensor(const fs::path& file) {
   const auto distortion = NumbersOf(root["distortion_coefficients"]);
   const auto body_from_cam =
       root["T_BS"] && root["T_BS"].IsMap() ? NumbersOf(root["T_BS"]["data"]) : std::vector<double>();
-  if (size.size() != 2 || lens.size() != 4 || distortion.size() != 4 || body_from_cam.size() != 16) return unreadable;
+  if (size.size() != 2 || !IsImageSize(size[0], size[1]) || lens.size() != 4 || distortion.size() != 4 ||
+      body_from_cam.size() != 16)
+    return unreadable;
   auto pose = PoseOfMatrix(file.string() + ": T_BS", body_from_cam);
   if (!pose.ok()) return pose.status();
   pose->translation *= kMetre_mm;
-  const YAML::Node model = root["distortion_model"];
+  const YAML::Node named = root["distortion_model"];
+  const std::string model = named && named.IsScalar() ? named.Scalar() : "";
+  if (model != "equidistant" && model != "radial-tangential" && model != "radtan")
+    return Status(ErrorCode::kInvalidArgument,
+                  file.string() + " has the distortion_model " + Quoted(model) +
+                      ", which is not known; radial-tangential (radtan) and equidistant are");
   return Eye{{lens[0], lens[1], lens[2], lens[3], distortion},
-             model && model.IsScalar() && model.Scalar() == "equidistant",
+             model == "equidistant",
              {static_cast<int>(size[0]), static_cast<int>(size[1])},
              *pose,
              file};
@@ -126,14 +133,7 @@ std::size_t KeepPairs(Listed* left, Listed* right) {
 Status AddPoses(const fs::path& file, const Rigid3& body_from_cam, DataSet* data_set) {
   const auto poses = ReadEurocTrajectory(file.string());
   if (!poses.ok()) return poses.status();
-  std::map<double, Rigid3> by_time;
-  for (const TimedPose& pose : *poses)
-    by_time.emplace(pose.timestamp_s,
-                    Rigid3(pose.world_from_cam.rotation, kMetre_mm * pose.world_from_cam.translation) * body_from_cam);
-  for (const double time_s : data_set->timestamps_s) {
-    const Rigid3* nearest = NearestInTime(by_time, time_s, kMostDifference_s);
-    data_set->world_from_cam.push_back(nearest != nullptr ? std::optional(*nearest) : std::nullopt);
-  }
+  data_set->world_from_cam = PosesAt(data_set->timestamps_s, *poses, kMetre_mm, kMostDifference_s, body_from_cam);
   return Status::Ok();
 }
 

@@ -10,6 +10,7 @@
 #include "datasets/formats.h"
 #include "datasets/image_file.h"
 #include "datasets/image_list.h"
+#include "datasets/set_files.h"
 #include "pliant/base/options.h"
 #include "pliant/base/text.h"
 #include "pliant/datasets/native_layout.h"
@@ -20,16 +21,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Status CheckLineCount(const fs::path& file, const std::string& what, std::size_t lines, int images) {
-  if (lines == static_cast<std::size_t>(images)) return Status::Ok();
-  return {ErrorCode::kMismatch, "the file " + file.string() + " has " + std::to_string(lines) + " " + what + " for " +
-                                    std::to_string(images) + " images; it needs one line an image"};
-}
+// A pose this near in time to an image is the image's: times are written to a microsecond, and rounded by hand.
+constexpr double kSameTime_s = 1e-3;
 
-std::string Trimmed(const std::string& text) {
-  const std::size_t begin = text.find_first_not_of(" \t\r");
-  if (begin == std::string::npos) return {};
-  return text.substr(begin, text.find_last_not_of(" \t\r") - begin + 1);
+Status WrongLineCount(const fs::path& file, const std::string& what, std::size_t lines, int images) {
+  return {ErrorCode::kMismatch, "the file " + file.string() + " has " + std::to_string(lines) + " " + what + " for " +
+                                    std::to_string(images) + " images; it needs one line an image" +
+                                    (what == "poses" ? ", or the times of images in their lines" : "")};
 }
 
 // One time a line, seconds, growing; lines that start with # are comments.
@@ -60,22 +58,41 @@ Result<CompanionImages> OpenCompanions(const std::string& what, const fs::path& 
   return CompanionImages::Open(what, folder, Stems(images), CompanionImages::Counts::kMustAgree);
 }
 
+// A line an image, in their order; fewer belong to the images of their times.
+Status AddPoses(const fs::path& file, const std::vector<TimedPose>& poses, DataSet* data_set) {
+  const auto count = static_cast<std::size_t>(data_set->images->count());
+  const double unit_mm = data_set->calibration.unit_mm;
+  if (poses.size() == count) {
+    for (const auto& [time_s, pose] : poses)
+      data_set->world_from_cam.emplace_back(Rigid3(pose.rotation, unit_mm * pose.translation));
+    return Status::Ok();
+  }
+  std::vector<double> times_s = data_set->timestamps_s;
+  for (std::size_t idx = times_s.size(); idx < count; ++idx)
+    times_s.push_back(static_cast<double>(idx) / data_set->calibration.fps);
+  data_set->world_from_cam = PosesAt(times_s, poses, unit_mm, kSameTime_s);
+  const auto found = std::count_if(data_set->world_from_cam.begin(), data_set->world_from_cam.end(),
+                                   [](const auto& pose) { return pose.has_value(); });
+  if (static_cast<std::size_t>(found) != poses.size())
+    return WrongLineCount(file, "poses", poses.size(), data_set->images->count());
+  data_set->warnings.push_back(std::to_string(count - poses.size()) + " of " + std::to_string(count) +
+                               " images have no pose in " + file.string());
+  return Status::Ok();
+}
+
 Status AddTimesAndTruth(const fs::path& folder, DataSet* data_set) {
   const int count = data_set->images->count();
   if (const fs::path file = folder / native::kTimesFile; Exists(file)) {
     Result<std::vector<double>> times_s = ReadTimes(file);
     if (!times_s.ok()) return times_s.status();
-    if (Status status = CheckLineCount(file, "times", times_s->size(), count); !status.ok()) return status;
+    if (times_s->size() != static_cast<std::size_t>(count))
+      return WrongLineCount(file, "times", times_s->size(), count);
     data_set->timestamps_s = *std::move(times_s);
   }
   if (const fs::path file = folder / native::kPosesFile; Exists(file)) {
     const Result<std::vector<TimedPose>> poses = ReadTumTrajectory(file.string());
     if (!poses.ok()) return poses.status();
-    if (Status status = CheckLineCount(file, "poses", poses->size(), count); !status.ok()) return status;
-    const double unit_mm = data_set->calibration.unit_mm;
-    for (const TimedPose& pose : *poses)
-      data_set->world_from_cam.emplace_back(
-          Rigid3(pose.world_from_cam.rotation, unit_mm * pose.world_from_cam.translation));
+    if (Status status = AddPoses(file, *poses, data_set); !status.ok()) return status;
   }
   return Status::Ok();
 }

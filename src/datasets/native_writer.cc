@@ -53,8 +53,7 @@ Status RemoveFrames(const fs::path& folder) {
   return Status::Ok();
 }
 
-}  // namespace
-
+// CV_32FC1 mm -> CV_16UC1 steps of depth_scale_mm; 0 where there is none or it is out of range.
 cv::Mat QuantiseDepth(const cv::Mat& depth_mm, double depth_scale_mm) {
   cv::Mat steps(depth_mm.size(), CV_16UC1);
   for (int y = 0; y < depth_mm.rows; ++y) {
@@ -65,6 +64,8 @@ cv::Mat QuantiseDepth(const cv::Mat& depth_mm, double depth_scale_mm) {
   }
   return steps;
 }
+
+}  // namespace
 
 Result<NativeWriter> NativeWriter::Create(fs::path folder, const CameraFile& camera) {
   std::error_code error;

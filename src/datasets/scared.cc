@@ -86,8 +86,7 @@ Result<DataSet> OpenScared(const SequenceRequest& request) {
   if (!calibration.ok()) return calibration.status();
   if (!calibration->has_value())
     return Status(ErrorCode::kUnreadable, file.string() + " is not a calibration of two cameras");
-  const cv::Size image = (*video)->SizeAt(0).value_or(cv::Size());
-  auto data_set = RectifiedPairs(**calibration, file, image, kLayout, SplitEyes(*std::move(video), kLayout, image));
+  auto data_set = RectifiedHalves(**calibration, file, kLayout, *std::move(video));
   if (!data_set.ok()) return data_set.status();
   data_set->mask_path = request.mask_path;
   if (Status status = AddPoses(folder / "data" / "frame_data", &*data_set); !status.ok()) return status;

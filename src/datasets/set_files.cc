@@ -77,6 +77,18 @@ fs::path OnlyFile(const fs::path& folder, std::string_view suffix) {
   return only;
 }
 
+std::string Trimmed(std::string_view text) {
+  const std::size_t begin = text.find_first_not_of(" \t\r");
+  if (begin == std::string_view::npos) return {};
+  return std::string(text.substr(begin, text.find_last_not_of(" \t\r") - begin + 1));
+}
+
+bool IsImageSize(double width, double height) {
+  constexpr double kMost_px = 1e6;
+  const auto is_side = [](double side) { return side >= 1 && side <= kMost_px && side == std::floor(side); };
+  return is_side(width) && is_side(height);
+}
+
 Result<std::vector<NumberRow>> ReadNumberRows(const fs::path& file, std::size_t columns) {
   auto reader = LineReader::Open(file.string());
   if (!reader.ok()) return reader.status();
@@ -117,10 +129,24 @@ Result<Rigid3> PoseOfMatrix(const std::string& where, const std::vector<double>&
   return Rigid3(rotation, Eigen::Vector3d(m[3], m[7], m[11]));
 }
 
-Rigid3 FromUnity(const Rigid3& world_from_cam) {
-  const Eigen::Vector3d turn(1, -1, 1);
-  return {Eigen::Matrix3d(turn.asDiagonal() * world_from_cam.RotationMatrix() * turn.asDiagonal()),
-          turn.cwiseProduct(world_from_cam.translation)};
+Rigid3 Mirrored(const Rigid3& world_from_cam, const Eigen::Vector3d& axes) {
+  return {Eigen::Matrix3d(axes.asDiagonal() * world_from_cam.RotationMatrix() * axes.asDiagonal()),
+          axes.cwiseProduct(world_from_cam.translation)};
+}
+
+Rigid3 FromUnity(const Rigid3& world_from_cam) { return Mirrored(world_from_cam, {1, -1, 1}); }
+
+std::vector<std::optional<Rigid3>> PosesAt(const std::vector<double>& times_s, const std::vector<TimedPose>& poses,
+                                           double unit_mm, double most_s, const Rigid3& body_from_cam) {
+  std::map<double, Rigid3> by_time;
+  for (const auto& [time_s, pose] : poses)
+    by_time.emplace(time_s, Rigid3(pose.rotation, unit_mm * pose.translation) * body_from_cam);
+  std::vector<std::optional<Rigid3>> found;
+  for (const double time_s : times_s) {
+    const Rigid3* nearest = NearestInTime(by_time, time_s, most_s);
+    found.push_back(nearest != nullptr ? std::optional(*nearest) : std::nullopt);
+  }
+  return found;
 }
 
 std::function<Result<std::optional<cv::Mat>>(int)> DepthFiles(std::vector<fs::path> files, ReadDepth read) {

@@ -18,6 +18,7 @@
 
 #include "pliant/base/status.h"
 #include "pliant/geometry/rigid3.h"
+#include "pliant/io/trajectory.h"
 
 namespace pliant {
 
@@ -26,6 +27,12 @@ std::map<int, std::filesystem::path> NumberedFiles(const std::filesystem::path& 
                                                    std::string_view suffix);
 // The only file in a folder with this ending, "" where there is none or several.
 std::filesystem::path OnlyFile(const std::filesystem::path& folder, std::string_view suffix);
+
+// Without blanks, tabs and carriage returns at its ends.
+std::string Trimmed(std::string_view text);
+
+// Whether these are the width and height of an image: whole numbers of pixels, up to 10^6.
+bool IsImageSize(double width, double height);
 
 struct NumberRow {
   std::int64_t line = 0;  // in the file
@@ -57,8 +64,14 @@ const Value* NearestInTime(const std::map<double, Value>& values, double time_s,
   return nearest != values.end() && std::abs(nearest->first - time_s) <= most_s ? &nearest->second : nullptr;
 }
 
-// A world and a camera whose y axes are turned round: Unity's left-handed ones, right-handed.
+// A world and a camera whose axes are turned round where `axes` is -1.
+Rigid3 Mirrored(const Rigid3& world_from_cam, const Eigen::Vector3d& axes);
+// Unity's left-handed ones, right-handed: y turned round.
 Rigid3 FromUnity(const Rigid3& world_from_cam);
+
+// Of each time the pose nearest to it, as NearestInTime, in mm: that of a camera at body_from_cam.
+std::vector<std::optional<Rigid3>> PosesAt(const std::vector<double>& times_s, const std::vector<TimedPose>& poses,
+                                           double unit_mm, double most_s, const Rigid3& body_from_cam = {});
 
 // Depth images, one a frame (an empty path: none). `read` makes millimetres of what a file holds.
 using ReadDepth = std::function<Result<cv::Mat>(const std::filesystem::path& file)>;

@@ -24,12 +24,6 @@ constexpr const char* kCalibration = "StereoCalibration.ini";
 constexpr double kMetre_mm = 1000.0;
 constexpr double kMostFrames = 1e7;
 
-std::string Trimmed(std::string_view text) {
-  const std::size_t begin = text.find_first_not_of(" \t\r");
-  if (begin == std::string_view::npos) return {};
-  return std::string(text.substr(begin, text.find_last_not_of(" \t\r") - begin + 1));
-}
-
 // "[Section]" and "key = value" lines: numbers by "Section.key"; what is no number is passed over.
 Result<std::map<std::string, double>> ReadIni(const fs::path& file) {
   auto reader = LineReader::Open(file.string());
@@ -105,8 +99,7 @@ Result<StereoCalibration> ReadCalibration(const fs::path& file) {
   if (Status status = ini.Complete(); !status.ok()) return status;
   if (!(turn * turn.transpose()).isIdentity(1e-3))
     return Status(ErrorCode::kUnreadable, file.string() + ": R_0 to R_8 of StereoRight are not a rotation");
-  calibration.was_in_metres = t.norm() < kShortestBaseline_mm;
-  calibration.right_from_left = Rigid3(turn, calibration.was_in_metres ? Eigen::Vector3d(kMetre_mm * t) : t);
+  calibration.right_from_left = Rigid3(turn, t.norm() < kShortestBaseline_mm ? Eigen::Vector3d(kMetre_mm * t) : t);
   return calibration;
 }
 
@@ -140,9 +133,7 @@ Result<DataSet> OpenStereoMis(const SequenceRequest& request) {
   const fs::path file = request.camera_path.empty() ? folder / kCalibration : request.camera_path;
   const auto calibration = ReadCalibration(file);
   if (!calibration.ok()) return calibration.status();
-  const cv::Size image = (*video)->SizeAt(0).value_or(cv::Size());
-  constexpr PairLayout kLayout = PairLayout::kTopBottom;
-  auto data_set = RectifiedPairs(*calibration, file, image, kLayout, SplitEyes(*std::move(video), kLayout, image));
+  auto data_set = RectifiedHalves(*calibration, file, PairLayout::kTopBottom, *std::move(video));
   if (!data_set.ok()) return data_set.status();
   data_set->mask_path = request.mask_path;
   if (request.mask_path.empty()) data_set->raw_masks = NumberedFiles(folder / "masks", "", "l.png");

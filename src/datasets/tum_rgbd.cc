@@ -72,14 +72,7 @@ Result<DataSet> OpenTumRgbd(const SequenceRequest& request) {
   if (IsFile(folder / "groundtruth.txt")) {
     const auto poses = ReadTumTrajectory((folder / "groundtruth.txt").string());
     if (!poses.ok()) return poses.status();
-    std::map<double, Rigid3> by_time;
-    for (const TimedPose& pose : *poses)
-      by_time.emplace(pose.timestamp_s,
-                      Rigid3(pose.world_from_cam.rotation, kMetre_mm * pose.world_from_cam.translation));
-    for (const double time_s : times_s) {
-      const Rigid3* nearest = NearestInTime(by_time, time_s, kMostDifference_s);
-      data_set->world_from_cam.push_back(nearest != nullptr ? std::optional(*nearest) : std::nullopt);
-    }
+    data_set->world_from_cam = PosesAt(times_s, *poses, kMetre_mm, kMostDifference_s);
   }
   data_set->timestamps_s = std::move(times_s);
   return data_set;

@@ -20,26 +20,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Result<std::map<int, Rigid3>> ReadPoses(const fs::path& file, double unit_mm) {
+// A line an image, whatever number the first image has.
+Status AddPoses(const fs::path& file, double unit_mm, NumberedSet* set) {
   const auto rows = ReadNumberRows(file, 7);
   if (!rows.ok()) return rows.status();
-  std::map<int, Rigid3> poses;
-  for (std::size_t k = 0; k < rows->size(); ++k) {
-    auto pose = PoseOfRow(file, (*rows)[k], {.tx = 0, .qx = 3, .qw = 6});
+  int number = set->images.empty() ? 0 : set->images.begin()->first;
+  for (const NumberRow& row : *rows) {
+    auto pose = PoseOfRow(file, row, {.tx = 0, .qx = 3, .qw = 6});
     if (!pose.ok()) return pose.status();
     pose->translation *= unit_mm;
-    poses.emplace(static_cast<int>(k), FromUnity(*pose));
+    set->world_from_cam.emplace(number++, FromUnity(*pose));
   }
-  return poses;
-}
-
-// Poses are a line an image, whatever number the first image has.
-void CountFromFirst(NumberedSet* set) {
-  if (set->images.empty() || set->world_from_cam.empty()) return;
-  const int first = set->images.begin()->first;
-  std::map<int, Rigid3> shifted;
-  for (const auto& [number, pose] : set->world_from_cam) shifted.emplace(number + first, pose);
-  set->world_from_cam = std::move(shifted);
+  return Status::Ok();
 }
 
 // The first of three or four channels as they are stored: red, which OpenCV has last.
@@ -96,12 +88,8 @@ Result<DataSet> OpenEndomapperSimulated(const SequenceRequest& request) {
                   .images = NumberedFiles(folder / "rgb", "image_", ".png"),
                   .depth = NumberedFiles(folder / "depth", "aov_image_", ".exr"),
                   .read_depth = ReadReversedDepth};
-  if (IsFile(folder / "trajectory.csv")) {
-    auto poses = ReadPoses(folder / "trajectory.csv", kDecimetre_mm);
-    if (!poses.ok()) return poses.status();
-    set.world_from_cam = *std::move(poses);
-    CountFromFirst(&set);
-  }
+  if (const fs::path file = folder / "trajectory.csv"; IsFile(file))
+    if (Status status = AddPoses(file, kDecimetre_mm, &set); !status.ok()) return status;
   const auto camera =
       PublishedCamera("Endomapper", CameraModelId::kPinhole, 960, 720, {472.6496, 472.6496, 479.5, 359.5});
   if (!camera.ok()) return camera.status();
@@ -118,12 +106,8 @@ Result<DataSet> OpenEndoSlam(const SequenceRequest& request) {
                   .depth = NumberedFiles(folder / kPixelwise, "aov_image_", ".png"),
                   .read_depth = ReadCentimetres};
   if (set.images.empty()) set.images = NumberedFiles(folder / "Frames", "image_", ".jpg");
-  if (const fs::path file = EndoSlamPoses(folder); !file.empty()) {
-    auto poses = ReadPoses(file, kMetre_mm);
-    if (!poses.ok()) return poses.status();
-    set.world_from_cam = *std::move(poses);
-    CountFromFirst(&set);
-  }
+  if (const fs::path file = EndoSlamPoses(folder); !file.empty())
+    if (Status status = AddPoses(file, kMetre_mm, &set); !status.ok()) return status;
   const auto camera =
       PublishedCamera("EndoSLAM", CameraModelId::kPinhole, 320, 320, {156.0418, 155.7529, 178.5604, 181.8043});
   if (!camera.ok()) return camera.status();

@@ -337,9 +337,4 @@ Result<double> RigidResidualCorrelation(const DeformingWindow& start, double foc
   return ResidualCorrelation(problem.Window());
 }
 
-double LogDistanceFromLight(double brightness, double gamma) {
-  if (!(brightness > 0.0)) return std::numeric_limits<double>::quiet_NaN();
-  return -0.5 * gamma * std::log(brightness / 255.0);
-}
-
 }  // namespace pliant

@@ -17,7 +17,8 @@
 namespace pliant {
 namespace {
 
-const std::vector<std::string> kKeys = {"model", "width", "height", "params", "fps", "depth_scale", "baseline", "unit"};
+const std::vector<std::string> kKeys = {"model",    "width", "height", "params",     "fps",          "depth_scale",
+                                        "baseline", "unit",  "gamma",  "vignetting", "light_spread", "light_axis"};
 
 bool ParseYamlNumber(const YAML::Node& node, double* value) {
   if (!node.IsScalar()) return false;
@@ -45,16 +46,41 @@ Status ReadNumber(const std::string& path, const YAML::Node& root, NumberField* 
   return Status::Ok();
 }
 
-Result<std::vector<double>> Params(const std::string& path, const YAML::Node& node) {
+Result<std::vector<double>> Numbers(const std::string& path, const YAML::Node& node, const std::string& name,
+                                    const std::string& example) {
   const Status invalid(ErrorCode::kInvalidArgument,
-                       At(path, node) + ": params must be a list of numbers, such as [fx, fy, cx, cy]");
+                       At(path, node) + ": " + name + " must be a list of numbers, such as " + example);
   if (!node.IsSequence()) return invalid;
-  std::vector<double> params;
+  std::vector<double> numbers;
   for (const YAML::Node& entry : node) {
-    params.emplace_back();
-    if (!ParseYamlNumber(entry, &params.back())) return invalid;
+    numbers.emplace_back();
+    if (!ParseYamlNumber(entry, &numbers.back())) return invalid;
   }
-  return params;
+  return numbers;
+}
+
+// Nothing where the file says nothing of it.
+Result<std::optional<PhotometricCalibration>> Photometric(const std::string& path, const YAML::Node& root) {
+  NumberField gamma{"gamma"};
+  NumberField vignetting{"vignetting"};
+  NumberField light_spread{"light_spread"};
+  for (NumberField* field : {&gamma, &vignetting, &light_spread})
+    if (Status status = ReadNumber(path, root, field); !status.ok()) return status;
+  const YAML::Node axis = root["light_axis"];
+  if (!gamma.given && !vignetting.given && !light_spread.given && !axis) return std::optional<PhotometricCalibration>();
+  PhotometricCalibration calibration;
+  if (gamma.given) calibration.gamma = gamma.value;
+  calibration.vignetting = vignetting.value;
+  calibration.light_spread = light_spread.value;
+  if (axis) {
+    const auto numbers = Numbers(path, axis, "light_axis", "[0, 0, 1]");
+    if (!numbers.ok()) return numbers.status();
+    calibration.light_axis =
+        numbers->size() == 3 ? Eigen::Vector3d((*numbers)[0], (*numbers)[1], (*numbers)[2]) : Eigen::Vector3d::Zero();
+  }
+  if (Status status = CheckPhotometric(calibration); !status.ok())
+    return Status(status.code(), Quoted(path) + ": " + status.message());
+  return std::optional(calibration);
 }
 
 Result<CameraFile> FromPliant(const std::string& path, const YAML::Node& root) {
@@ -93,7 +119,9 @@ Result<CameraFile> FromPliant(const std::string& path, const YAML::Node& root) {
     unit_mm = unit.Scalar() == "m" ? 1000.0 : 1.0;
   }
 
-  const auto params = Params(path, root["params"]);
+  const auto photometric = Photometric(path, root);
+  if (!photometric.ok()) return photometric.status();
+  const auto params = Numbers(path, root["params"], "params", "[fx, fy, cx, cy]");
   if (!params.ok()) return params.status();
   if (!root["model"].IsScalar()) return invalid(At(path, root["model"]), "model must be a name, such as PINHOLE");
   auto camera =
@@ -104,6 +132,7 @@ Result<CameraFile> FromPliant(const std::string& path, const YAML::Node& root) {
   if (depth_scale.given) file.depth_scale = unit_mm * depth_scale.value;
   if (baseline.given) file.baseline_mm = unit_mm * baseline.value;
   file.unit_mm = unit_mm;
+  file.photometric = *photometric;
   return file;
 }
 
@@ -253,6 +282,12 @@ Status WriteCameraFile(const std::string& path, const CameraFile& file) {
   if (file.fps) text += "fps: " + FormatDouble(*file.fps) + "\n";
   if (file.depth_scale) text += "depth_scale: " + FormatDouble(*file.depth_scale) + "  # mm per unit\n";
   if (file.baseline_mm) text += "baseline: " + FormatDouble(*file.baseline_mm) + "  # mm\n";
+  if (const auto& light = file.photometric) {
+    text += "gamma: " + FormatDouble(light->gamma) + "\nvignetting: " + FormatDouble(light->vignetting) +
+            "\nlight_spread: " + FormatDouble(light->light_spread) + "\nlight_axis: [";
+    for (int i = 0; i < 3; ++i) text += (i == 0 ? "" : ", ") + FormatDouble(light->light_axis[i]);
+    text += "]\n";
+  }
   return WriteFileAtomically(path, text + "unit: mm\n");
 }
 

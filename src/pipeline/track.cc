@@ -80,15 +80,16 @@ std::optional<Result<ReadFrame>> NextFrame(Sequence& sequence, const TrackerOpti
   ReadFrame read{PrepareFrame(frame.frame_idx, frame.name, frame.timestamp_s, frame.image, frame.mask, options), {}};
   if (!wants_depth) return read;
   if (options.init.method == InitMethod::kColmapModel) {
-    read.frame.known_points = start.model->PointsIn(frame.name);
+    read.frame.known_points = [&start, name = frame.name] { return start.model->PointsIn(name); };
   } else if (!start.cloud_depth_mm.empty()) {
     if (frame.frame_idx == start.first_frame_idx) read.frame.depth_mm = start.cloud_depth_mm;
   } else if (options.init.method == InitMethod::kStereo) {
     const auto right = sequence.Right();
     read.depth = right.status();
     if (right.ok() && right->has_value())
-      read.frame.known_points =
-          PointsOfPair(read.frame, **right, sequence.camera(), sequence.BaselineMm().value_or(0.0), options, threads);
+      read.frame.known_points = [left = read.frame, right = **right, camera = sequence.camera(),
+                                 baseline_mm = sequence.BaselineMm().value_or(0.0), &options,
+                                 threads] { return PointsOfPair(left, right, camera, baseline_mm, options, threads); };
   } else {
     const auto depth = sequence.Depth(frame.frame_idx);
     read.depth = depth.status();
@@ -180,7 +181,8 @@ Ending TrackFrames(Sequence& sequence, const RunRequest& request, const TrackOpt
 
 Ending TrackSequence(Sequence& sequence, const RunRequest& request, const TrackOptions& options, const RunStart& start,
                      TrackingTruth* truth, RunWriter& writer, std::span<TrackObserver* const> observers) {
-  Tracker tracker(sequence.camera(), options.tracker, static_cast<std::uint64_t>(options.seed), options.threads, truth);
+  Tracker tracker(sequence.camera(), options.tracker, static_cast<std::uint64_t>(options.seed), options.threads, truth,
+                  sequence.Photometric());
   Recorder recorder(writer, observers, {request.input, sequence.camera(), options});
   const Ending ending = TrackFrames(sequence, request, options, start, tracker, recorder);
   // Whatever the ending: the frames that waited for a map are written too.

@@ -23,7 +23,9 @@ class DepthInitializer final : public Initializer {
     InitOutcome outcome;
     if (input.reference_depth_mm.empty()) {
       outcome.decision = InitDecision::kNewReference;
-      outcome.reason = "the frame has no depth image, which a start from depth needs; choose another Init.method";
+      outcome.reason = options_.cloud_path.empty()
+                           ? "the frame has no depth image, which a start from depth needs; choose another Init.method"
+                           : "a point cloud is of the first frame alone, and a start from it is not possible later";
       return outcome;
     }
     std::vector<std::optional<double>> depths_mm;
@@ -40,7 +42,8 @@ class DepthInitializer final : public Initializer {
       return outcome;
     }
     outcome.decision = InitDecision::kMap;
-    outcome.reason = "first map of " + count + " points from the depth image";
+    outcome.reason =
+        "first map of " + count + " points from the " + (options_.cloud_path.empty() ? "depth image" : "point cloud");
     FillRigidFrames(input, {Rigid3()}, &outcome);  // the reference alone: this start never waits
     return outcome;
   }

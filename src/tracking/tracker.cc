@@ -94,8 +94,9 @@ TrackerFrame PrepareFrame(int frame_idx, std::string name, double timestamp_s, c
 }
 
 Tracker::Tracker(const Camera& camera, const TrackerOptions& options, std::uint64_t seed, int threads,
-                 TrackingTruth* truth)
+                 TrackingTruth* truth, const std::optional<PhotometricCalibration>& photometric)
     : camera_(camera),
+      photometric_(photometric),
       options_(options),
       threads_(threads),
       initializer_(MakeInitializer(options.init, Random(seed).Child("initializer"))),
@@ -207,7 +208,8 @@ void Tracker::AddCorners(const TrackerFrame& frame, const LocalBrightness& brigh
 }
 
 void Tracker::AddKnownPoints(const TrackerFrame& frame, const LocalBrightness& brightness, InitFrame* points) {
-  for (const PixelDepth& known : frame.known_points) {
+  if (!frame.known_points) return;
+  for (const PixelDepth& known : frame.known_points()) {
     if (static_cast<int>(points->observations.size()) == options_.corners.max_corners) break;
     const PointId id{next_id_};
     if (now_->point_tracker.Add(id, known.pixel, frame.pyramid, frame.mask) != PatchFailure::kNone) continue;
@@ -317,7 +319,7 @@ void Tracker::FollowReference(const TrackerFrame& frame, FrameReport* report) {
 
 InitOutcome Tracker::AskInitializer(const cv::Mat& depth_mm, InitMoment moment, FrameReport* report) {
   const StageTimer timer(report, "initialise");
-  const InitInput input{camera_, init_frames_, depth_mm, moment, threads_, known_depths_};
+  const InitInput input{camera_, init_frames_, depth_mm, moment, threads_, known_depths_, photometric_};
   InitOutcome outcome =
       oracle_->gives_first_map() ? oracle_->FirstMap(input, options_.min_points) : initializer_->Try(input);
   if (outcome.decision == InitDecision::kMap) oracle_->TakeWorld(input, &outcome);

@@ -148,7 +148,8 @@ void Tracker::RemakeMap(const TrackerFrame& frame, FrameReport* report) {
   if (now_->window_frames.size() <= length || !now_->rigid_history.empty() ||
       frame.frame_idx % options_.growth.remake_every != 0)
     return;
-  const InitOutcome outcome = remaker_->Try({camera_, now_->window_frames, {}, InitMoment::kMoreFollow, threads_});
+  const InitOutcome outcome =
+      remaker_->Try({camera_, now_->window_frames, {}, InitMoment::kMoreFollow, threads_, {}, photometric_});
   if (outcome.decision != InitDecision::kMap) return;
   const auto positions = RemadePositions(outcome, now_->last_cam_from_world, now_->map);
   if (positions.empty()) return;

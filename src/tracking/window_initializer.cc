@@ -177,7 +177,9 @@ void WindowInitOptions::List(OptionTable& table) {
   table.Add("min_certain_share", &min_certain_share, "-",
             "wait while a smaller share of the points still seen is certain; it falls to 0 at last_frame", 0, 1);
   table.AddChoice("light", &light, "brightness as a hint of distance: the light is at the camera");
-  table.Add("gamma", &gamma, "-", "of the camera's response, for the light", 0.1, 10);
+  table.Add("gamma", &gamma, "-",
+            "of the camera's response, for the light; a sequence's own photometric calibration goes before it", 0.1,
+            10);
   table.AddChoice("refine_rigid", &refine_rigid,
                   "while the scene is rigid the map is made again of all frames since the reference");
   window.List(table);

@@ -113,7 +113,7 @@ Status LocateAllFrames(const InitInput& input, const SolvedWindow& window, const
     all.courses.col(static_cast<Eigen::Index>(k)) =
         (1.0 - share) * solved.courses.col(static_cast<Eigen::Index>(before)) +
         share * solved.courses.col(static_cast<Eigen::Index>(next));
-    const auto seen = SeenIn(input.frames[k], input.camera, points->ids, static_cast<int>(k), options);
+    const auto seen = SeenIn(input, input.frames[k], points->ids, static_cast<int>(k), options);
     all.observations.insert(all.observations.end(), seen.begin(), seen.end());
   }
   auto located = LocateDeformingViews(all, input.camera.MeanFocalLengthPx(), options.window, input.threads);
@@ -142,7 +142,7 @@ Status SettlePoints(const InitInput& input, const MapDemands& demands, const Win
   const std::vector<PointId> joining = PointsToJoin(input, *points, options.min_frame_share);
   std::vector<DeformingObservation> observations;
   for (std::size_t k = 0; k < input.frames.size(); ++k) {
-    const auto seen = SeenIn(input.frames[k], input.camera, joining, static_cast<int>(k), options);
+    const auto seen = SeenIn(input, input.frames[k], joining, static_cast<int>(k), options);
     observations.insert(observations.end(), seen.begin(), seen.end());
   }
   auto settled = SettleDeformingPoints(points->solution, observations, static_cast<int>(joining.size()), focal_px,

@@ -101,7 +101,7 @@ Result<DeformingWindow> Start(const InitInput& input, const std::vector<std::siz
     }
     start.cams_from_world.push_back(near);
     start.times.push_back(frame.frame_idx - input.frames.front().frame_idx);
-    AddNewPoints(SeenIn(frame, input.camera, *ids, 0, options), *ids, near, nominal_depth_mm, &known);
+    AddNewPoints(SeenIn(input, frame, *ids, 0, options), *ids, near, nominal_depth_mm, &known);
   }
   ids->clear();
   for (const auto& [id, position] : known) {
@@ -109,7 +109,7 @@ Result<DeformingWindow> Start(const InitInput& input, const std::vector<std::siz
     start.points_in_world.push_back(position);
   }
   for (std::size_t v = 0; v < views.size(); ++v) {
-    const auto seen = SeenIn(input.frames[views[v]], input.camera, *ids, static_cast<int>(v), options);
+    const auto seen = SeenIn(input, input.frames[views[v]], *ids, static_cast<int>(v), options);
     start.observations.insert(start.observations.end(), seen.begin(), seen.end());
   }
   return start;
@@ -128,13 +128,15 @@ int PlaceOf(PointId id, const std::vector<PointId>& ids) {
   return found != ids.end() && *found == id ? static_cast<int>(found - ids.begin()) : -1;
 }
 
-std::vector<DeformingObservation> SeenIn(const InitFrame& frame, const Camera& camera, const std::vector<PointId>& ids,
-                                         int view_idx, const WindowInitOptions& options) {
+std::vector<DeformingObservation> SeenIn(const InitInput& input, const InitFrame& frame,
+                                         const std::vector<PointId>& ids, int view_idx,
+                                         const WindowInitOptions& options) {
+  const PhotometricCalibration light = input.photometric.value_or(PhotometricCalibration{.gamma = options.gamma});
   std::vector<DeformingObservation> observations;
-  for (const WindowObservation& seen : ObservationsOf(camera, frame, ids, view_idx)) {
+  for (const WindowObservation& seen : ObservationsOf(input.camera, frame, ids, view_idx)) {
     const PointId id = ids[static_cast<std::size_t>(seen.point_idx)];
     const double brightness = options.light == Switch::kOn ? FindById(frame.observations, id)->brightness : 0.0;
-    observations.push_back({view_idx, seen.point_idx, seen.ray, LogDistanceFromLight(brightness, options.gamma)});
+    observations.push_back({view_idx, seen.point_idx, seen.ray, LogDistanceFromLight(light, brightness, seen.ray)});
   }
   return observations;
 }

@@ -403,8 +403,19 @@ TEST_F(DataSets, EndomapperReal) {
        "      <params> [  230;  230;  159.5;  119.5;  -0.1289632;  -0.006051189;  0.001660961;  -7.847858e-05 ] "
        "</params>\n    </camera_model>\n  </camera>\n</rig>\n");
   ExpectTheScene(Path(folder), {.kind = "endomapper", .poses = false, .grey_levels = 4.0});
+  Text("Calibrations/Endoscope_03/Endoscope_03_photometrical.xml",
+       "<?xml version=\"1.0\"?>\n<rig>\n <camera>\n  <camera_model index=\"0\" type=\"gamma\">\n   <!-- <gamma> [ 9 ] "
+       "</gamma> -->\n   <gamma> [ 2.2 ] </gamma>\n   <vignetting> [ 1.500000 ] </vignetting>\n  </camera_model>\n "
+       "</camera>\n <light>\n  <light_model type=\"sls\">\n   <sigma> 1.0 </sigma>\n   <mu> 2.767302 </mu>\n   <P> [ "
+       "-6.1e-05; -0.001135; -0.003612 ] </P>\n   <D> [ 0.011092; 0.0; 0.999938 ] </D>\n  </light_model>\n "
+       "</light>\n</rig>\n");
   const auto sequence = OpenSequence({.image_path = Path(folder)});
-  ASSERT_TRUE(sequence.ok());
+  ASSERT_TRUE(sequence.ok()) << sequence.status().message();
+  ASSERT_TRUE((*sequence)->Photometric().has_value());
+  EXPECT_EQ((*sequence)->Photometric()->gamma, 2.2);
+  EXPECT_EQ((*sequence)->Photometric()->vignetting, 1.5);
+  EXPECT_EQ((*sequence)->Photometric()->light_spread, 2.767302);
+  EXPECT_EQ((*sequence)->Photometric()->light_axis, Eigen::Vector3d(0.011092, 0, 0.999938));
   EXPECT_EQ((*sequence)->camera().model_name(), "OPENCV_FISHEYE");
   EXPECT_THAT((*sequence)->camera().params(),
               ElementsAre(230, 230, 159.5, 119.5, -0.1289632, -0.006051189, 0.001660961, -7.847858e-05));
@@ -443,6 +454,46 @@ TEST_F(DataSets, ImagesBesideAModelAreNativeWhenTheyHaveTheirOwnCalibration) {
   const auto without = OpenSequence({.image_path = Path("room")});
   ASSERT_FALSE(without.ok());
   EXPECT_THAT(without.status().message(), HasSubstr("has 2 cameras"));
+}
+
+TEST_F(DataSets, CalibrationsThatAreNoneAreRefused) {
+  const auto refused = [&](const char* folder, const std::string& what) {
+    const auto sequence = OpenSequence({.image_path = Path(folder)});
+    ASSERT_FALSE(sequence.ok()) << what;
+    EXPECT_THAT(sequence.status().message(), HasSubstr(what));
+  };
+  std::filesystem::create_directories(Path("Seq_001"));
+  cv::VideoWriter writer(Path("Seq_001/Seq_001.mov").string(), cv::CAP_FFMPEG,
+                         cv::VideoWriter::fourcc('m', 'p', '4', 'v'), 30, {kWidth, kHeight});
+  writer.write(Image(0));
+  writer.release();
+  const auto calibu = [&](const std::string& type, const std::string& width) {
+    Text("Seq_001/a_geometrical.xml", "<rig><camera><camera_model type=\"" + type + "\"><width> " + width +
+                                          " </width><height> 48 </height><params> [ 60; 60; 31.5; 23.5 ] </params>"
+                                          "</camera_model></camera></rig>");
+  };
+  Text("Seq_001/a_geometrical.xml", "<rig><camera>");
+  refused("Seq_001", "is no XML");
+  calibu("calibu_fu_fv_u0_v0", "1e300");
+  refused("Seq_001", "no width and height");
+  calibu("calibu_fu_fv_u0_v0_w", "64");
+  refused("Seq_001", "'calibu_fu_fv_u0_v0_w', which is not known");
+  calibu("calibu_fu_fv_u0_v0", "64");
+  Text("Seq_001/a_photometrical.xml",
+       "<rig><camera><camera_model><gamma> [ -1 ] </gamma></camera_model></camera></rig>");
+  refused("Seq_001", "gamma must be");
+
+  Text("mav0/cam0/data.csv", "#\n1,1.png\n");
+  Write("mav0/cam0/data/1.png", Image(0));
+  const auto euroc = [&](const std::string& model, const std::string& size) {
+    Text("mav0/cam0/sensor.yaml", "T_BS:\n  data: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]\nresolution: " +
+                                      size + "\nintrinsics: [60, 60, 32, 24]\ndistortion_model: " + model +
+                                      "\ndistortion_coefficients: [0, 0, 0, 0]\n");
+  };
+  euroc("fov", "[64, 48]");
+  refused(".", "the distortion_model 'fov', which is not known");
+  euroc("radtan", "[1e300, 48]");
+  refused(".", "is not EuRoC's description of a camera");
 }
 
 TEST_F(DataSets, APoseThatIsNotTransposedIsRefused) {

@@ -406,6 +406,18 @@ TEST_F(OpenSequenceTest, TellsWhatIsWrongWithADepthImage) {
   EXPECT_THAT(sequence->Depth(1).status().message(), HasSubstr("8x8"));
 }
 
+TEST_F(OpenSequenceTest, PosesOfSomeImagesBelongToThoseOfTheirTimes) {
+  WriteNative(3);
+  Text("times.txt", "0.5\n0.75\n2\n");
+  Text("groundtruth.txt", "0.500000 1 0 0 0 0 0 1\n2.0 3 0 0 0 0 0 1\n");
+  const auto sequence = Open(Request());
+  ASSERT_NE(sequence, nullptr);
+  EXPECT_EQ(sequence->WorldFromCamera(0)->translation.x(), 1);
+  EXPECT_FALSE(sequence->WorldFromCamera(1).has_value());
+  EXPECT_EQ(sequence->WorldFromCamera(2)->translation.x(), 3);
+  EXPECT_THAT(sequence->Warnings(), ElementsAre(HasSubstr("1 of 3 images have no pose")));
+}
+
 TEST_F(OpenSequenceTest, RefusesAGroundTruthThatIsShortOrGarbled) {
   WriteNative(3);
   Text("groundtruth.txt", "0 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n");

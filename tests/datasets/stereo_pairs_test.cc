@@ -13,6 +13,7 @@
 #include "pliant/datasets/check_sequence.h"
 #include "pliant/datasets/convert_sequence.h"
 #include "pliant/datasets/open_sequence.h"
+#include "pliant/io/trajectory.h"
 #include "support/rendered_sequence.h"
 
 namespace pliant {
@@ -266,6 +267,25 @@ TEST_F(StereoPairs, AllThatASequenceHasComesBackFromItsNativeCopy) {
         (*sequence)->WorldFromCamera(k)->Inverse() * Rendered().world_from_cam[static_cast<std::size_t>(k)];
     EXPECT_LT(error.translation.norm() + RotationAngle(error.rotation), 1e-6);
   }
+  // Poses with gaps keep their images.
+  const std::filesystem::path file = Path("seq/groundtruth.txt");
+  std::vector<TimedPose> poses = ReadTumTrajectory(file.string()).value();
+  poses.erase(poses.begin() + 5, poses.begin() + 8);
+  ASSERT_TRUE(WriteTumTrajectory(file.string(), poses).ok());
+  sequence = OpenSequence({.image_path = Path("seq")});
+  ASSERT_TRUE(sequence.ok()) << sequence.status().message();
+  const auto with_gaps = ConvertSequence(**sequence, Path("gaps"));
+  ASSERT_TRUE(with_gaps.ok());
+  EXPECT_EQ(with_gaps->poses, rendered.size() - 3);
+  const auto read = OpenSequence({.image_path = Path("gaps")});
+  ASSERT_TRUE(read.ok()) << read.status().message();
+  for (int k = 0; k < rendered.size(); ++k) {
+    const auto pose = (*read)->WorldFromCamera(k);
+    ASSERT_EQ(pose.has_value(), k < 5 || k >= 8) << k;
+    if (!pose) continue;
+    EXPECT_LT((pose->translation - Rendered().world_from_cam[static_cast<std::size_t>(k)].translation).norm(), 1e-5);
+  }
+
   const auto again = ConvertSequence(**sequence, Path("seq"));
   EXPECT_EQ(again.status().code(), ErrorCode::kInvalidArgument) << "the folder is not empty";
 }

@@ -492,13 +492,5 @@ TEST(LightDepth, ATiltedSurfaceIsDarkerNotFurther) {
   EXPECT_EQ(CompareWithLight(positions, light).error, 0);
 }
 
-TEST(LightDepth, BrightnessFallsWithTheSquareOfTheDistance) {
-  const double gamma = 2.2;
-  const auto brightness = [&](double distance) { return 255 * std::pow(10.0 / (distance * distance), 1 / gamma); };
-  EXPECT_NEAR(LogDistanceFromLight(brightness(20), gamma) - LogDistanceFromLight(brightness(10), gamma), std::log(2.0),
-              1e-12);
-  EXPECT_TRUE(std::isnan(LogDistanceFromLight(0, gamma)));
-}
-
 }  // namespace
 }  // namespace pliant

@@ -35,12 +35,26 @@ TEST(CameraFile, ComesBackAsItWasWritten) {
   EXPECT_EQ(read->baseline_mm, file.baseline_mm);
 }
 
+TEST(CameraFile, ThePhotometricCalibrationComesBackToo) {
+  const TestFolder folder;
+  CameraFile file{Camera::Create("PINHOLE", 64, 48, std::vector<double>{50, 51, 32, 24}).value()};
+  file.photometric = {1.9, 2.5, 2.767302, {0.011092, 0, 0.999938}};
+  ASSERT_TRUE(WriteCameraFile(folder.Path("camera.yaml"), file).ok());
+  const auto read = ReadCameraFile(folder.Path("camera.yaml"));
+  ASSERT_TRUE(read.ok()) << read.status().message();
+  ASSERT_TRUE(read->photometric.has_value());
+  EXPECT_EQ(read->photometric->gamma, 1.9);
+  EXPECT_EQ(read->photometric->vignetting, 2.5);
+  EXPECT_EQ(read->photometric->light_spread, 2.767302);
+  EXPECT_EQ(read->photometric->light_axis, file.photometric->light_axis);
+}
+
 TEST(CameraFile, LeavesOutWhatIsNotGiven) {
   const TestFolder folder;
   const auto read =
       ReadCameraFile(folder.Write("c.yaml", "model: PINHOLE\nwidth: 64\nheight: 48\nparams: [50, 51, 32, 24]\n"));
   ASSERT_TRUE(read.ok()) << read.status().message();
-  EXPECT_FALSE(read->fps || read->depth_scale || read->baseline_mm);
+  EXPECT_FALSE(read->fps || read->depth_scale || read->baseline_mm || read->photometric);
 }
 
 TEST(CameraFile, InMetresIsReadInMillimetres) {
@@ -93,6 +107,11 @@ INSTANTIATE_TEST_SUITE_P(
         BadFile{"Fps", "c.yaml", "model: PINHOLE\nwidth: 64\nheight: 48\nparams: [50, 50, 32, 24]\nfps: 0\n", "fps"},
         BadFile{"Unit", "c.yaml", "model: PINHOLE\nwidth: 64\nheight: 48\nparams: [50, 50, 32, 24]\nunit: inch\n",
                 ":5: unit must be mm or m"},
+        BadFile{"Gamma", "c.yaml", "model: PINHOLE\nwidth: 64\nheight: 48\nparams: [50, 50, 32, 24]\ngamma: 0\n",
+                "gamma must be between"},
+        BadFile{"LightAxis", "c.yaml",
+                "model: PINHOLE\nwidth: 64\nheight: 48\nparams: [50, 50, 32, 24]\nlight_axis: [0, 1]\n",
+                "light_axis must be a direction"},
         BadFile{"ColmapText", "cameras.txt", "# x\n1 PINHOLE 64 48 1 2 nan 4\n",
                 "camera 1: the PINHOLE camera has a parameter that is not a finite number: number 3"},
         BadFile{"ColmapModel", "cameras.txt", "1 FOV 64 48 1 2 3 4 5\n", "camera model FOV is not one of Pliant's"},

@@ -58,14 +58,15 @@ TEST(SyntheticScene, BrightnessSpeaksOfDistanceAndSlope) {
   const SceneOptions facing{.surface = Surface::kBlob, .motion = Motion::kStill, .num_points = 50, .num_frames = 2};
   const Scene scene = MakeScene(facing);
   for (std::size_t i = 0; i < scene.points.size(); ++i)
-    EXPECT_NEAR(LogDistanceFromLight(scene.brightness[1][i], 2.2), std::log(scene.points[i].norm() / 10.0), kRounding);
+    EXPECT_NEAR(LogDistanceFromLight({}, scene.brightness[1][i], scene.points[i]),
+                std::log(scene.points[i].norm() / 10.0), kRounding);
 
   const SceneOptions tilted{.surface = Surface::kPlane, .motion = Motion::kStill, .num_points = 50, .num_frames = 1};
   const Scene plane = MakeScene(tilted);
   const double tilt = 20.0 * std::numbers::pi / 180.0;
   for (std::size_t i = 0; i < plane.points.size(); ++i) {
     const double cosine = Eigen::Vector3d(0.0, std::sin(tilt), std::cos(tilt)).dot(plane.points[i].normalized());
-    EXPECT_NEAR(LogDistanceFromLight(plane.brightness[0][i], 2.2),
+    EXPECT_NEAR(LogDistanceFromLight({}, plane.brightness[0][i], plane.points[i]),
                 std::log(plane.points[i].norm() / 10.0) - 0.5 * std::log(cosine), kDifferences);
   }
 }

@@ -312,6 +312,27 @@ TEST(WindowInitializer, DoesNotBelieveALightThatSaysNothing) {
   EXPECT_THAT(outcome.reason, HasSubstr("without light"));
 }
 
+// A lens that shades the border, or a light that points ahead: known, it does no harm.
+TEST(WindowInitializer, AVignetteThatIsKnownIsNoDepth) {
+  const PhotometricCalibration lens{.gamma = 1.6, .vignetting = 4, .light_spread = 6};
+  Sequence sequence(61);
+  for (InitFrame& frame : sequence.frames)
+    for (InitObservation& seen : frame.observations) {
+      const double light =
+          std::pow(seen.brightness / 255, 2.2) * std::exp(LogFalloff(lens, *sequence.camera.Unproject(seen.pixel)));
+      seen.brightness = 255 * std::pow(light, 1 / lens.gamma);
+    }
+  const auto initializer = MakeWindowInitializer({}, kNominalMm);
+  InitInput input{sequence.camera, sequence.frames, {}};
+  const InitOutcome unknown = initializer->Try(input);
+  input.photometric = lens;
+  const InitOutcome known = initializer->Try(input);
+  ASSERT_EQ(known.decision, InitDecision::kMap) << known.reason;
+  for (const int t : {0, 60}) EXPECT_LT(sequence.ShapeError(known, t), kShape) << t;
+  EXPECT_THAT(known.reason, testing::Not(HasSubstr("without light")));
+  EXPECT_THAT(unknown.reason, HasSubstr("without light"));
+}
+
 TEST(WindowInitializer, WhenAllPointsAreOneItSaysSo) {
   Sequence sequence(61);
   for (InitFrame& frame : sequence.frames)

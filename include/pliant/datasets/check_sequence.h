@@ -39,6 +39,7 @@ struct PoseCheck {
 
 struct StereoCheck {
   int matches = 0;
+  bool enough = false;  // to tell anything
   double median_row_error_px = 0;  // |v_left - v_right|
   double share_right_way = 0;      // of the matches whose disparity is positive
   // Depth of the depth images by that of the disparities, median; nothing where there is no depth.

@@ -18,8 +18,7 @@ struct ConvertSummary {
   int right = 0;
   int masks = 0;
   int depths = 0;
-  int poses = 0;                    // all frames' or none: where one has no pose, none is written
-  int first_without_pose = -1;      // the frame for which; -1: every one has one
+  int poses = 0;
   std::int64_t clipped_depths = 0;  // pixels whose depth is too large for the 16 bits, written as none
 };
 

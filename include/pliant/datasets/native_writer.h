@@ -6,7 +6,6 @@
 
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <optional>
 #include <string>
 
@@ -53,8 +52,5 @@ class NativeWriter {
   std::ofstream times_;
   std::ofstream poses_;
 };
-
-// CV_32FC1 mm -> CV_16UC1 steps of depth_scale_mm; 0 where there is none or it is out of range.
-cv::Mat QuantiseDepth(const cv::Mat& depth_mm, double depth_scale_mm);
 
 }  // namespace pliant

@@ -14,6 +14,7 @@
 
 #include "pliant/base/status.h"
 #include "pliant/camera/camera.h"
+#include "pliant/camera/photometric_calibration.h"
 #include "pliant/geometry/rigid3.h"
 
 namespace pliant {
@@ -42,6 +43,9 @@ class Sequence {
   // These do not depend on how far Next has come. Depth: CV_32FC1, z along the optical axis in mm, 0 = none.
   virtual Result<std::optional<cv::Mat>> Depth(int frame_idx) const = 0;
   virtual std::optional<Rigid3> WorldFromCamera(int frame_idx) const = 0;
+
+  // Response, vignetting and light, where the source's calibration says them.
+  virtual std::optional<PhotometricCalibration> Photometric() const { return std::nullopt; }
 
   // The distance of the cameras of a rectified pair, the right one at +x of the left one, whose images Next gives;
   // nothing where the source has no pairs.

@@ -139,8 +139,4 @@ std::vector<double> PointErrorsPx(const DeformingWindow& window, double focal_px
 // Correlation of the errors of points that are neighbours in the reference, over all views, from -1 to 1.
 double ResidualCorrelation(const DeformingWindow& window);
 
-// -(gamma / 2) log(brightness / 255): log distance up to a constant, for a light at the camera, whose falloff is with
-// the square of the distance, and a response of `gamma`. NaN for a brightness that is not above 0.
-double LogDistanceFromLight(double brightness, double gamma);
-
 }  // namespace pliant

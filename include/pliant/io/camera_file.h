@@ -3,7 +3,8 @@
 
 // Calibration files. Three kinds are recognised by what they contain, whatever they are called:
 // - Pliant's camera.yaml: model, width, height, params, and optionally fps, depth_scale, baseline, unit (mm, or m: of
-//   depth_scale, baseline and the poses beside it, which become mm);
+//   depth_scale, baseline and the poses beside it, which become mm), and the photometric calibration: gamma,
+//   vignetting, light_spread, light_axis;
 // - COLMAP's cameras.txt and cameras.bin, whose first pixel's centre is (0.5, 0.5): the half pixel is taken off here;
 // - OpenCV's calibrations, YAML or XML: a camera matrix (M1, K1, K, M, camera_matrix, cameraMatrix, ...), distortion
 //   coefficients (D1, D, distortion_coefficients, distCoeffs, ...) and, where they are written, the image size and
@@ -18,6 +19,7 @@
 
 #include "pliant/base/status.h"
 #include "pliant/camera/camera.h"
+#include "pliant/camera/photometric_calibration.h"
 #include "pliant/geometry/rigid3.h"
 
 namespace pliant {
@@ -39,6 +41,7 @@ struct CameraFile {
   // The right camera's centre is at +baseline on the left one's x axis.
   std::optional<double> baseline_mm = std::nullopt;
   double unit_mm = 1.0;  // of the poses beside the file, mm
+  std::optional<PhotometricCalibration> photometric = std::nullopt;
   // OpenCV's k3 to k6 have no place in the OPENCV model. Where they are small, k1 and k2 are fitted again to the whole
   // distortion over the image, and this is the largest difference that is left, px; 0: nothing had to be fitted. Above
   // kLargestRefitPx the file is refused.

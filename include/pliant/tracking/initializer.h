@@ -9,6 +9,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -19,6 +20,7 @@
 
 #include "pliant/base/ids.h"
 #include "pliant/camera/camera.h"
+#include "pliant/camera/photometric_calibration.h"
 #include "pliant/geometry/rigid3.h"
 
 namespace pliant {
@@ -52,6 +54,7 @@ struct InitInput {
   int threads = 1;  // that an initialiser may use; they never change its answer
   // z of the reference's points, in their order, in any unit; empty: not known.
   std::vector<double> reference_depths = {};
+  std::optional<PhotometricCalibration> photometric = std::nullopt;  // where it is known
 };
 
 enum class InitDecision {

@@ -9,6 +9,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -105,10 +106,11 @@ struct TrackerFrame {
   cv::Mat grey;   // CV_8UC1
   ImagePyramid pyramid;
   SupportMask mask;
-  cv::Mat depth_mm;                      // CV_32FC1 or empty; only a start from depth uses it
-  std::vector<PixelDepth> known_points;  // only a start from a model uses them: instead of corners, the best first
-  double sharpness = 0;                  // of the image, grey levels
-  double prepare_ms = 0;                 // wall time of PrepareFrame
+  cv::Mat depth_mm;  // CV_32FC1 or empty; only a start from depth uses it
+  // Instead of corners, the best first; only a start from a model or a pair uses them, when it takes a reference.
+  std::function<std::vector<PixelDepth>()> known_points;
+  double sharpness = 0;   // of the image, grey levels
+  double prepare_ms = 0;  // wall time of PrepareFrame
 };
 
 // `image` has the camera's size; `mask` is empty or CV_8UC1 of that size, 0 = ignore.
@@ -122,8 +124,9 @@ class Tracker {
                                                               "graph",   "joint",       "initialise"};
   // `threads` >= 1 work on one frame; the result does not depend on it. `seed` decides RANSAC's samples.
   // `truth` is what the oracle switches ask; it must be there when one is on, and outlive this.
+  // `photometric`: of the camera, where it is known; first maps that listen to the light then trust it.
   Tracker(const Camera& camera, const TrackerOptions& options, std::uint64_t seed, int threads,
-          TrackingTruth* truth = nullptr);
+          TrackingTruth* truth = nullptr, const std::optional<PhotometricCalibration>& photometric = std::nullopt);
   ~Tracker();
 
   // Begins with the map that was reported in this frame, in place of a first map of its own: the points that are
@@ -217,6 +220,7 @@ class Tracker {
   void RemakeMap(const TrackerFrame& frame, FrameReport* report);
 
   Camera camera_;
+  std::optional<PhotometricCalibration> photometric_;
   TrackerOptions options_;
   int threads_;
   std::unique_ptr<Initializer> initializer_;
