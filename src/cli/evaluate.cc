@@ -24,8 +24,10 @@ const Manual kManual = {
     "worst 5 % left out) and lmeds (least-median-of-squares scale, inliers). The plain figure is printed in any "
     "case.\n\n"
     "Reads --run: a run folder that pliant track left, also one that was interrupted or killed, or another system's "
-    "trajectory.txt (TUM) and observations.csv; docs/formats.md says how to bring one. Reads --sequence: a native "
-    "sequence with depth/, groundtruth.txt or simulation.yaml.\n\n"
+    "trajectory.txt (TUM) and observations.csv; docs/formats.md says how to bring one. Reads --sequence: a "
+    "sequence with depth images, poses, pairs of images (the disparity at every point is then the truth of the "
+    "surface, "
+    "with its own uncertainty) or simulation.yaml.\n\n"
     "Leaves, where --output_path is given: evaluation.json (every figure) and evaluation.csv (one row a frame). "
     "pliant compare sets several runs side by side.",
     {"pliant evaluate --run run --sequence colon",
@@ -42,7 +44,7 @@ int EvaluateCommand(std::span<const std::string> args) {
   bool quiet = false;
   CommandLine line(kManual);
   line.Add("run", &run_path, "DIR", "run folder", Need::kRequired);
-  line.Add("sequence", &sequence_path, "DIR", "native sequence with truth", Need::kRequired);
+  line.Add("sequence", &sequence_path, "DIR", "sequence with truth", Need::kRequired);
   AddEvaluationArguments(&line);
   line.Add("output_path", &output_path, "DIR", "folder for the JSON and CSV files", Need::kOptional);
   line.AddFlag("quiet", &quiet, "print no table");

@@ -20,15 +20,19 @@ struct CollectedTruth {
   FirstMapTruth declared;
 };
 
-PairedFrame PairFrame(int frame_idx, const std::vector<TrackedPoint>& points, const Camera& camera,
-                      const cv::Mat& depth_mm, double max_depth_step) {
+// Nothing where the frame has no truth.
+Result<std::optional<PairedFrame>> PairFrame(int frame_idx, const std::vector<TrackedPoint>& points,
+                                             const Camera& camera, double max_sigma_mm, SurfaceTruth* surface) {
   std::vector<Eigen::Vector3d> points_in_cam;
   std::vector<Eigen::Vector2d> pixels;
   for (const TrackedPoint& point : points) {
     points_in_cam.push_back(point.point_in_cam);
     pixels.push_back(point.pixel);
   }
-  return PairWithSurface(frame_idx, points_in_cam, pixels, camera, depth_mm, max_depth_step);
+  const auto depths = surface->At(frame_idx, pixels);
+  if (!depths.ok()) return depths.status();
+  if (!depths->has_value()) return std::optional<PairedFrame>();
+  return std::optional(PairWithSurface(frame_idx, points_in_cam, pixels, camera, **depths, max_sigma_mm));
 }
 
 // The frame is one of the two that the first map's error looks at, if that is wanted.
@@ -39,24 +43,25 @@ bool IsOfFirstMap(const EvaluationFrame& frame, const EvaluationOptions& options
 }
 
 Status CollectFrame(const EvaluationFrame& frame, const Sequence& sequence, const EvaluationOptions& options,
-                    CollectedTruth* truth) {
+                    SurfaceTruth* surface, CollectedTruth* truth) {
   std::vector<TrackedPoint> points;
   for (const PointObservation& observation : frame.observations)
     points.push_back({observation.id, observation.pixel, *frame.cam_from_world * observation.position});
   const bool of_first_map = IsOfFirstMap(frame, options);
-  cv::Mat depth_mm;
-  if (options.Wants(EvaluationPart::kSurface) || truth->material || of_first_map) {
-    const Result<std::optional<cv::Mat>> depth = sequence.Depth(frame.frame_idx);
-    if (!depth.ok()) return depth.status();
-    depth_mm = depth->value_or(cv::Mat());
-  }
   FirstMapTruth known;
-  if ((options.Wants(EvaluationPart::kSurface) || of_first_map) && !depth_mm.empty())
-    known.surface = PairFrame(frame.frame_idx, points, sequence.camera(), depth_mm, options.points.max_depth_step);
+  if (options.Wants(EvaluationPart::kSurface) || of_first_map) {
+    auto paired = PairFrame(frame.frame_idx, points, sequence.camera(), options.points.max_truth_sigma_mm, surface);
+    if (!paired.ok()) return paired.status();
+    known.surface = *std::move(paired);
+  }
   if (const std::optional<Rigid3> world_from_cam = sequence.WorldFromCamera(frame.frame_idx))
     known.poses = {frame.frame_idx, frame.cam_from_world->Inverse(), *world_from_cam, frame.submap};
-  if (truth->material)
-    if (Status status = truth->material->AddFrame(frame.frame_idx, points, depth_mm); !status.ok()) return status;
+  if (truth->material) {
+    const Result<std::optional<cv::Mat>> depth_mm = sequence.Depth(frame.frame_idx);
+    if (!depth_mm.ok()) return depth_mm.status();
+    if (Status status = truth->material->AddFrame(frame.frame_idx, points, depth_mm->value_or(cv::Mat())); !status.ok())
+      return status;
+  }
   if (of_first_map && frame.frame_idx == frame.first_map->reference_frame_idx) truth->reference = known;
   if (of_first_map && frame.frame_idx == frame.first_map->declared_frame_idx) truth->declared = known;
   if (options.Wants(EvaluationPart::kCamera) && known.poses) truth->poses.push_back(*known.poses);
@@ -144,6 +149,9 @@ void EvaluationOptions::List(OptionTable& table) {
   table.BeginGroup("Evaluation", "what is compared, and how run and sequence are brought together");
   table.AddChoices("parts", &parts,
                    "the parts to compute; one that has no truth is an error. Empty: all that have truth");
+  table.AddChoice("surface_from", &surface_from,
+                  "where the true surface comes from: depth, the depth images; pairs, the disparity of pairs of images "
+                  "at the pixels of the points; any, the first of these that the sequence has");
   matching.List(table);
   table.BeginGroup("PointError", "surface error and material error: estimated points against true ones");
   points.List(table);
@@ -152,7 +160,8 @@ void EvaluationOptions::List(OptionTable& table) {
 }
 
 Result<Evaluation> Evaluate(const EvaluationInput& run, const Sequence& sequence,
-                            const Result<MaterialTruth*>& material, const EvaluationOptions& options) {
+                            const Result<MaterialTruth*>& material, const EvaluationOptions& options,
+                            SurfaceTruth* surface) {
   if (Status status = CheckBelongsTo(run, sequence, options.matching); !status.ok()) return status;
   Evaluation evaluation;
   evaluation.run = run.name;
@@ -167,14 +176,18 @@ Result<Evaluation> Evaluate(const EvaluationInput& run, const Sequence& sequence
   CollectedTruth truth;
   if (material.ok() && options.Wants(EvaluationPart::kMaterial))
     truth.material.emplace(**material, sequence.camera(), options.points.max_depth_step);
+  const std::unique_ptr<SurfaceTruth> images = DepthImageTruth(sequence, options.points.max_depth_step);
   for (const EvaluationFrame& frame : run.frames) {
     if (!frame.cam_from_world) continue;
-    if (Status status = CollectFrame(frame, sequence, options, &truth); !status.ok()) return status;
+    if (Status status = CollectFrame(frame, sequence, options, surface != nullptr ? surface : images.get(), &truth);
+        !status.ok())
+      return status;
   }
   if (truth.surface.empty() && !truth.material && truth.poses.empty() && options.parts.empty() && options.needs_truth)
-    return Status(ErrorCode::kNotFound, "the sequence of the run " + run.name +
-                                            " has no truth for the tracked frames: no depth/, no groundtruth.txt, no "
-                                            "simulation.yaml; evaluate on a sequence that has one of them");
+    return Status(ErrorCode::kNotFound,
+                  "the sequence of the run " + run.name +
+                      " has no truth for the tracked frames: no depth/, no pairs, no "
+                      "groundtruth.txt, no simulation.yaml; evaluate on a sequence that has one of them");
   if (Status status = ComputeParts(run, truth, material.status(), options, &evaluation); !status.ok()) return status;
   if (Status status = CheckProtocols(evaluation, options); !status.ok()) return status;
   return evaluation;

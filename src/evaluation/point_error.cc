@@ -92,6 +92,8 @@ void PointErrorOptions::List(OptionTable& table) {
                   "what the estimate is multiplied with: the paper's is per_frame after a monocular start");
   table.Add("max_depth_step", &max_depth_step, "-",
             "relative depth step around a pixel above which the true depth is not interpolated", 0.0, 10.0);
+  table.Add("max_truth_sigma_mm", &max_truth_sigma_mm, "mm",
+            "uncertainty of a true depth, where it is known (pairs of images), above which it is not used", 0.0, 1e6);
   protocol.List(table);
 }
 
@@ -99,14 +101,17 @@ LeftOutCounts& LeftOutCounts::operator+=(const LeftOutCounts& other) {
   outside_image += other.outside_image;
   no_depth += other.no_depth;
   depth_step += other.depth_step;
+  uncertain += other.uncertain;
   no_ray += other.no_ray;
   not_finite += other.not_finite;
   return *this;
 }
 
 std::string Describe(const LeftOutCounts& counts) {
+  const std::string uncertain =
+      counts.uncertain > 0 ? std::to_string(counts.uncertain) + " of uncertain truth, " : std::string();
   return std::to_string(counts.depth_step) + " on a depth step, " + std::to_string(counts.no_depth) +
-         " without true depth, " + std::to_string(counts.outside_image) + " outside the image, " +
+         " without true depth, " + uncertain + std::to_string(counts.outside_image) + " outside the image, " +
          std::to_string(counts.no_ray) + " without a ray, " + std::to_string(counts.not_finite) + " not a number";
 }
 
@@ -123,6 +128,9 @@ Result<PointError> ComputePointError(std::span<const PairedFrame> frames, const 
     all.insert(all.end(), frame.pairs.begin(), frame.pairs.end());
   }
   error.points = static_cast<int>(all.size());
+  std::vector<double> truth_sigmas_mm;
+  for (const PointPair& pair : all) truth_sigmas_mm.push_back(pair.truth_sigma_mm);
+  error.truth_sigma_mm = Rms(truth_sigmas_mm);
   if (all.empty())
     return Status(ErrorCode::kInsufficient, "no point has a true position to compare with: of " +
                                                 std::to_string(error.left_out.Total()) + " observations " +

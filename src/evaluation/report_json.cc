@@ -11,11 +11,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json ToJson(const LeftOutCounts& counts) {
-  return {{"depth_step", counts.depth_step},
-          {"no_depth", counts.no_depth},
-          {"outside_image", counts.outside_image},
-          {"no_ray", counts.no_ray},
-          {"not_finite", counts.not_finite}};
+  return {{"depth_step", counts.depth_step}, {"no_depth", counts.no_depth},   {"outside_image", counts.outside_image},
+          {"no_ray", counts.no_ray},         {"uncertain", counts.uncertain}, {"not_finite", counts.not_finite}};
 }
 
 Json ToJson(const PointSummary& s) {
@@ -62,6 +59,7 @@ Json ToJson(const PointError& e) {
           {"points", e.points},
           {"frames_without_pair", e.frames_without_pair},
           {"left_out", ToJson(e.left_out)},
+          {"truth_sigma_mm", e.truth_sigma_mm},
           {"estimate", ToJson(e.plain.estimate)},
           {"null", ToJson(e.plain.null)},
           {"protocols", protocols},

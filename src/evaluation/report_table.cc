@@ -33,6 +33,9 @@ std::string PointTable(const char* title, const PointError& e) {
   text +=
       FormatText("  scale %.4f to %.4f; %d points in %zu frames; the RMSE and medians above leave none of them out\n",
                  estimate.min_scale, estimate.max_scale, e.points, e.plain.frames.size());
+  if (e.truth_sigma_mm > 0)
+    text +=
+        FormatText("  the truth is measured too: its own uncertainty is %.3f mm, root mean square\n", e.truth_sigma_mm);
   const int observations = e.points + e.left_out.Total();
   return text +
          FormatText("  without truth: %.1f %% of %d observations: ", 100.0 * e.left_out.Total() / observations,

@@ -17,11 +17,11 @@ std::vector<PixelDepth> PointsOfPair(const TrackerFrame& left, const cv::Mat& ri
   std::stable_sort(corners.begin(), corners.end(), [](const Corner& a, const Corner& b) { return a.score > b.score; });
   std::vector<Eigen::Vector2d> pixels;
   for (const Corner& corner : corners) pixels.push_back(corner.pixel);
-  const auto disparities = MatchAlongRows(left.pyramid, left.mask, other.pyramid, other.mask, pixels,
-                                          options.init.stereo, options.point_tracker.lucas_kanade, threads);
+  const auto matches = MatchAlongRows(left.pyramid, left.mask, other.pyramid, other.mask, pixels, options.init.stereo,
+                                      options.point_tracker.lucas_kanade, threads);
   std::vector<PixelDepth> points;
   for (std::size_t i = 0; i < pixels.size(); ++i)
-    if (disparities[i]) points.push_back({pixels[i], camera.params()[0] * baseline_mm / *disparities[i]});
+    if (matches[i]) points.push_back({pixels[i], camera.params()[0] * baseline_mm / matches[i]->disparity_px});
   return points;
 }
 

@@ -22,7 +22,7 @@ int MostDisparity(const StereoStartOptions& options, int width) {
   return std::max(1, static_cast<int>(options.max_disparity_share * width));
 }
 
-// (S1) Where along its row a patch of the left image resembles the right one most, whole pixels; nothing where too
+// (B1) Where along its row a patch of the left image resembles the right one most, whole pixels; nothing where too
 // little, or where another place does nearly as much.
 std::optional<double> SearchRow(const cv::Mat& left, const cv::Mat& right, const Eigen::Vector2d& pixel, int patch_size,
                                 const StereoStartOptions& options) {
@@ -65,21 +65,22 @@ std::optional<Pixel> Align(const Side& from, Pixel pixel, const Side& to, Pixel 
   return match.pixel;
 }
 
-// (S2) to (S4)
-std::optional<double> Refine(const Side& left, const Side& right, const Eigen::Vector2d& pixel, double disparity_px,
-                             const StereoStartOptions& options, const LucasKanadeOptions& lucas_kanade) {
+// (B2) to (B4)
+std::optional<RowMatch> Refine(const Side& left, const Side& right, const Eigen::Vector2d& pixel, double disparity_px,
+                               const StereoStartOptions& options, const LucasKanadeOptions& lucas_kanade) {
   const Pixel from{pixel.x(), pixel.y()};
   const auto found = Align(left, from, right, {from.x - disparity_px, from.y}, lucas_kanade);
   if (!found || std::abs(found->y - from.y) > options.max_row_px) return std::nullopt;
   const auto back = Align(right, *found, left, from, lucas_kanade);
-  if (!back || std::hypot(back->x - from.x, back->y - from.y) > options.max_left_right_px) return std::nullopt;
-  const double refined_px = from.x - found->x;
-  if (refined_px < options.min_disparity_px) return std::nullopt;
-  return refined_px;
+  if (!back) return std::nullopt;
+  const RowMatch match{from.x - found->x, from.y - found->y, std::hypot(back->x - from.x, back->y - from.y)};
+  if (match.left_right_px > options.max_left_right_px || match.disparity_px < options.min_disparity_px)
+    return std::nullopt;
+  return match;
 }
 
 // Semi-global matching's disparity between four pixels; nothing where one of them has none or they differ.
-std::optional<double> Between(const cv::Mat& disparities, const Eigen::Vector2d& pixel) {
+std::optional<RowMatch> Between(const cv::Mat& disparities, const Eigen::Vector2d& pixel) {
   constexpr float kStep = 1.0F / 16;
   constexpr float kMostDifference_px = 1;
   const int u = static_cast<int>(std::floor(pixel.x()));
@@ -91,7 +92,8 @@ std::optional<double> Between(const cv::Mat& disparities, const Eigen::Vector2d&
   double high = 0;
   cv::minMaxLoc(four, &low, &high);
   if (low <= 0 || high - low > kMostDifference_px) return std::nullopt;
-  return SampleBilinear(four, pixel.x() - u, pixel.y() - v);
+  const auto disparity_px = SampleBilinear(four, pixel.x() - u, pixel.y() - v);
+  return disparity_px ? std::optional(RowMatch{.disparity_px = *disparity_px}) : std::nullopt;
 }
 
 cv::Mat SemiGlobalDisparities(const cv::Mat& left, const cv::Mat& right, const StereoStartOptions& options) {
@@ -127,28 +129,28 @@ void StereoStartOptions::List(OptionTable& table) {
   table.Add("stereo_min_points", &min_points, "-", "stereo: fewer matches make no map", 4, 100000);
 }
 
-std::vector<std::optional<double>> MatchAlongRows(const ImagePyramid& left, const SupportMask& left_mask,
-                                                  const ImagePyramid& right, const SupportMask& right_mask,
-                                                  std::span<const Eigen::Vector2d> pixels,
-                                                  const StereoStartOptions& options,
-                                                  const LucasKanadeOptions& lucas_kanade, int threads) {
+std::vector<std::optional<RowMatch>> MatchAlongRows(const ImagePyramid& left, const SupportMask& left_mask,
+                                                    const ImagePyramid& right, const SupportMask& right_mask,
+                                                    std::span<const Eigen::Vector2d> pixels,
+                                                    const StereoStartOptions& options,
+                                                    const LucasKanadeOptions& lucas_kanade, int threads) {
   const cv::Mat left_image = left.Level(0);
   const cv::Mat right_image = right.Level(0);
-  std::vector<std::optional<double>> disparities(pixels.size());
+  std::vector<std::optional<RowMatch>> matches(pixels.size());
   if (options.matcher == StereoMatcher::kSgbm) {
     const cv::Mat dense = SemiGlobalDisparities(left_image, right_image, options);
-    std::transform(pixels.begin(), pixels.end(), disparities.begin(),
+    std::transform(pixels.begin(), pixels.end(), matches.begin(),
                    [&](const Eigen::Vector2d& pixel) { return Between(dense, pixel); });
-    return disparities;
+    return matches;
   }
   ParallelFor(static_cast<int>(pixels.size()), threads, [&](int i) {
     const Eigen::Vector2d& pixel = pixels[static_cast<std::size_t>(i)];
     const auto whole = SearchRow(left_image, right_image, pixel, lucas_kanade.patch_size, options);
     if (whole)
-      disparities[static_cast<std::size_t>(i)] =
+      matches[static_cast<std::size_t>(i)] =
           Refine({left, left_mask}, {right, right_mask}, pixel, *whole, options, lucas_kanade);
   });
-  return disparities;
+  return matches;
 }
 
 }  // namespace pliant

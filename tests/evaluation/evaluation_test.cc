@@ -67,7 +67,8 @@ TEST(Evaluate, TellsWhatIsMissingAndGoesOnWithTheRest) {
   EXPECT_EQ(none.status().code(), ErrorCode::kNotFound);
   EvaluationOptions all_the_same;
   all_the_same.needs_truth = false;
-  const auto bare = Evaluate(MakeRun(8, 1, 1), TruthSequence(8, TruthSequence::Truth::kNone), kNoMaterial, all_the_same);
+  const auto bare =
+      Evaluate(MakeRun(8, 1, 1), TruthSequence(8, TruthSequence::Truth::kNone), kNoMaterial, all_the_same);
   ASSERT_TRUE(bare.ok()) << bare.status().message();
   EXPECT_TRUE(bare->reprojection && !bare->surface && !bare->trajectory);
   EXPECT_EQ(bare->survival.tracks, 40);

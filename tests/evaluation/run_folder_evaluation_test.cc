@@ -254,7 +254,7 @@ EvaluationInput DriftingRun(const Sequence& sequence, MaterialTruth& material) {
                                     scaled * ((state.point_in_cam + noise) / kScale), 1});
       const std::vector<Eigen::Vector2d> pixel = {frame.observations.back().pixel};
       const std::vector<Eigen::Vector3d> point = {state.point_in_cam};
-      if (PairWithSurface(idx, point, pixel, sequence.camera(), **sequence.Depth(idx), 10).pairs.empty())
+      if (PairWithDepth(idx, point, pixel, sequence.camera(), **sequence.Depth(idx), 10).pairs.empty())
         without_depth.insert(id);
     }
   }

@@ -11,6 +11,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "evaluation/pair_with_depth.h"
 #include "pliant/base/random.h"
 
 namespace pliant {
@@ -44,7 +45,7 @@ PairedFrame Frame(int frame_idx, double scale, double noise_mm, int count = 200)
   const Random random(100 + static_cast<std::uint64_t>(frame_idx));
   const std::vector<Eigen::Vector2d> pixels = Pixels(count, random.Child("pixels"));
   const std::vector<Eigen::Vector3d> nothing(pixels.size(), Eigen::Vector3d::Zero());
-  PairedFrame frame = PairWithSurface(frame_idx, nothing, pixels, TestCamera(), WavyDepth(), kStep);
+  PairedFrame frame = PairWithDepth(frame_idx, nothing, pixels, TestCamera(), WavyDepth(), kStep);
   Random noise = random.Child("noise");
   for (PointPair& pair : frame.pairs) {
     const Eigen::Vector3d error(noise.Normal(noise_mm), noise.Normal(noise_mm), noise.Normal(noise_mm));
@@ -116,7 +117,7 @@ TEST(SurfaceError, NullOfAPlaneAtConstantDepthIsZero) {
   const cv::Mat depth(48, 64, CV_32FC1, cv::Scalar::all(40));
   const std::vector<Eigen::Vector2d> pixels = Pixels(50, Random(3));
   const std::vector<Eigen::Vector3d> points(pixels.size(), Eigen::Vector3d(1, 2, 3));
-  const auto frame = PairWithSurface(0, points, pixels, TestCamera(), depth, kStep);
+  const auto frame = PairWithDepth(0, points, pixels, TestCamera(), depth, kStep);
   for (const ErrorScale scale : {ErrorScale::kPerFrame, ErrorScale::kGlobal, ErrorScale::kNone}) {
     const auto error = ComputePointError(std::vector{frame}, WithScale(scale));
     ASSERT_TRUE(error.ok());
@@ -132,7 +133,7 @@ TEST(SurfaceError, TakesTheTruthAtThePixelItselfAndNotAtARoundedOne) {
     for (int x = 0; x < slanted.cols; ++x) slanted(y, x) = static_cast<float>(40 + 0.5 * x + 0.25 * y);
   const Eigen::Vector2d pixel(10.25, 20.5);
   const std::vector<Eigen::Vector3d> point = {{0, 0, 1}};
-  const auto frame = PairWithSurface(0, point, std::vector{pixel}, TestCamera(), slanted, kStep);
+  const auto frame = PairWithDepth(0, point, std::vector{pixel}, TestCamera(), slanted, kStep);
   ASSERT_EQ(frame.pairs.size(), 1U);
   const double depth_mm = 40 + 0.5 * 10.25 + 0.25 * 20.5;
   const Eigen::Vector3d expected((10.25 - 31.5) / 60 * depth_mm, (20.5 - 23.5) / 60 * depth_mm, depth_mm);
@@ -147,14 +148,27 @@ TEST(SurfaceError, LeavesOutDepthStepsHolesAndWhatHasNoTruthAndCountsThem) {
                                                {-0.1, 5},  {63.2, 5},  {63, 47},   {20, 20}};
   std::vector<Eigen::Vector3d> points(pixels.size(), Eigen::Vector3d(0, 0, 50));
   points.back().x() = std::nan("");
-  const auto frame = PairWithSurface(0, points, pixels, TestCamera(), depth, kStep);
+  const auto frame = PairWithDepth(0, points, pixels, TestCamera(), depth, kStep);
   EXPECT_EQ(frame.left_out.depth_step, 1);
   EXPECT_EQ(frame.left_out.no_depth, 1);
   EXPECT_EQ(frame.left_out.outside_image, 2);
   EXPECT_EQ(frame.left_out.not_finite, 1);
   EXPECT_EQ(frame.left_out.Total(), 5);
   EXPECT_EQ(frame.pairs.size(), 3U);
-  EXPECT_EQ(PairWithSurface(0, points, pixels, TestCamera(), depth, 0.25).left_out.depth_step, 0);
+  EXPECT_EQ(PairWithDepth(0, points, pixels, TestCamera(), depth, 0.25).left_out.depth_step, 0);
+}
+
+TEST(SurfaceError, LeavesOutTruthThatIsUncertainAndSaysHowCertainTheRestIs) {
+  const std::vector<Eigen::Vector2d> pixels = {{10, 10}, {20, 20}, {30, 30}};
+  const std::vector<Eigen::Vector3d> points(pixels.size(), Eigen::Vector3d(0, 0, 50));
+  const std::vector<DepthAtPixel> truth = {
+      {DepthLookup::kOk, 50, 0.3}, {DepthLookup::kOk, 50, 1.2}, {DepthLookup::kOk, 50, 0.4}};
+  const auto frame = PairWithSurface(0, points, pixels, TestCamera(), truth, 1.0);
+  EXPECT_EQ(frame.left_out.uncertain, 1);
+  ASSERT_EQ(frame.pairs.size(), 2U);
+  const auto error = ComputePointError(std::vector{frame}, {});
+  ASSERT_TRUE(error.ok());
+  EXPECT_NEAR(error->truth_sigma_mm, std::sqrt((0.09 + 0.16) / 2), kRounding);
 }
 
 TEST(SurfaceError, SaysWhyNothingCouldBeCompared) {

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "evaluation/pair_with_depth.h"
 #include "pliant/base/random.h"
 #include "pliant/evaluation/evaluation.h"
 #include "pliant/evaluation/surface_error.h"
@@ -72,7 +73,7 @@ class WallMaterial final : public MaterialTruth {
   Eigen::Vector3d PointIn(int frame_idx, const Eigen::Vector2d& pixel) const {
     const std::vector<Eigen::Vector3d> any = {Eigen::Vector3d::UnitZ()};
     const PairedFrame pair =
-        PairWithSurface(frame_idx, any, std::vector{pixel}, sequence_.camera(), **sequence_.Depth(frame_idx), 10);
+        PairWithDepth(frame_idx, any, std::vector{pixel}, sequence_.camera(), **sequence_.Depth(frame_idx), 10);
     return pair.pairs.empty() ? Eigen::Vector3d(1, 1, 50) : pair.pairs[0].truth;  // outside: somewhere
   }
 
@@ -128,7 +129,7 @@ inline EvaluationInput MakeRun(int count, double scale, double noise_mm) {
     std::vector<Eigen::Vector2d> pixels;
     for (int i = 0; i < 40; ++i) pixels.emplace_back(random.Uniform(0, 63), random.Uniform(0, 47));
     const std::vector<Eigen::Vector3d> any(pixels.size(), Eigen::Vector3d::UnitZ());
-    const PairedFrame surface = PairWithSurface(idx, any, pixels, truth.camera(), **truth.Depth(idx), 10);
+    const PairedFrame surface = PairWithDepth(idx, any, pixels, truth.camera(), **truth.Depth(idx), 10);
     const Rigid3 pose(TruthSequence::Pose(idx).rotation, (TruthSequence::Pose(idx).translation + noise()) / scale);
     frame.cam_from_world = pose.Inverse();
     for (int i = 0; i < 40; ++i)

@@ -35,17 +35,17 @@ std::vector<Eigen::Vector2d> CornersOf(const cv::Mat& grey) {
   return pixels;
 }
 
-std::vector<std::optional<double>> Match(const Pair& pair, const std::vector<Eigen::Vector2d>& pixels,
-                                         const StereoStartOptions& options, int threads = 1) {
+std::vector<std::optional<RowMatch>> Match(const Pair& pair, const std::vector<Eigen::Vector2d>& pixels,
+                                           const StereoStartOptions& options, int threads = 1) {
   const SupportMask all(cv::Mat(pair.left.size(), CV_8UC1, cv::Scalar(255)));
   const LucasKanadeOptions lucas_kanade;
   return MatchAlongRows(ImagePyramid(pair.left, lucas_kanade.levels), all,
                         ImagePyramid(pair.right, lucas_kanade.levels), all, pixels, options, lucas_kanade, threads);
 }
 
-int Count(const std::vector<std::optional<double>>& disparities) {
+int Count(const std::vector<std::optional<RowMatch>>& matches) {
   return static_cast<int>(
-      std::count_if(disparities.begin(), disparities.end(), [](const auto& d) { return d.has_value(); }));
+      std::count_if(matches.begin(), matches.end(), [](const auto& match) { return match.has_value(); }));
 }
 
 class EveryMatcher : public testing::TestWithParam<StereoMatcher> {
@@ -61,13 +61,13 @@ TEST_P(EveryMatcher, FindsTheDisparityThatTheDepthSays) {
   const Pair pair = RenderedPair();
   const std::vector<Eigen::Vector2d> pixels = CornersOf(pair.left);
   ASSERT_GT(pixels.size(), 100U);
-  const auto disparities = Match(pair, pixels, Options());
+  const auto matches = Match(pair, pixels, Options());
   const double focal_baseline = Rendered().camera.params()[0] * Rendered().baseline_mm;
   std::vector<double> errors_px;
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     const auto depth_mm = SampleBilinear(Rendered().frames.front().depth, pixels[i].x(), pixels[i].y());
-    if (disparities[i] && depth_mm && *depth_mm > 0)
-      errors_px.push_back(std::abs(*disparities[i] - focal_baseline / *depth_mm));
+    if (matches[i] && depth_mm && *depth_mm > 0)
+      errors_px.push_back(std::abs(matches[i]->disparity_px - focal_baseline / *depth_mm));
   }
   EXPECT_GT(errors_px.size(), pixels.size() / 2);
   EXPECT_LT(Median(errors_px), GetParam() == StereoMatcher::kPhotometric ? 0.06 : 0.15);
@@ -124,7 +124,7 @@ TEST(StereoStart, AGainBetweenTheEyesChangesLittle) {
   EXPECT_GT(Count(dark), 8 * Count(as_it_is) / 10);
   std::vector<double> differences_px;
   for (std::size_t i = 0; i < pixels.size(); ++i)
-    if (dark[i] && as_it_is[i]) differences_px.push_back(std::abs(*dark[i] - *as_it_is[i]));
+    if (dark[i] && as_it_is[i]) differences_px.push_back(std::abs(dark[i]->disparity_px - as_it_is[i]->disparity_px));
   EXPECT_LT(Median(differences_px), 0.02);
 }
 

@@ -20,6 +20,7 @@
 #include "pliant/evaluation/point_error.h"
 #include "pliant/evaluation/reprojection_error.h"
 #include "pliant/evaluation/run_input.h"
+#include "pliant/evaluation/surface_truth.h"
 #include "pliant/evaluation/track_survival.h"
 #include "pliant/evaluation/trajectory_error.h"
 
@@ -39,6 +40,7 @@ struct EvaluationOptions {
   // None: all that the sequence has truth for, and a note where it has none. Those named are computed alone, and one
   // that cannot be is an error.
   std::vector<EvaluationPart> parts;
+  SurfaceSource surface_from = SurfaceSource::kAny;
   bool needs_truth = true;  // false: where there is none, what needs none is given alone
   MatchingOptions matching;
   PointErrorOptions points;
@@ -62,11 +64,12 @@ struct Evaluation {
 };
 
 // `sequence` is used for its truth alone: open it without start, end and stride. `material` is the truth of its
-// material, not null, or why there is none. Fails with kMismatch when run and sequence do not belong together
-// (CheckBelongsTo), kInsufficient when no frame was tracked, kNotFound when the sequence has no truth at all though
-// some is needed, or not the truth for a part or a protocol that was asked for; with what a part reports that was asked
-// for, and with what the truth reports when it cannot be read.
+// material, not null, or why there is none; `surface` that of its surface, null for its depth images. Fails with
+// kMismatch when run and sequence do not belong together (CheckBelongsTo), kInsufficient when no frame was tracked,
+// kNotFound when the sequence has no truth at all though some is needed, or not the truth for a part or a protocol that
+// was asked for; with what a part reports that was asked for, and with what the truth reports when it cannot be read.
 Result<Evaluation> Evaluate(const EvaluationInput& run, const Sequence& sequence,
-                            const Result<MaterialTruth*>& material, const EvaluationOptions& options);
+                            const Result<MaterialTruth*>& material, const EvaluationOptions& options,
+                            SurfaceTruth* surface = nullptr);
 
 }  // namespace pliant

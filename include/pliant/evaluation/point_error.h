@@ -22,7 +22,8 @@ namespace pliant {
 struct PointErrorOptions {
   std::vector<ErrorProtocol> protocols = {ErrorProtocol::kPaper};  // the paper's is computed in any case
   ErrorScale scale = ErrorScale::kPerFrame;
-  double max_depth_step = 0.05;  // relative step among the four pixels around an observation, above it no truth
+  double max_depth_step = 0.05;   // relative step among the four pixels around an observation, above it no truth
+  double max_truth_sigma_mm = 1;  // of a point's true depth, where it is known how certain it is: above it no truth
   ProtocolOptions protocol;
 
   void List(OptionTable& table);
@@ -33,10 +34,11 @@ struct LeftOutCounts {
   int outside_image = 0;  // no four pixels around
   int no_depth = 0;       // the truth has a hole there
   int depth_step = 0;     // the truth is discontinuous there
+  int uncertain = 0;      // or too uncertain
   int no_ray = 0;         // the camera model has no forward ray there
   int not_finite = 0;     // the estimate is not a number
 
-  int Total() const { return outside_image + no_depth + depth_step + no_ray + not_finite; }
+  int Total() const { return outside_image + no_depth + depth_step + uncertain + no_ray + not_finite; }
   LeftOutCounts& operator+=(const LeftOutCounts& other);
 };
 
@@ -88,6 +90,7 @@ struct PointError {
   ProtocolError plain;                   // the paper's protocol: every pair counts
   std::vector<ProtocolError> protocols;  // those asked for, each once, in the order of their names in protocol.h
   int points = 0;                        // pairs in all
+  double truth_sigma_mm = 0;             // of the truth of these, root mean square; 0: exact, or not known
   int frames_without_pair = 0;           // tracked, with truth, but every observation was left out
   LeftOutCounts left_out;
   std::vector<LeftOutCounts> frame_left_out;  // as plain.frames

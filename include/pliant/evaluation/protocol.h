@@ -56,6 +56,7 @@ struct PointPair {
   Eigen::Vector3d estimate;
   Eigen::Vector3d truth;
   Eigen::Vector3d ray = Eigen::Vector3d::UnitZ();
+  double truth_sigma_mm = 0;  // of the truth's z; 0: exact, or not known
 };
 
 struct ProtocolOptions {

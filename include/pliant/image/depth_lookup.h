@@ -15,6 +15,7 @@ enum class DepthLookup { kOk, kOutsideImage, kNoDepth, kDepthStep };
 struct DepthAtPixel {
   DepthLookup lookup = DepthLookup::kOutsideImage;
   double depth_mm = 0;
+  double sigma_mm = 0;  // standard deviation of the depth, where its source knows it
 };
 
 // `depth_mm`: CV_32FC1, 0 = none; a pixel with a neighbour of no depth has none. kDepthStep where the four pixels

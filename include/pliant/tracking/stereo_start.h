@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // The first map from one rectified pair: corners of the left image, found in the right one along their row, at once and
-// in true millimetres (docs/method.md, eq. S1 to S4). What follows is tracked with the left images alone.
+// in true millimetres (docs/method.md, eq. B1 to B4). What follows is tracked with the left images alone.
 #pragma once
 
 #include <array>
@@ -45,12 +45,20 @@ struct StereoStartOptions {
   void List(OptionTable& table);  // appended to the group "Init"
 };
 
-// The disparity at each pixel of the left image, x_left - x_right, px; nothing where no match is certain. Images are of
-// one size, rectified. The same input gives the same answer on any number of threads.
-std::vector<std::optional<double>> MatchAlongRows(const ImagePyramid& left, const SupportMask& left_mask,
-                                                  const ImagePyramid& right, const SupportMask& right_mask,
-                                                  std::span<const Eigen::Vector2d> pixels,
-                                                  const StereoStartOptions& options,
-                                                  const LucasKanadeOptions& lucas_kanade, int threads);
+struct RowMatch {
+  double disparity_px = 0;   // x_left - x_right
+  double row_px = 0;         // y_left - y_right, which a rectified pair has at 0; sgbm: 0
+  double left_right_px = 0;  // followed back it returned so near; sgbm: 0
+
+  bool operator==(const RowMatch&) const = default;
+};
+
+// Of each pixel of the left image; nothing where no match is certain. Images are of one size, rectified. The same input
+// gives the same answer on any number of threads.
+std::vector<std::optional<RowMatch>> MatchAlongRows(const ImagePyramid& left, const SupportMask& left_mask,
+                                                    const ImagePyramid& right, const SupportMask& right_mask,
+                                                    std::span<const Eigen::Vector2d> pixels,
+                                                    const StereoStartOptions& options,
+                                                    const LucasKanadeOptions& lucas_kanade, int threads);
 
 }  // namespace pliant

@@ -1,0 +1,102 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/evaluation/surface_truth.h"
+
+#include <cmath>
+#include <utility>
+
+#include "pliant/base/statistics.h"
+#include "pliant/tracking/stereo_start.h"
+#include "pliant/tracking/tracker.h"
+
+namespace pliant {
+namespace {
+
+class OfDepthImages final : public SurfaceTruth {
+ public:
+  OfDepthImages(const Sequence& sequence, double max_depth_step)
+      : sequence_(sequence), max_depth_step_(max_depth_step) {}
+
+  Result<std::optional<std::vector<DepthAtPixel>>> At(int frame_idx, std::span<const Eigen::Vector2d> pixels) override {
+    const Result<std::optional<cv::Mat>> depth_mm = sequence_.Depth(frame_idx);
+    if (!depth_mm.ok()) return depth_mm.status();
+    if (!depth_mm->has_value()) return std::optional<std::vector<DepthAtPixel>>();
+    std::vector<DepthAtPixel> depths;
+    for (const Eigen::Vector2d& pixel : pixels) depths.push_back(LookUpDepth(**depth_mm, pixel, max_depth_step_));
+    return std::optional(std::move(depths));
+  }
+
+ private:
+  const Sequence& sequence_;
+  double max_depth_step_;
+};
+
+class OfPairs final : public SurfaceTruth {
+ public:
+  OfPairs(std::unique_ptr<Sequence> sequence, int threads) : sequence_(std::move(sequence)), threads_(threads) {}
+
+  Result<std::optional<std::vector<DepthAtPixel>>> At(int frame_idx, std::span<const Eigen::Vector2d> pixels) override {
+    std::optional<std::vector<DepthAtPixel>> depths;
+    auto left = ReadTo(frame_idx);
+    if (!left.ok()) return left.status();
+    if (!left->has_value()) return depths;
+    const auto right = sequence_->Right();
+    if (!right.ok()) return right.status();
+    if (right->has_value()) depths = Measure(**left, **right, pixels);
+    return depths;
+  }
+
+ private:
+  // Nothing where the sequence does not have the frame, or it lies behind.
+  Result<std::optional<SequenceFrame>> ReadTo(int frame_idx) {
+    while (last_idx_ < frame_idx) {
+      auto frame = sequence_->Next();
+      if (!frame.ok()) return frame.status();
+      if (!frame->has_value()) break;
+      last_idx_ = (*frame)->frame_idx;
+      if (last_idx_ == frame_idx) return frame;
+    }
+    return std::optional<SequenceFrame>();
+  }
+
+  std::vector<DepthAtPixel> Measure(const SequenceFrame& left, const cv::Mat& right,
+                                    std::span<const Eigen::Vector2d> pixels) const {
+    const TrackerOptions options;
+    const auto prepared = [&](const cv::Mat& image, const cv::Mat& mask) {
+      return PrepareFrame(left.frame_idx, left.name, left.timestamp_s, image, mask, options);
+    };
+    const TrackerFrame eyes[] = {prepared(left.image, left.mask), prepared(right, {})};
+    const auto matches = MatchAlongRows(eyes[0].pyramid, eyes[0].mask, eyes[1].pyramid, eyes[1].mask, pixels, {},
+                                        options.point_tracker.lucas_kanade, threads_);
+    std::vector<double> rows_px;
+    for (const auto& match : matches)
+      if (match) rows_px.push_back(std::abs(match->row_px));
+    const double sigma_row_px = rows_px.empty() ? 0.0 : kMedianToSigma * Median(std::move(rows_px));
+    const double focal_baseline = sequence_->camera().params()[0] * *sequence_->BaselineMm();
+    std::vector<DepthAtPixel> depths(pixels.size(), {DepthLookup::kNoDepth});
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+      if (!matches[i]) continue;
+      const double depth_mm = focal_baseline / matches[i]->disparity_px;
+      const double sigma_px = std::hypot(sigma_row_px, matches[i]->left_right_px);
+      depths[i] = {DepthLookup::kOk, depth_mm, depth_mm * depth_mm / focal_baseline * sigma_px};
+    }
+    return depths;
+  }
+
+  std::unique_ptr<Sequence> sequence_;
+  int threads_;
+  int last_idx_ = -1;
+};
+
+}  // namespace
+
+std::unique_ptr<SurfaceTruth> DepthImageTruth(const Sequence& sequence, double max_depth_step) {
+  return std::make_unique<OfDepthImages>(sequence, max_depth_step);
+}
+
+std::unique_ptr<SurfaceTruth> PairTruth(std::unique_ptr<Sequence> sequence, int threads) {
+  return std::make_unique<OfPairs>(std::move(sequence), threads);
+}
+
+}  // namespace pliant

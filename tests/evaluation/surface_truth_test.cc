@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/evaluation/surface_truth.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "pliant/base/statistics.h"
+#include "support/rendered_sequence.h"
+
+namespace pliant {
+namespace {
+
+std::vector<Eigen::Vector2d> Grid() {
+  std::vector<Eigen::Vector2d> pixels;
+  for (double v = 12.3; v < 230; v += 11)
+    for (double u = 12.7; u < 310; u += 11) pixels.emplace_back(u, v);
+  return pixels;
+}
+
+std::unique_ptr<Sequence> Pairs() {
+  auto sequence = std::make_unique<RenderedSequence>();
+  sequence->mono = false;
+  return sequence;
+}
+
+TEST(SurfaceTruth, PairsMeasureTheDepthAndHowCertainItIs) {
+  const RenderedSequence depth_images;
+  const std::vector<Eigen::Vector2d> pixels = Grid();
+  const auto exact = DepthImageTruth(depth_images, 0.05);
+  const auto measured = PairTruth(Pairs(), 2);
+  std::vector<double> errors;
+  std::vector<double> in_sigmas;
+  for (const int frame : {0, 3, 4, 17}) {
+    const auto truth = exact->At(frame, pixels);
+    const auto found = measured->At(frame, pixels);
+    ASSERT_TRUE(truth.ok() && truth->has_value());
+    ASSERT_TRUE(found.ok() && found->has_value());
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+      const DepthAtPixel& depth = (**found)[i];
+      if (depth.lookup != DepthLookup::kOk || (**truth)[i].lookup != DepthLookup::kOk) continue;
+      const double error_mm = std::abs(depth.depth_mm - (**truth)[i].depth_mm);
+      errors.push_back(error_mm / depth.depth_mm);
+      in_sigmas.push_back(error_mm / depth.sigma_mm);
+    }
+  }
+  EXPECT_GT(errors.size(), 2 * pixels.size()) << "of four times as many";
+  EXPECT_LT(Median(errors), 0.01);
+  // Of a normal distribution the median is 0.67 standard deviations, and 95 % are within two.
+  EXPECT_GT(Median(in_sigmas), 0.3);
+  EXPECT_LT(Median(in_sigmas), 1.2);
+  const auto within = std::count_if(in_sigmas.begin(), in_sigmas.end(), [](double error) { return error < 3; });
+  EXPECT_GT(static_cast<double>(within), 0.9 * static_cast<double>(in_sigmas.size()));
+}
+
+TEST(SurfaceTruth, WhatASequenceDoesNotHaveIsNothing) {
+  const std::vector<Eigen::Vector2d> pixels = {{100, 100}};
+  const auto measured = PairTruth(Pairs(), 1);
+  EXPECT_FALSE(measured->At(1000, pixels)->has_value());
+  EXPECT_FALSE(PairTruth(std::make_unique<RenderedSequence>(), 1)->At(0, pixels)->has_value()) << "no pairs";
+}
+
+}  // namespace
+}  // namespace pliant
