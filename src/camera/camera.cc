@@ -122,6 +122,10 @@ double Camera::MeanFocalLengthPx() const {
   return Visit([](const auto& model) { return 0.5 * (model.fx() + model.fy()); });
 }
 
+double Camera::HorizontalFocalLengthPx() const {
+  return Visit([](const auto& model) { return model.fx(); });
+}
+
 std::optional<Eigen::Vector2d> Camera::Project(const Eigen::Vector3d& point_in_cam) const {
   Eigen::Vector2d pixel;
   if (!Visit([&](const auto& model) { return model.Project(point_in_cam.data(), pixel.data()); })) return std::nullopt;

@@ -32,6 +32,7 @@ const Manual kManual = {
 struct Request {
   std::vector<std::string> run_paths;
   std::vector<std::string> sequence_paths;  // one, or as many as runs
+  std::string camera_path;
   std::string output_path;
 };
 
@@ -43,7 +44,7 @@ std::vector<std::optional<Evaluation>> EvaluateAll(const Request& request, const
   for (std::size_t i = 0; i < request.run_paths.size(); ++i) {
     const std::string& sequence_path = request.sequence_paths[request.sequence_paths.size() == 1 ? 0 : i];
     if (!truth || sequence_path != opened_path) {
-      truth = OpenTruth(sequence_path, options);
+      truth = OpenTruth({.image_path = sequence_path, .camera_path = request.camera_path}, options);
       opened_path = sequence_path;
       if (!truth->ok()) SayError(kManual.command, truth->status().message());
     }
@@ -76,9 +77,9 @@ int CompareCommand(std::span<const std::string> args) {
   bool quiet = false;
   CommandLine line(kManual);
   line.Add("run", &request.run_paths, "DIR", "run folder", Need::kRequired);
-  line.Add("sequence", &request.sequence_paths, "DIR",
+  line.Add("sequence", &request.sequence_paths, "PATH",
            "the images, with truth where there is; one for all runs, or one for each", Need::kRequired);
-  AddEvaluationArguments(&line);
+  AddEvaluationArguments(&line, &request.camera_path);
   line.Add("output_path", &request.output_path, "DIR", "folder for the JSON and CSV files", Need::kOptional);
   line.AddFlag("quiet", &quiet, "print no table");
   if (const auto exit = line.Parse(args)) return *exit;

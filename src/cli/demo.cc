@@ -98,7 +98,7 @@ Status RunDemo(const SimulationOptions& simulation, const std::filesystem::path&
   if (!run.ok()) return run.status();
   if (run->status == RunStatus::kInterrupted || run->frames_tracked == 0)
     return {ErrorCode::kInsufficient, run->note + "; see " + request.output_path};
-  const Result<OpenedTruth> truth = OpenTruth(sequence.string(), {});
+  const Result<OpenedTruth> truth = OpenTruth({.image_path = sequence}, {});
   if (!truth.ok()) return truth.status();
   const Result<Evaluation> evaluation = EvaluateRun(request.output_path, *truth, {});
   if (!evaluation.ok()) return evaluation.status();

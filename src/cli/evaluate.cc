@@ -31,6 +31,7 @@ const Manual kManual = {
     "Leaves, where --output_path is given: evaluation.json (every figure) and evaluation.csv (one row a frame). "
     "pliant compare sets several runs side by side.",
     {"pliant evaluate --run run --sequence colon",
+     "pliant evaluate --run run --sequence clip.mp4 --camera stereo.yaml --scale none",
      "pliant evaluate --run run --sequence colon --protocol all --scale global --output_path run/evaluation"},
 };
 
@@ -39,13 +40,14 @@ const Manual kManual = {
 int EvaluateCommand(std::span<const std::string> args) {
   std::string run_path;
   std::string sequence_path;
+  std::string camera_path;
   std::string output_path;
   EvaluationOptions options;
   bool quiet = false;
   CommandLine line(kManual);
   line.Add("run", &run_path, "DIR", "run folder", Need::kRequired);
-  line.Add("sequence", &sequence_path, "DIR", "sequence with truth", Need::kRequired);
-  AddEvaluationArguments(&line);
+  line.Add("sequence", &sequence_path, "PATH", "sequence with truth: a folder, or a video of pairs", Need::kRequired);
+  AddEvaluationArguments(&line, &camera_path);
   line.Add("output_path", &output_path, "DIR", "folder for the JSON and CSV files", Need::kOptional);
   line.AddFlag("quiet", &quiet, "print no table");
   if (const auto exit = line.Parse(args)) return *exit;
@@ -53,7 +55,7 @@ int EvaluateCommand(std::span<const std::string> args) {
   options.List(table);
   if (const auto exit = line.Resolve(table)) return *exit;
 
-  const auto truth = OpenTruth(sequence_path, options);
+  const auto truth = OpenTruth({.image_path = sequence_path, .camera_path = camera_path}, options);
   if (!truth.ok()) return line.Failure(truth.status().message());
   const auto evaluation = EvaluateRun(run_path, *truth, options);
   if (!evaluation.ok()) return line.Failure(evaluation.status().message());

@@ -10,12 +10,11 @@
 #include <thread>
 #include <utility>
 
-#include "pliant/datasets/open_sequence.h"
 #include "pliant/evaluation/report.h"
 
 namespace pliant::cli {
 
-void AddEvaluationArguments(CommandLine* line) {
+void AddEvaluationArguments(CommandLine* line, std::string* camera_path) {
   line->AddAlias("protocol", "PointError.protocol", "paper|depth_trimmed|lmeds|all",
                  "how points are compared: one, several with commas, or all");
   line->AddAlias("scale", "PointError.scale", "per_frame|global|none",
@@ -24,17 +23,18 @@ void AddEvaluationArguments(CommandLine* line) {
   line->AddAlias("parts", "Evaluation.parts", "surface|material|camera|first_map|all",
                  "what to compute: one, several with commas, or all; an error where there is no truth for it. Without "
                  "it, all that there is truth for");
+  line->Add("camera", camera_path, "FILE",
+            "calibration of the sequence; not needed where camera.yaml lies in the folder or beside the video",
+            Need::kOptional);
 }
 
-Result<OpenedTruth> OpenTruth(const std::string& sequence_path, const EvaluationOptions& options) {
+Result<OpenedTruth> OpenTruth(const SequenceRequest& request, const EvaluationOptions& options) {
   OpenedTruth truth;
-  truth.sequence_path = sequence_path;
-  SequenceRequest request;
-  request.image_path = sequence_path;
+  truth.request = request;
   Result<std::unique_ptr<Sequence>> sequence = OpenSequence(request);
   if (!sequence.ok()) return sequence.status();
   truth.sequence = *std::move(sequence);
-  if (options.Wants(EvaluationPart::kMaterial)) truth.material = OpenMaterialTruth(sequence_path);
+  if (options.Wants(EvaluationPart::kMaterial)) truth.material = OpenMaterialTruth(request.image_path.string());
   return truth;
 }
 
@@ -52,13 +52,15 @@ Result<std::unique_ptr<SurfaceTruth>> OpenSurface(const EvaluationInput& run, co
                                                   const EvaluationOptions& options) {
   const bool pairs = truth.sequence->BaselineMm().has_value();
   if (options.surface_from == SurfaceSource::kPairs && !pairs)
-    return Status(ErrorCode::kNotFound, "the sequence " + truth.sequence_path +
+    return Status(ErrorCode::kNotFound, "the sequence " + truth.request.image_path.string() +
                                             " has no pairs with a baseline to take the true surface from; choose "
                                             "another Evaluation.surface_from");
   if (options.surface_from == SurfaceSource::kDepth || !pairs ||
       (options.surface_from == SurfaceSource::kAny && HasDepth(run, *truth.sequence)))
     return std::unique_ptr<SurfaceTruth>();
-  auto sequence = OpenSequence({.image_path = truth.sequence_path});
+  SequenceRequest request = truth.request;
+  if (!run.frames.empty()) request.start = run.frames.front().frame_idx;
+  auto sequence = OpenSequence(request);
   if (!sequence.ok()) return sequence.status();
   return PairTruth(*std::move(sequence), static_cast<int>(std::max(1U, std::thread::hardware_concurrency())));
 }
@@ -74,7 +76,7 @@ Result<Evaluation> EvaluateRun(const std::string& run_path, const OpenedTruth& t
   const auto surface = OpenSurface(*input, truth, options);
   if (!surface.ok()) return surface.status();
   Result<Evaluation> evaluation = Evaluate(*input, *truth.sequence, material, options, surface->get());
-  if (evaluation.ok()) evaluation->sequence = truth.sequence_path;
+  if (evaluation.ok()) evaluation->sequence = truth.request.image_path.string();
   return evaluation;
 }
 

@@ -73,7 +73,7 @@ class OfPairs final : public SurfaceTruth {
     for (const auto& match : matches)
       if (match) rows_px.push_back(std::abs(match->row_px));
     const double sigma_row_px = rows_px.empty() ? 0.0 : kMedianToSigma * Median(std::move(rows_px));
-    const double focal_baseline = sequence_->camera().params()[0] * *sequence_->BaselineMm();
+    const double focal_baseline = sequence_->camera().HorizontalFocalLengthPx() * *sequence_->BaselineMm();
     std::vector<DepthAtPixel> depths(pixels.size(), {DepthLookup::kNoDepth});
     for (std::size_t i = 0; i < pixels.size(); ++i) {
       if (!matches[i]) continue;

@@ -65,6 +65,7 @@ class Camera {
   int height() const { return height_; }
   std::span<const double> params() const;  // in COLMAP's order, pixel origin as above
   double MeanFocalLengthPx() const;
+  double HorizontalFocalLengthPx() const;  // fx: of a rectified pair, disparity = fx * baseline / depth
 
   // Calls `function(model)` with the concrete model; the way to write a loop that dispatches once.
   template <class Function>
