@@ -21,7 +21,8 @@ std::vector<PixelDepth> PointsOfPair(const TrackerFrame& left, const cv::Mat& ri
                                       options.point_tracker.lucas_kanade, threads);
   std::vector<PixelDepth> points;
   for (std::size_t i = 0; i < pixels.size(); ++i)
-    if (matches[i]) points.push_back({pixels[i], camera.HorizontalFocalLengthPx() * baseline_mm / matches[i]->disparity_px});
+    if (matches[i])
+      points.push_back({pixels[i], camera.HorizontalFocalLengthPx() * baseline_mm / matches[i]->disparity_px});
   return points;
 }
 

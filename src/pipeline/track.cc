@@ -10,14 +10,12 @@
 
 #include <opencv2/core.hpp>
 
-#include "pipeline/cloud_depth.h"
 #include "pipeline/frames_before.h"
-#include "pipeline/model_start.h"
+#include "pipeline/run_start.h"
 #include "pipeline/simulation_truth.h"
 #include "pipeline/stereo_points.h"
 #include "pliant/base/prefetcher.h"
 #include "pliant/base/version.h"
-#include "pliant/io/point_cloud.h"
 
 namespace pliant {
 namespace {
@@ -28,47 +26,6 @@ struct ReadFrame {
   TrackerFrame frame;
   Status depth;  // of reading its depth image, or its right one; matters only while the tracker wants depth
 };
-
-// What a run starts from besides its images.
-struct RunStart {
-  std::optional<ModelStart> model;
-  cv::Mat cloud_depth_mm;  // of the first frame; empty: there is no cloud
-  int first_frame_idx = 0;
-};
-
-Result<RunStart> ReadStart(const RunRequest& request, const InitOptions& init, const Sequence& sequence) {
-  RunStart start;
-  start.first_frame_idx = request.input.start;
-  if (init.method == InitMethod::kColmapModel) {
-    auto model = ModelStart::Open(init.model.path, sequence.camera());
-    if (!model.ok()) return model.status();
-    start.model = *std::move(model);
-  }
-  if (init.method == InitMethod::kDepth && !init.depth.cloud_path.empty()) {
-    auto points = ReadPointCloud(init.depth.cloud_path);
-    if (!points.ok()) return points.status();
-    for (Eigen::Vector3d& point : *points) point *= init.depth.cloud_unit_mm;
-    start.cloud_depth_mm = DepthOfCloud(*points, sequence.camera());
-    if (cv::countNonZero(start.cloud_depth_mm) == 0)
-      return Status(ErrorCode::kMismatch,
-                    "the point cloud '" + init.depth.cloud_path +
-                        "' has nothing in front of the camera and in its image; give it in the first frame's camera, x "
-                        "right, y down, z ahead");
-  }
-  const CameraModelId model = sequence.camera().model_id();
-  if (init.method == InitMethod::kStereo && sequence.BaselineMm() &&
-      (!(*sequence.BaselineMm() > 0) || (model != CameraModelId::kPinhole && model != CameraModelId::kSimplePinhole)))
-    return Status(ErrorCode::kMismatch,
-                  "a start from a pair of images needs rectified ones: a PINHOLE camera, and a baseline above 0; " +
-                      request.input.image_path.string() + " has a camera " +
-                      std::string(sequence.camera().model_name()) + " and a baseline of " +
-                      FormatDouble(*sequence.BaselineMm()) + " mm");
-  if (init.method == InitMethod::kStereo && !sequence.BaselineMm())
-    return Status(ErrorCode::kMismatch,
-                  "a start from a pair of images needs pairs: " + request.input.image_path.string() +
-                      " has no right images with a baseline; choose another Init.method, or give a stereo calibration");
-  return start;
-}
 
 // Reads and prepares the next frame; nothing at the end.
 std::optional<Result<ReadFrame>> NextFrame(Sequence& sequence, const TrackerOptions& options, int threads,
@@ -264,6 +221,7 @@ Result<RunSummary> RunTrack(const RunRequest& request, const TrackOptions& optio
 
   for (TrackObserver* observer : observers) {
     for (const std::string& warning : (*sequence)->Warnings()) observer->OnWarning(warning);
+    for (const std::string& warning : start->warnings) observer->OnWarning(warning);
     observer->OnStart((*sequence)->size());
   }
   const Ending ending = TrackSequence(**sequence, request, usable, *start, truth.get(), *writer, observers);

@@ -21,12 +21,16 @@
 namespace pliant {
 namespace {
 
+using testing::Contains;
 using testing::HasSubstr;
+using testing::IsEmpty;
 
 class Observer final : public TrackObserver {
  public:
   void OnStart(int /*frames*/) override {}
+  void OnWarning(const std::string& sentence) override { warnings.push_back(sentence); }
   void OnFrame(const FrameReport& report) override { reports.push_back(report); }
+  std::vector<std::string> warnings;
   std::vector<FrameReport> reports;
 };
 
@@ -59,6 +63,7 @@ TEST_F(StereoRun, HasTrueMillimetresFromTheFirstFrameOn) {
   const auto summary = RunTrack(request, StereoOptions(), observers);
   ASSERT_TRUE(summary.ok()) << summary.status().message();
   EXPECT_EQ(summary->status, RunStatus::kCompleted) << summary->note;
+  EXPECT_THAT(observer.warnings, IsEmpty());
   ASSERT_EQ(observer.reports.size(), Rendered().frames.size());
   std::vector<double> errors;  // relative, of depths
   for (std::size_t k = 0; k < observer.reports.size(); ++k) {
@@ -108,6 +113,35 @@ TEST_F(StereoRun, OfASequenceWithoutPairsIsRefusedBeforeItStarts) {
   EXPECT_EQ(summary.status().code(), ErrorCode::kMismatch);
   EXPECT_THAT(summary.status().message(), HasSubstr("needs pairs"));
   EXPECT_FALSE(std::filesystem::exists(request.output_path));
+}
+
+TEST_F(StereoRun, SaysBeforeItStartsThatPairsAreSwappedOrDepthIsInAnotherUnit) {
+  RunRequest request;
+  request.input.image_path = folder_.Path("set");
+  request.input.end = 14;
+  RenderedSequence swapped;
+  swapped.mono = false;
+  swapped.swapped = true;
+  ASSERT_TRUE(ConvertSequence(swapped, folder_.Path("set")).ok());
+  request.output_path = folder_.Path("run");
+  Observer observer;
+  TrackObserver* const observers[] = {&observer};
+  const auto failed = RunTrack(request, StereoOptions(), observers);
+  ASSERT_TRUE(failed.ok()) << failed.status().message();
+  EXPECT_EQ(failed->status, RunStatus::kFailed);
+  EXPECT_THAT(observer.warnings, Contains(HasSubstr("left and right are swapped")));
+
+  std::filesystem::remove_all(folder_.Path("set"));
+  RenderedSequence in_cm;
+  in_cm.mono = false;
+  in_cm.depth_unit = 0.1;
+  ASSERT_TRUE(ConvertSequence(in_cm, folder_.Path("set")).ok());
+  TrackOptions options = StereoOptions();
+  options.tracker.init.method = InitMethod::kDepth;
+  observer.warnings.clear();
+  request.output_path = folder_.Path("run2");
+  ASSERT_TRUE(RunTrack(request, options, observers).ok());
+  EXPECT_THAT(observer.warnings, Contains(HasSubstr("depth and baseline disagree")));
 }
 
 TEST_F(StereoRun, FailsWithItsReasonWhereARightImageCannotBeRead) {

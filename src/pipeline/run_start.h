@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// What a run starts from besides its images.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <opencv2/core/mat.hpp>
+
+#include "pipeline/model_start.h"
+#include "pliant/base/status.h"
+#include "pliant/datasets/sequence.h"
+#include "pliant/pipeline/track.h"
+#include "pliant/tracking/make_initializer.h"
+
+namespace pliant {
+
+struct RunStart {
+  std::optional<ModelStart> model;
+  cv::Mat cloud_depth_mm;  // of the first frame; empty: there is no cloud
+  int first_frame_idx = 0;
+  // What the first frames themselves say against the pairs or the depth that the map is to come from.
+  std::vector<std::string> warnings;
+};
+
+// Fails where the sequence has not what Init.method asks for, and as the readers of models and clouds do.
+Result<RunStart> ReadStart(const RunRequest& request, const InitOptions& init, const Sequence& sequence);
+
+}  // namespace pliant
