@@ -32,6 +32,10 @@ void GrowthOptions::List(OptionTable& table) {
   table.Add("max_error", &max_error, "-", "and whose residuals are no larger, in standard deviations", 1e-3, 1000);
   table.Add("max_error_ratio", &max_error_ratio, "-", "nor larger than the median of such points' by this", 1, 1000);
   table.Add("window", &window, "frames", "the map is made anew of so many and the present one; 0: never", 0, 1000);
+  table.Add("max_measured_share", &max_measured_share, "-",
+            "while so many of the points in view had their depth measured at the start (stereo, depth), the map is not "
+            "made anew",
+            0.01, 2);
   table.Add("remake_every", &remake_every, "frames", "from one such attempt to the next", 1, 100000);
 }
 

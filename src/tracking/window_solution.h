@@ -45,7 +45,8 @@ Result<SolvedWindow> SolveRigid(const InitInput& input, const PreparedWindow& wi
 int PlaceOf(PointId id, const std::vector<PointId>& ids);
 
 // Those of `ids` that a frame sees, as observations of view `view_idx`; points are numbered by their place in `ids`.
-std::vector<DeformingObservation> SeenIn(const InitInput& input, const InitFrame& frame, const std::vector<PointId>& ids,
-                                         int view_idx, const WindowInitOptions& options);
+std::vector<DeformingObservation> SeenIn(const InitInput& input, const InitFrame& frame,
+                                         const std::vector<PointId>& ids, int view_idx,
+                                         const WindowInitOptions& options);
 
 }  // namespace pliant

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // Runs that start from a pair of images.
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <map>
@@ -102,6 +103,31 @@ TEST_F(StereoRun, KeepsACameraWhereItIsSaidToStandStill) {
   }
   // All motion is the scene's: the points are where the last image has them.
   EXPECT_LT(observer.reports.back().median_reprojection_error_px, 0.5);
+}
+
+TEST_F(StereoRun, WhatWasMeasuredIsNotMadeAnewWhileItIsInView) {
+  RunRequest request;
+  request.input.image_path = Sequence(/*mono=*/false);
+  const auto made_anew = [&](double max_measured_share) {
+    request.output_path = folder_.Path("run" + std::to_string(max_measured_share));
+    TrackOptions options = StereoOptions();
+    options.tracker.growth.window = 12;
+    options.tracker.growth.remake_every = 2;
+    WindowInitOptions& window = options.tracker.init.window;  // which makes do with so few frames
+    window.certain_depth_sigma = window.last_depth_sigma = window.max_depth_sigma = 1;
+    window.min_certain_share = 0.01;
+    window.deforming_frame = 1;
+    options.tracker.growth.max_measured_share = max_measured_share;
+    Observer observer;
+    TrackObserver* const observers[] = {&observer};
+    const auto summary = RunTrack(request, options, observers);
+    EXPECT_TRUE(summary.ok() && summary->status == RunStatus::kCompleted);
+    return std::count_if(observer.reports.begin(), observer.reports.end(), [](const FrameReport& report) {
+      return report.note.starts_with("the map was made anew") && !report.refined_points.empty();
+    });
+  };
+  EXPECT_EQ(made_anew(0.5), 0);
+  EXPECT_GT(made_anew(2.0), 0);
 }
 
 TEST_F(StereoRun, OfASequenceWithoutPairsIsRefusedBeforeItStarts) {

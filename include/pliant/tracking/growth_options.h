@@ -10,7 +10,7 @@ namespace pliant {
 
 struct GrowthOptions {
   Switch grow = Switch::kOn;
-  int every = 5;                  // frames from one look for new corners to the next
+  int every = 10;                 // frames from one look for new corners to the next
   int min_views = 8;              // of a candidate, before it can enter the map
   int max_views = 60;             // a candidate that is no more certain by then is given up
   int neighbors = 8;              // landmarks near it in the image, which say how its surroundings move
@@ -20,6 +20,9 @@ struct GrowthOptions {
   double max_error_ratio = 2.0;   // the same by its median over the candidates
   int window = 45;                // frames of which the map is made anew; 0: never
   int remake_every = 20;          // frames
+  // Where so many of the points in view had their depth measured at the start (a pair, a depth image), they are left
+  // as they are.
+  double max_measured_share = 0.5;
 
   void List(OptionTable& table);  // group "Growth"
 };

@@ -11,7 +11,7 @@ namespace pliant {
 
 struct RelocalizationOptions {
   Switch relocalize = Switch::kOn;
-  int remember_every = 20;       // frames from one description of the points in view to the next
+  int remember_every = 40;       // frames from one description of the points in view to the next
   int seek_every = 5;            // frames, for maps that were left, while another one is awaited
   Switch join = Switch::kOn;     // maps that meet become one
   int max_left = 10;             // maps that were left and are remembered
