@@ -29,6 +29,9 @@ void GrowthOptions::List(OptionTable& table) {
   table.Add("max_depth_sigma", &max_depth_sigma, "-",
             "a new point is certain whose distance has no larger standard deviation, by the map's median distance",
             1e-4, 10);
+  table.Add("scarce_points", &scarce_points, "-",
+            "with fewer points in the map max_depth_sigma grows as they become less, up to three times; 0: never", 0,
+            100000);
   table.Add("max_error", &max_error, "-", "and whose residuals are no larger, in standard deviations", 1e-3, 1000);
   table.Add("max_error_ratio", &max_error_ratio, "-", "nor larger than the median of such points' by this", 1, 1000);
   table.Add("window", &window, "frames", "the map is made anew of so many and the present one; 0: never", 0, 1000);
@@ -179,7 +182,10 @@ std::vector<std::pair<PointId, Eigen::Vector3d>> Candidates::Certain(const Rigid
   std::vector<double> distances;
   for (const Landmark& landmark : map.landmarks) distances.push_back((cam_from_world * landmark.position).norm());
   if (distances.empty()) return {};
-  const double max_sigma = options_.max_depth_sigma * Median(std::move(distances));
+  // A map that runs short of points takes less certain ones, rather than be lost.
+  constexpr double kMostSlack = 3;
+  const double slack = std::clamp(options_.scarce_points / static_cast<double>(distances.size()), 1.0, kMostSlack);
+  const double max_sigma = slack * options_.max_depth_sigma * Median(std::move(distances));
   std::vector<std::pair<PointId, MovingPoint>> placed;
   std::vector<double> errors;
   for (auto& [id, point] : points_) {

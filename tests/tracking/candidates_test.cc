@@ -95,6 +95,21 @@ TEST(Candidates, FarFromTheMapTheyStayUncertainWhereItBends) {
   EXPECT_TRUE(soft.CertainAfter(far, kLast).empty());
 }
 
+TEST(Candidates, EnterAMapThatRunsShortOfPointsEarlier) {
+  const auto first_certain = [](int scarce_points) {
+    Scene scene;
+    scene.options.scarce_points = scarce_points;
+    scene.options.min_views = 3;
+    int last = 1;
+    while (last < 40 && scene.CertainAfter(Eigen::Vector3d(3, -4, 55), last).empty()) ++last;
+    return last;
+  };
+  const int in_time = first_certain(0);
+  EXPECT_EQ(first_certain(49), in_time) << "the map has as many";
+  EXPECT_LT(first_certain(147), in_time);
+  EXPECT_EQ(first_certain(100000), first_certain(147)) << "no more than three times as uncertain";
+}
+
 TEST(Candidates, AreGivenUpWhenTheyAreOld) {
   Scene scene;
   scene.options.max_views = 10;

@@ -16,6 +16,7 @@ struct GrowthOptions {
   int neighbors = 8;              // landmarks near it in the image, which say how its surroundings move
   double noise_px = 0.5;          // of a candidate's pixel, with what the poses are off
   double max_depth_sigma = 0.02;  // standard deviation of its distance, by the median of the map
+  int scarce_points = 40;         // with fewer in the map max_depth_sigma grows as they become less, up to 3 times
   double max_error = 1.5;         // root mean square of its residuals, in standard deviations
   double max_error_ratio = 2.0;   // the same by its median over the candidates
   int window = 45;                // frames of which the map is made anew; 0: never
