@@ -11,7 +11,7 @@ import yaml
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "common"))
 import grid
 
-COLUMNS = ["set", "start", "truth", "rmse_mm", "median_mm", "null_rmse_mm", "truth_sigma_mm", "frames", "frames_tracked",
+COLUMNS = ["set", "start", "truth", "rmse_mm", "median_mm", "null_rmse_mm", "truth_sigma_mm", "left_out", "frames", "frames_tracked",
            "points", "frames_per_second"]
 RECORDINGS = ["hamlyn_20", "hamlyn_21"]
 
@@ -22,18 +22,19 @@ class Recording:
     truths = ["pairs"]
 
     def __init__(self, path, protocol, folder):
-        self.path, self.protocol, self.camera = str(path), protocol, str(folder / protocol["camera"])
-        self.frames = protocol["frames"]
+        self.path, self.protocol, self.frames = str(path), protocol, protocol["frames"]
+        # A folder has a calibration of its own.
+        self.camera = "" if path.is_dir() else f" --camera {folder / protocol['camera']}"
 
     def source(self, _truth):
         return self.path
 
     def track_options(self, _truth):
         start = self.protocol["start"]
-        return f"--image_path '{self.path}' --camera {self.camera} --start {start} --end {start + self.frames}"
+        return f"--image_path '{self.path}'{self.camera} --start {start} --end {start + self.frames}"
 
     def evaluate_options(self, _truth):
-        return f"--sequence '{self.path}' --camera {self.camera}"
+        return f"--sequence '{self.path}'{self.camera}"
 
     def reported(self):
         return self.protocol["reported"]
@@ -66,7 +67,7 @@ def sets(config, root):
     """By name, recordings first."""
     file = root / config["protocols"]
     protocols = yaml.safe_load(file.read_text(encoding="utf-8"))
-    found = {name: Recording(pathlib.Path(config[name]).resolve(), protocols[name], file.parent)
+    found = {name: Recording((root / config[name]).resolve(), protocols[name], file.parent)
              for name in RECORDINGS if config[name]}
     names = [] if grid.words(config["stand_ins"]) == ["none"] else grid.selected(
         config["stand_ins"], config["stand_in_options"], "stand_ins")
@@ -87,10 +88,12 @@ def figures(name, item, start, truth):
            "frames_tracked": summary["counts"]["frames_tracked"],
            "frames_per_second": grid.number(summary["timings"]["frames_per_second"], 1)}
     if surface:
+        left_out = sum(surface["left_out"].values())
         row |= {"rmse_mm": grid.number(surface["estimate"]["mean_rmse_mm"]),
                 "median_mm": grid.number(surface["estimate"]["pooled_median_mm"]),
                 "null_rmse_mm": grid.number(surface["null"]["mean_rmse_mm"]),
                 "truth_sigma_mm": grid.number(surface["truth_sigma_mm"]),
+                "left_out": grid.number(100 * left_out / (left_out + surface["points"]), 1),
                 "points": grid.number(surface["points"] / max(1, len(surface["frames"])), 0)}
     return row
 
@@ -101,7 +104,7 @@ def write(found, starts, markdown_path, csv_path):
         rows += [{"set": name, "start": who, "truth": "pairs", "rmse_mm": rmse, "frames_tracked": frames}
                  for who, (rmse, frames) in item.reported().items()]
         rows += [figures(name, item, start, truth) for truth in item.truths for start in starts]
-    titles = {"rmse_mm": "RMSE mm", "median_mm": "median mm", "null_rmse_mm": "null mm", "truth_sigma_mm": "truth's sigma mm",
+    titles = {"rmse_mm": "RMSE mm", "median_mm": "median mm", "null_rmse_mm": "null mm", "truth_sigma_mm": "truth's sigma mm", "left_out": "without truth %",
               "frames": "of", "frames_tracked": "frames", "frames_per_second": "frames/s"}
     text = grid.markdown([titles.get(name, name) for name in COLUMNS],
                          [[row.get(name, "-") for name in COLUMNS] for row in rows])

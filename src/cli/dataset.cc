@@ -103,7 +103,7 @@ void PrintDescription(const Sequence& sequence, const SequenceRequest& request) 
   for (const std::string& warning : sequence.Warnings()) PrintLine("warning", warning);
 }
 
-void PrintCheck(const SequenceCheck& check) {
+void PrintCheck(const SequenceCheck& check, bool has_pairs) {
   if (check.poses) {
     const PoseCheck& poses = *check.poses;
     std::string text =
@@ -117,8 +117,11 @@ void PrintCheck(const SequenceCheck& check) {
     PrintLine(check.stereo->enough ? "checked" : "unchecked",
               Text("%d points in pairs, rows differ by %.2f px in the median", check.stereo->matches,
                    check.stereo->median_row_error_px));
+  else if (has_pairs)
+    PrintLine("unchecked", "pairs: no point of the left image is found in the right one");
   if (check.stereo && check.stereo->depth_ratio)
-    PrintLine("checked", Text("depth is %.3f of what the baseline says", *check.stereo->depth_ratio));
+    PrintLine(check.stereo->enough ? "checked" : "unchecked",
+              Text("depth is %.3f of what the baseline says", *check.stereo->depth_ratio));
   for (const std::string& wrong : check.wrong) PrintLine("wrong", wrong);
   const bool checked = (check.poses && check.poses->right) || (check.stereo && check.stereo->enough);
   if (check.wrong.empty())
@@ -141,7 +144,7 @@ int InfoCommand(std::span<const std::string> args) {
   PrintDescription(**sequence, request);
   const auto check = CheckSequence(**sequence);
   if (!check.ok()) return line.Failure(check.status().message());
-  PrintCheck(*check);
+  PrintCheck(*check, (*sequence)->BaselineMm().has_value());
   return check->wrong.empty() ? kExitOk : kExitFailed;
 }
 

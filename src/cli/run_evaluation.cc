@@ -3,11 +3,9 @@
 
 #include "cli/run_evaluation.h"
 
-#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <system_error>
-#include <thread>
 #include <utility>
 
 #include "pliant/evaluation/report.h"
@@ -38,42 +36,14 @@ Result<OpenedTruth> OpenTruth(const SequenceRequest& request, const EvaluationOp
   return truth;
 }
 
-namespace {
-
-bool HasDepth(const EvaluationInput& run, const Sequence& sequence) {
-  return std::any_of(run.frames.begin(), run.frames.end(), [&](const EvaluationFrame& frame) {
-    const auto depth = sequence.Depth(frame.frame_idx);
-    return !depth.ok() || depth->has_value();  // what is wrong with it is told when it is used
-  });
-}
-
-// Null: the depth images are asked.
-Result<std::unique_ptr<SurfaceTruth>> OpenSurface(const EvaluationInput& run, const OpenedTruth& truth,
-                                                  const EvaluationOptions& options) {
-  const bool pairs = truth.sequence->BaselineMm().has_value();
-  if (options.surface_from == SurfaceSource::kPairs && !pairs)
-    return Status(ErrorCode::kNotFound, "the sequence " + truth.request.image_path.string() +
-                                            " has no pairs with a baseline to take the true surface from; choose "
-                                            "another Evaluation.surface_from");
-  if (options.surface_from == SurfaceSource::kDepth || !pairs ||
-      (options.surface_from == SurfaceSource::kAny && HasDepth(run, *truth.sequence)))
-    return std::unique_ptr<SurfaceTruth>();
-  SequenceRequest request = truth.request;
-  if (!run.frames.empty()) request.start = run.frames.front().frame_idx;
-  auto sequence = OpenSequence(request);
-  if (!sequence.ok()) return sequence.status();
-  return PairTruth(*std::move(sequence), static_cast<int>(std::max(1U, std::thread::hardware_concurrency())));
-}
-
-}  // namespace
-
 Result<Evaluation> EvaluateRun(const std::string& run_path, const OpenedTruth& truth,
                                const EvaluationOptions& options) {
   const Result<EvaluationInput> input = ReadEvaluationInput(run_path, *truth.sequence, options.matching);
   if (!input.ok()) return input.status();
   const Result<MaterialTruth*> material =
       truth.material.ok() ? Result<MaterialTruth*>(truth.material->get()) : truth.material.status();
-  const auto surface = OpenSurface(*input, truth, options);
+  const auto surface =
+      OpenSurfaceTruth(options.surface_from, *input, *truth.sequence, truth.request, options.points.max_depth_step);
   if (!surface.ok()) return surface.status();
   Result<Evaluation> evaluation = Evaluate(*input, *truth.sequence, material, options, surface->get());
   if (evaluation.ok()) evaluation->sequence = truth.request.image_path.string();

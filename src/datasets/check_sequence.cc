@@ -77,7 +77,7 @@ Result<SequenceCheck> CheckSequence(Sequence& sequence, const CheckOptions& opti
         matches.Add((*frame)->image, **right, depth->value_or(cv::Mat()), sequence.camera(), *sequence.BaselineMm());
     }
     const auto pose = sequence.WorldFromCamera((*frame)->frame_idx);
-    if (pose && depth->has_value())
+    if (options.poses && pose && depth->has_value())
       images.emplace(position, PosedImage{FineStructure((*frame)->image), **depth, *pose});
   }
   std::vector<std::pair<const PosedImage*, const PosedImage*>> pairs;

@@ -62,7 +62,8 @@ void StereoMatches::Add(const cv::Mat& left, const cv::Mat& right, const cv::Mat
     if (disparity_px > 0) ++right_way_;
     if (depth_mm.empty() || std::abs(disparity_px) < kLeastDisparity_px) continue;
     const float depth = depth_mm.at<float>(cv::Point(cvRound(from[k].x), cvRound(from[k].y)));
-    if (depth > 0) depth_ratios_.push_back(depth * std::abs(disparity_px) / (camera.HorizontalFocalLengthPx() * baseline_mm));
+    if (depth > 0)
+      depth_ratios_.push_back(depth * std::abs(disparity_px) / (camera.HorizontalFocalLengthPx() * baseline_mm));
   }
 }
 

@@ -60,7 +60,7 @@ std::vector<double> NumbersIn(std::string text) {
       ' ');
   std::vector<double> numbers;
   for (const std::string_view word : Split(text, ' '))
-    if (double value = 0; ParseDouble(word, &value))
+    if (double value = 0; ParseFinite(word, &value))
       numbers.push_back(value);
     else
       return {};
@@ -119,12 +119,25 @@ Result<PhotometricCalibration> ReadPhotometry(const fs::path& file) {
   if (gamma.size() != 1)
     return Status(ErrorCode::kUnreadable, file.string() + " has no gamma of the camera's response");
   calibration.gamma = gamma[0];
-  if (const auto vignetting = NumbersOf(camera->node, "vignetting"); vignetting.size() == 1)
-    calibration.vignetting = vignetting[0];
+  // An entry that is there has so many numbers.
+  const auto read = [&](const pugi::xml_node& parent, const char* name,
+                        std::size_t count) -> Result<std::vector<double>> {
+    std::vector<double> numbers = NumbersOf(parent, name);
+    if (parent.child(name) && numbers.size() != count)
+      return Status(ErrorCode::kUnreadable,
+                    file.string() + ": " + name + " has not " + std::to_string(count) + " numbers");
+    return numbers;
+  };
+  const auto vignetting = read(camera->node, "vignetting", 1);
+  if (!vignetting.ok()) return vignetting.status();
+  if (!vignetting->empty()) calibration.vignetting = vignetting->front();
   if (const auto light = ReadElement(file, "light_model"); light.ok()) {
-    if (const auto spread = NumbersOf(light->node, "mu"); spread.size() == 1) calibration.light_spread = spread[0];
-    if (const auto axis = NumbersOf(light->node, "D"); axis.size() == 3)
-      calibration.light_axis = {axis[0], axis[1], axis[2]};
+    const auto spread = read(light->node, "mu", 1);
+    if (!spread.ok()) return spread.status();
+    if (!spread->empty()) calibration.light_spread = spread->front();
+    const auto axis = read(light->node, "D", 3);
+    if (!axis.ok()) return axis.status();
+    if (!axis->empty()) calibration.light_axis = Eigen::Vector3d(axis->data());
   }
   if (Status status = CheckPhotometric(calibration); !status.ok())
     return Status(status.code(), file.string() + ": " + status.message());

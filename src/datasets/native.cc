@@ -73,7 +73,7 @@ Status AddPoses(const fs::path& file, const std::vector<TimedPose>& poses, DataS
   data_set->world_from_cam = PosesAt(times_s, poses, unit_mm, kSameTime_s);
   const auto found = std::count_if(data_set->world_from_cam.begin(), data_set->world_from_cam.end(),
                                    [](const auto& pose) { return pose.has_value(); });
-  if (static_cast<std::size_t>(found) != poses.size())
+  if (poses.empty() || static_cast<std::size_t>(found) != poses.size())
     return WrongLineCount(file, "poses", poses.size(), data_set->images->count());
   data_set->warnings.push_back(std::to_string(count - poses.size()) + " of " + std::to_string(count) +
                                " images have no pose in " + file.string());

@@ -206,7 +206,8 @@ Result<double> DeformingProblem::SettlePoints(int threads) {
 
 std::vector<double> DeformingProblem::LogDepthSigmas(int threads) const {
   DeformingEquations equations(terms_, FreeParts::kAll, gauge_, threads);
-  if (!equations.Linearise(state_)) return std::vector<double>(terms_.num_points(), std::numeric_limits<double>::infinity());
+  if (!equations.Linearise(state_))
+    return std::vector<double>(terms_.num_points(), std::numeric_limits<double>::infinity());
   std::vector<double> sigmas = equations.Variances();
   for (double& sigma : sigmas) sigma = std::sqrt(sigma);
   return sigmas;

@@ -53,6 +53,10 @@ Status CollectFrame(const EvaluationFrame& frame, const Sequence& sequence, cons
     auto paired = PairFrame(frame.frame_idx, points, sequence.camera(), options.points.max_truth_sigma_mm, surface);
     if (!paired.ok()) return paired.status();
     known.surface = *std::move(paired);
+    // A map that was made of one frame may be of its pair, and would be compared with itself.
+    const bool of_one_frame =
+        frame.first_map && frame.first_map->reference_frame_idx == frame.first_map->declared_frame_idx;
+    if (of_one_frame && surface->IsOfPairs()) known.surface.reset();
   }
   if (const std::optional<Rigid3> world_from_cam = sequence.WorldFromCamera(frame.frame_idx))
     known.poses = {frame.frame_idx, frame.cam_from_world->Inverse(), *world_from_cam, frame.submap};
@@ -99,9 +103,9 @@ Status ComputeParts(const EvaluationInput& run, const CollectedTruth& truth, con
                     const EvaluationOptions& options, Evaluation* evaluation) {
   const auto missing = [](const char* what) { return Status(ErrorCode::kNotFound, what); };
   if (options.Wants(EvaluationPart::kSurface)) {
-    Result<PointError> surface = truth.surface.empty()
-                                     ? Result<PointError>(missing("the sequence has no depth for the tracked frames"))
-                                     : ComputePointError(truth.surface, options.points);
+    Result<PointError> surface =
+        truth.surface.empty() ? Result<PointError>(missing("the sequence has no true surface for the tracked frames"))
+                              : ComputePointError(truth.surface, options.points);
     if (Status status =
             Take(EvaluationPart::kSurface, std::move(surface), options, &evaluation->surface, &evaluation->notes);
         !status.ok())
@@ -176,12 +180,13 @@ Result<Evaluation> Evaluate(const EvaluationInput& run, const Sequence& sequence
   CollectedTruth truth;
   if (material.ok() && options.Wants(EvaluationPart::kMaterial))
     truth.material.emplace(**material, sequence.camera(), options.points.max_depth_step);
+  if (surface == nullptr && options.surface_from == SurfaceSource::kPairs)
+    return Status(ErrorCode::kInvalidArgument, "a true surface from pairs has to be opened and given");
   const std::unique_ptr<SurfaceTruth> images = DepthImageTruth(sequence, options.points.max_depth_step);
+  if (surface == nullptr) surface = images.get();
   for (const EvaluationFrame& frame : run.frames) {
     if (!frame.cam_from_world) continue;
-    if (Status status = CollectFrame(frame, sequence, options, surface != nullptr ? surface : images.get(), &truth);
-        !status.ok())
-      return status;
+    if (Status status = CollectFrame(frame, sequence, options, surface, &truth); !status.ok()) return status;
   }
   if (truth.surface.empty() && !truth.material && truth.poses.empty() && options.parts.empty() && options.needs_truth)
     return Status(ErrorCode::kNotFound,

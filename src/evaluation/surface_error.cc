@@ -23,7 +23,7 @@ PairedFrame PairWithSurface(int frame_idx, std::span<const Eigen::Vector3d> poin
       ++frame.left_out.no_depth;
     } else if (truth[i].lookup == DepthLookup::kDepthStep) {
       ++frame.left_out.depth_step;
-    } else if (truth[i].sigma_mm > max_sigma_mm) {
+    } else if (!(truth[i].sigma_mm <= max_sigma_mm)) {
       ++frame.left_out.uncertain;
     } else if (!rays[i] || !(rays[i]->z() > 0)) {
       ++frame.left_out.no_ray;

@@ -3,6 +3,7 @@
 
 #include "pliant/evaluation/surface_truth.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -27,6 +28,8 @@ class OfDepthImages final : public SurfaceTruth {
     return std::optional(std::move(depths));
   }
 
+  bool IsOfPairs() const override { return false; }
+
  private:
   const Sequence& sequence_;
   double max_depth_step_;
@@ -46,6 +49,8 @@ class OfPairs final : public SurfaceTruth {
     if (right->has_value()) depths = Measure(**left, **right, pixels);
     return depths;
   }
+
+  bool IsOfPairs() const override { return true; }
 
  private:
   // Nothing where the sequence does not have the frame, or it lies behind.
@@ -89,6 +94,13 @@ class OfPairs final : public SurfaceTruth {
   int last_idx_ = -1;
 };
 
+bool HasDepth(const EvaluationInput& run, const Sequence& sequence) {
+  return std::any_of(run.frames.begin(), run.frames.end(), [&](const EvaluationFrame& frame) {
+    const auto depth = sequence.Depth(frame.frame_idx);
+    return !depth.ok() || depth->has_value();  // what is wrong with it is told when it is used
+  });
+}
+
 }  // namespace
 
 std::unique_ptr<SurfaceTruth> DepthImageTruth(const Sequence& sequence, double max_depth_step) {
@@ -97,6 +109,22 @@ std::unique_ptr<SurfaceTruth> DepthImageTruth(const Sequence& sequence, double m
 
 std::unique_ptr<SurfaceTruth> PairTruth(std::unique_ptr<Sequence> sequence, int threads) {
   return std::make_unique<OfPairs>(std::move(sequence), threads);
+}
+
+Result<std::unique_ptr<SurfaceTruth>> OpenSurfaceTruth(SurfaceSource source, const EvaluationInput& run,
+                                                       const Sequence& sequence, const SequenceRequest& request,
+                                                       double max_depth_step) {
+  constexpr int kThreads = 2;
+  const Status pairs =
+      CheckPairs("the true surface from " + request.image_path.string(), sequence.camera(), sequence.BaselineMm());
+  if (source == SurfaceSource::kPairs && !pairs.ok()) return pairs;
+  if (source == SurfaceSource::kDepth || !pairs.ok() || (source == SurfaceSource::kAny && HasDepth(run, sequence)))
+    return DepthImageTruth(sequence, max_depth_step);
+  SequenceRequest of_run = request;
+  if (!run.frames.empty()) of_run.start = run.frames.front().frame_idx;
+  auto opened = OpenSequence(of_run);
+  if (!opened.ok()) return opened.status();
+  return PairTruth(*std::move(opened), kThreads);
 }
 
 }  // namespace pliant

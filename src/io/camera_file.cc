@@ -68,8 +68,10 @@ Result<std::optional<PhotometricCalibration>> Photometric(const std::string& pat
     if (Status status = ReadNumber(path, root, field); !status.ok()) return status;
   const YAML::Node axis = root["light_axis"];
   if (!gamma.given && !vignetting.given && !light_spread.given && !axis) return std::optional<PhotometricCalibration>();
+  if (!gamma.given)
+    return Status(ErrorCode::kInvalidArgument, Quoted(path) + ": gamma is missing; a photometric calibration needs it");
   PhotometricCalibration calibration;
-  if (gamma.given) calibration.gamma = gamma.value;
+  calibration.gamma = gamma.value;
   calibration.vignetting = vignetting.value;
   calibration.light_spread = light_spread.value;
   if (axis) {

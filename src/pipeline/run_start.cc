@@ -8,10 +8,10 @@
 #include <opencv2/core.hpp>
 
 #include "pipeline/cloud_depth.h"
-#include "pliant/base/text.h"
 #include "pliant/datasets/check_sequence.h"
 #include "pliant/datasets/open_sequence.h"
 #include "pliant/io/point_cloud.h"
+#include "pliant/tracking/stereo_start.h"
 
 namespace pliant {
 namespace {
@@ -29,27 +29,11 @@ Result<cv::Mat> ReadCloud(const DepthInitOptions& options, const Camera& camera)
   return depth_mm;
 }
 
-Status CheckPairs(const std::string& path, const Sequence& sequence) {
-  const std::optional<double> baseline_mm = sequence.BaselineMm();
-  if (!baseline_mm)
-    return {ErrorCode::kMismatch,
-            "a start from a pair of images needs pairs: " + path +
-                " has no right images with a baseline; choose another Init.method, or give a stereo calibration"};
-  const CameraModelId model = sequence.camera().model_id();
-  if (*baseline_mm > 0 && (model == CameraModelId::kPinhole || model == CameraModelId::kSimplePinhole))
-    return Status::Ok();
-  return {ErrorCode::kMismatch,
-          "a start from a pair of images needs rectified ones: a PINHOLE camera, and a baseline "
-          "above 0; " +
-              path + " has a camera " + std::string(sequence.camera().model_name()) + " and a baseline of " +
-              FormatDouble(*baseline_mm) + " mm"};
-}
-
 // What cannot be read here is told when it is read to be tracked.
-std::vector<std::string> WhatTheFirstFramesSay(const SequenceRequest& request) {
+std::vector<std::string> WhatTheFirstFramesSay(const SequenceRequest& request, bool of_poses) {
   auto sequence = OpenSequence(request);
   if (!sequence.ok()) return {};
-  const auto check = CheckSequence(**sequence, {.base_frames = 1});
+  const auto check = CheckSequence(**sequence, {.base_frames = 1, .poses = of_poses});
   return check.ok() ? check->wrong : std::vector<std::string>();
 }
 
@@ -70,9 +54,12 @@ Result<RunStart> ReadStart(const RunRequest& request, const InitOptions& init, c
     start.cloud_depth_mm = *std::move(depth_mm);
   }
   if (init.method == InitMethod::kStereo)
-    if (Status status = CheckPairs(request.input.image_path.string(), sequence); !status.ok()) return status;
+    if (Status status = CheckPairs("a start from a pair of " + request.input.image_path.string(), sequence.camera(),
+                                   sequence.BaselineMm());
+        !status.ok())
+      return status;
   if (init.method == InitMethod::kStereo || (init.method == InitMethod::kDepth && !from_cloud))
-    start.warnings = WhatTheFirstFramesSay(request.input);
+    start.warnings = WhatTheFirstFramesSay(request.input, /*of_poses=*/init.method == InitMethod::kDepth);
   return start;
 }
 

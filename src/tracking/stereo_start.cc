@@ -129,6 +129,21 @@ void StereoStartOptions::List(OptionTable& table) {
   table.Add("stereo_min_points", &min_points, "-", "stereo: fewer matches make no map", 4, 100000);
 }
 
+Status CheckPairs(const std::string& what, const Camera& camera, std::optional<double> baseline_mm) {
+  if (!baseline_mm)
+    return {ErrorCode::kMismatch, what +
+                                      " needs pairs of images: there are no right images with a baseline; give the "
+                                      "calibration of both cameras, or do without pairs"};
+  const CameraModelId model = camera.model_id();
+  if (*baseline_mm > 0 && (model == CameraModelId::kPinhole || model == CameraModelId::kSimplePinhole))
+    return Status::Ok();
+  return {ErrorCode::kMismatch, what +
+                                    " needs rectified pairs of images, a PINHOLE camera and a baseline above 0: the "
+                                    "camera is " +
+                                    std::string(camera.model_name()) + ", the baseline " + FormatDouble(*baseline_mm) +
+                                    " mm"};
+}
+
 std::vector<std::optional<RowMatch>> MatchAlongRows(const ImagePyramid& left, const SupportMask& left_mask,
                                                     const ImagePyramid& right, const SupportMask& right_mask,
                                                     std::span<const Eigen::Vector2d> pixels,

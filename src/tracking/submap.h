@@ -40,7 +40,6 @@ struct Tracker::Submap {
   TrackerFrame previous;                 // the last frame in which points were seen
   Rigid3 last_cam_from_world;
   Rigid3 before_last_cam_from_world;
-  PointId measured_end;                              // points with smaller ids had their depth measured at the start
   std::vector<std::pair<int, Rigid3>> recent_poses;  // by frame_idx, of the last frames in a row that were tracked
 };
 

@@ -381,7 +381,8 @@ void Tracker::CreateMap(const InitOutcome& outcome) {
     if (rejected.reason != InitRejection::kLostOnTheWay) Count(InitRejectionName(rejected.reason), 1);
   ReportFirstMap(camera_, init_frames_, outcome, held_);
   now_->map = MakeFirstMap(init_frames_, outcome);
-  if (options_.init.IsMetric() || oracle_->gives_first_map()) now_->measured_end = PointId{next_id_};
+  for (Landmark& landmark : now_->map.landmarks)
+    landmark.measured = options_.init.IsMetric() || oracle_->gives_first_map();
   now_->last_cam_from_world = outcome.frames.back().cam_from_world;
   now_->before_last_cam_from_world =
       outcome.frames.size() >= 2 ? outcome.frames[outcome.frames.size() - 2].cam_from_world : now_->last_cam_from_world;

@@ -33,8 +33,8 @@ void Tracker::RefineMap(FrameReport* report) {
   for (const PointObservation& seen : report->observations)
     frame.observations.push_back({.id = seen.id, .pixel = seen.pixel, .ssim = seen.ssim});
   if (!now_->rigid_history.Add(std::move(frame))) return;
-  const InitOutcome outcome =
-      initializer_->Refine({camera_, now_->rigid_history.frames(), {}, InitMoment::kMoreFollow, threads_});
+  const InitOutcome outcome = initializer_->Refine(
+      {camera_, now_->rigid_history.frames(), {}, InitMoment::kMoreFollow, threads_, {}, photometric_});
   if (outcome.decision == InitDecision::kNewReference) {
     now_->rigid_history.Stop();
     report->note = "the map is not refined any more: " + outcome.reason;
@@ -145,8 +145,9 @@ void Tracker::RemakeMap(const TrackerFrame& frame, FrameReport* report) {
   if (now_->window_frames.size() > length + 1)
     now_->window_frames.erase(now_->window_frames.begin(),
                               now_->window_frames.end() - static_cast<std::ptrdiff_t>(length + 1));
-  const auto measured = std::count_if(report->observations.begin(), report->observations.end(),
-                                      [&](const PointObservation& point) { return point.id < now_->measured_end; });
+  const auto measured =
+      std::count_if(report->observations.begin(), report->observations.end(),
+                    [&](const PointObservation& point) { return now_->map.Find(point.id)->measured; });
   if (now_->window_frames.size() <= length || !now_->rigid_history.empty() ||
       frame.frame_idx % options_.growth.remake_every != 0 ||
       static_cast<double>(measured) >=

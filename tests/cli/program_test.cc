@@ -320,7 +320,7 @@ TEST(Program, EvaluateSaysInOneSentenceThatThereIsNoTruthForWhatWasAsked) {
   std::filesystem::remove_all(sequence + "/depth");
   const Outcome surface = Pliant(evaluate + "--parts surface");
   EXPECT_EQ(surface.exit, 1);
-  EXPECT_EQ(surface.err, "pliant evaluate: no surface error: the sequence has no depth for the tracked frames\n");
+  EXPECT_EQ(surface.err, "pliant evaluate: no surface error: the sequence has no true surface for the tracked frames\n");
   const Outcome protocol = Pliant(evaluate + "--protocol depth_trimmed");
   EXPECT_EQ(protocol.exit, 1);
   EXPECT_THAT(protocol.err, StartsWith("pliant evaluate: the protocol depth_trimmed compares points"));

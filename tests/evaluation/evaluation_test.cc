@@ -83,7 +83,7 @@ TEST(Evaluate, FailsWhereThereIsNoTruthForAPartOrAProtocolThatWasAskedFor) {
   EXPECT_EQ(material.status().message(), "no material error: there is no simulation.yaml");
   const auto surface = Evaluate(run, poses_only, kNoMaterial, WithParts({EvaluationPart::kSurface}));
   EXPECT_EQ(surface.status().code(), ErrorCode::kNotFound);
-  EXPECT_EQ(surface.status().message(), "no surface error: the sequence has no depth for the tracked frames");
+  EXPECT_EQ(surface.status().message(), "no surface error: the sequence has no true surface for the tracked frames");
   const auto camera = Evaluate(run, depth_only, kNoMaterial, WithParts({EvaluationPart::kCamera}));
   EXPECT_EQ(camera.status().code(), ErrorCode::kNotFound);
   EvaluationOptions lmeds;

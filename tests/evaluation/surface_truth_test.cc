@@ -58,6 +58,40 @@ TEST(SurfaceTruth, PairsMeasureTheDepthAndHowCertainItIs) {
   EXPECT_GT(static_cast<double>(within), 0.9 * static_cast<double>(in_sigmas.size()));
 }
 
+TEST(SurfaceTruth, IsTakenFromPairsWhereTheyAreRectifiedAndThereIsNoDepth) {
+  class Lens final : public Sequence {
+   public:
+    explicit Lens(const Camera& camera, std::optional<double> baseline_mm)
+        : camera_(camera), baseline_mm_(baseline_mm) {}
+    const Camera& camera() const override { return camera_; }
+    int size() const override { return 1; }
+    Result<std::optional<SequenceFrame>> Next() override { return std::optional<SequenceFrame>(); }
+    Result<std::optional<cv::Mat>> Depth(int /*frame_idx*/) const override { return std::optional<cv::Mat>(); }
+    std::optional<Rigid3> WorldFromCamera(int /*frame_idx*/) const override { return std::nullopt; }
+    std::optional<double> BaselineMm() const override { return baseline_mm_; }
+
+   private:
+    Camera camera_;
+    std::optional<double> baseline_mm_;
+  };
+  EvaluationInput run;
+  run.frames.emplace_back();
+  const Camera fisheye =
+      Camera::Create("OPENCV_FISHEYE", 320, 240, std::vector<double>{100, 100, 160, 120, 0, 0, 0, 0}).value();
+  const Camera& pinhole = Rendered().camera;
+  for (const Lens& lens : {Lens(fisheye, 5.0), Lens(pinhole, 0.0), Lens(pinhole, -5.0), Lens(pinhole, std::nullopt)}) {
+    const auto any = OpenSurfaceTruth(SurfaceSource::kAny, run, lens, {.image_path = "nowhere"}, 0.05);
+    ASSERT_TRUE(any.ok());
+    EXPECT_FALSE((*any)->IsOfPairs());
+    const auto pairs = OpenSurfaceTruth(SurfaceSource::kPairs, run, lens, {.image_path = "nowhere"}, 0.05);
+    EXPECT_EQ(pairs.status().code(), ErrorCode::kMismatch);
+  }
+  const Lens good(pinhole, 5.0);
+  EXPECT_EQ(OpenSurfaceTruth(SurfaceSource::kAny, run, good, {.image_path = "nowhere"}, 0.05).status().code(),
+            ErrorCode::kNotFound)
+      << "its pairs are wanted";
+}
+
 TEST(SurfaceTruth, WhatASequenceDoesNotHaveIsNothing) {
   const std::vector<Eigen::Vector2d> pixels = {{100, 100}};
   const auto measured = PairTruth(Pairs(), 1);

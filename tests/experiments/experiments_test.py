@@ -81,6 +81,18 @@ def dry_run(folder):
     text = snakemake("long_sequences", folder / "long", "--dry-run", "--quiet", "--config", "variants=all")
     counts = {line.split()[0]: line.split()[1] for line in text.splitlines() if len(line.split()) > 1}
     assert counts["simulate"] == "12" and counts["track"] == counts["evaluate"] == str(12 * 7), text
+    text = snakemake("fisheye", folder / "fisheye", "--dry-run", "--quiet")
+    counts = {line.split()[0]: line.split()[1] for line in text.splitlines() if len(line.split()) > 1}
+    assert counts["simulate"] == counts["track"] == counts["evaluate"] == "20", text
+    text = snakemake("hamlyn", folder / "hamlyn", "--dry-run", "--quiet")
+    counts = {line.split()[0]: line.split()[1] for line in text.splitlines() if len(line.split()) > 1}
+    assert counts["simulate"] == counts["film"] == "6" and counts["track"] == counts["evaluate"] == "36", text
+    recording = folder / "recording.avi"
+    recording.write_bytes(b"pairs")
+    text = snakemake("hamlyn", folder / "recorded", "--dry-run", "--quiet", "--config", f"hamlyn_20={recording}",
+                     "stand_ins=none")
+    counts = {line.split()[0]: line.split()[1] for line in text.splitlines() if len(line.split()) > 1}
+    assert counts["track"] == counts["evaluate"] == "3" and "simulate" not in counts, text
 
 
 def staying(folder):

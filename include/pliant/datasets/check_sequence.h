@@ -18,6 +18,7 @@ namespace pliant {
 struct CheckOptions {
   int base_frames = 5;    // from which images are warped into later ones, spread over the sequence
   int max_points = 2000;  // in each, on a grid
+  bool poses = true;      // are checked as well
 };
 
 // How well images warped by depth and poses fit, were the poses meant otherwise.
@@ -39,7 +40,7 @@ struct PoseCheck {
 
 struct StereoCheck {
   int matches = 0;
-  bool enough = false;  // to tell anything
+  bool enough = false;             // to tell anything
   double median_row_error_px = 0;  // |v_left - v_right|
   double share_right_way = 0;      // of the matches whose disparity is positive
   // Depth of the depth images by that of the disparities, median; nothing where there is no depth.

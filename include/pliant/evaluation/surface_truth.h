@@ -18,7 +18,9 @@
 
 #include "pliant/base/options.h"
 #include "pliant/base/status.h"
+#include "pliant/datasets/open_sequence.h"
 #include "pliant/datasets/sequence.h"
+#include "pliant/evaluation/run_input.h"
 #include "pliant/image/depth_lookup.h"
 
 namespace pliant {
@@ -43,6 +45,9 @@ class SurfaceTruth {
   // Sequence does.
   virtual Result<std::optional<std::vector<DepthAtPixel>>> At(int frame_idx,
                                                               std::span<const Eigen::Vector2d> pixels) = 0;
+  // Whether it is measured as a start from a pair measures its map, so that of the frame of such a start it says
+  // nothing.
+  virtual bool IsOfPairs() const = 0;
 };
 
 // From the depth images: interpolated, never across a relative step of more than max_depth_step. `sequence` must
@@ -53,5 +58,12 @@ std::unique_ptr<SurfaceTruth> DepthImageTruth(const Sequence& sequence, double m
 // The standard deviation of a disparity is that of the rows of the frame's matches, which ought to agree, and what the
 // match followed back is off, together (docs/method.md, eq. B6).
 std::unique_ptr<SurfaceTruth> PairTruth(std::unique_ptr<Sequence> sequence, int threads);
+
+// The source by name, for a run on `sequence`, which was opened by `request` and must outlive it. kAny takes depth
+// images where the sequence has any for the run's frames, else pairs where they are rectified. Fails with kMismatch
+// where kPairs are none (CheckPairs), and as OpenSequence.
+Result<std::unique_ptr<SurfaceTruth>> OpenSurfaceTruth(SurfaceSource source, const EvaluationInput& run,
+                                                       const Sequence& sequence, const SequenceRequest& request,
+                                                       double max_depth_step);
 
 }  // namespace pliant

@@ -14,8 +14,8 @@
 
 namespace pliant {
 
-// In the file's own unit and order; points that are not finite are left out. Fails with kNotFound, kUnreadable (not such
-// a file, damaged, or cut off) or kInsufficient (no point).
+// In the file's own unit and order; points that are not finite are left out. Fails with kNotFound, kUnreadable (not
+// such a file, damaged, or cut off) or kInsufficient (no point).
 Result<std::vector<Eigen::Vector3d>> ReadPointCloud(const std::string& path);
 
 }  // namespace pliant

@@ -25,12 +25,13 @@ struct TimedPose {
 Result<std::vector<TimedPose>> ReadTumTrajectory(const std::string& path);
 
 // KITTI's poses: the twelve numbers of the matrix [R t] a line, row by row, world_from_camera; the line is the frame.
-// Fails with kNotFound, or with kUnreadable and the line's number for a line that is not twelve finite numbers, or whose
-// R is not a rotation within 1 %.
+// Fails with kNotFound, or with kUnreadable and the line's number for a line that is not twelve finite numbers, or
+// whose R is not a rotation within 1 %.
 Result<std::vector<Rigid3>> ReadKittiPoses(const std::string& path);
 
-// EuRoC's ground truth and what is written like it: `timestamp, px, py, pz, qw, qx, qy, qz` a line and whatever follows,
-// nanoseconds. The poses are those of whatever the file is about, in EuRoC's own of the IMU. Fails as ReadTumTrajectory.
+// EuRoC's ground truth and what is written like it: `timestamp, px, py, pz, qw, qx, qy, qz` a line and whatever
+// follows, nanoseconds. The poses are those of whatever the file is about, in EuRoC's own of the IMU. Fails as
+// ReadTumTrajectory.
 Result<std::vector<TimedPose>> ReadEurocTrajectory(const std::string& path);
 
 // One line for a file that grows, in WriteTumTrajectory's precision, with its line end.

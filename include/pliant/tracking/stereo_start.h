@@ -8,6 +8,7 @@
 #include <array>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -16,6 +17,8 @@
 #include <opencv2/core/mat.hpp>
 
 #include "pliant/base/options.h"
+#include "pliant/base/status.h"
+#include "pliant/camera/camera.h"
 #include "pliant/image/masks.h"
 #include "pliant/image/pyramid.h"
 #include "pliant/photometric/patch.h"
@@ -44,6 +47,10 @@ struct StereoStartOptions {
 
   void List(OptionTable& table);  // appended to the group "Init"
 };
+
+// What pairs must be for a disparity to be a depth: rectified, of a PINHOLE camera, with a baseline above 0. Fails with
+// kMismatch; the sentence begins with `what`, which needs them.
+Status CheckPairs(const std::string& what, const Camera& camera, std::optional<double> baseline_mm);
 
 struct RowMatch {
   double disparity_px = 0;   // x_left - x_right
