@@ -83,7 +83,7 @@ def dry_run(folder):
     assert counts["simulate"] == "12" and counts["track"] == counts["evaluate"] == str(12 * 7), text
     text = snakemake("fisheye", folder / "fisheye", "--dry-run", "--quiet")
     counts = {line.split()[0]: line.split()[1] for line in text.splitlines() if len(line.split()) > 1}
-    assert counts["simulate"] == counts["track"] == counts["evaluate"] == "20", text
+    assert counts["simulate"] == counts["track"] == counts["evaluate"] == "12", text
     text = snakemake("hamlyn", folder / "hamlyn", "--dry-run", "--quiet")
     counts = {line.split()[0]: line.split()[1] for line in text.splitlines() if len(line.split()) > 1}
     assert counts["simulate"] == counts["film"] == "6" and counts["track"] == counts["evaluate"] == "36", text
