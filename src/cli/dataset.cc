@@ -27,8 +27,8 @@ const Manual kInfoManual = {
     "say what a data set holds, and what is wrong with it",
     "Recognises the kind of what lies at PATH and prints its frames, camera, pairs, depth and poses, in millimetres. "
     "Then it asks the images themselves. They are warped into each other by depth and poses, read in every way in "
-    "which "
-    "poses are usually meant, so that a flipped handedness, a wrong unit and a transposed matrix show and are told "
+    "which poses are usually meant, so that a flipped handedness, a wrong unit and a transposed matrix show and are "
+    "told "
     "apart; points are matched between the images of pairs, so that pairs that are swapped or not rectified show; and "
     "depth is compared with what the baseline says.\n\n"
     "Ends with 1 if something is wrong, or the data set cannot be read.",

@@ -26,8 +26,7 @@ const Manual kManual = {
     "Reads --run: a run folder that pliant track left, also one that was interrupted or killed, or another system's "
     "trajectory.txt (TUM) and observations.csv; docs/formats.md says how to bring one. Reads --sequence: a "
     "sequence with depth images, poses, pairs of images (the disparity at every point is then the truth of the "
-    "surface, "
-    "with its own uncertainty) or simulation.yaml.\n\n"
+    "surface, with its own uncertainty) or simulation.yaml.\n\n"
     "Leaves, where --output_path is given: evaluation.json (every figure) and evaluation.csv (one row a frame). "
     "pliant compare sets several runs side by side.",
     {"pliant evaluate --run run --sequence colon",

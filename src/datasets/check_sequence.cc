@@ -54,7 +54,7 @@ Result<SequenceCheck> CheckSequence(Sequence& sequence, const CheckOptions& opti
   std::set<int> wanted;
   for (const int base : bases)
     for (const int gap : kGaps)
-      if (base + gap < sequence.size()) {
+      if (options.poses && base + gap < sequence.size()) {
         compared[base].insert(base + gap);
         wanted.insert({base, base + gap});
       }

@@ -71,40 +71,45 @@ std::vector<double> NumbersOf(const pugi::xml_node& parent, const char* name) {
   return NumbersIn(parent.child_value(name));
 }
 
-// The first element of this name in an XML file.
-struct Element {
+// The first element of this name; empty where there is none.
+pugi::xml_node FindElement(const pugi::xml_document& document, std::string_view name) {
+  return document.find_node([&](const pugi::xml_node& node) { return node.name() == name; });
+}
+
+// An XML file with a camera model.
+struct Calibration {
   pugi::xml_document document;
-  pugi::xml_node node;
+  pugi::xml_node camera;
 };
-Result<Element> ReadElement(const fs::path& file, const char* name) {
+Result<Calibration> ReadCalibration(const fs::path& file) {
   const auto text = ReadFile(file.string());
   if (!text.ok()) return text.status();
-  Element element;
-  if (const auto parsed = element.document.load_buffer(text->data(), text->size()); !parsed)
+  Calibration calibration;
+  if (const auto parsed = calibration.document.load_buffer(text->data(), text->size()); !parsed)
     return Status(ErrorCode::kUnreadable, file.string() + " is no XML: " + parsed.description());
-  element.node =
-      element.document.find_node([&](const pugi::xml_node& node) { return node.name() == std::string_view(name); });
-  if (!element.node)
-    return Status(ErrorCode::kUnreadable, file.string() + " is not a calibration of an endoscope: it has no " + name);
-  return element;
+  calibration.camera = FindElement(calibration.document, "camera_model");
+  if (!calibration.camera)
+    return Status(ErrorCode::kUnreadable,
+                  file.string() + " is not a calibration of an endoscope: it has no camera_model");
+  return calibration;
 }
 
 // Calibu's <camera_model type=...> with <width>, <height>, <params> [ fu; fv; u0; v0; ... ].
 Result<Camera> ReadGeometry(const fs::path& file) {
-  const auto element = ReadElement(file, "camera_model");
-  if (!element.ok()) return element.status();
-  const std::vector<double> width = NumbersOf(element->node, "width");
-  const std::vector<double> height = NumbersOf(element->node, "height");
+  const auto xml = ReadCalibration(file);
+  if (!xml.ok()) return xml.status();
+  const std::vector<double> width = NumbersOf(xml->camera, "width");
+  const std::vector<double> height = NumbersOf(xml->camera, "height");
   if (width.size() != 1 || height.size() != 1 || !IsImageSize(width[0], height[0]))
     return Status(ErrorCode::kUnreadable,
                   file.string() + " is not a calibration of calibu: its camera_model has no width and height");
-  const std::string type = element->node.attribute("type").value();
+  const std::string type = xml->camera.attribute("type").value();
   if (type != "calibu_fu_fv_u0_v0" && type != "calibu_fu_fv_u0_v0_kb4")
     return Status(ErrorCode::kInvalidArgument, file.string() + " has a camera of the type " + Quoted(type) +
                                                    ", which is not known; calibu_fu_fv_u0_v0_kb4 is");
   const CameraModelId model = type == "calibu_fu_fv_u0_v0" ? CameraModelId::kPinhole : CameraModelId::kOpenCvFisheye;
-  auto camera = Camera::Create(model, static_cast<int>(width[0]), static_cast<int>(height[0]),
-                               NumbersOf(element->node, "params"));
+  auto camera =
+      Camera::Create(model, static_cast<int>(width[0]), static_cast<int>(height[0]), NumbersOf(xml->camera, "params"));
   if (!camera.ok()) return Status(camera.status().code(), file.string() + ": " + camera.status().message());
   return camera;
 }
@@ -112,13 +117,11 @@ Result<Camera> ReadGeometry(const fs::path& file) {
 // <camera_model type="gamma"> with <gamma> and perhaps <vignetting>, <light_model type="sls"> with the spread <mu> and
 // the direction <D>. Where the light is, millimetres from the lens, is not used.
 Result<PhotometricCalibration> ReadPhotometry(const fs::path& file) {
-  const auto camera = ReadElement(file, "camera_model");
-  if (!camera.ok()) return camera.status();
-  PhotometricCalibration calibration;
-  const std::vector<double> gamma = NumbersOf(camera->node, "gamma");
-  if (gamma.size() != 1)
+  const auto xml = ReadCalibration(file);
+  if (!xml.ok()) return xml.status();
+  if (!xml->camera.child("gamma"))
     return Status(ErrorCode::kUnreadable, file.string() + " has no gamma of the camera's response");
-  calibration.gamma = gamma[0];
+  PhotometricCalibration calibration;
   // An entry that is there has so many numbers.
   const auto read = [&](const pugi::xml_node& parent, const char* name,
                         std::size_t count) -> Result<std::vector<double>> {
@@ -128,14 +131,17 @@ Result<PhotometricCalibration> ReadPhotometry(const fs::path& file) {
                     file.string() + ": " + name + " has not " + std::to_string(count) + " numbers");
     return numbers;
   };
-  const auto vignetting = read(camera->node, "vignetting", 1);
+  const auto gamma = read(xml->camera, "gamma", 1);
+  if (!gamma.ok()) return gamma.status();
+  calibration.gamma = gamma->front();
+  const auto vignetting = read(xml->camera, "vignetting", 1);
   if (!vignetting.ok()) return vignetting.status();
   if (!vignetting->empty()) calibration.vignetting = vignetting->front();
-  if (const auto light = ReadElement(file, "light_model"); light.ok()) {
-    const auto spread = read(light->node, "mu", 1);
+  if (const pugi::xml_node light = FindElement(xml->document, "light_model")) {
+    const auto spread = read(light, "mu", 1);
     if (!spread.ok()) return spread.status();
     if (!spread->empty()) calibration.light_spread = spread->front();
-    const auto axis = read(light->node, "D", 3);
+    const auto axis = read(light, "D", 3);
     if (!axis.ok()) return axis.status();
     if (!axis->empty()) calibration.light_axis = Eigen::Vector3d(axis->data());
   }

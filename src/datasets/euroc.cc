@@ -156,7 +156,6 @@ Result<DataSet> OpenEuroc(const SequenceRequest& request) {
   if (!left_list.ok()) return left_list.status();
   const auto left = ReadSensor(root / "cam0" / "sensor.yaml");
   if (!left.ok()) return left.status();
-  auto images = StreamFiles(root / "cam0" / "data", left_list->files);
   Result<DataSet> data_set = Status(ErrorCode::kNotFound, "");
   std::size_t left_over = 0;
   const bool pairs = IsFile(root / "cam1" / "data.csv") && !left->fisheye && request.camera_path.empty();
@@ -166,16 +165,16 @@ Result<DataSet> OpenEuroc(const SequenceRequest& request) {
     left_over = KeepPairs(&*left_list, &*right_list);
     if (left_list->files.empty())
       return Status(ErrorCode::kMismatch, root.string() + " has no image of cam0 and cam1 of the same time");
-    images = StreamFiles(root / "cam0" / "data", left_list->files);
     const auto right = ReadSensor(root / "cam1" / "sensor.yaml");
     if (!right.ok()) return right.status();
     const StereoCalibration calibration{left->lens, right->lens, right->body_from_cam.Inverse() * left->body_from_cam,
                                         left->size, false};
     data_set = RectifiedPairs(calibration, left->file, {left->size.width, left->size.height}, PairLayout::kApart,
-                              {std::move(images), StreamFiles(root / "cam1" / "data", right_list->files)});
+                              {StreamFiles(root / "cam0" / "data", left_list->files),
+                               StreamFiles(root / "cam1" / "data", right_list->files)});
     if (data_set.ok()) data_set->mask_path = request.mask_path;
   } else {
-    data_set = OpenMono(request, *left, std::move(images));
+    data_set = OpenMono(request, *left, StreamFiles(root / "cam0" / "data", left_list->files));
   }
   if (!data_set.ok()) return data_set.status();
   if (left_over > 0)

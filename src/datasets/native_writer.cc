@@ -59,7 +59,8 @@ cv::Mat QuantiseDepth(const cv::Mat& depth_mm, double depth_scale_mm) {
   for (int y = 0; y < depth_mm.rows; ++y) {
     for (int x = 0; x < depth_mm.cols; ++x) {
       const double value = std::round(depth_mm.at<float>(y, x) / depth_scale_mm);
-      steps.at<std::uint16_t>(y, x) = value >= 1 && value <= 65535 ? static_cast<std::uint16_t>(value) : 0;
+      steps.at<std::uint16_t>(y, x) =
+          value >= 1 && value <= native::kMostDepthSteps ? static_cast<std::uint16_t>(value) : 0;
     }
   }
   return steps;
@@ -79,7 +80,7 @@ Result<NativeWriter> NativeWriter::Create(fs::path folder, const CameraFile& cam
 }
 
 int NativeWriter::OutOfRange(const cv::Mat& depth_mm) const {
-  return depth_mm.empty() ? 0 : cv::countNonZero(depth_mm > 65535.0 * depth_scale_);
+  return depth_mm.empty() ? 0 : cv::countNonZero(depth_mm > native::kMostDepthSteps * depth_scale_);
 }
 
 Status NativeWriter::WriteImage(const char* kind, const cv::Mat& image) {

@@ -20,19 +20,28 @@ struct CollectedTruth {
   FirstMapTruth declared;
 };
 
-// Nothing where the frame has no truth.
-Result<std::optional<PairedFrame>> PairFrame(int frame_idx, const std::vector<TrackedPoint>& points,
-                                             const Camera& camera, double max_sigma_mm, SurfaceTruth* surface) {
+// The points of a frame, each with the true surface at its pixel.
+struct PointsWithTruth {
+  std::vector<TrackedPoint> points;
+  std::optional<PairedFrame> surface;  // nothing where the frame has no true surface
+};
+
+Result<PointsWithTruth> PairFrame(const EvaluationFrame& frame, const Camera& camera, double max_sigma_mm,
+                                  SurfaceTruth* surface) {
+  PointsWithTruth paired;
   std::vector<Eigen::Vector3d> points_in_cam;
   std::vector<Eigen::Vector2d> pixels;
-  for (const TrackedPoint& point : points) {
-    points_in_cam.push_back(point.point_in_cam);
-    pixels.push_back(point.pixel);
+  for (const PointObservation& observation : frame.observations) {
+    points_in_cam.push_back(*frame.cam_from_world * observation.position);
+    pixels.push_back(observation.pixel);
+    paired.points.push_back({observation.id, pixels.back(), points_in_cam.back()});
   }
-  const auto depths = surface->At(frame_idx, pixels);
+  const auto depths = surface->At(frame.frame_idx, pixels);
   if (!depths.ok()) return depths.status();
-  if (!depths->has_value()) return std::optional<PairedFrame>();
-  return std::optional(PairWithSurface(frame_idx, points_in_cam, pixels, camera, **depths, max_sigma_mm));
+  if (!depths->has_value()) return paired;
+  for (std::size_t i = 0; i < pixels.size(); ++i) paired.points[i].surface = (**depths)[i];
+  paired.surface = PairWithSurface(frame.frame_idx, points_in_cam, pixels, camera, **depths, max_sigma_mm);
+  return paired;
 }
 
 // The frame is one of the two that the first map's error looks at, if that is wanted.
@@ -44,15 +53,14 @@ bool IsOfFirstMap(const EvaluationFrame& frame, const EvaluationOptions& options
 
 Status CollectFrame(const EvaluationFrame& frame, const Sequence& sequence, const EvaluationOptions& options,
                     SurfaceTruth* surface, CollectedTruth* truth) {
-  std::vector<TrackedPoint> points;
-  for (const PointObservation& observation : frame.observations)
-    points.push_back({observation.id, observation.pixel, *frame.cam_from_world * observation.position});
   const bool of_first_map = IsOfFirstMap(frame, options);
   FirstMapTruth known;
-  if (options.Wants(EvaluationPart::kSurface) || of_first_map) {
-    auto paired = PairFrame(frame.frame_idx, points, sequence.camera(), options.points.max_truth_sigma_mm, surface);
+  if (options.Wants(EvaluationPart::kSurface) || truth->material || of_first_map) {
+    auto paired = PairFrame(frame, sequence.camera(), options.points.max_truth_sigma_mm, surface);
     if (!paired.ok()) return paired.status();
-    known.surface = *std::move(paired);
+    if (truth->material)
+      if (Status status = truth->material->AddFrame(frame.frame_idx, paired->points); !status.ok()) return status;
+    known.surface = std::move(paired->surface);
     // A map that was made of one frame may be of its pair, and would be compared with itself.
     const bool of_one_frame =
         frame.first_map && frame.first_map->reference_frame_idx == frame.first_map->declared_frame_idx;
@@ -60,12 +68,6 @@ Status CollectFrame(const EvaluationFrame& frame, const Sequence& sequence, cons
   }
   if (const std::optional<Rigid3> world_from_cam = sequence.WorldFromCamera(frame.frame_idx))
     known.poses = {frame.frame_idx, frame.cam_from_world->Inverse(), *world_from_cam, frame.submap};
-  if (truth->material) {
-    const Result<std::optional<cv::Mat>> depth_mm = sequence.Depth(frame.frame_idx);
-    if (!depth_mm.ok()) return depth_mm.status();
-    if (Status status = truth->material->AddFrame(frame.frame_idx, points, depth_mm->value_or(cv::Mat())); !status.ok())
-      return status;
-  }
   if (of_first_map && frame.frame_idx == frame.first_map->reference_frame_idx) truth->reference = known;
   if (of_first_map && frame.frame_idx == frame.first_map->declared_frame_idx) truth->declared = known;
   if (options.Wants(EvaluationPart::kCamera) && known.poses) truth->poses.push_back(*known.poses);
@@ -178,8 +180,7 @@ Result<Evaluation> Evaluate(const EvaluationInput& run, const Sequence& sequence
                                                 std::to_string(run.frames.size()) +
                                                 " it read; there is nothing to evaluate");
   CollectedTruth truth;
-  if (material.ok() && options.Wants(EvaluationPart::kMaterial))
-    truth.material.emplace(**material, sequence.camera(), options.points.max_depth_step);
+  if (material.ok() && options.Wants(EvaluationPart::kMaterial)) truth.material.emplace(**material, sequence.camera());
   if (surface == nullptr && options.surface_from == SurfaceSource::kPairs)
     return Status(ErrorCode::kInvalidArgument, "a true surface from pairs has to be opened and given");
   const std::unique_ptr<SurfaceTruth> images = DepthImageTruth(sequence, options.points.max_depth_step);

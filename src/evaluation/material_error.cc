@@ -36,8 +36,7 @@ DriftFigures MaterialErrorCollector::Drift::Figures() const {
   return figures;
 }
 
-Status MaterialErrorCollector::StartTracks(int frame_idx, std::span<const TrackedPoint> points,
-                                           const cv::Mat& depth_mm) {
+Status MaterialErrorCollector::StartTracks(int frame_idx, std::span<const TrackedPoint> points) {
   std::vector<PointId> ids;
   std::vector<Eigen::Vector2d> pixels;
   for (const TrackedPoint& point : points) {
@@ -47,8 +46,7 @@ Status MaterialErrorCollector::StartTracks(int frame_idx, std::span<const Tracke
     track.first_frame_idx = frame_idx;
     if (!camera_.Contains(point.pixel)) {
       track.start = Start::kOutsideImage;
-    } else if (!depth_mm.empty() &&
-               LookUpDepth(depth_mm, point.pixel, max_depth_step_).lookup == DepthLookup::kDepthStep) {
+    } else if (point.surface.lookup == DepthLookup::kDepthStep) {
       track.start = Start::kDepthStep;
     } else {
       ids.push_back(point.id);
@@ -68,8 +66,7 @@ Status MaterialErrorCollector::StartTracks(int frame_idx, std::span<const Tracke
 }
 
 void MaterialErrorCollector::AddPoint(const TrackedPoint& point, const Track& track, const MaterialState& state,
-                                      const std::optional<Eigen::Vector3d>& ray, const cv::Mat& depth_mm,
-                                      Frame* frame) const {
+                                      const std::optional<Eigen::Vector3d>& ray, Frame* frame) const {
   if (!ray || !(ray->z() > 0)) {
     ++frame->paired.left_out.no_ray;
     return;
@@ -86,14 +83,12 @@ void MaterialErrorCollector::AddPoint(const TrackedPoint& point, const Track& tr
     frame->drift.px.push_back((point.pixel - *state.pixel).norm());
     frame->drift.still_px.push_back((track.first_pixel - *state.pixel).norm());
   }
-  if (depth_mm.empty()) return;
-  const DepthAtPixel surface = LookUpDepth(depth_mm, point.pixel, max_depth_step_);
-  if (surface.lookup == DepthLookup::kOk)
-    frame->drift.mm.push_back((surface.depth_mm * unit_depth_ray - state.point_in_cam).norm());
+  if (point.surface.lookup == DepthLookup::kOk)
+    frame->drift.mm.push_back((point.surface.depth_mm * unit_depth_ray - state.point_in_cam).norm());
 }
 
-Status MaterialErrorCollector::AddFrame(int frame_idx, std::span<const TrackedPoint> points, const cv::Mat& depth_mm) {
-  if (Status status = StartTracks(frame_idx, points, depth_mm); !status.ok()) return status;
+Status MaterialErrorCollector::AddFrame(int frame_idx, std::span<const TrackedPoint> points) {
+  if (Status status = StartTracks(frame_idx, points); !status.ok()) return status;
   Frame frame;
   frame.paired.frame_idx = frame_idx;
   std::vector<MaterialId> materials;
@@ -115,7 +110,7 @@ Status MaterialErrorCollector::AddFrame(int frame_idx, std::span<const TrackedPo
   const std::vector<std::optional<Eigen::Vector3d>> rays = camera_.Unproject(pixels);
   for (std::size_t i = 0; i < followed.size(); ++i) {
     if ((*states)[i])
-      AddPoint(*followed[i], tracks_.at(followed[i]->id), *(*states)[i], rays[i], depth_mm, &frame);
+      AddPoint(*followed[i], tracks_.at(followed[i]->id), *(*states)[i], rays[i], &frame);
     else
       ++frame.paired.left_out.no_depth;
   }

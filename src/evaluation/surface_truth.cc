@@ -8,8 +8,7 @@
 #include <utility>
 
 #include "pliant/base/statistics.h"
-#include "pliant/tracking/stereo_start.h"
-#include "pliant/tracking/tracker.h"
+#include "pliant/tracking/stereo_pair.h"
 
 namespace pliant {
 namespace {
@@ -68,12 +67,9 @@ class OfPairs final : public SurfaceTruth {
   std::vector<DepthAtPixel> Measure(const SequenceFrame& left, const cv::Mat& right,
                                     std::span<const Eigen::Vector2d> pixels) const {
     const TrackerOptions options;
-    const auto prepared = [&](const cv::Mat& image, const cv::Mat& mask) {
-      return PrepareFrame(left.frame_idx, left.name, left.timestamp_s, image, mask, options);
-    };
-    const TrackerFrame eyes[] = {prepared(left.image, left.mask), prepared(right, {})};
-    const auto matches = MatchAlongRows(eyes[0].pyramid, eyes[0].mask, eyes[1].pyramid, eyes[1].mask, pixels, {},
-                                        options.point_tracker.lucas_kanade, threads_);
+    const TrackerFrame prepared =
+        PrepareFrame(left.frame_idx, left.name, left.timestamp_s, left.image, left.mask, options);
+    const auto matches = MatchPair(prepared, right, pixels, options, threads_);
     std::vector<double> rows_px;
     for (const auto& match : matches)
       if (match) rows_px.push_back(std::abs(match->row_px));

@@ -13,9 +13,9 @@
 #include "pipeline/frames_before.h"
 #include "pipeline/run_start.h"
 #include "pipeline/simulation_truth.h"
-#include "pipeline/stereo_points.h"
 #include "pliant/base/prefetcher.h"
 #include "pliant/base/version.h"
+#include "pliant/tracking/stereo_pair.h"
 
 namespace pliant {
 namespace {

@@ -145,13 +145,14 @@ void Tracker::RemakeMap(const TrackerFrame& frame, FrameReport* report) {
   if (now_->window_frames.size() > length + 1)
     now_->window_frames.erase(now_->window_frames.begin(),
                               now_->window_frames.end() - static_cast<std::ptrdiff_t>(length + 1));
+  if (now_->window_frames.size() <= length || !now_->rigid_history.empty() ||
+      frame.frame_idx % options_.growth.remake_every != 0)
+    return;
   const auto measured =
       std::count_if(report->observations.begin(), report->observations.end(),
                     [&](const PointObservation& point) { return now_->map.Find(point.id)->measured; });
-  if (now_->window_frames.size() <= length || !now_->rigid_history.empty() ||
-      frame.frame_idx % options_.growth.remake_every != 0 ||
-      static_cast<double>(measured) >=
-          options_.growth.max_measured_share * static_cast<double>(report->observations.size()))
+  if (static_cast<double>(measured) >=
+      options_.growth.max_measured_share * static_cast<double>(report->observations.size()))
     return;
   const InitOutcome outcome =
       remaker_->Try({camera_, now_->window_frames, {}, InitMoment::kMoreFollow, threads_, {}, photometric_});

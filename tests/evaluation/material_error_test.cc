@@ -14,6 +14,12 @@ namespace {
 constexpr double kRounding = 1e-9;  // of lengths of about 100 mm
 constexpr int kFrames = 6;
 
+Status AddFrame(int frame_idx, std::vector<TrackedPoint> points, const cv::Mat& depth_mm,
+                MaterialErrorCollector* collector) {
+  for (TrackedPoint& point : points) point.surface = LookUpDepth(depth_mm, point.pixel, 0.05);
+  return collector->AddFrame(frame_idx, points);
+}
+
 // Points that start at `first` in frame 0 and are tracked `slide_px` a frame beside their material; estimates are the
 // true surface under the tracked pixel divided by `scale`.
 Status AddFrames(const TruthSequence& sequence, const WallMaterial& wall, const std::vector<Eigen::Vector2d>& first,
@@ -24,7 +30,7 @@ Status AddFrames(const TruthSequence& sequence, const WallMaterial& wall, const 
       const Eigen::Vector2d pixel = WallMaterial::PixelIn(frame_idx, 0, first[i]) + frame_idx * slide_px;
       points.push_back({PointId{static_cast<int>(i)}, pixel, wall.PointIn(frame_idx, pixel) / scale});
     }
-    if (Status status = collector->AddFrame(frame_idx, points, **sequence.Depth(frame_idx)); !status.ok())
+    if (Status status = AddFrame(frame_idx, points, **sequence.Depth(frame_idx), collector); !status.ok())
       return status;
   }
   return Status::Ok();
@@ -34,7 +40,7 @@ class MaterialErrorTest : public testing::Test {
  protected:
   Result<MaterialError> Compute(const std::vector<Eigen::Vector2d>& first, const Eigen::Vector2d& slide_px,
                                 double scale) {
-    MaterialErrorCollector collector(wall_, sequence_.camera(), 0.05);
+    MaterialErrorCollector collector(wall_, sequence_.camera());
     if (Status status = AddFrames(sequence_, wall_, first, slide_px, scale, &collector); !status.ok()) return status;
     return collector.Compute({});
   }
@@ -85,15 +91,15 @@ TEST_F(MaterialErrorTest, CountsPointsTrackedWhoseMaterialHasLeftTheImage) {
 }
 
 TEST_F(MaterialErrorTest, LeavesOutTracksThatStartWhereThereIsNoMaterialPoint) {
-  MaterialErrorCollector collector(wall_, sequence_.camera(), 0.05);
+  MaterialErrorCollector collector(wall_, sequence_.camera());
   cv::Mat_<float> step(48, 64, 50.0F);
   step(cv::Rect(32, 0, 32, 48)) = 60.0F;
   const auto at = [](int id, double u, double v) {
     return TrackedPoint{PointId{id}, {u, v}, Eigen::Vector3d(0, 0, 50)};
   };
-  ASSERT_TRUE(collector.AddFrame(0, std::vector{at(0, 31.5, 20), at(1, -1, 20), at(2, 10, 10)}, step).ok());
+  ASSERT_TRUE(AddFrame(0, {at(0, 31.5, 20), at(1, -1, 20), at(2, 10, 10)}, step, &collector).ok());
   // Where a track goes later does not matter.
-  ASSERT_TRUE(collector.AddFrame(1, std::vector{at(0, 10, 20), at(1, 10, 20), at(2, 31.5, 10)}, step).ok());
+  ASSERT_TRUE(AddFrame(1, {at(0, 10, 20), at(1, 10, 20), at(2, 31.5, 10)}, step, &collector).ok());
   const auto error = collector.Compute({});
   ASSERT_TRUE(error.ok());
   EXPECT_EQ(error->error.points, 2);
@@ -112,9 +118,9 @@ TEST_F(MaterialErrorTest, CountsTracksThatGoOnWithOneThatEnded) {
     return TrackedPoint{PointId{id}, pixel, wall_.PointIn(frame_idx, pixel)};
   };
   const Eigen::Vector2d none(0, 0);
-  MaterialErrorCollector collector(wall_, sequence_.camera(), 0.05);
+  MaterialErrorCollector collector(wall_, sequence_.camera());
   const auto add = [&](int frame_idx, const std::vector<TrackedPoint>& points) {
-    ASSERT_TRUE(collector.AddFrame(frame_idx, points, **sequence_.Depth(frame_idx)).ok());
+    ASSERT_TRUE(AddFrame(frame_idx, points, **sequence_.Depth(frame_idx), &collector).ok());
   };
   add(0, {at(0, 0, none), at(0, 9, {20, 0})});
   add(1, {at(1, 0, none), at(1, 2, {1, 0})});  // 2 starts where 0 still is: another one
@@ -128,7 +134,7 @@ TEST_F(MaterialErrorTest, CountsTracksThatGoOnWithOneThatEnded) {
 }
 
 TEST_F(MaterialErrorTest, NeedsATrackWithAMaterialPoint) {
-  MaterialErrorCollector collector(wall_, sequence_.camera(), 0.05);
+  MaterialErrorCollector collector(wall_, sequence_.camera());
   EXPECT_EQ(collector.Compute({}).status().code(), ErrorCode::kInsufficient);
 }
 

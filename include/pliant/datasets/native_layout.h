@@ -17,6 +17,8 @@ inline constexpr const char* kRightFolder = "right";
 inline constexpr const char* kDepthFolder = "depth";
 inline constexpr const char* kMaskFolder = "masks";
 
+inline constexpr double kMostDepthSteps = 65535.0;  // of a 16-bit depth image; 0 is none
+
 inline std::string FrameFileName(int frame_idx) {
   char name[32];
   std::snprintf(name, sizeof(name), "%06d.png", frame_idx);

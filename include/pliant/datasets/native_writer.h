@@ -38,7 +38,6 @@ class NativeWriter {
 
   // How many of these depths Write makes none, because they are too large.
   int OutOfRange(const cv::Mat& depth_mm) const;
-  int frames() const { return frames_; }
 
  private:
   NativeWriter(std::filesystem::path folder, double depth_scale)

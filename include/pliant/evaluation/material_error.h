@@ -21,21 +21,22 @@
 #include <vector>
 
 #include <Eigen/Core>
-#include <opencv2/core/mat.hpp>
 
 #include "pliant/base/ids.h"
 #include "pliant/base/status.h"
 #include "pliant/camera/camera.h"
 #include "pliant/evaluation/material_truth.h"
 #include "pliant/evaluation/point_error.h"
+#include "pliant/image/depth_lookup.h"
 
 namespace pliant {
 
 // A point observed in one frame.
 struct TrackedPoint {
   PointId id;
-  Eigen::Vector2d pixel;         // where it was measured
-  Eigen::Vector3d point_in_cam;  // the estimate, in the run's camera of this frame, map units
+  Eigen::Vector2d pixel;                           // where it was measured
+  Eigen::Vector3d point_in_cam;                    // the estimate, in the run's camera of this frame, map units
+  DepthAtPixel surface = {DepthLookup::kNoDepth};  // the true surface at the pixel
 };
 
 // Distances between where points were tracked and where their material is. The first frame of a track counts, with 0.
@@ -73,12 +74,11 @@ struct MaterialError {
 // Collects a run's frames, which come in order, and computes. `truth` and `camera` must outlive it.
 class MaterialErrorCollector {
  public:
-  MaterialErrorCollector(MaterialTruth& truth, const Camera& camera, double max_depth_step)
-      : truth_(truth), camera_(camera), max_depth_step_(max_depth_step) {}
+  MaterialErrorCollector(MaterialTruth& truth, const Camera& camera) : truth_(truth), camera_(camera) {}
 
-  // `points` sorted by id; `depth_mm` as for PairWithSurface, or empty: no drift in millimetres, and tracks that start
-  // on a depth step are not recognised. Fails as the truth does.
-  Status AddFrame(int frame_idx, std::span<const TrackedPoint> points, const cv::Mat& depth_mm);
+  // `points` sorted by id. Where the surface is not known there is no drift in millimetres, and a track that starts on
+  // a depth step is not recognised. Fails as the truth does.
+  Status AddFrame(int frame_idx, std::span<const TrackedPoint> points);
 
   // Fails with kInsufficient when no observation has a material point.
   Result<MaterialError> Compute(const PointErrorOptions& options) const;
@@ -107,14 +107,13 @@ class MaterialErrorCollector {
     std::set<PointId> outside_image;
   };
 
-  Status StartTracks(int frame_idx, std::span<const TrackedPoint> points, const cv::Mat& depth_mm);
+  Status StartTracks(int frame_idx, std::span<const TrackedPoint> points);
   Result<int> CountContinuingTracks() const;
   void AddPoint(const TrackedPoint& point, const Track& track, const MaterialState& state,
-                const std::optional<Eigen::Vector3d>& ray, const cv::Mat& depth_mm, Frame* frame) const;
+                const std::optional<Eigen::Vector3d>& ray, Frame* frame) const;
 
   MaterialTruth& truth_;
   const Camera& camera_;
-  double max_depth_step_;
   std::map<PointId, Track> tracks_;
   std::vector<Frame> frames_;
 };
