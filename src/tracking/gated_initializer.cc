@@ -205,9 +205,9 @@ class Attempt {
   double CostRatio(const PairMotion& rival, double floor) const {
     std::vector<char> both = rival.inliers;
     for (std::size_t i = 0; i < both.size(); ++i) both[i] &= motion_.inliers[i];
-    const auto [rays0, rays1] = RaysOf(both);
+    const auto rays = RaysOf(both);
     const auto cost = [&](const PairMotion& motion) {
-      const auto assessed = AssessTwoView(motion.cam1_from_cam0, rays0, rays1, focal_px_, {});
+      const auto assessed = AssessTwoView(motion.cam1_from_cam0, rays[0], rays[1], focal_px_, {});
       return assessed.ok() ? assessed->cost + floor : std::numeric_limits<double>::infinity();
     };
     return cost(rival) / cost(motion_);

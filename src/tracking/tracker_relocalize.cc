@@ -4,7 +4,6 @@
 // The way back after the view was lost (docs/method.md, eq. R3): where the camera may be, and which of these guesses
 // the image confirms.
 #include <algorithm>
-#include <ranges>
 #include <utility>
 
 #include "pliant/tracking/tracker.h"
@@ -112,10 +111,11 @@ Tracker::Followed Tracker::FollowFrom(const TrackerFrame& frame, Rigid3* cam_fro
   if (options_.find_lost == Switch::kOn && !followed.in_blur) expected += FindLost(frame, *cam_from_world, &followed);
   if (static_cast<int>(followed.size()) < options_.min_points) return {};
   improve();
-  const auto agree = std::ranges::count_if(std::views::iota(std::size_t{0}, followed.size()), [&](std::size_t k) {
+  int agree = 0;
+  for (std::size_t k = 0; k < followed.size(); ++k) {
     const auto pixel = camera_.Project(*cam_from_world * followed.positions[k]);
-    return pixel && (*pixel - followed.pixels[k]).norm() <= options.max_error_px;
-  });
+    if (pixel && (*pixel - followed.pixels[k]).norm() <= options.max_error_px) ++agree;
+  }
   const bool confirmed =
       agree >= options_.min_points && static_cast<double>(agree) >= options.min_share * static_cast<double>(expected);
   return confirmed ? followed : Followed{};
