@@ -53,6 +53,9 @@ std::string NameOf(std::string_view program, std::string_view command) {
 // How it is called: "pliant track".
 std::string NameOf(const Manual& manual) { return NameOf(manual.program, manual.command); }
 
+// As CLI11 takes them. Where the result goes has a short name too, the usual one.
+std::string FlagsOf(const std::string& name) { return (name == "output_path" ? "-o,--" : "--") + name; }
+
 void Say(std::string_view name, std::string_view sentence) { std::cerr << name << ": " << sentence << std::endl; }
 
 // Paragraphs, separated by empty lines as they come.
@@ -142,7 +145,7 @@ Status CommandLine::ReadArguments(std::span<const std::string> args) {
           ->allow_extra_args(false);  // one value each time it is given
     } else {
       app.add_option_function<std::string>(
-          (argument.place == Place::kFirst ? argument.name + "," : std::string()) + "--" + argument.name,
+          (argument.place == Place::kFirst ? argument.name + "," : std::string()) + FlagsOf(argument.name),
           [&argument](const std::string& value) { argument.given = {value}; });
     }
   }
@@ -246,6 +249,7 @@ std::string CommandLine::ManualText(const OptionTable& options) const {
     std::string flag = "--" + argument.name + (argument.placeholder.empty() ? "" : " ") + argument.placeholder;
     if (argument.place == Place::kFirst) flag = "[--" + argument.name + "] " + argument.placeholder;
     if (argument.need == Need::kRequired) usage += " " + flag;
+    if (argument.name == "output_path") flag = "-o, " + flag;
     if (argument.times == Times::kSeveral) flag += " [--" + argument.name + " ...]";
     std::string why = argument.why;
     if (argument.need == Need::kRequired) why += " (required)";

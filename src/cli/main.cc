@@ -38,6 +38,7 @@ constexpr std::array kCommands = {
     Command{"import", "make a run, or a sequence's truth, of another program's result: COLMAP, TUM, KITTI, EuRoC",
             ImportCommand},
     Command{"export", "write a run in other programs' formats: COLMAP, PLY, TUM", ExportCommand},
+    Command{"report", "show runs: a page for the browser, figures, films", ReportCommand},
     Command{"model", "check a COLMAP model, or convert it between text and binary", ModelCommand},
     Command{"demo", "simulate, track and evaluate a small sequence", DemoCommand},
 };

@@ -4,33 +4,16 @@
 // Run folders against the truth of their sequences, for the commands that do that.
 #pragma once
 
-#include <memory>
 #include <string>
 
 #include "cli/command_line.h"
 #include "pliant/base/status.h"
-#include "pliant/datasets/open_sequence.h"
-#include "pliant/datasets/sequence.h"
-#include "pliant/evaluation/evaluation.h"
+#include "pliant/evaluation/evaluate_run.h"
 
 namespace pliant::cli {
 
 // --protocol, --scale, --parts, --camera.
 void AddEvaluationArguments(CommandLine* line, std::string* camera_path);
-
-// A sequence opened for its truth. Opening a simulated one builds its scene again, so it serves several runs.
-struct OpenedTruth {
-  SequenceRequest request;
-  std::unique_ptr<Sequence> sequence;
-  Result<std::unique_ptr<MaterialTruth>> material = Status(ErrorCode::kNotFound, "it is not wanted");
-};
-
-// All of the sequence: without start, end and stride. Fails as OpenSequence does; without the truth of the material it
-// is open all the same.
-Result<OpenedTruth> OpenTruth(const SequenceRequest& request, const EvaluationOptions& options);
-
-// Reads the run and evaluates. Fails as ReadEvaluationInput and Evaluate do.
-Result<Evaluation> EvaluateRun(const std::string& run_path, const OpenedTruth& truth, const EvaluationOptions& options);
 
 // Writes `text` into `folder`, which is made where it is not there. Fails with kUnwritable.
 Status WriteReport(const std::string& folder, const std::string& file_name, const std::string& text);

@@ -6,12 +6,15 @@
 #include <array>
 #include <cstdio>
 #include <iostream>
+#include <memory>
+#include <vector>
 
 #include "cli/command_line.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "cli/sequence_arguments.h"
 #include "cli/track_progress.h"
+#include "pliant/viewer/live_view.h"
 
 namespace pliant::cli {
 namespace {
@@ -40,6 +43,7 @@ struct TrackArguments {
   SequenceArguments input;
   std::string output_path;
   Preset preset = Preset::kDefault;
+  bool live = false;
   bool quiet = false;
 };
 
@@ -48,6 +52,8 @@ void AddArguments(TrackArguments* arguments, CommandLine* line) {
   line->Add("output_path", &arguments->output_path, "DIR", "run folder; made where it is not there", Need::kRequired);
   line->AddChoice("preset", &arguments->preset,
                   "the defaults of the options: ours, or every choice and constant as published in the paper");
+  line->AddFlag("live", &arguments->live,
+                "serve a view of the run to a browser on this machine while it runs (options Live)");
   line->AddFlag("quiet", &arguments->quiet, "say nothing but errors");
 }
 
@@ -80,6 +86,8 @@ int TrackCommand(std::span<const std::string> args) {
   TrackOptions options = MakeTrackOptions(arguments.preset);
   OptionTable table;
   options.List(table);
+  LiveOptions live_options;
+  live_options.List(table);
   if (const auto exit = line.Resolve(table)) return *exit;
   if (const auto exit = arguments.input.Check(line)) return *exit;
 
@@ -90,11 +98,20 @@ int TrackCommand(std::span<const std::string> args) {
   request.command_line.insert(request.command_line.end(), args.begin(), args.end());
   request.stop = &StopOnSignals();
 
+  std::unique_ptr<LiveView> live;
+  if (arguments.live) {
+    auto started = LiveView::Start(arguments.output_path, live_options);
+    if (!started.ok()) return line.Failure(started.status().message());
+    live = *std::move(started);
+    std::cerr << "live view: " << live->Url() << std::endl;
+  }
   const Result<RunSummary> summary = [&] {
     TrackProgress progress(arguments.quiet ? ProgressStyle::kQuiet : ProgressStyleOfStandardError());
-    const std::array<TrackObserver*, 1> observers = {&progress};
+    std::vector<TrackObserver*> observers = {&progress};
+    if (live) observers.push_back(live.get());
     return RunTrack(request, options, observers);
   }();
+  live.reset();
   if (!summary.ok()) {
     SayError(kManual.command, summary.status().message());
     return kExitFailed;

@@ -4,70 +4,35 @@
 #include "exchange/run_source.h"
 
 #include <algorithm>
-#include <filesystem>
 #include <map>
 #include <optional>
 #include <utility>
 
 #include "pliant/base/text.h"
-#include "pliant/colmap/convert.h"
 #include "pliant/datasets/open_sequence.h"
+#include "pliant/io/run_map.h"
 
 namespace pliant {
 namespace {
 
-// What sparse/ or the sequence says of a run's images and points.
-struct Known {
-  std::optional<Camera> camera;
-  std::map<int, std::string> names;  // by frame
-  std::map<PointId, NewPoint> points;
-};
-
-Status AddSparse(const std::string& folder, Known* known) {
-  const auto model = colmap::ReadModel(folder, colmap::Observations::kSkipped);
-  if (!model.ok()) return model.status();
-  if (model->cameras.size() != 1)
-    return Status(ErrorCode::kMismatch,
-                  Quoted(folder) + " is not a run's: it has " + std::to_string(model->cameras.size()) + " cameras");
-  auto camera = colmap::ToPliant(model->cameras.front());
-  if (!camera.ok()) return camera.status();
-  known->camera = std::move(camera).value();
-  for (const colmap::Image& image : model->images) known->names.emplace(static_cast<int>(image.id) - 1, image.name);
-  for (const colmap::Point3D& point : model->points3D) {
-    const PointId id{static_cast<std::int64_t>(point.id)};
-    known->points.emplace(id, NewPoint{id, colmap::ToPliant(point), point.rgb});
-  }
-  return Status::Ok();
-}
-
-Result<Known> KnownFromSparse(const std::string& folder, const Run& run) {
-  Known known;
-  const int submaps = run.summary ? run.summary->submaps : 1;
-  for (int submap = 0; submap < std::max(1, submaps); ++submap)
-    if (Status status = AddSparse(submaps > 1 ? folder + "/" + std::to_string(submap) : folder, &known); !status.ok())
-      return status;
-  return known;
-}
-
-Result<Known> KnownFromSequence(const std::string& path, const Run& run) {
+// The camera and the images' names.
+Result<RunMap> MapFromSequence(const std::string& path, const Run& run) {
   SequenceRequest request;
   request.image_path = path;
   const auto sequence = OpenSequence(request);
   if (!sequence.ok()) return sequence.status();
-  Known known;
+  RunMap known;
   known.camera = (*sequence)->camera();
   for (const RunFrame& frame : run.frames)
     if (auto name = (*sequence)->Name(frame.frame_idx)) known.names.emplace(frame.frame_idx, *std::move(name));
   return known;
 }
 
-Result<Known> ReadKnown(const std::string& run_path, const std::string& sequence_path, const Run& run) {
-  const std::string sparse = run_path + "/sparse";
-  std::error_code error;
-  if (std::filesystem::is_directory(sparse, error)) return KnownFromSparse(sparse, run);
+Result<RunMap> ReadKnown(const std::string& run_path, const std::string& sequence_path, const Run& run) {
+  if (HasRunMap(run_path)) return ReadRunMap(run_path, run);
   const std::string path = !sequence_path.empty() ? sequence_path : run.summary ? run.summary->description.input : "";
   if (!path.empty()) {
-    auto known = KnownFromSequence(path, run);
+    auto known = MapFromSequence(path, run);
     if (known.ok()) return known;
     return Status(known.status().code(), "the run has no sparse/ to take the camera and the images' names from, and " +
                                              known.status().message());
@@ -78,7 +43,7 @@ Result<Known> ReadKnown(const std::string& run_path, const std::string& sequence
 }
 
 // Counts and mean errors, and the first position of points that sparse/ does not have.
-Status AddPoints(const Known& known, RunSource* source) {
+Status AddPoints(const RunMap& known, RunSource* source) {
   std::map<PointId, CanonicalPoint> points;
   std::size_t unknown = 0;
   const Status status = ForEachFrame(*source, [&](const SourceFrame& frame, const auto& observations) {

@@ -70,6 +70,9 @@ class Recorder {
   Status Record(std::vector<FrameReport> reports) { return Write(before_.Pass(std::move(reports))); }
   // No map comes any more.
   Status Finish() { return Write(before_.Finish()); }
+  void Show(const TrackerFrame& frame) {
+    for (TrackObserver* observer : observers_) observer->OnImage(frame.frame_idx, frame.image);
+  }
   void Announce(const FrameReport& held) {
     for (TrackObserver* observer : observers_) observer->OnHeld(held);
   }
@@ -119,6 +122,7 @@ Ending TrackFrames(Sequence& sequence, const RunRequest& request, const TrackOpt
     const ReadFrame& read = **frame;
     // What was read ahead for nothing cannot end the run, or the number of threads would decide.
     if (tracker.NeedsDepth() && !read.depth.ok()) return {RunStatus::kFailed, read.depth.message()};
+    recorder.Show(read.frame);
     std::vector<FrameReport> done = tracker.Process(read.frame);
     ++count;
     wants_depth = tracker.WantsDepth();
@@ -222,6 +226,7 @@ Result<RunSummary> RunTrack(const RunRequest& request, const TrackOptions& optio
   for (TrackObserver* observer : observers) {
     for (const std::string& warning : (*sequence)->Warnings()) observer->OnWarning(warning);
     for (const std::string& warning : start->warnings) observer->OnWarning(warning);
+    observer->OnCamera((*sequence)->camera());
     observer->OnStart((*sequence)->size());
   }
   const Ending ending = TrackSequence(**sequence, request, usable, *start, truth.get(), *writer, observers);

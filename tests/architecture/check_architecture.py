@@ -17,7 +17,7 @@ import re
 import sys
 
 ROOMS = ("base geometry image camera colmap photometric scene deformation residuals estimation tracking io datasets simulation "
-         "evaluation exchange pipeline cli").split()
+         "evaluation exchange pipeline viewer cli").split()
 # Where a library may be included: in the files of one room whose names begin so; where nothing is said, in one file of it.
 LIBRARY_HOMES = {"flann": ("deformation", ""), "opengv": ("estimation", "opengv_"), "assimp": ("simulation", "")}
 SPDX = ("SPDX-FileCopyrightText: ", "SPDX-License-Identifier: BSD-3-Clause")

@@ -11,7 +11,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "exchange/small_run.h"
+#include "support/small_run.h"
 #include "pliant/colmap/check.h"
 #include "pliant/colmap/convert.h"
 #include "pliant/io/run_reader.h"

@@ -12,7 +12,7 @@
 #include <gtest/gtest.h>
 #include <opencv2/imgcodecs.hpp>
 
-#include "exchange/small_run.h"
+#include "support/small_run.h"
 #include "pliant/colmap/convert.h"
 #include "pliant/colmap/model.h"
 #include "pliant/exchange/export.h"

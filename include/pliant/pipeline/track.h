@@ -15,8 +15,11 @@
 #include <utility>
 #include <vector>
 
+#include <opencv2/core/mat.hpp>
+
 #include "pliant/base/options.h"
 #include "pliant/base/status.h"
+#include "pliant/camera/camera.h"
 #include "pliant/datasets/open_sequence.h"
 #include "pliant/io/run_summary.h"
 #include "pliant/io/run_writer.h"
@@ -61,6 +64,11 @@ class TrackObserver {
   virtual void OnStart(int frames) = 0;
   // What is odd about the sequence, before OnStart; a sentence each.
   virtual void OnWarning(const std::string& /*sentence*/) {}
+  // The sequence's camera, before OnStart.
+  virtual void OnCamera(const Camera& /*camera*/) {}
+  // Before a frame is tracked. The image is 8-bit with one or three (BGR) channels; it is not written to any more, so
+  // that it may be kept.
+  virtual void OnImage(int /*frame_idx*/, const cv::Mat& /*image*/) {}
   // After a frame's rows are on disk: once a frame, in order of time. A later report's `join` may move it into another
   // world; the run folder has it there in the end.
   virtual void OnFrame(const FrameReport& report) = 0;

@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Runs as stills and films, drawn without a display: images with the tracked points above (in a film: beside) the scene
+// in 3D, as in the paper's figures: the undeformed map in black, each point's trail of deformation in red, the camera's
+// path and its frustum in blue; the true surface and path in green where they are known.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "pliant/base/options.h"
+#include "pliant/base/status.h"
+#include "pliant/viewer/view.h"
+
+namespace pliant {
+
+struct FigureOptions {
+  ViewOptions view;
+  int panel_width_px = 480;   // of an image; a scene is as large
+  int trail_frames = 30;      // of a trail, up to the present frame
+  double azimuth_deg = 40;    // from where the scene is seen: round its vertical, from behind the camera to its right
+  double elevation_deg = 25;  // and above
+  double fps = 0;             // of a film; 0: the sequence's
+
+  void List(OptionTable& table);  // group "Figure"; not those of the view
+};
+
+// One column a frame: its image (where there are images), and below it the scene, a row a run. The ending of
+// `output_path` says what is written: .png, .svg or .pdf. Fails as OpenView does, with kInvalidArgument for a frame
+// that no run has, and with kUnwritable.
+Status WriteFigure(const ViewRequest& request, const FigureOptions& options, const std::vector<int>& frames_idx,
+                   const std::string& output_path);
+
+// Every frame of the runs in order, as H.264 where OpenCV's FFmpeg has an encoder for it, else as MPEG-4. `progress` is
+// told how many of how many frames are done, and says whether to go on; a film that ends so is whole up to there. Fails
+// likewise.
+Status WriteFilm(const ViewRequest& request, const FigureOptions& options, const std::string& output_path,
+                 const std::function<bool(int, int)>& progress);
+
+}  // namespace pliant

@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// A run to look at while it runs: an observer that serves the page of a report on this machine's loopback interface.
+// All that is asked of it is answered on threads of its own, of low priority, from what it has kept: nobody who looks,
+// or ceases to look, can hold the run up.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "pliant/base/options.h"
+#include "pliant/base/status.h"
+#include "pliant/pipeline/track.h"
+
+namespace pliant {
+
+struct LiveOptions {
+  int port = 8765;
+  int image_width_px = 480;
+  int image_quality = 70;
+  double max_image_mb = 200;  // kept in memory; above it every second image is forgotten
+
+  void List(OptionTable& table);  // group "Live"
+};
+
+class LiveView final : public TrackObserver {
+ public:
+  // Begins to serve; `title` names the run. Port 0, or one that is taken, becomes one that is free. Fails with
+  // kUnwritable where no port can be had.
+  static Result<std::unique_ptr<LiveView>> Start(const std::string& title, const LiveOptions& options);
+  // Ceases to serve. Who has asked in the last seconds gets the last frames first.
+  ~LiveView() override;
+  LiveView(const LiveView&) = delete;
+  LiveView& operator=(const LiveView&) = delete;
+
+  std::string Url() const;  // "http://127.0.0.1:8765/"
+
+  void OnCamera(const Camera& camera) override;
+  void OnStart(int frames) override;
+  void OnWarning(const std::string& sentence) override;
+  void OnImage(int frame_idx, const cv::Mat& image) override;
+  void OnFrame(const FrameReport& report) override;
+  void OnHeld(const FrameReport& report) override;
+
+ private:
+  struct Server;
+  explicit LiveView(std::unique_ptr<Server> server);
+  std::unique_ptr<Server> server_;
+};
+
+}  // namespace pliant

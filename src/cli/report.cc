@@ -1,0 +1,146 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/viewer/report.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <span>
+
+#include "cli/command_line.h"
+#include "cli/commands.h"
+#include "cli/interrupt.h"
+#include "cli/progress.h"
+#include "pliant/base/text.h"
+#include "pliant/viewer/figure.h"
+
+namespace pliant::cli {
+namespace {
+
+const Manual kManual = {
+    "report",
+    "show runs: a page for the browser, figures, films",
+    "Writes one HTML file that holds everything: the images with the tracked points, the scene in 3D with each point's "
+    "trail of deformation and the camera's path, both in step with a time line, plots of errors, costs and times, and "
+    "tables of figures and options. It opens from disk in any browser, without a network, and can be sent to "
+    "someone.\n\n"
+    "With --figure it writes a still instead: the images of the chosen frames with their points above, the scene as it "
+    "was then below, a row for each run. With --video it writes a film of all frames.\n\n"
+    "Reads --run, one or more: run folders that pliant track or pliant import left, also of runs that were "
+    "interrupted or killed, or other systems' results. They are brought into one world by their cameras. Reads the "
+    "images, and the truth where there is truth, from --sequence, or from where the first run's run.json says they "
+    "are; without them the rest is shown.\n\n"
+    "Leaves the file --output_path. In pictures the undeformed map is black, a point's trail of deformation red, the "
+    "camera blue, and the truth green.",
+    {"pliant report --run run -o report.html", "pliant report --run ours --run rigid --sequence colon -o both.html",
+     "pliant report --run run --figure 10,40,70 -o figure.svg", "pliant report --run run --video -o film.mp4"},
+};
+
+struct ReportArguments {
+  ViewRequest view;
+  std::string output_path;
+  std::string figure;  // frames with commas; empty: none
+  bool video = false;
+  bool quiet = false;
+};
+
+// What is written, and the endings that its file may have.
+struct Kind {
+  const char* name;
+  std::span<const std::string_view> endings;
+};
+
+Kind KindOf(const ReportArguments& arguments) {
+  static constexpr std::string_view kPage[] = {".html", ".htm"};
+  static constexpr std::string_view kFigure[] = {".png", ".svg", ".pdf"};
+  static constexpr std::string_view kFilm[] = {".mp4"};
+  if (!arguments.figure.empty()) return {"a figure", kFigure};
+  if (arguments.video) return {"a film", kFilm};
+  return {"a report", kPage};
+}
+
+// Nothing, or what is wrong with the command line.
+std::string CheckArguments(const ReportArguments& arguments, std::vector<int>* frames_idx) {
+  if (!arguments.figure.empty() && arguments.video) return "--figure and --video are two files; give one of them";
+  for (const std::string_view field : Split(arguments.figure, ',')) {
+    if (arguments.figure.empty()) break;
+    int frame_idx = 0;
+    if (!ParseInt(field, &frame_idx) || frame_idx < 0)
+      return "--figure is '" + arguments.figure + "'; give frame numbers with commas between them";
+    frames_idx->push_back(frame_idx);
+  }
+  const Kind kind = KindOf(arguments);
+  const std::string ending = std::filesystem::path(arguments.output_path).extension().string();
+  if (std::find(kind.endings.begin(), kind.endings.end(), ending) != kind.endings.end()) return "";
+  std::string endings;
+  for (const std::string_view known : kind.endings) endings += (endings.empty() ? "" : " or ") + std::string(known);
+  return "--output_path is '" + arguments.output_path + "'; " + kind.name + " ends with " + endings;
+}
+
+int WritePage(const CommandLine& line, const ReportArguments& arguments, const ReportOptions& options) {
+  const auto summary = WriteReportPage(arguments.view, options, arguments.output_path);
+  if (!summary.ok()) return line.Failure(summary.status().message());
+  if (arguments.quiet) return kExitOk;
+  for (const std::string& note : summary->notes) std::cout << "note: " << note << "\n";
+  char text[128];
+  std::snprintf(text, sizeof text, "%d frames, %lld observations, %zu images, %.1f MB in ", summary->frames,
+                static_cast<long long>(summary->observations), summary->images, summary->megabytes);
+  std::cout << text << arguments.output_path << std::endl;
+  return kExitOk;
+}
+
+Status WriteFilmWithProgress(const ReportArguments& arguments, const FigureOptions& options) {
+  const std::atomic<bool>& stop = StopOnSignals();
+  Progress progress(std::cerr, arguments.quiet ? ProgressStyle::kQuiet : ProgressStyleOfStandardError(), "film", 0);
+  bool stopped = false;
+  Status status = WriteFilm(arguments.view, options, arguments.output_path, [&](int done, int frames) {
+    progress.Update(done, "of " + std::to_string(frames));
+    stopped = stop && done < frames;
+    return !stopped;
+  });
+  if (status.ok() && stopped)
+    return {ErrorCode::kInsufficient, "stopped on request; the film up to there is in " + arguments.output_path};
+  return status;
+}
+
+}  // namespace
+
+int ReportCommand(std::span<const std::string> args) {
+  ReportArguments arguments;
+  CommandLine line(kManual);
+  line.Add("run", &arguments.view.run_paths, "DIR", "run folder", Need::kRequired);
+  line.Add("sequence", &arguments.view.sequence_path, "PATH",
+           "the images, with truth where there is; without it those that the first run's run.json names",
+           Need::kOptional);
+  line.Add("camera", &arguments.view.camera_path, "FILE",
+           "calibration of the sequence; not needed where camera.yaml lies in the folder or beside the video",
+           Need::kOptional);
+  line.Add("output_path", &arguments.output_path, "FILE", "what is written: .html; .png, .svg or .pdf; .mp4",
+           Need::kRequired);
+  line.Add("figure", &arguments.figure, "FRAMES", "a still of these frames: their numbers, with commas",
+           Need::kOptional);
+  line.AddFlag("video", &arguments.video, "a film of all frames");
+  line.AddFlag("quiet", &arguments.quiet, "say nothing but errors");
+  if (const auto exit = line.Parse(args)) return *exit;
+  ReportOptions report_options;
+  FigureOptions figure_options;
+  OptionTable table;
+  report_options.List(table);
+  figure_options.List(table);
+  if (const auto exit = line.Resolve(table)) return *exit;
+  figure_options.view = report_options.view;
+  std::vector<int> frames_idx;
+  if (const std::string wrong = CheckArguments(arguments, &frames_idx); !wrong.empty()) return line.UsageError(wrong);
+
+  if (arguments.figure.empty() && !arguments.video) return WritePage(line, arguments, report_options);
+  const Status status = arguments.video
+                            ? WriteFilmWithProgress(arguments, figure_options)
+                            : WriteFigure(arguments.view, figure_options, frames_idx, arguments.output_path);
+  if (!status.ok()) return line.Failure(status.message());
+  if (!arguments.quiet) std::cout << arguments.output_path << std::endl;
+  return kExitOk;
+}
+
+}  // namespace pliant::cli

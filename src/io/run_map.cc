@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/io/run_map.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include "pliant/base/text.h"
+#include "pliant/colmap/convert.h"
+
+namespace pliant {
+namespace {
+
+std::string SparseOf(const std::string& run_path) { return run_path + "/sparse"; }
+
+Status AddModel(const std::string& folder, RunMap* map) {
+  const auto model = colmap::ReadModel(folder, colmap::Observations::kSkipped);
+  if (!model.ok()) return model.status();
+  if (model->cameras.size() != 1)
+    return Status(ErrorCode::kMismatch,
+                  Quoted(folder) + " is not a run's: it has " + std::to_string(model->cameras.size()) + " cameras");
+  auto camera = colmap::ToPliant(model->cameras.front());
+  if (!camera.ok()) return camera.status();
+  map->camera = std::move(camera).value();
+  for (const colmap::Image& image : model->images) map->names.emplace(static_cast<int>(image.id) - 1, image.name);
+  for (const colmap::Point3D& point : model->points3D) {
+    const PointId id{static_cast<std::int64_t>(point.id)};
+    map->points.emplace(id, NewPoint{id, colmap::ToPliant(point), point.rgb});
+  }
+  return Status::Ok();
+}
+
+}  // namespace
+
+bool HasRunMap(const std::string& run_path) {
+  std::error_code error;
+  return std::filesystem::is_directory(SparseOf(run_path), error);
+}
+
+Result<RunMap> ReadRunMap(const std::string& run_path, const Run& run) {
+  RunMap map;
+  const std::string folder = SparseOf(run_path);
+  const int submaps = run.summary ? run.summary->submaps : 1;
+  for (int submap = 0; submap < std::max(1, submaps); ++submap)
+    if (Status status = AddModel(submaps > 1 ? folder + "/" + std::to_string(submap) : folder, &map); !status.ok())
+      return status;
+  return map;
+}
+
+}  // namespace pliant

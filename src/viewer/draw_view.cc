@@ -1,0 +1,274 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "viewer/draw_view.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "viewer/view_images.h"
+
+namespace pliant {
+namespace {
+
+// Okabe and Ito's colours, which the colour-blind tell apart.
+struct Colour {
+  double red;
+  double green;
+  double blue;
+};
+constexpr Colour kBlack = {0, 0, 0};
+constexpr Colour kGrey = {0.75, 0.75, 0.75};
+constexpr Colour kBlue = {0, 0.447, 0.698};
+constexpr Colour kVermillion = {0.835, 0.369, 0};
+constexpr Colour kGreen = {0, 0.62, 0.451};
+constexpr Colour kYellow = {0.941, 0.894, 0.259};
+
+constexpr int kEmbeddedQuality = 90;
+constexpr double kDot = 1.0 / 300;  // radius of a point, of the panel's width
+
+void Use(cairo_t* drawing, const Colour& colour) {
+  cairo_set_source_rgb(drawing, colour.red, colour.green, colour.blue);
+}
+
+void Dot(cairo_t* drawing, double x, double y, double radius) {
+  cairo_new_sub_path(drawing);
+  cairo_arc(drawing, x, y, radius, 0, 2 * std::numbers::pi);
+}
+
+void Clip(cairo_t* drawing, const Panel& panel) {
+  cairo_rectangle(drawing, panel.left, panel.top, panel.width, panel.height);
+  cairo_clip(drawing);
+}
+
+// With the JPEG beside the pixels, which SVG and PDF take instead of them.
+Surface ImageSurface(const cv::Mat& image) {
+  cv::Mat bgra;
+  cv::cvtColor(image, bgra, image.channels() == 1 ? cv::COLOR_GRAY2BGRA : cv::COLOR_BGR2BGRA);
+  Surface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, bgra.cols, bgra.rows));
+  const int stride = cairo_image_surface_get_stride(surface.get());
+  unsigned char* pixels = cairo_image_surface_get_data(surface.get());
+  cairo_surface_flush(surface.get());
+  for (int y = 0; y < bgra.rows; ++y)
+    std::copy_n(bgra.ptr(y), static_cast<std::size_t>(4 * bgra.cols), pixels + static_cast<std::ptrdiff_t>(y) * stride);
+  cairo_surface_mark_dirty(surface.get());
+  auto* jpeg = new std::string(ToJpeg(image, kEmbeddedQuality));
+  cairo_surface_set_mime_data(
+      surface.get(), CAIRO_MIME_TYPE_JPEG, reinterpret_cast<const unsigned char*>(jpeg->data()), jpeg->size(),
+      [](void* text) { delete static_cast<std::string*>(text); }, jpeg);
+  return surface;
+}
+
+class SceneDrawing {
+ public:
+  SceneDrawing(cairo_t* drawing, const Panel& panel, const Orbit& orbit)
+      : drawing_(drawing), panel_(panel), orbit_(orbit) {}
+
+  void Path(const std::vector<Eigen::Vector3d>& points) {
+    bool begun = false;
+    for (const Eigen::Vector3d& point : points) begun = Go(point, begun ? cairo_line_to : cairo_move_to);
+    cairo_stroke(drawing_);
+  }
+
+  void Points(const std::vector<Eigen::Vector3d>& points, double radius) {
+    Circles(points, radius);
+    cairo_fill(drawing_);
+  }
+
+  void Rings(const std::vector<Eigen::Vector3d>& points, double radius) {
+    Circles(points, radius);
+    cairo_stroke(drawing_);
+  }
+
+ private:
+  void Circles(const std::vector<Eigen::Vector3d>& points, double radius) {
+    for (const Eigen::Vector3d& point : points) {
+      const Eigen::Vector3d seen = orbit_.Project(point);
+      if (seen.z() > 0) Dot(drawing_, panel_.left + seen.x(), panel_.top + seen.y(), radius);
+    }
+  }
+
+  // False: behind the eye.
+  bool Go(const Eigen::Vector3d& point, void (*go)(cairo_t*, double, double)) {
+    const Eigen::Vector3d seen = orbit_.Project(point);
+    if (!(seen.z() > 0)) return false;
+    go(drawing_, panel_.left + seen.x(), panel_.top + seen.y());
+    return true;
+  }
+
+  cairo_t* drawing_;
+  const Panel& panel_;
+  const Orbit& orbit_;
+};
+
+// The present frame's points, each from its undeformed place through the last frames to where it is.
+std::map<PointId, std::vector<Eigen::Vector3d>> Trails(const ViewedRun& run, std::size_t now, int trail_frames) {
+  std::map<PointId, std::vector<Eigen::Vector3d>> trails;
+  for (const ViewedObservation& o : run.frames[now].observations) trails[o.id] = {run.points.at(o.id).position};
+  const std::size_t length = static_cast<std::size_t>(trail_frames);
+  for (std::size_t i = now > length ? now - length : 0; i <= now; ++i)
+    for (const ViewedObservation& o : run.frames[i].observations)
+      if (const auto trail = trails.find(o.id); trail != trails.end())
+        trail->second.push_back(o.position.cast<double>());
+  return trails;
+}
+
+std::vector<Eigen::Vector3d> Frustum(const Camera& camera, const Rigid3& world_from_cam, double depth) {
+  std::vector<Eigen::Vector3d> corners;
+  const double right = camera.width() - 1;
+  const double bottom = camera.height() - 1;
+  for (const Eigen::Vector2d& pixel :
+       {Eigen::Vector2d(0, 0), Eigen::Vector2d(right, 0), Eigen::Vector2d(right, bottom), Eigen::Vector2d(0, bottom)}) {
+    const auto ray = camera.Unproject(pixel);
+    if (!ray || !(ray->z() > 0.1)) return {};
+    corners.push_back(world_from_cam * (depth / ray->z() * *ray));
+  }
+  return corners;
+}
+
+}  // namespace
+
+const ViewedFrame* FindFrame(const ViewedRun& run, int frame_idx) {
+  const auto frame = std::lower_bound(run.frames.begin(), run.frames.end(), frame_idx,
+                                      [](const ViewedFrame& f, int wanted) { return f.row.frame_idx < wanted; });
+  return frame != run.frames.end() && frame->row.frame_idx == frame_idx ? &*frame : nullptr;
+}
+
+Orbit OrbitOf(const View& view, const ViewedRun& run, const FigureOptions& options, double width_px, double height_px) {
+  std::vector<Eigen::Vector3d> points;
+  std::vector<Eigen::Vector3d> centres;
+  for (const auto& [id, point] : run.points) points.push_back(point.position);
+  Eigen::Vector4d orientation = Eigen::Vector4d::Zero();
+  for (const ViewedFrame& frame : run.frames) {
+    if (!frame.world_from_cam) continue;
+    centres.push_back(frame.world_from_cam->translation);
+    const Eigen::Vector4d q = frame.world_from_cam->rotation.coeffs();
+    orientation += q.dot(orientation) < 0 ? Eigen::Vector4d(-q) : q;
+  }
+  for (const TruePose& pose : view.truth) centres.push_back(pose.world_from_cam.translation);
+  if (points.empty()) points.emplace_back(0, 0, 0);
+  const Eigen::Quaterniond mean =
+      orientation.norm() > 0 ? Eigen::Quaterniond(orientation.normalized()) : Eigen::Quaterniond::Identity();
+  return {points, centres, mean, options.azimuth_deg, options.elevation_deg, width_px, height_px};
+}
+
+void DrawImage(cairo_t* drawing, const Panel& panel, const cv::Mat& image, const ViewedFrame* frame) {
+  if (image.empty()) return;
+  cairo_save(drawing);
+  Clip(drawing, panel);
+  const double scale = std::min(panel.width / image.cols, panel.height / image.rows);
+  const Surface surface = ImageSurface(image);
+  cairo_translate(drawing, panel.left, panel.top);
+  cairo_scale(drawing, scale, scale);
+  cairo_set_source_surface(drawing, surface.get(), 0, 0);
+  cairo_pattern_set_filter(cairo_get_source(drawing), CAIRO_FILTER_GOOD);
+  cairo_paint(drawing);
+  if (frame != nullptr) {
+    const double radius = 1.2 * kDot * panel.width / scale;
+    for (const ViewedObservation& o : frame->observations) Dot(drawing, o.pixel.x() + 0.5, o.pixel.y() + 0.5, radius);
+    Use(drawing, kYellow);
+    cairo_fill_preserve(drawing);
+    Use(drawing, kBlack);
+    cairo_set_line_width(drawing, 0.35 * radius);
+    cairo_stroke(drawing);
+  }
+  cairo_restore(drawing);
+}
+
+void DrawScene(cairo_t* drawing, const Panel& panel, const View& view, const ViewedRun& run, int frame_idx,
+               const Orbit& orbit, const FigureOptions& options) {
+  cairo_save(drawing);
+  Clip(drawing, panel);
+  SceneDrawing scene(drawing, panel, orbit);
+  const double radius = kDot * panel.width;
+  const ViewedFrame* frame = FindFrame(run, frame_idx);
+
+  std::vector<Eigen::Vector3d> map;
+  for (const auto& [id, point] : run.points) map.push_back(point.position);
+  Use(drawing, kBlack);
+  scene.Points(map, 0.5 * radius);
+
+  if (frame != nullptr) {
+    Use(drawing, kVermillion);
+    cairo_set_line_width(drawing, 0.7 * radius);
+    for (const auto& [id, trail] :
+         Trails(run, static_cast<std::size_t>(frame - run.frames.data()), options.trail_frames))
+      scene.Path(trail);
+    std::vector<Eigen::Vector3d> now;
+    std::vector<Eigen::Vector3d> truth;
+    for (const ViewedObservation& o : frame->observations) {
+      now.emplace_back(o.position.cast<double>());
+      if (o.truth.allFinite()) truth.emplace_back(o.truth.cast<double>());
+    }
+    scene.Points(now, 0.8 * radius);
+    Use(drawing, kGreen);
+    cairo_set_line_width(drawing, 0.35 * radius);
+    scene.Rings(truth, radius);
+  }
+
+  cairo_set_line_width(drawing, 0.6 * radius);
+  std::vector<Eigen::Vector3d> true_path;
+  for (const TruePose& pose : view.truth)
+    if (pose.frame_idx <= frame_idx) true_path.push_back(pose.world_from_cam.translation);
+  const std::array<double, 2> dashes = {4 * radius, 3 * radius};
+  cairo_set_dash(drawing, dashes.data(), dashes.size(), 0);
+  Use(drawing, kGreen);
+  scene.Path(true_path);
+  cairo_set_dash(drawing, nullptr, 0, 0);
+
+  std::vector<Eigen::Vector3d> path;
+  for (const ViewedFrame& f : run.frames)
+    if (f.world_from_cam && f.row.frame_idx <= frame_idx) path.push_back(f.world_from_cam->translation);
+  Use(drawing, kBlue);
+  cairo_set_line_width(drawing, radius);
+  scene.Path(path);
+  if (frame != nullptr && frame->world_from_cam && run.camera) {
+    std::vector<float> depths;
+    for (const ViewedObservation& o : frame->observations)
+      if (o.depth > 0) depths.push_back(o.depth);
+    std::nth_element(depths.begin(), depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2), depths.end());
+    const double depth = depths.empty() ? 1.0 : 0.25 * depths[depths.size() / 2];
+    const auto corners = Frustum(*run.camera, *frame->world_from_cam, depth);
+    for (std::size_t i = 0; i < corners.size(); ++i)
+      scene.Path({frame->world_from_cam->translation, corners[i], corners[(i + 1) % corners.size()]});
+  }
+  cairo_restore(drawing);
+  Use(drawing, kGrey);
+  cairo_set_line_width(drawing, 1);
+  cairo_rectangle(drawing, panel.left, panel.top, panel.width, panel.height);
+  cairo_stroke(drawing);
+}
+
+void DrawText(cairo_t* drawing, double left, double baseline, double size, const std::string& text) {
+  cairo_select_font_face(drawing, "sans-serif", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
+  cairo_set_font_size(drawing, size);
+  Use(drawing, kBlack);
+  cairo_move_to(drawing, left, baseline);
+  cairo_show_text(drawing, text.c_str());
+}
+
+void DrawLegend(cairo_t* drawing, double left, double baseline, double size, bool truth) {
+  std::vector<std::pair<Colour, const char*>> entries = {
+      {kBlack, "undeformed map"}, {kVermillion, "deformation"}, {kBlue, "camera"}};
+  if (truth) entries.emplace_back(kGreen, "truth");
+  for (const auto& [colour, text] : entries) {
+    Use(drawing, colour);
+    Dot(drawing, left + 0.4 * size, baseline - 0.35 * size, 0.35 * size);
+    cairo_fill(drawing);
+    left += 1.2 * size;
+    DrawText(drawing, left, baseline, size, text);
+    cairo_text_extents_t extents;
+    cairo_text_extents(drawing, text, &extents);
+    left += extents.x_advance + 1.5 * size;
+  }
+}
+
+}  // namespace pliant

@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// The two pictures of a frame, drawn with cairo: the image with its points, and the scene.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include <cairo.h>
+#include <opencv2/core/mat.hpp>
+
+#include "pliant/viewer/figure.h"
+#include "pliant/viewer/view.h"
+#include "viewer/orbit.h"
+
+namespace pliant {
+
+struct CairoDeleter {
+  void operator()(cairo_t* drawing) const { cairo_destroy(drawing); }
+  void operator()(cairo_surface_t* surface) const { cairo_surface_destroy(surface); }
+};
+using Drawing = std::unique_ptr<cairo_t, CairoDeleter>;
+using Surface = std::unique_ptr<cairo_surface_t, CairoDeleter>;
+
+// Where a panel lies on its page.
+struct Panel {
+  double left = 0;
+  double top = 0;
+  double width = 0;
+  double height = 0;
+};
+
+// The frame of a run by its number, or null.
+const ViewedFrame* FindFrame(const ViewedRun& run, int frame_idx);
+
+// The eye that sees all of a run.
+Orbit OrbitOf(const View& view, const ViewedRun& run, const FigureOptions& options, double width_px, double height_px);
+
+// `image`: 8-bit, 1 or 3 (BGR) channels, of the camera's size; empty where there is none. `frame` may be null.
+void DrawImage(cairo_t* drawing, const Panel& panel, const cv::Mat& image, const ViewedFrame* frame);
+void DrawScene(cairo_t* drawing, const Panel& panel, const View& view, const ViewedRun& run, int frame_idx,
+               const Orbit& orbit, const FigureOptions& options);
+void DrawText(cairo_t* drawing, double left, double baseline, double size, const std::string& text);
+// What the colours of a scene mean, in one line from `left` on.
+void DrawLegend(cairo_t* drawing, double left, double baseline, double size, bool truth);
+
+}  // namespace pliant

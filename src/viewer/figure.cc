@@ -1,0 +1,133 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/viewer/figure.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+#include <string>
+
+#include <cairo-pdf.h>
+#include <cairo-svg.h>
+
+#include "viewer/draw_view.h"
+#include "viewer/frame_images.h"
+
+namespace pliant {
+namespace {
+
+constexpr double kGap = 8;
+constexpr double kText = 14;
+constexpr double kLine = 22;
+
+// The page of a figure, in points of 1/72 inch (png: pixels).
+struct Layout {
+  double width = 0;
+  double height = 0;
+  double image_height = 0;  // 0: no images
+  double panel_width = 0;
+  double panel_height = 0;  // of a scene
+
+  Layout(const View& view, const FigureOptions& options, std::size_t frames) {
+    panel_width = options.panel_width_px;
+    const double aspect = view.camera ? static_cast<double>(view.camera->height()) / view.camera->width() : 0.75;
+    panel_height = panel_width * aspect;
+    image_height = view.sequence ? panel_height : 0;
+    width = kGap + static_cast<double>(frames) * (panel_width + kGap);
+    height = kLine + image_height + kGap +
+             static_cast<double>(view.runs.size()) * (panel_height + kGap + RunLine(view)) + kLine;
+  }
+
+  static double RunLine(const View& view) { return view.runs.size() > 1 ? kLine : 0; }
+};
+
+// Draws all of the figure. Fails as FrameImages does.
+Status Draw(cairo_t* drawing, const View& view, const FigureOptions& options, const Layout& layout,
+            const std::set<int>& frames_idx) {
+  cairo_set_source_rgb(drawing, 1, 1, 1);
+  cairo_paint(drawing);
+  auto images = FrameImages::Open(view, *frames_idx.begin());
+  if (!images.ok()) return images.status();
+  double left = kGap;
+  for (const int frame_idx : frames_idx) {
+    DrawText(drawing, left, kLine - 6, kText, "frame " + std::to_string(frame_idx));
+    const auto image = images->At(frame_idx);
+    if (!image.ok()) return image.status();
+    DrawImage(drawing, {left, kLine, layout.panel_width, layout.image_height}, *image,
+              FindFrame(view.runs.front(), frame_idx));
+    double top = kLine + layout.image_height + kGap;
+    for (const ViewedRun& run : view.runs) {
+      if (view.runs.size() > 1) DrawText(drawing, left, top + kLine - 8, kText, run.name);
+      top += Layout::RunLine(view);
+      const Orbit orbit = OrbitOf(view, run, options, layout.panel_width, layout.panel_height);
+      DrawScene(drawing, {left, top, layout.panel_width, layout.panel_height}, view, run, frame_idx, orbit, options);
+      top += layout.panel_height + kGap;
+    }
+    left += layout.panel_width + kGap;
+  }
+  DrawLegend(drawing, kGap, layout.height - 8, kText, !view.truth.empty());
+  return Status::Ok();
+}
+
+Surface MakeSurface(const std::string& ending, const std::string& path, const Layout& layout) {
+  if (ending == ".svg") return Surface(cairo_svg_surface_create(path.c_str(), layout.width, layout.height));
+  if (ending == ".pdf") return Surface(cairo_pdf_surface_create(path.c_str(), layout.width, layout.height));
+  return Surface(
+      cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(layout.width), static_cast<int>(layout.height)));
+}
+
+Status CheckFrames(const View& view, const std::vector<int>& frames_idx) {
+  if (frames_idx.empty()) return {ErrorCode::kInvalidArgument, "a figure needs a frame"};
+  for (const int frame_idx : frames_idx)
+    if (std::none_of(view.runs.begin(), view.runs.end(),
+                     [&](const ViewedRun& run) { return FindFrame(run, frame_idx) != nullptr; }))
+      return {ErrorCode::kInvalidArgument,
+              "frame " + std::to_string(frame_idx) + " is in no run; the first run has " +
+                  (view.runs.front().frames.empty()
+                       ? std::string("none")
+                       : std::to_string(view.runs.front().frames.front().row.frame_idx) + " to " +
+                             std::to_string(view.runs.front().frames.back().row.frame_idx))};
+  return Status::Ok();
+}
+
+}  // namespace
+
+void FigureOptions::List(OptionTable& table) {
+  table.BeginGroup("Figure", "how a figure or a film is drawn");
+  table.Add("panel_width_px", &panel_width_px, "px", "width of an image, and of a scene", 64, 4096);
+  table.Add("trail_frames", &trail_frames, "frames", "length of a point's trail of deformation", 1, 1000000);
+  table.Add("azimuth_deg", &azimuth_deg, "deg", "the scene is seen from behind the camera, turned so far to its right",
+            -360.0, 360.0);
+  table.Add("elevation_deg", &elevation_deg, "deg", "and so far above", -89.0, 89.0);
+  table.Add("fps", &fps, "1/s", "of a film; 0: the sequence's", 0.0, 1000.0);
+}
+
+Status WriteFigure(const ViewRequest& request, const FigureOptions& options, const std::vector<int>& frames_idx,
+                   const std::string& output_path) {
+  ViewRequest pictures = request;
+  pictures.figures = false;
+  const auto view = OpenView(pictures, options.view);
+  if (!view.ok()) return view.status();
+  if (Status status = CheckFrames(*view, frames_idx); !status.ok()) return status;
+  const std::filesystem::path path = output_path;
+  const Layout layout(*view, options, frames_idx.size());
+  const std::string draft = output_path + ".part";
+  const Surface surface = MakeSurface(path.extension().string(), draft, layout);
+  const Drawing drawing(cairo_create(surface.get()));
+  const Status drawn = Draw(drawing.get(), *view, options, layout, {frames_idx.begin(), frames_idx.end()});
+  bool written = cairo_status(drawing.get()) == CAIRO_STATUS_SUCCESS;
+  if (drawn.ok() && path.extension() == ".png")
+    written = written && cairo_surface_write_to_png(surface.get(), draft.c_str()) == CAIRO_STATUS_SUCCESS;
+  cairo_surface_finish(surface.get());
+  written = written && cairo_surface_status(surface.get()) == CAIRO_STATUS_SUCCESS;
+  std::error_code error;
+  if (drawn.ok() && written) std::filesystem::rename(draft, path, error);
+  if (drawn.ok() && written && !error) return Status::Ok();
+  std::filesystem::remove(draft, error);
+  if (!drawn.ok()) return drawn;
+  return {ErrorCode::kUnwritable,
+          "cannot write " + output_path + "; is the folder there and is there room on the disk?"};
+}
+
+}  // namespace pliant

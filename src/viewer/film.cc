@@ -1,0 +1,99 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include <algorithm>
+#include <set>
+#include <vector>
+
+#include <opencv2/imgproc.hpp>
+#include <opencv2/videoio.hpp>
+
+#include "pliant/base/statistics.h"
+#include "pliant/viewer/figure.h"
+#include "viewer/draw_view.h"
+#include "viewer/frame_images.h"
+
+namespace pliant {
+namespace {
+
+constexpr double kText = 14;
+constexpr double kLine = 22;
+constexpr double kUsualFps = 30;
+
+// Even, as the codecs want it.
+int Even(double size) { return 2 * static_cast<int>(0.5 * size + 0.5); }
+
+double FramesPerSecond(const View& view) {
+  std::vector<double> steps;
+  for (const ViewedRun& run : view.runs)
+    for (std::size_t i = 1; i < run.frames.size(); ++i)
+      steps.push_back(run.frames[i].row.timestamp_s - run.frames[i - 1].row.timestamp_s);
+  const double step = Median(std::move(steps));
+  return step > 0 ? 1 / step : kUsualFps;
+}
+
+bool OpenWriter(const std::string& path, double fps, const cv::Size& size, cv::VideoWriter* writer) {
+  for (const int codec : {cv::VideoWriter::fourcc('a', 'v', 'c', '1'), cv::VideoWriter::fourcc('m', 'p', '4', 'v')})
+    if (writer->open(path, cv::CAP_FFMPEG, codec, fps, size)) return true;
+  return false;
+}
+
+}  // namespace
+
+Status WriteFilm(const ViewRequest& request, const FigureOptions& options, const std::string& output_path,
+                 const std::function<bool(int, int)>& progress) {
+  ViewRequest pictures = request;
+  pictures.figures = false;
+  const auto view = OpenView(pictures, options.view);
+  if (!view.ok()) return view.status();
+  std::set<int> frames_idx;
+  for (const ViewedRun& run : view->runs)
+    for (const ViewedFrame& frame : run.frames) frames_idx.insert(frame.row.frame_idx);
+  if (frames_idx.empty()) return {ErrorCode::kInsufficient, "the run has no frame; there is nothing to film"};
+  const double aspect = view->camera ? static_cast<double>(view->camera->height()) / view->camera->width() : 0.75;
+  const double panel_width = options.panel_width_px;
+  const double panel_height = panel_width * aspect;
+  const std::size_t panels = (view->sequence ? 1 : 0) + view->runs.size();
+  const cv::Size size(Even(static_cast<double>(panels) * panel_width), Even(panel_height + 2 * kLine));
+  std::vector<Orbit> orbits;
+  for (const ViewedRun& run : view->runs) orbits.push_back(OrbitOf(*view, run, options, panel_width, panel_height));
+  auto images = FrameImages::Open(*view, *frames_idx.begin());
+  if (!images.ok()) return images.status();
+  cv::VideoWriter writer;
+  if (!OpenWriter(output_path, options.fps > 0 ? options.fps : FramesPerSecond(*view), size, &writer))
+    return {ErrorCode::kUnwritable, "cannot write the film " + output_path +
+                                        "; is the folder there, and does OpenCV have FFmpeg with an encoder for mp4?"};
+  const Surface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, size.width, size.height));
+  int done = 0;
+  for (const int frame_idx : frames_idx) {
+    const Drawing drawing(cairo_create(surface.get()));
+    cairo_set_source_rgb(drawing.get(), 1, 1, 1);
+    cairo_paint(drawing.get());
+    double left = 0;
+    if (view->sequence) {
+      const auto image = images->At(frame_idx);
+      if (!image.ok()) return image.status();
+      DrawImage(drawing.get(), {left, kLine, panel_width, panel_height}, *image,
+                FindFrame(view->runs.front(), frame_idx));
+      left += panel_width;
+    }
+    for (std::size_t i = 0; i < view->runs.size(); ++i) {
+      DrawScene(drawing.get(), {left, kLine, panel_width, panel_height}, *view, view->runs[i], frame_idx, orbits[i],
+                options);
+      if (view->runs.size() > 1) DrawText(drawing.get(), left + 6, kLine - 6, kText, view->runs[i].name);
+      left += panel_width;
+    }
+    DrawText(drawing.get(), 6, kLine - 6, kText, "frame " + std::to_string(frame_idx));
+    DrawLegend(drawing.get(), 6, size.height - 7, kText, !view->truth.empty());
+    cairo_surface_flush(surface.get());
+    const cv::Mat bgra(size, CV_8UC4, cairo_image_surface_get_data(surface.get()),
+                       static_cast<std::size_t>(cairo_image_surface_get_stride(surface.get())));
+    cv::Mat bgr;
+    cv::cvtColor(bgra, bgr, cv::COLOR_BGRA2BGR);
+    writer.write(bgr);
+    if (!progress(++done, static_cast<int>(frames_idx.size()))) break;
+  }
+  return Status::Ok();
+}
+
+}  // namespace pliant

@@ -1,0 +1,79 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "viewer/live_images.h"
+
+#include <chrono>
+#include <iterator>
+
+#include <sys/resource.h>
+
+#include "viewer/view_images.h"
+
+namespace pliant {
+namespace {
+
+constexpr std::chrono::milliseconds kBetweenImages(100);
+constexpr int kLowPriority = 10;
+
+}  // namespace
+
+void TakeLowPriority() { setpriority(PRIO_PROCESS, 0, kLowPriority); }  // Linux: of the calling thread alone
+
+LiveImages::LiveImages(int width_px, int quality, double max_mb)
+    : width_px_(width_px), quality_(quality), max_mb_(max_mb), thread_([this] { Run(); }) {}
+
+LiveImages::~LiveImages() {
+  {
+    const std::lock_guard lock(mutex_);
+    ended_ = true;
+  }
+  changed_.notify_all();
+  thread_.join();
+}
+
+void LiveImages::Add(int frame_idx, const cv::Mat& image) {
+  {
+    const std::lock_guard lock(mutex_);
+    next_ = {frame_idx, image};
+  }
+  changed_.notify_all();
+}
+
+std::string LiveImages::At(int frame_idx) const {
+  const std::lock_guard lock(mutex_);
+  const auto after = jpeg_.upper_bound(frame_idx);
+  return after == jpeg_.begin() ? std::string() : std::prev(after)->second;
+}
+
+double LiveImages::scale() const {
+  const std::lock_guard lock(mutex_);
+  return scale_;
+}
+
+void LiveImages::Run() {
+  TakeLowPriority();
+  std::unique_lock lock(mutex_);
+  while (true) {
+    changed_.wait(lock, [&] { return ended_ || next_; });
+    if (ended_) return;
+    const auto [frame_idx, image] = *std::exchange(next_, std::nullopt);
+    lock.unlock();
+    const cv::Mat small = Shrink(image, width_px_);
+    std::string jpeg = ToJpeg(small, quality_);
+    lock.lock();
+    scale_ = static_cast<double>(small.cols) / image.cols;
+    mb_ += static_cast<double>(jpeg.size()) / 1e6;
+    jpeg_[frame_idx] = std::move(jpeg);
+    if (mb_ > max_mb_) {
+      for (auto entry = jpeg_.begin(); entry != jpeg_.end() && std::next(entry) != jpeg_.end(); ++entry) {
+        const auto forgotten = std::next(entry);
+        mb_ -= static_cast<double>(forgotten->second.size()) / 1e6;
+        jpeg_.erase(forgotten);
+      }
+    }
+    changed_.wait_for(lock, kBetweenImages, [&] { return ended_; });
+  }
+}
+
+}  // namespace pliant

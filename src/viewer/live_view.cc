@@ -1,0 +1,192 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/viewer/live_view.h"
+
+#include <chrono>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+#include <httplib.h>
+#include <nlohmann/json.hpp>
+
+#include "viewer/live_images.h"
+#include "viewer/live_run.h"
+#include "viewer/page_data.h"
+
+namespace pliant {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr const char* kLoopback = "127.0.0.1";
+constexpr int kAnswerThreads = 2;
+constexpr std::chrono::seconds kStillLooking(3);  // who asked so lately is waited for
+constexpr std::chrono::seconds kLongestWait(2);
+
+// A page of another site must not read it by naming this machine after itself.
+bool IsForThisMachine(const httplib::Request& request) {
+  const std::string host = request.get_header_value("Host");
+  const std::string name = host.substr(0, host.rfind(':'));
+  return name == kLoopback || name == "localhost";
+}
+
+int Number(const httplib::Request& request, const char* name) {
+  int value = 0;
+  return ParseInt(request.get_param_value(name), &value) && value >= 0 ? value : 0;
+}
+
+}  // namespace
+
+struct LiveView::Server {
+  Server(const std::string& name, const LiveOptions& options)
+      : title(name), images(options.image_width_px, options.image_quality, options.max_image_mb), run(name) {}
+
+  bool Listen(int wanted_port) {
+    // Not the library's own, by which two programs could share a port.
+    http.set_socket_options([](socket_t socket) {
+      const int yes = 1;
+      setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+    });
+    http.new_task_queue = [] { return new httplib::ThreadPool(kAnswerThreads); };
+    http.set_pre_routing_handler([](const httplib::Request& request, httplib::Response& response) {
+      thread_local const bool low_priority = (TakeLowPriority(), true);
+      if (low_priority && IsForThisMachine(request)) return httplib::Server::HandlerResponse::Unhandled;
+      response.status = 403;
+      return httplib::Server::HandlerResponse::Handled;
+    });
+    http.Get("/", [this](const auto&, auto& response) {
+      response.set_content(PageWith({{"format", kPageFormat}, {"live", true}, {"title", title}}), "text/html");
+    });
+    http.Get("/data", [this](const auto& request, auto& response) {
+      response.set_content(Data(Number(request, "epoch"), Number(request, "from")), "application/json");
+    });
+    http.Get(R"(/image/(\d+)\.jpg)", [this](const auto& request, auto& response) {
+      int frame_idx = 0;
+      const std::string jpeg = ParseInt(request.matches[1].str(), &frame_idx) ? images.At(frame_idx) : std::string();
+      if (jpeg.empty())
+        response.status = 404;
+      else
+        response.set_content(jpeg, "image/jpeg");
+    });
+    port = wanted_port;
+    if (wanted_port == 0 || !http.bind_to_port(kLoopback, wanted_port)) port = http.bind_to_any_port(kLoopback);
+    if (port <= 0) return false;
+    thread = std::thread([this] { http.listen_after_bind(); });
+    while (!http.is_running()) std::this_thread::yield();  // before that it cannot be stopped
+    return true;
+  }
+
+  // What came after the rows that the page has.
+  std::string Data(int epoch, int from) {
+    View view;
+    nlohmann::ordered_json answer;
+    {
+      const std::lock_guard lock(mutex);
+      const int begin = epoch == run.epoch() && from <= run.rows() ? from : 0;
+      answer = {{"epoch", run.epoch()},         {"from", begin}, {"running", !ended},
+                {"frames_in_sequence", frames}, {"read", read},  {"state", EnumName(state)}};
+      view.runs.push_back(run.From(begin));
+      view.notes = warnings;
+      asked = Clock::now();
+      knows_the_end = knows_the_end || ended;
+    }
+    view.camera = view.runs.front().camera;
+    answer["image_scale"] = images.scale();
+    answer["data"] = PageData(view, {}, title);
+    return answer.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  }
+
+  void WaitForThoseWhoLook() {
+    const Clock::time_point end = Clock::now() + kLongestWait;
+    while (Clock::now() < end) {
+      {
+        const std::lock_guard lock(mutex);
+        if (knows_the_end || !asked || Clock::now() - *asked > kStillLooking) break;
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+  }
+
+  const std::string title;
+  LiveImages images;
+  std::mutex mutex;
+  LiveRun run;
+  std::vector<std::string> warnings;
+  int frames = 0;  // of the sequence, by its own word
+  int read = 0;
+  TrackingState state = TrackingState::kWaitingForReference;
+  bool ended = false;
+  bool knows_the_end = false;              // the page
+  std::optional<Clock::time_point> asked;  // last, by a page
+  int port = 0;
+  httplib::Server http;
+  std::thread thread;
+};
+
+void LiveOptions::List(OptionTable& table) {
+  table.BeginGroup("Live", "the view that --live serves to a browser on this machine");
+  table.Add("port", &port, "-", "0, or where it is taken: any that is free", 0, 65535);
+  table.Add("image_width_px", &image_width_px, "px", "images are made no wider than this", 32, 4096);
+  table.Add("image_quality", &image_quality, "%", "of their JPEG coding", 10, 100);
+  table.Add("max_image_mb", &max_image_mb, "MB", "kept in memory; above it every second image is forgotten", 1.0,
+            100000.0);
+}
+
+Result<std::unique_ptr<LiveView>> LiveView::Start(const std::string& title, const LiveOptions& options) {
+  auto server = std::make_unique<Server>(title, options);
+  if (!server->Listen(options.port))
+    return Status(ErrorCode::kUnwritable, "the live view finds no free port on this machine; run without --live");
+  return std::unique_ptr<LiveView>(new LiveView(std::move(server)));
+}
+
+LiveView::LiveView(std::unique_ptr<Server> server) : server_(std::move(server)) {}
+
+LiveView::~LiveView() {
+  {
+    const std::lock_guard lock(server_->mutex);
+    server_->ended = true;
+  }
+  server_->WaitForThoseWhoLook();
+  server_->http.stop();
+  server_->thread.join();
+}
+
+std::string LiveView::Url() const {
+  return std::string("http://") + kLoopback + ":" + std::to_string(server_->port) + "/";
+}
+
+void LiveView::OnCamera(const Camera& camera) {
+  const std::lock_guard lock(server_->mutex);
+  server_->run.SetCamera(camera);
+}
+
+void LiveView::OnStart(int frames) {
+  const std::lock_guard lock(server_->mutex);
+  server_->frames = frames;
+}
+
+void LiveView::OnWarning(const std::string& sentence) {
+  const std::lock_guard lock(server_->mutex);
+  server_->warnings.push_back(sentence);
+}
+
+void LiveView::OnImage(int frame_idx, const cv::Mat& image) {
+  server_->images.Add(frame_idx, image);
+  const std::lock_guard lock(server_->mutex);
+  ++server_->read;
+}
+
+void LiveView::OnFrame(const FrameReport& report) {
+  const std::lock_guard lock(server_->mutex);
+  server_->run.Add(report);
+  server_->state = report.state;
+}
+
+void LiveView::OnHeld(const FrameReport& report) {
+  const std::lock_guard lock(server_->mutex);
+  server_->state = report.state;
+}
+
+}  // namespace pliant

@@ -1,0 +1,275 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "viewer/page_data.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "pliant/base/version.h"
+#include "viewer/pack_array.h"
+#include "viewer/page_asset.h"
+
+namespace pliant {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+// null where it is not a number.
+json Number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
+
+template <class Value>
+json Column(const ViewedRun& run, const Value& value) {
+  json column = json::array();
+  for (const ViewedFrame& frame : run.frames) column.push_back(value(frame));
+  return column;
+}
+
+json OptionalColumn(const std::vector<std::optional<double>>& values) {
+  json column = json::array();
+  for (const std::optional<double>& value : values) column.push_back(value ? Number(*value) : json(nullptr));
+  return column;
+}
+
+void AppendPose(const Rigid3& world_from_cam, std::vector<float>* values) {
+  const Eigen::Quaterniond& q = world_from_cam.rotation;
+  const Eigen::Vector3d& t = world_from_cam.translation;
+  for (const double value : {q.x(), q.y(), q.z(), q.w(), t.x(), t.y(), t.z()})
+    values->push_back(static_cast<float>(value));
+}
+
+json FramePosesOf(const ViewedRun& run) {
+  std::vector<float> values;
+  for (const ViewedFrame& frame : run.frames) {
+    if (frame.world_from_cam)
+      AppendPose(*frame.world_from_cam, &values);
+    else
+      values.insert(values.end(), 7, kUnknown);
+  }
+  return PackFloats(values, 7);
+}
+
+json Frames(const ViewedRun& run) {
+  const auto row = [](auto member) { return [member](const ViewedFrame& f) { return json(f.row.*member); }; };
+  json frames = {{"frame", Column(run, row(&RunFrame::frame_idx))},
+                 {"time", Column(run, row(&RunFrame::timestamp_s))},
+                 {"state", Column(run, [](const ViewedFrame& f) { return EnumName(f.row.state); })},
+                 {"submap", Column(run, row(&RunFrame::submap))},
+                 {"tracked", Column(run, row(&RunFrame::tracked))},
+                 {"pose", FramePosesOf(run)},
+                 {"note", json::object()},
+                 {"costs", json::object()},
+                 {"stages_ms", json::object()},
+                 {"errors", json::object()}};
+  const bool has = run.has_rows;
+  const auto known = [&](auto member) {
+    return Column(run, [&](const ViewedFrame& f) { return has ? json(f.row.*member) : json(nullptr); });
+  };
+  frames["optimized"] = known(&RunFrame::optimized);
+  frames["lost"] = known(&RunFrame::lost);
+  frames["added"] = known(&RunFrame::added);
+  frames["reprojection_px"] = known(&RunFrame::median_reprojection_error_px);
+  if (has) {
+    const auto cost = [&](double FrameProblemCosts::*term) {
+      return Column(run, [term](const ViewedFrame& f) { return Number(f.row.costs.*term); });
+    };
+    frames["costs"] = {{"reprojection", cost(&FrameProblemCosts::reprojection)},
+                       {"spatial", cost(&FrameProblemCosts::spatial)},
+                       {"temporal", cost(&FrameProblemCosts::temporal)},
+                       {"edge length", cost(&FrameProblemCosts::edge_length)}};
+    for (std::size_t i = 0; i < run.stage_names.size(); ++i)
+      frames["stages_ms"][run.stage_names[i]] = Column(run, [i](const ViewedFrame& f) {
+        return i < f.row.stage_ms.size() ? Number(f.row.stage_ms[i]) : json(nullptr);
+      });
+  }
+  for (const auto& [name, values] : run.errors) frames["errors"][name] = OptionalColumn(values);
+  frames["scale"] = run.scales.empty() ? json(nullptr) : OptionalColumn(run.scales);
+  for (std::size_t i = 0; i < run.frames.size(); ++i)
+    if (!run.frames[i].note.empty()) frames["note"][std::to_string(i)] = run.frames[i].note;
+  return frames;
+}
+
+json Points(const ViewedRun& run) {
+  // A number of the page has 32 bits: larger ids of other programs are counted through.
+  const bool fits = run.points.empty() || (run.points.begin()->first.value >= 0 &&
+                                           run.points.rbegin()->first.value < std::int64_t{0xFFFFFFFF});
+  std::vector<std::uint32_t> ids;
+  std::vector<float> rest;
+  std::vector<std::uint32_t> rgb;
+  for (const auto& [id, point] : run.points) {
+    ids.push_back(static_cast<std::uint32_t>(fits ? id.value : static_cast<std::int64_t>(ids.size())));
+    for (int i = 0; i < 3; ++i) rest.push_back(static_cast<float>(point.position[i]));
+    rgb.insert(rgb.end(), point.rgb.begin(), point.rgb.end());
+  }
+  return {{"id", PackWhole(ids, 1, PackedType::kU32)},
+          {"rest", PackQuantised(rest, 3, PackedType::kU16)},
+          {"rgb", PackWhole(rgb, 3, PackedType::kU8)}};
+}
+
+// A run's observations point by point.
+class Observations {
+ public:
+  explicit Observations(const ViewedRun& run) {
+    std::size_t count = 0;
+    for (const ViewedFrame& frame : run.frames) count += frame.observations.size();
+    std::unordered_map<PointId, std::uint32_t> positions;
+    for (const auto& [id, point] : run.points) positions.emplace(id, static_cast<std::uint32_t>(positions.size()));
+    sorted_.reserve(count);
+    for (std::size_t row = 0; row < run.frames.size(); ++row)
+      for (const ViewedObservation& o : run.frames[row].observations)
+        sorted_.push_back({positions.at(o.id), static_cast<std::uint32_t>(row), &o});
+    std::stable_sort(sorted_.begin(), sorted_.end(), [](const Seen& a, const Seen& b) { return a.point < b.point; });
+    counts_.assign(run.points.size(), 0);
+    for (const Seen& seen : sorted_) ++counts_[seen.point];
+  }
+
+  json ToJson() const {
+    std::vector<std::uint32_t> rows;
+    for (const Seen& seen : sorted_) rows.push_back(seen.row);
+    json packed = {{"count", counts_},
+                   {"row", PackWhole(rows, 1, PackedType::kU32)},
+                   {"pixel", Vectors<2>(&ViewedObservation::pixel)},
+                   {"position", Vectors<3>(&ViewedObservation::position)},
+                   {"depth", Numbers(&ViewedObservation::depth, PackedType::kU16)},
+                   {"reprojection_px", Numbers(&ViewedObservation::reprojection_px, PackedType::kU16)},
+                   {"ssim", Numbers(&ViewedObservation::ssim, PackedType::kU8)}};
+    const bool bright = Any(&ViewedObservation::gain);
+    packed["gain"] = bright ? Numbers(&ViewedObservation::gain, PackedType::kU8) : json(nullptr);
+    packed["bias"] = bright ? Numbers(&ViewedObservation::bias, PackedType::kU8) : json(nullptr);
+    const bool truth = Any(&ViewedObservation::error_mm);
+    packed["truth"] = truth ? Vectors<3>(&ViewedObservation::truth) : json(nullptr);
+    packed["error_mm"] = truth ? Numbers(&ViewedObservation::error_mm, PackedType::kU16) : json(nullptr);
+    return packed;
+  }
+
+ private:
+  struct Seen {
+    std::uint32_t point;
+    std::uint32_t row;
+    const ViewedObservation* observation;
+  };
+
+  bool Any(float ViewedObservation::*member) const {
+    return std::any_of(sorted_.begin(), sorted_.end(),
+                       [&](const Seen& seen) { return std::isfinite(seen.observation->*member); });
+  }
+  json Numbers(float ViewedObservation::*member, PackedType type) const {
+    std::vector<float> values;
+    values.reserve(sorted_.size());
+    for (const Seen& seen : sorted_) values.push_back(seen.observation->*member);
+    return PackQuantised(values, 1, type);
+  }
+  template <int N>
+  json Vectors(Eigen::Matrix<float, N, 1> ViewedObservation::*member) const {
+    std::vector<float> values;
+    values.reserve(N * sorted_.size());
+    for (const Seen& seen : sorted_)
+      for (int i = 0; i < N; ++i) values.push_back((seen.observation->*member)[i]);
+    return PackQuantised(values, N, PackedType::kU16);
+  }
+
+  std::vector<Seen> sorted_;
+  std::vector<std::uint32_t> counts_;
+};
+
+json Texts(const std::vector<NamedText>& texts, bool as_options) {
+  json rows = json::array();
+  for (const NamedText& text : texts) {
+    if (as_options)
+      rows.push_back({text.group + "." + text.name, text.value});
+    else
+      rows.push_back({text.group, text.name, text.value});
+  }
+  return rows;
+}
+
+json RunData(const ViewedRun& run) {
+  return {{"name", run.name},
+          {"status", run.status},
+          {"note", run.note},
+          {"figures", Texts(run.figures, false)},
+          {"options", Texts(run.options, true)},
+          {"frames", Frames(run)},
+          {"points", Points(run)},
+          {"observations", Observations(run).ToJson()}};
+}
+
+json CameraData(const std::optional<Camera>& camera) {
+  if (!camera) return nullptr;
+  json corners = json::array();
+  const double right = camera->width() - 0.5;
+  const double bottom = camera->height() - 0.5;
+  for (const Eigen::Vector2d& pixel : {Eigen::Vector2d(-0.5, -0.5), Eigen::Vector2d(right, -0.5),
+                                       Eigen::Vector2d(right, bottom), Eigen::Vector2d(-0.5, bottom)}) {
+    // Where the lens has no ray in the corner (a disc), one farther in.
+    std::optional<Eigen::Vector3d> ray;
+    const Eigen::Vector2d centre(0.5 * (right - 0.5), 0.5 * (bottom - 0.5));
+    for (double share = 1.0; share > 0.1 && !(ray && ray->z() > 0.1); share -= 0.05)
+      ray = camera->Unproject(centre + share * (pixel - centre));
+    if (!ray || !(ray->z() > 0)) return nullptr;
+    corners.push_back({ray->x() / ray->z(), ray->y() / ray->z(), 1.0});
+  }
+  return {{"width", camera->width()}, {"height", camera->height()}, {"corners", corners}};
+}
+
+json ImageData(const ViewImages& images) {
+  if (images.jpeg.empty()) return nullptr;
+  json jpeg = json::array();
+  for (const std::string& bytes : images.jpeg) jpeg.push_back(Base64(bytes));
+  return {{"width", images.width},
+          {"height", images.height},
+          {"scale", images.scale},
+          {"frame", images.frame_idx},
+          {"jpeg", std::move(jpeg)}};
+}
+
+json TruthData(const std::vector<TruePose>& truth) {
+  if (truth.empty()) return nullptr;
+  json frames = json::array();
+  std::vector<float> poses;
+  for (const TruePose& pose : truth) {
+    frames.push_back(pose.frame_idx);
+    AppendPose(pose.world_from_cam, &poses);
+  }
+  return {{"frame", frames}, {"pose", PackFloats(poses, 7)}};
+}
+
+}  // namespace
+
+json PageData(const View& view, const ViewImages& images, const std::string& title) {
+  json runs = json::array();
+  for (const ViewedRun& run : view.runs) runs.push_back(RunData(run));
+  return {{"format", kPageFormat},
+          {"version", kVersion},
+          {"title", title},
+          {"live", false},
+          {"unit", view.in_millimetres ? "mm" : "map units"},
+          {"notes", view.notes},
+          {"camera", CameraData(view.camera)},
+          {"images", ImageData(images)},
+          {"truth", TruthData(view.truth)},
+          {"runs", std::move(runs)}};
+}
+
+std::string PageWith(const json& data) {
+  const std::string_view page = PageAsset();
+  const std::size_t place = page.find(kPageDataPlace);
+  const std::string text = data.dump(-1, ' ', false, json::error_handler_t::replace);
+  std::string whole(page.substr(0, place + kPageDataPlace.size() - kPageDataEnd.size()));
+  whole.reserve(page.size() + text.size());
+  for (const char c : text) {  // nothing in it may end the element
+    if (c == '<')
+      whole += "\\u003c";
+    else
+      whole.push_back(c);
+  }
+  whole += page.substr(place + kPageDataPlace.size() - kPageDataEnd.size());
+  return whole;
+}
+
+}  // namespace pliant

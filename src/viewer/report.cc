@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/viewer/report.h"
+
+#include <algorithm>
+
+#include "pliant/base/text.h"
+#include "viewer/page_data.h"
+#include "viewer/view_images.h"
+
+namespace pliant {
+
+void ReportOptions::List(OptionTable& table) {
+  table.BeginGroup("Report", "what of a run is put into a report");
+  view.List(table);
+  table.Add("image_width_px", &image_width_px, "px", "images are made no wider than this", 32, 4096);
+  table.Add("image_quality", &image_quality, "%", "of their JPEG coding", 10, 100);
+  table.Add("max_image_mb", &max_image_mb, "MB", "where they need more, every second one is left out until they fit",
+            1.0, 2000.0);
+}
+
+Result<ReportSummary> WriteReportPage(const ViewRequest& request, const ReportOptions& options,
+                                      const std::string& output_path) {
+  auto view = OpenView(request, options.view);
+  if (!view.ok()) return view.status();
+  ViewImages images;
+  if (view->sequence) {
+    auto read = ReadViewImages(options, &*view);
+    if (!read.ok()) return read.status();
+    images = *std::move(read);
+  }
+  std::string title;
+  ReportSummary summary;
+  for (const ViewedRun& run : view->runs) {
+    title += (title.empty() ? "" : ", ") + run.name;
+    summary.frames = std::max(summary.frames, static_cast<int>(run.frames.size()));
+    for (const ViewedFrame& frame : run.frames)
+      summary.observations += static_cast<std::int64_t>(frame.observations.size());
+  }
+  const std::string page = PageWith(PageData(*view, images, title));
+  if (Status status = WriteFileAtomically(output_path, page); !status.ok()) return status;
+  summary.runs = static_cast<int>(view->runs.size());
+  summary.images = images.jpeg.size();
+  summary.megabytes = static_cast<double>(page.size()) / 1e6;
+  summary.notes = view->notes;
+  return summary;
+}
+
+}  // namespace pliant

@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "viewer/run_options.h"
+
+#include <yaml-cpp/yaml.h>
+
+#include "pliant/base/text.h"
+
+namespace pliant {
+
+Result<std::vector<NamedText>> ReadRunOptions(const std::string& run_path) {
+  std::vector<NamedText> options;
+  const std::string path = run_path + "/config.yaml";
+  if (!Exists(path)) return options;
+  const auto text = ReadFile(path);
+  if (!text.ok()) return text.status();
+  try {
+    for (const auto& group : YAML::Load(*text))
+      for (const auto& option : group.second)
+        options.push_back({group.first.Scalar(), option.first.Scalar(), option.second.Scalar()});
+  } catch (const YAML::Exception& error) {
+    return Status(ErrorCode::kUnreadable, path + " is not a run's: " + error.what());
+  }
+  return options;
+}
+
+}  // namespace pliant

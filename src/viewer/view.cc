@@ -1,0 +1,187 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/viewer/view.h"
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include "pliant/base/statistics.h"
+#include "pliant/evaluation/evaluate_run.h"
+#include "viewer/add_truth.h"
+#include "viewer/align_runs.h"
+#include "viewer/read_run.h"
+#include "viewer/run_figures.h"
+
+namespace pliant {
+namespace {
+
+// The sequence of the request, or the one that the first run names if it can be opened.
+Result<std::optional<OpenedTruth>> OpenItsSequence(const ViewRequest& request, View* view) {
+  SequenceRequest sequence{.image_path = request.sequence_path, .camera_path = request.camera_path};
+  const bool named = !request.sequence_path.empty();
+  if (!named) {
+    const auto run = ReadRun(request.run_paths.front());
+    if (run.ok() && run->summary) sequence.image_path = run->summary->description.input;
+    if (sequence.image_path.empty()) {
+      view->notes.emplace_back("the run does not say which images it is of; name them with --sequence to see them");
+      return std::optional<OpenedTruth>();
+    }
+  }
+  EvaluationOptions options;
+  if (!request.figures) options.parts = {EvaluationPart::kSurface};
+  auto opened = OpenTruth(sequence, options);
+  if (opened.ok()) return std::optional(*std::move(opened));
+  if (named) return opened.status();
+  view->notes.push_back("the images cannot be shown: " + opened.status().message() +
+                        "; name where they are now with --sequence");
+  return std::optional<OpenedTruth>();
+}
+
+std::vector<int> SubmapsOf(const ViewedRun& run) {
+  std::set<int> submaps;
+  for (const ViewedFrame& frame : run.frames)
+    if (frame.world_from_cam) submaps.insert(frame.row.submap);
+  return {submaps.begin(), submaps.end()};
+}
+
+std::optional<double> MedianScale(const ViewedRun& run, int submap) {
+  std::vector<double> scales;
+  for (std::size_t i = 0; i < run.scales.size(); ++i)
+    if (run.scales[i] && run.frames[i].row.submap == submap) scales.push_back(*run.scales[i]);
+  if (scales.empty()) return std::nullopt;
+  return Median(std::move(scales));
+}
+
+FramePoses TruePoses(const Sequence& sequence, const std::vector<ViewedRun>& runs) {
+  FramePoses poses;
+  for (const ViewedRun& run : runs)
+    for (const ViewedFrame& frame : run.frames)
+      if (const auto pose = sequence.WorldFromCamera(frame.row.frame_idx)) poses.emplace(frame.row.frame_idx, *pose);
+  return poses;
+}
+
+// A submap without a frame in common goes on where the one before it ended, with depths as they were there.
+Sim3 AfterTheOneBefore(const FramePoses& before, double depth_before, const FramePoses& poses, double depth) {
+  const double scale = depth > 0 ? depth_before / depth : 1.0;
+  return WorldFromPoses(before.rbegin()->second.Inverse(), poses.begin()->second.Inverse(), scale);
+}
+
+// Runs of one name are told apart by their folders.
+void TakeNames(const std::vector<std::string>& run_paths, View* view) {
+  std::map<std::string, int> uses;
+  for (const ViewedRun& run : view->runs) ++uses[run.name];
+  for (std::size_t i = 0; i < run_paths.size(); ++i)
+    if (uses[view->runs[i].name] > 1) view->runs[i].name = run_paths[i];
+}
+
+// Everything into one world: the truth's, else that of the first run's first submap.
+void Align(const FramePoses& truth, View* view) {
+  FramePoses reference = truth;
+  double reference_depth = 0;  // of the submap that gave the reference, or was placed last; in the common unit
+  bool placed_after = false;
+  for (ViewedRun& run : view->runs) {
+    FramePoses before;
+    for (const int submap : SubmapsOf(run)) {
+      const FramePoses poses = PosesOf(run, submap);
+      const double depth = MedianDepth(run, poses).value_or(1.0);
+      if (reference.empty()) {
+        reference = poses;
+        reference_depth = depth;
+      } else {
+        std::optional<double> scale;
+        if (!truth.empty())
+          scale = MedianScale(run, submap);
+        else if (depth > 0)
+          scale = reference_depth / depth;
+        std::optional<Sim3> world = AlignWorlds(poses, reference, scale, depth);
+        if (!world && !before.empty()) {
+          world = AfterTheOneBefore(before, reference_depth, poses, depth);
+          placed_after = true;
+        }
+        if (world) Move(*world, submap, &run);
+      }
+      before = PosesOf(run, submap);
+    }
+  }
+  if (placed_after)
+    view->notes.emplace_back(
+        "maps that nothing joins are shown one after the other: each begins where the one before it ended");
+}
+
+}  // namespace
+
+void ViewOptions::List(OptionTable& table) {
+  table.Add("max_observations", &max_observations, "-",
+            "of all runs together; above it every second, third, ... point is shown", 1000, 100000000);
+}
+
+void Move(const Sim3& world_from_run, int submap, ViewedRun* run) {
+  std::set<PointId> moved;
+  const auto place = [&](Eigen::Vector3f* position) {
+    *position = (world_from_run * position->cast<double>()).cast<float>();
+  };
+  for (ViewedFrame& frame : run->frames) {
+    if (frame.row.submap != submap) continue;
+    if (frame.world_from_cam)
+      frame.world_from_cam = PoseInWorld(world_from_run, frame.world_from_cam->Inverse()).Inverse();
+    for (ViewedObservation& o : frame.observations) {
+      place(&o.position);
+      place(&o.truth);
+      o.depth *= static_cast<float>(world_from_run.scale);
+      moved.insert(o.id);
+    }
+  }
+  for (const PointId id : moved) {
+    Eigen::Vector3d& position = run->points.at(id).position;
+    position = world_from_run * position;
+  }
+}
+
+Result<View> OpenView(const ViewRequest& request, const ViewOptions& options) {
+  View view;
+  auto opened = OpenItsSequence(request, &view);
+  if (!opened.ok()) return opened.status();
+  std::optional<OpenedTruth>& sequence = *opened;
+  const std::int64_t max_observations = options.max_observations / static_cast<std::int64_t>(request.run_paths.size());
+  bool has_images = sequence.has_value();
+  for (const std::string& run_path : request.run_paths) {
+    auto read = ReadRunForView(run_path, sequence ? sequence->sequence.get() : nullptr, max_observations);
+    if (!read.ok()) return read.status();
+    std::optional<Evaluation> evaluation;
+    if (sequence && std::any_of(read->run.frames.begin(), read->run.frames.end(),
+                                [](const ViewedFrame& frame) { return frame.world_from_cam.has_value(); })) {
+      auto evaluated = AddTruth(run_path, *sequence, &read->run);
+      if (evaluated.ok()) {
+        evaluation = *std::move(evaluated);
+      } else if (!request.sequence_path.empty()) {
+        return evaluated.status();
+      } else {
+        view.notes.push_back("nothing is compared, and no images are shown: " + evaluated.status().message());
+        has_images = false;
+      }
+    }
+    auto figures = RunFigures(run_path, read->run, evaluation);
+    if (!figures.ok()) return figures.status();
+    read->run.figures = *std::move(figures);
+    view.notes.insert(view.notes.end(), read->notes.begin(), read->notes.end());
+    view.runs.push_back(std::move(read->run));
+  }
+  TakeNames(request.run_paths, &view);
+  if (std::all_of(view.runs.begin(), view.runs.end(), [](const ViewedRun& run) { return SubmapsOf(run).empty(); }))
+    view.notes.emplace_back("no frame was tracked");
+  if (has_images) {
+    view.sequence = {.image_path = sequence->request.image_path, .camera_path = sequence->request.camera_path};
+    view.camera = sequence->sequence->camera();
+  }
+  for (const ViewedRun& run : view.runs)
+    if (!view.camera) view.camera = run.camera;
+  const FramePoses truth = has_images ? TruePoses(*sequence->sequence, view.runs) : FramePoses();
+  for (const auto& [frame_idx, pose] : truth) view.truth.push_back({frame_idx, pose});
+  view.in_millimetres = !truth.empty();
+  Align(truth, &view);
+  return view;
+}
+
+}  // namespace pliant

@@ -1,0 +1,130 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/viewer/figure.h"
+
+#include <filesystem>
+#include <utility>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/videoio.hpp>
+
+#include "viewer/orbit.h"
+#include "viewer/small_sequence.h"
+
+namespace pliant {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+
+TEST(Orbit, ShowsEveryCameraAndNearlyEveryPoint) {
+  std::vector<Eigen::Vector3d> points;
+  for (int i = 0; i < 200; ++i) points.emplace_back(10 * std::sin(i), 20 * std::cos(i), 0.3 * i);
+  points.emplace_back(1e5, 0, 0);  // one that went astray
+  const std::vector<Eigen::Vector3d> centres = {{0, 0, -40}, {60, 0, 0}};
+  const Orbit orbit(points, centres, Eigen::Quaterniond::Identity(), 40, 25, 480, 360);
+  for (const std::vector<Eigen::Vector3d>* seen : {&std::as_const(points), &centres}) {
+    for (std::size_t i = 0; i < std::min<std::size_t>(200, seen->size()); ++i) {
+      const Eigen::Vector3d at = orbit.Project((*seen)[i]);
+      EXPECT_GT(at.z(), 0);
+      EXPECT_TRUE(at.x() >= 0 && at.x() <= 480 && at.y() >= 0 && at.y() <= 360) << at.transpose();
+    }
+  }
+}
+
+// Seen from behind the camera, to its right and above: what is ahead is farther, what is right is right, down is down.
+TEST(Orbit, LooksFromBehindAndAbove) {
+  const std::vector<Eigen::Vector3d> points = {{-10, -10, -10}, {10, 10, 10}};
+  const Orbit orbit(points, {}, Eigen::Quaterniond::Identity(), 40, 25, 480, 360);
+  const Eigen::Vector3d middle = orbit.Project({0, 0, 0});
+  EXPECT_NEAR(middle.x(), 240, 1);
+  EXPECT_NEAR(middle.y(), 180, 1);
+  EXPECT_GT(orbit.Project({0, 0, 1}).z(), middle.z());
+  EXPECT_GT(orbit.Project({1, 0, 0}).x(), middle.x());
+  EXPECT_LT(orbit.Project({1, 0, 0}).z(), middle.z());  // the eye is on the right
+  EXPECT_GT(orbit.Project({0, 1, 0}).y(), middle.y());
+  EXPECT_GT(orbit.Project({0, 1, 0}).z(), middle.z());  // and above
+}
+
+class FigureTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    WriteRun(folder_);
+    WriteSmallSequence(folder_.Path("sequence"), Truth::kDepthAndPoses);
+    options_.panel_width_px = 160;
+  }
+  ViewRequest Request() const {
+    return {.run_paths = {folder_.Path("run")}, .sequence_path = folder_.Path("sequence"), .camera_path = ""};
+  }
+  Status Write(const std::string& name, const std::vector<int>& frames_idx = {10, 14}) {
+    return WriteFigure(Request(), options_, frames_idx, folder_.Path(name));
+  }
+
+  TestFolder folder_;
+  FigureOptions options_;
+};
+
+TEST_F(FigureTest, DrawsImagesAndScenes) {
+  options_.panel_width_px = 960;
+  ASSERT_TRUE(Write("figure.png").ok());
+  const cv::Mat figure = cv::imread(folder_.Path("figure.png"));
+  ASSERT_FALSE(figure.empty());
+  EXPECT_EQ(figure.cols, 8 + 2 * 968);
+  // The camera's blue, the trails' red and the truth's green are there.
+  const auto count = [&](const cv::Scalar& bgr) {
+    cv::Mat found;
+    cv::inRange(figure, bgr - cv::Scalar::all(40), bgr + cv::Scalar::all(40), found);
+    return cv::countNonZero(found);
+  };
+  EXPECT_GT(count({178, 114, 0}), 50);
+  EXPECT_GT(count({0, 94, 213}), 20);
+  EXPECT_GT(count({115, 158, 0}), 20);
+}
+
+TEST_F(FigureTest, WritesVectors) {
+  ASSERT_TRUE(Write("figure.svg").ok());
+  EXPECT_THAT(folder_.Read("figure.svg"), HasSubstr("<svg"));
+  EXPECT_THAT(folder_.Read("figure.svg"), HasSubstr("data:image/jpeg"));
+  ASSERT_TRUE(Write("figure.pdf").ok());
+  EXPECT_THAT(folder_.Read("figure.pdf"), StartsWith("%PDF"));
+}
+
+TEST_F(FigureTest, AFrameThatIsNotThereIsNamed) {
+  const Status status = Write("figure.png", {10, 11});
+  EXPECT_EQ(status.code(), ErrorCode::kInvalidArgument);
+  EXPECT_THAT(status.message(), HasSubstr("frame 11 is in no run; the first run has 10 to 18"));
+  EXPECT_FALSE(std::filesystem::exists(folder_.Path("figure.png")));
+}
+
+TEST_F(FigureTest, WhatCannotBeWrittenLeavesNothing) {
+  for (const char* name : {"nowhere/figure.png", "nowhere/figure.svg", "nowhere/film.mp4"}) {
+    const Status status = std::string(name).ends_with("mp4")
+                              ? WriteFilm(Request(), options_, folder_.Path(name), [](int, int) { return true; })
+                              : Write(name);
+    EXPECT_EQ(status.code(), ErrorCode::kUnwritable) << name;
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder_.Path("nowhere")));
+}
+
+TEST_F(FigureTest, FilmsEveryFrame) {
+  int told = 0;
+  const Status status = WriteFilm(Request(), options_, folder_.Path("film.mp4"), [&](int done, int frames) {
+    EXPECT_EQ(done, ++told);
+    EXPECT_EQ(frames, kRunFrames);
+    return true;
+  });
+  ASSERT_TRUE(status.ok()) << status.message();
+  cv::VideoCapture film(folder_.Path("film.mp4"));
+  ASSERT_TRUE(film.isOpened());
+  EXPECT_NEAR(film.get(cv::CAP_PROP_FPS), 25, 0.1);
+  int frames = 0;
+  for (cv::Mat frame; film.read(frame); ++frames) EXPECT_EQ(frame.cols, 320);
+  EXPECT_EQ(frames, kRunFrames);
+}
+
+}  // namespace
+}  // namespace pliant

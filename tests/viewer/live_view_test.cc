@@ -1,0 +1,153 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/viewer/live_view.h"
+
+#include <chrono>
+#include <thread>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <httplib.h>
+#include <nlohmann/json.hpp>
+#include <opencv2/core.hpp>
+
+#include "support/small_run.h"
+#include "viewer/unpack_array.h"
+
+namespace pliant {
+namespace {
+
+using nlohmann::ordered_json;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::SizeIs;
+
+class LiveViewTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    auto live = LiveView::Start("run", {.port = 0});
+    ASSERT_TRUE(live.ok()) << live.status().message();
+    live_ = *std::move(live);
+    url_ = live_->Url();
+    live_->OnCamera(TestCamera());
+    live_->OnStart(kRunFrames);
+  }
+  ordered_json Data(int epoch, int from) const {
+    const auto answer = httplib::Client(url_.substr(0, url_.size() - 1))
+                            .Get("/data?epoch=" + std::to_string(epoch) + "&from=" + std::to_string(from));
+    return answer && answer->status == 200 ? ordered_json::parse(answer->body) : ordered_json();
+  }
+
+  std::unique_ptr<LiveView> live_;
+  std::string url_;
+};
+
+TEST_F(LiveViewTest, GivesThePageAndWhatIsNew) {
+  const auto page = httplib::Client(url_.substr(0, url_.size() - 1)).Get("/");
+  ASSERT_TRUE(page);
+  EXPECT_THAT(page->body, HasSubstr("\"live\":true"));
+  live_->OnFrame(Report(0));
+  live_->OnFrame(Report(1));
+  const ordered_json first = Data(0, 0);
+  EXPECT_EQ(first["from"], 0);
+  EXPECT_EQ(first["running"], true);
+  EXPECT_EQ(first["frames_in_sequence"], kRunFrames);
+  EXPECT_THAT(first["data"]["runs"][0]["frames"]["frame"], ElementsAre(10, 12));
+  EXPECT_EQ(first["data"]["camera"]["width"], 640);
+  live_->OnFrame(Report(2));
+  const ordered_json then = Data(0, 2);
+  EXPECT_EQ(then["from"], 2);
+  EXPECT_THAT(then["data"]["runs"][0]["frames"]["frame"], ElementsAre(14));
+  EXPECT_THAT(then["data"]["runs"][0]["points"]["id"]["rows"], kRunPoints);
+  EXPECT_THAT(Data(0, 3)["data"]["runs"][0]["frames"]["frame"], SizeIs(0));
+  EXPECT_EQ(Data(0, 99)["from"], 0);  // of another run
+}
+
+TEST_F(LiveViewTest, ARefinedPointIsNewAgain) {
+  live_->OnFrame(Report(0));
+  FrameReport report = Report(1);
+  report.observations.clear();
+  report.refined_points = {{PointId{3}, {1, 2, 3}}};
+  live_->OnFrame(report);
+  const ordered_json points = Data(0, 1)["data"]["runs"][0]["points"];
+  EXPECT_THAT(Unpack(points["id"]), ElementsAre(3));
+  EXPECT_THAT(Unpack(points["rest"]), ElementsAre(1, 2, 3));
+}
+
+TEST_F(LiveViewTest, AJoinMakesWhatWasGivenVoid) {
+  live_->OnFrame(Report(0));
+  FrameReport other = ReportOfSecondSubmap(0);
+  const Sim3 join = {2, Eigen::Quaterniond::Identity(), {1, 0, 0}};
+  other.join = SubmapJoin{1, 0, join};
+  live_->OnFrame(other);
+  const ordered_json all = Data(0, 1);
+  EXPECT_EQ(all["epoch"], 1);
+  EXPECT_EQ(all["from"], 0);
+  const ordered_json& run = all["data"]["runs"][0];
+  EXPECT_THAT(run["frames"]["submap"], ElementsAre(0, 0));
+  const std::vector<double> rest = Unpack(run["points"]["rest"]);
+  const Eigen::Vector3d moved = join * Undeformed(0);
+  for (int i = 0; i < 3; ++i) EXPECT_NEAR(rest[static_cast<std::size_t>(3 * kRunPoints + i)], moved[i], 0.01);
+}
+
+TEST_F(LiveViewTest, SaysWhatItWaitsFor) {
+  FrameReport held;
+  held.state = TrackingState::kInitialising;
+  live_->OnImage(0, cv::Mat::zeros(480, 640, CV_8UC1));
+  live_->OnHeld(held);
+  const ordered_json data = Data(0, 0);
+  EXPECT_EQ(data["state"], "initialising");
+  EXPECT_EQ(data["read"], 1);
+}
+
+TEST_F(LiveViewTest, GivesTheImageOrTheOneBefore) {
+  httplib::Client client(url_.substr(0, url_.size() - 1));
+  EXPECT_EQ(client.Get("/image/4.jpg")->status, 404);
+  live_->OnImage(3, cv::Mat::zeros(480, 640, CV_8UC1));
+  for (int tries = 0; tries < 200 && client.Get("/image/4.jpg")->status != 200; ++tries)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  const auto image = client.Get("/image/4.jpg");
+  EXPECT_EQ(image->status, 200);
+  EXPECT_EQ(image->get_header_value("Content-Type"), "image/jpeg");
+  EXPECT_EQ(client.Get("/image/2.jpg")->status, 404);
+  EXPECT_EQ(Data(0, 0)["image_scale"], 0.75);
+}
+
+TEST_F(LiveViewTest, AnswersThisMachineAlone) {
+  httplib::Client client(url_.substr(0, url_.size() - 1));
+  EXPECT_EQ(client.Get("/", {{"Host", "elsewhere.example:80"}})->status, 403);
+  EXPECT_EQ(client.Get("/", {{"Host", "localhost:80"}})->status, 200);
+  EXPECT_THAT(url_, testing::StartsWith("http://127.0.0.1:"));
+}
+
+TEST_F(LiveViewTest, APortThatIsTakenBecomesAnother) {
+  const int taken = std::stoi(url_.substr(url_.rfind(':') + 1));
+  const auto other = LiveView::Start("other", {.port = taken});
+  ASSERT_TRUE(other.ok()) << other.status().message();
+  EXPECT_NE((*other)->Url(), url_);
+}
+
+TEST_F(LiveViewTest, WithoutABrowserItEndsAtOnce) {
+  const auto begin = std::chrono::steady_clock::now();
+  live_.reset();
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(1));
+}
+
+TEST_F(LiveViewTest, WhoLooksLearnsOfTheEnd) {
+  EXPECT_EQ(Data(0, 0)["running"], true);
+  bool told = false;
+  std::thread browser([&] {
+    for (int tries = 0; tries < 100 && !told; ++tries) {
+      const ordered_json data = Data(0, 0);
+      told = !data.is_null() && data["running"] == false;
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+  });
+  live_.reset();
+  browser.join();
+  EXPECT_TRUE(told);
+}
+
+}  // namespace
+}  // namespace pliant

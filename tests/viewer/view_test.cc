@@ -1,0 +1,173 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/viewer/view.h"
+
+#include <cmath>
+#include <filesystem>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "viewer/small_sequence.h"
+
+namespace pliant {
+namespace {
+
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+class ViewTest : public testing::Test {
+ protected:
+  Result<View> Open(const ViewOptions& options = {}) {
+    return OpenView({.run_paths = {folder_.Path("run")}, .sequence_path = sequence_, .camera_path = ""}, options);
+  }
+
+  TestFolder folder_;
+  std::string sequence_;
+};
+
+TEST_F(ViewTest, ARunWithoutImagesIsShownAllTheSame) {
+  WriteRun(folder_);
+  const auto view = Open();
+  ASSERT_TRUE(view.ok()) << view.status().message();
+  EXPECT_THAT(view->notes, ElementsAre(HasSubstr("the images cannot be shown: ")));
+  EXPECT_FALSE(view->sequence);
+  EXPECT_FALSE(view->in_millimetres);
+  ASSERT_TRUE(view->camera);
+  ASSERT_EQ(view->runs.size(), 1U);
+  const ViewedRun& run = view->runs.front();
+  EXPECT_EQ(run.name, "run");
+  EXPECT_EQ(run.status, "completed");
+  ASSERT_EQ(run.frames.size(), static_cast<std::size_t>(kRunFrames));
+  EXPECT_EQ(run.points.size(), static_cast<std::size_t>(kRunPoints));
+  EXPECT_LT((run.points.at(PointId{3}).position - Undeformed(1)).norm(), 1e-6);
+  const ViewedObservation& seen = run.frames[2].observations[1];
+  EXPECT_EQ(seen.id, PointId{3});
+  EXPECT_LT((seen.position.cast<double>() - PositionAt(1, 2)).norm(), 1e-5);
+  EXPECT_NEAR(seen.depth, (PoseAt(2) * PositionAt(1, 2)).z(), 1e-4);
+  EXPECT_LT(seen.reprojection_px, 1e-3);
+  EXPECT_TRUE(std::isnan(seen.error_mm));
+  EXPECT_THAT(run.errors, IsEmpty());
+}
+
+TEST_F(ViewTest, BringsTheRunIntoTheWorldOfTheTruth) {
+  WriteRun(folder_);
+  sequence_ = folder_.Path("sequence");
+  WriteSmallSequence(sequence_, Truth::kDepthAndPoses);
+  const auto view = Open();
+  ASSERT_TRUE(view.ok()) << view.status().message();
+  EXPECT_TRUE(view->in_millimetres);
+  ASSERT_EQ(view->truth.size(), static_cast<std::size_t>(kRunFrames));
+  const ViewedRun& run = view->runs.front();
+  // The plane is about twice as far as the run's points are in its unit, so its scale is not quite the path's.
+  ASSERT_EQ(run.scales.size(), static_cast<std::size_t>(kRunFrames));
+  const double scale = *run.scales[2];
+  EXPECT_NEAR(scale, kTruthFromRun.scale, 0.05);
+  for (int i = 0; i < kRunFrames; ++i) {
+    const Rigid3& truth = view->truth[static_cast<std::size_t>(i)].world_from_cam;
+    const Rigid3& estimate = *run.frames[static_cast<std::size_t>(i)].world_from_cam;
+    EXPECT_LT((truth.translation - estimate.translation).norm(), 0.05);
+    EXPECT_LT(truth.rotation.angularDistance(estimate.rotation), 1e-3);
+  }
+  // The error of each point is the evaluation's: their RMSE is the frame's.
+  ASSERT_FALSE(run.errors.empty());
+  EXPECT_EQ(run.errors.front().first, "surface RMSE, mm");
+  for (int i = 0; i < kRunFrames; ++i) {
+    const ViewedFrame& frame = run.frames[static_cast<std::size_t>(i)];
+    double sum = 0;
+    for (const ViewedObservation& o : frame.observations) {
+      ASSERT_TRUE(std::isfinite(o.error_mm));
+      sum += o.error_mm * o.error_mm;
+      // The true place is on the plane, seen at the point's own pixel.
+      const Eigen::Vector3d truth_in_cam = frame.world_from_cam->Inverse() * o.truth.cast<double>();
+      EXPECT_NEAR(truth_in_cam.z(), kPlaneDepth_mm, 0.05 * kPlaneDepth_mm);
+      EXPECT_LT((*view->camera->Project(truth_in_cam) - o.pixel.cast<double>()).norm(), 1e-2);
+    }
+    const auto& rmse_mm = run.errors.front().second[static_cast<std::size_t>(i)];
+    EXPECT_NEAR(std::sqrt(sum / static_cast<double>(frame.observations.size())), *rmse_mm, 1e-4);
+  }
+  EXPECT_THAT(run.figures, Contains(testing::Field(&NamedText::group, HasSubstr("Surface error"))));
+}
+
+TEST_F(ViewTest, ShowsRunsOfOneSceneInOneWorld) {
+  WriteRun(folder_);
+  // The same run in another world and unit.
+  const Sim3 other = {0.3, kTruthFromRun.rotation, {1, 1, 1}};
+  {
+    auto writer = RunWriter::Create(folder_.Path("other/run"), TestCamera(), {"0.1.0", {"pliant"}, 7, "nowhere", {}},
+                                    "Track:\n  option: 3\n", {});
+    ASSERT_TRUE(writer.ok()) << writer.status().message();
+    for (int i = 0; i < kRunFrames; ++i) {
+      FrameReport report = Report(i);
+      report.cam_from_world = PoseInWorld(other, *report.cam_from_world);
+      for (PointObservation& o : report.observations) o.position = other * o.position;
+      for (NewPoint& point : report.new_points) point.position = other * point.position;
+      ASSERT_TRUE(writer->Write(report).ok());
+    }
+    ASSERT_TRUE(writer->Finish(RunStatus::kCompleted, "").ok());
+  }
+  const auto view = OpenView(
+      {.run_paths = {folder_.Path("run"), folder_.Path("other/run")}, .sequence_path = "", .camera_path = ""}, {});
+  ASSERT_TRUE(view.ok()) << view.status().message();
+  EXPECT_NE(view->runs[0].name, view->runs[1].name);
+  EXPECT_EQ(view->runs[1].options.size(), 1U);
+  for (int i = 0; i < kRunFrames; ++i) {
+    const ViewedFrame& a = view->runs[0].frames[static_cast<std::size_t>(i)];
+    const ViewedFrame& b = view->runs[1].frames[static_cast<std::size_t>(i)];
+    EXPECT_LT((a.world_from_cam->translation - b.world_from_cam->translation).norm(), 1e-3);
+    ASSERT_EQ(a.observations.size(), b.observations.size());
+    for (std::size_t k = 0; k < a.observations.size(); ++k) {
+      EXPECT_LT((a.observations[k].position - b.observations[k].position).norm(), 1e-2);
+      EXPECT_NEAR(a.observations[k].depth, b.observations[k].depth, 1e-2);
+    }
+  }
+}
+
+TEST_F(ViewTest, PutsMapsThatNothingJoinsOneAfterTheOther) {
+  WriteRunOfTwoSubmaps(folder_);
+  const auto view = Open();
+  ASSERT_TRUE(view.ok()) << view.status().message();
+  EXPECT_THAT(view->notes, Contains(HasSubstr("each begins where the one before it ended")));
+  const ViewedRun& run = view->runs.front();
+  const ViewedFrame& last = run.frames[kRunFrames - 1];
+  const ViewedFrame& first = run.frames[kRunFrames];
+  EXPECT_LT((last.world_from_cam->translation - first.world_from_cam->translation).norm(), 1e-6);
+}
+
+TEST_F(ViewTest, ShowsWhatAKilledRunLeft) {
+  WriteRun(folder_, End::kKilled);
+  const auto view = Open();
+  ASSERT_TRUE(view.ok()) << view.status().message();
+  EXPECT_EQ(view->runs.front().frames.size(), static_cast<std::size_t>(kRunFrames));
+  EXPECT_EQ(view->runs.front().points.size(), static_cast<std::size_t>(kRunPoints));
+  EXPECT_THAT(view->notes, Contains(HasSubstr("has no sparse/")));
+}
+
+TEST_F(ViewTest, ThinsTooManyPointsAndSaysSo) {
+  WriteRun(folder_);
+  const auto view = Open({.max_observations = kRunObservations / 2});
+  ASSERT_TRUE(view.ok()) << view.status().message();
+  EXPECT_THAT(view->notes, Contains(HasSubstr("every 2th point")));
+  EXPECT_EQ(view->runs.front().points.size(), static_cast<std::size_t>(kRunPoints / 2));
+}
+
+TEST_F(ViewTest, AnotherSequenceIsAnErrorWhereItWasNamed) {
+  WriteRun(folder_);
+  sequence_ = folder_.Path("sequence");
+  const auto camera = Camera::Create("PINHOLE", 64, 48, std::vector<double>{50, 50, 31.5, 23.5});
+  auto writer = NativeWriter::Create(sequence_, {.camera = *camera, .fps = 25});
+  ASSERT_TRUE(writer.ok());
+  for (int i = 0; i < kSequenceFrames; ++i)
+    ASSERT_TRUE(writer->Write({.timestamp_s = i / 25.0, .image = cv::Mat::zeros(48, 64, CV_8UC1)}).ok());
+  const auto view = Open();
+  ASSERT_FALSE(view.ok());
+  EXPECT_EQ(view.status().code(), ErrorCode::kMismatch);
+}
+
+TEST_F(ViewTest, WhatIsNoRunIsAnError) { EXPECT_EQ(Open().status().code(), ErrorCode::kNotFound); }
+
+}  // namespace
+}  // namespace pliant

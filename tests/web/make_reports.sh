@@ -1,0 +1,19 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: 2026 The Pliant authors
+# SPDX-License-Identifier: BSD-3-Clause
+#
+# usage: make_reports.sh PLIANT SEQUENCE FOLDER
+# The reports that the tests of the page open: of one run with truth, of two runs, and of a run whose images are gone.
+set -euo pipefail
+pliant=$1 sequence=$(realpath "$2") folder=$3
+
+rm -rf "$folder"
+mkdir -p "$folder"
+cd "$folder"
+ln -s "$sequence" images_that_go
+"$pliant" track --image_path images_that_go --output_path ours --end 40 --quiet
+"$pliant" track --image_path "$sequence" --output_path fixed_map --end 40 --Growth.grow off --quiet
+"$pliant" report --run ours --sequence "$sequence" -o one.html --quiet
+"$pliant" report --run ours --run fixed_map --sequence "$sequence" -o two.html --quiet
+rm images_that_go
+"$pliant" report --run ours -o no_images.html --quiet

@@ -1,0 +1,125 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Colours that the colour-blind tell apart: viridis for figures, Okabe and Ito's for things.
+
+import type { Report } from "./report";
+import type { Run } from "./run";
+
+export interface Palette {
+  background: string;
+  grid: string;
+  text: string;
+  map: string;
+  trails: string;
+  truth: string;
+  picked: string;
+  runs: string[];
+  series: string[];   // of one plot, after the first
+  states: Record<string, string>;
+}
+
+// Darkened where the original is too pale on white.
+const LIGHT: Palette = {
+  background: "#ffffff", grid: "#dde1e6", text: "#57606a", map: "#1b1f23", trails: "#d55e00", truth: "#009e73", picked: "#c2185b",
+  runs: ["#0072b2", "#c77f00", "#b0548a", "#2f93cc", "#8f8700", "#57606a", "#7a4fb5", "#00796b", "#a13d00"],
+  series: ["#d55e00", "#00805d", "#57606a", "#b0548a", "#a36800", "#2f93cc", "#8f8700"],
+  states: { tracking: "#0072b2", lost: "#d55e00", initialising: "#8c959f", waiting_for_reference: "#b0548a" },
+};
+
+const DARK: Palette = {
+  background: "#101316", grid: "#2b3138", text: "#9aa4ae", map: "#b9c0c7", trails: "#e8721c", truth: "#1fbf92", picked: "#ff79b0",
+  runs: ["#56b4e9", "#e69f00", "#cc79a7", "#4a90d9", "#f0e442", "#9aa4ae", "#b39ddb", "#4db6ac", "#ff8a50"],
+  series: ["#e8721c", "#1fbf92", "#9aa4ae", "#cc79a7", "#e69f00", "#56b4e9", "#f0e442"],
+  states: { tracking: "#3d9bd6", lost: "#e8721c", initialising: "#7d8894", waiting_for_reference: "#cc79a7" },
+};
+
+export function paletteOf(dark: boolean): Palette {
+  return dark ? DARK : LIGHT;
+}
+
+export function runColour(dark: boolean, run: number): string {
+  const { runs } = paletteOf(dark);
+  return runs[run % runs.length];
+}
+
+const VIRIDIS = [
+  0x440154, 0x481a6c, 0x472f7d, 0x414487, 0x39568c, 0x31688e, 0x2a788e, 0x23888e, 0x1f988b, 0x22a884, 0x35b779, 0x54c568, 0x7ad151,
+  0xa5db36, 0xd2e21b, 0xfde725,
+];
+const LEVELS = 64;
+const TABLE = Array.from({ length: LEVELS }, (_, level) => {
+  const at = (level / (LEVELS - 1)) * (VIRIDIS.length - 1);
+  const index = Math.min(Math.floor(at), VIRIDIS.length - 2);
+  const mix = (shift: number) => {
+    const from = (VIRIDIS[index] >> shift) & 255;
+    const to = (VIRIDIS[index + 1] >> shift) & 255;
+    return Math.round(from + (to - from) * (at - index)) << shift;
+  };
+  return mix(16) | mix(8) | mix(0);
+});
+const UNKNOWN = 0x8c959f;
+
+export interface Mode {
+  name: string;
+  label: string;
+  unit: string;
+  value: ((run: Run, observation: number) => number) | null;   // null: the point's own colour
+}
+
+export function colourModes(report: Report): Mode[] {
+  const { unit } = report;
+  const modes: Mode[] = [
+    { name: "age", label: "age", unit: "frames", value: (run, o) => run.age(o) },
+    { name: "residual", label: "reprojection error", unit: "px", value: (run, o) => run.reprojection.values[o] },
+    { name: "depth", label: "depth", unit, value: (run, o) => run.depth.values[o] },
+    { name: "deformation", label: "deformation", unit, value: (run, o) => run.deformation(o) },
+    { name: "similarity", label: "similarity (SSIM)", unit: "", value: (run, o) => run.similarity.values[o] },
+  ];
+  if (report.runs.some((run) => run.error)) {
+    modes.push({ name: "error", label: "error against truth", unit: "mm", value: (run, o) => run.error?.values[o] ?? NaN });
+  }
+  modes.push({ name: "rgb", label: "own colour", unit: "", value: null });
+  return modes;
+}
+
+// A mode with its range: the 2nd to the 98th percentile over all observations of all runs, so that colours neither flicker from
+// frame to frame nor differ between runs.
+export class Colouring {
+  constructor(readonly mode: Mode, readonly low: number, readonly high: number) {}
+
+  static of(mode: Mode, report: Report): Colouring {
+    if (!mode.value) return new Colouring(mode, 0, 1);
+    const values: number[] = [];
+    for (const run of report.runs) {
+      const step = Math.max(1, Math.floor(run.observations / 20000));
+      for (let o = 0; o < run.observations; o += step) {
+        const value = mode.value(run, o);
+        if (!Number.isNaN(value)) values.push(value);
+      }
+    }
+    if (values.length === 0) return new Colouring(mode, NaN, NaN);
+    values.sort((a, b) => a - b);
+    const low = values[Math.floor(0.02 * (values.length - 1))];
+    const high = values[Math.ceil(0.98 * (values.length - 1))];
+    return new Colouring(mode, low, high > low ? high : low + 1);
+  }
+
+  colour(run: Run, observation: number): number {
+    if (!this.mode.value) {
+      const c = 3 * run.point.values[observation];
+      const rgb = run.rgb.values;
+      return Number.isNaN(rgb[c]) ? UNKNOWN : ((rgb[c] & 0xf8) << 16) | ((rgb[c + 1] & 0xf8) << 8) | (rgb[c + 2] & 0xf8);
+    }
+    const value = this.mode.value(run, observation);
+    if (!(value === value)) return UNKNOWN;
+    const level = Math.round(((value - this.low) / (this.high - this.low)) * (LEVELS - 1));
+    return TABLE[level < 0 ? 0 : level >= LEVELS ? LEVELS - 1 : level] ?? UNKNOWN;
+  }
+}
+
+export function css(colour: number): string {
+  return `#${colour.toString(16).padStart(6, "0")}`;
+}
+
+export const GRADIENT = `linear-gradient(to right, ${VIRIDIS.map(css).join(", ")})`;

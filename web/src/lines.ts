@@ -1,0 +1,78 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Segments in the 3D view: thin ones that change with every frame, and ones with a width or dashes that are set once.
+
+import { BufferAttribute, BufferGeometry, DynamicDrawUsage, LineBasicMaterial, LineSegments } from "three";
+import { LineMaterial } from "three/examples/jsm/lines/LineMaterial.js";
+import { LineSegments2 } from "three/examples/jsm/lines/LineSegments2.js";
+import { LineSegmentsGeometry } from "three/examples/jsm/lines/LineSegmentsGeometry.js";
+
+export class ThinLines extends LineSegments<BufferGeometry, LineBasicMaterial> {
+  private used = 0;
+  private array = new Float32Array(0);
+
+  constructor(opacity = 1) {
+    super(new BufferGeometry(), new LineBasicMaterial({ transparent: opacity < 1, opacity }));
+    this.frustumCulled = false;
+    this.reserve(1024);
+  }
+
+  begin(): void {
+    this.used = 0;
+  }
+
+  // From point i of `from` to point j of `to`.
+  addSegment(from: Float32Array, i: number, to: Float32Array, j: number): void {
+    if (this.used + 6 > this.array.length) this.reserve(this.array.length / 3);
+    const array = this.array;
+    array[this.used++] = from[3 * i];
+    array[this.used++] = from[3 * i + 1];
+    array[this.used++] = from[3 * i + 2];
+    array[this.used++] = to[3 * j];
+    array[this.used++] = to[3 * j + 1];
+    array[this.used++] = to[3 * j + 2];
+  }
+
+  end(): void {
+    const attribute = this.geometry.getAttribute("position") as BufferAttribute;
+    attribute.clearUpdateRanges();
+    attribute.addUpdateRange(0, this.used);
+    attribute.needsUpdate = true;
+    this.geometry.setDrawRange(0, this.used / 3);
+  }
+
+  private reserve(segments: number): void {
+    const array = new Float32Array(6 * segments);
+    array.set(this.array.subarray(0, this.used));
+    this.array = array;
+    this.geometry.dispose();
+    this.geometry = new BufferGeometry();
+    this.geometry.setAttribute("position", new BufferAttribute(array, 3).setUsage(DynamicDrawUsage));
+  }
+}
+
+export class WideLines extends LineSegments2 {
+  constructor(widthPx: number, dashed = false) {
+    super(new LineSegmentsGeometry(), new LineMaterial({ linewidth: widthPx, dashed }));
+    this.frustumCulled = false;
+    this.visible = false;
+  }
+
+  setSegments(coordinates: number[], dash = 0): void {
+    this.geometry.dispose();
+    this.geometry = new LineSegmentsGeometry();
+    this.visible = coordinates.length > 0;
+    if (!this.visible) return;
+    this.geometry.setPositions(coordinates);
+    if (dash === 0) return;
+    this.computeLineDistances();
+    this.material.dashSize = dash;
+    this.material.gapSize = 0.6 * dash;
+  }
+
+  // Only the first ones.
+  show(segments: number): void {
+    this.geometry.instanceCount = segments;
+  }
+}

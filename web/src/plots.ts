@@ -1,0 +1,115 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What is plotted over the frames: of the current run everything, of the other visible ones the main series.
+
+import { paletteOf, runColour } from "./colours";
+import type { Column } from "./data";
+import { byId } from "./dom";
+import type { Page } from "./page";
+import { Plot, type Series } from "./plot";
+import type { Run } from "./run";
+import { type Changed, anyOf } from "./state";
+
+interface Figure {
+  title: string;
+  unit: string;
+  log?: boolean;
+  stacked?: boolean;
+  series: { label: string; values: Column }[];   // the main one first
+}
+
+const DASHES = [[6, 4], [2, 3], [10, 3, 2, 3], [4, 2], [1, 2], [12, 4], [8, 2, 2, 2]];
+
+export function figuresOf(run: Run, unit: string): Figure[] {
+  const { frames } = run;
+  const listed = (columns: Record<string, Column>) => Object.entries(columns).map(([label, values]) => ({ label, values }));
+  const figures: Figure[] = [
+    {
+      title: "Points", unit: "",
+      series: (["tracked", "optimized", "lost", "added"] as const).map((name) => ({ label: name, values: frames[name] })),
+    },
+    { title: "Error against truth", unit: "mm", series: listed(frames.errors) },
+    { title: "Reprojection error", unit: "px", series: [{ label: "median", values: frames.reprojection_px }] },
+    { title: "Cost by term", unit: "", log: true, series: listed(frames.costs) },
+    { title: "Time by stage", unit: "ms", stacked: true, series: listed(frames.stages_ms) },
+    {
+      title: "Scale against truth", unit: unit === "mm" ? "" : "mm per map unit", series: [{ label: "scale", values: frames.scale ?? [] }],
+    },
+  ];
+  for (const figure of figures) figure.series = figure.series.filter(({ values }) => values.some((value) => value !== null));
+  return figures;
+}
+
+export class Plots {
+  private readonly container = byId("plots");
+  private plots: Plot[] = [];
+  private range: [number, number] | null = null;
+
+  constructor(private readonly page: Page, private readonly go: (position: number) => void) {
+    new ResizeObserver(() => this.plots.forEach((plot) => plot.resize())).observe(this.container);
+    this.build();
+  }
+
+  update(changed: Changed): void {
+    if (anyOf(changed, "current", "visible", "dark")) this.build();
+    else if (anyOf(changed, "revision")) this.refresh();
+    if (anyOf(changed, "position", "current", "visible", "dark", "revision")) this.showPosition();
+  }
+
+  private build(): void {
+    const { frames } = this.page.report;
+    const { dark } = this.page.store.state;
+    for (const plot of this.plots) plot.destroy();
+    this.plots = this.figures().map(({ title, unit, log, stacked, series }) => new Plot({
+      title, unit, log, stacked, series, frames, dark, height: 170,
+      go: this.go,
+      zoom: (range) => {
+        this.range = range;
+        for (const plot of this.plots) plot.setRange(range);
+      },
+    }));
+    this.container.replaceChildren(...this.plots.map((plot) => plot.element));
+    for (const plot of this.plots) plot.resize();
+    if (this.range) for (const plot of this.plots) plot.setRange(this.range);
+    this.showPosition();
+  }
+
+  // New rows; a series that was not there before makes all anew.
+  private refresh(): void {
+    const figures = this.figures();
+    const same = figures.length === this.plots.length && figures.every(({ series }, i) => series.length === this.plots[i].size);
+    if (!same) return this.build();
+    this.plots.forEach((plot, i) => {
+      plot.setData(this.page.report.frames, figures[i].series);
+      if (this.range) plot.setRange(this.range);
+    });
+  }
+
+  private showPosition(): void {
+    for (const plot of this.plots) plot.showPosition(this.page.store.state.position);
+  }
+
+  // With the columns spread over the time line.
+  private figures(): (Omit<Figure, "series"> & { series: Series[] })[] {
+    const { report, store } = this.page;
+    const { current, visible, dark } = store.state;
+    const colours = paletteOf(dark).series;
+    const spread = (run: number, values: Column) => report.frames.map((_, position) => values[report.row(run, position)] ?? null);
+    const perRun = report.runs.map((run) => figuresOf(run, report.unit));
+    return perRun[current].map(({ series, ...figure }, i) => {
+      const own = visible[current] ? series.map(({ label, values }, s) => ({
+        label: report.runs.length > 1 && s === 0 ? `${report.runs[current].name}: ${label}` : label,
+        values: spread(current, values),
+        colour: s === 0 ? runColour(dark, current) : colours[(s - 1) % colours.length],
+        dash: s === 0 ? [] : DASHES[(s - 1) % DASHES.length],
+      })) : [];
+      const others = report.runs.flatMap((run, index) => {
+        const main = perRun[index][i].series[0];
+        if (index === current || !visible[index] || !main || figure.stacked) return [];
+        return [{ label: `${run.name}: ${main.label}`, values: spread(index, main.values), colour: runColour(dark, index), dash: [] }];
+      });
+      return { ...figure, series: [...own, ...others] };
+    }).filter(({ series }) => series.length > 0);
+  }
+}

@@ -1,0 +1,385 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What stands in the 3D view. `build` makes what depends on the runs alone, `showFrame` what depends on the frame.
+
+import {
+  BufferAttribute, BufferGeometry, Color, DoubleSide, Mesh, MeshBasicMaterial, NearestFilter, Quaternion, Scene, Texture, Vector3,
+} from "three";
+import { paletteOf, runColour } from "./colours";
+import { ThinLines, WideLines } from "./lines";
+import { Marks, RUN_SHAPES } from "./marks";
+import type { Page } from "./page";
+import { lastAtMost } from "./report";
+import type { Run } from "./run";
+
+const FRUSTUM_OF_DEPTH = 0.2;   // size of the camera as a part of the median depth
+const GRID_LINES = 10;
+const TRAIL_STEP_OF_SIZE = 1 / 600;   // shorter steps are not drawn by themselves
+
+export class SceneContent {
+  readonly scene = new Scene();
+  // Of the points and paths, without what lies far out.
+  centre = new Vector3();
+  size = 1;
+  medianDepth = 1;
+  gridStep = 1;
+  private lowest = 0;   // the largest y
+  // The ends of the axes, to be labelled.
+  readonly axisEnds = [new Vector3(), new Vector3(), new Vector3()];
+
+  private readonly map = new Marks(2.5, 0);
+  private readonly points = new Marks(7, 0.28);
+  private readonly others = new Marks(6, 0.25);
+  private readonly truthPoints = new Marks(4.5, 0);
+  private readonly trails = new ThinLines();
+  private readonly errors = new ThinLines();
+  private readonly grid = new ThinLines(0.8);
+  private readonly axes = [0, 1, 2].map(() => new WideLines(1.5));
+  private readonly paths: { ahead: ThinLines; done: WideLines; count: Uint32Array }[];
+  private readonly truePath = new WideLines(2, true);
+  private readonly trueFrustum = new WideLines(1.5);
+  private readonly frustum = new WideLines(1.5);
+  private readonly track = new WideLines(2.5);
+  private readonly ring = new Marks(11, 0);
+  private readonly picture: Mesh<BufferGeometry, MeshBasicMaterial>;
+  // Of each row of the current run: how many points had been seen by then, in the order of the map's vertices.
+  private known = new Uint32Array(0);
+
+  constructor(private readonly page: Page) {
+    this.paths = page.report.runs.map(() => ({ ahead: new ThinLines(0.4), done: new WideLines(2.5), count: new Uint32Array(0) }));
+    this.picture = makePicture();
+    this.scene.add(this.grid, ...this.axes, this.map, this.trails, this.errors, this.truthPoints, this.others, this.points,
+      ...this.paths.flatMap(({ ahead, done }) => [ahead, done]), this.truePath, this.trueFrustum, this.frustum, this.picture,
+      this.track, this.ring);
+    this.track.renderOrder = this.ring.renderOrder = 1;
+    this.track.material.depthTest = this.ring.material.depthTest = false;
+  }
+
+  build(): void {
+    this.measure();
+    this.page.report.runs.forEach((run, index) => this.buildPath(run, index));
+    const { truth } = this.page.report;
+    if (truth) this.truePath.setSegments(segmentsOf(truth.pose, truth.frame.length).coordinates, this.size / 120);
+    this.buildGrid();
+    this.paint();
+  }
+
+  // What depends on the theme and on which run is the current one.
+  paint(): void {
+    const { dark, current } = this.page.store.state;
+    const palette = paletteOf(dark);
+    this.scene.background = new Color(palette.background);
+    this.grid.material.color.set(palette.grid);
+    for (const axis of this.axes) axis.material.color.set(palette.text);
+    this.trails.material.color.set(palette.trails);
+    this.errors.material.color.set(palette.truth);
+    this.truePath.material.color.set(palette.truth);
+    this.trueFrustum.material.color.set(palette.truth);
+    this.frustum.material.color.set(runColour(dark, current));
+    this.track.material.color.set(palette.picked);
+    this.points.setRim(dark ? "#ffffff" : "#000000");
+    this.others.setRim(dark ? "#000000" : "#ffffff");
+    this.paths.forEach(({ ahead, done }, run) => {
+      ahead.material.color.set(runColour(dark, run));
+      done.material.color.set(runColour(dark, run));
+    });
+    this.buildMap();
+  }
+
+  showFrame(): void {
+    const { report, store } = this.page;
+    const { current, position, layers, visible } = store.state;
+    const run = report.runs[current];
+    const row = report.row(current, position);
+    const observations = visible[current] ? run.observationsOfRow(row) : new Uint32Array(0);
+    this.map.visible = layers.map && visible[current];
+    const lastRow = lastAtMost(run.frames.frame, report.frames[position]);
+    this.map.geometry.setDrawRange(0, lastRow < 0 ? 0 : this.known[lastRow] ?? 0);
+    this.showPoints(run, observations);
+    this.showTrails(run, observations);
+    this.showTruth(run, observations);
+    this.showOthers();
+    this.showPaths();
+    this.showCamera(run, row);
+    this.grid.visible = layers.grid;
+    for (const axis of this.axes) axis.visible = layers.grid;
+  }
+
+  showPicked(): void {
+    const { report, store } = this.page;
+    const { picked, current, position } = store.state;
+    const run = report.runs[current];
+    const point = picked === null ? undefined : run.pointWithId(picked);
+    const observations = point === undefined ? [] : run.observationsOfPoint(point);
+    const coordinates: number[] = [];
+    for (let i = 1; i < observations.length; ++i) {
+      for (const o of [observations[i - 1], observations[i]]) coordinates.push(...run.position.values.subarray(3 * o, 3 * o + 3));
+    }
+    this.track.setSegments(coordinates);
+    const row = report.row(current, position);
+    const now = observations.find((o) => run.row.values[o] === row);
+    this.ring.begin(1);
+    if (now !== undefined) {
+      this.ring.addMark(run.position.values, now, new Color(paletteOf(store.state.dark).picked).getHex(), "ring");
+    }
+    this.ring.end();
+  }
+
+  showImage(bitmap: ImageBitmap | null | undefined): void {
+    const { material } = this.picture;
+    if (!bitmap) {
+      material.map = null;
+      this.picture.visible = false;
+    } else if (material.map?.image !== bitmap) {
+      material.map?.dispose();
+      material.map = new Texture(bitmap);
+      material.map.minFilter = material.map.magFilter = NearestFilter;
+      material.map.generateMipmaps = false;
+      material.map.needsUpdate = true;
+      material.needsUpdate = true;
+    }
+  }
+
+  private measure(): void {
+    const { report } = this.page;
+    const axes: number[][] = [[], [], []];
+    const depths: number[] = [];
+    for (const run of report.runs) {
+      sample(run.rest.values, run.id.length, 3, (i) => {
+        if (!Number.isNaN(run.rest.values[i])) for (let axis = 0; axis < 3; ++axis) axes[axis].push(run.rest.values[i + axis]);
+      });
+      sample(run.pose.values, run.rows, 7, (i) => {
+        if (!Number.isNaN(run.pose.values[i])) for (let axis = 0; axis < 3; ++axis) axes[axis].push(run.pose.values[i + 4 + axis]);
+      });
+      sample(run.depth.values, run.observations, 1, (i) => depths.push(run.depth.values[i]));
+    }
+    if (axes[0].length === 0) return;
+    const ends = axes.map((values) => {
+      values.sort((a, b) => a - b);
+      return [values[Math.floor(0.01 * (values.length - 1))], values[Math.ceil(0.99 * (values.length - 1))]];
+    });
+    this.centre.fromArray(ends.map(([low, high]) => (low + high) / 2));
+    this.size = Math.hypot(...ends.map(([low, high]) => high - low)) || 1;
+    depths.sort((a, b) => a - b);
+    this.medianDepth = depths[depths.length >> 1] || this.size;
+    this.lowest = ends[1][1];
+  }
+
+  private buildMap(): void {
+    const { report, store } = this.page;
+    const run = report.runs[store.state.current];
+    const count = run.id.length;
+    const order = Array.from({ length: count }, (_, point) => point).filter((point) => run.count.values[point] > 0);
+    order.sort((a, b) => run.first.values[a] - run.first.values[b]);
+    this.known = new Uint32Array(run.rows);
+    const colour = new Color(paletteOf(store.state.dark).map).getHex();
+    this.map.begin(order.length);
+    for (const point of order) {
+      this.map.addMark(run.rest.values, point, colour, "disc");
+      ++this.known[run.first.values[point]];
+    }
+    for (let row = 1; row < run.rows; ++row) this.known[row] += this.known[row - 1];
+    this.map.end();
+  }
+
+  private buildPath(run: Run, index: number): void {
+    const path = this.paths[index];
+    const { coordinates, count } = segmentsOf(run.pose.values, run.rows);
+    path.count = count;
+    path.done.setSegments(coordinates);
+    const ends = new Float32Array(coordinates);
+    path.ahead.begin();
+    for (let i = 0; i + 1 < ends.length / 3; i += 2) path.ahead.addSegment(ends, i, ends, i + 1);
+    path.ahead.end();
+  }
+
+  private buildGrid(): void {
+    this.gridStep = niceStep(this.size / GRID_LINES);
+    const half = (GRID_LINES / 2) * this.gridStep;
+    const round = (value: number) => Math.round(value / this.gridStep) * this.gridStep;
+    const x = round(this.centre.x);
+    const z = round(this.centre.z);
+    const y = this.lowest;
+    this.grid.begin();
+    for (let i = -GRID_LINES / 2; i <= GRID_LINES / 2; ++i) {
+      const at = i * this.gridStep;
+      const ends = new Float32Array([x + at, y, z - half, x + at, y, z + half, x - half, y, z + at, x + half, y, z + at]);
+      this.grid.addSegment(ends, 0, ends, 1);
+      this.grid.addSegment(ends, 2, ends, 3);
+    }
+    this.grid.end();
+    this.axes.forEach((axis, i) => {
+      this.axisEnds[i].set(0, 0, 0).setComponent(i, this.gridStep);
+      axis.setSegments([0, 0, 0, ...this.axisEnds[i].toArray()]);
+    });
+  }
+
+  private showPoints(run: Run, observations: Uint32Array): void {
+    this.points.begin(observations.length);
+    if (this.page.store.state.layers.points) {
+      for (const o of observations) {
+        const shape = run.isLost(o) ? "cross" : run.isReturned(o) ? "ring" : "disc";
+        this.points.addMark(run.position.values, o, this.page.colouring.colour(run, o), shape);
+      }
+    }
+    this.points.end();
+  }
+
+  // From where a point is back through the last frames, and on to where it rests.
+  private showTrails(run: Run, observations: Uint32Array): void {
+    const { layers, trail } = this.page.store.state;
+    this.trails.begin();
+    if (layers.trails) {
+      const row = run.row.values;
+      const previous = run.previous.values;
+      const position = run.position.values;
+      const shortest = TRAIL_STEP_OF_SIZE * this.size;
+      for (const observation of observations) {
+        const oldest = row[observation] - trail;
+        let from = observation;
+        for (let o = previous[observation]; o >= 0 && row[o] >= oldest; o = previous[o]) {
+          const length = Math.abs(position[3 * o] - position[3 * from]) + Math.abs(position[3 * o + 1] - position[3 * from + 1]) +
+            Math.abs(position[3 * o + 2] - position[3 * from + 2]);
+          if (length < shortest) continue;
+          this.trails.addSegment(position, from, position, o);
+          from = o;
+        }
+        this.trails.addSegment(position, from, run.rest.values, run.point.values[from]);
+      }
+    }
+    this.trails.end();
+  }
+
+  private showTruth(run: Run, observations: Uint32Array): void {
+    const { layers, dark } = this.page.store.state;
+    const colour = new Color(paletteOf(dark).truth).getHex();
+    const truth = layers.truth ? run.truth?.values : undefined;
+    this.truthPoints.begin(observations.length);
+    this.errors.begin();
+    if (truth) {
+      for (const o of observations) {
+        if (Number.isNaN(truth[3 * o])) continue;
+        this.truthPoints.addMark(truth, o, colour, "diamond");
+        this.errors.addSegment(truth, o, run.position.values, o);
+      }
+    }
+    this.truthPoints.end();
+    this.errors.end();
+  }
+
+  private showOthers(): void {
+    const { report, store } = this.page;
+    const { visible, current, position, dark, layers } = store.state;
+    const shown = report.runs
+      .map((run, index) => ({ run, index, observations: run.observationsOfRow(report.row(index, position)) }))
+      .filter(({ index }) => visible[index] && index !== current && layers.points);
+    this.others.begin(shown.reduce((sum, { observations }) => sum + observations.length, 0));
+    for (const { run, index, observations } of shown) {
+      const colour = new Color(runColour(dark, index)).getHex();
+      for (const o of observations) this.others.addMark(run.position.values, o, colour, RUN_SHAPES[index % RUN_SHAPES.length]);
+    }
+    this.others.end();
+  }
+
+  private showPaths(): void {
+    const { report, store } = this.page;
+    const { layers, visible, position } = store.state;
+    this.paths.forEach(({ ahead, done, count }, index) => {
+      const row = lastAtMost(report.runs[index].frames.frame, report.frames[position]);
+      const segments = row < 0 ? 0 : count[row] ?? 0;
+      ahead.visible = layers.path && visible[index];
+      done.visible = ahead.visible && segments > 0;
+      done.show(segments);
+    });
+    this.truePath.visible = layers.truth && report.truth !== null;
+  }
+
+  private showCamera(run: Run, row: number): void {
+    const { report, store } = this.page;
+    const { layers, visible, current, position, view } = store.state;
+    const corners = report.camera.corners;
+    const length = FRUSTUM_OF_DEPTH * this.medianDepth;
+    const shown = corners !== null && layers.path && visible[current] && run.hasPose(row);
+    const inside = view === "camera";
+    this.picture.visible = shown && this.picture.material.map !== null;
+    this.putBehind(inside);
+    if (shown) {
+      const ends = cornersInWorld(run.pose.values, row, corners, length);
+      this.frustum.setSegments(frustumSegments(ends));
+      setPicture(this.picture, ends);
+    }
+    this.frustum.visible = shown && !inside;
+    const index = report.truth && layers.truth && corners && !inside ? report.truth.frame.indexOf(report.frames[position]) : -1;
+    this.trueFrustum.visible = index >= 0;
+    if (index >= 0) this.trueFrustum.setSegments(frustumSegments(cornersInWorld(report.truth!.pose, index, corners!, length)));
+  }
+
+  // Seen from the camera the image is the background.
+  private putBehind(behind: boolean): void {
+    const { material } = this.picture;
+    if (material.depthTest !== behind) return;
+    material.depthTest = material.depthWrite = material.transparent = !behind;
+    material.needsUpdate = true;
+    this.picture.renderOrder = behind ? -1 : 0;
+  }
+}
+
+// Segments between poses that follow each other, and of each row how many end there or before.
+function segmentsOf(pose: Float32Array, rows: number): { coordinates: number[]; count: Uint32Array } {
+  const coordinates: number[] = [];
+  const count = new Uint32Array(rows);
+  for (let row = 0; row < rows; ++row) {
+    if (row > 0 && !Number.isNaN(pose[7 * row]) && !Number.isNaN(pose[7 * row - 7])) {
+      coordinates.push(...pose.subarray(7 * row - 3, 7 * row), ...pose.subarray(7 * row + 4, 7 * row + 7));
+    }
+    count[row] = coordinates.length / 6;
+  }
+  return { coordinates, count };
+}
+
+export function poseOf(pose: Float32Array, row: number): { rotation: Quaternion; position: Vector3 } {
+  const [qx, qy, qz, qw, x, y, z] = pose.subarray(7 * row, 7 * row + 7);
+  return { rotation: new Quaternion(qx, qy, qz, qw), position: new Vector3(x, y, z) };
+}
+
+// The camera's centre and the corners of its image.
+function cornersInWorld(pose: Float32Array, row: number, corners: [number, number, number][], length: number): Vector3[] {
+  const { rotation, position } = poseOf(pose, row);
+  return [position, ...corners.map((ray) => new Vector3(...ray).multiplyScalar(length).applyQuaternion(rotation).add(position))];
+}
+
+function frustumSegments([centre, ...corners]: Vector3[]): number[] {
+  return corners.flatMap((corner, i) => [centre, corner, corner, corners[(i + 1) % 4]]).flatMap((end) => end.toArray());
+}
+
+function makePicture(): Mesh<BufferGeometry, MeshBasicMaterial> {
+  const geometry = new BufferGeometry();
+  geometry.setAttribute("position", new BufferAttribute(new Float32Array(12), 3));
+  // An ImageBitmap's first row is at v = 0.
+  geometry.setAttribute("uv", new BufferAttribute(new Float32Array([0, 0, 1, 0, 1, 1, 0, 1]), 2));
+  geometry.setIndex([0, 1, 2, 0, 2, 3]);
+  const mesh = new Mesh(geometry, new MeshBasicMaterial({ side: DoubleSide, transparent: true, opacity: 0.85 }));
+  mesh.frustumCulled = false;
+  mesh.visible = false;
+  return mesh;
+}
+
+function setPicture(picture: Mesh<BufferGeometry, MeshBasicMaterial>, [, ...corners]: Vector3[]): void {
+  const attribute = picture.geometry.getAttribute("position") as BufferAttribute;
+  corners.forEach((corner, i) => corner.toArray(attribute.array, 3 * i));
+  attribute.needsUpdate = true;
+}
+
+// At most 20,000 entries of an array whose rows have n numbers.
+function sample(values: Float32Array, rows: number, n: number, use: (index: number) => void): void {
+  const step = Math.max(1, Math.floor(rows / 20000));
+  for (let row = 0; row < rows && row * n < values.length; row += step) use(row * n);
+}
+
+// 1, 2 or 5 times a power of ten.
+function niceStep(value: number): number {
+  const power = 10 ** Math.floor(Math.log10(value));
+  const times = value / power;
+  return power * (times < 1.5 ? 1 : times < 3.5 ? 2 : times < 7.5 ? 5 : 10);
+}

@@ -1,0 +1,187 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The 3D view: renderer, camera and picking. World axes are the camera's of the first frame: x right, y down, z ahead.
+
+import { ColorManagement, LinearSRGBColorSpace, PerspectiveCamera, Quaternion, Vector3, WebGLRenderer } from "three";
+import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
+import { CLICK_RADIUS_PX, byId, element, onClick, setText } from "./dom";
+import type { Page } from "./page";
+import { SceneContent, poseOf } from "./scene_content";
+import { type Changed, anyOf } from "./state";
+
+// three.js looks along -z with y up.
+const CAMERA_FROM_VIEW = new Quaternion(1, 0, 0, 0);
+const FIELD_OF_VIEW_DEG = 45;
+const START_DIRECTION = new Vector3(-0.75, -0.65, -1).normalize();
+
+ColorManagement.enabled = false;
+
+export class SceneView {
+  private readonly container = byId("scene");
+  private readonly renderer: WebGLRenderer;
+  private readonly camera = new PerspectiveCamera(FIELD_OF_VIEW_DEG);
+  private readonly controls: OrbitControls;
+  private readonly content: SceneContent;
+  private readonly labels = ["x", "y", "z"].map((name) => element("span", { textContent: name, className: "axis" }));
+  private requested = false;
+
+  // Throws where there is no WebGL.
+  constructor(private readonly page: Page) {
+    if (!document.createElement("canvas").getContext("webgl2")) throw new Error("no WebGL");
+    this.renderer = new WebGLRenderer({ antialias: true });
+    this.renderer.outputColorSpace = LinearSRGBColorSpace;
+    this.renderer.setPixelRatio(window.devicePixelRatio);
+    const canvas = this.renderer.domElement;
+    canvas.setAttribute("role", "img");
+    canvas.setAttribute("aria-label", "3D view of the points and of the camera's path");
+    this.container.append(canvas, ...this.labels);
+    this.content = new SceneContent(page);
+    this.camera.up.set(0, -1, 0);
+    this.controls = new OrbitControls(this.camera, canvas);
+    this.controls.addEventListener("change", () => this.request());
+    this.controls.addEventListener("start", () => page.store.change({ view: "free" }));
+    onClick(canvas, (x, y) => page.pick(this.nearest(x, y)));
+    canvas.addEventListener("dblclick", () => this.reset());
+    new ResizeObserver(() => this.resize()).observe(this.container);
+    this.content.build();
+    this.content.showFrame();
+    this.reset();
+  }
+
+  update(changed: Changed): void {
+    const content = this.content;
+    if (anyOf(changed, "revision")) content.build();
+    else if (anyOf(changed, "current", "dark")) content.paint();
+    if (anyOf(changed, "position", "revision", "dark", "playing")) this.showImage();
+    if (anyOf(changed, "position", "current", "visible", "colour", "layers", "trail", "view", "dark", "revision")) content.showFrame();
+    if (anyOf(changed, "position", "current", "picked", "dark", "revision")) content.showPicked();
+    if (anyOf(changed, "view") && this.page.store.state.view === "free") this.leaveCamera();
+    if (anyOf(changed, "position", "current", "view", "revision")) this.follow();
+    if (anyOf(changed, "position", "current", "visible", "picked", "colour", "layers", "trail", "view", "dark", "revision")) this.render();
+    setText(byId("scene-caption"), this.page.store.state.layers.grid
+      ? `grid ${Number(content.gridStep.toPrecision(1))} ${this.page.report.unit}` : "");
+  }
+
+  // Frames the whole scene.
+  reset(): void {
+    this.page.store.change({ view: "free" });
+    const distance = (0.5 * this.content.size) / Math.tan((FIELD_OF_VIEW_DEG * Math.PI) / 360);
+    const aspect = Math.min(1, this.container.clientWidth / Math.max(1, this.container.clientHeight));
+    this.controls.target.copy(this.content.centre);
+    this.camera.position.copy(this.content.centre).addScaledVector(START_DIRECTION, distance / aspect);
+    this.camera.near = 0.001 * distance;
+    this.camera.far = 20 * distance;
+    this.leaveCamera();
+  }
+
+  // The frame's image may have come since.
+  showImage(): void {
+    const { report, images, store } = this.page;
+    const frame = images?.frameFor(report.frames[store.state.position]) ?? null;
+    const image = images && frame !== null ? images.get(frame) : null;
+    if (image !== undefined || !store.state.playing) this.content.showImage(image);
+  }
+
+  imageLoaded(): void {
+    this.showImage();
+    this.content.showFrame();
+    this.request();
+  }
+
+  project(position: ArrayLike<number>, offset = 0): [number, number, number] {
+    const point = new Vector3().fromArray(position, offset).project(this.camera);
+    return [(0.5 + 0.5 * point.x) * this.container.clientWidth, (0.5 - 0.5 * point.y) * this.container.clientHeight, point.z];
+  }
+
+  private nearest(x: number, y: number): number | null {
+    const { report, store } = this.page;
+    const run = report.runs[store.state.current];
+    let best: number | null = null;
+    let least = CLICK_RADIUS_PX;
+    for (const o of run.observationsOfRow(report.row(store.state.current, store.state.position))) {
+      const [px, py, depth] = this.project(run.position.values, 3 * o);
+      const distance = Math.hypot(px - x, py - y);
+      if (distance >= least || depth >= 1) continue;
+      least = distance;
+      best = o;
+    }
+    return best;
+  }
+
+  private leaveCamera(): void {
+    this.camera.updateProjectionMatrix();
+    this.controls.update();
+    this.request();
+  }
+
+  // Puts the view where the camera is, or a bit behind it; a frame without a pose leaves it where it was.
+  private follow(): void {
+    const { report, store } = this.page;
+    const { current, position, view } = store.state;
+    const run = report.runs[current];
+    const row = report.row(current, position);
+    if (view === "free" || !run.hasPose(row)) return;
+    const pose = poseOf(run.pose.values, row);
+    const ahead = new Vector3(0, 0, 1).applyQuaternion(pose.rotation);
+    const depth = this.content.medianDepth;
+    this.controls.target.copy(pose.position).addScaledVector(ahead, depth);
+    this.camera.position.copy(pose.position);
+    this.camera.quaternion.copy(pose.rotation).multiply(CAMERA_FROM_VIEW);
+    this.camera.updateProjectionMatrix();
+    if (view === "camera") {
+      this.takeCorners();
+      return;
+    }
+    const up = new Vector3(0, -1, 0).applyQuaternion(pose.rotation);
+    this.camera.position.addScaledVector(ahead, -0.9 * depth).addScaledVector(up, 0.35 * depth);
+    this.camera.lookAt(this.controls.target);
+  }
+
+  // Of the camera's own field of view, which the image's corners tell; the rest of the canvas shows what lies beside.
+  private takeCorners(): void {
+    const { corners } = this.page.report.camera;
+    if (!corners) return;
+    const { near, far } = this.camera;
+    const xs = corners.map(([x]) => x);
+    const ys = corners.map(([, y]) => y);
+    const aspect = this.container.clientWidth / Math.max(1, this.container.clientHeight);
+    const width = Math.max(...xs) - Math.min(...xs);
+    const height = Math.max(...ys) - Math.min(...ys);
+    const x = (Math.max(...xs) + Math.min(...xs)) / 2;
+    const y = (Math.max(...ys) + Math.min(...ys)) / 2;
+    const halfWidth = Math.max(width, height * aspect) / 2;
+    const halfHeight = halfWidth / aspect;
+    this.camera.projectionMatrix.makePerspective(near * (x - halfWidth), near * (x + halfWidth), near * (halfHeight - y),
+      near * (-halfHeight - y), near, far);
+    this.camera.projectionMatrixInverse.copy(this.camera.projectionMatrix).invert();
+  }
+
+  private resize(): void {
+    const { clientWidth, clientHeight } = this.container;
+    if (clientWidth === 0 || clientHeight === 0) return;
+    this.renderer.setSize(clientWidth, clientHeight);
+    this.camera.aspect = clientWidth / clientHeight;
+    this.camera.updateProjectionMatrix();
+    this.follow();
+    this.render();
+  }
+
+  private request(): void {
+    if (this.requested) return;
+    this.requested = true;
+    requestAnimationFrame(() => this.render());
+  }
+
+  private render(): void {
+    this.requested = false;
+    this.camera.updateMatrixWorld();
+    this.renderer.render(this.content.scene, this.camera);
+    const { grid } = this.page.store.state.layers;
+    this.labels.forEach((label, axis) => {
+      const [x, y, depth] = this.project(this.content.axisEnds[axis].toArray());
+      label.hidden = !grid || depth >= 1;
+      label.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`;
+    });
+  }
+}

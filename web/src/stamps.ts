@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Marks on an image with a dark rim. Each shape and colour is drawn once and then copied: thousands of paths a frame are slow,
+// and very slow where there is no GPU.
+
+import { css } from "./colours";
+
+const RADIUS_PX = 3;
+const SIZE_PX = 14;
+const SLOTS = 24;   // a side of the sheet
+const RIM = "rgba(0, 0, 0, 0.6)";
+
+export const STAMPS = ["dot", "cross", "ring"] as const;
+export type Stamp = (typeof STAMPS)[number];
+
+export class Stamps {
+  private readonly sheet = document.createElement("canvas");
+  private readonly slots = new Map<number, number>();
+  private ratio = 0;
+
+  draw(context: CanvasRenderingContext2D, x: number, y: number, colour: number, stamp: Stamp): void {
+    if (this.ratio !== window.devicePixelRatio) this.clear();
+    const key = colour + STAMPS.indexOf(stamp) * 0x1000000;
+    const slot = this.slots.get(key) ?? this.make(key, colour, stamp);
+    const side = SIZE_PX * this.ratio;
+    context.drawImage(this.sheet, (slot % SLOTS) * side, Math.floor(slot / SLOTS) * side, side, side, x - SIZE_PX / 2, y - SIZE_PX / 2,
+      SIZE_PX, SIZE_PX);
+  }
+
+  private make(key: number, colour: number, stamp: Stamp): number {
+    if (this.slots.size === SLOTS * SLOTS) this.clear();
+    const slot = this.slots.size;
+    this.slots.set(key, slot);
+    const context = this.sheet.getContext("2d")!;
+    const side = SIZE_PX * this.ratio;
+    context.setTransform(this.ratio, 0, 0, this.ratio, ((slot % SLOTS) + 0.5) * side, (Math.floor(slot / SLOTS) + 0.5) * side);
+    context.beginPath();
+    if (stamp === "cross") {
+      context.moveTo(-4.5, -4.5);
+      context.lineTo(4.5, 4.5);
+      context.moveTo(-4.5, 4.5);
+      context.lineTo(4.5, -4.5);
+    } else {
+      context.arc(0, 0, stamp === "dot" ? RADIUS_PX : RADIUS_PX + 1.5, 0, 2 * Math.PI);
+    }
+    if (stamp === "dot") {
+      context.fillStyle = css(colour);
+      context.fill();
+      context.lineWidth = 1;
+      context.strokeStyle = RIM;
+      context.stroke();
+    } else {
+      strokeOnImage(context, css(colour));
+    }
+    return slot;
+  }
+
+  private clear(): void {
+    this.ratio = window.devicePixelRatio;
+    this.slots.clear();
+    this.sheet.width = this.sheet.height = SLOTS * SIZE_PX * this.ratio;
+  }
+}
+
+// With a dark rim, so that it is seen on any image.
+export function strokeOnImage(context: CanvasRenderingContext2D, colour: string): void {
+  context.lineWidth = 4;
+  context.strokeStyle = RIM;
+  context.stroke();
+  context.lineWidth = 2;
+  context.strokeStyle = colour;
+  context.stroke();
+}

@@ -1,0 +1,140 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The runs, the colour mode with its legend, the layers of the 3D view, the theme.
+
+import { GRADIENT, type Mode, colourModes, paletteOf, runColour } from "./colours";
+import { byId, element, setText, short } from "./dom";
+import { RUN_SHAPES } from "./marks";
+import type { Page } from "./page";
+import { type Changed, LAYERS, type Layer, THEMES, type Theme, VIEWS, anyOf } from "./state";
+
+const SHAPE_SIGNS = { square: "■", triangle: "▲", diamond: "◆" } as Record<string, string>;
+const LAYER_TITLES: Record<Layer, string> = {
+  map: "the undeformed map (m)", points: "the points where they are now (o)", trails: "where they were in the last frames, from where they rest (t)",
+  path: "the camera's path (p)", truth: "true camera path and surface (g)", grid: "grid and axes (x)",
+};
+const prefersDark = window.matchMedia("(prefers-color-scheme: dark)");
+
+export class Toolbar {
+  private readonly modes: Mode[];
+  private readonly colour = byId<HTMLSelectElement>("colour");
+  private readonly trail = byId<HTMLInputElement>("trail");
+  private readonly layers: Record<string, HTMLButtonElement> = {};
+  private readonly runs: { box: HTMLInputElement; button: HTMLButtonElement }[];
+
+  constructor(private readonly page: Page) {
+    const { report, store } = page;
+    this.modes = colourModes(report);
+    this.colour.append(...this.modes.map(({ name, label }) => element("option", { value: name, textContent: label })));
+    this.colour.addEventListener("change", () => store.change({ colour: this.colour.value }));
+    byId("gradient").style.backgroundImage = GRADIENT;
+    this.runs = report.runs.map((run, index) => this.makeRun(run.name, index));
+    for (const layer of LAYERS) this.makeLayer(layer);
+    this.trail.addEventListener("input", () => store.change({ trail: Number(this.trail.value) }));
+    for (const view of VIEWS) byId(`view-${view}`).addEventListener("click", () => store.change({ view }));
+    byId("theme").addEventListener("click", () => this.cycleTheme());
+    prefersDark.addEventListener("change", () => this.setTheme(store.state.theme));
+    this.setTheme(store.state.theme);
+    this.showAll();
+  }
+
+  update(changed: Changed): void {
+    if (anyOf(changed, "current", "visible", "colour", "layers", "trail", "view", "theme", "dark", "revision")) this.showAll();
+  }
+
+  cycleColour(step: number): void {
+    const { store } = this.page;
+    const index = this.modes.findIndex(({ name }) => name === store.state.colour);
+    store.change({ colour: this.modes[(index + step + this.modes.length) % this.modes.length].name });
+  }
+
+  cycleView(): void {
+    const { store } = this.page;
+    store.change({ view: VIEWS[(VIEWS.indexOf(store.state.view) + 1) % VIEWS.length] });
+  }
+
+  cycleTheme(): void {
+    this.setTheme(THEMES[(THEMES.indexOf(this.page.store.state.theme) + 1) % THEMES.length]);
+  }
+
+  toggleLayer(layer: Layer): void {
+    const { store } = this.page;
+    store.change({ layers: { ...store.state.layers, [layer]: !store.state.layers[layer] } });
+  }
+
+  makeCurrent(run: number): void {
+    const { report, store } = this.page;
+    if (run >= report.runs.length || run === store.state.current) return;
+    store.change({ current: run, picked: null, visible: store.state.visible.map((visible, i) => visible || i === run) });
+  }
+
+  private setTheme(theme: Theme): void {
+    const dark = theme === "dark" || (theme === "auto" && prefersDark.matches);
+    document.documentElement.dataset.theme = dark ? "dark" : "light";
+    this.page.store.change({ theme, dark });
+  }
+
+  private makeRun(name: string, index: number): { box: HTMLInputElement; button: HTMLButtonElement } {
+    const { store } = this.page;
+    const box = element("input", { type: "checkbox", ariaLabel: `show ${name}` });
+    box.addEventListener("change", () => {
+      store.change({ visible: store.state.visible.map((visible, i) => (i === index ? box.checked : visible)) });
+    });
+    const button = element("button", { type: "button", title: `show ${name} in full (${index + 1})` },
+      element("span", { className: "swatch", ariaHidden: "true" }), name);
+    button.addEventListener("click", () => this.makeCurrent(index));
+    byId("runs").append(element("li", {}, box, button));
+    return { box, button };
+  }
+
+  private makeLayer(layer: Layer): void {
+    const button = element("button", { type: "button", title: LAYER_TITLES[layer] },
+      element("span", { className: "swatch", ariaHidden: "true" }), layer);
+    button.addEventListener("click", () => this.toggleLayer(layer));
+    button.hidden = layer === "truth" && !this.page.report.truth && !this.page.report.runs.some((run) => run.truth);
+    this.layers[layer] = button;
+    byId("layers").append(button);
+  }
+
+  private showAll(): void {
+    const { state } = this.page.store;
+    this.showRuns();
+    this.showLegend();
+    const palette = paletteOf(state.dark);
+    const swatches: Partial<Record<Layer, string>> = {
+      map: palette.map, trails: palette.trails, path: runColour(state.dark, state.current), truth: palette.truth,
+    };
+    for (const layer of LAYERS) {
+      const button = this.layers[layer];
+      button.setAttribute("aria-pressed", String(state.layers[layer]));
+      const swatch = button.firstElementChild as HTMLElement;
+      swatch.hidden = !swatches[layer];
+      swatch.style.background = swatches[layer] ?? "";
+    }
+    for (const view of VIEWS) byId(`view-${view}`).setAttribute("aria-pressed", String(view === state.view));
+    this.trail.value = String(state.trail);
+    setText(byId("trail-value"), String(state.trail));
+    setText(byId("theme"), `Theme: ${state.theme}`);
+  }
+
+  private showRuns(): void {
+    const { visible, current, dark } = this.page.store.state;
+    this.runs.forEach(({ box, button }, index) => {
+      box.checked = visible[index];
+      button.setAttribute("aria-pressed", String(index === current));
+      const swatch = button.firstElementChild as HTMLElement;
+      swatch.style.color = runColour(dark, index);
+      swatch.textContent = index === current ? "●" : SHAPE_SIGNS[RUN_SHAPES[index % RUN_SHAPES.length]];
+    });
+  }
+
+  private showLegend(): void {
+    const { mode, low, high } = this.page.colouring;
+    this.colour.value = mode.name;
+    byId("scale").hidden = mode.value === null;
+    const known = !Number.isNaN(low);
+    setText(byId("scale-low"), known ? short(low) : "no values");
+    setText(byId("scale-high"), known ? `${short(high)} ${mode.unit}` : "");
+  }
+}
