@@ -15,6 +15,7 @@
 #include "cli/sequence_arguments.h"
 #include "cli/track_progress.h"
 #include "pliant/viewer/live_view.h"
+#include "pliant/viewer/view.h"
 
 namespace pliant::cli {
 namespace {
@@ -100,7 +101,7 @@ int TrackCommand(std::span<const std::string> args) {
 
   std::unique_ptr<LiveView> live;
   if (arguments.live) {
-    auto started = LiveView::Start(arguments.output_path, live_options);
+    auto started = LiveView::Start(RunName(arguments.output_path), live_options);
     if (!started.ok()) return line.Failure(started.status().message());
     live = *std::move(started);
     std::cerr << "live view: " << live->Url() << std::endl;

@@ -15,11 +15,6 @@
 namespace pliant {
 namespace {
 
-std::string NameOf(const std::string& run_path) {
-  const std::filesystem::path path = std::filesystem::path(run_path).lexically_normal();
-  return (path.has_filename() ? path : path.parent_path()).filename().string();
-}
-
 // Calls `function` with the observations of each tracked frame of `run`, by its position in `frames`.
 template <class Function>
 Status ForEachTrackedFrame(const std::string& run_path, const std::vector<ViewedFrame>& frames,
@@ -51,8 +46,8 @@ Status AddObservations(const std::string& run_path, std::int64_t max_observation
     std::int64_t position = 0;
     for (auto entry = counts.begin(); entry != counts.end();)
       entry = position++ % every == 0 ? std::next(entry) : counts.erase(entry);
-    read->notes.push_back("of the " + std::to_string(total) + " observations of " + run.name + " those of every " +
-                          std::to_string(every) + "th point are shown (--Report.max_observations)");
+    read->notes.push_back("of the " + std::to_string(total) + " observations of " + run.name +
+                          " those of one point in " + std::to_string(every) + " are shown (--Report.max_observations)");
   }
   return ForEachTrackedFrame(run_path, run.frames, [&](std::size_t i, const auto& observations) {
     for (const PointObservation& o : observations)
@@ -100,6 +95,11 @@ void AddPoints(const RunMap& map, ViewedRun* run) {
 
 }  // namespace
 
+std::string RunName(const std::string& run_path) {
+  const std::filesystem::path path = std::filesystem::path(run_path).lexically_normal();
+  return (path.has_filename() ? path : path.parent_path()).filename().string();
+}
+
 ViewedObservation ToViewed(const PointObservation& observation) {
   ViewedObservation viewed;
   viewed.id = observation.id;
@@ -125,7 +125,7 @@ Result<ReadViewedRun> ReadRunForView(const std::string& run_path, const Sequence
   auto source = ReadRun(run_path);
   if (!source.ok()) return source.status();
   ReadViewedRun read;
-  read.run.name = NameOf(run_path);
+  read.run.name = RunName(run_path);
   if (source->summary) {
     read.input = source->summary->description.input;
     read.run.status = EnumName(source->summary->status);

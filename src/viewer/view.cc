@@ -4,6 +4,9 @@
 #include "pliant/viewer/view.h"
 
 #include <algorithm>
+#include <filesystem>
+#include <limits>
+#include <map>
 #include <set>
 #include <utility>
 
@@ -68,12 +71,32 @@ Sim3 AfterTheOneBefore(const FramePoses& before, double depth_before, const Fram
   return WorldFromPoses(before.rbegin()->second.Inverse(), poses.begin()->second.Inverse(), scale);
 }
 
-// Runs of one name are told apart by their folders.
+// Runs of one name are told apart by what their paths do not have in common.
 void TakeNames(const std::vector<std::string>& run_paths, View* view) {
   std::map<std::string, int> uses;
   for (const ViewedRun& run : view->runs) ++uses[run.name];
-  for (std::size_t i = 0; i < run_paths.size(); ++i)
-    if (uses[view->runs[i].name] > 1) view->runs[i].name = run_paths[i];
+  if (uses.size() == view->runs.size()) return;
+  std::vector<std::vector<std::string>> parts;
+  std::size_t shortest = std::numeric_limits<std::size_t>::max();
+  for (const std::string& path : run_paths) {
+    auto& folders = parts.emplace_back();
+    for (const auto& folder : std::filesystem::path(path).lexically_normal()) folders.push_back(folder.string());
+    shortest = std::min(shortest, folders.size());
+  }
+  const auto same = [&](const auto& part) {
+    return std::all_of(parts.begin(), parts.end(),
+                       [&](const auto& folders) { return part(folders) == part(parts[0]); });
+  };
+  std::size_t first = 0;
+  while (first < shortest && same([&](const auto& folders) { return folders[first]; })) ++first;
+  std::size_t last = 0;
+  while (first + last < shortest && same([&](const auto& folders) { return folders[folders.size() - 1 - last]; }))
+    ++last;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    std::filesystem::path name;
+    for (std::size_t k = first; k + last < parts[i].size(); ++k) name /= parts[i][k];
+    view->runs[i].name = name.empty() ? run_paths[i] : name.string();
+  }
 }
 
 // Everything into one world: the truth's, else that of the first run's first submap.

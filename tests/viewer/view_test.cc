@@ -97,7 +97,7 @@ TEST_F(ViewTest, ShowsRunsOfOneSceneInOneWorld) {
   // The same run in another world and unit.
   const Sim3 other = {0.3, kTruthFromRun.rotation, {1, 1, 1}};
   {
-    auto writer = RunWriter::Create(folder_.Path("other/run"), TestCamera(), {"0.1.0", {"pliant"}, 7, "nowhere", {}},
+    auto writer = RunWriter::Create(folder_.Path("b/run"), TestCamera(), {"0.1.0", {"pliant"}, 7, "nowhere", {}},
                                     "Track:\n  option: 3\n", {});
     ASSERT_TRUE(writer.ok()) << writer.status().message();
     for (int i = 0; i < kRunFrames; ++i) {
@@ -109,10 +109,11 @@ TEST_F(ViewTest, ShowsRunsOfOneSceneInOneWorld) {
     }
     ASSERT_TRUE(writer->Finish(RunStatus::kCompleted, "").ok());
   }
-  const auto view = OpenView(
-      {.run_paths = {folder_.Path("run"), folder_.Path("other/run")}, .sequence_path = "", .camera_path = ""}, {});
+  const auto view =
+      OpenView({.run_paths = {folder_.Path("run"), folder_.Path("b/run")}, .sequence_path = "", .camera_path = ""}, {});
   ASSERT_TRUE(view.ok()) << view.status().message();
-  EXPECT_NE(view->runs[0].name, view->runs[1].name);
+  EXPECT_EQ(view->runs[0].name, folder_.Path("run"));  // of the two paths one is in the other
+  EXPECT_EQ(view->runs[1].name, "b");
   EXPECT_EQ(view->runs[1].options.size(), 1U);
   for (int i = 0; i < kRunFrames; ++i) {
     const ViewedFrame& a = view->runs[0].frames[static_cast<std::size_t>(i)];
@@ -150,7 +151,7 @@ TEST_F(ViewTest, ThinsTooManyPointsAndSaysSo) {
   WriteRun(folder_);
   const auto view = Open({.max_observations = kRunObservations / 2});
   ASSERT_TRUE(view.ok()) << view.status().message();
-  EXPECT_THAT(view->notes, Contains(HasSubstr("every 2th point")));
+  EXPECT_THAT(view->notes, Contains(HasSubstr("those of one point in 2")));
   EXPECT_EQ(view->runs.front().points.size(), static_cast<std::size_t>(kRunPoints / 2));
 }
 

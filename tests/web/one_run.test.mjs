@@ -11,15 +11,14 @@ async function goToTheMiddle(page) {
   assert.ok((await state(page)).points.length > 0, "the middle frame has no points");
 }
 
-async function hasPixels(page, selector) {
-  return page.locator(selector).evaluate((canvas) => {
-    const copy = document.createElement("canvas");
-    copy.width = canvas.width;
-    copy.height = canvas.height;
+// An image is drawn, and not one colour.
+async function imageIsDrawn(page) {
+  await eventually(page, () => {
+    const canvas = document.getElementById("image");
+    const copy = Object.assign(document.createElement("canvas"), { width: canvas.width, height: canvas.height });
     const context = copy.getContext("2d");
     context.drawImage(canvas, 0, 0);
-    const { data } = context.getImageData(0, 0, copy.width, copy.height);
-    return new Set(new Uint32Array(data.buffer)).size > 50;
+    return new Set(new Uint32Array(context.getImageData(0, 0, copy.width, copy.height).data.buffer)).size > 1000;
   });
 }
 
@@ -30,8 +29,7 @@ testReport("shows the run when it is opened from disk", REPORT, async (page) => 
   assert.ok(await page.locator("#figures tbody tr").count() > 3);
   assert.ok(await page.locator("#options tbody tr").count() > 3);
   await goToTheMiddle(page);
-  await page.waitForTimeout(1000);
-  assert.ok(await hasPixels(page, "#image"), "the image is blank");
+  await imageIsDrawn(page);
   await screenshot(page, "light", { fullPage: true });
 });
 
@@ -77,7 +75,7 @@ testReport("zooms the plots", REPORT, async (page) => {
   await plot.scrollIntoViewIfNeeded();
   const box = await plot.boundingBox();
   const marks = page.locator("#plots .plot-now");
-  const shown = (count) => eventually(page, (wanted) => [...document.querySelectorAll("#plots .plot-now")].filter((line) => !line.hidden).length === wanted, count);
+  const shown = (count) => eventually(page, (wanted) => document.querySelectorAll("#plots .plot-now:not([hidden])").length === wanted, count);
   await page.keyboard.down("Shift");
   await page.mouse.move(box.x + 0.5 * box.width, box.y + 30);
   await page.mouse.down();
@@ -126,9 +124,7 @@ testReport("colours by each mode, with a legend", REPORT, async (page) => {
   for (const name of names) {
     await page.locator("#colour").selectOption(name);
     await eventually(page, (colour) => window.pliant.state().colour === colour, name);
-    await page.waitForTimeout(50);
-    const legend = await page.locator("#scale").isVisible() ? await page.locator("#scale").textContent() : "";
-    assert.equal(legend === "", name === "rgb", `${name}: ${legend}`);
+    await eventually(page, (own) => document.getElementById("scale").hidden === own, name === "rgb");
   }
 });
 
@@ -152,7 +148,7 @@ testReport("takes the dark theme where the system has it", REPORT, async (page) 
 testReport("fits a phone", REPORT, async (page) => {
   await goToTheMiddle(page);
   await press(page, "n");
-  await page.waitForTimeout(300);
+  await page.locator("#point").waitFor();
   assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= window.innerWidth), "it scrolls sideways");
   await screenshot(page, "phone", { fullPage: true });
   const { x, y } = await lonelyPoint(page, "image");

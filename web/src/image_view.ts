@@ -29,7 +29,7 @@ export class ImageView {
 
   constructor(private readonly page: Page) {
     new ResizeObserver(() => this.draw()).observe(this.canvas);
-    onClick(this.canvas, (x, y) => page.pick(this.nearest(x, y)));
+    onClick(this.canvas, (x, y) => this.pick(x, y));
     this.canvas.addEventListener("wheel", (event) => {
       event.preventDefault();
       this.zoomAt(event.offsetX, event.offsetY, Math.exp(-0.0015 * event.deltaY));
@@ -170,8 +170,8 @@ export class ImageView {
     context.lineTo(...this.project(run.pixel.values[2 * o], run.pixel.values[2 * o + 1]));
   }
 
-  // The observation of the current row that is closest to a pixel of the canvas.
-  private nearest(x: number, y: number): number | null {
+  // The point of this frame that is closest to a pixel of the canvas, if one is near.
+  private pick(x: number, y: number): void {
     const { report, store } = this.page;
     const run = report.runs[store.state.current];
     let best: number | null = null;
@@ -184,7 +184,7 @@ export class ImageView {
         best = o;
       }
     }
-    return best;
+    if (best !== null) this.page.pick(best);
   }
 
   private zoomAt(x: number, y: number, factor: number): void {

@@ -144,8 +144,11 @@ function start(report: Report, images: Images | null, live: boolean): (answer: A
       keys: ["Shift+ArrowLeft", "Shift+ArrowRight"], shown: "shift ← →", what: "ten frames back, on",
       run: (key) => timeline.step(key === "Shift+ArrowLeft" ? -10 : 10),
     },
-    { keys: ["Home", "End"], shown: "home, end", what: "first, last frame", run: (key) => timeline.go(key === "Home" ? 0 : report.frames.length - 1) },
-    { keys: ["c", "Shift+c"], shown: "c, shift c", what: "next, last colour", run: (key) => toolbar.cycleColour(key === "c" ? 1 : -1) },
+    {
+      keys: ["Home", "End"], shown: "home, end", what: "first, last frame",
+      run: (key) => timeline.go(key === "Home" ? 0 : report.frames.length - 1),
+    },
+    { keys: ["c", "Shift+c"], shown: "c, shift c", what: "next colour, the one before", run: (key) => toolbar.cycleColour(key === "c" ? 1 : -1) },
     { keys: ["m"], shown: "m", what: "undeformed map", run: () => toolbar.toggleLayer("map") },
     { keys: ["o"], shown: "o", what: "points", run: () => toolbar.toggleLayer("points") },
     { keys: ["t"], shown: "t", what: "trails", run: () => toolbar.toggleLayer("trails") },

@@ -28,8 +28,7 @@ export class SceneView {
 
   // Throws where there is no WebGL.
   constructor(private readonly page: Page) {
-    if (!document.createElement("canvas").getContext("webgl2")) throw new Error("no WebGL");
-    this.renderer = new WebGLRenderer({ antialias: true });
+    this.renderer = new WebGLRenderer({ antialias: hasGpu() });
     this.renderer.outputColorSpace = LinearSRGBColorSpace;
     this.renderer.setPixelRatio(window.devicePixelRatio);
     const canvas = this.renderer.domElement;
@@ -41,7 +40,7 @@ export class SceneView {
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.addEventListener("change", () => this.request());
     this.controls.addEventListener("start", () => page.store.change({ view: "free" }));
-    onClick(canvas, (x, y) => page.pick(this.nearest(x, y)));
+    onClick(canvas, (x, y) => this.pick(x, y));
     canvas.addEventListener("dblclick", () => this.reset());
     new ResizeObserver(() => this.resize()).observe(this.container);
     this.content.build();
@@ -94,7 +93,8 @@ export class SceneView {
     return [(0.5 + 0.5 * point.x) * this.container.clientWidth, (0.5 - 0.5 * point.y) * this.container.clientHeight, point.z];
   }
 
-  private nearest(x: number, y: number): number | null {
+  // The point of this frame that is closest to a pixel of the canvas, if one is near.
+  private pick(x: number, y: number): void {
     const { report, store } = this.page;
     const run = report.runs[store.state.current];
     let best: number | null = null;
@@ -106,7 +106,7 @@ export class SceneView {
       least = distance;
       best = o;
     }
-    return best;
+    if (best !== null) this.page.pick(best);
   }
 
   private leaveCamera(): void {
@@ -184,4 +184,14 @@ export class SceneView {
       label.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`;
     });
   }
+}
+
+// Whether WebGL is drawn by a GPU: without one smooth edges cost too much.
+function hasGpu(): boolean {
+  const context = document.createElement("canvas").getContext("webgl2");
+  if (!context) throw new Error("no WebGL");
+  const names = context.getExtension("WEBGL_debug_renderer_info");
+  const renderer = String(context.getParameter(names ? names.UNMASKED_RENDERER_WEBGL : context.RENDERER));
+  context.getExtension("WEBGL_lose_context")?.loseContext();
+  return !/swiftshader|llvmpipe|softpipe|software|basic render/i.test(renderer);
 }

@@ -156,6 +156,7 @@ export class Timeline {
         drawState(context, state, dark, x, LANE_PX * (lane + 1) - 1, ((to - from) / report.frames.length) * width);
       }
     });
+    this.strip.title = lanes.length > 1 ? `from above: ${lanes.map((run) => report.runs[run].name).join(", ")}` : "";
     this.showLegend([...shown]);
   }
 

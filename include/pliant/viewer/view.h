@@ -100,6 +100,9 @@ struct ViewRequest {
   bool figures = true;        // false: no tables, for which the material of a simulated scene must be followed
 };
 
+// What a run is called: its folder's name.
+std::string RunName(const std::string& run_path);
+
 // Reads the runs, finds their sequence, takes over its truth and brings everything into one world: the truth's where
 // there is true motion of the camera, in millimetres, else the first run's. A run's worlds are turned and scaled onto
 // it by the camera's poses in common frames. Fails with what reading a run fails with, kMismatch where a run is not of
