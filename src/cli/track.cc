@@ -104,7 +104,7 @@ int TrackCommand(std::span<const std::string> args) {
     auto started = LiveView::Start(RunName(arguments.output_path), live_options);
     if (!started.ok()) return line.Failure(started.status().message());
     live = *std::move(started);
-    std::cerr << "live view: " << live->Url() << std::endl;
+    if (!arguments.quiet) std::cerr << "live view: " << live->Url() << std::endl;
   }
   const Result<RunSummary> summary = [&] {
     TrackProgress progress(arguments.quiet ? ProgressStyle::kQuiet : ProgressStyleOfStandardError());

@@ -3,7 +3,9 @@
 
 #include "pliant/viewer/live_view.h"
 
+#include <algorithm>
 #include <chrono>
+#include <condition_variable>
 #include <mutex>
 #include <thread>
 #include <utility>
@@ -21,9 +23,10 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr const char* kLoopback = "127.0.0.1";
-constexpr int kAnswerThreads = 2;
-constexpr std::chrono::seconds kStillLooking(3);  // who asked so lately is waited for
-constexpr std::chrono::seconds kLongestWait(2);
+constexpr int kAnswerThreads = 8;  // of which each page that waits for news takes one
+constexpr std::chrono::seconds kLongestPause(20);
+// At the end: who asked so lately is about to ask again.
+constexpr std::chrono::seconds kStillLooking(2);
 
 // A page of another site must not read it by naming this machine after itself.
 bool IsForThisMachine(const httplib::Request& request) {
@@ -60,7 +63,8 @@ struct LiveView::Server {
       response.set_content(PageWith({{"format", kPageFormat}, {"live", true}, {"title", title}}), "text/html");
     });
     http.Get("/data", [this](const auto& request, auto& response) {
-      response.set_content(Data(Number(request, "epoch"), Number(request, "from")), "application/json");
+      const std::chrono::milliseconds pause(Number(request, "wait_ms"));
+      response.set_content(Data(Number(request, "epoch"), Number(request, "from"), pause), "application/json");
     });
     http.Get(R"(/image/(\d+)\.jpg)", [this](const auto& request, auto& response) {
       int frame_idx = 0;
@@ -78,12 +82,15 @@ struct LiveView::Server {
     return true;
   }
 
-  // What came after the rows that the page has.
-  std::string Data(int epoch, int from) {
+  // What came after the rows that the page has, at the end of the pause or of the run.
+  std::string Data(int epoch, int from, Clock::duration pause) {
     View view;
     nlohmann::ordered_json answer;
     {
-      const std::lock_guard lock(mutex);
+      std::unique_lock lock(mutex);
+      ++waiting;
+      changed.wait_for(lock, std::min<Clock::duration>(pause, kLongestPause), [&] { return ended; });
+      --waiting;
       const int begin = epoch == run.epoch() && from <= run.rows() ? from : 0;
       answer = {{"epoch", run.epoch()},         {"from", begin}, {"running", !ended},
                 {"frames_in_sequence", frames}, {"read", read},  {"state", EnumName(state)}};
@@ -99,11 +106,12 @@ struct LiveView::Server {
   }
 
   void WaitForThoseWhoLook() {
-    const Clock::time_point end = Clock::now() + kLongestWait;
+    const Clock::time_point end = Clock::now() + kStillLooking;
     while (Clock::now() < end) {
       {
         const std::lock_guard lock(mutex);
-        if (knows_the_end || !asked || Clock::now() - *asked > kStillLooking) break;
+        const bool looks = waiting > 0 || (asked && Clock::now() - *asked < kStillLooking);
+        if (knows_the_end || !looks) break;
       }
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
@@ -112,6 +120,8 @@ struct LiveView::Server {
   const std::string title;
   LiveImages images;
   std::mutex mutex;
+  std::condition_variable changed;
+  int waiting = 0;  // pages
   LiveRun run;
   std::vector<std::string> warnings;
   int frames = 0;  // of the sequence, by its own word
@@ -148,6 +158,7 @@ LiveView::~LiveView() {
     const std::lock_guard lock(server_->mutex);
     server_->ended = true;
   }
+  server_->changed.notify_all();
   server_->WaitForThoseWhoLook();
   server_->http.stop();
   server_->thread.join();

@@ -211,7 +211,8 @@ json CameraData(const std::optional<Camera>& camera) {
     const Eigen::Vector2d centre(0.5 * (right - 0.5), 0.5 * (bottom - 0.5));
     for (double share = 1.0; share > 0.1 && !(ray && ray->z() > 0.1); share -= 0.05)
       ray = camera->Unproject(centre + share * (pixel - centre));
-    if (!ray || !(ray->z() > 0)) return nullptr;
+    if (!ray || !(ray->z() > 0))
+      return {{"width", camera->width()}, {"height", camera->height()}, {"corners", nullptr}};
     corners.push_back({ray->x() / ray->z(), ray->y() / ray->z(), 1.0});
   }
   return {{"width", camera->width()}, {"height", camera->height()}, {"corners", corners}};

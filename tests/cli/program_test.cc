@@ -17,6 +17,9 @@
 #include "pliant/evaluation/evaluation.h"
 #include "pliant/pipeline/track.h"
 #include "pliant/simulation/options.h"
+#include "pliant/viewer/figure.h"
+#include "pliant/viewer/live_view.h"
+#include "pliant/viewer/report.h"
 
 namespace pliant {
 namespace {
@@ -91,10 +94,10 @@ TEST(Program, AnUnknownCommandNamesTheNearestOne) {
 
 TEST(Program, TheManualOfACommandNamesEveryOptionWithUnitAndReason) {
   const std::vector<std::pair<std::string, std::vector<OptionField>>> commands = {
-      {"track", FieldsOf<TrackOptions>()},
-      {"simulate", FieldsOf<SimulationOptions>()},
-      {"demo", FieldsOf<SimulationOptions>()},
-      {"evaluate", FieldsOf<EvaluationOptions>()}};
+      {"track", FieldsOf<TrackOptions>()},     {"simulate", FieldsOf<SimulationOptions>()},
+      {"demo", FieldsOf<SimulationOptions>()}, {"evaluate", FieldsOf<EvaluationOptions>()},
+      {"track", FieldsOf<LiveOptions>()},      {"report", FieldsOf<ReportOptions>()},
+      {"report", FieldsOf<FigureOptions>()}};
   for (const auto& [command, fields] : commands) {
     const Outcome outcome = Pliant(command + " --help");
     EXPECT_EQ(outcome.exit, 0) << command;
@@ -109,7 +112,7 @@ TEST(Program, TheManualOfACommandNamesEveryOptionWithUnitAndReason) {
 }
 
 TEST(Program, WhatPrintConfigPrintsReadsBackAsTheConfig) {
-  for (const std::string command : {"track", "track --preset paper", "simulate", "evaluate"}) {
+  for (const std::string command : {"track", "track --preset paper", "simulate", "evaluate", "report"}) {
     const Outcome printed = Pliant(command + " --print_config");
     ASSERT_EQ(printed.exit, 0) << command << ": " << printed.err;
     const std::filesystem::path path = Temporary("config.yaml");
@@ -320,7 +323,8 @@ TEST(Program, EvaluateSaysInOneSentenceThatThereIsNoTruthForWhatWasAsked) {
   std::filesystem::remove_all(sequence + "/depth");
   const Outcome surface = Pliant(evaluate + "--parts surface");
   EXPECT_EQ(surface.exit, 1);
-  EXPECT_EQ(surface.err, "pliant evaluate: no surface error: the sequence has no true surface for the tracked frames\n");
+  EXPECT_EQ(surface.err,
+            "pliant evaluate: no surface error: the sequence has no true surface for the tracked frames\n");
   const Outcome protocol = Pliant(evaluate + "--protocol depth_trimmed");
   EXPECT_EQ(protocol.exit, 1);
   EXPECT_THAT(protocol.err, StartsWith("pliant evaluate: the protocol depth_trimmed compares points"));
@@ -397,6 +401,29 @@ TEST(Program, ModelCheckSaysWhatIsWrongAndExitsWithOne) {
   EXPECT_EQ(Pliant("model check").exit, 2);
   EXPECT_EQ(Pliant("model").exit, 2);
   EXPECT_EQ(Pliant("model check /nowhere").exit, 1);
+}
+
+TEST(Program, ReportSaysWhatItCannotWrite) {
+  const auto error = [](const std::string& arguments, int exit) {
+    const Outcome outcome = Pliant("report --run run " + arguments);
+    EXPECT_EQ(outcome.exit, exit) << arguments;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+    return outcome.err;
+  };
+  EXPECT_THAT(error("-o report.png", 2), HasSubstr("a report ends with .html or .htm"));
+  EXPECT_THAT(error("--figure 3 -o figure.html", 2), HasSubstr("a figure ends with .png or .svg or .pdf"));
+  EXPECT_THAT(error("--video -o film.avi", 2), HasSubstr("a film ends with .mp4"));
+  EXPECT_THAT(error("--video --figure 3 -o film.mp4", 2), HasSubstr("give one of them"));
+  EXPECT_THAT(error("--figure 3,x -o figure.png", 2), HasSubstr("give frame numbers"));
+  EXPECT_THAT(error("", 2), HasSubstr("--output_path FILE is missing"));
+  EXPECT_THAT(error("-o '" + Temporary("report.html").string() + "'", 1), HasSubstr("there is no run folder"));
+}
+
+TEST(Program, TrackLiveSaysWhereToLookAndEndsWithTheRun) {
+  const std::string sequence = Temporary("sequence").string();
+  ASSERT_EQ(Pliant("simulate --quiet --Trajectory.frames 4" + kCoarse + "--output_path '" + sequence + "'").exit, 0);
+  const std::string run = " --output_path '" + Temporary("run").string() + "' --live --Live.port 0";
+  EXPECT_THAT(Pliant("track --image_path '" + sequence + "'" + run).err, HasSubstr("live view: http://127.0.0.1:"));
 }
 
 TEST(Program, ExportSaysInOneSentenceWhatIsMissing) {

@@ -149,5 +149,18 @@ TEST_F(LiveViewTest, WhoLooksLearnsOfTheEnd) {
   EXPECT_TRUE(told);
 }
 
+TEST_F(LiveViewTest, WhoWaitsIsToldTheEndAtOnce) {
+  std::thread browser([&] {
+    const auto begin = std::chrono::steady_clock::now();
+    const auto answer = httplib::Client(url_.substr(0, url_.size() - 1)).Get("/data?epoch=0&from=0&wait_ms=4000");
+    ASSERT_TRUE(answer);
+    EXPECT_EQ(ordered_json::parse(answer->body)["running"], false);
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(3));
+  });
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  live_.reset();
+  browser.join();
+}
+
 }  // namespace
 }  // namespace pliant
