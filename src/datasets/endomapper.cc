@@ -36,8 +36,8 @@ std::optional<int> EndoscopeOf(const fs::path& folder) {
   if (!json.is_object() || !json.contains("endoscope_number")) return std::nullopt;
   const auto& value = json["endoscope_number"];
   if (value.is_number_integer()) return value.get<int>();
-  double number = 0;
-  if (value.is_string() && ParseDouble(value.get<std::string>(), &number)) return static_cast<int>(number);
+  int number = 0;
+  if (value.is_string() && ParseInt(value.get<std::string>(), &number)) return number;
   return std::nullopt;
 }
 
@@ -100,7 +100,8 @@ Result<Camera> ReadGeometry(const fs::path& file) {
   if (!xml.ok()) return xml.status();
   const std::vector<double> width = NumbersOf(xml->camera, "width");
   const std::vector<double> height = NumbersOf(xml->camera, "height");
-  if (width.size() != 1 || height.size() != 1 || !IsImageSize(width[0], height[0]))
+  const auto size = width.size() == 1 && height.size() == 1 ? ToImageSize(width[0], height[0]) : std::nullopt;
+  if (!size)
     return Status(ErrorCode::kUnreadable,
                   file.string() + " is not a calibration of calibu: its camera_model has no width and height");
   const std::string type = xml->camera.attribute("type").value();
@@ -108,8 +109,7 @@ Result<Camera> ReadGeometry(const fs::path& file) {
     return Status(ErrorCode::kInvalidArgument, file.string() + " has a camera of the type " + Quoted(type) +
                                                    ", which is not known; calibu_fu_fv_u0_v0_kb4 is");
   const CameraModelId model = type == "calibu_fu_fv_u0_v0" ? CameraModelId::kPinhole : CameraModelId::kOpenCvFisheye;
-  auto camera =
-      Camera::Create(model, static_cast<int>(width[0]), static_cast<int>(height[0]), NumbersOf(xml->camera, "params"));
+  auto camera = Camera::Create(model, size->width, size->height, NumbersOf(xml->camera, "params"));
   if (!camera.ok()) return Status(camera.status().code(), file.string() + ": " + camera.status().message());
   return camera;
 }

@@ -66,9 +66,8 @@ Result<Eye> ReadSensor(const fs::path& file) {
   const auto distortion = NumbersOf(root["distortion_coefficients"]);
   const auto body_from_cam =
       root["T_BS"] && root["T_BS"].IsMap() ? NumbersOf(root["T_BS"]["data"]) : std::vector<double>();
-  if (size.size() != 2 || !IsImageSize(size[0], size[1]) || lens.size() != 4 || distortion.size() != 4 ||
-      body_from_cam.size() != 16)
-    return unreadable;
+  const auto image_size = size.size() == 2 ? ToImageSize(size[0], size[1]) : std::nullopt;
+  if (!image_size || lens.size() != 4 || distortion.size() != 4 || body_from_cam.size() != 16) return unreadable;
   auto pose = PoseOfMatrix(file.string() + ": T_BS", body_from_cam);
   if (!pose.ok()) return pose.status();
   pose->translation *= kMetre_mm;
@@ -78,11 +77,7 @@ Result<Eye> ReadSensor(const fs::path& file) {
     return Status(ErrorCode::kInvalidArgument,
                   file.string() + " has the distortion_model " + Quoted(model) +
                       ", which is not known; radial-tangential (radtan) and equidistant are");
-  return Eye{{lens[0], lens[1], lens[2], lens[3], distortion},
-             model == "equidistant",
-             {static_cast<int>(size[0]), static_cast<int>(size[1])},
-             *pose,
-             file};
+  return Eye{{lens[0], lens[1], lens[2], lens[3], distortion}, model == "equidistant", *image_size, *pose, file};
 }
 
 struct Listed {

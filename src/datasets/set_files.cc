@@ -83,12 +83,6 @@ std::string Trimmed(std::string_view text) {
   return std::string(text.substr(begin, text.find_last_not_of(" \t\r") - begin + 1));
 }
 
-bool IsImageSize(double width, double height) {
-  constexpr double kMost_px = 1e6;
-  const auto is_side = [](double side) { return side >= 1 && side <= kMost_px && side == std::floor(side); };
-  return is_side(width) && is_side(height);
-}
-
 Result<std::vector<NumberRow>> ReadNumberRows(const fs::path& file, std::size_t columns) {
   auto reader = LineReader::Open(file.string());
   if (!reader.ok()) return reader.status();

@@ -31,9 +31,6 @@ std::filesystem::path OnlyFile(const std::filesystem::path& folder, std::string_
 // Without blanks, tabs and carriage returns at its ends.
 std::string Trimmed(std::string_view text);
 
-// Whether these are the width and height of an image: whole numbers of pixels, up to 10^6.
-bool IsImageSize(double width, double height);
-
 struct NumberRow {
   std::int64_t line = 0;  // in the file
   std::vector<double> numbers;

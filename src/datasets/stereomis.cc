@@ -94,9 +94,10 @@ Result<StereoCalibration> ReadCalibration(const fs::path& file) {
   for (int k = 0; k < 9; ++k) turn(k / 3, k % 3) = ini.Get("StereoRight.R_" + std::to_string(k));
   Eigen::Vector3d t;
   for (int k = 0; k < 3; ++k) t[k] = ini.Get("StereoRight.T_" + std::to_string(k));
-  calibration.image_size =
-      ImageSize{static_cast<int>(ini.Get("StereoLeft.res_x")), static_cast<int>(ini.Get("StereoLeft.res_y"))};
+  calibration.image_size = ToImageSize(ini.Get("StereoLeft.res_x"), ini.Get("StereoLeft.res_y"));
   if (Status status = ini.Complete(); !status.ok()) return status;
+  if (!calibration.image_size)
+    return Status(ErrorCode::kUnreadable, file.string() + ": res_x and res_y of StereoLeft are no size of an image");
   if (!(turn * turn.transpose()).isIdentity(1e-3))
     return Status(ErrorCode::kUnreadable, file.string() + ": R_0 to R_8 of StereoRight are not a rotation");
   calibration.right_from_left = Rigid3(turn, t.norm() < kShortestBaseline_mm ? Eigen::Vector3d(kMetre_mm * t) : t);

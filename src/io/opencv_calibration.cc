@@ -52,7 +52,11 @@ Result<ImageSize> Size(const CalibrationEntries& entries, const CameraFileOption
     const auto second = entries.numbers(height);
     size.insert(size.end(), second.begin(), second.end());
   }
-  if (size.size() == 2) return ImageSize{static_cast<int>(size[0]), static_cast<int>(size[1])};
+  if (size.size() == 2) {
+    if (const auto whole = ToImageSize(size[0], size[1])) return *whole;
+    return Invalid("the image size is " + FormatDouble(size[0]) + " x " + FormatDouble(size[1]) +
+                   "; give whole numbers of pixels");
+  }
   if (options.image_size) return *options.image_size;
   return Invalid("the image size is not in the file; add image_width and image_height");
 }

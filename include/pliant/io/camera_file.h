@@ -29,6 +29,9 @@ struct ImageSize {
   int height = 0;
 };
 
+// Of numbers that a file says; nothing unless they are whole, from 1 to 10^6.
+std::optional<ImageSize> ToImageSize(double width, double height);
+
 struct CameraFileOptions {
   std::optional<int> camera_id;         // which of several cameras in a COLMAP file
   std::optional<ImageSize> image_size;  // used where the file does not say the size, as OpenCV's often do not
