@@ -4,6 +4,7 @@
 #include "viewer/align_runs.h"
 
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "pliant/base/statistics.h"
@@ -48,14 +49,30 @@ std::optional<Sim3> AlignWorlds(const FramePoses& from, const FramePoses& to, st
   return *turned * Sim3{*scale};
 }
 
-std::optional<double> MedianDepth(const ViewedRun& run, const FramePoses& frames) {
-  std::vector<double> depths;
-  for (const ViewedFrame& frame : run.frames)
-    if (frames.contains(frame.row.frame_idx))
-      for (const ViewedObservation& o : frame.observations)
-        if (o.depth > 0) depths.push_back(o.depth);
-  if (depths.empty()) return std::nullopt;
-  return Median(std::move(depths));
+FrameDepths DepthsOf(const ViewedRun& run, int submap) {
+  FrameDepths depths;
+  for (const ViewedFrame& frame : run.frames) {
+    if (frame.row.submap != submap) continue;
+    std::vector<double> of_frame;
+    for (const ViewedObservation& o : frame.observations)
+      if (o.depth > 0) of_frame.push_back(o.depth);
+    if (!of_frame.empty()) depths.emplace(frame.row.frame_idx, Median(std::move(of_frame)));
+  }
+  return depths;
+}
+
+double MedianOf(const FrameDepths& depths) {
+  std::vector<double> values;
+  for (const auto& [frame_idx, depth] : depths) values.push_back(depth);
+  return values.empty() ? 1.0 : Median(std::move(values));
+}
+
+std::optional<double> DepthRatio(const FrameDepths& from, const FrameDepths& to) {
+  std::vector<double> ratios;
+  for (const auto& [frame_idx, depth] : from)
+    if (const auto other = to.find(frame_idx); other != to.end()) ratios.push_back(other->second / depth);
+  if (ratios.empty()) return std::nullopt;
+  return Median(std::move(ratios));
 }
 
 }  // namespace pliant

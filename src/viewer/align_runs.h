@@ -25,7 +25,14 @@ FramePoses PosesOf(const ViewedRun& run, int submap);
 std::optional<Sim3> AlignWorlds(const FramePoses& from, const FramePoses& to, std::optional<double> scale,
                                 double depth_in_from);
 
-// Median depth of the run's points in these frames, its own unit; nothing where it has none.
-std::optional<double> MedianDepth(const ViewedRun& run, const FramePoses& frames);
+using FrameDepths = std::map<int, double>;  // median depth of the points by frame
+
+// Of a run's frames in one of its worlds, its own unit.
+FrameDepths DepthsOf(const ViewedRun& run, int submap);
+
+double MedianOf(const FrameDepths& depths);  // 1 where there is none
+
+// How many times as deep the frames that both have are in `to`; nothing where there is none.
+std::optional<double> DepthRatio(const FrameDepths& from, const FrameDepths& to);
 
 }  // namespace pliant

@@ -136,6 +136,13 @@ std::vector<Eigen::Vector3d> Frustum(const Camera& camera, const Rigid3& world_f
 
 }  // namespace
 
+Status TooLarge(double width_px, double height_px) {
+  return {ErrorCode::kInvalidArgument, "a picture of " + std::to_string(std::lround(width_px)) + " x " +
+                                           std::to_string(std::lround(height_px)) +
+                                           " pixels is too large; give fewer frames or a smaller "
+                                           "--Figure.panel_width_px"};
+}
+
 const ViewedFrame* FindFrame(const ViewedRun& run, int frame_idx) {
   const auto frame = std::lower_bound(run.frames.begin(), run.frames.end(), frame_idx,
                                       [](const ViewedFrame& f, int wanted) { return f.row.frame_idx < wanted; });
@@ -224,11 +231,16 @@ void DrawScene(cairo_t* drawing, const Panel& panel, const View& view, const Vie
   scene.Path(true_path);
   cairo_set_dash(drawing, nullptr, 0, 0);
 
-  std::vector<Eigen::Vector3d> path;
-  for (const ViewedFrame& f : run.frames)
-    if (f.world_from_cam && f.row.frame_idx <= frame_idx) path.push_back(f.world_from_cam->translation);
   Use(drawing, kBlue);
   cairo_set_line_width(drawing, radius);
+  std::vector<Eigen::Vector3d> path;  // broken where the camera was lost
+  for (const ViewedFrame& f : run.frames) {
+    if (f.row.frame_idx > frame_idx) break;
+    if (f.world_from_cam)
+      path.push_back(f.world_from_cam->translation);
+    else
+      scene.Path(std::exchange(path, {}));
+  }
   scene.Path(path);
   if (frame != nullptr && frame->world_from_cam && run.camera) {
     std::vector<float> depths;

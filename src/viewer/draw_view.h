@@ -31,6 +31,9 @@ struct Panel {
   double height = 0;
 };
 
+// The sentence for a picture that cairo cannot hold.
+Status TooLarge(double width_px, double height_px);
+
 // The frame of a run by its number, or null.
 const ViewedFrame* FindFrame(const ViewedRun& run, int frame_idx);
 

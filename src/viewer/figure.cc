@@ -111,11 +111,14 @@ Status WriteFigure(const ViewRequest& request, const FigureOptions& options, con
   if (!view.ok()) return view.status();
   if (Status status = CheckFrames(*view, frames_idx); !status.ok()) return status;
   const std::filesystem::path path = output_path;
-  const Layout layout(*view, options, frames_idx.size());
+  const std::set<int> columns(frames_idx.begin(), frames_idx.end());
+  const Layout layout(*view, options, columns.size());
   const std::string draft = output_path + ".part";
   const Surface surface = MakeSurface(path.extension().string(), draft, layout);
+  if (path.extension() == ".png" && cairo_surface_status(surface.get()) != CAIRO_STATUS_SUCCESS)
+    return TooLarge(layout.width, layout.height);
   const Drawing drawing(cairo_create(surface.get()));
-  const Status drawn = Draw(drawing.get(), *view, options, layout, {frames_idx.begin(), frames_idx.end()});
+  const Status drawn = Draw(drawing.get(), *view, options, layout, columns);
   bool written = cairo_status(drawing.get()) == CAIRO_STATUS_SUCCESS;
   if (drawn.ok() && path.extension() == ".png")
     written = written && cairo_surface_write_to_png(surface.get(), draft.c_str()) == CAIRO_STATUS_SUCCESS;

@@ -1,8 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include <algorithm>
+#include <filesystem>
 #include <set>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include <opencv2/imgproc.hpp>
@@ -18,6 +20,7 @@ namespace {
 
 constexpr double kText = 14;
 constexpr double kLine = 22;
+constexpr double kNameLeft = 110;  // beside the frame's number
 constexpr double kUsualFps = 30;
 
 // Even, as the codecs want it.
@@ -36,6 +39,20 @@ bool OpenWriter(const std::string& path, double fps, const cv::Size& size, cv::V
   for (const int codec : {cv::VideoWriter::fourcc('a', 'v', 'c', '1'), cv::VideoWriter::fourcc('m', 'p', '4', 'v')})
     if (writer->open(path, cv::CAP_FFMPEG, codec, fps, size)) return true;
   return false;
+}
+
+// What a player finds in it: the writer tells of no full disk.
+int CountFrames(const std::string& path) {
+  cv::VideoCapture film(path, cv::CAP_FFMPEG);
+  int frames = 0;
+  while (film.isOpened() && film.grab()) ++frames;
+  return frames;
+}
+
+Status Unwritable(const std::string& path) {
+  return {ErrorCode::kUnwritable, "cannot write the film " + path +
+                                      "; is the folder there, is there room on the disk, and does OpenCV have FFmpeg "
+                                      "with an encoder for mp4?"};
 }
 
 }  // namespace
@@ -59,11 +76,17 @@ Status WriteFilm(const ViewRequest& request, const FigureOptions& options, const
   for (const ViewedRun& run : view->runs) orbits.push_back(OrbitOf(*view, run, options, panel_width, panel_height));
   auto images = FrameImages::Open(*view, *frames_idx.begin());
   if (!images.ok()) return images.status();
+  const std::string draft = std::filesystem::path(output_path).replace_extension(".part.mp4").string();
+  const auto unwritten = [&](Status status) {
+    std::error_code ignored;
+    std::filesystem::remove(draft, ignored);
+    return status;
+  };
   cv::VideoWriter writer;
-  if (!OpenWriter(output_path, options.fps > 0 ? options.fps : FramesPerSecond(*view), size, &writer))
-    return {ErrorCode::kUnwritable, "cannot write the film " + output_path +
-                                        "; is the folder there, and does OpenCV have FFmpeg with an encoder for mp4?"};
+  if (!OpenWriter(draft, options.fps > 0 ? options.fps : FramesPerSecond(*view), size, &writer))
+    return unwritten(Unwritable(output_path));
   const Surface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, size.width, size.height));
+  if (cairo_surface_status(surface.get()) != CAIRO_STATUS_SUCCESS) return unwritten(TooLarge(size.width, size.height));
   int done = 0;
   for (const int frame_idx : frames_idx) {
     const Drawing drawing(cairo_create(surface.get()));
@@ -72,7 +95,7 @@ Status WriteFilm(const ViewRequest& request, const FigureOptions& options, const
     double left = 0;
     if (view->sequence) {
       const auto image = images->At(frame_idx);
-      if (!image.ok()) return image.status();
+      if (!image.ok()) return unwritten(image.status());
       DrawImage(drawing.get(), {left, kLine, panel_width, panel_height}, *image,
                 FindFrame(view->runs.front(), frame_idx));
       left += panel_width;
@@ -80,7 +103,7 @@ Status WriteFilm(const ViewRequest& request, const FigureOptions& options, const
     for (std::size_t i = 0; i < view->runs.size(); ++i) {
       DrawScene(drawing.get(), {left, kLine, panel_width, panel_height}, *view, view->runs[i], frame_idx, orbits[i],
                 options);
-      if (view->runs.size() > 1) DrawText(drawing.get(), left + 6, kLine - 6, kText, view->runs[i].name);
+      if (view->runs.size() > 1) DrawText(drawing.get(), left + kNameLeft, kLine - 6, kText, view->runs[i].name);
       left += panel_width;
     }
     DrawText(drawing.get(), 6, kLine - 6, kText, "frame " + std::to_string(frame_idx));
@@ -93,7 +116,11 @@ Status WriteFilm(const ViewRequest& request, const FigureOptions& options, const
     writer.write(bgr);
     if (!progress(++done, static_cast<int>(frames_idx.size()))) break;
   }
-  return Status::Ok();
+  writer.release();
+  if (CountFrames(draft) != done) return unwritten(Unwritable(output_path));
+  std::error_code error;
+  std::filesystem::rename(draft, output_path, error);
+  return error ? unwritten(Unwritable(output_path)) : Status::Ok();
 }
 
 }  // namespace pliant

@@ -42,8 +42,15 @@ void LiveImages::Add(int frame_idx, const cv::Mat& image) {
 
 std::string LiveImages::At(int frame_idx) const {
   const std::lock_guard lock(mutex_);
-  const auto after = jpeg_.upper_bound(frame_idx);
-  return after == jpeg_.begin() ? std::string() : std::prev(after)->second;
+  const auto found = jpeg_.find(frame_idx);
+  return found != jpeg_.end() ? found->second : std::string();
+}
+
+std::vector<int> LiveImages::Frames() const {
+  const std::lock_guard lock(mutex_);
+  std::vector<int> frames;
+  for (const auto& [frame_idx, jpeg] : jpeg_) frames.push_back(frame_idx);
+  return frames;
 }
 
 double LiveImages::scale() const {

@@ -12,6 +12,7 @@
 #include <string>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include <opencv2/core/mat.hpp>
 
@@ -26,8 +27,10 @@ class LiveImages {
   ~LiveImages();
 
   void Add(int frame_idx, const cv::Mat& image);
-  // The JPEG of the frame, or of the last one before it that was kept; empty: there is none.
+  // The JPEG of the frame; empty: there is none.
   std::string At(int frame_idx) const;
+  // Which there are.
+  std::vector<int> Frames() const;
   // Of the coded images in the given ones; 0: none yet.
   double scale() const;
 

@@ -3,12 +3,14 @@
 
 #include "viewer/live_run.h"
 
+#include <utility>
+
 #include "viewer/read_run.h"
 
 namespace pliant {
 
 void LiveRun::Add(const FrameReport& report) {
-  ViewedFrame& frame = run_.frames.emplace_back();
+  ViewedFrame frame;
   frame.row = {report.frame_idx,
                report.timestamp_s,
                report.state,
@@ -27,7 +29,7 @@ void LiveRun::Add(const FrameReport& report) {
   for (const NewPoint& point : report.new_points) run_.points.insert_or_assign(point.id, point);
   for (const RefinedPoint& point : report.refined_points) {
     run_.points[point.id].position = point.position;
-    refined_in_[point.id] = rows() - 1;
+    refined_in_[point.id] = rows();
   }
   if (report.cam_from_world) frame.world_from_cam = report.cam_from_world->Inverse();
   for (const PointObservation& o : report.observations) {
@@ -35,24 +37,33 @@ void LiveRun::Add(const FrameReport& report) {
     run_.points.try_emplace(o.id, NewPoint{o.id, o.position});
   }
   AddWhatPoseTells(run_.camera ? &*run_.camera : nullptr, &frame);
+  frames_.push_back(std::make_shared<const ViewedFrame>(std::move(frame)));
   if (!report.join) return;
+  for (const auto& kept : frames_) run_.frames.push_back(*kept);
   Move(report.join->into_from_submap, report.join->submap, &run_);
-  for (ViewedFrame& joined : run_.frames)
+  frames_.clear();
+  for (ViewedFrame& joined : run_.frames) {
     if (joined.row.submap == report.join->submap) joined.row.submap = report.join->into;
+    frames_.push_back(std::make_shared<const ViewedFrame>(std::move(joined)));
+  }
+  run_.frames.clear();
   ++epoch_;
 }
 
-ViewedRun LiveRun::From(int row) const {
-  ViewedRun part;
-  part.name = run_.name;
-  part.camera = run_.camera;
-  part.stage_names = run_.stage_names;
-  part.frames.assign(run_.frames.begin() + row, run_.frames.end());
-  for (const ViewedFrame& frame : part.frames)
-    for (const ViewedObservation& o : frame.observations) part.points.insert(*run_.points.find(o.id));
+LiveRun::Part LiveRun::From(int row) const {
+  Part part{run_, {frames_.begin() + row, frames_.end()}, {}};
   for (const auto& [id, refined_in] : refined_in_)
-    if (refined_in >= row) part.points.insert(*run_.points.find(id));
+    if (refined_in >= row) part.refined.insert(id);
   return part;
+}
+
+ViewedRun LiveRun::Part::ToRun() && {
+  for (const auto& frame : frames) {
+    run.frames.push_back(*frame);
+    for (const ViewedObservation& o : frame->observations) refined.insert(o.id);
+  }
+  std::erase_if(run.points, [&](const auto& point) { return !refined.contains(point.first); });
+  return std::move(run);
 }
 
 }  // namespace pliant

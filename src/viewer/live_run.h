@@ -5,8 +5,10 @@
 #pragma once
 
 #include <map>
-#include <optional>
+#include <memory>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "pliant/camera/camera.h"
@@ -23,14 +25,23 @@ class LiveRun {
   // The next frame's final report. A join takes the frames of its map, up to this one, into the other one's world.
   void Add(const FrameReport& report);
 
-  int rows() const { return static_cast<int>(run_.frames.size()); }
+  int rows() const { return static_cast<int>(frames_.size()); }
   // Changes where what was given before is void.
   int epoch() const { return epoch_; }
-  // The frames from a row on, with the points that they see and those that became better known in them.
-  ViewedRun From(int row) const;
+  // The frames from a row on: what is quick to take, and then the run that they make, with the points that they see and
+  // those that became better known in them.
+  struct Part {
+    ViewedRun run;  // without frames, with all points
+    std::vector<std::shared_ptr<const ViewedFrame>> frames;
+    std::set<PointId> refined;
+
+    ViewedRun ToRun() &&;
+  };
+  Part From(int row) const;
 
  private:
-  ViewedRun run_;
+  ViewedRun run_;  // without frames
+  std::vector<std::shared_ptr<const ViewedFrame>> frames_;
   std::map<PointId, int> refined_in_;  // the last row that did
   int epoch_ = 0;
 };

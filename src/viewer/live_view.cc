@@ -52,6 +52,7 @@ struct LiveView::Server {
       const int yes = 1;
       setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
     });
+    http.set_keep_alive_max_count(1);  // an idle connection would hold a thread, and the end of the run
     http.new_task_queue = [] { return new httplib::ThreadPool(kAnswerThreads); };
     http.set_pre_routing_handler([](const httplib::Request& request, httplib::Response& response) {
       thread_local const bool low_priority = (TakeLowPriority(), true);
@@ -86,6 +87,7 @@ struct LiveView::Server {
   std::string Data(int epoch, int from, Clock::duration pause) {
     View view;
     nlohmann::ordered_json answer;
+    LiveRun::Part part;
     {
       std::unique_lock lock(mutex);
       ++waiting;
@@ -94,12 +96,14 @@ struct LiveView::Server {
       const int begin = epoch == run.epoch() && from <= run.rows() ? from : 0;
       answer = {{"epoch", run.epoch()},         {"from", begin}, {"running", !ended},
                 {"frames_in_sequence", frames}, {"read", read},  {"state", EnumName(state)}};
-      view.runs.push_back(run.From(begin));
+      part = run.From(begin);
       view.notes = warnings;
       asked = Clock::now();
       knows_the_end = knows_the_end || ended;
     }
+    view.runs.push_back(std::move(part).ToRun());  // without holding up the tracker
     view.camera = view.runs.front().camera;
+    answer["image_frames"] = images.Frames();
     answer["image_scale"] = images.scale();
     answer["data"] = PageData(view, {}, title);
     return answer.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);

@@ -18,6 +18,8 @@ namespace {
 
 constexpr std::array<const char*, 3> kTypeNames = {"u8", "u16", "u32"};
 
+constexpr double kCoarsestStep = 1.0 / 2000;  // of the usual range
+
 int BytesOf(PackedType type) { return 1 << static_cast<int>(type); }
 
 std::uint32_t LargestOf(PackedType type) {
@@ -34,6 +36,20 @@ std::string BytePlanes(std::span<const std::uint32_t> values, std::size_t column
       for (std::size_t row = 0; row < rows; ++row)
         planes.push_back(static_cast<char>((values[row * columns + column] >> (8 * byte)) & 0xFFU));
   return planes;
+}
+
+// Of a column: what lies between its first and last hundredth.
+double UsualRange(std::span<const float> values, std::size_t column, std::size_t columns) {
+  std::vector<float> finite;
+  for (std::size_t i = column; i < values.size(); i += columns)
+    if (std::isfinite(values[i])) finite.push_back(values[i]);
+  if (finite.empty()) return 0;
+  const auto at = [&](double share) {
+    const auto place = finite.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(finite.size() - 1));
+    std::nth_element(finite.begin(), place, finite.end());
+    return static_cast<double>(*place);
+  };
+  return at(0.99) - at(0.01);
 }
 
 std::string Deflated(const std::string& bytes) {
@@ -79,6 +95,8 @@ nlohmann::ordered_json PackQuantised(std::span<const float> values, int columns,
     if (!(low[column] <= high[column])) low[column] = high[column] = 0;
     const double step = (high[column] - low[column]) / (none - 1.0);
     steps[column] = step > 0 ? step : 1.0;
+    if (type == PackedType::kU16 && step > kCoarsestStep * UsualRange(values, column, count))
+      return PackFloats(values, columns);
   }
   std::vector<std::uint32_t> whole(values.size());
   for (std::size_t i = 0; i < values.size(); ++i)

@@ -17,7 +17,7 @@ namespace pliant {
 enum class PackedType { kU8, kU16, kU32 };
 
 // Values row by row. Each column's finite range becomes the type's numbers but the largest, which is what is not
-// finite.
+// finite. Where stray values would make 16-bit steps coarse for all others, the values are packed as floats instead.
 nlohmann::ordered_json PackQuantised(std::span<const float> values, int columns, PackedType type);
 nlohmann::ordered_json PackWhole(std::span<const std::uint32_t> values, int columns, PackedType type);
 nlohmann::ordered_json PackFloats(std::span<const float> values, int columns);

@@ -139,8 +139,8 @@ class Observations {
                    {"reprojection_px", Numbers(&ViewedObservation::reprojection_px, PackedType::kU16)},
                    {"ssim", Numbers(&ViewedObservation::ssim, PackedType::kU8)}};
     const bool bright = Any(&ViewedObservation::gain);
-    packed["gain"] = bright ? Numbers(&ViewedObservation::gain, PackedType::kU8) : json(nullptr);
-    packed["bias"] = bright ? Numbers(&ViewedObservation::bias, PackedType::kU8) : json(nullptr);
+    packed["gain"] = bright ? Numbers(&ViewedObservation::gain, PackedType::kU16) : json(nullptr);
+    packed["bias"] = bright ? Numbers(&ViewedObservation::bias, PackedType::kU16) : json(nullptr);
     const bool truth = Any(&ViewedObservation::error_mm);
     packed["truth"] = truth ? Vectors<3>(&ViewedObservation::truth) : json(nullptr);
     packed["error_mm"] = truth ? Numbers(&ViewedObservation::error_mm, PackedType::kU16) : json(nullptr);

@@ -32,6 +32,15 @@ Status ForEachTrackedFrame(const std::string& run_path, const std::vector<Viewed
   });
 }
 
+// The observations of every n-th point.
+std::int64_t CountOfEvery(std::int64_t n, const std::map<PointId, std::int64_t>& counts) {
+  std::int64_t position = 0;
+  std::int64_t kept = 0;
+  for (const auto& [id, count] : counts)
+    if (position++ % n == 0) kept += count;
+  return kept;
+}
+
 Status AddObservations(const std::string& run_path, std::int64_t max_observations, ReadViewedRun* read) {
   ViewedRun& run = read->run;
   std::map<PointId, std::int64_t> counts;
@@ -41,7 +50,8 @@ Status AddObservations(const std::string& run_path, std::int64_t max_observation
     total += static_cast<std::int64_t>(observations.size());
   });
   if (!status.ok()) return status;
-  const std::int64_t every = std::max<std::int64_t>(1, (total + max_observations - 1) / max_observations);
+  std::int64_t every = 1;
+  while (every < static_cast<std::int64_t>(counts.size()) && CountOfEvery(every, counts) > max_observations) ++every;
   if (every > 1) {
     std::int64_t position = 0;
     for (auto entry = counts.begin(); entry != counts.end();)

@@ -67,8 +67,7 @@ FramePoses TruePoses(const Sequence& sequence, const std::vector<ViewedRun>& run
 
 // A submap without a frame in common goes on where the one before it ended, with depths as they were there.
 Sim3 AfterTheOneBefore(const FramePoses& before, double depth_before, const FramePoses& poses, double depth) {
-  const double scale = depth > 0 ? depth_before / depth : 1.0;
-  return WorldFromPoses(before.rbegin()->second.Inverse(), poses.begin()->second.Inverse(), scale);
+  return WorldFromPoses(before.rbegin()->second.Inverse(), poses.begin()->second.Inverse(), depth_before / depth);
 }
 
 // Runs of one name are told apart by what their paths do not have in common.
@@ -101,36 +100,49 @@ void TakeNames(const std::vector<std::string>& run_paths, View* view) {
 
 // Everything into one world: the truth's, else that of the first run's first submap.
 void Align(const FramePoses& truth, View* view) {
-  FramePoses reference = truth;
-  double reference_depth = 0;  // of the submap that gave the reference, or was placed last; in the common unit
+  FramePoses reference = truth;  // and whatever has been placed beside it
+  FrameDepths reference_depths;
   bool placed_after = false;
   for (ViewedRun& run : view->runs) {
     FramePoses before;
+    double depth_before = 1;
     for (const int submap : SubmapsOf(run)) {
       const FramePoses poses = PosesOf(run, submap);
-      const double depth = MedianDepth(run, poses).value_or(1.0);
-      if (reference.empty()) {
-        reference = poses;
-        reference_depth = depth;
-      } else {
-        std::optional<double> scale;
-        if (!truth.empty())
-          scale = MedianScale(run, submap);
-        else if (depth > 0)
-          scale = reference_depth / depth;
-        std::optional<Sim3> world = AlignWorlds(poses, reference, scale, depth);
-        if (!world && !before.empty()) {
-          world = AfterTheOneBefore(before, reference_depth, poses, depth);
-          placed_after = true;
-        }
-        if (world) Move(*world, submap, &run);
+      const FrameDepths depths = DepthsOf(run, submap);
+      std::optional<double> scale = MedianScale(run, submap);
+      if (!scale) scale = DepthRatio(depths, reference_depths);
+      std::optional<Sim3> world = reference.empty() ? Sim3() : AlignWorlds(poses, reference, scale, MedianOf(depths));
+      if (!world && !before.empty()) {
+        world = AfterTheOneBefore(before, depth_before, poses, MedianOf(depths));
+        placed_after = true;
       }
+      if (world)
+        Move(*world, submap, &run);
+      else
+        view->notes.push_back("the run " + run.name + " has no frame in common with " +
+                              (truth.empty() ? "the first one" : "the truth") + "; it is shown in a world of its own");
       before = PosesOf(run, submap);
+      const FrameDepths placed_depths = DepthsOf(run, submap);
+      depth_before = MedianOf(placed_depths);
+      if (!world) continue;
+      reference.insert(before.begin(), before.end());
+      reference_depths.insert(placed_depths.begin(), placed_depths.end());
     }
   }
   if (placed_after)
     view->notes.emplace_back(
         "maps that nothing joins are shown one after the other: each begins where the one before it ended");
+}
+
+// Whether the run is of this sequence.
+Status CheckIsOf(const ViewedRun& run, const Sequence& sequence) {
+  EvaluationInput frames{.name = run.name, .frames = {}, .camera = run.camera, .seconds = {}, .notes = {}};
+  for (const ViewedFrame& frame : run.frames) {
+    EvaluationFrame& of_frame = frames.frames.emplace_back();
+    of_frame.frame_idx = frame.row.frame_idx;
+    of_frame.timestamp_s = frame.row.timestamp_s;
+  }
+  return CheckBelongsTo(frames, sequence, {});
 }
 
 }  // namespace
@@ -168,32 +180,34 @@ Result<View> OpenView(const ViewRequest& request, const ViewOptions& options) {
   if (!opened.ok()) return opened.status();
   std::optional<OpenedTruth>& sequence = *opened;
   const std::int64_t max_observations = options.max_observations / static_cast<std::int64_t>(request.run_paths.size());
-  bool has_images = sequence.has_value();
+  const bool named = !request.sequence_path.empty();
+  bool has_images = false;
   for (const std::string& run_path : request.run_paths) {
     auto read = ReadRunForView(run_path, sequence ? sequence->sequence.get() : nullptr, max_observations);
     if (!read.ok()) return read.status();
+    ViewedRun& run = read->run;
+    view.notes.insert(view.notes.end(), read->notes.begin(), read->notes.end());
+    const Status fits = sequence ? CheckIsOf(run, *sequence->sequence) : Status::Ok();
+    if (!fits.ok() && named) return fits;
+    if (!fits.ok()) view.notes.push_back("the run " + run.name + " is compared with nothing: " + fits.message());
     std::optional<Evaluation> evaluation;
-    if (sequence && std::any_of(read->run.frames.begin(), read->run.frames.end(),
-                                [](const ViewedFrame& frame) { return frame.world_from_cam.has_value(); })) {
-      auto evaluated = AddTruth(run_path, *sequence, &read->run);
-      if (evaluated.ok()) {
+    if (sequence && fits.ok()) {
+      has_images = true;
+      if (!SubmapsOf(run).empty()) {
+        auto evaluated = AddTruth(run_path, *sequence, &run);
+        if (!evaluated.ok()) return evaluated.status();
         evaluation = *std::move(evaluated);
-      } else if (!request.sequence_path.empty()) {
-        return evaluated.status();
-      } else {
-        view.notes.push_back("nothing is compared, and no images are shown: " + evaluated.status().message());
-        has_images = false;
       }
     }
-    auto figures = RunFigures(run_path, read->run, evaluation);
+    auto figures = RunFigures(run_path, run, evaluation);
     if (!figures.ok()) return figures.status();
-    read->run.figures = *std::move(figures);
-    view.notes.insert(view.notes.end(), read->notes.begin(), read->notes.end());
-    view.runs.push_back(std::move(read->run));
+    run.figures = *std::move(figures);
+    view.runs.push_back(std::move(run));
   }
   TakeNames(request.run_paths, &view);
-  if (std::all_of(view.runs.begin(), view.runs.end(), [](const ViewedRun& run) { return SubmapsOf(run).empty(); }))
-    view.notes.emplace_back("no frame was tracked");
+  if (std::all_of(view.runs.begin(), view.runs.end(), [](const ViewedRun& run) { return run.frames.empty(); }))
+    return Status(ErrorCode::kInsufficient,
+                  "no frame was read in the run " + request.run_paths.front() + "; there is nothing to show");
   if (has_images) {
     view.sequence = {.image_path = sequence->request.image_path, .camera_path = sequence->request.camera_path};
     view.camera = sequence->sequence->camera();

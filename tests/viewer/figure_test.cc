@@ -110,6 +110,32 @@ TEST_F(FigureTest, WhatCannotBeWrittenLeavesNothing) {
   EXPECT_FALSE(std::filesystem::exists(folder_.Path("nowhere")));
 }
 
+TEST_F(FigureTest, AFrameIsDrawnOnce) {
+  ASSERT_TRUE(Write("figure.png", {10, 10}).ok());
+  EXPECT_EQ(cv::imread(folder_.Path("figure.png")).cols, 8 + 168);
+}
+
+TEST_F(FigureTest, APictureBeyondAllBoundsIsRefused) {
+  options_.panel_width_px = 40000;
+  EXPECT_THAT(Write("figure.png").message(), HasSubstr("is too large; give fewer frames"));
+}
+
+TEST_F(FigureTest, AFilmThatIsStoppedIsWholeUpToThere) {
+  ASSERT_TRUE(WriteFilm(Request(), options_, folder_.Path("film.mp4"), [](int done, int) { return done < 2; }).ok());
+  cv::VideoCapture film(folder_.Path("film.mp4"));
+  int frames = 0;
+  while (film.grab()) ++frames;
+  EXPECT_EQ(frames, 2);
+}
+
+TEST_F(FigureTest, AFilmThatFailsLeavesTheOldOne) {
+  folder_.Write("film.mp4", "the old one");
+  folder_.Write("sequence/images/000014.png", "no image");
+  EXPECT_FALSE(WriteFilm(Request(), options_, folder_.Path("film.mp4"), [](int, int) { return true; }).ok());
+  EXPECT_EQ(folder_.Read("film.mp4"), "the old one");
+  EXPECT_FALSE(std::filesystem::exists(folder_.Path("film.part.mp4")));
+}
+
 TEST_F(FigureTest, FilmsEveryFrame) {
   int told = 0;
   const Status status = WriteFilm(Request(), options_, folder_.Path("film.mp4"), [&](int done, int frames) {

@@ -101,16 +101,17 @@ TEST_F(LiveViewTest, SaysWhatItWaitsFor) {
   EXPECT_EQ(data["read"], 1);
 }
 
-TEST_F(LiveViewTest, GivesTheImageOrTheOneBefore) {
+TEST_F(LiveViewTest, GivesTheImagesThatItLists) {
   httplib::Client client(url_.substr(0, url_.size() - 1));
   EXPECT_EQ(client.Get("/image/4.jpg")->status, 404);
   live_->OnImage(3, cv::Mat::zeros(480, 640, CV_8UC1));
-  for (int tries = 0; tries < 200 && client.Get("/image/4.jpg")->status != 200; ++tries)
+  for (int tries = 0; tries < 200 && client.Get("/image/3.jpg")->status != 200; ++tries)
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  const auto image = client.Get("/image/4.jpg");
+  const auto image = client.Get("/image/3.jpg");
   EXPECT_EQ(image->status, 200);
   EXPECT_EQ(image->get_header_value("Content-Type"), "image/jpeg");
   EXPECT_EQ(client.Get("/image/2.jpg")->status, 404);
+  EXPECT_THAT(Data(0, 0)["image_frames"], ElementsAre(3));
   EXPECT_EQ(Data(0, 0)["image_scale"], 0.75);
 }
 
@@ -129,6 +130,15 @@ TEST_F(LiveViewTest, APortThatIsTakenBecomesAnother) {
 }
 
 TEST_F(LiveViewTest, WithoutABrowserItEndsAtOnce) {
+  const auto begin = std::chrono::steady_clock::now();
+  live_.reset();
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(1));
+}
+
+TEST_F(LiveViewTest, AnIdleConnectionDoesNotKeepItFromEnding) {
+  httplib::Client client(url_.substr(0, url_.size() - 1));
+  client.set_keep_alive(true);
+  EXPECT_EQ(client.Get("/")->status, 200);
   const auto begin = std::chrono::steady_clock::now();
   live_.reset();
   EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(1));

@@ -54,6 +54,15 @@ TEST(PackArray, QuantisedNumbersComeBackToHalfAStep) {
   EXPECT_NEAR(packed["step"][0].get<double>(), 60.0 / 65534, 1e-5);
 }
 
+TEST(PackArray, AStrayValueDoesNotMakeTheOthersCoarse) {
+  std::vector<float> values;
+  for (int i = 0; i < 1000; ++i) values.push_back(0.05F * static_cast<float>(i));
+  values[500] = 1e6F;
+  const std::vector<double> read = Unpack(PackQuantised(values, 1, PackedType::kU16));
+  ASSERT_EQ(read.size(), values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) EXPECT_NEAR(read[i], values[i], 1e-3);
+}
+
 TEST(PackArray, AConstantAndNothingAtAllComeBack) {
   EXPECT_THAT(Unpack(PackQuantised(std::vector<float>{7, 7}, 1, PackedType::kU8)), ElementsAre(7, 7));
   const std::vector<float> none(2, std::numeric_limits<float>::quiet_NaN());

@@ -117,7 +117,7 @@ TEST_F(ReportTest, ANameCannotEndTheElementOfTheData) {
   EXPECT_EQ(Data()["runs"][0]["name"], "a<!--<script>");
 }
 
-TEST_F(ReportTest, WhatCannotBeWrittenLeavesTheOldFile) {
+TEST_F(ReportTest, WhatCannotBeWrittenIsAnError) {
   const auto summary = WriteReportPage({.run_paths = {folder_.Path("run")}, .sequence_path = "", .camera_path = ""}, {},
                                        folder_.Path("nowhere/report.html"));
   EXPECT_EQ(summary.status().code(), ErrorCode::kUnwritable);

@@ -27,19 +27,20 @@ enum class Truth { kNone, kDepthAndPoses };
 // Brightness of frame k, beside that of frame 0.
 inline double GainOf(int frame_idx) { return 1 - 0.02 * (frame_idx - 10); }
 
-inline void WriteSmallSequence(const std::string& folder, Truth truth) {
+inline void WriteSmallSequence(const std::string& folder, Truth truth, int frames = kSequenceFrames) {
   auto writer = NativeWriter::Create(folder, {.camera = TestCamera(), .fps = 50});
   ASSERT_TRUE(writer.ok()) << writer.status().message();
   cv::Mat noise(480, 640, CV_8UC1);
   cv::RNG(7).fill(noise, cv::RNG::UNIFORM, 60, 180);
   cv::GaussianBlur(noise, noise, {}, 2);
-  for (int k = 0; k < kSequenceFrames; ++k) {
+  for (int k = 0; k < frames; ++k) {
     NativeFrame frame{.timestamp_s = (k - 10) / 50.0};
     noise.convertTo(frame.image, CV_8U, GainOf(k), 5);
     if (truth == Truth::kDepthAndPoses) {
       frame.depth_mm = cv::Mat(480, 640, CV_32FC1, cv::Scalar(kPlaneDepth_mm));
       frame.world_from_cam = PoseInWorld(kTruthFromRun, PoseAt(0)).Inverse();
-      if (k >= 10 && k % 2 == 0) frame.world_from_cam = PoseInWorld(kTruthFromRun, PoseAt((k - 10) / 2)).Inverse();
+      if (k >= 10 && k < kSequenceFrames && k % 2 == 0)
+        frame.world_from_cam = PoseInWorld(kTruthFromRun, PoseAt((k - 10) / 2)).Inverse();
     }
     ASSERT_TRUE(writer->Write(frame).ok());
   }

@@ -138,6 +138,43 @@ TEST_F(ViewTest, PutsMapsThatNothingJoinsOneAfterTheOther) {
   EXPECT_LT((last.world_from_cam->translation - first.world_from_cam->translation).norm(), 1e-6);
 }
 
+// The truth ends before the second map begins.
+TEST_F(ViewTest, AMapWithoutTruthKeepsItsSize) {
+  WriteRunOfTwoSubmaps(folder_);
+  sequence_ = folder_.Path("sequence");
+  WriteSmallSequence(sequence_, Truth::kDepthAndPoses, 2 * kSequenceFrames);
+  const std::string poses = folder_.Read("sequence/groundtruth.txt");
+  std::size_t end = 0;
+  for (int line = 0; line < kSequenceFrames; ++line) end = poses.find('\n', end) + 1;
+  folder_.Write("sequence/groundtruth.txt", poses.substr(0, end));
+  std::filesystem::remove_all(folder_.Path("sequence/depth"));
+  const auto view = Open();
+  ASSERT_TRUE(view.ok()) << view.status().message();
+  const std::vector<ViewedFrame>& frames = view->runs.front().frames;
+  ASSERT_EQ(frames.size(), 2U * kRunFrames);
+  EXPECT_NEAR(frames[kRunFrames].observations.front().depth, frames[kRunFrames - 1].observations.front().depth,
+              0.05 * frames[0].observations.front().depth);
+}
+
+TEST_F(ViewTest, ARunOfAnotherSceneIsSaidToBeApart) {
+  WriteRun(folder_);
+  {
+    auto writer =
+        RunWriter::Create(folder_.Path("late"), TestCamera(), {"0.1.0", {"pliant"}, 7, "nowhere", {}}, "Track:\n", {});
+    ASSERT_TRUE(writer.ok()) << writer.status().message();
+    for (int i = 0; i < kRunFrames; ++i) {
+      FrameReport report = Report(i);
+      report.frame_idx += 100;
+      ASSERT_TRUE(writer->Write(report).ok());
+    }
+    ASSERT_TRUE(writer->Finish(RunStatus::kCompleted, "").ok());
+  }
+  const auto view =
+      OpenView({.run_paths = {folder_.Path("run"), folder_.Path("late")}, .sequence_path = "", .camera_path = ""}, {});
+  ASSERT_TRUE(view.ok()) << view.status().message();
+  EXPECT_THAT(view->notes, Contains(HasSubstr("late has no frame in common with the first one")));
+}
+
 TEST_F(ViewTest, ShowsWhatAKilledRunLeft) {
   WriteRun(folder_, End::kKilled);
   const auto view = Open();
@@ -151,8 +188,11 @@ TEST_F(ViewTest, ThinsTooManyPointsAndSaysSo) {
   WriteRun(folder_);
   const auto view = Open({.max_observations = kRunObservations / 2});
   ASSERT_TRUE(view.ok()) << view.status().message();
-  EXPECT_THAT(view->notes, Contains(HasSubstr("those of one point in 2")));
-  EXPECT_EQ(view->runs.front().points.size(), static_cast<std::size_t>(kRunPoints / 2));
+  EXPECT_THAT(view->notes, Contains(HasSubstr("those of one point in 3")));
+  EXPECT_EQ(view->runs.front().points.size(), 3U);  // every second one would be one with the longer tracks
+  std::size_t observations = 0;
+  for (const ViewedFrame& frame : view->runs.front().frames) observations += frame.observations.size();
+  EXPECT_LE(observations, static_cast<std::size_t>(kRunObservations / 2));
 }
 
 TEST_F(ViewTest, AnotherSequenceIsAnErrorWhereItWasNamed) {
@@ -166,6 +206,15 @@ TEST_F(ViewTest, AnotherSequenceIsAnErrorWhereItWasNamed) {
   const auto view = Open();
   ASSERT_FALSE(view.ok());
   EXPECT_EQ(view.status().code(), ErrorCode::kMismatch);
+}
+
+TEST_F(ViewTest, ARunWithoutAFrameIsAnError) {
+  ASSERT_TRUE(
+      RunWriter::Create(folder_.Path("run"), TestCamera(), {"0.1.0", {"pliant"}, 7, "nowhere", {}}, "Track:\n", {})
+          .ok());
+  const auto view = Open();
+  EXPECT_EQ(view.status().code(), ErrorCode::kInsufficient);
+  EXPECT_THAT(view.status().message(), HasSubstr("no frame was read"));
 }
 
 TEST_F(ViewTest, WhatIsNoRunIsAnError) { EXPECT_EQ(Open().status().code(), ErrorCode::kNotFound); }

@@ -16,7 +16,7 @@ export class Images {
   // A Map keeps the order of insertion, which is that of use: undefined is being decoded, null is not to be had.
   private readonly kept = new Map<number, ImageBitmap | null | undefined>();
 
-  private constructor(private readonly source: Source, private readonly listed: number[] | null, public scale: number) {}
+  private constructor(private readonly source: Source, public listed: number[], public scale: number) {}
 
   static embedded(data: ImageData): Images {
     const index = new Map(data.frame.map((frame, i) => [frame, i]));
@@ -24,16 +24,15 @@ export class Images {
     return new Images(source, data.frame, data.scale);
   }
 
-  static served(scale: number): Images {
+  static served(frames: number[], scale: number): Images {
     return new Images(async (frame) => {
       const answer = await fetch(`/image/${frame}.jpg`);
       return answer.ok ? answer.blob() : null;
-    }, null, scale);
+    }, frames, scale);
   }
 
   // The frame whose image stands for this one: the last before it that has one.
   frameFor(frame: number): number | null {
-    if (!this.listed) return frame;
     const index = lastAtMost(this.listed, frame);
     return index < 0 ? null : this.listed[index];
   }

@@ -19,6 +19,7 @@ export interface Answer {
   read: number;
   state: string;
   image_scale: number;
+  image_frames: number[];
   data: Data;
 }
 

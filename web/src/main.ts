@@ -75,7 +75,7 @@ function follow(): Promise<void> {
       if (show) return show(answer);
       if (!answer.data.runs?.[0]?.frames.frame.length) return 0;
       const report = await Report.decode(answer.data);
-      show = start(report, Images.served(answer.image_scale), true);
+      show = start(report, Images.served(answer.image_frames, answer.image_scale), true);
       resolve();
       return report.runs[0].rows;
     }, say).catch((error) => (show ? say(`${error.message}`) : reject(error)));
@@ -169,16 +169,16 @@ function start(report: Report, images: Images | null, live: boolean): (answer: A
 
   offerToTests(page, timeline, image, scene);
   if (live) goNewest();
-  return async ({ data, from, running, image_scale }) => {
+  return async ({ data, from, running, image_scale, image_frames }) => {
     const newest = data.runs?.[0];
     // No rows change nothing, except that the last answer has the final figures.
     if (!newest || (newest.frames.frame.length === 0 && (from === 0 || running))) return from;
     report.append(await decodeRun(newest), from);
     images!.scale = image_scale;
-    if (data.notes.length > report.notes.length) {
-      report.notes = data.notes;
-      showNotes(report);
-    }
+    images!.listed = image_frames;
+    const before = notesOf(report).length;
+    report.notes = data.notes;
+    if (notesOf(report).length !== before) showNotes(report);
     const last = report.frames.length - 1;
     store.change({ revision: state.revision + 1, position: state.newest ? last : Math.min(state.position, last) });
     return report.runs[0].rows;
@@ -196,9 +196,13 @@ function makeScene(page: Page): SceneView | null {
   }
 }
 
-function showNotes(report: Report): void {
+function notesOf(report: Report): string[] {
   const untracked = report.runs.filter((run) => !run.frames.state.includes("tracking"));
-  const notes = [...report.notes, ...untracked.map(({ name }) => `The run "${name}" has no tracked frame.`)];
+  return [...report.notes, ...untracked.map(({ name }) => `The run "${name}" has no tracked frame.`)];
+}
+
+function showNotes(report: Report): void {
+  const notes = notesOf(report);
   byId("notes").hidden = notes.length === 0;
   byId("notes-list").replaceChildren(...notes.map((text) => element("li", { textContent: text })));
 }

@@ -21,7 +21,7 @@ interface Figure {
 
 const DASHES = [[6, 4], [2, 3], [10, 3, 2, 3], [4, 2], [1, 2], [12, 4], [8, 2, 2, 2]];
 
-export function figuresOf(run: Run, unit: string): Figure[] {
+export function figuresOf(run: Run): Figure[] {
   const { frames } = run;
   const listed = (columns: Record<string, Column>) => Object.entries(columns).map(([label, values]) => ({ label, values }));
   const figures: Figure[] = [
@@ -34,7 +34,7 @@ export function figuresOf(run: Run, unit: string): Figure[] {
     { title: "Cost by term", unit: "", log: true, series: listed(frames.costs) },
     { title: "Time by stage", unit: "ms", stacked: true, series: listed(frames.stages_ms) },
     {
-      title: "Scale against truth", unit: unit === "mm" ? "" : "mm per map unit", series: [{ label: "scale", values: frames.scale ?? [] }],
+      title: "Scale against truth", unit: "mm per map unit", series: [{ label: "scale", values: frames.scale ?? [] }],
     },
   ];
   for (const figure of figures) figure.series = figure.series.filter(({ values }) => values.some((value) => value !== null));
@@ -96,7 +96,7 @@ export class Plots {
     const { current, visible, dark } = store.state;
     const colours = paletteOf(dark).series;
     const spread = (run: number, values: Column) => report.frames.map((_, position) => values[report.row(run, position)] ?? null);
-    const perRun = report.runs.map((run) => figuresOf(run, report.unit));
+    const perRun = report.runs.map((run) => figuresOf(run));
     return perRun[current].map(({ series, ...figure }, i) => {
       const own = visible[current] ? series.map(({ label, values }, s) => ({
         label: report.runs.length > 1 && s === 0 ? `${report.runs[current].name}: ${label}` : label,

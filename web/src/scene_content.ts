@@ -22,6 +22,7 @@ export class SceneContent {
   // Of the points and paths, without what lies far out.
   centre = new Vector3();
   size = 1;
+  empty = true;   // there is no place of anything yet
   medianDepth = 1;
   gridStep = 1;
   private lowest = 0;   // the largest y
@@ -161,6 +162,7 @@ export class SceneContent {
     });
     this.centre.fromArray(ends.map(([low, high]) => (low + high) / 2));
     this.size = Math.hypot(...ends.map(([low, high]) => high - low)) || 1;
+    this.empty = ends.every(([low, high]) => low === high);
     depths.sort((a, b) => a - b);
     this.medianDepth = depths[depths.length >> 1] || this.size;
     this.lowest = ends[1][1];

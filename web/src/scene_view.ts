@@ -50,8 +50,12 @@ export class SceneView {
 
   update(changed: Changed): void {
     const content = this.content;
-    if (anyOf(changed, "revision")) content.build();
-    else if (anyOf(changed, "current", "dark")) content.paint();
+    if (anyOf(changed, "revision")) {
+      const wasEmpty = content.empty;
+      content.build();
+      if (wasEmpty && !content.empty) this.reset();
+      else this.setDepths();
+    } else if (anyOf(changed, "current", "dark")) content.paint();
     if (anyOf(changed, "position", "revision", "dark", "playing")) this.showImage();
     if (anyOf(changed, "position", "current", "visible", "colour", "layers", "trail", "view", "dark", "revision")) content.showFrame();
     if (anyOf(changed, "position", "current", "picked", "dark", "revision")) content.showPicked();
@@ -69,9 +73,16 @@ export class SceneView {
     const aspect = Math.min(1, this.container.clientWidth / Math.max(1, this.container.clientHeight));
     this.controls.target.copy(this.content.centre);
     this.camera.position.copy(this.content.centre).addScaledVector(START_DIRECTION, distance / aspect);
+    this.setDepths();
+    this.leaveCamera();
+  }
+
+  // As a live scene grows.
+  private setDepths(): void {
+    const distance = (0.5 * this.content.size) / Math.tan((FIELD_OF_VIEW_DEG * Math.PI) / 360);
     this.camera.near = 0.001 * distance;
     this.camera.far = 20 * distance;
-    this.leaveCamera();
+    this.camera.updateProjectionMatrix();
   }
 
   // The frame's image may have come since.

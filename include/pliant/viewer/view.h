@@ -105,9 +105,10 @@ std::string RunName(const std::string& run_path);
 
 // Reads the runs, finds their sequence, takes over its truth and brings everything into one world: the truth's where
 // there is true motion of the camera, in millimetres, else the first run's. A run's worlds are turned and scaled onto
-// it by the camera's poses in common frames. Fails with what reading a run fails with, kMismatch where a run is not of
-// the sequence that was named. A sequence that was not named, and is missing or another one, is a note, and so is that
-// nothing was tracked.
+// it by the camera's poses and the points' depths in common frames; one without a common frame is a note. Fails with
+// what reading a run or its truth fails with, kMismatch where a run is not of the sequence that was named, and
+// kInsufficient where no run has a frame. A sequence that was not named, and is missing or not that of a run, is a
+// note.
 Result<View> OpenView(const ViewRequest& request, const ViewOptions& options);
 
 // The run's world (or that of one of its submaps) into another one.
