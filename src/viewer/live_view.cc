@@ -27,6 +27,7 @@ constexpr int kAnswerThreads = 8;  // of which each page that waits for news tak
 constexpr std::chrono::seconds kLongestPause(20);
 // At the end: who asked so lately is about to ask again.
 constexpr std::chrono::seconds kStillLooking(2);
+constexpr std::chrono::milliseconds kLastImages(700);  // for the page to fetch the image of the last frame
 
 // A page of another site must not read it by naming this machine after itself.
 bool IsForThisMachine(const httplib::Request& request) {
@@ -115,10 +116,12 @@ struct LiveView::Server {
       {
         const std::lock_guard lock(mutex);
         const bool looks = waiting > 0 || (asked && Clock::now() - *asked < kStillLooking);
-        if (knows_the_end || !looks) break;
+        if (!looks) return;
+        if (knows_the_end) break;
       }
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
+    std::this_thread::sleep_for(kLastImages);
   }
 
   const std::string title;
