@@ -73,6 +73,18 @@ Status AddSurface(const Camera& camera, double max_sigma_mm, SurfaceTruth* surfa
 
 }  // namespace
 
+EvaluationInput FramesOf(const ViewedRun& run) {
+  EvaluationInput frames;
+  frames.name = run.name;
+  frames.camera = run.camera;
+  for (const ViewedFrame& frame : run.frames) {
+    EvaluationFrame& of_frame = frames.frames.emplace_back();
+    of_frame.frame_idx = frame.row.frame_idx;
+    of_frame.timestamp_s = frame.row.timestamp_s;
+  }
+  return frames;
+}
+
 Result<Evaluation> AddTruth(const std::string& run_path, const OpenedTruth& truth, ViewedRun* run) {
   EvaluationOptions options;
   options.needs_truth = false;
@@ -87,10 +99,8 @@ Result<Evaluation> AddTruth(const std::string& run_path, const OpenedTruth& trut
     const auto scale = scales.find(frame.row.frame_idx);
     run->scales.push_back(scale != scales.end() && scale->second > 0 ? std::optional(scale->second) : std::nullopt);
   }
-  const auto input = ReadEvaluationInput(run_path, *truth.sequence, options.matching);
-  if (!input.ok()) return input.status();
-  const auto surface =
-      OpenSurfaceTruth(options.surface_from, *input, *truth.sequence, truth.request, options.points.max_depth_step);
+  const auto surface = OpenSurfaceTruth(options.surface_from, FramesOf(*run), *truth.sequence, truth.request,
+                                        options.points.max_depth_step);
   if (!surface.ok()) return surface.status();
   if (Status status = AddSurface(truth.sequence->camera(), options.points.max_truth_sigma_mm, surface->get(), run);
       !status.ok())

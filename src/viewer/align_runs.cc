@@ -9,6 +9,7 @@
 
 #include "pliant/base/statistics.h"
 #include "pliant/geometry/alignment.h"
+#include "viewer/frame_geometry.h"
 
 namespace pliant {
 
@@ -53,10 +54,7 @@ FrameDepths DepthsOf(const ViewedRun& run, int submap) {
   FrameDepths depths;
   for (const ViewedFrame& frame : run.frames) {
     if (frame.row.submap != submap) continue;
-    std::vector<double> of_frame;
-    for (const ViewedObservation& o : frame.observations)
-      if (o.depth > 0) of_frame.push_back(o.depth);
-    if (!of_frame.empty()) depths.emplace(frame.row.frame_idx, Median(std::move(of_frame)));
+    if (const auto depth = MedianDepth(frame)) depths.emplace(frame.row.frame_idx, *depth);
   }
   return depths;
 }

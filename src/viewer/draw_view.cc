@@ -14,6 +14,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "viewer/frame_geometry.h"
 #include "viewer/view_images.h"
 
 namespace pliant {
@@ -33,7 +34,8 @@ constexpr Colour kGreen = {0, 0.62, 0.451};
 constexpr Colour kYellow = {0.941, 0.894, 0.259};
 
 constexpr int kEmbeddedQuality = 90;
-constexpr double kDot = 1.0 / 300;  // radius of a point, of the panel's width
+constexpr double kFrustumOfDepth = 0.25;  // length of the camera as a part of the points' median depth
+constexpr double kDot = 1.0 / 300;        // radius of a point, of the panel's width
 
 void Use(cairo_t* drawing, const Colour& colour) {
   cairo_set_source_rgb(drawing, colour.red, colour.green, colour.blue);
@@ -49,7 +51,6 @@ void Clip(cairo_t* drawing, const Panel& panel) {
   cairo_clip(drawing);
 }
 
-// With the JPEG beside the pixels, which SVG and PDF take instead of them.
 Surface ImageSurface(const cv::Mat& image) {
   cv::Mat bgra;
   cv::cvtColor(image, bgra, image.channels() == 1 ? cv::COLOR_GRAY2BGRA : cv::COLOR_BGR2BGRA);
@@ -60,11 +61,15 @@ Surface ImageSurface(const cv::Mat& image) {
   for (int y = 0; y < bgra.rows; ++y)
     std::copy_n(bgra.ptr(y), static_cast<std::size_t>(4 * bgra.cols), pixels + static_cast<std::ptrdiff_t>(y) * stride);
   cairo_surface_mark_dirty(surface.get());
+  return surface;
+}
+
+// Which SVG and PDF take instead of the pixels.
+void AttachJpeg(const cv::Mat& image, cairo_surface_t* surface) {
   auto* jpeg = new std::string(ToJpeg(image, kEmbeddedQuality));
   cairo_surface_set_mime_data(
-      surface.get(), CAIRO_MIME_TYPE_JPEG, reinterpret_cast<const unsigned char*>(jpeg->data()), jpeg->size(),
+      surface, CAIRO_MIME_TYPE_JPEG, reinterpret_cast<const unsigned char*>(jpeg->data()), jpeg->size(),
       [](void* text) { delete static_cast<std::string*>(text); }, jpeg);
-  return surface;
 }
 
 class SceneDrawing {
@@ -121,20 +126,12 @@ std::map<PointId, std::vector<Eigen::Vector3d>> Trails(const ViewedRun& run, std
   return trails;
 }
 
-std::vector<Eigen::Vector3d> Frustum(const Camera& camera, const Rigid3& world_from_cam, double depth) {
-  std::vector<Eigen::Vector3d> corners;
-  const double right = camera.width() - 1;
-  const double bottom = camera.height() - 1;
-  for (const Eigen::Vector2d& pixel :
-       {Eigen::Vector2d(0, 0), Eigen::Vector2d(right, 0), Eigen::Vector2d(right, bottom), Eigen::Vector2d(0, bottom)}) {
-    const auto ray = camera.Unproject(pixel);
-    if (!ray || !(ray->z() > 0.1)) return {};
-    corners.push_back(world_from_cam * (depth / ray->z() * *ray));
-  }
-  return corners;
-}
-
 }  // namespace
+
+double AspectOf(const View& view) {
+  constexpr double kUsual = 0.75;
+  return view.camera ? static_cast<double>(view.camera->height()) / view.camera->width() : kUsual;
+}
 
 Status TooLarge(double width_px, double height_px) {
   return {ErrorCode::kInvalidArgument, "a picture of " + std::to_string(std::lround(width_px)) + " x " +
@@ -173,6 +170,7 @@ void DrawImage(cairo_t* drawing, const Panel& panel, const cv::Mat& image, const
   Clip(drawing, panel);
   const double scale = std::min(panel.width / image.cols, panel.height / image.rows);
   const Surface surface = ImageSurface(image);
+  if (cairo_surface_get_type(cairo_get_target(drawing)) != CAIRO_SURFACE_TYPE_IMAGE) AttachJpeg(image, surface.get());
   cairo_translate(drawing, panel.left, panel.top);
   cairo_scale(drawing, scale, scale);
   cairo_set_source_surface(drawing, surface.get(), 0, 0);
@@ -243,14 +241,11 @@ void DrawScene(cairo_t* drawing, const Panel& panel, const View& view, const Vie
   }
   scene.Path(path);
   if (frame != nullptr && frame->world_from_cam && run.camera) {
-    std::vector<float> depths;
-    for (const ViewedObservation& o : frame->observations)
-      if (o.depth > 0) depths.push_back(o.depth);
-    std::nth_element(depths.begin(), depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2), depths.end());
-    const double depth = depths.empty() ? 1.0 : 0.25 * depths[depths.size() / 2];
-    const auto corners = Frustum(*run.camera, *frame->world_from_cam, depth);
-    for (std::size_t i = 0; i < corners.size(); ++i)
-      scene.Path({frame->world_from_cam->translation, corners[i], corners[(i + 1) % corners.size()]});
+    const double depth = kFrustumOfDepth * MedianDepth(*frame).value_or(1 / kFrustumOfDepth);
+    if (const auto rays = CornerRays(*run.camera))
+      for (std::size_t i = 0; i < rays->size(); ++i)
+        scene.Path({frame->world_from_cam->translation, *frame->world_from_cam * (depth * (*rays)[i]),
+                    *frame->world_from_cam * (depth * (*rays)[(i + 1) % rays->size()])});
   }
   cairo_restore(drawing);
   Use(drawing, kGrey);

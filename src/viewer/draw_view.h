@@ -31,6 +31,12 @@ struct Panel {
   double height = 0;
 };
 
+inline constexpr double kText = 14;  // size of the letters
+inline constexpr double kLine = 22;  // height of a line of them
+
+// Height by width of the view's images.
+double AspectOf(const View& view);
+
 // The sentence for a picture that cairo cannot hold.
 Status TooLarge(double width_px, double height_px);
 

@@ -18,8 +18,6 @@ namespace pliant {
 namespace {
 
 constexpr double kGap = 8;
-constexpr double kText = 14;
-constexpr double kLine = 22;
 
 // The page of a figure, in points of 1/72 inch (png: pixels).
 struct Layout {
@@ -31,8 +29,7 @@ struct Layout {
 
   Layout(const View& view, const FigureOptions& options, std::size_t frames) {
     panel_width = options.panel_width_px;
-    const double aspect = view.camera ? static_cast<double>(view.camera->height()) / view.camera->width() : 0.75;
-    panel_height = panel_width * aspect;
+    panel_height = panel_width * AspectOf(view);
     image_height = view.sequence ? panel_height : 0;
     width = kGap + static_cast<double>(frames) * (panel_width + kGap);
     height = kLine + image_height + kGap +
@@ -49,6 +46,9 @@ Status Draw(cairo_t* drawing, const View& view, const FigureOptions& options, co
   cairo_paint(drawing);
   auto images = FrameImages::Open(view, *frames_idx.begin());
   if (!images.ok()) return images.status();
+  std::vector<Orbit> orbits;
+  for (const ViewedRun& run : view.runs)
+    orbits.push_back(OrbitOf(view, run, options, layout.panel_width, layout.panel_height));
   double left = kGap;
   for (const int frame_idx : frames_idx) {
     DrawText(drawing, left, kLine - 6, kText, "frame " + std::to_string(frame_idx));
@@ -57,11 +57,12 @@ Status Draw(cairo_t* drawing, const View& view, const FigureOptions& options, co
     DrawImage(drawing, {left, kLine, layout.panel_width, layout.image_height}, *image,
               FindFrame(view.runs.front(), frame_idx));
     double top = kLine + layout.image_height + kGap;
-    for (const ViewedRun& run : view.runs) {
+    for (std::size_t i = 0; i < view.runs.size(); ++i) {
+      const ViewedRun& run = view.runs[i];
       if (view.runs.size() > 1) DrawText(drawing, left, top + kLine - 8, kText, run.name);
       top += Layout::RunLine(view);
-      const Orbit orbit = OrbitOf(view, run, options, layout.panel_width, layout.panel_height);
-      DrawScene(drawing, {left, top, layout.panel_width, layout.panel_height}, view, run, frame_idx, orbit, options);
+      DrawScene(drawing, {left, top, layout.panel_width, layout.panel_height}, view, run, frame_idx, orbits[i],
+                options);
       top += layout.panel_height + kGap;
     }
     left += layout.panel_width + kGap;

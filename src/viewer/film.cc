@@ -18,8 +18,6 @@
 namespace pliant {
 namespace {
 
-constexpr double kText = 14;
-constexpr double kLine = 22;
 constexpr double kNameLeft = 110;  // beside the frame's number
 constexpr double kUsualFps = 30;
 
@@ -67,9 +65,8 @@ Status WriteFilm(const ViewRequest& request, const FigureOptions& options, const
   for (const ViewedRun& run : view->runs)
     for (const ViewedFrame& frame : run.frames) frames_idx.insert(frame.row.frame_idx);
   if (frames_idx.empty()) return {ErrorCode::kInsufficient, "the run has no frame; there is nothing to film"};
-  const double aspect = view->camera ? static_cast<double>(view->camera->height()) / view->camera->width() : 0.75;
   const double panel_width = options.panel_width_px;
-  const double panel_height = panel_width * aspect;
+  const double panel_height = panel_width * AspectOf(*view);
   const std::size_t panels = (view->sequence ? 1 : 0) + view->runs.size();
   const cv::Size size(Even(static_cast<double>(panels) * panel_width), Even(panel_height + 2 * kLine));
   std::vector<Orbit> orbits;

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "pliant/base/version.h"
+#include "viewer/frame_geometry.h"
 #include "viewer/pack_array.h"
 #include "viewer/page_asset.h"
 
@@ -201,21 +202,10 @@ json RunData(const ViewedRun& run) {
 
 json CameraData(const std::optional<Camera>& camera) {
   if (!camera) return nullptr;
-  json corners = json::array();
-  const double right = camera->width() - 0.5;
-  const double bottom = camera->height() - 0.5;
-  for (const Eigen::Vector2d& pixel : {Eigen::Vector2d(-0.5, -0.5), Eigen::Vector2d(right, -0.5),
-                                       Eigen::Vector2d(right, bottom), Eigen::Vector2d(-0.5, bottom)}) {
-    // Where the lens has no ray in the corner (a disc), one farther in.
-    std::optional<Eigen::Vector3d> ray;
-    const Eigen::Vector2d centre(0.5 * (right - 0.5), 0.5 * (bottom - 0.5));
-    for (double share = 1.0; share > 0.1 && !(ray && ray->z() > 0.1); share -= 0.05)
-      ray = camera->Unproject(centre + share * (pixel - centre));
-    if (!ray || !(ray->z() > 0))
-      return {{"width", camera->width()}, {"height", camera->height()}, {"corners", nullptr}};
-    corners.push_back({ray->x() / ray->z(), ray->y() / ray->z(), 1.0});
-  }
-  return {{"width", camera->width()}, {"height", camera->height()}, {"corners", corners}};
+  json corners = nullptr;
+  if (const auto rays = CornerRays(*camera))
+    for (const Eigen::Vector3d& ray : *rays) corners.push_back({ray.x(), ray.y(), ray.z()});
+  return {{"width", camera->width()}, {"height", camera->height()}, {"corners", std::move(corners)}};
 }
 
 json ImageData(const ViewImages& images) {

@@ -136,8 +136,8 @@ Result<ReadViewedRun> ReadRunForView(const std::string& run_path, const Sequence
   if (!source.ok()) return source.status();
   ReadViewedRun read;
   read.run.name = RunName(run_path);
+  read.summary = source->summary;
   if (source->summary) {
-    read.input = source->summary->description.input;
     read.run.status = EnumName(source->summary->status);
     read.run.note = source->summary->note;
   }

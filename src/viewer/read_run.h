@@ -4,6 +4,7 @@
 // A run folder as it is shown, in its own worlds and units.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "pliant/base/status.h"
@@ -14,8 +15,8 @@ namespace pliant {
 
 struct ReadViewedRun {
   ViewedRun run;
-  std::string input;               // the images' path as run.json has it; empty: it does not say
-  std::vector<std::string> notes;  // what was left out
+  std::optional<RunSummary> summary;  // nothing: another system's result
+  std::vector<std::string> notes;     // what was left out
 };
 
 // With at most `max_observations` observations, of every n-th point. `sequence` may be null; another system's result

@@ -7,9 +7,6 @@
 #include <cstdio>
 #include <utility>
 
-#include "pliant/base/text.h"
-#include "pliant/io/run_summary.h"
-
 namespace pliant {
 namespace {
 
@@ -78,17 +75,14 @@ void AddEvaluation(const Evaluation& evaluation, Rows* rows) {
 
 }  // namespace
 
-Result<std::vector<NamedText>> RunFigures(const std::string& run_path, const ViewedRun& run,
-                                          const std::optional<Evaluation>& evaluation) {
+std::vector<NamedText> RunFigures(const ViewedRun& run, const std::optional<RunSummary>& summary,
+                                  const std::optional<Evaluation>& evaluation) {
   Rows rows;
   rows.Begin("Run");
   const auto tracked = std::count_if(run.frames.begin(), run.frames.end(),
                                      [](const ViewedFrame& frame) { return frame.world_from_cam.has_value(); });
   rows.Add("frames tracked", std::to_string(tracked) + " of " + std::to_string(run.frames.size()));
-  const std::string path = run_path + "/run.json";
-  if (Exists(path)) {
-    const auto summary = ReadRunSummary(path);
-    if (!summary.ok()) return summary.status();
+  if (summary) {
     rows.Add("program", summary->description.program_version);
     rows.Add("images", summary->description.input);
     rows.Add("points", std::to_string(summary->points));

@@ -25,8 +25,8 @@ Result<std::optional<OpenedTruth>> OpenItsSequence(const ViewRequest& request, V
   SequenceRequest sequence{.image_path = request.sequence_path, .camera_path = request.camera_path};
   const bool named = !request.sequence_path.empty();
   if (!named) {
-    const auto run = ReadRun(request.run_paths.front());
-    if (run.ok() && run->summary) sequence.image_path = run->summary->description.input;
+    const auto summary = ReadRunSummary(request.run_paths.front() + "/run.json");
+    if (summary.ok()) sequence.image_path = summary->description.input;
     if (sequence.image_path.empty()) {
       view->notes.emplace_back("the run does not say which images it is of; name them with --sequence to see them");
       return std::optional<OpenedTruth>();
@@ -134,17 +134,6 @@ void Align(const FramePoses& truth, View* view) {
         "maps that nothing joins are shown one after the other: each begins where the one before it ended");
 }
 
-// Whether the run is of this sequence.
-Status CheckIsOf(const ViewedRun& run, const Sequence& sequence) {
-  EvaluationInput frames{.name = run.name, .frames = {}, .camera = run.camera, .seconds = {}, .notes = {}};
-  for (const ViewedFrame& frame : run.frames) {
-    EvaluationFrame& of_frame = frames.frames.emplace_back();
-    of_frame.frame_idx = frame.row.frame_idx;
-    of_frame.timestamp_s = frame.row.timestamp_s;
-  }
-  return CheckBelongsTo(frames, sequence, {});
-}
-
 }  // namespace
 
 void ViewOptions::List(OptionTable& table) {
@@ -187,7 +176,7 @@ Result<View> OpenView(const ViewRequest& request, const ViewOptions& options) {
     if (!read.ok()) return read.status();
     ViewedRun& run = read->run;
     view.notes.insert(view.notes.end(), read->notes.begin(), read->notes.end());
-    const Status fits = sequence ? CheckIsOf(run, *sequence->sequence) : Status::Ok();
+    const Status fits = sequence ? CheckBelongsTo(FramesOf(run), *sequence->sequence, {}) : Status::Ok();
     if (!fits.ok() && named) return fits;
     if (!fits.ok()) view.notes.push_back("the run " + run.name + " is compared with nothing: " + fits.message());
     std::optional<Evaluation> evaluation;
@@ -199,9 +188,7 @@ Result<View> OpenView(const ViewRequest& request, const ViewOptions& options) {
         evaluation = *std::move(evaluated);
       }
     }
-    auto figures = RunFigures(run_path, run, evaluation);
-    if (!figures.ok()) return figures.status();
-    run.figures = *std::move(figures);
+    run.figures = RunFigures(run, read->summary, evaluation);
     view.runs.push_back(std::move(run));
   }
   TakeNames(request.run_paths, &view);

@@ -13,8 +13,8 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "pliant/datasets/open_sequence.h"
 #include "pliant/image/pyramid.h"
+#include "viewer/frame_images.h"
 
 namespace pliant {
 namespace {
@@ -90,28 +90,24 @@ Result<ViewImages> ReadViewImages(const ReportOptions& options, View* view) {
     for (const ViewedFrame& frame : run.frames) wanted.insert(frame.row.frame_idx);
   ViewImages images;
   if (wanted.empty()) return images;
-  SequenceRequest request = *view->sequence;
-  request.start = *wanted.begin();
-  auto sequence = OpenSequence(request);
-  if (!sequence.ok()) return sequence.status();
+  auto source = FrameImages::Open(*view, *wanted.begin());
+  if (!source.ok()) return source.status();
   std::vector<FirstPatches> first(view->runs.size());
   std::vector<std::size_t> position(view->runs.size(), 0);
-  while (images.frame_idx.empty() || images.frame_idx.back() < *wanted.rbegin()) {
-    auto frame = (*sequence)->Next();
-    if (!frame.ok()) {
-      view->notes.push_back("later images are not shown: " + frame.status().message());
+  for (const int frame_idx : wanted) {
+    const auto image = source->At(frame_idx);
+    if (!image.ok()) {
+      view->notes.push_back("later images are not shown: " + image.status().message());
       break;
     }
-    if (!frame->has_value()) break;
-    const int frame_idx = (*frame)->frame_idx;
-    if (!wanted.contains(frame_idx)) continue;
-    const cv::Mat small = Shrink((*frame)->image, options.image_width_px);
+    if (image->empty()) continue;
+    const cv::Mat small = Shrink(*image, options.image_width_px);
     images.width = small.cols;
     images.height = small.rows;
-    images.scale = static_cast<double>(small.cols) / (*frame)->image.cols;
+    images.scale = static_cast<double>(small.cols) / image->cols;
     images.frame_idx.push_back(frame_idx);
     images.jpeg.push_back(ToJpeg(small, options.image_quality));
-    const cv::Mat grey = ToGrey((*frame)->image);
+    const cv::Mat grey = ToGrey(*image);
     for (std::size_t i = 0; i < view->runs.size(); ++i) {
       std::vector<ViewedFrame>& frames = view->runs[i].frames;
       while (position[i] < frames.size() && frames[position[i]].row.frame_idx < frame_idx) ++position[i];

@@ -4,8 +4,9 @@
 // The current frame's image with the points of the current run.
 
 import { paletteOf } from "./colours";
-import { CLICK_RADIUS_PX, byId, onClick, prepare, setText } from "./dom";
+import { byId, onClick, prepare, setText } from "./dom";
 import type { Page } from "./page";
+import { pickNearest } from "./picking";
 import type { Run } from "./run";
 import { Stamps, strokeOnImage } from "./stamps";
 import { type Changed, anyOf } from "./state";
@@ -170,21 +171,8 @@ export class ImageView {
     context.lineTo(...this.project(run.pixel.values[2 * o], run.pixel.values[2 * o + 1]));
   }
 
-  // The point of this frame that is closest to a pixel of the canvas, if one is near.
   private pick(x: number, y: number): void {
-    const { report, store } = this.page;
-    const run = report.runs[store.state.current];
-    let best: number | null = null;
-    let least = CLICK_RADIUS_PX;
-    for (const o of run.observationsOfRow(report.row(store.state.current, store.state.position))) {
-      const [px, py] = this.project(run.pixel.values[2 * o], run.pixel.values[2 * o + 1]);
-      const distance = Math.hypot(px - x, py - y);
-      if (distance < least) {
-        least = distance;
-        best = o;
-      }
-    }
-    if (best !== null) this.page.pick(best);
+    pickNearest(this.page, x, y, (run, o) => this.project(run.pixel.values[2 * o], run.pixel.values[2 * o + 1]));
   }
 
   private zoomAt(x: number, y: number, factor: number): void {

@@ -51,7 +51,6 @@ export class Images {
 
   // Starts on the images that come after this frame.
   prefetch(frame: number, count: number): void {
-    if (!this.listed) return;
     const index = lastAtMost(this.listed, frame);
     for (const next of this.listed.slice(index + 1, index + 1 + count)) if (!this.kept.has(next)) void this.load(next);
   }

@@ -5,8 +5,9 @@
 
 import { ColorManagement, LinearSRGBColorSpace, PerspectiveCamera, Quaternion, Vector3, WebGLRenderer } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
-import { CLICK_RADIUS_PX, byId, element, onClick, setText } from "./dom";
+import { byId, element, onClick, setText } from "./dom";
 import type { Page } from "./page";
+import { pickNearest } from "./picking";
 import { SceneContent, poseOf } from "./scene_content";
 import { type Changed, anyOf } from "./state";
 
@@ -104,20 +105,11 @@ export class SceneView {
     return [(0.5 + 0.5 * point.x) * this.container.clientWidth, (0.5 - 0.5 * point.y) * this.container.clientHeight, point.z];
   }
 
-  // The point of this frame that is closest to a pixel of the canvas, if one is near.
   private pick(x: number, y: number): void {
-    const { report, store } = this.page;
-    const run = report.runs[store.state.current];
-    let best: number | null = null;
-    let least = CLICK_RADIUS_PX;
-    for (const o of run.observationsOfRow(report.row(store.state.current, store.state.position))) {
+    pickNearest(this.page, x, y, (run, o) => {
       const [px, py, depth] = this.project(run.position.values, 3 * o);
-      const distance = Math.hypot(px - x, py - y);
-      if (distance >= least || depth >= 1) continue;
-      least = distance;
-      best = o;
-    }
-    if (best !== null) this.page.pick(best);
+      return depth < 1 ? [px, py] : null;
+    });
   }
 
   private leaveCamera(): void {
