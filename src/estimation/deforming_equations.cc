@@ -262,11 +262,11 @@ std::vector<double> DeformingEquations::Variances() const {
 DeformingState DeformingEquations::Moved(const DeformingState& state, const Eigen::VectorXd& step) const {
   DeformingState moved = state;
   const Eigen::Index rank = terms_->rank();
-  for (std::size_t v = 1; v < moved.cams_from_world.size(); ++v) {
+  for (std::size_t v = 1; v < moved.poses.size(); ++v) {
     const Eigen::Index place = ViewPlace(static_cast<int>(v));
-    Rigid3& pose = moved.cams_from_world[v];
-    pose = Rigid3((RotationExp(step.segment<3>(place)) * pose.rotation).normalized(),
-                  pose.translation + step.segment<3>(place + 3));
+    ViewPose& pose = moved.poses[v];
+    pose.rotation = RotationExp(step.segment<3>(place)).toRotationMatrix() * pose.rotation;
+    pose.translation += step.segment<3>(place + 3);
     if (rank > 0) moved.courses.col(static_cast<Eigen::Index>(v)) += step.segment(place + 6, rank);
   }
   if (free_ != FreeParts::kAll) return moved;

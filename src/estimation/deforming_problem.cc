@@ -98,7 +98,7 @@ void DeformingProblem::HoldScale(DeformingState* state) const {
   state->light_offset += change;
   state->points.bottomRows(terms_.modes_size()) *= std::exp(change);
   state->node_modes *= std::exp(change);
-  for (Rigid3& pose : state->cams_from_world) pose.translation *= std::exp(change);
+  for (ViewPose& pose : state->poses) pose.translation *= std::exp(change);
 }
 
 // A point by itself, everything else held, one step from where it is at `cost`: what it costs then; nothing where none
@@ -152,7 +152,6 @@ Result<double> DeformingProblem::Solve(int max_iterations, FreeParts free, int t
   constexpr double kLeastGain = 0.05;  // by what the linear model predicts: less is no step
   constexpr double kSmallGain = 0.25;  // a smaller region
   constexpr double kLargeGain = 0.75;  // a larger one
-  constexpr double kNoPromise = 1e-3 * kTolerance;
   auto cost = terms_.Cost(state_);
   if (!cost) return NoStart();
   DeformingEquations equations(terms_, free, free == FreeParts::kAll ? gauge_ : std::vector<int>(), threads);
@@ -177,7 +176,7 @@ Result<double> DeformingProblem::Solve(int max_iterations, FreeParts free, int t
         if (gain < kSmallGain) radius *= 0.5;
       } else {
         radius = 0.5 * std::min(radius, best.length);
-        done = radius < kLeastRadius || !(predicted > kNoPromise * *cost);
+        done = radius < kLeastRadius || !(predicted > kTolerance * *cost);  // a smaller region promises less
       }
     }
   }

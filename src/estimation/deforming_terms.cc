@@ -124,7 +124,8 @@ double DeformingTerms::unmeasured_cost() const {
 }
 
 DeformingState DeformingTerms::Start() const {
-  DeformingState state{start_.cams_from_world, start_.courses, {}, node_modes_, light_offset_};
+  DeformingState state{{}, start_.courses, {}, node_modes_, light_offset_};
+  for (const Rigid3& pose : start_.cams_from_world) state.poses.push_back({pose.RotationMatrix(), pose.translation});
   state.points.resize(point_size(), static_cast<Eigen::Index>(charts_.size()));
   for (std::size_t i = 0; i < charts_.size(); ++i) {
     auto column = state.points.col(static_cast<Eigen::Index>(i));
@@ -136,7 +137,8 @@ DeformingState DeformingTerms::Start() const {
 
 DeformingWindow DeformingTerms::Window(const DeformingState& state) const {
   DeformingWindow window = start_;
-  window.cams_from_world = state.cams_from_world;
+  for (std::size_t v = 0; v < state.poses.size(); ++v)
+    window.cams_from_world[v] = Rigid3(state.poses[v].rotation, state.poses[v].translation);
   window.courses = state.courses;
   for (std::size_t i = 0; i < charts_.size(); ++i) {
     const auto column = state.points.col(static_cast<Eigen::Index>(i));
@@ -165,8 +167,8 @@ std::optional<double> DeformingTerms::PointCost(std::size_t point, const Deformi
   const Eigen::Vector3d rest = charts_[point].Point(column.head<3>());
   double twice = 0;
   for (const Seen& seen : seen_[point]) {
-    const Eigen::Vector3d x =
-        state.cams_from_world[static_cast<std::size_t>(seen.view_idx)] * Position(point, seen.view_idx, rest, state);
+    const ViewPose& pose = state.poses[static_cast<std::size_t>(seen.view_idx)];
+    const Eigen::Vector3d x = pose.rotation * Position(point, seen.view_idx, rest, state) + pose.translation;
     if (!(x.dot(seen.ray) > 0.0)) return std::nullopt;
     twice += Loss(scale_ * scale_ * (seen.basis * x).squaredNorm() / x.squaredNorm());
   }
@@ -205,9 +207,8 @@ PointEquations DeformingTerms::Linearised(std::size_t point, const DeformingStat
   for (std::size_t k = 0; k < seen_[point].size(); ++k) {
     const Seen& seen = seen_[point][k];
     SeenEquations& of_seen = seen_equations != nullptr ? (*seen_equations)[k] : scratch;
-    const Rigid3& pose = state.cams_from_world[static_cast<std::size_t>(seen.view_idx)];
-    const Eigen::Matrix3d rotation = pose.rotation.toRotationMatrix();
-    const Eigen::Vector3d turned = rotation * Position(point, seen.view_idx, rest, state);
+    const ViewPose& pose = state.poses[static_cast<std::size_t>(seen.view_idx)];
+    const Eigen::Vector3d turned = pose.rotation * Position(point, seen.view_idx, rest, state);
     const Eigen::Vector3d x = turned + pose.translation;
     const double distance = x.norm();
     of_seen.error = scale_ / distance * (seen.basis * x);
@@ -215,7 +216,7 @@ PointEquations DeformingTerms::Linearised(std::size_t point, const DeformingStat
     const Eigen::Matrix<double, 2, 3> by_x =
         root / distance * (scale_ * seen.basis - of_seen.error * (x / distance).transpose());
     of_seen.error *= root;
-    const Eigen::Matrix<double, 2, 3> by_position = by_x * rotation;
+    const Eigen::Matrix<double, 2, 3> by_position = by_x * pose.rotation;
     of_seen.by_point.resize(2, point_size());
     of_seen.by_point.leftCols<3>().noalias() = by_position * derivative;
     for (int r = 0; r < rank_; ++r)

@@ -23,9 +23,15 @@ using SmallMatrix = Eigen::Matrix<double, kRows, Eigen::Dynamic, Eigen::ColMajor
 using PointVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxPointSize, 1>;
 using PointMatrix = SmallMatrix<Eigen::Dynamic, kMaxPointSize, kMaxPointSize>;
 
+// cam_from_world of a view. Its rotation is a matrix because every observation is turned by it.
+struct ViewPose {
+  Eigen::Matrix3d rotation;
+  Eigen::Vector3d translation;
+};
+
 // What is solved for.
 struct DeformingState {
-  std::vector<Rigid3> cams_from_world;
+  std::vector<ViewPose> poses;
   Eigen::MatrixXd courses;     // R x views
   Eigen::MatrixXd points;      // a column a point: its chart's parameters, then its modes, column by column
   Eigen::MatrixXd node_modes;  // a column a node

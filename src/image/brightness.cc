@@ -21,8 +21,8 @@ LocalBrightness::LocalBrightness(const cv::Mat& image, const cv::Mat& valid) {
   cv::Mat red = image;
   if (image.channels() == 3) cv::extractChannel(image, red, 2);
   cv::Mat weight = valid.empty() ? cv::Mat(image.size(), CV_8UC1, cv::Scalar(255)) : valid;
-  red = red.clone();
-  red.setTo(0, weight == 0);
+  cv::Mat surface = cv::Mat::zeros(image.size(), CV_8UC1);
+  red.copyTo(surface, weight);
   const cv::Size size((image.cols + kScale - 1) / kScale, (image.rows + kScale - 1) / kScale);
   const auto average = [&](const cv::Mat& full) {
     cv::Mat small;
@@ -32,7 +32,7 @@ LocalBrightness::LocalBrightness(const cv::Mat& image, const cv::Mat& valid) {
     return small;
   };
   cv::Mat share = average(weight) / 255.0;
-  cv::divide(average(red), share, brightness_);
+  cv::divide(average(surface), share, brightness_);
   brightness_.setTo(0, share < kLeastValid);
 }
 
