@@ -12,6 +12,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "pliant/base/text.h"
 #include "pliant/io/options_file.h"
 
 namespace pliant::cli {
@@ -83,6 +84,7 @@ int RunVerb(std::string_view command, std::span<const Verb> verbs, std::span<con
              std::string(verb.name) + " " + std::string(verb.arguments) + "\n";
   usage += "\nWith --help each of them prints its manual.\n";
   const bool asked = name == "--help" || name == "help";
+  if (!asked) SayError(command, name.empty() ? "say what it is to do" : "there is no " + Quoted(name) + " in it");
   (asked ? std::cout : std::cerr) << usage;
   return asked ? kExitOk : kExitUsage;
 }

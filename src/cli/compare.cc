@@ -1,12 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
+#include <filesystem>
 #include <iostream>
+#include <map>
 #include <optional>
 
 #include "cli/command_line.h"
 #include "cli/commands.h"
 #include "cli/run_evaluation.h"
+#include "pliant/datasets/run_sequence.h"
 #include "pliant/evaluation/report.h"
 
 namespace pliant::cli {
@@ -36,16 +39,29 @@ struct Request {
   std::string output_path;
 };
 
+// A calibration that one of the runs was made with serves all runs of the same images.
+std::vector<SequenceRequest> SequencesOf(const Request& request) {
+  std::vector<SequenceRequest> sequences;
+  std::map<std::filesystem::path, std::filesystem::path> camera_of;
+  for (std::size_t i = 0; i < request.run_paths.size(); ++i) {
+    const std::string& path = request.sequence_paths[request.sequence_paths.size() == 1 ? 0 : i];
+    sequences.push_back(SequenceOfRun(request.run_paths[i], path, request.camera_path));
+    if (!sequences.back().camera_path.empty()) camera_of.emplace(path, sequences.back().camera_path);
+  }
+  for (SequenceRequest& sequence : sequences)
+    if (const auto camera = camera_of.find(sequence.image_path); camera != camera_of.end())
+      sequence.camera_path = camera->second;
+  return sequences;
+}
+
 // A sequence that several runs in a row share is opened once.
 std::vector<std::optional<Evaluation>> EvaluateAll(const Request& request, const EvaluationOptions& options) {
   std::vector<std::optional<Evaluation>> evaluations(request.run_paths.size());
   std::optional<Result<OpenedTruth>> truth;
-  std::string opened_path;
+  const std::vector<SequenceRequest> sequences = SequencesOf(request);
   for (std::size_t i = 0; i < request.run_paths.size(); ++i) {
-    const std::string& sequence_path = request.sequence_paths[request.sequence_paths.size() == 1 ? 0 : i];
-    if (!truth || sequence_path != opened_path) {
-      truth = OpenTruth({.image_path = sequence_path, .camera_path = request.camera_path}, options);
-      opened_path = sequence_path;
+    if (!truth || sequences[i].image_path != sequences[i - 1].image_path) {
+      truth = OpenTruth(sequences[i], options);
       if (!truth->ok()) SayError(kManual.command, truth->status().message());
     }
     if (!truth->ok()) continue;
@@ -73,7 +89,6 @@ Status WriteAll(const std::vector<std::optional<Evaluation>>& evaluations, const
 int CompareCommand(std::span<const std::string> args) {
   Request request;
   EvaluationOptions options;
-  options.needs_truth = false;
   bool quiet = false;
   CommandLine line(kManual);
   line.Add("run", &request.run_paths, "DIR", "run folder", Need::kRequired);

@@ -6,6 +6,7 @@
 #include "cli/command_line.h"
 #include "cli/commands.h"
 #include "cli/run_evaluation.h"
+#include "pliant/datasets/run_sequence.h"
 #include "pliant/evaluation/report.h"
 
 namespace pliant::cli {
@@ -26,7 +27,8 @@ const Manual kManual = {
     "Reads --run: a run folder that pliant track left, also one that was interrupted or killed, or another system's "
     "trajectory.txt (TUM) and observations.csv; docs/formats.md says how to bring one. Reads --sequence: a "
     "sequence with depth images, poses, pairs of images (the disparity at every point is then the truth of the "
-    "surface, with its own uncertainty) or simulation.yaml.\n\n"
+    "surface, with its own uncertainty) or simulation.yaml; of one without, tracks and reprojection are all there "
+    "is.\n\n"
     "Leaves, where --output_path is given: evaluation.json (every figure) and evaluation.csv (one row a frame). "
     "pliant compare sets several runs side by side.",
     {"pliant evaluate --run run --sequence colon",
@@ -54,7 +56,7 @@ int EvaluateCommand(std::span<const std::string> args) {
   options.List(table);
   if (const auto exit = line.Resolve(table)) return *exit;
 
-  const auto truth = OpenTruth({.image_path = sequence_path, .camera_path = camera_path}, options);
+  const auto truth = OpenTruth(SequenceOfRun(run_path, sequence_path, camera_path), options);
   if (!truth.ok()) return line.Failure(truth.status().message());
   const auto evaluation = EvaluateRun(run_path, *truth, options);
   if (!evaluation.ok()) return line.Failure(evaluation.status().message());

@@ -79,11 +79,15 @@ std::string CheckArguments(const ReportArguments& arguments, std::vector<int>* f
   return "--output_path is '" + arguments.output_path + "'; " + kind.name + " ends with " + endings;
 }
 
+void PrintNotes(const std::vector<std::string>& notes) {
+  for (const std::string& note : notes) std::cout << "note: " << note << "\n";
+}
+
 int WritePage(const CommandLine& line, const ReportArguments& arguments, const ReportOptions& options) {
   const auto summary = WriteReportPage(arguments.view, options, arguments.output_path);
   if (!summary.ok()) return line.Failure(summary.status().message());
   if (arguments.quiet) return kExitOk;
-  for (const std::string& note : summary->notes) std::cout << "note: " << note << "\n";
+  PrintNotes(summary->notes);
   char text[128];
   std::snprintf(text, sizeof text, "%d frames, %lld observations, %zu images, %.1f MB in ", summary->frames,
                 static_cast<long long>(summary->observations), summary->images, summary->megabytes);
@@ -91,18 +95,18 @@ int WritePage(const CommandLine& line, const ReportArguments& arguments, const R
   return kExitOk;
 }
 
-Status WriteFilmWithProgress(const ReportArguments& arguments, const FigureOptions& options) {
+Result<std::vector<std::string>> WriteFilmWithProgress(const ReportArguments& arguments, const FigureOptions& options) {
   const std::atomic<bool>& stop = StopOnSignals();
   Progress progress(std::cerr, arguments.quiet ? ProgressStyle::kQuiet : ProgressStyleOfStandardError(), "film", 0);
   bool stopped = false;
-  Status status = WriteFilm(arguments.view, options, arguments.output_path, [&](int done, int frames) {
+  auto notes = WriteFilm(arguments.view, options, arguments.output_path, [&](int done, int frames) {
     progress.Update(done, "of " + std::to_string(frames));
     stopped = stop && done < frames;
     return !stopped;
   });
-  if (status.ok() && stopped)
-    return {ErrorCode::kInsufficient, "stopped on request; the film up to there is in " + arguments.output_path};
-  return status;
+  if (notes.ok() && stopped)
+    return Status(ErrorCode::kInsufficient, "stopped on request; the film up to there is in " + arguments.output_path);
+  return notes;
 }
 
 }  // namespace
@@ -135,11 +139,12 @@ int ReportCommand(std::span<const std::string> args) {
   if (const std::string wrong = CheckArguments(arguments, &frames_idx); !wrong.empty()) return line.UsageError(wrong);
 
   if (arguments.figure.empty() && !arguments.video) return WritePage(line, arguments, report_options);
-  const Status status = arguments.video
-                            ? WriteFilmWithProgress(arguments, figure_options)
-                            : WriteFigure(arguments.view, figure_options, frames_idx, arguments.output_path);
-  if (!status.ok()) return line.Failure(status.message());
-  if (!arguments.quiet) std::cout << arguments.output_path << std::endl;
+  const auto notes = arguments.video ? WriteFilmWithProgress(arguments, figure_options)
+                                     : WriteFigure(arguments.view, figure_options, frames_idx, arguments.output_path);
+  if (!notes.ok()) return line.Failure(notes.status().message());
+  if (arguments.quiet) return kExitOk;
+  PrintNotes(*notes);
+  std::cout << arguments.output_path << std::endl;
   return kExitOk;
 }
 

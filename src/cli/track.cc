@@ -90,7 +90,9 @@ int TrackCommand(std::span<const std::string> args) {
   LiveOptions live_options;
   live_options.List(table);
   if (const auto exit = line.Resolve(table)) return *exit;
-  if (const auto exit = arguments.input.Check(line)) return *exit;
+  const InitOptions& init = options.tracker.init;
+  if (init.method != InitMethod::kDepth && !init.depth.cloud_path.empty())
+    return line.UsageError("--Init.depth_cloud is for a start from depth; give --Init.method depth as well");
 
   RunRequest request;
   request.input = arguments.input.Request();

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // C3VD (Bobrow et al., Medical Image Analysis 2023) and C3VDv2: a colonoscope in a phantom. N_color.png and
-// NNNN_depth.tiff, in C3VDv2 in folders rgb/ and depth/, 16 bits whose full scale is 100 mm; pose.txt, sixteen numbers
-// a line between commas, the transpose of world from camera in mm.
+// NNNN_depth.tiff, in C3VDv2 in folders rgb/ and depth/, 16 bits whose full scale is 100 mm and all beyond; pose.txt,
+// sixteen numbers a line between commas, the transpose of world from camera in mm.
 #include <vector>
 
 #include "datasets/formats.h"
@@ -59,10 +59,11 @@ Result<DataSet> OpenC3vd(const SequenceRequest& request) {
   const fs::path& folder = request.image_path;
   const fs::path images = ImagesOf(folder);
   const fs::path depths = images == folder ? folder : folder / "depth";
-  NumberedSet set{.folder = images,
-                  .images = NumberedFiles(images, "", "_color.png"),
-                  .depth = NumberedFiles(depths, "", "_depth.tiff"),
-                  .read_depth = [](const fs::path& file) { return ReadDepthImage(file, kFullScale_mm / kSteps); }};
+  NumberedSet set{
+      .folder = images,
+      .images = NumberedFiles(images, "", "_color.png"),
+      .depth = NumberedFiles(depths, "", "_depth.tiff"),
+      .read_depth = [](const fs::path& file) { return ReadClampedDepthImage(file, kFullScale_mm / kSteps); }};
   if (set.images.empty()) set.images = NumberedFiles(images, "", ".png");
   if (set.depth.empty()) set.depth = NumberedFiles(depths, "", ".tiff");
   if (IsFile(folder / "pose.txt")) {

@@ -25,11 +25,20 @@ struct Meaning {
   Rigid3 (*read)(const Rigid3& given);
 };
 
+// What was read as x y z w.
+Rigid3 WFirst(const Rigid3& given) {
+  const Eigen::Vector4d read = given.rotation.coeffs();
+  return {Eigen::Quaterniond(read[0], read[1], read[2], read[3]), given.translation};
+}
+
 constexpr Meaning kOrders[] = {
     {"", [](const Rigid3& given) { return given; }},
     {"they are camera from world", [](const Rigid3& given) { return given.Inverse(); }},
     {"their rotations are transposed",
      [](const Rigid3& given) { return Rigid3(given.rotation.conjugate(), given.translation); }},
+    {"their quaternions are w x y z, not x y z w", WFirst},
+    {"they are camera from world, and their quaternions w x y z, not x y z w",
+     [](const Rigid3& given) { return WFirst(given).Inverse(); }},
 };
 
 constexpr Meaning kAxes[] = {

@@ -46,6 +46,60 @@ std::string Described(const PoseReading& reading) {
   return text;
 }
 
+PoseCheck JudgePoses(const std::vector<PoseReading>& readings, std::size_t pairs) {
+  PoseCheck poses;
+  poses.pairs = static_cast<int>(pairs);
+  poses.as_given = readings.front();
+  poses.best = *std::max_element(readings.begin(), readings.end(), [](const PoseReading& a, const PoseReading& b) {
+    return a.correlation < b.correlation;
+  });
+  const auto worse = std::count_if(readings.begin(), readings.end(), [&](const PoseReading& reading) {
+    return reading.correlation < kClearlyLess * poses.best.correlation;
+  });
+  const bool tells = poses.best.correlation >= kLeastCorrelation && 2 * worse > static_cast<long>(readings.size());
+  if (tells) poses.right = poses.as_given.correlation >= kClearlyLess * poses.best.correlation;
+  return poses;
+}
+
+bool Differs(double ratio) { return std::abs(std::log(ratio)) > std::log1p(kMostDepthError); }
+
+// Whether poses and baseline say of the depth images that they are so many times too large; nothing where they do not
+// agree on it.
+std::optional<double> DepthIsTooLarge(const SequenceCheck& check) {
+  if (!check.poses || check.poses->right != false || !check.poses->best.name.empty()) return std::nullopt;
+  if (!check.stereo || !check.stereo->enough || !check.stereo->depth_ratio) return std::nullopt;
+  const double by_baseline = *check.stereo->depth_ratio;
+  if (!Differs(by_baseline) || Differs(by_baseline / check.poses->best.scale)) return std::nullopt;
+  return check.poses->best.scale;
+}
+
+std::vector<std::string> WhatIsWrong(const SequenceCheck& check) {
+  std::vector<std::string> wrong;
+  const auto depth_factor = DepthIsTooLarge(check);
+  if (depth_factor)
+    wrong.push_back("the depth images say " + Number("%g", *depth_factor) +
+                    " times what poses and baseline agree on; give depth in millimetres");
+  if (check.poses && check.poses->right == false && !depth_factor)
+    wrong.push_back("the poses do not fit the depth: the images agree to " +
+                    Number("%.2f", check.poses->as_given.correlation) + " as they are, and to " +
+                    Number("%.2f", check.poses->best.correlation) + " if " + Described(check.poses->best) +
+                    "; write the poses as right-handed ones of world from camera, in millimetres");
+  if (!check.stereo || !check.stereo->enough) return wrong;
+  const StereoCheck& stereo = *check.stereo;
+  if (stereo.share_right_way < 0.5)
+    wrong.push_back("left and right are swapped: of " + std::to_string(stereo.matches) + " points " +
+                    Number("%.0f", 100.0 * (1.0 - stereo.share_right_way)) +
+                    " % lie farther right in the right image; exchange the images");
+  if (stereo.median_row_error_px > kMostRowError_px)
+    wrong.push_back("the pairs are not rectified: the rows of " + std::to_string(stereo.matches) +
+                    " points differ by " + Number("%.1f", stereo.median_row_error_px) +
+                    " px in the median; give the calibration of these cameras");
+  if (stereo.depth_ratio && Differs(*stereo.depth_ratio) && !depth_factor)
+    wrong.push_back("depth and baseline disagree: the depth images say " + Number("%.3g", *stereo.depth_ratio) +
+                    " times what disparity and baseline say; give both in millimetres");
+  return wrong;
+}
+
 }  // namespace
 
 Result<SequenceCheck> CheckSequence(Sequence& sequence, const CheckOptions& options) {
@@ -84,40 +138,13 @@ Result<SequenceCheck> CheckSequence(Sequence& sequence, const CheckOptions& opti
   for (const auto& [base, others] : compared)
     for (const int other : others)
       if (images.contains(base) && images.contains(other)) pairs.emplace_back(&images.at(base), &images.at(other));
-  if (!pairs.empty()) {
-    const std::vector<PoseReading> readings = CorrelateReadings(pairs, sequence.camera(), options.max_points);
-    PoseCheck& poses = check.poses.emplace();
-    poses.pairs = static_cast<int>(pairs.size());
-    poses.as_given = readings.front();
-    poses.best = *std::max_element(readings.begin(), readings.end(), [](const PoseReading& a, const PoseReading& b) {
-      return a.correlation < b.correlation;
-    });
-    const auto worse = std::count_if(readings.begin(), readings.end(), [&](const PoseReading& reading) {
-      return reading.correlation < kClearlyLess * poses.best.correlation;
-    });
-    const bool tells = poses.best.correlation >= kLeastCorrelation && 2 * worse > static_cast<long>(readings.size());
-    if (tells) poses.right = poses.as_given.correlation >= kClearlyLess * poses.best.correlation;
-    if (poses.right == false)
-      check.wrong.push_back("the poses do not fit the depth: the images agree to " +
-                            Number("%.2f", poses.as_given.correlation) + " as they are, and to " +
-                            Number("%.2f", poses.best.correlation) + " if " + Described(poses.best) +
-                            "; write the poses as right-handed ones of world from camera, in millimetres");
-  }
+  if (!pairs.empty())
+    check.poses = JudgePoses(CorrelateReadings(pairs, sequence.camera(), options.max_points), pairs.size());
   if (matches.count() > 0) {
-    StereoCheck& stereo = check.stereo.emplace(matches.Check());
-    stereo.enough = stereo.matches >= kLeastMatches;
-    if (stereo.enough && stereo.share_right_way < 0.5)
-      check.wrong.push_back("left and right are swapped: of " + std::to_string(stereo.matches) + " points " +
-                            Number("%.0f", 100.0 * (1.0 - stereo.share_right_way)) +
-                            " % lie farther right in the right image; exchange the images");
-    if (stereo.enough && stereo.median_row_error_px > kMostRowError_px)
-      check.wrong.push_back("the pairs are not rectified: the rows of " + std::to_string(stereo.matches) +
-                            " points differ by " + Number("%.1f", stereo.median_row_error_px) +
-                            " px in the median; give the calibration of these cameras");
-    if (stereo.enough && stereo.depth_ratio && std::abs(std::log(*stereo.depth_ratio)) > std::log1p(kMostDepthError))
-      check.wrong.push_back("depth and baseline disagree: the depth images say " + Number("%.3g", *stereo.depth_ratio) +
-                            " times what disparity and baseline say; give both in millimetres");
+    check.stereo = matches.Check();
+    check.stereo->enough = check.stereo->matches >= kLeastMatches;
   }
+  check.wrong = WhatIsWrong(check);
   return check;
 }
 

@@ -8,6 +8,7 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "datasets/calibration_files.h"
 #include "datasets/image_file.h"
 #include "datasets/image_list.h"
 #include "datasets/pair_streams.h"
@@ -56,10 +57,12 @@ class DataSetSequence final : public Sequence {
 Status DataSetSequence::CheckFirstImage() const {
   const std::optional<cv::Size> size = images().SizeAt(range_.start);
   if (!size || *size == cv::Size(camera().width(), camera().height())) return Status::Ok();
+  const bool twice = size->width == 2 * camera().width() || size->height == 2 * camera().height();
   return {ErrorCode::kMismatch, "the calibration " + data_set_.calibration.path.string() + " is for images of " +
                                     SizeText(camera().width(), camera().height()) + ", but " +
                                     images().Title(range_.start) + " is " + SizeText(size->width, size->height) +
-                                    "; give the calibration of these images"};
+                                    "; give the calibration of these images" +
+                                    (twice ? ", or of both cameras where an image holds a pair" : "")};
 }
 
 Status DataSetSequence::OpenMasks() {
@@ -136,15 +139,17 @@ Result<std::optional<cv::Mat>> DataSetSequence::Right() {
 }
 
 Result<std::optional<cv::Mat>> DataSetSequence::Depth(int frame_idx) const {
-  if (!data_set_.depth_mm || !TimestampS(frame_idx)) return std::optional<cv::Mat>();
-  Result<std::optional<cv::Mat>> depth_mm = data_set_.depth_mm(frame_idx);
-  if (depth_mm.ok() && depth_mm->has_value() &&
-      ((*depth_mm)->cols != camera().width() || (*depth_mm)->rows != camera().height()))
+  if (!TimestampS(frame_idx) || frame_idx >= static_cast<int>(data_set_.depth_files.size()) ||
+      data_set_.depth_files[static_cast<std::size_t>(frame_idx)].empty())
+    return std::optional<cv::Mat>();
+  Result<cv::Mat> depth_mm = data_set_.read_depth(data_set_.depth_files[static_cast<std::size_t>(frame_idx)]);
+  if (!depth_mm.ok()) return depth_mm.status();
+  if (depth_mm->cols != camera().width() || depth_mm->rows != camera().height())
     return Status(ErrorCode::kMismatch, "the depth image of " + images().Title(frame_idx) + " is " +
-                                            SizeText(**depth_mm) + ", but the images are " +
+                                            SizeText(*depth_mm) + ", but the images are " +
                                             SizeText(camera().width(), camera().height()) +
                                             "; depth has the images' size");
-  return depth_mm;
+  return std::optional<cv::Mat>(*std::move(depth_mm));
 }
 
 std::optional<Rigid3> DataSetSequence::WorldFromCamera(int frame_idx) const {
@@ -160,6 +165,11 @@ std::optional<double> DataSetSequence::TimestampS(int frame_idx) const {
 
 std::optional<std::string> DataSetSequence::Name(int frame_idx) const {
   return TimestampS(frame_idx) ? std::optional(images().Name(frame_idx)) : std::nullopt;
+}
+
+Result<std::optional<StereoCalibration>> AsOptional(const Result<StereoCalibration>& calibration) {
+  if (!calibration.ok()) return calibration.status();
+  return std::optional(*calibration);
 }
 
 Result<fs::path> FindCalibration(const SequenceRequest& request) {
@@ -190,8 +200,8 @@ Result<DataSet> RectifiedPairs(const StereoCalibration& calibration, const fs::p
   data_set.calibration.baseline_mm = pair->baseline_mm;
   if (calibration.was_in_metres)
     data_set.warnings.push_back("the calibration " + calibration_path.string() + " has no unit and cameras less than " +
-                                FormatDouble(kShortestBaseline_mm) + " apart: it is read as metres, a baseline of " +
-                                FormatDouble(pair->baseline_mm) + " mm");
+                                FormatDouble(kShortestBaseline_mm) + " mm apart: it is read as metres, a baseline of " +
+                                FormatDouble(std::round(1000.0 * pair->baseline_mm) / 1000.0) + " mm");
   if (eyes.left->fps()) data_set.calibration.fps = *eyes.left->fps();
   data_set.inside = pair->left.Inside();
   data_set.warp = pair->left;
@@ -210,14 +220,21 @@ Result<DataSet> RectifiedHalves(const StereoCalibration& calibration, const fs::
 Result<DataSet> Calibrated(const SequenceRequest& request, std::unique_ptr<ImageStream> images,
                            const std::optional<SourceCalibration>& published) {
   const Result<fs::path> path = FindCalibration(request);
-  if (!path.ok() && published) {
-    DataSet data_set{.calibration = *published, .images = std::move(images), .mask_path = request.mask_path};
+  std::optional<SourceCalibration> ready = path.ok() ? std::nullopt : published;
+  if (path.ok() && path->extension() == ".xml") {
+    auto calibu = ReadCalibu(*path);
+    if (!calibu.ok()) return calibu.status();
+    ready = *std::move(calibu);
+  }
+  if (ready) {
+    DataSet data_set{.calibration = *std::move(ready), .images = std::move(images), .mask_path = request.mask_path};
     if (data_set.images->fps()) data_set.calibration.fps = *data_set.images->fps();
     return data_set;
   }
   if (!path.ok()) return path.status();
   const std::optional<cv::Size> size = images->SizeAt(0);
-  const auto stereo = ReadStereoCalibration(path->string());
+  const auto stereo =
+      path->extension() == ".ini" ? AsOptional(ReadStereoIni(*path)) : ReadStereoCalibration(path->string());
   if (!stereo.ok()) return stereo.status();
   if (stereo->has_value() && size) {
     const auto layout = LayoutOf(**stereo, *size);
@@ -235,18 +252,49 @@ Result<DataSet> Calibrated(const SequenceRequest& request, std::unique_ptr<Image
   SourceCalibration calibration{file->camera, *path};
   if (file->fps) calibration.fps = *file->fps;
   if (images->fps()) calibration.fps = *images->fps();
-  if (file->depth_scale) calibration.depth_scale = *file->depth_scale;
+  calibration.depth_scale = file->depth_scale;
   calibration.baseline_mm = file->baseline_mm;
   calibration.unit_mm = file->unit_mm;
   calibration.photometric = file->photometric;
   return DataSet{.calibration = std::move(calibration), .images = std::move(images), .mask_path = request.mask_path};
 }
 
+namespace {
+
+// Of the frames that are read, how many have no truth where others have one; `has` says it of a frame.
+template <class Has>
+void WarnOfMissing(const std::string& what, const FrameRange& range, const DataSet& data_set, const Has& has,
+                   std::vector<std::string>* warnings) {
+  int missing = 0;
+  int first = -1;
+  for (int idx = range.start; idx < range.end; idx += range.stride) {
+    if (has(static_cast<std::size_t>(idx))) continue;
+    if (missing++ == 0) first = idx;
+  }
+  if (missing > 0)
+    warnings->push_back(std::to_string(missing) + " of " + std::to_string(range.Count()) + " images have no " + what +
+                        ", the first is " + data_set.images->Name(first) + " (frame " + std::to_string(first) + ")");
+}
+
+void WarnOfMissingTruth(const FrameRange& range, DataSet* data_set) {
+  std::vector<std::string>* warnings = &data_set->warnings;
+  if (const auto& files = data_set->depth_files; !files.empty())
+    WarnOfMissing(
+        "depth image", range, *data_set, [&](std::size_t k) { return k < files.size() && !files[k].empty(); },
+        warnings);
+  if (const auto& poses = data_set->world_from_cam; !poses.empty())
+    WarnOfMissing(
+        "pose", range, *data_set, [&](std::size_t k) { return k < poses.size() && poses[k].has_value(); }, warnings);
+}
+
+}  // namespace
+
 Result<std::unique_ptr<Sequence>> ReadDataSet(DataSet data_set, const SequenceRequest& request) {
   Result<FrameRange> range = FrameRange::From(request);
   if (range.ok() && data_set.images->count() > 0)
     range = range->Within(data_set.images->count(), data_set.images->path());
   if (!range.ok()) return range.status();
+  WarnOfMissingTruth(*range, &data_set);
   auto sequence = std::make_unique<DataSetSequence>(std::move(data_set), *range);
   if (Status status = sequence->CheckFirstImage(); !status.ok()) return status;
   if (Status status = sequence->OpenMasks(); !status.ok()) return status;

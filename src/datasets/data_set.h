@@ -19,6 +19,7 @@
 #include "datasets/image_stream.h"
 #include "datasets/pair_streams.h"
 #include "datasets/rectify.h"
+#include "datasets/set_files.h"
 #include "pliant/base/status.h"
 #include "pliant/camera/camera.h"
 #include "pliant/datasets/open_sequence.h"
@@ -31,7 +32,7 @@ struct SourceCalibration {
   Camera camera;
   std::filesystem::path path;                        // for messages
   double fps = 30.0;                                 // of sources that carry no time of their own
-  double depth_scale = 1.0;                          // mm a unit of the depth images
+  std::optional<double> depth_scale = std::nullopt;  // mm a unit of the depth images
   std::optional<double> baseline_mm = std::nullopt;  // of rectified pairs
   double unit_mm = 1.0;                              // of the poses beside the file
   std::optional<PhotometricCalibration> photometric = std::nullopt;
@@ -40,16 +41,17 @@ struct SourceCalibration {
 struct DataSet {
   SourceCalibration calibration;  // of the images as they are given
   std::unique_ptr<ImageStream> images;
-  std::unique_ptr<ImageStream> right = nullptr;                           // of rectified pairs; null: none
-  cv::Mat inside = {};                                                    // 0 where no image has anything; empty: none
-  std::filesystem::path mask_path = {};                                   // a folder, or one image; empty: no masks
-  std::map<int, std::filesystem::path> raw_masks = {};                    // of the raw images; frames without: no mask
-  std::optional<ImageWarp> warp = std::nullopt;                           // from the raw left images, where they are
-  Rigid3 raw_from_given = {};                                             // the camera of the raw images, likewise
-  std::vector<double> timestamps_s = {};                                  // one an image; empty: number / fps
-  std::vector<std::optional<Rigid3>> world_from_cam = {};                 // one an image, mm; empty: no truth
-  std::function<Result<std::optional<cv::Mat>>(int)> depth_mm = nullptr;  // of an image; null: no truth
-  std::vector<std::string> warnings = {};                                 // a sentence each
+  std::unique_ptr<ImageStream> right = nullptr;            // of rectified pairs; null: none
+  cv::Mat inside = {};                                     // 0 where no image has anything; empty: none
+  std::filesystem::path mask_path = {};                    // a folder, or one image; empty: no masks
+  std::map<int, std::filesystem::path> raw_masks = {};     // of the raw images; frames without: no mask
+  std::optional<ImageWarp> warp = std::nullopt;            // from the raw left images, where they are
+  Rigid3 raw_from_given = {};                              // the camera of the raw images, likewise
+  std::vector<double> timestamps_s = {};                   // one an image; empty: number / fps
+  std::vector<std::optional<Rigid3>> world_from_cam = {};  // one an image, mm; empty: no truth
+  std::vector<std::filesystem::path> depth_files = {};     // one an image, "": none; empty: no truth
+  ReadDepth read_depth = nullptr;                          // of such a file
+  std::vector<std::string> warnings = {};                  // a sentence each
 };
 
 // These images with the calibration that belongs to them: the request's file, else camera.yaml in the folder or beside

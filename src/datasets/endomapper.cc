@@ -4,15 +4,13 @@
 // Endomapper, real (Azagra et al., Scientific Data 2023): a procedure's folder Seq_NNN with Seq_NNN.mov, and calibu's
 // calibration of the endoscope, *_geometrical.xml and perhaps *_photometrical.xml, in the folder or in
 // Calibrations/Endoscope_NN/ beside Sequences/, where Seq_NNN_info.json says the endoscope's number.
-#include <algorithm>
 #include <cstdio>
 #include <string>
-#include <string_view>
 #include <utility>
 
 #include <nlohmann/json.hpp>
-#include <pugixml.hpp>
 
+#include "datasets/calibration_files.h"
 #include "datasets/formats.h"
 #include "datasets/set_files.h"
 #include "pliant/base/options.h"
@@ -24,13 +22,13 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kGeometry = "_geometrical.xml";
-constexpr const char* kPhotometry = "_photometrical.xml";
 
 fs::path VideoOf(const fs::path& folder) { return OnlyFile(folder, ".mov"); }
+fs::path InfoOf(const fs::path& folder) { return OnlyFile(folder, "_info.json"); }
 
 // The endoscope's number, whether it is written as a number or as text; nothing where it is not known.
 std::optional<int> EndoscopeOf(const fs::path& folder) {
-  const auto text = ReadFile(OnlyFile(folder, "_info.json").string());
+  const auto text = ReadFile(InfoOf(folder).string());
   if (!text.ok()) return std::nullopt;
   const auto json = nlohmann::json::parse(*text, nullptr, /*allow_exceptions=*/false);
   if (!json.is_object() || !json.contains("endoscope_number")) return std::nullopt;
@@ -41,135 +39,44 @@ std::optional<int> EndoscopeOf(const fs::path& folder) {
   return std::nullopt;
 }
 
-// The calibration file with this ending that belongs to a procedure.
-fs::path CalibrationOf(const fs::path& folder, const char* suffix) {
-  if (fs::path own = OnlyFile(folder, suffix); !own.empty()) return own;
+// The calibration file that belongs to a procedure.
+fs::path CalibrationOf(const fs::path& folder) {
+  if (fs::path own = OnlyFile(folder, kGeometry); !own.empty()) return own;
   const auto endoscope = EndoscopeOf(folder);
   if (!endoscope) return {};
   char name[32];
   std::snprintf(name, sizeof name, "Endoscope_%02d", *endoscope);
   std::error_code error;
   const fs::path root = fs::weakly_canonical(folder, error).parent_path().parent_path();
-  return OnlyFile(root / "Calibrations" / name, suffix);
-}
-
-// Numbers between brackets, semicolons, commas and blanks; none where something else is among them.
-std::vector<double> NumbersIn(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](char c) { return std::string_view("[];,\t\r\n").find(c) != std::string_view::npos; },
-      ' ');
-  std::vector<double> numbers;
-  for (const std::string_view word : Split(text, ' '))
-    if (double value = 0; ParseFinite(word, &value))
-      numbers.push_back(value);
-    else
-      return {};
-  return numbers;
-}
-
-std::vector<double> NumbersOf(const pugi::xml_node& parent, const char* name) {
-  return NumbersIn(parent.child_value(name));
-}
-
-// The first element of this name; empty where there is none.
-pugi::xml_node FindElement(const pugi::xml_document& document, std::string_view name) {
-  return document.find_node([&](const pugi::xml_node& node) { return node.name() == name; });
-}
-
-// An XML file with a camera model.
-struct Calibration {
-  pugi::xml_document document;
-  pugi::xml_node camera;
-};
-Result<Calibration> ReadCalibration(const fs::path& file) {
-  const auto text = ReadFile(file.string());
-  if (!text.ok()) return text.status();
-  Calibration calibration;
-  if (const auto parsed = calibration.document.load_buffer(text->data(), text->size()); !parsed)
-    return Status(ErrorCode::kUnreadable, file.string() + " is no XML: " + parsed.description());
-  calibration.camera = FindElement(calibration.document, "camera_model");
-  if (!calibration.camera)
-    return Status(ErrorCode::kUnreadable,
-                  file.string() + " is not a calibration of an endoscope: it has no camera_model");
-  return calibration;
-}
-
-// Calibu's <camera_model type=...> with <width>, <height>, <params> [ fu; fv; u0; v0; ... ].
-Result<Camera> ReadGeometry(const fs::path& file) {
-  const auto xml = ReadCalibration(file);
-  if (!xml.ok()) return xml.status();
-  const std::vector<double> width = NumbersOf(xml->camera, "width");
-  const std::vector<double> height = NumbersOf(xml->camera, "height");
-  const auto size = width.size() == 1 && height.size() == 1 ? ToImageSize(width[0], height[0]) : std::nullopt;
-  if (!size)
-    return Status(ErrorCode::kUnreadable,
-                  file.string() + " is not a calibration of calibu: its camera_model has no width and height");
-  const std::string type = xml->camera.attribute("type").value();
-  if (type != "calibu_fu_fv_u0_v0" && type != "calibu_fu_fv_u0_v0_kb4")
-    return Status(ErrorCode::kInvalidArgument, file.string() + " has a camera of the type " + Quoted(type) +
-                                                   ", which is not known; calibu_fu_fv_u0_v0_kb4 is");
-  const CameraModelId model = type == "calibu_fu_fv_u0_v0" ? CameraModelId::kPinhole : CameraModelId::kOpenCvFisheye;
-  auto camera = Camera::Create(model, size->width, size->height, NumbersOf(xml->camera, "params"));
-  if (!camera.ok()) return Status(camera.status().code(), file.string() + ": " + camera.status().message());
-  return camera;
-}
-
-// <camera_model type="gamma"> with <gamma> and perhaps <vignetting>, <light_model type="sls"> with the spread <mu> and
-// the direction <D>. Where the light is, millimetres from the lens, is not used.
-Result<PhotometricCalibration> ReadPhotometry(const fs::path& file) {
-  const auto xml = ReadCalibration(file);
-  if (!xml.ok()) return xml.status();
-  if (!xml->camera.child("gamma"))
-    return Status(ErrorCode::kUnreadable, file.string() + " has no gamma of the camera's response");
-  PhotometricCalibration calibration;
-  // An entry that is there has so many numbers.
-  const auto read = [&](const pugi::xml_node& parent, const char* name,
-                        std::size_t count) -> Result<std::vector<double>> {
-    std::vector<double> numbers = NumbersOf(parent, name);
-    if (parent.child(name) && numbers.size() != count)
-      return Status(ErrorCode::kUnreadable,
-                    file.string() + ": " + name + " has not " + std::to_string(count) + " numbers");
-    return numbers;
-  };
-  const auto gamma = read(xml->camera, "gamma", 1);
-  if (!gamma.ok()) return gamma.status();
-  calibration.gamma = gamma->front();
-  const auto vignetting = read(xml->camera, "vignetting", 1);
-  if (!vignetting.ok()) return vignetting.status();
-  if (!vignetting->empty()) calibration.vignetting = vignetting->front();
-  if (const pugi::xml_node light = FindElement(xml->document, "light_model")) {
-    const auto spread = read(light, "mu", 1);
-    if (!spread.ok()) return spread.status();
-    if (!spread->empty()) calibration.light_spread = spread->front();
-    const auto axis = read(light, "D", 3);
-    if (!axis.ok()) return axis.status();
-    if (!axis->empty()) calibration.light_axis = Eigen::Vector3d(axis->data());
-  }
-  if (Status status = CheckPhotometric(calibration); !status.ok())
-    return Status(status.code(), file.string() + ": " + status.message());
-  return calibration;
+  return OnlyFile(root / "Calibrations" / name, kGeometry);
 }
 
 }  // namespace
 
 bool IsEndomapper(const fs::path& path) {
-  return !VideoOf(path).empty() && (!CalibrationOf(path, kGeometry).empty() || !OnlyFile(path, "_info.json").empty());
+  return !VideoOf(path).empty() && (!CalibrationOf(path).empty() || !InfoOf(path).empty());
+}
+
+std::string EndomapperLacks(const fs::path& path) {
+  return VideoOf(path).filename().string().starts_with("Seq_") ? "Seq_NNN_info.json or *_geometrical.xml" : "";
 }
 
 Result<DataSet> OpenEndomapper(const SequenceRequest& request) {
-  auto video = StreamVideo(VideoOf(request.image_path));
+  const fs::path& folder = request.image_path;
+  auto video = StreamVideo(VideoOf(folder));
   if (!video.ok()) return video.status();
-  const fs::path geometry = CalibrationOf(request.image_path, kGeometry);
-  if (geometry.empty() || !request.camera_path.empty()) return Calibrated(request, *std::move(video));
-  auto camera = ReadGeometry(geometry);
-  if (!camera.ok()) return camera.status();
-  SourceCalibration calibration{*std::move(camera), geometry};
-  if (const fs::path photometry = CalibrationOf(request.image_path, kPhotometry); !photometry.empty()) {
-    const auto read = ReadPhotometry(photometry);
-    if (!read.ok()) return read.status();
-    calibration.photometric = *read;
-  }
-  return Calibrated(request, *std::move(video), calibration);
+  if (!request.camera_path.empty() || IsFile(folder / "camera.yaml")) return Calibrated(request, *std::move(video));
+  const fs::path file = CalibrationOf(folder);
+  if (file.empty())
+    return Status(ErrorCode::kNotFound, "there is no calibration for " + folder.string() + ": no *" + kGeometry +
+                                            " in it, nor in Calibrations/Endoscope_NN of the number that " +
+                                            InfoOf(folder).string() + " says; name a calibration file");
+  auto calibration = ReadCalibu(file);
+  if (!calibration.ok()) return calibration.status();
+  if (!calibration->has_value())
+    return Status(ErrorCode::kUnreadable,
+                  file.string() + " is not a calibration of an endoscope: it has no camera_model");
+  return Calibrated(request, *std::move(video), **calibration);
 }
 
 }  // namespace pliant

@@ -85,10 +85,11 @@ struct Listed {
   std::vector<fs::path> files;
 };
 
-Result<Listed> ReadList(const fs::path& camera) {
+Result<Listed> ReadList(const fs::path& camera, std::vector<std::string>* warnings) {
   auto reader = LineReader::Open((camera / "data.csv").string());
   if (!reader.ok()) return reader.status();
   Listed list;
+  int missing = 0;
   std::string_view line;
   while (reader->Next(&line)) {
     if (line.empty() || line.front() == '#') continue;
@@ -98,11 +99,18 @@ Result<Listed> ReadList(const fs::path& camera) {
       return reader->Error("a line has a time in ns and a file");
     const auto name = Split(fields[1], ' ');
     if (name.empty()) return reader->Error("a line has a time in ns and a file");
+    const fs::path file = camera / "data" / name.front();
+    if (!IsFile(file)) {
+      ++missing;
+      continue;
+    }
     list.times_s.push_back(kNanosecond_s * time_ns);
-    list.files.push_back(camera / "data" / name.front());
+    list.files.push_back(file);
   }
+  WarnOfListedButMissing(missing, camera / "data.csv", warnings);
   if (list.files.empty())
-    return Status(ErrorCode::kNotFound, (camera / "data.csv").string() + " names no image; check the path");
+    return Status(ErrorCode::kNotFound,
+                  (camera / "data.csv").string() + " names no image that is there; check the path");
   return list;
 }
 
@@ -145,9 +153,12 @@ Result<DataSet> OpenMono(const SequenceRequest& request, const Eye& eye, std::un
 
 bool IsEuroc(const fs::path& path) { return IsFile(RootOf(path) / "cam0" / "data.csv"); }
 
+std::string EurocLacks(const fs::path& path) { return IsFolder(path / "mav0") ? "mav0/cam0/data.csv" : ""; }
+
 Result<DataSet> OpenEuroc(const SequenceRequest& request) {
   const fs::path root = RootOf(request.image_path);
-  auto left_list = ReadList(root / "cam0");
+  std::vector<std::string> warnings;
+  auto left_list = ReadList(root / "cam0", &warnings);
   if (!left_list.ok()) return left_list.status();
   const auto left = ReadSensor(root / "cam0" / "sensor.yaml");
   if (!left.ok()) return left.status();
@@ -155,7 +166,7 @@ Result<DataSet> OpenEuroc(const SequenceRequest& request) {
   std::size_t left_over = 0;
   const bool pairs = IsFile(root / "cam1" / "data.csv") && !left->fisheye && request.camera_path.empty();
   if (pairs) {
-    auto right_list = ReadList(root / "cam1");
+    auto right_list = ReadList(root / "cam1", &warnings);
     if (!right_list.ok()) return right_list.status();
     left_over = KeepPairs(&*left_list, &*right_list);
     if (left_list->files.empty())
@@ -172,6 +183,7 @@ Result<DataSet> OpenEuroc(const SequenceRequest& request) {
     data_set = OpenMono(request, *left, StreamFiles(root / "cam0" / "data", left_list->files));
   }
   if (!data_set.ok()) return data_set.status();
+  data_set->warnings.insert(data_set->warnings.end(), warnings.begin(), warnings.end());
   if (left_over > 0)
     data_set->warnings.push_back(std::to_string(left_over) + " images of cam0 or cam1 in " + root.string() +
                                  " have none of the other of the same time; they are passed over");

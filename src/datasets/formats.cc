@@ -3,25 +3,55 @@
 
 #include "datasets/formats.h"
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
+#include "datasets/image_list.h"
+#include "datasets/set_files.h"
+
 namespace pliant {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<fs::path> SubfoldersOf(const fs::path& folder) {
+  std::vector<fs::path> folders;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error); !error && entry != fs::directory_iterator(); entry.increment(error))
+    if (IsFolder(entry->path())) folders.push_back(entry->path());
+  std::sort(folders.begin(), folders.end());
+  return folders;
+}
+
+// The data set at a path; null: none, or what is no set of its own, images or a video.
+const DataSetFormat* SetAt(const fs::path& path) {
+  const auto formats = DataSetFormats();
+  for (const DataSetFormat& format : formats.first(formats.size() - 2))
+    if (format.is_at(path)) return &format;
+  return nullptr;
+}
+
+std::string ThatIs(const fs::path& path, const DataSetFormat& format) {
+  return path.string() + " is one (" + std::string(format.name) + "); give that";
+}
+
+}  // namespace
 
 std::span<const DataSetFormat> DataSetFormats() {
   static constexpr std::array<DataSetFormat, 14> kFormats = {{
       {"colmap", "a folder of COLMAP, images/ and a model in sparse/", IsColmapFolder, OpenColmapFolder},
       {"native", "a sequence in Pliant's own layout", IsNativeSequence, OpenNativeSequence},
       {"c3vd", "C3VD or C3VDv2, a colonoscope in a phantom", IsC3vd, OpenC3vd},
-      {"endomapper", "Endomapper, a real procedure", IsEndomapper, OpenEndomapper},
+      {"endomapper", "Endomapper, a real procedure", IsEndomapper, OpenEndomapper, EndomapperLacks},
       {"endomapper_simulated", "Endomapper, a simulated sequence", IsEndomapperSimulated, OpenEndomapperSimulated},
       {"endoslam", "EndoSLAM's UnityCam", IsEndoSlam, OpenEndoSlam},
-      {"euroc", "EuRoC MAV", IsEuroc, OpenEuroc},
-      {"hamlyn_rectified", "Hamlyn's videos, rectified", IsHamlynRectified, OpenHamlynRectified},
-      {"scared", "SCARED, a keyframe", IsScared, OpenScared},
+      {"euroc", "EuRoC MAV", IsEuroc, OpenEuroc, EurocLacks},
+      {"hamlyn_rectified", "Hamlyn's videos, rectified", IsHamlynRectified, OpenHamlynRectified, HamlynRectifiedLacks},
+      {"scared", "SCARED, a keyframe", IsScared, OpenScared, ScaredLacks},
       {"simcol", "SimCol3D", IsSimCol, OpenSimCol},
-      {"stereomis", "StereoMIS", IsStereoMis, OpenStereoMis},
-      {"tum_rgbd", "TUM RGB-D", IsTumRgbd, OpenTumRgbd},
+      {"stereomis", "StereoMIS", IsStereoMis, OpenStereoMis, StereoMisLacks},
+      {"tum_rgbd", "TUM RGB-D", IsTumRgbd, OpenTumRgbd, TumRgbdLacks},
       {"images", "a folder of images", IsFolder, OpenImageFolder},
       {"video", "a video", IsFile, OpenVideo},
   }};
@@ -40,14 +70,39 @@ bool IsFile(const std::filesystem::path& path) {
 
 Result<DataSet> OpenImageFolder(const SequenceRequest& request) {
   auto images = StreamFolder(request.image_path);
-  if (!images.ok()) return images.status();  // "no images here" says more than "no calibration here"
-  return Calibrated(request, *std::move(images));
+  if (!images.ok()) {  // "no images here" says more than "no calibration here"
+    const std::string instead = WhatIsThereInstead(request.image_path);
+    if (images.status().code() != ErrorCode::kNotFound || instead.empty()) return images.status();
+    return Status(ErrorCode::kNotFound, "the folder " + request.image_path.string() + " is not a data set: " + instead);
+  }
+  auto data_set = Calibrated(request, *std::move(images));
+  if (data_set.ok()) WarnOfGaps(*data_set->images, &data_set->warnings);
+  return data_set;
 }
 
 Result<DataSet> OpenVideo(const SequenceRequest& request) {
   auto video = StreamVideo(request.image_path);
   if (!video.ok()) return video.status();
   return Calibrated(request, *std::move(video));
+}
+
+std::string WhatIsThereInstead(const fs::path& folder) {
+  for (const DataSetFormat& format : DataSetFormats())
+    if (const std::string lacks = format.lacks != nullptr ? format.lacks(folder) : ""; !lacks.empty())
+      return "it looks like " + std::string(format.name) + ", but lacks " + lacks;
+  for (const fs::path& inside : SubfoldersOf(folder))
+    if (const DataSetFormat* format = SetAt(inside)) return ThatIs(inside, *format);
+  fs::path above = fs::path(folder / ".").lexically_normal().parent_path();
+  for (int level = 0; level < 2 && above.has_parent_path(); ++level) {
+    above = above.parent_path();
+    if (const DataSetFormat* format = SetAt(above)) return ThatIs(above, *format);
+  }
+  const std::vector<fs::path> videos = VideosIn(folder);
+  if (videos.size() == 1) return "it holds no images, but the video " + videos.front().string() + "; give that";
+  if (videos.size() > 1)
+    return "it holds no images, but " + std::to_string(videos.size()) + " videos; give one of them, such as " +
+           videos.front().string();
+  return {};
 }
 
 }  // namespace pliant

@@ -16,6 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* kIntrinsics = "intrinsics.txt";
+
 std::map<int, fs::path> ImagesIn(const fs::path& folder) {
   for (const char* ending : {".jpg", ".png"})
     if (auto files = NumberedFiles(folder, "", ending); !files.empty()) return files;
@@ -34,7 +36,7 @@ Result<double> ReadBaseline(const fs::path& file) {
 }
 
 Result<SourceCalibration> CameraOf(const fs::path& folder, const std::map<int, fs::path>& images) {
-  const fs::path file = folder / "intrinsics.txt";
+  const fs::path file = folder / kIntrinsics;
   const auto rows = ReadNumberRows(file, 3);
   if (!rows.ok()) return rows.status();
   if (rows->size() < 2)
@@ -52,13 +54,16 @@ Result<SourceCalibration> CameraOf(const fs::path& folder, const std::map<int, f
 
 }  // namespace
 
-bool IsHamlynRectified(const fs::path& path) { return IsFolder(path / "image01") && IsFile(path / "intrinsics.txt"); }
+bool IsHamlynRectified(const fs::path& path) { return IsFolder(path / "image01") && IsFile(path / kIntrinsics); }
+
+std::string HamlynRectifiedLacks(const fs::path& path) { return IsFolder(path / "image01") ? kIntrinsics : ""; }
 
 Result<DataSet> OpenHamlynRectified(const SequenceRequest& request) {
   const fs::path& folder = request.image_path;
   NumberedSet set{.folder = folder / "image01",
                   .images = ImagesIn(folder / "image01"),
                   .right = ImagesIn(folder / "image02"),
+                  .baseline_hint = " (extrinsics.txt says it)",
                   .depth = NumberedFiles(folder / "depth01", "", ".png"),
                   .read_depth = [](const fs::path& file) { return ReadDepthImage(file, 1.0); }};
   if (set.images.empty())

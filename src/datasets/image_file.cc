@@ -212,4 +212,11 @@ Result<cv::Mat> ReadDepthImage(const std::filesystem::path& path, double depth_s
   return depth_mm;
 }
 
+Result<cv::Mat> ReadClampedDepthImage(const std::filesystem::path& path, double depth_scale) {
+  constexpr double kLargest = 65535.0;
+  Result<cv::Mat> depth_mm = ReadDepthImage(path, depth_scale);
+  if (depth_mm.ok()) depth_mm->setTo(0, *depth_mm > (kLargest - 0.5) * depth_scale);
+  return depth_mm;
+}
+
 }  // namespace pliant

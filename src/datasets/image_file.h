@@ -31,5 +31,7 @@ Result<cv::Mat> ReadStoredImage(const std::filesystem::path& path);
 
 // CV_32FC1, millimetres: value * depth_scale. Fails with kMismatch unless the file is 16-bit with one channel.
 Result<cv::Mat> ReadDepthImage(const std::filesystem::path& path, double depth_scale);
+// The same where the largest value, 65535, stands for all that is as far or farther: no depth there.
+Result<cv::Mat> ReadClampedDepthImage(const std::filesystem::path& path, double depth_scale);
 
 }  // namespace pliant

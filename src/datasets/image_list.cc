@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "datasets/image_file.h"
+#include "pliant/base/options.h"
 
 namespace pliant {
 namespace {
@@ -107,6 +108,34 @@ std::vector<std::string> Stems(const ImageStream& images) {
   for (int idx = 0; idx < std::max(images.count(), 1); ++idx)
     stems.push_back(fs::path(images.Name(idx)).stem().string());
   return stems;
+}
+
+void WarnOfGaps(const std::vector<int>& numbers, const fs::path& folder, std::vector<std::string>* warnings) {
+  int step = std::numeric_limits<int>::max();
+  for (std::size_t k = 1; k < numbers.size(); ++k) step = std::min(step, numbers[k] - numbers[k - 1]);
+  if (numbers.size() < 2 || step < 1) return;
+  int missing = 0;
+  int first = -1;
+  for (std::size_t k = 1; k < numbers.size(); ++k) {
+    const int gap = (numbers[k] - numbers[k - 1]) / step - 1;
+    if (gap > 0 && first < 0) first = numbers[k - 1] + step;
+    missing += gap;
+  }
+  if (missing > 0)
+    warnings->push_back("in " + folder.string() + " " + std::to_string(missing) + " images are missing, the first is " +
+                        "number " + std::to_string(first) + "; frames are those that are there, counted from 0");
+}
+
+void WarnOfGaps(const ImageStream& images, std::vector<std::string>* warnings) {
+  constexpr std::size_t kMostDigits = 9;
+  std::vector<int> numbers;
+  for (const std::string& stem : Stems(images)) {
+    const std::size_t digits = stem.size() - (stem.find_last_not_of("0123456789") + 1);
+    int number = 0;
+    if (digits == 0 || !ParseInt(stem.substr(stem.size() - std::min(digits, kMostDigits)), &number)) return;
+    numbers.push_back(number);
+  }
+  WarnOfGaps(numbers, images.path(), warnings);
 }
 
 Result<CompanionImages> CompanionImages::Open(std::string what, const fs::path& path,

@@ -75,8 +75,6 @@ Status AddPoses(const fs::path& file, const std::vector<TimedPose>& poses, DataS
                                    [](const auto& pose) { return pose.has_value(); });
   if (poses.empty() || static_cast<std::size_t>(found) != poses.size())
     return WrongLineCount(file, "poses", poses.size(), data_set->images->count());
-  data_set->warnings.push_back(std::to_string(count - poses.size()) + " of " + std::to_string(count) +
-                               " images have no pose in " + file.string());
   return Status::Ok();
 }
 
@@ -88,6 +86,8 @@ Status AddTimesAndTruth(const fs::path& folder, DataSet* data_set) {
     if (times_s->size() != static_cast<std::size_t>(count))
       return WrongLineCount(file, "times", times_s->size(), count);
     data_set->timestamps_s = *std::move(times_s);
+  } else {
+    WarnOfGaps(*data_set->images, &data_set->warnings);
   }
   if (const fs::path file = folder / native::kPosesFile; Exists(file)) {
     const Result<std::vector<TimedPose>> poses = ReadTumTrajectory(file.string());
@@ -99,22 +99,24 @@ Status AddTimesAndTruth(const fs::path& folder, DataSet* data_set) {
 
 Status AddDepth(const fs::path& folder, DataSet* data_set) {
   if (!Exists(folder)) return Status::Ok();
-  Result<CompanionImages> depth = OpenCompanions("depth", folder, *data_set->images);
+  const Result<CompanionImages> depth = OpenCompanions("depth", folder, *data_set->images);
   if (!depth.ok()) return depth.status();
-  data_set->depth_mm = [files = *std::move(depth), stems = Stems(*data_set->images),
-                        scale = data_set->calibration.depth_scale](int idx) -> Result<std::optional<cv::Mat>> {
-    const fs::path file = files.Find(idx, stems[static_cast<std::size_t>(idx)]);
-    if (file.empty()) return std::optional<cv::Mat>();
-    Result<cv::Mat> depth_mm = ReadDepthImage(file, scale);
-    if (!depth_mm.ok()) return depth_mm.status();
-    return std::optional<cv::Mat>(*std::move(depth_mm));
+  for (const std::string& stem : Stems(*data_set->images))
+    data_set->depth_files.push_back(depth->Find(static_cast<int>(data_set->depth_files.size()), stem));
+  data_set->read_depth = [scale = data_set->calibration.depth_scale.value_or(1.0)](const fs::path& file) {
+    return ReadDepthImage(file, scale);
   };
   return Status::Ok();
 }
 
 // Rectified right images, one a frame; without a baseline they say nothing of depth.
 Status AddRight(const fs::path& folder, DataSet* data_set) {
-  if (!Exists(folder) || !data_set->calibration.baseline_mm) return Status::Ok();
+  if (!Exists(folder)) return Status::Ok();
+  if (!data_set->calibration.baseline_mm) {
+    data_set->warnings.push_back("the right images in " + folder.string() +
+                                 " are not read: " + data_set->calibration.path.string() + " says no baseline");
+    return Status::Ok();
+  }
   const Result<CompanionImages> right = OpenCompanions("right", folder, *data_set->images);
   if (!right.ok()) return right.status();
   std::vector<fs::path> files;

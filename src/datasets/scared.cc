@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // SCARED (Allan et al., 2021), a keyframe's folder: endoscope_calibration.yaml; data/rgb.mp4, left eye on top of the
-// right one; and, where the archives were unpacked, data/frame_data/*.json with `camera-pose`, camera from world, mm,
-// and data/scene_points/*.tiff, every pixel's point in the raw camera, mm, left on top of right.
+// right one; and, unpacked into data/ or a folder of their own there, frame_data*.json with `camera-pose`, camera from
+// world, mm, and scene_points*.tiff, every pixel's point in the raw camera, mm, left on top of right.
 #include <cmath>
 #include <fstream>
 #include <utility>
@@ -22,6 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kCalibration = "endoscope_calibration.yaml";
+constexpr const char* kVideo = "data/rgb.mp4";
 constexpr PairLayout kLayout = PairLayout::kTopBottom;
 
 Result<Rigid3> ReadPose(const fs::path& file) {
@@ -39,8 +40,18 @@ Result<Rigid3> ReadPose(const fs::path& file) {
   return PoseOfMatrix(file.string(), matrix);
 }
 
-Status AddPoses(const fs::path& folder, DataSet* data_set) {
-  const auto files = NumberedFiles(folder, "frame_data", ".json");
+// The files of an archive in data/, by number: those that lie in a folder of its name, or in data/ itself. An archive
+// that was not unpacked is said.
+std::map<int, fs::path> Unpacked(const fs::path& data, const std::string& name, const std::string& suffix,
+                                 std::vector<std::string>* warnings) {
+  for (const fs::path& folder : {data / name, data})
+    if (auto files = NumberedFiles(folder, name, suffix); !files.empty()) return files;
+  if (const fs::path archive = data / (name + ".tar.gz"); IsFile(archive))
+    warnings->push_back(archive.string() + " is not unpacked; unpack it into " + (data / name).string());
+  return {};
+}
+
+Status AddPoses(const std::map<int, fs::path>& files, DataSet* data_set) {
   if (files.empty()) return Status::Ok();
   data_set->world_from_cam.resize(static_cast<std::size_t>(files.rbegin()->first) + 1);
   for (const auto& [number, file] : files) {
@@ -75,11 +86,16 @@ Result<cv::Mat> ReadScenePoints(const fs::path& file, const ImageWarp& warp, con
 
 }  // namespace
 
-bool IsScared(const fs::path& path) { return IsFile(path / kCalibration) && IsFile(path / "data" / "rgb.mp4"); }
+bool IsScared(const fs::path& path) { return IsFile(path / kCalibration) && IsFile(path / kVideo); }
+
+std::string ScaredLacks(const fs::path& path) {
+  if (IsFile(path / kCalibration)) return kVideo;
+  return IsFile(path / kVideo) || IsFile(path / "rgb.mp4") ? kCalibration : "";
+}
 
 Result<DataSet> OpenScared(const SequenceRequest& request) {
   const fs::path& folder = request.image_path;
-  auto video = StreamVideo(folder / "data" / "rgb.mp4");
+  auto video = StreamVideo(folder / kVideo);
   if (!video.ok()) return video.status();
   const fs::path file = request.camera_path.empty() ? folder / kCalibration : request.camera_path;
   const auto calibration = ReadStereoCalibration(file.string());
@@ -89,13 +105,17 @@ Result<DataSet> OpenScared(const SequenceRequest& request) {
   auto data_set = RectifiedHalves(**calibration, file, kLayout, *std::move(video));
   if (!data_set.ok()) return data_set.status();
   data_set->mask_path = request.mask_path;
-  if (Status status = AddPoses(folder / "data" / "frame_data", &*data_set); !status.ok()) return status;
-  if (const auto points = NumberedFiles(folder / "data" / "scene_points", "scene_points", ".tiff"); !points.empty()) {
+  const fs::path data = folder / "data";
+  std::vector<std::string>* warnings = &data_set->warnings;
+  if (Status status = AddPoses(Unpacked(data, "frame_data", ".json", warnings), &*data_set); !status.ok())
+    return status;
+  if (const auto points = Unpacked(data, "scene_points", ".tiff", warnings); !points.empty()) {
     std::vector<fs::path> files(static_cast<std::size_t>(points.rbegin()->first) + 1);
     for (const auto& [number, path] : points) files[static_cast<std::size_t>(number)] = path;
-    data_set->depth_mm =
-        DepthFiles(std::move(files), [warp = *data_set->warp, raw_from_given = data_set->raw_from_given](
-                                         const fs::path& path) { return ReadScenePoints(path, warp, raw_from_given); });
+    data_set->depth_files = std::move(files);
+    data_set->read_depth = [warp = *data_set->warp, raw_from_given = data_set->raw_from_given](const fs::path& path) {
+      return ReadScenePoints(path, warp, raw_from_given);
+    };
   }
   return data_set;
 }

@@ -66,6 +66,25 @@ std::map<int, fs::path> NumberedFiles(const fs::path& folder, std::string_view p
   return found;
 }
 
+fs::path AnyFile(const fs::path& folder, std::string_view prefix) {
+  for (const fs::path& file : FilesOf(folder))
+    if (file.filename().string().starts_with(prefix)) return file;
+  return {};
+}
+
+std::vector<fs::path> VideosIn(const fs::path& folder) {
+  constexpr std::string_view kEndings[] = {".mp4", ".avi", ".mov", ".mkv", ".m4v", ".webm", ".mpg", ".mpeg", ".wmv"};
+  std::vector<fs::path> videos;
+  for (const fs::path& file : FilesOf(folder)) {
+    std::string ending = file.extension().string();
+    std::transform(ending.begin(), ending.end(), ending.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (std::find(std::begin(kEndings), std::end(kEndings), ending) != std::end(kEndings)) videos.push_back(file);
+  }
+  std::sort(videos.begin(), videos.end());
+  return videos;
+}
+
 fs::path OnlyFile(const fs::path& folder, std::string_view suffix) {
   fs::path only;
   for (const fs::path& file : FilesOf(folder)) {
@@ -75,6 +94,12 @@ fs::path OnlyFile(const fs::path& folder, std::string_view suffix) {
     only = file;
   }
   return only;
+}
+
+void WarnOfListedButMissing(int missing, const fs::path& list, std::vector<std::string>* warnings) {
+  if (missing > 0)
+    warnings->push_back(std::to_string(missing) + " images that " + list.string() +
+                        " names are not there; they are passed over");
 }
 
 std::string Trimmed(std::string_view text) {
@@ -141,16 +166,6 @@ std::vector<std::optional<Rigid3>> PosesAt(const std::vector<double>& times_s, c
     found.push_back(nearest != nullptr ? std::optional(*nearest) : std::nullopt);
   }
   return found;
-}
-
-std::function<Result<std::optional<cv::Mat>>(int)> DepthFiles(std::vector<fs::path> files, ReadDepth read) {
-  return [files = std::move(files), read = std::move(read)](int idx) -> Result<std::optional<cv::Mat>> {
-    if (idx < 0 || idx >= static_cast<int>(files.size()) || files[static_cast<std::size_t>(idx)].empty())
-      return std::optional<cv::Mat>();
-    Result<cv::Mat> depth_mm = read(files[static_cast<std::size_t>(idx)]);
-    if (!depth_mm.ok()) return depth_mm.status();
-    return std::optional<cv::Mat>(*std::move(depth_mm));
-  };
 }
 
 }  // namespace pliant

@@ -25,8 +25,15 @@ namespace pliant {
 // The files of a folder that are called PREFIX, digits, SUFFIX, by number; none where there is no folder.
 std::map<int, std::filesystem::path> NumberedFiles(const std::filesystem::path& folder, std::string_view prefix,
                                                    std::string_view suffix);
+// A file of a folder whose name begins like this, "" where there is none.
+std::filesystem::path AnyFile(const std::filesystem::path& folder, std::string_view prefix);
+// The files of a folder whose endings are those of videos, in the order of their names.
+std::vector<std::filesystem::path> VideosIn(const std::filesystem::path& folder);
 // The only file in a folder with this ending, "" where there is none or several.
 std::filesystem::path OnlyFile(const std::filesystem::path& folder, std::string_view suffix);
+
+// Says how many files that a list names are not there, if any.
+void WarnOfListedButMissing(int missing, const std::filesystem::path& list, std::vector<std::string>* warnings);
 
 // Without blanks, tabs and carriage returns at its ends.
 std::string Trimmed(std::string_view text);
@@ -70,8 +77,7 @@ Rigid3 FromUnity(const Rigid3& world_from_cam);
 std::vector<std::optional<Rigid3>> PosesAt(const std::vector<double>& times_s, const std::vector<TimedPose>& poses,
                                            double unit_mm, double most_s, const Rigid3& body_from_cam = {});
 
-// Depth images, one a frame (an empty path: none). `read` makes millimetres of what a file holds.
+// Makes millimetres of what a depth image's file holds.
 using ReadDepth = std::function<Result<cv::Mat>(const std::filesystem::path& file)>;
-std::function<Result<std::optional<cv::Mat>>(int)> DepthFiles(std::vector<std::filesystem::path> files, ReadDepth read);
 
 }  // namespace pliant

@@ -3,8 +3,9 @@
 
 #include "datasets/set_frames.h"
 
-#include <algorithm>
 #include <utility>
+
+#include "datasets/image_list.h"
 
 namespace pliant {
 namespace {
@@ -15,31 +16,6 @@ std::vector<int> NumbersOf(const std::map<int, fs::path>& files) {
   std::vector<int> numbers;
   for (const auto& [number, file] : files) numbers.push_back(number);
   return numbers;
-}
-
-void WarnOfGaps(const std::vector<int>& numbers, const fs::path& folder, std::vector<std::string>* warnings) {
-  int missing = 0;
-  int first = -1;
-  for (std::size_t k = 1; k < numbers.size(); ++k) {
-    const int gap = numbers[k] - numbers[k - 1] - 1;
-    if (gap > 0 && first < 0) first = numbers[k - 1] + 1;
-    missing += gap;
-  }
-  if (missing > 0)
-    warnings->push_back("in " + folder.string() + " " + std::to_string(missing) + " images are missing, the first is " +
-                        "number " + std::to_string(first) + "; frames are those that are there");
-}
-
-template <class Value>
-void WarnOfMissing(const std::string& what, const std::vector<int>& numbers, const std::map<int, Value>& values,
-                   std::vector<std::string>* warnings) {
-  if (values.empty()) return;
-  const auto without = [&](int number) { return !values.contains(number); };
-  const auto count = std::count_if(numbers.begin(), numbers.end(), without);
-  if (count == 0) return;
-  warnings->push_back(std::to_string(count) + " of " + std::to_string(numbers.size()) + " images have no " + what +
-                      ", the first is number " +
-                      std::to_string(*std::find_if(numbers.begin(), numbers.end(), without)));
 }
 
 }  // namespace
@@ -54,8 +30,9 @@ Result<DataSet> OpenNumberedSet(const SequenceRequest& request, NumberedSet set,
   Result<DataSet> data_set = Calibrated(request, StreamFiles(set.folder, std::move(images)), published);
   if (!data_set.ok()) return data_set.status();
   WarnOfGaps(numbers, set.folder, &data_set->warnings);
-  WarnOfMissing("depth image", numbers, set.depth, &data_set->warnings);
-  WarnOfMissing("pose", numbers, set.world_from_cam, &data_set->warnings);
+  if (!set.right.empty() && !data_set->calibration.baseline_mm)
+    data_set->warnings.push_back("the right images in " + set.right.begin()->second.parent_path().string() +
+                                 " are not read: there is no baseline" + set.baseline_hint);
   if (!set.right.empty() && data_set->calibration.baseline_mm) {
     std::vector<fs::path> right;
     for (const int number : numbers) {
@@ -67,9 +44,9 @@ Result<DataSet> OpenNumberedSet(const SequenceRequest& request, NumberedSet set,
     data_set->right = StreamFiles(set.right.begin()->second.parent_path(), std::move(right));
   }
   if (!set.depth.empty()) {
-    std::vector<fs::path> depth;
-    for (const int number : numbers) depth.push_back(set.depth.contains(number) ? set.depth.at(number) : fs::path());
-    data_set->depth_mm = DepthFiles(std::move(depth), std::move(set.read_depth));
+    for (const int number : numbers)
+      data_set->depth_files.push_back(set.depth.contains(number) ? set.depth.at(number) : fs::path());
+    data_set->read_depth = std::move(set.read_depth);
   }
   if (!set.world_from_cam.empty())
     for (const int number : numbers) {

@@ -18,13 +18,14 @@ struct NumberedSet {
   std::filesystem::path folder;
   std::map<int, std::filesystem::path> images;  // by number
   std::map<int, std::filesystem::path> right = {};
+  std::string baseline_hint = {};  // where right images want one: what says it
   std::map<int, std::filesystem::path> depth = {};
   ReadDepth read_depth = nullptr;
   std::map<int, Rigid3> world_from_cam = {};  // mm
 };
 
-// In the order of their numbers. Warns of numbers that are left out, and of images without a depth image or pose where
-// others have one; a right image for every one is required (kNotFound).
+// In the order of their numbers. Warns of numbers that are left out, and of right images without a baseline; with one
+// every image must have its right image (kNotFound).
 Result<DataSet> OpenNumberedSet(const SequenceRequest& request, NumberedSet set,
                                 const std::optional<SourceCalibration>& published);
 

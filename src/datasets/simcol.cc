@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // SimCol3D (Rau et al., Medical Image Analysis 2024): rendered colonoscopy. FrameBuffer_NNNN.png, Depth_NNNN.png of 16
-// bits whose full scale is 20 cm, and, beside the folder, SavedPosition_NAME.txt in cm and
+// bits whose full scale is 20 cm and all beyond, and, beside the folder, SavedPosition_NAME.txt in cm and
 // SavedRotationQuaternion_NAME.txt (x y z w), a line a frame, in Unity's left-handed world.
 #include "datasets/formats.h"
 #include "datasets/image_file.h"
@@ -32,6 +32,20 @@ fs::path FindBeside(const fs::path& folder, const std::string& prefix) {
   return {};
 }
 
+// What keeps the poses from being read, where some are there: `positions` and `rotations` are what was found.
+std::string WhyNoPoses(const fs::path& folder, const fs::path& positions, const fs::path& rotations) {
+  const std::string name = NameOf(folder) + ".txt";
+  const auto sentence = [&](const std::string& found, const std::string& missing) {
+    return "no poses are read: " + found + " is there, but no " + missing + name;
+  };
+  if (!positions.empty()) return sentence(positions.string(), "SavedRotationQuaternion_");
+  if (!rotations.empty()) return sentence(rotations.string(), "SavedPosition_");
+  for (const fs::path& where : {folder, fs::path(folder / ".").parent_path().parent_path()})
+    if (const fs::path other = AnyFile(where, "SavedPosition_"); !other.empty())
+      return sentence(other.string(), "SavedPosition_");
+  return {};
+}
+
 Result<std::map<int, Rigid3>> ReadPoses(const fs::path& positions, const fs::path& rotations) {
   const auto places = ReadNumberRows(positions, 3);
   if (!places.ok()) return places.status();
@@ -57,10 +71,11 @@ bool IsSimCol(const fs::path& path) { return !NumberedFiles(path, "FrameBuffer_"
 
 Result<DataSet> OpenSimCol(const SequenceRequest& request) {
   const fs::path& folder = request.image_path;
-  NumberedSet set{.folder = folder,
-                  .images = NumberedFiles(folder, "FrameBuffer_", ".png"),
-                  .depth = NumberedFiles(folder, "Depth_", ".png"),
-                  .read_depth = [](const fs::path& file) { return ReadDepthImage(file, kFullScale_mm / kSteps); }};
+  NumberedSet set{
+      .folder = folder,
+      .images = NumberedFiles(folder, "FrameBuffer_", ".png"),
+      .depth = NumberedFiles(folder, "Depth_", ".png"),
+      .read_depth = [](const fs::path& file) { return ReadClampedDepthImage(file, kFullScale_mm / kSteps); }};
   const fs::path positions = FindBeside(folder, "SavedPosition_");
   const fs::path rotations = FindBeside(folder, "SavedRotationQuaternion_");
   if (!positions.empty() && !rotations.empty()) {
@@ -70,7 +85,11 @@ Result<DataSet> OpenSimCol(const SequenceRequest& request) {
   }
   const auto camera = PublishedCamera("SimCol3D", CameraModelId::kPinhole, 475, 475, {227.604, 227.604, 237.5, 237.5});
   if (!camera.ok()) return camera.status();
-  return OpenNumberedSet(request, std::move(set), *camera);
+  auto data_set = OpenNumberedSet(request, std::move(set), *camera);
+  if (data_set.ok() && data_set->world_from_cam.empty())
+    if (const std::string why = WhyNoPoses(folder, positions, rotations); !why.empty())
+      data_set->warnings.push_back(why);
+  return data_set;
 }
 
 }  // namespace pliant

@@ -24,10 +24,11 @@ constexpr double kMostDifference_s = 0.02;
 constexpr double kDepthUnit_mm = 0.2;
 constexpr double kMetre_mm = 1000.0;
 
-Result<std::map<double, fs::path>> ReadList(const fs::path& file) {
+Result<std::map<double, fs::path>> ReadList(const fs::path& file, std::vector<std::string>* warnings) {
   auto reader = LineReader::Open(file.string());
   if (!reader.ok()) return reader.status();
   std::map<double, fs::path> list;
+  int missing = 0;
   std::string_view line;
   while (reader->Next(&line)) {
     const auto fields = Split(line, ' ');
@@ -35,8 +36,13 @@ Result<std::map<double, fs::path>> ReadList(const fs::path& file) {
     double time_s = 0;
     if (fields.size() < 2 || !ParseDouble(fields[0], &time_s) || !std::isfinite(time_s))
       return reader->Error("a line has a time and a file");
-    list.emplace(time_s, file.parent_path() / fields[1]);
+    const fs::path listed = file.parent_path() / fields[1];
+    if (IsFile(listed))
+      list.emplace(time_s, listed);
+    else
+      ++missing;
   }
+  WarnOfListedButMissing(missing, file, warnings);
   return list;
 }
 
@@ -44,12 +50,18 @@ Result<std::map<double, fs::path>> ReadList(const fs::path& file) {
 
 bool IsTumRgbd(const fs::path& path) { return IsFile(path / "rgb.txt"); }
 
+std::string TumRgbdLacks(const fs::path& path) {
+  return IsFolder(path / "rgb") && IsFile(path / "depth.txt") ? "rgb.txt" : "";
+}
+
 Result<DataSet> OpenTumRgbd(const SequenceRequest& request) {
   const fs::path& folder = request.image_path;
-  const auto images = ReadList(folder / "rgb.txt");
+  std::vector<std::string> warnings;
+  const auto images = ReadList(folder / "rgb.txt", &warnings);
   if (!images.ok()) return images.status();
   if (images->empty())
-    return Status(ErrorCode::kNotFound, (folder / "rgb.txt").string() + " names no image; check the path");
+    return Status(ErrorCode::kNotFound,
+                  (folder / "rgb.txt").string() + " names no image that is there; check the path");
   std::vector<fs::path> files;
   std::vector<double> times_s;
   for (const auto& [time_s, file] : *images) {
@@ -58,16 +70,19 @@ Result<DataSet> OpenTumRgbd(const SequenceRequest& request) {
   }
   auto data_set = Calibrated(request, StreamFiles(folder, files));
   if (!data_set.ok()) return data_set.status();
+  data_set->warnings.insert(data_set->warnings.end(), warnings.begin(), warnings.end());
   if (IsFile(folder / "depth.txt")) {
-    const auto depths = ReadList(folder / "depth.txt");
+    const auto depths = ReadList(folder / "depth.txt", &data_set->warnings);
     if (!depths.ok()) return depths.status();
     std::vector<fs::path> depth_files;
     for (const double time_s : times_s) {
       const fs::path* nearest = NearestInTime(*depths, time_s, kMostDifference_s);
       depth_files.push_back(nearest != nullptr ? *nearest : fs::path());
     }
-    data_set->depth_mm =
-        DepthFiles(std::move(depth_files), [](const fs::path& file) { return ReadDepthImage(file, kDepthUnit_mm); });
+    data_set->depth_files = std::move(depth_files);
+    data_set->read_depth = [unit_mm = data_set->calibration.depth_scale.value_or(kDepthUnit_mm)](const fs::path& file) {
+      return ReadDepthImage(file, unit_mm);
+    };
   }
   if (IsFile(folder / "groundtruth.txt")) {
     const auto poses = ReadTumTrajectory((folder / "groundtruth.txt").string());

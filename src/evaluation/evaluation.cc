@@ -18,6 +18,7 @@ struct CollectedTruth {
   std::vector<PosePair> poses;
   FirstMapTruth reference;  // of the first map
   FirstMapTruth declared;
+  std::optional<int> own_pair;  // the frame of whose pair the first map was made, where pairs are the truth
 };
 
 // The points of a frame, each with the true surface at its pixel.
@@ -64,7 +65,10 @@ Status CollectFrame(const EvaluationFrame& frame, const Sequence& sequence, cons
     // A map that was made of one frame may be of its pair, and would be compared with itself.
     const bool of_one_frame =
         frame.first_map && frame.first_map->reference_frame_idx == frame.first_map->declared_frame_idx;
-    if (of_one_frame && surface->IsOfPairs()) known.surface.reset();
+    if (of_one_frame && surface->IsOfPairs()) {
+      known.surface.reset();
+      truth->own_pair = frame.frame_idx;
+    }
   }
   if (const std::optional<Rigid3> world_from_cam = sequence.WorldFromCamera(frame.frame_idx))
     known.poses = {frame.frame_idx, frame.cam_from_world->Inverse(), *world_from_cam, frame.submap};
@@ -131,8 +135,9 @@ Status ComputeParts(const EvaluationInput& run, const CollectedTruth& truth, con
       return status;
   }
   if (!options.Wants(EvaluationPart::kFirstMap)) return Status::Ok();
-  return Take(EvaluationPart::kFirstMap, ComputeFirstMapError(run.frames, truth.reference, truth.declared), options,
-              &evaluation->first_map, &evaluation->notes);
+  auto first_map = truth.own_pair ? Result<FirstMapError>(missing("the map was made of the pair that would judge it"))
+                                  : ComputeFirstMapError(run.frames, truth.reference, truth.declared);
+  return Take(EvaluationPart::kFirstMap, std::move(first_map), options, &evaluation->first_map, &evaluation->notes);
 }
 
 Status CheckProtocols(const Evaluation& evaluation, const EvaluationOptions& options) {
@@ -189,11 +194,9 @@ Result<Evaluation> Evaluate(const EvaluationInput& run, const Sequence& sequence
     if (!frame.cam_from_world) continue;
     if (Status status = CollectFrame(frame, sequence, options, surface, &truth); !status.ok()) return status;
   }
-  if (truth.surface.empty() && !truth.material && truth.poses.empty() && options.parts.empty() && options.needs_truth)
-    return Status(ErrorCode::kNotFound,
-                  "the sequence of the run " + run.name +
-                      " has no truth for the tracked frames: no depth/, no pairs, no "
-                      "groundtruth.txt, no simulation.yaml; evaluate on a sequence that has one of them");
+  if (truth.own_pair)
+    evaluation.notes.push_back("the surface of frame " + std::to_string(*truth.own_pair) +
+                               " is not compared: the map was made of its pair");
   if (Status status = ComputeParts(run, truth, material.status(), options, &evaluation); !status.ok()) return status;
   if (Status status = CheckProtocols(evaluation, options); !status.ok()) return status;
   return evaluation;

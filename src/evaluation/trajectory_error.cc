@@ -9,6 +9,8 @@
 #include <numbers>
 #include <string>
 
+#include <Eigen/Eigenvalues>
+
 #include "pliant/base/statistics.h"
 
 namespace pliant {
@@ -68,6 +70,16 @@ Result<Sim3> Align(std::span<const PosePair> pairs, TrajectoryAlignment alignmen
                     truth_from_run.status().message() + "); read the surface error alone");
 }
 
+// Standard deviation of the true positions along their second principal axis.
+double PathWidth(std::span<const PosePair> pairs) {
+  Eigen::Matrix3Xd centres(3, static_cast<Eigen::Index>(pairs.size()));
+  for (std::size_t i = 0; i < pairs.size(); ++i)
+    centres.col(static_cast<Eigen::Index>(i)) = pairs[i].true_world_from_cam.translation;
+  centres.colwise() -= Eigen::Vector3d(centres.rowwise().mean());
+  const Eigen::Matrix3d spread = centres * centres.transpose() / static_cast<double>(pairs.size());
+  return std::sqrt(std::max(0.0, Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvalues()[1]));
+}
+
 void AddSubmap(std::span<const PosePair> pairs, const Sim3& truth_from_run, const TrajectoryErrorOptions& options,
                TrajectoryError* error, Pooled* pooled) {
   std::vector<Rigid3> aligned;
@@ -109,7 +121,10 @@ Result<TrajectoryError> ComputeTrajectoryError(std::span<const PosePair> pairs, 
       continue;
     }
     AddSubmap(submap, *truth_from_run, options, &error, &pooled);
-    if (submap.size() > most) error.truth_from_run = *truth_from_run;
+    if (submap.size() > most) {
+      error.truth_from_run = *truth_from_run;
+      error.true_path_width_mm = PathWidth(submap);
+    }
     most = std::max(most, submap.size());
   }
   if (error.submaps == 0) return failure;

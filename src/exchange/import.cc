@@ -118,7 +118,7 @@ Status WriteRun(const ImportRequest& request, const ImportOptions& options, cons
   RunWriterOptions writer_options;
   writer_options.total_s = options.seconds;
   auto writer =
-      RunWriter::Create(request.output_path, camera, {kVersion, request.command_line, 0, request.sequence_path, {}},
+      RunWriter::Create(request.output_path, camera, {kVersion, request.command_line, 0, request.sequence_path},
                         table.ToYaml(), {}, writer_options);
   if (!writer.ok()) return writer.status();
   Reporter reporter(imported, camera, sequence);

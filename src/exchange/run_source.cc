@@ -9,16 +9,14 @@
 #include <utility>
 
 #include "pliant/base/text.h"
-#include "pliant/datasets/open_sequence.h"
+#include "pliant/datasets/run_sequence.h"
 #include "pliant/io/run_map.h"
 
 namespace pliant {
 namespace {
 
 // The camera and the images' names.
-Result<RunMap> MapFromSequence(const std::string& path, const Run& run) {
-  SequenceRequest request;
-  request.image_path = path;
+Result<RunMap> MapFromSequence(const SequenceRequest& request, const Run& run) {
   const auto sequence = OpenSequence(request);
   if (!sequence.ok()) return sequence.status();
   RunMap known;
@@ -30,9 +28,8 @@ Result<RunMap> MapFromSequence(const std::string& path, const Run& run) {
 
 Result<RunMap> ReadKnown(const std::string& run_path, const std::string& sequence_path, const Run& run) {
   if (HasRunMap(run_path)) return ReadRunMap(run_path, run);
-  const std::string path = !sequence_path.empty() ? sequence_path : run.summary ? run.summary->description.input : "";
-  if (!path.empty()) {
-    auto known = MapFromSequence(path, run);
+  if (const SequenceRequest request = SequenceOfRun(run_path, sequence_path); !request.image_path.empty()) {
+    auto known = MapFromSequence(request, run);
     if (known.ok()) return known;
     return Status(known.status().code(), "the run has no sparse/ to take the camera and the images' names from, and " +
                                              known.status().message());

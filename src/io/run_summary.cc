@@ -29,6 +29,7 @@ Status WriteRunSummary(const std::string& path, const RunSummary& summary) {
       {"command_line", summary.description.command_line},
       {"seed", summary.description.seed},
       {"input", summary.description.input},
+      {"camera", summary.description.camera},
       {"oracles", summary.description.oracles},
       {"status", EnumName(summary.status)},
       {"note", summary.note},
@@ -62,7 +63,9 @@ Result<RunSummary> ReadRunSummary(const std::string& path) {
     RunSummary summary;
     summary.description = {json.at("version").get<std::string>(),
                            json.at("command_line").get<std::vector<std::string>>(),
-                           json.at("seed").get<std::uint64_t>(), json.at("input").get<std::string>(),
+                           json.at("seed").get<std::uint64_t>(),
+                           json.at("input").get<std::string>(),
+                           json.value("camera", ""),
                            json.value("oracles", std::vector<std::string>())};
     const std::string status = json.at("status").get<std::string>();
     bool known = false;

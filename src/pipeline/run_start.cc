@@ -3,11 +3,14 @@
 
 #include "pipeline/run_start.h"
 
+#include <cmath>
 #include <utility>
 
 #include <opencv2/core.hpp>
 
 #include "pipeline/cloud_depth.h"
+#include "pliant/base/options.h"
+#include "pliant/base/statistics.h"
 #include "pliant/datasets/check_sequence.h"
 #include "pliant/datasets/open_sequence.h"
 #include "pliant/io/point_cloud.h"
@@ -27,6 +30,30 @@ Result<cv::Mat> ReadCloud(const DepthInitOptions& options, const Camera& camera)
                       "' has nothing in front of the camera and in its image; give it in the first frame's camera, x "
                       "right, y down, z ahead");
   return depth_mm;
+}
+
+// Unlikely of a scene: 5 mm is nearer than endoscopes see sharply.
+constexpr double kNearestMedian_mm = 5.0;
+
+std::vector<std::string> CloudWarnings(const std::string& path, const cv::Mat& depth_mm) {
+  std::vector<double> depths;
+  for (int v = 0; v < depth_mm.rows; ++v)
+    for (int u = 0; u < depth_mm.cols; ++u)
+      if (const float depth = depth_mm.at<float>(v, u); depth > 0) depths.push_back(depth);
+  const double median_mm = Median(std::move(depths));
+  if (median_mm >= kNearestMedian_mm) return {};
+  return {"the point cloud '" + path + "' has a median depth of " +
+          FormatDouble(std::round(100.0 * median_mm) / 100.0) +
+          " mm; if its unit is the metre, set Init.depth_cloud_unit_mm to 1000"};
+}
+
+// Whether a frame of the request has a depth image; one that cannot be read is one.
+bool HasDepth(const SequenceRequest& request, const Sequence& sequence) {
+  for (int k = 0; k < sequence.size(); ++k) {
+    const auto depth_mm = sequence.Depth(request.start + k * request.stride);
+    if (!depth_mm.ok() || depth_mm->has_value()) return true;
+  }
+  return false;
 }
 
 // What cannot be read here is told when it is read to be tracked.
@@ -52,6 +79,12 @@ Result<RunStart> ReadStart(const RunRequest& request, const InitOptions& init, c
     auto depth_mm = ReadCloud(init.depth, sequence.camera());
     if (!depth_mm.ok()) return depth_mm.status();
     start.cloud_depth_mm = *std::move(depth_mm);
+    start.warnings = CloudWarnings(init.depth.cloud_path, start.cloud_depth_mm);
+  } else if (init.method == InitMethod::kDepth && !HasDepth(request.input, sequence)) {
+    return Status(ErrorCode::kNotFound, "a start from depth needs depth images, and " +
+                                            request.input.image_path.string() +
+                                            " has none; name a point cloud of its first frame with Init.depth_cloud, "
+                                            "or choose another Init.method");
   }
   if (init.method == InitMethod::kStereo)
     if (Status status = CheckPairs("a start from a pair of " + request.input.image_path.string(), sequence.camera(),

@@ -219,6 +219,7 @@ Result<RunSummary> RunTrack(const RunRequest& request, const TrackOptions& optio
                                    request.command_line,
                                    static_cast<std::uint64_t>(options.seed),
                                    request.input.image_path.string(),
+                                   request.input.camera_path.string(),
                                    {oracles.begin(), oracles.end()}},
                                   table.ToYaml(), {Tracker::kStages.begin(), Tracker::kStages.end()}, writer_options);
   if (!writer.ok()) return writer.status();

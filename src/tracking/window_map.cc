@@ -87,7 +87,7 @@ Status EnoughCertain(const InitInput& input, const SolvedWindow& window, const M
                                         " points is known to " + Digits(100.0 * demands.certain_sigma, 1) +
                                         " % of the median depth, at least " + needed +
                                         " must be; the median parallax is " + Digits(median_parallax_deg, 1) +
-                                        " deg: move the camera sideways or forwards"};
+                                        " deg: give more frames, or move the camera sideways or forwards"};
 }
 
 // The points in all frames of the input, fixed; poses and courses start between those of the solved views.

@@ -86,8 +86,7 @@ EvaluationInput FramesOf(const ViewedRun& run) {
 }
 
 Result<Evaluation> AddTruth(const std::string& run_path, const OpenedTruth& truth, ViewedRun* run) {
-  EvaluationOptions options;
-  options.needs_truth = false;
+  const EvaluationOptions options;
   Result<Evaluation> evaluation = EvaluateRun(run_path, truth, options);
   if (!evaluation.ok()) return evaluation.status();
   AddErrors(*evaluation, run);

@@ -104,8 +104,8 @@ void FigureOptions::List(OptionTable& table) {
   table.Add("fps", &fps, "1/s", "of a film; 0: the sequence's", 0.0, 1000.0);
 }
 
-Status WriteFigure(const ViewRequest& request, const FigureOptions& options, const std::vector<int>& frames_idx,
-                   const std::string& output_path) {
+Result<std::vector<std::string>> WriteFigure(const ViewRequest& request, const FigureOptions& options,
+                                             const std::vector<int>& frames_idx, const std::string& output_path) {
   ViewRequest pictures = request;
   pictures.figures = false;
   const auto view = OpenView(pictures, options.view);
@@ -127,7 +127,7 @@ Status WriteFigure(const ViewRequest& request, const FigureOptions& options, con
   written = written && cairo_surface_status(surface.get()) == CAIRO_STATUS_SUCCESS;
   std::error_code error;
   if (drawn.ok() && written) std::filesystem::rename(draft, path, error);
-  if (drawn.ok() && written && !error) return Status::Ok();
+  if (drawn.ok() && written && !error) return view->notes;
   std::filesystem::remove(draft, error);
   if (!drawn.ok()) return drawn;
   return {ErrorCode::kUnwritable,

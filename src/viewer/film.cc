@@ -55,8 +55,9 @@ Status Unwritable(const std::string& path) {
 
 }  // namespace
 
-Status WriteFilm(const ViewRequest& request, const FigureOptions& options, const std::string& output_path,
-                 const std::function<bool(int, int)>& progress) {
+Result<std::vector<std::string>> WriteFilm(const ViewRequest& request, const FigureOptions& options,
+                                           const std::string& output_path,
+                                           const std::function<bool(int, int)>& progress) {
   ViewRequest pictures = request;
   pictures.figures = false;
   const auto view = OpenView(pictures, options.view);
@@ -64,7 +65,7 @@ Status WriteFilm(const ViewRequest& request, const FigureOptions& options, const
   std::set<int> frames_idx;
   for (const ViewedRun& run : view->runs)
     for (const ViewedFrame& frame : run.frames) frames_idx.insert(frame.row.frame_idx);
-  if (frames_idx.empty()) return {ErrorCode::kInsufficient, "the run has no frame; there is nothing to film"};
+  if (frames_idx.empty()) return Status(ErrorCode::kInsufficient, "the run has no frame; there is nothing to film");
   const double panel_width = options.panel_width_px;
   const double panel_height = panel_width * AspectOf(*view);
   const std::size_t panels = (view->sequence ? 1 : 0) + view->runs.size();
@@ -117,7 +118,8 @@ Status WriteFilm(const ViewRequest& request, const FigureOptions& options, const
   if (CountFrames(draft) != done) return unwritten(Unwritable(output_path));
   std::error_code error;
   std::filesystem::rename(draft, output_path, error);
-  return error ? unwritten(Unwritable(output_path)) : Status::Ok();
+  if (error) return unwritten(Unwritable(output_path));
+  return view->notes;
 }
 
 }  // namespace pliant

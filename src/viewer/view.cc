@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "pliant/base/statistics.h"
+#include "pliant/datasets/run_sequence.h"
 #include "pliant/evaluation/evaluate_run.h"
 #include "viewer/add_truth.h"
 #include "viewer/align_runs.h"
@@ -22,15 +23,11 @@ namespace {
 
 // The sequence of the request, or the one that the first run names if it can be opened.
 Result<std::optional<OpenedTruth>> OpenItsSequence(const ViewRequest& request, View* view) {
-  SequenceRequest sequence{.image_path = request.sequence_path, .camera_path = request.camera_path};
+  const SequenceRequest sequence = SequenceOfRun(request.run_paths.front(), request.sequence_path, request.camera_path);
   const bool named = !request.sequence_path.empty();
-  if (!named) {
-    const auto summary = ReadRunSummary(request.run_paths.front() + "/run.json");
-    if (summary.ok()) sequence.image_path = summary->description.input;
-    if (sequence.image_path.empty()) {
-      view->notes.emplace_back("the run does not say which images it is of; name them with --sequence to see them");
-      return std::optional<OpenedTruth>();
-    }
+  if (sequence.image_path.empty()) {
+    view->notes.emplace_back("the run does not say which images it is of; name them with --sequence to see them");
+    return std::optional<OpenedTruth>();
   }
   EvaluationOptions options;
   if (!request.figures) options.parts = {EvaluationPart::kSurface};
@@ -38,7 +35,7 @@ Result<std::optional<OpenedTruth>> OpenItsSequence(const ViewRequest& request, V
   if (opened.ok()) return std::optional(*std::move(opened));
   if (named) return opened.status();
   view->notes.push_back("the images cannot be shown: " + opened.status().message() +
-                        "; name where they are now with --sequence");
+                        "; name where they are now with --sequence, and their calibration with --camera");
   return std::optional<OpenedTruth>();
 }
 

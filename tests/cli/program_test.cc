@@ -155,6 +155,22 @@ TEST(Program, AnEndBeforeTheStartExitsWithTwo) {
   EXPECT_THAT(outcome.err, HasSubstr("--end is 5 and --start is 10"));
 }
 
+TEST(Program, AStartFromACloudTakesItsMethodAndSaysWhenTheUnitIsUnlikely) {
+  const Outcome usage = Pliant("track --image_path x --output_path y --Init.depth_cloud cloud.txt");
+  EXPECT_EQ(usage.exit, 2);
+  EXPECT_THAT(usage.err, HasSubstr("give --Init.method depth as well"));
+  const std::string sequence = Temporary("seq").string();
+  const std::string cloud = Temporary("cloud.txt").string();
+  ASSERT_EQ(Pliant("simulate --quiet --Trajectory.frames 2" + kCoarse + "--output_path '" + sequence + "'").exit, 0);
+  std::ofstream points(cloud);
+  for (int i = 0; i < 4096; ++i) points << 1e-3 * (i % 64 - 32) << " " << 1e-3 * (i / 64 - 32) << " 0.05\n";  // metres
+  points.close();
+  const std::string track = "track --Init.method depth --image_path '" + sequence + "' --output_path '" +
+                            Temporary("run").string() + "' --Init.depth_cloud '" + cloud + "' ";
+  EXPECT_THAT(Pliant(track).err, HasSubstr("has a median depth of 0.05 mm; if its unit is the metre"));
+  EXPECT_THAT(Pliant(track + "--Init.depth_cloud_unit_mm 1000").err, Not(HasSubstr("median depth")));
+}
+
 TEST(Program, AnInputThatIsNotThereIsOneSentenceAndExitCodeOne) {
   const std::string nowhere = Temporary("nowhere").string();
   for (const std::string& arguments :
@@ -328,6 +344,36 @@ TEST(Program, EvaluateSaysInOneSentenceThatThereIsNoTruthForWhatWasAsked) {
   const Outcome protocol = Pliant(evaluate + "--protocol depth_trimmed");
   EXPECT_EQ(protocol.exit, 1);
   EXPECT_THAT(protocol.err, StartsWith("pliant evaluate: the protocol depth_trimmed compares points"));
+  std::filesystem::remove(sequence + "/groundtruth.txt");
+  const Outcome bare = Pliant(evaluate);
+  EXPECT_EQ(bare.exit, 0) << bare.err;
+  EXPECT_THAT(bare.out, HasSubstr("tracks\n  frames tracked 4 of 4"));
+}
+
+TEST(Program, ARunIsEvaluatedAndShownWithTheCalibrationItWasMadeWith) {
+  const std::string sequence = Temporary("seq").string();
+  const std::string run = Temporary("run").string();
+  ASSERT_EQ(Pliant("simulate --quiet --Trajectory.frames 4 --Camera.width 320 --Camera.height 240 --output_path '" +
+                   sequence + "'")
+                .exit,
+            0);
+  const std::string camera = Temporary("lens.yaml").string();
+  std::filesystem::rename(sequence + "/camera.yaml", camera);
+  ASSERT_EQ(Pliant("track --quiet --Init.method depth --image_path '" + sequence + "' --camera '" + camera +
+                   "' --output_path '" + run + "'")
+                .exit,
+            0);
+  EXPECT_EQ(Pliant("evaluate --run '" + run + "' --sequence '" + sequence + "'").exit, 0);
+  const Outcome compared =
+      Pliant("compare --run '" + run + "' --run '" + ForeignResult("a", 4) + "' --sequence '" + sequence + "'");
+  EXPECT_EQ(compared.exit, 0) << compared.err;
+  const Outcome figure = Pliant("report --run '" + run + "' --figure 2 -o '" + Temporary("figure.png").string() + "'");
+  EXPECT_EQ(figure.exit, 0) << figure.err;
+  EXPECT_THAT(figure.out, Not(HasSubstr("note:")));
+  std::filesystem::remove(camera);
+  const Outcome without = Pliant("report --run '" + run + "' --figure 2 -o '" + Temporary("figure.png").string() + "'");
+  EXPECT_EQ(without.exit, 0) << without.err;
+  EXPECT_THAT(without.out, HasSubstr("note: the images cannot be shown"));
 }
 
 TEST(Program, ADeviceIsNoCalibration) {

@@ -70,6 +70,19 @@ INSTANTIATE_TEST_SUITE_P(
         Misreading{"transposed",
                    [](const Rigid3& truth) { return Rigid3(truth.rotation.conjugate(), truth.translation); },
                    "rotations are transposed", 1.0},
+        Misreading{"w_first",
+                   [](const Rigid3& truth) {
+                     const auto& q = truth.rotation;
+                     return Rigid3(Eigen::Quaterniond(q.z(), q.w(), q.x(), q.y()), truth.translation);
+                   },
+                   "their quaternions are w x y z", 1.0},
+        Misreading{"w_first_of_the_inverse",
+                   [](const Rigid3& truth) {
+                     const Rigid3 inverse = truth.Inverse();
+                     const auto& q = inverse.rotation;
+                     return Rigid3(Eigen::Quaterniond(q.z(), q.w(), q.x(), q.y()), inverse.translation);
+                   },
+                   "camera from world, and their quaternions w x y z", 1.0},
         Misreading{"unity",
                    [](const Rigid3& truth) {
                      return Mirrored(truth, {1, -1, 1});
@@ -122,6 +135,14 @@ TEST(CheckSequence, TellsPairsThatAreNotRectified) {
   };
   const SequenceCheck check = Checked(sequence);
   EXPECT_THAT(check.wrong, ElementsAre(HasSubstr("not rectified")));
+}
+
+TEST(CheckSequence, BlamesTheDepthWherePosesAndBaselineAgree) {
+  RenderedSequence sequence;
+  sequence.mono = false;
+  sequence.depth_unit = 10;
+  const SequenceCheck check = Checked(sequence);
+  EXPECT_THAT(check.wrong, ElementsAre(HasSubstr("the depth images say 10 times what poses and baseline agree on")));
 }
 
 TEST(CheckSequence, TellsDepthInAnotherUnitByTheBaseline) {

@@ -516,7 +516,7 @@ TEST_F(DataSets, FramesMissingInTheMiddleAreSaid) {
   EXPECT_EQ((*sequence)->size(), 8);
   EXPECT_THAT((*sequence)->Warnings(),
               ElementsAre(HasSubstr("2 images are missing, the first is number 4"),
-                          HasSubstr("1 of 8 images have no depth image, the first is number 9")));
+                          HasSubstr("1 of 8 images have no depth image, the first is FrameBuffer_0009.png")));
 }
 
 TEST_F(DataSets, PublishedCamerasAreTaken) {

@@ -218,9 +218,14 @@ TEST(Robustness, AStartFromDepthWithoutDepthSaysSo) {
   const TestFolder folder;
   const SequenceCopy sequence(folder, 4);
   std::filesystem::remove_all(std::filesystem::path(sequence.path()) / "depth");
-  const RunSummary summary = TrackSequenceAt(sequence.path(), folder.Path("run"), DepthStart());
-  EXPECT_EQ(summary.status, RunStatus::kFailed);
-  EXPECT_THAT(summary.note, HasSubstr("no depth image"));
+  RunRequest request;
+  request.input.image_path = sequence.path();
+  request.output_path = folder.Path("run");
+  const auto summary = RunTrack(request, DepthStart(), {});
+  ASSERT_FALSE(summary.ok());
+  EXPECT_EQ(summary.status().code(), ErrorCode::kNotFound);
+  EXPECT_THAT(summary.status().message(), HasSubstr("a start from depth needs depth images"));
+  EXPECT_FALSE(std::filesystem::exists(folder.Path("run")));
 }
 
 // Starts the program, lets it track some frames, and sends it a signal. Returns wait's status.

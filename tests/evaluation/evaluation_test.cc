@@ -63,15 +63,11 @@ TEST(Evaluate, TellsWhatIsMissingAndGoesOnWithTheRest) {
   EXPECT_TRUE(!poses->surface && poses->trajectory);
   EXPECT_THAT(EvaluationTable(*poses), HasSubstr("no surface error"));
   EXPECT_THAT(poses->notes.back(), HasSubstr("no depth for frame 4, in which it was made"));
-  const auto none = Evaluate(MakeRun(8, 1, 1), TruthSequence(8, TruthSequence::Truth::kNone), kNoMaterial, {});
-  EXPECT_EQ(none.status().code(), ErrorCode::kNotFound);
-  EvaluationOptions all_the_same;
-  all_the_same.needs_truth = false;
-  const auto bare =
-      Evaluate(MakeRun(8, 1, 1), TruthSequence(8, TruthSequence::Truth::kNone), kNoMaterial, all_the_same);
+  const auto bare = Evaluate(MakeRun(8, 1, 1), TruthSequence(8, TruthSequence::Truth::kNone), kNoMaterial, {});
   ASSERT_TRUE(bare.ok()) << bare.status().message();
   EXPECT_TRUE(bare->reprojection && !bare->surface && !bare->trajectory);
   EXPECT_EQ(bare->survival.tracks, 40);
+  EXPECT_THAT(bare->notes, testing::Contains(HasSubstr("no surface error: the sequence has no true surface")));
 }
 
 TEST(Evaluate, FailsWhereThereIsNoTruthForAPartOrAProtocolThatWasAskedFor) {

@@ -47,8 +47,9 @@ inline FrameReport Report(int frame) {
 }
 
 inline RunWriter Writer(const std::string& path, const RunWriterOptions& options = {}) {
-  auto writer = RunWriter::Create(path, TestCamera(), {"0.1.0", {"pliant", "track"}, 7, "clip.mp4", {"tracks"}},
-                                  "Track:\n", kStages, options);
+  auto writer =
+      RunWriter::Create(path, TestCamera(), {"0.1.0", {"pliant", "track"}, 7, "clip.mp4", "stereo.yaml", {"tracks"}},
+                        "Track:\n", kStages, options);
   EXPECT_TRUE(writer.ok()) << writer.status().message();
   return std::move(writer).value();
 }

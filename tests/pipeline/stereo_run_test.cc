@@ -167,7 +167,8 @@ TEST_F(StereoRun, SaysBeforeItStartsThatPairsAreSwappedOrDepthIsInAnotherUnit) {
   observer.warnings.clear();
   request.output_path = folder_.Path("run2");
   ASSERT_TRUE(RunTrack(request, options, observers).ok());
-  EXPECT_THAT(observer.warnings, Contains(HasSubstr("depth and baseline disagree")));
+  EXPECT_THAT(observer.warnings,
+              Contains(HasSubstr("the depth images say 0.1 times what poses and baseline agree on")));
 }
 
 TEST_F(StereoRun, FailsWithItsReasonWhereARightImageCannotBeRead) {

@@ -61,7 +61,7 @@ class FigureTest : public testing::Test {
     return {.run_paths = {folder_.Path("run")}, .sequence_path = folder_.Path("sequence"), .camera_path = ""};
   }
   Status Write(const std::string& name, const std::vector<int>& frames_idx = {10, 14}) {
-    return WriteFigure(Request(), options_, frames_idx, folder_.Path(name));
+    return WriteFigure(Request(), options_, frames_idx, folder_.Path(name)).status();
   }
 
   TestFolder folder_;
@@ -102,9 +102,10 @@ TEST_F(FigureTest, AFrameThatIsNotThereIsNamed) {
 
 TEST_F(FigureTest, WhatCannotBeWrittenLeavesNothing) {
   for (const char* name : {"nowhere/figure.png", "nowhere/figure.svg", "nowhere/film.mp4"}) {
-    const Status status = std::string(name).ends_with("mp4")
-                              ? WriteFilm(Request(), options_, folder_.Path(name), [](int, int) { return true; })
-                              : Write(name);
+    const Status status =
+        std::string(name).ends_with("mp4")
+            ? WriteFilm(Request(), options_, folder_.Path(name), [](int, int) { return true; }).status()
+            : Write(name);
     EXPECT_EQ(status.code(), ErrorCode::kUnwritable) << name;
   }
   EXPECT_FALSE(std::filesystem::exists(folder_.Path("nowhere")));
@@ -136,14 +137,24 @@ TEST_F(FigureTest, AFilmThatFailsLeavesTheOldOne) {
   EXPECT_FALSE(std::filesystem::exists(folder_.Path("film.part.mp4")));
 }
 
+TEST_F(FigureTest, WithoutItsImagesItSaysSo) {
+  ViewRequest request = Request();
+  request.sequence_path = "";
+  const auto notes = WriteFigure(request, options_, {10}, folder_.Path("figure.png"));
+  ASSERT_TRUE(notes.ok()) << notes.status().message();
+  ASSERT_EQ(notes->size(), 1U);
+  EXPECT_THAT(notes->front(), testing::HasSubstr("the images cannot be shown"));
+}
+
 TEST_F(FigureTest, FilmsEveryFrame) {
   int told = 0;
-  const Status status = WriteFilm(Request(), options_, folder_.Path("film.mp4"), [&](int done, int frames) {
+  const auto notes = WriteFilm(Request(), options_, folder_.Path("film.mp4"), [&](int done, int frames) {
     EXPECT_EQ(done, ++told);
     EXPECT_EQ(frames, kRunFrames);
     return true;
   });
-  ASSERT_TRUE(status.ok()) << status.message();
+  ASSERT_TRUE(notes.ok()) << notes.status().message();
+  EXPECT_TRUE(notes->empty());
   cv::VideoCapture film(folder_.Path("film.mp4"));
   ASSERT_TRUE(film.isOpened());
   EXPECT_NEAR(film.get(cv::CAP_PROP_FPS), 25, 0.1);

@@ -41,7 +41,6 @@ struct EvaluationOptions {
   // that cannot be is an error.
   std::vector<EvaluationPart> parts;
   SurfaceSource surface_from = SurfaceSource::kAny;
-  bool needs_truth = true;  // false: where there is none, what needs none is given alone
   MatchingOptions matching;
   PointErrorOptions points;
   TrajectoryErrorOptions trajectory;
@@ -66,7 +65,7 @@ struct Evaluation {
 // `sequence` is used for its truth alone: open it without start, end and stride. `material` is the truth of its
 // material, not null, or why there is none; `surface` that of its surface, null for its depth images. Fails with
 // kMismatch when run and sequence do not belong together (CheckBelongsTo), kInsufficient when no frame was tracked,
-// kNotFound when the sequence has no truth at all though some is needed, or not the truth for a part or a protocol that
+// kNotFound when the sequence has not the truth for a part or a protocol that
 // was asked for; with what a part reports that was asked for, and with what the truth reports when it cannot be read.
 Result<Evaluation> Evaluate(const EvaluationInput& run, const Sequence& sequence,
                             const Result<MaterialTruth*>& material, const EvaluationOptions& options,

@@ -80,9 +80,13 @@ struct TrajectoryError {
   double rpe_rotation_rmse_deg = 0;
   double true_path_length_mm = 0;  // over the frames compared
   double path_length_mm = 0;       // of the aligned estimate
-  Sim3 truth_from_run;             // the alignment of the submap with the most poses
-  std::vector<int> frame_idx;      // the frames compared
-  std::vector<double> ate_mm;      // of each of them
+  // How far the true path, of the submap with the most poses, leaves a straight line: standard deviation along its
+  // second principal axis. Where it is not well above the ATE the turn about the line, and so the rotation error, is
+  // not known.
+  double true_path_width_mm = 0;
+  Sim3 truth_from_run;         // the alignment of the submap with the most poses
+  std::vector<int> frame_idx;  // the frames compared
+  std::vector<double> ate_mm;  // of each of them
 };
 
 // A submap that cannot be aligned is left out where another can. Fails with kInsufficient below three poses, with

@@ -38,8 +38,9 @@ struct RunDescription {
   std::string program_version;
   std::vector<std::string> command_line;
   std::uint64_t seed = 0;
-  std::string input;                 // the images' path, as given
-  std::vector<std::string> oracles;  // parts of the method that were replaced by the truth; empty in an honest run
+  std::string input;                      // the images' path, as given
+  std::string camera = {};                // the calibration's path, as given; empty: the one that belongs to the images
+  std::vector<std::string> oracles = {};  // parts of the method that were replaced by the truth; empty in an honest run
 };
 
 // run.json.

@@ -28,15 +28,16 @@ struct FigureOptions {
 };
 
 // One column a frame: its image (where there are images), and below it the scene, a row a run. The ending of
-// `output_path` says what is written: .png, .svg or .pdf. Fails as OpenView does, with kInvalidArgument for a frame
-// that no run has, and with kUnwritable.
-Status WriteFigure(const ViewRequest& request, const FigureOptions& options, const std::vector<int>& frames_idx,
-                   const std::string& output_path);
+// `output_path` says what is written: .png, .svg or .pdf. Returns what is missing, a sentence each. Fails as OpenView
+// does, with kInvalidArgument for a frame that no run has, and with kUnwritable.
+Result<std::vector<std::string>> WriteFigure(const ViewRequest& request, const FigureOptions& options,
+                                             const std::vector<int>& frames_idx, const std::string& output_path);
 
 // Every frame of the runs in order, as H.264 where OpenCV's FFmpeg has an encoder for it, else as MPEG-4. `progress` is
-// told how many of how many frames are done, and says whether to go on; a film that ends so is whole up to there. Fails
-// likewise.
-Status WriteFilm(const ViewRequest& request, const FigureOptions& options, const std::string& output_path,
-                 const std::function<bool(int, int)>& progress);
+// told how many of how many frames are done, and says whether to go on; a film that ends so is whole up to there.
+// Returns and fails likewise.
+Result<std::vector<std::string>> WriteFilm(const ViewRequest& request, const FigureOptions& options,
+                                           const std::string& output_path,
+                                           const std::function<bool(int, int)>& progress);
 
 }  // namespace pliant

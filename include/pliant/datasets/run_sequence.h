@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// The sequence that a run was made of.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "pliant/datasets/open_sequence.h"
+
+namespace pliant {
+
+// The images at `sequence_path`, or, where that is empty, those that run.json in `run_path` names; with the calibration
+// at `camera_path`, or, where that is empty and the images are the run's, the one that the run was made with. All
+// frames. An empty image_path: nothing says which images the run is of.
+SequenceRequest SequenceOfRun(const std::string& run_path, const std::filesystem::path& sequence_path = {},
+                              const std::filesystem::path& camera_path = {});
+
+}  // namespace pliant
