@@ -172,6 +172,32 @@ Result<std::optional<StereoCalibration>> AsOptional(const Result<StereoCalibrati
   return std::optional(*calibration);
 }
 
+// Of the frames that are read, how many have no truth where others have one; `has` says it of a frame.
+template <class Has>
+void WarnOfMissing(const std::string& what, const FrameRange& range, const DataSet& data_set, const Has& has,
+                   std::vector<std::string>* warnings) {
+  int missing = 0;
+  int first = -1;
+  for (int idx = range.start; idx < range.end; idx += range.stride) {
+    if (has(static_cast<std::size_t>(idx))) continue;
+    if (missing++ == 0) first = idx;
+  }
+  if (missing > 0)
+    warnings->push_back(std::to_string(missing) + " of " + std::to_string(range.Count()) + " images have no " + what +
+                        ", the first is " + data_set.images->Name(first) + " (frame " + std::to_string(first) + ")");
+}
+
+void WarnOfMissingTruth(const FrameRange& range, DataSet* data_set) {
+  std::vector<std::string>* warnings = &data_set->warnings;
+  if (const auto& files = data_set->depth_files; !files.empty())
+    WarnOfMissing(
+        "depth image", range, *data_set, [&](std::size_t k) { return k < files.size() && !files[k].empty(); },
+        warnings);
+  if (const auto& poses = data_set->world_from_cam; !poses.empty())
+    WarnOfMissing(
+        "pose", range, *data_set, [&](std::size_t k) { return k < poses.size() && poses[k].has_value(); }, warnings);
+}
+
 Result<fs::path> FindCalibration(const SequenceRequest& request) {
   if (!request.camera_path.empty()) return request.camera_path;
   std::error_code error;
@@ -244,6 +270,9 @@ Result<DataSet> Calibrated(const SequenceRequest& request, std::unique_ptr<Image
       if (pairs.ok()) pairs->mask_path = request.mask_path;
       return pairs;
     }
+    if (path->extension() == ".ini")
+      return Status(ErrorCode::kMismatch, path->string() + " is of two cameras, but " + images->Title(0) +
+                                              " holds no pair; give a calibration of this one");
   }
   CameraFileOptions options;
   if (size) options.image_size = ImageSize{size->width, size->height};
@@ -258,36 +287,6 @@ Result<DataSet> Calibrated(const SequenceRequest& request, std::unique_ptr<Image
   calibration.photometric = file->photometric;
   return DataSet{.calibration = std::move(calibration), .images = std::move(images), .mask_path = request.mask_path};
 }
-
-namespace {
-
-// Of the frames that are read, how many have no truth where others have one; `has` says it of a frame.
-template <class Has>
-void WarnOfMissing(const std::string& what, const FrameRange& range, const DataSet& data_set, const Has& has,
-                   std::vector<std::string>* warnings) {
-  int missing = 0;
-  int first = -1;
-  for (int idx = range.start; idx < range.end; idx += range.stride) {
-    if (has(static_cast<std::size_t>(idx))) continue;
-    if (missing++ == 0) first = idx;
-  }
-  if (missing > 0)
-    warnings->push_back(std::to_string(missing) + " of " + std::to_string(range.Count()) + " images have no " + what +
-                        ", the first is " + data_set.images->Name(first) + " (frame " + std::to_string(first) + ")");
-}
-
-void WarnOfMissingTruth(const FrameRange& range, DataSet* data_set) {
-  std::vector<std::string>* warnings = &data_set->warnings;
-  if (const auto& files = data_set->depth_files; !files.empty())
-    WarnOfMissing(
-        "depth image", range, *data_set, [&](std::size_t k) { return k < files.size() && !files[k].empty(); },
-        warnings);
-  if (const auto& poses = data_set->world_from_cam; !poses.empty())
-    WarnOfMissing(
-        "pose", range, *data_set, [&](std::size_t k) { return k < poses.size() && poses[k].has_value(); }, warnings);
-}
-
-}  // namespace
 
 Result<std::unique_ptr<Sequence>> ReadDataSet(DataSet data_set, const SequenceRequest& request) {
   Result<FrameRange> range = FrameRange::From(request);

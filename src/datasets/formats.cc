@@ -15,6 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::size_t kMostFolders = 1000;  // that are looked into for a data set, on each of two levels
+
 std::vector<fs::path> SubfoldersOf(const fs::path& folder) {
   std::vector<fs::path> folders;
   std::error_code error;
@@ -90,8 +92,15 @@ std::string WhatIsThereInstead(const fs::path& folder) {
   for (const DataSetFormat& format : DataSetFormats())
     if (const std::string lacks = format.lacks != nullptr ? format.lacks(folder) : ""; !lacks.empty())
       return "it looks like " + std::string(format.name) + ", but lacks " + lacks;
-  for (const fs::path& inside : SubfoldersOf(folder))
-    if (const DataSetFormat* format = SetAt(inside)) return ThatIs(inside, *format);
+  std::vector<fs::path> inside = SubfoldersOf(folder);
+  for (int level = 0; level < 2; ++level) {
+    std::vector<fs::path> deeper;
+    for (std::size_t k = 0; k < std::min(inside.size(), kMostFolders); ++k) {
+      if (const DataSetFormat* format = SetAt(inside[k])) return ThatIs(inside[k], *format);
+      for (fs::path& path : SubfoldersOf(inside[k])) deeper.push_back(std::move(path));
+    }
+    inside = std::move(deeper);
+  }
   fs::path above = fs::path(folder / ".").lexically_normal().parent_path();
   for (int level = 0; level < 2 && above.has_parent_path(); ++level) {
     above = above.parent_path();

@@ -150,6 +150,8 @@ TEST_F(NearlyRightSets, AFolderBesideADataSetSaysWhereItIs) {
   Write("SyntheticColon_I/Frames_S1/FrameBuffer_0000.png", Image(0));
   EXPECT_THAT(WhyNot("SyntheticColon_I"),
               AllOf(HasSubstr("is not a data set"), EndsWith("Frames_S1 is one (simcol); give that")));
+  Write("sets/SyntheticColon_I/Frames_S1/FrameBuffer_0000.png", Image(0));
+  EXPECT_THAT(WhyNot("sets"), EndsWith("SyntheticColon_I/Frames_S1 is one (simcol); give that"));
   Text("V1/mav0/cam0/data.csv", "#\n");
   EXPECT_THAT(WhyNot("V1/mav0/cam0"), EndsWith("mav0 is one (euroc); give that"));
   std::filesystem::create_directories(Path("clips"));
