@@ -39,18 +39,19 @@ struct Request {
   std::string output_path;
 };
 
-// A calibration that one of the runs was made with serves all runs of the same images.
+// A run that does not say its calibration takes that of another one of the same images.
 std::vector<SequenceRequest> SequencesOf(const Request& request) {
   std::vector<SequenceRequest> sequences;
-  std::map<std::filesystem::path, std::filesystem::path> camera_of;
+  std::map<std::filesystem::path, std::filesystem::path> spare_of;
   for (std::size_t i = 0; i < request.run_paths.size(); ++i) {
     const std::string& path = request.sequence_paths[request.sequence_paths.size() == 1 ? 0 : i];
     sequences.push_back(SequenceOfRun(request.run_paths[i], path, request.camera_path));
-    if (!sequences.back().camera_path.empty()) camera_of.emplace(path, sequences.back().camera_path);
+    if (!sequences.back().spare_camera_path.empty()) spare_of.emplace(path, sequences.back().spare_camera_path);
   }
   for (SequenceRequest& sequence : sequences)
-    if (const auto camera = camera_of.find(sequence.image_path); camera != camera_of.end())
-      sequence.camera_path = camera->second;
+    if (const auto spare = spare_of.find(sequence.image_path);
+        spare != spare_of.end() && sequence.spare_camera_path.empty())
+      sequence.spare_camera_path = spare->second;
   return sequences;
 }
 
@@ -60,7 +61,8 @@ std::vector<std::optional<Evaluation>> EvaluateAll(const Request& request, const
   std::optional<Result<OpenedTruth>> truth;
   const std::vector<SequenceRequest> sequences = SequencesOf(request);
   for (std::size_t i = 0; i < request.run_paths.size(); ++i) {
-    if (!truth || sequences[i].image_path != sequences[i - 1].image_path) {
+    if (!truth || sequences[i].image_path != sequences[i - 1].image_path ||
+        sequences[i].spare_camera_path != sequences[i - 1].spare_camera_path) {
       truth = OpenTruth(sequences[i], options);
       if (!truth->ok()) SayError(kManual.command, truth->status().message());
     }

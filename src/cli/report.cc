@@ -119,8 +119,7 @@ int ReportCommand(std::span<const std::string> args) {
            "the images, with truth where there is; without it those that the first run's run.json names",
            Need::kOptional);
   line.Add("camera", &arguments.view.camera_path, "FILE",
-           "calibration of the sequence; not needed where camera.yaml lies in the folder or beside the video",
-           Need::kOptional);
+           "calibration of the sequence; not needed where it has its own, or for the run's images", Need::kOptional);
   line.Add("output_path", &arguments.output_path, "FILE", "what is written: .html; .png, .svg or .pdf; .mp4",
            Need::kRequired);
   line.Add("figure", &arguments.figure, "FRAMES", "a still of these frames: their numbers, with commas",

@@ -22,8 +22,7 @@ void AddEvaluationArguments(CommandLine* line, std::string* camera_path) {
                  "what to compute: one, several with commas, or all; an error where there is no truth for it. Without "
                  "it, all that there is truth for");
   line->Add("camera", camera_path, "FILE",
-            "calibration of the sequence; not needed where camera.yaml lies in the folder or beside the video",
-            Need::kOptional);
+            "calibration of the sequence; not needed where it has its own, or for the run's images", Need::kOptional);
 }
 
 Status WriteReport(const std::string& folder, const std::string& file_name, const std::string& text) {

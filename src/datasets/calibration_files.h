@@ -16,6 +16,8 @@ namespace pliant {
 // *_photometrical.xml beside it. Nothing for an XML file that has no camera_model. Fails with kUnreadable, and with
 // kInvalidArgument for a model that is not known.
 Result<std::optional<SourceCalibration>> ReadCalibu(const std::filesystem::path& file);
+// Of such a *_photometrical.xml. Fails with kUnreadable.
+Result<PhotometricCalibration> ReadCalibuPhotometry(const std::filesystem::path& file);
 
 // StereoMIS's StereoCalibration.ini, two cameras, baseline in metres or millimetres. Fails with kUnreadable.
 Result<StereoCalibration> ReadStereoIni(const std::filesystem::path& file);

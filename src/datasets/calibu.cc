@@ -75,9 +75,11 @@ Result<Camera> GeometryOf(const fs::path& file, const pugi::xml_node& model_of_c
   return camera;
 }
 
+}  // namespace
+
 // <camera_model type="gamma"> with <gamma> and perhaps <vignetting>, <light_model type="sls"> with the spread <mu> and
 // the direction <D>. Where the light is, millimetres from the lens, is not used.
-Result<PhotometricCalibration> ReadPhotometry(const fs::path& file) {
+Result<PhotometricCalibration> ReadCalibuPhotometry(const fs::path& file) {
   const auto xml = ReadCalibration(file);
   if (!xml.ok()) return xml.status();
   if (!xml->camera.child("gamma"))
@@ -111,8 +113,6 @@ Result<PhotometricCalibration> ReadPhotometry(const fs::path& file) {
   return calibration;
 }
 
-}  // namespace
-
 Result<std::optional<SourceCalibration>> ReadCalibu(const fs::path& file) {
   const auto xml = ReadCalibration(file);
   if (!xml.ok()) return xml.status();
@@ -121,7 +121,7 @@ Result<std::optional<SourceCalibration>> ReadCalibu(const fs::path& file) {
   if (!camera.ok()) return camera.status();
   SourceCalibration calibration{*std::move(camera), file};
   if (const fs::path beside = OnlyFile(file.parent_path(), "_photometrical.xml"); !beside.empty()) {
-    const auto photometric = ReadPhotometry(beside);
+    const auto photometric = ReadCalibuPhotometry(beside);
     if (!photometric.ok()) return photometric.status();
     calibration.photometric = *photometric;
   }

@@ -4,6 +4,7 @@
 #include "datasets/data_set.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include <opencv2/imgproc.hpp>
@@ -57,7 +58,7 @@ class DataSetSequence final : public Sequence {
 Status DataSetSequence::CheckFirstImage() const {
   const std::optional<cv::Size> size = images().SizeAt(range_.start);
   if (!size || *size == cv::Size(camera().width(), camera().height())) return Status::Ok();
-  const bool twice = size->width == 2 * camera().width() || size->height == 2 * camera().height();
+  const bool twice = (size->width == 2 * camera().width()) != (size->height == 2 * camera().height());
   return {ErrorCode::kMismatch, "the calibration " + data_set_.calibration.path.string() + " is for images of " +
                                     SizeText(camera().width(), camera().height()) + ", but " +
                                     images().Title(range_.start) + " is " + SizeText(size->width, size->height) +

@@ -39,22 +39,22 @@ std::optional<int> EndoscopeOf(const fs::path& folder) {
   return std::nullopt;
 }
 
-// The calibration file that belongs to a procedure.
-fs::path CalibrationOf(const fs::path& folder) {
-  if (fs::path own = OnlyFile(folder, kGeometry); !own.empty()) return own;
+// The calibration file with this ending that belongs to a procedure.
+fs::path CalibrationOf(const fs::path& folder, const char* suffix) {
+  if (fs::path own = OnlyFile(folder, suffix); !own.empty()) return own;
   const auto endoscope = EndoscopeOf(folder);
   if (!endoscope) return {};
   char name[32];
   std::snprintf(name, sizeof name, "Endoscope_%02d", *endoscope);
   std::error_code error;
   const fs::path root = fs::weakly_canonical(folder, error).parent_path().parent_path();
-  return OnlyFile(root / "Calibrations" / name, kGeometry);
+  return OnlyFile(root / "Calibrations" / name, suffix);
 }
 
 }  // namespace
 
 bool IsEndomapper(const fs::path& path) {
-  return !VideoOf(path).empty() && (!CalibrationOf(path).empty() || !InfoOf(path).empty());
+  return !VideoOf(path).empty() && (!CalibrationOf(path, kGeometry).empty() || !InfoOf(path).empty());
 }
 
 std::string EndomapperLacks(const fs::path& path) {
@@ -66,7 +66,7 @@ Result<DataSet> OpenEndomapper(const SequenceRequest& request) {
   auto video = StreamVideo(VideoOf(folder));
   if (!video.ok()) return video.status();
   if (!request.camera_path.empty() || IsFile(folder / "camera.yaml")) return Calibrated(request, *std::move(video));
-  const fs::path file = CalibrationOf(folder);
+  const fs::path file = CalibrationOf(folder, kGeometry);
   if (file.empty())
     return Status(ErrorCode::kNotFound, "there is no calibration for " + folder.string() + ": no *" + kGeometry +
                                             " in it, nor in Calibrations/Endoscope_NN of the number that " +
@@ -76,6 +76,12 @@ Result<DataSet> OpenEndomapper(const SequenceRequest& request) {
   if (!calibration->has_value())
     return Status(ErrorCode::kUnreadable,
                   file.string() + " is not a calibration of an endoscope: it has no camera_model");
+  if (const fs::path light = CalibrationOf(folder, "_photometrical.xml");
+      !light.empty() && !(*calibration)->photometric) {
+    const auto photometric = ReadCalibuPhotometry(light);
+    if (!photometric.ok()) return photometric.status();
+    (*calibration)->photometric = *photometric;
+  }
   return Calibrated(request, *std::move(video), **calibration);
 }
 

@@ -89,6 +89,7 @@ Result<Listed> ReadList(const fs::path& camera, std::vector<std::string>* warnin
   auto reader = LineReader::Open((camera / "data.csv").string());
   if (!reader.ok()) return reader.status();
   Listed list;
+  FolderIndex index;
   int missing = 0;
   std::string_view line;
   while (reader->Next(&line)) {
@@ -100,7 +101,7 @@ Result<Listed> ReadList(const fs::path& camera, std::vector<std::string>* warnin
     const auto name = Split(fields[1], ' ');
     if (name.empty()) return reader->Error("a line has a time in ns and a file");
     const fs::path file = camera / "data" / name.front();
-    if (!IsFile(file)) {
+    if (!index.Has(file)) {
       ++missing;
       continue;
     }
@@ -164,10 +165,12 @@ Result<DataSet> OpenEuroc(const SequenceRequest& request) {
   if (!left.ok()) return left.status();
   Result<DataSet> data_set = Status(ErrorCode::kNotFound, "");
   std::size_t left_over = 0;
-  const bool pairs = IsFile(root / "cam1" / "data.csv") && !left->fisheye && request.camera_path.empty();
-  if (pairs) {
-    auto right_list = ReadList(root / "cam1", &warnings);
-    if (!right_list.ok()) return right_list.status();
+  const bool wants_pairs = IsFile(root / "cam1" / "data.csv") && !left->fisheye && request.camera_path.empty();
+  std::vector<std::string> of_right;  // those that are missing count as left over
+  auto right_list = wants_pairs ? ReadList(root / "cam1", &of_right) : Result<Listed>(Listed());
+  if (!right_list.ok() && right_list.status().code() != ErrorCode::kNotFound) return right_list.status();
+  if (!right_list.ok()) warnings.push_back("pairs are not read: " + right_list.status().message());
+  if (wants_pairs && right_list.ok()) {
     left_over = KeepPairs(&*left_list, &*right_list);
     if (left_list->files.empty())
       return Status(ErrorCode::kMismatch, root.string() + " has no image of cam0 and cam1 of the same time");

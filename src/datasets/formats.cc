@@ -35,7 +35,7 @@ const DataSetFormat* SetAt(const fs::path& path) {
 }
 
 std::string ThatIs(const fs::path& path, const DataSetFormat& format) {
-  return path.string() + " is one (" + std::string(format.name) + "); give that";
+  return path.string() + " is a data set (" + std::string(format.name) + "); give that";
 }
 
 }  // namespace
@@ -72,13 +72,13 @@ bool IsFile(const std::filesystem::path& path) {
 
 Result<DataSet> OpenImageFolder(const SequenceRequest& request) {
   auto images = StreamFolder(request.image_path);
-  if (!images.ok()) {  // "no images here" says more than "no calibration here"
-    const std::string instead = WhatIsThereInstead(request.image_path);
-    if (images.status().code() != ErrorCode::kNotFound || instead.empty()) return images.status();
-    return Status(ErrorCode::kNotFound, "the folder " + request.image_path.string() + " is not a data set: " + instead);
-  }
-  auto data_set = Calibrated(request, *std::move(images));
-  if (data_set.ok()) WarnOfGaps(*data_set->images, &data_set->warnings);
+  // "No images here" says more than "no calibration here".
+  auto data_set = images.ok() ? Calibrated(request, *std::move(images)) : Result<DataSet>(images.status());
+  if (data_set.ok())
+    WarnOfGaps(*data_set->images, &data_set->warnings);
+  else if (data_set.status().code() == ErrorCode::kNotFound && request.camera_path.empty())
+    if (const std::string instead = WhatIsThereInstead(request.image_path); !instead.empty())
+      return Status(ErrorCode::kNotFound, data_set.status().message() + "; or: " + instead);
   return data_set;
 }
 
@@ -89,9 +89,6 @@ Result<DataSet> OpenVideo(const SequenceRequest& request) {
 }
 
 std::string WhatIsThereInstead(const fs::path& folder) {
-  for (const DataSetFormat& format : DataSetFormats())
-    if (const std::string lacks = format.lacks != nullptr ? format.lacks(folder) : ""; !lacks.empty())
-      return "it looks like " + std::string(format.name) + ", but lacks " + lacks;
   std::vector<fs::path> inside = SubfoldersOf(folder);
   for (int level = 0; level < 2; ++level) {
     std::vector<fs::path> deeper;
@@ -101,11 +98,15 @@ std::string WhatIsThereInstead(const fs::path& folder) {
     }
     inside = std::move(deeper);
   }
-  fs::path above = fs::path(folder / ".").lexically_normal().parent_path();
+  std::error_code error;
+  fs::path above = fs::weakly_canonical(folder, error);
   for (int level = 0; level < 2 && above.has_parent_path(); ++level) {
     above = above.parent_path();
     if (const DataSetFormat* format = SetAt(above)) return ThatIs(above, *format);
   }
+  for (const DataSetFormat& format : DataSetFormats())
+    if (const std::string lacks = format.lacks != nullptr ? format.lacks(folder) : ""; !lacks.empty())
+      return "it looks like " + std::string(format.name) + ", but lacks " + lacks;
   const std::vector<fs::path> videos = VideosIn(folder);
   if (videos.size() == 1) return "it holds no images, but the video " + videos.front().string() + "; give that";
   if (videos.size() > 1)

@@ -63,7 +63,7 @@ Result<DataSet> OpenHamlynRectified(const SequenceRequest& request) {
   NumberedSet set{.folder = folder / "image01",
                   .images = ImagesIn(folder / "image01"),
                   .right = ImagesIn(folder / "image02"),
-                  .baseline_hint = " (extrinsics.txt says it)",
+                  .baseline_hint = IsFile(folder / "extrinsics.txt") ? "" : "; extrinsics.txt would",
                   .depth = NumberedFiles(folder / "depth01", "", ".png"),
                   .read_depth = [](const fs::path& file) { return ReadDepthImage(file, 1.0); }};
   if (set.images.empty())

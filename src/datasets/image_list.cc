@@ -127,14 +127,19 @@ void WarnOfGaps(const std::vector<int>& numbers, const fs::path& folder, std::ve
 }
 
 void WarnOfGaps(const ImageStream& images, std::vector<std::string>* warnings) {
-  constexpr std::size_t kMostDigits = 9;
   std::vector<int> numbers;
   for (const std::string& stem : Stems(images)) {
-    const std::size_t digits = stem.size() - (stem.find_last_not_of("0123456789") + 1);
+    const std::size_t digits = stem.find_last_not_of("0123456789") + 1;
     int number = 0;
-    if (digits == 0 || !ParseInt(stem.substr(stem.size() - std::min(digits, kMostDigits)), &number)) return;
+    if (digits == stem.size() || !ParseInt(stem.substr(digits), &number)) return;
     numbers.push_back(number);
   }
+  // Times and chosen frames are no counters: those go on by one step but for a few gaps of whole steps.
+  std::map<int, std::size_t> steps;
+  for (std::size_t k = 1; k < numbers.size(); ++k) ++steps[numbers[k] - numbers[k - 1]];
+  if (steps.empty() || steps.begin()->first < 1 || 2 * steps.begin()->second < numbers.size()) return;
+  if (std::any_of(steps.begin(), steps.end(), [&](const auto& step) { return step.first % steps.begin()->first != 0; }))
+    return;
   WarnOfGaps(numbers, images.path(), warnings);
 }
 

@@ -46,7 +46,7 @@ std::vector<std::string> Stems(const ImageStream& images);
 // Says in `warnings` how many numbers are left out of a folder's images; those of every Nth frame leave out none.
 void WarnOfGaps(const std::vector<int>& numbers, const std::filesystem::path& folder,
                 std::vector<std::string>* warnings);
-// The same of the numbers that the names of a stream's images end with, where all of them do.
+// The same of the numbers that the names of a stream's images end with, where they count.
 void WarnOfGaps(const ImageStream& images, std::vector<std::string>* warnings);
 
 // The image file of every frame in one folder, by stem, or by order where no stem agrees.

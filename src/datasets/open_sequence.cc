@@ -24,15 +24,24 @@ Result<const DataSetFormat*> FormatAt(const std::filesystem::path& path) {
                                             "a video or a sequence");
 }
 
-}  // namespace
-
-Result<std::unique_ptr<Sequence>> OpenSequence(const SequenceRequest& request) {
+Result<std::unique_ptr<Sequence>> OpenWithCamera(const SequenceRequest& request) {
   const auto format = FormatAt(request.image_path);
   if (!format.ok()) return format.status();
   if (const Result<FrameRange> range = FrameRange::From(request); !range.ok()) return range.status();
   Result<DataSet> data_set = (*format)->open(request);
   if (!data_set.ok()) return data_set.status();
   return ReadDataSet(*std::move(data_set), request);
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Sequence>> OpenSequence(const SequenceRequest& request) {
+  auto sequence = OpenWithCamera(request);
+  if (sequence.ok() || !request.camera_path.empty() || request.spare_camera_path.empty()) return sequence;
+  SequenceRequest with_spare = request;
+  with_spare.camera_path = request.spare_camera_path;
+  auto other = OpenWithCamera(with_spare);
+  return other.ok() ? std::move(other) : std::move(sequence);
 }
 
 Result<DataSetKind> RecognizeDataSet(const std::filesystem::path& path) {

@@ -18,7 +18,7 @@ SequenceRequest SequenceOfRun(const std::string& run_path, const std::filesystem
   if (sequence_path.empty()) request.image_path = input;
   std::error_code error;
   const bool same = request.image_path == input || std::filesystem::equivalent(request.image_path, input, error);
-  if (camera_path.empty() && same) request.camera_path = summary->description.camera;
+  if (same) request.spare_camera_path = summary->description.camera;
   return request;
 }
 

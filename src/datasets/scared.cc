@@ -90,7 +90,7 @@ bool IsScared(const fs::path& path) { return IsFile(path / kCalibration) && IsFi
 
 std::string ScaredLacks(const fs::path& path) {
   if (IsFile(path / kCalibration)) return kVideo;
-  return IsFile(path / kVideo) || IsFile(path / "rgb.mp4") ? kCalibration : "";
+  return IsFile(path / kVideo) ? kCalibration : "";
 }
 
 Result<DataSet> OpenScared(const SequenceRequest& request) {

@@ -10,6 +10,7 @@
 #include <iterator>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -31,6 +32,15 @@ std::filesystem::path AnyFile(const std::filesystem::path& folder, std::string_v
 std::vector<std::filesystem::path> VideosIn(const std::filesystem::path& folder);
 // The only file in a folder with this ending, "" where there is none or several.
 std::filesystem::path OnlyFile(const std::filesystem::path& folder, std::string_view suffix);
+
+// Which files are there, asked folder by folder instead of file by file.
+class FolderIndex {
+ public:
+  bool Has(const std::filesystem::path& file);
+
+ private:
+  std::map<std::filesystem::path, std::set<std::filesystem::path>> files_;  // by their folder
+};
 
 // Says how many files that a list names are not there, if any.
 void WarnOfListedButMissing(int missing, const std::filesystem::path& list, std::vector<std::string>* warnings);

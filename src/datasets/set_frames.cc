@@ -32,7 +32,8 @@ Result<DataSet> OpenNumberedSet(const SequenceRequest& request, NumberedSet set,
   WarnOfGaps(numbers, set.folder, &data_set->warnings);
   if (!set.right.empty() && !data_set->calibration.baseline_mm)
     data_set->warnings.push_back("the right images in " + set.right.begin()->second.parent_path().string() +
-                                 " are not read: there is no baseline" + set.baseline_hint);
+                                 " are not read: " + data_set->calibration.path.string() + " says no baseline" +
+                                 set.baseline_hint);
   if (!set.right.empty() && data_set->calibration.baseline_mm) {
     std::vector<fs::path> right;
     for (const int number : numbers) {

@@ -86,7 +86,7 @@ Result<DataSet> OpenSimCol(const SequenceRequest& request) {
   const auto camera = PublishedCamera("SimCol3D", CameraModelId::kPinhole, 475, 475, {227.604, 227.604, 237.5, 237.5});
   if (!camera.ok()) return camera.status();
   auto data_set = OpenNumberedSet(request, std::move(set), *camera);
-  if (data_set.ok() && data_set->world_from_cam.empty())
+  if (data_set.ok() && (positions.empty() || rotations.empty()))
     if (const std::string why = WhyNoPoses(folder, positions, rotations); !why.empty())
       data_set->warnings.push_back(why);
   return data_set;

@@ -28,6 +28,7 @@ Result<std::map<double, fs::path>> ReadList(const fs::path& file, std::vector<st
   auto reader = LineReader::Open(file.string());
   if (!reader.ok()) return reader.status();
   std::map<double, fs::path> list;
+  FolderIndex index;
   int missing = 0;
   std::string_view line;
   while (reader->Next(&line)) {
@@ -37,7 +38,7 @@ Result<std::map<double, fs::path>> ReadList(const fs::path& file, std::vector<st
     if (fields.size() < 2 || !ParseDouble(fields[0], &time_s) || !std::isfinite(time_s))
       return reader->Error("a line has a time and a file");
     const fs::path listed = file.parent_path() / fields[1];
-    if (IsFile(listed))
+    if (index.Has(listed))
       list.emplace(time_s, listed);
     else
       ++missing;
@@ -74,12 +75,10 @@ Result<DataSet> OpenTumRgbd(const SequenceRequest& request) {
   if (IsFile(folder / "depth.txt")) {
     const auto depths = ReadList(folder / "depth.txt", &data_set->warnings);
     if (!depths.ok()) return depths.status();
-    std::vector<fs::path> depth_files;
-    for (const double time_s : times_s) {
+    for (const double time_s : depths->empty() ? std::vector<double>() : times_s) {
       const fs::path* nearest = NearestInTime(*depths, time_s, kMostDifference_s);
-      depth_files.push_back(nearest != nullptr ? *nearest : fs::path());
+      data_set->depth_files.push_back(nearest != nullptr ? *nearest : fs::path());
     }
-    data_set->depth_files = std::move(depth_files);
     data_set->read_depth = [unit_mm = data_set->calibration.depth_scale.value_or(kDepthUnit_mm)](const fs::path& file) {
       return ReadDepthImage(file, unit_mm);
     };

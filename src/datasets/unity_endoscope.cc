@@ -108,12 +108,11 @@ Result<DataSet> OpenEndoSlam(const SequenceRequest& request) {
   if (set.images.empty()) set.images = NumberedFiles(folder / "Frames", "image_", ".jpg");
   if (const fs::path file = EndoSlamPoses(folder); !file.empty())
     if (Status status = AddPoses(file, kMetre_mm, &set); !status.ok()) return status;
-  const bool has_poses = !set.world_from_cam.empty();
   const auto camera =
       PublishedCamera("EndoSLAM", CameraModelId::kPinhole, 320, 320, {156.0418, 155.7529, 178.5604, 181.8043});
   if (!camera.ok()) return camera.status();
   auto data_set = OpenNumberedSet(request, std::move(set), *camera);
-  if (data_set.ok() && !has_poses && IsFolder(folder / "Poses"))
+  if (data_set.ok() && EndoSlamPoses(folder).empty() && IsFolder(folder / "Poses"))
     data_set->warnings.push_back("no poses are read: " + (folder / "Poses").string() + " holds not exactly one .csv");
   return data_set;
 }

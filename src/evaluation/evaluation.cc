@@ -18,7 +18,7 @@ struct CollectedTruth {
   std::vector<PosePair> poses;
   FirstMapTruth reference;  // of the first map
   FirstMapTruth declared;
-  std::optional<int> own_pair;  // the frame of whose pair the first map was made, where pairs are the truth
+  std::optional<int> own_pair;  // the one frame that a map was made of, perhaps of its pair, where pairs are the truth
 };
 
 // The points of a frame, each with the true surface at its pixel.
@@ -67,7 +67,7 @@ Status CollectFrame(const EvaluationFrame& frame, const Sequence& sequence, cons
         frame.first_map && frame.first_map->reference_frame_idx == frame.first_map->declared_frame_idx;
     if (of_one_frame && surface->IsOfPairs()) {
       known.surface.reset();
-      truth->own_pair = frame.frame_idx;
+      if (options.Wants(EvaluationPart::kSurface)) truth->own_pair = frame.frame_idx;
     }
   }
   if (const std::optional<Rigid3> world_from_cam = sequence.WorldFromCamera(frame.frame_idx))
@@ -135,8 +135,10 @@ Status ComputeParts(const EvaluationInput& run, const CollectedTruth& truth, con
       return status;
   }
   if (!options.Wants(EvaluationPart::kFirstMap)) return Status::Ok();
-  auto first_map = truth.own_pair ? Result<FirstMapError>(missing("the map was made of the pair that would judge it"))
-                                  : ComputeFirstMapError(run.frames, truth.reference, truth.declared);
+  auto first_map =
+      truth.own_pair
+          ? Result<FirstMapError>(missing("the map was made of one frame, perhaps of the pair that would judge it"))
+          : ComputeFirstMapError(run.frames, truth.reference, truth.declared);
   return Take(EvaluationPart::kFirstMap, std::move(first_map), options, &evaluation->first_map, &evaluation->notes);
 }
 
@@ -196,7 +198,7 @@ Result<Evaluation> Evaluate(const EvaluationInput& run, const Sequence& sequence
   }
   if (truth.own_pair)
     evaluation.notes.push_back("the surface of frame " + std::to_string(*truth.own_pair) +
-                               " is not compared: the map was made of its pair");
+                               " is not compared by its pair: a map was made of that frame alone, perhaps of the pair");
   if (Status status = ComputeParts(run, truth, material.status(), options, &evaluation); !status.ok()) return status;
   if (Status status = CheckProtocols(evaluation, options); !status.ok()) return status;
   return evaluation;

@@ -115,6 +115,8 @@ Json ToJson(const TrajectoryError& e) {
           {"rpe_translation_mean_mm", e.rpe_translation_mean_mm},
           {"rpe_rotation_rmse_deg", e.rpe_rotation_rmse_deg},
           {"true_path_length_mm", e.true_path_length_mm},
+          {"true_path_extent_mm", e.true_path_extent_mm},
+          {"true_path_width_mm", e.true_path_width_mm},
           {"path_length_mm", e.path_length_mm},
           {"scale", e.truth_from_run.scale},
           {"frames", frames}};

@@ -62,11 +62,9 @@ std::string TrajectoryTable(const TrajectoryError& e) {
   std::string text = FormatText("camera error (%s, %d poses)\n", std::string(EnumName(e.alignment)).c_str(), e.poses);
   text += FormatText("  ATE RMSE %.4f mm, median %.4f, largest %.4f, over a path of %.2f mm\n", e.ate_rmse_mm,
                      e.ate_median_mm, e.ate_max_mm, e.true_path_length_mm);
-  constexpr double kStraight = 3.0;  // a path that is no wider than so many times the error
-  text += FormatText("  rotation RMSE %.4f deg%s\n", e.rotation_rmse_deg,
-                     e.true_path_width_mm < kStraight * e.ate_rmse_mm
-                         ? " (of little meaning: the path is nearly straight, and the turn about it hardly known)"
-                         : "");
+  text += FormatText(
+      "  rotation RMSE %.4f deg%s\n", e.rotation_rmse_deg,
+      e.TurnIsUnknown() ? " (of little meaning: the path is nearly straight, and the turn about it hardly known)" : "");
   if (e.rpe_pairs > 0)
     text += FormatText("  RPE over %d frame(s): %.4f mm, %.4f deg\n", e.rpe_delta, e.rpe_translation_rmse_mm,
                        e.rpe_rotation_rmse_deg);

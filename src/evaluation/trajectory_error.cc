@@ -70,14 +70,14 @@ Result<Sim3> Align(std::span<const PosePair> pairs, TrajectoryAlignment alignmen
                     truth_from_run.status().message() + "); read the surface error alone");
 }
 
-// Standard deviation of the true positions along their second principal axis.
-double PathWidth(std::span<const PosePair> pairs) {
+// Variances of the true positions along their principal axes, the smallest first.
+Eigen::Vector3d Spread(std::span<const PosePair> pairs) {
   Eigen::Matrix3Xd centres(3, static_cast<Eigen::Index>(pairs.size()));
   for (std::size_t i = 0; i < pairs.size(); ++i)
     centres.col(static_cast<Eigen::Index>(i)) = pairs[i].true_world_from_cam.translation;
   centres.colwise() -= Eigen::Vector3d(centres.rowwise().mean());
   const Eigen::Matrix3d spread = centres * centres.transpose() / static_cast<double>(pairs.size());
-  return std::sqrt(std::max(0.0, Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvalues()[1]));
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvalues().cwiseMax(0.0);
 }
 
 void AddSubmap(std::span<const PosePair> pairs, const Sim3& truth_from_run, const TrajectoryErrorOptions& options,
@@ -98,6 +98,12 @@ void AddSubmap(std::span<const PosePair> pairs, const Sim3& truth_from_run, cons
 }
 
 }  // namespace
+
+bool TrajectoryError::TurnIsUnknown() const {
+  constexpr double kStraight = 0.1;
+  constexpr double kWithinError = 3.0;
+  return true_path_width_mm <= kStraight * true_path_extent_mm && true_path_width_mm <= kWithinError * ate_rmse_mm;
+}
 
 void TrajectoryErrorOptions::List(OptionTable& table) {
   table.AddChoice("alignment", &alignment, "how the path is laid onto the true one: sim3 after a monocular start");
@@ -123,7 +129,9 @@ Result<TrajectoryError> ComputeTrajectoryError(std::span<const PosePair> pairs, 
     AddSubmap(submap, *truth_from_run, options, &error, &pooled);
     if (submap.size() > most) {
       error.truth_from_run = *truth_from_run;
-      error.true_path_width_mm = PathWidth(submap);
+      const Eigen::Vector3d spread = Spread(submap);
+      error.true_path_extent_mm = std::sqrt(spread[2]);
+      error.true_path_width_mm = std::sqrt(spread[1]);
     }
     most = std::max(most, submap.size());
   }

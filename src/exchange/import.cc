@@ -21,7 +21,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Result<std::unique_ptr<Sequence>> OpenImages(const ImportRequest& request) {
+// The images, with the calibration that is named, or the model's where they have none.
+SequenceRequest ImagesOf(const ImportRequest& request) {
   SequenceRequest images;
   images.image_path = request.sequence_path;
   images.camera_path = request.camera_path;
@@ -30,7 +31,7 @@ Result<std::unique_ptr<Sequence>> OpenImages(const ImportRequest& request) {
       !Exists(images.image_path / "camera.yaml"))
     for (const char* name : {"cameras.txt", "cameras.bin"})
       if (Exists(model / name)) images.camera_path = model / name;
-  return OpenSequence(images);
+  return images;
 }
 
 Result<Imported> ReadInput(const ImportRequest& request, const Sequence& sequence, const ImportOptions& options) {
@@ -117,9 +118,10 @@ Status WriteRun(const ImportRequest& request, const ImportOptions& options, cons
   listed.List(table);
   RunWriterOptions writer_options;
   writer_options.total_s = options.seconds;
-  auto writer =
-      RunWriter::Create(request.output_path, camera, {kVersion, request.command_line, 0, request.sequence_path},
-                        table.ToYaml(), {}, writer_options);
+  auto writer = RunWriter::Create(
+      request.output_path, camera,
+      {kVersion, request.command_line, 0, request.sequence_path, ImagesOf(request).camera_path.string()},
+      table.ToYaml(), {}, writer_options);
   if (!writer.ok()) return writer.status();
   Reporter reporter(imported, camera, sequence);
   for (int frame_idx = 0; frame_idx < sequence.size(); ++frame_idx)
@@ -171,7 +173,7 @@ void ImportOptions::List(OptionTable& table) {
 }
 
 Result<ImportSummary> Import(const ImportRequest& request, const ImportOptions& options) {
-  const auto sequence = OpenImages(request);
+  const auto sequence = OpenSequence(ImagesOf(request));
   if (!sequence.ok()) return sequence.status();
   auto imported = ReadInput(request, **sequence, options);
   if (!imported.ok()) return imported.status();

@@ -193,7 +193,7 @@ Result<View> OpenView(const ViewRequest& request, const ViewOptions& options) {
     return Status(ErrorCode::kInsufficient,
                   "no frame was read in the run " + request.run_paths.front() + "; there is nothing to show");
   if (has_images) {
-    view.sequence = {.image_path = sequence->request.image_path, .camera_path = sequence->request.camera_path};
+    view.sequence = sequence->request;
     view.camera = sequence->sequence->camera();
   }
   for (const ViewedRun& run : view.runs)

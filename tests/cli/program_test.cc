@@ -161,14 +161,20 @@ TEST(Program, AStartFromACloudTakesItsMethodAndSaysWhenTheUnitIsUnlikely) {
   EXPECT_THAT(usage.err, HasSubstr("give --Init.method depth as well"));
   const std::string sequence = Temporary("seq").string();
   const std::string cloud = Temporary("cloud.txt").string();
-  ASSERT_EQ(Pliant("simulate --quiet --Trajectory.frames 2" + kCoarse + "--output_path '" + sequence + "'").exit, 0);
+  ASSERT_EQ(Pliant("simulate --quiet --Trajectory.frames 2 --Camera.width 320 --Camera.height 240 --output_path '" +
+                   sequence + "'")
+                .exit,
+            0);
   std::ofstream points(cloud);
   for (int i = 0; i < 4096; ++i) points << 1e-3 * (i % 64 - 32) << " " << 1e-3 * (i / 64 - 32) << " 0.05\n";  // metres
   points.close();
   const std::string track = "track --Init.method depth --image_path '" + sequence + "' --output_path '" +
                             Temporary("run").string() + "' --Init.depth_cloud '" + cloud + "' ";
   EXPECT_THAT(Pliant(track).err, HasSubstr("has a median depth of 0.05 mm; if its unit is the metre"));
-  EXPECT_THAT(Pliant(track + "--Init.depth_cloud_unit_mm 1000").err, Not(HasSubstr("median depth")));
+  const Outcome in_metres = Pliant(track + "--Init.depth_cloud_unit_mm 1000");
+  EXPECT_EQ(in_metres.exit, 0) << in_metres.err;
+  EXPECT_THAT(in_metres.out, HasSubstr("2 of 2 frames tracked"));
+  EXPECT_THAT(in_metres.err, Not(HasSubstr("median depth")));
 }
 
 TEST(Program, AnInputThatIsNotThereIsOneSentenceAndExitCodeOne) {

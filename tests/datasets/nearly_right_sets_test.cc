@@ -84,6 +84,47 @@ TEST_F(NearlyRightSets, EveryFifthImageLeavesNoneOut) {
   EXPECT_THAT(Warnings(""), IsEmpty());
 }
 
+TEST_F(NearlyRightSets, TimesAndChosenFramesAreNoCounters) {
+  WriteCamera();
+  for (const char* name : {"frame_1633024800123", "frame_1633024800143", "frame_1633024800188"})
+    Write("stamps/" + std::string(name) + ".png", Image(0));
+  for (const int k : {120000, 120001, 120059, 120100, 120101}) Write("clock/" + Name(k), Image(0));
+  for (const int k : {1, 2, 50, 120, 400}) Write("chosen/" + Name(k), Image(0));
+  for (const char* folder : {"stamps", "clock", "chosen"}) EXPECT_THAT(Warnings(folder, "camera.yaml"), IsEmpty());
+}
+
+TEST_F(NearlyRightSets, ASpareCalibrationServesWhereTheImagesHaveNoneThatFits) {
+  WriteImages(1);
+  WriteCamera("spare.yaml");
+  const SequenceRequest request{.image_path = Path("images"), .spare_camera_path = Path("spare.yaml")};
+  EXPECT_TRUE(OpenSequence(request).ok());
+  WriteCamera("images/camera.yaml", 2 * kWidth, 2 * kHeight);
+  EXPECT_TRUE(OpenSequence(request).ok()) << "theirs does not fit";
+  Text("images/camera.yaml", "model: PINHOLE\nwidth: 64\nheight: 48\nparams: [70, 70, 31.5, 23.5]\n");
+  const auto own = OpenSequence(request);
+  ASSERT_TRUE(own.ok());
+  EXPECT_EQ((*own)->camera().params()[0], 70) << "the images' own comes first";
+  const auto none = OpenSequence({.image_path = Path("images/0"), .spare_camera_path = Path("nowhere.yaml")});
+  EXPECT_THAT(none.status().message(), HasSubstr("nothing at the image path"));
+}
+
+TEST_F(NearlyRightSets, EurocWithoutItsRightImagesIsOneCamera) {
+  for (const char* eye : {"cam0", "cam1"}) {
+    Text("mav0/" + std::string(eye) + "/data.csv", "#timestamp [ns],filename\n0,0.png\n50000000,1.png\n");
+    Text("mav0/" + std::string(eye) + "/sensor.yaml",
+         "T_BS:\n  data: [1, 0, 0, " + std::string(eye == std::string("cam0") ? "0" : "0.1") +
+             ", 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]\nresolution: [64, 48]\nintrinsics: [60, 60, 31.5, 23.5]\n"
+             "distortion_model: radial-tangential\ndistortion_coefficients: [0, 0, 0, 0]\n");
+  }
+  for (int k = 0; k < 2; ++k) Write("mav0/cam0/data/" + std::to_string(k) + ".png", Image(k));
+  EXPECT_THAT(Warnings(""), ElementsAre(HasSubstr("pairs are not read")));
+  Write("mav0/cam1/data/1.png", Image(1));
+  EXPECT_THAT(Warnings(""), ElementsAre(HasSubstr("1 images of cam0 or cam1")));
+  const auto sequence = OpenSequence({.image_path = Path("")});
+  EXPECT_EQ((*sequence)->size(), 1);
+  EXPECT_TRUE((*sequence)->BaselineMm().has_value());
+}
+
 TEST_F(NearlyRightSets, RightImagesWithoutABaselineAreSaid) {
   WriteNative(2);
   for (int k = 0; k < 2; ++k) {
@@ -120,7 +161,7 @@ TEST_F(NearlyRightSets, TumsTimesFilesAndUnitAreLookedAt) {
   Text("tum/rgb.txt", "1.0 rgb/000000.png\n1.1 rgb/000001.png\n1.2 rgb/000002.png\n");
   Text("tum/depth.txt", "1.0 depth/000000.png\n");
   Text("tum/groundtruth.txt", "5.0 0 0 0 0 0 0 1\n");
-  EXPECT_THAT(Warnings("tum"), ElementsAre(HasSubstr("1 images that"), HasSubstr("1 of 2 images have no depth image"),
+  EXPECT_THAT(Warnings("tum"), ElementsAre(HasSubstr("1 files that"), HasSubstr("1 of 2 images have no depth image"),
                                            HasSubstr("2 of 2 images have no pose")));
   const auto sequence = OpenSequence({.image_path = Path("tum")});
   const auto depth = (*sequence)->Depth(0);
@@ -131,6 +172,7 @@ TEST_F(NearlyRightSets, TumsTimesFilesAndUnitAreLookedAt) {
 TEST_F(NearlyRightSets, AFolderThatLacksAFileSaysWhich) {
   Write("hamlyn/image01/0.png", Image(0));
   Text("scared/endoscope_calibration.yaml", "M1: 0\n");
+  Write("scared/Left_Image.png", Image(0));
   Text("mis/StereoCalibration.ini", "");
   std::filesystem::create_directories(Path("tum/rgb"));
   Text("tum/depth.txt", "");
@@ -149,11 +191,11 @@ TEST_F(NearlyRightSets, AFolderThatLacksAFileSaysWhich) {
 TEST_F(NearlyRightSets, AFolderBesideADataSetSaysWhereItIs) {
   Write("SyntheticColon_I/Frames_S1/FrameBuffer_0000.png", Image(0));
   EXPECT_THAT(WhyNot("SyntheticColon_I"),
-              AllOf(HasSubstr("is not a data set"), EndsWith("Frames_S1 is one (simcol); give that")));
+              AllOf(HasSubstr("holds no image"), EndsWith("Frames_S1 is a data set (simcol); give that")));
   Write("sets/SyntheticColon_I/Frames_S1/FrameBuffer_0000.png", Image(0));
-  EXPECT_THAT(WhyNot("sets"), EndsWith("SyntheticColon_I/Frames_S1 is one (simcol); give that"));
+  EXPECT_THAT(WhyNot("sets"), EndsWith("SyntheticColon_I/Frames_S1 is a data set (simcol); give that"));
   Text("V1/mav0/cam0/data.csv", "#\n");
-  EXPECT_THAT(WhyNot("V1/mav0/cam0"), EndsWith("mav0 is one (euroc); give that"));
+  EXPECT_THAT(WhyNot("V1/mav0/cam0"), EndsWith("mav0 is a data set (euroc); give that"));
   std::filesystem::create_directories(Path("clips"));
   WriteVideo("clips/a.avi", 2);
   EXPECT_THAT(WhyNot("clips"), HasSubstr("but the video " + Path("clips/a.avi").string() + "; give that"));
@@ -219,9 +261,9 @@ TEST_F(NearlyRightSets, ARunsImagesKeepTheCalibrationItWasMadeWith) {
            "\"frames_per_second\": 0, \"mean_ms\": {}}}");
   const std::string run = Path("run").string();
   EXPECT_EQ(SequenceOfRun(run).image_path, Path("images"));
-  EXPECT_EQ(SequenceOfRun(run).camera_path, "lens.yaml");
-  EXPECT_EQ(SequenceOfRun(run, Path("run/../images")).camera_path, "lens.yaml");
-  EXPECT_EQ(SequenceOfRun(run, "elsewhere").camera_path, "");
+  EXPECT_EQ(SequenceOfRun(run).spare_camera_path, "lens.yaml");
+  EXPECT_EQ(SequenceOfRun(run, Path("run/../images")).spare_camera_path, "lens.yaml");
+  EXPECT_EQ(SequenceOfRun(run, "elsewhere").spare_camera_path, "");
   EXPECT_EQ(SequenceOfRun(run, "elsewhere", "other.yaml").camera_path, "other.yaml");
   EXPECT_EQ(SequenceOfRun(Path("no_run").string()).image_path, "");
 }

@@ -46,6 +46,29 @@ TEST(TrajectoryError, IsZeroForTheTruePathInAnotherFrameAndScale) {
   EXPECT_EQ(error->rpe_pairs, 29);
 }
 
+// True positions on an ellipse; the run's differ by `error_mm` across it, now up, now down.
+TrajectoryError OfEllipse(double half_length_mm, double half_width_mm, double error_mm) {
+  std::vector<PosePair> pairs;
+  for (int i = 0; i < 40; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / 40;
+    const double x = half_length_mm * std::cos(angle);
+    const double y = half_width_mm * std::sin(angle);
+    pairs.push_back({i, At(x, y, i % 2 == 0 ? error_mm : -error_mm), At(x, y, 0)});
+  }
+  const auto error = ComputeTrajectoryError(pairs, {});
+  EXPECT_TRUE(error.ok());
+  return error.ok() ? *error : TrajectoryError();
+}
+
+TEST(TrajectoryError, TheTurnAboutANearlyStraightPathIsUnknown) {
+  const TrajectoryError straight = OfEllipse(50, 0.5, 0.3);
+  EXPECT_NEAR(straight.true_path_extent_mm, 50 / std::numbers::sqrt2, 1e-6);
+  EXPECT_NEAR(straight.true_path_width_mm, 0.5 / std::numbers::sqrt2, 1e-6);
+  EXPECT_TRUE(straight.TurnIsUnknown());
+  EXPECT_FALSE(OfEllipse(50, 0.5, 0.01).TurnIsUnknown()) << "the path is known well enough";
+  EXPECT_FALSE(OfEllipse(10, 10, 6).TurnIsUnknown()) << "a circle is not straight, however wrong the run";
+}
+
 TEST(TrajectoryError, AlignsEverySubmapByItself) {
   auto pairs = MovedPath({0.4, RotationExp({1, -2, 0.5}), {7, 8, 9}});
   const auto other = MovedPath({1.7, RotationExp({-1, 0.2, 0.5}), {-70, 8, 0}});

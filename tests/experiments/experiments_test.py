@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The experiments' workflows on grids small enough for a test.
 
-usage: experiments_test.py dry_run|tables|choices|staying|first_maps|first_map_plots|tiny_grid|tiny_first_maps|slurm|
+usage: experiments_test.py dry_run|tables|choices|staying|soak|first_maps|first_map_plots|tiny_grid|tiny_first_maps|slurm|
                            two_views|two_views_program|two_views_workflow PLIANT
 """
 
@@ -26,6 +26,7 @@ sys.path.insert(0, str(ROOT / "experiments/simulated_colon"))
 sys.path.insert(0, str(ROOT / "experiments/regularisers"))
 sys.path.insert(0, str(ROOT / "experiments/initialisation"))
 sys.path.insert(0, str(ROOT / "experiments/long_sequences"))
+sys.path.insert(0, str(ROOT / "experiments/soak"))
 
 
 def need(*programs):
@@ -81,6 +82,9 @@ def dry_run(folder):
     text = snakemake("long_sequences", folder / "long", "--dry-run", "--quiet", "--config", "variants=all")
     counts = {line.split()[0]: line.split()[1] for line in text.splitlines() if len(line.split()) > 1}
     assert counts["simulate"] == "12" and counts["track"] == counts["evaluate"] == str(12 * 7), text
+    text = snakemake("soak", folder / "soak", "--dry-run", "--quiet", "--config", "alone_corners=300,500")
+    counts = {line.split()[0]: line.split()[1] for line in text.splitlines() if len(line.split()) > 1}
+    assert counts["simulate"] == "1" and counts["repeat"] == "2" and counts["track"] == "4", text
     text = snakemake("fisheye", folder / "fisheye", "--dry-run", "--quiet")
     counts = {line.split()[0]: line.split()[1] for line in text.splitlines() if len(line.split()) > 1}
     assert counts["simulate"] == counts["track"] == counts["evaluate"] == "12", text
@@ -93,6 +97,40 @@ def dry_run(folder):
                      "stand_ins=none")
     counts = {line.split()[0]: line.split()[1] for line in text.splitlines() if len(line.split()) > 1}
     assert counts["track"] == counts["evaluate"] == "3" and "simulate" not in counts, text
+
+
+def soak(folder):
+    """A way repeated, a program's memory, the frames that count, and the line between two runs; by hand."""
+    import soak as figures
+
+    (folder / "way/images").mkdir(parents=True)
+    (folder / "way/camera.yaml").write_text("model: PINHOLE\n", encoding="utf-8")
+    for i in range(3):
+        (folder / f"way/images/{i:06d}.png").write_text(str(i), encoding="utf-8")
+    figures.repeat(folder / "way", folder / "long", 3, 8)
+    images = sorted((folder / "long/images").iterdir())
+    assert [path.read_text(encoding="utf-8") for path in images] == list("01201201"), images
+    assert (folder / "long/camera.yaml").exists()
+
+    program = folder / "program"
+    program.write_text('#!/bin/sh\nmkdir -p "$5"\necho "$@" > "$5/arguments"\n', encoding="utf-8")
+    program.chmod(0o755)
+    figures.track(program, "sequence", folder / "run", ["--a", "b"])
+    assert (folder / "run/arguments").read_text(encoding="utf-8").endswith("--quiet --a b\n")
+    assert 0.5 < figures.json.loads((folder / "run/process.json").read_text(encoding="utf-8"))["peak_mb"] < 100
+
+    # 40 slow frames make the map, 100 are told at either end of 1000; the reader's time does not count.
+    figures.FIRST = 40
+    with open(folder / "run/frames.csv", "w", encoding="utf-8") as file:
+        file.write("frame,tracked,ms_prepare,ms_pose,ms_joint\n")
+        for i in range(1000):
+            file.write(f"{i},{500 if i < 140 else 0},77,{90 if i < 40 else 3 if i < 140 else 5},1\n")
+    (folder / "run/run.json").write_text('{"counts": {"frames_tracked": 1000}, "timings": {"frames_per_second": 25}}',
+                                         encoding="utf-8")
+    row = figures.row_of("long", folder / "run", 140)
+    assert (row["points"], row["ms"], row["ms_last"], row["median_ms"]) == (500, 4, 6, 4), row
+    runs = [{"points": points, "ms": ms} for points, ms in ((100, 1), (400, 10), (600, 20))]
+    assert figures.alone_at(450, runs) == 12.5 and figures.alone_at(700, runs) == 25, "on the line through the nearest"
 
 
 def staying(folder):

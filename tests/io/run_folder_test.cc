@@ -31,7 +31,7 @@ TEST(RunFolder, ComesBackAsItWasReported) {
   EXPECT_EQ(run->summary->status, RunStatus::kLost);
   EXPECT_EQ(run->summary->note, "too few points");
   EXPECT_EQ(run->summary->description.command_line, (std::vector<std::string>{"pliant", "track"}));
-  EXPECT_EQ(run->summary->description.camera, "stereo.yaml");
+  EXPECT_EQ(run->summary->description.camera, (std::filesystem::current_path() / "stereo.yaml").string());
   EXPECT_EQ(run->summary->description.seed, 7u);
   EXPECT_EQ(run->summary->description.oracles, (std::vector<std::string>{"tracks"}));
   EXPECT_EQ(run->summary->frames_read, 5);

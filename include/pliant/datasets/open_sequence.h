@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// One door to every source of images: a native sequence, a folder of images, a video. Which one it is follows from
-// what lies at `image_path`:
+// One door to every source of images. Which one it is follows from what lies at `image_path`:
 //   a folder with a subfolder images/   native sequence: camera.yaml, images/, and where they exist masks/, depth/,
-//                                       groundtruth.txt, times.txt (docs/formats.md)
+//                                       right/, groundtruth.txt, times.txt (docs/formats.md), or a folder of COLMAP
+//   a folder of a known data set        its images, depth, poses and pairs (docs/datasets.md)
 //   any other folder                    its png, jpg, jpeg, bmp, tif and tiff files in natural order (2 before 10)
 //   a file                              a video, decoded by FFmpeg, forward only
 // Images become 8-bit with one or three channels: 16-bit ones are scaled by 1/257 (the same for every image, so that
@@ -22,12 +22,15 @@
 namespace pliant {
 
 struct SequenceRequest {
-  std::filesystem::path image_path = {};   // folder of images, video file or native sequence
-  std::filesystem::path camera_path = {};  // calibration; empty: camera.yaml in image_path, for a video beside the file
-  std::filesystem::path mask_path = {};    // folder of masks, or one image for all frames; empty: the sequence's masks/
-  int start = 0;                           // first frame, by its number in the source
-  int end = -1;                            // one past the last frame; -1: to the end
-  int stride = 1;                          // every stride-th frame from `start` on
+  std::filesystem::path image_path = {};  // folder of images, video file or native sequence
+  // Calibration; empty: camera.yaml in image_path, for a video beside the file, else the data set's own.
+  std::filesystem::path camera_path = {};
+  // One that is tried where none is named, and that of the images is missing or does not fit.
+  std::filesystem::path spare_camera_path = {};
+  std::filesystem::path mask_path = {};  // folder of masks, or one image for all frames; empty: the sequence's masks/
+  int start = 0;                         // first frame, by its number in the source
+  int end = -1;                          // one past the last frame; -1: to the end
+  int stride = 1;                        // every stride-th frame from `start` on
 };
 
 // Opens the source and checks all that can be seen without decoding every frame: the calibration, the first image's
@@ -35,7 +38,7 @@ struct SequenceRequest {
 // frame n is NNNNNN); where no stem agrees, by their order. In a mask 0 is ignored; in a JPEG mask, below 128.
 // Errors, each naming the file: kNotFound (nothing there, no images, no calibration, no mask for a frame), kUnreadable
 // (cannot be listed, opened or decoded; a garbled line, with its number), kMismatch (sizes or counts that disagree),
-// kInvalidArgument (start, end, stride).
+// kInvalidArgument (start, end, stride, an unknown camera model).
 // Next() of the result fails for the frame that cannot be read and goes on after it; a video ends there.
 Result<std::unique_ptr<Sequence>> OpenSequence(const SequenceRequest& request);
 

@@ -80,10 +80,13 @@ struct TrajectoryError {
   double rpe_rotation_rmse_deg = 0;
   double true_path_length_mm = 0;  // over the frames compared
   double path_length_mm = 0;       // of the aligned estimate
-  // How far the true path, of the submap with the most poses, leaves a straight line: standard deviation along its
-  // second principal axis. Where it is not well above the ATE the turn about the line, and so the rotation error, is
-  // not known.
+  // Standard deviation of the true positions along and across the main direction of their path (first and second
+  // principal axis), of the submap with the most poses.
+  double true_path_extent_mm = 0;
   double true_path_width_mm = 0;
+  // The path is nearly a line, and no wider than a few times the ATE: the turn about it, and so the rotation error, is
+  // hardly known.
+  bool TurnIsUnknown() const;
   Sim3 truth_from_run;         // the alignment of the submap with the most poses
   std::vector<int> frame_idx;  // the frames compared
   std::vector<double> ate_mm;  // of each of them

@@ -39,7 +39,7 @@ struct RunDescription {
   std::vector<std::string> command_line;
   std::uint64_t seed = 0;
   std::string input;                      // the images' path, as given
-  std::string camera = {};                // the calibration's path, as given; empty: the one that belongs to the images
+  std::string camera = {};                // the calibration's path, absolute; empty: the one that belongs to the images
   std::vector<std::string> oracles = {};  // parts of the method that were replaced by the truth; empty in an honest run
 };
 
