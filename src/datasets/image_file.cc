@@ -14,6 +14,7 @@
 
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+#include <zlib.h>
 
 namespace pliant {
 namespace {
@@ -41,21 +42,6 @@ bool StartsWith(const Bytes& bytes, std::string_view head) {
                     [](char a, unsigned char b) { return static_cast<unsigned char>(a) == b; });
 }
 
-// The checksum of PNG: CRC-32, polynomial 0xEDB88320 (the lowest bit first), as in the format's annex D.
-std::uint32_t Crc32(std::span<const unsigned char> bytes) {
-  static const std::array<std::uint32_t, 256> kTable = [] {
-    std::array<std::uint32_t, 256> table = {};
-    for (std::uint32_t i = 0; i < table.size(); ++i) {
-      table[i] = i;
-      for (int bit = 0; bit < 8; ++bit) table[i] = (table[i] >> 1) ^ ((table[i] & 1) != 0 ? 0xEDB88320U : 0U);
-    }
-    return table;
-  }();
-  std::uint32_t crc = 0xFFFFFFFFU;
-  for (const unsigned char byte : bytes) crc = kTable[(crc ^ byte) & 0xFF] ^ (crc >> 8);
-  return ~crc;
-}
-
 enum class Wholeness { kWhole, kTruncated, kDamaged };
 
 // Every chunk is length (4, big-endian), type (4), data, checksum of type and data (4); the last one is IEND.
@@ -69,7 +55,7 @@ Wholeness PngWholeness(const Bytes& bytes) {
     const std::size_t length = number(at);
     if (length > bytes.size() - at - 12) return Wholeness::kTruncated;
     const std::span<const unsigned char> checked(&bytes[at + 4], 4 + length);
-    if (Crc32(checked) != number(at + 8 + length)) return Wholeness::kDamaged;
+    if (crc32_z(0, checked.data(), checked.size()) != number(at + 8 + length)) return Wholeness::kDamaged;
     constexpr std::string_view kEnd = "IEND";
     if (std::equal(kEnd.begin(), kEnd.end(), checked.begin())) return Wholeness::kWhole;
     at += 12 + length;

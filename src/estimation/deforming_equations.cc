@@ -13,11 +13,7 @@
 namespace pliant {
 namespace {
 
-// Keeps what nothing speaks of from making the equations singular; relative to the diagonal.
-constexpr double kLeastRidge = 1e-9;
-constexpr double kMostRidge = 1.0;
-// Parts of the points that are summed by themselves, on whatever threads there are.
-constexpr std::size_t kParts = 4;
+constexpr double kPointRidge = 1e-9;  // relative to the diagonal of a point's own equations
 
 }  // namespace
 
@@ -25,13 +21,12 @@ Eigen::Index DeformingEquations::NodePlace(Eigen::Index node) const {
   return (terms_->num_views() - 1) * terms_->view_size() + node * terms_->modes_size();
 }
 
-DeformingEquations::DeformingEquations(const DeformingTerms& terms, FreeParts free, std::vector<int> gauge, int threads)
+DeformingEquations::DeformingEquations(const DeformingTerms& terms, std::vector<int> gauge, int threads)
     : terms_(&terms),
-      free_(free),
       gauge_(std::move(gauge)),
       threads_(threads),
       points_(terms.num_points()),
-      parts_(kParts) {}
+      parts_(kEquationParts) {}
 
 bool DeformingEquations::Linearise(const DeformingState& state) {
   curvature_.setZero(Size(), Size());
@@ -39,7 +34,7 @@ bool DeformingEquations::Linearise(const DeformingState& state) {
   settled_ = 0;
   AddPriors(state);
   ParallelFor(
-      static_cast<int>(kParts), threads_, [&](int part) { SumPart(static_cast<std::size_t>(part), state); }, 1);
+      static_cast<int>(kEquationParts), threads_, [&](int part) { SumPart(static_cast<std::size_t>(part), state); }, 1);
   for (const Sums& part : parts_) {
     curvature_ += part.curvature;
     slope_ += part.slope;
@@ -59,7 +54,6 @@ void DeformingEquations::AddPriors(const DeformingState& state) {
     for (Eigen::Index b = 0; b <= a; ++b)
       curvature_.block(place, b * terms_->view_size() + 6, rank, rank).diagonal().array() += courses(a, b);
   }
-  if (free_ != FreeParts::kAll) return;
   const Eigen::MatrixXd& nodes = terms_->node_form();
   const Eigen::MatrixXd node_pull = state.node_modes * nodes;
   const Eigen::Index size = terms_->modes_size();
@@ -76,12 +70,10 @@ void DeformingEquations::SumPart(std::size_t part, const DeformingState& state) 
   sums.slope.setZero(Size());
   sums.settled = 0;
   const std::size_t count = terms_->num_points();
-  std::vector<SeenEquations> forgotten;
-  for (std::size_t i = part * count / kParts; i < (part + 1) * count / kParts; ++i) {
-    std::vector<SeenEquations>& seen = free_ == FreeParts::kAll ? points_[i].seen : forgotten;
-    const PointEquations own = terms_->Linearised(i, state, &seen);
-    AddViews(i, seen, &sums);
-    if (free_ == FreeParts::kAll) Eliminate(i, own, &sums);
+  for (std::size_t i = part * count / kEquationParts; i < (part + 1) * count / kEquationParts; ++i) {
+    const PointEquations own = terms_->Linearised(i, state, &points_[i].seen);
+    AddViews(i, points_[i].seen, &sums);
+    Eliminate(i, own, &sums);
   }
 }
 
@@ -102,7 +94,7 @@ void DeformingEquations::Eliminate(std::size_t point, const PointEquations& own,
   const Eigen::Index point_size = terms_->point_size();
   Point& of = points_[point];
   PointMatrix damped = own.own;
-  damped.diagonal() *= 1.0 + kLeastRidge;
+  damped.diagonal() *= 1.0 + kPointRidge;
   const Eigen::LLT<PointMatrix> factors(damped);
   of.gradient = own.gradient;
   of.by_offset = own.by_offset;
@@ -164,12 +156,12 @@ void DeformingEquations::Eliminate(std::size_t point, const PointEquations& own,
 
 bool DeformingEquations::Factorise() {
   const Eigen::VectorXd diagonal = curvature_.diagonal();
-  for (double ridge = kLeastRidge; ridge < kMostRidge; ridge *= 10.0) {
-    curvature_.diagonal() = (1.0 + ridge) * diagonal;
+  const bool factorised = WithRidge([&](double factor) {
+    curvature_.diagonal() = factor * diagonal;
     factors_.compute(curvature_);
-    if (factors_.info() == Eigen::Success) break;
-  }
-  if (factors_.info() != Eigen::Success) return false;
+    return factors_.info() == Eigen::Success;
+  });
+  if (!factorised) return false;
   scale_.setZero(Size());
   for (const int i : gauge_)
     scale_ += ByPoint(static_cast<std::size_t>(i), points_[static_cast<std::size_t>(i)].inverse.col(2));
@@ -217,8 +209,6 @@ Eigen::VectorXd DeformingEquations::CurvatureTimes(const Eigen::VectorXd& x) con
   return factors_.matrixL() * Eigen::VectorXd(factors_.matrixU() * x);
 }
 
-Eigen::VectorXd DeformingEquations::CurvatureDiagonal() const { return curvature_.diagonal(); }
-
 Eigen::VectorXd DeformingEquations::NewtonStep() const {
   const Eigen::VectorXd step = factors_.solve(-slope_);
   if (gauge_.empty()) return step;
@@ -261,15 +251,7 @@ std::vector<double> DeformingEquations::Variances() const {
 
 DeformingState DeformingEquations::Moved(const DeformingState& state, const Eigen::VectorXd& step) const {
   DeformingState moved = state;
-  const Eigen::Index rank = terms_->rank();
-  for (std::size_t v = 1; v < moved.poses.size(); ++v) {
-    const Eigen::Index place = ViewPlace(static_cast<int>(v));
-    ViewPose& pose = moved.poses[v];
-    pose.rotation = RotationExp(step.segment<3>(place)).toRotationMatrix() * pose.rotation;
-    pose.translation += step.segment<3>(place + 3);
-    if (rank > 0) moved.courses.col(static_cast<Eigen::Index>(v)) += step.segment(place + 6, rank);
-  }
-  if (free_ != FreeParts::kAll) return moved;
+  MoveViews(step, &moved);
   for (Eigen::Index n = 0; n < moved.node_modes.cols(); ++n)
     moved.node_modes.col(n) += step.segment(NodePlace(n), terms_->modes_size());
   moved.light_offset += step[OffsetPlace()];

@@ -10,46 +10,34 @@
 
 #include <Eigen/Cholesky>
 
-#include "estimation/deforming_terms.h"
+#include "estimation/normal_equations.h"
 
 namespace pliant {
 
-enum class FreeParts {
-  kAll,    // but the first view
-  kViews,  // and their courses
-};
-
-class DeformingEquations {
+class DeformingEquations final : public NormalEquations {
  public:
-  // `gauge`: points; none for FreeParts::kViews. `threads` never changes the result.
-  DeformingEquations(const DeformingTerms& terms, FreeParts free, std::vector<int> gauge, int threads = 1);
+  // `gauge`: the points that hold the scale. `threads` never changes the result.
+  DeformingEquations(const DeformingTerms& terms, std::vector<int> gauge, int threads = 1);
 
-  // Makes them those of `state`, in the memory of those before; false where they have no solution. All below is theirs.
-  bool Linearise(const DeformingState& state);
+  bool Linearise(const DeformingState& state) override;
+  const Eigen::VectorXd& slope() const override { return slope_; }
+  Eigen::VectorXd CurvatureTimes(const Eigen::VectorXd& x) const override;
+  Eigen::VectorXd CurvatureDiagonal() const override { return curvature_.diagonal(); }
+  double settled() const override { return settled_; }
+  Eigen::VectorXd NewtonStep() const override;
+  Eigen::VectorXd WithoutScale(const Eigen::VectorXd& step, const Eigen::VectorXd& metric) const override;
+  DeformingState Moved(const DeformingState& state, const Eigen::VectorXd& step) const override;
 
-  // Of the cost as a function of what is left, the points following: slope, and curvature L L'.
-  const Eigen::VectorXd& slope() const { return slope_; }
-  Eigen::VectorXd CurvatureTimes(const Eigen::VectorXd& x) const;
-  Eigen::VectorXd CurvatureDiagonal() const;
-  // By how much the linear model says that the cost falls when the points alone follow.
-  double settled() const { return settled_; }
-
-  Eigen::VectorXd NewtonStep() const;
-  // `step` without its part that changes the scale, in the metric of the diagonal `metric`.
-  Eigen::VectorXd WithoutScale(const Eigen::VectorXd& step, const Eigen::VectorXd& metric) const;
   // A point's step that goes with one of the rest.
   PointVector PointStep(std::size_t point, const Eigen::VectorXd& step) const;
   // Of the log distances; infinite for a point that nothing determines.
   std::vector<double> Variances() const;
 
-  // The state after a step of what is left; the points stay.
-  DeformingState Moved(const DeformingState& state, const Eigen::VectorXd& step) const;
-
  private:
   Eigen::Index ViewPlace(int view_idx) const { return (view_idx - 1) * terms_->view_size(); }  // negative: not free
   Eigen::Index NodePlace(Eigen::Index node) const;
   Eigen::Index OffsetPlace() const { return NodePlace(terms_->num_nodes()); }
-  Eigen::Index Size() const { return free_ == FreeParts::kAll ? OffsetPlace() + 1 : NodePlace(0); }
+  Eigen::Index Size() const { return OffsetPlace() + 1; }
 
   // What some of the points add.
   struct Sums {
@@ -75,7 +63,6 @@ class DeformingEquations {
   };
 
   const DeformingTerms* terms_;
-  FreeParts free_;
   std::vector<int> gauge_;
   int threads_;
   std::vector<Point> points_;

@@ -11,6 +11,7 @@
 #include <Eigen/Cholesky>
 
 #include "estimation/trust_plane.h"
+#include "estimation/view_equations.h"
 #include "pliant/base/parallel.h"
 #include "pliant/base/statistics.h"
 
@@ -133,10 +134,9 @@ void DeformingProblem::Settle(std::size_t point, const DeformingState& before, D
 }
 
 // The points follow a step of the others: where the linear equations put them, then each by itself.
-DeformingState DeformingProblem::Moved(const DeformingEquations& equations, const Eigen::VectorXd& step, FreeParts free,
+DeformingState DeformingProblem::Moved(const DeformingEquations& equations, const Eigen::VectorXd& step,
                                        int threads) const {
   DeformingState moved = equations.Moved(state_, step);
-  if (free != FreeParts::kAll) return moved;
   ParallelFor(static_cast<int>(terms_.num_points()), threads, [&](int i) {
     const auto point = static_cast<std::size_t>(i);
     moved.points.col(i) += Limited(equations.PointStep(point, step));
@@ -146,7 +146,19 @@ DeformingState DeformingProblem::Moved(const DeformingEquations& equations, cons
   return moved;
 }
 
-Result<double> DeformingProblem::Solve(int max_iterations, FreeParts free, int threads) {
+Result<double> DeformingProblem::Solve(int max_iterations, int threads) {
+  DeformingEquations equations(terms_, gauge_, threads);
+  return Descend(max_iterations, &equations,
+                 [&](const Eigen::VectorXd& step) { return Moved(equations, step, threads); });
+}
+
+Result<double> DeformingProblem::SolveViews(int max_iterations, int threads) {
+  ViewEquations equations(terms_, threads);
+  return Descend(max_iterations, &equations,
+                 [&](const Eigen::VectorXd& step) { return equations.Moved(state_, step); });
+}
+
+Result<double> DeformingProblem::Descend(int max_iterations, NormalEquations* equations, const Move& moved) {
   constexpr double kFirstRadius = 1e4;
   constexpr double kLeastRadius = 1e-12;
   constexpr double kLeastGain = 0.05;  // by what the linear model predicts: less is no step
@@ -154,16 +166,15 @@ Result<double> DeformingProblem::Solve(int max_iterations, FreeParts free, int t
   constexpr double kLargeGain = 0.75;  // a larger one
   auto cost = terms_.Cost(state_);
   if (!cost) return NoStart();
-  DeformingEquations equations(terms_, free, free == FreeParts::kAll ? gauge_ : std::vector<int>(), threads);
   double radius = kFirstRadius;
   bool done = false;
   for (int iteration = 0; iteration < max_iterations && !done; ++iteration) {
-    if (!equations.Linearise(state_)) break;
-    const TrustPlane plane(equations);
+    if (!equations->Linearise(state_)) break;
+    const TrustPlane plane(*equations);
     for (bool accepted = false; !accepted && !done;) {
       const TrustPlane::Step best = plane.Best(radius);
-      const double predicted = equations.settled() - best.change;
-      const DeformingState candidate = Moved(equations, best.step, free, threads);
+      const double predicted = equations->settled() - best.change;
+      const DeformingState candidate = moved(best.step);
       const auto candidate_cost = terms_.Cost(candidate);
       const double gain = candidate_cost && predicted > 0.0 ? (*cost - *candidate_cost) / predicted : -1.0;
       accepted = gain > kLeastGain;
@@ -204,7 +215,7 @@ Result<double> DeformingProblem::SettlePoints(int threads) {
 }
 
 std::vector<double> DeformingProblem::LogDepthSigmas(int threads) const {
-  DeformingEquations equations(terms_, FreeParts::kAll, gauge_, threads);
+  DeformingEquations equations(terms_, gauge_, threads);
   if (!equations.Linearise(state_))
     return std::vector<double>(terms_.num_points(), std::numeric_limits<double>::infinity());
   std::vector<double> sigmas = equations.Variances();

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -31,7 +32,9 @@ class DeformingProblem {
 
   // The cost at the solution, what could not be measured included; kDegenerate when there is no finite start.
   // `threads` never changes the result.
-  Result<double> Solve(int max_iterations, FreeParts free = FreeParts::kAll, int threads = 1);
+  Result<double> Solve(int max_iterations, int threads = 1);
+  // As Solve, for the views but the first and their courses; the points stay.
+  Result<double> SolveViews(int max_iterations, int threads = 1);
   // As Solve, for the points and their modes alone, each by itself; the rest stays and holds the scale.
   Result<double> SettlePoints(int threads = 1);
 
@@ -47,8 +50,9 @@ class DeformingProblem {
   void HoldScale(DeformingState* state) const;
   std::optional<double> Settled(std::size_t point, double cost, DeformingState* state) const;
   void Settle(std::size_t point, const DeformingState& before, DeformingState* state) const;
-  DeformingState Moved(const DeformingEquations& equations, const Eigen::VectorXd& step, FreeParts free,
-                       int threads) const;
+  DeformingState Moved(const DeformingEquations& equations, const Eigen::VectorXd& step, int threads) const;
+  using Move = std::function<DeformingState(const Eigen::VectorXd& step)>;
+  Result<double> Descend(int max_iterations, NormalEquations* equations, const Move& moved);
 
   DeformingTerms terms_;
   DeformingState state_;

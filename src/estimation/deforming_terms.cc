@@ -30,6 +30,18 @@ double LightWeight(double error) { return LossWeight(std::pow(error / kLightLoss
 
 }  // namespace
 
+void MoveViews(const Eigen::VectorXd& step, DeformingState* state) {
+  const Eigen::Index rank = state->courses.rows();
+  Eigen::Index place = 0;
+  for (std::size_t v = 1; v < state->poses.size(); ++v) {
+    ViewPose& pose = state->poses[v];
+    pose.rotation = RotationExp(step.segment<3>(place)).toRotationMatrix() * pose.rotation;
+    pose.translation += step.segment<3>(place + 3);
+    if (rank > 0) state->courses.col(static_cast<Eigen::Index>(v)) += step.segment(place + 6, rank);
+    place += 6 + rank;
+  }
+}
+
 DeformingTerms::DeformingTerms(const DeformingWindow& start, const SurfaceNodes& nodes, double focal_px,
                                const DeformingWindowOptions& options)
     : start_(start),
@@ -194,6 +206,41 @@ std::optional<double> DeformingTerms::Cost(const DeformingState& state) const {
   return cost;
 }
 
+DeformingTerms::Sight DeformingTerms::LinearisedSight(const Seen& seen, std::size_t point, const Eigen::Vector3d& rest,
+                                                      const DeformingState& state) const {
+  const ViewPose& pose = state.poses[static_cast<std::size_t>(seen.view_idx)];
+  Sight sight;
+  sight.turned = pose.rotation * Position(point, seen.view_idx, rest, state);
+  const Eigen::Vector3d x = sight.turned + pose.translation;
+  const double distance = x.norm();
+  sight.error = scale_ / distance * (seen.basis * x);
+  const double root = std::sqrt(LossWeight(sight.error.squaredNorm()));
+  sight.by_x = root / distance * (scale_ * seen.basis - sight.error * (x / distance).transpose());
+  sight.by_position = sight.by_x * pose.rotation;
+  sight.error *= root;
+  return sight;
+}
+
+ViewDerivative DeformingTerms::ByView(const Sight& sight, std::size_t point, const DeformingState& state) const {
+  const auto modes = state.points.col(static_cast<Eigen::Index>(point)).tail(modes_size());
+  ViewDerivative by_view(2, view_size());
+  by_view.leftCols<3>().noalias() = sight.by_x * -Skew(sight.turned);
+  by_view.middleCols<3>(3) = sight.by_x;
+  for (int r = 0; r < rank_; ++r) by_view.col(6 + r).noalias() = sight.by_position * modes.segment<3>(3 * r);
+  return by_view;
+}
+
+void DeformingTerms::LineariseViews(std::size_t point, const DeformingState& state,
+                                    std::vector<SeenEquations>* seen) const {
+  const Eigen::Vector3d rest = charts_[point].Point(state.points.col(static_cast<Eigen::Index>(point)).head<3>());
+  seen->resize(seen_[point].size());
+  for (std::size_t k = 0; k < seen->size(); ++k) {
+    const Sight sight = LinearisedSight(seen_[point][k], point, rest, state);
+    (*seen)[k].error = sight.error;
+    (*seen)[k].by_view = ByView(sight, point, state);
+  }
+}
+
 PointEquations DeformingTerms::Linearised(std::size_t point, const DeformingState& state,
                                           std::vector<SeenEquations>* seen_equations) const {
   const auto column = state.points.col(static_cast<Eigen::Index>(point));
@@ -203,32 +250,30 @@ PointEquations DeformingTerms::Linearised(std::size_t point, const DeformingStat
   equations.own.setZero(point_size(), point_size());
   equations.gradient.setZero(point_size());
   if (seen_equations != nullptr) seen_equations->resize(seen_[point].size());
-  SeenEquations scratch;
+  // Rest position and modes move the point alike, each by its share: the rest position wholly, a mode by its course.
+  Eigen::Matrix<double, 1 + kMaxWindowRank, 1> shares;
+  shares[0] = 1.0;
   for (std::size_t k = 0; k < seen_[point].size(); ++k) {
-    const Seen& seen = seen_[point][k];
-    SeenEquations& of_seen = seen_equations != nullptr ? (*seen_equations)[k] : scratch;
-    const ViewPose& pose = state.poses[static_cast<std::size_t>(seen.view_idx)];
-    const Eigen::Vector3d turned = pose.rotation * Position(point, seen.view_idx, rest, state);
-    const Eigen::Vector3d x = turned + pose.translation;
-    const double distance = x.norm();
-    of_seen.error = scale_ / distance * (seen.basis * x);
-    const double root = std::sqrt(LossWeight(of_seen.error.squaredNorm()));
-    const Eigen::Matrix<double, 2, 3> by_x =
-        root / distance * (scale_ * seen.basis - of_seen.error * (x / distance).transpose());
-    of_seen.error *= root;
-    const Eigen::Matrix<double, 2, 3> by_position = by_x * pose.rotation;
-    of_seen.by_point.resize(2, point_size());
-    of_seen.by_point.leftCols<3>().noalias() = by_position * derivative;
-    for (int r = 0; r < rank_; ++r)
-      of_seen.by_point.middleCols<3>(3 + 3 * r) = state.courses(r, seen.view_idx) * by_position;
-    equations.own.noalias() += of_seen.by_point.transpose().lazyProduct(of_seen.by_point);
-    equations.gradient.noalias() += of_seen.by_point.transpose().lazyProduct(of_seen.error);
+    const Sight sight = LinearisedSight(seen_[point][k], point, rest, state);
+    for (int r = 0; r < rank_; ++r) shares[1 + r] = state.courses(r, seen_[point][k].view_idx);
+    const Eigen::Matrix3d by_positions = sight.by_position.transpose() * sight.by_position;
+    const Eigen::Vector3d gradient = sight.by_position.transpose() * sight.error;
+    for (int a = 0; a <= rank_; ++a) {
+      equations.gradient.segment<3>(3 * a) += shares[a] * gradient;
+      for (int b = 0; b <= a; ++b) equations.own.block<3, 3>(3 * a, 3 * b) += shares[a] * shares[b] * by_positions;
+    }
     if (seen_equations == nullptr) continue;
-    of_seen.by_view.resize(2, view_size());
-    of_seen.by_view.leftCols<3>().noalias() = by_x * -Skew(turned);
-    of_seen.by_view.middleCols<3>(3) = by_x;
-    for (int r = 0; r < rank_; ++r) of_seen.by_view.col(6 + r).noalias() = by_position * column.segment<3>(3 + 3 * r);
+    SeenEquations& of_seen = (*seen_equations)[k];
+    of_seen.error = sight.error;
+    of_seen.by_view = ByView(sight, point, state);
+    of_seen.by_point.resize(2, point_size());
+    of_seen.by_point.leftCols<3>().noalias() = sight.by_position * derivative;
+    for (int r = 0; r < rank_; ++r) of_seen.by_point.middleCols<3>(3 + 3 * r) = shares[1 + r] * sight.by_position;
   }
+  equations.own.leftCols<3>() = (equations.own.leftCols<3>() * derivative).eval();
+  equations.own.topLeftCorner<3, 3>() = (derivative.transpose() * equations.own.topLeftCorner<3, 3>()).eval();
+  equations.gradient.head<3>() = (derivative.transpose() * equations.gradient.head<3>()).eval();
+  equations.own.triangularView<Eigen::StrictlyUpper>() = equations.own.transpose();
   const Light& light = lights_[point];
   const double error = (column[2] - light.log_distance - state.light_offset) / light.sigma;
   const double weight = (light.lit ? LightWeight(error) : 1.0) / light.sigma;

@@ -21,6 +21,7 @@ constexpr int kMaxViewSize = 6 + kMaxWindowRank;
 template <int kRows, int kMaxRows, int kMaxCols>
 using SmallMatrix = Eigen::Matrix<double, kRows, Eigen::Dynamic, Eigen::ColMajor, kMaxRows, kMaxCols>;
 using PointVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxPointSize, 1>;
+using ViewDerivative = SmallMatrix<2, 2, kMaxViewSize>;
 using PointMatrix = SmallMatrix<Eigen::Dynamic, kMaxPointSize, kMaxPointSize>;
 
 // cam_from_world of a view. Its rotation is a matrix because every observation is turned by it.
@@ -38,12 +39,19 @@ struct DeformingState {
   double light_offset = 0;
 };
 
+// Moves poses and courses but the first view's by the beginning of `step`: a turn of the camera, translation and
+// courses of each.
+void MoveViews(const Eigen::VectorXd& step, DeformingState* state);
+
+// Parts of the points whose equations are summed by themselves, on whatever threads there are.
+constexpr std::size_t kEquationParts = 4;
+
 // A point's observation in units of its standard deviation, its loss taken in: error and derivatives by the point and
 // by the view (a turn of the camera, translation, courses).
 struct SeenEquations {
   Eigen::Vector2d error;
   SmallMatrix<2, 2, kMaxPointSize> by_point;
-  SmallMatrix<2, 2, kMaxViewSize> by_view;
+  ViewDerivative by_view;
 };
 
 // A point's share of the normal equations but for the views.
@@ -91,6 +99,8 @@ class DeformingTerms {
 
   // `seen` may be null; else it becomes one a measured observation.
   PointEquations Linearised(std::size_t point, const DeformingState& state, std::vector<SeenEquations>* seen) const;
+  // Error and derivative by the view alone of each.
+  void LineariseViews(std::size_t point, const DeformingState& state, std::vector<SeenEquations>* seen) const;
 
  private:
   struct Light {
@@ -99,12 +109,23 @@ class DeformingTerms {
     bool lit = false;
   };
 
+  // An observation's error in units of its standard deviation, and its derivatives; the loss is taken in.
+  struct Sight {
+    Eigen::Vector3d turned;  // the point, turned as the camera
+    Eigen::Vector2d error;
+    Eigen::Matrix<double, 2, 3> by_x;         // in the camera
+    Eigen::Matrix<double, 2, 3> by_position;  // in the world
+  };
+
   void TakeObservations();
   void PrepareNodes(const SurfaceNodes& nodes);
   void PrepareCourses();
   void PrepareLight();
   Eigen::Vector3d Position(std::size_t point, int view_idx, const Eigen::Vector3d& rest,
                            const DeformingState& state) const;
+  Sight LinearisedSight(const Seen& seen, std::size_t point, const Eigen::Vector3d& rest,
+                        const DeformingState& state) const;
+  ViewDerivative ByView(const Sight& sight, std::size_t point, const DeformingState& state) const;
   PointVector NodeDifference(std::size_t point, const DeformingState& state) const;
 
   DeformingWindow start_;

@@ -87,8 +87,7 @@ Result<DeformingWindow> LocateDeformingViews(const DeformingWindow& views, doubl
   SurfaceNodes none = NodesAt(views.points_in_world, {0});
   none.modes.setZero(3 * views.courses.rows(), 1);
   DeformingProblem problem(views, none, focal_px, options);
-  if (const auto cost = problem.Solve(options.max_iterations, FreeParts::kViews, threads); !cost.ok())
-    return cost.status();
+  if (const auto cost = problem.SolveViews(options.max_iterations, threads); !cost.ok()) return cost.status();
   return problem.Window();
 }
 

@@ -189,7 +189,7 @@ DeformingSolution Judged(DeformingSolution solution, double focal_px, const Defo
 Result<DeformingSolution> SolvedRigid(const DeformingWindow& start, double focal_px,
                                       const DeformingWindowOptions& options, int threads) {
   DeformingProblem problem(start, {}, focal_px, options);
-  const auto cost = problem.Solve(kRigidFactor * options.max_iterations, FreeParts::kAll, threads);
+  const auto cost = problem.Solve(kRigidFactor * options.max_iterations, threads);
   if (!cost.ok()) return cost.status();
   return Taken(problem, *cost, {});
 }
@@ -298,7 +298,7 @@ Result<DeformingSolution> SolveDeformingWindow(const DeformingWindow& start, dou
   }
 
   DeformingProblem problem(best->window, best->nodes, focal_px, options);
-  const auto cost = problem.Solve(std::max(1, options.max_iterations / kLastDivisor), FreeParts::kAll, threads);
+  const auto cost = problem.Solve(std::max(1, options.max_iterations / kLastDivisor), threads);
   if (!cost.ok()) return cost.status();
   DeformingSolution solution = Judged(Taken(problem, *cost, best->nodes), focal_px, options, threads);
   solution.sample_sigmas = std::move(sigmas);

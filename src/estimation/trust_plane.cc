@@ -9,7 +9,7 @@
 
 namespace pliant {
 
-TrustPlane::TrustPlane(const DeformingEquations& equations) {
+TrustPlane::TrustPlane(const NormalEquations& equations) {
   constexpr double kLeastMetric = 1e-6;
   constexpr double kParallel = 1e-12;
   const Eigen::VectorXd metric = equations.CurvatureDiagonal().cwiseMax(kLeastMetric);

@@ -7,13 +7,13 @@
 
 #include <Eigen/Core>
 
-#include "estimation/deforming_equations.h"
+#include "estimation/normal_equations.h"
 
 namespace pliant {
 
 class TrustPlane {
  public:
-  explicit TrustPlane(const DeformingEquations& equations);
+  explicit TrustPlane(const NormalEquations& equations);
 
   struct Step {
     Eigen::VectorXd step;

@@ -16,6 +16,7 @@
 #include "estimation/deforming_terms.h"
 #include "estimation/light_depth.h"
 #include "estimation/mode_basis.h"
+#include "estimation/view_equations.h"
 #include "estimation/window_samples.h"
 #include "pliant/base/random.h"
 #include "pliant/base/statistics.h"
@@ -381,18 +382,19 @@ TEST(DeformingEquations, SlopeMatchesDifferencesWhereThePointsAreSettled) {
         column = kept;
       }
     }
-  for (const FreeParts free : {FreeParts::kAll, FreeParts::kViews}) {
-    DeformingEquations equations(terms, free, {});
-    ASSERT_TRUE(equations.Linearise(terms.Start()));  // of which nothing may be left
-    ASSERT_TRUE(equations.Linearise(state));
+  DeformingEquations all(terms, {});
+  ViewEquations views(terms);
+  for (NormalEquations* equations : std::initializer_list<NormalEquations*>{&all, &views}) {
+    ASSERT_TRUE(equations->Linearise(terms.Start()));  // of which nothing may be left
+    ASSERT_TRUE(equations->Linearise(state));
     Random random(5);
     for (int trial = 0; trial < 10; ++trial) {
-      Eigen::VectorXd direction(equations.slope().size());
+      Eigen::VectorXd direction(equations->slope().size());
       for (double& value : direction) value = random.Normal(1.0);
-      const double after = terms.Cost(equations.Moved(state, kStep * direction)).value();
-      const double before = terms.Cost(equations.Moved(state, -kStep * direction)).value();
-      EXPECT_NEAR((after - before) / (2 * kStep), equations.slope().dot(direction),
-                  1e-4 * equations.slope().norm() * direction.norm());
+      const double after = terms.Cost(equations->Moved(state, kStep * direction)).value();
+      const double before = terms.Cost(equations->Moved(state, -kStep * direction)).value();
+      EXPECT_NEAR((after - before) / (2 * kStep), equations->slope().dot(direction),
+                  1e-4 * equations->slope().norm() * direction.norm());
     }
   }
 }
@@ -403,7 +405,7 @@ TEST(DeformingEquations, EliminatingThePointsChangesNoStep) {
   const Unsettled start;
   const DeformingTerms terms(start.window, start.nodes, kFocalPx, {});
   const DeformingState state = terms.Start();
-  DeformingEquations equations(terms, FreeParts::kAll, {});
+  DeformingEquations equations(terms, {});
   ASSERT_TRUE(equations.Linearise(state));
   const Eigen::VectorXd step = equations.NewtonStep();
   // A point's own row: own * dx + sum_v by_point' by_view dv + nodes + offset = - gradient.
