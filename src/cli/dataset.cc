@@ -18,6 +18,7 @@
 #include "pliant/datasets/check_sequence.h"
 #include "pliant/datasets/convert_sequence.h"
 #include "pliant/datasets/open_sequence.h"
+#include "pliant/image/depth_lookup.h"
 
 namespace pliant::cli {
 namespace {
@@ -59,10 +60,7 @@ std::string DepthText(const Sequence& sequence, int frame_idx) {
   const auto depth_mm = sequence.Depth(frame_idx);
   if (!depth_mm.ok()) return depth_mm.status().message();
   if (!depth_mm->has_value()) return "none";
-  std::vector<double> depths;
-  for (int v = 0; v < (*depth_mm)->rows; ++v)
-    for (int u = 0; u < (*depth_mm)->cols; ++u)
-      if (const float depth = (*depth_mm)->at<float>(v, u); depth > 0) depths.push_back(depth);
+  const std::vector<double> depths = KnownDepths(**depth_mm);
   if (depths.empty()) return "none in the first frame";
   const auto [low, high] = std::minmax_element(depths.begin(), depths.end());
   return Text("%.1f to %.1f mm in the first frame, ", *low, *high) + Text("%.1f mm in the median", Median(depths));

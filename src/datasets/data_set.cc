@@ -168,7 +168,10 @@ std::optional<std::string> DataSetSequence::Name(int frame_idx) const {
   return TimestampS(frame_idx) ? std::optional(images().Name(frame_idx)) : std::nullopt;
 }
 
-Result<std::optional<StereoCalibration>> AsOptional(const Result<StereoCalibration>& calibration) {
+// Nothing where the file is of one camera.
+Result<std::optional<StereoCalibration>> ReadPairCalibration(const fs::path& file) {
+  if (file.extension() != ".ini") return ReadStereoCalibration(file.string());
+  const auto calibration = ReadStereoIni(file);
   if (!calibration.ok()) return calibration.status();
   return std::optional(*calibration);
 }
@@ -260,8 +263,7 @@ Result<DataSet> Calibrated(const SequenceRequest& request, std::unique_ptr<Image
   }
   if (!path.ok()) return path.status();
   const std::optional<cv::Size> size = images->SizeAt(0);
-  const auto stereo =
-      path->extension() == ".ini" ? AsOptional(ReadStereoIni(*path)) : ReadStereoCalibration(path->string());
+  const auto stereo = ReadPairCalibration(*path);
   if (!stereo.ok()) return stereo.status();
   if (stereo->has_value() && size) {
     const auto layout = LayoutOf(**stereo, *size);

@@ -89,8 +89,7 @@ Result<Listed> ReadList(const fs::path& camera, std::vector<std::string>* warnin
   auto reader = LineReader::Open((camera / "data.csv").string());
   if (!reader.ok()) return reader.status();
   Listed list;
-  FolderIndex index;
-  int missing = 0;
+  ListedFiles files;
   std::string_view line;
   while (reader->Next(&line)) {
     if (line.empty() || line.front() == '#') continue;
@@ -101,14 +100,11 @@ Result<Listed> ReadList(const fs::path& camera, std::vector<std::string>* warnin
     const auto name = Split(fields[1], ' ');
     if (name.empty()) return reader->Error("a line has a time in ns and a file");
     const fs::path file = camera / "data" / name.front();
-    if (!index.Has(file)) {
-      ++missing;
-      continue;
-    }
+    if (!files.Has(file)) continue;
     list.times_s.push_back(kNanosecond_s * time_ns);
     list.files.push_back(file);
   }
-  WarnOfListedButMissing(missing, camera / "data.csv", warnings);
+  files.WarnOfMissing(camera / "data.csv", warnings);
   if (list.files.empty())
     return Status(ErrorCode::kNotFound,
                   (camera / "data.csv").string() + " names no image that is there; check the path");

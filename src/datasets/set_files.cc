@@ -96,17 +96,19 @@ fs::path OnlyFile(const fs::path& folder, std::string_view suffix) {
   return only;
 }
 
-bool FolderIndex::Has(const fs::path& file) {
+bool ListedFiles::Has(const fs::path& file) {
   const fs::path folder = file.parent_path();
   const auto [known, is_new] = files_.try_emplace(folder);
   if (is_new)
     for (const fs::path& found : FilesOf(folder)) known->second.insert(found.filename());
-  return known->second.contains(file.filename());
+  const bool has = known->second.contains(file.filename());
+  if (!has) ++missing_;
+  return has;
 }
 
-void WarnOfListedButMissing(int missing, const fs::path& list, std::vector<std::string>* warnings) {
-  if (missing > 0)
-    warnings->push_back(std::to_string(missing) + " files that " + list.string() +
+void ListedFiles::WarnOfMissing(const fs::path& list, std::vector<std::string>* warnings) const {
+  if (missing_ > 0)
+    warnings->push_back(std::to_string(missing_) + " files that " + list.string() +
                         " names are not there; they are passed over");
 }
 

@@ -33,17 +33,17 @@ std::vector<std::filesystem::path> VideosIn(const std::filesystem::path& folder)
 // The only file in a folder with this ending, "" where there is none or several.
 std::filesystem::path OnlyFile(const std::filesystem::path& folder, std::string_view suffix);
 
-// Which files are there, asked folder by folder instead of file by file.
-class FolderIndex {
+// Which files that a list names are there, asked folder by folder instead of file by file.
+class ListedFiles {
  public:
   bool Has(const std::filesystem::path& file);
+  // How many of those asked for are not there, if any.
+  void WarnOfMissing(const std::filesystem::path& list, std::vector<std::string>* warnings) const;
 
  private:
   std::map<std::filesystem::path, std::set<std::filesystem::path>> files_;  // by their folder
+  int missing_ = 0;
 };
-
-// Says how many files that a list names are not there, if any.
-void WarnOfListedButMissing(int missing, const std::filesystem::path& list, std::vector<std::string>* warnings);
 
 // Without blanks, tabs and carriage returns at its ends.
 std::string Trimmed(std::string_view text);

@@ -5,7 +5,6 @@
 // StereoCalibration.ini; groundtruth.txt, `frame tx ty tz qx qy qz qw`, world from left camera, metres, of the robot's
 // kinematics; masks/NNNNNNl.png, 0 = an instrument, of some of the frames and not always of the video's size.
 #include <cmath>
-#include <fstream>
 #include <map>
 #include <string>
 #include <utility>

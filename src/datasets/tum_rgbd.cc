@@ -28,8 +28,7 @@ Result<std::map<double, fs::path>> ReadList(const fs::path& file, std::vector<st
   auto reader = LineReader::Open(file.string());
   if (!reader.ok()) return reader.status();
   std::map<double, fs::path> list;
-  FolderIndex index;
-  int missing = 0;
+  ListedFiles files;
   std::string_view line;
   while (reader->Next(&line)) {
     const auto fields = Split(line, ' ');
@@ -38,12 +37,9 @@ Result<std::map<double, fs::path>> ReadList(const fs::path& file, std::vector<st
     if (fields.size() < 2 || !ParseDouble(fields[0], &time_s) || !std::isfinite(time_s))
       return reader->Error("a line has a time and a file");
     const fs::path listed = file.parent_path() / fields[1];
-    if (index.Has(listed))
-      list.emplace(time_s, listed);
-    else
-      ++missing;
+    if (files.Has(listed)) list.emplace(time_s, listed);
   }
-  WarnOfListedButMissing(missing, file, warnings);
+  files.WarnOfMissing(file, warnings);
   return list;
 }
 

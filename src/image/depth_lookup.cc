@@ -36,4 +36,12 @@ DepthAtPixel LookUpDepth(const cv::Mat& depth_mm, const Eigen::Vector2d& pixel, 
   return {DepthLookup::kOk, depth};
 }
 
+std::vector<double> KnownDepths(const cv::Mat& depth_mm) {
+  std::vector<double> depths;
+  for (int v = 0; v < depth_mm.rows; ++v)
+    for (int u = 0; u < depth_mm.cols; ++u)
+      if (const float depth = depth_mm.at<float>(v, u); depth > 0) depths.push_back(depth);
+  return depths;
+}
+
 }  // namespace pliant

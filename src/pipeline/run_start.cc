@@ -13,6 +13,7 @@
 #include "pliant/base/statistics.h"
 #include "pliant/datasets/check_sequence.h"
 #include "pliant/datasets/open_sequence.h"
+#include "pliant/image/depth_lookup.h"
 #include "pliant/io/point_cloud.h"
 #include "pliant/tracking/stereo_start.h"
 
@@ -36,11 +37,7 @@ Result<cv::Mat> ReadCloud(const DepthInitOptions& options, const Camera& camera)
 constexpr double kNearestMedian_mm = 5.0;
 
 std::vector<std::string> CloudWarnings(const std::string& path, const cv::Mat& depth_mm) {
-  std::vector<double> depths;
-  for (int v = 0; v < depth_mm.rows; ++v)
-    for (int u = 0; u < depth_mm.cols; ++u)
-      if (const float depth = depth_mm.at<float>(v, u); depth > 0) depths.push_back(depth);
-  const double median_mm = Median(std::move(depths));
+  const double median_mm = Median(KnownDepths(depth_mm));
   if (median_mm >= kNearestMedian_mm) return {};
   return {"the point cloud '" + path + "' has a median depth of " +
           FormatDouble(std::round(100.0 * median_mm) / 100.0) +

@@ -5,6 +5,8 @@
 // never across a depth step or next to a hole.
 #pragma once
 
+#include <vector>
+
 #include <Eigen/Core>
 #include <opencv2/core/mat.hpp>
 
@@ -21,5 +23,8 @@ struct DepthAtPixel {
 // `depth_mm`: CV_32FC1, 0 = none; a pixel with a neighbour of no depth has none. kDepthStep where the four pixels
 // around differ by more than max_depth_step times the smallest.
 DepthAtPixel LookUpDepth(const cv::Mat& depth_mm, const Eigen::Vector2d& pixel, double max_depth_step);
+
+// Those of `depth_mm` (CV_32FC1) that are known (above 0), mm, row by row.
+std::vector<double> KnownDepths(const cv::Mat& depth_mm);
 
 }  // namespace pliant
