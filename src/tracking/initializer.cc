@@ -25,10 +25,4 @@ std::string_view InitRejectionName(InitRejection reason) {
   return "?";
 }
 
-InitOutcome Initializer::Refine(const InitInput& /*input*/) const {
-  InitOutcome outcome;
-  outcome.decision = InitDecision::kNewReference;
-  return outcome;
-}
-
 }  // namespace pliant

@@ -13,6 +13,7 @@
 #include "tracking/candidates.h"
 #include "tracking/first_map.h"
 #include "tracking/lost_points.h"
+#include "tracking/map_remaker.h"
 #include "tracking/oracle_answers.h"
 #include "tracking/places.h"
 #include "tracking/rigid_history.h"
@@ -20,19 +21,6 @@
 #include "tracking/tracker_support.h"
 
 namespace pliant {
-namespace {
-
-// The map is made anew by the deforming window, however the first one was made, and whenever it is asked for.
-std::unique_ptr<Initializer> MakeRemaker(const TrackerOptions& options) {
-  WindowInitOptions window = options.init.window;
-  window.first_frame = options.growth.window;
-  window.every = 1;
-  // There is a map already, so a less certain one is not worth having.
-  window.last_frame = 2 * options.growth.window;
-  return MakeWindowInitializer(window, options.init.monocular.nominal_depth_mm);
-}
-
-}  // namespace
 
 void TrackerOptions::List(OptionTable& table) {
   corners.List(table);
@@ -103,7 +91,7 @@ Tracker::Tracker(const Camera& camera, const TrackerOptions& options, std::uint6
       oracle_(std::make_unique<OracleAnswers>(
           options.oracle, truth,
           options.init.IsMetric() ? std::nullopt : std::optional(options.init.monocular.nominal_depth_mm))),
-      remaker_(MakeRemaker(options)),
+      remaker_(std::make_unique<MapRemaker>(options.init.window, options.init.monocular.nominal_depth_mm)),
       now_(std::make_unique<Submap>(0, camera_, options)) {
   if (options_.init.IsMetric()) options_.graph.sigma_mm = options_.sigma_metric_mm;
 }

@@ -10,6 +10,7 @@
 #include "pliant/tracking/tracker.h"
 #include "tracking/candidates.h"
 #include "tracking/lost_points.h"
+#include "tracking/map_remaker.h"
 #include "tracking/oracle_answers.h"
 #include "tracking/replace_map.h"
 #include "tracking/rigid_history.h"
@@ -25,6 +26,15 @@ void Tracker::DropFromMap(PointId id, FrameReport* report) {
   report->optimized = static_cast<int>(report->observations.size());
 }
 
+// Points that contradict the others over the frames of which the map was made again.
+void Tracker::DropContradicting(const InitOutcome& outcome, FrameReport* report) {
+  for (const InitRejectedPoint& rejected : outcome.rejected)
+    if (rejected.reason == InitRejection::kReprojection && now_->map.Find(rejected.id) != nullptr) {
+      Count(InitRejectionName(rejected.reason), 1);
+      DropFromMap(rejected.id, report);
+    }
+}
+
 // While the scene is rigid (W13).
 void Tracker::RefineMap(FrameReport* report) {
   if (now_->rigid_history.empty()) return;
@@ -33,19 +43,15 @@ void Tracker::RefineMap(FrameReport* report) {
   for (const PointObservation& seen : report->observations)
     frame.observations.push_back({.id = seen.id, .pixel = seen.pixel, .ssim = seen.ssim});
   if (!now_->rigid_history.Add(std::move(frame))) return;
-  const InitOutcome outcome = initializer_->Refine(
-      {camera_, now_->rigid_history.frames(), {}, InitMoment::kMoreFollow, threads_, {}, photometric_});
+  const InitOutcome outcome =
+      remaker_->Remake({camera_, now_->rigid_history.frames(), {}, InitMoment::kMoreFollow, threads_, {}, photometric_},
+                       WindowScene::kRigid);
   if (outcome.decision == InitDecision::kNewReference) {
     now_->rigid_history.Stop();
     report->note = "the map is not refined any more: " + outcome.reason;
   }
   if (outcome.decision != InitDecision::kMap) return;
-  // Points that contradict the others over all frames since the reference.
-  for (const InitRejectedPoint& rejected : outcome.rejected)
-    if (rejected.reason == InitRejection::kReprojection && now_->map.Find(rejected.id) != nullptr) {
-      Count(InitRejectionName(rejected.reason), 1);
-      DropFromMap(rejected.id, report);
-    }
+  DropContradicting(outcome, report);
   const Map before = now_->map;
   const auto cam_from_world = ReplaceMap(outcome, now_->last_cam_from_world, &now_->map, &report->refined_points);
   if (!cam_from_world) return;
@@ -154,11 +160,12 @@ void Tracker::RemakeMap(const TrackerFrame& frame, FrameReport* report) {
   if (static_cast<double>(measured) >=
       options_.growth.max_measured_share * static_cast<double>(report->observations.size()))
     return;
-  const InitOutcome outcome =
-      remaker_->Try({camera_, now_->window_frames, {}, InitMoment::kMoreFollow, threads_, {}, photometric_});
+  const InitOutcome outcome = remaker_->Remake(
+      {camera_, now_->window_frames, {}, InitMoment::kMoreFollow, threads_, {}, photometric_}, WindowScene::kAny);
   if (outcome.decision != InitDecision::kMap) return;
   const auto positions = RemadePositions(outcome, now_->last_cam_from_world, now_->map);
   if (positions.empty()) return;
+  DropContradicting(outcome, report);
   const Map before = now_->map;
   for (const InitPosition& point : positions)
     if (Landmark* landmark = now_->map.Find(point.id); landmark != nullptr) {

@@ -16,19 +16,6 @@
 namespace pliant {
 namespace {
 
-// A rotation that explains this share of the points to this error leaves nothing to triangulate.
-constexpr double kRotationErrorPx = 1.5;
-constexpr double kMaxRotationShare = 0.8;
-// Of a point's error in a refined map by the median error.
-constexpr double kMaxErrorRatio = 4.0;
-
-Status MoreThanARotation(const InitInput& input, InitMeasurements* measured) {
-  const MatchedRays matched = MatchRays(input.camera, input.frames.front(), input.frames.back());
-  measured->correspondences = static_cast<int>(matched.ids.size());
-  return CheckNotARotation(matched, input.camera.MeanFocalLengthPx(), kRotationErrorPx, kMaxRotationShare, measured)
-      .status();
-}
-
 class WindowInitializer final : public Initializer {
  public:
   WindowInitializer(const WindowInitOptions& options, double nominal_depth_mm)
@@ -67,33 +54,12 @@ class WindowInitializer final : public Initializer {
     return outcome;
   }
 
-  InitOutcome Refine(const InitInput& input) const override {
-    InitOutcome outcome;
-    outcome.decision = InitDecision::kNewReference;
-    const auto rigid = Solve(input, input.frames.size(), Scene::kRigid);
-    if (!rigid.ok()) {
-      outcome.reason = rigid.status().message();
-      return outcome;
-    }
-    // What slides along a contour or over the surface, little at a time, contradicts the others in the end.
-    WindowInitOptions strict = options_;
-    const std::vector<double> errors_px = PointErrorsPx(rigid->solution.window, input.camera.MeanFocalLengthPx());
-    strict.max_error_px = std::min(options_.max_error_px, kMaxErrorRatio * Median(errors_px));
-    const Status status = MakeWindowMap(input, *rigid, DemandsAfter(0), strict, nominal_depth_mm_, &outcome);
-    if (!status.ok()) {
-      outcome.decision = InitDecision::kWait;
-      outcome.reason = status.message();
-    }
-    return outcome;
-  }
-
  private:
-  enum class Scene { kRigid, kAny };
-
   // What is missing for a map; ok when the outcome is one.
   Status Attempt(const InitInput& input, int since, InitOutcome* outcome) const {
-    const Scene scene = since < options_.deforming_frame ? Scene::kRigid : Scene::kAny;
-    return Make(input, Solve(input, input.frames.size(), scene), DemandsAfter(since), outcome);
+    const WindowScene scene = since < options_.deforming_frame ? WindowScene::kRigid : WindowScene::kAny;
+    return Make(input, SolveWindow(input, input.frames.size(), scene, options_, nominal_depth_mm_), DemandsAfter(since),
+                outcome);
   }
 
   Status LastAttempt(const InitInput& input, InitOutcome* outcome) const {
@@ -107,7 +73,8 @@ class WindowInitializer final : public Initializer {
   // A sequence may end so early that its map must be certain all the same.
   Status LastAttempt(const InitInput& input, int since, InitOutcome* outcome) const {
     const MapDemands demands = DemandsAfter(since < options_.deforming_frame ? since : options_.last_frame);
-    return Make(input, Solve(input, static_cast<std::size_t>(since) + 1, Scene::kAny), demands, outcome);
+    const auto frames = static_cast<std::size_t>(since) + 1;
+    return Make(input, SolveWindow(input, frames, WindowScene::kAny, options_, nominal_depth_mm_), demands, outcome);
   }
 
   // The longer the wait the less it still gives, and the more points leave the image.
@@ -115,19 +82,7 @@ class WindowInitializer final : public Initializer {
     const double waited = std::clamp(static_cast<double>(since - options_.deforming_frame) /
                                          std::max(1, options_.last_frame - options_.deforming_frame),
                                      0.0, 1.0);
-    const double relaxed = waited * waited * waited;
-    const double certain_sigma = std::lerp(options_.certain_depth_sigma, options_.last_depth_sigma, relaxed);
-    return {.certain_sigma = certain_sigma,
-            .max_sigma = std::max(certain_sigma, options_.max_depth_sigma),
-            .certain_share = (1.0 - relaxed) * options_.min_certain_share};
-  }
-
-  // Of the first frames; of a rigid scene if it is one, and where it has to be.
-  Result<SolvedWindow> Solve(const InitInput& input, std::size_t frames, Scene scene) const {
-    const auto window = PrepareWindow(input, frames, options_, nominal_depth_mm_);
-    if (!window.ok()) return window.status();
-    auto rigid = SolveRigid(input, *window, options_);
-    return rigid.ok() || scene == Scene::kRigid ? rigid : SolveDeforming(input, *window, options_, nominal_depth_mm_);
+    return DemandsOf(options_, waited * waited * waited);
   }
 
   Status Make(const InitInput& input, const Result<SolvedWindow>& window, const MapDemands& demands,
@@ -136,9 +91,9 @@ class WindowInitializer final : public Initializer {
     MapDemands least = demands;
     // Another minimum than the right one may look as certain: what no light confirms must be more so, and most of all
     // what the light contradicts.
-    if (window->light_is_of_no_use) least = DemandsAfter(0);
+    if (window->light_is_of_no_use) least = DemandsOf(options_, 0.0);
     if (options_.light == Switch::kOff) {
-      const double unrelaxed = std::max(options_.certain_depth_sigma, options_.max_depth_sigma);
+      const double unrelaxed = DemandsOf(options_, 0.0).max_sigma;
       least.certain_sigma = std::min(least.certain_sigma, unrelaxed);
       least.max_sigma = std::min(least.max_sigma, unrelaxed);
     }

@@ -20,6 +20,8 @@
 namespace pliant {
 namespace {
 
+constexpr double kMaxErrorRatio = 3.0;  // of a point's error by the median one, where tracks are judged
+
 // Some of a window's points; `solution` has one each, in the same order.
 struct MapPoints {
   std::vector<PointId> ids;
@@ -35,12 +37,11 @@ std::vector<double> DepthSigmas(const DeformingSolution& solution) {
   return sigmas;
 }
 
-// Those whose errors and sigmas are small enough, sorted by id, without their observations; `rejected`, which may be
-// null, becomes the others.
-MapPoints ChooseCertain(const MapPoints& points, double max_sigma, const WindowInitOptions& options, double focal_px,
-                        std::vector<InitRejectedPoint>* rejected) {
+// Those whose errors (`errors_px`, one each) and sigmas are small enough, sorted by id, without their observations;
+// `rejected`, which may be null, becomes the others.
+MapPoints ChooseCertain(const MapPoints& points, const std::vector<double>& errors_px, double max_error_px,
+                        double max_sigma, std::vector<InitRejectedPoint>* rejected) {
   const DeformingSolution& from = points.solution;
-  const std::vector<double> errors_px = PointErrorsPx(from.window, focal_px);
   std::vector<std::size_t> order(points.ids.size());
   std::iota(order.begin(), order.end(), 0);
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return points.ids[a] < points.ids[b]; });
@@ -51,7 +52,7 @@ MapPoints ChooseCertain(const MapPoints& points, double max_sigma, const WindowI
   to.window.cams_from_world = from.window.cams_from_world;
   to.window.courses = from.window.courses;
   for (const std::size_t i : order) {
-    const bool agrees = errors_px[i] <= options.max_error_px;
+    const bool agrees = errors_px[i] <= max_error_px;
     if (!agrees || !(points.depth_sigmas[i] <= max_sigma)) {
       if (rejected != nullptr)
         rejected->push_back({points.ids[i], agrees ? InitRejection::kUncertainDepth : InitRejection::kReprojection});
@@ -151,7 +152,15 @@ Status SettlePoints(const InitInput& input, const MapDemands& demands, const Win
   MapPoints all{points->ids, {}, std::move(*settled)};
   all.ids.insert(all.ids.end(), joining.begin(), joining.end());
   all.depth_sigmas = DepthSigmas(all.solution);
-  *points = ChooseCertain(all, demands.max_sigma * all.solution.window.MedianDistance(), options, focal_px, rejected);
+  const std::vector<double> errors_px = PointErrorsPx(all.solution.window, focal_px);
+  double max_error_px = options.max_error_px;
+  if (demands.judges_tracks) {
+    const double median_px = Median(errors_px);
+    max_error_px = std::min(max_error_px, kMaxErrorRatio * median_px);
+    for (std::size_t i = 0; i < all.ids.size(); ++i) all.depth_sigmas[i] *= std::max(1.0, errors_px[i] / median_px);
+  }
+  *points =
+      ChooseCertain(all, errors_px, max_error_px, demands.max_sigma * all.solution.window.MedianDistance(), rejected);
   return Status::Ok();
 }
 
@@ -198,19 +207,27 @@ Status FillOutcome(const InitInput& input, double nominal_depth_mm, const MapPoi
 
 }  // namespace
 
+MapDemands DemandsOf(const WindowInitOptions& options, double relaxed) {
+  const double certain_sigma = std::lerp(options.certain_depth_sigma, options.last_depth_sigma, relaxed);
+  return {.certain_sigma = certain_sigma,
+          .max_sigma = std::max(certain_sigma, options.max_depth_sigma),
+          .certain_share = (1.0 - relaxed) * options.min_certain_share};
+}
+
 Status MakeWindowMap(const InitInput& input, const SolvedWindow& window, const MapDemands& demands,
                      const WindowInitOptions& options, double nominal_depth_mm, InitOutcome* outcome) {
   const double focal_px = input.camera.MeanFocalLengthPx();
   const MapPoints all{window.ids, DepthSigmas(window.solution), window.solution};
+  const std::vector<double> errors_px = PointErrorsPx(window.solution.window, focal_px);
   const double median_distance = window.solution.window.MedianDistance();
-  MapPoints points = ChooseCertain(all, demands.max_sigma * median_distance, options, focal_px, nullptr);
+  MapPoints points = ChooseCertain(all, errors_px, options.max_error_px, demands.max_sigma * median_distance, nullptr);
   const auto measure = [&] {
     outcome->measured.inliers = static_cast<int>(points.ids.size());
     outcome->measured.median_depth_sigma =
         points.ids.empty() ? 0.0 : Median(points.depth_sigmas) / points.solution.window.MedianDistance();
   };
   measure();
-  outcome->measured.median_error_px = Median(PointErrorsPx(window.solution.window, focal_px));
+  outcome->measured.median_error_px = Median(errors_px);
   outcome->measured.median_parallax_deg = MedianParallaxDeg(window.solution.window);
   if (Status status = EnoughCertain(input, window, points, demands, options.min_points, median_distance,
                                     outcome->measured.median_parallax_deg);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// The first map from a solved window: which of its points are certain, and where they were in every frame.
+// A map from a solved window: which of its points are certain, and where they were in every frame.
 #pragma once
 
 #include "pliant/base/status.h"
@@ -17,7 +17,12 @@ struct MapDemands {
   double certain_sigma = 0;
   double max_sigma = 0;
   double certain_share = 0;  // of the points still seen, at least
+  // Points whose errors stand out are less certain in proportion, and left out where they do so by three times.
+  bool judges_tracks = false;
 };
+
+// Those of the options: in full, wholly relaxed (1), or between.
+MapDemands DemandsOf(const WindowInitOptions& options, double relaxed);
 
 // Fills the outcome in as a map of the whole input, scaled to the nominal depth. What is missing for one else: then
 // only the outcome's measurements are filled in.

@@ -19,6 +19,9 @@ constexpr std::size_t kLeastPoints = 12;
 constexpr std::size_t kLeastFrames = 6;
 // A light that leaves more of the spread of log distances than this says nothing of distance.
 constexpr double kMostOfSpread = 0.8;
+// A rotation that explains this share of the points to this error leaves nothing to triangulate.
+constexpr double kRotationErrorPx = 1.5;
+constexpr double kMaxRotationShare = 0.8;
 
 // Spread evenly over the first `frames` frames.
 std::vector<std::size_t> ChooseViews(std::size_t frames, std::size_t most) {
@@ -121,25 +124,12 @@ double MedianSigma(const DeformingSolution& solution) {
   return Median(std::move(sigmas));
 }
 
-}  // namespace
-
-int PlaceOf(PointId id, const std::vector<PointId>& ids) {
-  const auto found = std::lower_bound(ids.begin(), ids.end(), id);
-  return found != ids.end() && *found == id ? static_cast<int>(found - ids.begin()) : -1;
-}
-
-std::vector<DeformingObservation> SeenIn(const InitInput& input, const InitFrame& frame,
-                                         const std::vector<PointId>& ids, int view_idx,
-                                         const WindowInitOptions& options) {
-  const PhotometricCalibration light = input.photometric.value_or(PhotometricCalibration{.gamma = options.gamma});
-  std::vector<DeformingObservation> observations;
-  for (const WindowObservation& seen : ObservationsOf(input.camera, frame, ids, view_idx)) {
-    const PointId id = ids[static_cast<std::size_t>(seen.point_idx)];
-    const double brightness = options.light == Switch::kOn ? FindById(frame.observations, id)->brightness : 0.0;
-    observations.push_back({view_idx, seen.point_idx, seen.ray, LogDistanceFromLight(light, brightness, seen.ray)});
-  }
-  return observations;
-}
+// A window's frames and points, ready to be solved.
+struct PreparedWindow {
+  std::vector<std::size_t> views;  // frames of the input, ascending
+  std::vector<PointId> ids;        // of the window's points, sorted
+  DeformingWindow start;
+};
 
 Result<PreparedWindow> PrepareWindow(const InitInput& input, std::size_t frames, const WindowInitOptions& options,
                                      double nominal_depth_mm) {
@@ -190,6 +180,41 @@ Result<SolvedWindow> SolveRigid(const InitInput& input, const PreparedWindow& wi
   if (!solution.ok()) return solution.status();
   if (solution->residual_correlation > options.max_correlation) return deforms(solution->residual_correlation);
   return SolvedWindow{window.views, window.ids, std::move(*solution), false};
+}
+
+}  // namespace
+
+int PlaceOf(PointId id, const std::vector<PointId>& ids) {
+  const auto found = std::lower_bound(ids.begin(), ids.end(), id);
+  return found != ids.end() && *found == id ? static_cast<int>(found - ids.begin()) : -1;
+}
+
+std::vector<DeformingObservation> SeenIn(const InitInput& input, const InitFrame& frame,
+                                         const std::vector<PointId>& ids, int view_idx,
+                                         const WindowInitOptions& options) {
+  const PhotometricCalibration light = input.photometric.value_or(PhotometricCalibration{.gamma = options.gamma});
+  std::vector<DeformingObservation> observations;
+  for (const WindowObservation& seen : ObservationsOf(input.camera, frame, ids, view_idx)) {
+    const PointId id = ids[static_cast<std::size_t>(seen.point_idx)];
+    const double brightness = options.light == Switch::kOn ? FindById(frame.observations, id)->brightness : 0.0;
+    observations.push_back({view_idx, seen.point_idx, seen.ray, LogDistanceFromLight(light, brightness, seen.ray)});
+  }
+  return observations;
+}
+
+Result<SolvedWindow> SolveWindow(const InitInput& input, std::size_t frames, WindowScene scene,
+                                 const WindowInitOptions& options, double nominal_depth_mm) {
+  const auto window = PrepareWindow(input, frames, options, nominal_depth_mm);
+  if (!window.ok()) return window.status();
+  auto rigid = SolveRigid(input, *window, options);
+  return rigid.ok() || scene == WindowScene::kRigid ? rigid : SolveDeforming(input, *window, options, nominal_depth_mm);
+}
+
+Status MoreThanARotation(const InitInput& input, InitMeasurements* measured) {
+  const MatchedRays matched = MatchRays(input.camera, input.frames.front(), input.frames.back());
+  measured->correspondences = static_cast<int>(matched.ids.size());
+  return CheckNotARotation(matched, input.camera.MeanFocalLengthPx(), kRotationErrorPx, kMaxRotationShare, measured)
+      .status();
 }
 
 }  // namespace pliant

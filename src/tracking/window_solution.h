@@ -14,13 +14,6 @@
 
 namespace pliant {
 
-// The window of an input's first frames, ready to be solved.
-struct PreparedWindow {
-  std::vector<std::size_t> views;  // frames of the input, ascending
-  std::vector<PointId> ids;        // of the window's points, sorted
-  DeformingWindow start;
-};
-
 struct SolvedWindow {
   std::vector<std::size_t> views;
   std::vector<PointId> ids;
@@ -28,18 +21,16 @@ struct SolvedWindow {
   bool light_is_of_no_use = false;  // it was to be used, and was not
 };
 
-// The window of the input's first `frames` frames. kInsufficient: what is missing.
-Result<PreparedWindow> PrepareWindow(const InitInput& input, std::size_t frames, const WindowInitOptions& options,
-                                     double nominal_depth_mm);
+enum class WindowScene { kRigid, kAny };
 
-// Its solution with courses; where the light turns out to say nothing of it, the solution without light if that is more
-// certain.
-// kInsufficient, kDegenerate: what is missing.
-Result<SolvedWindow> SolveDeforming(const InitInput& input, const PreparedWindow& window,
-                                    const WindowInitOptions& options, double nominal_depth_mm);
+// The window of the input's first `frames` frames, solved: as a rigid scene if it is one, else, where it may be any,
+// with courses; where the light turns out to say nothing of these, without light if that is more certain.
+// kInsufficient, kDegenerate: what is missing, or that the scene deforms.
+Result<SolvedWindow> SolveWindow(const InitInput& input, std::size_t frames, WindowScene scene,
+                                 const WindowInitOptions& options, double nominal_depth_mm);
 
-// Its solution as a rigid scene; kDegenerate when the scene deforms, or in what else the solution fails.
-Result<SolvedWindow> SolveRigid(const InitInput& input, const PreparedWindow& window, const WindowInitOptions& options);
+// kDegenerate where the camera only turned between the first frame and the last.
+Status MoreThanARotation(const InitInput& input, InitMeasurements* measured);
 
 // A point's place in the sorted `ids`, or -1.
 int PlaceOf(PointId id, const std::vector<PointId>& ids);

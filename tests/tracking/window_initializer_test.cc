@@ -14,6 +14,7 @@
 
 #include "pliant/base/random.h"
 #include "pliant/base/statistics.h"
+#include "tracking/map_remaker.h"
 
 namespace pliant {
 namespace {
@@ -73,9 +74,7 @@ struct Sequence {
     return MakeWindowInitializer(options, kNominalMm)->Try({camera, frames, {}, moment});
   }
 
-  InitOutcome Refine(const WindowInitOptions& options = {}) const {
-    return MakeWindowInitializer(options, kNominalMm)->Refine({camera, frames, {}});
-  }
+  InitOutcome Remake(WindowScene scene) const { return MapRemaker({}, kNominalMm).Remake({camera, frames, {}}, scene); }
 
   // Median relative depth error of a frame's positions, after the best scale.
   double ShapeError(const InitOutcome& outcome, int t) const {
@@ -223,13 +222,13 @@ TEST(WindowInitializer, ARigidSceneNeedsTenFrames) {
   EXPECT_THAT(breathing.reason, HasSubstr("the scene deforms"));
 }
 
-TEST(WindowInitializer, RefinesTheMapOfARigidSceneByTheFramesThatFollow) {
+TEST(MapRemaker, RefinesTheMapOfARigidSceneByTheFramesThatFollow) {
   const Sequence start(11, CameraMotion::kForwards, 0.0);
   const InitOutcome first = start.Try({});
   ASSERT_EQ(first.decision, InitDecision::kMap) << first.reason;
   EXPECT_TRUE(first.refinable);
   const Sequence longer(61, CameraMotion::kForwards, 0.0);
-  const InitOutcome refined = longer.Refine();
+  const InitOutcome refined = longer.Remake(WindowScene::kRigid);
   ASSERT_EQ(refined.decision, InitDecision::kMap) << refined.reason;
   EXPECT_EQ(refined.frames.size(), 61U);
   EXPECT_LT(longer.ShapeError(refined, 0), 0.5 * start.ShapeError(first, 0));
@@ -240,27 +239,61 @@ TEST(WindowInitializer, RefinesTheMapOfARigidSceneByTheFramesThatFollow) {
   EXPECT_FALSE(start.Try(once).refinable);
 }
 
-TEST(WindowInitializer, RefinesNoMapOfASceneThatDeforms) {
+TEST(MapRemaker, RefinesNoMapOfASceneThatDeforms) {
   const Sequence sequence(61);
   const InitOutcome first = sequence.Try({});
   ASSERT_EQ(first.decision, InitDecision::kMap) << first.reason;
   EXPECT_FALSE(first.refinable);
-  const InitOutcome refined = sequence.Refine();
+  const InitOutcome refined = sequence.Remake(WindowScene::kRigid);
   EXPECT_EQ(refined.decision, InitDecision::kNewReference);
   EXPECT_THAT(refined.reason, HasSubstr("the scene deforms"));
 }
 
 // A tenth of a pixel a frame at most: what it tells the first map is no worse than noise.
-TEST(WindowInitializer, APointThatSlidesStaysOutOfARefinedMap) {
+TEST(MapRemaker, APointThatSlidesStaysOut) {
   Sequence sequence(61, CameraMotion::kForwards, 0.0);
   for (InitFrame& frame : sequence.frames)
     for (InitObservation& seen : frame.observations)
       if (seen.id == PointId{42}) seen.pixel.x() += 0.5 * std::sin(0.2 * (frame.frame_idx - 100));
-  const InitOutcome refined = sequence.Refine();
-  ASSERT_EQ(refined.decision, InitDecision::kMap) << refined.reason;
-  EXPECT_EQ(FindById(refined.points, PointId{42}), nullptr);
-  EXPECT_EQ(FindById(refined.rejected, PointId{42})->reason, InitRejection::kReprojection);
-  EXPECT_GT(refined.points.size(), 100U);
+  for (const WindowScene scene : {WindowScene::kRigid, WindowScene::kAny}) {
+    const InitOutcome remade = sequence.Remake(scene);
+    ASSERT_EQ(remade.decision, InitDecision::kMap) << remade.reason;
+    EXPECT_EQ(FindById(remade.points, PointId{42}), nullptr);
+    EXPECT_EQ(FindById(remade.rejected, PointId{42})->reason, InitRejection::kReprojection);
+    EXPECT_GT(remade.points.size(), 100U);
+  }
+}
+
+TEST(MapRemaker, APointWithLargerErrorsIsLessCertain) {
+  Sequence sequence(61, CameraMotion::kForwards, 0.0);
+  const InitOutcome clean = sequence.Remake(WindowScene::kRigid);
+  ASSERT_EQ(clean.decision, InitDecision::kMap) << clean.reason;
+  const InitPoint* before = FindById(clean.points, PointId{42});
+  ASSERT_NE(before, nullptr);
+  Random random(4);  // twice the noise of the others
+  for (InitFrame& frame : sequence.frames)
+    for (InitObservation& seen : frame.observations)
+      if (seen.id == PointId{42})
+        seen.pixel += Eigen::Vector2d(random.Normal(2 * kNoisePx), random.Normal(2 * kNoisePx));
+  const InitOutcome noisy = sequence.Remake(WindowScene::kRigid);
+  ASSERT_EQ(noisy.decision, InitDecision::kMap) << noisy.reason;
+  const InitPoint* after = FindById(noisy.points, PointId{42});
+  ASSERT_NE(after, nullptr);
+  EXPECT_GT(after->depth_sigma, 1.5 * before->depth_sigma);
+}
+
+TEST(MapRemaker, MakesAMapOfASceneThatDeformsWhereItMayBeAny) {
+  const Sequence sequence(46);
+  EXPECT_EQ(sequence.Remake(WindowScene::kRigid).decision, InitDecision::kNewReference);
+  const InitOutcome remade = sequence.Remake(WindowScene::kAny);
+  ASSERT_EQ(remade.decision, InitDecision::kMap) << remade.reason;
+  EXPECT_LT(sequence.ShapeError(remade, 45), kShape);
+  // Where there are too few points there is nothing to be made of them.
+  Sequence empty(46);
+  for (InitFrame& frame : empty.frames) frame.observations.resize(5);
+  const InitOutcome none = empty.Remake(WindowScene::kAny);
+  EXPECT_NE(none.decision, InitDecision::kMap);
+  EXPECT_FALSE(none.reason.empty());
 }
 
 TEST(WindowInitializer, MakesNoMapOfNoise) {

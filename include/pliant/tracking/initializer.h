@@ -119,7 +119,7 @@ struct InitOutcome {
   std::vector<InitFrameState> frames;       // one a frame of the input, in its order; the first pose is the identity
   std::vector<InitPoint> points;            // sorted by id; each is in some of the frames, not in all
   std::vector<InitRejectedPoint> rejected;  // the other points, sorted by id
-  bool refinable = false;                   // the frames that follow can make it better (Initializer::Refine)
+  bool refinable = false;                   // of a rigid scene: the frames that follow can make it better
 };
 
 class Initializer {
@@ -131,9 +131,6 @@ class Initializer {
   virtual bool TakesLaterPoints() const { return false; }
   // Whether the reference's points are those whose depths are known (InitInput::reference_depths), in place of corners.
   virtual bool TakesKnownPoints() const { return false; }
-  // A refinable map made again, of the frames since its reference, of which some may be left out. kWait: of these
-  // frames it cannot; kNewReference: nor of those that follow.
-  virtual InitOutcome Refine(const InitInput& input) const;
 };
 
 }  // namespace pliant

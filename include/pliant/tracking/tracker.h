@@ -42,6 +42,7 @@
 namespace pliant {
 
 class LocalBrightness;
+class MapRemaker;
 class OracleAnswers;
 struct DescribedImage;
 
@@ -218,6 +219,7 @@ class Tracker {
   void Promote(PointId id, const Eigen::Vector3d& position, FrameReport* report);
   void LookForCandidates(const TrackerFrame& frame);
   void RemakeMap(const TrackerFrame& frame, FrameReport* report);
+  void DropContradicting(const InitOutcome& outcome, FrameReport* report);
 
   Camera camera_;
   std::optional<PhotometricCalibration> photometric_;
@@ -225,7 +227,7 @@ class Tracker {
   int threads_;
   std::unique_ptr<Initializer> initializer_;
   std::unique_ptr<OracleAnswers> oracle_;
-  std::unique_ptr<Initializer> remaker_;  // of the map, from the last frames
+  std::unique_ptr<MapRemaker> remaker_;
 
   TrackingState state_ = TrackingState::kWaitingForReference;
   std::vector<InitFrame> init_frames_;  // since the reference

@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tracking/map_remaker.h"
+
+#include "tracking/window_map.h"
+
+namespace pliant {
+namespace {
+
+// Of the demands on a deforming map. To wait for the next attempt costs more than a little uncertainty: meanwhile the
+// map's errors grow.
+constexpr double kRelaxed = 0.05;
+
+}  // namespace
+
+InitOutcome MapRemaker::Remake(const InitInput& input, WindowScene scene) const {
+  InitOutcome outcome;
+  outcome.decision = InitDecision::kNewReference;
+  // Of a rotation the deforming window would make what it likes.
+  Status status = scene == WindowScene::kAny ? MoreThanARotation(input, &outcome.measured) : Status::Ok();
+  if (status.ok()) {
+    const auto window = SolveWindow(input, input.frames.size(), scene, options_, nominal_depth_mm_);
+    status = window.status();
+    if (window.ok()) {
+      MapDemands demands = DemandsOf(options_, scene == WindowScene::kAny ? kRelaxed : 0.0);
+      // Where the scene is rigid errors are of the tracks alone. What slides along a contour or over the surface,
+      // little at a time, shows in them.
+      demands.judges_tracks = window->solution.window.courses.rows() == 0;
+      outcome.decision = InitDecision::kWait;
+      status = MakeWindowMap(input, *window, demands, options_, nominal_depth_mm_, &outcome);
+    }
+  }
+  if (!status.ok()) outcome.reason = status.message();
+  return outcome;
+}
+
+}  // namespace pliant
