@@ -42,7 +42,7 @@ def positions(path):
     """{time: (x, y, z)} of a TUM file."""
     rows = (line.split() for line in pathlib.Path(path).read_text(encoding="utf-8").splitlines()
             if line and not line.startswith("#"))
-    return {round(float(row[0]), 3): tuple(map(float, row[1:4])) for row in rows}
+    return {round(float(row[0]), 6): tuple(map(float, row[1:4])) for row in rows}
 
 
 def distance(a, b):
