@@ -5,6 +5,7 @@
 // (docs/method.md, eq. W13 and G5).
 #pragma once
 
+#include "pliant/base/status.h"
 #include "pliant/tracking/initializer.h"
 #include "pliant/tracking/window_initializer.h"
 #include "tracking/window_solution.h"
@@ -21,6 +22,9 @@ class MapRemaker {
   InitOutcome Remake(const InitInput& input, WindowScene scene) const;
 
  private:
+  // What is missing for a map; ok when the outcome is one.
+  Status Make(const InitInput& input, WindowScene scene, InitOutcome* outcome) const;
+
   WindowInitOptions options_;
   double nominal_depth_mm_;
 };

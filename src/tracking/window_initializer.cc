@@ -91,11 +91,11 @@ class WindowInitializer final : public Initializer {
     MapDemands least = demands;
     // Another minimum than the right one may look as certain: what no light confirms must be more so, and most of all
     // what the light contradicts.
-    if (window->light_is_of_no_use) least = DemandsOf(options_, 0.0);
+    const MapDemands full = DemandsOf(options_, 0.0);
+    if (window->light_is_of_no_use) least = full;
     if (options_.light == Switch::kOff) {
-      const double unrelaxed = DemandsOf(options_, 0.0).max_sigma;
-      least.certain_sigma = std::min(least.certain_sigma, unrelaxed);
-      least.max_sigma = std::min(least.max_sigma, unrelaxed);
+      least.certain_sigma = std::min(least.certain_sigma, full.max_sigma);
+      least.max_sigma = std::min(least.max_sigma, full.max_sigma);
     }
     outcome->refinable = options_.refine_rigid == Switch::kOn && window->solution.window.courses.rows() == 0;
     return MakeWindowMap(input, *window, least, options_, nominal_depth_mm_, outcome);

@@ -14,83 +14,20 @@
 
 #include "pliant/base/random.h"
 #include "pliant/base/statistics.h"
-#include "tracking/map_remaker.h"
+#include "support/waving_tracks.h"
 
 namespace pliant {
 namespace {
 
 using testing::HasSubstr;
 
-constexpr double kNominalMm = 50;
-constexpr double kShape = 0.03;  // relative depth error, median; a constant depth has about 0.15
-constexpr double kNoisePx = 0.05;
-
-enum class CameraMotion { kForwards, kRotation, kStill };
-
-// Tracks on a wavy surface that waves. Points 100 and above come into view later.
-struct Sequence {
-  Camera camera = Camera::Create(CameraModelId::kSimplePinhole, 640, 480, std::array{450.0, 319.5, 239.5}).value();
-  std::vector<InitFrame> frames;
-  std::vector<Eigen::Vector3d> points;
-  std::vector<Rigid3> poses;
-
-  double amplitude_mm;
-
-  explicit Sequence(int count, CameraMotion motion = CameraMotion::kForwards, double amplitude = 3, double relief = 15,
-                    unsigned seed = 5)
-      : amplitude_mm(amplitude) {
-    Random random(seed);
-    for (int i = 0; i < 160; ++i) {
-      const double x = random.Uniform(-30, 30);
-      const double y = random.Uniform(-22, 22);
-      points.emplace_back(x, y, 60 + relief * std::sin(x / 14) * std::cos(y / 18));
-    }
-    for (int t = 0; t < count; ++t) {
-      const double turn = motion == CameraMotion::kStill ? 0 : 1;
-      poses.emplace_back(RotationExp(turn * Eigen::Vector3d(0.02 * std::sin(0.05 * t), 0.002 * t, 0)),
-                         motion == CameraMotion::kForwards ? Eigen::Vector3d(0.5 * std::sin(0.06 * t), 0, -0.5 * t)
-                                                           : Eigen::Vector3d::Zero());
-      InitFrame frame{100 + t, {}};
-      for (int i = 0; i < 160; ++i) {
-        if (i >= 100 && t < 10) continue;
-        const Eigen::Vector3d x = poses.back() * At(i, motion == CameraMotion::kForwards ? t : 0);
-        const auto pixel = camera.Project(x);
-        if (!pixel || !camera.Contains(*pixel)) continue;
-        InitObservation seen{PointId{i}, *pixel + kNoisePx * Eigen::Vector2d(random.Normal(), random.Normal())};
-        seen.brightness = 255 * std::pow(30 / x.norm(), 2 / 2.2) * std::exp(random.Normal(0.1));
-        frame.observations.push_back(seen);
-      }
-      frames.push_back(frame);
-    }
-  }
-
-  Eigen::Vector3d At(int point, int t) const {
-    const Eigen::Vector3d& rest = points[static_cast<std::size_t>(point)];
-    const double phase = 0.02 * rest.sum();
-    return rest + Eigen::Vector3d(0, amplitude_mm * (std::sin(0.12 * t + phase) - std::sin(phase)), 0);
-  }
-
-  InitOutcome Try(const WindowInitOptions& options, InitMoment moment = InitMoment::kMoreFollow) const {
-    return MakeWindowInitializer(options, kNominalMm)->Try({camera, frames, {}, moment});
-  }
-
-  InitOutcome Remake(WindowScene scene) const { return MapRemaker({}, kNominalMm).Remake({camera, frames, {}}, scene); }
-
-  // Median relative depth error of a frame's positions, after the best scale.
-  double ShapeError(const InitOutcome& outcome, int t) const {
-    const InitFrameState& state = outcome.frames[static_cast<std::size_t>(t)];
-    std::vector<double> ratios;
-    for (const InitPosition& point : state.positions)
-      ratios.push_back((state.cam_from_world * point.position).norm() /
-                       (poses[static_cast<std::size_t>(t)] * At(static_cast<int>(point.id.value), t)).norm());
-    const double scale = Median(ratios);
-    for (double& ratio : ratios) ratio = std::abs(ratio / scale - 1);
-    return Median(ratios);
-  }
-};
+using test::CameraMotion;
+using test::kNominalMm;
+using test::kShape;
+using test::WavingTracks;
 
 TEST(WindowInitializer, MapsASceneThatDeforms) {
-  const Sequence sequence(61);
+  const WavingTracks sequence(61);
   const InitOutcome outcome = sequence.Try({});
   ASSERT_EQ(outcome.decision, InitDecision::kMap) << outcome.reason;
   EXPECT_THAT(outcome.reason, HasSubstr("deforming window of 61 frames"));
@@ -103,7 +40,7 @@ TEST(WindowInitializer, MapsASceneThatDeforms) {
 }
 
 TEST(WindowInitializer, TakesPointsThatComeIntoViewLater) {
-  const Sequence sequence(61);
+  const WavingTracks sequence(61);
   const InitOutcome outcome = sequence.Try({});
   ASSERT_EQ(outcome.decision, InitDecision::kMap) << outcome.reason;
   int later = 0;
@@ -113,7 +50,7 @@ TEST(WindowInitializer, TakesPointsThatComeIntoViewLater) {
 }
 
 TEST(WindowInitializer, EveryPointIsInTheMapOrRejected) {
-  const Sequence sequence(61);
+  const WavingTracks sequence(61);
   const InitOutcome outcome = sequence.Try({});
   std::set<PointId> ids;
   for (const InitPoint& point : outcome.points) EXPECT_TRUE(ids.insert(point.id).second);
@@ -122,7 +59,7 @@ TEST(WindowInitializer, EveryPointIsInTheMapOrRejected) {
 }
 
 TEST(WindowInitializer, LeavesOutAPointThatJumpsAbout) {
-  Sequence sequence(61);
+  WavingTracks sequence(61);
   for (std::size_t t = 0; t < sequence.frames.size(); ++t)
     for (InitObservation& seen : sequence.frames[t].observations)
       if (seen.id == PointId{42} && t > 0) seen.pixel.x() += 2 * std::sin(static_cast<double>(t * t));
@@ -134,7 +71,7 @@ TEST(WindowInitializer, LeavesOutAPointThatJumpsAbout) {
 }
 
 TEST(WindowInitializer, LeavesOutAPointThatIsWrongBetweenTheViews) {
-  Sequence sequence(61);
+  WavingTracks sequence(61);
   const std::set<std::size_t> views = {0, 9, 17, 26, 34, 43, 51, 60};
   for (std::size_t t = 0; t < sequence.frames.size(); ++t)
     for (InitObservation& seen : sequence.frames[t].observations)
@@ -148,7 +85,7 @@ TEST(WindowInitializer, LeavesOutAPointThatIsWrongBetweenTheViews) {
 }
 
 TEST(WindowInitializer, MakesNoMapOfPointsThatAreAllWrongBetweenTheViews) {
-  Sequence sequence(46);
+  WavingTracks sequence(46);
   const std::set<std::size_t> views = {0, 6, 13, 19, 26, 32, 39, 45};
   Random random(6);
   for (std::size_t t = 0; t < sequence.frames.size(); ++t)
@@ -161,7 +98,7 @@ TEST(WindowInitializer, MakesNoMapOfPointsThatAreAllWrongBetweenTheViews) {
 }
 
 TEST(WindowInitializer, MakesNoMapOnWhichTheSamplesDoNotAgree) {
-  const Sequence sequence(32);
+  const WavingTracks sequence(32);
   WindowInitOptions options;
   options.certain_depth_sigma = options.max_depth_sigma = options.last_depth_sigma = 0.001;
   const InitOutcome last = sequence.Try(options, InitMoment::kLastFrame);
@@ -171,7 +108,7 @@ TEST(WindowInitializer, MakesNoMapOnWhichTheSamplesDoNotAgree) {
 
 TEST(WindowInitializer, ASequenceThatEndsEarlyMustBeAsCertain) {
   for (const unsigned seed : {1U, 2U, 3U}) {
-    const Sequence sequence(16, CameraMotion::kForwards, 3, 15, seed);
+    const WavingTracks sequence(16, CameraMotion::kForwards, 3, 15, seed);
     const InitOutcome last = sequence.Try({}, InitMoment::kLastFrame);
     EXPECT_EQ(last.decision, InitDecision::kNewReference) << seed << ": " << last.reason;
     EXPECT_THAT(last.reason, HasSubstr("points is known to 2.0 % of the median depth"));
@@ -179,7 +116,7 @@ TEST(WindowInitializer, ASequenceThatEndsEarlyMustBeAsCertain) {
 }
 
 TEST(WindowInitializer, WaitsWhileMostPointsAreUncertain) {
-  const Sequence sequence(31);
+  const WavingTracks sequence(31);
   WindowInitOptions options;
   options.certain_depth_sigma = options.last_depth_sigma = options.max_depth_sigma = 0.002;
   const InitOutcome waiting = sequence.Try(options);
@@ -190,7 +127,7 @@ TEST(WindowInitializer, WaitsWhileMostPointsAreUncertain) {
 
 TEST(WindowInitializer, DemandsLessTheLongerItWaits) {
   // What is not good enough at first is, of the same frames, where the reference is to be given up soon.
-  const Sequence sequence(31);
+  const WavingTracks sequence(31);
   WindowInitOptions options;
   options.certain_depth_sigma = options.max_depth_sigma = 0.002;
   EXPECT_EQ(sequence.Try(options).decision, InitDecision::kWait);
@@ -201,7 +138,7 @@ TEST(WindowInitializer, DemandsLessTheLongerItWaits) {
 }
 
 TEST(WindowInitializer, AttemptsAtTheSequencesEndWhatItWouldHaveWaitedFor) {
-  const Sequence sequence(42);  // due every 5 frames
+  const WavingTracks sequence(42);  // due every 5 frames
   const InitOutcome waiting = sequence.Try({});
   EXPECT_EQ(waiting.decision, InitDecision::kWait);
   EXPECT_THAT(waiting.reason, HasSubstr("the window has 42 frames"));
@@ -211,93 +148,19 @@ TEST(WindowInitializer, AttemptsAtTheSequencesEndWhatItWouldHaveWaitedFor) {
 }
 
 TEST(WindowInitializer, ARigidSceneNeedsTenFrames) {
-  const Sequence sequence(11, CameraMotion::kForwards, 0.0);
+  const WavingTracks sequence(11, CameraMotion::kForwards, 0.0);
   const InitOutcome outcome = sequence.Try({});
   ASSERT_EQ(outcome.decision, InitDecision::kMap) << outcome.reason;
   EXPECT_THAT(outcome.reason, HasSubstr("rigid window of 11 frames"));
   for (const int t : {0, 10}) EXPECT_LT(sequence.ShapeError(outcome, t), 0.3 * kShape) << t;
   // One that deforms a little does not pass for rigid, and is told so.
-  const InitOutcome breathing = Sequence(11, CameraMotion::kForwards, 0.3).Try({});
+  const InitOutcome breathing = WavingTracks(11, CameraMotion::kForwards, 0.3).Try({});
   EXPECT_EQ(breathing.decision, InitDecision::kWait);
   EXPECT_THAT(breathing.reason, HasSubstr("the scene deforms"));
 }
 
-TEST(MapRemaker, RefinesTheMapOfARigidSceneByTheFramesThatFollow) {
-  const Sequence start(11, CameraMotion::kForwards, 0.0);
-  const InitOutcome first = start.Try({});
-  ASSERT_EQ(first.decision, InitDecision::kMap) << first.reason;
-  EXPECT_TRUE(first.refinable);
-  const Sequence longer(61, CameraMotion::kForwards, 0.0);
-  const InitOutcome refined = longer.Remake(WindowScene::kRigid);
-  ASSERT_EQ(refined.decision, InitDecision::kMap) << refined.reason;
-  EXPECT_EQ(refined.frames.size(), 61U);
-  EXPECT_LT(longer.ShapeError(refined, 0), 0.5 * start.ShapeError(first, 0));
-  EXPECT_LT(longer.ShapeError(refined, 60), 0.5 * start.ShapeError(first, 0));
-
-  WindowInitOptions once;
-  once.refine_rigid = Switch::kOff;
-  EXPECT_FALSE(start.Try(once).refinable);
-}
-
-TEST(MapRemaker, RefinesNoMapOfASceneThatDeforms) {
-  const Sequence sequence(61);
-  const InitOutcome first = sequence.Try({});
-  ASSERT_EQ(first.decision, InitDecision::kMap) << first.reason;
-  EXPECT_FALSE(first.refinable);
-  const InitOutcome refined = sequence.Remake(WindowScene::kRigid);
-  EXPECT_EQ(refined.decision, InitDecision::kNewReference);
-  EXPECT_THAT(refined.reason, HasSubstr("the scene deforms"));
-}
-
-// A tenth of a pixel a frame at most: what it tells the first map is no worse than noise.
-TEST(MapRemaker, APointThatSlidesStaysOut) {
-  Sequence sequence(61, CameraMotion::kForwards, 0.0);
-  for (InitFrame& frame : sequence.frames)
-    for (InitObservation& seen : frame.observations)
-      if (seen.id == PointId{42}) seen.pixel.x() += 0.5 * std::sin(0.2 * (frame.frame_idx - 100));
-  for (const WindowScene scene : {WindowScene::kRigid, WindowScene::kAny}) {
-    const InitOutcome remade = sequence.Remake(scene);
-    ASSERT_EQ(remade.decision, InitDecision::kMap) << remade.reason;
-    EXPECT_EQ(FindById(remade.points, PointId{42}), nullptr);
-    EXPECT_EQ(FindById(remade.rejected, PointId{42})->reason, InitRejection::kReprojection);
-    EXPECT_GT(remade.points.size(), 100U);
-  }
-}
-
-TEST(MapRemaker, APointWithLargerErrorsIsLessCertain) {
-  Sequence sequence(61, CameraMotion::kForwards, 0.0);
-  const InitOutcome clean = sequence.Remake(WindowScene::kRigid);
-  ASSERT_EQ(clean.decision, InitDecision::kMap) << clean.reason;
-  const InitPoint* before = FindById(clean.points, PointId{42});
-  ASSERT_NE(before, nullptr);
-  Random random(4);  // twice the noise of the others
-  for (InitFrame& frame : sequence.frames)
-    for (InitObservation& seen : frame.observations)
-      if (seen.id == PointId{42})
-        seen.pixel += Eigen::Vector2d(random.Normal(2 * kNoisePx), random.Normal(2 * kNoisePx));
-  const InitOutcome noisy = sequence.Remake(WindowScene::kRigid);
-  ASSERT_EQ(noisy.decision, InitDecision::kMap) << noisy.reason;
-  const InitPoint* after = FindById(noisy.points, PointId{42});
-  ASSERT_NE(after, nullptr);
-  EXPECT_GT(after->depth_sigma, 1.5 * before->depth_sigma);
-}
-
-TEST(MapRemaker, MakesAMapOfASceneThatDeformsWhereItMayBeAny) {
-  const Sequence sequence(46);
-  EXPECT_EQ(sequence.Remake(WindowScene::kRigid).decision, InitDecision::kNewReference);
-  const InitOutcome remade = sequence.Remake(WindowScene::kAny);
-  ASSERT_EQ(remade.decision, InitDecision::kMap) << remade.reason;
-  EXPECT_LT(sequence.ShapeError(remade, 45), kShape);
-  // Where there are too few points there is nothing to be made of them.
-  Sequence empty(46);
-  for (InitFrame& frame : empty.frames) frame.observations.resize(5);
-  const InitOutcome none = empty.Remake(WindowScene::kAny);
-  EXPECT_NE(none.decision, InitDecision::kMap);
-  EXPECT_FALSE(none.reason.empty());
-}
-
 TEST(WindowInitializer, MakesNoMapOfNoise) {
-  Sequence sequence(61);
+  WavingTracks sequence(61);
   Random random(8);
   for (std::size_t t = 1; t < sequence.frames.size(); ++t)
     for (InitObservation& seen : sequence.frames[t].observations)
@@ -310,7 +173,7 @@ TEST(WindowInitializer, MakesNoMapOfNoise) {
 }
 
 TEST(WindowInitializer, MakesNoMapOfNineWrongTracksInTen) {
-  Sequence sequence(61);
+  WavingTracks sequence(61);
   Random random(8);
   for (std::size_t t = 1; t < sequence.frames.size(); ++t)
     for (InitObservation& seen : sequence.frames[t].observations)
@@ -319,7 +182,7 @@ TEST(WindowInitializer, MakesNoMapOfNineWrongTracksInTen) {
 }
 
 TEST(WindowInitializer, APointThatIsNoNumberMakesNoDifference) {
-  Sequence sequence(61);
+  WavingTracks sequence(61);
   for (InitFrame& frame : sequence.frames)
     for (InitObservation& seen : frame.observations)
       if (seen.id == PointId{42}) seen.pixel.x() = std::numeric_limits<double>::quiet_NaN();
@@ -332,7 +195,7 @@ TEST(WindowInitializer, APointThatIsNoNumberMakesNoDifference) {
 
 // The light is not at the camera, or the tissue is of many colours: brightness says nothing of distance.
 TEST(WindowInitializer, DoesNotBelieveALightThatSaysNothing) {
-  Sequence sequence(61);
+  WavingTracks sequence(61);
   Random random(9);
   std::vector<double> albedos;
   for (std::size_t i = 0; i < sequence.points.size(); ++i) albedos.push_back(std::exp(random.Normal(0.7)));
@@ -348,7 +211,7 @@ TEST(WindowInitializer, DoesNotBelieveALightThatSaysNothing) {
 // A lens that shades the border, or a light that points ahead: known, it does no harm.
 TEST(WindowInitializer, AVignetteThatIsKnownIsNoDepth) {
   const PhotometricCalibration lens{.gamma = 1.6, .vignetting = 4, .light_spread = 6};
-  Sequence sequence(61);
+  WavingTracks sequence(61);
   for (InitFrame& frame : sequence.frames)
     for (InitObservation& seen : frame.observations) {
       const double light =
@@ -367,7 +230,7 @@ TEST(WindowInitializer, AVignetteThatIsKnownIsNoDepth) {
 }
 
 TEST(WindowInitializer, WhenAllPointsAreOneItSaysSo) {
-  Sequence sequence(61);
+  WavingTracks sequence(61);
   for (InitFrame& frame : sequence.frames)
     for (InitObservation& seen : frame.observations) seen.pixel = {200, 150};
   const InitOutcome outcome = sequence.Try({}, InitMoment::kLastFrame);
@@ -376,13 +239,13 @@ TEST(WindowInitializer, WhenAllPointsAreOneItSaysSo) {
 }
 
 TEST(WindowInitializer, SaysThatTheCameraOnlyTurned) {
-  const InitOutcome outcome = Sequence(31, CameraMotion::kRotation).Try({});
+  const InitOutcome outcome = WavingTracks(31, CameraMotion::kRotation).Try({});
   EXPECT_EQ(outcome.decision, InitDecision::kWait);
   EXPECT_THAT(outcome.reason, HasSubstr("rotated or stood still"));
 }
 
 TEST(WindowInitializer, SaysThatTheCameraStoodStill) {
-  const InitOutcome outcome = Sequence(31, CameraMotion::kStill).Try({});
+  const InitOutcome outcome = WavingTracks(31, CameraMotion::kStill).Try({});
   EXPECT_EQ(outcome.decision, InitDecision::kWait);
   EXPECT_THAT(outcome.reason, HasSubstr("rotated or stood still"));
 }
@@ -390,7 +253,7 @@ TEST(WindowInitializer, SaysThatTheCameraStoodStill) {
 // Two views of a plane are explained by two motions, each of which is a minimum of the window's cost.
 TEST(WindowInitializer, ARigidPlaneIsFlat) {
   for (const int frames : {36, 46, 61}) {
-    const Sequence plane(frames, CameraMotion::kForwards, 0, 0);
+    const WavingTracks plane(frames, CameraMotion::kForwards, 0, 0);
     const InitOutcome outcome = plane.Try({});
     ASSERT_EQ(outcome.decision, InitDecision::kMap) << frames << ": " << outcome.reason;
     EXPECT_LT(plane.ShapeError(outcome, 0), 0.25 * kShape) << frames;
@@ -402,7 +265,7 @@ TEST(WindowInitializer, ARigidPlaneIsFlat) {
 TEST(WindowInitializer, APlaneOfTwoMotionsIsNoMap) {
   for (const auto& [frames, amplitude] : {std::pair(11, 1.0), std::pair(16, 0.3)}) {
     for (const InitMoment moment : {InitMoment::kMoreFollow, InitMoment::kLastFrame}) {
-      const InitOutcome outcome = Sequence(frames, CameraMotion::kForwards, amplitude, 0).Try({}, moment);
+      const InitOutcome outcome = WavingTracks(frames, CameraMotion::kForwards, amplitude, 0).Try({}, moment);
       EXPECT_NE(outcome.decision, InitDecision::kMap) << outcome.reason;
     }
   }
@@ -413,7 +276,7 @@ TEST(WindowInitializer, APlaneThatWavesIsKnownOrRefused) {
   int maps = 0;
   for (const unsigned seed : {1U, 2U, 3U}) {
     for (const int frames : {31, 36, 46}) {
-      const Sequence plane(frames, CameraMotion::kForwards, 1, 0, seed);
+      const WavingTracks plane(frames, CameraMotion::kForwards, 1, 0, seed);
       const InitOutcome outcome = plane.Try({}, InitMoment::kLastFrame);
       if (outcome.decision != InitDecision::kMap) continue;
       ++maps;
@@ -425,7 +288,7 @@ TEST(WindowInitializer, APlaneThatWavesIsKnownOrRefused) {
 }
 
 TEST(WindowInitializer, APointThatIsSeenBrieflyJoinsTheMap) {
-  Sequence sequence(61);
+  WavingTracks sequence(61);
   // Every tenth in half of the frames alone: too few of the problem's views.
   for (std::size_t t = 30; t < 61; ++t)
     std::erase_if(sequence.frames[t].observations, [](const InitObservation& seen) { return seen.id.value % 10 == 0; });
@@ -452,7 +315,7 @@ TEST(WindowInitializer, APointThatIsSeenBrieflyJoinsTheMap) {
 }
 
 TEST(WindowInitializer, AsksForANewReferenceWhenTooFewPointsAreLeft) {
-  Sequence sequence(31);
+  WavingTracks sequence(31);
   sequence.frames.back().observations.resize(10);
   const InitOutcome outcome = sequence.Try({});
   EXPECT_EQ(outcome.decision, InitDecision::kNewReference);
