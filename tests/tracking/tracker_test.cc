@@ -5,9 +5,11 @@
 #include "pliant/tracking/tracker.h"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include <gmock/gmock.h>
+#include <opencv2/imgproc.hpp>
 
 #include "tracking/tracker_from_images.h"
 
@@ -246,6 +248,40 @@ TEST_F(TrackerFromImages, TheMapGrowsWhereTheImageShowsMore) {
     for (const NewPoint& point : report.new_points) EXPECT_TRUE(map.insert(point.id).second) << "twice";
     ExpectFromTheMap(report, map, *camera_);
   }
+}
+
+// A stain moves to and fro on the scene. From frame to frame that may be the scene that deforms; over the frames of
+// which the map is made anew it contradicts all that is around it.
+TEST_F(TrackerFromImages, AMapThatIsMadeAnewDropsWhatContradictsIt) {
+  const cv::Rect stain(130, 90, 60, 60);
+  TrackerOptions options;
+  options.init.method = InitMethod::kDepth;
+  options.growth.window = kFrames - 2;
+  options.growth.remake_every = kFrames - 1;
+  options.growth.max_measured_share = 1.1;  // even where depth was measured everywhere
+  Tracker tracker = MakeTracker(options);
+  std::vector<FrameReport> reports;
+  for (int i = 0; i < kFrames; ++i) {
+    cv::Mat image = (*images_)[static_cast<std::size_t>(i)].clone();
+    cv::Mat moved;
+    cv::warpAffine(image, moved, cv::Matx23d(1, 0, std::sin(0.8 * i), 0, 1, 0), image.size());
+    moved(stain).copyTo(image(stain));
+    TrackerFrame frame = PrepareFrame(i, NameOf(i), i / 30.0, image, {}, options);
+    frame.depth_mm = *depth_;
+    for (FrameReport& report : tracker.Process(frame)) reports.push_back(std::move(report));
+  }
+  ASSERT_EQ(static_cast<int>(reports.size()), kFrames);
+  const auto on_the_stain = [&](const FrameReport& report) {
+    return std::count_if(report.observations.begin(), report.observations.end(), [&](const PointObservation& seen) {
+      return stain.contains(cv::Point2d(seen.pixel.x(), seen.pixel.y()));
+    });
+  };
+  const FrameReport& before = reports[kFrames - 2];
+  const FrameReport& after = reports[kFrames - 1];
+  EXPECT_THAT(after.note, HasSubstr("made anew"));
+  EXPECT_GE(on_the_stain(before), 10);
+  EXPECT_LE(on_the_stain(after), on_the_stain(before) / 3);
+  EXPECT_GT(after.optimized, 0.9 * static_cast<double>(before.optimized - on_the_stain(before)));
 }
 
 TEST_F(TrackerFromImages, AFrameWithoutCornersIsReportedAtOnce) {
