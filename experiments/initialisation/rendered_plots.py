@@ -1,24 +1,18 @@
 # SPDX-FileCopyrightText: 2026 The Pliant authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The plots of first maps, a panel a set of scenes, each as PNG and SVG. Nothing is told by colour alone."""
+"""The plots of first maps, a panel a set of scenes, each as PNG and SVG."""
 
 import pathlib
 import statistics
 
-import matplotlib
-
-matplotlib.use("Agg")
-matplotlib.rcParams["svg.hashsalt"] = "pliant"  # the same figures give the same file
-import matplotlib.pyplot as plt
-
 import grid
+import plots
 import rendered
+from plots import plt
 
-# A colour a family of starts (window_no_light is of `window`), a marker a start. Okabe and Ito's colours, which
-# everybody can tell apart.
-COLOURS = ["#0072B2", "#D55E00", "#009E73", "#000000", "#CC79A7", "#E69F00", "#56B4E9"]
+# A colour a family of starts (window_no_light is of `window`), a marker a start.
+COLOURS = [plots.BLUE, plots.VERMILION, plots.GREEN, plots.BLACK, plots.PURPLE, plots.ORANGE, plots.SKY]
 MARKERS = ["o", "s", "^", "D", "v", "P", "X", "*", "<", ">", "h"]
-NULL = {"color": "0.6", "linewidth": 3}
 LIMIT = {"color": "0.4", "linewidth": 1, "linestyle": "--"}
 LEAST_DEPTH_ERROR = 1e-4  # smaller ones are drawn here: the axis is logarithmic, and the true map's error is rounding
 
@@ -54,9 +48,8 @@ def depth_axis(axis, failed_above):
 def save(figure, styles, more_handles, folder, name):
     handles = [plt.Line2D([], [], linestyle="none", label=variant, **style) for variant, style in styles.items()]
     figure.legend(handles=handles + more_handles, loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
-    for ending, metadata in (("png", None), ("svg", {"Date": None})):
-        figure.savefig(pathlib.Path(folder) / f"{name}.{ending}", dpi=120, metadata=metadata, bbox_inches="tight")
-    plt.close(figure)
+    plots.save(figure, [pathlib.Path(folder) / f"{name}.{ending}" for ending in ("png", "svg")], dpi=120,
+               bbox_inches="tight")
 
 
 def limit_handle(limits):
@@ -79,12 +72,12 @@ def depth_error(grouped, limits, cell_names, folder):
                 axis.plot(x, middle, **style)
             nulls = [value for one in starts.values() for value in one.values("null_median_depth")]
             if nulls:
-                axis.plot([place - 0.4, place + 0.4], [statistics.median(nulls)] * 2, zorder=0, **NULL)
+                axis.plot([place - 0.4, place + 0.4], [statistics.median(nulls)] * 2, zorder=0, **plots.NULL)
         axis.set_xticks(range(len(cells)), [rendered.speed_of(cell, cell_names) for cell in cells])
         axis.set_title(name)
         depth_axis(axis, limits.failed_above)
     figure.supylabel("median relative depth error of the first map")
-    save(figure, styles, [plt.Line2D([], [], label="one constant depth", **NULL), limit_handle(limits)], folder,
+    save(figure, styles, [plt.Line2D([], [], label="one constant depth", **plots.NULL), limit_handle(limits)], folder,
          "depth_error")
 
 
@@ -114,7 +107,7 @@ def failures(grouped, limits, cell_names, folder):
     figure, axes = plt.subplots(len(grouped), len(speeds), squeeze=False, sharex=True, sharey=True,
                                 figsize=(3 * len(speeds) + 1, (0.25 * len(names) + 0.6) * len(grouped)),
                                 constrained_layout=True)
-    kinds = {"good": {"facecolor": "#56B4E9"}, "failed": {"facecolor": "#D55E00", "hatch": "////", "edgecolor": "white"},
+    kinds = {"good": {"facecolor": plots.SKY}, "failed": {"facecolor": plots.VERMILION, "hatch": "////", "edgecolor": "white"},
              "no map": {"facecolor": "white", "edgecolor": "0.6"}}
     for row, (name, cells) in zip(axes, grouped.items()):
         for axis, (cell, starts) in zip(row, cells.items()):

@@ -4,18 +4,14 @@
 
 import math
 
-import matplotlib
-
-matplotlib.use("Agg")
-matplotlib.rcParams["svg.hashsalt"] = "two_views"
-import matplotlib.pyplot as plt
 import matplotlib.ticker
-
+import plots
 import two_views
+from plots import plt
 
-# Okabe and Ito's colours, which colour-blind people tell apart; markers and dashes say the same again.
-STYLES = [("#0072B2", "o", "-"), ("#D55E00", "s", "--"), ("#009E73", "^", "-."), ("#CC79A7", "D", ":"),
-          ("#000000", "v", "-"), ("#E69F00", "x", "--")]
+# A colour, marker and dashes a line.
+STYLES = [(plots.BLUE, "o", "-"), (plots.VERMILION, "s", "--"), (plots.GREEN, "^", "-."), (plots.PURPLE, "D", ":"),
+          (plots.BLACK, "v", "-"), (plots.ORANGE, "x", "--")]
 LABELS = {"median_depth_error": "median depth error", "direction_deg": "direction error, deg", "ms": "time, ms",
           "success": "successes", "refused": "refused", "outliers": "share of outliers", "noise_px": "noise, px",
           "gap_frames": "frames between"}
@@ -63,7 +59,4 @@ def draw(crosses, name, csv_path, image_paths):
             axis.tick_params(labelsize=7)
     figure.legend(*axes[0][0].get_legend_handles_labels(), loc="lower center", bbox_to_anchor=(0.5, 1.0),
                   ncols=len(lines), fontsize=8, frameon=False)
-    for path in image_paths:
-        # Without a date, so that the same rows give the same file.
-        figure.savefig(path, dpi=130, bbox_inches="tight", metadata={"Date": None} if path.endswith(".svg") else None)
-    plt.close(figure)
+    plots.save(figure, image_paths, dpi=130, bbox_inches="tight")

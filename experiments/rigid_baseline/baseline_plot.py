@@ -1,22 +1,17 @@
 # SPDX-FileCopyrightText: 2026 The Pliant authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The curves over amplitude, as PNG and SVG: where the rigid reconstruction breaks. Nothing is told by colour alone."""
+"""The curves over amplitude, as PNG and SVG: where the rigid reconstruction breaks."""
 
 import pathlib
 
-import matplotlib
-
-matplotlib.use("Agg")
-matplotlib.rcParams["svg.hashsalt"] = "pliant"  # the same figures give the same file
-import matplotlib.pyplot as plt
-
 import baseline
 import grid
+import plots
+from plots import plt
 
-# Okabe and Ito's colours, which everybody can tell apart.
-STYLES = [{"color": "#0072B2", "marker": "o"}, {"color": "#D55E00", "marker": "s"}, {"color": "#009E73", "marker": "^"},
-          {"color": "#CC79A7", "marker": "v"}, {"color": "#E69F00", "marker": "D"}]
-NULL = {"color": "0.6", "linewidth": 3}
+STYLES = [{"color": plots.BLUE, "marker": "o"}, {"color": plots.VERMILION, "marker": "s"},
+          {"color": plots.GREEN, "marker": "^"}, {"color": plots.PURPLE, "marker": "v"},
+          {"color": plots.ORANGE, "marker": "D"}]
 PANELS = [("surface RMSE, mm", "rmse_mm", 1, "log"), ("ATE, % of the path", "ate_percent", 1, "log"),
           ("tracks that go on with another one, %", "continuing_share", 100, "linear"),
           ("reprojection error, median, px", "reprojection_px", 1, "linear")]
@@ -49,9 +44,7 @@ def write(figures_path, folder):
             axis.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
     nulls = {float(amplitude): baseline.median(rows, "null_rmse_mm") for (amplitude, _), rows in grouped.items() if rows}
     nulls = {amplitude: null for amplitude, null in nulls.items() if null is not None}
-    axes.flat[0].plot(list(nulls), list(nulls.values()), label="one constant depth", zorder=0, **NULL)
+    axes.flat[0].plot(list(nulls), list(nulls.values()), label="one constant depth", zorder=0, **plots.NULL)
     axes.flat[0].legend(frameon=False)
     figure.supxlabel("amplitude of the deformation, mm")
-    for ending, metadata in (("png", None), ("svg", {"Date": None})):
-        figure.savefig(pathlib.Path(folder) / f"comparison.{ending}", dpi=120, metadata=metadata)
-    plt.close(figure)
+    plots.save(figure, [pathlib.Path(folder) / f"comparison.{ending}" for ending in ("png", "svg")], dpi=120)
