@@ -17,8 +17,12 @@
 namespace pliant {
 namespace {
 
-constexpr std::size_t kNearest = 3;     // landmarks that tell the depth of a pixel
+constexpr std::size_t kNearest = 8;     // landmarks that tell the depth of a pixel
 constexpr double kFarthestShare = 0.1;  // of the image's width, they are away from it
+constexpr double kNear = 0.01;          // squared share of that: nearer ones count alike
+constexpr double kFlat = 0.1;           // weight of no slope, of a landmark's at that distance
+// Pixels that must tell the unit: where maps overlap by an edge alone, what is beside it says little.
+constexpr std::size_t kLeastRatios = 30;
 
 // A pixel of the image, and how far from the camera what it shows is.
 struct PixelDistance {
@@ -26,35 +30,36 @@ struct PixelDistance {
   double distance;
 };
 
-// The logarithm of the distance at a pixel, from the nearest of those that are known, the nearer the more; nothing
-// where there are none.
+// The logarithm of the distance at a pixel, from the nearest of those that are known: of the plane through them, over
+// the image, the nearer the more, as the wall is seen aslant. Nothing where there are none.
 std::optional<double> LogDistanceAt(const Eigen::Vector2d& pixel, std::vector<PixelDistance>& known, double radius_px) {
   const auto nearer = [&](const PixelDistance& a, const PixelDistance& b) {
     return (a.pixel - pixel).squaredNorm() < (b.pixel - pixel).squaredNorm();
   };
   if (known.size() < kNearest) return std::nullopt;
   std::partial_sort(known.begin(), known.begin() + kNearest, known.end(), nearer);
-  double sum = 0;
-  double weights = 0;
+  Eigen::Matrix3d normal = Eigen::Vector3d(0, kFlat, kFlat).asDiagonal();
+  Eigen::Vector3d right = Eigen::Vector3d::Zero();
   for (std::size_t k = 0; k < kNearest; ++k) {
-    const double squared = (known[k].pixel - pixel).squaredNorm();
-    if (squared > radius_px * radius_px) return std::nullopt;
-    const double weight = 1 / (1 + squared);
-    sum += weight * std::log(known[k].distance);
-    weights += weight;
+    const Eigen::Vector2d offset = (known[k].pixel - pixel) / radius_px;
+    if (offset.squaredNorm() > 1) return std::nullopt;
+    const Eigen::Vector3d row(1, offset.x(), offset.y());
+    const double weight = 1 / (kNear + offset.squaredNorm());
+    normal += weight * row * row.transpose();
+    right += weight * std::log(known[k].distance) * row;
   }
-  return sum / weights;
+  return normal.ldlt().solve(right).x();
 }
 
-// How many of the first one's units one of the second's is: the median over the first one's pixels. Nothing where fewer
-// than `min_points` pixels tell it, or where they differ too much.
+// How many of the first one's units one of the second's is: the median over the first one's pixels. Nothing where too
+// few pixels tell it, or where they differ too much.
 std::optional<double> UnitRatio(const std::vector<PixelDistance>& first, std::vector<PixelDistance> second,
-                                double radius_px, int min_points, double max_spread) {
+                                double radius_px, double max_spread) {
   std::vector<double> logs;
   for (const PixelDistance& point : first)
     if (const auto log_distance = LogDistanceAt(point.pixel, second, radius_px))
       logs.push_back(std::log(point.distance) - *log_distance);
-  if (static_cast<int>(logs.size()) < min_points) return std::nullopt;
+  if (logs.size() < kLeastRatios) return std::nullopt;
   const double median = Median(logs);
   for (double& log : logs) log = std::abs(log - median);
   if (Median(std::move(logs)) > max_spread) return std::nullopt;
@@ -82,8 +87,8 @@ std::optional<Sim3> Tracker::SeenWithPresent(const TrackerFrame& frame, std::uni
   std::vector<PixelDistance> in_now;
   for (const Landmark& landmark : now_->map.landmarks)
     in_now.push_back({landmark.pixel, (now_->last_cam_from_world * landmark.position).norm()});
-  const auto unit = UnitRatio(in_left, std::move(in_now), kFarthestShare * camera_.width(), options_.min_points,
-                              options_.relocalization.max_unit_spread);
+  const auto unit =
+      UnitRatio(in_left, std::move(in_now), kFarthestShare * camera_.width(), options_.relocalization.max_unit_spread);
   if (!unit) return std::nullopt;
   return WorldFromPoses(cam_from_left, now_->last_cam_from_world, *unit);
 }
