@@ -62,6 +62,7 @@ Status CollectFrame(const EvaluationFrame& frame, const Sequence& sequence, cons
     if (truth->material)
       if (Status status = truth->material->AddFrame(frame.frame_idx, paired->points); !status.ok()) return status;
     known.surface = std::move(paired->surface);
+    if (known.surface) known.surface->submap = frame.submap;
     // A map that was made of one frame may be of its pair, and would be compared with itself.
     const bool of_one_frame =
         frame.first_map && frame.first_map->reference_frame_idx == frame.first_map->declared_frame_idx;

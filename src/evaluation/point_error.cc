@@ -4,6 +4,8 @@
 #include "pliant/evaluation/point_error.h"
 
 #include <algorithm>
+#include <map>
+#include <utility>
 
 #include "pliant/base/statistics.h"
 
@@ -56,13 +58,32 @@ PointSummary Pool::Summary() const {
   return summary;
 }
 
-// `all`: the pairs of all frames. At least one frame has a pair.
-ProtocolError ComputeProtocolError(std::span<const PairedFrame> frames, std::span<const PointPair> all,
-                                   ErrorProtocol protocol, const PointErrorOptions& options) {
+// One scale for all frames of a submap.
+struct SubmapScale {
+  double estimate = 1;
+  double null_depth = 1;
+};
+
+std::map<int, SubmapScale> SubmapScales(std::span<const PairedFrame> frames, ErrorProtocol protocol, ErrorScale scale) {
+  std::map<int, std::vector<PointPair>> submaps;
+  for (const PairedFrame& frame : frames)
+    submaps[frame.submap].insert(submaps[frame.submap].end(), frame.pairs.begin(), frame.pairs.end());
+  std::map<int, SubmapScale> scales;
+  for (const auto& [idx, pairs] : submaps) {
+    if (pairs.empty()) continue;
+    if (scale == ErrorScale::kGlobal) scales[idx].estimate = ProtocolScale(pairs, protocol);
+    // The null has no millimetres of its own: without per-frame scales it gets the best one depth.
+    scales[idx].null_depth = ProtocolScale(NullPairs(pairs), protocol);
+  }
+  return scales;
+}
+
+// At least one frame has a pair.
+ProtocolError ComputeProtocolError(std::span<const PairedFrame> frames, ErrorProtocol protocol,
+                                   const PointErrorOptions& options) {
   const bool per_frame = options.scale == ErrorScale::kPerFrame;
-  const double run_scale = options.scale == ErrorScale::kGlobal ? ProtocolScale(all, protocol) : 1.0;
-  // The null has no millimetres of its own: without per-frame scales it gets the best one depth of the whole run.
-  const double null_depth = per_frame ? 1.0 : ProtocolScale(NullPairs(all), protocol);
+  std::map<int, SubmapScale> scales;
+  if (!per_frame) scales = SubmapScales(frames, protocol, options.scale);
   ProtocolError error;
   error.protocol = protocol;
   Pool estimates;
@@ -75,8 +96,8 @@ ProtocolError ComputeProtocolError(std::span<const PairedFrame> frames, std::spa
     if (frame.pairs.empty()) continue;
     PointFrameError row;
     row.frame_idx = frame.frame_idx;
-    row.estimate = figures(frame.pairs, run_scale, &estimates);
-    row.null = figures(NullPairs(frame.pairs), null_depth, &nulls);
+    row.estimate = figures(frame.pairs, scales[frame.submap].estimate, &estimates);
+    row.null = figures(NullPairs(frame.pairs), scales[frame.submap].null_depth, &nulls);
     error.frames.push_back(row);
   }
   error.estimate = estimates.Summary();
@@ -135,11 +156,11 @@ Result<PointError> ComputePointError(std::span<const PairedFrame> frames, const 
     return Status(ErrorCode::kInsufficient, "no point has a true position to compare with: of " +
                                                 std::to_string(error.left_out.Total()) + " observations " +
                                                 Describe(error.left_out) + "; check that the truth is this run's");
-  error.plain = ComputeProtocolError(frames, all, ErrorProtocol::kPaper, options);
+  error.plain = ComputeProtocolError(frames, ErrorProtocol::kPaper, options);
   for (const auto& [protocol, name] : EnumNames<ErrorProtocol>::kNames) {
     if (std::find(options.protocols.begin(), options.protocols.end(), protocol) == options.protocols.end()) continue;
     error.protocols.push_back(protocol == ErrorProtocol::kPaper ? error.plain
-                                                                : ComputeProtocolError(frames, all, protocol, options));
+                                                                : ComputeProtocolError(frames, protocol, options));
   }
   return error;
 }

@@ -156,5 +156,20 @@ TEST(PointError, ScaleIsOrthogonalToTheProtocol) {
   }
 }
 
+// Two maps have a unit each: that is no drift.
+TEST(PointError, AGlobalScaleIsOneASubmap) {
+  const std::vector<PairedFrame> frames = {
+      {0, Pairs(99, 2, 0, 0), {}}, {1, Pairs(99, 2, 0, 0), {}}, {2, Pairs(99, 3, 0, 0), {}, 1}};
+  PointErrorOptions options;
+  options.scale = ErrorScale::kGlobal;
+  const auto error = ComputePointError(frames, options);
+  ASSERT_TRUE(error.ok());
+  EXPECT_NEAR(error->plain.frames[0].estimate.scale, 2, kRounding);
+  EXPECT_NEAR(error->plain.frames[2].estimate.scale, 3, kRounding);
+  EXPECT_LT(error->plain.estimate.mean_rmse_mm, kRounding);
+  const std::vector<PairedFrame> one_map = {frames[0], frames[1], {2, frames[2].pairs, {}}};
+  EXPECT_GT(ComputePointError(one_map, options)->plain.estimate.mean_rmse_mm, 1);
+}
+
 }  // namespace
 }  // namespace pliant

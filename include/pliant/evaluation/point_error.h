@@ -49,6 +49,7 @@ struct PairedFrame {
   int frame_idx = 0;
   std::vector<PointPair> pairs;
   LeftOutCounts left_out;
+  int submap = 0;  // whose unit the estimates are in
 };
 
 // The figures of one set of pairs, of the estimate or of its null.

@@ -39,7 +39,7 @@ struct EnumNames<ErrorProtocol> {
 // What the estimate is multiplied with before it is compared; orthogonal to the protocol, which says how s is found.
 enum class ErrorScale {
   kPerFrame,  // the best scale of each frame: the paper's protocol for maps of a monocular start
-  kGlobal,    // one best scale for all frames: drift of the scale counts as error
+  kGlobal,    // one best scale for all frames of a submap: drift of the scale counts as error
   kNone,      // 1: for maps that claim millimetres (stereo, depth). The null gets its one best depth all the same
 };
 
