@@ -34,8 +34,10 @@ const Manual kManual = {
     "Leaves in --output_path: config.yaml (every option as resolved), run.json (what ran and how it ended), "
     "trajectory.txt (TUM, world_from_camera), frames.csv (one row a frame), observations.csv (one row a point and "
     "frame), map.ply (the undeformed map) and sparse/ (a COLMAP model). Rows are on disk as frames are done: a run "
-    "that is lost, interrupted or killed keeps what it had. When too few points are left the run ends as `lost`, "
-    "which is an answer and no failure: the exit code is 0, and run.json says so.",
+    "that is lost, interrupted or killed keeps what it had. When too few points are left the "
+    "camera is sought in every frame, and in the end another map is begun (map_1.ply, sparse/0 and sparse/1; "
+    "frames.csv says which one a frame belongs to). A run that ends while the camera is lost is `lost`, which is an "
+    "answer and no failure: the exit code is 0, and run.json says so.",
     {"pliant track --image_path clip.mp4 --camera camera.yaml --output_path run",
      "pliant track --image_path seq --output_path run --preset paper --start 100 --end 400"},
 };
@@ -67,9 +69,10 @@ int Report(const RunSummary& summary, const TrackArguments& arguments) {
   if (arguments.quiet) return kExitOk;
   std::array<char, 64> rate;
   std::snprintf(rate.data(), rate.size(), "%.1f frames/s", summary.frames_per_second);
+  const std::string maps = summary.submaps > 1 ? " in " + std::to_string(summary.submaps) + " maps" : "";
   std::cout << EnumName(summary.status) << ": " << summary.note << "\n"
-            << summary.frames_tracked << " of " << summary.frames_read << " frames tracked, " << summary.points
-            << " points, " << rate.data() << "\n"
+            << summary.frames_tracked << " of " << summary.frames_read << " frames tracked" << maps << ", "
+            << summary.points << " points, " << rate.data() << "\n"
             << arguments.output_path << std::endl;
   return kExitOk;
 }

@@ -61,8 +61,8 @@ Status AddPoints(const RunMap& known, RunSource* source) {
   for (const auto& [id, point] : points) source->points.push_back(point);
   if (unknown > 0)
     source->notes.push_back(std::to_string(unknown) + " of " + std::to_string(points.size()) +
-                            " points have no undeformed position or colour in the run; their first position stands for "
-                            "it, in grey");
+                            " points are not in the run's sparse/, which is written at the end and has those seen in "
+                            "two frames or more; their first position stands for the undeformed one, in grey");
   return Status::Ok();
 }
 

@@ -91,18 +91,11 @@ class Recorder {
   FramesBefore before_;
 };
 
-// The ending at the sequence's end.
-Ending AtTheEnd(const Tracker& tracker, int frames, const std::string& last_note) {
-  switch (tracker.state()) {
-    case TrackingState::kTracking:
-      return {RunStatus::kCompleted, "the sequence's end was reached"};
-    case TrackingState::kLost:
-      return {RunStatus::kLost, last_note + "; then the sequence ended"};
-    case TrackingState::kWaitingForReference:
-    case TrackingState::kInitialising:
-      break;
-  }
-  if (tracker.LeftAMap()) return {RunStatus::kLost, last_note + "; then the sequence ended"};
+// The ending at the sequence's end; `last_tracked` is the name of the last tracked frame, if there is one.
+Ending AtTheEnd(const Tracker& tracker, int frames, const std::string& last_note, const std::string& last_tracked) {
+  if (tracker.state() == TrackingState::kTracking) return {RunStatus::kCompleted, "the sequence's end was reached"};
+  if (tracker.state() == TrackingState::kLost || tracker.LeftAMap())
+    return {RunStatus::kLost, "after frame " + last_tracked + "; in the sequence's last frame: " + last_note};
   if (frames == 1)
     return {RunStatus::kFailed, "one frame carries no map; give two or more, between which the camera moved"};
   return {RunStatus::kFailed, "the sequence ended without a first map: " + last_note};
@@ -116,6 +109,7 @@ Ending TrackFrames(Sequence& sequence, const RunRequest& request, const TrackOpt
       [&] { return NextFrame(sequence, options.tracker, options.threads, start, wants_depth); },
       options.threads > 1 ? kFramesAhead : 0);
   std::string last_note = "the sequence has no frames";
+  std::string last_tracked;
   int count = 0;
   while (auto frame = frames.Next()) {
     if (!frame->ok()) return {RunStatus::kFailed, frame->status().message()};
@@ -129,15 +123,19 @@ Ending TrackFrames(Sequence& sequence, const RunRequest& request, const TrackOpt
     const FrameReport& present = tracker.held().empty() ? done.back() : tracker.held().back();
     if (AwaitsAMap(present)) recorder.Announce(present);
     last_note = present.note;
+    for (const FrameReport& report : done)
+      if (report.state == TrackingState::kTracking) last_tracked = report.name;
     if (const Status recorded = recorder.Record(std::move(done)); !recorded.ok())
       return {RunStatus::kFailed, recorded.message()};
-    if (tracker.GaveUp()) return {RunStatus::kLost, "frame " + read.frame.name + ": " + last_note};
+    if (tracker.GaveUp())
+      return {RunStatus::kLost,
+              "after frame " + last_tracked + "; given up in frame " + read.frame.name + ": " + last_note};
     if (request.stop != nullptr && *request.stop)
       return {RunStatus::kInterrupted, "stopped on request after frame " + read.frame.name};
   }
   tracker.EndSequence();
   if (!tracker.held().empty()) last_note = tracker.held().back().note;
-  return AtTheEnd(tracker, count, last_note);
+  return AtTheEnd(tracker, count, last_note, last_tracked);
 }
 
 Ending TrackSequence(Sequence& sequence, const RunRequest& request, const TrackOptions& options, const RunStart& start,

@@ -267,7 +267,7 @@ void Tracker::ReportLost(const TrackerFrame& frame, const std::string& reason, F
   if (fault.empty()) ++lost_frames_;
   losses_.clear();
   now_->point_tracker.Undo();
-  report->note = WithFault("lost: " + reason, fault);
+  report->note = WithFault(reason, fault);
 }
 
 }  // namespace pliant
