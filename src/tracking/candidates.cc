@@ -21,7 +21,9 @@ constexpr std::size_t kMinAnchors = 3;    // fewer that are left: others are cho
 void GrowthOptions::List(OptionTable& table) {
   table.BeginGroup("Growth", "how the map grows, and is kept right, while it is tracked");
   table.AddChoice("grow", &grow, "follow new corners, and take them into the map when their depth is certain");
-  table.Add("every", &every, "frames", "from one look for new corners to the next", 1, 100000);
+  table.Add("every", &every, "frames",
+            "from one look for new corners to the next; twice that while half of Corners.max_corners are there", 1,
+            100000);
   table.Add("min_views", &min_views, "frames", "in which a new point must have been seen", 2, 100000);
   table.Add("max_views", &max_views, "frames", "after which a point that is not certain is given up", 2, 100000);
   table.Add("neighbors", &neighbors, "-", "points of the map that say how a new point's surroundings move", 3, 1000);
@@ -39,7 +41,17 @@ void GrowthOptions::List(OptionTable& table) {
             "while so many of the points in view had their depth measured at the start (stereo, depth), the map is not "
             "made anew",
             0.01, 2);
-  table.Add("remake_every", &remake_every, "frames", "from one such attempt to the next", 1, 100000);
+  table.Add("remake_every", &remake_every, "frames",
+            "from one such attempt to the next; twice that while half of the points in view were in three of them", 1,
+            100000);
+  table.Add(
+      "max_depth_change", &max_depth_change, "-",
+      "a point that two of these maps had is dropped when another changes its depth by more than this, relative to "
+      "its neighbours', and by more than three standard deviations: it slid along a contour",
+      1e-3, 100);
+  table.Add("remade_weight", &remade_weight, "-",
+            "a point that n of these maps had goes 1/n of the way to where another has it, at least this; 1: all of it",
+            0.01, 1);
 }
 
 std::vector<CandidateTrack> Candidates::tracks() const {

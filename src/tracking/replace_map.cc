@@ -3,6 +3,8 @@
 
 #include "tracking/replace_map.h"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "pliant/base/statistics.h"
@@ -50,6 +52,19 @@ std::vector<InitPosition> RemadePositions(const InitOutcome& outcome, const Rigi
   for (const InitPosition& point : now.positions)
     positions.push_back({point.id, world_from_cam * Eigen::Vector3d(*unit * (now.cam_from_world * point.position))});
   return positions;
+}
+
+void WeighWithBefore(const Rigid3& cam_from_world, const Map& map, double least_weight,
+                     std::vector<InitPosition>* remade) {
+  const Rigid3 world_from_cam = cam_from_world.Inverse();
+  for (InitPosition& point : *remade) {
+    const Landmark* landmark = map.Find(point.id);
+    if (landmark == nullptr || landmark->times_remade < 2) continue;
+    const double weight = std::max(least_weight, 1.0 / landmark->times_remade);
+    const Eigen::Vector3d found = cam_from_world * point.position;
+    const double ratio = (cam_from_world * landmark->position).norm() / found.norm();
+    point.position = world_from_cam * Eigen::Vector3d(std::pow(ratio, 1.0 - weight) * found);
+  }
 }
 
 }  // namespace pliant

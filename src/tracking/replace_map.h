@@ -27,4 +27,9 @@ std::optional<Rigid3> ReplaceMap(const InitOutcome& outcome, const Rigid3& cam_f
 std::vector<InitPosition> RemadePositions(const InitOutcome& outcome, const Rigid3& cam_from_world, const Map& map,
                                           int min_common = 12);
 
+// (G7) Distances of RemadePositions from the camera: a landmark that `n` maps made anew had before is moved 1/n of the
+// way from where it is, in log distance, and at least `least_weight` of it.
+void WeighWithBefore(const Rigid3& cam_from_world, const Map& map, double least_weight,
+                     std::vector<InitPosition>* remade);
+
 }  // namespace pliant

@@ -14,10 +14,16 @@
 #include "tracking/oracle_answers.h"
 #include "tracking/replace_map.h"
 #include "tracking/rigid_history.h"
+#include "tracking/slid_points.h"
 #include "tracking/submap.h"
 #include "tracking/tracker_support.h"
 
 namespace pliant {
+namespace {
+
+constexpr int kSettled = 3;  // maps made anew that had a landmark: another one says little that is new
+
+}  // namespace
 
 void Tracker::DropFromMap(PointId id, FrameReport* report) {
   now_->point_tracker.Remove(id);
@@ -33,6 +39,16 @@ void Tracker::DropContradicting(const InitOutcome& outcome, FrameReport* report)
       Count(InitRejectionName(rejected.reason), 1);
       DropFromMap(rejected.id, report);
     }
+}
+
+// Points of the map that slid, by its points made anew; these become those that are left (G6).
+void Tracker::DropSlid(std::vector<InitPosition>* remade, FrameReport* report) {
+  const auto slid = SlidPoints(*remade, now_->last_cam_from_world, now_->map, options_.growth.max_depth_change);
+  for (const PointId id : slid) {
+    DropFromMap(id, report);
+    std::erase_if(*remade, [&](const InitPosition& point) { return point.id == id; });
+  }
+  Count("slid", static_cast<int>(slid.size()));
 }
 
 // While the scene is rigid (W13).
@@ -82,7 +98,8 @@ void Tracker::GrowMap(const TrackerFrame& frame, FrameReport* report) {
   for (const auto& [id, position] : now_->candidates.Certain(now_->last_cam_from_world, now_->map))
     Promote(id, position, report);
   RemakeMap(frame, report);
-  if (frame.frame_idx % options_.growth.every == 0) LookForCandidates(frame);
+  const bool half_full = 2 * now_->map.landmarks.size() >= static_cast<std::size_t>(options_.corners.max_corners);
+  if (frame.frame_idx % (half_full ? 2 * options_.growth.every : options_.growth.every) == 0) LookForCandidates(frame);
 }
 
 void Tracker::FollowCandidates(const TrackerFrame& frame) {
@@ -151,26 +168,30 @@ void Tracker::RemakeMap(const TrackerFrame& frame, FrameReport* report) {
   if (now_->window_frames.size() > length + 1)
     now_->window_frames.erase(now_->window_frames.begin(),
                               now_->window_frames.end() - static_cast<std::ptrdiff_t>(length + 1));
+  const auto share = [&](const auto& is_so) {
+    const auto count = std::count_if(report->observations.begin(), report->observations.end(),
+                                     [&](const PointObservation& point) { return is_so(*now_->map.Find(point.id)); });
+    return static_cast<double>(count) / static_cast<double>(report->observations.size());
+  };
+  const bool settled = share([](const Landmark& landmark) { return landmark.times_remade >= kSettled; }) > 0.5;
   if (now_->window_frames.size() <= length || !now_->rigid_history.empty() ||
-      frame.frame_idx % options_.growth.remake_every != 0)
+      frame.frame_idx % ((settled ? 2 : 1) * options_.growth.remake_every) != 0)
     return;
-  const auto measured =
-      std::count_if(report->observations.begin(), report->observations.end(),
-                    [&](const PointObservation& point) { return now_->map.Find(point.id)->measured; });
-  if (static_cast<double>(measured) >=
-      options_.growth.max_measured_share * static_cast<double>(report->observations.size()))
-    return;
+  if (share([](const Landmark& landmark) { return landmark.measured; }) >= options_.growth.max_measured_share) return;
   const InitOutcome outcome = remaker_->Remake(
       {camera_, now_->window_frames, {}, InitMoment::kMoreFollow, threads_, {}, photometric_}, WindowScene::kAny);
   if (outcome.decision != InitDecision::kMap) return;
-  const auto positions = RemadePositions(outcome, now_->last_cam_from_world, now_->map);
+  std::vector<InitPosition> positions = RemadePositions(outcome, now_->last_cam_from_world, now_->map);
   if (positions.empty()) return;
   DropContradicting(outcome, report);
+  DropSlid(&positions, report);
+  WeighWithBefore(now_->last_cam_from_world, now_->map, options_.growth.remade_weight, &positions);
   const Map before = now_->map;
   for (const InitPosition& point : positions)
     if (Landmark* landmark = now_->map.Find(point.id); landmark != nullptr) {
       landmark->rest_position += point.position - landmark->position;
       landmark->position = point.position;
+      ++landmark->times_remade;
       report->refined_points.push_back({landmark->id, landmark->rest_position});
     }
   now_->candidates.TakeCorrection(before, now_->map);

@@ -3,6 +3,7 @@
 
 #include "tracking/replace_map.h"
 
+#include <cmath>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -93,6 +94,28 @@ TEST(RemadePositions, AreInTheMapsWorldAndUnit) {
     EXPECT_LT((maps.before * positions[k].position - scale * (maps.after * point.position)).norm(), kRounding);
   }
   EXPECT_TRUE(RemadePositions(maps.outcome, maps.before, maps.map, 9).empty()) << "eight are in both";
+}
+
+// A mean over the maps that had a point, in log distance; the newest counts for a fifth at least.
+TEST(WeighWithBefore, TheMoreMapsHadAPointTheLessOneMovesIt) {
+  TwoMaps maps;
+  for (int i = 0; i < 9; ++i) maps.map.landmarks[static_cast<std::size_t>(i)].times_remade = i;
+  const auto remade = RemadePositions(maps.outcome, maps.before, maps.map, 8);
+  auto held = remade;
+  WeighWithBefore(maps.before, maps.map, 0.2, &held);
+  ASSERT_EQ(held.size(), remade.size());
+  for (std::size_t k = 0; k < held.size(); ++k) {
+    const Landmark* landmark = maps.map.Find(held[k].id);
+    if (landmark == nullptr || landmark->times_remade < 2) {
+      EXPECT_EQ(held[k].position, remade[k].position);
+      continue;
+    }
+    const double was = std::log((maps.before * landmark->position).norm());
+    const double found = std::log((maps.before * remade[k].position).norm());
+    const double weight = landmark->times_remade < 5 ? 1.0 / landmark->times_remade : 0.2;
+    EXPECT_NEAR(std::log((maps.before * held[k].position).norm()), was + weight * (found - was), kRounding);
+    EXPECT_LT((maps.before * held[k].position).cross(maps.before * remade[k].position).norm(), 1e-6);
+  }
 }
 
 }  // namespace

@@ -10,17 +10,20 @@ namespace pliant {
 
 struct GrowthOptions {
   Switch grow = Switch::kOn;
-  int every = 10;                 // frames from one look for new corners to the next
+  int every = 5;                  // frames from one look for new corners to the next; twice that while half are there
   int min_views = 8;              // of a candidate, before it can enter the map
   int max_views = 60;             // a candidate that is no more certain by then is given up
   int neighbors = 8;              // landmarks near it in the image, which say how its surroundings move
   double noise_px = 0.5;          // of a candidate's pixel, with what the poses are off
   double max_depth_sigma = 0.02;  // standard deviation of its distance, by the median of the map
-  int scarce_points = 40;         // with fewer in the map max_depth_sigma grows as they become less, up to 3 times
+  int scarce_points = 60;         // with fewer in the map max_depth_sigma grows as they become less, up to 3 times
   double max_error = 1.5;         // root mean square of its residuals, in standard deviations
   double max_error_ratio = 2.0;   // the same by its median over the candidates
   int window = 45;                // frames of which the map is made anew; 0: never
-  int remake_every = 20;          // frames
+  int remake_every = 20;          // frames; twice that while half of the points in view were in three such maps
+  // A point that two maps made anew had, and whose depth another one changes by more than its neighbours', has slid.
+  double max_depth_change = 0.02;
+  double remade_weight = 0.3;  // of a map made anew against those before it, at least
   // Where so many of the points in view had their depth measured at the start (a pair, a depth image), they are left
   // as they are.
   double max_measured_share = 0.5;

@@ -220,6 +220,7 @@ class Tracker {
   void LookForCandidates(const TrackerFrame& frame);
   void RemakeMap(const TrackerFrame& frame, FrameReport* report);
   void DropContradicting(const InitOutcome& outcome, FrameReport* report);
+  void DropSlid(std::vector<InitPosition>* remade, FrameReport* report);
 
   Camera camera_;
   std::optional<PhotometricCalibration> photometric_;
