@@ -168,16 +168,18 @@ void Tracker::RemakeMap(const TrackerFrame& frame, FrameReport* report) {
   if (now_->window_frames.size() > length + 1)
     now_->window_frames.erase(now_->window_frames.begin(),
                               now_->window_frames.end() - static_cast<std::ptrdiff_t>(length + 1));
-  const auto share = [&](const auto& is_so) {
-    const auto count = std::count_if(report->observations.begin(), report->observations.end(),
-                                     [&](const PointObservation& point) { return is_so(*now_->map.Find(point.id)); });
-    return static_cast<double>(count) / static_cast<double>(report->observations.size());
+  const int every = options_.growth.remake_every;
+  if (now_->window_frames.size() <= length || !now_->rigid_history.empty() || frame.frame_idx % every != 0) return;
+  const auto in_view = static_cast<double>(report->observations.size());
+  const auto count = [&](const auto& is_so) {
+    return static_cast<double>(
+        std::count_if(report->observations.begin(), report->observations.end(),
+                      [&](const PointObservation& point) { return is_so(*now_->map.Find(point.id)); }));
   };
-  const bool settled = share([](const Landmark& landmark) { return landmark.times_remade >= kSettled; }) > 0.5;
-  if (now_->window_frames.size() <= length || !now_->rigid_history.empty() ||
-      frame.frame_idx % ((settled ? 2 : 1) * options_.growth.remake_every) != 0)
+  if (count([](const Landmark& landmark) { return landmark.measured; }) >= options_.growth.max_measured_share * in_view)
     return;
-  if (share([](const Landmark& landmark) { return landmark.measured; }) >= options_.growth.max_measured_share) return;
+  const double settled = count([](const Landmark& landmark) { return landmark.times_remade >= kSettled; });
+  if (settled > 0.5 * in_view && frame.frame_idx % (2 * every) != 0) return;
   const InitOutcome outcome = remaker_->Remake(
       {camera_, now_->window_frames, {}, InitMoment::kMoreFollow, threads_, {}, photometric_}, WindowScene::kAny);
   if (outcome.decision != InitDecision::kMap) return;
