@@ -60,7 +60,8 @@ Status CollectFrame(const EvaluationFrame& frame, const Sequence& sequence, cons
     auto paired = PairFrame(frame, sequence.camera(), options.points.max_truth_sigma_mm, surface);
     if (!paired.ok()) return paired.status();
     if (truth->material)
-      if (Status status = truth->material->AddFrame(frame.frame_idx, paired->points); !status.ok()) return status;
+      if (Status status = truth->material->AddFrame(frame.frame_idx, frame.submap, paired->points); !status.ok())
+        return status;
     known.surface = std::move(paired->surface);
     if (known.surface) known.surface->submap = frame.submap;
     // A map that was made of one frame may be of its pair, and would be compared with itself.

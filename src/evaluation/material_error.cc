@@ -87,10 +87,11 @@ void MaterialErrorCollector::AddPoint(const TrackedPoint& point, const Track& tr
     frame->drift.mm.push_back((point.surface.depth_mm * unit_depth_ray - state.point_in_cam).norm());
 }
 
-Status MaterialErrorCollector::AddFrame(int frame_idx, std::span<const TrackedPoint> points) {
+Status MaterialErrorCollector::AddFrame(int frame_idx, int submap, std::span<const TrackedPoint> points) {
   if (Status status = StartTracks(frame_idx, points); !status.ok()) return status;
   Frame frame;
   frame.paired.frame_idx = frame_idx;
+  frame.paired.submap = submap;
   std::vector<MaterialId> materials;
   std::vector<const TrackedPoint*> followed;
   std::vector<Eigen::Vector2d> pixels;

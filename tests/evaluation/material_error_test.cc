@@ -15,9 +15,9 @@ constexpr double kRounding = 1e-9;  // of lengths of about 100 mm
 constexpr int kFrames = 6;
 
 Status AddFrame(int frame_idx, std::vector<TrackedPoint> points, const cv::Mat& depth_mm,
-                MaterialErrorCollector* collector) {
+                MaterialErrorCollector* collector, int submap = 0) {
   for (TrackedPoint& point : points) point.surface = LookUpDepth(depth_mm, point.pixel, 0.05);
-  return collector->AddFrame(frame_idx, points);
+  return collector->AddFrame(frame_idx, submap, points);
 }
 
 // Points that start at `first` in frame 0 and are tracked `slide_px` a frame beside their material; estimates are the
@@ -60,6 +60,25 @@ TEST_F(MaterialErrorTest, IsZeroForPointsThatStayOnTheirMaterial) {
   EXPECT_LT(error->drift.rmse_mm, kRounding);
   EXPECT_EQ(error->tracks, 4);
   EXPECT_EQ(error->error.points, 4 * kFrames);
+}
+
+TEST_F(MaterialErrorTest, TheScaleOfAllFramesIsThatOfTheirSubmap) {
+  MaterialErrorCollector collector(wall_, sequence_.camera());
+  for (int frame_idx = 0; frame_idx < kFrames; ++frame_idx) {
+    const int submap = frame_idx < kFrames / 2 ? 0 : 1;
+    std::vector<TrackedPoint> points;
+    for (std::size_t i = 0; i < pixels_.size(); ++i) {
+      const Eigen::Vector2d pixel = WallMaterial::PixelIn(frame_idx, 0, pixels_[i]);
+      points.push_back(
+          {PointId{static_cast<int>(i)}, pixel, wall_.PointIn(frame_idx, pixel) / (submap == 0 ? 2.0 : 3.0)});
+    }
+    ASSERT_TRUE(AddFrame(frame_idx, points, **sequence_.Depth(frame_idx), &collector, submap).ok());
+  }
+  PointErrorOptions options;
+  options.scale = ErrorScale::kGlobal;
+  const auto error = collector.Compute(options);
+  ASSERT_TRUE(error.ok()) << error.status().message();
+  EXPECT_LT(error->error.plain.estimate.pooled_rmse_mm, kRounding);
 }
 
 // They are on the surface all the time: the surface error is none, the material error is all drift.
