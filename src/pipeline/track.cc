@@ -180,6 +180,7 @@ TrackOptions MakeTrackOptions(Preset preset) {
   tracker.point_tracker.lucas_kanade.similarity = SimilarityMode::kPlain;
   tracker.init.method = InitMethod::kPaper;
   tracker.neighbor_agreement = Switch::kOff;
+  tracker.gauge_share = 0;
   tracker.find_lost = Switch::kOff;
   tracker.growth.grow = Switch::kOff;
   tracker.relocalization.relocalize = Switch::kOff;

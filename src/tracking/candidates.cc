@@ -156,6 +156,18 @@ void Candidates::TakeCorrection(const Map& before, const Map& after) {
     }
 }
 
+void Candidates::Move(const Rigid3& motion) {
+  const Rigid3 back = motion.Inverse();
+  for (auto& [id, point] : points_) {
+    point.position = motion * point.position;
+    for (Rigid3& pose : point.cams_from_world) pose = pose * back;
+    for (Displacement& displacement : point.displacements) displacement.mean = motion.rotation * displacement.mean;
+    for (Anchor& anchor : point.anchors) anchor.position = motion * anchor.position;
+    point.anchored_at = motion * point.anchored_at;
+    point.before.mean = motion.rotation * point.before.mean;
+  }
+}
+
 bool Candidates::See(const PointTrack& track, const Rigid3& cam_from_world, const Map& map) {
   Point& point = points_.at(track.id);
   point.track.pixel = track.pixel;

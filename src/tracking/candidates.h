@@ -50,6 +50,8 @@ class Candidates {
   // One that was followed into a frame with this pose and map. False: it is too old, and forgotten.
   bool See(const PointTrack& track, const Rigid3& cam_from_world, const Map& map);
   void Remove(PointId id) { points_.erase(id); }
+  // Everything was moved alike, cameras and points.
+  void Move(const Rigid3& motion);
   // The map was corrected: what its points moved by was no motion.
   void TakeCorrection(const Map& before, const Map& after);
 

@@ -73,6 +73,16 @@ void LostPoints::MoveInto(const Sim3& other_from_world) {
   }
 }
 
+void LostPoints::MoveFromRest(const Rigid3& motion) {
+  const Rigid3 back = motion.Inverse();
+  for (auto& [id, point] : points_) {
+    point.landmark.position = motion * point.landmark.position;
+    point.cam_from_world = point.cam_from_world * back;
+    point.seen_at = motion * point.seen_at;
+    if (point.own_share) point.own_share = motion.rotation * *point.own_share;
+  }
+}
+
 void LostPoints::TakeOver(LostPoints&& other, const std::vector<Landmark>& seen) {
   for (auto& [id, point] : points_) point.order += other.next_order_;
   next_order_ += other.next_order_;

@@ -12,6 +12,18 @@ void Tracker::Submap::MoveInto(const Sim3& other_from_world) {
   for (auto& [frame_idx, pose] : recent_poses) pose = PoseInWorld(other_from_world, pose);
 }
 
+void Tracker::Submap::MoveFromRest(const Rigid3& motion) {
+  for (Landmark& landmark : map.landmarks) {
+    landmark.position = motion * landmark.position;
+    landmark.last_motion = motion.rotation * landmark.last_motion;
+  }
+  lost_points.MoveFromRest(motion);
+  candidates.Move(motion);
+  const Rigid3 back = motion.Inverse();
+  for (Rigid3* pose : {&last_cam_from_world, &before_last_cam_from_world}) *pose = *pose * back;
+  for (auto& [frame_idx, pose] : recent_poses) pose = pose * back;
+}
+
 void Tracker::Submap::TakeOver(Submap&& other) {
   for (Submap* submap : {this, &other}) {
     for (const CandidateTrack& track : submap->candidates.tracks()) submap->point_tracker.Remove(track.id);

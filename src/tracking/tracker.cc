@@ -38,6 +38,10 @@ void TrackerOptions::List(OptionTable& table) {
   table.AddChoice(
       "camera_motion", &camera_motion,
       "free: estimated in every frame; none: the camera is known to stand still, all motion is the scene's");
+  table.Add(
+      "gauge_share", &gauge_share, "-",
+      "of what all points have done together since they were at rest, this goes to the camera in each frame; 0: none",
+      0, 1);
   table.AddChoice("find_lost", &find_lost,
                   "look for points that were lost where the points around them took them; needs adaptive patches");
   table.Add("max_lost_points", &max_lost_points, "-", "lost points that are remembered; memory grows with them", 0,

@@ -9,6 +9,7 @@
 #include "pliant/tracking/tracker.h"
 #include "tracking/blurred_tracks.h"
 #include "tracking/followed.h"
+#include "tracking/gauge.h"
 #include "tracking/lost_points.h"
 #include "tracking/oracle_answers.h"
 #include "tracking/submap.h"
@@ -70,6 +71,7 @@ void Tracker::TrackFrame(const TrackerFrame& frame, FrameReport* report) {
   if (static_cast<int>(followed.size()) < options_.min_points)
     return ReportLost(frame, Found(static_cast<int>(followed.size())), report);
   Commit(*solution, followed, report);
+  if (!known_pose) HoldGauge(report);
   Apply(TrackingEvent::kFrameTracked);
   if (followed.in_blur) {
     ++blurred_frames_;
@@ -251,6 +253,14 @@ void Tracker::Commit(const FrameSolution& solution, const Followed& followed, Fr
   report->optimized = static_cast<int>(followed.size());
   report->median_reprojection_error_px = Median(std::move(errors));
   report->costs = solution.costs;
+}
+
+// What all points have done together since they were at rest goes to the camera, by and by (E12). Their pixels stay.
+void Tracker::HoldGauge(FrameReport* report) {
+  const Rigid3 moved = TowardsRest(now_->map, options_.gauge_share);
+  now_->MoveFromRest(moved);
+  report->cam_from_world = now_->last_cam_from_world;
+  for (PointObservation& seen : report->observations) seen.position = moved * seen.position;
 }
 
 // Too few points, as a sentence.

@@ -160,6 +160,31 @@ TEST(Candidates, ACorrectionOfTheMapIsNoMotion) {
   EXPECT_LT((certain[0].second - scene.Displaced(rest, kLast)).norm(), 0.01 * rest.norm());
 }
 
+// Cameras and points moved alike are the same scene.
+TEST(Candidates, MoveWithTheWorld) {
+  const Scene scene;
+  const Eigen::Vector3d rest(3, -4, 55);
+  constexpr int kLast = 20;
+  const Rigid3 motion(RotationExp(Eigen::Vector3d(0.3, -0.2, 0.5)), Eigen::Vector3d(20, -5, 7));
+  const auto stayed = scene.CertainAfter(rest, kLast);
+  Candidates candidates = scene.Follow(rest, kLast / 2);
+  candidates.Move(motion);
+  for (int t = kLast / 2 + 1; t <= kLast; ++t) {
+    Map moved = scene.MapAt(t);
+    for (Landmark& landmark : moved.landmarks) landmark.position = motion * landmark.position;
+    PointTrack track;
+    track.id = kCandidate;
+    track.pixel = scene.Pixel(rest, t);
+    ASSERT_TRUE(candidates.See(track, Scene::Pose(t) * motion.Inverse(), moved));
+  }
+  Map moved = scene.MapAt(kLast);
+  for (Landmark& landmark : moved.landmarks) landmark.position = motion * landmark.position;
+  const auto certain = candidates.Certain(Scene::Pose(kLast) * motion.Inverse(), moved);
+  ASSERT_EQ(certain.size(), 1U);
+  ASSERT_EQ(stayed.size(), 1U);
+  EXPECT_LT((certain[0].second - motion * stayed[0].second).norm(), 1e-4);
+}
+
 TEST(Candidates, NeedAMap) {
   Candidates candidates(TestCamera(), GrowthOptions());
   EXPECT_FALSE(candidates.Add({kCandidate, Eigen::Vector2d(100, 100)}, Rigid3(), Map()));

@@ -222,6 +222,35 @@ TEST_F(TrackerFromImages, PointsThatWereHiddenComeBack) {
   for (const FrameReport& report : with) ExpectFromTheMap(report, map, *camera_);
 }
 
+// The camera of a scene that stands still: what slips into the points' motion from frame to frame is given back to it.
+TEST_F(TrackerFromImages, WhatAllPointsDoTogetherIsTheCameras) {
+  const auto run = [&](double share) {
+    TrackerOptions options;
+    options.init.method = InitMethod::kDepth;
+    options.growth.grow = Switch::kOff;
+    options.gauge_share = share;
+    return RunMasked(options, [](int, const cv::Mat&) {});
+  };
+  const auto moved_together = [](const std::vector<FrameReport>& reports) {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    double count = 0;
+    for (const PointObservation& seen : reports.back().observations)
+      for (const PointObservation& first : reports.front().observations)
+        if (first.id == seen.id) {
+          sum += seen.position - first.position;
+          ++count;
+        }
+    EXPECT_GT(count, 100);
+    return (sum / count).norm();
+  };
+  const auto left = run(0);
+  const auto held = run(1);
+  EXPECT_LT(moved_together(held), 0.05 * moved_together(left));
+  std::set<PointId> map;
+  for (const NewPoint& point : held.front().new_points) map.insert(point.id);
+  for (const FrameReport& report : held) ExpectFromTheMap(report, map, *camera_);
+}
+
 // The right half is dark while the first map is made, and comes into view afterwards.
 TEST_F(TrackerFromImages, TheMapGrowsWhereTheImageShowsMore) {
   constexpr int kFirstOpen = 3;

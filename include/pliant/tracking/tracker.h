@@ -73,6 +73,7 @@ struct TrackerOptions {
   double sigma_metric_mm = 55.0;  // instead of graph.sigma_mm after a start from metric depth, as published
   CameraMotion camera_motion = CameraMotion::kFree;
   Switch neighbor_agreement = Switch::kOn;
+  double gauge_share = 0.2;             // a frame, of the scene's common motion since rest, that goes to the camera
   Switch find_lost = Switch::kOn;       // points that were lost are looked for where their neighbours took them
   int max_searches = 200;               // a frame, for lost points
   int max_lost_points = 500;            // that are remembered: the oldest is forgotten first
@@ -192,6 +193,7 @@ class Tracker {
   void DropContradicted(const Rigid3& cam_from_world, const DeformationGraph& graph, Followed* followed);
   void DropUnexplained(Followed* followed);
   void Commit(const FrameSolution& solution, const Followed& followed, FrameReport* report);
+  void HoldGauge(FrameReport* report);
   std::string Found(int count) const;
   void ReportLost(const TrackerFrame& frame, const std::string& reason, FrameReport* report);
 

@@ -1,0 +1,18 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// The gauge: images do not tell a scene that moves as a whole from a camera that moves the other way. From frame to
+// frame the joint problem gives such motions to the camera; what slips through adds up, and is given back to it here.
+#pragma once
+
+#include "pliant/geometry/rigid3.h"
+#include "pliant/scene/map.h"
+
+namespace pliant {
+
+// (docs/method.md, eq. E12) The part `share` of the rigid motion of the world that brings the landmarks nearest to
+// where they were at rest, in the sense of least squares. Points and cameras that are moved by it alike see the same
+// images. None where there are fewer than three landmarks.
+Rigid3 TowardsRest(const Map& map, double share);
+
+}  // namespace pliant
