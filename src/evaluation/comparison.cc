@@ -49,7 +49,11 @@ Cells CellsOf(const Evaluation& e) {
                  {"alive_share_75", FormatDouble(e.survival.alive_shares[2])},
                  {"alive_share_100", FormatDouble(e.survival.alive_shares[3])},
                  {"tracks", std::to_string(e.survival.tracks)},
-                 {"mean_track_length", FormatDouble(e.survival.mean_track_length)}};
+                 {"mean_track_length", FormatDouble(e.survival.mean_track_length)},
+                 {"submaps", std::to_string(e.survival.submaps)},
+                 {"interruptions", std::to_string(e.survival.interruptions)},
+                 {"interruptions_survived", std::to_string(e.survival.interruptions_survived)},
+                 {"returned_points", std::to_string(e.survival.returned_points)}};
   if (e.material) cells.emplace_back("continuing_tracks", std::to_string(e.material->continuing_tracks));
   if (e.reprojection) {
     cells.emplace_back("reprojection_median_px", FormatDouble(e.reprojection->median_px));

@@ -88,6 +88,7 @@ TrackSurvival Survival(const EvaluationInput& run) {
     row.frame_idx = frame.frame_idx;
     row.tracked = frame.cam_from_world.has_value();
     if (!row.tracked) continue;
+    row.submap = frame.submap;
     for (const PointObservation& observation : frame.observations) row.ids.push_back(observation.id);
   }
   return ComputeTrackSurvival(tracks);

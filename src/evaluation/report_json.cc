@@ -175,6 +175,10 @@ Json ToJson(const TrackSurvival& s) {
           {"tracks", s.tracks},
           {"median_track_length", s.median_track_length},
           {"mean_track_length", s.mean_track_length},
+          {"submaps", s.submaps},
+          {"interruptions", s.interruptions},
+          {"interruptions_survived", s.interruptions_survived},
+          {"returned_points", s.returned_points},
           {"frames", frames}};
 }
 

@@ -102,14 +102,19 @@ std::string ReprojectionTable(const ReprojectionError& e) {
 
 std::string SurvivalTable(const TrackSurvival& s) {
   std::string text = "tracks\n";
-  text += FormatText("  frames tracked %d of %d\n", s.frames_tracked, s.frames_read);
+  text += FormatText("  frames tracked %d of %d", s.frames_tracked, s.frames_read);
+  if (s.submaps > 1) text += FormatText(", in %d maps", s.submaps);
+  text += "\n";
+  if (s.interruptions > 0)
+    text += FormatText("  interruptions %d, after which the same map was found again %d\n", s.interruptions,
+                       s.interruptions_survived);
   text += FormatText("  points: first frame %d, last %d, mean %.1f\n", s.first_points, s.last_points, s.mean_points);
   text += FormatText("  of the first frame's points %d live in the last;", s.last_alive_of_first);
   text +=
       FormatText(" alive after 25, 50, 75, 100 %% of the frames: %.0f, %.0f, %.0f, %.0f %%\n", 100 * s.alive_shares[0],
                  100 * s.alive_shares[1], 100 * s.alive_shares[2], 100 * s.alive_shares[3]);
-  text += FormatText("  %d tracks, length in frames: median %.1f, mean %.1f\n", s.tracks, s.median_track_length,
-                     s.mean_track_length);
+  text += FormatText("  %d tracks, length in frames: median %.1f, mean %.1f; %d were lost and found again\n", s.tracks,
+                     s.median_track_length, s.mean_track_length, s.returned_points);
   return text;
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <map>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -25,6 +26,39 @@ void FillAliveShares(const std::map<PointId, std::size_t>& last_seen, std::size_
       if (entry.second >= place) ++alive;
     survival->alive_shares[k] = static_cast<double>(alive) / static_cast<double>(last_seen.size());
   }
+}
+
+void CountInterruptions(std::span<const FrameTracks> frames, TrackSurvival* survival) {
+  const FrameTracks* last_tracked = nullptr;
+  bool interrupted = false;
+  std::set<int> submaps;
+  for (const FrameTracks& frame : frames) {
+    if (frame.tracked) {
+      if (interrupted && frame.submap == last_tracked->submap) ++survival->interruptions_survived;
+      submaps.insert(frame.submap);
+      last_tracked = &frame;
+    } else if (last_tracked != nullptr && !interrupted) {
+      ++survival->interruptions;
+    }
+    interrupted = last_tracked != nullptr && !frame.tracked;
+  }
+  survival->submaps = static_cast<int>(submaps.size());
+}
+
+int CountReturnedPoints(std::span<const FrameTracks> frames) {
+  std::map<PointId, int> last_seen;  // by the tracked frames' order
+  std::set<PointId> returned;
+  int order = 0;
+  for (const FrameTracks& frame : frames) {
+    if (!frame.tracked) continue;
+    ++order;
+    for (const PointId id : frame.ids) {
+      const auto [entry, is_new] = last_seen.try_emplace(id, order);
+      if (!is_new && entry->second + 1 < order) returned.insert(id);
+      entry->second = order;
+    }
+  }
+  return static_cast<int>(returned.size());
 }
 
 }  // namespace
@@ -65,6 +99,8 @@ TrackSurvival ComputeTrackSurvival(std::span<const FrameTracks> frames) {
   for (const auto& entry : length_of_track) lengths.push_back(entry.second);
   survival.mean_track_length = Mean(lengths);
   survival.median_track_length = Median(std::move(lengths));
+  CountInterruptions(frames, &survival);
+  survival.returned_points = CountReturnedPoints(frames);
   return survival;
 }
 

@@ -163,6 +163,22 @@ TEST(TrackSurvival, APointThatIsFoundAgainWasAliveInBetween) {
   EXPECT_EQ(survival.frames[3].alive_of_first, 1);
 }
 
+TEST(TrackSurvival, CountsInterruptionsAndWhatCameBack) {
+  const std::vector<FrameTracks> frames = {{0, false, {}},           {1, true, {{0}, {1}}, 0},
+                                           {2, true, {{0}, {2}}, 0},                       // 1 is missing
+                                           {3, true, {{0}, {1}}, 0},                       // and comes back
+                                           {4, false, {}},                                 // survived
+                                           {5, true, {{0}, {2}}, 0},                       // 0 was not missing, 2 was
+                                           {6, false, {}},           {7, false, {}},       // another map follows
+                                           {8, true, {{8}}, 1},      {9, true, {{1}}, 0},  // no interruption
+                                           {10, false, {}}};                               // the end
+  const TrackSurvival survival = ComputeTrackSurvival(frames);
+  EXPECT_EQ(survival.submaps, 2);
+  EXPECT_EQ(survival.interruptions, 3);
+  EXPECT_EQ(survival.interruptions_survived, 1);
+  EXPECT_EQ(survival.returned_points, 2);
+}
+
 TEST(TrackSurvival, CountsPointsTracksAndFrames) {
   const auto ids = [](std::vector<int> values) {
     std::vector<PointId> result;

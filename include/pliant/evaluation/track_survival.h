@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// How long points live: an accurate figure over a handful of survivors is no tracking.
+// How long points live, and whether the run survives that its view is taken away: an accurate figure over a handful of
+// survivors is no tracking.
 #pragma once
 
 #include <array>
@@ -17,6 +18,7 @@ struct FrameTracks {
   int frame_idx = 0;
   bool tracked = false;
   std::vector<PointId> ids;
+  int submap = 0;  // in which it was tracked
 };
 
 struct TrackSurvival {
@@ -38,7 +40,11 @@ struct TrackSurvival {
   int tracks = 0;                  // different points in all
   double median_track_length = 0;  // frames in which a point was seen
   double mean_track_length = 0;
-  std::vector<Frame> frames;  // one a frame read
+  int submaps = 0;                 // in which frames were tracked
+  int interruptions = 0;           // frames in a row that were not tracked, after one that was
+  int interruptions_survived = 0;  // after which tracking went on in the same submap
+  int returned_points = 0;         // that were missing in a tracked frame and seen again
+  std::vector<Frame> frames;       // one a frame read
 };
 
 TrackSurvival ComputeTrackSurvival(std::span<const FrameTracks> frames);
