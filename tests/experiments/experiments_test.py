@@ -81,7 +81,7 @@ def dry_run(folder):
     assert counts["track"] == "10" and counts["reconstruct"] == "20" and counts["evaluate"] == "30", text
     text = snakemake("long_sequences", folder / "long", "--dry-run", "--quiet", "--config", "variants=all", "seeds=1,2")
     counts = {line.split()[0]: line.split()[1] for line in text.splitlines() if len(line.split()) > 1}
-    assert counts["simulate"] == "12" and counts["track"] == counts["evaluate"] == str(12 * 7), text
+    assert counts["simulate"] == "12" and counts["track"] == counts["evaluate"] == str(12 * 10), text
     text = snakemake("soak", folder / "soak", "--dry-run", "--quiet", "--config", "alone_corners=300,500")
     counts = {line.split()[0]: line.split()[1] for line in text.splitlines() if len(line.split()) > 1}
     assert counts["simulate"] == "1" and counts["repeat"] == "2" and counts["track"] == "4", text
