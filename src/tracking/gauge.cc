@@ -8,7 +8,7 @@
 namespace pliant {
 
 Rigid3 TowardsRest(const Map& map, double share) {
-  // What is too little spread to tell a turn about an axis hardly turns.
+  // Landmarks in a row hardly turn about it.
   constexpr double kDamping = 0.01;
   const auto count = static_cast<double>(map.landmarks.size());
   if (count < 3) return {};

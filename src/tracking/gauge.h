@@ -11,8 +11,8 @@
 namespace pliant {
 
 // (docs/method.md, eq. E12) The part `share` of the rigid motion of the world that brings the landmarks nearest to
-// where they were at rest, in the sense of least squares. Points and cameras that are moved by it alike see the same
-// images. None where there are fewer than three landmarks.
+// where they were at rest: one step of damped least squares, for turns that are small. Points and cameras that are
+// moved by it alike see the same images. None where there are fewer than three landmarks.
 Rigid3 TowardsRest(const Map& map, double share);
 
 }  // namespace pliant

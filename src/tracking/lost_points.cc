@@ -73,7 +73,7 @@ void LostPoints::MoveInto(const Sim3& other_from_world) {
   }
 }
 
-void LostPoints::MoveFromRest(const Rigid3& motion) {
+void LostPoints::MoveAllButRest(const Rigid3& motion) {
   const Rigid3 back = motion.Inverse();
   for (auto& [id, point] : points_) {
     point.landmark.position = motion * point.landmark.position;

@@ -42,7 +42,7 @@ class LostPoints {
   // Into another world.
   void MoveInto(const Sim3& other_from_world);
   // Moves where they are now, and not where they rest.
-  void MoveFromRest(const Rigid3& motion);
+  void MoveAllButRest(const Rigid3& motion);
   // All of `other`, which is in the same world and has other ids; as if they had been lost before these. Each is at
   // rest where it would be had it moved as the landmarks around it that are seen.
   void TakeOver(LostPoints&& other, const std::vector<Landmark>& seen);

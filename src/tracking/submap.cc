@@ -12,12 +12,12 @@ void Tracker::Submap::MoveInto(const Sim3& other_from_world) {
   for (auto& [frame_idx, pose] : recent_poses) pose = PoseInWorld(other_from_world, pose);
 }
 
-void Tracker::Submap::MoveFromRest(const Rigid3& motion) {
+void Tracker::Submap::MoveAllButRest(const Rigid3& motion) {
   for (Landmark& landmark : map.landmarks) {
     landmark.position = motion * landmark.position;
     landmark.last_motion = motion.rotation * landmark.last_motion;
   }
-  lost_points.MoveFromRest(motion);
+  lost_points.MoveAllButRest(motion);
   candidates.Move(motion);
   const Rigid3 back = motion.Inverse();
   for (Rigid3* pose : {&last_cam_from_world, &before_last_cam_from_world}) *pose = *pose * back;

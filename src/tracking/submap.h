@@ -26,7 +26,7 @@ struct Tracker::Submap {
   // Into another world; where the two are one.
   void MoveInto(const Sim3& other_from_world);
   // Moves what is now, cameras and points alike, and not where the points rest.
-  void MoveFromRest(const Rigid3& motion);
+  void MoveAllButRest(const Rigid3& motion);
   // All that `other`, which is in the same world, knows besides: its points are lost ones, which are found where they
   // are in sight. The candidates of both are let go of.
   void TakeOver(Submap&& other);

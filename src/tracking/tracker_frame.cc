@@ -71,7 +71,7 @@ void Tracker::TrackFrame(const TrackerFrame& frame, FrameReport* report) {
   if (static_cast<int>(followed.size()) < options_.min_points)
     return ReportLost(frame, Found(static_cast<int>(followed.size())), report);
   Commit(*solution, followed, report);
-  if (!known_pose) HoldGauge(report);
+  if (!known_pose && options_.gauge_share > 0) HoldGauge(report);
   Apply(TrackingEvent::kFrameTracked);
   if (followed.in_blur) {
     ++blurred_frames_;
@@ -212,8 +212,8 @@ void Tracker::DropUnexplained(Followed* followed) {
   followed->Keep(keep);
 }
 
-// The only place where a frame changes the map. What was not found in the image is lost, and may be found again; what
-// was found and contradicts the rest is forgotten.
+// The only place where a frame's solution enters the map. What was not found in the image is lost, and may be found
+// again; what was found and contradicts the rest is forgotten.
 void Tracker::Commit(const FrameSolution& solution, const Followed& followed, FrameReport* report) {
   Map next;
   std::vector<double> errors;
@@ -258,7 +258,7 @@ void Tracker::Commit(const FrameSolution& solution, const Followed& followed, Fr
 // What all points have done together since they were at rest goes to the camera, by and by (E12). Their pixels stay.
 void Tracker::HoldGauge(FrameReport* report) {
   const Rigid3 moved = TowardsRest(now_->map, options_.gauge_share);
-  now_->MoveFromRest(moved);
+  now_->MoveAllButRest(moved);
   report->cam_from_world = now_->last_cam_from_world;
   for (PointObservation& seen : report->observations) seen.position = moved * seen.position;
 }

@@ -165,16 +165,16 @@ TEST(TrackSurvival, APointThatIsFoundAgainWasAliveInBetween) {
 
 TEST(TrackSurvival, CountsInterruptionsAndWhatCameBack) {
   const std::vector<FrameTracks> frames = {{0, false, {}},           {1, true, {{0}, {1}}, 0},
-                                           {2, true, {{0}, {2}}, 0},                       // 1 is missing
-                                           {3, true, {{0}, {1}}, 0},                       // and comes back
-                                           {4, false, {}},                                 // survived
-                                           {5, true, {{0}, {2}}, 0},                       // 0 was not missing, 2 was
-                                           {6, false, {}},           {7, false, {}},       // another map follows
-                                           {8, true, {{8}}, 1},      {9, true, {{1}}, 0},  // no interruption
-                                           {10, false, {}}};                               // the end
+                                           {2, true, {{0}, {2}}, 0},                    // 1 is missing
+                                           {3, true, {{0}, {1}}, 0},                    // and comes back
+                                           {4, false, {}},                              // survived
+                                           {5, true, {{0}, {2}}, 0},                    // 0 was not missing, 2 was
+                                           {6, false, {}},           {7, false, {}},    // another map follows
+                                           {8, true, {{8}}, 1},      {9, false, {}},    // the first map is found again
+                                           {10, true, {{1}}, 0},     {11, false, {}}};  // the end
   const TrackSurvival survival = ComputeTrackSurvival(frames);
   EXPECT_EQ(survival.submaps, 2);
-  EXPECT_EQ(survival.interruptions, 3);
+  EXPECT_EQ(survival.interruptions, 4);
   EXPECT_EQ(survival.interruptions_survived, 1);
   EXPECT_EQ(survival.returned_points, 2);
 }

@@ -99,6 +99,24 @@ TEST(LostPoints, AreLookedForInTurn) {
   EXPECT_EQ(lost.Find(PointId{1}), nullptr);
 }
 
+// Cameras and points moved alike; where they rest stays.
+TEST(LostPoints, AreExpectedAtTheSamePixelsWhenAllButRestIsMoved) {
+  const Rigid3 motion(RotationExp({0.02, -0.03, 0.01}), Eigen::Vector3d(1, 2, -3));
+  const Rigid3 ahead(RotationExp({0, 0.1, 0}), Eigen::Vector3d(0, 0, -25));
+  LostPoints lost;
+  lost.Add(PointAt({1.2, -0.7, 50}, {0.1, -0.2, 0.3}, 1), Rigid3());
+  lost.Move(Wall(1));
+  LostPoints moved = lost;
+  moved.MoveAllButRest(motion);
+  const auto here = lost.Expected(TestCamera(), ahead, 1);
+  const auto there = moved.Expected(TestCamera(), ahead * motion.Inverse(), 1);
+  ASSERT_EQ(here.size(), 1U);
+  ASSERT_EQ(there.size(), 1U);
+  EXPECT_LT((there[0].pixel - here[0].pixel).norm(), 1e-6);
+  EXPECT_LT((there[0].affine_from_latest - here[0].affine_from_latest).norm(), 1e-6);
+  EXPECT_EQ(moved.landmarks()[0].rest_position, lost.landmarks()[0].rest_position);
+}
+
 TEST(LostPoints, AreExpectedAtTheSamePixelsInAnotherWorld) {
   const Sim3 other_from_world{2.5, RotationExp({0.3, -0.2, 0.9}), {1, 2, 3}};
   const Rigid3 ahead(RotationExp({0, 0.1, 0}), Eigen::Vector3d(0, 0, -25));

@@ -76,8 +76,8 @@ class MaterialErrorCollector {
  public:
   MaterialErrorCollector(MaterialTruth& truth, const Camera& camera) : truth_(truth), camera_(camera) {}
 
-  // `points` sorted by id, in the unit of that submap. Where the surface is not known there is no drift in millimetres, and a track that starts on
-  // a depth step is not recognised. Fails as the truth does.
+  // `points` sorted by id, in the unit of that submap. Where the surface is not known there is no drift in millimetres,
+  // and a track that starts on a depth step is not recognised. Fails as the truth does.
   Status AddFrame(int frame_idx, int submap, std::span<const TrackedPoint> points);
 
   // Fails with kInsufficient when no observation has a material point.
