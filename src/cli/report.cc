@@ -32,8 +32,8 @@ const Manual kManual = {
     "interrupted or killed, or other systems' results. They are brought into one world by their cameras. Reads the "
     "images, and the truth where there is truth, from --sequence, or from where the first run's run.json says they "
     "are; without them the rest is shown.\n\n"
-    "Leaves the file --output_path. In pictures the undeformed map is black, a point's trail of deformation orange, the "
-    "camera blue, and the truth green.",
+    "Leaves the file --output_path. In pictures the undeformed map is black, a point's trail of deformation orange, "
+    "the camera blue, and the truth green.",
     {"pliant report --run run -o report.html", "pliant report --run ours --run rigid --sequence colon -o both.html",
      "pliant report --run run --figure 10,40,70 -o figure.svg", "pliant report --run run --video -o film.mp4"},
 };
