@@ -38,7 +38,7 @@ function checkTypes() {
 }
 
 async function bundle() {
-  const licences = ["three", "uplot"].map((name) => `${name}\n\n${read(join(modules, name, "LICENSE"))}`).join("\n");
+  const licenses = ["three", "uplot"].map((name) => `${name}\n\n${read(join(modules, name, "LICENSE"))}`).join("\n");
   const result = await require("esbuild").build({
     entryPoints: [join(web, "src/main.ts")],
     nodePaths: [modules],
@@ -48,7 +48,7 @@ async function bundle() {
     target: "es2020",
     write: false,
     legalComments: "none",
-    banner: { js: `/*!\nThis page holds these libraries.\n\n${licences}*/` },
+    banner: { js: `/*!\nThis page holds these libraries.\n\n${licenses}*/` },
   });
   return result.outputFiles[0].text;
 }

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The Pliant authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""matplotlib as the experiments use it: without a window, in Okabe and Ito's colours, which everybody can tell apart, and
-with the same file from the same figures. Nothing is told by colour alone."""
+"""matplotlib as the experiments use it: without a window, in Okabe and Ito's colors, which everybody can tell apart, and
+with the same file from the same figures. Nothing is told by color alone."""
 
 import pathlib
 

@@ -28,7 +28,7 @@ simulate() {
   mv "$scene.part" "$scene"
 }
 
-# start "depth": the first map is the true one, in true millimetres; "gated": from the images alone, of no scale.
+# start "depth": the first map is the true one, in true millimeters; "gated": from the images alone, of no scale.
 track() {
   local scene=$1 run=$2 start=$3 filter=$4 agreement=$5 scale=per_frame
   if [[ $start == depth ]]; then scale=none; fi

@@ -79,8 +79,8 @@ bool SeesInscribedCircle(const Camera& camera) {
   const double radius = 0.5 * (std::min(camera.width(), camera.height()) - 1);
   for (int i = 0; i < kSamples; ++i) {
     const double angle = 2.0 * std::numbers::pi * i / kSamples;
-    const Eigen::Vector2d centre(0.5 * (camera.width() - 1), 0.5 * (camera.height() - 1));
-    if (!camera.Unproject(centre + radius * Eigen::Vector2d(std::cos(angle), std::sin(angle)))) return false;
+    const Eigen::Vector2d center(0.5 * (camera.width() - 1), 0.5 * (camera.height() - 1));
+    if (!camera.Unproject(center + radius * Eigen::Vector2d(std::cos(angle), std::sin(angle)))) return false;
   }
   return true;
 }

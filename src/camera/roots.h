@@ -14,7 +14,7 @@
 namespace pliant {
 
 // The smallest x in (0, limit) at which c[0] + c[1] x + c[2] x^2 + ... reaches zero, for a polynomial that is positive
-// at 0; nothing if it stays positive. Every root lies between two neighbouring roots of the derivative, which are found
+// at 0; nothing if it stays positive. Every root lies between two neighboring roots of the derivative, which are found
 // the same way.
 std::optional<double> FirstRoot(std::span<const double> coefficients, double limit);
 

@@ -26,7 +26,7 @@ namespace {
 const Manual kInfoManual = {
     "dataset info",
     "say what a data set holds, and what is wrong with it",
-    "Recognises the kind of what lies at PATH and prints its frames, camera, pairs, depth and poses, in millimetres. "
+    "Recognizes the kind of what lies at PATH and prints its frames, camera, pairs, depth and poses, in millimeters. "
     "Then it asks the images themselves. They are warped into each other by depth and poses, read in every way in "
     "which poses are usually meant, so that a flipped handedness, a wrong unit and a transposed matrix show and are "
     "told "
@@ -40,7 +40,7 @@ const Manual kConvertManual = {
     "dataset convert",
     "write a data set as a native sequence",
     "Reads what lies at --input_path and writes images, right images, masks, depth, poses and times in Pliant's own "
-    "layout: millimetres, right-handed world from camera, rectified pairs, 16-bit depth. The folder must be new or "
+    "layout: millimeters, right-handed world from camera, rectified pairs, 16-bit depth. The folder must be new or "
     "empty.",
     {"pliant dataset convert --input_path clip.mp4 --camera stereo.yaml --output_path seq --start 100 --end 400"},
 };

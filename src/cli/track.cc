@@ -30,7 +30,7 @@ const Manual kManual = {
     "Reads --image_path: a native sequence (a folder with images/ and camera.yaml), any folder of png, jpg, bmp or tif "
     "images in natural order, or a video file. Reads --camera: camera.yaml, COLMAP's cameras.txt or cameras.bin, or an "
     "OpenCV calibration in YAML or XML; without it, camera.yaml in the folder or beside the video. Pixel (0, 0) is the "
-    "centre of the first pixel.\n\n"
+    "center of the first pixel.\n\n"
     "Leaves in --output_path: config.yaml (every option as resolved), run.json (what ran and how it ended), "
     "trajectory.txt (TUM, world_from_camera), frames.csv (one row a frame), observations.csv (one row a point and "
     "frame), map.ply (the undeformed map) and sparse/ (a COLMAP model). Rows are on disk as frames are done: a run "

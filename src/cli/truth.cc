@@ -20,7 +20,7 @@ const Manual kManual = {
     "Says which point of the wall each of the given pixels shows, and where that point is in every frame of the "
     "sequence: its position in the world, the pixel where it is seen, and whether it is visible.\n\n"
     "Reads --sequence: a folder that pliant simulate left. Its simulation.yaml builds the scene again; nothing is "
-    "rendered. Reads --points: a CSV file with a header that names frame, u_px and v_px (the first pixel's centre is "
+    "rendered. Reads --points: a CSV file with a header that names frame, u_px and v_px (the first pixel's center is "
     "0, "
     "0; other columns are passed over). Instead of a file, --grid_px N takes every Nth pixel each way of --frame.\n\n"
     "Leaves --output_path: a CSV file with one row a point and frame, point,frame,u_px,v_px,x,y,z,depth_mm,visibility. "

@@ -172,7 +172,7 @@ Result<std::vector<Point3D>> ReadTextPoints(const std::string& path, Observation
   return ReadRows<Point3D>(path, [observations](Fields& fields, Point3D* point) {
     point->id = fields.Integer("POINT3D_ID");
     point->xyz = {fields.Number("X"), fields.Number("Y"), fields.Number("Z")};
-    for (std::uint8_t& channel : point->rgb) channel = static_cast<std::uint8_t>(fields.Integer("colour (0-255)", 255));
+    for (std::uint8_t& channel : point->rgb) channel = static_cast<std::uint8_t>(fields.Integer("color (0-255)", 255));
     point->error = fields.Number("ERROR");
     if (observations == Observations::kSkipped) fields.Rest();
     while (!fields.empty() && fields.error().empty()) {

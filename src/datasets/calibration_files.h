@@ -19,7 +19,7 @@ Result<std::optional<SourceCalibration>> ReadCalibu(const std::filesystem::path&
 // Of such a *_photometrical.xml. Fails with kUnreadable.
 Result<PhotometricCalibration> ReadCalibuPhotometry(const std::filesystem::path& file);
 
-// StereoMIS's StereoCalibration.ini, two cameras, baseline in metres or millimetres. Fails with kUnreadable.
+// StereoMIS's StereoCalibration.ini, two cameras, baseline in meters or millimeters. Fails with kUnreadable.
 Result<StereoCalibration> ReadStereoIni(const std::filesystem::path& file);
 
 }  // namespace pliant

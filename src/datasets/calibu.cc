@@ -78,7 +78,7 @@ Result<Camera> GeometryOf(const fs::path& file, const pugi::xml_node& model_of_c
 }  // namespace
 
 // <camera_model type="gamma"> with <gamma> and perhaps <vignetting>, <light_model type="sls"> with the spread <mu> and
-// the direction <D>. Where the light is, millimetres from the lens, is not used.
+// the direction <D>. Where the light is, millimeters from the lens, is not used.
 Result<PhotometricCalibration> ReadCalibuPhotometry(const fs::path& file) {
   const auto xml = ReadCalibration(file);
   if (!xml.ok()) return xml.status();

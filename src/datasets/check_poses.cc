@@ -105,7 +105,7 @@ double Correlation(const std::vector<SurfacePoint>& points, const PosedImage& ot
 
 cv::Mat FineStructure(const cv::Mat& image) {
   cv::Mat fine;
-  ToGrey(image).convertTo(fine, CV_32F);
+  ToGray(image).convertTo(fine, CV_32F);
   cv::Mat coarse;
   cv::GaussianBlur(fine, coarse, {}, kCoarse_px);
   cv::GaussianBlur(fine, fine, {}, kFine_px);

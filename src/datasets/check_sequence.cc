@@ -78,12 +78,12 @@ std::vector<std::string> WhatIsWrong(const SequenceCheck& check) {
   const auto depth_factor = DepthIsTooLarge(check);
   if (depth_factor)
     wrong.push_back("the depth images say " + Number("%g", *depth_factor) +
-                    " times what poses and baseline agree on; give depth in millimetres");
+                    " times what poses and baseline agree on; give depth in millimeters");
   if (check.poses && check.poses->right == false && !depth_factor)
     wrong.push_back("the poses do not fit the depth: the images agree to " +
                     Number("%.2f", check.poses->as_given.correlation) + " as they are, and to " +
                     Number("%.2f", check.poses->best.correlation) + " if " + Described(check.poses->best) +
-                    "; write the poses as right-handed ones of world from camera, in millimetres");
+                    "; write the poses as right-handed ones of world from camera, in millimeters");
   if (!check.stereo || !check.stereo->enough) return wrong;
   const StereoCheck& stereo = *check.stereo;
   if (stereo.share_right_way < 0.5)
@@ -96,7 +96,7 @@ std::vector<std::string> WhatIsWrong(const SequenceCheck& check) {
                     " px in the median; give the calibration of these cameras");
   if (stereo.depth_ratio && Differs(*stereo.depth_ratio) && !depth_factor)
     wrong.push_back("depth and baseline disagree: the depth images say " + Number("%.3g", *stereo.depth_ratio) +
-                    " times what disparity and baseline say; give both in millimetres");
+                    " times what disparity and baseline say; give both in millimeters");
   return wrong;
 }
 

@@ -25,35 +25,35 @@ constexpr double kMostRefinement_px = 4;
 // Disparities below say nothing exact of depth.
 constexpr double kLeastDisparity_px = 2;
 
-std::vector<cv::Point2f> CornersOf(const cv::Mat& grey) {
+std::vector<cv::Point2f> CornersOf(const cv::Mat& gray) {
   std::vector<cv::Point2f> corners;
-  cv::goodFeaturesToTrack(grey, corners, kCorners, kQuality, kMinDistance_px);
+  cv::goodFeaturesToTrack(gray, corners, kCorners, kQuality, kMinDistance_px);
   return corners;
 }
 
-cv::Mat Described(const cv::Mat& grey, const std::vector<cv::Point2f>& corners) {
+cv::Mat Described(const cv::Mat& gray, const std::vector<cv::Point2f>& corners) {
   std::vector<Eigen::Vector2d> pixels;
   for (const cv::Point2f& corner : corners) pixels.emplace_back(corner.x, corner.y);
-  return DescribePixels(grey, pixels);
+  return DescribePixels(gray, pixels);
 }
 
 }  // namespace
 
 void StereoMatches::Add(const cv::Mat& left, const cv::Mat& right, const cv::Mat& depth_mm, const Camera& camera,
                         double baseline_mm) {
-  const cv::Mat greys[] = {ToGrey(left), ToGrey(right)};
-  const std::vector<cv::Point2f> corners[] = {CornersOf(greys[0]), CornersOf(greys[1])};
+  const cv::Mat grays[] = {ToGray(left), ToGray(right)};
+  const std::vector<cv::Point2f> corners[] = {CornersOf(grays[0]), CornersOf(grays[1])};
   std::vector<cv::Point2f> from;
   std::vector<cv::Point2f> to;
   for (const auto& [a, b] :
-       MatchDescriptors(Described(greys[0], corners[0]), Described(greys[1], corners[1]), kMaxRatio)) {
+       MatchDescriptors(Described(grays[0], corners[0]), Described(grays[1], corners[1]), kMaxRatio)) {
     from.push_back(corners[0][static_cast<std::size_t>(a)]);
     to.push_back(corners[1][static_cast<std::size_t>(b)]);
   }
   if (from.empty()) return;
   const std::vector<cv::Point2f> matched = to;
   std::vector<unsigned char> found;
-  cv::calcOpticalFlowPyrLK(greys[0], greys[1], from, to, found, cv::noArray(), {kWindow_px, kWindow_px}, 0,
+  cv::calcOpticalFlowPyrLK(grays[0], grays[1], from, to, found, cv::noArray(), {kWindow_px, kWindow_px}, 0,
                            {cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 30, 0.01}, cv::OPTFLOW_USE_INITIAL_FLOW);
   for (std::size_t k = 0; k < from.size(); ++k) {
     if (found[k] == 0 || cv::norm(to[k] - matched[k]) > kMostRefinement_px) continue;

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // A folder as COLMAP leaves it: images/ and a model in sparse/0/ or sparse/, whose camera and poses are the sequence's;
-// its unit is taken for millimetres.
+// its unit is taken for millimeters.
 #include <map>
 #include <utility>
 

@@ -228,9 +228,9 @@ Result<DataSet> RectifiedPairs(const StereoCalibration& calibration, const fs::p
   if (!pair.ok()) return Status(pair.status().code(), calibration_path.string() + ": " + pair.status().message());
   DataSet data_set{.calibration = {pair->camera, calibration_path}, .images = nullptr};
   data_set.calibration.baseline_mm = pair->baseline_mm;
-  if (calibration.was_in_metres)
+  if (calibration.was_in_meters)
     data_set.warnings.push_back("the calibration " + calibration_path.string() + " has no unit and cameras less than " +
-                                FormatDouble(kShortestBaseline_mm) + " mm apart: it is read as metres, a baseline of " +
+                                FormatDouble(kShortestBaseline_mm) + " mm apart: it is read as meters, a baseline of " +
                                 FormatDouble(std::round(1000.0 * pair->baseline_mm) / 1000.0) + " mm");
   if (eyes.left->fps()) data_set.calibration.fps = *eyes.left->fps();
   data_set.inside = pair->left.Inside();

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // EuRoC MAV (Burri et al., IJRR 2016) and what is written like it: mav0/cam0 and mav0/cam1 with data.csv (ns, file),
-// data/ and sensor.yaml; mav0/state_groundtruth_estimate0/data.csv, world from body, metres. A pose belongs to the
+// data/ and sensor.yaml; mav0/state_groundtruth_estimate0/data.csv, world from body, meters. A pose belongs to the
 // image nearest in time, within 20 ms.
 #include <cmath>
 #include <map>
@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kMostDifference_s = 0.02;
-constexpr double kMetre_mm = 1000.0;
+constexpr double kMeter_mm = 1000.0;
 constexpr double kNanosecond_s = 1e-9;
 
 fs::path RootOf(const fs::path& path) { return IsFolder(path / "mav0") ? path / "mav0" : path; }
@@ -70,7 +70,7 @@ Result<Eye> ReadSensor(const fs::path& file) {
   if (!image_size || lens.size() != 4 || distortion.size() != 4 || body_from_cam.size() != 16) return unreadable;
   auto pose = PoseOfMatrix(file.string() + ": T_BS", body_from_cam);
   if (!pose.ok()) return pose.status();
-  pose->translation *= kMetre_mm;
+  pose->translation *= kMeter_mm;
   const YAML::Node named = root["distortion_model"];
   const std::string model = named && named.IsScalar() ? named.Scalar() : "";
   if (model != "equidistant" && model != "radial-tangential" && model != "radtan")
@@ -133,7 +133,7 @@ std::size_t KeepPairs(Listed* left, Listed* right) {
 Status AddPoses(const fs::path& file, const Rigid3& body_from_cam, DataSet* data_set) {
   const auto poses = ReadEurocTrajectory(file.string());
   if (!poses.ok()) return poses.status();
-  data_set->world_from_cam = PosesAt(data_set->timestamps_s, *poses, kMetre_mm, kMostDifference_s, body_from_cam);
+  data_set->world_from_cam = PosesAt(data_set->timestamps_s, *poses, kMeter_mm, kMostDifference_s, body_from_cam);
   return Status::Ok();
 }
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// The data sets that are known, each with a file of its own: how one is recognised, and how it is opened.
+// The data sets that are known, each with a file of its own: how one is recognized, and how it is opened.
 #pragma once
 
 #include <filesystem>

@@ -139,7 +139,7 @@ Result<DecodedImage> Decode(const std::filesystem::path& path) {
   return decoded;
 }
 
-// Grey or BGR; what the fourth channel says is dropped.
+// Gray or BGR; what the fourth channel says is dropped.
 cv::Mat WithoutAlpha(const cv::Mat& image) {
   if (image.channels() == 1 || image.channels() == 3) return image;
   cv::Mat result;

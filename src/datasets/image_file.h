@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // Image files as the readers need them: whole or not at all. Decoders of PNG and JPEG fill the missing part of a
-// truncated file with grey or black, so the file's own end marker is looked for first.
+// truncated file with gray or black, so the file's own end marker is looked for first.
 #pragma once
 
 #include <filesystem>
@@ -18,18 +18,18 @@ namespace pliant {
 std::string SizeText(int width, int height);
 inline std::string SizeText(const cv::Mat& image) { return SizeText(image.cols, image.rows); }
 
-// 8-bit with one (grey) or three (BGR) channels. 16-bit values are divided by 257, alpha is dropped, EXIF is ignored.
+// 8-bit with one (gray) or three (BGR) channels. 16-bit values are divided by 257, alpha is dropped, EXIF is ignored.
 // Fails with kNotFound or kUnreadable.
 Result<cv::Mat> ReadImage(const std::filesystem::path& path);
 
-// 8-bit, one channel, 0 or 255. A pixel counts when any colour channel does: not 0, in a JPEG (whose zeros are not
+// 8-bit, one channel, 0 or 255. A pixel counts when any color channel does: not 0, in a JPEG (whose zeros are not
 // exact) at least 128.
 Result<cv::Mat> ReadMaskImage(const std::filesystem::path& path);
 
 // As the file has it: any depth, any number of channels (BGR); EXR too. Fails with kNotFound or kUnreadable.
 Result<cv::Mat> ReadStoredImage(const std::filesystem::path& path);
 
-// CV_32FC1, millimetres: value * depth_scale. Fails with kMismatch unless the file is 16-bit with one channel.
+// CV_32FC1, millimeters: value * depth_scale. Fails with kMismatch unless the file is 16-bit with one channel.
 Result<cv::Mat> ReadDepthImage(const std::filesystem::path& path, double depth_scale);
 // The same where the largest value, 65535, stands for all that is as far or farther: no depth there.
 Result<cv::Mat> ReadClampedDepthImage(const std::filesystem::path& path, double depth_scale);

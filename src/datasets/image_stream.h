@@ -34,7 +34,7 @@ class ImageStream {
   // What the images' size is said to be, or that of image `idx`; nothing where it cannot be seen.
   virtual std::optional<cv::Size> SizeAt(int idx) const = 0;
 
-  // 8-bit, grey or BGR; nothing beyond the end. `idx` may not be smaller than the time before. Fails with kNotFound or
+  // 8-bit, gray or BGR; nothing beyond the end. `idx` may not be smaller than the time before. Fails with kNotFound or
   // kUnreadable; a list of files can be read on after that, a video that breaks off ends.
   virtual Result<std::optional<cv::Mat>> Read(int idx) = 0;
 };

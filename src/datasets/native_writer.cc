@@ -54,7 +54,7 @@ Status RemoveFrames(const fs::path& folder) {
 }
 
 // CV_32FC1 mm -> CV_16UC1 steps of depth_scale_mm; 0 where there is none or it is out of range.
-cv::Mat QuantiseDepth(const cv::Mat& depth_mm, double depth_scale_mm) {
+cv::Mat QuantizeDepth(const cv::Mat& depth_mm, double depth_scale_mm) {
   cv::Mat steps(depth_mm.size(), CV_16UC1);
   for (int y = 0; y < depth_mm.rows; ++y) {
     for (int x = 0; x < depth_mm.cols; ++x) {
@@ -93,7 +93,7 @@ Status NativeWriter::WriteImage(const char* kind, const cv::Mat& image) {
 }
 
 Status NativeWriter::Write(const NativeFrame& frame) {
-  const cv::Mat depth = frame.depth_mm.empty() ? cv::Mat() : QuantiseDepth(frame.depth_mm, depth_scale_);
+  const cv::Mat depth = frame.depth_mm.empty() ? cv::Mat() : QuantizeDepth(frame.depth_mm, depth_scale_);
   for (const auto& [kind, image] :
        {std::pair(native::kImageFolder, &frame.image), std::pair(native::kRightFolder, &frame.right),
         std::pair(native::kMaskFolder, &frame.mask), std::pair(native::kDepthFolder, &depth)})

@@ -17,7 +17,7 @@ namespace pliant {
 namespace {
 
 // A principal point farther from the middle than this share of the image is that of another image.
-constexpr double kMostOffCentre = 0.2;
+constexpr double kMostOffCenter = 0.2;
 // fx and fy that differ by less are those of square pixels.
 constexpr double kSquare = 0.01;
 // Pixels that are said to be this many times as high as wide are a mistake.
@@ -27,7 +27,7 @@ using Eye = StereoCalibration::Eye;
 
 cv::Matx33d MatrixOf(const Eye& eye) { return {eye.fx, 0, eye.cx, 0, eye.fy, eye.cy, 0, 0, 1}; }
 
-// Rows `stretch` times as far apart; pixel (0, 0) is the centre of the first pixel.
+// Rows `stretch` times as far apart; pixel (0, 0) is the center of the first pixel.
 Eye Stretched(Eye eye, double stretch) {
   eye.fy *= stretch;
   eye.cy = stretch * (eye.cy + 0.5) - 0.5;
@@ -43,7 +43,7 @@ ImageWarp WarpOf(const Eye& stretched, const cv::Mat& turn, const cv::Mat& proje
   return warp;
 }
 
-std::string Millimetres(double value) {
+std::string Millimeters(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.3g mm", value);
   return text;
@@ -71,7 +71,7 @@ Result<RectifiedPair> RectifyPair(const StereoCalibration& calibration, cv::Size
   if (!(t.norm() > 0.0)) return invalid("the stereo calibration has no baseline: T is 0");
   if (t.x() > 0.0)
     return invalid(
-        "the stereo calibration puts the right camera " + Millimetres(t.norm()) +
+        "the stereo calibration puts the right camera " + Millimeters(t.norm()) +
         " to the left of the left one: exchange the two cameras, or invert R and T (a point is at R x + T in "
         "the right camera)");
   if (std::abs(t.x()) < std::abs(t.y()))
@@ -123,8 +123,8 @@ Result<PairLayout> LayoutOf(const StereoCalibration& calibration, cv::Size image
     const cv::Size size = EyeSize(layout, image);
     if (calibration.image_size) {
       if (size == cv::Size(calibration.image_size->width, calibration.image_size->height)) return layout;
-    } else if (std::abs(calibration.left.cx / size.width - 0.5) < kMostOffCentre &&
-               std::abs(calibration.left.cy / size.height - 0.5) < kMostOffCentre) {
+    } else if (std::abs(calibration.left.cx / size.width - 0.5) < kMostOffCenter &&
+               std::abs(calibration.left.cy / size.height - 0.5) < kMostOffCenter) {
       return layout;
     }
   }

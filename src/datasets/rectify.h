@@ -35,7 +35,7 @@ struct RectifiedPair {
   double baseline_mm = 0;
   ImageWarp left;
   ImageWarp right;
-  Eigen::Matrix3d rectified_from_left;  // a turn of the left camera about its centre
+  Eigen::Matrix3d rectified_from_left;  // a turn of the left camera about its center
 };
 
 // OpenCV's rectification (Bouguet's), zero disparity at infinity. Raw images whose pixels are not square, such as those

@@ -87,7 +87,7 @@ Rigid3 FromUnity(const Rigid3& world_from_cam);
 std::vector<std::optional<Rigid3>> PosesAt(const std::vector<double>& times_s, const std::vector<TimedPose>& poses,
                                            double unit_mm, double most_s, const Rigid3& body_from_cam = {});
 
-// Makes millimetres of what a depth image's file holds.
+// Makes millimeters of what a depth image's file holds.
 using ReadDepth = std::function<Result<cv::Mat>(const std::filesystem::path& file)>;
 
 }  // namespace pliant

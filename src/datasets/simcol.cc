@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 constexpr double kFullScale_mm = 200.0;
 constexpr double kSteps = 65536.0;  // as its authors divide
-constexpr double kMillimetres = 10.0;
+constexpr double kMillimeters = 10.0;
 
 // Frames_S1 lies beside SavedPosition_S1.txt.
 std::string NameOf(const fs::path& folder) {
@@ -57,7 +57,7 @@ Result<std::map<int, Rigid3>> ReadPoses(const fs::path& positions, const fs::pat
   std::map<int, Rigid3> poses;
   for (std::size_t k = 0; k < places->size(); ++k) {
     NumberRow row = (*turns)[k];
-    for (int c = 0; c < 3; ++c) row.numbers.push_back(kMillimetres * (*places)[k].numbers[static_cast<std::size_t>(c)]);
+    for (int c = 0; c < 3; ++c) row.numbers.push_back(kMillimeters * (*places)[k].numbers[static_cast<std::size_t>(c)]);
     const auto pose = PoseOfRow(rotations, row, {.tx = row.numbers.size() - 3, .qx = 0, .qw = 3});
     if (!pose.ok()) return pose.status();
     poses.emplace(static_cast<int>(k), FromUnity(*pose));

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kMetre_mm = 1000.0;
+constexpr double kMeter_mm = 1000.0;
 
 // "[Section]" and "key = value" lines: numbers by "Section.key"; what is no number is passed over.
 Result<std::map<std::string, double>> ReadIni(const fs::path& file) {
@@ -96,7 +96,7 @@ Result<StereoCalibration> ReadStereoIni(const fs::path& file) {
     return Status(ErrorCode::kUnreadable, file.string() + ": res_x and res_y of StereoLeft are no size of an image");
   if (!(turn * turn.transpose()).isIdentity(1e-3))
     return Status(ErrorCode::kUnreadable, file.string() + ": R_0 to R_8 of StereoRight are not a rotation");
-  calibration.right_from_left = Rigid3(turn, t.norm() < kShortestBaseline_mm ? Eigen::Vector3d(kMetre_mm * t) : t);
+  calibration.right_from_left = Rigid3(turn, t.norm() < kShortestBaseline_mm ? Eigen::Vector3d(kMeter_mm * t) : t);
   return calibration;
 }
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // StereoMIS (Hayoz et al., IJCARS 2023): da Vinci recordings. One video, left eye on top of the right one;
-// StereoCalibration.ini; groundtruth.txt, `frame tx ty tz qx qy qz qw`, world from left camera, metres, of the robot's
+// StereoCalibration.ini; groundtruth.txt, `frame tx ty tz qx qy qz qw`, world from left camera, meters, of the robot's
 // kinematics; masks/NNNNNNl.png, 0 = an instrument, of some of the frames and not always of the video's size.
 #include <cmath>
 #include <map>
@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kCalibration = "StereoCalibration.ini";
-constexpr double kMetre_mm = 1000.0;
+constexpr double kMeter_mm = 1000.0;
 constexpr double kMostFrames = 1e7;
 
 Status AddPoses(const fs::path& file, DataSet* data_set) {
@@ -31,7 +31,7 @@ Status AddPoses(const fs::path& file, DataSet* data_set) {
   for (const NumberRow& row : *rows) {
     auto pose = PoseOfRow(file, row, {.tx = 1, .qx = 4, .qw = 7});
     if (!pose.ok()) return pose.status();
-    pose->translation *= kMetre_mm;
+    pose->translation *= kMeter_mm;
     const double frame = row.numbers[0];
     if (!(frame >= 0 && frame < kMostFrames && frame == std::floor(frame)))
       return {ErrorCode::kUnreadable, At(file.string(), row.line) + ": a line begins with the number of a frame"};

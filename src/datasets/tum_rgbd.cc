@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // TUM RGB-D (Sturm et al., IROS 2012) and what is written like it: rgb.txt and depth.txt, `timestamp file` a line,
-// depth of 16 bits, 5000 a metre; groundtruth.txt, world from camera, metres. Depth and poses belong to the image
+// depth of 16 bits, 5000 a meter; groundtruth.txt, world from camera, meters. Depth and poses belong to the image
 // nearest in time, within 20 ms.
 #include <cmath>
 #include <map>
@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 constexpr double kMostDifference_s = 0.02;
 constexpr double kDepthUnit_mm = 0.2;
-constexpr double kMetre_mm = 1000.0;
+constexpr double kMeter_mm = 1000.0;
 
 Result<std::map<double, fs::path>> ReadList(const fs::path& file, std::vector<std::string>* warnings) {
   auto reader = LineReader::Open(file.string());
@@ -82,7 +82,7 @@ Result<DataSet> OpenTumRgbd(const SequenceRequest& request) {
   if (IsFile(folder / "groundtruth.txt")) {
     const auto poses = ReadTumTrajectory((folder / "groundtruth.txt").string());
     if (!poses.ok()) return poses.status();
-    data_set->world_from_cam = PosesAt(times_s, *poses, kMetre_mm, kMostDifference_s);
+    data_set->world_from_cam = PosesAt(times_s, *poses, kMeter_mm, kMostDifference_s);
   }
   data_set->timestamps_s = std::move(times_s);
   return data_set;

@@ -50,18 +50,18 @@ Result<cv::Mat> ReadReversedDepth(const fs::path& file) {
     return Status(ErrorCode::kMismatch, "the depth image " + file.string() + " has no floating-point channel");
   constexpr float kFar = 0.25F;
   constexpr float kRange = 99.75F;
-  constexpr float kDecimetre_mm = 100.0F;
+  constexpr float kDecimeter_mm = 100.0F;
   const cv::Mat buffer = RedOf(*stored);
   cv::Mat depth_mm(buffer.size(), CV_32FC1);
   for (int v = 0; v < buffer.rows; ++v)
     for (int u = 0; u < buffer.cols; ++u) {
       const float d = buffer.at<float>(v, u);
-      depth_mm.at<float>(v, u) = d > 0 && d <= 1 ? kDecimetre_mm / (kFar + kRange * d) : 0.0F;
+      depth_mm.at<float>(v, u) = d > 0 && d <= 1 ? kDecimeter_mm / (kFar + kRange * d) : 0.0F;
     }
   return depth_mm;
 }
 
-Result<cv::Mat> ReadCentimetres(const fs::path& file) {
+Result<cv::Mat> ReadCentimeters(const fs::path& file) {
   const auto stored = ReadStoredImage(file);
   if (!stored.ok()) return stored.status();
   cv::Mat depth_mm;
@@ -82,14 +82,14 @@ fs::path EndoSlamPoses(const fs::path& folder) {
 bool IsEndomapperSimulated(const fs::path& path) { return !NumberedFiles(path / "rgb", "image_", ".png").empty(); }
 
 Result<DataSet> OpenEndomapperSimulated(const SequenceRequest& request) {
-  constexpr double kDecimetre_mm = 100.0;
+  constexpr double kDecimeter_mm = 100.0;
   const fs::path& folder = request.image_path;
   NumberedSet set{.folder = folder / "rgb",
                   .images = NumberedFiles(folder / "rgb", "image_", ".png"),
                   .depth = NumberedFiles(folder / "depth", "aov_image_", ".exr"),
                   .read_depth = ReadReversedDepth};
   if (const fs::path file = folder / "trajectory.csv"; IsFile(file))
-    if (Status status = AddPoses(file, kDecimetre_mm, &set); !status.ok()) return status;
+    if (Status status = AddPoses(file, kDecimeter_mm, &set); !status.ok()) return status;
   const auto camera =
       PublishedCamera("Endomapper", CameraModelId::kPinhole, 960, 720, {472.6496, 472.6496, 479.5, 359.5});
   if (!camera.ok()) return camera.status();
@@ -99,15 +99,15 @@ Result<DataSet> OpenEndomapperSimulated(const SequenceRequest& request) {
 bool IsEndoSlam(const fs::path& path) { return IsFolder(path / "Frames") && IsFolder(path / kPixelwise); }
 
 Result<DataSet> OpenEndoSlam(const SequenceRequest& request) {
-  constexpr double kMetre_mm = 1000.0;
+  constexpr double kMeter_mm = 1000.0;
   const fs::path& folder = request.image_path;
   NumberedSet set{.folder = folder / "Frames",
                   .images = NumberedFiles(folder / "Frames", "image_", ".png"),
                   .depth = NumberedFiles(folder / kPixelwise, "aov_image_", ".png"),
-                  .read_depth = ReadCentimetres};
+                  .read_depth = ReadCentimeters};
   if (set.images.empty()) set.images = NumberedFiles(folder / "Frames", "image_", ".jpg");
   if (const fs::path file = EndoSlamPoses(folder); !file.empty())
-    if (Status status = AddPoses(file, kMetre_mm, &set); !status.ok()) return status;
+    if (Status status = AddPoses(file, kMeter_mm, &set); !status.ok()) return status;
   const auto camera =
       PublishedCamera("EndoSLAM", CameraModelId::kPinhole, 320, 320, {156.0418, 155.7529, 178.5604, 181.8043});
   if (!camera.ok()) return camera.status();

@@ -106,9 +106,9 @@ NeighborLists NearestNeighbors(Points positions, Points places, int count) {
 }
 
 void GraphOptions::List(OptionTable& table) {
-  table.BeginGroup("Deformation", "the graph that ties each point to its neighbours");
-  table.Add("neighbors", &neighbors, "points", "K, how many nearest neighbours each point is tied to", 1, 1000);
-  table.Add("sigma_mm", &sigma_mm, "mm", "distance over which neighbours move alike: w = exp(-d^2 / (2 sigma^2))", 1e-6,
+  table.BeginGroup("Deformation", "the graph that ties each point to its neighbors");
+  table.Add("neighbors", &neighbors, "points", "K, how many nearest neighbors each point is tied to", 1, 1000);
+  table.Add("sigma_mm", &sigma_mm, "mm", "distance over which neighbors move alike: w = exp(-d^2 / (2 sigma^2))", 1e-6,
             1e6);
   table.AddChoice("cut_edges", &cut_edges,
                   "whether edges are left out whose length has left its rest length (surfaces that slide or part)");

@@ -28,7 +28,7 @@ DeformingEquations::DeformingEquations(const DeformingTerms& terms, std::vector<
       points_(terms.num_points()),
       parts_(kEquationParts) {}
 
-bool DeformingEquations::Linearise(const DeformingState& state) {
+bool DeformingEquations::Linearize(const DeformingState& state) {
   curvature_.setZero(Size(), Size());
   slope_.setZero(Size());
   settled_ = 0;
@@ -71,7 +71,7 @@ void DeformingEquations::SumPart(std::size_t part, const DeformingState& state) 
   sums.settled = 0;
   const std::size_t count = terms_->num_points();
   for (std::size_t i = part * count / kEquationParts; i < (part + 1) * count / kEquationParts; ++i) {
-    const PointEquations own = terms_->Linearised(i, state, &points_[i].seen);
+    const PointEquations own = terms_->Linearized(i, state, &points_[i].seen);
     AddViews(i, points_[i].seen, &sums);
     Eliminate(i, own, &sums);
   }

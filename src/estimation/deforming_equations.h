@@ -19,7 +19,7 @@ class DeformingEquations final : public NormalEquations {
   // `gauge`: the points that hold the scale. `threads` never changes the result.
   DeformingEquations(const DeformingTerms& terms, std::vector<int> gauge, int threads = 1);
 
-  bool Linearise(const DeformingState& state) override;
+  bool Linearize(const DeformingState& state) override;
   const Eigen::VectorXd& slope() const override { return slope_; }
   Eigen::VectorXd CurvatureTimes(const Eigen::VectorXd& x) const override;
   Eigen::VectorXd CurvatureDiagonal() const override { return curvature_.diagonal(); }

@@ -107,7 +107,7 @@ void DeformingProblem::HoldScale(DeformingState* state) const {
 std::optional<double> DeformingProblem::Settled(std::size_t point, double cost, DeformingState* state) const {
   auto column = state->points.col(static_cast<Eigen::Index>(point));
   const PointVector values = column;
-  const PointEquations equations = terms_.Linearised(point, *state, nullptr);
+  const PointEquations equations = terms_.Linearized(point, *state, nullptr);
   const PointVector step = Limited(equations.own.llt().solve(equations.gradient));
   for (const double share : {1.0, 0.5, 0.25}) {
     column = values - share * step;
@@ -169,7 +169,7 @@ Result<double> DeformingProblem::Descend(int max_iterations, NormalEquations* eq
   double radius = kFirstRadius;
   bool done = false;
   for (int iteration = 0; iteration < max_iterations && !done; ++iteration) {
-    if (!equations->Linearise(state_)) break;
+    if (!equations->Linearize(state_)) break;
     const TrustPlane plane(*equations);
     for (bool accepted = false; !accepted && !done;) {
       const TrustPlane::Step best = plane.Best(radius);
@@ -216,7 +216,7 @@ Result<double> DeformingProblem::SettlePoints(int threads) {
 
 std::vector<double> DeformingProblem::LogDepthSigmas(int threads) const {
   DeformingEquations equations(terms_, gauge_, threads);
-  if (!equations.Linearise(state_))
+  if (!equations.Linearize(state_))
     return std::vector<double>(terms_.num_points(), std::numeric_limits<double>::infinity());
   std::vector<double> sigmas = equations.Variances();
   for (double& sigma : sigmas) sigma = std::sqrt(sigma);

@@ -206,7 +206,7 @@ std::optional<double> DeformingTerms::Cost(const DeformingState& state) const {
   return cost;
 }
 
-DeformingTerms::Sight DeformingTerms::LinearisedSight(const Seen& seen, std::size_t point, const Eigen::Vector3d& rest,
+DeformingTerms::Sight DeformingTerms::LinearizedSight(const Seen& seen, std::size_t point, const Eigen::Vector3d& rest,
                                                       const DeformingState& state) const {
   const ViewPose& pose = state.poses[static_cast<std::size_t>(seen.view_idx)];
   Sight sight;
@@ -230,18 +230,18 @@ ViewDerivative DeformingTerms::ByView(const Sight& sight, std::size_t point, con
   return by_view;
 }
 
-void DeformingTerms::LineariseViews(std::size_t point, const DeformingState& state,
+void DeformingTerms::LinearizeViews(std::size_t point, const DeformingState& state,
                                     std::vector<SeenEquations>* seen) const {
   const Eigen::Vector3d rest = charts_[point].Point(state.points.col(static_cast<Eigen::Index>(point)).head<3>());
   seen->resize(seen_[point].size());
   for (std::size_t k = 0; k < seen->size(); ++k) {
-    const Sight sight = LinearisedSight(seen_[point][k], point, rest, state);
+    const Sight sight = LinearizedSight(seen_[point][k], point, rest, state);
     (*seen)[k].error = sight.error;
     (*seen)[k].by_view = ByView(sight, point, state);
   }
 }
 
-PointEquations DeformingTerms::Linearised(std::size_t point, const DeformingState& state,
+PointEquations DeformingTerms::Linearized(std::size_t point, const DeformingState& state,
                                           std::vector<SeenEquations>* seen_equations) const {
   const auto column = state.points.col(static_cast<Eigen::Index>(point));
   const Eigen::Vector3d rest = charts_[point].Point(column.head<3>());
@@ -254,7 +254,7 @@ PointEquations DeformingTerms::Linearised(std::size_t point, const DeformingStat
   Eigen::Matrix<double, 1 + kMaxWindowRank, 1> shares;
   shares[0] = 1.0;
   for (std::size_t k = 0; k < seen_[point].size(); ++k) {
-    const Sight sight = LinearisedSight(seen_[point][k], point, rest, state);
+    const Sight sight = LinearizedSight(seen_[point][k], point, rest, state);
     for (int r = 0; r < rank_; ++r) shares[1 + r] = state.courses(r, seen_[point][k].view_idx);
     const Eigen::Matrix3d by_positions = sight.by_position.transpose() * sight.by_position;
     const Eigen::Vector3d gradient = sight.by_position.transpose() * sight.error;

@@ -98,9 +98,9 @@ class DeformingTerms {
   std::optional<double> PointCost(std::size_t point, const DeformingState& state) const;
 
   // `seen` may be null; else it becomes one a measured observation.
-  PointEquations Linearised(std::size_t point, const DeformingState& state, std::vector<SeenEquations>* seen) const;
+  PointEquations Linearized(std::size_t point, const DeformingState& state, std::vector<SeenEquations>* seen) const;
   // Error and derivative by the view alone of each.
-  void LineariseViews(std::size_t point, const DeformingState& state, std::vector<SeenEquations>* seen) const;
+  void LinearizeViews(std::size_t point, const DeformingState& state, std::vector<SeenEquations>* seen) const;
 
  private:
   struct Light {
@@ -123,7 +123,7 @@ class DeformingTerms {
   void PrepareLight();
   Eigen::Vector3d Position(std::size_t point, int view_idx, const Eigen::Vector3d& rest,
                            const DeformingState& state) const;
-  Sight LinearisedSight(const Seen& seen, std::size_t point, const Eigen::Vector3d& rest,
+  Sight LinearizedSight(const Seen& seen, std::size_t point, const Eigen::Vector3d& rest,
                         const DeformingState& state) const;
   ViewDerivative ByView(const Sight& sight, std::size_t point, const DeformingState& state) const;
   PointVector NodeDifference(std::size_t point, const DeformingState& state) const;

@@ -8,7 +8,7 @@
 #include <limits>
 #include <utility>
 
-#include "estimation/deforming_judgement.h"
+#include "estimation/deforming_judgment.h"
 #include "estimation/deforming_problem.h"
 #include "estimation/mode_basis.h"
 #include "estimation/window_samples.h"

@@ -14,7 +14,7 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "estimation/deforming_judgement.h"
+#include "estimation/deforming_judgment.h"
 #include "estimation/deforming_problem.h"
 #include "estimation/mode_basis.h"
 #include "estimation/plane_rival.h"
@@ -245,13 +245,13 @@ void DeformingWindowOptions::List(OptionTable& table) {
   table.Add("loss_scale_px", &loss_scale_px, "px", "scale of the Cauchy loss: about a tracked pixel's noise", 1e-3,
             100);
   table.Add("gradient_sigma", &gradient_sigma, "-",
-            "difference of neighbours' modes by their distance, standard deviation; smaller is smoother", 1e-4, 100);
+            "difference of neighbors' modes by their distance, standard deviation; smaller is smoother", 1e-4, 100);
   table.Add("mode_sigma", &mode_sigma, "-", "a mode's size by the median distance, standard deviation", 1e-4, 100);
   table.Add("acceleration_sigma", &acceleration_sigma, "1/frame^2",
             "second derivative of a course (whose size is about 1), standard deviation", 1e-6, 1e3);
   table.Add("light_sigma", &light_sigma, "-",
-            "log distance from brightness, standard deviation; large, because neighbours err alike", 1e-3, 1e6);
-  table.Add("neighbors", &neighbors, "-", "neighbours with which a point's modes are compared", 1, 100);
+            "log distance from brightness, standard deviation; large, because neighbors err alike", 1e-3, 1e6);
+  table.Add("neighbors", &neighbors, "-", "neighbors with which a point's modes are compared", 1, 100);
   table.Add("nodes", &nodes, "-", "of the surface, at which modes are free; between them they are interpolated", 4,
             1000);
   table.Add("sample_points", &sample_points, "-",

@@ -38,7 +38,7 @@ double TemporalStiffness(const FrameProblemOptions& options) {
   return options.lambda_tmp * scale * scale;
 }
 
-// The regularisers' own 3x3 block of every point.
+// The regularizers' own 3x3 block of every point.
 std::vector<Eigen::Matrix3d> PointStiffness(const FrameTerms& terms, const Points& points) {
   const Eigen::Matrix3d temporal = TemporalStiffness(terms.options) * Eigen::Matrix3d::Identity();
   std::vector<Eigen::Matrix3d> blocks(points.size(), temporal);
@@ -62,7 +62,7 @@ FramePreconditioner::FramePreconditioner(const FrameTerms& terms, const Points& 
   scratch_.resize(terms_.num_points());
 }
 
-// C: the reprojection term's curvature and the regularisers' own, across each ray.
+// C: the reprojection term's curvature and the regularizers' own, across each ray.
 void FramePreconditioner::BuildAcross(const std::vector<Eigen::Matrix3d>& stiffness) {
   across_.resize(start_.size());
   terms_.camera->Visit([&]<class Model>(const Model& model) {
@@ -86,7 +86,7 @@ void FramePreconditioner::BuildAcross(const std::vector<Eigen::Matrix3d>& stiffn
   });
 }
 
-// A: the regularisers along the rays.
+// A: the regularizers along the rays.
 bool FramePreconditioner::BuildAlong(const std::vector<Eigen::Matrix3d>& stiffness) {
   const int num_points = terms_.num_points();
   Eigen::SparseMatrix<double> matrix(num_points, num_points);
@@ -108,7 +108,7 @@ bool FramePreconditioner::BuildAlong(const std::vector<Eigen::Matrix3d>& stiffne
 }
 
 // B and P. A motion (omega, tau) of the camera moves e_i by v_i x omega - tau, v_i = R0 (X_i - pivot). With
-// q_i = a_tmp v_i + sum_j a_ij (v_i - v_j), the regularisers' Hessian by (x_i, pose) is ([q_i]x, -a_tmp I).
+// q_i = a_tmp v_i + sum_j a_ij (v_i - v_j), the regularizers' Hessian by (x_i, pose) is ([q_i]x, -a_tmp I).
 bool FramePreconditioner::BuildPose() {
   const int num_points = terms_.num_points();
   const double temporal = TemporalStiffness(terms_.options);

@@ -4,7 +4,7 @@
 // Variables in which the joint problem's Hessian is nearly the identity (docs/method.md, eq. E11).
 //
 // In the camera frame (frame_energy.h) the reprojection term holds each point across its ray, a hundred times more
-// strongly than the regularisers hold anything, and does not hold it along its ray at all. So the Hessian is nearly
+// strongly than the regularizers hold anything, and does not hold it along its ray at all. So the Hessian is nearly
 //   [ C 0 0 ; 0 A B ; 0 B' P ]   by (across the rays, along the rays, pose):
 // C has 2x2 blocks, A is a sparse matrix with ONE row a point, P is 6x6. This matrix M = L L' is cheap to factorise
 // (27 times fewer operations than with three rows a point), and

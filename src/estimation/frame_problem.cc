@@ -112,7 +112,7 @@ bool AddCosts(const FrameTerms& terms, const Rigid3& cam_from_world, const std::
   return true;
 }
 
-// How much of each displacement no neighbour shares (FramePoint::disagreement_mm).
+// How much of each displacement no neighbor shares (FramePoint::disagreement_mm).
 std::vector<double> Disagreements(const FrameTerms& terms, const std::vector<Eigen::Vector3d>& positions) {
   std::vector<Eigen::Vector3d> sums(positions.size(), Eigen::Vector3d::Zero());
   std::vector<double> weights(positions.size(), 0.0);
@@ -137,7 +137,7 @@ void FrameProblemOptions::List(OptionTable& table) {
   table.Add("lambda_spa", &lambda_spa, "-", "weight of the spatial term: close points move alike", 0.0, 1e9);
   table.Add("lambda_tmp", &lambda_tmp, "-", "weight of the temporal term: points move slowly", 1e-9, 1e9);
   table.Add("sigma_rep_px", &sigma_rep_px, "px", "standard deviation of a measured pixel", 1e-3, 1e3);
-  table.Add("sigma_spa_mm", &sigma_spa_mm, "mm", "standard deviation of neighbours' difference in motion a frame", 1e-6,
+  table.Add("sigma_spa_mm", &sigma_spa_mm, "mm", "standard deviation of neighbors' difference in motion a frame", 1e-6,
             1e6);
   table.Add("sigma_tmp_mm", &sigma_tmp_mm, "mm", "standard deviation of a point's motion a frame", 1e-6, 1e6);
   table.Add("chi2_rep", &chi2_rep, "-", "Huber threshold on the squared reprojection residual (95 %, 2 dof)", 1e-3,

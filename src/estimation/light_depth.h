@@ -16,7 +16,7 @@ namespace pliant {
 inline constexpr int kSlopeNeighbors = 12;  // whose plane is the surface
 
 // `log_light` with the cosine between ray and surface put in, which darkens like distance does. Positions are in the
-// camera; the surface at a point is the plane of its neighbours, the nearer the more. NaN stays NaN. `neighbors`:
+// camera; the surface at a point is the plane of its neighbors, the nearer the more. NaN stays NaN. `neighbors`:
 // kSlopeNeighbors or more of each.
 std::vector<double> CorrectForSlope(const std::vector<Eigen::Vector3d>& positions_in_cam,
                                     const NeighborLists& neighbors, const std::vector<double>& log_light);

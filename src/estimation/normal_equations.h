@@ -15,7 +15,7 @@ class NormalEquations {
   virtual ~NormalEquations() = default;
 
   // Makes them those of `state`, in the memory of those before; false where they have no solution. All below is theirs.
-  virtual bool Linearise(const DeformingState& state) = 0;
+  virtual bool Linearize(const DeformingState& state) = 0;
 
   // Of the cost as a function of what is solved for, all else following: slope, and curvature L L'.
   virtual const Eigen::VectorXd& slope() const = 0;

@@ -31,7 +31,7 @@ Status CheckCounts(Rays rays0, Rays rays1, std::size_t least) {
   return Status::Ok();
 }
 
-// Wahba's problem: the rotation that maximises sum_i w_i f1_i . (R f0_i).
+// Wahba's problem: the rotation that maximizes sum_i w_i f1_i . (R f0_i).
 Eigen::Quaterniond BestRotation(Rays rays0, Rays rays1, const std::vector<double>& weights) {
   Eigen::Matrix3d correlation = Eigen::Matrix3d::Zero();
   for (std::size_t i = 0; i < rays0.size(); ++i) correlation += weights[i] * rays1[i] * rays0[i].transpose();
@@ -103,7 +103,7 @@ Eigen::Matrix3d LeastSquaresHomography(Rays rays0, Rays rays1, const std::vector
 }
 
 // H is known up to scale and sign: middle singular value 1, and rays carried forwards, not backwards.
-Eigen::Matrix3d Normalised(const Eigen::Matrix3d& homography, Rays rays0, Rays rays1) {
+Eigen::Matrix3d Normalized(const Eigen::Matrix3d& homography, Rays rays0, Rays rays1) {
   const double middle = Eigen::JacobiSVD<Eigen::Matrix3d>(homography).singularValues()[1];
   int forwards = 0;
   for (std::size_t i = 0; i < rays0.size(); ++i) forwards += (homography * rays0[i]).dot(rays1[i]) > 0 ? 1 : -1;
@@ -161,7 +161,7 @@ Result<HomographyFit> FitHomography(Rays rays0, Rays rays1, double focal_px, dou
     if (polished.num_inliers < best.num_inliers) break;
     best = std::move(polished);
   }
-  best.cam1_from_cam0 = Normalised(best.cam1_from_cam0, rays0, rays1);
+  best.cam1_from_cam0 = Normalized(best.cam1_from_cam0, rays0, rays1);
   return best;
 }
 

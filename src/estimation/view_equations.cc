@@ -10,7 +10,7 @@ namespace pliant {
 ViewEquations::ViewEquations(const DeformingTerms& terms, int threads)
     : terms_(&terms), threads_(threads), parts_(kEquationParts) {}
 
-bool ViewEquations::Linearise(const DeformingState& state) {
+bool ViewEquations::Linearize(const DeformingState& state) {
   ParallelFor(
       static_cast<int>(kEquationParts), threads_, [&](int part) { SumPart(static_cast<std::size_t>(part), state); }, 1);
   Assemble(state);
@@ -31,7 +31,7 @@ void ViewEquations::SumPart(std::size_t part, const DeformingState& state) {
   const std::size_t count = terms_->num_points();
   std::vector<SeenEquations> seen;
   for (std::size_t i = part * count / kEquationParts; i < (part + 1) * count / kEquationParts; ++i) {
-    terms_->LineariseViews(i, state, &seen);
+    terms_->LinearizeViews(i, state, &seen);
     for (std::size_t k = 0; k < seen.size(); ++k) {
       const int view = terms_->seen(i)[k].view_idx - 1;
       if (view < 0) continue;

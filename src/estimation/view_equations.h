@@ -18,7 +18,7 @@ class ViewEquations final : public NormalEquations {
   // `threads` never changes the result.
   explicit ViewEquations(const DeformingTerms& terms, int threads = 1);
 
-  bool Linearise(const DeformingState& state) override;
+  bool Linearize(const DeformingState& state) override;
   const Eigen::VectorXd& slope() const override { return slope_; }
   Eigen::VectorXd CurvatureTimes(const Eigen::VectorXd& x) const override;
   Eigen::VectorXd CurvatureDiagonal() const override { return curvature_.diagonal(); }

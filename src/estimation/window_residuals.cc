@@ -47,7 +47,7 @@ double ResidualCorrelation(const DeformingWindow& window) {
   for (const DeformingObservation& observation : window.observations) {
     const auto v = static_cast<std::size_t>(observation.view_idx);
     const Eigen::Vector3d x = window.cams_from_world[v] * window.Position(observation.point_idx, observation.view_idx);
-    // In the camera's own axes, so that neighbours' errors can be compared.
+    // In the camera's own axes, so that neighbors' errors can be compared.
     const Eigen::Vector2d error = (x.normalized() - observation.ray).head<2>();
     errors[v][static_cast<std::size_t>(observation.point_idx)] = error;
     sizes.push_back(error.norm());

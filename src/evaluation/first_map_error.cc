@@ -60,8 +60,8 @@ FirstMapMotion CompareMotion(const PosePair& reference, const PosePair& declared
 void CountFrames(std::span<const EvaluationFrame> frames, FirstMapError* error) {
   for (const EvaluationFrame& frame : frames) {
     if (frame.frame_idx > error->frames.declared_frame_idx) break;
-    error->initialise_total_ms += frame.initialise_ms;
-    error->initialise_largest_ms = std::max(error->initialise_largest_ms, frame.initialise_ms);
+    error->initialize_total_ms += frame.initialize_ms;
+    error->initialize_largest_ms = std::max(error->initialize_largest_ms, frame.initialize_ms);
     if (frame.frame_idx > error->frames.reference_frame_idx) ++error->frames_waited;
     if (frame.frame_idx < error->frames.declared_frame_idx) ++error->frames_before;
   }

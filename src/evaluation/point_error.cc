@@ -72,7 +72,7 @@ std::map<int, SubmapScale> SubmapScales(std::span<const PairedFrame> frames, Err
   for (const auto& [idx, pairs] : submaps) {
     if (pairs.empty()) continue;
     if (scale == ErrorScale::kGlobal) scales[idx].estimate = ProtocolScale(pairs, protocol);
-    // The null has no millimetres of its own: without per-frame scales it gets the best one depth.
+    // The null has no millimeters of its own: without per-frame scales it gets the best one depth.
     scales[idx].null_depth = ProtocolScale(NullPairs(pairs), protocol);
   }
   return scales;

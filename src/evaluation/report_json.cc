@@ -152,7 +152,7 @@ Json ToJson(const FirstMapError& e) {
           {"declared", ToJson(e.declared)},
           {"reference", e.reference ? ToJson(*e.reference) : Json()},
           {"motion", e.motion ? ToJson(*e.motion) : Json()},
-          {"initialiser_ms", {{"total", e.initialise_total_ms}, {"largest", e.initialise_largest_ms}}}};
+          {"initializer_ms", {{"total", e.initialize_total_ms}, {"largest", e.initialize_largest_ms}}}};
 }
 
 Json ToJson(const TrackSurvival& s) {

@@ -81,8 +81,8 @@ std::string DepthRows(const char* where, const FirstMapDepth& d) {
 
 std::string FirstMapTable(const FirstMapError& e) {
   std::string text = FormatText(
-      "first map (waited %d frames since its reference, %d since the first; initialiser %.0f ms, %.0f at once)\n",
-      e.frames_waited, e.frames_before, e.initialise_total_ms, e.initialise_largest_ms);
+      "first map (waited %d frames since its reference, %d since the first; initializer %.0f ms, %.0f at once)\n",
+      e.frames_waited, e.frames_before, e.initialize_total_ms, e.initialize_largest_ms);
   text += DepthRows("made in", e.declared);
   if (e.reference && e.frames_waited > 0) text += DepthRows("reference", *e.reference);
   if (e.motion) {

@@ -19,8 +19,8 @@ namespace {
 
 // Our runs write the sequence's times; only the digits written may differ.
 constexpr double kTimeToleranceS = 1e-3;
-// The tracker's name for what its initialiser takes.
-constexpr std::string_view kInitialiseStage = "initialise";
+// The tracker's name for what its initializer takes.
+constexpr std::string_view kInitializeStage = "initialize";
 
 using FrameMap = std::map<int, EvaluationFrame>;  // by frame number
 
@@ -34,7 +34,7 @@ EvaluationFrame& FrameAt(int frame_idx, double timestamp_s, FrameMap* frames) {
 void TakeRow(const Run& run, const RunFrame& row, EvaluationFrame* frame) {
   frame->submap = row.submap;
   for (std::size_t i = 0; i < run.stage_names.size(); ++i)
-    if (run.stage_names[i] == kInitialiseStage) frame->initialise_ms = row.stage_ms[i];
+    if (run.stage_names[i] == kInitializeStage) frame->initialize_ms = row.stage_ms[i];
   if (!run.summary || !run.summary->first_map) return;
   const FirstMapFrames& first_map = *run.summary->first_map;
   if (first_map.reference_frame_idx <= row.frame_idx && row.frame_idx <= first_map.declared_frame_idx)
@@ -136,7 +136,7 @@ EvaluationFrame FrameFromReport(const FrameReport& report) {
   EvaluationFrame frame{report.frame_idx, report.timestamp_s, report.cam_from_world, report.observations,
                         report.first_map};
   for (const auto& [stage, ms] : report.stage_ms)
-    if (stage == kInitialiseStage) frame.initialise_ms = ms;
+    if (stage == kInitializeStage) frame.initialize_ms = ms;
   frame.submap = report.submap;
   return frame;
 }

@@ -55,14 +55,14 @@ Result<Sim3> Align(std::span<const PosePair> pairs, TrajectoryAlignment alignmen
   if (pairs.size() < 3)
     return Status(ErrorCode::kInsufficient, "a camera path is compared from three poses on; " +
                                                 std::to_string(pairs.size()) + " tracked frames have a true pose");
-  std::vector<Eigen::Vector3d> run_centres;
-  std::vector<Eigen::Vector3d> true_centres;
+  std::vector<Eigen::Vector3d> run_centers;
+  std::vector<Eigen::Vector3d> true_centers;
   for (const PosePair& pair : pairs) {
-    run_centres.push_back(pair.world_from_cam.translation);
-    true_centres.push_back(pair.true_world_from_cam.translation);
+    run_centers.push_back(pair.world_from_cam.translation);
+    true_centers.push_back(pair.true_world_from_cam.translation);
   }
   const Result<Sim3> truth_from_run =
-      AlignPoints(run_centres, true_centres,
+      AlignPoints(run_centers, true_centers,
                   alignment == TrajectoryAlignment::kSim3 ? AlignmentScale::kEstimated : AlignmentScale::kFixedAtOne);
   if (truth_from_run.ok()) return truth_from_run;
   return Status(truth_from_run.status().code(),
@@ -72,11 +72,11 @@ Result<Sim3> Align(std::span<const PosePair> pairs, TrajectoryAlignment alignmen
 
 // Variances of the true positions along their principal axes, the smallest first.
 Eigen::Vector3d Spread(std::span<const PosePair> pairs) {
-  Eigen::Matrix3Xd centres(3, static_cast<Eigen::Index>(pairs.size()));
+  Eigen::Matrix3Xd centers(3, static_cast<Eigen::Index>(pairs.size()));
   for (std::size_t i = 0; i < pairs.size(); ++i)
-    centres.col(static_cast<Eigen::Index>(i)) = pairs[i].true_world_from_cam.translation;
-  centres.colwise() -= Eigen::Vector3d(centres.rowwise().mean());
-  const Eigen::Matrix3d spread = centres * centres.transpose() / static_cast<double>(pairs.size());
+    centers.col(static_cast<Eigen::Index>(i)) = pairs[i].true_world_from_cam.translation;
+  centers.colwise() -= Eigen::Vector3d(centers.rowwise().mean());
+  const Eigen::Matrix3d spread = centers * centers.transpose() / static_cast<double>(pairs.size());
   return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvalues().cwiseMax(0.0);
 }
 

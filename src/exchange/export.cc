@@ -49,7 +49,7 @@ void ExportOptions::List(OptionTable& table) {
 }
 
 std::array<std::uint8_t, 3> TimeColor(const RunSource& source, const SourceFrame& frame) {
-  // Nine of viridis' 256 colours, evenly spaced.
+  // Nine of viridis' 256 colors, evenly spaced.
   constexpr std::array<std::array<double, 3>, 9> kColors = {{{68, 1, 84},
                                                              {71, 44, 122},
                                                              {59, 81, 139},

@@ -24,8 +24,8 @@ Status ExportTum(const RunSource& source, const std::string& folder);
 Status ExportColmap4d(const RunSource& source, const ExportOptions& options, const std::string& folder);
 Status ExportDatabase(const RunSource& source, const ExportOptions& options, const std::string& folder);
 
-// The colour of a frame's time, from the source's first frame to its last: viridis, which is even to the eye and to the
-// colour-blind.
+// The color of a frame's time, from the source's first frame to its last: viridis, which is even to the eye and to the
+// color-blind.
 std::array<std::uint8_t, 3> TimeColor(const RunSource& source, const SourceFrame& frame);
 
 // The frame's number as files and folders are called: 000123.

@@ -82,7 +82,7 @@ class Reporter {
     report.lost = std::exchange(ended_, 0);
     const auto found = imported_.frames.find(frame_idx);
     if (found == imported_.frames.end()) {
-      report.state = begun_ ? TrackingState::kLost : TrackingState::kInitialising;
+      report.state = begun_ ? TrackingState::kLost : TrackingState::kInitializing;
       return report;
     }
     begun_ = true;

@@ -29,7 +29,7 @@ struct ImportedFrame {
 struct Imported {
   std::optional<Camera> camera;  // nothing: the sequence's
   std::map<int, ImportedFrame> frames;
-  std::map<PointId, std::array<std::uint8_t, 3>> colors;  // of points whose colour is known
+  std::map<PointId, std::array<std::uint8_t, 3>> colors;  // of points whose color is known
   std::vector<std::string> notes;
 };
 

@@ -62,7 +62,7 @@ Status AddPoints(const RunMap& known, RunSource* source) {
   if (unknown > 0)
     source->notes.push_back(std::to_string(unknown) + " of " + std::to_string(points.size()) +
                             " points are not in the run's sparse/, which is written at the end and has those seen in "
-                            "two frames or more; their first position stands for the undeformed one, in grey");
+                            "two frames or more; their first position stands for the undeformed one, in gray");
   return Status::Ok();
 }
 

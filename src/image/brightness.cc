@@ -37,7 +37,7 @@ LocalBrightness::LocalBrightness(const cv::Mat& image, const cv::Mat& valid) {
 }
 
 double LocalBrightness::At(const Eigen::Vector2d& pixel) const {
-  // Centres of pixels are at whole numbers in both images.
+  // Centers of pixels are at whole numbers in both images.
   const double x = (pixel.x() + 0.5) / kScale - 0.5;
   const double y = (pixel.y() + 0.5) / kScale - 0.5;
   if (!(x > -1.0) || !(y > -1.0) || !(x < brightness_.cols) || !(y < brightness_.rows)) return 0.0;

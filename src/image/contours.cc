@@ -13,23 +13,23 @@
 namespace pliant {
 namespace {
 
-constexpr double kDarkOffset = 8;      // grey levels added before the logarithm: noise of dark pixels stays small
+constexpr double kDarkOffset = 8;      // gray levels added before the logarithm: noise of dark pixels stays small
 constexpr double kMinLogStep = 0.15;   // brightness ratio (natural logarithm) of a step that is no contour yet
 constexpr double kWithinWeight = 2.0;  // what lies within a side weighs this much against the step
 
 }  // namespace
 
-std::vector<double> ContourMeasure(const cv::Mat& grey, std::span<const Eigen::Vector2d> pixels, int radius_px) {
-  assert(grey.type() == CV_8UC1 && radius_px >= 2);
-  cv::Mat log_grey;
-  grey.convertTo(log_grey, CV_32F, 1, kDarkOffset);
-  cv::log(log_grey, log_grey);
+std::vector<double> ContourMeasure(const cv::Mat& gray, std::span<const Eigen::Vector2d> pixels, int radius_px) {
+  assert(gray.type() == CV_8UC1 && radius_px >= 2);
+  cv::Mat log_gray;
+  gray.convertTo(log_gray, CV_32F, 1, kDarkOffset);
+  cv::log(log_gray, log_gray);
   const int half = std::max(1, radius_px / 2);
   const int side_px = half | 1;  // odd; the two sides' windows, at +-half, leave a gap of about half between them
   const cv::Size box(side_px, side_px);
   cv::Mat mean, mean_square;
-  cv::boxFilter(log_grey, mean, CV_32F, box, cv::Point(-1, -1), true, cv::BORDER_REPLICATE);
-  cv::boxFilter(log_grey.mul(log_grey), mean_square, CV_32F, box, cv::Point(-1, -1), true, cv::BORDER_REPLICATE);
+  cv::boxFilter(log_gray, mean, CV_32F, box, cv::Point(-1, -1), true, cv::BORDER_REPLICATE);
+  cv::boxFilter(log_gray.mul(log_gray), mean_square, CV_32F, box, cv::Point(-1, -1), true, cv::BORDER_REPLICATE);
 
   const auto clamped = [&](const cv::Mat& image, const Eigen::Vector2d& p) {
     return *SampleBilinear(image, std::clamp(p.x(), 0.0, image.cols - 1.0), std::clamp(p.y(), 0.0, image.rows - 1.0));

@@ -13,31 +13,31 @@ namespace pliant {
 namespace {
 
 constexpr double kReferenceQuantile = 0.99;  // of the local maxima: a few highlights do not set the scale
-// Smallest response of a corner, (grey levels / px)^2 of the mean tensor: below it is the noise of an 8-bit image.
+// Smallest response of a corner, (gray levels / px)^2 of the mean tensor: below it is the noise of an 8-bit image.
 constexpr double kNoiseFloor = 0.5;
-// OpenCV's response is the mean tensor of gradients in units of half a grey level / 255 a pixel.
+// OpenCV's response is the mean tensor of gradients in units of half a gray level / 255 a pixel.
 constexpr double kTensorScale = 255.0 * 255.0 / 4.0;
 
 // Peak of the parabola through three equidistant samples, within half a pixel.
-double ParabolaPeak(double left, double centre, double right) {
-  const double curvature = left - 2 * centre + right;
+double ParabolaPeak(double left, double center, double right) {
+  const double curvature = left - 2 * center + right;
   return curvature < 0 ? std::clamp(0.5 * (left - right) / curvature, -0.5, 0.5) : 0;
 }
 
 // Local maxima of the corner response on usable pixels, strongest first; ties by row, then column.
-std::vector<Corner> Candidates(const cv::Mat& grey, const cv::Mat& valid, const CornerOptions& options) {
+std::vector<Corner> Candidates(const cv::Mat& gray, const cv::Mat& valid, const CornerOptions& options) {
   cv::Mat response, peaks;
-  cv::cornerMinEigenVal(grey, response, options.block_size_px, 3);
+  cv::cornerMinEigenVal(gray, response, options.block_size_px, 3);
   cv::dilate(response, peaks, cv::Mat());
   const cv::Mat usable = ErodeMask(valid, options.border_px);
   std::vector<Corner> corners;
-  for (int y = 1; y + 1 < grey.rows; ++y) {
+  for (int y = 1; y + 1 < gray.rows; ++y) {
     const auto* row = response.ptr<float>(y);
     const auto* above = response.ptr<float>(y - 1);
     const auto* below = response.ptr<float>(y + 1);
     const auto* peak = peaks.ptr<float>(y);
     const auto* use = usable.ptr<std::uint8_t>(y);
-    for (int x = 1; x + 1 < grey.cols; ++x) {
+    for (int x = 1; x + 1 < gray.cols; ++x) {
       if (use[x] == 0 || row[x] < peak[x] || row[x] <= 0) continue;
       Corner corner;
       corner.pixel = {x + ParabolaPeak(row[x - 1], row[x], row[x + 1]), y + ParabolaPeak(above[x], row[x], below[x])};
@@ -56,10 +56,10 @@ void DropWeak(double quality_level, double noise_floor, std::vector<Corner>* cor
   std::erase_if(*corners, [&](const Corner& c) { return c.score < limit; });
 }
 
-void DropContours(const cv::Mat& grey, const CornerOptions& options, std::vector<Corner>* corners) {
+void DropContours(const cv::Mat& gray, const CornerOptions& options, std::vector<Corner>* corners) {
   std::vector<Eigen::Vector2d> pixels;
   for (const Corner& corner : *corners) pixels.push_back(corner.pixel);
-  const std::vector<double> measures = ContourMeasure(grey, pixels, options.contour_radius_px);
+  const std::vector<double> measures = ContourMeasure(gray, pixels, options.contour_radius_px);
   for (std::size_t i = 0; i < corners->size(); ++i) (*corners)[i].contour = measures[i];
   if (options.contour_filter == Switch::kOn)
     std::erase_if(*corners, [&](const Corner& c) { return c.contour > options.contour_threshold; });
@@ -136,18 +136,18 @@ void CornerOptions::List(OptionTable& table) {
   table.Add("contour_radius_px", &contour_radius_px, "px", "how far to each side brightness is compared", 2, 200);
 }
 
-std::vector<Corner> DetectCorners(const cv::Mat& grey, const cv::Mat& valid, std::span<const Eigen::Vector2d> existing,
+std::vector<Corner> DetectCorners(const cv::Mat& gray, const cv::Mat& valid, std::span<const Eigen::Vector2d> existing,
                                   const CornerOptions& options) {
-  assert(grey.type() == CV_8UC1 && !grey.empty());
-  assert(valid.empty() || (valid.type() == CV_8UC1 && valid.size() == grey.size()));
-  const cv::Mat usable = valid.empty() ? cv::Mat(grey.size(), CV_8UC1, cv::Scalar(255)) : valid;
-  std::vector<Corner> candidates = Candidates(grey, usable, options);
+  assert(gray.type() == CV_8UC1 && !gray.empty());
+  assert(valid.empty() || (valid.type() == CV_8UC1 && valid.size() == gray.size()));
+  const cv::Mat usable = valid.empty() ? cv::Mat(gray.size(), CV_8UC1, cv::Scalar(255)) : valid;
+  std::vector<Corner> candidates = Candidates(gray, usable, options);
   DropWeak(options.quality_level, kNoiseFloor, &candidates);
-  DropContours(grey, options, &candidates);
+  DropContours(gray, options, &candidates);
   const double area = std::max(1, cv::countNonZero(usable));
   const double wanted = options.max_corners + static_cast<double>(existing.size());
   const double side = std::max({std::sqrt(area / wanted), options.min_distance_px, 1.0});
-  std::vector<Corner> corners = Spread(candidates, existing, grey.size(), side, options);
+  std::vector<Corner> corners = Spread(candidates, existing, gray.size(), side, options);
   std::sort(corners.begin(), corners.end(), [](const Corner& a, const Corner& b) {
     return a.pixel.y() != b.pixel.y() ? a.pixel.y() < b.pixel.y() : a.pixel.x() < b.pixel.x();
   });

@@ -22,15 +22,15 @@ std::vector<std::vector<cv::DMatch>> Nearest(const cv::Mat& query, const cv::Mat
 
 }  // namespace
 
-cv::Mat DescribePixels(const cv::Mat& grey, std::span<const Eigen::Vector2d> pixels) {
-  assert(grey.type() == CV_8UC1);
+cv::Mat DescribePixels(const cv::Mat& gray, std::span<const Eigen::Vector2d> pixels) {
+  assert(gray.type() == CV_8UC1);
   if (pixels.empty()) return cv::Mat(0, 128, CV_32FC1);
   std::vector<cv::KeyPoint> keypoints;
   for (const Eigen::Vector2d& pixel : pixels)
     keypoints.emplace_back(static_cast<float>(pixel.x()), static_cast<float>(pixel.y()), kSize_px, /*angle=*/0.0F,
                            /*response=*/0.0F, kFirstOctave);
   cv::Mat descriptors;
-  cv::SIFT::create()->compute(grey, keypoints, descriptors);
+  cv::SIFT::create()->compute(gray, keypoints, descriptors);
   assert(descriptors.rows == static_cast<int>(pixels.size()));
   return descriptors;
 }

@@ -39,13 +39,13 @@ cv::Mat PaleMask(const cv::Mat& image, double limit) {
   return pale;
 }
 
-cv::Mat LocalMedian(const cv::Mat& grey) {
+cv::Mat LocalMedian(const cv::Mat& gray) {
   cv::Mat small;
-  const cv::Size size(std::max(1, grey.cols / kMedianScale), std::max(1, grey.rows / kMedianScale));
-  cv::resize(grey, small, size, 0, 0, cv::INTER_AREA);
+  const cv::Size size(std::max(1, gray.cols / kMedianScale), std::max(1, gray.rows / kMedianScale));
+  cv::resize(gray, small, size, 0, 0, cv::INTER_AREA);
   cv::medianBlur(small, small, kMedianWindow);
   cv::Mat median;
-  cv::resize(small, median, grey.size(), 0, 0, cv::INTER_LINEAR);
+  cv::resize(small, median, gray.size(), 0, 0, cv::INTER_LINEAR);
   return median;
 }
 
@@ -75,39 +75,39 @@ std::vector<cv::Point> RowEnds(const cv::Mat& bright, cv::Size full) {
 void MaskOptions::List(OptionTable& table) {
   table.BeginGroup("Masks", "pixels that do not show the scene");
   table.AddChoice("highlights", &highlights, "find specular highlights: they move with the light, not with the tissue");
-  table.Add("highlight_level", &highlight_level, "grey levels", "brighter pixels are highlights, whatever their colour",
+  table.Add("highlight_level", &highlight_level, "gray levels", "brighter pixels are highlights, whatever their color",
             1, 255);
-  table.Add("highlight_near_level", &highlight_near_level, "grey levels",
+  table.Add("highlight_near_level", &highlight_near_level, "gray levels",
             "brighter pixels are highlights if pale and brighter than their surroundings", 1, 255);
-  table.Add("highlight_saturation", &highlight_saturation, "-", "colour saturation below which a bright pixel is pale",
+  table.Add("highlight_saturation", &highlight_saturation, "-", "color saturation below which a bright pixel is pale",
             0, 1);
-  table.Add("highlight_contrast", &highlight_contrast, "grey levels",
+  table.Add("highlight_contrast", &highlight_contrast, "gray levels",
             "how far a pale pixel must stand out from the local median", 0, 255);
   table.Add("highlight_dilation_px", &highlight_dilation_px, "px", "the halo of a highlight moves with it", 0, 50);
   table.AddChoice("border", &border, "find the dark surroundings of a round or octagonal field of view");
-  table.Add("border_level", &border_level, "grey levels", "the surroundings are darker than this", 0, 255);
+  table.Add("border_level", &border_level, "gray levels", "the surroundings are darker than this", 0, 255);
   table.Add("border_dilation_px", &border_dilation_px, "px", "the rim is blurred and does not move with the scene", 0,
             50);
 }
 
 cv::Mat HighlightMask(const cv::Mat& image, const MaskOptions& options) {
-  const cv::Mat grey = ToGrey(image);
-  cv::Mat mask = grey >= std::min(options.highlight_level, options.highlight_near_level);
+  const cv::Mat gray = ToGray(image);
+  cv::Mat mask = gray >= std::min(options.highlight_level, options.highlight_near_level);
   if (cv::countNonZero(mask) == 0) return mask;
   cv::Mat stands_out;
-  cv::subtract(grey, LocalMedian(grey), stands_out);  // saturates at 0
-  const cv::Mat near = (grey >= options.highlight_near_level) & PaleMask(image, options.highlight_saturation) &
+  cv::subtract(gray, LocalMedian(gray), stands_out);  // saturates at 0
+  const cv::Mat near = (gray >= options.highlight_near_level) & PaleMask(image, options.highlight_saturation) &
                        (stands_out >= options.highlight_contrast);
-  mask = (grey >= options.highlight_level) | near;
+  mask = (gray >= options.highlight_level) | near;
   if (options.highlight_dilation_px > 0) cv::dilate(mask, mask, Disc(options.highlight_dilation_px));
   return mask;
 }
 
-cv::Mat DarkBorderMask(const cv::Mat& grey, const MaskOptions& options) {
-  assert(grey.type() == CV_8UC1);
+cv::Mat DarkBorderMask(const cv::Mat& gray, const MaskOptions& options) {
+  assert(gray.type() == CV_8UC1);
   cv::Mat small;
-  const cv::Size small_size(std::max(1, grey.cols / kBorderScale), std::max(1, grey.rows / kBorderScale));
-  cv::resize(grey, small, small_size, 0, 0, cv::INTER_AREA);
+  const cv::Size small_size(std::max(1, gray.cols / kBorderScale), std::max(1, gray.rows / kBorderScale));
+  cv::resize(gray, small, small_size, 0, 0, cv::INTER_AREA);
   cv::Mat bright = small >= options.border_level;
   cv::morphologyEx(bright, bright, cv::MORPH_OPEN, Disc(1));
   cv::Mat labels, stats, centroids;
@@ -117,8 +117,8 @@ cv::Mat DarkBorderMask(const cv::Mat& grey, const MaskOptions& options) {
     if (stats.at<int>(i, cv::CC_STAT_AREA) >= kMinViewArea * bright.rows * bright.cols) view.setTo(255, labels == i);
 
   // Fields of view are convex. What is dark inside their hull (a lumen, a shadow) belongs to the scene.
-  cv::Mat mask(grey.size(), CV_8UC1, cv::Scalar(255));
-  const std::vector<cv::Point> ends = RowEnds(view, grey.size());
+  cv::Mat mask(gray.size(), CV_8UC1, cv::Scalar(255));
+  const std::vector<cv::Point> ends = RowEnds(view, gray.size());
   if (ends.empty()) return mask;
   std::vector<cv::Point> hull;
   cv::convexHull(ends, hull);
@@ -132,7 +132,7 @@ cv::Mat ValidMask(const cv::Mat& image, const cv::Mat& given, const MaskOptions&
   cv::Mat valid(image.size(), CV_8UC1, cv::Scalar(255));
   if (!given.empty()) valid.setTo(0, given == 0);
   if (options.highlights == Switch::kOn) valid.setTo(0, HighlightMask(image, options));
-  if (options.border == Switch::kOn) valid.setTo(0, DarkBorderMask(ToGrey(image), options));
+  if (options.border == Switch::kOn) valid.setTo(0, DarkBorderMask(ToGray(image), options));
   return valid;
 }
 

@@ -23,18 +23,18 @@ void RepeatBorder(cv::Mat* padded) {
 
 }  // namespace
 
-cv::Mat ToGrey(const cv::Mat& image) {
+cv::Mat ToGray(const cv::Mat& image) {
   assert(image.depth() == CV_8U && (image.channels() == 1 || image.channels() == 3));
   if (image.channels() == 1) return image;
-  cv::Mat grey;
-  cv::cvtColor(image, grey, cv::COLOR_BGR2GRAY);
-  return grey;
+  cv::Mat gray;
+  cv::cvtColor(image, gray, cv::COLOR_BGR2GRAY);
+  return gray;
 }
 
-ImagePyramid::ImagePyramid(const cv::Mat& grey, int levels) {
-  assert(grey.type() == CV_8UC1 && !grey.empty() && levels >= 1);
-  padded_.emplace_back(grey.rows + 2 * kPad, grey.cols + 2 * kPad, CV_8UC1);
-  cv::copyMakeBorder(grey, padded_.back(), kPad, kPad, kPad, kPad, cv::BORDER_REPLICATE | cv::BORDER_ISOLATED);
+ImagePyramid::ImagePyramid(const cv::Mat& gray, int levels) {
+  assert(gray.type() == CV_8UC1 && !gray.empty() && levels >= 1);
+  padded_.emplace_back(gray.rows + 2 * kPad, gray.cols + 2 * kPad, CV_8UC1);
+  cv::copyMakeBorder(gray, padded_.back(), kPad, kPad, kPad, kPad, cv::BORDER_REPLICATE | cv::BORDER_ISOLATED);
   for (int level = 1; level < levels; ++level) {
     const cv::Mat finer = Inner(padded_.back());
     const cv::Size size((finer.cols + 1) / 2, (finer.rows + 1) / 2);

@@ -8,9 +8,9 @@
 
 namespace pliant {
 
-double Sharpness(const cv::Mat& grey, const cv::Mat& valid) {
+double Sharpness(const cv::Mat& gray, const cv::Mat& valid) {
   cv::Mat small;
-  cv::resize(grey, small, cv::Size(), 0.5, 0.5, cv::INTER_AREA);
+  cv::resize(gray, small, cv::Size(), 0.5, 0.5, cv::INTER_AREA);
   cv::Mat laplacian;
   cv::Laplacian(small, laplacian, CV_32F);
   cv::Mat usable;

@@ -248,7 +248,7 @@ Result<std::optional<StereoCalibration>> StereoFromOpenCv(const CalibrationEntri
   Eigen::Vector3d translation(t[0], t[1], t[2]);
   if (translation.norm() < kShortestBaseline_mm) {
     translation *= 1e3;
-    pair.was_in_metres = true;
+    pair.was_in_meters = true;
   }
   pair.right_from_left = Rigid3(turn, translation);
   if (const auto size = Size(entries, {}); size.ok()) pair.image_size = *size;

@@ -15,7 +15,7 @@ void LucasKanadeOptions::List(OptionTable& table) {
   table.AddChoice("gain_bias", &gain_bias, "estimate a brightness gain and bias for each patch");
   table.AddChoice("shading", &shading, "with gain_bias: let brightness differ by a plane over the patch too");
   table.Add("max_gain", &max_gain, "-", "a larger gain, or one below its inverse, is refused", 1, 100);
-  table.Add("min_texture", &min_texture, "grey levels / px", "weakest gradient of a patch that determines its position",
+  table.Add("min_texture", &min_texture, "gray levels / px", "weakest gradient of a patch that determines its position",
             0, 100);
   table.Add("min_valid_support", &min_valid_support, "-", "share of a patch that must lie on usable pixels", 0.1, 1);
   table.Add("max_correction_px", &max_correction_px, "px", "farther from its start a patch has run away", 0.5, 1000);

@@ -12,24 +12,24 @@
 namespace pliant {
 namespace {
 
-PatchFailure CutLevel(const ImagePyramid& pyramid, const SupportMask& mask, Pixel centre, int level,
+PatchFailure CutLevel(const ImagePyramid& pyramid, const SupportMask& mask, Pixel center, int level,
                       const LucasKanadeOptions& options, PatchShape shape, PatchLevel* out) {
   const double scale = 1 << level;
   const ImageSize size{pyramid.width(), pyramid.height()};
   const int half = shape.half();
-  const Support support = SupportAt(mask, size, centre.x, centre.y, static_cast<int>(scale) * (half + 1) - 1);
+  const Support support = SupportAt(mask, size, center.x, center.y, static_cast<int>(scale) * (half + 1) - 1);
   const double wanted = level == 0 ? options.min_valid_support : kMinCoarseSupport;
   if (support.inside < wanted) return PatchFailure::kOutOfImage;
   if (support.usable < wanted) return PatchFailure::kMasked;
 
   out->values.resize(static_cast<std::size_t>((shape.size + 3) * shape.row_stride));
-  SampleGrid({pyramid.origin(level), pyramid.stride(level)}, centre.x / scale - half - 1, centre.y / scale - half - 1,
+  SampleGrid({pyramid.origin(level), pyramid.stride(level)}, center.x / scale - half - 1, center.y / scale - half - 1,
              shape.size + 2, shape, out->values.data());
   out->support = static_cast<float>(support.usable);
   out->weights.clear();
   if (support.usable < 1) {
     out->weights.resize(static_cast<std::size_t>(BlockOf(shape)));
-    FillWeights(mask, size, centre.x, centre.y, {scale, 0, 0, scale}, shape, nullptr, out->weights.data());
+    FillWeights(mask, size, center.x, center.y, {scale, 0, 0, scale}, shape, nullptr, out->weights.data());
   }
   out->solve.resize(static_cast<std::size_t>(3 * BlockOf(shape)));
   return SolvePatch(out->values.data(), out->weights.empty() ? nullptr : out->weights.data(), BasisKind::kTranslation,
@@ -38,19 +38,19 @@ PatchFailure CutLevel(const ImagePyramid& pyramid, const SupportMask& mask, Pixe
 
 }  // namespace
 
-PatchFailure CutReferencePatch(const ImagePyramid& pyramid, const SupportMask& mask, Pixel centre,
+PatchFailure CutReferencePatch(const ImagePyramid& pyramid, const SupportMask& mask, Pixel center,
                                const LucasKanadeOptions& options, AffineSolution affine, ReferencePatch* patch) {
   assert(!pyramid.empty());
-  patch->centre = centre;
+  patch->center = center;
   patch->size = std::min(options.patch_size | 1, kMaxPatchSize);
   patch->levels.resize(static_cast<std::size_t>(std::min(options.levels, pyramid.levels())));
   patch->solve_affine.clear();
   const PatchShape shape = ShapeOf(patch->size);
   const bool inside =
-      centre.x >= 0 && centre.y >= 0 && centre.x <= pyramid.width() - 1 && centre.y <= pyramid.height() - 1;
+      center.x >= 0 && center.y >= 0 && center.x <= pyramid.width() - 1 && center.y <= pyramid.height() - 1;
   for (int level = 0; level < static_cast<int>(patch->levels.size()); ++level) {
     PatchLevel& out = patch->levels[static_cast<std::size_t>(level)];
-    out.failure = inside ? CutLevel(pyramid, mask, centre, level, options, shape, &out) : PatchFailure::kOutOfImage;
+    out.failure = inside ? CutLevel(pyramid, mask, center, level, options, shape, &out) : PatchFailure::kOutOfImage;
     if (patch->failure() != PatchFailure::kNone) return patch->failure();
   }
   if (affine == AffineSolution::kWith) {

@@ -15,7 +15,7 @@
 
 #ifndef PLIANT_PATCH_KERNELS_ONCE
 #define PLIANT_PATCH_KERNELS_ONCE
-static_assert(std::endian::native == std::endian::little, "two neighbours are read as one word, the left one lowest");
+static_assert(std::endian::native == std::endian::little, "two neighbors are read as one word, the left one lowest");
 #endif
 
 HWY_BEFORE_NAMESPACE();
@@ -188,10 +188,10 @@ void FillBasis(const float* values, const float* weights, float mean, BasisKind 
       const Vf weight = weights == nullptr ? one : hn::LoadU(F(), weights + i);
       const Vf w = hn::IfThenElseZero(inside, weight);
       // Beyond the last column these read into the next row, and into the spare row at the end.
-      const float* centre = values + (row + 1) * shape.row_stride + col + 1;
-      const Vf gx = hn::Mul(hn::Mul(one_half, w), hn::Sub(hn::LoadU(F(), centre + 1), hn::LoadU(F(), centre - 1)));
-      const Vf gy = hn::Mul(hn::Mul(one_half, w), hn::Sub(hn::LoadU(F(), centre + shape.row_stride),
-                                                          hn::LoadU(F(), centre - shape.row_stride)));
+      const float* center = values + (row + 1) * shape.row_stride + col + 1;
+      const Vf gx = hn::Mul(hn::Mul(one_half, w), hn::Sub(hn::LoadU(F(), center + 1), hn::LoadU(F(), center - 1)));
+      const Vf gy = hn::Mul(hn::Mul(one_half, w), hn::Sub(hn::LoadU(F(), center + shape.row_stride),
+                                                          hn::LoadU(F(), center - shape.row_stride)));
       float* out = basis + i;
       const auto store = [&](Vf value) {
         hn::StoreU(value, F(), out);
@@ -207,7 +207,7 @@ void FillBasis(const float* values, const float* weights, float mean, BasisKind 
         store(hn::Mul(u, gy));
         store(hn::Mul(v, gy));
       }
-      store(hn::Mul(w, hn::Sub(hn::LoadU(F(), centre), hn::Set(F(), mean))));
+      store(hn::Mul(w, hn::Sub(hn::LoadU(F(), center), hn::Set(F(), mean))));
       store(w);
       store(hn::Mul(w, u));
       store(hn::Mul(w, v));

@@ -20,7 +20,7 @@ struct ImageView {
 struct PatchShape {
   int size = 0;                          // pixels a side
   int row_stride = 0;                    // floats
-  int half() const { return size / 2; }  // from the centre to the outermost pixel
+  int half() const { return size / 2; }  // from the center to the outermost pixel
 };
 
 // A block of `rows` x `shape.row_stride` bilinear values; (x, y) is the pixel under the first.

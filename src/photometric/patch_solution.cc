@@ -47,9 +47,9 @@ PatchFailure SolvePatch(const float* values, const float* weights, BasisKind kin
   const int used = options.gain_bias == Switch::kOff ? motion : blocks;
   alignas(64) std::array<float, static_cast<std::size_t>(kMaxBlocks) * kMaxBlock> basis;
   std::array<float, kMaxBlocks * kMaxBlocks> gram;
-  const float* centre = values + shape.row_stride + 1;
-  const float grey = centre[shape.half() * shape.row_stride + shape.half()];
-  FillBasis(values, weights, grey, kind, shape, basis.data());
+  const float* center = values + shape.row_stride + 1;
+  const float gray = center[shape.half() * shape.row_stride + shape.half()];
+  FillBasis(values, weights, gray, kind, shape, basis.data());
   GramMatrix(basis.data(), blocks, shape, gram.data());
 
   std::array<double, kMaxBlocks * kMaxBlocks> inverse;
@@ -71,7 +71,7 @@ PatchFailure SolvePatch(const float* values, const float* weights, BasisKind kin
   std::fill(offsets, offsets + rows, 0.0F);
   if (options.gain_bias == Switch::kOff) {
     // Only the difference to the patch moves it, and the gain is 1.
-    SolveOnValues(centre, solve, motion, shape, offsets);
+    SolveOnValues(center, solve, motion, shape, offsets);
     offsets[motion] = -1;
   }
   return PatchFailure::kNone;

@@ -38,7 +38,7 @@ struct Support {
 Support SupportAt(const SupportMask& mask, ImageSize size, double x, double y, int radius_px);
 
 // weights[v] = 1 where the pixel of level 0 under patch pixel v is usable and inside, else 0, times `reference` where
-// not null. (x, y): the patch's centre on level 0; A: {xx, xy, yx, yy} from patch pixels to pixels of level 0.
+// not null. (x, y): the patch's center on level 0; A: {xx, xy, yx, yy} from patch pixels to pixels of level 0.
 void FillWeights(const SupportMask& mask, ImageSize size, double x, double y, const Affine2& affine, PatchShape shape,
                  const float* reference, float* weights);
 

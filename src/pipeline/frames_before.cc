@@ -23,7 +23,7 @@ void AddTimes(const FrameReport& before, FrameReport* report) {
 }  // namespace
 
 bool AwaitsAMap(const FrameReport& report) {
-  return report.state == TrackingState::kWaitingForReference || report.state == TrackingState::kInitialising;
+  return report.state == TrackingState::kWaitingForReference || report.state == TrackingState::kInitializing;
 }
 
 FramesBefore::FramesBefore(const SequenceRequest& input, const Camera& camera, const TrackOptions& options)

@@ -41,7 +41,7 @@ std::vector<std::string> CloudWarnings(const std::string& path, const cv::Mat& d
   if (median_mm >= kNearestMedian_mm) return {};
   return {"the point cloud '" + path + "' has a median depth of " +
           FormatDouble(std::round(100.0 * median_mm) / 100.0) +
-          " mm; if its unit is the metre, set Init.depth_cloud_unit_mm to 1000"};
+          " mm; if its unit is the meter, set Init.depth_cloud_unit_mm to 1000"};
 }
 
 // Whether a frame of the request has a depth image; one that cannot be read is one.

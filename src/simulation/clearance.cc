@@ -65,10 +65,10 @@ class Checker {
   }
 
   // Beyond the far end, or out of the open one at the origin.
-  bool AtEnd(const Eigen::Vector3d& centre, double time_s) const {
+  bool AtEnd(const Eigen::Vector3d& center, double time_s) const {
     if (options_.scene.kind != SceneKind::kColon && options_.scene.kind != SceneKind::kTube) return false;
     constexpr double kOutsideMm = 5.0;  // more than a tremor before the opening
-    if (centre.z() < -kOutsideMm && centre.norm() < 3.0 * options_.scene.radius_mm) return true;
+    if (center.z() < -kOutsideMm && center.norm() < 3.0 * options_.scene.radius_mm) return true;
     const auto place_mm = path_.PlaceMm(time_s);
     return place_mm && *place_mm >= tube_mm_;
   }
@@ -84,10 +84,10 @@ class Checker {
 };
 
 // What the first camera sees: a camera that starts on the right side stays there unless it passes through the wall.
-Status CheckFirstView(const Surface& surface, const RayScene& at_rest, const Eigen::Vector3d& centre,
+Status CheckFirstView(const Surface& surface, const RayScene& at_rest, const Eigen::Vector3d& center,
                       std::span<const Eigen::Vector3d> first_view) {
   std::vector<RayHit> hits(first_view.size());
-  at_rest.Intersect(centre, first_view, hits);
+  at_rest.Intersect(center, first_view, hits);
   int inner = 0;
   int outer = 0;
   for (std::size_t i = 0; i < hits.size(); ++i) {

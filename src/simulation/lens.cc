@@ -46,7 +46,7 @@ double SmoothStep(double from, double to, double x) {
 
 // An uneven round outline.
 struct Outline {
-  Eigen::Vector2d centre;
+  Eigen::Vector2d center;
   double radius_px = 1;
   double stretch = 1;  // of the axis along `heading`
   double heading_rad = 0;
@@ -56,9 +56,9 @@ struct Outline {
   double corner_phase = 0;
 
   double ReachPx() const { return radius_px * std::max(stretch, 1.0) * (1.0 + oval + corner); }
-  // 0 at the centre, 1 on the outline.
+  // 0 at the center, 1 on the outline.
   double At(const Eigen::Vector2d& pixel) const {
-    const Eigen::Vector2d d = pixel - centre;
+    const Eigen::Vector2d d = pixel - center;
     const double along = (std::cos(heading_rad) * d.x() + std::sin(heading_rad) * d.y()) / stretch;
     const double across = -std::sin(heading_rad) * d.x() + std::cos(heading_rad) * d.y();
     const double angle = std::atan2(across, along);
@@ -84,10 +84,10 @@ Outline DrawOutline(Random& random, double radius_px, double most_stretch) {
 template <class Paint>
 void ForPixelsIn(const Outline& outline, cv::Mat& light, const Paint& paint) {
   const double reach = outline.ReachPx();
-  const int x0 = std::max(0, static_cast<int>(std::floor(outline.centre.x() - reach)));
-  const int x1 = std::min(light.cols - 1, static_cast<int>(std::ceil(outline.centre.x() + reach)));
-  const int y0 = std::max(0, static_cast<int>(std::floor(outline.centre.y() - reach)));
-  const int y1 = std::min(light.rows - 1, static_cast<int>(std::ceil(outline.centre.y() + reach)));
+  const int x0 = std::max(0, static_cast<int>(std::floor(outline.center.x() - reach)));
+  const int x1 = std::min(light.cols - 1, static_cast<int>(std::ceil(outline.center.x() + reach)));
+  const int y0 = std::max(0, static_cast<int>(std::floor(outline.center.y() - reach)));
+  const int y1 = std::min(light.rows - 1, static_cast<int>(std::ceil(outline.center.y() + reach)));
   if (x0 > x1 || y0 > y1) return;
   tbb::parallel_for(y0, y1 + 1, [&](int y) {
     auto* row = light.ptr<cv::Vec3f>(y);
@@ -125,8 +125,8 @@ Outline PlaceDrop(Visitor& drop, const cv::Size& size, double* opacity) {
   const double sliding = std::max(0.0, (drop.age - slides_at) / (1.0 - slides_at));
   const double way_px = (size.height - start.y() + 1.5 * outline.ReachPx()) / std::sin(heading_rad);
   const double slid_px = way_px * sliding * sliding;
-  outline.centre = start + slid_px * Eigen::Vector2d(std::cos(heading_rad), std::sin(heading_rad));
-  outline.centre.x() +=
+  outline.center = start + slid_px * Eigen::Vector2d(std::cos(heading_rad), std::sin(heading_rad));
+  outline.center.x() +=
       0.15 * outline.radius_px * std::sin(6.0 * sliding + wobble_phase) * std::min(1.0, 4.0 * sliding);
   return outline;
 }
@@ -146,14 +146,14 @@ void CoverWithDrops(const SimulationOptions& options, double time_s, Eye eye, cv
     const Outline outline = PlaceDrop(drop, light.size(), &opacity);
     ForPixelsIn(outline, light, [&](const Eigen::Vector2d& pixel, double place, cv::Vec3f& value) {
       // A thick middle magnifies; the steep rim looks far outwards, loses light above and gains some below.
-      const Eigen::Vector2d from_centre = pixel - outline.centre;
+      const Eigen::Vector2d from_center = pixel - outline.center;
       const double bending = 0.4 + 1.1 * place * place;
-      const double side = from_centre.y() / outline.radius_px;
+      const double side = from_center.y() / outline.radius_px;
       const double rim = SmoothStep(0.55, 1.0, place);
       const double brightness = 1.0 + rim * (0.35 * side - 0.25);
       const auto weight = static_cast<float>(opacity * (1.0 - SmoothStep(0.88, 1.0, place)));
       const cv::Vec3f through =
-          Bilinear(blurred, outline.centre + bending * from_centre) * static_cast<float>(brightness);
+          Bilinear(blurred, outline.center + bending * from_center) * static_cast<float>(brightness);
       value = (1.0F - weight) * value + weight * through;
     });
   }
@@ -176,16 +176,16 @@ void CoverWithDebris(const SimulationOptions& options, double focal_px, double g
     const bool bright = random.Uniform() < 0.6;
     const double density = random.Uniform(0.4, 0.85);
     const Eigen::Vector2d middle(random.Uniform(0.0, 1.0) * width, random.Uniform(0.0, 1.0) * light.rows);
-    outline.centre =
+    outline.center =
         middle + (debris.age - 0.5) * way_px * Eigen::Vector2d(std::cos(heading_rad), std::sin(heading_rad));
     outline.heading_rad += 2.0 * (debris.age - 0.5);
-    if (eye == Eye::kRight) outline.centre.x() -= focal_px * options.camera.baseline_mm / distance_mm;
+    if (eye == Eye::kRight) outline.center.x() -= focal_px * options.camera.baseline_mm / distance_mm;
     // It comes into the light and goes out of it.
     const double lit = SmoothStep(0.0, 0.12, debris.age) * (1.0 - SmoothStep(0.88, 1.0, debris.age));
-    const cv::Vec3f colour = (bright ? mucus : stool) * static_cast<float>(1.0 / gain);
+    const cv::Vec3f color = (bright ? mucus : stool) * static_cast<float>(1.0 / gain);
     ForPixelsIn(outline, light, [&](const Eigen::Vector2d&, double place, cv::Vec3f& value) {
       const auto weight = static_cast<float>(lit * density * (1.0 - SmoothStep(0.0, 1.0, place)));
-      value = (1.0F - weight) * value + weight * colour;
+      value = (1.0F - weight) * value + weight * color;
     });
   }
 }

@@ -44,7 +44,7 @@ Status CheckStarts(const Simulator& simulator, std::span<const FramePixel> start
       return {ErrorCode::kInvalidArgument, point + " is in frame " + std::to_string(starts[i].frame_idx) +
                                                ", and the sequence has the frames 0 to " +
                                                std::to_string(simulator.frame_count() - 1)};
-    if (!camera.Contains(starts[i].pixel, -0.5))  // the outermost pixels reach half a pixel beyond their centres
+    if (!camera.Contains(starts[i].pixel, -0.5))  // the outermost pixels reach half a pixel beyond their centers
       return {ErrorCode::kInvalidArgument, point + " is at " + PixelText(starts[i]) + ", outside the image of " +
                                                std::to_string(camera.width()) + " x " +
                                                std::to_string(camera.height()) + " pixels"};

@@ -70,7 +70,7 @@ Result<MeshFile> ReadMeshFile(const std::string& path) {
   if (!fs::is_regular_file(path, error))
     return {ErrorCode::kNotFound, "there is no mesh file " + path + "; is Scene.mesh_path right?"};
   Assimp::Importer importer;
-  // What a renderer would want (normals, colours) only keeps vertices of one place apart.
+  // What a renderer would want (normals, colors) only keeps vertices of one place apart.
   importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, aiComponent_NORMALS | aiComponent_COLORS |
                                                           aiComponent_TANGENTS_AND_BITANGENTS |
                                                           aiComponent_BONEWEIGHTS | aiComponent_ANIMATIONS);

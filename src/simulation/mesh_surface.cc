@@ -123,8 +123,8 @@ Status CheckSize(const SimulationOptions::Scene& options, const MeshFile& mesh) 
   const double across_mm = box.diagonal().norm();
   if (across_mm >= kSmallestMm && across_mm <= kLargestMm) return Status::Ok();
   return {ErrorCode::kInvalidArgument, "the mesh " + options.mesh_path + " is " + FormatDouble(across_mm) +
-                                           " mm across, which no organ is; Scene.mesh_scale is the millimetres in a "
-                                           "unit of the file (1000 for metres)"};
+                                           " mm across, which no organ is; Scene.mesh_scale is the millimeters in a "
+                                           "unit of the file (1000 for meters)"};
 }
 
 Surface ToSurface(const MeshFile& mesh, const std::vector<Eigen::Vector3d>& normals) {
@@ -136,12 +136,12 @@ Surface ToSurface(const MeshFile& mesh, const std::vector<Eigen::Vector3d>& norm
   if (!surface.image.empty())
     for (const Eigen::Vector2d& uv : mesh.uv) surface.chart.emplace_back(uv.cast<float>());
   // It swells from the middle of its vertices.
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-  for (const Eigen::Vector3d& v : mesh.vertices) centre += v;
-  centre /= static_cast<double>(mesh.vertices.size());
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& v : mesh.vertices) center += v;
+  center /= static_cast<double>(mesh.vertices.size());
   double sum_sq = 0;
-  for (const Eigen::Vector3d& v : mesh.vertices) sum_sq += (v - centre).squaredNorm();
-  surface.swell_centre.assign(mesh.vertices.size(), centre.cast<float>());
+  for (const Eigen::Vector3d& v : mesh.vertices) sum_sq += (v - center).squaredNorm();
+  surface.swell_center.assign(mesh.vertices.size(), center.cast<float>());
   surface.swell_radius_mm = std::sqrt(sum_sq / static_cast<double>(mesh.vertices.size()));
   return surface;
 }

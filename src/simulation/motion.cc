@@ -59,7 +59,7 @@ Eigen::Vector3d Motion::Position(const RestPoint& point, double time_s) const {
   Eigen::Vector3d moved = point.position;
   moved += part.wave_mm * std::sin(omega_rad_s_ * time_s + wavenumber_rad_mm_ * point.position.sum() + part.phase_rad) *
            part.wave_direction;
-  if (part.swell_share != 0) moved += SwellShare(part, time_s) * (point.position - point.swell_centre);
+  if (part.swell_share != 0) moved += SwellShare(part, time_s) * (point.position - point.swell_center);
   if (poke_mm_ != 0) moved += PokeMm(point, time_s) * poke_.direction;
   return moved;
 }

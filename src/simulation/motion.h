@@ -24,7 +24,7 @@ namespace pliant::simulation {
 // A material point at rest with what its motion depends on.
 struct RestPoint {
   Eigen::Vector3d position;
-  Eigen::Vector3d swell_centre = Eigen::Vector3d::Zero();  // C
+  Eigen::Vector3d swell_center = Eigen::Vector3d::Zero();  // C
   // dC/dV = swell_along swell_along': t / sqrt(1 - curvature . (V - C)) for the nearest point of a curve with tangent
   // t, zero for a fixed point.
   Eigen::Vector3d swell_along = Eigen::Vector3d::Zero();

@@ -26,11 +26,11 @@ void SimulationOptions::List(OptionTable& table) {
   table.Add("width_mm", &scene.width_mm, "mm", "surface, lobes: of the sheet across the camera's way", 20, 2000);
   table.Add("lobe_step_mm", &scene.lobe_step_mm, "mm", "lobes: how far one lies above the other", 2, 60);
   table.Add("mesh_path", &scene.mesh_path, "FILE", "mesh: OBJ, PLY or STL; relative to the working folder");
-  table.Add("mesh_scale", &scene.mesh_scale, "mm", "mesh: millimetres in a unit of the file", 1e-6, 1e6);
+  table.Add("mesh_scale", &scene.mesh_scale, "mm", "mesh: millimeters in a unit of the file", 1e-6, 1e6);
   table.Add("mesh_step_mm", &scene.mesh_step_mm, "mm", "longest edge of the mesh; facets must not be seen", 0.1, 20);
 
   table.BeginGroup("Texture", "what the wall carries");
-  table.Add("contrast", &texture.contrast, "-", "of mottling and vessels; 0: one colour", 0, 4);
+  table.Add("contrast", &texture.contrast, "-", "of mottling and vessels; 0: one color", 0, 4);
   table.Add("largest_mm", &texture.largest_mm, "mm", "longest wave of the mottling", 0.1, 500);
   table.Add("smallest_mm", &texture.smallest_mm, "mm", "shortest wave; two pixels or more keep corners stable", 0.05,
             500);
@@ -41,7 +41,7 @@ void SimulationOptions::List(OptionTable& table) {
   table.BeginGroup("Deformation", "a wave V_y += A sin(omega t + 2 pi / wavelength (V_x + V_y + V_z)), breath, poke");
   table.Add("amplitude_mm", &deformation.amplitude_mm, "mm", "A; 0: no wave", 0, 50);
   table.Add("omega_rad_s", &deformation.omega_rad_s, "rad/s", "omega; 2.5 is a breath in 2.5 s", 0, 100);
-  table.Add("wavelength_mm", &deformation.wavelength_mm, "mm", "200 pi reads the sine's argument in decimetres", 20,
+  table.Add("wavelength_mm", &deformation.wavelength_mm, "mm", "200 pi reads the sine's argument in decimeters", 20,
             1e9);
   table.Add("breathing_mm", &deformation.breathing_mm, "mm", "swelling of the wall to each side of rest; 0: none", 0,
             50);
@@ -63,16 +63,16 @@ void SimulationOptions::List(OptionTable& table) {
   table.Add("unevenness_mm", &light.unevenness_mm, "mm", "of the wet film, by the mottling; breaks highlights up", 0,
             5);
 
-  table.BeginGroup("Sensor", "from light to grey levels");
+  table.BeginGroup("Sensor", "from light to gray levels");
   table.Add("exposure", &sensor.exposure, "-", "linear level that the 90 % quantile is brought to; 1: white", 0.01, 2);
   table.Add("exposure_time_s", &sensor.exposure_time_s, "s", "time constant of the automatic exposure", 0, 1000);
   table.Add("gain_jitter", &sensor.gain_jitter, "-", "standard deviation of the gain between frames", 0, 0.3);
   table.Add("gamma", &sensor.gamma, "-", "level = linear^(1/gamma)", 0.5, 4);
-  table.Add("noise_levels", &sensor.noise_levels, "-", "standard deviation of the noise, grey levels of 255", 0, 50);
+  table.Add("noise_levels", &sensor.noise_levels, "-", "standard deviation of the noise, gray levels of 255", 0, 50);
   table.Add("blur_px", &sensor.blur_px, "px", "standard deviation of the lens's blur", 0, 20);
   table.Add("vignetting", &sensor.vignetting, "-", "share of light lost in the corners", 0, 1);
   table.Add("shutter_s", &sensor.shutter_s, "s", "motion blur: how long the shutter is open; 0: an instant", 0, 1);
-  table.Add("samples", &sensor.samples, "-", "rays a pixel, made a square number; depth is the centre's", 1, 64);
+  table.Add("samples", &sensor.samples, "-", "rays a pixel, made a square number; depth is the center's", 1, 64);
   table.Add("depth_scale_mm", &sensor.depth_scale_mm, "mm", "one step of the 16-bit depth; range 65535 of them", 1e-4,
             1);
   table.Add("drops", &sensor.drops, "-", "drops of fluid on the lens at a time, in the mean; in no truth", 0, 50);
@@ -107,7 +107,7 @@ void SimulationOptions::List(OptionTable& table) {
       "first camera as tx,ty,tz,qx,qy,qz,qw (world_from_camera), then straight ahead; empty: the scene's own way");
   table.Add("speed_mm_s", &trajectory.speed_mm_s, "mm/s", "insert: along the scene's way", 0, 1000);
   table.Add("look_ahead_mm", &trajectory.look_ahead_mm, "mm",
-            "the camera looks at the centreline or sheet this far ahead", 1, 500);
+            "the camera looks at the centerline or sheet this far ahead", 1, 500);
   table.Add("height_mm", &trajectory.height_mm, "mm", "surface, lobes: of the camera's way over the sheet", 5, 500);
   table.Add("sway_amplitude_mm", &trajectory.sway_amplitude_mm, "mm", "sway: to each side", 0, 200);
   table.Add("sway_period_s", &trajectory.sway_period_s, "s", "sway: to both sides and back", 0.01, 1000);

@@ -152,12 +152,12 @@ void RayScene::Intersect(std::span<const Ray> rays, std::span<RayHit> hits) cons
   }
 }
 
-void RayScene::VisitNear(const Eigen::Vector3d& centre, double radius_mm,
+void RayScene::VisitNear(const Eigen::Vector3d& center, double radius_mm,
                          const std::function<void(std::uint32_t triangle_idx)>& visit) const {
   RTCPointQuery query;
-  query.x = static_cast<float>(centre.x());
-  query.y = static_cast<float>(centre.y());
-  query.z = static_cast<float>(centre.z());
+  query.x = static_cast<float>(center.x());
+  query.y = static_cast<float>(center.y());
+  query.z = static_cast<float>(center.z());
   query.time = 0.0F;
   query.radius = static_cast<float>(radius_mm);
   RTCPointQueryContext context;

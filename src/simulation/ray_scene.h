@@ -50,9 +50,9 @@ class RayScene {
   void Intersect(const Eigen::Vector3d& origin, std::span<const Eigen::Vector3d> directions,
                  std::span<RayHit> hits) const;
 
-  // Calls `visit` with every triangle that is nearer to `centre` than `radius_mm`, and a few more, in no order that
+  // Calls `visit` with every triangle that is nearer to `center` than `radius_mm`, and a few more, in no order that
   // means anything. May be called from several threads at once.
-  void VisitNear(const Eigen::Vector3d& centre, double radius_mm,
+  void VisitNear(const Eigen::Vector3d& center, double radius_mm,
                  const std::function<void(std::uint32_t triangle_idx)>& visit) const;
 
  private:

@@ -37,7 +37,7 @@ std::span<const Eigen::Vector3f> RayTable::Row(int y) const {
   return std::span(rays_).subspan(y * row, row);
 }
 
-Eigen::Vector3d RayTable::Centre(int x, int y) const {
+Eigen::Vector3d RayTable::Center(int x, int y) const {
   return Row(y)[static_cast<std::size_t>(x + 1) * rays_per_pixel() - 1].cast<double>();
 }
 

@@ -26,7 +26,7 @@ int TimeStep(int sample_idx, int x, int y) {
   return sample_idx * kSteps + (sample_idx % 2 == 0 ? in_tile : kSteps - 1 - in_tile);
 }
 
-// Neighbours in a row that share a velocity.
+// Neighbors in a row that share a velocity.
 constexpr std::size_t kVelocityPixels = 4;
 
 }  // namespace
@@ -57,7 +57,7 @@ void Renderer::MeterExposure(const RayScene& at_rest) {
     for (int y = 0; y < kDown; ++y)
       for (int x = 0; x < kAcross; ++x)
         rays.push_back({world_from_cam.translation,
-                        world_from_cam.rotation * rays_.Centre((x * 2 + 1) * camera_.width() / (2 * kAcross),
+                        world_from_cam.rotation * rays_.Center((x * 2 + 1) * camera_.width() / (2 * kAcross),
                                                                (y * 2 + 1) * camera_.height() / (2 * kDown))});
     std::vector<RayHit> hits(rays.size());
     at_rest.Intersect(rays, hits);
@@ -90,18 +90,18 @@ Renderer::Shot Renderer::MakeShot(int frame_idx, Eye eye, const RayScene& posed,
   return shot;
 }
 
-std::vector<Eigen::Vector3d> Renderer::MaterialVelocities(const Shot& shot, std::span<const RayHit> centres) const {
-  std::vector<Eigen::Vector3d> velocities(centres.size(), Eigen::Vector3d::Zero());
+std::vector<Eigen::Vector3d> Renderer::MaterialVelocities(const Shot& shot, std::span<const RayHit> centers) const {
+  std::vector<Eigen::Vector3d> velocities(centers.size(), Eigen::Vector3d::Zero());
   const double shutter_s = options_.sensor.shutter_s;
   if (!motions_.position || shutter_s == 0.0) return velocities;
-  for (std::size_t i = 0; i < centres.size(); ++i) {
+  for (std::size_t i = 0; i < centers.size(); ++i) {
     if (i % kVelocityPixels != 0) {
       velocities[i] = velocities[i - 1];
       continue;
     }
-    if (!centres[i].hit()) continue;
-    velocities[i] = (motions_.position(centres[i].point, shot.time_s + 0.5 * shutter_s) -
-                     motions_.position(centres[i].point, shot.time_s - 0.5 * shutter_s)) /
+    if (!centers[i].hit()) continue;
+    velocities[i] = (motions_.position(centers[i].point, shot.time_s + 0.5 * shutter_s) -
+                     motions_.position(centers[i].point, shot.time_s - 0.5 * shutter_s)) /
                     shutter_s;
   }
   return velocities;
@@ -115,7 +115,7 @@ void Renderer::RenderRow(const Shot& shot, int y, cv::Vec3f* light, float* depth
   const Eigen::Matrix3d rotation = shot.world_from_cam.RotationMatrix();
   std::vector<Ray> rays(width);
   std::vector<RayHit> hits(width);
-  for (std::size_t x = 0; x < width; ++x)  // the last ray of a pixel goes through its centre
+  for (std::size_t x = 0; x < width; ++x)  // the last ray of a pixel goes through its center
     rays[x] = {shot.world_from_cam.translation, rotation * in_cam[(x + 1) * per_pixel - 1].cast<double>()};
   shot.scene.Intersect(rays, hits);
   for (std::size_t x = 0; x < width; ++x) {

@@ -5,7 +5,7 @@
 // and over the time that the shutter is open, in which the camera and the material move. The frame's time is the middle
 // of the exposure: depth and every other truth belong to it. The mesh stands where it is at that time; the material's
 // motion within the exposure is taken off the rays' origins, linear in time and as large as at the point that the
-// centre of a pixel near by shows (deformations are smooth over a few pixels).
+// center of a pixel near by shows (deformations are smooth over a few pixels).
 #pragma once
 
 #include <functional>
@@ -61,7 +61,7 @@ class Renderer {
   };
   Shot MakeShot(int frame_idx, Eye eye, const RayScene& posed, const std::vector<Eigen::Vector3f>& normals) const;
   void RenderRow(const Shot& shot, int y, cv::Vec3f* light, float* depth_mm) const;
-  std::vector<Eigen::Vector3d> MaterialVelocities(const Shot& shot, std::span<const RayHit> centres) const;
+  std::vector<Eigen::Vector3d> MaterialVelocities(const Shot& shot, std::span<const RayHit> centers) const;
   void MeterExposure(const RayScene& at_rest);
   double TimeOf(int frame_idx) const { return frame_idx / options_.trajectory.fps; }
 

@@ -68,7 +68,7 @@ std::uint64_t NoiseSeed(int seed, int frame_idx, Eye eye) {
 cv::Mat Develop(const SimulationOptions::Sensor& options, const cv::Mat& radiance, double gain,
                 std::uint64_t noise_seed) {
   assert(radiance.type() == CV_32FC3);
-  // Noise of neighbouring channels is alike (they share a demosaicing): 0.9^2 + 0.19 = 1.
+  // Noise of neighboring channels is alike (they share a demosaicing): 0.9^2 + 0.19 = 1.
   constexpr float kShared = 0.9F;
   constexpr float kOwn = 0.436F;
   const GammaCurve gamma(options.gamma);
@@ -76,15 +76,15 @@ cv::Mat Develop(const SimulationOptions::Sensor& options, const cv::Mat& radianc
   if (options.blur_px > 0)
     cv::GaussianBlur(radiance, light, cv::Size(), options.blur_px, options.blur_px, cv::BORDER_REPLICATE);
   cv::Mat image(light.size(), CV_8UC3);
-  const double centre_x = 0.5 * (light.cols - 1);
-  const double centre_y = 0.5 * (light.rows - 1);
-  const double corner_sq = std::max(1.0, centre_x * centre_x + centre_y * centre_y);
+  const double center_x = 0.5 * (light.cols - 1);
+  const double center_y = 0.5 * (light.rows - 1);
+  const double corner_sq = std::max(1.0, center_x * center_x + center_y * center_y);
   const auto noise = static_cast<float>(options.noise_levels);
   tbb::parallel_for(0, light.rows, [&](int y) {
     const auto* in = light.ptr<cv::Vec3f>(y);
     auto* out = image.ptr<cv::Vec3b>(y);
     for (int x = 0; x < light.cols; ++x) {
-      const double radius_sq = ((x - centre_x) * (x - centre_x) + (y - centre_y) * (y - centre_y)) / corner_sq;
+      const double radius_sq = ((x - center_x) * (x - center_x) + (y - center_y) * (y - center_y)) / corner_sq;
       const auto scale = static_cast<float>(gain * (1.0 - options.vignetting * radius_sq));
       const std::uint64_t counter = noise_seed + 4 * (static_cast<std::uint64_t>(y) * light.cols + x);
       const float shared = kShared * NormalFromBits(HashBits(counter));

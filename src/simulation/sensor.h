@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// From light to grey levels: lens blur, vignetting, exposure, saturation, gamma, noise, 8 bits.
+// From light to gray levels: lens blur, vignetting, exposure, saturation, gamma, noise, 8 bits.
 #pragma once
 
 #include <cstdint>

@@ -18,7 +18,7 @@ constexpr float kFinestFacetMm = 0.2F;
 
 Shader::Shader(const SimulationOptions::Light& options, const Surface& surface, const Paint& paint, double pixel_rad)
     : options_(options), surface_(surface), paint_(paint), pixel_rad_(static_cast<float>(pixel_rad)) {
-  // Linear colour of mucosa, and how fast blood takes each channel away (blue, green, red).
+  // Linear color of mucosa, and how fast blood takes each channel away (blue, green, red).
   const Eigen::Array3f mucosa(0.19F, 0.235F, 0.68F);
   const Eigen::Array3f absorption(0.78F, 0.85F, 0.25F);
   for (int i = 0; i < kAlbedoSteps; ++i) {

@@ -117,7 +117,7 @@ Surface MakeSheet(const SimulationOptions::Scene& options, double height_mm, dou
   const std::size_t count = static_cast<std::size_t>(rows) * columns;
   surface.vertices.resize(count);
   surface.chart.resize(count);
-  surface.swell_centre.resize(count);
+  surface.swell_center.resize(count);
   surface.swell_along.assign(count, Eigen::Vector3f::UnitZ());
   surface.swell_radius_mm = kSwellRadiusMm;
   if (lobes) surface.part.resize(count);
@@ -128,7 +128,7 @@ Surface MakeSheet(const SimulationOptions::Scene& options, double height_mm, dou
           lobes ? sheet.LobePlace(row, column) : sheet.Place(row, static_cast<double>(column) / (columns - 1));
       surface.vertices[idx] = place.cast<float>();
       surface.chart[idx] = Eigen::Vector2d(column * options.mesh_step_mm, row * options.mesh_step_mm).cast<float>();
-      surface.swell_centre[idx] = Eigen::Vector3d(0.0, height_mm + kSwellRadiusMm, place.z()).cast<float>();
+      surface.swell_center[idx] = Eigen::Vector3d(0.0, height_mm + kSwellRadiusMm, place.z()).cast<float>();
       if (lobes) surface.part[idx] = column < sheet.LowerColumns() ? 0 : 1;
     }
   });

@@ -13,7 +13,7 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
-#include "simulation/centreline.h"
+#include "simulation/centerline.h"
 #include "simulation/clearance.h"
 #include "simulation/motion.h"
 #include "simulation/numbers.h"
@@ -103,9 +103,9 @@ Status Simulator::State::MakeSurface(double length_mm) {
   switch (options.scene.kind) {
     case SceneKind::kColon:
     case SceneKind::kTube: {
-      const simulation::Centreline centreline(length_mm, options.scene.bend_deg_per_cm, options.scene.seed);
-      surface = simulation::MakeTube(options.scene, centreline, length_mm);
-      path.Follow(centreline);
+      const simulation::Centerline centerline(length_mm, options.scene.bend_deg_per_cm, options.scene.seed);
+      surface = simulation::MakeTube(options.scene, centerline, length_mm);
+      path.Follow(centerline);
       break;
     }
     case SceneKind::kSurface:

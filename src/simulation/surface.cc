@@ -59,7 +59,7 @@ void FillTriangles(Surface& surface) {
 RestPoint Surface::VertexAtRest(std::uint32_t idx) const {
   RestPoint point;
   point.position = vertices[idx].cast<double>();
-  point.swell_centre = swell_centre[idx].cast<double>();
+  point.swell_center = swell_center[idx].cast<double>();
   if (!swell_along.empty()) point.swell_along = swell_along[idx].cast<double>();
   point.part = part.empty() ? 0 : part[idx];
   return point;
@@ -73,7 +73,7 @@ RestPoint Surface::AtRest(const MaterialPoint& point) const {
   };
   RestPoint mixed;
   mixed.position = mix(vertices);
-  mixed.swell_centre = mix(swell_centre);
+  mixed.swell_center = mix(swell_center);
   if (!swell_along.empty()) mixed.swell_along = mix(swell_along);
   mixed.part = part.empty() ? 0 : part[t[0]];
   return mixed;
@@ -82,7 +82,7 @@ RestPoint Surface::AtRest(const MaterialPoint& point) const {
 double Surface::SwellReachMm() const {
   float largest_sq = 0;
   for (std::size_t i = 0; i < vertices.size(); ++i)
-    largest_sq = std::max(largest_sq, (vertices[i] - swell_centre[i]).squaredNorm());
+    largest_sq = std::max(largest_sq, (vertices[i] - swell_center[i]).squaredNorm());
   return std::sqrt(static_cast<double>(largest_sq));
 }
 

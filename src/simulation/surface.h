@@ -16,7 +16,7 @@
 #include "pliant/base/status.h"
 #include "pliant/simulation/options.h"
 #include "pliant/simulation/simulator.h"
-#include "simulation/centreline.h"
+#include "simulation/centerline.h"
 #include "simulation/motion.h"
 
 namespace pliant::simulation {
@@ -39,7 +39,7 @@ struct Surface {
   std::vector<Eigen::Vector2f> chart;     // mm on a grid; 0 to 1 over `image`; else empty
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::vector<std::uint8_t> part;             // of a vertex; empty: all are part 0. A triangle has one part.
-  std::vector<Eigen::Vector3f> swell_centre;  // of a vertex: what motion.h calls C
+  std::vector<Eigen::Vector3f> swell_center;  // of a vertex: what motion.h calls C
   std::vector<Eigen::Vector3f> swell_along;   // empty: zero
   double swell_radius_mm = 1;
   std::optional<SurfaceGrid> grid;
@@ -51,15 +51,15 @@ struct Surface {
   double SwellReachMm() const;
 };
 
-// The triangles of a grid, and normals from differences of neighbouring vertices: along x around. Triangles between two
+// The triangles of a grid, and normals from differences of neighboring vertices: along x around. Triangles between two
 // parts are left out. Needs vertices, grid and part.
 void FillGrid(Surface& surface);
 
 // Unevenness of a wall as a function of place: four octaves, standard deviation of about `relief_mm`.
 double ReliefMm(const Eigen::Vector3d& place, double relief_mm, std::uint32_t seed);
 
-// Scenes `colon` and `tube`: a bent tube of the given length around a centreline.
-Surface MakeTube(const SimulationOptions::Scene& options, const Centreline& centreline, double length_mm);
+// Scenes `colon` and `tube`: a bent tube of the given length around a centerline.
+Surface MakeTube(const SimulationOptions::Scene& options, const Centerline& centerline, double length_mm);
 
 // Scenes `surface` and `lobes`: a sheet below the way along z, which is at y = 0; it reaches from -height_mm to
 // length_mm along the way.

@@ -57,9 +57,9 @@ cv::Mat DrawVessels(const SimulationOptions::Texture& options, Random random, co
                            static_cast<int>(std::lround(t.y_mm * per_mm * (1 << kFraction))));
         };
         const int thickness = std::max(1, static_cast<int>(std::lround(twig.width_mm * per_mm)));
-        const double grey = 255.0 * std::min(1.0, 0.25 + twig.width_mm * 1.4);
+        const double gray = 255.0 * std::min(1.0, 0.25 + twig.width_mm * 1.4);
         for (const double shift_mm : {-width_mm, 0.0, width_mm})
-          cv::line(map, point(from, shift_mm), point(twig, shift_mm), cv::Scalar(grey), thickness, cv::LINE_AA,
+          cv::line(map, point(from, shift_mm), point(twig, shift_mm), cv::Scalar(gray), thickness, cv::LINE_AA,
                    kFraction);
         if (random.Uniform() < 0.05) {
           const double side = random.Uniform() < 0.5 ? -1.0 : 1.0;

@@ -13,13 +13,13 @@
 namespace pliant::simulation {
 namespace {
 
-// A camera at `centre` that looks at `target`, its y axis as near to `down` as that allows.
-Rigid3 LookAt(const Eigen::Vector3d& centre, const Eigen::Vector3d& target, const Eigen::Vector3d& down) {
-  const Eigen::Vector3d z = (target - centre).normalized();
+// A camera at `center` that looks at `target`, its y axis as near to `down` as that allows.
+Rigid3 LookAt(const Eigen::Vector3d& center, const Eigen::Vector3d& target, const Eigen::Vector3d& down) {
+  const Eigen::Vector3d z = (target - center).normalized();
   const Eigen::Vector3d x = down.cross(z).normalized();
   Eigen::Matrix3d world_from_camera;
   world_from_camera << x, z.cross(x), z;
-  return {world_from_camera, centre};
+  return {world_from_camera, center};
 }
 
 Result<Rigid3> ParsePose(const std::string& text) {
@@ -133,13 +133,13 @@ Rigid3 Path::Steady(double advance_mm) const {
     const Eigen::Vector3d looked_at(0.0, options_.height_mm, s_mm + options_.look_ahead_mm);
     return LookAt({0.0, 0.0, s_mm}, looked_at, Eigen::Vector3d::UnitY());
   }
-  const Rigid3 world_from_frame = centreline_->WorldFromFrame(s_mm);
-  const Rigid3 ahead = centreline_->WorldFromFrame(s_mm + options_.look_ahead_mm);
+  const Rigid3 world_from_frame = centerline_->WorldFromFrame(s_mm);
+  const Rigid3 ahead = centerline_->WorldFromFrame(s_mm + options_.look_ahead_mm);
   return LookAt(world_from_frame.translation, ahead.translation, world_from_frame.rotation * Eigen::Vector3d::UnitY());
 }
 
 Rigid3 Path::Sway(double time_s) const {
-  // In a tube: about a point of the wall ahead, seen from the centreline. Else: about what the steady camera looks at.
+  // In a tube: about a point of the wall ahead, seen from the centerline. Else: about what the steady camera looks at.
   const Rigid3 steady = Steady(0.0);
   const Eigen::Vector3d middle = steady.translation;
   Eigen::Vector3d target;
@@ -148,9 +148,9 @@ Rigid3 Path::Sway(double time_s) const {
     target = steady * Eigen::Vector3d(0.0, 0.0, options_.sway_distance_mm);
     down = steady.rotation * Eigen::Vector3d::UnitY();
   } else if (InTube()) {
-    const Rigid3 ahead = centreline_->WorldFromFrame(options_.start_mm + options_.sway_distance_mm);
+    const Rigid3 ahead = centerline_->WorldFromFrame(options_.start_mm + options_.sway_distance_mm);
     target = ahead * Eigen::Vector3d(0.0, 0.6 * radius_mm_, 0.0);
-    down = centreline_->WorldFromFrame(options_.start_mm).rotation * Eigen::Vector3d::UnitY();
+    down = centerline_->WorldFromFrame(options_.start_mm).rotation * Eigen::Vector3d::UnitY();
   } else {
     target = steady * Eigen::Vector3d(0.0, 0.0, std::hypot(options_.height_mm, options_.look_ahead_mm));
     down = steady.rotation * Eigen::Vector3d::UnitY();

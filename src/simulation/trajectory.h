@@ -13,7 +13,7 @@
 #include "pliant/geometry/rigid3.h"
 #include "pliant/io/trajectory.h"
 #include "pliant/simulation/options.h"
-#include "simulation/centreline.h"
+#include "simulation/centerline.h"
 
 namespace pliant::simulation {
 
@@ -27,10 +27,10 @@ class Path {
   static Result<Path> Create(const SimulationOptions& options);
 
   // The tube's; the path keeps a copy. Needed before any pose is asked for where the scene is a tube.
-  void Follow(const Centreline& centreline) { centreline_ = centreline; }
+  void Follow(const Centerline& centerline) { centerline_ = centerline; }
 
   Rigid3 WorldFromCamera(double time_s) const;
-  // Where along the centreline the camera is at a time; nothing for cameras that do not follow it.
+  // Where along the centerline the camera is at a time; nothing for cameras that do not follow it.
   std::optional<double> PlaceMm(double time_s) const;
   // How long a tube or sheet has to be so that the camera does not come to its end.
   double ReachMm() const;
@@ -57,7 +57,7 @@ class Path {
   SimulationOptions::Trajectory options_;
   SceneKind scene_;
   double radius_mm_;
-  std::optional<Centreline> centreline_;
+  std::optional<Centerline> centerline_;
   std::optional<Rigid3> start_;                     // given: the way is straight ahead from there
   std::vector<TimedPose> poses_;                    // of the file, times from 0 on
   std::array<std::array<Wave, kWaves>, 6> tremor_;  // rotation about x, y, z, then translation

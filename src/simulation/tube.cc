@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// The tube of the scenes `colon` and `tube`. In the section at s along the centreline the wall stands at
+// The tube of the scenes `colon` and `tube`. In the section at s along the centerline the wall stands at
 //   r(s, v) = radius * section(s, v) - folds(s, v) + relief(s, v)
 // v the angle around. Folds are arcs of rings: a bell along s, a half wave around, thrown slightly askew.
 #include <algorithm>
@@ -100,7 +100,7 @@ class Wall {
   std::vector<Fold> folds_;
 };
 
-// Places along the centreline that are one mesh step apart on the wall where it is steepest.
+// Places along the centerline that are one mesh step apart on the wall where it is steepest.
 std::vector<double> RowPlaces(const Wall& wall, double length_mm, double step_mm) {
   constexpr int kAngles = 48;
   constexpr double kSteepest = 3.0;
@@ -119,18 +119,18 @@ std::vector<double> RowPlaces(const Wall& wall, double length_mm, double step_mm
   return places;
 }
 
-// The square root of the gradient of the nearest point on the centreline (RestPoint::swell_along).
-Eigen::Vector3d SwellAlong(const Centreline& centreline, double s, const Eigen::Vector3d& from_centre) {
+// The square root of the gradient of the nearest point on the centerline (RestPoint::swell_along).
+Eigen::Vector3d SwellAlong(const Centerline& centerline, double s, const Eigen::Vector3d& from_center) {
   constexpr double kStepMm = 0.5;
-  const auto tangent = [&](double at) { return centreline.WorldFromFrame(at).rotation * Eigen::Vector3d::UnitZ(); };
+  const auto tangent = [&](double at) { return centerline.WorldFromFrame(at).rotation * Eigen::Vector3d::UnitZ(); };
   const Eigen::Vector3d curvature = (tangent(s + kStepMm) - tangent(s - kStepMm)) / (2.0 * kStepMm);
   // A section that is bent more than its radius allows would have no nearest point; the bend's limit excludes it.
-  return tangent(s) / std::sqrt(std::max(0.1, 1.0 - curvature.dot(from_centre)));
+  return tangent(s) / std::sqrt(std::max(0.1, 1.0 - curvature.dot(from_center)));
 }
 
 }  // namespace
 
-Surface MakeTube(const SimulationOptions::Scene& options, const Centreline& centreline, double length_mm) {
+Surface MakeTube(const SimulationOptions::Scene& options, const Centerline& centerline, double length_mm) {
   const Wall wall(options, length_mm);
   const std::vector<double> places = RowPlaces(wall, length_mm, options.mesh_step_mm);
   Surface surface;
@@ -141,12 +141,12 @@ Surface MakeTube(const SimulationOptions::Scene& options, const Centreline& cent
   const std::size_t count = static_cast<std::size_t>(rows) * columns;
   surface.vertices.resize(count);
   surface.chart.resize(count);
-  surface.swell_centre.resize(count);
+  surface.swell_center.resize(count);
   surface.swell_along.resize(count);
   surface.swell_radius_mm = options.radius_mm;
   tbb::parallel_for(0, rows, [&](int row) {
     const double s = places[row];
-    const Rigid3 world_from_frame = centreline.WorldFromFrame(s);
+    const Rigid3 world_from_frame = centerline.WorldFromFrame(s);
     for (int column = 0; column < columns; ++column) {
       // The last column is the first one again, to the bit.
       const double v = 2.0 * kPi * (column % (columns - 1)) / (columns - 1);
@@ -157,8 +157,8 @@ Surface MakeTube(const SimulationOptions::Scene& options, const Centreline& cent
       surface.chart[idx] =
           Eigen::Vector2d(surface.grid->chart_width_mm * column / (columns - 1), row * options.mesh_step_mm)
               .cast<float>();
-      surface.swell_centre[idx] = world_from_frame.translation.cast<float>();
-      surface.swell_along[idx] = SwellAlong(centreline, s, place - world_from_frame.translation).cast<float>();
+      surface.swell_center[idx] = world_from_frame.translation.cast<float>();
+      surface.swell_along[idx] = SwellAlong(centerline, s, place - world_from_frame.translation).cast<float>();
     }
   });
   FillGrid(surface);

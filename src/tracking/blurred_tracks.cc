@@ -19,7 +19,7 @@ struct Blur {
 };
 constexpr std::array kBlurs = {Blur{2, 2}, Blur{3, 2}, Blur{4, 4}, Blur{6, 4}};
 
-// Pixel (0, 0) is the centre of the first one in both.
+// Pixel (0, 0) is the center of the first one in both.
 Eigen::Vector2d Shrunk(const Eigen::Vector2d& pixel, int shrink) {
   return (pixel + Eigen::Vector2d::Constant(0.5)) / shrink - Eigen::Vector2d::Constant(0.5);
 }
@@ -27,9 +27,9 @@ Eigen::Vector2d Enlarged(const Eigen::Vector2d& pixel, int shrink) {
   return shrink * (pixel + Eigen::Vector2d::Constant(0.5)) - Eigen::Vector2d::Constant(0.5);
 }
 
-ImagePyramid SmallPyramid(const cv::Mat& grey, int shrink, int levels) {
+ImagePyramid SmallPyramid(const cv::Mat& gray, int shrink, int levels) {
   cv::Mat small;
-  cv::resize(grey, small, cv::Size(), 1.0 / shrink, 1.0 / shrink, cv::INTER_AREA);
+  cv::resize(gray, small, cv::Size(), 1.0 / shrink, 1.0 / shrink, cv::INTER_AREA);
   return ImagePyramid(small, levels);
 }
 
@@ -58,9 +58,9 @@ std::vector<PointTrack> TrackIntoBlur(const TrackerFrame& sharp, const TrackerFr
   std::vector<PointTrack> best;
   for (const Blur& blur : kBlurs) {
     cv::Mat as_blurred;
-    cv::GaussianBlur(sharp.grey, as_blurred, cv::Size(), blur.sigma_px, blur.sigma_px, cv::BORDER_REPLICATE);
+    cv::GaussianBlur(sharp.gray, as_blurred, cv::Size(), blur.sigma_px, blur.sigma_px, cv::BORDER_REPLICATE);
     const ImagePyramid before = SmallPyramid(as_blurred, blur.shrink, options.lucas_kanade.levels);
-    const ImagePyramid now = SmallPyramid(blurred.grey, blur.shrink, options.lucas_kanade.levels);
+    const ImagePyramid now = SmallPyramid(blurred.gray, blur.shrink, options.lucas_kanade.levels);
     const SupportMask before_mask = SmallMask(sharp.mask, blur.shrink);
     const SupportMask now_mask = SmallMask(blurred.mask, blur.shrink);
     PointTracker tracker(once);

@@ -47,7 +47,7 @@ void GrowthOptions::List(OptionTable& table) {
   table.Add(
       "max_depth_change", &max_depth_change, "-",
       "a point that two of these maps had is dropped when another changes its depth by more than this, relative to "
-      "its neighbours', and by more than three standard deviations: it slid along a contour",
+      "its neighbors', and by more than three standard deviations: it slid along a contour",
       1e-3, 100);
   table.Add("remade_weight", &remade_weight, "-",
             "a point that n of these maps had goes 1/n of the way to where another has it, at least this; 1: all of it",
@@ -140,7 +140,7 @@ std::vector<PointPrediction> Candidates::Predict(const Rigid3& cam_from_world) c
     from.push_back(point.track.pixel);
     to.push_back(before && now ? Eigen::Vector2d(point.track.pixel + *now - *before) : point.track.pixel);
   }
-  const std::vector<Eigen::Matrix2d> affines = NeighbourhoodAffines(from, to);
+  const std::vector<Eigen::Matrix2d> affines = NeighborhoodAffines(from, to);
   std::vector<PointPrediction> predictions;
   for (const auto& [id, point] : points_)
     predictions.push_back({id, to[predictions.size()], affines[predictions.size()]});

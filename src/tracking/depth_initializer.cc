@@ -61,7 +61,7 @@ void DepthInitOptions::List(OptionTable& table) {
       "depth_cloud", &cloud_path, "FILE",
       "depth: a point cloud (.npy, .ply, text) in the first frame's camera, x right, y down, z ahead, in place of "
       "depth images; relative to the working folder");
-  table.Add("depth_cloud_unit_mm", &cloud_unit_mm, "mm", "depth: what a unit of the point cloud is; 1000: metres", 1e-9,
+  table.Add("depth_cloud_unit_mm", &cloud_unit_mm, "mm", "depth: what a unit of the point cloud is; 1000: meters", 1e-9,
             1e9);
   table.Add("depth_min_points", &min_points, "-", "depth: fewer corners with depth make no map", 4, 100000);
 }

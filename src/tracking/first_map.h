@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// What the tracker makes of an initialiser's map: the reports of the frames since the reference, which waited for it,
-// and the landmarks that it goes on with. `frames` is what the initialiser was given, `outcome` what it answered.
+// What the tracker makes of an initializer's map: the reports of the frames since the reference, which waited for it,
+// and the landmarks that it goes on with. `frames` is what the initializer was given, `outcome` what it answered.
 #pragma once
 
 #include <span>
@@ -16,7 +16,7 @@
 namespace pliant {
 
 // Completes the reports since the reference, in order of time: state tracking, pose, observations; a point is new in
-// the first frame that shows it, coloured as there. The notes say that the map came later. A report that is of none of
+// the first frame that shows it, colored as there. The notes say that the map came later. A report that is of none of
 // the frames, which was passed over, becomes lost.
 void ReportFirstMap(const Camera& camera, const std::vector<InitFrame>& frames, const InitOutcome& outcome,
                     std::span<FrameReport> reports);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Initialisation that waits until two views can carry a map. Cheap tests come first, because an attempt is made in
+// Initialization that waits until two views can carry a map. Cheap tests come first, because an attempt is made in
 // every frame while waiting: counts, then the pure rotation, then RANSAC, refinement, parallax, rival motions; the
 // map's own refinement over all frames runs once, when everything else has passed.
 #include <algorithm>

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// What every initialiser from two sets of unit rays does before and after its own method: match the rays of the
+// What every initializer from two sets of unit rays does before and after its own method: match the rays of the
 // reference and the current frame, place the frames between them, scale the map and hand it over.
 #pragma once
 

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kNeighbors = 8;
 
-// The change of a neighbourhood that faces the camera, between two poses that see it at these places.
+// The change of a neighborhood that faces the camera, between two poses that see it at these places.
 Eigen::Matrix2d FacingAffine(const Rigid3& before, const Eigen::Vector3d& place_before, const Rigid3& now,
                              const Eigen::Vector3d& place_now) {
   const double scale = (before * place_before).z() / (now * place_now).z();

@@ -67,7 +67,7 @@ class LostPoints {
     Landmark landmark;        // `position` is where it is thought to be now
     Rigid3 cam_from_world;    // when it was last seen
     Eigen::Vector3d seen_at;  // where it was then
-    // Of its displacement then: what its neighbours did not share. Set by the first Move.
+    // Of its displacement then: what its neighbors did not share. Set by the first Move.
     std::optional<Eigen::Vector3d> own_share;
     int searches = 0;
     std::int64_t order = 0;  // in which they were lost

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// The monocular initialisers, each in its own source file.
+// The monocular initializers, each in its own source file.
 #pragma once
 
 #include <memory>

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Initialisation as published (Gomez Rodriguez, Montiel, Tardos, IROS 2022, section III-B): k frames apart, no gates.
+// Initialization as published (Gomez Rodriguez, Montiel, Tardos, IROS 2022, section III-B): k frames apart, no gates.
 #include <numbers>
 
 #include "pliant/base/statistics.h"

@@ -9,20 +9,20 @@
 
 namespace pliant {
 
-DescribedImage Describe(const cv::Mat& grey, const SupportMask& mask, const CornerOptions& corners,
+DescribedImage Describe(const cv::Mat& gray, const SupportMask& mask, const CornerOptions& corners,
                         const RelocalizationOptions& options) {
   CornerOptions as_many = corners;
   as_many.max_corners = options.max_corners;
   DescribedImage image;
-  for (const Corner& corner : DetectCorners(grey, mask.valid(), {}, as_many)) image.pixels.push_back(corner.pixel);
-  image.descriptors = DescribePixels(grey, image.pixels);
+  for (const Corner& corner : DetectCorners(gray, mask.valid(), {}, as_many)) image.pixels.push_back(corner.pixel);
+  image.descriptors = DescribePixels(gray, image.pixels);
   return image;
 }
 
-void Places::See(const cv::Mat& grey, const std::vector<Landmark>& landmarks) {
+void Places::See(const cv::Mat& gray, const std::vector<Landmark>& landmarks) {
   std::vector<Eigen::Vector2d> pixels;
   for (const Landmark& landmark : landmarks) pixels.push_back(landmark.pixel);
-  const cv::Mat descriptors = DescribePixels(grey, pixels);
+  const cv::Mat descriptors = DescribePixels(gray, pixels);
   for (std::size_t k = 0; k < landmarks.size(); ++k)
     seen_[landmarks[k].id] = descriptors.row(static_cast<int>(k)).clone();
 }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// What the map's points looked like, to recognise them in an image of which nothing is known (docs/method.md, eq. R3).
+// What the map's points looked like, to recognize them in an image of which nothing is known (docs/method.md, eq. R3).
 #pragma once
 
 #include <map>
@@ -27,7 +27,7 @@ struct DescribedImage {
   std::vector<Eigen::Vector2d> pixels;
   cv::Mat descriptors;
 };
-DescribedImage Describe(const cv::Mat& grey, const SupportMask& mask, const CornerOptions& corners,
+DescribedImage Describe(const cv::Mat& gray, const SupportMask& mask, const CornerOptions& corners,
                         const RelocalizationOptions& options);
 
 class Places {
@@ -36,7 +36,7 @@ class Places {
 
   void Clear() { seen_.clear(); }
   // The landmarks as they look in an image, each at its pixel; what was known of them is replaced.
-  void See(const cv::Mat& grey, const std::vector<Landmark>& landmarks);
+  void See(const cv::Mat& gray, const std::vector<Landmark>& landmarks);
   // All that `other` knows of other points.
   void TakeOver(Places&& other) { seen_.merge(other.seen_); }
   // Forgets all points but these. Sorted.

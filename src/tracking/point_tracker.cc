@@ -16,7 +16,7 @@
 namespace pliant {
 namespace {
 
-constexpr double kMaxAffineJump = 0.25;  // a refined neighbourhood farther from the expected one is a wrong fit
+constexpr double kMaxAffineJump = 0.25;  // a refined neighborhood farther from the expected one is a wrong fit
 constexpr double kOtherStart_px = 1;     // starts closer than this are one and the same
 
 Pixel ToPixel(const Eigen::Vector2d& p) { return {p.x(), p.y()}; }
@@ -53,8 +53,8 @@ void PointTrackerOptions::List(OptionTable& table) {
   table.AddChoice("realignment", &realignment, "adaptive: what is refined against the first patch");
   table.Add("max_realignment_px", &max_realignment_px, "px",
             "adaptive: a re-alignment that jumps farther from the latest patch's track is refused", 0, 100);
-  table.Add("max_scale", &max_scale, "-",
-            "adaptive: a neighbourhood stretched or shrunk by more gets a new first patch", 1, 4);
+  table.Add("max_scale", &max_scale, "-", "adaptive: a neighborhood stretched or shrunk by more gets a new first patch",
+            1, 4);
   table.AddChoice("forward_backward", &forward_backward,
                   "follow each track back: it must return to where it came from");
   table.Add("max_forward_backward_px", &max_forward_backward_px, "px", "how near it must return", 0, 100);
@@ -116,7 +116,7 @@ PatchMatch PointTracker::Realign(const Point& point, const PatchMatch& found, co
 
 bool PointTracker::Returns(const ReferencePatch& patch, const Eigen::Vector2d& expected_motion,
                            const Eigen::Vector2d& origin, const Images& images) const {
-  const Eigen::Vector2d start = ToVector(patch.centre) - expected_motion;
+  const Eigen::Vector2d start = ToVector(patch.center) - expected_motion;
   const PatchMatch back =
       TrackPatch(patch, images.previous, images.previous_mask, ToPixel(start), options_.lucas_kanade);
   return back.failure == PatchFailure::kNone &&
@@ -272,7 +272,7 @@ std::vector<PointTrack> PointTracker::ForEach(std::span<const PointPrediction> p
 
 namespace {
 
-// Finds nearest neighbours among points in order of x: from a point outwards, until x alone is too far.
+// Finds nearest neighbors among points in order of x: from a point outwards, until x alone is too far.
 class NearestInPlane {
  public:
   explicit NearestInPlane(std::span<const Eigen::Vector2d> points) : points_(points), order_(points.size()) {
@@ -284,12 +284,12 @@ class NearestInPlane {
   }
 
   // Positions of the `count` nearest other points, nearest first; ties by position.
-  std::vector<std::size_t> Of(std::size_t centre, std::size_t count) const {
+  std::vector<std::size_t> Of(std::size_t center, std::size_t count) const {
     std::vector<std::pair<double, std::size_t>> best;
     best.reserve(count + 1);
     // Whether points farther along x than this one may still be nearer.
     const auto visit = [&](std::size_t j) {
-      const Eigen::Vector2d offset = points_[j] - points_[centre];
+      const Eigen::Vector2d offset = points_[j] - points_[center];
       if (best.size() == count && offset.x() * offset.x() > best.back().first) return false;
       const std::pair<double, std::size_t> entry(offset.squaredNorm(), j);
       if (best.size() < count || entry < best.back()) {
@@ -301,8 +301,8 @@ class NearestInPlane {
     bool left = true;
     bool right = true;
     for (std::size_t step = 1; left || right; ++step) {
-      left = left && step <= rank_[centre] && visit(order_[rank_[centre] - step]);
-      right = right && rank_[centre] + step < order_.size() && visit(order_[rank_[centre] + step]);
+      left = left && step <= rank_[center] && visit(order_[rank_[center] - step]);
+      right = right && rank_[center] + step < order_.size() && visit(order_[rank_[center] + step]);
     }
     std::vector<std::size_t> nearest;
     nearest.reserve(best.size());
@@ -329,18 +329,18 @@ Eigen::Matrix2d FitAffine(std::span<const Eigen::Vector2d> from, std::span<const
 
 }  // namespace
 
-std::vector<Eigen::Matrix2d> NeighbourhoodAffines(std::span<const Eigen::Vector2d> from,
-                                                  std::span<const Eigen::Vector2d> to, int neighbours,
-                                                  double damping_px) {
-  assert(from.size() == to.size() && neighbours >= 1 && damping_px > 0);
-  constexpr double kAgreement_px = 0.5;  // a neighbour nearer to the fit than this agrees
+std::vector<Eigen::Matrix2d> NeighborhoodAffines(std::span<const Eigen::Vector2d> from,
+                                                 std::span<const Eigen::Vector2d> to, int neighbors,
+                                                 double damping_px) {
+  assert(from.size() == to.size() && neighbors >= 1 && damping_px > 0);
+  constexpr double kAgreement_px = 0.5;  // a neighbor nearer to the fit than this agrees
   std::vector<Eigen::Matrix2d> affines;
   affines.reserve(from.size());
   const NearestInPlane nearest(from);
   for (std::size_t i = 0; i < from.size(); ++i) {
     std::vector<Eigen::Vector2d> before;
     std::vector<Eigen::Vector2d> after;
-    for (const std::size_t j : nearest.Of(i, static_cast<std::size_t>(neighbours))) {
+    for (const std::size_t j : nearest.Of(i, static_cast<std::size_t>(neighbors))) {
       before.push_back(from[j] - from[i]);
       after.push_back(to[j] - to[i]);
     }

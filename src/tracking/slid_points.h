@@ -14,7 +14,7 @@
 namespace pliant {
 
 // (docs/method.md, eq. G6) Of the landmarks that two maps had before, made anew like the present one, those whose
-// distance from the camera changes otherwise than that of their neighbours: by more than `max_change`, relative, and
+// distance from the camera changes otherwise than that of their neighbors: by more than `max_change`, relative, and
 // more than three standard deviations of all. `remade` are the present map's points in the world, sorted by id. In
 // the order of the landmarks.
 std::vector<PointId> SlidPoints(const std::vector<InitPosition>& remade, const Rigid3& cam_from_world, const Map& map,

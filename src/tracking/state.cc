@@ -8,11 +8,11 @@ namespace pliant {
 TrackingState NextState(TrackingState state, TrackingEvent event) {
   switch (state) {
     case TrackingState::kWaitingForReference:
-      if (event == TrackingEvent::kReferenceFound) return TrackingState::kInitialising;
+      if (event == TrackingEvent::kReferenceFound) return TrackingState::kInitializing;
       if (event == TrackingEvent::kMapCreated) return TrackingState::kTracking;
       if (event == TrackingEvent::kMapFoundAgain) return TrackingState::kLost;
       return state;
-    case TrackingState::kInitialising:
+    case TrackingState::kInitializing:
       if (event == TrackingEvent::kMapCreated) return TrackingState::kTracking;
       if (event == TrackingEvent::kReferenceSpent) return TrackingState::kWaitingForReference;
       if (event == TrackingEvent::kMapFoundAgain) return TrackingState::kLost;

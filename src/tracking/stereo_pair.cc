@@ -19,7 +19,7 @@ std::vector<std::optional<RowMatch>> MatchPair(const TrackerFrame& left, const c
 
 std::vector<PixelDepth> PointsOfPair(const TrackerFrame& left, const cv::Mat& right, const Camera& camera,
                                      double baseline_mm, const TrackerOptions& options, int threads) {
-  std::vector<Corner> corners = DetectCorners(left.grey, left.mask.valid(), {}, options.corners);
+  std::vector<Corner> corners = DetectCorners(left.gray, left.mask.valid(), {}, options.corners);
   std::stable_sort(corners.begin(), corners.end(), [](const Corner& a, const Corner& b) { return a.score > b.score; });
   std::vector<Eigen::Vector2d> pixels;
   for (const Corner& corner : corners) pixels.push_back(corner.pixel);

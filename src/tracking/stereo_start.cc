@@ -27,8 +27,8 @@ int MostDisparity(const StereoStartOptions& options, int width) {
 std::optional<double> SearchRow(const cv::Mat& left, const cv::Mat& right, const Eigen::Vector2d& pixel, int patch_size,
                                 const StereoStartOptions& options) {
   const int half = patch_size / 2;
-  const cv::Point centre(static_cast<int>(std::lround(pixel.x())), static_cast<int>(std::lround(pixel.y())));
-  const cv::Rect patch(centre.x - half, centre.y - half, 2 * half + 1, 2 * half + 1);
+  const cv::Point center(static_cast<int>(std::lround(pixel.x())), static_cast<int>(std::lround(pixel.y())));
+  const cv::Rect patch(center.x - half, center.y - half, 2 * half + 1, 2 * half + 1);
   const int farthest = std::min(MostDisparity(options, left.cols), patch.x);
   const int nearest = static_cast<int>(std::floor(options.min_disparity_px));
   const cv::Rect strip(patch.x - farthest, patch.y - kRows, farthest - nearest + patch.width, patch.height + 2 * kRows);

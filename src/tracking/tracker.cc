@@ -33,7 +33,7 @@ void TrackerOptions::List(OptionTable& table) {
   table.BeginGroup("Tracking", "the tracker: which points stay, when it is lost");
   table.Add("sigma_metric_mm", &sigma_metric_mm, "mm",
             "instead of Deformation.sigma_mm after a start from metric depth, as published", 0.1, 1e6);
-  table.AddChoice("neighbor_agreement", &neighbor_agreement, "drop points that move as none of their neighbours does");
+  table.AddChoice("neighbor_agreement", &neighbor_agreement, "drop points that move as none of their neighbors does");
   agreement.List(table);
   table.AddChoice(
       "camera_motion", &camera_motion,
@@ -77,10 +77,10 @@ TrackerFrame PrepareFrame(int frame_idx, std::string name, double timestamp_s, c
   frame.name = std::move(name);
   frame.timestamp_s = timestamp_s;
   frame.image = image;
-  frame.grey = ToGrey(image);
-  frame.pyramid = ImagePyramid(frame.grey, options.point_tracker.lucas_kanade.levels);
+  frame.gray = ToGray(image);
+  frame.pyramid = ImagePyramid(frame.gray, options.point_tracker.lucas_kanade.levels);
   frame.mask = SupportMask(ValidMask(image, mask, options.masks));
-  frame.sharpness = Sharpness(frame.grey, frame.mask.valid());
+  frame.sharpness = Sharpness(frame.gray, frame.mask.valid());
   frame.prepare_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   return frame;
 }
@@ -142,7 +142,7 @@ std::vector<FrameReport> Tracker::Process(const TrackerFrame& frame) {
     case TrackingState::kWaitingForReference:
       TakeReference(frame, &report);
       break;
-    case TrackingState::kInitialising:
+    case TrackingState::kInitializing:
       FollowReference(frame, &report);
       break;
     case TrackingState::kTracking:
@@ -155,7 +155,7 @@ std::vector<FrameReport> Tracker::Process(const TrackerFrame& frame) {
   ReportLosses(&report);
   JoinMaps(frame, &report);
 
-  const auto first_held = state_ == TrackingState::kInitialising
+  const auto first_held = state_ == TrackingState::kInitializing
                               ? std::ranges::find(held_, init_frames_.front().frame_idx, &FrameReport::frame_idx)
                               : held_.end();
   std::vector<FrameReport> done(std::make_move_iterator(held_.begin()), std::make_move_iterator(first_held));
@@ -188,11 +188,11 @@ void Tracker::AddCorners(const TrackerFrame& frame, const LocalBrightness& brigh
   CornerOptions corners = options_.corners;
   corners.max_corners = max_corners;
   InitFrame added{frame.frame_idx, {}};
-  for (const Corner& corner : DetectCorners(frame.grey, frame.mask.valid(), existing, corners)) {
+  for (const Corner& corner : DetectCorners(frame.gray, frame.mask.valid(), existing, corners)) {
     const PointId id{next_id_};
     if (now_->point_tracker.Add(id, corner.pixel, frame.pyramid, frame.mask) != PatchFailure::kNone) continue;
     added.observations.push_back(
-        {id, corner.pixel, 1.0, brightness.At(corner.pixel), ColourAt(frame.image, corner.pixel)});
+        {id, corner.pixel, 1.0, brightness.At(corner.pixel), ColorAt(frame.image, corner.pixel)});
     ++next_id_;
   }
   oracle_->StartTracks(&added);
@@ -206,7 +206,7 @@ void Tracker::AddKnownPoints(const TrackerFrame& frame, const LocalBrightness& b
     const PointId id{next_id_};
     if (now_->point_tracker.Add(id, known.pixel, frame.pyramid, frame.mask) != PatchFailure::kNone) continue;
     points->observations.push_back(
-        {id, known.pixel, 1.0, brightness.At(known.pixel), ColourAt(frame.image, known.pixel)});
+        {id, known.pixel, 1.0, brightness.At(known.pixel), ColorAt(frame.image, known.pixel)});
     known_depths_.push_back(known.depth);
     ++next_id_;
   }
@@ -214,7 +214,7 @@ void Tracker::AddKnownPoints(const TrackerFrame& frame, const LocalBrightness& b
 
 void Tracker::TakeReference(const TrackerFrame& frame, FrameReport* report) {
   {
-    const StageTimer timer(report, "initialise");
+    const StageTimer timer(report, "initialize");
     now_->map.landmarks.clear();
     init_frames_.clear();
     now_->point_tracker.Clear();
@@ -264,7 +264,7 @@ std::vector<PointPrediction> Tracker::PredictWithoutMap(int frame_idx) const {
       if (const InitObservation* before = FindById(earlier.observations, last[k].id); before != nullptr)
         to[k] = (1 + steps) * last[k].pixel - steps * before->pixel;
   }
-  const std::vector<Eigen::Matrix2d> affines = NeighbourhoodAffines(from, to);
+  const std::vector<Eigen::Matrix2d> affines = NeighborhoodAffines(from, to);
   std::vector<PointPrediction> predictions;
   for (std::size_t k = 0; k < last.size(); ++k) predictions.push_back({last[k].id, to[k], affines[k]});
   return predictions;
@@ -290,7 +290,7 @@ void Tracker::FollowReference(const TrackerFrame& frame, FrameReport* report) {
     for (const PointTrack& track : tracks) {
       if (track.failure == PatchFailure::kNone) {
         followed.observations.push_back(
-            {track.id, track.pixel, track.ssim, brightness.At(track.pixel), ColourAt(frame.image, track.pixel)});
+            {track.id, track.pixel, track.ssim, brightness.At(track.pixel), ColorAt(frame.image, track.pixel)});
       } else {
         now_->point_tracker.Remove(track.id);
         Count(EnumName(track.failure), 1);
@@ -310,7 +310,7 @@ void Tracker::FollowReference(const TrackerFrame& frame, FrameReport* report) {
 }
 
 InitOutcome Tracker::AskInitializer(const cv::Mat& depth_mm, InitMoment moment, FrameReport* report) {
-  const StageTimer timer(report, "initialise");
+  const StageTimer timer(report, "initialize");
   const InitInput input{camera_, init_frames_, depth_mm, moment, threads_, known_depths_, photometric_};
   InitOutcome outcome =
       oracle_->gives_first_map() ? oracle_->FirstMap(input, options_.min_points) : initializer_->Try(input);
@@ -319,7 +319,7 @@ InitOutcome Tracker::AskInitializer(const cv::Mat& depth_mm, InitMoment moment, 
 }
 
 void Tracker::EndSequence() {
-  if (state_ != TrackingState::kInitialising || held_.empty()) return;
+  if (state_ != TrackingState::kInitializing || held_.empty()) return;
   const InitOutcome outcome = AskInitializer({}, InitMoment::kLastFrame, &held_.back());
   if (outcome.decision == InitDecision::kMap) {
     CreateMap(outcome);

@@ -46,14 +46,14 @@ void Tracker::TrackFrame(const TrackerFrame& frame, FrameReport* report) {
     FindLost(frame, pose, &followed);  // (R2)
     report->tracked = static_cast<int>(followed.size());
   }
-  DeformationGraph graph = TieNeighbours(followed, report);  // (D1)
+  DeformationGraph graph = TieNeighbors(followed, report);  // (D1)
   if (options_.neighbor_agreement == Switch::kOn) {
     const std::size_t before = followed.size();
     {
       const StageTimer timer(report, "agreement");
       DropContradicted(pose, graph, &followed);  // (A3)
     }
-    if (followed.size() < before) graph = TieNeighbours(followed, report);
+    if (followed.size() < before) graph = TieNeighbors(followed, report);
   }
   Result<FrameSolution> solution = Status(ErrorCode::kInsufficient, "not solved");
   {
@@ -103,7 +103,7 @@ std::vector<PointPrediction> Tracker::PredictPixels(const Rigid3& predicted_cam_
     from.push_back(landmark.pixel);
     to.push_back(now && next ? Eigen::Vector2d(landmark.pixel + *next - *now) : landmark.pixel);
   }
-  const std::vector<Eigen::Matrix2d> affines = NeighbourhoodAffines(from, to);
+  const std::vector<Eigen::Matrix2d> affines = NeighborhoodAffines(from, to);
   std::vector<PointPrediction> predictions;
   for (std::size_t k = 0; k < to.size(); ++k) predictions.push_back({now_->map.landmarks[k].id, to[k], affines[k]});
   return predictions;
@@ -165,17 +165,17 @@ int Tracker::FindLost(const TrackerFrame& frame, const Rigid3& cam_from_world, F
 }
 
 // An empty graph where there is none: the points are then tied to nothing.
-DeformationGraph Tracker::TieNeighbours(const Followed& followed, FrameReport* report) const {
+DeformationGraph Tracker::TieNeighbors(const Followed& followed, FrameReport* report) const {
   const StageTimer timer(report, "graph");
   auto graph = BuildDeformationGraph(followed.positions, followed.rest_positions, options_.graph);
   return graph.ok() ? *std::move(graph) : DeformationGraph{};
 }
 
-// Each point is put where its pixel says, at its last depth; how far that is from where its neighbours' motion since
-// rest would put it, is what its neighbours do not share.
+// Each point is put where its pixel says, at its last depth; how far that is from where its neighbors' motion since
+// rest would put it, is what its neighbors do not share.
 void Tracker::DropContradicted(const Rigid3& cam_from_world, const DeformationGraph& graph, Followed* followed) {
   const Rigid3 world_from_cam = cam_from_world.Inverse();
-  std::vector<NeighbourMotion> motions;
+  std::vector<NeighborMotion> motions;
   std::vector<double> px_per_mm;
   for (std::size_t k = 0; k < followed->size(); ++k) {
     const Eigen::Vector3d last_in_cam = cam_from_world * followed->positions[k];
@@ -184,12 +184,12 @@ void Tracker::DropContradicted(const Rigid3& cam_from_world, const DeformationGr
     motions.push_back({followed->rest_positions[k], world_from_cam * now});
     px_per_mm.push_back(camera_.MeanFocalLengthPx() / last_in_cam.norm());
   }
-  std::vector<std::vector<int>> neighbours(followed->size());
+  std::vector<std::vector<int>> neighbors(followed->size());
   for (const GraphEdge& edge : graph.edges) {
-    neighbours[edge.i].push_back(edge.j);
-    neighbours[edge.j].push_back(edge.i);
+    neighbors[edge.i].push_back(edge.j);
+    neighbors[edge.j].push_back(edge.i);
   }
-  const auto disagreements = MeasureDisagreement(motions, neighbours, world_from_cam.translation);
+  const auto disagreements = MeasureDisagreement(motions, neighbors, world_from_cam.translation);
   std::vector<char> keep(followed->size(), 1);
   for (std::size_t k = 0; k < keep.size(); ++k)
     if (Contradicts(disagreements[k], px_per_mm[k], options_.agreement)) keep[k] = 0;

@@ -98,7 +98,7 @@ void Tracker::JoinMaps(const TrackerFrame& frame, FrameReport* report) {
   const int every = options_.relocalization.join_every;
   if (!JoinsMaps() || left_.empty() || frame.frame_idx % every != 0) return;
   if (state_ != TrackingState::kTracking || blurred_frames_ > 0) return;
-  const StageTimer timer(report, "initialise");
+  const StageTimer timer(report, "initialize");
   const auto left = left_.begin() + static_cast<std::ptrdiff_t>(frame.frame_idx / every % left_.size());
   const auto left_from_now = SeenWithPresent(frame, &*left);
   if (!left_from_now) return;

@@ -54,7 +54,7 @@ void Tracker::DropSlid(std::vector<InitPosition>* remade, FrameReport* report) {
 // While the scene is rigid (W13).
 void Tracker::RefineMap(FrameReport* report) {
   if (now_->rigid_history.empty()) return;
-  const StageTimer timer(report, "initialise");
+  const StageTimer timer(report, "initialize");
   InitFrame frame{report->frame_idx, {}};
   for (const PointObservation& seen : report->observations)
     frame.observations.push_back({.id = seen.id, .pixel = seen.pixel, .ssim = seen.ssim});
@@ -94,7 +94,7 @@ void Tracker::GrowMap(const TrackerFrame& frame, FrameReport* report) {
     const StageTimer timer(report, "photometric");
     FollowCandidates(frame);
   }
-  const StageTimer timer(report, "initialise");
+  const StageTimer timer(report, "initialize");
   for (const auto& [id, position] : now_->candidates.Certain(now_->last_cam_from_world, now_->map))
     Promote(id, position, report);
   RemakeMap(frame, report);
@@ -142,11 +142,11 @@ void Tracker::LookForCandidates(const TrackerFrame& frame) {
   for (const CandidateTrack& track : now_->candidates.tracks()) taken.push_back(track.pixel);
   CornerOptions corners = options_.corners;
   corners.max_corners = room;
-  for (const Corner& corner : DetectCorners(frame.grey, frame.mask.valid(), taken, corners)) {
+  for (const Corner& corner : DetectCorners(frame.gray, frame.mask.valid(), taken, corners)) {
     const PointId id{next_id_};
     if (now_->point_tracker.Add(id, corner.pixel, frame.pyramid, frame.mask) != PatchFailure::kNone) continue;
     ++next_id_;
-    if (!now_->candidates.Add({id, corner.pixel, 1.0, ColourAt(frame.image, corner.pixel)}, now_->last_cam_from_world,
+    if (!now_->candidates.Add({id, corner.pixel, 1.0, ColorAt(frame.image, corner.pixel)}, now_->last_cam_from_world,
                               now_->map))
       now_->point_tracker.Remove(id);
   }

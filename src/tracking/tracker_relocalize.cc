@@ -58,7 +58,7 @@ void Tracker::Remember(const TrackerFrame& frame, const FrameReport& report) {
   if (now_->recent_poses.size() > length) now_->recent_poses.erase(now_->recent_poses.begin());
   if (options_.relocalization.relocalize == Switch::kOff || oracle_->gives_tracks()) return;
   if (frame.frame_idx % options_.relocalization.remember_every != 0) return;
-  now_->places.See(frame.grey, now_->map.landmarks);
+  now_->places.See(frame.gray, now_->map.landmarks);
   std::vector<PointId> known;
   for (const Landmark& landmark : KnownLandmarks()) known.push_back(landmark.id);
   std::sort(known.begin(), known.end());
@@ -74,7 +74,7 @@ std::vector<Landmark> Tracker::KnownLandmarks() const {
 }
 
 void Tracker::RememberLastView() {
-  if (options_.relocalization.relocalize == Switch::kOn) now_->places.See(now_->previous.grey, now_->map.landmarks);
+  if (options_.relocalization.relocalize == Switch::kOn) now_->places.See(now_->previous.gray, now_->map.landmarks);
 }
 
 // Where the camera may be in this frame: where it was, and where it would be had it gone on as it went.
@@ -122,7 +122,7 @@ Tracker::Followed Tracker::FollowFrom(const TrackerFrame& frame, Rigid3* cam_fro
 }
 
 Tracker::Followed Tracker::Relocalize(const TrackerFrame& frame, Rigid3* cam_from_world) {
-  if (!Blankness(frame.grey).empty()) return {};
+  if (!Blankness(frame.gray).empty()) return {};
   for (const Rigid3& guess : GuessPoses(frame.frame_idx)) {
     *cam_from_world = guess;
     if (Followed followed = FollowFrom(frame, cam_from_world); followed.size() > 0) return followed;
@@ -130,7 +130,7 @@ Tracker::Followed Tracker::Relocalize(const TrackerFrame& frame, Rigid3* cam_fro
   if (options_.relocalization.relocalize == Switch::kOff) return {};
   if (described_ == nullptr)
     described_ =
-        std::make_unique<DescribedImage>(Describe(frame.grey, frame.mask, options_.corners, options_.relocalization));
+        std::make_unique<DescribedImage>(Describe(frame.gray, frame.mask, options_.corners, options_.relocalization));
   const auto recognized = now_->places.Recognize(*described_, camera_, KnownLandmarks());
   if (!recognized.ok()) return {};
   *cam_from_world = recognized->cam_from_world;

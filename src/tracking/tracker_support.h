@@ -29,14 +29,14 @@ class StageTimer {
   double* ms_ = nullptr;
 };
 
-// That an image shows nothing: it is black, white, or of one colour; empty where it shows something.
-std::string Blankness(const cv::Mat& grey);
+// That an image shows nothing: it is black, white, or of one color; empty where it shows something.
+std::string Blankness(const cv::Mat& gray);
 
 // What is wrong with an image in which nothing can be followed; empty when nothing is.
 std::string ImageFault(const TrackerFrame& frame, const TrackerFrame& previous);
 
-// The colour (R, G, B) of the nearest pixel of an 8-bit image with 1 or 3 (BGR) channels.
-std::array<std::uint8_t, 3> ColourAt(const cv::Mat& image, const Eigen::Vector2d& pixel);
+// The color (R, G, B) of the nearest pixel of an 8-bit image with 1 or 3 (BGR) channels.
+std::array<std::uint8_t, 3> ColorAt(const cv::Mat& image, const Eigen::Vector2d& pixel);
 
 // "note; fault", or the one that is not empty.
 std::string WithFault(const std::string& note, const std::string& fault);

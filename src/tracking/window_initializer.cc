@@ -121,7 +121,7 @@ void WindowInitOptions::List(OptionTable& table) {
   table.Add("max_points", &max_points, "-", "in the problem: time grows with them", 12, 100000);
   table.Add("min_points", &min_points, "-", "fewer certain points in the last frame make no map", 12, 100000);
   table.Add("max_correlation", &max_correlation, "-",
-            "of the errors of neighbours under a rigid motion: above, the scene deforms", -1, 1);
+            "of the errors of neighbors under a rigid motion: above, the scene deforms", -1, 1);
   table.Add("certain_depth_sigma", &certain_depth_sigma, "-",
             "a point is certain whose standard deviation of depth by the median depth is not larger", 1e-4, 10);
   table.Add("last_depth_sigma", &last_depth_sigma, "-", "the same at last_frame: it grows from deforming_frame on",

@@ -153,7 +153,7 @@ Result<SolvedWindow> SolveDeforming(const InitInput& input, const PreparedWindow
   if (!solution.ok()) return solution.status();
   SolvedWindow lit{window.views, window.ids, std::move(*solution), false};
   if (lit.solution.light_error <= kMostOfSpread * lit.solution.log_distance_spread) return lit;
-  // The solution is wrong, or the light is: not at the camera, of another response, on tissue of many colours.
+  // The solution is wrong, or the light is: not at the camera, of another response, on tissue of many colors.
   WindowInitOptions without = options;
   without.light = Switch::kOff;
   const auto prepared = PrepareWindow(input, window.views.back() + 1, without, nominal_depth_mm);
@@ -169,7 +169,7 @@ Result<SolvedWindow> SolveRigid(const InitInput& input, const PreparedWindow& wi
   const double focal_px = input.camera.MeanFocalLengthPx();
   const auto deforms = [&](double correlation) {
     return Status(ErrorCode::kDegenerate,
-                  "the scene deforms: the errors of neighbours under a rigid motion are alike "
+                  "the scene deforms: the errors of neighbors under a rigid motion are alike "
                   "(correlation " +
                       Digits(correlation, 2) + ")");
   };

@@ -22,16 +22,16 @@ FramePoses PosesOf(const ViewedRun& run, int submap) {
 
 std::optional<Sim3> AlignWorlds(const FramePoses& from, const FramePoses& to, std::optional<double> scale,
                                 double depth_in_from) {
-  std::vector<Eigen::Vector3d> from_centres;
-  std::vector<Eigen::Vector3d> to_centres;
+  std::vector<Eigen::Vector3d> from_centers;
+  std::vector<Eigen::Vector3d> to_centers;
   for (const auto& [frame_idx, pose] : from)
     if (const auto other = to.find(frame_idx); other != to.end()) {
-      from_centres.push_back(pose.translation);
-      to_centres.push_back(other->second.translation);
+      from_centers.push_back(pose.translation);
+      to_centers.push_back(other->second.translation);
     }
-  if (from_centres.empty()) return std::nullopt;
+  if (from_centers.empty()) return std::nullopt;
   if (!scale) {
-    const Result<Sim3> paths = AlignPoints(from_centres, to_centres, AlignmentScale::kEstimated);
+    const Result<Sim3> paths = AlignPoints(from_centers, to_centers, AlignmentScale::kEstimated);
     scale = paths.ok() && paths->scale > 0 && std::isfinite(paths->scale) ? paths->scale : 1.0;
   }
   std::vector<Eigen::Vector3d> from_points;

@@ -18,7 +18,7 @@ using FramePoses = std::map<int, Rigid3>;  // world_from_cam by frame
 // A run's poses in one of its worlds.
 FramePoses PosesOf(const ViewedRun& run, int submap);
 
-// The least-squares similarity from `from`'s world to that of `to`: of the cameras' centres and axes, the axes as long
+// The least-squares similarity from `from`'s world to that of `to`: of the cameras' centers and axes, the axes as long
 // as the typical depth, so that it is certain for a camera that stands still or goes along a line as well. `scale` is
 // to's unit in from's, where it is known, else that of the paths, and 1 where a camera never moves. Nothing without a
 // common frame.

@@ -20,26 +20,24 @@
 namespace pliant {
 namespace {
 
-// Okabe and Ito's colours, which the colour-blind tell apart.
-struct Colour {
+// Okabe and Ito's colors, which the color-blind tell apart.
+struct Color {
   double red;
   double green;
   double blue;
 };
-constexpr Colour kBlack = {0, 0, 0};
-constexpr Colour kGrey = {0.75, 0.75, 0.75};
-constexpr Colour kBlue = {0, 0.447, 0.698};
-constexpr Colour kVermillion = {0.835, 0.369, 0};
-constexpr Colour kGreen = {0, 0.62, 0.451};
-constexpr Colour kYellow = {0.941, 0.894, 0.259};
+constexpr Color kBlack = {0, 0, 0};
+constexpr Color kGray = {0.75, 0.75, 0.75};
+constexpr Color kBlue = {0, 0.447, 0.698};
+constexpr Color kVermillion = {0.835, 0.369, 0};
+constexpr Color kGreen = {0, 0.62, 0.451};
+constexpr Color kYellow = {0.941, 0.894, 0.259};
 
 constexpr int kEmbeddedQuality = 90;
 constexpr double kFrustumOfDepth = 0.25;  // length of the camera as a part of the points' median depth
 constexpr double kDot = 1.0 / 300;        // radius of a point, of the panel's width
 
-void Use(cairo_t* drawing, const Colour& colour) {
-  cairo_set_source_rgb(drawing, colour.red, colour.green, colour.blue);
-}
+void Use(cairo_t* drawing, const Color& color) { cairo_set_source_rgb(drawing, color.red, color.green, color.blue); }
 
 void Dot(cairo_t* drawing, double x, double y, double radius) {
   cairo_new_sub_path(drawing);
@@ -148,20 +146,20 @@ const ViewedFrame* FindFrame(const ViewedRun& run, int frame_idx) {
 
 Orbit OrbitOf(const View& view, const ViewedRun& run, const FigureOptions& options, double width_px, double height_px) {
   std::vector<Eigen::Vector3d> points;
-  std::vector<Eigen::Vector3d> centres;
+  std::vector<Eigen::Vector3d> centers;
   for (const auto& [id, point] : run.points) points.push_back(point.position);
   Eigen::Vector4d orientation = Eigen::Vector4d::Zero();
   for (const ViewedFrame& frame : run.frames) {
     if (!frame.world_from_cam) continue;
-    centres.push_back(frame.world_from_cam->translation);
+    centers.push_back(frame.world_from_cam->translation);
     const Eigen::Vector4d q = frame.world_from_cam->rotation.coeffs();
     orientation += q.dot(orientation) < 0 ? Eigen::Vector4d(-q) : q;
   }
-  for (const TruePose& pose : view.truth) centres.push_back(pose.world_from_cam.translation);
+  for (const TruePose& pose : view.truth) centers.push_back(pose.world_from_cam.translation);
   if (points.empty()) points.emplace_back(0, 0, 0);
   const Eigen::Quaterniond mean =
       orientation.norm() > 0 ? Eigen::Quaterniond(orientation.normalized()) : Eigen::Quaterniond::Identity();
-  return {points, centres, mean, options.azimuth_deg, options.elevation_deg, width_px, height_px};
+  return {points, centers, mean, options.azimuth_deg, options.elevation_deg, width_px, height_px};
 }
 
 void DrawImage(cairo_t* drawing, const Panel& panel, const cv::Mat& image, const ViewedFrame* frame) {
@@ -248,7 +246,7 @@ void DrawScene(cairo_t* drawing, const Panel& panel, const View& view, const Vie
                     *frame->world_from_cam * (depth * (*rays)[(i + 1) % rays->size()])});
   }
   cairo_restore(drawing);
-  Use(drawing, kGrey);
+  Use(drawing, kGray);
   cairo_set_line_width(drawing, 1);
   cairo_rectangle(drawing, panel.left, panel.top, panel.width, panel.height);
   cairo_stroke(drawing);
@@ -263,11 +261,11 @@ void DrawText(cairo_t* drawing, double left, double baseline, double size, const
 }
 
 void DrawLegend(cairo_t* drawing, double left, double baseline, double size, bool truth) {
-  std::vector<std::pair<Colour, const char*>> entries = {
+  std::vector<std::pair<Color, const char*>> entries = {
       {kBlack, "undeformed map"}, {kVermillion, "deformation"}, {kBlue, "camera"}};
   if (truth) entries.emplace_back(kGreen, "truth");
-  for (const auto& [colour, text] : entries) {
-    Use(drawing, colour);
+  for (const auto& [color, text] : entries) {
+    Use(drawing, color);
     Dot(drawing, left + 0.4 * size, baseline - 0.35 * size, 0.35 * size);
     cairo_fill(drawing);
     left += 1.2 * size;

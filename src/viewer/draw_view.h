@@ -51,7 +51,7 @@ void DrawImage(cairo_t* drawing, const Panel& panel, const cv::Mat& image, const
 void DrawScene(cairo_t* drawing, const Panel& panel, const View& view, const ViewedRun& run, int frame_idx,
                const Orbit& orbit, const FigureOptions& options);
 void DrawText(cairo_t* drawing, double left, double baseline, double size, const std::string& text);
-// What the colours of a scene mean, in one line from `left` on.
+// What the colors of a scene mean, in one line from `left` on.
 void DrawLegend(cairo_t* drawing, double left, double baseline, double size, bool truth);
 
 }  // namespace pliant

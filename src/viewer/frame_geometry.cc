@@ -13,13 +13,13 @@ namespace pliant {
 std::optional<std::array<Eigen::Vector3d, 4>> CornerRays(const Camera& camera) {
   const double right = camera.width() - 0.5;
   const double bottom = camera.height() - 0.5;
-  const Eigen::Vector2d centre(0.5 * (right - 0.5), 0.5 * (bottom - 0.5));
+  const Eigen::Vector2d center(0.5 * (right - 0.5), 0.5 * (bottom - 0.5));
   const Eigen::Vector2d corners[] = {{-0.5, -0.5}, {right, -0.5}, {right, bottom}, {-0.5, bottom}};
   std::array<Eigen::Vector3d, 4> rays;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     std::optional<Eigen::Vector3d> ray;
     for (double share = 1.0; share > 0.1 && !(ray && ray->z() > 0.1); share -= 0.05)
-      ray = camera.Unproject(centre + share * (corners[i] - centre));
+      ray = camera.Unproject(center + share * (corners[i] - center));
     if (!ray || !(ray->z() > 0)) return std::nullopt;
     rays[i] = *ray / ray->z();
   }

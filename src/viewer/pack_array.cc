@@ -80,7 +80,7 @@ nlohmann::ordered_json PackWhole(std::span<const std::uint32_t> values, int colu
   return packed;
 }
 
-nlohmann::ordered_json PackQuantised(std::span<const float> values, int columns, PackedType type) {
+nlohmann::ordered_json PackQuantized(std::span<const float> values, int columns, PackedType type) {
   const auto count = static_cast<std::size_t>(columns);
   const std::uint32_t none = LargestOf(type);
   std::vector<double> low(count, std::numeric_limits<double>::infinity());

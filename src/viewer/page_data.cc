@@ -108,7 +108,7 @@ json Points(const ViewedRun& run) {
     rgb.insert(rgb.end(), point.rgb.begin(), point.rgb.end());
   }
   return {{"id", PackWhole(ids, 1, PackedType::kU32)},
-          {"rest", PackQuantised(rest, 3, PackedType::kU16)},
+          {"rest", PackQuantized(rest, 3, PackedType::kU16)},
           {"rgb", PackWhole(rgb, 3, PackedType::kU8)}};
 }
 
@@ -163,7 +163,7 @@ class Observations {
     std::vector<float> values;
     values.reserve(sorted_.size());
     for (const Seen& seen : sorted_) values.push_back(seen.observation->*member);
-    return PackQuantised(values, 1, type);
+    return PackQuantized(values, 1, type);
   }
   template <int N>
   json Vectors(Eigen::Matrix<float, N, 1> ViewedObservation::*member) const {
@@ -171,7 +171,7 @@ class Observations {
     values.reserve(N * sorted_.size());
     for (const Seen& seen : sorted_)
       for (int i = 0; i < N; ++i) values.push_back((seen.observation->*member)[i]);
-    return PackQuantised(values, N, PackedType::kU16);
+    return PackQuantized(values, N, PackedType::kU16);
   }
 
   std::vector<Seen> sorted_;
@@ -239,7 +239,7 @@ json PageData(const View& view, const ViewImages& images, const std::string& tit
           {"version", kVersion},
           {"title", title},
           {"live", false},
-          {"unit", view.in_millimetres ? "mm" : "map units"},
+          {"unit", view.in_millimeters ? "mm" : "map units"},
           {"notes", view.notes},
           {"camera", CameraData(view.camera)},
           {"images", ImageData(images)},

@@ -92,7 +92,7 @@ Status TakeResult(const std::string& run_path, const Sequence& sequence, ReadVie
   return Status::Ok();
 }
 
-// Undeformed positions and colours; where the run has none, the first position in grey.
+// Undeformed positions and colors; where the run has none, the first position in gray.
 void AddPoints(const RunMap& map, ViewedRun* run) {
   for (const ViewedFrame& frame : run->frames) {
     for (const ViewedObservation& o : frame.observations) {

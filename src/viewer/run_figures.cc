@@ -16,7 +16,7 @@ std::string Number(const char* format, double value) {
   return text;
 }
 
-std::string Millimetres(double value) { return Number("%.3f mm", value); }
+std::string Millimeters(double value) { return Number("%.3f mm", value); }
 std::string Percent(double share) { return Number("%.2f %%", 100 * share); }
 
 class Rows {
@@ -34,10 +34,10 @@ void AddPointError(const std::string& title, const PointError& error, Rows* rows
   rows->Begin(title + ", scale " + std::string(EnumName(error.scale)));
   const PointSummary& estimate = error.plain.estimate;
   const PointSummary& null = error.plain.null;
-  rows->Add("RMSE, mean over frames", Millimetres(estimate.mean_rmse_mm));
-  rows->Add("RMSE of one constant depth", Millimetres(null.mean_rmse_mm));
-  rows->Add("median, all points", Millimetres(estimate.pooled_median_mm));
-  rows->Add("median of one constant depth", Millimetres(null.pooled_median_mm));
+  rows->Add("RMSE, mean over frames", Millimeters(estimate.mean_rmse_mm));
+  rows->Add("RMSE of one constant depth", Millimeters(null.mean_rmse_mm));
+  rows->Add("median, all points", Millimeters(estimate.pooled_median_mm));
+  rows->Add("median of one constant depth", Millimeters(null.pooled_median_mm));
   rows->Add("relative depth, median", Percent(estimate.median_relative_depth));
 }
 
@@ -60,10 +60,10 @@ void AddEvaluation(const Evaluation& evaluation, Rows* rows) {
   if (evaluation.trajectory) {
     const TrajectoryError& camera = *evaluation.trajectory;
     rows->Begin("Camera, aligned by " + std::string(EnumName(camera.alignment)));
-    rows->Add("ATE, RMSE", Millimetres(camera.ate_rmse_mm));
-    rows->Add("true path", Millimetres(camera.true_path_length_mm));
+    rows->Add("ATE, RMSE", Millimeters(camera.ate_rmse_mm));
+    rows->Add("true path", Millimeters(camera.true_path_length_mm));
     rows->Add("rotation, RMSE", Number("%.3f deg", camera.rotation_rmse_deg));
-    if (camera.rpe_pairs > 0) rows->Add("RPE a frame, RMSE", Millimetres(camera.rpe_translation_rmse_mm));
+    if (camera.rpe_pairs > 0) rows->Add("RPE a frame, RMSE", Millimeters(camera.rpe_translation_rmse_mm));
   }
   if (evaluation.first_map) {
     rows->Begin("First map");

@@ -200,7 +200,7 @@ Result<View> OpenView(const ViewRequest& request, const ViewOptions& options) {
     if (!view.camera) view.camera = run.camera;
   const FramePoses truth = has_images ? TruePoses(*sequence->sequence, view.runs) : FramePoses();
   for (const auto& [frame_idx, pose] : truth) view.truth.push_back({frame_idx, pose});
-  view.in_millimetres = !truth.empty();
+  view.in_millimeters = !truth.empty();
   Align(truth, &view);
   return view;
 }

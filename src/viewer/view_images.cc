@@ -20,16 +20,16 @@ namespace pliant {
 namespace {
 
 constexpr int kPatchSide = 11;
-constexpr double kLeastContrast = 1.0;  // standard deviation in grey levels, below which a patch says nothing of gain
+constexpr double kLeastContrast = 1.0;  // standard deviation in gray levels, below which a patch says nothing of gain
 
 using Patch = Eigen::Matrix<float, kPatchSide * kPatchSide, 1>;
 
-std::optional<Patch> PatchAt(const cv::Mat& grey, const Eigen::Vector2f& pixel) {
+std::optional<Patch> PatchAt(const cv::Mat& gray, const Eigen::Vector2f& pixel) {
   Patch patch;
   int i = 0;
   for (int dy = -kPatchSide / 2; dy <= kPatchSide / 2; ++dy) {
     for (int dx = -kPatchSide / 2; dx <= kPatchSide / 2; ++dx) {
-      const auto value = SampleBilinear(grey, pixel.x() + dx, pixel.y() + dy);
+      const auto value = SampleBilinear(gray, pixel.x() + dx, pixel.y() + dy);
       if (!value) return std::nullopt;
       patch[i++] = static_cast<float>(*value);
     }
@@ -40,9 +40,9 @@ std::optional<Patch> PatchAt(const cv::Mat& grey, const Eigen::Vector2f& pixel) 
 // Each point's first patch, of one run.
 using FirstPatches = std::unordered_map<PointId, Patch>;
 
-void AddBrightness(const cv::Mat& grey, FirstPatches* first, ViewedFrame* frame) {
+void AddBrightness(const cv::Mat& gray, FirstPatches* first, ViewedFrame* frame) {
   for (ViewedObservation& o : frame->observations) {
-    const std::optional<Patch> patch = PatchAt(grey, o.pixel);
+    const std::optional<Patch> patch = PatchAt(gray, o.pixel);
     if (!patch) continue;
     const Patch& reference = first->emplace(o.id, *patch).first->second;
     const Patch from_mean = reference.array() - reference.mean();
@@ -107,12 +107,12 @@ Result<ViewImages> ReadViewImages(const ReportOptions& options, View* view) {
     images.scale = static_cast<double>(small.cols) / image->cols;
     images.frame_idx.push_back(frame_idx);
     images.jpeg.push_back(ToJpeg(small, options.image_quality));
-    const cv::Mat grey = ToGrey(*image);
+    const cv::Mat gray = ToGray(*image);
     for (std::size_t i = 0; i < view->runs.size(); ++i) {
       std::vector<ViewedFrame>& frames = view->runs[i].frames;
       while (position[i] < frames.size() && frames[position[i]].row.frame_idx < frame_idx) ++position[i];
       if (position[i] < frames.size() && frames[position[i]].row.frame_idx == frame_idx)
-        AddBrightness(grey, &first[i], &frames[position[i]]);
+        AddBrightness(gray, &first[i], &frames[position[i]]);
     }
   }
   const std::size_t read = images.jpeg.size();

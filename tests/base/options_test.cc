@@ -61,7 +61,7 @@ TEST(Options, RefusesAndKeepsTheOldValue) {
   EXPECT_EQ(options.weight, 0.1);
 }
 
-TEST(Options, AnUnknownNameNamesItsNearestNeighbour) {
+TEST(Options, AnUnknownNameNamesItsNearestNeighbor) {
   BasketOptions options;
   OptionTable table;
   options.List(table);

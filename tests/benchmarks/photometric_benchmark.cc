@@ -53,9 +53,9 @@ cv::Mat View(const cv::Mat& texture, cv::Point2d shift, double gain, std::uint64
   for (int y = 0; y < image.rows; ++y)
     for (int x = 0; x < image.cols; ++x)
       image.at<float>(y, x) = static_cast<float>(gain * image.at<float>(y, x) + random.Normal(1.0));
-  cv::Mat grey;
-  image.convertTo(grey, CV_8U);
-  return grey;
+  cv::Mat gray;
+  image.convertTo(gray, CV_8U);
+  return gray;
 }
 
 struct Scene {
@@ -88,7 +88,7 @@ struct Scene {
       CutReferencePatch(previous_pyramid, mask, {corner.pixel.x(), corner.pixel.y()}, options, AffineSolution::kWithout,
                         &patches.back());
     }
-    for (const ReferencePatch& patch : patches) requests.push_back({&patch, patch.centre});
+    for (const ReferencePatch& patch : patches) requests.push_back({&patch, patch.center});
   }
 };
 
@@ -180,7 +180,7 @@ void BM_CutReferencePatches(benchmark::State& state) {
   std::vector<ReferencePatch> patches = scene.patches;
   for (auto _ : state)
     for (ReferencePatch& patch : patches)
-      CutReferencePatch(scene.previous_pyramid, scene.mask, patch.centre, scene.options, AffineSolution::kWithout,
+      CutReferencePatch(scene.previous_pyramid, scene.mask, patch.center, scene.options, AffineSolution::kWithout,
                         &patch);
   PerPoint(state, patches.size());
 }
@@ -194,9 +194,9 @@ BENCHMARK(BM_Pyramid)->Unit(benchmark::kMillisecond);
 
 void BM_ValidMask(benchmark::State& state) {
   const Scene& scene = TheScene();
-  cv::Mat colour;
-  cv::cvtColor(scene.current, colour, cv::COLOR_GRAY2BGR);
-  for (auto _ : state) benchmark::DoNotOptimize(SupportMask(ValidMask(colour, {}, {})));
+  cv::Mat color;
+  cv::cvtColor(scene.current, color, cv::COLOR_GRAY2BGR);
+  for (auto _ : state) benchmark::DoNotOptimize(SupportMask(ValidMask(color, {}, {})));
 }
 BENCHMARK(BM_ValidMask)->Unit(benchmark::kMillisecond);
 

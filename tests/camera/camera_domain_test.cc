@@ -160,9 +160,9 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"TooFew", "PINHOLE", 64, 48, {1, 2, 3}, "takes 4 parameters (fx,fy,cx,cy) and got 3"},
         Refusal{"TooMany", "SIMPLE_PINHOLE", 64, 48, {1, 2, 3, 4}, "takes 3 parameters"},
         Refusal{
-            "FocalLengthInMetres", "PINHOLE", 64, 48, {0.004, 0.004, 32, 24}, "focal length of 0.004 px for an image"},
+            "FocalLengthInMeters", "PINHOLE", 64, 48, {0.004, 0.004, 32, 24}, "focal length of 0.004 px for an image"},
         Refusal{"FocalLengthAbsurd", "PINHOLE", 64, 48, {1e300, 1e300, 32, 24}, "check the parameters' order"},
-        Refusal{"CentreFarOutside", "PINHOLE", 64, 48, {50, 50, 1e9, 24}, "principal point at (1e+09, 24)"},
+        Refusal{"CenterFarOutside", "PINHOLE", 64, 48, {50, 50, 1e9, 24}, "principal point at (1e+09, 24)"},
         Refusal{"NotANumber", "PINHOLE", 64, 48, {50, 50, std::nan(""), 24}, "number 3 of fx,fy,cx,cy"},
         Refusal{"Infinite", "OPENCV", 64, 48, {50, 50, 32, 24, 0, INFINITY, 0, 0}, "not a finite number"},
         Refusal{"NoWidth", "PINHOLE", 0, 48, {50, 50, 32, 24}, "image size of 0x48"},

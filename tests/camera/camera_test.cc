@@ -148,7 +148,7 @@ TEST_P(EveryCamera, RefusesPointsOnTheAxisBehindIt) {
 
 // No two directions share a pixel: along any direction, the distance to the principal point only grows until the edge.
 TEST_P(EveryCamera, GrowsFromTheAxisToTheEdgeOfItsDomain) {
-  const Eigen::Vector2d centre = *camera_.Project(Eigen::Vector3d(0, 0, 1));
+  const Eigen::Vector2d center = *camera_.Project(Eigen::Vector3d(0, 0, 1));
   for (int i = 0; i < 12; ++i) {
     const double azimuth = i * std::numbers::pi / 6;
     double last = -1;
@@ -160,7 +160,7 @@ TEST_P(EveryCamera, GrowsFromTheAxisToTheEdgeOfItsDomain) {
       if (!pixel) ended = true;
       if (!pixel) continue;
       EXPECT_FALSE(ended) << "the domain has a hole before theta = " << theta;
-      const double distance = (*pixel - centre).norm();
+      const double distance = (*pixel - center).norm();
       EXPECT_GT(distance, last) << theta;
       last = distance;
     }

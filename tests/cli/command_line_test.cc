@@ -127,15 +127,15 @@ TEST(CommandLine, WhatPrintConfigPrintsReadsBack) {
   EXPECT_TRUE(read.options.open);
 }
 
-TEST(CommandLine, AnUnknownNameNamesItsNeighbourAmongArgumentsAndOptions) {
-  for (const auto& [flag, neighbour] : {std::pair{"--Basket.cuont", "--Basket.count"},
-                                        {"--basket.weight", "--Basket.weight"},
-                                        {"--peices", "--pieces"},
-                                        {"--print-config", "--print_config"}}) {
+TEST(CommandLine, AnUnknownNameNamesItsNeighborAmongArgumentsAndOptions) {
+  for (const auto& [flag, neighbor] : {std::pair{"--Basket.cuont", "--Basket.count"},
+                                       {"--basket.weight", "--Basket.weight"},
+                                       {"--peices", "--pieces"},
+                                       {"--print-config", "--print_config"}}) {
     const Outcome outcome = Give({"--to", "X", flag, "1"});
     EXPECT_EQ(outcome.exit, kExitUsage) << flag;
     EXPECT_EQ(outcome.err,
-              std::string("pliant fill: there is no option ") + flag + "; did you mean " + neighbour + "?\n");
+              std::string("pliant fill: there is no option ") + flag + "; did you mean " + neighbor + "?\n");
   }
 }
 

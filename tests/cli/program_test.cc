@@ -128,7 +128,7 @@ TEST(Program, ThePaperPresetDiffersFromTheDefault) {
   EXPECT_NE(Pliant("track --print_config").out, Pliant("track --preset paper --print_config").out);
 }
 
-TEST(Program, AnUnknownOptionNamesItsNeighbourAndExitsWithTwo) {
+TEST(Program, AnUnknownOptionNamesItsNeighborAndExitsWithTwo) {
   const Outcome group = Pliant("track --image_path a --output_path b --General.seeed 2");
   EXPECT_EQ(group.exit, 2);
   EXPECT_EQ(group.err, "pliant track: there is no option --General.seeed; did you mean --General.seed?\n");
@@ -166,15 +166,15 @@ TEST(Program, AStartFromACloudTakesItsMethodAndSaysWhenTheUnitIsUnlikely) {
                 .exit,
             0);
   std::ofstream points(cloud);
-  for (int i = 0; i < 4096; ++i) points << 1e-3 * (i % 64 - 32) << " " << 1e-3 * (i / 64 - 32) << " 0.05\n";  // metres
+  for (int i = 0; i < 4096; ++i) points << 1e-3 * (i % 64 - 32) << " " << 1e-3 * (i / 64 - 32) << " 0.05\n";  // meters
   points.close();
   const std::string track = "track --Init.method depth --image_path '" + sequence + "' --output_path '" +
                             Temporary("run").string() + "' --Init.depth_cloud '" + cloud + "' ";
-  EXPECT_THAT(Pliant(track).err, HasSubstr("has a median depth of 0.05 mm; if its unit is the metre"));
-  const Outcome in_metres = Pliant(track + "--Init.depth_cloud_unit_mm 1000");
-  EXPECT_EQ(in_metres.exit, 0) << in_metres.err;
-  EXPECT_THAT(in_metres.out, HasSubstr("2 of 2 frames tracked"));
-  EXPECT_THAT(in_metres.err, Not(HasSubstr("median depth")));
+  EXPECT_THAT(Pliant(track).err, HasSubstr("has a median depth of 0.05 mm; if its unit is the meter"));
+  const Outcome in_meters = Pliant(track + "--Init.depth_cloud_unit_mm 1000");
+  EXPECT_EQ(in_meters.exit, 0) << in_meters.err;
+  EXPECT_THAT(in_meters.out, HasSubstr("2 of 2 frames tracked"));
+  EXPECT_THAT(in_meters.err, Not(HasSubstr("median depth")));
 }
 
 TEST(Program, AnInputThatIsNotThereIsOneSentenceAndExitCodeOne) {

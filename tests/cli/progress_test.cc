@@ -96,8 +96,8 @@ TEST(TrackProgress, ShowsAFrameWhenItIsProcessedAndNotAgainWhenItIsFinal) {
   {
     TrackProgress progress(ProgressStyle::kBar);
     progress.OnStart(4);
-    progress.OnHeld(Report(0, TrackingState::kInitialising, "reference"));
-    progress.OnHeld(Report(1, TrackingState::kInitialising, "parallax"));
+    progress.OnHeld(Report(0, TrackingState::kInitializing, "reference"));
+    progress.OnHeld(Report(1, TrackingState::kInitializing, "parallax"));
     progress.OnFrame(Report(0, TrackingState::kTracking, "from the map"));
     progress.OnFrame(Report(1, TrackingState::kTracking, "from the map"));
     progress.OnFrame(Report(2, TrackingState::kTracking, "first map"));
@@ -106,7 +106,7 @@ TEST(TrackProgress, ShowsAFrameWhenItIsProcessedAndNotAgainWhenItIsFinal) {
     progress.OnFrame(joins);
   }
   const std::string text = testing::internal::GetCapturedStderr();
-  EXPECT_NE(text.find("frame 0.png: initialising (reference)\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("frame 0.png: initializing (reference)\n"), std::string::npos) << text;
   EXPECT_NE(text.find("frame 2.png: tracking (first map)\n"), std::string::npos) << text;
   EXPECT_EQ(text.find("from the map"), std::string::npos) << text;
   EXPECT_NE(text.find("1/4"), std::string::npos) << "a frame that waits moves the bar: " << text;

@@ -45,7 +45,7 @@ TEST(ConvertColmap, SaysWhichModelPliantDoesNotHave) {
   EXPECT_THAT(camera.status().message(), testing::HasSubstr("FOV"));
 }
 
-TEST(ConvertColmap, PosesAreNormalisedOrRefused) {
+TEST(ConvertColmap, PosesAreNormalizedOrRefused) {
   const auto pose = ToPliant(Pose{{2, 0, 0, 0}, {1, 2, 3}});
   ASSERT_TRUE(pose.ok());
   EXPECT_EQ(pose->rotation.w(), 1);

@@ -222,7 +222,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadText{"LastWithoutObservations", "images.txt", "1 1 0 0 0 0 0 0 1 a\n", "of image 1 is missing"},
         BadText{"ObservationCut", "images.txt", "1 1 0 0 0 0 0 0 1 a\n1 2 3 4 5\n", ":2: there is no POINT3D_ID"},
         BadText{"ImageTwice", "images.txt", "1 1 0 0 0 0 0 0 1 a\n\n1 1 0 0 0 0 0 0 1 b\n\n", "image 1 twice"},
-        BadText{"PointColour", "points3D.txt", "1 0 0 0 256 0 0 0\n", "'256' is no colour"},
+        BadText{"PointColor", "points3D.txt", "1 0 0 0 256 0 0 0\n", "'256' is no color"},
         BadText{"PointTrack", "points3D.txt", "1 0 0 0 0 0 0 0 1 0 2\n", "there is no POINT2D_IDX"},
         BadText{"PointNumber", "points3D.txt", "1 0 zero 0 0 0 0 0\n", "'zero' is no number (Y)"},
         BadText{"PointTwice", "points3D.txt", "1 0 0 0 0 0 0 0\n1 0 0 0 0 0 0 0\n", "point 1 twice"},

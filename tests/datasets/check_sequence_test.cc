@@ -88,9 +88,9 @@ INSTANTIATE_TEST_SUITE_P(
                      return Mirrored(truth, {1, -1, 1});
                    },
                    "y is flipped", 1.0},
-        Misreading{"metres", [](const Rigid3& truth) { return Rigid3(truth.rotation, 1e-3 * truth.translation); }, "",
+        Misreading{"meters", [](const Rigid3& truth) { return Rigid3(truth.rotation, 1e-3 * truth.translation); }, "",
                    1000.0},
-        Misreading{"decimetres", [](const Rigid3& truth) { return Rigid3(truth.rotation, 0.01 * truth.translation); },
+        Misreading{"decimeters", [](const Rigid3& truth) { return Rigid3(truth.rotation, 0.01 * truth.translation); },
                    "", 100.0},
         Misreading{"opengl",
                    [](const Rigid3& truth) {
@@ -98,7 +98,7 @@ INSTANTIATE_TEST_SUITE_P(
                                    truth.translation);
                    },
                    "OpenGL", 1.0},
-        Misreading{"unity_in_metres",
+        Misreading{"unity_in_meters",
                    [](const Rigid3& truth) {
                      Rigid3 pose = Mirrored(truth, {1, -1, 1});
                      pose.translation *= 1e-3;

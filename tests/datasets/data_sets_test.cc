@@ -64,7 +64,7 @@ struct Expected {
   bool poses = true;
   bool pairs = false;
   double depth_mm = -1;      // largest error but for edges; -1: there is no depth
-  double grey_levels = 1.0;  // mean difference of the images
+  double gray_levels = 1.0;  // mean difference of the images
 };
 
 class DataSets : public SequenceFiles {
@@ -117,7 +117,7 @@ class DataSets : public SequenceFiles {
       ASSERT_TRUE(frame.ok() && frame->has_value()) << frame.status().message();
       const cv::Rect inside(4, 4, sequence.camera().width() - 8, sequence.camera().height() - 8);
       EXPECT_LT(cv::norm((*frame)->image(inside), Frame(k).image(inside), cv::NORM_L1) / inside.area() / 3,
-                expected.grey_levels);
+                expected.gray_levels);
       EXPECT_NEAR((*frame)->timestamp_s - *sequence.TimestampS(0), k / 30.0, 1e-4);
       const auto depth = sequence.Depth(k);
       ASSERT_TRUE(depth.ok()) << depth.status().message();
@@ -342,7 +342,7 @@ TEST_F(DataSets, StereoMis) {
     poses += std::to_string(k) + " " + Line(" ", t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w());
   }
   Text("P1/groundtruth.txt", poses);
-  ExpectTheScene(Path("P1"), {.kind = "stereomis", .pairs = true, .grey_levels = 4.0});
+  ExpectTheScene(Path("P1"), {.kind = "stereomis", .pairs = true, .gray_levels = 4.0});
 
   cv::Mat mask(120, 160, CV_8U, cv::Scalar(255));  // of half the size
   mask(cv::Rect(40, 30, 40, 30)) = 0;
@@ -381,11 +381,11 @@ TEST_F(DataSets, Scared) {
         points.at<cv::Vec3f>(v, u) = {x.z(), x.y(), x.x()};  // stored as RGB
       }
     std::filesystem::create_directories(Path("keyframe_1/data/scene_points"));
-    constexpr int kUncompressed = 1;  // else OpenCV writes colours for the eye
+    constexpr int kUncompressed = 1;  // else OpenCV writes colors for the eye
     ASSERT_TRUE(cv::imwrite(Path("keyframe_1/data/scene_points/" + Numbered("scene_points%06d.tiff", k)).string(),
                             points, {cv::IMWRITE_TIFF_COMPRESSION, kUncompressed}));
   }
-  ExpectTheScene(Path("keyframe_1"), {.kind = "scared", .pairs = true, .depth_mm = 0.01, .grey_levels = 4.0});
+  ExpectTheScene(Path("keyframe_1"), {.kind = "scared", .pairs = true, .depth_mm = 0.01, .gray_levels = 4.0});
 }
 
 TEST_F(DataSets, EndomapperReal) {
@@ -402,7 +402,7 @@ TEST_F(DataSets, EndomapperReal) {
        "version=\"8\">\n      <width> 320 </width>\n      <height> 240 </height>\n      <right> [ 1; 0; 0 ] </right>\n"
        "      <params> [  230;  230;  159.5;  119.5;  -0.1289632;  -0.006051189;  0.001660961;  -7.847858e-05 ] "
        "</params>\n    </camera_model>\n  </camera>\n</rig>\n");
-  ExpectTheScene(Path(folder), {.kind = "endomapper", .poses = false, .grey_levels = 4.0});
+  ExpectTheScene(Path(folder), {.kind = "endomapper", .poses = false, .gray_levels = 4.0});
   Text("Calibrations/Endoscope_03/Endoscope_03_photometrical.xml",
        "<?xml version=\"1.0\"?>\n<rig>\n <camera>\n  <camera_model index=\"0\" type=\"gamma\">\n   <!-- <gamma> [ 9 ] "
        "</gamma> -->\n   <gamma> [ 2.2 ] </gamma>\n   <vignetting> [ 1.500000 ] </vignetting>\n  </camera_model>\n "

@@ -24,7 +24,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-constexpr double kVideoLoss = 3.0;  // grey levels a lossy codec may change a plain image by
+constexpr double kVideoLoss = 3.0;  // gray levels a lossy codec may change a plain image by
 
 class OpenSequenceTest : public SequenceFiles {
  protected:
@@ -186,21 +186,21 @@ TEST_F(OpenSequenceTest, ReadsEveryKindOfImageFile) {
   EXPECT_THAT(Indices(*Open(Request())), ElementsAre(0, 1, 2, 3, 4, 5, 6));
 }
 
-TEST_F(OpenSequenceTest, ConvertsDeepTransparentAndGreyImages) {
+TEST_F(OpenSequenceTest, ConvertsDeepTransparentAndGrayImages) {
   WriteNative(3);
   cv::Mat deep(kHeight, kWidth, CV_16UC1, cv::Scalar::all(200 * 257));
   Write("images/000000.png", deep);
   Write("images/000001.png", cv::Mat(kHeight, kWidth, CV_8UC4, cv::Scalar(10, 20, 30, 0)));
   const auto sequence = Open(Request());
   ASSERT_NE(sequence, nullptr);
-  const auto grey = sequence->Next();
-  ASSERT_TRUE(grey.ok());
-  EXPECT_EQ((*grey)->image.type(), CV_8UC1);
-  EXPECT_EQ((*grey)->image.at<unsigned char>(5, 5), 200);
-  const auto colour = sequence->Next();
-  ASSERT_TRUE(colour.ok());
-  EXPECT_EQ((*colour)->image.type(), CV_8UC3);
-  EXPECT_EQ((*colour)->image.at<cv::Vec3b>(5, 5), cv::Vec3b(10, 20, 30));
+  const auto gray = sequence->Next();
+  ASSERT_TRUE(gray.ok());
+  EXPECT_EQ((*gray)->image.type(), CV_8UC1);
+  EXPECT_EQ((*gray)->image.at<unsigned char>(5, 5), 200);
+  const auto color = sequence->Next();
+  ASSERT_TRUE(color.ok());
+  EXPECT_EQ((*color)->image.type(), CV_8UC3);
+  EXPECT_EQ((*color)->image.at<cv::Vec3b>(5, 5), cv::Vec3b(10, 20, 30));
 }
 
 TEST_F(OpenSequenceTest, PairsMasksByNameByOrderOrOneForAll) {

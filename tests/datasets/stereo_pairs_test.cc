@@ -38,7 +38,7 @@ class StereoPairs : public SequenceFiles {
       Write("pairs/" + Name(k), pair);
     }
   }
-  // OpenCV's calibration of it; the left camera's centre of projection in half an image.
+  // OpenCV's calibration of it; the left camera's center of projection in half an image.
   void WriteStereo(double squeeze = 1.0, const std::string& t = "[-5, 0, 0]", const std::string& more = "") const {
     const auto& p = Rendered().camera.params();
     const std::string matrix = "[" + std::to_string(p[0]) + ", 0, " + std::to_string(p[2]) + ", 0, " +
@@ -50,7 +50,7 @@ class StereoPairs : public SequenceFiles {
   Result<std::unique_ptr<Sequence>> Open() const {
     return OpenSequence({.image_path = Path("pairs"), .camera_path = Path("stereo.yaml")});
   }
-  // Frame by frame what the simulator rendered, away from the edge, in grey levels.
+  // Frame by frame what the simulator rendered, away from the edge, in gray levels.
   static void ExpectTheScene(Sequence& sequence, double most_difference) {
     const RenderedScene& scene = Rendered();
     EXPECT_EQ(sequence.camera().width(), scene.camera.width());
@@ -177,7 +177,7 @@ TEST_F(StereoPairs, AreMaskedWhereTheRawImageHasNothing) {
   EXPECT_LT(masked, static_cast<int>((*frame)->mask.total()) / 2);
 }
 
-TEST_F(StereoPairs, ABaselineInMetresIsUnderstood) {
+TEST_F(StereoPairs, ABaselineInMetersIsUnderstood) {
   WritePairs(/*top_bottom=*/false);
   WriteStereo(1.0, "[-0.005, 0, 0]");
   auto sequence = Open();

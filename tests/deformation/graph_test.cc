@@ -60,7 +60,7 @@ void ExpectEdgesByDefinition(const Points& points, const GraphOptions& options) 
   }
 }
 
-TEST(DeformationGraph, HasTheNearestNeighboursOfEveryPoint) { ExpectEdgesByDefinition(RandomPoints(400, 1), {}); }
+TEST(DeformationGraph, HasTheNearestNeighborsOfEveryPoint) { ExpectEdgesByDefinition(RandomPoints(400, 1), {}); }
 
 TEST(NearestNeighbors, OfPlacesAreAsOfPoints) {
   const Points points = RandomPoints(300, 1);
@@ -69,7 +69,7 @@ TEST(NearestNeighbors, OfPlacesAreAsOfPoints) {
   const NeighborLists lists = NearestNeighbors(points, places, 8);
   ASSERT_EQ(lists.size(), places.size());
   for (std::size_t i = 0; i < places.size(); ++i) {
-    Points all = points;  // the place is one point more, whose neighbours they are
+    Points all = points;  // the place is one point more, whose neighbors they are
     all.push_back(places[i]);
     EXPECT_EQ(lists[i], NeighborsByDefinition(all, 8).back()) << i;
   }
@@ -80,7 +80,7 @@ TEST(NearestNeighbors, OfPlacesAreAsOfPoints) {
 }
 
 TEST(DeformationGraph, SettlesTiesByIndex) {
-  Points grid;  // every neighbourhood of a regular grid is full of ties
+  Points grid;  // every neighborhood of a regular grid is full of ties
   for (int y = 0; y < 12; ++y)
     for (int x = 0; x < 12; ++x) grid.emplace_back(2.0 * x, 2.0 * y, 50.0);
   ExpectEdgesByDefinition(grid, {});
@@ -103,7 +103,7 @@ TEST(DeformationGraph, SumOverEdgesIsTheDirectedSum) {
   EXPECT_NEAR(merged, directed, kRounding * directed);
 }
 
-TEST(DeformationGraph, TiesEveryoneToEveryoneWhenThereAreFewerPointsThanNeighbours) {
+TEST(DeformationGraph, TiesEveryoneToEveryoneWhenThereAreFewerPointsThanNeighbors) {
   for (const int count : {0, 1, 2, 3, 15, 20, 21, 22}) {
     const Points points = RandomPoints(count, 3);
     const auto graph = BuildDeformationGraph(points, {}, {});

@@ -38,7 +38,7 @@ TEST(RigidScene, WithATrueFirstMapTheMedianErrorStaysSmall) {
   EXPECT_LT(evaluation.first_map->declared.estimate.p90, kMaxRelativeDepthOfTruth);
 }
 
-TEST(RigidScene, FromAMonocularStartThePlainErrorStaysBelowTwoMillimetres) {
+TEST(RigidScene, FromAMonocularStartThePlainErrorStaysBelowTwoMillimeters) {
   const TestFolder folder;
   const RunSummary summary = TrackSequenceAt(kSequence, folder.Path("run"), TrackOptions());
   EXPECT_EQ(summary.status, RunStatus::kCompleted);
@@ -52,8 +52,8 @@ TEST(RigidScene, FromAMonocularStartThePlainErrorStaysBelowTwoMillimetres) {
   EXPECT_GE(first_map.frames_waited, TrackerOptions().init.window.first_frame);
   EXPECT_LT(first_map.declared.estimate.median, kMaxRelativeDepthMonocular);
   EXPECT_LT(first_map.declared.estimate.median, 0.5 * first_map.declared.null.median);
-  EXPECT_GT(first_map.initialise_largest_ms, 0);
-  EXPECT_GE(first_map.initialise_total_ms, first_map.initialise_largest_ms);
+  EXPECT_GT(first_map.initialize_largest_ms, 0);
+  EXPECT_GE(first_map.initialize_total_ms, first_map.initialize_largest_ms);
 }
 
 TEST(RigidScene, FramesAfterTheFirstMapMakeItBetter) {

@@ -148,11 +148,11 @@ class BeforeTheFirstMap : public testing::Test {
     const cv::Mat still = cv::imread(sequence_.Image(0).string());
     for (int i = 1; i < kWaiting; ++i) sequence_.Replace(i, still);
   }
-  void ExpectInitialising(int frames) const {
+  void ExpectInitializing(int frames) const {
     const auto run = ReadRun(folder_.Path("run"));
     ASSERT_TRUE(run.ok()) << run.status().message();
     ASSERT_EQ(static_cast<int>(run->frames.size()), frames);
-    for (const auto& frame : run->frames) EXPECT_EQ(frame.state, TrackingState::kInitialising);
+    for (const auto& frame : run->frames) EXPECT_EQ(frame.state, TrackingState::kInitializing);
     EXPECT_TRUE(run->poses.empty());
   }
 
@@ -165,7 +165,7 @@ TEST_F(BeforeTheFirstMap, TheSequencesEndWritesTheFramesThatWait) {
   const RunSummary summary = TrackSequenceAt(sequence_.path(), folder_.Path("run"), TrackOptions());
   EXPECT_EQ(summary.status, RunStatus::kFailed);
   EXPECT_EQ(summary.frames_read, kWaiting);
-  ExpectInitialising(kWaiting);
+  ExpectInitializing(kWaiting);
 }
 
 TEST_F(BeforeTheFirstMap, AStopOnRequestWritesTheFramesThatWait) {
@@ -190,7 +190,7 @@ TEST_F(BeforeTheFirstMap, AStopOnRequestWritesTheFramesThatWait) {
   EXPECT_THAT(summary->note, HasSubstr(FrameName(3)));
   EXPECT_THAT(observer.held_frames, testing::ElementsAre(0, 1, 2, 3));
   EXPECT_THAT(observer.final_frames, testing::ElementsAre(0, 1, 2, 3));
-  ExpectInitialising(4);
+  ExpectInitializing(4);
 }
 
 TEST_F(BeforeTheFirstMap, ATruncatedImageWritesTheFramesThatWait) {
@@ -198,7 +198,7 @@ TEST_F(BeforeTheFirstMap, ATruncatedImageWritesTheFramesThatWait) {
   const RunSummary summary = TrackSequenceAt(sequence_.path(), folder_.Path("run"), TrackOptions());
   EXPECT_EQ(summary.status, RunStatus::kFailed);
   EXPECT_THAT(summary.note, HasSubstr(FrameName(4)));
-  ExpectInitialising(4);
+  ExpectInitializing(4);
 }
 
 TEST(Robustness, ADepthImageThatNothingNeedsAnyMoreMayBeBroken) {

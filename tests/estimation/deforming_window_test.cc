@@ -234,7 +234,7 @@ struct JoiningScene {
   Result<DeformingSolution> solution = Status(ErrorCode::kInsufficient, "");
 };
 
-TEST(DeformingWindow, PointsJoinASolutionWhereTheirRaysAndNeighboursPutThem) {
+TEST(DeformingWindow, PointsJoinASolutionWhereTheirRaysAndNeighborsPutThem) {
   const JoiningScene of;
   ASSERT_TRUE(of.solution.ok());
   const auto num_joining = static_cast<int>(of.joining_points.size());
@@ -350,7 +350,7 @@ TEST(DeformingTerms, GradientsMatchDifferences) {
   const DeformingTerms terms(start.window, start.nodes, kFocalPx, {});
   DeformingState state = terms.Start();
   for (const std::size_t point : {std::size_t{3}, std::size_t{77}}) {
-    const PointVector gradient = terms.Linearised(point, state, nullptr).gradient;
+    const PointVector gradient = terms.Linearized(point, state, nullptr).gradient;
     for (Eigen::Index k = 0; k < gradient.size(); ++k) {
       double& value = state.points(k, static_cast<Eigen::Index>(point));
       const double kept = value;
@@ -371,7 +371,7 @@ TEST(DeformingEquations, SlopeMatchesDifferencesWhereThePointsAreSettled) {
   DeformingState state = terms.Start();
   for (std::size_t i = 0; i < terms.num_points(); ++i)
     for (int sweep = 0; sweep < 200; ++sweep) {
-      const PointEquations equations = terms.Linearised(i, state, nullptr);
+      const PointEquations equations = terms.Linearized(i, state, nullptr);
       auto column = state.points.col(static_cast<Eigen::Index>(i));
       const PointVector kept = column;
       const PointVector step = equations.own.llt().solve(equations.gradient);
@@ -385,8 +385,8 @@ TEST(DeformingEquations, SlopeMatchesDifferencesWhereThePointsAreSettled) {
   DeformingEquations all(terms, {});
   ViewEquations views(terms);
   for (NormalEquations* equations : std::initializer_list<NormalEquations*>{&all, &views}) {
-    ASSERT_TRUE(equations->Linearise(terms.Start()));  // of which nothing may be left
-    ASSERT_TRUE(equations->Linearise(state));
+    ASSERT_TRUE(equations->Linearize(terms.Start()));  // of which nothing may be left
+    ASSERT_TRUE(equations->Linearize(state));
     Random random(5);
     for (int trial = 0; trial < 10; ++trial) {
       Eigen::VectorXd direction(equations->slope().size());
@@ -406,12 +406,12 @@ TEST(DeformingEquations, EliminatingThePointsChangesNoStep) {
   const DeformingTerms terms(start.window, start.nodes, kFocalPx, {});
   const DeformingState state = terms.Start();
   DeformingEquations equations(terms, {});
-  ASSERT_TRUE(equations.Linearise(state));
+  ASSERT_TRUE(equations.Linearize(state));
   const Eigen::VectorXd step = equations.NewtonStep();
   // A point's own row: own * dx + sum_v by_point' by_view dv + nodes + offset = - gradient.
   for (const std::size_t point : {std::size_t{3}, std::size_t{77}}) {
     std::vector<SeenEquations> seen;
-    const PointEquations own = terms.Linearised(point, state, &seen);
+    const PointEquations own = terms.Linearized(point, state, &seen);
     PointVector row = own.own * equations.PointStep(point, step);
     for (std::size_t k = 0; k < seen.size(); ++k)
       if (const int view = terms.seen(point)[k].view_idx; view > 0)

@@ -47,7 +47,7 @@ double LargestPositionError(const FrameSolution& solution, const std::vector<Eig
 
 double PlainHuber(double s, double chi2) { return s <= chi2 ? s : 2 * std::sqrt(chi2) * std::sqrt(s) - chi2; }
 
-// The paper's energy with its directed sums, written out from the formula: neighbours by sorting all distances.
+// The paper's energy with its directed sums, written out from the formula: neighbors by sorting all distances.
 FrameProblemCosts DirectedCosts(const FrameScene& scene, const Rigid3& pose,
                                 const std::vector<Eigen::Vector3d>& moved) {
   FrameProblemCosts costs;
@@ -166,7 +166,7 @@ INSTANTIATE_TEST_SUITE_P(
         Variant{"Fisheye", {.camera_model = "OPENCV_FISHEYE"}, [](FrameProblemOptions*) {}},
         Variant{"LargeDeformation", {.deformation_mm = 3}, [](FrameProblemOptions*) {}},
         Variant{"ManyOutliers", {.outlier_ratio = 0.3}, [](FrameProblemOptions*) {}},
-        Variant{"StiffRegularisers", {}, [](FrameProblemOptions* o) { o->sigma_spa_mm = o->sigma_tmp_mm = 0.3; }},
+        Variant{"StiffRegularizers", {}, [](FrameProblemOptions* o) { o->sigma_spa_mm = o->sigma_tmp_mm = 0.3; }},
         Variant{"ActiveRobustLosses",
                 {.outlier_ratio = 0.1},
                 [](FrameProblemOptions* o) {

@@ -140,7 +140,7 @@ TEST(RelativePose, LeavesTheHostsGeneratorAlone) {
 }
 
 TEST_P(EveryEssential, IsBetterForRefinementOnInliers) {
-  // Local optimisation and MAGSAC leave less to refine than a sample does.
+  // Local optimization and MAGSAC leave less to refine than a sample does.
   if (GetParam().robust != RobustLoop::kLocal && GetParam().solver != RelativePoseSolver::kOpencvUsac) return;
   std::vector<double> errors;
   std::vector<double> errors_of_samples;

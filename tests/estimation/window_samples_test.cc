@@ -113,7 +113,7 @@ TEST(WindowSamples, APartHasItsPointsObservations) {
               1e-12);
 }
 
-TEST(WindowSamples, TheOthersMoveLikeTheirNeighbours) {
+TEST(WindowSamples, TheOthersMoveLikeTheirNeighbors) {
   const DeformingWindow start = Grid();
   const PointSample sample = SamplePoints(start, 100).front();
   DeformingWindow solved = PartOf(start, sample);

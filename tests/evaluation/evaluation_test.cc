@@ -171,7 +171,7 @@ TEST(EvaluationReport, TableJsonAndCsvSayTheSame) {
   EXPECT_EQ(json["first_map"]["declared"]["null"]["p90_relative_depth"], first_map.declared.null.p90);
   EXPECT_EQ(json["first_map"]["reference"]["estimate"]["rmse_relative_depth"], first_map.reference->estimate.rmse);
   EXPECT_EQ(json["first_map"]["motion"]["direction_error_deg"], *first_map.motion->direction_error_deg);
-  EXPECT_EQ(json["first_map"]["initialiser_ms"]["total"], 15);
+  EXPECT_EQ(json["first_map"]["initializer_ms"]["total"], 15);
   EXPECT_EQ(json["surface"]["frames"].size(), 7U);
   EXPECT_EQ(json["survival"]["frames"][0]["tracked"], false);
 
@@ -245,7 +245,7 @@ TEST(Evaluate, TakesFrameReportsAsTheyAre) {
     report.cam_from_world = frame.cam_from_world;
     report.observations = frame.observations;
     report.first_map = frame.first_map;
-    report.stage_ms = {{"initialise", frame.initialise_ms}};
+    report.stage_ms = {{"initialize", frame.initialize_ms}};
     frame = FrameFromReport(report);
   }
   const auto evaluation = Evaluate(run, TruthSequence(8), kNoMaterial, {});

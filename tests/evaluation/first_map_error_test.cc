@@ -36,7 +36,7 @@ std::vector<EvaluationFrame> Frames(FirstMapFrames first_map, int count = 10) {
   for (int i = 0; i < count; ++i) {
     EvaluationFrame& frame = frames[static_cast<std::size_t>(i)];
     frame.frame_idx = 5 + 2 * i;  // a run that began late and read every second frame
-    frame.initialise_ms = frame.frame_idx <= first_map.declared_frame_idx ? 1 + i % 3 : 0;
+    frame.initialize_ms = frame.frame_idx <= first_map.declared_frame_idx ? 1 + i % 3 : 0;
     if (first_map.reference_frame_idx <= frame.frame_idx && frame.frame_idx <= first_map.declared_frame_idx)
       frame.first_map = first_map;
   }
@@ -46,7 +46,7 @@ std::vector<EvaluationFrame> Frames(FirstMapFrames first_map, int count = 10) {
 FirstMapTruth Surface(const PairedFrame& frame) { return {frame, std::nullopt}; }
 
 TEST(FirstMapError, GivesTheFiguresThatOneFindsByHand) {
-  // Ratios 0.5, 1, 1, 1, 1.5 of half a millimetre a unit; the null's are 1 / 100, 1 / 100, 1 / 100, 1 / 100, 1 / 200.
+  // Ratios 0.5, 1, 1, 1, 1.5 of half a millimeter a unit; the null's are 1 / 100, 1 / 100, 1 / 100, 1 / 100, 1 / 200.
   const PairedFrame declared = Depths(11, {{25, 100}, {50, 100}, {50, 100}, {50, 100}, {150, 200}});
   const auto error = ComputeFirstMapError(Frames({9, 11}), {}, Surface(declared));
   ASSERT_TRUE(error.ok()) << error.status().message();
@@ -93,8 +93,8 @@ TEST(FirstMapError, CountsFramesAndTimeUpToTheDeclaration) {
   ASSERT_TRUE(error.ok());
   EXPECT_EQ(error->frames_waited, 2);
   EXPECT_EQ(error->frames_before, 4);
-  EXPECT_EQ(error->initialise_total_ms, 9);
-  EXPECT_EQ(error->initialise_largest_ms, 3);
+  EXPECT_EQ(error->initialize_total_ms, 9);
+  EXPECT_EQ(error->initialize_largest_ms, 3);
   EXPECT_EQ(error->reference->frame_idx, 9);
 }
 

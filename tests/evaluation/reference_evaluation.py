@@ -131,9 +131,9 @@ s = np.trace(np.diag(D) @ S) / (a0 ** 2).sum(1).mean()
 residual = s * a0 @ align.T - b0
 
 
-def matrices(centres, quaternions):
-    result = np.tile(np.eye(4), (len(centres), 1, 1))
-    result[:, :3, 3] = centres
+def matrices(centers, quaternions):
+    result = np.tile(np.eye(4), (len(centers), 1, 1))
+    result[:, :3, 3] = centers
     result[:, :3, :3] = [rotation(q) for q in quaternions]
     return result
 

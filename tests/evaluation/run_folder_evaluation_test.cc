@@ -224,7 +224,7 @@ TEST_F(RunFolderEvaluation, AgreesWithAnIndependentNumPyScript) {
   EXPECT_GT((*script)["ate_rmse_mm"], 0.5);
 }
 
-// Tracks on a simulated sequence that drift by some pixels, with noise in space; the map's unit is two millimetres.
+// Tracks on a simulated sequence that drift by some pixels, with noise in space; the map's unit is two millimeters.
 // Only tracks that have true depth at all their pixels.
 EvaluationInput DriftingRun(const Sequence& sequence, MaterialTruth& material) {
   constexpr double kScale = 2;

@@ -26,7 +26,7 @@ Camera TestCamera() {
   return *Camera::Create(CameraModelId::kPinhole, 64, 48, kParams);
 }
 
-// A curved surface whose depth is not the same in any two neighbouring columns.
+// A curved surface whose depth is not the same in any two neighboring columns.
 cv::Mat WavyDepth() {
   cv::Mat_<float> depth(48, 64);
   for (int y = 0; y < depth.rows; ++y)

@@ -96,7 +96,7 @@ TEST(TrajectoryError, CountsAWrongScaleUnderSe3) {
   EXPECT_GT(error->ate_rmse_mm, 5.0);
 }
 
-// By hand: true centres (+-1, 0, 0), (0, +-1, 0); estimates (+-2, 0, 0), (0, +-1, 0). Both are centred and the best
+// By hand: true centers (+-1, 0, 0), (0, +-1, 0); estimates (+-2, 0, 0), (0, +-1, 0). Both are centered and the best
 // rotation is none. The best scale is sum(a.b) / sum(a.a) = (2 + 2 + 1 + 1) / (4 + 4 + 1 + 1) = 0.6, which leaves
 // 0.2 twice and 0.4 twice: RMSE sqrt(0.1). With the scale fixed at 1 it leaves 1, 1, 0, 0: sqrt(0.5).
 TEST(TrajectoryError, MatchesACaseWorkedByHand) {

@@ -108,7 +108,7 @@ class WallMaterial final : public MaterialTruth {
 inline constexpr FirstMapFrames kFirstMap = {1, 4};
 
 // A run on TruthSequence: frame 0 is not tracked, the others are. Map units are mm / scale; noise in mm. Every point is
-// at another pixel of the wall in every frame, as if it slid. The initialiser takes one millisecond a frame more than
+// at another pixel of the wall in every frame, as if it slid. The initializer takes one millisecond a frame more than
 // in the frame before, from one in frame 0 on.
 inline EvaluationInput MakeRun(int count, double scale, double noise_mm) {
   const TruthSequence truth(count);
@@ -119,7 +119,7 @@ inline EvaluationInput MakeRun(int count, double scale, double noise_mm) {
     EvaluationFrame& frame = run.frames.emplace_back();
     frame.frame_idx = idx;
     frame.timestamp_s = idx / kFps;
-    frame.initialise_ms = idx <= kFirstMap.declared_frame_idx ? idx + 1 : 0;
+    frame.initialize_ms = idx <= kFirstMap.declared_frame_idx ? idx + 1 : 0;
     if (idx == 0) continue;
     if (idx <= kFirstMap.declared_frame_idx) frame.first_map = kFirstMap;
     Random random = seed.Child(std::to_string(idx));

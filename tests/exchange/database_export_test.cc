@@ -10,9 +10,9 @@
 #include <gtest/gtest.h>
 #include <sqlite3.h>
 
-#include "support/small_run.h"
 #include "exchange/sqlite.h"
 #include "pliant/exchange/export.h"
+#include "support/small_run.h"
 #include "support/test_folder.h"
 
 namespace pliant {

@@ -11,12 +11,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "support/small_run.h"
 #include "pliant/colmap/check.h"
 #include "pliant/colmap/convert.h"
 #include "pliant/io/run_reader.h"
 #include "pliant/io/run_writer.h"
 #include "pliant/io/trajectory.h"
+#include "support/small_run.h"
 #include "support/test_folder.h"
 
 namespace pliant {
@@ -67,7 +67,7 @@ TEST(Export, CanonicalHasOnePointATrackAtItsUndeformedPosition) {
   }
 }
 
-TEST(Export, SpacetimeHasOnePointATrackAndFrameColouredByTime) {
+TEST(Export, SpacetimeHasOnePointATrackAndFrameColoredByTime) {
   const TestFolder folder;
   WriteRun(folder);
   ASSERT_TRUE(Export(folder, ExportFormat::kSpacetime).ok());

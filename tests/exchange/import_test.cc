@@ -12,13 +12,13 @@
 #include <gtest/gtest.h>
 #include <opencv2/imgcodecs.hpp>
 
-#include "support/small_run.h"
 #include "pliant/colmap/convert.h"
 #include "pliant/colmap/model.h"
 #include "pliant/exchange/export.h"
 #include "pliant/io/camera_file.h"
 #include "pliant/io/run_reader.h"
 #include "pliant/io/trajectory.h"
+#include "support/small_run.h"
 #include "support/test_folder.h"
 
 namespace pliant {
@@ -80,7 +80,7 @@ TEST_F(ImportTest, AModelBecomesARunOfItsImagesFrames) {
   EXPECT_TRUE(summary->notes.empty());
   const pliant::Run run = ReadOut();
   ASSERT_EQ(run.frames.size(), static_cast<std::size_t>(kImages));
-  EXPECT_EQ(run.frames[0].state, TrackingState::kInitialising);
+  EXPECT_EQ(run.frames[0].state, TrackingState::kInitializing);
   EXPECT_EQ(run.frames[10].state, TrackingState::kTracking);
   EXPECT_EQ(run.frames[11].state, TrackingState::kLost);
   EXPECT_LT(run.frames[10].median_reprojection_error_px, 1e-3);
@@ -94,7 +94,7 @@ TEST_F(ImportTest, AModelBecomesARunOfItsImagesFrames) {
   ASSERT_TRUE(rows.ok() && rows->has_value());
   EXPECT_EQ((*rows)->frame_idx, 10);
   ASSERT_EQ((*rows)->observations.size(), static_cast<std::size_t>(kRunPoints));
-  for (int i = 0; i < kRunPoints; ++i) {  // ids are the model's; pixel (0, 0) is the first one's centre again
+  for (int i = 0; i < kRunPoints; ++i) {  // ids are the model's; pixel (0, 0) is the first one's center again
     const PointObservation& observation = (*rows)->observations[static_cast<std::size_t>(i)];
     EXPECT_EQ(observation.id, PointId{3 * i});
     EXPECT_LT((observation.position - Undeformed(i)).norm(), 1e-5);
@@ -224,13 +224,13 @@ TEST_F(ImportTest, CameraPathsOfOtherSystemsComeToTheirFrames) {
   folder_.Write("tum.txt", "# a comment\n0.0404 1 2 3 0 0 0 1\n0.118 4 5 6 0 0 0 1\n9 0 0 0 0 0 0 1\n");
   folder_.Write("euroc.csv", "#timestamp [ns], p, q\n40400000, 1, 2, 3, 1, 0, 0, 0, 9\n118000000,4,5,6,1,0,0,0,9\n");
   folder_.Write("kitti.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n0 -1 0 1 1 0 0 2 0 0 1 3\n");
-  ImportOptions metres;
-  metres.unit_mm = 1000;
+  ImportOptions meters;
+  meters.unit_mm = 1000;
   for (const auto& [file, format, frame] :
        {std::tuple{"tum.txt", ImportFormat::kTum, 1}, std::tuple{"euroc.csv", ImportFormat::kEuroc, 1},
         std::tuple{"kitti.txt", ImportFormat::kKitti, 1}}) {
     std::filesystem::remove_all(folder_.Path("out"));
-    const auto summary = ImportFrom(file, format, metres);
+    const auto summary = ImportFrom(file, format, meters);
     ASSERT_TRUE(summary.ok()) << summary.status().message();
     EXPECT_EQ(summary->frames, 2) << file;
     EXPECT_EQ(summary->points, 0);

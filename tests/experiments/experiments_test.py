@@ -23,8 +23,8 @@ TINY = ["--config", "sets=dm", "cells=2.5:2.5", "seeds=1", "frames=12", "variant
 
 sys.path.insert(0, str(ROOT / "experiments/common"))
 sys.path.insert(0, str(ROOT / "experiments/simulated_colon"))
-sys.path.insert(0, str(ROOT / "experiments/regularisers"))
-sys.path.insert(0, str(ROOT / "experiments/initialisation"))
+sys.path.insert(0, str(ROOT / "experiments/regularizers"))
+sys.path.insert(0, str(ROOT / "experiments/initialization"))
 sys.path.insert(0, str(ROOT / "experiments/long_sequences"))
 sys.path.insert(0, str(ROOT / "experiments/soak"))
 
@@ -65,15 +65,15 @@ def dry_run(folder):
     counts = {line.split()[0]: int(line.split()[1]) for line in text.splitlines() if line.split()[1:2] and
               line.split()[1].isdigit()}
     assert counts["simulate"] == 70 and counts["track"] == 70 * 7 and counts["evaluate"] == 70 * 7, text
-    text = snakemake("regularisers", folder / "regularisers", "--dry-run", "--quiet", "--config", "sequences=", "sets=dm",
+    text = snakemake("regularizers", folder / "regularizers", "--dry-run", "--quiet", "--config", "sequences=", "sets=dm",
                      "cells=0:0", "seeds=1", "starts=true_map", "choices=spatial_off")
     assert "track" in text and "  2  " in next(line for line in text.splitlines() if line.startswith("track")), text
-    text = snakemake("initialisation", folder / "initialisation", "--dry-run", "--quiet", "--config", "sequences=",
+    text = snakemake("initialization", folder / "initialization", "--dry-run", "--quiet", "--config", "sequences=",
                      "seeds=1,2")
     counts = {line.split()[0]: line.split()[1] for line in text.splitlines() if len(line.split()) > 1}
     assert counts["simulate"] == "32" and counts["track"] == counts["evaluate"] == str(32 * 11), text
     assert "two_views_rows" in text and "two_views_plot" in text, text
-    text = snakemake("initialisation", folder / "initialisation", "readme", "--dry-run", "--quiet", "--config",
+    text = snakemake("initialization", folder / "initialization", "readme", "--dry-run", "--quiet", "--config",
                      "sequences=", "seeds=1")
     assert "first_maps" in text and "two_views_table" in text, text  # a table for each document
     text = snakemake("rigid_baseline", folder / "baseline", "--dry-run", "--quiet", "--config", "sequences=", "seeds=1,2")
@@ -240,9 +240,9 @@ def made_up_first_maps():
                 "declared": "yes" if figures else "no", **figures}
 
     return [row("gated", 1, median_depth=0.08, rmse_depth=0.2, null_median_depth=0.3, frames_waited=8, frames_before=8,
-                rotation_error_deg=1, true_rotation_deg=2, initialiser_ms=100, rmse_mm_after=3, frames_after=50),
+                rotation_error_deg=1, true_rotation_deg=2, initializer_ms=100, rmse_mm_after=3, frames_after=50),
             row("gated", 2, median_depth=0.3, rmse_depth=0.4, null_median_depth=0.3, frames_waited=10, frames_before=70,
-                rotation_error_deg=3, true_rotation_deg=4, initialiser_ms=300, rmse_mm_after=5, frames_after=20),
+                rotation_error_deg=3, true_rotation_deg=4, initializer_ms=300, rmse_mm_after=5, frames_after=20),
             row("window", 1, median_depth=0.01, rmse_depth=0.02, null_median_depth=0.2, frames_waited=30),
             row("window", 2), row("true_map", 1, ("0", "0"), median_depth=0, null_median_depth=0.2, frames_waited=0)]
 
@@ -286,7 +286,7 @@ def first_map_plots(folder):
         print("skipped: matplotlib not found")
         sys.exit(SKIPPED)
     grid.write_rows(folder / "first_maps.csv", rendered.FIGURES, made_up_first_maps())
-    folders = [str(ROOT / "experiments" / name) for name in ("common", "initialisation")]
+    folders = [str(ROOT / "experiments" / name) for name in ("common", "initialization")]
     program = (f"import sys; sys.path[:0] = {folders}; import rendered, rendered_plots; rendered_plots.write("
                f"'first_maps.csv', rendered.Limits(*{LIMITS}), {CELL_NAMES}, '.')")
     subprocess.run([pythons[0], "-W", "error", "-c", program], cwd=folder, check=True)
@@ -298,7 +298,7 @@ def first_map_plots(folder):
 def tiny_first_maps(folder):
     """The true map is there at once and true, the published start waits for its frames, the gated one for more than these."""
     need("snakemake")
-    snakemake("initialisation", folder, "table", *[argument.replace("default,oracle_all", "true_map,paper,gated")
+    snakemake("initialization", folder, "table", *[argument.replace("default,oracle_all", "true_map,paper,gated")
                                                    for argument in TINY])
     with open(folder / "first_maps.csv", newline="", encoding="utf-8") as file:
         true_map, paper, gated = csv.DictReader(file)
@@ -307,7 +307,7 @@ def tiny_first_maps(folder):
     assert float(true_map["null_median_depth"]) > 0.01 and true_map["frames_after"] == "11", true_map
     assert paper["declared"] == "yes" and paper["frames_waited"] == "3", paper
     assert float(paper["median_depth"]) > 0.001 and float(paper["rotation_error_deg"]) > 0, paper
-    assert float(paper["initialiser_ms"]) >= float(paper["initialiser_largest_ms"]) > 0, paper
+    assert float(paper["initializer_ms"]) >= float(paper["initializer_largest_ms"]) > 0, paper
     assert gated["declared"] == "no" and gated["median_depth"] == "" and gated["note"] != "", gated
     assert "| gated | 0 | 0 | - (-) |" in (folder / "table.md").read_text(encoding="utf-8")
 
@@ -431,7 +431,7 @@ def two_views_workflow(folder):
     config = folder / "small.yaml"
     config.write_text("two_views: {crosses: refinements, seeds: 1, factors: {noise_px: {'0.1': --Scene.points 100}}}\n",
                       encoding="utf-8")
-    arguments = ["initialisation", folder, "two_views/refinements.svg", "two_views/table.md", "--configfile", str(config)]
+    arguments = ["initialization", folder, "two_views/refinements.svg", "two_views/table.md", "--configfile", str(config)]
     try:
         snakemake(*arguments)
     except AssertionError as error:
@@ -448,7 +448,7 @@ def two_views_workflow(folder):
 
 if __name__ == "__main__":
     with tempfile.TemporaryDirectory() as temporary:
-        for part in ("colon", "regularisers", "initialisation", "baseline", "cache", "grid"):
+        for part in ("colon", "regularizers", "initialization", "baseline", "cache", "grid"):
             (pathlib.Path(temporary) / part).mkdir()
         globals()[sys.argv[1]](pathlib.Path(temporary))
     print("passed")

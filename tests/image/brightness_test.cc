@@ -8,7 +8,7 @@
 namespace pliant {
 namespace {
 
-constexpr double kRounding = 0.6;  // grey levels: averages are taken of whole levels
+constexpr double kRounding = 0.6;  // gray levels: averages are taken of whole levels
 
 TEST(LocalBrightness, IsThatOfTheRedChannel) {
   const cv::Mat image(60, 80, CV_8UC3, cv::Scalar(200, 100, 50));

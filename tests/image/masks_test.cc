@@ -12,13 +12,13 @@ namespace pliant {
 namespace {
 
 const cv::Size kSize(320, 240);
-const cv::Point kCentre(160, 120);
+const cv::Point kCenter(160, 120);
 
 cv::Mat Tissue() { return {kSize, CV_8UC3, cv::Scalar(90, 100, 170)}; }
 
 cv::Mat RoundView() {
   cv::Mat image(kSize, CV_8UC3, cv::Scalar(3, 3, 3));
-  cv::circle(image, kCentre, 110, cv::Scalar(90, 100, 170), cv::FILLED);
+  cv::circle(image, kCenter, 110, cv::Scalar(90, 100, 170), cv::FILLED);
   return image;
 }
 
@@ -34,10 +34,10 @@ TEST(HighlightMask, FindsSaturatedSpotsAndTheirHalo) {
   EXPECT_LT(cv::countNonZero(mask), 400);
 }
 
-TEST(HighlightMask, TellsPaleSpotsFromColouredOnesAndFromWhiteTissue) {
+TEST(HighlightMask, TellsPaleSpotsFromColoredOnesAndFromWhiteTissue) {
   cv::Mat image = Tissue();
   cv::circle(image, {60, 80}, 5, cv::Scalar(215, 215, 220), cv::FILLED);   // pale: a highlight below saturation
-  cv::circle(image, {150, 80}, 5, cv::Scalar(150, 215, 255), cv::FILLED);  // bright, but coloured
+  cv::circle(image, {150, 80}, 5, cv::Scalar(150, 215, 255), cv::FILLED);  // bright, but colored
   cv::rectangle(image, {200, 120}, {319, 239}, cv::Scalar(205, 205, 210), cv::FILLED);  // a white surface
   const cv::Mat mask = HighlightMask(image, {});
   EXPECT_EQ(At(mask, 60, 80), 255);
@@ -46,7 +46,7 @@ TEST(HighlightMask, TellsPaleSpotsFromColouredOnesAndFromWhiteTissue) {
 }
 
 TEST(DarkBorderMask, CoversWhatSurroundsARoundView) {
-  const cv::Mat mask = DarkBorderMask(ToGrey(RoundView()), {});
+  const cv::Mat mask = DarkBorderMask(ToGray(RoundView()), {});
   EXPECT_EQ(At(mask, 2, 2), 255);
   EXPECT_EQ(At(mask, 317, 237), 255);
   EXPECT_EQ(At(mask, 5, 120), 255);
@@ -57,21 +57,21 @@ TEST(DarkBorderMask, CoversWhatSurroundsARoundView) {
 
 TEST(DarkBorderMask, KeepsADarkLumenInTheMiddleAndAtASide) {
   cv::Mat image = RoundView();
-  cv::circle(image, kCentre, 40, cv::Scalar(2, 2, 2), cv::FILLED);
-  EXPECT_EQ(At(DarkBorderMask(ToGrey(image), {}), 160, 120), 0);
+  cv::circle(image, kCenter, 40, cv::Scalar(2, 2, 2), cv::FILLED);
+  EXPECT_EQ(At(DarkBorderMask(ToGray(image), {}), 160, 120), 0);
   cv::Mat open = Tissue();
   cv::circle(open, {310, 120}, 50, cv::Scalar(2, 2, 2), cv::FILLED);
-  EXPECT_EQ(cv::countNonZero(DarkBorderMask(ToGrey(open), {})), 0);
+  EXPECT_EQ(cv::countNonZero(DarkBorderMask(ToGray(open), {})), 0);
 }
 
 TEST(DarkBorderMask, IgnoresCaptionsOnTheBlack) {
   cv::Mat image = RoundView();
   cv::putText(image, "12:30", {2, 14}, cv::FONT_HERSHEY_PLAIN, 0.8, cv::Scalar(255, 255, 255));
-  EXPECT_EQ(At(DarkBorderMask(ToGrey(image), {}), 20, 10), 255);
+  EXPECT_EQ(At(DarkBorderMask(ToGray(image), {}), 20, 10), 255);
 }
 
 TEST(DarkBorderMask, IsEmptyOnAFullViewAndFullOnABlackImage) {
-  EXPECT_EQ(cv::countNonZero(DarkBorderMask(ToGrey(Tissue()), {})), 0);
+  EXPECT_EQ(cv::countNonZero(DarkBorderMask(ToGray(Tissue()), {})), 0);
   EXPECT_EQ(cv::countNonZero(DarkBorderMask(cv::Mat::zeros(kSize, CV_8UC1), {})), kSize.area());
 }
 

@@ -10,7 +10,7 @@
 namespace pliant {
 namespace {
 
-constexpr double kRounding = 1.0;  // grey levels: each level is rounded to 8 bits
+constexpr double kRounding = 1.0;  // gray levels: each level is rounded to 8 bits
 
 cv::Mat Slope(cv::Size size) {
   cv::Mat image(size, CV_8UC1);
@@ -52,11 +52,11 @@ TEST(ImagePyramid, PaddingRepeatsTheBorder) {
 
 TEST(ImagePyramid, StopsBeforeLevelsBecomeTiny) { EXPECT_EQ(ImagePyramid(Slope({64, 40}), 8).levels(), 2); }
 
-TEST(ToGrey, LeavesGreyAndWeighsColours) {
-  const cv::Mat grey = Slope({8, 8});
-  EXPECT_EQ(ToGrey(grey).data, grey.data);
+TEST(ToGray, LeavesGrayAndWeighsColors) {
+  const cv::Mat gray = Slope({8, 8});
+  EXPECT_EQ(ToGray(gray).data, gray.data);
   const cv::Mat red(4, 4, CV_8UC3, cv::Scalar(0, 0, 200));
-  EXPECT_NEAR(ToGrey(red).at<std::uint8_t>(0, 0), 0.299 * 200, kRounding);
+  EXPECT_NEAR(ToGray(red).at<std::uint8_t>(0, 0), 0.299 * 200, kRounding);
 }
 
 TEST(SampleBilinear, IsExactOnASlopeAndSaysWhenItIsOutside) {

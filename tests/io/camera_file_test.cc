@@ -57,7 +57,7 @@ TEST(CameraFile, LeavesOutWhatIsNotGiven) {
   EXPECT_FALSE(read->fps || read->depth_scale || read->baseline_mm || read->photometric);
 }
 
-TEST(CameraFile, InMetresIsReadInMillimetres) {
+TEST(CameraFile, InMetersIsReadInMillimeters) {
   const TestFolder folder;
   const auto read = ReadCameraFile(
       folder.Write("c.yaml",

@@ -12,9 +12,9 @@ namespace {
 
 constexpr double kSubPixel_px = 0.02;  // 8-bit rounding and bilinear values of waves of 8 px and more
 constexpr double kGain = 0.01;
-constexpr double kBias = 1.5;  // grey levels: a gain error of 0.01 around a level of 120
+constexpr double kBias = 1.5;  // gray levels: a gain error of 0.01 around a level of 120
 const cv::Size kSize(240, 200);
-const Pixel kCentre{120.3, 100.8};
+const Pixel kCenter{120.3, 100.8};
 
 const SyntheticTexture& Texture() {
   static const SyntheticTexture texture(11);
@@ -27,9 +27,9 @@ ImagePyramid View(cv::Point2d shift, double gain = 1, double bias = 0) {
           4};
 }
 
-ReferencePatch Cut(const ImagePyramid& pyramid, const LucasKanadeOptions& options = {}, Pixel centre = kCentre) {
+ReferencePatch Cut(const ImagePyramid& pyramid, const LucasKanadeOptions& options = {}, Pixel center = kCenter) {
   ReferencePatch patch;
-  CutReferencePatch(pyramid, {}, centre, options, AffineSolution::kWith, &patch);
+  CutReferencePatch(pyramid, {}, center, options, AffineSolution::kWith, &patch);
   return patch;
 }
 
@@ -37,10 +37,10 @@ TEST(TrackPatch, RecoversSubPixelShifts) {
   const ReferencePatch patch = Cut(View({0, 0}));
   ASSERT_EQ(patch.failure(), PatchFailure::kNone);
   for (const cv::Point2d shift : {cv::Point2d(0, 0), {0.25, -0.4}, {0.5, 0.5}, {-3.7, 2.2}, {7.3, -5.6}}) {
-    const PatchMatch match = TrackPatch(patch, View(shift), {}, kCentre, {});
+    const PatchMatch match = TrackPatch(patch, View(shift), {}, kCenter, {});
     ASSERT_EQ(match.failure, PatchFailure::kNone) << shift;
-    EXPECT_NEAR(match.pixel.x, kCentre.x + shift.x, kSubPixel_px);
-    EXPECT_NEAR(match.pixel.y, kCentre.y + shift.y, kSubPixel_px);
+    EXPECT_NEAR(match.pixel.x, kCenter.x + shift.x, kSubPixel_px);
+    EXPECT_NEAR(match.pixel.y, kCenter.y + shift.y, kSubPixel_px);
     EXPECT_GT(match.ssim, 0.99);
   }
 }
@@ -48,9 +48,9 @@ TEST(TrackPatch, RecoversSubPixelShifts) {
 TEST(TrackPatch, RecoversGainAndBias) {
   const ReferencePatch patch = Cut(View({0, 0}));
   // The image is 0.8 I0 - 12, so that I0 = 1.25 It + 15.
-  const PatchMatch match = TrackPatch(patch, View({1.4, -0.9}, 0.8, -12), {}, kCentre, {});
+  const PatchMatch match = TrackPatch(patch, View({1.4, -0.9}, 0.8, -12), {}, kCenter, {});
   ASSERT_EQ(match.failure, PatchFailure::kNone);
-  EXPECT_NEAR(match.pixel.x, kCentre.x + 1.4, kSubPixel_px);
+  EXPECT_NEAR(match.pixel.x, kCenter.x + 1.4, kSubPixel_px);
   EXPECT_NEAR(match.gain, 1.25, kGain);
   EXPECT_NEAR(match.bias, 15, kBias);
 }
@@ -61,16 +61,16 @@ TEST(TrackPatch, WithoutGainAndBiasABrightnessChangePullsThePatchAside) {
   off.min_ssim = -1;
   const ImagePyramid reference = View({0, 0});
   const ReferencePatch patch = Cut(reference, off);
-  const PatchMatch same = TrackPatch(patch, View({1.4, -0.9}), {}, kCentre, off);
+  const PatchMatch same = TrackPatch(patch, View({1.4, -0.9}), {}, kCenter, off);
   EXPECT_EQ(same.failure, PatchFailure::kNone);
-  EXPECT_NEAR(same.pixel.x, kCentre.x + 1.4, kSubPixel_px);
+  EXPECT_NEAR(same.pixel.x, kCenter.x + 1.4, kSubPixel_px);
   EXPECT_EQ(same.gain, 1);
-  const PatchMatch darker = TrackPatch(patch, View({1.4, -0.9}, 0.8, -12), {}, kCentre, off);
-  EXPECT_GT(std::hypot(darker.pixel.x - kCentre.x - 1.4, darker.pixel.y - kCentre.y + 0.9), 5 * kSubPixel_px);
+  const PatchMatch darker = TrackPatch(patch, View({1.4, -0.9}, 0.8, -12), {}, kCenter, off);
+  EXPECT_GT(std::hypot(darker.pixel.x - kCenter.x - 1.4, darker.pixel.y - kCenter.y + 0.9), 5 * kSubPixel_px);
 }
 
 TEST(TrackPatch, AShadingPlaneIsNotMistakenForMotion) {
-  // Brightness rises by 30 grey levels over the patch, as when a light moves past.
+  // Brightness rises by 30 gray levels over the patch, as when a light moves past.
   const auto shaded = [](const cv::Mat& image) {
     cv::Mat out = image.clone();
     for (int y = 0; y < image.rows; ++y)
@@ -83,8 +83,8 @@ TEST(TrackPatch, AShadingPlaneIsNotMistakenForMotion) {
   const auto error = [&](Shading shading) {
     LucasKanadeOptions options;
     options.shading = shading;
-    const PatchMatch match = TrackPatch(Cut(View({0, 0}), options), moved, {}, kCentre, options);
-    return std::hypot(match.pixel.x - kCentre.x - 0.6, match.pixel.y - kCentre.y - 0.3);
+    const PatchMatch match = TrackPatch(Cut(View({0, 0}), options), moved, {}, kCenter, options);
+    return std::hypot(match.pixel.x - kCenter.x - 0.6, match.pixel.y - kCenter.y - 0.3);
   };
   EXPECT_LT(error(Shading::kPlane), kSubPixel_px);
   EXPECT_GT(error(Shading::kNone), 2 * kSubPixel_px);
@@ -94,28 +94,28 @@ TEST(AlignPatch, RecoversAnAffineChange) {
   const ReferencePatch patch = Cut(View({0, 0}));
   const cv::Matx22d a(1.18, 0.06, -0.09, 0.9);
   const cv::Matx22d inverse = a.inv();
-  const cv::Point2d centre(kCentre.x, kCentre.y);
+  const cv::Point2d center(kCenter.x, kCenter.y);
   const cv::Point2d shift(0.7, -0.5);
   const ImagePyramid warped(Texture().Render(kSize,
                                              [&](cv::Point2d p) {
-                                               const cv::Vec2d d = inverse * cv::Vec2d(p.x - centre.x - shift.x,
-                                                                                       p.y - centre.y - shift.y);
-                                               return centre + cv::Point2d(d[0], d[1]);
+                                               const cv::Vec2d d = inverse * cv::Vec2d(p.x - center.x - shift.x,
+                                                                                       p.y - center.y - shift.y);
+                                               return center + cv::Point2d(d[0], d[1]);
                                              }),
                             4);
   constexpr double kAffine = 0.01;
-  const PatchMatch match = AlignPatch(patch, warped, {}, kCentre, {}, AlignmentModel::kAffine, {});
+  const PatchMatch match = AlignPatch(patch, warped, {}, kCenter, {}, AlignmentModel::kAffine, {});
   ASSERT_EQ(match.failure, PatchFailure::kNone);
-  EXPECT_NEAR(match.pixel.x, kCentre.x + shift.x, kSubPixel_px);
-  EXPECT_NEAR(match.pixel.y, kCentre.y + shift.y, kSubPixel_px);
+  EXPECT_NEAR(match.pixel.x, kCenter.x + shift.x, kSubPixel_px);
+  EXPECT_NEAR(match.pixel.y, kCenter.y + shift.y, kSubPixel_px);
   EXPECT_NEAR(match.affine.xx, a(0, 0), kAffine);
   EXPECT_NEAR(match.affine.xy, a(0, 1), kAffine);
   EXPECT_NEAR(match.affine.yx, a(1, 0), kAffine);
   EXPECT_NEAR(match.affine.yy, a(1, 1), kAffine);
   const Affine2 known{a(0, 0), a(0, 1), a(1, 0), a(1, 1)};
-  const PatchMatch shifted = AlignPatch(patch, warped, {}, kCentre, known, AlignmentModel::kTranslation, {});
+  const PatchMatch shifted = AlignPatch(patch, warped, {}, kCenter, known, AlignmentModel::kTranslation, {});
   ASSERT_EQ(shifted.failure, PatchFailure::kNone);
-  EXPECT_NEAR(shifted.pixel.x, kCentre.x + shift.x, kSubPixel_px);
+  EXPECT_NEAR(shifted.pixel.x, kCenter.x + shift.x, kSubPixel_px);
 }
 
 TEST(TrackPatch, MaskedPixelsCarryNoWeight) {
@@ -129,12 +129,12 @@ TEST(TrackPatch, MaskedPixelsCarryNoWeight) {
   options.patch_size = 21;
   options.levels = 1;  // coarser pixels mix the spot in
   const ReferencePatch patch = Cut(View({0, 0}), options);
-  const PatchMatch masked = TrackPatch(patch, ImagePyramid(image, 4), SupportMask(valid), kCentre, options);
+  const PatchMatch masked = TrackPatch(patch, ImagePyramid(image, 4), SupportMask(valid), kCenter, options);
   ASSERT_EQ(masked.failure, PatchFailure::kNone);
-  EXPECT_NEAR(masked.pixel.x, kCentre.x + 1.2, kSubPixel_px);
-  EXPECT_NEAR(masked.pixel.y, kCentre.y + 0.4, kSubPixel_px);
-  const PatchMatch covered = TrackPatch(patch, ImagePyramid(image, 4), {}, kCentre, options);
-  EXPECT_TRUE(covered.failure != PatchFailure::kNone || std::abs(covered.pixel.x - kCentre.x - 1.2) > kSubPixel_px);
+  EXPECT_NEAR(masked.pixel.x, kCenter.x + 1.2, kSubPixel_px);
+  EXPECT_NEAR(masked.pixel.y, kCenter.y + 0.4, kSubPixel_px);
+  const PatchMatch covered = TrackPatch(patch, ImagePyramid(image, 4), {}, kCenter, options);
+  EXPECT_TRUE(covered.failure != PatchFailure::kNone || std::abs(covered.pixel.x - kCenter.x - 1.2) > kSubPixel_px);
 }
 
 PatchFailure FailureOf(const ReferencePatch& patch, const cv::Mat& image, Pixel start,
@@ -146,30 +146,30 @@ TEST(TrackPatch, EveryFailureHasItsReason) {
   const ImagePyramid reference = View({0, 0});
   const ReferencePatch patch = Cut(reference);
   const cv::Mat same = reference.Level(0);
-  EXPECT_EQ(FailureOf(patch, same, kCentre), PatchFailure::kNone);
-  EXPECT_EQ(FailureOf({}, same, kCentre), PatchFailure::kUnknownPoint);
+  EXPECT_EQ(FailureOf(patch, same, kCenter), PatchFailure::kNone);
+  EXPECT_EQ(FailureOf({}, same, kCenter), PatchFailure::kUnknownPoint);
   EXPECT_EQ(FailureOf(patch, same, {-3, 50}), PatchFailure::kOutOfImage);
-  EXPECT_EQ(FailureOf(patch, same, kCentre, {}, SupportMask(cv::Mat::zeros(kSize, CV_8UC1))), PatchFailure::kMasked);
+  EXPECT_EQ(FailureOf(patch, same, kCenter, {}, SupportMask(cv::Mat::zeros(kSize, CV_8UC1))), PatchFailure::kMasked);
   const ReferencePatch flat = Cut(ImagePyramid(cv::Mat(kSize, CV_8UC1, cv::Scalar(90)), 4));
-  EXPECT_EQ(FailureOf(flat, same, kCentre), PatchFailure::kLowTexture);
+  EXPECT_EQ(FailureOf(flat, same, kCenter), PatchFailure::kLowTexture);
   LucasKanadeOptions short_leash;
   short_leash.max_correction_px = 1;
-  EXPECT_EQ(FailureOf(patch, View({4, 0}).Level(0), kCentre, short_leash), PatchFailure::kDiverged);
+  EXPECT_EQ(FailureOf(patch, View({4, 0}).Level(0), kCenter, short_leash), PatchFailure::kDiverged);
   LucasKanadeOptions narrow;
   narrow.max_gain = 1.2;
-  EXPECT_EQ(FailureOf(patch, View({0, 0}, 0.7, 0).Level(0), kCentre, narrow), PatchFailure::kGainOutOfRange);
+  EXPECT_EQ(FailureOf(patch, View({0, 0}, 0.7, 0).Level(0), kCenter, narrow), PatchFailure::kGainOutOfRange);
   LucasKanadeOptions strict;
   strict.min_ssim = 0.95;
   strict.max_gain = 100;
   const cv::Mat noisy = Texture().Render(
       kSize, [](cv::Point2d p) { return p; }, 1, 0, 25, 4);
-  EXPECT_EQ(FailureOf(patch, noisy, kCentre, strict), PatchFailure::kLowSimilarity);
+  EXPECT_EQ(FailureOf(patch, noisy, kCenter, strict), PatchFailure::kLowSimilarity);
 }
 
 TEST(TrackPatch, BlackAndWhiteImagesAreNeverATrack) {
   const ReferencePatch patch = Cut(View({0, 0}));
   for (const int level : {0, 255})
-    EXPECT_NE(FailureOf(patch, cv::Mat(kSize, CV_8UC1, cv::Scalar(level)), kCentre), PatchFailure::kNone);
+    EXPECT_NE(FailureOf(patch, cv::Mat(kSize, CV_8UC1, cv::Scalar(level)), kCenter), PatchFailure::kNone);
 }
 
 TEST(CutReferencePatch, RefusesWhatCannotBeFollowed) {
@@ -180,8 +180,8 @@ TEST(CutReferencePatch, RefusesWhatCannotBeFollowed) {
   };
   EXPECT_EQ(cut({kSize.width + 5.0, 20}, {}), PatchFailure::kOutOfImage);
   EXPECT_EQ(cut({0, 0}, {}), PatchFailure::kOutOfImage);  // three quarters of it lie outside
-  EXPECT_EQ(cut(kCentre, SupportMask(cv::Mat::zeros(kSize, CV_8UC1))), PatchFailure::kMasked);
-  EXPECT_EQ(cut(kCentre, {}), PatchFailure::kNone);
+  EXPECT_EQ(cut(kCenter, SupportMask(cv::Mat::zeros(kSize, CV_8UC1))), PatchFailure::kMasked);
+  EXPECT_EQ(cut(kCenter, {}), PatchFailure::kNone);
 }
 
 TEST(TrackBatch, IsTheSameForEveryNumberOfThreads) {
@@ -191,7 +191,7 @@ TEST(TrackBatch, IsTheSameForEveryNumberOfThreads) {
   for (int y = 20; y < 190; y += 12)
     for (int x = 20; x < 230; x += 12) patches.push_back(Cut(reference, {}, {x + 0.4, y + 0.7}));
   std::vector<TrackRequest> requests;
-  for (const ReferencePatch& patch : patches) requests.push_back({&patch, patch.centre});
+  for (const ReferencePatch& patch : patches) requests.push_back({&patch, patch.center});
   const auto one = TrackBatch(requests, moved, {}, {}, 1);
   const auto two = TrackBatch(requests, moved, {}, {}, 2);
   for (std::size_t i = 0; i < one.size(); ++i) {

@@ -16,7 +16,7 @@
 namespace pliant {
 namespace {
 
-constexpr double kValue = 2e-3;     // grey levels: single precision of positions and values
+constexpr double kValue = 2e-3;     // gray levels: single precision of positions and values
 constexpr double kRelative = 1e-5;  // of sums of some hundred products in another order
 constexpr PatchShape kShape{21, PatchRowStride(21)};
 constexpr int kBlock = kShape.size * kShape.row_stride;

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kSinglePrecision = 1e-4;  // the tracker sums in single precision
 
-// SSIM as in the article, from two lists of grey levels.
+// SSIM as in the article, from two lists of gray levels.
 double DirectSsim(const std::vector<double>& x, const std::vector<double>& y) {
   const double n = static_cast<double>(x.size());
   double mx = 0, my = 0, vx = 0, vy = 0, c = 0;

@@ -16,7 +16,7 @@ namespace pliant {
 
 class SyntheticTexture {
  public:
-  // Waves of 8 to 60 px, standard deviation about 28 grey levels around 120.
+  // Waves of 8 to 60 px, standard deviation about 28 gray levels around 120.
   explicit SyntheticTexture(std::uint64_t seed, double shortest_px = 8) {
     Random random(seed);
     constexpr int kWaves = 36;

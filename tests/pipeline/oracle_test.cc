@@ -21,7 +21,7 @@ namespace {
 
 // Everything true and the scene rigid: what is left is the rounding of barycentric weights and the solver's tolerance.
 constexpr double kExactMm = 1e-3;
-// Everything true and the scene deforming: motion along the rays of one frame is seen by nothing, the regularisers
+// Everything true and the scene deforming: motion along the rays of one frame is seen by nothing, the regularizers
 // share it out. The points move by up to 1.3 mm in the sequence.
 constexpr double kNearlyExactMm = 0.3;
 constexpr double kAsGood = 1.02;  // "not worse": two per cent for the points that one run has and the other has not

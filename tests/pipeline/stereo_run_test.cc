@@ -55,7 +55,7 @@ class StereoRun : public testing::Test {
   TestFolder folder_;
 };
 
-TEST_F(StereoRun, HasTrueMillimetresFromTheFirstFrameOn) {
+TEST_F(StereoRun, HasTrueMillimetersFromTheFirstFrameOn) {
   RunRequest request;
   request.input.image_path = Sequence(/*mono=*/false);
   request.output_path = folder_.Path("run");

@@ -30,7 +30,7 @@ using simulation_test::SmallScene;
 using simulation_test::WarpErrors;
 using testing::HasSubstr;
 
-// A room from -half to half, in millimetres.
+// A room from -half to half, in millimeters.
 const Eigen::Vector3d kHalf(25, 20, 60);
 
 // Its corners by the bits of their number, and its six walls seen from inside.
@@ -54,7 +54,7 @@ class MeshSceneTest : public testing::Test {
     std::ofstream(folder_ / name) << text;
     return (folder_ / name).string();
   }
-  // Polygons, which the reader cuts; in metres.
+  // Polygons, which the reader cuts; in meters.
   std::string WriteObj() const {
     std::string text;
     for (int i = 0; i < 8; ++i) text += "v " + Text(RoomCorner(i) / 1000.0) + "\n";
@@ -213,7 +213,7 @@ TEST_F(MeshSceneTest, SaysWhatIsWrongWithAMesh) {
                             "float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\nnan 0 "
                             "0\n0 30 0\n3 0 1 2\n")),
               HasSubstr("nan.ply has a vertex that is not a finite number"));
-  EXPECT_THAT(message(WriteObj()), HasSubstr("Scene.mesh_scale"));  // metres taken for millimetres
+  EXPECT_THAT(message(WriteObj()), HasSubstr("Scene.mesh_scale"));  // meters taken for millimeters
   EXPECT_THAT(message(WritePly(), 1e5), HasSubstr("Scene.mesh_scale"));
   SimulationOptions options = Room(WritePly(), TrajectoryKind::kHold, 1);
   options.trajectory.start_pose.clear();

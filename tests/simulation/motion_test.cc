@@ -38,7 +38,7 @@ Eigen::Matrix3d NumericGradient(const std::function<Eigen::Vector3d(const Eigen:
   return gradient;
 }
 
-// Around a circle of this radius in the plane x = 0, the centreline of a bent tube.
+// Around a circle of this radius in the plane x = 0, the centerline of a bent tube.
 constexpr double kBendMm = 140.0;
 RestPoint OnBentTube(const Eigen::Vector3d& x, int part) {
   const Eigen::Vector3d middle(0.0, kBendMm, 0.0);
@@ -85,7 +85,7 @@ TEST(Motion, BoundsHoldForEveryPointAndTime) {
   for (int i = 0; i < 500; ++i) {
     RestPoint point = OnBentTube({random.Uniform(-20, 20), random.Uniform(-20, 30), random.Uniform(20, 60)}, i % 2);
     if (i % 3 == 0) point.position = kPoke.place;
-    const double reach_mm = (point.position - point.swell_centre).norm();
+    const double reach_mm = (point.position - point.swell_center).norm();
     const double time_s = random.Uniform(0, 6);
     const Eigen::Vector3d now = motion.Position(point, time_s);
     EXPECT_LE((now - point.position).norm(), motion.LargestDisplacementMm(reach_mm));

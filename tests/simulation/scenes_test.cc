@@ -55,7 +55,7 @@ TEST_P(EveryScene, DepthAndPosesAgreeWhereNothingDeforms) {
   EXPECT_TRUE(simulator.warnings().empty());
   const std::vector<double> errors = WarpErrors(simulator, 0, 12);
   EXPECT_GT(errors.size(), 160U * 120U / 6U);
-  // What interpolating depth between pixels about a millimetre apart on a curved, uneven wall leaves.
+  // What interpolating depth between pixels about a millimeter apart on a curved, uneven wall leaves.
   constexpr double kInterpolationMm = 0.05;
   EXPECT_LT(Median(errors), kInterpolationMm);
 }
@@ -89,7 +89,7 @@ TEST(Scenes, TheSheetIsSeenFromItsHeightAndFillsTheView) {
   for (int y = 0; y < depth.rows; ++y)
     for (int x = 0; x < depth.cols; ++x) seen += depth.at<float>(y, x) > 0;
   EXPECT_GT(seen, 160 * 120 * 85 / 100);
-  // 60 mm above the ground, looking at a place 35 mm ahead; hills of a centimetre.
+  // 60 mm above the ground, looking at a place 35 mm ahead; hills of a centimeter.
   EXPECT_NEAR(depth.at<float>(60, 80), std::hypot(60.0, 35.0), 12.0);
 }
 

@@ -21,7 +21,7 @@ using simulation_test::Pinhole160;
 using simulation_test::SamePixels;
 using simulation_test::SmallScene;
 
-// Grey levels that are linear in light, the same exposure in every frame, no noise.
+// Gray levels that are linear in light, the same exposure in every frame, no noise.
 SimulationOptions LinearScene(TrajectoryKind kind, int frames) {
   SimulationOptions options = SmallScene(kind, frames);
   options.sensor.gamma = 1.0;
@@ -39,7 +39,7 @@ cv::Mat ToFloat(const cv::Mat& image) {
   return out;
 }
 
-// Mean absolute difference in grey levels.
+// Mean absolute difference in gray levels.
 double Difference(const cv::Mat& a, const cv::Mat& b) {
   return cv::norm(ToFloat(a), ToFloat(b), cv::NORM_L1) / static_cast<double>(3 * a.total());
 }
@@ -63,7 +63,7 @@ void ExpectBlurIsTheMeanOfInstants(SimulationOptions options) {
     const double weight = (i == kFirst || i == kLast ? 0.5 : 1.0) / (kLast - kFirst);  // the trapezium rule
     mean += weight * ToFloat(fine.Render(i).image);
   }
-  // Rounding to grey levels is 0.25 in the mean; the rest is overexposed pixels, whose mean is not the mean's.
+  // Rounding to gray levels is 0.25 in the mean; the rest is overexposed pixels, whose mean is not the mean's.
   EXPECT_LT(Difference(blurred.image, mean), 0.8);
   EXPECT_GT(Difference(instant.image, mean), 2.5 * Difference(blurred.image, mean));
 }

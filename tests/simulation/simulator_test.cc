@@ -161,7 +161,7 @@ TEST(Simulator, LightFallsWithTheSquareOfTheDistance) {
     const double distance = pinhole.BackProject(x, 60, frame.depth.at<float>(60, x)).norm();
     return std::pow(frame.image.at<cv::Vec3b>(60, x)[2] / 255.0, 2.2) * distance * distance * distance;
   };
-  // Half a grey level of 60 is 2 % of linear light.
+  // Half a gray level of 60 is 2 % of linear light.
   EXPECT_NEAR(light_times_cube(28) / light_times_cube(45), 1.0, 0.03);
 }
 
@@ -190,10 +190,10 @@ TEST(Simulator, TextureCarriesCorners) {
   options.camera.height = 240;
   options.texture = {};
   options.light.specular = 0;  // highlights raise the level that corners are measured by
-  cv::Mat grey;
-  cv::cvtColor(Make(options).Render(0).image, grey, cv::COLOR_BGR2GRAY);
+  cv::Mat gray;
+  cv::cvtColor(Make(options).Render(0).image, gray, cv::COLOR_BGR2GRAY);
   std::vector<cv::Point2f> corners;
-  cv::goodFeaturesToTrack(grey, corners, 500, 0.01, 5);
+  cv::goodFeaturesToTrack(gray, corners, 500, 0.01, 5);
   EXPECT_EQ(corners.size(), 500U);
 }
 

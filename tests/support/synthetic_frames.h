@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// A synthetic scene as a tracker would hand it to an initialiser.
+// A synthetic scene as a tracker would hand it to an initializer.
 #pragma once
 
 #include <array>

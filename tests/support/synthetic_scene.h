@@ -3,7 +3,7 @@
 
 // Scenes with known truth for tests and experiments: points on a surface that may deform, a camera that moves, its
 // pixels with noise and outliers, and how bright a light at the camera makes the points. Every knob at zero gives exact
-// pixels of a rigid scene. World = the first camera (the reference). Millimetres, pixels, seconds.
+// pixels of a rigid scene. World = the first camera (the reference). Millimeters, pixels, seconds.
 #pragma once
 
 #include <algorithm>
@@ -36,7 +36,7 @@ enum class Surface {
 enum class Motion {
   kForward,   // along the optical axis
   kSideways,  // along x
-  kRotation,  // about the camera's centre: no translation
+  kRotation,  // about the camera's center: no translation
   kStill,
 };
 
@@ -135,21 +135,21 @@ inline double BrightnessOf(const Eigen::Vector3d& point_in_cam, const Eigen::Vec
 inline Rigid3 PoseAt(const SceneOptions& options, double fraction, double baseline_mm) {
   const double angle = fraction * options.rotation_deg * std::numbers::pi / 180.0;
   const Eigen::Quaterniond rotation = RotationExp(angle * Eigen::Vector3d(0.3, 0.8, 0.5).normalized());
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();
   if (options.motion == Motion::kForward)
-    centre = fraction * baseline_mm * Eigen::Vector3d(0.05, 0.02, 1.0).normalized();
+    center = fraction * baseline_mm * Eigen::Vector3d(0.05, 0.02, 1.0).normalized();
   if (options.motion == Motion::kSideways)
-    centre = fraction * baseline_mm * Eigen::Vector3d(1.0, 0.1, 0.1).normalized();
+    center = fraction * baseline_mm * Eigen::Vector3d(1.0, 0.1, 0.1).normalized();
   if (options.motion == Motion::kStill) return {};
-  return {rotation, rotation * -centre};
+  return {rotation, rotation * -center};
 }
 
 inline double MedianParallax(const SceneOptions& options, const std::vector<Eigen::Vector3d>& points,
                              double baseline_mm) {
-  const Eigen::Vector3d centre = PoseAt(options, 1.0, baseline_mm).OriginInSource();
+  const Eigen::Vector3d center = PoseAt(options, 1.0, baseline_mm).OriginInSource();
   std::vector<double> angles;
   for (const Eigen::Vector3d& x : points) {
-    const Eigen::Vector3d y = x - centre;
+    const Eigen::Vector3d y = x - center;
     angles.push_back(std::atan2(x.cross(y).norm(), x.dot(y)));
   }
   std::nth_element(angles.begin(), angles.begin() + static_cast<std::ptrdiff_t>(angles.size() / 2), angles.end());
@@ -177,14 +177,14 @@ inline Scene MakeScene(const SceneOptions& options) {
   Random noise = root.Child("noise");
   Random outlier = root.Child("outliers");
   Random albedo = root.Child("albedo");
-  const Eigen::Vector2d centre(0.5 * (options.width - 1), 0.5 * (options.height - 1));
+  const Eigen::Vector2d center(0.5 * (options.width - 1), 0.5 * (options.height - 1));
 
   Scene scene;
   std::vector<Eigen::Vector3d> normals;
   std::vector<double> log_albedos;
   for (int i = 0; i < options.num_points; ++i) {
     const Eigen::Vector2d pixel(place.Uniform(0, options.width - 1), place.Uniform(0, options.height - 1));
-    const Eigen::Vector3d ray = ((pixel - centre) / options.focal_px).homogeneous();
+    const Eigen::Vector3d ray = ((pixel - center) / options.focal_px).homogeneous();
     scene.points.push_back(internal::PointAlong(options, ray, &place));
     normals.push_back(internal::NormalAlong(options, ray, &place));
     log_albedos.push_back(albedo.Normal(options.light_sigma));
@@ -199,7 +199,7 @@ inline Scene MakeScene(const SceneOptions& options) {
     for (std::size_t i = 0; i < scene.points.size(); ++i) {
       const Eigen::Vector3d x =
           cam_from_world * internal::Moved(options.wave, scene.points[i], fraction * options.wave.seconds);
-      Eigen::Vector2d pixel = options.focal_px * x.hnormalized() + centre;
+      Eigen::Vector2d pixel = options.focal_px * x.hnormalized() + center;
       if (x.z() <= 0.0) pixel.setConstant(std::numeric_limits<double>::quiet_NaN());
       if (k > 0 && scene.is_outlier[i] != 0)
         pixel = {outlier.Uniform(0, options.width - 1), outlier.Uniform(0, options.height - 1)};
@@ -213,12 +213,12 @@ inline Scene MakeScene(const SceneOptions& options) {
   return scene;
 }
 
-// Unit rays of one frame of a scene: a pinhole with the scene's focal length, its centre in the image's middle.
+// Unit rays of one frame of a scene: a pinhole with the scene's focal length, its center in the image's middle.
 inline std::vector<Eigen::Vector3d> RaysOf(const Scene& scene, const SceneOptions& options, std::size_t frame) {
-  const Eigen::Vector2d centre(0.5 * (options.width - 1), 0.5 * (options.height - 1));
+  const Eigen::Vector2d center(0.5 * (options.width - 1), 0.5 * (options.height - 1));
   std::vector<Eigen::Vector3d> rays;
   for (const Eigen::Vector2d& pixel : scene.pixels[frame])
-    rays.push_back(((pixel - centre) / options.focal_px).homogeneous().normalized());
+    rays.push_back(((pixel - center) / options.focal_px).homogeneous().normalized());
   return rays;
 }
 

@@ -133,7 +133,7 @@ TEST(FirstMap, TakesItsUnitFromTheReferencesPointsAlone) {
   FlatTruth truth;
   OracleAnswers oracle({.poses = Switch::kOn}, &truth, 50.0);
   oracle.TakeWorld({start.camera, start.frames, {}}, &start.outcome);
-  // The map has the surface at 50: so much is a millimetre.
+  // The map has the surface at 50: so much is a millimeter.
   for (const InitFrameState& frame : start.outcome.frames) {
     const int since = frame.frame_idx - start.outcome.frames.front().frame_idx;
     EXPECT_NEAR(frame.cam_from_world.translation.x(), -since * 50.0 / 40.0, kRounding);

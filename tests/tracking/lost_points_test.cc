@@ -14,7 +14,7 @@ constexpr double kRounding = 1e-9;
 
 Camera TestCamera() { return *Camera::Create("PINHOLE", 640, 480, std::vector<double>{500, 500, 319.5, 239.5}); }
 
-// What the wall has done by time t: it slides and bends, evenly over the few millimetres between points.
+// What the wall has done by time t: it slides and bends, evenly over the few millimeters between points.
 Eigen::Vector3d Displaced(const Eigen::Vector3d& rest, double t) {
   return rest + t * Eigen::Vector3d(1 + 0.02 * rest.x(), 0.5, 0.01 * rest.y());
 }

@@ -16,8 +16,8 @@ namespace pliant {
 namespace {
 
 const cv::Size kSize(220, 190);
-const cv::Point2d kCentre(110, 95);
-constexpr double kNoise = 1.5;  // grey levels
+const cv::Point2d kCenter(110, 95);
+constexpr double kNoise = 1.5;  // gray levels
 
 // What a point of the first image has become in image t.
 using Motion = std::function<cv::Point2d(cv::Point2d, int)>;
@@ -46,8 +46,8 @@ Sequence Zoom() {
                        scale * std::cos(angle));
   };
   const auto apply = [](const cv::Matx22d& m, cv::Point2d p) {
-    const cv::Vec2d d = m * cv::Vec2d(p.x - kCentre.x, p.y - kCentre.y);
-    return kCentre + cv::Point2d(d[0], d[1]);
+    const cv::Vec2d d = m * cv::Vec2d(p.x - kCenter.x, p.y - kCenter.y);
+    return kCenter + cv::Point2d(d[0], d[1]);
   };
   Sequence sequence;
   sequence.image_from_first = [=](cv::Point2d p, int t) { return apply(matrix(t), p); };
@@ -252,7 +252,7 @@ TEST(PointTracker, UnknownAndRemovedPointsAreSaidToBeUnknown) {
   EXPECT_FALSE(tracker.Contains({4}));
 }
 
-TEST(NeighbourhoodAffines, RecoverAnAffineMotionDespiteAStray) {
+TEST(NeighborhoodAffines, RecoverAnAffineMotionDespiteAStray) {
   Eigen::Matrix2d truth;
   truth << 1.04, -0.03, 0.02, 0.97;
   Random random(8);
@@ -263,19 +263,19 @@ TEST(NeighbourhoodAffines, RecoverAnAffineMotionDespiteAStray) {
   }
   to[7] += Eigen::Vector2d(6, 4);
   constexpr double kDamped = 0.02;  // the pull to the identity, and what is left of the stray
-  const auto affines = NeighbourhoodAffines(from, to);
+  const auto affines = NeighborhoodAffines(from, to);
   for (std::size_t i = 0; i < from.size(); ++i) {
     if (i == 7) continue;
     EXPECT_LT((affines[i] - truth).norm(), kDamped) << i;
   }
 }
 
-TEST(NeighbourhoodAffines, StayNearTheIdentityWhereNeighboursSayLittle) {
+TEST(NeighborhoodAffines, StayNearTheIdentityWhereNeighborsSayLittle) {
   const std::vector<Eigen::Vector2d> one = {{10, 10}};
-  EXPECT_EQ(NeighbourhoodAffines(one, one)[0], Eigen::Matrix2d::Identity());
+  EXPECT_EQ(NeighborhoodAffines(one, one)[0], Eigen::Matrix2d::Identity());
   const std::vector<Eigen::Vector2d> from = {{0, 0}, {20, 0}, {40, 0}};  // on a line: nothing is known across it
   const std::vector<Eigen::Vector2d> to = {{0, 0}, {22, 0}, {44, 0}};
-  const auto affines = NeighbourhoodAffines(from, to);
+  const auto affines = NeighborhoodAffines(from, to);
   EXPECT_NEAR(affines[1](0, 0), 1.1, 0.01);
   EXPECT_NEAR(affines[1](1, 1), 1.0, 1e-12);
 }

@@ -45,7 +45,7 @@ struct Wall {
   std::vector<PointId> Slid() const { return SlidPoints(remade, cam_from_world, map, kMaxChange); }
 };
 
-TEST(SlidPoints, AreThoseThatMoveOtherwiseThanTheirNeighbours) {
+TEST(SlidPoints, AreThoseThatMoveOtherwiseThanTheirNeighbors) {
   Wall wall;
   EXPECT_THAT(wall.Slid(), IsEmpty()) << "a wall that bends takes its points along";
   wall.Put(40, 0.95);

@@ -15,15 +15,15 @@ TEST(TrackingStates, FollowTheTable) {
   using S = TrackingState;
   using E = TrackingEvent;
   const std::map<std::pair<S, E>, S> moves = {
-      {{S::kWaitingForReference, E::kReferenceFound}, S::kInitialising},
+      {{S::kWaitingForReference, E::kReferenceFound}, S::kInitializing},
       {{S::kWaitingForReference, E::kMapCreated}, S::kTracking},
-      {{S::kInitialising, E::kMapCreated}, S::kTracking},
-      {{S::kInitialising, E::kReferenceSpent}, S::kWaitingForReference},
+      {{S::kInitializing, E::kMapCreated}, S::kTracking},
+      {{S::kInitializing, E::kReferenceSpent}, S::kWaitingForReference},
       {{S::kTracking, E::kTooFewPoints}, S::kLost},
       {{S::kLost, E::kFrameTracked}, S::kTracking},
       {{S::kLost, E::kMapLeft}, S::kWaitingForReference},
       {{S::kWaitingForReference, E::kMapFoundAgain}, S::kLost},
-      {{S::kInitialising, E::kMapFoundAgain}, S::kLost},
+      {{S::kInitializing, E::kMapFoundAgain}, S::kLost},
   };
   for (const auto& [state, state_name] : EnumNames<S>::kNames) {
     for (const auto& [event, event_name] : EnumNames<E>::kNames) {

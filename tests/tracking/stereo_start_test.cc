@@ -24,14 +24,14 @@ struct Pair {
 
 Pair RenderedPair() {
   const SimulatedFrame& frame = Rendered().frames.front();
-  return {ToGrey(frame.image), ToGrey(frame.right)};
+  return {ToGray(frame.image), ToGray(frame.right)};
 }
 
-std::vector<Eigen::Vector2d> CornersOf(const cv::Mat& grey) {
+std::vector<Eigen::Vector2d> CornersOf(const cv::Mat& gray) {
   CornerOptions options;
   options.max_corners = 300;
   std::vector<Eigen::Vector2d> pixels;
-  for (const Corner& corner : DetectCorners(grey, {}, {}, options)) pixels.push_back(corner.pixel);
+  for (const Corner& corner : DetectCorners(gray, {}, {}, options)) pixels.push_back(corner.pixel);
   return pixels;
 }
 

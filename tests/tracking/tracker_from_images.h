@@ -17,7 +17,7 @@
 namespace pliant::tracking_test {
 
 inline constexpr int kFrames = 14;
-// A rigid scene: what is left is the error of a track, in single views up to what the initialiser's root mean square
+// A rigid scene: what is left is the error of a track, in single views up to what the initializer's root mean square
 // over 8 views lets through.
 inline constexpr double kMedianError_px = 0.3;
 inline constexpr double kLargestError_px = 1.5 * 2.83;

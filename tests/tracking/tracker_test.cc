@@ -21,8 +21,8 @@ using tracking_test::ExpectFromTheMap;
 using tracking_test::kFrames;
 using tracking_test::TrackerFromImages;
 
-void ExpectInitialising(const FrameReport& report) {
-  EXPECT_EQ(report.state, TrackingState::kInitialising);
+void ExpectInitializing(const FrameReport& report) {
+  EXPECT_EQ(report.state, TrackingState::kInitializing);
   EXPECT_FALSE(report.cam_from_world);
   EXPECT_TRUE(report.observations.empty());
   EXPECT_TRUE(report.new_points.empty());
@@ -40,7 +40,7 @@ TEST_F(TrackerFromImages, TheFirstMapGivesEveryFrameSinceTheReferenceItsPoseAndP
     if (!done.empty()) break;
     ASSERT_EQ(static_cast<int>(tracker.held().size()), shown + 1);
     EXPECT_EQ(tracker.held().back().frame_idx, shown);
-    ExpectInitialising(tracker.held().back());
+    ExpectInitializing(tracker.held().back());
   }
   ASSERT_GT(shown, 1) << "the map came at once, so nothing was waited for";
   ASSERT_EQ(static_cast<int>(done.size()), shown + 1) << "no map came";
@@ -84,7 +84,7 @@ TEST_F(TrackerFromImages, AReferenceThatIsGivenUpLeavesFramesWithoutPoses) {
   for (int i = 0; i < kWindow; ++i) EXPECT_TRUE(Show(0, i, &tracker).empty());
   const auto given_up = Show(0, kWindow, &tracker);  // a camera that stands still carries no map
   ASSERT_EQ(given_up.size(), kWindow);
-  for (const FrameReport& report : given_up) ExpectInitialising(report);
+  for (const FrameReport& report : given_up) ExpectInitializing(report);
   ASSERT_EQ(tracker.held().size(), 1U) << "the present frame is the new reference";
   EXPECT_EQ(tracker.held().front().frame_idx, kWindow);
   EXPECT_THAT(tracker.held().front().note, HasSubstr("given up after 8 frames"));
@@ -104,7 +104,7 @@ TEST_F(TrackerFromImages, FinishGivesTheFramesThatWaitedInVain) {
   Show(1, 6, &tracker);
   const auto rest = tracker.Finish();
   ASSERT_EQ(rest.size(), 2U);
-  for (const FrameReport& report : rest) ExpectInitialising(report);
+  for (const FrameReport& report : rest) ExpectInitializing(report);
   EXPECT_EQ(rest.back().frame_idx, 6);
   EXPECT_TRUE(tracker.held().empty());
 }
@@ -168,7 +168,7 @@ TEST_F(UncoveredLater, PointsAreAddedAndComeIntoTheFirstMapWhereTheyAreSeen) {
   EXPECT_EQ(reports.back().lost, lost);
 }
 
-TEST_F(UncoveredLater, PointsAreNotAddedForAnInitialiserOfTwoViews) {
+TEST_F(UncoveredLater, PointsAreNotAddedForAnInitializerOfTwoViews) {
   Tracker tracker = MakeTracker(Options(InitMethod::kGated));
   const auto reports = Run(InitMethod::kGated, &tracker);
   ASSERT_EQ(reports.size(), kFrames);
@@ -181,10 +181,10 @@ TEST_F(TrackerFromImages, TheEndOfASequenceWithoutAMapIsSaid) {
   Tracker tracker = MakeTracker(options);
   for (int i = 0; i < kFrames; ++i) EXPECT_TRUE(Show(0, i, &tracker).empty());  // a camera that stands still
   tracker.EndSequence();
-  EXPECT_EQ(tracker.state(), TrackingState::kInitialising);
+  EXPECT_EQ(tracker.state(), TrackingState::kInitializing);
   const auto rest = tracker.Finish();
   ASSERT_EQ(rest.size(), kFrames);
-  for (const FrameReport& report : rest) ExpectInitialising(report);
+  for (const FrameReport& report : rest) ExpectInitializing(report);
   EXPECT_THAT(rest.back().note, HasSubstr("rotated or stood still"));
   tracker.EndSequence();  // nothing is held: nothing happens
   EXPECT_TRUE(tracker.Finish().empty());

@@ -193,7 +193,7 @@ TEST(WindowInitializer, APointThatIsNoNumberMakesNoDifference) {
   for (const InitPoint& point : outcome.points) EXPECT_TRUE(point.position.allFinite());
 }
 
-// The light is not at the camera, or the tissue is of many colours: brightness says nothing of distance.
+// The light is not at the camera, or the tissue is of many colors: brightness says nothing of distance.
 TEST(WindowInitializer, DoesNotBelieveALightThatSaysNothing) {
   WavingTracks sequence(61);
   Random random(9);

@@ -36,7 +36,7 @@ TEST(AlignWorlds, FindsTheScaleOfAPathItself) {
   ExpectIsWorld(AlignWorlds(poses, Moved(poses), std::nullopt, 50));
 }
 
-// Its centres alone would leave the roll about the line open.
+// Its centers alone would leave the roll about the line open.
 TEST(AlignWorlds, IsCertainOnAStraightLine) {
   FramePoses poses;
   for (int i = 0; i < 5; ++i) poses.emplace(i, Rigid3{Eigen::Quaterniond::Identity(), Eigen::Vector3d(0, 0, i)});

@@ -25,9 +25,9 @@ TEST(Orbit, ShowsEveryCameraAndNearlyEveryPoint) {
   std::vector<Eigen::Vector3d> points;
   for (int i = 0; i < 200; ++i) points.emplace_back(10 * std::sin(i), 20 * std::cos(i), 0.3 * i);
   points.emplace_back(1e5, 0, 0);  // one that went astray
-  const std::vector<Eigen::Vector3d> centres = {{0, 0, -40}, {60, 0, 0}};
-  const Orbit orbit(points, centres, Eigen::Quaterniond::Identity(), 40, 25, 480, 360);
-  for (const std::vector<Eigen::Vector3d>* seen : {&std::as_const(points), &centres}) {
+  const std::vector<Eigen::Vector3d> centers = {{0, 0, -40}, {60, 0, 0}};
+  const Orbit orbit(points, centers, Eigen::Quaterniond::Identity(), 40, 25, 480, 360);
+  for (const std::vector<Eigen::Vector3d>* seen : {&std::as_const(points), &centers}) {
     for (std::size_t i = 0; i < std::min<std::size_t>(200, seen->size()); ++i) {
       const Eigen::Vector3d at = orbit.Project((*seen)[i]);
       EXPECT_GT(at.z(), 0);

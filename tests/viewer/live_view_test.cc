@@ -93,11 +93,11 @@ TEST_F(LiveViewTest, AJoinMakesWhatWasGivenVoid) {
 
 TEST_F(LiveViewTest, SaysWhatItWaitsFor) {
   FrameReport held;
-  held.state = TrackingState::kInitialising;
+  held.state = TrackingState::kInitializing;
   live_->OnImage(0, cv::Mat::zeros(480, 640, CV_8UC1));
   live_->OnHeld(held);
   const ordered_json data = Data(0, 0);
-  EXPECT_EQ(data["state"], "initialising");
+  EXPECT_EQ(data["state"], "initializing");
   EXPECT_EQ(data["read"], 1);
 }
 

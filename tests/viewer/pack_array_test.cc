@@ -34,7 +34,7 @@ TEST(PackArray, WholeNumbersComeBack) {
   EXPECT_THAT(Unpack(PackWhole(large, 1, PackedType::kU32)), ElementsAre(0, 4294967295.0, 65536, 1));
 }
 
-TEST(PackArray, QuantisedNumbersComeBackToHalfAStep) {
+TEST(PackArray, QuantizedNumbersComeBackToHalfAStep) {
   std::vector<float> values;
   for (int i = 0; i < 500; ++i) {
     values.push_back(30.0F * std::sin(0.1F * static_cast<float>(i)));
@@ -42,7 +42,7 @@ TEST(PackArray, QuantisedNumbersComeBackToHalfAStep) {
   }
   values[6] = std::numeric_limits<float>::quiet_NaN();
   values[9] = std::numeric_limits<float>::infinity();
-  const auto packed = PackQuantised(values, 2, PackedType::kU16);
+  const auto packed = PackQuantized(values, 2, PackedType::kU16);
   const std::vector<double> read = Unpack(packed);
   ASSERT_EQ(read.size(), values.size());
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -58,16 +58,16 @@ TEST(PackArray, AStrayValueDoesNotMakeTheOthersCoarse) {
   std::vector<float> values;
   for (int i = 0; i < 1000; ++i) values.push_back(0.05F * static_cast<float>(i));
   values[500] = 1e6F;
-  const std::vector<double> read = Unpack(PackQuantised(values, 1, PackedType::kU16));
+  const std::vector<double> read = Unpack(PackQuantized(values, 1, PackedType::kU16));
   ASSERT_EQ(read.size(), values.size());
   for (std::size_t i = 0; i < values.size(); ++i) EXPECT_NEAR(read[i], values[i], 1e-3);
 }
 
 TEST(PackArray, AConstantAndNothingAtAllComeBack) {
-  EXPECT_THAT(Unpack(PackQuantised(std::vector<float>{7, 7}, 1, PackedType::kU8)), ElementsAre(7, 7));
+  EXPECT_THAT(Unpack(PackQuantized(std::vector<float>{7, 7}, 1, PackedType::kU8)), ElementsAre(7, 7));
   const std::vector<float> none(2, std::numeric_limits<float>::quiet_NaN());
-  for (const double value : Unpack(PackQuantised(none, 1, PackedType::kU8))) EXPECT_TRUE(std::isnan(value));
-  const auto empty = PackQuantised({}, 3, PackedType::kU16);
+  for (const double value : Unpack(PackQuantized(none, 1, PackedType::kU8))) EXPECT_TRUE(std::isnan(value));
+  const auto empty = PackQuantized({}, 3, PackedType::kU16);
   EXPECT_EQ(empty["rows"], 0);
   EXPECT_TRUE(Unpack(empty).empty());
 }
@@ -80,7 +80,7 @@ TEST(PackArray, FloatsComeBackExactly) {
 TEST(PackArray, SmoothTracksPackWell) {
   std::vector<float> values;
   for (int i = 0; i < 100000; ++i) values.push_back(std::sin(1e-3F * static_cast<float>(i)));
-  EXPECT_LT(PackQuantised(values, 1, PackedType::kU16)["data"].get<std::string>().size(), values.size() / 2);
+  EXPECT_LT(PackQuantized(values, 1, PackedType::kU16)["data"].get<std::string>().size(), values.size() / 2);
 }
 
 }  // namespace

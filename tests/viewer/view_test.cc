@@ -35,7 +35,7 @@ TEST_F(ViewTest, ARunWithoutImagesIsShownAllTheSame) {
   ASSERT_TRUE(view.ok()) << view.status().message();
   EXPECT_THAT(view->notes, ElementsAre(HasSubstr("the images cannot be shown: ")));
   EXPECT_FALSE(view->sequence);
-  EXPECT_FALSE(view->in_millimetres);
+  EXPECT_FALSE(view->in_millimeters);
   ASSERT_TRUE(view->camera);
   ASSERT_EQ(view->runs.size(), 1U);
   const ViewedRun& run = view->runs.front();
@@ -59,7 +59,7 @@ TEST_F(ViewTest, BringsTheRunIntoTheWorldOfTheTruth) {
   WriteSmallSequence(sequence_, Truth::kDepthAndPoses);
   const auto view = Open();
   ASSERT_TRUE(view.ok()) << view.status().message();
-  EXPECT_TRUE(view->in_millimetres);
+  EXPECT_TRUE(view->in_millimeters);
   ASSERT_EQ(view->truth.size(), static_cast<std::size_t>(kRunFrames));
   const ViewedRun& run = view->runs.front();
   // The plane is about twice as far as the run's points are in its unit, so its scale is not quite the path's.

@@ -81,7 +81,7 @@ function answer(url, response, { epoch, rows, running }) {
   } else if (url.pathname === "/data") {
     const from = Number(url.searchParams.get("epoch")) === epoch ? Number(url.searchParams.get("from")) : 0;
     response.end(JSON.stringify({
-      epoch, from, running, frames_in_sequence: 40, read: 12, state: rows ? "tracking" : "initialising", image_scale: 0.5, image_frames: [0],
+      epoch, from, running, frames_in_sequence: 40, read: 12, state: rows ? "tracking" : "initializing", image_scale: 0.5, image_frames: [0],
       data: dataOf(from, rows),
     }));
   } else if (/^\/image\/\d+\.jpg$/.test(url.pathname)) {

@@ -11,7 +11,7 @@ async function goToTheMiddle(page) {
   assert.ok((await state(page)).points.length > 0, "the middle frame has no points");
 }
 
-// An image is drawn, and not one colour.
+// An image is drawn, and not one color.
 async function imageIsDrawn(page) {
   await eventually(page, () => {
     const canvas = document.getElementById("image");
@@ -117,13 +117,13 @@ testReport("says when the picked point is not seen", REPORT, async (page) => {
   await eventually(page, (text) => document.getElementById("point-state").textContent === text, seen ? "" : "Not seen in this frame.");
 });
 
-testReport("colours by each mode, with a legend", REPORT, async (page) => {
+testReport("colors by each mode, with a legend", REPORT, async (page) => {
   await goToTheMiddle(page);
-  const names = await page.locator("#colour option").evaluateAll((options) => options.map(({ value }) => value));
+  const names = await page.locator("#color option").evaluateAll((options) => options.map(({ value }) => value));
   for (const name of ["age", "residual", "depth", "deformation", "similarity", "error", "rgb"]) assert.ok(names.includes(name), name);
   for (const name of names) {
-    await page.locator("#colour").selectOption(name);
-    await eventually(page, (colour) => window.pliant.state().colour === colour, name);
+    await page.locator("#color").selectOption(name);
+    await eventually(page, (color) => window.pliant.state().color === color, name);
     await eventually(page, (own) => document.getElementById("scale").hidden === own, name === "rgb");
   }
 });
@@ -170,11 +170,11 @@ testReport("works with the keyboard alone", REPORT, async (page) => {
   assert.equal((await shown()).view, "chase");
   await press(page, "r");
   assert.equal((await shown()).view, "free");
-  const { colour } = await shown();
+  const { color } = await shown();
   await press(page, "c");
-  assert.notEqual((await shown()).colour, colour);
+  assert.notEqual((await shown()).color, color);
   await press(page, "Shift+C");
-  assert.equal((await shown()).colour, colour);
+  assert.equal((await shown()).color, color);
   await press(page, "?");
   assert.ok(await page.locator("#help").isVisible());
   await press(page, "Escape");
@@ -192,7 +192,7 @@ testReport("works with the keyboard alone", REPORT, async (page) => {
     await press(page, "Tab");
     focused.add(await page.evaluate(() => document.activeElement.id || document.activeElement.textContent));
   }
-  for (const id of ["theme", "help-button", "colour", "trail", "view-camera", "reset", "slider", "play", "loop", "speed"]) {
+  for (const id of ["theme", "help-button", "color", "trail", "view-camera", "reset", "slider", "play", "loop", "speed"]) {
     assert.ok(focused.has(id), `${id} cannot be reached`);
   }
 });
@@ -200,9 +200,9 @@ testReport("works with the keyboard alone", REPORT, async (page) => {
 // WCAG's contrast of texts with what is behind them.
 function contrasts(page) {
   return page.evaluate(() => {
-    const numbers = (colour) => {
-      const [r, g, b, a = 1] = colour.match(/[\d.]+/g).map(Number);
-      return colour.startsWith("color(") ? [255 * r, 255 * g, 255 * b, a] : [r, g, b, a];
+    const numbers = (color) => {
+      const [r, g, b, a = 1] = color.match(/[\d.]+/g).map(Number);
+      return color.startsWith("color(") ? [255 * r, 255 * g, 255 * b, a] : [r, g, b, a];
     };
     const behind = (element) => {
       const [r, g, b, a] = numbers(getComputedStyle(element).backgroundColor);
@@ -210,11 +210,11 @@ function contrasts(page) {
       const below = behind(element.parentElement);
       return [r, g, b].map((value, i) => a * value + (1 - a) * below[i]);
     };
-    const luminance = (colour) => {
-      const [r, g, b] = colour.map((value) => (value <= 10.31475 ? value / 255 / 12.92 : ((value / 255 + 0.055) / 1.055) ** 2.4));
+    const luminance = (color) => {
+      const [r, g, b] = color.map((value) => (value <= 10.31475 ? value / 255 / 12.92 : ((value / 255 + 0.055) / 1.055) ** 2.4));
       return 0.2126 * r + 0.7152 * g + 0.0722 * b;
     };
-    const names = ["#title", "#version", "#theme", "#runs button", "#colour", "#scale-low", ".key", "#layers button", "#play", "#frame",
+    const names = ["#title", "#version", "#theme", "#runs button", "#color", "#scale-low", ".key", "#layers button", "#play", "#frame",
       "#frame-state", "#states", ".hint", "h2", ".plot figcaption strong", ".plot figcaption .muted", ".plot figcaption button",
       ".plot-legend button", "#figures th", "#figures td", "#figures tr.group th", "#option-filter", "#point-title", "#point-first",
       ".patches figcaption", "#scene-caption"];

@@ -3,7 +3,7 @@
 //
 // The current frame's image with the points of the current run.
 
-import { paletteOf } from "./colours";
+import { paletteOf } from "./colors";
 import { byId, onClick, prepare, setText } from "./dom";
 import type { Page } from "./page";
 import { pickNearest } from "./picking";
@@ -12,7 +12,7 @@ import { Stamps, strokeOnImage } from "./stamps";
 import { type Changed, anyOf } from "./state";
 
 const TAIL_FRAMES = 10;
-const TAIL_COLOUR = "rgba(255, 255, 255, 0.65)";
+const TAIL_COLOR = "rgba(255, 255, 255, 0.65)";
 const TAIL_STEP_PX = 2.5;   // shorter steps are not drawn by themselves
 const MAX_ZOOM = 20;
 const PREFETCHED = 6;
@@ -26,7 +26,7 @@ export class ImageView {
   // The last image that was drawn stays until the next one is decoded.
   private shown: { frame: number; bitmap: ImageBitmap } | null = null;
   private zoom = 1;
-  private centre = { x: 0.5, y: 0.5 };   // of the view, as a part of the image
+  private center = { x: 0.5, y: 0.5 };   // of the view, as a part of the image
 
   constructor(private readonly page: Page) {
     new ResizeObserver(() => this.draw()).observe(this.canvas);
@@ -40,12 +40,12 @@ export class ImageView {
   }
 
   update(changed: Changed): void {
-    if (anyOf(changed, "position", "current", "picked", "colour", "layers", "dark", "revision")) this.draw();
+    if (anyOf(changed, "position", "current", "picked", "color", "layers", "dark", "revision")) this.draw();
   }
 
   reset(): void {
     this.zoom = 1;
-    this.centre = { x: 0.5, y: 0.5 };
+    this.center = { x: 0.5, y: 0.5 };
     this.draw();
   }
 
@@ -88,12 +88,12 @@ export class ImageView {
     const { width, height } = this.page.report.camera;
     const { clientWidth, clientHeight } = this.canvas;
     const scale = this.zoom * Math.min(clientWidth / width, clientHeight / height);
-    const edge = (size: number, whole: number, centre: number) =>
-      size <= whole ? (whole - size) / 2 : Math.min(0, Math.max(whole - size, whole / 2 - centre * size));
+    const edge = (size: number, whole: number, center: number) =>
+      size <= whole ? (whole - size) / 2 : Math.min(0, Math.max(whole - size, whole / 2 - center * size));
     this.view = {
       scale,
-      left: edge(scale * width, clientWidth, this.centre.x),
-      top: edge(scale * height, clientHeight, this.centre.y),
+      left: edge(scale * width, clientWidth, this.center.x),
+      top: edge(scale * height, clientHeight, this.center.y),
     };
   }
 
@@ -113,16 +113,16 @@ export class ImageView {
     this.drawTails(context, run, observations);
     for (const o of observations) {
       const [x, y] = this.project(run.pixel.values[2 * o], run.pixel.values[2 * o + 1]);
-      const colour = this.page.colouring.colour(run, o);
+      const color = this.page.coloring.color(run, o);
       const lost = run.isLost(o);
       const returned = run.isReturned(o);
-      if (!lost && !returned) this.stamps.draw(context, x, y, colour, "dot");
-      if (lost) this.stamps.draw(context, x, y, colour, "cross");
-      if (returned) this.stamps.draw(context, x, y, colour, "ring");
+      if (!lost && !returned) this.stamps.draw(context, x, y, color, "dot");
+      if (lost) this.stamps.draw(context, x, y, color, "cross");
+      if (returned) this.stamps.draw(context, x, y, color, "ring");
     }
   }
 
-  // In one path: a path a colour is much slower.
+  // In one path: a path a color is much slower.
   private drawTails(context: CanvasRenderingContext2D, run: Run, observations: Uint32Array): void {
     const row = run.row.values;
     const previous = run.previous.values;
@@ -142,7 +142,7 @@ export class ImageView {
       }
     }
     context.lineWidth = 1.25;
-    context.strokeStyle = TAIL_COLOUR;
+    context.strokeStyle = TAIL_COLOR;
     context.stroke();
   }
 
@@ -151,16 +151,16 @@ export class ImageView {
     const point = state.picked === null ? undefined : run.pointWithId(state.picked);
     if (point === undefined) return;
     const observations = run.observationsOfPoint(point);
-    const colour = paletteOf(true).picked;
+    const color = paletteOf(true).picked;
     context.beginPath();
     observations.forEach((o, i) => (i === 0 ? this.moveTo(context, run, o) : this.lineTo(context, run, o)));
-    strokeOnImage(context, colour);
+    strokeOnImage(context, color);
     const now = observations.find((o) => run.row.values[o] === row);
     if (now === undefined) return;
     const [x, y] = this.project(run.pixel.values[2 * now], run.pixel.values[2 * now + 1]);
     context.beginPath();
     context.arc(x, y, 8, 0, 2 * Math.PI);
-    strokeOnImage(context, colour);
+    strokeOnImage(context, color);
   }
 
   private moveTo(context: CanvasRenderingContext2D, run: Run, o: number): void {
@@ -183,13 +183,13 @@ export class ImageView {
     this.zoom = Math.min(MAX_ZOOM, Math.max(1, this.zoom * factor));
     this.place();
     const { scale } = this.view;
-    this.setCentre(u / width + (this.canvas.clientWidth / 2 - x) / (scale * width),
+    this.setCenter(u / width + (this.canvas.clientWidth / 2 - x) / (scale * width),
       v / height + (this.canvas.clientHeight / 2 - y) / (scale * height));
   }
 
-  private setCentre(x: number, y: number): void {
+  private setCenter(x: number, y: number): void {
     const inside = (value: number) => Math.min(1, Math.max(0, value));
-    this.centre = { x: inside(x), y: inside(y) };
+    this.center = { x: inside(x), y: inside(y) };
     this.canvas.classList.toggle("zoomed", this.zoom > 1);
     this.draw();
   }
@@ -216,7 +216,7 @@ export class ImageView {
       } else if (this.zoom > 1) {
         const { width, height } = this.page.report.camera;
         const { scale } = this.view;
-        this.setCentre(this.centre.x - (to.x - from.x) / (scale * width), this.centre.y - (to.y - from.y) / (scale * height));
+        this.setCenter(this.center.x - (to.x - from.x) / (scale * width), this.center.y - (to.y - from.y) / (scale * height));
       }
     });
   }

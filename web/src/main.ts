@@ -3,7 +3,7 @@
 //
 // Puts the parts together, and offers `window.pliant` to tests.
 
-import { Colouring, colourModes } from "./colours";
+import { Coloring, colorModes } from "./colors";
 import { type Data, DataError, checkFormat, decodeRun } from "./data";
 import { byId, element, setText } from "./dom";
 import { ImageView } from "./image_view";
@@ -20,7 +20,7 @@ import { Tables } from "./tables";
 import { Timeline } from "./timeline";
 import { Toolbar } from "./toolbar";
 
-const RANGE_GROWTH = 1.25;   // of the observations, until a live view takes the colours' range anew
+const RANGE_GROWTH = 1.25;   // of the observations, until a live view takes the colors' range anew
 
 declare global {
   interface Window {
@@ -90,11 +90,11 @@ function start(report: Report, images: Images | null, live: boolean): (answer: A
   setText(byId("version"), `Pliant ${report.version}`);
   const store = new Store(firstState(report.runs.length));
   const { state } = store;
-  const modes = colourModes(report);
-  const colouring = () => Colouring.of(modes.find(({ name }) => name === state.colour)!, report);
+  const modes = colorModes(report);
+  const coloring = () => Coloring.of(modes.find(({ name }) => name === state.color)!, report);
   const page: Page = {
     report, store, images,
-    colouring: colouring(),
+    coloring: coloring(),
     pick: (observation) => {
       const run = report.runs[state.current];
       store.change({ picked: observation === null ? null : run.id.values[run.point.values[observation]] });
@@ -111,8 +111,8 @@ function start(report: Report, images: Images | null, live: boolean): (answer: A
   let observations = report.runs[0].observations;
   store.listen((changed: Changed) => {
     const grown = report.runs[0].observations > RANGE_GROWTH * observations || report.runs[0].observations < observations;
-    if (anyOf(changed, "colour") || grown) {
-      page.colouring = colouring();
+    if (anyOf(changed, "color") || grown) {
+      page.coloring = coloring();
       observations = report.runs[0].observations;
     }
     for (const view of views) view.update(changed);
@@ -148,7 +148,7 @@ function start(report: Report, images: Images | null, live: boolean): (answer: A
       keys: ["Home", "End"], shown: "home, end", what: "first, last frame",
       run: (key) => timeline.go(key === "Home" ? 0 : report.frames.length - 1),
     },
-    { keys: ["c", "Shift+c"], shown: "c, shift c", what: "next colour, the one before", run: (key) => toolbar.cycleColour(key === "c" ? 1 : -1) },
+    { keys: ["c", "Shift+c"], shown: "c, shift c", what: "next color, the one before", run: (key) => toolbar.cycleColor(key === "c" ? 1 : -1) },
     { keys: ["m"], shown: "m", what: "undeformed map", run: () => toolbar.toggleLayer("map") },
     { keys: ["o"], shown: "o", what: "points", run: () => toolbar.toggleLayer("points") },
     { keys: ["t"], shown: "t", what: "trails", run: () => toolbar.toggleLayer("trails") },
@@ -222,11 +222,11 @@ function pickNext(page: Page, step: number): void {
 function offerToTests(page: Page, timeline: Timeline, image: ImageView, scene: SceneView | null): void {
   const { report, store } = page;
   window.pliant.state = () => {
-    const { position, playing, colour, picked, current, visible, theme, dark, view, layers, trail, speed, loop, newest } = store.state;
+    const { position, playing, color, picked, current, visible, theme, dark, view, layers, trail, speed, loop, newest } = store.state;
     const observations = report.runs[current].observationsOfRow(report.row(current, position));
     const run = report.runs[current];
     return {
-      frame: report.frames[position], position, frames: report.frames.length, playing, colour, picked,
+      frame: report.frames[position], position, frames: report.frames.length, playing, color, picked,
       currentRun: report.runs[current].name, visibleRuns: report.runs.filter((_, i) => visible[i]).map(({ name }) => name),
       theme, dark, view, layers, trail, speed, loop, newest, points: [...observations].map((o) => run.id.values[run.point.values[o]]),
     };

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Points in the 3D view: of a size in pixels, each with a colour and a shape.
+// Points in the 3D view: of a size in pixels, each with a color and a shape.
 
 import { BufferAttribute, BufferGeometry, Color, DynamicDrawUsage, Points, ShaderMaterial } from "three";
 
@@ -13,12 +13,12 @@ export const RUN_SHAPES: Shape[] = ["square", "triangle", "diamond"];
 
 const VERTEX = `
 attribute float shape;
-attribute vec3 colour;
+attribute vec3 color;
 uniform float size;
 varying vec3 fill;
 varying float kind;
 void main() {
-  fill = colour;
+  fill = color;
   kind = shape;
   gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
   gl_PointSize = shape > 3.5 ? 1.6 * size : size;
@@ -58,8 +58,8 @@ export class Marks extends Points<BufferGeometry, ShaderMaterial> {
     this.reserve(256);
   }
 
-  setRim(colour: string): void {
-    this.material.uniforms.rim.value.set(colour);
+  setRim(color: string): void {
+    this.material.uniforms.rim.value.set(color);
   }
 
   begin(count: number): void {
@@ -67,12 +67,12 @@ export class Marks extends Points<BufferGeometry, ShaderMaterial> {
     if (count > this.geometry.getAttribute("position").count) this.reserve(2 * count);
   }
 
-  addMark(positions: Float32Array, index: number, colour: number, shape: Shape): void {
-    const { position, colour: colours, shape: shapes } = this.geometry.attributes;
+  addMark(positions: Float32Array, index: number, color: number, shape: Shape): void {
+    const { position, color: colors, shape: shapes } = this.geometry.attributes;
     const p = 3 * this.used;
     for (let axis = 0; axis < 3; ++axis) {
       position.array[p + axis] = positions[3 * index + axis];
-      colours.array[p + axis] = (colour >> (16 - 8 * axis)) & 255;
+      colors.array[p + axis] = (color >> (16 - 8 * axis)) & 255;
     }
     shapes.array[this.used++] = SHAPES[shape];
   }
@@ -80,7 +80,7 @@ export class Marks extends Points<BufferGeometry, ShaderMaterial> {
   end(): void {
     this.geometry.setDrawRange(0, this.used);
     this.visible = this.used > 0;
-    for (const name of ["position", "colour", "shape"]) {
+    for (const name of ["position", "color", "shape"]) {
       const attribute = this.geometry.getAttribute(name) as BufferAttribute;
       attribute.clearUpdateRanges();
       attribute.addUpdateRange(0, this.used * attribute.itemSize);
@@ -94,7 +94,7 @@ export class Marks extends Points<BufferGeometry, ShaderMaterial> {
     const make = (array: Float32Array | Uint8Array, size: number, normalized: boolean) =>
       new BufferAttribute(array, size, normalized).setUsage(DynamicDrawUsage);
     this.geometry.setAttribute("position", make(new Float32Array(3 * count), 3, false));
-    this.geometry.setAttribute("colour", make(new Uint8Array(3 * count), 3, true));
+    this.geometry.setAttribute("color", make(new Uint8Array(3 * count), 3, true));
     this.geometry.setAttribute("shape", make(new Float32Array(count), 1, false));
   }
 }

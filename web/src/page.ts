@@ -3,7 +3,7 @@
 //
 // What every view is given.
 
-import type { Colouring } from "./colours";
+import type { Coloring } from "./colors";
 import type { Images } from "./images";
 import type { Report } from "./report";
 import type { Store } from "./state";
@@ -12,7 +12,7 @@ export interface Page {
   report: Report;
   store: Store;
   images: Images | null;
-  colouring: Colouring;
+  coloring: Coloring;
   // Picks the point of an observation of the current run.
   pick(observation: number | null): void;
 }

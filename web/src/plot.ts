@@ -4,14 +4,14 @@
 // A uPlot over the frames: a line at the current one, a press or a drag sets it, shift + drag or ctrl + wheel zooms.
 
 import uPlot from "uplot";
-import { paletteOf } from "./colours";
+import { paletteOf } from "./colors";
 import type { Column } from "./data";
 import { element, setText, short } from "./dom";
 
 export interface Series {
   label: string;
   values: Column;   // an entry for each position of the time line
-  colour: string;
+  color: string;
   dash: number[];
 }
 
@@ -133,9 +133,9 @@ export class Plot {
       },
       series: [
         {},
-        ...series.map(({ colour, dash }, i) => ({
-          stroke: colour, width: dash.length ? 1.25 : 1.5, dash, points: { show: false },
-          fill: stacked ? `${colour}${i % 2 ? "55" : "33"}` : undefined,
+        ...series.map(({ color, dash }, i) => ({
+          stroke: color, width: dash.length ? 1.25 : 1.5, dash, points: { show: false },
+          fill: stacked ? `${color}${i % 2 ? "55" : "33"}` : undefined,
         })),
       ],
       bands: stacked ? series.slice(1).map((_, i) => ({ series: [i + 2, i + 1] as [number, number] })) : undefined,
@@ -188,12 +188,12 @@ export class Plot {
   }
 
   // A button that hides and shows its series, with the value at the current frame.
-  private legendItem({ label, colour, dash }: Series, i: number): HTMLElement {
+  private legendItem({ label, color, dash }: Series, i: number): HTMLElement {
     const swatch = document.createElementNS("http://www.w3.org/2000/svg", "svg");
     swatch.setAttribute("width", "22");
     swatch.setAttribute("height", "8");
     swatch.setAttribute("aria-hidden", "true");
-    swatch.innerHTML = `<line x1="0" y1="4" x2="22" y2="4" stroke="${colour}" stroke-width="2" stroke-dasharray="${dash.join(" ")}"/>`;
+    swatch.innerHTML = `<line x1="0" y1="4" x2="22" y2="4" stroke="${color}" stroke-width="2" stroke-dasharray="${dash.join(" ")}"/>`;
     const value = element("span", { className: "value" });
     this.values.push(value);
     const button = element("button", { type: "button" }, swatch, label, value);

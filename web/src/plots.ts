@@ -3,7 +3,7 @@
 //
 // What is plotted over the frames: of the current run everything, of the other visible ones the main series.
 
-import { paletteOf, runColour } from "./colours";
+import { paletteOf, runColor } from "./colors";
 import type { Column } from "./data";
 import { byId } from "./dom";
 import type { Page } from "./page";
@@ -94,20 +94,20 @@ export class Plots {
   private figures(): (Omit<Figure, "series"> & { series: Series[] })[] {
     const { report, store } = this.page;
     const { current, visible, dark } = store.state;
-    const colours = paletteOf(dark).series;
+    const colors = paletteOf(dark).series;
     const spread = (run: number, values: Column) => report.frames.map((_, position) => values[report.row(run, position)] ?? null);
     const perRun = report.runs.map((run) => figuresOf(run));
     return perRun[current].map(({ series, ...figure }, i) => {
       const own = visible[current] ? series.map(({ label, values }, s) => ({
         label: report.runs.length > 1 && s === 0 ? `${report.runs[current].name}: ${label}` : label,
         values: spread(current, values),
-        colour: s === 0 ? runColour(dark, current) : colours[(s - 1) % colours.length],
+        color: s === 0 ? runColor(dark, current) : colors[(s - 1) % colors.length],
         dash: s === 0 ? [] : DASHES[(s - 1) % DASHES.length],
       })) : [];
       const others = report.runs.flatMap((run, index) => {
         const main = perRun[index][i].series[0];
         if (index === current || !visible[index] || !main || figure.stacked) return [];
-        return [{ label: `${run.name}: ${main.label}`, values: spread(index, main.values), colour: runColour(dark, index), dash: [] }];
+        return [{ label: `${run.name}: ${main.label}`, values: spread(index, main.values), color: runColor(dark, index), dash: [] }];
       });
       return { ...figure, series: [...own, ...others] };
     }).filter(({ series }) => series.length > 0);

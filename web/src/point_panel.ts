@@ -3,7 +3,7 @@
 //
 // The history of the picked point: what it looked like, and its numbers over time.
 
-import { paletteOf, runColour } from "./colours";
+import { paletteOf, runColor } from "./colors";
 import { byId, setText } from "./dom";
 import type { Page } from "./page";
 import { Plot } from "./plot";
@@ -60,7 +60,7 @@ export class PointPanel {
     this.made = this.figures(run).map(({ title, unit, series }) => new Plot({
       title, unit, frames: report.frames, dark, height: 84, go: this.go,
       series: series.map(({ label, value }, i) => ({
-        label, values: this.spread(run, value), colour: i === 0 ? runColour(dark, current) : paletteOf(dark).series[0],
+        label, values: this.spread(run, value), color: i === 0 ? runColor(dark, current) : paletteOf(dark).series[0],
         dash: i === 0 ? [] : [6, 4],
       })),
       zoom: (range) => this.made.forEach((plot) => plot.setRange(range ?? [first, last])),
@@ -83,7 +83,7 @@ export class PointPanel {
       one("Similarity", "SSIM", (o) => run.similarity.values[o]),
     ];
     if (gain) figures.push(one("Gain", "", (o) => gain.values[o]));
-    if (bias) figures.push(one("Bias", "grey values", (o) => bias.values[o]));
+    if (bias) figures.push(one("Bias", "gray values", (o) => bias.values[o]));
     if (error) figures.push(one("Error against truth", "mm", (o) => error.values[o]));
     return figures.filter(({ series }) => this.observations.some((o) => !Number.isNaN(series[0].value(o))));
   }
@@ -136,9 +136,9 @@ export class PointPanel {
     context.setTransform(ENLARGED / scale, 0, 0, ENLARGED / scale, -left * ENLARGED, -top * ENLARGED);
     context.drawImage(image, 0, 0);
     context.setTransform(1, 0, 0, 1, (PATCH_PX * ENLARGED) / 2, (PATCH_PX * ENLARGED) / 2);
-    for (const [width, colour] of [[3, "rgba(0, 0, 0, 0.7)"], [1, "#ffffff"]] as const) {
+    for (const [width, color] of [[3, "rgba(0, 0, 0, 0.7)"], [1, "#ffffff"]] as const) {
       context.lineWidth = width;
-      context.strokeStyle = colour;
+      context.strokeStyle = color;
       context.beginPath();
       for (const [x, y] of [[1, 0], [-1, 0], [0, 1], [0, -1]]) {
         context.moveTo(4 * x, 4 * y);

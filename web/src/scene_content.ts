@@ -6,7 +6,7 @@
 import {
   BufferAttribute, BufferGeometry, Color, DoubleSide, Mesh, MeshBasicMaterial, NearestFilter, Quaternion, Scene, Texture, Vector3,
 } from "three";
-import { paletteOf, runColour } from "./colours";
+import { paletteOf, runColor } from "./colors";
 import { ThinLines, WideLines } from "./lines";
 import { Marks, RUN_SHAPES } from "./marks";
 import type { Page } from "./page";
@@ -20,13 +20,13 @@ const TRAIL_STEP_OF_SIZE = 1 / 600;   // shorter steps are not drawn by themselv
 export class SceneContent {
   readonly scene = new Scene();
   // Of the points and paths, without what lies far out.
-  centre = new Vector3();
+  center = new Vector3();
   size = 1;
   empty = true;   // there is no place of anything yet
   medianDepth = 1;
   gridStep = 1;
   private lowest = 0;   // the largest y
-  // The ends of the axes, to be labelled.
+  // The ends of the axes, to be labeled.
   readonly axisEnds = [new Vector3(), new Vector3(), new Vector3()];
 
   private readonly map = new Marks(2.5, 0);
@@ -77,13 +77,13 @@ export class SceneContent {
     this.errors.material.color.set(palette.truth);
     this.truePath.material.color.set(palette.truth);
     this.trueFrustum.material.color.set(palette.truth);
-    this.frustum.material.color.set(runColour(dark, current));
+    this.frustum.material.color.set(runColor(dark, current));
     this.track.material.color.set(palette.picked);
     this.points.setRim(dark ? "#ffffff" : "#000000");
     this.others.setRim(dark ? "#000000" : "#ffffff");
     this.paths.forEach(({ ahead, done }, run) => {
-      ahead.material.color.set(runColour(dark, run));
-      done.material.color.set(runColour(dark, run));
+      ahead.material.color.set(runColor(dark, run));
+      done.material.color.set(runColor(dark, run));
     });
     this.buildMap();
   }
@@ -160,7 +160,7 @@ export class SceneContent {
       values.sort((a, b) => a - b);
       return [values[Math.floor(0.01 * (values.length - 1))], values[Math.ceil(0.99 * (values.length - 1))]];
     });
-    this.centre.fromArray(ends.map(([low, high]) => (low + high) / 2));
+    this.center.fromArray(ends.map(([low, high]) => (low + high) / 2));
     this.size = Math.hypot(...ends.map(([low, high]) => high - low)) || 1;
     this.empty = ends.every(([low, high]) => low === high);
     depths.sort((a, b) => a - b);
@@ -175,10 +175,10 @@ export class SceneContent {
     const order = Array.from({ length: count }, (_, point) => point).filter((point) => run.count.values[point] > 0);
     order.sort((a, b) => run.first.values[a] - run.first.values[b]);
     this.known = new Uint32Array(run.rows);
-    const colour = new Color(paletteOf(store.state.dark).map).getHex();
+    const color = new Color(paletteOf(store.state.dark).map).getHex();
     this.map.begin(order.length);
     for (const point of order) {
-      this.map.addMark(run.rest.values, point, colour, "disc");
+      this.map.addMark(run.rest.values, point, color, "disc");
       ++this.known[run.first.values[point]];
     }
     for (let row = 1; row < run.rows; ++row) this.known[row] += this.known[row - 1];
@@ -200,8 +200,8 @@ export class SceneContent {
     this.gridStep = niceStep(this.size / GRID_LINES);
     const half = (GRID_LINES / 2) * this.gridStep;
     const round = (value: number) => Math.round(value / this.gridStep) * this.gridStep;
-    const x = round(this.centre.x);
-    const z = round(this.centre.z);
+    const x = round(this.center.x);
+    const z = round(this.center.z);
     const y = this.lowest;
     this.grid.begin();
     for (let i = -GRID_LINES / 2; i <= GRID_LINES / 2; ++i) {
@@ -222,7 +222,7 @@ export class SceneContent {
     if (this.page.store.state.layers.points) {
       for (const o of observations) {
         const shape = run.isLost(o) ? "cross" : run.isReturned(o) ? "ring" : "disc";
-        this.points.addMark(run.position.values, o, this.page.colouring.colour(run, o), shape);
+        this.points.addMark(run.position.values, o, this.page.coloring.color(run, o), shape);
       }
     }
     this.points.end();
@@ -255,14 +255,14 @@ export class SceneContent {
 
   private showTruth(run: Run, observations: Uint32Array): void {
     const { layers, dark } = this.page.store.state;
-    const colour = new Color(paletteOf(dark).truth).getHex();
+    const color = new Color(paletteOf(dark).truth).getHex();
     const truth = layers.truth ? run.truth?.values : undefined;
     this.truthPoints.begin(observations.length);
     this.errors.begin();
     if (truth) {
       for (const o of observations) {
         if (Number.isNaN(truth[3 * o])) continue;
-        this.truthPoints.addMark(truth, o, colour, "diamond");
+        this.truthPoints.addMark(truth, o, color, "diamond");
         this.errors.addSegment(truth, o, run.position.values, o);
       }
     }
@@ -278,8 +278,8 @@ export class SceneContent {
       .filter(({ index }) => visible[index] && index !== current && layers.points);
     this.others.begin(shown.reduce((sum, { observations }) => sum + observations.length, 0));
     for (const { run, index, observations } of shown) {
-      const colour = new Color(runColour(dark, index)).getHex();
-      for (const o of observations) this.others.addMark(run.position.values, o, colour, RUN_SHAPES[index % RUN_SHAPES.length]);
+      const color = new Color(runColor(dark, index)).getHex();
+      for (const o of observations) this.others.addMark(run.position.values, o, color, RUN_SHAPES[index % RUN_SHAPES.length]);
     }
     this.others.end();
   }
@@ -345,14 +345,14 @@ export function poseOf(pose: Float32Array, row: number): { rotation: Quaternion;
   return { rotation: new Quaternion(qx, qy, qz, qw), position: new Vector3(x, y, z) };
 }
 
-// The camera's centre and the corners of its image.
+// The camera's center and the corners of its image.
 function cornersInWorld(pose: Float32Array, row: number, corners: [number, number, number][], length: number): Vector3[] {
   const { rotation, position } = poseOf(pose, row);
   return [position, ...corners.map((ray) => new Vector3(...ray).multiplyScalar(length).applyQuaternion(rotation).add(position))];
 }
 
-function frustumSegments([centre, ...corners]: Vector3[]): number[] {
-  return corners.flatMap((corner, i) => [centre, corner, corner, corners[(i + 1) % 4]]).flatMap((end) => end.toArray());
+function frustumSegments([center, ...corners]: Vector3[]): number[] {
+  return corners.flatMap((corner, i) => [center, corner, corner, corners[(i + 1) % 4]]).flatMap((end) => end.toArray());
 }
 
 function makePicture(): Mesh<BufferGeometry, MeshBasicMaterial> {

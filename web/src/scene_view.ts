@@ -58,11 +58,11 @@ export class SceneView {
       else this.setDepths();
     } else if (anyOf(changed, "current", "dark")) content.paint();
     if (anyOf(changed, "position", "revision", "dark", "playing")) this.showImage();
-    if (anyOf(changed, "position", "current", "visible", "colour", "layers", "trail", "view", "dark", "revision")) content.showFrame();
+    if (anyOf(changed, "position", "current", "visible", "color", "layers", "trail", "view", "dark", "revision")) content.showFrame();
     if (anyOf(changed, "position", "current", "picked", "dark", "revision")) content.showPicked();
     if (anyOf(changed, "view") && this.page.store.state.view === "free") this.leaveCamera();
     if (anyOf(changed, "position", "current", "view", "revision")) this.follow();
-    if (anyOf(changed, "position", "current", "visible", "picked", "colour", "layers", "trail", "view", "dark", "revision")) this.render();
+    if (anyOf(changed, "position", "current", "visible", "picked", "color", "layers", "trail", "view", "dark", "revision")) this.render();
     setText(byId("scene-caption"), this.page.store.state.layers.grid
       ? `grid ${Number(content.gridStep.toPrecision(1))} ${this.page.report.unit}` : "");
   }
@@ -72,8 +72,8 @@ export class SceneView {
     this.page.store.change({ view: "free" });
     const distance = (0.5 * this.content.size) / Math.tan((FIELD_OF_VIEW_DEG * Math.PI) / 360);
     const aspect = Math.min(1, this.container.clientWidth / Math.max(1, this.container.clientHeight));
-    this.controls.target.copy(this.content.centre);
-    this.camera.position.copy(this.content.centre).addScaledVector(START_DIRECTION, distance / aspect);
+    this.controls.target.copy(this.content.center);
+    this.camera.position.copy(this.content.center).addScaledVector(START_DIRECTION, distance / aspect);
     this.setDepths();
     this.leaveCamera();
   }

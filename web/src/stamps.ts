@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Marks on an image with a dark rim. Each shape and colour is drawn once and then copied: thousands of paths a frame are slow,
+// Marks on an image with a dark rim. Each shape and color is drawn once and then copied: thousands of paths a frame are slow,
 // and very slow where there is no GPU.
 
-import { css } from "./colours";
+import { css } from "./colors";
 
 const RADIUS_PX = 3;
 const SIZE_PX = 14;
@@ -19,16 +19,16 @@ export class Stamps {
   private readonly slots = new Map<number, number>();
   private ratio = 0;
 
-  draw(context: CanvasRenderingContext2D, x: number, y: number, colour: number, stamp: Stamp): void {
+  draw(context: CanvasRenderingContext2D, x: number, y: number, color: number, stamp: Stamp): void {
     if (this.ratio !== window.devicePixelRatio) this.clear();
-    const key = colour + STAMPS.indexOf(stamp) * 0x1000000;
-    const slot = this.slots.get(key) ?? this.make(key, colour, stamp);
+    const key = color + STAMPS.indexOf(stamp) * 0x1000000;
+    const slot = this.slots.get(key) ?? this.make(key, color, stamp);
     const side = SIZE_PX * this.ratio;
     context.drawImage(this.sheet, (slot % SLOTS) * side, Math.floor(slot / SLOTS) * side, side, side, x - SIZE_PX / 2, y - SIZE_PX / 2,
       SIZE_PX, SIZE_PX);
   }
 
-  private make(key: number, colour: number, stamp: Stamp): number {
+  private make(key: number, color: number, stamp: Stamp): number {
     if (this.slots.size === SLOTS * SLOTS) this.clear();
     const slot = this.slots.size;
     this.slots.set(key, slot);
@@ -45,13 +45,13 @@ export class Stamps {
       context.arc(0, 0, stamp === "dot" ? RADIUS_PX : RADIUS_PX + 1.5, 0, 2 * Math.PI);
     }
     if (stamp === "dot") {
-      context.fillStyle = css(colour);
+      context.fillStyle = css(color);
       context.fill();
       context.lineWidth = 1;
       context.strokeStyle = RIM;
       context.stroke();
     } else {
-      strokeOnImage(context, css(colour));
+      strokeOnImage(context, css(color));
     }
     return slot;
   }
@@ -64,11 +64,11 @@ export class Stamps {
 }
 
 // With a dark rim, so that it is seen on any image.
-export function strokeOnImage(context: CanvasRenderingContext2D, colour: string): void {
+export function strokeOnImage(context: CanvasRenderingContext2D, color: string): void {
   context.lineWidth = 4;
   context.strokeStyle = RIM;
   context.stroke();
   context.lineWidth = 2;
-  context.strokeStyle = colour;
+  context.strokeStyle = color;
   context.stroke();
 }

@@ -20,7 +20,7 @@ export interface State {
   current: number;        // index of the run that is shown in full
   visible: boolean[];     // of each run
   picked: number | null;  // id of a point of the current run
-  colour: string;         // name of a colour mode
+  color: string;         // name of a color mode
   layers: Record<Layer, boolean>;
   trail: number;          // frames
   view: View;
@@ -74,7 +74,7 @@ export function firstState(runs: number): State {
     current: 0,
     visible: new Array(runs).fill(true),
     picked: null,
-    colour: "depth",
+    color: "depth",
     layers: { map: true, points: true, trails: true, path: true, truth: true, grid: true },
     trail: 30,
     view: "free",

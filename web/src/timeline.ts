@@ -3,17 +3,17 @@
 //
 // Playing, scrubbing, and the strip that shows the state of every frame.
 
-import { paletteOf } from "./colours";
+import { paletteOf } from "./colors";
 import { byId, element, prepare, setText } from "./dom";
 import type { Page } from "./page";
 import { type Changed, anyOf } from "./state";
 
 const STATE_TEXTS: Record<string, string> = {
-  tracking: "tracking", lost: "lost", initialising: "initialising", waiting_for_reference: "waiting for the reference",
+  tracking: "tracking", lost: "lost", initializing: "initializing", waiting_for_reference: "waiting for the reference",
 };
 const LANE_PX = 14;
 const BAR_PX = 12;
-const HEIGHTS: Record<string, number> = { tracking: 1, lost: 0.5, initialising: 0.7, waiting_for_reference: 0.3 };
+const HEIGHTS: Record<string, number> = { tracking: 1, lost: 0.5, initializing: 0.7, waiting_for_reference: 0.3 };
 
 export class Timeline {
   private readonly slider = byId<HTMLInputElement>("slider");
@@ -172,12 +172,12 @@ export class Timeline {
   }
 }
 
-// Its height and pattern tell the state as well as its colour.
+// Its height and pattern tell the state as well as its color.
 function drawState(context: CanvasRenderingContext2D, state: string, dark: boolean, x: number, bottom: number, width: number): void {
   const { states } = paletteOf(dark);
   const height = BAR_PX * (HEIGHTS[state] ?? 0.5);
   const top = bottom - height;
-  context.fillStyle = states[state] ?? states.initialising;
+  context.fillStyle = states[state] ?? states.initializing;
   if (state === "tracking") return context.fillRect(x, top, width, height);
   context.fillRect(x, top, width, 2);
   const step = state === "lost" ? 3 : 5;

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The runs, the colour mode with its legend, the layers of the 3D view, the theme.
+// The runs, the color mode with its legend, the layers of the 3D view, the theme.
 
-import { GRADIENT, type Mode, colourModes, paletteOf, runColour } from "./colours";
+import { GRADIENT, type Mode, colorModes, paletteOf, runColor } from "./colors";
 import { byId, element, setText, short } from "./dom";
 import { RUN_SHAPES } from "./marks";
 import type { Page } from "./page";
@@ -18,16 +18,16 @@ const prefersDark = window.matchMedia("(prefers-color-scheme: dark)");
 
 export class Toolbar {
   private readonly modes: Mode[];
-  private readonly colour = byId<HTMLSelectElement>("colour");
+  private readonly color = byId<HTMLSelectElement>("color");
   private readonly trail = byId<HTMLInputElement>("trail");
   private readonly layers: Record<string, HTMLButtonElement> = {};
   private readonly runs: { box: HTMLInputElement; button: HTMLButtonElement }[];
 
   constructor(private readonly page: Page) {
     const { report, store } = page;
-    this.modes = colourModes(report);
-    this.colour.append(...this.modes.map(({ name, label }) => element("option", { value: name, textContent: label })));
-    this.colour.addEventListener("change", () => store.change({ colour: this.colour.value }));
+    this.modes = colorModes(report);
+    this.color.append(...this.modes.map(({ name, label }) => element("option", { value: name, textContent: label })));
+    this.color.addEventListener("change", () => store.change({ color: this.color.value }));
     byId("gradient").style.backgroundImage = GRADIENT;
     this.runs = report.runs.map((run, index) => this.makeRun(run.name, index));
     for (const layer of LAYERS) this.makeLayer(layer);
@@ -40,13 +40,13 @@ export class Toolbar {
   }
 
   update(changed: Changed): void {
-    if (anyOf(changed, "current", "visible", "colour", "layers", "trail", "view", "theme", "dark", "revision")) this.showAll();
+    if (anyOf(changed, "current", "visible", "color", "layers", "trail", "view", "theme", "dark", "revision")) this.showAll();
   }
 
-  cycleColour(step: number): void {
+  cycleColor(step: number): void {
     const { store } = this.page;
-    const index = this.modes.findIndex(({ name }) => name === store.state.colour);
-    store.change({ colour: this.modes[(index + step + this.modes.length) % this.modes.length].name });
+    const index = this.modes.findIndex(({ name }) => name === store.state.color);
+    store.change({ color: this.modes[(index + step + this.modes.length) % this.modes.length].name });
   }
 
   cycleView(): void {
@@ -103,7 +103,7 @@ export class Toolbar {
     this.showLegend();
     const palette = paletteOf(state.dark);
     const swatches: Partial<Record<Layer, string>> = {
-      map: palette.map, trails: palette.trails, path: runColour(state.dark, state.current), truth: palette.truth,
+      map: palette.map, trails: palette.trails, path: runColor(state.dark, state.current), truth: palette.truth,
     };
     for (const layer of LAYERS) {
       const button = this.layers[layer];
@@ -124,14 +124,14 @@ export class Toolbar {
       box.checked = visible[index];
       button.setAttribute("aria-pressed", String(index === current));
       const swatch = button.firstElementChild as HTMLElement;
-      swatch.style.color = runColour(dark, index);
+      swatch.style.color = runColor(dark, index);
       swatch.textContent = index === current ? "●" : SHAPE_SIGNS[RUN_SHAPES[index % RUN_SHAPES.length]];
     });
   }
 
   private showLegend(): void {
-    const { mode, low, high } = this.page.colouring;
-    this.colour.value = mode.name;
+    const { mode, low, high } = this.page.coloring;
+    this.color.value = mode.name;
     byId("scale").hidden = mode.value === null;
     const known = !Number.isNaN(low);
     setText(byId("scale-low"), known ? short(low) : "no values");

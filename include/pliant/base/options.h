@@ -93,7 +93,7 @@ class OptionTable {
   const std::vector<std::pair<std::string, std::string>>& groups() const { return groups_; }  // name, why
   const OptionField* Find(std::string_view name) const;
 
-  // Sets one option from text. An unknown name is an error that names its nearest neighbour; a bad value, an error that
+  // Sets one option from text. An unknown name is an error that names its nearest neighbor; a bad value, an error that
   // names the option, its range and its unit. Nothing is changed on error.
   Status Set(std::string_view name, std::string_view value);
 

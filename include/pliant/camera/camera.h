@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// One calibrated camera. Frame: x right, y down, z forward. Pixel (0, 0) is the CENTRE of the first pixel (OpenCV's
+// One calibrated camera. Frame: x right, y down, z forward. Pixel (0, 0) is the CENTER of the first pixel (OpenCV's
 // convention; COLMAP's files differ by half a pixel, which only io knows). Models and parameter orders are COLMAP's:
 //   SIMPLE_PINHOLE f,cx,cy   PINHOLE fx,fy,cx,cy   SIMPLE_RADIAL f,cx,cy,k   RADIAL f,cx,cy,k1,k2
 //   OPENCV fx,fy,cx,cy,k1,k2,p1,p2   OPENCV_FISHEYE fx,fy,cx,cy,k1,k2,k3,k4 (Kannala and Brandt, PAMI 2006)
@@ -84,7 +84,7 @@ class Camera {
   std::vector<std::optional<Eigen::Vector2d>> Project(std::span<const Eigen::Vector3d> points_in_cam) const;
   std::vector<std::optional<Eigen::Vector3d>> Unproject(std::span<const Eigen::Vector2d> pixels) const;
 
-  // Whether a pixel lies inside the image, at least `border_px` from the centres of its outermost pixels.
+  // Whether a pixel lies inside the image, at least `border_px` from the centers of its outermost pixels.
   bool Contains(const Eigen::Vector2d& pixel, double border_px = 0.0) const {
     return pixel.x() >= border_px && pixel.y() >= border_px && pixel.x() <= width_ - 1 - border_px &&
            pixel.y() <= height_ - 1 - border_px;

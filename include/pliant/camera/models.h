@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // The camera models, as values that a solver's loop can be compiled for (Camera::Visit hands out the concrete one).
-// Frame: x right, y down, z forward; pixel (0, 0) is the centre of the first pixel; lengths in any unit.
+// Frame: x right, y down, z forward; pixel (0, 0) is the center of the first pixel; lengths in any unit.
 //
 // Perspective models, with x = X/Z, y = Y/Z, r^2 = x^2 + y^2 (Brown, Photogrammetric Engineering 1966):
 //   xd = x (1 + k1 r^2 + k2 r^4) + 2 p1 x y + p2 (r^2 + 2 x^2)      u = fx xd + cx

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// How the grey levels of an endoscope's image depend on where its light falls: the response of the camera, the shade of
+// How the gray levels of an endoscope's image depend on where its light falls: the response of the camera, the shade of
 // the lens towards the border, and the spread of the light, which is taken to be at the camera.
 #pragma once
 
@@ -29,7 +29,7 @@ Status CheckPhotometric(const PhotometricCalibration& calibration);
 // NaN.
 double LogFalloff(const PhotometricCalibration& calibration, const Eigen::Vector3d& ray);
 
-// Log of the distance of a surface whose light has this brightness (grey levels, 0 to 255), up to one constant for an
+// Log of the distance of a surface whose light has this brightness (gray levels, 0 to 255), up to one constant for an
 // image: the light at the camera falls off with the square of the distance. NaN for a brightness that is not above 0.
 double LogDistanceFromLight(const PhotometricCalibration& calibration, double brightness, const Eigen::Vector3d& ray);
 

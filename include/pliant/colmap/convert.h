@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Between COLMAP's values and Pliant's. COLMAP's first pixel has its centre at (0.5, 0.5), Pliant's at (0, 0): the half
+// Between COLMAP's values and Pliant's. COLMAP's first pixel has its center at (0.5, 0.5), Pliant's at (0, 0): the half
 // pixel is added and taken off here and nowhere else.
 #pragma once
 
@@ -22,7 +22,7 @@ namespace pliant::colmap {
 Result<pliant::Camera> ToPliant(const Camera& camera);
 Camera FromPliant(const pliant::Camera& camera, std::uint32_t id);
 
-// Normalises the quaternion. Fails with kInvalidArgument for numbers that are none and a quaternion of zeros.
+// Normalizes the quaternion. Fails with kInvalidArgument for numbers that are none and a quaternion of zeros.
 Result<Rigid3> ToPliant(const Pose& pose);
 Pose FromPliant(const Rigid3& pose);
 

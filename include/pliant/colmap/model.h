@@ -5,7 +5,7 @@
 // rigs and frames. Everything keeps its order and its last bit, so that a model that COLMAP wrote is written again byte
 // for byte.
 //
-// Frames are COLMAP's: poses are cam_from_world, quaternions w, x, y, z, and the first pixel has its CENTRE AT
+// Frames are COLMAP's: poses are cam_from_world, quaternions w, x, y, z, and the first pixel has its CENTER AT
 // (0.5, 0.5). pliant/colmap/convert.h, and nothing else, leads from here to Pliant's values.
 // Source: colmap.github.io/format.html, and the files that COLMAP 3.8 writes.
 #pragma once
@@ -44,7 +44,7 @@ struct Camera {
 };
 
 struct Pose {
-  std::array<double, 4> qvec{1, 0, 0, 0};  // w, x, y, z; not normalised when read
+  std::array<double, 4> qvec{1, 0, 0, 0};  // w, x, y, z; not normalized when read
   std::array<double, 3> tvec{};
 };
 

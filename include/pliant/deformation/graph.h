@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// The deformation graph: every point is tied to its K nearest neighbours in 3D, the nearer the more strongly
+// The deformation graph: every point is tied to its K nearest neighbors in 3D, the nearer the more strongly
 // (docs/method.md, eq. D1 to D3).
 //
-// The paper sums over directed pairs (i, j), j among the neighbours of i. Both directions of a pair have the same
+// The paper sums over directed pairs (i, j), j among the neighbors of i. Both directions of a pair have the same
 // residual, so here a pair is ONE edge i < j, whose multiplicity (1 or 2) says how many directions it stands for: a sum
 // over edges of multiplicity * f(edge) is the paper's sum exactly.
 #pragma once
@@ -23,7 +23,7 @@
 namespace pliant {
 
 enum class EdgeCut {
-  kOff,      // every edge of the K nearest neighbours is used
+  kOff,      // every edge of the K nearest neighbors is used
   kStretch,  // an edge whose length has left its rest length by more than a ratio is left out
 };
 
@@ -68,8 +68,8 @@ NeighborLists NearestNeighbors(std::span<const Eigen::Vector3d> positions, std::
 
 // The graph of `positions` (mm, any one frame). `rest_positions` are the same points undeformed; they may be empty when
 // nothing asks for them, and then rest lengths are the present lengths and no edge is cut. The search is exact, and
-// neighbours at equal distance are taken in the order of their index, so the answer depends on nothing but the input.
-// With N <= K points everyone is everyone's neighbour; with none or one there are no edges. Fails with kInvalidArgument
+// neighbors at equal distance are taken in the order of their index, so the answer depends on nothing but the input.
+// With N <= K points everyone is everyone's neighbor; with none or one there are no edges. Fails with kInvalidArgument
 // for positions that are not finite and with kMismatch for counts that differ.
 Result<DeformationGraph> BuildDeformationGraph(std::span<const Eigen::Vector3d> positions,
                                                std::span<const Eigen::Vector3d> rest_positions,

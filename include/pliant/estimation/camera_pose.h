@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // The camera's pose from known 3D points and their pixels (docs/method.md, eq. E7), and its prediction (eq. E6).
-// Points in mm in the world frame, pixels with (0, 0) at the centre of the first pixel.
+// Points in mm in the world frame, pixels with (0, 0) at the center of the first pixel.
 #pragma once
 
 #include <span>
@@ -20,7 +20,7 @@ namespace pliant {
 
 struct CameraPoseOptions {
   double sigma_rep_px = 1.0;          // standard deviation of a measured pixel
-  double chi2_rep = 5.991;            // Huber threshold on the squared, normalised error: 95 % at 2 dof
+  double chi2_rep = 5.991;            // Huber threshold on the squared, normalized error: 95 % at 2 dof
   int max_iterations = 50;            // of Levenberg-Marquardt
   double function_tolerance = 1e-10;  // relative change of the cost at which it has converged
   int min_points = 4;                 // fewer usable points give no pose
@@ -30,7 +30,7 @@ struct CameraPoseOptions {
 
 struct CameraPoseEstimate {
   Rigid3 cam_from_world;
-  std::vector<char> inliers;  // one a point: 1 when its squared, normalised error is at most chi2_rep
+  std::vector<char> inliers;  // one a point: 1 when its squared, normalized error is at most chi2_rep
   int num_inliers = 0;
   int num_used = 0;       // points that project under the initial pose; the others are left out
   double final_cost = 0;  // 0.5 * sum of rho
@@ -42,7 +42,7 @@ struct CameraPoseEstimate {
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
 };
 
-// The pose that minimises 0.5 * sum_i rho(|u_i - project(cam_from_world * X_i)|^2 / sigma_rep^2), rho = Huber.
+// The pose that minimizes 0.5 * sum_i rho(|u_i - project(cam_from_world * X_i)|^2 / sigma_rep^2), rho = Huber.
 // Fails with kMismatch for counts that differ, kInvalidArgument for numbers that are not finite, kInsufficient for
 // fewer than min_points points that project under the initial pose, kDegenerate when they do not determine a pose.
 // Running out of iterations is no failure: see `converged`.

@@ -8,7 +8,7 @@
 // each along a direction of its own (docs/method.md, eq. W1):
 //   X_i(v) = X_i + sum_r c_r(v) m_ir,   c_r(0) = 0
 // R courses c and 3 R numbers a point (its modes m), where a free motion would take 3 numbers a point and view. Modes
-// of neighbours are alike (W3) and small (W4), courses are smooth in time (W5). What is common to all points is the
+// of neighbors are alike (W3) and small (W4), courses are smooth in time (W5). What is common to all points is the
 // camera's: a uniform motion of the scene and the camera's own cannot be told apart, and their sum is what is found.
 // Scale is free in a monocular window; it stays that of the start (W7).
 #pragma once
@@ -53,10 +53,10 @@ constexpr int kMaxWindowRank = 4;
 struct DeformingWindowOptions {
   int rank = 3;                      // R; with light one less is tried too
   double loss_scale_px = 0.15;       // Cauchy loss
-  double gradient_sigma = 0.3;       // of neighbours' modes: standard deviation of their difference by their distance
+  double gradient_sigma = 0.3;       // of neighbors' modes: standard deviation of their difference by their distance
   double mode_sigma = 0.2;           // of a mode's components by the median distance
   double acceleration_sigma = 0.02;  // of a course's second derivative, 1/frame^2
-  double light_sigma = 2.0;          // of log distance from brightness; large, because neighbours err alike
+  double light_sigma = 2.0;          // of log distance from brightness; large, because neighbors err alike
   int neighbors = 6;                 // of the smoothness over the surface
   int nodes = 16;                    // of the surface, at which modes are free; between them they are interpolated
   int sample_points = 80;            // in each of the two samples that are solved first
@@ -82,7 +82,7 @@ struct DeformingSolution {
   // that is nearly flat. Infinite where one sample has no solution, and empty where there is nothing to compare.
   std::vector<double> sample_sigmas;
   double cost = 0;
-  // How much alike the errors of neighbours are (W11): about 0 where the window explains all but noise, near 1 where
+  // How much alike the errors of neighbors are (W11): about 0 where the window explains all but noise, near 1 where
   // the scene moves in ways that it has not.
   double residual_correlation = 0;
   double light_error = 0;  // median deviation of log distance from what the light says (W8); 0: there is no light
@@ -125,7 +125,7 @@ Result<DeformingWindow> LocateDeformingViews(const DeformingWindow& views, doubl
 // courses and nodes held. `joining` are observations of `num_joining` other points, numbered from 0 and ordered by
 // view. They come after the solution's own, and start at the distance and with the modes of those nearest to their
 // first ray. log_depth_sigmas are by at most eight of the views; sample_sigmas of those that join are their
-// neighbours', and infinite for one that no view sees; the rest is the solution's. `threads` never changes the result.
+// neighbors', and infinite for one that no view sees; the rest is the solution's. `threads` never changes the result.
 // Fails like SolveDeformingWindow.
 Result<DeformingSolution> SettleDeformingPoints(const DeformingSolution& located,
                                                 const std::vector<DeformingObservation>& joining, int num_joining,
@@ -136,7 +136,7 @@ Result<DeformingSolution> SettleDeformingPoints(const DeformingSolution& located
 // point that no other view sees.
 std::vector<double> PointErrorsPx(const DeformingWindow& window, double focal_px);
 
-// Correlation of the errors of points that are neighbours in the reference, over all views, from -1 to 1.
+// Correlation of the errors of points that are neighbors in the reference, over all views, from -1 to 1.
 double ResidualCorrelation(const DeformingWindow& window);
 
 }  // namespace pliant

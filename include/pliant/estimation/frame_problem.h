@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // The joint problem of one frame: the camera's pose T = cam_from_world and one displacement delta_i for every point,
-// X_i(t) = X_i(t-1) + delta_i, that minimise (docs/method.md, eq. E5)
+// X_i(t) = X_i(t-1) + delta_i, that minimize (docs/method.md, eq. E5)
 //
 //   E = 0.5 * (            sum_i   rho_rep(|u_i - project(T (X_i + delta_i))|^2 / sigma_rep^2)
 //              + lambda_spa sum_ij rho_spa(w_ij^2 |delta_i - delta_j|^2 / sigma_spa^2)
@@ -10,7 +10,7 @@
 //              + lambda_len sum_ij rho_len((|X_i + delta_i - X_j - delta_j| - rest_ij)^2 / sigma_len^2)  if asked for)
 //
 // with the sums over ij going over the paper's directed pairs, and rho Huber's on the squared norm: rho(s) = s up to
-// chi2, 2 sqrt(chi2 s) - chi2 beyond. World frame, mm; pixels with (0, 0) at the centre of the first pixel. What pose
+// chi2, 2 sqrt(chi2 s) - chi2 beyond. World frame, mm; pixels with (0, 0) at the center of the first pixel. What pose
 // and displacements could share (a motion of everything at once) is settled by the temporal term: it goes to the camera
 // as far as it is rigid. Source: Gomez Rodriguez, Montiel, Tardos, IROS 2022 (arXiv 2204.08309), section III.
 #pragma once
@@ -94,9 +94,9 @@ struct FramePoint {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  // X_i + delta_i
   bool used = false;  // false: the point does not project under the initial pose (behind the camera) and was left out
   double reprojection_error_px = std::numeric_limits<double>::infinity();
-  // |delta_i - weighted mean of its neighbours' delta|, the weights being w_ij^2: how much of the point's motion
-  // no neighbour shares. With the published sigmas a wrong track shows here and not in the reprojection error, because
-  // its displacement gives way. Zero without neighbours.
+  // |delta_i - weighted mean of its neighbors' delta|, the weights being w_ij^2: how much of the point's motion
+  // no neighbor shares. With the published sigmas a wrong track shows here and not in the reprojection error, because
+  // its displacement gives way. Zero without neighbors.
   double disagreement_mm = std::numeric_limits<double>::infinity();
 };
 

@@ -48,7 +48,7 @@ struct TwoViewRefinement {
   Eigen::Vector2d direction_sigma_rad = Eigen::Vector2d::Zero();
 };
 
-// Minimises sum rho(SampsonError^2) over the five degrees of freedom, from `start` (|translation| need not be 1).
+// Minimizes sum rho(SampsonError^2) over the five degrees of freedom, from `start` (|translation| need not be 1).
 // Equal to bundle adjustment of both views to first order in the noise. Fails with kInsufficient below six
 // correspondences and kDegenerate when Ceres finds no usable step.
 Result<TwoViewRefinement> RefineTwoView(const Rigid3& start, std::span<const Eigen::Vector3d> rays0,
@@ -56,7 +56,7 @@ Result<TwoViewRefinement> RefineTwoView(const Rigid3& start, std::span<const Eig
                                         const RefinementOptions& options);
 
 // The same by OpenGV's optimize_nonlinear on all correspondences alike, then judged as above: an outside rival. It
-// knows no loss, so it is for clean inliers; the options bear on the judgement alone.
+// knows no loss, so it is for clean inliers; the options bear on the judgment alone.
 Result<TwoViewRefinement> RefineTwoViewByOpengv(const Rigid3& start, std::span<const Eigen::Vector3d> rays0,
                                                 std::span<const Eigen::Vector3d> rays1, double focal_px,
                                                 const RefinementOptions& options);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// How good a run's first map is: what an initialiser is to be judged by, before tracking mends or spoils it. Of the
+// How good a run's first map is: what an initializer is to be judged by, before tracking mends or spoils it. Of the
 // points that the map has in one frame, each with its depth z in the run's camera and the true depth z^gt of the
 // surface at the pixel where it was seen (surface_error.h):
 //   r_i = z_i / z_i^gt,   s = 1 / median r_i,   e_i = | s r_i - 1 |
@@ -59,8 +59,8 @@ struct FirstMapError {
   FirstMapDepth declared;                  // the headline
   std::optional<FirstMapDepth> reference;  // nothing: none of the points seen there has truth
   std::optional<FirstMapMotion> motion;    // nothing: the two frames are one, or have no true poses
-  double initialise_total_ms = 0;          // what the initialiser took, from the run's first frame to the declared one
-  double initialise_largest_ms = 0;        // and in one frame at most
+  double initialize_total_ms = 0;          // what the initializer took, from the run's first frame to the declared one
+  double initialize_largest_ms = 0;        // and in one frame at most
 };
 
 // What is known of one of the two frames; nothing where the sequence has no truth for it.

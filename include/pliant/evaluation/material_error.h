@@ -6,7 +6,7 @@
 // path is known, wherever the track goes. Surface error and material error tell shape from drift:
 //   s X - P  =  (s X - S(u)) + (S(u) - P)       estimate - material point  =  shape  +  drift
 // X is the estimate, P the material point's true position, S(u) the true surface at the tracked pixel u, all in the
-// camera's frame of the moment. Drift is given in millimetres, |S(u) - P| (the straight line between two places of the
+// camera's frame of the moment. Drift is given in millimeters, |S(u) - P| (the straight line between two places of the
 // surface; where S(u) has no truth, at a depth step, there is none), and in pixels, |u - project(P)|. A track that
 // starts on a depth step belongs to no one material point and is left out.
 //
@@ -76,8 +76,8 @@ class MaterialErrorCollector {
  public:
   MaterialErrorCollector(MaterialTruth& truth, const Camera& camera) : truth_(truth), camera_(camera) {}
 
-  // `points` sorted by id, in the unit of that submap. Where the surface is not known there is no drift in millimetres,
-  // and a track that starts on a depth step is not recognised. Fails as the truth does.
+  // `points` sorted by id, in the unit of that submap. Where the surface is not known there is no drift in millimeters,
+  // and a track that starts on a depth step is not recognized. Fails as the truth does.
   Status AddFrame(int frame_idx, int submap, std::span<const TrackedPoint> points);
 
   // Fails with kInsufficient when no observation has a material point.

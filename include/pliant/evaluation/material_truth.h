@@ -3,7 +3,7 @@
 
 // Where the points of the material truly are: what a data set has to answer for a material error to be computed.
 // The simulator answers exactly (OpenMaterialTruth); a data set with tracked markers or with corresponding point clouds
-// frame by frame may answer with what it has. Camera frames and pixels are those of the true camera; millimetres.
+// frame by frame may answer with what it has. Camera frames and pixels are those of the true camera; millimeters.
 #pragma once
 
 #include <cstdint>

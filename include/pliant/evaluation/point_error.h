@@ -6,7 +6,7 @@
 //   e_t = sqrt( sum_i | s_t X_i - X_i^gt |^2 / n_t )        plain: no point is left out
 // What X_i^gt is makes it a surface error (surface_error.h) or a material error (material_error.h). Beside every figure
 // stands its NULL: the same pixels, all at one constant depth, through the same protocol. A figure no better than its
-// null says that nothing was reconstructed. Millimetres throughout.
+// null says that nothing was reconstructed. Millimeters throughout.
 #pragma once
 
 #include <span>

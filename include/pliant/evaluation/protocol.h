@@ -3,14 +3,14 @@
 
 // How estimated points are compared with true ones: the protocols of the literature by name. Each has its own way to
 // the scale s, its own error of a point, and its own choice of points that do not count:
-//   paper          s minimises sum |s x - y|^2; the error is |s x - y|; every point counts. The plain figure
+//   paper          s minimizes sum |s x - y|^2; the error is |s x - y|; every point counts. The plain figure
 //                  (Gomez Rodriguez, Montiel, Tardos, IROS 2022).
 //   depth_trimmed  s is the median of y_z / x_z; the error is |s x_z - y_z|, along the optical axis alone; the worst
 //                  trim_share of the frame's points is left out.
-//   lmeds          s minimises the median of |s x - y|^2; the error is |s x - y|; points beyond inlier_sigmas robust
+//   lmeds          s minimizes the median of |s x - y|^2; the error is |s x - y|; points beyond inlier_sigmas robust
 //                  standard deviations sigma = 1.4826 (1 + 5 / (n - 1)) median |s x - y| of their frame are left out
 //                  (Rousseeuw and Leroy, Robust Regression and Outlier Detection, 1987).
-// x is the estimate and y the truth, both in the camera's frame of the moment; truth in millimetres. Figures of
+// x is the estimate and y the truth, both in the camera's frame of the moment; truth in millimeters. Figures of
 // different protocols cannot be compared with each other: a trimmed one of a failed run may look like a plain one of a
 // good run, which is why the plain figure and the share of points left out stand beside every other.
 #pragma once
@@ -40,7 +40,7 @@ struct EnumNames<ErrorProtocol> {
 enum class ErrorScale {
   kPerFrame,  // the best scale of each frame: the paper's protocol for maps of a monocular start
   kGlobal,    // one best scale for all frames of a submap: drift of the scale counts as error
-  kNone,      // 1: for maps that claim millimetres (stereo, depth). The null gets its one best depth all the same
+  kNone,      // 1: for maps that claim millimeters (stereo, depth). The null gets its one best depth all the same
 };
 
 template <>

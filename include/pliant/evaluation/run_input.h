@@ -29,7 +29,7 @@ struct EvaluationFrame {
   std::optional<Rigid3> cam_from_world;        // nothing: not tracked
   std::vector<PointObservation> observations;  // sorted by id
   std::optional<FirstMapFrames> first_map;     // where pose and points came with the first map, and the run says so
-  double initialise_ms = 0;                    // wall time that the initialiser took; 0 where the run does not say
+  double initialize_ms = 0;                    // wall time that the initializer took; 0 where the run does not say
   int submap = 0;                              // whose world and unit pose and points are in
 };
 

@@ -3,12 +3,12 @@
 
 // How far the estimated camera path lies from the true one, with the definitions of the evo tools (Grupp, evo, 2017;
 // github.com/MichaelGrupp/evo, notebooks/metrics.py_API_Documentation.ipynb), P the aligned estimate, Q the truth:
-//   ATE  E_i = Q_i^-1 P_i, its translation and its angle, after the least-squares alignment of the camera centres
+//   ATE  E_i = Q_i^-1 P_i, its translation and its angle, after the least-squares alignment of the camera centers
 //        (Umeyama, PAMI 1991). As evo_ape -as (sim3) or -a (se3), with -r trans_part and -r angle_deg.
 //   RPE  E_ij = (Q_i^-1 Q_j)^-1 (P_i^-1 P_j), j = i + delta frames. Aligning changes nothing but its scale. As evo_rpe
 //        -as or -a, --delta_unit f; pairs that do not overlap are its default, all pairs are its --all_pairs.
 // Part of a scene's deformation is a gauge: what it does as a whole is absorbed by the camera, so read this beside the
-// surface error. Millimetres and degrees.
+// surface error. Millimeters and degrees.
 #pragma once
 
 #include <array>
@@ -26,7 +26,7 @@ namespace pliant {
 
 enum class TrajectoryAlignment {
   kSim3,  // rotation, translation and scale: maps of a monocular start
-  kSe3,   // no scale: maps that claim millimetres
+  kSe3,   // no scale: maps that claim millimeters
 };
 
 template <>

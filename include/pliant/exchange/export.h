@@ -4,11 +4,11 @@
 // A run in other programs' formats. COLMAP has no time axis for points, so a scene that deforms can be put into its
 // models in three ways, none of which is consistent with bundle adjustment:
 //   canonical   one point a track, at its undeformed position, and all images with their keypoints
-//   spacetime   one point a track and frame, with id frame * 10^6 + track, coloured by time; each is seen in one image
+//   spacetime   one point a track and frame, with id frame * 10^6 + track, colored by time; each is seen in one image
 //   frames      a model a frame, in a folder of the frame's number: the points where they were then
 // and others, which MeshLab, evo and COLMAP itself read:
-//   ply           a file a frame: the points where they were then, with colour, track id and displacement (dx dy dz)
-//   trajectories  one PLY: every point in every frame, a track's joined by edges, coloured by time
+//   ply           a file a frame: the points where they were then, with color, track id and displacement (dx dy dz)
+//   trajectories  one PLY: every point in every frame, a track's joined by edges, colored by time
 //   tum           trajectory.txt, with which evo compares
 //   colmap4d      a spacetime model and its times: times.bin, points_t.bin, time_meta.json (colmap4d 1.0)
 //   database      COLMAP's database (SQLite): tracks as keypoints and verified matches, from which COLMAP reconstructs

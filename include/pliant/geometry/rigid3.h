@@ -3,7 +3,7 @@
 
 // Rigid motion of 3D space. `b_from_a` maps a point given in frame a to the same point in frame b:
 //   point_in_b = b_from_a * point_in_a,   c_from_a = c_from_b * b_from_a.
-// Lengths are millimetres, or map units where a map has no scale. Quaternions are kept at unit length.
+// Lengths are millimeters, or map units where a map has no scale. Quaternions are kept at unit length.
 #pragma once
 
 #include <cmath>
@@ -22,7 +22,7 @@ struct Rigid3 {
   Rigid3(const Eigen::Matrix3d& r, const Eigen::Vector3d& t) : Rigid3(Eigen::Quaterniond(r), t) {}
 
   Eigen::Matrix3d RotationMatrix() const { return rotation.toRotationMatrix(); }
-  // Where the origin of b lies in frame a (the camera's centre in the world, for cam_from_world).
+  // Where the origin of b lies in frame a (the camera's center in the world, for cam_from_world).
   Eigen::Vector3d OriginInSource() const { return rotation.conjugate() * -translation; }
   Rigid3 Inverse() const { return {rotation.conjugate(), rotation.conjugate() * -translation}; }
   Eigen::Vector3d operator*(const Eigen::Vector3d& x) const { return rotation * x + translation; }

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // How bright the surface around a pixel is, as a light at the camera makes it: the red channel, which blood and vessels
-// absorb least, averaged over a neighbourhood, without highlights.
+// absorb least, averaged over a neighborhood, without highlights.
 #pragma once
 
 #include <Eigen/Core>

@@ -31,20 +31,20 @@ struct CornerOptions {
 
 struct Corner {
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
-  double score = 0;    // smaller eigenvalue of the mean gradient tensor, (grey levels / px)^2 (eq. P11)
+  double score = 0;    // smaller eigenvalue of the mean gradient tensor, (gray levels / px)^2 (eq. P11)
   double contour = 0;  // ContourMeasure at the corner
 };
 
 // At most `options.max_corners` corners of a CV_8UC1 image. `valid`: CV_8UC1 of the same size, 0 = not usable; or
 // empty. `existing`: points to stay away from (for adding to those already followed); they count towards evenness, not
 // towards max_corners. Sorted by row, then column.
-std::vector<Corner> DetectCorners(const cv::Mat& grey, const cv::Mat& valid, std::span<const Eigen::Vector2d> existing,
+std::vector<Corner> DetectCorners(const cv::Mat& gray, const cv::Mat& valid, std::span<const Eigen::Vector2d> existing,
                                   const CornerOptions& options);
 
 // How much the surroundings of each pixel look like an occluding contour, 0 to 1, in a CV_8UC1 image: with the light at
 // the camera a near surface is bright and a far one dark, so a contour is a step between two sides that are each far
 // more alike within themselves than to each other, at a scale coarser than texture. Sides are compared up to
 // `radius_px` away, in logarithms of brightness (docs/method.md, eq. P12).
-std::vector<double> ContourMeasure(const cv::Mat& grey, std::span<const Eigen::Vector2d> pixels, int radius_px);
+std::vector<double> ContourMeasure(const cv::Mat& gray, std::span<const Eigen::Vector2d> pixels, int radius_px);
 
 }  // namespace pliant

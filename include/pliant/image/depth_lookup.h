@@ -20,7 +20,7 @@ struct DepthAtPixel {
   double sigma_mm = 0;  // standard deviation of the depth, where its source knows it
 };
 
-// `depth_mm`: CV_32FC1, 0 = none; a pixel with a neighbour of no depth has none. kDepthStep where the four pixels
+// `depth_mm`: CV_32FC1, 0 = none; a pixel with a neighbor of no depth has none. kDepthStep where the four pixels
 // around differ by more than max_depth_step times the smallest.
 DepthAtPixel LookUpDepth(const cv::Mat& depth_mm, const Eigen::Vector2d& pixel, double max_depth_step);
 

@@ -4,7 +4,7 @@
 // What an image looks like around a pixel, in numbers that change little with brightness, contrast and small changes of
 // the view: SIFT's histograms of gradients (Lowe, IJCV 2004, as OpenCV computes them), upright and of one size. They
 // tell places apart that a patch tracker cannot find because nothing is known of where they are.
-// Pixels: (0, 0) is the centre of the first pixel.
+// Pixels: (0, 0) is the center of the first pixel.
 #pragma once
 
 #include <span>
@@ -16,9 +16,9 @@
 
 namespace pliant {
 
-// One row a pixel, CV_32FC1 of 128 columns. `grey` is CV_8UC1; a pixel near the edge or outside of it sees the edge
+// One row a pixel, CV_32FC1 of 128 columns. `gray` is CV_8UC1; a pixel near the edge or outside of it sees the edge
 // repeated.
-cv::Mat DescribePixels(const cv::Mat& grey, std::span<const Eigen::Vector2d> pixels);
+cv::Mat DescribePixels(const cv::Mat& gray, std::span<const Eigen::Vector2d> pixels);
 
 // Rows (of a, of b) that are each other's nearest, and nearer than `max_ratio` (0 to 1) times the second nearest in
 // `b`; in the order of `a`.

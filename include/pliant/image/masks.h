@@ -14,13 +14,13 @@ namespace pliant {
 
 struct MaskOptions {
   Switch highlights = Switch::kOn;
-  int highlight_level = 235;           // grey levels: brighter is saturated, whatever its colour
-  int highlight_near_level = 190;      // grey levels: brighter AND pale AND brighter than its surroundings
+  int highlight_level = 235;           // gray levels: brighter is saturated, whatever its color
+  int highlight_near_level = 190;      // gray levels: brighter AND pale AND brighter than its surroundings
   double highlight_saturation = 0.25;  // (max - min) / max of B, G, R: below this a bright pixel is pale
-  double highlight_contrast = 40;      // grey levels above the local median that make a near-saturated pixel specular
+  double highlight_contrast = 40;      // gray levels above the local median that make a near-saturated pixel specular
   int highlight_dilation_px = 3;       // the halo of a highlight moves with it
   Switch border = Switch::kOn;
-  int border_level = 16;       // grey levels: the surroundings are darker than this
+  int border_level = 16;       // gray levels: the surroundings are darker than this
   int border_dilation_px = 4;  // the rim is blurred and does not move with the scene
 
   void List(OptionTable& table);  // group "Masks"
@@ -31,7 +31,7 @@ cv::Mat HighlightMask(const cv::Mat& image, const MaskOptions& options);
 
 // The dark surroundings (255): dark regions that touch the image border and frame the image (its corners or whole
 // sides), dilated. A dark lumen in the middle is kept, and so is a dark region that merely runs out of one side.
-cv::Mat DarkBorderMask(const cv::Mat& grey, const MaskOptions& options);
+cv::Mat DarkBorderMask(const cv::Mat& gray, const MaskOptions& options);
 
 // Everything together: 255 where a pixel is usable. `given` is empty, or CV_8UC1 of the image's size with 0 = ignore
 // (another size or type is the caller's error).

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Grey images in several sizes. Level 0 is the image; each further level is half as large, low-pass filtered with the
+// Gray images in several sizes. Level 0 is the image; each further level is half as large, low-pass filtered with the
 // 5-tap binomial kernel (Burt and Adelson, 1983) before every second pixel is taken. The pixel (x, y) of level 0 lies
-// at (x, y) / 2^l on level l: centres of first pixels coincide. Every level is surrounded by kPadding pixels that
+// at (x, y) / 2^l on level l: centers of first pixels coincide. Every level is surrounded by kPadding pixels that
 // repeat its border, so that a patch may reach over the edge without tests.
 #pragma once
 
@@ -16,8 +16,8 @@
 
 namespace pliant {
 
-// 8-bit grey of an 8-bit image with 1 (returned as it is, not copied) or 3 (BGR; ITU-R BT.601 weights) channels.
-cv::Mat ToGrey(const cv::Mat& image);
+// 8-bit gray of an 8-bit image with 1 (returned as it is, not copied) or 3 (BGR; ITU-R BT.601 weights) channels.
+cv::Mat ToGray(const cv::Mat& image);
 
 class ImagePyramid {
  public:
@@ -25,8 +25,8 @@ class ImagePyramid {
   static constexpr int kMinSide_px = 16;  // no level is smaller than this
 
   ImagePyramid() = default;  // empty
-  // `grey`: CV_8UC1, not empty. `levels` >= 1; fewer are built when the next would be smaller than kMinSide_px.
-  ImagePyramid(const cv::Mat& grey, int levels);
+  // `gray`: CV_8UC1, not empty. `levels` >= 1; fewer are built when the next would be smaller than kMinSide_px.
+  ImagePyramid(const cv::Mat& gray, int levels);
 
   bool empty() const { return padded_.empty(); }
   int levels() const { return static_cast<int>(padded_.size()); }

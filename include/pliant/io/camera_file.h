@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Calibration files. Three kinds are recognised by what they contain, whatever they are called:
+// Calibration files. Three kinds are recognized by what they contain, whatever they are called:
 // - Pliant's camera.yaml: model, width, height, params, and optionally fps, depth_scale, baseline, unit (mm, or m: of
 //   depth_scale, baseline and the poses beside it, which become mm), and the photometric calibration: gamma,
 //   vignetting, light_spread, light_axis;
-// - COLMAP's cameras.txt and cameras.bin, whose first pixel's centre is (0.5, 0.5): the half pixel is taken off here;
+// - COLMAP's cameras.txt and cameras.bin, whose first pixel's center is (0.5, 0.5): the half pixel is taken off here;
 // - OpenCV's calibrations, YAML or XML: a camera matrix (M1, K1, K, M, camera_matrix, cameraMatrix, ...), distortion
 //   coefficients (D1, D, distortion_coefficients, distCoeffs, ...) and, where they are written, the image size and
 //   `camera_model` or `distortion_model` (fisheye, equidistant and kannala_brandt mean OPENCV_FISHEYE). Of a stereo
@@ -41,7 +41,7 @@ struct CameraFile {
   Camera camera;
   std::optional<double> fps = std::nullopt;
   std::optional<double> depth_scale = std::nullopt;  // mm per unit of a depth image
-  // The right camera's centre is at +baseline on the left one's x axis.
+  // The right camera's center is at +baseline on the left one's x axis.
   std::optional<double> baseline_mm = std::nullopt;
   double unit_mm = 1.0;  // of the poses beside the file, mm
   std::optional<PhotometricCalibration> photometric = std::nullopt;
@@ -54,7 +54,7 @@ struct CameraFile {
 inline constexpr double kLargestRefitPx = 0.1;
 
 // A stereo calibration of raw images, as OpenCV writes one: M1, D1, M2, D2, R, T. A point x of the left camera is at
-// R x + T in the right one. Where T is shorter than kShortestBaseline_mm it is taken to be in metres.
+// R x + T in the right one. Where T is shorter than kShortestBaseline_mm it is taken to be in meters.
 struct StereoCalibration {
   struct Eye {
     double fx = 0, fy = 0, cx = 0, cy = 0;  // px
@@ -64,7 +64,7 @@ struct StereoCalibration {
   Eye right;
   Rigid3 right_from_left;  // mm
   std::optional<ImageSize> image_size;
-  bool was_in_metres = false;
+  bool was_in_meters = false;
 };
 
 inline constexpr double kShortestBaseline_mm = 0.5;

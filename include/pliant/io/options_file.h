@@ -11,7 +11,7 @@
 
 namespace pliant {
 
-// Sets every option that the file names. An unknown option is an error that names its nearest neighbour; so are a value
+// Sets every option that the file names. An unknown option is an error that names its nearest neighbor; so are a value
 // that is out of range, an option given twice, and anything but a plain value. The sentence has file and line. On
 // failure the table is as it was.
 Status LoadOptionsFile(const std::string& path, OptionTable& table);

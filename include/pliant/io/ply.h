@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Coloured points as a PLY file (binary, little-endian; x y z float, red green blue uchar), which MeshLab, CloudCompare
+// Colored points as a PLY file (binary, little-endian; x y z float, red green blue uchar), which MeshLab, CloudCompare
 // and Open3D open.
 #pragma once
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// What a run folder's sparse/ says of the run: its camera, its images' names, its points undeformed and in colour.
+// What a run folder's sparse/ says of the run: its camera, its images' names, its points undeformed and in color.
 #pragma once
 
 #include <map>

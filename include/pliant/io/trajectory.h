@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // Camera paths. Ours are in TUM's text format: `timestamp tx ty tz qx qy qz qw` a line, world_from_camera, seconds and
-// millimetres (or map units). Those of other systems are read in KITTI's and EuRoC's too. Lines that start with # are
+// millimeters (or map units). Those of other systems are read in KITTI's and EuRoC's too. Lines that start with # are
 // comments.
 #pragma once
 

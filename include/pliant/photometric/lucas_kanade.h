@@ -4,7 +4,7 @@
 // Lucas-Kanade with gain and bias, coarse to fine (docs/method.md, eq. P1 to P3): the d, alpha and beta of
 //   argmin sum over v in the patch of ( I0(v) - alpha It(v + d) - beta )^2
 // (Gomez Rodriguez et al., IROS 2022), solved inverse-compositionally (Baker and Matthews, IJCV 2004): the patch is
-// linearised once, gain and bias are eliminated in closed form, and a step costs one bilinear pass over the patch.
+// linearized once, gain and bias are eliminated in closed form, and a step costs one bilinear pass over the patch.
 // Pixels masked in either image carry no weight. Vector code is chosen at run time (Highway); results do not depend on
 // the number of threads.
 #pragma once
@@ -17,12 +17,12 @@
 namespace pliant {
 
 struct PatchMatch {
-  Pixel pixel;                                 // where the patch's centre is, pixels of level 0
-  Affine2 affine;                              // current neighbourhood from the patch's
+  Pixel pixel;                                 // where the patch's center is, pixels of level 0
+  Affine2 affine;                              // current neighborhood from the patch's
   PatchFailure failure = PatchFailure::kNone;  // the rest is set as far as it was computed
   double ssim = 0;                             // of the reference and the patch found, at most 1
   double gain = 1;                             // alpha
-  double bias = 0;                             // beta, grey levels
+  double bias = 0;                             // beta, gray levels
   int iterations = 0;                          // over all levels
 };
 
@@ -37,7 +37,7 @@ struct EnumNames<AlignmentModel> {
                                         std::pair{AlignmentModel::kAffine, std::string_view("affine")}};
 };
 
-// Aligns a patch on the finest level only, seen through the 2x2 `affine` (current from reference neighbourhood), from a
+// Aligns a patch on the finest level only, seen through the 2x2 `affine` (current from reference neighborhood), from a
 // start within about two pixels. kTranslation keeps `affine`; kAffine refines it too, and needs a patch made with
 // AffineSolution::kWith.
 PatchMatch AlignPatch(const ReferencePatch& patch, const ImagePyramid& pyramid, const SupportMask& mask, Pixel start,

@@ -80,7 +80,7 @@ struct LucasKanadeOptions {
   Switch gain_bias = Switch::kOn;
   Shading shading = Shading::kPlane;  // with gain_bias only
   double max_gain = 4;                // gains outside [1 / max_gain, max_gain] are refused
-  double min_texture = 0.5;           // grey levels / px: root of the smaller eigenvalue of the mean gradient tensor
+  double min_texture = 0.5;           // gray levels / px: root of the smaller eigenvalue of the mean gradient tensor
   double min_valid_support = 0.6;     // share of the patch that must lie on usable pixels
   double max_correction_px = 60;      // farther from its start than this, a patch has run away
   SimilarityMode similarity = SimilarityMode::kCompensated;
@@ -101,9 +101,9 @@ struct PatchLevel {
   PatchFailure failure = PatchFailure::kNone;  // kLowTexture, kMasked, kOutOfImage: this level is of no use
 };
 
-// A patch of `size` x `size` pixels around `centre`, bilinear values, and its solution on each level.
+// A patch of `size` x `size` pixels around `center`, bilinear values, and its solution on each level.
 struct ReferencePatch {
-  Pixel centre;  // pixels of level 0
+  Pixel center;  // pixels of level 0
   int size = 0;
   std::vector<PatchLevel> levels;
   // Level 0 with motion d + M (u, v), u and v from -1 to 1 over the patch: 7 blocks, as PatchLevel::solve, for
@@ -123,7 +123,7 @@ enum class AffineSolution { kWithout, kWith };
 
 // Cuts a patch out of a pyramid, into `patch`, whose memory is used again. Returns patch->failure(): kNone,
 // kOutOfImage, kMasked or kLowTexture.
-PatchFailure CutReferencePatch(const ImagePyramid& pyramid, const SupportMask& mask, Pixel centre,
+PatchFailure CutReferencePatch(const ImagePyramid& pyramid, const SupportMask& mask, Pixel center,
                                const LucasKanadeOptions& options, AffineSolution affine, ReferencePatch* patch);
 
 }  // namespace pliant

@@ -3,7 +3,7 @@
 
 // Structural similarity (Wang et al., IEEE TIP 2004, docs/method.md (P5)) of two patches as wholes, from their moments:
 //   SSIM = (2 mx my + C1) (2 sxy + C2) / ((mx^2 + my^2 + C1) (sx^2 + sy^2 + C2)),  C1 = (0.01 * 255)^2,
-//   C2 = (0.03 * 255)^2, for grey levels 0..255.
+//   C2 = (0.03 * 255)^2, for gray levels 0..255.
 #pragma once
 
 namespace pliant {
@@ -12,7 +12,7 @@ inline constexpr double kSsimC1 = 6.5025;
 inline constexpr double kSsimC2 = 58.5225;
 
 struct PatchMoments {
-  double mean_x = 0, mean_y = 0;  // grey levels
+  double mean_x = 0, mean_y = 0;  // gray levels
   double var_x = 0, var_y = 0, cov = 0;
 };
 

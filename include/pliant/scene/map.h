@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // The map: material points and where they are now. Plain values; only the tracker changes them. World frame: the
-// camera frame of the reference image. Units are map units: millimetres after a metric start, else scaled once so that
+// camera frame of the reference image. Units are map units: millimeters after a metric start, else scaled once so that
 // the median depth of the first map is the configured nominal depth.
 #pragma once
 

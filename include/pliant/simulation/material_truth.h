@@ -22,7 +22,7 @@
 
 namespace pliant {
 
-// A place in an image; (0, 0) is the centre of the first pixel.
+// A place in an image; (0, 0) is the center of the first pixel.
 struct FramePixel {
   int frame_idx = 0;
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();

@@ -3,8 +3,8 @@
 
 // What is simulated: a scene that deforms, a camera with a light on its way through it, and a sensor. Every number
 // that a sequence depends on is one of these options; they are written beside it (simulation.yaml) and give it back.
-// World frame: millimetres, x right, y down. The camera's way starts at the origin and leaves it along +z: the
-// centreline of `colon` and `tube`, a straight line over the sheet of `surface` and `lobes` (which lies below it, at
+// World frame: millimeters, x right, y down. The camera's way starts at the origin and leaves it along +z: the
+// centerline of `colon` and `tube`, a straight line over the sheet of `surface` and `lobes` (which lies below it, at
 // larger y). In `mesh` it is the file's own frame, scaled.
 #pragma once
 
@@ -57,19 +57,19 @@ struct SimulationOptions {
     double radius_mm = 25.0;        // of the lumen, folds left out
     double length_mm = 0.0;         // of the tube or sheet; 0: the way of the camera and view_mm more
     double view_mm = 230.0;         // how much of it lies ahead of the last camera
-    double bend_deg_per_cm = 4.0;   // largest bending of the centreline, in each of the two planes
+    double bend_deg_per_cm = 4.0;   // largest bending of the centerline, in each of the two planes
     double fold_depth_mm = 5.5;     // how far a typical fold stands into the lumen
     double fold_spacing_mm = 26.0;  // between rings of folds, in the mean
     double relief_mm = 0.5;         // uneven wall, standard deviation of about
     double width_mm = 220.0;        // surface, lobes: of the sheet, across the camera's way
     double lobe_step_mm = 12.0;     // lobes: how far one lies above the other
     std::string mesh_path;          // mesh: the file; written absolute beside a sequence
-    double mesh_scale = 1.0;        // mesh: millimetres in a unit of the file
+    double mesh_scale = 1.0;        // mesh: millimeters in a unit of the file
     double mesh_step_mm = 0.4;      // edge of the mesh, also of one that is read; finer where folds are steep
   } scene;
 
   struct Texture {
-    double contrast = 1.0;      // 0: one colour
+    double contrast = 1.0;      // 0: one color
     double largest_mm = 12.0;   // longest wave of the mottling
     double smallest_mm = 0.3;   // shortest wave: about two pixels at 60 mm
     double persistence = 0.95;  // amplitude of an octave by the one before
@@ -80,9 +80,9 @@ struct SimulationOptions {
   // The displacement of the material point that is V at rest is the sum of three (docs/method.md, section "The
   // simulated scene"):
   //   the wave      d A sin(omega t + 2 pi / wavelength (V_x + V_y + V_z)),   d = e_y
-  //   breathing     B sin(2 pi t / period) (V - C) / R,  C the place it swells from (the centreline), R the radius
+  //   breathing     B sin(2 pi t / period) (V - C) / R,  C the place it swells from (the centerline), R the radius
   //   the poke      n P sin^2(pi t / period) exp(-|V - Q|^2 / (2 radius^2)),  n into the lumen at Q
-  // Source of the wave: Gomez Rodriguez, Montiel, Tardos, IROS 2022; 200 pi mm reads V in decimetres.
+  // Source of the wave: Gomez Rodriguez, Montiel, Tardos, IROS 2022; 200 pi mm reads V in decimeters.
   struct Deformation {
     double amplitude_mm = 0.0;  // A; 0: no wave
     double omega_rad_s = 2.5;
@@ -110,11 +110,11 @@ struct SimulationOptions {
     double exposure_time_s = 0.5;  // time constant with which the exposure follows
     double gain_jitter = 0.01;     // standard deviation of the gain from frame to frame, as a share
     double gamma = 2.2;
-    double noise_levels = 1.5;      // standard deviation in grey levels of 255
+    double noise_levels = 1.5;      // standard deviation in gray levels of 255
     double blur_px = 0.45;          // standard deviation of the lens's blur
     double vignetting = 0.25;       // light lost in the corners, as a share
     double shutter_s = 0.004;       // motion blur: how long the shutter is open, about the frame's time; 0: an instant
-    int samples = 4;                // rays a pixel; depth is always taken at the pixel's centre
+    int samples = 4;                // rays a pixel; depth is always taken at the pixel's center
     double depth_scale_mm = 0.005;  // one step of the 16-bit depth; range 65535 of them
     double drops = 0.0;             // drops of fluid on the lens at a time, in the mean; not in any truth
     double debris = 0.0;            // pieces that float before the lens at a time, in the mean; not in any truth
@@ -145,10 +145,10 @@ struct SimulationOptions {
     TrajectoryKind kind = TrajectoryKind::kInsert;
     int frames = 100;
     double fps = 30.0;
-    double start_mm = 25.0;          // first camera, along the centreline or the way over the sheet
+    double start_mm = 25.0;          // first camera, along the centerline or the way over the sheet
     std::string start_pose;          // first camera as tx,ty,tz,qx,qy,qz,qw, world_from_camera; empty: the scene's own
     double speed_mm_s = 15.0;        // insert
-    double look_ahead_mm = 35.0;     // the camera looks at the centreline, or the sheet, this far ahead
+    double look_ahead_mm = 35.0;     // the camera looks at the centerline, or the sheet, this far ahead
     double height_mm = 60.0;         // surface, lobes: of the camera's way over the sheet
     double sway_amplitude_mm = 8.0;  // sway: to each side
     double sway_period_s = 4.0;      // sway: there and back, to both sides

@@ -4,7 +4,7 @@
 // A deforming scene that can be photographed at any frame and asked for the truth. The surface is a fine triangle mesh;
 // its vertices are moved by the deformation's formula, so a material point (a triangle and a place in it) has a
 // position at every time. Rays are Embree's; hit positions are recomputed in double precision from the triangle that
-// was hit. Frames: world and camera as in options.h and camera.h, millimetres, seconds from frame 0. The same options
+// was hit. Frames: world and camera as in options.h and camera.h, millimeters, seconds from frame 0. The same options
 // give the same pixels whatever the number of threads. One Simulator serves one caller at a time: it is posed frame by
 // frame.
 #pragma once
@@ -60,7 +60,7 @@ enum class Eye { kLeft, kRight };
 struct SimulatedFrame {
   cv::Mat image;  // CV_8UC3, BGR
   cv::Mat right;  // the same of the right camera; empty where there is none
-  cv::Mat depth;  // CV_32FC1, z along the optical axis at the pixel's centre, mm; 0: nothing was hit
+  cv::Mat depth;  // CV_32FC1, z along the optical axis at the pixel's center, mm; 0: nothing was hit
 };
 
 class Simulator {

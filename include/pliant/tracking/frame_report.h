@@ -27,7 +27,7 @@ namespace pliant {
 
 enum class TrackingState {
   kWaitingForReference,  // no reference frame yet: too few corners
-  kInitialising,         // points are followed; the first map does not exist yet, or never came
+  kInitializing,         // points are followed; the first map does not exist yet, or never came
   kTracking,             // pose and deformation of this frame are known, if only since a later frame made the map
   kLost,                 // too few points are left
 };
@@ -36,7 +36,7 @@ template <>
 struct EnumNames<TrackingState> {
   static constexpr std::array kNames = {
       std::pair{TrackingState::kWaitingForReference, std::string_view("waiting_for_reference")},
-      std::pair{TrackingState::kInitialising, std::string_view("initialising")},
+      std::pair{TrackingState::kInitializing, std::string_view("initializing")},
       std::pair{TrackingState::kTracking, std::string_view("tracking")},
       std::pair{TrackingState::kLost, std::string_view("lost")}};
 };

@@ -21,7 +21,7 @@ struct GrowthOptions {
   double max_error_ratio = 2.0;   // the same by its median over the candidates
   int window = 45;                // frames of which the map is made anew; 0: never
   int remake_every = 20;          // frames; twice that while half of the points in view were in three such maps
-  // A point that two maps made anew had, and whose depth another one changes by more than its neighbours', has slid.
+  // A point that two maps made anew had, and whose depth another one changes by more than its neighbors', has slid.
   double max_depth_change = 0.02;
   double remade_weight = 0.3;  // of a map made anew against those before it, at least
   // Where so many of the points in view had their depth measured at the start (a pair, a depth image), they are left

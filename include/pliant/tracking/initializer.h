@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// What makes the first map. An initialiser is asked once a frame with everything that was followed since the reference
+// What makes the first map. An initializer is asked once a frame with everything that was followed since the reference
 // frame, and answers: wait, start again from a new reference, or here is the map. It keeps no state between calls.
 // World frame: the reference frame's camera. Unit: mm in the sense of a configured nominal depth (monocular maps), or
 // true mm (stereo, depth). A rival is a file that implements Initializer.
@@ -51,7 +51,7 @@ struct InitInput {
   const std::vector<InitFrame>& frames;
   cv::Mat reference_depth_mm;  // CV_32FC1, z along the optical axis, 0 = none; empty where there is no depth
   InitMoment moment = InitMoment::kMoreFollow;
-  int threads = 1;  // that an initialiser may use; they never change its answer
+  int threads = 1;  // that an initializer may use; they never change its answer
   // z of the reference's points, in their order, in any unit; empty: not known.
   std::vector<double> reference_depths = {};
   std::optional<PhotometricCalibration> photometric = std::nullopt;  // where it is known

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// The initialisers by name.
+// The initializers by name.
 #pragma once
 
 #include <array>

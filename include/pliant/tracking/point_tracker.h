@@ -7,7 +7,7 @@
 //   adaptive  keeps the first patch. The latest image's patch finds the point, then the point is re-aligned to the
 //             first patch seen through the affine change since, so errors do not add up. Only when the first patch no
 //             longer resembles what is seen is a new one cut (one error is committed), and not before.
-// Pixels: (0, 0) is the centre of the first pixel. Memory grows with the points only. docs/method.md, eq. P7 to P9.
+// Pixels: (0, 0) is the center of the first pixel. Memory grows with the points only. docs/method.md, eq. P7 to P9.
 #pragma once
 
 #include <map>
@@ -37,7 +37,7 @@ struct PointTrackerOptions {
   double refresh_ssim = 0.85;  // adaptive: a new first patch is cut when similarity to the first falls below
   AlignmentModel realignment = AlignmentModel::kAffine;  // adaptive: what is refined against the first patch
   double max_realignment_px = 1.5;  // adaptive: a re-alignment that jumps farther from the latest patch is refused
-  double max_scale = 2;             // adaptive: a neighbourhood stretched or shrunk by more gets a new first patch
+  double max_scale = 2;             // adaptive: a neighborhood stretched or shrunk by more gets a new first patch
   Switch forward_backward = Switch::kOn;
   double max_forward_backward_px = 0.75;
 
@@ -48,7 +48,7 @@ struct PointTrackerOptions {
 struct PointPrediction {
   PointId id;
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
-  // How the neighbourhood in the latest image is expected to map to the next (identity: as it was).
+  // How the neighborhood in the latest image is expected to map to the next (identity: as it was).
   Eigen::Matrix2d affine_from_latest = Eigen::Matrix2d::Identity();
 };
 
@@ -61,7 +61,7 @@ struct PointTrack {
   double ssim = 0;  // to the reference patch
   double gain = 1;  // brightness from this image to the reference patch's: alpha, beta
   double bias = 0;
-  // How the neighbourhood in the image where the point was added maps to this one.
+  // How the neighborhood in the image where the point was added maps to this one.
   Eigen::Matrix2d affine_from_first = Eigen::Matrix2d::Identity();
   Refreshed refreshed = Refreshed::kNo;  // a new reference patch was cut in this image
 };
@@ -145,13 +145,13 @@ class PointTracker {
   std::map<PointId, Point> points_;
 };
 
-// The 2x2 affine change of every point's neighbourhood between two images, from how its `neighbours` nearest points
+// The 2x2 affine change of every point's neighborhood between two images, from how its `neighbors` nearest points
 // moved relative to it: least squares, pulled towards the identity by `damping_px` (noise of a relative motion over the
-// change expected between two images: 0.3 px / 0.05), so that few, near or collinear neighbours change little.
-// Neighbours that disagree with the rest are down-weighted (one reweighting). `from`, `to` and the result are of equal
+// change expected between two images: 0.3 px / 0.05), so that few, near or collinear neighbors change little.
+// Neighbors that disagree with the rest are down-weighted (one reweighting). `from`, `to` and the result are of equal
 // length.
-std::vector<Eigen::Matrix2d> NeighbourhoodAffines(std::span<const Eigen::Vector2d> from,
-                                                  std::span<const Eigen::Vector2d> to, int neighbours = 8,
-                                                  double damping_px = 6);
+std::vector<Eigen::Matrix2d> NeighborhoodAffines(std::span<const Eigen::Vector2d> from,
+                                                 std::span<const Eigen::Vector2d> to, int neighbors = 8,
+                                                 double damping_px = 6);
 
 }  // namespace pliant

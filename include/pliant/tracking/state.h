@@ -16,8 +16,8 @@ namespace pliant {
 enum class TrackingEvent {
   kTooFewCorners,   // no reference: the image has too little to follow
   kReferenceFound,  // corners were placed; this image is the reference
-  kMapAwaited,      // the initialiser needs more (parallax, frames)
-  kReferenceSpent,  // the initialiser gave this reference up
+  kMapAwaited,      // the initializer needs more (parallax, frames)
+  kReferenceSpent,  // the initializer gave this reference up
   kMapCreated,      // the first map exists
   kFrameTracked,    // pose and deformation were found
   kTooFewPoints,    // too few points could be followed or explained
@@ -39,10 +39,10 @@ struct EnumNames<TrackingEvent> {
 };
 
 // The state after `event` in `state`. Events that cannot happen in a state leave it as it is.
-//   waiting       --reference_found-->  initialising     --map_created--> tracking
-//   initialising  --reference_spent-->  waiting          (or straight to tracking from waiting: a start from depth)
+//   waiting       --reference_found-->  initializing     --map_created--> tracking
+//   initializing  --reference_spent-->  waiting          (or straight to tracking from waiting: a start from depth)
 //   tracking      --too_few_points-->   lost             lost --frame_tracked--> tracking
-//   lost          --map_left-->         waiting          waiting, initialising --map_found_again--> lost
+//   lost          --map_left-->         waiting          waiting, initializing --map_found_again--> lost
 TrackingState NextState(TrackingState state, TrackingEvent event);
 
 }  // namespace pliant

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // The first map from one rectified pair: corners of the left image, found in the right one along their row, at once and
-// in true millimetres (docs/method.md, eq. B1 to B4). What follows is tracked with the left images alone.
+// in true millimeters (docs/method.md, eq. B1 to B4). What follows is tracked with the left images alone.
 #pragma once
 
 #include <array>

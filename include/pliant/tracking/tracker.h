@@ -33,7 +33,7 @@
 #include "pliant/tracking/growth_options.h"
 #include "pliant/tracking/initializer.h"
 #include "pliant/tracking/make_initializer.h"
-#include "pliant/tracking/neighbour_agreement.h"
+#include "pliant/tracking/neighbor_agreement.h"
 #include "pliant/tracking/oracle.h"
 #include "pliant/tracking/point_tracker.h"
 #include "pliant/tracking/relocalization_options.h"
@@ -74,7 +74,7 @@ struct TrackerOptions {
   CameraMotion camera_motion = CameraMotion::kFree;
   Switch neighbor_agreement = Switch::kOn;
   double gauge_share = 0.2;             // a frame, of the scene's common motion since rest, that goes to the camera
-  Switch find_lost = Switch::kOn;       // points that were lost are looked for where their neighbours took them
+  Switch find_lost = Switch::kOn;       // points that were lost are looked for where their neighbors took them
   int max_searches = 200;               // a frame, for lost points
   int max_lost_points = 500;            // that are remembered: the oldest is forgotten first
   double max_search_px = 8;             // a lost point found farther from where it is expected is another one
@@ -89,7 +89,7 @@ struct TrackerOptions {
   Switch submaps = Switch::kOn;         // another one is begun then; off: the tracker gives up
 
   // Groups Corners, Masks, LucasKanade, PointTracker, Init, CameraPose, Deformation, Optimization, Tracking, Growth,
-  // Relocalization, AbsolutePose, Oracle, and those of the initialisers.
+  // Relocalization, AbsolutePose, Oracle, and those of the initializers.
   void List(OptionTable& table);
 };
 
@@ -105,13 +105,13 @@ struct TrackerFrame {
   std::string name;
   double timestamp_s = 0;
   cv::Mat image;  // 8-bit, 1 or 3 (BGR) channels
-  cv::Mat grey;   // CV_8UC1
+  cv::Mat gray;   // CV_8UC1
   ImagePyramid pyramid;
   SupportMask mask;
   cv::Mat depth_mm;  // CV_32FC1 or empty; only a start from depth uses it
   // Instead of corners, the best first; only a start from a model or a pair uses them, when it takes a reference.
   std::function<std::vector<PixelDepth>()> known_points;
-  double sharpness = 0;   // of the image, grey levels
+  double sharpness = 0;   // of the image, gray levels
   double prepare_ms = 0;  // wall time of PrepareFrame
 };
 
@@ -123,7 +123,7 @@ class Tracker {
  public:
   // The stages whose wall times are in every report, in this order.
   static constexpr std::array<std::string_view, 7> kStages = {"prepare", "photometric", "pose",      "agreement",
-                                                              "graph",   "joint",       "initialise"};
+                                                              "graph",   "joint",       "initialize"};
   // `threads` >= 1 work on one frame; the result does not depend on it. `seed` decides RANSAC's samples.
   // `truth` is what the oracle switches ask; it must be there when one is on, and outlive this.
   // `photometric`: of the camera, where it is known; first maps that listen to the light then trust it.
@@ -139,7 +139,7 @@ class Tracker {
   // The reports that became final with this frame, in order of time; each frame is reported once.
   std::vector<FrameReport> Process(const TrackerFrame& frame);
   // The reports that are held back, in order of time, the last processed frame's last: those since the reference while
-  // there is no map, else none. So far they are in state initialising.
+  // there is no map, else none. So far they are in state initializing.
   const std::vector<FrameReport>& held() const { return held_; }
   // No frame will follow: while the first map is awaited, a last attempt at one. Its frames come from Finish.
   void EndSequence();
@@ -189,7 +189,7 @@ class Tracker {
   std::vector<PointPrediction> PredictPixels(const Rigid3& predicted_cam_from_world) const;
   Followed FollowPoints(const TrackerFrame& frame, const std::vector<PointPrediction>& predictions);
   int FindLost(const TrackerFrame& frame, const Rigid3& cam_from_world, Followed* followed);
-  DeformationGraph TieNeighbours(const Followed& followed, FrameReport* report) const;
+  DeformationGraph TieNeighbors(const Followed& followed, FrameReport* report) const;
   void DropContradicted(const Rigid3& cam_from_world, const DeformationGraph& graph, Followed* followed);
   void DropUnexplained(Followed* followed);
   void Commit(const FrameSolution& solution, const Followed& followed, FrameReport* report);
@@ -236,7 +236,7 @@ class Tracker {
   std::vector<InitFrame> init_frames_;  // since the reference
   std::vector<double> known_depths_;    // of the reference's points, where they are known
   std::string image_fault_;             // of the last of them
-  std::vector<FrameReport> held_;  // of init_frames_ while initialising; within Process the present frame's is the last
+  std::vector<FrameReport> held_;  // of init_frames_ while initializing; within Process the present frame's is the last
   std::int64_t next_id_ = 0;
   std::unique_ptr<Submap> now_;                // the present map, or the one that is awaited
   std::vector<std::unique_ptr<Submap>> left_;  // maps that were left, the last one last

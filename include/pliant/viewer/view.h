@@ -37,7 +37,7 @@ struct ViewedObservation {
   float depth = kUnknown;                              // along the optical axis, in the world's unit
   float reprojection_px = kUnknown;
   float ssim = kUnknown;
-  // What maps the grey levels of the point's first patch onto those of this frame's: gain * first + bias.
+  // What maps the gray levels of the point's first patch onto those of this frame's: gain * first + bias.
   float gain = kUnknown;
   float bias = kUnknown;
   Eigen::Vector3f truth = Eigen::Vector3f::Constant(kUnknown);  // the true surface at its pixel, in the run's scale
@@ -81,7 +81,7 @@ struct TruePose {
 struct View {
   std::vector<ViewedRun> runs;              // in one world
   std::vector<TruePose> truth;              // the true camera path in it; empty: not known
-  bool in_millimetres = false;              // else the first run's map units
+  bool in_millimeters = false;              // else the first run's map units
   std::optional<Camera> camera;             // nothing: neither the sequence nor a run says
   std::optional<SequenceRequest> sequence;  // the images; nothing: there are none
   std::vector<std::string> notes;           // what is missing or left out; one sentence each
@@ -104,7 +104,7 @@ struct ViewRequest {
 std::string RunName(const std::string& run_path);
 
 // Reads the runs, finds their sequence, takes over its truth and brings everything into one world: the truth's where
-// there is true motion of the camera, in millimetres, else the first run's. A run's worlds are turned and scaled onto
+// there is true motion of the camera, in millimeters, else the first run's. A run's worlds are turned and scaled onto
 // it by the camera's poses and the points' depths in common frames; one without a common frame is a note. Fails with
 // what reading a run or its truth fails with, kMismatch where a run is not of the sequence that was named, and
 // kInsufficient where no run has a frame. A sequence that was not named, and is missing or not that of a run, is a

@@ -11,10 +11,10 @@
 
 namespace pliant::simulation {
 
-class Centreline {
+class Centerline {
  public:
   // `bend_deg_per_cm` bounds the curvature in each plane. Reaches from 0 to `length_mm`.
-  Centreline(double length_mm, double bend_deg_per_cm, int seed);
+  Centerline(double length_mm, double bend_deg_per_cm, int seed);
 
   // The frame at a place along the line: its origin lies on the line, z points along it. Arguments beyond the ends are
   // moved to the ends.

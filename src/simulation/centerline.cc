@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "simulation/centreline.h"
+#include "simulation/centerline.h"
 
 #include <algorithm>
 #include <array>
@@ -15,7 +15,7 @@ namespace {
 constexpr double kStepMm = 0.5;
 }  // namespace
 
-Centreline::Centreline(double length_mm, double bend_deg_per_cm, int seed) {
+Centerline::Centerline(double length_mm, double bend_deg_per_cm, int seed) {
   // Curvature: two incommensurable waves in each plane, so that no bend repeats.
   constexpr std::array kWavesMm = {310.0, 170.0};
   Random random = Random(static_cast<std::uint64_t>(seed)).Child("centreline");
@@ -44,7 +44,7 @@ Centreline::Centreline(double length_mm, double bend_deg_per_cm, int seed) {
   }
 }
 
-Rigid3 Centreline::WorldFromFrame(double s_mm) const {
+Rigid3 Centerline::WorldFromFrame(double s_mm) const {
   const double position = std::clamp(s_mm / kStepMm, 0.0, static_cast<double>(frames_.size()) - 1.001);
   const auto i = static_cast<std::size_t>(position);
   const double t = position - static_cast<double>(i);

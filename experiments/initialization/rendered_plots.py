@@ -10,8 +10,8 @@ import plots
 import rendered
 from plots import plt
 
-# A colour a family of starts (window_no_light is of `window`), a marker a start.
-COLOURS = [plots.BLUE, plots.VERMILION, plots.GREEN, plots.BLACK, plots.PURPLE, plots.ORANGE, plots.SKY]
+# A color a family of starts (window_no_light is of `window`), a marker a start.
+COLORS = [plots.BLUE, plots.VERMILION, plots.GREEN, plots.BLACK, plots.PURPLE, plots.ORANGE, plots.SKY]
 MARKERS = ["o", "s", "^", "D", "v", "P", "X", "*", "<", ">", "h"]
 LIMIT = {"color": "0.4", "linewidth": 1, "linestyle": "--"}
 LEAST_DEPTH_ERROR = 1e-4  # smaller ones are drawn here: the axis is logarithmic, and the true map's error is rounding
@@ -20,7 +20,7 @@ LEAST_DEPTH_ERROR = 1e-4  # smaller ones are drawn here: the axis is logarithmic
 def styles_of(grouped):
     variants = dict.fromkeys(variant for cells in grouped.values() for starts in cells.values() for variant in starts)
     families = list(dict.fromkeys(variant.split("_")[0] for variant in variants))
-    return {variant: {"color": COLOURS[families.index(variant.split("_")[0]) % len(COLOURS)],
+    return {variant: {"color": COLORS[families.index(variant.split("_")[0]) % len(COLORS)],
                       "marker": MARKERS[index % len(MARKERS)]} for index, variant in enumerate(variants)}
 
 
@@ -82,7 +82,7 @@ def depth_error(grouped, limits, cell_names, folder):
 
 
 def waiting(grouped, limits, folder):
-    """A point a run, of all speeds: what the frames that an initialiser waits are good for."""
+    """A point a run, of all speeds: what the frames that an initializer waits are good for."""
     figure, axes = panels(len(grouped))
     styles = styles_of(grouped)
     for axis, (name, cells) in zip(axes, grouped.items()):

@@ -9,7 +9,7 @@ import plots
 import two_views
 from plots import plt
 
-# A colour, marker and dashes a line.
+# A color, marker and dashes a line.
 STYLES = [(plots.BLUE, "o", "-"), (plots.VERMILION, "s", "--"), (plots.GREEN, "^", "-."), (plots.PURPLE, "D", ":"),
           (plots.BLACK, "v", "-"), (plots.ORANGE, "x", "--")]
 LABELS = {"median_depth_error": "median depth error", "direction_deg": "direction error, deg", "ms": "time, ms",
@@ -39,10 +39,10 @@ def draw(crosses, name, csv_path, image_paths):
     for row, y in enumerate(plot["y"]):
         for column, panel in enumerate(panels):
             axis = axes[row][column]
-            for line, (colour, marker, dashes) in zip(lines, STYLES):
+            for line, (color, marker, dashes) in zip(lines, STYLES):
                 points = [two_views.figures(groups[panel, line, x])[y] if (panel, line, x) in groups else math.nan
                           for x in xs]
-                axis.plot([float(x) for x in xs], points, color=colour, marker=marker, linestyle=dashes, markersize=4,
+                axis.plot([float(x) for x in xs], points, color=color, marker=marker, linestyle=dashes, markersize=4,
                           linewidth=1.2, label=line)
             if y in SHARES:
                 axis.set_ylim(-0.05, 1.05)

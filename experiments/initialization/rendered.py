@@ -16,11 +16,11 @@ import grid
 FIGURES = ["set", "amplitude_mm", "omega_rad_s", "seed", "variant", "declared", "reference_frame", "declared_frame",
            "frames_waited", "frames_before", "points", "median_depth", "rmse_depth", "p90_depth", "null_median_depth",
            "reference_median_depth", "rotation_error_deg", "true_rotation_deg", "direction_error_deg",
-           "initialiser_ms", "initialiser_largest_ms", "frames_after", "rmse_mm_after", "null_rmse_mm_after", "note"]
+           "initializer_ms", "initializer_largest_ms", "frames_after", "rmse_mm_after", "null_rmse_mm_after", "note"]
 
 COLUMNS = ["set", "speed", "amplitude_mm", "omega_rad_s", "start", "runs", "declared_share", "failed_share",
            "median_depth", "rmse_depth", "null_median_depth", "frames_waited", "frames_before", "rotation_error_deg",
-           "true_rotation_deg", "direction_error_deg", "initialiser_ms", "initialiser_largest_ms", "frames_after",
+           "true_rotation_deg", "direction_error_deg", "initializer_ms", "initializer_largest_ms", "frames_after",
            "rmse_mm_after", "null_rmse_mm_after"]
 
 # A map has failed with a larger median relative depth error; so many frames later the surface error is looked at.
@@ -50,8 +50,8 @@ def figures_of(run, frames_after):
             "rmse_depth": estimate["rmse_relative_depth"], "p90_depth": estimate["p90_relative_depth"],
             "null_median_depth": first_map["declared"]["null"]["median_relative_depth"],
             "reference_median_depth": reference["estimate"]["median_relative_depth"] if reference else "",
-            "initialiser_ms": first_map["initialiser_ms"]["total"],
-            "initialiser_largest_ms": first_map["initialiser_ms"]["largest"]}
+            "initializer_ms": first_map["initializer_ms"]["total"],
+            "initializer_largest_ms": first_map["initializer_ms"]["largest"]}
     row |= {name: "" if motion.get(name) is None else motion[name]
             for name in ("rotation_error_deg", "true_rotation_deg", "direction_error_deg")}
     frame = after(evaluation["surface"]["frames"], first_map["declared_frame"], frames_after)
@@ -114,13 +114,13 @@ def table_row(variant, starts, failed_above):
             f"{percent(median('median_depth'))} ({percent(median('null_median_depth'))})", percent(median("rmse_depth")),
             grid.number(median("frames_waited"), 0), grid.number(median("frames_before"), 0),
             f"{grid.number(rotation)} ({grid.number(true_rotation)})", grid.number(median("direction_error_deg"), 1),
-            grid.number(median("initialiser_ms"), 0), grid.number(median("initialiser_largest_ms"), 0),
+            grid.number(median("initializer_ms"), 0), grid.number(median("initializer_largest_ms"), 0),
             f"{grid.number(median('rmse_mm_after'))} ({grid.number(median('null_rmse_mm_after'), 1)})",
             grid.number(median("frames_after"), 0)]
 
 
 HEADER = ["start", "declared %", "failed %", "depth, median % (null)", "depth, RMSE %", "waited", "since the first",
-          "rotation deg (true)", "direction deg", "initialiser ms", "at once", "RMSE mm after (null)", "frames after"]
+          "rotation deg (true)", "direction deg", "initializer ms", "at once", "RMSE mm after (null)", "frames after"]
 
 
 def csv_rows(grouped, failed_above, cell_names):

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Colours that the colour-blind tell apart: viridis for figures, Okabe and Ito's for things.
+// Colors that the color-blind tell apart: viridis for figures, Okabe and Ito's for things.
 
 import type { Report } from "./report";
 import type { Run } from "./run";
@@ -24,21 +24,21 @@ const LIGHT: Palette = {
   background: "#ffffff", grid: "#dde1e6", text: "#57606a", map: "#1b1f23", trails: "#d55e00", truth: "#009e73", picked: "#c2185b",
   runs: ["#0072b2", "#c77f00", "#b0548a", "#2f93cc", "#8f8700", "#57606a", "#7a4fb5", "#00796b", "#a13d00"],
   series: ["#00805d", "#b0548a", "#57606a", "#d55e00", "#2f93cc", "#8f8700", "#7a4fb5"],
-  states: { tracking: "#0072b2", lost: "#d55e00", initialising: "#8c959f", waiting_for_reference: "#b0548a" },
+  states: { tracking: "#0072b2", lost: "#d55e00", initializing: "#8c959f", waiting_for_reference: "#b0548a" },
 };
 
 const DARK: Palette = {
   background: "#101316", grid: "#2b3138", text: "#9aa4ae", map: "#b9c0c7", trails: "#e8721c", truth: "#1fbf92", picked: "#ff79b0",
   runs: ["#56b4e9", "#e69f00", "#cc79a7", "#4a90d9", "#f0e442", "#9aa4ae", "#b39ddb", "#4db6ac", "#ff8a50"],
   series: ["#1fbf92", "#cc79a7", "#9aa4ae", "#e8721c", "#4a90d9", "#f0e442", "#b39ddb"],
-  states: { tracking: "#3d9bd6", lost: "#e8721c", initialising: "#7d8894", waiting_for_reference: "#cc79a7" },
+  states: { tracking: "#3d9bd6", lost: "#e8721c", initializing: "#7d8894", waiting_for_reference: "#cc79a7" },
 };
 
 export function paletteOf(dark: boolean): Palette {
   return dark ? DARK : LIGHT;
 }
 
-export function runColour(dark: boolean, run: number): string {
+export function runColor(dark: boolean, run: number): string {
   const { runs } = paletteOf(dark);
   return runs[run % runs.length];
 }
@@ -64,10 +64,10 @@ export interface Mode {
   name: string;
   label: string;
   unit: string;
-  value: ((run: Run, observation: number) => number) | null;   // null: the point's own colour
+  value: ((run: Run, observation: number) => number) | null;   // null: the point's own color
 }
 
-export function colourModes(report: Report): Mode[] {
+export function colorModes(report: Report): Mode[] {
   const { unit } = report;
   const modes: Mode[] = [
     { name: "age", label: "age", unit: "frames", value: (run, o) => run.age(o) },
@@ -79,17 +79,17 @@ export function colourModes(report: Report): Mode[] {
   if (report.runs.some((run) => run.error)) {
     modes.push({ name: "error", label: "error against truth", unit: "mm", value: (run, o) => run.error?.values[o] ?? NaN });
   }
-  modes.push({ name: "rgb", label: "own colour", unit: "", value: null });
+  modes.push({ name: "rgb", label: "own color", unit: "", value: null });
   return modes;
 }
 
-// A mode with its range: the 2nd to the 98th percentile over all observations of all runs, so that colours neither flicker from
+// A mode with its range: the 2nd to the 98th percentile over all observations of all runs, so that colors neither flicker from
 // frame to frame nor differ between runs.
-export class Colouring {
+export class Coloring {
   constructor(readonly mode: Mode, readonly low: number, readonly high: number) {}
 
-  static of(mode: Mode, report: Report): Colouring {
-    if (!mode.value) return new Colouring(mode, 0, 1);
+  static of(mode: Mode, report: Report): Coloring {
+    if (!mode.value) return new Coloring(mode, 0, 1);
     const values: number[] = [];
     for (const run of report.runs) {
       const step = Math.max(1, Math.floor(run.observations / 20000));
@@ -98,14 +98,14 @@ export class Colouring {
         if (!Number.isNaN(value)) values.push(value);
       }
     }
-    if (values.length === 0) return new Colouring(mode, NaN, NaN);
+    if (values.length === 0) return new Coloring(mode, NaN, NaN);
     values.sort((a, b) => a - b);
     const low = values[Math.floor(0.02 * (values.length - 1))];
     const high = values[Math.ceil(0.98 * (values.length - 1))];
-    return new Colouring(mode, low, high > low ? high : low + 1);
+    return new Coloring(mode, low, high > low ? high : low + 1);
   }
 
-  colour(run: Run, observation: number): number {
+  color(run: Run, observation: number): number {
     if (!this.mode.value) {
       const c = 3 * run.point.values[observation];
       const rgb = run.rgb.values;
@@ -118,8 +118,8 @@ export class Colouring {
   }
 }
 
-export function css(colour: number): string {
-  return `#${colour.toString(16).padStart(6, "0")}`;
+export function css(color: number): string {
+  return `#${color.toString(16).padStart(6, "0")}`;
 }
 
 export const GRADIENT = `linear-gradient(to right, ${VIRIDIS.map(css).join(", ")})`;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "estimation/deforming_judgement.h"
+#include "estimation/deforming_judgment.h"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "pliant/tracking/neighbour_agreement.h"
+#include "pliant/tracking/neighbor_agreement.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,22 +15,22 @@ namespace {
 
 constexpr double kTukey = 4.685;  // 95 % efficiency under normal noise
 
-// displacement(anchor) = offset + gradient * (anchor - centre), with weights of how far each neighbour is to be
+// displacement(anchor) = offset + gradient * (anchor - center), with weights of how far each neighbor is to be
 // trusted.
 struct AffineMotion {
-  Eigen::Vector3d centre;
+  Eigen::Vector3d center;
   Eigen::Matrix<double, 4, 3> coefficients;
 
   Eigen::Vector3d At(const Eigen::Vector3d& anchor) const {
-    const Eigen::Vector4d basis(1, anchor.x() - centre.x(), anchor.y() - centre.y(), anchor.z() - centre.z());
+    const Eigen::Vector4d basis(1, anchor.x() - center.x(), anchor.y() - center.y(), anchor.z() - center.z());
     return coefficients.transpose() * basis;
   }
 };
 
 class MotionFit {
  public:
-  MotionFit(std::span<const NeighbourMotion> motions, const std::vector<int>& neighbours) {
-    for (const int j : neighbours) {
+  MotionFit(std::span<const NeighborMotion> motions, const std::vector<int>& neighbors) {
+    for (const int j : neighbors) {
       anchors_.push_back(motions[j].anchor);
       displacements_.emplace_back(motions[j].position - motions[j].anchor);
     }
@@ -38,7 +38,7 @@ class MotionFit {
   }
 
   // Weights from the distance to the median displacement, then two rounds of weighted least squares.
-  AffineMotion Run(const Eigen::Vector3d& centre) {
+  AffineMotion Run(const Eigen::Vector3d& center) {
     Eigen::Vector3d median;
     std::vector<double> values(displacements_.size());
     for (int axis = 0; axis < 3; ++axis) {
@@ -46,12 +46,12 @@ class MotionFit {
       median[axis] = Median(values);
     }
     Reweigh([&](std::size_t k) { return (displacements_[k] - median).norm(); });
-    AffineMotion motion = Solve(centre);
+    AffineMotion motion = Solve(center);
     Reweigh([&](std::size_t k) { return (displacements_[k] - motion.At(anchors_[k])).norm(); });
-    return Solve(centre);
+    return Solve(center);
   }
 
-  // Robust spread of the neighbours' residuals across the viewing ray.
+  // Robust spread of the neighbors' residuals across the viewing ray.
   double Sigma(const AffineMotion& motion, const Eigen::Vector3d& ray) const {
     std::vector<double> residuals;
     for (std::size_t k = 0; k < anchors_.size(); ++k)
@@ -65,7 +65,7 @@ class MotionFit {
     std::vector<double> residuals(anchors_.size());
     for (std::size_t k = 0; k < residuals.size(); ++k) residuals[k] = distance(k);
     std::vector<double> sorted = residuals;
-    // Never so tight that rounding decides: at least a micrometre.
+    // Never so tight that rounding decides: at least a micrometer.
     const double cutoff = kTukey * std::max(1e-3, kMedianToSigma * Median(sorted));
     for (std::size_t k = 0; k < residuals.size(); ++k) {
       const double ratio = residuals[k] / cutoff;
@@ -73,21 +73,21 @@ class MotionFit {
     }
   }
 
-  AffineMotion Solve(const Eigen::Vector3d& centre) const {
+  AffineMotion Solve(const Eigen::Vector3d& center) const {
     Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
     Eigen::Matrix<double, 4, 3> right = Eigen::Matrix<double, 4, 3>::Zero();
     double spread = 0;
     for (std::size_t k = 0; k < anchors_.size(); ++k) {
-      const Eigen::Vector3d offset = anchors_[k] - centre;
+      const Eigen::Vector3d offset = anchors_[k] - center;
       const Eigen::Vector4d basis(1, offset.x(), offset.y(), offset.z());
       normal += weights_[k] * basis * basis.transpose();
       right += weights_[k] * basis * displacements_[k].transpose();
       spread += weights_[k] * offset.squaredNorm();
     }
-    // The neighbours lie on a surface: across it the gradient is not observed, and stays small.
+    // The neighbors lie on a surface: across it the gradient is not observed, and stays small.
     normal.diagonal().tail<3>().array() += 0.01 * spread / 3 + 1e-12;
     normal(0, 0) += 1e-12;
-    return {centre, normal.ldlt().solve(right)};
+    return {center, normal.ldlt().solve(right)};
   }
 
   std::vector<Eigen::Vector3d> anchors_;
@@ -99,25 +99,25 @@ class MotionFit {
 
 void AgreementOptions::List(OptionTable& table) {
   table.Add("max_disagreement_px", &max_disagreement_px, "px",
-            "a point further than this from where its neighbours' motion puts it is dropped", 0.1, 1e6);
+            "a point further than this from where its neighbors' motion puts it is dropped", 0.1, 1e6);
   table.Add("max_disagreement_sigmas", &max_disagreement_sigmas, "-",
-            "and further than this many robust spreads of its neighbours", 0, 1e6);
-  table.Add("min_agreement_neighbors", &min_neighbors, "-", "no statement about points with fewer neighbours", 4, 100);
+            "and further than this many robust spreads of its neighbors", 0, 1e6);
+  table.Add("min_agreement_neighbors", &min_neighbors, "-", "no statement about points with fewer neighbors", 4, 100);
 }
 
-std::vector<Disagreement> MeasureDisagreement(std::span<const NeighbourMotion> motions,
-                                              std::span<const std::vector<int>> neighbours,
-                                              const Eigen::Vector3d& camera_centre) {
+std::vector<Disagreement> MeasureDisagreement(std::span<const NeighborMotion> motions,
+                                              std::span<const std::vector<int>> neighbors,
+                                              const Eigen::Vector3d& camera_center) {
   std::vector<Disagreement> disagreements(motions.size());
   for (std::size_t i = 0; i < motions.size(); ++i) {
-    if (neighbours[i].size() < 4) continue;
-    MotionFit fit(motions, neighbours[i]);
+    if (neighbors[i].size() < 4) continue;
+    MotionFit fit(motions, neighbors[i]);
     const AffineMotion motion = fit.Run(motions[i].anchor);
-    const Eigen::Vector3d ray = (motions[i].position - camera_centre).normalized();
+    const Eigen::Vector3d ray = (motions[i].position - camera_center).normalized();
     const Eigen::Vector3d predicted = motions[i].anchor + motion.At(motions[i].anchor);
     disagreements[i].distance_mm = (motions[i].position - predicted).cross(ray).norm();
     disagreements[i].sigma_mm = fit.Sigma(motion, ray);
-    disagreements[i].neighbors = static_cast<int>(neighbours[i].size());
+    disagreements[i].neighbors = static_cast<int>(neighbors[i].size());
   }
   return disagreements;
 }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "pliant/tracking/neighbour_agreement.h"
+#include "pliant/tracking/neighbor_agreement.h"
 
 #include <algorithm>
 #include <cmath>
@@ -20,9 +20,9 @@ constexpr double kPxPerMm = 500 / kDepthMm;
 
 // Points of a bumpy sheet before a camera at the origin, moved by `motion`.
 template <class Motion>
-std::vector<NeighbourMotion> MovingSheet(const Motion& motion) {
+std::vector<NeighborMotion> MovingSheet(const Motion& motion) {
   Random random(11);
-  std::vector<NeighbourMotion> motions;
+  std::vector<NeighborMotion> motions;
   for (int i = 0; i < kPoints; ++i) {
     const double x = random.Uniform(-25, 25);
     const double y = random.Uniform(-20, 20);
@@ -32,19 +32,19 @@ std::vector<NeighbourMotion> MovingSheet(const Motion& motion) {
   return motions;
 }
 
-std::vector<std::vector<int>> Nearest(const std::vector<NeighbourMotion>& motions, int count) {
-  std::vector<std::vector<int>> neighbours(motions.size());
+std::vector<std::vector<int>> Nearest(const std::vector<NeighborMotion>& motions, int count) {
+  std::vector<std::vector<int>> neighbors(motions.size());
   for (std::size_t i = 0; i < motions.size(); ++i) {
     std::vector<int> order(motions.size());
     std::iota(order.begin(), order.end(), 0);
     const auto distance = [&](int j) { return (motions[j].anchor - motions[i].anchor).squaredNorm(); };
     std::sort(order.begin(), order.end(), [&](int a, int b) { return distance(a) < distance(b); });
-    neighbours[i].assign(order.begin() + 1, order.begin() + 1 + count);
+    neighbors[i].assign(order.begin() + 1, order.begin() + 1 + count);
   }
-  return neighbours;
+  return neighbors;
 }
 
-TEST(NeighbourAgreement, AffineMotionOfTheWholeSceneIsNoContradiction) {
+TEST(NeighborAgreement, AffineMotionOfTheWholeSceneIsNoContradiction) {
   Eigen::Matrix3d gradient;
   gradient << 0.02, 0.01, 0, -0.03, 0.01, 0, 0.02, 0.05, 0;
   const auto motions = MovingSheet(
@@ -54,7 +54,7 @@ TEST(NeighbourAgreement, AffineMotionOfTheWholeSceneIsNoContradiction) {
     EXPECT_LT(d.distance_mm * kPxPerMm, 1.0);
 }
 
-TEST(NeighbourAgreement, SmoothDeformationIsAcceptedAndSlidingPointsAreFound) {
+TEST(NeighborAgreement, SmoothDeformationIsAcceptedAndSlidingPointsAreFound) {
   Random random(3);
   auto motions = MovingSheet([&](const Eigen::Vector3d& x) -> Eigen::Vector3d {
     const double noise = 0.03;  // 0.3 px
@@ -75,17 +75,17 @@ TEST(NeighbourAgreement, SmoothDeformationIsAcceptedAndSlidingPointsAreFound) {
     (is_sliding ? found : false_alarms) += flagged ? 1 : 0;
   }
   EXPECT_EQ(found, static_cast<int>(sliding.size()));
-  EXPECT_LE(false_alarms, 3);  // 1 % at the sheet's rim, where neighbours lie on one side only
+  EXPECT_LE(false_alarms, 3);  // 1 % at the sheet's rim, where neighbors lie on one side only
 }
 
-TEST(NeighbourAgreement, MotionAlongTheRayIsNotJudged) {
+TEST(NeighborAgreement, MotionAlongTheRayIsNotJudged) {
   auto motions = MovingSheet([](const Eigen::Vector3d& x) { return x; });
   motions[42].position *= 1.2;
   const auto disagreements = MeasureDisagreement(motions, Nearest(motions, 20), Eigen::Vector3d::Zero());
   EXPECT_LT(disagreements[42].distance_mm, 1e-9);
 }
 
-TEST(NeighbourAgreement, TooFewNeighboursMakeNoStatement) {
+TEST(NeighborAgreement, TooFewNeighborsMakeNoStatement) {
   auto motions = MovingSheet([](const Eigen::Vector3d& x) { return x; });
   motions[0].position.x() += 100;
   const auto disagreements = MeasureDisagreement(motions, Nearest(motions, 3), Eigen::Vector3d::Zero());

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // pliant_two_views: first maps from synthetic rays against exact truth, one row of CSV a trial. The maps are made by
-// the library's own initialisers, chosen by its own options, from the pixels of a scene of which everything is known.
+// the library's own initializers, chosen by its own options, from the pixels of a scene of which everything is known.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -55,16 +55,16 @@ const cli::Manual kManual = {
     .command = "",
     .summary = "first maps from synthetic rays against exact truth",
     .text =
-        "Makes scenes of which everything is known, hands the pixels of some frames to an initialiser of pliant track, "
+        "Makes scenes of which everything is known, hands the pixels of some frames to an initializer of pliant track, "
         "and compares the map with the truth. Every seed is one trial: another surface, other noise, other outliers, "
         "other samples.\n\n"
         "Leaves --output_path: a CSV file with one row a trial. First come the options of the scene, the seed and the "
-        "choices of the initialiser. Then status: made or refused, and the reason in a sentence. Then what was "
+        "choices of the initializer. Then status: made or refused, and the reason in a sentence. Then what was "
         "measured: inlier_share of the correspondences; rotation_deg and direction_deg, the errors of the last "
         "camera's rotation and of its translation's direction; of the map's points median_depth_error and "
         "depth_rmse, relative errors of the distance in the reference after the median scale; null_depth_error, the "
         "median of the same points all at one distance; points, and how many of them are outliers; and ms, the time "
-        "of the initialiser. What does not apply is empty.",
+        "of the initializer. What does not apply is empty.",
     .examples = {"pliant_two_views --seeds 20 --output_path rows.csv --Init.solver kneip --Scene.outlier_share 0.5",
                  "pliant_two_views --seeds 5 --output_path rows.csv --Init.method window --Scene.views 11 "
                  "--Scene.gap_frames 40 --Scene.amplitude_mm 2.5"},
@@ -212,7 +212,7 @@ Trial Run(const Setting& setting, std::uint64_t seed) {
 
 std::string ColumnOf(std::string_view option) { return std::string(option.substr(option.find('.') + 1)); }
 
-// The scene's options and the initialiser's choices, as they are in every row.
+// The scene's options and the initializer's choices, as they are in every row.
 std::vector<const OptionField*> SettingFields(const OptionTable& table) {
   std::vector<const OptionField*> fields;
   for (const OptionField& field : table.fields())
