@@ -21,7 +21,7 @@ namespace {
 
 // Quaternions in text have 17 digits, or as few as 9.
 constexpr double kUnitTolerance = 1e-6;
-constexpr double kLeastQuaternion = 1e-9;
+constexpr double kMinQuaternion = 1e-9;
 
 // Findings in the order in which the first of each turned up.
 class Findings {
@@ -51,8 +51,8 @@ std::string KeypointOf(const Image& image, std::size_t idx) { return Named("keyp
 void CheckCamera(const Camera& camera, Findings* findings) {
   const std::string name = Named("camera", camera.id);
   if (!Finite(camera.params)) findings->Error("cameras have parameters that are no numbers", name);
-  constexpr std::uint64_t kMostPixels = 1'000'000;
-  if (camera.width == 0 || camera.height == 0 || camera.width > kMostPixels || camera.height > kMostPixels)
+  constexpr std::uint64_t kMaxPixels = 1'000'000;
+  if (camera.width == 0 || camera.height == 0 || camera.width > kMaxPixels || camera.height > kMaxPixels)
     findings->Error("cameras have image sizes that cannot be", name);
   if (!camera.params.empty() && !(camera.params[0] > 0.0))
     findings->Error("cameras have focal lengths that are not positive", name);
@@ -67,7 +67,7 @@ void CheckPose(const Pose& pose, const std::string& name, std::string_view kind,
     return;
   }
   const double norm = Eigen::Map<const Eigen::Vector4d>(pose.qvec.data()).norm();
-  if (norm < kLeastQuaternion)
+  if (norm < kMinQuaternion)
     findings->Error(std::string(kind) + " have quaternions that are zero", name);
   else if (std::abs(norm - 1.0) > kUnitTolerance)
     findings->Warn(std::string(kind) + " have quaternions that are not of unit length", name);

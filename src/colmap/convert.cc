@@ -35,8 +35,8 @@ Result<pliant::Camera> ToPliant(const Camera& camera) {
             " is not one of Pliant's (SIMPLE_PINHOLE, PINHOLE, SIMPLE_RADIAL, RADIAL, OPENCV, OPENCV_FISHEYE); "
             "convert the camera, or undistort the images (colmap image_undistorter)");
   }
-  constexpr auto kMostPixels = static_cast<std::uint64_t>(std::numeric_limits<int>::max());
-  if (camera.width > kMostPixels || camera.height > kMostPixels)
+  constexpr auto kMaxPixels = static_cast<std::uint64_t>(std::numeric_limits<int>::max());
+  if (camera.width > kMaxPixels || camera.height > kMaxPixels)
     return Status(ErrorCode::kInvalidArgument, "the image size is beyond reason; the file is damaged");
   std::vector<double> params = camera.params;
   ShiftPrincipalPoint(camera.model_id, -kPixelShift, &params);

@@ -18,11 +18,11 @@ namespace {
 
 // From a base frame to those that are compared with it: near ones overlap in any case, far ones tell readings apart.
 constexpr int kGaps[] = {1, 4, 12};
-constexpr double kMostRowError_px = 1.0;
-constexpr int kLeastMatches = 20;         // fewer say nothing
-constexpr double kMostDepthError = 0.25;  // of the ratio
+constexpr double kMaxRowError_px = 1.0;
+constexpr int kMinMatches = 20;          // fewer say nothing
+constexpr double kMaxDepthError = 0.25;  // of the ratio
 // Readings that fit less than this do not fit; one that fits by this much less than the best one is wrong.
-constexpr double kLeastCorrelation = 0.25;
+constexpr double kMinCorrelation = 0.25;
 constexpr double kClearlyLess = 0.8;
 
 std::vector<int> BaseFrames(int frames, int count) {
@@ -56,12 +56,12 @@ PoseCheck JudgePoses(const std::vector<PoseReading>& readings, std::size_t pairs
   const auto worse = std::count_if(readings.begin(), readings.end(), [&](const PoseReading& reading) {
     return reading.correlation < kClearlyLess * poses.best.correlation;
   });
-  const bool tells = poses.best.correlation >= kLeastCorrelation && 2 * worse > static_cast<long>(readings.size());
+  const bool tells = poses.best.correlation >= kMinCorrelation && 2 * worse > static_cast<long>(readings.size());
   if (tells) poses.right = poses.as_given.correlation >= kClearlyLess * poses.best.correlation;
   return poses;
 }
 
-bool Differs(double ratio) { return std::abs(std::log(ratio)) > std::log1p(kMostDepthError); }
+bool Differs(double ratio) { return std::abs(std::log(ratio)) > std::log1p(kMaxDepthError); }
 
 // Whether poses and baseline say of the depth images that they are so many times too large; nothing where they do not
 // agree on it.
@@ -90,7 +90,7 @@ std::vector<std::string> WhatIsWrong(const SequenceCheck& check) {
     wrong.push_back("left and right are swapped: of " + std::to_string(stereo.matches) + " points " +
                     Number("%.0f", 100.0 * (1.0 - stereo.share_right_way)) +
                     " % lie farther right in the right image; exchange the images");
-  if (stereo.median_row_error_px > kMostRowError_px)
+  if (stereo.median_row_error_px > kMaxRowError_px)
     wrong.push_back("the pairs are not rectified: the rows of " + std::to_string(stereo.matches) +
                     " points differ by " + Number("%.1f", stereo.median_row_error_px) +
                     " px in the median; give the calibration of these cameras");
@@ -142,7 +142,7 @@ Result<SequenceCheck> CheckSequence(Sequence& sequence, const CheckOptions& opti
     check.poses = JudgePoses(CorrelateReadings(pairs, sequence.camera(), options.max_points), pairs.size());
   if (matches.count() > 0) {
     check.stereo = matches.Check();
-    check.stereo->enough = check.stereo->matches >= kLeastMatches;
+    check.stereo->enough = check.stereo->matches >= kMinMatches;
   }
   check.wrong = WhatIsWrong(check);
   return check;

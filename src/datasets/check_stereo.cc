@@ -21,9 +21,9 @@ constexpr double kMinDistance_px = 8;
 constexpr double kMaxRatio = 0.8;
 constexpr int kWindow_px = 21;
 // A match that moves farther when it is refined was none.
-constexpr double kMostRefinement_px = 4;
+constexpr double kMaxRefinement_px = 4;
 // Disparities below say nothing exact of depth.
-constexpr double kLeastDisparity_px = 2;
+constexpr double kMinDisparity_px = 2;
 
 std::vector<cv::Point2f> CornersOf(const cv::Mat& gray) {
   std::vector<cv::Point2f> corners;
@@ -56,11 +56,11 @@ void StereoMatches::Add(const cv::Mat& left, const cv::Mat& right, const cv::Mat
   cv::calcOpticalFlowPyrLK(grays[0], grays[1], from, to, found, cv::noArray(), {kWindow_px, kWindow_px}, 0,
                            {cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 30, 0.01}, cv::OPTFLOW_USE_INITIAL_FLOW);
   for (std::size_t k = 0; k < from.size(); ++k) {
-    if (found[k] == 0 || cv::norm(to[k] - matched[k]) > kMostRefinement_px) continue;
+    if (found[k] == 0 || cv::norm(to[k] - matched[k]) > kMaxRefinement_px) continue;
     row_errors_px_.push_back(std::abs(to[k].y - from[k].y));
     const double disparity_px = from[k].x - to[k].x;
     if (disparity_px > 0) ++right_way_;
-    if (depth_mm.empty() || std::abs(disparity_px) < kLeastDisparity_px) continue;
+    if (depth_mm.empty() || std::abs(disparity_px) < kMinDisparity_px) continue;
     const float depth = depth_mm.at<float>(cv::Point(cvRound(from[k].x), cvRound(from[k].y)));
     if (depth > 0)
       depth_ratios_.push_back(depth * std::abs(disparity_px) / (camera.HorizontalFocalLengthPx() * baseline_mm));

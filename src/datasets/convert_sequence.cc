@@ -35,7 +35,7 @@ double DepthScaleFor(const Sequence& sequence, int first_frame_idx, int last_fra
     if (std::isfinite(largest_of_frame_mm)) largest_mm = std::max(largest_mm, largest_of_frame_mm);
   }
   if (!(largest_mm > 0)) return 1.0;
-  const double least = kDepthHeadroom * largest_mm / native::kMostDepthSteps;
+  const double least = kDepthHeadroom * largest_mm / native::kMaxDepthSteps;
   const double power = std::pow(10.0, std::floor(std::log10(least)));
   for (const double step : {1.0, 2.0, 5.0})
     if (least <= step * power) return step * power;

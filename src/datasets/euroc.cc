@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kMostDifference_s = 0.02;
+constexpr double kMaxDifference_s = 0.02;
 constexpr double kMeter_mm = 1000.0;
 constexpr double kNanosecond_s = 1e-9;
 
@@ -133,7 +133,7 @@ std::size_t KeepPairs(Listed* left, Listed* right) {
 Status AddPoses(const fs::path& file, const Rigid3& body_from_cam, DataSet* data_set) {
   const auto poses = ReadEurocTrajectory(file.string());
   if (!poses.ok()) return poses.status();
-  data_set->world_from_cam = PosesAt(data_set->timestamps_s, *poses, kMeter_mm, kMostDifference_s, body_from_cam);
+  data_set->world_from_cam = PosesAt(data_set->timestamps_s, *poses, kMeter_mm, kMaxDifference_s, body_from_cam);
   return Status::Ok();
 }
 

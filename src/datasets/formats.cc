@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostFolders = 1000;  // that are looked into for a data set, on each of two levels
+constexpr std::size_t kMaxFolders = 1000;  // that are looked into for a data set, on each of two levels
 
 std::vector<fs::path> SubfoldersOf(const fs::path& folder) {
   std::vector<fs::path> folders;
@@ -92,7 +92,7 @@ std::string WhatIsThereInstead(const fs::path& folder) {
   std::vector<fs::path> inside = SubfoldersOf(folder);
   for (int level = 0; level < 2; ++level) {
     std::vector<fs::path> deeper;
-    for (std::size_t k = 0; k < std::min(inside.size(), kMostFolders); ++k) {
+    for (std::size_t k = 0; k < std::min(inside.size(), kMaxFolders); ++k) {
       if (const DataSetFormat* format = SetAt(inside[k])) return ThatIs(inside[k], *format);
       for (fs::path& path : SubfoldersOf(inside[k])) deeper.push_back(std::move(path));
     }

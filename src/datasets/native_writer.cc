@@ -60,7 +60,7 @@ cv::Mat QuantizeDepth(const cv::Mat& depth_mm, double depth_scale_mm) {
     for (int x = 0; x < depth_mm.cols; ++x) {
       const double value = std::round(depth_mm.at<float>(y, x) / depth_scale_mm);
       steps.at<std::uint16_t>(y, x) =
-          value >= 1 && value <= native::kMostDepthSteps ? static_cast<std::uint16_t>(value) : 0;
+          value >= 1 && value <= native::kMaxDepthSteps ? static_cast<std::uint16_t>(value) : 0;
     }
   }
   return steps;
@@ -80,7 +80,7 @@ Result<NativeWriter> NativeWriter::Create(fs::path folder, const CameraFile& cam
 }
 
 int NativeWriter::OutOfRange(const cv::Mat& depth_mm) const {
-  return depth_mm.empty() ? 0 : cv::countNonZero(depth_mm > native::kMostDepthSteps * depth_scale_);
+  return depth_mm.empty() ? 0 : cv::countNonZero(depth_mm > native::kMaxDepthSteps * depth_scale_);
 }
 
 Status NativeWriter::WriteImage(const char* kind, const cv::Mat& image) {

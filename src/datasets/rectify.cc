@@ -17,11 +17,11 @@ namespace pliant {
 namespace {
 
 // A principal point farther from the middle than this share of the image is that of another image.
-constexpr double kMostOffCenter = 0.2;
+constexpr double kMaxOffCenter = 0.2;
 // fx and fy that differ by less are those of square pixels.
 constexpr double kSquare = 0.01;
 // Pixels that are said to be this many times as high as wide are a mistake.
-constexpr double kMostStretch = 4.0;
+constexpr double kMaxStretch = 4.0;
 
 using Eye = StereoCalibration::Eye;
 
@@ -77,7 +77,7 @@ Result<RectifiedPair> RectifyPair(const StereoCalibration& calibration, cv::Size
   if (std::abs(t.x()) < std::abs(t.y()))
     return invalid("the cameras of the stereo calibration are one above the other; only pairs side by side are read");
   for (const Eye* eye : {&calibration.left, &calibration.right})
-    if (!(eye->fx > 0 && eye->fy > 0 && eye->fx / eye->fy > 1.0 / kMostStretch && eye->fx / eye->fy < kMostStretch))
+    if (!(eye->fx > 0 && eye->fy > 0 && eye->fx / eye->fy > 1.0 / kMaxStretch && eye->fx / eye->fy < kMaxStretch))
       return invalid(
           "the stereo calibration has focal lengths that are not positive, or too different along rows and "
           "columns");
@@ -123,8 +123,8 @@ Result<PairLayout> LayoutOf(const StereoCalibration& calibration, cv::Size image
     const cv::Size size = EyeSize(layout, image);
     if (calibration.image_size) {
       if (size == cv::Size(calibration.image_size->width, calibration.image_size->height)) return layout;
-    } else if (std::abs(calibration.left.cx / size.width - 0.5) < kMostOffCenter &&
-               std::abs(calibration.left.cy / size.height - 0.5) < kMostOffCenter) {
+    } else if (std::abs(calibration.left.cx / size.width - 0.5) < kMaxOffCenter &&
+               std::abs(calibration.left.cy / size.height - 0.5) < kMaxOffCenter) {
       return layout;
     }
   }

@@ -47,7 +47,7 @@ std::optional<std::vector<double>> Numbers(const std::vector<std::string>& field
 
 constexpr double kQuaternionError = 0.01;
 constexpr double kRounding = 1e-6;
-constexpr int kMostFrames = 10'000'000;
+constexpr int kMaxFrames = 10'000'000;
 
 }  // namespace
 
@@ -60,7 +60,7 @@ std::map<int, fs::path> NumberedFiles(const fs::path& folder, std::string_view p
     const char* end = name.data() + name.size() - suffix.size();
     int number = 0;
     const auto parsed = std::from_chars(begin, end, number);
-    if (parsed.ec == std::errc() && parsed.ptr == end && number >= 0 && number < kMostFrames)
+    if (parsed.ec == std::errc() && parsed.ptr == end && number >= 0 && number < kMaxFrames)
       found.emplace(number, file);
   }
   return found;

@@ -63,13 +63,13 @@ class Ini {
 };
 
 StereoCalibration::Eye EyeOf(const std::string& section, Ini* ini) {
-  constexpr int kMostCoefficients = 8;
+  constexpr int kMaxCoefficients = 8;
   StereoCalibration::Eye eye{ini->Get(section + ".fc_x"),
                              ini->Get(section + ".fc_y"),
                              ini->Get(section + ".cc_x"),
                              ini->Get(section + ".cc_y"),
                              {}};
-  for (int k = 0; k < kMostCoefficients && ini->Has(section + ".kc_" + std::to_string(k)); ++k)
+  for (int k = 0; k < kMaxCoefficients && ini->Has(section + ".kc_" + std::to_string(k)); ++k)
     eye.distortion.push_back(ini->Get(section + ".kc_" + std::to_string(k)));
   // OpenCV takes 4, 5 or 8.
   if (eye.distortion.size() < 4)

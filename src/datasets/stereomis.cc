@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kCalibration = "StereoCalibration.ini";
 constexpr double kMeter_mm = 1000.0;
-constexpr double kMostFrames = 1e7;
+constexpr double kMaxFrames = 1e7;
 
 Status AddPoses(const fs::path& file, DataSet* data_set) {
   const auto rows = ReadNumberRows(file, 8);
@@ -33,7 +33,7 @@ Status AddPoses(const fs::path& file, DataSet* data_set) {
     if (!pose.ok()) return pose.status();
     pose->translation *= kMeter_mm;
     const double frame = row.numbers[0];
-    if (!(frame >= 0 && frame < kMostFrames && frame == std::floor(frame)))
+    if (!(frame >= 0 && frame < kMaxFrames && frame == std::floor(frame)))
       return {ErrorCode::kUnreadable, At(file.string(), row.line) + ": a line begins with the number of a frame"};
     poses[static_cast<int>(frame)] = *pose * data_set->raw_from_given;
   }

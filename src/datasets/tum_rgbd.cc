@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kMostDifference_s = 0.02;
+constexpr double kMaxDifference_s = 0.02;
 constexpr double kDepthUnit_mm = 0.2;
 constexpr double kMeter_mm = 1000.0;
 
@@ -72,7 +72,7 @@ Result<DataSet> OpenTumRgbd(const SequenceRequest& request) {
     const auto depths = ReadList(folder / "depth.txt", &data_set->warnings);
     if (!depths.ok()) return depths.status();
     for (const double time_s : depths->empty() ? std::vector<double>() : times_s) {
-      const fs::path* nearest = NearestInTime(*depths, time_s, kMostDifference_s);
+      const fs::path* nearest = NearestInTime(*depths, time_s, kMaxDifference_s);
       data_set->depth_files.push_back(nearest != nullptr ? *nearest : fs::path());
     }
     data_set->read_depth = [unit_mm = data_set->calibration.depth_scale.value_or(kDepthUnit_mm)](const fs::path& file) {
@@ -82,7 +82,7 @@ Result<DataSet> OpenTumRgbd(const SequenceRequest& request) {
   if (IsFile(folder / "groundtruth.txt")) {
     const auto poses = ReadTumTrajectory((folder / "groundtruth.txt").string());
     if (!poses.ok()) return poses.status();
-    data_set->world_from_cam = PosesAt(times_s, *poses, kMeter_mm, kMostDifference_s);
+    data_set->world_from_cam = PosesAt(times_s, *poses, kMeter_mm, kMaxDifference_s);
   }
   data_set->timestamps_s = std::move(times_s);
   return data_set;

@@ -93,15 +93,15 @@ double FoundNoisePx(const DeformingWindow& window, double focal_px) {
 
 std::vector<double> FoundLogDepthSigmas(const DeformingSolution& solution, double noise_px, std::size_t gauge_points,
                                         double focal_px, const DeformingWindowOptions& options, int threads) {
-  constexpr double kLeastNoisePx = 0.05;
-  constexpr double kLeastSigma = 0.01;
+  constexpr double kMinNoisePx = 0.05;
+  constexpr double kMinSigma = 0.01;
   DeformingWindowOptions found = options;
   const DeformingWindow& window = solution.window;
-  found.loss_scale_px = std::max(kLeastNoisePx, noise_px);
+  found.loss_scale_px = std::max(kMinNoisePx, noise_px);
   if (window.courses.rows() > 0) {
     const ModeSizes sizes = SizesOf(solution.nodes);
-    found.mode_sigma = std::max(kLeastSigma, kCaution * sizes.size / window.MedianDistance());
-    found.gradient_sigma = std::max(kLeastSigma, kCaution * sizes.gradient);
+    found.mode_sigma = std::max(kMinSigma, kCaution * sizes.size / window.MedianDistance());
+    found.gradient_sigma = std::max(kMinSigma, kCaution * sizes.gradient);
   }
   return DeformingProblem(window, solution.nodes, focal_px, found, gauge_points).LogDepthSigmas(threads);
 }

@@ -26,14 +26,14 @@ constexpr double kTolerance = 1e-4;
 
 // A point's step, shorter where its depth would change by too much at once.
 PointVector Limited(const PointVector& step) {
-  constexpr double kMostLogDepth = 0.5;
+  constexpr double kMaxLogDepth = 0.5;
   const double change = std::abs(step[2]);
-  if (change <= kMostLogDepth) return step;
-  return kMostLogDepth / change * step;
+  if (change <= kMaxLogDepth) return step;
+  return kMaxLogDepth / change * step;
 }
 
-constexpr int kLeastViews = 3;
-constexpr int kLeastPoints = 12;
+constexpr int kMinViews = 3;
+constexpr int kMinPoints = 12;
 
 Status NoStart() { return {ErrorCode::kDegenerate, "the deforming window has no finite cost at its start"}; }
 
@@ -46,10 +46,10 @@ Status CheckWindow(const DeformingWindow& window) {
       (window.courses.rows() > 0 && window.courses.cols() != static_cast<Eigen::Index>(views)) ||
       (window.courses.rows() > 0 && window.modes.size() != points))
     return {ErrorCode::kInvalidArgument, "the parts of the deforming window differ in size"};
-  if (static_cast<int>(views) < kLeastViews || static_cast<int>(points) < kLeastPoints)
-    return {ErrorCode::kInsufficient, "a deforming window takes at least " + std::to_string(kLeastViews) +
-                                          " views and " + std::to_string(kLeastPoints) + " points; there are " +
-                                          std::to_string(views) + " and " + std::to_string(points)};
+  if (static_cast<int>(views) < kMinViews || static_cast<int>(points) < kMinPoints)
+    return {ErrorCode::kInsufficient, "a deforming window takes at least " + std::to_string(kMinViews) + " views and " +
+                                          std::to_string(kMinPoints) + " points; there are " + std::to_string(views) +
+                                          " and " + std::to_string(points)};
   const auto finite = [](const Eigen::Vector3d& vector) { return vector.allFinite(); };
   if (!std::all_of(window.points_in_world.begin(), window.points_in_world.end(), finite))
     return {ErrorCode::kInvalidArgument, "a point of the deforming window is not a finite number"};
@@ -160,8 +160,8 @@ Result<double> DeformingProblem::SolveViews(int max_iterations, int threads) {
 
 Result<double> DeformingProblem::Descend(int max_iterations, NormalEquations* equations, const Move& moved) {
   constexpr double kFirstRadius = 1e4;
-  constexpr double kLeastRadius = 1e-12;
-  constexpr double kLeastGain = 0.05;  // by what the linear model predicts: less is no step
+  constexpr double kMinRadius = 1e-12;
+  constexpr double kMinGain = 0.05;    // by what the linear model predicts: less is no step
   constexpr double kSmallGain = 0.25;  // a smaller region
   constexpr double kLargeGain = 0.75;  // a larger one
   auto cost = terms_.Cost(state_);
@@ -177,7 +177,7 @@ Result<double> DeformingProblem::Descend(int max_iterations, NormalEquations* eq
       const DeformingState candidate = moved(best.step);
       const auto candidate_cost = terms_.Cost(candidate);
       const double gain = candidate_cost && predicted > 0.0 ? (*cost - *candidate_cost) / predicted : -1.0;
-      accepted = gain > kLeastGain;
+      accepted = gain > kMinGain;
       if (accepted) {
         // A step that gave much less than was predicted was too long, and says nothing of the end.
         done = std::max(*cost - *candidate_cost, kSmallGain * predicted) < kTolerance * *cost;
@@ -187,7 +187,7 @@ Result<double> DeformingProblem::Descend(int max_iterations, NormalEquations* eq
         if (gain < kSmallGain) radius *= 0.5;
       } else {
         radius = 0.5 * std::min(radius, best.length);
-        done = radius < kLeastRadius || !(predicted > kTolerance * *cost);  // a smaller region promises less
+        done = radius < kMinRadius || !(predicted > kTolerance * *cost);  // a smaller region promises less
       }
     }
   }
@@ -195,13 +195,13 @@ Result<double> DeformingProblem::Descend(int max_iterations, NormalEquations* eq
 }
 
 Result<double> DeformingProblem::SettlePoints(int threads) {
-  constexpr int kMostSteps = 10;
+  constexpr int kMaxSteps = 10;
   constexpr double kEnough = 10.0 * kTolerance;
   if (!terms_.Cost(state_)) return NoStart();
   ParallelFor(static_cast<int>(terms_.num_points()), threads, [&](int i) {
     const auto point = static_cast<std::size_t>(i);
     double cost = *terms_.PointCost(point, state_);
-    for (int step = 0; step < kMostSteps; ++step) {
+    for (int step = 0; step < kMaxSteps; ++step) {
       const auto after = Settled(point, cost, &state_);
       if (!after) break;
       const bool done = cost - *after < kEnough * cost;

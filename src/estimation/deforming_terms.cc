@@ -15,7 +15,7 @@ namespace pliant {
 namespace {
 
 // Places nearer to each other than this share of the median distance are compared as if they were this far apart.
-constexpr double kLeastSpacing = 0.04;
+constexpr double kMinSpacing = 0.04;
 // Without light, a prior this weak keeps the depth of a point that nothing determines from running away.
 constexpr double kFarSigma = 100.0;
 constexpr double kLightLoss = 1.5;  // in standard deviations
@@ -78,7 +78,7 @@ void DeformingTerms::PrepareNodes(const SurfaceNodes& nodes) {
   node_modes_ = nodes.modes;
   around_ = NodesAround(start_.points_in_world, nodes.positions);
   const auto information = [&](double distance) {
-    return 1.0 / std::pow(options_.gradient_sigma * std::max(distance, kLeastSpacing * median_distance_), 2);
+    return 1.0 / std::pow(options_.gradient_sigma * std::max(distance, kMinSpacing * median_distance_), 2);
   };
   for (const NodesOfPoint& around : around_) node_pull_.push_back(information(around.distance));
   // A node stands for the points around it.

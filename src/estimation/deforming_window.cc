@@ -28,7 +28,7 @@ namespace {
 
 // The courses are first sought in the motions of points seen in this share of the views, and of so many in any case ...
 constexpr double kStartShare = 0.8;
-constexpr std::size_t kLeastStartPoints = 12;
+constexpr std::size_t kMinStartPoints = 12;
 // ... none of which counts for more than this many times the median one: a wrong track moves most.
 constexpr double kLargestMotion = 3.0;
 // A lower rank explains the images less well in any case; it must explain the light better by so much.
@@ -53,7 +53,7 @@ Eigen::MatrixXd UnexplainedMotions(const DeformingWindow& start) {
   std::vector<int> most_seen = seen;
   std::sort(most_seen.begin(), most_seen.end(), std::greater<>());
   const double least = std::min(kStartShare * static_cast<double>(views),
-                                static_cast<double>(most_seen[std::min(seen.size(), kLeastStartPoints) - 1]));
+                                static_cast<double>(most_seen[std::min(seen.size(), kMinStartPoints) - 1]));
   std::vector<Eigen::Index> row(seen.size(), -1);
   Eigen::Index rows = 0;
   for (std::size_t i = 0; i < seen.size(); ++i)

@@ -16,9 +16,9 @@ namespace {
 // Brightness goes with cosine / distance^2, so log distance with half of log cosine, whatever the response; wet tissue
 // reflects from its coat too, which takes some off.
 constexpr double kCosineExponent = 0.4;
-constexpr double kLeastCosine = 0.12;  // steeper slopes are not trusted
-constexpr double kFar = 1.8;           // times the median distance: beyond, dark noise and the ambient light count
-constexpr std::size_t kLeastLit = 20;
+constexpr double kMinCosine = 0.12;  // steeper slopes are not trusted
+constexpr double kFar = 1.8;         // times the median distance: beyond, dark noise and the ambient light count
+constexpr std::size_t kMinLit = 20;
 
 double MedianDeviation(std::vector<double> values) {
   const double center = Median(values);
@@ -54,7 +54,7 @@ std::vector<double> CorrectForSlope(const std::vector<Eigen::Vector3d>& position
     }
     const Eigen::Vector3d normal = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().col(0);
     const double cosine = std::abs(normal.dot(positions_in_cam[i].normalized()));
-    corrected[i] += kCosineExponent * std::log(std::max(kLeastCosine, cosine));
+    corrected[i] += kCosineExponent * std::log(std::max(kMinCosine, cosine));
   }
   return corrected;
 }
@@ -73,7 +73,7 @@ LightFit CompareWithLight(const std::vector<Eigen::Vector3d>& positions_in_cam, 
     logs.push_back(std::log(distances[i]));
     offsets.push_back(logs.back() - light[i]);
   }
-  if (offsets.size() < kLeastLit) return {};
+  if (offsets.size() < kMinLit) return {};
   return {MedianDeviation(std::move(offsets)), MedianDeviation(std::move(logs))};
 }
 

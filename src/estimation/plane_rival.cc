@@ -51,7 +51,7 @@ bool NearlyFlat(const std::vector<Eigen::Vector3d>& points_in_world) {
 std::optional<DeformingWindow> OtherMotionOfThePlane(const DeformingWindow& solved, double focal_px,
                                                      const DeformingWindowOptions& options) {
   // Of a ray and the plane's normal; points further out stay at this one's distance.
-  constexpr double kLeastCosine = 0.1;
+  constexpr double kMinCosine = 0.1;
   const Rigid3& last = solved.cams_from_world.back();
   if (last.translation.norm() == 0.0) return std::nullopt;
   const Eigen::Matrix3d any_scale =
@@ -71,7 +71,7 @@ std::optional<DeformingWindow> OtherMotionOfThePlane(const DeformingWindow& solv
   DeformingWindow start = solved;
   for (Eigen::Vector3d& point : start.points_in_world) {
     const Eigen::Vector3d direction = point.normalized();
-    point = direction / std::max(plane.dot(direction), kLeastCosine * plane.norm());
+    point = direction / std::max(plane.dot(direction), kMinCosine * plane.norm());
   }
   const double scale = solved.MedianDistance() / start.MedianDistance();
   for (Eigen::Vector3d& point : start.points_in_world) point *= scale;

@@ -56,11 +56,11 @@ Status CheckRays(Rays rays0, Rays rays1) {
 // A motion whose translation has either sign; none where there is none.
 std::optional<Rigid3> ByOpencv(Rays rays0, Rays rays1, double focal_px, Random random,
                                const RelativePoseOptions& options) {
-  constexpr double kLeastZ = 0.05;  // beyond 87 degrees a pixel of the plane z = 1 means nothing
+  constexpr double kMinZ = 0.05;  // beyond 87 degrees a pixel of the plane z = 1 means nothing
   std::vector<cv::Point2d> points0;
   std::vector<cv::Point2d> points1;
   for (std::size_t i = 0; i < rays0.size(); ++i) {
-    if (rays0[i].z() < kLeastZ || rays1[i].z() < kLeastZ) continue;
+    if (rays0[i].z() < kMinZ || rays1[i].z() < kMinZ) continue;
     points0.emplace_back(rays0[i].x() / rays0[i].z(), rays0[i].y() / rays0[i].z());
     points1.emplace_back(rays1[i].x() / rays1[i].z(), rays1[i].y() / rays1[i].z());
   }
@@ -143,9 +143,9 @@ Result<Rigid3> FindMotion(Rays rays0, Rays rays1, double focal_px, double max_er
 // Whether samples can have found what a share of the pairs agrees on: one of them was clean with some probability. A
 // few pairs agree with any motion, and the best of many motions has more of them.
 bool CanBeFound(double inlier_share, const RelativePoseOptions& options) {
-  constexpr double kLeastProbability = 0.001;
+  constexpr double kMinProbability = 0.001;
   const double clean = std::pow(inlier_share, SampleSize(options.solver));
-  return 1.0 - std::pow(1.0 - clean, options.max_iterations) >= kLeastProbability;
+  return 1.0 - std::pow(1.0 - clean, options.max_iterations) >= kMinProbability;
 }
 
 }  // namespace

@@ -10,9 +10,9 @@
 namespace pliant {
 
 TrustPlane::TrustPlane(const NormalEquations& equations) {
-  constexpr double kLeastMetric = 1e-6;
+  constexpr double kMinMetric = 1e-6;
   constexpr double kParallel = 1e-12;
-  const Eigen::VectorXd metric = equations.CurvatureDiagonal().cwiseMax(kLeastMetric);
+  const Eigen::VectorXd metric = equations.CurvatureDiagonal().cwiseMax(kMinMetric);
   const auto inner = [&](const Eigen::VectorXd& a, const Eigen::VectorXd& b) { return a.cwiseProduct(metric).dot(b); };
   const Eigen::VectorXd newton = equations.NewtonStep();
   const Eigen::VectorXd downhill = equations.WithoutScale(-equations.slope().cwiseQuotient(metric), metric);

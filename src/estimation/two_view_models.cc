@@ -168,12 +168,12 @@ Result<HomographyFit> FitHomography(Rays rays0, Rays rays1, double focal_px, dou
 std::vector<Rigid3> MotionsFromHomography(const Eigen::Matrix3d& homography, Rays rays0) {
   // H'H = V diag(s1^2, 1, s3^2) V': the two planes through v2 whose lengths H keeps hold t's image (Ma, Soatto,
   // Kosecka, Sastry, "An Invitation to 3-D Vision", 5.3.3).
-  constexpr double kLeastStretch = 1e-9;  // s1^2 - s3^2 of a rotation
+  constexpr double kMinStretch = 1e-9;  // s1^2 - s3^2 of a rotation
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(homography, Eigen::ComputeFullV);
   const Eigen::Vector3d squares = (svd.singularValues() / svd.singularValues()[1]).array().square();
   const Eigen::Matrix3d h = homography / svd.singularValues()[1];
   std::vector<Rigid3> motions;
-  if (!squares.allFinite() || squares[0] - squares[2] < kLeastStretch) return motions;
+  if (!squares.allFinite() || squares[0] - squares[2] < kMinStretch) return motions;
 
   const Eigen::Matrix3d v = svd.matrixV();
   const double a = std::sqrt(std::max(0.0, 1.0 - squares[2]) / (squares[0] - squares[2]));
@@ -187,7 +187,7 @@ std::vector<Rigid3> MotionsFromHomography(const Eigen::Matrix3d& homography, Ray
     const Eigen::Quaterniond rotation(Eigen::Matrix3d(to * from.transpose()));
     Eigen::Vector3d normal = v.col(1).cross(u);
     Eigen::Vector3d translation = (h - rotation.toRotationMatrix()) * normal;
-    if (!(translation.norm() > kLeastStretch)) continue;
+    if (!(translation.norm() > kMinStretch)) continue;
     // (t, n) and (-t, -n) are one motion's two signs: the plane has to lie in front, n . f0 > 0.
     int front = 0;
     for (const Eigen::Vector3d& ray : rays0) front += normal.dot(ray) > 0 ? 1 : -1;

@@ -13,7 +13,7 @@
 namespace pliant {
 namespace {
 
-constexpr std::size_t kLeastSample = 60;
+constexpr std::size_t kMinSample = 60;
 constexpr std::size_t kNearest = 4;
 constexpr double kSameDirection = 1e-3;  // rad, below which nearer does not count for more
 
@@ -98,7 +98,7 @@ std::vector<PointSample> SamplePoints(const DeformingWindow& window, int size) {
   const Directions directions = DirectionsOf(window.points_in_world);
   const PointSample all = AllOf(directions);
   const std::size_t count = std::min(static_cast<std::size_t>(size), all.size() / 2);
-  if (count < kLeastSample) return {all};
+  if (count < kMinSample) return {all};
   PointSample first = Spread(directions, all, count);
   PointSample others;
   std::set_difference(all.begin(), all.end(), first.begin(), first.end(), std::back_inserter(others));

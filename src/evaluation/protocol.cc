@@ -81,8 +81,8 @@ double LeastMedianScale(std::span<const PointPair> pairs) {
   double best = start;
   std::vector<std::pair<double, int>> ends;
   const int needed = static_cast<int>(middle) + 1;
-  constexpr int kMostSteps = 200;  // reached only where the least median is zero
-  for (int step = 0; step < kMostSteps && high - low > std::numeric_limits<double>::epsilon() * high; ++step) {
+  constexpr int kMaxSteps = 200;  // reached only where the least median is zero
+  for (int step = 0; step < kMaxSteps && high - low > std::numeric_limits<double>::epsilon() * high; ++step) {
     const double level = low + (high - low) / 2;
     if (CoveredScale(parabolas, level, needed, &ends, &best))
       high = level;

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kScale = 4;        // the average is taken on an image this much smaller ...
 constexpr double kSigma = 1.25;  // ... with this standard deviation: 5 px of the image
-constexpr float kLeastValid = 0.05F;
+constexpr float kMinValid = 0.05F;
 
 }  // namespace
 
@@ -33,7 +33,7 @@ LocalBrightness::LocalBrightness(const cv::Mat& image, const cv::Mat& valid) {
   };
   cv::Mat share = average(weight) / 255.0;
   cv::divide(average(surface), share, brightness_);
-  brightness_.setTo(0, share < kLeastValid);
+  brightness_.setTo(0, share < kMinValid);
 }
 
 double LocalBrightness::At(const Eigen::Vector2d& pixel) const {

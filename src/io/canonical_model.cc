@@ -16,9 +16,9 @@ namespace pliant {
 namespace {
 
 // COLMAP's own programs end where they meet a shorter track.
-constexpr std::int64_t kLeastObservations = 2;
+constexpr std::int64_t kMinObservations = 2;
 // Track elements held at once: 8 bytes each.
-constexpr std::int64_t kMostTrackElements = 4'000'000;
+constexpr std::int64_t kMaxTrackElements = 4'000'000;
 
 std::vector<int> FramesOf(std::span<const CanonicalImage> images) {
   std::vector<int> frames_idx;
@@ -101,7 +101,7 @@ Status WritePoints(FileGroup& group, const std::string& folder, colmap::Format f
   while (begin < points.size()) {
     std::int64_t total = points[begin].num_observations;
     std::size_t end = begin + 1;
-    while (end < points.size() && total + points[end].num_observations <= kMostTrackElements)
+    while (end < points.size() && total + points[end].num_observations <= kMaxTrackElements)
       total += points[end++].num_observations;
     const std::span<const CanonicalPoint> range(points.data() + begin, end - begin);
     const auto elements = Tracks(range, images, run_path);
@@ -135,7 +135,7 @@ Status WriteCanonicalModel(const std::string& folder, colmap::Format format, con
     return status;
   std::vector<CanonicalPoint> shown;
   for (const CanonicalPoint& point : points)
-    if (point.num_observations >= kLeastObservations) shown.push_back(point);
+    if (point.num_observations >= kMinObservations) shown.push_back(point);
   if (Status status = WriteImages(group, folder, format, shown, images, run_path); !status.ok()) return status;
   if (Status status = WritePoints(group, folder, format, shown, images, run_path); !status.ok()) return status;
   return group.Commit();

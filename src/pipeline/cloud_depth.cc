@@ -13,10 +13,10 @@ namespace pliant {
 namespace {
 
 // Points are this far apart at least for a pixel: a denser cloud gains nothing from a smaller mean.
-constexpr double kLeastSpacing_px = 1.0;
-constexpr double kMostSpacing_px = 20.0;
+constexpr double kMinSpacing_px = 1.0;
+constexpr double kMaxSpacing_px = 20.0;
 // A pixel has a depth where the weights around it are this share of those within an even cloud.
-constexpr double kLeastShare = 0.3;
+constexpr double kMinShare = 0.3;
 
 struct Seen {
   Eigen::Vector2d pixel;
@@ -31,7 +31,7 @@ double SpacingPx(const std::vector<Seen>& seen, cv::Size size) {
     covered.at<unsigned char>(static_cast<int>(point.pixel.y()) / kCell_px,
                               static_cast<int>(point.pixel.x()) / kCell_px) = 1;
   const double area = static_cast<double>(cv::countNonZero(covered)) * kCell_px * kCell_px;
-  return std::clamp(std::sqrt(area / static_cast<double>(seen.size())), kLeastSpacing_px, kMostSpacing_px);
+  return std::clamp(std::sqrt(area / static_cast<double>(seen.size())), kMinSpacing_px, kMaxSpacing_px);
 }
 
 }  // namespace
@@ -59,7 +59,7 @@ cv::Mat DepthOfCloud(std::span<const Eigen::Vector3d> points_in_cam, const Camer
   const double within = 1.0 / (spacing_px * spacing_px);  // the mean weight of a pixel inside
   for (int v = 0; v < size.height; ++v)
     for (int u = 0; u < size.width; ++u)
-      if (weights.at<float>(v, u) >= kLeastShare * within)
+      if (weights.at<float>(v, u) >= kMinShare * within)
         depth.at<float>(v, u) = sums.at<float>(v, u) / weights.at<float>(v, u);
   return depth;
 }

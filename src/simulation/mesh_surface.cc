@@ -16,7 +16,7 @@
 namespace pliant::simulation {
 namespace {
 
-constexpr std::size_t kMostTriangles = 30'000'000;
+constexpr std::size_t kMaxTriangles = 30'000'000;
 
 using Triangle = std::array<std::uint32_t, 3>;
 
@@ -161,11 +161,11 @@ Result<Surface> MakeMeshSurface(const SimulationOptions::Scene& options) {
   for (const Triangle& t : mesh->triangles)
     area_mm2 +=
         0.5 * (mesh->vertices[t[1]] - mesh->vertices[t[0]]).cross(mesh->vertices[t[2]] - mesh->vertices[t[0]]).norm();
-  if (3.0 * area_mm2 / (options.mesh_step_mm * options.mesh_step_mm) > static_cast<double>(kMostTriangles))
+  if (3.0 * area_mm2 / (options.mesh_step_mm * options.mesh_step_mm) > static_cast<double>(kMaxTriangles))
     return TooFine(options);
   Divider divider(*mesh, normals, options.mesh_step_mm);
   while (divider.Round())
-    if (mesh->triangles.size() > kMostTriangles) return TooFine(options);
+    if (mesh->triangles.size() > kMaxTriangles) return TooFine(options);
   return ToSurface(*mesh, normals);
 }
 

@@ -9,8 +9,8 @@
 namespace pliant::simulation {
 namespace {
 
-constexpr float kLeastBlood = -4.0F;
-constexpr float kMostBlood = 4.0F;
+constexpr float kMinBlood = -4.0F;
+constexpr float kMaxBlood = 4.0F;
 constexpr float kReferenceMm = 50.0F;
 constexpr float kFinestFacetMm = 0.2F;
 
@@ -22,7 +22,7 @@ Shader::Shader(const SimulationOptions::Light& options, const Surface& surface, 
   const Eigen::Array3f mucosa(0.19F, 0.235F, 0.68F);
   const Eigen::Array3f absorption(0.78F, 0.85F, 0.25F);
   for (int i = 0; i < kAlbedoSteps; ++i) {
-    const float blood_amount = kLeastBlood + (kMostBlood - kLeastBlood) * static_cast<float>(i) / (kAlbedoSteps - 1);
+    const float blood_amount = kMinBlood + (kMaxBlood - kMinBlood) * static_cast<float>(i) / (kAlbedoSteps - 1);
     albedo_[i] = (mucosa * (-absorption * blood_amount).exp()).min(0.95F).matrix();
   }
 }
@@ -38,7 +38,7 @@ Shader::Place Shader::PlaceOf(const std::array<std::uint32_t, 3>& t, float b1, f
 }
 
 const Eigen::Vector3f& Shader::AlbedoOf(float blood) const {
-  const int step = static_cast<int>((blood - kLeastBlood) / (kMostBlood - kLeastBlood) * (kAlbedoSteps - 1) + 0.5F);
+  const int step = static_cast<int>((blood - kMinBlood) / (kMaxBlood - kMinBlood) * (kAlbedoSteps - 1) + 0.5F);
   return albedo_[std::clamp(step, 0, kAlbedoSteps - 1)];
 }
 

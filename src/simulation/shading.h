@@ -49,7 +49,7 @@ class Shader {
   const Surface& surface_;
   const Paint& paint_;
   float pixel_rad_;
-  std::array<Eigen::Vector3f, kAlbedoSteps> albedo_;  // over blood from kLeastBlood to kMostBlood
+  std::array<Eigen::Vector3f, kAlbedoSteps> albedo_;  // over blood from kMinBlood to kMaxBlood
 };
 
 }  // namespace pliant::simulation

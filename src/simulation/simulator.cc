@@ -69,20 +69,20 @@ namespace {
 
 // Scenes and cameras that no memory holds are refused before it is asked for.
 Status CheckMemory(const SimulationOptions& options, double length_mm) {
-  constexpr double kMostTexels = 4e8;
+  constexpr double kMaxTexels = 4e8;
   const bool sheet = options.scene.kind == SceneKind::kSurface || options.scene.kind == SceneKind::kLobes;
   const double around_mm = sheet ? 1.2 * options.scene.width_mm : 2 * 3.1416 * options.scene.radius_mm * 1.5;
   const double texels = around_mm * length_mm /
                         std::min(options.texture.texel_mm * options.texture.texel_mm,
                                  options.scene.mesh_step_mm * options.scene.mesh_step_mm / 8);
-  if (options.scene.kind != SceneKind::kMesh && texels > kMostTexels)
+  if (options.scene.kind != SceneKind::kMesh && texels > kMaxTexels)
     return {ErrorCode::kInvalidArgument,
             "a wall " + FormatDouble(std::round(length_mm)) +
                 " mm long does not fit into memory at this resolution; shorten the way, or raise Texture.texel_mm and "
                 "Scene.mesh_step_mm"};
-  constexpr double kMostRays = 4e8;
+  constexpr double kMaxRays = 4e8;
   const double rays = static_cast<double>(options.camera.width) * options.camera.height * (options.sensor.samples + 1);
-  if (rays > kMostRays)
+  if (rays > kMaxRays)
     return {ErrorCode::kInvalidArgument, "the rays of " + std::to_string(options.camera.width) + "x" +
                                              std::to_string(options.camera.height) +
                                              " pixels do not fit into memory with Sensor.samples " +

@@ -207,8 +207,8 @@ std::vector<std::pair<PointId, Eigen::Vector3d>> Candidates::Certain(const Rigid
   for (const Landmark& landmark : map.landmarks) distances.push_back((cam_from_world * landmark.position).norm());
   if (distances.empty()) return {};
   // A map that runs short of points takes less certain ones, rather than be lost.
-  constexpr double kMostSlack = 3;
-  const double slack = std::clamp(options_.scarce_points / static_cast<double>(distances.size()), 1.0, kMostSlack);
+  constexpr double kMaxSlack = 3;
+  const double slack = std::clamp(options_.scarce_points / static_cast<double>(distances.size()), 1.0, kMaxSlack);
   const double max_sigma = slack * options_.max_depth_sigma * Median(std::move(distances));
   std::vector<std::pair<PointId, MovingPoint>> placed;
   std::vector<double> errors;

@@ -24,7 +24,7 @@ constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 // Motions whose translations are this near (and the rotations likewise) are one motion, not rivals.
 constexpr double kSameMotionRad = 5.0 / kDegPerRad;
 // Costs are compared as if every point had at least this error: exact data must not turn rounding into evidence.
-constexpr double kLeastErrorPx = 0.02;
+constexpr double kMinErrorPx = 0.02;
 // A rival has to put nearly as many points in front of the cameras as the motion it challenges.
 constexpr double kRivalFrontShare = 0.9;
 
@@ -180,7 +180,7 @@ class Attempt {
   Status BeatRivals() {
     const std::vector<char> used = motion_.inliers;
     if (Status status = Refine(motion_.cam1_from_cam0, used, &motion_); !status.ok()) return status;
-    const double floor = 0.5 * motion_.num_inliers * kLeastErrorPx * kLeastErrorPx;
+    const double floor = 0.5 * motion_.num_inliers * kMinErrorPx * kMinErrorPx;
     std::vector<PairMotion> rivals;
     for (const Rigid3& start : RivalStarts()) {
       PairMotion rival;

@@ -13,7 +13,7 @@
 namespace pliant {
 namespace {
 
-constexpr int kLeastTimesRemade = 2;
+constexpr int kMinTimesRemade = 2;
 constexpr int kNeighbors = 8;
 constexpr double kSigmas = 3.0;
 
@@ -26,7 +26,7 @@ std::vector<PointId> SlidPoints(const std::vector<InitPosition>& remade, const R
   std::vector<double> changes;
   for (const Landmark& landmark : map.landmarks) {
     const InitPosition* point = FindById(remade, landmark.id);
-    if (point == nullptr || landmark.times_remade < kLeastTimesRemade) continue;
+    if (point == nullptr || landmark.times_remade < kMinTimesRemade) continue;
     const Eigen::Vector3d before = cam_from_world * landmark.position;
     ids.push_back(landmark.id);
     directions.push_back(before.normalized());

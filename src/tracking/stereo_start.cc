@@ -82,7 +82,7 @@ std::optional<RowMatch> Refine(const Side& left, const Side& right, const Eigen:
 // Semi-global matching's disparity between four pixels; nothing where one of them has none or they differ.
 std::optional<RowMatch> Between(const cv::Mat& disparities, const Eigen::Vector2d& pixel) {
   constexpr float kStep = 1.0F / 16;
-  constexpr float kMostDifference_px = 1;
+  constexpr float kMaxDifference_px = 1;
   const int u = static_cast<int>(std::floor(pixel.x()));
   const int v = static_cast<int>(std::floor(pixel.y()));
   if (u < 0 || v < 0 || u + 1 >= disparities.cols || v + 1 >= disparities.rows) return std::nullopt;
@@ -91,7 +91,7 @@ std::optional<RowMatch> Between(const cv::Mat& disparities, const Eigen::Vector2
   double low = 0;
   double high = 0;
   cv::minMaxLoc(four, &low, &high);
-  if (low <= 0 || high - low > kMostDifference_px) return std::nullopt;
+  if (low <= 0 || high - low > kMaxDifference_px) return std::nullopt;
   const auto disparity_px = SampleBilinear(four, pixel.x() - u, pixel.y() - v);
   return disparity_px ? std::optional(RowMatch{.disparity_px = *disparity_px}) : std::nullopt;
 }

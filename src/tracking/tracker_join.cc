@@ -22,7 +22,7 @@ constexpr double kFarthestShare = 0.1;  // of the image's width, they are away f
 constexpr double kNear = 0.01;          // squared share of that: nearer ones count alike
 constexpr double kFlat = 0.1;           // weight of no slope, of a landmark's at that distance
 // Pixels that must tell the unit: where maps overlap by an edge alone, what is beside it says little.
-constexpr std::size_t kLeastRatios = 30;
+constexpr std::size_t kMinRatios = 30;
 
 // A pixel of the image, and how far from the camera what it shows is.
 struct PixelDistance {
@@ -59,7 +59,7 @@ std::optional<double> UnitRatio(const std::vector<PixelDistance>& first, std::ve
   for (const PixelDistance& point : first)
     if (const auto log_distance = LogDistanceAt(point.pixel, second, radius_px))
       logs.push_back(std::log(point.distance) - *log_distance);
-  if (logs.size() < kLeastRatios) return std::nullopt;
+  if (logs.size() < kMinRatios) return std::nullopt;
   const double median = Median(logs);
   for (double& log : logs) log = std::abs(log - median);
   if (Median(std::move(logs)) > max_spread) return std::nullopt;

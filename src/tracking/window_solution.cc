@@ -15,10 +15,10 @@
 namespace pliant {
 namespace {
 
-constexpr std::size_t kLeastPoints = 12;
-constexpr std::size_t kLeastFrames = 6;
+constexpr std::size_t kMinPoints = 12;
+constexpr std::size_t kMinFrames = 6;
 // A light that leaves more of the spread of log distances than this says nothing of distance.
-constexpr double kMostOfSpread = 0.8;
+constexpr double kMaxOfSpread = 0.8;
 // A rotation that explains this share of the points to this error leaves nothing to triangulate.
 constexpr double kRotationErrorPx = 1.5;
 constexpr double kMaxRotationShare = 0.8;
@@ -133,12 +133,12 @@ struct PreparedWindow {
 
 Result<PreparedWindow> PrepareWindow(const InitInput& input, std::size_t frames, const WindowInitOptions& options,
                                      double nominal_depth_mm) {
-  if (frames < kLeastFrames)
-    return {ErrorCode::kInsufficient, "a window takes at least " + std::to_string(kLeastFrames) + " frames"};
+  if (frames < kMinFrames)
+    return {ErrorCode::kInsufficient, "a window takes at least " + std::to_string(kMinFrames) + " frames"};
   PreparedWindow window;
   window.views = ChooseViews(frames, static_cast<std::size_t>(options.views));
   window.ids = ChoosePoints(input, window.views, options);
-  if (window.ids.size() < kLeastPoints)
+  if (window.ids.size() < kMinPoints)
     return {ErrorCode::kInsufficient,
             "only " + std::to_string(window.ids.size()) + " points were followed long enough"};
   auto start = Start(input, window.views, options, nominal_depth_mm, &window.ids);
@@ -152,7 +152,7 @@ Result<SolvedWindow> SolveDeforming(const InitInput& input, const PreparedWindow
   auto solution = SolveDeformingWindow(window.start, input.camera.MeanFocalLengthPx(), options.window, input.threads);
   if (!solution.ok()) return solution.status();
   SolvedWindow lit{window.views, window.ids, std::move(*solution), false};
-  if (lit.solution.light_error <= kMostOfSpread * lit.solution.log_distance_spread) return lit;
+  if (lit.solution.light_error <= kMaxOfSpread * lit.solution.log_distance_spread) return lit;
   // The solution is wrong, or the light is: not at the camera, of another response, on tissue of many colors.
   WindowInitOptions without = options;
   without.light = Switch::kOff;

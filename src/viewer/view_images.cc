@@ -20,7 +20,7 @@ namespace pliant {
 namespace {
 
 constexpr int kPatchSide = 11;
-constexpr double kLeastContrast = 1.0;  // standard deviation in gray levels, below which a patch says nothing of gain
+constexpr double kMinContrast = 1.0;  // standard deviation in gray levels, below which a patch says nothing of gain
 
 using Patch = Eigen::Matrix<float, kPatchSide * kPatchSide, 1>;
 
@@ -46,7 +46,7 @@ void AddBrightness(const cv::Mat& gray, FirstPatches* first, ViewedFrame* frame)
     if (!patch) continue;
     const Patch& reference = first->emplace(o.id, *patch).first->second;
     const Patch from_mean = reference.array() - reference.mean();
-    if (from_mean.squaredNorm() < kLeastContrast * kLeastContrast * kPatchSide * kPatchSide) continue;
+    if (from_mean.squaredNorm() < kMinContrast * kMinContrast * kPatchSide * kPatchSide) continue;
     o.gain = from_mean.dot(*patch) / from_mean.squaredNorm();
     o.bias = patch->mean() - o.gain * reference.mean();
   }

@@ -17,7 +17,7 @@ inline constexpr const char* kRightFolder = "right";
 inline constexpr const char* kDepthFolder = "depth";
 inline constexpr const char* kMaskFolder = "masks";
 
-inline constexpr double kMostDepthSteps = 65535.0;  // of a 16-bit depth image; 0 is none
+inline constexpr double kMaxDepthSteps = 65535.0;  // of a 16-bit depth image; 0 is none
 
 inline std::string FrameFileName(int frame_idx) {
   char name[32];
