@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The Pliant authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Checks the rules of the house that a compiler does not see.
+"""Checks the rules of the architecture that a compiler does not see.
 
 usage: check_architecture.py ROOT
 
-1. A room includes only itself and rooms below it (so there is no circle of rooms).
-2. FLANN and Assimp are included in one file each, in the rooms deformation and simulation; OpenGV in estimation/opengv_*.
-3. Nothing below the room cli prints, logs, or ends the process.
+1. A module includes only itself and modules below it (so there is no circle of modules).
+2. FLANN and Assimp are included in one file each, in the modules deformation and simulation; OpenGV in estimation/opengv_*.
+3. Nothing below the module cli prints, logs, or ends the process.
 4. Every source, header, script and CMake list begins with the two SPDX lines.
 Prints one line a violation, `file:line: sentence`, and exits with 1 if there is one.
 """
@@ -16,9 +16,9 @@ import pathlib
 import re
 import sys
 
-ROOMS = ("base geometry image camera colmap photometric scene deformation residuals estimation tracking io datasets simulation "
+MODULES = ("base geometry image camera colmap photometric scene deformation residuals estimation tracking io datasets simulation "
          "evaluation exchange pipeline viewer cli").split()
-# Where a library may be included: in the files of one room whose names begin so; where nothing is said, in one file of it.
+# Where a library may be included: in the files of one module whose names begin so; where nothing is said, in one file of it.
 LIBRARY_HOMES = {"flann": ("deformation", ""), "opengv": ("estimation", "opengv_"), "assimp": ("simulation", "")}
 SPDX = ("SPDX-FileCopyrightText: ", "SPDX-License-Identifier: BSD-3-Clause")
 SPDX_SUFFIXES = {".h", ".cc", ".py", ".cmake", ".sh"}
@@ -38,41 +38,41 @@ def without_comments(text):
 
 
 def sources(root):
-    """(room, path) of every source and header of the library and the program, sorted."""
+    """(module, path) of every source and header of the library and the program, sorted."""
     for base in (root / "include" / "pliant", root / "src"):
         for path in sorted(base.rglob("*")):
             if path.suffix in (".h", ".cc"):
                 yield path.relative_to(base).parts[0], path
 
 
-def included_room(target):
+def included_module(target):
     parts = target.split("/")
     if parts[0] == "pliant":
         parts = parts[1:]
-    return parts[0] if len(parts) > 1 and parts[0] in ROOMS else None
+    return parts[0] if len(parts) > 1 and parts[0] in MODULES else None
 
 
-def check_room_order(root):
-    for room, path in sources(root):
-        if room not in ROOMS:
-            yield path, 1, f"'{room}' is no room of the house"
+def check_module_order(root):
+    for module, path in sources(root):
+        if module not in MODULES:
+            yield path, 1, f"'{module}' is no module of the library"
             continue
         for number, line in enumerate(path.read_text().splitlines(), 1):
             match = INCLUDE.match(line)
-            below = included_room(match.group(1)) if match else None
-            if below and ROOMS.index(below) > ROOMS.index(room):
-                yield path, number, f"room {room} includes room {below}, which lies above it"
+            below = included_module(match.group(1)) if match else None
+            if below and MODULES.index(below) > MODULES.index(module):
+                yield path, number, f"module {module} includes module {below}, which lies above it"
 
 
 def check_library_homes(root):
     for library, (home, prefix) in LIBRARY_HOMES.items():
         seen = []
-        for room, path in sources(root):
+        for module, path in sources(root):
             for number, line in enumerate(path.read_text().splitlines(), 1):
                 match = INCLUDE.match(line)
                 if match and match.group(1).startswith(library + "/"):
-                    if room != home:
-                        yield path, number, f"{library} may be included in room {home} only"
+                    if module != home:
+                        yield path, number, f"{library} may be included in module {home} only"
                     elif prefix and not path.name.startswith(prefix):
                         yield path, number, f"{library} may be included in files {prefix}* only"
                     elif not prefix and seen and seen[0] != path:
@@ -81,8 +81,8 @@ def check_library_homes(root):
 
 
 def check_calls(root):
-    for room, path in sources(root):
-        if room == "cli":
+    for module, path in sources(root):
+        if module == "cli":
             continue
         for number, line in enumerate(without_comments(path.read_text()).splitlines(), 1):
             match = FORBIDDEN_CALL.search(line)
@@ -102,7 +102,7 @@ def check_spdx(root):
                 yield path, 1, "the two SPDX lines are not the first ones"
 
 
-CHECKS = (check_room_order, check_library_homes, check_calls, check_spdx)
+CHECKS = (check_module_order, check_library_homes, check_calls, check_spdx)
 
 
 def violations(root):
@@ -114,5 +114,5 @@ if __name__ == "__main__":
     if len(sys.argv) != 2:
         sys.exit(__doc__)
     found = violations(sys.argv[1])
-    print("\n".join(found) if found else "the house keeps its rules")
+    print("\n".join(found) if found else "the rules of the architecture are kept")
     sys.exit(1 if found else 0)

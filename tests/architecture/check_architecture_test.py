@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The Pliant authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Every rule of check_architecture.py finds its violation, in a small house made for it, and nothing else."""
+"""Every rule of check_architecture.py finds its violation, in a small library made for it, and nothing else."""
 
 import pathlib
 import tempfile
@@ -12,7 +12,7 @@ HEAD = "// SPDX-FileCopyrightText: 2026 The Pliant authors\n// SPDX-License-Iden
 
 
 def violations(files):
-    """What the check finds in a house of these files (path: text after the SPDX lines)."""
+    """What the check finds in a library of these files (path: text after the SPDX lines)."""
     with tempfile.TemporaryDirectory() as folder:
         for name, text in files.items():
             path = pathlib.Path(folder) / name
@@ -30,12 +30,12 @@ class Rules(unittest.TestCase):
             "src/cli/main.cc": "std::cout << 1; exit(2);\n",
         }), [])
 
-    def test_a_room_that_includes_one_above_it_is_found(self):
+    def test_a_module_that_includes_one_above_it_is_found(self):
         for include in ('"pliant/tracking/tracker.h"', "<tracking/private.h>"):
             found = violations({"src/camera/a.cc": f"\n#include {include}\n"})
-            self.assertEqual(found, ["src/camera/a.cc:4: room camera includes room tracking, which lies above it"])
+            self.assertEqual(found, ["src/camera/a.cc:4: module camera includes module tracking, which lies above it"])
 
-    def test_an_unknown_room_is_found(self):
+    def test_an_unknown_module_is_found(self):
         self.assertEqual(len(violations({"src/cellar/a.cc": "\n"})), 1)
 
     def test_flann_in_a_second_file_is_found(self):
@@ -43,9 +43,9 @@ class Rules(unittest.TestCase):
                             "src/deformation/b.cc": "#include <flann/flann.hpp>\n"})
         self.assertEqual(found, ["src/deformation/b.cc:3: flann is already included in src/deformation/a.cc"])
 
-    def test_opengv_in_another_room_is_found(self):
+    def test_opengv_in_another_module_is_found(self):
         found = violations({"src/geometry/a.cc": "#include <opengv/types.hpp>\n"})
-        self.assertEqual(found, ["src/geometry/a.cc:3: opengv may be included in room estimation only"])
+        self.assertEqual(found, ["src/geometry/a.cc:3: opengv may be included in module estimation only"])
 
     def test_opengv_in_a_file_of_another_name_is_found(self):
         found = violations({"src/estimation/a.cc": "#include <opengv/types.hpp>\n",

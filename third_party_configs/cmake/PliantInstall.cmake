@@ -1,21 +1,21 @@
 # SPDX-FileCopyrightText: 2026 The Pliant authors
 # SPDX-License-Identifier: BSD-3-Clause
 #
-# `cmake --install`: the program, the headers, every room but the program's own, and a package that another project
-# finds with find_package(Pliant). Pliant::pliant stands for all rooms; Pliant::<room> for one and what lies below it.
+# `cmake --install`: the program, the headers, every module but the program's own, and a package that another project
+# finds with find_package(Pliant). Pliant::pliant stands for all modules; Pliant::<module> for one and what lies below it.
 include(CMakePackageConfigHelpers)
 
-get_property(_pliant_rooms GLOBAL PROPERTY PLIANT_ROOMS)
-list(REMOVE_ITEM _pliant_rooms pliant_cli)
+get_property(_pliant_modules GLOBAL PROPERTY PLIANT_MODULES)
+list(REMOVE_ITEM _pliant_modules pliant_cli)
 
 add_library(pliant_all INTERFACE)
 add_library(Pliant::pliant ALIAS pliant_all)
 set_target_properties(pliant_all PROPERTIES EXPORT_NAME pliant)
 target_compile_features(pliant_all INTERFACE cxx_std_20)
-target_link_libraries(pliant_all INTERFACE ${_pliant_rooms})
+target_link_libraries(pliant_all INTERFACE ${_pliant_modules})
 
 set(_pliant_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/Pliant)
-install(TARGETS pliant_all ${_pliant_rooms} EXPORT PliantTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(TARGETS pliant_all ${_pliant_modules} EXPORT PliantTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 if(TARGET pliant)
   install(TARGETS pliant RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endif()

@@ -20,10 +20,10 @@ if(PROJECT_IS_TOP_LEVEL)
   target_compile_options(pliant_warnings INTERFACE -Werror)
 endif()
 
-set_property(GLOBAL PROPERTY PLIANT_ROOMS "")
+set_property(GLOBAL PROPERTY PLIANT_MODULES "")
 
-# A room: one static library. DEPENDS names the rooms below that it may include, LIBRARIES what it takes from outside.
-function(pliant_room name)
+# A module: one static library. DEPENDS names the modules below that it may include, LIBRARIES what it takes from outside.
+function(pliant_module name)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;LIBRARIES" ${ARGN})
   set(target pliant_${name})
   add_library(${target} STATIC ${ARG_SOURCES})
@@ -31,23 +31,23 @@ function(pliant_room name)
   target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
                                               $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
                              PRIVATE ${PROJECT_SOURCE_DIR}/src)
-  foreach(room IN LISTS ARG_DEPENDS)
-    target_link_libraries(${target} PUBLIC pliant_${room})
+  foreach(module IN LISTS ARG_DEPENDS)
+    target_link_libraries(${target} PUBLIC pliant_${module})
   endforeach()
   target_link_libraries(${target} PUBLIC ${ARG_LIBRARIES} PRIVATE $<BUILD_INTERFACE:pliant_warnings>)
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
-  set_property(GLOBAL APPEND PROPERTY PLIANT_ROOMS ${target})
+  set_property(GLOBAL APPEND PROPERTY PLIANT_MODULES ${target})
 endfunction()
 
-# One test program a room, each of its tests known to CTest by its own name; WHOLE: they share something costly, and are
+# One test program a module, each of its tests known to CTest by its own name; WHOLE: they share something costly, and are
 # one test of CTest.
 function(pliant_test name)
-  cmake_parse_arguments(ARG "WHOLE" "" "SOURCES;ROOMS;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(ARG "WHOLE" "" "SOURCES;MODULES;LIBRARIES" ${ARGN})
   set(target ${name}_test)
   add_executable(${target} ${ARG_SOURCES})
   target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/src ${PROJECT_SOURCE_DIR}/tests)
-  foreach(room IN LISTS ARG_ROOMS)
-    target_link_libraries(${target} PRIVATE pliant_${room})
+  foreach(module IN LISTS ARG_MODULES)
+    target_link_libraries(${target} PRIVATE pliant_${module})
   endforeach()
   target_link_libraries(${target} PRIVATE ${ARG_LIBRARIES} GTest::gmock GTest::gtest_main pliant_warnings)
   if(ARG_WHOLE)

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// The kernels as Ceres cost functions, with analytic Jacobians: the only file of the room that knows Ceres.
+// The kernels as Ceres cost functions, with analytic Jacobians: the only file of the module that knows Ceres.
 // Parameter blocks: `increment` is PoseIncrement's (omega, tau), 6 numbers; `delta` a displacement in the world frame,
 // mm. Every cost function belongs to the caller (or to the Problem that it is given to); what is handed in by pointer
 // or reference must outlive it. Evaluation fails, and Ceres refuses the step, where a point leaves the camera's domain.
