@@ -96,13 +96,13 @@ Tracker::Tracker(const Camera& camera, const TrackerOptions& options, std::uint6
           options.oracle, truth,
           options.init.IsMetric() ? std::nullopt : std::optional(options.init.monocular.nominal_depth_mm))),
       remaker_(std::make_unique<MapRemaker>(options.init.window, options.init.monocular.nominal_depth_mm)),
-      now_(std::make_unique<Submap>(0, camera_, options)) {
+      current_(std::make_unique<Submap>(0, camera_, options)) {
   if (options_.init.IsMetric()) options_.graph.sigma_mm = options_.sigma_metric_mm;
 }
 
 Tracker::~Tracker() = default;
 
-const Map& Tracker::map() const { return now_->map; }
+const Map& Tracker::map() const { return current_->map; }
 
 bool Tracker::NeedsDepth() const { return options_.init.TakesKnownDepth() && map().landmarks.empty(); }
 
@@ -113,15 +113,15 @@ bool Tracker::WantsDepth() const {
 void Tracker::TakeMap(const TrackerFrame& frame, const FrameReport& report) {
   for (const PointObservation& seen : report.observations) {
     const auto point = std::ranges::find(report.new_points, seen.id, &NewPoint::id);
-    if (now_->point_tracker.Add(seen.id, seen.pixel, frame.pyramid, frame.mask) != PatchFailure::kNone) continue;
+    if (current_->point_tracker.Add(seen.id, seen.pixel, frame.pyramid, frame.mask) != PatchFailure::kNone) continue;
     Landmark landmark{.id = seen.id, .rest_position = seen.position, .position = seen.position, .pixel = seen.pixel};
     if (point != report.new_points.end()) landmark.rest_position = point->position;
-    now_->map.landmarks.push_back(landmark);
+    current_->map.landmarks.push_back(landmark);
   }
-  now_->idx = report.submap;
-  now_->last_cam_from_world = *report.cam_from_world;
-  now_->before_last_cam_from_world = *report.cam_from_world;
-  now_->previous = frame;
+  current_->idx = report.submap;
+  current_->last_cam_from_world = *report.cam_from_world;
+  current_->before_last_cam_from_world = *report.cam_from_world;
+  current_->previous = frame;
   ++maps_made_;
   Apply(TrackingEvent::kMapCreated);
 }
@@ -151,7 +151,7 @@ std::vector<FrameReport> Tracker::Process(const TrackerFrame& frame) {
       break;
   }
   report.state = state_;
-  report.submap = now_->idx;
+  report.submap = current_->idx;
   ReportLosses(&report);
   JoinMaps(frame, &report);
 
@@ -190,7 +190,7 @@ void Tracker::AddCorners(const TrackerFrame& frame, const LocalBrightness& brigh
   InitFrame added{frame.frame_idx, {}};
   for (const Corner& corner : DetectCorners(frame.gray, frame.mask.valid(), existing, corners)) {
     const PointId id{next_id_};
-    if (now_->point_tracker.Add(id, corner.pixel, frame.pyramid, frame.mask) != PatchFailure::kNone) continue;
+    if (current_->point_tracker.Add(id, corner.pixel, frame.pyramid, frame.mask) != PatchFailure::kNone) continue;
     added.observations.push_back(
         {id, corner.pixel, 1.0, brightness.At(corner.pixel), ColorAt(frame.image, corner.pixel)});
     ++next_id_;
@@ -204,7 +204,7 @@ void Tracker::AddKnownPoints(const TrackerFrame& frame, const LocalBrightness& b
   for (const PixelDepth& known : frame.known_points()) {
     if (static_cast<int>(points->observations.size()) == options_.corners.max_corners) break;
     const PointId id{next_id_};
-    if (now_->point_tracker.Add(id, known.pixel, frame.pyramid, frame.mask) != PatchFailure::kNone) continue;
+    if (current_->point_tracker.Add(id, known.pixel, frame.pyramid, frame.mask) != PatchFailure::kNone) continue;
     points->observations.push_back(
         {id, known.pixel, 1.0, brightness.At(known.pixel), ColorAt(frame.image, known.pixel)});
     known_depths_.push_back(known.depth);
@@ -215,15 +215,15 @@ void Tracker::AddKnownPoints(const TrackerFrame& frame, const LocalBrightness& b
 void Tracker::TakeReference(const TrackerFrame& frame, FrameReport* report) {
   {
     const StageTimer timer(report, "initialize");
-    now_->map.landmarks.clear();
+    current_->map.landmarks.clear();
     init_frames_.clear();
-    now_->point_tracker.Clear();
-    now_->lost_points.Clear();
-    now_->rigid_history.Stop();
-    now_->candidates.Clear();
-    now_->places.Clear();
-    now_->recent_poses.clear();
-    now_->window_frames.clear();
+    current_->point_tracker.Clear();
+    current_->lost_points.Clear();
+    current_->rigid_history.Stop();
+    current_->candidates.Clear();
+    current_->places.Clear();
+    current_->recent_poses.clear();
+    current_->window_frames.clear();
     InitFrame reference{frame.frame_idx, {}};
     const LocalBrightness brightness(frame.image, frame.mask.valid());
     known_depths_.clear();
@@ -239,12 +239,12 @@ void Tracker::TakeReference(const TrackerFrame& frame, FrameReport* report) {
     report->note = WithFault("no reference yet: " + std::to_string(report->tracked) +
                                  (initializer_->TakesKnownPoints() ? " points of the model" : " corners") +
                                  ", of at least " + std::to_string(options_.min_corners),
-                             ImageFault(frame, now_->previous));
+                             ImageFault(frame, current_->previous));
   } else if (TryInitialize(frame, report) == InitDecision::kWait) {
     Apply(TrackingEvent::kReferenceFound);
     report->note = "reference with " + std::to_string(report->tracked) + " corners";
   }
-  now_->previous = frame;
+  current_->previous = frame;
 }
 
 // Constant velocity in the image: there is no map yet.
@@ -275,7 +275,7 @@ bool Tracker::PassOver(const TrackerFrame& frame, FrameReport* report) {
   if (options_.track_blurred == Switch::kOff || !IsBlurred(frame)) return false;
   ++blurred_frames_;
   report->tracked = static_cast<int>(init_frames_.back().observations.size());
-  report->note = WithFault("passed over: the image is blurred or dark", ImageFault(frame, now_->previous));
+  report->note = WithFault("passed over: the image is blurred or dark", ImageFault(frame, current_->previous));
   return true;
 }
 
@@ -292,7 +292,7 @@ void Tracker::FollowReference(const TrackerFrame& frame, FrameReport* report) {
         followed.observations.push_back(
             {track.id, track.pixel, track.ssim, brightness.At(track.pixel), ColorAt(frame.image, track.pixel)});
       } else {
-        now_->point_tracker.Remove(track.id);
+        current_->point_tracker.Remove(track.id);
         Count(EnumName(track.failure), 1);
       }
     }
@@ -301,12 +301,12 @@ void Tracker::FollowReference(const TrackerFrame& frame, FrameReport* report) {
       AddCorners(frame, brightness, options_.corners.max_corners - kept, &followed);
     report->tracked = static_cast<int>(followed.observations.size());
     init_frames_.push_back(std::move(followed));
-    now_->point_tracker.Keep();
+    current_->point_tracker.Keep();
   }
-  image_fault_ = ImageFault(frame, now_->previous);
+  image_fault_ = ImageFault(frame, current_->previous);
   TryInitialize(frame, report);
   report->note = WithFault(report->note, image_fault_);
-  now_->previous = frame;
+  current_->previous = frame;
 }
 
 InitOutcome Tracker::AskInitializer(const cv::Mat& depth_mm, InitMoment moment, FrameReport* report) {
@@ -355,16 +355,17 @@ InitDecision Tracker::TryInitialize(const TrackerFrame& frame, FrameReport* repo
 // Of the points that the map does not have, those may still enter it whose depth is uncertain so far.
 void Tracker::KeepCandidates(const InitOutcome& outcome) {
   for (const InitPoint& point : outcome.points)
-    if (now_->map.Find(point.id) == nullptr) now_->point_tracker.Remove(point.id);
+    if (current_->map.Find(point.id) == nullptr) current_->point_tracker.Remove(point.id);
   for (const InitRejectedPoint& rejected : outcome.rejected) {
     const InitObservation* seen = FindById(init_frames_.back().observations, rejected.id);
     const bool uncertain =
         rejected.reason == InitRejection::kUncertainDepth || rejected.reason == InitRejection::kTooFewViews;
     if (!GrowsMap() || !uncertain || seen == nullptr ||
-        !now_->candidates.Add({seen->id, seen->pixel, seen->ssim, seen->rgb}, now_->last_cam_from_world, now_->map))
-      now_->point_tracker.Remove(rejected.id);
+        !current_->candidates.Add({seen->id, seen->pixel, seen->ssim, seen->rgb}, current_->last_cam_from_world,
+                                  current_->map))
+      current_->point_tracker.Remove(rejected.id);
   }
-  now_->window_frames = init_frames_;
+  current_->window_frames = init_frames_;
 }
 
 // Every frame since the reference gets its pose and points; tracking goes on from the last one.
@@ -372,15 +373,16 @@ void Tracker::CreateMap(const InitOutcome& outcome) {
   for (const InitRejectedPoint& rejected : outcome.rejected)
     if (rejected.reason != InitRejection::kLostOnTheWay) Count(InitRejectionName(rejected.reason), 1);
   ReportFirstMap(camera_, init_frames_, outcome, held_);
-  now_->map = MakeFirstMap(init_frames_, outcome);
-  for (Landmark& landmark : now_->map.landmarks)
+  current_->map = MakeFirstMap(init_frames_, outcome);
+  for (Landmark& landmark : current_->map.landmarks)
     landmark.measured = options_.init.IsMetric() || oracle_->gives_first_map();
-  now_->last_cam_from_world = outcome.frames.back().cam_from_world;
-  now_->before_last_cam_from_world =
-      outcome.frames.size() >= 2 ? outcome.frames[outcome.frames.size() - 2].cam_from_world : now_->last_cam_from_world;
+  current_->last_cam_from_world = outcome.frames.back().cam_from_world;
+  current_->before_last_cam_from_world = outcome.frames.size() >= 2
+                                             ? outcome.frames[outcome.frames.size() - 2].cam_from_world
+                                             : current_->last_cam_from_world;
   KeepCandidates(outcome);
   if (outcome.refinable && !oracle_->gives_poses() && options_.camera_motion == CameraMotion::kFree)
-    now_->rigid_history.Start(std::move(init_frames_));
+    current_->rigid_history.Start(std::move(init_frames_));
   init_frames_.clear();
   ++maps_made_;
   Apply(TrackingEvent::kMapCreated);

@@ -19,7 +19,7 @@ namespace pliant {
 
 // One frame, as in the paper; the names in brackets are those of docs/method.md.
 void Tracker::TrackFrame(const TrackerFrame& frame, FrameReport* report) {
-  Rigid3 predicted = PredictCameraPose(now_->before_last_cam_from_world, now_->last_cam_from_world);  // (E6)
+  Rigid3 predicted = PredictCameraPose(current_->before_last_cam_from_world, current_->last_cam_from_world);  // (E6)
   const std::optional<Rigid3> known_pose = KnownPose(frame.frame_idx);
   if (known_pose) predicted = *known_pose;
   Followed followed;
@@ -82,14 +82,14 @@ void Tracker::TrackFrame(const TrackerFrame& frame, FrameReport* report) {
   Remember(frame, *report);
   RefineMap(report);
   GrowMap(frame, report);
-  now_->point_tracker.Keep();
-  report->note = WithFault(report->note, ImageFault(frame, now_->previous));
-  now_->previous = frame;
+  current_->point_tracker.Keep();
+  report->note = WithFault(report->note, ImageFault(frame, current_->previous));
+  current_->previous = frame;
 }
 
 // Of the truth, or of a camera that stands still.
 std::optional<Rigid3> Tracker::KnownPose(int frame_idx) const {
-  if (options_.camera_motion == CameraMotion::kNone) return now_->last_cam_from_world;
+  if (options_.camera_motion == CameraMotion::kNone) return current_->last_cam_from_world;
   return oracle_->Pose(frame_idx);
 }
 
@@ -97,15 +97,15 @@ std::optional<Rigid3> Tracker::KnownPose(int frame_idx) const {
 std::vector<PointPrediction> Tracker::PredictPixels(const Rigid3& predicted_cam_from_world) const {
   std::vector<Eigen::Vector2d> from;
   std::vector<Eigen::Vector2d> to;
-  for (const Landmark& landmark : now_->map.landmarks) {
-    const auto now = camera_.Project(now_->last_cam_from_world * landmark.position);
+  for (const Landmark& landmark : current_->map.landmarks) {
+    const auto now = camera_.Project(current_->last_cam_from_world * landmark.position);
     const auto next = camera_.Project(predicted_cam_from_world * (landmark.position + landmark.last_motion));
     from.push_back(landmark.pixel);
     to.push_back(now && next ? Eigen::Vector2d(landmark.pixel + *next - *now) : landmark.pixel);
   }
   const std::vector<Eigen::Matrix2d> affines = NeighborhoodAffines(from, to);
   std::vector<PointPrediction> predictions;
-  for (std::size_t k = 0; k < to.size(); ++k) predictions.push_back({now_->map.landmarks[k].id, to[k], affines[k]});
+  for (std::size_t k = 0; k < to.size(); ++k) predictions.push_back({current_->map.landmarks[k].id, to[k], affines[k]});
   return predictions;
 }
 
@@ -113,21 +113,22 @@ std::vector<PointPrediction> Tracker::PredictPixels(const Rigid3& predicted_cam_
 std::vector<PointTrack> Tracker::TrackPixels(const TrackerFrame& frame,
                                              const std::vector<PointPrediction>& predictions) {
   if (oracle_->gives_tracks()) return oracle_->Tracks(frame.frame_idx, predictions);
-  return now_->point_tracker.Track(now_->previous.pyramid, now_->previous.mask, frame.pyramid, frame.mask, predictions,
-                                   threads_);
+  return current_->point_tracker.Track(current_->previous.pyramid, current_->previous.mask, frame.pyramid, frame.mask,
+                                       predictions, threads_);
 }
 
 // Against the last sharp image. Of many such images in a row the later ones are taken as they are: the blur stays.
 bool Tracker::IsBlurred(const TrackerFrame& frame) const {
   return blurred_frames_ < options_.max_blurred_frames &&
-         frame.sharpness < options_.min_sharpness * now_->previous.sharpness;
+         frame.sharpness < options_.min_sharpness * current_->previous.sharpness;
 }
 
 std::vector<PointTrack> Tracker::TrackPixelsIntoBlur(const TrackerFrame& frame,
                                                      const std::vector<PointPrediction>& predictions) const {
   std::vector<Eigen::Vector2d> pixels;
-  for (const PointPrediction& prediction : predictions) pixels.push_back(now_->point_tracker.PixelOf(prediction.id));
-  return TrackIntoBlur(now_->previous, frame, pixels, predictions, options_.point_tracker, threads_);
+  for (const PointPrediction& prediction : predictions)
+    pixels.push_back(current_->point_tracker.PixelOf(prediction.id));
+  return TrackIntoBlur(current_->previous, frame, pixels, predictions, options_.point_tracker, threads_);
 }
 
 Tracker::Followed Tracker::FollowPoints(const TrackerFrame& frame, const std::vector<PointPrediction>& predictions) {
@@ -140,7 +141,7 @@ Tracker::Followed Tracker::FollowPoints(const TrackerFrame& frame, const std::ve
       Count(EnumName(tracks[k].failure), 1);
       followed.unseen.push_back(tracks[k].id);
     } else {
-      followed.Add(now_->map.landmarks[k], tracks[k]);
+      followed.Add(current_->map.landmarks[k], tracks[k]);
     }
   }
   return followed;
@@ -150,14 +151,14 @@ Tracker::Followed Tracker::FollowPoints(const TrackerFrame& frame, const std::ve
 // many were looked for.
 int Tracker::FindLost(const TrackerFrame& frame, const Rigid3& cam_from_world, Followed* followed) {
   const std::vector<PointPrediction> expected =
-      now_->lost_points.Expected(camera_, cam_from_world, static_cast<std::size_t>(options_.max_searches));
-  const std::vector<PointTrack> tracks = now_->point_tracker.Find(frame.pyramid, frame.mask, expected, threads_);
+      current_->lost_points.Expected(camera_, cam_from_world, static_cast<std::size_t>(options_.max_searches));
+  const std::vector<PointTrack> tracks = current_->point_tracker.Find(frame.pyramid, frame.mask, expected, threads_);
   for (std::size_t k = 0; k < tracks.size(); ++k) {
     if (tracks[k].failure != PatchFailure::kNone) continue;
     if ((tracks[k].pixel - expected[k].pixel).norm() > options_.max_search_px) {
-      now_->point_tracker.Undo(tracks[k].id);
+      current_->point_tracker.Undo(tracks[k].id);
     } else {
-      followed->Add(*now_->lost_points.Find(tracks[k].id), tracks[k]);
+      followed->Add(*current_->lost_points.Find(tracks[k].id), tracks[k]);
       followed->found.push_back(tracks[k].id);
     }
   }
@@ -218,9 +219,9 @@ void Tracker::Commit(const FrameSolution& solution, const Followed& followed, Fr
   Map next;
   std::vector<double> errors;
   for (std::size_t k = 0; k < followed.size(); ++k) {
-    const Landmark* before = now_->map.Find(followed.ids[k]);
-    Landmark landmark = before != nullptr ? *before : *now_->lost_points.Find(followed.ids[k]);
-    now_->lost_points.Remove(landmark.id);
+    const Landmark* before = current_->map.Find(followed.ids[k]);
+    Landmark landmark = before != nullptr ? *before : *current_->lost_points.Find(followed.ids[k]);
+    current_->lost_points.Remove(landmark.id);
     landmark.last_motion = followed.solved[k].position - landmark.position;
     landmark.position = followed.solved[k].position;
     landmark.pixel = followed.pixels[k];
@@ -228,25 +229,25 @@ void Tracker::Commit(const FrameSolution& solution, const Followed& followed, Fr
     report->observations.push_back({landmark.id, landmark.pixel, landmark.position, followed.ssim[k]});
     errors.push_back(followed.solved[k].reprojection_error_px);
   }
-  for (const Landmark& landmark : now_->map.landmarks) {
+  for (const Landmark& landmark : current_->map.landmarks) {
     if (next.Find(landmark.id) != nullptr) continue;
     const bool unseen = std::binary_search(followed.unseen.begin(), followed.unseen.end(), landmark.id);
     if (unseen && options_.find_lost == Switch::kOn)
-      now_->lost_points.Add(landmark, now_->last_cam_from_world);
+      current_->lost_points.Add(landmark, current_->last_cam_from_world);
     else
-      now_->point_tracker.Remove(landmark.id);
+      current_->point_tracker.Remove(landmark.id);
   }
-  for (; static_cast<int>(now_->lost_points.size()) > options_.max_lost_points;
-       now_->lost_points.Remove(now_->lost_points.Oldest()))
-    now_->point_tracker.Remove(now_->lost_points.Oldest());
+  for (; static_cast<int>(current_->lost_points.size()) > options_.max_lost_points;
+       current_->lost_points.Remove(current_->lost_points.Oldest()))
+    current_->point_tracker.Remove(current_->lost_points.Oldest());
   for (const PointId id : followed.found)
-    if (next.Find(id) == nullptr) now_->point_tracker.Undo(id);  // it was another one; the point stays lost
-  now_->map = std::move(next);
-  now_->lost_points.Move(now_->map.landmarks);  // (R1)
-  now_->before_last_cam_from_world = state_ == TrackingState::kTracking
-                                         ? now_->last_cam_from_world
-                                         : solution.cam_from_world;  // no velocity after a gap
-  now_->last_cam_from_world = solution.cam_from_world;
+    if (next.Find(id) == nullptr) current_->point_tracker.Undo(id);  // it was another one; the point stays lost
+  current_->map = std::move(next);
+  current_->lost_points.Move(current_->map.landmarks);  // (R1)
+  current_->before_last_cam_from_world = state_ == TrackingState::kTracking
+                                             ? current_->last_cam_from_world
+                                             : solution.cam_from_world;  // no velocity after a gap
+  current_->last_cam_from_world = solution.cam_from_world;
   lost_frames_ = 0;
 
   report->cam_from_world = solution.cam_from_world;
@@ -257,15 +258,15 @@ void Tracker::Commit(const FrameSolution& solution, const Followed& followed, Fr
 
 // What all points have done together since they were at rest goes to the camera, by and by (E12). Their pixels stay.
 void Tracker::HoldGauge(FrameReport* report) {
-  const Rigid3 moved = TowardsRest(now_->map, options_.gauge_share);
-  now_->MoveAllButRest(moved);
-  report->cam_from_world = now_->last_cam_from_world;
+  const Rigid3 moved = TowardsRest(current_->map, options_.gauge_share);
+  current_->MoveAllButRest(moved);
+  report->cam_from_world = current_->last_cam_from_world;
   for (PointObservation& seen : report->observations) seen.position = moved * seen.position;
 }
 
 // Too few points, as a sentence.
 std::string Tracker::Found(int count) const {
-  return std::to_string(count) + " of " + std::to_string(now_->map.landmarks.size()) +
+  return std::to_string(count) + " of " + std::to_string(current_->map.landmarks.size()) +
          " points could be followed, of at least " + std::to_string(options_.min_points);
 }
 
@@ -273,10 +274,10 @@ std::string Tracker::Found(int count) const {
 void Tracker::ReportLost(const TrackerFrame& frame, const std::string& reason, FrameReport* report) {
   if (state_ == TrackingState::kTracking) RememberLastView();
   Apply(TrackingEvent::kTooFewPoints);
-  const std::string fault = ImageFault(frame, now_->previous);
+  const std::string fault = ImageFault(frame, current_->previous);
   if (fault.empty()) ++lost_frames_;
   losses_.clear();
-  now_->point_tracker.Undo();
+  current_->point_tracker.Undo();
   report->note = WithFault(reason, fault);
 }
 

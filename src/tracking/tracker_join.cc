@@ -75,7 +75,7 @@ bool Tracker::JoinsMaps() const {
          !options_.oracle.Any();
 }
 
-// A map that was left, if it is found in the image that the present one has a pose in: left_from_now.
+// A map that was left, if it is found in the image that the present one has a pose in: inactive_from_current.
 std::optional<Sim3> Tracker::SeenWithPresent(const TrackerFrame& frame, std::unique_ptr<Submap>* left) {
   Rigid3 cam_from_left;
   const Followed followed = LookFor(left, frame, &cam_from_left);
@@ -85,31 +85,32 @@ std::optional<Sim3> Tracker::SeenWithPresent(const TrackerFrame& frame, std::uni
   for (std::size_t k = 0; k < followed.size(); ++k)
     in_left.push_back({followed.pixels[k], (cam_from_left * followed.positions[k]).norm()});
   std::vector<PixelDistance> in_now;
-  for (const Landmark& landmark : now_->map.landmarks)
-    in_now.push_back({landmark.pixel, (now_->last_cam_from_world * landmark.position).norm()});
+  for (const Landmark& landmark : current_->map.landmarks)
+    in_now.push_back({landmark.pixel, (current_->last_cam_from_world * landmark.position).norm()});
   const auto unit =
       UnitRatio(in_left, std::move(in_now), kFarthestShare * camera_.width(), options_.relocalization.max_unit_spread);
   if (!unit) return std::nullopt;
-  return WorldFromPoses(cam_from_left, now_->last_cam_from_world, *unit);
+  return WorldFromPoses(cam_from_left, current_->last_cam_from_world, *unit);
 }
 
 // The older map's world stays. One map that was left is looked for at a time, in turn.
 void Tracker::JoinMaps(const TrackerFrame& frame, FrameReport* report) {
   const int every = options_.relocalization.join_every;
-  if (!JoinsMaps() || left_.empty() || frame.frame_idx % every != 0) return;
+  if (!JoinsMaps() || inactive_submaps_.empty() || frame.frame_idx % every != 0) return;
   if (state_ != TrackingState::kTracking || blurred_frames_ > 0) return;
   const StageTimer timer(report, "initialize");
-  const auto left = left_.begin() + static_cast<std::ptrdiff_t>(frame.frame_idx / every % left_.size());
-  const auto left_from_now = SeenWithPresent(frame, &*left);
-  if (!left_from_now) return;
-  const bool left_is_older = (*left)->idx < now_->idx;
-  Submap& younger = left_is_older ? *now_ : **left;
-  const int older_idx = std::min((*left)->idx, now_->idx);
-  report->join = {younger.idx, older_idx, left_is_older ? *left_from_now : left_from_now->Inverse()};
+  const auto left =
+      inactive_submaps_.begin() + static_cast<std::ptrdiff_t>(frame.frame_idx / every % inactive_submaps_.size());
+  const auto inactive_from_current = SeenWithPresent(frame, &*left);
+  if (!inactive_from_current) return;
+  const bool left_is_older = (*left)->idx < current_->idx;
+  Submap& younger = left_is_older ? *current_ : **left;
+  const int older_idx = std::min((*left)->idx, current_->idx);
+  report->join = {younger.idx, older_idx, left_is_older ? *inactive_from_current : inactive_from_current->Inverse()};
   younger.MoveInto(report->join->into_from_submap);
-  now_->idx = older_idx;
-  now_->TakeOver(std::move(**left));
-  left_.erase(left);
+  current_->idx = older_idx;
+  current_->TakeOver(std::move(**left));
+  inactive_submaps_.erase(left);
   report->note = WithFault(report->note, "map " + std::to_string(report->join->submap) + " is now part of map " +
                                              std::to_string(older_idx) + ", which this image shows too");
 }

@@ -53,38 +53,40 @@ void RelocalizationOptions::List(OptionTable& table) {
 // Of the frames in a row that led to this one, the poses.
 void Tracker::Remember(const TrackerFrame& frame, const FrameReport& report) {
   const auto length = static_cast<std::size_t>(options_.relocalization.velocity_frames) + 1;
-  if (!now_->recent_poses.empty() && now_->recent_poses.back().first + 1 != frame.frame_idx) now_->recent_poses.clear();
-  now_->recent_poses.emplace_back(frame.frame_idx, *report.cam_from_world);
-  if (now_->recent_poses.size() > length) now_->recent_poses.erase(now_->recent_poses.begin());
+  if (!current_->recent_poses.empty() && current_->recent_poses.back().first + 1 != frame.frame_idx)
+    current_->recent_poses.clear();
+  current_->recent_poses.emplace_back(frame.frame_idx, *report.cam_from_world);
+  if (current_->recent_poses.size() > length) current_->recent_poses.erase(current_->recent_poses.begin());
   if (options_.relocalization.relocalize == Switch::kOff || oracle_->gives_tracks()) return;
   if (frame.frame_idx % options_.relocalization.remember_every != 0) return;
-  now_->places.See(frame.gray, now_->map.landmarks);
+  current_->places.See(frame.gray, current_->map.landmarks);
   std::vector<PointId> known;
   for (const Landmark& landmark : KnownLandmarks()) known.push_back(landmark.id);
   std::sort(known.begin(), known.end());
-  now_->places.Keep(known);
+  current_->places.Keep(known);
 }
 
 // Those in sight and those that were lost.
 std::vector<Landmark> Tracker::KnownLandmarks() const {
-  std::vector<Landmark> known = now_->map.landmarks;
-  const std::vector<Landmark> lost = now_->lost_points.landmarks();
+  std::vector<Landmark> known = current_->map.landmarks;
+  const std::vector<Landmark> lost = current_->lost_points.landmarks();
   known.insert(known.end(), lost.begin(), lost.end());
   return known;
 }
 
 void Tracker::RememberLastView() {
-  if (options_.relocalization.relocalize == Switch::kOn) now_->places.See(now_->previous.gray, now_->map.landmarks);
+  if (options_.relocalization.relocalize == Switch::kOn)
+    current_->places.See(current_->previous.gray, current_->map.landmarks);
 }
 
 // Where the camera may be in this frame: where it was, and where it would be had it gone on as it went.
 std::vector<Rigid3> Tracker::GuessPoses(int frame_idx) const {
-  std::vector<Rigid3> guesses = {now_->last_cam_from_world};
-  if (options_.relocalization.relocalize == Switch::kOff || now_->recent_poses.size() < 2) return guesses;
-  const auto& [first_idx, first] = now_->recent_poses.front();
-  const auto& [last_idx, last] = now_->recent_poses.back();
+  std::vector<Rigid3> guesses = {current_->last_cam_from_world};
+  if (options_.relocalization.relocalize == Switch::kOff || current_->recent_poses.size() < 2) return guesses;
+  const auto& [first_idx, first] = current_->recent_poses.front();
+  const auto& [last_idx, last] = current_->recent_poses.back();
   const double frames = static_cast<double>(frame_idx - last_idx) / (last_idx - first_idx);
-  guesses.insert(guesses.begin(), Repeated(last * first.Inverse(), frames) * now_->last_cam_from_world);
+  guesses.insert(guesses.begin(), Repeated(last * first.Inverse(), frames) * current_->last_cam_from_world);
   return guesses;
 }
 
@@ -93,7 +95,7 @@ std::vector<Rigid3> Tracker::GuessPoses(int frame_idx) const {
 Tracker::Followed Tracker::FollowFrom(const TrackerFrame& frame, Rigid3* cam_from_world) {
   const RelocalizationOptions& options = options_.relocalization;
   losses_.clear();
-  now_->point_tracker.Undo();
+  current_->point_tracker.Undo();
   Followed followed = FollowPoints(frame, PredictPixels(*cam_from_world));
   if (options.relocalize == Switch::kOff) return followed;
   const auto improve = [&] {
@@ -103,7 +105,7 @@ Tracker::Followed Tracker::FollowFrom(const TrackerFrame& frame, Rigid3* cam_fro
   // Once more, from a better pose.
   if (static_cast<int>(followed.size()) >= options_.min_points) improve();
   losses_.clear();
-  now_->point_tracker.Undo();
+  current_->point_tracker.Undo();
   const std::vector<PointPrediction> predictions = PredictPixels(*cam_from_world);
   followed = FollowPoints(frame, predictions);
   auto expected = std::count_if(predictions.begin(), predictions.end(),
@@ -131,7 +133,7 @@ Tracker::Followed Tracker::Relocalize(const TrackerFrame& frame, Rigid3* cam_fro
   if (described_ == nullptr)
     described_ =
         std::make_unique<DescribedImage>(Describe(frame.gray, frame.mask, options_.corners, options_.relocalization));
-  const auto recognized = now_->places.Recognize(*described_, camera_, KnownLandmarks());
+  const auto recognized = current_->places.Recognize(*described_, camera_, KnownLandmarks());
   if (!recognized.ok()) return {};
   *cam_from_world = recognized->cam_from_world;
   return FollowFrom(frame, cam_from_world);
@@ -140,8 +142,9 @@ Tracker::Followed Tracker::Relocalize(const TrackerFrame& frame, Rigid3* cam_fro
 // The next map has its own world, unit and points.
 void Tracker::LeaveMap() {
   auto next = std::make_unique<Submap>(maps_made_, camera_, options_);
-  left_.push_back(std::exchange(now_, std::move(next)));
-  if (static_cast<int>(left_.size()) > options_.relocalization.max_left) left_.erase(left_.begin());
+  inactive_submaps_.push_back(std::exchange(current_, std::move(next)));
+  if (static_cast<int>(inactive_submaps_.size()) > options_.relocalization.max_left)
+    inactive_submaps_.erase(inactive_submaps_.begin());
   lost_frames_ = 0;
   blurred_frames_ = 0;
   Apply(TrackingEvent::kMapLeft);
@@ -149,11 +152,11 @@ void Tracker::LeaveMap() {
 
 // The points of a map that was left in this image, and its camera's pose; the map stays as it was.
 Tracker::Followed Tracker::LookFor(std::unique_ptr<Submap>* left, const TrackerFrame& frame, Rigid3* cam_from_world) {
-  std::swap(now_, *left);
+  std::swap(current_, *left);
   Followed followed = Relocalize(frame, cam_from_world);
   losses_.clear();
-  now_->point_tracker.Undo();
-  std::swap(now_, *left);
+  current_->point_tracker.Undo();
+  std::swap(current_, *left);
   return followed;
 }
 
@@ -161,11 +164,12 @@ Tracker::Followed Tracker::LookFor(std::unique_ptr<Submap>* left, const TrackerF
 // there is of one that is awaited is let go of.
 void Tracker::FindMapAgain(const TrackerFrame& frame) {
   if (state_ == TrackingState::kTracking || frame.frame_idx % options_.relocalization.seek_every != 0) return;
-  for (std::size_t k = left_.size(); k-- > 0;) {
+  for (std::size_t k = inactive_submaps_.size(); k-- > 0;) {
     Rigid3 cam_from_world;
-    if (LookFor(&left_[k], frame, &cam_from_world).size() == 0) continue;
-    std::swap(now_, left_[k]);
-    if (state_ != TrackingState::kLost) left_.erase(left_.begin() + static_cast<std::ptrdiff_t>(k));
+    if (LookFor(&inactive_submaps_[k], frame, &cam_from_world).size() == 0) continue;
+    std::swap(current_, inactive_submaps_[k]);
+    if (state_ != TrackingState::kLost)
+      inactive_submaps_.erase(inactive_submaps_.begin() + static_cast<std::ptrdiff_t>(k));
     init_frames_.clear();
     lost_frames_ = 0;
     Apply(TrackingEvent::kMapFoundAgain);

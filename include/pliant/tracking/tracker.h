@@ -154,7 +154,7 @@ class Tracker {
 
   TrackingState state() const { return state_; }
   // Whether there are maps that were left, and neither found again nor joined.
-  bool LeftAMap() const { return !left_.empty(); }
+  bool LeftAMap() const { return !inactive_submaps_.empty(); }
   const Map& map() const;
   // Lost for max_lost_frames frames that are neither dark nor frozen, and no new map is to be begun.
   bool GaveUp() const { return LeavesMap() && options_.submaps == Switch::kOff; }
@@ -238,9 +238,9 @@ class Tracker {
   std::string image_fault_;             // of the last of them
   std::vector<FrameReport> held_;  // of init_frames_ while initializing; within Process the present frame's is the last
   std::int64_t next_id_ = 0;
-  std::unique_ptr<Submap> now_;                // the present map, or the one that is awaited
-  std::vector<std::unique_ptr<Submap>> left_;  // maps that were left, the last one last
-  int maps_made_ = 0;                          // up to now
+  std::unique_ptr<Submap> current_;                        // the present map, or the one that is awaited
+  std::vector<std::unique_ptr<Submap>> inactive_submaps_;  // maps that were left, the last one last
+  int maps_made_ = 0;                                      // up to now
   int lost_frames_ = 0;
   int blurred_frames_ = 0;                           // in a row, up to now
   std::vector<std::pair<std::string, int>> losses_;  // of the present frame, by reason
