@@ -8,7 +8,9 @@
 #include <utility>
 
 #include "pliant/base/statistics.h"
-#include "pliant/tracking/stereo_pair.h"
+#include "pliant/image/masks.h"
+#include "pliant/image/pyramid.h"
+#include "pliant/photometric/stereo_matching.h"
 
 namespace pliant {
 namespace {
@@ -66,10 +68,12 @@ class OfPairs final : public SurfaceTruth {
 
   std::vector<DepthAtPixel> Measure(const SequenceFrame& left, const cv::Mat& right,
                                     std::span<const Eigen::Vector2d> pixels) const {
-    const TrackerOptions options;
-    const TrackerFrame prepared =
-        PrepareFrame(left.frame_idx, left.name, left.timestamp_s, left.image, left.mask, options);
-    const auto matches = MatchPair(prepared, right, pixels, options, threads_);
+    const LucasKanadeOptions lucas_kanade;
+    const auto pyramid = [&](const cv::Mat& image) { return ImagePyramid(ToGray(image), lucas_kanade.levels); };
+    const SupportMask left_mask(ValidMask(left.image, left.mask, {}));
+    const SupportMask right_mask(ValidMask(right, {}, {}));
+    const auto matches =
+        MatchAlongRows(pyramid(left.image), left_mask, pyramid(right), right_mask, pixels, {}, lucas_kanade, threads_);
     std::vector<double> rows_px;
     for (const auto& match : matches)
       if (match) rows_px.push_back(std::abs(match->row_px));

@@ -17,7 +17,7 @@
 #include "pliant/datasets/sequence.h"
 #include "pliant/exchange/import.h"
 #include "pliant/geometry/rigid3.h"
-#include "pliant/tracking/frame_report.h"
+#include "pliant/scene/frame_report.h"
 
 namespace pliant {
 

@@ -11,7 +11,7 @@
 #include "pliant/base/status.h"
 #include "pliant/geometry/sim3.h"
 #include "pliant/io/canonical_model.h"
-#include "pliant/tracking/frame_report.h"
+#include "pliant/scene/frame_report.h"
 
 namespace pliant {
 

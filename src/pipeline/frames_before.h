@@ -11,7 +11,7 @@
 #include "pliant/camera/camera.h"
 #include "pliant/datasets/open_sequence.h"
 #include "pliant/pipeline/track.h"
-#include "pliant/tracking/frame_report.h"
+#include "pliant/scene/frame_report.h"
 #include "pliant/tracking/tracker.h"
 
 namespace pliant {

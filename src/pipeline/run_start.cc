@@ -15,7 +15,7 @@
 #include "pliant/datasets/open_sequence.h"
 #include "pliant/image/depth_lookup.h"
 #include "pliant/io/point_cloud.h"
-#include "pliant/tracking/stereo_start.h"
+#include "pliant/photometric/stereo_matching.h"
 
 namespace pliant {
 namespace {

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "pliant/camera/camera.h"
+#include "pliant/scene/frame_report.h"
 #include "pliant/scene/map.h"
-#include "pliant/tracking/frame_report.h"
 #include "pliant/tracking/initializer.h"
 
 namespace pliant {

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "pliant/geometry/rigid3.h"
+#include "pliant/scene/frame_report.h"
 #include "pliant/scene/map.h"
-#include "pliant/tracking/frame_report.h"
 #include "pliant/tracking/initializer.h"
 
 namespace pliant {

@@ -9,12 +9,9 @@
 
 namespace pliant {
 
-std::vector<std::optional<RowMatch>> MatchPair(const TrackerFrame& left, const cv::Mat& right,
-                                               std::span<const Eigen::Vector2d> pixels, const TrackerOptions& options,
-                                               int threads) {
-  const TrackerFrame other = PrepareFrame(left.frame_idx, left.name, left.timestamp_s, right, {}, options);
-  return MatchAlongRows(left.pyramid, left.mask, other.pyramid, other.mask, pixels, options.init.stereo,
-                        options.point_tracker.lucas_kanade, threads);
+void StereoStartOptions::List(OptionTable& table) {
+  matching.List(table);
+  table.Add("stereo_min_points", &min_points, "-", "stereo: fewer matches make no map", 4, 100000);
 }
 
 std::vector<PixelDepth> PointsOfPair(const TrackerFrame& left, const cv::Mat& right, const Camera& camera,
@@ -23,7 +20,9 @@ std::vector<PixelDepth> PointsOfPair(const TrackerFrame& left, const cv::Mat& ri
   std::stable_sort(corners.begin(), corners.end(), [](const Corner& a, const Corner& b) { return a.score > b.score; });
   std::vector<Eigen::Vector2d> pixels;
   for (const Corner& corner : corners) pixels.push_back(corner.pixel);
-  const auto matches = MatchPair(left, right, pixels, options, threads);
+  const TrackerFrame other = PrepareFrame(left.frame_idx, left.name, left.timestamp_s, right, {}, options);
+  const auto matches = MatchAlongRows(left.pyramid, left.mask, other.pyramid, other.mask, pixels,
+                                      options.init.stereo.matching, options.point_tracker.lucas_kanade, threads);
   std::vector<PixelDepth> points;
   for (std::size_t i = 0; i < pixels.size(); ++i)
     if (matches[i])

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "pliant/tracking/frame_report.h"
+#include "pliant/scene/frame_report.h"
 #include "pliant/tracking/tracker.h"
 
 namespace pliant {

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "pliant/camera/camera.h"
-#include "pliant/tracking/frame_report.h"
+#include "pliant/scene/frame_report.h"
 #include "pliant/viewer/view.h"
 
 namespace pliant {

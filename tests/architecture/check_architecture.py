@@ -16,8 +16,8 @@ import pathlib
 import re
 import sys
 
-MODULES = ("base geometry image camera colmap photometric scene deformation residuals estimation tracking io datasets simulation "
-         "evaluation exchange pipeline viewer cli").split()
+MODULES = ("base geometry image camera colmap scene io datasets simulation photometric deformation residuals estimation "
+           "tracking evaluation exchange pipeline viewer cli").split()
 # Where a library may be included: in the files of one module whose names begin so; where nothing is said, in one file of it.
 LIBRARY_HOMES = {"flann": ("deformation", ""), "opengv": ("estimation", "opengv_"), "assimp": ("simulation", "")}
 SPDX = ("SPDX-FileCopyrightText: ", "SPDX-License-Identifier: BSD-3-Clause")

@@ -30,6 +30,7 @@
 #include "pliant/camera/camera.h"
 #include "pliant/deformation/graph.h"
 #include "pliant/geometry/rigid3.h"
+#include "pliant/scene/frame_costs.h"
 
 namespace pliant {
 
@@ -78,15 +79,6 @@ struct FrameProblemInput {
   std::span<const GraphEdge> edges;            // of BuildDeformationGraph(positions)
   Rigid3 initial_cam_from_world;               // where the search starts, with delta = 0
   FramePose pose = FramePose::kEstimated;
-};
-
-// Costs at the solution by term: 0.5 * lambda * sum of rho.
-struct FrameProblemCosts {
-  double reprojection = 0;
-  double spatial = 0;
-  double temporal = 0;
-  double edge_length = 0;
-  double Total() const { return reprojection + spatial + temporal + edge_length; }
 };
 
 // What became of one point. Points outside the problem keep their position and infinite errors.

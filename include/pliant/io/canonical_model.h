@@ -15,7 +15,7 @@
 #include "pliant/camera/camera.h"
 #include "pliant/colmap/model.h"
 #include "pliant/geometry/rigid3.h"
-#include "pliant/tracking/frame_report.h"
+#include "pliant/scene/frame_report.h"
 
 namespace pliant {
 

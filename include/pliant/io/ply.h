@@ -9,7 +9,7 @@
 #include <string>
 
 #include "pliant/base/status.h"
-#include "pliant/tracking/frame_report.h"
+#include "pliant/scene/frame_report.h"
 
 namespace pliant {
 

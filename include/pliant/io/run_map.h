@@ -12,7 +12,7 @@
 #include "pliant/base/status.h"
 #include "pliant/camera/camera.h"
 #include "pliant/io/run_reader.h"
-#include "pliant/tracking/frame_report.h"
+#include "pliant/scene/frame_report.h"
 
 namespace pliant {
 

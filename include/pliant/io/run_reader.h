@@ -17,7 +17,7 @@
 #include "pliant/base/status.h"
 #include "pliant/geometry/rigid3.h"
 #include "pliant/io/run_summary.h"
-#include "pliant/tracking/frame_report.h"
+#include "pliant/scene/frame_report.h"
 
 namespace pliant {
 

@@ -14,7 +14,7 @@
 
 #include "pliant/base/options.h"
 #include "pliant/base/status.h"
-#include "pliant/tracking/frame_report.h"
+#include "pliant/scene/frame_report.h"
 
 namespace pliant {
 

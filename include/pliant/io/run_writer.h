@@ -26,7 +26,7 @@
 #include "pliant/camera/camera.h"
 #include "pliant/io/canonical_model.h"
 #include "pliant/io/run_summary.h"
-#include "pliant/tracking/frame_report.h"
+#include "pliant/scene/frame_report.h"
 
 namespace pliant {
 

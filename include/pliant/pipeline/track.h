@@ -23,7 +23,7 @@
 #include "pliant/datasets/open_sequence.h"
 #include "pliant/io/run_summary.h"
 #include "pliant/io/run_writer.h"
-#include "pliant/tracking/frame_report.h"
+#include "pliant/scene/frame_report.h"
 #include "pliant/tracking/tracker.h"
 
 namespace pliant {

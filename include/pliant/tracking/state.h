@@ -8,7 +8,7 @@
 #include <string_view>
 #include <utility>
 
-#include "pliant/tracking/frame_report.h"
+#include "pliant/scene/frame_report.h"
 
 namespace pliant {
 

@@ -23,7 +23,7 @@
 #include "pliant/geometry/rigid3.h"
 #include "pliant/geometry/sim3.h"
 #include "pliant/io/run_reader.h"
-#include "pliant/tracking/frame_report.h"
+#include "pliant/scene/frame_report.h"
 
 namespace pliant {
 

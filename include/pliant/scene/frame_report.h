@@ -19,9 +19,9 @@
 #include "pliant/base/ids.h"
 #include "pliant/base/options.h"
 #include "pliant/camera/camera.h"
-#include "pliant/estimation/frame_problem.h"
 #include "pliant/geometry/rigid3.h"
 #include "pliant/geometry/sim3.h"
+#include "pliant/scene/frame_costs.h"
 
 namespace pliant {
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "pliant/tracking/frame_report.h"
+#include "pliant/scene/frame_report.h"
 
 #include "pliant/base/statistics.h"
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "pliant/tracking/stereo_start.h"
+#include "pliant/photometric/stereo_matching.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,20 +16,20 @@ namespace pliant {
 namespace {
 
 constexpr int kRows = 1;     // above and below that are searched as well
-constexpr int kPeak_px = 2;  // places so near to the best one are that one
+constexpr int kPeak_px = 2;  // positions so near to the best one are that one
 
-int MostDisparity(const StereoStartOptions& options, int width) {
+int MaxDisparity(const StereoMatchingOptions& options, int width) {
   return std::max(1, static_cast<int>(options.max_disparity_share * width));
 }
 
 // (B1) Where along its row a patch of the left image resembles the right one most, whole pixels; nothing where too
-// little, or where another place does nearly as much.
+// little, or where another position does nearly as much.
 std::optional<double> SearchRow(const cv::Mat& left, const cv::Mat& right, const Eigen::Vector2d& pixel, int patch_size,
-                                const StereoStartOptions& options) {
+                                const StereoMatchingOptions& options) {
   const int half = patch_size / 2;
   const cv::Point center(static_cast<int>(std::lround(pixel.x())), static_cast<int>(std::lround(pixel.y())));
   const cv::Rect patch(center.x - half, center.y - half, 2 * half + 1, 2 * half + 1);
-  const int farthest = std::min(MostDisparity(options, left.cols), patch.x);
+  const int farthest = std::min(MaxDisparity(options, left.cols), patch.x);
   const int nearest = static_cast<int>(std::floor(options.min_disparity_px));
   const cv::Rect strip(patch.x - farthest, patch.y - kRows, farthest - nearest + patch.width, patch.height + 2 * kRows);
   const cv::Rect image(0, 0, left.cols, left.rows);
@@ -39,15 +39,15 @@ std::optional<double> SearchRow(const cv::Mat& left, const cv::Mat& right, const
   cv::Mat best_of_column;
   cv::reduce(correlation, best_of_column, 0, cv::REDUCE_MAX);
   double best = 0;
-  cv::Point place;
-  cv::minMaxLoc(best_of_column, nullptr, &best, nullptr, &place);
+  cv::Point peak;
+  cv::minMaxLoc(best_of_column, nullptr, &best, nullptr, &peak);
   if (!(best >= options.min_correlation)) return std::nullopt;
   double second = -1;
   for (int column = 0; column < best_of_column.cols; ++column)
-    if (std::abs(column - place.x) > kPeak_px)
+    if (std::abs(column - peak.x) > kPeak_px)
       second = std::max(second, static_cast<double>(best_of_column.at<float>(0, column)));
   if (1.0 - best >= options.max_ambiguity * (1.0 - second)) return std::nullopt;
-  return farthest - place.x;
+  return farthest - peak.x;
 }
 
 struct Side {
@@ -67,7 +67,7 @@ std::optional<Pixel> Align(const Side& from, Pixel pixel, const Side& to, Pixel 
 
 // (B2) to (B4)
 std::optional<RowMatch> Refine(const Side& left, const Side& right, const Eigen::Vector2d& pixel, double disparity_px,
-                               const StereoStartOptions& options, const LucasKanadeOptions& lucas_kanade) {
+                               const StereoMatchingOptions& options, const LucasKanadeOptions& lucas_kanade) {
   const Pixel from{pixel.x(), pixel.y()};
   const auto found = Align(left, from, right, {from.x - disparity_px, from.y}, lucas_kanade);
   if (!found || std::abs(found->y - from.y) > options.max_row_px) return std::nullopt;
@@ -96,13 +96,13 @@ std::optional<RowMatch> Between(const cv::Mat& disparities, const Eigen::Vector2
   return disparity_px ? std::optional(RowMatch{.disparity_px = *disparity_px}) : std::nullopt;
 }
 
-cv::Mat SemiGlobalDisparities(const cv::Mat& left, const cv::Mat& right, const StereoStartOptions& options) {
+cv::Mat SemiGlobalDisparities(const cv::Mat& left, const cv::Mat& right, const StereoMatchingOptions& options) {
   constexpr int kBlock = 5;
   constexpr int kSmall = 8 * kBlock * kBlock;   // of a change by one, as OpenCV advises
   constexpr int kLarge = 32 * kBlock * kBlock;  // of a larger one
   constexpr int kUnique_percent = 10;
   constexpr int kSpeckle = 100;
-  const int count = (MostDisparity(options, left.cols) + 15) / 16 * 16;
+  const int count = (MaxDisparity(options, left.cols) + 15) / 16 * 16;
   const auto matcher = cv::StereoSGBM::create(0, count, kBlock, kSmall, kLarge, /*disp12MaxDiff=*/1,
                                               /*preFilterCap=*/31, kUnique_percent, kSpeckle, /*speckleRange=*/2);
   cv::Mat disparities;
@@ -112,7 +112,7 @@ cv::Mat SemiGlobalDisparities(const cv::Mat& left, const cv::Mat& right, const S
 
 }  // namespace
 
-void StereoStartOptions::List(OptionTable& table) {
+void StereoMatchingOptions::List(OptionTable& table) {
   table.AddChoice("stereo_matcher", &matcher,
                   "stereo: photometric, correlation along the row and the tracker's alignment; sgbm, OpenCV's "
                   "semi-global matching");
@@ -122,11 +122,10 @@ void StereoStartOptions::List(OptionTable& table) {
   table.Add("stereo_max_row_px", &max_row_px, "px", "stereo: largest difference of the rows", 0.01, 100);
   table.Add("stereo_max_left_right_px", &max_left_right_px, "px", "stereo: followed back, a match returns so near",
             0.01, 100);
-  table.Add("stereo_min_correlation", &min_correlation, "-", "stereo: of a patch with the best place along its row", 0,
-            1);
+  table.Add("stereo_min_correlation", &min_correlation, "-",
+            "stereo: of a patch with the right image at the best position along its row", 0, 1);
   table.Add("stereo_max_ambiguity", &max_ambiguity, "-",
-            "stereo: 1 - correlation of the best place by that of the second best; 1: all are taken", 0, 1);
-  table.Add("stereo_min_points", &min_points, "-", "stereo: fewer matches make no map", 4, 100000);
+            "stereo: 1 - correlation of the best position by that of the second best; 1: all are accepted", 0, 1);
 }
 
 Status CheckPairs(const std::string& what, const Camera& camera, std::optional<double> baseline_mm) {
@@ -147,7 +146,7 @@ Status CheckPairs(const std::string& what, const Camera& camera, std::optional<d
 std::vector<std::optional<RowMatch>> MatchAlongRows(const ImagePyramid& left, const SupportMask& left_mask,
                                                     const ImagePyramid& right, const SupportMask& right_mask,
                                                     std::span<const Eigen::Vector2d> pixels,
-                                                    const StereoStartOptions& options,
+                                                    const StereoMatchingOptions& options,
                                                     const LucasKanadeOptions& lucas_kanade, int threads) {
   const cv::Mat left_image = left.Level(0);
   const cv::Mat right_image = right.Level(0);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "pliant/tracking/stereo_start.h"
+#include "pliant/photometric/stereo_matching.h"
 
 #include <algorithm>
 #include <cmath>
@@ -36,7 +36,7 @@ std::vector<Eigen::Vector2d> CornersOf(const cv::Mat& gray) {
 }
 
 std::vector<std::optional<RowMatch>> Match(const Pair& pair, const std::vector<Eigen::Vector2d>& pixels,
-                                           const StereoStartOptions& options, int threads = 1) {
+                                           const StereoMatchingOptions& options, int threads = 1) {
   const SupportMask all(cv::Mat(pair.left.size(), CV_8UC1, cv::Scalar(255)));
   const LucasKanadeOptions lucas_kanade;
   return MatchAlongRows(ImagePyramid(pair.left, lucas_kanade.levels), all,
@@ -50,8 +50,8 @@ int Count(const std::vector<std::optional<RowMatch>>& matches) {
 
 class EveryMatcher : public testing::TestWithParam<StereoMatcher> {
  protected:
-  StereoStartOptions Options() const {
-    StereoStartOptions options;
+  StereoMatchingOptions Options() const {
+    StereoMatchingOptions options;
     options.matcher = GetParam();
     return options;
   }
@@ -105,16 +105,17 @@ TEST_P(EveryMatcher, SurvivesCornersAtTheEdge) {
   EXPECT_EQ(Match(pair, pixels, Options()).size(), pixels.size());
 }
 
-INSTANTIATE_TEST_SUITE_P(StereoStart, EveryMatcher, testing::Values(StereoMatcher::kPhotometric, StereoMatcher::kSgbm),
+INSTANTIATE_TEST_SUITE_P(StereoMatching, EveryMatcher,
+                         testing::Values(StereoMatcher::kPhotometric, StereoMatcher::kSgbm),
                          [](const auto& test) { return std::string(EnumName(test.param)); });
 
-TEST(StereoStart, SwappedImagesMatchNowhere) {
+TEST(StereoMatching, SwappedImagesMatchNowhere) {
   const Pair pair = RenderedPair();
   const std::vector<Eigen::Vector2d> pixels = CornersOf(pair.right);
   EXPECT_LT(Count(Match({pair.right, pair.left}, pixels, {})), static_cast<int>(pixels.size()) / 20);
 }
 
-TEST(StereoStart, AGainBetweenTheEyesChangesLittle) {
+TEST(StereoMatching, AGainBetweenTheEyesChangesLittle) {
   const Pair pair = RenderedPair();
   cv::Mat darker;
   pair.right.convertTo(darker, CV_8U, 0.6, 10);
@@ -128,7 +129,7 @@ TEST(StereoStart, AGainBetweenTheEyesChangesLittle) {
   EXPECT_LT(Median(differences_px), 0.02);
 }
 
-TEST(StereoStart, WhatIsPeriodicAlongTheRowIsNoMatch) {
+TEST(StereoMatching, WhatIsPeriodicAlongTheRowIsNoMatch) {
   constexpr double kPi = std::numbers::pi;
   cv::Mat stripes(120, 320, CV_8UC1);
   for (int v = 0; v < stripes.rows; ++v)
