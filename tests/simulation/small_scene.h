@@ -76,7 +76,7 @@ inline bool SamePixels(const cv::Mat& a, const cv::Mat& b) {
 // A frame's image and depth are the same bytes on one thread and on four. More workers than cores, so that the second
 // run is parallel wherever the test runs.
 inline void ExpectSameBytesOnFourThreads(SimulationOptions options, const std::vector<int>& frames) {
-  const tbb::global_control workers(tbb::global_control::max_allowed_parallelizm, 4);
+  const tbb::global_control workers(tbb::global_control::max_allowed_parallelism, 4);
   options.threads = 1;
   Simulator one = Make(options);
   options.threads = 4;
