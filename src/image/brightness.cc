@@ -17,6 +17,16 @@ constexpr float kMinValid = 0.05F;
 
 }  // namespace
 
+std::array<std::uint8_t, 3> ColorAt(const cv::Mat& image, const Eigen::Vector2d& pixel) {
+  const cv::Point nearest(static_cast<int>(std::lround(pixel.x())), static_cast<int>(std::lround(pixel.y())));
+  if (image.channels() == 3) {
+    const auto& bgr = image.at<cv::Vec3b>(nearest);
+    return {bgr[2], bgr[1], bgr[0]};
+  }
+  const auto gray = image.at<std::uint8_t>(nearest);
+  return {gray, gray, gray};
+}
+
 LocalBrightness::LocalBrightness(const cv::Mat& image, const cv::Mat& valid) {
   cv::Mat red = image;
   if (image.channels() == 3) cv::extractChannel(image, red, 2);

@@ -15,6 +15,7 @@
 #include "pipeline/simulation_truth.h"
 #include "pliant/base/prefetcher.h"
 #include "pliant/base/version.h"
+#include "pliant/tracking/stage_times.h"
 #include "pliant/tracking/stereo_pair.h"
 
 namespace pliant {
@@ -94,7 +95,7 @@ class Recorder {
 // The ending at the sequence's end; `last_tracked` is the name of the last tracked frame, if there is one.
 Ending AtTheEnd(const Tracker& tracker, int frames, const std::string& last_note, const std::string& last_tracked) {
   if (tracker.state() == TrackingState::kTracking) return {RunStatus::kCompleted, "the sequence's end was reached"};
-  if (tracker.state() == TrackingState::kLost || tracker.LeftAMap())
+  if (tracker.state() == TrackingState::kLost || tracker.HasInactiveSubmaps())
     return {RunStatus::kLost, "after frame " + last_tracked + "; in the sequence's last frame: " + last_note};
   if (frames == 1)
     return {RunStatus::kFailed, "one frame carries no map; give two or more, between which the camera moved"};
@@ -180,7 +181,7 @@ TrackOptions MakeTrackOptions(Preset preset) {
   tracker.point_tracker.lucas_kanade.similarity = SimilarityMode::kPlain;
   tracker.init.method = InitMethod::kPaper;
   tracker.neighbor_agreement = Switch::kOff;
-  tracker.gauge_share = 0;
+  tracker.common_motion_share = 0;
   tracker.find_lost = Switch::kOff;
   tracker.growth.grow = Switch::kOff;
   tracker.relocalization.relocalize = Switch::kOff;
@@ -220,7 +221,7 @@ Result<RunSummary> RunTrack(const RunRequest& request, const TrackOptions& optio
                                    request.input.image_path.string(),
                                    request.input.camera_path.string(),
                                    {oracles.begin(), oracles.end()}},
-                                  table.ToYaml(), {Tracker::kStages.begin(), Tracker::kStages.end()}, writer_options);
+                                  table.ToYaml(), StageNames(), writer_options);
   if (!writer.ok()) return writer.status();
 
   for (TrackObserver* observer : observers) {

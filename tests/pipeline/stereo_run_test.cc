@@ -112,7 +112,7 @@ TEST_F(StereoRun, WhatWasMeasuredIsNotMadeAnewWhileItIsInView) {
     request.output_path = folder_.Path("run" + std::to_string(max_measured_share));
     TrackOptions options = StereoOptions();
     options.tracker.growth.window = 12;
-    options.tracker.growth.remake_every = 2;
+    options.tracker.growth.reestimate_every = 2;
     WindowInitOptions& window = options.tracker.init.window;  // which makes do with so few frames
     window.certain_depth_sigma = window.last_depth_sigma = window.max_depth_sigma = 1;
     window.min_certain_share = 0.01;
@@ -123,7 +123,7 @@ TEST_F(StereoRun, WhatWasMeasuredIsNotMadeAnewWhileItIsInView) {
     const auto summary = RunTrack(request, options, observers);
     EXPECT_TRUE(summary.ok() && summary->status == RunStatus::kCompleted);
     return std::count_if(observer.reports.begin(), observer.reports.end(), [](const FrameReport& report) {
-      return report.note.starts_with("the map was made anew") && !report.refined_points.empty();
+      return report.note.starts_with("the map was re-estimated") && !report.refined_points.empty();
     });
   };
   EXPECT_EQ(made_anew(0.5), 0);

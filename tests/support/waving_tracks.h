@@ -13,7 +13,7 @@
 #include "pliant/base/statistics.h"
 #include "pliant/tracking/initializer.h"
 #include "pliant/tracking/window_initializer.h"
-#include "tracking/map_remaker.h"
+#include "tracking/map_upkeep/reestimate_map.h"
 
 namespace pliant::test {
 
@@ -70,7 +70,7 @@ struct WavingTracks {
     return MakeWindowInitializer(options, kNominalMm)->Try({camera, frames, {}, moment});
   }
 
-  InitOutcome Remake(WindowScene scene) const { return MapRemaker({}, kNominalMm).Remake({camera, frames, {}}, scene); }
+  InitOutcome Reestimate(WindowScene scene) const { return ReestimateMap({camera, frames, {}}, scene, {}, kNominalMm); }
 
   // Median relative depth error of a frame's positions, after the best scale.
   double ShapeError(const InitOutcome& outcome, int t) const {

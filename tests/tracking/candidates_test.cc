@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "tracking/candidates.h"
+#include "tracking/map_upkeep/candidates.h"
 
 #include <cmath>
 #include <vector>
@@ -49,7 +49,7 @@ struct Scene {
       track.id = kCandidate;
       track.pixel = Pixel(rest, t);
       track.ssim = 0.9;
-      if (!candidates.See(track, Pose(t), MapAt(t))) break;
+      if (!candidates.AddView(track, Pose(t), MapAt(t))) break;
     }
     return candidates;
   }
@@ -154,7 +154,7 @@ TEST(Candidates, ACorrectionOfTheMapIsNoMotion) {
   PointTrack track;
   track.id = kCandidate;
   track.pixel = scene.Pixel(rest, kLast);
-  ASSERT_TRUE(candidates.See(track, Scene::Pose(kLast), after));
+  ASSERT_TRUE(candidates.AddView(track, Scene::Pose(kLast), after));
   const auto certain = candidates.Certain(Scene::Pose(kLast), after);
   ASSERT_EQ(certain.size(), 1U);
   EXPECT_LT((certain[0].second - scene.Displaced(rest, kLast)).norm(), 0.01 * rest.norm());
@@ -175,7 +175,7 @@ TEST(Candidates, MoveWithTheWorld) {
     PointTrack track;
     track.id = kCandidate;
     track.pixel = scene.Pixel(rest, t);
-    ASSERT_TRUE(candidates.See(track, Scene::Pose(t) * motion.Inverse(), moved));
+    ASSERT_TRUE(candidates.AddView(track, Scene::Pose(t) * motion.Inverse(), moved));
   }
   Map moved = scene.MapAt(kLast);
   for (Landmark& landmark : moved.landmarks) landmark.position = motion * landmark.position;

@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "tracking/first_map.h"
+#include "tracking/bootstrapping/first_map.h"
 
 #include <array>
 
 #include <gmock/gmock.h>
 
-#include "tracking/oracle_answers.h"
+#include "tracking/tracks/oracle_answers.h"
 
 namespace pliant {
 namespace {
@@ -19,8 +19,9 @@ const std::array<double, 3> kParams = {100, 31.5, 23.5};
 // by 1 mm to the right; point 1 is lost before the last frame, and point 3 never got into the map.
 struct DeformingStart {
   Camera camera = Camera::Create(CameraModelId::kSimplePinhole, 64, 48, kParams).value();
-  std::vector<InitFrame> frames;
-  InitOutcome outcome;
+  FirstMap map;
+  std::vector<InitFrame>& frames = map.frames;
+  InitOutcome& outcome = map.outcome;
 
   static Eigen::Vector3d Position(int k, int frame) { return {5.0 * k - 5 + k * frame, 0, 50.0 + frame}; }
 
@@ -45,7 +46,7 @@ struct DeformingStart {
 
 TEST(FirstMap, IsThatOfTheLastFrameWithTheMotionIntoIt) {
   const DeformingStart start;
-  const Map map = MakeFirstMap(start.frames, start.outcome);
+  const Map map = MakeFirstMap(start.map);
   ASSERT_EQ(map.landmarks.size(), 2U);  // point 1 was lost on the way
   for (const Landmark& landmark : map.landmarks) {
     const int k = static_cast<int>(landmark.id.value);
@@ -61,7 +62,7 @@ TEST(FirstMap, OfOneFrameHasNoMotion) {
   DeformingStart start;
   start.frames.resize(1);
   start.outcome.frames.resize(1);
-  const Map map = MakeFirstMap(start.frames, start.outcome);
+  const Map map = MakeFirstMap(start.map);
   ASSERT_EQ(map.landmarks.size(), 3U);
   for (const Landmark& landmark : map.landmarks) {
     EXPECT_EQ(landmark.position, landmark.rest_position);
@@ -79,11 +80,15 @@ TEST(FirstMap, GivesEveryFrameItsOwnPositions) {
   std::vector<FrameReport> reports(3);
   for (int t = 0; t < 3; ++t) reports[t].frame_idx = start.frames[t].frame_idx;
   reports.back().name = "last.png";
-  ReportFirstMap(start.camera, start.frames, start.outcome, reports);
+  reports.back().note = "how the map was made";
+  reports = CompletedReports(start.camera, start.map, std::move(reports));
   for (int t = 0; t < 3; ++t) {
     const FrameReport& report = reports[t];
     EXPECT_EQ(report.state, TrackingState::kTracking);
-    EXPECT_THAT(report.note, testing::HasSubstr("made in frame last.png"));
+    if (t < 2)
+      EXPECT_THAT(report.note, testing::HasSubstr("made in frame last.png"));
+    else
+      EXPECT_EQ(report.note, "how the map was made");
     ASSERT_TRUE(report.cam_from_world && report.first_map);
     EXPECT_EQ(report.first_map->reference_frame_idx, start.frames.front().frame_idx);
     EXPECT_EQ(report.first_map->declared_frame_idx, start.frames.back().frame_idx);
@@ -147,7 +152,7 @@ TEST(FirstMap, MakesAFrameThatWasPassedOverLost) {
   std::vector<FrameReport> reports(4);
   for (int t = 0; t < 4; ++t) reports[t].frame_idx = 20 + t;
   reports[2].note = "passed over";
-  ReportFirstMap(start.camera, start.frames, start.outcome, reports);
+  reports = CompletedReports(start.camera, start.map, std::move(reports));
   for (const int t : {0, 1, 3}) EXPECT_EQ(reports[t].state, TrackingState::kTracking);
   EXPECT_EQ(reports[2].state, TrackingState::kLost);
   EXPECT_EQ(reports[2].note, "passed over");

@@ -169,8 +169,8 @@ TEST_F(LossOfTheView, PointsAreFollowedIntoBlurredImages) {
 TEST_F(LossOfTheView, AMapThatIsLeftIsFoundAgain) {
   TrackerOptions options = FromDepth();
   options.max_lost_frames = 2;
-  options.relocalization.seek_every = 1;
-  options.relocalization.join_every = 1;
+  options.relocalization.search_every = 1;
+  options.relocalization.merge_every = 1;
   std::vector<cv::Mat> images = AllImages();
   constexpr int kElsewhere = 4;
   constexpr int kBack = 10;
@@ -199,8 +199,8 @@ class MapsThatMeet : public LossOfTheView {
   static TrackerOptions Options() {
     TrackerOptions options = FromDepth();
     options.max_lost_frames = kAgain - kElsewhere;
-    options.relocalization.seek_every = 1000;
-    options.relocalization.join_every = kJoined;
+    options.relocalization.search_every = 1000;
+    options.relocalization.merge_every = kJoined;
     return options;
   }
   // The image that each frame shows; below 0 none.
@@ -276,8 +276,8 @@ TEST_F(MapsThatMeet, BecomeOneWhicheverIsTracked) {
   constexpr int kDue = 20;
   TrackerOptions options = Options();
   options.max_lost_frames = 3;
-  options.relocalization.seek_every = kBack;
-  options.relocalization.join_every = kDue;
+  options.relocalization.search_every = kBack;
+  options.relocalization.merge_every = kDue;
   const auto reports =
       Show(options, {0, 1, 2, 3, 4, 5, -1, -1, -1, 0, 1, 2, 3, 4, 5, -1, -1, 6, 7, 8, 9, 10, 11, 12, 13});
   for (const FrameReport& report : reports) {
@@ -294,7 +294,7 @@ TEST_F(MapsThatMeet, BecomeOneWhicheverIsTracked) {
 
 TEST_F(MapsThatMeet, StayTwoWhereTheyAreNotToBeJoinedOrContradictEachOther) {
   std::vector<TrackerOptions> unjoined(4, Options());
-  unjoined[0].relocalization.join = Switch::kOff;
+  unjoined[0].relocalization.merge = Switch::kOff;
   unjoined[1].relocalization.max_unit_spread = 0;
   unjoined[2].relocalization.relocalize = Switch::kOff;
   unjoined[3].find_lost = Switch::kOff;
@@ -308,7 +308,7 @@ TEST_F(MapsThatMeet, StayTwoWhereTheyAreNotToBeJoinedOrContradictEachOther) {
 TEST_F(LossOfTheView, AMapThatIsFoundAgainEndsTheWaitForAnother) {
   TrackerOptions options = FromDepth();
   options.max_lost_frames = 1;
-  options.relocalization.seek_every = 1;
+  options.relocalization.search_every = 1;
   options.min_corners = 100;
   std::vector<cv::Mat> images = AllImages();
   for (std::size_t i = 4; i < 10; ++i) images[i] = Ramp();

@@ -4,6 +4,7 @@
 #include "pliant/tracking/point_tracker.h"
 
 #include <algorithm>
+#include <array>
 #include <functional>
 #include <limits>
 
@@ -85,11 +86,14 @@ Outcome Follow(const Sequence& sequence, int images, const PointTrackerOptions& 
     ImagePyramid current = sequence.Image(t);
     outcome.tracks = tracker.Track(previous, {}, current, {}, predictions, threads);
     predictions.clear();
+    std::vector<PointId> found;
     for (const PointTrack& track : outcome.tracks) {
       outcome.refreshed += track.refreshed == Refreshed::kYes;
-      if (track.failure == PatchFailure::kNone)
-        predictions.push_back({track.id, track.pixel, Eigen::Matrix2d::Identity()});
+      if (track.failure != PatchFailure::kNone) continue;
+      predictions.push_back({track.id, track.pixel, Eigen::Matrix2d::Identity()});
+      found.push_back(track.id);
     }
+    tracker.Keep(found);
     previous = std::move(current);
   }
   for (const PointTrack& track : outcome.tracks) {
@@ -179,7 +183,7 @@ TEST(PointTracker, ForwardBackwardRefusesATrackThatDoesNotReturn) {
             PatchFailure::kNone);
 }
 
-TEST(PointTracker, AfterUndoItGoesOnAsIfTheImageHadNotBeen) {
+TEST(PointTracker, WhatIsNotKeptLeavesNoTrace) {
   const Sequence sequence = Zoom();
   const ImagePyramid first = sequence.Image(0);
   const ImagePyramid skipped = sequence.Image(6);
@@ -187,13 +191,12 @@ TEST(PointTracker, AfterUndoItGoesOnAsIfTheImageHadNotBeen) {
   const Eigen::Vector2d start(90, 80);
   const std::vector<PointPrediction> predictions = {{PointId{0}, start, Eigen::Matrix2d::Identity()}};
   PointTracker plain{PointTrackerOptions{}};
-  PointTracker undone{PointTrackerOptions{}};
+  PointTracker not_kept{PointTrackerOptions{}};
   ASSERT_EQ(plain.Add(PointId{0}, start, first, {}), PatchFailure::kNone);
-  ASSERT_EQ(undone.Add(PointId{0}, start, first, {}), PatchFailure::kNone);
-  ASSERT_EQ(undone.Track(first, {}, skipped, {}, predictions, 1)[0].failure, PatchFailure::kNone);
-  undone.Undo();
+  ASSERT_EQ(not_kept.Add(PointId{0}, start, first, {}), PatchFailure::kNone);
+  ASSERT_EQ(not_kept.Track(first, {}, skipped, {}, predictions, 1)[0].failure, PatchFailure::kNone);
   const PointTrack expected = plain.Track(first, {}, next, {}, predictions, 1)[0];
-  const PointTrack found = undone.Track(first, {}, next, {}, predictions, 1)[0];
+  const PointTrack found = not_kept.Track(first, {}, next, {}, predictions, 1)[0];
   ASSERT_EQ(expected.failure, PatchFailure::kNone);
   EXPECT_EQ(found.failure, PatchFailure::kNone);
   EXPECT_EQ(found.pixel, expected.pixel);
@@ -211,10 +214,12 @@ TEST(PointTracker, FindsAPointThatWasOutOfSight) {
     return std::vector<PointPrediction>{{PointId{0}, pixel, affine}};
   };
   const Eigen::Matrix2d none = Eigen::Matrix2d::Identity();
+  constexpr std::array kOnly = {PointId{0}};
   PointTracker tracker{PointTrackerOptions{}};
   ASSERT_EQ(tracker.Add(PointId{0}, start, sequence.Image(0), {}), PatchFailure::kNone);
   ASSERT_EQ(tracker.Track(sequence.Image(0), {}, sequence.Image(1), {}, see(truth(1), none), 1)[0].failure,
             PatchFailure::kNone);
+  tracker.Keep(kOnly);
   const Eigen::Matrix2d zoomed = std::pow(1.6, 12.0 / kZoomImages) * none;
   const Eigen::Vector2d near = truth(13) + Eigen::Vector2d(3, -2);
   const PointTrack elsewhere = tracker.Find(sequence.Image(13), {}, see({150, 120}, zoomed), 1)[0];
@@ -223,10 +228,11 @@ TEST(PointTracker, FindsAPointThatWasOutOfSight) {
   ASSERT_EQ(found.failure, PatchFailure::kNone);
   EXPECT_LT((found.pixel - truth(13)).norm(), 0.3);
   EXPECT_GT(found.ssim, 0.8);
-  // Taken back, it is where it was seen last; found again, it goes on from there.
-  tracker.Undo(PointId{0});
+  // Not kept, it is where it was seen last; kept, it goes on from where it was found.
   found = tracker.Find(sequence.Image(13), {}, see(near, zoomed), 1)[0];
   ASSERT_EQ(found.failure, PatchFailure::kNone);
+  tracker.Keep(kOnly);
+  EXPECT_EQ(tracker.PixelOf(PointId{0}), found.pixel);
   const PointTrack next = tracker.Track(sequence.Image(13), {}, sequence.Image(14), {}, see(found.pixel, none), 1)[0];
   ASSERT_EQ(next.failure, PatchFailure::kNone);
   EXPECT_LT((next.pixel - truth(14)).norm(), 0.3);

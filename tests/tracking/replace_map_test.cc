@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "tracking/replace_map.h"
+#include "tracking/map_upkeep/replace_map.h"
 
 #include <cmath>
 #include <vector>
@@ -83,9 +83,9 @@ TEST(ReplaceMap, OfOtherPointsChangesNothing) {
 }
 
 // The outcome's own world does not matter, nor its unit: the camera stays where it is.
-TEST(RemadePositions, AreInTheMapsWorldAndUnit) {
+TEST(ReestimatedPositions, AreInTheMapsWorldAndUnit) {
   const TwoMaps maps;
-  const auto positions = RemadePositions(maps.outcome, maps.before, maps.map, 8);
+  const auto positions = ReestimatedPositions(maps.outcome, maps.before, maps.map, 8);
   const double scale = 0.5 * (1 / 0.50 + 1 / 0.51);
   ASSERT_EQ(positions.size(), 9U);
   for (std::size_t k = 0; k < positions.size(); ++k) {
@@ -93,28 +93,28 @@ TEST(RemadePositions, AreInTheMapsWorldAndUnit) {
     EXPECT_EQ(positions[k].id, point.id);
     EXPECT_LT((maps.before * positions[k].position - scale * (maps.after * point.position)).norm(), kRounding);
   }
-  EXPECT_TRUE(RemadePositions(maps.outcome, maps.before, maps.map, 9).empty()) << "eight are in both";
+  EXPECT_TRUE(ReestimatedPositions(maps.outcome, maps.before, maps.map, 9).empty()) << "eight are in both";
 }
 
 // A mean over the maps that had a point, in log distance; the newest counts for a fifth at least.
-TEST(WeighWithBefore, TheMoreMapsHadAPointTheLessOneMovesIt) {
+TEST(AverageWithBefore, TheMoreMapsHadAPointTheLessOneMovesIt) {
   TwoMaps maps;
-  for (int i = 0; i < 9; ++i) maps.map.landmarks[static_cast<std::size_t>(i)].times_remade = i;
-  const auto remade = RemadePositions(maps.outcome, maps.before, maps.map, 8);
-  auto held = remade;
-  WeighWithBefore(maps.before, maps.map, 0.2, &held);
-  ASSERT_EQ(held.size(), remade.size());
+  for (int i = 0; i < 9; ++i) maps.map.landmarks[static_cast<std::size_t>(i)].times_reestimated = i;
+  const auto reestimated = ReestimatedPositions(maps.outcome, maps.before, maps.map, 8);
+  auto held = reestimated;
+  AverageWithBefore(maps.before, maps.map, 0.2, &held);
+  ASSERT_EQ(held.size(), reestimated.size());
   for (std::size_t k = 0; k < held.size(); ++k) {
     const Landmark* landmark = maps.map.Find(held[k].id);
-    if (landmark == nullptr || landmark->times_remade < 2) {
-      EXPECT_EQ(held[k].position, remade[k].position);
+    if (landmark == nullptr || landmark->times_reestimated < 2) {
+      EXPECT_EQ(held[k].position, reestimated[k].position);
       continue;
     }
     const double was = std::log((maps.before * landmark->position).norm());
-    const double found = std::log((maps.before * remade[k].position).norm());
-    const double weight = landmark->times_remade < 5 ? 1.0 / landmark->times_remade : 0.2;
+    const double found = std::log((maps.before * reestimated[k].position).norm());
+    const double weight = landmark->times_reestimated < 5 ? 1.0 / landmark->times_reestimated : 0.2;
     EXPECT_NEAR(std::log((maps.before * held[k].position).norm()), was + weight * (found - was), kRounding);
-    EXPECT_LT((maps.before * held[k].position).cross(maps.before * remade[k].position).norm(), 1e-6);
+    EXPECT_LT((maps.before * held[k].position).cross(maps.before * reestimated[k].position).norm(), 1e-6);
   }
 }
 

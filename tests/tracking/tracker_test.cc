@@ -228,7 +228,7 @@ TEST_F(TrackerFromImages, WhatAllPointsDoTogetherIsTheCameras) {
     TrackerOptions options;
     options.init.method = InitMethod::kDepth;
     options.growth.grow = Switch::kOff;
-    options.gauge_share = share;
+    options.common_motion_share = share;
     return RunMasked(options, [](int, const cv::Mat&) {});
   };
   const auto moved_together = [](const std::vector<FrameReport>& reports) {
@@ -280,13 +280,13 @@ TEST_F(TrackerFromImages, TheMapGrowsWhereTheImageShowsMore) {
 }
 
 // A stain moves to and fro on the scene. From frame to frame that may be the scene that deforms; over the frames of
-// which the map is made anew it contradicts all that is around it.
-TEST_F(TrackerFromImages, AMapThatIsMadeAnewDropsWhatContradictsIt) {
+// which the map is re-estimated it contradicts all that is around it.
+TEST_F(TrackerFromImages, AReestimatedMapRejectsReprojectionOutliers) {
   const cv::Rect stain(130, 90, 60, 60);
   TrackerOptions options;
   options.init.method = InitMethod::kDepth;
   options.growth.window = kFrames - 2;
-  options.growth.remake_every = kFrames - 1;
+  options.growth.reestimate_every = kFrames - 1;
   options.growth.max_measured_share = 1.1;  // even where depth was measured everywhere
   Tracker tracker = MakeTracker(options);
   std::vector<FrameReport> reports;
@@ -307,7 +307,7 @@ TEST_F(TrackerFromImages, AMapThatIsMadeAnewDropsWhatContradictsIt) {
   };
   const FrameReport& before = reports[kFrames - 2];
   const FrameReport& after = reports[kFrames - 1];
-  EXPECT_THAT(after.note, HasSubstr("made anew"));
+  EXPECT_THAT(after.note, HasSubstr("re-estimated"));
   EXPECT_GE(on_the_stain(before), 10);
   EXPECT_LE(on_the_stain(after), on_the_stain(before) / 3);
   EXPECT_GT(after.optimized, 0.9 * static_cast<double>(before.optimized - on_the_stain(before)));

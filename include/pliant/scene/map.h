@@ -21,7 +21,8 @@ struct Landmark {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();       // X_i^{t-1}: in the last tracked frame
   Eigen::Vector3d last_motion = Eigen::Vector3d::Zero();    // delta_i of the last tracked frame
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();          // where it was last measured
-  int times_remade = 0;                                     // the maps made anew that had it
+  double ssim = 1;                                          // of that measurement, to its reference patch
+  int times_reestimated = 0;                                // the re-estimated maps that had it
   bool measured = false;                                    // its depth, at the start: by a pair or a depth image
 };
 

@@ -10,7 +10,7 @@ namespace pliant {
 
 struct GrowthOptions {
   Switch grow = Switch::kOn;
-  int every = 5;                  // frames from one look for new corners to the next; twice that while half are there
+  int every = 5;                  // new corners are searched every Nth frame; every 2Nth while half of them are there
   int min_views = 8;              // of a candidate, before it can enter the map
   int max_views = 60;             // a candidate that is no more certain by then is given up
   int neighbors = 8;              // landmarks near it in the image, which say how its surroundings move
@@ -19,13 +19,14 @@ struct GrowthOptions {
   int scarce_points = 60;         // with fewer in the map max_depth_sigma grows as they become less, up to 3 times
   double max_error = 1.5;         // root mean square of its residuals, in standard deviations
   double max_error_ratio = 2.0;   // the same by its median over the candidates
-  int window = 45;                // frames of which the map is made anew; 0: never
-  int remake_every = 20;          // frames; twice that while half of the points in view were in three such maps
-  // A point that two maps made anew had, and whose depth another one changes by more than its neighbors', has slid.
+  int window = 45;                // frames from which the map is re-estimated; 0: never
+  int reestimate_every = 20;      // frames; twice that while half of the points in view were in three such maps
+  // A point that two re-estimated maps had, and whose depth another one changes by more than its neighbors', has
+  // drifted.
   double max_depth_change = 0.02;
-  double remade_weight = 0.3;  // of a map made anew against those before it, at least
-  // Where so many of the points in view had their depth measured at the start (a pair, a depth image), they are left
-  // as they are.
+  double min_reestimation_weight = 0.3;  // of a re-estimated map against those before it, at least
+  // Where this share of the points in view had their depth measured at the start (a pair, a depth image), the map is
+  // left as it is.
   double max_measured_share = 0.5;
 
   void List(OptionTable& table);  // group "Growth"

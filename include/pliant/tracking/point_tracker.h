@@ -10,6 +10,7 @@
 // Pixels: (0, 0) is the center of the first pixel. Memory grows with the points only. docs/method.md, eq. P7 to P9.
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <span>
 #include <vector>
@@ -75,8 +76,6 @@ class PointTracker {
   PatchFailure Add(PointId id, const Eigen::Vector2d& pixel, const ImagePyramid& pyramid, const SupportMask& mask);
   void Remove(PointId id) { points_.erase(id); }
   void Clear() { points_.clear(); }
-  // All points of `other`, whose ids are others.
-  void TakeOver(PointTracker&& other) { points_.merge(other.points_); }
   std::size_t size() const { return points_.size(); }
   bool Contains(PointId id) const { return points_.contains(id); }
   // Where a known point was last seen, as far as it is kept.
@@ -89,26 +88,21 @@ class PointTracker {
                                 const ImagePyramid& current, const SupportMask& current_mask,
                                 std::span<const PointPrediction> predictions, int threads);
 
-  // Looks for points that are known but were not seen in the latest image, around the predicted pixels, each as it was
-  // when it was last seen, changed by `affine_from_latest`. Only what resembles a point's reference patch is that point
-  // again; one that was found goes on with the next Track, unless its step is taken back. Periodic patches find
-  // nothing.
+  // Searches points that are known but were not seen in the latest image around the predicted pixels, each as it was
+  // when it was last seen, changed by `affine_from_latest`; part of the attempt. Only what resembles a point's
+  // reference patch is that point again. Periodic patches find nothing.
   std::vector<PointTrack> Find(const ImagePyramid& current, const SupportMask& current_mask,
                                std::span<const PointPrediction> predictions, int threads);
-  // Takes the last Find of a point back.
-  void Undo(PointId id);
 
-  // What was found since the last Keep is right: Undo no longer takes it back.
-  void Keep();
-  // Takes back what was found since the last Keep: every point is again where it was then. For an image whose result is
-  // not used; the next Track then starts from the same `previous` as the one taken back.
-  void Undo();
+  // What the attempt found of these points is right: they are now where it found them. Of others it is forgotten with
+  // the next attempt. Ids that are not known, or were not found, have no effect.
+  void Keep(std::span<const PointId> ids);
 
  private:
-  // What the latest Track found of a point; it becomes the point's own with Keep, or with the next Track.
+  // What an attempt found of a point; it becomes the point's own with Keep.
   struct Step {
     enum class Patch { kKept, kLatest, kReference };  // what was cut anew: nothing, the latest, the reference as well
-    bool pending = false;
+    std::int64_t attempt = 0;                         // that found it; 0: none
     Patch patch = Patch::kKept;
     ReferencePatch latest;
     Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
@@ -124,7 +118,7 @@ class PointTracker {
     int age = 0;  // images since the reference was cut
     Step next;
 
-    void TakeStep();  // no effect when none is pending
+    void TakeStep();
   };
   struct Images;
 
@@ -139,10 +133,11 @@ class PointTracker {
   template <class Function>
   std::vector<PointTrack> ForEach(std::span<const PointPrediction> predictions, int threads, const Function& function);
   static void TakeMatch(const PatchMatch& match, const Point& point, PointTrack* track);
-  static void PrepareStep(const PointTrack& track, const PatchMatch& match, Step::Patch patch, Point* point);
+  void PrepareStep(const PointTrack& track, const PatchMatch& match, Step::Patch patch, Point* point) const;
 
   PointTrackerOptions options_;
   std::map<PointId, Point> points_;
+  std::int64_t attempt_ = 1;  // the present one
 };
 
 // The 2x2 affine change of every point's neighborhood between two images, from how its `neighbors` nearest points

@@ -1,0 +1,208 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tracking/bootstrapping/bootstrapper.h"
+
+#include <cassert>
+#include <utility>
+
+#include "pliant/base/random.h"
+#include "pliant/image/corners.h"
+#include "tracking/image_fault.h"
+
+namespace pliant {
+
+Bootstrapper::Bootstrapper(const Camera& camera, const TrackerOptions& options, std::uint64_t seed, int threads,
+                           const std::optional<PhotometricCalibration>& photometric, TrackSource* tracks,
+                           OracleAnswers* oracle)
+    : camera_(camera),
+      options_(options),
+      threads_(threads),
+      photometric_(photometric),
+      tracks_(tracks),
+      oracle_(oracle),
+      initializer_(MakeInitializer(options.init, Random(seed).Child("initializer"))) {}
+
+BootstrapStep Bootstrapper::Process(const TrackerFrame& frame, Submap* submap, StageTimes* times) {
+  assert(submap->map.landmarks.empty());
+  if (!HasReference()) return TakeReference(frame, submap, times);
+  if (options_.track_blurred == Switch::kOn && submap->IsBlurred(frame, options_)) {
+    // A dark or blurred frame is passed over: the points are searched again in the next one.
+    ++submap->blurred_frames;
+    return {.tracked = static_cast<int>(frames_.back().observations.size()),
+            .note = WithFault("passed over: the image is blurred or dark", ImageFault(frame, submap->previous))};
+  }
+  submap->blurred_frames = 0;
+  return FollowReference(frame, submap, times);
+}
+
+BootstrapStep Bootstrapper::TakeReference(const TrackerFrame& frame, Submap* submap, StageTimes* times) {
+  Abandon();
+  BootstrapStep step;
+  {
+    const StageTimer timer(times, Stage::kInitialize);
+    InitFrame reference{frame.frame_idx, {}};
+    const LocalBrightness brightness(frame.image, frame.mask.valid());
+    if (initializer_->TakesKnownPoints())
+      AddKnownPoints(frame, brightness, &reference);
+    else
+      AddCorners(frame, brightness, options_.corners.max_corners, &reference);
+    step.tracked = static_cast<int>(reference.observations.size());
+    frames_.push_back(std::move(reference));
+  }
+  if (step.tracked < options_.min_corners) {
+    Abandon();
+    step.events = {TrackingEvent::kTooFewCorners};
+    step.note = WithFault("no reference yet: " + std::to_string(step.tracked) +
+                              (initializer_->TakesKnownPoints() ? " points of the model" : " corners") +
+                              ", of at least " + std::to_string(options_.min_corners),
+                          ImageFault(frame, submap->previous));
+  } else {
+    TryInitialize(frame, times, &step);
+    if (HasReference()) {
+      step.events.push_back(TrackingEvent::kReferenceFound);
+      step.note = "reference with " + std::to_string(step.tracked) + " corners";
+    }
+  }
+  submap->previous = frame;
+  return step;
+}
+
+BootstrapStep Bootstrapper::FollowReference(const TrackerFrame& frame, Submap* submap, StageTimes* times) {
+  BootstrapStep step;
+  {
+    const StageTimer timer(times, Stage::kPhotometric);
+    frames_.push_back(FollowedFrame(frame, *submap, &step.losses));
+    step.tracked = static_cast<int>(frames_.back().observations.size());
+  }
+  image_fault_ = ImageFault(frame, submap->previous);
+  TryInitialize(frame, times, &step);
+  if (!HasReference() && !step.map) {  // the reference is spent: this image becomes the next one
+    BootstrapStep next = TakeReference(frame, submap, times);
+    next.events.insert(next.events.begin(), TrackingEvent::kReferenceSpent);
+    step.losses.Add(next.losses);
+    next.losses = std::move(step.losses);
+    next.note = step.note + "; " + next.note;
+    step = std::move(next);
+  }
+  step.note = WithFault(step.note, image_fault_);
+  submap->previous = frame;
+  return step;
+}
+
+// Asks the initializer. Afterwards there is a map in the step, or it waits and the reference stays, or there is none.
+void Bootstrapper::TryInitialize(const TrackerFrame& frame, StageTimes* times, BootstrapStep* step) {
+  InitOutcome outcome = AskInitializer(frame.depth_mm, InitMoment::kMoreFollow, times);
+  step->note = outcome.reason;
+  switch (outcome.decision) {
+    case InitDecision::kMap:
+      FinishMap(std::move(outcome), step);
+      break;
+    case InitDecision::kWait:
+      step->events.push_back(TrackingEvent::kMapAwaited);
+      break;
+    case InitDecision::kNewReference:
+      Abandon();
+      break;
+  }
+}
+
+BootstrapStep Bootstrapper::EndSequence(StageTimes* times) {
+  BootstrapStep step;
+  InitOutcome outcome = AskInitializer({}, InitMoment::kLastFrame, times);
+  step.note = WithFault(outcome.reason, image_fault_);
+  if (outcome.decision == InitDecision::kMap) FinishMap(std::move(outcome), &step);
+  return step;
+}
+
+void Bootstrapper::Abandon() {
+  if (!frames_.empty())
+    for (const InitObservation& seen : frames_.back().observations) tracks_->Remove(seen.id);
+  frames_.clear();
+  known_depths_.clear();
+}
+
+InitOutcome Bootstrapper::AskInitializer(const cv::Mat& depth_mm, InitMoment moment, StageTimes* times) {
+  const StageTimer timer(times, Stage::kInitialize);
+  const InitInput input{camera_, frames_, depth_mm, moment, threads_, known_depths_, photometric_};
+  InitOutcome outcome =
+      oracle_->gives_first_map() ? oracle_->FirstMap(input, options_.min_points) : initializer_->Try(input);
+  if (outcome.decision == InitDecision::kMap) oracle_->TakeWorld(input, &outcome);
+  return outcome;
+}
+
+void Bootstrapper::FinishMap(InitOutcome outcome, BootstrapStep* step) {
+  for (const InitRejectedPoint& rejected : outcome.rejected)
+    if (rejected.reason != InitRejection::kLostOnTheWay) step->losses.Add(InitRejectionName(rejected.reason), 1);
+  step->map = FirstMap{std::exchange(frames_, {}), std::move(outcome)};
+  step->events.push_back(TrackingEvent::kMapCreated);
+}
+
+// Constant velocity in the image: there is no map yet.
+std::vector<PointPrediction> Bootstrapper::PredictPixels(int frame_idx) const {
+  const std::vector<InitObservation>& last = frames_.back().observations;
+  std::vector<Eigen::Vector2d> from;
+  for (const InitObservation& observation : last) from.push_back(observation.pixel);
+  std::vector<Eigen::Vector2d> to = from;
+  if (frames_.size() >= 2) {
+    const InitFrame& earlier = frames_[frames_.size() - 2];
+    const double steps =
+        static_cast<double>(frame_idx - frames_.back().frame_idx) / (frames_.back().frame_idx - earlier.frame_idx);
+    for (std::size_t k = 0; k < last.size(); ++k)
+      if (const InitObservation* before = FindById(earlier.observations, last[k].id); before != nullptr)
+        to[k] = (1 + steps) * last[k].pixel - steps * before->pixel;
+  }
+  const std::vector<Eigen::Matrix2d> affines = NeighborhoodAffines(from, to);
+  std::vector<PointPrediction> predictions;
+  for (std::size_t k = 0; k < last.size(); ++k) predictions.push_back({last[k].id, to[k], affines[k]});
+  return predictions;
+}
+
+// Adds corners away from the points that are there.
+void Bootstrapper::AddCorners(const TrackerFrame& frame, const LocalBrightness& brightness, int max_corners,
+                              InitFrame* points) {
+  if (max_corners <= 0) return;
+  std::vector<Eigen::Vector2d> existing;
+  for (const InitObservation& observation : points->observations) existing.push_back(observation.pixel);
+  CornerOptions corners = options_.corners;
+  corners.max_corners = max_corners;
+  for (const Corner& corner : DetectCorners(frame.gray, frame.mask.valid(), existing, corners))
+    if (const auto id = tracks_->Add(corner.pixel, frame))
+      points->observations.push_back(
+          {*id, corner.pixel, 1.0, brightness.At(corner.pixel), ColorAt(frame.image, corner.pixel)});
+}
+
+void Bootstrapper::AddKnownPoints(const TrackerFrame& frame, const LocalBrightness& brightness, InitFrame* points) {
+  if (!frame.known_points) return;
+  for (const PixelDepth& known : frame.known_points()) {
+    if (static_cast<int>(points->observations.size()) == options_.corners.max_corners) break;
+    const auto id = tracks_->Add(known.pixel, frame);
+    if (!id) continue;
+    points->observations.push_back(
+        {*id, known.pixel, 1.0, brightness.At(known.pixel), ColorAt(frame.image, known.pixel)});
+    known_depths_.push_back(known.depth);
+  }
+}
+
+// The reference's points in this frame, with corners where there are none every Nth frame.
+InitFrame Bootstrapper::FollowedFrame(const TrackerFrame& frame, const Submap& submap, LossCounts* losses) {
+  InitFrame followed{frame.frame_idx, {}};
+  const LocalBrightness brightness(frame.image, frame.mask.valid());
+  std::vector<PointId> kept;
+  for (const PointTrack& track : tracks_->Track(submap.previous, frame, PredictPixels(frame.frame_idx))) {
+    if (track.failure == PatchFailure::kNone) {
+      followed.observations.push_back(
+          {track.id, track.pixel, track.ssim, brightness.At(track.pixel), ColorAt(frame.image, track.pixel)});
+      kept.push_back(track.id);
+    } else {
+      tracks_->Remove(track.id);
+      losses->Add(EnumName(track.failure), 1);
+    }
+  }
+  tracks_->Keep(kept);
+  if (initializer_->TakesLaterPoints() && frames_.size() % static_cast<std::size_t>(options_.top_up_frames) == 0)
+    AddCorners(frame, brightness, options_.corners.max_corners - static_cast<int>(kept.size()), &followed);
+  return followed;
+}
+
+}  // namespace pliant

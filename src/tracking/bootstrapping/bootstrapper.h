@@ -1,0 +1,83 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// From the reference image to the first map: takes a reference, follows its points, and asks the initializer in every
+// frame. It works on the submap that awaits its map and returns what it found; the map is made by the caller.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pliant/camera/camera.h"
+#include "pliant/camera/photometric_calibration.h"
+#include "pliant/image/brightness.h"
+#include "pliant/tracking/stage_times.h"
+#include "pliant/tracking/state.h"
+#include "pliant/tracking/tracker_options.h"
+#include "pliant/tracking/tracks/track_source.h"
+#include "tracking/bootstrapping/first_map.h"
+#include "tracking/loss_counts.h"
+#include "tracking/submap.h"
+#include "tracking/tracks/oracle_answers.h"
+
+namespace pliant {
+
+// What one frame was good for on the way to the first map.
+struct BootstrapStep {
+  std::vector<TrackingEvent> events = {};  // in their order
+  int tracked = 0;                         // points found in this frame, or followed into it
+  LossCounts losses = {};
+  std::string note = {};                       // one sentence
+  std::optional<FirstMap> map = std::nullopt;  // when the initializer made one; the bootstrapper then begins anew
+};
+
+class Bootstrapper {
+ public:
+  // `tracks` and `oracle` must outlive this. `seed` decides RANSAC's samples; `threads` >= 1 do not change the result.
+  Bootstrapper(const Camera& camera, const TrackerOptions& options, std::uint64_t seed, int threads,
+               const std::optional<PhotometricCalibration>& photometric, TrackSource* tracks, OracleAnswers* oracle);
+
+  // The next frame; `submap` has no landmarks yet.
+  BootstrapStep Process(const TrackerFrame& frame, Submap* submap, StageTimes* times);
+  // No frame will follow: a last attempt with those that were processed since the reference, of which there has to be
+  // one.
+  BootstrapStep EndSequence(StageTimes* times);
+  // The reports of the frames since the reference, with what the first map knows of them.
+  std::vector<FrameReport> Completed(const FirstMap& first, std::vector<FrameReport> reports) const {
+    return CompletedReports(camera_, first, std::move(reports));
+  }
+  // Gives the reference up, and its points.
+  void Abandon();
+
+  bool HasReference() const { return !frames_.empty(); }
+  // There has to be one.
+  int reference_frame_idx() const { return frames_.front().frame_idx; }
+
+ private:
+  BootstrapStep TakeReference(const TrackerFrame& frame, Submap* submap, StageTimes* times);
+  BootstrapStep FollowReference(const TrackerFrame& frame, Submap* submap, StageTimes* times);
+  void TryInitialize(const TrackerFrame& frame, StageTimes* times, BootstrapStep* step);
+  InitOutcome AskInitializer(const cv::Mat& depth_mm, InitMoment moment, StageTimes* times);
+  void FinishMap(InitOutcome outcome, BootstrapStep* step);
+  std::vector<PointPrediction> PredictPixels(int frame_idx) const;
+  void AddCorners(const TrackerFrame& frame, const LocalBrightness& brightness, int max_corners, InitFrame* points);
+  void AddKnownPoints(const TrackerFrame& frame, const LocalBrightness& brightness, InitFrame* points);
+  InitFrame FollowedFrame(const TrackerFrame& frame, const Submap& submap, LossCounts* losses);
+
+  Camera camera_;
+  TrackerOptions options_;
+  int threads_;
+  std::optional<PhotometricCalibration> photometric_;
+  TrackSource* tracks_;
+  OracleAnswers* oracle_;
+  std::unique_ptr<Initializer> initializer_;
+
+  std::vector<InitFrame> frames_;     // since the reference; empty: there is none
+  std::vector<double> known_depths_;  // of the reference's points, where they are known
+  std::string image_fault_;           // of the last frame
+};
+
+}  // namespace pliant

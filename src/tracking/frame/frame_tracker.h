@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// One frame with a map, as in the paper: from predicted pixels to the pose and the displacements of this frame. It
+// reads a submap and returns what it found; the tracker decides what becomes of it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pliant/camera/camera.h"
+#include "pliant/deformation/graph.h"
+#include "pliant/scene/frame_report.h"
+#include "pliant/tracking/stage_times.h"
+#include "pliant/tracking/tracker_options.h"
+#include "pliant/tracking/tracks/track_source.h"
+#include "tracking/frame/followed_points.h"
+#include "tracking/submap.h"
+#include "tracking/tracks/oracle_answers.h"
+
+namespace pliant {
+
+// A frame as its points and the map explain it.
+struct SolvedFrame {
+  std::string failure = {};     // why there is no solution, one sentence; empty: there is one
+  int tracked = 0;              // points that were followed, before any was rejected
+  FollowedPoints points = {};   // those that the solution explains
+  FrameSolution solution = {};  // pose and costs
+};
+
+class FrameTracker {
+ public:
+  // `tracks` and `oracle` must outlive this.
+  FrameTracker(const Camera& camera, const TrackerOptions& options, TrackSource* tracks, const OracleAnswers* oracle)
+      : camera_(camera), options_(options), tracks_(tracks), oracle_(oracle) {}
+
+  // The pose that is known without estimating it: the truth's, or that of a camera that stands still.
+  std::optional<Rigid3> KnownPose(int frame_idx, const Submap& submap) const;
+
+  // The landmarks, followed from where they are expected by a camera at this pose (P1). The other overload predicts the
+  // pose itself (E6).
+  FollowedPoints Follow(const TrackerFrame& frame, const Submap& submap, const Rigid3& cam_from_world) const;
+  FollowedPoints Follow(const TrackerFrame& frame, const Submap& submap) const;
+  // Adds lost points that are where they are expected (R2). They take part in the frame's problem like the others.
+  void FindLost(const TrackerFrame& frame, const Rigid3& cam_from_world, Submap* submap,
+                FollowedPoints* followed) const;
+
+  // The frame's pose and displacements from the points that were followed into it. `state`: before this frame.
+  SolvedFrame Solve(const TrackerFrame& frame, TrackingState state, FollowedPoints followed, Submap* submap,
+                    StageTimes* times) const;
+
+ private:
+  std::vector<PointPrediction> PredictPixels(const Submap& submap, const Rigid3& cam_from_world) const;
+  bool IsBlurred(const TrackerFrame& frame, const Submap& submap) const;
+  Rigid3 EstimatePose(const FollowedPoints& followed, StageTimes* times) const;
+  DeformationGraph BuildGraph(const FollowedPoints& followed, StageTimes* times) const;
+  void RejectNeighborOutliers(const Rigid3& cam_from_world, const DeformationGraph& graph,
+                              FollowedPoints* followed) const;
+  void RejectReprojectionOutliers(FollowedPoints* followed) const;
+  std::string TooFewPoints(int count, const Submap& submap) const;
+
+  Camera camera_;
+  TrackerOptions options_;
+  TrackSource* tracks_;
+  const OracleAnswers* oracle_;
+};
+
+}  // namespace pliant

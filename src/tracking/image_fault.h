@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// What may be wrong with an image in which nothing can be followed, as a clause for a note.
+#pragma once
+
+#include <string>
+
+#include <opencv2/core/mat.hpp>
+
+#include "pliant/tracking/tracker_frame.h"
+
+namespace pliant {
+
+// That an image shows nothing: it is black, white, or of one color; empty where it shows something.
+std::string Blankness(const cv::Mat& gray);
+
+// What is wrong with an image in which nothing can be followed; empty when nothing is.
+std::string ImageFault(const TrackerFrame& frame, const TrackerFrame& previous);
+
+// "note; fault", or the one that is not empty.
+std::string WithFault(const std::string& note, const std::string& fault);
+
+}  // namespace pliant

@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tracking/map_upkeep/reestimate_map.h"
+
+#include "tracking/window_map.h"
+
+namespace pliant {
+namespace {
+
+// By how much the demands on a deforming map are relaxed. To wait for the next attempt costs more than a little
+// uncertainty: meanwhile the map's errors grow.
+constexpr double kRelaxed = 0.05;
+
+// What is missing for a map; ok when the outcome is one.
+Status Reestimate(const InitInput& input, WindowScene scene, const WindowInitOptions& options, double nominal_depth_mm,
+                  InitOutcome* outcome) {
+  const bool may_deform = scene == WindowScene::kAny;
+  if (may_deform)  // a rotation alone does not constrain the deforming window
+    if (Status status = MoreThanARotation(input, &outcome->measured); !status.ok()) return status;
+  const auto window = SolveWindow(input, input.frames.size(), scene, options, nominal_depth_mm);
+  if (!window.ok()) return window.status();
+  MapDemands demands = DemandsOf(options, may_deform ? kRelaxed : 0.0);
+  // Where the scene is rigid errors are of the tracks alone. What drifts along a contour or over the surface, little at
+  // a time, shows in them.
+  demands.judges_tracks = window->solution.window.courses.rows() == 0;
+  outcome->decision = InitDecision::kWait;
+  return MakeWindowMap(input, *window, demands, options, nominal_depth_mm, outcome);
+}
+
+}  // namespace
+
+InitOutcome ReestimateMap(const InitInput& input, WindowScene scene, const WindowInitOptions& options,
+                          double nominal_depth_mm) {
+  InitOutcome outcome;
+  outcome.decision = InitDecision::kNewReference;
+  if (Status status = Reestimate(input, scene, options, nominal_depth_mm, &outcome); !status.ok())
+    outcome.reason = status.message();
+  return outcome;
+}
+
+}  // namespace pliant

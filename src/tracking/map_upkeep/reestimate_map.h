@@ -1,0 +1,19 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// The map, re-estimated by the deforming window from frames through which its points and others were followed
+// (docs/method.md, eq. W13 and G5).
+#pragma once
+
+#include "pliant/tracking/initializer.h"
+#include "pliant/tracking/window_initializer.h"
+#include "tracking/window_solution.h"
+
+namespace pliant {
+
+// From all frames of the input, of which some between the first and the last may be left out. kWait: they make no map
+// that is certain; kNewReference: the scene is not of the kind that is asked for, or is seen too little.
+InitOutcome ReestimateMap(const InitInput& input, WindowScene scene, const WindowInitOptions& options,
+                          double nominal_depth_mm);
+
+}  // namespace pliant

@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tracking/map_upkeep/replace_map.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "pliant/base/statistics.h"
+
+namespace pliant {
+namespace {
+
+// (W13) The map's unit in the outcome's; nothing when fewer than `min_common` points are in both.
+std::optional<double> UnitOf(const InitFrameState& now, const Rigid3& cam_from_world, const Map& map, int min_common) {
+  std::vector<double> ratios;
+  for (const Landmark& landmark : map.landmarks)
+    if (const InitPosition* point = FindById(now.positions, landmark.id); point != nullptr)
+      ratios.push_back((cam_from_world * landmark.position).norm() / (now.cam_from_world * point->position).norm());
+  if (static_cast<int>(ratios.size()) < min_common) return std::nullopt;
+  return Median(std::move(ratios));
+}
+
+}  // namespace
+
+std::optional<Rigid3> ReplaceMap(const InitOutcome& outcome, const Rigid3& cam_from_world, Map* map,
+                                 std::vector<RefinedPoint>* refined) {
+  const InitFrameState& now = outcome.frames.back();
+  const auto unit = UnitOf(now, cam_from_world, *map, 1);
+  if (!unit) return std::nullopt;
+  const Rigid3 now_from_world(now.cam_from_world.rotation, *unit * now.cam_from_world.translation);
+  const Rigid3 now_from_before = now_from_world.Inverse() * cam_from_world;
+  for (Landmark& landmark : map->landmarks) {
+    const InitPosition* point = FindById(now.positions, landmark.id);
+    const Eigen::Vector3d position = point != nullptr ? *unit * point->position : now_from_before * landmark.position;
+    landmark.rest_position = point != nullptr ? position : landmark.rest_position + position - landmark.position;
+    landmark.position = position;
+    landmark.last_motion.setZero();
+    refined->push_back({landmark.id, landmark.rest_position});
+  }
+  return now_from_world;
+}
+
+std::vector<InitPosition> ReestimatedPositions(const InitOutcome& outcome, const Rigid3& cam_from_world, const Map& map,
+                                               int min_common) {
+  const InitFrameState& now = outcome.frames.back();
+  const auto unit = UnitOf(now, cam_from_world, map, min_common);
+  if (!unit) return {};
+  const Rigid3 world_from_cam = cam_from_world.Inverse();
+  std::vector<InitPosition> positions;
+  for (const InitPosition& point : now.positions)
+    positions.push_back({point.id, world_from_cam * Eigen::Vector3d(*unit * (now.cam_from_world * point.position))});
+  return positions;
+}
+
+void AverageWithBefore(const Rigid3& cam_from_world, const Map& map, double min_weight,
+                       std::vector<InitPosition>* reestimated) {
+  const Rigid3 world_from_cam = cam_from_world.Inverse();
+  for (InitPosition& point : *reestimated) {
+    const Landmark* landmark = map.Find(point.id);
+    if (landmark == nullptr || landmark->times_reestimated < 2) continue;
+    const double weight = std::max(min_weight, 1.0 / landmark->times_reestimated);
+    const Eigen::Vector3d found = cam_from_world * point.position;
+    const double ratio = (cam_from_world * landmark->position).norm() / found.norm();
+    point.position = world_from_cam * Eigen::Vector3d(std::pow(ratio, 1.0 - weight) * found);
+  }
+}
+
+}  // namespace pliant

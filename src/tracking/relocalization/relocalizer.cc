@@ -1,0 +1,102 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tracking/relocalization/relocalizer.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "tracking/image_fault.h"
+
+namespace pliant {
+namespace {
+
+// `count` times the motion from one pose to the next.
+Rigid3 Repeated(const Rigid3& motion, double count) {
+  const Eigen::AngleAxisd turn(motion.rotation);
+  return {Eigen::Quaterniond(Eigen::AngleAxisd(count * turn.angle(), turn.axis())), count * motion.translation};
+}
+
+}  // namespace
+
+void Relocalizer::Remember(const TrackerFrame& frame, Submap* submap) const {
+  const auto length = static_cast<std::size_t>(options_.relocalization.velocity_frames) + 1;
+  auto& poses = submap->recent_poses;
+  if (!poses.empty() && poses.back().first + 1 != frame.frame_idx) poses.clear();
+  poses.emplace_back(frame.frame_idx, submap->last_cam_from_world);
+  if (poses.size() > length) poses.erase(poses.begin());
+  if (options_.relocalization.relocalize == Switch::kOff || !abilities_.sees_appearance) return;
+  if (frame.frame_idx % options_.relocalization.describe_every != 0) return;
+  submap->descriptors.See(frame.gray, submap->map.landmarks);
+  std::vector<PointId> known;
+  for (const Landmark& landmark : submap->KnownLandmarks()) known.push_back(landmark.id);
+  std::sort(known.begin(), known.end());
+  submap->descriptors.Keep(known);
+}
+
+void Relocalizer::RememberLastView(Submap* submap) const {
+  if (options_.relocalization.relocalize == Switch::kOn)
+    submap->descriptors.See(submap->previous.gray, submap->map.landmarks);
+}
+
+// Where the camera may be in this frame: where it was, and where it would be had it gone on as it went.
+std::vector<Rigid3> Relocalizer::GuessPoses(int frame_idx, const Submap& submap) const {
+  std::vector<Rigid3> guesses = {submap.last_cam_from_world};
+  if (options_.relocalization.relocalize == Switch::kOff || submap.recent_poses.size() < 2) return guesses;
+  const auto& [first_idx, first] = submap.recent_poses.front();
+  const auto& [last_idx, last] = submap.recent_poses.back();
+  const double frames = static_cast<double>(frame_idx - last_idx) / (last_idx - first_idx);
+  guesses.insert(guesses.begin(), Repeated(last * first.Inverse(), frames) * submap.last_cam_from_world);
+  return guesses;
+}
+
+// The points that are found from a guess, when enough of those that it should see agree; else none. Their pose is the
+// one on which they agree.
+FollowedPoints Relocalizer::FollowFrom(const TrackerFrame& frame, const Rigid3& guess, Submap* submap) const {
+  FollowedPoints followed = frame_tracker_->Follow(frame, *submap, guess);
+  if (options_.relocalization.relocalize == Switch::kOff) return followed;
+  const auto improve = [&] {
+    const auto pose =
+        EstimateCameraPose(camera_, followed.positions, followed.pixels, followed.cam_from_world, options_.pose);
+    if (pose.ok()) followed.cam_from_world = pose->cam_from_world;
+  };
+  // Once more, from a better pose.
+  if (static_cast<int>(followed.size()) >= options_.min_points) improve();
+  const Rigid3 better = followed.cam_from_world;
+  followed = frame_tracker_->Follow(frame, *submap, better);
+  if (options_.find_lost == Switch::kOn && !followed.in_blur)
+    frame_tracker_->FindLost(frame, better, submap, &followed);
+  if (static_cast<int>(followed.size()) < options_.min_points) return {};
+  improve();
+  return IsConfirmed(followed) ? followed : FollowedPoints{};
+}
+
+bool Relocalizer::IsConfirmed(const FollowedPoints& followed) const {
+  int agree = 0;
+  for (std::size_t k = 0; k < followed.size(); ++k) {
+    const auto pixel = camera_.Project(followed.cam_from_world * followed.positions[k]);
+    if (pixel && (*pixel - followed.pixels[k]).norm() <= options_.relocalization.max_error_px) ++agree;
+  }
+  return agree >= options_.min_points &&
+         static_cast<double>(agree) >= options_.relocalization.min_share * static_cast<double>(followed.expected);
+}
+
+const DescribedImage& Relocalizer::Described(const TrackerFrame& frame) {
+  if (described_frame_idx_ != frame.frame_idx) {
+    described_ = Describe(frame.gray, frame.mask, options_.corners, options_.relocalization);
+    described_frame_idx_ = frame.frame_idx;
+  }
+  return described_;
+}
+
+FollowedPoints Relocalizer::Relocalize(const TrackerFrame& frame, Submap* submap) {
+  if (!Blankness(frame.gray).empty()) return {};
+  for (const Rigid3& guess : GuessPoses(frame.frame_idx, *submap))
+    if (FollowedPoints followed = FollowFrom(frame, guess, submap); followed.size() > 0) return followed;
+  if (options_.relocalization.relocalize == Switch::kOff) return {};
+  const auto recognized = submap->descriptors.Recognize(Described(frame), camera_, submap->KnownLandmarks());
+  if (!recognized.ok()) return {};
+  return FollowFrom(frame, recognized->cam_from_world, submap);
+}
+
+}  // namespace pliant

@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// The true tracks of a simulated scene, as a source of tracks: a point's pixel is that of the material point on which
+// it started, for as long as that is visible.
+#pragma once
+
+#include <cstdint>
+
+#include "pliant/tracking/tracks/track_source.h"
+
+namespace pliant {
+
+class OracleTracks : public TrackSource {
+ public:
+  // `truth` must outlive this. `options` decide at which pixels there is a patch to follow, as with PatchTracks, so
+  // that both start from the same points.
+  OracleTracks(TrackingTruth* truth, const LucasKanadeOptions& options) : truth_(truth), options_(options) {}
+
+  TrackAbilities abilities() const override {
+    return {.adds_points = false, .finds_points = false, .tracks_blurred = false, .sees_appearance = false};
+  }
+  std::optional<PointId> Add(const Eigen::Vector2d& pixel, const TrackerFrame& frame) override;
+  bool Resume(PointId id, const Eigen::Vector2d& pixel, const TrackerFrame& frame) override;
+  void Remove(PointId) override {}
+  std::vector<PointTrack> Track(const TrackerFrame& previous, const TrackerFrame& current,
+                                std::span<const PointPrediction> predictions) override;
+  std::vector<PointTrack> Find(const TrackerFrame& current, std::span<const PointPrediction> predictions) override;
+  void Keep(std::span<const PointId>) override {}
+  std::vector<PointTrack> TrackIntoBlur(const TrackerFrame& previous, const TrackerFrame& blurred,
+                                        std::span<const PointPrediction> predictions) const override;
+
+ private:
+  TrackingTruth* truth_;
+  LucasKanadeOptions options_;
+  std::int64_t next_id_ = 0;
+};
+
+}  // namespace pliant

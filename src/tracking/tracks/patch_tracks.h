@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Point tracks by our own Lucas-Kanade tracker, as a source of tracks.
+#pragma once
+
+#include <cstdint>
+
+#include "pliant/tracking/tracks/track_source.h"
+
+namespace pliant {
+
+class PatchTracks : public TrackSource {
+ public:
+  // `threads` >= 1 follow points; they do not change the result.
+  PatchTracks(const PointTrackerOptions& options, int threads)
+      : options_(options), threads_(threads), tracker_(options) {}
+
+  TrackAbilities abilities() const override { return {}; }
+  std::optional<PointId> Add(const Eigen::Vector2d& pixel, const TrackerFrame& frame) override;
+  bool Resume(PointId id, const Eigen::Vector2d& pixel, const TrackerFrame& frame) override;
+  void Remove(PointId id) override { tracker_.Remove(id); }
+  std::vector<PointTrack> Track(const TrackerFrame& previous, const TrackerFrame& current,
+                                std::span<const PointPrediction> predictions) override;
+  std::vector<PointTrack> Find(const TrackerFrame& current, std::span<const PointPrediction> predictions) override;
+  void Keep(std::span<const PointId> ids) override { tracker_.Keep(ids); }
+  std::vector<PointTrack> TrackIntoBlur(const TrackerFrame& previous, const TrackerFrame& blurred,
+                                        std::span<const PointPrediction> predictions) const override;
+
+ private:
+  PointTrackerOptions options_;
+  int threads_;
+  PointTracker tracker_;
+  std::int64_t next_id_ = 0;
+};
+
+}  // namespace pliant

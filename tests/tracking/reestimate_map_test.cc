@@ -1,0 +1,98 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tracking/map_upkeep/reestimate_map.h"
+
+#include <cmath>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "pliant/base/random.h"
+#include "support/waving_tracks.h"
+
+namespace pliant {
+namespace {
+
+using test::CameraMotion;
+using test::kNoisePx;
+using test::kShape;
+using test::WavingTracks;
+using testing::HasSubstr;
+
+TEST(ReestimateMap, RefinesTheMapOfARigidSceneByTheFramesThatFollow) {
+  const WavingTracks start(11, CameraMotion::kForwards, 0.0);
+  const InitOutcome first = start.Try({});
+  ASSERT_EQ(first.decision, InitDecision::kMap) << first.reason;
+  EXPECT_TRUE(first.refinable);
+  const WavingTracks longer(61, CameraMotion::kForwards, 0.0);
+  const InitOutcome refined = longer.Reestimate(WindowScene::kRigid);
+  ASSERT_EQ(refined.decision, InitDecision::kMap) << refined.reason;
+  EXPECT_EQ(refined.frames.size(), 61U);
+  EXPECT_LT(longer.ShapeError(refined, 0), 0.5 * start.ShapeError(first, 0));
+  EXPECT_LT(longer.ShapeError(refined, 60), 0.5 * start.ShapeError(first, 0));
+
+  WindowInitOptions once;
+  once.refine_rigid = Switch::kOff;
+  EXPECT_FALSE(start.Try(once).refinable);
+}
+
+TEST(ReestimateMap, RefinesNoMapOfASceneThatDeforms) {
+  const WavingTracks sequence(61);
+  const InitOutcome first = sequence.Try({});
+  ASSERT_EQ(first.decision, InitDecision::kMap) << first.reason;
+  EXPECT_FALSE(first.refinable);
+  const InitOutcome refined = sequence.Reestimate(WindowScene::kRigid);
+  EXPECT_EQ(refined.decision, InitDecision::kNewReference);
+  EXPECT_THAT(refined.reason, HasSubstr("the scene deforms"));
+}
+
+// A tenth of a pixel a frame at most: what it tells the first map is no worse than noise.
+TEST(ReestimateMap, APointThatDriftsStaysOut) {
+  WavingTracks sequence(61, CameraMotion::kForwards, 0.0);
+  for (InitFrame& frame : sequence.frames)
+    for (InitObservation& seen : frame.observations)
+      if (seen.id == PointId{42}) seen.pixel.x() += 0.5 * std::sin(0.2 * (frame.frame_idx - 100));
+  for (const WindowScene scene : {WindowScene::kRigid, WindowScene::kAny}) {
+    const InitOutcome reestimated = sequence.Reestimate(scene);
+    ASSERT_EQ(reestimated.decision, InitDecision::kMap) << reestimated.reason;
+    EXPECT_EQ(FindById(reestimated.points, PointId{42}), nullptr);
+    EXPECT_EQ(FindById(reestimated.rejected, PointId{42})->reason, InitRejection::kReprojection);
+    EXPECT_GT(reestimated.points.size(), 100U);
+  }
+}
+
+TEST(ReestimateMap, APointWithLargerErrorsIsLessCertain) {
+  WavingTracks sequence(61, CameraMotion::kForwards, 0.0);
+  const InitOutcome clean = sequence.Reestimate(WindowScene::kRigid);
+  ASSERT_EQ(clean.decision, InitDecision::kMap) << clean.reason;
+  const InitPoint* before = FindById(clean.points, PointId{42});
+  ASSERT_NE(before, nullptr);
+  Random random(4);  // twice the noise of the others
+  for (InitFrame& frame : sequence.frames)
+    for (InitObservation& seen : frame.observations)
+      if (seen.id == PointId{42})
+        seen.pixel += Eigen::Vector2d(random.Normal(2 * kNoisePx), random.Normal(2 * kNoisePx));
+  const InitOutcome noisy = sequence.Reestimate(WindowScene::kRigid);
+  ASSERT_EQ(noisy.decision, InitDecision::kMap) << noisy.reason;
+  const InitPoint* after = FindById(noisy.points, PointId{42});
+  ASSERT_NE(after, nullptr);
+  EXPECT_GT(after->depth_sigma, 1.5 * before->depth_sigma);
+}
+
+TEST(ReestimateMap, MakesAMapOfASceneThatDeformsWhereItMayBeAny) {
+  const WavingTracks sequence(46);
+  EXPECT_EQ(sequence.Reestimate(WindowScene::kRigid).decision, InitDecision::kNewReference);
+  const InitOutcome reestimated = sequence.Reestimate(WindowScene::kAny);
+  ASSERT_EQ(reestimated.decision, InitDecision::kMap) << reestimated.reason;
+  EXPECT_LT(sequence.ShapeError(reestimated, 45), kShape);
+  // Where there are too few points there is nothing to be made of them.
+  WavingTracks empty(46);
+  for (InitFrame& frame : empty.frames) frame.observations.resize(5);
+  const InitOutcome none = empty.Reestimate(WindowScene::kAny);
+  EXPECT_NE(none.decision, InitDecision::kMap);
+  EXPECT_FALSE(none.reason.empty());
+}
+
+}  // namespace
+}  // namespace pliant
