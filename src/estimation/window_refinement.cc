@@ -3,6 +3,8 @@
 
 #include "pliant/estimation/window_refinement.h"
 
+#include <algorithm>
+#include <cassert>
 #include <string>
 
 #include <ceres/ceres.h>
@@ -166,6 +168,14 @@ class WindowProblem {
 };
 
 }  // namespace
+
+std::vector<std::size_t> SpreadViews(std::size_t frames, std::size_t max_views) {
+  const std::size_t count = std::min(frames, max_views);
+  assert(count >= 2);
+  std::vector<std::size_t> views;
+  for (std::size_t k = 0; k < count; ++k) views.push_back((k * (frames - 1) + (count - 1) / 2) / (count - 1));
+  return views;
+}
 
 Result<WindowRefinement> RefineWindow(const Window& start, double focal_px, WindowPoints points,
                                       const RefinementOptions& options) {

@@ -10,6 +10,8 @@
 #include <numeric>
 #include <utility>
 
+#include "pliant/estimation/window_refinement.h"
+
 namespace pliant {
 namespace {
 
@@ -67,23 +69,22 @@ std::vector<NearPoint> NearestPoints(const std::vector<Eigen::Vector3d>& directi
 }
 
 DeformingWindow InSomeViews(const DeformingWindow& window, int count) {
-  const int views = static_cast<int>(window.times.size());
-  if (views <= count) return window;
+  if (window.times.size() <= static_cast<std::size_t>(count)) return window;
   DeformingWindow some = window;
   some.times.clear();
   some.cams_from_world.clear();
   some.courses.resize(window.courses.rows(), count);
   some.observations.clear();
-  std::vector<int> place(window.times.size(), -1);
-  for (int k = 0; k < count; ++k) {
-    const int view = (k * (views - 1) + (count - 1) / 2) / (count - 1);
-    place[static_cast<std::size_t>(view)] = k;
-    some.times.push_back(window.times[static_cast<std::size_t>(view)]);
-    some.cams_from_world.push_back(window.cams_from_world[static_cast<std::size_t>(view)]);
-    some.courses.col(k) = window.courses.col(view);
+  std::vector<int> new_idx(window.times.size(), -1);
+  for (const std::size_t view : SpreadViews(window.times.size(), static_cast<std::size_t>(count))) {
+    const auto k = static_cast<int>(some.times.size());
+    new_idx[view] = k;
+    some.times.push_back(window.times[view]);
+    some.cams_from_world.push_back(window.cams_from_world[view]);
+    some.courses.col(k) = window.courses.col(static_cast<Eigen::Index>(view));
   }
   for (DeformingObservation observation : window.observations) {
-    observation.view_idx = place[static_cast<std::size_t>(observation.view_idx)];
+    observation.view_idx = new_idx[static_cast<std::size_t>(observation.view_idx)];
     if (observation.view_idx >= 0) some.observations.push_back(observation);
   }
   return some;

@@ -214,7 +214,7 @@ class Attempt {
   }
 
   Status MakeMap() {
-    InitialMap map = TriangulateInliers();
+    InitialMap map = TriangulateInliers(motion_.cam1_from_cam0, motion_.inliers, focal_px_, options_, &matched_);
     std::vector<KnownPose> known(input_.frames.size());
     known.front().known = true;
     known.back() = {true, motion_.cam1_from_cam0};
@@ -240,25 +240,6 @@ class Attempt {
                       Digits(outcome_.measured.median_parallax_deg, 2) + " deg, predicted depth noise " +
                       Digits(100.0 * outcome_.measured.median_depth_sigma, 1) + " %";
     return HandOver(input_, map, *poses, matched_.rejected, options_.nominal_depth_mm, &outcome_);
-  }
-
-  InitialMap TriangulateInliers() {
-    InitialMap map;
-    const auto points = Triangulate(options_.triangulation, motion_.cam1_from_cam0, matched_.rays0, matched_.rays1);
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      if (motion_.inliers[i] == 0 || !points[i].ok()) {
-        matched_.rejected.push_back(
-            {matched_.ids[i], motion_.inliers[i] == 0 ? InitRejection::kEpipolar : InitRejection::kCheirality});
-        continue;
-      }
-      const double parallax = ParallaxAngle(motion_.cam1_from_cam0.rotation, matched_.rays0[i], matched_.rays1[i]);
-      map.ids.push_back(matched_.ids[i]);
-      map.positions.push_back(points[i].point_in_cam0);
-      map.parallaxes_rad.push_back(parallax);
-      map.depth_sigmas.push_back(points[i].point_in_cam0.norm() *
-                                 RelativeDepthSigma(options_.sigma_px, focal_px_, parallax));
-    }
-    return map;
   }
 
   Status TooFewPoints(const InitialMap& map) const {
@@ -294,22 +275,14 @@ class Attempt {
         [&](std::size_t i) { return map->depth_sigmas[i] <= max_relative_sigma * map->positions[i].norm(); }, map);
   }
 
-  // The frames of the window: the reference, the current one, and others spread evenly between them.
-  std::vector<std::size_t> WindowFrames() const {
-    const std::size_t last = input_.frames.size() - 1;
-    const std::size_t count = std::min(last + 1, static_cast<std::size_t>(options_.window_frames));
-    std::vector<std::size_t> frames;
-    for (std::size_t k = 0; k < count; ++k) frames.push_back((k * last + (count - 1) / 2) / (count - 1));
-    return frames;
-  }
-
   // Bundle adjustment over the window. Points the window cannot settle are left out before it: far ones hardly help.
   Status RefineMap(InitialMap* map, std::vector<KnownPose>* known) {
     constexpr double kStartErrorFactor = 2.0;  // the pair's depths carry more noise than the window's
     constexpr double kBeforeWindow = 3.0;      // the window improves a depth by less than this
     DropUncertain(kBeforeWindow * options_.max_depth_sigma, map);
     if (static_cast<int>(map->ids.size()) < options_.min_points) return TooFewPoints(*map);
-    const std::vector<std::size_t> frames = WindowFrames();
+    const std::vector<std::size_t> frames =
+        SpreadViews(input_.frames.size(), static_cast<std::size_t>(options_.window_frames));
     Window window;
     window.points_in_world = map->positions;
     window.cams_from_world.assign(frames.size(), known->back().cam_from_world);

@@ -9,6 +9,7 @@
 #include <cstdio>
 
 #include "pliant/base/statistics.h"
+#include "pliant/geometry/triangulation.h"
 
 namespace pliant {
 namespace {
@@ -76,6 +77,26 @@ Result<RotationFit> CheckNotARotation(const MatchedRays& matched, double focal_p
   return {ErrorCode::kDegenerate, "the camera rotated or stood still: a rotation alone explains " +
                                       Percent(measured->rotation_only_share) + " of the points to " +
                                       Digits(max_error_px, 1) + " px; move it sideways or forwards"};
+}
+
+InitialMap TriangulateInliers(const Rigid3& cam1_from_cam0, const std::vector<char>& inliers, double focal_px,
+                              const MonocularInitOptions& options, MatchedRays* matched) {
+  InitialMap map;
+  const auto points = Triangulate(options.triangulation, cam1_from_cam0, matched->rays0, matched->rays1);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (inliers[i] == 0 || !points[i].ok()) {
+      matched->rejected.push_back(
+          {matched->ids[i], inliers[i] == 0 ? InitRejection::kEpipolar : InitRejection::kCheirality});
+      continue;
+    }
+    const double parallax = ParallaxAngle(cam1_from_cam0.rotation, matched->rays0[i], matched->rays1[i]);
+    map.ids.push_back(matched->ids[i]);
+    map.positions.push_back(points[i].point_in_cam0);
+    map.parallaxes_rad.push_back(parallax);
+    map.depth_sigmas.push_back(points[i].point_in_cam0.norm() *
+                               RelativeDepthSigma(options.sigma_px, focal_px, parallax));
+  }
+  return map;
 }
 
 std::vector<WindowObservation> ObservationsOf(const Camera& camera, const InitFrame& frame,

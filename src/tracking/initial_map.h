@@ -47,6 +47,11 @@ struct InitialMap {
   std::vector<double> parallaxes_rad;
 };
 
+// The pair's points that agree with its motion (`inliers`, one a match), by the method that the options name; depth
+// sigmas are predicted from parallax. The others are added to matched->rejected.
+InitialMap TriangulateInliers(const Rigid3& cam1_from_cam0, const std::vector<char>& inliers, double focal_px,
+                              const MonocularInitOptions& options, MatchedRays* matched);
+
 // The rays of the map's points in one frame, as observations of view `view_idx`; points are numbered by their place in
 // `ids`.
 std::vector<WindowObservation> ObservationsOf(const Camera& camera, const InitFrame& frame,

@@ -41,7 +41,7 @@ class PaperInitializer final : public Initializer {
     if (!pose.ok()) return pose.status();
     outcome->measured.inliers = pose->num_inliers;
 
-    const InitialMap map = TriangulateInliers(*pose, &matched, focal_px);
+    const InitialMap map = TriangulateInliers(pose->cam1_from_cam0, pose->inliers, focal_px, options_, &matched);
     if (map.ids.empty()) return {ErrorCode::kInsufficient, "no point could be triangulated"};
     outcome->measured.median_parallax_deg = Median(map.parallaxes_rad) * 180.0 / std::numbers::pi;
 
@@ -54,25 +54,6 @@ class PaperInitializer final : public Initializer {
                       std::to_string(input.frames.size() - 1) + " frames apart, median parallax " +
                       Digits(outcome->measured.median_parallax_deg, 2) + " deg";
     return HandOver(input, map, *poses, std::move(matched.rejected), options_.nominal_depth_mm, outcome);
-  }
-
-  InitialMap TriangulateInliers(const RelativePose& pose, MatchedRays* matched, double focal_px) const {
-    InitialMap map;
-    const auto points = Triangulate(options_.triangulation, pose.cam1_from_cam0, matched->rays0, matched->rays1);
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      if (pose.inliers[i] == 0 || !points[i].ok()) {
-        matched->rejected.push_back(
-            {matched->ids[i], pose.inliers[i] == 0 ? InitRejection::kEpipolar : InitRejection::kCheirality});
-        continue;
-      }
-      const double parallax = ParallaxAngle(pose.cam1_from_cam0.rotation, matched->rays0[i], matched->rays1[i]);
-      map.ids.push_back(matched->ids[i]);
-      map.positions.push_back(points[i].point_in_cam0);
-      map.parallaxes_rad.push_back(parallax);
-      map.depth_sigmas.push_back(points[i].point_in_cam0.norm() *
-                                 RelativeDepthSigma(options_.sigma_px, focal_px, parallax));
-    }
-    return map;
   }
 
   MonocularInitOptions options_;

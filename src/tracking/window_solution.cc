@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "pliant/base/statistics.h"
+#include "pliant/estimation/window_refinement.h"
 #include "tracking/initial_map.h"
 
 namespace pliant {
@@ -22,15 +23,6 @@ constexpr double kMaxOfSpread = 0.8;
 // A rotation that explains this share of the points to this error leaves nothing to triangulate.
 constexpr double kRotationErrorPx = 1.5;
 constexpr double kMaxRotationShare = 0.8;
-
-// Spread evenly over the first `frames` frames.
-std::vector<std::size_t> ChooseViews(std::size_t frames, std::size_t most) {
-  const std::size_t last = frames - 1;
-  const std::size_t count = std::min(frames, most);
-  std::vector<std::size_t> views;
-  for (std::size_t k = 0; k < count; ++k) views.push_back((k * last + (count - 1) / 2) / (count - 1));
-  return views;
-}
 
 // The points that are seen in enough views; where they are too many, those still seen, then those seen most.
 std::vector<PointId> ChoosePoints(const InitInput& input, const std::vector<std::size_t>& views,
@@ -136,7 +128,7 @@ Result<PreparedWindow> PrepareWindow(const InitInput& input, std::size_t frames,
   if (frames < kMinFrames)
     return {ErrorCode::kInsufficient, "a window takes at least " + std::to_string(kMinFrames) + " frames"};
   PreparedWindow window;
-  window.views = ChooseViews(frames, static_cast<std::size_t>(options.views));
+  window.views = SpreadViews(frames, static_cast<std::size_t>(options.views));
   window.ids = ChoosePoints(input, window.views, options);
   if (window.ids.size() < kMinPoints)
     return {ErrorCode::kInsufficient,

@@ -51,6 +51,15 @@ TEST(WindowRefinement, LocatesPosesOnFixedPoints) {
   EXPECT_EQ(refined->window.points_in_world, start.points_in_world);
 }
 
+TEST(SpreadViews, AreEvenFromTheFirstFrameToTheLast) {
+  using Views = std::vector<std::size_t>;
+  EXPECT_EQ(SpreadViews(9, 3), (Views{0, 4, 8}));
+  EXPECT_EQ(SpreadViews(10, 4), (Views{0, 3, 6, 9}));
+  EXPECT_EQ(SpreadViews(6, 4), (Views{0, 2, 3, 5}));
+  EXPECT_EQ(SpreadViews(100, 2), (Views{0, 99}));
+  EXPECT_EQ(SpreadViews(3, 8), (Views{0, 1, 2}));
+}
+
 TEST(WindowRefinement, RefusesBadWindows) {
   const SceneOptions options{.num_points = 20};
   const Scene scene = MakeScene(options);

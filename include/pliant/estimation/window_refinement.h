@@ -5,6 +5,7 @@
 // the mean focal length (docs/method.md, eq. I10).
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include <Eigen/Core>
@@ -14,6 +15,10 @@
 #include "pliant/geometry/rigid3.h"
 
 namespace pliant {
+
+// Which of `frames` frames are a window's views: at most `max_views`, which is 2 or more, spread evenly from the first
+// frame to the last; ascending.
+std::vector<std::size_t> SpreadViews(std::size_t frames, std::size_t max_views);
 
 // One ray of a window: which view, which point, and the unit ray in that view's camera.
 struct WindowObservation {
