@@ -1,13 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "pliant/tracking/depth_initializer.h"
-
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "pliant/image/depth_lookup.h"
+#include "pliant/tracking/make_initializer.h"
 #include "tracking/initial_map.h"
 
 namespace pliant {

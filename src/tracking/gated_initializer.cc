@@ -13,8 +13,8 @@
 #include "pliant/base/statistics.h"
 #include "pliant/estimation/two_view_models.h"
 #include "pliant/geometry/triangulation.h"
+#include "pliant/tracking/make_initializer.h"
 #include "tracking/initial_map.h"
-#include "tracking/monocular_methods.h"
 
 namespace pliant {
 namespace {

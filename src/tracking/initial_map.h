@@ -16,7 +16,7 @@
 #include "pliant/estimation/two_view_models.h"
 #include "pliant/estimation/window_refinement.h"
 #include "pliant/tracking/initializer.h"
-#include "pliant/tracking/monocular_initializer.h"
+#include "pliant/tracking/make_initializer.h"
 
 namespace pliant {
 

@@ -1,10 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "pliant/tracking/known_points_initializer.h"
-
 #include <vector>
 
+#include "pliant/tracking/make_initializer.h"
 #include "tracking/initial_map.h"
 
 namespace pliant {

@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include "pliant/base/statistics.h"
+#include "pliant/tracking/make_initializer.h"
 #include "tracking/initial_map.h"
-#include "tracking/monocular_methods.h"
 
 namespace pliant {
 namespace {

@@ -1,14 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "pliant/tracking/window_initializer.h"
-
 #include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
 
 #include "pliant/base/statistics.h"
+#include "pliant/tracking/make_initializer.h"
 #include "tracking/initial_map.h"
 #include "tracking/window_map.h"
 #include "tracking/window_solution.h"

@@ -6,7 +6,7 @@
 
 #include "pliant/base/status.h"
 #include "pliant/tracking/initializer.h"
-#include "pliant/tracking/window_initializer.h"
+#include "pliant/tracking/make_initializer.h"
 #include "tracking/window_solution.h"
 
 namespace pliant {

@@ -10,7 +10,7 @@
 #include "pliant/base/status.h"
 #include "pliant/estimation/deforming_window.h"
 #include "pliant/tracking/initializer.h"
-#include "pliant/tracking/window_initializer.h"
+#include "pliant/tracking/make_initializer.h"
 
 namespace pliant {
 

@@ -1,8 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "pliant/tracking/monocular_initializer.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "pliant/base/statistics.h"
+#include "pliant/tracking/make_initializer.h"
 #include "support/synthetic_frames.h"
 #include "support/synthetic_scene.h"
 
@@ -31,9 +30,9 @@ constexpr int kFirstIdx = 10;
 constexpr double kEnoughDeg = 6.0;
 
 InitOutcome Try(const SceneOptions& options, const MonocularInitOptions& init = {},
-                MonocularGates gates = MonocularGates::kGated) {
+                InitMethod method = InitMethod::kGated) {
   const auto frames = FramesOf(MakeScene(options), options, kFirstIdx);
-  return MakeMonocularInitializer(init, gates, Random(1))->Try({SceneCamera(options), frames, {}});
+  return MakeInitializer({.method = method, .monocular = init}, Random(1))->Try({SceneCamera(options), frames, {}});
 }
 
 struct MapError {
@@ -84,8 +83,7 @@ TEST(MonocularInitializer, PlacesItsPointsInEveryFrameInWhichTheyWereSeen) {
   // One point is seen in the reference and the current frame, but not in the second.
   const PointId hidden = frames.back().observations[7].id;
   std::erase_if(frames[1].observations, [&](const InitObservation& seen) { return seen.id == hidden; });
-  const InitOutcome outcome =
-      MakeMonocularInitializer({}, MonocularGates::kGated, Random(1))->Try({camera, frames, {}});
+  const InitOutcome outcome = MakeGatedInitializer({}, Random(1))->Try({camera, frames, {}});
   ASSERT_EQ(outcome.decision, InitDecision::kMap) << outcome.reason;
   for (std::size_t k = 0; k < frames.size(); ++k) {
     const InitFrameState& state = outcome.frames[k];
@@ -165,8 +163,8 @@ TEST(MonocularInitializer, WaitsForParallax) {
 TEST(MonocularInitializer, MakesAMapByAnySolverLoopRefinementAndTriangulation) {
   const SceneOptions options{
       .motion = Motion::kSideways, .parallax_deg = kEnoughDeg, .noise_px = 0.3, .outlier_share = 0.2};
-  const auto median_error = [&](const MonocularInitOptions& init, MonocularGates gates) {
-    const InitOutcome outcome = Try(options, init, gates);
+  const auto median_error = [&](const MonocularInitOptions& init, InitMethod method) {
+    const InitOutcome outcome = Try(options, init, method);
     EXPECT_EQ(outcome.decision, InitDecision::kMap) << outcome.reason;
     return outcome.decision == InitDecision::kMap ? ErrorOf(outcome, MakeScene(options)).median : 1.0;
   };
@@ -174,14 +172,14 @@ TEST(MonocularInitializer, MakesAMapByAnySolverLoopRefinementAndTriangulation) {
     if (solver > RelativePoseSolver::kOpencvUsac) continue;  // of a rigid scene that is not flat
     for (const auto& [robust, robust_name] : EnumNames<RobustLoop>::kNames) {
       MonocularInitOptions init{.solver = solver, .robust = robust};
-      EXPECT_LT(median_error(init, MonocularGates::kGated), 0.015) << solver_name << " " << robust_name;
+      EXPECT_LT(median_error(init, InitMethod::kGated), 0.015) << solver_name << " " << robust_name;
       init.refinement = RigidRefinement::kOpengv;
-      EXPECT_LT(median_error(init, MonocularGates::kGated), 0.04) << solver_name << " " << robust_name;
-      EXPECT_LT(median_error(init, MonocularGates::kPaper), 0.25) << solver_name << " " << robust_name;
+      EXPECT_LT(median_error(init, InitMethod::kGated), 0.04) << solver_name << " " << robust_name;
+      EXPECT_LT(median_error(init, InitMethod::kPaper), 0.25) << solver_name << " " << robust_name;
     }
   }
   for (const auto& [triangulation, name] : EnumNames<TriangulationMethod>::kNames)
-    EXPECT_LT(median_error({.triangulation = triangulation}, MonocularGates::kGated), 0.015) << name;
+    EXPECT_LT(median_error({.triangulation = triangulation}, InitMethod::kGated), 0.015) << name;
 }
 
 TEST(MonocularInitializer, RefusesAMapFromARotationAlone) {
@@ -280,12 +278,10 @@ TEST(MonocularInitializer, GivesUpAReferenceThatDoesNotServe) {
   const SceneOptions options;
   auto frames = FramesOf(MakeScene(options), options, kFirstIdx);
   frames.back().observations.resize(100);
-  const InitOutcome few =
-      MakeMonocularInitializer({}, MonocularGates::kGated, Random(1))->Try({SceneCamera(options), frames, {}});
+  const InitOutcome few = MakeGatedInitializer({}, Random(1))->Try({SceneCamera(options), frames, {}});
   EXPECT_EQ(few.decision, InitDecision::kNewReference);
   frames.resize(1);
-  const InitOutcome first =
-      MakeMonocularInitializer({}, MonocularGates::kGated, Random(1))->Try({SceneCamera(options), frames, {}});
+  const InitOutcome first = MakeGatedInitializer({}, Random(1))->Try({SceneCamera(options), frames, {}});
   EXPECT_EQ(first.decision, InitDecision::kWait);
 }
 
@@ -293,7 +289,7 @@ TEST(MonocularInitializer, SurvivesNotANumberAndEqualPixels) {
   const SceneOptions options{.num_points = 100};
   auto frames = FramesOf(MakeScene(options), options, kFirstIdx);
   frames.back().observations[5].pixel.x() = std::numeric_limits<double>::quiet_NaN();
-  const auto initializer = MakeMonocularInitializer({}, MonocularGates::kGated, Random(1));
+  const auto initializer = MakeGatedInitializer({}, Random(1));
   const InitOutcome outcome = initializer->Try({SceneCamera(options), frames, {}});
   ASSERT_EQ(outcome.decision, InitDecision::kMap) << outcome.reason;
   EXPECT_TRUE(std::any_of(outcome.rejected.begin(), outcome.rejected.end(),
@@ -315,9 +311,9 @@ TEST(MonocularInitializer, RepeatsBitForBit) {
 TEST(PaperInitializer, MakesItsMapThreeFramesAfterTheReference) {
   SceneOptions options{.noise_px = 0.1};
   options.num_frames = 3;
-  EXPECT_EQ(Try(options, {}, MonocularGates::kPaper).decision, InitDecision::kWait);
+  EXPECT_EQ(Try(options, {}, InitMethod::kPaper).decision, InitDecision::kWait);
   options.num_frames = 4;
-  const InitOutcome outcome = Try(options, {}, MonocularGates::kPaper);
+  const InitOutcome outcome = Try(options, {}, InitMethod::kPaper);
   ASSERT_EQ(outcome.decision, InitDecision::kMap) << outcome.reason;
   EXPECT_EQ(outcome.frames.size(), 4U);
   EXPECT_GT(outcome.points.size(), 200U);
@@ -327,7 +323,7 @@ TEST(PaperInitializer, MakesItsMapThreeFramesAfterTheReference) {
 TEST(PaperInitializer, HasNoGates) {
   SceneOptions options{.parallax_deg = 0.5, .noise_px = 0.3};
   options.num_frames = 4;
-  EXPECT_EQ(Try(options, {}, MonocularGates::kPaper).decision, InitDecision::kMap);
+  EXPECT_EQ(Try(options, {}, InitMethod::kPaper).decision, InitDecision::kMap);
   EXPECT_EQ(Try(options).decision, InitDecision::kWait);
 }
 

@@ -1,8 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "pliant/tracking/window_initializer.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -14,6 +12,7 @@
 
 #include "pliant/base/random.h"
 #include "pliant/base/statistics.h"
+#include "pliant/tracking/make_initializer.h"
 #include "support/waving_tracks.h"
 
 namespace pliant {
