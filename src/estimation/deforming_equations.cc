@@ -18,7 +18,7 @@ constexpr double kPointRidge = 1e-9;  // relative to the diagonal of a point's o
 }  // namespace
 
 Eigen::Index DeformingEquations::NodePlace(Eigen::Index node) const {
-  return (terms_->num_views() - 1) * terms_->view_size() + node * terms_->modes_size();
+  return (terms_->num_views() - 1) * terms_->view_size() + node * terms_->shapes_size();
 }
 
 DeformingEquations::DeformingEquations(const DeformingTerms& terms, std::vector<int> gauge, int threads)
@@ -46,17 +46,17 @@ bool DeformingEquations::Linearize(const DeformingState& state) {
 void DeformingEquations::AddPriors(const DeformingState& state) {
   const Eigen::Index rank = terms_->rank();
   if (rank == 0) return;
-  const Eigen::MatrixXd& courses = terms_->course_form();
-  const Eigen::MatrixXd pull = state.courses.rightCols(courses.cols()) * courses;
-  for (Eigen::Index a = 0; a < courses.cols(); ++a) {
+  const Eigen::MatrixXd& coefficients = terms_->coefficient_hessian();
+  const Eigen::MatrixXd pull = state.coefficients.rightCols(coefficients.cols()) * coefficients;
+  for (Eigen::Index a = 0; a < coefficients.cols(); ++a) {
     const Eigen::Index place = a * terms_->view_size() + 6;
     slope_.segment(place, rank) += pull.col(a);
     for (Eigen::Index b = 0; b <= a; ++b)
-      curvature_.block(place, b * terms_->view_size() + 6, rank, rank).diagonal().array() += courses(a, b);
+      curvature_.block(place, b * terms_->view_size() + 6, rank, rank).diagonal().array() += coefficients(a, b);
   }
-  const Eigen::MatrixXd& nodes = terms_->node_form();
-  const Eigen::MatrixXd node_pull = state.node_modes * nodes;
-  const Eigen::Index size = terms_->modes_size();
+  const Eigen::MatrixXd& nodes = terms_->node_hessian();
+  const Eigen::MatrixXd node_pull = state.node_shapes * nodes;
+  const Eigen::Index size = terms_->shapes_size();
   for (Eigen::Index a = 0; a < nodes.cols(); ++a) {
     slope_.segment(NodePlace(a), size) += node_pull.col(a);
     for (Eigen::Index b = 0; b <= a; ++b)
@@ -90,7 +90,7 @@ void DeformingEquations::AddViews(std::size_t point, const std::vector<SeenEquat
 
 void DeformingEquations::Eliminate(std::size_t point, const PointEquations& own, Sums* sums) {
   const Eigen::Index view_size = terms_->view_size();
-  const Eigen::Index modes_size = terms_->modes_size();
+  const Eigen::Index shapes_size = terms_->shapes_size();
   const Eigen::Index point_size = terms_->point_size();
   Point& of = points_[point];
   PointMatrix damped = own.own;
@@ -109,10 +109,10 @@ void DeformingEquations::Eliminate(std::size_t point, const PointEquations& own,
   // What couples a point to a view has two rows, as the observation has: products are taken of those. Views are
   // ascending, the first one is not free.
   const Eigen::Index offset = OffsetPlace();
-  const double pull = modes_size > 0 ? terms_->node_pull(point) : 0.0;
+  const double pull = shapes_size > 0 ? terms_->node_pull(point) : 0.0;
   SmallMatrix<Eigen::Dynamic, kMaxPointSize, 2> inverse_by_a(point_size, 2);
   SmallMatrix<2, 2, kMaxViewSize> weighted(2, view_size);
-  SmallMatrix<Eigen::Dynamic, kMaxPointSize, kMaxViewSize> modes_by_a(modes_size, view_size);
+  SmallMatrix<Eigen::Dynamic, kMaxPointSize, kMaxViewSize> shapes_by_a(shapes_size, view_size);
   for (std::size_t a = 0; a < of.seen.size(); ++a) {
     const Eigen::Index place_a = ViewPlace(terms_->seen(point)[a].view_idx);
     if (place_a < 0) continue;
@@ -129,27 +129,27 @@ void DeformingEquations::Eliminate(std::size_t point, const PointEquations& own,
     }
     sums->curvature.row(offset).segment(place_a, view_size).noalias() -=
         of.by_offset * inverse_by_a.row(2).lazyProduct(of_a.by_view);
-    if (modes_size == 0) continue;
-    modes_by_a.noalias() = pull * inverse_by_a.bottomRows(modes_size).lazyProduct(of_a.by_view);
+    if (shapes_size == 0) continue;
+    shapes_by_a.noalias() = pull * inverse_by_a.bottomRows(shapes_size).lazyProduct(of_a.by_view);
     for (const NodeWeight& node : terms_->nodes(point))
-      sums->curvature.block(NodePlace(node.node_idx), place_a, modes_size, view_size) += node.weight * modes_by_a;
+      sums->curvature.block(NodePlace(node.node_idx), place_a, shapes_size, view_size) += node.weight * shapes_by_a;
   }
 
   sums->curvature(offset, offset) -= own.by_offset + of.by_offset * of.by_offset * of.inverse(2, 2);
   sums->slope[offset] += own.offset_gradient;
-  if (modes_size > 0)
+  if (shapes_size > 0)
     for (const NodeWeight& a : terms_->nodes(point)) {
       const Eigen::Index place = NodePlace(a.node_idx);
       const double of_a = pull * a.weight;
-      sums->slope.segment(place, modes_size) -= of_a * own.node_difference;
+      sums->slope.segment(place, shapes_size) -= of_a * own.node_difference;
       for (const NodeWeight& b : terms_->nodes(point)) {
         if (a.node_idx < b.node_idx) continue;
-        auto block = sums->curvature.block(place, NodePlace(b.node_idx), modes_size, modes_size);
+        auto block = sums->curvature.block(place, NodePlace(b.node_idx), shapes_size, shapes_size);
         block.diagonal().array() += of_a * b.weight;
-        block -= of_a * pull * b.weight * of.inverse.bottomRightCorner(modes_size, modes_size);
+        block -= of_a * pull * b.weight * of.inverse.bottomRightCorner(shapes_size, shapes_size);
       }
-      sums->curvature.row(offset).segment(place, modes_size) +=
-          of_a * of.by_offset * of.inverse.row(2).tail(modes_size);
+      sums->curvature.row(offset).segment(place, shapes_size) +=
+          of_a * of.by_offset * of.inverse.row(2).tail(shapes_size);
     }
   sums->slope -= ByPoint(point, settled);
 }
@@ -170,7 +170,7 @@ bool DeformingEquations::Factorise() {
 
 // A point's share W' x of the equations that are left, and W x of its own.
 Eigen::VectorXd DeformingEquations::ByPoint(std::size_t point, const PointVector& factor) const {
-  const Eigen::Index modes_size = terms_->modes_size();
+  const Eigen::Index shapes_size = terms_->shapes_size();
   const Point& of = points_[point];
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(Size());
   for (std::size_t k = 0; k < of.seen.size(); ++k) {
@@ -179,16 +179,16 @@ Eigen::VectorXd DeformingEquations::ByPoint(std::size_t point, const PointVector
     const Eigen::Vector2d seen = of.seen[k].by_point.lazyProduct(factor);
     sum.segment(place, terms_->view_size()).noalias() += of.seen[k].by_view.transpose().lazyProduct(seen);
   }
-  if (modes_size > 0)
+  if (shapes_size > 0)
     for (const NodeWeight& node : terms_->nodes(point))
-      sum.segment(NodePlace(node.node_idx), modes_size) -=
-          terms_->node_pull(point) * node.weight * factor.tail(modes_size);
+      sum.segment(NodePlace(node.node_idx), shapes_size) -=
+          terms_->node_pull(point) * node.weight * factor.tail(shapes_size);
   sum[OffsetPlace()] += of.by_offset * factor[2];
   return sum;
 }
 
 PointVector DeformingEquations::ByRest(std::size_t point, const Eigen::VectorXd& step) const {
-  const Eigen::Index modes_size = terms_->modes_size();
+  const Eigen::Index shapes_size = terms_->shapes_size();
   const Point& of = points_[point];
   PointVector sum = PointVector::Zero(terms_->point_size());
   for (std::size_t k = 0; k < of.seen.size(); ++k) {
@@ -197,10 +197,10 @@ PointVector DeformingEquations::ByRest(std::size_t point, const Eigen::VectorXd&
     const Eigen::Vector2d seen = of.seen[k].by_view.lazyProduct(step.segment(place, terms_->view_size()));
     sum.noalias() += of.seen[k].by_point.transpose().lazyProduct(seen);
   }
-  if (modes_size > 0)
+  if (shapes_size > 0)
     for (const NodeWeight& node : terms_->nodes(point))
-      sum.tail(modes_size) -=
-          terms_->node_pull(point) * node.weight * step.segment(NodePlace(node.node_idx), modes_size);
+      sum.tail(shapes_size) -=
+          terms_->node_pull(point) * node.weight * step.segment(NodePlace(node.node_idx), shapes_size);
   sum[2] += of.by_offset * step[OffsetPlace()];
   return sum;
 }
@@ -252,8 +252,8 @@ std::vector<double> DeformingEquations::Variances() const {
 DeformingState DeformingEquations::Moved(const DeformingState& state, const Eigen::VectorXd& step) const {
   DeformingState moved = state;
   MoveViews(step, &moved);
-  for (Eigen::Index n = 0; n < moved.node_modes.cols(); ++n)
-    moved.node_modes.col(n) += step.segment(NodePlace(n), terms_->modes_size());
+  for (Eigen::Index n = 0; n < moved.node_shapes.cols(); ++n)
+    moved.node_shapes.col(n) += step.segment(NodePlace(n), terms_->shapes_size());
   moved.light_offset += step[OffsetPlace()];
   return moved;
 }

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // The normal equations of a deforming window with the points eliminated (Schur complement): what is left, views,
-// courses, modes of the nodes and the light's offset, is small and dense. Scale is free in them; steps and variances
-// are those that keep the mean log distance of the gauge's points.
+// coefficients, shapes of the nodes and the light's offset, is small and dense. Scale is free in them; steps and
+// variances are those that keep the mean log distance of the gauge's points.
 #pragma once
 
 #include <vector>

@@ -9,13 +9,13 @@
 #include <limits>
 
 #include "estimation/light_depth.h"
-#include "estimation/mode_basis.h"
+#include "estimation/shape_basis.h"
 #include "pliant/base/statistics.h"
 
 namespace pliant {
 namespace {
 
-// A solution adapts to the noise, and modes to their priors: what is found of them is so many times too small.
+// A solution adapts to the noise, and shapes to their priors: what is found of them is so many times too small.
 constexpr double kCaution = 2.0;
 
 // The views by which a window's shape is judged: the first, the middle and the last.
@@ -55,7 +55,7 @@ DeformingSolution Taken(const DeformingProblem& problem, double cost, const Surf
   const LightFit light = CompareWindowWithLight(solution.window);
   solution.light_error = light.error;
   solution.log_distance_spread = light.spread;
-  solution.nodes = {nodes.positions, problem.NodeModes()};
+  solution.nodes = {nodes.positions, problem.NodeShapes()};
   return solution;
 }
 
@@ -98,9 +98,9 @@ std::vector<double> FoundLogDepthSigmas(const DeformingSolution& solution, doubl
   DeformingWindowOptions found = options;
   const DeformingWindow& window = solution.window;
   found.loss_scale_px = std::max(kMinNoisePx, noise_px);
-  if (window.courses.rows() > 0) {
-    const ModeSizes sizes = SizesOf(solution.nodes);
-    found.mode_sigma = std::max(kMinSigma, kCaution * sizes.size / window.MedianDistance());
+  if (window.coefficients.rows() > 0) {
+    const ShapeSizes sizes = SizesOf(solution.nodes);
+    found.shape_sigma = std::max(kMinSigma, kCaution * sizes.size / window.MedianDistance());
     found.gradient_sigma = std::max(kMinSigma, kCaution * sizes.gradient);
   }
   return DeformingProblem(window, solution.nodes, focal_px, found, gauge_points).LogDepthSigmas(threads);

@@ -26,7 +26,7 @@ std::vector<double> SigmasBetween(const std::vector<const DeformingSolution*>& s
 double FoundNoisePx(const DeformingWindow& window, double focal_px);
 
 // (W12) Sigmas of the log distances, of a solution by what it turned out to be: with that noise, and with its own
-// modes' sizes and differences as what was to be expected of them. The scale is held by the first `gauge_points`
+// shapes' sizes and differences as what was to be expected of them. The scale is held by the first `gauge_points`
 // points.
 std::vector<double> FoundLogDepthSigmas(const DeformingSolution& solution, double noise_px, std::size_t gauge_points,
                                         double focal_px, const DeformingWindowOptions& options, int threads);

@@ -43,8 +43,8 @@ Status CheckWindow(const DeformingWindow& window) {
   const std::size_t views = window.cams_from_world.size();
   const std::size_t points = window.points_in_world.size();
   if (window.times.size() != views ||
-      (window.courses.rows() > 0 && window.courses.cols() != static_cast<Eigen::Index>(views)) ||
-      (window.courses.rows() > 0 && window.modes.size() != points))
+      (window.coefficients.rows() > 0 && window.coefficients.cols() != static_cast<Eigen::Index>(views)) ||
+      (window.coefficients.rows() > 0 && window.shapes.size() != points))
     return {ErrorCode::kInvalidArgument, "the parts of the deforming window differ in size"};
   if (static_cast<int>(views) < kMinViews || static_cast<int>(points) < kMinPoints)
     return {ErrorCode::kInsufficient, "a deforming window takes at least " + std::to_string(kMinViews) + " views and " +
@@ -97,8 +97,8 @@ void DeformingProblem::HoldScale(DeformingState* state) const {
   const double change = gauge_mean_ - GaugeMean(*state);
   state->points.row(2).array() += change;
   state->light_offset += change;
-  state->points.bottomRows(terms_.modes_size()) *= std::exp(change);
-  state->node_modes *= std::exp(change);
+  state->points.bottomRows(terms_.shapes_size()) *= std::exp(change);
+  state->node_shapes *= std::exp(change);
   for (ViewPose& pose : state->poses) pose.translation *= std::exp(change);
 }
 

@@ -13,7 +13,7 @@
 
 #include "estimation/deforming_equations.h"
 #include "estimation/deforming_terms.h"
-#include "estimation/mode_basis.h"
+#include "estimation/shape_basis.h"
 #include "pliant/estimation/deforming_window.h"
 
 namespace pliant {
@@ -25,7 +25,8 @@ Status CheckObservations(const std::vector<DeformingObservation>& observations, 
 
 class DeformingProblem {
  public:
-  // `nodes` have modes if the window has courses. The scale is held by some of the first `gauge_points` points (W7).
+  // `nodes` have shapes if the window has coefficients. The scale is held by some of the first `gauge_points` points
+  // (W7).
   DeformingProblem(const DeformingWindow& start, const SurfaceNodes& nodes, double focal_px,
                    const DeformingWindowOptions& options,
                    std::size_t gauge_points = std::numeric_limits<std::size_t>::max());
@@ -33,13 +34,13 @@ class DeformingProblem {
   // The cost at the solution, what could not be measured included; kDegenerate when there is no finite start.
   // `threads` never changes the result.
   Result<double> Solve(int max_iterations, int threads = 1);
-  // As Solve, for the views but the first and their courses; the points stay.
+  // As Solve, for the views but the first and their coefficients; the points stay.
   Result<double> SolveViews(int max_iterations, int threads = 1);
-  // As Solve, for the points and their modes alone, each by itself; the rest stays and holds the scale.
+  // As Solve, for the points and their shapes alone, each by itself; the rest stays and holds the scale.
   Result<double> SettlePoints(int threads = 1);
 
   DeformingWindow Window() const { return terms_.Window(state_); }
-  const Eigen::MatrixXd& NodeModes() const { return state_.node_modes; }
+  const Eigen::MatrixXd& NodeShapes() const { return state_.node_shapes; }
 
   // One a point, at the present values. See DeformingSolution.
   std::vector<double> LogDepthSigmas(int threads = 1) const;

@@ -31,13 +31,13 @@ double LightWeight(double error) { return LossWeight(std::pow(error / kLightLoss
 }  // namespace
 
 void MoveViews(const Eigen::VectorXd& step, DeformingState* state) {
-  const Eigen::Index rank = state->courses.rows();
+  const Eigen::Index rank = state->coefficients.rows();
   Eigen::Index place = 0;
   for (std::size_t v = 1; v < state->poses.size(); ++v) {
     ViewPose& pose = state->poses[v];
     pose.rotation = RotationExp(step.segment<3>(place)).toRotationMatrix() * pose.rotation;
     pose.translation += step.segment<3>(place + 3);
-    if (rank > 0) state->courses.col(static_cast<Eigen::Index>(v)) += step.segment(place + 6, rank);
+    if (rank > 0) state->coefficients.col(static_cast<Eigen::Index>(v)) += step.segment(place + 6, rank);
     place += 6 + rank;
   }
 }
@@ -46,14 +46,14 @@ DeformingTerms::DeformingTerms(const DeformingWindow& start, const SurfaceNodes&
                                const DeformingWindowOptions& options)
     : start_(start),
       options_(options),
-      rank_(static_cast<int>(start.courses.rows())),
+      rank_(static_cast<int>(start.coefficients.rows())),
       scale_(focal_px / options.loss_scale_px),
       median_distance_(start.MedianDistance()) {
   for (const Eigen::Vector3d& position : start_.points_in_world)
     charts_.push_back(PointChart::Across(position.normalized()));
   TakeObservations();
   PrepareNodes(nodes);
-  PrepareCourses();
+  PrepareCoefficients();
   PrepareLight();
 }
 
@@ -75,7 +75,7 @@ void DeformingTerms::TakeObservations() {
 
 void DeformingTerms::PrepareNodes(const SurfaceNodes& nodes) {
   if (rank_ == 0) return;
-  node_modes_ = nodes.modes;
+  node_shapes_ = nodes.shapes;
   around_ = NodesAround(start_.points_in_world, nodes.positions);
   const auto information = [&](double distance) {
     return 1.0 / std::pow(options_.gradient_sigma * std::max(distance, kMinSpacing * median_distance_), 2);
@@ -84,22 +84,22 @@ void DeformingTerms::PrepareNodes(const SurfaceNodes& nodes) {
   // A node stands for the points around it.
   const auto count = static_cast<Eigen::Index>(nodes.positions.size());
   const double share = static_cast<double>(charts_.size()) / static_cast<double>(count);
-  const double of_size = 1.0 / std::pow(options_.mode_sigma * median_distance_, 2);
-  node_form_ = share * of_size * Eigen::MatrixXd::Identity(count, count);
+  const double of_size = 1.0 / std::pow(options_.shape_sigma * median_distance_, 2);
+  node_hessian_ = share * of_size * Eigen::MatrixXd::Identity(count, count);
   const NeighborLists neighbors = NearestNeighbors(nodes.positions, options_.neighbors);
   for (std::size_t i = 0; i < nodes.positions.size(); ++i)
     for (const int j : neighbors[i]) {
       const auto a = static_cast<Eigen::Index>(i);
       const double of_edge = share / options_.neighbors *
                              information((nodes.positions[static_cast<std::size_t>(j)] - nodes.positions[i]).norm());
-      node_form_(a, a) += of_edge;
-      node_form_(j, j) += of_edge;
-      node_form_(a, j) -= of_edge;
-      node_form_(j, a) -= of_edge;
+      node_hessian_(a, a) += of_edge;
+      node_hessian_(j, j) += of_edge;
+      node_hessian_(a, j) -= of_edge;
+      node_hessian_(j, a) -= of_edge;
     }
 }
 
-void DeformingTerms::PrepareCourses() {
+void DeformingTerms::PrepareCoefficients() {
   const Eigen::Index views = num_views();
   Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(std::max<Eigen::Index>(0, views - 2), views);
   for (Eigen::Index v = 1; v + 1 < views; ++v) {
@@ -111,8 +111,8 @@ void DeformingTerms::PrepareCourses() {
     const double last = 2.0 / (after * (before + after)) / options_.acceleration_sigma;
     rows.row(v - 1).segment<3>(v - 1) << first, -first - last, last;
   }
-  const Eigen::MatrixXd form = rows.transpose() * rows + Eigen::MatrixXd::Identity(views, views);
-  course_form_ = form.bottomRightCorner(views - 1, views - 1);  // the first view's courses are zero
+  const Eigen::MatrixXd hessian = rows.transpose() * rows + Eigen::MatrixXd::Identity(views, views);
+  coefficient_hessian_ = hessian.bottomRightCorner(views - 1, views - 1);  // the first view's coefficients are zero
 }
 
 void DeformingTerms::PrepareLight() {
@@ -136,13 +136,13 @@ double DeformingTerms::unmeasured_cost() const {
 }
 
 DeformingState DeformingTerms::Start() const {
-  DeformingState state{{}, start_.courses, {}, node_modes_, light_offset_};
+  DeformingState state{{}, start_.coefficients, {}, node_shapes_, light_offset_};
   for (const Rigid3& pose : start_.cams_from_world) state.poses.push_back({pose.RotationMatrix(), pose.translation});
   state.points.resize(point_size(), static_cast<Eigen::Index>(charts_.size()));
   for (std::size_t i = 0; i < charts_.size(); ++i) {
     auto column = state.points.col(static_cast<Eigen::Index>(i));
     column.head<3>() = charts_[i].Parameters(start_.points_in_world[i]);
-    if (rank_ > 0) column.tail(modes_size()) = start_.modes[i].reshaped();
+    if (rank_ > 0) column.tail(shapes_size()) = start_.shapes[i].reshaped();
   }
   return state;
 }
@@ -151,11 +151,11 @@ DeformingWindow DeformingTerms::Window(const DeformingState& state) const {
   DeformingWindow window = start_;
   for (std::size_t v = 0; v < state.poses.size(); ++v)
     window.cams_from_world[v] = Rigid3(state.poses[v].rotation, state.poses[v].translation);
-  window.courses = state.courses;
+  window.coefficients = state.coefficients;
   for (std::size_t i = 0; i < charts_.size(); ++i) {
     const auto column = state.points.col(static_cast<Eigen::Index>(i));
     window.points_in_world[i] = charts_[i].Point(column.head<3>());
-    if (rank_ > 0) window.modes[i] = column.tail(modes_size()).reshaped(3, rank_);
+    if (rank_ > 0) window.shapes[i] = column.tail(shapes_size()).reshaped(3, rank_);
   }
   return window;
 }
@@ -163,14 +163,14 @@ DeformingWindow DeformingTerms::Window(const DeformingState& state) const {
 Eigen::Vector3d DeformingTerms::Position(std::size_t point, int view_idx, const Eigen::Vector3d& rest,
                                          const DeformingState& state) const {
   Eigen::Vector3d position = rest;
-  const auto modes = state.points.col(static_cast<Eigen::Index>(point)).tail(modes_size());
-  for (int r = 0; r < rank_; ++r) position += state.courses(r, view_idx) * modes.segment<3>(3 * r);
+  const auto shapes = state.points.col(static_cast<Eigen::Index>(point)).tail(shapes_size());
+  for (int r = 0; r < rank_; ++r) position += state.coefficients(r, view_idx) * shapes.segment<3>(3 * r);
   return position;
 }
 
 PointVector DeformingTerms::NodeDifference(std::size_t point, const DeformingState& state) const {
-  PointVector difference = state.points.col(static_cast<Eigen::Index>(point)).tail(modes_size());
-  for (const NodeWeight& node : nodes(point)) difference -= node.weight * state.node_modes.col(node.node_idx);
+  PointVector difference = state.points.col(static_cast<Eigen::Index>(point)).tail(shapes_size());
+  for (const NodeWeight& node : nodes(point)) difference -= node.weight * state.node_shapes.col(node.node_idx);
   return difference;
 }
 
@@ -200,9 +200,9 @@ std::optional<double> DeformingTerms::Cost(const DeformingState& state) const {
     cost += *of_point;
   }
   if (rank_ == 0) return cost;
-  const auto courses = state.courses.rightCols(course_form_.cols());
-  cost += 0.5 * (state.node_modes * node_form_).cwiseProduct(state.node_modes).sum();
-  cost += 0.5 * (courses * course_form_).cwiseProduct(courses).sum();
+  const auto coefficients = state.coefficients.rightCols(coefficient_hessian_.cols());
+  cost += 0.5 * (state.node_shapes * node_hessian_).cwiseProduct(state.node_shapes).sum();
+  cost += 0.5 * (coefficients * coefficient_hessian_).cwiseProduct(coefficients).sum();
   return cost;
 }
 
@@ -222,11 +222,11 @@ DeformingTerms::Sight DeformingTerms::LinearizedSight(const Seen& seen, std::siz
 }
 
 ViewDerivative DeformingTerms::ByView(const Sight& sight, std::size_t point, const DeformingState& state) const {
-  const auto modes = state.points.col(static_cast<Eigen::Index>(point)).tail(modes_size());
+  const auto shapes = state.points.col(static_cast<Eigen::Index>(point)).tail(shapes_size());
   ViewDerivative by_view(2, view_size());
   by_view.leftCols<3>().noalias() = sight.by_x * -Skew(sight.turned);
   by_view.middleCols<3>(3) = sight.by_x;
-  for (int r = 0; r < rank_; ++r) by_view.col(6 + r).noalias() = sight.by_position * modes.segment<3>(3 * r);
+  for (int r = 0; r < rank_; ++r) by_view.col(6 + r).noalias() = sight.by_position * shapes.segment<3>(3 * r);
   return by_view;
 }
 
@@ -250,12 +250,13 @@ PointEquations DeformingTerms::Linearized(std::size_t point, const DeformingStat
   equations.own.setZero(point_size(), point_size());
   equations.gradient.setZero(point_size());
   if (seen_equations != nullptr) seen_equations->resize(seen_[point].size());
-  // Rest position and modes move the point alike, each by its share: the rest position wholly, a mode by its course.
+  // Rest position and basis shapes move the point alike, each by its share: the rest position wholly, a basis shape by
+  // its coefficient.
   Eigen::Matrix<double, 1 + kMaxWindowRank, 1> shares;
   shares[0] = 1.0;
   for (std::size_t k = 0; k < seen_[point].size(); ++k) {
     const Sight sight = LinearizedSight(seen_[point][k], point, rest, state);
-    for (int r = 0; r < rank_; ++r) shares[1 + r] = state.courses(r, seen_[point][k].view_idx);
+    for (int r = 0; r < rank_; ++r) shares[1 + r] = state.coefficients(r, seen_[point][k].view_idx);
     const Eigen::Matrix3d by_positions = sight.by_position.transpose() * sight.by_position;
     const Eigen::Vector3d gradient = sight.by_position.transpose() * sight.error;
     for (int a = 0; a <= rank_; ++a) {
@@ -283,8 +284,8 @@ PointEquations DeformingTerms::Linearized(std::size_t point, const DeformingStat
   equations.offset_gradient = -weight * error;
   if (rank_ > 0) {
     equations.node_difference = NodeDifference(point, state);
-    equations.own.diagonal().tail(modes_size()).array() += node_pull_[point];
-    equations.gradient.tail(modes_size()) += node_pull_[point] * equations.node_difference;
+    equations.own.diagonal().tail(shapes_size()).array() += node_pull_[point];
+    equations.gradient.tail(shapes_size()) += node_pull_[point] * equations.node_difference;
   }
   return equations;
 }

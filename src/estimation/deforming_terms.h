@@ -10,8 +10,8 @@
 #include <Eigen/Core>
 
 #include "estimation/light_depth.h"
-#include "estimation/mode_basis.h"
 #include "estimation/point_chart.h"
+#include "estimation/shape_basis.h"
 #include "pliant/estimation/deforming_window.h"
 
 namespace pliant {
@@ -33,21 +33,21 @@ struct ViewPose {
 // What is solved for.
 struct DeformingState {
   std::vector<ViewPose> poses;
-  Eigen::MatrixXd courses;     // R x views
-  Eigen::MatrixXd points;      // a column a point: its chart's parameters, then its modes, column by column
-  Eigen::MatrixXd node_modes;  // a column a node
+  Eigen::MatrixXd coefficients;  // R x views
+  Eigen::MatrixXd points;        // a column a point: its chart's parameters, then its basis shapes
+  Eigen::MatrixXd node_shapes;   // a column a node
   double light_offset = 0;
 };
 
-// Moves poses and courses but the first view's by the beginning of `step`: a turn of the camera, translation and
-// courses of each.
+// Moves poses and coefficients but the first view's by the beginning of `step`: a turn of the camera, translation and
+// coefficients of each.
 void MoveViews(const Eigen::VectorXd& step, DeformingState* state);
 
 // Parts of the points whose equations are summed by themselves, on whatever threads there are.
 constexpr std::size_t kEquationParts = 4;
 
 // A point's observation in units of its standard deviation, its loss taken in: error and derivatives by the point and
-// by the view (a turn of the camera, translation, courses).
+// by the view (a turn of the camera, translation, coefficients).
 struct SeenEquations {
   Eigen::Vector2d error;
   SmallMatrix<2, 2, kMaxPointSize> by_point;
@@ -60,7 +60,7 @@ struct PointEquations {
   PointVector gradient;
   double by_offset = 0;         // second derivative by its log distance and the light's offset
   double offset_gradient = 0;   // by the light's offset
-  PointVector node_difference;  // of its modes from what the nodes say; nothing where there are no courses
+  PointVector node_difference;  // of its shapes from what the nodes say; nothing where there are no coefficients
 };
 
 class DeformingTerms {
@@ -78,16 +78,16 @@ class DeformingTerms {
 
   int rank() const { return rank_; }
   Eigen::Index num_views() const { return static_cast<Eigen::Index>(start_.times.size()); }
-  Eigen::Index num_nodes() const { return node_form_.rows(); }
+  Eigen::Index num_nodes() const { return node_hessian_.rows(); }
   std::size_t num_points() const { return charts_.size(); }
   Eigen::Index view_size() const { return 6 + rank_; }
-  Eigen::Index modes_size() const { return 3 * rank_; }
+  Eigen::Index shapes_size() const { return 3 * rank_; }
   Eigen::Index point_size() const { return 3 + 3 * rank_; }
   const std::vector<Seen>& seen(std::size_t point) const { return seen_[point]; }  // by view
   const std::vector<NodeWeight>& nodes(std::size_t point) const { return around_[point].weights; }
   double node_pull(std::size_t point) const { return node_pull_[point]; }  // 1 / variance of node_difference
-  const Eigen::MatrixXd& node_form() const { return node_form_; }          // (W3), (W4) of one component, nodes square
-  const Eigen::MatrixXd& course_form() const { return course_form_; }      // (W5), all views but the first
+  const Eigen::MatrixXd& node_hessian() const { return node_hessian_; }    // (W3), (W4) of one component, nodes square
+  const Eigen::MatrixXd& coefficient_hessian() const { return coefficient_hessian_; }  // (W5), all views but the first
   double unmeasured_cost() const;  // of the observations of which no point is in front at the start
 
   DeformingState Start() const;
@@ -119,7 +119,7 @@ class DeformingTerms {
 
   void TakeObservations();
   void PrepareNodes(const SurfaceNodes& nodes);
-  void PrepareCourses();
+  void PrepareCoefficients();
   void PrepareLight();
   Eigen::Vector3d Position(std::size_t point, int view_idx, const Eigen::Vector3d& rest,
                            const DeformingState& state) const;
@@ -138,9 +138,9 @@ class DeformingTerms {
   int unmeasured_ = 0;
   std::vector<NodesOfPoint> around_;
   std::vector<double> node_pull_;
-  Eigen::MatrixXd node_modes_;  // at the start
-  Eigen::MatrixXd node_form_;
-  Eigen::MatrixXd course_form_;
+  Eigen::MatrixXd node_shapes_;  // at the start
+  Eigen::MatrixXd node_hessian_;
+  Eigen::MatrixXd coefficient_hessian_;
   std::vector<Light> lights_;
   double light_offset_ = 0;  // at the start
 };

@@ -10,7 +10,7 @@
 
 #include "estimation/deforming_judgment.h"
 #include "estimation/deforming_problem.h"
-#include "estimation/mode_basis.h"
+#include "estimation/shape_basis.h"
 #include "estimation/window_samples.h"
 #include "pliant/base/statistics.h"
 #include "pliant/estimation/deforming_window.h"
@@ -30,22 +30,22 @@ std::vector<Eigen::Vector3d> PositionsIn(const DeformingWindow& window, std::siz
   return positions;
 }
 
-// A point at the weighted geometric mean distance of those near to its ray, with their modes and their sample sigma.
+// A point at the weighted geometric mean distance of those near to its ray, with their shapes and their sample sigma.
 void StartNear(const std::vector<NearPoint>& nearest, const std::vector<Eigen::Vector3d>& positions,
                const DeformingObservation& seen, std::size_t point, DeformingSolution* solution) {
   DeformingWindow& window = solution->window;
   double log_distance = 0;
   double sample_sigma = 0;
-  Eigen::Matrix3Xd modes = Eigen::Matrix3Xd::Zero(3, window.courses.rows());
+  Eigen::Matrix3Xd shapes = Eigen::Matrix3Xd::Zero(3, window.coefficients.rows());
   for (const NearPoint& near : nearest) {
     log_distance += near.weight * std::log(positions[near.idx].norm());
-    if (!window.modes.empty()) modes += near.weight * window.modes[near.idx];
+    if (!window.shapes.empty()) shapes += near.weight * window.shapes[near.idx];
     if (!solution->sample_sigmas.empty()) sample_sigma += near.weight * solution->sample_sigmas[near.idx];
   }
   window.points_in_world[point] =
       window.cams_from_world[static_cast<std::size_t>(seen.view_idx)].Inverse() * (std::exp(log_distance) * seen.ray) -
-      modes * window.courses.col(seen.view_idx);
-  if (!window.modes.empty()) window.modes[point] = modes;
+      shapes * window.coefficients.col(seen.view_idx);
+  if (!window.shapes.empty()) window.shapes[point] = shapes;
   if (!solution->sample_sigmas.empty()) solution->sample_sigmas[point] = sample_sigma;
 }
 
@@ -56,7 +56,8 @@ DeformingSolution WithJoining(const DeformingSolution& located, const std::vecto
   DeformingWindow& window = all.window;
   const std::size_t known = window.points_in_world.size();
   window.points_in_world.resize(known + num_joining, window.MedianDistance() * Eigen::Vector3d::UnitZ());
-  if (!window.modes.empty()) window.modes.resize(known + num_joining, Eigen::Matrix3Xd::Zero(3, window.courses.rows()));
+  if (!window.shapes.empty())
+    window.shapes.resize(known + num_joining, Eigen::Matrix3Xd::Zero(3, window.coefficients.rows()));
   if (!all.sample_sigmas.empty())
     all.sample_sigmas.resize(known + num_joining, std::numeric_limits<double>::infinity());
   std::vector<char> started(num_joining, 0);
@@ -85,7 +86,7 @@ Result<DeformingWindow> LocateDeformingViews(const DeformingWindow& views, doubl
                                              const DeformingWindowOptions& options, int threads) {
   if (Status status = CheckWindow(views); !status.ok()) return status;
   SurfaceNodes none = NodesAt(views.points_in_world, {0});
-  none.modes.setZero(3 * views.courses.rows(), 1);
+  none.shapes.setZero(3 * views.coefficients.rows(), 1);
   DeformingProblem problem(views, none, focal_px, options);
   if (const auto cost = problem.SolveViews(options.max_iterations, threads); !cost.ok()) return cost.status();
   return problem.Window();

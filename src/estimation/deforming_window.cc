@@ -16,9 +16,9 @@
 
 #include "estimation/deforming_judgment.h"
 #include "estimation/deforming_problem.h"
-#include "estimation/mode_basis.h"
 #include "estimation/plane_rival.h"
 #include "estimation/ray_residuals.h"
+#include "estimation/shape_basis.h"
 #include "estimation/window_samples.h"
 #include "pliant/base/statistics.h"
 #include "pliant/geometry/triangulation.h"
@@ -26,7 +26,8 @@
 namespace pliant {
 namespace {
 
-// The courses are first sought in the motions of points seen in this share of the views, and of so many in any case ...
+// The coefficients are first sought in the motions of points seen in this share of the views, and of so many in any
+// case ...
 constexpr double kStartShare = 0.8;
 constexpr std::size_t kMinStartPoints = 12;
 // ... none of which counts for more than this many times the median one: a wrong track moves most.
@@ -75,9 +76,9 @@ Eigen::MatrixXd UnexplainedMotions(const DeformingWindow& start) {
   return motions.unaryExpr([](double value) { return std::isfinite(value) ? value : 0.0; });
 }
 
-// The courses that explain most of what the rigid start leaves unexplained, of unit mean square about their mean. A
-// wrong depth looks like a motion too, the same course for all, so it does no harm here.
-void SetCourses(int rank, DeformingWindow* window, SurfaceNodes* nodes) {
+// The coefficients that explain most of what the rigid start leaves unexplained, of unit mean square about their mean.
+// A wrong depth looks like a motion too, with the same coefficient for all points, so it does no harm here.
+void SetCoefficients(int rank, DeformingWindow* window, SurfaceNodes* nodes) {
   Eigen::MatrixXd motions = UnexplainedMotions(*window);
   std::vector<double> sizes;
   for (Eigen::Index k = 0; k + 1 < motions.rows(); k += 2) sizes.push_back(motions.middleRows<2>(k).norm());
@@ -86,31 +87,31 @@ void SetCourses(int rank, DeformingWindow* window, SurfaceNodes* nodes) {
     if (sizes[i] > largest) motions.middleRows<2>(2 * static_cast<Eigen::Index>(i)) *= largest / sizes[i];
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(motions.transpose() * motions);  // the strongest last
   const auto views = static_cast<double>(window->cams_from_world.size());
-  window->courses = std::sqrt(views) * eigen.eigenvectors().rightCols(rank).rowwise().reverse().transpose();
-  window->courses.colwise() -= Eigen::VectorXd(window->courses.col(0));
-  window->modes.resize(window->points_in_world.size());
-  for (Eigen::Matrix3Xd& modes : window->modes) modes.setZero(3, rank);
-  nodes->modes.setZero(3 * rank, static_cast<Eigen::Index>(nodes->positions.size()));
+  window->coefficients = std::sqrt(views) * eigen.eigenvectors().rightCols(rank).rowwise().reverse().transpose();
+  window->coefficients.colwise() -= Eigen::VectorXd(window->coefficients.col(0));
+  window->shapes.resize(window->points_in_world.size());
+  for (Eigen::Matrix3Xd& shapes : window->shapes) shapes.setZero(3, rank);
+  nodes->shapes.setZero(3 * rank, static_cast<Eigen::Index>(nodes->positions.size()));
 }
 
-// The R strongest courses of all the points' motions, of unit mean square, and the modes that go with them: the best
-// approximation of rank R (Eckart, Young). Courses of rank R of a window that starts from zero start from zero.
-void KeepStrongestCourses(int rank, DeformingWindow* window, SurfaceNodes* nodes) {
-  const Eigen::Index views = window->courses.cols();
-  Eigen::MatrixXd second_moment = Eigen::MatrixXd::Zero(window->courses.rows(), window->courses.rows());
-  for (const Eigen::Matrix3Xd& modes : window->modes) second_moment += modes.transpose() * modes;
-  const Eigen::MatrixXd motions = window->courses.transpose() * second_moment * window->courses;
+// The R strongest coefficients of all the points' motions, of unit mean square, and the basis shapes that go with them:
+// the best approximation of rank R (Eckart, Young). In a window that starts from zero its coefficients do too.
+void KeepStrongestCoefficients(int rank, DeformingWindow* window, SurfaceNodes* nodes) {
+  const Eigen::Index views = window->coefficients.cols();
+  Eigen::MatrixXd second_moment = Eigen::MatrixXd::Zero(window->coefficients.rows(), window->coefficients.rows());
+  for (const Eigen::Matrix3Xd& shapes : window->shapes) second_moment += shapes.transpose() * shapes;
+  const Eigen::MatrixXd motions = window->coefficients.transpose() * second_moment * window->coefficients;
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(motions);  // the strongest last
   const Eigen::MatrixXd strongest = eigen.eigenvectors().rightCols(rank).rowwise().reverse();
   const double length = std::sqrt(static_cast<double>(views));
-  const Eigen::MatrixXd change = window->courses * strongest / length;
-  for (Eigen::Matrix3Xd& modes : window->modes) modes = Eigen::Matrix3Xd(modes * change);
-  Eigen::MatrixXd node_modes(3 * rank, nodes->modes.cols());
-  for (Eigen::Index n = 0; n < node_modes.cols(); ++n)
-    node_modes.col(n) = (nodes->modes.col(n).reshaped(3, change.rows()) * change).reshaped();
-  nodes->modes = node_modes;
-  window->courses = length * strongest.transpose();
-  window->courses.col(0).setZero();  // but for rounding it is
+  const Eigen::MatrixXd change = window->coefficients * strongest / length;
+  for (Eigen::Matrix3Xd& shapes : window->shapes) shapes = Eigen::Matrix3Xd(shapes * change);
+  Eigen::MatrixXd node_shapes(3 * rank, nodes->shapes.cols());
+  for (Eigen::Index n = 0; n < node_shapes.cols(); ++n)
+    node_shapes.col(n) = (nodes->shapes.col(n).reshaped(3, change.rows()) * change).reshaped();
+  nodes->shapes = node_shapes;
+  window->coefficients = length * strongest.transpose();
+  window->coefficients.col(0).setZero();  // but for rounding it is
 }
 
 // A sample's solutions, each extended to all points: of `rank`, and then, each from the one before, down to
@@ -125,12 +126,12 @@ struct SampleProblem {
   const DeformingWindowOptions& options;
 };
 
-// All points, in the views of a part of them, with that part's modes at the nodes.
+// All points, in the views of a part of them, with that part's shapes at the nodes.
 Result<DeformingSolution> Extended(const SampleProblem& common, const DeformingWindow& part,
-                                   const Eigen::MatrixXd& node_modes, const PointSample& sample) {
+                                   const Eigen::MatrixXd& node_shapes, const PointSample& sample) {
   const DeformingWindow all = ExtendToAll(common.start, part, sample);
   SurfaceNodes nodes = NodesAt(all.points_in_world, common.node_points);
-  nodes.modes = node_modes;
+  nodes.shapes = node_shapes;
   DeformingProblem problem(all, nodes, common.focal_px, common.options);
   const auto cost = problem.SettlePoints();
   if (!cost.ok()) return cost.status();
@@ -140,10 +141,10 @@ Result<DeformingSolution> Extended(const SampleProblem& common, const DeformingW
 SampleSolutions SolveSample(const SampleProblem& common, const PointSample& sample, int rank, int last_rank) {
   SurfaceNodes nodes = NodesAt(common.start.points_in_world, common.node_points);
   DeformingWindow part = PartOf(common.start, sample);
-  SetCourses(rank, &part, &nodes);
+  SetCoefficients(rank, &part, &nodes);
   SampleSolutions solutions;
   for (int of_rank = rank; of_rank >= last_rank; --of_rank) {
-    if (of_rank < rank) KeepStrongestCourses(of_rank, &part, &nodes);
+    if (of_rank < rank) KeepStrongestCoefficients(of_rank, &part, &nodes);
     DeformingProblem problem(part, nodes, common.focal_px, common.options);
     const auto cost = problem.Solve(common.options.max_iterations);
     if (!cost.ok()) {
@@ -151,9 +152,9 @@ SampleSolutions SolveSample(const SampleProblem& common, const PointSample& samp
       continue;
     }
     part = problem.Window();
-    nodes.modes = problem.NodeModes();
+    nodes.shapes = problem.NodeShapes();
     if (sample.size() < common.start.points_in_world.size())
-      solutions.push_back(Extended(common, part, nodes.modes, sample));
+      solutions.push_back(Extended(common, part, nodes.shapes, sample));
     else
       solutions.emplace_back(Taken(problem, *cost, nodes));
   }
@@ -198,10 +199,10 @@ Result<DeformingSolution> SolvedRigid(const DeformingWindow& start, double focal
 std::optional<DeformingSolution> SolvedFromOtherMotion(const DeformingSolution& best, const SampleProblem& common,
                                                        const PointSample& sample) {
   if (!NearlyFlat(best.window.points_in_world)) return std::nullopt;
-  const int rank = static_cast<int>(best.window.courses.rows());
+  const int rank = static_cast<int>(best.window.coefficients.rows());
   DeformingWindow rigid = best.window;
-  rigid.courses.resize(0, rigid.courses.cols());
-  rigid.modes.clear();
+  rigid.coefficients.resize(0, rigid.coefficients.cols());
+  rigid.shapes.clear();
   const auto start = OtherMotionOfThePlane(rigid, common.focal_px, common.options);
   if (!start) return std::nullopt;
   auto solved = SolveSample({*start, common.node_points, common.focal_px, common.options}, sample, rank, rank);
@@ -224,8 +225,8 @@ std::vector<double> LargerOf(std::vector<double> a, const std::vector<double>& b
 
 Eigen::Vector3d DeformingWindow::Position(int point_idx, int view_idx) const {
   const Eigen::Vector3d& rest = points_in_world[static_cast<std::size_t>(point_idx)];
-  if (courses.rows() == 0) return rest;
-  return rest + modes[static_cast<std::size_t>(point_idx)] * courses.col(view_idx);
+  if (coefficients.rows() == 0) return rest;
+  return rest + shapes[static_cast<std::size_t>(point_idx)] * coefficients.col(view_idx);
 }
 
 double DeformingWindow::MedianDistance() const {
@@ -240,20 +241,23 @@ double DeformingSolution::LogDepthSigma(std::size_t point) const {
 
 void DeformingWindowOptions::List(OptionTable& table) {
   table.BeginGroup("Window", "the deforming window from which the first map is made");
-  table.Add("rank", &rank, "-", "ways in which the scene moves at a time: courses in time common to all points", 1,
+  table.Add("rank", &rank, "-",
+            "basis shapes of the low-rank deformation model, each with a temporal coefficient common to all points", 1,
             kMaxWindowRank);
   table.Add("loss_scale_px", &loss_scale_px, "px", "scale of the Cauchy loss: about a tracked pixel's noise", 1e-3,
             100);
   table.Add("gradient_sigma", &gradient_sigma, "-",
-            "difference of neighbors' modes by their distance, standard deviation; smaller is smoother", 1e-4, 100);
-  table.Add("mode_sigma", &mode_sigma, "-", "a mode's size by the median distance, standard deviation", 1e-4, 100);
+            "difference of neighbors' basis shapes divided by their distance, standard deviation; smaller is smoother",
+            1e-4, 100);
+  table.Add("shape_sigma", &shape_sigma, "-",
+            "size of a basis shape divided by the median distance, standard deviation", 1e-4, 100);
   table.Add("acceleration_sigma", &acceleration_sigma, "1/frame^2",
-            "second derivative of a course (whose size is about 1), standard deviation", 1e-6, 1e3);
+            "second derivative of a temporal coefficient (whose size is about 1), standard deviation", 1e-6, 1e3);
   table.Add("light_sigma", &light_sigma, "-",
             "log distance from brightness, standard deviation; large, because neighbors err alike", 1e-3, 1e6);
-  table.Add("neighbors", &neighbors, "-", "neighbors with which a point's modes are compared", 1, 100);
-  table.Add("nodes", &nodes, "-", "of the surface, at which modes are free; between them they are interpolated", 4,
-            1000);
+  table.Add("neighbors", &neighbors, "-", "neighbors with which the basis shapes at a node are compared", 1, 100);
+  table.Add("nodes", &nodes, "-",
+            "nodes of the surface at which basis shapes are free; between nodes they are interpolated", 4, 1000);
   table.Add("sample_points", &sample_points, "-",
             "points in each of the two samples that are solved before all; fewer is faster", 60, 100000);
   table.Add("max_iterations", &max_iterations, "-", "most iterations of one solution", 1, 10000);
@@ -309,8 +313,8 @@ Result<DeformingSolution> SolveRigidWindow(const DeformingWindow& start, double 
                                            const DeformingWindowOptions& options, int threads) {
   if (Status status = CheckWindow(start); !status.ok()) return status;
   DeformingWindow rigid = start;
-  rigid.courses.resize(0, static_cast<Eigen::Index>(rigid.times.size()));
-  rigid.modes.clear();
+  rigid.coefficients.resize(0, static_cast<Eigen::Index>(rigid.times.size()));
+  rigid.shapes.clear();
   auto solution = SolvedRigid(rigid, focal_px, options, threads);
   if (!solution.ok()) return solution.status();
   std::vector<double> rival_sigmas;

@@ -42,11 +42,11 @@ void ViewEquations::SumPart(std::size_t part, const DeformingState& state) {
   }
 }
 
-// The parts' sums and the courses' prior (W5).
+// The parts' sums and the coefficients' prior (W5).
 void ViewEquations::Assemble(const DeformingState& state) {
   const Eigen::Index size = terms_->view_size();
   const Eigen::Index rank = terms_->rank();
-  const Eigen::MatrixXd& courses = terms_->course_form();
+  const Eigen::MatrixXd& coefficients = terms_->coefficient_hessian();
   const Eigen::Index views = terms_->num_views() - 1;
   slope_.setZero(views * size);
   entries_.clear();
@@ -61,12 +61,12 @@ void ViewEquations::Assemble(const DeformingState& state) {
           enter(v * size + row, v * size + col, part.curvature[static_cast<std::size_t>(v)](row, col));
   }
   if (rank > 0) {
-    const Eigen::MatrixXd pull = state.courses.rightCols(views) * courses;
+    const Eigen::MatrixXd pull = state.coefficients.rightCols(views) * coefficients;
     for (Eigen::Index a = 0; a < views; ++a) {
       slope_.segment(a * size + 6, rank) += pull.col(a);
       for (Eigen::Index b = 0; b <= a; ++b) {
-        if (courses(a, b) == 0.0) continue;
-        for (Eigen::Index r = 0; r < rank; ++r) enter(a * size + 6 + r, b * size + 6 + r, courses(a, b));
+        if (coefficients(a, b) == 0.0) continue;
+        for (Eigen::Index r = 0; r < rank; ++r) enter(a * size + 6 + r, b * size + 6 + r, coefficients(a, b));
       }
     }
   }

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// The normal equations of a deforming window's views and courses, the points fixed. Only courses couple views, each
-// with the two before it, so they are a narrow band.
+// The normal equations of a deforming window's views and coefficients, the points fixed. Only coefficients couple
+// views, each with the two before it, so they are a narrow band.
 #pragma once
 
 #include <vector>

@@ -73,7 +73,7 @@ DeformingWindow InSomeViews(const DeformingWindow& window, int count) {
   DeformingWindow some = window;
   some.times.clear();
   some.cams_from_world.clear();
-  some.courses.resize(window.courses.rows(), count);
+  some.coefficients.resize(window.coefficients.rows(), count);
   some.observations.clear();
   std::vector<int> new_idx(window.times.size(), -1);
   for (const std::size_t view : SpreadViews(window.times.size(), static_cast<std::size_t>(count))) {
@@ -81,7 +81,7 @@ DeformingWindow InSomeViews(const DeformingWindow& window, int count) {
     new_idx[view] = k;
     some.times.push_back(window.times[view]);
     some.cams_from_world.push_back(window.cams_from_world[view]);
-    some.courses.col(k) = window.courses.col(static_cast<Eigen::Index>(view));
+    some.coefficients.col(k) = window.coefficients.col(static_cast<Eigen::Index>(view));
   }
   for (DeformingObservation observation : window.observations) {
     observation.view_idx = new_idx[static_cast<std::size_t>(observation.view_idx)];
@@ -126,8 +126,8 @@ DeformingWindow PartOf(const DeformingWindow& window, const PointSample& sample)
 DeformingWindow ExtendToAll(const DeformingWindow& start, const DeformingWindow& part, const PointSample& sample) {
   DeformingWindow all = start;
   all.cams_from_world = part.cams_from_world;
-  all.courses = part.courses;
-  all.modes.clear();
+  all.coefficients = part.coefficients;
+  all.shapes.clear();
   Directions sampled;
   for (const int i : sample) sampled.push_back(start.points_in_world[static_cast<std::size_t>(i)].normalized());
   std::vector<double> changes;  // of log distance
@@ -136,17 +136,17 @@ DeformingWindow ExtendToAll(const DeformingWindow& start, const DeformingWindow&
         std::log(part.points_in_world[k].norm() / start.points_in_world[static_cast<std::size_t>(sample[k])].norm()));
   for (Eigen::Vector3d& position : all.points_in_world) {
     double change = 0;
-    Eigen::Matrix3Xd modes = Eigen::Matrix3Xd::Zero(3, part.courses.rows());
+    Eigen::Matrix3Xd shapes = Eigen::Matrix3Xd::Zero(3, part.coefficients.rows());
     for (const NearPoint& near : NearestPoints(sampled, position.normalized())) {
       change += near.weight * changes[near.idx];
-      modes += near.weight * part.modes[near.idx];
+      shapes += near.weight * part.shapes[near.idx];
     }
     position *= std::exp(change);
-    all.modes.push_back(std::move(modes));
+    all.shapes.push_back(std::move(shapes));
   }
   for (std::size_t k = 0; k < sample.size(); ++k) {
     all.points_in_world[static_cast<std::size_t>(sample[k])] = part.points_in_world[k];
-    all.modes[static_cast<std::size_t>(sample[k])] = part.modes[k];
+    all.shapes[static_cast<std::size_t>(sample[k])] = part.shapes[k];
   }
   return all;
 }

@@ -35,11 +35,11 @@ std::vector<PointSample> SamplePoints(const DeformingWindow& window, int size);
 // The window in at most `count` of its views, spread evenly from the first to the last.
 DeformingWindow InSomeViews(const DeformingWindow& window, int count);
 
-// The window of a sample's points, with their observations, without courses. Point k is sample[k].
+// The window of a sample's points, with their observations, without coefficients. Point k is sample[k].
 DeformingWindow PartOf(const DeformingWindow& window, const PointSample& sample);
 
 // All points of `start`, in the solved views of the sample `part` of it: depths are changed like those of the nearest
-// points of the sample, and modes are theirs.
+// points of the sample, and shapes are theirs.
 DeformingWindow ExtendToAll(const DeformingWindow& start, const DeformingWindow& part, const PointSample& sample);
 
 }  // namespace pliant

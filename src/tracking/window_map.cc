@@ -50,7 +50,7 @@ MapPoints ChooseCertain(const MapPoints& points, const std::vector<double>& erro
   to.nodes = from.nodes;
   to.window.times = from.window.times;
   to.window.cams_from_world = from.window.cams_from_world;
-  to.window.courses = from.window.courses;
+  to.window.coefficients = from.window.coefficients;
   for (const std::size_t i : order) {
     const bool agrees = errors_px[i] <= max_error_px;
     if (!agrees || !(points.depth_sigmas[i] <= max_sigma)) {
@@ -61,7 +61,7 @@ MapPoints ChooseCertain(const MapPoints& points, const std::vector<double>& erro
     chosen.ids.push_back(points.ids[i]);
     chosen.depth_sigmas.push_back(points.depth_sigmas[i]);
     to.window.points_in_world.push_back(from.window.points_in_world[i]);
-    if (!from.window.modes.empty()) to.window.modes.push_back(from.window.modes[i]);
+    if (!from.window.shapes.empty()) to.window.shapes.push_back(from.window.shapes[i]);
     if (!from.sample_sigmas.empty()) to.sample_sigmas.push_back(from.sample_sigmas[i]);
   }
   return chosen;
@@ -91,14 +91,14 @@ Status EnoughCertain(const InitInput& input, const SolvedWindow& window, const M
                                         " deg: give more frames, or move the camera sideways or forwards"};
 }
 
-// The points in all frames of the input, fixed; poses and courses start between those of the solved views.
+// The points in all frames of the input, fixed; poses and coefficients start between those of the solved views.
 Status LocateAllFrames(const InitInput& input, const SolvedWindow& window, const WindowInitOptions& options,
                        MapPoints* points) {
   const DeformingWindow& solved = window.solution.window;
   DeformingWindow all;
   all.points_in_world = points->solution.window.points_in_world;
-  all.modes = points->solution.window.modes;
-  all.courses.resize(solved.courses.rows(), static_cast<Eigen::Index>(input.frames.size()));
+  all.shapes = points->solution.window.shapes;
+  all.coefficients.resize(solved.coefficients.rows(), static_cast<Eigen::Index>(input.frames.size()));
   std::size_t next = 0;  // the first solved view that is not before the frame
   for (std::size_t k = 0; k < input.frames.size(); ++k) {
     while (window.views[next] < k && next + 1 < window.views.size()) ++next;
@@ -111,9 +111,9 @@ Status LocateAllFrames(const InitInput& input, const SolvedWindow& window, const
     all.times.push_back(input.frames[k].frame_idx - input.frames.front().frame_idx);
     all.cams_from_world.emplace_back(a.rotation.slerp(share, b.rotation),
                                      (1.0 - share) * a.translation + share * b.translation);
-    all.courses.col(static_cast<Eigen::Index>(k)) =
-        (1.0 - share) * solved.courses.col(static_cast<Eigen::Index>(before)) +
-        share * solved.courses.col(static_cast<Eigen::Index>(next));
+    all.coefficients.col(static_cast<Eigen::Index>(k)) =
+        (1.0 - share) * solved.coefficients.col(static_cast<Eigen::Index>(before)) +
+        share * solved.coefficients.col(static_cast<Eigen::Index>(next));
     const auto seen = SeenIn(input, input.frames[k], points->ids, static_cast<int>(k), options);
     all.observations.insert(all.observations.end(), seen.begin(), seen.end());
   }
@@ -135,8 +135,8 @@ std::vector<PointId> PointsToJoin(const InitInput& input, const MapPoints& point
   return ids;
 }
 
-// All points anew by all frames, poses and courses fixed; others that were seen in enough frames join them. What is
-// uncertain, or wrong between the views of the problem, is then left out.
+// All points anew by all frames, poses and coefficients fixed; others that were seen in enough frames join them. What
+// is uncertain, or wrong between the views of the problem, is then left out.
 Status SettlePoints(const InitInput& input, const MapDemands& demands, const WindowInitOptions& options,
                     MapPoints* points, std::vector<InitRejectedPoint>* rejected) {
   const double focal_px = input.camera.MeanFocalLengthPx();
@@ -244,7 +244,7 @@ Status MakeWindowMap(const InitInput& input, const SolvedWindow& window, const M
   if (Status status = FillOutcome(input, nominal_depth_mm, points, outcome); !status.ok()) return status;
   outcome->rejected = AllRejected(input, points, std::move(rejected));
   outcome->reason = "first map of " + std::to_string(points.ids.size()) + " points from a " +
-                    (window.solution.window.modes.empty() ? "rigid" : "deforming") + " window of " +
+                    (window.solution.window.shapes.empty() ? "rigid" : "deforming") + " window of " +
                     std::to_string(input.frames.size()) + " frames, depth noise " +
                     Digits(100.0 * outcome->measured.median_depth_sigma, 1) + " % of the median depth";
   if (window.light_is_of_no_use) outcome->reason += ", without light, which says nothing of distance here";

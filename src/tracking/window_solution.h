@@ -24,7 +24,7 @@ struct SolvedWindow {
 enum class WindowScene { kRigid, kAny };
 
 // The window of the input's first `frames` frames, solved: as a rigid scene if it is one, else, where it may be any,
-// with courses; where the light turns out to say nothing of these, without light if that is more certain.
+// with coefficients; where the light turns out to say nothing of these, without light if that is more certain.
 // kInsufficient, kDegenerate: what is missing, or that the scene deforms.
 Result<SolvedWindow> SolveWindow(const InitInput& input, std::size_t frames, WindowScene scene,
                                  const WindowInitOptions& options, double nominal_depth_mm);

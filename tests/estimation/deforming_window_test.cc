@@ -15,7 +15,7 @@
 #include "estimation/deforming_equations.h"
 #include "estimation/deforming_terms.h"
 #include "estimation/light_depth.h"
-#include "estimation/mode_basis.h"
+#include "estimation/shape_basis.h"
 #include "estimation/view_equations.h"
 #include "estimation/window_samples.h"
 #include "pliant/base/random.h"
@@ -105,7 +105,7 @@ TEST(DeformingWindow, FindsTheShapeOfASceneThatMovesAsFastAsTheCamera) {
   const Scene scene;
   const auto solution = SolveDeformingWindow(scene.Start(0), kFocalPx, {});
   ASSERT_TRUE(solution.ok()) << solution.status().message();
-  EXPECT_EQ(solution->window.courses.rows(), DeformingWindowOptions().rank);
+  EXPECT_EQ(solution->window.coefficients.rows(), DeformingWindowOptions().rank);
   EXPECT_EQ(solution->light_error, 0);
   for (const int view : {0, 6, 12}) EXPECT_LT(Median(scene.DepthErrors(solution->window, view)), kShape) << view;
   EXPECT_LT(Median(PointErrorsPx(solution->window, kFocalPx)), 2 * kNoisePx);
@@ -188,7 +188,7 @@ TEST(DeformingWindow, DoesNotDependOnTheNumberOfThreads) {
   const auto two = SolveDeformingWindow(start, kFocalPx, {}, 2);
   ASSERT_TRUE(one.ok() && two.ok());
   EXPECT_EQ(one->window.points_in_world, two->window.points_in_world);
-  EXPECT_EQ(one->window.courses, two->window.courses);
+  EXPECT_EQ(one->window.coefficients, two->window.coefficients);
   EXPECT_EQ(one->log_depth_sigmas, two->log_depth_sigmas);
   EXPECT_EQ(one->sample_sigmas, two->sample_sigmas);
   EXPECT_EQ(one->light_error, two->light_error);
@@ -200,7 +200,7 @@ TEST(DeformingWindow, LocatesTheViewsBetween) {
   ASSERT_TRUE(solution.ok());
   DeformingWindow moved = solution->window;
   for (std::size_t v = 1; v < moved.cams_from_world.size(); ++v) moved.cams_from_world[v].translation.x() += 1.0;
-  moved.courses.rightCols(moved.courses.cols() - 1) *= 0.8;
+  moved.coefficients.rightCols(moved.coefficients.cols() - 1) *= 0.8;
   const auto located = LocateDeformingViews(moved, kFocalPx, {});
   ASSERT_TRUE(located.ok());
   for (std::size_t v = 0; v < moved.cams_from_world.size(); ++v) {
@@ -246,7 +246,7 @@ TEST(DeformingWindow, PointsJoinASolutionWhereTheirRaysAndNeighborsPutThem) {
   for (std::size_t k = 0; k < of.order.size(); ++k) {
     const auto i = static_cast<std::size_t>(of.order[k]);
     in_order.points_in_world[i] = settled->window.points_in_world[k];
-    in_order.modes[i] = settled->window.modes[k];
+    in_order.shapes[i] = settled->window.shapes[k];
     sigmas[i] = settled->LogDepthSigma(k);
   }
   const std::vector<double> errors = of.scene.DepthErrors(in_order, 12);
@@ -259,9 +259,9 @@ TEST(DeformingWindow, PointsJoinASolutionWhereTheirRaysAndNeighborsPutThem) {
   EXPECT_LT(Median(joined), kShape);
   EXPECT_GT(within, 0.95 * num_joining);
   EXPECT_LT(Median(errors), kShape);
-  // Views, courses and nodes are held.
-  EXPECT_EQ(settled->window.courses, of.solution->window.courses);
-  EXPECT_EQ(settled->nodes.modes, of.solution->nodes.modes);
+  // Views, coefficients and nodes are held.
+  EXPECT_EQ(settled->window.coefficients, of.solution->window.coefficients);
+  EXPECT_EQ(settled->nodes.shapes, of.solution->nodes.shapes);
 }
 
 TEST(DeformingWindow, WhatJoinsMakesTheOthersNoLessCertain) {
@@ -325,7 +325,7 @@ TEST(DeformingWindow, RefusesWhatIsNoWindow) {
   EXPECT_EQ(SolveDeformingWindow(few, kFocalPx, {}).status().code(), ErrorCode::kInsufficient);
 }
 
-// A window in the middle of things: courses, modes and nodes of a solution, everything a little off.
+// A window in the middle of things: coefficients, shapes and nodes of a solution, everything a little off.
 struct Unsettled {
   DeformingWindow window;
   SurfaceNodes nodes;
@@ -337,11 +337,11 @@ struct Unsettled {
     const auto noise = [&](Eigen::Index rows, Eigen::Index cols, double sigma) {
       return Eigen::MatrixXd::NullaryExpr(rows, cols, [&] { return random.Normal(sigma); }).eval();
     };
-    window.courses = noise(2, 6, 1.0);
-    window.courses.col(0).setZero();
-    for (std::size_t i = 0; i < window.points_in_world.size(); ++i) window.modes.push_back(noise(3, 2, 0.2));
+    window.coefficients = noise(2, 6, 1.0);
+    window.coefficients.col(0).setZero();
+    for (std::size_t i = 0; i < window.points_in_world.size(); ++i) window.shapes.push_back(noise(3, 2, 0.2));
     nodes = NodesAt(window.points_in_world, {0, 20, 40, 60, 80, 100});
-    nodes.modes = noise(6, 6, 0.2);
+    nodes.shapes = noise(6, 6, 0.2);
   }
 };
 
@@ -419,8 +419,9 @@ TEST(DeformingEquations, EliminatingThePointsChangesNoStep) {
                (seen[k].by_view * step.segment((view - 1) * terms.view_size(), terms.view_size()));
     const Eigen::Index nodes_at = (terms.num_views() - 1) * terms.view_size();
     for (const NodeWeight& node : terms.nodes(point))
-      row.tail(terms.modes_size()) -= terms.node_pull(point) * node.weight *
-                                      step.segment(nodes_at + node.node_idx * terms.modes_size(), terms.modes_size());
+      row.tail(terms.shapes_size()) -=
+          terms.node_pull(point) * node.weight *
+          step.segment(nodes_at + node.node_idx * terms.shapes_size(), terms.shapes_size());
     row[2] += own.by_offset * step[step.size() - 1];
     EXPECT_LT((row + own.gradient).norm(), 1e-5 * own.gradient.norm()) << point;
   }
@@ -443,7 +444,7 @@ TEST(DeformingWindow, SolvesARigidSceneAsOne) {
   scene.amplitude_mm = 0;
   const auto solution = SolveRigidWindow(scene.Start(0), kFocalPx, {});
   ASSERT_TRUE(solution.ok()) << solution.status().message();
-  EXPECT_EQ(solution->window.courses.rows(), 0);
+  EXPECT_EQ(solution->window.coefficients.rows(), 0);
   EXPECT_LT(std::abs(solution->residual_correlation), 0.15);
   for (const int view : {0, 12}) {
     const std::vector<double> errors = scene.DepthErrors(solution->window, view);
@@ -468,8 +469,8 @@ TEST(SurfaceNodes, WeightsSumToOneAndANodesOwnPointIsItsAlone) {
   EXPECT_EQ(around[20].weights.front().node_idx, 1);
   // A linear field's gradient is found.
   SurfaceNodes linear = nodes;
-  linear.modes.resize(3, 7);
-  for (Eigen::Index n = 0; n < 7; ++n) linear.modes.col(n) = 0.5 * linear.positions[static_cast<std::size_t>(n)];
+  linear.shapes.resize(3, 7);
+  for (Eigen::Index n = 0; n < 7; ++n) linear.shapes.col(n) = 0.5 * linear.positions[static_cast<std::size_t>(n)];
   EXPECT_NEAR(SizesOf(linear).gradient, 0.5 / std::sqrt(3.0), kRounding);
 }
 

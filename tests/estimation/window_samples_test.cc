@@ -62,11 +62,11 @@ TEST(WindowSamples, NearestPointsHaveWeightsThatSumToOne) {
 
 TEST(WindowSamples, SomeViewsAreTheFirstTheLastAndThoseBetween) {
   DeformingWindow window;
-  window.courses.resize(2, 9);
+  window.coefficients.resize(2, 9);
   for (int v = 0; v < 9; ++v) {
     window.times.push_back(5 * v);
     window.cams_from_world.emplace_back(Eigen::Quaterniond::Identity(), Eigen::Vector3d(v, 0, 0));
-    window.courses.col(v).setConstant(v);
+    window.coefficients.col(v).setConstant(v);
     window.observations.push_back({v, 0, Eigen::Vector3d::UnitZ()});
   }
   window.points_in_world.emplace_back(0, 0, 50);
@@ -76,7 +76,7 @@ TEST(WindowSamples, SomeViewsAreTheFirstTheLastAndThoseBetween) {
   for (int k = 0; k < 3; ++k) {
     EXPECT_EQ(some.observations[static_cast<std::size_t>(k)].view_idx, k);
     EXPECT_EQ(some.cams_from_world[static_cast<std::size_t>(k)].translation.x(), 4 * k);
-    EXPECT_EQ(some.courses(1, k), 4 * k);
+    EXPECT_EQ(some.coefficients(1, k), 4 * k);
   }
   EXPECT_EQ(InSomeViews(window, 20).times.size(), 9U);
 }
@@ -117,24 +117,24 @@ TEST(WindowSamples, TheOthersMoveLikeTheirNeighbors) {
   const DeformingWindow start = Grid();
   const PointSample sample = SamplePoints(start, 100).front();
   DeformingWindow solved = PartOf(start, sample);
-  solved.courses = Eigen::MatrixXd::Zero(1, 2);
-  solved.courses(0, 1) = 1;
+  solved.coefficients = Eigen::MatrixXd::Zero(1, 2);
+  solved.coefficients(0, 1) = 1;
   solved.cams_from_world[1].translation.z() = -3;
   for (Eigen::Vector3d& point : solved.points_in_world) {
     point *= 1.5;  // the sample's depths grew by half, and it moves to the right the more the further up
-    solved.modes.emplace_back(Eigen::Vector3d(point.y() / 10, 0, 0));
+    solved.shapes.emplace_back(Eigen::Vector3d(point.y() / 10, 0, 0));
   }
   const DeformingWindow all = ExtendToAll(start, solved, sample);
-  EXPECT_EQ(all.courses, solved.courses);
+  EXPECT_EQ(all.coefficients, solved.coefficients);
   EXPECT_EQ(all.cams_from_world[1].translation.z(), -3);
   EXPECT_EQ(all.observations.size(), start.observations.size());
   for (std::size_t k = 0; k < sample.size(); ++k) {
     EXPECT_EQ(all.points_in_world[static_cast<std::size_t>(sample[k])], solved.points_in_world[k]);
-    EXPECT_EQ(all.modes[static_cast<std::size_t>(sample[k])], solved.modes[k]);
+    EXPECT_EQ(all.shapes[static_cast<std::size_t>(sample[k])], solved.shapes[k]);
   }
   for (std::size_t i = 0; i < start.points_in_world.size(); ++i) {
     EXPECT_LT((all.points_in_world[i] - 1.5 * start.points_in_world[i]).norm(), 1e-9);
-    EXPECT_NEAR(all.modes[i](0, 0), 1.5 * start.points_in_world[i].y() / 10, 0.6);  // of -3 to 3
+    EXPECT_NEAR(all.shapes[i](0, 0), 1.5 * start.points_in_world[i].y() / 10, 0.6);  // of -3 to 3
   }
 }
 

@@ -1,16 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Bundle adjustment of a window in which the scene deforms (Ceres): poses, points and how the points move, together.
+// Bundle adjustment of a window in which the scene deforms: poses, points and how the points move, together.
 //
-// The model is that of low-rank non-rigid structure from motion (Bregler, Hertzmann, Biermann, CVPR 2000): a tissue
-// that breathes, beats or is pushed moves in few ways at a time, so every point follows the same few courses in time,
-// each along a direction of its own (docs/method.md, eq. W1):
+// The low-rank deformation model of non-rigid structure from motion (Bregler, Hertzmann, Biermann, CVPR 2000): a tissue
+// that breathes, beats or is pushed moves in few ways at a time, so its motion is a sum of R basis shapes, each with a
+// coefficient that changes over time (docs/method.md, eq. W1):
 //   X_i(v) = X_i + sum_r c_r(v) m_ir,   c_r(0) = 0
-// R courses c and 3 R numbers a point (its modes m), where a free motion would take 3 numbers a point and view. Modes
-// of neighbors are alike (W3) and small (W4), courses are smooth in time (W5). What is common to all points is the
-// camera's: a uniform motion of the scene and the camera's own cannot be told apart, and their sum is what is found.
-// Scale is free in a monocular window; it stays that of the start (W7).
+// The R temporal coefficients c are common to all points; a point has 3 R numbers of its own (its part m of the basis
+// shapes), where a free motion would take 3 numbers a point and view. Basis shapes are alike at neighboring points (W3)
+// and small (W4), coefficients are smooth in time (W5). A motion common to all points is the camera's: a uniform motion
+// of the scene and the camera's own cannot be told apart, and their sum is what is found. Scale is free in a monocular
+// window; it stays that of the start (W7).
 #pragma once
 
 #include <cstddef>
@@ -37,9 +38,9 @@ struct DeformingObservation {
 struct DeformingWindow {
   std::vector<double> times;                       // of the views, in frames since the reference, ascending from 0
   std::vector<Rigid3> cams_from_world;             // view 0 is the reference: the identity, and it stays so
-  Eigen::MatrixXd courses;                         // R x views, no unit; column 0 is zero
+  Eigen::MatrixXd coefficients;                    // temporal, c_r(v): R x views, no unit; column 0 is zero
   std::vector<Eigen::Vector3d> points_in_world;    // X_i, in the reference view
-  std::vector<Eigen::Matrix3Xd> modes;             // m_ir, 3 x R a point, map units
+  std::vector<Eigen::Matrix3Xd> shapes;            // basis shapes, m_ir: 3 x R a point, map units
   std::vector<DeformingObservation> observations;  // any order
 
   // X_i(v), world frame.
@@ -51,29 +52,29 @@ struct DeformingWindow {
 constexpr int kMaxWindowRank = 4;
 
 struct DeformingWindowOptions {
-  int rank = 3;                      // R; with light one less is tried too
-  double loss_scale_px = 0.15;       // Cauchy loss
-  double gradient_sigma = 0.3;       // of neighbors' modes: standard deviation of their difference by their distance
-  double mode_sigma = 0.2;           // of a mode's components by the median distance
-  double acceleration_sigma = 0.02;  // of a course's second derivative, 1/frame^2
+  int rank = 3;                 // R; with light one less is tried too
+  double loss_scale_px = 0.15;  // Cauchy loss
+  double gradient_sigma = 0.3;  // of neighbors' basis shapes: standard deviation of their difference by their distance
+  double shape_sigma = 0.2;     // of a basis shape's components by the median distance
+  double acceleration_sigma = 0.02;  // of a coefficient's second derivative, 1/frame^2
   double light_sigma = 2.0;          // of log distance from brightness; large, because neighbors err alike
   int neighbors = 6;                 // of the smoothness over the surface
-  int nodes = 16;                    // of the surface, at which modes are free; between them they are interpolated
+  int nodes = 16;                    // of the surface, at which basis shapes are free; between them: interpolated
   int sample_points = 80;            // in each of the two samples that are solved first
   int max_iterations = 12;           // of one solution; a sixth of it for the last
 
   void List(OptionTable& table);  // group "Window"
 };
 
-// Places of the surface with modes of their own, by which those of the points around them are held together (W3).
+// Nodes of the surface with basis shapes of their own, which regularize those of the points around them (W3).
 struct SurfaceNodes {
   std::vector<Eigen::Vector3d> positions;  // world, in the reference
-  Eigen::MatrixXd modes;                   // a column a node: 3 x R, column by column
+  Eigen::MatrixXd shapes;                  // a column a node: 3 x R, column by column
 };
 
 struct DeformingSolution {
   DeformingWindow window;
-  SurfaceNodes nodes;  // none where there are no courses
+  SurfaceNodes nodes;  // none where there are no coefficients
   // Predicted standard deviation of log |X_i|, with noise and deformation of the sizes that were found (W12); relative
   // to the gauge (W7). Infinite where it cannot be computed.
   std::vector<double> log_depth_sigmas;
@@ -92,20 +93,20 @@ struct DeformingSolution {
   double LogDepthSigma(std::size_t point) const;
 };
 
-// Solves the window from a rigid start: `start` has times, poses, points and observations, and no courses. Images alone
-// hardly tell one minimum from another, so there are several solutions to choose from. Two samples of the points are
-// solved each by itself: the courses are first sought in what the rigid scene leaves unexplained, then poses, points,
-// modes and courses are solved for together, with rank R and from there with R - 1; the other points join with the
-// views fixed. The most plausible by images and light is then solved with all points, in at most a sixth of the steps.
-// It is of rank R unless the light_error of rank R - 1 is clearly less; without light R - 1 is not tried. Of a scene
-// that is nearly flat a sample is also solved from the other motion that explains its plane.
+// Solves the window from a rigid start: `start` has times, poses, points and observations, and no coefficients. Images
+// alone hardly tell one minimum from another, so there are several solutions to choose from. Two samples of the points
+// are solved each by itself: the coefficients are first sought in what the rigid scene leaves unexplained, then poses,
+// points, shapes and coefficients are solved for together, with rank R and from there with R - 1; the other points join
+// with the views fixed. The most plausible by images and light is then solved with all points, in at most a sixth of
+// the steps. It is of rank R unless the light_error of rank R - 1 is clearly less; without light R - 1 is not tried. Of
+// a scene that is nearly flat a sample is also solved from the other motion that explains its plane.
 //
 // `threads` never changes the result. Fails with kInvalidArgument for sizes, indices, numbers and options that are
 // none, kInsufficient below three views or twelve points, and kDegenerate when there is no usable step.
 Result<DeformingSolution> SolveDeformingWindow(const DeformingWindow& start, double focal_px,
                                                const DeformingWindowOptions& options, int threads = 1);
 
-// The same of a scene that does not deform: no courses, and no samples. It is also solved by the other motion that
+// The same of a scene that does not deform: no coefficients, and no samples. It is also solved by the other motion that
 // explains the plane nearest to its points, and the one that costs less is taken; sample_sigmas are then of these two,
 // and empty where the other costs clearly more.
 Result<DeformingSolution> SolveRigidWindow(const DeformingWindow& start, double focal_px,
@@ -116,14 +117,14 @@ Result<DeformingSolution> SolveRigidWindow(const DeformingWindow& start, double 
 Result<double> RigidResidualCorrelation(const DeformingWindow& start, double focal_px,
                                         const DeformingWindowOptions& options);
 
-// Poses and courses of more views of a solved window's points, which stay as they are with their modes: `views` has a
-// start of every view's pose and courses. The first view stays as it is. Fails like SolveDeformingWindow.
+// Poses and coefficients of more views of a solved window's points, which stay as they are with their shapes: `views`
+// has a start of every view's pose and coefficients. The first view stays as it is. Fails like SolveDeformingWindow.
 Result<DeformingWindow> LocateDeformingViews(const DeformingWindow& views, double focal_px,
                                              const DeformingWindowOptions& options, int threads = 1);
 
-// A solution whose views were located anew, and more points in it: every point and its modes by itself, with views,
-// courses and nodes held. `joining` are observations of `num_joining` other points, numbered from 0 and ordered by
-// view. They come after the solution's own, and start at the distance and with the modes of those nearest to their
+// A solution whose views were located anew, and more points in it: every point and its shapes by itself, with views,
+// coefficients and nodes held. `joining` are observations of `num_joining` other points, numbered from 0 and ordered by
+// view. They come after the solution's own, and start at the distance and with the shapes of those nearest to their
 // first ray. log_depth_sigmas are by at most eight of the views; sample_sigmas of those that join are their
 // neighbors', and infinite for one that no view sees; the rest is the solution's. `threads` never changes the result.
 // Fails like SolveDeformingWindow.

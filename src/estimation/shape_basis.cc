@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "estimation/mode_basis.h"
+#include "estimation/shape_basis.h"
 
 #include <algorithm>
 #include <cmath>
@@ -22,7 +22,7 @@ SurfaceNodes NodesAt(const std::vector<Eigen::Vector3d>& points_in_world, const 
   return nodes;
 }
 
-ModeSizes SizesOf(const SurfaceNodes& nodes) {
+ShapeSizes SizesOf(const SurfaceNodes& nodes) {
   if (nodes.positions.size() < 2) return {};
   const NeighborLists nearest = NearestNeighbors(nodes.positions, 1);
   double gradients = 0;
@@ -31,10 +31,10 @@ ModeSizes SizesOf(const SurfaceNodes& nodes) {
     const int j = nearest[i].front();
     const double squared = (nodes.positions[i] - nodes.positions[static_cast<std::size_t>(j)]).squaredNorm();
     if (squared > 0.0)
-      gradients += (nodes.modes.col(static_cast<Eigen::Index>(i)) - nodes.modes.col(j)).squaredNorm() / squared;
+      gradients += (nodes.shapes.col(static_cast<Eigen::Index>(i)) - nodes.shapes.col(j)).squaredNorm() / squared;
   }
-  const auto entries = static_cast<double>(nodes.modes.size());
-  return {std::sqrt(nodes.modes.squaredNorm() / entries), std::sqrt(gradients / entries)};
+  const auto entries = static_cast<double>(nodes.shapes.size());
+  return {std::sqrt(nodes.shapes.squaredNorm() / entries), std::sqrt(gradients / entries)};
 }
 
 std::vector<NodesOfPoint> NodesAround(const std::vector<Eigen::Vector3d>& points_in_world,

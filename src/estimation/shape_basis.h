@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Modes that vary smoothly over the surface: what a point's modes are expected to be, from those of the nodes around it
-// (docs/method.md, eq. W3).
+// Basis shapes that vary smoothly over the surface: what they are expected to be at a point, from those of the nodes
+// around it (docs/method.md, eq. W3).
 #pragma once
 
 #include <vector>
@@ -13,16 +13,16 @@
 
 namespace pliant {
 
-// At some of the points, without modes.
+// At some of the points, without basis shapes.
 SurfaceNodes NodesAt(const std::vector<Eigen::Vector3d>& points_in_world, const std::vector<int>& at);
 
-// Root mean squares over the nodes: of a mode's components, and of their difference from those of the nearest other
-// node by the distance to it. 0 where there are no two nodes.
-struct ModeSizes {
+// Root mean squares over the nodes: of a basis shape's components, and of their difference from those of the nearest
+// other node by the distance to it. 0 where there are no two nodes.
+struct ShapeSizes {
   double size = 0;
   double gradient = 0;
 };
-ModeSizes SizesOf(const SurfaceNodes& nodes);
+ShapeSizes SizesOf(const SurfaceNodes& nodes);
 
 struct NodeWeight {
   int node_idx = 0;
