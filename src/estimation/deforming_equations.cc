@@ -31,14 +31,14 @@ DeformingEquations::DeformingEquations(const DeformingTerms& terms, std::vector<
 bool DeformingEquations::Linearize(const DeformingState& state) {
   curvature_.setZero(Size(), Size());
   slope_.setZero(Size());
-  settled_ = 0;
+  eliminated_decrease_ = 0;
   AddPriors(state);
   ParallelFor(
       static_cast<int>(kEquationParts), threads_, [&](int part) { SumPart(static_cast<std::size_t>(part), state); }, 1);
   for (const Sums& part : parts_) {
     curvature_ += part.curvature;
     slope_ += part.slope;
-    settled_ += part.settled;
+    eliminated_decrease_ += part.eliminated_decrease;
   }
   return Factorise();
 }
@@ -68,7 +68,7 @@ void DeformingEquations::SumPart(std::size_t part, const DeformingState& state) 
   Sums& sums = parts_[part];
   sums.curvature.setZero(Size(), Size());
   sums.slope.setZero(Size());
-  sums.settled = 0;
+  sums.eliminated_decrease = 0;
   const std::size_t count = terms_->num_points();
   for (std::size_t i = part * count / kEquationParts; i < (part + 1) * count / kEquationParts; ++i) {
     const PointEquations own = terms_->Linearized(i, state, &points_[i].seen);
@@ -103,10 +103,10 @@ void DeformingEquations::Eliminate(std::size_t point, const PointEquations& own,
     return;
   }
   of.inverse = factors.solve(PointMatrix::Identity(point_size, point_size));
-  const PointVector settled = of.inverse * of.gradient;
-  sums->settled += 0.5 * settled.dot(of.gradient);
+  const PointVector point_step = of.inverse * of.gradient;
+  sums->eliminated_decrease += 0.5 * point_step.dot(of.gradient);
 
-  // What couples a point to a view has two rows, as the observation has: products are taken of those. Views are
+  // What couples a point to a view has two rows, as the observation has: these are multiplied. Views are
   // ascending, the first one is not free.
   const Eigen::Index offset = OffsetPlace();
   const double pull = shapes_size > 0 ? terms_->node_pull(point) : 0.0;
@@ -151,7 +151,7 @@ void DeformingEquations::Eliminate(std::size_t point, const PointEquations& own,
       sums->curvature.row(offset).segment(place, shapes_size) +=
           of_a * of.by_offset * of.inverse.row(2).tail(shapes_size);
     }
-  sums->slope -= ByPoint(point, settled);
+  sums->slope -= ByPoint(point, point_step);
 }
 
 bool DeformingEquations::Factorise() {
@@ -227,7 +227,7 @@ PointVector DeformingEquations::PointStep(std::size_t point, const Eigen::Vector
 }
 
 std::vector<double> DeformingEquations::Variances() const {
-  // Of the whole equations' inverse the column of the gauge, by which the free scale is taken off.
+  // Of the whole equations' inverse the column of the gauge, by which the free scale is removed.
   const Eigen::VectorXd rest_by_scale = -factors_.solve(scale_);
   Eigen::VectorXd by_scale(static_cast<Eigen::Index>(points_.size()));
   for (std::size_t i = 0; i < points_.size(); ++i)

@@ -23,7 +23,7 @@ class DeformingEquations final : public NormalEquations {
   const Eigen::VectorXd& slope() const override { return slope_; }
   Eigen::VectorXd CurvatureTimes(const Eigen::VectorXd& x) const override;
   Eigen::VectorXd CurvatureDiagonal() const override { return curvature_.diagonal(); }
-  double settled() const override { return settled_; }
+  double eliminated_decrease() const override { return eliminated_decrease_; }
   Eigen::VectorXd NewtonStep() const override;
   Eigen::VectorXd WithoutScale(const Eigen::VectorXd& step, const Eigen::VectorXd& metric) const override;
   DeformingState Moved(const DeformingState& state, const Eigen::VectorXd& step) const override;
@@ -43,7 +43,7 @@ class DeformingEquations final : public NormalEquations {
   struct Sums {
     Eigen::MatrixXd curvature;  // the lower triangle
     Eigen::VectorXd slope;
-    double settled = 0;
+    double eliminated_decrease = 0;
   };
 
   void AddPriors(const DeformingState& state);
@@ -70,7 +70,7 @@ class DeformingEquations final : public NormalEquations {
   Eigen::MatrixXd curvature_;  // the lower triangle
   Eigen::VectorXd slope_;
   Eigen::LLT<Eigen::MatrixXd> factors_;
-  double settled_ = 0;
+  double eliminated_decrease_ = 0;
   Eigen::VectorXd scale_;  // what is left of the mean log distance of the gauge's points, by what is left
 };
 

@@ -102,9 +102,9 @@ void DeformingProblem::HoldScale(DeformingState* state) const {
   for (ViewPose& pose : state->poses) pose.translation *= std::exp(change);
 }
 
-// A point by itself, everything else held, one step from where it is at `cost`: what it costs then; nothing where none
-// is better.
-std::optional<double> DeformingProblem::Settled(std::size_t point, double cost, DeformingState* state) const {
+// One step of a point, everything else fixed, from where it is at `cost`: its lower cost then; nothing where no step
+// lowers it.
+std::optional<double> DeformingProblem::StepPoint(std::size_t point, double cost, DeformingState* state) const {
   auto column = state->points.col(static_cast<Eigen::Index>(point));
   const PointVector values = column;
   const PointEquations equations = terms_.Linearized(point, *state, nullptr);
@@ -118,8 +118,8 @@ std::optional<double> DeformingProblem::Settled(std::size_t point, double cost, 
   return std::nullopt;
 }
 
-// From where a point is or where it was before, whichever is better, one step.
-void DeformingProblem::Settle(std::size_t point, const DeformingState& before, DeformingState* state) const {
+// One step of a point, from where it is or where it was before, whichever costs less.
+void DeformingProblem::FollowPoint(std::size_t point, const DeformingState& before, DeformingState* state) const {
   auto column = state->points.col(static_cast<Eigen::Index>(point));
   PointVector values = column;
   auto cost = terms_.PointCost(point, *state);
@@ -130,7 +130,7 @@ void DeformingProblem::Settle(std::size_t point, const DeformingState& before, D
     cost = cost_before;
   }
   column = values;
-  if (cost) Settled(point, *cost, state);
+  if (cost) StepPoint(point, *cost, state);
 }
 
 // The points follow a step of the others: where the linear equations put them, then each by itself.
@@ -140,7 +140,7 @@ DeformingState DeformingProblem::Moved(const DeformingEquations& equations, cons
   ParallelFor(static_cast<int>(terms_.num_points()), threads, [&](int i) {
     const auto point = static_cast<std::size_t>(i);
     moved.points.col(i) += Limited(equations.PointStep(point, step));
-    Settle(point, state_, &moved);
+    FollowPoint(point, state_, &moved);
   });
   HoldScale(&moved);
   return moved;
@@ -152,7 +152,7 @@ Result<double> DeformingProblem::Solve(int max_iterations, int threads) {
                  [&](const Eigen::VectorXd& step) { return Moved(equations, step, threads); });
 }
 
-Result<double> DeformingProblem::SolveViews(int max_iterations, int threads) {
+Result<double> DeformingProblem::OptimizeViews(int max_iterations, int threads) {
   ViewEquations equations(terms_, threads);
   return Descend(max_iterations, &equations,
                  [&](const Eigen::VectorXd& step) { return equations.Moved(state_, step); });
@@ -173,7 +173,7 @@ Result<double> DeformingProblem::Descend(int max_iterations, NormalEquations* eq
     const TrustPlane plane(*equations);
     for (bool accepted = false; !accepted && !done;) {
       const TrustPlane::Step best = plane.Best(radius);
-      const double predicted = equations->settled() - best.change;
+      const double predicted = equations->eliminated_decrease() - best.change;
       const DeformingState candidate = moved(best.step);
       const auto candidate_cost = terms_.Cost(candidate);
       const double gain = candidate_cost && predicted > 0.0 ? (*cost - *candidate_cost) / predicted : -1.0;
@@ -194,7 +194,7 @@ Result<double> DeformingProblem::Descend(int max_iterations, NormalEquations* eq
   return *cost + terms_.unmeasured_cost();
 }
 
-Result<double> DeformingProblem::SettlePoints(int threads) {
+Result<double> DeformingProblem::OptimizePoints(int threads) {
   constexpr int kMaxSteps = 10;
   constexpr double kEnough = 10.0 * kTolerance;
   if (!terms_.Cost(state_)) return NoStart();
@@ -202,7 +202,7 @@ Result<double> DeformingProblem::SettlePoints(int threads) {
     const auto point = static_cast<std::size_t>(i);
     double cost = *terms_.PointCost(point, state_);
     for (int step = 0; step < kMaxSteps; ++step) {
-      const auto after = Settled(point, cost, &state_);
+      const auto after = StepPoint(point, cost, &state_);
       if (!after) break;
       const bool done = cost - *after < kEnough * cost;
       cost = *after;

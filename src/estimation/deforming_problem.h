@@ -35,9 +35,9 @@ class DeformingProblem {
   // `threads` never changes the result.
   Result<double> Solve(int max_iterations, int threads = 1);
   // As Solve, for the views but the first and their coefficients; the points stay.
-  Result<double> SolveViews(int max_iterations, int threads = 1);
+  Result<double> OptimizeViews(int max_iterations, int threads = 1);
   // As Solve, for the points and their shapes alone, each by itself; the rest stays and holds the scale.
-  Result<double> SettlePoints(int threads = 1);
+  Result<double> OptimizePoints(int threads = 1);
 
   DeformingWindow Window() const { return terms_.Window(state_); }
   const Eigen::MatrixXd& NodeShapes() const { return state_.node_shapes; }
@@ -49,8 +49,8 @@ class DeformingProblem {
   std::vector<int> GaugePoints(const DeformingWindow& start, std::size_t candidates) const;
   double GaugeMean(const DeformingState& state) const;
   void HoldScale(DeformingState* state) const;
-  std::optional<double> Settled(std::size_t point, double cost, DeformingState* state) const;
-  void Settle(std::size_t point, const DeformingState& before, DeformingState* state) const;
+  std::optional<double> StepPoint(std::size_t point, double cost, DeformingState* state) const;
+  void FollowPoint(std::size_t point, const DeformingState& before, DeformingState* state) const;
   DeformingState Moved(const DeformingEquations& equations, const Eigen::VectorXd& step, int threads) const;
   using Move = std::function<DeformingState(const Eigen::VectorXd& step)>;
   Result<double> Descend(int max_iterations, NormalEquations* equations, const Move& moved);

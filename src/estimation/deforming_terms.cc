@@ -51,13 +51,13 @@ DeformingTerms::DeformingTerms(const DeformingWindow& start, const SurfaceNodes&
       median_distance_(start.MedianDistance()) {
   for (const Eigen::Vector3d& position : start_.points_in_world)
     charts_.push_back(PointChart::Across(position.normalized()));
-  TakeObservations();
+  PrepareObservations();
   PrepareNodes(nodes);
   PrepareCoefficients();
   PrepareLight();
 }
 
-void DeformingTerms::TakeObservations() {
+void DeformingTerms::PrepareObservations() {
   seen_.resize(start_.points_in_world.size());
   for (const DeformingObservation& observation : start_.observations) {
     const Eigen::Vector3d x = start_.cams_from_world[static_cast<std::size_t>(observation.view_idx)] *

@@ -46,8 +46,8 @@ void MoveViews(const Eigen::VectorXd& step, DeformingState* state);
 // Parts of the points whose equations are summed by themselves, on whatever threads there are.
 constexpr std::size_t kEquationParts = 4;
 
-// A point's observation in units of its standard deviation, its loss taken in: error and derivatives by the point and
-// by the view (a turn of the camera, translation, coefficients).
+// A point's observation in units of its standard deviation, weighted by its loss: error and derivatives by the point
+// and by the view (a turn of the camera, translation, coefficients).
 struct SeenEquations {
   Eigen::Vector2d error;
   SmallMatrix<2, 2, kMaxPointSize> by_point;
@@ -109,7 +109,7 @@ class DeformingTerms {
     bool lit = false;
   };
 
-  // An observation's error in units of its standard deviation, and its derivatives; the loss is taken in.
+  // An observation's error in units of its standard deviation, and its derivatives; weighted by its loss.
   struct Sight {
     Eigen::Vector3d turned;  // the point, turned as the camera
     Eigen::Vector2d error;
@@ -117,7 +117,7 @@ class DeformingTerms {
     Eigen::Matrix<double, 2, 3> by_position;  // in the world
   };
 
-  void TakeObservations();
+  void PrepareObservations();
   void PrepareNodes(const SurfaceNodes& nodes);
   void PrepareCoefficients();
   void PrepareLight();

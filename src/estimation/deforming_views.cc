@@ -8,8 +8,8 @@
 #include <limits>
 #include <utility>
 
-#include "estimation/deforming_judgment.h"
 #include "estimation/deforming_problem.h"
+#include "estimation/deforming_uncertainty.h"
 #include "estimation/shape_basis.h"
 #include "estimation/window_samples.h"
 #include "pliant/base/statistics.h"
@@ -50,9 +50,9 @@ void StartNear(const std::vector<NearPoint>& nearest, const std::vector<Eigen::V
 }
 
 // The solution with the points that join after its own, at their start.
-DeformingSolution WithJoining(const DeformingSolution& located, const std::vector<DeformingObservation>& joining,
+DeformingSolution WithJoining(const DeformingSolution& solution, const std::vector<DeformingObservation>& joining,
                               std::size_t num_joining) {
-  DeformingSolution all = located;
+  DeformingSolution all = solution;
   DeformingWindow& window = all.window;
   const std::size_t known = window.points_in_world.size();
   window.points_in_world.resize(known + num_joining, window.MedianDistance() * Eigen::Vector3d::UnitZ());
@@ -82,37 +82,37 @@ DeformingSolution WithJoining(const DeformingSolution& located, const std::vecto
 
 }  // namespace
 
-Result<DeformingWindow> LocateDeformingViews(const DeformingWindow& views, double focal_px,
-                                             const DeformingWindowOptions& options, int threads) {
+Result<DeformingWindow> OptimizeDeformingViews(const DeformingWindow& views, double focal_px,
+                                               const DeformingWindowOptions& options, int threads) {
   if (Status status = CheckWindow(views); !status.ok()) return status;
   SurfaceNodes none = NodesAt(views.points_in_world, {0});
   none.shapes.setZero(3 * views.coefficients.rows(), 1);
   DeformingProblem problem(views, none, focal_px, options);
-  if (const auto cost = problem.SolveViews(options.max_iterations, threads); !cost.ok()) return cost.status();
+  if (const auto cost = problem.OptimizeViews(options.max_iterations, threads); !cost.ok()) return cost.status();
   return problem.Window();
 }
 
-Result<DeformingSolution> SettleDeformingPoints(const DeformingSolution& located,
-                                                const std::vector<DeformingObservation>& joining, int num_joining,
-                                                double focal_px, const DeformingWindowOptions& options, int threads) {
-  if (Status status = CheckWindow(located.window); !status.ok()) return status;
-  if (Status status = CheckObservations(joining, located.window.times.size(), static_cast<std::size_t>(num_joining));
+Result<DeformingSolution> OptimizeDeformingPoints(const DeformingSolution& solution,
+                                                  const std::vector<DeformingObservation>& joining, int num_joining,
+                                                  double focal_px, const DeformingWindowOptions& options, int threads) {
+  if (Status status = CheckWindow(solution.window); !status.ok()) return status;
+  if (Status status = CheckObservations(joining, solution.window.times.size(), static_cast<std::size_t>(num_joining));
       !status.ok())
     return status;
-  DeformingSolution settled = WithJoining(located, joining, static_cast<std::size_t>(num_joining));
-  DeformingProblem problem(settled.window, settled.nodes, focal_px, options);
-  const auto cost = problem.SettlePoints(threads);
+  DeformingSolution optimized = WithJoining(solution, joining, static_cast<std::size_t>(num_joining));
+  DeformingProblem problem(optimized.window, optimized.nodes, focal_px, options);
+  const auto cost = problem.OptimizePoints(threads);
   if (!cost.ok()) return cost.status();
-  settled.cost = *cost;
-  settled.window = problem.Window();
+  optimized.cost = *cost;
+  optimized.window = problem.Window();
   // So many frames leave a point little to adapt to their noise with.
-  const double noise_px = Median(PointErrorsPx(settled.window, focal_px));
+  const double noise_px = Median(PointErrorsPx(optimized.window, focal_px));
   DeformingSolution some;
-  some.window = InSomeViews(settled.window, kSigmaViews);
-  some.nodes = settled.nodes;
-  settled.log_depth_sigmas =
-      FoundLogDepthSigmas(some, noise_px, located.window.points_in_world.size(), focal_px, options, threads);
-  return settled;
+  some.window = InSomeViews(optimized.window, kSigmaViews);
+  some.nodes = optimized.nodes;
+  optimized.log_depth_sigmas =
+      FoundLogDepthSigmas(some, noise_px, solution.window.points_in_world.size(), focal_px, options, threads);
+  return optimized;
 }
 
 }  // namespace pliant

@@ -14,8 +14,8 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "estimation/deforming_judgment.h"
 #include "estimation/deforming_problem.h"
+#include "estimation/deforming_uncertainty.h"
 #include "estimation/plane_rival.h"
 #include "estimation/ray_residuals.h"
 #include "estimation/shape_basis.h"
@@ -34,7 +34,7 @@ constexpr std::size_t kMinStartPoints = 12;
 constexpr double kLargestMotion = 3.0;
 // A lower rank explains the images less well in any case; it must explain the light better by so much.
 constexpr double kClearlyBetter = 0.85;
-// The last solution, with all points free, starts close to its minimum, and all frames settle its points later: its
+// The last solution, with all points free, starts close to its minimum, and all frames refine its points later: its
 // steps are at most max_iterations by this.
 constexpr int kLastDivisor = 6;
 // Steps of a rigid solution by max_iterations: they are cheap, and one that has not arrived looks like a deforming
@@ -133,9 +133,9 @@ Result<DeformingSolution> Extended(const SampleProblem& common, const DeformingW
   SurfaceNodes nodes = NodesAt(all.points_in_world, common.node_points);
   nodes.shapes = node_shapes;
   DeformingProblem problem(all, nodes, common.focal_px, common.options);
-  const auto cost = problem.SettlePoints();
+  const auto cost = problem.OptimizePoints();
   if (!cost.ok()) return cost.status();
-  return Taken(problem, *cost, nodes);
+  return MakeSolution(problem, *cost, nodes);
 }
 
 SampleSolutions SolveSample(const SampleProblem& common, const PointSample& sample, int rank, int last_rank) {
@@ -156,7 +156,7 @@ SampleSolutions SolveSample(const SampleProblem& common, const PointSample& samp
     if (sample.size() < common.start.points_in_world.size())
       solutions.push_back(Extended(common, part, nodes.shapes, sample));
     else
-      solutions.emplace_back(Taken(problem, *cost, nodes));
+      solutions.emplace_back(MakeSolution(problem, *cost, nodes));
   }
   return solutions;
 }
@@ -178,9 +178,9 @@ const DeformingSolution* MostPlausible(const Solutions& solutions) {
   return best;
 }
 
-// With what a solution says of itself.
-DeformingSolution Judged(DeformingSolution solution, double focal_px, const DeformingWindowOptions& options,
-                         int threads) {
+// With predicted sigmas and the correlation of its residuals.
+DeformingSolution WithUncertainty(DeformingSolution solution, double focal_px, const DeformingWindowOptions& options,
+                                  int threads) {
   solution.log_depth_sigmas = FoundLogDepthSigmas(solution, FoundNoisePx(solution.window, focal_px),
                                                   solution.window.points_in_world.size(), focal_px, options, threads);
   solution.residual_correlation = ResidualCorrelation(solution.window);
@@ -192,7 +192,7 @@ Result<DeformingSolution> SolvedRigid(const DeformingWindow& start, double focal
   DeformingProblem problem(start, {}, focal_px, options);
   const auto cost = problem.Solve(kRigidFactor * options.max_iterations, threads);
   if (!cost.ok()) return cost.status();
-  return Taken(problem, *cost, {});
+  return MakeSolution(problem, *cost, {});
 }
 
 // The sample solved from the other motion of the plane, where the points of the best solution are close to one.
@@ -304,7 +304,7 @@ Result<DeformingSolution> SolveDeformingWindow(const DeformingWindow& start, dou
   DeformingProblem problem(best->window, best->nodes, focal_px, options);
   const auto cost = problem.Solve(std::max(1, options.max_iterations / kLastDivisor), threads);
   if (!cost.ok()) return cost.status();
-  DeformingSolution solution = Judged(Taken(problem, *cost, best->nodes), focal_px, options, threads);
+  DeformingSolution solution = WithUncertainty(MakeSolution(problem, *cost, best->nodes), focal_px, options, threads);
   solution.sample_sigmas = std::move(sigmas);
   return solution;
 }
@@ -326,9 +326,9 @@ Result<DeformingSolution> SolveRigidWindow(const DeformingWindow& start, double 
         rival_sigmas = SigmasBetween({&*solution, &*rival}, start.points_in_world.size());
     }
   }
-  DeformingSolution judged = Judged(std::move(*solution), focal_px, options, threads);
-  judged.sample_sigmas = std::move(rival_sigmas);
-  return judged;
+  DeformingSolution certain = WithUncertainty(std::move(*solution), focal_px, options, threads);
+  certain.sample_sigmas = std::move(rival_sigmas);
+  return certain;
 }
 
 Result<double> RigidResidualCorrelation(const DeformingWindow& start, double focal_px,

@@ -21,8 +21,8 @@ class NormalEquations {
   virtual const Eigen::VectorXd& slope() const = 0;
   virtual Eigen::VectorXd CurvatureTimes(const Eigen::VectorXd& x) const = 0;
   virtual Eigen::VectorXd CurvatureDiagonal() const = 0;
-  // By how much the linear model says that the cost falls when all else alone follows.
-  virtual double settled() const = 0;
+  // By how much the linear model says that the cost falls by the eliminated unknowns alone.
+  virtual double eliminated_decrease() const = 0;
 
   virtual Eigen::VectorXd NewtonStep() const = 0;
   // `step` without its part that changes the scale where that is free, in the metric of the diagonal `metric`.

@@ -73,7 +73,7 @@ class RelativePoseProblem final : public opengv::sac::SampleConsensusProblem<Rig
     std::vector<int> inliers;
     double cost = std::numeric_limits<double>::infinity();  // squared errors, each at most the threshold's
   };
-  Candidate Judged(const Rigid3& motion_of_any_sign) const;
+  Candidate Scored(const Rigid3& motion_of_any_sign) const;
   Rigid3 Refined(const std::vector<int>& inliers, const Rigid3& start) const;
 
   opengv::bearingVectors_t rays0_;
@@ -106,12 +106,12 @@ bool RelativePoseProblem::computeModelCoefficients(const std::vector<int>& sampl
   Candidate best;
   for (const Rigid3& motion : MotionsThrough(sample)) {
     if (!motion.rotation.coeffs().allFinite() || !motion.translation.allFinite()) continue;
-    Candidate candidate = Judged(motion);
+    Candidate candidate = Scored(motion);
     if (candidate.cost < best.cost) best = std::move(candidate);
   }
   if (options_.robust == RobustLoop::kLocal && best.inliers.size() > most_inliers_) {
     for (int round = 0; round < kLocalRounds; ++round) {
-      Candidate refined = Judged(Refined(best.inliers, best.cam1_from_cam0));
+      Candidate refined = Scored(Refined(best.inliers, best.cam1_from_cam0));
       if (!(refined.cost < best.cost)) break;
       best = std::move(refined);
     }
@@ -180,7 +180,7 @@ Rigid3 RelativePoseProblem::MotionWithRotation(const Eigen::Matrix3d& cam0_from_
   return {rotation, svd.matrixV().col(2)};
 }
 
-RelativePoseProblem::Candidate RelativePoseProblem::Judged(const Rigid3& motion_of_any_sign) const {
+RelativePoseProblem::Candidate RelativePoseProblem::Scored(const Rigid3& motion_of_any_sign) const {
   const double largest = std::pow(Threshold(), 2);
   std::vector<std::pair<int, double>> near;  // to the epipolar planes, which are those of both signs
   for (std::size_t i = 0; i < rays0_.size(); ++i)

@@ -75,9 +75,9 @@ std::optional<DeformingWindow> OtherMotionOfThePlane(const DeformingWindow& solv
   }
   const double scale = solved.MedianDistance() / start.MedianDistance();
   for (Eigen::Vector3d& point : start.points_in_world) point *= scale;
-  auto located = LocateDeformingViews(start, focal_px, options);
-  if (!located.ok()) return std::nullopt;
-  return std::move(*located);
+  auto optimized = OptimizeDeformingViews(start, focal_px, options);
+  if (!optimized.ok()) return std::nullopt;
+  return std::move(*optimized);
 }
 
 }  // namespace pliant

@@ -92,7 +92,7 @@ int CountAgreeing(const Rigid3& motion, Rays rays0, Rays rays1, double max_error
   return count;
 }
 
-// The motion of the dominant plane that more points agree with; its sign is settled by the plane being in front.
+// The motion of the dominant plane that more points agree with; its sign puts the plane in front.
 Result<Rigid3> ByHomography(Rays rays0, Rays rays1, double focal_px, double max_error_rad, Random random,
                             const RelativePoseOptions& options) {
   const auto plane = FitHomography(rays0, rays1, focal_px, options.max_error_px, random);

@@ -22,7 +22,7 @@ class ViewEquations final : public NormalEquations {
   const Eigen::VectorXd& slope() const override { return slope_; }
   Eigen::VectorXd CurvatureTimes(const Eigen::VectorXd& x) const override;
   Eigen::VectorXd CurvatureDiagonal() const override { return curvature_.diagonal(); }
-  double settled() const override { return 0.0; }
+  double eliminated_decrease() const override { return 0.0; }
   Eigen::VectorXd NewtonStep() const override { return factors_.solve(-slope_); }
   Eigen::VectorXd WithoutScale(const Eigen::VectorXd& step, const Eigen::VectorXd&) const override { return step; }
   DeformingState Moved(const DeformingState& state, const Eigen::VectorXd& step) const override;

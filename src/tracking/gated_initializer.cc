@@ -122,7 +122,7 @@ class Attempt {
     return rays;
   }
 
-  // Refines `start` by the options on those flagged in `used` and judges all correspondences by the result.
+  // Refines `start` by the options on those flagged in `used` and finds the inliers of the result among all.
   Status Refine(const Rigid3& start, const std::vector<char>& used, PairMotion* motion) const {
     const auto [rays0, rays1] = RaysOf(used);
     const auto refined = PairRefinement(options_.refinement)(start, rays0, rays1, focal_px_, {});
@@ -233,7 +233,7 @@ class Attempt {
                                             Digits(100.0 * outcome_.measured.median_depth_sigma, 1) + " %, at most " +
                                             Digits(100.0 * options_.max_median_depth_sigma, 1) + " % is accepted"};
 
-    const auto poses = LocateFrames(input_, map, std::move(known), {});
+    const auto poses = EstimateFramePoses(input_, map, std::move(known), {});
     if (!poses.ok()) return poses.status();
     outcome_.reason = "first map of " + std::to_string(map.ids.size()) + " points, " +
                       std::to_string(input_.frames.size() - 1) + " frames after the reference, median parallax " +
@@ -275,7 +275,7 @@ class Attempt {
         [&](std::size_t i) { return map->depth_sigmas[i] <= max_relative_sigma * map->positions[i].norm(); }, map);
   }
 
-  // Bundle adjustment over the window. Points the window cannot settle are left out before it: far ones hardly help.
+  // Bundle adjustment over the window. Points that it cannot determine are left out before it: far ones hardly help.
   Status RefineMap(InitialMap* map, std::vector<KnownPose>* known) {
     constexpr double kStartErrorFactor = 2.0;  // the pair's depths carry more noise than the window's
     constexpr double kBeforeWindow = 3.0;      // the window improves a depth by less than this
@@ -289,7 +289,7 @@ class Attempt {
     for (std::size_t k = frames.size() - 1; k-- > 0;) {
       const auto pose =
           k == 0 ? Result<Rigid3>(Rigid3())
-                 : LocateFrame(input_.camera, input_.frames[frames[k]], *map, window.cams_from_world[k + 1], {});
+                 : EstimateFramePose(input_.camera, input_.frames[frames[k]], *map, window.cams_from_world[k + 1], {});
       if (!pose.ok()) return pose.status();
       window.cams_from_world[k] = *pose;
     }
@@ -368,7 +368,7 @@ class GatedInitializer final : public Initializer {
     InitOutcome outcome;
     const int since = static_cast<int>(input.frames.size()) - 1;
     if (since < 1) {
-      outcome.reason = "the reference frame is taken";
+      outcome.reason = "this is the reference frame";
       return outcome;
     }
     Attempt attempt(options_, input, random_, &outcome);

@@ -16,8 +16,8 @@ namespace {
 
 constexpr double kWideLossPx = 10.0;  // frames may lie tens of pixels apart
 
-Result<Rigid3> LocateOnce(const Camera& camera, const InitFrame& frame, const InitialMap& map, const Rigid3& near,
-                          const RefinementOptions& options) {
+Result<Rigid3> EstimateOnce(const Camera& camera, const InitFrame& frame, const InitialMap& map, const Rigid3& near,
+                            const RefinementOptions& options) {
   constexpr std::size_t kMinPoints = 6;
   Window window;
   window.cams_from_world = {Rigid3(), near};
@@ -26,9 +26,9 @@ Result<Rigid3> LocateOnce(const Camera& camera, const InitFrame& frame, const In
   if (window.observations.size() < kMinPoints)
     return Status(ErrorCode::kInsufficient, "frame " + std::to_string(frame.frame_idx) + " sees only " +
                                                 std::to_string(window.observations.size()) + " points of the map");
-  const auto located = RefineWindow(window, camera.MeanFocalLengthPx(), WindowPoints::kFixed, options);
-  if (!located.ok()) return located.status();
-  return located->window.cams_from_world.back();
+  const auto optimized = RefineWindow(window, camera.MeanFocalLengthPx(), WindowPoints::kFixed, options);
+  if (!optimized.ok()) return optimized.status();
+  return optimized->window.cams_from_world.back();
 }
 
 }  // namespace
@@ -113,23 +113,23 @@ std::vector<WindowObservation> ObservationsOf(const Camera& camera, const InitFr
   return observations;
 }
 
-Result<Rigid3> LocateFrameRoughly(const Camera& camera, const InitFrame& frame, const InitialMap& map,
-                                  const Rigid3& near) {
+Result<Rigid3> EstimateFramePoseRoughly(const Camera& camera, const InitFrame& frame, const InitialMap& map,
+                                        const Rigid3& near) {
   constexpr int kFewIterations = 5;
-  return LocateOnce(camera, frame, map, near, {.loss_scale_px = kWideLossPx, .max_iterations = kFewIterations});
+  return EstimateOnce(camera, frame, map, near, {.loss_scale_px = kWideLossPx, .max_iterations = kFewIterations});
 }
 
-Result<Rigid3> LocateFrame(const Camera& camera, const InitFrame& frame, const InitialMap& map, const Rigid3& near,
-                           const RefinementOptions& options) {
+Result<Rigid3> EstimateFramePose(const Camera& camera, const InitFrame& frame, const InitialMap& map,
+                                 const Rigid3& near, const RefinementOptions& options) {
   RefinementOptions wide = options;
   wide.loss_scale_px = kWideLossPx;
-  const auto located = LocateOnce(camera, frame, map, near, wide);
-  if (!located.ok()) return located.status();
-  return LocateOnce(camera, frame, map, *located, options);
+  const auto optimized = EstimateOnce(camera, frame, map, near, wide);
+  if (!optimized.ok()) return optimized.status();
+  return EstimateOnce(camera, frame, map, *optimized, options);
 }
 
-Result<std::vector<Rigid3>> LocateFrames(const InitInput& input, const InitialMap& map, std::vector<KnownPose> known,
-                                         const RefinementOptions& options) {
+Result<std::vector<Rigid3>> EstimateFramePoses(const InitInput& input, const InitialMap& map,
+                                               std::vector<KnownPose> known, const RefinementOptions& options) {
   std::vector<Rigid3> poses(known.size());
   poses.back() = known.back().cam_from_world;
   for (std::size_t k = known.size() - 1; k-- > 0;) {
@@ -137,7 +137,7 @@ Result<std::vector<Rigid3>> LocateFrames(const InitInput& input, const InitialMa
       poses[k] = known[k].cam_from_world;
       continue;
     }
-    const auto pose = LocateFrame(input.camera, input.frames[k], map, poses[k + 1], options);
+    const auto pose = EstimateFramePose(input.camera, input.frames[k], map, poses[k + 1], options);
     if (!pose.ok()) return pose.status();
     poses[k] = *pose;
   }

@@ -59,21 +59,21 @@ std::vector<WindowObservation> ObservationsOf(const Camera& camera, const InitFr
 
 // The pose of a frame against fixed points, from the pose of a frame near it: robust, first with a wide loss, because
 // the frames between may lie tens of pixels apart. Fails with kInsufficient when the frame sees too few of the points.
-Result<Rigid3> LocateFrame(const Camera& camera, const InitFrame& frame, const InitialMap& map, const Rigid3& near,
-                           const RefinementOptions& options);
+Result<Rigid3> EstimateFramePose(const Camera& camera, const InitFrame& frame, const InitialMap& map,
+                                 const Rigid3& near, const RefinementOptions& options);
 
 // The same with the wide loss alone, in few iterations: against points whose depths are rough themselves.
-Result<Rigid3> LocateFrameRoughly(const Camera& camera, const InitFrame& frame, const InitialMap& map,
-                                  const Rigid3& near);
+Result<Rigid3> EstimateFramePoseRoughly(const Camera& camera, const InitFrame& frame, const InitialMap& map,
+                                        const Rigid3& near);
 
 // Poses of all frames. `known[k]` is frame k's pose if it has one; the first and the last must. A frame without one is
-// located from the next later one.
+// starts from the pose of the next later one.
 struct KnownPose {
   bool known = false;
   Rigid3 cam_from_world;
 };
-Result<std::vector<Rigid3>> LocateFrames(const InitInput& input, const InitialMap& map, std::vector<KnownPose> known,
-                                         const RefinementOptions& options);
+Result<std::vector<Rigid3>> EstimateFramePoses(const InitInput& input, const InitialMap& map,
+                                               std::vector<KnownPose> known, const RefinementOptions& options);
 
 // Fills in the frames of an outcome whose points are there and stand still: each at its one position in every frame in
 // which it was seen. `cams_from_world`: one a frame of the input.

@@ -48,7 +48,7 @@ class PaperInitializer final : public Initializer {
     std::vector<KnownPose> known(input.frames.size());
     known.front().known = true;
     known.back() = {true, pose->cam1_from_cam0};
-    const auto poses = LocateFrames(input, map, std::move(known), {});
+    const auto poses = EstimateFramePoses(input, map, std::move(known), {});
     if (!poses.ok()) return poses.status();
     outcome->reason = "first map of " + std::to_string(map.ids.size()) + " points, " +
                       std::to_string(input.frames.size() - 1) + " frames apart, median parallax " +

@@ -20,7 +20,7 @@
 namespace pliant {
 namespace {
 
-constexpr double kMaxErrorRatio = 3.0;  // of a point's error by the median one, where tracks are judged
+constexpr double kMaxErrorRatio = 3.0;  // of a point's error by the median one, where sigmas are scaled with it
 
 // Some of a window's points; `solution` has one each, in the same order.
 struct MapPoints {
@@ -92,8 +92,8 @@ Status EnoughCertain(const InitInput& input, const SolvedWindow& window, const M
 }
 
 // The points in all frames of the input, fixed; poses and coefficients start between those of the solved views.
-Status LocateAllFrames(const InitInput& input, const SolvedWindow& window, const WindowInitOptions& options,
-                       MapPoints* points) {
+Status OptimizeAllViews(const InitInput& input, const SolvedWindow& window, const WindowInitOptions& options,
+                        MapPoints* points) {
   const DeformingWindow& solved = window.solution.window;
   DeformingWindow all;
   all.points_in_world = points->solution.window.points_in_world;
@@ -117,9 +117,9 @@ Status LocateAllFrames(const InitInput& input, const SolvedWindow& window, const
     const auto seen = SeenIn(input, input.frames[k], points->ids, static_cast<int>(k), options);
     all.observations.insert(all.observations.end(), seen.begin(), seen.end());
   }
-  auto located = LocateDeformingViews(all, input.camera.MeanFocalLengthPx(), options.window, input.threads);
-  if (!located.ok()) return located.status();
-  points->solution.window = std::move(*located);
+  auto optimized = OptimizeDeformingViews(all, input.camera.MeanFocalLengthPx(), options.window, input.threads);
+  if (!optimized.ok()) return optimized.status();
+  points->solution.window = std::move(*optimized);
   return Status::Ok();
 }
 
@@ -137,8 +137,8 @@ std::vector<PointId> PointsToJoin(const InitInput& input, const MapPoints& point
 
 // All points anew by all frames, poses and coefficients fixed; others that were seen in enough frames join them. What
 // is uncertain, or wrong between the views of the problem, is then left out.
-Status SettlePoints(const InitInput& input, const MapDemands& demands, const WindowInitOptions& options,
-                    MapPoints* points, std::vector<InitRejectedPoint>* rejected) {
+Status OptimizePoints(const InitInput& input, const MapDemands& demands, const WindowInitOptions& options,
+                      MapPoints* points, std::vector<InitRejectedPoint>* rejected) {
   const double focal_px = input.camera.MeanFocalLengthPx();
   const std::vector<PointId> joining = PointsToJoin(input, *points, options.min_frame_share);
   std::vector<DeformingObservation> observations;
@@ -146,15 +146,15 @@ Status SettlePoints(const InitInput& input, const MapDemands& demands, const Win
     const auto seen = SeenIn(input, input.frames[k], joining, static_cast<int>(k), options);
     observations.insert(observations.end(), seen.begin(), seen.end());
   }
-  auto settled = SettleDeformingPoints(points->solution, observations, static_cast<int>(joining.size()), focal_px,
-                                       options.window, input.threads);
-  if (!settled.ok()) return settled.status();
-  MapPoints all{points->ids, {}, std::move(*settled)};
+  auto optimized = OptimizeDeformingPoints(points->solution, observations, static_cast<int>(joining.size()), focal_px,
+                                           options.window, input.threads);
+  if (!optimized.ok()) return optimized.status();
+  MapPoints all{points->ids, {}, std::move(*optimized)};
   all.ids.insert(all.ids.end(), joining.begin(), joining.end());
   all.depth_sigmas = DepthSigmas(all.solution);
   const std::vector<double> errors_px = PointErrorsPx(all.solution.window, focal_px);
   double max_error_px = options.max_error_px;
-  if (demands.judges_tracks) {
+  if (demands.scales_sigmas_with_error) {
     const double median_px = Median(errors_px);
     max_error_px = std::min(max_error_px, kMaxErrorRatio * median_px);
     for (std::size_t i = 0; i < all.ids.size(); ++i) all.depth_sigmas[i] *= std::max(1.0, errors_px[i] / median_px);
@@ -233,9 +233,9 @@ Status MakeWindowMap(const InitInput& input, const SolvedWindow& window, const M
                                     outcome->measured.median_parallax_deg);
       !status.ok())
     return status;
-  if (Status status = LocateAllFrames(input, window, options, &points); !status.ok()) return status;
+  if (Status status = OptimizeAllViews(input, window, options, &points); !status.ok()) return status;
   std::vector<InitRejectedPoint> rejected;
-  if (Status status = SettlePoints(input, demands, options, &points, &rejected); !status.ok()) return status;
+  if (Status status = OptimizePoints(input, demands, options, &points, &rejected); !status.ok()) return status;
   if (const int left = CountSeen(input.frames.back(), points.ids); left < options.min_points)
     return {ErrorCode::kInsufficient, "only " + std::to_string(left) +
                                           " points agree with the frames between those of the window (at least " +

@@ -18,7 +18,7 @@ struct MapDemands {
   double max_sigma = 0;
   double certain_share = 0;  // of the points still seen, at least
   // Points whose errors stand out are less certain in proportion, and left out where they do so by three times.
-  bool judges_tracks = false;
+  bool scales_sigmas_with_error = false;
 };
 
 // Those of the options: in full, wholly relaxed (1), or between.

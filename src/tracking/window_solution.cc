@@ -75,7 +75,7 @@ void AddNewPoints(const std::vector<DeformingObservation>& observations, const s
   }
 }
 
-// Points where the light puts them, or all at one distance; views located against them as if nothing deformed. A
+// Points where the light puts them, or all at one distance; views optimized against them as if nothing deformed. A
 // point that is first seen in a later view is put there, among those known already. `ids` becomes those of its points.
 Result<DeformingWindow> Start(const InitInput& input, const std::vector<std::size_t>& views,
                               const WindowInitOptions& options, double nominal_depth_mm, std::vector<PointId>* ids) {
@@ -90,7 +90,7 @@ Result<DeformingWindow> Start(const InitInput& input, const std::vector<std::siz
         map.ids.push_back(id);
         map.positions.push_back(position);
       }
-      const auto pose = LocateFrameRoughly(input.camera, frame, map, near);
+      const auto pose = EstimateFramePoseRoughly(input.camera, frame, map, near);
       if (!pose.ok()) return pose.status();
       near = *pose;
     }

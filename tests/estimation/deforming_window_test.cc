@@ -62,7 +62,7 @@ struct Scene {
     return rest + Eigen::Vector3d(0, amplitude_mm * (std::sin(0.12 * Time(view) + phase) - std::sin(phase)), 0);
   }
 
-  // All rays, with noise; every point at one distance, the views located against that.
+  // All rays, with noise; every point at one distance, the views optimized against that.
   DeformingWindow Start(double light_sigma) const {
     Random random(4);
     DeformingWindow start;
@@ -194,18 +194,19 @@ TEST(DeformingWindow, DoesNotDependOnTheNumberOfThreads) {
   EXPECT_EQ(one->light_error, two->light_error);
 }
 
-TEST(DeformingWindow, LocatesTheViewsBetween) {
+TEST(DeformingWindow, OptimizesTheViewsBetween) {
   const Scene scene;
   const auto solution = SolveDeformingWindow(scene.Start(0), kFocalPx, {});
   ASSERT_TRUE(solution.ok());
   DeformingWindow moved = solution->window;
   for (std::size_t v = 1; v < moved.cams_from_world.size(); ++v) moved.cams_from_world[v].translation.x() += 1.0;
   moved.coefficients.rightCols(moved.coefficients.cols() - 1) *= 0.8;
-  const auto located = LocateDeformingViews(moved, kFocalPx, {});
-  ASSERT_TRUE(located.ok());
+  const auto optimized = OptimizeDeformingViews(moved, kFocalPx, {});
+  ASSERT_TRUE(optimized.ok());
   for (std::size_t v = 0; v < moved.cams_from_world.size(); ++v) {
-    EXPECT_LT((located->cams_from_world[v].translation - solution->window.cams_from_world[v].translation).norm(), 0.05);
-    EXPECT_LT((located->points_in_world[v] - solution->window.points_in_world[v]).norm(), kRounding);
+    EXPECT_LT((optimized->cams_from_world[v].translation - solution->window.cams_from_world[v].translation).norm(),
+              0.05);
+    EXPECT_LT((optimized->points_in_world[v] - solution->window.points_in_world[v]).norm(), kRounding);
   }
 }
 
@@ -238,16 +239,16 @@ TEST(DeformingWindow, PointsJoinASolutionWhereTheirRaysAndNeighborsPutThem) {
   const JoiningScene of;
   ASSERT_TRUE(of.solution.ok());
   const auto num_joining = static_cast<int>(of.joining_points.size());
-  const auto settled = SettleDeformingPoints(*of.solution, of.joining, num_joining, kFocalPx, {});
-  ASSERT_TRUE(settled.ok()) << settled.status().message();
-  ASSERT_EQ(settled->window.points_in_world.size(), of.scene.points.size());
-  DeformingWindow in_order = settled->window;
+  const auto optimized = OptimizeDeformingPoints(*of.solution, of.joining, num_joining, kFocalPx, {});
+  ASSERT_TRUE(optimized.ok()) << optimized.status().message();
+  ASSERT_EQ(optimized->window.points_in_world.size(), of.scene.points.size());
+  DeformingWindow in_order = optimized->window;
   std::vector<double> sigmas(of.order.size());
   for (std::size_t k = 0; k < of.order.size(); ++k) {
     const auto i = static_cast<std::size_t>(of.order[k]);
-    in_order.points_in_world[i] = settled->window.points_in_world[k];
-    in_order.shapes[i] = settled->window.shapes[k];
-    sigmas[i] = settled->LogDepthSigma(k);
+    in_order.points_in_world[i] = optimized->window.points_in_world[k];
+    in_order.shapes[i] = optimized->window.shapes[k];
+    sigmas[i] = optimized->LogDepthSigma(k);
   }
   const std::vector<double> errors = of.scene.DepthErrors(in_order, 12);
   std::vector<double> joined;
@@ -260,18 +261,18 @@ TEST(DeformingWindow, PointsJoinASolutionWhereTheirRaysAndNeighborsPutThem) {
   EXPECT_GT(within, 0.95 * num_joining);
   EXPECT_LT(Median(errors), kShape);
   // Views, coefficients and nodes are held.
-  EXPECT_EQ(settled->window.coefficients, of.solution->window.coefficients);
-  EXPECT_EQ(settled->nodes.shapes, of.solution->nodes.shapes);
+  EXPECT_EQ(optimized->window.coefficients, of.solution->window.coefficients);
+  EXPECT_EQ(optimized->nodes.shapes, of.solution->nodes.shapes);
 }
 
 TEST(DeformingWindow, WhatJoinsMakesTheOthersNoLessCertain) {
   const JoiningScene of;
   ASSERT_TRUE(of.solution.ok());
-  const auto alone = SettleDeformingPoints(*of.solution, {}, 0, kFocalPx, {});
+  const auto alone = OptimizeDeformingPoints(*of.solution, {}, 0, kFocalPx, {});
   std::vector<DeformingObservation> in_two_views = of.joining;
   std::erase_if(in_two_views, [](const DeformingObservation& seen) { return seen.view_idx > 5; });
   const auto with =
-      SettleDeformingPoints(*of.solution, in_two_views, static_cast<int>(of.joining_points.size()), kFocalPx, {});
+      OptimizeDeformingPoints(*of.solution, in_two_views, static_cast<int>(of.joining_points.size()), kFocalPx, {});
   ASSERT_TRUE(alone.ok() && with.ok());
   const std::size_t known = alone->log_depth_sigmas.size();
   ASSERT_GT(with->log_depth_sigmas.size(), known);
@@ -286,8 +287,8 @@ TEST(DeformingWindow, JoiningDoesNotDependOnTheNumberOfThreads) {
   const JoiningScene of;
   ASSERT_TRUE(of.solution.ok());
   const auto num_joining = static_cast<int>(of.joining_points.size());
-  const auto one = SettleDeformingPoints(*of.solution, of.joining, num_joining, kFocalPx, {}, 1);
-  const auto two = SettleDeformingPoints(*of.solution, of.joining, num_joining, kFocalPx, {}, 2);
+  const auto one = OptimizeDeformingPoints(*of.solution, of.joining, num_joining, kFocalPx, {}, 1);
+  const auto two = OptimizeDeformingPoints(*of.solution, of.joining, num_joining, kFocalPx, {}, 2);
   ASSERT_TRUE(one.ok() && two.ok());
   EXPECT_EQ(one->window.points_in_world, two->window.points_in_world);
   EXPECT_EQ(one->log_depth_sigmas, two->log_depth_sigmas);
@@ -298,10 +299,10 @@ TEST(DeformingWindow, RefusesAPointThatJoinsFromNowhere) {
   ASSERT_TRUE(of.solution.ok());
   std::vector<DeformingObservation> joining = of.joining;
   joining.front().point_idx = 1000;
-  EXPECT_EQ(SettleDeformingPoints(*of.solution, joining, 40, kFocalPx, {}).status().code(),
+  EXPECT_EQ(OptimizeDeformingPoints(*of.solution, joining, 40, kFocalPx, {}).status().code(),
             ErrorCode::kInvalidArgument);
   // One that is not seen keeps a place, and no certainty.
-  const auto unseen = SettleDeformingPoints(*of.solution, {}, 1, kFocalPx, {});
+  const auto unseen = OptimizeDeformingPoints(*of.solution, {}, 1, kFocalPx, {});
   ASSERT_TRUE(unseen.ok());
   EXPECT_GT(unseen->LogDepthSigma(of.solution->window.points_in_world.size()), 1.0);
 }

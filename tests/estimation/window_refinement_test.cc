@@ -39,7 +39,7 @@ TEST(WindowRefinement, FindsExactPosesAndPointsWithoutNoise) {
   EXPECT_EQ(refined->window.cams_from_world.front().translation, Eigen::Vector3d::Zero());
 }
 
-TEST(WindowRefinement, LocatesPosesOnFixedPoints) {
+TEST(WindowRefinement, EstimatesPosesOnFixedPoints) {
   const SceneOptions options{.num_points = 60};
   const Scene scene = MakeScene(options);
   Window start = TrueWindow(scene, options);

@@ -107,8 +107,8 @@ Result<DeformingSolution> SolveDeformingWindow(const DeformingWindow& start, dou
                                                const DeformingWindowOptions& options, int threads = 1);
 
 // The same of a scene that does not deform: no coefficients, and no samples. It is also solved by the other motion that
-// explains the plane nearest to its points, and the one that costs less is taken; sample_sigmas are then of these two,
-// and empty where the other costs clearly more.
+// explains the plane nearest to its points, and the solution of lower cost is returned; sample_sigmas are then of these
+// two, and empty where the other costs clearly more.
 Result<DeformingSolution> SolveRigidWindow(const DeformingWindow& start, double focal_px,
                                            const DeformingWindowOptions& options, int threads = 1);
 
@@ -119,19 +119,19 @@ Result<double> RigidResidualCorrelation(const DeformingWindow& start, double foc
 
 // Poses and coefficients of more views of a solved window's points, which stay as they are with their shapes: `views`
 // has a start of every view's pose and coefficients. The first view stays as it is. Fails like SolveDeformingWindow.
-Result<DeformingWindow> LocateDeformingViews(const DeformingWindow& views, double focal_px,
-                                             const DeformingWindowOptions& options, int threads = 1);
+Result<DeformingWindow> OptimizeDeformingViews(const DeformingWindow& views, double focal_px,
+                                               const DeformingWindowOptions& options, int threads = 1);
 
-// A solution whose views were located anew, and more points in it: every point and its shapes by itself, with views,
-// coefficients and nodes held. `joining` are observations of `num_joining` other points, numbered from 0 and ordered by
-// view. They come after the solution's own, and start at the distance and with the shapes of those nearest to their
-// first ray. log_depth_sigmas are by at most eight of the views; sample_sigmas of those that join are their
+// A solution with other views, and with more points: every point and its basis shapes are optimized independently, with
+// views, coefficients and nodes fixed. `joining` are observations of `num_joining` other points, numbered from 0 and
+// ordered by view. They come after the solution's own, and start at the distance and with the shapes of those nearest
+// to their first ray. log_depth_sigmas are by at most eight of the views; sample_sigmas of those that join are their
 // neighbors', and infinite for one that no view sees; the rest is the solution's. `threads` never changes the result.
 // Fails like SolveDeformingWindow.
-Result<DeformingSolution> SettleDeformingPoints(const DeformingSolution& located,
-                                                const std::vector<DeformingObservation>& joining, int num_joining,
-                                                double focal_px, const DeformingWindowOptions& options,
-                                                int threads = 1);
+Result<DeformingSolution> OptimizeDeformingPoints(const DeformingSolution& solution,
+                                                  const std::vector<DeformingObservation>& joining, int num_joining,
+                                                  double focal_px, const DeformingWindowOptions& options,
+                                                  int threads = 1);
 
 // Root mean square error of each point over its views but the reference, which the start was made of; infinite for a
 // point that no other view sees.

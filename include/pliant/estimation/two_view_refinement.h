@@ -55,14 +55,14 @@ Result<TwoViewRefinement> RefineTwoView(const Rigid3& start, std::span<const Eig
                                         std::span<const Eigen::Vector3d> rays1, double focal_px,
                                         const RefinementOptions& options);
 
-// The same by OpenGV's optimize_nonlinear on all correspondences alike, then judged as above: an outside rival. It
-// knows no loss, so it is for clean inliers; the options bear on the judgment alone.
+// The same by OpenGV's optimize_nonlinear on all correspondences alike, for comparison. It has no robust loss, so it is
+// for clean inliers; the options are for the cost and the sigmas alone.
 Result<TwoViewRefinement> RefineTwoViewByOpengv(const Rigid3& start, std::span<const Eigen::Vector3d> rays0,
                                                 std::span<const Eigen::Vector3d> rays1, double focal_px,
                                                 const RefinementOptions& options);
 
-// The motion as it is, but for its length, judged on the same terms, to be compared with refined ones. Fails with
-// kInsufficient below six correspondences.
+// Cost and sigmas of the motion as it is, but for its length, to compare it with refined ones. Fails with kInsufficient
+// below six correspondences.
 Result<TwoViewRefinement> AssessTwoView(const Rigid3& cam1_from_cam0, std::span<const Eigen::Vector3d> rays0,
                                         std::span<const Eigen::Vector3d> rays1, double focal_px,
                                         const RefinementOptions& options);

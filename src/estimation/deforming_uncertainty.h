@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// What is said of a solution of a deforming window by itself and by others (docs/method.md, eq. W8 to W12).
+// How certain a solution of a deforming window is, by itself and compared with others (docs/method.md, eq. W8 to W12).
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@
 namespace pliant {
 
 // The problem's present state as a solution, with its light error where there is light, and without sigmas.
-DeformingSolution Taken(const DeformingProblem& problem, double cost, const SurfaceNodes& nodes);
+DeformingSolution MakeSolution(const DeformingProblem& problem, double cost, const SurfaceNodes& nodes);
 
 // (W9) Whether `a` is the more plausible: minus the log likelihood by images and priors, and by the light, if both have
 // it, as one measurement a point of unknown spread.

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "estimation/deforming_judgment.h"
+#include "estimation/deforming_uncertainty.h"
 
 #include <algorithm>
 #include <array>
@@ -18,16 +18,16 @@ namespace {
 // A solution adapts to the noise, and shapes to their priors: what is found of them is so many times too small.
 constexpr double kCaution = 2.0;
 
-// The views by which a window's shape is judged: the first, the middle and the last.
-std::array<int, 3> JudgedViews(const DeformingWindow& window) {
+// The views in which solutions are compared: the first, the middle and the last.
+std::array<int, 3> ComparedViews(const DeformingWindow& window) {
   const int views = static_cast<int>(window.cams_from_world.size());
   return {0, views / 2, views - 1};
 }
 
-// (W8) How far the window's shape in the judged views is from what the light says of it, and from one distance for all;
-// zeros: no light.
+// (W8) How far the window's shape in the compared views is from what the light says of it, and from one distance for
+// all; zeros: no light.
 LightFit CompareWindowWithLight(const DeformingWindow& window) {
-  const std::array<int, 3> views = JudgedViews(window);
+  const std::array<int, 3> views = ComparedViews(window);
   LightFit mean;
   for (const int view : views) {
     std::vector<Eigen::Vector3d> positions;
@@ -48,7 +48,7 @@ LightFit CompareWindowWithLight(const DeformingWindow& window) {
 
 }  // namespace
 
-DeformingSolution Taken(const DeformingProblem& problem, double cost, const SurfaceNodes& nodes) {
+DeformingSolution MakeSolution(const DeformingProblem& problem, double cost, const SurfaceNodes& nodes) {
   DeformingSolution solution;
   solution.cost = cost;
   solution.window = problem.Window();
@@ -72,7 +72,7 @@ std::vector<double> SigmasBetween(const std::vector<const DeformingSolution*>& s
     return std::vector<double>(points, std::numeric_limits<double>::infinity());
   const DeformingWindow& first = samples[0]->window;
   const DeformingWindow& second = samples[1]->window;
-  const std::array<int, 3> views = JudgedViews(first);
+  const std::array<int, 3> views = ComparedViews(first);
   std::vector<double> squares(points, 0.0);
   for (const int view : views) {
     const auto v = static_cast<std::size_t>(view);
