@@ -10,7 +10,7 @@
 
 #include <Eigen/Cholesky>
 
-#include "estimation/trust_plane.h"
+#include "estimation/subspace_dogleg.h"
 #include "estimation/view_equations.h"
 #include "pliant/base/parallel.h"
 #include "pliant/base/statistics.h"
@@ -170,9 +170,9 @@ Result<double> DeformingProblem::Descend(int max_iterations, NormalEquations* eq
   bool done = false;
   for (int iteration = 0; iteration < max_iterations && !done; ++iteration) {
     if (!equations->Linearize(state_)) break;
-    const TrustPlane plane(*equations);
+    const SubspaceDogleg dogleg(*equations);
     for (bool accepted = false; !accepted && !done;) {
-      const TrustPlane::Step best = plane.Best(radius);
+      const SubspaceDogleg::Step best = dogleg.Best(radius);
       const double predicted = equations->eliminated_decrease() - best.change;
       const DeformingState candidate = moved(best.step);
       const auto candidate_cost = terms_.Cost(candidate);

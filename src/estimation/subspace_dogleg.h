@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Where a trust region's step is sought: in the plane of Newton's step and of steepest descent (Byrd, Schnabel, Shultz,
-// Mathematical Programming 1988).
+// The subspace dogleg step of a trust region: the best step in the plane of Newton's step and of steepest descent
+// (Byrd, Schnabel, Shultz, Mathematical Programming 1988).
 #pragma once
 
 #include <Eigen/Core>
@@ -11,9 +11,9 @@
 
 namespace pliant {
 
-class TrustPlane {
+class SubspaceDogleg {
  public:
-  explicit TrustPlane(const NormalEquations& equations);
+  explicit SubspaceDogleg(const NormalEquations& equations);
 
   struct Step {
     Eigen::VectorXd step;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "estimation/trust_plane.h"
+#include "estimation/subspace_dogleg.h"
 
 #include <cmath>
 #include <limits>
@@ -9,7 +9,7 @@
 
 namespace pliant {
 
-TrustPlane::TrustPlane(const NormalEquations& equations) {
+SubspaceDogleg::SubspaceDogleg(const NormalEquations& equations) {
   constexpr double kMinMetric = 1e-6;
   constexpr double kParallel = 1e-12;
   const Eigen::VectorXd metric = equations.CurvatureDiagonal().cwiseMax(kMinMetric);
@@ -26,7 +26,7 @@ TrustPlane::TrustPlane(const NormalEquations& equations) {
   for (int k = 0; k < 2; ++k) curvature_.col(k) = axes_.transpose() * equations.CurvatureTimes(axes_.col(k));
 }
 
-TrustPlane::Step TrustPlane::Best(double radius) const {
+SubspaceDogleg::Step SubspaceDogleg::Best(double radius) const {
   constexpr int kDirections = 360;
   Eigen::Vector2d best(newton_length_, 0.0);
   if (newton_length_ > radius) {
