@@ -29,15 +29,15 @@ DeformingEquations::DeformingEquations(const DeformingTerms& terms, std::vector<
       parts_(kEquationParts) {}
 
 bool DeformingEquations::Linearize(const DeformingState& state) {
-  curvature_.setZero(Size(), Size());
-  slope_.setZero(Size());
+  hessian_.setZero(Size(), Size());
+  gradient_.setZero(Size());
   eliminated_decrease_ = 0;
   AddPriors(state);
   ParallelFor(
       static_cast<int>(kEquationParts), threads_, [&](int part) { SumPart(static_cast<std::size_t>(part), state); }, 1);
   for (const Sums& part : parts_) {
-    curvature_ += part.curvature;
-    slope_ += part.slope;
+    hessian_ += part.hessian;
+    gradient_ += part.gradient;
     eliminated_decrease_ += part.eliminated_decrease;
   }
   return Factorise();
@@ -50,24 +50,24 @@ void DeformingEquations::AddPriors(const DeformingState& state) {
   const Eigen::MatrixXd pull = state.coefficients.rightCols(coefficients.cols()) * coefficients;
   for (Eigen::Index a = 0; a < coefficients.cols(); ++a) {
     const Eigen::Index place = a * terms_->view_size() + 6;
-    slope_.segment(place, rank) += pull.col(a);
+    gradient_.segment(place, rank) += pull.col(a);
     for (Eigen::Index b = 0; b <= a; ++b)
-      curvature_.block(place, b * terms_->view_size() + 6, rank, rank).diagonal().array() += coefficients(a, b);
+      hessian_.block(place, b * terms_->view_size() + 6, rank, rank).diagonal().array() += coefficients(a, b);
   }
   const Eigen::MatrixXd& nodes = terms_->node_hessian();
   const Eigen::MatrixXd node_pull = state.node_shapes * nodes;
   const Eigen::Index size = terms_->shapes_size();
   for (Eigen::Index a = 0; a < nodes.cols(); ++a) {
-    slope_.segment(NodePlace(a), size) += node_pull.col(a);
+    gradient_.segment(NodePlace(a), size) += node_pull.col(a);
     for (Eigen::Index b = 0; b <= a; ++b)
-      curvature_.block(NodePlace(a), NodePlace(b), size, size).diagonal().array() += nodes(a, b);
+      hessian_.block(NodePlace(a), NodePlace(b), size, size).diagonal().array() += nodes(a, b);
   }
 }
 
 void DeformingEquations::SumPart(std::size_t part, const DeformingState& state) {
   Sums& sums = parts_[part];
-  sums.curvature.setZero(Size(), Size());
-  sums.slope.setZero(Size());
+  sums.hessian.setZero(Size(), Size());
+  sums.gradient.setZero(Size());
   sums.eliminated_decrease = 0;
   const std::size_t count = terms_->num_points();
   for (std::size_t i = part * count / kEquationParts; i < (part + 1) * count / kEquationParts; ++i) {
@@ -82,9 +82,8 @@ void DeformingEquations::AddViews(std::size_t point, const std::vector<SeenEquat
   for (std::size_t k = 0; k < seen.size(); ++k) {
     const Eigen::Index place = ViewPlace(terms_->seen(point)[k].view_idx);
     if (place < 0) continue;
-    sums->curvature.block(place, place, size, size).noalias() +=
-        seen[k].by_view.transpose().lazyProduct(seen[k].by_view);
-    sums->slope.segment(place, size).noalias() += seen[k].by_view.transpose().lazyProduct(seen[k].error);
+    sums->hessian.block(place, place, size, size).noalias() += seen[k].by_view.transpose().lazyProduct(seen[k].by_view);
+    sums->gradient.segment(place, size).noalias() += seen[k].by_view.transpose().lazyProduct(seen[k].error);
   }
 }
 
@@ -124,41 +123,41 @@ void DeformingEquations::Eliminate(std::size_t point, const PointEquations& own,
       const SeenEquations& of_b = of.seen[b];
       const Eigen::Matrix2d between = inverse_by_a.transpose().lazyProduct(of_b.by_point.transpose());
       weighted.noalias() = between.lazyProduct(of_b.by_view);
-      sums->curvature.block(place_a, place_b, view_size, view_size).noalias() -=
+      sums->hessian.block(place_a, place_b, view_size, view_size).noalias() -=
           of_a.by_view.transpose().lazyProduct(weighted);
     }
-    sums->curvature.row(offset).segment(place_a, view_size).noalias() -=
+    sums->hessian.row(offset).segment(place_a, view_size).noalias() -=
         of.by_offset * inverse_by_a.row(2).lazyProduct(of_a.by_view);
     if (shapes_size == 0) continue;
     shapes_by_a.noalias() = pull * inverse_by_a.bottomRows(shapes_size).lazyProduct(of_a.by_view);
     for (const NodeWeight& node : terms_->nodes(point))
-      sums->curvature.block(NodePlace(node.node_idx), place_a, shapes_size, view_size) += node.weight * shapes_by_a;
+      sums->hessian.block(NodePlace(node.node_idx), place_a, shapes_size, view_size) += node.weight * shapes_by_a;
   }
 
-  sums->curvature(offset, offset) -= own.by_offset + of.by_offset * of.by_offset * of.inverse(2, 2);
-  sums->slope[offset] += own.offset_gradient;
+  sums->hessian(offset, offset) -= own.by_offset + of.by_offset * of.by_offset * of.inverse(2, 2);
+  sums->gradient[offset] += own.offset_gradient;
   if (shapes_size > 0)
     for (const NodeWeight& a : terms_->nodes(point)) {
       const Eigen::Index place = NodePlace(a.node_idx);
       const double of_a = pull * a.weight;
-      sums->slope.segment(place, shapes_size) -= of_a * own.node_difference;
+      sums->gradient.segment(place, shapes_size) -= of_a * own.node_difference;
       for (const NodeWeight& b : terms_->nodes(point)) {
         if (a.node_idx < b.node_idx) continue;
-        auto block = sums->curvature.block(place, NodePlace(b.node_idx), shapes_size, shapes_size);
+        auto block = sums->hessian.block(place, NodePlace(b.node_idx), shapes_size, shapes_size);
         block.diagonal().array() += of_a * b.weight;
         block -= of_a * pull * b.weight * of.inverse.bottomRightCorner(shapes_size, shapes_size);
       }
-      sums->curvature.row(offset).segment(place, shapes_size) +=
+      sums->hessian.row(offset).segment(place, shapes_size) +=
           of_a * of.by_offset * of.inverse.row(2).tail(shapes_size);
     }
-  sums->slope -= ByPoint(point, point_step);
+  sums->gradient -= ByPoint(point, point_step);
 }
 
 bool DeformingEquations::Factorise() {
-  const Eigen::VectorXd diagonal = curvature_.diagonal();
+  const Eigen::VectorXd diagonal = hessian_.diagonal();
   const bool factorised = WithRidge([&](double factor) {
-    curvature_.diagonal() = factor * diagonal;
-    factors_.compute(curvature_);
+    hessian_.diagonal() = factor * diagonal;
+    factors_.compute(hessian_);
     return factors_.info() == Eigen::Success;
   });
   if (!factorised) return false;
@@ -205,12 +204,12 @@ PointVector DeformingEquations::ByRest(std::size_t point, const Eigen::VectorXd&
   return sum;
 }
 
-Eigen::VectorXd DeformingEquations::CurvatureTimes(const Eigen::VectorXd& x) const {
+Eigen::VectorXd DeformingEquations::HessianTimes(const Eigen::VectorXd& x) const {
   return factors_.matrixL() * Eigen::VectorXd(factors_.matrixU() * x);
 }
 
 Eigen::VectorXd DeformingEquations::NewtonStep() const {
-  const Eigen::VectorXd step = factors_.solve(-slope_);
+  const Eigen::VectorXd step = factors_.solve(-gradient_);
   if (gauge_.empty()) return step;
   const Eigen::VectorXd by_scale = factors_.solve(scale_);
   return step - scale_.dot(step) / scale_.dot(by_scale) * by_scale;

@@ -20,9 +20,9 @@ class DeformingEquations final : public NormalEquations {
   DeformingEquations(const DeformingTerms& terms, std::vector<int> gauge, int threads = 1);
 
   bool Linearize(const DeformingState& state) override;
-  const Eigen::VectorXd& slope() const override { return slope_; }
-  Eigen::VectorXd CurvatureTimes(const Eigen::VectorXd& x) const override;
-  Eigen::VectorXd CurvatureDiagonal() const override { return curvature_.diagonal(); }
+  const Eigen::VectorXd& gradient() const override { return gradient_; }
+  Eigen::VectorXd HessianTimes(const Eigen::VectorXd& x) const override;
+  Eigen::VectorXd HessianDiagonal() const override { return hessian_.diagonal(); }
   double eliminated_decrease() const override { return eliminated_decrease_; }
   Eigen::VectorXd NewtonStep() const override;
   Eigen::VectorXd WithoutScale(const Eigen::VectorXd& step, const Eigen::VectorXd& metric) const override;
@@ -41,8 +41,8 @@ class DeformingEquations final : public NormalEquations {
 
   // What some of the points add.
   struct Sums {
-    Eigen::MatrixXd curvature;  // the lower triangle
-    Eigen::VectorXd slope;
+    Eigen::MatrixXd hessian;  // the lower triangle
+    Eigen::VectorXd gradient;
     double eliminated_decrease = 0;
   };
 
@@ -67,8 +67,8 @@ class DeformingEquations final : public NormalEquations {
   int threads_;
   std::vector<Point> points_;
   std::vector<Sums> parts_;
-  Eigen::MatrixXd curvature_;  // the lower triangle
-  Eigen::VectorXd slope_;
+  Eigen::MatrixXd hessian_;  // the lower triangle
+  Eigen::VectorXd gradient_;
   Eigen::LLT<Eigen::MatrixXd> factors_;
   double eliminated_decrease_ = 0;
   Eigen::VectorXd scale_;  // what is left of the mean log distance of the gauge's points, by what is left

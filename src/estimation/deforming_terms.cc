@@ -20,7 +20,7 @@ constexpr double kMinSpacing = 0.04;
 constexpr double kFarSigma = 100.0;
 constexpr double kLightLoss = 1.5;  // in standard deviations
 
-// Cauchy's loss of a squared error in units of its scale, of unit curvature at zero, and its derivative.
+// Cauchy's loss of a squared error in units of its scale, of unit second derivative at zero, and its derivative.
 double Loss(double squared) { return std::log1p(squared); }
 double LossWeight(double squared) { return 1.0 / (1.0 + squared); }
 
@@ -119,7 +119,8 @@ void DeformingTerms::PrepareLight() {
   std::vector<double> light(charts_.size(), std::numeric_limits<double>::quiet_NaN());
   for (const DeformingObservation& observation : start_.observations)
     if (observation.view_idx == 0) light[static_cast<std::size_t>(observation.point_idx)] = observation.log_light;
-  light = CorrectForSlope(start_.points_in_world, NearestNeighbors(start_.points_in_world, kSlopeNeighbors), light);
+  light =
+      CorrectForInclination(start_.points_in_world, NearestNeighbors(start_.points_in_world, kNormalNeighbors), light);
   const auto log_distance = [&](std::size_t i) { return std::log(start_.points_in_world[i].norm()); };
   std::vector<double> offsets;
   for (std::size_t i = 0; i < light.size(); ++i)

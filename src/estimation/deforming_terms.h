@@ -65,7 +65,7 @@ struct PointEquations {
 
 class DeformingTerms {
  public:
-  // Slopes, sizes and the nodes around a point are those of `start`.
+  // Surface normals, sizes and the nodes around a point are those of `start`.
   DeformingTerms(const DeformingWindow& start, const SurfaceNodes& nodes, double focal_px,
                  const DeformingWindowOptions& options);
 

@@ -16,7 +16,7 @@ namespace {
 // Brightness goes with cosine / distance^2, so log distance with half of log cosine, whatever the response; wet tissue
 // reflects from its coat too, which takes some off.
 constexpr double kCosineExponent = 0.4;
-constexpr double kMinCosine = 0.12;  // steeper slopes are not trusted
+constexpr double kMinCosine = 0.12;  // steeper surfaces are not trusted
 constexpr double kFar = 1.8;         // times the median distance: beyond, dark noise and the ambient light count
 constexpr std::size_t kMinLit = 20;
 
@@ -28,12 +28,12 @@ double MedianDeviation(std::vector<double> values) {
 
 }  // namespace
 
-std::vector<double> CorrectForSlope(const std::vector<Eigen::Vector3d>& positions_in_cam,
-                                    const NeighborLists& neighbors, const std::vector<double>& log_light) {
+std::vector<double> CorrectForInclination(const std::vector<Eigen::Vector3d>& positions_in_cam,
+                                          const NeighborLists& neighbors, const std::vector<double>& log_light) {
   std::vector<double> corrected = log_light;
   for (std::size_t i = 0; i < corrected.size(); ++i) {
     if (!std::isfinite(corrected[i]) || neighbors[i].empty()) continue;
-    const auto count = std::min(neighbors[i].size(), static_cast<std::size_t>(kSlopeNeighbors));
+    const auto count = std::min(neighbors[i].size(), static_cast<std::size_t>(kNormalNeighbors));
     const auto neighbor = [&](std::size_t k) { return positions_in_cam[static_cast<std::size_t>(neighbors[i][k])]; };
     const auto distance = [&](std::size_t k) { return (neighbor(k) - positions_in_cam[i]).norm(); };
     const double reach = distance(count / 2);
@@ -62,7 +62,7 @@ std::vector<double> CorrectForSlope(const std::vector<Eigen::Vector3d>& position
 LightFit CompareWithLight(const std::vector<Eigen::Vector3d>& positions_in_cam, const std::vector<double>& log_light) {
   if (positions_in_cam.empty()) return {};
   const std::vector<double> light =
-      CorrectForSlope(positions_in_cam, NearestNeighbors(positions_in_cam, kSlopeNeighbors), log_light);
+      CorrectForInclination(positions_in_cam, NearestNeighbors(positions_in_cam, kNormalNeighbors), log_light);
   std::vector<double> distances;
   for (const Eigen::Vector3d& position : positions_in_cam) distances.push_back(position.norm());
   const double far = kFar * Median(distances);

@@ -14,7 +14,7 @@
 namespace pliant {
 namespace {
 
-// By the log of its distance from the first camera, and two slopes across its first ray.
+// By the log of its distance from the first camera, and two tangents across its first ray.
 class PlaceProblem {
  public:
   using Scalar = double;

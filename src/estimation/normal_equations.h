@@ -17,10 +17,10 @@ class NormalEquations {
   // Makes them those of `state`, in the memory of those before; false where they have no solution. All below is theirs.
   virtual bool Linearize(const DeformingState& state) = 0;
 
-  // Of the cost as a function of what is solved for, all else following: slope, and curvature L L'.
-  virtual const Eigen::VectorXd& slope() const = 0;
-  virtual Eigen::VectorXd CurvatureTimes(const Eigen::VectorXd& x) const = 0;
-  virtual Eigen::VectorXd CurvatureDiagonal() const = 0;
+  // Of the cost as a function of what is solved for, all else following: gradient, and Gauss-Newton Hessian L L'.
+  virtual const Eigen::VectorXd& gradient() const = 0;
+  virtual Eigen::VectorXd HessianTimes(const Eigen::VectorXd& x) const = 0;
+  virtual Eigen::VectorXd HessianDiagonal() const = 0;
   // By how much the linear model says that the cost falls by the eliminated unknowns alone.
   virtual double eliminated_decrease() const = 0;
 

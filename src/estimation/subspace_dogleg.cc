@@ -12,18 +12,18 @@ namespace pliant {
 SubspaceDogleg::SubspaceDogleg(const NormalEquations& equations) {
   constexpr double kMinMetric = 1e-6;
   constexpr double kParallel = 1e-12;
-  const Eigen::VectorXd metric = equations.CurvatureDiagonal().cwiseMax(kMinMetric);
+  const Eigen::VectorXd metric = equations.HessianDiagonal().cwiseMax(kMinMetric);
   const auto inner = [&](const Eigen::VectorXd& a, const Eigen::VectorXd& b) { return a.cwiseProduct(metric).dot(b); };
   const Eigen::VectorXd newton = equations.NewtonStep();
-  const Eigen::VectorXd downhill = equations.WithoutScale(-equations.slope().cwiseQuotient(metric), metric);
+  const Eigen::VectorXd downhill = equations.WithoutScale(-equations.gradient().cwiseQuotient(metric), metric);
   newton_length_ = std::sqrt(inner(newton, newton));
   axes_.setZero(newton.size(), 2);
   if (newton_length_ > 0.0) axes_.col(0) = newton / newton_length_;
   const Eigen::VectorXd across = downhill - inner(downhill, axes_.col(0)) * axes_.col(0);
   const double length = std::sqrt(inner(across, across));
   if (length > kParallel * std::sqrt(inner(downhill, downhill))) axes_.col(1) = across / length;
-  slope_ = axes_.transpose() * equations.slope();
-  for (int k = 0; k < 2; ++k) curvature_.col(k) = axes_.transpose() * equations.CurvatureTimes(axes_.col(k));
+  gradient_ = axes_.transpose() * equations.gradient();
+  for (int k = 0; k < 2; ++k) hessian_.col(k) = axes_.transpose() * equations.HessianTimes(axes_.col(k));
 }
 
 SubspaceDogleg::Step SubspaceDogleg::Best(double radius) const {

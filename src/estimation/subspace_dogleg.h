@@ -20,15 +20,15 @@ class SubspaceDogleg {
     double length = 0;
     double change = 0;  // of the model's cost; negative
   };
-  // The model's minimum within `radius`; lengths are in the metric of the curvature's diagonal.
+  // The model's minimum within `radius`; lengths are in the metric of the Hessian's diagonal.
   Step Best(double radius) const;
 
  private:
-  double Change(const Eigen::Vector2d& x) const { return slope_.dot(x) + 0.5 * x.dot(curvature_ * x); }
+  double Change(const Eigen::Vector2d& x) const { return gradient_.dot(x) + 0.5 * x.dot(hessian_ * x); }
 
   Eigen::MatrixX2d axes_;  // orthonormal in the metric; the first is along Newton's step
-  Eigen::Vector2d slope_;
-  Eigen::Matrix2d curvature_;
+  Eigen::Vector2d gradient_;
+  Eigen::Matrix2d hessian_;
   double newton_length_ = 0;
 };
 

@@ -14,10 +14,10 @@ bool ViewEquations::Linearize(const DeformingState& state) {
   ParallelFor(
       static_cast<int>(kEquationParts), threads_, [&](int part) { SumPart(static_cast<std::size_t>(part), state); }, 1);
   Assemble(state);
-  const Eigen::VectorXd diagonal = curvature_.diagonal();
+  const Eigen::VectorXd diagonal = hessian_.diagonal();
   return WithRidge([&](double factor) {
-    curvature_.diagonal() = factor * diagonal;
-    factors_.compute(curvature_);
+    hessian_.diagonal() = factor * diagonal;
+    factors_.compute(hessian_);
     return factors_.info() == Eigen::Success;
   });
 }
@@ -26,8 +26,8 @@ void ViewEquations::SumPart(std::size_t part, const DeformingState& state) {
   const Eigen::Index size = terms_->view_size();
   const Eigen::Index views = terms_->num_views() - 1;
   Sums& sums = parts_[part];
-  sums.curvature.assign(static_cast<std::size_t>(views), ViewMatrix::Zero(size, size));
-  sums.slope.setZero(views * size);
+  sums.hessian.assign(static_cast<std::size_t>(views), ViewMatrix::Zero(size, size));
+  sums.gradient.setZero(views * size);
   const std::size_t count = terms_->num_points();
   std::vector<SeenEquations> seen;
   for (std::size_t i = part * count / kEquationParts; i < (part + 1) * count / kEquationParts; ++i) {
@@ -35,9 +35,9 @@ void ViewEquations::SumPart(std::size_t part, const DeformingState& state) {
     for (std::size_t k = 0; k < seen.size(); ++k) {
       const int view = terms_->seen(i)[k].view_idx - 1;
       if (view < 0) continue;
-      sums.curvature[static_cast<std::size_t>(view)].noalias() +=
+      sums.hessian[static_cast<std::size_t>(view)].noalias() +=
           seen[k].by_view.transpose().lazyProduct(seen[k].by_view);
-      sums.slope.segment(view * size, size).noalias() += seen[k].by_view.transpose().lazyProduct(seen[k].error);
+      sums.gradient.segment(view * size, size).noalias() += seen[k].by_view.transpose().lazyProduct(seen[k].error);
     }
   }
 }
@@ -48,34 +48,34 @@ void ViewEquations::Assemble(const DeformingState& state) {
   const Eigen::Index rank = terms_->rank();
   const Eigen::MatrixXd& coefficients = terms_->coefficient_hessian();
   const Eigen::Index views = terms_->num_views() - 1;
-  slope_.setZero(views * size);
+  gradient_.setZero(views * size);
   entries_.clear();
   const auto enter = [&](Eigen::Index row, Eigen::Index col, double value) {
     entries_.emplace_back(static_cast<int>(row), static_cast<int>(col), value);
   };
   for (const Sums& part : parts_) {
-    slope_ += part.slope;
+    gradient_ += part.gradient;
     for (Eigen::Index v = 0; v < views; ++v)
       for (Eigen::Index col = 0; col < size; ++col)
         for (Eigen::Index row = col; row < size; ++row)
-          enter(v * size + row, v * size + col, part.curvature[static_cast<std::size_t>(v)](row, col));
+          enter(v * size + row, v * size + col, part.hessian[static_cast<std::size_t>(v)](row, col));
   }
   if (rank > 0) {
     const Eigen::MatrixXd pull = state.coefficients.rightCols(views) * coefficients;
     for (Eigen::Index a = 0; a < views; ++a) {
-      slope_.segment(a * size + 6, rank) += pull.col(a);
+      gradient_.segment(a * size + 6, rank) += pull.col(a);
       for (Eigen::Index b = 0; b <= a; ++b) {
         if (coefficients(a, b) == 0.0) continue;
         for (Eigen::Index r = 0; r < rank; ++r) enter(a * size + 6 + r, b * size + 6 + r, coefficients(a, b));
       }
     }
   }
-  curvature_.resize(views * size, views * size);
-  curvature_.setFromTriplets(entries_.begin(), entries_.end());
+  hessian_.resize(views * size, views * size);
+  hessian_.setFromTriplets(entries_.begin(), entries_.end());
 }
 
-Eigen::VectorXd ViewEquations::CurvatureTimes(const Eigen::VectorXd& x) const {
-  return curvature_.selfadjointView<Eigen::Lower>() * x;
+Eigen::VectorXd ViewEquations::HessianTimes(const Eigen::VectorXd& x) const {
+  return hessian_.selfadjointView<Eigen::Lower>() * x;
 }
 
 DeformingState ViewEquations::Moved(const DeformingState& state, const Eigen::VectorXd& step) const {

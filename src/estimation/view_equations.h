@@ -19,11 +19,11 @@ class ViewEquations final : public NormalEquations {
   explicit ViewEquations(const DeformingTerms& terms, int threads = 1);
 
   bool Linearize(const DeformingState& state) override;
-  const Eigen::VectorXd& slope() const override { return slope_; }
-  Eigen::VectorXd CurvatureTimes(const Eigen::VectorXd& x) const override;
-  Eigen::VectorXd CurvatureDiagonal() const override { return curvature_.diagonal(); }
+  const Eigen::VectorXd& gradient() const override { return gradient_; }
+  Eigen::VectorXd HessianTimes(const Eigen::VectorXd& x) const override;
+  Eigen::VectorXd HessianDiagonal() const override { return hessian_.diagonal(); }
   double eliminated_decrease() const override { return 0.0; }
-  Eigen::VectorXd NewtonStep() const override { return factors_.solve(-slope_); }
+  Eigen::VectorXd NewtonStep() const override { return factors_.solve(-gradient_); }
   Eigen::VectorXd WithoutScale(const Eigen::VectorXd& step, const Eigen::VectorXd&) const override { return step; }
   DeformingState Moved(const DeformingState& state, const Eigen::VectorXd& step) const override;
 
@@ -31,8 +31,8 @@ class ViewEquations final : public NormalEquations {
   using ViewMatrix = SmallMatrix<Eigen::Dynamic, kMaxViewSize, kMaxViewSize>;
   // What some of the points add: a block a view, but for the first one.
   struct Sums {
-    std::vector<ViewMatrix> curvature;
-    Eigen::VectorXd slope;
+    std::vector<ViewMatrix> hessian;
+    Eigen::VectorXd gradient;
   };
 
   void SumPart(std::size_t part, const DeformingState& state);
@@ -42,8 +42,8 @@ class ViewEquations final : public NormalEquations {
   int threads_;
   std::vector<Sums> parts_;
   std::vector<Eigen::Triplet<double>> entries_;
-  Eigen::SparseMatrix<double> curvature_;  // the lower triangle
-  Eigen::VectorXd slope_;
+  Eigen::SparseMatrix<double> hessian_;  // the lower triangle
+  Eigen::VectorXd gradient_;
   Eigen::SimplicialLLT<Eigen::SparseMatrix<double>, Eigen::Lower, Eigen::NaturalOrdering<int>> factors_;
 };
 

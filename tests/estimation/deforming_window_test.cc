@@ -177,7 +177,7 @@ TEST(DeformingWindow, TheLightTellsSolutionsApart) {
   const auto solution = SolveDeformingWindow(scene.Start(0.1), kFocalPx, {});
   ASSERT_TRUE(solution.ok());
   for (const int view : {0, 6, 12}) EXPECT_LT(Median(scene.DepthErrors(solution->window, view)), kShape) << view;
-  // The median deviation of normal errors, and some of the slope's correction, which this light does not have.
+  // The median deviation of normal errors, and some of the correction for inclination, which this light does not have.
   EXPECT_GT(solution->light_error, 0.5 * 0.1 / kMedianToSigma);
   EXPECT_LT(solution->light_error, 3 * 0.1 / kMedianToSigma);
 }
@@ -365,7 +365,7 @@ TEST(DeformingTerms, GradientsMatchDifferences) {
   }
 }
 
-// Where every point is at its best, the cost's slope by the rest is the same whether the points follow or not.
+// Where every point is at its best, the cost's gradient by the rest is the same whether the points follow or not.
 TEST(DeformingEquations, SlopeMatchesDifferencesWhereThePointsAreSettled) {
   const Unsettled start;
   const DeformingTerms terms(start.window, start.nodes, kFocalPx, {});
@@ -390,12 +390,12 @@ TEST(DeformingEquations, SlopeMatchesDifferencesWhereThePointsAreSettled) {
     ASSERT_TRUE(equations->Linearize(state));
     Random random(5);
     for (int trial = 0; trial < 10; ++trial) {
-      Eigen::VectorXd direction(equations->slope().size());
+      Eigen::VectorXd direction(equations->gradient().size());
       for (double& value : direction) value = random.Normal(1.0);
       const double after = terms.Cost(equations->Moved(state, kStep * direction)).value();
       const double before = terms.Cost(equations->Moved(state, -kStep * direction)).value();
-      EXPECT_NEAR((after - before) / (2 * kStep), equations->slope().dot(direction),
-                  1e-4 * equations->slope().norm() * direction.norm());
+      EXPECT_NEAR((after - before) / (2 * kStep), equations->gradient().dot(direction),
+                  1e-4 * equations->gradient().norm() * direction.norm());
     }
   }
 }
