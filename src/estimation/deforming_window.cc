@@ -16,7 +16,7 @@
 
 #include "estimation/deforming_problem.h"
 #include "estimation/deforming_uncertainty.h"
-#include "estimation/plane_rival.h"
+#include "estimation/planar_ambiguity.h"
 #include "estimation/ray_residuals.h"
 #include "estimation/shape_basis.h"
 #include "estimation/window_samples.h"
@@ -196,14 +196,14 @@ Result<DeformingSolution> SolvedRigid(const DeformingWindow& start, double focal
 }
 
 // The sample solved from the other motion of the plane, where the points of the best solution are close to one.
-std::optional<DeformingSolution> SolvedFromOtherMotion(const DeformingSolution& best, const SampleProblem& common,
-                                                       const PointSample& sample) {
+std::optional<DeformingSolution> SolveFromOtherMotion(const DeformingSolution& best, const SampleProblem& common,
+                                                      const PointSample& sample) {
   if (!NearlyFlat(best.window.points_in_world)) return std::nullopt;
   const int rank = static_cast<int>(best.window.coefficients.rows());
   DeformingWindow rigid = best.window;
   rigid.coefficients.resize(0, rigid.coefficients.cols());
   rigid.shapes.clear();
-  const auto start = OtherMotionOfThePlane(rigid, common.focal_px, common.options);
+  const auto start = OtherPlanarMotion(rigid, common.focal_px, common.options);
   if (!start) return std::nullopt;
   auto solved = SolveSample({*start, common.node_points, common.focal_px, common.options}, sample, rank, rank);
   if (!solved.front().ok()) return std::nullopt;
@@ -293,12 +293,12 @@ Result<DeformingSolution> SolveDeformingWindow(const DeformingWindow& start, dou
   }
   if (best == nullptr) return samples.front().front().status();
   std::vector<double> sigmas = SigmasBetween(of_rank, start.points_in_world.size());
-  const auto rival = SolvedFromOtherMotion(*best, common, point_samples.front());
-  if (rival) {
-    const bool wins = MorePlausible(*rival, *best);
-    if (!ClearlyWorse(wins ? *best : *rival, wins ? *rival : *best))
-      sigmas = LargerOf(std::move(sigmas), SigmasBetween({best, &*rival}, start.points_in_world.size()));
-    if (wins) best = &*rival;
+  const auto other = SolveFromOtherMotion(*best, common, point_samples.front());
+  if (other) {
+    const bool wins = MorePlausible(*other, *best);
+    if (!ClearlyWorse(wins ? *best : *other, wins ? *other : *best))
+      sigmas = LargerOf(std::move(sigmas), SigmasBetween({best, &*other}, start.points_in_world.size()));
+    if (wins) best = &*other;
   }
 
   DeformingProblem problem(best->window, best->nodes, focal_px, options);
@@ -317,17 +317,17 @@ Result<DeformingSolution> SolveRigidWindow(const DeformingWindow& start, double 
   rigid.shapes.clear();
   auto solution = SolvedRigid(rigid, focal_px, options, threads);
   if (!solution.ok()) return solution.status();
-  std::vector<double> rival_sigmas;
-  if (const auto rival_start = OtherMotionOfThePlane(solution->window, focal_px, options)) {
-    auto rival = SolvedRigid(*rival_start, focal_px, options, threads);
-    if (rival.ok()) {
-      if (rival->cost < solution->cost) std::swap(*rival, *solution);
-      if (!ClearlyWorse(*rival, *solution))
-        rival_sigmas = SigmasBetween({&*solution, &*rival}, start.points_in_world.size());
+  std::vector<double> between_sigmas;
+  if (const auto other_start = OtherPlanarMotion(solution->window, focal_px, options)) {
+    auto other = SolvedRigid(*other_start, focal_px, options, threads);
+    if (other.ok()) {
+      if (other->cost < solution->cost) std::swap(*other, *solution);
+      if (!ClearlyWorse(*other, *solution))
+        between_sigmas = SigmasBetween({&*solution, &*other}, start.points_in_world.size());
     }
   }
   DeformingSolution certain = WithUncertainty(std::move(*solution), focal_px, options, threads);
-  certain.sample_sigmas = std::move(rival_sigmas);
+  certain.sample_sigmas = std::move(between_sigmas);
   return certain;
 }
 

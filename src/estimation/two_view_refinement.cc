@@ -111,7 +111,7 @@ Result<TwoViewRefinement> RefineTwoView(const Rigid3& start, Rays rays0, Rays ra
   problem.SetManifold(translation.data(), &translation_manifold);
 
   ceres::Solver::Summary summary;
-  // QR, because a rival's start may leave the normal equations singular, of which Ceres complains on stderr.
+  // QR, because a competing motion's start may leave the normal equations singular, of which Ceres complains on stderr.
   ceres::Solve(RigidSolverOptions(ceres::DENSE_QR, options.max_iterations), &problem, &summary);
   if (!summary.IsSolutionUsable())
     return Status(ErrorCode::kDegenerate, "the refinement of the relative pose found no step that improves it");

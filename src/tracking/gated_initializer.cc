@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // Initialization that waits until two views can carry a map. Cheap tests come first, because an attempt is made in
-// every frame while waiting: counts, then the pure rotation, then RANSAC, refinement, parallax, rival motions; the
+// every frame while waiting: counts, then the pure rotation, then RANSAC, refinement, parallax, competing motions; the
 // map's own refinement over all frames runs once, when everything else has passed.
 #include <algorithm>
 #include <array>
@@ -21,12 +21,12 @@ namespace {
 
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
-// Motions whose translations are this near (and the rotations likewise) are one motion, not rivals.
+// Motions whose translations are this near (and the rotations likewise) are the same motion.
 constexpr double kSameMotionRad = 5.0 / kDegPerRad;
 // Costs are compared as if every point had at least this error: exact data must not turn rounding into evidence.
 constexpr double kMinErrorPx = 0.02;
-// A rival has to put nearly as many points in front of the cameras as the motion it challenges.
-constexpr double kRivalFrontShare = 0.9;
+// A competing motion has to put nearly as many points in front of the cameras as the one it is compared with.
+constexpr double kCompetingFrontShare = 0.9;
 
 struct PairMotion {
   Rigid3 cam1_from_cam0;
@@ -82,7 +82,7 @@ class Attempt {
     if (Status status = MoreThanARotation(); !status.ok()) return status;
     if (Status status = FindMotion(); !status.ok()) return status;
     if (Status status = EnoughParallax(); !status.ok()) return status;
-    if (Status status = BeatRivals(); !status.ok()) return status;
+    if (Status status = CompareCompetingMotions(); !status.ok()) return status;
     return MakeMap();
   }
 
@@ -165,7 +165,7 @@ class Attempt {
 
   // Other motions that may explain the same points: those of the dominant plane, and translations along the axes with
   // the rotation that explains most alone (the ambiguity of small rotations and sideways translations).
-  std::vector<Rigid3> RivalStarts() const {
+  std::vector<Rigid3> CompetingStarts() const {
     std::vector<Rigid3> starts;
     const auto plane =
         FitHomography(matched_.rays0, matched_.rays1, focal_px_, options_.max_error_px, random_.Child("homography"));
@@ -175,42 +175,42 @@ class Attempt {
     return starts;
   }
 
-  // Refines every rival on the same points. A better one takes the motion's place; one that is about as good, and is
-  // another motion, means that the data do not determine the answer, as it is with a plane seen without bumps.
-  Status BeatRivals() {
+  // Refines every competing motion on the same points. A better one replaces the motion; one that is about as good, and
+  // is another motion, means that the data do not determine the answer, as it is with a plane seen without bumps.
+  Status CompareCompetingMotions() {
     const std::vector<char> used = motion_.inliers;
     if (Status status = Refine(motion_.cam1_from_cam0, used, &motion_); !status.ok()) return status;
     const double floor = 0.5 * motion_.num_inliers * kMinErrorPx * kMinErrorPx;
-    std::vector<PairMotion> rivals;
-    for (const Rigid3& start : RivalStarts()) {
-      PairMotion rival;
-      if (!Refine(start, used, &rival).ok()) continue;
-      if (rival.num_inliers < kRivalFrontShare * motion_.num_inliers) continue;
-      if (rival.cost < motion_.cost) std::swap(rival, motion_);
-      rivals.push_back(std::move(rival));
+    std::vector<PairMotion> competing;
+    for (const Rigid3& start : CompetingStarts()) {
+      PairMotion other;
+      if (!Refine(start, used, &other).ok()) continue;
+      if (other.num_inliers < kCompetingFrontShare * motion_.num_inliers) continue;
+      if (other.cost < motion_.cost) std::swap(other, motion_);
+      competing.push_back(std::move(other));
     }
     double ratio = std::numeric_limits<double>::infinity();
-    for (const PairMotion& rival : rivals)
-      if (!SameMotion(rival.cam1_from_cam0, motion_.cam1_from_cam0)) ratio = std::min(ratio, CostRatio(rival, floor));
-    outcome_.measured.rival_cost_ratio = ratio;
+    for (const PairMotion& other : competing)
+      if (!SameMotion(other.cam1_from_cam0, motion_.cam1_from_cam0)) ratio = std::min(ratio, CostRatio(other, floor));
+    outcome_.measured.competing_cost_ratio = ratio;
     outcome_.measured.inliers = motion_.num_inliers;
-    if (ratio >= options_.min_rival_cost_ratio) return EnoughParallax();
+    if (ratio >= options_.min_competing_cost_ratio) return EnoughParallax();
     return {ErrorCode::kDegenerate,
             "a second camera motion fits as well (" + Digits(ratio, 2) + " times the cost, " +
-                Digits(options_.min_rival_cost_ratio, 2) +
+                Digits(options_.min_competing_cost_ratio, 2) +
                 " are needed): the points lie in a plane or move too little; more parallax or relief is needed"};
   }
 
   // Over the pairs that both agree with: an outlier that agrees with one alone, by chance, is no evidence.
-  double CostRatio(const PairMotion& rival, double floor) const {
-    std::vector<char> both = rival.inliers;
+  double CostRatio(const PairMotion& other, double floor) const {
+    std::vector<char> both = other.inliers;
     for (std::size_t i = 0; i < both.size(); ++i) both[i] &= motion_.inliers[i];
     const auto rays = RaysOf(both);
     const auto cost = [&](const PairMotion& motion) {
       const auto assessed = AssessTwoView(motion.cam1_from_cam0, rays[0], rays[1], focal_px_, {});
       return assessed.ok() ? assessed->cost + floor : std::numeric_limits<double>::infinity();
     };
-    return cost(rival) / cost(motion_);
+    return cost(other) / cost(motion_);
   }
 
   Status MakeMap() {

@@ -26,7 +26,7 @@ void MonocularInitOptions::List(OptionTable& table) {
   table.Add("max_rotation_share", &max_rotation_share, "-",
             "gated: wait while a rotation alone explains more of the points than this", 0, 1);
   table.Add("min_inlier_share", &min_inlier_share, "-", "gated: points that agree with one rigid motion", 0, 1);
-  table.Add("min_rival_cost_ratio", &min_rival_cost_ratio, "-",
+  table.Add("min_competing_cost_ratio", &min_competing_cost_ratio, "-",
             "gated: a second motion (a plane has one) must fit worse by this factor", 1, 100);
   table.Add("max_median_depth_sigma", &max_median_depth_sigma, "-",
             "gated: predicted standard deviation of depth by depth, median of the map", 1e-4, 10);

@@ -219,20 +219,20 @@ TEST(MonocularInitializer, RefusesThePlaneOnlyWhereASecondMotionExplainsIt) {
   }
 }
 
-// With motions as the samples gave them, too: rivals are then compared as they are.
-TEST(MonocularInitializer, AsksForRivalsWhateverTheRefinement) {
+// With motions as the samples gave them, too: competing motions are then compared as they are.
+TEST(MonocularInitializer, ComparesCompetingMotionsWhateverTheRefinement) {
   for (const auto& [refinement, name] : EnumNames<RigidRefinement>::kNames) {
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
       SceneOptions options{.surface = Surface::kPlane, .noise_px = 0.3, .seed = seed};
       const InitOutcome ahead = Try(options, {.refinement = refinement});
       EXPECT_EQ(ahead.decision, InitDecision::kWait) << name;
       EXPECT_NE(ahead.reason.find("second camera motion"), std::string::npos) << name << ": " << ahead.reason;
-      const double ratio = ahead.measured.rival_cost_ratio;
-      EXPECT_TRUE(ratio >= 1.0 && ratio < MonocularInitOptions().min_rival_cost_ratio) << name << ": " << ratio;
+      const double ratio = ahead.measured.competing_cost_ratio;
+      EXPECT_TRUE(ratio >= 1.0 && ratio < MonocularInitOptions().min_competing_cost_ratio) << name << ": " << ratio;
       options.motion = Motion::kSideways;
       const InitOutcome aside = Try(options, {.refinement = refinement});
       ASSERT_EQ(aside.decision, InitDecision::kMap) << name << ": " << aside.reason;
-      EXPECT_GE(aside.measured.rival_cost_ratio, MonocularInitOptions().min_rival_cost_ratio) << name;
+      EXPECT_GE(aside.measured.competing_cost_ratio, MonocularInitOptions().min_competing_cost_ratio) << name;
     }
   }
 }

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // The motion between two views from matched unit rays, against outliers, by a method chosen by name: OpenGV's minimal
-// solvers of the essential matrix in OpenGV's loops, OpenCV's MAGSAC as an outside rival, and the two models that hold
+// solvers of the essential matrix in OpenGV's loops, OpenCV's MAGSAC for comparison, and the two models that hold
 // where an essential matrix means nothing, a plane and a rotation (docs/method.md, eq. I1 to I3).
 // Translations have unit length: two views have no scale. The result depends on the inputs and on `random` alone:
 // OpenGV's own generator is held at its fixed seed, and the correspondences are handed to it in an order drawn from

@@ -4,7 +4,7 @@
 // What makes the first map. An initializer is asked once a frame with everything that was followed since the reference
 // frame, and answers: wait, start again from a new reference, or here is the map. It keeps no state between calls.
 // World frame: the reference frame's camera. Unit: mm in the sense of a configured nominal depth (monocular maps), or
-// true mm (stereo, depth). A rival is a file that implements Initializer.
+// true mm (stereo, depth). Another one is a file that implements Initializer.
 #pragma once
 
 #include <array>
@@ -103,11 +103,11 @@ struct InitRejectedPoint {
 struct InitMeasurements {
   int correspondences = 0;
   int inliers = 0;
-  double rotation_only_share = 0;  // correspondences that a pure rotation explains, 0 to 1
-  double median_parallax_deg = 0;  // rotation-compensated
-  double median_depth_sigma = 0;   // sigma_z / z of the map, predicted or more
-  double rival_cost_ratio = 0;     // robust cost of the second best motion over the best one's; infinite: no rival
-  double median_error_px = 0;      // of the map in its frames
+  double rotation_only_share = 0;   // correspondences that a pure rotation explains, 0 to 1
+  double median_parallax_deg = 0;   // rotation-compensated
+  double median_depth_sigma = 0;    // sigma_z / z of the map, predicted or more
+  double competing_cost_ratio = 0;  // robust cost of the second best motion over the best one's; infinite: no second
+  double median_error_px = 0;       // of the map in its frames
 };
 
 struct InitOutcome {

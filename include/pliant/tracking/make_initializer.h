@@ -48,7 +48,7 @@ struct MonocularInitOptions {
   double min_parallax_deg = 2.5;
   double max_rotation_share = 0.8;
   double min_inlier_share = 0.5;
-  double min_rival_cost_ratio = 1.3;
+  double min_competing_cost_ratio = 1.3;
   double max_median_depth_sigma = 0.03;
   // Gated: one point.
   double sigma_px = 0.5;

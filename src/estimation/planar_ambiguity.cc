@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "estimation/plane_rival.h"
+#include "estimation/planar_ambiguity.h"
 
 #include <algorithm>
 #include <cmath>
@@ -48,8 +48,8 @@ bool NearlyFlat(const std::vector<Eigen::Vector3d>& points_in_world) {
   return Median(std::move(distances)) < kFlat;
 }
 
-std::optional<DeformingWindow> OtherMotionOfThePlane(const DeformingWindow& solved, double focal_px,
-                                                     const DeformingWindowOptions& options) {
+std::optional<DeformingWindow> OtherPlanarMotion(const DeformingWindow& solved, double focal_px,
+                                                 const DeformingWindowOptions& options) {
   // Of a ray and the plane's normal; points further out stay at this one's distance.
   constexpr double kMinCosine = 0.1;
   const Rigid3& last = solved.cams_from_world.back();

@@ -19,7 +19,7 @@ bool NearlyFlat(const std::vector<Eigen::Vector3d>& points_in_world);
 
 // A solved rigid window's views and points as they would be by the other motion from the first view to the last that
 // carries the plane nearest to the points: a start for its other minimum. Nothing where there is no other motion.
-std::optional<DeformingWindow> OtherMotionOfThePlane(const DeformingWindow& solved, double focal_px,
-                                                     const DeformingWindowOptions& options);
+std::optional<DeformingWindow> OtherPlanarMotion(const DeformingWindow& solved, double focal_px,
+                                                 const DeformingWindowOptions& options);
 
 }  // namespace pliant
