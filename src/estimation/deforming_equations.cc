@@ -17,7 +17,7 @@ constexpr double kPointRidge = 1e-9;  // relative to the diagonal of a point's o
 
 }  // namespace
 
-Eigen::Index DeformingEquations::NodePlace(Eigen::Index node) const {
+Eigen::Index DeformingEquations::NodeIndex(Eigen::Index node) const {
   return (terms_->num_views() - 1) * terms_->view_size() + node * terms_->shapes_size();
 }
 
@@ -46,21 +46,21 @@ bool DeformingEquations::Linearize(const DeformingState& state) {
 void DeformingEquations::AddPriors(const DeformingState& state) {
   const Eigen::Index rank = terms_->rank();
   if (rank == 0) return;
-  const Eigen::MatrixXd& coefficients = terms_->coefficient_hessian();
-  const Eigen::MatrixXd pull = state.coefficients.rightCols(coefficients.cols()) * coefficients;
-  for (Eigen::Index a = 0; a < coefficients.cols(); ++a) {
-    const Eigen::Index place = a * terms_->view_size() + 6;
-    gradient_.segment(place, rank) += pull.col(a);
+  const Eigen::MatrixXd& of_coefficients = terms_->coefficient_hessian();
+  const Eigen::MatrixXd coefficient_gradient = state.coefficients.rightCols(of_coefficients.cols()) * of_coefficients;
+  for (Eigen::Index a = 0; a < of_coefficients.cols(); ++a) {
+    const Eigen::Index index = a * terms_->view_size() + 6;
+    gradient_.segment(index, rank) += coefficient_gradient.col(a);
     for (Eigen::Index b = 0; b <= a; ++b)
-      hessian_.block(place, b * terms_->view_size() + 6, rank, rank).diagonal().array() += coefficients(a, b);
+      hessian_.block(index, b * terms_->view_size() + 6, rank, rank).diagonal().array() += of_coefficients(a, b);
   }
-  const Eigen::MatrixXd& nodes = terms_->node_hessian();
-  const Eigen::MatrixXd node_pull = state.node_shapes * nodes;
+  const Eigen::MatrixXd& of_nodes = terms_->node_hessian();
+  const Eigen::MatrixXd node_gradient = state.node_shapes * of_nodes;
   const Eigen::Index size = terms_->shapes_size();
-  for (Eigen::Index a = 0; a < nodes.cols(); ++a) {
-    gradient_.segment(NodePlace(a), size) += node_pull.col(a);
+  for (Eigen::Index a = 0; a < of_nodes.cols(); ++a) {
+    gradient_.segment(NodeIndex(a), size) += node_gradient.col(a);
     for (Eigen::Index b = 0; b <= a; ++b)
-      hessian_.block(NodePlace(a), NodePlace(b), size, size).diagonal().array() += nodes(a, b);
+      hessian_.block(NodeIndex(a), NodeIndex(b), size, size).diagonal().array() += of_nodes(a, b);
   }
 }
 
@@ -80,10 +80,10 @@ void DeformingEquations::SumPart(std::size_t part, const DeformingState& state) 
 void DeformingEquations::AddViews(std::size_t point, const std::vector<SeenEquations>& seen, Sums* sums) const {
   const Eigen::Index size = terms_->view_size();
   for (std::size_t k = 0; k < seen.size(); ++k) {
-    const Eigen::Index place = ViewPlace(terms_->seen(point)[k].view_idx);
-    if (place < 0) continue;
-    sums->hessian.block(place, place, size, size).noalias() += seen[k].by_view.transpose().lazyProduct(seen[k].by_view);
-    sums->gradient.segment(place, size).noalias() += seen[k].by_view.transpose().lazyProduct(seen[k].error);
+    const Eigen::Index index = ViewIndex(terms_->seen(point)[k].view_idx);
+    if (index < 0) continue;
+    sums->hessian.block(index, index, size, size).noalias() += seen[k].by_view.transpose().lazyProduct(seen[k].by_view);
+    sums->gradient.segment(index, size).noalias() += seen[k].by_view.transpose().lazyProduct(seen[k].error);
   }
 }
 
@@ -107,47 +107,47 @@ void DeformingEquations::Eliminate(std::size_t point, const PointEquations& own,
 
   // What couples a point to a view has two rows, as the observation has: these are multiplied. Views are
   // ascending, the first one is not free.
-  const Eigen::Index offset = OffsetPlace();
-  const double pull = shapes_size > 0 ? terms_->node_pull(point) : 0.0;
+  const Eigen::Index offset = OffsetIndex();
+  const double information = shapes_size > 0 ? terms_->node_information(point) : 0.0;
   SmallMatrix<Eigen::Dynamic, kMaxPointSize, 2> inverse_by_a(point_size, 2);
   SmallMatrix<2, 2, kMaxViewSize> weighted(2, view_size);
   SmallMatrix<Eigen::Dynamic, kMaxPointSize, kMaxViewSize> shapes_by_a(shapes_size, view_size);
   for (std::size_t a = 0; a < of.seen.size(); ++a) {
-    const Eigen::Index place_a = ViewPlace(terms_->seen(point)[a].view_idx);
-    if (place_a < 0) continue;
+    const Eigen::Index index_a = ViewIndex(terms_->seen(point)[a].view_idx);
+    if (index_a < 0) continue;
     const SeenEquations& of_a = of.seen[a];
     inverse_by_a.noalias() = of.inverse.lazyProduct(of_a.by_point.transpose());
     for (std::size_t b = 0; b <= a; ++b) {
-      const Eigen::Index place_b = ViewPlace(terms_->seen(point)[b].view_idx);
-      if (place_b < 0) continue;
+      const Eigen::Index index_b = ViewIndex(terms_->seen(point)[b].view_idx);
+      if (index_b < 0) continue;
       const SeenEquations& of_b = of.seen[b];
       const Eigen::Matrix2d between = inverse_by_a.transpose().lazyProduct(of_b.by_point.transpose());
       weighted.noalias() = between.lazyProduct(of_b.by_view);
-      sums->hessian.block(place_a, place_b, view_size, view_size).noalias() -=
+      sums->hessian.block(index_a, index_b, view_size, view_size).noalias() -=
           of_a.by_view.transpose().lazyProduct(weighted);
     }
-    sums->hessian.row(offset).segment(place_a, view_size).noalias() -=
+    sums->hessian.row(offset).segment(index_a, view_size).noalias() -=
         of.by_offset * inverse_by_a.row(2).lazyProduct(of_a.by_view);
     if (shapes_size == 0) continue;
-    shapes_by_a.noalias() = pull * inverse_by_a.bottomRows(shapes_size).lazyProduct(of_a.by_view);
+    shapes_by_a.noalias() = information * inverse_by_a.bottomRows(shapes_size).lazyProduct(of_a.by_view);
     for (const NodeWeight& node : terms_->nodes(point))
-      sums->hessian.block(NodePlace(node.node_idx), place_a, shapes_size, view_size) += node.weight * shapes_by_a;
+      sums->hessian.block(NodeIndex(node.node_idx), index_a, shapes_size, view_size) += node.weight * shapes_by_a;
   }
 
   sums->hessian(offset, offset) -= own.by_offset + of.by_offset * of.by_offset * of.inverse(2, 2);
   sums->gradient[offset] += own.offset_gradient;
   if (shapes_size > 0)
     for (const NodeWeight& a : terms_->nodes(point)) {
-      const Eigen::Index place = NodePlace(a.node_idx);
-      const double of_a = pull * a.weight;
-      sums->gradient.segment(place, shapes_size) -= of_a * own.node_difference;
+      const Eigen::Index index = NodeIndex(a.node_idx);
+      const double of_a = information * a.weight;
+      sums->gradient.segment(index, shapes_size) -= of_a * own.node_difference;
       for (const NodeWeight& b : terms_->nodes(point)) {
         if (a.node_idx < b.node_idx) continue;
-        auto block = sums->hessian.block(place, NodePlace(b.node_idx), shapes_size, shapes_size);
+        auto block = sums->hessian.block(index, NodeIndex(b.node_idx), shapes_size, shapes_size);
         block.diagonal().array() += of_a * b.weight;
-        block -= of_a * pull * b.weight * of.inverse.bottomRightCorner(shapes_size, shapes_size);
+        block -= of_a * information * b.weight * of.inverse.bottomRightCorner(shapes_size, shapes_size);
       }
-      sums->hessian.row(offset).segment(place, shapes_size) +=
+      sums->hessian.row(offset).segment(index, shapes_size) +=
           of_a * of.by_offset * of.inverse.row(2).tail(shapes_size);
     }
   sums->gradient -= ByPoint(point, point_step);
@@ -173,16 +173,16 @@ Eigen::VectorXd DeformingEquations::ByPoint(std::size_t point, const PointVector
   const Point& of = points_[point];
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(Size());
   for (std::size_t k = 0; k < of.seen.size(); ++k) {
-    const Eigen::Index place = ViewPlace(terms_->seen(point)[k].view_idx);
-    if (place < 0) continue;
+    const Eigen::Index index = ViewIndex(terms_->seen(point)[k].view_idx);
+    if (index < 0) continue;
     const Eigen::Vector2d seen = of.seen[k].by_point.lazyProduct(factor);
-    sum.segment(place, terms_->view_size()).noalias() += of.seen[k].by_view.transpose().lazyProduct(seen);
+    sum.segment(index, terms_->view_size()).noalias() += of.seen[k].by_view.transpose().lazyProduct(seen);
   }
   if (shapes_size > 0)
     for (const NodeWeight& node : terms_->nodes(point))
-      sum.segment(NodePlace(node.node_idx), shapes_size) -=
-          terms_->node_pull(point) * node.weight * factor.tail(shapes_size);
-  sum[OffsetPlace()] += of.by_offset * factor[2];
+      sum.segment(NodeIndex(node.node_idx), shapes_size) -=
+          terms_->node_information(point) * node.weight * factor.tail(shapes_size);
+  sum[OffsetIndex()] += of.by_offset * factor[2];
   return sum;
 }
 
@@ -191,16 +191,16 @@ PointVector DeformingEquations::ByRest(std::size_t point, const Eigen::VectorXd&
   const Point& of = points_[point];
   PointVector sum = PointVector::Zero(terms_->point_size());
   for (std::size_t k = 0; k < of.seen.size(); ++k) {
-    const Eigen::Index place = ViewPlace(terms_->seen(point)[k].view_idx);
-    if (place < 0) continue;
-    const Eigen::Vector2d seen = of.seen[k].by_view.lazyProduct(step.segment(place, terms_->view_size()));
+    const Eigen::Index index = ViewIndex(terms_->seen(point)[k].view_idx);
+    if (index < 0) continue;
+    const Eigen::Vector2d seen = of.seen[k].by_view.lazyProduct(step.segment(index, terms_->view_size()));
     sum.noalias() += of.seen[k].by_point.transpose().lazyProduct(seen);
   }
   if (shapes_size > 0)
     for (const NodeWeight& node : terms_->nodes(point))
       sum.tail(shapes_size) -=
-          terms_->node_pull(point) * node.weight * step.segment(NodePlace(node.node_idx), shapes_size);
-  sum[2] += of.by_offset * step[OffsetPlace()];
+          terms_->node_information(point) * node.weight * step.segment(NodeIndex(node.node_idx), shapes_size);
+  sum[2] += of.by_offset * step[OffsetIndex()];
   return sum;
 }
 
@@ -252,8 +252,8 @@ DeformingState DeformingEquations::Moved(const DeformingState& state, const Eige
   DeformingState moved = state;
   MoveViews(step, &moved);
   for (Eigen::Index n = 0; n < moved.node_shapes.cols(); ++n)
-    moved.node_shapes.col(n) += step.segment(NodePlace(n), terms_->shapes_size());
-  moved.light_offset += step[OffsetPlace()];
+    moved.node_shapes.col(n) += step.segment(NodeIndex(n), terms_->shapes_size());
+  moved.light_offset += step[OffsetIndex()];
   return moved;
 }
 

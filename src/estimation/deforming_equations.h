@@ -34,10 +34,10 @@ class DeformingEquations final : public NormalEquations {
   std::vector<double> Variances() const;
 
  private:
-  Eigen::Index ViewPlace(int view_idx) const { return (view_idx - 1) * terms_->view_size(); }  // negative: not free
-  Eigen::Index NodePlace(Eigen::Index node) const;
-  Eigen::Index OffsetPlace() const { return NodePlace(terms_->num_nodes()); }
-  Eigen::Index Size() const { return OffsetPlace() + 1; }
+  Eigen::Index ViewIndex(int view_idx) const { return (view_idx - 1) * terms_->view_size(); }  // negative: not free
+  Eigen::Index NodeIndex(Eigen::Index node) const;
+  Eigen::Index OffsetIndex() const { return NodeIndex(terms_->num_nodes()); }
+  Eigen::Index Size() const { return OffsetIndex() + 1; }
 
   // What some of the points add.
   struct Sums {

@@ -14,7 +14,7 @@
 namespace pliant {
 namespace {
 
-// Places nearer to each other than this share of the median distance are compared as if they were this far apart.
+// Points nearer to each other than this share of the median distance are compared as if they were this far apart.
 constexpr double kMinSpacing = 0.04;
 // Without light, a prior this weak keeps the depth of a point that nothing determines from running away.
 constexpr double kFarSigma = 100.0;
@@ -32,13 +32,13 @@ double LightWeight(double error) { return LossWeight(std::pow(error / kLightLoss
 
 void MoveViews(const Eigen::VectorXd& step, DeformingState* state) {
   const Eigen::Index rank = state->coefficients.rows();
-  Eigen::Index place = 0;
+  Eigen::Index index = 0;
   for (std::size_t v = 1; v < state->poses.size(); ++v) {
     ViewPose& pose = state->poses[v];
-    pose.rotation = RotationExp(step.segment<3>(place)).toRotationMatrix() * pose.rotation;
-    pose.translation += step.segment<3>(place + 3);
-    if (rank > 0) state->coefficients.col(static_cast<Eigen::Index>(v)) += step.segment(place + 6, rank);
-    place += 6 + rank;
+    pose.rotation = RotationExp(step.segment<3>(index)).toRotationMatrix() * pose.rotation;
+    pose.translation += step.segment<3>(index + 3);
+    if (rank > 0) state->coefficients.col(static_cast<Eigen::Index>(v)) += step.segment(index + 6, rank);
+    index += 6 + rank;
   }
 }
 
@@ -80,7 +80,7 @@ void DeformingTerms::PrepareNodes(const SurfaceNodes& nodes) {
   const auto information = [&](double distance) {
     return 1.0 / std::pow(options_.gradient_sigma * std::max(distance, kMinSpacing * median_distance_), 2);
   };
-  for (const NodesOfPoint& around : around_) node_pull_.push_back(information(around.distance));
+  for (const NodesOfPoint& around : around_) node_information_.push_back(information(around.distance));
   // A node stands for the points around it.
   const auto count = static_cast<Eigen::Index>(nodes.positions.size());
   const double share = static_cast<double>(charts_.size()) / static_cast<double>(count);
@@ -188,7 +188,7 @@ std::optional<double> DeformingTerms::PointCost(std::size_t point, const Deformi
   const Light& light = lights_[point];
   const double error = (column[2] - light.log_distance - state.light_offset) / light.sigma;
   twice += light.lit ? LightLoss(error) : error * error;
-  if (rank_ > 0) twice += node_pull_[point] * NodeDifference(point, state).squaredNorm();
+  if (rank_ > 0) twice += node_information_[point] * NodeDifference(point, state).squaredNorm();
   if (!std::isfinite(twice)) return std::nullopt;
   return 0.5 * twice;
 }
@@ -285,8 +285,8 @@ PointEquations DeformingTerms::Linearized(std::size_t point, const DeformingStat
   equations.offset_gradient = -weight * error;
   if (rank_ > 0) {
     equations.node_difference = NodeDifference(point, state);
-    equations.own.diagonal().tail(shapes_size()).array() += node_pull_[point];
-    equations.gradient.tail(shapes_size()) += node_pull_[point] * equations.node_difference;
+    equations.own.diagonal().tail(shapes_size()).array() += node_information_[point];
+    equations.gradient.tail(shapes_size()) += node_information_[point] * equations.node_difference;
   }
   return equations;
 }

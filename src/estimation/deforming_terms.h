@@ -85,8 +85,10 @@ class DeformingTerms {
   Eigen::Index point_size() const { return 3 + 3 * rank_; }
   const std::vector<Seen>& seen(std::size_t point) const { return seen_[point]; }  // by view
   const std::vector<NodeWeight>& nodes(std::size_t point) const { return around_[point].weights; }
-  double node_pull(std::size_t point) const { return node_pull_[point]; }  // 1 / variance of node_difference
-  const Eigen::MatrixXd& node_hessian() const { return node_hessian_; }    // (W3), (W4) of one component, nodes square
+  double node_information(std::size_t point) const {
+    return node_information_[point];
+  }                                                                      // 1 / variance of node_difference
+  const Eigen::MatrixXd& node_hessian() const { return node_hessian_; }  // (W3), (W4) of one component, nodes square
   const Eigen::MatrixXd& coefficient_hessian() const { return coefficient_hessian_; }  // (W5), all views but the first
   double unmeasured_cost() const;  // of the observations of which no point is in front at the start
 
@@ -137,7 +139,7 @@ class DeformingTerms {
   std::vector<std::vector<Seen>> seen_;
   int unmeasured_ = 0;
   std::vector<NodesOfPoint> around_;
-  std::vector<double> node_pull_;
+  std::vector<double> node_information_;
   Eigen::MatrixXd node_shapes_;  // at the start
   Eigen::MatrixXd node_hessian_;
   Eigen::MatrixXd coefficient_hessian_;

@@ -161,13 +161,13 @@ SampleSolutions SolveSample(const SampleProblem& common, const PointSample& samp
   return solutions;
 }
 
-// The samples' solutions with this place in their lists; null where there is none.
+// The samples' solutions with this index in their lists; null where there is none.
 using Solutions = std::vector<const DeformingSolution*>;
 
-Solutions SolutionsAt(std::size_t place, const std::vector<SampleSolutions>& samples) {
+Solutions SolutionsAt(std::size_t index, const std::vector<SampleSolutions>& samples) {
   Solutions found;
   for (const SampleSolutions& solutions : samples)
-    found.push_back(place < solutions.size() && solutions[place].ok() ? &*solutions[place] : nullptr);
+    found.push_back(index < solutions.size() && solutions[index].ok() ? &*solutions[index] : nullptr);
   return found;
 }
 

@@ -15,13 +15,13 @@ namespace pliant {
 namespace {
 
 // By the log of its distance from the first camera, and two tangents across its first ray.
-class PlaceProblem {
+class TriangulationProblem {
  public:
   using Scalar = double;
   enum { NUM_RESIDUALS = Eigen::Dynamic, NUM_PARAMETERS = 3 };
   using Jacobian = Eigen::Matrix<double, Eigen::Dynamic, 3>;
 
-  PlaceProblem(std::span<const MovingPointView> views, double noise_rad, double distance)
+  TriangulationProblem(std::span<const MovingPointView> views, double noise_rad, double distance)
       : views_(views), origin_(views.front().cam_from_world.OriginInSource()) {
     const Eigen::Matrix3d world_from_cam = views.front().cam_from_world.RotationMatrix().transpose();
     axes_.col(0) = world_from_cam * views.front().ray;
@@ -79,23 +79,24 @@ class PlaceProblem {
 
 }  // namespace
 
-Result<MovingPoint> PlaceMovingPoint(std::span<const MovingPointView> views, double start_distance, double noise_rad) {
-  if (views.size() < 2) return {ErrorCode::kInsufficient, "the place of a point takes at least two views"};
+Result<MovingPoint> TriangulateMovingPoint(std::span<const MovingPointView> views, double start_distance,
+                                           double noise_rad) {
+  if (views.size() < 2) return {ErrorCode::kInsufficient, "triangulating a moving point takes at least two views"};
   if (!(start_distance > 0.0) || !(noise_rad > 0.0))
-    return {ErrorCode::kInvalidArgument, "the place of a point takes a distance and a noise above 0"};
+    return {ErrorCode::kInvalidArgument, "triangulating a moving point takes a distance and a noise above 0"};
   Eigen::Vector3d x(std::log(start_distance), 0.0, 0.0);
   const auto outside = [&] { return !x.allFinite() || std::abs(x[0] - std::log(start_distance)) > 5.0; };
   Eigen::Matrix3d information;
   double squares = 0;
   for (int round = 0; round < 2; ++round) {
-    PlaceProblem problem(views, noise_rad, std::exp(x[0]));
+    TriangulationProblem problem(views, noise_rad, std::exp(x[0]));
     if (round > 0) problem.Reweight(x);
-    ceres::TinySolver<PlaceProblem> solver;
+    ceres::TinySolver<TriangulationProblem> solver;
     solver.options.max_num_iterations = 20;
     solver.Solve(problem, &x);
     if (outside()) return {ErrorCode::kDegenerate, "the views do not bound the point's distance"};
     Eigen::VectorXd residuals(problem.NumResiduals());
-    PlaceProblem::Jacobian jacobian(problem.NumResiduals(), 3);
+    TriangulationProblem::Jacobian jacobian(problem.NumResiduals(), 3);
     if (!problem(x.data(), residuals.data(), jacobian.data()))
       return {ErrorCode::kDegenerate, "the point is not in front of all its views"};
     information = jacobian.transpose() * jacobian;
@@ -106,7 +107,7 @@ Result<MovingPoint> PlaceMovingPoint(std::span<const MovingPointView> views, dou
   if (factor.info() != Eigen::Success || !factor.isPositive() || !(variance > 0.0) || !std::isfinite(variance))
     return {ErrorCode::kDegenerate, "the views do not bound the point's distance"};
   MovingPoint point;
-  point.position = PlaceProblem(views, noise_rad, start_distance).Position(x.data());
+  point.position = TriangulationProblem(views, noise_rad, start_distance).Position(x.data());
   point.log_distance_sigma = std::sqrt(variance);
   point.rms = std::sqrt(squares / static_cast<double>(2 * views.size()));
   return point;

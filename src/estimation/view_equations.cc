@@ -46,7 +46,7 @@ void ViewEquations::SumPart(std::size_t part, const DeformingState& state) {
 void ViewEquations::Assemble(const DeformingState& state) {
   const Eigen::Index size = terms_->view_size();
   const Eigen::Index rank = terms_->rank();
-  const Eigen::MatrixXd& coefficients = terms_->coefficient_hessian();
+  const Eigen::MatrixXd& of_coefficients = terms_->coefficient_hessian();
   const Eigen::Index views = terms_->num_views() - 1;
   gradient_.setZero(views * size);
   entries_.clear();
@@ -61,12 +61,12 @@ void ViewEquations::Assemble(const DeformingState& state) {
           enter(v * size + row, v * size + col, part.hessian[static_cast<std::size_t>(v)](row, col));
   }
   if (rank > 0) {
-    const Eigen::MatrixXd pull = state.coefficients.rightCols(views) * coefficients;
+    const Eigen::MatrixXd coefficient_gradient = state.coefficients.rightCols(views) * of_coefficients;
     for (Eigen::Index a = 0; a < views; ++a) {
-      gradient_.segment(a * size + 6, rank) += pull.col(a);
+      gradient_.segment(a * size + 6, rank) += coefficient_gradient.col(a);
       for (Eigen::Index b = 0; b <= a; ++b) {
-        if (coefficients(a, b) == 0.0) continue;
-        for (Eigen::Index r = 0; r < rank; ++r) enter(a * size + 6 + r, b * size + 6 + r, coefficients(a, b));
+        if (of_coefficients(a, b) == 0.0) continue;
+        for (Eigen::Index r = 0; r < rank; ++r) enter(a * size + 6 + r, b * size + 6 + r, of_coefficients(a, b));
       }
     }
   }

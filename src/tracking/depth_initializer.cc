@@ -32,7 +32,7 @@ class DepthInitializer final : public Initializer {
       const DepthAtPixel depth = LookUpDepth(input.reference_depth_mm, observation.pixel, options_.max_depth_step);
       depths_mm.push_back(depth.lookup == DepthLookup::kOk ? std::optional(depth.depth_mm) : std::nullopt);
     }
-    PlaceAtDepths(input, depths_mm, &outcome);
+    BackProjectDepths(input, depths_mm, &outcome);
     const std::string count = std::to_string(outcome.points.size());
     if (outcome.measured.inliers < options_.min_points) {
       outcome.decision = InitDecision::kNewReference;

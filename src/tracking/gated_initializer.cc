@@ -239,7 +239,7 @@ class Attempt {
                       std::to_string(input_.frames.size() - 1) + " frames after the reference, median parallax " +
                       Digits(outcome_.measured.median_parallax_deg, 2) + " deg, predicted depth noise " +
                       Digits(100.0 * outcome_.measured.median_depth_sigma, 1) + " %";
-    return HandOver(input_, map, *poses, matched_.rejected, options_.nominal_depth_mm, &outcome_);
+    return FillRigidMap(input_, map, *poses, matched_.rejected, options_.nominal_depth_mm, &outcome_);
   }
 
   Status TooFewPoints(const InitialMap& map) const {

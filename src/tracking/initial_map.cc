@@ -159,7 +159,7 @@ void FillRigidFrames(const InitInput& input, const std::vector<Rigid3>& cams_fro
   }
 }
 
-void PlaceAtDepths(const InitInput& input, const std::vector<std::optional<double>>& depths, InitOutcome* outcome) {
+void BackProjectDepths(const InitInput& input, const std::vector<std::optional<double>>& depths, InitOutcome* outcome) {
   const std::vector<InitObservation>& observations = input.frames.front().observations;
   for (std::size_t i = 0; i < observations.size(); ++i) {
     const auto ray = input.camera.Unproject(observations[i].pixel);
@@ -183,8 +183,8 @@ Result<double> NominalScale(const std::vector<Eigen::Vector3d>& positions, doubl
   return nominal_depth_mm / median;
 }
 
-Status HandOver(const InitInput& input, const InitialMap& map, const std::vector<Rigid3>& cams_from_world,
-                std::vector<InitRejectedPoint> rejected, double nominal_depth_mm, InitOutcome* outcome) {
+Status FillRigidMap(const InitInput& input, const InitialMap& map, const std::vector<Rigid3>& cams_from_world,
+                    std::vector<InitRejectedPoint> rejected, double nominal_depth_mm, InitOutcome* outcome) {
   const auto nominal = NominalScale(map.positions, nominal_depth_mm);
   if (!nominal.ok()) return nominal.status();
   const double scale = *nominal;

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // What every initializer from two sets of unit rays does before and after its own method: match the rays of the
-// reference and the current frame, place the frames between them, scale the map and hand it over.
+// reference and the current frame, estimate the poses of the frames between them, scale the map and fill the outcome
+// in.
 #pragma once
 
 #include <optional>
@@ -52,7 +53,7 @@ struct InitialMap {
 InitialMap TriangulateInliers(const Rigid3& cam1_from_cam0, const std::vector<char>& inliers, double focal_px,
                               const MonocularInitOptions& options, MatchedRays* matched);
 
-// The rays of the map's points in one frame, as observations of view `view_idx`; points are numbered by their place in
+// The rays of the map's points in one frame, as observations of view `view_idx`; points are numbered by their index in
 // `ids`.
 std::vector<WindowObservation> ObservationsOf(const Camera& camera, const InitFrame& frame,
                                               const std::vector<PointId>& ids, int view_idx);
@@ -81,7 +82,7 @@ void FillRigidFrames(const InitInput& input, const std::vector<Rigid3>& cams_fro
 
 // The points of a reference whose depths are known: each on its pixel's ray at its z, in the order of the reference's
 // observations; where there is no depth, or no ray, the point is rejected. Counts them.
-void PlaceAtDepths(const InitInput& input, const std::vector<std::optional<double>>& depths, InitOutcome* outcome);
+void BackProjectDepths(const InitInput& input, const std::vector<std::optional<double>>& depths, InitOutcome* outcome);
 
 // Map units to mm: by it the median depth (z in the reference camera) is nominal_depth_mm. Fails with kDegenerate when
 // the median depth is not positive.
@@ -89,8 +90,8 @@ Result<double> NominalScale(const std::vector<Eigen::Vector3d>& positions, doubl
 
 // Scales map and poses so that the median depth (z in the reference camera) is nominal_depth_mm, and fills the outcome
 // in as a map. Fails with kDegenerate when the median depth is not positive.
-Status HandOver(const InitInput& input, const InitialMap& map, const std::vector<Rigid3>& cams_from_world,
-                std::vector<InitRejectedPoint> rejected, double nominal_depth_mm, InitOutcome* outcome);
+Status FillRigidMap(const InitInput& input, const InitialMap& map, const std::vector<Rigid3>& cams_from_world,
+                    std::vector<InitRejectedPoint> rejected, double nominal_depth_mm, InitOutcome* outcome);
 
 // For a sentence: a number with so many digits after the point, and a share as whole percents.
 std::string Digits(double value, int digits);

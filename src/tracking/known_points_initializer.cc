@@ -21,7 +21,7 @@ class KnownPointsInitializer final : public Initializer {
     InitOutcome outcome;
     std::vector<std::optional<double>> depths(input.reference_depths.begin(), input.reference_depths.end());
     depths.resize(input.frames.front().observations.size());
-    PlaceAtDepths(input, depths, &outcome);
+    BackProjectDepths(input, depths, &outcome);
     std::vector<Eigen::Vector3d> positions;
     for (const InitPoint& point : outcome.points) positions.push_back(point.position);
     const std::string count = std::to_string(positions.size());

@@ -53,7 +53,7 @@ class PaperInitializer final : public Initializer {
     outcome->reason = "first map of " + std::to_string(map.ids.size()) + " points, " +
                       std::to_string(input.frames.size() - 1) + " frames apart, median parallax " +
                       Digits(outcome->measured.median_parallax_deg, 2) + " deg";
-    return HandOver(input, map, *poses, std::move(matched.rejected), options_.nominal_depth_mm, outcome);
+    return FillRigidMap(input, map, *poses, std::move(matched.rejected), options_.nominal_depth_mm, outcome);
   }
 
   MonocularInitOptions options_;

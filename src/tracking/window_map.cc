@@ -71,7 +71,7 @@ MapPoints ChooseCertain(const MapPoints& points, const std::vector<double>& erro
 int CountSeen(const InitFrame& frame, const std::vector<PointId>& ids) {
   return static_cast<int>(
       std::count_if(frame.observations.begin(), frame.observations.end(),
-                    [&](const InitObservation& observation) { return PlaceOf(observation.id, ids) >= 0; }));
+                    [&](const InitObservation& observation) { return IndexOf(observation.id, ids) >= 0; }));
 }
 
 Status EnoughCertain(const InitInput& input, const SolvedWindow& window, const MapPoints& points,
@@ -130,7 +130,7 @@ std::vector<PointId> PointsToJoin(const InitInput& input, const MapPoints& point
     for (const InitObservation& observation : frame.observations) ++seen[observation.id];
   std::vector<PointId> ids;
   for (const auto& [id, count] : seen)
-    if (count >= min_frame_share * static_cast<double>(input.frames.size()) && PlaceOf(id, points.ids) < 0)
+    if (count >= min_frame_share * static_cast<double>(input.frames.size()) && IndexOf(id, points.ids) < 0)
       ids.push_back(id);
   return ids;
 }
@@ -197,7 +197,7 @@ Status FillOutcome(const InitInput& input, double nominal_depth_mm, const MapPoi
     const Rigid3& pose = all.cams_from_world[k];
     InitFrameState state{input.frames[k].frame_idx, Rigid3(pose.rotation, scale * pose.translation), {}};
     for (const InitObservation& observation : input.frames[k].observations)
-      if (const int point = PlaceOf(observation.id, points.ids); point >= 0)
+      if (const int point = IndexOf(observation.id, points.ids); point >= 0)
         state.positions.push_back({observation.id, scale * all.Position(point, static_cast<int>(k))});
     outcome->frames.push_back(std::move(state));
   }

@@ -176,7 +176,7 @@ Result<SolvedWindow> SolveRigid(const InitInput& input, const PreparedWindow& wi
 
 }  // namespace
 
-int PlaceOf(PointId id, const std::vector<PointId>& ids) {
+int IndexOf(PointId id, const std::vector<PointId>& ids) {
   const auto found = std::lower_bound(ids.begin(), ids.end(), id);
   return found != ids.end() && *found == id ? static_cast<int>(found - ids.begin()) : -1;
 }

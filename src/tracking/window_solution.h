@@ -32,10 +32,10 @@ Result<SolvedWindow> SolveWindow(const InitInput& input, std::size_t frames, Win
 // kDegenerate where the camera only turned between the first frame and the last.
 Status MoreThanARotation(const InitInput& input, InitMeasurements* measured);
 
-// A point's place in the sorted `ids`, or -1.
-int PlaceOf(PointId id, const std::vector<PointId>& ids);
+// A point's index in the sorted `ids`, or -1.
+int IndexOf(PointId id, const std::vector<PointId>& ids);
 
-// Those of `ids` that a frame sees, as observations of view `view_idx`; points are numbered by their place in `ids`.
+// Those of `ids` that a frame sees, as observations of view `view_idx`; points are numbered by their index in `ids`.
 std::vector<DeformingObservation> SeenIn(const InitInput& input, const InitFrame& frame,
                                          const std::vector<PointId>& ids, int view_idx,
                                          const WindowInitOptions& options);

@@ -65,7 +65,7 @@ TEST(CameraPose, CovarianceShrinksWithTheNumberOfPoints) {
     variances[k] = pose->covariance.trace();
     EXPECT_GT(variances[k], 0);
   }
-  EXPECT_NEAR(variances[0] / variances[1], 4.0, 1.0);  // four times the points; their places are random
+  EXPECT_NEAR(variances[0] / variances[1], 4.0, 1.0);  // four times the points; their positions are random
 }
 
 TEST(CameraPose, LeavesOutPointsBehindTheCamera) {

@@ -216,11 +216,11 @@ struct JoiningScene {
     const DeformingWindow start = scene.Start(0);
     PointSample known;
     for (int i = 0; i < static_cast<int>(scene.points.size()); ++i) (i % 5 == 0 ? joining_points : known).push_back(i);
-    std::vector<int> place(scene.points.size(), -1);
+    std::vector<int> new_idx(scene.points.size(), -1);
     for (std::size_t k = 0; k < joining_points.size(); ++k)
-      place[static_cast<std::size_t>(joining_points[k])] = static_cast<int>(k);
+      new_idx[static_cast<std::size_t>(joining_points[k])] = static_cast<int>(k);
     for (DeformingObservation seen : start.observations) {
-      seen.point_idx = place[static_cast<std::size_t>(seen.point_idx)];
+      seen.point_idx = new_idx[static_cast<std::size_t>(seen.point_idx)];
       if (seen.point_idx >= 0 && seen.view_idx >= 4) joining.push_back(seen);
     }
     solution = SolveDeformingWindow(PartOf(start, known), kFocalPx, {});
@@ -301,7 +301,7 @@ TEST(DeformingWindow, RefusesAPointThatJoinsFromNowhere) {
   joining.front().point_idx = 1000;
   EXPECT_EQ(OptimizeDeformingPoints(*of.solution, joining, 40, kFocalPx, {}).status().code(),
             ErrorCode::kInvalidArgument);
-  // One that is not seen keeps a place, and no certainty.
+  // One that is not seen keeps a position, and no certainty.
   const auto unseen = OptimizeDeformingPoints(*of.solution, {}, 1, kFocalPx, {});
   ASSERT_TRUE(unseen.ok());
   EXPECT_GT(unseen->LogDepthSigma(of.solution->window.points_in_world.size()), 1.0);
@@ -421,7 +421,7 @@ TEST(DeformingEquations, EliminatingThePointsChangesNoStep) {
     const Eigen::Index nodes_at = (terms.num_views() - 1) * terms.view_size();
     for (const NodeWeight& node : terms.nodes(point))
       row.tail(terms.shapes_size()) -=
-          terms.node_pull(point) * node.weight *
+          terms.node_information(point) * node.weight *
           step.segment(nodes_at + node.node_idx * terms.shapes_size(), terms.shapes_size());
     row[2] += own.by_offset * step[step.size() - 1];
     EXPECT_LT((row + own.gradient).norm(), 1e-5 * own.gradient.norm()) << point;

@@ -37,11 +37,11 @@ double LogDistanceError(const MovingPoint& point) { return std::log(point.positi
 
 TEST(MovingPoint, IsPlacedWhereItWasInTheFirstView) {
   Random random(1);
-  const auto placed = PlaceMovingPoint(Views(10, 1.0, 3.0, &random), 30.0, kNoiseRad);
-  ASSERT_TRUE(placed.ok()) << placed.status().message();
-  EXPECT_LT(std::abs(LogDistanceError(*placed)), 4 * placed->log_distance_sigma);
-  EXPECT_LT(placed->log_distance_sigma, 0.02);
-  EXPECT_LT(placed->rms, 1.5);
+  const auto point = TriangulateMovingPoint(Views(10, 1.0, 3.0, &random), 30.0, kNoiseRad);
+  ASSERT_TRUE(point.ok()) << point.status().message();
+  EXPECT_LT(std::abs(LogDistanceError(*point)), 4 * point->log_distance_sigma);
+  EXPECT_LT(point->log_distance_sigma, 0.02);
+  EXPECT_LT(point->rms, 1.5);
 }
 
 TEST(MovingPoint, ItsSigmaIsThatOfItsErrors) {
@@ -49,9 +49,9 @@ TEST(MovingPoint, ItsSigmaIsThatOfItsErrors) {
   double squares = 0;
   constexpr int kTrials = 200;
   for (int trial = 0; trial < kTrials; ++trial) {
-    const auto placed = PlaceMovingPoint(Views(10, 1.0, 3.0, &random), 50.0, kNoiseRad);
-    ASSERT_TRUE(placed.ok());
-    squares += std::pow(LogDistanceError(*placed) / placed->log_distance_sigma, 2);
+    const auto point = TriangulateMovingPoint(Views(10, 1.0, 3.0, &random), 50.0, kNoiseRad);
+    ASSERT_TRUE(point.ok());
+    squares += std::pow(LogDistanceError(*point) / point->log_distance_sigma, 2);
   }
   EXPECT_NEAR(std::sqrt(squares / kTrials), 1.0, 0.2);
 }
@@ -59,9 +59,9 @@ TEST(MovingPoint, ItsSigmaIsThatOfItsErrors) {
 TEST(MovingPoint, SurroundingsThatAreLessKnownMakeItLessCertain) {
   Random random(3);
   std::vector<MovingPointView> views = Views(10, 1.0, 3.0, &random);
-  const auto known = PlaceMovingPoint(views, 50.0, kNoiseRad);
+  const auto known = TriangulateMovingPoint(views, 50.0, kNoiseRad);
   for (std::size_t k = 0; k < views.size(); ++k) views[k].displacement_sigma = 0.05 * static_cast<double>(k);
-  const auto unsure = PlaceMovingPoint(views, 50.0, kNoiseRad);
+  const auto unsure = TriangulateMovingPoint(views, 50.0, kNoiseRad);
   ASSERT_TRUE(known.ok() && unsure.ok());
   EXPECT_GT(unsure->log_distance_sigma, 2 * known->log_distance_sigma);
 }
@@ -70,33 +70,36 @@ TEST(MovingPoint, AMotionThatItsSurroundingsDoNotShareShows) {
   Random random(4);
   std::vector<MovingPointView> views = Views(10, 1.0, 3.0, &random);
   for (MovingPointView& view : views) view.displacement.setZero();
-  const auto placed = PlaceMovingPoint(views, 50.0, kNoiseRad);
-  EXPECT_TRUE(!placed.ok() || placed->rms > 1.5);
+  const auto point = TriangulateMovingPoint(views, 50.0, kNoiseRad);
+  EXPECT_TRUE(!point.ok() || point->rms > 1.5);
 }
 
 TEST(MovingPoint, OneWrongViewCountsForLittle) {
   Random random(5);
   std::vector<MovingPointView> views = Views(20, 1.0, 0.0, &random);
   views[7].ray = (views[7].ray + Eigen::Vector3d(0.02, 0.01, 0)).normalized();  // 9 px
-  const auto placed = PlaceMovingPoint(views, 50.0, kNoiseRad);
-  ASSERT_TRUE(placed.ok());
-  EXPECT_LT(std::abs(LogDistanceError(*placed)), 5 * placed->log_distance_sigma);
+  const auto point = TriangulateMovingPoint(views, 50.0, kNoiseRad);
+  ASSERT_TRUE(point.ok());
+  EXPECT_LT(std::abs(LogDistanceError(*point)), 5 * point->log_distance_sigma);
 }
 
 TEST(MovingPoint, SaysWhatIsMissing) {
   Random random(6);
-  EXPECT_EQ(PlaceMovingPoint(Views(1, 1.0, 0.0, &random), 50.0, kNoiseRad).status().code(), ErrorCode::kInsufficient);
-  EXPECT_EQ(PlaceMovingPoint(Views(5, 1.0, 0.0, &random), 0.0, kNoiseRad).status().code(), ErrorCode::kInvalidArgument);
-  EXPECT_EQ(PlaceMovingPoint(Views(5, 1.0, 0.0, &random), 50.0, 0.0).status().code(), ErrorCode::kInvalidArgument);
+  EXPECT_EQ(TriangulateMovingPoint(Views(1, 1.0, 0.0, &random), 50.0, kNoiseRad).status().code(),
+            ErrorCode::kInsufficient);
+  EXPECT_EQ(TriangulateMovingPoint(Views(5, 1.0, 0.0, &random), 0.0, kNoiseRad).status().code(),
+            ErrorCode::kInvalidArgument);
+  EXPECT_EQ(TriangulateMovingPoint(Views(5, 1.0, 0.0, &random), 50.0, 0.0).status().code(),
+            ErrorCode::kInvalidArgument);
   // A camera that does not move: either it is said, or the sigma says it.
-  const auto still = PlaceMovingPoint(Views(10, 0.0, 0.0, &random), 50.0, kNoiseRad);
+  const auto still = TriangulateMovingPoint(Views(10, 0.0, 0.0, &random), 50.0, kNoiseRad);
   EXPECT_TRUE(!still.ok() || still->log_distance_sigma > 1.0);
   std::vector<MovingPointView> views = Views(5, 1.0, 0.0, &random);
   views[2].ray.x() = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_FALSE(PlaceMovingPoint(views, 50.0, kNoiseRad).ok());
+  EXPECT_FALSE(TriangulateMovingPoint(views, 50.0, kNoiseRad).ok());
   views = Views(5, 1.0, 0.0, &random);
   views[2].ray = -views[2].ray;
-  EXPECT_EQ(PlaceMovingPoint(views, 50.0, kNoiseRad).status().code(), ErrorCode::kDegenerate);
+  EXPECT_EQ(TriangulateMovingPoint(views, 50.0, kNoiseRad).status().code(), ErrorCode::kDegenerate);
 }
 
 }  // namespace

@@ -29,9 +29,10 @@ struct MovingPoint {
   double rms = 0;  // root mean square of its weighted residuals, in standard deviations: about 1, and 2.1 at most
 };
 
-// The most likely place by all views, Cauchy's loss on each. `start_distance`: a guess, from the first camera;
+// The most likely position by all views, Cauchy's loss on each. `start_distance`: a guess, from the first camera;
 // `noise_rad`: standard deviation of a ray. Fails with kInsufficient below two views, kInvalidArgument for a number
 // that is none, and kDegenerate where the views do not bound the distance or put the point behind one of them.
-Result<MovingPoint> PlaceMovingPoint(std::span<const MovingPointView> views, double start_distance, double noise_rad);
+Result<MovingPoint> TriangulateMovingPoint(std::span<const MovingPointView> views, double start_distance,
+                                           double noise_rad);
 
 }  // namespace pliant

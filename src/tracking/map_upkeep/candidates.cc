@@ -153,8 +153,8 @@ Result<MovingPoint> Candidates::Triangulate(const Point& point) const {
                      std::hypot(displacement.sigma, away * displacement.gradient)});
   }
   const Eigen::Vector3d first = point.position - point.displacements.back().mean;
-  return PlaceMovingPoint(views, (point.cams_from_world.front() * first).norm(),
-                          options_.noise_px / camera_.MeanFocalLengthPx());
+  return TriangulateMovingPoint(views, (point.cams_from_world.front() * first).norm(),
+                                options_.noise_px / camera_.MeanFocalLengthPx());
 }
 
 // Moves its best guess to where its views say; infinite errors where they say nothing.
