@@ -112,9 +112,10 @@ void CameraPoseOptions::List(OptionTable& table) {
   table.BeginGroup("CameraPose", "the camera's pose on the geometry of the last frame, before the joint problem");
   table.Add("sigma_rep_px", &sigma_rep_px, "px", "standard deviation of a measured pixel", 1e-3, 1e3);
   table.Add("chi2_rep", &chi2_rep, "-", "Huber threshold on the squared normalized error (95 %, 2 dof)", 1e-3, 1e6);
-  table.Add("max_iterations", &max_iterations, "iterations", "limit of Levenberg-Marquardt", 1, 10000);
+  table.Add("max_iterations", &max_iterations, "iterations", "maximum number of Levenberg-Marquardt iterations", 1,
+            10000);
   table.Add("function_tolerance", &function_tolerance, "ratio", "relative change of the cost at convergence", 0.0, 1.0);
-  table.Add("min_points", &min_points, "points", "fewer usable points give no pose", 4, 10000);
+  table.Add("min_points", &min_points, "points", "minimum number of usable points", 4, 10000);
 }
 
 Result<CameraPoseEstimate> EstimateCameraPose(const Camera& camera, std::span<const Eigen::Vector3d> points_in_world,

@@ -26,7 +26,7 @@
 namespace pliant {
 namespace {
 
-// The coefficients are first sought in the motions of points seen in this share of the views, and of so many in any
+// The coefficients start from the motions of points seen in this share of the views, and of so many in any
 // case ...
 constexpr double kStartShare = 0.8;
 constexpr std::size_t kMinStartPoints = 12;
@@ -240,27 +240,30 @@ double DeformingSolution::LogDepthSigma(std::size_t point) const {
 }
 
 void DeformingWindowOptions::List(OptionTable& table) {
-  table.BeginGroup("Window", "the deforming window from which the first map is made");
+  table.BeginGroup("Window", "bundle adjustment of a window with a low-rank deformation model, for the first map");
   table.Add("rank", &rank, "-",
-            "basis shapes of the low-rank deformation model, each with a temporal coefficient common to all points", 1,
+            "number of basis shapes of the low-rank deformation model, each with one temporal coefficient", 1,
             kMaxWindowRank);
-  table.Add("loss_scale_px", &loss_scale_px, "px", "scale of the Cauchy loss: about a tracked pixel's noise", 1e-3,
+  table.Add("loss_scale_px", &loss_scale_px, "px", "scale of the Cauchy loss; about the noise of a tracked pixel", 1e-3,
             100);
   table.Add("gradient_sigma", &gradient_sigma, "-",
-            "difference of neighbors' basis shapes divided by their distance, standard deviation; smaller is smoother",
+            "standard deviation of the difference of neighbors' basis shapes divided by their distance; smaller "
+            "is smoother",
             1e-4, 100);
-  table.Add("shape_sigma", &shape_sigma, "-",
-            "size of a basis shape divided by the median distance, standard deviation", 1e-4, 100);
+  table.Add("shape_sigma", &shape_sigma, "-", "standard deviation of a basis shape divided by the median distance",
+            1e-4, 100);
   table.Add("acceleration_sigma", &acceleration_sigma, "1/frame^2",
-            "second derivative of a temporal coefficient (whose size is about 1), standard deviation", 1e-6, 1e3);
+            "standard deviation of the second derivative of a temporal coefficient, which is of size 1", 1e-6, 1e3);
   table.Add("light_sigma", &light_sigma, "-",
-            "log distance from brightness, standard deviation; large, because neighbors err alike", 1e-3, 1e6);
-  table.Add("neighbors", &neighbors, "-", "neighbors with which the basis shapes at a node are compared", 1, 100);
+            "standard deviation of log distance from brightness; large, because errors of neighbors are "
+            "correlated",
+            1e-3, 1e6);
+  table.Add("neighbors", &neighbors, "-", "neighbors of a node whose basis shapes are compared with its own", 1, 100);
   table.Add("nodes", &nodes, "-",
-            "nodes of the surface at which basis shapes are free; between nodes they are interpolated", 4, 1000);
+            "nodes of the surface at which basis shapes are estimated; between nodes they are interpolated", 4, 1000);
   table.Add("sample_points", &sample_points, "-",
-            "points in each of the two samples that are solved before all; fewer is faster", 60, 100000);
-  table.Add("max_iterations", &max_iterations, "-", "most iterations of one solution", 1, 10000);
+            "points in each of the two samples that are solved before all points; fewer is faster", 60, 100000);
+  table.Add("max_iterations", &max_iterations, "-", "maximum number of iterations of one solution", 1, 10000);
 }
 
 Result<DeformingSolution> SolveDeformingWindow(const DeformingWindow& start, double focal_px,

@@ -15,13 +15,13 @@
 namespace pliant {
 
 void AbsolutePoseOptions::List(OptionTable& table) {
-  table.BeginGroup("AbsolutePose", "the camera's pose without any guess, by RANSAC over three points");
-  table.Add("max_error_px", &max_error_px, "px", "of a point that agrees; the scene may have deformed meanwhile", 0.1,
-            100);
-  table.Add("max_iterations", &max_iterations, "-", "samples", 1, 1000000);
-  table.Add("confidence", &confidence, "-", "that one of the samples is free of wrong matches", 0.5, 0.999999);
-  table.Add("min_inliers", &min_inliers, "-", "matches that agree", 6, 100000);
-  table.Add("min_inlier_share", &min_inlier_share, "-", "the same by all matches", 0, 1);
+  table.BeginGroup("AbsolutePose", "camera pose without an initial guess, by RANSAC over three points");
+  table.Add("max_error_px", &max_error_px, "px",
+            "maximum reprojection error of an inlier; the scene may have deformed since", 0.1, 100);
+  table.Add("max_iterations", &max_iterations, "-", "maximum number of RANSAC samples", 1, 1000000);
+  table.Add("confidence", &confidence, "-", "probability that one sample is free of outliers", 0.5, 0.999999);
+  table.Add("min_inliers", &min_inliers, "-", "minimum number of inliers", 6, 100000);
+  table.Add("min_inlier_share", &min_inlier_share, "-", "minimum share of inliers among all matches", 0, 1);
 }
 
 Result<AbsolutePose> EstimateAbsolutePose(std::span<const Eigen::Vector3d> points_in_world,

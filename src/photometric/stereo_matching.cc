@@ -114,18 +114,20 @@ cv::Mat SemiGlobalDisparities(const cv::Mat& left, const cv::Mat& right, const S
 
 void StereoMatchingOptions::List(OptionTable& table) {
   table.AddChoice("stereo_matcher", &matcher,
-                  "stereo: photometric, correlation along the row and the tracker's alignment; sgbm, OpenCV's "
+                  "stereo: photometric: correlation along the row, then the tracker's alignment; sgbm: OpenCV's "
                   "semi-global matching");
-  table.Add("stereo_min_disparity_px", &min_disparity_px, "px", "stereo: smaller disparities are no match", 0.1, 1e4);
+  table.Add("stereo_min_disparity_px", &min_disparity_px, "px", "stereo: minimum disparity", 0.1, 1e4);
   table.Add("stereo_max_disparity_share", &max_disparity_share, "-",
-            "stereo: nor larger ones than this share of the image's width", 0.001, 1);
-  table.Add("stereo_max_row_px", &max_row_px, "px", "stereo: largest difference of the rows", 0.01, 100);
-  table.Add("stereo_max_left_right_px", &max_left_right_px, "px", "stereo: followed back, a match returns so near",
-            0.01, 100);
+            "stereo: maximum disparity divided by the width of the image", 0.001, 1);
+  table.Add("stereo_max_row_px", &max_row_px, "px", "stereo: maximum difference of the rows of a match", 0.01, 100);
+  table.Add("stereo_max_left_right_px", &max_left_right_px, "px", "stereo: maximum left-right consistency error", 0.01,
+            100);
   table.Add("stereo_min_correlation", &min_correlation, "-",
-            "stereo: of a patch with the right image at the best position along its row", 0, 1);
+            "stereo: minimum correlation at the best position along the row", 0, 1);
   table.Add("stereo_max_ambiguity", &max_ambiguity, "-",
-            "stereo: 1 - correlation of the best position by that of the second best; 1: all are accepted", 0, 1);
+            "stereo: maximum of 1 - correlation at the best position divided by 1 - correlation at the second "
+            "best; 1 accepts all",
+            0, 1);
 }
 
 Status CheckPairs(const std::string& what, const Camera& camera, std::optional<double> baseline_mm) {

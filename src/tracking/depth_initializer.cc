@@ -55,14 +55,13 @@ class DepthInitializer final : public Initializer {
 
 void DepthInitOptions::List(OptionTable& table) {
   table.Add("depth_max_step", &max_depth_step, "-",
-            "depth: relative step among the four pixels around a corner above which it gets no depth", 1e-6, 1);
-  table.Add(
-      "depth_cloud", &cloud_path, "FILE",
-      "depth: a point cloud (.npy, .ply, text) in the first frame's camera, x right, y down, z ahead, in place of "
-      "depth images; relative to the working folder");
-  table.Add("depth_cloud_unit_mm", &cloud_unit_mm, "mm", "depth: what a unit of the point cloud is; 1000: meters", 1e-9,
-            1e9);
-  table.Add("depth_min_points", &min_points, "-", "depth: fewer corners with depth make no map", 4, 100000);
+            "depth: maximum relative difference of depth among the four pixels around a corner", 1e-6, 1);
+  table.Add("depth_cloud", &cloud_path, "FILE",
+            "depth: a point cloud (.npy, .ply, text) in the frame of the first camera, x right, y down, z "
+            "forward, instead of depth images; relative to the working folder");
+  table.Add("depth_cloud_unit_mm", &cloud_unit_mm, "mm", "depth: length of the point cloud's unit; 1000 for meters",
+            1e-9, 1e9);
+  table.Add("depth_min_points", &min_points, "-", "depth: minimum number of corners with depth", 4, 100000);
 }
 
 std::unique_ptr<Initializer> MakeDepthInitializer(const DepthInitOptions& options) {

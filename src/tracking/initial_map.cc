@@ -64,7 +64,7 @@ Result<RelativePose> EstimateMotion(const MatchedRays& matched, double focal_px,
                                     .max_iterations = options.max_iterations});
   if (pose.ok() && pose->cam1_from_cam0.translation.isZero(0.0))
     return Status(ErrorCode::kDegenerate, "a rotation (Init.solver = " + std::string(EnumName(options.solver)) +
-                                              ") says nothing of depth: it is there to be compared");
+                                              ") determines no depth: this solver is for comparison only");
   return pose;
 }
 

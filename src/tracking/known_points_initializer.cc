@@ -48,12 +48,11 @@ class KnownPointsInitializer final : public Initializer {
 }  // namespace
 
 void ModelInitOptions::List(OptionTable& table) {
-  table.Add("model_path", &path, "DIR",
-            "colmap_model: folder of the COLMAP model to start from; relative to the working folder");
+  table.Add("model_path", &path, "DIR", "colmap_model: folder of the COLMAP model; relative to the working folder");
   table.Add("model_unit_mm", &unit_mm, "mm",
-            "colmap_model: what a unit of the model is; 0: not known, its median depth becomes nominal_depth_mm", 0,
-            1e9);
-  table.Add("model_min_points", &min_points, "-", "colmap_model: fewer points in an image make no map", 4, 100000);
+            "colmap_model: length of the model's unit; 0: unknown, the median depth becomes nominal_depth_mm", 0, 1e9);
+  table.Add("model_min_points", &min_points, "-", "colmap_model: minimum number of the model's points in an image", 4,
+            100000);
 }
 
 std::unique_ptr<Initializer> MakeKnownPointsInitializer(const KnownPoints& known, double nominal_depth_mm) {

@@ -7,46 +7,57 @@ namespace pliant {
 
 void MonocularInitOptions::List(OptionTable& table) {
   table.AddChoice("solver", &solver,
-                  "gated, paper: the motion of two views. OpenGV's essential matrices, OpenCV's MAGSAC, or a plane's; "
-                  "rotation_only never makes a map");
-  table.AddChoice("robust", &robust, "gated, paper: how samples make a motion; local: RANSAC that refines on inliers");
+                  "gated, paper: solver of the relative pose: OpenGV's essential matrices, OpenCV's MAGSAC, or a "
+                  "homography; rotation_only never makes a map");
+  table.AddChoice("robust", &robust,
+                  "gated, paper: robust estimation around the solver; local: RANSAC with local optimization on the "
+                  "inliers");
   table.AddChoice("refinement", &refinement,
-                  "gated: what follows: nothing, the pair alone (by OpenGV; two_view: robustly), or the points with "
-                  "window_frames of the frames since");
-  table.AddChoice("triangulation", &triangulation, "how a point comes from two rays");
-  table.Add("nominal_depth_mm", &nominal_depth_mm, "mm", "the map is scaled once so that this is its median depth",
+                  "gated: refinement of the relative pose: none, the pair (opengv; two_view: with a robust loss), or "
+                  "bundle adjustment over window_frames frames");
+  table.AddChoice("triangulation", &triangulation, "gated, paper: triangulation of a point from two rays");
+  table.Add("nominal_depth_mm", &nominal_depth_mm, "mm", "median depth to which a map of unknown scale is scaled, once",
             1e-3, 1e6);
   table.Add("max_error_px", &max_error_px, "px",
-            "inlier threshold per view; tight, because deformation looks like noise and grows with waiting", 0.05, 50);
-  table.Add("max_iterations", &max_iterations, "-", "most RANSAC samples of one attempt", 1, 100000);
-  table.Add("min_points", &min_points, "-", "gated: fewer points make no map", 12, 100000);
-  table.Add("paper_frames", &paper_frames, "frames", "paper: distance of the two frames", 1, 1000);
+            "gated, paper: inlier threshold per view; tight, because deformation looks like noise and grows "
+            "with time",
+            0.05, 50);
+  table.Add("max_iterations", &max_iterations, "-", "gated, paper: maximum number of RANSAC samples of one attempt", 1,
+            100000);
+  table.Add("min_points", &min_points, "-", "gated: minimum number of points of a map", 12, 100000);
+  table.Add("paper_frames", &paper_frames, "frames", "paper: frames between the two views", 1, 1000);
   table.Add("min_parallax_deg", &min_parallax_deg, "deg",
-            "gated: median parallax, the rotation taken off; depth noise falls with its inverse", 0.01, 90);
+            "gated: minimum median parallax after compensation of the rotation; depth noise is inverse to it", 0.01,
+            90);
   table.Add("max_rotation_share", &max_rotation_share, "-",
-            "gated: wait while a rotation alone explains more of the points than this", 0, 1);
-  table.Add("min_inlier_share", &min_inlier_share, "-", "gated: points that agree with one rigid motion", 0, 1);
+            "gated: wait while a pure rotation explains a larger share of the points", 0, 1);
+  table.Add("min_inlier_share", &min_inlier_share, "-",
+            "gated: minimum share of points that agree with one rigid motion", 0, 1);
   table.Add("min_competing_cost_ratio", &min_competing_cost_ratio, "-",
-            "gated: a second motion (a plane has one) must fit worse by this factor", 1, 100);
+            "gated: minimum cost of a competing motion (a plane has one) divided by the cost of the best motion", 1,
+            100);
   table.Add("max_median_depth_sigma", &max_median_depth_sigma, "-",
-            "gated: predicted standard deviation of depth by depth, median of the map", 1e-4, 10);
-  table.Add("sigma_px", &sigma_px, "px", "standard deviation of a tracked pixel, for all predictions of depth noise",
-            1e-3, 10);
+            "gated: maximum median of the points' predicted standard deviation of depth divided by depth", 1e-4, 10);
+  table.Add("sigma_px", &sigma_px, "px",
+            "gated, paper: standard deviation of a tracked pixel, from which depth noise is predicted", 1e-3, 10);
   table.Add("max_depth_sigma", &max_depth_sigma, "-",
-            "gated: a point with a larger predicted standard deviation of depth by depth stays out", 1e-4, 10);
-  table.Add("max_window", &max_window, "frames", "gated: a reference that made no map by then is given up", 1, 100000);
+            "gated: maximum predicted standard deviation of depth divided by depth, of a point of the map", 1e-4, 10);
+  table.Add("max_window", &max_window, "frames",
+            "gated: maximum number of frames after the reference; then a new reference is chosen", 1, 100000);
   table.Add("min_kept_share", &min_kept_share, "-",
-            "gated: a reference of whose points fewer are still followed is given up", 0, 1);
+            "gated: minimum share of the reference's points that are still tracked; below it a new reference is "
+            "chosen",
+            0, 1);
   table.Add("window_frames", &window_frames, "frames",
-            "gated: frames in the window's refinement, spread evenly since the reference", 2, 100);
+            "gated: frames in the bundle adjustment, spread evenly since the reference", 2, 100);
 }
 
 void InitOptions::List(OptionTable& table) {
   table.BeginGroup("Init", "the first map");
   table.AddChoice("method", &method,
-                  "window: all frames since the reference, the scene deforming; gated: waits until two views can carry "
-                  "a map; paper: 3 frames apart, as published; stereo: a pair of images; depth: the "
-                  "sequence's own depth image; colmap_model: the points of a COLMAP model");
+                  "window: all frames since the reference, of a deforming scene; gated: waits until two views "
+                  "suffice; paper: two views at a fixed distance, as published; stereo: a rectified pair of images; "
+                  "depth: the sequence's depth image; colmap_model: the points of a COLMAP model");
   monocular.List(table);
   stereo.List(table);
   depth.List(table);

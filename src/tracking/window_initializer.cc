@@ -38,8 +38,8 @@ class WindowInitializer final : public Initializer {
     const bool due = since >= options_.first_frame && (since - options_.first_frame) % options_.every == 0;
     if (!due && !ends) {
       outcome.reason = "the window has " + std::to_string(since + 1) + " frames, with " + std::to_string(followed) +
-                       " points; a map is first sought after " + std::to_string(options_.first_frame) +
-                       ", then every " + std::to_string(options_.every);
+                       " points; a map is first attempted after " + std::to_string(options_.first_frame) +
+                       " frames, then every " + std::to_string(options_.every);
       return outcome;
     }
     const bool last = ends || since + options_.every > options_.last_frame;
@@ -108,34 +108,45 @@ class WindowInitializer final : public Initializer {
 
 void WindowInitOptions::List(OptionTable& table) {
   table.BeginGroup("WindowInit", "the first map from a deforming window (Init.method = window)");
-  table.Add("first_frame", &first_frame, "frames", "a map is first sought so long after the reference", 2, 100000);
-  table.Add("every", &every, "frames", "from one attempt to the next", 1, 100000);
+  table.Add("first_frame", &first_frame, "frames", "frames after the reference at which a map is first attempted", 2,
+            100000);
+  table.Add("every", &every, "frames", "frames between two attempts", 1, 100000);
   table.Add("deforming_frame", &deforming_frame, "frames",
-            "after the reference: before it a map is sought of a rigid scene alone", 2, 100000);
-  table.Add("last_frame", &last_frame, "frames", "a reference that made no map by then is given up", 2, 100000);
-  table.Add("views", &views, "frames", "in the problem, spread evenly since the reference", 3, 1000);
-  table.Add("min_views", &min_views, "frames", "of them in which a point must be seen", 2, 1000);
+            "frames after the reference before which only a rigid scene is attempted", 2, 100000);
+  table.Add("last_frame", &last_frame, "frames",
+            "frames after the reference at which it is given up if there is no map", 2, 100000);
+  table.Add("views", &views, "frames", "frames in the bundle adjustment, spread evenly since the reference", 3, 1000);
+  table.Add("min_views", &min_views, "frames", "minimum number of these frames in which a point is seen", 2, 1000);
   table.Add("min_frame_share", &min_frame_share, "-",
-            "of the frames since the reference, in which a point must be seen to join the map", 0, 1);
-  table.Add("max_points", &max_points, "-", "in the problem: time grows with them", 12, 100000);
-  table.Add("min_points", &min_points, "-", "fewer certain points in the last frame make no map", 12, 100000);
+            "minimum share of all frames since the reference in which a point is seen to be added to the map", 0, 1);
+  table.Add("max_points", &max_points, "-",
+            "maximum number of points in the bundle adjustment; its time grows with them", 12, 100000);
+  table.Add("min_points", &min_points, "-", "minimum number of certain points in the last frame", 12, 100000);
   table.Add("max_correlation", &max_correlation, "-",
-            "of the errors of neighbors under a rigid motion: above, the scene deforms", -1, 1);
+            "maximum correlation of neighbors' reprojection errors under a rigid motion; above it the scene "
+            "deforms",
+            -1, 1);
   table.Add("certain_depth_sigma", &certain_depth_sigma, "-",
-            "a point is certain whose standard deviation of depth by the median depth is not larger", 1e-4, 10);
-  table.Add("last_depth_sigma", &last_depth_sigma, "-", "the same at last_frame: it grows from deforming_frame on",
+            "maximum standard deviation of depth divided by the median depth, of a certain point, up to "
+            "deforming_frame",
+            1e-4, 10);
+  table.Add("last_depth_sigma", &last_depth_sigma, "-", "the same at last_frame; it increases from deforming_frame on",
             1e-4, 10);
   table.Add("max_depth_sigma", &max_depth_sigma, "-",
-            "a point that is less certain than this, and than those two, stays out of the map", 1e-4, 10);
-  table.Add("max_error_px", &max_error_px, "px", "a point with a larger error in the window stays out", 1e-3, 100);
+            "maximum standard deviation of depth divided by the median depth, of a point of the map, unless "
+            "those two are larger",
+            1e-4, 10);
+  table.Add("max_error_px", &max_error_px, "px", "maximum root mean square reprojection error of a point of the map",
+            1e-3, 100);
   table.Add("min_certain_share", &min_certain_share, "-",
-            "wait while a smaller share of the points still seen is certain; it falls to 0 at last_frame", 0, 1);
-  table.AddChoice("light", &light, "brightness as a hint of distance: the light is at the camera");
+            "minimum share of certain points among those still seen; it decreases to 0 at last_frame", 0, 1);
+  table.AddChoice("light", &light, "use brightness as a depth cue; the light source has to be at the camera");
   table.Add("gamma", &gamma, "-",
-            "of the camera's response, for the light; a sequence's own photometric calibration goes before it", 0.1,
-            10);
+            "gamma of the camera's response, for the depth from brightness; a sequence's own photometric "
+            "calibration overrides it",
+            0.1, 10);
   table.AddChoice("refine_rigid", &refine_rigid,
-                  "while the scene is rigid the map is made again of all frames since the reference");
+                  "re-estimate the map from all frames since the reference, as long as the scene is rigid");
   window.List(table);
 }
 

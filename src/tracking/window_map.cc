@@ -135,8 +135,8 @@ std::vector<PointId> PointsToJoin(const InitInput& input, const MapPoints& point
   return ids;
 }
 
-// All points anew by all frames, poses and coefficients fixed; others that were seen in enough frames join them. What
-// is uncertain, or wrong between the views of the problem, is then left out.
+// Optimizes all points by all frames, with poses and coefficients fixed, after others that were seen in enough frames
+// were added. What is uncertain, or wrong between the views of the problem, is then left out.
 Status OptimizePoints(const InitInput& input, const MapDemands& demands, const WindowInitOptions& options,
                       MapPoints* points, std::vector<InitRejectedPoint>* rejected) {
   const double focal_px = input.camera.MeanFocalLengthPx();
@@ -247,7 +247,7 @@ Status MakeWindowMap(const InitInput& input, const SolvedWindow& window, const M
                     (window.solution.window.shapes.empty() ? "rigid" : "deforming") + " window of " +
                     std::to_string(input.frames.size()) + " frames, depth noise " +
                     Digits(100.0 * outcome->measured.median_depth_sigma, 1) + " % of the median depth";
-  if (window.light_is_of_no_use) outcome->reason += ", without light, which says nothing of distance here";
+  if (window.light_is_of_no_use) outcome->reason += "; brightness is no depth cue in these images and was not used";
   return Status::Ok();
 }
 

@@ -161,9 +161,8 @@ Result<SolvedWindow> SolveRigid(const InitInput& input, const PreparedWindow& wi
   const double focal_px = input.camera.MeanFocalLengthPx();
   const auto deforms = [&](double correlation) {
     return Status(ErrorCode::kDegenerate,
-                  "the scene deforms: the errors of neighbors under a rigid motion are alike "
-                  "(correlation " +
-                      Digits(correlation, 2) + ")");
+                  "the scene deforms: the errors of neighbors under a rigid motion have a correlation of " +
+                      Digits(correlation, 2));
   };
   const auto correlation = RigidResidualCorrelation(window.start, focal_px, options.window);
   if (!correlation.ok()) return correlation.status();

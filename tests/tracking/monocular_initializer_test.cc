@@ -32,7 +32,10 @@ constexpr double kEnoughDeg = 6.0;
 InitOutcome Try(const SceneOptions& options, const MonocularInitOptions& init = {},
                 InitMethod method = InitMethod::kGated) {
   const auto frames = FramesOf(MakeScene(options), options, kFirstIdx);
-  return MakeInitializer({.method = method, .monocular = init}, Random(1))->Try({SceneCamera(options), frames, {}});
+  InitOptions options_of_method;
+  options_of_method.method = method;
+  options_of_method.monocular = init;
+  return MakeInitializer(options_of_method, Random(1))->Try({SceneCamera(options), frames, {}});
 }
 
 struct MapError {
@@ -187,7 +190,7 @@ TEST(MonocularInitializer, RefusesAMapFromARotationAlone) {
       Try({.motion = Motion::kSideways, .parallax_deg = kEnoughDeg},
           {.solver = RelativePoseSolver::kRotationOnly, .max_error_px = 50.0, .max_rotation_share = 1.0});
   EXPECT_EQ(outcome.decision, InitDecision::kWait);
-  EXPECT_NE(outcome.reason.find("says nothing of depth"), std::string::npos) << outcome.reason;
+  EXPECT_NE(outcome.reason.find("determines no depth"), std::string::npos) << outcome.reason;
 }
 
 TEST(MonocularInitializer, RefusesRotationAndStandstill) {

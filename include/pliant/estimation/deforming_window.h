@@ -95,7 +95,7 @@ struct DeformingSolution {
 
 // Solves the window from a rigid start: `start` has times, poses, points and observations, and no coefficients. Images
 // alone hardly tell one minimum from another, so there are several solutions to choose from. Two samples of the points
-// are solved each by itself: the coefficients are first sought in what the rigid scene leaves unexplained, then poses,
+// are solved each by itself: the coefficients start from what the rigid scene leaves unexplained, then poses,
 // points, shapes and coefficients are solved for together, with rank R and from there with R - 1; the other points join
 // with the views fixed. The most plausible by images and light is then solved with all points, in at most a sixth of
 // the steps. It is of rank R unless the light_error of rank R - 1 is clearly less; without light R - 1 is not tried. Of

@@ -67,15 +67,15 @@ std::unique_ptr<Initializer> MakeGatedInitializer(const MonocularInitOptions& op
 std::unique_ptr<Initializer> MakePaperInitializer(const MonocularInitOptions& options, Random random);
 
 // One moving camera and a scene that deforms meanwhile: all frames since the reference, their poses, the points and the
-// points' motions in one problem (pliant/estimation/deforming_window.h; docs/method.md, eq. W1 to W12). A map is sought
-// every few frames, first of a rigid scene, and if it is none of one that deforms; it answers with a map once most
+// points' motions in one problem (pliant/estimation/deforming_window.h; docs/method.md, eq. W1 to W12). A map is
+// attempted every few frames, of a rigid scene first, then of one that deforms; it answers with a map once most
 // points are certain, and demands less of them the longer it waits. Points that are uncertain or contradict the
 // solution stay out.
 struct WindowInitOptions {
-  int first_frame = 10;               // frames after the reference at which a map is first sought
+  int first_frame = 10;               // frames after the reference at which a map is first attempted
   int every = 5;                      // frames from one attempt to the next
-  int deforming_frame = 20;           // before it a map is sought of a rigid scene alone
-  int last_frame = 50;                // after so many a reference is given up
+  int deforming_frame = 20;           // before it only a rigid scene is attempted
+  int last_frame = 50;                // frames after which a reference is given up
   int views = 8;                      // frames in the problem, spread evenly
   int min_views = 5;                  // a point must be seen in as many of them
   double min_frame_share = 0.375;     // of all frames, in which a point must be seen to join the map
@@ -89,7 +89,7 @@ struct WindowInitOptions {
   double min_certain_share = 0.65;    // of the points still seen
   Switch light = Switch::kOn;
   double gamma = 2.2;
-  Switch refine_rigid = Switch::kOn;  // the map is made again as the window grows, while the scene is rigid
+  Switch refine_rigid = Switch::kOn;  // the map is re-estimated as the window grows, while the scene is rigid
   DeformingWindowOptions window;
 
   void List(OptionTable& table);  // group "WindowInit", and "Window"
