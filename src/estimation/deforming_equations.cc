@@ -40,7 +40,7 @@ bool DeformingEquations::Linearize(const DeformingState& state) {
     gradient_ += part.gradient;
     eliminated_decrease_ += part.eliminated_decrease;
   }
-  return Factorise();
+  return Factorize();
 }
 
 void DeformingEquations::AddPriors(const DeformingState& state) {
@@ -88,8 +88,6 @@ void DeformingEquations::AddViews(std::size_t point, const std::vector<SeenEquat
 }
 
 void DeformingEquations::Eliminate(std::size_t point, const PointEquations& own, Sums* sums) {
-  const Eigen::Index view_size = terms_->view_size();
-  const Eigen::Index shapes_size = terms_->shapes_size();
   const Eigen::Index point_size = terms_->point_size();
   Point& of = points_[point];
   PointMatrix damped = own.own;
@@ -104,12 +102,22 @@ void DeformingEquations::Eliminate(std::size_t point, const PointEquations& own,
   of.inverse = factors.solve(PointMatrix::Identity(point_size, point_size));
   const PointVector point_step = of.inverse * of.gradient;
   sums->eliminated_decrease += 0.5 * point_step.dot(of.gradient);
-
-  // What couples a point to a view has two rows, as the observation has: these are multiplied. Views are
-  // ascending, the first one is not free.
+  SubtractViews(point, sums);
   const Eigen::Index offset = OffsetIndex();
-  const double information = shapes_size > 0 ? terms_->node_information(point) : 0.0;
-  SmallMatrix<Eigen::Dynamic, kMaxPointSize, 2> inverse_by_a(point_size, 2);
+  sums->hessian(offset, offset) -= own.by_offset + of.by_offset * of.by_offset * of.inverse(2, 2);
+  sums->gradient[offset] += own.offset_gradient;
+  if (terms_->shapes_size() > 0) AddNodes(point, own.node_difference, sums);
+  sums->gradient -= ByPoint(point, point_step);
+}
+
+// What is left of the views' equations without the point. What couples a point to a view has two rows, as the
+// observation has: these are multiplied. Views are ascending, the first one is not free.
+void DeformingEquations::SubtractViews(std::size_t point, Sums* sums) const {
+  const Eigen::Index view_size = terms_->view_size();
+  const Eigen::Index shapes_size = terms_->shapes_size();
+  const Eigen::Index offset = OffsetIndex();
+  const Point& of = points_[point];
+  SmallMatrix<Eigen::Dynamic, kMaxPointSize, 2> inverse_by_a(terms_->point_size(), 2);
   SmallMatrix<2, 2, kMaxViewSize> weighted(2, view_size);
   SmallMatrix<Eigen::Dynamic, kMaxPointSize, kMaxViewSize> shapes_by_a(shapes_size, view_size);
   for (std::size_t a = 0; a < of.seen.size(); ++a) {
@@ -129,38 +137,41 @@ void DeformingEquations::Eliminate(std::size_t point, const PointEquations& own,
     sums->hessian.row(offset).segment(index_a, view_size).noalias() -=
         of.by_offset * inverse_by_a.row(2).lazyProduct(of_a.by_view);
     if (shapes_size == 0) continue;
-    shapes_by_a.noalias() = information * inverse_by_a.bottomRows(shapes_size).lazyProduct(of_a.by_view);
+    shapes_by_a.noalias() =
+        terms_->node_information(point) * inverse_by_a.bottomRows(shapes_size).lazyProduct(of_a.by_view);
     for (const NodeWeight& node : terms_->nodes(point))
       sums->hessian.block(NodeIndex(node.node_idx), index_a, shapes_size, view_size) += node.weight * shapes_by_a;
   }
-
-  sums->hessian(offset, offset) -= own.by_offset + of.by_offset * of.by_offset * of.inverse(2, 2);
-  sums->gradient[offset] += own.offset_gradient;
-  if (shapes_size > 0)
-    for (const NodeWeight& a : terms_->nodes(point)) {
-      const Eigen::Index index = NodeIndex(a.node_idx);
-      const double of_a = information * a.weight;
-      sums->gradient.segment(index, shapes_size) -= of_a * own.node_difference;
-      for (const NodeWeight& b : terms_->nodes(point)) {
-        if (a.node_idx < b.node_idx) continue;
-        auto block = sums->hessian.block(index, NodeIndex(b.node_idx), shapes_size, shapes_size);
-        block.diagonal().array() += of_a * b.weight;
-        block -= of_a * information * b.weight * of.inverse.bottomRightCorner(shapes_size, shapes_size);
-      }
-      sums->hessian.row(offset).segment(index, shapes_size) +=
-          of_a * of.by_offset * of.inverse.row(2).tail(shapes_size);
-    }
-  sums->gradient -= ByPoint(point, point_step);
 }
 
-bool DeformingEquations::Factorise() {
+// The equations of the nodes around the point, without the point (W3).
+void DeformingEquations::AddNodes(std::size_t point, const PointVector& node_difference, Sums* sums) const {
+  const Eigen::Index shapes_size = terms_->shapes_size();
+  const Point& of = points_[point];
+  const double information = terms_->node_information(point);
+  for (const NodeWeight& a : terms_->nodes(point)) {
+    const Eigen::Index index = NodeIndex(a.node_idx);
+    const double of_a = information * a.weight;
+    sums->gradient.segment(index, shapes_size) -= of_a * node_difference;
+    for (const NodeWeight& b : terms_->nodes(point)) {
+      if (a.node_idx < b.node_idx) continue;
+      auto block = sums->hessian.block(index, NodeIndex(b.node_idx), shapes_size, shapes_size);
+      block.diagonal().array() += of_a * b.weight;
+      block -= of_a * information * b.weight * of.inverse.bottomRightCorner(shapes_size, shapes_size);
+    }
+    sums->hessian.row(OffsetIndex()).segment(index, shapes_size) +=
+        of_a * of.by_offset * of.inverse.row(2).tail(shapes_size);
+  }
+}
+
+bool DeformingEquations::Factorize() {
   const Eigen::VectorXd diagonal = hessian_.diagonal();
-  const bool factorised = WithRidge([&](double factor) {
+  const bool factorized = WithRidge([&](double factor) {
     hessian_.diagonal() = factor * diagonal;
     factors_.compute(hessian_);
     return factors_.info() == Eigen::Success;
   });
-  if (!factorised) return false;
+  if (!factorized) return false;
   scale_.setZero(Size());
   for (const int i : gauge_)
     scale_ += ByPoint(static_cast<std::size_t>(i), points_[static_cast<std::size_t>(i)].inverse.col(2));

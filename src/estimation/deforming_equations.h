@@ -50,7 +50,9 @@ class DeformingEquations final : public NormalEquations {
   void SumPart(std::size_t part, const DeformingState& state);
   void AddViews(std::size_t point, const std::vector<SeenEquations>& seen, Sums* sums) const;
   void Eliminate(std::size_t point, const PointEquations& own, Sums* sums);
-  bool Factorise();
+  void SubtractViews(std::size_t point, Sums* sums) const;
+  void AddNodes(std::size_t point, const PointVector& node_difference, Sums* sums) const;
+  bool Factorize();
   Eigen::VectorXd ByPoint(std::size_t point, const PointVector& factor) const;
   PointVector ByRest(std::size_t point, const Eigen::VectorXd& step) const;
 

@@ -276,19 +276,23 @@ PointEquations DeformingTerms::Linearized(std::size_t point, const DeformingStat
   equations.own.topLeftCorner<3, 3>() = (derivative.transpose() * equations.own.topLeftCorner<3, 3>()).eval();
   equations.gradient.head<3>() = (derivative.transpose() * equations.gradient.head<3>()).eval();
   equations.own.triangularView<Eigen::StrictlyUpper>() = equations.own.transpose();
-  const Light& light = lights_[point];
-  const double error = (column[2] - light.log_distance - state.light_offset) / light.sigma;
-  const double weight = (light.lit ? LightWeight(error) : 1.0) / light.sigma;
-  equations.own(2, 2) += weight / light.sigma;
-  equations.gradient[2] += weight * error;
-  equations.by_offset = -weight / light.sigma;
-  equations.offset_gradient = -weight * error;
-  if (rank_ > 0) {
-    equations.node_difference = NodeDifference(point, state);
-    equations.own.diagonal().tail(shapes_size()).array() += node_information_[point];
-    equations.gradient.tail(shapes_size()) += node_information_[point] * equations.node_difference;
-  }
+  AddLightAndNodes(point, state, &equations);
   return equations;
+}
+
+void DeformingTerms::AddLightAndNodes(std::size_t point, const DeformingState& state, PointEquations* equations) const {
+  const Light& light = lights_[point];
+  const double log_distance = state.points(2, static_cast<Eigen::Index>(point));
+  const double error = (log_distance - light.log_distance - state.light_offset) / light.sigma;
+  const double weight = (light.lit ? LightWeight(error) : 1.0) / light.sigma;
+  equations->own(2, 2) += weight / light.sigma;
+  equations->gradient[2] += weight * error;
+  equations->by_offset = -weight / light.sigma;
+  equations->offset_gradient = -weight * error;
+  if (rank_ == 0) return;
+  equations->node_difference = NodeDifference(point, state);
+  equations->own.diagonal().tail(shapes_size()).array() += node_information_[point];
+  equations->gradient.tail(shapes_size()) += node_information_[point] * equations->node_difference;
 }
 
 }  // namespace pliant

@@ -129,6 +129,8 @@ class DeformingTerms {
                         const DeformingState& state) const;
   ViewDerivative ByView(const Sight& sight, std::size_t point, const DeformingState& state) const;
   PointVector NodeDifference(std::size_t point, const DeformingState& state) const;
+  // (W6), (W3): the point's own terms that are no observations.
+  void AddLightAndNodes(std::size_t point, const DeformingState& state, PointEquations* equations) const;
 
   DeformingWindow start_;
   DeformingWindowOptions options_;

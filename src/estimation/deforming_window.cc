@@ -178,6 +178,30 @@ const DeformingSolution* MostPlausible(const Solutions& solutions) {
   return best;
 }
 
+std::vector<SampleSolutions> SolveSamples(const SampleProblem& common, const std::vector<PointSample>& point_samples,
+                                          int rank, int last_rank, int threads) {
+  std::vector<std::future<SampleSolutions>> solving;
+  for (const PointSample& sample : point_samples)
+    solving.push_back(std::async(threads > 1 ? std::launch::async : std::launch::deferred,
+                                 [&, sample] { return SolveSample(common, sample, rank, last_rank); }));
+  std::vector<SampleSolutions> samples;
+  for (std::future<SampleSolutions>& solved : solving) samples.push_back(solved.get());
+  return samples;
+}
+
+// The solutions of the first rank, or those of the next lower one, where the most plausible of these explains the light
+// clearly better or where the first rank has none.
+Solutions ChooseRank(const std::vector<SampleSolutions>& samples) {
+  Solutions first = SolutionsAt(0, samples);
+  Solutions lower = SolutionsAt(1, samples);
+  const DeformingSolution* best = MostPlausible(first);
+  if (best == nullptr) return lower;
+  const DeformingSolution* other = MostPlausible(lower);
+  const bool clearly_better =
+      other != nullptr && other->light_error > 0.0 && other->light_error < kClearlyBetter * best->light_error;
+  return clearly_better ? lower : first;
+}
+
 // With predicted sigmas and the correlation of its residuals.
 DeformingSolution WithUncertainty(DeformingSolution solution, double focal_px, const DeformingWindowOptions& options,
                                   int threads) {
@@ -278,22 +302,9 @@ Result<DeformingSolution> SolveDeformingWindow(const DeformingWindow& start, dou
   const int last_rank = lit ? std::max(1, rank - 1) : rank;
   const SampleProblem common{start, SpreadPoints(start.points_in_world, options.nodes), focal_px, options};
   const std::vector<PointSample> point_samples = SamplePoints(start, options.sample_points);
-  std::vector<std::future<SampleSolutions>> solving;
-  for (const PointSample& sample : point_samples)
-    solving.push_back(std::async(threads > 1 ? std::launch::async : std::launch::deferred,
-                                 [&, sample] { return SolveSample(common, sample, rank, last_rank); }));
-  std::vector<SampleSolutions> samples;
-  for (std::future<SampleSolutions>& solved : solving) samples.push_back(solved.get());
-
-  Solutions of_rank = SolutionsAt(0, samples);
+  const std::vector<SampleSolutions> samples = SolveSamples(common, point_samples, rank, last_rank, threads);
+  const Solutions of_rank = ChooseRank(samples);
   const DeformingSolution* best = MostPlausible(of_rank);
-  const DeformingSolution* lower = MostPlausible(SolutionsAt(1, samples));
-  const bool clearly_better = best != nullptr && lower != nullptr && lower->light_error > 0.0 &&
-                              lower->light_error < kClearlyBetter * best->light_error;
-  if (clearly_better || best == nullptr) {
-    best = lower;
-    of_rank = SolutionsAt(1, samples);
-  }
   if (best == nullptr) return samples.front().front().status();
   std::vector<double> sigmas = SigmasBetween(of_rank, start.points_in_world.size());
   const auto other = SolveFromOtherMotion(*best, common, point_samples.front());

@@ -32,14 +32,14 @@ class NormalEquations {
   virtual DeformingState Moved(const DeformingState& state, const Eigen::VectorXd& step) const = 0;
 };
 
-// Keeps what nothing speaks of from making equations singular: a share of the diagonal, more where `factorise` fails.
-// `factorise` takes the factor of the diagonal and is true where the equations could be solved with it.
-template <typename Factorise>
-bool WithRidge(const Factorise& factorise) {
+// Keeps what nothing speaks of from making equations singular: a share of the diagonal, more where `factorize` fails.
+// `factorize` takes the factor of the diagonal and is true where the equations could be solved with it.
+template <typename Factorize>
+bool WithRidge(const Factorize& factorize) {
   constexpr double kLeast = 1e-9;
   constexpr double kMost = 1.0;
   for (double ridge = kLeast; ridge < kMost; ridge *= 10.0)
-    if (factorise(1.0 + ridge)) return true;
+    if (factorize(1.0 + ridge)) return true;
   return false;
 }
 
