@@ -9,6 +9,7 @@ usage: check_architecture.py ROOT
 2. FLANN and Assimp are included in one file each, in the modules deformation and simulation; OpenGV in estimation/opengv_*.
 3. Nothing below the module cli prints, logs, or ends the process.
 4. Every source, header, script and CMake list begins with the two SPDX lines.
+5. A private header in a folder of a module (src/estimation/window, say) is included in that folder only.
 Prints one line a violation, `file:line: sentence`, and exits with 1 if there is one.
 """
 
@@ -102,7 +103,17 @@ def check_spdx(root):
                 yield path, 1, "the two SPDX lines are not the first ones"
 
 
-CHECKS = (check_module_order, check_library_homes, check_calls, check_spdx)
+def check_private_folders(root):
+    for module, path in sources(root):
+        for number, line in enumerate(path.read_text().splitlines(), 1):
+            match = INCLUDE.match(line)
+            header = root / "src" / match.group(1) if match else None
+            if header and len(pathlib.PurePath(match.group(1)).parts) > 2 and header.exists() \
+                    and path.parent != header.parent:
+                yield path, number, f"{match.group(1)} is private to its folder"
+
+
+CHECKS = (check_module_order, check_library_homes, check_calls, check_spdx, check_private_folders)
 
 
 def violations(root):

@@ -53,6 +53,12 @@ class Rules(unittest.TestCase):
                             "src/estimation/opengv_b.cc": "#include <opengv/types.hpp>\n"})
         self.assertEqual(found, ["src/estimation/a.cc:3: opengv may be included in files opengv_* only"])
 
+    def test_a_private_header_of_another_folder_is_found(self):
+        found = violations({"src/estimation/window/a.h": "\n", "src/estimation/b.h": "\n",
+                            "src/estimation/window/a.cc": '#include "estimation/window/a.h"\n',
+                            "src/estimation/pose/b.cc": '#include "estimation/b.h"\n#include "estimation/window/a.h"\n'})
+        self.assertEqual(found, ["src/estimation/pose/b.cc:4: estimation/window/a.h is private to its folder"])
+
     def test_printing_and_ending_the_process_are_found(self):
         for call in ("std::cout << 1;", "std::cerr << 1;", 'printf("x");', "exit(1);", "std::exit(1);", "abort();",
                      "std::abort();", 'spdlog::info("x");'):
