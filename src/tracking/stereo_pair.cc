@@ -11,7 +11,7 @@ namespace pliant {
 
 void StereoStartOptions::List(OptionTable& table) {
   matching.List(table);
-  table.Add("stereo_min_points", &min_points, "-", "stereo: fewer matches make no map", 4, 100000);
+  table.Add("stereo_min_points", &min_points, "-", "stereo: minimum number of matches", 4, 100000);
 }
 
 std::vector<PixelDepth> PointsOfPair(const TrackerFrame& left, const cv::Mat& right, const Camera& camera,
