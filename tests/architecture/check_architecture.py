@@ -93,7 +93,7 @@ def check_calls(root):
 
 def check_spdx(root):
     paths = [root / "run", root / ".ci" / "run", root / "CMakeLists.txt"]
-    for folder in ("include", "src", "tests", "third_party_configs", "experiments"):
+    for folder in ("cmake", "include", "src", "tests", "third_party_configs", "experiments"):
         paths += [p for p in sorted((root / folder).rglob("*"))
                   if p.suffix in SPDX_SUFFIXES or p.name == "CMakeLists.txt"]
     for path in paths:
