@@ -1,13 +1,15 @@
 # SPDX-FileCopyrightText: 2026 The Pliant authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""README.md's C++ block is tests/consumer/project/main.cc, and its CMake block the project's lines.
+"""The C++ block of docs/library.md is tests/consumer/project/main.cc, and its CMake block the lines of the project.
 
-usage: readme_test.py ROOT
+usage: library_page_test.py ROOT
 """
 
 import pathlib
 import re
 import sys
+
+PAGE = "docs/library.md"
 
 
 def code_of(path):
@@ -17,16 +19,16 @@ def code_of(path):
 
 
 def main(root):
-    readme = (root / "README.md").read_text()
+    page = (root / PAGE).read_text()
     project = root / "tests" / "consumer" / "project"
     wrong = []
     for language, name in (("cpp", "main.cc"), ("cmake", "CMakeLists.txt")):
-        blocks = re.findall(rf"^```{language}\n(.*?)^```$", readme, re.DOTALL | re.MULTILINE)
+        blocks = re.findall(rf"^```{language}\n(.*?)^```$", page, re.DOTALL | re.MULTILINE)
         if len(blocks) != 1:
-            wrong.append(f"README.md has {len(blocks)} blocks of {language}, expected was one")
+            wrong.append(f"{PAGE} has {len(blocks)} blocks of {language}, expected was one")
         elif blocks[0].strip() != code_of(project / name):
-            wrong.append(f"README.md's {language} block is not tests/consumer/project/{name}; copy it over")
-    print("\n".join(wrong) if wrong else "README.md shows the code that is built")
+            wrong.append(f"the {language} block of {PAGE} is not tests/consumer/project/{name}; copy it over")
+    print("\n".join(wrong) if wrong else f"{PAGE} shows the code that is built")
     return 1 if wrong else 0
 
 
