@@ -28,13 +28,15 @@ TEST(Prefetcher, GivesWhatPlainCallsGiveAndThenTheEnd) {
 }
 
 TEST(Prefetcher, NeverRunsFurtherAheadThanAskedAndStopsAtAnyTime) {
+  constexpr int kTaken = 2;
+  constexpr int kAhead = 2;
   std::atomic<int> made = 0;
   {
-    Prefetcher<int> prefetcher([&]() -> std::optional<int> { return made++; }, 2);
+    Prefetcher<int> prefetcher([&]() -> std::optional<int> { return made++; }, kAhead);
     EXPECT_EQ(*prefetcher.Next(), 0);
     EXPECT_EQ(*prefetcher.Next(), 1);
   }
-  EXPECT_LE(made, 2 + 2 + 1);  // taken, waiting, and one being made
+  EXPECT_LE(made, kTaken + kAhead + 1);  // and one that is being made
 }
 
 TEST(Prefetcher, ThrowsInNextWhatTheProducerThrew) {

@@ -7,6 +7,7 @@
 
 #include "camera/camera_cases.h"
 #include "camera/roots.h"
+#include "support/tolerances.h"
 
 namespace pliant {
 namespace {
@@ -15,6 +16,8 @@ using testing::HasSubstr;
 
 // A bound found by bisection to the last bit, through a square root.
 constexpr double kBound = 1e-14;
+constexpr double kPixel_px = 1e-9;        // round-off of coordinates of about 1000
+constexpr double kNearlySingular = 1e-3;  // determinant of the Jacobian at the edge, relative to the focal length's
 
 TEST(FisheyeCamera, SeesBeyond90Degrees) {
   const Camera camera =
@@ -24,10 +27,10 @@ TEST(FisheyeCamera, SeesBeyond90Degrees) {
   ASSERT_LT(ray.z(), 0);
   const auto pixel = camera.Project(ray);
   ASSERT_TRUE(pixel);
-  EXPECT_NEAR(pixel->x(), 400 + 250 * theta, 1e-9);
+  EXPECT_NEAR(pixel->x(), 400 + 250 * theta, kPixel_px);
   const auto again = camera.Unproject(*pixel);
   ASSERT_TRUE(again);
-  EXPECT_LT((*again - ray).norm(), 1e-12);
+  EXPECT_LT((*again - ray).norm(), kRoundOff);
   EXPECT_TRUE(camera.ProjectWithJacobian(Eigen::Vector3d(3, 4, 0)));  // beside it
 }
 
@@ -97,7 +100,7 @@ TEST(OpenCvCamera, HasAPositiveDefiniteJacobianUpToItsEdge) {
       smallest = std::min(smallest, (j[0] * j[4] - j[1] * j[3]) / (500 * 500));
     }
   }
-  EXPECT_LT(smallest, 1e-3) << "the domain ends before it has to";
+  EXPECT_LT(smallest, kNearlySingular) << "the domain ends before it has to";
 }
 
 TEST(OpenCvCamera, FindsTheRayOfEveryPixelOrSaysThatThereIsNone) {
@@ -110,7 +113,7 @@ TEST(OpenCvCamera, FindsTheRayOfEveryPixelOrSaysThatThereIsNone) {
     if (!model.Unproject(pixel, ray)) continue;
     double again[2];
     ASSERT_TRUE(model.Project(ray, again));
-    EXPECT_LT(std::hypot(again[0] - pixel[0], again[1] - pixel[1]), 1e-9);
+    EXPECT_LT(std::hypot(again[0] - pixel[0], again[1] - pixel[1]), kPixel_px);
   }
   for (int i = 0; i < 20000; ++i) {
     const double radius = model.max_radius() * std::sqrt(random.Uniform()) * (1 - 1e-6);

@@ -17,6 +17,8 @@
 namespace pliant {
 namespace {
 
+constexpr double kUnitLength = 1e-15;    // the last bits of one
+constexpr double kWorstRay = 1e-14;      // rad at a gain of one; divided by the gain where the distortion flattens
 constexpr double kParallel = 1e-10;      // sine of the angle; rounding, amplified where the distortion flattens
 constexpr double kPixelRounding = 1e-9;  // px, of coordinates of about 1000
 constexpr double kJacobian = 1e-12;      // relative to the Jacobian's norm: two ways to round the same formula
@@ -41,7 +43,7 @@ TEST_P(EveryCamera, ProjectsUnprojectedPixelsOntoThemselves) {
     const auto ray = camera_.Unproject(pixel);
     if (!ray) continue;
     ++seen;
-    EXPECT_NEAR(ray->norm(), 1.0, 1e-15);
+    EXPECT_NEAR(ray->norm(), 1.0, kUnitLength);
     const auto again = camera_.Project(*ray);
     ASSERT_TRUE(again) << pixel.transpose();
     EXPECT_LT((*again - pixel).norm(), kPixelRounding) << pixel.transpose();
@@ -65,7 +67,7 @@ TEST_P(EveryCamera, UnprojectsProjectedPointsOntoTheirRays) {
     // Where the distortion is about to fold, a pixel determines its ray less well than to rounding.
     const double gain = camera_.ProjectWithJacobian(point)->d_pixel_d_point.jacobiSvd().singularValues()[1] *
                         point.norm() / camera_.MeanFocalLengthPx();
-    EXPECT_LT(ray->cross(point.normalized()).norm(), std::max(kParallel, 1e-14 / gain)) << point.transpose();
+    EXPECT_LT(ray->cross(point.normalized()).norm(), std::max(kParallel, kWorstRay / gain)) << point.transpose();
     EXPECT_GT(ray->dot(point), 0.0);
   }
 }

@@ -12,11 +12,20 @@
 
 #include "pliant/base/random.h"
 #include "pliant/geometry/essential.h"
+#include "support/tolerances.h"
 
 namespace pliant {
 namespace {
 
-constexpr double kRounding = 1e-9;  // of lengths of about 100
+constexpr double kLowParallax_mm = 1e-7;    // rounding of the rays by the parallax of 1e-4
+constexpr double kPlaneStep = 1e-7;         // squared sines: the steps between the planes that are tried
+constexpr double kCostRoundOff = 1e-9;      // of squared sines and relative; the cost is flat at its minimum
+constexpr int kMinCompared = 100;           // of 200 random pairs of rays; the others diverge
+constexpr double kFormulaRoundOff = 1e-15;  // of about 0.04: one formula written twice
+constexpr double kUnequalDistances = 0.1;   // relative; the formula takes both distances as equal
+constexpr double kSpreadOf2000 = 0.07;      // 2000 trials fix a deviation to 1.6 %; three times that, and the curvature
+constexpr double kTurnOfRay = 1e-3;         // relative; Sampson's error is of first order in the turn
+constexpr double kTurnOfPlane = 1e-2;  // relative; the planes' angle is the ray's turn by the parallax angle's sine
 constexpr double kDeg = std::numbers::pi / 180.0;
 
 constexpr std::array kAllMethods = {&TriangulateIdwm, &TriangulateMidpoint, &TriangulateLinear, &TriangulateOptimalL2};
@@ -34,7 +43,7 @@ TEST(Triangulation, EveryMethodRecoversExactPoints) {
     for (const auto triangulate : kAllMethods) {
       const TriangulatedPoint point = triangulate(kCam1FromCam0, x.normalized(), RayIn(kCam1FromCam0, x));
       ASSERT_TRUE(point.ok());
-      EXPECT_LT((point.point_in_cam0 - x).norm(), kRounding * x.norm());
+      EXPECT_LT((point.point_in_cam0 - x).norm(), kLengthRoundOff_mm * x.norm());
     }
   }
 }
@@ -53,7 +62,7 @@ TEST(IdwmTriangulation, IsTheMeanOfTheDepthsOnBothRaysWeightedByInverseDepth) {
   const Eigen::Vector3d expected = (on_ray0 / depth0 + on_ray1 / depth1) / (1.0 / depth0 + 1.0 / depth1);
   const TriangulatedPoint point = TriangulateIdwm(kCam1FromCam0, ray0, ray1);
   ASSERT_TRUE(point.ok());
-  EXPECT_LT((kCam1FromCam0 * point.point_in_cam0 - expected).norm(), kRounding);
+  EXPECT_LT((kCam1FromCam0 * point.point_in_cam0 - expected).norm(), kLengthRoundOff_mm);
 }
 
 // Rays that miss each other by about a degree.
@@ -93,10 +102,10 @@ TEST(OptimalL2Triangulation, TurnsTheRaysLeastOfAllEpipolarPlanes) {
       const Eigen::Vector3d n = std::cos(angle) * a + std::sin(angle) * b;
       least = std::min(least, std::pow(n.dot(kCam1FromCam0.rotation * ray0), 2) + std::pow(n.dot(ray1), 2));
     }
-    EXPECT_LT(cost, least + 1e-9);
-    EXPECT_GT(cost, least - 1e-7);  // the steps between the planes
+    EXPECT_LT(cost, least + kCostRoundOff);
+    EXPECT_GT(cost, least - kPlaneStep);
   }
-  EXPECT_GT(compared, 100);
+  EXPECT_GT(compared, kMinCompared);
 }
 
 TEST(LinearTriangulation, LeavesTheLeastAlgebraicError) {
@@ -112,10 +121,10 @@ TEST(LinearTriangulation, LeavesTheLeastAlgebraicError) {
     };
     for (int k = 0; k < 20; ++k) {
       const Eigen::Vector3d step(random.Normal(), random.Normal(), random.Normal());
-      EXPECT_LE(error(point.point_in_cam0), error(point.point_in_cam0 + 0.1 * step) * (1 + 1e-9));
+      EXPECT_LE(error(point.point_in_cam0), error(point.point_in_cam0 + 0.1 * step) * (1 + kCostRoundOff));
     }
   }
-  EXPECT_GT(compared, 100);
+  EXPECT_GT(compared, kMinCompared);
 }
 
 TEST(Triangulation, RecoversPointAtLowParallax) {
@@ -124,7 +133,7 @@ TEST(Triangulation, RecoversPointAtLowParallax) {
   for (const auto triangulate : kAllMethods) {
     const TriangulatedPoint point = triangulate(nearly_still, x.normalized(), RayIn(nearly_still, x));
     ASSERT_TRUE(point.ok());
-    EXPECT_LT((point.point_in_cam0 - x).norm(), 1e-7);  // rounding of the rays by the parallax of 1e-4
+    EXPECT_LT((point.point_in_cam0 - x).norm(), kLowParallax_mm);
   }
 }
 
@@ -152,7 +161,8 @@ TEST(Triangulation, NamesParallelAndInvalidRays) {
 }
 
 TEST(DepthUncertainty, FollowsTheTwoViewFormula) {
-  EXPECT_NEAR(RelativeDepthSigma(0.5, 500.0, 2.0 * kDeg), std::sqrt(2.0) * 0.001 / std::sin(2.0 * kDeg), 1e-15);
+  EXPECT_NEAR(RelativeDepthSigma(0.5, 500.0, 2.0 * kDeg), std::sqrt(2.0) * 0.001 / std::sin(2.0 * kDeg),
+              kFormulaRoundOff);
   EXPECT_TRUE(std::isinf(RelativeDepthSigma(0.5, 500.0, 0.0)));
 }
 
@@ -163,7 +173,7 @@ TEST(DepthUncertainty, CovarianceMatchesNoisyTriangulation) {
   const std::array cams = {Rigid3(), sideways};
   const double predicted = DepthSigma(PointCovariance(cams, x, kSigmaRad), x);
   EXPECT_NEAR(predicted / x.norm(), RelativeDepthSigma(kSigmaRad, 1.0, AngleBetween(x, sideways * x)),
-              0.1 * predicted / x.norm());  // the formula takes both distances as equal
+              kUnequalDistances * predicted / x.norm());
   Random random(9);
   double squares = 0;
   constexpr int kTrials = 2000;
@@ -176,8 +186,7 @@ TEST(DepthUncertainty, CovarianceMatchesNoisyTriangulation) {
     ASSERT_TRUE(point.ok());
     squares += std::pow(point.point_in_cam0.norm() - x.norm(), 2);
   }
-  // The standard deviation of 2000 trials is known to 1.6 %; three times that, and a little for the curvature.
-  EXPECT_NEAR(std::sqrt(squares / kTrials), predicted, 0.07 * predicted);
+  EXPECT_NEAR(std::sqrt(squares / kTrials), predicted, kSpreadOf2000 * predicted);
 }
 
 TEST(DepthUncertainty, IsInfiniteWithoutParallax) {
@@ -198,13 +207,13 @@ TEST(Essential, DecompositionContainsTheMotionAndTheChoiceFindsIt) {
       const Eigen::Vector3d x(random.Uniform(-10, 10), random.Uniform(-10, 10), random.Uniform(10, 30));
       rays0.push_back(x.normalized());
       rays1.push_back(RayIn(motion, x));
-      EXPECT_LT(std::abs(SampsonErrorRad(motion, rays0.back(), rays1.back())), kRounding);
+      EXPECT_LT(std::abs(SampsonErrorRad(motion, rays0.back(), rays1.back())), kLengthRoundOff_mm);
     }
     const double sign = trial % 2 == 0 ? 1.0 : -1.0;  // the sign of E is free
     const auto choice = ChooseMotion(sign * 3.0 * EssentialFromMotion(motion), rays0, rays1);
     ASSERT_TRUE(choice.ok());
-    EXPECT_LT(RotationAngle(choice->cam1_from_cam0.rotation * motion.rotation.conjugate()), 1e-7);
-    EXPECT_LT((choice->cam1_from_cam0.translation - t).norm(), 1e-7);
+    EXPECT_LT(RotationAngle(choice->cam1_from_cam0.rotation * motion.rotation.conjugate()), kAngleRoundOff_rad);
+    EXPECT_LT((choice->cam1_from_cam0.translation - t).norm(), kAngleRoundOff_rad);
     EXPECT_EQ(choice->in_front, 20);
   }
 }
@@ -221,8 +230,8 @@ TEST(Essential, SampsonErrorIsTheTurnThatMakesTheRaysMeet) {
   constexpr double kTurn = 1e-3;
   const Eigen::Vector3d off = RotationExp({kTurn, 0, 0}) * RayIn(sideways, x);  // about x: across the epipolar lines
   // One ray off by kTurn: both can share the mend, each by half, so that the root of the squares is kTurn / sqrt(2).
-  EXPECT_NEAR(std::abs(SampsonErrorRad(sideways, x.normalized(), off)), kTurn / std::sqrt(2.0), 1e-3 * kTurn);
-  EXPECT_NEAR(EpipolarPlaneAngle(sideways, x.normalized(), off), kTurn, 1e-2 * kTurn);
+  EXPECT_NEAR(std::abs(SampsonErrorRad(sideways, x.normalized(), off)), kTurn / std::sqrt(2.0), kTurnOfRay * kTurn);
+  EXPECT_NEAR(EpipolarPlaneAngle(sideways, x.normalized(), off), kTurn, kTurnOfPlane * kTurn);
 }
 
 }  // namespace
