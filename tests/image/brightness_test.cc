@@ -8,7 +8,9 @@
 namespace pliant {
 namespace {
 
-constexpr double kRounding = 0.6;  // gray levels: averages are taken of whole levels
+constexpr double kBrightened = 110;  // gray levels: what the highlight adds to the surface's 100, and more
+constexpr double kRim = 2.0;         // gray levels: the highlight's rim shares pixels of the average
+constexpr double kRounding = 0.6;    // gray levels: averages are taken of whole levels
 
 TEST(LocalBrightness, IsThatOfTheRedChannel) {
   const cv::Mat image(60, 80, CV_8UC3, cv::Scalar(200, 100, 50));
@@ -21,10 +23,9 @@ TEST(LocalBrightness, LeavesOutWhatIsNotTheSurface) {
   cv::Mat valid(60, 80, CV_8UC1, cv::Scalar(255));
   const cv::Rect highlight(36, 26, 8, 8);
   image(highlight).setTo(cv::Scalar(255, 255, 255));
-  EXPECT_GT(LocalBrightness(image, valid).At({40, 30}), 110);
+  EXPECT_GT(LocalBrightness(image, valid).At({40, 30}), kBrightened);
   valid(highlight).setTo(0);
-  EXPECT_NEAR(LocalBrightness(image, valid).At({40, 30}), 100,
-              2.0);  // the highlight's rim shares pixels of the average
+  EXPECT_NEAR(LocalBrightness(image, valid).At({40, 30}), 100, kRim);
   valid.setTo(0);
   EXPECT_EQ(LocalBrightness(image, valid).At({40, 30}), 0);
 }

@@ -15,6 +15,12 @@ namespace pliant {
 namespace {
 
 const cv::Size kSize(320, 240);
+constexpr int kPerCell = 16;             // 192 corners in 12 cells
+constexpr int kUneven = 6;               // cells whose best corners lie near each other get fewer, their neighbors more
+constexpr std::size_t kMinCorners = 50;  // enough that one near a mask would be among them
+constexpr double kContour = 0.7;         // the measure is 1 where two surfaces meet and all gradients agree ...
+constexpr double kNoContour = 0.3;       // ... and near 0 where levels or textures are the same on both sides
+constexpr int kMinOnContour = 5;         // an occluding contour is full of corners
 
 // Blurred noise; its contrast falls to a quarter from left to right.
 cv::Mat UnevenTexture(std::uint64_t seed, double level = 120, double contrast = 60) {
@@ -42,8 +48,8 @@ TEST(DetectCorners, SpreadsThemEvenlyThoughContrastIsUneven) {
   for (const Corner& c : corners)
     ++cells[static_cast<std::size_t>(static_cast<int>(c.pixel.y() / 80) * 4 + static_cast<int>(c.pixel.x() / 80))];
   for (const int count : cells) {
-    EXPECT_GE(count, 16 - 6);
-    EXPECT_LE(count, 16 + 6);
+    EXPECT_GE(count, kPerCell - kUneven);
+    EXPECT_LE(count, kPerCell + kUneven);
   }
 }
 
@@ -66,7 +72,7 @@ TEST(DetectCorners, StaysOffMasksEdgesAndExistingPoints) {
   const std::vector<Eigen::Vector2d> existing = {{60, 60}, {61, 180}, {250, 200}};
   const CornerOptions options = Options(500);
   const auto corners = DetectCorners(UnevenTexture(3), valid, existing, options);
-  ASSERT_GT(corners.size(), 50u);
+  ASSERT_GT(corners.size(), kMinCorners);
   constexpr double kSubPixel = 0.5;
   for (const Corner& c : corners) {
     EXPECT_GT((c.pixel - Eigen::Vector2d(160, 120)).norm(), 30 + options.border_px - 1);
@@ -124,14 +130,14 @@ cv::Mat Occlusion() {
 
 TEST(ContourMeasure, IsHighOnAnOccludingContourAndLowOnTextureLinesAndShading) {
   const cv::Mat occlusion = Occlusion();
-  EXPECT_GT(ContourMeasure(occlusion, std::vector<Eigen::Vector2d>{{ContourColumn(120), 120}}, 16)[0], 0.7);
-  EXPECT_LT(ContourMeasure(occlusion, std::vector<Eigen::Vector2d>{{60, 120}}, 16)[0], 0.3);
+  EXPECT_GT(ContourMeasure(occlusion, std::vector<Eigen::Vector2d>{{ContourColumn(120), 120}}, 16)[0], kContour);
+  EXPECT_LT(ContourMeasure(occlusion, std::vector<Eigen::Vector2d>{{60, 120}}, 16)[0], kNoContour);
   cv::Mat vessel(kSize, CV_8UC1, cv::Scalar(160));
   cv::line(vessel, {160, 0}, {160, 239}, cv::Scalar(80), 4);
-  EXPECT_LT(ContourMeasure(vessel, std::vector<Eigen::Vector2d>{{158, 120}}, 16)[0], 0.3);
+  EXPECT_LT(ContourMeasure(vessel, std::vector<Eigen::Vector2d>{{158, 120}}, 16)[0], kNoContour);
   cv::Mat shading(kSize, CV_8UC1);
   for (int x = 0; x < kSize.width; ++x) shading.col(x).setTo(40 + x / 2);
-  EXPECT_LT(ContourMeasure(shading, std::vector<Eigen::Vector2d>{{160, 120}}, 16)[0], 0.3);
+  EXPECT_LT(ContourMeasure(shading, std::vector<Eigen::Vector2d>{{160, 120}}, 16)[0], kNoContour);
 }
 
 TEST(DetectCorners, ContourFilterKeepsCornersOffAnOccludingContour) {
@@ -144,7 +150,7 @@ TEST(DetectCorners, ContourFilterKeepsCornersOffAnOccludingContour) {
   CornerOptions options = Options(400);
   EXPECT_EQ(on_contour(options), 0);
   options.contour_filter = Switch::kOff;
-  EXPECT_GT(on_contour(options), 5);
+  EXPECT_GT(on_contour(options), kMinOnContour);
 }
 
 }  // namespace

@@ -7,6 +7,8 @@
 
 #include <gtest/gtest.h>
 
+#include "support/tolerances.h"
+
 namespace pliant {
 namespace {
 
@@ -61,7 +63,7 @@ TEST(ToGray, LeavesGrayAndWeighsColors) {
 
 TEST(SampleBilinear, IsExactOnASlopeAndSaysWhenItIsOutside) {
   const cv::Mat image = Slope({30, 30});
-  EXPECT_NEAR(*SampleBilinear(image, 3.25, 4.0), 20 + 3.25 + 2, 1e-12);
+  EXPECT_NEAR(*SampleBilinear(image, 3.25, 4.0), 20 + 3.25 + 2, kRoundOff);
   EXPECT_EQ(*SampleBilinear(image, 29, 29), image.at<std::uint8_t>(29, 29));
   EXPECT_FALSE(SampleBilinear(image, 29.001, 3).has_value());
   EXPECT_FALSE(SampleBilinear(image, -0.001, 3).has_value());

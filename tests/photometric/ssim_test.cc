@@ -9,10 +9,12 @@
 
 #include "photometric/synthetic_texture.h"
 #include "pliant/photometric/lucas_kanade.h"
+#include "support/tolerances.h"
 
 namespace pliant {
 namespace {
 
+constexpr double kTwiceAsBright = 0.7;     // twice the mean and contrast: 0.8 * 0.8 of one
 constexpr double kSinglePrecision = 1e-4;  // the tracker sums in single precision
 
 // SSIM as in the article, from two lists of gray levels.
@@ -64,8 +66,8 @@ TEST(Ssim, IsOneForEqualPatchesAndFallsWithBrightnessOnlyWhenPlain) {
   const PatchMoments same{100, 100, 400, 400, 400};
   EXPECT_DOUBLE_EQ(Ssim(same), 1);
   const PatchMoments twice{100, 200, 400, 1600, 800};  // y = 2 x
-  EXPECT_LT(Ssim(twice), 0.7);
-  EXPECT_NEAR(Ssim(Compensated(twice, 0.5, 0)), 1, 1e-12);
+  EXPECT_LT(Ssim(twice), kTwiceAsBright);
+  EXPECT_NEAR(Ssim(Compensated(twice, 0.5, 0)), 1, kRoundOff);
 }
 
 }  // namespace
