@@ -18,6 +18,7 @@
 #include "pliant/io/trajectory.h"
 #include "support/small_run.h"
 #include "support/test_folder.h"
+#include "support/tolerances.h"
 
 namespace pliant {
 namespace {
@@ -59,10 +60,10 @@ TEST(Export, CanonicalHasOnePointATrackAtItsUndeformedPosition) {
     for (int i = 0; i < kRunPoints; ++i) {
       const colmap::Point3D& point = model.points3D[static_cast<std::size_t>(i)];
       EXPECT_EQ(point.id, static_cast<std::uint64_t>(3 * i));
-      EXPECT_LT((PositionOf(point) - Undeformed(i)).norm(), 1e-6);
+      EXPECT_LT((PositionOf(point) - Undeformed(i)).norm(), kFileLength_mm);
       EXPECT_EQ(point.rgb[2], i);
       EXPECT_EQ(point.track.size(), i % 2 == 0 ? 5U : 3U);
-      EXPECT_LT(point.error, 1e-3);
+      EXPECT_LT(point.error, kExactReprojection_px);
     }
   }
 }
@@ -76,7 +77,7 @@ TEST(Export, SpacetimeHasOnePointATrackAndFrameColoredByTime) {
   for (const colmap::Point3D& point : model.points3D) {
     const auto frame = (static_cast<int>(point.id / 1'000'000) - 10) / 2;
     const auto track = static_cast<int>(point.id % 1'000'000) / 3;
-    EXPECT_LT((PositionOf(point) - PositionAt(track, frame)).norm(), 1e-6);
+    EXPECT_LT((PositionOf(point) - PositionAt(track, frame)).norm(), kFileLength_mm);
     ASSERT_EQ(point.track.size(), 1U);
     EXPECT_EQ(point.track[0].image_id, static_cast<std::uint32_t>(11 + 2 * frame));
   }
@@ -98,7 +99,8 @@ TEST(Export, FramesHasAModelAFrameThatReprojectsExactly) {
     ASSERT_EQ(model.points3D.size(), frame % 2 == 0 ? 8U : 4U);
     for (const colmap::Point3D& point : model.points3D) {
       const colmap::Point2D& keypoint = image.points2D[point.track[0].point2D_idx];
-      EXPECT_LT((*camera->Project(*pose * PositionOf(point)) - colmap::ToPliant(keypoint)).norm(), 1e-3);
+      EXPECT_LT((*camera->Project(*pose * PositionOf(point)) - colmap::ToPliant(keypoint)).norm(),
+                kExactReprojection_px);
     }
   }
 }
@@ -147,7 +149,7 @@ TEST(Export, TumIsTheRunsPath) {
   const auto poses = ReadTumTrajectory(folder.Path("out/trajectory.txt"));
   ASSERT_TRUE(poses.ok());
   ASSERT_EQ(poses->size(), static_cast<std::size_t>(kRunFrames));
-  EXPECT_LT(((*poses)[2].world_from_cam.translation - PoseAt(2).Inverse().translation).norm(), 2e-6);
+  EXPECT_LT(((*poses)[2].world_from_cam.translation - PoseAt(2).Inverse().translation).norm(), kFileLength_mm);
   EXPECT_EQ(folder.Read("out/trajectory.txt"), folder.Read("run/trajectory.txt"));
 }
 
@@ -198,7 +200,7 @@ TEST(Export, EverySubmapHasAFolder) {
     EXPECT_EQ(second.images[0].name, "20.png");
     ASSERT_EQ(second.points3D.size(), static_cast<std::size_t>(kRunPoints));
     EXPECT_EQ(second.points3D[1].id, 103U);
-    EXPECT_LT((PositionOf(second.points3D[1]) - Undeformed(1)).norm(), 1e-6);
+    EXPECT_LT((PositionOf(second.points3D[1]) - Undeformed(1)).norm(), kFileLength_mm);
   }
 }
 

@@ -20,13 +20,16 @@
 #include "pliant/io/trajectory.h"
 #include "support/small_run.h"
 #include "support/test_folder.h"
+#include "support/tolerances.h"
 
 namespace pliant {
 namespace {
 
 using testing::HasSubstr;
 
-constexpr int kImages = 20;  // 0.png to 19.png at 25 frames/s; the run has 10, 12, ... 18
+constexpr double kFps = 1e-6;                // of times with six decimals
+constexpr double kSingleDecimals_mm = 1e-3;  // meters with six decimals
+constexpr int kImages = 20;                  // 0.png to 19.png at 25 frames/s; the run has 10, 12, ... 18
 
 class ImportTest : public testing::Test {
  protected:
@@ -83,10 +86,10 @@ TEST_F(ImportTest, AModelBecomesARunOfItsImagesFrames) {
   EXPECT_EQ(run.frames[0].state, TrackingState::kInitializing);
   EXPECT_EQ(run.frames[10].state, TrackingState::kTracking);
   EXPECT_EQ(run.frames[11].state, TrackingState::kLost);
-  EXPECT_LT(run.frames[10].median_reprojection_error_px, 1e-3);
+  EXPECT_LT(run.frames[10].median_reprojection_error_px, kExactReprojection_px);
   EXPECT_DOUBLE_EQ(run.frames[10].timestamp_s, 0.4);
   ASSERT_EQ(run.poses.size(), static_cast<std::size_t>(kRunFrames));
-  EXPECT_LT((run.poses[3].world_from_cam.translation - PoseAt(3).Inverse().translation).norm(), 2e-6);
+  EXPECT_LT((run.poses[3].world_from_cam.translation - PoseAt(3).Inverse().translation).norm(), kFileLength_mm);
 
   auto reader = ObservationReader::Open(folder_.Path("out"));
   ASSERT_TRUE(reader.ok());
@@ -97,8 +100,9 @@ TEST_F(ImportTest, AModelBecomesARunOfItsImagesFrames) {
   for (int i = 0; i < kRunPoints; ++i) {  // ids are the model's; pixel (0, 0) is the first one's center again
     const PointObservation& observation = (*rows)->observations[static_cast<std::size_t>(i)];
     EXPECT_EQ(observation.id, PointId{3 * i});
-    EXPECT_LT((observation.position - Undeformed(i)).norm(), 1e-5);
-    EXPECT_LT((observation.pixel - Report(0).observations[static_cast<std::size_t>(i)].pixel).norm(), 2e-4);
+    EXPECT_LT((observation.position - Undeformed(i)).norm(), 3 * kFileLength_mm);
+    EXPECT_LT((observation.pixel - Report(0).observations[static_cast<std::size_t>(i)].pixel).norm(),
+              2 * kFilePixel_px);
   }
 }
 
@@ -127,8 +131,9 @@ TEST_F(ImportTest, TheUnitIsMultiplied) {
   options.seconds = 42;
   ASSERT_TRUE(ImportModel(options).ok());
   const pliant::Run run = ReadOut();
-  EXPECT_LT((run.poses[3].world_from_cam.translation - 10 * PoseAt(3).Inverse().translation).norm(), 2e-5);
-  EXPECT_LT(run.frames[10].median_reprojection_error_px, 1e-3);  // points with it
+  EXPECT_LT((run.poses[3].world_from_cam.translation - options.unit_mm * PoseAt(3).Inverse().translation).norm(),
+            options.unit_mm * kFileLength_mm);
+  EXPECT_LT(run.frames[10].median_reprojection_error_px, kExactReprojection_px);  // points with it
   ASSERT_TRUE(run.summary.has_value());
   EXPECT_EQ(run.summary->total_s, 42);
 }
@@ -201,11 +206,11 @@ TEST_F(ImportTest, AModelOfEveryImageIsTheSequencesTruth) {
   const auto poses = ReadTumTrajectory(folder_.Path("out/groundtruth.txt"));
   ASSERT_TRUE(poses.ok());
   ASSERT_EQ(poses->size(), static_cast<std::size_t>(kRunFrames));
-  EXPECT_LT(((*poses)[4].world_from_cam.translation - PoseAt(4).Inverse().translation).norm(), 2e-6);
+  EXPECT_LT(((*poses)[4].world_from_cam.translation - PoseAt(4).Inverse().translation).norm(), kFileLength_mm);
   const auto camera = ReadCameraFile(folder_.Path("out/camera.yaml"));
   ASSERT_TRUE(camera.ok());
-  EXPECT_NEAR(camera->camera.params()[2], 319.5, 1e-9);
-  EXPECT_NEAR(*camera->fps, 25, 1e-6);
+  EXPECT_NEAR(camera->camera.params()[2], 319.5, kLengthRoundOff_mm);
+  EXPECT_NEAR(*camera->fps, 25, kFps);
 
   const Status again = ImportModel({}, ImportAs::kTruth).status();
   EXPECT_EQ(again.code(), ErrorCode::kInvalidArgument);
@@ -240,7 +245,8 @@ TEST_F(ImportTest, CameraPathsOfOtherSystemsComeToTheirFrames) {
     const auto pose =
         std::find_if(run.poses.begin(), run.poses.end(), [f = frame](const RunPose& p) { return p.frame_idx == f; });
     ASSERT_NE(pose, run.poses.end());
-    EXPECT_LT((pose->world_from_cam.translation - Eigen::Vector3d(1000, 2000, 3000)).norm(), 1e-3) << file;
+    EXPECT_LT((pose->world_from_cam.translation - Eigen::Vector3d(1000, 2000, 3000)).norm(), kSingleDecimals_mm)
+        << file;
   }
   EXPECT_EQ(ReadOut().poses[1].world_from_cam.rotation.angularDistance(
                 Eigen::Quaterniond(Eigen::AngleAxisd(EIGEN_PI / 2, Eigen::Vector3d::UnitZ()))) < 1e-6,

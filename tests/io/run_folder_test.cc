@@ -15,6 +15,7 @@
 #include "pliant/io/run_reader.h"
 #include "pliant/io/run_writer.h"
 #include "support/test_folder.h"
+#include "support/tolerances.h"
 
 namespace pliant {
 namespace {
@@ -42,7 +43,7 @@ TEST(RunFolder, ComesBackAsItWasReported) {
   EXPECT_EQ(run->summary->first_map->declared_frame_idx, kFirstMap.declared_frame_idx);
   EXPECT_EQ(run->summary->losses,
             (std::vector<std::pair<std::string, std::int64_t>>{{"similarity", 10}, {"border", 5}}));
-  EXPECT_NEAR(run->summary->mean_ms[1].second, 2.25, 1e-12);
+  EXPECT_NEAR(run->summary->mean_ms[1].second, 2.25, kRoundOff);
   EXPECT_EQ(run->stage_names, kStages);
   ASSERT_EQ(run->frames.size(), 5u);
   EXPECT_EQ(run->frames[0].state, TrackingState::kWaitingForReference);
@@ -57,7 +58,7 @@ TEST(RunFolder, ComesBackAsItWasReported) {
     EXPECT_EQ(pose.frame_idx, report.frame_idx);
     EXPECT_LT(
         (pose.world_from_cam * *report.cam_from_world * Eigen::Vector3d(1, 2, 50) - Eigen::Vector3d(1, 2, 50)).norm(),
-        2e-6);  // positions to 1e-6
+        kFileLength_mm);
     const auto frame = reader->Next();
     ASSERT_TRUE(frame.ok() && frame->has_value());
     EXPECT_EQ((*frame)->frame_idx, report.frame_idx);
@@ -65,8 +66,8 @@ TEST(RunFolder, ComesBackAsItWasReported) {
     for (std::size_t k = 0; k < report.observations.size(); ++k) {
       const PointObservation& o = (*frame)->observations[k];
       EXPECT_EQ(o.id, report.observations[k].id);
-      EXPECT_LT((o.pixel - report.observations[k].pixel).norm(), 1e-4);
-      EXPECT_LT((o.position - report.observations[k].position).norm(), 1e-6);
+      EXPECT_LT((o.pixel - report.observations[k].pixel).norm(), kFilePixel_px);
+      EXPECT_LT((o.position - report.observations[k].position).norm(), kFileLength_mm);
       EXPECT_EQ(o.ssim, 0.9);
     }
   }
@@ -92,6 +93,8 @@ TEST(RunFolder, LeavesOutALastLineThatWasCutOff) {
   WriteRun(folder.Path("run"), 5);
   const std::string frames = folder.Read("run/frames.csv");
   const std::string rows = folder.Read("run/observations.csv");
+  constexpr int kOneLine = 1;                   // no more than the last one is cut
+  constexpr std::size_t kAllObservations = 18;  // of four frames: six points, or the three even ones
   const std::string poses = folder.Read("run/trajectory.txt");
   for (std::size_t cut = 1; cut < 60; cut += 7) {
     folder.Write("run/frames.csv", frames.substr(0, frames.size() - cut));
@@ -105,8 +108,8 @@ TEST(RunFolder, LeavesOutALastLineThatWasCutOff) {
     std::size_t read = 0;
     for (auto frame = reader->Next(); frame.ok() && frame->has_value(); frame = reader->Next())
       read += (*frame)->observations.size();
-    EXPECT_LT(read, 18u);
-    EXPECT_LE(reader->cut_lines(), 1);
+    EXPECT_LT(read, kAllObservations);
+    EXPECT_LE(reader->cut_lines(), kOneLine);
   }
 }
 
@@ -281,8 +284,8 @@ TEST(ColmapModel, OfARunLinksImagesAndPointsBothWays) {
   ASSERT_EQ(keypoints.size(), 4u);
   const FrameReport second = Report(2);
   ASSERT_EQ(keypoints[second.frame_idx + 1].size(), second.observations.size());
-  EXPECT_NEAR(keypoints[second.frame_idx + 1][0][0], second.observations[0].pixel.x() + 0.5, 1e-4);
-  EXPECT_NEAR(keypoints[second.frame_idx + 1][0][1], second.observations[0].pixel.y() + 0.5, 1e-4);
+  EXPECT_NEAR(keypoints[second.frame_idx + 1][0][0], second.observations[0].pixel.x() + 0.5, kFilePixel_px);
+  EXPECT_NEAR(keypoints[second.frame_idx + 1][0][1], second.observations[0].pixel.y() + 0.5, kFilePixel_px);
 
   std::istringstream points(folder.Read("run/sparse/points3D.txt"));
   int num_points = 0;
@@ -293,7 +296,7 @@ TEST(ColmapModel, OfARunLinksImagesAndPointsBothWays) {
     std::array<double, 7> rest{};
     row >> id;
     for (double& value : rest) row >> value;
-    EXPECT_LT(rest[6], 1e-3) << "exact observations have no reprojection error";
+    EXPECT_LT(rest[6], kExactReprojection_px) << "exact observations have no reprojection error";
     int length = 0;
     for (int image = 0, idx = 0; row >> image >> idx; ++length)
       EXPECT_EQ(keypoints.at(image).at(static_cast<std::size_t>(idx))[2], id);
@@ -342,8 +345,8 @@ TEST(ColmapModel, HasTheSameInBinary) {
     EXPECT_EQ(images.TakeName(), report.name);
     ASSERT_EQ(images.Take<std::uint64_t>(), report.observations.size());
     for (const PointObservation& o : report.observations) {
-      EXPECT_NEAR(images.Take<double>(), o.pixel.x() + 0.5, 1e-4);
-      EXPECT_NEAR(images.Take<double>(), o.pixel.y() + 0.5, 1e-4);
+      EXPECT_NEAR(images.Take<double>(), o.pixel.x() + 0.5, kFilePixel_px);
+      EXPECT_NEAR(images.Take<double>(), o.pixel.y() + 0.5, kFilePixel_px);
       EXPECT_EQ(images.Take<std::uint64_t>(), static_cast<std::uint64_t>(o.id.value));
     }
   }
@@ -356,7 +359,7 @@ TEST(ColmapModel, HasTheSameInBinary) {
     for (int k = 0; k < 2; ++k) points.Take<double>();
     EXPECT_EQ(points.Take<std::uint8_t>(), 10);
     for (int k = 0; k < 2; ++k) points.Take<std::uint8_t>();
-    EXPECT_LT(points.Take<double>(), 1e-3);
+    EXPECT_LT(points.Take<double>(), kExactReprojection_px);
     const auto length = points.Take<std::uint64_t>();
     EXPECT_EQ(length, i % 2 == 0 ? 4u : 2u);
     for (std::uint64_t k = 0; k < 2 * length; ++k) points.Take<std::uint32_t>();

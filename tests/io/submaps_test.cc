@@ -11,12 +11,16 @@
 #include "io/run_reports.h"
 #include "pliant/io/run_reader.h"
 #include "support/test_folder.h"
+#include "support/tolerances.h"
 
 namespace pliant {
 namespace {
 
 using namespace run_reports;
 using testing::HasSubstr;
+
+constexpr double kFileAngle_rad = 1e-8;  // quaternions have nine decimals
+constexpr double kFileTime_s = 1e-6;     // times have six
 
 // A frame of another map: other ids, all of them new.
 FrameReport ReportOf(int frame, int submap) {
@@ -85,9 +89,9 @@ TEST_F(JoinedSubmaps, AreOneInTheEnd) {
     EXPECT_EQ(run->poses[i].submap, i == 3 ? 1 : 0) << i;
     const Rigid3 reported = *Report(static_cast<int>(i) + 1).cam_from_world;
     const Rigid3 expected = (i == 1 ? PoseInWorld(into_from_submap_, reported) : reported).Inverse();
-    EXPECT_LT((run->poses[i].world_from_cam.translation - expected.translation).norm(), 2e-6) << i;
-    EXPECT_LT(run->poses[i].world_from_cam.rotation.angularDistance(expected.rotation), 1e-8) << i;
-    EXPECT_NEAR(run->poses[i].timestamp_s, (static_cast<double>(i) + 1) / 25.0, 1e-6);
+    EXPECT_LT((run->poses[i].world_from_cam.translation - expected.translation).norm(), kFileLength_mm) << i;
+    EXPECT_LT(run->poses[i].world_from_cam.rotation.angularDistance(expected.rotation), kFileAngle_rad) << i;
+    EXPECT_NEAR(run->poses[i].timestamp_s, (static_cast<double>(i) + 1) / 25.0, kFileTime_s);
     EXPECT_EQ(run->frames[i].stage_ms, (std::vector<double>{1.5, 2.25})) << "the other columns stay";
   }
   std::vector<int> frames_idx;
@@ -97,8 +101,8 @@ TEST_F(JoinedSubmaps, AreOneInTheEnd) {
     for (std::size_t k = 0; k < reported.observations.size(); ++k) {
       const Eigen::Vector3d& position = reported.observations[k].position;
       EXPECT_EQ(observations[k].id, reported.observations[k].id);
-      EXPECT_LT((observations[k].position - (i == 1 ? into_from_submap_ * position : position)).norm(), 2e-6);
-      EXPECT_LT((observations[k].pixel - reported.observations[k].pixel).norm(), 1e-4);
+      EXPECT_LT((observations[k].position - (i == 1 ? into_from_submap_ * position : position)).norm(), kFileLength_mm);
+      EXPECT_LT((observations[k].pixel - reported.observations[k].pixel).norm(), kFilePixel_px);
     }
     return Status::Ok();
   });
@@ -122,7 +126,7 @@ TEST_F(JoinedSubmaps, OfARunThatWasKilledAreSeveral) {
   for (const std::size_t i : {0, 1, 2, 3}) {
     EXPECT_EQ(run->frames[i].submap, (std::vector<int>{0, 1, 0, 2})[i]);
     const Rigid3 reported = Report(static_cast<int>(i) + 1).cam_from_world->Inverse();
-    EXPECT_LT((run->poses[i].world_from_cam.translation - reported.translation).norm(), 2e-6);
+    EXPECT_LT((run->poses[i].world_from_cam.translation - reported.translation).norm(), kFileLength_mm);
   }
 }
 
@@ -145,8 +149,8 @@ TEST(RunWriter, AWorldIsMovedAsOftenAsItIsJoined) {
   ASSERT_TRUE(run.ok()) << run.status().message();
   EXPECT_EQ(run->summary->submaps, 1);
   const Rigid3 expected = PoseInWorld(first_from_second * second_from_third, *Report(3).cam_from_world).Inverse();
-  EXPECT_LT((run->poses[2].world_from_cam.translation - expected.translation).norm(), 2e-6);
-  EXPECT_LT(run->poses[2].world_from_cam.rotation.angularDistance(expected.rotation), 1e-8);
+  EXPECT_LT((run->poses[2].world_from_cam.translation - expected.translation).norm(), kFileLength_mm);
+  EXPECT_LT(run->poses[2].world_from_cam.rotation.angularDistance(expected.rotation), kFileAngle_rad);
   EXPECT_TRUE(std::filesystem::exists(folder.Path("run/sparse/images.txt")));
 }
 

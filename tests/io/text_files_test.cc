@@ -12,11 +12,15 @@
 #include "pliant/io/ply.h"
 #include "pliant/io/trajectory.h"
 #include "support/test_folder.h"
+#include "support/tolerances.h"
 
 namespace pliant {
 namespace {
 
 using testing::HasSubstr;
+
+constexpr double kHalfStep_s = 5.1e-7;   // half of the sixth decimal, and round-off
+constexpr double kHalfSteps_rad = 4e-9;  // half of the ninth decimal of four numbers; an angle is twice that
 
 std::string Fixed(double value, int decimals) {
   std::string text;
@@ -104,9 +108,9 @@ TEST(TumTrajectory, ComesBackAsItWasWritten) {
   ASSERT_TRUE(read.ok()) << read.status().message();
   ASSERT_EQ(read->size(), poses.size());
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    EXPECT_NEAR((*read)[i].timestamp_s, poses[i].timestamp_s, 5.1e-7);  // half of the last place
-    EXPECT_LT(((*read)[i].world_from_cam.translation - poses[i].world_from_cam.translation).norm(), 1e-6);
-    EXPECT_LT((*read)[i].world_from_cam.rotation.angularDistance(poses[i].world_from_cam.rotation), 4e-9);
+    EXPECT_NEAR((*read)[i].timestamp_s, poses[i].timestamp_s, kHalfStep_s);
+    EXPECT_LT(((*read)[i].world_from_cam.translation - poses[i].world_from_cam.translation).norm(), kFileLength_mm);
+    EXPECT_LT((*read)[i].world_from_cam.rotation.angularDistance(poses[i].world_from_cam.rotation), kHalfSteps_rad);
   }
   EXPECT_THAT(folder.Read("t.txt"), testing::Not(testing::ContainsRegex("  | \n")));
 }
