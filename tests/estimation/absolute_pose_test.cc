@@ -15,6 +15,10 @@ namespace pliant {
 namespace {
 
 constexpr double kFocal_px = 450;
+constexpr double kOrigin_mm = 1.5;      // pixels of 1 px noise, 40 of them, some 60 mm away
+constexpr double kRotation_rad = 0.03;  // the same over that distance
+constexpr int kMinRight = 36;           // of 40; a few lie beyond the threshold
+constexpr int kMaxWrong = 4;            // of 60, that are near their point by chance
 
 struct Matches {
   std::vector<Eigen::Vector3d> points;
@@ -42,12 +46,12 @@ TEST(AbsolutePose, IsFoundAmongWrongMatches) {
   const Matches matches = MakeMatches(100, 60, 1.0);
   const auto pose = EstimateAbsolutePose(matches.points, matches.rays, kFocal_px, {});
   ASSERT_TRUE(pose.ok()) << pose.status().message();
-  EXPECT_LT((pose->cam_from_world.OriginInSource() - TruePose().OriginInSource()).norm(), 1.5);
-  EXPECT_LT(RotationAngle(pose->cam_from_world.rotation * TruePose().rotation.conjugate()), 0.03);
+  EXPECT_LT((pose->cam_from_world.OriginInSource() - TruePose().OriginInSource()).norm(), kOrigin_mm);
+  EXPECT_LT(RotationAngle(pose->cam_from_world.rotation * TruePose().rotation.conjugate()), kRotation_rad);
   int right = 0;
   for (const int i : pose->inliers) right += i >= 60 ? 1 : 0;
-  EXPECT_GT(right, 36);
-  EXPECT_LT(static_cast<int>(pose->inliers.size()) - right, 4);
+  EXPECT_GT(right, kMinRight);
+  EXPECT_LT(static_cast<int>(pose->inliers.size()) - right, kMaxWrong);
   EXPECT_TRUE(std::is_sorted(pose->inliers.begin(), pose->inliers.end()));
 }
 

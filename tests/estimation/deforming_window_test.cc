@@ -33,6 +33,23 @@ constexpr double kDifference = 1e-5;  // of central differences with kStep, rela
 constexpr double kStep = 1e-6;
 constexpr double kRounding = 1e-9;  // mm, of a point through its chart and back
 
+constexpr double kWithoutNoise = 0.5;  // of kShape: the scene is rigid, noise and priors are left
+constexpr double kRigidShare = 0.1;    // of kShape: a window that knows that the scene is rigid has the noise alone
+constexpr double kWithinThreeSigmas = 0.95;  // of the errors; fewer than 99.7 %, for points share errors
+constexpr double kLessCertain = 1.5;         // half the views on half the way; by the way alone it would be two
+constexpr double kNoLessCertain = 1.1;       // sigmas come from another solution of the same window
+constexpr double kSigmaLow = 0.5;            // of the light's own errors, whose deviation the solution finds
+constexpr double kSigmaHigh = 3;             // and some of the correction for tilt, which this light does not have
+constexpr double kAgain_mm = 0.05;           // two solutions that rest where the solver stops
+constexpr double kUnknown = 1.0;             // of the logarithm: the depth may be three times as much
+constexpr double kMaxOfNoise = 0.15;         // correlation of residuals that are noise, of some thousand of them
+constexpr double kMinOfMotion = 0.5;         // of residuals that are a motion of six times the noise
+constexpr std::size_t kMaxNodes = 4;         // nodes that share a point
+constexpr double kSameSurface = 0.01;        // of logarithms of distances: what the correction for tilt leaves
+constexpr double kOtherSurface = 0.05;       // a tilted plane is no sphere: by up to some tenths
+constexpr double kDirectional = 1e-4;        // relative to both lengths; kDifference, times a cosine that may be small
+constexpr double kStepped = 1e-5;            // relative; the step solves the equations to the solver's precision
+
 // A wavy surface that waves, seen by a camera that goes forwards and sways: neither motion is small against the other.
 struct Scene {
   std::vector<Eigen::Vector3d> points;  // in the reference
@@ -130,8 +147,8 @@ TEST(DeformingWindow, OfARigidSceneIsRigid) {
   scene.amplitude_mm = 0;
   const auto solution = SolveDeformingWindow(scene.Start(0), kFocalPx, {});
   ASSERT_TRUE(solution.ok());
-  EXPECT_LT(Median(scene.DepthErrors(solution->window, 0)), 0.5 * kShape);
-  EXPECT_LT(Median(scene.DepthErrors(solution->window, 12)), 0.5 * kShape);
+  EXPECT_LT(Median(scene.DepthErrors(solution->window, 0)), kWithoutNoise * kShape);
+  EXPECT_LT(Median(scene.DepthErrors(solution->window, 12)), kWithoutNoise * kShape);
 }
 
 TEST(DeformingWindow, SaysHowUncertainItsDepthsAre) {
@@ -141,11 +158,11 @@ TEST(DeformingWindow, SaysHowUncertainItsDepthsAre) {
   const std::vector<double> errors = scene.DepthErrors(solution->window, 0);
   int within = 0;
   for (std::size_t i = 0; i < errors.size(); ++i) within += errors[i] < 3 * solution->log_depth_sigmas[i] ? 1 : 0;
-  EXPECT_GT(within, 0.95 * static_cast<double>(errors.size()));
+  EXPECT_GT(within, kWithinThreeSigmas * static_cast<double>(errors.size()));
   // ... and not by calling everything uncertain: with half the views, and half the way, it knows less.
   const auto shorter = SolveDeformingWindow(Scene(6).Start(0), kFocalPx, {});
   ASSERT_TRUE(shorter.ok());
-  EXPECT_GT(Median(shorter->log_depth_sigmas), 1.5 * Median(solution->log_depth_sigmas));
+  EXPECT_GT(Median(shorter->log_depth_sigmas), kLessCertain * Median(solution->log_depth_sigmas));
 }
 
 TEST(DeformingWindow, TwoSamplesOfThePointsCheckOneAnother) {
@@ -155,7 +172,7 @@ TEST(DeformingWindow, TwoSamplesOfThePointsCheckOneAnother) {
   ASSERT_TRUE(solution.ok() && shorter.ok());
   ASSERT_EQ(solution->sample_sigmas.size(), scene.points.size());
   EXPECT_LT(Median(solution->sample_sigmas), kShape);
-  EXPECT_GT(Median(shorter->sample_sigmas), 1.5 * Median(solution->sample_sigmas));
+  EXPECT_GT(Median(shorter->sample_sigmas), kLessCertain * Median(solution->sample_sigmas));
   // Fewer points than two samples take are solved all the same.
   const auto few = [](const Scene& of) {
     DeformingWindow start = of.Start(0);
@@ -178,8 +195,8 @@ TEST(DeformingWindow, TheLightTellsSolutionsApart) {
   ASSERT_TRUE(solution.ok());
   for (const int view : {0, 6, 12}) EXPECT_LT(Median(scene.DepthErrors(solution->window, view)), kShape) << view;
   // The median deviation of normal errors, and some of the correction for inclination, which this light does not have.
-  EXPECT_GT(solution->light_error, 0.5 * 0.1 / kMedianToSigma);
-  EXPECT_LT(solution->light_error, 3 * 0.1 / kMedianToSigma);
+  EXPECT_GT(solution->light_error, kSigmaLow * 0.1 / kMedianToSigma);
+  EXPECT_LT(solution->light_error, kSigmaHigh * 0.1 / kMedianToSigma);
 }
 
 TEST(DeformingWindow, DoesNotDependOnTheNumberOfThreads) {
@@ -205,7 +222,7 @@ TEST(DeformingWindow, OptimizesTheViewsBetween) {
   ASSERT_TRUE(optimized.ok());
   for (std::size_t v = 0; v < moved.cams_from_world.size(); ++v) {
     EXPECT_LT((optimized->cams_from_world[v].translation - solution->window.cams_from_world[v].translation).norm(),
-              0.05);
+              kAgain_mm);
     EXPECT_LT((optimized->points_in_world[v] - solution->window.points_in_world[v]).norm(), kRounding);
   }
 }
@@ -258,7 +275,7 @@ TEST(DeformingWindow, PointsJoinASolutionWhereTheirRaysAndNeighborsPutThem) {
     within += joined.back() < 3 * sigmas[static_cast<std::size_t>(i)] ? 1 : 0;
   }
   EXPECT_LT(Median(joined), kShape);
-  EXPECT_GT(within, 0.95 * num_joining);
+  EXPECT_GT(within, kWithinThreeSigmas * num_joining);
   EXPECT_LT(Median(errors), kShape);
   // Views, coefficients and nodes are held.
   EXPECT_EQ(optimized->window.coefficients, of.solution->window.coefficients);
@@ -277,10 +294,10 @@ TEST(DeformingWindow, WhatJoinsMakesTheOthersNoLessCertain) {
   const std::size_t known = alone->log_depth_sigmas.size();
   ASSERT_GT(with->log_depth_sigmas.size(), known);
   for (std::size_t i = 0; i < known; ++i)
-    EXPECT_LT((with->window.points_in_world[i] - alone->window.points_in_world[i]).norm(), 0.05) << i;
+    EXPECT_LT((with->window.points_in_world[i] - alone->window.points_in_world[i]).norm(), kAgain_mm) << i;
   const std::vector<double> sigmas(with->log_depth_sigmas.begin(),
                                    with->log_depth_sigmas.begin() + static_cast<std::ptrdiff_t>(known));
-  EXPECT_LT(Median(sigmas), 1.1 * Median(alone->log_depth_sigmas));
+  EXPECT_LT(Median(sigmas), kNoLessCertain * Median(alone->log_depth_sigmas));
 }
 
 TEST(DeformingWindow, JoiningDoesNotDependOnTheNumberOfThreads) {
@@ -304,7 +321,7 @@ TEST(DeformingWindow, RefusesAPointThatJoinsFromNowhere) {
   // One that is not seen keeps a position, and no certainty.
   const auto unseen = OptimizeDeformingPoints(*of.solution, {}, 1, kFocalPx, {});
   ASSERT_TRUE(unseen.ok());
-  EXPECT_GT(unseen->LogDepthSigma(of.solution->window.points_in_world.size()), 1.0);
+  EXPECT_GT(unseen->LogDepthSigma(of.solution->window.points_in_world.size()), kUnknown);
 }
 
 TEST(DeformingWindow, RefusesWhatIsNoWindow) {
@@ -395,7 +412,7 @@ TEST(DeformingEquations, SlopeMatchesDifferencesWhereThePointsAreSettled) {
       const double after = terms.Cost(equations->Moved(state, kStep * direction)).value();
       const double before = terms.Cost(equations->Moved(state, -kStep * direction)).value();
       EXPECT_NEAR((after - before) / (2 * kStep), equations->gradient().dot(direction),
-                  1e-4 * equations->gradient().norm() * direction.norm());
+                  kDirectional * equations->gradient().norm() * direction.norm());
     }
   }
 }
@@ -424,7 +441,7 @@ TEST(DeformingEquations, EliminatingThePointsChangesNoStep) {
           terms.node_information(point) * node.weight *
           step.segment(nodes_at + node.node_idx * terms.shapes_size(), terms.shapes_size());
     row[2] += own.by_offset * step[step.size() - 1];
-    EXPECT_LT((row + own.gradient).norm(), 1e-5 * own.gradient.norm()) << point;
+    EXPECT_LT((row + own.gradient).norm(), kStepped * own.gradient.norm()) << point;
   }
 }
 
@@ -436,8 +453,8 @@ TEST(DeformingWindow, TellsARigidSceneFromOneThatDeformsALittle) {
   const auto still = RigidResidualCorrelation(rigid.Start(0), kFocalPx, {});
   const auto moving = RigidResidualCorrelation(breathing.Start(0), kFocalPx, {});
   ASSERT_TRUE(still.ok() && moving.ok());
-  EXPECT_LT(*still, 0.15);
-  EXPECT_GT(*moving, 0.5);
+  EXPECT_LT(*still, kMaxOfNoise);
+  EXPECT_GT(*moving, kMinOfMotion);
 }
 
 TEST(DeformingWindow, SolvesARigidSceneAsOne) {
@@ -446,13 +463,13 @@ TEST(DeformingWindow, SolvesARigidSceneAsOne) {
   const auto solution = SolveRigidWindow(scene.Start(0), kFocalPx, {});
   ASSERT_TRUE(solution.ok()) << solution.status().message();
   EXPECT_EQ(solution->window.coefficients.rows(), 0);
-  EXPECT_LT(std::abs(solution->residual_correlation), 0.15);
+  EXPECT_LT(std::abs(solution->residual_correlation), kMaxOfNoise);
   for (const int view : {0, 12}) {
     const std::vector<double> errors = scene.DepthErrors(solution->window, view);
-    EXPECT_LT(Median(errors), 0.1 * kShape);
+    EXPECT_LT(Median(errors), kRigidShare * kShape);
     int within = 0;
     for (std::size_t i = 0; i < errors.size(); ++i) within += errors[i] < 3 * solution->log_depth_sigmas[i] ? 1 : 0;
-    EXPECT_GT(within, 0.95 * static_cast<double>(errors.size()));
+    EXPECT_GT(within, kWithinThreeSigmas * static_cast<double>(errors.size()));
   }
 }
 
@@ -464,7 +481,7 @@ TEST(SurfaceNodes, WeightsSumToOneAndANodesOwnPointIsItsAlone) {
     double sum = 0;
     for (const NodeWeight& weight : of.weights) sum += weight.weight;
     EXPECT_NEAR(sum, 1.0, kRounding);
-    EXPECT_LE(of.weights.size(), 4U);
+    EXPECT_LE(of.weights.size(), kMaxNodes);
   }
   EXPECT_EQ(around[20].distance, 0.0);
   EXPECT_EQ(around[20].weights.front().node_idx, 1);
@@ -486,11 +503,11 @@ TEST(LightDepth, ATiltedSurfaceIsDarkerNotFurther) {
     positions.push_back(-50.0 / normal.dot(ray) * ray);
     light.push_back(std::log(positions.back().norm()) - 0.4 * std::log(std::abs(normal.dot(ray))));
   }
-  EXPECT_LT(CompareWithLight(positions, light).error, 0.01);
+  EXPECT_LT(CompareWithLight(positions, light).error, kSameSurface);
   // A surface at the same rays that is another one does not fit.
   std::vector<Eigen::Vector3d> flat;
   for (const Eigen::Vector3d& position : positions) flat.push_back(50 * position.normalized());
-  EXPECT_GT(CompareWithLight(flat, light).error, 0.05);
+  EXPECT_GT(CompareWithLight(flat, light).error, kOtherSurface);
   light.resize(10);
   positions.resize(10);
   EXPECT_EQ(CompareWithLight(positions, light).error, 0);

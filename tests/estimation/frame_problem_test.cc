@@ -18,7 +18,10 @@
 namespace pliant {
 namespace {
 
-constexpr double kExactRad = 1e-8;  // zero noise: the gradient's tolerance over the weakest curvature
+constexpr double kSmooth_px = 0.1;     // what the regularizers hold back of a smooth deformation
+constexpr double kBystander_mm = 0.1;  // how far an outlier of no size moves the others, on average
+constexpr double kSaturated = 1.1;     // with squares instead it would be ten times as strong
+constexpr double kExactRad = 1e-8;     // zero noise: the gradient's tolerance over the weakest curvature
 constexpr double kExactMm = 1e-6;
 constexpr double kSameCost = 1e-6;           // relative; what both solvers' convergence guarantees
 constexpr double kCostRounding = 1e-12;      // relative; the same sums in another order
@@ -109,7 +112,7 @@ TEST(FrameProblem, FollowsASmoothDeformationInTheImage) {
   const FrameScene scene = MakeFrameScene({.pixel_noise_px = 0, .outlier_ratio = 0});
   const FrameSolution solution = Solve(scene, PoseOnLastGeometry(scene));
   EXPECT_TRUE(solution.converged) << solution.message;
-  for (const FramePoint& point : solution.points) EXPECT_LT(point.reprojection_error_px, 0.1);
+  for (const FramePoint& point : solution.points) EXPECT_LT(point.reprojection_error_px, kSmooth_px);
   EXPECT_LT(solution.costs.Total(), solution.initial_costs.Total());
 }
 
@@ -285,8 +288,8 @@ TEST(FrameProblem, OutliersHaveBoundedInfluence) {
       sum += (solution.points[i].position - scene.positions[i]).norm();
     shift_mm[k] = sum / static_cast<double>(scene.positions.size() - 1);
   }
-  EXPECT_LT(shift_mm[0], 0.1);
-  EXPECT_LT(shift_mm[2], 1.1 * shift_mm[1]);  // the pull has saturated; with squares it would be ten times as strong
+  EXPECT_LT(shift_mm[0], kBystander_mm);
+  EXPECT_LT(shift_mm[2], kSaturated * shift_mm[1]);
 }
 
 TEST(FrameProblem, DisagreementPointsAtWrongTracks) {

@@ -15,6 +15,7 @@
 #include "pliant/estimation/two_view_models.h"
 #include "pliant/geometry/triangulation.h"
 #include "support/synthetic_scene.h"
+#include "support/tolerances.h"
 
 namespace pliant {
 namespace {
@@ -28,6 +29,17 @@ using test::Surface;
 
 constexpr double kDeg = std::numbers::pi / 180.0;
 // Of exact pixels: the solvers' own rounding.
+constexpr int kMaxWrong = 15;                 // of about 150: those that fell near their epipolar line by chance
+constexpr int kMaxMissed = 90;                // of about 350: a raw five-point motion leaves some beyond the threshold
+constexpr double kRaw_rad = 10.0 * kDeg;      // of a five-point motion at 0.3 px, not refined
+constexpr double kOfAPlane_rad = 3.0 * kDeg;  // the direction of a plane's motion at 0.1 px
+constexpr double kThirdOfAPixel_rad = 0.05 * kDeg;  // outliers keep a pull that falls with their distance
+constexpr double kTwoMotions_rad = 1.0 * kDeg;      // an outlier within the threshold may be among the least squares
+constexpr double kRefined = 0.7;                    // of the error of a sample
+constexpr int kMinInliersSharp = 340;               // of about 350 at 0.1 px
+constexpr int kMinInliers = 300;                    // of about 350 without noise, next to 150 outliers
+constexpr int kMaxByRotation = 150;                 // of 500 pairs, those far away or at the image's middle
+constexpr int kMaxByPlane = 250;                    // of 500 pairs: a tube is no plane, but some of it nearly is
 constexpr double kExactRad = 1e-6;
 constexpr double kKneipExactRad = 1e-4;
 
@@ -88,7 +100,7 @@ TEST_P(EveryEssential, IsExactWithoutNoise) {
     const Pair pair = MakePair({.motion = motion});
     const auto pose = Estimate(pair, GetParam());
     ASSERT_TRUE(pose.ok()) << pose.status().message();
-    EXPECT_NEAR(pose->cam1_from_cam0.translation.norm(), 1.0, 1e-12);
+    EXPECT_NEAR(pose->cam1_from_cam0.translation.norm(), 1.0, kRoundOff);
     EXPECT_LT(AngleBetween(pose->cam1_from_cam0.translation, pair.truth().translation), exact_rad);
     EXPECT_LT(RotationAngle(pose->cam1_from_cam0.rotation * pair.truth().rotation.conjugate()), exact_rad);
     EXPECT_EQ(pose->num_inliers, 500);
@@ -106,9 +118,9 @@ TEST_P(EveryEssential, SortsOutThirtyPercentOutliers) {
       wrong += pose->inliers[i] != 0 && pair.scene.is_outlier[i] != 0 ? 1 : 0;
       missed += pose->inliers[i] == 0 && pair.scene.is_outlier[i] == 0 ? 1 : 0;
     }
-    EXPECT_LT(wrong, 15);   // of about 150: those that fell near their epipolar line by chance
-    EXPECT_LT(missed, 90);  // of about 350: a raw five-point motion at 4 degrees leaves some beyond the threshold
-    EXPECT_LT(AngleBetween(pose->cam1_from_cam0.translation, pair.truth().translation), 10.0 * kDeg);
+    EXPECT_LT(wrong, kMaxWrong);
+    EXPECT_LT(missed, kMaxMissed);
+    EXPECT_LT(AngleBetween(pose->cam1_from_cam0.translation, pair.truth().translation), kRaw_rad);
   }
 }
 
@@ -154,7 +166,7 @@ TEST_P(EveryEssential, IsBetterForRefinementOnInliers) {
         of({GetParam().solver == RelativePoseSolver::kOpencvUsac ? RelativePoseSolver::kNister : GetParam().solver,
             RobustLoop::kRansac}));
   }
-  EXPECT_LT(Median(errors), 0.7 * Median(errors_of_samples));
+  EXPECT_LT(Median(errors), kRefined * Median(errors_of_samples));
 }
 
 TEST(RelativePose, HomographyFindsThePlanesMotion) {
@@ -162,8 +174,8 @@ TEST(RelativePose, HomographyFindsThePlanesMotion) {
     const Pair pair = MakePair({.surface = Surface::kPlane, .motion = motion, .noise_px = 0.1, .outlier_share = 0.3});
     const auto pose = Estimate(pair, {RelativePoseSolver::kHomography});
     ASSERT_TRUE(pose.ok()) << pose.status().message();
-    EXPECT_LT(AngleBetween(pose->cam1_from_cam0.translation, pair.truth().translation), 3.0 * kDeg);
-    EXPECT_GT(pose->num_inliers, 340);
+    EXPECT_LT(AngleBetween(pose->cam1_from_cam0.translation, pair.truth().translation), kOfAPlane_rad);
+    EXPECT_GT(pose->num_inliers, kMinInliersSharp);
   }
 }
 
@@ -172,8 +184,8 @@ TEST(RelativePose, RotationOnlyFindsARotationAndNoTranslation) {
   const auto pose = Estimate(pair, {RelativePoseSolver::kRotationOnly});
   ASSERT_TRUE(pose.ok()) << pose.status().message();
   EXPECT_EQ(pose->cam1_from_cam0.translation, Eigen::Vector3d::Zero());
-  EXPECT_LT(RotationAngle(pose->cam1_from_cam0.rotation * pair.truth().rotation.conjugate()), 0.05 * kDeg);
-  EXPECT_GT(pose->num_inliers, 340);
+  EXPECT_LT(RotationAngle(pose->cam1_from_cam0.rotation * pair.truth().rotation.conjugate()), kThirdOfAPixel_rad);
+  EXPECT_GT(pose->num_inliers, kMinInliersSharp);
 }
 
 // With nine tenths outliers 300 samples of five pairs hold a clean one once in 300 times. A few pairs agree with any
@@ -236,9 +248,8 @@ TEST(RotationModel, IsFoundAmongOutliers) {
   const Pair pair = MakePair({.motion = Motion::kRotation, .rotation_deg = 5.0, .outlier_share = 0.3});
   const auto fit = FitRotation(pair.rays0, pair.rays1, pair.options.focal_px, 1.5);
   ASSERT_TRUE(fit.ok());
-  // Outliers keep a pull that falls with their distance: 0.05 degrees is a third of a pixel.
-  EXPECT_LT(RotationAngle(fit->cam1_from_cam0 * pair.truth().rotation.conjugate()), 0.05 * kDeg);
-  EXPECT_GT(fit->num_inliers, 300);
+  EXPECT_LT(RotationAngle(fit->cam1_from_cam0 * pair.truth().rotation.conjugate()), kThirdOfAPixel_rad);
+  EXPECT_GT(fit->num_inliers, kMinInliers);
 }
 
 TEST(RotationModel, DoesNotExplainATranslation) {
@@ -246,7 +257,7 @@ TEST(RotationModel, DoesNotExplainATranslation) {
     const Pair pair = MakePair({.motion = motion});
     const auto fit = FitRotation(pair.rays0, pair.rays1, pair.options.focal_px, 1.5);
     ASSERT_TRUE(fit.ok());
-    EXPECT_LT(fit->num_inliers, 150);
+    EXPECT_LT(fit->num_inliers, kMaxByRotation);
   }
   EXPECT_EQ(FitRotation({}, {}, 450, 1.5).status().code(), ErrorCode::kInsufficient);
 }
@@ -256,14 +267,14 @@ TEST(PlaneModel, HomographyOfAPlaneHoldsItsMotion) {
     const Pair pair = MakePair({.surface = Surface::kPlane, .motion = motion, .outlier_share = 0.3});
     const auto fit = FitHomography(pair.rays0, pair.rays1, pair.options.focal_px, 1.5, Random(1));
     ASSERT_TRUE(fit.ok());
-    EXPECT_GT(fit->num_inliers, 300);
+    EXPECT_GT(fit->num_inliers, kMinInliers);
     double nearest = std::numbers::pi;
     const auto motions = MotionsFromHomography(fit->cam1_from_cam0, pair.rays0);
     ASSERT_EQ(motions.size(), 2U);
     for (const Rigid3& candidate : motions)
       nearest = std::min(nearest, AngleBetween(candidate.translation, pair.truth().translation) +
                                       RotationAngle(candidate.rotation * pair.truth().rotation.conjugate()));
-    EXPECT_LT(nearest, 1.0 * kDeg);  // an outlier within the threshold may be among the least squares
+    EXPECT_LT(nearest, kTwoMotions_rad);
   }
 }
 
@@ -271,7 +282,7 @@ TEST(PlaneModel, DoesNotExplainATube) {
   const Pair pair = MakePair({});
   const auto fit = FitHomography(pair.rays0, pair.rays1, pair.options.focal_px, 1.5, Random(1));
   ASSERT_TRUE(fit.ok());
-  EXPECT_LT(fit->num_inliers, 250);
+  EXPECT_LT(fit->num_inliers, kMaxByPlane);
 }
 
 }  // namespace

@@ -15,6 +15,8 @@ using test::RaysOf;
 using test::Scene;
 using test::SceneOptions;
 
+constexpr double kConverged_mm = 1e-5;  // where the solver rests, poses alone, some 50 mm away
+
 Window TrueWindow(const Scene& scene, const SceneOptions& options) {
   Window window{scene.cams_from_world, scene.points, {}};
   for (std::size_t i = 0; i < scene.points.size(); ++i)
@@ -47,7 +49,8 @@ TEST(WindowRefinement, EstimatesPosesOnFixedPoints) {
   const auto refined = RefineWindow(start, options.focal_px, WindowPoints::kFixed, {.loss_scale_px = 10});
   ASSERT_TRUE(refined.ok());
   for (std::size_t k = 0; k < scene.cams_from_world.size(); ++k)
-    EXPECT_LT((refined->window.cams_from_world[k].translation - scene.cams_from_world[k].translation).norm(), 1e-5);
+    EXPECT_LT((refined->window.cams_from_world[k].translation - scene.cams_from_world[k].translation).norm(),
+              kConverged_mm);
   EXPECT_EQ(refined->window.points_in_world, start.points_in_world);
 }
 

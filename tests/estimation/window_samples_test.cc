@@ -9,8 +9,15 @@
 
 #include <gtest/gtest.h>
 
+#include "support/tolerances.h"
+
 namespace pliant {
 namespace {
+
+constexpr int kMinOnTheLeft = 15;  // of 100: a quarter of the image, not half of the sample as of the points
+constexpr int kMaxOnTheLeft = 40;
+constexpr double kOwnWeight = 0.8;         // of a point that is where one of the nearest is
+constexpr double kBetweenNeighbors = 0.6;  // of values from -3 to 3, which change by about that between samples
 
 // A grid of rays; three times as many points in its left quarter as elsewhere.
 DeformingWindow Grid() {
@@ -42,8 +49,8 @@ TEST(WindowSamples, AreTwoWithoutCommonPointsSpreadOverTheImage) {
     const auto left = std::count_if(sample.begin(), sample.end(), [&](int i) {
       return window.points_in_world[static_cast<std::size_t>(i)].x() < 50 * (0.04 * 5 - 0.4) - 1;
     });
-    EXPECT_GT(left, 15);  // a quarter of the image: not half of the sample, as of the points
-    EXPECT_LT(left, 40);
+    EXPECT_GT(left, kMinOnTheLeft);
+    EXPECT_LT(left, kMaxOnTheLeft);
   }
   EXPECT_EQ(all.size(), 200U);
 }
@@ -55,8 +62,8 @@ TEST(WindowSamples, NearestPointsHaveWeightsThatSumToOne) {
   EXPECT_EQ(nearest.front().idx, 123U);
   double sum = 0;
   for (const NearPoint& near : nearest) sum += near.weight;
-  EXPECT_NEAR(sum, 1, 1e-12);
-  EXPECT_GT(nearest.front().weight, 0.8);
+  EXPECT_NEAR(sum, 1, kRoundOff);
+  EXPECT_GT(nearest.front().weight, kOwnWeight);
   EXPECT_EQ(NearestPoints({Eigen::Vector3d::UnitX()}, Eigen::Vector3d::UnitZ()).front().weight, 1);
 }
 
@@ -110,7 +117,7 @@ TEST(WindowSamples, APartHasItsPointsObservations) {
                            part.points_in_world[static_cast<std::size_t>(seen.point_idx)])
                               .normalized())
                   .norm(),
-              1e-12);
+              kRoundOff);
 }
 
 TEST(WindowSamples, TheOthersMoveLikeTheirNeighbors) {
@@ -133,8 +140,8 @@ TEST(WindowSamples, TheOthersMoveLikeTheirNeighbors) {
     EXPECT_EQ(all.shapes[static_cast<std::size_t>(sample[k])], solved.shapes[k]);
   }
   for (std::size_t i = 0; i < start.points_in_world.size(); ++i) {
-    EXPECT_LT((all.points_in_world[i] - 1.5 * start.points_in_world[i]).norm(), 1e-9);
-    EXPECT_NEAR(all.shapes[i](0, 0), 1.5 * start.points_in_world[i].y() / 10, 0.6);  // of -3 to 3
+    EXPECT_LT((all.points_in_world[i] - 1.5 * start.points_in_world[i]).norm(), kLengthRoundOff_mm);
+    EXPECT_NEAR(all.shapes[i](0, 0), 1.5 * start.points_in_world[i].y() / 10, kBetweenNeighbors);
   }
 }
 
