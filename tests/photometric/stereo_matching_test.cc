@@ -18,6 +18,14 @@
 namespace pliant {
 namespace {
 
+constexpr std::size_t kMinCorners = 100;  // of 300 asked for
+constexpr double kSubPixel_px = 0.06;     // median: an alignment of patches that are not quite flat
+constexpr double kSemiGlobal_px = 0.15;   // median: sixteenths of a pixel, and windows across edges
+constexpr double kWrong_px = 1.0;         // is no noise any more
+constexpr double kMaxShareWrong = 0.03;
+constexpr int kByChance = 2;              // matches of noise that agree in both directions
+constexpr double kGainMatters_px = 0.02;  // median: what rounding to fewer levels changes
+
 struct Pair {
   cv::Mat left, right;
 };
@@ -60,7 +68,7 @@ class EveryMatcher : public testing::TestWithParam<StereoMatcher> {
 TEST_P(EveryMatcher, FindsTheDisparityThatTheDepthSays) {
   const Pair pair = RenderedPair();
   const std::vector<Eigen::Vector2d> pixels = CornersOf(pair.left);
-  ASSERT_GT(pixels.size(), 100U);
+  ASSERT_GT(pixels.size(), kMinCorners);
   const auto matches = Match(pair, pixels, Options());
   const double focal_baseline = Rendered().camera.params()[0] * Rendered().baseline_mm;
   std::vector<double> errors_px;
@@ -70,9 +78,9 @@ TEST_P(EveryMatcher, FindsTheDisparityThatTheDepthSays) {
       errors_px.push_back(std::abs(matches[i]->disparity_px - focal_baseline / *depth_mm));
   }
   EXPECT_GT(errors_px.size(), pixels.size() / 2);
-  EXPECT_LT(Median(errors_px), GetParam() == StereoMatcher::kPhotometric ? 0.06 : 0.15);
-  const auto wrong = std::count_if(errors_px.begin(), errors_px.end(), [](double error) { return error > 1.0; });
-  EXPECT_LT(static_cast<double>(wrong), 0.03 * static_cast<double>(errors_px.size()));
+  EXPECT_LT(Median(errors_px), GetParam() == StereoMatcher::kPhotometric ? kSubPixel_px : kSemiGlobal_px);
+  const auto wrong = std::count_if(errors_px.begin(), errors_px.end(), [](double error) { return error > kWrong_px; });
+  EXPECT_LT(static_cast<double>(wrong), kMaxShareWrong * static_cast<double>(errors_px.size()));
 }
 
 TEST_P(EveryMatcher, IsTheSameOnAnyNumberOfThreads) {
@@ -90,7 +98,7 @@ TEST_P(EveryMatcher, FindsNothingWhereThereIsNothing) {
   EXPECT_EQ(Count(Match({pair.left, black}, pixels, Options())), 0);
   cv::Mat noise(pair.left.size(), CV_8UC1);
   cv::RNG(7).fill(noise, cv::RNG::UNIFORM, 0, 256);
-  EXPECT_LE(Count(Match({pair.left, noise}, pixels, Options())), 2);
+  EXPECT_LE(Count(Match({pair.left, noise}, pixels, Options())), kByChance);
   cv::Mat turned;
   cv::rotate(pair.right, turned, cv::ROTATE_180);
   EXPECT_LT(Count(Match({pair.left, turned}, pixels, Options())), found / 4);
@@ -126,7 +134,7 @@ TEST(StereoMatching, AGainBetweenTheEyesChangesLittle) {
   std::vector<double> differences_px;
   for (std::size_t i = 0; i < pixels.size(); ++i)
     if (dark[i] && as_it_is[i]) differences_px.push_back(std::abs(dark[i]->disparity_px - as_it_is[i]->disparity_px));
-  EXPECT_LT(Median(differences_px), 0.02);
+  EXPECT_LT(Median(differences_px), kGainMatters_px);
 }
 
 TEST(StereoMatching, WhatIsPeriodicAlongTheRowIsNoMatch) {

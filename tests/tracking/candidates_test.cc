@@ -12,7 +12,10 @@ namespace pliant {
 namespace {
 
 constexpr PointId kCandidate{1000};
-constexpr double kRounding = 1e-9;
+constexpr double kNextFrame_px = 0.5;         // the camera's step and the deformation in one frame
+constexpr double kAfterCorrection_mm = 1e-4;  // filters that turn with the world are the same but for their solver
+constexpr double kCertain = 0.01;             // of the distance: below the certainty that is asked for
+constexpr double kRounding = 1e-9;            // many operations on lengths of about 100 mm
 
 Camera TestCamera() { return *Camera::Create("PINHOLE", 640, 480, std::vector<double>{450, 450, 319.5, 239.5}); }
 
@@ -69,7 +72,7 @@ TEST(Candidates, BecomeCertainAtTheRightPlaceWhereTheSceneDeforms) {
   ASSERT_EQ(certain.size(), 1U);
   EXPECT_EQ(certain[0].first, kCandidate);
   const Eigen::Vector3d truth = scene.Displaced(rest, kLast);
-  EXPECT_LT((certain[0].second - truth).norm(), 0.01 * truth.norm());
+  EXPECT_LT((certain[0].second - truth).norm(), kCertain * truth.norm());
 }
 
 TEST(Candidates, AreNotCertainAtOnce) {
@@ -139,7 +142,8 @@ TEST(Candidates, AreExpectedWhereTheCameraWillSeeThem) {
   ASSERT_EQ(candidates.Certain(Scene::Pose(20), scene.MapAt(20)).size(), 1U);  // its place is now the best guess
   const auto expected = candidates.Predict(Scene::Pose(21));
   ASSERT_EQ(expected.size(), 1U);
-  EXPECT_LT((expected[0].pixel - *scene.camera.Project(Scene::Pose(21) * scene.Displaced(rest, 20))).norm(), 0.5);
+  EXPECT_LT((expected[0].pixel - *scene.camera.Project(Scene::Pose(21) * scene.Displaced(rest, 20))).norm(),
+            kNextFrame_px);
 }
 
 TEST(Candidates, ACorrectionOfTheMapIsNoMotion) {
@@ -157,7 +161,7 @@ TEST(Candidates, ACorrectionOfTheMapIsNoMotion) {
   ASSERT_TRUE(candidates.AddView(track, Scene::Pose(kLast), after));
   const auto certain = candidates.Certain(Scene::Pose(kLast), after);
   ASSERT_EQ(certain.size(), 1U);
-  EXPECT_LT((certain[0].second - scene.Displaced(rest, kLast)).norm(), 0.01 * rest.norm());
+  EXPECT_LT((certain[0].second - scene.Displaced(rest, kLast)).norm(), kCertain * rest.norm());
 }
 
 // Cameras and points moved alike are the same scene.
@@ -182,7 +186,7 @@ TEST(Candidates, MoveWithTheWorld) {
   const auto certain = candidates.Certain(Scene::Pose(kLast) * motion.Inverse(), moved);
   ASSERT_EQ(certain.size(), 1U);
   ASSERT_EQ(stayed.size(), 1U);
-  EXPECT_LT((certain[0].second - motion * stayed[0].second).norm(), 1e-4);
+  EXPECT_LT((certain[0].second - motion * stayed[0].second).norm(), kAfterCorrection_mm);
 }
 
 TEST(Candidates, NeedAMap) {

@@ -7,8 +7,17 @@
 
 #include <gtest/gtest.h>
 
+#include "support/tolerances.h"
+
 namespace pliant {
 namespace {
+
+constexpr double kOnce = 0.05;           // of the motion: damping leaves a fiftieth of the turn or so
+constexpr double kTwice = 0.005;         // and of that again, with what is not linear
+constexpr double kDamped_rad = 0.0012;   // of a turn of 0.04
+constexpr double kStretched_rad = 1e-3;  // a wall that is not quite symmetric turns a little as it is stretched
+constexpr double kAlongTheRow = 1e-4;    // half of the turn about the row itself, which nothing tells
+constexpr double kMiddle_mm = 0.02;      // the middle of the row, which was moved by 0.4 mm
 
 // A curved wall, all of it moved from where it rests.
 Map WallMovedBy(const Rigid3& motion) {
@@ -39,24 +48,24 @@ TEST(CommonMotion, WhatAllPointsDidTogetherIsTakenBack) {
   Map map = WallMovedBy(kDrift);
   const double before = FarthestFromRest(map);
   Move(CommonMotionToRest(map, 1), &map);
-  EXPECT_LT(FarthestFromRest(map), 0.05 * before) << "damping leaves a fiftieth of the turn or so";
+  EXPECT_LT(FarthestFromRest(map), kOnce * before) << "damping leaves a fiftieth of the turn or so";
   Move(CommonMotionToRest(map, 1), &map);
-  EXPECT_LT(FarthestFromRest(map), 0.005 * before);
+  EXPECT_LT(FarthestFromRest(map), kTwice * before);
 }
 
 TEST(CommonMotion, AShareOfItIsTakenBack) {
   const Rigid3 shift(Eigen::Quaterniond::Identity(), Eigen::Vector3d(2, -1, 3));
   const Rigid3 back = CommonMotionToRest(WallMovedBy(shift), 0.05);
-  EXPECT_LT((back.translation + 0.05 * shift.translation).norm(), 1e-9);
-  EXPECT_LT(RotationAngle(back.rotation), 1e-9);
+  EXPECT_LT((back.translation + 0.05 * shift.translation).norm(), kLengthRoundOff_mm);
+  EXPECT_LT(RotationAngle(back.rotation), kLengthRoundOff_mm);
   const Rigid3 turn(RotationExp(Eigen::Vector3d(0, 0, 0.04)), Eigen::Vector3d::Zero());
-  EXPECT_NEAR(RotationAngle(CommonMotionToRest(WallMovedBy(turn), 0.05).rotation), 0.05 * 0.04, 0.05 * 0.0012);
+  EXPECT_NEAR(RotationAngle(CommonMotionToRest(WallMovedBy(turn), 0.05).rotation), 0.05 * 0.04, 0.05 * kDamped_rad);
 }
 
 TEST(CommonMotion, PointsAtRestStayThere) {
   const Rigid3 none = CommonMotionToRest(WallMovedBy(Rigid3()), 1);
-  EXPECT_LT(none.translation.norm(), 1e-9);
-  EXPECT_LT(RotationAngle(none.rotation), 1e-9);
+  EXPECT_LT(none.translation.norm(), kLengthRoundOff_mm);
+  EXPECT_LT(RotationAngle(none.rotation), kLengthRoundOff_mm);
 }
 
 // Stretching is the scene's own motion.
@@ -64,8 +73,8 @@ TEST(CommonMotion, WhatPointsDoApartStays) {
   Map map = WallMovedBy(Rigid3());
   for (Landmark& landmark : map.landmarks) landmark.position.x() *= 1.1;
   const Rigid3 moved = CommonMotionToRest(map, 1);
-  EXPECT_LT(moved.translation.norm(), 1e-9);
-  EXPECT_LT(RotationAngle(moved.rotation), 1e-3);
+  EXPECT_LT(moved.translation.norm(), kLengthRoundOff_mm);
+  EXPECT_LT(RotationAngle(moved.rotation), kStretched_rad);
 }
 
 TEST(CommonMotion, PointsInARowDoNotTurnAboutIt) {
@@ -78,8 +87,8 @@ TEST(CommonMotion, PointsInARowDoNotTurnAboutIt) {
                              .position = rest + Eigen::Vector3d(0.1 * i, 0.01, -0.02 + 10 * side)});
   }
   const Rigid3 moved = CommonMotionToRest(map, 1);
-  EXPECT_NEAR(moved.rotation.x(), 0, 1e-4);
-  EXPECT_LT((moved * map.landmarks[4].position - map.landmarks[4].rest_position).norm(), 0.02);
+  EXPECT_NEAR(moved.rotation.x(), 0, kAlongTheRow);
+  EXPECT_LT((moved * map.landmarks[4].position - map.landmarks[4].rest_position).norm(), kMiddle_mm);
 }
 
 TEST(CommonMotion, OfTwoPointsNothingIsSaid) {

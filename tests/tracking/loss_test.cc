@@ -18,6 +18,13 @@ namespace {
 using testing::HasSubstr;
 using tracking_test::kFrames;
 
+constexpr double kUndisturbed_mm = 0.4;  // the path of 50 mm views that nothing was wrong with, where points were lost
+constexpr double kStandstill_mm = 0.05;  // a tracked camera is known that well
+constexpr double kShareOfGap = 0.05;     // of the way that nobody saw
+constexpr double kShareOfWay = 0.1;      // two monocular maps of the same frames, but two
+constexpr double kFoundAgain = 0.5;      // of the points, some of which have left the image
+constexpr double kStillFollowed = 0.8;   // of the points of a run without blur
+
 class LossOfTheView : public tracking_test::TrackerFromImages {
  protected:
   static cv::Mat Image(int idx) { return (*images_)[static_cast<std::size_t>(idx)]; }
@@ -100,7 +107,8 @@ TEST_F(LossOfTheView, DarkAndBlurredImagesBeforeTheMapArePassedOver) {
   }
   const auto undisturbed = Run(options, AllImages());
   // The unit of both is the nominal depth.
-  EXPECT_LT(DistanceMm(reports.back(), undisturbed.back()), 0.1 * DistanceMm(undisturbed.front(), undisturbed.back()));
+  EXPECT_LT(DistanceMm(reports.back(), undisturbed.back()),
+            kShareOfWay * DistanceMm(undisturbed.front(), undisturbed.back()));
 }
 
 TEST_F(LossOfTheView, ABlurThatStaysIsTakenAsItIs) {
@@ -127,13 +135,13 @@ TEST_F(LossOfTheView, TheCameraIsFoundWhereverItIsAfterTheDark) {
     ASSERT_EQ(back.state, TrackingState::kTracking) << found << ": " << back.note;
     const FrameReport& there = undisturbed[static_cast<std::size_t>(found)];
     EXPECT_LT(DistanceMm(back, there),
-              0.05 * DistanceMm(undisturbed[static_cast<std::size_t>(kLastSeen)], there) + 0.05)
+              kShareOfGap * DistanceMm(undisturbed[static_cast<std::size_t>(kLastSeen)], there) + kStandstill_mm)
         << found;
     std::set<PointId> before;
     for (const PointObservation& seen : reports[kLastSeen].observations) before.insert(seen.id);
     const auto same = std::ranges::count_if(back.observations,
                                             [&](const PointObservation& seen) { return before.contains(seen.id); });
-    EXPECT_GT(static_cast<double>(same), 0.5 * static_cast<double>(before.size())) << found;
+    EXPECT_GT(static_cast<double>(same), kFoundAgain * static_cast<double>(before.size())) << found;
   }
 }
 
@@ -156,10 +164,11 @@ TEST_F(LossOfTheView, PointsAreFollowedIntoBlurredImages) {
   EXPECT_TRUE(FramesThat(reports, TrackingState::kLost).empty());
   for (int i = 5; i < kFrames; ++i) {
     const auto idx = static_cast<std::size_t>(i);
-    EXPECT_LT(DistanceMm(reports[idx], undisturbed[idx]), 0.4) << i;
+    EXPECT_LT(DistanceMm(reports[idx], undisturbed[idx]), kUndisturbed_mm) << i;
     EXPECT_EQ(reports[idx].note.find("blurred") != std::string::npos, i < 8) << i;
   }
-  EXPECT_GT(static_cast<double>(reports.back().optimized), 0.8 * static_cast<double>(undisturbed.back().optimized));
+  EXPECT_GT(static_cast<double>(reports.back().optimized),
+            kStillFollowed * static_cast<double>(undisturbed.back().optimized));
 
   options.track_blurred = Switch::kOff;
   EXPECT_FALSE(FramesThat(Run(options, images), TrackingState::kLost).empty());
@@ -186,7 +195,7 @@ TEST_F(LossOfTheView, AMapThatIsLeftIsFoundAgain) {
       EXPECT_EQ(submap_of.try_emplace(seen.id, report.submap).first->second, report.submap) << "an id in two maps";
   }
   const auto undisturbed = Run(options, AllImages());
-  EXPECT_LT(DistanceMm(reports.back(), undisturbed.back()), 0.4);
+  EXPECT_LT(DistanceMm(reports.back(), undisturbed.back()), kUndisturbed_mm);
 }
 
 // The same images twice, with something else between: the second time another map is begun, of twice the unit.

@@ -10,7 +10,8 @@
 namespace pliant {
 namespace {
 
-constexpr double kRounding = 1e-9;
+constexpr double kSamePixel_px = 1e-6;  // and entries of the affine change: round-off, times pixels a mm
+constexpr double kRounding = 1e-9;      // px; operations on pixels of some hundreds
 
 Camera TestCamera() { return *Camera::Create("PINHOLE", 640, 480, std::vector<double>{500, 500, 319.5, 239.5}); }
 
@@ -112,8 +113,8 @@ TEST(LostPoints, AreExpectedAtTheSamePixelsWhenAllButRestIsMoved) {
   const auto there = moved.Expected(TestCamera(), ahead * motion.Inverse(), 1);
   ASSERT_EQ(here.size(), 1U);
   ASSERT_EQ(there.size(), 1U);
-  EXPECT_LT((there[0].pixel - here[0].pixel).norm(), 1e-6);
-  EXPECT_LT((there[0].affine_from_latest - here[0].affine_from_latest).norm(), 1e-6);
+  EXPECT_LT((there[0].pixel - here[0].pixel).norm(), kSamePixel_px);
+  EXPECT_LT((there[0].affine_from_latest - here[0].affine_from_latest).norm(), kSamePixel_px);
   EXPECT_EQ(moved.landmarks()[0].rest_position, lost.landmarks()[0].rest_position);
 }
 
@@ -133,8 +134,8 @@ TEST(LostPoints, AreExpectedAtTheSamePixelsInAnotherWorld) {
     const auto here = lost.Expected(TestCamera(), ahead, 1);
     const auto there = moved.Expected(TestCamera(), PoseInWorld(other_from_world, ahead), 1);
     ASSERT_EQ(there.size(), here.size());
-    EXPECT_LT((there[0].pixel - here[0].pixel).norm(), 1e-6);
-    EXPECT_LT((there[0].affine_from_latest - here[0].affine_from_latest).norm(), 1e-6);
+    EXPECT_LT((there[0].pixel - here[0].pixel).norm(), kSamePixel_px);
+    EXPECT_LT((there[0].affine_from_latest - here[0].affine_from_latest).norm(), kSamePixel_px);
   };
   expect_same();
   lost.Move(Wall(3));

@@ -12,6 +12,7 @@
 #include "pliant/tracking/make_initializer.h"
 #include "support/synthetic_frames.h"
 #include "support/synthetic_scene.h"
+#include "support/tolerances.h"
 
 namespace pliant {
 namespace {
@@ -23,6 +24,20 @@ using test::Scene;
 using test::SceneCamera;
 using test::SceneOptions;
 using test::Surface;
+
+constexpr double kExactPose_mm = 1e-3;  // where the solver rests, at the nominal depth
+// Median relative depth error: 0.9 % is predicted for two views, 0.3 px, 4 degrees and f = 450 px.
+constexpr double kDepth = 0.015;
+constexpr double kDepthByOpengv = 0.04;    // its refinement is not robust
+constexpr double kDepthOfThePaper = 0.25;  // four frames in, at little parallax
+constexpr double kDepthOfRansac = 0.05;    // at 0.1 px: a motion that is not refined
+constexpr double kMaxShareWrong = 0.01;    // by more than a tenth: what is uncertain stays out
+constexpr int kMaxOutliers = 2;            // that lie on their epipolar lines in all views by chance
+constexpr double kParallax_deg = 0.3;      // the median is of the points that stay in view
+constexpr double kMinByRotation = 0.95;    // share of the tracks; noise takes the others
+constexpr int kMaxMaps = 1;                // of 20 trials
+constexpr std::size_t kMinPoints = 200;    // of 500, of which some leave the image and some are uncertain
+constexpr double kByEightViews = 0.85;     // a line through eight even positions has 0.77 of the slope error of two
 
 // A sequence need not begin where the reference is taken.
 constexpr int kFirstIdx = 10;
@@ -73,7 +88,7 @@ TEST(MonocularInitializer, RecoversTheSceneExactlyWithoutNoise) {
     for (std::size_t k = 0; k < outcome.frames.size(); ++k) {
       EXPECT_EQ(outcome.frames[k].frame_idx, kFirstIdx + static_cast<int>(k));
       EXPECT_LT((outcome.frames[k].cam_from_world.translation - scale * scene.cams_from_world[k].translation).norm(),
-                1e-3);
+                kExactPose_mm);
     }
   }
 }
@@ -109,7 +124,7 @@ TEST(MonocularInitializer, ScalesTheMapToTheNominalDepth) {
   ASSERT_EQ(outcome.decision, InitDecision::kMap) << outcome.reason;
   std::vector<double> depths;
   for (const InitPoint& point : outcome.points) depths.push_back(point.position.z());
-  EXPECT_NEAR(Median(depths), 80.0, 1e-9);
+  EXPECT_NEAR(Median(depths), 80.0, kLengthRoundOff_mm);
 }
 
 TEST(MonocularInitializer, StaysWithinBoundsUnderNoiseAndOutliers) {
@@ -121,12 +136,12 @@ TEST(MonocularInitializer, StaysWithinBoundsUnderNoiseAndOutliers) {
       const InitOutcome outcome = Try(options);
       ASSERT_EQ(outcome.decision, InitDecision::kMap) << outcome.reason;
       const MapError error = ErrorOf(outcome, scene);
-      EXPECT_LT(error.median, 0.015);   // predicted for 0.3 px, 4 degrees, f = 450 px: 0.9 % for two views
-      EXPECT_LT(error.share_10, 0.01);  // what is uncertain stays out
+      EXPECT_LT(error.median, kDepth);
+      EXPECT_LT(error.share_10, kMaxShareWrong);
       int outliers = 0;
       for (const InitPoint& point : outcome.points)
         outliers += scene.is_outlier[static_cast<std::size_t>(point.id.value)];
-      EXPECT_LE(outliers, 2);
+      EXPECT_LE(outliers, kMaxOutliers);
     }
   }
 }
@@ -149,7 +164,7 @@ TEST(MonocularInitializer, LeavesOutPointsNearTheFocusOfExpansion) {
   ASSERT_EQ(outcome.decision, InitDecision::kMap) << outcome.reason;
   const MonocularInitOptions defaults;
   for (const InitPoint& point : outcome.points)
-    EXPECT_LE(point.depth_sigma, defaults.max_depth_sigma * point.position.norm() * (1 + 1e-12));
+    EXPECT_LE(point.depth_sigma, defaults.max_depth_sigma * point.position.norm() * (1 + kRoundOff));
   EXPECT_TRUE(std::any_of(outcome.rejected.begin(), outcome.rejected.end(), [](const InitRejectedPoint& point) {
     return point.reason == InitRejection::kUncertainDepth;
   }));
@@ -159,7 +174,7 @@ TEST(MonocularInitializer, WaitsForParallax) {
   const InitOutcome outcome = Try({.parallax_deg = 1.0, .noise_px = 0.3});
   EXPECT_EQ(outcome.decision, InitDecision::kWait);
   EXPECT_NE(outcome.reason.find("parallax"), std::string::npos) << outcome.reason;
-  EXPECT_NEAR(outcome.measured.median_parallax_deg, 1.0, 0.3);
+  EXPECT_NEAR(outcome.measured.median_parallax_deg, 1.0, kParallax_deg);
 }
 
 // Every combination that is worth having.
@@ -175,14 +190,14 @@ TEST(MonocularInitializer, MakesAMapByAnySolverLoopRefinementAndTriangulation) {
     if (solver > RelativePoseSolver::kOpencvUsac) continue;  // of a rigid scene that is not flat
     for (const auto& [robust, robust_name] : EnumNames<RobustLoop>::kNames) {
       MonocularInitOptions init{.solver = solver, .robust = robust};
-      EXPECT_LT(median_error(init, InitMethod::kGated), 0.015) << solver_name << " " << robust_name;
+      EXPECT_LT(median_error(init, InitMethod::kGated), kDepth) << solver_name << " " << robust_name;
       init.refinement = RigidRefinement::kOpengv;
-      EXPECT_LT(median_error(init, InitMethod::kGated), 0.04) << solver_name << " " << robust_name;
-      EXPECT_LT(median_error(init, InitMethod::kPaper), 0.25) << solver_name << " " << robust_name;
+      EXPECT_LT(median_error(init, InitMethod::kGated), kDepthByOpengv) << solver_name << " " << robust_name;
+      EXPECT_LT(median_error(init, InitMethod::kPaper), kDepthOfThePaper) << solver_name << " " << robust_name;
     }
   }
   for (const auto& [triangulation, name] : EnumNames<TriangulationMethod>::kNames)
-    EXPECT_LT(median_error({.triangulation = triangulation}, InitMethod::kGated), 0.015) << name;
+    EXPECT_LT(median_error({.triangulation = triangulation}, InitMethod::kGated), kDepth) << name;
 }
 
 TEST(MonocularInitializer, RefusesAMapFromARotationAlone) {
@@ -199,7 +214,7 @@ TEST(MonocularInitializer, RefusesRotationAndStandstill) {
       const InitOutcome outcome = Try({.motion = motion, .rotation_deg = 6.0, .noise_px = noise_px});
       EXPECT_EQ(outcome.decision, InitDecision::kWait);
       EXPECT_NE(outcome.reason.find("rotation alone"), std::string::npos) << outcome.reason;
-      EXPECT_GT(outcome.measured.rotation_only_share, 0.95);
+      EXPECT_GT(outcome.measured.rotation_only_share, kMinByRotation);
     }
   }
 }
@@ -217,7 +232,7 @@ TEST(MonocularInitializer, RefusesThePlaneOnlyWhereASecondMotionExplainsIt) {
       const SceneOptions options{.surface = surface, .motion = motion, .noise_px = 0.3, .seed = seed};
       const InitOutcome outcome = Try(options);
       ASSERT_EQ(outcome.decision, InitDecision::kMap) << outcome.reason;
-      EXPECT_LT(ErrorOf(outcome, MakeScene(options)).median, 0.015);
+      EXPECT_LT(ErrorOf(outcome, MakeScene(options)).median, kDepth);
     }
   }
 }
@@ -248,7 +263,7 @@ TEST(MonocularInitializer, OutliersDoNotDecideBetweenAPlanesMotions) {
       const SceneOptions options{.surface = Surface::kPlane, .noise_px = noise_px, .outlier_share = 0.3, .seed = seed};
       maps += Try(options, {.refinement = RigidRefinement::kTwoView}).decision == InitDecision::kMap ? 1 : 0;
     }
-  EXPECT_LE(maps, 1);
+  EXPECT_LE(maps, kMaxMaps);
 }
 
 TEST(MonocularInitializer, TheWindowReducesTheDepthNoiseOfTwoViews) {
@@ -267,8 +282,7 @@ TEST(MonocularInitializer, TheWindowReducesTheDepthNoiseOfTwoViews) {
     two_view += ErrorOf(pair, scene).median / kSeeds;
     window += ErrorOf(all, scene).median / kSeeds;
   }
-  // A line through eight evenly spaced positions has 0.77 of the slope error of one through its ends.
-  EXPECT_LT(window, 0.85 * two_view);
+  EXPECT_LT(window, kByEightViews * two_view);
 }
 
 TEST(MonocularInitializer, GivesUpAReferenceThatDoesNotServe) {
@@ -319,8 +333,8 @@ TEST(PaperInitializer, MakesItsMapThreeFramesAfterTheReference) {
   const InitOutcome outcome = Try(options, {}, InitMethod::kPaper);
   ASSERT_EQ(outcome.decision, InitDecision::kMap) << outcome.reason;
   EXPECT_EQ(outcome.frames.size(), 4U);
-  EXPECT_GT(outcome.points.size(), 200U);
-  EXPECT_LT(ErrorOf(outcome, MakeScene(options)).median, 0.05);  // RANSAC's motion, not refined
+  EXPECT_GT(outcome.points.size(), kMinPoints);
+  EXPECT_LT(ErrorOf(outcome, MakeScene(options)).median, kDepthOfRansac);
 }
 
 TEST(PaperInitializer, HasNoGates) {

@@ -10,10 +10,13 @@
 #include <gtest/gtest.h>
 
 #include "pliant/base/random.h"
+#include "support/tolerances.h"
 
 namespace pliant {
 namespace {
 
+constexpr double kDamped_px = 1.0;  // the gradient across the surface is damped, so an affine field is met up to that
+constexpr int kMaxAtTheRim = 3;     // 1 %: neighbors at the sheet's rim lie on one side only
 constexpr int kPoints = 300;
 constexpr double kDepthMm = 50;
 constexpr double kPxPerMm = 500 / kDepthMm;
@@ -49,9 +52,8 @@ TEST(NeighborAgreement, AffineMotionOfTheWholeSceneIsNoContradiction) {
   gradient << 0.02, 0.01, 0, -0.03, 0.01, 0, 0.02, 0.05, 0;
   const auto motions = MovingSheet(
       [&](const Eigen::Vector3d& x) -> Eigen::Vector3d { return x + Eigen::Vector3d(1, -2, 3) + gradient * x; });
-  // The gradient across the surface is damped, so an affine field is met up to that damping, far below a pixel.
   for (const Disagreement& d : MeasureDisagreement(motions, Nearest(motions, 20), Eigen::Vector3d::Zero()))
-    EXPECT_LT(d.distance_mm * kPxPerMm, 1.0);
+    EXPECT_LT(d.distance_mm * kPxPerMm, kDamped_px);
 }
 
 TEST(NeighborAgreement, SmoothDeformationIsAcceptedAndSlidingPointsAreFound) {
@@ -75,14 +77,14 @@ TEST(NeighborAgreement, SmoothDeformationIsAcceptedAndSlidingPointsAreFound) {
     (is_sliding ? found : false_alarms) += flagged ? 1 : 0;
   }
   EXPECT_EQ(found, static_cast<int>(sliding.size()));
-  EXPECT_LE(false_alarms, 3);  // 1 % at the sheet's rim, where neighbors lie on one side only
+  EXPECT_LE(false_alarms, kMaxAtTheRim);
 }
 
 TEST(NeighborAgreement, MotionAlongTheRayIsNotJudged) {
   auto motions = MovingSheet([](const Eigen::Vector3d& x) { return x; });
   motions[42].position *= 1.2;
   const auto disagreements = MeasureDisagreement(motions, Nearest(motions, 20), Eigen::Vector3d::Zero());
-  EXPECT_LT(disagreements[42].distance_mm, 1e-9);
+  EXPECT_LT(disagreements[42].distance_mm, kLengthRoundOff_mm);
 }
 
 TEST(NeighborAgreement, TooFewNeighborsMakeNoStatement) {

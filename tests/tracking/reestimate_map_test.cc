@@ -20,6 +20,10 @@ using test::kShape;
 using test::WavingTracks;
 using testing::HasSubstr;
 
+constexpr double kRefined = 0.5;         // of the error: six times the frames
+constexpr double kNoisier = 1.5;         // times the sigma, for twice the noise
+constexpr std::size_t kMinPoints = 100;  // the others stay
+
 TEST(ReestimateMap, RefinesTheMapOfARigidSceneByTheFramesThatFollow) {
   const WavingTracks start(11, CameraMotion::kForwards, 0.0);
   const InitOutcome first = start.Try({});
@@ -29,8 +33,8 @@ TEST(ReestimateMap, RefinesTheMapOfARigidSceneByTheFramesThatFollow) {
   const InitOutcome refined = longer.Reestimate(WindowScene::kRigid);
   ASSERT_EQ(refined.decision, InitDecision::kMap) << refined.reason;
   EXPECT_EQ(refined.frames.size(), 61U);
-  EXPECT_LT(longer.ShapeError(refined, 0), 0.5 * start.ShapeError(first, 0));
-  EXPECT_LT(longer.ShapeError(refined, 60), 0.5 * start.ShapeError(first, 0));
+  EXPECT_LT(longer.ShapeError(refined, 0), kRefined * start.ShapeError(first, 0));
+  EXPECT_LT(longer.ShapeError(refined, 60), kRefined * start.ShapeError(first, 0));
 
   WindowInitOptions once;
   once.refine_rigid = Switch::kOff;
@@ -58,7 +62,7 @@ TEST(ReestimateMap, APointThatDriftsStaysOut) {
     ASSERT_EQ(reestimated.decision, InitDecision::kMap) << reestimated.reason;
     EXPECT_EQ(FindById(reestimated.points, PointId{42}), nullptr);
     EXPECT_EQ(FindById(reestimated.rejected, PointId{42})->reason, InitRejection::kReprojection);
-    EXPECT_GT(reestimated.points.size(), 100U);
+    EXPECT_GT(reestimated.points.size(), kMinPoints);
   }
 }
 
@@ -77,7 +81,7 @@ TEST(ReestimateMap, APointWithLargerErrorsIsLessCertain) {
   ASSERT_EQ(noisy.decision, InitDecision::kMap) << noisy.reason;
   const InitPoint* after = FindById(noisy.points, PointId{42});
   ASSERT_NE(after, nullptr);
-  EXPECT_GT(after->depth_sigma, 1.5 * before->depth_sigma);
+  EXPECT_GT(after->depth_sigma, kNoisier * before->depth_sigma);
 }
 
 TEST(ReestimateMap, MakesAMapOfASceneThatDeformsWhereItMayBeAny) {

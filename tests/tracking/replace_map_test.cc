@@ -11,7 +11,8 @@
 namespace pliant {
 namespace {
 
-constexpr double kRounding = 1e-9;
+constexpr double kSameRay = 1e-6;   // mm^2, of a cross product of positions some 50 mm away
+constexpr double kRounding = 1e-9;  // of logarithms of distances, through poses and back
 
 // The map made again is right, in a unit of its own; the one there is has wrong depths, and points of its own.
 struct TwoMaps {
@@ -114,7 +115,7 @@ TEST(AverageWithBefore, TheMoreMapsHadAPointTheLessOneMovesIt) {
     const double found = std::log((maps.before * reestimated[k].position).norm());
     const double weight = landmark->times_reestimated < 5 ? 1.0 / landmark->times_reestimated : 0.2;
     EXPECT_NEAR(std::log((maps.before * held[k].position).norm()), was + weight * (found - was), kRounding);
-    EXPECT_LT((maps.before * held[k].position).cross(maps.before * reestimated[k].position).norm(), 1e-6);
+    EXPECT_LT((maps.before * held[k].position).cross(maps.before * reestimated[k].position).norm(), kSameRay);
   }
 }
 

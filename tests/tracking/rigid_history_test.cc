@@ -10,6 +10,11 @@
 namespace pliant {
 namespace {
 
+constexpr std::size_t kMaxFrames = 64;  // what the history holds
+constexpr std::size_t kMinFrames = 30;  // every second one goes when it is full
+constexpr int kMinAttempts = 10;        // each when there is a fifth more: 990 frames are 25 times as many as 40
+constexpr int kMaxAttempts = 40;
+
 std::vector<InitFrame> Frames(int count) {
   std::vector<InitFrame> frames;
   for (int t = 0; t < count; ++t) frames.push_back({t, {}});
@@ -32,7 +37,7 @@ TEST(RigidHistory, OfALongOneFramesAreLeftOutEvenly) {
     int attempts = 0;
     for (int t = first_map; t < 1000; ++t) {
       const bool due = history.Add({t, {}});
-      ASSERT_LE(history.frames().size(), 64U);
+      ASSERT_LE(history.frames().size(), kMaxFrames);
       ASSERT_EQ(history.frames().front().frame_idx, 0);  // the reference
       if (!due) continue;
       ++attempts;
@@ -41,9 +46,9 @@ TEST(RigidHistory, OfALongOneFramesAreLeftOutEvenly) {
       for (std::size_t k = 0; k < history.frames().size(); ++k)
         ASSERT_EQ(history.frames()[k].frame_idx, static_cast<int>(k) * step);
     }
-    EXPECT_GT(history.frames().size(), 30U);
-    EXPECT_GT(attempts, 10);
-    EXPECT_LT(attempts, 40);
+    EXPECT_GT(history.frames().size(), kMinFrames);
+    EXPECT_GT(attempts, kMinAttempts);
+    EXPECT_LT(attempts, kMaxAttempts);
   }
 }
 

@@ -17,6 +17,7 @@
 namespace pliant::tracking_test {
 
 inline constexpr int kFrames = 14;
+inline constexpr double kLargestSsim = 1;  // of equal patches
 // A rigid scene: what is left is the error of a track, in single views up to what the initializer's root mean square
 // over 8 views lets through.
 inline constexpr double kMedianError_px = 0.3;
@@ -84,7 +85,7 @@ inline void ExpectFromTheMap(const FrameReport& report, const std::set<PointId>&
     EXPECT_TRUE(map.contains(seen.id));
     EXPECT_LT(last, seen.id);
     EXPECT_GT(seen.ssim, 0);
-    EXPECT_LE(seen.ssim, 1);
+    EXPECT_LE(seen.ssim, kLargestSsim);
     last = seen.id;
     const auto projected = camera.Project(*report.cam_from_world * seen.position);
     ASSERT_TRUE(projected);

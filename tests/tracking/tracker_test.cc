@@ -21,6 +21,15 @@ using tracking_test::ExpectFromTheMap;
 using tracking_test::kFrames;
 using tracking_test::TrackerFromImages;
 
+constexpr int kAtOnce = 1;
+constexpr int kMinVisible = 100;     // points of a half of the image, or all that are followed throughout
+constexpr int kMinUncovered = 20;    // points in what comes into view
+constexpr int kMinGrown = 30;        // new points where there was nothing
+constexpr int kMinOnTheStain = 10;   // points that will contradict their neighbors
+constexpr double kNearlyAll = 0.9;   // of the points
+constexpr double kComesBack = 0.8;   // of the points that were hidden
+constexpr double kShareLeft = 0.05;  // of the motion in common
+
 void ExpectInitializing(const FrameReport& report) {
   EXPECT_EQ(report.state, TrackingState::kInitializing);
   EXPECT_FALSE(report.cam_from_world);
@@ -42,7 +51,7 @@ TEST_F(TrackerFromImages, TheFirstMapGivesEveryFrameSinceTheReferenceItsPoseAndP
     EXPECT_EQ(tracker.held().back().frame_idx, shown);
     ExpectInitializing(tracker.held().back());
   }
-  ASSERT_GT(shown, 1) << "the map came at once, so nothing was waited for";
+  ASSERT_GT(shown, kAtOnce) << "the map came at once, so nothing was waited for";
   ASSERT_EQ(static_cast<int>(done.size()), shown + 1) << "no map came";
   EXPECT_TRUE(tracker.held().empty());
 
@@ -71,7 +80,7 @@ TEST_F(TrackerFromImages, TheFirstMapGivesEveryFrameSinceTheReferenceItsPoseAndP
   ASSERT_EQ(next.size(), 1U);
   ExpectFromTheMap(next.front(), map, *camera_);
   EXPECT_FALSE(next.front().first_map);
-  EXPECT_GT(next.front().optimized, 0.9 * done.back().optimized);
+  EXPECT_GT(next.front().optimized, kNearlyAll * done.back().optimized);
   EXPECT_TRUE(tracker.Finish().empty());
 }
 
@@ -157,7 +166,7 @@ TEST_F(UncoveredLater, PointsAreAddedAndComeIntoTheFirstMapWhereTheyAreSeen) {
     if (k < kUncovered)
       EXPECT_EQ(later, 0) << k;
     else
-      EXPECT_GT(later, 20) << k;
+      EXPECT_GT(later, kMinUncovered) << k;
   }
   EXPECT_EQ(tracker.state(), TrackingState::kTracking);
   EXPECT_FALSE(tracker.map().landmarks.empty());
@@ -212,11 +221,11 @@ TEST_F(TrackerFromImages, PointsThatWereHiddenComeBack) {
   const auto without = run(Switch::kOff, View::kHidden);
   const auto with = run(Switch::kOn, View::kHidden);
   ASSERT_EQ(with.size(), static_cast<std::size_t>(kFrames));
-  ASSERT_GT(on_the_left(open.back()), 100);
+  ASSERT_GT(on_the_left(open.back()), kMinVisible);
   EXPECT_EQ(on_the_left(with[kLastHidden]), 0);
   EXPECT_EQ(on_the_left(without.back()), 0);
-  EXPECT_GT(on_the_left(with[kLastHidden + 1]), 0.8 * on_the_left(open[kLastHidden + 1]));  // at once
-  EXPECT_GT(on_the_left(with.back()), 0.8 * on_the_left(open.back()));
+  EXPECT_GT(on_the_left(with[kLastHidden + 1]), kComesBack * on_the_left(open[kLastHidden + 1]));  // at once
+  EXPECT_GT(on_the_left(with.back()), kComesBack * on_the_left(open.back()));
   std::set<PointId> map;
   for (const NewPoint& point : with.front().new_points) map.insert(point.id);
   for (const FrameReport& report : with) ExpectFromTheMap(report, map, *camera_);
@@ -240,12 +249,12 @@ TEST_F(TrackerFromImages, WhatAllPointsDoTogetherIsTheCameras) {
           sum += seen.position - first.position;
           ++count;
         }
-    EXPECT_GT(count, 100);
+    EXPECT_GT(count, kMinVisible);
     return (sum / count).norm();
   };
   const auto left = run(0);
   const auto held = run(1);
-  EXPECT_LT(moved_together(held), 0.05 * moved_together(left));
+  EXPECT_LT(moved_together(held), kShareLeft * moved_together(left));
   std::set<PointId> map;
   for (const NewPoint& point : held.front().new_points) map.insert(point.id);
   for (const FrameReport& report : held) ExpectFromTheMap(report, map, *camera_);
@@ -270,7 +279,7 @@ TEST_F(TrackerFromImages, TheMapGrowsWhereTheImageShowsMore) {
   };
   EXPECT_EQ(on_the_right(run(Switch::kOff).back()), 0);
   const auto grown = run(Switch::kOn);
-  EXPECT_GT(on_the_right(grown.back()), 30);
+  EXPECT_GT(on_the_right(grown.back()), kMinGrown);
   std::set<PointId> map;
   for (const FrameReport& report : grown) {
     EXPECT_EQ(report.added, static_cast<int>(report.new_points.size()));
@@ -308,9 +317,9 @@ TEST_F(TrackerFromImages, AReestimatedMapRejectsReprojectionOutliers) {
   const FrameReport& before = reports[kFrames - 2];
   const FrameReport& after = reports[kFrames - 1];
   EXPECT_THAT(after.note, HasSubstr("re-estimated"));
-  EXPECT_GE(on_the_stain(before), 10);
+  EXPECT_GE(on_the_stain(before), kMinOnTheStain);
   EXPECT_LE(on_the_stain(after), on_the_stain(before) / 3);
-  EXPECT_GT(after.optimized, 0.9 * static_cast<double>(before.optimized - on_the_stain(before)));
+  EXPECT_GT(after.optimized, kNearlyAll * static_cast<double>(before.optimized - on_the_stain(before)));
 }
 
 TEST_F(TrackerFromImages, AFrameWithoutCornersIsReportedAtOnce) {

@@ -13,6 +13,7 @@
 #include "pliant/base/random.h"
 #include "pliant/base/statistics.h"
 #include "pliant/tracking/make_initializer.h"
+#include "support/tolerances.h"
 #include "support/waving_tracks.h"
 
 namespace pliant {
@@ -25,6 +26,15 @@ using test::kNominalMm;
 using test::kShape;
 using test::WavingTracks;
 
+constexpr int kFromTheStart = 100;       // ids below are in view from the start
+constexpr int kMinLater = 20;            // points that come into view later, and are certain
+constexpr std::size_t kMinPoints = 100;  // the others stay
+constexpr int kMinMaps = 3;              // of nine trials, or nothing was tested
+constexpr std::size_t kMinBrief = 5;     // of the ten that were there from the start
+constexpr double kRigidShare = 0.3;      // of kShape: nothing moves, and nothing is pulled to a prior
+constexpr double kFlatShare = 0.25;      // of kShape; the other motion's plane would be at another tilt
+constexpr double kSaysSo = 1.5;          // times the certainty that the map claims
+
 TEST(WindowInitializer, MapsASceneThatDeforms) {
   const WavingTracks sequence(61);
   const InitOutcome outcome = sequence.Try({});
@@ -35,7 +45,7 @@ TEST(WindowInitializer, MapsASceneThatDeforms) {
   EXPECT_EQ(outcome.frames.front().cam_from_world.translation, Eigen::Vector3d::Zero());
   std::vector<double> depths;
   for (const InitPoint& point : outcome.points) depths.push_back(point.position.z());
-  EXPECT_NEAR(Median(depths), kNominalMm, 1e-9);
+  EXPECT_NEAR(Median(depths), kNominalMm, kLengthRoundOff_mm);
 }
 
 TEST(WindowInitializer, TakesPointsThatComeIntoViewLater) {
@@ -43,9 +53,9 @@ TEST(WindowInitializer, TakesPointsThatComeIntoViewLater) {
   const InitOutcome outcome = sequence.Try({});
   ASSERT_EQ(outcome.decision, InitDecision::kMap) << outcome.reason;
   int later = 0;
-  for (const InitPoint& point : outcome.points) later += point.id.value >= 100 ? 1 : 0;
-  EXPECT_GT(later, 20);
-  for (const InitPosition& point : outcome.frames.front().positions) EXPECT_LT(point.id.value, 100);
+  for (const InitPoint& point : outcome.points) later += point.id.value >= kFromTheStart ? 1 : 0;
+  EXPECT_GT(later, kMinLater);
+  for (const InitPosition& point : outcome.frames.front().positions) EXPECT_LT(point.id.value, kFromTheStart);
 }
 
 TEST(WindowInitializer, EveryPointIsInTheMapOrRejected) {
@@ -151,7 +161,7 @@ TEST(WindowInitializer, ARigidSceneNeedsTenFrames) {
   const InitOutcome outcome = sequence.Try({});
   ASSERT_EQ(outcome.decision, InitDecision::kMap) << outcome.reason;
   EXPECT_THAT(outcome.reason, HasSubstr("rigid window of 11 frames"));
-  for (const int t : {0, 10}) EXPECT_LT(sequence.ShapeError(outcome, t), 0.3 * kShape) << t;
+  for (const int t : {0, 10}) EXPECT_LT(sequence.ShapeError(outcome, t), kRigidShare * kShape) << t;
   // One that deforms a little does not pass for rigid, and is told so.
   const InitOutcome breathing = WavingTracks(11, CameraMotion::kForwards, 0.3).Try({});
   EXPECT_EQ(breathing.decision, InitDecision::kWait);
@@ -188,7 +198,7 @@ TEST(WindowInitializer, APointThatIsNoNumberMakesNoDifference) {
   const InitOutcome outcome = sequence.Try({});
   ASSERT_EQ(outcome.decision, InitDecision::kMap) << outcome.reason;
   EXPECT_EQ(FindById(outcome.points, PointId{42}), nullptr);
-  EXPECT_GT(outcome.points.size(), 100U);
+  EXPECT_GT(outcome.points.size(), kMinPoints);
   for (const InitPoint& point : outcome.points) EXPECT_TRUE(point.position.allFinite());
 }
 
@@ -255,8 +265,8 @@ TEST(WindowInitializer, ARigidPlaneIsFlat) {
     const WavingTracks plane(frames, CameraMotion::kForwards, 0, 0);
     const InitOutcome outcome = plane.Try({});
     ASSERT_EQ(outcome.decision, InitDecision::kMap) << frames << ": " << outcome.reason;
-    EXPECT_LT(plane.ShapeError(outcome, 0), 0.25 * kShape) << frames;
-    EXPECT_LT(plane.ShapeError(outcome, frames - 1), 0.25 * kShape) << frames;
+    EXPECT_LT(plane.ShapeError(outcome, 0), kFlatShare * kShape) << frames;
+    EXPECT_LT(plane.ShapeError(outcome, frames - 1), kFlatShare * kShape) << frames;
   }
 }
 
@@ -279,11 +289,11 @@ TEST(WindowInitializer, APlaneThatWavesIsKnownOrRefused) {
       const InitOutcome outcome = plane.Try({}, InitMoment::kLastFrame);
       if (outcome.decision != InitDecision::kMap) continue;
       ++maps;
-      EXPECT_LT(plane.ShapeError(outcome, frames - 1), 1.5 * outcome.measured.median_depth_sigma)
+      EXPECT_LT(plane.ShapeError(outcome, frames - 1), kSaysSo * outcome.measured.median_depth_sigma)
           << seed << ", " << frames;
     }
   }
-  EXPECT_GT(maps, 3);
+  EXPECT_GT(maps, kMinMaps);
 }
 
 TEST(WindowInitializer, APointThatIsSeenBrieflyJoinsTheMap) {
@@ -305,7 +315,7 @@ TEST(WindowInitializer, APointThatIsSeenBrieflyJoinsTheMap) {
     if (point.id.value % 10 == 0)
       errors.push_back(std::abs(
           point.position.norm() / (scale * sequence.points[static_cast<std::size_t>(point.id.value)].norm()) - 1));
-  EXPECT_GT(errors.size(), 5U);  // of the ten that were there from the start
+  EXPECT_GT(errors.size(), kMinBrief);
   EXPECT_LT(Median(errors), kShape);
   // ... but not where that is not asked for.
   WindowInitOptions whole;
