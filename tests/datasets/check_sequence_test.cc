@@ -12,6 +12,12 @@
 namespace pliant {
 namespace {
 
+constexpr double kRightPoses = 0.6;   // correlation; poses that are wrong have one of about none
+constexpr int kMinMatches = 100;      // of some hundred corners a frame
+constexpr double kSameRow_px = 0.1;   // rendered rectified: what matching leaves
+constexpr double kNearlyAll = 0.99;   // share; a match may be wrong
+constexpr double kDepthRatio = 0.01;  // of disparities of some 25 px, right to a fifth of one in the median
+
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -30,11 +36,11 @@ TEST(CheckSequence, FindsNothingWrongWithTheTruth) {
   ASSERT_TRUE(check.poses && check.stereo);
   EXPECT_EQ(check.poses->pairs, 15);
   EXPECT_EQ(check.poses->right, true);
-  EXPECT_GT(check.poses->as_given.correlation, 0.6);
-  EXPECT_GT(check.stereo->matches, 100);
-  EXPECT_LT(check.stereo->median_row_error_px, 0.1);
-  EXPECT_GT(check.stereo->share_right_way, 0.99);
-  EXPECT_NEAR(check.stereo->depth_ratio.value(), 1.0, 0.01);
+  EXPECT_GT(check.poses->as_given.correlation, kRightPoses);
+  EXPECT_GT(check.stereo->matches, kMinMatches);
+  EXPECT_LT(check.stereo->median_row_error_px, kSameRow_px);
+  EXPECT_GT(check.stereo->share_right_way, kNearlyAll);
+  EXPECT_NEAR(check.stereo->depth_ratio.value(), 1.0, kDepthRatio);
 }
 
 struct Misreading {

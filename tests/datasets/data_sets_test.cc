@@ -25,6 +25,14 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
+constexpr double kTextNumber = 1e-6;    // calibrations are written with six decimals
+constexpr double kTimestamp_s = 1e-4;   // data sets name times with four decimals and more
+constexpr double kPose_mm = 1e-3;       // meters with six digits, in the coarsest of the sets
+constexpr double kPose_rad = 1e-5;      // matrices and quaternions of the same
+constexpr double kSameImage = 1.0;      // gray levels in the mean; another frame differs by many
+constexpr double kPublished_px = 1e-3;  // focal lengths as they are published
+constexpr double kAtEdges = 0.02;       // of the pixels lie on edges of depth, where a resampled image differs
+
 const SimulatedFrame& Frame(int k) { return Rendered().frames[static_cast<std::size_t>(k)]; }
 const Rigid3& Pose(int k) { return Rendered().world_from_cam[static_cast<std::size_t>(k)]; }
 int Frames() { return static_cast<int>(Rendered().frames.size()); }
@@ -110,7 +118,7 @@ class DataSets : public SequenceFiles {
     EXPECT_EQ(sequence.size(), Frames());
     EXPECT_EQ(sequence.BaselineMm().has_value(), expected.pairs);
     if (expected.pairs) {
-      EXPECT_NEAR(*sequence.BaselineMm(), Rendered().baseline_mm, 1e-6);
+      EXPECT_NEAR(*sequence.BaselineMm(), Rendered().baseline_mm, kTextNumber);
     }
     for (int k = 0; k < Frames(); ++k) {
       const auto frame = sequence.Next();
@@ -118,7 +126,7 @@ class DataSets : public SequenceFiles {
       const cv::Rect inside(4, 4, sequence.camera().width() - 8, sequence.camera().height() - 8);
       EXPECT_LT(cv::norm((*frame)->image(inside), Frame(k).image(inside), cv::NORM_L1) / inside.area() / 3,
                 expected.gray_levels);
-      EXPECT_NEAR((*frame)->timestamp_s - *sequence.TimestampS(0), k / 30.0, 1e-4);
+      EXPECT_NEAR((*frame)->timestamp_s - *sequence.TimestampS(0), k / 30.0, kTimestamp_s);
       const auto depth = sequence.Depth(k);
       ASSERT_TRUE(depth.ok()) << depth.status().message();
       ASSERT_EQ(depth->has_value(), expected.depth_mm >= 0);
@@ -128,15 +136,15 @@ class DataSets : public SequenceFiles {
         cv::Mat difference;
         cv::absdiff(**depth, Frame(k).depth, difference);
         // Where a rectified pixel lies half a pixel off, so does the edge of what is in front.
-        EXPECT_LT(cv::countNonZero(has & (difference > expected.depth_mm)), 0.02 * cv::countNonZero(has));
+        EXPECT_LT(cv::countNonZero(has & (difference > expected.depth_mm)), kAtEdges * cv::countNonZero(has));
       }
       const auto pose = sequence.WorldFromCamera(k);
       ASSERT_EQ(pose.has_value(), expected.poses);
       if (!pose) continue;
       const Rigid3 step = sequence.WorldFromCamera(0)->Inverse() * *pose;
       const Rigid3 error = step.Inverse() * (Pose(0).Inverse() * Pose(k));
-      EXPECT_LT(error.translation.norm(), 1e-3);
-      EXPECT_LT(RotationAngle(error.rotation), 1e-5);
+      EXPECT_LT(error.translation.norm(), kPose_mm);
+      EXPECT_LT(RotationAngle(error.rotation), kPose_rad);
     }
     auto again = OpenSequence({.image_path = path});
     ASSERT_TRUE(again.ok());
@@ -318,7 +326,8 @@ TEST_F(DataSets, EuRoC) {
   EXPECT_NE((*sequence)->Name(0), first_ns + ".png");
   const auto right = (*sequence)->Right();
   ASSERT_TRUE(right.ok() && right->has_value());
-  EXPECT_LT(cv::norm(**right, Frame(1).right, cv::NORM_L1) / static_cast<double>(right->value().total()) / 3, 1.0);
+  EXPECT_LT(cv::norm(**right, Frame(1).right, cv::NORM_L1) / static_cast<double>(right->value().total()) / 3,
+            kSameImage);
 }
 
 TEST_F(DataSets, StereoMis) {
@@ -533,7 +542,7 @@ TEST_F(DataSets, PublishedCamerasAreTaken) {
     const auto sequence = OpenSequence({.image_path = Path(folder)});
     ASSERT_TRUE(sequence.ok()) << sequence.status().message();
     EXPECT_EQ((*sequence)->camera().model_name(), model);
-    EXPECT_NEAR((*sequence)->camera().params()[0], focal, 1e-3);
+    EXPECT_NEAR((*sequence)->camera().params()[0], focal, kPublished_px);
   }
   Write("wrong/FrameBuffer_0000.png", Image(0, 640, 480));
   const auto wrong = OpenSequence({.image_path = Path("wrong")});

@@ -13,9 +13,12 @@
 #include "datasets/sequence_files.h"
 #include "pliant/datasets/open_sequence.h"
 #include "pliant/datasets/run_sequence.h"
+#include "support/tolerances.h"
 
 namespace pliant {
 namespace {
+
+constexpr double kStep_mm = 0.01;  // 16 bits over up to 200 mm have steps of 0.003
 
 using testing::AllOf;
 using testing::Contains;
@@ -56,7 +59,7 @@ TEST_F(NearlyRightSets, DepthAtFullScaleIsNone) {
     const auto read = (*sequence)->Depth(0);
     ASSERT_TRUE(read.ok() && read->has_value());
     EXPECT_EQ(cv::countNonZero(**read), 1);
-    EXPECT_NEAR((*read)->at<float>(3, 4), largest_mm, 0.01);
+    EXPECT_NEAR((*read)->at<float>(3, 4), largest_mm, kStep_mm);
   }
 }
 
@@ -223,7 +226,7 @@ TEST_F(NearlyRightSets, CalibrationsOfOtherToolsAreTakenForAnyVideo) {
   Text("StereoCalibration.ini", ini + "T_0 = -4\nT_1 = 0\nT_2 = 0\n");
   const auto pairs = OpenSequence({.image_path = Path("clip.avi"), .camera_path = Path("StereoCalibration.ini")});
   ASSERT_TRUE(pairs.ok()) << pairs.status().message();
-  EXPECT_NEAR((*pairs)->BaselineMm().value(), 4.0, 1e-6);
+  EXPECT_NEAR((*pairs)->BaselineMm().value(), 4.0, kRoundOff);
 }
 
 TEST_F(NearlyRightSets, ArchivesThatAreNotUnpackedAreSaid) {
@@ -246,7 +249,7 @@ TEST_F(NearlyRightSets, ArchivesThatAreNotUnpackedAreSaid) {
   const auto sequence = OpenSequence({.image_path = Path("keyframe")});
   ASSERT_TRUE(sequence.ok()) << sequence.status().message();
   ASSERT_TRUE((*sequence)->WorldFromCamera(0).has_value());
-  EXPECT_NEAR((*sequence)->WorldFromCamera(0)->translation.x(), -7, 1e-6);
+  EXPECT_NEAR((*sequence)->WorldFromCamera(0)->translation.x(), -7, kRoundOff);
   EXPECT_THAT((*sequence)->Warnings(), Contains(HasSubstr("2 of 3 images have no pose")));
 }
 

@@ -15,11 +15,24 @@
 #include "pliant/datasets/open_sequence.h"
 #include "pliant/io/trajectory.h"
 #include "support/rendered_sequence.h"
+#include "support/tolerances.h"
 
 namespace pliant {
 namespace {
 
 using testing::HasSubstr;
+
+constexpr double kRectifiedFocal_px = 0.5;    // of calibrations with six decimals; OpenCV may choose the size anew
+constexpr double kTextNumber = 1e-3;          // mm, of a turn and a translation with six decimals each
+constexpr double kOtherRow_px = 2.0;          // what a wrong turn of the right camera does
+constexpr double kSameRow_px = 0.2;           // matching and two resamplings
+constexpr double kNearlyAll = 0.98;           // share; a few matches may be wrong
+constexpr double kHeight_px = 3;              // rows are stretched by 1.79, rounded up to whole ones
+constexpr double kOtherRectification = 0.02;  // relative; another program chose another focal length
+constexpr int kMinMasked = 300;               // a wedge along one side of the turned image
+constexpr double kTime_s = 1e-6;              // times have six decimals
+constexpr double kStep_mm = 0.011;            // depth images have steps of 0.01 mm, and the rounding of floats
+constexpr double kNativePose = 1e-5;          // mm and rad: six decimals of positions, nine of quaternions
 
 class StereoPairs : public SequenceFiles {
  protected:
@@ -55,8 +68,9 @@ class StereoPairs : public SequenceFiles {
     const RenderedScene& scene = Rendered();
     EXPECT_EQ(sequence.camera().width(), scene.camera.width());
     EXPECT_EQ(sequence.camera().height(), scene.camera.height());
-    for (std::size_t p = 0; p < 4; ++p) EXPECT_NEAR(sequence.camera().params()[p], scene.camera.params()[p], 0.5) << p;
-    EXPECT_NEAR(sequence.BaselineMm().value_or(0), scene.baseline_mm, 1e-9);
+    for (std::size_t p = 0; p < 4; ++p)
+      EXPECT_NEAR(sequence.camera().params()[p], scene.camera.params()[p], kRectifiedFocal_px) << p;
+    EXPECT_NEAR(sequence.BaselineMm().value_or(0), scene.baseline_mm, kLengthRoundOff_mm);
     for (int k = 0; k < kFrames; ++k) {
       const auto frame = sequence.Next();
       ASSERT_TRUE(frame.ok() && frame->has_value()) << k << frame.status().message();
@@ -132,7 +146,7 @@ TEST_F(StereoPairs, OfCamerasThatLookApartAreRectified) {
   ASSERT_TRUE(unrectified.ok());
   const auto check_unrectified = CheckSequence(**unrectified);
   ASSERT_TRUE(check_unrectified.ok() && check_unrectified->stereo);
-  EXPECT_GT(check_unrectified->stereo->median_row_error_px, 2.0) << "R says that they look alike";
+  EXPECT_GT(check_unrectified->stereo->median_row_error_px, kOtherRow_px) << "R says that they look alike";
 
   std::string r;
   for (int row = 0; row < 3; ++row)
@@ -144,11 +158,11 @@ TEST_F(StereoPairs, OfCamerasThatLookApartAreRectified) {
                           std::to_string(t.z()) + "]\n");
   const auto sequence = Open();
   ASSERT_TRUE(sequence.ok()) << sequence.status().message();
-  EXPECT_NEAR((*sequence)->BaselineMm().value(), 5.0, 1e-3);
+  EXPECT_NEAR((*sequence)->BaselineMm().value(), 5.0, kTextNumber);
   const auto check = CheckSequence(**sequence);
   ASSERT_TRUE(check.ok() && check->stereo);
-  EXPECT_LT(check->stereo->median_row_error_px, 0.2);
-  EXPECT_GT(check->stereo->share_right_way, 0.98);
+  EXPECT_LT(check->stereo->median_row_error_px, kSameRow_px);
+  EXPECT_GT(check->stereo->share_right_way, kNearlyAll);
 }
 
 TEST_F(StereoPairs, OfHamlynsRecordingsAreReadWithTheCalibrationThatIsShipped) {
@@ -157,11 +171,11 @@ TEST_F(StereoPairs, OfHamlynsRecordingsAreReadWithTheCalibrationThatIsShipped) {
   ASSERT_TRUE(sequence.ok()) << sequence.status().message();
   const Camera& camera = (*sequence)->camera();
   EXPECT_EQ(camera.width(), 720);
-  EXPECT_NEAR(camera.height(), 1.79 * 288, 3);
+  EXPECT_NEAR(camera.height(), 1.79 * 288, kHeight_px);
   // One published rectification of it: f 747.29, f times baseline 3886.37.
-  EXPECT_NEAR(camera.params()[0], 747.29, 15);
-  EXPECT_NEAR(camera.params()[0], camera.params()[1], 1e-9);
-  EXPECT_NEAR(camera.params()[0] * (*sequence)->BaselineMm().value(), 3886.37, 80);
+  EXPECT_NEAR(camera.params()[0], 747.29, kOtherRectification * 747.29);
+  EXPECT_NEAR(camera.params()[0], camera.params()[1], kLengthRoundOff_mm);
+  EXPECT_NEAR(camera.params()[0] * (*sequence)->BaselineMm().value(), 3886.37, kOtherRectification * 3886.37);
 }
 
 TEST_F(StereoPairs, AreMaskedWhereTheRawImageHasNothing) {
@@ -173,7 +187,7 @@ TEST_F(StereoPairs, AreMaskedWhereTheRawImageHasNothing) {
   ASSERT_TRUE(frame.ok() && frame->has_value());
   ASSERT_FALSE((*frame)->mask.empty());
   const int masked = static_cast<int>((*frame)->mask.total()) - cv::countNonZero((*frame)->mask);
-  EXPECT_GT(masked, 300);
+  EXPECT_GT(masked, kMinMasked);
   EXPECT_LT(masked, static_cast<int>((*frame)->mask.total()) / 2);
 }
 
@@ -182,7 +196,7 @@ TEST_F(StereoPairs, ABaselineInMetersIsUnderstood) {
   WriteStereo(1.0, "[-0.005, 0, 0]");
   auto sequence = Open();
   ASSERT_TRUE(sequence.ok()) << sequence.status().message();
-  EXPECT_NEAR((*sequence)->BaselineMm().value(), 5.0, 1e-9);
+  EXPECT_NEAR((*sequence)->BaselineMm().value(), 5.0, kLengthRoundOff_mm);
 }
 
 TEST_F(StereoPairs, ACalibrationThatCannotBeMeantIsRefused) {
@@ -259,13 +273,13 @@ TEST_F(StereoPairs, AllThatASequenceHasComesBackFromItsNativeCopy) {
   for (int k = 0; k < rendered.size(); ++k) {
     const auto frame = (*sequence)->Next();
     ASSERT_TRUE(frame.ok() && frame->has_value());
-    EXPECT_NEAR((*frame)->timestamp_s, k / 30.0, 1e-9);
+    EXPECT_NEAR((*frame)->timestamp_s, k / 30.0, kTime_s);
     const auto depth = (*sequence)->Depth(k);
     ASSERT_TRUE(depth.ok() && depth->has_value());
-    EXPECT_LT(cv::norm(**depth, Rendered().frames[static_cast<std::size_t>(k)].depth, cv::NORM_INF), 0.011);
+    EXPECT_LT(cv::norm(**depth, Rendered().frames[static_cast<std::size_t>(k)].depth, cv::NORM_INF), kStep_mm);
     const Rigid3 error =
         (*sequence)->WorldFromCamera(k)->Inverse() * Rendered().world_from_cam[static_cast<std::size_t>(k)];
-    EXPECT_LT(error.translation.norm() + RotationAngle(error.rotation), 1e-6);
+    EXPECT_LT(error.translation.norm() + RotationAngle(error.rotation), kNativePose);
   }
   // Poses with gaps keep their images.
   const std::filesystem::path file = Path("seq/groundtruth.txt");
@@ -283,7 +297,8 @@ TEST_F(StereoPairs, AllThatASequenceHasComesBackFromItsNativeCopy) {
     const auto pose = (*read)->WorldFromCamera(k);
     ASSERT_EQ(pose.has_value(), k < 5 || k >= 8) << k;
     if (!pose) continue;
-    EXPECT_LT((pose->translation - Rendered().world_from_cam[static_cast<std::size_t>(k)].translation).norm(), 1e-5);
+    EXPECT_LT((pose->translation - Rendered().world_from_cam[static_cast<std::size_t>(k)].translation).norm(),
+              kNativePose);
   }
 
   const auto again = ConvertSequence(**sequence, Path("seq"));
