@@ -14,15 +14,19 @@
 #include <unistd.h>
 
 #include "simulation/small_scene.h"
+#include "support/tolerances.h"
 
 namespace pliant {
 namespace {
 
 namespace fs = std::filesystem;
+using simulation_test::kChord_px;
 using simulation_test::Make;
 using simulation_test::Pinhole160;
 using simulation_test::SmallScene;
 using testing::HasSubstr;
+
+constexpr double kPixelRoundOff_px = 1e-6;  // positions to round-off, divided by a depth that may be small
 
 class MaterialTruthTest : public testing::Test {
  protected:
@@ -59,14 +63,14 @@ TEST_F(MaterialTruthTest, PathsStartAtTheirPixelAndFollowTheFormula) {
     ASSERT_EQ(path.observations.size(), 12U);
     const MaterialObservation& first = path.observations[starts[i].frame_idx];
     EXPECT_EQ(first.visibility, Visibility::kVisible);
-    EXPECT_LT((first.pixel - starts[i].pixel).norm(), 0.02);  // the chord of the moved triangle, seen from 25 mm
+    EXPECT_LT((first.pixel - starts[i].pixel).norm(), kChord_px);
     const Eigen::Vector3d rest = simulator.RestPosition(*path.point);
     for (int k = 0; k < 12; ++k) {
       const Eigen::Vector3d moved(rest.x(), rest.y() + 3.0 * std::sin(5.0 * k / 30.0 + 2.0 * M_PI / 300.0 * rest.sum()),
                                   rest.z());
-      EXPECT_LT((path.observations[k].point_in_world - moved).norm(), 1e-9);
+      EXPECT_LT((path.observations[k].point_in_world - moved).norm(), kLengthRoundOff_mm);
       const Eigen::Vector3d in_cam = simulator.WorldFromCamera(k).Inverse() * moved;
-      EXPECT_LT((path.observations[k].pixel - pinhole.Project(in_cam)).norm(), 1e-6);
+      EXPECT_LT((path.observations[k].pixel - pinhole.Project(in_cam)).norm(), kPixelRoundOff_px);
     }
   }
 }

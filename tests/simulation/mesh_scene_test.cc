@@ -17,18 +17,28 @@
 #include "pliant/simulation/simulator.h"
 #include "pliant/simulation/write_sequence.h"
 #include "simulation/small_scene.h"
+#include "support/tolerances.h"
 
 namespace pliant {
 namespace {
 
 namespace fs = std::filesystem;
 using simulation_test::ExpectSameBytesOnFourThreads;
+using simulation_test::kMinWarped;
+using simulation_test::kRayDepth_mm;
 using simulation_test::Make;
 using simulation_test::Median;
 using simulation_test::Pinhole160;
 using simulation_test::SmallScene;
 using simulation_test::WarpErrors;
 using testing::HasSubstr;
+
+constexpr double kMeanLevel = 1.0;  // gray levels in the mean: lit alike, but for the rounding of the files' corners
+constexpr double kInterpolation_mm = 0.03;   // between pixels on a slanted wall
+constexpr double kChord_mm = 0.01;           // of an edge of 1 mm: k^2 3 A / 8 / 2
+constexpr double kReddish = 1.4;             // mucosa is red
+constexpr double kTextured = 8.0;            // gray levels; a wall of one color has shading alone
+constexpr std::size_t kMinWarpedFar = 1000;  // the camera goes 10 mm ahead between the two views
 
 // A room from -half to half, in millimeters.
 const Eigen::Vector3d kHalf(25, 20, 60);
@@ -123,8 +133,8 @@ TEST_F(MeshSceneTest, EveryFormatGivesTheRoomsDepth) {
     const cv::Mat depth = simulator.Render(0).depth;
     for (int y = 0; y < 120; y += 7)
       for (int x = 0; x < 160; x += 7)
-        EXPECT_NEAR(depth.at<float>(y, x), RoomDepth(simulator.WorldFromCamera(0), Eigen::Vector2d(x, y)), 1e-3)
-            << path << " " << x << " " << y;  // floats of 60 mm
+        EXPECT_NEAR(depth.at<float>(y, x), RoomDepth(simulator.WorldFromCamera(0), Eigen::Vector2d(x, y)), kRayDepth_mm)
+            << path << " " << x << " " << y;
   }
 }
 
@@ -132,15 +142,15 @@ TEST_F(MeshSceneTest, IsLitFromInsideWhicheverWayItsTrianglesRun) {
   const auto level = [&](const std::string& path) {
     return cv::mean(Make(Room(path, TrajectoryKind::kHold, 1)).Render(0).image)[2];
   };
-  EXPECT_NEAR(level(WritePly()), level(WriteStl()), 1.0);
+  EXPECT_NEAR(level(WritePly()), level(WriteStl()), kMeanLevel);
 }
 
 TEST_F(MeshSceneTest, DepthAndPosesAgreeOnEveryPath) {
   for (const TrajectoryKind kind : {TrajectoryKind::kInsert, TrajectoryKind::kSway, TrajectoryKind::kLoop}) {
     Simulator simulator = Make(Room(WritePly(), kind, 20));
     const std::vector<double> errors = WarpErrors(simulator, 0, 12);
-    EXPECT_GT(errors.size(), 160U * 120U / 4U);
-    EXPECT_LT(Median(errors), 0.03) << EnumName(kind);  // interpolation between pixels on a slanted wall
+    EXPECT_GT(errors.size(), kMinWarped);
+    EXPECT_LT(Median(errors), kInterpolation_mm) << EnumName(kind);
   }
 }
 
@@ -158,9 +168,8 @@ TEST_F(MeshSceneTest, CoarseWallsBendAsTheFormulaSays) {
     const Eigen::Vector3d rest = simulator.RestPosition(hit->point);
     Eigen::Vector3d moved = rest;
     moved.y() += 3.0 * std::sin(4.0 * 19 / 30.0 + 2.0 * M_PI / 80.0 * rest.sum());
-    // The chord of an edge of 1 mm: k^2 3 A / 8 / 2.
-    EXPECT_LT((moved - hit->point_in_world).norm(), 0.01);
-    EXPECT_LT((moved - simulator.Position(hit->point, 19)).norm(), 1e-9);
+    EXPECT_LT((moved - hit->point_in_world).norm(), kChord_mm);
+    EXPECT_LT((moved - simulator.Position(hit->point, 19)).norm(), kLengthRoundOff_mm);
   }
 }
 
@@ -176,8 +185,8 @@ TEST_F(MeshSceneTest, CarriesTheSolidTextureOrItsOwnPicture) {
   cv::Mat mean;
   cv::Mat deviation;
   cv::meanStdDev(Make(options).Render(0).image(cv::Rect(0, 85, 160, 20)), mean, deviation);
-  EXPECT_GT(mean.at<double>(2), 1.4 * mean.at<double>(1));  // mucosa is red
-  EXPECT_GT(deviation.at<double>(1), 8.0);
+  EXPECT_GT(mean.at<double>(2), kReddish * mean.at<double>(1));
+  EXPECT_GT(deviation.at<double>(1), kTextured);
 
   // The floor with a picture: green on its left half, blue on its right one.
   cv::Mat picture(32, 32, CV_8UC3, cv::Scalar(20, 200, 20));
@@ -227,11 +236,11 @@ TEST_F(MeshSceneTest, FollowsAFileOfPosesAndFillsInBetween) {
                                   "# time and pose\n100.0 0 0 -30 0 0 0 1\n101.0 4 2 -10 0 0 0 1\n"
                                   "102.0 4 2 -6 0 0 0.70710678 0.70710678\n");
   Simulator simulator = Make(options);
-  EXPECT_LT((simulator.WorldFromCamera(0).translation - Eigen::Vector3d(0, 0, -30)).norm(), 1e-12);
-  EXPECT_LT((simulator.WorldFromCamera(1).translation - Eigen::Vector3d(2, 1, -20)).norm(), 1e-12);
-  EXPECT_LT((simulator.WorldFromCamera(4).translation - Eigen::Vector3d(4, 2, -6)).norm(), 1e-12);
-  EXPECT_NEAR(RotationAngle(simulator.WorldFromCamera(3).rotation), M_PI / 4, 1e-7);
-  EXPECT_GT(WarpErrors(simulator, 0, 1).size(), 1000U);
+  EXPECT_LT((simulator.WorldFromCamera(0).translation - Eigen::Vector3d(0, 0, -30)).norm(), kRoundOff);
+  EXPECT_LT((simulator.WorldFromCamera(1).translation - Eigen::Vector3d(2, 1, -20)).norm(), kRoundOff);
+  EXPECT_LT((simulator.WorldFromCamera(4).translation - Eigen::Vector3d(4, 2, -6)).norm(), kRoundOff);
+  EXPECT_NEAR(RotationAngle(simulator.WorldFromCamera(3).rotation), M_PI / 4, kAngleRoundOff_rad);
+  EXPECT_GT(WarpErrors(simulator, 0, 1).size(), kMinWarpedFar);
 
   options.trajectory.frames = 6;
   EXPECT_THAT(Simulator::Create(options).status().message(), HasSubstr("lasts 2 s"));

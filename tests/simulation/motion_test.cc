@@ -10,9 +10,12 @@
 #include <gtest/gtest.h>
 
 #include "pliant/base/random.h"
+#include "support/tolerances.h"
 
 namespace pliant::simulation {
 namespace {
+
+constexpr double kCentralDifference = 1e-8;  // steps of 1e-4 mm: rounding 1e-10, third derivatives 1e-11; a hundredfold
 
 SimulationOptions::Deformation Everything() {
   SimulationOptions::Deformation options;
@@ -57,8 +60,7 @@ TEST(Motion, GradientIsTheDerivativeOfThePosition) {
     const Eigen::Vector3d x(random.Uniform(-20, 20), random.Uniform(-20, 30), random.Uniform(20, 60));
     const double time_s = random.Uniform(0, 6);
     const auto moved = [&](const Eigen::Vector3d& at) { return motion.Position(OnBentTube(at, part), time_s); };
-    // Central differences of 1e-4 mm: rounding 1e-10, third derivatives 1e-11.
-    EXPECT_LT((motion.Gradient(OnBentTube(x, part), time_s) - NumericGradient(moved, x)).norm(), 1e-8);
+    EXPECT_LT((motion.Gradient(OnBentTube(x, part), time_s) - NumericGradient(moved, x)).norm(), kCentralDifference);
   }
 }
 
@@ -72,8 +74,8 @@ TEST(Motion, NormalsStayAcrossTheSurface) {
     const RestPoint point = OnBentTube(x, 0);
     const Eigen::Vector3d moved_along = motion.Gradient(point, 1.3) * along;
     const Eigen::Vector3d moved_normal = motion.Normal(normal, point, 1.3);
-    EXPECT_NEAR(moved_normal.dot(moved_along), 0.0, 1e-12);
-    EXPECT_NEAR(moved_normal.norm(), 1.0, 1e-12);
+    EXPECT_NEAR(moved_normal.dot(moved_along), 0.0, kRoundOff);
+    EXPECT_NEAR(moved_normal.norm(), 1.0, kRoundOff);
     EXPECT_GT(moved_normal.dot(motion.Gradient(point, 1.3) * normal), 0.0);
   }
 }

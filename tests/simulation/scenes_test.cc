@@ -10,11 +10,13 @@
 
 #include "pliant/simulation/simulator.h"
 #include "simulation/small_scene.h"
+#include "support/tolerances.h"
 
 namespace pliant {
 namespace {
 
 using simulation_test::ExpectSameBytesOnFourThreads;
+using simulation_test::kMinSeen;
 using simulation_test::Make;
 using simulation_test::Median;
 using simulation_test::Pinhole160;
@@ -22,6 +24,23 @@ using simulation_test::SmallScene;
 using simulation_test::SmoothDepth;
 using simulation_test::WarpErrors;
 using testing::HasSubstr;
+
+constexpr std::size_t kMinWarped = 160U * 120U / 6U;  // pixels that both views see; folds and lobes hide many
+constexpr double kInterpolation_mm = 0.05;     // of depth between pixels a millimeter apart on a curved, uneven wall
+constexpr int kFilled = 160 * 120 * 85 / 100;  // pixels; above the horizon there is nothing
+constexpr double kHills_mm = 12.0;             // hills of a centimeter, seen at a slant
+constexpr std::size_t kMinPoints = 200;        // of a grid of 374
+constexpr double kRayRest_mm = 1e-5;           // the hit of a ray in floats, mapped back to rest
+constexpr double kRayRest10_mm = 1e-4;         // the same for hits further away, to and from the axis
+constexpr double kOneDirection = 1e-4;         // of unit vectors from pokes of half a millimeter and more
+constexpr double kPoked_mm = 3.0;              // of 5 mm, at the nearest point of the grid
+constexpr double kUp = -0.7;                   // y points down; the sheet's normal points to the camera
+constexpr double kMoved_mm = 0.5;              // or nothing would have been tested
+constexpr int kMinOnALobe = 100;               // points of the grid: each lobe is in view
+constexpr double kOneOfTwo_mm = 1e-6;          // the two motions differ by millimeters
+constexpr int kHalfOfTheRows = 60;             // the gap runs across the view
+constexpr double kTremor_mm = 2.0;             // it adds a few tenths
+constexpr double kNoJump_mm = 2.5;             // a loop of about 50 mm in 40 steps, with tremor
 
 SimulationOptions Scene(SceneKind scene, TrajectoryKind trajectory, int frames) {
   SimulationOptions options = SmallScene(trajectory, frames);
@@ -54,10 +73,8 @@ TEST_P(EveryScene, DepthAndPosesAgreeWhereNothingDeforms) {
   Simulator simulator = Make(Scene(GetParam().scene, GetParam().path, 20));
   EXPECT_TRUE(simulator.warnings().empty());
   const std::vector<double> errors = WarpErrors(simulator, 0, 12);
-  EXPECT_GT(errors.size(), 160U * 120U / 6U);
-  // What interpolating depth between pixels about a millimeter apart on a curved, uneven wall leaves.
-  constexpr double kInterpolationMm = 0.05;
-  EXPECT_LT(Median(errors), kInterpolationMm);
+  EXPECT_GT(errors.size(), kMinWarped);
+  EXPECT_LT(Median(errors), kInterpolation_mm);
 }
 
 TEST_P(EveryScene, GivesTheSameBytesForAnyNumberOfThreads) {
@@ -88,9 +105,9 @@ TEST(Scenes, TheSheetIsSeenFromItsHeightAndFillsTheView) {
   int seen = 0;
   for (int y = 0; y < depth.rows; ++y)
     for (int x = 0; x < depth.cols; ++x) seen += depth.at<float>(y, x) > 0;
-  EXPECT_GT(seen, 160 * 120 * 85 / 100);
-  // 60 mm above the ground, looking at a place 35 mm ahead; hills of a centimeter.
-  EXPECT_NEAR(depth.at<float>(60, 80), std::hypot(60.0, 35.0), 12.0);
+  EXPECT_GT(seen, kFilled);
+  // 60 mm above the ground, looking at a place 35 mm ahead.
+  EXPECT_NEAR(depth.at<float>(60, 80), std::hypot(60.0, 35.0), kHills_mm);
 }
 
 TEST(Deformation, IsTheSumOfWaveBreathAndPoke) {
@@ -106,7 +123,7 @@ TEST(Deformation, IsTheSumOfWaveBreathAndPoke) {
   options.deformation.poke_place = "3,60,30";
   Simulator simulator = Make(options);
   const std::vector<MaterialPoint> points = PointsAt(simulator, 0, 7);
-  ASSERT_GT(points.size(), 200U);
+  ASSERT_GT(points.size(), kMinPoints);
   // Where the poke is: the place of the wall that the first camera sees on its way to poke_place.
   const Rigid3 cam_from_world = simulator.WorldFromCamera(0).Inverse();
   options.deformation = {};
@@ -126,15 +143,15 @@ TEST(Deformation, IsTheSumOfWaveBreathAndPoke) {
     // The sheet swells from the line 100 mm below the ground, which is 60 mm below the way.
     expected += 2.0 * std::sin(2.0 * M_PI * t / 3.0) / 100.0 * Eigen::Vector3d(rest.x(), rest.y() - 160.0, 0.0);
     const Eigen::Vector3d poke = simulator.Position(point, kFrame) - expected;
-    EXPECT_NEAR(poke.norm(), push * std::exp(-(rest - poked).squaredNorm() / (2.0 * 81.0)), 1e-5);
+    EXPECT_NEAR(poke.norm(), push * std::exp(-(rest - poked).squaredNorm() / (2.0 * 81.0)), kRayRest_mm);
     if (poke.norm() > 0.5 && direction.isZero()) direction = poke.normalized();
     if (poke.norm() > 0.5) {
-      EXPECT_LT((poke.normalized() - direction).norm(), 1e-4);
+      EXPECT_LT((poke.normalized() - direction).norm(), kOneDirection);
     }
     largest_poke = std::max(largest_poke, poke.norm());
   }
-  EXPECT_GT(largest_poke, 3.0);
-  EXPECT_LT(direction.y(), -0.7);  // up, towards the camera
+  EXPECT_GT(largest_poke, kPoked_mm);
+  EXPECT_LT(direction.y(), kUp);
 }
 
 TEST(Deformation, MaterialPointsLieOnTheSurfaceThatIsSeen) {
@@ -156,9 +173,9 @@ TEST(Deformation, MaterialPointsLieOnTheSurfaceThatIsSeen) {
       const auto seen = SmoothDepth(depth, Pinhole160().Project(in_cam), 1.0);
       if (seen && std::abs(*seen - in_cam.z()) < 1.5) errors.push_back(std::abs(*seen - in_cam.z()));
     }
-    ASSERT_GT(errors.size(), 50U);
-    EXPECT_LT(Median(errors), 0.05) << EnumName(scene);  // interpolation between pixels, as above
-    EXPECT_GT(Median(motions), 0.5) << EnumName(scene);
+    ASSERT_GT(errors.size(), kMinSeen);
+    EXPECT_LT(Median(errors), kInterpolation_mm) << EnumName(scene);
+    EXPECT_GT(Median(motions), kMoved_mm) << EnumName(scene);
   }
 }
 
@@ -172,8 +189,8 @@ TEST(Deformation, ATubeBreathesAwayFromItsAxis) {
     const Eigen::Vector3d rest = simulator.RestPosition(point);
     const Eigen::Vector3d swollen = simulator.Position(point, 30);  // a quarter of the period: the widest
     const double radius = rest.head<2>().norm();
-    EXPECT_NEAR(swollen.head<2>().norm(), radius * (1.0 + 2.0 / 25.0), 1e-4);
-    EXPECT_NEAR(swollen.z(), rest.z(), 1e-4);
+    EXPECT_NEAR(swollen.head<2>().norm(), radius * (1.0 + 2.0 / 25.0), kRayRest10_mm);
+    EXPECT_NEAR(swollen.z(), rest.z(), kRayRest10_mm);
   }
 }
 
@@ -196,12 +213,12 @@ TEST(Lobes, MoveEachByItsOwnWaveWithAStepBetweenThem) {
     const Eigen::Vector3d as_lower(0.0, 3.0 * std::sin(angle), 0.0);
     const Eigen::Vector3d as_upper =
         1.5 * std::sin(angle + M_PI / 2) * Eigen::Vector3d(std::sin(M_PI / 6), std::cos(M_PI / 6), 0.0);
-    const bool is_lower = (moved - as_lower).norm() < 1e-6;
-    EXPECT_TRUE(is_lower || (moved - as_upper).norm() < 1e-6);
+    const bool is_lower = (moved - as_lower).norm() < kOneOfTwo_mm;
+    EXPECT_TRUE(is_lower || (moved - as_upper).norm() < kOneOfTwo_mm);
     ++(is_lower ? lower : upper);
   }
-  EXPECT_GT(lower, 100);
-  EXPECT_GT(upper, 100);
+  EXPECT_GT(lower, kMinOnALobe);
+  EXPECT_GT(upper, kMinOnALobe);
 
   const cv::Mat depth = simulator.Render(0).depth;
   int rows_with_step = 0;
@@ -211,7 +228,7 @@ TEST(Lobes, MoveEachByItsOwnWaveWithAStepBetweenThem) {
       largest = std::max(largest, std::abs(static_cast<double>(depth.at<float>(y, x + 1) - depth.at<float>(y, x))));
     rows_with_step += largest > 5.0;
   }
-  EXPECT_GT(rows_with_step, 60);
+  EXPECT_GT(rows_with_step, kHalfOfTheRows);
 }
 
 TEST(Paths, ALoopEndsWhereItBeganAndGoesOutAndAside) {
@@ -222,18 +239,17 @@ TEST(Paths, ALoopEndsWhereItBeganAndGoesOutAndAside) {
     Simulator simulator = Make(options);
     const Rigid3 first = simulator.WorldFromCamera(0);
     const Rigid3 last = simulator.WorldFromCamera(40);
-    EXPECT_LT((first.translation - last.translation).norm(), 1e-9);
-    EXPECT_LT(RotationAngle(first.rotation.conjugate() * last.rotation), 1e-7);
-    // The tremor adds a few tenths.
-    EXPECT_NEAR((simulator.WorldFromCamera(20).translation - first.translation).norm(), 20.0, 2.0);
+    EXPECT_LT((first.translation - last.translation).norm(), kLengthRoundOff_mm);
+    EXPECT_LT(RotationAngle(first.rotation.conjugate() * last.rotation), kAngleRoundOff_rad);
+    EXPECT_NEAR((simulator.WorldFromCamera(20).translation - first.translation).norm(), 20.0, kTremor_mm);
     EXPECT_NEAR((simulator.WorldFromCamera(10).translation - simulator.WorldFromCamera(30).translation).norm(), 8.0,
-                2.0);
+                kTremor_mm);
     double longest_step = 0;
     for (int i = 0; i < 40; ++i)
       longest_step =
           std::max(longest_step,
                    (simulator.WorldFromCamera(i + 1).translation - simulator.WorldFromCamera(i).translation).norm());
-    EXPECT_LT(longest_step, 2.5);
+    EXPECT_LT(longest_step, kNoJump_mm);
   }
 }
 

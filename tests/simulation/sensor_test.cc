@@ -11,15 +11,34 @@
 
 #include "pliant/simulation/simulator.h"
 #include "simulation/small_scene.h"
+#include "support/tolerances.h"
 
 namespace pliant {
 namespace {
 
+using simulation_test::kChord_px;
+using simulation_test::kRayDepth_mm;
 using simulation_test::Make;
 using simulation_test::Median;
 using simulation_test::Pinhole160;
 using simulation_test::SamePixels;
 using simulation_test::SmallScene;
+
+constexpr double kMeanOfImages = 0.8;  // levels: rounding gives 0.25; a mean of overexposed pixels is no pixel's mean
+constexpr double kBlurMatters = 2.5;   // an instant is this much farther from the mean than the blurred image
+constexpr double kStays = 0.5;         // of what covers one frame covers the next as well
+constexpr double kMinBubbles = 0.002;  // shares of the image
+constexpr double kMaxBubbles = 0.25;
+constexpr double kMinTool = 0.05;
+constexpr double kMaxTool = 0.4;
+constexpr double kDefocused = 0.3;          // of the pixels change where all of the image is blurred
+constexpr std::size_t kMinCompared = 5000;  // of 11,200 pixels
+constexpr double kMinDisparity_px = 5.0;    // or the mirrored camera would look the same
+constexpr double kSameLevel = 2.5;          // gray levels: fine texture between pixels; hidden ones are fewer than half
+constexpr double kChord_mm = 0.02;          // as kChord_px, at 25 mm and a focal length of about 25 px a mm
+constexpr double kInverseModel_px = 1e-6;   // of the inverse model, which is iterative
+constexpr std::size_t kMinRatios = 500;     // pixels that are neither dark nor bright in both images
+constexpr double kResampled = 0.03;         // relative; fine texture is sampled at other points
 
 // Gray levels that are linear in light, the same exposure in every frame, no noise.
 SimulationOptions LinearScene(TrajectoryKind kind, int frames) {
@@ -63,9 +82,8 @@ void ExpectBlurIsTheMeanOfInstants(SimulationOptions options) {
     const double weight = (i == kFirst || i == kLast ? 0.5 : 1.0) / (kLast - kFirst);  // the trapezium rule
     mean += weight * ToFloat(fine.Render(i).image);
   }
-  // Rounding to gray levels is 0.25 in the mean; the rest is overexposed pixels, whose mean is not the mean's.
-  EXPECT_LT(Difference(blurred.image, mean), 0.8);
-  EXPECT_GT(Difference(instant.image, mean), 2.5 * Difference(blurred.image, mean));
+  EXPECT_LT(Difference(blurred.image, mean), kMeanOfImages);
+  EXPECT_GT(Difference(instant.image, mean), kBlurMatters * Difference(blurred.image, mean));
 }
 
 TEST(Sensor, BlurOfAMovingCameraIsTheMeanOfInstants) {
@@ -123,11 +141,11 @@ void ExpectCovers(double SimulationOptions::Sensor::*amount) {
     const cv::Mat now = Changed(there.image, clear.Render(frame_idx).image);
     const cv::Mat next = Changed(covered.Render(frame_idx + 1).image, clear.Render(frame_idx + 1).image);
     share += cv::countNonZero(now) / static_cast<double>(now.total()) / 3;
-    EXPECT_GT(cv::countNonZero(now & next), 0.5 * cv::countNonZero(now)) << frame_idx;
+    EXPECT_GT(cv::countNonZero(now & next), kStays * cv::countNonZero(now)) << frame_idx;
     EXPECT_GT(cv::countNonZero(now ^ next), 0) << "nothing moves in frame " << frame_idx;
   }
-  EXPECT_GT(share, 0.002);
-  EXPECT_LT(share, 0.25);
+  EXPECT_GT(share, kMinBubbles);
+  EXPECT_LT(share, kMaxBubbles);
 }
 
 TEST(Sensor, DropsCoverPartOfTheImageAndNoTruth) { ExpectCovers(&SimulationOptions::Sensor::drops); }
@@ -163,14 +181,14 @@ TEST(Sensor, InterruptionsComeByTheClock) {
       EXPECT_EQ(share(dark), 0) << frame_idx;
     const double covered = share(tool);
     if (frame_idx == 19) {
-      EXPECT_GT(covered, 0.05);
-      EXPECT_LT(covered, 0.4);
+      EXPECT_GT(covered, kMinTool);
+      EXPECT_LT(covered, kMaxTool);
     } else if (frame_idx < 15 || frame_idx > 23) {
       EXPECT_EQ(covered, 0) << frame_idx;
     }
     const double sharper = share(blurred);
     if (frame_idx == 12 || frame_idx == 14 || frame_idx == 24)
-      EXPECT_GT(sharper, 0.3) << frame_idx;
+      EXPECT_GT(sharper, kDefocused) << frame_idx;
     else
       EXPECT_EQ(sharper, 0) << frame_idx;
   }
@@ -205,10 +223,9 @@ TEST(Sensor, TheRightCameraSeesTheSceneShiftedByTheDisparity) {
       differences_mirrored.push_back(std::abs(level_at(x + disparity) - level));
     }
   }
-  ASSERT_GT(disparities.size(), 5000U);
-  EXPECT_GT(Median(disparities), 5.0);
-  // Interpolation between pixels of fine texture; hidden places are rarer than half.
-  EXPECT_LT(Median(differences), 2.5);
+  ASSERT_GT(disparities.size(), kMinCompared);
+  EXPECT_GT(Median(disparities), kMinDisparity_px);
+  EXPECT_LT(Median(differences), kSameLevel);
   EXPECT_GT(Median(differences_mirrored), 3 * Median(differences));
 }
 
@@ -225,14 +242,14 @@ TEST(Sensor, MaterialLiesInTheRightImageAtTheDisparity) {
   const auto right = simulator.Observe(9, points, Eye::kRight);
   const Rigid3 right_from_left =
       simulator.WorldFromCamera(9, Eye::kRight).Inverse() * simulator.WorldFromCamera(9, Eye::kLeft);
-  EXPECT_LT((right_from_left.translation - Eigen::Vector3d(-4, 0, 0)).norm(), 1e-9);
+  EXPECT_LT((right_from_left.translation - Eigen::Vector3d(-4, 0, 0)).norm(), kLengthRoundOff_mm);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Eigen::Vector2d expected(pixels[i].x() - pinhole.focal * 4.0 / hits[i]->depth_mm, pixels[i].y());
-    EXPECT_LT((right[i].pixel - expected).norm(), 0.02);  // the chord of the moved triangle, seen from 25 mm
-    EXPECT_NEAR(right[i].depth_mm, hits[i]->depth_mm, 1e-3);
+    EXPECT_LT((right[i].pixel - expected).norm(), kChord_px);
+    EXPECT_NEAR(right[i].depth_mm, hits[i]->depth_mm, kRayDepth_mm);
     if (right[i].visibility != Visibility::kVisible) continue;
     const auto seen = simulator.HitsAt(9, std::vector{right[i].pixel}, Eye::kRight)[0];
-    EXPECT_LT((seen.value().point_in_world - hits[i]->point_in_world).norm(), 0.02);
+    EXPECT_LT((seen.value().point_in_world - hits[i]->point_in_world).norm(), kChord_mm);
   }
 }
 
@@ -282,10 +299,10 @@ void ExpectModelIsRendered(SimulationOptions options, CameraModelId model, const
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     if (!hits[i]) continue;
     const Eigen::Vector3d in_cam = cam_from_world * hits[i]->point_in_world;
-    EXPECT_LT((project(params, in_cam) - pixels[i]).norm(), 1e-6);  // of the inverse model, which is iterative
-    EXPECT_NEAR(hits[i]->depth_mm, in_cam.z(), 1e-9);
+    EXPECT_LT((project(params, in_cam) - pixels[i]).norm(), kInverseModel_px);
+    EXPECT_NEAR(hits[i]->depth_mm, in_cam.z(), kLengthRoundOff_mm);
     const double depth = frame.depth.at<float>(static_cast<int>(pixels[i].y()), static_cast<int>(pixels[i].x()));
-    EXPECT_NEAR(depth, in_cam.z(), 1e-3);  // rays are kept as floats
+    EXPECT_NEAR(depth, in_cam.z(), kRayDepth_mm);
   }
 
   // The same place has the same look in both images, up to the exposure that each chose.
@@ -300,10 +317,10 @@ void ExpectModelIsRendered(SimulationOptions options, CameraModelId model, const
       if (there && here > 20 && here < 230) ratios.push_back(*there / here);
     }
   }
-  ASSERT_GT(ratios.size(), 500U);
+  ASSERT_GT(ratios.size(), kMinRatios);
   const double exposure = Median(ratios);
   for (double& ratio : ratios) ratio = std::abs(ratio / exposure - 1);
-  EXPECT_LT(Median(ratios), 0.03);  // different sampling of fine texture
+  EXPECT_LT(Median(ratios), kResampled);
 }
 
 TEST(Sensor, AnOpenCvCameraIsRenderedByItsFormula) {

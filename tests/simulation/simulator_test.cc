@@ -13,11 +13,16 @@
 #include <opencv2/imgproc.hpp>
 
 #include "simulation/small_scene.h"
+#include "support/tolerances.h"
 
 namespace pliant {
 namespace {
 
 using simulation_test::ExpectSameBytesOnFourThreads;
+using simulation_test::kChord_px;
+using simulation_test::kMinSeen;
+using simulation_test::kMinWarped;
+using simulation_test::kRayDepth_mm;
 using simulation_test::Make;
 using simulation_test::Median;
 using simulation_test::Pinhole160;
@@ -26,14 +31,22 @@ using simulation_test::SmallScene;
 using simulation_test::SmoothDepth;
 using simulation_test::WarpErrors;
 
+constexpr double kInterpolation_mm = 0.03;  // of depth between pixels 0.5 mm apart on a curved, uneven wall
+constexpr double kChord_mm = 1e-3;  // a hit lies on the moved triangle, the material on a wave: the chord over 0.8 mm
+constexpr double kMoved_mm = 4.0;   // the amplitude, from rest to either side
+constexpr double kSameMaterial_mm = 0.05;  // what is hit beside a point that is partly hidden would be millimeters away
+constexpr int kMinOccluded = 10;           // a fold hides some of the grid's points
+constexpr double kLight = 0.03;            // relative: half a gray level of 60 is 2 % of linear light
+constexpr double kNoiseLevels = 0.15;      // 10,000 samples fix a deviation of 4 to 1 %; rounding to levels adds 1 %
+constexpr int kLit = 20;                   // gray levels
+constexpr float kAhead_mm = 20.0F;         // the tube goes on ahead
+
 TEST(Simulator, DepthAndPosesOfARigidSceneAgree) {
   for (const TrajectoryKind kind : {TrajectoryKind::kInsert, TrajectoryKind::kSway}) {
     Simulator simulator = Make(SmallScene(kind, 20));
     const std::vector<double> errors = WarpErrors(simulator, 0, 19);
-    EXPECT_GT(errors.size(), 160U * 120U / 4U);
-    // What interpolating depth between pixels 0.5 mm apart on a curved, uneven wall leaves.
-    constexpr double kInterpolationMm = 0.03;
-    EXPECT_LT(Median(errors), kInterpolationMm) << EnumName(kind);
+    EXPECT_GT(errors.size(), kMinWarped);
+    EXPECT_LT(Median(errors), kInterpolation_mm) << EnumName(kind);
   }
 }
 
@@ -59,18 +72,16 @@ TEST(Simulator, MaterialPointsFollowTheFormulaAndAreSeenAtTheirDepth) {
     const auto formula = [&](double t) {
       return Eigen::Vector3d(rest.x(), rest.y() + 4.0 * std::sin(5.0 * t + 2.0 * M_PI / 300.0 * rest.sum()), rest.z());
     };
-    // The hit lies on the moved triangle, the formula moves the point itself: they differ by the chord over 0.8 mm.
-    constexpr double kChordMm = 1e-3;
-    EXPECT_LT((formula(0.0) - hit->point_in_world).norm(), kChordMm);
-    EXPECT_LT((formula(later / 30.0) - simulator.Position(hit->point, later)).norm(), 1e-9);
+    EXPECT_LT((formula(0.0) - hit->point_in_world).norm(), kChord_mm);
+    EXPECT_LT((formula(later / 30.0) - simulator.Position(hit->point, later)).norm(), kLengthRoundOff_mm);
     largest_motion = std::max(largest_motion, (formula(later / 30.0) - formula(0.0)).norm());
     const Eigen::Vector3d in_cam = cam_from_world * formula(later / 30.0);
     const auto seen = SmoothDepth(depth, pinhole.Project(in_cam), 1.0);
     if (seen && std::abs(*seen - in_cam.z()) < 1.5) depth_errors.push_back(std::abs(*seen - in_cam.z()));
   }
-  EXPECT_GT(largest_motion, 4.0);
-  ASSERT_GT(depth_errors.size(), 50U);
-  EXPECT_LT(Median(depth_errors), 0.03);  // interpolation between pixels, as above
+  EXPECT_GT(largest_motion, kMoved_mm);
+  ASSERT_GT(depth_errors.size(), kMinSeen);
+  EXPECT_LT(Median(depth_errors), kInterpolation_mm);
 }
 
 TEST(Simulator, ObservesMaterialPointsWhereItHitThem) {
@@ -84,15 +95,15 @@ TEST(Simulator, ObservesMaterialPointsWhereItHitThem) {
   const auto seen = simulator.Observe(7, points);
   for (std::size_t i = 0; i < points.size(); ++i) {
     EXPECT_EQ(seen[i].visibility, Visibility::kVisible);
-    EXPECT_LT((seen[i].pixel - pixels[i]).norm(), 0.02);  // the chord of the moved triangle, seen from 25 mm
-    EXPECT_NEAR(seen[i].depth_mm, hits[i]->depth_mm, 1e-3);
+    EXPECT_LT((seen[i].pixel - pixels[i]).norm(), kChord_px);
+    EXPECT_NEAR(seen[i].depth_mm, hits[i]->depth_mm, kRayDepth_mm);
   }
   // Later on some pixels show other material; a point that is called visible must be what the camera hits there.
   for (const MaterialObservation& later : simulator.Observe(29, points)) {
     if (later.visibility != Visibility::kVisible) continue;
     const auto hit = simulator.HitsAt(29, std::vector{later.pixel})[0];
     ASSERT_TRUE(hit);
-    EXPECT_LT((hit->point_in_world - later.point_in_world).norm(), 0.05);
+    EXPECT_LT((hit->point_in_world - later.point_in_world).norm(), kSameMaterial_mm);
   }
 }
 
@@ -112,7 +123,7 @@ TEST(Simulator, PointsBehindAFoldAreOccluded) {
     const auto hit = simulator.HitsAt(0, std::vector{point.pixel})[0];
     EXPECT_LT(hit.value().depth_mm, point.depth_mm);
   }
-  EXPECT_GT(occluded, 10);
+  EXPECT_GT(occluded, kMinOccluded);
 }
 
 TEST(Simulator, GivesTheSameBytesForAnyNumberOfThreads) {
@@ -161,8 +172,7 @@ TEST(Simulator, LightFallsWithTheSquareOfTheDistance) {
     const double distance = pinhole.BackProject(x, 60, frame.depth.at<float>(60, x)).norm();
     return std::pow(frame.image.at<cv::Vec3b>(60, x)[2] / 255.0, 2.2) * distance * distance * distance;
   };
-  // Half a gray level of 60 is 2 % of linear light.
-  EXPECT_NEAR(light_times_cube(28) / light_times_cube(45), 1.0, 0.03);
+  EXPECT_NEAR(light_times_cube(28) / light_times_cube(45), 1.0, kLight);
 }
 
 TEST(Simulator, NoiseHasTheDeviationAskedFor) {
@@ -179,9 +189,8 @@ TEST(Simulator, NoiseHasTheDeviationAskedFor) {
   const double mean = std::accumulate(differences.begin(), differences.end(), 0.0) / differences.size();
   double power = 0;
   for (const double d : differences) power += (d - mean) * (d - mean);
-  // 10,000 samples fix a deviation to 1 %; rounding to levels adds 1 %.
-  EXPECT_NEAR(std::sqrt(power / differences.size()), 4.0, 0.15);
-  EXPECT_NEAR(mean, 0.0, 0.15);
+  EXPECT_NEAR(std::sqrt(power / differences.size()), 4.0, kNoiseLevels);
+  EXPECT_NEAR(mean, 0.0, kNoiseLevels);
 }
 
 TEST(Simulator, TextureCarriesCorners) {
@@ -208,8 +217,8 @@ TEST(Simulator, AFisheyeSeesBesideItself) {
   EXPECT_LT(hits[0]->depth_mm, 0);
   const SimulatedFrame frame = simulator.Render(0);
   EXPECT_EQ(frame.depth.at<float>(60, 1), 0.0F);  // there is light, but no depth in front of the camera
-  EXPECT_GT(frame.image.at<cv::Vec3b>(60, 1)[2], 20);
-  EXPECT_GT(frame.depth.at<float>(60, 80), 20.0F);
+  EXPECT_GT(frame.image.at<cv::Vec3b>(60, 1)[2], kLit);
+  EXPECT_GT(frame.depth.at<float>(60, 80), kAhead_mm);
 }
 
 TEST(Simulator, RefusesACameraThatTouchesTheWallAndNamesTheFrame) {

@@ -19,6 +19,12 @@
 
 namespace pliant::simulation_test {
 
+// A ray hits the moved triangle, the formula moves the material itself: they differ by the chord, here seen from 25 mm.
+inline constexpr double kChord_px = 0.02;
+inline constexpr double kRayDepth_mm = 1e-3;                 // rays are traced in floats; of some 60 mm
+inline constexpr std::size_t kMinWarped = 160U * 120U / 4U;  // pixels that both views see on smooth surface
+inline constexpr std::size_t kMinSeen = 50;                  // points of a grid, of which half may be hidden
+
 inline SimulationOptions SmallScene(TrajectoryKind trajectory, int frames) {
   SimulationOptions options;
   options.scene.mesh_step_mm = 0.8;

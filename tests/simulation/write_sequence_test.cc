@@ -16,6 +16,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include "simulation/small_scene.h"
+#include "support/tolerances.h"
 
 namespace pliant {
 namespace {
@@ -23,6 +24,9 @@ namespace {
 namespace fs = std::filesystem;
 using simulation_test::SmallScene;
 
+constexpr double kDepthStep_mm = 0.01;     // 16 bits over a scene of some 200 mm
+constexpr double kFloatDepth_mm = 2e-5;    // the rounding of a float of 200
+constexpr double kQuaternionShare = 2e-3;  // of the step of six decimals; twice the half step of nine
 constexpr double kTumHalfStep = 0.501e-6;  // of times and positions with six decimals; quaternions have nine
 
 class WriteSequenceTest : public testing::Test {
@@ -76,7 +80,7 @@ TEST_F(WriteSequenceTest, LeavesTheNativeLayout) {
   EXPECT_EQ(camera["fps"].as<double>(), 30.0);
   const auto params = camera["params"].as<std::vector<double>>();
   ASSERT_EQ(params.size(), 4U);
-  EXPECT_NEAR(params[0], simulation_test::Pinhole160().focal, 1e-9);
+  EXPECT_NEAR(params[0], simulation_test::Pinhole160().focal, kLengthRoundOff_mm);
   EXPECT_EQ(params[2], 79.5);
 
   const auto poses = Numbers(folder_ / "seq/groundtruth.txt");
@@ -99,20 +103,19 @@ TEST_F(WriteSequenceTest, DepthAndPosesOnDiskAreTheSimulatorsToHalfAStep) {
   Result<Simulator> simulator = Simulator::Create(options);
   ASSERT_TRUE(simulator.ok());
   const double scale = YAML::LoadFile((folder_ / "camera.yaml").string())["depth_scale"].as<double>();
-  EXPECT_LT(scale, 0.01);
+  EXPECT_LT(scale, kDepthStep_mm);
   const cv::Mat steps = cv::imread((folder_ / "depth/000002.png").string(), cv::IMREAD_UNCHANGED);
   const cv::Mat depth = simulator->Render(2).depth;
   for (int y = 0; y < depth.rows; ++y) {
     for (int x = 0; x < depth.cols; ++x) {
-      // Half a step, and the rounding of a float of 200.
-      ASSERT_NEAR(steps.at<std::uint16_t>(y, x) * scale, depth.at<float>(y, x), 0.5 * scale + 2e-5);
+      ASSERT_NEAR(steps.at<std::uint16_t>(y, x) * scale, depth.at<float>(y, x), 0.5 * scale + kFloatDepth_mm);
     }
   }
   const auto pose = Numbers(folder_ / "groundtruth.txt")[2];
   const Rigid3 truth = simulator->WorldFromCamera(2);
   EXPECT_LT((Eigen::Vector3d(pose[1], pose[2], pose[3]) - truth.translation).norm(), 2 * kTumHalfStep);
   EXPECT_LT((Eigen::Vector4d(pose[4], pose[5], pose[6], pose[7]) - truth.rotation.coeffs()).norm(),
-            2e-3 * kTumHalfStep);
+            kQuaternionShare * kTumHalfStep);
 }
 
 TEST_F(WriteSequenceTest, TheOptionsBesideASequenceGiveItBack) {
