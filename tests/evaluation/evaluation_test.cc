@@ -17,12 +17,18 @@
 
 #include "evaluation/truth_sequence.h"
 #include "pliant/evaluation/report.h"
+#include "support/tolerances.h"
 
 namespace pliant {
 namespace {
 
 using testing::HasSubstr;
 using testing::StartsWith;
+
+// The tracks' own points leave the wall's material as the camera goes on: far more than a tracker's drift.
+constexpr double kDrifted_mm = 10;
+constexpr double kDrifted_px = 10;
+constexpr double kScaleOfDrift = 0.2;  // of 2; the best scale makes up for some of the drift
 
 const Result<MaterialTruth*> kNoMaterial = Status(ErrorCode::kNotFound, "there is no simulation.yaml");
 
@@ -36,9 +42,9 @@ TEST(Evaluate, IsZeroWithoutNoiseWhateverTheScale) {
   const auto evaluation = Evaluate(MakeRun(8, 3, 0), TruthSequence(8), kNoMaterial, {});
   ASSERT_TRUE(evaluation.ok()) << evaluation.status().message();
   ASSERT_TRUE(evaluation->surface && evaluation->trajectory);
-  EXPECT_LT(evaluation->surface->plain.estimate.mean_rmse_mm, 1e-9);
-  EXPECT_NEAR(evaluation->surface->plain.estimate.max_scale, 3, 1e-9);
-  EXPECT_LT(evaluation->trajectory->ate_rmse_mm, 1e-9);
+  EXPECT_LT(evaluation->surface->plain.estimate.mean_rmse_mm, kLengthRoundOff_mm);
+  EXPECT_NEAR(evaluation->surface->plain.estimate.max_scale, 3, kLengthRoundOff_mm);
+  EXPECT_LT(evaluation->trajectory->ate_rmse_mm, kLengthRoundOff_mm);
   EXPECT_EQ(evaluation->trajectory->poses, 7);
   EXPECT_EQ(evaluation->surface->plain.frames.size(), 7U);
   EXPECT_EQ(evaluation->survival.frames_read, 8);
@@ -47,7 +53,7 @@ TEST(Evaluate, IsZeroWithoutNoiseWhateverTheScale) {
   EXPECT_EQ(evaluation->survival.mean_track_length, 7);
   ASSERT_TRUE(evaluation->reprojection.has_value());
   EXPECT_EQ(evaluation->reprojection->points, 7 * 40);
-  EXPECT_LT(evaluation->reprojection->rmse_px, 1e-9);
+  EXPECT_LT(evaluation->reprojection->rmse_px, kLengthRoundOff_mm);
   EXPECT_FALSE(evaluation->run_seconds.has_value());
   EXPECT_THAT(evaluation->notes, testing::ElementsAre(HasSubstr("no material error")));
 }
@@ -106,11 +112,12 @@ TEST(Evaluate, GivesTheMaterialErrorBesideTheSurfaceError) {
   const auto evaluation = Evaluate(MakeRun(8, 2, 0), sequence, &wall, options);
   ASSERT_TRUE(evaluation.ok()) << evaluation.status().message();
   ASSERT_TRUE(evaluation->surface && evaluation->material);
-  EXPECT_LT(evaluation->surface->plain.estimate.mean_rmse_mm, 1e-9);
-  EXPECT_LT(evaluation->material->error.plain.frames.front().estimate.rmse_mm, 1e-9);  // where the tracks start
-  EXPECT_GT(evaluation->material->error.plain.estimate.mean_rmse_mm, 10);
-  EXPECT_GT(evaluation->material->drift.median_px, 10);
-  EXPECT_NEAR(evaluation->material->error.plain.estimate.max_scale, 2, 0.2);
+  EXPECT_LT(evaluation->surface->plain.estimate.mean_rmse_mm, kLengthRoundOff_mm);
+  EXPECT_LT(evaluation->material->error.plain.frames.front().estimate.rmse_mm,
+            kLengthRoundOff_mm);  // where the tracks start
+  EXPECT_GT(evaluation->material->error.plain.estimate.mean_rmse_mm, kDrifted_mm);
+  EXPECT_GT(evaluation->material->drift.median_px, kDrifted_px);
+  EXPECT_NEAR(evaluation->material->error.plain.estimate.max_scale, 2, kScaleOfDrift);
 }
 
 TEST(Evaluate, RefusesRunsThatDoNotBelongToTheSequence) {

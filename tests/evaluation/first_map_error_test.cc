@@ -12,14 +12,14 @@
 #include <gtest/gtest.h>
 
 #include "evaluation/truth_sequence.h"
+#include "support/tolerances.h"
 
 namespace pliant {
 namespace {
 
 using testing::HasSubstr;
 
-constexpr double kRounding = 1e-12;      // of ratios of depths
-constexpr double kAngleRounding = 1e-6;  // degrees: the root of a double's rounding, times 180 / pi
+constexpr double kNotFlat = 0.01;  // the truth is no plane before the camera, so the null has an error
 const Result<MaterialTruth*> kNoMaterial = Status(ErrorCode::kNotFound, "not wanted");
 
 // A frame with points at given depths before true ones, mm.
@@ -52,14 +52,14 @@ TEST(FirstMapError, GivesTheFiguresThatOneFindsByHand) {
   ASSERT_TRUE(error.ok()) << error.status().message();
   EXPECT_EQ(error->declared.frame_idx, 11);
   EXPECT_EQ(error->declared.points, 5);
-  EXPECT_NEAR(error->declared.estimate.scale, 2, kRounding);
-  EXPECT_NEAR(error->declared.estimate.median, 0, kRounding);
-  EXPECT_NEAR(error->declared.estimate.rmse, std::sqrt((0.25 + 0.25) / 5), kRounding);
-  EXPECT_NEAR(error->declared.estimate.p90, 0.5, kRounding);
-  EXPECT_NEAR(error->declared.null.scale, 100, 100 * kRounding);
-  EXPECT_NEAR(error->declared.null.rmse, std::sqrt(0.25 / 5), kRounding);
+  EXPECT_NEAR(error->declared.estimate.scale, 2, kRoundOff);
+  EXPECT_NEAR(error->declared.estimate.median, 0, kRoundOff);
+  EXPECT_NEAR(error->declared.estimate.rmse, std::sqrt((0.25 + 0.25) / 5), kRoundOff);
+  EXPECT_NEAR(error->declared.estimate.p90, 0.5, kRoundOff);
+  EXPECT_NEAR(error->declared.null.scale, 100, 100 * kRoundOff);
+  EXPECT_NEAR(error->declared.null.rmse, std::sqrt(0.25 / 5), kRoundOff);
   // The errors are 0, 0, 0, 0, 0.5; 90 % are below what lies 0.6 of the way from the fourth to the fifth.
-  EXPECT_NEAR(error->declared.null.p90, 0.6 * 0.5, kRounding);
+  EXPECT_NEAR(error->declared.null.p90, 0.6 * 0.5, kRoundOff);
   EXPECT_FALSE(error->reference);
   EXPECT_FALSE(error->motion);
 }
@@ -73,9 +73,9 @@ TEST(FirstMapError, IsTheKnownErrorOfAWrongDepthWhateverTheScale) {
     }
     const auto error = ComputeFirstMapError(Frames({9, 11}), {}, Surface(Depths(11, depths)));
     ASSERT_TRUE(error.ok());
-    EXPECT_NEAR(error->declared.estimate.median, 0.1, kRounding);  // the median ratio lies between the two: 1
-    EXPECT_NEAR(error->declared.estimate.rmse, 0.1, kRounding);
-    EXPECT_NEAR(error->declared.estimate.p90, 0.1, kRounding);
+    EXPECT_NEAR(error->declared.estimate.median, 0.1, kRoundOff);  // the median ratio lies between the two: 1
+    EXPECT_NEAR(error->declared.estimate.rmse, 0.1, kRoundOff);
+    EXPECT_NEAR(error->declared.estimate.p90, 0.1, kRoundOff);
   }
 }
 
@@ -83,7 +83,7 @@ TEST(FirstMapError, HasNoScaleWhereMostPointsLieBehindTheCamera) {
   const auto error = ComputeFirstMapError(Frames({9, 11}), {}, Surface(Depths(11, {{-50, 50}, {-50, 50}, {50, 50}})));
   ASSERT_TRUE(error.ok());
   EXPECT_EQ(error->declared.estimate.scale, 1);
-  EXPECT_NEAR(error->declared.estimate.median, 2, kRounding);
+  EXPECT_NEAR(error->declared.estimate.median, 2, kRoundOff);
 }
 
 TEST(FirstMapError, CountsFramesAndTimeUpToTheDeclaration) {
@@ -112,15 +112,15 @@ TEST(FirstMapError, ComparesTheCamerasMotionByAngles) {
   const PairedFrame surface = Depths(11, {{50, 50}});
   const auto error = ComputeFirstMapError(Frames({9, 11}), {surface, reference}, {surface, declared});
   ASSERT_TRUE(error.ok() && error->motion);
-  EXPECT_NEAR(error->motion->rotation_error_deg, 2, kAngleRounding);
-  EXPECT_NEAR(error->motion->true_rotation_deg, 10, kAngleRounding);
-  EXPECT_NEAR(*error->motion->direction_error_deg, 30, kAngleRounding);
-  EXPECT_NEAR(error->motion->true_translation_mm, 4, kAngleRounding);
+  EXPECT_NEAR(error->motion->rotation_error_deg, 2, kAngleRoundOff_deg);
+  EXPECT_NEAR(error->motion->true_rotation_deg, 10, kAngleRoundOff_deg);
+  EXPECT_NEAR(*error->motion->direction_error_deg, 30, kAngleRoundOff_deg);
+  EXPECT_NEAR(error->motion->true_translation_mm, 4, kAngleRoundOff_deg);
 
   declared.true_world_from_cam = reference.true_world_from_cam;  // the camera stood still: no direction
   const auto still = ComputeFirstMapError(Frames({9, 11}), {surface, reference}, {surface, declared});
   EXPECT_FALSE(still->motion->direction_error_deg);
-  EXPECT_NEAR(still->motion->rotation_error_deg, 12, kAngleRounding);
+  EXPECT_NEAR(still->motion->rotation_error_deg, 12, kAngleRoundOff_deg);
 }
 
 TEST(FirstMapError, OfAMapInItsFirstFrameHasNoWaitAndNoMotion) {
@@ -155,13 +155,13 @@ TEST(FirstMapError, OfAnExactRunIsZeroInBothFramesWhateverTheScale) {
   EXPECT_EQ(error.reference->frame_idx, kFirstMap.reference_frame_idx);
   EXPECT_EQ(error.declared.points + error.declared.left_out.Total(), 40);
   for (const FirstMapDepth& depth : {error.declared, *error.reference}) {
-    EXPECT_LT(depth.estimate.p90, kRounding);
-    EXPECT_LT(depth.estimate.rmse, kRounding);
-    EXPECT_GT(depth.null.median, 0.01);
-    EXPECT_NEAR(depth.estimate.scale, 3, 3 * kRounding);
+    EXPECT_LT(depth.estimate.p90, kRoundOff);
+    EXPECT_LT(depth.estimate.rmse, kRoundOff);
+    EXPECT_GT(depth.null.median, kNotFlat);
+    EXPECT_NEAR(depth.estimate.scale, 3, 3 * kRoundOff);
   }
-  EXPECT_LT(error.motion->rotation_error_deg, kAngleRounding);
-  EXPECT_LT(*error.motion->direction_error_deg, kAngleRounding);
+  EXPECT_LT(error.motion->rotation_error_deg, kAngleRoundOff_deg);
+  EXPECT_LT(*error.motion->direction_error_deg, kAngleRoundOff_deg);
   EXPECT_EQ(error.frames_waited, 3);
   EXPECT_EQ(error.frames_before, 4);
 }

@@ -7,11 +7,14 @@
 #include <gtest/gtest.h>
 
 #include "evaluation/truth_sequence.h"
+#include "support/tolerances.h"
 
 namespace pliant {
 namespace {
 
-constexpr double kRounding = 1e-9;  // of lengths of about 100 mm
+constexpr double kNotFlat_mm = 1;       // the truth is no plane before the camera, so the null has an error
+constexpr double kDriftError_mm = 0.5;  // 1.25 px in the mean, at a focal length of 60 px and some 50 mm
+constexpr double kDistances_mm = 0.5;   // of the drift, for the points are not all 52 mm away
 constexpr int kFrames = 6;
 
 Status AddFrame(int frame_idx, std::vector<TrackedPoint> points, const cv::Mat& depth_mm,
@@ -53,11 +56,11 @@ class MaterialErrorTest : public testing::Test {
 TEST_F(MaterialErrorTest, IsZeroForPointsThatStayOnTheirMaterial) {
   const auto error = Compute(pixels_, {0, 0}, 2);
   ASSERT_TRUE(error.ok()) << error.status().message();
-  EXPECT_LT(error->error.plain.estimate.pooled_rmse_mm, kRounding);
-  EXPECT_NEAR(error->error.plain.estimate.max_scale, 2, kRounding);
-  EXPECT_GT(error->error.plain.null.pooled_rmse_mm, 1);
-  EXPECT_LT(error->drift.rmse_px, kRounding);
-  EXPECT_LT(error->drift.rmse_mm, kRounding);
+  EXPECT_LT(error->error.plain.estimate.pooled_rmse_mm, kLengthRoundOff_mm);
+  EXPECT_NEAR(error->error.plain.estimate.max_scale, 2, kLengthRoundOff_mm);
+  EXPECT_GT(error->error.plain.null.pooled_rmse_mm, kNotFlat_mm);
+  EXPECT_LT(error->drift.rmse_px, kLengthRoundOff_mm);
+  EXPECT_LT(error->drift.rmse_mm, kLengthRoundOff_mm);
   EXPECT_EQ(error->tracks, 4);
   EXPECT_EQ(error->error.points, 4 * kFrames);
 }
@@ -78,7 +81,7 @@ TEST_F(MaterialErrorTest, TheScaleOfAllFramesIsThatOfTheirSubmap) {
   options.scale = ErrorScale::kGlobal;
   const auto error = collector.Compute(options);
   ASSERT_TRUE(error.ok()) << error.status().message();
-  EXPECT_LT(error->error.plain.estimate.pooled_rmse_mm, kRounding);
+  EXPECT_LT(error->error.plain.estimate.pooled_rmse_mm, kLengthRoundOff_mm);
 }
 
 // They are on the surface all the time: the surface error is none, the material error is all drift.
@@ -86,17 +89,17 @@ TEST_F(MaterialErrorTest, TellsDriftAlongTheSurfaceFromShape) {
   const Eigen::Vector2d slide_px(0.3, 0.4);
   const auto error = Compute(pixels_, slide_px, 1);
   ASSERT_TRUE(error.ok());
-  EXPECT_GT(error->error.plain.estimate.pooled_rmse_mm, 0.5);
+  EXPECT_GT(error->error.plain.estimate.pooled_rmse_mm, kDriftError_mm);
   ASSERT_EQ(error->frames.size(), static_cast<std::size_t>(kFrames));
   for (int i = 0; i < kFrames; ++i) {
-    EXPECT_NEAR(error->frames[static_cast<std::size_t>(i)].drift.median_px, 0.5 * i, kRounding);
-    EXPECT_NEAR(error->frames[static_cast<std::size_t>(i)].drift.rmse_px, 0.5 * i, kRounding);
+    EXPECT_NEAR(error->frames[static_cast<std::size_t>(i)].drift.median_px, 0.5 * i, kLengthRoundOff_mm);
+    EXPECT_NEAR(error->frames[static_cast<std::size_t>(i)].drift.rmse_px, 0.5 * i, kLengthRoundOff_mm);
   }
   // 0.5 px a frame at a focal length of 60 px and some 50 mm.
-  EXPECT_NEAR(error->frames.back().drift.median_mm, 2.5 / 60 * 52, 0.5);
-  EXPECT_NEAR(error->drift.median_px, 1.25, kRounding);
+  EXPECT_NEAR(error->frames.back().drift.median_mm, 2.5 / 60 * 52, kDistances_mm);
+  EXPECT_NEAR(error->drift.median_px, 1.25, kLengthRoundOff_mm);
   // Points that stay put are off by the material's own motion, (0.5, 0.25) px a frame.
-  EXPECT_NEAR(error->drift.still_median_px, 2.5 * std::hypot(0.5, 0.25), kRounding);
+  EXPECT_NEAR(error->drift.still_median_px, 2.5 * std::hypot(0.5, 0.25), kLengthRoundOff_mm);
 }
 
 TEST_F(MaterialErrorTest, CountsPointsTrackedWhoseMaterialHasLeftTheImage) {

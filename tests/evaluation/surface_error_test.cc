@@ -13,12 +13,16 @@
 
 #include "evaluation/pair_with_depth.h"
 #include "pliant/base/random.h"
+#include "support/tolerances.h"
 
 namespace pliant {
 namespace {
 
-constexpr double kRounding = 1e-9;       // of lengths of about 100 mm
-constexpr double kDepthRounding = 1e-5;  // depth maps are float: 50 mm to about 4e-6
+constexpr double kNotFlat_mm = 1.0;          // the truth is no plane before the camera, so the null has an error
+constexpr double kScaleDrift_mm = 2.0;       // a fifth of the distance, shared by two frames
+constexpr double kOnePoint_mm = 1.0;         // all points in one, before a plane of many millimeters
+constexpr double kRootMeanOf30000 = 0.0125;  // relative: half of 3 * sqrt(2 / 30000), which the mean square is right to
+constexpr double kMedianOf10000_mm = 0.03;   // of 10,000 distances: more than four standard errors of a median
 constexpr double kStep = 0.05;
 
 Camera TestCamera() {
@@ -64,10 +68,10 @@ TEST(SurfaceError, IsZeroForTheTruthItself) {
   for (const ErrorScale scale : {ErrorScale::kPerFrame, ErrorScale::kGlobal, ErrorScale::kNone}) {
     const auto error = ComputePointError(std::vector{Frame(0, 1, 0), Frame(1, 1, 0)}, WithScale(scale));
     ASSERT_TRUE(error.ok());
-    EXPECT_LT(error->plain.estimate.mean_rmse_mm, kRounding);
-    EXPECT_LT(error->plain.estimate.pooled_median_mm, kRounding);
-    EXPECT_LT(error->plain.estimate.median_relative_depth, kRounding);
-    EXPECT_GT(error->plain.null.mean_rmse_mm, 1.0);
+    EXPECT_LT(error->plain.estimate.mean_rmse_mm, kLengthRoundOff_mm);
+    EXPECT_LT(error->plain.estimate.pooled_median_mm, kLengthRoundOff_mm);
+    EXPECT_LT(error->plain.estimate.median_relative_depth, kLengthRoundOff_mm);
+    EXPECT_GT(error->plain.null.mean_rmse_mm, kNotFlat_mm);
     EXPECT_EQ(error->points, 400);
   }
 }
@@ -77,19 +81,20 @@ TEST(SurfaceError, RecoversAKnownScaleExactly) {
   for (const ErrorScale scale : {ErrorScale::kPerFrame, ErrorScale::kGlobal}) {
     const auto error = ComputePointError(frames, WithScale(scale));
     ASSERT_TRUE(error.ok());
-    EXPECT_NEAR(error->plain.estimate.min_scale, 2.5, kRounding);
-    EXPECT_NEAR(error->plain.estimate.max_scale, 2.5, kRounding);
-    EXPECT_LT(error->plain.estimate.pooled_rmse_mm, kRounding);
+    EXPECT_NEAR(error->plain.estimate.min_scale, 2.5, kLengthRoundOff_mm);
+    EXPECT_NEAR(error->plain.estimate.max_scale, 2.5, kLengthRoundOff_mm);
+    EXPECT_LT(error->plain.estimate.pooled_rmse_mm, kLengthRoundOff_mm);
   }
   const auto unscaled = ComputePointError(frames, WithScale(ErrorScale::kNone));
   ASSERT_TRUE(unscaled.ok());
-  EXPECT_NEAR(unscaled->plain.estimate.median_relative_depth, 1 - 1 / 2.5, kRounding);
+  EXPECT_NEAR(unscaled->plain.estimate.median_relative_depth, 1 - 1 / 2.5, kLengthRoundOff_mm);
 }
 
 TEST(SurfaceError, CountsDriftOfTheScaleOnlyUnderAGlobalScale) {
   const std::vector frames = {Frame(0, 1.0, 0), Frame(1, 1.2, 0)};
-  EXPECT_LT(ComputePointError(frames, WithScale(ErrorScale::kPerFrame))->plain.estimate.mean_rmse_mm, kRounding);
-  EXPECT_GT(ComputePointError(frames, WithScale(ErrorScale::kGlobal))->plain.estimate.mean_rmse_mm, 2.0);
+  EXPECT_LT(ComputePointError(frames, WithScale(ErrorScale::kPerFrame))->plain.estimate.mean_rmse_mm,
+            kLengthRoundOff_mm);
+  EXPECT_GT(ComputePointError(frames, WithScale(ErrorScale::kGlobal))->plain.estimate.mean_rmse_mm, kScaleDrift_mm);
 }
 
 TEST(SurfaceError, MatchesKnownNoise) {
@@ -97,10 +102,9 @@ TEST(SurfaceError, MatchesKnownNoise) {
   for (int i = 0; i < 50; ++i) frames.push_back(Frame(i, 1, 0.8));
   const auto error = ComputePointError(frames, WithScale(ErrorScale::kNone));
   ASSERT_TRUE(error.ok());
-  // The mean square of 30,000 normal numbers is right to 3 * sqrt(2 / 30000) = 2.5 %.
-  EXPECT_NEAR(error->plain.estimate.pooled_rmse_mm, 0.8 * std::sqrt(3.0), 0.0125 * 0.8 * std::sqrt(3.0));
+  EXPECT_NEAR(error->plain.estimate.pooled_rmse_mm, 0.8 * std::sqrt(3.0), kRootMeanOf30000 * 0.8 * std::sqrt(3.0));
   // The median of a chi distribution of three degrees of freedom is 1.5382.
-  EXPECT_NEAR(error->plain.estimate.pooled_median_mm, 0.8 * 1.5382, 0.03);
+  EXPECT_NEAR(error->plain.estimate.pooled_median_mm, 0.8 * 1.5382, kMedianOf10000_mm);
 }
 
 TEST(SurfaceError, IsThePlainUntrimmedRmse) {
@@ -109,8 +113,8 @@ TEST(SurfaceError, IsThePlainUntrimmedRmse) {
       {{0, 0, 10}, {0, 0, 10}}, {{0, 3, 10}, {0, 0, 10}}, {{4, 0, 10}, {0, 0, 10}}, {{0, 0, 22}, {0, 0, 10}}};
   const auto error = ComputePointError(std::vector{frame}, WithScale(ErrorScale::kNone));
   ASSERT_TRUE(error.ok());
-  EXPECT_NEAR(error->plain.estimate.mean_rmse_mm, std::sqrt((9 + 16 + 144) / 4.0), kRounding);
-  EXPECT_NEAR(error->plain.estimate.pooled_median_mm, 3.5, kRounding);
+  EXPECT_NEAR(error->plain.estimate.mean_rmse_mm, std::sqrt((9 + 16 + 144) / 4.0), kLengthRoundOff_mm);
+  EXPECT_NEAR(error->plain.estimate.pooled_median_mm, 3.5, kLengthRoundOff_mm);
 }
 
 TEST(SurfaceError, NullOfAPlaneAtConstantDepthIsZero) {
@@ -121,9 +125,9 @@ TEST(SurfaceError, NullOfAPlaneAtConstantDepthIsZero) {
   for (const ErrorScale scale : {ErrorScale::kPerFrame, ErrorScale::kGlobal, ErrorScale::kNone}) {
     const auto error = ComputePointError(std::vector{frame}, WithScale(scale));
     ASSERT_TRUE(error.ok());
-    EXPECT_LT(error->plain.null.mean_rmse_mm, kDepthRounding);
-    EXPECT_NEAR(error->plain.null.min_scale, 40, kDepthRounding);
-    EXPECT_GT(error->plain.estimate.mean_rmse_mm, 1.0);
+    EXPECT_LT(error->plain.null.mean_rmse_mm, kFloatRoundOff_mm);
+    EXPECT_NEAR(error->plain.null.min_scale, 40, kFloatRoundOff_mm);
+    EXPECT_GT(error->plain.estimate.mean_rmse_mm, kOnePoint_mm);
   }
 }
 
@@ -137,7 +141,7 @@ TEST(SurfaceError, TakesTheTruthAtThePixelItselfAndNotAtARoundedOne) {
   ASSERT_EQ(frame.pairs.size(), 1U);
   const double depth_mm = 40 + 0.5 * 10.25 + 0.25 * 20.5;
   const Eigen::Vector3d expected((10.25 - 31.5) / 60 * depth_mm, (20.5 - 23.5) / 60 * depth_mm, depth_mm);
-  EXPECT_LT((frame.pairs[0].truth - expected).norm(), kDepthRounding);
+  EXPECT_LT((frame.pairs[0].truth - expected).norm(), kFloatRoundOff_mm);
 }
 
 TEST(SurfaceError, LeavesOutDepthStepsHolesAndWhatHasNoTruthAndCountsThem) {
@@ -168,7 +172,7 @@ TEST(SurfaceError, LeavesOutTruthThatIsUncertainAndSaysHowCertainTheRestIs) {
   ASSERT_EQ(frame.pairs.size(), 2U);
   const auto error = ComputePointError(std::vector{frame}, {});
   ASSERT_TRUE(error.ok());
-  EXPECT_NEAR(error->truth_sigma_mm, std::sqrt((0.09 + 0.16) / 2), kRounding);
+  EXPECT_NEAR(error->truth_sigma_mm, std::sqrt((0.09 + 0.16) / 2), kLengthRoundOff_mm);
 }
 
 TEST(SurfaceError, SaysWhyNothingCouldBeCompared) {

@@ -16,6 +16,11 @@
 namespace pliant {
 namespace {
 
+constexpr double kDepth = 0.01;     // median, relative: a tenth of a pixel of some 20 px of disparity
+constexpr double kSigmasLow = 0.3;  // of a normal distribution the median is 0.67 standard deviations ...
+constexpr double kSigmasHigh = 1.2;
+constexpr double kWithinThree = 0.9;  // ... and nearly all are within three; some pixels lie beside an edge
+
 std::vector<Eigen::Vector2d> Grid() {
   std::vector<Eigen::Vector2d> pixels;
   for (double v = 12.3; v < 230; v += 11)
@@ -50,12 +55,11 @@ TEST(SurfaceTruth, PairsMeasureTheDepthAndHowCertainItIs) {
     }
   }
   EXPECT_GT(errors.size(), 2 * pixels.size()) << "of four times as many";
-  EXPECT_LT(Median(errors), 0.01);
-  // Of a normal distribution the median is 0.67 standard deviations, and 95 % are within two.
-  EXPECT_GT(Median(in_sigmas), 0.3);
-  EXPECT_LT(Median(in_sigmas), 1.2);
+  EXPECT_LT(Median(errors), kDepth);
+  EXPECT_GT(Median(in_sigmas), kSigmasLow);
+  EXPECT_LT(Median(in_sigmas), kSigmasHigh);
   const auto within = std::count_if(in_sigmas.begin(), in_sigmas.end(), [](double error) { return error < 3; });
-  EXPECT_GT(static_cast<double>(within), 0.9 * static_cast<double>(in_sigmas.size()));
+  EXPECT_GT(static_cast<double>(within), kWithinThree * static_cast<double>(in_sigmas.size()));
 }
 
 TEST(SurfaceTruth, IsTakenFromPairsWhereTheyAreRectifiedAndThereIsNoDepth) {

@@ -12,11 +12,14 @@
 
 #include "pliant/base/random.h"
 #include "pliant/evaluation/track_survival.h"
+#include "support/tolerances.h"
 
 namespace pliant {
 namespace {
 
-constexpr double kRounding = 1e-9;  // of lengths of about 100 mm and angles in degrees
+constexpr double kSummed_mm = 1e-8;     // lengths of 29 steps, summed
+constexpr double kSampled_mm = 1e-6;    // extents of an ellipse of 50 mm that is sampled all around
+constexpr double kWrongScale_mm = 5.0;  // the path is smaller by 0.4
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 Rigid3 At(double x, double y, double z) { return {Eigen::Quaterniond::Identity(), Eigen::Vector3d(x, y, z)}; }
@@ -36,13 +39,13 @@ std::vector<PosePair> MovedPath(const Sim3& run_from_truth) {
 TEST(TrajectoryError, IsZeroForTheTruePathInAnotherFrameAndScale) {
   const auto error = ComputeTrajectoryError(MovedPath({0.4, RotationExp({1, -2, 0.5}), {7, 8, 9}}), {});
   ASSERT_TRUE(error.ok());
-  EXPECT_LT(error->ate_rmse_mm, kRounding);
-  EXPECT_LT(error->ate_max_mm, kRounding);
-  EXPECT_LT(error->rotation_rmse_deg, 1e-6);  // the angle of a rotation near none is right to the root of rounding
-  EXPECT_LT(error->rpe_translation_rmse_mm, kRounding);
-  EXPECT_LT(error->rpe_rotation_rmse_deg, 1e-6);
-  EXPECT_NEAR(error->truth_from_run.scale, 2.5, kRounding);
-  EXPECT_NEAR(error->path_length_mm, error->true_path_length_mm, 1e-8);
+  EXPECT_LT(error->ate_rmse_mm, kLengthRoundOff_mm);
+  EXPECT_LT(error->ate_max_mm, kLengthRoundOff_mm);
+  EXPECT_LT(error->rotation_rmse_deg, kAngleRoundOff_deg);
+  EXPECT_LT(error->rpe_translation_rmse_mm, kLengthRoundOff_mm);
+  EXPECT_LT(error->rpe_rotation_rmse_deg, kAngleRoundOff_deg);
+  EXPECT_NEAR(error->truth_from_run.scale, 2.5, kLengthRoundOff_mm);
+  EXPECT_NEAR(error->path_length_mm, error->true_path_length_mm, kSummed_mm);
   EXPECT_EQ(error->rpe_pairs, 29);
 }
 
@@ -62,8 +65,8 @@ TrajectoryError OfEllipse(double half_length_mm, double half_width_mm, double er
 
 TEST(TrajectoryError, TheTurnAboutANearlyStraightPathIsUnknown) {
   const TrajectoryError straight = OfEllipse(50, 0.5, 0.3);
-  EXPECT_NEAR(straight.true_path_extent_mm, 50 / std::numbers::sqrt2, 1e-6);
-  EXPECT_NEAR(straight.true_path_width_mm, 0.5 / std::numbers::sqrt2, 1e-6);
+  EXPECT_NEAR(straight.true_path_extent_mm, 50 / std::numbers::sqrt2, kSampled_mm);
+  EXPECT_NEAR(straight.true_path_width_mm, 0.5 / std::numbers::sqrt2, kSampled_mm);
   EXPECT_TRUE(straight.TurnIsUnknown());
   EXPECT_FALSE(OfEllipse(50, 0.5, 0.01).TurnIsUnknown()) << "the path is known well enough";
   EXPECT_FALSE(OfEllipse(10, 10, 6).TurnIsUnknown()) << "a circle is not straight, however wrong the run";
@@ -83,9 +86,9 @@ TEST(TrajectoryError, AlignsEverySubmapByItself) {
   ASSERT_TRUE(error.ok());
   EXPECT_EQ(error->submaps, 2);
   EXPECT_EQ(error->poses, static_cast<int>(size) - 1);
-  EXPECT_LT(error->ate_max_mm, kRounding);
-  EXPECT_NEAR(error->truth_from_run.scale, 2.5, kRounding);  // of the one with more poses
-  EXPECT_NEAR(error->path_length_mm, error->true_path_length_mm, 1e-8);
+  EXPECT_LT(error->ate_max_mm, kLengthRoundOff_mm);
+  EXPECT_NEAR(error->truth_from_run.scale, 2.5, kLengthRoundOff_mm);  // of the one with more poses
+  EXPECT_NEAR(error->path_length_mm, error->true_path_length_mm, kSummed_mm);
 }
 
 TEST(TrajectoryError, CountsAWrongScaleUnderSe3) {
@@ -93,7 +96,7 @@ TEST(TrajectoryError, CountsAWrongScaleUnderSe3) {
   const auto error = ComputeTrajectoryError(pairs, {.alignment = TrajectoryAlignment::kSe3});
   ASSERT_TRUE(error.ok());
   EXPECT_EQ(error->truth_from_run.scale, 1.0);
-  EXPECT_GT(error->ate_rmse_mm, 5.0);
+  EXPECT_GT(error->ate_rmse_mm, kWrongScale_mm);
 }
 
 // By hand: true centers (+-1, 0, 0), (0, +-1, 0); estimates (+-2, 0, 0), (0, +-1, 0). Both are centered and the best
@@ -106,16 +109,16 @@ TEST(TrajectoryError, MatchesACaseWorkedByHand) {
                                        {3, At(0, -1, 0), At(0, -1, 0)}};
   const auto sim3 = ComputeTrajectoryError(pairs, {});
   ASSERT_TRUE(sim3.ok());
-  EXPECT_NEAR(sim3->ate_rmse_mm, std::sqrt(0.1), kRounding);
-  EXPECT_NEAR(sim3->ate_median_mm, 0.3, kRounding);
-  EXPECT_NEAR(sim3->ate_max_mm, 0.4, kRounding);
-  EXPECT_NEAR(sim3->ate_min_mm, 0.2, kRounding);
-  EXPECT_NEAR(sim3->ate_mean_mm, 0.3, kRounding);
-  EXPECT_NEAR(sim3->ate_std_mm, 0.1, kRounding);
-  EXPECT_NEAR(sim3->true_path_length_mm, 3 * std::sqrt(2.0), kRounding);
+  EXPECT_NEAR(sim3->ate_rmse_mm, std::sqrt(0.1), kLengthRoundOff_mm);
+  EXPECT_NEAR(sim3->ate_median_mm, 0.3, kLengthRoundOff_mm);
+  EXPECT_NEAR(sim3->ate_max_mm, 0.4, kLengthRoundOff_mm);
+  EXPECT_NEAR(sim3->ate_min_mm, 0.2, kLengthRoundOff_mm);
+  EXPECT_NEAR(sim3->ate_mean_mm, 0.3, kLengthRoundOff_mm);
+  EXPECT_NEAR(sim3->ate_std_mm, 0.1, kLengthRoundOff_mm);
+  EXPECT_NEAR(sim3->true_path_length_mm, 3 * std::sqrt(2.0), kLengthRoundOff_mm);
   const auto se3 = ComputeTrajectoryError(pairs, {.alignment = TrajectoryAlignment::kSe3});
   ASSERT_TRUE(se3.ok());
-  EXPECT_NEAR(se3->ate_rmse_mm, std::sqrt(0.5), kRounding);
+  EXPECT_NEAR(se3->ate_rmse_mm, std::sqrt(0.5), kLengthRoundOff_mm);
 }
 
 // One pose of the path turned in place by a known angle: it spoils two relative rotations of 29 and one absolute one.
@@ -124,12 +127,12 @@ TEST(TrajectoryError, RelativeErrorSeesOneTurnedPoseTwice) {
   pairs[10].world_from_cam.rotation = pairs[10].world_from_cam.rotation * RotationExp({0, 0, 0.1});
   const auto error = ComputeTrajectoryError(pairs, {});
   ASSERT_TRUE(error.ok());
-  EXPECT_LT(error->ate_rmse_mm, kRounding);
-  EXPECT_NEAR(error->rotation_rmse_deg, 0.1 * kDegPerRad / std::sqrt(30.0), 1e-6);
-  EXPECT_NEAR(error->rpe_rotation_rmse_deg, 0.1 * kDegPerRad * std::sqrt(2.0 / 29.0), 1e-6);
+  EXPECT_LT(error->ate_rmse_mm, kLengthRoundOff_mm);
+  EXPECT_NEAR(error->rotation_rmse_deg, 0.1 * kDegPerRad / std::sqrt(30.0), kAngleRoundOff_deg);
+  EXPECT_NEAR(error->rpe_rotation_rmse_deg, 0.1 * kDegPerRad * std::sqrt(2.0 / 29.0), kAngleRoundOff_deg);
   const auto far = ComputeTrajectoryError(pairs, {.rpe_delta = 29});
   EXPECT_EQ(far->rpe_pairs, 1);
-  EXPECT_LT(far->rpe_rotation_rmse_deg, 1e-6);
+  EXPECT_LT(far->rpe_rotation_rmse_deg, kAngleRoundOff_deg);
 }
 
 // One pose of ten turned in place. Of all pairs four frames apart it spoils two; of those that do not overlap, 0 to 4
@@ -143,9 +146,9 @@ TEST(TrajectoryError, RelativePairsOverlapOnlyWhereAskedTo) {
     EXPECT_EQ(error->rpe_pairs, rpe_pairs == RelativePairs::kAll ? 6 : 2);
     return error->rpe_rotation_rmse_deg / (0.1 * kDegPerRad);
   };
-  EXPECT_NEAR(spoiled(4, RelativePairs::kConsecutive), 1, 1e-6);
-  EXPECT_NEAR(spoiled(5, RelativePairs::kConsecutive), 0, 1e-6);
-  EXPECT_NEAR(spoiled(5, RelativePairs::kAll), std::sqrt(2.0 / 6), 1e-6);
+  EXPECT_NEAR(spoiled(4, RelativePairs::kConsecutive), 1, kAngleRoundOff_deg);
+  EXPECT_NEAR(spoiled(5, RelativePairs::kConsecutive), 0, kAngleRoundOff_deg);
+  EXPECT_NEAR(spoiled(5, RelativePairs::kAll), std::sqrt(2.0 / 6), kAngleRoundOff_deg);
 }
 
 TEST(TrajectoryError, RefusesTooFewPosesAndACameraThatStandsStill) {
@@ -195,7 +198,7 @@ TEST(TrackSurvival, CountsPointsTracksAndFrames) {
   EXPECT_EQ(survival.frames_tracked, 3);
   EXPECT_EQ(survival.first_points, 4);
   EXPECT_EQ(survival.last_points, 2);
-  EXPECT_NEAR(survival.mean_points, 10 / 3.0, kRounding);
+  EXPECT_NEAR(survival.mean_points, 10 / 3.0, kLengthRoundOff_mm);
   EXPECT_EQ(survival.last_alive_of_first, 1);
   EXPECT_EQ(survival.tracks, 5);
   EXPECT_EQ(survival.median_track_length, 2);  // lengths 2, 1, 2, 3, 2
