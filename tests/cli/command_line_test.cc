@@ -24,6 +24,8 @@ struct pliant::EnumNames<pliant::cli::Fruit> {
 namespace pliant::cli {
 namespace {
 
+constexpr std::size_t kManualColumns = 100;
+
 using testing::HasSubstr;
 using testing::Not;
 
@@ -195,7 +197,7 @@ TEST(CommandLine, HelpIsAManualOfEveryArgumentAndOption) {
                            "pliant fill --to X"})
     EXPECT_THAT(outcome.out, HasSubstr(part));
   std::istringstream lines(outcome.out);
-  for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 100) << line;
+  for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), kManualColumns) << line;
 }
 
 TEST(CommandLine, AProgramThatDoesOneThingSpeaksUnderItsOwnName) {

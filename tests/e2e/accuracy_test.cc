@@ -18,6 +18,9 @@ constexpr double kRefinedShare = 0.8;                // of the error without ref
 constexpr int kMinGrown = 150;                       // points in the last frame, where few of the first map are left
 constexpr double kMaxGrownRmse_mm = 0.6;             // mean over the frames
 constexpr double kMaxRelativeDepthOfTruth = 1e-3;    // depth images have steps of 0.005 mm; interpolation adds the rest
+constexpr double kShareOfNull = 0.5;                 // a map that says more than that all is at one depth
+constexpr double kShareOfBadStart = 0.9;             // what a true start spares
+constexpr int kMinFiles = 9;                         // of docs/formats.md, each at least once
 constexpr double kMaxRelativeDepthMonocular = 0.03;  // median, in the frame that made the map
 
 std::string Text(const std::filesystem::path& path) {
@@ -51,7 +54,7 @@ TEST(RigidScene, FromAMonocularStartThePlainErrorStaysBelowTwoMillimeters) {
   EXPECT_EQ(first_map.declared.frame_idx, first_map.frames_waited);
   EXPECT_GE(first_map.frames_waited, TrackerOptions().init.window.first_frame);
   EXPECT_LT(first_map.declared.estimate.median, kMaxRelativeDepthMonocular);
-  EXPECT_LT(first_map.declared.estimate.median, 0.5 * first_map.declared.null.median);
+  EXPECT_LT(first_map.declared.estimate.median, kShareOfNull * first_map.declared.null.median);
   EXPECT_GT(first_map.initialize_largest_ms, 0);
   EXPECT_GE(first_map.initialize_total_ms, first_map.initialize_largest_ms);
 }
@@ -104,7 +107,7 @@ TEST(RigidScene, OneAndTwoThreadsAndTheSameSeedTwiceGiveIdenticalFiles) {
     }
     ++files;
   }
-  EXPECT_GE(files, 9);
+  EXPECT_GE(files, kMinFiles);
 }
 
 // Corners on occluding contours and points that move alone are what spoils the map: leaving them in must show. Here it
@@ -118,7 +121,7 @@ TEST(RigidScene, KeepingContoursOutLowersThePlainErrorByATenthAtLeast) {
   TrackSequenceAt(kSequence, folder.Path("without"), without);
   const Evaluation good = EvaluateRun(folder.Path("with"), kSequence, ErrorScale::kPerFrame);
   const Evaluation bad = EvaluateRun(folder.Path("without"), kSequence, ErrorScale::kPerFrame);
-  EXPECT_LT(good.surface->plain.estimate.mean_rmse_mm, 0.9 * bad.surface->plain.estimate.mean_rmse_mm);
+  EXPECT_LT(good.surface->plain.estimate.mean_rmse_mm, kShareOfBadStart * bad.surface->plain.estimate.mean_rmse_mm);
 }
 
 }  // namespace

@@ -13,6 +13,8 @@
 namespace pliant {
 namespace {
 
+constexpr double kAsTheReference = 1.5;  // the largest of five frames' medians against one
+
 constexpr int kFrames = 24;
 constexpr int kElsewhere = 5;  // shows something else: the reference before it is given up, and itself is none
 
@@ -68,7 +70,7 @@ TEST_F(FramesBeforeTheReference, AreTrackedBackFromIt) {
     if (frame.frame_idx < kElsewhere) before = std::max(before, frame.estimate.median_mm);
     if (frame.frame_idx == kElsewhere + 1) reference = frame.estimate.median_mm;
   }
-  EXPECT_LT(before, 1.5 * reference);
+  EXPECT_LT(before, kAsTheReference * reference);
 }
 
 TEST_F(FramesBeforeTheReference, AreTrackedBackAsFarAsIsAskedFor) {

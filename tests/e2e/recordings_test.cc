@@ -14,6 +14,11 @@
 namespace pliant {
 namespace {
 
+constexpr std::size_t kMinPorcine = 200;  // map points that the published disparities cover
+constexpr double kDisparity = 0.01;       // median, relative: half a step of 8-bit disparities of some 50
+constexpr std::size_t kMinCloth = 300;    // map points of the first image, most of which are followed to the last
+constexpr double kCloud = 0.02;           // median, relative: steps between the cloud's points, and the motion itself
+
 std::string RecordingOrSkip(const std::string& name) {
   const std::filesystem::path path = std::filesystem::path(PLIANT_TEST_RECORDINGS) / name;
   return std::filesystem::exists(path) ? path.string() : "";
@@ -89,8 +94,8 @@ TEST(Recordings, TheStereoMapOfThePorcinePairIsThatOfItsDisparities) {
     if (const auto disparity = DisparityAt(disparities, seen.pixel))
       errors.push_back(std::abs(seen.position.z() * *disparity / kFocalBaseline - 1.0));
   }
-  ASSERT_GT(errors.size(), 200U);
-  EXPECT_LT(Median(errors), 0.01);
+  ASSERT_GT(errors.size(), kMinPorcine);
+  EXPECT_LT(Median(errors), kDisparity);
 }
 
 TEST(Recordings, TheClothIsTrackedFromItsFirstCloudBeforeACameraThatStandsStill) {
@@ -121,8 +126,8 @@ TEST(Recordings, TheClothIsTrackedFromItsFirstCloudBeforeACameraThatStandsStill)
       }
     if (depth_mm > 0) errors.push_back(std::abs(seen.position.z() / depth_mm - 1.0));
   }
-  ASSERT_GT(errors.size(), 300U);
-  EXPECT_LT(Median(errors), 0.02);
+  ASSERT_GT(errors.size(), kMinCloth);
+  EXPECT_LT(Median(errors), kCloud);
 }
 
 }  // namespace

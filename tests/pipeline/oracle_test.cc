@@ -15,6 +15,7 @@
 #include "pliant/simulation/write_sequence.h"
 #include "simulation/small_scene.h"
 #include "support/test_folder.h"
+#include "support/tolerances.h"
 
 namespace pliant {
 namespace {
@@ -159,7 +160,7 @@ class RotationError final : public TrackObserver {
 };
 
 TEST_F(Oracles, ThePosesAreTrueInTheFramesThatWaitedForTheMapToo) {
-  constexpr double kRoundingRad = 1e-7;  // of an angle by the arc cosine
+  constexpr int kReference = 1;  // the frame that is held in any case
   Render(0.0);
   RunRequest request;
   request.input.image_path = folder_.Path("sequence");
@@ -168,9 +169,9 @@ TEST_F(Oracles, ThePosesAreTrueInTheFramesThatWaitedForTheMapToo) {
   options.tracker.oracle.poses = Switch::kOn;
   RotationError error(scene_);
   ASSERT_TRUE(RunTrack(request, options, std::array<TrackObserver*, 1>{&error}).ok());
-  EXPECT_GT(error.held, 1);
+  EXPECT_GT(error.held, kReference);
   EXPECT_EQ(error.frames, kFrames);
-  EXPECT_LT(error.largest_rad, kRoundingRad);
+  EXPECT_LT(error.largest_rad, kAngleRoundOff_rad);
 }
 
 TEST_F(Oracles, WithAllOfThemPointsAreLostOnlyWhenOccludedOrOutsideTheImage) {

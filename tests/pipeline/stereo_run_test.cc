@@ -22,6 +22,11 @@
 namespace pliant {
 namespace {
 
+constexpr double kCamera_mm = 2.0;          // one frame's pose among points of 0.3 px some 50 mm away, which deform
+constexpr std::size_t kMinMapped = 60;      // of 160 x 120 pixels' corners with a match
+constexpr double kDepthFromStereo = 0.015;  // median, relative: a tenth of a pixel of the disparity
+constexpr double kFollowed_px = 0.5;        // where the points lie in the image, which no camera motion explains
+
 using testing::Contains;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -77,10 +82,10 @@ TEST_F(StereoRun, HasTrueMillimetersFromTheFirstFrameOn) {
     }
     // The reference is the world, and the camera's way is in mm as well.
     const Rigid3 truth = Rendered().world_from_cam[0].Inverse() * Rendered().world_from_cam[k];
-    EXPECT_LT((report.cam_from_world->Inverse().translation - truth.translation).norm(), 2.0) << k;
+    EXPECT_LT((report.cam_from_world->Inverse().translation - truth.translation).norm(), kCamera_mm) << k;
   }
-  EXPECT_GT(observer.reports[0].observations.size(), 60U);
-  EXPECT_LT(Median(errors), 0.015);
+  EXPECT_GT(observer.reports[0].observations.size(), kMinMapped);
+  EXPECT_LT(Median(errors), kDepthFromStereo);
 }
 
 TEST_F(StereoRun, KeepsACameraWhereItIsSaidToStandStill) {
@@ -102,7 +107,7 @@ TEST_F(StereoRun, KeepsACameraWhereItIsSaidToStandStill) {
     EXPECT_TRUE(report.frame_idx == 0 || report.new_points.empty()) << "nothing tells the depth of a new point";
   }
   // All motion is the scene's: the points are where the last image has them.
-  EXPECT_LT(observer.reports.back().median_reprojection_error_px, 0.5);
+  EXPECT_LT(observer.reports.back().median_reprojection_error_px, kFollowed_px);
 }
 
 TEST_F(StereoRun, WhatWasMeasuredIsNotMadeAnewWhileItIsInView) {

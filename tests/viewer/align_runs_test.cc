@@ -5,10 +5,12 @@
 
 #include <gtest/gtest.h>
 
+#include "support/tolerances.h"
+
 namespace pliant {
 namespace {
 
-constexpr double kRounding = 1e-9;
+constexpr double kTurned_mm = 1e-6;  // a rotation that is right to round-off, at the arm of the path
 
 const Sim3 kWorld = {
     2.5, Eigen::Quaterniond(Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized())), {10, -20, 30}};
@@ -22,10 +24,10 @@ FramePoses Moved(const FramePoses& poses) {
 
 void ExpectIsWorld(const std::optional<Sim3>& found, double scale = kWorld.scale) {
   ASSERT_TRUE(found);
-  EXPECT_NEAR(found->scale, scale, kRounding);
-  EXPECT_LT(found->rotation.angularDistance(kWorld.rotation), 1e-7);
+  EXPECT_NEAR(found->scale, scale, kLengthRoundOff_mm);
+  EXPECT_LT(found->rotation.angularDistance(kWorld.rotation), kAngleRoundOff_rad);
   if (scale == kWorld.scale) {
-    EXPECT_LT((found->translation - kWorld.translation).norm(), 1e-6);
+    EXPECT_LT((found->translation - kWorld.translation).norm(), kTurned_mm);
   }
 }
 

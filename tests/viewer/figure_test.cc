@@ -21,6 +21,11 @@ namespace {
 using testing::HasSubstr;
 using testing::StartsWith;
 
+constexpr double kPixel = 1;           // the middle of an image of an even size lies between pixels
+constexpr int kMinCamera = 50;         // pixels of a camera's frame, drawn in lines
+constexpr int kMinLine = 20;           // pixels of a thin line or a few dots
+constexpr double kContainerFps = 0.1;  // a container keeps the rate as a fraction of its own
+
 TEST(Orbit, ShowsEveryCameraAndNearlyEveryPoint) {
   std::vector<Eigen::Vector3d> points;
   for (int i = 0; i < 200; ++i) points.emplace_back(10 * std::sin(i), 20 * std::cos(i), 0.3 * i);
@@ -41,8 +46,8 @@ TEST(Orbit, LooksFromBehindAndAbove) {
   const std::vector<Eigen::Vector3d> points = {{-10, -10, -10}, {10, 10, 10}};
   const Orbit orbit(points, {}, Eigen::Quaterniond::Identity(), 40, 25, 480, 360);
   const Eigen::Vector3d middle = orbit.Project({0, 0, 0});
-  EXPECT_NEAR(middle.x(), 240, 1);
-  EXPECT_NEAR(middle.y(), 180, 1);
+  EXPECT_NEAR(middle.x(), 240, kPixel);
+  EXPECT_NEAR(middle.y(), 180, kPixel);
   EXPECT_GT(orbit.Project({0, 0, 1}).z(), middle.z());
   EXPECT_GT(orbit.Project({1, 0, 0}).x(), middle.x());
   EXPECT_LT(orbit.Project({1, 0, 0}).z(), middle.z());  // the eye is on the right
@@ -80,9 +85,9 @@ TEST_F(FigureTest, DrawsImagesAndScenes) {
     cv::inRange(figure, bgr - cv::Scalar::all(40), bgr + cv::Scalar::all(40), found);
     return cv::countNonZero(found);
   };
-  EXPECT_GT(count({178, 114, 0}), 50);
-  EXPECT_GT(count({0, 94, 213}), 20);
-  EXPECT_GT(count({115, 158, 0}), 20);
+  EXPECT_GT(count({178, 114, 0}), kMinCamera);
+  EXPECT_GT(count({0, 94, 213}), kMinLine);
+  EXPECT_GT(count({115, 158, 0}), kMinLine);
 }
 
 TEST_F(FigureTest, WritesVectors) {
@@ -157,7 +162,7 @@ TEST_F(FigureTest, FilmsEveryFrame) {
   EXPECT_TRUE(notes->empty());
   cv::VideoCapture film(folder_.Path("film.mp4"));
   ASSERT_TRUE(film.isOpened());
-  EXPECT_NEAR(film.get(cv::CAP_PROP_FPS), 25, 0.1);
+  EXPECT_NEAR(film.get(cv::CAP_PROP_FPS), 25, kContainerFps);
   int frames = 0;
   for (cv::Mat frame; film.read(frame); ++frames) EXPECT_EQ(frame.cols, 320);
   EXPECT_EQ(frames, kRunFrames);

@@ -23,6 +23,8 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::SizeIs;
 
+constexpr double kQuantized_mm = 0.01;  // 16 bits over the extent of the points
+
 class LiveViewTest : public testing::Test {
  protected:
   void SetUp() override {
@@ -88,7 +90,7 @@ TEST_F(LiveViewTest, AJoinMakesWhatWasGivenVoid) {
   EXPECT_THAT(run["frames"]["submap"], ElementsAre(0, 0));
   const std::vector<double> rest = Unpack(run["points"]["rest"]);
   const Eigen::Vector3d moved = join * Undeformed(0);
-  for (int i = 0; i < 3; ++i) EXPECT_NEAR(rest[static_cast<std::size_t>(3 * kRunPoints + i)], moved[i], 0.01);
+  for (int i = 0; i < 3; ++i) EXPECT_NEAR(rest[static_cast<std::size_t>(3 * kRunPoints + i)], moved[i], kQuantized_mm);
 }
 
 TEST_F(LiveViewTest, SaysWhatItWaitsFor) {

@@ -16,6 +16,10 @@ namespace {
 
 using testing::ElementsAre;
 
+constexpr double kHalfStep = 0.51;         // of the step, and the rounding of floats
+constexpr double kStepOfFloats = 1e-5;     // the step is computed from floats of up to 30
+constexpr double kWithoutTheStray = 1e-3;  // steps of 50 / 65534; with the stray value they would be 15
+
 TEST(Base64, IsThatOfTheStandard) {  // RFC 4648, section 10
   EXPECT_EQ(Base64(""), "");
   EXPECT_EQ(Base64("f"), "Zg==");
@@ -49,9 +53,9 @@ TEST(PackArray, QuantizedNumbersComeBackToHalfAStep) {
     if (i == 6 || i == 9)
       EXPECT_TRUE(std::isnan(read[i]));
     else
-      EXPECT_NEAR(read[i], values[i], 0.51 * packed["step"][i % 2].get<double>());
+      EXPECT_NEAR(read[i], values[i], kHalfStep * packed["step"][i % 2].get<double>());
   }
-  EXPECT_NEAR(packed["step"][0].get<double>(), 60.0 / 65534, 1e-5);
+  EXPECT_NEAR(packed["step"][0].get<double>(), 60.0 / 65534, kStepOfFloats);
 }
 
 TEST(PackArray, AStrayValueDoesNotMakeTheOthersCoarse) {
@@ -60,7 +64,7 @@ TEST(PackArray, AStrayValueDoesNotMakeTheOthersCoarse) {
   values[500] = 1e6F;
   const std::vector<double> read = Unpack(PackQuantized(values, 1, PackedType::kU16));
   ASSERT_EQ(read.size(), values.size());
-  for (std::size_t i = 0; i < values.size(); ++i) EXPECT_NEAR(read[i], values[i], 1e-3);
+  for (std::size_t i = 0; i < values.size(); ++i) EXPECT_NEAR(read[i], values[i], kWithoutTheStray);
 }
 
 TEST(PackArray, AConstantAndNothingAtAllComeBack) {

@@ -22,6 +22,10 @@ using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
+constexpr double kQuantized_mm = 1e-3;   // 16 bits over the extent of the points
+constexpr double kFloatPose_mm = 1e-4;   // poses are packed as floats
+constexpr double kQuantizedGain = 0.01;  // gains are packed in steps
+
 class ReportTest : public testing::Test {
  protected:
   void SetUp() override { WriteRun(folder_); }
@@ -62,9 +66,9 @@ TEST_F(ReportTest, HoldsTheRun) {
   EXPECT_THAT(std::vector<double>(rows.begin(), rows.begin() + 8), ElementsAre(0, 1, 2, 3, 4, 0, 2, 4));
   const std::vector<double> positions = Unpack(run["observations"]["position"]);
   const Eigen::Vector3d third = PositionAt(1, 2);  // of the second point, its second observation
-  for (int i = 0; i < 3; ++i) EXPECT_NEAR(positions[static_cast<std::size_t>(3 * 6 + i)], third[i], 1e-3);
+  for (int i = 0; i < 3; ++i) EXPECT_NEAR(positions[static_cast<std::size_t>(3 * 6 + i)], third[i], kQuantized_mm);
   const std::vector<double> poses = Unpack(run["frames"]["pose"]);
-  EXPECT_NEAR(poses[7 * 3 + 4], PoseAt(3).Inverse().translation.x(), 1e-4);
+  EXPECT_NEAR(poses[7 * 3 + 4], PoseAt(3).Inverse().translation.x(), kFloatPose_mm);
   EXPECT_TRUE(run["observations"]["gain"].is_null());
 }
 
@@ -86,7 +90,7 @@ TEST_F(ReportTest, HoldsImagesAndWhatTheySayOfBrightness) {
   EXPECT_EQ(image.cols, 320);
   EXPECT_EQ(image.rows, 240);
   const ordered_json& observations = data["runs"][0]["observations"];
-  EXPECT_NEAR(Unpack(observations["gain"])[0], 1.0, 0.01);  // a point's first patch beside itself
+  EXPECT_NEAR(Unpack(observations["gain"])[0], 1.0, kQuantizedGain);  // a point's first patch beside itself
   EXPECT_FALSE(observations["error_mm"].is_null());
   EXPECT_FALSE(data["runs"][0]["frames"]["scale"].is_null());
 }

@@ -9,6 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "support/tolerances.h"
 #include "viewer/small_sequence.h"
 
 namespace pliant {
@@ -18,6 +19,15 @@ using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+
+constexpr double kScaleOfAPlane = 0.05;  // of 2; the plane is not quite twice as far as the run's points are
+constexpr double kPath_mm = 0.05;        // of a path of some mm, at a scale that is not quite the path's
+constexpr double kPath_rad = 1e-3;
+constexpr double kDepthOfPlane = 0.05;     // relative; the camera turns and moves a little before the plane
+constexpr double kFloatPixel_px = 1e-2;    // positions are floats in a world that is 500 px for one unit of depth
+constexpr double kFloatError_mm = 1e-4;    // the same sum from floats
+constexpr double kAligned_mm = 1e-3;       // two paths from files, aligned with each other
+constexpr double kAlignedPoint_mm = 1e-2;  // the same at the arm of the points
 
 class ViewTest : public testing::Test {
  protected:
@@ -43,12 +53,12 @@ TEST_F(ViewTest, ARunWithoutImagesIsShownAllTheSame) {
   EXPECT_EQ(run.status, "completed");
   ASSERT_EQ(run.frames.size(), static_cast<std::size_t>(kRunFrames));
   EXPECT_EQ(run.points.size(), static_cast<std::size_t>(kRunPoints));
-  EXPECT_LT((run.points.at(PointId{3}).position - Undeformed(1)).norm(), 1e-6);
+  EXPECT_LT((run.points.at(PointId{3}).position - Undeformed(1)).norm(), kFileLength_mm);
   const ViewedObservation& seen = run.frames[2].observations[1];
   EXPECT_EQ(seen.id, PointId{3});
-  EXPECT_LT((seen.position.cast<double>() - PositionAt(1, 2)).norm(), 1e-5);
-  EXPECT_NEAR(seen.depth, (PoseAt(2) * PositionAt(1, 2)).z(), 1e-4);
-  EXPECT_LT(seen.reprojection_px, 1e-3);
+  EXPECT_LT((seen.position.cast<double>() - PositionAt(1, 2)).norm(), kFloatRoundOff_mm);
+  EXPECT_NEAR(seen.depth, (PoseAt(2) * PositionAt(1, 2)).z(), 10 * kFloatRoundOff_mm);
+  EXPECT_LT(seen.reprojection_px, kExactReprojection_px);
   EXPECT_TRUE(std::isnan(seen.error_mm));
   EXPECT_THAT(run.errors, IsEmpty());
 }
@@ -65,12 +75,12 @@ TEST_F(ViewTest, BringsTheRunIntoTheWorldOfTheTruth) {
   // The plane is about twice as far as the run's points are in its unit, so its scale is not quite the path's.
   ASSERT_EQ(run.scales.size(), static_cast<std::size_t>(kRunFrames));
   const double scale = *run.scales[2];
-  EXPECT_NEAR(scale, kTruthFromRun.scale, 0.05);
+  EXPECT_NEAR(scale, kTruthFromRun.scale, kScaleOfAPlane);
   for (int i = 0; i < kRunFrames; ++i) {
     const Rigid3& truth = view->truth[static_cast<std::size_t>(i)].world_from_cam;
     const Rigid3& estimate = *run.frames[static_cast<std::size_t>(i)].world_from_cam;
-    EXPECT_LT((truth.translation - estimate.translation).norm(), 0.05);
-    EXPECT_LT(truth.rotation.angularDistance(estimate.rotation), 1e-3);
+    EXPECT_LT((truth.translation - estimate.translation).norm(), kPath_mm);
+    EXPECT_LT(truth.rotation.angularDistance(estimate.rotation), kPath_rad);
   }
   // The error of each point is the evaluation's: their RMSE is the frame's.
   ASSERT_FALSE(run.errors.empty());
@@ -83,11 +93,11 @@ TEST_F(ViewTest, BringsTheRunIntoTheWorldOfTheTruth) {
       sum += o.error_mm * o.error_mm;
       // The true place is on the plane, seen at the point's own pixel.
       const Eigen::Vector3d truth_in_cam = frame.world_from_cam->Inverse() * o.truth.cast<double>();
-      EXPECT_NEAR(truth_in_cam.z(), kPlaneDepth_mm, 0.05 * kPlaneDepth_mm);
-      EXPECT_LT((*view->camera->Project(truth_in_cam) - o.pixel.cast<double>()).norm(), 1e-2);
+      EXPECT_NEAR(truth_in_cam.z(), kPlaneDepth_mm, kDepthOfPlane * kPlaneDepth_mm);
+      EXPECT_LT((*view->camera->Project(truth_in_cam) - o.pixel.cast<double>()).norm(), kFloatPixel_px);
     }
     const auto& rmse_mm = run.errors.front().second[static_cast<std::size_t>(i)];
-    EXPECT_NEAR(std::sqrt(sum / static_cast<double>(frame.observations.size())), *rmse_mm, 1e-4);
+    EXPECT_NEAR(std::sqrt(sum / static_cast<double>(frame.observations.size())), *rmse_mm, kFloatError_mm);
   }
   EXPECT_THAT(run.figures, Contains(testing::Field(&NamedText::group, HasSubstr("Surface error"))));
 }
@@ -118,11 +128,11 @@ TEST_F(ViewTest, ShowsRunsOfOneSceneInOneWorld) {
   for (int i = 0; i < kRunFrames; ++i) {
     const ViewedFrame& a = view->runs[0].frames[static_cast<std::size_t>(i)];
     const ViewedFrame& b = view->runs[1].frames[static_cast<std::size_t>(i)];
-    EXPECT_LT((a.world_from_cam->translation - b.world_from_cam->translation).norm(), 1e-3);
+    EXPECT_LT((a.world_from_cam->translation - b.world_from_cam->translation).norm(), kAligned_mm);
     ASSERT_EQ(a.observations.size(), b.observations.size());
     for (std::size_t k = 0; k < a.observations.size(); ++k) {
-      EXPECT_LT((a.observations[k].position - b.observations[k].position).norm(), 1e-2);
-      EXPECT_NEAR(a.observations[k].depth, b.observations[k].depth, 1e-2);
+      EXPECT_LT((a.observations[k].position - b.observations[k].position).norm(), kAlignedPoint_mm);
+      EXPECT_NEAR(a.observations[k].depth, b.observations[k].depth, kAlignedPoint_mm);
     }
   }
 }
@@ -135,7 +145,7 @@ TEST_F(ViewTest, PutsMapsThatNothingJoinsOneAfterTheOther) {
   const ViewedRun& run = view->runs.front();
   const ViewedFrame& last = run.frames[kRunFrames - 1];
   const ViewedFrame& first = run.frames[kRunFrames];
-  EXPECT_LT((last.world_from_cam->translation - first.world_from_cam->translation).norm(), 1e-6);
+  EXPECT_LT((last.world_from_cam->translation - first.world_from_cam->translation).norm(), kFileLength_mm);
 }
 
 // The truth ends before the second map begins.
