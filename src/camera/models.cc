@@ -49,13 +49,13 @@ template <int kFocals, int kDistortions>
 bool PerspectiveModel<kFocals, kDistortions>::Undistort(double xd, double yd, double* x, double* y) const {
   const double rd = std::hypot(xd, yd);
   if (!(rd < std::numeric_limits<double>::max())) return false;
-  const auto radial = [&](double r, double* slope) {
+  const auto radial = [&](double r, double* derivative) {
     const double r2 = r * r;
-    *slope = 1.0 + r2 * (3.0 * k1() + 5.0 * r2 * k2());
+    *derivative = 1.0 + r2 * (3.0 * k1() + 5.0 * r2 * k2());
     return r * (1.0 + r2 * (k1() + r2 * k2()));
   };
-  double slope = 0;
-  const double target = kDistortions == 4 ? std::min(rd, 0.999 * radial(max_radius_, &slope)) : rd;
+  double derivative = 0;
+  const double target = kDistortions == 4 ? std::min(rd, 0.999 * radial(max_radius_, &derivative)) : rd;
   const auto r = InvertGrowing(radial, target, max_radius_);
   if (!r) return false;
   *x = rd > 0.0 ? xd * (*r / rd) : 0.0;
@@ -115,8 +115,8 @@ template class PerspectiveModel<2, 4>;
 
 OpenCvFisheye::OpenCvFisheye(const Params& params) : params_(params), max_theta_(kLargestTheta) {
   // d theta_d / d theta is a polynomial in theta^2.
-  const std::array<double, 5> slope = {1.0, 3.0 * params[4], 5.0 * params[5], 7.0 * params[6], 9.0 * params[7]};
-  if (const auto root = FirstRoot(slope, kLargestTheta * kLargestTheta)) max_theta_ = std::sqrt(*root);
+  const std::array<double, 5> derivative = {1.0, 3.0 * params[4], 5.0 * params[5], 7.0 * params[6], 9.0 * params[7]};
+  if (const auto root = FirstRoot(derivative, kLargestTheta * kLargestTheta)) max_theta_ = std::sqrt(*root);
   double derivative = 0;
   max_theta_d_ = DistortedAngle(max_theta_, &derivative);
 }
@@ -149,10 +149,10 @@ bool OpenCvFisheye::ProjectWithJacobian(const double point[3], double pixel[2], 
     const double r = std::sqrt(r2);
     const double theta = std::atan2(r, z);
     if (!(theta < max_theta_)) return false;
-    double slope = 0;
-    scale = DistortedAngle(theta, &slope) / r;
-    scale_r = (slope * z / norm2 - scale) / r2;
-    scale_z = -slope / norm2;
+    double derivative = 0;
+    scale = DistortedAngle(theta, &derivative) / r;
+    scale_r = (derivative * z / norm2 - scale) / r2;
+    scale_z = -derivative / norm2;
   }
   pixel[0] = fx() * (scale * x) + cx();
   pixel[1] = fy() * (scale * y) + cy();
@@ -170,8 +170,8 @@ bool OpenCvFisheye::Unproject(const double pixel[2], double ray[3]) const {
   const double yd = (pixel[1] - cy()) / fy();
   const double theta_d = std::hypot(xd, yd);
   if (!(theta_d < max_theta_d_)) return false;
-  const auto theta =
-      InvertGrowing([&](double angle, double* slope) { return DistortedAngle(angle, slope); }, theta_d, max_theta_);
+  const auto theta = InvertGrowing([&](double angle, double* derivative) { return DistortedAngle(angle, derivative); },
+                                   theta_d, max_theta_);
   if (!theta) return false;
   // sin(theta) / theta_d tends to 1 at the axis.
   const double sine = theta_d > 0.0 ? std::sin(*theta) / theta_d : 1.0;

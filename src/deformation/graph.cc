@@ -23,50 +23,51 @@ bool AllFinite(Points points) {
 
 constexpr int kNobody = -1;
 
-// The `count` nearest to a place, by distance and then by index, without one of them: settles ties, at the price of a
+// The `count` nearest to a position, by distance and then by index, without one of them: breaks ties, at the price of a
 // look at every point.
-std::vector<int> NearestByScan(Points points, const Eigen::Vector3d& place, int without, int count) {
+std::vector<int> NearestByScan(Points points, const Eigen::Vector3d& query, int without, int count) {
   std::vector<std::pair<double, int>> others;
   others.reserve(points.size());
   for (int j = 0; j < static_cast<int>(points.size()); ++j)
-    if (j != without) others.emplace_back((points[j] - place).squaredNorm(), j);
+    if (j != without) others.emplace_back((points[j] - query).squaredNorm(), j);
   std::partial_sort(others.begin(), others.begin() + count, others.end());
   std::vector<int> nearest;
   for (int k = 0; k < count; ++k) nearest.push_back(others[k].second);
   return nearest;
 }
 
-// The nearest points of each place; where `places_are_points`, each place is the point of its index, which is left out.
-NeighborLists Nearest(Points points, Points places, bool places_are_points, int neighbors) {
+// The nearest points of each query position; where `queries_are_points`, each query is the point of its index, which is
+// left out.
+NeighborLists Nearest(Points points, Points queries, bool queries_are_points, int neighbors) {
   const int num_points = static_cast<int>(points.size());
-  const int num_places = static_cast<int>(places.size());
-  const int count = std::min(neighbors, num_points - (places_are_points ? 1 : 0));
-  NeighborLists lists(num_places);
-  if (count < 1 || num_places == 0 || !AllFinite(points) || !AllFinite(places)) return lists;
+  const int num_queries = static_cast<int>(queries.size());
+  const int count = std::min(neighbors, num_points - (queries_are_points ? 1 : 0));
+  NeighborLists lists(num_queries);
+  if (count < 1 || num_queries == 0 || !AllFinite(points) || !AllFinite(queries)) return lists;
 
   // FLANN does not write to its input, but takes it without const. Vector3d has no padding: rows of three doubles.
   static_assert(sizeof(Eigen::Vector3d) == 3 * sizeof(double));
   const flann::Matrix<double> data(const_cast<double*>(points.data()->data()), num_points, 3);
-  const flann::Matrix<double> queries(const_cast<double*>(places.data()->data()), num_places, 3);
+  const flann::Matrix<double> query_matrix(const_cast<double*>(queries.data()->data()), num_queries, 3);
   flann::KDTreeSingleIndex<flann::L2_Simple<double>> index(data, flann::KDTreeSingleIndexParams());
   index.buildIndex();
 
-  // A point itself comes back too, and one more tells whether the last place is contested.
-  const int wanted = count + (places_are_points ? 1 : 0);
+  // A point itself comes back too, and one more tells whether the last neighbor is tied.
+  const int wanted = count + (queries_are_points ? 1 : 0);
   const int asked = std::min(wanted + 1, num_points);
-  std::vector<std::size_t> indices(static_cast<std::size_t>(num_places) * asked);
+  std::vector<std::size_t> indices(static_cast<std::size_t>(num_queries) * asked);
   std::vector<double> distances(indices.size());
-  flann::Matrix<std::size_t> index_rows(indices.data(), num_places, asked);
-  flann::Matrix<double> distance_rows(distances.data(), num_places, asked);
-  index.knnSearch(queries, index_rows, distance_rows, asked, flann::SearchParams(flann::FLANN_CHECKS_UNLIMITED));
+  flann::Matrix<std::size_t> index_rows(indices.data(), num_queries, asked);
+  flann::Matrix<double> distance_rows(distances.data(), num_queries, asked);
+  index.knnSearch(query_matrix, index_rows, distance_rows, asked, flann::SearchParams(flann::FLANN_CHECKS_UNLIMITED));
 
   std::vector<std::pair<double, int>> others;
-  for (int i = 0; i < num_places; ++i) {
-    const int itself = places_are_points ? i : kNobody;
+  for (int i = 0; i < num_queries; ++i) {
+    const int itself = queries_are_points ? i : kNobody;
     const double* row = distance_rows[i];
     const bool contested = asked > wanted && row[wanted] - row[wanted - 1] <= kTie * row[wanted];
     if (contested) {
-      lists[i] = NearestByScan(points, places[i], itself, count);
+      lists[i] = NearestByScan(points, queries[i], itself, count);
       continue;
     }
     others.clear();
@@ -101,8 +102,8 @@ std::vector<GraphEdge> MergeDirections(const NeighborLists& lists) {
 
 NeighborLists NearestNeighbors(Points positions, int count) { return Nearest(positions, positions, true, count); }
 
-NeighborLists NearestNeighbors(Points positions, Points places, int count) {
-  return Nearest(positions, places, false, count);
+NeighborLists NearestNeighbors(Points positions, Points queries, int count) {
+  return Nearest(positions, queries, false, count);
 }
 
 void GraphOptions::List(OptionTable& table) {

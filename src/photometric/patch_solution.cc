@@ -43,7 +43,7 @@ PatchFailure SolvePatch(const float* values, const float* weights, BasisKind kin
                         const LucasKanadeOptions& options, float* solve, float* offsets) {
   const int motion = kind == BasisKind::kAffine ? 6 : 2;
   const bool plane = level == 0 && options.shading == Shading::kPlane;
-  const int blocks = motion + (plane ? 4 : 2);  // and gain, bias, the two slopes of the shading
+  const int blocks = motion + (plane ? 4 : 2);  // and gain, bias, the two gradients of the shading
   const int used = options.gain_bias == Switch::kOff ? motion : blocks;
   alignas(64) std::array<float, static_cast<std::size_t>(kMaxBlocks) * kMaxBlock> basis;
   std::array<float, kMaxBlocks * kMaxBlocks> gram;

@@ -62,8 +62,8 @@ struct DeformationGraph {
 using NeighborLists = std::vector<std::vector<int>>;
 NeighborLists NearestNeighbors(std::span<const Eigen::Vector3d> positions, int count);
 
-// The `count` nearest of `positions` to each of `places`, nearest first; otherwise as above.
-NeighborLists NearestNeighbors(std::span<const Eigen::Vector3d> positions, std::span<const Eigen::Vector3d> places,
+// The `count` nearest of `positions` to each of `queries`, nearest first; otherwise as above.
+NeighborLists NearestNeighbors(std::span<const Eigen::Vector3d> positions, std::span<const Eigen::Vector3d> queries,
                                int count);
 
 // The graph of `positions` (mm, any one frame). `rest_positions` are the same points undeformed; they may be empty when

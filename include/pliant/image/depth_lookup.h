@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// The depth at a pixel: interpolated, because a rounded pixel costs half a pixel times the slope of the surface, and
+// The depth at a pixel: interpolated, because a rounded pixel costs half a pixel times the gradient of the depth, and
 // never across a depth step or next to a hole.
 #pragma once
 

@@ -3,7 +3,7 @@
 
 // What an image looks like around a pixel, in numbers that change little with brightness, contrast and small changes of
 // the view: SIFT's histograms of gradients (Lowe, IJCV 2004, as OpenCV computes them), upright and of one size. They
-// tell places apart that a patch tracker cannot find because nothing is known of where they are.
+// tell points apart that a patch tracker cannot find because nothing is known of where they are.
 // Pixels: (0, 0) is the center of the first pixel.
 #pragma once
 

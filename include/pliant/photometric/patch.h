@@ -52,7 +52,7 @@ struct EnumNames<PatchFailure> {
                                         std::pair{PatchFailure::kOccluded, std::string_view("occluded")}};
 };
 
-// Light at the camera shades a patch more on one side after the camera has moved. Without a model of it that slope
+// Light at the camera shades a patch more on one side after the camera has moved. Without a model of it that gradient
 // pulls the patch aside. kPlane lets brightness differ by a plane over the patch, beside gain and bias.
 enum class Shading { kNone, kPlane };
 template <>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // Follows points from image to image and decides what each is compared with. Two policies, by name:
-//   periodic  the reference patch is cut anew every few images (Gomez Rodriguez et al., IROS 2022). Each cut adds the
+//   periodic  a new reference patch is cut every few images (Gomez Rodriguez et al., IROS 2022). Each cut adds the
 //             error of the moment for good, so a track drifts.
 //   adaptive  keeps the first patch. The latest image's patch finds the point, then the point is re-aligned to the
 //             first patch seen through the affine change since, so errors do not add up. Only when the first patch no
@@ -101,7 +101,7 @@ class PointTracker {
  private:
   // What an attempt found of a point; it becomes the point's own with Keep.
   struct Step {
-    enum class Patch { kKept, kLatest, kReference };  // what was cut anew: nothing, the latest, the reference as well
+    enum class Patch { kKept, kLatest, kReference };  // what was cut: nothing, the latest, the reference as well
     std::int64_t attempt = 0;                         // that found it; 0: none
     Patch patch = Patch::kKept;
     ReferencePatch latest;

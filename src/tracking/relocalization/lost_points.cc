@@ -14,15 +14,15 @@ namespace {
 
 constexpr int kNeighbors = 8;
 
-// The change of a neighborhood that faces the camera, between two poses that see it at these places.
-Eigen::Matrix2d FacingAffine(const Rigid3& before, const Eigen::Vector3d& place_before, const Rigid3& now,
-                             const Eigen::Vector3d& place_now) {
-  const double scale = (before * place_before).z() / (now * place_now).z();
+// The change of a neighborhood that faces the camera, between two poses that see it at these positions.
+Eigen::Matrix2d FacingAffine(const Rigid3& before, const Eigen::Vector3d& position_before, const Rigid3& now,
+                             const Eigen::Vector3d& position_now) {
+  const double scale = (before * position_before).z() / (now * position_now).z();
   const Eigen::Matrix3d turn = now.RotationMatrix() * before.RotationMatrix().transpose();
   return scale * turn.topLeftCorner<2, 2>();
 }
 
-// Where the camera sees a place, if it does.
+// The pixel of a point in the camera's frame, when the image shows it.
 std::optional<Eigen::Vector2d> PixelOf(const Camera& camera, const Eigen::Vector3d& in_cam) {
   if (!(in_cam.z() > 0)) return std::nullopt;
   const auto pixel = camera.Project(in_cam);
@@ -33,15 +33,15 @@ std::optional<Eigen::Vector2d> PixelOf(const Camera& camera, const Eigen::Vector
 
 std::vector<Eigen::Vector3d> DisplacementsAt(const std::vector<Landmark>& landmarks,
                                              const std::vector<Eigen::Vector3d>& anchors,
-                                             const std::vector<Eigen::Vector3d>& places) {
-  std::vector<Eigen::Vector3d> displacements(places.size(), Eigen::Vector3d::Zero());
+                                             const std::vector<Eigen::Vector3d>& positions) {
+  std::vector<Eigen::Vector3d> displacements(positions.size(), Eigen::Vector3d::Zero());
   if (landmarks.empty()) return displacements;
-  const NeighborLists nearest = NearestNeighbors(anchors, places, kNeighbors);
-  for (std::size_t k = 0; k < places.size(); ++k) {
+  const NeighborLists nearest = NearestNeighbors(anchors, positions, kNeighbors);
+  for (std::size_t k = 0; k < positions.size(); ++k) {
     // Inverse-distance weights: at an anchor the displacement is that landmark's.
     double sum = 0;
     for (const int j : nearest[k]) {
-      const double weight = 1.0 / (1e-6 + (anchors[j] - places[k]).squaredNorm());
+      const double weight = 1.0 / (1e-6 + (anchors[j] - positions[k]).squaredNorm());
       displacements[k] += weight * (landmarks[j].position - landmarks[j].rest_position);
       sum += weight;
     }
@@ -52,10 +52,10 @@ std::vector<Eigen::Vector3d> DisplacementsAt(const std::vector<Landmark>& landma
 
 void TakeRestFrom(const std::vector<Landmark>& seen, std::vector<Landmark>* others) {
   std::vector<Eigen::Vector3d> anchors;
-  std::vector<Eigen::Vector3d> places;
+  std::vector<Eigen::Vector3d> positions;
   for (const Landmark& landmark : seen) anchors.push_back(landmark.position);
-  for (const Landmark& landmark : *others) places.push_back(landmark.position);
-  const std::vector<Eigen::Vector3d> displacements = DisplacementsAt(seen, anchors, places);
+  for (const Landmark& landmark : *others) positions.push_back(landmark.position);
+  const std::vector<Eigen::Vector3d> displacements = DisplacementsAt(seen, anchors, positions);
   for (std::size_t k = 0; k < others->size(); ++k)
     (*others)[k].rest_position = (*others)[k].position - displacements[k];
 }
@@ -126,13 +126,13 @@ std::vector<Eigen::Vector2d> LostPoints::Pixels(const Camera& camera, const Rigi
 
 std::vector<PointPrediction> LostPoints::Expected(const Camera& camera, const Rigid3& cam_from_world,
                                                   std::size_t count) {
-  std::vector<std::pair<int, PointPrediction>> expected;  // by how often it was looked for
+  std::vector<std::pair<int, PointPrediction>> expected;  // by how often it was searched
   for (const auto& [id, point] : points_) {
-    const Eigen::Vector3d& place = point.landmark.position;
-    const auto pixel = PixelOf(camera, cam_from_world * place);
+    const Eigen::Vector3d& position = point.landmark.position;
+    const auto pixel = PixelOf(camera, cam_from_world * position);
     if (!pixel) continue;
     expected.push_back(
-        {point.searches, {id, *pixel, FacingAffine(point.cam_from_world, point.seen_at, cam_from_world, place)}});
+        {point.searches, {id, *pixel, FacingAffine(point.cam_from_world, point.seen_at, cam_from_world, position)}});
   }
   const auto rarest = [](const auto& a, const auto& b) {
     return a.first != b.first ? a.first < b.first : a.second.id < b.second.id;

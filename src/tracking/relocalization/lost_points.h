@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // Points of the map that are out of sight. Each stays what it was, with its id and its patch, and is taken along by the
-// points around it that are seen (docs/method.md, eq. R1), so that it is known where to look for it when it comes back.
+// points around it that are seen (docs/method.md, eq. R1), so that it can be searched when it comes back.
 #pragma once
 
 #include <cstdint>
@@ -18,11 +18,11 @@
 
 namespace pliant {
 
-// What the landmarks around places have moved by since their rest (weights as in R1). Places are looked for among
-// `anchors`, one a landmark: where it is now, or at rest. Zero where there are no landmarks.
+// The displacement since rest of the landmarks around each of `positions` (weights as in R1). Neighbors are searched
+// among `anchors`, one a landmark: where it is now, or at rest. Zero where there are no landmarks.
 std::vector<Eigen::Vector3d> DisplacementsAt(const std::vector<Landmark>& landmarks,
                                              const std::vector<Eigen::Vector3d>& anchors,
-                                             const std::vector<Eigen::Vector3d>& places);
+                                             const std::vector<Eigen::Vector3d>& positions);
 
 // Landmarks of another map as if these had always been around them: each is where it is, and at rest where it would be
 // had it moved as they have.
@@ -50,7 +50,7 @@ class LostPoints {
   // Where each is now, as the landmarks that are seen say (R1). `seen` sorted by id.
   void Move(const std::vector<Landmark>& seen);
 
-  // Those that a camera at this pose should see, at most `count`, and where: those looked for least often first. The
+  // Those that a camera at this pose should see, at most `count`, and where: those searched least often first. The
   // affine change is that of a surface that faces the camera.
   std::vector<PointPrediction> Expected(const Camera& camera, const Rigid3& cam_from_world, std::size_t count);
 

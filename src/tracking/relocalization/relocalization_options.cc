@@ -6,28 +6,31 @@
 namespace pliant {
 
 void RelocalizationOptions::List(OptionTable& table) {
-  table.BeginGroup("Relocalization", "the way back after the view was lost");
+  table.BeginGroup("Relocalization", "finding the camera again after the view was lost");
   table.AddChoice("relocalize", &relocalize,
-                  "look for the map's points wherever the camera may be; off: only where it was");
-  table.Add("describe_every", &describe_every, "frames", "from one description of the points in view to the next", 1,
-            1000000);
-  table.Add("search_every", &search_every, "frames", "while another map is awaited, those left are looked for so often",
-            1, 1000000);
+                  "search the map's points from any camera pose; off: only from the last one");
+  table.Add("describe_every", &describe_every, "frames",
+            "descriptors of the points in view are computed every Nth frame", 1, 1000000);
+  table.Add("search_every", &search_every, "frames",
+            "inactive submaps are searched every Nth frame while a new one is awaited", 1, 1000000);
   table.Add("max_inactive_submaps", &max_inactive_submaps, "-",
-            "maps that were left and are remembered; memory grows with them", 1, 1000);
+            "maximum number of inactive submaps that are kept; memory grows with them", 1, 1000);
   table.AddChoice("merge", &merge,
-                  "maps become one when a map that was left is found in the image of another; needs relocalize, "
+                  "merge two submaps when an inactive one is found in an image of the current one; needs relocalize, "
                   "find_lost and adaptive patches, and no oracle");
   table.Add("merge_every", &merge_every, "frames",
-            "while another map is tracked, one of those left is looked for so often", 1, 1000000);
-  table.Add("max_unit_spread", &max_unit_spread, "-",
-            "two maps are joined whose points agree on their units: median deviation of the ratio's logarithm", 0, 10);
-  table.Add("velocity_frames", &velocity_frames, "frames", "over which the camera's velocity before the loss is taken",
-            1, 1000);
-  table.Add("max_corners", &max_corners, "-", "of a lost frame, to compare with the map's points", 8, 100000);
-  table.Add("max_ratio", &max_ratio, "-", "nearest by second nearest description", 0.1, 1);
-  table.Add("max_error_px", &max_error_px, "px", "of a point that agrees with a pose", 0.1, 100);
-  table.Add("min_share", &min_share, "-", "of the points that a pose should see: those that agree", 0, 1);
+            "one of the inactive submaps is searched every Nth frame while another one is tracked", 1, 1000000);
+  table.Add(
+      "max_unit_spread", &max_unit_spread, "-",
+      "submaps are merged when the median deviation of the logarithm of their points' depth ratio is at most this", 0,
+      10);
+  table.Add("velocity_frames", &velocity_frames, "frames",
+            "from which the camera's velocity before the loss is estimated", 1, 1000);
+  table.Add("max_corners", &max_corners, "-", "of a lost frame that are matched with the map's points", 8, 100000);
+  table.Add("max_ratio", &max_ratio, "-",
+            "distance to the nearest divided by that to the second nearest descriptor (Lowe's ratio test)", 0.1, 1);
+  table.Add("max_error_px", &max_error_px, "px", "reprojection error of an inlier", 0.1, 100);
+  table.Add("min_share", &min_share, "-", "minimum share of inliers among the points that the pose should see", 0, 1);
   pose.List(table);
 }
 

@@ -46,7 +46,7 @@ void PointTrackerOptions::List(OptionTable& table) {
   lucas_kanade.List(table);
   table.BeginGroup("PointTracker", "what a point is compared with from image to image");
   table.AddChoice("patch_policy", &patch_policy,
-                  "cut reference patches anew every few images, or only when they differ");
+                  "periodic: cut new reference patches every few images; adaptive: only when they no longer match");
   table.Add("refresh_period", &refresh_period, "images", "periodic: how long a reference patch is kept", 1, 1000000);
   table.Add("refresh_ssim", &refresh_ssim, "-",
             "adaptive: a new first patch is cut when similarity to the first falls below", -1, 1);
@@ -56,8 +56,8 @@ void PointTrackerOptions::List(OptionTable& table) {
   table.Add("max_scale", &max_scale, "-", "adaptive: a neighborhood stretched or shrunk by more gets a new first patch",
             1, 4);
   table.AddChoice("forward_backward", &forward_backward,
-                  "follow each track back: it must return to where it came from");
-  table.Add("max_forward_backward_px", &max_forward_backward_px, "px", "how near it must return", 0, 100);
+                  "follow each track back to the previous image; it must return to its start");
+  table.Add("max_forward_backward_px", &max_forward_backward_px, "px", "maximum distance from its start", 0, 100);
 }
 
 PatchFailure PointTracker::Add(PointId id, const Eigen::Vector2d& pixel, const ImagePyramid& pyramid,
