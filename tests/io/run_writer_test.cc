@@ -1,0 +1,123 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/io/run_writer.h"
+
+#include <cmath>
+#include <csignal>
+#include <filesystem>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include "io/run_reports.h"
+#include "pliant/io/run_reader.h"
+#include "support/test_folder.h"
+
+namespace pliant {
+namespace {
+
+using namespace run_reports;
+using testing::HasSubstr;
+
+TEST(RunWriter, ReplacesAFormerRunAndNothingElse) {
+  const TestFolder folder;
+  WriteRun(folder.Path("run"), 5);
+  folder.Write("run/notes.txt", "mine");
+  RunWriter writer = Writer(folder.Path("run"));
+  EXPECT_FALSE(std::filesystem::exists(folder.Path("run/sparse/images.bin")));
+  EXPECT_FALSE(std::filesystem::exists(folder.Path("run/map.ply")));
+  EXPECT_EQ(folder.Read("run/notes.txt"), "mine");
+  folder.Write("other.txt", "x");
+  const auto refused = RunWriter::Create(folder.Path(""), TestCamera(), {}, "", kStages);
+  EXPECT_EQ(refused.status().code(), ErrorCode::kInvalidArgument);
+  const auto no_folder = RunWriter::Create(folder.Path("other.txt/run"), TestCamera(), {}, "", kStages);
+  EXPECT_EQ(no_folder.status().code(), ErrorCode::kUnwritable);
+}
+
+TEST(RunWriter, GivesTheSameBytesTwiceWithoutTimings) {
+  const TestFolder folder;
+  for (const char* run : {"a", "b"}) WriteRun(folder.Path(run), 5, {.timings = RunTimings::kNone});
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder.Path("a"))) {
+    if (!entry.is_regular_file()) continue;
+    const std::string name = std::filesystem::relative(entry.path(), folder.Path("a")).string();
+    EXPECT_EQ(folder.Read("a/" + name), folder.Read("b/" + name)) << name;
+  }
+}
+
+TEST(RunWriter, RefusesReportsThatCannotBeMeant) {
+  const TestFolder folder;
+  RunWriter writer = Writer(folder.Path("run"));
+  FrameReport report = Report(1);
+  report.observations[0].position.x() = std::nan("");
+  EXPECT_THAT(writer.Write(report).message(), HasSubstr("not finite"));
+  report = Report(1);
+  report.stage_ms = {{"other", 1.0}};
+  EXPECT_THAT(writer.Write(report).message(), HasSubstr("no stage 'other'"));
+  report = Report(1);
+  report.new_points.clear();
+  EXPECT_THAT(writer.Write(report).message(), HasSubstr("observed but was never new"));
+  report = Report(1);
+  report.refined_points = {{PointId{1}, Eigen::Vector3d(1, 2, 3)}};
+  EXPECT_THAT(writer.Write(report).message(), HasSubstr("refined but was never new"));
+  report.refined_points = {{report.observations[0].id, Eigen::Vector3d(1, std::nan(""), 3)}};
+  EXPECT_THAT(writer.Write(report).message(), HasSubstr("not finite"));
+}
+
+TEST(RunWriter, TheMapHasPointsWhereTheyWereLastRefinedTo) {
+  const TestFolder folder;
+  RunWriter writer = Writer(folder.Path("run"));
+  for (int frame = 1; frame <= 3; ++frame) {
+    FrameReport report = Report(frame);
+    if (frame > 1) report.refined_points = {{PointId{0}, Eigen::Vector3d(0.125, 0.25, 70.5 + frame)}};
+    ASSERT_TRUE(writer.Write(report).ok());
+  }
+  ASSERT_TRUE(writer.Finish(RunStatus::kCompleted, "").ok());
+  const std::string points = folder.Read("run/sparse/points3D.txt");
+  EXPECT_THAT(points, HasSubstr("\n0 0.125000 0.250000 73.500000 "));
+  EXPECT_THAT(points, HasSubstr("\n3 -1.000000 0.500000 50.250000 ")) << "the others stay";
+}
+
+TEST(RunWriter, ReportsAFullDiskAndKeepsWhatItWrote) {
+  const TestFolder folder;
+  RunWriter writer = Writer(folder.Path("run"));
+  // A limit on the size of files stands in for a full disk: writing fails in the middle of a row.
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit small{2000, before.rlim_max};
+  setrlimit(RLIMIT_FSIZE, &small);
+  Status status;
+  int frames = 0;
+  for (; frames < 1000 && status.ok(); ++frames) status = writer.Write(Report(frames));
+  const Status finished = writer.Finish(RunStatus::kCompleted, "");
+  setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, handler);
+  EXPECT_EQ(status.code(), ErrorCode::kUnwritable);
+  EXPECT_THAT(status.message(), HasSubstr("observations.csv"));
+  EXPECT_EQ(finished.code(), ErrorCode::kUnwritable);
+  const auto run = ReadRun(folder.Path("run"));
+  ASSERT_TRUE(run.ok()) << run.status().message();
+  EXPECT_EQ(run->summary->status, RunStatus::kFailed);
+  EXPECT_EQ(static_cast<int>(run->frames.size()), frames - 1);
+}
+
+TEST(RunWriter, TellsHowTheRunEndedWhereNoNewFileCanBeMade) {
+  const TestFolder folder;
+  RunWriter writer = Writer(folder.Path("run"));
+  ASSERT_TRUE(writer.Write(Report(0)).ok());
+  // Folders in the way of the files stand in for a disk without room for new ones.
+  std::filesystem::create_directories(folder.Path("run/run.json.tmp"));
+  std::filesystem::create_directories(folder.Path("run/sparse/cameras.txt"));
+  std::filesystem::create_directories(folder.Path("run/sparse/cameras.bin"));
+  EXPECT_EQ(writer.Finish(RunStatus::kCompleted, "").code(), ErrorCode::kUnwritable);
+  const auto run = ReadRun(folder.Path("run"));
+  ASSERT_TRUE(run.ok()) << run.status().message();
+  EXPECT_EQ(run->summary->status, RunStatus::kFailed);
+  EXPECT_THAT(run->summary->note, HasSubstr("cannot write"));
+  EXPECT_FALSE(std::filesystem::exists(folder.Path("run/sparse")));
+}
+
+}  // namespace
+}  // namespace pliant
