@@ -1,0 +1,218 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Commands that evaluate, compare, convert and show what there is.
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "cli/program_outcome.h"
+
+namespace pliant {
+namespace {
+
+using namespace program_test;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+TEST(Program, CompareSetsRunsOfOtherSystemsSideBySide) {
+  const std::string sequence = Temporary("seq").string();
+  ASSERT_EQ(Pliant("simulate --quiet --Trajectory.frames 4" + kCoarse + "--output_path '" + sequence + "'").exit, 0);
+  const std::string a = ForeignResult("a", 4);
+  const std::string b = ForeignResult("b", 3);
+  const std::string out = Temporary("out").string();
+  const Outcome both = Pliant("compare --run '" + a + "' --run '" + b + "' --sequence '" + sequence +
+                              "' --protocol all --output_path '" + out + "'");
+  ASSERT_EQ(both.exit, 0) << both.err;
+  EXPECT_THAT(both.out, HasSubstr(a));
+  EXPECT_THAT(both.out, HasSubstr("3/3"));
+  EXPECT_THAT(both.out, HasSubstr("lmeds, RMSE mm (null)"));
+  EXPECT_THAT(ReadText(out + "/comparison.csv"), HasSubstr("surface_lmeds_mean_rmse_mm"));
+  EXPECT_THAT(ReadText(out + "/comparison.json"), HasSubstr("\"material\": {"));
+  EXPECT_THAT(ReadText(out + "/1/evaluation.csv"), StartsWith("frame,tracked,points,"));
+
+  const Outcome one = Pliant("evaluate --run '" + a + "' --sequence '" + sequence + "' --parts material");
+  EXPECT_EQ(one.exit, 0) << one.err;
+  EXPECT_THAT(one.out, HasSubstr("drift, px"));
+  EXPECT_THAT(one.out, testing::Not(HasSubstr("surface error")));
+
+  // One that is not there does not keep the other from its row.
+  const Outcome half = Pliant("compare --run '" + a + "' --run '" + b + "x' --sequence '" + sequence + "'");
+  EXPECT_EQ(half.exit, 1);
+  EXPECT_THAT(half.err, HasSubstr(b + "x"));
+  EXPECT_EQ(std::count(half.err.begin(), half.err.end(), '\n'), 1) << half.err;
+  EXPECT_THAT(half.out, HasSubstr("4/4"));
+
+  const Outcome pairs = Pliant("compare --run a --run b --run c --sequence d --sequence e");
+  EXPECT_EQ(pairs.exit, 2);
+  EXPECT_EQ(pairs.err,
+            "pliant compare: --sequence is given 2 times for 3 runs; give one for all of them, or one for each\n");
+}
+
+TEST(Program, ImportMakesARunOfACameraPathAndSaysWhatItCannotRead) {
+  const std::string sequence = Temporary("seq").string();
+  ASSERT_EQ(Pliant("simulate --quiet --Trajectory.frames 4" + kCoarse + "--output_path '" + sequence + "'").exit, 0);
+  const std::string out = Temporary("out").string();
+  const std::string import = "import --sequence '" + sequence + "' --output_path '" + out + "' ";
+  const Outcome tum = Pliant(import + "--format tum --input_path '" + sequence + "/groundtruth.txt'");
+  ASSERT_EQ(tum.exit, 0) << tum.err;
+  EXPECT_THAT(tum.out, HasSubstr("4 of 4 frames, 0 points"));
+  EXPECT_THAT(ReadText(out + "/run.json"), HasSubstr("\"import\""));
+  const Outcome path = Pliant("evaluate --parts camera --run '" + out + "' --sequence '" + sequence + "'");
+  EXPECT_EQ(path.exit, 0) << path.err;
+  EXPECT_THAT(path.out, HasSubstr("ATE RMSE 0.000"));
+
+  const Outcome none = Pliant(import + "--input_path '" + sequence + "/nowhere'");
+  EXPECT_EQ(none.exit, 1);
+  EXPECT_EQ(std::count(none.err.begin(), none.err.end(), '\n'), 1) << none.err;
+  EXPECT_THAT(none.err, StartsWith("pliant import: "));
+  EXPECT_EQ(Pliant(import + "--format ply --input_path x").exit, 2);
+  EXPECT_EQ(Pliant("import --sequence x --output_path y").exit, 2);
+}
+
+TEST(Program, EvaluateSaysInOneSentenceThatThereIsNoTruthForWhatWasAsked) {
+  const std::string sequence = Temporary("seq").string();
+  ASSERT_EQ(Pliant("simulate --quiet --Trajectory.frames 4" + kCoarse + "--output_path '" + sequence + "'").exit, 0);
+  const std::string evaluate = "evaluate --run '" + ForeignResult("a", 4) + "' --sequence '" + sequence + "' ";
+  std::filesystem::remove(sequence + "/simulation.yaml");
+  const Outcome material = Pliant(evaluate + "--parts material");
+  EXPECT_EQ(material.exit, 1);
+  EXPECT_THAT(material.err, StartsWith("pliant evaluate: no material error: "));
+  EXPECT_THAT(material.err, HasSubstr("simulation.yaml"));
+  EXPECT_EQ(Pliant(evaluate).exit, 0);
+  std::filesystem::remove_all(sequence + "/depth");
+  const Outcome surface = Pliant(evaluate + "--parts surface");
+  EXPECT_EQ(surface.exit, 1);
+  EXPECT_EQ(surface.err,
+            "pliant evaluate: no surface error: the sequence has no true surface for the tracked frames\n");
+  const Outcome protocol = Pliant(evaluate + "--protocol depth_trimmed");
+  EXPECT_EQ(protocol.exit, 1);
+  EXPECT_THAT(protocol.err, StartsWith("pliant evaluate: the protocol depth_trimmed compares points"));
+  std::filesystem::remove(sequence + "/groundtruth.txt");
+  const Outcome bare = Pliant(evaluate);
+  EXPECT_EQ(bare.exit, 0) << bare.err;
+  EXPECT_THAT(bare.out, HasSubstr("tracks\n  frames tracked 4 of 4"));
+}
+
+TEST(Program, ARunIsEvaluatedAndShownWithTheCalibrationItWasMadeWith) {
+  const std::string sequence = Temporary("seq").string();
+  const std::string run = Temporary("run").string();
+  ASSERT_EQ(Pliant("simulate --quiet --Trajectory.frames 4 --Camera.width 320 --Camera.height 240 --output_path '" +
+                   sequence + "'")
+                .exit,
+            0);
+  const std::string camera = Temporary("lens.yaml").string();
+  std::filesystem::rename(sequence + "/camera.yaml", camera);
+  ASSERT_EQ(Pliant("track --quiet --Init.method depth --image_path '" + sequence + "' --camera '" + camera +
+                   "' --output_path '" + run + "'")
+                .exit,
+            0);
+  EXPECT_EQ(Pliant("evaluate --run '" + run + "' --sequence '" + sequence + "'").exit, 0);
+  const Outcome compared =
+      Pliant("compare --run '" + run + "' --run '" + ForeignResult("a", 4) + "' --sequence '" + sequence + "'");
+  EXPECT_EQ(compared.exit, 0) << compared.err;
+  const Outcome figure = Pliant("report --run '" + run + "' --figure 2 -o '" + Temporary("figure.png").string() + "'");
+  EXPECT_EQ(figure.exit, 0) << figure.err;
+  EXPECT_THAT(figure.out, Not(HasSubstr("note:")));
+  std::filesystem::remove(camera);
+  const Outcome without = Pliant("report --run '" + run + "' --figure 2 -o '" + Temporary("figure.png").string() + "'");
+  EXPECT_EQ(without.exit, 0) << without.err;
+  EXPECT_THAT(without.out, HasSubstr("note: the images cannot be shown"));
+}
+
+TEST(Program, TruthFollowsMaterialThroughASequence) {
+  const std::string sequence = Temporary("seq").string();
+  const std::string paths = Temporary("paths.csv").string();
+  ASSERT_EQ(Pliant("simulate --quiet --Trajectory.frames 3 --Deformation.amplitude_mm 2" + kCoarse + "--output_path '" +
+                   sequence + "'")
+                .exit,
+            0);
+  const std::string truth = "truth --sequence '" + sequence + "' --output_path '" + paths + "' ";
+  const Outcome grid = Pliant(truth + "--grid_px 16 --frame 1");
+  EXPECT_EQ(grid.exit, 0) << grid.err;
+  EXPECT_THAT(grid.out, StartsWith("12 of 12 points in 3 frames"));
+  std::ifstream file(paths);
+  std::string line;
+  std::getline(file, line);
+  EXPECT_EQ(line, "point,frame,u_px,v_px,x,y,z,depth_mm,visibility");
+  int rows = 0;
+  for (; std::getline(file, line); ++rows) {
+    // The first point, in the frame that it was taken from.
+    if (rows == 1) {
+      EXPECT_THAT(line, testing::EndsWith(",visible"));
+    }
+  }
+  EXPECT_EQ(rows, 36);
+
+  const std::string points = Temporary("points.csv").string();
+  std::ofstream(points) << "frame,u_px,v_px\n0,10,10\n3,10,10\n";
+  const Outcome late = Pliant(truth + "--points '" + points + "'");
+  EXPECT_EQ(late.exit, 2);
+  EXPECT_EQ(late.err, "pliant truth: point 2 is in frame 3, and the sequence has the frames 0 to 2\n");
+  EXPECT_THAT(Pliant(truth).err, HasSubstr("give either --points FILE or --grid_px N"));
+  EXPECT_THAT(Pliant(truth + "--grid_px 8 --points '" + points + "'").err, HasSubstr("give either"));
+}
+
+TEST(Program, ModelCheckSaysWhatIsWrongAndExitsWithOne) {
+  const std::filesystem::path folder = Temporary("model");
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder / "cameras.txt") << "1 PINHOLE 64 48 50 50 32 24\n";
+  std::ofstream(folder / "images.txt") << "1 1 0 0 0 0 0 0 1 a.png\n10 20 7\n2 1 0 0 0 0 0 0 1 b.png\n30 20 7\n";
+  std::ofstream(folder / "points3D.txt") << "7 0 0 5 1 2 3 0.5 1 0 2 0\n";
+  const Outcome good = Pliant("model check '" + folder.string() + "'");
+  EXPECT_EQ(good.exit, 0) << good.err;
+  EXPECT_EQ(good.out, "1 cameras, 2 images, 1 points, 2 observations\nnothing is wrong\n");
+
+  const std::string binary = Temporary("binary").string();
+  EXPECT_EQ(Pliant("model convert --input_path '" + folder.string() + "' --output_path '" + binary + "'").exit, 0);
+  EXPECT_EQ(Pliant("model check --path '" + binary + "'").out, good.out);
+  const Outcome beside =
+      Pliant("model convert --format text --input_path '" + folder.string() + "' --output_path '" + binary + "'");
+  EXPECT_EQ(beside.exit, 1);
+  EXPECT_THAT(beside.err, HasSubstr("cameras.bin"));
+
+  std::ofstream(folder / "points3D.txt") << "7 0 0 5 1 2 3 0.5 1 0 3 0\n";
+  const Outcome bad = Pliant("model check '" + folder.string() + "'");
+  EXPECT_EQ(bad.exit, 1);
+  EXPECT_THAT(
+      bad.out,
+      HasSubstr("error: tracks have an image that is not there: 1, the first: point 7, keypoint 0 of image 3\n"));
+  EXPECT_THAT(bad.out, HasSubstr("error: keypoints have a point whose track does not have them: 1"));
+
+  EXPECT_EQ(Pliant("model check").exit, 2);
+  EXPECT_EQ(Pliant("model").exit, 2);
+  EXPECT_EQ(Pliant("model check /nowhere").exit, 1);
+}
+
+TEST(Program, ReportSaysWhatItCannotWrite) {
+  const auto error = [](const std::string& arguments, int exit) {
+    const Outcome outcome = Pliant("report --run run " + arguments);
+    EXPECT_EQ(outcome.exit, exit) << arguments;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+    return outcome.err;
+  };
+  EXPECT_THAT(error("-o report.png", 2), HasSubstr("a report ends with .html or .htm"));
+  EXPECT_THAT(error("--figure 3 -o figure.html", 2), HasSubstr("a figure ends with .png or .svg or .pdf"));
+  EXPECT_THAT(error("--video -o film.avi", 2), HasSubstr("a film ends with .mp4"));
+  EXPECT_THAT(error("--video --figure 3 -o film.mp4", 2), HasSubstr("give one of them"));
+  EXPECT_THAT(error("--figure 3,x -o figure.png", 2), HasSubstr("give frame numbers"));
+  EXPECT_THAT(error("", 2), HasSubstr("--output_path FILE is missing"));
+  EXPECT_THAT(error("-o '" + Temporary("report.html").string() + "'", 1), HasSubstr("there is no run folder"));
+}
+
+TEST(Program, ExportSaysInOneSentenceWhatIsMissing) {
+  const Outcome nothing =
+      Pliant("export --run /nowhere --format tum --output_path '" + Temporary("out").string() + "'");
+  EXPECT_EQ(nothing.exit, 1);
+  EXPECT_EQ(nothing.err, "pliant export: there is no run folder '/nowhere'; check the path\n");
+  const Outcome format = Pliant("export --run a --format collada --output_path b");
+  EXPECT_EQ(format.exit, 2);
+  EXPECT_THAT(format.err, HasSubstr("canonical|spacetime|frames"));
+}
+
+}  // namespace
+}  // namespace pliant

@@ -1,0 +1,129 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Commands that simulate and track.
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "cli/program_outcome.h"
+
+namespace pliant {
+namespace {
+
+using namespace program_test;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+TEST(Program, AStartFromACloudTakesItsMethodAndSaysWhenTheUnitIsUnlikely) {
+  const Outcome usage = Pliant("track --image_path x --output_path y --Init.depth_cloud cloud.txt");
+  EXPECT_EQ(usage.exit, 2);
+  EXPECT_THAT(usage.err, HasSubstr("give --Init.method depth as well"));
+  const std::string sequence = Temporary("seq").string();
+  const std::string cloud = Temporary("cloud.txt").string();
+  ASSERT_EQ(Pliant("simulate --quiet --Trajectory.frames 2 --Camera.width 320 --Camera.height 240 --output_path '" +
+                   sequence + "'")
+                .exit,
+            0);
+  std::ofstream points(cloud);
+  for (int i = 0; i < 4096; ++i) points << 1e-3 * (i % 64 - 32) << " " << 1e-3 * (i / 64 - 32) << " 0.05\n";  // meters
+  points.close();
+  const std::string track = "track --Init.method depth --image_path '" + sequence + "' --output_path '" +
+                            Temporary("run").string() + "' --Init.depth_cloud '" + cloud + "' ";
+  EXPECT_THAT(Pliant(track).err, HasSubstr("has a median depth of 0.05 mm; if its unit is the meter"));
+  const Outcome in_meters = Pliant(track + "--Init.depth_cloud_unit_mm 1000");
+  EXPECT_EQ(in_meters.exit, 0) << in_meters.err;
+  EXPECT_THAT(in_meters.out, HasSubstr("2 of 2 frames tracked"));
+  EXPECT_THAT(in_meters.err, Not(HasSubstr("median depth")));
+}
+
+TEST(Program, AnInputThatIsNotThereIsOneSentenceAndExitCodeOne) {
+  const std::string nowhere = Temporary("nowhere").string();
+  for (const std::string& arguments :
+       {"track --image_path '" + nowhere + "' --output_path '" + Temporary("run").string() + "'",
+        "evaluate --run '" + nowhere + "' --sequence '" + nowhere + "'"}) {
+    const Outcome outcome = Pliant(arguments);
+    EXPECT_EQ(outcome.exit, 1);
+    EXPECT_THAT(outcome.err, HasSubstr(nowhere));
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+    EXPECT_EQ(outcome.out, "");
+  }
+}
+
+TEST(Program, AnOutputThatCannotBeMadeIsExitCodeOne) {
+  const std::filesystem::path file = Temporary("file");
+  std::ofstream(file) << "in the way";
+  const Outcome outcome =
+      Pliant("simulate --Trajectory.frames 1" + kCoarse + "--output_path '" + (file / "seq").string() + "'");
+  EXPECT_EQ(outcome.exit, 1);
+  EXPECT_THAT(outcome.err, HasSubstr(file.string()));
+}
+
+TEST(Program, QuietSaysNothingAndProgressGoesToStandardError) {
+  const std::string small = "--Trajectory.frames 2" + kCoarse;
+  const std::string output = "--output_path '" + Temporary("seq").string() + "'";
+  const Outcome loud = Pliant("simulate " + small + output);
+  ASSERT_EQ(loud.exit, 0) << loud.err;
+  EXPECT_THAT(loud.err, HasSubstr("simulate  2/2"));
+  EXPECT_THAT(loud.out, StartsWith("2 frames in "));
+  const Outcome quiet = Pliant("simulate --quiet " + small + output);
+  EXPECT_EQ(quiet.exit, 0);
+  EXPECT_EQ(quiet.out + quiet.err, "");
+}
+
+TEST(Program, WithoutStandardStreamsNoMessageGetsIntoTheFiles) {
+  const std::string sequence = Temporary("seq").string();
+  const std::string run = Temporary("run").string();
+  ASSERT_EQ(Pliant("simulate --quiet --Trajectory.frames 2" + kCoarse + "--output_path '" + sequence + "'").exit, 0);
+  std::system(
+      ("'" PLIANT_PROGRAM "' track --image_path '" + sequence + "' --output_path '" + run + "' <&- >&- 2>&-").c_str());
+  EXPECT_EQ(ReadText(run + "/observations.csv"), "frame,point_id,u_px,v_px,x,y,z,ssim\n");
+  EXPECT_EQ(ReadText(run + "/trajectory.txt"), "");
+}
+
+TEST(Program, ADamagedVideoIsOneSentenceWithoutTheDecoders) {
+  const std::filesystem::path video = Temporary("video.mp4");
+  std::ofstream(video, std::ios::binary) << std::string("\0\0\0\x18", 4) << "ftypisom" << std::string(500, 'x');
+  const std::filesystem::path camera = Temporary("camera.yaml");
+  std::ofstream(camera) << "model: PINHOLE\nwidth: 64\nheight: 48\nparams: [50, 50, 31.5, 23.5]\n";
+  const Outcome outcome =
+      Pliant("track --image_path '" + video.string() + "' --output_path '" + Temporary("run").string() + "'");
+  EXPECT_EQ(outcome.exit, 1);
+  EXPECT_THAT(outcome.err, StartsWith("pliant track: cannot open "));
+  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+}
+
+TEST(Program, OneFrameAndManyThreadsAreOneSentenceEach) {
+  const std::string sequence = Temporary("seq").string();
+  ASSERT_EQ(Pliant("simulate --quiet --Trajectory.frames 2" + kCoarse + "--output_path '" + sequence + "'").exit, 0);
+  const std::string track =
+      "track --quiet --image_path '" + sequence + "' --output_path '" + Temporary("run").string() + "' ";
+  EXPECT_THAT(Pliant(track + "--end 1").err, StartsWith("pliant track: one frame carries no map; "));
+  const Outcome threads = Pliant(track + "--General.threads 64");
+  EXPECT_THAT(threads.err, StartsWith("pliant track: "));
+  EXPECT_EQ(std::count(threads.err.begin(), threads.err.end(), '\n'), 1) << threads.err;
+}
+
+TEST(Program, ADeviceIsNoCalibration) {
+  const std::string sequence = Temporary("seq").string();
+  ASSERT_EQ(Pliant("simulate --quiet --Trajectory.frames 1" + kCoarse + "--output_path '" + sequence + "'").exit, 0);
+  const Outcome outcome = Pliant("track --image_path '" + sequence + "' --camera /dev/zero --output_path '" +
+                                 Temporary("run").string() + "'");
+  EXPECT_EQ(outcome.exit, 1);
+  EXPECT_EQ(outcome.err, "pliant track: '/dev/zero' is a pipe or a device; give a file\n");
+}
+
+TEST(Program, TrackLiveSaysWhereToLookAndEndsWithTheRun) {
+  const std::string sequence = Temporary("sequence").string();
+  ASSERT_EQ(Pliant("simulate --quiet --Trajectory.frames 4" + kCoarse + "--output_path '" + sequence + "'").exit, 0);
+  const std::string run = " --output_path '" + Temporary("run").string() + "' --live --Live.port 0";
+  EXPECT_THAT(Pliant("track --image_path '" + sequence + "'" + run).err, HasSubstr("live view: http://127.0.0.1:"));
+}
+
+}  // namespace
+}  // namespace pliant
