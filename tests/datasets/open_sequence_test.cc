@@ -1,78 +1,21 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "pliant/datasets/open_sequence.h"
-
-#include <filesystem>
-#include <fstream>
+// What sequences give: images, masks, truth.
 #include <limits>
-#include <memory>
-#include <optional>
 #include <string>
-#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <opencv2/imgproc.hpp>
+#include <opencv2/core.hpp>
 
-#include "datasets/image_list.h"
-#include "datasets/sequence_files.h"
+#include "datasets/opened_sequence.h"
 
 namespace pliant {
 namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
-
-constexpr int kMaxReadable = 18;    // of 20 frames, in 0.6 of the file's bytes
-constexpr double kVideoLoss = 3.0;  // gray levels a lossy codec may change a plain image by
-
-class OpenSequenceTest : public SequenceFiles {
- protected:
-  SequenceRequest Request(const std::string& name = "") const {
-    SequenceRequest request;
-    request.image_path = name.empty() ? root_ : Path(name);
-    return request;
-  }
-  static std::unique_ptr<Sequence> Open(const SequenceRequest& request) {
-    auto sequence = OpenSequence(request);
-    EXPECT_TRUE(sequence.ok()) << sequence.status().message();
-    return sequence.ok() ? *std::move(sequence) : nullptr;
-  }
-  static std::vector<int> Indices(Sequence& sequence) {
-    std::vector<int> indices;
-    while (true) {
-      const auto frame = sequence.Next();
-      EXPECT_TRUE(frame.ok()) << frame.status().message();
-      if (!frame.ok() || !frame->has_value()) return indices;
-      indices.push_back((*frame)->frame_idx);
-      EXPECT_NEAR(cv::mean((*frame)->image)[0], Brightness((*frame)->frame_idx), kVideoLoss);
-    }
-  }
-  // Opening fails with this code, and the sentence names this.
-  static void ExpectRefused(const SequenceRequest& request, ErrorCode code, const std::string& named) {
-    const auto sequence = OpenSequence(request);
-    ASSERT_FALSE(sequence.ok());
-    EXPECT_EQ(sequence.status().code(), code) << sequence.status().message();
-    EXPECT_THAT(sequence.status().message(), HasSubstr(named));
-  }
-  // Frame `bad` fails so, all others come.
-  static void ExpectBadFrame(Sequence& sequence, int count, int bad, ErrorCode code, const std::string& named) {
-    for (int idx = 0; idx < count; ++idx) {
-      const auto frame = sequence.Next();
-      ASSERT_EQ(frame.ok(), idx != bad) << idx << " " << frame.status().message();
-      if (idx == bad) {
-        EXPECT_EQ(frame.status().code(), code) << frame.status().message();
-        EXPECT_THAT(frame.status().message(), HasSubstr(named));
-      } else {
-        EXPECT_EQ((*frame)->frame_idx, idx);
-      }
-    }
-    const auto end = sequence.Next();
-    ASSERT_TRUE(end.ok());
-    EXPECT_FALSE(end->has_value());
-  }
-};
 
 TEST_F(OpenSequenceTest, ReadsANativeSequence) {
   WriteNative(5);
@@ -242,171 +185,6 @@ TEST_F(OpenSequenceTest, PairsMasksWithVideoFramesByNumber) {
   EXPECT_EQ(cv::countNonZero((*sequence->Next())->mask), kWidth * kHeight);
 }
 
-TEST_F(OpenSequenceTest, RefusesWhatIsNotThere) {
-  ExpectRefused(Request("nowhere"), ErrorCode::kNotFound, "nowhere");
-  ExpectRefused(SequenceRequest{}, ErrorCode::kNotFound, "image path");
-  std::filesystem::create_directories(Path("empty"));
-  ExpectRefused(Request("empty"), ErrorCode::kNotFound, "empty holds no image");
-  Text("texts/readme.txt", "hello");
-  ExpectRefused(Request("texts"), ErrorCode::kNotFound, "texts holds no image");
-  WriteImages(2, "scan");
-  ExpectRefused(Request("scan"), ErrorCode::kNotFound, "camera.yaml");
-}
-
-TEST_F(OpenSequenceTest, RefusesAFileWhereAFolderBelongs) {
-  WriteNative(2);
-  Text("depth", "a file");
-  ExpectRefused(Request(), ErrorCode::kUnreadable, "depth is a file where a folder");
-}
-
-TEST_F(OpenSequenceTest, RefusesAFileThatIsNoVideo) {
-  Text("clip.mp4", "this is no video");
-  WriteCamera();
-  ExpectRefused(Request("clip.mp4"), ErrorCode::kUnreadable, "clip.mp4 as a video");
-}
-
-TEST_F(OpenSequenceTest, RefusesRangesThatMakeNoSense) {
-  WriteNative(4);
-  SequenceRequest request = Request();
-  request.start = 4;
-  ExpectRefused(request, ErrorCode::kInvalidArgument, "has 4 frames");
-  request.start = -1;
-  ExpectRefused(request, ErrorCode::kInvalidArgument, "start is -1");
-  request.start = 2;
-  request.end = 2;
-  ExpectRefused(request, ErrorCode::kInvalidArgument, "end is 2");
-  request.end = -1;
-  request.stride = 0;
-  ExpectRefused(request, ErrorCode::kInvalidArgument, "stride is 0");
-}
-
-TEST_F(OpenSequenceTest, RefusesACalibrationOfAnotherSize) {
-  WriteImages(2);
-  WriteCamera("camera.yaml", 32, 24);
-  ExpectRefused(Request(), ErrorCode::kMismatch, "32x24");
-  ExpectRefused(Request(), ErrorCode::kMismatch, "64x48");
-  WriteVideo("clip.avi", 2);
-  ExpectRefused(Request("clip.avi"), ErrorCode::kMismatch, "32x24");
-}
-
-TEST_F(OpenSequenceTest, NamesATruncatedPngAndGoesOnAfterIt) {
-  WriteNative(5);
-  Write("images/000002.png", Noise());
-  Truncate("images/000002.png", 0.6);
-  testing::internal::CaptureStderr();
-  ExpectBadFrame(*Open(Request()), 5, 2, ErrorCode::kUnreadable, "000002.png is truncated");
-  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
-}
-
-TEST_F(OpenSequenceTest, NamesAPngWithAFlippedByteBeforeTheLibraryDoes) {
-  WriteNative(5);
-  Write("images/000002.png", Noise());
-  {
-    const std::string path = Request().image_path.string() + "/images/000002.png";
-    std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out);
-    const auto middle = static_cast<std::streamoff>(std::filesystem::file_size(path) / 2);
-    file.seekg(middle);
-    const int byte = file.get();
-    file.seekp(middle);
-    file.put(static_cast<char>(byte ^ 0x5a));
-  }
-  testing::internal::CaptureStderr();
-  ExpectBadFrame(*Open(Request()), 5, 2, ErrorCode::kUnreadable, "000002.png is damaged");
-  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
-}
-
-TEST_F(OpenSequenceTest, NamesATruncatedJpegEmptyFileAndTextFile) {
-  WriteCamera();
-  Write("images/000000.jpg", Noise());
-  Truncate("images/000000.jpg", 0.5);
-  Text("images/000001.png", "");
-  Text("images/000002.png", "not a picture");
-  const auto sequence = Open(Request());
-  ASSERT_NE(sequence, nullptr);
-  EXPECT_THAT(sequence->Next().status().message(), HasSubstr("000000.jpg is truncated"));
-  EXPECT_THAT(sequence->Next().status().message(), HasSubstr("000001.png is empty"));
-  EXPECT_THAT(sequence->Next().status().message(), HasSubstr("000002.png cannot be decoded"));
-}
-
-TEST_F(OpenSequenceTest, NamesATruncatedBmpAndTiff) {
-  WriteCamera();
-  for (const char* extension : {".bmp", ".tif"}) {
-    const std::string name = std::string("images/000000") + extension;
-    Write(name, Noise());
-    Truncate(name, 0.5);
-    const auto sequence = Open(Request());
-    ASSERT_NE(sequence, nullptr);
-    testing::internal::CaptureStderr();
-    EXPECT_EQ(sequence->Next().status().code(), ErrorCode::kUnreadable) << extension;
-    EXPECT_EQ(testing::internal::GetCapturedStderr(), "") << extension;
-    std::filesystem::remove(Path(name));
-  }
-}
-
-TEST_F(OpenSequenceTest, TellsWhenTheImageSizeChanges) {
-  WriteNative(4);
-  Write("images/000002.png", Image(2, 32, 24));
-  ExpectBadFrame(*Open(Request()), 4, 2, ErrorCode::kMismatch, "000002.png is 32x24");
-  ExpectBadFrame(*Open(Request()), 4, 2, ErrorCode::kMismatch, "64x48");
-}
-
-TEST_F(OpenSequenceTest, TellsWhenAVideoBreaksOff) {
-  WriteVideo("clip.avi", 20);
-  WriteCamera();
-  Truncate("clip.avi", 0.6);
-  const auto sequence = Open(Request("clip.avi"));
-  ASSERT_NE(sequence, nullptr);
-  int good = 0;
-  auto frame = sequence->Next();
-  for (; frame.ok() && frame->has_value(); frame = sequence->Next()) ++good;
-  EXPECT_GT(good, 0);
-  EXPECT_LT(good, kMaxReadable);
-  ASSERT_FALSE(frame.ok());
-  EXPECT_EQ(frame.status().code(), ErrorCode::kUnreadable);
-  EXPECT_THAT(frame.status().message(), HasSubstr("clip.avi breaks off: frame " + std::to_string(good) + " of 20"));
-  EXPECT_FALSE(sequence->Next()->has_value());
-}
-
-TEST_F(OpenSequenceTest, RefusesMissingMasksAtOnceAndMasksOfAnotherSize) {
-  WriteNative(3);
-  const cv::Mat mask(kHeight, kWidth, CV_8UC1, cv::Scalar::all(255));
-  Write("masks/000000.png", mask);
-  Write("masks/000002.png", mask);
-  ExpectRefused(Request(), ErrorCode::kNotFound, "no mask for the frame 000001.png");
-  Write("masks/000001.png", cv::Mat(8, 8, CV_8UC1, cv::Scalar::all(255)));
-  ExpectBadFrame(*Open(Request()), 3, 1, ErrorCode::kMismatch, "000001.png is 8x8");
-  Write("strange/a.png", mask);
-  SequenceRequest request = Request();
-  request.mask_path = Path("strange");
-  ExpectRefused(request, ErrorCode::kMismatch, "1 mask images for 3 frames");
-  request.mask_path = Path("nomasks");
-  ExpectRefused(request, ErrorCode::kNotFound, "nomasks");
-}
-
-TEST_F(OpenSequenceTest, TellsWhenAVideoFrameHasNoMask) {
-  WriteVideo("clip.avi", 3);
-  WriteCamera();
-  Write("m/000000.png", cv::Mat(kHeight, kWidth, CV_8UC1, cv::Scalar::all(255)));
-  SequenceRequest request = Request("clip.avi");
-  request.mask_path = Path("m");
-  const auto sequence = Open(request);
-  ASSERT_NE(sequence, nullptr);
-  EXPECT_TRUE(sequence->Next().ok());
-  EXPECT_THAT(sequence->Next().status().message(), HasSubstr("no mask for the frame 000001.png"));
-}
-
-TEST_F(OpenSequenceTest, TellsWhatIsWrongWithADepthImage) {
-  WriteNative(2);
-  Write("depth/000000.png", cv::Mat(kHeight, kWidth, CV_8UC1, cv::Scalar::all(9)));
-  Write("depth/000001.png", cv::Mat(8, 8, CV_16UC1, cv::Scalar::all(9)));
-  const auto sequence = Open(Request());
-  ASSERT_NE(sequence, nullptr);
-  EXPECT_EQ(sequence->Depth(0).status().code(), ErrorCode::kMismatch);
-  EXPECT_THAT(sequence->Depth(0).status().message(), HasSubstr("8 bits"));
-  EXPECT_EQ(sequence->Depth(1).status().code(), ErrorCode::kMismatch);
-  EXPECT_THAT(sequence->Depth(1).status().message(), HasSubstr("8x8"));
-}
-
 TEST_F(OpenSequenceTest, PosesOfSomeImagesBelongToThoseOfTheirTimes) {
   WriteNative(3);
   Text("times.txt", "0.5\n0.75\n2\n");
@@ -417,33 +195,6 @@ TEST_F(OpenSequenceTest, PosesOfSomeImagesBelongToThoseOfTheirTimes) {
   EXPECT_FALSE(sequence->WorldFromCamera(1).has_value());
   EXPECT_EQ(sequence->WorldFromCamera(2)->translation.x(), 3);
   EXPECT_THAT(sequence->Warnings(), ElementsAre(HasSubstr("1 of 3 images have no pose")));
-}
-
-TEST_F(OpenSequenceTest, RefusesAGroundTruthThatIsShortOrGarbled) {
-  WriteNative(3);
-  Text("groundtruth.txt", "0 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n");
-  ExpectRefused(Request(), ErrorCode::kMismatch, "2 poses for 3 images");
-  Text("groundtruth.txt", "0 0 0 0 0 0 0 1\n1 0 0 what 0 0 0 1\n2 0 0 0 0 0 0 1\n");
-  ExpectRefused(Request(), ErrorCode::kUnreadable, "groundtruth.txt:2");
-}
-
-TEST_F(OpenSequenceTest, RefusesTimesThatAreShortGarbledOrNotGrowing) {
-  WriteNative(3);
-  Text("times.txt", "0\n1\n");
-  ExpectRefused(Request(), ErrorCode::kMismatch, "2 times for 3 images");
-  Text("times.txt", "0\nnoon\n2\n");
-  ExpectRefused(Request(), ErrorCode::kUnreadable, "times.txt:2");
-  Text("times.txt", "0\n1\n1\n");
-  ExpectRefused(Request(), ErrorCode::kUnreadable, "times.txt:3");
-}
-
-TEST(NaturalLess, ComparesNumbersAsNumbers) {
-  EXPECT_TRUE(NaturalLess("frame2.png", "frame10.png"));
-  EXPECT_TRUE(NaturalLess("a2b3", "a2b10"));
-  EXPECT_TRUE(NaturalLess("a", "a1"));
-  EXPECT_TRUE(NaturalLess("9", "10000000000000000000000000"));
-  EXPECT_FALSE(NaturalLess("x1", "x1"));
-  EXPECT_NE(NaturalLess("x01", "x1"), NaturalLess("x1", "x01"));
 }
 
 }  // namespace

@@ -1,0 +1,125 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Frames that cannot be read in the middle of a sequence.
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <opencv2/core.hpp>
+
+#include "datasets/opened_sequence.h"
+
+namespace pliant {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr int kMaxReadable = 18;  // of 20 frames, in 0.6 of the file's bytes
+
+TEST_F(OpenSequenceTest, NamesATruncatedPngAndGoesOnAfterIt) {
+  WriteNative(5);
+  Write("images/000002.png", Noise());
+  Truncate("images/000002.png", 0.6);
+  testing::internal::CaptureStderr();
+  ExpectBadFrame(*Open(Request()), 5, 2, ErrorCode::kUnreadable, "000002.png is truncated");
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+TEST_F(OpenSequenceTest, NamesAPngWithAFlippedByteBeforeTheLibraryDoes) {
+  WriteNative(5);
+  Write("images/000002.png", Noise());
+  {
+    const std::string path = Request().image_path.string() + "/images/000002.png";
+    std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out);
+    const auto middle = static_cast<std::streamoff>(std::filesystem::file_size(path) / 2);
+    file.seekg(middle);
+    const int byte = file.get();
+    file.seekp(middle);
+    file.put(static_cast<char>(byte ^ 0x5a));
+  }
+  testing::internal::CaptureStderr();
+  ExpectBadFrame(*Open(Request()), 5, 2, ErrorCode::kUnreadable, "000002.png is damaged");
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+TEST_F(OpenSequenceTest, NamesATruncatedJpegEmptyFileAndTextFile) {
+  WriteCamera();
+  Write("images/000000.jpg", Noise());
+  Truncate("images/000000.jpg", 0.5);
+  Text("images/000001.png", "");
+  Text("images/000002.png", "not a picture");
+  const auto sequence = Open(Request());
+  ASSERT_NE(sequence, nullptr);
+  EXPECT_THAT(sequence->Next().status().message(), HasSubstr("000000.jpg is truncated"));
+  EXPECT_THAT(sequence->Next().status().message(), HasSubstr("000001.png is empty"));
+  EXPECT_THAT(sequence->Next().status().message(), HasSubstr("000002.png cannot be decoded"));
+}
+
+TEST_F(OpenSequenceTest, NamesATruncatedBmpAndTiff) {
+  WriteCamera();
+  for (const char* extension : {".bmp", ".tif"}) {
+    const std::string name = std::string("images/000000") + extension;
+    Write(name, Noise());
+    Truncate(name, 0.5);
+    const auto sequence = Open(Request());
+    ASSERT_NE(sequence, nullptr);
+    testing::internal::CaptureStderr();
+    EXPECT_EQ(sequence->Next().status().code(), ErrorCode::kUnreadable) << extension;
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "") << extension;
+    std::filesystem::remove(Path(name));
+  }
+}
+
+TEST_F(OpenSequenceTest, TellsWhenTheImageSizeChanges) {
+  WriteNative(4);
+  Write("images/000002.png", Image(2, 32, 24));
+  ExpectBadFrame(*Open(Request()), 4, 2, ErrorCode::kMismatch, "000002.png is 32x24");
+  ExpectBadFrame(*Open(Request()), 4, 2, ErrorCode::kMismatch, "64x48");
+}
+
+TEST_F(OpenSequenceTest, TellsWhenAVideoBreaksOff) {
+  WriteVideo("clip.avi", 20);
+  WriteCamera();
+  Truncate("clip.avi", 0.6);
+  const auto sequence = Open(Request("clip.avi"));
+  ASSERT_NE(sequence, nullptr);
+  int good = 0;
+  auto frame = sequence->Next();
+  for (; frame.ok() && frame->has_value(); frame = sequence->Next()) ++good;
+  EXPECT_GT(good, 0);
+  EXPECT_LT(good, kMaxReadable);
+  ASSERT_FALSE(frame.ok());
+  EXPECT_EQ(frame.status().code(), ErrorCode::kUnreadable);
+  EXPECT_THAT(frame.status().message(), HasSubstr("clip.avi breaks off: frame " + std::to_string(good) + " of 20"));
+  EXPECT_FALSE(sequence->Next()->has_value());
+}
+
+TEST_F(OpenSequenceTest, TellsWhenAVideoFrameHasNoMask) {
+  WriteVideo("clip.avi", 3);
+  WriteCamera();
+  Write("m/000000.png", cv::Mat(kHeight, kWidth, CV_8UC1, cv::Scalar::all(255)));
+  SequenceRequest request = Request("clip.avi");
+  request.mask_path = Path("m");
+  const auto sequence = Open(request);
+  ASSERT_NE(sequence, nullptr);
+  EXPECT_TRUE(sequence->Next().ok());
+  EXPECT_THAT(sequence->Next().status().message(), HasSubstr("no mask for the frame 000001.png"));
+}
+
+TEST_F(OpenSequenceTest, TellsWhatIsWrongWithADepthImage) {
+  WriteNative(2);
+  Write("depth/000000.png", cv::Mat(kHeight, kWidth, CV_8UC1, cv::Scalar::all(9)));
+  Write("depth/000001.png", cv::Mat(8, 8, CV_16UC1, cv::Scalar::all(9)));
+  const auto sequence = Open(Request());
+  ASSERT_NE(sequence, nullptr);
+  EXPECT_EQ(sequence->Depth(0).status().code(), ErrorCode::kMismatch);
+  EXPECT_THAT(sequence->Depth(0).status().message(), HasSubstr("8 bits"));
+  EXPECT_EQ(sequence->Depth(1).status().code(), ErrorCode::kMismatch);
+  EXPECT_THAT(sequence->Depth(1).status().message(), HasSubstr("8x8"));
+}
+
+}  // namespace
+}  // namespace pliant
