@@ -16,10 +16,9 @@ import sys
 import tempfile
 import unittest
 
-SKIPPED = 77
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "experiments/common"))
-sys.path.insert(0, str(ROOT / "experiments/rigid_baseline"))
+from support import MIN_PLOT_BYTES, SKIPPED, experiment_modules
+
+experiment_modules("rigid_baseline")
 if importlib.util.find_spec("yaml") is None:
     print("skipped: Python has no yaml")
     sys.exit(SKIPPED)
@@ -174,7 +173,7 @@ class Table(unittest.TestCase):
         import baseline_plot
 
         baseline_plot.write(self.folder / "rows.csv", self.folder)
-        self.assertGreater((self.folder / "comparison.png").stat().st_size, 10000)
+        self.assertGreater((self.folder / "comparison.png").stat().st_size, MIN_PLOT_BYTES)
         first = (self.folder / "comparison.svg").read_bytes()
         baseline_plot.write(self.folder / "rows.csv", self.folder)
         self.assertEqual((self.folder / "comparison.svg").read_bytes(), first)
