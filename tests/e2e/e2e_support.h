@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Runs the whole pipeline as the program does, on a sequence rendered once (see CMakeLists.txt) or on copies of its
-// first frames with something wrong in them.
+// Runs the whole pipeline as the program does, on a sequence rendered once and tracked once with default options (see
+// CMakeLists.txt), or on copies of its first frames with something wrong in them.
 #pragma once
 
 #include <array>
@@ -22,6 +22,7 @@
 namespace pliant {
 
 inline const std::string kSequence = PLIANT_TEST_SEQUENCE;
+inline const std::string kDefaultRun = PLIANT_TEST_RUN;  // of all of it, with default options; to be read only
 
 // The pipeline with nothing on the terminal; a run that could not begin is a test failure.
 inline RunSummary TrackSequenceAt(const std::string& sequence, const std::string& run, const TrackOptions& options,
