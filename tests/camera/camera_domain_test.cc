@@ -107,14 +107,17 @@ TEST(OpenCvCamera, FindsTheRayOfEveryPixelOrSaysThatThereIsNone) {
   // Far outside of the image too: an answer must project back, and a pixel that is known to have a ray must get one.
   const OpenCv model({500, 500, 320, 240, -0.2, 0.01, 0.02, -0.03});
   Random random(3);
+  int answered = 0;
   for (int i = 0; i < 20000; ++i) {
     const double pixel[2] = {random.Uniform(-2000, 3000), random.Uniform(-2000, 3000)};
     double ray[3];
     if (!model.Unproject(pixel, ray)) continue;
+    ++answered;
     double again[2];
     ASSERT_TRUE(model.Project(ray, again));
     EXPECT_LT(std::hypot(again[0] - pixel[0], again[1] - pixel[1]), kPixel_px);
   }
+  EXPECT_GT(answered, 0);
   for (int i = 0; i < 20000; ++i) {
     const double radius = model.max_radius() * std::sqrt(random.Uniform()) * (1 - 1e-6);
     const double azimuth = random.Uniform(0, 2 * std::numbers::pi);

@@ -100,6 +100,7 @@ TEST_P(EveryCamera, AgreesWithOpenCv) {
   std::vector<cv::Point3d> points;
   for (const Eigen::Vector3d& x : SeenPoints(camera_, 200))
     if (x.z() > 0.01 * x.norm()) points.emplace_back(x.x(), x.y(), x.z());  // OpenCV's fisheye divides by z
+  ASSERT_FALSE(points.empty());
   std::vector<cv::Point2d> pixels;
   const cv::Vec3d zero(0, 0, 0);
   if (GetParam().model == "OPENCV_FISHEYE") {

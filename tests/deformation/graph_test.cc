@@ -130,6 +130,7 @@ TEST(DeformationGraph, CutsEdgesThatStretched) {
   EXPECT_EQ(whole->cut, 0);
   EXPECT_GT(cut->cut, 0);
   EXPECT_EQ(cut->edges.size() + cut->cut, whole->edges.size());
+  ASSERT_FALSE(cut->edges.empty());
   for (const GraphEdge& edge : cut->edges) {
     const double stretch = (parted[edge.i] - parted[edge.j]).norm() / edge.rest_length_mm - 1;
     EXPECT_LE(std::abs(stretch), options.max_stretch);

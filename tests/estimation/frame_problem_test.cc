@@ -64,6 +64,7 @@ TEST(FrameProblem, FollowsASmoothDeformationInTheImage) {
   const FrameScene scene = MakeFrameScene({.pixel_noise_px = 0, .outlier_ratio = 0});
   const FrameSolution solution = Solve(scene, PoseOnLastGeometry(scene));
   EXPECT_TRUE(solution.converged) << solution.message;
+  ASSERT_EQ(solution.points.size(), scene.positions.size());
   for (const FramePoint& point : solution.points) EXPECT_LT(point.reprojection_error_px, kSmooth_px);
   EXPECT_LT(solution.costs.Total(), solution.initial_costs.Total());
 }
@@ -169,6 +170,7 @@ TEST(FrameProblem, OutliersHaveBoundedInfluence) {
 TEST(FrameProblem, DisagreementPointsAtWrongTracks) {
   const FrameScene scene = MakeFrameScene({});
   const FrameSolution solution = Solve(scene, PoseOnLastGeometry(scene));
+  ASSERT_EQ(solution.points.size(), scene.positions.size());
   double largest_good = 0;
   double smallest_bad = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < solution.points.size(); ++i) {
@@ -178,6 +180,7 @@ TEST(FrameProblem, DisagreementPointsAtWrongTracks) {
     else
       largest_good = std::max(largest_good, disagreement);
   }
+  ASSERT_TRUE(std::isfinite(smallest_bad)) << "there are no outliers";
   EXPECT_GT(smallest_bad, largest_good);
 }
 
@@ -190,6 +193,8 @@ TEST(FrameProblem, RepeatsBitForBitWhateverWasSolvedBefore) {
   const FrameSolution second = Solve(scene, initial);
   EXPECT_EQ(first.cam_from_world.rotation.coeffs(), second.cam_from_world.rotation.coeffs());
   EXPECT_EQ(first.cam_from_world.translation, second.cam_from_world.translation);
+  ASSERT_EQ(first.points.size(), scene.positions.size());
+  ASSERT_EQ(second.points.size(), first.points.size());
   for (std::size_t i = 0; i < first.points.size(); ++i) EXPECT_EQ(first.points[i].position, second.points[i].position);
 }
 

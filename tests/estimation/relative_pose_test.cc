@@ -86,13 +86,32 @@ std::vector<Method> AllMethods() {
   return methods;
 }
 
+// Those that refine on inliers within the loop: local optimization and MAGSAC.
+std::vector<Method> RefiningMethods() {
+  std::vector<Method> methods = EssentialMethods();
+  std::erase_if(methods, [](const Method& method) {
+    return method.robust != RobustLoop::kLocal && method.solver != RelativePoseSolver::kOpencvUsac;
+  });
+  return methods;
+}
+// Those that draw samples.
+std::vector<Method> SamplingMethods() {
+  std::vector<Method> methods = AllMethods();
+  std::erase_if(methods, [](const Method& method) { return method.solver == RelativePoseSolver::kRotationOnly; });
+  return methods;
+}
+
 class EveryEssential : public testing::TestWithParam<Method> {};
+class EveryRefiningLoop : public testing::TestWithParam<Method> {};
 class EveryRelativePose : public testing::TestWithParam<Method> {};
+class EverySampler : public testing::TestWithParam<Method> {};
 const auto kMethodName = [](const testing::TestParamInfo<Method>& info) {
   return std::string(EnumName(info.param.solver)) + "_" + std::string(EnumName(info.param.robust));
 };
 INSTANTIATE_TEST_SUITE_P(RelativePose, EveryEssential, testing::ValuesIn(EssentialMethods()), kMethodName);
+INSTANTIATE_TEST_SUITE_P(RelativePose, EveryRefiningLoop, testing::ValuesIn(RefiningMethods()), kMethodName);
 INSTANTIATE_TEST_SUITE_P(RelativePose, EveryRelativePose, testing::ValuesIn(AllMethods()), kMethodName);
+INSTANTIATE_TEST_SUITE_P(RelativePose, EverySampler, testing::ValuesIn(SamplingMethods()), kMethodName);
 
 TEST_P(EveryEssential, IsExactWithoutNoise) {
   const double exact_rad = GetParam().solver == RelativePoseSolver::kKneip ? kKneipExactRad : kExactRad;
@@ -151,9 +170,7 @@ TEST(RelativePose, LeavesTheHostsGeneratorAlone) {
   EXPECT_EQ(std::rand(), next);
 }
 
-TEST_P(EveryEssential, IsBetterForRefinementOnInliers) {
-  // Local optimization and MAGSAC leave less to refine than a sample does.
-  if (GetParam().robust != RobustLoop::kLocal && GetParam().solver != RelativePoseSolver::kOpencvUsac) return;
+TEST_P(EveryRefiningLoop, IsBetterForRefinementOnInliers) {
   std::vector<double> errors;
   std::vector<double> errors_of_samples;
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
@@ -190,8 +207,7 @@ TEST(RelativePose, RotationOnlyFindsARotationAndNoTranslation) {
 
 // With nine tenths outliers 300 samples of five pairs hold a clean one once in 300 times. A few pairs agree with any
 // motion, and the best of many motions is no answer.
-TEST_P(EveryRelativePose, RefusesWhatItsSamplesCannotFind) {
-  if (GetParam().solver == RelativePoseSolver::kRotationOnly) return;  // takes no samples
+TEST_P(EverySampler, RefusesWhatItsSamplesCannotFind) {
   for (const Surface surface : {Surface::kTube, Surface::kBlob})
     for (std::uint64_t seed = 1; seed <= 2; ++seed) {
       const Pair pair = MakePair({.surface = surface, .noise_px = 0.3, .outlier_share = 0.9, .seed = seed});

@@ -47,6 +47,7 @@ TEST_P(EveryProtocol, RecoversAKnownScaleExactlyAndHasNoErrorThere) {
   const double scale = ProtocolScale(pairs, GetParam());
   EXPECT_NEAR(scale, 2.5, kLengthRoundOff_mm);
   const ProtocolErrors errors = ApplyProtocol(pairs, 2.5, GetParam(), {});
+  ASSERT_FALSE(errors.errors_mm.empty());
   for (const double error : errors.errors_mm) EXPECT_LT(error, kLengthRoundOff_mm);
 }
 

@@ -224,6 +224,7 @@ TEST_F(RunFolderEvaluation, AgreesWithAnIndependentNumPyScript) {
       for (const auto& [name, value] : first_map[frame][side].items())
         EXPECT_NEAR(ours["first_map"][frame][side][name].get<double>(), value.get<double>(), kAgreement)
             << frame << " " << side << " " << name;
+  ASSERT_FALSE(first_map["motion"].empty());
   for (const auto& [name, value] : first_map["motion"].items())
     EXPECT_NEAR(ours["first_map"]["motion"][name].get<double>(), value.get<double>(), kAgreement) << name;
   EXPECT_GT(first_map["declared"]["estimate"]["median_relative_depth"], kNotNone);
@@ -312,6 +313,7 @@ TEST_F(RunFolderEvaluation, OfASimulatedSequenceAgreesWithTheFormulaInNumPy) {
   ExpectSame(ours["surface"], (*script)["surface"], kAgreement);
   constexpr double kInterpolation = 0.02;  // mm and px: of depth between pixels, and of the mesh's facets
   ExpectSame(ours["material"], (*script)["material"], kInterpolation);
+  ASSERT_FALSE((*script)["drift"].empty());
   for (const auto& [name, value] : (*script)["drift"].items())
     EXPECT_NEAR(ours["material"]["drift"][name].get<double>(), value.get<double>(), kInterpolation) << name;
   EXPECT_GT(ours["material"]["points"], kMinPoints);

@@ -176,6 +176,7 @@ TEST(Export, AStrideLeavesFramesOut) {
   EXPECT_EQ(summary->frames, 3);
   const colmap::Model model = ReadValidModel(folder.Path("out"));
   EXPECT_EQ(model.images.size(), 3U);
+  ASSERT_FALSE(model.points3D.empty());
   for (const colmap::Point3D& point : model.points3D) EXPECT_EQ(point.track.size(), 3U);
 }
 

@@ -195,6 +195,8 @@ TEST(TrackBatch, IsTheSameForEveryNumberOfThreads) {
   for (const ReferencePatch& patch : patches) requests.push_back({&patch, patch.center});
   const auto one = TrackBatch(requests, moved, {}, {}, 1);
   const auto two = TrackBatch(requests, moved, {}, {}, 2);
+  ASSERT_EQ(one.size(), requests.size());
+  ASSERT_EQ(two.size(), one.size());
   for (std::size_t i = 0; i < one.size(); ++i) {
     EXPECT_EQ(one[i].pixel.x, two[i].pixel.x);
     EXPECT_EQ(one[i].pixel.y, two[i].pixel.y);

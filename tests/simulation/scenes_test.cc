@@ -185,7 +185,9 @@ TEST(Deformation, ATubeBreathesAwayFromItsAxis) {
   options.deformation.breathing_mm = 2.0;
   options.deformation.breathing_period_s = 4.0;
   Simulator simulator = Make(options);
-  for (const MaterialPoint& point : PointsAt(simulator, 0, 12)) {
+  const std::vector<MaterialPoint> points = PointsAt(simulator, 0, 12);
+  ASSERT_GT(points.size(), kMinSeen);
+  for (const MaterialPoint& point : points) {
     const Eigen::Vector3d rest = simulator.RestPosition(point);
     const Eigen::Vector3d swollen = simulator.Position(point, 30);  // a quarter of the period: the widest
     const double radius = rest.head<2>().norm();

@@ -243,14 +243,17 @@ TEST(Sensor, MaterialLiesInTheRightImageAtTheDisparity) {
   const Rigid3 right_from_left =
       simulator.WorldFromCamera(9, Eye::kRight).Inverse() * simulator.WorldFromCamera(9, Eye::kLeft);
   EXPECT_LT((right_from_left.translation - Eigen::Vector3d(-4, 0, 0)).norm(), kLengthRoundOff_mm);
+  int visible = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Eigen::Vector2d expected(pixels[i].x() - pinhole.focal * 4.0 / hits[i]->depth_mm, pixels[i].y());
     EXPECT_LT((right[i].pixel - expected).norm(), kChord_px);
     EXPECT_NEAR(right[i].depth_mm, hits[i]->depth_mm, kRayDepth_mm);
     if (right[i].visibility != Visibility::kVisible) continue;
+    ++visible;
     const auto seen = simulator.HitsAt(9, std::vector{right[i].pixel}, Eye::kRight)[0];
     EXPECT_LT((seen.value().point_in_world - hits[i]->point_in_world).norm(), kChord_mm);
   }
+  EXPECT_GT(visible, 0);
 }
 
 TEST(Sensor, RefusesAPairThatIsNotRectified) {
@@ -296,14 +299,17 @@ void ExpectModelIsRendered(SimulationOptions options, CameraModelId model, const
   for (int y = 3; y < 120; y += 12)
     for (int x = 3; x < 160; x += 12) pixels.emplace_back(x, y);
   const auto hits = simulator.HitsAt(1, pixels);
+  std::size_t compared = 0;
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     if (!hits[i]) continue;
+    ++compared;
     const Eigen::Vector3d in_cam = cam_from_world * hits[i]->point_in_world;
     EXPECT_LT((project(params, in_cam) - pixels[i]).norm(), kInverseModel_px);
     EXPECT_NEAR(hits[i]->depth_mm, in_cam.z(), kLengthRoundOff_mm);
     const double depth = frame.depth.at<float>(static_cast<int>(pixels[i].y()), static_cast<int>(pixels[i].x()));
     EXPECT_NEAR(depth, in_cam.z(), kRayDepth_mm);
   }
+  EXPECT_GT(compared, pixels.size() / 2);
 
   // The same place has the same look in both images, up to the exposure that each chose.
   const Pinhole160 pinhole;

@@ -117,6 +117,7 @@ TEST_F(LossOfTheView, ABlurThatStaysIsTakenAsItIs) {
   std::vector<cv::Mat> images = AllImages();
   for (int i = 2; i < kFrames; ++i) images[static_cast<std::size_t>(i)] = Blurred(i, 2);
   const auto reports = Run(options, images);
+  ASSERT_EQ(static_cast<int>(reports.size()), kFrames);
   for (std::size_t i = 0; i < reports.size(); ++i)
     EXPECT_EQ(reports[i].note.find("passed over") != std::string::npos, i >= 2 && i < 5) << i << reports[i].note;
 }
@@ -307,11 +308,14 @@ TEST_F(MapsThatMeet, StayTwoWhereTheyAreNotToBeJoinedOrContradictEachOther) {
   unjoined[1].relocalization.max_unit_spread = 0;
   unjoined[2].relocalization.relocalize = Switch::kOff;
   unjoined[3].find_lost = Switch::kOff;
-  for (const TrackerOptions& options : unjoined)
-    for (const FrameReport& report : Show(options, Twice())) {
+  for (const TrackerOptions& options : unjoined) {
+    const auto reports = Show(options, Twice());
+    ASSERT_EQ(static_cast<int>(reports.size()), kAgain + kFrames);
+    for (const FrameReport& report : reports) {
       EXPECT_FALSE(report.join);
       EXPECT_EQ(report.submap, report.frame_idx >= kAgain ? 1 : 0);
     }
+  }
 }
 
 TEST_F(LossOfTheView, AMapThatIsFoundAgainEndsTheWaitForAnother) {
@@ -322,6 +326,7 @@ TEST_F(LossOfTheView, AMapThatIsFoundAgainEndsTheWaitForAnother) {
   std::vector<cv::Mat> images = AllImages();
   for (std::size_t i = 4; i < 10; ++i) images[i] = Ramp();
   const auto reports = Run(options, images);
+  ASSERT_EQ(static_cast<int>(reports.size()), kFrames);
   for (const FrameReport& report : reports) {
     const bool awaited = report.frame_idx >= 5 && report.frame_idx < 10;
     EXPECT_EQ(report.state == TrackingState::kTracking, report.frame_idx < 4 || report.frame_idx >= 10)

@@ -163,6 +163,7 @@ TEST(MonocularInitializer, LeavesOutPointsNearTheFocusOfExpansion) {
   const InitOutcome outcome = Try({.parallax_deg = kEnoughDeg, .noise_px = 0.3});
   ASSERT_EQ(outcome.decision, InitDecision::kMap) << outcome.reason;
   const MonocularInitOptions defaults;
+  ASSERT_FALSE(outcome.points.empty());
   for (const InitPoint& point : outcome.points)
     EXPECT_LE(point.depth_sigma, defaults.max_depth_sigma * point.position.norm() * (1 + kRoundOff));
   EXPECT_TRUE(std::any_of(outcome.rejected.begin(), outcome.rejected.end(), [](const InitRejectedPoint& point) {
@@ -349,6 +350,7 @@ TEST(MonocularInitOptions, AreListedWithinTheirRanges) {
   OptionTable table;
   table.BeginGroup("Init", "the first map");
   options.List(table);
+  ASSERT_FALSE(table.fields().empty());
   for (const OptionField& field : table.fields()) EXPECT_TRUE(table.Set(field.name, field.get()).ok()) << field.name;
   EXPECT_FALSE(table.Set("Init.min_parallax_deg", "-1").ok());
 }

@@ -52,8 +52,9 @@ TEST(NeighborAgreement, AffineMotionOfTheWholeSceneIsNoContradiction) {
   gradient << 0.02, 0.01, 0, -0.03, 0.01, 0, 0.02, 0.05, 0;
   const auto motions = MovingSheet(
       [&](const Eigen::Vector3d& x) -> Eigen::Vector3d { return x + Eigen::Vector3d(1, -2, 3) + gradient * x; });
-  for (const Disagreement& d : MeasureDisagreement(motions, Nearest(motions, 20), Eigen::Vector3d::Zero()))
-    EXPECT_LT(d.distance_mm * kPxPerMm, kDamped_px);
+  const auto disagreements = MeasureDisagreement(motions, Nearest(motions, 20), Eigen::Vector3d::Zero());
+  ASSERT_EQ(disagreements.size(), motions.size());
+  for (const Disagreement& d : disagreements) EXPECT_LT(d.distance_mm * kPxPerMm, kDamped_px);
 }
 
 TEST(NeighborAgreement, SmoothDeformationIsAcceptedAndSlidingPointsAreFound) {

@@ -55,12 +55,14 @@ TEST(WindowInitializer, TakesPointsThatComeIntoViewLater) {
   int later = 0;
   for (const InitPoint& point : outcome.points) later += point.id.value >= kFromTheStart ? 1 : 0;
   EXPECT_GT(later, kMinLater);
+  ASSERT_FALSE(outcome.frames.front().positions.empty());
   for (const InitPosition& point : outcome.frames.front().positions) EXPECT_LT(point.id.value, kFromTheStart);
 }
 
 TEST(WindowInitializer, EveryPointIsInTheMapOrRejected) {
   const WavingTracks sequence(61);
   const InitOutcome outcome = sequence.Try({});
+  ASSERT_EQ(outcome.decision, InitDecision::kMap) << outcome.reason;
   std::set<PointId> ids;
   for (const InitPoint& point : outcome.points) EXPECT_TRUE(ids.insert(point.id).second);
   for (const InitRejectedPoint& point : outcome.rejected) EXPECT_TRUE(ids.insert(point.id).second);

@@ -70,7 +70,9 @@ TEST(PackArray, AStrayValueDoesNotMakeTheOthersCoarse) {
 TEST(PackArray, AConstantAndNothingAtAllComeBack) {
   EXPECT_THAT(Unpack(PackQuantized(std::vector<float>{7, 7}, 1, PackedType::kU8)), ElementsAre(7, 7));
   const std::vector<float> none(2, std::numeric_limits<float>::quiet_NaN());
-  for (const double value : Unpack(PackQuantized(none, 1, PackedType::kU8))) EXPECT_TRUE(std::isnan(value));
+  const std::vector<double> read = Unpack(PackQuantized(none, 1, PackedType::kU8));
+  ASSERT_EQ(read.size(), none.size());
+  for (const double value : read) EXPECT_TRUE(std::isnan(value));
   const auto empty = PackQuantized({}, 3, PackedType::kU16);
   EXPECT_EQ(empty["rows"], 0);
   EXPECT_TRUE(Unpack(empty).empty());
