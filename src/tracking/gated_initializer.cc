@@ -11,7 +11,7 @@
 #include <numbers>
 
 #include "pliant/base/statistics.h"
-#include "pliant/estimation/two_view_models.h"
+#include "pliant/estimation/two_view/two_view_models.h"
 #include "pliant/geometry/triangulation.h"
 #include "pliant/tracking/make_initializer.h"
 #include "tracking/initial_map.h"

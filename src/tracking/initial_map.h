@@ -13,9 +13,9 @@
 #include <Eigen/Core>
 
 #include "pliant/base/status.h"
-#include "pliant/estimation/relative_pose.h"
-#include "pliant/estimation/two_view_models.h"
-#include "pliant/estimation/window_refinement.h"
+#include "pliant/estimation/two_view/relative_pose.h"
+#include "pliant/estimation/two_view/two_view_models.h"
+#include "pliant/estimation/window/window_refinement.h"
 #include "pliant/tracking/initializer.h"
 #include "pliant/tracking/make_initializer.h"
 

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "pliant/base/statistics.h"
-#include "pliant/estimation/window_refinement.h"
+#include "pliant/estimation/window/window_refinement.h"
 #include "tracking/initial_map.h"
 
 namespace pliant {

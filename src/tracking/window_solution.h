@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "pliant/base/status.h"
-#include "pliant/estimation/deforming_window.h"
+#include "pliant/estimation/window/deforming_window.h"
 #include "pliant/tracking/initializer.h"
 #include "pliant/tracking/make_initializer.h"
 

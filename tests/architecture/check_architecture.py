@@ -6,7 +6,7 @@
 usage: check_architecture.py ROOT
 
 1. A module includes only itself and modules below it (so there is no circle of modules).
-2. FLANN and Assimp are included in one file each, in the modules deformation and simulation; OpenGV in estimation/opengv_*.
+2. FLANN and Assimp are included in one file each, in the modules deformation and simulation; OpenGV in estimation/*/opengv_*.
 3. Nothing below the module cli prints, logs, or ends the process.
 4. Every source, header, script and CMake list begins with the two SPDX lines.
 5. A private header in a folder of a module (src/estimation/window, say) is included in that folder only.

@@ -11,8 +11,8 @@
 #include <ceres/ceres.h>
 
 #include "estimation/frame_scene.h"
-#include "pliant/estimation/camera_pose.h"
-#include "pliant/estimation/frame_problem.h"
+#include "pliant/estimation/frame/frame_problem.h"
+#include "pliant/estimation/pose/camera_pose.h"
 
 namespace pliant {
 namespace {

@@ -4,8 +4,8 @@
 // What a start from two frames costs: motion among 30 % outliers, its refinement, and the points.
 #include <benchmark/benchmark.h>
 
-#include "pliant/estimation/relative_pose.h"
-#include "pliant/estimation/two_view_refinement.h"
+#include "pliant/estimation/two_view/relative_pose.h"
+#include "pliant/estimation/two_view/two_view_refinement.h"
 #include "pliant/geometry/triangulation.h"
 #include "support/synthetic_scene.h"
 

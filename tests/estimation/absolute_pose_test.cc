@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "pliant/estimation/absolute_pose.h"
+#include "pliant/estimation/pose/absolute_pose.h"
 
 #include <cmath>
 #include <limits>

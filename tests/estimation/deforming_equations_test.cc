@@ -1,16 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "estimation/deforming_equations.h"
+#include "estimation/window/deforming_equations.h"
 
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "estimation/deforming_scene.h"
-#include "estimation/deforming_terms.h"
-#include "estimation/shape_basis.h"
-#include "estimation/view_equations.h"
+#include "estimation/window/deforming_terms.h"
+#include "estimation/window/shape_basis.h"
+#include "estimation/window/view_equations.h"
 #include "pliant/base/random.h"
 
 namespace pliant {

@@ -11,8 +11,8 @@
 
 #include "pliant/base/random.h"
 #include "pliant/base/statistics.h"
-#include "pliant/estimation/deforming_window.h"
-#include "pliant/estimation/window_refinement.h"
+#include "pliant/estimation/window/deforming_window.h"
+#include "pliant/estimation/window/window_refinement.h"
 
 namespace pliant::deforming_test {
 

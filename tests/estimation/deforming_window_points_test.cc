@@ -7,9 +7,9 @@
 #include <gtest/gtest.h>
 
 #include "estimation/deforming_scene.h"
-#include "estimation/window_samples.h"
+#include "estimation/window/window_samples.h"
 #include "pliant/base/statistics.h"
-#include "pliant/estimation/deforming_window.h"
+#include "pliant/estimation/window/deforming_window.h"
 
 namespace pliant {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "pliant/estimation/deforming_window.h"
+#include "pliant/estimation/window/deforming_window.h"
 
 #include <cmath>
 #include <limits>
@@ -10,7 +10,7 @@
 
 #include "estimation/deforming_scene.h"
 #include "pliant/base/statistics.h"
-#include "pliant/estimation/window_refinement.h"
+#include "pliant/estimation/window/window_refinement.h"
 
 namespace pliant {
 namespace {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // The energy of a frame, against the paper's sums and against residual blocks.
-#include "estimation/frame_energy.h"
+#include "estimation/frame/frame_energy.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "estimation/frame_scene.h"
-#include "pliant/estimation/frame_problem.h"
+#include "pliant/estimation/frame/frame_problem.h"
 #include "pliant/residuals/ceres_adapter.h"
 
 namespace pliant {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "pliant/estimation/frame_problem.h"
+#include "pliant/estimation/frame/frame_problem.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "estimation/frame_scene.h"
-#include "pliant/estimation/camera_pose.h"
+#include "pliant/estimation/pose/camera_pose.h"
 
 namespace pliant {
 namespace {

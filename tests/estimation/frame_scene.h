@@ -12,7 +12,7 @@
 #include "pliant/base/random.h"
 #include "pliant/camera/camera.h"
 #include "pliant/deformation/graph.h"
-#include "pliant/estimation/frame_problem.h"
+#include "pliant/estimation/frame/frame_problem.h"
 
 namespace pliant {
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "estimation/light_depth.h"
+#include "estimation/window/light_depth.h"
 
 #include <cmath>
 #include <vector>

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "pliant/estimation/moving_point.h"
+#include "pliant/estimation/pose/moving_point.h"
 
 #include <cmath>
 #include <limits>

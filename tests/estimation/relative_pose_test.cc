@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "pliant/estimation/relative_pose.h"
+#include "pliant/estimation/two_view/relative_pose.h"
 
 #include <cstdlib>
 #include <limits>
@@ -12,7 +12,7 @@
 
 #include "pliant/base/options.h"
 #include "pliant/base/statistics.h"
-#include "pliant/estimation/two_view_models.h"
+#include "pliant/estimation/two_view/two_view_models.h"
 #include "pliant/geometry/triangulation.h"
 #include "support/synthetic_scene.h"
 #include "support/tolerances.h"

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "pliant/estimation/two_view_refinement.h"
+#include "pliant/estimation/two_view/two_view_refinement.h"
 
 #include <array>
 #include <numbers>

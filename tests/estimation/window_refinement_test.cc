@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "pliant/estimation/window_refinement.h"
+#include "pliant/estimation/window/window_refinement.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "estimation/window_samples.h"
+#include "estimation/window/window_samples.h"
 
 #include <algorithm>
 #include <cmath>

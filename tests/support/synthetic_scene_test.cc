@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include "pliant/estimation/deforming_window.h"
+#include "pliant/estimation/window/deforming_window.h"
 #include "support/synthetic_frames.h"
 
 namespace pliant::test {

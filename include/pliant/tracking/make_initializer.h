@@ -14,9 +14,9 @@
 
 #include "pliant/base/options.h"
 #include "pliant/base/random.h"
-#include "pliant/estimation/deforming_window.h"
-#include "pliant/estimation/relative_pose.h"
-#include "pliant/estimation/two_view_refinement.h"
+#include "pliant/estimation/two_view/relative_pose.h"
+#include "pliant/estimation/two_view/two_view_refinement.h"
+#include "pliant/estimation/window/deforming_window.h"
 #include "pliant/geometry/triangulation.h"
 #include "pliant/tracking/initializer.h"
 #include "pliant/tracking/stereo_start.h"
@@ -67,7 +67,7 @@ std::unique_ptr<Initializer> MakeGatedInitializer(const MonocularInitOptions& op
 std::unique_ptr<Initializer> MakePaperInitializer(const MonocularInitOptions& options, Random random);
 
 // One moving camera and a scene that deforms meanwhile: all frames since the reference, their poses, the points and the
-// points' motions in one problem (pliant/estimation/deforming_window.h; docs/method.md, eq. W1 to W12). A map is
+// points' motions in one problem (pliant/estimation/window/deforming_window.h; docs/method.md, eq. W1 to W12). A map is
 // attempted every few frames, of a rigid scene first, then of one that deforms; it answers with a map once most
 // points are certain, and demands less of them the longer it waits. Points that are uncertain or contradict the
 // solution stay out.

@@ -5,7 +5,7 @@
 #pragma once
 
 #include "pliant/base/options.h"
-#include "pliant/estimation/absolute_pose.h"
+#include "pliant/estimation/pose/absolute_pose.h"
 
 namespace pliant {
 

@@ -10,8 +10,8 @@
 
 #include "pliant/base/options.h"
 #include "pliant/deformation/graph.h"
-#include "pliant/estimation/camera_pose.h"
-#include "pliant/estimation/frame_problem.h"
+#include "pliant/estimation/frame/frame_problem.h"
+#include "pliant/estimation/pose/camera_pose.h"
 #include "pliant/image/corners.h"
 #include "pliant/image/masks.h"
 #include "pliant/tracking/growth_options.h"

@@ -9,7 +9,7 @@
 
 #include <Eigen/Core>
 
-#include "pliant/estimation/frame_problem.h"
+#include "pliant/estimation/frame/frame_problem.h"
 #include "pliant/scene/map.h"
 #include "pliant/tracking/point_tracker.h"
 #include "tracking/loss_counts.h"

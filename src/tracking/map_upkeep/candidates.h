@@ -15,7 +15,7 @@
 #include <Eigen/Core>
 
 #include "pliant/camera/camera.h"
-#include "pliant/estimation/moving_point.h"
+#include "pliant/estimation/pose/moving_point.h"
 #include "pliant/geometry/rigid3.h"
 #include "pliant/scene/map.h"
 #include "pliant/tracking/growth_options.h"

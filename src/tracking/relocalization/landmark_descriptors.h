@@ -14,7 +14,7 @@
 #include "pliant/base/ids.h"
 #include "pliant/base/status.h"
 #include "pliant/camera/camera.h"
-#include "pliant/estimation/absolute_pose.h"
+#include "pliant/estimation/pose/absolute_pose.h"
 #include "pliant/image/corners.h"
 #include "pliant/image/masks.h"
 #include "pliant/scene/map.h"
