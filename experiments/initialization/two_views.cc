@@ -27,7 +27,7 @@
 #include "pliant/base/random.h"
 #include "pliant/base/statistics.h"
 #include "pliant/geometry/triangulation.h"
-#include "pliant/tracking/make_initializer.h"
+#include "pliant/tracking/bootstrapping/make_initializer.h"
 #include "support/synthetic_frames.h"
 #include "support/synthetic_scene.h"
 

@@ -114,9 +114,9 @@ template class PerspectiveModel<1, 2>;
 template class PerspectiveModel<2, 4>;
 
 OpenCvFisheye::OpenCvFisheye(const Params& params) : params_(params), max_theta_(kLargestTheta) {
-  // d theta_d / d theta is a polynomial in theta^2.
-  const std::array<double, 5> derivative = {1.0, 3.0 * params[4], 5.0 * params[5], 7.0 * params[6], 9.0 * params[7]};
-  if (const auto root = FirstRoot(derivative, kLargestTheta * kLargestTheta)) max_theta_ = std::sqrt(*root);
+  // d theta_d / d theta, a polynomial in theta^2.
+  const std::array<double, 5> polynomial = {1.0, 3.0 * params[4], 5.0 * params[5], 7.0 * params[6], 9.0 * params[7]};
+  if (const auto root = FirstRoot(polynomial, kLargestTheta * kLargestTheta)) max_theta_ = std::sqrt(*root);
   double derivative = 0;
   max_theta_d_ = DistortedAngle(max_theta_, &derivative);
 }

@@ -14,7 +14,7 @@
 #include "pliant/base/status.h"
 #include "pliant/datasets/sequence.h"
 #include "pliant/pipeline/track.h"
-#include "pliant/tracking/make_initializer.h"
+#include "pliant/tracking/bootstrapping/make_initializer.h"
 
 namespace pliant {
 

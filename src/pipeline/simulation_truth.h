@@ -10,7 +10,7 @@
 
 #include "pliant/base/status.h"
 #include "pliant/datasets/sequence.h"
-#include "pliant/tracking/oracle.h"
+#include "pliant/tracking/tracks/oracle.h"
 
 namespace pliant {
 

@@ -15,8 +15,8 @@
 #include "pipeline/simulation_truth.h"
 #include "pliant/base/prefetcher.h"
 #include "pliant/base/version.h"
+#include "pliant/tracking/bootstrapping/stereo_pair.h"
 #include "pliant/tracking/stage_times.h"
-#include "pliant/tracking/stereo_pair.h"
 
 namespace pliant {
 namespace {

@@ -7,9 +7,11 @@
 #include <iterator>
 #include <string>
 
+#include "pliant/base/random.h"
 #include "pliant/base/statistics.h"
 #include "pliant/tracking/stage_times.h"
 #include "tracking/bootstrapping/bootstrapper.h"
+#include "tracking/bootstrapping/oracle_initializer.h"
 #include "tracking/frame/frame_tracker.h"
 #include "tracking/image_fault.h"
 #include "tracking/map_upkeep/map_updater.h"
@@ -40,6 +42,13 @@ TrackerOptions WithMetricSigma(TrackerOptions options) {
 
 std::optional<double> NominalDepth(const InitOptions& options) {
   return options.IsMetric() ? std::nullopt : std::optional(options.monocular.nominal_depth_mm);
+}
+
+std::unique_ptr<Initializer> MakeFirstInitializer(const TrackerOptions& options, std::uint64_t seed,
+                                                  TrackingTruth* truth) {
+  auto initializer = MakeInitializer(options.init, Random(seed).Child("initializer"));
+  if (options.oracle.first_map == Switch::kOff) return initializer;
+  return MakeOracleInitializer(truth, NominalDepth(options.init), options.min_points, std::move(initializer));
 }
 
 // The report of a frame in this state, made of its result and of the submap as it is in the end.
@@ -92,13 +101,13 @@ double MedianError(const FollowedPoints& points) {
 Tracker::Tracker(const Camera& camera, const TrackerOptions& options, std::uint64_t seed, int threads,
                  TrackingTruth* truth, const std::optional<PhotometricCalibration>& photometric)
     : options_(WithMetricSigma(options)),
-      oracle_(std::make_unique<OracleAnswers>(options.oracle, truth, NominalDepth(options.init))),
+      oracle_poses_(std::make_unique<OraclePoses>(options.oracle, truth, NominalDepth(options.init))),
       tracks_(MakeTrackSource(options_, threads, truth)),
-      bootstrapper_(
-          std::make_unique<Bootstrapper>(camera, options_, seed, threads, photometric, tracks_.get(), oracle_.get())),
-      frame_tracker_(std::make_unique<FrameTracker>(camera, options_, tracks_.get(), oracle_.get())),
+      bootstrapper_(std::make_unique<Bootstrapper>(camera, options_, threads, photometric, tracks_.get(),
+                                                   oracle_poses_.get(), MakeFirstInitializer(options_, seed, truth))),
+      frame_tracker_(std::make_unique<FrameTracker>(camera, options_, tracks_.get(), oracle_poses_.get())),
       relocalizer_(std::make_unique<Relocalizer>(camera, options_, tracks_->abilities(), frame_tracker_.get())),
-      map_updater_(std::make_unique<MapUpdater>(camera, options_, threads, photometric, tracks_.get(), oracle_.get())),
+      map_updater_(std::make_unique<MapUpdater>(camera, options_, threads, photometric, tracks_.get())),
       submaps_(std::make_unique<Submaps>(camera, options_, tracks_.get())) {}
 
 Tracker::~Tracker() = default;

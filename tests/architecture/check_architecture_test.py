@@ -59,6 +59,13 @@ class Rules(unittest.TestCase):
                             "src/estimation/pose/b.cc": '#include "estimation/b.h"\n#include "estimation/window/a.h"\n'})
         self.assertEqual(found, ["src/estimation/pose/b.cc:4: estimation/window/a.h is private to its folder"])
 
+    def test_folders_that_have_an_order_build_on_those_below(self):
+        found = violations({"src/tracking/submap/a.h": "\n", "src/tracking/frame/b.h": "\n",
+                            "src/tracking/frame/b.cc": '#include "tracking/submap/a.h"\n',
+                            "src/tracking/tracker.cc": '#include "tracking/frame/b.h"\n',
+                            "src/tracking/submap/a.cc": '#include "tracking/frame/b.h"\n'})
+        self.assertEqual(found, ["src/tracking/submap/a.cc:3: tracking/frame/b.h is private to its folder"])
+
     def test_printing_and_ending_the_process_are_found(self):
         for call in ("std::cout << 1;", "std::cerr << 1;", 'printf("x");', "exit(1);", "std::exit(1);", "abort();",
                      "std::abort();", 'spdlog::info("x");'):

@@ -18,7 +18,7 @@
 #include "pliant/base/random.h"
 #include "pliant/image/corners.h"
 #include "pliant/photometric/lucas_kanade.h"
-#include "pliant/tracking/point_tracker.h"
+#include "pliant/tracking/tracks/point_tracker.h"
 
 namespace pliant {
 namespace {

@@ -4,7 +4,7 @@
 // What an attempt of the deforming window at a first map costs, the one that succeeds: solution, and all frames.
 #include <benchmark/benchmark.h>
 
-#include "pliant/tracking/make_initializer.h"
+#include "pliant/tracking/bootstrapping/make_initializer.h"
 #include "support/synthetic_frames.h"
 #include "support/synthetic_scene.h"
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "pliant/camera/camera.h"
-#include "pliant/tracking/initializer.h"
+#include "pliant/tracking/bootstrapping/initializer.h"
 #include "support/synthetic_scene.h"
 
 namespace pliant::test {

@@ -11,8 +11,8 @@
 
 #include "pliant/base/random.h"
 #include "pliant/base/statistics.h"
-#include "pliant/tracking/initializer.h"
-#include "pliant/tracking/make_initializer.h"
+#include "pliant/tracking/bootstrapping/initializer.h"
+#include "pliant/tracking/bootstrapping/make_initializer.h"
 #include "tracking/map_upkeep/reestimate_map.h"
 
 namespace pliant::test {

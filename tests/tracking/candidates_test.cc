@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "tracking/map_upkeep/candidates.h"
+#include "tracking/submap/candidates.h"
 
 #include <cmath>
 #include <vector>

@@ -7,7 +7,7 @@
 
 #include <gmock/gmock.h>
 
-#include "tracking/tracks/oracle_answers.h"
+#include "tracking/frame/oracle_poses.h"
 
 namespace pliant {
 namespace {
@@ -136,7 +136,7 @@ TEST(FirstMap, TakesItsUnitFromTheReferencesPointsAlone) {
   start.frames[0].observations.resize(2);
   start.outcome.points.push_back({PointId{7}, Eigen::Vector3d(0, 0, 500)});
   FlatTruth truth;
-  OracleAnswers oracle({.poses = Switch::kOn}, &truth, 50.0);
+  OraclePoses oracle({.poses = Switch::kOn}, &truth, 50.0);
   oracle.TakeWorld({start.camera, start.frames, {}}, &start.outcome);
   // The map has the surface at 50: so much is a millimeter.
   for (const InitFrameState& frame : start.outcome.frames) {

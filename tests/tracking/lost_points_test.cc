@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "tracking/relocalization/lost_points.h"
+#include "tracking/submap/lost_points.h"
 
 #include <vector>
 

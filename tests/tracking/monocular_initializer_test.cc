@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "pliant/base/statistics.h"
-#include "pliant/tracking/make_initializer.h"
+#include "pliant/tracking/bootstrapping/make_initializer.h"
 #include "support/synthetic_frames.h"
 #include "support/synthetic_scene.h"
 #include "support/tolerances.h"

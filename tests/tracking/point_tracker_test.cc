@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "pliant/tracking/point_tracker.h"
+#include "pliant/tracking/tracks/point_tracker.h"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "tracking/map_upkeep/rigid_history.h"
+#include "tracking/submap/rigid_history.h"
 
 #include <vector>
 

@@ -12,7 +12,7 @@
 
 #include "pliant/base/random.h"
 #include "pliant/base/statistics.h"
-#include "pliant/tracking/make_initializer.h"
+#include "pliant/tracking/bootstrapping/make_initializer.h"
 #include "support/tolerances.h"
 #include "support/waving_tracks.h"
 

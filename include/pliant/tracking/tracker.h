@@ -18,17 +18,17 @@
 #include "pliant/camera/photometric_calibration.h"
 #include "pliant/scene/frame_report.h"
 #include "pliant/scene/map.h"
-#include "pliant/tracking/oracle.h"
 #include "pliant/tracking/state.h"
 #include "pliant/tracking/tracker_frame.h"
 #include "pliant/tracking/tracker_options.h"
+#include "pliant/tracking/tracks/oracle.h"
 
 namespace pliant {
 
 class Bootstrapper;
 class FrameTracker;
 class MapUpdater;
-class OracleAnswers;
+class OraclePoses;
 class Relocalizer;
 class StageTimes;
 class Submaps;
@@ -93,7 +93,7 @@ class Tracker {
   void Report(const TrackerFrame& frame, const FrameResult& result, StageTimes* times);
 
   TrackerOptions options_;
-  std::unique_ptr<OracleAnswers> oracle_;
+  std::unique_ptr<OraclePoses> oracle_poses_;
   std::unique_ptr<TrackSource> tracks_;
   std::unique_ptr<Bootstrapper> bootstrapper_;
   std::unique_ptr<FrameTracker> frame_tracker_;

@@ -14,12 +14,12 @@
 #include "pliant/estimation/pose/camera_pose.h"
 #include "pliant/image/corners.h"
 #include "pliant/image/masks.h"
-#include "pliant/tracking/growth_options.h"
-#include "pliant/tracking/make_initializer.h"
-#include "pliant/tracking/neighbor_agreement.h"
-#include "pliant/tracking/oracle.h"
-#include "pliant/tracking/point_tracker.h"
-#include "pliant/tracking/relocalization_options.h"
+#include "pliant/tracking/bootstrapping/make_initializer.h"
+#include "pliant/tracking/frame/neighbor_agreement.h"
+#include "pliant/tracking/map_upkeep/growth_options.h"
+#include "pliant/tracking/relocalization/relocalization_options.h"
+#include "pliant/tracking/tracks/oracle.h"
+#include "pliant/tracking/tracks/point_tracker.h"
 
 namespace pliant {
 

@@ -6,22 +6,21 @@
 #include <cassert>
 #include <utility>
 
-#include "pliant/base/random.h"
 #include "pliant/image/corners.h"
 #include "tracking/image_fault.h"
 
 namespace pliant {
 
-Bootstrapper::Bootstrapper(const Camera& camera, const TrackerOptions& options, std::uint64_t seed, int threads,
+Bootstrapper::Bootstrapper(const Camera& camera, const TrackerOptions& options, int threads,
                            const std::optional<PhotometricCalibration>& photometric, TrackSource* tracks,
-                           OracleAnswers* oracle)
+                           OraclePoses* oracle_poses, std::unique_ptr<Initializer> initializer)
     : camera_(camera),
       options_(options),
       threads_(threads),
       photometric_(photometric),
       tracks_(tracks),
-      oracle_(oracle),
-      initializer_(MakeInitializer(options.init, Random(seed).Child("initializer"))) {}
+      oracle_poses_(oracle_poses),
+      initializer_(std::move(initializer)) {}
 
 BootstrapStep Bootstrapper::Process(const TrackerFrame& frame, Submap* submap, StageTimes* times) {
   assert(submap->map.landmarks.empty());
@@ -125,9 +124,8 @@ void Bootstrapper::Abandon() {
 InitOutcome Bootstrapper::AskInitializer(const cv::Mat& depth_mm, InitMoment moment, StageTimes* times) {
   const StageTimer timer(times, Stage::kInitialize);
   const InitInput input{camera_, frames_, depth_mm, moment, threads_, known_depths_, photometric_};
-  InitOutcome outcome =
-      oracle_->gives_first_map() ? oracle_->FirstMap(input, options_.min_points) : initializer_->Try(input);
-  if (outcome.decision == InitDecision::kMap) oracle_->TakeWorld(input, &outcome);
+  InitOutcome outcome = initializer_->Try(input);
+  if (outcome.decision == InitDecision::kMap) oracle_poses_->TakeWorld(input, &outcome);
   return outcome;
 }
 
@@ -141,8 +139,7 @@ void Bootstrapper::FinishMap(InitOutcome outcome, BootstrapStep* step) {
 // Constant velocity in the image: there is no map yet.
 std::vector<PointPrediction> Bootstrapper::PredictPixels(int frame_idx) const {
   const std::vector<InitObservation>& last = frames_.back().observations;
-  std::vector<Eigen::Vector2d> from;
-  for (const InitObservation& observation : last) from.push_back(observation.pixel);
+  const std::vector<Eigen::Vector2d> from = PixelsOf(last);
   std::vector<Eigen::Vector2d> to = from;
   if (frames_.size() >= 2) {
     const InitFrame& earlier = frames_[frames_.size() - 2];
@@ -162,8 +159,7 @@ std::vector<PointPrediction> Bootstrapper::PredictPixels(int frame_idx) const {
 void Bootstrapper::AddCorners(const TrackerFrame& frame, const LocalBrightness& brightness, int max_corners,
                               InitFrame* points) {
   if (max_corners <= 0) return;
-  std::vector<Eigen::Vector2d> existing;
-  for (const InitObservation& observation : points->observations) existing.push_back(observation.pixel);
+  const std::vector<Eigen::Vector2d> existing = PixelsOf(points->observations);
   CornerOptions corners = options_.corners;
   corners.max_corners = max_corners;
   for (const Corner& corner : DetectCorners(frame.gray, frame.mask.valid(), existing, corners))

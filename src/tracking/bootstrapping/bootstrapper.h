@@ -19,9 +19,9 @@
 #include "pliant/tracking/tracker_options.h"
 #include "pliant/tracking/tracks/track_source.h"
 #include "tracking/bootstrapping/first_map.h"
-#include "tracking/loss_counts.h"
-#include "tracking/submap.h"
-#include "tracking/tracks/oracle_answers.h"
+#include "tracking/frame/oracle_poses.h"
+#include "tracking/submap/submap.h"
+#include "tracking/tracks/loss_counts.h"
 
 namespace pliant {
 
@@ -36,9 +36,10 @@ struct BootstrapStep {
 
 class Bootstrapper {
  public:
-  // `tracks` and `oracle` must outlive this. `seed` decides RANSAC's samples; `threads` >= 1 do not change the result.
-  Bootstrapper(const Camera& camera, const TrackerOptions& options, std::uint64_t seed, int threads,
-               const std::optional<PhotometricCalibration>& photometric, TrackSource* tracks, OracleAnswers* oracle);
+  // `tracks` and `oracle_poses` must outlive this. `threads` >= 1 do not change the result.
+  Bootstrapper(const Camera& camera, const TrackerOptions& options, int threads,
+               const std::optional<PhotometricCalibration>& photometric, TrackSource* tracks, OraclePoses* oracle_poses,
+               std::unique_ptr<Initializer> initializer);
 
   // The next frame; `submap` has no landmarks yet.
   BootstrapStep Process(const TrackerFrame& frame, Submap* submap, StageTimes* times);
@@ -72,7 +73,7 @@ class Bootstrapper {
   int threads_;
   std::optional<PhotometricCalibration> photometric_;
   TrackSource* tracks_;
-  OracleAnswers* oracle_;
+  OraclePoses* oracle_poses_;
   std::unique_ptr<Initializer> initializer_;
 
   std::vector<InitFrame> frames_;     // since the reference; empty: there is none

@@ -10,7 +10,7 @@
 #include "pliant/camera/camera.h"
 #include "pliant/scene/frame_report.h"
 #include "pliant/scene/map.h"
-#include "pliant/tracking/initializer.h"
+#include "pliant/tracking/bootstrapping/initializer.h"
 
 namespace pliant {
 

@@ -51,7 +51,7 @@ SolvedFrame FrameTracker::Solve(const TrackerFrame& frame, TrackingState state, 
 
 std::optional<Rigid3> FrameTracker::KnownPose(int frame_idx, const Submap& submap) const {
   if (options_.camera_motion == CameraMotion::kNone) return submap.last_cam_from_world;
-  return oracle_->Pose(frame_idx);
+  return oracle_poses_->Pose(frame_idx);
 }
 
 // Where each landmark is expected by a camera at this pose (P6): its last pixel, moved as the map says that camera and

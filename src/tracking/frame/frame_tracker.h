@@ -15,9 +15,9 @@
 #include "pliant/tracking/stage_times.h"
 #include "pliant/tracking/tracker_options.h"
 #include "pliant/tracking/tracks/track_source.h"
-#include "tracking/frame/followed_points.h"
-#include "tracking/submap.h"
-#include "tracking/tracks/oracle_answers.h"
+#include "tracking/frame/oracle_poses.h"
+#include "tracking/submap/submap.h"
+#include "tracking/tracks/followed_points.h"
 
 namespace pliant {
 
@@ -31,9 +31,10 @@ struct SolvedFrame {
 
 class FrameTracker {
  public:
-  // `tracks` and `oracle` must outlive this.
-  FrameTracker(const Camera& camera, const TrackerOptions& options, TrackSource* tracks, const OracleAnswers* oracle)
-      : camera_(camera), options_(options), tracks_(tracks), oracle_(oracle) {}
+  // `tracks` and `oracle_poses` must outlive this.
+  FrameTracker(const Camera& camera, const TrackerOptions& options, TrackSource* tracks,
+               const OraclePoses* oracle_poses)
+      : camera_(camera), options_(options), tracks_(tracks), oracle_poses_(oracle_poses) {}
 
   // The pose that is known without estimating it: the truth's, or that of a camera that stands still.
   std::optional<Rigid3> KnownPose(int frame_idx, const Submap& submap) const;
@@ -63,7 +64,7 @@ class FrameTracker {
   Camera camera_;
   TrackerOptions options_;
   TrackSource* tracks_;
-  const OracleAnswers* oracle_;
+  const OraclePoses* oracle_poses_;
 };
 
 }  // namespace pliant

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "pliant/tracking/neighbor_agreement.h"
+#include "pliant/tracking/frame/neighbor_agreement.h"
 
 #include <algorithm>
 #include <cmath>

@@ -10,7 +10,7 @@
 
 #include "pliant/geometry/rigid3.h"
 #include "pliant/scene/map.h"
-#include "pliant/tracking/initializer.h"
+#include "pliant/tracking/bootstrapping/initializer.h"
 
 namespace pliant {
 

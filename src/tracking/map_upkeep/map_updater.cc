@@ -26,14 +26,8 @@ void InsertById(std::vector<Element>* sorted, Element element) {
 }  // namespace
 
 MapUpdater::MapUpdater(const Camera& camera, const TrackerOptions& options, int threads,
-                       const std::optional<PhotometricCalibration>& photometric, TrackSource* tracks,
-                       const OracleAnswers* oracle)
-    : camera_(camera),
-      options_(options),
-      threads_(threads),
-      photometric_(photometric),
-      tracks_(tracks),
-      oracle_(oracle) {}
+                       const std::optional<PhotometricCalibration>& photometric, TrackSource* tracks)
+    : camera_(camera), options_(options), threads_(threads), photometric_(photometric), tracks_(tracks) {}
 
 // A camera that stands still tells nothing of a new point's depth.
 bool MapUpdater::GrowsMap() const {
@@ -42,7 +36,7 @@ bool MapUpdater::GrowsMap() const {
 }
 
 bool MapUpdater::EstimatesPoses() const {
-  return options_.camera_motion == CameraMotion::kFree && !oracle_->gives_poses();
+  return options_.camera_motion == CameraMotion::kFree && options_.oracle.poses == Switch::kOff;
 }
 
 InitOutcome MapUpdater::Reestimate(const std::vector<InitFrame>& frames, WindowScene scene) const {
@@ -54,7 +48,7 @@ void MapUpdater::Start(FirstMap first, Submap* submap) const {
   const InitOutcome& outcome = first.outcome;
   submap->map = MakeFirstMap(first);
   for (Landmark& landmark : submap->map.landmarks)
-    landmark.measured = options_.init.IsMetric() || oracle_->gives_first_map();
+    landmark.measured = options_.init.IsMetric() || options_.oracle.first_map == Switch::kOn;
   submap->last_cam_from_world = outcome.frames.back().cam_from_world;
   submap->before_last_cam_from_world = outcome.frames.size() >= 2
                                            ? outcome.frames[outcome.frames.size() - 2].cam_from_world

@@ -16,10 +16,9 @@
 #include "pliant/tracking/tracker_options.h"
 #include "pliant/tracking/tracks/track_source.h"
 #include "tracking/bootstrapping/first_map.h"
-#include "tracking/loss_counts.h"
-#include "tracking/submap.h"
-#include "tracking/tracks/oracle_answers.h"
-#include "tracking/window_solution.h"
+#include "tracking/bootstrapping/window_solution.h"
+#include "tracking/submap/submap.h"
+#include "tracking/tracks/loss_counts.h"
 
 namespace pliant {
 
@@ -34,10 +33,9 @@ struct MapUpdate {
 
 class MapUpdater {
  public:
-  // `tracks` and `oracle` must outlive this. `threads` >= 1 do not change the result.
+  // `tracks` must outlive this. `threads` >= 1 do not change the result.
   MapUpdater(const Camera& camera, const TrackerOptions& options, int threads,
-             const std::optional<PhotometricCalibration>& photometric, TrackSource* tracks,
-             const OracleAnswers* oracle);
+             const std::optional<PhotometricCalibration>& photometric, TrackSource* tracks);
 
   // An empty submap gets its first map; points of uncertain depth become candidates.
   void Start(FirstMap first, Submap* submap) const;
@@ -70,7 +68,6 @@ class MapUpdater {
   int threads_;
   std::optional<PhotometricCalibration> photometric_;
   TrackSource* tracks_;
-  const OracleAnswers* oracle_;
 };
 
 }  // namespace pliant

@@ -3,7 +3,7 @@
 
 #include "tracking/map_upkeep/reestimate_map.h"
 
-#include "tracking/window_map.h"
+#include "tracking/bootstrapping/window_map.h"
 
 namespace pliant {
 namespace {

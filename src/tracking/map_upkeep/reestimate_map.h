@@ -5,9 +5,9 @@
 // (docs/method.md, eq. W13 and G5).
 #pragma once
 
-#include "pliant/tracking/initializer.h"
-#include "pliant/tracking/make_initializer.h"
-#include "tracking/window_solution.h"
+#include "pliant/tracking/bootstrapping/initializer.h"
+#include "pliant/tracking/bootstrapping/make_initializer.h"
+#include "tracking/bootstrapping/window_solution.h"
 
 namespace pliant {
 

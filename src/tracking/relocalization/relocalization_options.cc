@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "pliant/tracking/relocalization_options.h"
+#include "pliant/tracking/relocalization/relocalization_options.h"
 
 namespace pliant {
 

@@ -8,8 +8,8 @@
 #include <optional>
 
 #include "pliant/geometry/sim3.h"
-#include "tracking/frame/followed_points.h"
-#include "tracking/submap.h"
+#include "tracking/submap/submap.h"
+#include "tracking/tracks/followed_points.h"
 
 namespace pliant {
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "tracking/relocalization/relocalizer.h"
-#include "tracking/submap.h"
+#include "tracking/submap/submap.h"
 
 namespace pliant {
 

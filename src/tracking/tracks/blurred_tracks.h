@@ -10,8 +10,8 @@
 
 #include <Eigen/Core>
 
-#include "pliant/tracking/point_tracker.h"
 #include "pliant/tracking/tracker.h"
+#include "pliant/tracking/tracks/point_tracker.h"
 
 namespace pliant {
 

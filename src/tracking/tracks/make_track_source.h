@@ -6,8 +6,8 @@
 
 #include <memory>
 
-#include "pliant/tracking/oracle.h"
 #include "pliant/tracking/tracker_options.h"
+#include "pliant/tracking/tracks/oracle.h"
 #include "pliant/tracking/tracks/track_source.h"
 
 namespace pliant {

@@ -16,8 +16,8 @@
 #include <Eigen/Core>
 
 #include "pliant/base/ids.h"
-#include "pliant/tracking/point_tracker.h"
 #include "pliant/tracking/tracker_frame.h"
+#include "pliant/tracking/tracks/point_tracker.h"
 
 namespace pliant {
 

@@ -1,0 +1,138 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// What makes the first map. An initializer is asked once a frame with everything that was followed since the reference
+// frame, and answers: wait, start again from a new reference, or here is the map. It keeps no state between calls.
+// World frame: the reference frame's camera. Unit: mm in the sense of a configured nominal depth (monocular maps), or
+// true mm (stereo, depth). Another one is a file that implements Initializer.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+#include <opencv2/core/mat.hpp>
+
+#include "pliant/base/ids.h"
+#include "pliant/camera/camera.h"
+#include "pliant/camera/photometric_calibration.h"
+#include "pliant/geometry/rigid3.h"
+
+namespace pliant {
+
+struct InitObservation {
+  PointId id;
+  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
+  double ssim = 1;        // similarity to its reference patch, at most 1
+  double brightness = 0;  // of the surface around it, 0 to 255 (LocalBrightness); 0: unknown
+  std::array<std::uint8_t, 3> rgb = {128, 128, 128};
+};
+
+std::vector<Eigen::Vector2d> PixelsOf(const std::vector<InitObservation>& observations);
+
+struct InitFrame {
+  int frame_idx = 0;                          // the sequence's own number
+  std::vector<InitObservation> observations;  // sorted by id
+};
+
+enum class InitMoment {
+  kMoreFollow,  // to wait is a choice
+  kLastFrame,   // the sequence ends here
+};
+
+struct InitInput {
+  const Camera& camera;
+  // The reference frame with all its points, then the frames since, in order of time; the last one is the current
+  // frame. A point lost on the way is missing from its frame on; one that was added on the way (TakesLaterPoints) is
+  // missing before.
+  const std::vector<InitFrame>& frames;
+  cv::Mat reference_depth_mm;  // CV_32FC1, z along the optical axis, 0 = none; empty where there is no depth
+  InitMoment moment = InitMoment::kMoreFollow;
+  int threads = 1;  // that an initializer may use; they never change its answer
+  // z of the reference's points, in their order, in any unit; empty: not known.
+  std::vector<double> reference_depths = {};
+  std::optional<PhotometricCalibration> photometric = std::nullopt;  // where it is known
+};
+
+enum class InitDecision {
+  kWait,          // not yet: `reason` says what is missing and by how much
+  kNewReference,  // this reference will not do any more: take the current frame
+  kMap,           // poses and points are filled in
+};
+
+enum class InitRejection {
+  kNoRay,           // its pixel has no ray
+  kLostOnTheWay,    // not seen in the current frame
+  kTooFewViews,     // seen too briefly, or left out where there were too many
+  kEpipolar,        // contradicts the motion
+  kCheirality,      // behind a camera, or its rays part
+  kUncertainDepth,  // depth too uncertain: too little parallax, or another solution as plausible
+  kReprojection,    // contradicts the refined map
+};
+std::string_view InitRejectionName(InitRejection reason);
+
+struct InitPoint {
+  PointId id;
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  // world, in the reference frame
+  double depth_sigma = 0;   // predicted standard deviation along the reference ray, map units; 0: not predicted
+  double parallax_rad = 0;  // between the reference and the current frame
+};
+
+struct InitPosition {
+  PointId id;
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  // world
+};
+
+// One frame of the input as the map explains it.
+struct InitFrameState {
+  int frame_idx = 0;
+  Rigid3 cam_from_world;
+  // The map's points that were seen in this frame, each where it was IN THIS FRAME; sorted by id.
+  std::vector<InitPosition> positions;
+};
+
+struct InitRejectedPoint {
+  PointId id;
+  InitRejection reason = InitRejection::kNoRay;
+};
+
+// What was measured on the way; zero where a step was not reached.
+struct InitMeasurements {
+  int correspondences = 0;
+  int inliers = 0;
+  double rotation_only_share = 0;   // correspondences that a pure rotation explains, 0 to 1
+  double median_parallax_deg = 0;   // rotation-compensated
+  double median_depth_sigma = 0;    // sigma_z / z of the map, predicted or more
+  double competing_cost_ratio = 0;  // robust cost of the second best motion over the best one's; infinite: no second
+  double median_error_px = 0;       // of the map in its frames
+};
+
+struct InitOutcome {
+  InitDecision decision = InitDecision::kWait;
+  std::string reason;  // one sentence with its numbers; of a map too
+  InitMeasurements measured;
+
+  // Filled in for kMap alone.
+  std::vector<InitFrameState> frames;       // one a frame of the input, in its order; the first pose is the identity
+  std::vector<InitPoint> points;            // sorted by id; each is in some of the frames, not in all
+  std::vector<InitRejectedPoint> rejected;  // the other points, sorted by id
+  bool refinable = false;                   // of a rigid scene: the frames that follow can make it better
+};
+
+class Initializer {
+ public:
+  virtual ~Initializer() = default;
+  virtual std::string_view name() const = 0;
+  virtual InitOutcome Try(const InitInput& input) const = 0;
+  // Whether points that are first seen after the reference are of use.
+  virtual bool TakesLaterPoints() const { return false; }
+  // Whether the reference's points are those whose depths are known (InitInput::reference_depths), in place of corners.
+  virtual bool TakesKnownPoints() const { return false; }
+};
+
+}  // namespace pliant

@@ -1,0 +1,157 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "pliant/base/statistics.h"
+#include "pliant/tracking/bootstrapping/make_initializer.h"
+#include "tracking/bootstrapping/initial_map.h"
+#include "tracking/bootstrapping/window_map.h"
+#include "tracking/bootstrapping/window_solution.h"
+
+namespace pliant {
+namespace {
+
+class WindowInitializer final : public Initializer {
+ public:
+  WindowInitializer(const WindowInitOptions& options, double nominal_depth_mm)
+      : options_(options), nominal_depth_mm_(nominal_depth_mm) {}
+
+  std::string_view name() const override { return "window"; }
+  bool TakesLaterPoints() const override { return true; }
+
+  InitOutcome Try(const InitInput& input) const override {
+    InitOutcome outcome;
+    const int since = static_cast<int>(input.frames.size()) - 1;
+    const int followed = static_cast<int>(input.frames.back().observations.size());
+    outcome.measured.correspondences = followed;
+    if (followed < options_.min_points) {
+      outcome.decision = InitDecision::kNewReference;
+      outcome.reason = "only " + std::to_string(followed) + " points are still followed (at least " +
+                       std::to_string(options_.min_points) + " must be)";
+      return outcome;
+    }
+    const bool ends = input.moment == InitMoment::kLastFrame;
+    const bool due = since >= options_.first_frame && (since - options_.first_frame) % options_.every == 0;
+    if (!due && !ends) {
+      outcome.reason = "the window has " + std::to_string(since + 1) + " frames, with " + std::to_string(followed) +
+                       " points; a map is first attempted after " + std::to_string(options_.first_frame) +
+                       " frames, then every " + std::to_string(options_.every);
+      return outcome;
+    }
+    const bool last = ends || since + options_.every > options_.last_frame;
+    Status status = MoreThanARotation(input, &outcome.measured);
+    if (status.ok()) status = last ? LastAttempt(input, &outcome) : Attempt(input, since, &outcome);
+    if (!status.ok()) {
+      outcome.decision = last ? InitDecision::kNewReference : InitDecision::kWait;
+      outcome.reason = status.message();
+      if (last) outcome.reason += "; given up after " + std::to_string(since) + " frames from one reference";
+    }
+    return outcome;
+  }
+
+ private:
+  // What is missing for a map; ok when the outcome is one.
+  Status Attempt(const InitInput& input, int since, InitOutcome* outcome) const {
+    const WindowScene scene = since < options_.deforming_frame ? WindowScene::kRigid : WindowScene::kAny;
+    return Make(input, SolveWindow(input, input.frames.size(), scene, options_, nominal_depth_mm_), DemandsAfter(since),
+                outcome);
+  }
+
+  Status LastAttempt(const InitInput& input, InitOutcome* outcome) const {
+    const auto since = static_cast<int>(input.frames.size()) - 1;
+    const Status status = LastAttempt(input, since, outcome);
+    // The longer the window the more it holds, and the more there is to go wrong.
+    if (status.ok() || LastAttempt(input, 2 * (since + 1) / 3 - 1, outcome).ok()) return Status::Ok();
+    return status;
+  }
+
+  // A sequence may end so early that its map must be certain all the same.
+  Status LastAttempt(const InitInput& input, int since, InitOutcome* outcome) const {
+    const MapDemands demands = DemandsAfter(since < options_.deforming_frame ? since : options_.last_frame);
+    const auto frames = static_cast<std::size_t>(since) + 1;
+    return Make(input, SolveWindow(input, frames, WindowScene::kAny, options_, nominal_depth_mm_), demands, outcome);
+  }
+
+  // The longer the wait the less it still gives, and the more points leave the image.
+  MapDemands DemandsAfter(int since) const {
+    const double waited = std::clamp(static_cast<double>(since - options_.deforming_frame) /
+                                         std::max(1, options_.last_frame - options_.deforming_frame),
+                                     0.0, 1.0);
+    return DemandsOf(options_, waited * waited * waited);
+  }
+
+  Status Make(const InitInput& input, const Result<SolvedWindow>& window, const MapDemands& demands,
+              InitOutcome* outcome) const {
+    if (!window.ok()) return window.status();
+    MapDemands least = demands;
+    // Another minimum than the right one may look as certain: what no light confirms must be more so, and most of all
+    // what the light contradicts.
+    const MapDemands full = DemandsOf(options_, 0.0);
+    if (window->light_is_of_no_use) least = full;
+    if (options_.light == Switch::kOff) {
+      least.certain_sigma = std::min(least.certain_sigma, full.max_sigma);
+      least.max_sigma = std::min(least.max_sigma, full.max_sigma);
+    }
+    outcome->refinable = options_.refine_rigid == Switch::kOn && window->solution.window.coefficients.rows() == 0;
+    return MakeWindowMap(input, *window, least, options_, nominal_depth_mm_, outcome);
+  }
+
+  WindowInitOptions options_;
+  double nominal_depth_mm_;
+};
+
+}  // namespace
+
+void WindowInitOptions::List(OptionTable& table) {
+  table.BeginGroup("WindowInit", "the first map from a deforming window (Init.method = window)");
+  table.Add("first_frame", &first_frame, "frames", "frames after the reference at which a map is first attempted", 2,
+            100000);
+  table.Add("every", &every, "frames", "frames between two attempts", 1, 100000);
+  table.Add("deforming_frame", &deforming_frame, "frames",
+            "frames after the reference before which only a rigid scene is attempted", 2, 100000);
+  table.Add("last_frame", &last_frame, "frames",
+            "frames after the reference at which it is given up if there is no map", 2, 100000);
+  table.Add("views", &views, "frames", "frames in the bundle adjustment, spread evenly since the reference", 3, 1000);
+  table.Add("min_views", &min_views, "frames", "minimum number of these frames in which a point is seen", 2, 1000);
+  table.Add("min_frame_share", &min_frame_share, "-",
+            "minimum share of all frames since the reference in which a point is seen to be added to the map", 0, 1);
+  table.Add("max_points", &max_points, "-",
+            "maximum number of points in the bundle adjustment; its time grows with them", 12, 100000);
+  table.Add("min_points", &min_points, "-", "minimum number of certain points in the last frame", 12, 100000);
+  table.Add("max_correlation", &max_correlation, "-",
+            "maximum correlation of neighbors' reprojection errors under a rigid motion; above it the scene "
+            "deforms",
+            -1, 1);
+  table.Add("certain_depth_sigma", &certain_depth_sigma, "-",
+            "maximum standard deviation of depth divided by the median depth, of a certain point, up to "
+            "deforming_frame",
+            1e-4, 10);
+  table.Add("last_depth_sigma", &last_depth_sigma, "-", "the same at last_frame; it increases from deforming_frame on",
+            1e-4, 10);
+  table.Add("max_depth_sigma", &max_depth_sigma, "-",
+            "maximum standard deviation of depth divided by the median depth, of a point of the map, unless "
+            "those two are larger",
+            1e-4, 10);
+  table.Add("max_error_px", &max_error_px, "px", "maximum root mean square reprojection error of a point of the map",
+            1e-3, 100);
+  table.Add("min_certain_share", &min_certain_share, "-",
+            "minimum share of certain points among those still seen; it decreases to 0 at last_frame", 0, 1);
+  table.AddChoice("light", &light, "use brightness as a depth cue; the light source has to be at the camera");
+  table.Add("gamma", &gamma, "-",
+            "gamma of the camera's response, for the depth from brightness; a sequence's own photometric "
+            "calibration overrides it",
+            0.1, 10);
+  table.AddChoice("refine_rigid", &refine_rigid,
+                  "re-estimate the map from all frames since the reference, as long as the scene is rigid");
+  window.List(table);
+}
+
+std::unique_ptr<Initializer> MakeWindowInitializer(const WindowInitOptions& options, double nominal_depth_mm) {
+  return std::make_unique<WindowInitializer>(options, nominal_depth_mm);
+}
+
+}  // namespace pliant

@@ -1,0 +1,254 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tracking/bootstrapping/window_map.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <numeric>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "pliant/base/statistics.h"
+#include "pliant/geometry/triangulation.h"
+#include "tracking/bootstrapping/initial_map.h"
+
+namespace pliant {
+namespace {
+
+constexpr double kMaxErrorRatio = 3.0;  // of a point's error by the median one, where sigmas are scaled with it
+
+// Some of a window's points; `solution` has one each, in the same order.
+struct MapPoints {
+  std::vector<PointId> ids;
+  std::vector<double> depth_sigmas;  // of the distance, map units
+  DeformingSolution solution;
+};
+
+// Sigmas of the points' distances, map units.
+std::vector<double> DepthSigmas(const DeformingSolution& solution) {
+  std::vector<double> sigmas;
+  for (std::size_t i = 0; i < solution.window.points_in_world.size(); ++i)
+    sigmas.push_back(solution.LogDepthSigma(i) * solution.window.points_in_world[i].norm());
+  return sigmas;
+}
+
+// Those whose errors (`errors_px`, one each) and sigmas are small enough, sorted by id, without their observations;
+// `rejected`, which may be null, becomes the others.
+MapPoints ChooseCertain(const MapPoints& points, const std::vector<double>& errors_px, double max_error_px,
+                        double max_sigma, std::vector<InitRejectedPoint>* rejected) {
+  const DeformingSolution& from = points.solution;
+  std::vector<std::size_t> order(points.ids.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return points.ids[a] < points.ids[b]; });
+  MapPoints chosen;
+  DeformingSolution& to = chosen.solution;
+  to.nodes = from.nodes;
+  to.window.times = from.window.times;
+  to.window.cams_from_world = from.window.cams_from_world;
+  to.window.coefficients = from.window.coefficients;
+  for (const std::size_t i : order) {
+    const bool agrees = errors_px[i] <= max_error_px;
+    if (!agrees || !(points.depth_sigmas[i] <= max_sigma)) {
+      if (rejected != nullptr)
+        rejected->push_back({points.ids[i], agrees ? InitRejection::kUncertainDepth : InitRejection::kReprojection});
+      continue;
+    }
+    chosen.ids.push_back(points.ids[i]);
+    chosen.depth_sigmas.push_back(points.depth_sigmas[i]);
+    to.window.points_in_world.push_back(from.window.points_in_world[i]);
+    if (!from.window.shapes.empty()) to.window.shapes.push_back(from.window.shapes[i]);
+    if (!from.sample_sigmas.empty()) to.sample_sigmas.push_back(from.sample_sigmas[i]);
+  }
+  return chosen;
+}
+
+// How many of `ids` a frame sees.
+int CountSeen(const InitFrame& frame, const std::vector<PointId>& ids) {
+  return static_cast<int>(
+      std::count_if(frame.observations.begin(), frame.observations.end(),
+                    [&](const InitObservation& observation) { return IndexOf(observation.id, ids) >= 0; }));
+}
+
+Status EnoughCertain(const InitInput& input, const SolvedWindow& window, const MapPoints& points,
+                     const MapDemands& demands, int min_points, double median_distance, double median_parallax_deg) {
+  std::vector<PointId> certain_ids;
+  for (std::size_t k = 0; k < points.ids.size(); ++k)
+    if (points.depth_sigmas[k] <= demands.certain_sigma * median_distance) certain_ids.push_back(points.ids[k]);
+  const int seen = CountSeen(input.frames.back(), window.ids);
+  const int certain = CountSeen(input.frames.back(), certain_ids);
+  if (certain >= min_points && certain >= demands.certain_share * seen) return Status::Ok();
+  std::string needed = std::to_string(min_points);
+  if (demands.certain_share > 0.0) needed += " and " + Percent(demands.certain_share);
+  return {ErrorCode::kInsufficient, "the depth of " + std::to_string(certain) + " of " + std::to_string(seen) +
+                                        " points is known to " + Digits(100.0 * demands.certain_sigma, 1) +
+                                        " % of the median depth, at least " + needed +
+                                        " must be; the median parallax is " + Digits(median_parallax_deg, 1) +
+                                        " deg: give more frames, or move the camera sideways or forwards"};
+}
+
+// The points in all frames of the input, fixed; poses and coefficients start between those of the solved views.
+Status OptimizeAllViews(const InitInput& input, const SolvedWindow& window, const WindowInitOptions& options,
+                        MapPoints* points) {
+  const DeformingWindow& solved = window.solution.window;
+  DeformingWindow all;
+  all.points_in_world = points->solution.window.points_in_world;
+  all.shapes = points->solution.window.shapes;
+  all.coefficients.resize(solved.coefficients.rows(), static_cast<Eigen::Index>(input.frames.size()));
+  std::size_t next = 0;  // the first solved view that is not before the frame
+  for (std::size_t k = 0; k < input.frames.size(); ++k) {
+    while (window.views[next] < k && next + 1 < window.views.size()) ++next;
+    const std::size_t before = window.views[next] <= k ? next : next - 1;
+    const double share = before == next ? 0.0
+                                        : static_cast<double>(k - window.views[before]) /
+                                              static_cast<double>(window.views[next] - window.views[before]);
+    const Rigid3& a = solved.cams_from_world[before];
+    const Rigid3& b = solved.cams_from_world[next];
+    all.times.push_back(input.frames[k].frame_idx - input.frames.front().frame_idx);
+    all.cams_from_world.emplace_back(a.rotation.slerp(share, b.rotation),
+                                     (1.0 - share) * a.translation + share * b.translation);
+    all.coefficients.col(static_cast<Eigen::Index>(k)) =
+        (1.0 - share) * solved.coefficients.col(static_cast<Eigen::Index>(before)) +
+        share * solved.coefficients.col(static_cast<Eigen::Index>(next));
+    const auto seen = SeenIn(input, input.frames[k], points->ids, static_cast<int>(k), options);
+    all.observations.insert(all.observations.end(), seen.begin(), seen.end());
+  }
+  auto optimized = OptimizeDeformingViews(all, input.camera.MeanFocalLengthPx(), options.window, input.threads);
+  if (!optimized.ok()) return optimized.status();
+  points->solution.window = std::move(*optimized);
+  return Status::Ok();
+}
+
+// The points that are seen in enough frames to join those of the map, sorted.
+std::vector<PointId> PointsToJoin(const InitInput& input, const MapPoints& points, double min_frame_share) {
+  std::map<PointId, int> seen;
+  for (const InitFrame& frame : input.frames)
+    for (const InitObservation& observation : frame.observations) ++seen[observation.id];
+  std::vector<PointId> ids;
+  for (const auto& [id, count] : seen)
+    if (count >= min_frame_share * static_cast<double>(input.frames.size()) && IndexOf(id, points.ids) < 0)
+      ids.push_back(id);
+  return ids;
+}
+
+// Optimizes all points by all frames, with poses and coefficients fixed, after others that were seen in enough frames
+// were added. What is uncertain, or wrong between the views of the problem, is then left out.
+Status OptimizePoints(const InitInput& input, const MapDemands& demands, const WindowInitOptions& options,
+                      MapPoints* points, std::vector<InitRejectedPoint>* rejected) {
+  const double focal_px = input.camera.MeanFocalLengthPx();
+  const std::vector<PointId> joining = PointsToJoin(input, *points, options.min_frame_share);
+  std::vector<DeformingObservation> observations;
+  for (std::size_t k = 0; k < input.frames.size(); ++k) {
+    const auto seen = SeenIn(input, input.frames[k], joining, static_cast<int>(k), options);
+    observations.insert(observations.end(), seen.begin(), seen.end());
+  }
+  auto optimized = OptimizeDeformingPoints(points->solution, observations, static_cast<int>(joining.size()), focal_px,
+                                           options.window, input.threads);
+  if (!optimized.ok()) return optimized.status();
+  MapPoints all{points->ids, {}, std::move(*optimized)};
+  all.ids.insert(all.ids.end(), joining.begin(), joining.end());
+  all.depth_sigmas = DepthSigmas(all.solution);
+  const std::vector<double> errors_px = PointErrorsPx(all.solution.window, focal_px);
+  double max_error_px = options.max_error_px;
+  if (demands.scales_sigmas_with_error) {
+    const double median_px = Median(errors_px);
+    max_error_px = std::min(max_error_px, kMaxErrorRatio * median_px);
+    for (std::size_t i = 0; i < all.ids.size(); ++i) all.depth_sigmas[i] *= std::max(1.0, errors_px[i] / median_px);
+  }
+  *points =
+      ChooseCertain(all, errors_px, max_error_px, demands.max_sigma * all.solution.window.MedianDistance(), rejected);
+  return Status::Ok();
+}
+
+// At the points of the solution, between the reference and the last view.
+double MedianParallaxDeg(const DeformingWindow& window) {
+  const Eigen::Vector3d center = window.cams_from_world.back().OriginInSource();
+  std::vector<double> angles;
+  for (const Eigen::Vector3d& point : window.points_in_world) angles.push_back(AngleBetween(point, point - center));
+  return Median(std::move(angles)) * 180.0 / std::numbers::pi;
+}
+
+// The points not in the map, each with why.
+std::vector<InitRejectedPoint> AllRejected(const InitInput& input, const MapPoints& points,
+                                           std::vector<InitRejectedPoint> rejected) {
+  std::set<PointId> others;
+  for (const InitFrame& frame : input.frames)
+    for (const InitObservation& observation : frame.observations) others.insert(observation.id);
+  for (const PointId id : points.ids) others.erase(id);
+  for (const InitRejectedPoint& point : rejected) others.erase(point.id);
+  for (const PointId id : others) rejected.push_back({id, InitRejection::kTooFewViews});
+  std::sort(rejected.begin(), rejected.end(),
+            [](const InitRejectedPoint& a, const InitRejectedPoint& b) { return a.id < b.id; });
+  return rejected;
+}
+
+Status FillOutcome(const InitInput& input, double nominal_depth_mm, const MapPoints& points, InitOutcome* outcome) {
+  const DeformingWindow& all = points.solution.window;
+  const auto nominal = NominalScale(all.points_in_world, nominal_depth_mm);
+  if (!nominal.ok()) return nominal.status();
+  const double scale = *nominal;
+  for (std::size_t i = 0; i < points.ids.size(); ++i)
+    outcome->points.push_back({points.ids[i], scale * all.points_in_world[i], scale * points.depth_sigmas[i], 0.0});
+  for (std::size_t k = 0; k < input.frames.size(); ++k) {
+    const Rigid3& pose = all.cams_from_world[k];
+    InitFrameState state{input.frames[k].frame_idx, Rigid3(pose.rotation, scale * pose.translation), {}};
+    for (const InitObservation& observation : input.frames[k].observations)
+      if (const int point = IndexOf(observation.id, points.ids); point >= 0)
+        state.positions.push_back({observation.id, scale * all.Position(point, static_cast<int>(k))});
+    outcome->frames.push_back(std::move(state));
+  }
+  outcome->decision = InitDecision::kMap;
+  return Status::Ok();
+}
+
+}  // namespace
+
+MapDemands DemandsOf(const WindowInitOptions& options, double relaxed) {
+  const double certain_sigma = std::lerp(options.certain_depth_sigma, options.last_depth_sigma, relaxed);
+  return {.certain_sigma = certain_sigma,
+          .max_sigma = std::max(certain_sigma, options.max_depth_sigma),
+          .certain_share = (1.0 - relaxed) * options.min_certain_share};
+}
+
+Status MakeWindowMap(const InitInput& input, const SolvedWindow& window, const MapDemands& demands,
+                     const WindowInitOptions& options, double nominal_depth_mm, InitOutcome* outcome) {
+  const double focal_px = input.camera.MeanFocalLengthPx();
+  const MapPoints all{window.ids, DepthSigmas(window.solution), window.solution};
+  const std::vector<double> errors_px = PointErrorsPx(window.solution.window, focal_px);
+  const double median_distance = window.solution.window.MedianDistance();
+  MapPoints points = ChooseCertain(all, errors_px, options.max_error_px, demands.max_sigma * median_distance, nullptr);
+  const auto measure = [&] {
+    outcome->measured.inliers = static_cast<int>(points.ids.size());
+    outcome->measured.median_depth_sigma =
+        points.ids.empty() ? 0.0 : Median(points.depth_sigmas) / points.solution.window.MedianDistance();
+  };
+  measure();
+  outcome->measured.median_error_px = Median(errors_px);
+  outcome->measured.median_parallax_deg = MedianParallaxDeg(window.solution.window);
+  if (Status status = EnoughCertain(input, window, points, demands, options.min_points, median_distance,
+                                    outcome->measured.median_parallax_deg);
+      !status.ok())
+    return status;
+  if (Status status = OptimizeAllViews(input, window, options, &points); !status.ok()) return status;
+  std::vector<InitRejectedPoint> rejected;
+  if (Status status = OptimizePoints(input, demands, options, &points, &rejected); !status.ok()) return status;
+  if (const int left = CountSeen(input.frames.back(), points.ids); left < options.min_points)
+    return {ErrorCode::kInsufficient, "only " + std::to_string(left) +
+                                          " points agree with the frames between those of the window (at least " +
+                                          std::to_string(options.min_points) + " must)"};
+  measure();
+  if (Status status = FillOutcome(input, nominal_depth_mm, points, outcome); !status.ok()) return status;
+  outcome->rejected = AllRejected(input, points, std::move(rejected));
+  outcome->reason = "first map of " + std::to_string(points.ids.size()) + " points from a " +
+                    (window.solution.window.shapes.empty() ? "rigid" : "deforming") + " window of " +
+                    std::to_string(input.frames.size()) + " frames, depth noise " +
+                    Digits(100.0 * outcome->measured.median_depth_sigma, 1) + " % of the median depth";
+  if (window.light_is_of_no_use) outcome->reason += "; brightness is no depth cue in these images and was not used";
+  return Status::Ok();
+}
+
+}  // namespace pliant

@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// A map from a solved window: which of its points are certain, and where they were in every frame.
+#pragma once
+
+#include "pliant/base/status.h"
+#include "pliant/tracking/bootstrapping/initializer.h"
+#include "pliant/tracking/bootstrapping/make_initializer.h"
+#include "tracking/bootstrapping/window_solution.h"
+
+namespace pliant {
+
+// What a map must be.
+struct MapDemands {
+  // Of a point by the median depth: at most so much for it to be certain, and to enter the map.
+  double certain_sigma = 0;
+  double max_sigma = 0;
+  double certain_share = 0;  // of the points still seen, at least
+  // Points whose errors stand out are less certain in proportion, and left out where they do so by three times.
+  bool scales_sigmas_with_error = false;
+};
+
+// Those of the options: in full, wholly relaxed (1), or between.
+MapDemands DemandsOf(const WindowInitOptions& options, double relaxed);
+
+// Fills the outcome in as a map of the whole input, scaled to the nominal depth. What is missing for one else: then
+// only the outcome's measurements are filled in.
+Status MakeWindowMap(const InitInput& input, const SolvedWindow& window, const MapDemands& demands,
+                     const WindowInitOptions& options, double nominal_depth_mm, InitOutcome* outcome);
+
+}  // namespace pliant

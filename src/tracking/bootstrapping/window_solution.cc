@@ -1,0 +1,211 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tracking/bootstrapping/window_solution.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "pliant/base/statistics.h"
+#include "pliant/estimation/window/window_refinement.h"
+#include "tracking/bootstrapping/initial_map.h"
+
+namespace pliant {
+namespace {
+
+constexpr std::size_t kMinPoints = 12;
+constexpr std::size_t kMinFrames = 6;
+// A light that leaves more of the spread of log distances than this says nothing of distance.
+constexpr double kMaxOfSpread = 0.8;
+// A rotation that explains this share of the points to this error leaves nothing to triangulate.
+constexpr double kRotationErrorPx = 1.5;
+constexpr double kMaxRotationShare = 0.8;
+
+// The points that are seen in enough views; where they are too many, those still seen, then those seen most.
+std::vector<PointId> ChoosePoints(const InitInput& input, const std::vector<std::size_t>& views,
+                                  const WindowInitOptions& options) {
+  std::map<PointId, int> seen;
+  for (const std::size_t view : views)
+    for (const InitObservation& observation : input.frames[view].observations) ++seen[observation.id];
+  const int least = std::min(options.min_views, static_cast<int>(views.size()));
+  const int bonus = static_cast<int>(views.size());
+  for (const InitObservation& observation : input.frames.back().observations)
+    if (const auto found = seen.find(observation.id); found != seen.end() && found->second >= least)
+      found->second += bonus;
+  std::vector<std::pair<int, PointId>> chosen;
+  for (const auto& [id, count] : seen)
+    if (count >= least) chosen.emplace_back(count, id);
+  std::stable_sort(chosen.begin(), chosen.end(), [](const auto& x, const auto& y) { return x.first > y.first; });
+  if (chosen.size() > static_cast<std::size_t>(options.max_points))
+    chosen.resize(static_cast<std::size_t>(options.max_points));
+  std::vector<PointId> ids;
+  for (const auto& [count, id] : chosen) ids.push_back(id);
+  std::sort(ids.begin(), ids.end());
+  return ids;
+}
+
+using Positions = std::map<PointId, Eigen::Vector3d>;  // world
+
+// Puts a frame's points that are not known yet at the distance that the light says, relative to the others.
+void AddNewPoints(const std::vector<DeformingObservation>& observations, const std::vector<PointId>& ids,
+                  const Rigid3& cam_from_world, double nominal_depth_mm, Positions* known) {
+  std::vector<double> lights;
+  std::vector<double> distances;
+  std::vector<double> offsets;  // log distance less the light's
+  for (const DeformingObservation& observation : observations) {
+    if (std::isfinite(observation.log_light)) lights.push_back(observation.log_light);
+    const auto found = known->find(ids[static_cast<std::size_t>(observation.point_idx)]);
+    if (found == known->end()) continue;
+    distances.push_back((cam_from_world * found->second).norm());
+    if (std::isfinite(observation.log_light)) offsets.push_back(std::log(distances.back()) - observation.log_light);
+  }
+  const double unlit = distances.empty() ? nominal_depth_mm : Median(distances);
+  double offset = 0;
+  if (!offsets.empty())
+    offset = Median(offsets);
+  else if (!lights.empty())
+    offset = std::log(nominal_depth_mm) - Median(lights);
+  for (const DeformingObservation& observation : observations) {
+    const double distance = std::isfinite(observation.log_light) ? std::exp(offset + observation.log_light) : unlit;
+    known->try_emplace(ids[static_cast<std::size_t>(observation.point_idx)],
+                       cam_from_world.Inverse() * (distance * observation.ray));
+  }
+}
+
+// Points where the light puts them, or all at one distance; views optimized against them as if nothing deformed. A
+// point that is first seen in a later view is put there, among those known already. `ids` becomes those of its points.
+Result<DeformingWindow> Start(const InitInput& input, const std::vector<std::size_t>& views,
+                              const WindowInitOptions& options, double nominal_depth_mm, std::vector<PointId>* ids) {
+  DeformingWindow start;
+  Positions known;
+  Rigid3 near;
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    const InitFrame& frame = input.frames[views[v]];
+    if (v > 0) {
+      InitialMap map;
+      for (const auto& [id, position] : known) {
+        map.ids.push_back(id);
+        map.positions.push_back(position);
+      }
+      const auto pose = EstimateFramePoseRoughly(input.camera, frame, map, near);
+      if (!pose.ok()) return pose.status();
+      near = *pose;
+    }
+    start.cams_from_world.push_back(near);
+    start.times.push_back(frame.frame_idx - input.frames.front().frame_idx);
+    AddNewPoints(SeenIn(input, frame, *ids, 0, options), *ids, near, nominal_depth_mm, &known);
+  }
+  ids->clear();
+  for (const auto& [id, position] : known) {
+    ids->push_back(id);
+    start.points_in_world.push_back(position);
+  }
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    const auto seen = SeenIn(input, input.frames[views[v]], *ids, static_cast<int>(v), options);
+    start.observations.insert(start.observations.end(), seen.begin(), seen.end());
+  }
+  return start;
+}
+
+double MedianSigma(const DeformingSolution& solution) {
+  std::vector<double> sigmas;
+  for (std::size_t i = 0; i < solution.log_depth_sigmas.size(); ++i) sigmas.push_back(solution.LogDepthSigma(i));
+  return Median(std::move(sigmas));
+}
+
+// A window's frames and points, ready to be solved.
+struct PreparedWindow {
+  std::vector<std::size_t> views;  // frames of the input, ascending
+  std::vector<PointId> ids;        // of the window's points, sorted
+  DeformingWindow start;
+};
+
+Result<PreparedWindow> PrepareWindow(const InitInput& input, std::size_t frames, const WindowInitOptions& options,
+                                     double nominal_depth_mm) {
+  if (frames < kMinFrames)
+    return {ErrorCode::kInsufficient, "a window takes at least " + std::to_string(kMinFrames) + " frames"};
+  PreparedWindow window;
+  window.views = SpreadViews(frames, static_cast<std::size_t>(options.views));
+  window.ids = ChoosePoints(input, window.views, options);
+  if (window.ids.size() < kMinPoints)
+    return {ErrorCode::kInsufficient,
+            "only " + std::to_string(window.ids.size()) + " points were followed long enough"};
+  auto start = Start(input, window.views, options, nominal_depth_mm, &window.ids);
+  if (!start.ok()) return start.status();
+  window.start = std::move(*start);
+  return window;
+}
+
+Result<SolvedWindow> SolveDeforming(const InitInput& input, const PreparedWindow& window,
+                                    const WindowInitOptions& options, double nominal_depth_mm) {
+  auto solution = SolveDeformingWindow(window.start, input.camera.MeanFocalLengthPx(), options.window, input.threads);
+  if (!solution.ok()) return solution.status();
+  SolvedWindow lit{window.views, window.ids, std::move(*solution), false};
+  if (lit.solution.light_error <= kMaxOfSpread * lit.solution.log_distance_spread) return lit;
+  // The solution is wrong, or the light is: not at the camera, of another response, on tissue of many colors.
+  WindowInitOptions without = options;
+  without.light = Switch::kOff;
+  const auto prepared = PrepareWindow(input, window.views.back() + 1, without, nominal_depth_mm);
+  if (!prepared.ok()) return lit;
+  auto unlit = SolveDeforming(input, *prepared, without, nominal_depth_mm);
+  if (!unlit.ok() || MedianSigma(unlit->solution) > MedianSigma(lit.solution)) return lit;
+  unlit->light_is_of_no_use = true;
+  return unlit;
+}
+
+Result<SolvedWindow> SolveRigid(const InitInput& input, const PreparedWindow& window,
+                                const WindowInitOptions& options) {
+  const double focal_px = input.camera.MeanFocalLengthPx();
+  const auto deforms = [&](double correlation) {
+    return Status(ErrorCode::kDegenerate,
+                  "the scene deforms: the errors of neighbors under a rigid motion have a correlation of " +
+                      Digits(correlation, 2));
+  };
+  const auto correlation = RigidResidualCorrelation(window.start, focal_px, options.window);
+  if (!correlation.ok()) return correlation.status();
+  if (*correlation > options.max_correlation) return deforms(*correlation);
+  auto solution = SolveRigidWindow(window.start, focal_px, options.window, input.threads);
+  if (!solution.ok()) return solution.status();
+  if (solution->residual_correlation > options.max_correlation) return deforms(solution->residual_correlation);
+  return SolvedWindow{window.views, window.ids, std::move(*solution), false};
+}
+
+}  // namespace
+
+int IndexOf(PointId id, const std::vector<PointId>& ids) {
+  const auto found = std::lower_bound(ids.begin(), ids.end(), id);
+  return found != ids.end() && *found == id ? static_cast<int>(found - ids.begin()) : -1;
+}
+
+std::vector<DeformingObservation> SeenIn(const InitInput& input, const InitFrame& frame,
+                                         const std::vector<PointId>& ids, int view_idx,
+                                         const WindowInitOptions& options) {
+  const PhotometricCalibration light = input.photometric.value_or(PhotometricCalibration{.gamma = options.gamma});
+  std::vector<DeformingObservation> observations;
+  for (const WindowObservation& seen : ObservationsOf(input.camera, frame, ids, view_idx)) {
+    const PointId id = ids[static_cast<std::size_t>(seen.point_idx)];
+    const double brightness = options.light == Switch::kOn ? FindById(frame.observations, id)->brightness : 0.0;
+    observations.push_back({view_idx, seen.point_idx, seen.ray, LogDistanceFromLight(light, brightness, seen.ray)});
+  }
+  return observations;
+}
+
+Result<SolvedWindow> SolveWindow(const InitInput& input, std::size_t frames, WindowScene scene,
+                                 const WindowInitOptions& options, double nominal_depth_mm) {
+  const auto window = PrepareWindow(input, frames, options, nominal_depth_mm);
+  if (!window.ok()) return window.status();
+  auto rigid = SolveRigid(input, *window, options);
+  return rigid.ok() || scene == WindowScene::kRigid ? rigid : SolveDeforming(input, *window, options, nominal_depth_mm);
+}
+
+Status MoreThanARotation(const InitInput& input, InitMeasurements* measured) {
+  const MatchedRays matched = MatchRays(input.camera, input.frames.front(), input.frames.back());
+  measured->correspondences = static_cast<int>(matched.ids.size());
+  return CheckNotARotation(matched, input.camera.MeanFocalLengthPx(), kRotationErrorPx, kMaxRotationShare, measured)
+      .status();
+}
+
+}  // namespace pliant

@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// The deforming window of the frames since the reference: its views, its points, its start and its solution.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "pliant/base/status.h"
+#include "pliant/estimation/window/deforming_window.h"
+#include "pliant/tracking/bootstrapping/initializer.h"
+#include "pliant/tracking/bootstrapping/make_initializer.h"
+
+namespace pliant {
+
+struct SolvedWindow {
+  std::vector<std::size_t> views;
+  std::vector<PointId> ids;
+  DeformingSolution solution;
+  bool light_is_of_no_use = false;  // it was to be used, and was not
+};
+
+enum class WindowScene { kRigid, kAny };
+
+// The window of the input's first `frames` frames, solved: as a rigid scene if it is one, else, where it may be any,
+// with coefficients; where the light turns out to say nothing of these, without light if that is more certain.
+// kInsufficient, kDegenerate: what is missing, or that the scene deforms.
+Result<SolvedWindow> SolveWindow(const InitInput& input, std::size_t frames, WindowScene scene,
+                                 const WindowInitOptions& options, double nominal_depth_mm);
+
+// kDegenerate where the camera only turned between the first frame and the last.
+Status MoreThanARotation(const InitInput& input, InitMeasurements* measured);
+
+// A point's index in the sorted `ids`, or -1.
+int IndexOf(PointId id, const std::vector<PointId>& ids);
+
+// Those of `ids` that a frame sees, as observations of view `view_idx`; points are numbered by their index in `ids`.
+std::vector<DeformingObservation> SeenIn(const InitInput& input, const InitFrame& frame,
+                                         const std::vector<PointId>& ids, int view_idx,
+                                         const WindowInitOptions& options);
+
+}  // namespace pliant

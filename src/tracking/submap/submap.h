@@ -1,0 +1,64 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// A map with all that belongs to it: what the tracker goes on with, and what it keeps of a map that it left.
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "pliant/geometry/sim3.h"
+#include "pliant/scene/frame_report.h"
+#include "pliant/scene/map.h"
+#include "pliant/tracking/tracker_frame.h"
+#include "pliant/tracking/tracks/track_source.h"
+#include "tracking/submap/candidates.h"
+#include "tracking/submap/landmark_descriptors.h"
+#include "tracking/submap/lost_points.h"
+#include "tracking/submap/rigid_history.h"
+#include "tracking/tracks/followed_points.h"
+
+namespace pliant {
+
+struct Submap {
+  Submap(int submap_idx, const Camera& camera, const TrackerOptions& options)
+      : idx(submap_idx), candidates(camera, options.growth), descriptors(options.relocalization) {}
+
+  // Whether an image is blurred, or dark, against the last sharp one. Of many such images in a row the later ones are
+  // not: the blur stays.
+  bool IsBlurred(const TrackerFrame& frame, const TrackerOptions& options) const;
+  // The landmarks as this submap's last frame shows them; sorted by id.
+  std::vector<PointObservation> Observations() const;
+  // The landmarks in sight and those that were lost.
+  std::vector<Landmark> KnownLandmarks() const;
+
+  // A solved frame becomes the map's present. What was not found in the image is lost, and may be found again; what
+  // was found and contradicts the rest is forgotten. `before`: the state before this frame.
+  void Commit(const FollowedPoints& points, const Rigid3& cam_from_world, TrackingState before,
+              const TrackerOptions& options, TrackSource* tracks);
+  // Into another world; where the two are one.
+  void MoveInto(const Sim3& other_from_world);
+  // Moves what is now, cameras and points alike, and not where the points rest.
+  void MoveAllButRest(const Rigid3& motion);
+  // All that `other`, which is in the same world, knows besides: its points are lost ones, which are found where they
+  // are in sight. The candidates of both are removed.
+  void TakeOver(Submap&& other, TrackSource* tracks);
+  // The source forgets all points of this submap.
+  void RemoveFrom(TrackSource* tracks) const;
+
+  int idx;
+  Map map;
+  LostPoints lost_points;
+  RigidHistory rigid_history;
+  Candidates candidates;
+  LandmarkDescriptors descriptors;
+  std::vector<InitFrame> window_frames;  // the last ones in which there was a map, with their candidates
+  TrackerFrame previous;                 // the last frame in which points were seen
+  Rigid3 last_cam_from_world;
+  Rigid3 before_last_cam_from_world;
+  std::vector<std::pair<int, Rigid3>> recent_poses;  // by frame_idx, of the last frames in a row that were tracked
+  int blurred_frames = 0;                            // in a row, up to now
+  int lost_frames = 0;                               // in a row that show something, up to now
+};
+
+}  // namespace pliant
