@@ -25,7 +25,7 @@ TEST(Photometric, BrightnessFallsWithTheSquareOfTheDistance) {
   EXPECT_TRUE(std::isnan(LogDistanceFromLight(calibration, 0, kAhead)));
 }
 
-TEST(Photometric, ADirectionThatGetsLessLightIsNotTakenToBeFarther) {
+TEST(Photometric, ADirectionThatGetsLessLightIsNotFarther) {
   const PhotometricCalibration calibration{.vignetting = 3, .light_spread = 2.5};
   const double share = std::pow(0.5, 3) * std::exp(-2.5 * 0.5);
   EXPECT_NEAR(LogFalloff(calibration, kSixtyDegrees), std::log(share), kRoundOff);

@@ -22,7 +22,7 @@ using testing::HasSubstr;
 
 constexpr double kPublished_px = 1e-3;  // focal lengths as they are published
 
-TEST_F(DataSets, CalibrationsThatAreNoneAreRefused) {
+TEST_F(DataSets, BrokenCalibrationsAreRefused) {
   const auto refused = [&](const char* folder, const std::string& what) {
     const auto sequence = OpenSequence({.image_path = Path(folder)});
     ASSERT_FALSE(sequence.ok()) << what;
@@ -85,7 +85,7 @@ TEST_F(DataSets, FramesMissingInTheMiddleAreSaid) {
                           HasSubstr("1 of 8 images have no depth image, the first is FrameBuffer_0009.png")));
 }
 
-TEST_F(DataSets, PublishedCamerasAreTaken) {
+TEST_F(DataSets, ImagesWithoutACalibrationGetThePublishedCamera) {
   Write("simcol/FrameBuffer_0000.png", Image(0, 475, 475));
   Write("c3vd/0_color.png", Image(0, 1350, 1080));
   Write("c3vd_pinhole/0_color.png", Image(0, 675, 540));

@@ -208,7 +208,7 @@ TEST_F(NearlyRightSets, AFolderBesideADataSetSaysWhereItIs) {
   EXPECT_THAT(WhyNot("empty"), HasSubstr("holds no image"));
 }
 
-TEST_F(NearlyRightSets, CalibrationsOfOtherToolsAreTakenForAnyVideo) {
+TEST_F(NearlyRightSets, CalibrationsOfOtherToolsServeAnyVideo) {
   WriteVideo("clip.avi", 2);
   Text("endoscope_geometrical.xml",
        "<rig><camera><camera_model type=\"calibu_fu_fv_u0_v0_kb4\"><width> 64 </width><height> 48 </height><params> [ "

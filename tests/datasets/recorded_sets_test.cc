@@ -23,7 +23,7 @@ using testing::HasSubstr;
 
 constexpr double kSameImage = 1.0;  // gray levels in the mean; another frame differs by many
 
-TEST_F(DataSets, HamlynRectified) {
+TEST_F(DataSets, ReadsRectifiedHamlyn) {
   for (int k = 0; k < Frames(); ++k) {
     Write("rectified20/image01/" + Numbered("%010d.png", k), Frame(k).image);
     Write("rectified20/image02/" + Numbered("%010d.png", k), Frame(k).right);
@@ -35,7 +35,7 @@ TEST_F(DataSets, HamlynRectified) {
   ExpectTheScene(Path("rectified20"), {.kind = "hamlyn_rectified", .poses = false, .pairs = true, .depth_mm = 0.51});
 }
 
-TEST_F(DataSets, TumRgbd) {
+TEST_F(DataSets, ReadsTumRgbd) {
   std::string images = "# color images\n# timestamp filename\n";
   std::string depths = "# depth maps\n";
   std::string poses = "# ground truth trajectory\n";
@@ -66,7 +66,7 @@ TEST_F(DataSets, TumRgbd) {
   ExpectTheScene(Path("fr1"), {.kind = "tum_rgbd", .depth_mm = 0.11});
 }
 
-TEST_F(DataSets, EuRoC) {
+TEST_F(DataSets, ReadsEuRoCAndLeavesOutImagesWithoutAPair) {
   std::string list = "#timestamp [ns],filename\n";
   std::string poses = "#timestamp, p_RS_R_x [m], ...\n";
   const Rigid3 body_from_cam(RotationExp({0.3, -1.2, 0.4}), Eigen::Vector3d(40, -20, 10));
@@ -117,7 +117,7 @@ TEST_F(DataSets, EuRoC) {
             kSameImage);
 }
 
-TEST_F(DataSets, StereoMis) {
+TEST_F(DataSets, ReadsStereoMisWithItsMasks) {
   WriteStackedVideo("P1/IFBS_ENDOSCOPE.mp4");
   const auto& p = Rendered().camera.params();
   std::string calibration;
@@ -153,7 +153,7 @@ TEST_F(DataSets, StereoMis) {
   }
 }
 
-TEST_F(DataSets, Scared) {
+TEST_F(DataSets, ReadsScared) {
   WriteStackedVideo("keyframe_1/data/rgb.mp4");
   Stereo("keyframe_1/endoscope_calibration.yaml", 5);
   for (int k = 0; k < Frames(); ++k) {
@@ -184,7 +184,7 @@ TEST_F(DataSets, Scared) {
   ExpectTheScene(Path("keyframe_1"), {.kind = "scared", .pairs = true, .depth_mm = 0.01, .gray_levels = 4.0});
 }
 
-TEST_F(DataSets, EndomapperReal) {
+TEST_F(DataSets, ReadsRecordedEndomapperWithItsLight) {
   const std::string folder = "Sequences/Seq_003";
   std::filesystem::create_directories(Path(folder));
   cv::VideoWriter writer(Path(folder + "/Seq_003.mov").string(), cv::CAP_FFMPEG,
@@ -217,7 +217,7 @@ TEST_F(DataSets, EndomapperReal) {
               ElementsAre(230, 230, 159.5, 119.5, -0.1289632, -0.006051189, 0.001660961, -7.847858e-05));
 }
 
-TEST_F(DataSets, Colmap) {
+TEST_F(DataSets, ReadsAColmapModelWithItsImages) {
   std::string images = "# images\n";
   for (int k = 0; k < Frames(); ++k) {
     Write("room/images/" + Name(k), Frame(k).image);

@@ -15,7 +15,7 @@ namespace {
 
 using namespace data_set_files;
 
-TEST_F(DataSets, SimCol3D) {
+TEST_F(DataSets, ReadsSimCol3D) {
   std::string positions;
   std::string rotations;
   for (int k = 0; k < Frames(); ++k) {
@@ -33,7 +33,7 @@ TEST_F(DataSets, SimCol3D) {
   ExpectTheScene(Path("Frames_S1"), {.kind = "simcol", .depth_mm = 0.01});
 }
 
-TEST_F(DataSets, C3vdOfBothVersions) {
+TEST_F(DataSets, ReadsBothVersionsOfC3vd) {
   std::string poses;
   for (int k = 0; k < Frames(); ++k) {
     Write("v1/" + std::to_string(k) + "_color.png", Frame(k).image);
@@ -52,7 +52,7 @@ TEST_F(DataSets, C3vdOfBothVersions) {
   }
 }
 
-TEST_F(DataSets, EndomapperSimulated) {
+TEST_F(DataSets, ReadsSimulatedEndomapper) {
   std::string poses = "tX;tY;tZ;rX;rY;rZ;rW;time(s)\n";
   for (int k = 0; k < Frames(); ++k) {
     Write("seq/rgb/" + Numbered("image_%04d.png", k), Frame(k).image);
@@ -74,7 +74,7 @@ TEST_F(DataSets, EndomapperSimulated) {
   ExpectTheScene(Path("seq"), {.kind = "endomapper_simulated", .depth_mm = 0.3});  // half floats
 }
 
-TEST_F(DataSets, EndoSlam) {
+TEST_F(DataSets, ReadsEndoSlam) {
   std::string poses = "tX,tY,tZ,rX,rY,rZ,rW,time\n";
   for (int k = 0; k < Frames(); ++k) {
     Write("Colon/Frames/" + Numbered("image_%04d.png", k), Frame(k).image);

@@ -62,24 +62,24 @@ void ExpectEdgesByDefinition(const Points& points, const GraphOptions& options) 
 
 TEST(DeformationGraph, HasTheNearestNeighborsOfEveryPoint) { ExpectEdgesByDefinition(RandomPoints(400, 1), {}); }
 
-TEST(NearestNeighbors, OfPlacesAreAsOfPoints) {
+TEST(NearestNeighbors, OfPositionsAreAsOfPoints) {
   const Points points = RandomPoints(300, 1);
-  Points places = RandomPoints(40, 2);
-  places.push_back(points[7]);
-  const NeighborLists lists = NearestNeighbors(points, places, 8);
-  ASSERT_EQ(lists.size(), places.size());
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    Points all = points;  // the place is one point more, whose neighbors they are
-    all.push_back(places[i]);
+  Points positions = RandomPoints(40, 2);
+  positions.push_back(points[7]);
+  const NeighborLists lists = NearestNeighbors(points, positions, 8);
+  ASSERT_EQ(lists.size(), positions.size());
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    Points all = points;  // the position is one point more, whose neighbors they are
+    all.push_back(positions[i]);
     EXPECT_EQ(lists[i], NeighborsByDefinition(all, 8).back()) << i;
   }
-  EXPECT_EQ(lists.back().front(), 7);  // a place that is a point finds it
+  EXPECT_EQ(lists.back().front(), 7);  // a position that is a point finds it
   EXPECT_EQ(NearestNeighbors(points, Points{}, 8).size(), 0U);
   EXPECT_EQ(NearestNeighbors(Points{{0, 0, 0}}, Points{{1, 0, 0}}, 8), (NeighborLists{{0}}));
   EXPECT_EQ(NearestNeighbors(Points{}, Points{{1, 0, 0}}, 8), (NeighborLists{{}}));
 }
 
-TEST(DeformationGraph, SettlesTiesByIndex) {
+TEST(DeformationGraph, BreaksTiesByIndex) {
   Points grid;  // every neighborhood of a regular grid is full of ties
   for (int y = 0; y < 12; ++y)
     for (int x = 0; x < 12; ++x) grid.emplace_back(2.0 * x, 2.0 * y, 50.0);

@@ -24,12 +24,12 @@ constexpr double kStep = 1e-6;
 constexpr double kDirectional = 1e-4;  // relative to both lengths; kDifference, times a cosine that may be small
 constexpr double kStepped = 1e-5;      // relative; the step solves the equations to the solver's precision
 
-// A window in the middle of things: coefficients, shapes and nodes of a solution, everything a little off.
-struct Unsettled {
+// A window as in the middle of a solution: temporal coefficients, basis shapes and nodes, everything a little off.
+struct PerturbedWindow {
   DeformingWindow window;
   SurfaceNodes nodes;
 
-  Unsettled() {
+  PerturbedWindow() {
     const Scene scene(6);
     window = scene.Start(0.1);
     Random random(7);
@@ -45,7 +45,7 @@ struct Unsettled {
 };
 
 TEST(DeformingTerms, GradientsMatchDifferences) {
-  const Unsettled start;
+  const PerturbedWindow start;
   const DeformingTerms terms(start.window, start.nodes, kFocalPx, {});
   DeformingState state = terms.Start();
   for (const std::size_t point : {std::size_t{3}, std::size_t{77}}) {
@@ -64,8 +64,8 @@ TEST(DeformingTerms, GradientsMatchDifferences) {
 }
 
 // Where every point is at its best, the cost's gradient by the rest is the same whether the points follow or not.
-TEST(DeformingEquations, GradientMatchesDifferencesWhereThePointsAreSettled) {
-  const Unsettled start;
+TEST(DeformingEquations, GradientMatchesDifferencesWhereThePointsAreOptimized) {
+  const PerturbedWindow start;
   const DeformingTerms terms(start.window, start.nodes, kFocalPx, {});
   DeformingState state = terms.Start();
   for (std::size_t i = 0; i < terms.num_points(); ++i)
@@ -101,7 +101,7 @@ TEST(DeformingEquations, GradientMatchesDifferencesWhereThePointsAreSettled) {
 TEST(DeformingEquations, EliminatingThePointsChangesNoStep) {
   // The same equations, whole: by differences of the gradient they would be Newton's, so they are put together from the
   // points' and the views' shares here.
-  const Unsettled start;
+  const PerturbedWindow start;
   const DeformingTerms terms(start.window, start.nodes, kFocalPx, {});
   const DeformingState state = terms.Start();
   DeformingEquations equations(terms, {});

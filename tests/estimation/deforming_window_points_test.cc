@@ -29,11 +29,11 @@ struct JoiningScene {
     const DeformingWindow start = scene.Start(0);
     PointSample known;
     for (int i = 0; i < static_cast<int>(scene.points.size()); ++i) (i % 5 == 0 ? joining_points : known).push_back(i);
-    std::vector<int> new_idx(scene.points.size(), -1);
+    std::vector<int> index(scene.points.size(), -1);
     for (std::size_t k = 0; k < joining_points.size(); ++k)
-      new_idx[static_cast<std::size_t>(joining_points[k])] = static_cast<int>(k);
+      index[static_cast<std::size_t>(joining_points[k])] = static_cast<int>(k);
     for (DeformingObservation seen : start.observations) {
-      seen.point_idx = new_idx[static_cast<std::size_t>(seen.point_idx)];
+      seen.point_idx = index[static_cast<std::size_t>(seen.point_idx)];
       if (seen.point_idx >= 0 && seen.view_idx >= 4) joining.push_back(seen);
     }
     solution = SolveDeformingWindow(PartOf(start, known), kFocalPx, {});

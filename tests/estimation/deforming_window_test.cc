@@ -107,7 +107,7 @@ TEST(DeformingWindow, TheLightTellsSolutionsApart) {
   const auto solution = SolveDeformingWindow(scene.Start(0.1), kFocalPx, {});
   ASSERT_TRUE(solution.ok());
   for (const int view : {0, 6, 12}) EXPECT_LT(Median(scene.DepthErrors(solution->window, view)), kShape) << view;
-  // The median deviation of normal errors, and some of the correction for inclination, which this light does not have.
+  // The median deviation of normal errors, and some of the correction for tilt, which this light does not have.
   EXPECT_GT(solution->light_error, kSigmaLow * 0.1 / kMedianToSigma);
   EXPECT_LT(solution->light_error, kSigmaHigh * 0.1 / kMedianToSigma);
 }

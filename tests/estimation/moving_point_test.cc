@@ -38,7 +38,7 @@ std::vector<MovingPointView> Views(int count, double step_mm, double swing_mm, R
 
 double LogDistanceError(const MovingPoint& point) { return std::log(point.position.norm() / kPoint.norm()); }
 
-TEST(MovingPoint, IsPlacedWhereItWasInTheFirstView) {
+TEST(MovingPoint, IsFoundWhereItWasInTheFirstView) {
   Random random(1);
   const auto point = TriangulateMovingPoint(Views(10, 1.0, 3.0, &random), 30.0, kNoiseRad);
   ASSERT_TRUE(point.ok()) << point.status().message();

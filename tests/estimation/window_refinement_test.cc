@@ -41,7 +41,7 @@ TEST(WindowRefinement, FindsExactPosesAndPointsWithoutNoise) {
   EXPECT_EQ(refined->window.cams_from_world.front().translation, Eigen::Vector3d::Zero());
 }
 
-TEST(WindowRefinement, EstimatesPosesOnFixedPoints) {
+TEST(WindowRefinement, FindsPosesOnFixedPoints) {
   const SceneOptions options{.num_points = 60};
   const Scene scene = MakeScene(options);
   Window start = TrueWindow(scene, options);

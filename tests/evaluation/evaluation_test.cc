@@ -103,7 +103,7 @@ TEST(Evaluate, ComputesThePartsAskedForAlone) {
   EXPECT_TRUE(evaluation->notes.empty());
 }
 
-// MakeRun's points are on the surface, at another place in every frame.
+// MakeRun's points are on the surface, at another point of it in every frame.
 TEST(Evaluate, GivesTheMaterialErrorBesideTheSurfaceError) {
   const TruthSequence sequence(8);
   WallMaterial wall(sequence);

@@ -132,11 +132,12 @@ TEST_F(MaterialErrorTest, LeavesOutTracksThatStartWhereThereIsNoMaterialPoint) {
   EXPECT_EQ(error->drift.points_mm, 1);  // on the step there is no surface to drift along
 }
 
-// A place is followed by tracks 0 and 1 one after the other, by 2 while 0 lives, and found again by 3 after a gap.
+// A point of the wall is followed by tracks 0 and 1 one after the other, by 2 while 0 lives, and found again by 3 after
+// a gap.
 TEST_F(MaterialErrorTest, CountsTracksThatGoOnWithOneThatEnded) {
-  const Eigen::Vector2d place(20, 20);
+  const Eigen::Vector2d start(20, 20);
   const auto at = [&](int frame_idx, int id, const Eigen::Vector2d& off) {
-    const Eigen::Vector2d pixel = WallMaterial::PixelIn(frame_idx, 0, place) + off;
+    const Eigen::Vector2d pixel = WallMaterial::PixelIn(frame_idx, 0, start) + off;
     return TrackedPoint{PointId{id}, pixel, wall_.PointIn(frame_idx, pixel)};
   };
   const Eigen::Vector2d none(0, 0);

@@ -62,7 +62,7 @@ TEST(SurfaceTruth, PairsMeasureTheDepthAndHowCertainItIs) {
   EXPECT_GT(static_cast<double>(within), kWithinThree * static_cast<double>(in_sigmas.size()));
 }
 
-TEST(SurfaceTruth, IsTakenFromPairsWhereTheyAreRectifiedAndThereIsNoDepth) {
+TEST(SurfaceTruth, ComesFromPairsWhereTheyAreRectifiedAndThereIsNoDepth) {
   class Lens final : public Sequence {
    public:
     explicit Lens(const Camera& camera, std::optional<double> baseline_mm)

@@ -119,7 +119,7 @@ TEST(Export, PlyHasDisplacementsFromTheUndeformedPosition) {
   EXPECT_FLOAT_EQ(displacement, 0.75F);
 }
 
-TEST(Export, TrajectoriesJoinATracksPositions) {
+TEST(Export, TrajectoriesConnectATracksPositions) {
   const TestFolder folder;
   WriteRun(folder);
   ASSERT_TRUE(Export(folder, ExportFormat::kTrajectories).ok());

@@ -26,7 +26,7 @@ std::vector<Eigen::Vector2d> Grid(double dx, double dy) {
   return pixels;
 }
 
-TEST(Descriptors, TellPlacesApartAfterAChangeOfLightAndView) {
+TEST(Descriptors, TellPixelsApartAfterAChangeOfLightAndView) {
   const cv::Mat before = Texture();
   cv::Mat after;
   const cv::Matx23d change(1.05, 0.08, 4.0, -0.08, 1.05, 9.0);  // 5 % larger, turned by 4 degrees, shifted
@@ -45,7 +45,7 @@ TEST(Descriptors, TellPlacesApartAfterAChangeOfLightAndView) {
   for (const auto& [i, j] : pairs) EXPECT_EQ(j, static_cast<int>(a.size()) - 1 - i);
 }
 
-TEST(Descriptors, PlacesThatAreNotThereMatchRarely) {
+TEST(Descriptors, PixelsOfAnotherImageMatchRarely) {
   const auto pixels = Grid(0, 0);
   cv::Mat other;
   cv::flip(Texture(), other, 0);

@@ -76,7 +76,7 @@ TEST(DarkBorderMask, IsEmptyOnAFullViewAndFullOnABlackImage) {
   EXPECT_EQ(cv::countNonZero(DarkBorderMask(cv::Mat::zeros(kSize, CV_8UC1), {})), kSize.area());
 }
 
-TEST(ValidMask, CombinesGivenAndFoundMasksAndHonoursTheSwitches) {
+TEST(ValidMask, CombinesGivenAndFoundMasksAndHonorsTheSwitches) {
   cv::Mat image = RoundView();
   cv::circle(image, {200, 150}, 5, cv::Scalar(255, 255, 255), cv::FILLED);
   cv::Mat given(kSize, CV_8UC1, cv::Scalar(7));

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kRounding = 1.0;  // gray levels: each level is rounded to 8 bits
 
-cv::Mat Slope(cv::Size size) {
+cv::Mat Ramp(cv::Size size) {
   cv::Mat image(size, CV_8UC1);
   for (int y = 0; y < size.height; ++y)
     for (int x = 0; x < size.width; ++x) image.at<std::uint8_t>(y, x) = static_cast<std::uint8_t>(20 + x + y / 2);
@@ -22,7 +22,7 @@ cv::Mat Slope(cv::Size size) {
 }
 
 TEST(ImagePyramid, PixelOfALevelLiesAtTheHalvedPosition) {
-  const ImagePyramid pyramid(Slope({128, 96}), 3);
+  const ImagePyramid pyramid(Ramp({128, 96}), 3);
   ASSERT_EQ(pyramid.levels(), 3);
   EXPECT_EQ(pyramid.width(2), 32);
   EXPECT_EQ(pyramid.height(2), 24);
@@ -40,7 +40,7 @@ TEST(ImagePyramid, DoesNotFoldFineTextureIntoCoarseLevels) {
 }
 
 TEST(ImagePyramid, PaddingRepeatsTheBorder) {
-  const ImagePyramid pyramid(Slope({64, 48}), 2);
+  const ImagePyramid pyramid(Ramp({64, 48}), 2);
   for (int level = 0; level < 2; ++level) {
     const std::uint8_t* origin = pyramid.origin(level);
     const std::ptrdiff_t stride = pyramid.stride(level);
@@ -52,17 +52,17 @@ TEST(ImagePyramid, PaddingRepeatsTheBorder) {
   }
 }
 
-TEST(ImagePyramid, StopsBeforeLevelsBecomeTiny) { EXPECT_EQ(ImagePyramid(Slope({64, 40}), 8).levels(), 2); }
+TEST(ImagePyramid, StopsBeforeLevelsBecomeTiny) { EXPECT_EQ(ImagePyramid(Ramp({64, 40}), 8).levels(), 2); }
 
 TEST(ToGray, LeavesGrayAndWeighsColors) {
-  const cv::Mat gray = Slope({8, 8});
+  const cv::Mat gray = Ramp({8, 8});
   EXPECT_EQ(ToGray(gray).data, gray.data);
   const cv::Mat red(4, 4, CV_8UC3, cv::Scalar(0, 0, 200));
   EXPECT_NEAR(ToGray(red).at<std::uint8_t>(0, 0), 0.299 * 200, kRounding);
 }
 
-TEST(SampleBilinear, IsExactOnASlopeAndSaysWhenItIsOutside) {
-  const cv::Mat image = Slope({30, 30});
+TEST(SampleBilinear, IsExactOnARampAndSaysWhenItIsOutside) {
+  const cv::Mat image = Ramp({30, 30});
   EXPECT_NEAR(*SampleBilinear(image, 3.25, 4.0), 20 + 3.25 + 2, kRoundOff);
   EXPECT_EQ(*SampleBilinear(image, 29, 29), image.at<std::uint8_t>(29, 29));
   EXPECT_FALSE(SampleBilinear(image, 29.001, 3).has_value());

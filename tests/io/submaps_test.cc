@@ -63,9 +63,9 @@ TEST(RunWriter, EverySubmapHasItsOwnMapAndModel) {
 }
 
 // Of three maps the second goes into the first.
-class JoinedSubmaps : public testing::Test {
+class MergedSubmaps : public testing::Test {
  protected:
-  JoinedSubmaps() : writer_(Writer(folder_.Path("run"))) {
+  MergedSubmaps() : writer_(Writer(folder_.Path("run"))) {
     FrameReport second = ReportOf(2, 1);
     second.join = {1, 0, into_from_submap_};
     FrameReport after = Report(3);
@@ -79,7 +79,7 @@ class JoinedSubmaps : public testing::Test {
   RunWriter writer_;
 };
 
-TEST_F(JoinedSubmaps, AreOneInTheEnd) {
+TEST_F(MergedSubmaps, AreOneInTheEnd) {
   ASSERT_TRUE(writer_.Finish(RunStatus::kCompleted, "").ok());
   const auto run = ReadRun(folder_.Path("run"));
   ASSERT_TRUE(run.ok()) << run.status().message();
@@ -109,7 +109,7 @@ TEST_F(JoinedSubmaps, AreOneInTheEnd) {
   EXPECT_TRUE(status.ok()) << status.message();
 }
 
-TEST_F(JoinedSubmaps, HaveOneModel) {
+TEST_F(MergedSubmaps, HaveOneModel) {
   ASSERT_TRUE(writer_.Finish(RunStatus::kCompleted, "").ok());
   // (-2, 0, 50.25) of the second map.
   EXPECT_THAT(folder_.Read("run/sparse/0/points3D.txt"), HasSubstr("\n50 10.000000 -4.000000 100.500000 "));
@@ -120,7 +120,7 @@ TEST_F(JoinedSubmaps, HaveOneModel) {
     EXPECT_FALSE(std::filesystem::exists(folder_.Path("run/" + std::string(name) + ".tmp"))) << name;
 }
 
-TEST_F(JoinedSubmaps, OfARunThatWasKilledAreSeveral) {
+TEST_F(MergedSubmaps, OfARunThatWasKilledAreSeveral) {
   const auto run = ReadRun(folder_.Path("run"));
   ASSERT_TRUE(run.ok()) << run.status().message();
   for (const std::size_t i : {0, 1, 2, 3}) {
@@ -131,7 +131,7 @@ TEST_F(JoinedSubmaps, OfARunThatWasKilledAreSeveral) {
 }
 
 // The third goes into the second, and that into the first.
-TEST(RunWriter, AWorldIsMovedAsOftenAsItIsJoined) {
+TEST(RunWriter, AWorldIsMovedAsOftenAsItIsMerged) {
   const TestFolder folder;
   const Sim3 first_from_second{2, RotationExp({0, 0, EIGEN_PI / 2}), {10, 0, 0}};
   const Sim3 second_from_third{0.5, RotationExp({0.3, 0, 0}), {0, 1, 0}};
@@ -154,7 +154,7 @@ TEST(RunWriter, AWorldIsMovedAsOftenAsItIsJoined) {
   EXPECT_TRUE(std::filesystem::exists(folder.Path("run/sparse/images.txt")));
 }
 
-TEST(RunWriter, RefusesAJoinThatCannotBe) {
+TEST(RunWriter, RefusesAMergeThatCannotBe) {
   const TestFolder folder;
   RunWriter writer = Writer(folder.Path("run"));
   FrameReport report = Report(1);

@@ -110,10 +110,10 @@ TEST_F(StereoRun, KeepsACameraWhereItIsSaidToStandStill) {
   EXPECT_LT(observer.reports.back().median_reprojection_error_px, kFollowed_px);
 }
 
-TEST_F(StereoRun, WhatWasMeasuredIsNotMadeAnewWhileItIsInView) {
+TEST_F(StereoRun, WhatWasMeasuredIsNotReestimatedWhileItIsInView) {
   RunRequest request;
   request.input.image_path = Sequence(/*mono=*/false);
-  const auto made_anew = [&](double max_measured_share) {
+  const auto reestimated = [&](double max_measured_share) {
     request.output_path = folder_.Path("run" + std::to_string(max_measured_share));
     TrackOptions options = StereoOptions();
     options.tracker.growth.window = 12;
@@ -131,8 +131,8 @@ TEST_F(StereoRun, WhatWasMeasuredIsNotMadeAnewWhileItIsInView) {
       return report.note.starts_with("the map was re-estimated") && !report.refined_points.empty();
     });
   };
-  EXPECT_EQ(made_anew(0.5), 0);
-  EXPECT_GT(made_anew(2.0), 0);
+  EXPECT_EQ(reestimated(0.5), 0);
+  EXPECT_GT(reestimated(2.0), 0);
 }
 
 TEST_F(StereoRun, OfASequenceWithoutPairsIsRefusedBeforeItStarts) {

@@ -20,7 +20,7 @@ inline Camera SceneCamera(const SceneOptions& options) {
   return Camera::Create(CameraModelId::kSimplePinhole, options.width, options.height, params).value();
 }
 
-// Frames numbered from `first_idx`; a point's id is its place in the scene. One that leaves the image, or comes to lie
+// Frames numbered from `first_idx`; a point's id is its index in the scene. One that leaves the image, or comes to lie
 // behind the camera, is lost from then on.
 inline std::vector<InitFrame> FramesOf(const Scene& scene, const SceneOptions& options, int first_idx) {
   const Camera camera = SceneCamera(options);

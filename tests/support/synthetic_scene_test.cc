@@ -46,7 +46,7 @@ TEST(SyntheticScene, AWholePeriodOfTheWaveLeavesEverythingWhereItWas) {
     EXPECT_LT((after.pixels[1][i] - rigid.pixels[1][i]).norm(), 1e3 * kRounding);
 }
 
-TEST(SyntheticScene, ABaselineCanBeGivenInPlaceOfAParallax) {
+TEST(SyntheticScene, ABaselineCanBeGivenInsteadOfAParallax) {
   for (const Motion motion : {Motion::kForward, Motion::kSideways, Motion::kRotation, Motion::kStill}) {
     const bool moves = motion == Motion::kForward || motion == Motion::kSideways;
     const Scene scene = MakeScene({.motion = motion, .num_points = 10, .baseline_mm = 18.0});

@@ -34,7 +34,7 @@ Landmark PointAt(const Eigen::Vector3d& rest, const Eigen::Vector3d& own_share, 
   return {PointId{1000}, rest, Displaced(rest, t) + own_share};
 }
 
-TEST(LostPoints, AreTakenAlongByThePointsAroundThem) {
+TEST(LostPoints, MoveWithThePointsAroundThem) {
   constexpr double kBend = 0.05;  // mm: what interpolation over 2 mm misses of the bending, at t = 3
   const Eigen::Vector3d rest(1.2, -0.7, 50);
   const Eigen::Vector3d own_share(0.1, -0.2, 0.3);
@@ -68,7 +68,9 @@ TEST(LostPoints, AreWhereTheyWereAmongNobody) {
 
 TEST(LostPoints, AreExpectedWhereTheCameraShouldSeeThem) {
   LostPoints lost;
-  const auto add = [&](int id, const Eigen::Vector3d& place) { lost.Add({PointId{id}, place, place}, Rigid3()); };
+  const auto add = [&](int id, const Eigen::Vector3d& position) {
+    lost.Add({PointId{id}, position, position}, Rigid3());
+  };
   add(1, {0, 0, 50});
   add(2, {100, 0, 50});  // outside of the image
   add(3, {0, 0, 10});    // behind the camera, once that has gone 25 mm ahead

@@ -37,7 +37,7 @@ constexpr double kParallax_deg = 0.3;      // the median is of the points that s
 constexpr double kMinByRotation = 0.95;    // share of the tracks; noise takes the others
 constexpr int kMaxMaps = 1;                // of 20 trials
 constexpr std::size_t kMinPoints = 200;    // of 500, of which some leave the image and some are uncertain
-constexpr double kByEightViews = 0.85;     // a line through eight even positions has 0.77 of the slope error of two
+constexpr double kByEightViews = 0.85;  // a line through eight even positions has 0.77 of the error of its ends alone
 
 // A sequence need not begin where the reference is taken.
 constexpr int kFirstIdx = 10;
@@ -93,7 +93,7 @@ TEST(MonocularInitializer, RecoversTheSceneExactlyWithoutNoise) {
   }
 }
 
-TEST(MonocularInitializer, PlacesItsPointsInEveryFrameInWhichTheyWereSeen) {
+TEST(MonocularInitializer, HasItsPointsInEveryFrameInWhichTheyWereSeen) {
   constexpr double kExactPx = 1e-3;  // as above: 1e-5 of the distance, 450 px focal length, 6 degrees of parallax
   const SceneOptions options{.parallax_deg = kEnoughDeg};
   const Camera camera = SceneCamera(options);
@@ -239,7 +239,7 @@ TEST(MonocularInitializer, RefusesThePlaneOnlyWhereASecondMotionExplainsIt) {
 }
 
 // With motions as the samples gave them, too: competing motions are then compared as they are.
-TEST(MonocularInitializer, ComparesCompetingMotionsWhateverTheRefinement) {
+TEST(MonocularInitializer, AsksForCompetingMotionsWhateverTheRefinement) {
   for (const auto& [refinement, name] : EnumNames<RigidRefinement>::kNames) {
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
       SceneOptions options{.surface = Surface::kPlane, .noise_px = 0.3, .seed = seed};

@@ -47,7 +47,7 @@ std::vector<std::vector<int>> Nearest(const std::vector<NeighborMotion>& motions
   return neighbors;
 }
 
-TEST(NeighborAgreement, AffineMotionOfTheWholeSceneIsNoContradiction) {
+TEST(NeighborAgreement, AffineMotionOfTheWholeSceneIsNoOutlier) {
   Eigen::Matrix3d gradient;
   gradient << 0.02, 0.01, 0, -0.03, 0.01, 0, 0.02, 0.05, 0;
   const auto motions = MovingSheet(
@@ -81,14 +81,14 @@ TEST(NeighborAgreement, SmoothDeformationIsAcceptedAndSlidingPointsAreFound) {
   EXPECT_LE(false_alarms, kMaxAtTheRim);
 }
 
-TEST(NeighborAgreement, MotionAlongTheRayIsNotJudged) {
+TEST(NeighborAgreement, MotionAlongTheRayIsNotMeasured) {
   auto motions = MovingSheet([](const Eigen::Vector3d& x) { return x; });
   motions[42].position *= 1.2;
   const auto disagreements = MeasureDisagreement(motions, Nearest(motions, 20), Eigen::Vector3d::Zero());
   EXPECT_LT(disagreements[42].distance_mm, kLengthRoundOff_mm);
 }
 
-TEST(NeighborAgreement, TooFewNeighborsMakeNoStatement) {
+TEST(NeighborAgreement, TooFewNeighborsSayNothing) {
   auto motions = MovingSheet([](const Eigen::Vector3d& x) { return x; });
   motions[0].position.x() += 100;
   const auto disagreements = MeasureDisagreement(motions, Nearest(motions, 3), Eigen::Vector3d::Zero());

@@ -77,7 +77,7 @@ TEST_F(LiveViewTest, ARefinedPointIsNewAgain) {
   EXPECT_THAT(Unpack(points["rest"]), ElementsAre(1, 2, 3));
 }
 
-TEST_F(LiveViewTest, AJoinMakesWhatWasGivenVoid) {
+TEST_F(LiveViewTest, AMergeMakesWhatWasGivenVoid) {
   live_->OnFrame(Report(0));
   FrameReport other = ReportOfSecondSubmap(0);
   const Sim3 join = {2, Eigen::Quaterniond::Identity(), {1, 0, 0}};

@@ -38,8 +38,8 @@ class ReportTest : public testing::Test {
   ordered_json Data() const {
     const std::string page = folder_.Read("report.html");
     const std::string begin = "<script type=\"application/json\" id=\"pliant-data\">";
-    const std::size_t place = page.find(begin) + begin.size();
-    return ordered_json::parse(page.substr(place, page.find("</script>", place) - place));
+    const std::size_t at = page.find(begin) + begin.size();
+    return ordered_json::parse(page.substr(at, page.find("</script>", at) - at));
   }
 
   TestFolder folder_;

@@ -91,7 +91,7 @@ TEST_F(ViewTest, BringsTheRunIntoTheWorldOfTheTruth) {
     for (const ViewedObservation& o : frame.observations) {
       ASSERT_TRUE(std::isfinite(o.error_mm));
       sum += o.error_mm * o.error_mm;
-      // The true place is on the plane, seen at the point's own pixel.
+      // The true point is on the plane, seen at the point's own pixel.
       const Eigen::Vector3d truth_in_cam = frame.world_from_cam->Inverse() * o.truth.cast<double>();
       EXPECT_NEAR(truth_in_cam.z(), kPlaneDepth_mm, kDepthOfPlane * kPlaneDepth_mm);
       EXPECT_LT((*view->camera->Project(truth_in_cam) - o.pixel.cast<double>()).norm(), kFloatPixel_px);
@@ -137,7 +137,7 @@ TEST_F(ViewTest, ShowsRunsOfOneSceneInOneWorld) {
   }
 }
 
-TEST_F(ViewTest, PutsMapsThatNothingJoinsOneAfterTheOther) {
+TEST_F(ViewTest, PutsSubmapsThatNothingConnectsOneAfterTheOther) {
   WriteRunOfTwoSubmaps(folder_);
   const auto view = Open();
   ASSERT_TRUE(view.ok()) << view.status().message();
