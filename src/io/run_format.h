@@ -13,14 +13,12 @@ namespace pliant {
 inline constexpr std::string_view kRunProgram = "pliant";
 inline constexpr std::string_view kObservationColumns = "frame,point_id,u_px,v_px,x,y,z,ssim";
 inline constexpr std::string_view kObservationColumnsWithoutSsim = "frame,point_id,u_px,v_px,x,y,z";
-inline constexpr std::string_view kFrameColumns =
-    "frame,timestamp,state,tracked,optimized,lost,added,cost_reprojection,cost_spatial,cost_temporal,cost_edge_length,"
-    "median_reprojection_error_px,submap";
-inline constexpr int kNumFrameColumns = 13;
+// A column of frames.csv for each term of the cost stands between these, and one for each stage after them.
+inline constexpr std::string_view kFrameColumnsBeforeCosts = "frame,timestamp,state,tracked,optimized,lost,added";
+inline constexpr std::string_view kFrameColumnsAfterCosts = "median_reprojection_error_px,submap";
+inline constexpr std::string_view kCostPrefix = "cost_";
 inline constexpr std::string_view kStagePrefix = "ms_";
-
-// Runs of before there were submaps have no such column: theirs is 0.
-inline constexpr std::string_view kSubmapColumn = ",submap";
+inline constexpr std::string_view kSubmapColumn = "submap";
 
 // Everything that a run may leave, which the next one in the same folder deletes; of several submaps also map_K.ply and
 // models in sparse/K.

@@ -13,26 +13,78 @@
 namespace pliant {
 namespace {
 
+// Where the columns of frames.csv are; others than these are of no interest.
+struct FrameColumns {
+  struct Count {
+    std::size_t column;
+    int RunFrame::*value;
+  };
+  struct Number {
+    std::size_t column;
+    double RunFrame::*value;
+  };
+  struct Named {
+    std::size_t column;
+    std::string name;
+  };
+
+  std::size_t size = 0;
+  std::size_t state = 0;
+  std::vector<Count> counts;
+  std::vector<Number> numbers;
+  std::vector<Named> costs;
+  std::vector<Named> stages;
+};
+
+// The first column that is missing, or empty.
+std::string FindColumns(std::string_view line, FrameColumns* columns) {
+  const std::vector<std::string_view> names = Split(line, ',');
+  columns->size = names.size();
+  std::string missing;
+  const auto find = [&](std::string_view name) {
+    const auto it = std::find(names.begin(), names.end(), name);
+    if (it == names.end() && missing.empty()) missing = name;
+    return static_cast<std::size_t>(it - names.begin());
+  };
+  columns->state = find("state");
+  columns->counts = {{find("frame"), &RunFrame::frame_idx},
+                     {find("tracked"), &RunFrame::tracked},
+                     {find("optimized"), &RunFrame::optimized},
+                     {find("lost"), &RunFrame::lost},
+                     {find("added"), &RunFrame::added}};
+  columns->numbers = {{find("timestamp"), &RunFrame::timestamp_s},
+                      {find("median_reprojection_error_px"), &RunFrame::median_reprojection_error_px}};
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    // Runs of before there were submaps have no such column: theirs is 0.
+    if (names[i] == kSubmapColumn) columns->counts.push_back({i, &RunFrame::submap});
+    if (names[i].starts_with(kCostPrefix))
+      columns->costs.push_back({i, std::string(names[i].substr(kCostPrefix.size()))});
+    if (names[i].starts_with(kStagePrefix))
+      columns->stages.push_back({i, std::string(names[i].substr(kStagePrefix.size()))});
+  }
+  return missing;
+}
+
 // Empty: the row is right; else what is wrong with it.
-std::string ParseFrame(std::string_view line, std::size_t num_columns, std::size_t num_stages, RunFrame* frame) {
+std::string ParseFrame(std::string_view line, const FrameColumns& columns, RunFrame* frame) {
   const std::vector<std::string_view> fields = Split(line, ',');
-  if (fields.size() != num_columns + num_stages)
-    return "a row has " + std::to_string(num_columns + num_stages) + " columns, this one has " +
-           std::to_string(fields.size());
+  if (fields.size() != columns.size)
+    return "a row has " + std::to_string(columns.size) + " columns, this one has " + std::to_string(fields.size());
   const auto state = std::find_if(EnumNames<TrackingState>::kNames.begin(), EnumNames<TrackingState>::kNames.end(),
-                                  [&](const auto& entry) { return entry.second == fields[2]; });
-  if (state == EnumNames<TrackingState>::kNames.end()) return Quoted(fields[2]) + " is not a state";
+                                  [&](const auto& entry) { return entry.second == fields[columns.state]; });
+  if (state == EnumNames<TrackingState>::kNames.end()) return Quoted(fields[columns.state]) + " is not a state";
   frame->state = state->first;
-  std::vector<std::pair<std::size_t, int*>> counts = {
-      {0, &frame->frame_idx}, {3, &frame->tracked}, {4, &frame->optimized}, {5, &frame->lost}, {6, &frame->added}};
-  if (num_columns == kNumFrameColumns) counts.emplace_back(num_columns - 1, &frame->submap);
-  for (const auto& [column, value] : counts)
-    if (!ParseInt(fields[column], value) || *value < 0) return Quoted(fields[column]) + " is not a whole number";
-  frame->stage_ms.resize(num_stages);
-  std::vector<std::pair<std::size_t, double*>> numbers = {
-      {1, &frame->timestamp_s},    {7, &frame->costs.reprojection}, {8, &frame->costs.spatial},
-      {9, &frame->costs.temporal}, {10, &frame->costs.edge_length}, {11, &frame->median_reprojection_error_px}};
-  for (std::size_t i = 0; i < num_stages; ++i) numbers.emplace_back(num_columns + i, &frame->stage_ms[i]);
+  for (const auto& [column, value] : columns.counts)
+    if (!ParseInt(fields[column], &(frame->*value)) || frame->*value < 0)
+      return Quoted(fields[column]) + " is not a whole number";
+  std::vector<std::pair<std::size_t, double*>> numbers;
+  for (const auto& [column, value] : columns.numbers) numbers.emplace_back(column, &(frame->*value));
+  frame->costs.reserve(columns.costs.size());
+  for (const auto& [column, name] : columns.costs)
+    numbers.emplace_back(column, &frame->costs.emplace_back(CostTerm{name}).value);
+  frame->stage_ms.resize(columns.stages.size());
+  for (std::size_t i = 0; i < columns.stages.size(); ++i)
+    numbers.emplace_back(columns.stages[i].column, &frame->stage_ms[i]);
   for (const auto& [column, value] : numbers)
     if (!ParseFinite(fields[column], value)) return Quoted(fields[column]) + " is not a finite number";
   return {};
@@ -43,25 +95,18 @@ Status ReadFrames(const std::string& path, Run* run) {
   if (!lines.ok()) return lines.status();
   std::string_view line;
   if (!lines->Next(&line) || !lines->ended()) return Status::Ok();  // killed before the first row
-  const std::vector<std::string_view> columns = Split(line, ',');
-  // Runs of before there were submaps.
-  const std::size_t num_columns = kNumFrameColumns - (line.starts_with(kFrameColumns) ? 0 : 1);
-  const bool known = line.starts_with(kFrameColumns.substr(0, kFrameColumns.size() - kSubmapColumn.size())) &&
-                     std::all_of(columns.begin() + static_cast<std::ptrdiff_t>(num_columns), columns.end(),
-                                 [](std::string_view column) { return column.starts_with(kStagePrefix); });
-  if (!known)
-    return lines->Error("the first line must begin with " + Quoted(kFrameColumns) + ", then stages " +
-                        Quoted(kStagePrefix) + "...");
-  for (std::size_t i = num_columns; i < columns.size(); ++i)
-    run->stage_names.emplace_back(columns[i].substr(kStagePrefix.size()));
+  FrameColumns columns;
+  if (const std::string missing = FindColumns(line, &columns); !missing.empty())
+    return lines->Error("the first line names no column " + Quoted(missing) + "; a run's has " +
+                        std::string(kFrameColumnsBeforeCosts) + "," + std::string(kFrameColumnsAfterCosts));
+  for (const auto& stage : columns.stages) run->stage_names.push_back(stage.name);
   while (lines->Next(&line)) {
     if (!lines->ended()) {
       ++run->cut_lines;
       break;
     }
     RunFrame frame;
-    if (const std::string wrong = ParseFrame(line, num_columns, run->stage_names.size(), &frame); !wrong.empty())
-      return lines->Error(wrong);
+    if (const std::string wrong = ParseFrame(line, columns, &frame); !wrong.empty()) return lines->Error(wrong);
     if (!run->frames.empty() && frame.frame_idx <= run->frames.back().frame_idx)
       return lines->Error("frame " + std::to_string(frame.frame_idx) + " is not after the row before");
     run->frames.push_back(std::move(frame));

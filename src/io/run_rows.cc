@@ -14,9 +14,9 @@
 namespace pliant {
 namespace {
 
-// The rows of a file without those of `begin` at its beginning, each through `change`, which has its number from 0.
+// The lines of a file, each through `change`, which has its number from 0.
 template <class Change>
-Status RewriteLines(FileGroup& group, const std::string& path, std::size_t begin, const Change& change) {
+Status RewriteLines(FileGroup& group, const std::string& path, const Change& change) {
   auto lines = LineReader::Open(path);
   if (!lines.ok()) return lines.status();
   auto file = group.Create(path);
@@ -24,10 +24,7 @@ Status RewriteLines(FileGroup& group, const std::string& path, std::size_t begin
   std::string rows;
   std::size_t number = 0;
   for (std::string_view line; lines->Next(&line); ++number) {
-    if (number < begin)
-      rows.append(line).push_back('\n');
-    else if (const Status status = change(number - begin, line, &rows); !status.ok())
-      return status;
+    if (const Status status = change(number, line, &rows); !status.ok()) return status;
     if (const Status status = file->AppendWhenLarge(&rows); !status.ok()) return status;
   }
   if (const Status status = file->Append(rows); !status.ok()) return status;
@@ -35,7 +32,7 @@ Status RewriteLines(FileGroup& group, const std::string& path, std::size_t begin
 }
 
 Status MoveTrajectory(FileGroup& group, const std::string& path, std::span<const CanonicalImage> images) {
-  return RewriteLines(group, path, 0, [&](std::size_t k, std::string_view line, std::string* rows) {
+  return RewriteLines(group, path, [&](std::size_t k, std::string_view line, std::string* rows) {
     double timestamp_s = 0;
     if (!ParseFinite(line.substr(0, line.find(' ')), &timestamp_s) || k >= images.size())
       return Status(ErrorCode::kMismatch, Quoted(path) + " was changed meanwhile");
@@ -45,14 +42,19 @@ Status MoveTrajectory(FileGroup& group, const std::string& path, std::span<const
 }
 
 Status MoveFrames(FileGroup& group, const std::string& path, std::span<const RunFrameWorld> worlds) {
-  return RewriteLines(group, path, 1, [&](std::size_t k, std::string_view line, std::string* rows) {
+  std::size_t column = 0;
+  return RewriteLines(group, path, [&](std::size_t number, std::string_view line, std::string* rows) {
     const std::vector<std::string_view> fields = Split(line, ',');
-    if (fields.size() < kNumFrameColumns || k >= worlds.size())
+    if (number == 0) {
+      column = static_cast<std::size_t>(std::ranges::find(fields, kSubmapColumn) - fields.begin());
+      rows->append(line).push_back('\n');
+      return Status::Ok();
+    }
+    if (column >= fields.size() || number > worlds.size())
       return Status(ErrorCode::kMismatch, Quoted(path) + " was changed meanwhile");
-    const std::string submap = std::to_string(worlds[k].submap);
-    const auto begin = static_cast<std::size_t>(fields[kNumFrameColumns - 1].data() - line.data());
-    rows->append(line.substr(0, begin)).append(submap);
-    rows->append(line.substr(begin + fields[kNumFrameColumns - 1].size())).push_back('\n');
+    const auto begin = static_cast<std::size_t>(fields[column].data() - line.data());
+    rows->append(line.substr(0, begin)).append(std::to_string(worlds[number - 1].submap));
+    rows->append(line.substr(begin + fields[column].size())).push_back('\n');
     return Status::Ok();
   });
 }

@@ -67,7 +67,7 @@ bool IsFinite(const PointObservation& o) {
 struct RunWriter::State {
   std::string path;
   Camera camera;
-  std::vector<std::string> stage_names;
+  RunColumns columns;
   RunWriterOptions options;
   OutputFile trajectory;
   OutputFile frames;
@@ -102,7 +102,7 @@ RunWriter::~RunWriter() = default;
 const RunSummary& RunWriter::summary() const { return state_->summary; }
 
 Result<RunWriter> RunWriter::Create(const std::string& output_path, const Camera& camera, RunDescription description,
-                                    const std::string& config_yaml, std::vector<std::string> stage_names,
+                                    const std::string& config_yaml, RunColumns columns,
                                     const RunWriterOptions& options) {
   if (Status status = PrepareFolder(output_path); !status.ok()) return status;
   RunSummary summary;
@@ -119,16 +119,18 @@ Result<RunWriter> RunWriter::Create(const std::string& output_path, const Camera
   if (!frames.ok()) return frames.status();
   auto observations = OutputFile::Create(output_path + "/observations.csv");
   if (!observations.ok()) return observations.status();
-  std::string columns(kFrameColumns);
-  for (const std::string& stage : stage_names) columns += "," + std::string(kStagePrefix) + stage;
-  if (Status status = frames->Append(columns + "\n"); !status.ok()) return status;
+  std::string header(kFrameColumnsBeforeCosts);
+  for (const std::string& cost : columns.costs) header.append(",").append(kCostPrefix).append(cost);
+  header.append(",").append(kFrameColumnsAfterCosts);
+  for (const std::string& stage : columns.stages) header.append(",").append(kStagePrefix).append(stage);
+  if (Status status = frames->Append(header + "\n"); !status.ok()) return status;
   if (Status status = observations->Append(std::string(kObservationColumns) + "\n"); !status.ok()) return status;
 
   auto state =
-      std::make_unique<State>(State{output_path, camera, std::move(stage_names), options, std::move(trajectory).value(),
+      std::make_unique<State>(State{output_path, camera, std::move(columns), options, std::move(trajectory).value(),
                                     std::move(frames).value(), std::move(observations).value()});
   state->summary = std::move(summary);
-  state->stage_total_ms.assign(state->stage_names.size(), 0.0);
+  state->stage_total_ms.assign(state->columns.stages.size(), 0.0);
   return RunWriter(std::move(state));
 }
 
@@ -136,10 +138,12 @@ Status RunWriter::State::Check(const FrameReport& report) {
   const std::string where = "frame " + std::to_string(report.frame_idx) + ": ";
   const auto invalid = [&](const std::string& what) { return Status(ErrorCode::kInvalidArgument, where + what); };
   if (report.frame_idx <= last_frame_idx) return invalid("frames must come in growing order");
-  const FrameProblemCosts& c = report.costs;
-  bool finite = std::isfinite(report.timestamp_s) && std::isfinite(report.median_reprojection_error_px) &&
-                std::isfinite(c.reprojection) && std::isfinite(c.spatial) && std::isfinite(c.temporal) &&
-                std::isfinite(c.edge_length);
+  bool finite = std::isfinite(report.timestamp_s) && std::isfinite(report.median_reprojection_error_px);
+  for (const CostTerm& cost : report.costs) {
+    finite = finite && std::isfinite(cost.value);
+    if (std::ranges::find(columns.costs, cost.name) == columns.costs.end())
+      return invalid("there is no column for the cost term " + Quoted(cost.name));
+  }
   if (report.cam_from_world)
     finite = finite && report.cam_from_world->rotation.coeffs().allFinite() &&
              report.cam_from_world->translation.allFinite();
@@ -153,8 +157,8 @@ Status RunWriter::State::Check(const FrameReport& report) {
   for (const PointObservation& o : report.observations) finite = finite && IsFinite(o);
   for (const auto& [stage, ms] : report.stage_ms) {
     finite = finite && std::isfinite(ms);
-    if (std::find(stage_names.begin(), stage_names.end(), stage) == stage_names.end())
-      return invalid("there is no stage " + Quoted(stage) + " in the run's list");
+    if (std::ranges::find(columns.stages, stage) == columns.stages.end())
+      return invalid("there is no column for the stage " + Quoted(stage));
   }
   if (!finite) return invalid("the report holds numbers that are not finite");
   if (!report.observations.empty() && !report.cam_from_world)
@@ -224,14 +228,13 @@ void RunWriter::State::AppendFrameRow(const FrameReport& report) {
   number(report.timestamp_s, 6);
   rows.append(",").append(EnumName(report.state));
   for (const int count : {report.tracked, report.optimized, report.lost, report.added}) integer(count);
-  const FrameProblemCosts& c = report.costs;
-  for (const double cost : {c.reprojection, c.spatial, c.temporal, c.edge_length}) number(cost, 6);
+  for (const std::string& cost : columns.costs) number(CostOf(report.costs, cost), 6);
   number(report.median_reprojection_error_px, 4);
   integer(report.submap);
-  for (std::size_t i = 0; i < stage_names.size(); ++i) {
+  for (std::size_t i = 0; i < columns.stages.size(); ++i) {
     double ms = 0;
     for (const auto& [stage, value] : report.stage_ms)
-      if (stage == stage_names[i] && options.timings == RunTimings::kWritten) ms += value;
+      if (stage == columns.stages[i] && options.timings == RunTimings::kWritten) ms += value;
     stage_total_ms[i] += ms;
     number(ms, 3);
   }
@@ -336,9 +339,10 @@ Status RunWriter::Finish(RunStatus run_status, const std::string& note) {
     if (s.summary.total_s > 0)
       s.summary.frames_per_second = static_cast<double>(s.summary.frames_read) / s.summary.total_s;
   }
-  for (std::size_t i = 0; i < s.stage_names.size(); ++i)
+  for (std::size_t i = 0; i < s.columns.stages.size(); ++i)
     s.summary.mean_ms.emplace_back(
-        s.stage_names[i], s.stage_total_ms[i] / static_cast<double>(std::max<std::int64_t>(s.summary.frames_read, 1)));
+        s.columns.stages[i],
+        s.stage_total_ms[i] / static_cast<double>(std::max<std::int64_t>(s.summary.frames_read, 1)));
   if (status.ok()) {
     const int submaps_as_reported = s.summary.submaps;
     s.NumberSubmaps();

@@ -15,6 +15,7 @@
 #include "pipeline/simulation_truth.h"
 #include "pliant/base/prefetcher.h"
 #include "pliant/base/version.h"
+#include "pliant/estimation/frame/frame_problem.h"
 #include "pliant/tracking/bootstrapping/stereo_pair.h"
 #include "pliant/tracking/stage_times.h"
 
@@ -61,6 +62,13 @@ struct Ending {
   RunStatus status = RunStatus::kCompleted;
   std::string note;
 };
+
+RunColumns ColumnsOfFrames() {
+  RunColumns columns;
+  for (CostTerm& term : NoFrameCosts()) columns.costs.push_back(std::move(term.name));
+  columns.stages = StageNames();
+  return columns;
+}
 
 // Final reports on their way to the run folder and then to the observers.
 class Recorder {
@@ -221,7 +229,7 @@ Result<RunSummary> RunTrack(const RunRequest& request, const TrackOptions& optio
                                    request.input.image_path.string(),
                                    request.input.camera_path.string(),
                                    {oracles.begin(), oracles.end()}},
-                                  table.ToYaml(), StageNames(), writer_options);
+                                  table.ToYaml(), ColumnsOfFrames(), writer_options);
   if (!writer.ok()) return writer.status();
 
   for (TrackObserver* observer : observers) {

@@ -5,12 +5,8 @@
 
 #include <cmath>
 
-#include <ceres/sized_cost_function.h>
-
 #include "pliant/residuals/edge_length.h"
 #include "pliant/residuals/reprojection.h"
-#include "pliant/residuals/spatial.h"
-#include "pliant/residuals/temporal.h"
 
 namespace pliant {
 namespace {
@@ -92,39 +88,6 @@ class ReprojectionCost final : public ceres::SizedCostFunction<2, 6, 3> {
   Eigen::Vector2d pixel_;
 };
 
-class SpatialCost final : public ceres::SizedCostFunction<3, 3, 3> {
- public:
-  explicit SpatialCost(const SpatialKernel& kernel) : kernel_(kernel) {}
-
-  bool Evaluate(const double* const* parameters, double* residuals, double** jacobians) const override {
-    Eigen::Map<Eigen::Vector3d>{residuals} =
-        kernel_.Residual<double>(ConstVector3(parameters[0]), ConstVector3(parameters[1]));
-    for (int k = 0; k < 2 && jacobians != nullptr; ++k) {
-      if (jacobians[k] == nullptr) continue;
-      RowMajor<3, 3>{jacobians[k]} = Eigen::Matrix3d::Identity() * (k == 0 ? kernel_.scale() : -kernel_.scale());
-    }
-    return true;
-  }
-
- private:
-  SpatialKernel kernel_;
-};
-
-class TemporalCost final : public ceres::SizedCostFunction<3, 3> {
- public:
-  explicit TemporalCost(const TemporalKernel& kernel) : kernel_(kernel) {}
-
-  bool Evaluate(const double* const* parameters, double* residuals, double** jacobians) const override {
-    Eigen::Map<Eigen::Vector3d>{residuals} = kernel_.Residual<double>(ConstVector3(parameters[0]));
-    if (jacobians != nullptr && jacobians[0] != nullptr)
-      RowMajor<3, 3>{jacobians[0]} = Eigen::Matrix3d::Identity() * kernel_.scale();
-    return true;
-  }
-
- private:
-  TemporalKernel kernel_;
-};
-
 class EdgeLengthCost final : public ceres::SizedCostFunction<1, 3, 3> {
  public:
   EdgeLengthCost(const EdgeLengthKernel& kernel, const Eigen::Vector3d& position_i, const Eigen::Vector3d& position_j)
@@ -164,12 +127,6 @@ ceres::CostFunction* NewReprojectionCost(const Camera& camera, const PoseIncreme
     return new ReprojectionCost<Model>(model, pose, position_in_world, pixel, sigma_px);
   });
 }
-
-ceres::CostFunction* NewSpatialCost(double weight, double sigma_mm) {
-  return new SpatialCost(SpatialKernel(weight, sigma_mm));
-}
-
-ceres::CostFunction* NewTemporalCost(double sigma_mm) { return new TemporalCost(TemporalKernel(sigma_mm)); }
 
 ceres::CostFunction* NewEdgeLengthCost(const Eigen::Vector3d& position_i, const Eigen::Vector3d& position_j,
                                        double rest_length_mm, double sigma_mm) {

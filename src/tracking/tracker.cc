@@ -26,7 +26,7 @@ struct FrameResult {
   int tracked = 0;  // points followed into the frame, before any was rejected
   LossCounts losses = {};
   std::string note = {};
-  FrameProblemCosts costs = {};
+  std::vector<CostTerm> costs = NoFrameCosts();
   double median_reprojection_error_px = 0;
   MapUpdate update = {};
   std::optional<FirstMap> first_map = std::nullopt;
@@ -65,6 +65,7 @@ FrameReport MakeReport(const TrackerFrame& frame, TrackingState state, const Sub
   report.losses = result.losses.by_reason();
   report.lost = result.losses.total();
   report.stage_ms = times.ByName();
+  report.costs = result.costs;
   if (state != TrackingState::kTracking || result.first_map) return report;
   report.cam_from_world = submap.last_cam_from_world;
   report.observations = submap.Observations();
@@ -72,7 +73,6 @@ FrameReport MakeReport(const TrackerFrame& frame, TrackingState state, const Sub
   report.new_points = result.update.new_points;
   report.added = static_cast<int>(report.new_points.size());
   report.refined_points = result.update.refined_points;
-  report.costs = result.costs;
   report.median_reprojection_error_px =
       result.update.median_reprojection_error_px.value_or(result.median_reprojection_error_px);
   return report;

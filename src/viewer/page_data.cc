@@ -76,13 +76,12 @@ json Frames(const ViewedRun& run) {
   frames["added"] = known(&RunFrame::added);
   frames["reprojection_px"] = known(&RunFrame::median_reprojection_error_px);
   if (has) {
-    const auto cost = [&](double FrameProblemCosts::*term) {
-      return Column(run, [term](const ViewedFrame& f) { return Number(f.row.costs.*term); });
-    };
-    frames["costs"] = {{"reprojection", cost(&FrameProblemCosts::reprojection)},
-                       {"spatial", cost(&FrameProblemCosts::spatial)},
-                       {"temporal", cost(&FrameProblemCosts::temporal)},
-                       {"edge length", cost(&FrameProblemCosts::edge_length)}};
+    for (const CostTerm& cost : run.frames.empty() ? std::vector<CostTerm>() : run.frames.front().row.costs) {
+      std::string label = cost.name;
+      std::ranges::replace(label, '_', ' ');
+      frames["costs"][label] =
+          Column(run, [&](const ViewedFrame& f) { return Number(CostOf(f.row.costs, cost.name)); });
+    }
     for (std::size_t i = 0; i < run.stage_names.size(); ++i)
       frames["stages_ms"][run.stage_names[i]] = Column(run, [i](const ViewedFrame& f) {
         return i < f.row.stage_ms.size() ? Number(f.row.stage_ms[i]) : json(nullptr);

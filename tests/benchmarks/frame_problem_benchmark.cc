@@ -119,9 +119,9 @@ void Solve(benchmark::State& state, FrameSolver solver) {
   FrameSolution solution;
   for (auto _ : state) solution = SolveFrameProblem(c.scene.camera, c.scene.Input(c.initial), options).value();
   const double reference = SolveReference(c.scene, c.initial).final_cost;
-  state.counters["cost"] = solution.costs.Total();
+  state.counters["cost"] = TotalCost(solution.costs);
   state.counters["iterations"] = solution.iterations;
-  state.counters["cost_difference"] = std::abs(solution.costs.Total() - reference) / reference;
+  state.counters["cost_difference"] = std::abs(TotalCost(solution.costs) - reference) / reference;
 }
 
 void BM_FrameProblem(benchmark::State& state) { Solve(state, FrameSolver::kLbfgs); }

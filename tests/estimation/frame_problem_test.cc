@@ -66,7 +66,7 @@ TEST(FrameProblem, FollowsASmoothDeformationInTheImage) {
   EXPECT_TRUE(solution.converged) << solution.message;
   ASSERT_EQ(solution.points.size(), scene.positions.size());
   for (const FramePoint& point : solution.points) EXPECT_LT(point.reprojection_error_px, kSmooth_px);
-  EXPECT_LT(solution.costs.Total(), solution.initial_costs.Total());
+  EXPECT_LT(TotalCost(solution.costs), TotalCost(solution.initial_costs));
 }
 
 TEST(FrameProblem, AHeldPoseStaysAndBothSolversFindTheSameDisplacements) {
@@ -83,12 +83,12 @@ TEST(FrameProblem, AHeldPoseStaysAndBothSolversFindTheSameDisplacements) {
     EXPECT_LT(RotationAngle(solution->cam_from_world.rotation * scene.true_cam_from_world.rotation.conjugate()),
               kExactRad);
     EXPECT_LT((solution->cam_from_world.translation - scene.true_cam_from_world.translation).norm(), kExactMm);
-    EXPECT_LT(solution->costs.Total(), solution->initial_costs.Total());
-    if (solver == FrameSolver::kLevenbergMarquardt) cost = solution->costs.Total();
-    EXPECT_NEAR(solution->costs.Total(), cost, kSameCost * cost);
+    EXPECT_LT(TotalCost(solution->costs), TotalCost(solution->initial_costs));
+    if (solver == FrameSolver::kLevenbergMarquardt) cost = TotalCost(solution->costs);
+    EXPECT_NEAR(TotalCost(solution->costs), cost, kSameCost * cost);
   }
   // The pose was held against its will: freed, it moves.
-  EXPECT_LT(Solve(scene, scene.true_cam_from_world).costs.Total(), (1 - kSameCost) * cost);
+  EXPECT_LT(TotalCost(Solve(scene, scene.true_cam_from_world).costs), (1 - kSameCost) * cost);
 }
 
 struct Variant {
@@ -109,8 +109,8 @@ TEST_P(FrameProblemVariant, BothSolversEndInTheSameMinimum) {
   options.function_tolerance = 1e-12;
   const FrameSolution reference = Solve(scene, initial, options);
   ASSERT_TRUE(ours.converged && reference.converged) << ours.message << " / " << reference.message;
-  EXPECT_NEAR(ours.costs.Total(), reference.costs.Total(), kSameCost * reference.costs.Total());
-  EXPECT_DOUBLE_EQ(ours.initial_costs.Total(), reference.initial_costs.Total());
+  EXPECT_NEAR(TotalCost(ours.costs), TotalCost(reference.costs), kSameCost * TotalCost(reference.costs));
+  EXPECT_DOUBLE_EQ(TotalCost(ours.initial_costs), TotalCost(reference.initial_costs));
 }
 
 INSTANTIATE_TEST_SUITE_P(

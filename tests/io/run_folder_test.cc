@@ -42,7 +42,8 @@ TEST(RunFolder, ComesBackAsItWasReported) {
   EXPECT_EQ(run->stage_names, kStages);
   ASSERT_EQ(run->frames.size(), 5u);
   EXPECT_EQ(run->frames[0].state, TrackingState::kWaitingForReference);
-  EXPECT_EQ(run->frames[3].costs.spatial, 0.125);
+  EXPECT_EQ(run->frames[0].costs, (std::vector<CostTerm>{{"stretch", 0}, {"bending", 0}}));
+  EXPECT_EQ(run->frames[3].costs, (std::vector<CostTerm>{{"stretch", 2.5}, {"bending", 0.125}}));
   EXPECT_EQ(run->frames[3].stage_ms, (std::vector<double>{1.5, 2.25}));
   ASSERT_EQ(run->poses.size(), 4u);
   auto reader = ObservationReader::Open(folder.Path("run"));

@@ -13,6 +13,7 @@
 
 namespace pliant::run_reports {
 
+inline const std::vector<std::string> kCosts = {"stretch", "bending"};
 inline const std::vector<std::string> kStages = {"pyramid", "tracking"};
 inline constexpr int kPoints = 6;
 
@@ -42,14 +43,14 @@ inline FrameReport Report(int frame) {
     if (i % 2 == 1 && frame % 2 == 0) continue;
     report.observations.push_back({PointId{3 * i}, *TestCamera().Project(*report.cam_from_world * x), x, 0.9});
   }
-  report.costs.spatial = 0.125;
+  report.costs = {{"stretch", 2.5}, {"bending", 0.125}};
   return report;
 }
 
 inline RunWriter Writer(const std::string& path, const RunWriterOptions& options = {}) {
   auto writer =
       RunWriter::Create(path, TestCamera(), {"0.1.0", {"pliant", "track"}, 7, "clip.mp4", "stereo.yaml", {"tracks"}},
-                        "Track:\n", kStages, options);
+                        "Track:\n", {kCosts, kStages}, options);
   EXPECT_TRUE(writer.ok()) << writer.status().message();
   return std::move(writer).value();
 }

@@ -30,9 +30,9 @@ TEST(RunWriter, ReplacesAFormerRunAndNothingElse) {
   EXPECT_FALSE(std::filesystem::exists(folder.Path("run/map.ply")));
   EXPECT_EQ(folder.Read("run/notes.txt"), "mine");
   folder.Write("other.txt", "x");
-  const auto refused = RunWriter::Create(folder.Path(""), TestCamera(), {}, "", kStages);
+  const auto refused = RunWriter::Create(folder.Path(""), TestCamera(), {}, "", {kCosts, kStages});
   EXPECT_EQ(refused.status().code(), ErrorCode::kInvalidArgument);
-  const auto no_folder = RunWriter::Create(folder.Path("other.txt/run"), TestCamera(), {}, "", kStages);
+  const auto no_folder = RunWriter::Create(folder.Path("other.txt/run"), TestCamera(), {}, "", {kCosts, kStages});
   EXPECT_EQ(no_folder.status().code(), ErrorCode::kUnwritable);
 }
 
@@ -58,7 +58,10 @@ TEST(RunWriter, RefusesReportsThatCannotBeMeant) {
   EXPECT_THAT(writer.Write(report).message(), HasSubstr("not finite"));
   report = Report(1);
   report.stage_ms = {{"other", 1.0}};
-  EXPECT_THAT(writer.Write(report).message(), HasSubstr("no stage 'other'"));
+  EXPECT_THAT(writer.Write(report).message(), HasSubstr("no column for the stage 'other'"));
+  report = Report(1);
+  report.costs = {{"other", 1.0}};
+  EXPECT_THAT(writer.Write(report).message(), HasSubstr("no column for the cost term 'other'"));
   report = Report(1);
   report.new_points.clear();
   EXPECT_THAT(writer.Write(report).message(), HasSubstr("observed but was never new"));

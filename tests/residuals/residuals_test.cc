@@ -159,7 +159,7 @@ TEST(Spatial, AgreesWithAutomaticDerivatives) {
   const auto jets = Variables(blocks);
   std::vector<Jet> expected;
   for (int c = 0; c < 3; ++c) expected.push_back(0.8 * (jets[0][c] - jets[1][c]) / 10.0);
-  const std::unique_ptr<ceres::CostFunction> cost(NewSpatialCost(0.8, 10.0));
+  const std::unique_ptr<ceres::CostFunction> cost(new DifferenceCost(SpatialKernel(0.8, 10.0)));
   ExpectAgreement(*cost, blocks, expected);
 }
 
@@ -169,7 +169,7 @@ TEST(Temporal, AgreesWithAutomaticDerivatives) {
   const auto jets = Variables(blocks);
   std::vector<Jet> expected;
   for (int c = 0; c < 3; ++c) expected.push_back(jets[0][c] / 10.0);
-  const std::unique_ptr<ceres::CostFunction> cost(NewTemporalCost(10.0));
+  const std::unique_ptr<ceres::CostFunction> cost(new DisplacementCost(TemporalKernel(10.0)));
   ExpectAgreement(*cost, blocks, expected);
 }
 

@@ -30,7 +30,7 @@ struct RunFrame {
   int optimized = 0;
   int lost = 0;
   int added = 0;
-  FrameProblemCosts costs;
+  std::vector<CostTerm> costs;  // of the columns cost_<name>, in their order
   double median_reprojection_error_px = 0;
   int submap = 0;                // whose world the frame's pose and points are in
   std::vector<double> stage_ms;  // as Run::stage_names

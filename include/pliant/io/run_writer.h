@@ -41,6 +41,12 @@ struct EnumNames<RunTimings> {
                                         std::pair{RunTimings::kNone, std::string_view("none")}};
 };
 
+// The columns of frames.csv that depend on the program, in order.
+struct RunColumns {
+  std::vector<std::string> costs;   // cost_<term>
+  std::vector<std::string> stages;  // ms_<stage>
+};
+
 struct RunWriterOptions {
   RunTimings timings = RunTimings::kWritten;
   colmap::Format sparse_format = colmap::Format::kBoth;
@@ -50,17 +56,18 @@ struct RunWriterOptions {
 class RunWriter {
  public:
   // Makes the folder (and those above it) and begins its files. A former run's files are deleted first; a folder that
-  // holds anything else, and no run, is refused. `stage_names` are the columns ms_<stage> of frames.csv, in order.
+  // holds anything else, and no run, is refused.
   // Fails with kInvalidArgument (a folder with other content) or kUnwritable.
   static Result<RunWriter> Create(const std::string& output_path, const Camera& camera, RunDescription description,
-                                  const std::string& config_yaml, std::vector<std::string> stage_names,
+                                  const std::string& config_yaml, RunColumns columns,
                                   const RunWriterOptions& options = {});
   RunWriter(RunWriter&&) noexcept;
   RunWriter& operator=(RunWriter&&) noexcept;
   ~RunWriter();  // without Finish the folder stays what a killed run leaves
 
   // Appends one frame. Frames come in growing order. Fails with kUnwritable (a full disk), or kInvalidArgument for a
-  // report with numbers that are not finite, a stage that is not in the list, or an observed point that was never new.
+  // report with numbers that are not finite, a term or a stage that has no column, or an observed point that was never
+  // new. A term or a stage that the report does not name is 0.
   Status Write(const FrameReport& report);
 
   // Brings the rows of joined submaps into one world, writes map.ply, sparse/ and the final run.json; to be called

@@ -14,7 +14,7 @@ namespace pliant {
 
 struct RobustCost {
   double rho = 0;
-  double slope = 1;  // d rho / d s, in (0, 1]
+  double derivative = 1;  // d rho / d s, in (0, 1]
 };
 
 inline RobustCost Huber(double squared_norm, double chi2) {

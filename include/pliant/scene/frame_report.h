@@ -21,7 +21,7 @@
 #include "pliant/camera/camera.h"
 #include "pliant/geometry/rigid3.h"
 #include "pliant/geometry/sim3.h"
-#include "pliant/scene/frame_costs.h"
+#include "pliant/scene/cost_term.h"
 
 namespace pliant {
 
@@ -106,7 +106,7 @@ struct FrameReport {
   int added = 0;      // points new in this frame
   std::vector<std::pair<std::string, int>> losses;  // points given up by reason, in the order of the first of each
 
-  FrameProblemCosts costs;  // at the solution
+  std::vector<CostTerm> costs;  // at the solution; all 0 where there is none
   double median_reprojection_error_px = 0;
   std::vector<std::pair<std::string, double>> stage_ms;  // wall time by stage; fixed order and names
 };

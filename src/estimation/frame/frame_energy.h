@@ -13,14 +13,15 @@
 
 #include <Eigen/Core>
 
+#include "estimation/frame/frame_data.h"
 #include "estimation/frame/frame_terms.h"
 
 namespace pliant {
 
 class FrameEnergy {
  public:
-  // `terms` must outlive this.
-  explicit FrameEnergy(const FrameTerms& terms);
+  // `data` and `terms` must outlive this.
+  FrameEnergy(const FrameData& data, const FrameTerms& terms);
 
   // The energy at `points_in_cam` (N, mm) and `increment`; its gradient by them into `by_points` (N) and
   // `by_increment`. False where a point leaves the camera's domain.
@@ -28,24 +29,10 @@ class FrameEnergy {
                 std::vector<Eigen::Vector3d>* by_points, Vector6d* by_increment);
 
  private:
-  struct Pair {
-    int i;
-    int j;
-    double factor;  // lambda * multiplicity
-    double scale;   // of SpatialKernel
-  };
-
-  bool AddReprojection(const std::vector<Eigen::Vector3d>& points_in_cam, double* energy,
-                       std::vector<Eigen::Vector3d>* by_points) const;
-  double AddSpatial();
-  double AddTemporal();
-  double AddEdgeLength(const std::vector<Eigen::Vector3d>& points_in_cam,
-                       std::vector<Eigen::Vector3d>* by_points) const;
-
+  const FrameData& data_;
   const FrameTerms& terms_;
   std::vector<Eigen::Vector3d> arms_;  // R0 (X_i - pivot)
-  std::vector<Pair> pairs_;
-  // Filled anew by every evaluation.
+  // Working memory of an evaluation.
   std::vector<Eigen::Vector3d> rotated_arms_;
   std::vector<Eigen::Vector3d> displacements_;     // e_i
   std::vector<Eigen::Vector3d> by_displacements_;  // dE / de_i

@@ -10,7 +10,7 @@
 
 #include "estimation/frame/frame_energy.h"
 #include "estimation/frame/frame_preconditioner.h"
-#include "estimation/frame/frame_terms.h"
+#include "estimation/frame/frame_solvers.h"
 
 namespace pliant {
 namespace {
@@ -27,11 +27,11 @@ constexpr double kParameterTolerance = 1e-12;
 // one.
 class PreconditionedEnergy final : public ceres::FirstOrderFunction {
  public:
-  PreconditionedEnergy(const FrameTerms& terms, const FramePreconditioner& preconditioner)
-      : energy_(terms),
+  PreconditionedEnergy(const FrameData& data, const FrameTerms& terms, const FramePreconditioner& preconditioner)
+      : energy_(data, terms),
         preconditioner_(preconditioner),
-        pose_is_(terms.pose_is),
-        points_(terms.positions.size()),
+        pose_is_(data.pose_is),
+        points_(data.positions.size()),
         by_points_(points_.size()) {}
 
   // Sets the scale from the gradient at zero. False where the start cannot be evaluated.
@@ -58,7 +58,7 @@ class PreconditionedEnergy final : public ceres::FirstOrderFunction {
     if (gradient == nullptr) return true;
     Eigen::Map<Eigen::VectorXd> by_z(gradient, NumParameters());
     preconditioner_.ToGradient(by_points_, by_increment, by_z);
-    // The increment depends on the last six variables alone: without a slope they, and it, stay zero.
+    // The increment depends on the last six variables alone: without a gradient they, and it, stay zero.
     if (pose_is_ == FramePose::kHeld) by_z.tail<6>().setZero();
     by_z /= scale_;
     return true;
@@ -76,12 +76,12 @@ class PreconditionedEnergy final : public ceres::FirstOrderFunction {
 
 // Every point where its predicted position is nearest to the measured ray: the reprojection term is then zero, and what
 // is left is close to quadratic. Where the pixel has no ray, or the ray points away, the predicted position itself.
-Points StartOnRays(const FrameTerms& terms) {
-  const auto rays = terms.camera->Unproject(terms.pixels);
+Points StartOnRays(const FrameData& data) {
+  const auto rays = data.camera->Unproject(data.pixels);
   Points start;
-  start.reserve(terms.positions.size());
-  for (int i = 0; i < terms.num_points(); ++i) {
-    const Eigen::Vector3d predicted = terms.pose.Transform<double>(Vector6d::Zero(), terms.positions[i]);
+  start.reserve(data.positions.size());
+  for (int i = 0; i < data.num_points(); ++i) {
+    const Eigen::Vector3d predicted = data.pose.Transform<double>(Vector6d::Zero(), data.positions[i]);
     const double depth = rays[i] ? rays[i]->dot(predicted) : 0.0;
     start.push_back(depth > 0.0 ? Eigen::Vector3d(*rays[i] * depth) : predicted);
   }
@@ -102,25 +102,25 @@ ceres::GradientProblemSolver::Options SolverOptions(const FrameProblemOptions& o
 
 }  // namespace
 
-Result<FrameEstimate> SolveFrameByLbfgs(const FrameTerms& terms) {
-  const Points start = StartOnRays(terms);
-  const FramePreconditioner preconditioner(terms, start);
-  auto energy = std::make_unique<PreconditionedEnergy>(terms, preconditioner);
+Result<FrameEstimate> SolveFrameByLbfgs(const FrameData& data, const FrameTerms& terms) {
+  const Points start = StartOnRays(data);
+  const FramePreconditioner preconditioner(data, terms, start);
+  auto energy = std::make_unique<PreconditionedEnergy>(data, terms, preconditioner);
   if (!preconditioner.ok() || !energy->SetScale())
     return {ErrorCode::kDegenerate, "the joint problem of pose and deformation is singular at its start"};
   const double scale = energy->scale();
   ceres::GradientProblem problem(energy.release());  // takes ownership
   Eigen::VectorXd z = Eigen::VectorXd::Zero(problem.NumParameters());
   ceres::GradientProblemSolver::Summary summary;
-  ceres::Solve(SolverOptions(terms.options), problem, z.data(), &summary);
+  ceres::Solve(SolverOptions(data.options), problem, z.data(), &summary);
   if (!summary.IsSolutionUsable() || !z.allFinite())
     return {ErrorCode::kDegenerate, "the joint problem of pose and deformation has no solution: " + summary.message};
 
   FrameEstimate estimate;
   Vector6d increment;
-  estimate.positions.resize(terms.positions.size());
+  estimate.positions.resize(data.positions.size());
   preconditioner.ToPoints(scale * z, &estimate.positions, &increment);
-  estimate.cam_from_world = terms.pose.Pose(increment);
+  estimate.cam_from_world = data.pose.Pose(increment);
   const Rigid3 world_from_cam = estimate.cam_from_world.Inverse();
   for (Eigen::Vector3d& position : estimate.positions) position = world_from_cam * position;
   estimate.iterations = static_cast<int>(summary.iterations.size()) - 1;

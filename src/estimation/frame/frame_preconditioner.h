@@ -17,15 +17,16 @@
 #include <Eigen/Core>
 #include <Eigen/SparseCholesky>
 
+#include "estimation/frame/frame_data.h"
 #include "estimation/frame/frame_terms.h"
 
 namespace pliant {
 
 class FramePreconditioner {
  public:
-  // M at `start` (points in the camera frame, mm) with the pose's increment zero and no loss active. `terms` and
-  // `start` must outlive this. ok() is false where M is not positive definite.
-  FramePreconditioner(const FrameTerms& terms, const std::vector<Eigen::Vector3d>& start);
+  // M at `start` (points in the camera frame, mm) with the pose's increment zero and no loss active. `data`
+  // and `start` must outlive this. ok() is false where M is not positive definite.
+  FramePreconditioner(const FrameData& data, const FrameTerms& terms, const std::vector<Eigen::Vector3d>& start);
 
   bool ok() const { return ok_; }
   int num_variables() const { return 3 * static_cast<int>(start_.size()) + 6; }
@@ -42,11 +43,11 @@ class FramePreconditioner {
   using Across = Eigen::Matrix<double, 3, 2>;
   using Pose = Eigen::Matrix<double, Eigen::Dynamic, 6>;
 
-  void BuildAcross(const std::vector<Eigen::Matrix3d>& stiffness);
-  bool BuildAlong(const std::vector<Eigen::Matrix3d>& stiffness);
-  bool BuildPose();
+  void BuildAcross(const std::vector<Eigen::Matrix3d>& blocks);
+  bool BuildAlong(const std::vector<Eigen::Matrix3d>& blocks, const FrameStiffness& stiffness);
+  bool BuildPose(const FrameStiffness& stiffness);
 
-  const FrameTerms& terms_;
+  const FrameData& data_;
   const std::vector<Eigen::Vector3d>& start_;
   bool ok_ = false;
   std::vector<Eigen::Vector3d> rays_;  // unit

@@ -5,13 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
+#include "estimation/frame/frame_solvers.h"
 #include "estimation/frame/frame_terms.h"
-#include "pliant/residuals/edge_length.h"
-#include "pliant/residuals/huber.h"
 #include "pliant/residuals/reprojection.h"
-#include "pliant/residuals/spatial.h"
-#include "pliant/residuals/temporal.h"
 
 namespace pliant {
 namespace {
@@ -40,93 +39,72 @@ Status CheckInput(const FrameProblemInput& input) {
 }
 
 // The problem without the points that do not project under the initial pose, and without their edges.
-Result<FrameTerms> BuildTerms(const Camera& camera, const FrameProblemInput& input,
-                              const FrameProblemOptions& options) {
+Result<FrameData> BuildData(const Camera& camera, const FrameProblemInput& input, const FrameProblemOptions& options) {
   if (Status status = CheckInput(input); !status.ok()) return status;
-  FrameTerms terms;
-  terms.camera = &camera;
-  terms.options = options;
-  terms.pose_is = input.pose;
-  std::vector<int> place(input.positions.size(), -1);
+  FrameData data;
+  data.camera = &camera;
+  data.options = options;
+  data.pose_is = input.pose;
+  std::vector<int> number(input.positions.size(), -1);
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < input.positions.size(); ++i) {
     if (!camera.Project(input.initial_cam_from_world * input.positions[i])) continue;
-    place[i] = terms.num_points();
-    terms.input_idx.push_back(static_cast<int>(i));
-    terms.positions.push_back(input.positions[i]);
-    terms.pixels.push_back(input.pixels[i]);
+    number[i] = data.num_points();
+    data.input_idx.push_back(static_cast<int>(i));
+    data.positions.push_back(input.positions[i]);
+    data.pixels.push_back(input.pixels[i]);
     sum += input.positions[i];
   }
-  if (terms.num_points() < options.min_points)
+  if (data.num_points() < options.min_points)
     return {ErrorCode::kInsufficient,
-            "only " + std::to_string(terms.num_points()) + " of " + std::to_string(input.positions.size()) +
+            "only " + std::to_string(data.num_points()) + " of " + std::to_string(input.positions.size()) +
                 " points lie in front of the camera; the joint problem needs " + std::to_string(options.min_points)};
-  terms.pose = PoseIncrement(input.initial_cam_from_world, sum / terms.num_points());
+  data.pose = PoseIncrement(input.initial_cam_from_world, sum / data.num_points());
   for (GraphEdge edge : input.edges) {
-    edge.i = place[edge.i];
-    edge.j = place[edge.j];
-    if (edge.i >= 0 && edge.j >= 0) terms.edges.push_back(edge);
+    edge.i = number[edge.i];
+    edge.j = number[edge.j];
+    if (edge.i >= 0 && edge.j >= 0) data.edges.push_back(edge);
   }
   const auto by_points = [](const GraphEdge& a, const GraphEdge& b) {
     return std::pair(a.i, a.j) < std::pair(b.i, b.j);
   };
-  if (!std::is_sorted(terms.edges.begin(), terms.edges.end(), by_points))
-    std::sort(terms.edges.begin(), terms.edges.end(), by_points);
-  return terms;
+  if (!std::is_sorted(data.edges.begin(), data.edges.end(), by_points))
+    std::sort(data.edges.begin(), data.edges.end(), by_points);
+  return data;
 }
 
-// The energy as the header states it, term by term in the world frame; `errors_px` takes each point's pixel error.
-// False where a point does not project.
-bool AddCosts(const FrameTerms& terms, const Rigid3& cam_from_world, const std::vector<Eigen::Vector3d>& positions,
-              FrameProblemCosts* costs, std::vector<double>* errors_px) {
-  const FrameProblemOptions& options = terms.options;
-  const bool all_project = terms.camera->Visit([&]<class Model>(const Model& model) {
-    const ReprojectionKernel<Model> kernel(model, options.sigma_rep_px);
+// Each point's pixel error at a pose and positions at which all project.
+std::vector<double> PixelErrors(const FrameData& data, const Rigid3& cam_from_world,
+                                const std::vector<Eigen::Vector3d>& positions) {
+  std::vector<double> errors_px;
+  data.camera->Visit([&]<class Model>(const Model& model) {
+    const ReprojectionKernel<Model> kernel(model, data.options.sigma_rep_px);
     Eigen::Vector2d residual;
-    for (int i = 0; i < terms.num_points(); ++i) {
+    for (int i = 0; i < data.num_points(); ++i) {
       const Eigen::Vector3d in_cam = cam_from_world * positions[i];
-      if (!kernel.template Residual<double>(terms.pixels[i], in_cam, &residual)) return false;
-      costs->reprojection += 0.5 * Huber(residual.squaredNorm(), options.chi2_rep).rho;
-      if (errors_px != nullptr) errors_px->push_back(residual.norm() * options.sigma_rep_px);
+      const bool projects = kernel.template Residual<double>(data.pixels[i], in_cam, &residual);
+      errors_px.push_back(projects ? residual.norm() * data.options.sigma_rep_px
+                                   : std::numeric_limits<double>::infinity());
     }
-    return true;
   });
-  if (!all_project) return false;
-
-  const TemporalKernel temporal(options.sigma_tmp_mm);
-  for (int i = 0; i < terms.num_points(); ++i) {
-    const Eigen::Vector3d residual = temporal.Residual<double>(positions[i] - terms.positions[i]);
-    costs->temporal += 0.5 * options.lambda_tmp * Huber(residual.squaredNorm(), options.chi2_tmp).rho;
-  }
-  for (const GraphEdge& edge : terms.edges) {
-    const SpatialKernel spatial(edge.weight, options.sigma_spa_mm);
-    const Eigen::Vector3d residual = spatial.Residual<double>(positions[edge.i] - terms.positions[edge.i],
-                                                              positions[edge.j] - terms.positions[edge.j]);
-    costs->spatial +=
-        0.5 * options.lambda_spa * edge.multiplicity * Huber(residual.squaredNorm(), options.chi2_spa).rho;
-    if (options.edge_length == Switch::kOff) continue;
-    const EdgeLengthKernel kernel(edge.rest_length_mm, options.sigma_len_mm);
-    const double length = kernel.Residual<double>(positions[edge.i], positions[edge.j]);
-    costs->edge_length += 0.5 * options.lambda_len * edge.multiplicity * Huber(length * length, options.chi2_len).rho;
-  }
-  return true;
+  return errors_px;
 }
 
 // How much of each displacement no neighbor shares (FramePoint::disagreement_mm).
-std::vector<double> Disagreements(const FrameTerms& terms, const std::vector<Eigen::Vector3d>& positions) {
+std::vector<double> Disagreements(const FrameData& data, const std::vector<Eigen::Vector3d>& positions) {
   std::vector<Eigen::Vector3d> sums(positions.size(), Eigen::Vector3d::Zero());
   std::vector<double> weights(positions.size(), 0.0);
   const auto add = [&](int to, int from, double weight) {
-    sums[to] += weight * (positions[from] - terms.positions[from]);
+    sums[to] += weight * (positions[from] - data.positions[from]);
     weights[to] += weight;
   };
-  for (const GraphEdge& edge : terms.edges) {
+  for (const GraphEdge& edge : data.edges) {
     add(edge.i, edge.j, edge.weight * edge.weight);
     add(edge.j, edge.i, edge.weight * edge.weight);
   }
   std::vector<double> disagreements(positions.size(), 0.0);
   for (std::size_t i = 0; i < positions.size(); ++i)
-    if (weights[i] > 0.0) disagreements[i] = (positions[i] - terms.positions[i] - sums[i] / weights[i]).norm();
+    if (weights[i] > 0.0) disagreements[i] = (positions[i] - data.positions[i] - sums[i] / weights[i]).norm();
   return disagreements;
 }
 
@@ -157,44 +135,48 @@ void FrameProblemOptions::List(OptionTable& table) {
 
 Result<FrameSolution> SolveFrameProblem(const Camera& camera, const FrameProblemInput& input,
                                         const FrameProblemOptions& options) {
-  const auto terms = BuildTerms(camera, input, options);
-  if (!terms.ok()) return terms.status();
-  const auto estimate =
-      options.solver == FrameSolver::kLbfgs ? SolveFrameByLbfgs(*terms) : SolveFrameByLevenbergMarquardt(*terms);
+  const auto data = BuildData(camera, input, options);
+  if (!data.ok()) return data.status();
+  const FrameTerms terms = MakeFrameTerms(*data);
+  const auto estimate = options.solver == FrameSolver::kLbfgs ? SolveFrameByLbfgs(*data, terms)
+                                                              : SolveFrameByLevenbergMarquardt(*data, terms);
   if (!estimate.ok()) return estimate.status();
 
-  FrameSolution solution;
-  std::vector<double> errors_px;
-  if (!AddCosts(*terms, input.initial_cam_from_world, terms->positions, &solution.initial_costs, nullptr) ||
-      !AddCosts(*terms, estimate->cam_from_world, estimate->positions, &solution.costs, &errors_px))
+  auto initial_costs = FrameCosts(terms, input.initial_cam_from_world, data->positions);
+  auto costs = FrameCosts(terms, estimate->cam_from_world, estimate->positions);
+  if (!initial_costs || !costs)
     return {ErrorCode::kDegenerate, "the joint problem's solution puts a point behind the camera"};
+  FrameSolution solution;
+  solution.initial_costs = *std::move(initial_costs);
+  solution.costs = *std::move(costs);
   solution.cam_from_world = estimate->cam_from_world;
-  solution.num_used = terms->num_points();
+  solution.num_used = data->num_points();
   solution.iterations = estimate->iterations;
   solution.converged = estimate->converged;
   solution.message = estimate->message;
   solution.points.resize(input.positions.size());
   for (std::size_t i = 0; i < input.positions.size(); ++i) solution.points[i].position = input.positions[i];
-  const std::vector<double> disagreements = Disagreements(*terms, estimate->positions);
-  for (int i = 0; i < terms->num_points(); ++i)
-    solution.points[terms->input_idx[i]] = {estimate->positions[i], true, errors_px[i], disagreements[i]};
+  const std::vector<double> errors_px = PixelErrors(*data, estimate->cam_from_world, estimate->positions);
+  const std::vector<double> disagreements = Disagreements(*data, estimate->positions);
+  for (int i = 0; i < data->num_points(); ++i)
+    solution.points[data->input_idx[i]] = {estimate->positions[i], true, errors_px[i], disagreements[i]};
   return solution;
 }
 
-Result<FrameProblemCosts> EvaluateFrameCosts(const Camera& camera, const FrameProblemInput& input,
-                                             const Rigid3& cam_from_world, std::span<const Eigen::Vector3d> positions,
-                                             const FrameProblemOptions& options) {
-  const auto terms = BuildTerms(camera, input, options);
-  if (!terms.ok()) return terms.status();
+Result<std::vector<CostTerm>> EvaluateFrameCosts(const Camera& camera, const FrameProblemInput& input,
+                                                 const Rigid3& cam_from_world,
+                                                 std::span<const Eigen::Vector3d> positions,
+                                                 const FrameProblemOptions& options) {
+  const auto data = BuildData(camera, input, options);
+  if (!data.ok()) return data.status();
   if (positions.size() != input.positions.size())
     return {ErrorCode::kMismatch, "the joint problem has " + std::to_string(input.positions.size()) + " points, but " +
                                       std::to_string(positions.size()) + " positions were given"};
   std::vector<Eigen::Vector3d> used;
-  for (const int i : terms->input_idx) used.push_back(positions[i]);
-  FrameProblemCosts costs;
-  if (!AddCosts(*terms, cam_from_world, used, &costs, nullptr))
-    return {ErrorCode::kInvalidArgument, "a point of the joint problem does not project at the given pose"};
-  return costs;
+  for (const int i : data->input_idx) used.push_back(positions[i]);
+  auto costs = FrameCosts(MakeFrameTerms(*data), cam_from_world, used);
+  if (!costs) return {ErrorCode::kInvalidArgument, "a point of the joint problem does not project at the given pose"};
+  return *std::move(costs);
 }
 
 }  // namespace pliant

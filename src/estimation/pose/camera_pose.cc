@@ -52,7 +52,7 @@ Matrix6d ClassifyAndAccumulate(const Camera& camera, std::span<const Eigen::Vect
       Eigen::Matrix<double, 2, 6> by_motion;
       by_motion << -by_point * Skew(in_cam), by_point;
       const double squared = residual.squaredNorm();
-      information += Huber(squared, options.chi2_rep).slope * by_motion.transpose() * by_motion;
+      information += Huber(squared, options.chi2_rep).derivative * by_motion.transpose() * by_motion;
       estimate->inliers[i] = squared <= options.chi2_rep;
       estimate->num_inliers += estimate->inliers[i];
     }

@@ -30,7 +30,7 @@
 #include "pliant/camera/camera.h"
 #include "pliant/deformation/graph.h"
 #include "pliant/geometry/rigid3.h"
-#include "pliant/scene/frame_costs.h"
+#include "pliant/scene/cost_term.h"
 
 namespace pliant {
 
@@ -92,11 +92,14 @@ struct FramePoint {
   double disagreement_mm = std::numeric_limits<double>::infinity();
 };
 
+// The terms' names, in their order, with costs of 0.
+std::vector<CostTerm> NoFrameCosts();
+
 struct FrameSolution {
   Rigid3 cam_from_world;
-  std::vector<FramePoint> points;  // one a point of the input
-  FrameProblemCosts initial_costs;
-  FrameProblemCosts costs;
+  std::vector<FramePoint> points;       // one a point of the input
+  std::vector<CostTerm> initial_costs;  // as NoFrameCosts
+  std::vector<CostTerm> costs;
   int num_used = 0;
   int iterations = 0;
   bool converged = false;
@@ -113,8 +116,9 @@ Result<FrameSolution> SolveFrameProblem(const Camera& camera, const FrameProblem
 // The energy by term at a given pose and positions X_i + delta_i (one an input point; points that do not project under
 // the initial pose are left out as in SolveFrameProblem). Fails like SolveFrameProblem, and with kInvalidArgument when
 // a point that was in front of the camera is not any more.
-Result<FrameProblemCosts> EvaluateFrameCosts(const Camera& camera, const FrameProblemInput& input,
-                                             const Rigid3& cam_from_world, std::span<const Eigen::Vector3d> positions,
-                                             const FrameProblemOptions& options);
+Result<std::vector<CostTerm>> EvaluateFrameCosts(const Camera& camera, const FrameProblemInput& input,
+                                                 const Rigid3& cam_from_world,
+                                                 std::span<const Eigen::Vector3d> positions,
+                                                 const FrameProblemOptions& options);
 
 }  // namespace pliant
