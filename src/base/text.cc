@@ -3,6 +3,7 @@
 
 #include "pliant/base/text.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cerrno>
@@ -204,6 +205,25 @@ std::vector<std::string_view> Split(std::string_view text, char separator) {
     begin = end + 1;
   }
   return fields;
+}
+
+std::vector<std::string_view> Words(std::string_view text) {
+  constexpr std::string_view kSeparators = " \t\r\n,;[]";
+  std::vector<std::string_view> words;
+  std::size_t end = 0;
+  while (true) {
+    const std::size_t begin = text.find_first_not_of(kSeparators, end);
+    if (begin == std::string_view::npos) return words;
+    end = std::min(text.find_first_of(kSeparators, begin), text.size());
+    words.push_back(text.substr(begin, end - begin));
+  }
+}
+
+std::optional<std::vector<double>> ParseNumbers(std::string_view text) {
+  std::vector<double> numbers;
+  for (const std::string_view word : Words(text))
+    if (!ParseFinite(word, &numbers.emplace_back())) return std::nullopt;
+  return numbers;
 }
 
 bool ParseFinite(std::string_view text, double* value) {

@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include <algorithm>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -19,22 +18,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Numbers between brackets, semicolons, commas and blanks; none where something else is among them.
-std::vector<double> NumbersIn(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](char c) { return std::string_view("[];,\t\r\n").find(c) != std::string_view::npos; },
-      ' ');
-  std::vector<double> numbers;
-  for (const std::string_view word : Split(text, ' '))
-    if (double value = 0; ParseFinite(word, &value))
-      numbers.push_back(value);
-    else
-      return {};
-  return numbers;
-}
-
+// None where something else is among them.
 std::vector<double> NumbersOf(const pugi::xml_node& parent, const char* name) {
-  return NumbersIn(parent.child_value(name));
+  return ParseNumbers(parent.child_value(name)).value_or(std::vector<double>());
 }
 
 // The first element of this name; empty where there is none.
@@ -91,7 +77,7 @@ Result<PhotometricCalibration> ReadCalibuPhotometry(const fs::path& file) {
     std::vector<double> numbers = NumbersOf(parent, name);
     if (parent.child(name) && numbers.size() != count)
       return Status(ErrorCode::kUnreadable,
-                    file.string() + ": " + name + " has not " + std::to_string(count) + " numbers");
+                    file.string() + ": " + name + " does not have " + std::to_string(count) + " numbers");
     return numbers;
   };
   const auto gamma = read(xml->camera, "gamma", 1);

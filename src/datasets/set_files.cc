@@ -25,26 +25,6 @@ std::vector<fs::path> FilesOf(const fs::path& folder) {
   return files;
 }
 
-// The fields of a line, whatever separates them.
-std::vector<std::string> Fields(std::string_view line) {
-  std::string blanks(line);
-  std::replace_if(
-      blanks.begin(), blanks.end(), [](char c) { return c == ',' || c == ';' || c == '\t'; }, ' ');
-  std::vector<std::string> fields;
-  for (const std::string_view field : Split(blanks, ' ')) fields.emplace_back(field);
-  return fields;
-}
-
-std::optional<std::vector<double>> Numbers(const std::vector<std::string>& fields) {
-  std::vector<double> numbers;
-  for (const std::string& field : fields) {
-    double value = 0;
-    if (!ParseDouble(field, &value) || !std::isfinite(value)) return std::nullopt;
-    numbers.push_back(value);
-  }
-  return numbers;
-}
-
 constexpr double kQuaternionError = 0.01;
 constexpr double kRounding = 1e-6;
 constexpr int kMaxFrames = 10'000'000;
@@ -125,15 +105,15 @@ Result<std::vector<NumberRow>> ReadNumberRows(const fs::path& file, std::size_t 
   std::string_view line;
   bool first = true;
   while (reader->Next(&line)) {
-    const std::vector<std::string> fields = Fields(line);
-    if (fields.empty() || fields.front().starts_with('#')) continue;
-    auto numbers = Numbers(fields);
-    const bool is_header = first && !numbers && std::isalpha(static_cast<unsigned char>(fields.front().front())) != 0;
+    const std::vector<std::string_view> words = Words(line);
+    if (words.empty() || words.front().starts_with('#')) continue;
+    auto numbers = ParseNumbers(line);
+    const bool is_header = first && !numbers && std::isalpha(static_cast<unsigned char>(words.front().front())) != 0;
     first = false;
     if (is_header) continue;
     if (!numbers || numbers->size() < columns)
-      return reader->Error("a line has " + std::to_string(columns) + " numbers; '" + std::string(line.substr(0, 60)) +
-                           "' has not");
+      return reader->Error("a line needs " + std::to_string(columns) + " numbers; '" + std::string(line.substr(0, 60)) +
+                           "' does not have them");
     rows.push_back({reader->number(), *std::move(numbers)});
   }
   return rows;

@@ -53,9 +53,9 @@ Result<Points> ReadNpy(const std::string& path, std::string_view bytes) {
   const std::string header(bytes.substr(head, length));
   const std::string type = Entry(header, "descr", '\'', '\'');
   const std::string shape = Entry(header, "shape", '(', ')');
-  const auto sizes = Split(shape, ',');
-  double rows = 0;
-  double cols = 0;
+  const auto sizes = ParseNumbers(shape);
+  const double rows = sizes && sizes->size() > 1 ? (*sizes)[0] : -1.0;
+  const double cols = sizes && sizes->size() > 1 ? (*sizes)[1] : -1.0;
   if ((type != "<f4" && type != "<f8") || header.find("'fortran_order': False") == std::string::npos ||
       sizes.size() < 2 || !ParseDouble(sizes[0], &rows) || Split(sizes[1], ' ').empty() ||
       !ParseDouble(Split(sizes[1], ' ')[0], &cols) || !(cols >= 3 && cols <= 64 && rows >= 0 && rows <= 1e9))
@@ -203,10 +203,7 @@ Result<Points> ReadText(const std::string& path) {
   Points points;
   std::string_view line;
   while (reader->Next(&line)) {
-    std::string blanks(line);
-    std::replace_if(
-        blanks.begin(), blanks.end(), [](char c) { return c == ',' || c == ';'; }, ' ');
-    const auto fields = Split(blanks, ' ');
+    const auto fields = Words(line);
     if (fields.empty() || fields[0].starts_with('#')) continue;
     Eigen::Vector3d point;
     for (Eigen::Index axis = 0; axis < 3; ++axis)

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <vector>
 
-#include "simulation/numbers.h"
+#include "pliant/base/text.h"
 
 namespace pliant {
 
@@ -137,7 +137,7 @@ Result<Camera> SimulatedCamera(const SimulationOptions& options) {
   const SimulationOptions::CameraModel& camera = options.camera;
   std::vector<double> params;
   if (!camera.params.empty()) {
-    const auto numbers = simulation::ParseNumbers(camera.params);
+    const auto numbers = ParseNumbers(camera.params);
     if (!numbers)
       return {ErrorCode::kInvalidArgument,
               "Camera.params is '" + camera.params + "'; give numbers separated by commas"};

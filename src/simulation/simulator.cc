@@ -16,7 +16,6 @@
 #include "simulation/centerline.h"
 #include "simulation/clearance.h"
 #include "simulation/motion.h"
-#include "simulation/numbers.h"
 #include "simulation/ray_scene.h"
 #include "simulation/renderer.h"
 #include "simulation/surface.h"
@@ -160,8 +159,8 @@ Result<simulation::Poke> Simulator::State::FindPoke() const {
   Eigen::Vector2d pixel(0.5 * (camera.width() - 1), 0.8 * (camera.height() - 1));
   Eigen::Vector3d direction;
   if (!options.deformation.poke_place.empty()) {
-    const auto place = simulation::ParseNumbers(options.deformation.poke_place);
-    if (!place || place->size() != 3)
+    const auto position = ParseNumbers(options.deformation.poke_place);
+    if (!position || position->size() != 3)
       return {ErrorCode::kInvalidArgument,
               "Deformation.poke_place is '" + options.deformation.poke_place + "'; give x,y,z in mm"};
     direction = (Eigen::Vector3d(place->data()) - world_from_cam.translation).normalized();

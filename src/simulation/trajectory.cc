@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "pliant/base/random.h"
-#include "simulation/numbers.h"
+#include "pliant/base/text.h"
 
 namespace pliant::simulation {
 namespace {

@@ -123,7 +123,8 @@ TEST_F(DataSets, WhatIsGarbledIsNamed) {
   Text("scared/data/rgb.mp4", "no video");
   Text("scared/endoscope_calibration.yaml", "M1: [1, 0, 0, 0, 1, 0, 0, 0, 1]\n");
   for (const auto& [folder, said] :
-       {std::pair("c3vd", "pose.txt:2: a line has 16 numbers"), std::pair("mav", "data.csv:3: a line has a time in ns"),
+       {std::pair("c3vd", "pose.txt:2: a line needs 16 numbers"),
+        std::pair("mav", "data.csv:3: a line has a time in ns"),
         std::pair("tum", "rgb.txt:2: a line has a time and a file"), std::pair("scared", "rgb.mp4 as a video")}) {
     const auto sequence = OpenSequence({.image_path = Path(folder)});
     ASSERT_FALSE(sequence.ok()) << folder;

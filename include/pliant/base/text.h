@@ -107,6 +107,10 @@ class LineReader {
 
 // The fields between separators. With ' ', runs of blanks and tabs count as one and those at the ends as none.
 std::vector<std::string_view> Split(std::string_view text, char separator);
+// The words between blanks, line ends, commas, semicolons and brackets, any number of them.
+std::vector<std::string_view> Words(std::string_view text);
+// All words of "1, 2.5;-3" as finite numbers; nothing where one of them is not.
+std::optional<std::vector<double>> ParseNumbers(std::string_view text);
 // Finite numbers only.
 bool ParseFinite(std::string_view text, double* value);
 bool ParseInt64(std::string_view text, std::int64_t* value);
