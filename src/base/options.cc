@@ -8,10 +8,10 @@
 #include <charconv>
 #include <cmath>
 
+#include "pliant/base/text.h"
+
 namespace pliant {
 namespace {
-
-std::string Quote(std::string_view text) { return "'" + std::string(text) + "'"; }
 
 // A plain YAML scalar where it is safe, a double-quoted one elsewhere.
 std::string YamlScalar(const std::string& text) {
@@ -96,7 +96,7 @@ void OptionTable::Add(std::string name, bool* value, std::string unit, std::stri
               } else if (text == "false" || text == "0" || text == "off" || text == "no") {
                 *value = false;
               } else {
-                return Status(ErrorCode::kInvalidArgument, full_name + " is " + Quote(text) + "; give true or false");
+                return Status(ErrorCode::kInvalidArgument, full_name + " is " + Quoted(text) + "; give true or false");
               }
               return Status::Ok();
             }});
@@ -108,7 +108,7 @@ void OptionTable::Add(std::string name, int* value, std::string unit, std::strin
             [value, full_name, low, high](std::string_view text) {
               int parsed = 0;
               if (!ParseInt(text, &parsed) || parsed < low || parsed > high)
-                return Status(ErrorCode::kInvalidArgument, full_name + " is " + Quote(text) +
+                return Status(ErrorCode::kInvalidArgument, full_name + " is " + Quoted(text) +
                                                                "; give a whole number from " + std::to_string(low) +
                                                                " to " + std::to_string(high));
               *value = parsed;
@@ -124,7 +124,7 @@ void OptionTable::Add(std::string name, double* value, std::string unit, std::st
               double parsed = 0;
               if (!ParseDouble(text, &parsed) || !(parsed >= low && parsed <= high))
                 return Status(ErrorCode::kInvalidArgument,
-                              full_name + " is " + Quote(text) + "; give a number from " + range);
+                              full_name + " is " + Quoted(text) + "; give a number from " + range);
               *value = parsed;
               return Status::Ok();
             }});
@@ -147,7 +147,7 @@ void OptionTable::AddChoice(std::string name, std::vector<std::string> names, st
             [names = std::move(names), unit, full_name, set_index = std::move(set_index)](std::string_view text) {
               const auto it = std::find(names.begin(), names.end(), text);
               if (it == names.end())
-                return Status(ErrorCode::kInvalidArgument, full_name + " is " + Quote(text) + "; give one of " + unit);
+                return Status(ErrorCode::kInvalidArgument, full_name + " is " + Quoted(text) + "; give one of " + unit);
               set_index(static_cast<std::size_t>(it - names.begin()));
               return Status::Ok();
             }});
@@ -168,13 +168,12 @@ void OptionTable::AddChoices(std::string name, std::vector<std::string> names, s
             },
             [names = std::move(names), unit, full_name, set_indices = std::move(set_indices)](std::string_view text) {
               std::vector<bool> chosen(names.size(), text == "all");
-              for (std::size_t begin = 0; text != "all" && begin < text.size();) {
-                const std::size_t end = std::min(text.find(',', begin), text.size());
-                const auto it = std::find(names.begin(), names.end(), text.substr(begin, end - begin));
+              for (const std::string_view part : Words(text)) {
+                if (text == "all") break;
+                const auto it = std::find(names.begin(), names.end(), part);
                 if (it == names.end())
-                  return Status(ErrorCode::kInvalidArgument, full_name + " is " + Quote(text) + "; give " + unit);
+                  return Status(ErrorCode::kInvalidArgument, full_name + " is " + Quoted(text) + "; give " + unit);
                 chosen[static_cast<std::size_t>(it - names.begin())] = true;
-                begin = end + 1;
               }
               std::vector<std::size_t> indices;
               for (std::size_t i = 0; i < chosen.size(); ++i)
@@ -189,14 +188,47 @@ const OptionField* OptionTable::Find(std::string_view name) const {
   return it == fields_.end() ? nullptr : &*it;
 }
 
+std::string OptionTable::FullName(const std::string& name) const {
+  return name.find('.') == std::string::npos ? group_ + "." + name : name;
+}
+
+void OptionTable::Renamed(std::string old_name, std::string name) {
+  renamed_.emplace_back(FullName(old_name), FullName(name));
+}
+
+void OptionTable::RenamedValue(std::string name, std::string old_value, std::string value) {
+  renamed_values_.emplace_back(FullName(name) + "=" + old_value, std::move(value));
+}
+
+void OptionTable::RenamedGroup(std::string old_group, std::string group) {
+  renamed_groups_.emplace_back(std::move(old_group), std::move(group));
+}
+
+std::string OptionTable::RenamedSentence(std::string_view name) const {
+  const std::string old_name(name);
+  std::string present = old_name;
+  for (const auto& [old_group, group] : renamed_groups_)
+    if (name.starts_with(old_group + ".")) present = group + old_name.substr(old_group.size());
+  for (const auto& [old_option, option] : renamed_)
+    if (old_option == old_name || old_option == present) present = option;
+  return present == old_name || Find(present) == nullptr ? std::string() : old_name + " is now called " + present;
+}
+
 Status OptionTable::Set(std::string_view name, std::string_view value) {
   const OptionField* field = Find(name);
   if (field == nullptr) {
+    if (std::string sentence = RenamedSentence(name); !sentence.empty())
+      return {ErrorCode::kInvalidArgument, std::move(sentence)};
     std::vector<std::string> names;
     for (const OptionField& f : fields_) names.push_back(f.name);
     return {ErrorCode::kInvalidArgument,
-            "there is no option " + Quote(name) + "; did you mean " + Quote(NearestName(name, names)) + "?"};
+            "there is no option " + Quoted(name) + "; did you mean " + Quoted(NearestName(name, names)) + "?"};
   }
+  for (const std::string_view part : Words(value))
+    for (const auto& [old_value, present] : renamed_values_)
+      if (old_value == field->name + "=" + std::string(part))
+        return {ErrorCode::kInvalidArgument,
+                "the value " + Quoted(part) + " of " + field->name + " is now called " + Quoted(present)};
   return field->set(value);
 }
 

@@ -20,8 +20,6 @@ namespace {
 
 constexpr std::size_t kManualWidth = 100;
 
-std::string Quote(std::string_view text) { return "'" + std::string(text) + "'"; }
-
 // `text` broken into lines of the manual's width, each behind `indent` spaces.
 std::string Wrap(std::string_view text, std::size_t indent) {
   std::istringstream words{std::string(text)};
@@ -84,7 +82,7 @@ int RunVerb(std::string_view command, std::span<const Verb> verbs, std::span<con
              std::string(verb.name) + " " + std::string(verb.arguments) + "\n";
   usage += "\nWith --help each of them prints its manual.\n";
   const bool asked = name == "--help" || name == "help";
-  if (!asked) SayError(command, name.empty() ? "say what it is to do" : "there is no " + Quoted(name) + " in it");
+  if (!asked) SayError(command, name.empty() ? "give one of its verbs" : "it has no verb " + Quoted(name));
   (asked ? std::cout : std::cerr) << usage;
   return asked ? kExitOk : kExitUsage;
 }
@@ -160,7 +158,8 @@ Status CommandLine::ReadArguments(std::span<const std::string> args) {
   for (const Argument& argument : arguments_) {
     for (const std::string& value : argument.given) {
       if (argument.set(value)) continue;
-      return {ErrorCode::kInvalidArgument, "--" + argument.name + " is " + Quote(value) + "; give " + argument.accepts};
+      return {ErrorCode::kInvalidArgument,
+              "--" + argument.name + " is " + Quoted(value) + "; give " + argument.accepts};
     }
   }
   return Status::Ok();
@@ -188,12 +187,14 @@ Status CommandLine::ApplyFlags(OptionTable& options) const {
   for (std::size_t i = 0; i < extras_.size(); ++i) {
     const std::string& token = extras_[i];
     if (!token.starts_with("--") || token.size() == 2) {
-      return {ErrorCode::kInvalidArgument, "does not know what to do with " + Quote(token) +
+      return {ErrorCode::kInvalidArgument, "does not know what to do with " + Quoted(token) +
                                                "; arguments are --name value, see " + NameOf(manual_) + " --help"};
     }
     const std::size_t equals = token.find('=');
     const std::string name = token.substr(2, equals == std::string::npos ? equals : equals - 2);
     if (options.Find(name) == nullptr) {
+      if (std::string sentence = options.RenamedSentence(name); !sentence.empty())
+        return {ErrorCode::kInvalidArgument, std::move(sentence)};
       return {ErrorCode::kInvalidArgument,
               "there is no option --" + name + "; did you mean " + NearestFlag(name, options) + "?"};
     }

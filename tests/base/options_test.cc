@@ -22,6 +22,7 @@ struct BasketOptions {
   double weight = 0.1;
   std::string label = "a b";
   Fruit fruit = Fruit::kApple;
+  std::vector<Fruit> others;
   void List(OptionTable& table) {
     table.BeginGroup("Basket", "what is carried");
     table.Add("open", &open, "-", "open at the top");
@@ -29,6 +30,12 @@ struct BasketOptions {
     table.Add("weight", &weight, "kg", "of all", 0, 10);
     table.Add("label", &label, "-", "what it says");
     table.AddChoice("fruit", &fruit, "kind");
+    table.AddChoices("others", &others, "kinds");
+    table.Renamed("mass", "weight");
+    table.Renamed("Bag.mark", "label");
+    table.RenamedValue("fruit", "quince", "pear");
+    table.RenamedValue("others", "quince", "pear");
+    table.RenamedGroup("Hamper", "Basket");
   }
 };
 
@@ -67,6 +74,23 @@ TEST(Options, AnUnknownNameNamesItsNearestNeighbor) {
   OptionTable table;
   options.List(table);
   EXPECT_NE(table.Set("basket.wieght", "1").message().find("'Basket.weight'"), std::string::npos);
+}
+
+TEST(Options, AnEarlierNameIsRefusedWithTheNameOfToday) {
+  BasketOptions options;
+  OptionTable table;
+  options.List(table);
+  EXPECT_EQ(table.Set("Basket.mass", "1").message(), "Basket.mass is now called Basket.weight");
+  EXPECT_EQ(table.Set("Bag.mark", "x").message(), "Bag.mark is now called Basket.label");
+  EXPECT_EQ(table.Set("Hamper.count", "2").message(), "Hamper.count is now called Basket.count");
+  EXPECT_EQ(table.Set("Hamper.mass", "2").message(), "Hamper.mass is now called Basket.weight");
+  EXPECT_EQ(table.Set("Basket.fruit", "quince").message(), "the value 'quince' of Basket.fruit is now called 'pear'");
+  EXPECT_EQ(table.Set("Basket.others", "apple,quince").message(),
+            "the value 'quince' of Basket.others is now called 'pear'");
+  EXPECT_EQ(table.Set("Basket.mass", "1").code(), ErrorCode::kInvalidArgument);
+  EXPECT_NE(table.Set("Hamper.wieght", "1").message().find("there is no option"), std::string::npos);
+  EXPECT_TRUE(table.Set("Basket.label", "quince").ok());
+  for (const char* old_name : {"mass", "Hamper", "Bag"}) EXPECT_EQ(table.ToYaml().find(old_name), std::string::npos);
 }
 
 TEST(Options, DoublesReadBackExactly) {

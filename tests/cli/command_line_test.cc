@@ -40,6 +40,7 @@ struct BasketOptions {
     table.Add("count", &count, "-", "how many pieces", 1, 9);
     table.Add("weight", &weight, "kg", "of all pieces", -10, 10);
     table.Add("open", &open, "-", "open at the top");
+    table.Renamed("mass", "weight");
   }
 };
 
@@ -139,6 +140,18 @@ TEST(CommandLine, AnUnknownNameNamesItsNeighborAmongArgumentsAndOptions) {
     EXPECT_EQ(outcome.err,
               std::string("pliant fill: there is no option ") + flag + "; did you mean " + neighbor + "?\n");
   }
+}
+
+TEST(CommandLine, AnEarlierNameIsRefusedWithTheNameOfToday) {
+  const auto file = WriteTemporary("earlier.yaml", "Basket:\n  mass: 7\n");
+  const Outcome flag = Give({"--to", "X", "--Basket.mass", "1"});
+  EXPECT_EQ(flag.exit, kExitUsage);
+  EXPECT_EQ(flag.err, "pliant fill: Basket.mass is now called Basket.weight\n");
+  const Outcome config = Give({"--to", "X", "--config", file.string()});
+  EXPECT_EQ(config.exit, kExitUsage);
+  EXPECT_THAT(config.err, HasSubstr("earlier.yaml:2: Basket.mass is now called Basket.weight\n"));
+  EXPECT_THAT(Give({"--help"}).out, Not(HasSubstr("mass")));
+  EXPECT_THAT(Give({"--print_config"}).out, Not(HasSubstr("mass")));
 }
 
 TEST(CommandLine, WrongUsesAreOneSentenceAndExitCodeTwo) {

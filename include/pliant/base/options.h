@@ -89,12 +89,22 @@ class OptionTable {
         });
   }
 
+  // Earlier names, of an option of the present group (or "Group.option" of another one), of a value of a choice of the
+  // present group, and of a whole group. They are listed nowhere; who still gives one is told the name of today.
+  void Renamed(std::string old_name, std::string name);
+  void RenamedValue(std::string name, std::string old_value, std::string value);
+  void RenamedGroup(std::string old_group, std::string group);
+
   const std::vector<OptionField>& fields() const { return fields_; }
   const std::vector<std::pair<std::string, std::string>>& groups() const { return groups_; }  // name, why
   const OptionField* Find(std::string_view name) const;
 
-  // Sets one option from text. An unknown name is an error that names its nearest neighbor; a bad value, an error that
-  // names the option, its range and its unit. Nothing is changed on error.
+  // "Growth.old is now called Growth.new" where `name` is an earlier name; else empty.
+  std::string RenamedSentence(std::string_view name) const;
+
+  // Sets one option from text. An earlier name is an error that says the name of today; an unknown one, an error that
+  // names its nearest neighbor; a bad value, an error that names the option, its range and its unit. Nothing is changed
+  // on error.
   Status Set(std::string_view name, std::string_view value);
 
   // The table as YAML with every option's unit and reason as a comment; LoadOptionsFile (io) reads it back.
@@ -107,10 +117,14 @@ class OptionTable {
                   std::function<std::vector<std::string>()> get,
                   std::function<void(const std::vector<std::size_t>&)> set_indices);
   void AddField(OptionField field);
+  std::string FullName(const std::string& name) const;
 
   std::string group_;
   std::vector<std::pair<std::string, std::string>> groups_;
   std::vector<OptionField> fields_;
+  std::vector<std::pair<std::string, std::string>> renamed_;         // full names: old, new
+  std::vector<std::pair<std::string, std::string>> renamed_groups_;  // old, new
+  std::vector<std::pair<std::string, std::string>> renamed_values_;  // "Group.option=old", new
 };
 
 // The entry of `names` nearest to `name` (Levenshtein distance, upper and lower case alike); empty if `names` is empty.

@@ -11,9 +11,9 @@
 
 namespace pliant {
 
-// Sets every option that the file names. An unknown option is an error that names its nearest neighbor; so are a value
-// that is out of range, an option given twice, and anything but a plain value. The sentence has file and line. On
-// failure the table is as it was.
+// Sets every option that the file names. An unknown option is an error that names its nearest neighbor, an earlier name
+// one that says the name of today; so are a value that is out of range, an option given twice, and anything but a plain
+// value. The sentence has file and line. On failure the table is as it was.
 Status LoadOptionsFile(const std::string& path, OptionTable& table);
 
 }  // namespace pliant
