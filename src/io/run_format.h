@@ -7,6 +7,7 @@
 #include <array>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace pliant {
 
@@ -19,6 +20,16 @@ inline constexpr std::string_view kFrameColumnsAfterCosts = "median_reprojection
 inline constexpr std::string_view kCostPrefix = "cost_";
 inline constexpr std::string_view kStagePrefix = "ms_";
 inline constexpr std::string_view kSubmapColumn = "submap";
+
+// What earlier versions called otherwise, in state, stages and reasons of losses: their name, and the one of today.
+inline constexpr std::array kEarlierNames = {
+    std::pair<std::string_view, std::string_view>{"initialising", "initializing"},  // a state
+    std::pair<std::string_view, std::string_view>{"initialise", "initialize"}};     // a stage
+inline std::string_view PresentName(std::string_view name) {
+  for (const auto& [earlier, present] : kEarlierNames)
+    if (name == earlier) return present;
+  return name;
+}
 
 // Everything that a run may leave, which the next one in the same folder deletes; of several submaps also map_K.ply and
 // models in sparse/K.

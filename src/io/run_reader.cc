@@ -60,7 +60,7 @@ std::string FindColumns(std::string_view line, FrameColumns* columns) {
     if (names[i].starts_with(kCostPrefix))
       columns->costs.push_back({i, std::string(names[i].substr(kCostPrefix.size()))});
     if (names[i].starts_with(kStagePrefix))
-      columns->stages.push_back({i, std::string(names[i].substr(kStagePrefix.size()))});
+      columns->stages.push_back({i, std::string(PresentName(names[i].substr(kStagePrefix.size())))});
   }
   return missing;
 }
@@ -70,8 +70,9 @@ std::string ParseFrame(std::string_view line, const FrameColumns& columns, RunFr
   const std::vector<std::string_view> fields = Split(line, ',');
   if (fields.size() != columns.size)
     return "a row has " + std::to_string(columns.size) + " columns, this one has " + std::to_string(fields.size());
-  const auto state = std::find_if(EnumNames<TrackingState>::kNames.begin(), EnumNames<TrackingState>::kNames.end(),
-                                  [&](const auto& entry) { return entry.second == fields[columns.state]; });
+  const auto state =
+      std::find_if(EnumNames<TrackingState>::kNames.begin(), EnumNames<TrackingState>::kNames.end(),
+                   [&](const auto& entry) { return entry.second == PresentName(fields[columns.state]); });
   if (state == EnumNames<TrackingState>::kNames.end()) return Quoted(fields[columns.state]) + " is not a state";
   frame->state = state->first;
   for (const auto& [column, value] : columns.counts)

@@ -46,7 +46,7 @@ Status WriteRunSummary(const std::string& path, const RunSummary& summary) {
   // Paths need not be UTF-8.
   const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
   const Status status = WriteFileAtomically(path, text);
-  // How a run ended must be told on a full disk too; a file's first block has room enough.
+  // How a run ended is written on a full disk too: the text fits into the file's first block.
   constexpr std::size_t kBlock = 4096;
   std::error_code error;
   if (status.ok() || !std::filesystem::exists(path, error) || text.size() > kBlock) return status;
@@ -86,11 +86,12 @@ Result<RunSummary> ReadRunSummary(const std::string& path) {
     summary.points = counts.at("points").get<std::int64_t>();
     summary.observations = counts.at("observations").get<std::int64_t>();
     for (const auto& [reason, count] : counts.at("losses").items())
-      summary.losses.emplace_back(reason, count.get<std::int64_t>());
+      summary.losses.emplace_back(PresentName(reason), count.get<std::int64_t>());
     const Json& timings = json.at("timings");
     summary.total_s = timings.at("total_s").get<double>();
     summary.frames_per_second = timings.at("frames_per_second").get<double>();
-    for (const auto& [stage, ms] : timings.at("mean_ms").items()) summary.mean_ms.emplace_back(stage, ms.get<double>());
+    for (const auto& [stage, ms] : timings.at("mean_ms").items())
+      summary.mean_ms.emplace_back(PresentName(stage), ms.get<double>());
     return summary;
   } catch (const Json::exception& error) {
     return Status(ErrorCode::kUnreadable, Quoted(path) + " is not a run's run.json: " + error.what());

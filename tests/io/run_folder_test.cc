@@ -133,6 +133,51 @@ TEST(RunFolder, RefusesADamagedRowInTheMiddle) {
   EXPECT_THAT(ReadRun(folder.Path("run")).status().message(), HasSubstr("frames.csv:3: 'trackinG' is not a state"));
 }
 
+TEST(RunFolder, FindsTheColumnsOfFramesByTheirNames) {
+  const TestFolder folder;
+  WriteRun(folder.Path("run"), 2);
+  const std::string frames = folder.Read("run/frames.csv");
+  EXPECT_TRUE(
+      frames.starts_with("frame,timestamp,state,tracked,optimized,lost,added,cost_stretch,cost_bending,"
+                         "median_reprojection_error_px,submap,ms_pyramid,ms_tracking\n"));
+  folder.Write("run/frames.csv",
+               "state,frame,unknown,timestamp,tracked,optimized,lost,added,median_reprojection_error_px,cost_a\n"
+               "waiting_for_reference,10,?,0,0,0,0,0,0,0\n"
+               "tracking,12,?,0.04,7,6,5,4,0.5,3\n");
+  const auto run = ReadRun(folder.Path("run"));
+  ASSERT_TRUE(run.ok()) << run.status().message();
+  const RunFrame& frame = run->frames[1];
+  EXPECT_EQ(frame.frame_idx, 12);
+  EXPECT_EQ(frame.lost, 5);
+  EXPECT_EQ(frame.median_reprojection_error_px, 0.5);
+  EXPECT_EQ(frame.costs, (std::vector<CostTerm>{{"a", 3}}));
+  EXPECT_TRUE(run->stage_names.empty());
+  folder.Write("run/frames.csv", "frame,timestamp,state,tracked,lost,added,median_reprojection_error_px\n");
+  EXPECT_THAT(ReadRun(folder.Path("run")).status().message(), HasSubstr("frames.csv:1: the first line names no column "
+                                                                        "'optimized'"));
+}
+
+TEST(RunFolder, ReadsARunOfAnEarlierVersion) {
+  const TestFolder folder;
+  WriteRun(folder.Path("run"), 2);
+  folder.Write("run/frames.csv",
+               "frame,timestamp,state,tracked,optimized,lost,added,cost_reprojection,cost_spatial,cost_temporal,"
+               "cost_edge_length,median_reprojection_error_px,ms_prepare,ms_initialise\n"
+               "10,0,initialising,0,0,0,0,0,0,0,0,0,1,2\n"
+               "12,0.04,tracking,7,6,5,4,1,2,3,0,0.5,3,4\n");
+  std::string summary = folder.Read("run/run.json");
+  summary.replace(summary.find("pyramid"), 7, "initialise");
+  folder.Write("run/run.json", summary);
+  const auto run = ReadRun(folder.Path("run"));
+  ASSERT_TRUE(run.ok()) << run.status().message();
+  EXPECT_EQ(run->frames[0].state, TrackingState::kInitializing);
+  EXPECT_EQ(run->frames[1].submap, 0);
+  EXPECT_EQ(run->stage_names, (std::vector<std::string>{"prepare", "initialize"}));
+  EXPECT_EQ(run->frames[1].costs,
+            (std::vector<CostTerm>{{"reprojection", 1}, {"spatial", 2}, {"temporal", 3}, {"edge_length", 0}}));
+  EXPECT_EQ(run->summary->mean_ms[0].first, "initialize");
+}
+
 TEST(RunFolder, ReadsAnotherProgramsResult) {
   const TestFolder folder;
   folder.Write("trajectory.txt", "0.1 0 0 0 0 0 0 1\n0.2 1 0 0 0 0 0 1");
