@@ -25,7 +25,7 @@ void TrackProgress::OnHeld(const FrameReport& report) { Show(report); }
 
 void TrackProgress::Show(const FrameReport& report) {
   shown_frame_idx_ = report.frame_idx;
-  if (report.state != state_ || report.join) {
+  if (report.state != state_ || report.merge) {
     progress_->Note("frame " + report.name + ": " + std::string(EnumName(report.state)) +
                     (report.note.empty() ? "" : " (" + report.note + ")"));
     state_ = report.state;

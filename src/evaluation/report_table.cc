@@ -106,8 +106,9 @@ std::string SurvivalTable(const TrackSurvival& s) {
   if (s.submaps > 1) text += FormatText(", in %d maps", s.submaps);
   text += "\n";
   if (s.interruptions > 0)
-    text += FormatText("  interruptions %d; the same map, or one joined with it, went on after %d\n", s.interruptions,
-                       s.interruptions_survived);
+    text +=
+        FormatText("  interruptions %d; after %d of them tracking continued in the same map or one merged with it\n",
+                   s.interruptions, s.interruptions_survived);
   text += FormatText("  points: first frame %d, last %d, mean %.1f\n", s.first_points, s.last_points, s.mean_points);
   text += FormatText("  of the first frame's points %d live in the last;", s.last_alive_of_first);
   text +=

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// The rows of a run folder: observations as they are written, and all rows once more where submaps were joined.
+// The rows of a run folder: observations as they are written, and all rows once more where submaps were merged.
 #pragma once
 
 #include <optional>

@@ -85,7 +85,7 @@ struct RunWriter::State {
 
   Status Check(const FrameReport& report);
   Status AddPoints(const FrameReport& report);
-  void Join(const SubmapJoin& join);
+  void Merge(const SubmapMerge& merge);
   void NumberSubmaps();
   void Count(const FrameReport& report);
   void AppendFrameRow(const FrameReport& report);
@@ -147,10 +147,10 @@ Status RunWriter::State::Check(const FrameReport& report) {
   if (report.cam_from_world)
     finite = finite && report.cam_from_world->rotation.coeffs().allFinite() &&
              report.cam_from_world->translation.allFinite();
-  if (report.join) {
-    const Sim3& move = report.join->into_from_submap;
+  if (report.merge) {
+    const Sim3& move = report.merge->into_from_submap;
     finite = finite && std::isfinite(move.scale) && move.rotation.coeffs().allFinite() && move.translation.allFinite();
-    if (!(move.scale > 0) || report.join->submap == report.join->into) return invalid("a join that cannot be");
+    if (!(move.scale > 0) || report.merge->submap == report.merge->into) return invalid("a merge that is not possible");
   }
   for (const NewPoint& point : report.new_points) finite = finite && point.position.allFinite();
   for (const RefinedPoint& point : report.refined_points) finite = finite && point.position.allFinite();
@@ -264,26 +264,26 @@ Status RunWriter::Write(const FrameReport& report) {
   if (Status status = s.AddPoints(report); !status.ok()) return status;
   s.Count(report);
   s.failure = s.WriteRows(report);
-  if (report.join) s.Join(*report.join);
+  if (report.merge) s.Merge(*report.merge);
   return s.failure;
 }
 
 // The rows that are on disk stay as they are until Finish.
-void RunWriter::State::Join(const SubmapJoin& join) {
+void RunWriter::State::Merge(const SubmapMerge& merge) {
   for (CanonicalImage& image : images)
-    if (image.submap == join.submap) {
-      image.cam_from_world = PoseInWorld(join.into_from_submap, image.cam_from_world);
-      image.submap = join.into;
+    if (image.submap == merge.submap) {
+      image.cam_from_world = PoseInWorld(merge.into_from_submap, image.cam_from_world);
+      image.submap = merge.into;
     }
   for (CanonicalPoint& point : points)
-    if (point.submap == join.submap) {
-      point.point.position = join.into_from_submap * point.point.position;
-      point.submap = join.into;
+    if (point.submap == merge.submap) {
+      point.point.position = merge.into_from_submap * point.point.position;
+      point.submap = merge.into;
     }
   for (RunFrameWorld& world : worlds)
-    if (world.submap == join.submap) {
-      world.moved_by = world.moved_by ? join.into_from_submap * *world.moved_by : join.into_from_submap;
-      world.submap = join.into;
+    if (world.submap == merge.submap) {
+      world.moved_by = world.moved_by ? merge.into_from_submap * *world.moved_by : merge.into_from_submap;
+      world.submap = merge.into;
     }
 }
 

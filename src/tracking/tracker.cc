@@ -235,20 +235,20 @@ std::string Tracker::Lose(const TrackerFrame& frame, const std::string& reason, 
 
 // The frame's report joins those that are held. Submaps that meet in this frame become one after it was reported.
 void Tracker::Report(const TrackerFrame& frame, const FrameResult& result, StageTimes* times) {
-  std::optional<Submaps::Merge> merge;
+  std::optional<Submaps::FoundMerge> found;
   if (state_ == TrackingState::kTracking) {
     const StageTimer timer(times, Stage::kInitialize);
-    merge = submaps_->FindMerge(frame, relocalizer_.get());
+    found = submaps_->FindMerge(frame, relocalizer_.get());
   }
   FrameReport report = MakeReport(frame, state_, submaps_->current(), result, *times);
-  if (merge) {
-    report.join = merge->join;
-    report.note = WithFault(report.note, "map " + std::to_string(merge->join.submap) + " is now part of map " +
-                                             std::to_string(merge->join.into) + ", which this image shows too");
+  if (found) {
+    report.merge = found->merge;
+    report.note = WithFault(report.note, "map " + std::to_string(found->merge.submap) + " is now part of map " +
+                                             std::to_string(found->merge.into) + ", which this image shows too");
   }
   held_.push_back(std::move(report));
   if (result.first_map) held_ = bootstrapper_->Completed(*result.first_map, std::move(held_));
-  if (merge) submaps_->Apply(*merge);
+  if (found) submaps_->Apply(*found);
 }
 
 void Tracker::EndSequence() {

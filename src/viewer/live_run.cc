@@ -38,13 +38,13 @@ void LiveRun::Add(const FrameReport& report) {
   }
   AddWhatPoseTells(run_.camera ? &*run_.camera : nullptr, &frame);
   frames_.push_back(std::make_shared<const ViewedFrame>(std::move(frame)));
-  if (!report.join) return;
+  if (!report.merge) return;
   for (const auto& kept : frames_) run_.frames.push_back(*kept);
-  Move(report.join->into_from_submap, report.join->submap, &run_);
+  Move(report.merge->into_from_submap, report.merge->submap, &run_);
   frames_.clear();
-  for (ViewedFrame& joined : run_.frames) {
-    if (joined.row.submap == report.join->submap) joined.row.submap = report.join->into;
-    frames_.push_back(std::make_shared<const ViewedFrame>(std::move(joined)));
+  for (ViewedFrame& merged : run_.frames) {
+    if (merged.row.submap == report.merge->submap) merged.row.submap = report.merge->into;
+    frames_.push_back(std::make_shared<const ViewedFrame>(std::move(merged)));
   }
   run_.frames.clear();
   ++epoch_;

@@ -22,7 +22,8 @@ class LiveRun {
   explicit LiveRun(std::string name) { run_.name = std::move(name); }
 
   void SetCamera(const Camera& camera) { run_.camera = camera; }
-  // The next frame's final report. A join takes the frames of its map, up to this one, into the other one's world.
+  // The next frame's final report. A merge moves its submap's frames, up to this one,
+  // into the other submap's world.
   void Add(const FrameReport& report);
 
   int rows() const { return static_cast<int>(frames_.size()); }

@@ -101,9 +101,9 @@ TEST(TrackProgress, ShowsAFrameWhenItIsProcessedAndNotAgainWhenItIsFinal) {
     progress.OnFrame(Report(0, TrackingState::kTracking, "from the map"));
     progress.OnFrame(Report(1, TrackingState::kTracking, "from the map"));
     progress.OnFrame(Report(2, TrackingState::kTracking, "first map"));
-    FrameReport joins = Report(3, TrackingState::kTracking, "two maps are one");
-    joins.join = SubmapJoin();
-    progress.OnFrame(joins);
+    FrameReport merges = Report(3, TrackingState::kTracking, "two maps are one");
+    merges.merge = SubmapMerge();
+    progress.OnFrame(merges);
   }
   const std::string text = testing::internal::GetCapturedStderr();
   EXPECT_NE(text.find("frame 0.png: initializing (reference)\n"), std::string::npos) << text;

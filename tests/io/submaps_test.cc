@@ -67,7 +67,7 @@ class MergedSubmaps : public testing::Test {
  protected:
   MergedSubmaps() : writer_(Writer(folder_.Path("run"))) {
     FrameReport second = ReportOf(2, 1);
-    second.join = {1, 0, into_from_submap_};
+    second.merge = {1, 0, into_from_submap_};
     FrameReport after = Report(3);
     after.observations.push_back(ReportOf(3, 1).observations[0]);
     for (const FrameReport& report : {Report(1), second, after, ReportOf(4, 2)})
@@ -138,9 +138,9 @@ TEST(RunWriter, AWorldIsMovedAsOftenAsItIsMerged) {
   {
     RunWriter writer = Writer(folder.Path("run"));
     FrameReport third = ReportOf(3, 2);
-    third.join = {2, 1, second_from_third};
+    third.merge = {2, 1, second_from_third};
     FrameReport again = Report(4);
-    again.join = {1, 0, first_from_second};
+    again.merge = {1, 0, first_from_second};
     for (const FrameReport& report : {Report(1), ReportOf(2, 1), third, again})
       ASSERT_TRUE(writer.Write(report).ok()) << report.frame_idx;
     ASSERT_TRUE(writer.Finish(RunStatus::kCompleted, "").ok());
@@ -158,11 +158,11 @@ TEST(RunWriter, RefusesAMergeThatCannotBe) {
   const TestFolder folder;
   RunWriter writer = Writer(folder.Path("run"));
   FrameReport report = Report(1);
-  report.join = {1, 0, Sim3{0}};
-  EXPECT_THAT(writer.Write(report).message(), HasSubstr("a join that cannot be"));
-  report.join = {0, 0, Sim3()};
-  EXPECT_THAT(writer.Write(report).message(), HasSubstr("a join that cannot be"));
-  report.join = {1, 0, Sim3{1, Eigen::Quaterniond::Identity(), {0, std::nan(""), 0}}};
+  report.merge = {1, 0, Sim3{0}};
+  EXPECT_THAT(writer.Write(report).message(), HasSubstr("a merge that is not possible"));
+  report.merge = {0, 0, Sim3()};
+  EXPECT_THAT(writer.Write(report).message(), HasSubstr("a merge that is not possible"));
+  report.merge = {1, 0, Sim3{1, Eigen::Quaterniond::Identity(), {0, std::nan(""), 0}}};
   EXPECT_THAT(writer.Write(report).message(), HasSubstr("not finite"));
 }
 
@@ -171,7 +171,7 @@ TEST(RunWriter, ARunThatFailsAtItsEndHasItsMapsAsReported) {
   {
     RunWriter writer = Writer(folder.Path("run"));
     FrameReport second = ReportOf(2, 1);
-    second.join = {1, 0, Sim3()};
+    second.merge = {1, 0, Sim3()};
     for (const FrameReport& report : {Report(1), second}) ASSERT_TRUE(writer.Write(report).ok());
     std::filesystem::create_directory(folder.Path("run/frames.csv.tmp"));  // in the way
     EXPECT_FALSE(writer.Finish(RunStatus::kCompleted, "").ok());

@@ -232,9 +232,9 @@ class MapsThatMeet : public LossOfTheView {
     }
     return reports;
   }
-  // Of two reports of one image, one in each map: that the join takes the one's world into the other's.
-  static void ExpectOnePlace(FrameReport of_younger, const FrameReport& of_older, const SubmapJoin& join) {
-    of_younger.cam_from_world = PoseInWorld(join.into_from_submap, *of_younger.cam_from_world);
+  // Of two reports of one image, one in each map: that the merge takes the one's world into the other's.
+  static void ExpectOnePlace(FrameReport of_younger, const FrameReport& of_older, const SubmapMerge& merge) {
+    of_younger.cam_from_world = PoseInWorld(merge.into_from_submap, *of_younger.cam_from_world);
     EXPECT_LT(DistanceMm(of_younger, of_older), kPlace_mm) << of_younger.frame_idx;
   }
 
@@ -248,20 +248,20 @@ TEST_F(MapsThatMeet, BecomeOne) {
   ASSERT_EQ(static_cast<int>(reports.size()), kAgain + kFrames);
   for (const FrameReport& report : reports) {
     EXPECT_EQ(report.submap, report.frame_idx >= kAgain && report.frame_idx <= kJoined ? 1 : 0) << report.frame_idx;
-    EXPECT_EQ(report.join.has_value(), report.frame_idx == kJoined) << report.frame_idx;
+    EXPECT_EQ(report.merge.has_value(), report.frame_idx == kJoined) << report.frame_idx;
   }
-  const SubmapJoin& join = *reports[kJoined].join;
+  const SubmapMerge& merge = *reports[kJoined].merge;
   EXPECT_THAT(reports[kJoined].note, HasSubstr("map 1 is now part of map 0"));
-  EXPECT_EQ(join.submap, 1);
-  EXPECT_EQ(join.into, 0);
-  EXPECT_NEAR(join.into_from_submap.scale, kHalf, kUnit);
+  EXPECT_EQ(merge.submap, 1);
+  EXPECT_EQ(merge.into, 0);
+  EXPECT_NEAR(merge.into_from_submap.scale, kHalf, kUnit);
   const auto undisturbed = Run(FromDepth(), AllImages());
   for (int image = 0; image < kFrames; ++image) {
     const FrameReport& again = reports[static_cast<std::size_t>(kAgain + image)];
     const FrameReport& there = undisturbed[static_cast<std::size_t>(image)];
     ASSERT_EQ(again.state, TrackingState::kTracking) << image;
     if (again.submap == 1)
-      ExpectOnePlace(again, there, join);
+      ExpectOnePlace(again, there, merge);
     else
       EXPECT_LT(DistanceMm(again, there), kPlace_mm) << image;
   }
@@ -292,27 +292,27 @@ TEST_F(MapsThatMeet, BecomeOneWhicheverIsTracked) {
       Show(options, {0, 1, 2, 3, 4, 5, -1, -1, -1, 0, 1, 2, 3, 4, 5, -1, -1, 6, 7, 8, 9, 10, 11, 12, 13});
   for (const FrameReport& report : reports) {
     EXPECT_EQ(report.submap, report.frame_idx >= 9 && report.frame_idx < kBack ? 1 : 0) << report.frame_idx;
-    EXPECT_EQ(report.join.has_value(), report.frame_idx == kDue) << report.frame_idx;
+    EXPECT_EQ(report.merge.has_value(), report.frame_idx == kDue) << report.frame_idx;
   }
-  const SubmapJoin& join = *reports[kDue].join;
-  EXPECT_EQ(join.submap, 1);
-  EXPECT_EQ(join.into, 0);
-  EXPECT_NEAR(join.into_from_submap.scale, kHalf, kUnit);
-  ExpectOnePlace(reports[12], reports[3], join);
+  const SubmapMerge& merge = *reports[kDue].merge;
+  EXPECT_EQ(merge.submap, 1);
+  EXPECT_EQ(merge.into, 0);
+  EXPECT_NEAR(merge.into_from_submap.scale, kHalf, kUnit);
+  ExpectOnePlace(reports[12], reports[3], merge);
   EXPECT_EQ(reports.back().state, TrackingState::kTracking);
 }
 
 TEST_F(MapsThatMeet, StayTwoWhereTheyAreNotToBeJoinedOrContradictEachOther) {
-  std::vector<TrackerOptions> unjoined(4, Options());
-  unjoined[0].relocalization.merge = Switch::kOff;
-  unjoined[1].relocalization.max_unit_spread = 0;
-  unjoined[2].relocalization.relocalize = Switch::kOff;
-  unjoined[3].find_lost = Switch::kOff;
-  for (const TrackerOptions& options : unjoined) {
+  std::vector<TrackerOptions> unmerged(4, Options());
+  unmerged[0].relocalization.merge = Switch::kOff;
+  unmerged[1].relocalization.max_unit_spread = 0;
+  unmerged[2].relocalization.relocalize = Switch::kOff;
+  unmerged[3].find_lost = Switch::kOff;
+  for (const TrackerOptions& options : unmerged) {
     const auto reports = Show(options, Twice());
     ASSERT_EQ(static_cast<int>(reports.size()), kAgain + kFrames);
     for (const FrameReport& report : reports) {
-      EXPECT_FALSE(report.join);
+      EXPECT_FALSE(report.merge);
       EXPECT_EQ(report.submap, report.frame_idx >= kAgain ? 1 : 0);
     }
   }

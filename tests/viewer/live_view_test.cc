@@ -80,8 +80,8 @@ TEST_F(LiveViewTest, ARefinedPointIsNewAgain) {
 TEST_F(LiveViewTest, AMergeMakesWhatWasGivenVoid) {
   live_->OnFrame(Report(0));
   FrameReport other = ReportOfSecondSubmap(0);
-  const Sim3 join = {2, Eigen::Quaterniond::Identity(), {1, 0, 0}};
-  other.join = SubmapJoin{1, 0, join};
+  const Sim3 into_from_submap = {2, Eigen::Quaterniond::Identity(), {1, 0, 0}};
+  other.merge = SubmapMerge{1, 0, into_from_submap};
   live_->OnFrame(other);
   const ordered_json all = Data(0, 1);
   EXPECT_EQ(all["epoch"], 1);
@@ -89,7 +89,7 @@ TEST_F(LiveViewTest, AMergeMakesWhatWasGivenVoid) {
   const ordered_json& run = all["data"]["runs"][0];
   EXPECT_THAT(run["frames"]["submap"], ElementsAre(0, 0));
   const std::vector<double> rest = Unpack(run["points"]["rest"]);
-  const Eigen::Vector3d moved = join * Undeformed(0);
+  const Eigen::Vector3d moved = into_from_submap * Undeformed(0);
   for (int i = 0; i < 3; ++i) EXPECT_NEAR(rest[static_cast<std::size_t>(3 * kRunPoints + i)], moved[i], kQuantized_mm);
 }
 

@@ -42,7 +42,7 @@ struct TrackSurvival {
   double mean_track_length = 0;
   int submaps = 0;                 // in which frames were tracked
   int interruptions = 0;           // frames in a row that were not tracked, after one that was
-  int interruptions_survived = 0;  // after which tracking went on in the same submap, or one joined with it
+  int interruptions_survived = 0;  // after which tracking went on in the same submap, or one merged with it
   int returned_points = 0;         // that were missing in a tracked frame and seen again
   std::vector<Frame> frames;       // one a frame read
 };

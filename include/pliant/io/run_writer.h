@@ -9,7 +9,7 @@
 //   observations.csv  a row a point and tracked frame
 //   frames.csv        a row a frame, written after the frame's other rows
 //   map.ply, sparse/  by Finish; of several submaps map.ply, map_1.ply, ... and sparse/0, sparse/1, ...
-// Where submaps were joined on the way Finish writes the rows once more, in the worlds that their frames have in the
+// Where submaps were merged on the way Finish writes the rows once more, in the worlds that their frames have in the
 // end. Units: pixels to 1e-4, positions (map units, mm) and times (s) to 1e-6, quaternions to 1e-9.
 #pragma once
 
@@ -70,7 +70,7 @@ class RunWriter {
   // new. A term or a stage that the report does not name is 0.
   Status Write(const FrameReport& report);
 
-  // Brings the rows of joined submaps into one world, writes map.ply, sparse/ and the final run.json; to be called
+  // Brings the rows of merged submaps into one world, writes map.ply, sparse/ and the final run.json; to be called
   // once, whatever ended the run. run.json is attempted even when the others fail, and then says `failed` with the
   // reason.
   Status Finish(RunStatus status, const std::string& note);

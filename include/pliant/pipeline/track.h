@@ -42,7 +42,7 @@ struct TrackOptions {
   int seed = 1;
   int threads = 2;  // 1: everything on one thread; 2 and more: images are read ahead, points are followed in parallel
   RunTimings timings = RunTimings::kWritten;
-  int max_frames_back = 60;  // before the reference of a first map, that are tracked from it back in time
+  int max_frames_back = 60;  // before the reference of a first map, tracked backwards in time from it
   TrackerOptions tracker;
 
   void List(OptionTable& table);  // group "General" and the tracker's
@@ -69,7 +69,7 @@ class TrackObserver {
   // Before a frame is tracked. The image is 8-bit with one or three (BGR) channels; it is not written to any more, so
   // that it may be kept.
   virtual void OnImage(int /*frame_idx*/, const cv::Mat& /*image*/) {}
-  // After a frame's rows are on disk: once a frame, in order of time. A later report's `join` may move it into another
+  // After a frame's rows are on disk: once a frame, in order of time. A later report's `merge` may move it into another
   // world; the run folder has it there in the end.
   virtual void OnFrame(const FrameReport& report) = 0;
   // A frame was processed whose report waits for the first map: what is known so far. Its OnFrame follows later.

@@ -75,9 +75,9 @@ struct FirstMapFrames {
   int declared_frame_idx = 0;   // in which the map was made; tracking goes on from here
 };
 
-// Two maps have become one: the world of `submap`, with all that was said of it up to this frame, goes into that of
-// `into`; the frames that follow are reported in `into`.
-struct SubmapJoin {
+// Two submaps have become one: everything reported of `submap` up to this frame goes into the world of `into`; the
+// frames that follow are reported in `into`.
+struct SubmapMerge {
   int submap = 0;
   int into = 0;  // the older one
   Sim3 into_from_submap;
@@ -92,7 +92,7 @@ struct FrameReport {
   // Which map the frame belongs to, counted from 0: each has its own world and unit. Of a frame that has no pose, the
   // map that is there, or awaited.
   int submap = 0;
-  std::optional<SubmapJoin> join;  // in state tracking; the frame itself is still reported as before it
+  std::optional<SubmapMerge> merge;  // in state tracking; the frame itself is still reported as before it
 
   std::optional<Rigid3> cam_from_world;        // exactly in state tracking
   std::vector<PointObservation> observations;  // in state tracking; sorted by id

@@ -44,11 +44,11 @@ bool Submaps::CanMerge() const {
          !options_.oracle.Any();
 }
 
-std::optional<Submaps::Merge> Submaps::FindMerge(const TrackerFrame& frame, Relocalizer* relocalizer) {
+std::optional<Submaps::FoundMerge> Submaps::FindMerge(const TrackerFrame& frame, Relocalizer* relocalizer) {
   const int every = options_.relocalization.merge_every;
   if (!CanMerge() || inactive_.empty() || frame.frame_idx % every != 0 || current_->blurred_frames > 0)
     return std::nullopt;
-  Merge merge{.inactive = static_cast<std::size_t>(frame.frame_idx / every) % inactive_.size()};
+  FoundMerge merge{.inactive = static_cast<std::size_t>(frame.frame_idx / every) % inactive_.size()};
   Submap& inactive = *inactive_[merge.inactive];
   const FollowedPoints found = relocalizer->Relocalize(frame, &inactive);
   if (found.size() == 0 || found.in_blur) return std::nullopt;
@@ -56,18 +56,18 @@ std::optional<Submaps::Merge> Submaps::FindMerge(const TrackerFrame& frame, Relo
       InactiveFromCurrent(found, *current_, camera_.width(), options_.relocalization.max_unit_spread);
   if (!inactive_from_current) return std::nullopt;
   const bool inactive_is_older = inactive.idx < current_->idx;
-  merge.join = {std::max(inactive.idx, current_->idx), std::min(inactive.idx, current_->idx),
-                inactive_is_older ? *inactive_from_current : inactive_from_current->Inverse()};
+  merge.merge = {std::max(inactive.idx, current_->idx), std::min(inactive.idx, current_->idx),
+                 inactive_is_older ? *inactive_from_current : inactive_from_current->Inverse()};
   return merge;
 }
 
-void Submaps::Apply(const Merge& merge) {
-  Submap& inactive = *inactive_[merge.inactive];
-  Submap& younger = inactive.idx == merge.join.submap ? inactive : *current_;
-  younger.MoveInto(merge.join.into_from_submap);
-  current_->idx = merge.join.into;
+void Submaps::Apply(const FoundMerge& found) {
+  Submap& inactive = *inactive_[found.inactive];
+  Submap& younger = inactive.idx == found.merge.submap ? inactive : *current_;
+  younger.MoveInto(found.merge.into_from_submap);
+  current_->idx = found.merge.into;
   current_->TakeOver(std::move(inactive), tracks_);
-  inactive_.erase(inactive_.begin() + static_cast<std::ptrdiff_t>(merge.inactive));
+  inactive_.erase(inactive_.begin() + static_cast<std::ptrdiff_t>(found.inactive));
 }
 
 }  // namespace pliant

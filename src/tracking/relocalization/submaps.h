@@ -36,13 +36,13 @@ class Submaps {
 
   // An inactive submap that this image shows while the current one is tracked in it. One is searched at a time, in
   // turn.
-  struct Merge {
+  struct FoundMerge {
     std::size_t inactive = 0;  // index of it
-    SubmapJoin join = {};
+    SubmapMerge merge = {};
   };
-  std::optional<Merge> FindMerge(const TrackerFrame& frame, Relocalizer* relocalizer);
+  std::optional<FoundMerge> FindMerge(const TrackerFrame& frame, Relocalizer* relocalizer);
   // The two become the current one. The older one's world stays.
-  void Apply(const Merge& merge);
+  void Apply(const FoundMerge& found);
 
  private:
   bool CanMerge() const;
