@@ -19,11 +19,11 @@ double Median(std::vector<double> values) {
 
 double Quantile(std::vector<double> values, double share) {
   if (values.empty()) return 0;
-  const double place = share * static_cast<double>(values.size() - 1);
-  const auto below = values.begin() + static_cast<std::ptrdiff_t>(place);
+  const double rank = share * static_cast<double>(values.size() - 1);
+  const auto below = values.begin() + static_cast<std::ptrdiff_t>(rank);
   std::nth_element(values.begin(), below, values.end());
   if (below + 1 == values.end()) return *below;
-  return *below + (place - std::floor(place)) * (*std::min_element(below + 1, values.end()) - *below);
+  return *below + (rank - std::floor(rank)) * (*std::min_element(below + 1, values.end()) - *below);
 }
 
 double Mean(const std::vector<double>& values) {

@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::size_t kLargeBuffer = 1 << 20;
 
-// Where a file is written before it takes its place.
+// The name under which a file is written before it is renamed.
 std::string Beside(const std::string& path) { return path + ".tmp"; }
 
 template <class Integer>
@@ -93,7 +93,7 @@ Result<OutputFile> OutputFile::Create(const std::string& path) {
   std::FILE* file = std::fopen(path.c_str(), "wb");
   if (file == nullptr)
     return Status(ErrorCode::kUnwritable, "cannot write " + Quoted(path) + ": " + Reason(errno) +
-                                              "; choose another place or change its permissions");
+                                              "; choose another path or change its permissions");
   std::setvbuf(file, nullptr, _IONBF, 0);
   return OutputFile(path, file);
 }

@@ -92,12 +92,12 @@ CommandLine::CommandLine(Manual manual) : manual_(std::move(manual)) {}
 void CommandLine::AddArgument(Argument argument) { arguments_.push_back(std::move(argument)); }
 
 void CommandLine::Add(std::string name, std::string* value, std::string placeholder, std::string why, Need need,
-                      Place place) {
+                      Positional positional) {
   AddArgument({std::move(name), placeholder, std::move(why), placeholder, *value, need, [value](std::string_view text) {
                  *value = text;
                  return !text.empty();
                }});
-  arguments_.back().place = place;
+  arguments_.back().positional = positional;
 }
 
 void CommandLine::Add(std::string name, int* value, std::string why, int low, int high) {
@@ -145,7 +145,7 @@ Status CommandLine::ReadArguments(std::span<const std::string> args) {
           ->allow_extra_args(false);  // one value each time it is given
     } else {
       app.add_option_function<std::string>(
-          (argument.place == Place::kFirst ? argument.name + "," : std::string()) + FlagsOf(argument.name),
+          (argument.positional == Positional::kYes ? argument.name + "," : std::string()) + FlagsOf(argument.name),
           [&argument](const std::string& value) { argument.given = {value}; });
     }
   }
@@ -250,7 +250,7 @@ std::string CommandLine::ManualText(const OptionTable& options) const {
   std::string arguments;
   for (const Argument& argument : arguments_) {
     std::string flag = "--" + argument.name + (argument.placeholder.empty() ? "" : " ") + argument.placeholder;
-    if (argument.place == Place::kFirst) flag = "[--" + argument.name + "] " + argument.placeholder;
+    if (argument.positional == Positional::kYes) flag = "[--" + argument.name + "] " + argument.placeholder;
     if (argument.need == Need::kRequired) usage += " " + flag;
     if (argument.name == "output_path") flag = "-o, " + flag;
     if (argument.times == Times::kSeveral) flag += " [--" + argument.name + " ...]";

@@ -39,7 +39,7 @@ struct Manual {
 enum class Need { kRequired, kOptional };
 
 // Whether an argument may also be given without its name.
-enum class Place { kNamed, kFirst };
+enum class Positional { kNo, kYes };
 
 // Says "pliant COMMAND: sentence" on standard error.
 void SayError(std::string_view command, std::string_view sentence);
@@ -60,7 +60,7 @@ class CommandLine {
 
   // An argument `--name VALUE`. The value at the time of the call is its default in the manual.
   void Add(std::string name, std::string* value, std::string placeholder, std::string why, Need need,
-           Place place = Place::kNamed);
+           Positional positional = Positional::kNo);
   void Add(std::string name, int* value, std::string why, int low, int high);
   // An argument that may be given several times; the values in the order given.
   void Add(std::string name, std::vector<std::string>* values, std::string placeholder, std::string why, Need need);
@@ -113,7 +113,7 @@ class CommandLine {
     std::function<bool(std::string_view)> set;  // false: a value that it does not accept
     std::vector<std::string> given = {};        // what the command line gave: values, or one entry for a flag
     Times times = Times::kOnce;
-    Place place = Place::kNamed;
+    Positional positional = Positional::kNo;
   };
 
   void AddArgument(Argument argument);

@@ -19,7 +19,7 @@ const Manual kManual = {
     "compare",
     "set runs side by side, and against the truth where there is one",
     "Prints two tables with a row a run. The first says what was reconstructed: frames with a pose, points in a frame, "
-    "tracks and their mean length in frames, tracks that go on with another one that had ended at the same place of "
+    "tracks and their mean length in frames, tracks that continue another one that had ended at the same point of "
     "the material (simulated sequences), the reprojection error of the run's own points, and the time it took. The "
     "second says how far it is from the truth, where the sequence has one: pliant evaluate --help explains its figures "
     "and their nulls.\n\n"

@@ -107,9 +107,9 @@ void PrintCheck(const SequenceCheck& check, bool has_pairs) {
     std::string text =
         Text("%d pairs of images, warped by depth and poses, agree to %.2f", poses.pairs, poses.as_given.correlation);
     PrintLine(poses.right ? "checked" : "unchecked",
-              poses.right ? text : text + ", which tells nothing of the poses: too little motion or structure");
+              poses.right ? text : text + ", which says nothing about the poses: too little motion or structure");
   } else {
-    PrintLine("unchecked", "poses: there are none with depth to warp images by");
+    PrintLine("unchecked", "poses: no frame has both pose and depth, which warping images needs");
   }
   if (check.stereo)
     PrintLine(check.stereo->enough ? "checked" : "unchecked",
@@ -130,7 +130,7 @@ void PrintCheck(const SequenceCheck& check, bool has_pairs) {
 int InfoCommand(std::span<const std::string> args) {
   SequenceArguments arguments;
   CommandLine line(kInfoManual);
-  arguments.AddTo(&line, "path", Place::kFirst);
+  arguments.AddTo(&line, "path", Positional::kYes);
   if (const auto exit = line.Parse(args)) return *exit;
   OptionTable no_options;
   if (const auto exit = line.Resolve(no_options)) return *exit;

@@ -15,20 +15,21 @@ namespace {
 const Manual kManual = {
     "evaluate",
     "compare a run with the truth of its sequence",
-    "Prints how far the points of a run lie from the true surface (the RMSE of the paper, plain and untrimmed, and the "
-    "median), how far from the material points that they started on (simulated sequences: it tells drift apart from "
-    "shape), how far the camera path lies from the true one (ATE and RPE), how good the first map was (relative error "
+    "Prints how far the points of a run lie from the true surface (the RMSE of the paper, untrimmed, and the "
+    "median), how far from the material points that they started on (simulated sequences: this separates drift from "
+    "errors of shape), how far the camera path lies from the true one (ATE and RPE), how good the first map was "
+    "(relative error "
     "of its depths after one scale, in the frame that made it), and how long the tracks live. Beside every error of "
-    "points stands its null: the same pixels at one constant depth, through the same evaluation. A figure that is not "
-    "below its null says that nothing was reconstructed.\n\n"
+    "points stands its null: the same pixels at one constant depth, through the same evaluation. If a figure is not "
+    "below its null, nothing was reconstructed.\n\n"
     "--protocol compares the points in further ways of the literature: depth_trimmed (depth only, robust scale, the "
     "worst 5 % left out) and lmeds (least-median-of-squares scale, inliers). The plain figure is printed in any "
     "case.\n\n"
     "Reads --run: a run folder that pliant track left, also one that was interrupted or killed, or another system's "
     "trajectory.txt (TUM) and observations.csv; docs/formats.md says how to bring one. Reads --sequence: a "
     "sequence with depth images, poses, pairs of images (the disparity at every point is then the truth of the "
-    "surface, with its own uncertainty) or simulation.yaml; of one without, tracks and reprojection are all there "
-    "is.\n\n"
+    "surface, with its own uncertainty) or simulation.yaml; without any of these only tracks and reprojection are "
+    "evaluated.\n\n"
     "Leaves, where --output_path is given: evaluation.json (every figure) and evaluation.csv (one row a frame). "
     "pliant compare sets several runs side by side.",
     {"pliant evaluate --run run --sequence colon",

@@ -19,8 +19,9 @@ const Manual kCheckManual = {
     "Reads a folder with cameras, images and points3D, .bin or .txt (where both are there the binary ones, as COLMAP "
     "does), since COLMAP 3.12 also rigs and frames. Prints how many of each there are, and then a line for everything "
     "that is wrong: how many have it, and the first of them.\n\n"
-    "An error is what COLMAP or another reader trips over: tracks and keypoints that point nowhere or not at each "
-    "other, numbers that are none, images without their camera. A warning is what is allowed, but hardly meant: points "
+    "An error is what COLMAP or another reader fails on: tracks and keypoints that refer to nothing or not to each "
+    "other, values that are not numbers, images without their camera. A warning is what is allowed but hardly "
+    "intended: points "
     "seen in one image alone, or behind a camera. COLMAP's model_analyzer finds none of it.\n\n"
     "Ends with 1 if there is an error, or the model cannot be read.",
     {"pliant model check run/sparse", "pliant model check reconstruction/sparse/0"},
@@ -49,7 +50,7 @@ std::string Counts(const colmap::Model& model) {
 int CheckCommand(std::span<const std::string> args) {
   std::string path;
   CommandLine line(kCheckManual);
-  line.Add("path", &path, "DIR", "folder of the model", Need::kRequired, Place::kFirst);
+  line.Add("path", &path, "DIR", "folder of the model", Need::kRequired, Positional::kYes);
   if (const auto exit = line.Parse(args)) return *exit;
   OptionTable no_options;
   if (const auto exit = line.Resolve(no_options)) return *exit;

@@ -5,10 +5,10 @@
 
 namespace pliant::cli {
 
-void SequenceArguments::AddTo(CommandLine* line, const std::string& name, Place place) {
+void SequenceArguments::AddTo(CommandLine* line, const std::string& name, Positional positional) {
   constexpr int kMost = 2147483647;
   line->Add(name, &path, "PATH", "a data set: folder of images, native sequence, video or another (docs/datasets.md)",
-            Need::kRequired, place);
+            Need::kRequired, positional);
   line->Add("camera", &camera_path, "FILE",
             "calibration; not needed where camera.yaml lies in the folder or beside the video", Need::kOptional);
   line->Add("mask_path", &mask_path, "PATH", "folder of masks, or one image for all frames; 0 = ignore this pixel",

@@ -35,9 +35,9 @@ const Manual kManual = {
     "trajectory.txt (TUM, world_from_camera), frames.csv (one row a frame), observations.csv (one row a point and "
     "frame), map.ply (the undeformed map) and sparse/ (a COLMAP model). Rows are on disk as frames are done: a run "
     "that is lost, interrupted or killed keeps what it had. When too few points are left the "
-    "camera is sought in every frame, and in the end another map is begun (map_1.ply, sparse/0 and sparse/1; "
-    "frames.csv says which one a frame belongs to). A run that ends while the camera is lost is `lost`, which is an "
-    "answer and no failure: the exit code is 0, and run.json says so.",
+    "camera is searched for in every frame, and after a while another map is begun (map_1.ply, sparse/0 and sparse/1; "
+    "frames.csv says which one a frame belongs to). A run that ends while the camera is lost has the status "
+    "`lost` in run.json; that is a result, not a failure: the exit code is 0.",
     {"pliant track --image_path clip.mp4 --camera camera.yaml --output_path run",
      "pliant track --image_path seq --output_path run --preset paper --start 100 --end 400"},
 };

@@ -51,7 +51,7 @@ class BinaryReader {
     Sensor sensor;
     const auto type = static_cast<std::int32_t>(Take32());
     if (type < static_cast<int>(SensorType::kInvalid) || type > static_cast<int>(SensorType::kImu))
-      Fail("its sensor type " + std::to_string(type) + " is none of COLMAP's");
+      Fail("its sensor type " + std::to_string(type) + " is not one of COLMAP's");
     sensor.type = static_cast<SensorType>(type);
     sensor.id = Take32();
     return sensor;

@@ -50,10 +50,10 @@ std::string KeypointOf(const Image& image, std::size_t idx) { return Named("keyp
 
 void CheckCamera(const Camera& camera, Findings* findings) {
   const std::string name = Named("camera", camera.id);
-  if (!Finite(camera.params)) findings->Error("cameras have parameters that are no numbers", name);
+  if (!Finite(camera.params)) findings->Error("cameras have parameters that are not numbers", name);
   constexpr std::uint64_t kMaxPixels = 1'000'000;
   if (camera.width == 0 || camera.height == 0 || camera.width > kMaxPixels || camera.height > kMaxPixels)
-    findings->Error("cameras have image sizes that cannot be", name);
+    findings->Error("cameras have image sizes that are not possible", name);
   if (!camera.params.empty() && !(camera.params[0] > 0.0))
     findings->Error("cameras have focal lengths that are not positive", name);
   if (camera.model_id > static_cast<int>(CameraModelId::kOpenCvFisheye))
@@ -63,7 +63,7 @@ void CheckCamera(const Camera& camera, Findings* findings) {
 
 void CheckPose(const Pose& pose, const std::string& name, std::string_view kind, Findings* findings) {
   if (!Finite(pose.qvec) || !Finite(pose.tvec)) {
-    findings->Error(std::string(kind) + " have poses that are no numbers", name);
+    findings->Error(std::string(kind) + " have poses that are not numbers", name);
     return;
   }
   const double norm = Eigen::Map<const Eigen::Vector4d>(pose.qvec.data()).norm();
@@ -101,7 +101,7 @@ void CheckImage(const Image& image, const CamerasById& cameras, const PointsById
   for (std::size_t idx = 0; idx < image.points2D.size(); ++idx) {
     const Point2D& point = image.points2D[idx];
     if (!std::isfinite(point.x) || !std::isfinite(point.y))
-      findings->Error("keypoints are no numbers", KeypointOf(image, idx));
+      findings->Error("keypoints are not numbers", KeypointOf(image, idx));
     else if (camera != cameras.end() &&
              (point.x < 0.0 || point.y < 0.0 || point.x > static_cast<double>(camera->second->width) ||
               point.y > static_cast<double>(camera->second->height)))
@@ -136,32 +136,32 @@ bool IsBehind(const Point3D& point, const Pose& cam_from_world) {
 
 void CheckPoint(const Point3D& point, const ImagesById& images, const CamerasById& cameras, Findings* findings) {
   const std::string name = Named("point", point.id);
-  if (!Finite(point.xyz)) findings->Error("points have positions that are no numbers", name);
-  if (!std::isfinite(point.error)) findings->Error("points have errors that are no numbers", name);
+  if (!Finite(point.xyz)) findings->Error("points have positions that are not numbers", name);
+  if (!std::isfinite(point.error)) findings->Error("points have errors that are not numbers", name);
   if (point.track.size() < 2) findings->Warn("points are seen in fewer than two images", name);
   std::set<std::pair<std::uint32_t, std::uint32_t>> seen;
   for (const TrackElement& element : point.track) {
-    const auto place = [&] {
+    const auto where = [&] {
       return name + ", " + Named("keypoint", element.point2D_idx) + " of " + Named("image", element.image_id);
     };
     if (!seen.insert({element.image_id, element.point2D_idx}).second)
-      findings->Error("tracks have a keypoint twice", place());
+      findings->Error("tracks have a keypoint twice", where());
     const auto image = images.find(element.image_id);
     if (image == images.end()) {
-      findings->Error("tracks have an image that is not there", place());
+      findings->Error("tracks have an image that is not there", where());
       continue;
     }
     const std::vector<Point2D>& keypoints = image->second->points2D;
     if (element.point2D_idx >= keypoints.size())
-      findings->Error("tracks have a keypoint that is not there", place());
+      findings->Error("tracks have a keypoint that is not there", where());
     else if (keypoints[element.point2D_idx].point3D_id != point.id)
-      findings->Error("tracks have a keypoint that belongs to another point, or to none", place());
+      findings->Error("tracks have a keypoint that belongs to another point, or to none", where());
     const auto camera = cameras.find(image->second->camera_id);
     // A fisheye sees what is beside and behind it.
     const bool perspective =
         camera != cameras.end() && camera->second->model_id < static_cast<int>(CameraModelId::kOpenCvFisheye);
     if (perspective && IsBehind(point, image->second->cam_from_world))
-      findings->Warn("points are behind a camera that sees them", place());
+      findings->Warn("points are behind a camera that sees them", where());
   }
 }
 
@@ -226,7 +226,7 @@ Result<Model> ReadValidModel(const std::string& folder) {
     if (finding.severity == Severity::kError)
       return Status(ErrorCode::kUnreadable, "the model " + Quoted(folder) + " is damaged: " + finding.what +
                                                 ", the first: " + finding.example +
-                                                "; pliant model check says all that is wrong");
+                                                "; pliant model check lists everything that is wrong");
   return model;
 }
 

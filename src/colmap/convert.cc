@@ -37,7 +37,7 @@ Result<pliant::Camera> ToPliant(const Camera& camera) {
   }
   constexpr auto kMaxPixels = static_cast<std::uint64_t>(std::numeric_limits<int>::max());
   if (camera.width > kMaxPixels || camera.height > kMaxPixels)
-    return Status(ErrorCode::kInvalidArgument, "the image size is beyond reason; the file is damaged");
+    return Status(ErrorCode::kInvalidArgument, "the image size is impossibly large; the file is damaged");
   std::vector<double> params = camera.params;
   ShiftPrincipalPoint(camera.model_id, -kPixelShift, &params);
   return pliant::Camera::Create(static_cast<CameraModelId>(camera.model_id), static_cast<int>(camera.width),
@@ -61,7 +61,7 @@ Result<Rigid3> ToPliant(const Pose& pose) {
   const Eigen::Vector3d translation(pose.tvec[0], pose.tvec[1], pose.tvec[2]);
   if (!rotation.coeffs().allFinite() || !translation.allFinite() || !(rotation.norm() > 0.0))
     return Status(ErrorCode::kInvalidArgument,
-                  "the pose is no pose: a number in it is none, or its quaternion is zero");
+                  "the pose is not valid: a value is not a finite number, or the quaternion is zero");
   return Rigid3(rotation.normalized(), translation);
 }
 

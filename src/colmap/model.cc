@@ -36,11 +36,11 @@ std::string MissingFile(const std::string& folder, std::string_view extension) {
   return {};
 }
 
-// Puts what was read into its place.
+// Stores what was read.
 template <class Value>
-Status Put(Result<Value> read, Value* place) {
+Status Put(Result<Value> read, Value* target) {
   if (!read.ok()) return read.status();
-  *place = std::move(read).value();
+  *target = std::move(read).value();
   return Status::Ok();
 }
 
@@ -103,7 +103,7 @@ Result<Format> FindModel(const std::string& folder) {
   if (no_binary.empty()) return no_text.empty() ? Format::kBoth : Format::kBinary;
   if (no_text.empty()) return Format::kText;
   const bool partly_text = !Exists(folder + "/cameras.bin") && Exists(folder + "/cameras.txt");
-  return Status(ErrorCode::kNotFound, Quoted(folder) + " is no COLMAP model: there is no " +
+  return Status(ErrorCode::kNotFound, Quoted(folder) + " is not a COLMAP model: there is no " +
                                           Quoted(partly_text ? no_text : no_binary) +
                                           " (cameras, images and points3D, as .bin or .txt)");
 }

@@ -39,7 +39,8 @@ class Fields {
   double Number(std::string_view what) {
     const std::string_view word = Word(what);
     double value = 0;
-    if (error_.empty() && !ParseDouble(word, &value)) Fail(Quoted(word) + " is no number (" + std::string(what) + ")");
+    if (error_.empty() && !ParseDouble(word, &value))
+      Fail(Quoted(word) + " is not a number (" + std::string(what) + ")");
     return value;
   }
   std::uint64_t Integer(std::string_view what, std::uint64_t most = std::numeric_limits<std::uint64_t>::max()) {
@@ -69,7 +70,7 @@ class Fields {
       sensor.type = value;
       known = true;
     }
-    if (!known) Fail(Quoted(type) + " is no SENSOR_TYPE (CAMERA or IMU)");
+    if (!known) Fail(Quoted(type) + " is not a SENSOR_TYPE (CAMERA or IMU)");
     sensor.id = Id("SENSOR_ID");
     return sensor;
   }
@@ -118,7 +119,7 @@ void ParseKeypoints(Fields& fields, std::vector<Point2D>* points) {
     point.x = fields.Number("X");
     point.y = fields.Number("Y");
     const std::string_view id = fields.Word("POINT3D_ID");
-    if (id != "-1" && !ParseUint64(id, &point.point3D_id)) fields.Fail(Quoted(id) + " is no POINT3D_ID");
+    if (id != "-1" && !ParseUint64(id, &point.point3D_id)) fields.Fail(Quoted(id) + " is not a POINT3D_ID");
   }
 }
 

@@ -185,7 +185,7 @@ Result<DataSet> OpenEuroc(const SequenceRequest& request) {
   data_set->warnings.insert(data_set->warnings.end(), warnings.begin(), warnings.end());
   if (left_over > 0)
     data_set->warnings.push_back(std::to_string(left_over) + " images of cam0 or cam1 in " + root.string() +
-                                 " have none of the other of the same time; they are passed over");
+                                 " have no image of the other camera at the same time; they are left out");
   data_set->timestamps_s = std::move(left_list->times_s);
   if (const fs::path file = root / "state_groundtruth_estimate0" / "data.csv"; IsFile(file))
     if (Status status = AddPoses(file, left->body_from_cam * data_set->raw_from_given, &*data_set); !status.ok())

@@ -43,7 +43,7 @@ Result<SourceCalibration> CameraOf(const fs::path& folder, const std::map<int, f
     return Status(ErrorCode::kUnreadable,
                   file.string() + " has " + std::to_string(rows->size()) + " lines; a camera matrix has three");
   const auto size = StreamFiles(folder, {images.begin()->second})->SizeAt(0);
-  if (!size) return Status(ErrorCode::kUnreadable, images.begin()->second.string() + " cannot be read; copy it anew");
+  if (!size) return Status(ErrorCode::kUnreadable, images.begin()->second.string() + " cannot be read; copy it again");
   const std::vector<double>& upper = (*rows)[0].numbers;
   const std::vector<double>& lower = (*rows)[1].numbers;
   auto camera = Camera::Create(CameraModelId::kPinhole, size->width, size->height,

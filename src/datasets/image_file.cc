@@ -32,7 +32,7 @@ Result<Bytes> ReadBytes(const std::filesystem::path& path) {
   Bytes bytes(static_cast<std::size_t>(file.tellg()));
   file.seekg(0);
   file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  if (!file) return Status(ErrorCode::kUnreadable, "cannot read " + path.string() + " to its end; copy it anew");
+  if (!file) return Status(ErrorCode::kUnreadable, "cannot read " + path.string() + " to its end; copy it again");
   return bytes;
 }
 
@@ -113,7 +113,7 @@ struct DecodedImage {
 Result<DecodedImage> Decode(const std::filesystem::path& path) {
   const Result<Bytes> bytes = ReadBytes(path);
   if (!bytes.ok()) return bytes.status();
-  const std::string advice = "; copy or export it anew";
+  const std::string advice = "; copy or export it again";
   if (bytes->empty()) return Status(ErrorCode::kUnreadable, "the image " + path.string() + " is empty" + advice);
   const Wholeness png = IsPng(*bytes) ? PngWholeness(*bytes) : Wholeness::kWhole;
   if (png == Wholeness::kDamaged)

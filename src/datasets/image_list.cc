@@ -165,7 +165,7 @@ Result<CompanionImages> CompanionImages::Open(std::string what, const fs::path& 
     return Status(ErrorCode::kMismatch, "the folder " + path.string() + " has " +
                                             std::to_string(companion.files_.size()) + " " + companion.what_ +
                                             " images for " + std::to_string(frame_stems.size()) +
-                                            " frames and no name agrees; name each like its frame");
+                                            " frames, and no name matches; name each like its frame");
   return companion;
 }
 

@@ -36,7 +36,7 @@ Result<Rigid3> ReadPose(const fs::path& file) {
         for (const auto& value : row)
           if (value.is_number()) matrix.push_back(value.get<double>());
   if (matrix.size() != 16)
-    return Status(ErrorCode::kUnreadable, file.string() + " has no camera-pose of 4 x 4 numbers; unpack it anew");
+    return Status(ErrorCode::kUnreadable, file.string() + " has no camera-pose of 4 x 4 numbers; unpack it again");
   return PoseOfMatrix(file.string(), matrix);
 }
 
@@ -67,7 +67,8 @@ Result<cv::Mat> ReadScenePoints(const fs::path& file, const ImageWarp& warp, con
   const auto stored = ReadStoredImage(file);
   if (!stored.ok()) return stored.status();
   if (stored->type() != CV_32FC3)
-    return Status(ErrorCode::kMismatch, file.string() + " has not three floating-point channels; unpack it anew");
+    return Status(ErrorCode::kMismatch,
+                  file.string() + " does not have three floating-point channels; unpack it again");
   const cv::Mat left = stored->rows == 2 * warp.raw.height ? LeftEye(kLayout, *stored) : *stored;
   if (left.size() != warp.raw)
     return Status(ErrorCode::kMismatch, file.string() + " is " + SizeText(*stored) + ", but the video's images are " +

@@ -134,7 +134,8 @@ Result<Rigid3> PoseOfMatrix(const std::string& where, const std::vector<double>&
   Eigen::Matrix3d rotation;
   rotation << m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10];
   if (!(rotation * rotation.transpose()).isIdentity(kQuaternionError) || !(rotation.determinant() > 0.0))
-    return Status(ErrorCode::kUnreadable, where + ": the matrix is not a pose; its rotation is none");
+    return Status(ErrorCode::kUnreadable,
+                  where + ": the matrix is not a pose; its first three columns are not a rotation");
   return Rigid3(rotation, Eigen::Vector3d(m[3], m[7], m[11]));
 }
 

@@ -47,17 +47,19 @@ std::string WhyNoPoses(const fs::path& folder, const fs::path& positions, const 
 }
 
 Result<std::map<int, Rigid3>> ReadPoses(const fs::path& positions, const fs::path& rotations) {
-  const auto places = ReadNumberRows(positions, 3);
-  if (!places.ok()) return places.status();
+  const auto translations = ReadNumberRows(positions, 3);
+  if (!translations.ok()) return translations.status();
   const auto turns = ReadNumberRows(rotations, 4);
   if (!turns.ok()) return turns.status();
-  if (places->size() != turns->size())
-    return Status(ErrorCode::kMismatch, positions.string() + " has " + std::to_string(places->size()) + " lines and " +
-                                            rotations.string() + " has " + std::to_string(turns->size()));
+  if (translations->size() != turns->size())
+    return Status(ErrorCode::kMismatch, positions.string() + " has " + std::to_string(translations->size()) +
+                                            " lines and " + rotations.string() + " has " +
+                                            std::to_string(turns->size()));
   std::map<int, Rigid3> poses;
-  for (std::size_t k = 0; k < places->size(); ++k) {
+  for (std::size_t k = 0; k < translations->size(); ++k) {
     NumberRow row = (*turns)[k];
-    for (int c = 0; c < 3; ++c) row.numbers.push_back(kMillimeters * (*places)[k].numbers[static_cast<std::size_t>(c)]);
+    for (int c = 0; c < 3; ++c)
+      row.numbers.push_back(kMillimeters * (*translations)[k].numbers[static_cast<std::size_t>(c)]);
     const auto pose = PoseOfRow(rotations, row, {.tx = row.numbers.size() - 3, .qx = 0, .qw = 3});
     if (!pose.ok()) return pose.status();
     poses.emplace(static_cast<int>(k), FromUnity(*pose));

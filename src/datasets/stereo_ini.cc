@@ -53,7 +53,7 @@ class Ini {
   bool Has(const std::string& key) const { return values_.contains(key); }
   Status Complete() const {
     if (missing_.empty()) return Status::Ok();
-    return {ErrorCode::kUnreadable, file_.string() + " has no number " + Quoted(missing_) + "; copy it anew"};
+    return {ErrorCode::kUnreadable, file_.string() + " has no number " + Quoted(missing_) + "; copy it again"};
   }
 
  private:

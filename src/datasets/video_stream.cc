@@ -62,7 +62,7 @@ Status VideoStream::Open() {
   if (!capture_.isOpened())
     return {ErrorCode::kUnreadable, "cannot open " + file_.string() +
                                         " as a video: it is damaged, cut off before its index, or not a video; convert "
-                                        "it to a folder of images, or copy it anew"};
+                                        "it to a folder of images, or copy it again"};
   const double count = capture_.get(cv::CAP_PROP_FRAME_COUNT);
   count_ = count > 0 && count < 1e9 ? static_cast<int>(std::lround(count)) : 0;
   if (const double fps = capture_.get(cv::CAP_PROP_FPS); std::isfinite(fps) && fps > 0) fps_ = fps;
@@ -74,7 +74,7 @@ Status VideoStream::Open() {
 Status VideoStream::BreaksOff() const {
   return {ErrorCode::kUnreadable, "the video " + file_.string() + " breaks off: frame " + std::to_string(read_) +
                                       " of " + std::to_string(count_) +
-                                      " cannot be decoded; copy it anew, or set end to " + std::to_string(read_)};
+                                      " cannot be decoded; copy it again, or set end to " + std::to_string(read_)};
 }
 
 Result<std::optional<cv::Mat>> VideoStream::Read(int idx) {
@@ -90,7 +90,7 @@ Result<std::optional<cv::Mat>> VideoStream::Read(int idx) {
   }
   cv::Mat decoded;
   if (!capture_.retrieve(decoded) || decoded.empty() || decoded.depth() != CV_8U)
-    return Status(ErrorCode::kUnreadable, Title(idx) + " cannot be decoded; copy it anew");
+    return Status(ErrorCode::kUnreadable, Title(idx) + " cannot be decoded; copy it again");
   return std::optional<cv::Mat>(decoded.clone());  // the decoder reuses its own memory
 }
 

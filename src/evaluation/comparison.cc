@@ -128,7 +128,7 @@ Rows ProtocolRows(std::span<const Evaluation> evaluations, ErrorProtocol protoco
 // What there is to look at before any error: how much was reconstructed, of how many pieces, in what time.
 Rows ReconstructionRows(std::span<const Evaluation> evaluations) {
   Rows rows = {
-      {"run", "frames", "points a frame", "tracks", "mean length", "go on with another", "reprojection px", "seconds"}};
+      {"run", "frames", "points a frame", "tracks", "mean length", "continue another", "reprojection px", "seconds"}};
   for (const Evaluation& e : evaluations) {
     const TrackSurvival& s = e.survival;
     rows.push_back({e.run, FormatText("%d/%d", s.frames_tracked, s.frames_read), FormatText("%.0f", s.mean_points),

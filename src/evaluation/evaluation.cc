@@ -140,7 +140,8 @@ Status ComputeParts(const EvaluationInput& run, const CollectedTruth& truth, con
   if (!options.Wants(EvaluationPart::kFirstMap)) return Status::Ok();
   auto first_map =
       truth.own_pair
-          ? Result<FirstMapError>(missing("the map was made of one frame, perhaps of the pair that would judge it"))
+          ? Result<FirstMapError>(missing(
+                "the map was made from one frame, perhaps from the pair of images that it would be compared with"))
           : ComputeFirstMapError(run.frames, truth.reference, truth.declared);
   return Take(EvaluationPart::kFirstMap, std::move(first_map), options, &evaluation->first_map, &evaluation->notes);
 }
@@ -192,7 +193,7 @@ Result<Evaluation> Evaluate(const EvaluationInput& run, const Sequence& sequence
   CollectedTruth truth;
   if (material.ok() && options.Wants(EvaluationPart::kMaterial)) truth.material.emplace(**material, sequence.camera());
   if (surface == nullptr && options.surface_from == SurfaceSource::kPairs)
-    return Status(ErrorCode::kInvalidArgument, "a true surface from pairs has to be opened and given");
+    return Status(ErrorCode::kInvalidArgument, "SurfaceSource pairs needs an opened PairTruth");
   const std::unique_ptr<SurfaceTruth> images = DepthImageTruth(sequence, options.points.max_depth_step);
   if (surface == nullptr) surface = images.get();
   for (const EvaluationFrame& frame : run.frames) {
@@ -200,8 +201,9 @@ Result<Evaluation> Evaluate(const EvaluationInput& run, const Sequence& sequence
     if (Status status = CollectFrame(frame, sequence, options, surface, &truth); !status.ok()) return status;
   }
   if (truth.own_pair)
-    evaluation.notes.push_back("the surface of frame " + std::to_string(*truth.own_pair) +
-                               " is not compared by its pair: a map was made of that frame alone, perhaps of the pair");
+    evaluation.notes.push_back(
+        "the surface of frame " + std::to_string(*truth.own_pair) +
+        " is not evaluated with its pair of images: a map was made from that frame alone, perhaps from the same pair");
   if (Status status = ComputeParts(run, truth, material.status(), options, &evaluation); !status.ok()) return status;
   if (Status status = CheckProtocols(evaluation, options); !status.ok()) return status;
   return evaluation;

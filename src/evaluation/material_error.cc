@@ -12,7 +12,7 @@ namespace pliant {
 namespace {
 
 constexpr double kHigh = 0.95;      // the quantile that is reported
-constexpr double kSamePlacePx = 2;  // two tracks this near show one place
+constexpr double kSamePointPx = 2;  // two tracks this near show the same point
 
 }  // namespace
 
@@ -141,7 +141,7 @@ Result<int> MaterialErrorCollector::CountContinuingTracks() const {
     std::set<const Track*> continued;
     for (const Track* track : tracks) {
       const Track* nearest = nullptr;
-      double least_px = kSamePlacePx;
+      double least_px = kSamePointPx;
       for (std::size_t i = 0; i < ended.size(); ++i) {
         const auto& state = (*states)[i];
         if (!state || !state->pixel || state->visibility != MaterialVisibility::kVisible) continue;

@@ -109,8 +109,7 @@ ProtocolError ComputeProtocolError(std::span<const PairedFrame> frames, ErrorPro
 
 void PointErrorOptions::List(OptionTable& table) {
   table.AddChoices("protocol", &protocols, "how points are compared; the plain figure of paper is given in any case");
-  table.AddChoice("scale", &scale,
-                  "what the estimate is multiplied with: the paper's is per_frame after a monocular start");
+  table.AddChoice("scale", &scale, "factor of the estimate: the paper's is per_frame after a monocular start");
   table.Add("max_depth_step", &max_depth_step, "-",
             "relative depth step around a pixel above which the true depth is not interpolated", 0.0, 10.0);
   table.Add("max_truth_sigma_mm", &max_truth_sigma_mm, "mm",

@@ -44,7 +44,7 @@ bool CoveredScale(std::span<const Parabola> parabolas, double level, int needed,
   for (const Parabola& p : parabolas) {
     if (p.least > level) continue;
     const double half = std::sqrt((level - p.least) / p.curvature);
-    ends->emplace_back(p.vertex - half, -1);  // sorted before an end at the same place
+    ends->emplace_back(p.vertex - half, -1);  // sorted before an end at the same value
     ends->emplace_back(p.vertex + half, 1);
   }
   std::sort(ends->begin(), ends->end());

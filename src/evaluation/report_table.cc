@@ -46,14 +46,14 @@ std::string PointTable(const char* title, const PointError& e) {
 std::string MaterialTable(const MaterialError& e) {
   std::string text = PointTable("material error", e.error);
   const DriftFigures& d = e.drift;
-  text += FormatText("  drift, px: median %.3f, RMSE %.3f, 95 %% below %.3f (points that stay put: median %.3f)\n",
+  text += FormatText("  drift, px: median %.3f, RMSE %.3f, 95 %% below %.3f (points that do not move: median %.3f)\n",
                      d.median_px, d.rmse_px, d.p95_px, d.still_median_px);
   if (d.points_mm > 0)
     text += FormatText("  drift along the surface, mm: median %.3f, RMSE %.3f, 95 %% below %.3f\n", d.median_mm,
                        d.rmse_mm, d.p95_mm);
   return text + FormatText(
                     "  tracked while truly occluded: %d times, %d tracks; outside the image: %d times, %d tracks; of "
-                    "%d tracks\n  %d tracks go on with another one that had ended at their place\n",
+                    "%d tracks\n  %d tracks continue another one that had ended at the same point\n",
                     e.occluded, e.tracks_occluded, e.outside_image, e.tracks_outside_image, e.tracks,
                     e.continuing_tracks);
 }
@@ -62,9 +62,10 @@ std::string TrajectoryTable(const TrajectoryError& e) {
   std::string text = FormatText("camera error (%s, %d poses)\n", std::string(EnumName(e.alignment)).c_str(), e.poses);
   text += FormatText("  ATE RMSE %.4f mm, median %.4f, largest %.4f, over a path of %.2f mm\n", e.ate_rmse_mm,
                      e.ate_median_mm, e.ate_max_mm, e.true_path_length_mm);
-  text += FormatText(
-      "  rotation RMSE %.4f deg%s\n", e.rotation_rmse_deg,
-      e.TurnIsUnknown() ? " (of little meaning: the path is nearly straight, and the turn about it hardly known)" : "");
+  text += FormatText("  rotation RMSE %.4f deg%s\n", e.rotation_rmse_deg,
+                     e.TurnIsUnknown()
+                         ? " (little meaning: the path is nearly straight, so rotation about it is hardly observable)"
+                         : "");
   if (e.rpe_pairs > 0)
     text += FormatText("  RPE over %d frame(s): %.4f mm, %.4f deg\n", e.rpe_delta, e.rpe_translation_rmse_mm,
                        e.rpe_rotation_rmse_deg);
@@ -110,7 +111,7 @@ std::string SurvivalTable(const TrackSurvival& s) {
         FormatText("  interruptions %d; after %d of them tracking continued in the same map or one merged with it\n",
                    s.interruptions, s.interruptions_survived);
   text += FormatText("  points: first frame %d, last %d, mean %.1f\n", s.first_points, s.last_points, s.mean_points);
-  text += FormatText("  of the first frame's points %d live in the last;", s.last_alive_of_first);
+  text += FormatText("  of the first frame's points %d are alive in the last;", s.last_alive_of_first);
   text +=
       FormatText(" alive after 25, 50, 75, 100 %% of the frames: %.0f, %.0f, %.0f, %.0f %%\n", 100 * s.alive_shares[0],
                  100 * s.alive_shares[1], 100 * s.alive_shares[2], 100 * s.alive_shares[3]);

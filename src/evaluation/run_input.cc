@@ -52,7 +52,7 @@ Status GivePosesFrames(const std::string& name, const std::vector<RunPose>& pose
     FrameAt(frame_idx, *sequence.TimestampS(frame_idx), frames).cam_from_world = world_from_cam.Inverse();
   if (matched->left_out > 0)
     input->notes.push_back(std::to_string(matched->left_out) + " of " + std::to_string(poses.size()) + " poses of " +
-                           name + " are near no frame in time and are left out");
+                           name + " are not near any frame in time and are left out");
   return Status::Ok();
 }
 

@@ -20,10 +20,10 @@ void FillAliveShares(const std::map<PointId, std::size_t>& last_seen, std::size_
   const std::size_t way = survival->frames.size() - 1 - first;
   for (std::size_t k = 0; k < survival->alive_shares.size(); ++k) {
     const double part = static_cast<double>(k + 1) / static_cast<double>(survival->alive_shares.size());
-    const auto place = first + static_cast<std::size_t>(std::lround(part * static_cast<double>(way)));
+    const auto rank = first + static_cast<std::size_t>(std::lround(part * static_cast<double>(way)));
     std::size_t alive = 0;
     for (const auto& entry : last_seen)
-      if (entry.second >= place) ++alive;
+      if (entry.second >= rank) ++alive;
     survival->alive_shares[k] = static_cast<double>(alive) / static_cast<double>(last_seen.size());
   }
 }

@@ -100,14 +100,14 @@ Status ExportSpacetime(const RunSource& source, const ExportOptions& options, co
 
 Status ExportFrames(const RunSource& source, const ExportOptions& options, const std::string& folder) {
   return ForEachFrame(source, [&](const SourceFrame& frame, const auto& observations) {
-    const std::string place = folder + "/" + NumberOf(frame);
+    const std::string model_folder = folder + "/" + NumberOf(frame);
     std::error_code error;
-    std::filesystem::create_directories(place, error);
+    std::filesystem::create_directories(model_folder, error);
     if (error)
-      return Status(ErrorCode::kUnwritable, "cannot make the folder " + Quoted(place) + ": " + error.message());
-    if (Status status = colmap::CheckFolder(place, options.files); !status.ok()) return status;
+      return Status(ErrorCode::kUnwritable, "cannot make the folder " + Quoted(model_folder) + ": " + error.message());
+    if (Status status = colmap::CheckFolder(model_folder, options.files); !status.ok()) return status;
     FileGroup group;
-    auto model = ModelStream::Create(group, place, options.files, source.camera, 1, observations.size());
+    auto model = ModelStream::Create(group, model_folder, options.files, source.camera, 1, observations.size());
     if (!model.ok()) return model.status();
     const auto id_of = [](PointId id) { return static_cast<std::uint64_t>(id.value); };
     if (Status status = AddFrame(source, frame, observations, id_of, std::nullopt, &*model); !status.ok())

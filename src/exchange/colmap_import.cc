@@ -77,7 +77,7 @@ Status AddImages(const colmap::Model& model, const Sequence& sequence, const std
   for (const colmap::Point3D& point : model.points3D) {
     if (point.id > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max()))
       return {ErrorCode::kUnreadable, "the model " + Quoted(folder) + " has a point with the id " +
-                                          std::to_string(point.id) + ", which is beyond reason; it is damaged"};
+                                          std::to_string(point.id) + ", which is impossibly large; it is damaged"};
     imported->colors.emplace(PointId{static_cast<std::int64_t>(point.id)}, point.rgb);
   }
   const FrameNames names(sequence);

@@ -44,7 +44,7 @@ Status Export(const RunSource& source, ExportFormat format, const std::string& f
 void ExportOptions::List(OptionTable& table) {
   table.BeginGroup("Export", "what is exported of a run");
   table.AddChoice("files", &files, "of COLMAP's models");
-  table.Add("stride", &stride, "frames", "every so manieth tracked frame", 1, 100000);
+  table.Add("stride", &stride, "frames", "every Nth tracked frame", 1, 100000);
   table.Add("min_matches", &min_matches, "-", "database: images that share fewer tracks are not matched", 1, 1000000);
 }
 
@@ -61,12 +61,12 @@ std::array<std::uint8_t, 3> TimeColor(const RunSource& source, const SourceFrame
                                                              {253, 231, 37}}};
   const double first = source.frames.front().frame_idx;
   const double length = std::max(1.0, source.frames.back().frame_idx - first);
-  const double place = (frame.frame_idx - first) / length * (kColors.size() - 1);
-  const auto below = std::min(static_cast<std::size_t>(place), kColors.size() - 2);
+  const double position = (frame.frame_idx - first) / length * (kColors.size() - 1);
+  const auto below = std::min(static_cast<std::size_t>(position), kColors.size() - 2);
   std::array<std::uint8_t, 3> color{};
   for (std::size_t c = 0; c < 3; ++c)
     color[c] = static_cast<std::uint8_t>(
-        std::lround(std::lerp(kColors[below][c], kColors[below + 1][c], place - static_cast<double>(below))));
+        std::lround(std::lerp(kColors[below][c], kColors[below + 1][c], position - static_cast<double>(below))));
   return color;
 }
 

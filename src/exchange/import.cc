@@ -165,11 +165,11 @@ Status WriteTruth(const ImportRequest& request, const Imported& imported, const 
 
 void ImportOptions::List(OptionTable& table) {
   table.BeginGroup("Import", "what is imported from another program");
-  table.Add("unit_mm", &unit_mm, "mm", "what a unit of the input is", 1e-9, 1e9);
+  table.Add("unit_mm", &unit_mm, "mm", "size of a unit of the input", 1e-9, 1e9);
   table.Add("max_time_difference_s", &max_time_difference_s, "s",
             "result, tum, euroc: a pose belongs to the nearest frame in time, if it is not further than this", 0.0,
             10.0);
-  table.Add("seconds", &seconds, "s", "that the other program took, for run.json", 0.0, 1e9);
+  table.Add("seconds", &seconds, "s", "time that the other program took, for run.json", 0.0, 1e9);
 }
 
 Result<ImportSummary> Import(const ImportRequest& request, const ImportOptions& options) {

@@ -54,7 +54,7 @@ Status RunProgram(const std::vector<std::string>& arguments, const std::string& 
                                            : "was ended by signal " + std::to_string(WTERMSIG(state));
   const std::string last = LastLine(log_path);
   return {ErrorCode::kUnreadable,
-          Quoted(call) + " " + how + (last.empty() ? "" : ": " + last) + " (all that it said: " + log_path + ")"};
+          Quoted(call) + " " + how + (last.empty() ? "" : ": " + last) + " (its output: " + log_path + ")"};
 }
 
 }  // namespace pliant

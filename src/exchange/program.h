@@ -13,7 +13,7 @@ namespace pliant {
 
 // Runs `arguments[0]`, found on PATH, without a shell, and appends what it prints to the file `log_path`. Fails with
 // kNotFound if there is no such program, with kUnwritable for the log, with kUnreadable if it does not end with 0: the
-// sentence has the last line that it printed, and the log's place.
+// sentence has the last line that it printed, and the path of the log.
 Status RunProgram(const std::vector<std::string>& arguments, const std::string& log_path);
 
 }  // namespace pliant

@@ -97,7 +97,7 @@ Result<std::vector<RunSource>> ReadRunSources(const std::string& run_path, const
     if (Status status = AddPoints(*known, &source); !status.ok()) return status;
     in_order.push_back(std::move(source));
   }
-  if (run->cut_lines > 0) in_order.front().notes.emplace_back("the run was killed; what it left whole is exported");
+  if (run->cut_lines > 0) in_order.front().notes.emplace_back("the run was killed; its complete rows are exported");
   return in_order;
 }
 

@@ -14,14 +14,14 @@ namespace {
 
 constexpr int kBusyMs = 2000;  // how long another process may hold a lock
 
-int Bind(sqlite3_stmt* statement, int place, const SqliteValue& value) {
-  if (const auto* whole = std::get_if<std::int64_t>(&value)) return sqlite3_bind_int64(statement, place, *whole);
-  if (const auto* number = std::get_if<double>(&value)) return sqlite3_bind_double(statement, place, *number);
+int Bind(sqlite3_stmt* statement, int index, const SqliteValue& value) {
+  if (const auto* whole = std::get_if<std::int64_t>(&value)) return sqlite3_bind_int64(statement, index, *whole);
+  if (const auto* number = std::get_if<double>(&value)) return sqlite3_bind_double(statement, index, *number);
   if (const auto* text = std::get_if<std::string>(&value))
-    return sqlite3_bind_text64(statement, place, text->data(), text->size(), SQLITE_TRANSIENT, SQLITE_UTF8);
+    return sqlite3_bind_text64(statement, index, text->data(), text->size(), SQLITE_TRANSIENT, SQLITE_UTF8);
   if (const auto* blob = std::get_if<SqliteBlob>(&value))
-    return sqlite3_bind_blob64(statement, place, blob->bytes.data(), blob->bytes.size(), SQLITE_TRANSIENT);
-  return sqlite3_bind_null(statement, place);
+    return sqlite3_bind_blob64(statement, index, blob->bytes.data(), blob->bytes.size(), SQLITE_TRANSIENT);
+  return sqlite3_bind_null(statement, index);
 }
 
 }  // namespace
@@ -34,7 +34,7 @@ Status SqliteDatabase::Failure(const std::string& what) const {
   const std::string message =
       "cannot " + what + " the database " + Quoted(path_) + ": " + sqlite3_errmsg(database_.get());
   if (code == SQLITE_BUSY || code == SQLITE_LOCKED)
-    return {ErrorCode::kUnwritable, message + "; another program has it open, close that first"};
+    return {ErrorCode::kUnwritable, message + "; another program has it open; close that program first"};
   if (code == SQLITE_NOTADB || code == SQLITE_CORRUPT) return {ErrorCode::kUnreadable, message};
   return {ErrorCode::kUnwritable, message};
 }
@@ -72,16 +72,16 @@ Result<SqliteInsert> SqliteInsert::Create(SqliteDatabase& database, const std::s
   const auto known = database.Columns(table);
   if (!known.ok()) return known.status();
   std::string names;
-  std::string places;
+  std::string placeholders;
   for (const std::string& column : columns) {
     if (std::find(known->begin(), known->end(), column) == known->end())
       return Status(ErrorCode::kMismatch, "the database " + Quoted(database.path_) + " has no column " + column +
-                                              " in a table " + table + "; it is not one that this version knows");
+                                              " in a table " + table + "; this version does not know its layout");
     names += (names.empty() ? "" : ", ") + column;
-    places += places.empty() ? "?" : ", ?";
+    placeholders += placeholders.empty() ? "?" : ", ?";
   }
   sqlite3_stmt* handle = nullptr;
-  const std::string sql = "INSERT INTO " + table + " (" + names + ") VALUES (" + places + ")";
+  const std::string sql = "INSERT INTO " + table + " (" + names + ") VALUES (" + placeholders + ")";
   if (sqlite3_prepare_v2(database.database_.get(), sql.c_str(), -1, &handle, nullptr) != SQLITE_OK)
     return database.Failure("write");
   return SqliteInsert(database, handle);

@@ -39,7 +39,7 @@ Result<Imported> ReadTrajectory(const std::string& path, ImportFormat format, co
     imported.frames.emplace(frame_idx, ImportedFrame{world_from_cam.Inverse(), {}});
   if (matched->left_out > 0)
     imported.notes.push_back(std::to_string(matched->left_out) + " of " + std::to_string(poses->size()) +
-                             " poses are near no frame in time");
+                             " poses are not near any frame in time");
   return imported;
 }
 

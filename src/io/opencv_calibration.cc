@@ -163,7 +163,7 @@ Result<CameraFile> Perspective(const std::vector<double>& k, std::vector<double>
     const Refit refit = FitOpenCv(k, d, size);
     if (!(refit.residual_px <= kLargestRefitPx))
       return Invalid("the distortion coefficients " + names +
-                     " have no place in the OPENCV model, and k1 and k2 alone "
+                     " are not part of the OPENCV model, and k1 and k2 alone "
                      "miss the distortion by up to " +
                      FormatDouble(std::round(refit.residual_px * 1e3) / 1e3) +
                      " px; calibrate with k1 k2 p1 p2 only, or rectify the images");

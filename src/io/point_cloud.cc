@@ -57,8 +57,7 @@ Result<Points> ReadNpy(const std::string& path, std::string_view bytes) {
   const double rows = sizes && sizes->size() > 1 ? (*sizes)[0] : -1.0;
   const double cols = sizes && sizes->size() > 1 ? (*sizes)[1] : -1.0;
   if ((type != "<f4" && type != "<f8") || header.find("'fortran_order': False") == std::string::npos ||
-      sizes.size() < 2 || !ParseDouble(sizes[0], &rows) || Split(sizes[1], ' ').empty() ||
-      !ParseDouble(Split(sizes[1], ' ')[0], &cols) || !(cols >= 3 && cols <= 64 && rows >= 0 && rows <= 1e9))
+      !(cols >= 3 && cols <= 64 && rows >= 0 && rows <= 1e9))
     return Unreadable(path, "is not an array of N x 3 floats, rows first; save it as np.float32 of this shape");
   const std::size_t width = type == "<f4" ? 4 : 8;
   const auto stride = static_cast<std::size_t>(cols) * width;
@@ -129,7 +128,7 @@ Result<PlyHeader> ReadPlyHeader(const std::string& path, std::string_view bytes)
       in_vertex = words[1] == "vertex";
       double count = 0;
       if (in_vertex && (!first_element || !ParseDouble(words[2], &count) || !(count >= 0 && count <= 1e9)))
-        return Unreadable(path, "has no sound number of vertices at its beginning");
+        return Unreadable(path, "has no valid number of vertices in its header");
       if (in_vertex) header.vertices = static_cast<std::size_t>(count);
       first_element = false;
     } else if (words[0] == "property" && in_vertex) {
@@ -169,9 +168,9 @@ Result<Points> ReadPly(const std::string& path, std::string_view bytes) {
     for (std::size_t i = 0; i < header->vertices; ++i) {
       Eigen::Vector3d point;
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        const std::size_t place = i * stride + offsets[axis];
+        const std::size_t offset = i * stride + offsets[axis];
         point[static_cast<Eigen::Index>(axis)] =
-            of[axis]->width == 4 ? At<float>(data, place) : At<double>(data, place);
+            of[axis]->width == 4 ? At<float>(data, offset) : At<double>(data, offset);
       }
       points.push_back(point);
     }
@@ -224,7 +223,7 @@ Result<Points> ReadPointCloud(const std::string& path) {
     const auto bytes = ReadFile(path);
     if (!bytes.ok()) return bytes.status();
     const bool is_npy = bytes->starts_with("\x93NUMPY");
-    if (!is_npy && !bytes->starts_with("ply")) return Unreadable(path, "is not what its name says; copy it anew");
+    if (!is_npy && !bytes->starts_with("ply")) return Unreadable(path, "is not what its name says; copy it again");
     points = is_npy ? ReadNpy(path, *bytes) : ReadPly(path, *bytes);
   } else {
     points = ReadText(path);

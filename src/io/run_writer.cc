@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 
 Status Unwritable(const std::string& path, const std::error_code& error) {
   return {ErrorCode::kUnwritable, "cannot write into " + Quoted(path) + ": " + error.message() +
-                                      "; choose another place or change its permissions"};
+                                      "; choose another folder or change its permissions"};
 }
 
 // A killed run says of no submaps, and has no models.
@@ -168,12 +168,12 @@ Status RunWriter::State::Check(const FrameReport& report) {
 
 Status RunWriter::State::AddPoints(const FrameReport& report) {
   for (const NewPoint& point : report.new_points) {
-    const auto place = std::lower_bound(points.begin(), points.end(), point.id,
-                                        [](const CanonicalPoint& known, PointId id) { return known.point.id < id; });
-    if (place != points.end() && place->point.id == point.id)
+    const auto known = std::lower_bound(points.begin(), points.end(), point.id,
+                                        [](const CanonicalPoint& p, PointId id) { return p.point.id < id; });
+    if (known != points.end() && known->point.id == point.id)
       return {ErrorCode::kInvalidArgument, "frame " + std::to_string(report.frame_idx) + ": point " +
                                                std::to_string(point.id.value) + " is new for the second time"};
-    points.insert(place, {point, 0.0, 0, report.submap});
+    points.insert(known, {point, 0.0, 0, report.submap});
   }
   const auto never_new = [&](PointId id, const std::string& what) {
     return Status(ErrorCode::kInvalidArgument, "frame " + std::to_string(report.frame_idx) + ": point " +

@@ -45,16 +45,16 @@ class SimulationTruth final : public TrackingTruth {
   std::vector<TrueTrack> Locate(int frame_idx, std::span<const PointId> ids) override {
     std::vector<TrueTrack> tracks(ids.size());
     std::vector<MaterialPoint> points;
-    std::vector<std::size_t> places;
+    std::vector<std::size_t> indices;
     for (std::size_t k = 0; k < ids.size(); ++k) {
       const auto found = followed_.find(ids[k]);
       if (found == followed_.end()) continue;
       points.push_back(found->second);
-      places.push_back(k);
+      indices.push_back(k);
     }
     const auto observations = simulator_.Observe(frame_idx, points);
     for (std::size_t n = 0; n < observations.size(); ++n) {
-      TrueTrack& track = tracks[places[n]];
+      TrueTrack& track = tracks[indices[n]];
       track.pixel = observations[n].pixel;
       if (observations[n].visibility == Visibility::kVisible) track.sight = TrueTrack::Sight::kVisible;
       if (observations[n].visibility == Visibility::kOccluded) track.sight = TrueTrack::Sight::kOccluded;

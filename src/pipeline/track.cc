@@ -106,7 +106,7 @@ Ending AtTheEnd(const Tracker& tracker, int frames, const std::string& last_note
   if (tracker.state() == TrackingState::kLost || tracker.HasInactiveSubmaps())
     return {RunStatus::kLost, "after frame " + last_tracked + "; in the sequence's last frame: " + last_note};
   if (frames == 1)
-    return {RunStatus::kFailed, "one frame carries no map; give two or more, between which the camera moved"};
+    return {RunStatus::kFailed, "one frame is not enough for a map; give two or more, between which the camera moved"};
   return {RunStatus::kFailed, "the sequence ended without a first map: " + last_note};
 }
 
@@ -169,7 +169,7 @@ void TrackOptions::List(OptionTable& table) {
             "changes the result",
             1, 1024);
   table.Add("max_frames_back", &max_frames_back, "frames",
-            "before the reference of a first map, that are tracked from it back in time", 0, 100000);
+            "before the reference of a first map, tracked backwards in time from it", 0, 100000);
   table.AddChoice("timings", &timings, "none: wall times are written as 0, so that two runs are equal byte for byte");
   tracker.List(table);
 }

@@ -16,8 +16,8 @@ class Centerline {
   // `bend_deg_per_cm` bounds the curvature in each plane. Reaches from 0 to `length_mm`.
   Centerline(double length_mm, double bend_deg_per_cm, int seed);
 
-  // The frame at a place along the line: its origin lies on the line, z points along it. Arguments beyond the ends are
-  // moved to the ends.
+  // The frame at a position along the line: its origin lies on the line, z points along it. Arguments beyond the ends
+  // are moved to the ends.
   Rigid3 WorldFromFrame(double s_mm) const;
 
  private:

@@ -69,8 +69,8 @@ class Checker {
     if (options_.scene.kind != SceneKind::kColon && options_.scene.kind != SceneKind::kTube) return false;
     constexpr double kOutsideMm = 5.0;  // more than a tremor before the opening
     if (center.z() < -kOutsideMm && center.norm() < 3.0 * options_.scene.radius_mm) return true;
-    const auto place_mm = path_.PlaceMm(time_s);
-    return place_mm && *place_mm >= tube_mm_;
+    const auto position_mm = path_.PositionMm(time_s);
+    return position_mm && *position_mm >= tube_mm_;
   }
 
   const SimulationOptions& options_;

@@ -18,7 +18,7 @@ class ImageTexture {
   // Of a surface with an image.
   explicit ImageTexture(const Surface& surface);
 
-  // Blue, green, red, linear (gamma 2.2 undone), at a place of the chart, averaged over about `footprint_mm`. The
+  // Blue, green, red, linear (gamma 2.2 undone), at a position of the chart, averaged over about `footprint_mm`. The
   // picture repeats beyond its edges.
   Eigen::Vector3f At(const Eigen::Vector2f& chart, float footprint_mm) const;
 

@@ -25,16 +25,16 @@ struct Visitor {
   double age;     // 0 when it comes, 1 when it has gone
 };
 
-// Those who are there at a time, `mean_count` on average: twice as many places, each taken or not in every stay.
+// Those who are there at a time, `mean_count` on average: twice as many slots, each used or not during every stay.
 std::vector<Visitor> VisitorsAt(double time_s, double mean_count, double stay_s, const Random& random) {
-  const int places = static_cast<int>(std::ceil(2.0 * mean_count));
+  const int slots = static_cast<int>(std::ceil(2.0 * mean_count));
   std::vector<Visitor> visitors;
-  for (int place = 0; place < places; ++place) {
-    const Random at_place = random.Child(std::to_string(place));
-    const double stays = time_s / stay_s + Random(at_place).Uniform();
+  for (int slot = 0; slot < slots; ++slot) {
+    const Random at_slot = random.Child(std::to_string(slot));
+    const double stays = time_s / stay_s + Random(at_slot).Uniform();
     const double stay = std::floor(stays);
-    Random visit = at_place.Child(std::to_string(static_cast<long long>(stay)));
-    if (visit.Uniform() < mean_count / places) visitors.push_back({visit, stays - stay});
+    Random visit = at_slot.Child(std::to_string(static_cast<long long>(stay)));
+    if (visit.Uniform() < mean_count / slots) visitors.push_back({visit, stays - stay});
   }
   return visitors;
 }
@@ -80,7 +80,7 @@ Outline DrawOutline(Random& random, double radius_px, double most_stretch) {
   return outline;
 }
 
-// Calls `paint(pixel, place in the outline, value)` for the pixels within an outline.
+// Calls `paint(pixel, radius in the outline, value)` for the pixels within an outline.
 template <class Paint>
 void ForPixelsIn(const Outline& outline, cv::Mat& light, const Paint& paint) {
   const double reach = outline.ReachPx();
@@ -93,8 +93,8 @@ void ForPixelsIn(const Outline& outline, cv::Mat& light, const Paint& paint) {
     auto* row = light.ptr<cv::Vec3f>(y);
     for (int x = x0; x <= x1; ++x) {
       const Eigen::Vector2d pixel(x, y);
-      const double place = outline.At(pixel);
-      if (place < 1.0) paint(pixel, place, row[x]);
+      const double radius = outline.At(pixel);
+      if (radius < 1.0) paint(pixel, radius, row[x]);
     }
   });
 }
@@ -144,14 +144,14 @@ void CoverWithDrops(const SimulationOptions& options, double time_s, Eye eye, cv
   for (Visitor& drop : drops) {
     double opacity = 0;
     const Outline outline = PlaceDrop(drop, light.size(), &opacity);
-    ForPixelsIn(outline, light, [&](const Eigen::Vector2d& pixel, double place, cv::Vec3f& value) {
+    ForPixelsIn(outline, light, [&](const Eigen::Vector2d& pixel, double radius, cv::Vec3f& value) {
       // A thick middle magnifies; the steep rim looks far outwards, loses light above and gains some below.
       const Eigen::Vector2d from_center = pixel - outline.center;
-      const double bending = 0.4 + 1.1 * place * place;
+      const double bending = 0.4 + 1.1 * radius * radius;
       const double side = from_center.y() / outline.radius_px;
-      const double rim = SmoothStep(0.55, 1.0, place);
+      const double rim = SmoothStep(0.55, 1.0, radius);
       const double brightness = 1.0 + rim * (0.35 * side - 0.25);
-      const auto weight = static_cast<float>(opacity * (1.0 - SmoothStep(0.88, 1.0, place)));
+      const auto weight = static_cast<float>(opacity * (1.0 - SmoothStep(0.88, 1.0, radius)));
       const cv::Vec3f through =
           Bilinear(blurred, outline.center + bending * from_center) * static_cast<float>(brightness);
       value = (1.0F - weight) * value + weight * through;
@@ -183,8 +183,8 @@ void CoverWithDebris(const SimulationOptions& options, double focal_px, double g
     // It comes into the light and goes out of it.
     const double lit = SmoothStep(0.0, 0.12, debris.age) * (1.0 - SmoothStep(0.88, 1.0, debris.age));
     const cv::Vec3f color = (bright ? mucus : stool) * static_cast<float>(1.0 / gain);
-    ForPixelsIn(outline, light, [&](const Eigen::Vector2d&, double place, cv::Vec3f& value) {
-      const auto weight = static_cast<float>(lit * density * (1.0 - SmoothStep(0.0, 1.0, place)));
+    ForPixelsIn(outline, light, [&](const Eigen::Vector2d&, double radius, cv::Vec3f& value) {
+      const auto weight = static_cast<float>(lit * density * (1.0 - SmoothStep(0.0, 1.0, radius)));
       value = (1.0F - weight) * value + weight * color;
     });
   }

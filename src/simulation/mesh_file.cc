@@ -68,9 +68,9 @@ Status ReadPicture(const std::string& path, const aiScene& scene, cv::Mat* image
 Result<MeshFile> ReadMeshFile(const std::string& path) {
   std::error_code error;
   if (!fs::is_regular_file(path, error))
-    return {ErrorCode::kNotFound, "there is no mesh file " + path + "; is Scene.mesh_path right?"};
+    return {ErrorCode::kNotFound, "there is no mesh file " + path + "; check Scene.mesh_path"};
   Assimp::Importer importer;
-  // What a renderer would want (normals, colors) only keeps vertices of one place apart.
+  // What a renderer would want (normals, colors) only keeps vertices of one position apart.
   importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, aiComponent_NORMALS | aiComponent_COLORS |
                                                           aiComponent_TANGENTS_AND_BITANGENTS |
                                                           aiComponent_BONEWEIGHTS | aiComponent_ANIMATIONS);

@@ -23,7 +23,7 @@ struct MeshFile {
   cv::Mat image;  // CV_8UC3, the first material's diffuse picture; empty: it names none
 };
 
-// Vertices that agree in place and uv are one. Polygons are cut into triangles; points, lines and triangles without
+// Vertices that agree in position and uv are one. Polygons are cut into triangles; points, lines and triangles without
 // area are left out. Fails with kNotFound (no such file, or its picture is missing), kUnreadable (not a mesh, a vertex
 // that is not a finite number, a picture that cannot be decoded) and kInsufficient (no faces); the sentence names the
 // file.

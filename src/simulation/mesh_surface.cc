@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // The scene `mesh`. Long edges are divided at their middles, each once for both of its triangles, so that there are no
-// gaps and the places of the file's surface stay what they are; normals are the file's, smoothed over its vertices.
+// gaps and the positions of the file's surface stay what they are; normals are the file's, smoothed over its vertices.
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -26,7 +26,7 @@ Status TooFine(const SimulationOptions::Scene& options) {
                                            "check Scene.mesh_scale"};
 }
 
-// Each vertex gets the sum of the area vectors around its place; vertices that differ in uv alone share it.
+// Each vertex gets the sum of the area vectors around its position; vertices that differ in uv alone share it.
 std::vector<Eigen::Vector3d> SmoothNormals(const MeshFile& mesh) {
   const std::size_t count = mesh.vertices.size();
   std::vector<Eigen::Vector3d> normals(count, Eigen::Vector3d::Zero());
@@ -37,16 +37,17 @@ std::vector<Eigen::Vector3d> SmoothNormals(const MeshFile& mesh) {
   }
   std::vector<std::uint32_t> order(count);
   std::iota(order.begin(), order.end(), 0U);
-  const auto place = [&](std::uint32_t idx) {
+  const auto position = [&](std::uint32_t idx) {
     const Eigen::Vector3d& v = mesh.vertices[idx];
     return std::array{v.x(), v.y(), v.z()};
   };
-  std::sort(order.begin(), order.end(),
-            [&](std::uint32_t a, std::uint32_t b) { return place(a) != place(b) ? place(a) < place(b) : a < b; });
+  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return position(a) != position(b) ? position(a) < position(b) : a < b;
+  });
   for (std::size_t begin = 0; begin < count;) {
     std::size_t end = begin;
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    while (end < count && place(order[end]) == place(order[begin])) sum += normals[order[end++]];
+    while (end < count && position(order[end]) == position(order[begin])) sum += normals[order[end++]];
     for (; begin < end; ++begin) normals[order[begin]] = sum.normalized();
   }
   return normals;
@@ -122,9 +123,10 @@ Status CheckSize(const SimulationOptions::Scene& options, const MeshFile& mesh) 
   constexpr double kLargestMm = 5000;
   const double across_mm = box.diagonal().norm();
   if (across_mm >= kSmallestMm && across_mm <= kLargestMm) return Status::Ok();
-  return {ErrorCode::kInvalidArgument, "the mesh " + options.mesh_path + " is " + FormatDouble(across_mm) +
-                                           " mm across, which no organ is; Scene.mesh_scale is the millimeters in a "
-                                           "unit of the file (1000 for meters)"};
+  return {ErrorCode::kInvalidArgument,
+          "the mesh " + options.mesh_path + " is " + FormatDouble(across_mm) +
+              " mm across, which is no size of an organ; Scene.mesh_scale is the millimeters in a "
+              "unit of the file (1000 for meters)"};
 }
 
 Surface ToSurface(const MeshFile& mesh, const std::vector<Eigen::Vector3d>& normals) {

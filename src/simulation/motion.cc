@@ -49,7 +49,7 @@ double Motion::SwellShare(const Part& part, double time_s) const {
 
 double Motion::PokeMm(const RestPoint& point, double time_s) const {
   const double push = std::sin(poke_rad_s_ * time_s);
-  const double distance_sq = (point.position - poke_.place).squaredNorm();
+  const double distance_sq = (point.position - poke_.position).squaredNorm();
   return poke_mm_ * push * push * std::exp(-0.5 * distance_sq / (poke_radius_mm_ * poke_radius_mm_));
 }
 
@@ -76,7 +76,7 @@ Eigen::Matrix3d Motion::Gradient(const RestPoint& point, double time_s) const {
   }
   if (poke_mm_ != 0) {
     gradient -= PokeMm(point, time_s) / (poke_radius_mm_ * poke_radius_mm_) * poke_.direction *
-                (point.position - poke_.place).transpose();
+                (point.position - poke_.position).transpose();
   }
   return gradient;
 }

@@ -5,7 +5,7 @@
 // With V the point at rest in the world, the displacement is the sum of
 //   the wave     d A sin(omega t + phase + k (V_x + V_y + V_z)),   k = 2 pi / wavelength, d = e_y
 //                (Gomez Rodriguez, Montiel, Tardos, IROS 2022)
-//   breathing    B sin(2 pi t / period + phase) (V - C) / R,       C(V): the place from which V swells
+//   breathing    B sin(2 pi t / period + phase) (V - C) / R,       C(V): the position from which V swells
 //   the poke     n P sin^2(pi t / period) exp(-|V - Q|^2 / (2 radius^2))
 // In the second part of a scene (the upper lobe) A and B, d and the phases are its own.
 #pragma once
@@ -32,7 +32,7 @@ struct RestPoint {
 };
 
 struct Poke {
-  Eigen::Vector3d place = Eigen::Vector3d::Zero();      // Q
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();   // Q
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();  // n
 };
 
@@ -48,7 +48,7 @@ class Motion {
   Eigen::Matrix3d Gradient(const RestPoint& point, double time_s) const;
   // The direction of the surface's normal after the motion (inverse transpose of the gradient); unit length.
   Eigen::Vector3d Normal(const Eigen::Vector3d& normal_at_rest, const RestPoint& point, double time_s) const;
-  // No point within `swell_reach_mm` of its C is ever farther from its place at rest than this.
+  // No point within `swell_reach_mm` of its C is ever farther from its position at rest than this.
   double LargestDisplacementMm(double swell_reach_mm) const;
   // No such point moves farther than this within so short a time.
   double LargestStepMm(double swell_reach_mm, double duration_s) const;
@@ -74,7 +74,8 @@ class Motion {
 };
 
 // Where the deformation is no motion of a body any more, one sentence each: a wave that folds over (A k >= 1), another
-// place and time (of those given) at which the gradient's determinant is not positive, lobes that run into each other.
+// position and time (of those given) at which the gradient's determinant is not positive, lobes that run into each
+// other.
 std::vector<std::string> DeformationWarnings(const SimulationOptions& options, const Motion& motion,
                                              std::span<const RestPoint> points, std::span<const double> times_s);
 

@@ -24,19 +24,19 @@ Mottling::Mottling(const SimulationOptions::Texture& options, Random random) {
   for (Octave& octave : octaves_) octave.amplitude /= static_cast<float>(kNoiseDeviation * std::sqrt(power));
 }
 
-float Mottling::At(const Eigen::Vector3f& place) const {
+float Mottling::At(const Eigen::Vector3f& position) const {
   float sum = 0;
   for (const Octave& octave : octaves_)
-    sum += octave.amplitude * GradientNoise(place * octave.inverse_wave, octave.seed);
+    sum += octave.amplitude * GradientNoise(position * octave.inverse_wave, octave.seed);
   return sum;
 }
 
-float Mottling::At(const Eigen::Vector3f& place, float footprint_mm) const {
+float Mottling::At(const Eigen::Vector3f& position, float footprint_mm) const {
   float sum = 0;
   for (const Octave& octave : octaves_) {
     const float share = std::min(1.0F, 1.0F / (octave.inverse_wave * footprint_mm) - 1.0F);
     if (!(share > 0)) break;
-    sum += share * octave.amplitude * GradientNoise(place * octave.inverse_wave, octave.seed);
+    sum += share * octave.amplitude * GradientNoise(position * octave.inverse_wave, octave.seed);
   }
   return sum;
 }

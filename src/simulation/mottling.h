@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// The mottling of a wall: octaves of noise at the place at rest, as a function of that place alone.
+// The mottling of a wall: octaves of noise at the position at rest, as a function of that position alone.
 #pragma once
 
 #include <cstdint>
@@ -23,9 +23,9 @@ class Mottling {
   Mottling(const SimulationOptions::Texture& options, Random random);
 
   // Mean 0, standard deviation about 1.
-  float At(const Eigen::Vector3f& place) const;
+  float At(const Eigen::Vector3f& position) const;
   // The same without the waves that are shorter than what it is averaged over; waves up to twice that fade.
-  float At(const Eigen::Vector3f& place, float footprint_mm) const;
+  float At(const Eigen::Vector3f& position, float footprint_mm) const;
 
  private:
   struct Octave {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Smooth noise that is a function of place alone: the same place and seed give the same value on every thread.
+// Smooth noise that is a function of position alone: the same position and seed give the same value on every thread.
 #pragma once
 
 #include <cstdint>

@@ -56,7 +56,7 @@ Status CheckPoses(const fs::path& folder, const Simulator& simulator) {
     const bool same = (there.translation - here.translation).norm() < kTranslationMm &&
                       std::min((there.rotation.coeffs() - here.rotation.coeffs()).norm(),
                                (there.rotation.coeffs() + here.rotation.coeffs()).norm()) < kQuaternion;
-    if (!same) return Foreign(folder, "the pose of frame " + std::to_string(i) + " is another one");
+    if (!same) return Foreign(folder, "the pose of frame " + std::to_string(i) + " differs");
   }
   return Status::Ok();
 }
@@ -83,7 +83,7 @@ Status CheckDepth(const fs::path& folder, Simulator& simulator) {
     const double here = hits[i] ? hits[i]->depth_mm / scale_mm : 0.0;
     // Half a step of rounding, and that of the float that was rounded; out of range is written as 0.
     const bool same = there == 0 ? here < 1.0 || here > 65535.0 : std::abs(here - there) < 0.51 + 1e-6 * here;
-    if (!same) return Foreign(folder, "the depth of frame 0 is another one");
+    if (!same) return Foreign(folder, "the depth of frame 0 differs");
   }
   return Status::Ok();
 }

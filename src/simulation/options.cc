@@ -14,22 +14,22 @@ namespace pliant {
 void SimulationOptions::List(OptionTable& table) {
   table.BeginGroup("Scene", "what is filmed");
   table.AddChoice("kind", &scene.kind, "colon with folds, smooth tube, sheet, two lobes, or a mesh file");
-  table.Add("seed", &scene.seed, "-", "of everything that is drawn by lot: folds, texture, tremor, noise", 0, 1 << 30);
+  table.Add("seed", &scene.seed, "-", "of everything random: folds, texture, tremor, noise", 0, 1 << 30);
   table.Add("radius_mm", &scene.radius_mm, "mm", "radius of the lumen without its folds", 5, 200);
-  table.Add("length_mm", &scene.length_mm, "mm", "of the tube or sheet; 0: the camera's way and view_mm more", 0,
+  table.Add("length_mm", &scene.length_mm, "mm", "of the tube or sheet; 0: the camera's path and view_mm more", 0,
             20000);
   table.Add("view_mm", &scene.view_mm, "mm", "tube or sheet that lies ahead of the last camera", 20, 2000);
   table.Add("bend_deg_per_cm", &scene.bend_deg_per_cm, "deg/cm", "largest bending in each plane", 0, 15);
   table.Add("fold_depth_mm", &scene.fold_depth_mm, "mm", "how far a typical fold stands into the lumen", 0, 100);
   table.Add("fold_spacing_mm", &scene.fold_spacing_mm, "mm", "mean distance of the rings of folds", 3, 500);
   table.Add("relief_mm", &scene.relief_mm, "mm", "uneven wall, about its standard deviation", 0, 20);
-  table.Add("width_mm", &scene.width_mm, "mm", "surface, lobes: of the sheet across the camera's way", 20, 2000);
+  table.Add("width_mm", &scene.width_mm, "mm", "surface, lobes: of the sheet across the camera's path", 20, 2000);
   table.Add("lobe_step_mm", &scene.lobe_step_mm, "mm", "lobes: how far one lies above the other", 2, 60);
   table.Add("mesh_path", &scene.mesh_path, "FILE", "mesh: OBJ, PLY or STL; relative to the working folder");
   table.Add("mesh_scale", &scene.mesh_scale, "mm", "mesh: millimeters in a unit of the file", 1e-6, 1e6);
   table.Add("mesh_step_mm", &scene.mesh_step_mm, "mm", "longest edge of the mesh; facets must not be seen", 0.1, 20);
 
-  table.BeginGroup("Texture", "what the wall carries");
+  table.BeginGroup("Texture", "what is painted on the wall");
   table.Add("contrast", &texture.contrast, "-", "of mottling and vessels; 0: one color", 0, 4);
   table.Add("largest_mm", &texture.largest_mm, "mm", "longest wave of the mottling", 0.1, 500);
   table.Add("smallest_mm", &texture.smallest_mm, "mm", "shortest wave; two pixels or more keep corners stable", 0.05,
@@ -57,7 +57,7 @@ void SimulationOptions::List(OptionTable& table) {
             "lobes: direction of the upper one's wave, from y towards x", -180, 180);
 
   table.BeginGroup("Light", "one light at the camera");
-  table.Add("ambient", &light.ambient, "-", "share of light that comes by way of the other walls", 0, 1);
+  table.Add("ambient", &light.ambient, "-", "share of light that is reflected by the other walls", 0, 1);
   table.Add("specular", &light.specular, "-", "peak of the wet reflection; 0: none", 0, 1000);
   table.Add("roughness", &light.roughness, "-", "slope of the wet facets; larger: wider highlights", 0.01, 1);
   table.Add("unevenness_mm", &light.unevenness_mm, "mm", "of the wet film, by the mottling; breaks highlights up", 0,
@@ -75,10 +75,12 @@ void SimulationOptions::List(OptionTable& table) {
   table.Add("samples", &sensor.samples, "-", "rays a pixel, made a square number; depth is the center's", 1, 64);
   table.Add("depth_scale_mm", &sensor.depth_scale_mm, "mm", "one step of the 16-bit depth; range 65535 of them", 1e-4,
             1);
-  table.Add("drops", &sensor.drops, "-", "drops of fluid on the lens at a time, in the mean; in no truth", 0, 50);
-  table.Add("debris", &sensor.debris, "-", "pieces that float before the lens, in the mean; in no truth", 0, 200);
+  table.Add("drops", &sensor.drops, "-", "drops of fluid on the lens at a time, on average; not part of the truth", 0,
+            50);
+  table.Add("debris", &sensor.debris, "-", "pieces that float before the lens, on average; not part of the truth", 0,
+            200);
 
-  table.BeginGroup("Interruption", "what takes the view away for a while; in no truth");
+  table.BeginGroup("Interruption", "what blocks the view for a while; not part of the truth");
   table.Add("blackout_period_s", &interruption.blackout_period_s, "s", "from one to the next; 0: none", 0, 1e6);
   table.Add("blackout_s", &interruption.blackout_s, "s", "how long the image stays black", 0, 1e6);
   table.Add("tool_period_s", &interruption.tool_period_s, "s", "from one tool that passes to the next; 0: none", 0,
@@ -101,14 +103,14 @@ void SimulationOptions::List(OptionTable& table) {
   table.AddChoice("kind", &trajectory.kind, "forward, from side to side, on the spot, out and back, or a file's poses");
   table.Add("frames", &trajectory.frames, "-", "number of frames", 1, 1000000);
   table.Add("fps", &trajectory.fps, "1/s", "frames a second", 0.01, 10000);
-  table.Add("start_mm", &trajectory.start_mm, "mm", "first camera, along the scene's way", 0, 10000);
-  table.Add(
-      "start_pose", &trajectory.start_pose, "mm",
-      "first camera as tx,ty,tz,qx,qy,qz,qw (world_from_camera), then straight ahead; empty: the scene's own way");
-  table.Add("speed_mm_s", &trajectory.speed_mm_s, "mm/s", "insert: along the scene's way", 0, 1000);
+  table.Add("start_mm", &trajectory.start_mm, "mm", "first camera, along the scene's path", 0, 10000);
+  table.Add("start_pose", &trajectory.start_pose, "mm",
+            "first camera as tx,ty,tz,qx,qy,qz,qw (world_from_camera), then straight ahead; empty: along the scene's "
+            "own path");
+  table.Add("speed_mm_s", &trajectory.speed_mm_s, "mm/s", "insert: along the scene's path", 0, 1000);
   table.Add("look_ahead_mm", &trajectory.look_ahead_mm, "mm",
             "the camera looks at the centerline or sheet this far ahead", 1, 500);
-  table.Add("height_mm", &trajectory.height_mm, "mm", "surface, lobes: of the camera's way over the sheet", 5, 500);
+  table.Add("height_mm", &trajectory.height_mm, "mm", "surface, lobes: of the camera's path over the sheet", 5, 500);
   table.Add("sway_amplitude_mm", &trajectory.sway_amplitude_mm, "mm", "sway: to each side", 0, 200);
   table.Add("sway_period_s", &trajectory.sway_period_s, "s", "sway: to both sides and back", 0.01, 1000);
   table.Add("sway_distance_mm", &trajectory.sway_distance_mm, "mm", "sway: to the point that stays in view", 5, 500);

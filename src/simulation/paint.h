@@ -17,7 +17,7 @@ namespace pliant::simulation {
 struct Paint {
   std::optional<BloodMap> map;
   std::optional<SolidTexture> solid;
-  std::optional<ImageTexture> image;  // the albedo, in place of what the blood makes of it
+  std::optional<ImageTexture> image;  // the albedo, instead of what the blood makes of it
 
   // `at_rest`: the surface's rays, not moved yet.
   Paint(const SimulationOptions::Texture& options, int seed, const Surface& surface, const RayScene& at_rest) {
@@ -29,7 +29,7 @@ struct Paint {
     if (!surface.image.empty()) image.emplace(surface);
   }
 
-  // The amount of blood at a place, known by its chart or by where it is at rest.
+  // The amount of blood at a position, known by its chart or by where it is at rest.
   float Blood(const Eigen::Vector2f& chart, const Eigen::Vector3f& at_rest, float footprint_mm) const {
     return map ? map->At(chart.x(), chart.y(), footprint_mm) : solid->At(at_rest, footprint_mm);
   }

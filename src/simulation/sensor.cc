@@ -27,9 +27,9 @@ class GammaCurve {
     }
   }
   float operator()(float linear) const {
-    const float place = std::sqrt(std::clamp(linear, 0.0F, 1.0F)) * static_cast<float>(table_.size() - 2);
-    const auto i = static_cast<std::size_t>(place);
-    return table_[i] + (place - static_cast<float>(i)) * (table_[i + 1] - table_[i]);
+    const float position = std::sqrt(std::clamp(linear, 0.0F, 1.0F)) * static_cast<float>(table_.size() - 2);
+    const auto i = static_cast<std::size_t>(position);
+    return table_[i] + (position - static_cast<float>(i)) * (table_[i + 1] - table_[i]);
   }
 
  private:

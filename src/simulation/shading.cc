@@ -27,14 +27,14 @@ Shader::Shader(const SimulationOptions::Light& options, const Surface& surface, 
   }
 }
 
-Shader::Place Shader::PlaceOf(const std::array<std::uint32_t, 3>& t, float b1, float b2) const {
+Shader::SurfacePosition Shader::PositionOf(const std::array<std::uint32_t, 3>& t, float b1, float b2) const {
   const float b0 = 1.0F - b1 - b2;
-  Place place;
+  SurfacePosition position;
   if (!surface_.chart.empty())
-    place.chart = b0 * surface_.chart[t[0]] + b1 * surface_.chart[t[1]] + b2 * surface_.chart[t[2]];
+    position.chart = b0 * surface_.chart[t[0]] + b1 * surface_.chart[t[1]] + b2 * surface_.chart[t[2]];
   if (paint_.solid)
-    place.at_rest = b0 * surface_.vertices[t[0]] + b1 * surface_.vertices[t[1]] + b2 * surface_.vertices[t[2]];
-  return place;
+    position.at_rest = b0 * surface_.vertices[t[0]] + b1 * surface_.vertices[t[1]] + b2 * surface_.vertices[t[2]];
+  return position;
 }
 
 const Eigen::Vector3f& Shader::AlbedoOf(float blood) const {
@@ -42,8 +42,8 @@ const Eigen::Vector3f& Shader::AlbedoOf(float blood) const {
   return albedo_[std::clamp(step, 0, kAlbedoSteps - 1)];
 }
 
-Eigen::Vector3f Shader::Facet(const std::array<std::uint32_t, 3>& t, const Place& place, const Eigen::Vector3f& normal,
-                              float size_mm) const {
+Eigen::Vector3f Shader::Facet(const std::array<std::uint32_t, 3>& t, const SurfacePosition& position,
+                              const Eigen::Vector3f& normal, float size_mm) const {
   // What is mottled is also uneven: its slope tilts the normal. Two axes on the triangle first: the chart's, or any.
   const Eigen::Vector3f ab = surface_.vertices[t[1]] - surface_.vertices[t[0]];
   const Eigen::Vector3f ac = surface_.vertices[t[2]] - surface_.vertices[t[0]];
@@ -61,7 +61,7 @@ Eigen::Vector3f Shader::Facet(const std::array<std::uint32_t, 3>& t, const Place
     y_axis = ab.cross(ac).cross(ab).normalized();
   }
   const auto blood = [&](const Eigen::Vector2f& on_chart, const Eigen::Vector3f& in_space) {
-    return paint_.Blood(place.chart + size_mm * on_chart, place.at_rest + size_mm * in_space, size_mm);
+    return paint_.Blood(position.chart + size_mm * on_chart, position.at_rest + size_mm * in_space, size_mm);
   };
   const float here = blood(Eigen::Vector2f::Zero(), Eigen::Vector3f::Zero());
   const float slope_x = (blood(Eigen::Vector2f::UnitX(), x_axis) - here) / size_mm;
@@ -78,26 +78,26 @@ Eigen::Vector3f Shader::Radiance(const RayHit& hit, const Eigen::Vector3d& direc
   const auto b2 = static_cast<float>(hit.point.b2);
   const float b0 = 1.0F - b1 - b2;
   const Eigen::Vector3f normal = (b0 * normals[t[0]] + b1 * normals[t[1]] + b2 * normals[t[2]]).normalized();
-  const Place place = PlaceOf(t, b1, b2);
+  const SurfacePosition position = PositionOf(t, b1, b2);
   const Eigen::Vector3f to_eye = -direction.cast<float>();
   const float cosine = std::clamp(normal.dot(to_eye), 0.0F, 1.0F);
   const auto distance = static_cast<float>(hit.distance_mm);
-  const Eigen::Vector3f light_from_place = distance * to_eye + light_from_eye.cast<float>();
-  const float light_distance = light_from_place.norm();
-  const Eigen::Vector3f to_light = light_from_place / light_distance;
+  const Eigen::Vector3f light_from_position = distance * to_eye + light_from_eye.cast<float>();
+  const float light_distance = light_from_position.norm();
+  const Eigen::Vector3f to_light = light_from_position / light_distance;
   const float light_cosine = std::clamp(normal.dot(to_light), 0.0F, 1.0F);
 
   // A slanted wall spreads the pixel over more of it, one way only: the geometric mean of both.
   const float footprint_mm = distance * pixel_rad_ / std::sqrt(std::max(cosine, 0.08F));
-  const Eigen::Vector3f albedo = paint_.image ? paint_.image->At(place.chart, footprint_mm)
-                                              : AlbedoOf(paint_.Blood(place.chart, place.at_rest, footprint_mm));
+  const Eigen::Vector3f albedo = paint_.image ? paint_.image->At(position.chart, footprint_mm)
+                                              : AlbedoOf(paint_.Blood(position.chart, position.at_rest, footprint_mm));
 
   const auto ambient = static_cast<float>(options_.ambient);
   const float fall_off = (kReferenceMm / light_distance) * (kReferenceMm / light_distance);
   Eigen::Vector3f radiance = albedo * ((1.0F - ambient) * light_cosine + ambient);
   // The mean facet must be near enough to the light for a rough one to mirror it.
   if (options_.specular > 0 && cosine > 0.85F) {
-    const Eigen::Vector3f facet = Facet(t, place, normal, std::max(footprint_mm, kFinestFacetMm));
+    const Eigen::Vector3f facet = Facet(t, position, normal, std::max(footprint_mm, kFinestFacetMm));
     const float mirror = std::clamp(facet.dot((to_eye + to_light).normalized()), 0.1F, 1.0F);
     const float tan_sq = 1.0F / (mirror * mirror) - 1.0F;
     const auto slope = static_cast<float>(options_.roughness);

@@ -27,21 +27,21 @@ class Shader {
   Shader(const SimulationOptions::Light& options, const Surface& surface, const Paint& paint, double pixel_rad);
 
   // Blue, green, red; 1 is about a white wall at 50 mm. `direction` of the ray, unit; `light_from_eye`: the light's
-  // place by the ray's origin, in the world; `normals`: the vertices' unit normals as posed.
+  // position by the ray's origin, in the world; `normals`: the vertices' unit normals as posed.
   Eigen::Vector3f Radiance(const RayHit& hit, const Eigen::Vector3d& direction, const Eigen::Vector3d& light_from_eye,
                            const std::vector<Eigen::Vector3f>& normals) const;
 
  private:
   // Where a ray met the surface at rest, by the chart and in space; what the surface has none of is zero.
-  struct Place {
+  struct SurfacePosition {
     Eigen::Vector2f chart = Eigen::Vector2f::Zero();
     Eigen::Vector3f at_rest = Eigen::Vector3f::Zero();
   };
-  Place PlaceOf(const std::array<std::uint32_t, 3>& triangle, float b1, float b2) const;
+  SurfacePosition PositionOf(const std::array<std::uint32_t, 3>& triangle, float b1, float b2) const;
   const Eigen::Vector3f& AlbedoOf(float blood) const;
   // The normal of the wet film on a patch of this size.
-  Eigen::Vector3f Facet(const std::array<std::uint32_t, 3>& triangle, const Place& place, const Eigen::Vector3f& normal,
-                        float size_mm) const;
+  Eigen::Vector3f Facet(const std::array<std::uint32_t, 3>& triangle, const SurfacePosition& position,
+                        const Eigen::Vector3f& normal, float size_mm) const;
 
   static constexpr int kAlbedoSteps = 2048;
 

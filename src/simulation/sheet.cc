@@ -35,10 +35,10 @@ class Sheet {
 
   // The sheet over the ground; the parts have hills of their own.
   double Height(double x, double z, int part) const {
-    const Eigen::Vector3d place(x, 100.0 * part, z);
-    const double hills = 13.0 * GradientNoise((place / 75.0).cast<float>(), seeds_[0]) +
-                         4.0 * GradientNoise((place / 30.0).cast<float>(), seeds_[1]);
-    return height_mm_ + x * x / (2.0 * kFallRadiusMm) - hills - ReliefMm(place, options_.relief_mm, seeds_[2]);
+    const Eigen::Vector3d position(x, 100.0 * part, z);
+    const double hills = 13.0 * GradientNoise((position / 75.0).cast<float>(), seeds_[0]) +
+                         4.0 * GradientNoise((position / 30.0).cast<float>(), seeds_[1]);
+    return height_mm_ + x * x / (2.0 * kFallRadiusMm) - hills - ReliefMm(position, options_.relief_mm, seeds_[2]);
   }
   // Where the upper lobe ends: a line that winds along the way.
   double RimX(double z) const {
@@ -59,14 +59,14 @@ class Sheet {
   int Rows() const { return static_cast<int>(std::ceil((length_mm_ + height_mm_) / options_.mesh_step_mm)) + 1; }
   double Z(int row) const { return -height_mm_ + (length_mm_ + height_mm_) * row / (Rows() - 1); }
   // Columns run towards smaller x, so that the normals point up.
-  Eigen::Vector3d Place(int row, double column_share) const {
+  Eigen::Vector3d PositionAt(int row, double column_share) const {
     const double x = (0.5 - column_share) * options_.width_mm;
     return {x, Height(x, Z(row), 0), Z(row)};
   }
 
   // How many columns belong to the lower lobe.
   int LowerColumns() const { return Columns() * 9 / 20; }
-  Eigen::Vector3d LobePlace(int row, int column) const {
+  Eigen::Vector3d LobePosition(int row, int column) const {
     const double z = Z(row);
     const double half = 0.5 * options_.width_mm;
     const double rim_x = RimX(z);
@@ -124,11 +124,11 @@ Surface MakeSheet(const SimulationOptions::Scene& options, double height_mm, dou
   tbb::parallel_for(0, rows, [&](int row) {
     for (int column = 0; column < columns; ++column) {
       const std::size_t idx = static_cast<std::size_t>(row) * columns + column;
-      const Eigen::Vector3d place =
-          lobes ? sheet.LobePlace(row, column) : sheet.Place(row, static_cast<double>(column) / (columns - 1));
-      surface.vertices[idx] = place.cast<float>();
+      const Eigen::Vector3d position =
+          lobes ? sheet.LobePosition(row, column) : sheet.PositionAt(row, static_cast<double>(column) / (columns - 1));
+      surface.vertices[idx] = position.cast<float>();
       surface.chart[idx] = Eigen::Vector2d(column * options.mesh_step_mm, row * options.mesh_step_mm).cast<float>();
-      surface.swell_center[idx] = Eigen::Vector3d(0.0, height_mm + kSwellRadiusMm, place.z()).cast<float>();
+      surface.swell_center[idx] = Eigen::Vector3d(0.0, height_mm + kSwellRadiusMm, position.z()).cast<float>();
       if (lobes) surface.part[idx] = column < sheet.LowerColumns() ? 0 : 1;
     }
   });

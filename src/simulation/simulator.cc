@@ -13,6 +13,7 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include "pliant/base/text.h"
 #include "simulation/centerline.h"
 #include "simulation/clearance.h"
 #include "simulation/motion.h"
@@ -77,7 +78,7 @@ Status CheckMemory(const SimulationOptions& options, double length_mm) {
   if (options.scene.kind != SceneKind::kMesh && texels > kMaxTexels)
     return {ErrorCode::kInvalidArgument,
             "a wall " + FormatDouble(std::round(length_mm)) +
-                " mm long does not fit into memory at this resolution; shorten the way, or raise Texture.texel_mm and "
+                " mm long does not fit into memory at this resolution; shorten the path, or raise Texture.texel_mm and "
                 "Scene.mesh_step_mm"};
   constexpr double kMaxRays = 4e8;
   const double rays = static_cast<double>(options.camera.width) * options.camera.height * (options.sensor.samples + 1);
@@ -151,7 +152,7 @@ void Simulator::State::TurnNormalsToFirstView() {
   for (Eigen::Vector3f& normal : surface.normals) normal = -normal;
 }
 
-// The place is given, or in the lower middle of the first image; the push goes against the wall's face there.
+// The position is given, or in the lower middle of the first image; the push goes against the wall's face there.
 Result<simulation::Poke> Simulator::State::FindPoke() const {
   simulation::Poke poke;
   if (options.deformation.poke_mm == 0) return poke;
@@ -163,7 +164,7 @@ Result<simulation::Poke> Simulator::State::FindPoke() const {
     if (!position || position->size() != 3)
       return {ErrorCode::kInvalidArgument,
               "Deformation.poke_place is '" + options.deformation.poke_place + "'; give x,y,z in mm"};
-    direction = (Eigen::Vector3d(place->data()) - world_from_cam.translation).normalized();
+    direction = (Eigen::Vector3d(position->data()) - world_from_cam.translation).normalized();
   } else if (const auto ray = camera.Unproject(std::span(&pixel, 1))[0]) {
     direction = world_from_cam.rotation * *ray;
   }
@@ -171,9 +172,10 @@ Result<simulation::Poke> Simulator::State::FindPoke() const {
   scene->Intersect(world_from_cam.translation, std::span(&direction, 1), std::span(&hit, 1));
   if (!hit.hit())
     return {ErrorCode::kInvalidArgument,
-            "the first camera sees no wall where the poke is to be; set Deformation.poke_place to a place in its view"};
+            "the first camera sees no wall at the position of the poke; set Deformation.poke_place to a position in "
+            "its view"};
   const auto& t = surface.triangles[hit.point.triangle_idx];
-  poke.place = surface.AtRest(hit.point).position;
+  poke.position = surface.AtRest(hit.point).position;
   poke.direction = (surface.normals[t[0]] + surface.normals[t[1]] + surface.normals[t[2]]).cast<double>().normalized();
   return poke;
 }

@@ -21,15 +21,15 @@ constexpr double kStepMm = 0.4;      // of a growing vessel
 constexpr float kSoftEdgeMm = 0.1F;  // a vessel lies in the wall, not on it
 
 struct Foot {
-  Eigen::Vector3d place;
+  Eigen::Vector3d position;
   Eigen::Vector3d normal;
 };
 
-// The nearest place of the surface within a step or two.
+// The nearest position of the surface within a step or two.
 std::optional<Foot> FootOnSurface(const Surface& surface, const RayScene& at_rest, const Eigen::Vector3d& x) {
   double least_sq = std::numeric_limits<double>::infinity();
   std::uint32_t best = 0;
-  Eigen::Vector3d place;
+  Eigen::Vector3d position;
   at_rest.VisitNear(x, 2.0 * kStepMm, [&](std::uint32_t idx) {
     const auto& t = surface.triangles[idx];
     const Corners corners = {surface.vertices[t[0]].cast<double>(), surface.vertices[t[1]].cast<double>(),
@@ -40,11 +40,11 @@ std::optional<Foot> FootOnSurface(const Surface& surface, const RayScene& at_res
     if (distance_sq > least_sq || (distance_sq == least_sq && idx > best)) return;
     least_sq = distance_sq;
     best = idx;
-    place = candidate;
+    position = candidate;
   });
   if (std::isinf(least_sq)) return std::nullopt;
   const auto& t = surface.triangles[best];
-  return Foot{place,
+  return Foot{position,
               (surface.normals[t[0]] + surface.normals[t[1]] + surface.normals[t[2]]).cast<double>().normalized()};
 }
 
@@ -109,10 +109,10 @@ void SolidTexture::Grow(const SimulationOptions::Texture& options, Random random
       while (twig.width_mm > kThinnestMm) {
         turning = 0.9 * turning + random.Normal(0.08);
         Turn(twig, turning * 0.5);
-        const auto next = FootOnSurface(surface, at_rest, twig.foot.place + kStepMm * twig.heading);
+        const auto next = FootOnSurface(surface, at_rest, twig.foot.position + kStepMm * twig.heading);
         // The surface ends here, or turns back on itself.
-        if (!next || (next->place - twig.foot.place).norm() < 0.2 * kStepMm) break;
-        Store({twig.foot.place.cast<float>(), next->place.cast<float>(), static_cast<float>(0.5 * twig.width_mm),
+        if (!next || (next->position - twig.foot.position).norm() < 0.2 * kStepMm) break;
+        Store({twig.foot.position.cast<float>(), next->position.cast<float>(), static_cast<float>(0.5 * twig.width_mm),
                static_cast<float>(std::min(1.0, 0.25 + twig.width_mm * 1.4))});
         twig.foot = *next;
         twig.heading = (twig.heading - twig.heading.dot(next->normal) * next->normal).normalized();
@@ -147,22 +147,22 @@ void SolidTexture::Store(const Segment& segment) {
   segments_.push_back(segment);
 }
 
-float SolidTexture::At(const Eigen::Vector3f& place, float footprint_mm) const {
+float SolidTexture::At(const Eigen::Vector3f& position, float footprint_mm) const {
   float vessel = 0;
-  const Eigen::Vector3i cell = (place / kCellMm).array().floor().matrix().cast<int>();
+  const Eigen::Vector3i cell = (position / kCellMm).array().floor().matrix().cast<int>();
   if (const auto it = cells_.find(Cell(cell)); it != cells_.end()) {
     for (const std::uint32_t idx : it->second) {
       const Segment& s = segments_[idx];
       const Eigen::Vector3f way = s.to - s.from;
-      const float t = std::clamp((place - s.from).dot(way) / way.squaredNorm(), 0.0F, 1.0F);
-      const float distance = (s.from + t * way - place).norm();
+      const float t = std::clamp((position - s.from).dot(way) / way.squaredNorm(), 0.0F, 1.0F);
+      const float distance = (s.from + t * way - position).norm();
       // A soft edge, and less of a vessel that is narrower than what is averaged over.
       const float inside = std::clamp((s.half_width_mm - distance) / (2.0F * kSoftEdgeMm) + 0.5F, 0.0F, 1.0F);
       const float width = 2.0F * s.half_width_mm;
       vessel = std::max(vessel, inside * s.blood * std::min(1.0F, width / std::max(footprint_mm, 1e-3F)));
     }
   }
-  return contrast_ * (kMottlingBlood * mottling_.At(place, footprint_mm) + kVesselBlood * vessel);
+  return contrast_ * (kMottlingBlood * mottling_.At(position, footprint_mm) + kVesselBlood * vessel);
 }
 
 }  // namespace pliant::simulation

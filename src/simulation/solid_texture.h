@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// What is painted on a wall without a chart, as a function of the place at rest: mottling as on the chart's map
+// What is painted on a wall without a chart, as a function of the position at rest: mottling as on the chart's map
 // (texture.h, with the same meaning of the value), and vessels that were grown on the surface in space.
 #pragma once
 
@@ -23,8 +23,8 @@ class SolidTexture {
   // `at_rest`: the surface's rays, not moved yet.
   SolidTexture(const SimulationOptions::Texture& options, int seed, const Surface& surface, const RayScene& at_rest);
 
-  // The value at a place at rest, averaged over about `footprint_mm`.
-  float At(const Eigen::Vector3f& place, float footprint_mm) const;
+  // The value at a position at rest, averaged over about `footprint_mm`.
+  float At(const Eigen::Vector3f& position, float footprint_mm) const;
 
  private:
   struct Segment {

@@ -91,12 +91,12 @@ void FillGrid(Surface& surface) {
   FillTriangles(surface);
 }
 
-double ReliefMm(const Eigen::Vector3d& place, double relief_mm, std::uint32_t seed) {
+double ReliefMm(const Eigen::Vector3d& position, double relief_mm, std::uint32_t seed) {
   double sum = 0;
   double amplitude = 2.2 * relief_mm;
   double wave_mm = 14.0;
   for (std::uint32_t octave = 0; octave < 4; ++octave, amplitude *= 0.42, wave_mm *= 0.45)
-    sum += amplitude * GradientNoise((place / wave_mm).cast<float>(), seed + octave);
+    sum += amplitude * GradientNoise((position / wave_mm).cast<float>(), seed + octave);
   return sum;
 }
 

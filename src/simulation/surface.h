@@ -27,7 +27,7 @@ struct SurfaceGrid {
   enum class Sides { kOpen, kClosed };
   int rows = 0;
   int columns = 0;
-  Sides sides = Sides::kOpen;  // closed: the last column repeats the first one's place
+  Sides sides = Sides::kOpen;  // closed: the last column repeats the first one's position
   double chart_width_mm = 0;
   double chart_height_mm = 0;
 };
@@ -55,8 +55,8 @@ struct Surface {
 // parts are left out. Needs vertices, grid and part.
 void FillGrid(Surface& surface);
 
-// Unevenness of a wall as a function of place: four octaves, standard deviation of about `relief_mm`.
-double ReliefMm(const Eigen::Vector3d& place, double relief_mm, std::uint32_t seed);
+// Unevenness of a wall as a function of position: four octaves, standard deviation of about `relief_mm`.
+double ReliefMm(const Eigen::Vector3d& position, double relief_mm, std::uint32_t seed);
 
 // Scenes `colon` and `tube`: a bent tube of the given length around a centerline.
 Surface MakeTube(const SimulationOptions::Scene& options, const Centerline& centerline, double length_mm);

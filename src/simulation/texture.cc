@@ -75,8 +75,8 @@ cv::Mat DrawVessels(const SimulationOptions::Texture& options, Random random, co
   return map;
 }
 
-// The place at rest of a place on the chart; the vertices are a grid that is even on the chart.
-Eigen::Vector3f PlaceAtRest(const Surface& surface, float column, float row) {
+// The position at rest of a position on the chart; the vertices are a grid that is even on the chart.
+Eigen::Vector3f PositionAtRest(const Surface& surface, float column, float row) {
   const auto columns = static_cast<std::size_t>(surface.grid->columns);
   const int c = std::clamp(static_cast<int>(column), 0, surface.grid->columns - 2);
   const int r = std::clamp(static_cast<int>(row), 0, surface.grid->rows - 2);
@@ -108,7 +108,7 @@ BloodMap::BloodMap(const SimulationOptions::Texture& options, int seed, const Su
     for (int x = 0; x < width; ++x) {
       const float column =
           (static_cast<float>(x) + 0.5F) * static_cast<float>(grid.columns - 1) / static_cast<float>(width);
-      float value = kMottlingBlood * mottling.At(PlaceAtRest(surface, column, row));
+      float value = kMottlingBlood * mottling.At(PositionAtRest(surface, column, row));
       value += kVesselBlood * static_cast<float>(vessel[x]) / 255.0F;
       value *= static_cast<float>(options.contrast);
       out[x] = cv::saturate_cast<std::uint16_t>((value - kLowest) / kStep);

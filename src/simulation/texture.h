@@ -3,7 +3,7 @@
 
 // What is painted on the wall: the local amount of blood, as a map over the surface's chart with its reduced copies.
 // Value 0 is the mean mucosa; +1 is clearly redder and darker, -1 paler. It belongs to the material: mottling is noise
-// at the place at rest (so it does not stretch where the chart does), vessels are drawn on the chart.
+// at the position at rest (so it does not stretch where the chart does), vessels are drawn on the chart.
 #pragma once
 
 #include <vector>
@@ -19,7 +19,7 @@ class BloodMap {
  public:
   BloodMap(const SimulationOptions::Texture& options, int seed, const Surface& surface);
 
-  // The value at a place of the chart, averaged over about `footprint_mm`.
+  // The value at a position of the chart, averaged over about `footprint_mm`.
   float At(float x_mm, float y_mm, float footprint_mm) const;
 
  private:

@@ -115,7 +115,7 @@ double Path::ReachMm() const {
   return kBend * farthest;
 }
 
-std::optional<double> Path::PlaceMm(double time_s) const {
+std::optional<double> Path::PositionMm(double time_s) const {
   if (!InTube() || start_ || options_.kind == TrajectoryKind::kFile) return std::nullopt;
   return options_.start_mm + AdvanceMm(time_s);
 }

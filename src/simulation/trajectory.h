@@ -31,7 +31,7 @@ class Path {
 
   Rigid3 WorldFromCamera(double time_s) const;
   // Where along the centerline the camera is at a time; nothing for cameras that do not follow it.
-  std::optional<double> PlaceMm(double time_s) const;
+  std::optional<double> PositionMm(double time_s) const;
   // How long a tube or sheet has to be so that the camera does not come to its end.
   double ReachMm() const;
 

@@ -74,7 +74,7 @@ class Wall {
   }
 
   double FoldHeight(double s, double v) const {
-    // Where arcs overlap the higher one hides the lower one: a 4-norm in place of the sum.
+    // Where arcs overlap the higher one hides the lower one: a 4-norm instead of the sum.
     double height = 0;
     for (const Fold& fold : folds_) {
       const double ds = s - fold.s_mm - fold.skew_mm * std::cos(v - fold.skew_angle);
@@ -101,12 +101,12 @@ class Wall {
 };
 
 // Places along the centerline that are one mesh step apart on the wall where it is steepest.
-std::vector<double> RowPlaces(const Wall& wall, double length_mm, double step_mm) {
+std::vector<double> RowPositions(const Wall& wall, double length_mm, double step_mm) {
   constexpr int kAngles = 48;
   constexpr double kSteepest = 3.0;
-  std::vector<double> places;
+  std::vector<double> positions;
   for (double s = 0; s < length_mm;) {
-    places.push_back(s);
+    positions.push_back(s);
     double slope = 0;
     for (int i = 0; i < kAngles; ++i) {
       const double v = 2.0 * kPi * i / kAngles;
@@ -115,8 +115,8 @@ std::vector<double> RowPlaces(const Wall& wall, double length_mm, double step_mm
     slope = std::min(slope, kSteepest);
     s += step_mm / std::sqrt(1.0 + slope * slope);
   }
-  places.push_back(length_mm);
-  return places;
+  positions.push_back(length_mm);
+  return positions;
 }
 
 // The square root of the gradient of the nearest point on the centerline (RestPoint::swell_along).
@@ -132,9 +132,9 @@ Eigen::Vector3d SwellAlong(const Centerline& centerline, double s, const Eigen::
 
 Surface MakeTube(const SimulationOptions::Scene& options, const Centerline& centerline, double length_mm) {
   const Wall wall(options, length_mm);
-  const std::vector<double> places = RowPlaces(wall, length_mm, options.mesh_step_mm);
+  const std::vector<double> positions = RowPositions(wall, length_mm, options.mesh_step_mm);
   Surface surface;
-  const int rows = static_cast<int>(places.size());
+  const int rows = static_cast<int>(positions.size());
   const int columns = static_cast<int>(std::ceil(2.0 * kPi * options.radius_mm / options.mesh_step_mm)) + 1;
   surface.grid = SurfaceGrid{rows, columns, SurfaceGrid::Sides::kClosed, 2.0 * kPi * options.radius_mm,
                              rows * options.mesh_step_mm};
@@ -145,20 +145,20 @@ Surface MakeTube(const SimulationOptions::Scene& options, const Centerline& cent
   surface.swell_along.resize(count);
   surface.swell_radius_mm = options.radius_mm;
   tbb::parallel_for(0, rows, [&](int row) {
-    const double s = places[row];
+    const double s = positions[row];
     const Rigid3 world_from_frame = centerline.WorldFromFrame(s);
     for (int column = 0; column < columns; ++column) {
       // The last column is the first one again, to the bit.
       const double v = 2.0 * kPi * (column % (columns - 1)) / (columns - 1);
       const double r = wall.Radius(s, v);
       const std::size_t idx = static_cast<std::size_t>(row) * columns + column;
-      const Eigen::Vector3d place = world_from_frame * Eigen::Vector3d(r * std::cos(v), r * std::sin(v), 0.0);
-      surface.vertices[idx] = place.cast<float>();
+      const Eigen::Vector3d position = world_from_frame * Eigen::Vector3d(r * std::cos(v), r * std::sin(v), 0.0);
+      surface.vertices[idx] = position.cast<float>();
       surface.chart[idx] =
           Eigen::Vector2d(surface.grid->chart_width_mm * column / (columns - 1), row * options.mesh_step_mm)
               .cast<float>();
       surface.swell_center[idx] = world_from_frame.translation.cast<float>();
-      surface.swell_along[idx] = SwellAlong(centerline, s, place - world_from_frame.translation).cast<float>();
+      surface.swell_along[idx] = SwellAlong(centerline, s, position - world_from_frame.translation).cast<float>();
     }
   });
   FillGrid(surface);

@@ -16,7 +16,7 @@ namespace pliant {
 // The run's frames without what was seen in them: for what asks of a run which frames it is of.
 EvaluationInput FramesOf(const ViewedRun& run);
 
-// Adds errors, scales and each point's true place to a run in its own worlds, and gives the figures. Fails as
+// Adds errors, scales and each point's true position to a run in its own worlds, and gives the figures. Fails as
 // EvaluateRun does; a sequence without truth adds nothing.
 Result<Evaluation> AddTruth(const std::string& run_path, const OpenedTruth& truth, ViewedRun* run);
 

@@ -112,7 +112,7 @@ class SceneDrawing {
   const Orbit& orbit_;
 };
 
-// The present frame's points, each from its undeformed place through the last frames to where it is.
+// The present frame's points, each from its undeformed position through the last frames to where it is.
 std::map<PointId, std::vector<Eigen::Vector3d>> Trails(const ViewedRun& run, std::size_t now, int trail_frames) {
   std::map<PointId, std::vector<Eigen::Vector3d>> trails;
   for (const ViewedObservation& o : run.frames[now].observations) trails[o.id] = {run.points.at(o.id).position};

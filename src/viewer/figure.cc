@@ -98,9 +98,9 @@ void FigureOptions::List(OptionTable& table) {
   table.BeginGroup("Figure", "how a figure or a film is drawn");
   table.Add("panel_width_px", &panel_width_px, "px", "width of an image, and of a scene", 64, 4096);
   table.Add("trail_frames", &trail_frames, "frames", "length of a point's trail of deformation", 1, 1000000);
-  table.Add("azimuth_deg", &azimuth_deg, "deg", "the scene is seen from behind the camera, turned so far to its right",
-            -360.0, 360.0);
-  table.Add("elevation_deg", &elevation_deg, "deg", "and so far above", -89.0, 89.0);
+  table.Add("azimuth_deg", &azimuth_deg, "deg",
+            "viewpoint of the scene: from behind the camera, turned to its right by this", -360.0, 360.0);
+  table.Add("elevation_deg", &elevation_deg, "deg", "and raised above it by this", -89.0, 89.0);
   table.Add("fps", &fps, "1/s", "of a film; 0: the sequence's", 0.0, 1000.0);
 }
 

@@ -144,7 +144,7 @@ struct LiveView::Server {
 
 void LiveOptions::List(OptionTable& table) {
   table.BeginGroup("Live", "the view that --live serves to a browser on this machine");
-  table.Add("port", &port, "-", "0, or where it is taken: any that is free", 0, 65535);
+  table.Add("port", &port, "-", "0, or one that is in use: any free port", 0, 65535);
   table.Add("image_width_px", &image_width_px, "px", "images are made no wider than this", 32, 4096);
   table.Add("image_quality", &image_quality, "%", "of their JPEG coding", 10, 100);
   table.Add("max_image_mb", &max_image_mb, "MB", "kept in memory; above it every second image is forgotten", 1.0,

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// A place from which a whole scene is seen, in perspective.
+// A viewpoint from which a whole scene is seen, in perspective.
 #pragma once
 
 #include <span>

@@ -45,9 +45,9 @@ double UsualRange(std::span<const float> values, std::size_t column, std::size_t
     if (std::isfinite(values[i])) finite.push_back(values[i]);
   if (finite.empty()) return 0;
   const auto at = [&](double share) {
-    const auto place = finite.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(finite.size() - 1));
-    std::nth_element(finite.begin(), place, finite.end());
-    return static_cast<double>(*place);
+    const auto quantile = finite.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(finite.size() - 1));
+    std::nth_element(finite.begin(), quantile, finite.end());
+    return static_cast<double>(*quantile);
   };
   return at(0.99) - at(0.01);
 }

@@ -10,7 +10,7 @@ namespace pliant {
 
 // Where the data go: before its end tag. The page has this exactly once.
 inline constexpr std::string_view kPageDataEnd = "</script>";
-inline constexpr std::string_view kPageDataPlace = "<script type=\"application/json\" id=\"pliant-data\"></script>";
+inline constexpr std::string_view kPageDataMarker = "<script type=\"application/json\" id=\"pliant-data\"></script>";
 
 std::string_view PageAsset();
 

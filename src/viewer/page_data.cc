@@ -248,9 +248,9 @@ json PageData(const View& view, const ViewImages& images, const std::string& tit
 
 std::string PageWith(const json& data) {
   const std::string_view page = PageAsset();
-  const std::size_t place = page.find(kPageDataPlace);
+  const std::size_t marker = page.find(kPageDataMarker);
   const std::string text = data.dump(-1, ' ', false, json::error_handler_t::replace);
-  std::string whole(page.substr(0, place + kPageDataPlace.size() - kPageDataEnd.size()));
+  std::string whole(page.substr(0, marker + kPageDataMarker.size() - kPageDataEnd.size()));
   whole.reserve(page.size() + text.size());
   for (const char c : text) {  // nothing in it may end the element
     if (c == '<')
@@ -258,7 +258,7 @@ std::string PageWith(const json& data) {
     else
       whole.push_back(c);
   }
-  whole += page.substr(place + kPageDataPlace.size() - kPageDataEnd.size());
+  whole += page.substr(marker + kPageDataMarker.size() - kPageDataEnd.size());
   return whole;
 }
 

@@ -143,7 +143,7 @@ Result<ReadViewedRun> ReadRunForView(const std::string& run_path, const Sequence
   }
   if (source->cut_lines > 0)
     read.notes.push_back("the run " + read.run.name +
-                         " was killed, or is still being written; what it left whole is shown");
+                         " was killed, or is still being written; its complete rows are shown");
   if (!source->frames.empty()) {
     TakeRows(*source, &read.run);
   } else if (sequence != nullptr) {

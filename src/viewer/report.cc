@@ -12,7 +12,7 @@
 namespace pliant {
 
 void ReportOptions::List(OptionTable& table) {
-  table.BeginGroup("Report", "what of a run is put into a report");
+  table.BeginGroup("Report", "what a report contains of a run");
   view.List(table);
   table.Add("image_width_px", &image_width_px, "px", "images are made no wider than this", 32, 4096);
   table.Add("image_quality", &image_quality, "%", "of their JPEG coding", 10, 100);

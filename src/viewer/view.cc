@@ -128,7 +128,7 @@ void Align(const FramePoses& truth, View* view) {
   }
   if (placed_after)
     view->notes.emplace_back(
-        "maps that nothing joins are shown one after the other: each begins where the one before it ended");
+        "maps that were not merged are shown one after the other: each begins where the one before it ended");
 }
 
 }  // namespace
@@ -140,7 +140,7 @@ void ViewOptions::List(OptionTable& table) {
 
 void Move(const Sim3& world_from_run, int submap, ViewedRun* run) {
   std::set<PointId> moved;
-  const auto place = [&](Eigen::Vector3f* position) {
+  const auto transform = [&](Eigen::Vector3f* position) {
     *position = (world_from_run * position->cast<double>()).cast<float>();
   };
   for (ViewedFrame& frame : run->frames) {
@@ -148,8 +148,8 @@ void Move(const Sim3& world_from_run, int submap, ViewedRun* run) {
     if (frame.world_from_cam)
       frame.world_from_cam = PoseInWorld(world_from_run, frame.world_from_cam->Inverse()).Inverse();
     for (ViewedObservation& o : frame.observations) {
-      place(&o.position);
-      place(&o.truth);
+      transform(&o.position);
+      transform(&o.truth);
       o.depth *= static_cast<float>(world_from_run.scale);
       moved.insert(o.id);
     }
@@ -175,7 +175,7 @@ Result<View> OpenView(const ViewRequest& request, const ViewOptions& options) {
     view.notes.insert(view.notes.end(), read->notes.begin(), read->notes.end());
     const Status fits = sequence ? CheckBelongsTo(FramesOf(run), *sequence->sequence, {}) : Status::Ok();
     if (!fits.ok() && named) return fits;
-    if (!fits.ok()) view.notes.push_back("the run " + run.name + " is compared with nothing: " + fits.message());
+    if (!fits.ok()) view.notes.push_back("the run " + run.name + " is not compared with the truth: " + fits.message());
     std::optional<Evaluation> evaluation;
     if (sequence && fits.ok()) {
       has_images = true;

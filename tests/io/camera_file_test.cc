@@ -128,7 +128,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "coefficient s1 is 0.01"},
         BadFile{"OpenCvCount", "k.yaml", kMatrix + "D: [0.1, 0, 0]\n", "3 distortion coefficients"},
         BadFile{"OpenCvNan", "k.yaml", kMatrix + "D: [0.1, .nan, 0, 0]\n", "coefficient number 2"},
-        BadFile{"OpenCvLargeK3", "k.yaml", kMatrix + "D: [0., 0., 0., 0., 2.]\n", "k3 = 2 have no place"},
+        BadFile{"OpenCvLargeK3", "k.yaml", kMatrix + "D: [0., 0., 0., 0., 2.]\n", "k3 = 2 are not part"},
         BadFile{"OpenCvModel", "k.yaml", kMatrix + "D: [0, 0, 0, 0]\ndistortion_model: equidistan\n",
                 "did you mean 'equidistant'"},
         BadFile{"Xml", "k.xml", "<opencv_storage><K>", "not an OpenCV calibration"}),

@@ -29,7 +29,7 @@ SimulationOptions::Deformation Everything() {
 
 const Poke kPoke = {Eigen::Vector3d(3, 25, 40), Eigen::Vector3d(0.1, -0.9, 0.3).normalized()};
 
-// The motion as a function of the place alone, C among it; its gradient by central differences.
+// The motion as a function of the position alone, C among it; its gradient by central differences.
 Eigen::Matrix3d NumericGradient(const std::function<Eigen::Vector3d(const Eigen::Vector3d&)>& moved,
                                 const Eigen::Vector3d& x) {
   constexpr double kStepMm = 1e-4;
@@ -86,7 +86,7 @@ TEST(Motion, BoundsHoldForEveryPointAndTime) {
   constexpr double kFrameS = 1.0 / 30.0;
   for (int i = 0; i < 500; ++i) {
     RestPoint point = OnBentTube({random.Uniform(-20, 20), random.Uniform(-20, 30), random.Uniform(20, 60)}, i % 2);
-    if (i % 3 == 0) point.position = kPoke.place;
+    if (i % 3 == 0) point.position = kPoke.position;
     const double reach_mm = (point.position - point.swell_center).norm();
     const double time_s = random.Uniform(0, 6);
     const Eigen::Vector3d now = motion.Position(point, time_s);

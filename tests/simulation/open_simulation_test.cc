@@ -37,9 +37,9 @@ class OpenSimulationTest : public testing::Test {
     std::stringstream text;
     text << std::ifstream(folder_ / name).rdbuf();
     std::string edited = text.str();
-    const std::size_t place = edited.find(from);
-    ASSERT_NE(place, std::string::npos) << name << " has no " << from;
-    std::ofstream(folder_ / name) << edited.replace(place, from.size(), to);
+    const std::size_t position = edited.find(from);
+    ASSERT_NE(position, std::string::npos) << name << " has no " << from;
+    std::ofstream(folder_ / name) << edited.replace(position, from.size(), to);
   }
 
   fs::path folder_;

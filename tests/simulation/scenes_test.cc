@@ -106,7 +106,7 @@ TEST(Scenes, TheSheetIsSeenFromItsHeightAndFillsTheView) {
   for (int y = 0; y < depth.rows; ++y)
     for (int x = 0; x < depth.cols; ++x) seen += depth.at<float>(y, x) > 0;
   EXPECT_GT(seen, kFilled);
-  // 60 mm above the ground, looking at a place 35 mm ahead.
+  // 60 mm above the ground, looking at a position 35 mm ahead.
   EXPECT_NEAR(depth.at<float>(60, 80), std::hypot(60.0, 35.0), kHills_mm);
 }
 
@@ -124,7 +124,7 @@ TEST(Deformation, IsTheSumOfWaveBreathAndPoke) {
   Simulator simulator = Make(options);
   const std::vector<MaterialPoint> points = PointsAt(simulator, 0, 7);
   ASSERT_GT(points.size(), kMinPoints);
-  // Where the poke is: the place of the wall that the first camera sees on its way to poke_place.
+  // Where the poke is: the position on the wall that the first camera sees on its way to poke_place.
   const Rigid3 cam_from_world = simulator.WorldFromCamera(0).Inverse();
   options.deformation = {};
   Simulator rigid = Make(options);

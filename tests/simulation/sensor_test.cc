@@ -281,7 +281,7 @@ Eigen::Vector2d ProjectFisheye(const std::vector<double>& p, const Eigen::Vector
   return {p[0] * d * x.x() / r + p[2], p[1] * d * x.y() / r + p[3]};
 }
 
-// Truth, depth and image of a camera model against its formula and a pinhole at the same place.
+// Truth, depth and image of a camera model against its formula and a pinhole at the same position.
 template <class Project>
 void ExpectModelIsRendered(SimulationOptions options, CameraModelId model, const std::vector<double>& params,
                            const Project& project) {
@@ -311,7 +311,7 @@ void ExpectModelIsRendered(SimulationOptions options, CameraModelId model, const
   }
   EXPECT_GT(compared, pixels.size() / 2);
 
-  // The same place has the same look in both images, up to the exposure that each chose.
+  // The same position has the same look in both images, up to the exposure that each chose.
   const Pinhole160 pinhole;
   std::vector<double> ratios;
   for (int y = 20; y < 100; y += 2) {

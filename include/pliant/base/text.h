@@ -59,7 +59,7 @@ class OutputFile {
   std::unique_ptr<std::FILE, Closer> file_;
 };
 
-// Files that appear together or not at all: each is written beside its place, and Commit renames them. What is not
+// Files that appear together or not at all: each is written under another name, and Commit renames them. What is not
 // committed is deleted. Between the renames of several files a reader can see some of them.
 class FileGroup {
  public:

@@ -20,7 +20,7 @@
 namespace pliant {
 
 struct SequenceFrame {
-  int frame_idx = 0;  // position in the source (its image number), before `start` and `stride` are taken off
+  int frame_idx = 0;  // position in the source (its image number), before `start` and `stride` are applied
   std::string name;   // the image's file name, or NNNNNN.png for a video's frame
   double timestamp_s = 0;
   cv::Mat image;  // 8-bit, 1 (gray) or 3 (BGR) channels, the camera's size

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// How good a run's first map is: what an initializer is to be judged by, before tracking mends or spoils it. Of the
+// How good a run's first map is: what an initializer is measured by, before tracking improves or degrades it. Of the
 // points that the map has in one frame, each with its depth z in the run's camera and the true depth z^gt of the
 // surface at the pixel where it was seen (surface_error.h):
 //   r_i = z_i / z_i^gt,   s = 1 / median r_i,   e_i = | s r_i - 1 |

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// How long points live, and whether the run survives that its view is taken away: an accurate figure over a handful of
+// How long points live, and whether the run survives an interruption of its view: an accurate figure over a handful of
 // survivors is no tracking.
 #pragma once
 

@@ -45,7 +45,7 @@ struct EnumNames<ExportFormat> {
 
 struct ExportOptions {
   colmap::Format files = colmap::Format::kBinary;  // of COLMAP's models
-  int stride = 1;                                  // every so manieth tracked frame is exported
+  int stride = 1;                                  // every Nth tracked frame is exported
   int min_matches = 15;                            // database: pairs of images that share fewer tracks are left out
 
   void List(OptionTable& table);  // group "Export"

@@ -45,7 +45,7 @@ struct EnumNames<ImportAs> {
 };
 
 struct ImportOptions {
-  double unit_mm = 1;                   // what a unit of the input is
+  double unit_mm = 1;                   // size of a unit of the input
   double max_time_difference_s = 0.01;  // of a pose and its frame
   double seconds = 0;                   // that the other program took; for run.json
 

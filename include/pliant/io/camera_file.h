@@ -45,7 +45,7 @@ struct CameraFile {
   std::optional<double> baseline_mm = std::nullopt;
   double unit_mm = 1.0;  // of the poses beside the file, mm
   std::optional<PhotometricCalibration> photometric = std::nullopt;
-  // OpenCV's k3 to k6 have no place in the OPENCV model. Where they are small, k1 and k2 are fitted again to the whole
+  // OpenCV's k3 to k6 are not part of the OPENCV model. Where they are small, k1 and k2 are fitted again to the whole
   // distortion over the image, and this is the largest difference that is left, px; 0: nothing had to be fitted. Above
   // kLargestRefitPx the file is refused.
   double refit_residual_px = 0;

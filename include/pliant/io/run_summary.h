@@ -62,7 +62,7 @@ struct RunSummary {
   std::vector<std::pair<std::string, double>> mean_ms;  // a frame, by stage
 };
 
-// Writes the file beside its place and renames it, so that there is always a whole one. Fails with kUnwritable.
+// Writes it under another name and renames it, so that there is always a whole file. Fails with kUnwritable.
 Status WriteRunSummary(const std::string& path, const RunSummary& summary);
 // Fails with kNotFound, or with kUnreadable if it is not JSON or not a run's.
 Result<RunSummary> ReadRunSummary(const std::string& path);

@@ -22,7 +22,7 @@
 
 namespace pliant {
 
-// A place in an image; (0, 0) is the center of the first pixel.
+// A position in an image; (0, 0) is the center of the first pixel.
 struct FramePixel {
   int frame_idx = 0;
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
@@ -47,7 +47,7 @@ Result<std::vector<FramePixel>> ReadFramePixels(const std::filesystem::path& pat
 Result<std::vector<MaterialPath>> FollowMaterial(Simulator& simulator, std::span<const FramePixel> starts,
                                                  const SimulationProgress& progress = {});
 
-// Writes one row a point and frame: point,frame,u_px,v_px,x,y,z,depth_mm,visibility. `point` is the start's place in
+// Writes one row a point and frame: point,frame,u_px,v_px,x,y,z,depth_mm,visibility. `point` is the start's position in
 // the list, from 0, and has no rows where its pixel showed nothing; u_px and v_px are empty where the point does not
 // project; x, y, z in the world, mm; visibility is visible, occluded or outside. Fails with kUnwritable.
 Status WriteMaterialPaths(const std::filesystem::path& path, std::span<const MaterialPath> paths);

@@ -80,7 +80,7 @@ struct SimulationOptions {
   // The displacement of the material point that is V at rest is the sum of three (docs/method.md, section "The
   // simulated scene"):
   //   the wave      d A sin(omega t + 2 pi / wavelength (V_x + V_y + V_z)),   d = e_y
-  //   breathing     B sin(2 pi t / period) (V - C) / R,  C the place it swells from (the centerline), R the radius
+  //   breathing     B sin(2 pi t / period) (V - C) / R,  C the position it swells from (the centerline), R the radius
   //   the poke      n P sin^2(pi t / period) exp(-|V - Q|^2 / (2 radius^2)),  n into the lumen at Q
   // Source of the wave: Gomez Rodriguez, Montiel, Tardos, IROS 2022; 200 pi mm reads V in decimeters.
   struct Deformation {
@@ -138,7 +138,7 @@ struct SimulationOptions {
     int height = 480;
     double horizontal_fov_deg = 70.0;  // used when params is empty
     std::string params;                // in COLMAP's order, separated by commas
-    double baseline_mm = 0.0;          // stereo: the right camera's place on the left one's x axis; 0: one camera
+    double baseline_mm = 0.0;          // stereo: the right camera's position on the left one's x axis; 0: one camera
   } camera;
 
   struct Trajectory {
@@ -149,7 +149,7 @@ struct SimulationOptions {
     std::string start_pose;          // first camera as tx,ty,tz,qx,qy,qz,qw, world_from_camera; empty: the scene's own
     double speed_mm_s = 15.0;        // insert
     double look_ahead_mm = 35.0;     // the camera looks at the centerline, or the sheet, this far ahead
-    double height_mm = 60.0;         // surface, lobes: of the camera's way over the sheet
+    double height_mm = 60.0;         // surface, lobes: of the camera's path over the sheet
     double sway_amplitude_mm = 8.0;  // sway: to each side
     double sway_period_s = 4.0;      // sway: there and back, to both sides
     double sway_distance_mm = 55.0;  // sway: of the point that stays in view

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // A deforming scene that can be photographed at any frame and asked for the truth. The surface is a fine triangle mesh;
-// its vertices are moved by the deformation's formula, so a material point (a triangle and a place in it) has a
+// its vertices are moved by the deformation's formula, so a material point (a triangle and a position in it) has a
 // position at every time. Rays are Embree's; hit positions are recomputed in double precision from the triangle that
 // was hit. Frames: world and camera as in options.h and camera.h, millimeters, seconds from frame 0. The same options
 // give the same pixels whatever the number of threads. One Simulator serves one caller at a time: it is posed frame by
