@@ -54,7 +54,7 @@ export class ImageView {
     const { state } = store;
     const { context, width } = prepare(this.canvas);
     if (width === 0) return;
-    this.place();
+    this.layOut();
     const frame = report.frames[state.position];
     const wanted = images?.frameFor(frame) ?? null;
     const bitmap = images && wanted !== null ? images.get(wanted) : null;
@@ -84,7 +84,7 @@ export class ImageView {
     return this.shown.frame === frame ? "" : `image of frame ${this.shown.frame}`;
   }
 
-  private place(): void {
+  private layOut(): void {
     const { width, height } = this.page.report.camera;
     const { clientWidth, clientHeight } = this.canvas;
     const scale = this.zoom * Math.min(clientWidth / width, clientHeight / height);
@@ -181,7 +181,7 @@ export class ImageView {
     const u = (x - before.left) / before.scale;
     const v = (y - before.top) / before.scale;
     this.zoom = Math.min(MAX_ZOOM, Math.max(1, this.zoom * factor));
-    this.place();
+    this.layOut();
     const { scale } = this.view;
     this.setCenter(u / width + (this.canvas.clientWidth / 2 - x) / (scale * width),
       v / height + (this.canvas.clientHeight / 2 - y) / (scale * height));

@@ -20,7 +20,7 @@ import { Tables } from "./tables";
 import { Timeline } from "./timeline";
 import { Toolbar } from "./toolbar";
 
-const RANGE_GROWTH = 1.25;   // of the observations, until a live view takes the colors' range anew
+const RANGE_GROWTH = 1.25;   // of the observations, until a live view recomputes the colors' range
 
 declare global {
   interface Window {

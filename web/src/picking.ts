@@ -7,14 +7,14 @@ import { CLICK_RADIUS_PX } from "./dom";
 import type { Page } from "./page";
 import type { Run } from "./run";
 
-// `place` says where an observation is in the view, or null where it does not show it.
-export function pickNearest(page: Page, x: number, y: number, place: (run: Run, observation: number) => [number, number] | null): void {
+// `project` says where an observation is in the view, or null where it does not show it.
+export function pickNearest(page: Page, x: number, y: number, project: (run: Run, observation: number) => [number, number] | null): void {
   const { report, store } = page;
   const run = report.runs[store.state.current];
   let best: number | null = null;
   let least = CLICK_RADIUS_PX;
   for (const o of run.observationsOfRow(report.row(store.state.current, store.state.position))) {
-    const at = place(run, o);
+    const at = project(run, o);
     const distance = at ? Math.hypot(at[0] - x, at[1] - y) : Infinity;
     if (distance >= least) continue;
     least = distance;

@@ -75,7 +75,7 @@ export class Plots {
     this.showPosition();
   }
 
-  // New rows; a series that was not there before makes all anew.
+  // New rows; a series that was not there before rebuilds all.
   private refresh(): void {
     const figures = this.figures();
     const same = figures.length === this.plots.length && figures.every(({ series }, i) => series.length === this.plots[i].size);

@@ -44,7 +44,7 @@ export class Report {
     return report;
   }
 
-  // Rows of the only run of a live view; `from` 0 starts it anew.
+  // Rows of the only run of a live view; `from` 0 restarts it.
   append(part: RunPart, from: number): void {
     if (from === 0) this.runs[0] = new Run();
     this.runs[0].append(part);

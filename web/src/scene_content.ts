@@ -22,7 +22,7 @@ export class SceneContent {
   // Of the points and paths, without what lies far out.
   center = new Vector3();
   size = 1;
-  empty = true;   // there is no place of anything yet
+  empty = true;   // nothing has a position yet
   medianDepth = 1;
   gridStep = 1;
   private lowest = 0;   // the largest y
