@@ -47,6 +47,7 @@ void TrackerOptions::List(OptionTable& table) {
   table.Add("max_lost_frames", &max_lost_frames, "frames",
             "the map is left after this many lost frames in a row that are not dark", 1, 1000000);
   table.AddChoice("submaps", &submaps, "begin a new submap when the map is left; off: the run ends");
+  table.Renamed("gauge_share", "common_motion_share");
   growth.List(table);
   relocalization.List(table);
   oracle.List(table);

@@ -288,6 +288,7 @@ void DeformingWindowOptions::List(OptionTable& table) {
   table.Add("sample_points", &sample_points, "-",
             "points in each of the two samples that are solved before all points; fewer is faster", 60, 100000);
   table.Add("max_iterations", &max_iterations, "-", "maximum number of iterations of one solution", 1, 10000);
+  table.Renamed("mode_sigma", "shape_sigma");
 }
 
 Result<DeformingSolution> SolveDeformingWindow(const DeformingWindow& start, double focal_px,

@@ -36,6 +36,7 @@ void MonocularInitOptions::List(OptionTable& table) {
   table.Add("min_competing_cost_ratio", &min_competing_cost_ratio, "-",
             "gated: minimum cost of a competing motion (a plane has one) divided by the cost of the best motion", 1,
             100);
+  table.Renamed("min_rival_cost_ratio", "min_competing_cost_ratio");
   table.Add("max_median_depth_sigma", &max_median_depth_sigma, "-",
             "gated: maximum median of the points' predicted standard deviation of depth divided by depth", 1e-4, 10);
   table.Add("sigma_px", &sigma_px, "px",

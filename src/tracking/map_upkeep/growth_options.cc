@@ -51,6 +51,8 @@ void GrowthOptions::List(OptionTable& table) {
       "min_reestimation_weight", &min_reestimation_weight, "-",
       "a point of n re-estimations is moved 1/n of the way to its new position, at least this share; 1: all of it",
       0.01, 1);
+  table.Renamed("remake_every", "reestimate_every");
+  table.Renamed("remade_weight", "min_reestimation_weight");
 }
 
 }  // namespace pliant

@@ -31,6 +31,11 @@ void RelocalizationOptions::List(OptionTable& table) {
             "distance to the nearest divided by that to the second nearest descriptor (Lowe's ratio test)", 0.1, 1);
   table.Add("max_error_px", &max_error_px, "px", "reprojection error of an inlier", 0.1, 100);
   table.Add("min_share", &min_share, "-", "minimum share of inliers among the points that the pose should see", 0, 1);
+  table.Renamed("remember_every", "describe_every");
+  table.Renamed("seek_every", "search_every");
+  table.Renamed("max_left", "max_inactive_submaps");
+  table.Renamed("join", "merge");
+  table.Renamed("join_every", "merge_every");
   pose.List(table);
 }
 
