@@ -25,7 +25,7 @@ const Manual kManual = {
     "compares the result with the truth, and prints the figures and where to look.\n\n"
     "Reads nothing.\n\n"
     "Leaves in --output_path: sequence/ (see pliant simulate --help), run/ (see pliant track --help), evaluation.json, "
-    "evaluation.csv, and report.html (see pliant report --help).",
+    "evaluation.csv, and report.html (see pliant report --help; not in a build without the report page).",
     {"pliant demo", "pliant demo --output_path /tmp/demo --Deformation.amplitude_mm 5"},
 };
 
@@ -67,8 +67,9 @@ void Print(const SimulationOptions& simulation, const RunSummary& run, const Eva
               << Text("%.1f mm", evaluation.trajectory->true_path_length_mm) << "\n";
   for (const std::string& note : evaluation.notes) std::cout << "note          " << note << "\n";
   std::cout << "speed         " << Text("%.1f frames/s", run.frames_per_second) << "\n"
-            << "look at       " << (output / "report.html").string() << "  (in a browser)\n"
-            << "              " << (output / "sequence" / "images").string() << "\n"
+            << "look at       ";
+  if (HasReportPage()) std::cout << (output / "report.html").string() << "  (in a browser)\n              ";
+  std::cout << (output / "sequence" / "images").string() << "\n"
             << "              " << (output / "run" / "map.ply").string() << "\n"
             << "              " << (output / "run" / "observations.csv").string() << "\n"
             << "              " << (output / "evaluation.json").string() << std::endl;
@@ -105,10 +106,12 @@ Status RunDemo(const SimulationOptions& simulation, const std::filesystem::path&
   const Result<Evaluation> evaluation = EvaluateRun(request.output_path, *truth, {});
   if (!evaluation.ok()) return evaluation.status();
   if (Status status = WriteEvaluation(*evaluation, output.string()); !status.ok()) return status;
-  const auto report =
-      WriteReportPage({.run_paths = {request.output_path}, .sequence_path = sequence.string(), .camera_path = ""}, {},
-                      (output / "report.html").string());
-  if (!report.ok()) return report.status();
+  if (HasReportPage()) {
+    const auto report =
+        WriteReportPage({.run_paths = {request.output_path}, .sequence_path = sequence.string(), .camera_path = ""}, {},
+                        (output / "report.html").string());
+    if (!report.ok()) return report.status();
+  }
   Print(simulation, *run, *evaluation, output);
   return Status::Ok();
 }

@@ -15,6 +15,7 @@
 
 #include "viewer/live_images.h"
 #include "viewer/live_run.h"
+#include "viewer/page_asset.h"
 #include "viewer/page_data.h"
 
 namespace pliant {
@@ -152,6 +153,7 @@ void LiveOptions::List(OptionTable& table) {
 }
 
 Result<std::unique_ptr<LiveView>> LiveView::Start(const std::string& title, const LiveOptions& options) {
+  if (Status status = CheckPageAsset(); !status.ok()) return status;
   auto server = std::make_unique<Server>(title, options);
   if (!server->Listen(options.port))
     return Status(ErrorCode::kUnwritable, "the live view finds no free port on this machine; run without --live");

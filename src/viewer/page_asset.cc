@@ -16,4 +16,10 @@ std::string_view PageAsset() {
   return {pliant_page_begin, static_cast<std::size_t>(pliant_page_end - pliant_page_begin)};
 }
 
+Status CheckPageAsset() {
+  if (!PageAsset().empty()) return Status::Ok();
+  return {ErrorCode::kNotFound,
+          "this build of Pliant has no report page and no live view (it was configured with PLIANT_BUILD_VIEWER=OFF)"};
+}
+
 }  // namespace pliant

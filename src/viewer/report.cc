@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "pliant/base/text.h"
+#include "viewer/page_asset.h"
 #include "viewer/page_data.h"
 #include "viewer/view_images.h"
 
@@ -20,10 +21,13 @@ void ReportOptions::List(OptionTable& table) {
             1.0, 2000.0);
 }
 
+bool HasReportPage() { return CheckPageAsset().ok(); }
+
 Result<ReportSummary> WriteReportPage(const ViewRequest& request, const ReportOptions& options,
                                       const std::string& output_path) {
   auto view = OpenView(request, options.view);
   if (!view.ok()) return view.status();
+  if (Status status = CheckPageAsset(); !status.ok()) return status;
   ViewImages images;
   if (view->sequence) {
     auto read = ReadViewImages(options, &*view);

@@ -32,7 +32,11 @@ struct ReportSummary {
   std::vector<std::string> notes;  // what is missing or left out; they are in the report too
 };
 
-// Replaces the file at once: a reader sees the old one or the new one. Fails as OpenView does, and with kUnwritable.
+// False in a build without the page (PLIANT_BUILD_VIEWER=OFF).
+bool HasReportPage();
+
+// Replaces the file at once: a reader sees the old one or the new one. Fails as OpenView does, with kUnwritable, and
+// with kNotFound in a build without the page.
 Result<ReportSummary> WriteReportPage(const ViewRequest& request, const ReportOptions& options,
                                       const std::string& output_path);
 
