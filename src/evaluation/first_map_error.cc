@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <string>
 #include <vector>
 
@@ -14,7 +13,6 @@
 namespace pliant {
 namespace {
 
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 // Shorter ways have no direction: the digits of a trajectory file end here.
 constexpr double kStillLength = 1e-5;
 

@@ -206,14 +206,14 @@ void EraseFrames(Json* json) {
     for (Json& child : *json) EraseFrames(&child);
 }
 
-std::string Print(const Json& json) {
+std::string PrintJson(const Json& json) {
   // Paths need not be UTF-8.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace
 
-std::string EvaluationJson(const Evaluation& evaluation) { return Print(ToJson(evaluation)); }
+std::string EvaluationJson(const Evaluation& evaluation) { return PrintJson(ToJson(evaluation)); }
 
 std::string ComparisonJson(std::span<const Evaluation> evaluations) {
   Json runs = Json::array();
@@ -221,7 +221,7 @@ std::string ComparisonJson(std::span<const Evaluation> evaluations) {
     runs.push_back(ToJson(evaluation));
     EraseFrames(&runs.back());
   }
-  return Print({{"runs", runs}});
+  return PrintJson({{"runs", runs}});
 }
 
 }  // namespace pliant

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <string>
 
 #include <Eigen/Eigenvalues>
@@ -15,8 +14,6 @@
 
 namespace pliant {
 namespace {
-
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 double AngleDeg(const Eigen::Quaterniond& rotation) { return kDegPerRad * RotationAngle(rotation); }
 

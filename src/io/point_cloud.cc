@@ -196,7 +196,7 @@ Result<Points> ReadPly(const std::string& path, std::string_view bytes) {
   return points;
 }
 
-Result<Points> ReadText(const std::string& path) {
+Result<Points> ReadTextCloud(const std::string& path) {
   auto reader = LineReader::Open(path);
   if (!reader.ok()) return reader.status();
   Points points;
@@ -226,7 +226,7 @@ Result<Points> ReadPointCloud(const std::string& path) {
     if (!is_npy && !bytes->starts_with("ply")) return Unreadable(path, "is not what its name says; copy it again");
     points = is_npy ? ReadNpy(path, *bytes) : ReadPly(path, *bytes);
   } else {
-    points = ReadText(path);
+    points = ReadTextCloud(path);
   }
   if (!points.ok()) return points.status();
   std::erase_if(*points, [](const Eigen::Vector3d& point) { return !point.allFinite(); });

@@ -12,7 +12,7 @@
 
 namespace pliant::simulation {
 namespace {
-constexpr double kStepMm = 0.5;
+constexpr double kCenterlineStepMm = 0.5;
 }  // namespace
 
 Centerline::Centerline(double length_mm, double bend_deg_per_cm, int seed) {
@@ -30,22 +30,22 @@ Centerline::Centerline(double length_mm, double bend_deg_per_cm, int seed) {
     return peak_rad_mm * sum;
   };
 
-  const int count = static_cast<int>(std::ceil(length_mm / kStepMm)) + 2;
+  const int count = static_cast<int>(std::ceil(length_mm / kCenterlineStepMm)) + 2;
   frames_.reserve(count);
   Rigid3 frame;
   for (int i = 0; i < count; ++i) {
     frames_.push_back(frame);
-    const double middle = (i + 0.5) * kStepMm;
-    const Eigen::Vector3d omega(bend(0, middle) * kStepMm, bend(1, middle) * kStepMm, 0.0);
+    const double middle = (i + 0.5) * kCenterlineStepMm;
+    const Eigen::Vector3d omega(bend(0, middle) * kCenterlineStepMm, bend(1, middle) * kCenterlineStepMm, 0.0);
     // Half the turn, the step, half the turn: the polygon then follows the curve to second order.
     const Eigen::Quaterniond half = RotationExp(0.5 * omega);
     const Eigen::Quaterniond middle_rotation = frame.rotation * half;
-    frame = Rigid3(middle_rotation * half, frame.translation + middle_rotation * Eigen::Vector3d(0, 0, kStepMm));
+    frame = Rigid3(middle_rotation * half, frame.translation + middle_rotation * Eigen::Vector3d(0, 0, kCenterlineStepMm));
   }
 }
 
 Rigid3 Centerline::WorldFromFrame(double s_mm) const {
-  const double position = std::clamp(s_mm / kStepMm, 0.0, static_cast<double>(frames_.size()) - 1.001);
+  const double position = std::clamp(s_mm / kCenterlineStepMm, 0.0, static_cast<double>(frames_.size()) - 1.001);
   const auto i = static_cast<std::size_t>(position);
   const double t = position - static_cast<double>(i);
   const Rigid3& a = frames_[i];

@@ -99,7 +99,7 @@ void ForPixelsIn(const Outline& outline, cv::Mat& light, const Paint& paint) {
   });
 }
 
-cv::Vec3f Bilinear(const cv::Mat& image, const Eigen::Vector2d& pixel) {
+cv::Vec3f BilinearColor(const cv::Mat& image, const Eigen::Vector2d& pixel) {
   const double u = std::clamp(pixel.x(), 0.0, image.cols - 1.001);
   const double v = std::clamp(pixel.y(), 0.0, image.rows - 1.001);
   const int x = static_cast<int>(u);
@@ -153,7 +153,7 @@ void CoverWithDrops(const SimulationOptions& options, double time_s, Eye eye, cv
       const double brightness = 1.0 + rim * (0.35 * side - 0.25);
       const auto weight = static_cast<float>(opacity * (1.0 - SmoothStep(0.88, 1.0, radius)));
       const cv::Vec3f through =
-          Bilinear(blurred, outline.center + bending * from_center) * static_cast<float>(brightness);
+          BilinearColor(blurred, outline.center + bending * from_center) * static_cast<float>(brightness);
       value = (1.0F - weight) * value + weight * through;
     });
   }

@@ -16,11 +16,9 @@
 namespace pliant::simulation {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 // The upper lobe's direction of the wave.
 Eigen::Vector3d LobeDirection(const SimulationOptions::Deformation& options) {
-  const double rad = options.lobe_direction_deg * kPi / 180.0;
+  const double rad = options.lobe_direction_deg * std::numbers::pi / 180.0;
   return {std::sin(rad), std::cos(rad), 0.0};
 }
 
@@ -30,15 +28,15 @@ std::string Rounded(double value) { return FormatDouble(std::round(100.0 * value
 
 Motion::Motion(const SimulationOptions::Deformation& options, double swell_radius_mm, const Poke& poke)
     : omega_rad_s_(options.omega_rad_s),
-      wavenumber_rad_mm_(2.0 * kPi / options.wavelength_mm),
-      breathing_rad_s_(2.0 * kPi / options.breathing_period_s),
+      wavenumber_rad_mm_(2.0 * std::numbers::pi / options.wavelength_mm),
+      breathing_rad_s_(2.0 * std::numbers::pi / options.breathing_period_s),
       poke_mm_(options.poke_mm),
       poke_radius_mm_(options.poke_radius_mm),
-      poke_rad_s_(kPi / options.poke_period_s),
+      poke_rad_s_(std::numbers::pi / options.poke_period_s),
       poke_(poke) {
   parts_[0] = {options.amplitude_mm, Eigen::Vector3d::UnitY(), options.breathing_mm / swell_radius_mm, 0.0};
   parts_[1] = {options.lobe_share * parts_[0].wave_mm, LobeDirection(options),
-               options.lobe_share * parts_[0].swell_share, options.lobe_phase_deg * kPi / 180.0};
+               options.lobe_share * parts_[0].swell_share, options.lobe_phase_deg * std::numbers::pi / 180.0};
 }
 
 bool Motion::rigid() const { return parts_[0].wave_mm == 0.0 && parts_[0].swell_share == 0.0 && poke_mm_ == 0.0; }
@@ -111,7 +109,7 @@ std::vector<std::string> DeformationWarnings(const SimulationOptions& options, c
   std::vector<std::string> warnings;
   if (motion.rigid()) return warnings;
   const SimulationOptions::Deformation& deformation = options.deformation;
-  const double amplitude_times_k = deformation.amplitude_mm * 2.0 * kPi / deformation.wavelength_mm;
+  const double amplitude_times_k = deformation.amplitude_mm * 2.0 * std::numbers::pi / deformation.wavelength_mm;
   const double lobe_times_k = options.scene.kind == SceneKind::kLobes ? deformation.lobe_share * amplitude_times_k *
                                                                             std::abs(LobeDirection(deformation).sum())
                                                                       : 0.0;
@@ -137,7 +135,8 @@ std::vector<std::string> DeformationWarnings(const SimulationOptions& options, c
   }
   if (options.scene.kind == SceneKind::kLobes) {
     // How much nearer the lobes come: the difference of two oscillations of one frequency along y.
-    const std::complex<double> upper = std::polar(deformation.lobe_share, deformation.lobe_phase_deg * kPi / 180.0);
+    const std::complex<double> upper =
+        std::polar(deformation.lobe_share, deformation.lobe_phase_deg * std::numbers::pi / 180.0);
     const double approach_mm = deformation.amplitude_mm * std::abs(1.0 - upper * LobeDirection(deformation).y()) +
                                deformation.breathing_mm * std::abs(1.0 - upper);
     if (approach_mm >= LobeGapMm(options.scene))

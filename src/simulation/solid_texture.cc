@@ -17,8 +17,8 @@ namespace pliant::simulation {
 namespace {
 
 constexpr float kCellMm = 2.0F;
-constexpr double kStepMm = 0.4;      // of a growing vessel
-constexpr float kSoftEdgeMm = 0.1F;  // a vessel lies in the wall, not on it
+constexpr double kVesselStepMm = 0.4;  // of a growing vessel
+constexpr float kSoftEdgeMm = 0.1F;    // a vessel lies in the wall, not on it
 
 struct Foot {
   Eigen::Vector3d position;
@@ -30,7 +30,7 @@ std::optional<Foot> FootOnSurface(const Surface& surface, const RayScene& at_res
   double least_sq = std::numeric_limits<double>::infinity();
   std::uint32_t best = 0;
   Eigen::Vector3d position;
-  at_rest.VisitNear(x, 2.0 * kStepMm, [&](std::uint32_t idx) {
+  at_rest.VisitNear(x, 2.0 * kVesselStepMm, [&](std::uint32_t idx) {
     const auto& t = surface.triangles[idx];
     const Corners corners = {surface.vertices[t[0]].cast<double>(), surface.vertices[t[1]].cast<double>(),
                              surface.vertices[t[2]].cast<double>()};
@@ -72,13 +72,13 @@ class Sower {
   std::vector<double> sums_mm2_;
 };
 
-struct Twig {
+struct SurfaceTwig {
   Foot foot;
   Eigen::Vector3d heading;  // unit, along the surface
   double width_mm;
 };
 
-void Turn(Twig& twig, double rad) { twig.heading = Eigen::AngleAxisd(rad, twig.foot.normal) * twig.heading; }
+void Turn(SurfaceTwig& twig, double rad) { twig.heading = Eigen::AngleAxisd(rad, twig.foot.normal) * twig.heading; }
 
 }  // namespace
 
@@ -96,22 +96,22 @@ void SolidTexture::Grow(const SimulationOptions::Texture& options, Random random
   constexpr double kThinnestMm = 0.09;
   const Sower sower(surface);
   const int trees = static_cast<int>(options.vessels * kTreesPerMm2 * sower.area_mm2());
-  std::vector<Twig> pending;
+  std::vector<SurfaceTwig> pending;
   for (int tree = 0; tree < trees; ++tree) {
     const Foot root = sower.Draw(random);
-    Twig stem{root, root.normal.unitOrthogonal(), random.Uniform(0.25, 0.6)};
+    SurfaceTwig stem{root, root.normal.unitOrthogonal(), random.Uniform(0.25, 0.6)};
     Turn(stem, random.Uniform(0, 2 * std::numbers::pi));
     pending.push_back(stem);
     while (!pending.empty()) {
-      Twig twig = pending.back();
+      SurfaceTwig twig = pending.back();
       pending.pop_back();
       double turning = 0;
       while (twig.width_mm > kThinnestMm) {
         turning = 0.9 * turning + random.Normal(0.08);
         Turn(twig, turning * 0.5);
-        const auto next = FootOnSurface(surface, at_rest, twig.foot.position + kStepMm * twig.heading);
+        const auto next = FootOnSurface(surface, at_rest, twig.foot.position + kVesselStepMm * twig.heading);
         // The surface ends here, or turns back on itself.
-        if (!next || (next->position - twig.foot.position).norm() < 0.2 * kStepMm) break;
+        if (!next || (next->position - twig.foot.position).norm() < 0.2 * kVesselStepMm) break;
         Store({twig.foot.position.cast<float>(), next->position.cast<float>(), static_cast<float>(0.5 * twig.width_mm),
                static_cast<float>(std::min(1.0, 0.25 + twig.width_mm * 1.4))});
         twig.foot = *next;
@@ -119,7 +119,7 @@ void SolidTexture::Grow(const SimulationOptions::Texture& options, Random random
         twig.width_mm *= 0.988;
         if (random.Uniform() >= 0.05) continue;
         const double side = random.Uniform() < 0.5 ? -1.0 : 1.0;
-        Twig branch = twig;
+        SurfaceTwig branch = twig;
         Turn(branch, side * random.Uniform(0.4, 1.1));
         branch.width_mm *= random.Uniform(0.5, 0.8);
         pending.push_back(branch);

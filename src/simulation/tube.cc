@@ -17,8 +17,6 @@
 namespace pliant::simulation {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 struct Fold {
   double s_mm = 0;
   double depth_mm = 0;
@@ -57,17 +55,17 @@ class Wall {
     Random random = Random(static_cast<std::uint64_t>(options_.seed)).Child("folds");
     for (double s = 0.4 * options_.fold_spacing_mm; s < length_mm_;
          s += options_.fold_spacing_mm * random.Uniform(0.7, 1.3)) {
-      const double first_angle = random.Uniform(0.0, 2.0 * kPi);
+      const double first_angle = random.Uniform(0.0, 2.0 * std::numbers::pi);
       const int arcs = 1 + random.Index(3);
       for (int i = 0; i < arcs; ++i) {
         Fold fold;
         fold.s_mm = s + random.Normal(0.06 * options_.fold_spacing_mm);
         fold.depth_mm = options_.fold_depth_mm * random.Uniform(0.55, 1.4);
         fold.width_mm = random.Uniform(2.2, 3.6) * std::max(1.0, fold.depth_mm / 7.0);
-        fold.angle = first_angle + i * 2.0 * kPi / arcs + random.Normal(0.2);
-        fold.half_arc = (arcs == 1 ? 1.9 : 2.3 * kPi / 2.0 / arcs) * random.Uniform(0.75, 1.1);
+        fold.angle = first_angle + i * 2.0 * std::numbers::pi / arcs + random.Normal(0.2);
+        fold.half_arc = (arcs == 1 ? 1.9 : 2.3 * std::numbers::pi / 2.0 / arcs) * random.Uniform(0.75, 1.1);
         fold.skew_mm = random.Uniform(0.0, 4.0);
-        fold.skew_angle = random.Uniform(0.0, 2.0 * kPi);
+        fold.skew_angle = random.Uniform(0.0, 2.0 * std::numbers::pi);
         folds_.push_back(fold);
       }
     }
@@ -79,10 +77,10 @@ class Wall {
     for (const Fold& fold : folds_) {
       const double ds = s - fold.s_mm - fold.skew_mm * std::cos(v - fold.skew_angle);
       if (std::abs(ds) > 3.5 * fold.width_mm) continue;
-      const double dv = std::remainder(v - fold.angle, 2.0 * kPi);
+      const double dv = std::remainder(v - fold.angle, 2.0 * std::numbers::pi);
       if (std::abs(dv) >= fold.half_arc) continue;
       const double along = std::exp(-ds * ds / (fold.width_mm * fold.width_mm));
-      const double around = std::cos(0.5 * kPi * dv / fold.half_arc);
+      const double around = std::cos(0.5 * std::numbers::pi * dv / fold.half_arc);
       const double f = fold.depth_mm * along * around;
       height += f * f * f * f;
     }
@@ -109,7 +107,7 @@ std::vector<double> RowPositions(const Wall& wall, double length_mm, double step
     positions.push_back(s);
     double slope = 0;
     for (int i = 0; i < kAngles; ++i) {
-      const double v = 2.0 * kPi * i / kAngles;
+      const double v = 2.0 * std::numbers::pi * i / kAngles;
       slope = std::max(slope, std::abs(wall.Radius(s + step_mm, v) - wall.Radius(s, v)) / step_mm);
     }
     slope = std::min(slope, kSteepest);
@@ -135,8 +133,9 @@ Surface MakeTube(const SimulationOptions::Scene& options, const Centerline& cent
   const std::vector<double> positions = RowPositions(wall, length_mm, options.mesh_step_mm);
   Surface surface;
   const int rows = static_cast<int>(positions.size());
-  const int columns = static_cast<int>(std::ceil(2.0 * kPi * options.radius_mm / options.mesh_step_mm)) + 1;
-  surface.grid = SurfaceGrid{rows, columns, SurfaceGrid::Sides::kClosed, 2.0 * kPi * options.radius_mm,
+  const int columns =
+      static_cast<int>(std::ceil(2.0 * std::numbers::pi * options.radius_mm / options.mesh_step_mm)) + 1;
+  surface.grid = SurfaceGrid{rows, columns, SurfaceGrid::Sides::kClosed, 2.0 * std::numbers::pi * options.radius_mm,
                              rows * options.mesh_step_mm};
   const std::size_t count = static_cast<std::size_t>(rows) * columns;
   surface.vertices.resize(count);
@@ -149,7 +148,7 @@ Surface MakeTube(const SimulationOptions::Scene& options, const Centerline& cent
     const Rigid3 world_from_frame = centerline.WorldFromFrame(s);
     for (int column = 0; column < columns; ++column) {
       // The last column is the first one again, to the bit.
-      const double v = 2.0 * kPi * (column % (columns - 1)) / (columns - 1);
+      const double v = 2.0 * std::numbers::pi * (column % (columns - 1)) / (columns - 1);
       const double r = wall.Radius(s, v);
       const std::size_t idx = static_cast<std::size_t>(row) * columns + column;
       const Eigen::Vector3d position = world_from_frame * Eigen::Vector3d(r * std::cos(v), r * std::sin(v), 0.0);

@@ -205,7 +205,7 @@ TEST(Huber, IsCeresHuberOnTheSquaredNorm) {
       loss->Evaluate(s, rho);
       const RobustCost ours = Huber(s, chi2);
       EXPECT_NEAR(2.0 * ours.rho, rho[0], kAgreement * std::max(1.0, rho[0])) << s;
-      EXPECT_NEAR(2.0 * ours.slope, rho[1], kAgreement) << s;
+      EXPECT_NEAR(2.0 * ours.derivative, rho[1], kAgreement) << s;
     }
   }
 }

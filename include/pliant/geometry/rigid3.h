@@ -7,11 +7,14 @@
 #pragma once
 
 #include <cmath>
+#include <numbers>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
 namespace pliant {
+
+inline constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 struct Rigid3 {
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();

@@ -8,7 +8,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "pliant/base/statistics.h"
 #include "pliant/estimation/two_view/two_view_models.h"
@@ -18,8 +17,6 @@
 
 namespace pliant {
 namespace {
-
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 // Motions whose translations are this near (and the rotations likewise) are the same motion.
 constexpr double kSameMotionRad = 5.0 / kDegPerRad;
