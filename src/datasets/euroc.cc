@@ -21,13 +21,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kMaxDifference_s = 0.02;
-constexpr double kMeter_mm = 1000.0;
 constexpr double kNanosecond_s = 1e-9;
 
 fs::path RootOf(const fs::path& path) { return IsFolder(path / "mav0") ? path / "mav0" : path; }
 
-struct Eye {
+struct Sensor {
   StereoCalibration::Eye lens;
   bool fisheye = false;
   ImageSize size;
@@ -46,7 +44,7 @@ std::vector<double> NumbersOf(const YAML::Node& node) {
   return numbers;
 }
 
-Result<Eye> ReadSensor(const fs::path& file) {
+Result<Sensor> ReadSensor(const fs::path& file) {
   const Status unreadable(ErrorCode::kUnreadable,
                           file.string() +
                               " is not EuRoC's description of a camera: it has resolution, intrinsics, "
@@ -77,7 +75,7 @@ Result<Eye> ReadSensor(const fs::path& file) {
     return Status(ErrorCode::kInvalidArgument,
                   file.string() + " has the distortion_model " + Quoted(model) +
                       ", which is not known; radial-tangential (radtan) and equidistant are");
-  return Eye{{lens[0], lens[1], lens[2], lens[3], distortion}, model == "equidistant", *image_size, *pose, file};
+  return Sensor{{lens[0], lens[1], lens[2], lens[3], distortion}, model == "equidistant", *image_size, *pose, file};
 }
 
 struct Listed {
@@ -137,7 +135,7 @@ Status AddPoses(const fs::path& file, const Rigid3& body_from_cam, DataSet* data
   return Status::Ok();
 }
 
-Result<DataSet> OpenMono(const SequenceRequest& request, const Eye& eye, std::unique_ptr<ImageStream> images) {
+Result<DataSet> OpenMono(const SequenceRequest& request, const Sensor& eye, std::unique_ptr<ImageStream> images) {
   std::vector<double> params = {eye.lens.fx, eye.lens.fy, eye.lens.cx, eye.lens.cy};
   params.insert(params.end(), eye.lens.distortion.begin(), eye.lens.distortion.end());
   auto camera = Camera::Create(eye.fisheye ? CameraModelId::kOpenCvFisheye : CameraModelId::kOpenCv, eye.size.width,

@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kCalibration = "endoscope_calibration.yaml";
+constexpr const char* kCalibrationFile = "endoscope_calibration.yaml";
 constexpr const char* kVideo = "data/rgb.mp4";
 constexpr PairLayout kLayout = PairLayout::kTopBottom;
 
@@ -87,18 +87,18 @@ Result<cv::Mat> ReadScenePoints(const fs::path& file, const ImageWarp& warp, con
 
 }  // namespace
 
-bool IsScared(const fs::path& path) { return IsFile(path / kCalibration) && IsFile(path / kVideo); }
+bool IsScared(const fs::path& path) { return IsFile(path / kCalibrationFile) && IsFile(path / kVideo); }
 
 std::string ScaredLacks(const fs::path& path) {
-  if (IsFile(path / kCalibration)) return kVideo;
-  return IsFile(path / kVideo) ? kCalibration : "";
+  if (IsFile(path / kCalibrationFile)) return kVideo;
+  return IsFile(path / kVideo) ? kCalibrationFile : "";
 }
 
 Result<DataSet> OpenScared(const SequenceRequest& request) {
   const fs::path& folder = request.image_path;
   auto video = StreamVideo(folder / kVideo);
   if (!video.ok()) return video.status();
-  const fs::path file = request.camera_path.empty() ? folder / kCalibration : request.camera_path;
+  const fs::path file = request.camera_path.empty() ? folder / kCalibrationFile : request.camera_path;
   const auto calibration = ReadStereoCalibration(file.string());
   if (!calibration.ok()) return calibration.status();
   if (!calibration->has_value())

@@ -23,6 +23,10 @@
 
 namespace pliant {
 
+inline constexpr double kMeter_mm = 1000.0;
+// Times that differ by no more belong to the same moment.
+inline constexpr double kMaxDifference_s = 0.02;
+
 // The files of a folder that are called PREFIX, digits, SUFFIX, by number; none where there is no folder.
 std::map<int, std::filesystem::path> NumberedFiles(const std::filesystem::path& folder, std::string_view prefix,
                                                    std::string_view suffix);

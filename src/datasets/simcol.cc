@@ -14,8 +14,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kFullScale_mm = 200.0;
-constexpr double kSteps = 65536.0;  // as its authors divide
+constexpr double kSimColFullScale_mm = 200.0;
+constexpr double kSimColSteps = 65536.0;  // as its authors divide
 constexpr double kMillimeters = 10.0;
 
 // Frames_S1 lies beside SavedPosition_S1.txt.
@@ -73,11 +73,12 @@ bool IsSimCol(const fs::path& path) { return !NumberedFiles(path, "FrameBuffer_"
 
 Result<DataSet> OpenSimCol(const SequenceRequest& request) {
   const fs::path& folder = request.image_path;
-  NumberedSet set{
-      .folder = folder,
-      .images = NumberedFiles(folder, "FrameBuffer_", ".png"),
-      .depth = NumberedFiles(folder, "Depth_", ".png"),
-      .read_depth = [](const fs::path& file) { return ReadClampedDepthImage(file, kFullScale_mm / kSteps); }};
+  NumberedSet set{.folder = folder,
+                  .images = NumberedFiles(folder, "FrameBuffer_", ".png"),
+                  .depth = NumberedFiles(folder, "Depth_", ".png"),
+                  .read_depth = [](const fs::path& file) {
+                    return ReadClampedDepthImage(file, kSimColFullScale_mm / kSimColSteps);
+                  }};
   const fs::path positions = FindBeside(folder, "SavedPosition_");
   const fs::path rotations = FindBeside(folder, "SavedRotationQuaternion_");
   if (!positions.empty() && !rotations.empty()) {

@@ -16,8 +16,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kMeter_mm = 1000.0;
-
 // "[Section]" and "key = value" lines: numbers by "Section.key"; what is no number is passed over.
 Result<std::map<std::string, double>> ReadIni(const fs::path& file) {
   auto reader = LineReader::Open(file.string());

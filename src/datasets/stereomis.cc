@@ -20,9 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kCalibration = "StereoCalibration.ini";
-constexpr double kMeter_mm = 1000.0;
-constexpr double kMaxFrames = 1e7;
+constexpr const char* kCalibrationName = "StereoCalibration.ini";
+constexpr double kMaxFrameNumber = 1e7;
 
 Status AddPoses(const fs::path& file, DataSet* data_set) {
   const auto rows = ReadNumberRows(file, 8);
@@ -33,7 +32,7 @@ Status AddPoses(const fs::path& file, DataSet* data_set) {
     if (!pose.ok()) return pose.status();
     pose->translation *= kMeter_mm;
     const double frame = row.numbers[0];
-    if (!(frame >= 0 && frame < kMaxFrames && frame == std::floor(frame)))
+    if (!(frame >= 0 && frame < kMaxFrameNumber && frame == std::floor(frame)))
       return {ErrorCode::kUnreadable, At(file.string(), row.line) + ": a line begins with the number of a frame"};
     poses[static_cast<int>(frame)] = *pose * data_set->raw_from_given;
   }
@@ -45,15 +44,17 @@ Status AddPoses(const fs::path& file, DataSet* data_set) {
 
 }  // namespace
 
-bool IsStereoMis(const fs::path& path) { return IsFile(path / kCalibration) && !OnlyFile(path, ".mp4").empty(); }
+bool IsStereoMis(const fs::path& path) { return IsFile(path / kCalibrationName) && !OnlyFile(path, ".mp4").empty(); }
 
-std::string StereoMisLacks(const fs::path& path) { return IsFile(path / kCalibration) ? "one .mp4, and no other" : ""; }
+std::string StereoMisLacks(const fs::path& path) {
+  return IsFile(path / kCalibrationName) ? "one .mp4, and no other" : "";
+}
 
 Result<DataSet> OpenStereoMis(const SequenceRequest& request) {
   const fs::path& folder = request.image_path;
   auto video = StreamVideo(OnlyFile(folder, ".mp4"));
   if (!video.ok()) return video.status();
-  const fs::path file = request.camera_path.empty() ? folder / kCalibration : request.camera_path;
+  const fs::path file = request.camera_path.empty() ? folder / kCalibrationName : request.camera_path;
   const auto calibration = ReadStereoIni(file);
   if (!calibration.ok()) return calibration.status();
   auto data_set = RectifiedHalves(*calibration, file, PairLayout::kTopBottom, *std::move(video));

@@ -20,11 +20,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kMaxDifference_s = 0.02;
 constexpr double kDepthUnit_mm = 0.2;
-constexpr double kMeter_mm = 1000.0;
 
-Result<std::map<double, fs::path>> ReadList(const fs::path& file, std::vector<std::string>* warnings) {
+Result<std::map<double, fs::path>> ReadTimedFiles(const fs::path& file, std::vector<std::string>* warnings) {
   auto reader = LineReader::Open(file.string());
   if (!reader.ok()) return reader.status();
   std::map<double, fs::path> list;
@@ -54,7 +52,7 @@ std::string TumRgbdLacks(const fs::path& path) {
 Result<DataSet> OpenTumRgbd(const SequenceRequest& request) {
   const fs::path& folder = request.image_path;
   std::vector<std::string> warnings;
-  const auto images = ReadList(folder / "rgb.txt", &warnings);
+  const auto images = ReadTimedFiles(folder / "rgb.txt", &warnings);
   if (!images.ok()) return images.status();
   if (images->empty())
     return Status(ErrorCode::kNotFound,
@@ -69,7 +67,7 @@ Result<DataSet> OpenTumRgbd(const SequenceRequest& request) {
   if (!data_set.ok()) return data_set.status();
   data_set->warnings.insert(data_set->warnings.end(), warnings.begin(), warnings.end());
   if (IsFile(folder / "depth.txt")) {
-    const auto depths = ReadList(folder / "depth.txt", &data_set->warnings);
+    const auto depths = ReadTimedFiles(folder / "depth.txt", &data_set->warnings);
     if (!depths.ok()) return depths.status();
     for (const double time_s : depths->empty() ? std::vector<double>() : times_s) {
       const fs::path* nearest = NearestInTime(*depths, time_s, kMaxDifference_s);

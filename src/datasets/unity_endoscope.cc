@@ -12,6 +12,7 @@
 
 #include "datasets/formats.h"
 #include "datasets/image_file.h"
+#include "datasets/set_files.h"
 #include "datasets/set_frames.h"
 #include "pliant/base/text.h"
 
@@ -99,7 +100,6 @@ Result<DataSet> OpenEndomapperSimulated(const SequenceRequest& request) {
 bool IsEndoSlam(const fs::path& path) { return IsFolder(path / "Frames") && IsFolder(path / kPixelwise); }
 
 Result<DataSet> OpenEndoSlam(const SequenceRequest& request) {
-  constexpr double kMeter_mm = 1000.0;
   const fs::path& folder = request.image_path;
   NumberedSet set{.folder = folder / "Frames",
                   .images = NumberedFiles(folder / "Frames", "image_", ".png"),
