@@ -8,9 +8,8 @@
 #include <map>
 #include <string>
 
-#include <Eigen/Eigenvalues>
-
 #include "pliant/base/statistics.h"
+#include "pliant/geometry/decompositions.h"
 
 namespace pliant {
 namespace {
@@ -74,7 +73,7 @@ Eigen::Vector3d Spread(std::span<const PosePair> pairs) {
     centers.col(static_cast<Eigen::Index>(i)) = pairs[i].true_world_from_cam.translation;
   centers.colwise() -= Eigen::Vector3d(centers.rowwise().mean());
   const Eigen::Matrix3d spread = centers * centers.transpose() / static_cast<double>(pairs.size());
-  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvalues().cwiseMax(0.0);
+  return EigenOfSymmetric(spread).values.cwiseMax(0.0);
 }
 
 void AddSubmap(std::span<const PosePair> pairs, const Sim3& truth_from_run, const TrajectoryErrorOptions& options,

@@ -7,8 +7,7 @@
 #include <cassert>
 #include <cmath>
 
-#include <Eigen/SVD>
-
+#include "pliant/geometry/decompositions.h"
 #include "pliant/geometry/triangulation.h"
 
 namespace pliant {
@@ -20,9 +19,9 @@ Eigen::Matrix3d EssentialFromMotion(const Rigid3& cam1_from_cam0) {
 Result<EssentialMotions> DecomposeEssential(const Eigen::Matrix3d& essential) {
   if (!essential.allFinite() || !(essential.norm() > 0.0))
     return Status(ErrorCode::kInvalidArgument, "an essential matrix to decompose is zero or not a number");
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(essential, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Eigen::Matrix3d u = svd.matrixU();
-  Eigen::Matrix3d v = svd.matrixV();
+  const Svd3 svd = SvdOf(essential);
+  Eigen::Matrix3d u = svd.u;
+  Eigen::Matrix3d v = svd.v;
   // The sign of E is free, and so are the signs of the null vectors: take both factors as rotations.
   if (u.determinant() < 0) u.col(2) = -u.col(2);
   if (v.determinant() < 0) v.col(2) = -v.col(2);

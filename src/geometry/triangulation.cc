@@ -9,8 +9,7 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
+#include "pliant/geometry/decompositions.h"
 
 namespace pliant {
 namespace {
@@ -69,8 +68,7 @@ TriangulatedPoint TriangulateLinear(const Rigid3& cam1_from_cam0, const Eigen::V
     return Rejected(TriangulationStatus::kParallel);
   Eigen::Matrix<double, 6, 4> equations;
   equations << Skew(ray0), Eigen::Vector3d::Zero(), Skew(ray1) * cam1_from_cam0.RotationMatrix(), Skew(ray1) * t;
-  const Eigen::JacobiSVD<Eigen::Matrix<double, 6, 4>> svd(equations, Eigen::ComputeFullV);
-  const Eigen::Vector4d x = svd.matrixV().col(3);
+  const Eigen::Vector4d x = SmallestRightSingularVector(equations);
   if (std::abs(x[3]) < kParallelSine) return Rejected(TriangulationStatus::kParallel);
   const Eigen::Vector3d point_in_cam0 = x.hnormalized();
   if (!(point_in_cam0.dot(ray0) > 0.0 && (cam1_from_cam0 * point_in_cam0).dot(ray1) > 0.0))
@@ -89,8 +87,9 @@ TriangulatedPoint TriangulateOptimalL2(const Rigid3& cam1_from_cam0, const Eigen
   const Eigen::Vector3d b = cam1_from_cam0.translation.cross(a) / baseline;
   const Eigen::Vector2d u(a.dot(y), b.dot(y));
   const Eigen::Vector2d v(a.dot(ray1), b.dot(ray1));
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(u * u.transpose() + v * v.transpose());
-  const Eigen::Vector3d n = solver.eigenvectors()(0, 0) * a + solver.eigenvectors()(1, 0) * b;
+  const Eigen::Matrix2d normal_equations = u * u.transpose() + v * v.transpose();
+  const Eigen::Matrix2d eigenvectors = EigenOfSymmetric(normal_equations).vectors;
+  const Eigen::Vector3d n = eigenvectors(0, 0) * a + eigenvectors(1, 0) * b;
   const Eigen::Vector3d y_in_plane = (y - n.dot(y) * n).normalized();
   const Eigen::Vector3d f1_in_plane = (ray1 - n.dot(ray1) * n).normalized();
   return TriangulateMidpoint(cam1_from_cam0, cam1_from_cam0.rotation.conjugate() * y_in_plane, f1_in_plane);
@@ -128,11 +127,10 @@ Eigen::Matrix3d PointCovariance(std::span<const Rigid3> cams_from_world, const E
     information += (Eigen::Matrix3d::Identity() - x * x.transpose() / distance_squared) /
                    (sigma_rad * sigma_rad * distance_squared);
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(information);
-  const Eigen::Vector3d& eigenvalues = solver.eigenvalues();  // increasing
+  const auto [eigenvalues, eigenvectors] = EigenOfSymmetric(information);
   if (!(eigenvalues[0] > kParallelSine * kParallelSine * eigenvalues[2]) || !std::isfinite(eigenvalues[2]))
     return Eigen::Matrix3d::Constant(std::numeric_limits<double>::infinity());
-  return solver.eigenvectors() * eigenvalues.cwiseInverse().asDiagonal() * solver.eigenvectors().transpose();
+  return eigenvectors * eigenvalues.cwiseInverse().asDiagonal() * eigenvectors.transpose();
 }
 
 double DepthSigma(const Eigen::Matrix3d& covariance, const Eigen::Vector3d& point_in_world) {

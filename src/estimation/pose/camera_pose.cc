@@ -7,9 +7,9 @@
 #include <string>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <ceres/ceres.h>
 
+#include "pliant/geometry/decompositions.h"
 #include "pliant/residuals/ceres_adapter.h"
 #include "pliant/residuals/huber.h"
 #include "pliant/residuals/reprojection.h"
@@ -66,8 +66,8 @@ bool InvertInformation(const Matrix6d& information, Matrix6d* covariance) {
   if (!(scale.minCoeff() > 0.0)) return false;
   const Vector6d inverse = scale.cwiseInverse();
   const Matrix6d scaled = inverse.asDiagonal() * information * inverse.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(scaled);
-  if (!(eigen.eigenvalues()(0) > kFreeDirection * eigen.eigenvalues()(5))) return false;
+  const Vector6d eigenvalues = EigenOfSymmetric(scaled).values;
+  if (!(eigenvalues(0) > kFreeDirection * eigenvalues(5))) return false;
   const Matrix6d scaled_inverse = scaled.llt().solve(Matrix6d::Identity());
   *covariance = inverse.asDiagonal() * scaled_inverse * inverse.asDiagonal();
   return true;

@@ -14,7 +14,6 @@
 #include <numeric>
 #include <vector>
 
-#include <Eigen/SVD>
 #include <opengv/relative_pose/CentralRelativeAdapter.hpp>
 #include <opengv/relative_pose/methods.hpp>
 #include <opengv/sac/Lmeds.hpp>
@@ -23,6 +22,7 @@
 
 #include "pliant/estimation/two_view/two_view_models.h"
 #include "pliant/estimation/two_view/two_view_refinement.h"
+#include "pliant/geometry/decompositions.h"
 #include "pliant/geometry/essential.h"
 
 namespace pliant {
@@ -176,8 +176,7 @@ Rigid3 RelativePoseProblem::MotionWithRotation(const Eigen::Matrix3d& cam0_from_
     const Eigen::Vector3d normal = (rotation * rays0_[k]).cross(rays1_[k]);
     normals += normal * normal.transpose();
   }
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(normals, Eigen::ComputeFullV);
-  return {rotation, svd.matrixV().col(2)};
+  return {rotation, SvdOf(normals).v.col(2)};
 }
 
 RelativePoseProblem::Candidate RelativePoseProblem::Scored(const Rigid3& motion_of_any_sign) const {

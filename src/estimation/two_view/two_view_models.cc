@@ -10,11 +10,10 @@
 #include <numbers>
 #include <optional>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/QR>
-#include <Eigen/SVD>
 
 #include "pliant/base/statistics.h"
+#include "pliant/geometry/decompositions.h"
 #include "pliant/geometry/triangulation.h"
 
 namespace pliant {
@@ -35,10 +34,9 @@ Status CheckCounts(Rays rays0, Rays rays1, std::size_t least) {
 Eigen::Quaterniond BestRotation(Rays rays0, Rays rays1, const std::vector<double>& weights) {
   Eigen::Matrix3d correlation = Eigen::Matrix3d::Zero();
   for (std::size_t i = 0; i < rays0.size(); ++i) correlation += weights[i] * rays1[i] * rays0[i].transpose();
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(correlation, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const double sign = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1.0 : 1.0;
-  return Eigen::Quaterniond(
-             Eigen::Matrix3d(svd.matrixU() * Eigen::Vector3d(1, 1, sign).asDiagonal() * svd.matrixV().transpose()))
+  const Svd3 svd = SvdOf(correlation);
+  const double sign = (svd.u * svd.v.transpose()).determinant() < 0 ? -1.0 : 1.0;
+  return Eigen::Quaterniond(Eigen::Matrix3d(svd.u * Eigen::Vector3d(1, 1, sign).asDiagonal() * svd.v.transpose()))
       .normalized();
 }
 
@@ -98,13 +96,12 @@ Eigen::Matrix3d LeastSquaresHomography(Rays rays0, Rays rays1, const std::vector
   Eigen::Matrix<double, 9, 9> normal_equations = Eigen::Matrix<double, 9, 9>::Zero();
   for (std::size_t i = 0; i < rays0.size(); ++i)
     if (inliers[i] != 0) AddHomographyRows(rays0[i], rays1[i], &normal_equations);
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 9, 9>> solver(normal_equations);
-  return FromStackedRows(solver.eigenvectors().col(0));
+  return FromStackedRows(EigenOfSymmetric(normal_equations).vectors.col(0));
 }
 
 // H is known up to scale and sign: middle singular value 1, and rays carried forwards, not backwards.
 Eigen::Matrix3d Normalized(const Eigen::Matrix3d& homography, Rays rays0, Rays rays1) {
-  const double middle = Eigen::JacobiSVD<Eigen::Matrix3d>(homography).singularValues()[1];
+  const double middle = SvdOf(homography).singular_values[1];
   int forwards = 0;
   for (std::size_t i = 0; i < rays0.size(); ++i) forwards += (homography * rays0[i]).dot(rays1[i]) > 0 ? 1 : -1;
   return (forwards >= 0 ? 1.0 : -1.0) / std::max(middle, std::numeric_limits<double>::min()) * homography;
@@ -169,13 +166,13 @@ std::vector<Rigid3> MotionsFromHomography(const Eigen::Matrix3d& homography, Ray
   // H'H = V diag(s1^2, 1, s3^2) V': the two planes through v2 whose lengths H keeps hold t's image (Ma, Soatto,
   // Kosecka, Sastry, "An Invitation to 3-D Vision", 5.3.3).
   constexpr double kMinStretch = 1e-9;  // s1^2 - s3^2 of a rotation
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(homography, Eigen::ComputeFullV);
-  const Eigen::Vector3d squares = (svd.singularValues() / svd.singularValues()[1]).array().square();
-  const Eigen::Matrix3d h = homography / svd.singularValues()[1];
+  const Svd3 svd = SvdOf(homography);
+  const Eigen::Vector3d squares = (svd.singular_values / svd.singular_values[1]).array().square();
+  const Eigen::Matrix3d h = homography / svd.singular_values[1];
   std::vector<Rigid3> motions;
   if (!squares.allFinite() || squares[0] - squares[2] < kMinStretch) return motions;
 
-  const Eigen::Matrix3d v = svd.matrixV();
+  const Eigen::Matrix3d& v = svd.v;
   const double a = std::sqrt(std::max(0.0, 1.0 - squares[2]) / (squares[0] - squares[2]));
   const double b = std::sqrt(std::max(0.0, squares[0] - 1.0) / (squares[0] - squares[2]));
   for (const double sign : {1.0, -1.0}) {

@@ -8,13 +8,13 @@
 #include <limits>
 #include <string>
 
-#include <Eigen/Eigenvalues>
 #include <ceres/ceres.h>
 
 #include "estimation/ceres_support.h"
 #include "estimation/ray_residuals.h"
 #include "estimation/two_view/opengv_relative_pose.h"
 #include "pliant/base/statistics.h"
+#include "pliant/geometry/decompositions.h"
 #include "pliant/geometry/triangulation.h"
 
 namespace pliant {
@@ -87,7 +87,7 @@ TwoViewRefinement Assessed(const Rigid3& cam1_from_cam0, Rays rays0, Rays rays1,
       normal_equations.bottomRightCorner<2, 2>() -
       normal_equations.bottomLeftCorner<2, 3>() *
           normal_equations.topLeftCorner<3, 3>().ldlt().solve(normal_equations.topRightCorner<3, 2>());
-  const Eigen::Vector2d eigenvalues = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(direction).eigenvalues();
+  const Eigen::Vector2d eigenvalues = EigenOfSymmetric(direction).values;
   for (int k = 0; k < 2; ++k)
     refinement.direction_sigma_rad[k] = eigenvalues[k] > 0.0 ? refinement.spread_px / std::sqrt(eigenvalues[k])
                                                              : std::numeric_limits<double>::infinity();

@@ -12,8 +12,6 @@
 #include <string>
 #include <utility>
 
-#include <Eigen/Eigenvalues>
-
 #include "estimation/ray_residuals.h"
 #include "estimation/window/deforming_problem.h"
 #include "estimation/window/deforming_uncertainty.h"
@@ -21,6 +19,7 @@
 #include "estimation/window/shape_basis.h"
 #include "estimation/window/window_samples.h"
 #include "pliant/base/statistics.h"
+#include "pliant/geometry/decompositions.h"
 #include "pliant/geometry/triangulation.h"
 
 namespace pliant {
@@ -85,9 +84,9 @@ void SetCoefficients(int rank, DeformingWindow* window, SurfaceNodes* nodes) {
   const double largest = sizes.empty() ? 0.0 : kLargestMotion * Median(sizes);
   for (std::size_t i = 0; i < sizes.size(); ++i)
     if (sizes[i] > largest) motions.middleRows<2>(2 * static_cast<Eigen::Index>(i)) *= largest / sizes[i];
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(motions.transpose() * motions);  // the strongest last
+  const auto eigen = EigenOfSymmetric(Eigen::MatrixXd(motions.transpose() * motions));  // the strongest last
   const auto views = static_cast<double>(window->cams_from_world.size());
-  window->coefficients = std::sqrt(views) * eigen.eigenvectors().rightCols(rank).rowwise().reverse().transpose();
+  window->coefficients = std::sqrt(views) * eigen.vectors.rightCols(rank).rowwise().reverse().transpose();
   window->coefficients.colwise() -= Eigen::VectorXd(window->coefficients.col(0));
   window->shapes.resize(window->points_in_world.size());
   for (Eigen::Matrix3Xd& shapes : window->shapes) shapes.setZero(3, rank);
@@ -101,8 +100,8 @@ void KeepStrongestCoefficients(int rank, DeformingWindow* window, SurfaceNodes* 
   Eigen::MatrixXd second_moment = Eigen::MatrixXd::Zero(window->coefficients.rows(), window->coefficients.rows());
   for (const Eigen::Matrix3Xd& shapes : window->shapes) second_moment += shapes.transpose() * shapes;
   const Eigen::MatrixXd motions = window->coefficients.transpose() * second_moment * window->coefficients;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(motions);  // the strongest last
-  const Eigen::MatrixXd strongest = eigen.eigenvectors().rightCols(rank).rowwise().reverse();
+  const auto eigen = EigenOfSymmetric(motions);  // the strongest last
+  const Eigen::MatrixXd strongest = eigen.vectors.rightCols(rank).rowwise().reverse();
   const double length = std::sqrt(static_cast<double>(views));
   const Eigen::MatrixXd change = window->coefficients * strongest / length;
   for (Eigen::Matrix3Xd& shapes : window->shapes) shapes = Eigen::Matrix3Xd(shapes * change);

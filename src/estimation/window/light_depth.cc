@@ -6,9 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Eigenvalues>
-
 #include "pliant/base/statistics.h"
+#include "pliant/geometry/decompositions.h"
 
 namespace pliant {
 namespace {
@@ -52,7 +51,7 @@ std::vector<double> CorrectForInclination(const std::vector<Eigen::Vector3d>& po
       const Eigen::Vector3d arm = neighbor(k) - center;
       spread += weights[k] * arm * arm.transpose();
     }
-    const Eigen::Vector3d normal = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().col(0);
+    const Eigen::Vector3d normal = EigenOfSymmetric(spread).vectors.col(0);
     const double cosine = std::abs(normal.dot(positions_in_cam[i].normalized()));
     corrected[i] += kCosineExponent * std::log(std::max(kMinCosine, cosine));
   }

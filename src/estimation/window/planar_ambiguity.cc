@@ -9,11 +9,11 @@
 #include <vector>
 
 #include <Eigen/Cholesky>
-#include <Eigen/SVD>
 
 #include "estimation/window/window_samples.h"
 #include "pliant/base/statistics.h"
 #include "pliant/estimation/two_view/two_view_models.h"
+#include "pliant/geometry/decompositions.h"
 #include "pliant/geometry/triangulation.h"
 
 namespace pliant {
@@ -56,7 +56,7 @@ std::optional<DeformingWindow> OtherPlanarMotion(const DeformingWindow& solved, 
   if (last.translation.norm() == 0.0) return std::nullopt;
   const Eigen::Matrix3d any_scale =
       last.rotation.toRotationMatrix() + last.translation * NearestPlane(solved.points_in_world).transpose();
-  const Eigen::Matrix3d homography = any_scale / Eigen::JacobiSVD<Eigen::Matrix3d>(any_scale).singularValues()[1];
+  const Eigen::Matrix3d homography = any_scale / SvdOf(any_scale).singular_values[1];
   const std::vector<Rigid3> motions = MotionsFromHomography(homography, DirectionsOf(solved.points_in_world));
   if (motions.size() < 2) return std::nullopt;
   const auto difference = [&](const Rigid3& motion) {
