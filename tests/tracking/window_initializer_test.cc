@@ -216,7 +216,7 @@ TEST(WindowInitializer, DoesNotBelieveALightThatSaysNothing) {
   const InitOutcome outcome = sequence.Try({}, InitMoment::kLastFrame);
   ASSERT_EQ(outcome.decision, InitDecision::kMap) << outcome.reason;
   for (const int t : {0, 60}) EXPECT_LT(sequence.ShapeError(outcome, t), kShape) << t;
-  EXPECT_THAT(outcome.reason, HasSubstr("without light"));
+  EXPECT_THAT(outcome.reason, HasSubstr("brightness is no depth cue"));
 }
 
 // A lens that shades the border, or a light that points ahead: known, it does no harm.
@@ -236,8 +236,8 @@ TEST(WindowInitializer, AVignetteThatIsKnownIsNoDepth) {
   const InitOutcome known = initializer->Try(input);
   ASSERT_EQ(known.decision, InitDecision::kMap) << known.reason;
   for (const int t : {0, 60}) EXPECT_LT(sequence.ShapeError(known, t), kShape) << t;
-  EXPECT_THAT(known.reason, testing::Not(HasSubstr("without light")));
-  EXPECT_THAT(unknown.reason, HasSubstr("without light"));
+  EXPECT_THAT(known.reason, testing::Not(HasSubstr("brightness is no depth cue")));
+  EXPECT_THAT(unknown.reason, HasSubstr("brightness is no depth cue"));
 }
 
 TEST(WindowInitializer, WhenAllPointsAreOneItSaysSo) {
