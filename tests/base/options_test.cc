@@ -43,7 +43,7 @@ TEST(Options, EveryFieldPrintsWhatItReads) {
   BasketOptions options;
   OptionTable table;
   options.List(table);
-  ASSERT_EQ(table.fields().size(), 5U);
+  ASSERT_EQ(table.fields().size(), 6U);
   for (const OptionField& field : table.fields()) EXPECT_TRUE(field.set(field.get()).ok()) << field.name;
   EXPECT_TRUE(table.Set("Basket.fruit", "pear").ok());
   EXPECT_TRUE(table.Set("Basket.weight", "2.5").ok());

@@ -103,7 +103,7 @@ TEST(Program, OneFrameAndManyThreadsAreOneSentenceEach) {
   ASSERT_EQ(Pliant("simulate --quiet --Trajectory.frames 2" + kCoarse + "--output_path '" + sequence + "'").exit, 0);
   const std::string track =
       "track --quiet --image_path '" + sequence + "' --output_path '" + Temporary("run").string() + "' ";
-  EXPECT_THAT(Pliant(track + "--end 1").err, StartsWith("pliant track: one frame carries no map; "));
+  EXPECT_THAT(Pliant(track + "--end 1").err, StartsWith("pliant track: one frame is not enough for a map; "));
   const Outcome threads = Pliant(track + "--General.threads 64");
   EXPECT_THAT(threads.err, StartsWith("pliant track: "));
   EXPECT_EQ(std::count(threads.err.begin(), threads.err.end(), '\n'), 1) << threads.err;

@@ -218,17 +218,18 @@ INSTANTIATE_TEST_SUITE_P(
         BadText{"NegativeSize", "cameras.txt", "1 PINHOLE -640 480 1 1 1 1\n", "'-640' is no WIDTH"},
         BadText{"ImageId", "images.txt", "4294967296 1 0 0 0 0 0 0 1 a\n\n", "'4294967296' is no IMAGE_ID"},
         BadText{"ImageCut", "images.txt", "1 1 0 0 0 0 0\n", "there is no TZ"},
-        BadText{"NoObservations", "images.txt", "1 1 0 0 0 0 0 0 1 a\n2 1 0 0 0 0 0 0 1 b\n\n", ":2: 'b' is no number"},
+        BadText{"NoObservations", "images.txt", "1 1 0 0 0 0 0 0 1 a\n2 1 0 0 0 0 0 0 1 b\n\n",
+                ":2: 'b' is not a number"},
         BadText{"LastWithoutObservations", "images.txt", "1 1 0 0 0 0 0 0 1 a\n", "of image 1 is missing"},
-        BadText{"ObservationCut", "images.txt", "1 1 0 0 0 0 0 0 1 a\n1 2 3 4 5\n", ":2: there is not a POINT3D_ID"},
+        BadText{"ObservationCut", "images.txt", "1 1 0 0 0 0 0 0 1 a\n1 2 3 4 5\n", ":2: there is no POINT3D_ID"},
         BadText{"ImageTwice", "images.txt", "1 1 0 0 0 0 0 0 1 a\n\n1 1 0 0 0 0 0 0 1 b\n\n", "image 1 twice"},
         BadText{"PointColor", "points3D.txt", "1 0 0 0 256 0 0 0\n", "'256' is no color"},
         BadText{"PointTrack", "points3D.txt", "1 0 0 0 0 0 0 0 1 0 2\n", "there is no POINT2D_IDX"},
-        BadText{"PointNumber", "points3D.txt", "1 0 zero 0 0 0 0 0\n", "'zero' is no number (Y)"},
+        BadText{"PointNumber", "points3D.txt", "1 0 zero 0 0 0 0 0\n", "'zero' is not a number (Y)"},
         BadText{"PointTwice", "points3D.txt", "1 0 0 0 0 0 0 0\n1 0 0 0 0 0 0 0\n", "point 1 twice"},
         BadText{"Binary", "points3D.txt", std::string("\1\0\0\0\0\0\0\0", 8), ":1: "},
         BadText{"Rig", "rigs.txt", "1 2 CAMERA 1 WHEEL 1 0\n", "'WHEEL' is not a SENSOR_TYPE"},
-        BadText{"Frame", "frames.txt", "1 1 1 0 0 0 0 0 0 2 CAMERA 1 1\n", ":1: there is not a SENSOR_TYPE"}),
+        BadText{"Frame", "frames.txt", "1 1 1 0 0 0 0 0 0 2 CAMERA 1 1\n", ":1: there is no SENSOR_TYPE"}),
     [](const auto& test) { return std::string(test.param.name); });
 
 TEST(ColmapModel, EveryTruncationOfItsBinaryFilesIsFound) {

@@ -91,7 +91,7 @@ INSTANTIATE_TEST_SUITE_P(
         Damaged{"Absurd", "a.npy", Npy("<f8", "999999999, 3", ""), "is cut off"},
         Damaged{"NoNumberOfColumns", "a.npy", Npy("<f4", "2, nan", ""), "not an array of N x 3 floats"},
         Damaged{"NoNumberOfVertices", "a.ply", "ply\nformat ascii 1.0\nelement vertex nan\nend_header\n",
-                "no sound number of vertices"},
+                "no valid number of vertices"},
         Damaged{"NotWhatItSays", "a.npy", "hello", "is not what its name says"},
         Damaged{"CutPly", "a.ply", Ply("binary_little_endian", PlyRow(kFirst)), "is cut off"},
         Damaged{"BigEndian", "a.ply", Ply("binary_big_endian", ""), "write it little-endian"},
