@@ -24,7 +24,8 @@ inline constexpr std::string_view kSubmapColumn = "submap";
 // What earlier versions called otherwise, in state, stages and reasons of losses: their name, and the one of today.
 inline constexpr std::array kEarlierNames = {
     std::pair<std::string_view, std::string_view>{"initialising", "initializing"},  // a state
-    std::pair<std::string_view, std::string_view>{"initialise", "initialize"}};     // a stage
+    std::pair<std::string_view, std::string_view>{"initialise", "initialize"},      // a stage
+    std::pair<std::string_view, std::string_view>{"slid", "drifted"}};              // a reason of losses
 inline std::string_view PresentName(std::string_view name) {
   for (const auto& [earlier, present] : kEarlierNames)
     if (name == earlier) return present;
