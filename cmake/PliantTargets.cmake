@@ -17,6 +17,7 @@ target_compile_options(pliant_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshad
                        $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
                        $<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds>
                        $<$<CXX_COMPILER_ID:GNU>:-Wno-stringop-overflow>
+                       $<$<CXX_COMPILER_ID:GNU>:-Wno-stringop-overread>
                        $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
 if(PROJECT_IS_TOP_LEVEL)
   target_compile_options(pliant_warnings INTERFACE -Werror)
