@@ -6,16 +6,16 @@
 namespace pliant::cli {
 
 void SequenceArguments::AddTo(CommandLine* line, const std::string& name, Positional positional) {
-  constexpr int kMost = 2147483647;
+  constexpr int kMaxFrame = 2147483647;
   line->Add(name, &path, "PATH", "a data set: folder of images, native sequence, video or another (docs/datasets.md)",
             Need::kRequired, positional);
   line->Add("camera", &camera_path, "FILE",
             "calibration; not needed where camera.yaml lies in the folder or beside the video", Need::kOptional);
   line->Add("mask_path", &mask_path, "PATH", "folder of masks, or one image for all frames; 0 = ignore this pixel",
             Need::kOptional);
-  line->Add("start", &start, "first frame, by its number in the source", 0, kMost);
-  line->Add("end", &end, "one past the last frame; -1: to the end", -1, kMost);
-  line->Add("stride", &stride, "take every Nth frame", 1, kMost);
+  line->Add("start", &start, "first frame, by its number in the source", 0, kMaxFrame);
+  line->Add("end", &end, "one past the last frame; -1: to the end", -1, kMaxFrame);
+  line->Add("stride", &stride, "take every Nth frame", 1, kMaxFrame);
 }
 
 std::optional<int> SequenceArguments::Check(const CommandLine& line) const {

@@ -236,8 +236,8 @@ bool IsColmaps(const std::string& path) {
 }  // namespace
 
 std::optional<ImageSize> ToImageSize(double width, double height) {
-  constexpr double kMost_px = 1e6;
-  const auto is_side = [](double side) { return side >= 1 && side <= kMost_px && side == std::floor(side); };
+  constexpr double kMaxSide_px = 1e6;
+  const auto is_side = [](double side) { return side >= 1 && side <= kMaxSide_px && side == std::floor(side); };
   if (!is_side(width) || !is_side(height)) return std::nullopt;
   return ImageSize{static_cast<int>(width), static_cast<int>(height)};
 }

@@ -207,8 +207,8 @@ TEST(OpenCvCalibrationFile, FitsASmallK3AndSaysHowWell) {
   EXPECT_GT(read->refit_residual_px, 0.0);
   EXPECT_LT(read->refit_residual_px, kLargestRefitPx);
   // The residual is honest: OpenCV's own projection differs by no more, over the image.
-  constexpr double kMostAtOtherPixels = 1.2;  // a largest value, sampled more finely
-  constexpr double kLeastAtOtherPixels = 0.5;
+  constexpr double kMaxRatioAtOtherPixels = 1.2;  // a largest value, sampled more finely
+  constexpr double kMinRatioAtOtherPixels = 0.5;
   double largest = 0;
   for (double u = 0; u < 1280; u += 31)
     for (double v = 0; v < 1024; v += 31) {
@@ -219,8 +219,8 @@ TEST(OpenCvCalibrationFile, FitsASmallK3AndSaysHowWell) {
                         std::vector<double>{-5.95e-04, -5.47e-04, 0, 0, 1.83e-03}, pixel);
       largest = std::max(largest, std::hypot(pixel[0].x - u, pixel[0].y - v));
     }
-  EXPECT_LT(largest, kMostAtOtherPixels * read->refit_residual_px);
-  EXPECT_GT(largest, kLeastAtOtherPixels * read->refit_residual_px);
+  EXPECT_LT(largest, kMaxRatioAtOtherPixels * read->refit_residual_px);
+  EXPECT_GT(largest, kMinRatioAtOtherPixels * read->refit_residual_px);
 }
 
 TEST(OpenCvCalibrationFile, IsAPinholeWithoutDistortionAndAFisheyeWhereItSaysSo) {

@@ -36,9 +36,9 @@ class NormalEquations {
 // `factorize` takes the factor of the diagonal and is true where the equations could be solved with it.
 template <typename Factorize>
 bool WithRidge(const Factorize& factorize) {
-  constexpr double kLeast = 1e-9;
-  constexpr double kMost = 1.0;
-  for (double ridge = kLeast; ridge < kMost; ridge *= 10.0)
+  constexpr double kMinRidge = 1e-9;
+  constexpr double kMaxRidge = 1.0;
+  for (double ridge = kMinRidge; ridge < kMaxRidge; ridge *= 10.0)
     if (factorize(1.0 + ridge)) return true;
   return false;
 }
