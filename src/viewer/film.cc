@@ -53,6 +53,37 @@ Status Unwritable(const std::string& path) {
                                       "with an encoder for mp4?"};
 }
 
+// What all frames of a film share.
+struct FilmLayout {
+  const View& view;
+  const FigureOptions& options;
+  double panel_width = 0;
+  double panel_height = 0;
+  const std::vector<Orbit>& orbits;  // one a run
+};
+
+// The frame's number and a legend around its image, where there is one, and a panel for each run.
+void DrawFilmFrame(const FilmLayout& layout, int frame_idx, const cv::Mat& image, cairo_surface_t* surface) {
+  const View& view = layout.view;
+  const Drawing drawing(cairo_create(surface));
+  cairo_set_source_rgb(drawing.get(), 1, 1, 1);
+  cairo_paint(drawing.get());
+  double left = 0;
+  if (!image.empty()) {
+    DrawImage(drawing.get(), {left, kLine, layout.panel_width, layout.panel_height}, image,
+              FindFrame(view.runs.front(), frame_idx));
+    left += layout.panel_width;
+  }
+  for (std::size_t i = 0; i < view.runs.size(); ++i) {
+    DrawScene(drawing.get(), {left, kLine, layout.panel_width, layout.panel_height}, view, view.runs[i], frame_idx,
+              layout.orbits[i], layout.options);
+    if (view.runs.size() > 1) DrawText(drawing.get(), left + kNameLeft, kLine - 6, kText, view.runs[i].name);
+    left += layout.panel_width;
+  }
+  DrawText(drawing.get(), 6, kLine - 6, kText, "frame " + std::to_string(frame_idx));
+  DrawLegend(drawing.get(), 6, cairo_image_surface_get_height(surface) - 7, kText, !view.truth.empty());
+}
+
 }  // namespace
 
 Result<std::vector<std::string>> WriteFilm(const ViewRequest& request, const FigureOptions& options,
@@ -87,25 +118,13 @@ Result<std::vector<std::string>> WriteFilm(const ViewRequest& request, const Fig
   if (cairo_surface_status(surface.get()) != CAIRO_STATUS_SUCCESS) return unwritten(TooLarge(size.width, size.height));
   int done = 0;
   for (const int frame_idx : frames_idx) {
-    const Drawing drawing(cairo_create(surface.get()));
-    cairo_set_source_rgb(drawing.get(), 1, 1, 1);
-    cairo_paint(drawing.get());
-    double left = 0;
+    cv::Mat image;
     if (view->sequence) {
-      const auto image = images->At(frame_idx);
-      if (!image.ok()) return unwritten(image.status());
-      DrawImage(drawing.get(), {left, kLine, panel_width, panel_height}, *image,
-                FindFrame(view->runs.front(), frame_idx));
-      left += panel_width;
+      auto read = images->At(frame_idx);
+      if (!read.ok()) return unwritten(read.status());
+      image = *read;
     }
-    for (std::size_t i = 0; i < view->runs.size(); ++i) {
-      DrawScene(drawing.get(), {left, kLine, panel_width, panel_height}, *view, view->runs[i], frame_idx, orbits[i],
-                options);
-      if (view->runs.size() > 1) DrawText(drawing.get(), left + kNameLeft, kLine - 6, kText, view->runs[i].name);
-      left += panel_width;
-    }
-    DrawText(drawing.get(), 6, kLine - 6, kText, "frame " + std::to_string(frame_idx));
-    DrawLegend(drawing.get(), 6, size.height - 7, kText, !view->truth.empty());
+    DrawFilmFrame({*view, options, panel_width, panel_height, orbits}, frame_idx, image, surface.get());
     cairo_surface_flush(surface.get());
     const cv::Mat bgra(size, CV_8UC4, cairo_image_surface_get_data(surface.get()),
                        static_cast<std::size_t>(cairo_image_surface_get_stride(surface.get())));
