@@ -124,6 +124,17 @@ void CommandLine::AddFlag(std::string name, bool* value, std::string why) {
                }});
 }
 
+void CommandLine::AddChoice(std::string name, std::string* value, const std::vector<std::string_view>& names,
+                            std::string why) {
+  std::string accepted;
+  for (const std::string_view known : names) accepted += (accepted.empty() ? "" : "|") + std::string(known);
+  AddArgument({std::move(name), accepted, std::move(why), "one of " + accepted, *value, Need::kOptional,
+               [value, known = std::set<std::string>(names.begin(), names.end())](std::string_view text) {
+                 *value = text;
+                 return known.contains(*value);
+               }});
+}
+
 void CommandLine::AddAlias(std::string name, std::string option, std::string placeholder, std::string why) {
   AddArgument({std::move(name), placeholder, std::move(why), placeholder, "", Need::kOptional,
                [this, option = std::move(option)](std::string_view text) {

@@ -66,6 +66,8 @@ class CommandLine {
   void Add(std::string name, std::vector<std::string>* values, std::string placeholder, std::string why, Need need);
   // An argument without a value.
   void AddFlag(std::string name, bool* value, std::string why);
+  // One of the given names.
+  void AddChoice(std::string name, std::string* value, const std::vector<std::string_view>& names, std::string why);
   // One of the named values of an enum (EnumNames).
   template <class Enum>
   void AddChoice(std::string name, Enum* value, std::string why) {

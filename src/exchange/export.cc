@@ -4,6 +4,7 @@
 #include "pliant/exchange/export.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 
@@ -14,32 +15,46 @@
 namespace pliant {
 namespace {
 
-Status Export(const RunSource& source, ExportFormat format, const std::string& folder, const ExportOptions& options) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) return {ErrorCode::kUnwritable, "cannot make the folder " + Quoted(folder) + ": " + error.message()};
-  switch (format) {
-    case ExportFormat::kCanonical:
-      return ExportCanonical(source, options, folder);
-    case ExportFormat::kSpacetime:
-      return ExportSpacetime(source, options, folder);
-    case ExportFormat::kFrames:
-      return ExportFrames(source, options, folder);
-    case ExportFormat::kPly:
-      return ExportPly(source, folder);
-    case ExportFormat::kTrajectories:
-      return ExportTrajectories(source, folder);
-    case ExportFormat::kTum:
-      return ExportTum(source, folder);
-    case ExportFormat::kColmap4d:
-      return ExportColmap4d(source, options, folder);
-    case ExportFormat::kDatabase:
-      return ExportDatabase(source, options, folder);
-  }
-  return Status::Ok();
+constexpr std::array kFormats = {
+    ExportFormat{"canonical",
+                 "a COLMAP model with one point a track at its undeformed position, all images, their keypoints and "
+                 "tracks. The scene moved, so it is not consistent with bundle adjustment.",
+                 ExportCanonical},
+    ExportFormat{
+        "spacetime",
+        "a COLMAP model with one point a track and frame, colored by time (early is dark, late is yellow); its "
+        "id is frame * 1000000 + track. COLMAP's viewer hides points with short tracks: set its minimum track "
+        "length to 1.",
+        ExportSpacetime},
+    ExportFormat{"frames",
+                 "a COLMAP model a frame, in folders 000000, 000001, ..., with the points where they were then.",
+                 ExportFrames},
+    ExportFormat{"ply",
+                 "a file a frame, with color, track id and the displacement dx, dy, dz from the undeformed position.",
+                 ExportPly},
+    ExportFormat{"trajectories",
+                 "trajectories.ply, every point in every frame, those of a track joined by edges, colored by time.",
+                 ExportTrajectories},
+    ExportFormat{"tum", "trajectory.txt, the camera's path, which evo reads.", ExportTum},
+    ExportFormat{"colmap4d", "spacetime with times.bin, points_t.bin and time_meta.json (colmap4d 1.0).",
+                 ExportColmap4d},
+    ExportFormat{"database",
+                 "database.db with tracks as keypoints and verified matches, from which COLMAP's mapper, "
+                 "point_triangulator and bundle_adjuster reconstruct; made by the COLMAP that is installed.",
+                 ExportDatabase},
+};
+
+Result<const ExportFormat*> FindFormat(const std::string& name) {
+  const auto format = std::ranges::find(kFormats, name, &ExportFormat::name);
+  if (format != kFormats.end()) return &*format;
+  std::string names;
+  for (const ExportFormat& known : kFormats) names += (names.empty() ? "" : ", ") + std::string(known.name);
+  return Status(ErrorCode::kInvalidArgument, "there is no export format " + Quoted(name) + "; there are " + names);
 }
 
 }  // namespace
+
+std::span<const ExportFormat> ExportFormats() { return kFormats; }
 
 void ExportOptions::List(OptionTable& table) {
   table.BeginGroup("Export", "what is exported of a run");
@@ -75,7 +90,7 @@ std::string NumberOf(const SourceFrame& frame) {
   return text.insert(0, 6 - std::min<std::size_t>(6, text.size()), '0');
 }
 
-Status ExportTum(const RunSource& source, const std::string& folder) {
+Status ExportTum(const RunSource& source, const ExportOptions& /*options*/, const std::string& folder) {
   std::string lines;
   for (const SourceFrame& frame : source.frames)
     AppendTumLine(&lines, frame.timestamp_s, frame.cam_from_world.Inverse());
@@ -83,6 +98,8 @@ Status ExportTum(const RunSource& source, const std::string& folder) {
 }
 
 Result<ExportSummary> ExportRun(const ExportRequest& request, const ExportOptions& options) {
+  const auto format = FindFormat(request.format);
+  if (!format.ok()) return format.status();
   const auto sources = ReadRunSources(request.run_path, request.sequence_path, options.stride);
   if (!sources.ok()) return sources.status();
   ExportSummary summary;
@@ -90,7 +107,11 @@ Result<ExportSummary> ExportRun(const ExportRequest& request, const ExportOption
     const RunSource& source = (*sources)[k];
     const std::string folder =
         sources->size() > 1 ? request.output_path + "/" + std::to_string(k) : request.output_path;
-    if (Status status = Export(source, request.format, folder, options); !status.ok()) return status;
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error)
+      return Status(ErrorCode::kUnwritable, "cannot make the folder " + Quoted(folder) + ": " + error.message());
+    if (Status status = (*format)->write(source, options, folder); !status.ok()) return status;
     summary.frames += static_cast<int>(source.frames.size());
     summary.points += static_cast<int>(source.points.size());
     summary.observations += source.num_observations;

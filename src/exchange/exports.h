@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// The formats of ExportRun, each from a run's source into a folder that is there. Their files appear together at the
+// What ExportFormats lists, each from a run's source into a folder that is there. Their files appear together at the
 // end; of a format with a file or model a frame, each by itself.
 #pragma once
 
@@ -18,9 +18,9 @@ namespace pliant {
 Status ExportCanonical(const RunSource& source, const ExportOptions& options, const std::string& folder);
 Status ExportSpacetime(const RunSource& source, const ExportOptions& options, const std::string& folder);
 Status ExportFrames(const RunSource& source, const ExportOptions& options, const std::string& folder);
-Status ExportPly(const RunSource& source, const std::string& folder);
-Status ExportTrajectories(const RunSource& source, const std::string& folder);
-Status ExportTum(const RunSource& source, const std::string& folder);
+Status ExportPly(const RunSource& source, const ExportOptions& options, const std::string& folder);
+Status ExportTrajectories(const RunSource& source, const ExportOptions& options, const std::string& folder);
+Status ExportTum(const RunSource& source, const ExportOptions& options, const std::string& folder);
 Status ExportColmap4d(const RunSource& source, const ExportOptions& options, const std::string& folder);
 Status ExportDatabase(const RunSource& source, const ExportOptions& options, const std::string& folder);
 

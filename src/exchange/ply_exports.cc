@@ -22,7 +22,7 @@ void AppendColor(const std::array<std::uint8_t, 3>& rgb, std::string* out) {
 
 }  // namespace
 
-Status ExportPly(const RunSource& source, const std::string& folder) {
+Status ExportPly(const RunSource& source, const ExportOptions& /*options*/, const std::string& folder) {
   return ForEachFrame(source, [&](const SourceFrame& frame, const auto& observations) {
     std::string out = kPlyHead;
     out += "comment dx dy dz: from the undeformed position\nelement vertex " + std::to_string(observations.size()) +
@@ -40,7 +40,7 @@ Status ExportPly(const RunSource& source, const std::string& folder) {
   });
 }
 
-Status ExportTrajectories(const RunSource& source, const std::string& folder) {
+Status ExportTrajectories(const RunSource& source, const ExportOptions& /*options*/, const std::string& folder) {
   FileGroup group;
   auto file = group.Create(folder + "/trajectories.ply");
   if (!file.ok()) return file.status();

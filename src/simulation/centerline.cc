@@ -40,7 +40,8 @@ Centerline::Centerline(double length_mm, double bend_deg_per_cm, int seed) {
     // Half the turn, the step, half the turn: the polygon then follows the curve to second order.
     const Eigen::Quaterniond half = RotationExp(0.5 * omega);
     const Eigen::Quaterniond middle_rotation = frame.rotation * half;
-    frame = Rigid3(middle_rotation * half, frame.translation + middle_rotation * Eigen::Vector3d(0, 0, kCenterlineStepMm));
+    frame =
+        Rigid3(middle_rotation * half, frame.translation + middle_rotation * Eigen::Vector3d(0, 0, kCenterlineStepMm));
   }
 }
 

@@ -61,7 +61,7 @@ class DatabaseExport : public testing::Test {
   Result<ExportSummary> Export() const {
     ExportOptions options;
     options.min_matches = 4;
-    return ExportRun({folder_.Path("run"), "", ExportFormat::kDatabase, folder_.Path("out")}, options);
+    return ExportRun({folder_.Path("run"), "", "database", folder_.Path("out")}, options);
   }
   std::int64_t Number(const std::string& sql) const {
     sqlite3* database = nullptr;

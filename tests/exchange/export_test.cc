@@ -25,7 +25,7 @@ namespace {
 
 using testing::HasSubstr;
 
-Result<ExportSummary> Export(const TestFolder& folder, ExportFormat format, const ExportOptions& options = {}) {
+Result<ExportSummary> Export(const TestFolder& folder, const std::string& format, const ExportOptions& options = {}) {
   return ExportRun({folder.Path("run"), "", format, folder.Path("out")}, options);
 }
 
@@ -46,7 +46,7 @@ TEST(Export, CanonicalHasOnePointATrackAtItsUndeformedPosition) {
     WriteRun(folder);
     ExportOptions options;
     options.files = files;
-    const auto summary = Export(folder, ExportFormat::kCanonical, options);
+    const auto summary = Export(folder, "canonical", options);
     ASSERT_TRUE(summary.ok()) << summary.status().message();
     EXPECT_EQ(summary->frames, kRunFrames);
     EXPECT_EQ(summary->points, kRunPoints);
@@ -71,7 +71,7 @@ TEST(Export, CanonicalHasOnePointATrackAtItsUndeformedPosition) {
 TEST(Export, SpacetimeHasOnePointATrackAndFrameColoredByTime) {
   const TestFolder folder;
   WriteRun(folder);
-  ASSERT_TRUE(Export(folder, ExportFormat::kSpacetime).ok());
+  ASSERT_TRUE(Export(folder, "spacetime").ok());
   const colmap::Model model = ReadValidModel(folder.Path("out"));
   ASSERT_EQ(model.points3D.size(), static_cast<std::size_t>(kRunObservations));
   for (const colmap::Point3D& point : model.points3D) {
@@ -88,7 +88,7 @@ TEST(Export, SpacetimeHasOnePointATrackAndFrameColoredByTime) {
 TEST(Export, FramesHasAModelAFrameThatReprojectsExactly) {
   const TestFolder folder;
   WriteRun(folder);
-  ASSERT_TRUE(Export(folder, ExportFormat::kFrames).ok());
+  ASSERT_TRUE(Export(folder, "frames").ok());
   for (int frame = 0; frame < kRunFrames; ++frame) {
     const colmap::Model model = ReadValidModel(folder.Path("out/0000" + std::to_string(10 + 2 * frame)));
     ASSERT_EQ(model.images.size(), 1U);
@@ -108,7 +108,7 @@ TEST(Export, FramesHasAModelAFrameThatReprojectsExactly) {
 TEST(Export, PlyHasDisplacementsFromTheUndeformedPosition) {
   const TestFolder folder;
   WriteRun(folder);
-  ASSERT_TRUE(Export(folder, ExportFormat::kPly).ok());
+  ASSERT_TRUE(Export(folder, "ply").ok());
   const std::string ply = folder.Read("out/000016.ply");  // the fourth frame
   EXPECT_THAT(ply, HasSubstr("element vertex 4\n"));
   const std::size_t at = ply.find("end_header\n") + 11;
@@ -122,7 +122,7 @@ TEST(Export, PlyHasDisplacementsFromTheUndeformedPosition) {
 TEST(Export, TrajectoriesConnectATracksPositions) {
   const TestFolder folder;
   WriteRun(folder);
-  ASSERT_TRUE(Export(folder, ExportFormat::kTrajectories).ok());
+  ASSERT_TRUE(Export(folder, "trajectories").ok());
   const std::string ply = folder.Read("out/trajectories.ply");
   EXPECT_THAT(ply, HasSubstr("element vertex " + std::to_string(kRunObservations) + "\n"));
   EXPECT_THAT(ply, HasSubstr("element edge " + std::to_string(kRunObservations - kRunPoints) + "\n"));
@@ -145,7 +145,7 @@ TEST(Export, TrajectoriesConnectATracksPositions) {
 TEST(Export, TumIsTheRunsPath) {
   const TestFolder folder;
   WriteRun(folder);
-  ASSERT_TRUE(Export(folder, ExportFormat::kTum).ok());
+  ASSERT_TRUE(Export(folder, "tum").ok());
   const auto poses = ReadTumTrajectory(folder.Path("out/trajectory.txt"));
   ASSERT_TRUE(poses.ok());
   ASSERT_EQ(poses->size(), static_cast<std::size_t>(kRunFrames));
@@ -156,7 +156,7 @@ TEST(Export, TumIsTheRunsPath) {
 TEST(Export, Colmap4dHasATimeForEveryImageAndPoint) {
   const TestFolder folder;
   WriteRun(folder);
-  ASSERT_TRUE(Export(folder, ExportFormat::kColmap4d).ok());
+  ASSERT_TRUE(Export(folder, "colmap4d").ok());
   EXPECT_EQ(folder.Read("out/times.bin").size(), 8U + kRunFrames * 12U);
   EXPECT_EQ(folder.Read("out/points_t.bin").size(), 8U + kRunObservations * 16U);
   std::int64_t time_ns = 0;
@@ -171,7 +171,7 @@ TEST(Export, AStrideLeavesFramesOut) {
   WriteRun(folder);
   ExportOptions options;
   options.stride = 2;
-  const auto summary = Export(folder, ExportFormat::kCanonical, options);
+  const auto summary = Export(folder, "canonical", options);
   ASSERT_TRUE(summary.ok()) << summary.status().message();
   EXPECT_EQ(summary->frames, 3);
   const colmap::Model model = ReadValidModel(folder.Path("out"));
@@ -182,8 +182,8 @@ TEST(Export, AStrideLeavesFramesOut) {
 
 TEST(Export, EverySubmapHasAFolder) {
   for (const auto& [format, file] :
-       {std::pair{ExportFormat::kCanonical, "points3D.bin"}, std::pair{ExportFormat::kTum, "trajectory.txt"},
-        std::pair{ExportFormat::kPly, "000010.ply"}, std::pair{ExportFormat::kTrajectories, "trajectories.ply"}}) {
+       {std::pair{std::string("canonical"), "points3D.bin"}, std::pair{std::string("tum"), "trajectory.txt"},
+        std::pair{std::string("ply"), "000010.ply"}, std::pair{std::string("trajectories"), "trajectories.ply"}}) {
     const TestFolder folder;
     WriteRunOfTwoSubmaps(folder);
     const auto summary = Export(folder, format);
@@ -195,7 +195,7 @@ TEST(Export, EverySubmapHasAFolder) {
     EXPECT_THAT(summary->notes[0], HasSubstr("2 submaps"));
     EXPECT_TRUE(std::filesystem::exists(folder.Path("out/0/" + std::string(file)))) << file;
     EXPECT_FALSE(std::filesystem::exists(folder.Path("out/" + std::string(file)))) << file;
-    if (format != ExportFormat::kCanonical) continue;
+    if (format != "canonical") continue;
     const colmap::Model second = ReadValidModel(folder.Path("out/1"));
     ASSERT_EQ(second.images.size(), static_cast<std::size_t>(kRunFrames));
     EXPECT_EQ(second.images[0].name, "20.png");
@@ -208,7 +208,7 @@ TEST(Export, EverySubmapHasAFolder) {
 TEST(Export, ARunThatWasKilledNeedsItsSequence) {
   const TestFolder folder;
   WriteRun(folder, End::kKilled);
-  const auto summary = Export(folder, ExportFormat::kCanonical);
+  const auto summary = Export(folder, "canonical");
   EXPECT_EQ(summary.status().code(), ErrorCode::kNotFound);
   EXPECT_THAT(summary.status().message(), HasSubstr("no sparse/"));
 }
@@ -216,19 +216,28 @@ TEST(Export, ARunThatWasKilledNeedsItsSequence) {
 TEST(Export, RefusesAFolderWithAModelInAnotherFormat) {
   const TestFolder folder;
   WriteRun(folder);
-  ASSERT_TRUE(Export(folder, ExportFormat::kCanonical).ok());
+  ASSERT_TRUE(Export(folder, "canonical").ok());
   ExportOptions options;
   options.files = colmap::Format::kText;
-  EXPECT_EQ(Export(folder, ExportFormat::kSpacetime, options).status().code(), ErrorCode::kInvalidArgument);
+  EXPECT_EQ(Export(folder, "spacetime", options).status().code(), ErrorCode::kInvalidArgument);
+}
+
+TEST(Export, AnUnknownFormatIsRefusedWithTheKnownOnes) {
+  const TestFolder folder;
+  WriteRun(folder);
+  const Status status = Export(folder, "canonicle").status();
+  EXPECT_EQ(status.code(), ErrorCode::kInvalidArgument);
+  for (const ExportFormat& format : ExportFormats()) EXPECT_THAT(status.message(), HasSubstr(std::string(format.name)));
+  EXPECT_FALSE(std::filesystem::exists(folder.Path("out")));
 }
 
 TEST(Export, ARunThatIsNotThereOrTrackedNothingIsSaid) {
   const TestFolder folder;
-  EXPECT_EQ(Export(folder, ExportFormat::kTum).status().code(), ErrorCode::kNotFound);
+  EXPECT_EQ(Export(folder, "tum").status().code(), ErrorCode::kNotFound);
   auto writer = RunWriter::Create(folder.Path("run"), TestCamera(), {"0.1.0", {"pliant"}, 7, "nowhere", {}}, "", {});
   ASSERT_TRUE(writer.ok());
   ASSERT_TRUE(writer->Finish(RunStatus::kFailed, "no map").ok());
-  EXPECT_EQ(Export(folder, ExportFormat::kTum).status().code(), ErrorCode::kInsufficient);
+  EXPECT_EQ(Export(folder, "tum").status().code(), ErrorCode::kInsufficient);
 }
 
 }  // namespace

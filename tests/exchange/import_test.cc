@@ -46,7 +46,7 @@ class ImportTest : public testing::Test {
   // The run of small_run.h as COLMAP's model in `folder`/model.
   void WriteModel() {
     WriteRun(folder_);
-    ExportRequest request{folder_.Path("run"), "", ExportFormat::kCanonical, folder_.Path("model")};
+    ExportRequest request{folder_.Path("run"), "", "canonical", folder_.Path("model")};
     ASSERT_TRUE(ExportRun(request, {}).ok());
   }
   void ChangeModel(const std::function<void(colmap::Model*)>& change) {
@@ -109,7 +109,7 @@ TEST_F(ImportTest, AModelBecomesARunOfItsImagesFrames) {
 TEST_F(ImportTest, WhatWasImportedIsExportedAsTheSameModel) {
   WriteModel();
   ASSERT_TRUE(ImportModel().ok());
-  ExportRequest request{folder_.Path("out"), "", ExportFormat::kCanonical, folder_.Path("again")};
+  ExportRequest request{folder_.Path("out"), "", "canonical", folder_.Path("again")};
   ASSERT_TRUE(ExportRun(request, {}).ok());
   const auto first = colmap::ReadModel(folder_.Path("model"));
   const auto again = colmap::ReadModel(folder_.Path("again"));
@@ -199,7 +199,7 @@ TEST_F(ImportTest, AModelOfEveryImageIsTheSequencesTruth) {
     std::filesystem::create_directories(folder_.Path("images"));
     ASSERT_TRUE(cv::imwrite(folder_.Path("images/" + Report(frame).name), image));
   }
-  ExportRequest request{folder_.Path("run"), "", ExportFormat::kCanonical, folder_.Path("model")};
+  ExportRequest request{folder_.Path("run"), "", "canonical", folder_.Path("model")};
   ASSERT_TRUE(ExportRun(request, {}).ok());
   const auto summary = ImportModel({}, ImportAs::kTruth);
   ASSERT_TRUE(summary.ok()) << summary.status().message();
@@ -285,7 +285,7 @@ TEST_F(ImportTest, AnotherSystemsResultBecomesARunThatIsExported) {
   folder_.Write(
       "result/observations.csv",
       "frame,point_id,u_px,v_px,x,y,z\n1,5,319.5,239.5,0,0,50\n1,7,329.5,239.5,1,0,50\n2,5,309.5,239.5,0,0,50\n");
-  ExportRequest request{folder_.Path("result"), folder_.Path(""), ExportFormat::kCanonical, folder_.Path("model")};
+  ExportRequest request{folder_.Path("result"), folder_.Path(""), "canonical", folder_.Path("model")};
   const Status status = ExportRun(request, {}).status();
   EXPECT_EQ(status.code(), ErrorCode::kMismatch);
   EXPECT_THAT(status.message(), HasSubstr("pliant import"));

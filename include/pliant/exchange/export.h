@@ -1,26 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// A run in other programs' formats. COLMAP has no time axis for points, so a scene that deforms can be put into its
-// models in three ways, none of which is consistent with bundle adjustment:
-//   canonical   one point a track, at its undeformed position, and all images with their keypoints
-//   spacetime   one point a track and frame, with id frame * 10^6 + track, colored by time; each is seen in one image
-//   frames      a model a frame, in a folder of the frame's number: the points where they were then
-// and others, which MeshLab, evo and COLMAP itself read:
-//   ply           a file a frame: the points where they were then, with color, track id and displacement (dx dy dz)
-//   trajectories  one PLY: every point in every frame, a track's joined by edges, colored by time
-//   tum           trajectory.txt, with which evo compares
-//   colmap4d      a spacetime model and its times: times.bin, points_t.bin, time_meta.json (colmap4d 1.0)
-//   database      COLMAP's database (SQLite): tracks as keypoints and verified matches, from which COLMAP reconstructs
-// Units are the run's (map units, mm). Observations are streamed: memory grows with points and frames, not with the
-// number of observations.
+// A run in other programs' formats; ExportFormats lists them. COLMAP has no time axis for points, so a scene that
+// deforms can be put into its models in three ways (canonical, spacetime, frames), none of which is consistent with
+// bundle adjustment. Units are the run's (map units, mm). Observations are streamed: memory grows with points and
+// frames, not with the number of observations.
 #pragma once
 
-#include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "pliant/base/options.h"
@@ -29,19 +19,7 @@
 
 namespace pliant {
 
-enum class ExportFormat { kCanonical, kSpacetime, kFrames, kPly, kTrajectories, kTum, kColmap4d, kDatabase };
-
-template <>
-struct EnumNames<ExportFormat> {
-  static constexpr std::array kNames = {std::pair{ExportFormat::kCanonical, std::string_view("canonical")},
-                                        std::pair{ExportFormat::kSpacetime, std::string_view("spacetime")},
-                                        std::pair{ExportFormat::kFrames, std::string_view("frames")},
-                                        std::pair{ExportFormat::kPly, std::string_view("ply")},
-                                        std::pair{ExportFormat::kTrajectories, std::string_view("trajectories")},
-                                        std::pair{ExportFormat::kTum, std::string_view("tum")},
-                                        std::pair{ExportFormat::kColmap4d, std::string_view("colmap4d")},
-                                        std::pair{ExportFormat::kDatabase, std::string_view("database")}};
-};
+struct RunSource;
 
 struct ExportOptions {
   colmap::Format files = colmap::Format::kBinary;  // of COLMAP's models
@@ -51,13 +29,21 @@ struct ExportOptions {
   void List(OptionTable& table);  // group "Export"
 };
 
+struct ExportFormat {
+  std::string_view name;
+  std::string_view what;  // for people: what it leaves, a sentence
+  Status (*write)(const RunSource& source, const ExportOptions& options, const std::string& folder);
+};
+
+std::span<const ExportFormat> ExportFormats();
+
 struct ExportRequest {
   std::string run_path;
   // Where images' names and the camera are taken from if the run folder has no sparse/: a killed run, or another
   // program's. Empty: the images that the run was made of.
   std::string sequence_path;
-  ExportFormat format = ExportFormat::kCanonical;
-  std::string output_path;  // a folder, made if need be
+  std::string format = "canonical";  // a name of ExportFormats
+  std::string output_path;           // a folder, made if need be
 };
 
 struct ExportSummary {
@@ -68,7 +54,7 @@ struct ExportSummary {
 };
 
 // Fails with kNotFound, kUnreadable or kMismatch for what cannot be read; kInsufficient if no frame was tracked;
-// kInvalidArgument if the folder has a model in another format; kUnwritable.
+// kInvalidArgument if there is no such format or the folder has a model in another one; kUnwritable.
 Result<ExportSummary> ExportRun(const ExportRequest& request, const ExportOptions& options);
 
 }  // namespace pliant
