@@ -47,15 +47,16 @@ CASES = {
     "fisheye": ("fisheye", ""),
     "gated": ("passage", "--Init.method gated --end 90"),
     "paper": ("demo", "--preset paper"),
+    "colmap_model": ("demo", "--Init.method colmap_model --Init.model_path demo/sparse"),  # of the case above
     "window": ("passage", "--Init.method window --end 90"),
     "late_start": ("passage", "--start 30 --end 90 --Tracking.camera_motion free"),
     "laparoscopy": (RECORDINGS / "laparoscopy" / "endo.mp4", ""),
 }
 
 
-def run(command):
+def run(command, folder=None):
     print(" ".join(str(part) for part in command), flush=True)
-    subprocess.run([str(part) for part in command], check=True)
+    subprocess.run([str(part) for part in command], check=True, cwd=folder)
 
 
 def render(program, folder, name):
@@ -78,7 +79,9 @@ def rearrange(source, sequence):
 
 
 def record(arguments):
-    sequences, output = Path(arguments.sequences), Path(arguments.output_path)
+    program, sequences, output = (Path(path).resolve() for path in
+                                  (arguments.program, arguments.sequences, arguments.output_path))
+    output.mkdir(parents=True, exist_ok=True)
     wanted = arguments.cases.split(",") if arguments.cases else list(CASES)
     for name in wanted:
         source, options = CASES[name]
@@ -88,9 +91,9 @@ def record(arguments):
                 continue
             path = source
         else:
-            path = render(arguments.program, sequences, source)
-        run([arguments.program, "track", "--quiet", "--image_path", path, "--output_path", output / name,
-             "--General.timings", "none", *options.split()])
+            path = render(program, sequences, source)
+        run([program, "track", "--quiet", "--image_path", path, "--output_path", name, "--General.timings", "none",
+             *options.split()], output)
 
 
 def renamed(names, name):
