@@ -114,7 +114,7 @@ Result<SequenceCheck> CheckSequence(Sequence& sequence, const CheckOptions& opti
       }
   SequenceCheck check;
   std::map<int, PosedImage> images;
-  StereoMatches matches;
+  StereoChecker stereo;
   const int last = wanted.empty() ? (bases.empty() ? -1 : bases.back()) : *wanted.rbegin();
   for (int position = 0; position <= last; ++position) {
     auto frame = sequence.Next();
@@ -128,7 +128,7 @@ Result<SequenceCheck> CheckSequence(Sequence& sequence, const CheckOptions& opti
       const auto right = sequence.Right();
       if (!right.ok()) return right.status();
       if (right->has_value())
-        matches.Add((*frame)->image, **right, depth->value_or(cv::Mat()), sequence.camera(), *sequence.BaselineMm());
+        stereo.Add((*frame)->image, **right, depth->value_or(cv::Mat()), sequence.camera(), *sequence.BaselineMm());
     }
     const auto pose = sequence.WorldFromCamera((*frame)->frame_idx);
     if (options.poses && pose && depth->has_value())
@@ -140,8 +140,8 @@ Result<SequenceCheck> CheckSequence(Sequence& sequence, const CheckOptions& opti
       if (images.contains(base) && images.contains(other)) pairs.emplace_back(&images.at(base), &images.at(other));
   if (!pairs.empty())
     check.poses = JudgePoses(CorrelateReadings(pairs, sequence.camera(), options.max_points), pairs.size());
-  if (matches.count() > 0) {
-    check.stereo = matches.Check();
+  if (stereo.count() > 0) {
+    check.stereo = stereo.Check();
     check.stereo->enough = check.stereo->matches >= kMinMatches;
   }
   check.wrong = WhatIsWrong(check);

@@ -39,7 +39,7 @@ cv::Mat Described(const cv::Mat& gray, const std::vector<cv::Point2f>& corners) 
 
 }  // namespace
 
-void StereoMatches::Add(const cv::Mat& left, const cv::Mat& right, const cv::Mat& depth_mm, const Camera& camera,
+void StereoChecker::Add(const cv::Mat& left, const cv::Mat& right, const cv::Mat& depth_mm, const Camera& camera,
                         double baseline_mm) {
   const cv::Mat grays[] = {ToGray(left), ToGray(right)};
   const std::vector<cv::Point2f> corners[] = {CornersOf(grays[0]), CornersOf(grays[1])};
@@ -67,7 +67,7 @@ void StereoMatches::Add(const cv::Mat& left, const cv::Mat& right, const cv::Mat
   }
 }
 
-StereoCheck StereoMatches::Check() const {
+StereoCheck StereoChecker::Check() const {
   StereoCheck check;
   check.matches = static_cast<int>(count());
   check.median_row_error_px = Median(row_errors_px_);

@@ -13,7 +13,7 @@
 
 namespace pliant {
 
-class StereoMatches {
+class StereoChecker {
  public:
   // `depth_mm` may be empty.
   void Add(const cv::Mat& left, const cv::Mat& right, const cv::Mat& depth_mm, const Camera& camera,

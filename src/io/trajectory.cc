@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kLargestNormError = 1e-2;  // files with three decimals pass, a file in another order does not
 
-Status ParseNumbers(std::span<const std::string_view> fields, std::span<double> numbers) {
+Status ParseTrajectoryFields(std::span<const std::string_view> fields, std::span<double> numbers) {
   for (std::size_t i = 0; i < numbers.size(); ++i)
     if (!ParseFinite(fields[i], &numbers[i]))
       return {ErrorCode::kUnreadable, Quoted(fields[i]) + " is not a finite number"};
@@ -48,7 +48,7 @@ Result<TimedPose> ParseEurocLine(std::string_view line) {
     field = words.size() == 1 ? words.front() : std::string_view();
   }
   std::array<double, 8> v;
-  if (Status status = ParseNumbers(fields, v); !status.ok()) return status;
+  if (Status status = ParseTrajectoryFields(fields, v); !status.ok()) return status;
   return MakePose(1e-9 * v[0], {v[1], v[2], v[3]}, Eigen::Quaterniond(v[4], v[5], v[6], v[7]));
 }
 
@@ -58,7 +58,7 @@ Result<Rigid3> ParseKittiLine(std::string_view line) {
     return Status(ErrorCode::kUnreadable, "a line has 12 numbers (the matrix [R t], row by row), this one has " +
                                               std::to_string(fields.size()));
   std::array<double, 12> v;
-  if (Status status = ParseNumbers(fields, v); !status.ok()) return status;
+  if (Status status = ParseTrajectoryFields(fields, v); !status.ok()) return status;
   const Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>> matrix(v.data());
   const Eigen::Matrix3d rotation = matrix.leftCols<3>();
   const Eigen::Matrix3d error = rotation * rotation.transpose() - Eigen::Matrix3d::Identity();
@@ -109,7 +109,7 @@ Result<TimedPose> ParseTumLine(std::string_view line) {
     return Status(ErrorCode::kUnreadable, "a line has 8 numbers (timestamp tx ty tz qx qy qz qw), this one has " +
                                               std::to_string(fields.size()));
   std::array<double, 8> v;
-  if (Status status = ParseNumbers(fields, v); !status.ok()) return status;
+  if (Status status = ParseTrajectoryFields(fields, v); !status.ok()) return status;
   return MakePose(v[0], {v[1], v[2], v[3]}, Eigen::Quaterniond(v[7], v[4], v[5], v[6]));
 }
 

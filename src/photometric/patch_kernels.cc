@@ -173,7 +173,8 @@ MomentSums SumMoments(const float* x, const float* y, const float* weights, floa
   return {Sum(sw), Sum(sx), Sum(sy), Sum(sxx), Sum(syy), Sum(sxy)};
 }
 
-void FillBasis(const float* values, const float* weights, float mean, BasisKind kind, PatchShape shape, float* basis) {
+void FillPatchBasis(const float* values, const float* weights, float mean, BasisKind kind, PatchShape shape,
+                    float* basis) {
   const int lanes = static_cast<int>(hn::Lanes(F()));
   const int block = shape.size * shape.row_stride;
   const float half = 0.5F * static_cast<float>(shape.size - 1);
@@ -262,7 +263,7 @@ HWY_EXPORT(SampleAffineGrid);
 HWY_EXPORT(SolveOnGrid);
 HWY_EXPORT(SolveOnValues);
 HWY_EXPORT(SumMoments);
-HWY_EXPORT(FillBasis);
+HWY_EXPORT(FillPatchBasis);
 HWY_EXPORT(GramMatrix);
 HWY_EXPORT(CombineBlocks);
 
@@ -281,8 +282,9 @@ void SolveOnValues(const float* values, const float* solve, int blocks, PatchSha
 MomentSums SumMoments(const float* x, const float* y, const float* weights, float origin, PatchShape shape) {
   return HWY_DYNAMIC_DISPATCH(SumMoments)(x, y, weights, origin, shape);
 }
-void FillBasis(const float* values, const float* weights, float mean, BasisKind kind, PatchShape shape, float* basis) {
-  HWY_DYNAMIC_DISPATCH(FillBasis)(values, weights, mean, kind, shape, basis);
+void FillPatchBasis(const float* values, const float* weights, float mean, BasisKind kind, PatchShape shape,
+                    float* basis) {
+  HWY_DYNAMIC_DISPATCH(FillPatchBasis)(values, weights, mean, kind, shape, basis);
 }
 void GramMatrix(const float* basis, int blocks, PatchShape shape, float* gram) {
   HWY_DYNAMIC_DISPATCH(GramMatrix)(basis, blocks, shape, gram);

@@ -47,7 +47,8 @@ MomentSums SumMoments(const float* x, const float* y, const float* weights, floa
 // Translation: gx, gy, values, 1, u, v, where u and v go from -1 to 1 over the patch. Affine: gx, gy, u gx, v gx, u gy,
 // v gy, values, 1, u, v. All times `weights` where not null.
 enum class BasisKind { kTranslation, kAffine };
-void FillBasis(const float* values, const float* weights, float mean, BasisKind kind, PatchShape shape, float* basis);
+void FillPatchBasis(const float* values, const float* weights, float mean, BasisKind kind, PatchShape shape,
+                    float* basis);
 
 // gram[i * blocks + j] = sum of block i times block j.
 void GramMatrix(const float* basis, int blocks, PatchShape shape, float* gram);

@@ -49,7 +49,7 @@ PatchFailure SolvePatch(const float* values, const float* weights, BasisKind kin
   std::array<float, kMaxBlocks * kMaxBlocks> gram;
   const float* center = values + shape.row_stride + 1;
   const float gray = center[shape.half() * shape.row_stride + shape.half()];
-  FillBasis(values, weights, gray, kind, shape, basis.data());
+  FillPatchBasis(values, weights, gray, kind, shape, basis.data());
   GramMatrix(basis.data(), blocks, shape, gram.data());
 
   std::array<double, kMaxBlocks * kMaxBlocks> inverse;

@@ -126,7 +126,7 @@ TEST(PatchKernels, FillBasisTakesCentralDifferencesAndLeavesPaddingZero) {
   SampleGrid(View(), 20, 20, kShape.size + 2, kShape, values.data());
   ForEveryTarget([&] {
     std::vector<float> basis(static_cast<std::size_t>(10 * kBlock), 7.0F);
-    FillBasis(values.data(), nullptr, 100, BasisKind::kAffine, kShape, basis.data());
+    FillPatchBasis(values.data(), nullptr, 100, BasisKind::kAffine, kShape, basis.data());
     const auto at = [&](int block, int r, int c) {
       return basis[static_cast<std::size_t>(block * kBlock + r * kShape.row_stride + c)];
     };

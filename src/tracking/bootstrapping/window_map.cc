@@ -123,8 +123,8 @@ Status OptimizeAllViews(const InitInput& input, const SolvedWindow& window, cons
   return Status::Ok();
 }
 
-// The points that are seen in enough frames to join those of the map, sorted.
-std::vector<PointId> PointsToJoin(const InitInput& input, const MapPoints& points, double min_frame_share) {
+// The points seen in enough frames to be added to those of the map, sorted.
+std::vector<PointId> WindowPointsToAdd(const InitInput& input, const MapPoints& points, double min_frame_share) {
   std::map<PointId, int> seen;
   for (const InitFrame& frame : input.frames)
     for (const InitObservation& observation : frame.observations) ++seen[observation.id];
@@ -140,17 +140,17 @@ std::vector<PointId> PointsToJoin(const InitInput& input, const MapPoints& point
 Status OptimizePoints(const InitInput& input, const MapDemands& demands, const WindowInitOptions& options,
                       MapPoints* points, std::vector<InitRejectedPoint>* rejected) {
   const double focal_px = input.camera.MeanFocalLengthPx();
-  const std::vector<PointId> joining = PointsToJoin(input, *points, options.min_frame_share);
+  const std::vector<PointId> added = WindowPointsToAdd(input, *points, options.min_frame_share);
   std::vector<DeformingObservation> observations;
   for (std::size_t k = 0; k < input.frames.size(); ++k) {
-    const auto seen = SeenIn(input, input.frames[k], joining, static_cast<int>(k), options);
+    const auto seen = SeenIn(input, input.frames[k], added, static_cast<int>(k), options);
     observations.insert(observations.end(), seen.begin(), seen.end());
   }
-  auto optimized = OptimizeDeformingPoints(points->solution, observations, static_cast<int>(joining.size()), focal_px,
+  auto optimized = OptimizeDeformingPoints(points->solution, observations, static_cast<int>(added.size()), focal_px,
                                            options.window, input.threads);
   if (!optimized.ok()) return optimized.status();
   MapPoints all{points->ids, {}, std::move(*optimized)};
-  all.ids.insert(all.ids.end(), joining.begin(), joining.end());
+  all.ids.insert(all.ids.end(), added.begin(), added.end());
   all.depth_sigmas = DepthSigmas(all.solution);
   const std::vector<double> errors_px = PointErrorsPx(all.solution.window, focal_px);
   double max_error_px = options.max_error_px;
