@@ -60,13 +60,13 @@ std::vector<FrameReport> FramesBefore::Pass(std::vector<FrameReport> reports) {
 std::vector<FrameReport> FramesBefore::Finish() { return std::exchange(waiting_, {}); }
 
 // Frames `first` to `last` of the source, prepared; nothing when one of them cannot be read.
-std::vector<TrackerFrame> FramesBefore::Read(int first, int last, std::size_t count) const {
+std::vector<PreparedFrame> FramesBefore::Read(int first, int last, std::size_t count) const {
   SequenceRequest request = input_;
   request.start = first;
   request.end = last + 1;
   const auto sequence = OpenSequence(request);
   if (!sequence.ok()) return {};
-  std::vector<TrackerFrame> frames;
+  std::vector<PreparedFrame> frames;
   while (frames.size() < count) {
     const auto next = (*sequence)->Next();
     if (!next.ok() || !next->has_value()) return {};
@@ -79,7 +79,7 @@ std::vector<TrackerFrame> FramesBefore::Read(int first, int last, std::size_t co
 
 // An image that cannot be read, or a map that is lost on the way, leaves the frames before it as they are.
 void FramesBefore::TrackBack(const FrameReport& reference) {
-  const std::vector<TrackerFrame> at_reference = Read(reference.frame_idx, reference.frame_idx, 1);
+  const std::vector<PreparedFrame> at_reference = Read(reference.frame_idx, reference.frame_idx, 1);
   if (at_reference.empty()) return;
   Tracker tracker(camera_, options_.tracker, 0, options_.threads);
   tracker.TakeMap(at_reference.front(), reference);

@@ -30,7 +30,7 @@ class FramesBefore {
   std::vector<FrameReport> Finish();
 
  private:
-  std::vector<TrackerFrame> Read(int first, int last, std::size_t count) const;
+  std::vector<PreparedFrame> Read(int first, int last, std::size_t count) const;
   void TrackBack(const FrameReport& reference);
   void MoveNewPoints(FrameReport* reference);
 

@@ -25,7 +25,7 @@ namespace {
 constexpr int kFramesAhead = 3;
 
 struct ReadFrame {
-  TrackerFrame frame;
+  PreparedFrame frame;
   Status depth;  // of reading its depth image, or its right one; matters only while the tracker wants depth
 };
 
@@ -79,7 +79,7 @@ class Recorder {
   Status Record(std::vector<FrameReport> reports) { return Write(before_.Pass(std::move(reports))); }
   // No map comes any more.
   Status Finish() { return Write(before_.Finish()); }
-  void Show(const TrackerFrame& frame) {
+  void Show(const PreparedFrame& frame) {
     for (TrackObserver* observer : observers_) observer->OnImage(frame.frame_idx, frame.image);
   }
   void Announce(const FrameReport& held) {

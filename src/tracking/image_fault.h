@@ -8,7 +8,7 @@
 
 #include <opencv2/core/mat.hpp>
 
-#include "pliant/tracking/tracker_frame.h"
+#include "pliant/tracking/prepared_frame.h"
 
 namespace pliant {
 
@@ -16,7 +16,7 @@ namespace pliant {
 std::string Blankness(const cv::Mat& gray);
 
 // What is wrong with an image in which nothing can be followed; empty when nothing is.
-std::string ImageFault(const TrackerFrame& frame, const TrackerFrame& previous);
+std::string ImageFault(const PreparedFrame& frame, const PreparedFrame& previous);
 
 // "note; fault", or the one that is not empty.
 std::string WithFault(const std::string& note, const std::string& fault);

@@ -52,7 +52,7 @@ std::unique_ptr<Initializer> MakeFirstInitializer(const TrackerOptions& options,
 }
 
 // The report of a frame in this state, made of its result and of the submap as it is in the end.
-FrameReport MakeReport(const TrackerFrame& frame, TrackingState state, const Submap& submap, const FrameResult& result,
+FrameReport MakeReport(const PreparedFrame& frame, TrackingState state, const Submap& submap, const FrameResult& result,
                        const StageTimes& times) {
   FrameReport report;
   report.frame_idx = frame.frame_idx;
@@ -126,7 +126,7 @@ bool Tracker::LeavesMap() const { return submaps_->current().lost_frames >= opti
 
 bool Tracker::GaveUp() const { return LeavesMap() && options_.submaps == Switch::kOff; }
 
-void Tracker::TakeMap(const TrackerFrame& frame, const FrameReport& report) {
+void Tracker::TakeMap(const PreparedFrame& frame, const FrameReport& report) {
   Submap& submap = submaps_->current();
   for (const PointObservation& seen : report.observations) {
     if (!tracks_->Resume(seen.id, seen.pixel, frame)) continue;
@@ -143,7 +143,7 @@ void Tracker::TakeMap(const TrackerFrame& frame, const FrameReport& report) {
   Apply(TrackingEvent::kMapCreated);
 }
 
-std::vector<FrameReport> Tracker::Process(const TrackerFrame& frame) {
+std::vector<FrameReport> Tracker::Process(const PreparedFrame& frame) {
   StageTimes times;
   times.Add(Stage::kPrepare, frame.prepare_ms);
   if (LeavesMap() && options_.submaps == Switch::kOn) {
@@ -165,7 +165,7 @@ std::vector<FrameReport> Tracker::Process(const TrackerFrame& frame) {
 
 // While the current map is lost, or another one awaited, those that were left are searched. What there is of one that
 // is awaited is dropped.
-void Tracker::FindSubmapAgain(const TrackerFrame& frame) {
+void Tracker::FindSubmapAgain(const PreparedFrame& frame) {
   if (state_ == TrackingState::kTracking || frame.frame_idx % options_.relocalization.search_every != 0) return;
   const auto former = state_ == TrackingState::kLost ? Submaps::Former::kInactive : Submaps::Former::kDropped;
   if (!submaps_->FindAgain(frame, former, relocalizer_.get())) return;
@@ -173,7 +173,7 @@ void Tracker::FindSubmapAgain(const TrackerFrame& frame) {
   Apply(TrackingEvent::kMapFoundAgain);
 }
 
-FrameResult Tracker::Bootstrap(const TrackerFrame& frame, StageTimes* times) {
+FrameResult Tracker::Bootstrap(const PreparedFrame& frame, StageTimes* times) {
   BootstrapStep step = bootstrapper_->Process(frame, &submaps_->current(), times);
   for (const TrackingEvent event : step.events) Apply(event);
   if (step.map) StartMap(*step.map);
@@ -189,7 +189,7 @@ void Tracker::StartMap(const FirstMap& first) {
 }
 
 // One frame, as in the paper; the names in brackets are those of docs/method.md.
-FrameResult Tracker::TrackFrame(const TrackerFrame& frame, StageTimes* times) {
+FrameResult Tracker::TrackFrame(const PreparedFrame& frame, StageTimes* times) {
   Submap& submap = submaps_->current();
   FollowedPoints followed = Follow(frame, &submap, times);  // (E6), (P1); after a loss (R3)
   const SolvedFrame solved =
@@ -217,7 +217,7 @@ FrameResult Tracker::TrackFrame(const TrackerFrame& frame, StageTimes* times) {
   return result;
 }
 
-FollowedPoints Tracker::Follow(const TrackerFrame& frame, Submap* submap, StageTimes* times) {
+FollowedPoints Tracker::Follow(const PreparedFrame& frame, Submap* submap, StageTimes* times) {
   const StageTimer timer(times, Stage::kPhotometric);
   if (state_ == TrackingState::kTracking || frame_tracker_->KnownPose(frame.frame_idx, *submap))
     return frame_tracker_->Follow(frame, *submap);
@@ -225,7 +225,7 @@ FollowedPoints Tracker::Follow(const TrackerFrame& frame, Submap* submap, StageT
 }
 
 // Nothing is given up: the map and the tracks stay as they were in the last good frame. Returns the frame's note.
-std::string Tracker::Lose(const TrackerFrame& frame, const std::string& reason, Submap* submap) {
+std::string Tracker::Lose(const PreparedFrame& frame, const std::string& reason, Submap* submap) {
   if (state_ == TrackingState::kTracking) relocalizer_->RememberLastView(submap);
   Apply(TrackingEvent::kTooFewPoints);
   const std::string fault = ImageFault(frame, submap->previous);
@@ -234,7 +234,7 @@ std::string Tracker::Lose(const TrackerFrame& frame, const std::string& reason, 
 }
 
 // The frame's report joins those that are held. Submaps that meet in this frame become one after it was reported.
-void Tracker::Report(const TrackerFrame& frame, const FrameResult& result, StageTimes* times) {
+void Tracker::Report(const PreparedFrame& frame, const FrameResult& result, StageTimes* times) {
   std::optional<Submaps::FoundMerge> found;
   if (state_ == TrackingState::kTracking) {
     const StageTimer timer(times, Stage::kInitialize);

@@ -61,7 +61,7 @@ class LossOfTheView : public tracking_test::TrackerFromImages {
     };
     for (std::size_t i = 0; i < images.size(); ++i) {
       const int idx = static_cast<int>(i);
-      TrackerFrame frame = PrepareFrame(idx, NameOf(idx), idx / 30.0, images[i], {}, options);
+      PreparedFrame frame = PrepareFrame(idx, NameOf(idx), idx / 30.0, images[i], {}, options);
       frame.depth_mm = *depth_;
       take(tracker.Process(frame));
     }
@@ -225,7 +225,7 @@ class MapsThatMeet : public LossOfTheView {
     std::vector<FrameReport> reports;
     for (std::size_t i = 0; i < images.size(); ++i) {
       const int idx = static_cast<int>(i);
-      TrackerFrame frame =
+      PreparedFrame frame =
           PrepareFrame(idx, NameOf(idx), idx / 30.0, images[i] < 0 ? Noise(idx) : Image(images[i]), {}, options);
       frame.depth_mm = idx > kElsewhere ? cv::Mat(*depth_ * 2) : *depth_;
       for (FrameReport& report : tracker.Process(frame)) reports.push_back(std::move(report));
@@ -341,7 +341,7 @@ TEST_F(LossOfTheView, OnlyFramesThatShowSomethingEndTheRun) {
   options.submaps = Switch::kOff;
   Tracker tracker = MakeTracker(options);
   const auto show = [&](const cv::Mat& image) {
-    TrackerFrame frame = PrepareFrame(0, NameOf(0), 0, image, {}, options);
+    PreparedFrame frame = PrepareFrame(0, NameOf(0), 0, image, {}, options);
     frame.depth_mm = *depth_;
     tracker.Process(frame);
   };

@@ -60,7 +60,8 @@ class TrackerFromImages : public testing::Test {
     for (int i = 0; i < kFrames; ++i) {
       cv::Mat mask(images_->front().size(), CV_8UC1, cv::Scalar(255));
       hide(i, mask);
-      TrackerFrame frame = PrepareFrame(i, NameOf(i), i / 30.0, (*images_)[static_cast<std::size_t>(i)], mask, options);
+      PreparedFrame frame =
+          PrepareFrame(i, NameOf(i), i / 30.0, (*images_)[static_cast<std::size_t>(i)], mask, options);
       frame.depth_mm = *depth_;
       for (FrameReport& report : tracker.Process(frame)) reports.push_back(std::move(report));
     }

@@ -304,7 +304,7 @@ TEST_F(TrackerFromImages, AReestimatedMapRejectsReprojectionOutliers) {
     cv::Mat moved;
     cv::warpAffine(image, moved, cv::Matx23d(1, 0, std::sin(0.8 * i), 0, 1, 0), image.size());
     moved(stain).copyTo(image(stain));
-    TrackerFrame frame = PrepareFrame(i, NameOf(i), i / 30.0, image, {}, options);
+    PreparedFrame frame = PrepareFrame(i, NameOf(i), i / 30.0, image, {}, options);
     frame.depth_mm = *depth_;
     for (FrameReport& report : tracker.Process(frame)) reports.push_back(std::move(report));
   }

@@ -18,8 +18,8 @@
 #include "pliant/camera/photometric_calibration.h"
 #include "pliant/scene/frame_report.h"
 #include "pliant/scene/map.h"
+#include "pliant/tracking/prepared_frame.h"
 #include "pliant/tracking/state.h"
-#include "pliant/tracking/tracker_frame.h"
 #include "pliant/tracking/tracker_options.h"
 #include "pliant/tracking/tracks/oracle.h"
 
@@ -56,10 +56,10 @@ class Tracker {
   // Begins with the map that was reported in this frame, instead of a first map of its own: the points that are
   // observed there, at rest where they are new. To be called before any Process; the frames that follow may come in any
   // order of time.
-  void TakeMap(const TrackerFrame& frame, const FrameReport& report);
+  void TakeMap(const PreparedFrame& frame, const FrameReport& report);
 
   // The reports that became final with this frame, in order of time; each frame is reported once.
-  std::vector<FrameReport> Process(const TrackerFrame& frame);
+  std::vector<FrameReport> Process(const PreparedFrame& frame);
   // The reports that are held back, in order of time, the last processed frame's last: those since the reference while
   // there is no map, else none. So far they are in state initializing.
   const std::vector<FrameReport>& held() const { return held_; }
@@ -84,13 +84,13 @@ class Tracker {
  private:
   void Apply(TrackingEvent event) { state_ = NextState(state_, event); }
   bool LeavesMap() const;
-  void FindSubmapAgain(const TrackerFrame& frame);
-  FrameResult Bootstrap(const TrackerFrame& frame, StageTimes* times);
+  void FindSubmapAgain(const PreparedFrame& frame);
+  FrameResult Bootstrap(const PreparedFrame& frame, StageTimes* times);
   void StartMap(const FirstMap& first);
-  FrameResult TrackFrame(const TrackerFrame& frame, StageTimes* times);
-  FollowedPoints Follow(const TrackerFrame& frame, Submap* submap, StageTimes* times);
-  std::string Lose(const TrackerFrame& frame, const std::string& reason, Submap* submap);
-  void Report(const TrackerFrame& frame, const FrameResult& result, StageTimes* times);
+  FrameResult TrackFrame(const PreparedFrame& frame, StageTimes* times);
+  FollowedPoints Follow(const PreparedFrame& frame, Submap* submap, StageTimes* times);
+  std::string Lose(const PreparedFrame& frame, const std::string& reason, Submap* submap);
+  void Report(const PreparedFrame& frame, const FrameResult& result, StageTimes* times);
 
   TrackerOptions options_;
   std::unique_ptr<OraclePoses> oracle_poses_;

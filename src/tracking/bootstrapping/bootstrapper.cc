@@ -22,7 +22,7 @@ Bootstrapper::Bootstrapper(const Camera& camera, const TrackerOptions& options, 
       oracle_poses_(oracle_poses),
       initializer_(std::move(initializer)) {}
 
-BootstrapStep Bootstrapper::Process(const TrackerFrame& frame, Submap* submap, StageTimes* times) {
+BootstrapStep Bootstrapper::Process(const PreparedFrame& frame, Submap* submap, StageTimes* times) {
   assert(submap->map.landmarks.empty());
   if (!HasReference()) return TakeReference(frame, submap, times);
   if (options_.track_blurred == Switch::kOn && submap->IsBlurred(frame, options_)) {
@@ -35,7 +35,7 @@ BootstrapStep Bootstrapper::Process(const TrackerFrame& frame, Submap* submap, S
   return FollowReference(frame, submap, times);
 }
 
-BootstrapStep Bootstrapper::TakeReference(const TrackerFrame& frame, Submap* submap, StageTimes* times) {
+BootstrapStep Bootstrapper::TakeReference(const PreparedFrame& frame, Submap* submap, StageTimes* times) {
   Abandon();
   BootstrapStep step;
   {
@@ -67,7 +67,7 @@ BootstrapStep Bootstrapper::TakeReference(const TrackerFrame& frame, Submap* sub
   return step;
 }
 
-BootstrapStep Bootstrapper::FollowReference(const TrackerFrame& frame, Submap* submap, StageTimes* times) {
+BootstrapStep Bootstrapper::FollowReference(const PreparedFrame& frame, Submap* submap, StageTimes* times) {
   BootstrapStep step;
   {
     const StageTimer timer(times, Stage::kPhotometric);
@@ -90,7 +90,7 @@ BootstrapStep Bootstrapper::FollowReference(const TrackerFrame& frame, Submap* s
 }
 
 // Asks the initializer. Afterwards there is a map in the step, or it waits and the reference stays, or there is none.
-void Bootstrapper::TryInitialize(const TrackerFrame& frame, StageTimes* times, BootstrapStep* step) {
+void Bootstrapper::TryInitialize(const PreparedFrame& frame, StageTimes* times, BootstrapStep* step) {
   InitOutcome outcome = AskInitializer(frame.depth_mm, InitMoment::kMoreFollow, times);
   step->note = outcome.reason;
   switch (outcome.decision) {
@@ -156,7 +156,7 @@ std::vector<PointPrediction> Bootstrapper::PredictPixels(int frame_idx) const {
 }
 
 // Adds corners away from the points that are there.
-void Bootstrapper::AddCorners(const TrackerFrame& frame, const LocalBrightness& brightness, int max_corners,
+void Bootstrapper::AddCorners(const PreparedFrame& frame, const LocalBrightness& brightness, int max_corners,
                               InitFrame* points) {
   if (max_corners <= 0) return;
   const std::vector<Eigen::Vector2d> existing = PixelsOf(points->observations);
@@ -168,7 +168,7 @@ void Bootstrapper::AddCorners(const TrackerFrame& frame, const LocalBrightness& 
           {*id, corner.pixel, 1.0, brightness.At(corner.pixel), ColorAt(frame.image, corner.pixel)});
 }
 
-void Bootstrapper::AddKnownPoints(const TrackerFrame& frame, const LocalBrightness& brightness, InitFrame* points) {
+void Bootstrapper::AddKnownPoints(const PreparedFrame& frame, const LocalBrightness& brightness, InitFrame* points) {
   if (!frame.known_points) return;
   for (const PixelDepth& known : frame.known_points()) {
     if (static_cast<int>(points->observations.size()) == options_.corners.max_corners) break;
@@ -181,7 +181,7 @@ void Bootstrapper::AddKnownPoints(const TrackerFrame& frame, const LocalBrightne
 }
 
 // The reference's points in this frame, with corners where there are none every Nth frame.
-InitFrame Bootstrapper::FollowedFrame(const TrackerFrame& frame, const Submap& submap, LossCounts* losses) {
+InitFrame Bootstrapper::FollowedFrame(const PreparedFrame& frame, const Submap& submap, LossCounts* losses) {
   InitFrame followed{frame.frame_idx, {}};
   const LocalBrightness brightness(frame.image, frame.mask.valid());
   std::vector<PointId> kept;

@@ -42,7 +42,7 @@ class Bootstrapper {
                std::unique_ptr<Initializer> initializer);
 
   // The next frame; `submap` has no landmarks yet.
-  BootstrapStep Process(const TrackerFrame& frame, Submap* submap, StageTimes* times);
+  BootstrapStep Process(const PreparedFrame& frame, Submap* submap, StageTimes* times);
   // No frame will follow: a last attempt with those that were processed since the reference, of which there has to be
   // one.
   BootstrapStep EndSequence(StageTimes* times);
@@ -58,15 +58,15 @@ class Bootstrapper {
   int reference_frame_idx() const { return frames_.front().frame_idx; }
 
  private:
-  BootstrapStep TakeReference(const TrackerFrame& frame, Submap* submap, StageTimes* times);
-  BootstrapStep FollowReference(const TrackerFrame& frame, Submap* submap, StageTimes* times);
-  void TryInitialize(const TrackerFrame& frame, StageTimes* times, BootstrapStep* step);
+  BootstrapStep TakeReference(const PreparedFrame& frame, Submap* submap, StageTimes* times);
+  BootstrapStep FollowReference(const PreparedFrame& frame, Submap* submap, StageTimes* times);
+  void TryInitialize(const PreparedFrame& frame, StageTimes* times, BootstrapStep* step);
   InitOutcome AskInitializer(const cv::Mat& depth_mm, InitMoment moment, StageTimes* times);
   void FinishMap(InitOutcome outcome, BootstrapStep* step);
   std::vector<PointPrediction> PredictPixels(int frame_idx) const;
-  void AddCorners(const TrackerFrame& frame, const LocalBrightness& brightness, int max_corners, InitFrame* points);
-  void AddKnownPoints(const TrackerFrame& frame, const LocalBrightness& brightness, InitFrame* points);
-  InitFrame FollowedFrame(const TrackerFrame& frame, const Submap& submap, LossCounts* losses);
+  void AddCorners(const PreparedFrame& frame, const LocalBrightness& brightness, int max_corners, InitFrame* points);
+  void AddKnownPoints(const PreparedFrame& frame, const LocalBrightness& brightness, InitFrame* points);
+  InitFrame FollowedFrame(const PreparedFrame& frame, const Submap& submap, LossCounts* losses);
 
   Camera camera_;
   TrackerOptions options_;

@@ -9,8 +9,8 @@
 namespace pliant {
 
 // The names in brackets are those of docs/method.md.
-SolvedFrame FrameTracker::Solve(const TrackerFrame& frame, TrackingState state, FollowedPoints followed, Submap* submap,
-                                StageTimes* times) const {
+SolvedFrame FrameTracker::Solve(const PreparedFrame& frame, TrackingState state, FollowedPoints followed,
+                                Submap* submap, StageTimes* times) const {
   SolvedFrame solved{.tracked = static_cast<int>(followed.size())};
   if (solved.tracked < options_.min_points) {
     solved.failure = TooFewPoints(solved.tracked, *submap);
@@ -72,12 +72,12 @@ std::vector<PointPrediction> FrameTracker::PredictPixels(const Submap& submap, c
 }
 
 // Against the last sharp image. Of many such images in a row the later ones are taken as they are: the blur stays.
-bool FrameTracker::IsBlurred(const TrackerFrame& frame, const Submap& submap) const {
+bool FrameTracker::IsBlurred(const PreparedFrame& frame, const Submap& submap) const {
   return options_.track_blurred == Switch::kOn && tracks_->abilities().tracks_blurred &&
          submap.IsBlurred(frame, options_);
 }
 
-FollowedPoints FrameTracker::Follow(const TrackerFrame& frame, const Submap& submap,
+FollowedPoints FrameTracker::Follow(const PreparedFrame& frame, const Submap& submap,
                                     const Rigid3& cam_from_world) const {
   FollowedPoints followed;
   followed.cam_from_world = cam_from_world;
@@ -99,14 +99,14 @@ FollowedPoints FrameTracker::Follow(const TrackerFrame& frame, const Submap& sub
   return followed;
 }
 
-FollowedPoints FrameTracker::Follow(const TrackerFrame& frame, const Submap& submap) const {
+FollowedPoints FrameTracker::Follow(const PreparedFrame& frame, const Submap& submap) const {
   const auto known = KnownPose(frame.frame_idx, submap);
   return Follow(
       frame, submap,
       known ? *known : PredictCameraPose(submap.before_last_cam_from_world, submap.last_cam_from_world));  // (E6)
 }
 
-void FrameTracker::FindLost(const TrackerFrame& frame, const Rigid3& cam_from_world, Submap* submap,
+void FrameTracker::FindLost(const PreparedFrame& frame, const Rigid3& cam_from_world, Submap* submap,
                             FollowedPoints* followed) const {
   if (!tracks_->abilities().finds_points) return;
   const std::vector<PointPrediction> expected =

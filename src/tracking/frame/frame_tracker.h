@@ -41,19 +41,19 @@ class FrameTracker {
 
   // The landmarks, followed from where they are expected by a camera at this pose (P1). The other overload predicts the
   // pose itself (E6).
-  FollowedPoints Follow(const TrackerFrame& frame, const Submap& submap, const Rigid3& cam_from_world) const;
-  FollowedPoints Follow(const TrackerFrame& frame, const Submap& submap) const;
+  FollowedPoints Follow(const PreparedFrame& frame, const Submap& submap, const Rigid3& cam_from_world) const;
+  FollowedPoints Follow(const PreparedFrame& frame, const Submap& submap) const;
   // Adds lost points that are where they are expected (R2). They take part in the frame's problem like the others.
-  void FindLost(const TrackerFrame& frame, const Rigid3& cam_from_world, Submap* submap,
+  void FindLost(const PreparedFrame& frame, const Rigid3& cam_from_world, Submap* submap,
                 FollowedPoints* followed) const;
 
   // The frame's pose and displacements from the points that were followed into it. `state`: before this frame.
-  SolvedFrame Solve(const TrackerFrame& frame, TrackingState state, FollowedPoints followed, Submap* submap,
+  SolvedFrame Solve(const PreparedFrame& frame, TrackingState state, FollowedPoints followed, Submap* submap,
                     StageTimes* times) const;
 
  private:
   std::vector<PointPrediction> PredictPixels(const Submap& submap, const Rigid3& cam_from_world) const;
-  bool IsBlurred(const TrackerFrame& frame, const Submap& submap) const;
+  bool IsBlurred(const PreparedFrame& frame, const Submap& submap) const;
   Rigid3 EstimatePose(const FollowedPoints& followed, StageTimes* times) const;
   DeformationGraph BuildGraph(const FollowedPoints& followed, StageTimes* times) const;
   void RejectNeighborOutliers(const Rigid3& cam_from_world, const DeformationGraph& graph,

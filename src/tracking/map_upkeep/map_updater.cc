@@ -73,7 +73,7 @@ void MapUpdater::RemoveCommonMotion(Submap* submap) const {
     submap->MoveAllButRest(CommonMotionToRest(submap->map, options_.common_motion_share));
 }
 
-MapUpdate MapUpdater::Update(const TrackerFrame& frame, Submap* submap, StageTimes* times) const {
+MapUpdate MapUpdater::Update(const PreparedFrame& frame, Submap* submap, StageTimes* times) const {
   MapUpdate update;
   if (!submap->rigid_history.empty()) {
     const StageTimer timer(times, Stage::kInitialize);
@@ -108,7 +108,7 @@ void MapUpdater::RefineRigid(int frame_idx, Submap* submap, MapUpdate* update) c
 }
 
 // Candidates are followed with the pose and the deformation that the map has given; those that are certain enter it.
-void MapUpdater::Grow(const TrackerFrame& frame, Submap* submap, StageTimes* times, MapUpdate* update) const {
+void MapUpdater::Grow(const PreparedFrame& frame, Submap* submap, StageTimes* times, MapUpdate* update) const {
   {
     const StageTimer timer(times, Stage::kPhotometric);
     FollowCandidates(frame, submap);
@@ -125,7 +125,7 @@ void MapUpdater::Grow(const TrackerFrame& frame, Submap* submap, StageTimes* tim
     AddCandidates(frame, submap);
 }
 
-void MapUpdater::FollowCandidates(const TrackerFrame& frame, Submap* submap) const {
+void MapUpdater::FollowCandidates(const PreparedFrame& frame, Submap* submap) const {
   const std::vector<PointPrediction> predictions = submap->candidates.Predict(submap->last_cam_from_world);
   std::vector<PointId> seen;
   for (const PointTrack& track : tracks_->Track(submap->previous, frame, predictions)) {
@@ -141,7 +141,7 @@ void MapUpdater::FollowCandidates(const TrackerFrame& frame, Submap* submap) con
 }
 
 // Corners where there is neither a point of the map, nor a candidate, nor a lost point.
-void MapUpdater::AddCandidates(const TrackerFrame& frame, Submap* submap) const {
+void MapUpdater::AddCandidates(const PreparedFrame& frame, Submap* submap) const {
   const auto wanted =
       options_.corners.max_corners - static_cast<int>(submap->map.landmarks.size() + submap->candidates.size());
   if (wanted <= 0) return;
@@ -168,7 +168,7 @@ void MapUpdater::Promote(PointId id, const Eigen::Vector3d& position, Submap* su
 }
 
 // The pixels of this frame, for the next re-estimation.
-void MapUpdater::RememberWindow(const TrackerFrame& frame, Submap* submap) const {
+void MapUpdater::RememberWindow(const PreparedFrame& frame, Submap* submap) const {
   const LocalBrightness brightness(frame.image, frame.mask.valid());
   InitFrame seen{frame.frame_idx, {}};
   for (const Landmark& landmark : submap->map.landmarks)

@@ -42,7 +42,7 @@ class MapUpdater {
   // What all points have done together since rest is given to the camera, a share in each frame (E12).
   void RemoveCommonMotion(Submap* submap) const;
   // After a sharp frame was committed.
-  MapUpdate Update(const TrackerFrame& frame, Submap* submap, StageTimes* times) const;
+  MapUpdate Update(const PreparedFrame& frame, Submap* submap, StageTimes* times) const;
 
  private:
   bool GrowsMap() const;
@@ -50,12 +50,12 @@ class MapUpdater {
   InitOutcome Reestimate(const std::vector<InitFrame>& frames, WindowScene scene) const;
 
   void RefineRigid(int frame_idx, Submap* submap, MapUpdate* update) const;
-  void Grow(const TrackerFrame& frame, Submap* submap, StageTimes* times, MapUpdate* update) const;
-  void FollowCandidates(const TrackerFrame& frame, Submap* submap) const;
-  void AddCandidates(const TrackerFrame& frame, Submap* submap) const;
+  void Grow(const PreparedFrame& frame, Submap* submap, StageTimes* times, MapUpdate* update) const;
+  void FollowCandidates(const PreparedFrame& frame, Submap* submap) const;
+  void AddCandidates(const PreparedFrame& frame, Submap* submap) const;
   void Promote(PointId id, const Eigen::Vector3d& position, Submap* submap, MapUpdate* update) const;
 
-  void RememberWindow(const TrackerFrame& frame, Submap* submap) const;
+  void RememberWindow(const PreparedFrame& frame, Submap* submap) const;
   bool IsReestimationDue(int frame_idx, const Submap& submap) const;
   void ReestimateAny(Submap* submap, MapUpdate* update) const;
 

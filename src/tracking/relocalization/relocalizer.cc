@@ -19,7 +19,7 @@ Rigid3 Repeated(const Rigid3& motion, double count) {
 
 }  // namespace
 
-void Relocalizer::Remember(const TrackerFrame& frame, Submap* submap) const {
+void Relocalizer::Remember(const PreparedFrame& frame, Submap* submap) const {
   const auto length = static_cast<std::size_t>(options_.relocalization.velocity_frames) + 1;
   auto& poses = submap->recent_poses;
   if (!poses.empty() && poses.back().first + 1 != frame.frame_idx) poses.clear();
@@ -52,7 +52,7 @@ std::vector<Rigid3> Relocalizer::GuessPoses(int frame_idx, const Submap& submap)
 
 // The points that are found from a guess, when enough of those that it should see agree; else none. Their pose is the
 // one on which they agree.
-FollowedPoints Relocalizer::FollowFrom(const TrackerFrame& frame, const Rigid3& guess, Submap* submap) const {
+FollowedPoints Relocalizer::FollowFrom(const PreparedFrame& frame, const Rigid3& guess, Submap* submap) const {
   FollowedPoints followed = frame_tracker_->Follow(frame, *submap, guess);
   if (options_.relocalization.relocalize == Switch::kOff) return followed;
   const auto improve = [&] {
@@ -81,7 +81,7 @@ bool Relocalizer::IsConfirmed(const FollowedPoints& followed) const {
          static_cast<double>(agree) >= options_.relocalization.min_share * static_cast<double>(followed.expected);
 }
 
-const DescribedImage& Relocalizer::Described(const TrackerFrame& frame) {
+const DescribedImage& Relocalizer::Described(const PreparedFrame& frame) {
   if (described_frame_idx_ != frame.frame_idx) {
     described_ = Describe(frame.gray, frame.mask, options_.corners, options_.relocalization);
     described_frame_idx_ = frame.frame_idx;
@@ -89,7 +89,7 @@ const DescribedImage& Relocalizer::Described(const TrackerFrame& frame) {
   return described_;
 }
 
-FollowedPoints Relocalizer::Relocalize(const TrackerFrame& frame, Submap* submap) {
+FollowedPoints Relocalizer::Relocalize(const PreparedFrame& frame, Submap* submap) {
   if (!Blankness(frame.gray).empty()) return {};
   for (const Rigid3& guess : GuessPoses(frame.frame_idx, *submap))
     if (FollowedPoints followed = FollowFrom(frame, guess, submap); followed.size() > 0) return followed;

@@ -20,18 +20,18 @@ class Relocalizer {
 
   // The submap's points in this image, and the camera's pose; none where the submap is not found. The attempt is the
   // track source's present one.
-  FollowedPoints Relocalize(const TrackerFrame& frame, Submap* submap);
+  FollowedPoints Relocalize(const PreparedFrame& frame, Submap* submap);
 
   // To be called with every sharp frame that was tracked: what relocalization starts from.
-  void Remember(const TrackerFrame& frame, Submap* submap) const;
+  void Remember(const PreparedFrame& frame, Submap* submap) const;
   // To be called when the view is lost: how the points looked last.
   void RememberLastView(Submap* submap) const;
 
  private:
   std::vector<Rigid3> GuessPoses(int frame_idx, const Submap& submap) const;
-  FollowedPoints FollowFrom(const TrackerFrame& frame, const Rigid3& guess, Submap* submap) const;
+  FollowedPoints FollowFrom(const PreparedFrame& frame, const Rigid3& guess, Submap* submap) const;
   bool IsConfirmed(const FollowedPoints& followed) const;
-  const DescribedImage& Described(const TrackerFrame& frame);
+  const DescribedImage& Described(const PreparedFrame& frame);
 
   Camera camera_;
   TrackerOptions options_;

@@ -22,7 +22,7 @@ void Submaps::LeaveCurrent() {
   inactive_.erase(inactive_.begin());
 }
 
-bool Submaps::FindAgain(const TrackerFrame& frame, Former former, Relocalizer* relocalizer) {
+bool Submaps::FindAgain(const PreparedFrame& frame, Former former, Relocalizer* relocalizer) {
   for (std::size_t k = inactive_.size(); k-- > 0;) {
     if (relocalizer->Relocalize(frame, inactive_[k].get()).size() == 0) continue;
     std::swap(current_, inactive_[k]);
@@ -44,7 +44,7 @@ bool Submaps::CanMerge() const {
          !options_.oracle.Any();
 }
 
-std::optional<Submaps::FoundMerge> Submaps::FindMerge(const TrackerFrame& frame, Relocalizer* relocalizer) {
+std::optional<Submaps::FoundMerge> Submaps::FindMerge(const PreparedFrame& frame, Relocalizer* relocalizer) {
   const int every = options_.relocalization.merge_every;
   if (!CanMerge() || inactive_.empty() || frame.frame_idx % every != 0 || current_->blurred_frames > 0)
     return std::nullopt;

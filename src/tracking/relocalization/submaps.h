@@ -32,7 +32,7 @@ class Submaps {
   enum class Former { kDropped, kInactive };
   // Searches the inactive submaps in this image, the last one first. The one that is found becomes the current one;
   // what was current is dropped or becomes inactive. False: none was found, and nothing changes.
-  bool FindAgain(const TrackerFrame& frame, Former former, Relocalizer* relocalizer);
+  bool FindAgain(const PreparedFrame& frame, Former former, Relocalizer* relocalizer);
 
   // An inactive submap that this image shows while the current one is tracked in it. One is searched at a time, in
   // turn.
@@ -40,7 +40,7 @@ class Submaps {
     std::size_t inactive = 0;  // index of it
     SubmapMerge merge = {};
   };
-  std::optional<FoundMerge> FindMerge(const TrackerFrame& frame, Relocalizer* relocalizer);
+  std::optional<FoundMerge> FindMerge(const PreparedFrame& frame, Relocalizer* relocalizer);
   // The two become the current one. The older one's world stays.
   void Apply(const FoundMerge& found);
 

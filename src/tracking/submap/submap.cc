@@ -7,7 +7,7 @@
 
 namespace pliant {
 
-bool Submap::IsBlurred(const TrackerFrame& frame, const TrackerOptions& options) const {
+bool Submap::IsBlurred(const PreparedFrame& frame, const TrackerOptions& options) const {
   return blurred_frames < options.max_blurred_frames && frame.sharpness < options.min_sharpness * previous.sharpness;
 }
 

@@ -10,7 +10,7 @@
 #include "pliant/geometry/sim3.h"
 #include "pliant/scene/frame_report.h"
 #include "pliant/scene/map.h"
-#include "pliant/tracking/tracker_frame.h"
+#include "pliant/tracking/prepared_frame.h"
 #include "pliant/tracking/tracks/track_source.h"
 #include "tracking/submap/candidates.h"
 #include "tracking/submap/landmark_descriptors.h"
@@ -26,7 +26,7 @@ struct Submap {
 
   // Whether an image is blurred, or dark, against the last sharp one. Of many such images in a row the later ones are
   // not: the blur stays.
-  bool IsBlurred(const TrackerFrame& frame, const TrackerOptions& options) const;
+  bool IsBlurred(const PreparedFrame& frame, const TrackerOptions& options) const;
   // The landmarks as this submap's last frame shows them; sorted by id.
   std::vector<PointObservation> Observations() const;
   // The landmarks in sight and those that were lost.
@@ -53,7 +53,7 @@ struct Submap {
   Candidates candidates;
   LandmarkDescriptors descriptors;
   std::vector<InitFrame> window_frames;  // the last ones in which there was a map, with their candidates
-  TrackerFrame previous;                 // the last frame in which points were seen
+  PreparedFrame previous;                // the last frame in which points were seen
   Rigid3 last_cam_from_world;
   Rigid3 before_last_cam_from_world;
   std::vector<std::pair<int, Rigid3>> recent_poses;  // by frame_idx, of the last frames in a row that were tracked

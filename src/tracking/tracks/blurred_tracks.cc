@@ -47,7 +47,7 @@ int CountFound(std::span<const PointTrack> tracks) {
       std::ranges::count(tracks, PatchFailure::kNone, [](const PointTrack& track) { return track.failure; }));
 }
 
-std::vector<PointTrack> TrackIntoBlur(const TrackerFrame& sharp, const TrackerFrame& blurred,
+std::vector<PointTrack> TrackIntoBlur(const PreparedFrame& sharp, const PreparedFrame& blurred,
                                       std::span<const Eigen::Vector2d> pixels,
                                       std::span<const PointPrediction> predictions, const PointTrackerOptions& options,
                                       int threads) {

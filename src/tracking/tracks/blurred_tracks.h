@@ -16,7 +16,7 @@
 namespace pliant {
 
 // One result a prediction. `pixels[k]` is where the point of predictions[k] is in the sharp image.
-std::vector<PointTrack> TrackIntoBlur(const TrackerFrame& sharp, const TrackerFrame& blurred,
+std::vector<PointTrack> TrackIntoBlur(const PreparedFrame& sharp, const PreparedFrame& blurred,
                                       std::span<const Eigen::Vector2d> pixels,
                                       std::span<const PointPrediction> predictions, const PointTrackerOptions& options,
                                       int threads);

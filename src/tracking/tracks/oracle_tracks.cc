@@ -20,13 +20,13 @@ std::vector<PointTrack> AllFailed(std::span<const PointPrediction> predictions) 
 
 }  // namespace
 
-std::optional<PointId> OracleTracks::Add(const Eigen::Vector2d& pixel, const TrackerFrame& frame) {
+std::optional<PointId> OracleTracks::Add(const Eigen::Vector2d& pixel, const PreparedFrame& frame) {
   const PointId id{next_id_};
   if (!Resume(id, pixel, frame)) return std::nullopt;
   return id;
 }
 
-bool OracleTracks::Resume(PointId id, const Eigen::Vector2d& pixel, const TrackerFrame& frame) {
+bool OracleTracks::Resume(PointId id, const Eigen::Vector2d& pixel, const PreparedFrame& frame) {
   ReferencePatch patch;
   if (CutReferencePatch(frame.pyramid, frame.mask, {pixel.x(), pixel.y()}, options_, AffineSolution::kWithout,
                         &patch) != PatchFailure::kNone)
@@ -36,7 +36,7 @@ bool OracleTracks::Resume(PointId id, const Eigen::Vector2d& pixel, const Tracke
   return truth_->Follow(frame.frame_idx, start).front() != 0;
 }
 
-std::vector<PointTrack> OracleTracks::Track(const TrackerFrame&, const TrackerFrame& current,
+std::vector<PointTrack> OracleTracks::Track(const PreparedFrame&, const PreparedFrame& current,
                                             std::span<const PointPrediction> predictions) {
   std::vector<PointId> ids;
   for (const PointPrediction& prediction : predictions) ids.push_back(prediction.id);
@@ -53,11 +53,11 @@ std::vector<PointTrack> OracleTracks::Track(const TrackerFrame&, const TrackerFr
   return tracks;
 }
 
-std::vector<PointTrack> OracleTracks::Find(const TrackerFrame&, std::span<const PointPrediction> predictions) {
+std::vector<PointTrack> OracleTracks::Find(const PreparedFrame&, std::span<const PointPrediction> predictions) {
   return AllFailed(predictions);
 }
 
-std::vector<PointTrack> OracleTracks::TrackIntoBlur(const TrackerFrame&, const TrackerFrame&,
+std::vector<PointTrack> OracleTracks::TrackIntoBlur(const PreparedFrame&, const PreparedFrame&,
                                                     std::span<const PointPrediction> predictions) const {
   return AllFailed(predictions);
 }

@@ -20,14 +20,14 @@ class OracleTracks : public TrackSource {
   TrackAbilities abilities() const override {
     return {.adds_points = false, .finds_points = false, .tracks_blurred = false, .sees_appearance = false};
   }
-  std::optional<PointId> Add(const Eigen::Vector2d& pixel, const TrackerFrame& frame) override;
-  bool Resume(PointId id, const Eigen::Vector2d& pixel, const TrackerFrame& frame) override;
+  std::optional<PointId> Add(const Eigen::Vector2d& pixel, const PreparedFrame& frame) override;
+  bool Resume(PointId id, const Eigen::Vector2d& pixel, const PreparedFrame& frame) override;
   void Remove(PointId) override {}
-  std::vector<PointTrack> Track(const TrackerFrame& previous, const TrackerFrame& current,
+  std::vector<PointTrack> Track(const PreparedFrame& previous, const PreparedFrame& current,
                                 std::span<const PointPrediction> predictions) override;
-  std::vector<PointTrack> Find(const TrackerFrame& current, std::span<const PointPrediction> predictions) override;
+  std::vector<PointTrack> Find(const PreparedFrame& current, std::span<const PointPrediction> predictions) override;
   void Keep(std::span<const PointId>) override {}
-  std::vector<PointTrack> TrackIntoBlur(const TrackerFrame& previous, const TrackerFrame& blurred,
+  std::vector<PointTrack> TrackIntoBlur(const PreparedFrame& previous, const PreparedFrame& blurred,
                                         std::span<const PointPrediction> predictions) const override;
 
  private:

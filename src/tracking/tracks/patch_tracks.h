@@ -17,14 +17,14 @@ class PatchTracks : public TrackSource {
       : options_(options), threads_(threads), tracker_(options) {}
 
   TrackAbilities abilities() const override { return {}; }
-  std::optional<PointId> Add(const Eigen::Vector2d& pixel, const TrackerFrame& frame) override;
-  bool Resume(PointId id, const Eigen::Vector2d& pixel, const TrackerFrame& frame) override;
+  std::optional<PointId> Add(const Eigen::Vector2d& pixel, const PreparedFrame& frame) override;
+  bool Resume(PointId id, const Eigen::Vector2d& pixel, const PreparedFrame& frame) override;
   void Remove(PointId id) override { tracker_.Remove(id); }
-  std::vector<PointTrack> Track(const TrackerFrame& previous, const TrackerFrame& current,
+  std::vector<PointTrack> Track(const PreparedFrame& previous, const PreparedFrame& current,
                                 std::span<const PointPrediction> predictions) override;
-  std::vector<PointTrack> Find(const TrackerFrame& current, std::span<const PointPrediction> predictions) override;
+  std::vector<PointTrack> Find(const PreparedFrame& current, std::span<const PointPrediction> predictions) override;
   void Keep(std::span<const PointId> ids) override { tracker_.Keep(ids); }
-  std::vector<PointTrack> TrackIntoBlur(const TrackerFrame& previous, const TrackerFrame& blurred,
+  std::vector<PointTrack> TrackIntoBlur(const PreparedFrame& previous, const PreparedFrame& blurred,
                                         std::span<const PointPrediction> predictions) const override;
 
  private:

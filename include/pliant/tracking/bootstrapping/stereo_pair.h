@@ -16,7 +16,7 @@ namespace pliant {
 // Corners of the left image with their depths in mm (docs/method.md, eq. B5), the strongest first; `right` is 8-bit, of
 // the left one's size, `camera` the rectified pinhole one of both. Of at most options.corners.max_corners corners those
 // that the right image shows.
-std::vector<PixelDepth> PointsOfPair(const TrackerFrame& left, const cv::Mat& right, const Camera& camera,
+std::vector<PixelDepth> PointsOfPair(const PreparedFrame& left, const cv::Mat& right, const Camera& camera,
                                      double baseline_mm, const TrackerOptions& options, int threads);
 
 }  // namespace pliant

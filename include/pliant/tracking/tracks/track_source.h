@@ -16,7 +16,7 @@
 #include <Eigen/Core>
 
 #include "pliant/base/ids.h"
-#include "pliant/tracking/tracker_frame.h"
+#include "pliant/tracking/prepared_frame.h"
 #include "pliant/tracking/tracks/point_tracker.h"
 
 namespace pliant {
@@ -35,25 +35,25 @@ class TrackSource {
   virtual TrackAbilities abilities() const = 0;
 
   // Starts to follow the point that is seen at `pixel`; nothing when it cannot be followed.
-  virtual std::optional<PointId> Add(const Eigen::Vector2d& pixel, const TrackerFrame& frame) = 0;
+  virtual std::optional<PointId> Add(const Eigen::Vector2d& pixel, const PreparedFrame& frame) = 0;
   // The same for a point that has an id already, which is not in use here. False: it cannot be followed.
-  virtual bool Resume(PointId id, const Eigen::Vector2d& pixel, const TrackerFrame& frame) = 0;
+  virtual bool Resume(PointId id, const Eigen::Vector2d& pixel, const PreparedFrame& frame) = 0;
   // Forgets a point; no effect when it is not known.
   virtual void Remove(PointId id) = 0;
 
   // Begins an attempt: the predicted points from `previous`, the image in which they were last kept, into `current`.
   // One result a prediction, in their order.
-  virtual std::vector<PointTrack> Track(const TrackerFrame& previous, const TrackerFrame& current,
+  virtual std::vector<PointTrack> Track(const PreparedFrame& previous, const PreparedFrame& current,
                                         std::span<const PointPrediction> predictions) = 0;
   // Searches points that were not seen in the latest image around their predicted pixels; part of the attempt. None is
   // found by a source without this ability.
-  virtual std::vector<PointTrack> Find(const TrackerFrame& current, std::span<const PointPrediction> predictions) = 0;
+  virtual std::vector<PointTrack> Find(const PreparedFrame& current, std::span<const PointPrediction> predictions) = 0;
   // The attempt's results of these points are right.
   virtual void Keep(std::span<const PointId> ids) = 0;
 
   // Points of the sharp image `previous` in a blurred one. No part of an attempt, and never kept: the points stay where
   // the sharp image has them.
-  virtual std::vector<PointTrack> TrackIntoBlur(const TrackerFrame& previous, const TrackerFrame& blurred,
+  virtual std::vector<PointTrack> TrackIntoBlur(const PreparedFrame& previous, const PreparedFrame& blurred,
                                                 std::span<const PointPrediction> predictions) const = 0;
 };
 

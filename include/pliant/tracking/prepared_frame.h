@@ -24,7 +24,7 @@ struct PixelDepth {
   double depth = 0;  // z along the optical axis, in its source's unit, > 0
 };
 
-struct TrackerFrame {
+struct PreparedFrame {
   int frame_idx = 0;  // the sequence's own number
   std::string name;
   double timestamp_s = 0;
@@ -40,7 +40,7 @@ struct TrackerFrame {
 };
 
 // `image` has the camera's size; `mask` is empty or CV_8UC1 of that size, 0 = ignore.
-TrackerFrame PrepareFrame(int frame_idx, std::string name, double timestamp_s, const cv::Mat& image,
-                          const cv::Mat& mask, const TrackerOptions& options);
+PreparedFrame PrepareFrame(int frame_idx, std::string name, double timestamp_s, const cv::Mat& image,
+                           const cv::Mat& mask, const TrackerOptions& options);
 
 }  // namespace pliant

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "pliant/tracking/tracker_frame.h"
+#include "pliant/tracking/prepared_frame.h"
 
 #include <utility>
 
@@ -10,10 +10,10 @@
 
 namespace pliant {
 
-TrackerFrame PrepareFrame(int frame_idx, std::string name, double timestamp_s, const cv::Mat& image,
-                          const cv::Mat& mask, const TrackerOptions& options) {
+PreparedFrame PrepareFrame(int frame_idx, std::string name, double timestamp_s, const cv::Mat& image,
+                           const cv::Mat& mask, const TrackerOptions& options) {
   const auto start = std::chrono::steady_clock::now();
-  TrackerFrame frame;
+  PreparedFrame frame;
   frame.frame_idx = frame_idx;
   frame.name = std::move(name);
   frame.timestamp_s = timestamp_s;
