@@ -50,7 +50,7 @@ class Checker {
       // Seen from the wall: its own motion is taken off the camera's.
       const Corners later = Posed(idx, next_s);
       const Eigen::Vector3d moved = (later[0] - wall[0] + later[1] - wall[1] + later[2] - wall[2]) / 3.0;
-      if (PassesThrough(wall, here, next - moved)) clearance.passes_through = true;
+      if (CrossesTriangle(wall, here, next - moved)) clearance.passes_through = true;
     });
     return clearance;
   }

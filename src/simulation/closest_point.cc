@@ -32,7 +32,7 @@ Eigen::Vector3d ClosestPoint(const Corners& triangle, const Eigen::Vector3d& x) 
   return nearest;
 }
 
-bool PassesThrough(const Corners& triangle, const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+bool CrossesTriangle(const Corners& triangle, const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
   const auto& [a, b, c] = triangle;
   const Eigen::Vector3d normal = (b - a).cross(c - a);
   const double from_side = (from - a).dot(normal);

@@ -16,6 +16,6 @@ using Corners = std::array<Eigen::Vector3d, 3>;
 Eigen::Vector3d ClosestPoint(const Corners& triangle, const Eigen::Vector3d& x);
 
 // Whether the straight way from one point to another goes through a triangle.
-bool PassesThrough(const Corners& triangle, const Eigen::Vector3d& from, const Eigen::Vector3d& to);
+bool CrossesTriangle(const Corners& triangle, const Eigen::Vector3d& from, const Eigen::Vector3d& to);
 
 }  // namespace pliant::simulation

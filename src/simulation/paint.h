@@ -9,7 +9,7 @@
 
 #include "simulation/image_texture.h"
 #include "simulation/solid_texture.h"
-#include "simulation/texture.h"
+#include "simulation/blood_map.h"
 
 namespace pliant::simulation {
 

@@ -89,7 +89,7 @@ SolidTexture::SolidTexture(const SimulationOptions::Texture& options, int seed, 
   Grow(options, Random(static_cast<std::uint64_t>(seed)).Child("texture").Child("vessels"), surface, at_rest);
 }
 
-// As the vessels of the chart's map (texture.cc), with steps along the surface.
+// As the vessels of the chart's map (blood_map.cc), with steps along the surface.
 void SolidTexture::Grow(const SimulationOptions::Texture& options, Random random, const Surface& surface,
                         const RayScene& at_rest) {
   constexpr double kTreesPerMm2 = 1.0 / 900.0;

@@ -42,7 +42,7 @@ SupportMask SmallMask(const SupportMask& mask, int shrink) {
 
 }  // namespace
 
-int CountFound(std::span<const PointTrack> tracks) {
+int CountTracked(std::span<const PointTrack> tracks) {
   return static_cast<int>(
       std::ranges::count(tracks, PatchFailure::kNone, [](const PointTrack& track) { return track.failure; }));
 }
@@ -71,7 +71,7 @@ std::vector<PointTrack> TrackIntoBlur(const PreparedFrame& sharp, const Prepared
     }
     std::vector<PointTrack> tracks = tracker.Track(before, before_mask, now, now_mask, small, threads);
     for (PointTrack& track : tracks) track.pixel = Enlarged(track.pixel, blur.shrink);
-    if (best.empty() || CountFound(tracks) > CountFound(best)) best = std::move(tracks);
+    if (best.empty() || CountTracked(tracks) > CountTracked(best)) best = std::move(tracks);
   }
   return best;
 }

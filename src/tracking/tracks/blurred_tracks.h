@@ -22,6 +22,6 @@ std::vector<PointTrack> TrackIntoBlur(const PreparedFrame& sharp, const Prepared
                                       int threads);
 
 // How many of them were found.
-int CountFound(std::span<const PointTrack> tracks);
+int CountTracked(std::span<const PointTrack> tracks);
 
 }  // namespace pliant

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "simulation/texture.h"
+#include "simulation/blood_map.h"
 
 #include <algorithm>
 #include <cmath>
