@@ -11,6 +11,7 @@
 
 namespace pliant {
 
+// NOLINTNEXTLINE(readability-function-size): a line an option
 void SimulationOptions::List(OptionTable& table) {
   table.BeginGroup("Scene", "what is filmed");
   table.AddChoice("kind", &scene.kind, "colon with folds, smooth tube, sheet, two lobes, or a mesh file");

@@ -7,9 +7,9 @@
 
 #include <optional>
 
+#include "simulation/blood_map.h"
 #include "simulation/image_texture.h"
 #include "simulation/solid_texture.h"
-#include "simulation/blood_map.h"
 
 namespace pliant::simulation {
 

@@ -186,6 +186,23 @@ void DrawImage(cairo_t* drawing, const Panel& panel, const cv::Mat& image, const
   cairo_restore(drawing);
 }
 
+namespace {
+
+// The camera's path up to a frame, broken where the camera was lost.
+void DrawPath(const ViewedRun& run, int frame_idx, SceneDrawing* scene) {
+  std::vector<Eigen::Vector3d> path;
+  for (const ViewedFrame& f : run.frames) {
+    if (f.row.frame_idx > frame_idx) break;
+    if (f.world_from_cam)
+      path.push_back(f.world_from_cam->translation);
+    else
+      scene->Path(std::exchange(path, {}));
+  }
+  scene->Path(path);
+}
+
+}  // namespace
+
 void DrawScene(cairo_t* drawing, const Panel& panel, const View& view, const ViewedRun& run, int frame_idx,
                const Orbit& orbit, const FigureOptions& options) {
   cairo_save(drawing);
@@ -229,15 +246,7 @@ void DrawScene(cairo_t* drawing, const Panel& panel, const View& view, const Vie
 
   Use(drawing, kBlue);
   cairo_set_line_width(drawing, radius);
-  std::vector<Eigen::Vector3d> path;  // broken where the camera was lost
-  for (const ViewedFrame& f : run.frames) {
-    if (f.row.frame_idx > frame_idx) break;
-    if (f.world_from_cam)
-      path.push_back(f.world_from_cam->translation);
-    else
-      scene.Path(std::exchange(path, {}));
-  }
-  scene.Path(path);
+  DrawPath(run, frame_idx, &scene);
   if (frame != nullptr && frame->world_from_cam && run.camera) {
     const double depth = kFrustumOfDepth * MedianDepth(*frame).value_or(1 / kFrustumOfDepth);
     if (const auto rays = CornerRays(*run.camera))

@@ -19,21 +19,21 @@
 namespace pliant {
 namespace {
 
-using json = nlohmann::ordered_json;
+using Json = nlohmann::ordered_json;
 
 // null where it is not a number.
-json Number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
+Json Number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 template <class Value>
-json Column(const ViewedRun& run, const Value& value) {
-  json column = json::array();
+Json Column(const ViewedRun& run, const Value& value) {
+  Json column = Json::array();
   for (const ViewedFrame& frame : run.frames) column.push_back(value(frame));
   return column;
 }
 
-json OptionalColumn(const std::vector<std::optional<double>>& values) {
-  json column = json::array();
-  for (const std::optional<double>& value : values) column.push_back(value ? Number(*value) : json(nullptr));
+Json OptionalColumn(const std::vector<std::optional<double>>& values) {
+  Json column = Json::array();
+  for (const std::optional<double>& value : values) column.push_back(value ? Number(*value) : Json(nullptr));
   return column;
 }
 
@@ -44,7 +44,7 @@ void AppendPose(const Rigid3& world_from_cam, std::vector<float>* values) {
     values->push_back(static_cast<float>(value));
 }
 
-json FramePosesOf(const ViewedRun& run) {
+Json FramePosesOf(const ViewedRun& run) {
   std::vector<float> values;
   for (const ViewedFrame& frame : run.frames) {
     if (frame.world_from_cam)
@@ -55,21 +55,21 @@ json FramePosesOf(const ViewedRun& run) {
   return PackFloats(values, 7);
 }
 
-json Frames(const ViewedRun& run) {
-  const auto row = [](auto member) { return [member](const ViewedFrame& f) { return json(f.row.*member); }; };
-  json frames = {{"frame", Column(run, row(&RunFrame::frame_idx))},
+Json Frames(const ViewedRun& run) {
+  const auto row = [](auto member) { return [member](const ViewedFrame& f) { return Json(f.row.*member); }; };
+  Json frames = {{"frame", Column(run, row(&RunFrame::frame_idx))},
                  {"time", Column(run, row(&RunFrame::timestamp_s))},
                  {"state", Column(run, [](const ViewedFrame& f) { return EnumName(f.row.state); })},
                  {"submap", Column(run, row(&RunFrame::submap))},
                  {"tracked", Column(run, row(&RunFrame::tracked))},
                  {"pose", FramePosesOf(run)},
-                 {"note", json::object()},
-                 {"costs", json::object()},
-                 {"stages_ms", json::object()},
-                 {"errors", json::object()}};
+                 {"note", Json::object()},
+                 {"costs", Json::object()},
+                 {"stages_ms", Json::object()},
+                 {"errors", Json::object()}};
   const bool has = run.has_rows;
   const auto known = [&](auto member) {
-    return Column(run, [&](const ViewedFrame& f) { return has ? json(f.row.*member) : json(nullptr); });
+    return Column(run, [&](const ViewedFrame& f) { return has ? Json(f.row.*member) : Json(nullptr); });
   };
   frames["optimized"] = known(&RunFrame::optimized);
   frames["lost"] = known(&RunFrame::lost);
@@ -84,17 +84,17 @@ json Frames(const ViewedRun& run) {
     }
     for (std::size_t i = 0; i < run.stage_names.size(); ++i)
       frames["stages_ms"][run.stage_names[i]] = Column(run, [i](const ViewedFrame& f) {
-        return i < f.row.stage_ms.size() ? Number(f.row.stage_ms[i]) : json(nullptr);
+        return i < f.row.stage_ms.size() ? Number(f.row.stage_ms[i]) : Json(nullptr);
       });
   }
   for (const auto& [name, values] : run.errors) frames["errors"][name] = OptionalColumn(values);
-  frames["scale"] = run.scales.empty() ? json(nullptr) : OptionalColumn(run.scales);
+  frames["scale"] = run.scales.empty() ? Json(nullptr) : OptionalColumn(run.scales);
   for (std::size_t i = 0; i < run.frames.size(); ++i)
     if (!run.frames[i].note.empty()) frames["note"][std::to_string(i)] = run.frames[i].note;
   return frames;
 }
 
-json Points(const ViewedRun& run) {
+Json Points(const ViewedRun& run) {
   // A number of the page has 32 bits: larger ids of other programs are counted through.
   const bool fits = run.points.empty() || (run.points.begin()->first.value >= 0 &&
                                            run.points.rbegin()->first.value < std::int64_t{0xFFFFFFFF});
@@ -128,10 +128,10 @@ class Observations {
     for (const Seen& seen : sorted_) ++counts_[seen.point];
   }
 
-  json ToJson() const {
+  Json ToJson() const {
     std::vector<std::uint32_t> rows;
     for (const Seen& seen : sorted_) rows.push_back(seen.row);
-    json packed = {{"count", counts_},
+    Json packed = {{"count", counts_},
                    {"row", PackWhole(rows, 1, PackedType::kU32)},
                    {"pixel", Vectors<2>(&ViewedObservation::pixel)},
                    {"position", Vectors<3>(&ViewedObservation::position)},
@@ -139,11 +139,11 @@ class Observations {
                    {"reprojection_px", Numbers(&ViewedObservation::reprojection_px, PackedType::kU16)},
                    {"ssim", Numbers(&ViewedObservation::ssim, PackedType::kU8)}};
     const bool bright = Any(&ViewedObservation::gain);
-    packed["gain"] = bright ? Numbers(&ViewedObservation::gain, PackedType::kU16) : json(nullptr);
-    packed["bias"] = bright ? Numbers(&ViewedObservation::bias, PackedType::kU16) : json(nullptr);
+    packed["gain"] = bright ? Numbers(&ViewedObservation::gain, PackedType::kU16) : Json(nullptr);
+    packed["bias"] = bright ? Numbers(&ViewedObservation::bias, PackedType::kU16) : Json(nullptr);
     const bool truth = Any(&ViewedObservation::error_mm);
-    packed["truth"] = truth ? Vectors<3>(&ViewedObservation::truth) : json(nullptr);
-    packed["error_mm"] = truth ? Numbers(&ViewedObservation::error_mm, PackedType::kU16) : json(nullptr);
+    packed["truth"] = truth ? Vectors<3>(&ViewedObservation::truth) : Json(nullptr);
+    packed["error_mm"] = truth ? Numbers(&ViewedObservation::error_mm, PackedType::kU16) : Json(nullptr);
     return packed;
   }
 
@@ -158,14 +158,14 @@ class Observations {
     return std::any_of(sorted_.begin(), sorted_.end(),
                        [&](const Seen& seen) { return std::isfinite(seen.observation->*member); });
   }
-  json Numbers(float ViewedObservation::*member, PackedType type) const {
+  Json Numbers(float ViewedObservation::*member, PackedType type) const {
     std::vector<float> values;
     values.reserve(sorted_.size());
     for (const Seen& seen : sorted_) values.push_back(seen.observation->*member);
     return PackQuantized(values, 1, type);
   }
   template <int N>
-  json Vectors(Eigen::Matrix<float, N, 1> ViewedObservation::*member) const {
+  Json Vectors(Eigen::Matrix<float, N, 1> ViewedObservation::*member) const {
     std::vector<float> values;
     values.reserve(N * sorted_.size());
     for (const Seen& seen : sorted_)
@@ -177,8 +177,8 @@ class Observations {
   std::vector<std::uint32_t> counts_;
 };
 
-json Texts(const std::vector<NamedText>& texts, bool as_options) {
-  json rows = json::array();
+Json Texts(const std::vector<NamedText>& texts, bool as_options) {
+  Json rows = Json::array();
   for (const NamedText& text : texts) {
     if (as_options)
       rows.push_back({text.group + "." + text.name, text.value});
@@ -188,7 +188,7 @@ json Texts(const std::vector<NamedText>& texts, bool as_options) {
   return rows;
 }
 
-json RunData(const ViewedRun& run) {
+Json RunData(const ViewedRun& run) {
   return {{"name", run.name},
           {"status", run.status},
           {"note", run.note},
@@ -199,17 +199,17 @@ json RunData(const ViewedRun& run) {
           {"observations", Observations(run).ToJson()}};
 }
 
-json CameraData(const std::optional<Camera>& camera) {
+Json CameraData(const std::optional<Camera>& camera) {
   if (!camera) return nullptr;
-  json corners = nullptr;
+  Json corners = nullptr;
   if (const auto rays = CornerRays(*camera))
     for (const Eigen::Vector3d& ray : *rays) corners.push_back({ray.x(), ray.y(), ray.z()});
   return {{"width", camera->width()}, {"height", camera->height()}, {"corners", std::move(corners)}};
 }
 
-json ImageData(const ViewImages& images) {
+Json ImageData(const ViewImages& images) {
   if (images.jpeg.empty()) return nullptr;
-  json jpeg = json::array();
+  Json jpeg = Json::array();
   for (const std::string& bytes : images.jpeg) jpeg.push_back(Base64(bytes));
   return {{"width", images.width},
           {"height", images.height},
@@ -218,9 +218,9 @@ json ImageData(const ViewImages& images) {
           {"jpeg", std::move(jpeg)}};
 }
 
-json TruthData(const std::vector<TruePose>& truth) {
+Json TruthData(const std::vector<TruePose>& truth) {
   if (truth.empty()) return nullptr;
-  json frames = json::array();
+  Json frames = Json::array();
   std::vector<float> poses;
   for (const TruePose& pose : truth) {
     frames.push_back(pose.frame_idx);
@@ -231,8 +231,8 @@ json TruthData(const std::vector<TruePose>& truth) {
 
 }  // namespace
 
-json PageData(const View& view, const ViewImages& images, const std::string& title) {
-  json runs = json::array();
+Json PageData(const View& view, const ViewImages& images, const std::string& title) {
+  Json runs = Json::array();
   for (const ViewedRun& run : view.runs) runs.push_back(RunData(run));
   return {{"format", kPageFormat},
           {"version", kVersion},
@@ -246,10 +246,10 @@ json PageData(const View& view, const ViewImages& images, const std::string& tit
           {"runs", std::move(runs)}};
 }
 
-std::string PageWith(const json& data) {
+std::string PageWith(const Json& data) {
   const std::string_view page = PageAsset();
   const std::size_t marker = page.find(kPageDataMarker);
-  const std::string text = data.dump(-1, ' ', false, json::error_handler_t::replace);
+  const std::string text = data.dump(-1, ' ', false, Json::error_handler_t::replace);
   std::string whole(page.substr(0, marker + kPageDataMarker.size() - kPageDataEnd.size()));
   whole.reserve(page.size() + text.size());
   for (const char c : text) {  // nothing in it may end the element
