@@ -112,6 +112,16 @@ Result<Camera> Camera::Create(std::string_view model_name, int width, int height
                                                  "'; did you mean '" + NearestName(model_name, names) + "'?");
 }
 
+Result<Camera> Camera::Resized(double scale) const {
+  const auto focals =
+      Visit([](const auto& model) -> std::size_t { return model.kParamNames.starts_with("fx") ? 2 : 1; });
+  std::vector<double> resized(params().begin(), params().end());
+  for (std::size_t i = 0; i < focals; ++i) resized[i] *= scale;
+  for (std::size_t i = focals; i < focals + 2; ++i) resized[i] = scale * (resized[i] + 0.5) - 0.5;  // centers of pixels
+  const auto side = [scale](int side_px) { return std::max(1, static_cast<int>(std::lround(scale * side_px))); };
+  return Create(model_id(), side(width_), side(height_), resized);
+}
+
 CameraModelId Camera::model_id() const { return EnumNames<CameraModelId>::kNames[model_.index()].first; }
 
 std::span<const double> Camera::params() const {

@@ -4,6 +4,7 @@
 // Properties of every camera model.
 #include "pliant/camera/camera.h"
 
+#include <cmath>
 #include <numbers>
 
 #include <Eigen/Geometry>
@@ -35,6 +36,19 @@ TEST_P(EveryCamera, KeepsWhatItWasMadeFrom) {
   EXPECT_EQ(camera_.width(), GetParam().width);
   EXPECT_EQ(camera_.height(), GetParam().height);
   EXPECT_EQ(std::vector<double>(camera_.params().begin(), camera_.params().end()), GetParam().params);
+}
+
+TEST_P(EveryCamera, ResizedSeesEveryPointAtTheSamePlaceOfTheImage) {
+  const Eigen::Vector3d point(4, -3, 40);
+  const auto pixel = camera_.Project(point);
+  ASSERT_TRUE(pixel);
+  for (const double scale : {0.25, 1.0 / 3.0, 2.0}) {
+    const auto resized = camera_.Resized(scale);
+    ASSERT_TRUE(resized.ok()) << resized.status().message();
+    EXPECT_EQ(resized->width(), std::lround(scale * camera_.width()));
+    const Eigen::Vector2d expected = scale * (pixel->array() + 0.5) - 0.5;
+    EXPECT_LT((*resized->Project(point) - expected).norm(), kPixelRounding) << scale;
+  }
 }
 
 TEST_P(EveryCamera, ProjectsUnprojectedPixelsOntoThemselves) {

@@ -59,6 +59,9 @@ class Camera {
   static Result<Camera> Create(CameraModelId model, int width, int height, std::span<const double> params);
   static Result<Camera> Create(std::string_view model_name, int width, int height, std::span<const double> params);
 
+  // The camera of the same image resized by `scale` > 0, its sides rounded to whole pixels. Fails as Create.
+  Result<Camera> Resized(double scale) const;
+
   CameraModelId model_id() const;
   std::string_view model_name() const { return EnumName(model_id()); }
   int width() const { return width_; }
