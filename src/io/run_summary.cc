@@ -31,6 +31,8 @@ Status WriteRunSummary(const std::string& path, const RunSummary& summary) {
       {"input", summary.description.input},
       {"camera", summary.description.camera},
       {"oracles", summary.description.oracles},
+      {"working_image",
+       {{"scale", summary.description.image_scale}, {"smoothing_px", summary.description.image_smoothing_px}}},
       {"status", EnumName(summary.status)},
       {"note", summary.note},
       {"first_map", first_map},
@@ -67,6 +69,10 @@ Result<RunSummary> ReadRunSummary(const std::string& path) {
                            json.at("input").get<std::string>(),
                            json.value("camera", ""),
                            json.value("oracles", std::vector<std::string>())};
+    if (const Json working = json.value("working_image", Json()); !working.is_null()) {
+      summary.description.image_scale = working.at("scale").get<double>();
+      summary.description.image_smoothing_px = working.at("smoothing_px").get<double>();
+    }
     const std::string status = json.at("status").get<std::string>();
     bool known = false;
     for (const auto& [value, name] : EnumNames<RunStatus>::kNames) {

@@ -7,6 +7,8 @@
 #include <iterator>
 #include <utility>
 
+#include "pipeline/working_frame.h"
+
 namespace pliant {
 namespace {
 
@@ -26,8 +28,9 @@ bool AwaitsAMap(const FrameReport& report) {
   return report.state == TrackingState::kWaitingForReference || report.state == TrackingState::kInitializing;
 }
 
-FramesBefore::FramesBefore(const SequenceRequest& input, const Camera& camera, const TrackOptions& options)
-    : input_(input), camera_(camera), options_(options) {
+FramesBefore::FramesBefore(const SequenceRequest& input, const WorkingImage& working, const Camera& camera,
+                           const TrackOptions& options)
+    : input_(input), working_(working), camera_(camera), options_(options) {
   // What the map shows is followed, and nothing more.
   options_.tracker.growth.grow = Switch::kOff;
   options_.tracker.submaps = Switch::kOff;
@@ -70,9 +73,7 @@ std::vector<PreparedFrame> FramesBefore::Read(int first, int last, std::size_t c
   while (frames.size() < count) {
     const auto next = (*sequence)->Next();
     if (!next.ok() || !next->has_value()) return {};
-    const SequenceFrame& frame = **next;
-    frames.push_back(
-        PrepareFrame(frame.frame_idx, frame.name, frame.timestamp_s, frame.image, frame.mask, options_.tracker));
+    frames.push_back(PrepareWorkingFrame(**next, working_, options_.tracker));
   }
   return frames;
 }

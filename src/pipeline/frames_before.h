@@ -10,6 +10,7 @@
 
 #include "pliant/camera/camera.h"
 #include "pliant/datasets/open_sequence.h"
+#include "pliant/image/working_image.h"
 #include "pliant/pipeline/track.h"
 #include "pliant/scene/frame_report.h"
 #include "pliant/tracking/tracker.h"
@@ -21,7 +22,9 @@ bool AwaitsAMap(const FrameReport& report);
 
 class FramesBefore {
  public:
-  FramesBefore(const SequenceRequest& input, const Camera& camera, const TrackOptions& options);
+  // `camera` is that of the working images.
+  FramesBefore(const SequenceRequest& input, const WorkingImage& working, const Camera& camera,
+               const TrackOptions& options);
 
   // Takes the tracker's final reports, in order of time, and answers with those that are to be written, in order of
   // time: the ones that may still get a pose wait here, at most `General.max_frames_back` of them.
@@ -35,6 +38,7 @@ class FramesBefore {
   void MoveNewPoints(FrameReport* reference);
 
   SequenceRequest input_;
+  WorkingImage working_;
   Camera camera_;
   TrackOptions options_;
   std::vector<FrameReport> waiting_;

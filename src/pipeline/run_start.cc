@@ -8,6 +8,7 @@
 
 #include <opencv2/core.hpp>
 
+#include "pipeline/choose_working_image.h"
 #include "pipeline/cloud_depth.h"
 #include "pliant/base/options.h"
 #include "pliant/base/statistics.h"
@@ -63,8 +64,13 @@ std::vector<std::string> WhatTheFirstFramesSay(const SequenceRequest& request, b
 
 }  // namespace
 
-Result<RunStart> ReadStart(const RunRequest& request, const InitOptions& init, const Sequence& sequence) {
+Result<RunStart> ReadStart(const RunRequest& request, const TrackOptions& options, const Sequence& sequence) {
+  const InitOptions& init = options.tracker.init;
   RunStart start;
+  start.working_image = ChooseWorkingImage(request.input, options);
+  auto camera = sequence.camera().Resized(start.working_image.scale);
+  if (!camera.ok()) return camera.status();
+  start.working_camera = *std::move(camera);
   start.first_frame_idx = request.input.start;
   if (init.method == InitMethod::kColmapModel) {
     auto model = ModelStart::Open(init.model.path, sequence.camera());

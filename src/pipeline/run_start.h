@@ -13,12 +13,15 @@
 #include "pipeline/model_start.h"
 #include "pliant/base/status.h"
 #include "pliant/datasets/sequence.h"
+#include "pliant/image/working_image.h"
 #include "pliant/pipeline/track.h"
 #include "pliant/tracking/bootstrapping/make_initializer.h"
 
 namespace pliant {
 
 struct RunStart {
+  WorkingImage working_image;
+  std::optional<Camera> working_camera;  // of the working images; always there
   std::optional<ModelStart> model;
   cv::Mat cloud_depth_mm;  // of the first frame; empty: there is no cloud
   int first_frame_idx = 0;
@@ -26,7 +29,8 @@ struct RunStart {
   std::vector<std::string> warnings;
 };
 
-// Fails where the sequence has not what Init.method asks for, and as the readers of models and clouds do.
-Result<RunStart> ReadStart(const RunRequest& request, const InitOptions& init, const Sequence& sequence);
+// Fails where the sequence has not what Init.method asks for, and as the readers of models and clouds do, and where a
+// camera cannot be resized.
+Result<RunStart> ReadStart(const RunRequest& request, const TrackOptions& options, const Sequence& sequence);
 
 }  // namespace pliant

@@ -13,6 +13,7 @@
 #include "pipeline/frames_before.h"
 #include "pipeline/run_start.h"
 #include "pipeline/simulation_truth.h"
+#include "pipeline/working_frame.h"
 #include "pliant/base/prefetcher.h"
 #include "pliant/base/version.h"
 #include "pliant/estimation/frame/frame_problem.h"
@@ -26,33 +27,39 @@ constexpr int kFramesAhead = 3;
 
 struct ReadFrame {
   PreparedFrame frame;
-  Status depth;  // of reading its depth image, or its right one; matters only while the tracker wants depth
+  cv::Mat image;  // as the source has it
+  Status depth;   // of reading its depth image, or its right one; matters only while the tracker wants depth
 };
 
 // Reads and prepares the next frame; nothing at the end.
 std::optional<Result<ReadFrame>> NextFrame(Sequence& sequence, const TrackerOptions& options, int threads,
                                            const RunStart& start, const std::atomic<bool>& wants_depth) {
+  const WorkingImage& working = start.working_image;
   auto next = sequence.Next();
   if (!next.ok()) return next.status();
   if (!next->has_value()) return std::nullopt;
   const SequenceFrame& frame = **next;
-  ReadFrame read{PrepareFrame(frame.frame_idx, frame.name, frame.timestamp_s, frame.image, frame.mask, options), {}};
+  ReadFrame read{PrepareWorkingFrame(frame, working, options), frame.image, {}};
   if (!wants_depth) return read;
   if (options.init.method == InitMethod::kColmapModel) {
-    read.frame.known_points = [&start, name = frame.name] { return start.model->PointsIn(name); };
+    read.frame.known_points = [&start, name = frame.name] {
+      std::vector<PixelDepth> points = start.model->PointsIn(name);
+      for (PixelDepth& point : points) point.pixel = start.working_image.ToWorking(point.pixel);
+      return points;
+    };
   } else if (!start.cloud_depth_mm.empty()) {
-    if (frame.frame_idx == start.first_frame_idx) read.frame.depth_mm = start.cloud_depth_mm;
+    if (frame.frame_idx == start.first_frame_idx) read.frame.depth_mm = working.Nearest(start.cloud_depth_mm);
   } else if (options.init.method == InitMethod::kStereo) {
     const auto right = sequence.Right();
     read.depth = right.status();
     if (right.ok() && right->has_value())
-      read.frame.known_points = [left = read.frame, right = **right, camera = sequence.camera(),
+      read.frame.known_points = [left = read.frame, right = working.Image(**right), camera = *start.working_camera,
                                  baseline_mm = sequence.BaselineMm().value_or(0.0), &options,
                                  threads] { return PointsOfPair(left, right, camera, baseline_mm, options, threads); };
   } else {
     const auto depth = sequence.Depth(frame.frame_idx);
     read.depth = depth.status();
-    if (depth.ok() && depth->has_value()) read.frame.depth_mm = **depth;
+    if (depth.ok() && depth->has_value()) read.frame.depth_mm = working.Nearest(**depth);
   }
   return read;
 }
@@ -73,22 +80,24 @@ RunColumns ColumnsOfFrames() {
 // Final reports on their way to the run folder and then to the observers.
 class Recorder {
  public:
-  Recorder(RunWriter& writer, std::span<TrackObserver* const> observers, FramesBefore before)
-      : writer_(writer), observers_(observers), before_(std::move(before)) {}
+  Recorder(RunWriter& writer, std::span<TrackObserver* const> observers, const WorkingImage& working,
+           FramesBefore before)
+      : writer_(writer), observers_(observers), working_(working), before_(std::move(before)) {}
 
   Status Record(std::vector<FrameReport> reports) { return Write(before_.Pass(std::move(reports))); }
   // No map comes any more.
   Status Finish() { return Write(before_.Finish()); }
-  void Show(const PreparedFrame& frame) {
-    for (TrackObserver* observer : observers_) observer->OnImage(frame.frame_idx, frame.image);
+  void Show(const ReadFrame& read) {
+    for (TrackObserver* observer : observers_) observer->OnImage(read.frame.frame_idx, read.image);
   }
   void Announce(const FrameReport& held) {
     for (TrackObserver* observer : observers_) observer->OnHeld(held);
   }
 
  private:
-  Status Write(const std::vector<FrameReport>& reports) {
-    for (const FrameReport& report : reports) {
+  Status Write(std::vector<FrameReport> reports) {
+    for (FrameReport& of_tracker : reports) {
+      const FrameReport report = InSourcePixels(std::move(of_tracker), working_);
       if (Status written = writer_.Write(report); !written.ok()) return written;
       for (TrackObserver* observer : observers_) observer->OnFrame(report);
     }
@@ -97,6 +106,7 @@ class Recorder {
 
   RunWriter& writer_;
   std::span<TrackObserver* const> observers_;
+  WorkingImage working_;
   FramesBefore before_;
 };
 
@@ -125,7 +135,7 @@ Ending TrackFrames(Sequence& sequence, const RunRequest& request, const TrackOpt
     const ReadFrame& read = **frame;
     // What was read ahead for nothing cannot end the run, or the number of threads would decide.
     if (tracker.NeedsDepth() && !read.depth.ok()) return {RunStatus::kFailed, read.depth.message()};
-    recorder.Show(read.frame);
+    recorder.Show(read);
     std::vector<FrameReport> done = tracker.Process(read.frame);
     ++count;
     wants_depth = tracker.WantsDepth();
@@ -149,9 +159,10 @@ Ending TrackFrames(Sequence& sequence, const RunRequest& request, const TrackOpt
 
 Ending TrackSequence(Sequence& sequence, const RunRequest& request, const TrackOptions& options, const RunStart& start,
                      TrackingTruth* truth, RunWriter& writer, std::span<TrackObserver* const> observers) {
-  Tracker tracker(sequence.camera(), options.tracker, static_cast<std::uint64_t>(options.seed), options.threads, truth,
+  const Camera& camera = *start.working_camera;
+  Tracker tracker(camera, options.tracker, static_cast<std::uint64_t>(options.seed), options.threads, truth,
                   sequence.Photometric());
-  Recorder recorder(writer, observers, {request.input, sequence.camera(), options});
+  Recorder recorder(writer, observers, start.working_image, {request.input, start.working_image, camera, options});
   const Ending ending = TrackFrames(sequence, request, options, start, tracker, recorder);
   // Whatever the ending: the frames that waited for a map are written too.
   Status recorded = recorder.Record(tracker.Finish());
@@ -160,6 +171,16 @@ Ending TrackSequence(Sequence& sequence, const RunRequest& request, const TrackO
 }
 
 }  // namespace
+
+void ImageOptions::List(OptionTable& table) {
+  table.BeginGroup("Image", "the working image: the source resized and smoothed, in which points are tracked");
+  table.AddChoice("working", &working,
+                  "measured: the size and smoothing in which most points of the first images last; fixed: by scale and "
+                  "smoothing_px");
+  table.Add("scale", &scale, "-", "fixed: size of the working image divided by that of the source", 0.05, 4);
+  table.Add("smoothing_px", &smoothing_px, "px",
+            "fixed: standard deviation of the Gaussian that smooths the working image, in its pixels; 0: none", 0, 20);
+}
 
 void TrackOptions::List(OptionTable& table) {
   table.BeginGroup("General", "the run as a whole");
@@ -171,6 +192,7 @@ void TrackOptions::List(OptionTable& table) {
   table.Add("max_frames_back", &max_frames_back, "frames",
             "before the reference of a first map, tracked backwards in time from it", 0, 100000);
   table.AddChoice("timings", &timings, "none: wall times are written as 0, so that two runs are equal byte for byte");
+  image.List(table);
   tracker.List(table);
 }
 
@@ -178,6 +200,7 @@ TrackOptions MakeTrackOptions(Preset preset) {
   TrackOptions options;
   if (preset == Preset::kDefault) return options;
   options.max_frames_back = 0;
+  options.image.working = WorkingImageMode::kFixed;
   TrackerOptions& tracker = options.tracker;
   tracker.corners.contour_filter = Switch::kOff;
   tracker.masks.highlights = Switch::kOff;
@@ -213,7 +236,7 @@ Result<RunSummary> RunTrack(const RunRequest& request, const TrackOptions& optio
     truth = *std::move(opened);
   }
 
-  const auto start = ReadStart(request, options.tracker.init, **sequence);
+  const auto start = ReadStart(request, usable, **sequence);
   if (!start.ok()) return start.status();
 
   OptionTable table;
@@ -228,7 +251,9 @@ Result<RunSummary> RunTrack(const RunRequest& request, const TrackOptions& optio
                                    static_cast<std::uint64_t>(options.seed),
                                    request.input.image_path.string(),
                                    request.input.camera_path.string(),
-                                   {oracles.begin(), oracles.end()}},
+                                   {oracles.begin(), oracles.end()},
+                                   start->working_image.scale,
+                                   start->working_image.smoothing_px},
                                   table.ToYaml(), ColumnsOfFrames(), writer_options);
   if (!writer.ok()) return writer.status();
 

@@ -14,6 +14,8 @@
 namespace pliant {
 namespace {
 
+constexpr std::int64_t kMinNasalFrames = 33;  // of 35
+constexpr double kNasalWidth_px = 1920;
 constexpr std::size_t kMinPorcine = 200;  // map points that the published disparities cover
 constexpr double kDisparity = 0.01;       // median, relative: half a step of 8-bit disparities of some 50
 constexpr std::size_t kMinCloth = 300;    // map points of the first image, most of which are followed to the last
@@ -38,6 +40,29 @@ TEST(Recordings, TheLaparoscopyVideoIsReadDirectlyAndTrackedThroughAllItsFrames)
   const auto run = ReadRun(folder.Path("run"));
   ASSERT_TRUE(run.ok()) << run.status().message();
   EXPECT_EQ(static_cast<std::int64_t>(run->poses.size()), summary->frames_tracked);
+}
+
+TEST(Recordings, NoisyFullHdIsTrackedInSmallerImagesAndReportedInItsOwnPixels) {
+  const std::string folder_path = RecordingOrSkip("nasal");
+  if (folder_path.empty()) GTEST_SKIP() << "no recordings at " << PLIANT_TEST_RECORDINGS;
+  const TestFolder folder;
+  RunRequest request;
+  request.input.image_path = folder_path;
+  request.input.mask_path = folder_path + "/mask.png";
+  request.output_path = folder.Path("run");
+  const auto summary = RunTrack(request, TrackOptions(), {});
+  ASSERT_TRUE(summary.ok()) << summary.status().message();
+  EXPECT_GE(summary->frames_tracked, kMinNasalFrames);
+  EXPECT_LT(summary->description.image_scale, 1);
+  const auto run = ReadRun(folder.Path("run"));
+  ASSERT_TRUE(run.ok()) << run.status().message();
+  ASSERT_FALSE(run->frames.empty());
+  auto reader = ObservationReader::Open(folder.Path("run"));
+  ASSERT_TRUE(reader.ok()) << reader.status().message();
+  double right_px = 0;
+  for (auto rows = reader->Next(); rows.ok() && rows->has_value(); rows = reader->Next())
+    for (const PointObservation& seen : (*rows)->observations) right_px = std::max(right_px, seen.pixel.x());
+  EXPECT_GT(right_px, 0.5 * kNasalWidth_px);
 }
 
 TEST(Recordings, TenNearlyStillImagesSayWhyTheyCarryNoMap) {

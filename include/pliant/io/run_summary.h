@@ -41,6 +41,9 @@ struct RunDescription {
   std::string input;                      // the images' path, as given
   std::string camera = {};                // the calibration's path, absolute; empty: the one that belongs to the images
   std::vector<std::string> oracles = {};  // parts of the method that were replaced by the truth; empty in an honest run
+  // The images in which points were tracked: their size by that of the source, and their smoothing in their pixels.
+  double image_scale = 1;
+  double image_smoothing_px = 0;
 };
 
 // run.json.

@@ -38,14 +38,34 @@ struct EnumNames<Preset> {
                                         std::pair{Preset::kPaper, std::string_view("paper")}};
 };
 
+// How the images in which points are tracked come from those of the source (WorkingImage).
+enum class WorkingImageMode {
+  kMeasured,  // resized and smoothed as most points last
+  kFixed,     // by the options
+};
+template <>
+struct EnumNames<WorkingImageMode> {
+  static constexpr std::array kNames = {std::pair{WorkingImageMode::kMeasured, std::string_view("measured")},
+                                        std::pair{WorkingImageMode::kFixed, std::string_view("fixed")}};
+};
+
+struct ImageOptions {
+  WorkingImageMode working = WorkingImageMode::kMeasured;
+  double scale = 1;         // fixed: size of the working image by that of the source
+  double smoothing_px = 0;  // fixed: standard deviation of a Gaussian, in working pixels
+
+  void List(OptionTable& table);  // group "Image"
+};
+
 struct TrackOptions {
   int seed = 1;
   int threads = 2;  // 1: everything on one thread; 2 and more: images are read ahead, points are followed in parallel
   RunTimings timings = RunTimings::kWritten;
-  int max_frames_back = 60;  // before the reference of a first map, tracked backwards in time from it
+  int max_frames_back = 10000;  // before the reference of a first map, tracked backwards in time from it
+  ImageOptions image;
   TrackerOptions tracker;
 
-  void List(OptionTable& table);  // group "General" and the tracker's
+  void List(OptionTable& table);  // groups "General", "Image" and the tracker's
 };
 
 TrackOptions MakeTrackOptions(Preset preset);

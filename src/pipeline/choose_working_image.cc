@@ -1,0 +1,95 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pipeline/choose_working_image.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "pipeline/working_frame.h"
+#include "pliant/tracking/tracks/trackability.h"
+
+namespace pliant {
+namespace {
+
+// Runs of images that follow each other, some frames apart: what one of them shows may be an exception.
+constexpr int kRuns = 3;
+constexpr int kRunFrames = 16;  // about what a first map takes at least
+constexpr int kRunDistance = 60;
+// Where so many of the source's own corners last, its images are fine as they are.
+constexpr double kLastingShare = 2.0 / 3.0;
+// A count below says nothing.
+constexpr int kMinAlive = 20;
+// Of the working image's longer side, except where it is the source: smaller ones hold too little, larger ones cost
+// more time than they give.
+constexpr int kMinSide_px = 320;
+constexpr int kMaxSide_px = 1300;
+constexpr std::array kScales = {1.0, 0.75, 1.5, 0.5, 2.0, 1.0 / 3.0, 0.25};  // nearest to the source first
+constexpr std::array kSmoothings_px = {0.0, 0.7, 1.0, 1.4};
+// With which sizes are compared. At the source's own noise all large sizes would lose.
+constexpr double kSmoothingOfSizes_px = 0.7;
+
+using Run = std::vector<SequenceFrame>;
+
+std::vector<Run> ReadRuns(const SequenceRequest& request) {
+  auto sequence = OpenSequence(request);
+  if (!sequence.ok()) return {};
+  std::vector<Run> runs(kRuns);
+  for (int k = 0; k < kRuns * kRunDistance; ++k) {
+    auto next = (*sequence)->Next();
+    if (!next.ok() || !next->has_value()) break;
+    if (k % kRunDistance < kRunFrames) runs[static_cast<std::size_t>(k / kRunDistance)].push_back(**std::move(next));
+    if (k == (kRuns - 1) * kRunDistance + kRunFrames - 1) break;
+  }
+  return runs;
+}
+
+Trackability Measure(const std::vector<Run>& runs, const WorkingImage& working, const TrackOptions& options) {
+  Trackability all;
+  for (const Run& run : runs) {
+    std::vector<PreparedFrame> frames;
+    for (const SequenceFrame& frame : run) frames.push_back(PrepareWorkingFrame(frame, working, options.tracker));
+    const Trackability measured = MeasureTrackability(frames, options.tracker, options.threads);
+    all.corners += measured.corners;
+    all.alive += measured.alive;
+  }
+  return all;
+}
+
+// The first that is as good as the best, to the accuracy of a count; the first of all where none tells.
+WorkingImage FirstAsGoodAsTheBest(const std::vector<Run>& runs, const std::vector<WorkingImage>& candidates,
+                                  const TrackOptions& options) {
+  std::vector<int> alive;
+  for (const WorkingImage& candidate : candidates) alive.push_back(Measure(runs, candidate, options).alive);
+  const int best = *std::ranges::max_element(alive);
+  if (best < kMinAlive) return candidates.front();
+  const auto chosen = std::ranges::find_if(alive, [&](int count) { return count >= best - std::sqrt(best); });
+  return candidates[static_cast<std::size_t>(chosen - alive.begin())];
+}
+
+}  // namespace
+
+WorkingImage ChooseWorkingImage(const SequenceRequest& request, const TrackOptions& options) {
+  const WorkingImage fixed{options.image.scale, options.image.smoothing_px};
+  if (options.image.working != WorkingImageMode::kMeasured || options.tracker.oracle.Any()) return fixed;
+  const std::vector<Run> runs = ReadRuns(request);
+  if (runs.empty() || runs.front().size() < 2) return {};
+  const Trackability as_is = Measure(runs, {}, options);
+  if (as_is.corners >= kMinAlive && as_is.alive >= kLastingShare * as_is.corners) return {};
+  const cv::Size source = runs.front().front().image.size();
+  std::vector<WorkingImage> sizes;
+  for (const double scale : kScales) {
+    const double side = scale * std::max(source.width, source.height);
+    if (scale == 1 || (side >= kMinSide_px && side <= kMaxSide_px)) sizes.push_back({scale, kSmoothingOfSizes_px});
+  }
+  const WorkingImage size = FirstAsGoodAsTheBest(runs, sizes, options);
+  std::vector<WorkingImage> smoothings;
+  for (const double smoothing_px : kSmoothings_px) smoothings.push_back({size.scale, smoothing_px});
+  return FirstAsGoodAsTheBest(runs, smoothings, options);
+}
+
+}  // namespace pliant

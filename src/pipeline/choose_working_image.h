@@ -1,0 +1,22 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// How far the images of a sequence are resized and smoothed before points are tracked in them: measured, not assumed.
+// Where most of the source's own corners last, nothing is changed. Else it is counted, for several sizes and
+// smoothings, how many corners of an image are left after some frames. Fewer pixels have less noise, and a patch then
+// covers more of the scene; more pixels hold more corners, and a patch follows a finer deformation; the count weighs
+// all of this on the recording itself. Of those whose count is as good as the best one, to the accuracy sqrt(n) of a
+// count of n, the one nearest to the source is chosen.
+#pragma once
+
+#include "pliant/datasets/open_sequence.h"
+#include "pliant/image/working_image.h"
+#include "pliant/pipeline/track.h"
+
+namespace pliant {
+
+// The source where `options` do not ask for a measurement, or the images do not tell: too few can be read, or too few
+// corners last in any of them. The images that are read are those of `request`.
+WorkingImage ChooseWorkingImage(const SequenceRequest& request, const TrackOptions& options);
+
+}  // namespace pliant

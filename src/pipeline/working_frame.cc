@@ -1,0 +1,21 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pipeline/working_frame.h"
+
+namespace pliant {
+
+PreparedFrame PrepareWorkingFrame(const SequenceFrame& frame, const WorkingImage& working,
+                                  const TrackerOptions& options) {
+  return PrepareFrame(frame.frame_idx, frame.name, frame.timestamp_s, working.Image(frame.image),
+                      working.Nearest(frame.mask), options);
+}
+
+FrameReport InSourcePixels(FrameReport report, const WorkingImage& working) {
+  if (working.scale == 1) return report;
+  for (PointObservation& seen : report.observations) seen.pixel = working.ToSource(seen.pixel);
+  report.median_reprojection_error_px /= working.scale;
+  return report;
+}
+
+}  // namespace pliant
