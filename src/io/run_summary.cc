@@ -47,7 +47,7 @@ Status WriteRunSummary(const std::string& path, const RunSummary& summary) {
        {{"total_s", summary.total_s}, {"frames_per_second", summary.frames_per_second}, {"mean_ms", mean_ms}}}};
   // Paths need not be UTF-8.
   const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-  const Status status = WriteFileAtomically(path, text);
+  Status status = WriteFileAtomically(path, text);
   // How a run ended is written on a full disk too: the text fits into the file's first block.
   constexpr std::size_t kBlock = 4096;
   std::error_code error;
