@@ -39,7 +39,7 @@ std::string Wrap(std::string_view text, std::size_t indent) {
 
 // CLI11's sentences speak of its own types and counts.
 std::string ArgumentError(const CLI::ParseError& error) {
-  const std::string text = error.what();
+  std::string text = error.what();
   if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) == nullptr) return text;
   const std::string name = text.substr(0, text.find(':'));
   return name + (text.find("missing") != std::string::npos ? " needs a value" : " is given more than once; leave one");
@@ -91,7 +91,7 @@ CommandLine::CommandLine(Manual manual) : manual_(std::move(manual)) {}
 
 void CommandLine::AddArgument(Argument argument) { arguments_.push_back(std::move(argument)); }
 
-void CommandLine::Add(std::string name, std::string* value, std::string placeholder, std::string why, Need need,
+void CommandLine::Add(std::string name, std::string* value, const std::string& placeholder, std::string why, Need need,
                       Positional positional) {
   AddArgument({std::move(name), placeholder, std::move(why), placeholder, *value, need, [value](std::string_view text) {
                  *value = text;
@@ -108,8 +108,8 @@ void CommandLine::Add(std::string name, int* value, std::string why, int low, in
                }});
 }
 
-void CommandLine::Add(std::string name, std::vector<std::string>* values, std::string placeholder, std::string why,
-                      Need need) {
+void CommandLine::Add(std::string name, std::vector<std::string>* values, const std::string& placeholder,
+                      std::string why, Need need) {
   AddArgument({std::move(name), placeholder, std::move(why), placeholder, "", need, [values](std::string_view text) {
                  values->emplace_back(text);
                  return !text.empty();
@@ -135,7 +135,7 @@ void CommandLine::AddChoice(std::string name, std::string* value, const std::vec
                }});
 }
 
-void CommandLine::AddAlias(std::string name, std::string option, std::string placeholder, std::string why) {
+void CommandLine::AddAlias(std::string name, std::string option, const std::string& placeholder, std::string why) {
   AddArgument({std::move(name), placeholder, std::move(why), placeholder, "", Need::kOptional,
                [this, option = std::move(option)](std::string_view text) {
                  extras_.push_back("--" + option + "=" + std::string(text));

@@ -59,11 +59,12 @@ class CommandLine {
   explicit CommandLine(Manual manual);
 
   // An argument `--name VALUE`. The value at the time of the call is its default in the manual.
-  void Add(std::string name, std::string* value, std::string placeholder, std::string why, Need need,
+  void Add(std::string name, std::string* value, const std::string& placeholder, std::string why, Need need,
            Positional positional = Positional::kNo);
   void Add(std::string name, int* value, std::string why, int low, int high);
   // An argument that may be given several times; the values in the order given.
-  void Add(std::string name, std::vector<std::string>* values, std::string placeholder, std::string why, Need need);
+  void Add(std::string name, std::vector<std::string>* values, const std::string& placeholder, std::string why,
+           Need need);
   // An argument without a value.
   void AddFlag(std::string name, bool* value, std::string why);
   // One of the given names.
@@ -85,7 +86,7 @@ class CommandLine {
   }
 
   // A short name of an option: as if `--Group.option VALUE` were given last.
-  void AddAlias(std::string name, std::string option, std::string placeholder, std::string why);
+  void AddAlias(std::string name, std::string option, const std::string& placeholder, std::string why);
 
   // Reads the command's own arguments. An exit code when the command line is wrong (the sentence has been said).
   std::optional<int> Parse(std::span<const std::string> args);

@@ -21,7 +21,7 @@ std::string Blankness(const cv::Mat& gray) {
 }
 
 std::string ImageFault(const PreparedFrame& frame, const PreparedFrame& previous) {
-  if (const std::string blank = Blankness(frame.gray); !blank.empty()) return blank;
+  if (std::string blank = Blankness(frame.gray); !blank.empty()) return blank;
   if (previous.gray.size() == frame.gray.size() && cv::norm(frame.gray, previous.gray, cv::NORM_INF) == 0)
     return "the image is the same as the one before (frozen)";
   return {};

@@ -220,7 +220,7 @@ Eigen::VectorXd DeformingEquations::HessianTimes(const Eigen::VectorXd& x) const
 }
 
 Eigen::VectorXd DeformingEquations::NewtonStep() const {
-  const Eigen::VectorXd step = factors_.solve(-gradient_);
+  Eigen::VectorXd step = factors_.solve(-gradient_);
   if (gauge_.empty()) return step;
   const Eigen::VectorXd by_scale = factors_.solve(scale_);
   return step - scale_.dot(step) / scale_.dot(by_scale) * by_scale;

@@ -63,7 +63,7 @@ class WindowInitializer final : public Initializer {
 
   Status LastAttempt(const InitInput& input, InitOutcome* outcome) const {
     const auto since = static_cast<int>(input.frames.size()) - 1;
-    const Status status = LastAttempt(input, since, outcome);
+    Status status = LastAttempt(input, since, outcome);
     // The longer the window the more it holds, and the more there is to go wrong.
     if (status.ok() || LastAttempt(input, 2 * (since + 1) / 3 - 1, outcome).ok()) return Status::Ok();
     return status;
