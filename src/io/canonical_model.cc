@@ -32,7 +32,7 @@ Status WriteImages(FileGroup& group, const std::string& folder, colmap::Format f
   auto file = colmap::ModelFile::Create(group, folder, "images", format);
   if (!file.ok()) return file.status();
   file->Begin(colmap::ImagesHeader(images.size()), images.size());
-  const Status status = ForEachFrame(run_path, FramesOf(images), [&](std::size_t k, const auto& observations) {
+  Status status = ForEachFrame(run_path, FramesOf(images), [&](std::size_t k, const auto& observations) {
     const CanonicalImage& image = images[k];
     colmap::Image converted{
         ColmapImageId(image.frame_idx), colmap::FromPliant(image.cam_from_world), 1, image.name, {}};
@@ -109,7 +109,7 @@ Status WritePoints(FileGroup& group, const std::string& folder, colmap::Format f
     std::size_t first = 0;
     for (const CanonicalPoint& point : range) {
       const auto length = static_cast<std::size_t>(point.num_observations);
-      const Status status = file->Add(Converted(point), std::span(*elements).subspan(first, length));
+      Status status = file->Add(Converted(point), std::span(*elements).subspan(first, length));
       if (!status.ok()) return status;
       first += length;
     }
