@@ -30,6 +30,7 @@ const Manual kManual = {
     {"pliant simulate --output_path colon --Deformation.amplitude_mm 2.5",
      "pliant simulate --output_path rigid --Trajectory.frames 60 --Trajectory.kind sway",
      "pliant simulate --output_path liver --Scene.kind lobes --Trajectory.kind loop --Deformation.amplitude_mm 3",
+     // NOLINTNEXTLINE(bugprone-suspicious-missing-comma): one example in two literals
      "pliant simulate --output_path ct --Scene.kind mesh --Scene.mesh_path colon.stl --Trajectory.kind file "
      "--Trajectory.path poses.txt",
      "pliant simulate --output_path again --config colon/simulation.yaml"},

@@ -43,7 +43,7 @@ Result<RunMap> ReadKnown(const std::string& run_path, const std::string& sequenc
 Status AddPoints(const RunMap& known, RunSource* source) {
   std::map<PointId, CanonicalPoint> points;
   std::size_t unknown = 0;
-  const Status status = ForEachFrame(*source, [&](const SourceFrame& frame, const auto& observations) {
+  Status status = ForEachFrame(*source, [&](const SourceFrame& frame, const auto& observations) {
     for (const PointObservation& o : observations) {
       const auto [entry, added] = points.try_emplace(o.id);
       CanonicalPoint& point = entry->second;

@@ -24,10 +24,10 @@ Status RewriteLines(FileGroup& group, const std::string& path, const Change& cha
   std::string rows;
   std::size_t number = 0;
   for (std::string_view line; lines->Next(&line); ++number) {
-    if (const Status status = change(number, line, &rows); !status.ok()) return status;
-    if (const Status status = file->AppendWhenLarge(&rows); !status.ok()) return status;
+    if (Status status = change(number, line, &rows); !status.ok()) return status;
+    if (Status status = file->AppendWhenLarge(&rows); !status.ok()) return status;
   }
-  if (const Status status = file->Append(rows); !status.ok()) return status;
+  if (Status status = file->Append(rows); !status.ok()) return status;
   return file->Close();
 }
 
@@ -65,7 +65,7 @@ Status MoveObservations(FileGroup& group, const std::string& run_path, std::span
   std::string rows = std::string(kObservationColumns) + "\n";
   std::vector<int> frames_idx;
   for (const RunFrameWorld& world : worlds) frames_idx.push_back(world.frame_idx);
-  const Status status = ForEachFrame(run_path, frames_idx, [&](std::size_t k, const auto& observations) {
+  Status status = ForEachFrame(run_path, frames_idx, [&](std::size_t k, const auto& observations) {
     for (PointObservation seen : observations) {
       if (worlds[k].moved_by) seen.position = *worlds[k].moved_by * seen.position;
       AppendObservation(&rows, worlds[k].frame_idx, seen);
@@ -73,7 +73,7 @@ Status MoveObservations(FileGroup& group, const std::string& run_path, std::span
     return file->AppendWhenLarge(&rows);
   });
   if (!status.ok()) return status;
-  if (const Status written = file->Append(rows); !written.ok()) return written;
+  if (Status written = file->Append(rows); !written.ok()) return written;
   return file->Close();
 }
 

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
+#include <cmath>
 #include <filesystem>
 #include <set>
 #include <string>
@@ -22,7 +23,7 @@ constexpr double kNameLeft = 110;  // beside the frame's number
 constexpr double kUsualFps = 30;
 
 // Even, as the codecs want it.
-int Even(double size) { return 2 * static_cast<int>(0.5 * size + 0.5); }
+int Even(double size) { return 2 * static_cast<int>(std::lround(0.5 * size)); }
 
 double FramesPerSecond(const View& view) {
   std::vector<double> steps;
