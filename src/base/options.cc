@@ -192,11 +192,11 @@ std::string OptionTable::FullName(const std::string& name) const {
   return name.find('.') == std::string::npos ? group_ + "." + name : name;
 }
 
-void OptionTable::Renamed(std::string old_name, std::string name) {
+void OptionTable::Renamed(const std::string& old_name, const std::string& name) {
   renamed_.emplace_back(FullName(old_name), FullName(name));
 }
 
-void OptionTable::RenamedValue(std::string name, std::string old_value, std::string value) {
+void OptionTable::RenamedValue(const std::string& name, const std::string& old_value, std::string value) {
   renamed_values_.emplace_back(FullName(name) + "=" + old_value, std::move(value));
 }
 

@@ -30,7 +30,7 @@ constexpr std::array<std::string_view, 3> kFiles = {"cameras", "images", "points
 // What is missing of a format's three files; empty: nothing.
 std::string MissingFile(const std::string& folder, std::string_view extension) {
   for (const std::string_view name : kFiles) {
-    const std::string path = folder + "/" + std::string(name) + std::string(extension);
+    std::string path = folder + "/" + std::string(name) + std::string(extension);
     if (!Exists(path)) return path;
   }
   return {};

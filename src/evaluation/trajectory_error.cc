@@ -57,7 +57,7 @@ Result<Sim3> Align(std::span<const PosePair> pairs, TrajectoryAlignment alignmen
     run_centers.push_back(pair.world_from_cam.translation);
     true_centers.push_back(pair.true_world_from_cam.translation);
   }
-  const Result<Sim3> truth_from_run =
+  Result<Sim3> truth_from_run =
       AlignPoints(run_centers, true_centers,
                   alignment == TrajectoryAlignment::kSim3 ? AlignmentScale::kEstimated : AlignmentScale::kFixedAtOne);
   if (truth_from_run.ok()) return truth_from_run;

@@ -63,7 +63,7 @@ Eigen::Vector3f ImageTexture::At(const Eigen::Vector2f& chart, float footprint_m
       std::clamp(std::log2(std::max(footprint_mm / texel_mm_, 1.0F)), 0.0F, static_cast<float>(levels_.size()) - 1.0F);
   const auto i = std::min(static_cast<std::size_t>(level), levels_.size() - 1);
   const float t = level - static_cast<float>(i);
-  const Eigen::Vector3f fine = Bilinear(levels_[i], chart);
+  Eigen::Vector3f fine = Bilinear(levels_[i], chart);
   if (t < 1e-3F || i + 1 == levels_.size()) return fine;
   return fine + t * (Bilinear(levels_[i + 1], chart) - fine);
 }

@@ -38,7 +38,7 @@ Shader::SurfacePosition Shader::PositionOf(const std::array<std::uint32_t, 3>& t
 }
 
 const Eigen::Vector3f& Shader::AlbedoOf(float blood) const {
-  const int step = static_cast<int>((blood - kMinBlood) / (kMaxBlood - kMinBlood) * (kAlbedoSteps - 1) + 0.5F);
+  const int step = static_cast<int>(std::lround((blood - kMinBlood) / (kMaxBlood - kMinBlood) * (kAlbedoSteps - 1)));
   return albedo_[std::clamp(step, 0, kAlbedoSteps - 1)];
 }
 

@@ -72,7 +72,8 @@ Status WriteSequence(Simulator& simulator, const fs::path& output, const Simulat
   SimulatedFrame frame = simulator.Render(0);
   for (int i = 0; i < simulator.frame_count(); ++i) {
     // A frame is packed and written while the next one is rendered.
-    std::future<Status> written = std::async(std::launch::async, [&writer, &simulator, i, done = std::move(frame)] {
+    const SimulatedFrame done = std::exchange(frame, {});
+    std::future<Status> written = std::async(std::launch::async, [&writer, &simulator, i, &done] {
       return writer->Write({.timestamp_s = simulator.TimeOf(i),
                             .image = done.image,
                             .right = done.right,

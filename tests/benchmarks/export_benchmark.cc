@@ -57,7 +57,8 @@ bool WriteLongRun(const std::string& path) {
     report.state = TrackingState::kTracking;
     report.cam_from_world = Rigid3(Eigen::Quaterniond::Identity(), Eigen::Vector3d(-0.01 * frame, 0, 0));
     for (int i = 0; i < kPoints; ++i) {
-      const Eigen::Vector3d rest(0.3 * (i % kColumns - 50), 0.3 * (i / kColumns - 50), 60);
+      const int row = i / kColumns;
+      const Eigen::Vector3d rest(0.3 * (i % kColumns - 50), 0.3 * (row - 50), 60);
       const Eigen::Vector3d x = rest + Eigen::Vector3d(0, 0.001 * frame, 0.1 * (i % 7));
       if (frame == 0) report.new_points.push_back({PointId{i}, rest});
       report.observations.push_back({PointId{i}, *camera.Project(*report.cam_from_world * x), x, 0.9});

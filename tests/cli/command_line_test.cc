@@ -49,7 +49,7 @@ struct Outcome {
   int exit = -1;
   std::string out;
   std::string err;
-  std::string to = "";
+  std::string to = {};
   int pieces = 1;
   Fruit fruit = Fruit::kApple;
   bool quiet = false;
@@ -77,7 +77,7 @@ Outcome Give(const std::vector<std::string>& args) {
 }
 
 std::filesystem::path WriteTemporary(const std::string& name, const std::string& text) {
-  const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / name;
+  std::filesystem::path path = std::filesystem::path(testing::TempDir()) / name;
   std::ofstream(path) << text;
   return path;
 }

@@ -31,7 +31,9 @@ TEST(Program, AStartFromACloudTakesItsMethodAndSaysWhenTheUnitIsUnlikely) {
                 .exit,
             0);
   std::ofstream points(cloud);
-  for (int i = 0; i < 4096; ++i) points << 1e-3 * (i % 64 - 32) << " " << 1e-3 * (i / 64 - 32) << " 0.05\n";  // meters
+  for (int row = 0; row < 64; ++row)
+    for (int column = 0; column < 64; ++column)
+      points << 1e-3 * (column - 32) << " " << 1e-3 * (row - 32) << " 0.05\n";  // meters
   points.close();
   const std::string track = "track --Init.method depth --image_path '" + sequence + "' --output_path '" +
                             Temporary("run").string() + "' --Init.depth_cloud '" + cloud + "' ";

@@ -14,8 +14,6 @@
 namespace pliant {
 namespace {
 
-using testing::HasSubstr;
-
 TEST_F(OpenSequenceTest, RefusesWhatIsNotThere) {
   ExpectRefused(Request("nowhere"), ErrorCode::kNotFound, "nowhere");
   ExpectRefused(SequenceRequest{}, ErrorCode::kNotFound, "image path");

@@ -183,7 +183,7 @@ TEST(TrackSurvival, CountsInterruptionsAndWhatCameBack) {
 }
 
 TEST(TrackSurvival, CountsPointsTracksAndFrames) {
-  const auto ids = [](std::vector<int> values) {
+  const auto ids = [](const std::vector<int>& values) {
     std::vector<PointId> result;
     for (const int value : values) result.push_back({value});
     return result;

@@ -76,7 +76,7 @@ class DatabaseExport : public testing::Test {
   }
   // The sentence; nothing may be left in the folder but the log.
   Status Refused() const {
-    const Status status = Export().status();
+    Status status = Export().status();
     EXPECT_FALSE(std::filesystem::exists(folder_.Path("out/database.db")));
     EXPECT_FALSE(std::filesystem::exists(folder_.Path("out/database.db.tmp")));
     return status;

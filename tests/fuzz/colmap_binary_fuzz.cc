@@ -8,22 +8,22 @@ namespace pliant::colmap {
 namespace {
 
 struct Binary {
-  static constexpr auto Cameras = ReadBinaryCameras;
+  static auto Cameras(const std::string& path) { return ReadBinaryCameras(path); }
   static auto Images(const std::string& path) { return ReadBinaryImages(path, Observations::kRead); }
   static auto Points(const std::string& path) { return ReadBinaryPoints(path, Observations::kRead); }
-  static constexpr auto Rigs = ReadBinaryRigs;
-  static constexpr auto Frames = ReadBinaryFrames;
+  static auto Rigs(const std::string& path) { return ReadBinaryRigs(path); }
+  static auto Frames(const std::string& path) { return ReadBinaryFrames(path); }
 
   static std::string Begin(std::size_t count) {
     std::string file;
     AppendBytes(&file, count, 8);
     return file;
   }
-  static constexpr auto AppendCamera = AppendBinaryCamera;
-  static constexpr auto AppendImage = AppendBinaryImage;
+  static void AppendCamera(const Camera& value, std::string* out) { AppendBinaryCamera(value, out); }
+  static void AppendImage(const Image& value, std::string* out) { AppendBinaryImage(value, out); }
   static void AppendPoint(const Point3D& point, std::string* out) { AppendBinaryPoint(point, point.track, out); }
-  static constexpr auto AppendRig = AppendBinaryRig;
-  static constexpr auto AppendFrame = AppendBinaryFrame;
+  static void AppendRig(const Rig& value, std::string* out) { AppendBinaryRig(value, out); }
+  static void AppendFrame(const Frame& value, std::string* out) { AppendBinaryFrame(value, out); }
 };
 
 }  // namespace

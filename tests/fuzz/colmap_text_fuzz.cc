@@ -7,20 +7,20 @@ namespace pliant::colmap {
 namespace {
 
 struct Text {
-  static constexpr auto Cameras = ReadTextCameras;
+  static auto Cameras(const std::string& path) { return ReadTextCameras(path); }
   static auto Images(const std::string& path) { return ReadTextImages(path, Observations::kRead); }
   static auto Points(const std::string& path) { return ReadTextPoints(path, Observations::kRead); }
-  static constexpr auto Rigs = ReadTextRigs;
-  static constexpr auto Frames = ReadTextFrames;
+  static auto Rigs(const std::string& path) { return ReadTextRigs(path); }
+  static auto Frames(const std::string& path) { return ReadTextFrames(path); }
 
   static std::string Begin(std::size_t /*count*/) { return {}; }
-  static constexpr auto AppendCamera = AppendTextCamera;
+  static void AppendCamera(const Camera& value, std::string* out) { AppendTextCamera(value, out); }
   static void AppendImage(const Image& image, std::string* out) { AppendTextImage(image, Digits::kExact, out); }
   static void AppendPoint(const Point3D& point, std::string* out) {
     AppendTextPoint(point, point.track, Digits::kExact, out);
   }
-  static constexpr auto AppendRig = AppendTextRig;
-  static constexpr auto AppendFrame = AppendTextFrame;
+  static void AppendRig(const Rig& value, std::string* out) { AppendTextRig(value, out); }
+  static void AppendFrame(const Frame& value, std::string* out) { AppendTextFrame(value, out); }
 };
 
 }  // namespace

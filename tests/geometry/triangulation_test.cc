@@ -112,7 +112,9 @@ TEST(LinearTriangulation, LeavesTheLeastAlgebraicError) {
   Random random(6);
   int compared = 0;
   for (int i = 0; i < 200; ++i) {
-    const auto [ray0, ray1] = MakeSkewed(&random);
+    const auto rays = MakeSkewed(&random);
+    const Eigen::Vector3d& ray0 = rays.ray0;
+    const Eigen::Vector3d& ray1 = rays.ray1;
     const TriangulatedPoint point = TriangulateLinear(kCam1FromCam0, ray0, ray1);
     if (!point.ok()) continue;
     ++compared;

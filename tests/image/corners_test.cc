@@ -136,7 +136,10 @@ TEST(ContourMeasure, IsHighOnAnOccludingContourAndLowOnTextureLinesAndShading) {
   cv::line(vessel, {160, 0}, {160, 239}, cv::Scalar(80), 4);
   EXPECT_LT(ContourMeasure(vessel, std::vector<Eigen::Vector2d>{{158, 120}}, 16)[0], kNoContour);
   cv::Mat shading(kSize, CV_8UC1);
-  for (int x = 0; x < kSize.width; ++x) shading.col(x).setTo(40 + x / 2);
+  for (int x = 0; x < kSize.width; ++x) {
+    const int gray = 40 + x / 2;
+    shading.col(x).setTo(gray);
+  }
   EXPECT_LT(ContourMeasure(shading, std::vector<Eigen::Vector2d>{{160, 120}}, 16)[0], kNoContour);
 }
 

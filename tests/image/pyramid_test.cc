@@ -28,7 +28,7 @@ TEST(ImagePyramid, PixelOfALevelLiesAtTheHalvedPosition) {
   EXPECT_EQ(pyramid.height(2), 24);
   for (int level = 1; level < 3; ++level)
     for (const int x : {4, 10, 20})
-      EXPECT_NEAR(pyramid.Level(level).at<std::uint8_t>(8, x), 20 + (x << level) + (8 << level) / 2, kRounding);
+      EXPECT_NEAR(pyramid.Level(level).at<std::uint8_t>(8, x), 20 + (x << level) + (4 << level), kRounding);
 }
 
 TEST(ImagePyramid, DoesNotFoldFineTextureIntoCoarseLevels) {

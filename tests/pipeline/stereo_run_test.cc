@@ -52,7 +52,7 @@ class StereoRun : public testing::Test {
   std::string Sequence(bool mono) const {
     RenderedSequence rendered;
     rendered.mono = mono;
-    const std::string path = folder_.Path(mono ? "mono" : "stereo");
+    std::string path = folder_.Path(mono ? "mono" : "stereo");
     EXPECT_TRUE(ConvertSequence(rendered, path).ok());
     return path;
   }

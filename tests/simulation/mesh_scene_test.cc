@@ -198,8 +198,8 @@ TEST_F(MeshSceneTest, CarriesTheSolidTextureOrItsOwnPicture) {
             "mtllib floor.mtl\nv -25 20 -60\nv 25 20 -60\nv 25 20 60\nv -25 20 60\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
             "usemtl floor\nf 1/1 2/2 3/3 4/4\n");
   const cv::Mat image = Make(options).Render(0).image;
-  const auto left = image.at<cv::Vec3b>(100, 50);
-  const auto right = image.at<cv::Vec3b>(100, 110);
+  const auto& left = image.at<cv::Vec3b>(100, 50);
+  const auto& right = image.at<cv::Vec3b>(100, 110);
   EXPECT_GT(left[1], 2 * left[0]);
   EXPECT_GT(right[0], 2 * right[1]);
   fs::remove(folder_ / "floor.png");

@@ -23,8 +23,9 @@ constexpr double kMiddle_mm = 0.02;      // the middle of the row, which was mov
 Map WallMovedBy(const Rigid3& motion) {
   Map map;
   for (int i = 0; i < 49; ++i) {
+    const int row = i / 7;
     const double x = 4.0 * (i % 7) - 12;
-    const double y = 4.0 * (i / 7) - 12;
+    const double y = 4.0 * row - 12;
     const Eigen::Vector3d rest(x, y, 50 + 0.02 * (x * x + y * y));
     map.landmarks.push_back({.id = PointId{i}, .rest_position = rest, .position = motion * rest});
   }

@@ -30,7 +30,8 @@ struct Wall {
   Wall() {
     Random random(3);
     for (int i = 0; i < kSide * kSide; ++i) {
-      const Eigen::Vector3d in_cam(4.0 * (i % kSide) - 22, 4.0 * (i / kSide) - 22, 60);
+      const int row = i / kSide;
+      const Eigen::Vector3d in_cam(4.0 * (i % kSide) - 22, 4.0 * row - 22, 60);
       Landmark landmark{.id = PointId{i}, .position = cam_from_world.Inverse() * in_cam, .times_reestimated = 2};
       map.landmarks.push_back(landmark);
       Put(i, 1 + 0.06 * (i % kSide) / kSide + random.Normal(0.005));

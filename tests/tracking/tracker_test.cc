@@ -209,8 +209,8 @@ TEST_F(TrackerFromImages, PointsThatWereHiddenComeBack) {
     options.init.method = InitMethod::kDepth;
     options.find_lost = find_lost;
     options.growth.grow = Switch::kOff;
-    return RunMasked(options, [&](int i, cv::Mat mask) {
-      if (view == View::kHidden && i >= kFirstHidden && i <= kLastHidden) mask.colRange(0, mask.cols / 2) = 0;
+    return RunMasked(options, [&](int i, const cv::Mat& mask) {
+      if (view == View::kHidden && i >= kFirstHidden && i <= kLastHidden) mask.colRange(0, mask.cols / 2).setTo(0);
     });
   };
   const auto on_the_left = [](const FrameReport& report) {
@@ -269,8 +269,8 @@ TEST_F(TrackerFromImages, TheMapGrowsWhereTheImageShowsMore) {
     options.growth.grow = grow;
     options.growth.every = 1;
     options.growth.max_depth_sigma = 0.2;  // the few frames are short of parallax
-    return RunMasked(options, [&](int i, cv::Mat mask) {
-      if (i < kFirstOpen) mask.colRange(mask.cols / 2, mask.cols) = 0;
+    return RunMasked(options, [&](int i, const cv::Mat& mask) {
+      if (i < kFirstOpen) mask.colRange(mask.cols / 2, mask.cols).setTo(0);
     });
   };
   const auto on_the_right = [](const FrameReport& report) {

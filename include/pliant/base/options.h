@@ -91,8 +91,8 @@ class OptionTable {
 
   // Earlier names, of an option of the present group (or "Group.option" of another one), of a value of a choice of the
   // present group, and of a whole group. They are listed nowhere; who still gives one is told the name of today.
-  void Renamed(std::string old_name, std::string name);
-  void RenamedValue(std::string name, std::string old_value, std::string value);
+  void Renamed(const std::string& old_name, const std::string& name);
+  void RenamedValue(const std::string& name, const std::string& old_value, std::string value);
   void RenamedGroup(std::string old_group, std::string group);
 
   const std::vector<OptionField>& fields() const { return fields_; }

@@ -53,19 +53,20 @@ class PerspectiveModel {
     const T y = point[1] / point[2];
     const T r2 = x * x + y * y;
     if (!(r2 < max_radius_sq_)) return false;
-    T xd = x;
-    T yd = y;
-    if constexpr (kDistortions > 0) {
+    if constexpr (kDistortions == 0) {
+      pixel[0] = fx() * x + cx();
+      pixel[1] = fy() * y + cy();
+    } else {
       const T radial = 1.0 + r2 * (k1() + r2 * k2());
-      xd = x * radial;
-      yd = y * radial;
+      T xd = x * radial;
+      T yd = y * radial;
       if constexpr (kDistortions == 4) {
         xd += 2.0 * p1() * x * y + p2() * (r2 + 2.0 * x * x);
         yd += 2.0 * p2() * x * y + p1() * (r2 + 2.0 * y * y);
       }
+      pixel[0] = fx() * xd + cx();
+      pixel[1] = fy() * yd + cy();
     }
-    pixel[0] = fx() * xd + cx();
-    pixel[1] = fy() * yd + cy();
     return true;
   }
 
