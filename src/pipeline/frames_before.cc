@@ -25,7 +25,8 @@ void AddTimes(const FrameReport& before, FrameReport* report) {
 }  // namespace
 
 bool AwaitsAMap(const FrameReport& report) {
-  return report.state == TrackingState::kWaitingForReference || report.state == TrackingState::kInitializing;
+  return report.state == TrackingState::kWaitingForReference || report.state == TrackingState::kInitializing ||
+         report.state == TrackingState::kAmbiguous;
 }
 
 FramesBefore::FramesBefore(const SequenceRequest& input, const WorkingImage& working, const Camera& camera,

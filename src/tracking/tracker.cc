@@ -90,6 +90,13 @@ void AddLastAttempt(const BootstrapStep& step, const StageTimes& times, FrameRep
   for (std::size_t k = 0; k < added.size(); ++k) report->stage_ms[k].second += added[k].second;
 }
 
+// Frames in which points were followed from a reference that came to nothing, since camera and scene could not be told
+// apart.
+void MarkAmbiguous(std::vector<FrameReport>* reports) {
+  for (FrameReport& report : *reports)
+    if (report.state == TrackingState::kInitializing) report.state = TrackingState::kAmbiguous;
+}
+
 double MedianError(const FollowedPoints& points) {
   std::vector<double> errors;
   for (const FramePoint& point : points.solved) errors.push_back(point.reprojection_error_px);
@@ -176,6 +183,7 @@ void Tracker::FindSubmapAgain(const PreparedFrame& frame) {
 FrameResult Tracker::Bootstrap(const PreparedFrame& frame, StageTimes* times) {
   BootstrapStep step = bootstrapper_->Process(frame, &submaps_->current(), times);
   for (const TrackingEvent event : step.events) Apply(event);
+  if (step.ambiguous) MarkAmbiguous(&held_);
   if (step.map) StartMap(*step.map);
   return {.tracked = step.tracked,
           .losses = std::move(step.losses),
@@ -257,6 +265,7 @@ void Tracker::EndSequence() {
   BootstrapStep step = bootstrapper_->EndSequence(&times);
   for (const TrackingEvent event : step.events) Apply(event);
   AddLastAttempt(step, times, &held_.back());
+  if (step.ambiguous) MarkAmbiguous(&held_);
   if (!step.map) return;
   StartMap(*step.map);
   held_ = bootstrapper_->Completed(*step.map, std::move(held_));

@@ -122,6 +122,18 @@ TEST(Recordings, TheStereoMapOfThePorcinePairIsThatOfItsDisparities) {
   EXPECT_LT(Median(errors), kDisparity);
 }
 
+TEST(Recordings, AStillCameraBeforeAClothThatDeformsIsAmbiguous) {
+  const std::string folder_path = RecordingOrSkip("cloth");
+  if (folder_path.empty()) GTEST_SKIP() << "no recordings at " << PLIANT_TEST_RECORDINGS;
+  const TestFolder folder;
+  const RunSummary summary = TrackSequenceAt(folder_path, folder.Path("run"), TrackOptions());
+  EXPECT_EQ(summary.frames_tracked, 0);
+  EXPECT_THAT(summary.note, testing::HasSubstr("cannot be told apart"));
+  const auto run = ReadRun(folder.Path("run"));
+  ASSERT_TRUE(run.ok()) << run.status().message();
+  for (const auto& frame : run->frames) EXPECT_EQ(frame.state, TrackingState::kAmbiguous);
+}
+
 TEST(Recordings, TheClothIsTrackedFromItsFirstCloudBeforeACameraThatStandsStill) {
   const std::string folder_path = RecordingOrSkip("cloth");
   if (folder_path.empty()) GTEST_SKIP() << "no recordings at " << PLIANT_TEST_RECORDINGS;

@@ -21,7 +21,8 @@ inline constexpr double kNominalMm = 50;
 inline constexpr double kShape = 0.03;  // relative depth error, median; a constant depth has about 0.15
 inline constexpr double kNoisePx = 0.05;
 
-enum class CameraMotion { kForwards, kRotation, kStill };
+// kStill and kRotation: nothing moves but the camera. kHeld: the camera alone does not.
+enum class CameraMotion { kForwards, kRotation, kStill, kHeld };
 
 // Tracks on a wavy surface that waves. Points 100 and above come into view later.
 struct WavingTracks {
@@ -35,6 +36,8 @@ struct WavingTracks {
   explicit WavingTracks(int count, CameraMotion motion = CameraMotion::kForwards, double amplitude = 3,
                         double relief = 15, unsigned seed = 5)
       : amplitude_mm(amplitude) {
+    const bool turns = motion == CameraMotion::kForwards || motion == CameraMotion::kRotation;
+    const bool waves = motion == CameraMotion::kForwards || motion == CameraMotion::kHeld;
     Random random(seed);
     for (int i = 0; i < 160; ++i) {
       const double x = random.Uniform(-30, 30);
@@ -42,14 +45,14 @@ struct WavingTracks {
       points.emplace_back(x, y, 60 + relief * std::sin(x / 14) * std::cos(y / 18));
     }
     for (int t = 0; t < count; ++t) {
-      const double turn = motion == CameraMotion::kStill ? 0 : 1;
+      const double turn = turns ? 1 : 0;
       poses.emplace_back(RotationExp(turn * Eigen::Vector3d(0.02 * std::sin(0.05 * t), 0.002 * t, 0)),
                          motion == CameraMotion::kForwards ? Eigen::Vector3d(0.5 * std::sin(0.06 * t), 0, -0.5 * t)
                                                            : Eigen::Vector3d::Zero());
       InitFrame frame{100 + t, {}};
       for (int i = 0; i < 160; ++i) {
         if (i >= 100 && t < 10) continue;
-        const Eigen::Vector3d x = poses.back() * At(i, motion == CameraMotion::kForwards ? t : 0);
+        const Eigen::Vector3d x = poses.back() * At(i, waves ? t : 0);
         const auto pixel = camera.Project(x);
         if (!pixel || !camera.Contains(*pixel)) continue;
         InitObservation seen{PointId{i}, *pixel + kNoisePx * Eigen::Vector2d(random.Normal(), random.Normal())};

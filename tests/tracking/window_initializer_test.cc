@@ -255,6 +255,26 @@ TEST(WindowInitializer, SaysThatTheCameraOnlyTurned) {
   EXPECT_THAT(outcome.reason, HasSubstr("rotated or stood still"));
 }
 
+TEST(WindowInitializer, SaysWhenCameraAndSceneCannotBeToldApart) {
+  const WavingTracks held(51, CameraMotion::kHeld);
+  const InitOutcome outcome = held.Try({});
+  EXPECT_EQ(outcome.decision, InitDecision::kNewReference);
+  EXPECT_TRUE(outcome.ambiguous);
+  EXPECT_LT(outcome.measured.still_camera_error_ratio, WindowInitOptions().min_still_camera_ratio);
+  EXPECT_THAT(outcome.reason, HasSubstr("cannot be told apart"));
+  WindowInitOptions unasked;
+  unasked.min_still_camera_ratio = 0;
+  EXPECT_EQ(held.Try(unasked).decision, InitDecision::kMap) << "nothing else refuses it";
+}
+
+TEST(WindowInitializer, SaysByHowMuchTheCameraMoves) {
+  const InitOutcome outcome = WavingTracks(61).Try({});
+  ASSERT_EQ(outcome.decision, InitDecision::kMap) << outcome.reason;
+  EXPECT_FALSE(outcome.ambiguous);
+  EXPECT_GT(outcome.measured.still_camera_error_ratio, WindowInitOptions().min_still_camera_ratio);
+  EXPECT_THAT(outcome.reason, HasSubstr("with a camera that stands still"));
+}
+
 TEST(WindowInitializer, SaysThatTheCameraStoodStill) {
   const InitOutcome outcome = WavingTracks(31, CameraMotion::kStill).Try({});
   EXPECT_EQ(outcome.decision, InitDecision::kWait);
@@ -285,10 +305,12 @@ TEST(WindowInitializer, APlaneOfTwoMotionsIsNoMap) {
 // One that waves has two minima as well: its depths are as good as is said, or there is no map.
 TEST(WindowInitializer, APlaneThatWavesIsKnownOrRefused) {
   int maps = 0;
+  WindowInitOptions options;
+  options.min_still_camera_ratio = 0;  // most of these smooth paths would be refused for that alone
   for (const unsigned seed : {1U, 2U, 3U}) {
     for (const int frames : {31, 36, 46}) {
       const WavingTracks plane(frames, CameraMotion::kForwards, 1, 0, seed);
-      const InitOutcome outcome = plane.Try({}, InitMoment::kLastFrame);
+      const InitOutcome outcome = plane.Try(options, InitMoment::kLastFrame);
       if (outcome.decision != InitDecision::kMap) continue;
       ++maps;
       EXPECT_LT(plane.ShapeError(outcome, frames - 1), kSaysSo * outcome.measured.median_depth_sigma)

@@ -65,6 +65,6 @@ function drawing(): Promise<number> {
 function sentence({ running, state, read, frames_in_sequence: total }: Answer, rows: number): string {
   if (!running) return "The run has ended, and its images with it: `pliant report` makes a page that keeps them.";
   const frame = total > 0 ? `frame ${read} of ${total}` : `frame ${read}`;
-  if (state === "initializing" || state === "waiting_for_reference" || rows === 0) return `Waiting for the first map: ${frame}.`;
+  if (state === "initializing" || state === "ambiguous" || state === "waiting_for_reference" || rows === 0) return `Waiting for the first map: ${frame}.`;
   return `Running: ${frame}, ${state}.`;
 }

@@ -27,6 +27,7 @@ namespace pliant {
 
 enum class TrackingState {
   kWaitingForReference,  // no reference frame yet: too few corners
+  kAmbiguous,            // points were followed, but camera and scene cannot be told apart
   kInitializing,         // points are followed; the first map does not exist yet, or never came
   kTracking,             // pose and deformation of this frame are known, if only since a later frame made the map
   kLost,                 // too few points are left
@@ -37,6 +38,7 @@ struct EnumNames<TrackingState> {
   static constexpr std::array kNames = {
       std::pair{TrackingState::kWaitingForReference, std::string_view("waiting_for_reference")},
       std::pair{TrackingState::kInitializing, std::string_view("initializing")},
+      std::pair{TrackingState::kAmbiguous, std::string_view("ambiguous")},
       std::pair{TrackingState::kTracking, std::string_view("tracking")},
       std::pair{TrackingState::kLost, std::string_view("lost")}};
 };

@@ -44,6 +44,9 @@ bool DeformingEquations::Linearize(const DeformingState& state) {
 }
 
 void DeformingEquations::AddPriors(const DeformingState& state) {
+  if (!terms_->camera_translates())  // nothing else is in their rows: their step is zero
+    for (Eigen::Index v = 1; v < terms_->num_views(); ++v)
+      hessian_.diagonal().segment<3>(ViewIndex(static_cast<int>(v)) + 3).setOnes();
   const Eigen::Index rank = terms_->rank();
   if (rank == 0) return;
   const Eigen::MatrixXd& of_coefficients = terms_->coefficient_hessian();

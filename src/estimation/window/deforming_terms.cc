@@ -226,7 +226,10 @@ ViewDerivative DeformingTerms::ByView(const Sight& sight, std::size_t point, con
   const auto shapes = state.points.col(static_cast<Eigen::Index>(point)).tail(shapes_size());
   ViewDerivative by_view(2, view_size());
   by_view.leftCols<3>().noalias() = sight.by_x * -Skew(sight.turned);
-  by_view.middleCols<3>(3) = sight.by_x;
+  if (camera_translates())
+    by_view.middleCols<3>(3) = sight.by_x;
+  else
+    by_view.middleCols<3>(3).setZero();
   for (int r = 0; r < rank_; ++r) by_view.col(6 + r).noalias() = sight.by_position * shapes.segment<3>(3 * r);
   return by_view;
 }

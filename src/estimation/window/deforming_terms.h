@@ -80,6 +80,7 @@ class DeformingTerms {
   Eigen::Index num_views() const { return static_cast<Eigen::Index>(start_.times.size()); }
   Eigen::Index num_nodes() const { return node_hessian_.rows(); }
   std::size_t num_points() const { return charts_.size(); }
+  bool camera_translates() const { return start_.camera == WindowCamera::kFree; }
   Eigen::Index view_size() const { return 6 + rank_; }
   Eigen::Index shapes_size() const { return 3 * rank_; }
   Eigen::Index point_size() const { return 3 + 3 * rank_; }

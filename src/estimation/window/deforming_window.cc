@@ -93,26 +93,6 @@ void SetCoefficients(int rank, DeformingWindow* window, SurfaceNodes* nodes) {
   nodes->shapes.setZero(3 * rank, static_cast<Eigen::Index>(nodes->positions.size()));
 }
 
-// The R strongest coefficients of all the points' motions, of unit mean square, and the basis shapes that go with them:
-// the best approximation of rank R (Eckart, Young). In a window that starts from zero its coefficients do too.
-void KeepStrongestCoefficients(int rank, DeformingWindow* window, SurfaceNodes* nodes) {
-  const Eigen::Index views = window->coefficients.cols();
-  Eigen::MatrixXd second_moment = Eigen::MatrixXd::Zero(window->coefficients.rows(), window->coefficients.rows());
-  for (const Eigen::Matrix3Xd& shapes : window->shapes) second_moment += shapes.transpose() * shapes;
-  const Eigen::MatrixXd motions = window->coefficients.transpose() * second_moment * window->coefficients;
-  const auto eigen = EigenOfSymmetric(motions);  // the strongest last
-  const Eigen::MatrixXd strongest = eigen.vectors.rightCols(rank).rowwise().reverse();
-  const double length = std::sqrt(static_cast<double>(views));
-  const Eigen::MatrixXd change = window->coefficients * strongest / length;
-  for (Eigen::Matrix3Xd& shapes : window->shapes) shapes = Eigen::Matrix3Xd(shapes * change);
-  Eigen::MatrixXd node_shapes(3 * rank, nodes->shapes.cols());
-  for (Eigen::Index n = 0; n < node_shapes.cols(); ++n)
-    node_shapes.col(n) = (nodes->shapes.col(n).reshaped(3, change.rows()) * change).reshaped();
-  nodes->shapes = node_shapes;
-  window->coefficients = length * strongest.transpose();
-  window->coefficients.col(0).setZero();  // but for rounding it is
-}
-
 // A sample's solutions, each extended to all points: of `rank`, and then, each from the one before, down to
 // `last_rank`.
 using SampleSolutions = std::vector<Result<DeformingSolution>>;
@@ -143,7 +123,7 @@ SampleSolutions SolveSample(const SampleProblem& common, const PointSample& samp
   SetCoefficients(rank, &part, &nodes);
   SampleSolutions solutions;
   for (int of_rank = rank; of_rank >= last_rank; --of_rank) {
-    if (of_rank < rank) KeepStrongestCoefficients(of_rank, &part, &nodes);
+    if (of_rank < rank) KeepStrongestShapes(of_rank, &part, &nodes);
     DeformingProblem problem(part, nodes, common.focal_px, common.options);
     const auto cost = problem.Solve(common.options.max_iterations);
     if (!cost.ok()) {

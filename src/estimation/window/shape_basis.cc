@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "pliant/deformation/graph.h"
+#include "pliant/geometry/decompositions.h"
 
 namespace pliant {
 namespace {
@@ -35,6 +36,24 @@ ShapeSizes SizesOf(const SurfaceNodes& nodes) {
   }
   const auto entries = static_cast<double>(nodes.shapes.size());
   return {std::sqrt(nodes.shapes.squaredNorm() / entries), std::sqrt(gradients / entries)};
+}
+
+void KeepStrongestShapes(int rank, DeformingWindow* window, SurfaceNodes* nodes) {
+  const Eigen::Index views = window->coefficients.cols();
+  Eigen::MatrixXd second_moment = Eigen::MatrixXd::Zero(window->coefficients.rows(), window->coefficients.rows());
+  for (const Eigen::Matrix3Xd& shapes : window->shapes) second_moment += shapes.transpose() * shapes;
+  const Eigen::MatrixXd motions = window->coefficients.transpose() * second_moment * window->coefficients;
+  const auto eigen = EigenOfSymmetric(motions);  // the strongest last
+  const Eigen::MatrixXd strongest = eigen.vectors.rightCols(rank).rowwise().reverse();
+  const double length = std::sqrt(static_cast<double>(views));
+  const Eigen::MatrixXd change = window->coefficients * strongest / length;
+  for (Eigen::Matrix3Xd& shapes : window->shapes) shapes = Eigen::Matrix3Xd(shapes * change);
+  Eigen::MatrixXd node_shapes(3 * rank, nodes->shapes.cols());
+  for (Eigen::Index n = 0; n < node_shapes.cols(); ++n)
+    node_shapes.col(n) = (nodes->shapes.col(n).reshaped(3, change.rows()) * change).reshaped();
+  nodes->shapes = node_shapes;
+  window->coefficients = length * strongest.transpose();
+  window->coefficients.col(0).setZero();  // but for rounding it is
 }
 
 std::vector<NodesOfPoint> NodesAround(const std::vector<Eigen::Vector3d>& points_in_world,

@@ -24,6 +24,11 @@ struct ShapeSizes {
 };
 ShapeSizes SizesOf(const SurfaceNodes& nodes);
 
+// Makes the window's coefficients and basis shapes, and those of its nodes, the best approximation of its motions with
+// `rank` of them (Eckart, Young): the strongest coefficients, of unit mean square, and the shapes that go with them.
+// They are zero in the first view.
+void KeepStrongestShapes(int rank, DeformingWindow* window, SurfaceNodes* nodes);
+
 struct NodeWeight {
   int node_idx = 0;
   double weight = 0;

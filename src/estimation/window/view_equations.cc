@@ -60,6 +60,9 @@ void ViewEquations::Assemble(const DeformingState& state) {
         for (Eigen::Index row = col; row < size; ++row)
           enter(v * size + row, v * size + col, part.hessian[static_cast<std::size_t>(v)](row, col));
   }
+  if (!terms_->camera_translates())  // nothing else is in their rows: their step is zero
+    for (Eigen::Index v = 0; v < views; ++v)
+      for (Eigen::Index k = 3; k < 6; ++k) enter(v * size + k, v * size + k, 1.0);
   if (rank > 0) {
     const Eigen::MatrixXd coefficient_gradient = state.coefficients.rightCols(views) * of_coefficients;
     for (Eigen::Index a = 0; a < views; ++a) {

@@ -79,6 +79,7 @@ BootstrapStep Bootstrapper::FollowReference(const PreparedFrame& frame, Submap* 
   if (!HasReference() && !step.map) {  // the reference is spent: this image becomes the next one
     BootstrapStep next = TakeReference(frame, submap, times);
     next.events.insert(next.events.begin(), TrackingEvent::kReferenceSpent);
+    next.ambiguous = step.ambiguous;
     step.losses.Add(next.losses);
     next.losses = std::move(step.losses);
     next.note = step.note + "; " + next.note;
@@ -101,6 +102,7 @@ void Bootstrapper::TryInitialize(const PreparedFrame& frame, StageTimes* times, 
       step->events.push_back(TrackingEvent::kMapAwaited);
       break;
     case InitDecision::kNewReference:
+      step->ambiguous = outcome.ambiguous;
       Abandon();
       break;
   }
@@ -110,6 +112,7 @@ BootstrapStep Bootstrapper::EndSequence(StageTimes* times) {
   BootstrapStep step;
   InitOutcome outcome = AskInitializer({}, InitMoment::kLastFrame, times);
   step.note = WithFault(outcome.reason, image_fault_);
+  step.ambiguous = outcome.ambiguous && outcome.decision == InitDecision::kNewReference;
   if (outcome.decision == InitDecision::kMap) FinishMap(std::move(outcome), &step);
   return step;
 }

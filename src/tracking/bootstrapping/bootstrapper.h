@@ -31,6 +31,7 @@ struct BootstrapStep {
   int tracked = 0;                         // points found in this frame, or followed into it
   LossCounts losses = {};
   std::string note = {};                       // one sentence
+  bool ambiguous = false;                      // of the frames since a reference that was given up
   std::optional<FirstMap> map = std::nullopt;  // when the initializer made one; the bootstrapper then begins anew
 };
 

@@ -65,8 +65,9 @@ class WindowInitializer final : public Initializer {
     const auto since = static_cast<int>(input.frames.size()) - 1;
     Status status = LastAttempt(input, since, outcome);
     // The longer the window the more it holds, and the more there is to go wrong.
-    if (status.ok() || LastAttempt(input, 2 * (since + 1) / 3 - 1, outcome).ok()) return Status::Ok();
-    return status;
+    if (status.ok() || outcome->ambiguous) return status;
+    Status of_shorter = LastAttempt(input, 2 * (since + 1) / 3 - 1, outcome);
+    return of_shorter.ok() || outcome->ambiguous ? of_shorter : status;
   }
 
   // A sequence may end so early that its map must be certain all the same.
@@ -140,6 +141,11 @@ void WindowInitOptions::List(OptionTable& table) {
             1e-3, 100);
   table.Add("min_certain_share", &min_certain_share, "-",
             "minimum share of certain points among those still seen; it decreases to 0 at last_frame", 0, 1);
+  table.Add(
+      "min_still_camera_ratio", &min_still_camera_ratio, "-",
+      "minimum ratio of the reprojection errors of a camera that stands still to those of one that moves; below it "
+      "camera and scene cannot be told apart, and a deforming window is no map; 0: not compared",
+      0, 100);
   table.AddChoice("light", &light, "use brightness as a depth cue; the light source has to be at the camera");
   table.Add("gamma", &gamma, "-",
             "gamma of the camera's response, for the depth from brightness; a sequence's own photometric "

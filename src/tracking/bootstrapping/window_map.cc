@@ -15,6 +15,7 @@
 
 #include "pliant/base/statistics.h"
 #include "pliant/geometry/triangulation.h"
+#include "tracking/bootstrapping/camera_motion_check.h"
 #include "tracking/bootstrapping/initial_map.h"
 
 namespace pliant {
@@ -94,30 +95,11 @@ Status EnoughCertain(const InitInput& input, const SolvedWindow& window, const M
 // The points in all frames of the input, fixed; poses and coefficients start between those of the solved views.
 Status OptimizeAllViews(const InitInput& input, const SolvedWindow& window, const WindowInitOptions& options,
                         MapPoints* points) {
-  const DeformingWindow& solved = window.solution.window;
-  DeformingWindow all;
-  all.points_in_world = points->solution.window.points_in_world;
-  all.shapes = points->solution.window.shapes;
-  all.coefficients.resize(solved.coefficients.rows(), static_cast<Eigen::Index>(input.frames.size()));
-  std::size_t next = 0;  // the first solved view that is not before the frame
-  for (std::size_t k = 0; k < input.frames.size(); ++k) {
-    while (window.views[next] < k && next + 1 < window.views.size()) ++next;
-    const std::size_t before = window.views[next] <= k ? next : next - 1;
-    const double share = before == next ? 0.0
-                                        : static_cast<double>(k - window.views[before]) /
-                                              static_cast<double>(window.views[next] - window.views[before]);
-    const Rigid3& a = solved.cams_from_world[before];
-    const Rigid3& b = solved.cams_from_world[next];
-    all.times.push_back(input.frames[k].frame_idx - input.frames.front().frame_idx);
-    all.cams_from_world.emplace_back(a.rotation.slerp(share, b.rotation),
-                                     (1.0 - share) * a.translation + share * b.translation);
-    all.coefficients.col(static_cast<Eigen::Index>(k)) =
-        (1.0 - share) * solved.coefficients.col(static_cast<Eigen::Index>(before)) +
-        share * solved.coefficients.col(static_cast<Eigen::Index>(next));
-    const auto seen = SeenIn(input, input.frames[k], points->ids, static_cast<int>(k), options);
-    all.observations.insert(all.observations.end(), seen.begin(), seen.end());
-  }
-  auto optimized = OptimizeDeformingViews(all, input.camera.MeanFocalLengthPx(), options.window, input.threads);
+  DeformingWindow solved = points->solution.window;
+  solved.cams_from_world = window.solution.window.cams_from_world;
+  solved.coefficients = window.solution.window.coefficients;
+  auto optimized = OptimizeDeformingViews(InAllFrames(input, window.views, solved, points->ids, options),
+                                          input.camera.MeanFocalLengthPx(), options.window, input.threads);
   if (!optimized.ok()) return optimized.status();
   points->solution.window = std::move(*optimized);
   return Status::Ok();
@@ -240,6 +222,7 @@ Status MakeWindowMap(const InitInput& input, const SolvedWindow& window, const M
     return {ErrorCode::kInsufficient, "only " + std::to_string(left) +
                                           " points agree with the frames between those of the window (at least " +
                                           std::to_string(options.min_points) + " must)"};
+  if (Status status = CheckCameraMotion(input, window, options, outcome); !status.ok()) return status;
   measure();
   if (Status status = FillOutcome(input, nominal_depth_mm, points, outcome); !status.ok()) return status;
   outcome->rejected = AllRejected(input, points, std::move(rejected));
@@ -247,6 +230,8 @@ Status MakeWindowMap(const InitInput& input, const SolvedWindow& window, const M
                     (window.solution.window.shapes.empty() ? "rigid" : "deforming") + " window of " +
                     std::to_string(input.frames.size()) + " frames, depth noise " +
                     Digits(100.0 * outcome->measured.median_depth_sigma, 1) + " % of the median depth";
+  if (const double ratio = outcome->measured.still_camera_error_ratio; ratio > 0.0)
+    outcome->reason += "; with a camera that stands still the errors would be " + Digits(ratio, 1) + " times as large";
   if (window.light_is_of_no_use) outcome->reason += "; brightness is no depth cue in these images and was not used";
   return Status::Ok();
 }

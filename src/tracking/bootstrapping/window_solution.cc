@@ -193,6 +193,35 @@ std::vector<DeformingObservation> SeenIn(const InitInput& input, const InitFrame
   return observations;
 }
 
+DeformingWindow InAllFrames(const InitInput& input, const std::vector<std::size_t>& views,
+                            const DeformingWindow& solved, const std::vector<PointId>& ids,
+                            const WindowInitOptions& options) {
+  DeformingWindow all;
+  all.points_in_world = solved.points_in_world;
+  all.shapes = solved.shapes;
+  all.camera = solved.camera;
+  all.coefficients.resize(solved.coefficients.rows(), static_cast<Eigen::Index>(input.frames.size()));
+  std::size_t next = 0;  // the first solved view that is not before the frame
+  for (std::size_t k = 0; k < input.frames.size(); ++k) {
+    while (views[next] < k && next + 1 < views.size()) ++next;
+    const std::size_t before = views[next] <= k ? next : next - 1;
+    const double share =
+        before == next ? 0.0
+                       : static_cast<double>(k - views[before]) / static_cast<double>(views[next] - views[before]);
+    const Rigid3& a = solved.cams_from_world[before];
+    const Rigid3& b = solved.cams_from_world[next];
+    all.times.push_back(input.frames[k].frame_idx - input.frames.front().frame_idx);
+    all.cams_from_world.emplace_back(a.rotation.slerp(share, b.rotation),
+                                     (1.0 - share) * a.translation + share * b.translation);
+    all.coefficients.col(static_cast<Eigen::Index>(k)) =
+        (1.0 - share) * solved.coefficients.col(static_cast<Eigen::Index>(before)) +
+        share * solved.coefficients.col(static_cast<Eigen::Index>(next));
+    const auto seen = SeenIn(input, input.frames[k], ids, static_cast<int>(k), options);
+    all.observations.insert(all.observations.end(), seen.begin(), seen.end());
+  }
+  return all;
+}
+
 Result<SolvedWindow> SolveWindow(const InitInput& input, std::size_t frames, WindowScene scene,
                                  const WindowInitOptions& options, double nominal_depth_mm) {
   const auto window = PrepareWindow(input, frames, options, nominal_depth_mm);

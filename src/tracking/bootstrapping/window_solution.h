@@ -40,4 +40,10 @@ std::vector<DeformingObservation> SeenIn(const InitInput& input, const InitFrame
                                          const std::vector<PointId>& ids, int view_idx,
                                          const WindowInitOptions& options);
 
+// A window solved in the frames `views` of the input, in all of its frames: points and shapes are those of `solved`,
+// one for each of `ids`, poses and coefficients are between those of the views, or the last view's; not optimized.
+DeformingWindow InAllFrames(const InitInput& input, const std::vector<std::size_t>& views,
+                            const DeformingWindow& solved, const std::vector<PointId>& ids,
+                            const WindowInitOptions& options);
+
 }  // namespace pliant

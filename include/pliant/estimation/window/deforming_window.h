@@ -35,6 +35,12 @@ struct DeformingObservation {
   double log_light = std::numeric_limits<double>::quiet_NaN();
 };
 
+// How the camera may move in a window.
+enum class WindowCamera {
+  kFree,      // turns and translates
+  kRotation,  // turns at most: all parallax is the scene's
+};
+
 struct DeformingWindow {
   std::vector<double> times;                       // of the views, in frames since the reference, ascending from 0
   std::vector<Rigid3> cams_from_world;             // view 0 is the reference: the identity, and it stays so
@@ -42,6 +48,7 @@ struct DeformingWindow {
   std::vector<Eigen::Vector3d> points_in_world;    // X_i, in the reference view
   std::vector<Eigen::Matrix3Xd> shapes;            // basis shapes, m_ir: 3 x R a point, map units
   std::vector<DeformingObservation> observations;  // any order
+  WindowCamera camera = WindowCamera::kFree;
 
   // X_i(v), world frame.
   Eigen::Vector3d Position(int point_idx, int view_idx) const;

@@ -110,12 +110,14 @@ struct InitMeasurements {
   double median_depth_sigma = 0;    // sigma_z / z of the map, predicted or more
   double competing_cost_ratio = 0;  // robust cost of the second best motion over the best one's; infinite: no second
   double median_error_px = 0;       // of the map in its frames
+  double still_camera_error_ratio = 0;  // errors of a camera that stands still by those of one that moves; 0: unknown
 };
 
 struct InitOutcome {
   InitDecision decision = InitDecision::kWait;
   std::string reason;  // one sentence with its numbers; of a map too
   InitMeasurements measured;
+  bool ambiguous = false;  // no map, since a camera that stands still explains the images too
 
   // Filled in for kMap alone.
   std::vector<InitFrameState> frames;       // one a frame of the input, in its order; the first pose is the identity

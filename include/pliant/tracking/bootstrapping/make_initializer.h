@@ -72,21 +72,22 @@ std::unique_ptr<Initializer> MakePaperInitializer(const MonocularInitOptions& op
 // points are certain, and demands less of them the longer it waits. Points that are uncertain or contradict the
 // solution stay out.
 struct WindowInitOptions {
-  int first_frame = 10;               // frames after the reference at which a map is first attempted
-  int every = 5;                      // frames from one attempt to the next
-  int deforming_frame = 20;           // before it only a rigid scene is attempted
-  int last_frame = 50;                // frames after which a reference is given up
-  int views = 8;                      // frames in the problem, spread evenly
-  int min_views = 5;                  // a point must be seen in as many of them
-  double min_frame_share = 0.375;     // of all frames, in which a point must be seen to join the map
-  int max_points = 600;               // in the problem
-  int min_points = 40;                // fewer certain points in the last frame make no map
-  double max_correlation = 0.25;      // of neighbors' errors under a rigid motion: above, the scene deforms
-  double certain_depth_sigma = 0.02;  // of a point by the median depth, until deforming_frame
-  double last_depth_sigma = 0.06;     // the same at last_frame
-  double max_depth_sigma = 0.03;      // a point that is less certain than this, and than those, stays out
-  double max_error_px = 0.5;          // root mean square, of a point
-  double min_certain_share = 0.65;    // of the points still seen
+  int first_frame = 10;                  // frames after the reference at which a map is first attempted
+  int every = 5;                         // frames from one attempt to the next
+  int deforming_frame = 20;              // before it only a rigid scene is attempted
+  int last_frame = 50;                   // frames after which a reference is given up
+  int views = 8;                         // frames in the problem, spread evenly
+  int min_views = 5;                     // a point must be seen in as many of them
+  double min_frame_share = 0.375;        // of all frames, in which a point must be seen to join the map
+  int max_points = 600;                  // in the problem
+  int min_points = 40;                   // fewer certain points in the last frame make no map
+  double max_correlation = 0.25;         // of neighbors' errors under a rigid motion: above, the scene deforms
+  double certain_depth_sigma = 0.02;     // of a point by the median depth, until deforming_frame
+  double last_depth_sigma = 0.06;        // the same at last_frame
+  double max_depth_sigma = 0.03;         // a point that is less certain than this, and than those, stays out
+  double max_error_px = 0.5;             // root mean square, of a point
+  double min_certain_share = 0.65;       // of the points still seen
+  double min_still_camera_ratio = 1.25;  // of the errors of a camera that stands still by those of one that moves
   Switch light = Switch::kOn;
   double gamma = 2.2;
   Switch refine_rigid = Switch::kOn;  // the map is re-estimated as the window grows, while the scene is rigid

@@ -1,0 +1,99 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The Pliant authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Is a camera that stands still before a scene that deforms told from one that moves?
+
+    still_camera.py --program build/release/pliant --output_path RESULTS [--only NAME,...] [--seed N]
+
+Simulates every scene, tracks it, and prints a table. What is there already is kept.
+"""
+import argparse
+import csv
+import json
+import re
+import subprocess
+from collections import Counter
+from pathlib import Path
+
+FRAMES = "--Trajectory.frames 70"
+HOLD = "--Trajectory.kind hold --Trajectory.tremor_mm 0 --Trajectory.tremor_deg 0"
+SURFACE = "--Scene.kind surface"
+
+# name: options of pliant simulate
+STILL = {
+    "colon, wave of 60 mm": f"{HOLD} --Deformation.amplitude_mm 2.5 --Deformation.wavelength_mm 60",
+    "colon, wave of 628 mm": f"{HOLD} --Deformation.amplitude_mm 2.5",
+    "colon, breath": f"{HOLD} --Deformation.breathing_mm 2 --Deformation.breathing_period_s 2",
+    "surface, wave of 100 mm": f"{HOLD} {SURFACE} --Deformation.amplitude_mm 3 --Deformation.wavelength_mm 100",
+    "surface, wave of 200 mm, 5 rad/s": f"{HOLD} {SURFACE} --Deformation.amplitude_mm 5 --Deformation.wavelength_mm 200"
+                                        " --Deformation.omega_rad_s 5",
+    "surface, poke": f"{HOLD} {SURFACE} --Deformation.poke_mm 8",
+    "surface, breath and poke": f"{HOLD} {SURFACE} --Deformation.breathing_mm 4 --Deformation.poke_mm 8",
+    "lobes": f"{HOLD} --Scene.kind lobes --Deformation.amplitude_mm 4",
+}
+MOVING = {
+    "colon, insertion at 15 mm/s": "--Deformation.amplitude_mm 2.5",
+    "colon, insertion at 6 mm/s": "--Trajectory.speed_mm_s 6 --Deformation.amplitude_mm 2.5",
+    "colon, insertion, wave of 60 mm": "--Deformation.amplitude_mm 3 --Deformation.wavelength_mm 60",
+    "colon, insertion, breath": "--Deformation.breathing_mm 2",
+    "colon, sway of 4 mm": "--Trajectory.kind sway --Trajectory.sway_amplitude_mm 4 --Deformation.amplitude_mm 2.5",
+    "surface, sway of 8 mm": f"--Trajectory.kind sway {SURFACE} --Deformation.amplitude_mm 3"
+                             " --Deformation.wavelength_mm 150",
+    "surface, loop": f"--Trajectory.kind loop {SURFACE} --Deformation.amplitude_mm 3 --Deformation.wavelength_mm 120",
+    "lobes, loop": "--Trajectory.kind loop --Scene.kind lobes --Deformation.amplitude_mm 3",
+    "surface, tremor of 0.3 mm alone": f"--Trajectory.kind hold {SURFACE} --Deformation.amplitude_mm 4"
+                                       " --Deformation.wavelength_mm 100",
+    "surface, sway without tremor, breath": f"--Trajectory.kind sway --Trajectory.tremor_mm 0 {SURFACE}"
+                                            " --Deformation.breathing_mm 2",
+}
+
+
+def call(*command):
+    return subprocess.run([str(word) for word in command], capture_output=True, text=True)
+
+
+def ratios(log):
+    """The evidence of every map and of every reference that was given up for it."""
+    found = re.findall(r"stands still the errors (?:would be|are) ([0-9.]+)", log)
+    return ", ".join(sorted(set(found), key=found.index))
+
+
+def row(kind, name, options, arguments):
+    slug = re.sub(r"[^a-z0-9]+", "_", f"{kind} {name}".lower()) + f"_{arguments.seed}"
+    sequence, run = arguments.output_path / "sequences" / slug, arguments.output_path / "runs" / slug
+    if not (sequence / "simulation.yaml").exists():
+        call(arguments.program, "simulate", "--quiet", "-o", sequence, "--Scene.seed", arguments.seed,
+             *FRAMES.split(), *options.split()).check_returncode()
+    log = run.with_suffix(".log")
+    if not log.exists():
+        run.parent.mkdir(parents=True, exist_ok=True)
+        tracked = call(arguments.program, "track", "--image_path", sequence, "-o", run)
+        log.write_text(tracked.stdout + tracked.stderr)
+    with open(run / "frames.csv", newline="") as stream:
+        states = Counter(line["state"] for line in csv.DictReader(stream))
+    error = null = ""
+    if states["tracking"]:
+        call(arguments.program, "evaluate", "--run", run, "--sequence", sequence, "-o", run / "evaluation")
+        surface = json.loads((run / "evaluation" / "evaluation.json").read_text())["surface"]
+        error, null = (f"{100 * surface[which]['median_relative_depth']:.1f} %" for which in ("estimate", "null"))
+    return [kind, name, str(states["tracking"]), str(states["ambiguous"]), str(states["initializing"]),
+            ratios(log.read_text()), error, null]
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--program", type=Path, required=True)
+    parser.add_argument("--output_path", type=Path, required=True)
+    parser.add_argument("--only", default="", help="scenes, separated by ';'")
+    parser.add_argument("--seed", type=int, default=1, help="of the scenes")
+    arguments = parser.parse_args()
+    print("| camera | scene | tracking | ambiguous | initializing | still by moving | depth error | null |")
+    print("| --- | --- | --- | --- | --- | --- | --- | --- |")
+    for kind, scenes in (("still", STILL), ("moving", MOVING)):
+        for name, options in scenes.items():
+            if not arguments.only or name in arguments.only.split(";"):
+                print("| " + " | ".join(row(kind, name, options, arguments)) + " |", flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Whether the images of a window show that the camera moves (docs/method.md, eq. W14).
+//
+// A camera that stands still before a scene that deforms gives images that a moving camera explains as well: what the
+// scene does in common is then taken for a motion of the camera, and depths are wrong. So both are solved, with a scene
+// as simple as possible, and compared in the images.
+#pragma once
+
+#include <vector>
+
+#include "pliant/base/status.h"
+#include "pliant/estimation/window/deforming_window.h"
+
+namespace pliant {
+
+// One window explained twice with the same few basis shapes, in the same views and with the same points.
+struct CameraMotionModels {
+  std::vector<int> point_idxs;  // of the solution they started from, ascending
+  DeformingWindow moving;       // WindowCamera::kFree
+  DeformingWindow still;        // WindowCamera::kRotation
+};
+
+// Both from a solution with coefficients, of the rank kModelRank or its own if that is lower: its motions, and for the
+// camera that stands still also what its camera translated, as the scene's. Of the points at most 2 sample_points are
+// used, spread evenly in the reference: they tell as much. `threads` never changes the result. Fails
+// like SolveDeformingWindow, and with kInvalidArgument where there are no coefficients.
+constexpr int kModelRank = 2;
+Result<CameraMotionModels> SolveCameraMotionModels(const DeformingSolution& solution, double focal_px,
+                                                   const DeformingWindowOptions& options, int threads = 1);
+
+// How many times larger the reprojection errors of the camera that stands still are: the geometric mean over the
+// observations of the views in `view_idxs`, which both windows have in the same order. About 1: camera and scene cannot
+// be told apart. Errors below a fifth of the median one count as that large. 1 where there is no observation.
+double StillCameraErrorRatio(const CameraMotionModels& models, const std::vector<int>& view_idxs);
+
+}  // namespace pliant

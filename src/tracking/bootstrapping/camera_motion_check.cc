@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tracking/bootstrapping/camera_motion_check.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "pliant/estimation/window/still_camera.h"
+#include "tracking/bootstrapping/initial_map.h"
+
+namespace pliant {
+namespace {
+
+// The frames that no model was fitted to, of which there may be none in a short window: then all but the reference.
+std::vector<int> ComparedFrames(std::size_t frames, const std::vector<std::size_t>& views) {
+  std::vector<int> between;
+  std::vector<int> all;
+  for (std::size_t k = 1; k < frames; ++k) {
+    all.push_back(static_cast<int>(k));
+    if (!std::binary_search(views.begin(), views.end(), k)) between.push_back(static_cast<int>(k));
+  }
+  return between.empty() ? all : between;
+}
+
+}  // namespace
+
+Status CheckCameraMotion(const InitInput& input, const SolvedWindow& window, const WindowInitOptions& options,
+                         InitOutcome* outcome) {
+  if (window.solution.window.coefficients.rows() == 0) return Status::Ok();
+  const double focal_px = input.camera.MeanFocalLengthPx();
+  auto models = SolveCameraMotionModels(window.solution, focal_px, options.window, input.threads);
+  if (!models.ok()) return models.status();
+  std::vector<PointId> ids;
+  for (const int i : models->point_idxs) ids.push_back(window.ids[static_cast<std::size_t>(i)]);
+  for (DeformingWindow* model : {&models->moving, &models->still}) {
+    auto all = OptimizeDeformingViews(InAllFrames(input, window.views, *model, ids, options), focal_px, options.window,
+                                      input.threads);
+    if (!all.ok()) return all.status();
+    *model = std::move(*all);
+  }
+  const double ratio = StillCameraErrorRatio(*models, ComparedFrames(input.frames.size(), window.views));
+  outcome->measured.still_camera_error_ratio = ratio;
+  outcome->ambiguous = ratio < options.min_still_camera_ratio;
+  if (!outcome->ambiguous) return Status::Ok();
+  return {ErrorCode::kDegenerate,
+          "camera and scene cannot be told apart: with a camera that stands still the errors are " + Digits(ratio, 2) +
+              " times as large, and they must be " + Digits(options.min_still_camera_ratio, 2) +
+              " times as large to show that it moves; move it further and not evenly, or, if it does stand still, "
+              "start from depth (--Init.method depth --Tracking.camera_motion none)"};
+}
+
+}  // namespace pliant

@@ -1,0 +1,82 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/estimation/window/still_camera.h"
+
+#include <numeric>
+
+#include <gtest/gtest.h>
+
+#include "estimation/deforming_scene.h"
+
+namespace pliant {
+namespace {
+
+using deforming_test::kFocalPx;
+using deforming_test::Scene;
+
+constexpr double kAlike = 1.1;     // times the errors of the other model: both leave noise
+constexpr double kFarWorse = 2.0;  // the same, of a model that cannot be
+
+// The ratio over all views but the reference.
+double RatioOf(const Scene& scene) {
+  const auto solution = SolveDeformingWindow(scene.Start(0), kFocalPx, {});
+  EXPECT_TRUE(solution.ok()) << solution.status().message();
+  const auto models = SolveCameraMotionModels(*solution, kFocalPx, {});
+  EXPECT_TRUE(models.ok()) << models.status().message();
+  if (!models.ok()) return 0;
+  std::vector<int> views(scene.poses.size() - 1);
+  std::iota(views.begin(), views.end(), 1);
+  return StillCameraErrorRatio(*models, views);
+}
+
+Scene BeforeAStillCamera() {
+  Scene scene;
+  for (Rigid3& pose : scene.poses) pose = Rigid3();
+  return scene;
+}
+
+TEST(StillCamera, ExplainsAWindowInWhichTheSceneAloneMoves) { EXPECT_LT(RatioOf(BeforeAStillCamera()), kAlike); }
+
+TEST(StillCamera, ExplainsAWindowInWhichTheCameraOnlyTurns) {
+  Scene scene;
+  for (Rigid3& pose : scene.poses) pose.translation.setZero();
+  EXPECT_LT(RatioOf(scene), kAlike);
+}
+
+TEST(StillCamera, DoesNotExplainAWindowInWhichTheCameraMoves) { EXPECT_GT(RatioOf(Scene()), kFarWorse); }
+
+TEST(StillCamera, HasNoTranslationInItsModelAndNoHigherRank) {
+  const Scene scene = BeforeAStillCamera();
+  const auto solution = SolveDeformingWindow(scene.Start(0), kFocalPx, {});
+  ASSERT_TRUE(solution.ok());
+  const auto models = SolveCameraMotionModels(*solution, kFocalPx, {.sample_points = 60});
+  ASSERT_TRUE(models.ok());
+  EXPECT_EQ(models->point_idxs.size(), 120U);
+  EXPECT_EQ(models->still.points_in_world.size(), 120U);
+  EXPECT_EQ(models->still.coefficients.rows(), kModelRank);
+  EXPECT_EQ(models->moving.coefficients.rows(), kModelRank);
+  double farthest = 0;
+  for (const Rigid3& pose : models->still.cams_from_world) EXPECT_EQ(pose.translation, Eigen::Vector3d::Zero());
+  for (const Rigid3& pose : models->moving.cams_from_world) farthest = std::max(farthest, pose.translation.norm());
+  EXPECT_GT(farthest, 0.0);
+}
+
+TEST(StillCamera, IsNotAskedOfARigidWindow) {
+  Scene scene;
+  scene.amplitude_mm = 0;
+  const auto rigid = SolveRigidWindow(scene.Start(0), kFocalPx, {});
+  ASSERT_TRUE(rigid.ok());
+  EXPECT_EQ(SolveCameraMotionModels(*rigid, kFocalPx, {}).status().code(), ErrorCode::kInvalidArgument);
+}
+
+TEST(StillCamera, IsAsGoodWhereNothingIsCompared) {
+  const auto solution = SolveDeformingWindow(Scene().Start(0), kFocalPx, {});
+  ASSERT_TRUE(solution.ok());
+  const auto models = SolveCameraMotionModels(*solution, kFocalPx, {});
+  ASSERT_TRUE(models.ok());
+  EXPECT_EQ(StillCameraErrorRatio(*models, {}), 1.0);
+}
+
+}  // namespace
+}  // namespace pliant
