@@ -6,22 +6,13 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <cstring>
-#include <filesystem>
-#include <system_error>
 
 #include "pliant/base/options.h"
 
 namespace pliant {
 namespace {
-
-constexpr std::size_t kLargeBuffer = 1 << 20;
-
-// The name under which a file is written before it is renamed.
-std::string Beside(const std::string& path) { return path + ".tmp"; }
 
 template <class Integer>
 bool ParseWhole(std::string_view text, Integer* value) {
@@ -29,18 +20,11 @@ bool ParseWhole(std::string_view text, Integer* value) {
   return error == std::errc() && end == text.data() + text.size();
 }
 
-std::string Reason(int error) { return std::generic_category().message(error); }
-
 }  // namespace
 
 std::string Seconds(double seconds) { return FormatDouble(std::round(1e6 * seconds) / 1e6) + " s"; }
 
-bool Exists(const std::string& path) {
-  std::error_code error;
-  return std::filesystem::exists(path, error);
-}
-
-std::string At(const std::string& path, std::int64_t line) { return path + ":" + std::to_string(line); }
+std::string PathAndLine(const std::string& path, std::int64_t line) { return path + ":" + std::to_string(line); }
 
 void AppendInt(std::string* out, std::int64_t value) {
   std::array<char, 24> buffer;
@@ -87,113 +71,6 @@ void AppendBytes(std::string* out, std::uint64_t value, int num_bytes) {
 void AppendDouble(std::string* out, double value) { AppendBytes(out, std::bit_cast<std::uint64_t>(value), 8); }
 
 void AppendFloat(std::string* out, float value) { AppendBytes(out, std::bit_cast<std::uint32_t>(value), 4); }
-
-Result<OutputFile> OutputFile::Create(const std::string& path) {
-  errno = 0;
-  std::FILE* file = std::fopen(path.c_str(), "wb");
-  if (file == nullptr)
-    return Status(ErrorCode::kUnwritable, "cannot write " + Quoted(path) + ": " + Reason(errno) +
-                                              "; choose another path or change its permissions");
-  std::setvbuf(file, nullptr, _IONBF, 0);
-  return OutputFile(path, file);
-}
-
-Status OutputFile::Failure() const {
-  return {ErrorCode::kUnwritable,
-          "cannot write " + Quoted(path_) + ": " + Reason(errno) + "; what was written before stays"};
-}
-
-Status OutputFile::Append(std::string_view text) {
-  errno = 0;
-  if (std::fwrite(text.data(), 1, text.size(), file_.get()) != text.size()) return Failure();
-  return Status::Ok();
-}
-
-Status OutputFile::AppendWhenLarge(std::string* buffer) {
-  if (buffer->size() < kLargeBuffer) return Status::Ok();
-  Status status = Append(*buffer);
-  buffer->clear();
-  return status;
-}
-
-Status OutputFile::Close() {
-  errno = 0;
-  if (std::fclose(file_.release()) != 0) return Failure();
-  return Status::Ok();
-}
-
-FileGroup::~FileGroup() {
-  std::error_code error;
-  for (const std::string& path : paths_) std::filesystem::remove(Beside(path), error);
-}
-
-Result<OutputFile> FileGroup::Create(const std::string& path) {
-  auto file = OutputFile::Create(Beside(path));
-  if (file.ok()) paths_.push_back(path);
-  return file;
-}
-
-Status FileGroup::Commit() {
-  while (!paths_.empty()) {
-    std::error_code error;
-    std::filesystem::rename(Beside(paths_.front()), paths_.front(), error);
-    if (error) return {ErrorCode::kUnwritable, "cannot write " + Quoted(paths_.front()) + ": " + error.message()};
-    paths_.erase(paths_.begin());
-  }
-  return Status::Ok();
-}
-
-Status WriteFileAtomically(const std::string& path, std::string_view text) {
-  FileGroup group;
-  auto file = group.Create(path);
-  if (!file.ok()) return file.status();
-  if (Status status = file->Append(text); !status.ok()) return status;
-  if (Status status = file->Close(); !status.ok()) return status;
-  return group.Commit();
-}
-
-Status OverwriteFile(const std::string& path, std::string_view text) {
-  errno = 0;
-  std::FILE* file = std::fopen(path.c_str(), "r+b");
-  bool written = file != nullptr && std::fwrite(text.data(), 1, text.size(), file) == text.size();
-  if (file != nullptr) written = std::fclose(file) == 0 && written;
-  std::error_code error;
-  if (written) std::filesystem::resize_file(path, text.size(), error);
-  if (written && !error) return Status::Ok();
-  return {ErrorCode::kUnwritable, "cannot write " + Quoted(path) + ": " + Reason(errno)};
-}
-
-Result<std::string> ReadFile(const std::string& path) {
-  auto reader = LineReader::Open(path);  // checks that it is there and a file
-  if (!reader.ok()) return reader.status();
-  std::ifstream stream(path, std::ios::binary);
-  std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
-  if (stream.bad()) return Status(ErrorCode::kUnreadable, "cannot read " + Quoted(path) + " to its end");
-  return text;
-}
-
-Result<LineReader> LineReader::Open(const std::string& path) {
-  std::error_code error;
-  const auto kind = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(kind))
-    return Status(ErrorCode::kNotFound, "there is no file " + Quoted(path) + "; check the path");
-  if (std::filesystem::is_directory(kind))
-    return Status(ErrorCode::kUnreadable, Quoted(path) + " is a folder; give a file in it");
-  if (!std::filesystem::is_regular_file(kind))  // which may be endless
-    return Status(ErrorCode::kUnreadable, Quoted(path) + " is a pipe or a device; give a file");
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) return Status(ErrorCode::kUnreadable, "cannot read " + Quoted(path) + "; check its permissions");
-  return LineReader(path, std::move(stream));
-}
-
-bool LineReader::Next(std::string_view* line) {
-  if (!std::getline(stream_, line_)) return false;
-  ++number_;
-  ended_ = !stream_.eof();
-  *line = line_;
-  if (line->ends_with('\r')) line->remove_suffix(1);
-  return true;
-}
 
 std::vector<std::string_view> Split(std::string_view text, char separator) {
   const std::string_view separators = separator == ' ' ? " \t" : std::string_view(&separator, 1);

@@ -10,6 +10,7 @@
 #include <memory>
 
 #include "colmap/readers.h"
+#include "pliant/base/files.h"
 #include "pliant/base/text.h"
 
 namespace pliant::colmap {

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "colmap/readers.h"
+#include "pliant/base/files.h"
 #include "pliant/base/text.h"
 
 namespace pliant::colmap {

@@ -9,8 +9,8 @@
 #include <span>
 #include <string>
 
+#include "pliant/base/files.h"
 #include "pliant/base/status.h"
-#include "pliant/base/text.h"
 #include "pliant/colmap/model.h"
 
 namespace pliant::colmap {

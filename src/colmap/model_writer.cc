@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "colmap/rows.h"
+#include "pliant/base/files.h"
 #include "pliant/base/text.h"
 #include "pliant/colmap/model.h"
 

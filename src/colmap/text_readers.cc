@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "colmap/readers.h"
+#include "pliant/base/files.h"
 #include "pliant/base/options.h"
 #include "pliant/base/text.h"
 

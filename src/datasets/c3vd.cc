@@ -37,7 +37,7 @@ Result<std::map<int, Rigid3>> ReadPoses(const fs::path& file) {
     std::vector<double> matrix(16);
     for (std::size_t row = 0; row < 4; ++row)
       for (std::size_t col = 0; col < 4; ++col) matrix[4 * row + col] = stored[4 * col + row];
-    const auto pose = PoseOfMatrix(At(file.string(), (*rows)[k].line), matrix);
+    const auto pose = PoseOfMatrix(PathAndLine(file.string(), (*rows)[k].line), matrix);
     if (!pose.ok()) return pose.status();
     poses.emplace(static_cast<int>(k), *pose);
   }

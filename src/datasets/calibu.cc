@@ -10,6 +10,7 @@
 
 #include "datasets/calibration_files.h"
 #include "datasets/set_files.h"
+#include "pliant/base/files.h"
 #include "pliant/base/options.h"
 #include "pliant/base/text.h"
 

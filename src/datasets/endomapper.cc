@@ -13,8 +13,8 @@
 #include "datasets/calibration_files.h"
 #include "datasets/formats.h"
 #include "datasets/set_files.h"
+#include "pliant/base/files.h"
 #include "pliant/base/options.h"
-#include "pliant/base/text.h"
 
 namespace pliant {
 namespace {

@@ -12,6 +12,7 @@
 
 #include "datasets/formats.h"
 #include "datasets/set_files.h"
+#include "pliant/base/files.h"
 #include "pliant/base/options.h"
 #include "pliant/base/text.h"
 #include "pliant/io/trajectory.h"

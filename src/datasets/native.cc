@@ -11,8 +11,8 @@
 #include "datasets/image_file.h"
 #include "datasets/image_list.h"
 #include "datasets/set_files.h"
+#include "pliant/base/files.h"
 #include "pliant/base/options.h"
-#include "pliant/base/text.h"
 #include "pliant/datasets/native_layout.h"
 #include "pliant/io/trajectory.h"
 

@@ -14,7 +14,7 @@
 #include "datasets/formats.h"
 #include "datasets/image_file.h"
 #include "datasets/set_files.h"
-#include "pliant/base/text.h"
+#include "pliant/base/files.h"
 
 namespace pliant {
 namespace {

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <utility>
 
+#include "pliant/base/files.h"
 #include "pliant/base/options.h"
 #include "pliant/base/text.h"
 
@@ -123,7 +124,8 @@ Result<Rigid3> PoseOfRow(const fs::path& file, const NumberRow& row, const PoseC
   const std::vector<double>& n = row.numbers;
   const Eigen::Quaterniond rotation(n[columns.qw], n[columns.qx], n[columns.qx + 1], n[columns.qx + 2]);
   if (!(std::abs(rotation.norm() - 1.0) < kQuaternionError))
-    return Status(ErrorCode::kUnreadable, At(file.string(), row.line) + ": the quaternion is not of unit length");
+    return Status(ErrorCode::kUnreadable,
+                  PathAndLine(file.string(), row.line) + ": the quaternion is not of unit length");
   return Rigid3(rotation, Eigen::Vector3d(n[columns.tx], n[columns.tx + 1], n[columns.tx + 2]));
 }
 

@@ -7,7 +7,7 @@
 #include "datasets/formats.h"
 #include "datasets/image_file.h"
 #include "datasets/set_frames.h"
-#include "pliant/base/text.h"
+#include "pliant/base/files.h"
 
 namespace pliant {
 namespace {

@@ -33,7 +33,8 @@ Status AddPoses(const fs::path& file, DataSet* data_set) {
     pose->translation *= kMeter_mm;
     const double frame = row.numbers[0];
     if (!(frame >= 0 && frame < kMaxFrameNumber && frame == std::floor(frame)))
-      return {ErrorCode::kUnreadable, At(file.string(), row.line) + ": a line begins with the number of a frame"};
+      return {ErrorCode::kUnreadable,
+              PathAndLine(file.string(), row.line) + ": a line begins with the number of a frame"};
     poses[static_cast<int>(frame)] = *pose * data_set->raw_from_given;
   }
   if (poses.empty()) return Status::Ok();

@@ -194,7 +194,7 @@ Result<Evaluation> Evaluate(const EvaluationInput& run, const Sequence& sequence
   if (material.ok() && options.Wants(EvaluationPart::kMaterial)) truth.material.emplace(**material, sequence.camera());
   if (surface == nullptr && options.surface_from == SurfaceSource::kPairs)
     return Status(ErrorCode::kInvalidArgument, "SurfaceSource pairs needs an opened PairTruth");
-  const std::unique_ptr<SurfaceTruth> images = DepthImageTruth(sequence, options.points.max_depth_step);
+  const std::unique_ptr<SurfaceTruth> images = SurfaceTruthFromDepthImages(sequence, options.points.max_depth_step);
   if (surface == nullptr) surface = images.get();
   for (const EvaluationFrame& frame : run.frames) {
     if (!frame.cam_from_world) continue;

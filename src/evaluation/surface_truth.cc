@@ -103,7 +103,7 @@ bool HasDepth(const EvaluationInput& run, const Sequence& sequence) {
 
 }  // namespace
 
-std::unique_ptr<SurfaceTruth> DepthImageTruth(const Sequence& sequence, double max_depth_step) {
+std::unique_ptr<SurfaceTruth> SurfaceTruthFromDepthImages(const Sequence& sequence, double max_depth_step) {
   return std::make_unique<OfDepthImages>(sequence, max_depth_step);
 }
 
@@ -119,7 +119,7 @@ Result<std::unique_ptr<SurfaceTruth>> OpenSurfaceTruth(SurfaceSource source, con
       CheckPairs("the true surface from " + request.image_path.string(), sequence.camera(), sequence.BaselineMm());
   if (source == SurfaceSource::kPairs && !pairs.ok()) return pairs;
   if (source == SurfaceSource::kDepth || !pairs.ok() || (source == SurfaceSource::kAny && HasDepth(run, sequence)))
-    return DepthImageTruth(sequence, max_depth_step);
+    return SurfaceTruthFromDepthImages(sequence, max_depth_step);
   SequenceRequest of_run = request;
   if (!run.frames.empty()) of_run.start = run.frames.front().frame_idx;
   auto opened = OpenSequence(of_run);

@@ -9,6 +9,7 @@
 #include "colmap/model_file.h"
 #include "colmap/rows.h"
 #include "exchange/exports.h"
+#include "pliant/base/files.h"
 #include "pliant/base/text.h"
 #include "pliant/colmap/convert.h"
 
@@ -83,14 +84,14 @@ std::int64_t Nanoseconds(double seconds) { return std::llround(seconds * 1e9); }
 
 }  // namespace
 
-Status ExportCanonical(const RunSource& source, const ExportOptions& options, const std::string& folder) {
+Status ExportColmapCanonical(const RunSource& source, const ExportOptions& options, const std::string& folder) {
   if (Status status = colmap::CheckFolder(folder, options.files); !status.ok()) return status;
   std::vector<CanonicalImage> images;
   for (const SourceFrame& frame : source.frames) images.push_back({frame.frame_idx, frame.name, frame.cam_from_world});
   return WriteCanonicalModel(folder, options.files, source.camera, images, source.points, source.run_path);
 }
 
-Status ExportSpacetime(const RunSource& source, const ExportOptions& options, const std::string& folder) {
+Status ExportColmapSpacetime(const RunSource& source, const ExportOptions& options, const std::string& folder) {
   if (Status status = colmap::CheckFolder(folder, options.files); !status.ok()) return status;
   FileGroup group;
   const auto nothing_else = [](const SourceFrame&, const auto&) { return Status::Ok(); };
@@ -98,7 +99,7 @@ Status ExportSpacetime(const RunSource& source, const ExportOptions& options, co
   return group.Commit();
 }
 
-Status ExportFrames(const RunSource& source, const ExportOptions& options, const std::string& folder) {
+Status ExportColmapFrames(const RunSource& source, const ExportOptions& options, const std::string& folder) {
   return ForEachFrame(source, [&](const SourceFrame& frame, const auto& observations) {
     const std::string model_folder = folder + "/" + NumberOf(frame);
     std::error_code error;

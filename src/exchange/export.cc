@@ -9,6 +9,7 @@
 #include <filesystem>
 
 #include "exchange/exports.h"
+#include "pliant/base/files.h"
 #include "pliant/base/text.h"
 #include "pliant/io/trajectory.h"
 
@@ -19,16 +20,16 @@ constexpr std::array kFormats = {
     ExportFormat{"canonical",
                  "a COLMAP model with one point a track at its undeformed position, all images, their keypoints and "
                  "tracks. The scene moved, so it is not consistent with bundle adjustment.",
-                 ExportCanonical},
+                 ExportColmapCanonical},
     ExportFormat{
         "spacetime",
         "a COLMAP model with one point a track and frame, colored by time (early is dark, late is yellow); its "
         "id is frame * 1000000 + track. COLMAP's viewer hides points with short tracks: set its minimum track "
         "length to 1.",
-        ExportSpacetime},
+        ExportColmapSpacetime},
     ExportFormat{"frames",
                  "a COLMAP model a frame, in folders 000000, 000001, ..., with the points where they were then.",
-                 ExportFrames},
+                 ExportColmapFrames},
     ExportFormat{"ply",
                  "a file a frame, with color, track id and the displacement dx, dy, dz from the undeformed position.",
                  ExportPly},

@@ -15,9 +15,9 @@
 
 namespace pliant {
 
-Status ExportCanonical(const RunSource& source, const ExportOptions& options, const std::string& folder);
-Status ExportSpacetime(const RunSource& source, const ExportOptions& options, const std::string& folder);
-Status ExportFrames(const RunSource& source, const ExportOptions& options, const std::string& folder);
+Status ExportColmapCanonical(const RunSource& source, const ExportOptions& options, const std::string& folder);
+Status ExportColmapSpacetime(const RunSource& source, const ExportOptions& options, const std::string& folder);
+Status ExportColmapFrames(const RunSource& source, const ExportOptions& options, const std::string& folder);
 Status ExportPly(const RunSource& source, const ExportOptions& options, const std::string& folder);
 Status ExportTrajectories(const RunSource& source, const ExportOptions& options, const std::string& folder);
 Status ExportTum(const RunSource& source, const ExportOptions& options, const std::string& folder);

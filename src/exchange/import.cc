@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "exchange/imported.h"
+#include "pliant/base/files.h"
 #include "pliant/base/text.h"
 #include "pliant/base/version.h"
 #include "pliant/datasets/open_sequence.h"

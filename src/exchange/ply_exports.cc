@@ -5,6 +5,7 @@
 #include <unordered_map>
 
 #include "exchange/exports.h"
+#include "pliant/base/files.h"
 #include "pliant/base/text.h"
 
 namespace pliant {

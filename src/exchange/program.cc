@@ -11,6 +11,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "pliant/base/files.h"
 #include "pliant/base/text.h"
 
 namespace pliant {

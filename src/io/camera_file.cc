@@ -11,6 +11,7 @@
 
 #include "io/opencv_calibration.h"
 #include "io/yaml.h"
+#include "pliant/base/files.h"
 #include "pliant/base/text.h"
 #include "pliant/colmap/convert.h"
 
@@ -42,14 +43,14 @@ Status ReadNumber(const std::string& path, const YAML::Node& root, NumberField* 
   if (!node) return Status::Ok();
   field->given = true;
   if (!ParseYamlNumber(node, &field->value) || !std::isfinite(field->value))
-    return {ErrorCode::kInvalidArgument, At(path, node) + ": " + field->name + " is not a finite number"};
+    return {ErrorCode::kInvalidArgument, PathAndLine(path, node) + ": " + field->name + " is not a finite number"};
   return Status::Ok();
 }
 
 Result<std::vector<double>> Numbers(const std::string& path, const YAML::Node& node, const std::string& name,
                                     const std::string& example) {
   const Status invalid(ErrorCode::kInvalidArgument,
-                       At(path, node) + ": " + name + " must be a list of numbers, such as " + example);
+                       PathAndLine(path, node) + ": " + name + " must be a list of numbers, such as " + example);
   if (!node.IsSequence()) return invalid;
   std::vector<double> numbers;
   for (const YAML::Node& entry : node) {
@@ -92,8 +93,9 @@ Result<CameraFile> FromPliant(const std::string& path, const YAML::Node& root) {
   for (const auto& entry : root) {
     const std::string key = KeyText(entry.first);
     if (std::find(kKeys.begin(), kKeys.end(), key) == kKeys.end())
-      return invalid(At(path, entry.first), "there is no entry " + Quoted(key) + " in a camera.yaml; did you mean " +
-                                                Quoted(NearestName(key, kKeys)) + "?");
+      return invalid(PathAndLine(path, entry.first), "there is no entry " + Quoted(key) +
+                                                         " in a camera.yaml; did you mean " +
+                                                         Quoted(NearestName(key, kKeys)) + "?");
   }
   for (const char* key : {"model", "width", "height", "params"})
     if (!root[key])
@@ -116,7 +118,7 @@ Result<CameraFile> FromPliant(const std::string& path, const YAML::Node& root) {
   double unit_mm = 1.0;
   if (const YAML::Node unit = root["unit"]; unit) {
     if (!unit.IsScalar() || (unit.Scalar() != "mm" && unit.Scalar() != "m"))
-      return invalid(At(path, unit),
+      return invalid(PathAndLine(path, unit),
                      "unit must be mm or m; scale depth_scale, baseline and groundtruth.txt to one of them");
     unit_mm = unit.Scalar() == "m" ? 1000.0 : 1.0;
   }
@@ -125,7 +127,8 @@ Result<CameraFile> FromPliant(const std::string& path, const YAML::Node& root) {
   if (!photometric.ok()) return photometric.status();
   const auto params = Numbers(path, root["params"], "params", "[fx, fy, cx, cy]");
   if (!params.ok()) return params.status();
-  if (!root["model"].IsScalar()) return invalid(At(path, root["model"]), "model must be a name, such as PINHOLE");
+  if (!root["model"].IsScalar())
+    return invalid(PathAndLine(path, root["model"]), "model must be a name, such as PINHOLE");
   auto camera =
       Camera::Create(root["model"].Scalar(), static_cast<int>(width.value), static_cast<int>(height.value), *params);
   if (!camera.ok()) return invalid(Quoted(path), camera.status().message());

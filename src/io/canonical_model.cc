@@ -8,6 +8,7 @@
 
 #include "colmap/model_file.h"
 #include "colmap/rows.h"
+#include "pliant/base/files.h"
 #include "pliant/base/text.h"
 #include "pliant/colmap/convert.h"
 #include "pliant/io/run_reader.h"

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "io/yaml.h"
+#include "pliant/base/files.h"
 #include "pliant/base/text.h"
 
 namespace pliant {
@@ -14,7 +15,7 @@ namespace {
 
 Status SetGroup(const std::string& path, const std::string& group, const YAML::Node& options, OptionTable& table) {
   const auto invalid = [&](const YAML::Node& where, const std::string& what) {
-    return Status(ErrorCode::kInvalidArgument, At(path, where) + ": " + what);
+    return Status(ErrorCode::kInvalidArgument, PathAndLine(path, where) + ": " + what);
   };
   if (Status status = CheckUniqueKeys(path, options); !status.ok()) return status;
   for (const auto& entry : options) {
@@ -45,7 +46,7 @@ Status LoadOptionsFile(const std::string& path, OptionTable& table) {
     if (group.second.IsMap()) {
       status = SetGroup(path, KeyText(group.first), group.second, table);
     } else if (!group.second.IsNull()) {
-      status = {ErrorCode::kInvalidArgument, At(path, group.first) + ": " + Quoted(KeyText(group.first)) +
+      status = {ErrorCode::kInvalidArgument, PathAndLine(path, group.first) + ": " + Quoted(KeyText(group.first)) +
                                                  " has no group; write options as `Group:` and, indented below it, "
                                                  "`option: value`"};
     }

@@ -3,6 +3,7 @@
 
 #include "pliant/io/ply.h"
 
+#include "pliant/base/files.h"
 #include "pliant/base/text.h"
 
 namespace pliant {

@@ -12,6 +12,7 @@
 #include <string_view>
 #include <utility>
 
+#include "pliant/base/files.h"
 #include "pliant/base/options.h"
 #include "pliant/base/text.h"
 

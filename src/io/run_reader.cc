@@ -8,6 +8,7 @@
 
 #include "io/run_format.h"
 #include "io/tum_line.h"
+#include "pliant/base/files.h"
 #include "pliant/base/text.h"
 
 namespace pliant {

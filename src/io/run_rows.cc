@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "io/run_format.h"
+#include "pliant/base/files.h"
 #include "pliant/base/text.h"
 #include "pliant/io/run_reader.h"
 #include "pliant/io/trajectory.h"

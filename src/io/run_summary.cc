@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "io/run_format.h"
+#include "pliant/base/files.h"
 #include "pliant/base/text.h"
 
 namespace pliant {

@@ -12,6 +12,7 @@
 
 #include "io/run_format.h"
 #include "io/run_rows.h"
+#include "pliant/base/files.h"
 #include "pliant/base/text.h"
 #include "pliant/io/ply.h"
 #include "pliant/io/trajectory.h"

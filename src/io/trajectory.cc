@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 
 #include "io/tum_line.h"
+#include "pliant/base/files.h"
 #include "pliant/base/text.h"
 
 namespace pliant {

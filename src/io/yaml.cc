@@ -9,7 +9,7 @@
 
 namespace pliant {
 
-std::string At(const std::string& path, const YAML::Node& node) { return At(path, node.Mark().line + 1); }
+std::string PathAndLine(const std::string& path, const YAML::Node& node) { return PathAndLine(path, node.Mark().line + 1); }
 
 std::string KeyText(const YAML::Node& key) { return key.IsScalar() ? key.Scalar() : "?"; }
 
@@ -18,10 +18,10 @@ Result<YAML::Node> ParseYamlMap(const std::string& path, const std::string& text
   try {
     root = YAML::Load(text);
   } catch (const YAML::Exception& error) {
-    return Status(ErrorCode::kUnreadable, At(path, error.mark.line + 1) + ": this is not YAML: " + error.msg);
+    return Status(ErrorCode::kUnreadable, PathAndLine(path, error.mark.line + 1) + ": this is not YAML: " + error.msg);
   }
   if (!root.IsMap() && !root.IsNull())
-    return Status(ErrorCode::kUnreadable, At(path, 1) + ": expected lines `name: value`");
+    return Status(ErrorCode::kUnreadable, PathAndLine(path, 1) + ": expected lines `name: value`");
   if (const Status status = CheckUniqueKeys(path, root); !status.ok()) return status;
   return root;
 }
@@ -31,7 +31,7 @@ Status CheckUniqueKeys(const std::string& path, const YAML::Node& map) {
   for (const auto& entry : map)
     if (!keys.insert(KeyText(entry.first)).second)
       return {ErrorCode::kInvalidArgument,
-              At(path, entry.first) + ": " + Quoted(KeyText(entry.first)) + " is given twice; leave one"};
+              PathAndLine(path, entry.first) + ": " + Quoted(KeyText(entry.first)) + " is given twice; leave one"};
   return Status::Ok();
 }
 

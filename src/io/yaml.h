@@ -18,7 +18,7 @@ Result<YAML::Node> ParseYamlMap(const std::string& path, const std::string& text
 Status CheckUniqueKeys(const std::string& path, const YAML::Node& map);
 
 // `path:line`.
-std::string At(const std::string& path, const YAML::Node& node);
+std::string PathAndLine(const std::string& path, const YAML::Node& node);
 std::string KeyText(const YAML::Node& key);
 
 }  // namespace pliant

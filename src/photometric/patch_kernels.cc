@@ -37,7 +37,7 @@ HWY_INLINE Vf LoadBetween(const std::uint8_t* p, Vf fraction) {
   return hn::MulAdd(fraction, hn::Sub(LoadPixels(p + 1), left), left);
 }
 
-HWY_INLINE float Sum(Vf v) { return hn::GetLane(hn::SumOfLanes(F(), v)); }
+HWY_INLINE float SumOfLanes(Vf v) { return hn::GetLane(hn::SumOfLanes(F(), v)); }
 
 HWY_INLINE const std::uint8_t* Address(const ImageView& image, double x, double y) {
   return image.origin + static_cast<std::ptrdiff_t>(y) * image.stride + static_cast<std::ptrdiff_t>(x);
@@ -123,9 +123,9 @@ void SolveOnGrid(ImageView image, double x, double y, const float* solve, PatchS
       above = below;
     }
   }
-  sums[0] = Sum(sum0);
-  sums[1] = Sum(sum1);
-  sums[2] = Sum(sum2);
+  sums[0] = SumOfLanes(sum0);
+  sums[1] = SumOfLanes(sum1);
+  sums[2] = SumOfLanes(sum2);
 }
 
 HWY_INLINE float Dot(const float* a, const float* b, int count) {
@@ -138,7 +138,7 @@ HWY_INLINE float Dot(const float* a, const float* b, int count) {
     odd = hn::MulAdd(hn::LoadU(F(), a + i + lanes), hn::LoadU(F(), b + i + lanes), odd);
   }
   for (; i < count; i += lanes) even = hn::MulAdd(hn::LoadU(F(), a + i), hn::LoadU(F(), b + i), even);
-  return Sum(hn::Add(even, odd));
+  return SumOfLanes(hn::Add(even, odd));
 }
 
 void SolveOnValues(const float* values, const float* solve, int blocks, PatchShape shape, float* sums) {
@@ -170,7 +170,7 @@ MomentSums SumMoments(const float* x, const float* y, const float* weights, floa
       sxy = hn::MulAdd(wa, b, sxy);
     }
   }
-  return {Sum(sw), Sum(sx), Sum(sy), Sum(sxx), Sum(syy), Sum(sxy)};
+  return {SumOfLanes(sw), SumOfLanes(sx), SumOfLanes(sy), SumOfLanes(sxx), SumOfLanes(syy), SumOfLanes(sxy)};
 }
 
 void FillPatchBasis(const float* values, const float* weights, float mean, BasisKind kind, PatchShape shape,
@@ -216,7 +216,7 @@ void FillPatchBasis(const float* values, const float* weights, float mean, Basis
   }
 }
 
-void GramMatrix(const float* basis, int blocks, PatchShape shape, float* gram) {
+void PatchGramMatrix(const float* basis, int blocks, PatchShape shape, float* gram) {
   const int block = shape.size * shape.row_stride;
   for (int i = 0; i < blocks; ++i)
     for (int j = i; j < blocks; ++j)
@@ -264,7 +264,7 @@ HWY_EXPORT(SolveOnGrid);
 HWY_EXPORT(SolveOnValues);
 HWY_EXPORT(SumMoments);
 HWY_EXPORT(FillPatchBasis);
-HWY_EXPORT(GramMatrix);
+HWY_EXPORT(PatchGramMatrix);
 HWY_EXPORT(CombineBlocks);
 
 void SampleGrid(ImageView image, double x, double y, int rows, PatchShape shape, float* out) {
@@ -286,8 +286,8 @@ void FillPatchBasis(const float* values, const float* weights, float mean, Basis
                     float* basis) {
   HWY_DYNAMIC_DISPATCH(FillPatchBasis)(values, weights, mean, kind, shape, basis);
 }
-void GramMatrix(const float* basis, int blocks, PatchShape shape, float* gram) {
-  HWY_DYNAMIC_DISPATCH(GramMatrix)(basis, blocks, shape, gram);
+void PatchGramMatrix(const float* basis, int blocks, PatchShape shape, float* gram) {
+  HWY_DYNAMIC_DISPATCH(PatchGramMatrix)(basis, blocks, shape, gram);
 }
 void CombineBlocks(const float* basis, int blocks, const float* coefficients, int rows, PatchShape shape, float* out) {
   HWY_DYNAMIC_DISPATCH(CombineBlocks)(basis, blocks, coefficients, rows, shape, out);

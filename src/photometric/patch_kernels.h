@@ -51,7 +51,7 @@ void FillPatchBasis(const float* values, const float* weights, float mean, Basis
                     float* basis);
 
 // gram[i * blocks + j] = sum of block i times block j.
-void GramMatrix(const float* basis, int blocks, PatchShape shape, float* gram);
+void PatchGramMatrix(const float* basis, int blocks, PatchShape shape, float* gram);
 
 // out block i = sum over j of coefficients[i * blocks + j] * basis block j, for i < rows; `blocks` is 2, 4, 6, 8
 // or 10.

@@ -50,7 +50,7 @@ PatchFailure SolvePatch(const float* values, const float* weights, BasisKind kin
   const float* center = values + shape.row_stride + 1;
   const float gray = center[shape.half() * shape.row_stride + shape.half()];
   FillPatchBasis(values, weights, gray, kind, shape, basis.data());
-  GramMatrix(basis.data(), blocks, shape, gram.data());
+  PatchGramMatrix(basis.data(), blocks, shape, gram.data());
 
   std::array<double, kMaxBlocks * kMaxBlocks> inverse;
   for (int i = 0; i < used; ++i)

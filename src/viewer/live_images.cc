@@ -18,7 +18,7 @@ constexpr int kLowPriority = 10;
 
 }  // namespace
 
-void TakeLowPriority() { setpriority(PRIO_PROCESS, 0, kLowPriority); }  // Linux: of the calling thread alone
+void LowerImageThreadPriority() { setpriority(PRIO_PROCESS, 0, kLowPriority); }  // Linux: of the calling thread alone
 
 LiveImages::LiveImages(int width_px, int quality, double max_mb)
     : width_px_(width_px), quality_(quality), max_mb_(max_mb), thread_([this] { Run(); }) {}
@@ -59,7 +59,7 @@ double LiveImages::scale() const {
 }
 
 void LiveImages::Run() {
-  TakeLowPriority();
+  LowerImageThreadPriority();
   std::unique_lock lock(mutex_);
   while (true) {
     changed_.wait(lock, [&] { return ended_ || next_; });

@@ -19,7 +19,7 @@
 namespace pliant {
 
 // The calling thread gets what the others leave.
-void TakeLowPriority();
+void LowerImageThreadPriority();
 
 class LiveImages {
  public:

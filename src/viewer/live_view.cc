@@ -57,7 +57,7 @@ struct LiveView::Server {
     http.set_keep_alive_max_count(1);  // an idle connection would hold a thread, and the end of the run
     http.new_task_queue = [] { return new httplib::ThreadPool(kAnswerThreads); };
     http.set_pre_routing_handler([](const httplib::Request& request, httplib::Response& response) {
-      thread_local const bool low_priority = (TakeLowPriority(), true);
+      thread_local const bool low_priority = (LowerImageThreadPriority(), true);
       if (low_priority && IsForThisMachine(request)) return httplib::Server::HandlerResponse::Unhandled;
       response.status = 403;
       return httplib::Server::HandlerResponse::Handled;

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "pliant/base/text.h"
+#include "pliant/base/files.h"
 #include "viewer/page_asset.h"
 #include "viewer/page_data.h"
 #include "viewer/view_images.h"

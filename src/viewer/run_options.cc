@@ -5,7 +5,7 @@
 
 #include <yaml-cpp/yaml.h>
 
-#include "pliant/base/text.h"
+#include "pliant/base/files.h"
 
 namespace pliant {
 

@@ -37,7 +37,7 @@ std::unique_ptr<Sequence> Pairs() {
 TEST(SurfaceTruth, PairsMeasureTheDepthAndHowCertainItIs) {
   const RenderedSequence depth_images;
   const std::vector<Eigen::Vector2d> pixels = Grid();
-  const auto exact = DepthImageTruth(depth_images, 0.05);
+  const auto exact = SurfaceTruthFromDepthImages(depth_images, 0.05);
   const auto measured = PairTruth(Pairs(), 2);
   std::vector<double> errors;
   std::vector<double> in_sigmas;

@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "pliant/base/files.h"
 #include "pliant/base/text.h"
 #include "pliant/io/options_file.h"
 #include "pliant/io/ply.h"

@@ -106,7 +106,7 @@ TEST(PatchKernels, MomentsGramAndCombinationMatchPlainCode) {
     }
     const double scale = kRelative * xx;
     float gram[4];
-    GramMatrix(blocks.data(), 2, kShape, gram);
+    PatchGramMatrix(blocks.data(), 2, kShape, gram);
     EXPECT_NEAR(gram[0], xx, scale);
     EXPECT_NEAR(gram[1], xy, scale);
     EXPECT_EQ(gram[1], gram[2]);

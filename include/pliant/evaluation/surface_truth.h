@@ -52,7 +52,7 @@ class SurfaceTruth {
 
 // From the depth images: interpolated, never across a relative step of more than max_depth_step. `sequence` must
 // outlive it.
-std::unique_ptr<SurfaceTruth> DepthImageTruth(const Sequence& sequence, double max_depth_step);
+std::unique_ptr<SurfaceTruth> SurfaceTruthFromDepthImages(const Sequence& sequence, double max_depth_step);
 
 // From the pairs of a sequence at its beginning, opened for this alone. A pixel without a certain match has no depth.
 // The standard deviation of a disparity is that of the rows of the frame's matches, which ought to agree, and what the

@@ -14,6 +14,7 @@
 #include "pliant/geometry/triangulation.h"
 #include "pliant/tracking/bootstrapping/make_initializer.h"
 #include "tracking/bootstrapping/initial_map.h"
+#include "tracking/bootstrapping/rotation_check.h"
 
 namespace pliant {
 namespace {
@@ -76,7 +77,7 @@ class Attempt {
 
   // What is missing for a map; ok when the outcome is one.
   Status Run() {
-    if (Status status = MoreThanARotation(); !status.ok()) return status;
+    if (Status status = CheckWindowNotARotation(); !status.ok()) return status;
     if (Status status = FindMotion(); !status.ok()) return status;
     if (Status status = EnoughParallax(); !status.ok()) return status;
     if (Status status = CompareCompetingMotions(); !status.ok()) return status;
@@ -84,7 +85,7 @@ class Attempt {
   }
 
  private:
-  Status MoreThanARotation() {
+  Status CheckWindowNotARotation() {
     const auto rotation =
         CheckNotARotation(matched_, focal_px_, options_.max_error_px, options_.max_rotation_share, &outcome_.measured);
     if (!rotation.ok()) return rotation.status();

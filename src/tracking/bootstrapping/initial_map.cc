@@ -68,17 +68,6 @@ Result<RelativePose> EstimateMotion(const MatchedRays& matched, double focal_px,
   return pose;
 }
 
-Result<RotationFit> CheckNotARotation(const MatchedRays& matched, double focal_px, double max_error_px,
-                                      double max_share, InitMeasurements* measured) {
-  auto rotation = FitRotation(matched.rays0, matched.rays1, focal_px, max_error_px);
-  if (!rotation.ok()) return rotation;
-  measured->rotation_only_share = static_cast<double>(rotation->num_inliers) / static_cast<double>(matched.ids.size());
-  if (measured->rotation_only_share <= max_share) return rotation;
-  return {ErrorCode::kDegenerate, "the camera rotated or stood still: a rotation alone explains " +
-                                      Percent(measured->rotation_only_share) + " of the points to " +
-                                      Digits(max_error_px, 1) + " px; move it sideways or forwards"};
-}
-
 InitialMap TriangulateInliers(const Rigid3& cam1_from_cam0, const std::vector<char>& inliers, double focal_px,
                               const MonocularInitOptions& options, MatchedRays* matched) {
   InitialMap map;

@@ -35,11 +35,6 @@ MatchedRays MatchRays(const Camera& camera, const InitFrame& reference, const In
 Result<RelativePose> EstimateMotion(const MatchedRays& matched, double focal_px, const MonocularInitOptions& options,
                                     Random random);
 
-// The rotation that explains most; kDegenerate when it explains more than `max_share` of the points to `max_error_px`,
-// which leaves nothing to triangulate. Fills in the share measured.
-Result<RotationFit> CheckNotARotation(const MatchedRays& matched, double focal_px, double max_error_px,
-                                      double max_share, InitMeasurements* measured);
-
 // A map in the making; world = the reference camera, any scale.
 struct InitialMap {
   std::vector<PointId> ids;  // sorted

@@ -9,6 +9,7 @@
 #include "pliant/base/statistics.h"
 #include "pliant/tracking/bootstrapping/make_initializer.h"
 #include "tracking/bootstrapping/initial_map.h"
+#include "tracking/bootstrapping/rotation_check.h"
 #include "tracking/bootstrapping/window_map.h"
 #include "tracking/bootstrapping/window_solution.h"
 
@@ -43,7 +44,7 @@ class WindowInitializer final : public Initializer {
       return outcome;
     }
     const bool last = ends || since + options_.every > options_.last_frame;
-    Status status = MoreThanARotation(input, &outcome.measured);
+    Status status = CheckWindowNotARotation(input, &outcome.measured);
     if (status.ok()) status = last ? LastAttempt(input, &outcome) : Attempt(input, since, &outcome);
     if (!status.ok()) {
       outcome.decision = last ? InitDecision::kNewReference : InitDecision::kWait;

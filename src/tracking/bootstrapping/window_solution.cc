@@ -20,9 +20,6 @@ constexpr std::size_t kMinPoints = 12;
 constexpr std::size_t kMinFrames = 6;
 // A light that leaves more of the spread of log distances than this says nothing of distance.
 constexpr double kMaxOfSpread = 0.8;
-// A rotation that explains this share of the points to this error leaves nothing to triangulate.
-constexpr double kRotationErrorPx = 1.5;
-constexpr double kMaxRotationShare = 0.8;
 
 // The points that are seen in enough views; where they are too many, those still seen, then those seen most.
 std::vector<PointId> ChoosePoints(const InitInput& input, const std::vector<std::size_t>& views,
@@ -228,13 +225,6 @@ Result<SolvedWindow> SolveWindow(const InitInput& input, std::size_t frames, Win
   if (!window.ok()) return window.status();
   auto rigid = SolveRigid(input, *window, options);
   return rigid.ok() || scene == WindowScene::kRigid ? rigid : SolveDeforming(input, *window, options, nominal_depth_mm);
-}
-
-Status MoreThanARotation(const InitInput& input, InitMeasurements* measured) {
-  const MatchedRays matched = MatchRays(input.camera, input.frames.front(), input.frames.back());
-  measured->correspondences = static_cast<int>(matched.ids.size());
-  return CheckNotARotation(matched, input.camera.MeanFocalLengthPx(), kRotationErrorPx, kMaxRotationShare, measured)
-      .status();
 }
 
 }  // namespace pliant

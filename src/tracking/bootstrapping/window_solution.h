@@ -29,9 +29,6 @@ enum class WindowScene { kRigid, kAny };
 Result<SolvedWindow> SolveWindow(const InitInput& input, std::size_t frames, WindowScene scene,
                                  const WindowInitOptions& options, double nominal_depth_mm);
 
-// kDegenerate where the camera only turned between the first frame and the last.
-Status MoreThanARotation(const InitInput& input, InitMeasurements* measured);
-
 // A point's index in the sorted `ids`, or -1.
 int IndexOf(PointId id, const std::vector<PointId>& ids);
 

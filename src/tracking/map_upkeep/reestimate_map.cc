@@ -3,6 +3,7 @@
 
 #include "tracking/map_upkeep/reestimate_map.h"
 
+#include "tracking/bootstrapping/rotation_check.h"
 #include "tracking/bootstrapping/window_map.h"
 
 namespace pliant {
@@ -17,7 +18,7 @@ Status Reestimate(const InitInput& input, WindowScene scene, const WindowInitOpt
                   InitOutcome* outcome) {
   const bool may_deform = scene == WindowScene::kAny;
   if (may_deform)  // a rotation alone does not constrain the deforming window
-    if (Status status = MoreThanARotation(input, &outcome->measured); !status.ok()) return status;
+    if (Status status = CheckWindowNotARotation(input, &outcome->measured); !status.ok()) return status;
   const auto window = SolveWindow(input, input.frames.size(), scene, options, nominal_depth_mm);
   if (!window.ok()) return window.status();
   MapDemands demands = DemandsOf(options, may_deform ? kRelaxed : 0.0);

@@ -1,0 +1,92 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Files whose every failure is a Status: written as a whole or not at all, read by lines with their numbers.
+#pragma once
+
+#include <cstdint>
+#include <cstdio>
+#include <fstream>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "pliant/base/status.h"
+#include "pliant/base/text.h"
+
+namespace pliant {
+
+// Whether something is there that can be seen; never throws.
+bool Exists(const std::string& path);
+
+// A file that is written from its beginning. Append hands everything to the system before it returns.
+class OutputFile {
+ public:
+  static Result<OutputFile> Create(const std::string& path);
+  Status Append(std::string_view text);
+  // Hands `buffer` over and empties it when it has grown large.
+  Status AppendWhenLarge(std::string* buffer);
+  Status Close();
+
+ private:
+  struct Closer {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+  };
+  OutputFile(std::string path, std::FILE* file) : path_(std::move(path)), file_(file) {}
+  Status Failure() const;
+
+  std::string path_;
+  std::unique_ptr<std::FILE, Closer> file_;
+};
+
+// Files that appear together or not at all: each is written under another name, and Commit renames them. What is not
+// committed is deleted. Between the renames of several files a reader can see some of them.
+class FileGroup {
+ public:
+  FileGroup() = default;
+  FileGroup(const FileGroup&) = delete;
+  FileGroup& operator=(const FileGroup&) = delete;
+  ~FileGroup();
+
+  // A new file of the group, which is to become `path`; the caller closes it before Commit.
+  Result<OutputFile> Create(const std::string& path);
+  Status Commit();
+
+ private:
+  std::vector<std::string> paths_;
+};
+
+// Replaces a whole file: a reader sees the old one or the new one.
+Status WriteFileAtomically(const std::string& path, std::string_view text);
+// Replaces the content of a file that is there, in its own blocks: for a full disk, where nothing new can be made.
+Status OverwriteFile(const std::string& path, std::string_view text);
+Result<std::string> ReadFile(const std::string& path);
+
+// A file line by line, without its line ends (\n or \r\n).
+class LineReader {
+ public:
+  static Result<LineReader> Open(const std::string& path);
+
+  // False at the end.
+  bool Next(std::string_view* line);
+  // Of the line that Next gave: its number from 1, and whether a line end followed it.
+  std::int64_t number() const { return number_; }
+  bool ended() const { return ended_; }
+  const std::string& path() const { return path_; }
+  Status Error(const std::string& what) const {
+    return {ErrorCode::kUnreadable, PathAndLine(path_, number_) + ": " + what};
+  }
+
+ private:
+  LineReader(std::string path, std::ifstream stream) : path_(std::move(path)), stream_(std::move(stream)) {}
+
+  std::string path_;
+  std::ifstream stream_;
+  std::string line_;
+  std::int64_t number_ = 0;
+  bool ended_ = true;
+};
+
+}  // namespace pliant
