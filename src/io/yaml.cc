@@ -9,7 +9,9 @@
 
 namespace pliant {
 
-std::string PathAndLine(const std::string& path, const YAML::Node& node) { return PathAndLine(path, node.Mark().line + 1); }
+std::string PathAndLine(const std::string& path, const YAML::Node& node) {
+  return PathAndLine(path, node.Mark().line + 1);
+}
 
 std::string KeyText(const YAML::Node& key) { return key.IsScalar() ? key.Scalar() : "?"; }
 

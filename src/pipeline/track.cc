@@ -129,6 +129,7 @@ Ending TrackFrames(Sequence& sequence, const RunRequest& request, const TrackOpt
       options.threads > 1 ? kFramesAhead : 0);
   std::string last_note = "the sequence has no frames";
   std::string last_tracked;
+  std::string ambiguity;
   int count = 0;
   while (auto frame = frames.Next()) {
     if (!frame->ok()) return {RunStatus::kFailed, frame->status().message()};
@@ -142,8 +143,10 @@ Ending TrackFrames(Sequence& sequence, const RunRequest& request, const TrackOpt
     const FrameReport& present = tracker.held().empty() ? done.back() : tracker.held().back();
     if (AwaitsAMap(present)) recorder.Announce(present);
     last_note = present.note;
-    for (const FrameReport& report : done)
+    for (const FrameReport& report : done) {
       if (report.state == TrackingState::kTracking) last_tracked = report.name;
+      if (report.state == TrackingState::kAmbiguous) ambiguity = report.note;
+    }
     if (const Status recorded = recorder.Record(std::move(done)); !recorded.ok())
       return {RunStatus::kFailed, recorded.message()};
     if (tracker.GaveUp())
@@ -154,6 +157,8 @@ Ending TrackFrames(Sequence& sequence, const RunRequest& request, const TrackOpt
   }
   tracker.EndSequence();
   if (!tracker.held().empty()) last_note = tracker.held().back().note;
+  // What holds for a whole window says more than how the last one ended.
+  if (last_tracked.empty() && !ambiguity.empty()) last_note = ambiguity;
   return AtTheEnd(tracker, count, last_note, last_tracked);
 }
 

@@ -91,10 +91,14 @@ void AddLastAttempt(const BootstrapStep& step, const StageTimes& times, FrameRep
 }
 
 // Frames in which points were followed from a reference that came to nothing, since camera and scene could not be told
-// apart.
-void MarkAmbiguous(std::vector<FrameReport>* reports) {
-  for (FrameReport& report : *reports)
-    if (report.state == TrackingState::kInitializing) report.state = TrackingState::kAmbiguous;
+// apart; nothing where there is no `reason`.
+void MarkAmbiguous(const std::string& reason, std::vector<FrameReport>* reports) {
+  if (reason.empty()) return;
+  for (FrameReport& report : *reports) {
+    if (report.state != TrackingState::kInitializing) continue;
+    report.state = TrackingState::kAmbiguous;
+    report.note = reason;
+  }
 }
 
 double MedianError(const FollowedPoints& points) {
@@ -183,7 +187,7 @@ void Tracker::FindSubmapAgain(const PreparedFrame& frame) {
 FrameResult Tracker::Bootstrap(const PreparedFrame& frame, StageTimes* times) {
   BootstrapStep step = bootstrapper_->Process(frame, &submaps_->current(), times);
   for (const TrackingEvent event : step.events) Apply(event);
-  if (step.ambiguous) MarkAmbiguous(&held_);
+  MarkAmbiguous(step.ambiguity, &held_);
   if (step.map) StartMap(*step.map);
   return {.tracked = step.tracked,
           .losses = std::move(step.losses),
@@ -265,7 +269,7 @@ void Tracker::EndSequence() {
   BootstrapStep step = bootstrapper_->EndSequence(&times);
   for (const TrackingEvent event : step.events) Apply(event);
   AddLastAttempt(step, times, &held_.back());
-  if (step.ambiguous) MarkAmbiguous(&held_);
+  MarkAmbiguous(step.ambiguity, &held_);
   if (!step.map) return;
   StartMap(*step.map);
   held_ = bootstrapper_->Completed(*step.map, std::move(held_));

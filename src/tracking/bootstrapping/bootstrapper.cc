@@ -79,7 +79,7 @@ BootstrapStep Bootstrapper::FollowReference(const PreparedFrame& frame, Submap* 
   if (!HasReference() && !step.map) {  // the reference is spent: this image becomes the next one
     BootstrapStep next = TakeReference(frame, submap, times);
     next.events.insert(next.events.begin(), TrackingEvent::kReferenceSpent);
-    next.ambiguous = step.ambiguous;
+    next.ambiguity = std::move(step.ambiguity);
     step.losses.Add(next.losses);
     next.losses = std::move(step.losses);
     next.note = step.note + "; " + next.note;
@@ -102,7 +102,7 @@ void Bootstrapper::TryInitialize(const PreparedFrame& frame, StageTimes* times, 
       step->events.push_back(TrackingEvent::kMapAwaited);
       break;
     case InitDecision::kNewReference:
-      step->ambiguous = outcome.ambiguous;
+      if (outcome.ambiguous) step->ambiguity = outcome.reason;
       Abandon();
       break;
   }
@@ -112,7 +112,7 @@ BootstrapStep Bootstrapper::EndSequence(StageTimes* times) {
   BootstrapStep step;
   InitOutcome outcome = AskInitializer({}, InitMoment::kLastFrame, times);
   step.note = WithFault(outcome.reason, image_fault_);
-  step.ambiguous = outcome.ambiguous && outcome.decision == InitDecision::kNewReference;
+  if (outcome.ambiguous && outcome.decision == InitDecision::kNewReference) step.ambiguity = outcome.reason;
   if (outcome.decision == InitDecision::kMap) FinishMap(std::move(outcome), &step);
   return step;
 }

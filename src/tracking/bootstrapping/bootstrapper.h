@@ -30,8 +30,9 @@ struct BootstrapStep {
   std::vector<TrackingEvent> events = {};  // in their order
   int tracked = 0;                         // points found in this frame, or followed into it
   LossCounts losses = {};
-  std::string note = {};                       // one sentence
-  bool ambiguous = false;                      // of the frames since a reference that was given up
+  std::string note = {};  // one sentence
+  // Why camera and scene cannot be told apart in the frames since a reference that was given up for it; else empty.
+  std::string ambiguity = {};
   std::optional<FirstMap> map = std::nullopt;  // when the initializer made one; the bootstrapper then begins anew
 };
 
