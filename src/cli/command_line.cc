@@ -126,13 +126,20 @@ void CommandLine::AddFlag(std::string name, bool* value, std::string why) {
 
 void CommandLine::AddChoice(std::string name, std::string* value, const std::vector<std::string_view>& names,
                             std::string why) {
+  AddChoice(std::move(name), *value, names, std::move(why), [value](std::string_view text) { *value = text; });
+}
+
+void CommandLine::AddChoice(std::string name, std::string_view value, const std::vector<std::string_view>& names,
+                            std::string why, std::function<void(std::string_view)> set) {
   std::string accepted;
   for (const std::string_view known : names) accepted += (accepted.empty() ? "" : "|") + std::string(known);
-  AddArgument({std::move(name), accepted, std::move(why), "one of " + accepted, *value, Need::kOptional,
-               [value, known = std::set<std::string>(names.begin(), names.end())](std::string_view text) {
-                 *value = text;
-                 return known.contains(*value);
-               }});
+  AddArgument(
+      {std::move(name), accepted, std::move(why), "one of " + accepted, std::string(value), Need::kOptional,
+       [set = std::move(set), known = std::set<std::string>(names.begin(), names.end())](std::string_view text) {
+         if (!known.contains(std::string(text))) return false;
+         set(text);
+         return true;
+       }});
 }
 
 void CommandLine::AddAlias(std::string name, std::string option, const std::string& placeholder, std::string why) {

@@ -72,17 +72,12 @@ class CommandLine {
   // One of the named values of an enum (EnumNames).
   template <class Enum>
   void AddChoice(std::string name, Enum* value, std::string why) {
-    std::string names;
-    for (const auto& entry : EnumNames<Enum>::kNames) names += (names.empty() ? "" : "|") + std::string(entry.second);
-    AddArgument({std::move(name), names, std::move(why), "one of " + names, std::string(EnumName(*value)),
-                 Need::kOptional, [value](std::string_view text) {
-                   for (const auto& [candidate, candidate_name] : EnumNames<Enum>::kNames) {
-                     if (candidate_name != text) continue;
-                     *value = candidate;
-                     return true;
-                   }
-                   return false;
-                 }});
+    std::vector<std::string_view> names;
+    for (const auto& entry : EnumNames<Enum>::kNames) names.push_back(entry.second);
+    AddChoice(std::move(name), EnumName(*value), names, std::move(why), [value](std::string_view text) {
+      for (const auto& [candidate, candidate_name] : EnumNames<Enum>::kNames)
+        if (candidate_name == text) *value = candidate;
+    });
   }
 
   // A short name of an option: as if `--Group.option VALUE` were given last.
@@ -105,6 +100,9 @@ class CommandLine {
   std::string ManualText(const OptionTable& options) const;
 
  private:
+  // `set` gets one of the names; `value` is the one that it has at first.
+  void AddChoice(std::string name, std::string_view value, const std::vector<std::string_view>& names, std::string why,
+                 std::function<void(std::string_view)> set);
   enum class Times { kOnce, kSeveral };
   struct Argument {
     std::string name;

@@ -39,11 +39,10 @@ std::vector<Run> ReadRuns(const SequenceRequest& request) {
   auto sequence = OpenSequence(request);
   if (!sequence.ok()) return {};
   std::vector<Run> runs(kRuns);
-  for (int k = 0; k < kRuns * kRunDistance; ++k) {
+  for (int k = 0; k < (kRuns - 1) * kRunDistance + kRunFrames; ++k) {
     auto next = (*sequence)->Next();
     if (!next.ok() || !next->has_value()) break;
     if (k % kRunDistance < kRunFrames) runs[static_cast<std::size_t>(k / kRunDistance)].push_back(**std::move(next));
-    if (k == (kRuns - 1) * kRunDistance + kRunFrames - 1) break;
   }
   return runs;
 }

@@ -66,6 +66,11 @@ std::vector<std::string> WhatTheFirstFramesSay(const SequenceRequest& request, b
 
 Result<RunStart> ReadStart(const RunRequest& request, const TrackOptions& options, const Sequence& sequence) {
   const InitOptions& init = options.tracker.init;
+  if (options.tracker.oracle.Any() && options.image.working == WorkingImageMode::kFixed && options.image.scale != 1.0)
+    return Status(
+        ErrorCode::kInvalidArgument,
+        "with an Oracle option points are where the truth has them, in pixels of the source: leave Image.scale "
+        "at 1");
   RunStart start;
   start.working_image = ChooseWorkingImage(request.input, options);
   auto camera = sequence.camera().Resized(start.working_image.scale);

@@ -201,6 +201,9 @@ TEST_F(Oracles, WithoutTheSimulationOrWithAnotherCameraAreRefusedInOneSentence) 
       "other.yaml", "model: PINHOLE\nwidth: 320\nheight: 240\nparams: [300, 300, 159.5, 119.5]\nfps: 30\n");
   EXPECT_THAT(RunTrack(request, options, {}).status().message(), testing::HasSubstr("the camera is not the one"));
   request.input.camera_path.clear();
+  options.image = {.working = WorkingImageMode::kFixed, .scale = 0.5};
+  EXPECT_THAT(RunTrack(request, options, {}).status().message(), testing::HasSubstr("leave Image.scale at 1"));
+  options.image = {};
   std::filesystem::remove(folder_.Path("sequence/simulation.yaml"));
   EXPECT_THAT(RunTrack(request, options, {}).status().message(), testing::HasSubstr("has no simulation.yaml"));
 }

@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pipeline/choose_working_image.h"
+
+#include <array>
+
+#include <gtest/gtest.h>
+#include <opencv2/imgproc.hpp>
+
+#include "pliant/datasets/native_writer.h"
+#include "support/test_folder.h"
+
+namespace pliant {
+namespace {
+
+constexpr int kFrames = 16;
+constexpr int kWidth = 1600;
+constexpr int kHeight = 1200;
+constexpr double kBlob_px = 3;       // of the texture: nothing in it is finer
+constexpr double kContrast = 25;     // standard deviation, gray levels
+constexpr double kStrongNoise = 25;  // standard deviation, gray levels, of every pixel by itself
+constexpr int kStep_px = 3;          // the texture moves on by this, a frame
+
+// A smooth texture that moves sideways, with noise that is new in every frame.
+class MovingTexture : public testing::Test {
+ protected:
+  void Write(double noise) {
+    const auto camera =
+        Camera::Create(CameraModelId::kSimplePinhole, kWidth, kHeight, std::array{1200.0, kWidth / 2.0, kHeight / 2.0});
+    ASSERT_TRUE(camera.ok());
+    auto writer = NativeWriter::Create(folder_.Path("sequence"), {.camera = *camera, .fps = 25});
+    ASSERT_TRUE(writer.ok()) << writer.status().message();
+    cv::RNG random(7);
+    cv::Mat texture(kHeight, kWidth + kFrames * kStep_px, CV_32FC1);
+    random.fill(texture, cv::RNG::NORMAL, 0, 1);
+    cv::GaussianBlur(texture, texture, {}, kBlob_px);
+    cv::Scalar mean;
+    cv::Scalar deviation;
+    cv::meanStdDev(texture, mean, deviation);
+    texture = 128 + kContrast / deviation[0] * texture;
+    for (int k = 0; k < kFrames; ++k) {
+      cv::Mat grain(kHeight, kWidth, CV_32FC1);
+      random.fill(grain, cv::RNG::NORMAL, 0, noise);
+      cv::Mat image;
+      cv::Mat(texture.colRange(k * kStep_px, k * kStep_px + kWidth) + grain).convertTo(image, CV_8UC1);
+      cv::cvtColor(image, image, cv::COLOR_GRAY2BGR);
+      const Status written = writer->Write({.timestamp_s = k / 25.0, .image = image});
+      ASSERT_TRUE(written.ok()) << written.message();
+    }
+  }
+
+  WorkingImage Chosen() const {
+    SequenceRequest request;
+    request.image_path = folder_.Path("sequence");
+    return ChooseWorkingImage(request, TrackOptions());
+  }
+
+  TestFolder folder_;
+};
+
+TEST_F(MovingTexture, CleanImagesAreUsedAsTheyAre) {
+  Write(0.3);
+  EXPECT_TRUE(Chosen().IsSource());
+}
+
+TEST_F(MovingTexture, NoisyOnesAreMadeSmallerOrSmoother) {
+  Write(kStrongNoise);
+  const WorkingImage chosen = Chosen();
+  EXPECT_TRUE(chosen.scale < 1 || chosen.smoothing_px > 0) << chosen.scale << ", " << chosen.smoothing_px;
+}
+
+}  // namespace
+}  // namespace pliant
