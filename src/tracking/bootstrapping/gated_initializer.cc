@@ -77,7 +77,7 @@ class Attempt {
 
   // What is missing for a map; ok when the outcome is one.
   Status Run() {
-    if (Status status = CheckWindowNotARotation(); !status.ok()) return status;
+    if (Status status = MoreThanARotation(); !status.ok()) return status;
     if (Status status = FindMotion(); !status.ok()) return status;
     if (Status status = EnoughParallax(); !status.ok()) return status;
     if (Status status = CompareCompetingMotions(); !status.ok()) return status;
@@ -85,7 +85,7 @@ class Attempt {
   }
 
  private:
-  Status CheckWindowNotARotation() {
+  Status MoreThanARotation() {
     const auto rotation =
         CheckNotARotation(matched_, focal_px_, options_.max_error_px, options_.max_rotation_share, &outcome_.measured);
     if (!rotation.ok()) return rotation.status();

@@ -22,11 +22,13 @@ struct CameraMotionModels {
   DeformingWindow still;        // WindowCamera::kRotation
 };
 
+// Basis shapes of both: with more of them a deforming scene can imitate any camera.
+constexpr int kModelRank = 2;
+
 // Both from a solution with coefficients, of the rank kModelRank or its own if that is lower: its motions, and for the
 // camera that stands still also what its camera translated, as the scene's. Of the points at most 2 sample_points are
-// used, spread evenly in the reference: they tell as much. `threads` never changes the result. Fails
-// like SolveDeformingWindow, and with kInvalidArgument where there are no coefficients.
-constexpr int kModelRank = 2;
+// used, spread evenly in the reference: they tell as much. `threads` never changes the result. Fails like
+// SolveDeformingWindow, and with kInvalidArgument where there are no coefficients.
 Result<CameraMotionModels> SolveCameraMotionModels(const DeformingSolution& solution, double focal_px,
                                                    const DeformingWindowOptions& options, int threads = 1);
 
