@@ -3,6 +3,7 @@
 
 #include "cli/track_progress.h"
 
+#include <algorithm>
 #include <iostream>
 #include <string>
 
@@ -24,13 +25,14 @@ void TrackProgress::OnFrame(const FrameReport& report) {
 void TrackProgress::OnHeld(const FrameReport& report) { Show(report); }
 
 void TrackProgress::Show(const FrameReport& report) {
-  shown_frame_idx_ = report.frame_idx;
+  if (report.frame_idx > shown_frame_idx_) ++done_;  // tracking may have gone back
+  shown_frame_idx_ = std::max(shown_frame_idx_, report.frame_idx);
   if (report.state != state_ || report.merge) {
     progress_->Note("frame " + report.name + ": " + std::string(EnumName(report.state)) +
                     (report.note.empty() ? "" : " (" + report.note + ")"));
     state_ = report.state;
   }
-  progress_->Update(++done_, std::to_string(report.tracked) + " points");
+  progress_->Update(done_, std::to_string(report.tracked) + " points");
 }
 
 }  // namespace pliant::cli

@@ -120,7 +120,7 @@ Status ReadFrames(const std::string& path, Run* run) {
 Status NumberPoses(const std::string& path, Run* run) {
   std::vector<const RunFrame*> tracked;
   for (const RunFrame& frame : run->frames)
-    if (frame.state == TrackingState::kTracking) tracked.push_back(&frame);
+    if (HasPose(frame.state)) tracked.push_back(&frame);
   // A frame's row in frames.csv is written last: a killed run may have a pose or two more than rows.
   const bool belong = run->summary ? run->poses.size() >= tracked.size() : run->poses.size() == tracked.size();
   if (!belong)

@@ -24,11 +24,6 @@ void AddTimes(const FrameReport& before, FrameReport* report) {
 
 }  // namespace
 
-bool AwaitsAMap(const FrameReport& report) {
-  return report.state == TrackingState::kWaitingForReference || report.state == TrackingState::kInitializing ||
-         report.state == TrackingState::kAmbiguous;
-}
-
 FramesBefore::FramesBefore(const SequenceRequest& input, const WorkingImage& working, const Camera& camera,
                            const TrackOptions& options)
     : input_(input), working_(working), camera_(camera), options_(options) {
@@ -46,7 +41,7 @@ std::vector<FrameReport> FramesBefore::Pass(std::vector<FrameReport> reports) {
     waiting_.erase(waiting_.begin(), end);
   };
   for (FrameReport& report : reports) {
-    if (AwaitsAMap(report)) {
+    if (!HasPose(report.state)) {
       waiting_.push_back(std::move(report));
       if (static_cast<int>(waiting_.size()) > options_.max_frames_back) release(1);
       continue;

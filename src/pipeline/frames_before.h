@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// The frames before a first map: those that had no reference, or one that was given up. When a map has come they are
-// read once more and tracked from its reference frame back in time, so that they too have poses and points.
+// The frames before a first map: those that had no reference, or one that was given up, and those in which the map
+// before was lost. When a map has come they are read once more and tracked from its reference frame back in time, so
+// that they too have poses and points.
 #pragma once
 
 #include <cstddef>
@@ -16,9 +17,6 @@
 #include "pliant/tracking/tracker.h"
 
 namespace pliant {
-
-// Whether the frame has no map, so far.
-bool AwaitsAMap(const FrameReport& report);
 
 class FramesBefore {
  public:

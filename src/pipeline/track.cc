@@ -120,42 +120,87 @@ Ending AtTheEnd(const Tracker& tracker, int frames, const std::string& last_note
   return {RunStatus::kFailed, "the sequence ended without a first map: " + last_note};
 }
 
+// Frames of the sequence, read ahead, in which one can go back.
+class FrameSource {
+ public:
+  // All are used as long as this lives.
+  FrameSource(Sequence& sequence, const SequenceRequest& input, const TrackOptions& options, const RunStart& start,
+              bool wants_depth)
+      : input_(input), options_(options), start_(start), wants_depth_(wants_depth) {
+    ReadAhead(sequence);
+  }
+
+  std::optional<Result<ReadFrame>> Next() { return frames_->Next(); }
+  // Once there is a map no depth image is read any more; those read ahead in the meantime change nothing.
+  void SetWantsDepth(bool wants) { wants_depth_ = wants; }
+  // What comes next is the frame after this one. Fails as OpenSequence does.
+  Status GoBackTo(int frame_idx) {
+    frames_.reset();
+    SequenceRequest rest = input_;
+    rest.start = frame_idx + input_.stride;
+    auto reopened = OpenSequence(rest);
+    if (!reopened.ok()) return reopened.status();
+    reopened_ = *std::move(reopened);
+    ReadAhead(*reopened_);
+    return Status::Ok();
+  }
+
+ private:
+  void ReadAhead(Sequence& sequence) {
+    frames_.emplace([&] { return NextFrame(sequence, options_.tracker, options_.threads, start_, wants_depth_); },
+                    options_.threads > 1 ? kFramesAhead : 0);
+  }
+
+  const SequenceRequest& input_;
+  const TrackOptions& options_;
+  const RunStart& start_;
+  std::atomic<bool> wants_depth_;
+  std::unique_ptr<Sequence> reopened_;
+  std::optional<Prefetcher<Result<ReadFrame>>> frames_;
+};
+
 Ending TrackFrames(Sequence& sequence, const RunRequest& request, const TrackOptions& options, const RunStart& start,
                    Tracker& tracker, Recorder& recorder) {
-  // Once there is a map no depth image is read any more; those read ahead in the meantime change nothing.
-  std::atomic<bool> wants_depth = tracker.WantsDepth();
-  Prefetcher<Result<ReadFrame>> frames(
-      [&] { return NextFrame(sequence, options.tracker, options.threads, start, wants_depth); },
-      options.threads > 1 ? kFramesAhead : 0);
+  FrameSource frames(sequence, request.input, options, start, tracker.WantsDepth());
   std::string last_note = "the sequence has no frames";
   std::string last_tracked;
   std::string ambiguity;
   int count = 0;
-  while (auto frame = frames.Next()) {
-    if (!frame->ok()) return {RunStatus::kFailed, frame->status().message()};
-    const ReadFrame& read = **frame;
-    // What was read ahead for nothing cannot end the run, or the number of threads would decide.
-    if (tracker.NeedsDepth() && !read.depth.ok()) return {RunStatus::kFailed, read.depth.message()};
-    recorder.Show(read);
-    std::vector<FrameReport> done = tracker.Process(read.frame);
-    ++count;
-    wants_depth = tracker.WantsDepth();
-    const FrameReport& present = tracker.held().empty() ? done.back() : tracker.held().back();
-    if (AwaitsAMap(present)) recorder.Announce(present);
-    last_note = present.note;
-    for (const FrameReport& report : done) {
-      if (report.state == TrackingState::kTracking) last_tracked = report.name;
-      if (report.state == TrackingState::kAmbiguous) ambiguity = report.note;
+  for (bool more = true; more;) {
+    const auto frame = frames.Next();
+    if (frame && !frame->ok()) return {RunStatus::kFailed, frame->status().message()};
+    if (frame) {
+      const ReadFrame& read = **frame;
+      // What was read ahead for nothing cannot end the run, or the number of threads would decide.
+      if (tracker.NeedsDepth() && !read.depth.ok()) return {RunStatus::kFailed, read.depth.message()};
+      recorder.Show(read);
+      std::vector<FrameReport> done = tracker.Process(read.frame);
+      ++count;
+      frames.SetWantsDepth(tracker.WantsDepth());
+      const FrameReport& present = tracker.held().empty() ? done.back() : tracker.held().back();
+      if (!HasPose(present.state)) recorder.Announce(present);
+      last_note = present.note;
+      for (const FrameReport& report : done) {
+        if (HasPose(report.state)) last_tracked = report.name;
+        if (report.state == TrackingState::kAmbiguous) ambiguity = report.note;
+      }
+      if (const Status recorded = recorder.Record(std::move(done)); !recorded.ok())
+        return {RunStatus::kFailed, recorded.message()};
+      if (tracker.GaveUp())
+        return {RunStatus::kLost,
+                "after frame " + last_tracked + "; given up in frame " + read.frame.name + ": " + last_note};
+      if (request.stop != nullptr && *request.stop)
+        return {RunStatus::kInterrupted, "stopped on request after frame " + read.frame.name};
+    } else {
+      tracker.EndSequence();
+      more = false;
     }
-    if (const Status recorded = recorder.Record(std::move(done)); !recorded.ok())
-      return {RunStatus::kFailed, recorded.message()};
-    if (tracker.GaveUp())
-      return {RunStatus::kLost,
-              "after frame " + last_tracked + "; given up in frame " + read.frame.name + ": " + last_note};
-    if (request.stop != nullptr && *request.stop)
-      return {RunStatus::kInterrupted, "stopped on request after frame " + read.frame.name};
+    if (const auto back = tracker.TakeGoesBackTo()) {
+      if (const Status reopened = frames.GoBackTo(*back); !reopened.ok())
+        return {RunStatus::kFailed, reopened.message()};
+      more = true;
+    }
   }
-  tracker.EndSequence();
   if (!tracker.held().empty()) last_note = tracker.held().back().note;
   // What holds for a whole window says more than how the last one ended.
   if (last_tracked.empty() && !ambiguity.empty()) last_note = ambiguity;

@@ -12,7 +12,8 @@ TrackingState NextState(TrackingState state, TrackingEvent event) {
       if (event == TrackingEvent::kMapCreated) return TrackingState::kTracking;
       if (event == TrackingEvent::kMapFoundAgain) return TrackingState::kLost;
       return state;
-    case TrackingState::kAmbiguous:  // no state of the tracker: said afterwards, of frames that are past
+    case TrackingState::kAmbiguous:  // no states of the tracker: said of frames in their reports
+    case TrackingState::kProvisional:
       return state;
     case TrackingState::kInitializing:
       if (event == TrackingEvent::kMapCreated) return TrackingState::kTracking;

@@ -58,7 +58,7 @@ FrameReport MakeReport(const PreparedFrame& frame, TrackingState state, const Su
   report.frame_idx = frame.frame_idx;
   report.name = frame.name;
   report.timestamp_s = frame.timestamp_s;
-  report.state = state;
+  report.state = state == TrackingState::kTracking && submap.provisional ? TrackingState::kProvisional : state;
   report.note = result.note;
   report.submap = submap.idx;
   report.tracked = result.tracked + static_cast<int>(result.update.new_points.size());
@@ -147,6 +147,7 @@ void Tracker::TakeMap(const PreparedFrame& frame, const FrameReport& report) {
     submap.map.landmarks.push_back(landmark);
   }
   submap.idx = report.submap;
+  submap.provisional = report.state == TrackingState::kProvisional;
   submap.last_cam_from_world = *report.cam_from_world;
   submap.before_last_cam_from_world = *report.cam_from_world;
   submap.previous = frame;
@@ -164,7 +165,10 @@ std::vector<FrameReport> Tracker::Process(const PreparedFrame& frame) {
   FindSubmapAgain(frame);
   const bool has_map = state_ == TrackingState::kTracking || state_ == TrackingState::kLost;
   FrameResult result = has_map ? TrackFrame(frame, &times) : Bootstrap(frame, &times);
-  Report(frame, result, &times);
+  if (goes_back_to_)  // this frame is still to come
+    held_ = bootstrapper_->Completed(*result.first_map, std::move(held_));
+  else
+    Report(frame, result, &times);
 
   const auto first_held = state_ == TrackingState::kInitializing
                               ? std::ranges::find(held_, bootstrapper_->reference_frame_idx(), &FrameReport::frame_idx)
@@ -189,10 +193,18 @@ FrameResult Tracker::Bootstrap(const PreparedFrame& frame, StageTimes* times) {
   for (const TrackingEvent event : step.events) Apply(event);
   MarkAmbiguous(step.ambiguity, &held_);
   if (step.map) StartMap(*step.map);
+  if (step.map_frame) GoBackTo(*std::move(step.map_frame));
   return {.tracked = step.tracked,
           .losses = std::move(step.losses),
           .note = std::move(step.note),
           .first_map = std::move(step.map)};
+}
+
+// The frames after it are still to come.
+void Tracker::GoBackTo(PreparedFrame frame) {
+  goes_back_to_ = frame.frame_idx;
+  std::erase_if(held_, [&](const FrameReport& report) { return report.frame_idx > frame.frame_idx; });
+  submaps_->current().previous = std::move(frame);
 }
 
 void Tracker::StartMap(const FirstMap& first) {
@@ -272,6 +284,7 @@ void Tracker::EndSequence() {
   MarkAmbiguous(step.ambiguity, &held_);
   if (!step.map) return;
   StartMap(*step.map);
+  if (step.map_frame) GoBackTo(*std::move(step.map_frame));
   held_ = bootstrapper_->Completed(*step.map, std::move(held_));
 }
 

@@ -30,6 +30,7 @@ enum class TrackingState {
   kAmbiguous,            // points were followed, but camera and scene cannot be told apart
   kInitializing,         // points are followed; the first map does not exist yet, or never came
   kTracking,             // pose and deformation of this frame are known, if only since a later frame made the map
+  kProvisional,          // the same by a map whose depths are little more certain than one constant depth
   kLost,                 // too few points are left
 };
 
@@ -40,8 +41,14 @@ struct EnumNames<TrackingState> {
       std::pair{TrackingState::kInitializing, std::string_view("initializing")},
       std::pair{TrackingState::kAmbiguous, std::string_view("ambiguous")},
       std::pair{TrackingState::kTracking, std::string_view("tracking")},
+      std::pair{TrackingState::kProvisional, std::string_view("provisional")},
       std::pair{TrackingState::kLost, std::string_view("lost")}};
 };
+
+// Whether a frame in this state has a pose and points.
+constexpr bool HasPose(TrackingState state) {
+  return state == TrackingState::kTracking || state == TrackingState::kProvisional;
+}
 
 // One point seen in one frame.
 struct PointObservation {
@@ -94,10 +101,10 @@ struct FrameReport {
   // Which map the frame belongs to, counted from 0: each has its own world and unit. Of a frame that has no pose, the
   // map that is there, or awaited.
   int submap = 0;
-  std::optional<SubmapMerge> merge;  // in state tracking; the frame itself is still reported as before it
+  std::optional<SubmapMerge> merge;  // where there is a pose; the frame itself is still reported as before it
 
-  std::optional<Rigid3> cam_from_world;        // exactly in state tracking
-  std::vector<PointObservation> observations;  // in state tracking; sorted by id
+  std::optional<Rigid3> cam_from_world;        // exactly in states tracking and provisional
+  std::vector<PointObservation> observations;  // where there is a pose; sorted by id
   std::vector<NewPoint> new_points;            // sorted by id
   std::vector<RefinedPoint> refined_points;    // sorted by id
   std::optional<FirstMapFrames> first_map;     // where pose and points came with the first map

@@ -63,6 +63,10 @@ class Tracker {
   // The reports that are held back, in order of time, the last processed frame's last: those since the reference while
   // there is no map, else none. So far they are in state initializing.
   const std::vector<FrameReport>& held() const { return held_; }
+  // Where the last call went back to a provisional map, since no certain one came: the frame in which that was made.
+  // The frames after it are not reported yet; they are to be processed again, or are left out where they cannot be.
+  // Nothing when asked again.
+  std::optional<int> TakeGoesBackTo() { return std::exchange(goes_back_to_, std::nullopt); }
   // No frame will follow: while the first map is awaited, a last attempt at one. Its frames come from Finish.
   void EndSequence();
   // To be called when no more frames come, whatever the reason: the reports held back become final as they are.
@@ -87,6 +91,7 @@ class Tracker {
   void FindSubmapAgain(const PreparedFrame& frame);
   FrameResult Bootstrap(const PreparedFrame& frame, StageTimes* times);
   void StartMap(const FirstMap& first);
+  void GoBackTo(PreparedFrame frame);
   FrameResult TrackFrame(const PreparedFrame& frame, StageTimes* times);
   FollowedPoints Follow(const PreparedFrame& frame, Submap* submap, StageTimes* times);
   std::string Lose(const PreparedFrame& frame, const std::string& reason, Submap* submap);
@@ -102,6 +107,7 @@ class Tracker {
   std::unique_ptr<Submaps> submaps_;
   TrackingState state_ = TrackingState::kWaitingForReference;
   std::vector<FrameReport> held_;  // since the reference
+  std::optional<int> goes_back_to_;
 };
 
 }  // namespace pliant

@@ -94,18 +94,48 @@ BootstrapStep Bootstrapper::FollowReference(const PreparedFrame& frame, Submap* 
 void Bootstrapper::TryInitialize(const PreparedFrame& frame, StageTimes* times, BootstrapStep* step) {
   InitOutcome outcome = AskInitializer(frame.depth_mm, InitMoment::kMoreFollow, times);
   step->note = outcome.reason;
+  if (outcome.ambiguous) provisional_.reset();
   switch (outcome.decision) {
     case InitDecision::kMap:
       FinishMap(std::move(outcome), step);
+      break;
+    case InitDecision::kProvisional:
+      PutAside(std::move(outcome), frame);
+      step->events.push_back(TrackingEvent::kMapAwaited);
       break;
     case InitDecision::kWait:
       step->events.push_back(TrackingEvent::kMapAwaited);
       break;
     case InitDecision::kNewReference:
       if (outcome.ambiguous) step->ambiguity = outcome.reason;
-      Abandon();
+      if (provisional_)
+        GoBack(step);
+      else
+        Abandon();
       break;
   }
+}
+
+// The one whose depths stand out most from their uncertainty is kept.
+void Bootstrapper::PutAside(InitOutcome outcome, const PreparedFrame& frame) {
+  const auto signal = [](const InitMeasurements& measured) {
+    return measured.depth_spread / measured.median_depth_sigma;
+  };
+  if (provisional_ && signal(provisional_->map.outcome.measured) >= signal(outcome.measured)) return;
+  provisional_ = Provisional{{frames_, std::move(outcome)}, frame};
+}
+
+// To the map that was put aside: its points are followed again from the frame it was made in.
+void Bootstrapper::GoBack(BootstrapStep* step) {
+  Provisional provisional = *std::exchange(provisional_, std::nullopt);
+  const bool present = provisional.frame.frame_idx == frames_.back().frame_idx;
+  Abandon();
+  for (const InitObservation& seen : provisional.map.frames.back().observations)
+    tracks_->Resume(seen.id, seen.pixel, provisional.frame);
+  step->note = provisional.map.outcome.reason;
+  frames_ = std::move(provisional.map.frames);
+  FinishMap(std::move(provisional.map.outcome), step);
+  if (!present) step->map_frame = std::move(provisional.frame);
 }
 
 BootstrapStep Bootstrapper::EndSequence(StageTimes* times) {
@@ -113,7 +143,11 @@ BootstrapStep Bootstrapper::EndSequence(StageTimes* times) {
   InitOutcome outcome = AskInitializer({}, InitMoment::kLastFrame, times);
   step.note = WithFault(outcome.reason, image_fault_);
   if (outcome.ambiguous && outcome.decision == InitDecision::kNewReference) step.ambiguity = outcome.reason;
-  if (outcome.decision == InitDecision::kMap) FinishMap(std::move(outcome), &step);
+  if (outcome.ambiguous) provisional_.reset();
+  if (outcome.decision == InitDecision::kMap)
+    FinishMap(std::move(outcome), &step);
+  else if (provisional_)
+    GoBack(&step);
   return step;
 }
 
@@ -122,19 +156,21 @@ void Bootstrapper::Abandon() {
     for (const InitObservation& seen : frames_.back().observations) tracks_->Remove(seen.id);
   frames_.clear();
   known_depths_.clear();
+  provisional_.reset();
 }
 
 InitOutcome Bootstrapper::AskInitializer(const cv::Mat& depth_mm, InitMoment moment, StageTimes* times) {
   const StageTimer timer(times, Stage::kInitialize);
   const InitInput input{camera_, frames_, depth_mm, moment, threads_, known_depths_, photometric_};
-  InitOutcome outcome = initializer_->Try(input);
-  if (outcome.decision == InitDecision::kMap) oracle_poses_->TakeWorld(input, &outcome);
-  return outcome;
+  return initializer_->Try(input);
 }
 
 void Bootstrapper::FinishMap(InitOutcome outcome, BootstrapStep* step) {
   for (const InitRejectedPoint& rejected : outcome.rejected)
     if (rejected.reason != InitRejection::kLostOnTheWay) step->losses.Add(InitRejectionName(rejected.reason), 1);
+  provisional_.reset();
+  outcome.decision = InitDecision::kMap;
+  oracle_poses_->TakeWorld({camera_, frames_, {}}, &outcome);
   step->map = FirstMap{std::exchange(frames_, {}), std::move(outcome)};
   step->events.push_back(TrackingEvent::kMapCreated);
 }

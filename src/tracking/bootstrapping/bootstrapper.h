@@ -34,6 +34,8 @@ struct BootstrapStep {
   // Why camera and scene cannot be told apart in the frames since a reference that was given up for it; else empty.
   std::string ambiguity = {};
   std::optional<FirstMap> map = std::nullopt;  // when the initializer made one; the bootstrapper then begins anew
+  // Where the map was made in an earlier frame, and put aside: that frame. Tracking goes on after it.
+  std::optional<PreparedFrame> map_frame = std::nullopt;
 };
 
 class Bootstrapper {
@@ -65,10 +67,18 @@ class Bootstrapper {
   void TryInitialize(const PreparedFrame& frame, StageTimes* times, BootstrapStep* step);
   InitOutcome AskInitializer(const cv::Mat& depth_mm, InitMoment moment, StageTimes* times);
   void FinishMap(InitOutcome outcome, BootstrapStep* step);
+  void PutAside(InitOutcome outcome, const PreparedFrame& frame);
+  void GoBack(BootstrapStep* step);
   std::vector<PointPrediction> PredictPixels(int frame_idx) const;
   void AddCorners(const PreparedFrame& frame, const LocalBrightness& brightness, int max_corners, InitFrame* points);
   void AddKnownPoints(const PreparedFrame& frame, const LocalBrightness& brightness, InitFrame* points);
   InitFrame FollowedFrame(const PreparedFrame& frame, const Submap& submap, LossCounts* losses);
+
+  // A provisional map, and the frame it was made in.
+  struct Provisional {
+    FirstMap map;
+    PreparedFrame frame;
+  };
 
   Camera camera_;
   TrackerOptions options_;
@@ -78,9 +88,10 @@ class Bootstrapper {
   OraclePoses* oracle_poses_;
   std::unique_ptr<Initializer> initializer_;
 
-  std::vector<InitFrame> frames_;     // since the reference; empty: there is none
-  std::vector<double> known_depths_;  // of the reference's points, where they are known
-  std::string image_fault_;           // of the last frame
+  std::vector<InitFrame> frames_;           // since the reference; empty: there is none
+  std::vector<double> known_depths_;        // of the reference's points, where they are known
+  std::string image_fault_;                 // of the last frame
+  std::optional<Provisional> provisional_;  // the best one since the reference
 };
 
 }  // namespace pliant

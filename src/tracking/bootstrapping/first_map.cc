@@ -11,12 +11,13 @@
 namespace pliant {
 namespace {
 
-void ReportFrame(const Camera& camera, const InitFrame& frame, const InitFrameState& state, FrameReport* report) {
+void ReportFrame(const Camera& camera, const InitFrame& frame, const InitFrameState& state, bool provisional,
+                 FrameReport* report) {
   for (const InitPosition& point : state.positions) {
     const InitObservation& seen = *FindById(frame.observations, point.id);
     report->observations.push_back({point.id, seen.pixel, point.position, seen.ssim});
   }
-  report->state = TrackingState::kTracking;
+  report->state = provisional ? TrackingState::kProvisional : TrackingState::kTracking;
   report->cam_from_world = state.cam_from_world;
   report->optimized = static_cast<int>(state.positions.size());
   report->median_reprojection_error_px = MedianReprojectionErrorPx(camera, state.cam_from_world, report->observations);
@@ -37,7 +38,7 @@ std::vector<FrameReport> CompletedReports(const Camera& camera, const FirstMap& 
     }
     report.first_map = FirstMapFrames{frames.front().frame_idx, frames.back().frame_idx};
     const InitFrameState& state = outcome.frames[static_cast<std::size_t>(frame - frames.begin())];
-    ReportFrame(camera, *frame, state, &report);
+    ReportFrame(camera, *frame, state, outcome.provisional, &report);
     if (&report != &reports.back())
       report.note = "the pose came with the first map, which was made in frame " + reports.back().name;
     // A point is new in the first frame that shows it.

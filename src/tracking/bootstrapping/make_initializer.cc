@@ -59,6 +59,9 @@ void InitOptions::List(OptionTable& table) {
                   "window: all frames since the reference, of a deforming scene; gated: waits until two views "
                   "suffice; paper: two views at a fixed distance, as published; stereo: a rectified pair of images; "
                   "depth: the sequence's depth image; colmap_model: the points of a COLMAP model");
+  table.AddChoice("provisional", &window.provisional,
+                  "window: where no map is certain go back to one whose depths are known at least three times better "
+                  "than one constant depth; its frames have the state provisional");
   monocular.List(table);
   stereo.List(table);
   depth.List(table);

@@ -45,7 +45,7 @@ class WindowInitializer final : public Initializer {
     }
     const bool last = ends || since + options_.every > options_.last_frame;
     Status status = CheckWindowNotARotation(input, &outcome.measured);
-    if (status.ok()) status = last ? LastAttempt(input, &outcome) : Attempt(input, since, &outcome);
+    if (status.ok()) status = last ? LastAttempt(input, &outcome) : Attempt(input, &outcome);
     if (!status.ok()) {
       outcome.decision = last ? InitDecision::kNewReference : InitDecision::kWait;
       outcome.reason = status.message();
@@ -56,26 +56,43 @@ class WindowInitializer final : public Initializer {
 
  private:
   // What is missing for a map; ok when the outcome is one.
-  Status Attempt(const InitInput& input, int since, InitOutcome* outcome) const {
-    const WindowScene scene = since < options_.deforming_frame ? WindowScene::kRigid : WindowScene::kAny;
-    return Make(input, SolveWindow(input, input.frames.size(), scene, options_, nominal_depth_mm_), DemandsAfter(since),
-                outcome);
-  }
-
-  Status LastAttempt(const InitInput& input, InitOutcome* outcome) const {
+  Status Attempt(const InitInput& input, InitOutcome* outcome) const {
     const auto since = static_cast<int>(input.frames.size()) - 1;
-    Status status = LastAttempt(input, since, outcome);
-    // The longer the window the more it holds, and the more there is to go wrong.
-    if (status.ok() || outcome->ambiguous) return status;
-    Status of_shorter = LastAttempt(input, 2 * (since + 1) / 3 - 1, outcome);
-    return of_shorter.ok() || outcome->ambiguous ? of_shorter : status;
+    const WindowScene scene = since < options_.deforming_frame ? WindowScene::kRigid : WindowScene::kAny;
+    const auto window = SolveWindow(input, input.frames.size(), scene, options_, nominal_depth_mm_);
+    Status status = Make(input, window, DemandsAfter(since), outcome);
+    if (status.ok()) return status;
+    status = MakeProvisional(input, window, status, outcome);
+    if (status.ok()) outcome->decision = InitDecision::kProvisional;
+    return status;
   }
 
   // A sequence may end so early that its map must be certain all the same.
-  Status LastAttempt(const InitInput& input, int since, InitOutcome* outcome) const {
-    const MapDemands demands = DemandsAfter(since < options_.deforming_frame ? since : options_.last_frame);
-    const auto frames = static_cast<std::size_t>(since) + 1;
-    return Make(input, SolveWindow(input, frames, WindowScene::kAny, options_, nominal_depth_mm_), demands, outcome);
+  Status LastAttempt(const InitInput& input, InitOutcome* outcome) const {
+    const auto since = static_cast<int>(input.frames.size()) - 1;
+    const auto window = SolveWindow(input, input.frames.size(), WindowScene::kAny, options_, nominal_depth_mm_);
+    Status status = Make(input, window, LastDemands(since), outcome);
+    if (status.ok() || outcome->ambiguous) return status;
+    // The longer the window the more it holds, and the more there is to go wrong.
+    const int shorter = 2 * (since + 1) / 3;
+    const Status of_shorter = Make(
+        input, SolveWindow(input, static_cast<std::size_t>(shorter), WindowScene::kAny, options_, nominal_depth_mm_),
+        LastDemands(shorter - 1), outcome);
+    if (of_shorter.ok() || outcome->ambiguous) return of_shorter;
+    return MakeProvisional(input, window, status, outcome);
+  }
+
+  // After an attempt at a map that is certain came to nothing, with that `status`.
+  Status MakeProvisional(const InitInput& input, const Result<SolvedWindow>& window, const Status& status,
+                         InitOutcome* outcome) const {
+    if (options_.provisional == Switch::kOff || !window.ok() || outcome->ambiguous) return status;
+    const Status provisional = MakeWindowMap(input, *window, ProvisionalDemands(window->solution.window), options_,
+                                             nominal_depth_mm_, outcome);
+    return provisional.ok() || outcome->ambiguous ? provisional : status;
+  }
+
+  MapDemands LastDemands(int since) const {
+    return DemandsAfter(since < options_.deforming_frame ? since : options_.last_frame);
   }
 
   // The longer the wait the less it still gives, and the more points leave the image.

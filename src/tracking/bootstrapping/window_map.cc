@@ -22,6 +22,9 @@ namespace pliant {
 namespace {
 
 constexpr double kMaxErrorRatio = 3.0;  // of a point's error by the median one, where sigmas are scaled with it
+// (W15) Of the depths' spread by their median sigma: below it the points are nearly as well put at one distance.
+constexpr double kMinDepthSignal = 3.0;
+constexpr double kMinProvisionalShare = 0.5;  // of the points still seen, that are certain enough
 
 // Some of a window's points; `solution` has one each, in the same order.
 struct MapPoints {
@@ -66,6 +69,18 @@ MapPoints ChooseCertain(const MapPoints& points, const std::vector<double>& erro
     if (!from.sample_sigmas.empty()) to.sample_sigmas.push_back(from.sample_sigmas[i]);
   }
   return chosen;
+}
+
+// (W15) The median of |log(distance / median distance)| in the last frame that the window has: the error that one
+// distance for all would have.
+double DistanceSpread(const DeformingWindow& window) {
+  const int last = static_cast<int>(window.cams_from_world.size()) - 1;
+  std::vector<double> distances;
+  for (std::size_t i = 0; i < window.points_in_world.size(); ++i)
+    distances.push_back((window.cams_from_world.back() * window.Position(static_cast<int>(i), last)).norm());
+  const double median = Median(distances);
+  for (double& distance : distances) distance = std::abs(std::log(distance / median));
+  return Median(std::move(distances));
 }
 
 // How many of `ids` a frame sees.
@@ -196,6 +211,14 @@ MapDemands DemandsOf(const WindowInitOptions& options, double relaxed) {
           .certain_share = (1.0 - relaxed) * options.min_certain_share};
 }
 
+MapDemands ProvisionalDemands(const DeformingWindow& window) {
+  const double certain_sigma = DistanceSpread(window) / kMinDepthSignal;
+  return {.certain_sigma = certain_sigma,
+          .max_sigma = 2.0 * certain_sigma,
+          .certain_share = kMinProvisionalShare,
+          .provisional = true};
+}
+
 Status MakeWindowMap(const InitInput& input, const SolvedWindow& window, const MapDemands& demands,
                      const WindowInitOptions& options, double nominal_depth_mm, InitOutcome* outcome) {
   const double focal_px = input.camera.MeanFocalLengthPx();
@@ -207,6 +230,7 @@ Status MakeWindowMap(const InitInput& input, const SolvedWindow& window, const M
     outcome->measured.inliers = static_cast<int>(points.ids.size());
     outcome->measured.median_depth_sigma =
         points.ids.empty() ? 0.0 : Median(points.depth_sigmas) / points.solution.window.MedianDistance();
+    outcome->measured.depth_spread = points.ids.empty() ? 0.0 : DistanceSpread(points.solution.window);
   };
   measure();
   outcome->measured.median_error_px = Median(errors_px);
@@ -222,11 +246,19 @@ Status MakeWindowMap(const InitInput& input, const SolvedWindow& window, const M
     return {ErrorCode::kInsufficient, "only " + std::to_string(left) +
                                           " points agree with the frames between those of the window (at least " +
                                           std::to_string(options.min_points) + " must)"};
-  if (Status status = CheckCameraMotion(input, window, options, outcome); !status.ok()) return status;
   measure();
+  outcome->provisional =
+      demands.provisional || outcome->measured.depth_spread < kMinDepthSignal * outcome->measured.median_depth_sigma;
+  if (outcome->provisional && options.provisional == Switch::kOff)
+    return {ErrorCode::kInsufficient,
+            "the depths are known to " + Digits(100.0 * outcome->measured.median_depth_sigma, 1) +
+                " % and spread by no more than " + Digits(100.0 * outcome->measured.depth_spread, 1) +
+                " %: hardly better than one constant depth; move the camera sideways or forwards"};
+  if (Status status = CheckCameraMotion(input, window, options, outcome); !status.ok()) return status;
   if (Status status = FillOutcome(input, nominal_depth_mm, points, outcome); !status.ok()) return status;
   outcome->rejected = AllRejected(input, points, std::move(rejected));
-  outcome->reason = "first map of " + std::to_string(points.ids.size()) + " points from a " +
+  outcome->reason = std::string(outcome->provisional ? "provisional" : "first") + " map of " +
+                    std::to_string(points.ids.size()) + " points from a " +
                     (window.solution.window.shapes.empty() ? "rigid" : "deforming") + " window of " +
                     std::to_string(input.frames.size()) + " frames, depth noise " +
                     Digits(100.0 * outcome->measured.median_depth_sigma, 1) + " % of the median depth";

@@ -19,10 +19,14 @@ struct MapDemands {
   double certain_share = 0;  // of the points still seen, at least
   // Points whose errors stand out are less certain in proportion, and left out where they do so by three times.
   bool scales_sigmas_with_error = false;
+  bool provisional = false;  // less than the options demand
 };
 
 // Those of the options: in full, wholly relaxed (1), or between.
 MapDemands DemandsOf(const WindowInitOptions& options, double relaxed);
+
+// (W15) Those of a provisional map: most of its points' sigmas are small by the spread of their distances.
+MapDemands ProvisionalDemands(const DeformingWindow& window);
 
 // Fills the outcome in as a map of the whole input, scaled to the nominal depth. What is missing for one else: then
 // only the outcome's measurements are filled in.

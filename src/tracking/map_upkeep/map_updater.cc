@@ -47,6 +47,7 @@ InitOutcome MapUpdater::Reestimate(const std::vector<InitFrame>& frames, WindowS
 void MapUpdater::Start(FirstMap first, Submap* submap) const {
   const InitOutcome& outcome = first.outcome;
   submap->map = MakeFirstMap(first);
+  submap->provisional = outcome.provisional;
   for (Landmark& landmark : submap->map.landmarks)
     landmark.measured = options_.init.IsMetric() || options_.oracle.first_map == Switch::kOn;
   submap->last_cam_from_world = outcome.frames.back().cam_from_world;
@@ -104,6 +105,7 @@ void MapUpdater::RefineRigid(int frame_idx, Submap* submap, MapUpdate* update) c
       submap->before_last_cam_from_world * submap->last_cam_from_world.Inverse() * *cam_from_world;
   submap->last_cam_from_world = *cam_from_world;
   update->median_reprojection_error_px = MedianReprojectionErrorPx(camera_, *cam_from_world, submap->Observations());
+  if (!outcome.provisional) submap->provisional = false;
   update->note = "the map was refined: " + outcome.reason;
 }
 
@@ -216,6 +218,7 @@ void MapUpdater::ReestimateAny(Submap* submap, MapUpdate* update) const {
   submap->candidates.TakeCorrection(before, submap->map);
   for (const InitPosition& point : positions)
     if (submap->map.Find(point.id) == nullptr) Promote(point.id, point.position, submap, update);
+  if (!outcome.provisional && 2 * positions.size() >= submap->map.landmarks.size()) submap->provisional = false;
   update->note = "the map was re-estimated: " + outcome.reason;
 }
 

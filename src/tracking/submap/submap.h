@@ -48,6 +48,7 @@ struct Submap {
 
   int idx;
   Map map;
+  bool provisional = false;  // its depths are little more certain than one constant depth
   LostPoints lost_points;
   RigidHistory rigid_history;
   Candidates candidates;

@@ -62,6 +62,7 @@ struct InitInput {
 enum class InitDecision {
   kWait,          // not yet: `reason` says what is missing and by how much
   kNewReference,  // this reference will not do any more: take the current frame
+  kProvisional,   // a provisional map is filled in; a certain one may still come: go back to it if none does
   kMap,           // poses and points are filled in
 };
 
@@ -108,6 +109,7 @@ struct InitMeasurements {
   double rotation_only_share = 0;   // correspondences that a pure rotation explains, 0 to 1
   double median_parallax_deg = 0;   // rotation-compensated
   double median_depth_sigma = 0;    // sigma_z / z of the map, predicted or more
+  double depth_spread = 0;          // median of |log(distance / median distance)| of the map's points
   double competing_cost_ratio = 0;  // robust cost of the second best motion over the best one's; infinite: no second
   double median_error_px = 0;       // of the map in its frames
   double still_camera_error_ratio = 0;  // errors of a camera that stands still by those of one that moves; 0: unknown
@@ -119,11 +121,13 @@ struct InitOutcome {
   InitMeasurements measured;
   bool ambiguous = false;  // no map, since a camera that stands still explains the images too
 
-  // Filled in for kMap alone.
+  // Filled in for kMap and kProvisional alone.
   std::vector<InitFrameState> frames;       // one a frame of the input, in its order; the first pose is the identity
   std::vector<InitPoint> points;            // sorted by id; each is in some of the frames, not in all
   std::vector<InitRejectedPoint> rejected;  // the other points, sorted by id
-  bool refinable = false;                   // of a rigid scene: the frames that follow can make it better
+  // The depths are known hardly better than one constant depth, or to less than was demanded.
+  bool provisional = false;
+  bool refinable = false;  // of a rigid scene: the frames that follow can make it better
 };
 
 class Initializer {

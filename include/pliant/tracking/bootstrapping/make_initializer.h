@@ -88,6 +88,7 @@ struct WindowInitOptions {
   double max_error_px = 0.5;             // root mean square, of a point
   double min_certain_share = 0.65;       // of the points still seen
   double min_still_camera_ratio = 1.25;  // of the errors of a camera that stands still by those of one that moves
+  Switch provisional = Switch::kOn;      // Init.provisional: a map that is less certain than demanded, where none is
   Switch light = Switch::kOn;
   double gamma = 2.2;
   Switch refine_rigid = Switch::kOn;  // the map is re-estimated as the window grows, while the scene is rigid
