@@ -14,6 +14,7 @@
 #include "cli/interrupt.h"
 #include "cli/sequence_arguments.h"
 #include "cli/track_progress.h"
+#include "pliant/io/run_trust.h"
 #include "pliant/viewer/live_view.h"
 #include "pliant/viewer/view.h"
 
@@ -74,6 +75,7 @@ int Report(const RunSummary& summary, const TrackArguments& arguments) {
             << summary.frames_tracked << " of " << summary.frames_read << " frames tracked" << maps << ", "
             << summary.points << " points, " << rate.data() << "\n"
             << arguments.output_path << std::endl;
+  for (const auto& [topic, sentence] : TrustIn(summary)) std::cout << "  " << topic << ": " << sentence << "\n";
   return kExitOk;
 }
 

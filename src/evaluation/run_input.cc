@@ -35,8 +35,8 @@ void TakeRow(const Run& run, const RunFrame& row, EvaluationFrame* frame) {
   frame->submap = row.submap;
   for (std::size_t i = 0; i < run.stage_names.size(); ++i)
     if (run.stage_names[i] == kInitializeStage) frame->initialize_ms = row.stage_ms[i];
-  if (!run.summary || !run.summary->first_map) return;
-  const FirstMapFrames& first_map = *run.summary->first_map;
+  if (!run.summary || run.summary->first_maps.empty()) return;
+  const FirstMapFrames& first_map = run.summary->first_maps.front();
   if (first_map.reference_frame_idx <= row.frame_idx && row.frame_idx <= first_map.declared_frame_idx)
     frame->first_map = first_map;
 }

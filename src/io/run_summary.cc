@@ -10,21 +10,55 @@
 #include "io/run_format.h"
 #include "pliant/base/files.h"
 #include "pliant/base/text.h"
+#include "pliant/io/run_trust.h"
 
 namespace pliant {
 
 using Json = nlohmann::ordered_json;
+
+namespace {
+
+Json FirstMapJson(const FirstMapFrames& map) {
+  const FirstMapEvidence& evidence = map.evidence;
+  return {{"reference_frame", map.reference_frame_idx},
+          {"declared_frame", map.declared_frame_idx},
+          {"provisional", evidence.provisional},
+          {"model", evidence.deforming ? "deforming" : "rigid"},
+          {"points", evidence.points},
+          {"parallax_deg", evidence.median_parallax_deg},
+          {"error_px", evidence.median_error_px},
+          {"depth_sigma", evidence.depth_sigma},
+          {"depth_spread", evidence.depth_spread},
+          {"still_camera_error_ratio", evidence.still_camera_error_ratio}};
+}
+
+FirstMapFrames ReadFirstMap(const Json& json) {
+  return {json.at("reference_frame").get<int>(),
+          json.at("declared_frame").get<int>(),
+          {.provisional = json.value("provisional", false),
+           .deforming = json.value("model", "rigid") == "deforming",
+           .points = json.value("points", 0),
+           .median_parallax_deg = json.value("parallax_deg", 0.0),
+           .median_error_px = json.value("error_px", 0.0),
+           .depth_sigma = json.value("depth_sigma", 0.0),
+           .depth_spread = json.value("depth_spread", 0.0),
+           .still_camera_error_ratio = json.value("still_camera_error_ratio", 0.0)}};
+}
+
+}  // namespace
 
 Status WriteRunSummary(const std::string& path, const RunSummary& summary) {
   Json losses = Json::object();
   for (const auto& [reason, count] : summary.losses) losses[reason] = count;
   Json mean_ms = Json::object();
   for (const auto& [stage, ms] : summary.mean_ms) mean_ms[stage] = ms;
-  Json first_map;
-  if (summary.first_map)
-    first_map = {{"reference_frame", summary.first_map->reference_frame_idx},
-                 {"declared_frame", summary.first_map->declared_frame_idx}};
-  const Json json = {
+  Json first_maps = Json::array();
+  for (const FirstMapFrames& map : summary.first_maps) first_maps.push_back(FirstMapJson(map));
+  Json states = Json::object();
+  for (const auto& [state, count] : summary.states) states[EnumName(state)] = count;
+  Json trust = Json::object();
+  for (const auto& [topic, sentence] : TrustIn(summary)) trust[topic] = sentence;
+  Json json = {
       {"program", kRunProgram},
       {"version", summary.description.program_version},
       {"command_line", summary.description.command_line},
@@ -36,10 +70,15 @@ Status WriteRunSummary(const std::string& path, const RunSummary& summary) {
        {{"scale", summary.description.image_scale}, {"smoothing_px", summary.description.image_smoothing_px}}},
       {"status", EnumName(summary.status)},
       {"note", summary.note},
-      {"first_map", first_map},
+      {"trust", trust},
+      {"first_map", first_maps.empty() ? Json() : first_maps.front()},
+      {"first_maps", first_maps},
+      {"medians",
+       {{"reprojection_error_px", summary.median_reprojection_error_px}, {"coverage", summary.median_coverage}}},
       {"counts",
        {{"frames_read", summary.frames_read},
         {"frames_tracked", summary.frames_tracked},
+        {"states", states},
         {"submaps", summary.submaps},
         {"points", summary.points},
         {"observations", summary.observations},
@@ -49,11 +88,14 @@ Status WriteRunSummary(const std::string& path, const RunSummary& summary) {
   // Paths need not be UTF-8.
   const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
   Status status = WriteFileAtomically(path, text);
-  // How a run ended is written on a full disk too: the text fits into the file's first block.
-  constexpr std::size_t kBlock = 4096;
   std::error_code error;
-  if (status.ok() || !std::filesystem::exists(path, error) || text.size() > kBlock) return status;
-  return OverwriteFile(path, text);
+  if (status.ok() || !std::filesystem::exists(path, error)) return status;
+  // How a run ended is written on a full disk too: what matters most fits into the file's first block.
+  constexpr std::size_t kBlock = 4096;
+  json.erase("trust");
+  json["first_maps"].clear();
+  const std::string shorter = json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return shorter.size() > kBlock ? status : OverwriteFile(path, shorter);
 }
 
 Result<RunSummary> ReadRunSummary(const std::string& path) {
@@ -84,11 +126,19 @@ Result<RunSummary> ReadRunSummary(const std::string& path) {
     if (!known) return Status(ErrorCode::kUnreadable, Quoted(path) + " has an unknown status " + Quoted(status));
     summary.note = json.at("note").get<std::string>();
     // Runs of before this was written are read all the same.
-    if (const Json first_map = json.value("first_map", Json()); !first_map.is_null())
-      summary.first_map = {first_map.at("reference_frame").get<int>(), first_map.at("declared_frame").get<int>()};
+    for (const Json& map : json.value("first_maps", Json::array())) summary.first_maps.push_back(ReadFirstMap(map));
+    if (const Json map = json.value("first_map", Json()); summary.first_maps.empty() && !map.is_null())
+      summary.first_maps.push_back(ReadFirstMap(map));
+    if (const Json medians = json.value("medians", Json()); !medians.is_null()) {
+      summary.median_reprojection_error_px = medians.at("reprojection_error_px").get<double>();
+      summary.median_coverage = medians.at("coverage").get<double>();
+    }
     const Json& counts = json.at("counts");
     summary.frames_read = counts.at("frames_read").get<std::int64_t>();
     summary.frames_tracked = counts.at("frames_tracked").get<std::int64_t>();
+    for (const auto& [state, name] : EnumNames<TrackingState>::kNames)
+      if (const auto found = counts.find("states"); found != counts.end() && found->contains(name))
+        summary.states.emplace_back(state, found->at(name).get<std::int64_t>());
     summary.submaps = counts.value("submaps", summary.frames_tracked > 0 ? 1 : 0);
     summary.points = counts.at("points").get<std::int64_t>();
     summary.observations = counts.at("observations").get<std::int64_t>();

@@ -13,6 +13,7 @@
 #include "io/run_format.h"
 #include "io/run_rows.h"
 #include "pliant/base/files.h"
+#include "pliant/base/statistics.h"
 #include "pliant/base/text.h"
 #include "pliant/io/ply.h"
 #include "pliant/io/trajectory.h"
@@ -74,6 +75,8 @@ struct RunWriter::State {
   OutputFile frames;
   OutputFile observations;
   RunSummary summary = {};
+  std::vector<double> median_errors_px = {};  // a frame with a pose
+  std::vector<double> coverages = {};         // a frame that has one
   // What the sparse model needs beside observations.csv: one entry a tracked frame and one a point.
   std::vector<CanonicalImage> images = {};
   std::vector<CanonicalPoint> points = {};
@@ -201,7 +204,16 @@ void RunWriter::State::Count(const FrameReport& report) {
   last_frame_idx = report.frame_idx;
   ++summary.frames_read;
   if (report.cam_from_world) ++summary.frames_tracked;
-  if (report.first_map && !summary.first_map) summary.first_map = report.first_map;
+  if (report.first_map && (summary.first_maps.empty() ||
+                           summary.first_maps.back().declared_frame_idx != report.first_map->declared_frame_idx))
+    summary.first_maps.push_back(*report.first_map);
+  const auto of_state = std::ranges::find(summary.states, report.state, [](const auto& count) { return count.first; });
+  if (of_state == summary.states.end())
+    summary.states.emplace_back(report.state, 1);
+  else
+    ++of_state->second;
+  if (report.cam_from_world) median_errors_px.push_back(report.median_reprojection_error_px);
+  if (report.coverage) coverages.push_back(*report.coverage);
   if (report.cam_from_world) summary.submaps = std::max(summary.submaps, report.submap + 1);
   summary.observations += static_cast<std::int64_t>(report.observations.size());
   summary.points = static_cast<std::int64_t>(points.size());
@@ -351,6 +363,8 @@ Status RunWriter::Finish(RunStatus run_status, const std::string& note) {
     if (!status.ok()) s.summary.submaps = submaps_as_reported;
   }
   if (status.ok()) status = s.FinishSparse();
+  if (!s.median_errors_px.empty()) s.summary.median_reprojection_error_px = Median(std::move(s.median_errors_px));
+  if (!s.coverages.empty()) s.summary.median_coverage = Median(std::move(s.coverages));
   s.summary.status = status.ok() ? run_status : RunStatus::kFailed;
   s.summary.note = status.ok() ? note : status.message();
   const Status written = WriteRunSummary(s.path + "/run.json", s.summary);

@@ -15,6 +15,7 @@ FrameReport InSourcePixels(FrameReport report, const WorkingImage& working) {
   if (working.scale == 1) return report;
   for (PointObservation& seen : report.observations) seen.pixel = working.ToSource(seen.pixel);
   report.median_reprojection_error_px /= working.scale;
+  if (report.first_map) report.first_map->evidence.median_error_px /= working.scale;
   return report;
 }
 

@@ -9,6 +9,7 @@
 
 #include "pliant/base/random.h"
 #include "pliant/base/statistics.h"
+#include "pliant/image/coverage.h"
 #include "pliant/tracking/stage_times.h"
 #include "tracking/bootstrapping/bootstrapper.h"
 #include "tracking/bootstrapping/oracle_initializer.h"
@@ -73,6 +74,9 @@ FrameReport MakeReport(const PreparedFrame& frame, TrackingState state, const Su
   report.new_points = result.update.new_points;
   report.added = static_cast<int>(report.new_points.size());
   report.refined_points = result.update.refined_points;
+  std::vector<Eigen::Vector2d> pixels;
+  for (const PointObservation& seen : report.observations) pixels.push_back(seen.pixel);
+  report.coverage = CoverageOf(frame.mask.valid(), pixels);
   report.median_reprojection_error_px =
       result.update.median_reprojection_error_px.value_or(result.median_reprojection_error_px);
   return report;

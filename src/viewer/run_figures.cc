@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <utility>
 
+#include "pliant/io/run_trust.h"
+
 namespace pliant {
 namespace {
 
@@ -92,6 +94,10 @@ std::vector<NamedText> RunFigures(const ViewedRun& run, const std::optional<RunS
     if (summary->total_s > 0) rows.Add("wall time", Number("%.2f s", summary->total_s));
     for (const std::string& oracle : summary->description.oracles) rows.Add("replaced by the truth", oracle);
     for (const auto& [reason, count] : summary->losses) rows.Add("given up: " + reason, std::to_string(count));
+  }
+  if (summary) {
+    rows.Begin("How far to trust it");
+    for (auto& [topic, sentence] : TrustIn(*summary)) rows.Add(topic, std::move(sentence));
   }
   if (evaluation) AddEvaluation(*evaluation, &rows);
   return rows.Take();

@@ -17,6 +17,8 @@ namespace {
 
 using namespace run_reports;
 using testing::HasSubstr;
+using testing::Pair;
+using testing::UnorderedElementsAre;
 
 TEST(RunFolder, ComesBackAsItWasReported) {
   const TestFolder folder;
@@ -33,9 +35,17 @@ TEST(RunFolder, ComesBackAsItWasReported) {
   EXPECT_EQ(run->summary->frames_read, 5);
   EXPECT_EQ(run->summary->frames_tracked, 4);
   EXPECT_EQ(run->summary->points, kPoints);
-  ASSERT_TRUE(run->summary->first_map);
-  EXPECT_EQ(run->summary->first_map->reference_frame_idx, kFirstMap.reference_frame_idx);
-  EXPECT_EQ(run->summary->first_map->declared_frame_idx, kFirstMap.declared_frame_idx);
+  ASSERT_EQ(run->summary->first_maps.size(), 1u);
+  const FirstMapFrames& first_map = run->summary->first_maps.front();
+  EXPECT_EQ(first_map.reference_frame_idx, kFirstMap.reference_frame_idx);
+  EXPECT_EQ(first_map.declared_frame_idx, kFirstMap.declared_frame_idx);
+  EXPECT_TRUE(first_map.evidence.deforming);
+  EXPECT_EQ(first_map.evidence.points, kFirstMap.evidence.points);
+  EXPECT_EQ(first_map.evidence.depth_sigma, kFirstMap.evidence.depth_sigma);
+  EXPECT_EQ(first_map.evidence.still_camera_error_ratio, kFirstMap.evidence.still_camera_error_ratio);
+  EXPECT_THAT(run->summary->states,
+              UnorderedElementsAre(Pair(TrackingState::kWaitingForReference, 1), Pair(TrackingState::kTracking, 4)));
+  EXPECT_NEAR(run->summary->median_coverage, kCoverage, kRoundOff);
   EXPECT_EQ(run->summary->losses,
             (std::vector<std::pair<std::string, std::int64_t>>{{"similarity", 10}, {"border", 5}}));
   EXPECT_NEAR(run->summary->mean_ms[1].second, 2.25, kRoundOff);
@@ -79,7 +89,7 @@ TEST(RunFolder, SaysInterruptedUntilItIsFinishedAndKeepsItsRows) {
   const auto run = ReadRun(folder.Path("run"));
   ASSERT_TRUE(run.ok()) << run.status().message();
   EXPECT_EQ(run->summary->status, RunStatus::kInterrupted);
-  EXPECT_FALSE(run->summary->first_map);
+  EXPECT_TRUE(run->summary->first_maps.empty());
   EXPECT_EQ(run->frames.size(), 4u);
   EXPECT_EQ(run->poses.size(), 3u);
 }

@@ -21,7 +21,9 @@ inline Camera TestCamera() {
   return Camera::Create("PINHOLE", 640, 480, std::vector<double>{500, 500, 319.5, 239.5}).value();
 }
 
-inline constexpr FirstMapFrames kFirstMap = {12, 14};
+inline constexpr FirstMapFrames kFirstMap = {
+    12, 14, {.deforming = true, .points = 6, .depth_sigma = 0.0125, .still_camera_error_ratio = 1.75}};
+inline constexpr double kCoverage = 0.625;
 
 // Frame 0 waits; frames 1 and 2 have their poses from the first map; from frame 1 on, odd points are seen in odd frames
 // only.
@@ -36,6 +38,7 @@ inline FrameReport Report(int frame) {
   report.state = TrackingState::kTracking;
   report.cam_from_world = Rigid3(RotationExp({0, 0.01 * frame, 0}), Eigen::Vector3d(0.1 * frame, 0, 0.5));
   if (frame <= 2) report.first_map = kFirstMap;
+  report.coverage = kCoverage;
   report.tracked = kPoints;
   for (int i = 0; i < kPoints; ++i) {
     const Eigen::Vector3d x(i - 2, 0.5 * i, 50 + 0.25 * frame);

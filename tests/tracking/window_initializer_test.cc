@@ -158,6 +158,41 @@ TEST(WindowInitializer, AttemptsAtTheSequencesEndWhatItWouldHaveWaitedFor) {
   EXPECT_LT(sequence.ShapeError(last, 41), kShape);
 }
 
+TEST(WindowInitializer, WhatIsLessCertainThanDemandedIsProvisional) {
+  const WavingTracks sequence(31);
+  WindowInitOptions options;
+  options.certain_depth_sigma = options.max_depth_sigma = options.last_depth_sigma = 1e-4;
+  const InitOutcome outcome = sequence.Try(options);
+  ASSERT_EQ(outcome.decision, InitDecision::kProvisional) << outcome.reason;
+  EXPECT_TRUE(outcome.provisional);
+  EXPECT_TRUE(outcome.deforming);
+  EXPECT_GE(outcome.measured.depth_spread, 3 * outcome.measured.median_depth_sigma);
+  ASSERT_EQ(outcome.frames.size(), sequence.frames.size());
+  for (const int t : {0, 15, 30}) EXPECT_LT(sequence.ShapeError(outcome, t), 2 * kShape) << t;
+  options.provisional = Switch::kOff;
+  EXPECT_EQ(sequence.Try(options).decision, InitDecision::kWait);
+}
+
+TEST(WindowInitializer, AtTheEndAProvisionalMapIsTaken) {
+  const WavingTracks sequence(31);
+  WindowInitOptions options;
+  options.certain_depth_sigma = options.max_depth_sigma = options.last_depth_sigma = 1e-4;
+  const InitOutcome outcome = sequence.Try(options, InitMoment::kLastFrame);
+  ASSERT_EQ(outcome.decision, InitDecision::kMap) << outcome.reason;
+  EXPECT_TRUE(outcome.provisional);
+}
+
+// Its depths are known to what is demanded, and one constant depth is as good.
+TEST(WindowInitializer, AMapOfAFlatSceneIsProvisional) {
+  const WavingTracks sequence(61, CameraMotion::kForwards, 0, 0.1);
+  WindowInitOptions options;
+  const InitOutcome outcome = sequence.Try(options);
+  ASSERT_EQ(outcome.decision, InitDecision::kMap) << outcome.reason;
+  EXPECT_TRUE(outcome.provisional) << outcome.measured.depth_spread << " " << outcome.measured.median_depth_sigma;
+  options.provisional = Switch::kOff;
+  EXPECT_NE(sequence.Try(options).decision, InitDecision::kMap);
+}
+
 TEST(WindowInitializer, ARigidSceneNeedsTenFrames) {
   const WavingTracks sequence(11, CameraMotion::kForwards, 0.0);
   const InitOutcome outcome = sequence.Try({});

@@ -197,7 +197,7 @@ function makeScene(page: Page): SceneView | null {
 }
 
 function notesOf(report: Report): string[] {
-  const untracked = report.runs.filter((run) => !run.frames.state.includes("tracking"));
+  const untracked = report.runs.filter((run) => !run.frames.state.some((state) => state === "tracking" || state === "provisional"));
   return [...report.notes, ...untracked.map(({ name }) => `The run "${name}" has no tracked frame.`)];
 }
 

@@ -9,11 +9,11 @@ import type { Page } from "./page";
 import { type Changed, anyOf } from "./state";
 
 const STATE_TEXTS: Record<string, string> = {
-  tracking: "tracking", lost: "lost", initializing: "initializing", ambiguous: "camera and scene cannot be told apart", waiting_for_reference: "waiting for the reference",
+  tracking: "tracking", provisional: "provisional map", lost: "lost", initializing: "initializing", ambiguous: "camera and scene cannot be told apart", waiting_for_reference: "waiting for the reference",
 };
 const LANE_PX = 14;
 const BAR_PX = 12;
-const HEIGHTS: Record<string, number> = { tracking: 1, lost: 0.5, initializing: 0.7, ambiguous: 0.5, waiting_for_reference: 0.3 };
+const HEIGHTS: Record<string, number> = { tracking: 1, provisional: 1, lost: 0.5, initializing: 0.7, ambiguous: 0.5, waiting_for_reference: 0.3 };
 
 export class Timeline {
   private readonly slider = byId<HTMLInputElement>("slider");

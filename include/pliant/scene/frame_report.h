@@ -78,10 +78,23 @@ struct RefinedPoint {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  // undeformed, world frame, map units
 };
 
+// What a first map rests on, as it was measured when it was made; 0 where its method does not measure it.
+struct FirstMapEvidence {
+  bool provisional = false;  // its depths are little more certain than one constant depth, or than was demanded
+  bool deforming = false;    // the scene deformed, by the model that was chosen
+  int points = 0;
+  double median_parallax_deg = 0;       // between the reference and the last frame of the window
+  double median_error_px = 0;           // reprojection error of a point, root mean square over its frames
+  double depth_sigma = 0;               // standard deviation of a depth by the median depth; median over points
+  double depth_spread = 0;              // the error of one constant depth: median of |log(depth / median depth)| (W15)
+  double still_camera_error_ratio = 0;  // errors of a camera that stands still by those of one that moves (W14)
+};
+
 // From which frame to which a first map was made; these and all between have their poses and points from it.
 struct FirstMapFrames {
   int reference_frame_idx = 0;  // whose camera is the world
   int declared_frame_idx = 0;   // in which the map was made; tracking goes on from here
+  FirstMapEvidence evidence = {};
 };
 
 // Two submaps have become one: everything reported of `submap` up to this frame goes into the world of `into`; the
@@ -117,6 +130,7 @@ struct FrameReport {
 
   std::vector<CostTerm> costs;  // at the solution; all 0 where there is none
   double median_reprojection_error_px = 0;
+  std::optional<double> coverage;  // share of what the image shows of the scene that is near a point (CoverageOf)
   std::vector<std::pair<std::string, double>> stage_ms;  // wall time by stage; fixed order and names
 };
 

@@ -11,6 +11,18 @@
 namespace pliant {
 namespace {
 
+FirstMapEvidence EvidenceOf(const InitOutcome& outcome) {
+  const InitMeasurements& measured = outcome.measured;
+  return {.provisional = outcome.provisional,
+          .deforming = outcome.deforming,
+          .points = static_cast<int>(outcome.points.size()),
+          .median_parallax_deg = measured.median_parallax_deg,
+          .median_error_px = measured.median_error_px,
+          .depth_sigma = measured.median_depth_sigma,
+          .depth_spread = measured.depth_spread,
+          .still_camera_error_ratio = measured.still_camera_error_ratio};
+}
+
 void ReportFrame(const Camera& camera, const InitFrame& frame, const InitFrameState& state, bool provisional,
                  FrameReport* report) {
   for (const InitPosition& point : state.positions) {
@@ -36,7 +48,7 @@ std::vector<FrameReport> CompletedReports(const Camera& camera, const FirstMap& 
       report.state = TrackingState::kLost;
       continue;
     }
-    report.first_map = FirstMapFrames{frames.front().frame_idx, frames.back().frame_idx};
+    report.first_map = FirstMapFrames{frames.front().frame_idx, frames.back().frame_idx, EvidenceOf(outcome)};
     const InitFrameState& state = outcome.frames[static_cast<std::size_t>(frame - frames.begin())];
     ReportFrame(camera, *frame, state, outcome.provisional, &report);
     if (&report != &reports.back())

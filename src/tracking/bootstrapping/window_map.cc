@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <numeric>
@@ -71,16 +72,27 @@ MapPoints ChooseCertain(const MapPoints& points, const std::vector<double>& erro
   return chosen;
 }
 
-// (W15) The median of |log(distance / median distance)| in the last frame that the window has: the error that one
-// distance for all would have.
-double DistanceSpread(const DeformingWindow& window) {
+// The median of |log(value / median)|; infinite where a value is not positive.
+double LogSpread(std::vector<double> values) {
+  if (std::ranges::any_of(values, [](double value) { return !(value > 0.0); }))
+    return std::numeric_limits<double>::infinity();
+  const double median = Median(values);
+  for (double& value : values) value = std::abs(std::log(value / median));
+  return Median(std::move(values));
+}
+
+// (W15) The error that one depth for all points would have in the window's last frame, or one distance where that is
+// better.
+double DepthSpread(const DeformingWindow& window) {
   const int last = static_cast<int>(window.cams_from_world.size()) - 1;
+  std::vector<double> depths;
   std::vector<double> distances;
-  for (std::size_t i = 0; i < window.points_in_world.size(); ++i)
-    distances.push_back((window.cams_from_world.back() * window.Position(static_cast<int>(i), last)).norm());
-  const double median = Median(distances);
-  for (double& distance : distances) distance = std::abs(std::log(distance / median));
-  return Median(std::move(distances));
+  for (std::size_t i = 0; i < window.points_in_world.size(); ++i) {
+    const Eigen::Vector3d in_cam = window.cams_from_world.back() * window.Position(static_cast<int>(i), last);
+    depths.push_back(in_cam.z());
+    distances.push_back(in_cam.norm());
+  }
+  return std::min(LogSpread(std::move(depths)), LogSpread(std::move(distances)));
 }
 
 // How many of `ids` a frame sees.
@@ -198,6 +210,7 @@ Status FillOutcome(const InitInput& input, double nominal_depth_mm, const MapPoi
         state.positions.push_back({observation.id, scale * all.Position(point, static_cast<int>(k))});
     outcome->frames.push_back(std::move(state));
   }
+  outcome->deforming = all.coefficients.rows() > 0;
   outcome->decision = InitDecision::kMap;
   return Status::Ok();
 }
@@ -212,7 +225,7 @@ MapDemands DemandsOf(const WindowInitOptions& options, double relaxed) {
 }
 
 MapDemands ProvisionalDemands(const DeformingWindow& window) {
-  const double certain_sigma = DistanceSpread(window) / kMinDepthSignal;
+  const double certain_sigma = DepthSpread(window) / kMinDepthSignal;
   return {.certain_sigma = certain_sigma,
           .max_sigma = 2.0 * certain_sigma,
           .certain_share = kMinProvisionalShare,
@@ -230,7 +243,7 @@ Status MakeWindowMap(const InitInput& input, const SolvedWindow& window, const M
     outcome->measured.inliers = static_cast<int>(points.ids.size());
     outcome->measured.median_depth_sigma =
         points.ids.empty() ? 0.0 : Median(points.depth_sigmas) / points.solution.window.MedianDistance();
-    outcome->measured.depth_spread = points.ids.empty() ? 0.0 : DistanceSpread(points.solution.window);
+    outcome->measured.depth_spread = points.ids.empty() ? 0.0 : DepthSpread(points.solution.window);
   };
   measure();
   outcome->measured.median_error_px = Median(errors_px);

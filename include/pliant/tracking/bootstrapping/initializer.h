@@ -109,7 +109,7 @@ struct InitMeasurements {
   double rotation_only_share = 0;   // correspondences that a pure rotation explains, 0 to 1
   double median_parallax_deg = 0;   // rotation-compensated
   double median_depth_sigma = 0;    // sigma_z / z of the map, predicted or more
-  double depth_spread = 0;          // median of |log(distance / median distance)| of the map's points
+  double depth_spread = 0;          // median of |log(depth / median depth)| of the points, or of distances (W15)
   double competing_cost_ratio = 0;  // robust cost of the second best motion over the best one's; infinite: no second
   double median_error_px = 0;       // of the map in its frames
   double still_camera_error_ratio = 0;  // errors of a camera that stands still by those of one that moves; 0: unknown
@@ -127,6 +127,7 @@ struct InitOutcome {
   std::vector<InitRejectedPoint> rejected;  // the other points, sorted by id
   // The depths are known hardly better than one constant depth, or to less than was demanded.
   bool provisional = false;
+  bool deforming = false;  // the scene deformed, by the model that was chosen
   bool refinable = false;  // of a rigid scene: the frames that follow can make it better
 };
 

@@ -1,0 +1,19 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// How far to trust a run of which the truth is not known: what it measured of itself, in plain words.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "pliant/io/run_summary.h"
+
+namespace pliant {
+
+// Topics (frames, depth, camera, tracks, coverage, advice) with one or more sentences each, in this order; those of
+// which nothing is known are left out. Empty for a run that has no frames. Only the summary's own numbers are used.
+std::vector<std::pair<std::string, std::string>> TrustIn(const RunSummary& summary);
+
+}  // namespace pliant

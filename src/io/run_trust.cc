@@ -1,0 +1,129 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/io/run_trust.h"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace pliant {
+namespace {
+
+constexpr double kMinDepthSignal = 3.0;  // of the depths' spread by their sigma (W15)
+constexpr double kMinFrameShare = 0.85;  // with a map
+constexpr double kMinCoverage = 0.5;
+
+std::string Digits(double value, int digits) {
+  char text[64];
+  std::snprintf(text, sizeof text, "%.*f", digits, value);
+  return text;
+}
+
+std::string Percent(double share, int digits) { return Digits(100.0 * share, digits) + " %"; }
+
+std::int64_t FramesIn(const RunSummary& summary, TrackingState state) {
+  const auto found = std::ranges::find(summary.states, state, [](const auto& count) { return count.first; });
+  return found == summary.states.end() ? 0 : found->second;
+}
+
+std::string OfFrames(const RunSummary& summary) {
+  std::string text =
+      std::to_string(summary.frames_tracked) + " of " + std::to_string(summary.frames_read) + " frames have a map (" +
+      Percent(static_cast<double>(summary.frames_tracked) / static_cast<double>(summary.frames_read), 0) + ")";
+  const auto add = [&](TrackingState state, const std::string& what) {
+    if (const auto count = FramesIn(summary, state); count > 0) text += "; in " + std::to_string(count) + " " + what;
+  };
+  add(TrackingState::kProvisional, "of them it is provisional");
+  add(TrackingState::kAmbiguous, "camera and scene cannot be told apart");
+  add(TrackingState::kLost, "it was lost");
+  return text + ".";
+}
+
+bool IsDepthKnown(const FirstMapEvidence& evidence) {
+  return evidence.depth_sigma > 0.0 && evidence.depth_spread >= kMinDepthSignal * evidence.depth_sigma;
+}
+
+// Sentences on each map, in order; nothing where there is nothing to say.
+template <class Sentence>
+std::string OfMaps(const RunSummary& summary, Sentence sentence) {
+  std::string text;
+  for (std::size_t i = 0; i < summary.first_maps.size(); ++i) {
+    const std::string of_map = sentence(summary.first_maps[i].evidence);
+    if (of_map.empty()) continue;
+    if (!text.empty()) text += " ";
+    text += (summary.first_maps.size() > 1 ? "Map " + std::to_string(i) + ": t" : "T") + of_map;
+  }
+  return text;
+}
+
+std::string OfDepth(const FirstMapEvidence& evidence) {
+  if (!(evidence.depth_sigma > 0.0) || !(evidence.depth_spread > 0.0)) return {};
+  const std::string numbers = "he first map's depths spread by " + Percent(evidence.depth_spread, 1) +
+                              " and are known to " + Percent(evidence.depth_sigma, 1) + " (" +
+                              std::to_string(evidence.points) + " points, parallax " +
+                              Digits(evidence.median_parallax_deg, 1) + " deg): ";
+  if (!IsDepthKnown(evidence)) return numbers + "they are hardly better than one constant depth.";
+  return numbers + (evidence.provisional ? "the shape is there, but not as certain as demanded."
+                                         : "the shape can be trusted to about that.");
+}
+
+std::string OfCamera(const FirstMapEvidence& evidence) {
+  if (!(evidence.depth_sigma > 0.0)) return {};
+  if (!evidence.deforming) return "he scene was found to be rigid; all motion is the camera's.";
+  if (!(evidence.still_camera_error_ratio > 0.0)) return "he scene deforms; whether the camera moves was not tested.";
+  return "he scene deforms; with a camera that stands still the errors would be " +
+         Digits(evidence.still_camera_error_ratio, 2) + " times as large, so it moved.";
+}
+
+std::string OfTracks(const RunSummary& summary) {
+  return "Points lie " + Digits(summary.median_reprojection_error_px, 2) +
+         " px from where the map has them, in the median (pixels of the source). Points were tracked in images of " +
+         Digits(summary.description.image_scale, 2) + " times the source's size.";
+}
+
+std::string Advice(const RunSummary& summary) {
+  std::vector<std::string> advice;
+  const auto count = [&](auto test) {
+    return std::ranges::any_of(summary.first_maps, [&](const FirstMapFrames& map) { return test(map.evidence); });
+  };
+  if (FramesIn(summary, TrackingState::kAmbiguous) > 0)
+    advice.emplace_back(
+        "If the camera does stand still, start from depth (--Init.method depth --Tracking.camera_motion "
+        "none); if it moves, move it further and not evenly.");
+  if (count([](const FirstMapEvidence& e) { return e.depth_sigma > 0.0 && !IsDepthKnown(e); }))
+    advice.emplace_back(
+        "Depth needs more parallax: move the camera sideways, and further by the distance of the "
+        "tissue. Compare a run begun at another frame: pliant evaluate tells how far they agree.");
+  if (FramesIn(summary, TrackingState::kLost) > 0)
+    advice.emplace_back("Where the map was lost, look for tools, smoke and fast motion; a mask over tools helps.");
+  if (summary.frames_tracked > 0 && summary.median_coverage < kMinCoverage)
+    advice.emplace_back("Much of the scene has no point: raise --Corners.max_corners, or check the mask.");
+  if (static_cast<double>(summary.frames_tracked) < kMinFrameShare * static_cast<double>(summary.frames_read) &&
+      FramesIn(summary, TrackingState::kAmbiguous) == 0)
+    advice.emplace_back("Where there is no map, the camera moved too little or the points lasted too briefly.");
+  std::string text;
+  for (const std::string& sentence : advice) text += (text.empty() ? "" : " ") + sentence;
+  return text;
+}
+
+}  // namespace
+
+std::vector<std::pair<std::string, std::string>> TrustIn(const RunSummary& summary) {
+  std::vector<std::pair<std::string, std::string>> trust;
+  const auto add = [&](const std::string& topic, std::string text) {
+    if (!text.empty()) trust.emplace_back(topic, std::move(text));
+  };
+  if (summary.frames_read == 0) return trust;
+  add("frames", OfFrames(summary));
+  add("depth", OfMaps(summary, OfDepth));
+  add("camera", OfMaps(summary, OfCamera));
+  if (summary.frames_tracked > 0) {
+    add("tracks", OfTracks(summary));
+    add("coverage", "In the median frame " + Percent(summary.median_coverage, 0) +
+                        " of the scene lies near a point (within 1/32 of the image's width).");
+  }
+  add("advice", Advice(summary));
+  return trust;
+}
+
+}  // namespace pliant

@@ -1,0 +1,96 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/io/run_trust.h"
+
+#include <map>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace pliant {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+using testing::Key;
+using testing::Not;
+
+RunSummary Summary(const FirstMapEvidence& evidence) {
+  RunSummary summary;
+  summary.frames_read = 100;
+  summary.frames_tracked = 90;
+  summary.states = {{TrackingState::kTracking, 90}, {TrackingState::kInitializing, 10}};
+  summary.first_maps = {{0, 30, evidence}};
+  summary.median_coverage = 0.8;
+  summary.median_reprojection_error_px = 0.21;
+  return summary;
+}
+
+std::map<std::string, std::string> Trust(const RunSummary& summary) {
+  const auto trust = TrustIn(summary);
+  return {trust.begin(), trust.end()};
+}
+
+constexpr FirstMapEvidence kKnown = {.deforming = true,
+                                     .points = 200,
+                                     .median_parallax_deg = 8,
+                                     .depth_sigma = 0.01,
+                                     .depth_spread = 0.2,
+                                     .still_camera_error_ratio = 1.8};
+
+TEST(RunTrust, SaysWhatAGoodRunHas) {
+  const auto trust = Trust(Summary(kKnown));
+  EXPECT_THAT(trust.at("frames"), HasSubstr("90 of 100 frames have a map (90 %)"));
+  EXPECT_THAT(trust.at("depth"), HasSubstr("spread by 20.0 % and are known to 1.0 % (200 points, parallax 8.0 deg)"));
+  EXPECT_THAT(trust.at("depth"), HasSubstr("can be trusted"));
+  EXPECT_THAT(trust.at("camera"), HasSubstr("1.80 times as large"));
+  EXPECT_THAT(trust.at("tracks"), HasSubstr("0.21 px"));
+  EXPECT_THAT(trust.at("coverage"), HasSubstr("80 %"));
+  EXPECT_THAT(trust, Not(Contains(Key("advice"))));
+}
+
+TEST(RunTrust, DepthsThatAreHardlyBetterThanOneAreNoneToTrust) {
+  FirstMapEvidence flat = kKnown;
+  flat.depth_spread = 0.02;
+  flat.provisional = true;
+  RunSummary summary = Summary(flat);
+  summary.states = {{TrackingState::kProvisional, 90}, {TrackingState::kInitializing, 10}};
+  const auto trust = Trust(summary);
+  EXPECT_THAT(trust.at("frames"), HasSubstr("in 90 of them it is provisional"));
+  EXPECT_THAT(trust.at("depth"), HasSubstr("hardly better than one constant depth"));
+  EXPECT_THAT(trust.at("advice"), HasSubstr("more parallax"));
+}
+
+TEST(RunTrust, AnAmbiguousRunIsToldWhatToDo) {
+  RunSummary summary = Summary(kKnown);
+  summary.frames_tracked = 0;
+  summary.first_maps.clear();
+  summary.states = {{TrackingState::kAmbiguous, 100}};
+  const auto trust = Trust(summary);
+  EXPECT_THAT(trust.at("frames"), HasSubstr("in 100 camera and scene cannot be told apart"));
+  EXPECT_THAT(trust.at("advice"), HasSubstr("--Init.method depth"));
+  EXPECT_THAT(trust, Not(Contains(Key("depth"))));
+  EXPECT_THAT(trust, Not(Contains(Key("tracks"))));
+}
+
+TEST(RunTrust, TellsSeveralMapsApart) {
+  RunSummary summary = Summary(kKnown);
+  FirstMapEvidence rigid = kKnown;
+  rigid.deforming = false;
+  summary.first_maps.push_back({50, 60, rigid});
+  const auto trust = Trust(summary);
+  EXPECT_THAT(trust.at("camera"), HasSubstr("Map 0: the scene deforms"));
+  EXPECT_THAT(trust.at("camera"), HasSubstr("Map 1: the scene was found to be rigid"));
+}
+
+TEST(RunTrust, MethodsThatMeasureNothingClaimNothing) {
+  const auto trust = Trust(Summary({.points = 200}));
+  EXPECT_THAT(trust, Not(Contains(Key("depth"))));
+  EXPECT_THAT(trust, Not(Contains(Key("camera"))));
+}
+
+TEST(RunTrust, ARunWithoutFramesSaysNothing) { EXPECT_TRUE(TrustIn({}).empty()); }
+
+}  // namespace
+}  // namespace pliant
