@@ -28,6 +28,7 @@ const Manual kManual = {
     "steps of depth_scale mm, 0 = none), groundtruth.txt (TUM, world_from_camera, mm), times.txt and simulation.yaml "
     "(every option).",
     {"pliant simulate --output_path colon --Deformation.amplitude_mm 2.5",
+     "pliant simulate --output_path hard --realism endoscope --Deformation.amplitude_mm 2.5",
      "pliant simulate --output_path rigid --Trajectory.frames 60 --Trajectory.kind sway",
      "pliant simulate --output_path liver --Scene.kind lobes --Trajectory.kind loop --Deformation.amplitude_mm 3",
      // NOLINTNEXTLINE(bugprone-suspicious-missing-comma): one example in two literals
@@ -40,14 +41,19 @@ const Manual kManual = {
 
 int SimulateCommand(std::span<const std::string> args) {
   std::string output_path;
+  Realism realism = Realism::kClean;
   bool quiet = false;
   CommandLine line(kManual);
   line.Add("output_path", &output_path, "DIR", "folder of the new sequence; made where it is not there",
            Need::kRequired);
+  line.AddChoice(
+      "realism", &realism,
+      "the defaults of the options: a clean camera, or noise, weak texture, sharpening, compression and lost "
+      "frames as in real endoscopic recordings");
   line.AddFlag("quiet", &quiet, "say nothing but errors");
   if (const auto exit = line.Parse(args)) return *exit;
 
-  SimulationOptions options;
+  SimulationOptions options = MakeSimulationOptions(realism);
   OptionTable table;
   options.List(table);
   if (const auto exit = line.Resolve(table)) return *exit;
@@ -58,11 +64,12 @@ int SimulateCommand(std::span<const std::string> args) {
   Clock::time_point scene_stood = started;
   Result<Simulator> simulator = Simulator::Create(options);
   Status status = simulator.status();
+  int frames = 0;
   if (status.ok()) {
+    frames = simulator->frame_count();
     if (!quiet)
       for (const std::string& warning : simulator->warnings()) SayError(kManual.command, "warning: " + warning);
-    Progress progress(std::cerr, quiet ? ProgressStyle::kQuiet : ProgressStyleOfStandardError(), "simulate",
-                      options.trajectory.frames);
+    Progress progress(std::cerr, quiet ? ProgressStyle::kQuiet : ProgressStyleOfStandardError(), "simulate", frames);
     status = WriteSequence(*simulator, output_path, [&](int done, int) {
       if (done == 0) scene_stood = Clock::now();
       progress.Update(done, "");
@@ -77,10 +84,9 @@ int SimulateCommand(std::span<const std::string> args) {
   const double scene_s = std::chrono::duration<double>(scene_stood - started).count();
   const double frames_s = std::chrono::duration<double>(Clock::now() - scene_stood).count();
   char timing[96];
-  std::snprintf(timing, sizeof(timing), "scene built in %.1f s, %.1f frames/s", scene_s,
-                options.trajectory.frames / frames_s);
+  std::snprintf(timing, sizeof(timing), "scene built in %.1f s, %.1f frames/s", scene_s, frames / frames_s);
   std::cerr << timing << "\n";
-  std::cout << options.trajectory.frames << " frames in " << output_path << std::endl;
+  std::cout << frames << " frames in " << output_path << std::endl;
   return kExitOk;
 }
 

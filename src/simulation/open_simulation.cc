@@ -48,8 +48,8 @@ Status CheckPoses(const fs::path& folder, const Simulator& simulator) {
   const auto poses = ReadTumTrajectory((folder / native::kPosesFile).string());
   if (!poses.ok()) return poses.status();
   if (std::ssize(*poses) > simulator.frame_count())
-    return Foreign(folder, "groundtruth.txt has " + std::to_string(poses->size()) +
-                               " poses, and Trajectory.frames is " + std::to_string(simulator.frame_count()));
+    return Foreign(folder, "groundtruth.txt has " + std::to_string(poses->size()) + " poses, and the options give " +
+                               std::to_string(simulator.frame_count()) + " frames");
   for (int i = 0; i < std::ssize(*poses); ++i) {
     const Rigid3& there = (*poses)[i].world_from_cam;
     const Rigid3 here = simulator.WorldFromCamera(i);

@@ -70,9 +70,21 @@ void SimulationOptions::List(OptionTable& table) {
   table.Add("gain_jitter", &sensor.gain_jitter, "-", "standard deviation of the gain between frames", 0, 0.3);
   table.Add("gamma", &sensor.gamma, "-", "level = linear^(1/gamma)", 0.5, 4);
   table.Add("noise_levels", &sensor.noise_levels, "-", "standard deviation of the noise, gray levels of 255", 0, 50);
+  table.Add("read_noise", &sensor.read_noise, "-", "noise of linear light in the dark, share of white", 0, 0.5);
+  table.Add("shot_noise", &sensor.shot_noise, "-",
+            "noise of linear light at white, share of white; grows with the square root of the light", 0, 0.5);
+  table.Add("noise_correlation_px", &sensor.noise_correlation_px, "px",
+            "standard deviation of the Gaussian that smooths read and shot noise at unchanged variance; 0: white", 0,
+            10);
+  table.Add("sharpening", &sensor.sharpening, "-", "unsharp mask: share of the detail that is added; 0: none", 0, 5);
+  table.Add("sharpening_px", &sensor.sharpening_px, "px", "unsharp mask: standard deviation of its blur", 0.3, 20);
   table.Add("blur_px", &sensor.blur_px, "px", "standard deviation of the lens's blur", 0, 20);
   table.Add("vignetting", &sensor.vignetting, "-", "share of light lost in the corners", 0, 1);
   table.Add("shutter_s", &sensor.shutter_s, "s", "motion blur: how long the shutter is open; 0: an instant", 0, 1);
+  table.Add("readout_s", &sensor.readout_s, "s",
+            "rolling shutter: last row by the first one; ground truth is that of the middle row; 0: all at once", 0, 1);
+  table.AddChoice("interlaced", &sensor.interlaced,
+                  "on: odd rows half a frame after even ones; ground truth is that of the time between them");
   table.Add("samples", &sensor.samples, "-", "rays a pixel, made a square number; depth is the center's", 1, 64);
   table.Add("depth_scale_mm", &sensor.depth_scale_mm, "mm", "one step of the 16-bit depth; range 65535 of them", 1e-4,
             1);
@@ -80,6 +92,19 @@ void SimulationOptions::List(OptionTable& table) {
             50);
   table.Add("debris", &sensor.debris, "-", "pieces that float before the lens, on average; not part of the truth", 0,
             200);
+
+  table.BeginGroup("Recording", "from the camera to the files; ground truth is that of the recorded frames");
+  table.Add("video_qp", &recording.video_qp, "-",
+            "quantization parameter of a video codec on H.264's scale, 18 is good and 36 poor; 0: no video codec", 0,
+            51);
+  table.Add("key_frame_every", &recording.key_frame_every, "frames", "from one coded by itself to the next", 1,
+            1000000);
+  table.Add("jpeg_quality", &recording.jpeg_quality, "-",
+            "of JPEG with half the chroma resolution, after the video codec; 0: no JPEG", 0, 100);
+  table.Add("lost_share", &recording.lost_share, "-", "of the camera's frames that are not recorded", 0, 0.9);
+  table.Add("lost_run", &recording.lost_run, "frames", "mean number of frames that are lost in a row", 1, 10000);
+  table.Add("repeated_share", &recording.repeated_share, "-",
+            "of the runs of lost frames that are filled with the frame before; the others leave a gap in time", 0, 1);
 
   table.BeginGroup("Interruption", "what blocks the view for a while; not part of the truth");
   table.Add("blackout_period_s", &interruption.blackout_period_s, "s", "from one to the next; 0: none", 0, 1e6);
@@ -102,7 +127,7 @@ void SimulationOptions::List(OptionTable& table) {
 
   table.BeginGroup("Trajectory", "the camera's way");
   table.AddChoice("kind", &trajectory.kind, "forward, from side to side, on the spot, out and back, or a file's poses");
-  table.Add("frames", &trajectory.frames, "-", "number of frames", 1, 1000000);
+  table.Add("frames", &trajectory.frames, "-", "number of frames of the camera", 1, 1000000);
   table.Add("fps", &trajectory.fps, "1/s", "frames a second", 0.01, 10000);
   table.Add("start_mm", &trajectory.start_mm, "mm", "first camera, along the scene's path", 0, 10000);
   table.Add("start_pose", &trajectory.start_pose, "mm",
@@ -127,6 +152,28 @@ void SimulationOptions::List(OptionTable& table) {
 
   table.BeginGroup("Simulation", "how it is computed");
   table.Add("threads", &threads, "-", "0: all; never changes the result", 0, 1024);
+}
+
+SimulationOptions MakeSimulationOptions(Realism realism) {
+  SimulationOptions options;
+  if (realism == Realism::kClean) return options;
+  options.texture.contrast = 0.7;
+  options.sensor.gain_jitter = 0.02;
+  options.sensor.noise_levels = 0.5;
+  options.sensor.read_noise = 0.0095;
+  options.sensor.shot_noise = 0.02;
+  options.sensor.noise_correlation_px = 0.7;  // a Bayer mosaic, interpolated
+  options.sensor.sharpening = 0.7;
+  options.sensor.shutter_s = 0.01;
+  options.sensor.readout_s = 0.01;  // a CMOS chip at the tip
+  options.sensor.drops = 2;
+  options.sensor.debris = 15;
+  options.recording.video_qp = 18;  // a recorder of good quality
+  options.recording.key_frame_every = 12;
+  options.recording.jpeg_quality = 80;  // frames taken out of the video
+  options.recording.lost_share = 0.1;
+  options.recording.lost_run = 3;
+  return options;
 }
 
 std::string ToYaml(const SimulationOptions& options) {

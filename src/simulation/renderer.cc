@@ -71,38 +71,57 @@ void Renderer::MeterExposure(const RayScene& at_rest) {
   gains_ = ExposureGains(options_.sensor, levels, options_.trajectory.fps, options_.scene.seed);
 }
 
+double Renderer::RowLag(int y) const {
+  const SimulationOptions::Sensor& sensor = options_.sensor;
+  const double rolling_s = sensor.readout_s * ((y + 0.5) / camera_.height() - 0.5);
+  if (sensor.interlaced == Switch::kOff) return rolling_s;
+  return rolling_s + (y % 2 == 0 ? -0.25 : 0.25) / options_.trajectory.fps;
+}
+
+double Renderer::SpanOfExposure() const {
+  const SimulationOptions::Sensor& sensor = options_.sensor;
+  const double fields_s = sensor.interlaced == Switch::kOn ? 0.5 / options_.trajectory.fps : 0.0;
+  return sensor.shutter_s + sensor.readout_s + fields_s;
+}
+
+Renderer::Exposure Renderer::MakeExposure(double time_s, double baseline_mm, double row_lag_s) const {
+  Exposure exposure;
+  const int steps = (rays_.rays_per_pixel() - 1) * kTile * kTile;
+  for (int i = 0; i < steps; ++i) {
+    exposure.lags_s.push_back(row_lag_s + options_.sensor.shutter_s * ((i + 0.5) / steps - 0.5));
+    const Rigid3 world_from_left = motions_.world_from_cam(time_s + exposure.lags_s.back());
+    exposure.rotations.push_back(world_from_left.RotationMatrix());
+    exposure.origins.push_back(RightCamera(world_from_left, baseline_mm).translation);
+    exposure.light_from_cam.emplace_back(world_from_left.translation - exposure.origins.back());
+  }
+  return exposure;
+}
+
 Renderer::Shot Renderer::MakeShot(int frame_idx, Eye eye, const RayScene& posed,
                                   const std::vector<Eigen::Vector3f>& normals) const {
   const double baseline_mm = eye == Eye::kLeft ? 0.0 : options_.camera.baseline_mm;
   const double time_s = TimeOf(frame_idx);
-  Shot shot{.scene = posed,
-            .normals = normals,
-            .time_s = time_s,
-            .world_from_cam = RightCamera(motions_.world_from_cam(time_s), baseline_mm)};
-  const int steps = (rays_.rays_per_pixel() - 1) * kTile * kTile;
-  for (int i = 0; i < steps; ++i) {
-    shot.lags_s.push_back(options_.sensor.shutter_s * ((i + 0.5) / steps - 0.5));
-    const Rigid3 world_from_left = motions_.world_from_cam(time_s + shot.lags_s.back());
-    shot.rotations.push_back(world_from_left.RotationMatrix());
-    shot.origins.push_back(RightCamera(world_from_left, baseline_mm).translation);
-    shot.light_from_cam.emplace_back(world_from_left.translation - shot.origins.back());
-  }
-  return shot;
+  return {.scene = posed,
+          .normals = normals,
+          .time_s = time_s,
+          .baseline_mm = baseline_mm,
+          .world_from_cam = RightCamera(motions_.world_from_cam(time_s), baseline_mm),
+          .exposure = MakeExposure(time_s, baseline_mm, 0.0)};
 }
 
 std::vector<Eigen::Vector3d> Renderer::MaterialVelocities(const Shot& shot, std::span<const RayHit> centers) const {
   std::vector<Eigen::Vector3d> velocities(centers.size(), Eigen::Vector3d::Zero());
-  const double shutter_s = options_.sensor.shutter_s;
-  if (!motions_.position || shutter_s == 0.0) return velocities;
+  const double span_s = SpanOfExposure();
+  if (!motions_.position || span_s == 0.0) return velocities;
   for (std::size_t i = 0; i < centers.size(); ++i) {
     if (i % kVelocityPixels != 0) {
       velocities[i] = velocities[i - 1];
       continue;
     }
     if (!centers[i].hit()) continue;
-    velocities[i] = (motions_.position(centers[i].point, shot.time_s + 0.5 * shutter_s) -
-                     motions_.position(centers[i].point, shot.time_s - 0.5 * shutter_s)) /
-                    shutter_s;
+    velocities[i] = (motions_.position(centers[i].point, shot.time_s + 0.5 * span_s) -
+                     motions_.position(centers[i].point, shot.time_s - 0.5 * span_s)) /
+                    span_s;
   }
   return velocities;
 }
@@ -124,13 +143,16 @@ void Renderer::RenderRow(const Shot& shot, int y, cv::Vec3f* light, float* depth
   }
   const std::vector<Eigen::Vector3d> velocities = MaterialVelocities(shot, hits);
 
+  const double row_lag_s = RowLag(y);
+  const Exposure of_row = row_lag_s == 0 ? Exposure() : MakeExposure(shot.time_s, shot.baseline_mm, row_lag_s);
+  const Exposure& exposure = row_lag_s == 0 ? shot.exposure : of_row;
   rays.resize(width * samples);
   hits.resize(rays.size());
   for (std::size_t x = 0; x < width; ++x) {
     for (std::size_t i = 0; i < samples; ++i) {
       const int step = TimeStep(static_cast<int>(i), static_cast<int>(x), y);
-      rays[x * samples + i] = {shot.origins[step] - shot.lags_s[step] * velocities[x],
-                               shot.rotations[step] * in_cam[x * per_pixel + i].cast<double>()};
+      rays[x * samples + i] = {exposure.origins[step] - exposure.lags_s[step] * velocities[x],
+                               exposure.rotations[step] * in_cam[x * per_pixel + i].cast<double>()};
     }
   }
   shot.scene.Intersect(rays, hits);
@@ -140,7 +162,7 @@ void Renderer::RenderRow(const Shot& shot, int y, cv::Vec3f* light, float* depth
       const std::size_t idx = x * samples + i;
       if (!hits[idx].hit()) continue;
       const int step = TimeStep(static_cast<int>(i), static_cast<int>(x), y);
-      sum += shader_.Radiance(hits[idx], rays[idx].direction, shot.light_from_cam[step], shot.normals);
+      sum += shader_.Radiance(hits[idx], rays[idx].direction, exposure.light_from_cam[step], shot.normals);
     }
     sum /= static_cast<float>(samples);
     light[x] = {sum[0], sum[1], sum[2]};

@@ -3,7 +3,8 @@
 
 // From a posed scene to images. The light of a pixel is the mean of its samples; they are spread over the pixel's area
 // and over the time that the shutter is open, in which the camera and the material move. The frame's time is the middle
-// of the exposure: depth and every other truth belong to it. The mesh stands where it is at that time; the material's
+// of the exposure, where rows are exposed at different times that of the middle one: depth and every other truth belong
+// to it. The mesh stands where it is at that time; the material's
 // motion within the exposure is taken off the rays' origins, linear in time and as large as at the point that the
 // center of a pixel near by shows (deformations are smooth over a few pixels).
 #pragma once
@@ -48,17 +49,27 @@ class Renderer {
   SimulatedFrame Render(int frame_idx, const RayScene& posed, const std::vector<Eigen::Vector3f>& normals) const;
 
  private:
+  // Where the camera is while the shutter is open, one of each a time step.
+  struct Exposure {
+    std::vector<double> lags_s;              // a sample's time by the frame's
+    std::vector<Eigen::Matrix3d> rotations;  // world_from_cam at that time
+    std::vector<Eigen::Vector3d> origins;
+    std::vector<Eigen::Vector3d> light_from_cam;  // the light seen from the camera then, in the world
+  };
   // What the rows of one image have in common.
   struct Shot {
     const RayScene& scene;
     const std::vector<Eigen::Vector3f>& normals;
     double time_s;
-    Rigid3 world_from_cam;                        // at the frame's time
-    std::vector<double> lags_s = {};              // a sample's time by the frame's, one a time step
-    std::vector<Eigen::Matrix3d> rotations = {};  // world_from_cam at that time
-    std::vector<Eigen::Vector3d> origins = {};
-    std::vector<Eigen::Vector3d> light_from_cam = {};  // the light seen from the camera then, in the world
+    double baseline_mm;
+    Rigid3 world_from_cam;   // at the frame's time
+    Exposure exposure = {};  // of rows that are exposed at the frame's time
   };
+  Exposure MakeExposure(double time_s, double baseline_mm, double row_lag_s) const;
+  // When a row is exposed by the frame's time: rolling shutter, interlacing.
+  double RowLag(int y) const;
+  // From the first to the last moment that an image sees.
+  double SpanOfExposure() const;
   Shot MakeShot(int frame_idx, Eye eye, const RayScene& posed, const std::vector<Eigen::Vector3f>& normals) const;
   void RenderRow(const Shot& shot, int y, cv::Vec3f* light, float* depth_mm) const;
   std::vector<Eigen::Vector3d> MaterialVelocities(const Shot& shot, std::span<const RayHit> centers) const;

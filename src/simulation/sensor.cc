@@ -36,6 +36,42 @@ class GammaCurve {
   std::array<float, 1026> table_;
 };
 
+// Standard normal noise of the three channels of a pixel. Noise of neighboring channels is alike (they share a
+// demosaicing): 0.9^2 + 0.19 = 1.
+cv::Vec3f UnitNoise(std::uint64_t counter) {
+  constexpr float kShared = 0.9F;
+  constexpr float kOwn = 0.436F;
+  const float shared = kShared * NormalFromBits(HashBits(counter));
+  cv::Vec3f noise;
+  for (int c = 0; c < 3; ++c) noise[c] = shared + kOwn * NormalFromBits(HashBits(counter + 1 + c));
+  return noise;
+}
+
+// Noise of variance 1 with the correlation that the options ask for; empty where there is neither read nor shot noise.
+cv::Mat LightNoise(const SimulationOptions::Sensor& options, const cv::Size& size, std::uint64_t noise_seed) {
+  if (options.read_noise == 0 && options.shot_noise == 0) return {};
+  const std::uint64_t own_seed = HashBits(~noise_seed);
+  cv::Mat noise(size, CV_32FC3);
+  tbb::parallel_for(0, size.height, [&](int y) {
+    auto* row = noise.ptr<cv::Vec3f>(y);
+    for (int x = 0; x < size.width; ++x)
+      row[x] = UnitNoise(own_seed + 4 * (static_cast<std::uint64_t>(y) * size.width + x));
+  });
+  if (options.noise_correlation_px == 0) return noise;
+  const int radius = static_cast<int>(std::ceil(3 * options.noise_correlation_px));
+  cv::Mat kernel = cv::getGaussianKernel(2 * radius + 1, options.noise_correlation_px, CV_32F);
+  kernel /= cv::norm(kernel);  // so that the variance stays
+  cv::Mat smooth;
+  cv::sepFilter2D(noise, smooth, CV_32F, kernel, kernel);
+  return smooth;
+}
+
+void Sharpen(const SimulationOptions::Sensor& options, cv::Mat* levels) {
+  cv::Mat blurred;
+  cv::GaussianBlur(*levels, blurred, cv::Size(), options.sharpening_px, options.sharpening_px, cv::BORDER_REPLICATE);
+  cv::addWeighted(*levels, 1 + options.sharpening, blurred, -options.sharpening, 0, *levels);
+}
+
 }  // namespace
 
 double ExposureLevel(std::span<float> luminances) {
@@ -68,32 +104,39 @@ std::uint64_t NoiseSeed(int seed, int frame_idx, Eye eye) {
 cv::Mat Develop(const SimulationOptions::Sensor& options, const cv::Mat& radiance, double gain,
                 std::uint64_t noise_seed) {
   assert(radiance.type() == CV_32FC3);
-  // Noise of neighboring channels is alike (they share a demosaicing): 0.9^2 + 0.19 = 1.
-  constexpr float kShared = 0.9F;
-  constexpr float kOwn = 0.436F;
   const GammaCurve gamma(options.gamma);
   cv::Mat light = radiance;
+  // Rows of two fields show two moments, which a lens does not mix: there the blur is along the rows alone.
+  const cv::Size kernel(0, options.interlaced == Switch::kOn ? 1 : 0);
   if (options.blur_px > 0)
-    cv::GaussianBlur(radiance, light, cv::Size(), options.blur_px, options.blur_px, cv::BORDER_REPLICATE);
-  cv::Mat image(light.size(), CV_8UC3);
+    cv::GaussianBlur(radiance, light, kernel, options.blur_px, options.blur_px, cv::BORDER_REPLICATE);
+  const cv::Mat light_noise = LightNoise(options, light.size(), noise_seed);
+  const double read_variance = options.read_noise * options.read_noise;
+  const double shot_variance = options.shot_noise * options.shot_noise;
+  cv::Mat levels(light.size(), CV_32FC3);
   const double center_x = 0.5 * (light.cols - 1);
   const double center_y = 0.5 * (light.rows - 1);
   const double corner_sq = std::max(1.0, center_x * center_x + center_y * center_y);
   const auto noise = static_cast<float>(options.noise_levels);
   tbb::parallel_for(0, light.rows, [&](int y) {
     const auto* in = light.ptr<cv::Vec3f>(y);
-    auto* out = image.ptr<cv::Vec3b>(y);
+    const auto* unit = light_noise.empty() ? nullptr : light_noise.ptr<cv::Vec3f>(y);
+    auto* out = levels.ptr<cv::Vec3f>(y);
     for (int x = 0; x < light.cols; ++x) {
       const double radius_sq = ((x - center_x) * (x - center_x) + (y - center_y) * (y - center_y)) / corner_sq;
       const auto scale = static_cast<float>(gain * (1.0 - options.vignetting * radius_sq));
-      const std::uint64_t counter = noise_seed + 4 * (static_cast<std::uint64_t>(y) * light.cols + x);
-      const float shared = kShared * NormalFromBits(HashBits(counter));
+      const cv::Vec3f grain = UnitNoise(noise_seed + 4 * (static_cast<std::uint64_t>(y) * light.cols + x));
       for (int c = 0; c < 3; ++c) {
-        const float grain = noise * (shared + kOwn * NormalFromBits(HashBits(counter + 1 + c)));
-        out[x][c] = cv::saturate_cast<std::uint8_t>(gamma(in[x][c] * scale) + grain);
+        float linear = in[x][c] * scale;
+        if (unit != nullptr)
+          linear += static_cast<float>(std::sqrt(read_variance + shot_variance * std::max(0.0F, linear))) * unit[x][c];
+        out[x][c] = gamma(linear) + noise * grain[c];
       }
     }
   });
+  if (options.sharpening > 0) Sharpen(options, &levels);
+  cv::Mat image;
+  levels.convertTo(image, CV_8UC3);
   return image;
 }
 

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// From light to gray levels: lens blur, vignetting, exposure, saturation, gamma, noise, 8 bits.
+// From light to gray levels: lens blur, vignetting, exposure, noise of the light, saturation, gamma, noise of the
+// electronics, sharpening, 8 bits.
 #pragma once
 
 #include <cstdint>

@@ -18,6 +18,7 @@
 #include "simulation/clearance.h"
 #include "simulation/motion.h"
 #include "simulation/ray_scene.h"
+#include "simulation/recorded_frames.h"
 #include "simulation/renderer.h"
 #include "simulation/surface.h"
 #include "simulation/trajectory.h"
@@ -31,9 +32,11 @@ struct Simulator::State {
       : options(std::move(o)),
         camera(std::move(c)),
         arena(options.threads == 0 ? tbb::task_arena::automatic : options.threads),
-        path(std::move(p)) {}
+        path(std::move(p)),
+        recorded(simulation::RecordedFrames(options)) {}
 
-  double Time(int frame_idx) const { return frame_idx / options.trajectory.fps; }
+  // Of a frame of the recording: the moment that it shows.
+  double Time(int frame_idx) const { return recorded[frame_idx].shown_idx / options.trajectory.fps; }
   Rigid3 WorldFromCamera(int frame_idx) const { return path.WorldFromCamera(Time(frame_idx)); }
   Eigen::Vector3d Position(const MaterialPoint& point, double time_s) const {
     return motion.Position(surface.AtRest(point), time_s);
@@ -55,6 +58,7 @@ struct Simulator::State {
   Camera camera;
   tbb::task_arena arena;
   simulation::Path path;
+  std::vector<simulation::RecordedFrame> recorded;
   simulation::Surface surface;
   simulation::Motion motion;
   std::vector<std::string> warnings;
@@ -87,6 +91,18 @@ Status CheckMemory(const SimulationOptions& options, double length_mm) {
                                              std::to_string(options.camera.height) +
                                              " pixels do not fit into memory with Sensor.samples " +
                                              std::to_string(options.sensor.samples) + "; lower one of them"};
+  return Status::Ok();
+}
+
+// What lasts longer than a frame.
+Status CheckExposure(const SimulationOptions& options) {
+  const SimulationOptions::Sensor& sensor = options.sensor;
+  for (const auto& [name, time_s] :
+       {std::pair{"shutter_s", sensor.shutter_s}, std::pair{"readout_s", sensor.readout_s}})
+    if (time_s * options.trajectory.fps > 1.0)
+      return {ErrorCode::kInvalidArgument, std::string("Sensor.") + name + " is " + FormatDouble(time_s) +
+                                               ", longer than a frame at " + FormatDouble(options.trajectory.fps) +
+                                               " frames a second; shorten it"};
   return Status::Ok();
 }
 
@@ -189,7 +205,7 @@ void Simulator::State::CollectWarnings() {
     points.push_back(surface.VertexAtRest(static_cast<std::uint32_t>(i)));
   std::vector<double> times_s;
   for (int i = 0; i < options.trajectory.frames; i += options.trajectory.frames / kTimes + 1)
-    times_s.push_back(Time(i));
+    times_s.push_back(i / options.trajectory.fps);
   warnings = simulation::DeformationWarnings(options, motion, points, times_s);
 }
 
@@ -224,7 +240,7 @@ const simulation::Renderer& Simulator::State::GetRenderer() {
 }
 
 void Simulator::State::Pose(int frame_idx) {
-  assert(frame_idx >= 0 && frame_idx < options.trajectory.frames);
+  assert(frame_idx >= 0 && frame_idx < std::ssize(recorded));
   if (motion.rigid() || posed_frame_idx == frame_idx) return;
   const double time_s = Time(frame_idx);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, surface.vertices.size(), 4096), [&](const auto& range) {
@@ -257,10 +273,7 @@ Result<Simulator> Simulator::Create(const SimulationOptions& options) {
             "Camera.baseline_mm makes rectified pairs, which only PINHOLE and SIMPLE_PINHOLE cameras give, and "
             "Camera.model is " +
                 std::string(EnumName(options.camera.model))};
-  if (options.sensor.shutter_s * options.trajectory.fps > 1.0)
-    return {ErrorCode::kInvalidArgument, "Sensor.shutter_s is " + FormatDouble(options.sensor.shutter_s) +
-                                             ", longer than a frame at " + FormatDouble(options.trajectory.fps) +
-                                             " frames a second; shorten it"};
+  if (Status status = CheckExposure(options); !status.ok()) return status;
 
   MakeAbsolute(&checked.scene.mesh_path);
   MakeAbsolute(&checked.trajectory.path);
@@ -279,6 +292,11 @@ Result<Simulator> Simulator::Create(const SimulationOptions& options) {
 const std::vector<std::string>& Simulator::warnings() const { return state_->warnings; }
 const SimulationOptions& Simulator::options() const { return state_->options; }
 const Camera& Simulator::camera() const { return state_->camera; }
+int Simulator::frame_count() const { return static_cast<int>(state_->recorded.size()); }
+double Simulator::TimeOf(int frame_idx) const {
+  return state_->recorded[frame_idx].clock_idx / options().trajectory.fps;
+}
+double Simulator::ShownTimeOf(int frame_idx) const { return state_->Time(frame_idx); }
 Rigid3 Simulator::WorldFromCamera(int frame_idx, Eye eye) const {
   const Rigid3 world_from_left = state_->WorldFromCamera(frame_idx);
   return eye == Eye::kLeft ? world_from_left : simulation::RightCamera(world_from_left, options().camera.baseline_mm);
@@ -289,7 +307,7 @@ Eigen::Vector3d Simulator::RestPosition(const MaterialPoint& point) const {
 }
 
 Eigen::Vector3d Simulator::Position(const MaterialPoint& point, int frame_idx) const {
-  return state_->Position(point, TimeOf(frame_idx));
+  return state_->Position(point, ShownTimeOf(frame_idx));
 }
 
 std::vector<std::optional<SurfaceHit>> Simulator::HitsAt(int frame_idx, std::span<const Eigen::Vector2d> pixels,
@@ -349,7 +367,7 @@ SimulatedFrame Simulator::Render(int frame_idx) {
   state_->arena.execute([&] {
     const simulation::Renderer& renderer = state_->GetRenderer();
     state_->Pose(frame_idx);
-    frame = renderer.Render(frame_idx, *state_->scene, state_->posed_normals);
+    frame = renderer.Render(state_->recorded[frame_idx].shown_idx, *state_->scene, state_->posed_normals);
   });
   return frame;
 }

@@ -12,6 +12,7 @@
 #include "pliant/datasets/native_writer.h"
 #include "pliant/io/camera_file.h"
 #include "pliant/simulation/simulator.h"
+#include "simulation/recorder.h"
 #include "simulation/sequence_files.h"
 
 namespace pliant {
@@ -69,14 +70,16 @@ Status WriteSequence(Simulator& simulator, const fs::path& output, const Simulat
                                                output.string());
   };
   if (progress && progress(0, simulator.frame_count()) == SimulationContinue::kStop) return stopped_after(0);
+  simulation::Recorder left(simulator.options().recording);
+  simulation::Recorder right(simulator.options().recording);
   SimulatedFrame frame = simulator.Render(0);
   for (int i = 0; i < simulator.frame_count(); ++i) {
-    // A frame is packed and written while the next one is rendered.
+    // A frame is compressed, packed and written while the next one is rendered.
     const SimulatedFrame done = std::exchange(frame, {});
-    std::future<Status> written = std::async(std::launch::async, [&writer, &simulator, i, &done] {
+    std::future<Status> written = std::async(std::launch::async, [&, i] {
       return writer->Write({.timestamp_s = simulator.TimeOf(i),
-                            .image = done.image,
-                            .right = done.right,
+                            .image = left.Record(done.image),
+                            .right = right.Record(done.right),
                             .depth_mm = done.depth,
                             .world_from_cam = simulator.WorldFromCamera(i)});
     });

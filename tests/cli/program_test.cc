@@ -26,6 +26,7 @@ namespace {
 
 using namespace program_test;
 using testing::HasSubstr;
+using testing::Not;
 
 // The fields of every command's options.
 template <class Options>
@@ -77,7 +78,8 @@ TEST(Program, TheManualOfACommandNamesEveryOptionWithUnitAndReason) {
 }
 
 TEST(Program, WhatPrintConfigPrintsReadsBackAsTheConfig) {
-  for (const std::string command : {"track", "track --preset paper", "simulate", "evaluate", "report"}) {
+  for (const std::string command :
+       {"track", "track --preset paper", "simulate", "simulate --realism endoscope", "evaluate", "report"}) {
     const Outcome printed = Pliant(command + " --print_config");
     ASSERT_EQ(printed.exit, 0) << command << ": " << printed.err;
     const std::filesystem::path path = Temporary("config.yaml");
@@ -91,6 +93,19 @@ TEST(Program, WhatPrintConfigPrintsReadsBackAsTheConfig) {
 
 TEST(Program, ThePaperPresetDiffersFromTheDefault) {
   EXPECT_NE(Pliant("track --print_config").out, Pliant("track --preset paper --print_config").out);
+}
+
+TEST(Program, AnOptionThatIsGivenWinsOverThePresetOfRealism) {
+  const std::string clean = Pliant("simulate --print_config").out;
+  EXPECT_EQ(Pliant("simulate --realism clean --print_config").out, clean);
+  const Outcome preset = Pliant("simulate --realism endoscope --print_config");
+  EXPECT_NE(preset.out, clean);
+  EXPECT_THAT(preset.out, Not(HasSubstr("jpeg_quality: 33")));
+  const Outcome given = Pliant("simulate --Recording.jpeg_quality 33 --realism endoscope --print_config");
+  EXPECT_THAT(given.out, HasSubstr("jpeg_quality: 33"));
+  const std::filesystem::path path = Temporary("clean.yaml");
+  std::ofstream(path) << clean;
+  EXPECT_EQ(Pliant("simulate --realism endoscope --print_config --config '" + path.string() + "'").out, clean);
 }
 
 TEST(Program, AnUnknownOptionNamesItsNeighborAndExitsWithTwo) {

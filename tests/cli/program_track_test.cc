@@ -120,6 +120,18 @@ TEST(Program, ADeviceIsNoCalibration) {
   EXPECT_EQ(outcome.err, "pliant track: '/dev/zero' is a pipe or a device; give a file\n");
 }
 
+TEST(Program, DatasetStatisticsPrintsWhatASequenceIsLikeForATracker) {
+  const std::string sequence = Temporary("seq").string();
+  ASSERT_EQ(Pliant("simulate --quiet --Trajectory.frames 10" + kCoarse + "--output_path '" + sequence + "'").exit, 0);
+  const Outcome outcome = Pliant("dataset statistics '" + sequence + "' --Image.working fixed --Image.scale 2");
+  EXPECT_EQ(outcome.exit, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("image     128x96, scale 2, smoothing 0 px\nframes    10\nnoise     "));
+  EXPECT_THAT(outcome.out, HasSubstr(" after 9\ntracks    "));
+  const Outcome too_short = Pliant("dataset statistics '" + sequence + "' --end 9");
+  EXPECT_EQ(too_short.exit, 1);
+  EXPECT_THAT(too_short.err, HasSubstr("the sequence has 9 frames; statistics need 10 that follow each other"));
+}
+
 TEST(Program, TrackLiveSaysWhereToLookAndEndsWithTheRun) {
   const std::string sequence = Temporary("sequence").string();
   ASSERT_EQ(Pliant("simulate --quiet --Trajectory.frames 4" + kCoarse + "--output_path '" + sequence + "'").exit, 0);

@@ -3,6 +3,7 @@
 
 #include "pliant/simulation/write_sequence.h"
 
+#include <cmath>
 #include <fstream>
 #include <iterator>
 #include <sstream>
@@ -15,6 +16,7 @@
 #include <unistd.h>
 #include <yaml-cpp/yaml.h>
 
+#include "pliant/simulation/open_simulation.h"
 #include "simulation/small_scene.h"
 #include "support/tolerances.h"
 
@@ -138,6 +140,55 @@ TEST_F(WriteSequenceTest, TheOptionsBesideASequenceGiveItBack) {
     EXPECT_FALSE(Bytes(folder_ / "a" / name).empty());
     EXPECT_EQ(Bytes(folder_ / "a" / name), Bytes(folder_ / "b" / name)) << name;
   }
+}
+
+// With everything that compresses and loses frames.
+TEST_F(WriteSequenceTest, RecordsTheSameFilesOnAnyNumberOfThreads) {
+  SimulationOptions options = MakeSimulationOptions(Realism::kEndoscope);
+  const SimulationOptions small = SmallScene(TrajectoryKind::kInsert, 6);
+  options.scene = small.scene;
+  options.camera = small.camera;
+  options.trajectory = small.trajectory;
+  options.texture = small.texture;
+  options.recording.lost_share = 0.3;
+  options.camera.baseline_mm = 4;
+  options.threads = 1;
+  ASSERT_TRUE(WriteSequence(options, folder_ / "one").ok());
+  options.threads = 4;
+  ASSERT_TRUE(WriteSequence(options, folder_ / "four").ok());
+  const int frames = CountFiles(folder_ / "one/images");
+  ASSERT_EQ(CountFiles(folder_ / "four/images"), frames);
+  for (int k = 0; k < frames; ++k)
+    for (const char* kind : {"images", "right", "depth"}) {
+      const std::string name = std::string(kind) + "/00000" + std::to_string(k) + ".png";
+      EXPECT_EQ(Bytes(folder_ / "one" / name), Bytes(folder_ / "four" / name)) << name;
+    }
+  EXPECT_EQ(Bytes(folder_ / "one/times.txt"), Bytes(folder_ / "four/times.txt"));
+}
+
+TEST_F(WriteSequenceTest, LostFramesLeaveGapsAndTheOthersTheirTimesPosesAndDepth) {
+  SimulationOptions options = SmallScene(TrajectoryKind::kInsert, 12);
+  ASSERT_TRUE(WriteSequence(options, folder_ / "whole").ok());
+  options.recording.lost_share = 0.4;
+  options.recording.repeated_share = 0;
+  ASSERT_TRUE(WriteSequence(options, folder_ / "gaps").ok());
+  const auto times = Numbers(folder_ / "gaps/times.txt");
+  const auto poses = Numbers(folder_ / "gaps/groundtruth.txt");
+  const auto all_poses = Numbers(folder_ / "whole/groundtruth.txt");
+  ASSERT_LT(times.size(), 12U);
+  ASSERT_EQ(poses.size(), times.size());
+  ASSERT_EQ(CountFiles(folder_ / "gaps/images"), std::ssize(times));
+  const auto name = [](const std::string& folder, std::size_t k) {
+    return folder + (k < 10 ? "/00000" : "/0000") + std::to_string(k) + ".png";
+  };
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    const auto frame = static_cast<std::size_t>(std::lround(times[k][0] * 30));
+    EXPECT_EQ(poses[k], all_poses[frame]);
+    for (const char* kind : {"/images", "/depth"})
+      EXPECT_EQ(Bytes(folder_ / name(std::string("gaps") + kind, k)),
+                Bytes(folder_ / name(std::string("whole") + kind, frame)));
+  }
+  EXPECT_TRUE(OpenSimulation(folder_ / "gaps").ok());
 }
 
 TEST_F(WriteSequenceTest, AShorterSequenceReplacesALongerOne) {

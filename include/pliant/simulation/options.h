@@ -50,6 +50,17 @@ struct EnumNames<TrajectoryKind> {
                                         std::pair{TrajectoryKind::kFile, std::string_view("file")}};
 };
 
+// How a sequence looks (MakeSimulationOptions).
+enum class Realism {
+  kClean,      // little noise, no traces of processing and recording
+  kEndoscope,  // noise, sharpening, compression and lost frames as real endoscopic recordings have them
+};
+template <>
+struct EnumNames<Realism> {
+  static constexpr std::array kNames = {std::pair{Realism::kClean, std::string_view("clean")},
+                                        std::pair{Realism::kEndoscope, std::string_view("endoscope")}};
+};
+
 struct SimulationOptions {
   struct Scene {
     SceneKind kind = SceneKind::kColon;
@@ -110,15 +121,34 @@ struct SimulationOptions {
     double exposure_time_s = 0.5;  // time constant with which the exposure follows
     double gain_jitter = 0.01;     // standard deviation of the gain from frame to frame, as a share
     double gamma = 2.2;
-    double noise_levels = 1.5;      // standard deviation in gray levels of 255
-    double blur_px = 0.45;          // standard deviation of the lens's blur
-    double vignetting = 0.25;       // light lost in the corners, as a share
-    double shutter_s = 0.004;       // motion blur: how long the shutter is open, about the frame's time; 0: an instant
-    int samples = 4;                // rays a pixel; depth is always taken at the pixel's center
-    double depth_scale_mm = 0.005;  // one step of the 16-bit depth; range 65535 of them
-    double drops = 0.0;             // drops of fluid on the lens at a time, in the mean; not in any truth
-    double debris = 0.0;            // pieces that float before the lens at a time, in the mean; not in any truth
+    double noise_levels = 1.5;  // standard deviation in gray levels of 255
+    // Noise of the light itself, before gamma: variance read_noise^2 + shot_noise^2 l at the linear level l (1: white).
+    double read_noise = 0.0;            // share of white
+    double shot_noise = 0.0;            // standard deviation at white, share of white
+    double noise_correlation_px = 0.0;  // standard deviation of the Gaussian that smooths read and shot noise: what
+                                        // demosaicing and denoising leave; their variance stays
+    double sharpening = 0.0;            // unsharp mask: gray += sharpening (gray - blurred gray)
+    double sharpening_px = 1.2;         // standard deviation of that blur
+    double blur_px = 0.45;              // standard deviation of the lens's blur
+    double vignetting = 0.25;           // light lost in the corners, as a share
+    double shutter_s = 0.004;  // motion blur: how long the shutter is open, about the frame's time; 0: an instant
+    double readout_s = 0.0;    // rolling shutter: the last row is exposed this much after the first one
+    Switch interlaced = Switch::kOff;  // odd rows are exposed half a frame after the even ones
+    int samples = 4;                   // rays a pixel; depth is always taken at the pixel's center
+    double depth_scale_mm = 0.005;     // one step of the 16-bit depth; range 65535 of them
+    double drops = 0.0;                // drops of fluid on the lens at a time, in the mean; not in any truth
+    double debris = 0.0;               // pieces that float before the lens at a time, in the mean; not in any truth
   } sensor;
+
+  // What is done to the images on their way to the files.
+  struct Recording {
+    int video_qp = 0;             // quantization parameter of a video codec on H.264's scale; 0: no video codec
+    int key_frame_every = 30;     // frames from one that is coded by itself to the next
+    int jpeg_quality = 0;         // libjpeg's, with half the chroma resolution, after the video codec; 0: no JPEG
+    double lost_share = 0.0;      // of the camera's frames that are not recorded
+    double lost_run = 2.0;        // mean number of frames that are lost in a row
+    double repeated_share = 0.5;  // of the runs of lost frames in whose place the frame before is recorded again
+  } recording;
 
   // What takes the view away for a while, in part or in whole; in no truth. A period of 0: never; the first comes when
   // the period has passed once.
@@ -143,7 +173,7 @@ struct SimulationOptions {
 
   struct Trajectory {
     TrajectoryKind kind = TrajectoryKind::kInsert;
-    int frames = 100;
+    int frames = 100;  // of the camera; Recording.lost_share of them may be missing in the sequence
     double fps = 30.0;
     double start_mm = 25.0;          // first camera, along the centerline or the way over the sheet
     std::string start_pose;          // first camera as tx,ty,tz,qx,qy,qz,qw, world_from_camera; empty: the scene's own
@@ -166,6 +196,10 @@ struct SimulationOptions {
 
   void List(OptionTable& table);
 };
+
+// The defaults of a preset. `clean` are those of SimulationOptions{}; `endoscope` changes Texture, Sensor and Recording
+// so that noise, survival and noise of tracks are those of real recordings (docs/simulation.md).
+SimulationOptions MakeSimulationOptions(Realism realism);
 
 // The options as the YAML that is written beside a sequence.
 std::string ToYaml(const SimulationOptions& options);

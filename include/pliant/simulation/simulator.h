@@ -4,9 +4,10 @@
 // A deforming scene that can be photographed at any frame and asked for the truth. The surface is a fine triangle mesh;
 // its vertices are moved by the deformation's formula, so a material point (a triangle and a position in it) has a
 // position at every time. Rays are Embree's; hit positions are recomputed in double precision from the triangle that
-// was hit. Frames: world and camera as in options.h and camera.h, millimeters, seconds from frame 0. The same options
-// give the same pixels whatever the number of threads. One Simulator serves one caller at a time: it is posed frame by
-// frame.
+// was hit. Frames: world and camera as in options.h and camera.h, millimeters, seconds from frame 0. A frame is one of
+// the recording: where the camera's frames are lost (Recording.lost_share) there are fewer, or the one before is there
+// again at a later time. Images are those of the camera; WriteSequence compresses them. The same options give the same
+// pixels whatever the number of threads. One Simulator serves one caller at a time: it is posed frame by frame.
 #pragma once
 
 #include <cmath>
@@ -79,10 +80,12 @@ class Simulator {
   // What the scene cannot be by its options and is made as all the same, one sentence each: a surface that folds over.
   const std::vector<std::string>& warnings() const;
   const Camera& camera() const;
-  int frame_count() const { return options().trajectory.frames; }
+  int frame_count() const;  // of the recording
 
-  // Truth that needs no rendering.
-  double TimeOf(int frame_idx) const { return frame_idx / options().trajectory.fps; }
+  // Truth that needs no rendering. A frame's timestamp; they increase.
+  double TimeOf(int frame_idx) const;
+  // The moment that a frame shows and that all its truth belongs to: its timestamp, or that of the frame it repeats.
+  double ShownTimeOf(int frame_idx) const;
   Rigid3 WorldFromCamera(int frame_idx, Eye eye = Eye::kLeft) const;
   Eigen::Vector3d RestPosition(const MaterialPoint& point) const;
   Eigen::Vector3d Position(const MaterialPoint& point, int frame_idx) const;

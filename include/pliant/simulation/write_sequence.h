@@ -4,7 +4,7 @@
 // A simulated sequence on disk, in the native layout (docs/formats.md): camera.yaml, images/NNNNNN.png,
 // depth/NNNNNN.png (16-bit, z along the optical axis = value * depth_scale mm, 0 = none or out of range),
 // right/NNNNNN.png where there is a right camera, groundtruth.txt (TUM, world_from_camera, mm), times.txt, and
-// simulation.yaml with every option.
+// simulation.yaml with every option. The images are the simulator's after the compression that Recording asks for.
 #pragma once
 
 #include <filesystem>

@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/pipeline/sequence_statistics.h"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "pipeline/choose_working_image.h"
+#include "pipeline/working_frame.h"
+
+namespace pliant {
+namespace {
+
+constexpr int kMaxRuns = 30;
+
+}  // namespace
+
+Result<SequenceStatistics> MeasureSequenceStatistics(const SequenceRequest& request, const TrackOptions& options) {
+  const auto sequence = OpenSequence(request);
+  if (!sequence.ok()) return sequence.status();
+  SequenceStatistics measured{.working_image = ChooseWorkingImage(request, options), .size = {}, .images = {}};
+  const int distance = std::max(kStatisticsRunFrames, (*sequence)->size() / kMaxRuns);
+  std::vector<RunMeasurement> runs;
+  std::vector<PreparedFrame> run;
+  int read = 0;
+  while (true) {
+    const auto next = (*sequence)->Next();
+    if (!next.ok()) return next.status();
+    if (!next->has_value()) break;
+    if (read++ % distance >= kStatisticsRunFrames) continue;
+    run.push_back(PrepareWorkingFrame(**next, measured.working_image, options.tracker));
+    if (std::ssize(run) < kStatisticsRunFrames) continue;
+    measured.size = run.front().gray.size();
+    runs.push_back(MeasureRun(run, options.tracker, options.threads));
+    run.clear();
+  }
+  if (runs.empty())
+    return {ErrorCode::kInsufficient, "the sequence has " + std::to_string(read) + " frames; statistics need " +
+                                          std::to_string(kStatisticsRunFrames) + " that follow each other"};
+  measured.images = Summarize(runs);
+  return measured;
+}
+
+}  // namespace pliant
