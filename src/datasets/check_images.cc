@@ -26,6 +26,7 @@ constexpr int kGridColumns = 320;  // at least; small enough to be fast, large e
 constexpr int kNeighbors = 6;              // pairs on either side
 constexpr double kNeighborQuantile = 0.8;  // of their changes
 constexpr double kRepeatedShare = 0.15;  // of that change: below it an image is repeated; re-encoding leaves up to 0.1
+constexpr double kLightOffShare = 0.2;   // of the recording's median level
 constexpr int kMinRepeated = 3;
 constexpr double kMinRepeatedShare = 0.05;  // of the pairs; fewer are single dropped frames
 
@@ -54,6 +55,7 @@ std::string ShareText(int part, int all, const char* what) {
 struct Change {
   double mean = 0;
   double median = 0;
+  double level = 0;  // mean of the darker image
 };
 
 Change ChangeBetween(const cv::Mat& a, const cv::Mat& b) {
@@ -65,7 +67,7 @@ Change ChangeBetween(const cv::Mat& a, const cv::Mat& b) {
   std::size_t below = 0;
   std::size_t median = 0;
   while (below + counts[median] <= difference.total() / 2) below += counts[median++];
-  return {cv::mean(difference)[0], static_cast<double>(median)};
+  return {cv::mean(difference)[0], static_cast<double>(median), std::min(cv::mean(a)[0], cv::mean(b)[0])};
 }
 
 // Mean levels and changes of the two sides of masks, summed over samples.
@@ -84,6 +86,17 @@ void AddSide(const GridSample& before, const GridSample& sample, int of_value, M
   side->pixels += pixels;
   side->level += pixels * cv::mean(sample.gray, where)[0];
   side->change += pixels * cv::mean(difference, where)[0];
+}
+
+// Without images in which the light is off: they say nothing of the others.
+std::vector<Change> LitChanges(const std::vector<Change>& changes) {
+  std::vector<double> levels;
+  for (const Change& change : changes) levels.push_back(change.level);
+  const double least = kLightOffShare * Median(std::move(levels));
+  std::vector<Change> lit;
+  for (const Change& change : changes)
+    if (change.level > least) lit.push_back(change);
+  return lit;
 }
 
 void JudgeRepeated(const std::vector<Change>& changes, ImageCheck* check) {
@@ -216,7 +229,7 @@ void ImageChecker::Add(const SequenceFrame& frame) {
 ImageCheck ImageChecker::Check() const {
   ImageCheck check;
   check.images = state_->images;
-  JudgeRepeated(state_->changes, &check);
+  JudgeRepeated(LitChanges(state_->changes), &check);
   JudgeTimes(state_->steps_s, &check);
   JudgeMasks(state_->left, state_->taken, &check);
   if (!check.masks_are_inverted) check.overlay = FindOverlay(state_->samples, state_->step);

@@ -125,6 +125,20 @@ TEST(ImageChecker, FindsRepeatedImagesAndTheStrideThatLeavesThemOut) {
   EXPECT_THAT(Checked(dropped).wrong, IsEmpty());
 }
 
+TEST(ImageChecker, DoesNotTakeAnInterruptionForRepeatedImages) {
+  for (const int level : {0, 4}) {
+    ImageChecker checker;
+    cv::RNG random(5);
+    for (int k = 0; k < kFrames; ++k) {
+      SequenceFrame frame;
+      frame.image = Taken({}, k);
+      if (k >= 20 && k < 30) random.fill(frame.image, cv::RNG::UNIFORM, 0, level + 1);  // the light is off
+      checker.Add(frame);
+    }
+    EXPECT_THAT(checker.Check().wrong, IsEmpty()) << level;
+  }
+}
+
 TEST(ImageChecker, FindsUnevenStepsInTime) {
   Recording even;
   Recording uneven;
