@@ -28,7 +28,7 @@ constexpr double kNeighborQuantile = 0.8;  // of their changes
 constexpr double kRepeatedShare = 0.15;  // of that change: below it an image is repeated; re-encoding leaves up to 0.1
 constexpr double kLightOffShare = 0.2;   // of the recording's median level
 constexpr int kMinRepeated = 3;
-constexpr double kMinRepeatedShare = 0.05;  // of the pairs; fewer are single dropped frames
+constexpr double kMinRepeatedShare = 0.05;  // of the images; fewer are single dropped frames
 
 constexpr double kUnevenFactor = 1.5;  // of the median step
 constexpr int kMinUneven = 3;
@@ -117,12 +117,13 @@ void JudgeRepeated(const std::vector<Change>& changes, ImageCheck* check) {
     most_in_a_row = std::max(most_in_a_row, in_a_row);
     if (is_repeated) ++check->repeated;
   }
-  if (check->repeated < kMinRepeated || check->repeated < kMinRepeatedShare * pairs) return;
-  const double share = static_cast<double>(check->repeated) / pairs;
+  const int images = pairs + 1;
+  if (check->repeated < kMinRepeated || check->repeated < kMinRepeatedShare * images) return;
+  const double share = static_cast<double>(check->repeated) / images;
   const int period = static_cast<int>(std::lround(1 / std::max(1 - share, 0.01)));
   const bool every_nth = period >= 2 && most_in_a_row < period && std::abs(share - (1 - 1.0 / period)) < 0.03;
   check->wrong.push_back(
-      ShareText(check->repeated, pairs, "images") +
+      ShareText(check->repeated, images, "images") +
       " repeat the one before: the video was converted to a higher rate, or images were lost in recording, and points "
       "seem to stop and then jump; " +
       (every_nth ? "give --stride " + std::to_string(period) + ", or convert the original at its own rate"

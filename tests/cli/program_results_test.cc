@@ -126,6 +126,28 @@ TEST(Program, EvaluateComparesRunsWithoutASequenceAndWithPointsOfStructureFromMo
   EXPECT_THAT(Pliant(evaluate + "--other_run '" + ForeignResult("a", 4) + "'").err, HasSubstr("is another system's"));
 }
 
+TEST(Program, DatasetInfoAndTrackSayThatImagesAreRepeated) {
+  const std::string sequence = Temporary("seq").string();
+  const std::string twice = Temporary("twice").string();
+  ASSERT_EQ(Pliant("simulate --quiet --Trajectory.frames 8" + kCoarse + "--output_path '" + sequence + "'").exit, 0);
+  std::filesystem::create_directories(twice + "/images");
+  std::filesystem::copy_file(sequence + "/camera.yaml", twice + "/camera.yaml");
+  for (int k = 0; k < 16; ++k) {
+    const std::string image = "/images/0000" + std::to_string(10 + k) + ".png";
+    std::filesystem::copy_file(sequence + "/images/00000" + std::to_string(k / 2) + ".png", twice + image);
+  }
+  const Outcome info = Pliant("dataset info '" + twice + "'");
+  EXPECT_EQ(info.exit, 1);
+  EXPECT_THAT(info.out, HasSubstr("wrong     8 of 16 images (50 %) repeat the one before"));
+  EXPECT_THAT(info.out, HasSubstr("give --stride 2"));
+  const Outcome strided = Pliant("dataset info '" + twice + "' --stride 2");
+  EXPECT_EQ(strided.exit, 0) << strided.out;
+  EXPECT_THAT(strided.out, HasSubstr("nothing is wrong with the images"));
+  const std::string track = "track --image_path '" + twice + "' --output_path '" + Temporary("run").string() + "'";
+  EXPECT_THAT(Pliant(track).err, HasSubstr("pliant track: warning: 8 of 16 images"));
+  EXPECT_THAT(Pliant(track + " --quiet").err, Not(HasSubstr("warning")));
+}
+
 TEST(Program, ARunIsEvaluatedAndShownWithTheCalibrationItWasMadeWith) {
   const std::string sequence = Temporary("seq").string();
   const std::string run = Temporary("run").string();

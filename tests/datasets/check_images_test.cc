@@ -111,7 +111,7 @@ TEST(ImageChecker, FindsRepeatedImagesAndTheStrideThatLeavesThemOut) {
   for (int k = 0; k < kFrames; ++k) twice.shown.push_back(k / 2);
   const ImageCheck doubled = Checked(twice);
   EXPECT_EQ(doubled.repeated, kFrames / 2);
-  EXPECT_THAT(doubled.wrong, ElementsAre(testing::AllOf(HasSubstr("30 of 59 images (51 %) repeat the one before"),
+  EXPECT_THAT(doubled.wrong, ElementsAre(testing::AllOf(HasSubstr("30 of 60 images (50 %) repeat the one before"),
                                                         HasSubstr("give --stride 2"))));
   Recording converted;  // from 25 to 30 images a second, and what encoding it again leaves
   for (int k = 0; k < kFrames; ++k) converted.shown.push_back(k * 5 / 6);
