@@ -103,6 +103,16 @@ void PrintDescription(const Sequence& sequence, const SequenceRequest& request) 
   for (const std::string& warning : sequence.Warnings()) PrintLine("warning", warning);
 }
 
+void PrintImageCheck(const ImageCheck& check) {
+  std::string what = std::to_string(check.images) + " images: repetitions";
+  if (check.steps > 0) what += ", times";
+  if (check.has_masks) what += ", masks";
+  if (check.tells_overlays) what += ", overlays";
+  PrintLine("checked", what);
+  if (!check.tells_overlays && !check.masks_are_inverted)
+    PrintLine("unchecked", "overlays: that takes 20 images, between which most of the view changes");
+}
+
 void PrintCheck(const SequenceCheck& check, bool has_pairs) {
   if (check.poses) {
     const PoseCheck& poses = *check.poses;
@@ -122,9 +132,7 @@ void PrintCheck(const SequenceCheck& check, bool has_pairs) {
   if (check.stereo && check.stereo->depth_ratio)
     PrintLine(check.stereo->enough ? "checked" : "unchecked",
               Text("depth is %.3f of what the baseline says", *check.stereo->depth_ratio));
-  if (check.images)
-    PrintLine("checked", Text("%d images: repetitions, overlays and masks", check.images->images) +
-                             (check.images->steps > 0 ? ", times" : ""));
+  if (check.images) PrintImageCheck(*check.images);
   for (const std::string& wrong : check.wrong) PrintLine("wrong", wrong);
   const bool checked = (check.poses && check.poses->right) || (check.stereo && check.stereo->enough);
   if (check.wrong.empty())

@@ -151,6 +151,7 @@ void JudgeTimes(const std::vector<double>& steps_s, ImageCheck* check) {
 
 void JudgeMasks(const MaskSide& left, const MaskSide& taken, ImageCheck* check) {
   if (left.pixels == 0 || taken.pixels == 0 || taken.pixels < kMinTakenShare * (left.pixels + taken.pixels)) return;
+  check->has_masks = true;
   check->left_level = left.level / left.pixels;
   check->taken_level = taken.level / taken.pixels;
   check->masks_are_inverted = check->left_level < kInvertedShare * check->taken_level &&
@@ -233,7 +234,10 @@ ImageCheck ImageChecker::Check() const {
   JudgeRepeated(LitChanges(state_->changes), &check);
   JudgeTimes(state_->steps_s, &check);
   JudgeMasks(state_->left, state_->taken, &check);
-  if (!check.masks_are_inverted) check.overlay = FindOverlay(state_->samples, state_->step);
+  if (check.masks_are_inverted) return check;  // what they leave says nothing
+  const OverlaySearch search = FindOverlay(state_->samples, state_->step);
+  check.tells_overlays = search.tells;
+  check.overlay = search.found;
   JudgeOverlay(&check);
   return check;
 }

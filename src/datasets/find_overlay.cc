@@ -85,8 +85,9 @@ std::vector<double> ValuesAt(const cv::Mat_<float>& values, const cv::Mat_<std::
 // The contrast of single images, not of pixels over time: an overlay is little of that.
 double SharpContrast(const std::vector<GridSample>& samples, const cv::Mat_<std::uint8_t>& lit) {
   std::vector<double> contrasts;
-  for (const GridSample& sample : samples) {
-    const cv::Mat_<float> contrast = cv::Mat_<std::uint8_t>(sample.contrast);
+  const std::size_t every = (samples.size() + kMinSamples - 1) / kMinSamples;  // some are enough
+  for (std::size_t k = 0; k < samples.size(); k += every) {
+    const cv::Mat_<float> contrast = cv::Mat_<std::uint8_t>(samples[k].contrast);
     const std::vector<double> of_sample = ValuesAt(contrast, lit);
     contrasts.insert(contrasts.end(), of_sample.begin(), of_sample.end());
   }
@@ -131,16 +132,16 @@ GridSample SampleGrid(const cv::Mat& gray, const cv::Mat& mask, int step) {
   return {GridOf(gray, step), GridOf(high - low, step), mask.empty() ? cv::Mat() : GridOf(mask, step)};
 }
 
-std::optional<PixelRectangle> FindOverlay(const std::vector<GridSample>& samples, int step) {
-  if (samples.size() < kMinSamples) return std::nullopt;
+OverlaySearch FindOverlay(const std::vector<GridSample>& samples, int step) {
+  if (samples.size() < kMinSamples) return {};
   const PixelStatistics statistics = Measure(samples);
   const std::vector<double> changes = ValuesAt(statistics.change, statistics.lit);
-  if (changes.empty()) return std::nullopt;
+  if (changes.empty()) return {};
   const double change = Median(changes);
-  if (change < kMinChange) return std::nullopt;
+  if (change < kMinChange) return {};
   const auto still =
       std::count_if(changes.begin(), changes.end(), [&](double of_pixel) { return of_pixel < kStillShare * change; });
-  if (static_cast<double>(still) > kMaxStillShare * static_cast<double>(changes.size())) return std::nullopt;
+  if (static_cast<double>(still) > kMaxStillShare * static_cast<double>(changes.size())) return {};
   const double sharp = SharpContrast(samples, statistics.lit);
   // By its own level too: the rim of the view changes little because it is half as bright, or less.
   const cv::Mat_<float> relative = statistics.change / statistics.level;
@@ -152,8 +153,8 @@ std::optional<PixelRectangle> FindOverlay(const std::vector<GridSample>& samples
           relative(y, x) < kStillShare * relative_change && statistics.contrast(y, x) > sharp)
         found(y, x) = 255;
   const auto group = LargestGroup(found);
-  if (!group) return std::nullopt;
-  return PixelRectangle{group->x * step, group->y * step, group->width * step, group->height * step};
+  if (!group) return {true, std::nullopt};
+  return {true, PixelRectangle{group->x * step, group->y * step, group->width * step, group->height * step}};
 }
 
 }  // namespace pliant

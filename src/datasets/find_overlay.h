@@ -28,8 +28,11 @@ struct GridSample {
 
 GridSample SampleGrid(const cv::Mat& gray, const cv::Mat& mask, int step);
 
-// In pixels of the image. Nothing where there are too few samples, too little of the image changes to tell, or nothing
-// is found.
-std::optional<PixelRectangle> FindOverlay(const std::vector<GridSample>& samples, int step);
+struct OverlaySearch {
+  bool tells = false;                   // there are enough samples, and enough of the image changes
+  std::optional<PixelRectangle> found;  // in pixels of the image; the largest one
+};
+
+OverlaySearch FindOverlay(const std::vector<GridSample>& samples, int step);
 
 }  // namespace pliant

@@ -159,6 +159,7 @@ void BurnText(cv::Mat* image) { cv::putText(*image, "12:30", {40, 220}, cv::FONT
 
 TEST(ImageChecker, FindsTextThatIsBurnedInWhereItIs) {
   const ImageCheck check = Checked({.burn = BurnText});
+  EXPECT_TRUE(check.tells_overlays);
   ASSERT_TRUE(check.overlay.has_value());
   int baseline = 0;
   const cv::Size size = cv::getTextSize("12:30", cv::FONT_HERSHEY_SIMPLEX, 0.8, 2, &baseline);
@@ -192,7 +193,9 @@ TEST(ImageChecker, FindsTextInTheDarkSurroundingsOfTheView) {
 }
 
 TEST(ImageChecker, SaysNothingOfTextInAStillScene) {
-  EXPECT_FALSE(Checked({.noise = 1, .speed_px = 0, .burn = BurnText}).overlay.has_value());
+  const ImageCheck check = Checked({.noise = 1, .speed_px = 0, .burn = BurnText});
+  EXPECT_FALSE(check.tells_overlays);
+  EXPECT_FALSE(check.overlay.has_value());
 }
 
 TEST(ImageChecker, TellsMasksTheWrongWayRound) {

@@ -34,8 +34,11 @@ struct ImageCheck {
   int uneven_steps = 0;      // longer or shorter than the median one by more than half
   double median_step_s = 0;  // of the steps
   double longest_step_s = 0;
+  // Whether the images tell of overlays: there are enough of them, and most of the view changes.
+  bool tells_overlays = false;
   // Pixels with sharp edges that never change while the rest of the image does.
   std::optional<PixelRectangle> overlay;
+  bool has_masks = false;  // that take away enough to be judged
   // What the masks leave is dark and does not change, and what they take away is lit and does.
   bool masks_are_inverted = false;
   double left_level = 0;   // mean gray level of what the masks leave
