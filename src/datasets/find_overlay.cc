@@ -4,6 +4,7 @@
 #include "datasets/find_overlay.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 #include <opencv2/imgproc.hpp>
@@ -40,7 +41,7 @@ struct PixelStatistics {
 
 float Spread(std::vector<std::uint8_t>* levels) {
   const auto place = [&](double share) {
-    return levels->begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(levels->size() - 1) + 0.5);
+    return levels->begin() + std::lround(share * static_cast<double>(levels->size() - 1));
   };
   std::nth_element(levels->begin(), place(kLowQuantile), levels->end());
   const float low = *place(kLowQuantile);
