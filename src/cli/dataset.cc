@@ -32,7 +32,9 @@ const Manual kInfoManual = {
     "which poses are usually meant, so that a flipped handedness, a wrong unit and a transposed matrix show and are "
     "told "
     "apart; points are matched between the images of pairs, so that pairs that are swapped or not rectified show; and "
-    "depth is compared with what the baseline says.\n\n"
+    "depth is compared with what the baseline says. The images are also looked at by themselves: images that repeat "
+    "the "
+    "one before, time stamps at uneven steps, text or logos that are burned in, masks the wrong way round.\n\n"
     "Ends with 1 if something is wrong, or the data set cannot be read.",
     {"pliant dataset info seq", "pliant dataset info clip.mp4 --camera stereo.yaml"},
 };
@@ -119,6 +121,16 @@ void PrintDescription(const Sequence& sequence, const SequenceRequest& request) 
   for (const std::string& warning : sequence.Warnings()) PrintLine("warning", warning);
 }
 
+void PrintImageCheck(const ImageCheck& check) {
+  std::string what = std::to_string(check.images) + " images: repetitions";
+  if (check.steps > 0) what += ", times";
+  if (check.has_masks) what += ", masks";
+  if (check.tells_overlays) what += ", overlays";
+  PrintLine("checked", what);
+  if (!check.tells_overlays && !check.masks_are_inverted)
+    PrintLine("unchecked", "overlays: that takes 20 images, between which most of the view changes");
+}
+
 void PrintCheck(const SequenceCheck& check, bool has_pairs) {
   if (check.poses) {
     const PoseCheck& poses = *check.poses;
@@ -138,11 +150,13 @@ void PrintCheck(const SequenceCheck& check, bool has_pairs) {
   if (check.stereo && check.stereo->depth_ratio)
     PrintLine(check.stereo->enough ? "checked" : "unchecked",
               Text("depth is %.3f of what the baseline says", *check.stereo->depth_ratio));
+  if (check.images) PrintImageCheck(*check.images);
   for (const std::string& wrong : check.wrong) PrintLine("wrong", wrong);
   const bool checked = (check.poses && check.poses->right) || (check.stereo && check.stereo->enough);
   if (check.wrong.empty())
     std::cout << (checked ? "nothing is wrong with what was checked\n"
-                          : "nothing could be checked: that takes pairs of images, or poses and depth\n");
+                          : "nothing is wrong with the images; of their truth nothing could be checked: that takes "
+                            "pairs of images, or poses and depth\n");
 }
 
 int InfoCommand(std::span<const std::string> args) {

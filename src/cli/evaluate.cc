@@ -2,6 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include <iostream>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "cli/command_line.h"
 #include "cli/commands.h"
@@ -14,7 +18,7 @@ namespace {
 
 const Manual kManual = {
     "evaluate",
-    "compare a run with the truth of its sequence",
+    "compare a run with the truth of its sequence, or with other runs",
     "Prints how far the points of a run lie from the true surface (the RMSE of the paper, untrimmed, and the "
     "median), how far from the material points that they started on (simulated sequences: this separates drift from "
     "errors of shape), how far the camera path lies from the true one (ATE and RPE), how good the first map was "
@@ -28,38 +32,74 @@ const Manual kManual = {
     "Reads --run: a run folder that pliant track left, also one that was interrupted or killed, or another system's "
     "trajectory.txt (TUM) and observations.csv; docs/formats.md says how to bring one. Reads --sequence: a "
     "sequence with depth images, poses, pairs of images (the disparity at every point is then the truth of the "
-    "surface, with its own uncertainty) or simulation.yaml; without any of these only tracks and reprojection are "
-    "evaluated.\n\n"
+    "surface, with its own uncertainty), sfm_points.csv or simulation.yaml; without any of these only tracks and "
+    "reprojection are evaluated.\n\n"
+    "--sfm_path compares the depths with points of structure from motion (a CSV like sfm_points.csv, or a COLMAP "
+    "model), after one scale a frame. --other_run compares them with another run of the same recording, at the same "
+    "pixels: two runs that were begun at different frames (pliant track --start), or with different seeds, and that "
+    "do not agree are not both right. Neither needs a sequence with truth, so --sequence may be left out then.\n\n"
     "Leaves, where --output_path is given: evaluation.json (every figure) and evaluation.csv (one row a frame). "
     "pliant compare sets several runs side by side.",
     {"pliant evaluate --run run --sequence colon",
      "pliant evaluate --run run --sequence clip.mp4 --camera stereo.yaml --scale none",
-     "pliant evaluate --run run --sequence colon --protocol all --scale global --output_path run/evaluation"},
+     "pliant evaluate --run run --sequence colon --protocol all --scale global --output_path run/evaluation",
+     "pliant evaluate --run run --other_run run_begun_at_20"},
 };
+
+struct Request {
+  std::string run_path;
+  std::string sequence_path;
+  std::string camera_path;
+  std::string sfm_path;
+  std::vector<std::string> other_runs;
+};
+
+Result<Evaluation> EvaluateAll(const Request& request, const EvaluationOptions& options) {
+  std::optional<OpenedTruth> truth;
+  if (!request.sequence_path.empty()) {
+    auto opened = OpenTruth(SequenceOfRun(request.run_path, request.sequence_path, request.camera_path), options);
+    if (!opened.ok()) return opened.status();
+    truth = *std::move(opened);
+  }
+  std::optional<SfmPoints> sfm;
+  if (!request.sfm_path.empty()) {
+    auto opened = OpenSfmPoints(request.sfm_path, truth ? truth->sequence.get() : nullptr);
+    if (!opened.ok()) return opened.status();
+    sfm = *std::move(opened);
+  }
+  return EvaluateRun(request.run_path, {truth ? &*truth : nullptr, sfm ? &*sfm : nullptr, request.other_runs}, options);
+}
 
 }  // namespace
 
 int EvaluateCommand(std::span<const std::string> args) {
-  std::string run_path;
-  std::string sequence_path;
-  std::string camera_path;
+  Request request;
   std::string output_path;
   EvaluationOptions options;
   bool quiet = false;
   CommandLine line(kManual);
-  line.Add("run", &run_path, "DIR", "run folder", Need::kRequired);
-  line.Add("sequence", &sequence_path, "PATH", "sequence with truth: a folder, or a video of pairs", Need::kRequired);
-  AddEvaluationArguments(&line, &camera_path);
+  line.Add("run", &request.run_path, "DIR", "run folder", Need::kRequired);
+  line.Add("sequence", &request.sequence_path, "PATH",
+           "sequence with truth: a folder, or a video of pairs; needed unless --other_run or --sfm_path is given",
+           Need::kOptional);
+  line.Add("other_run", &request.other_runs, "DIR", "folder of another run of the same recording", Need::kOptional);
+  line.Add(
+      "sfm_path", &request.sfm_path, "PATH",
+      "points of structure from motion: a CSV, or the folder of a COLMAP model; else sfm_points.csv of the sequence",
+      Need::kOptional);
+  AddEvaluationArguments(&line, &request.camera_path);
   line.Add("output_path", &output_path, "DIR", "folder for the JSON and CSV files", Need::kOptional);
   line.AddFlag("quiet", &quiet, "print no table");
   if (const auto exit = line.Parse(args)) return *exit;
   OptionTable table;
   options.List(table);
   if (const auto exit = line.Resolve(table)) return *exit;
+  if (request.sequence_path.empty() && request.other_runs.empty() && request.sfm_path.empty())
+    return line.UsageError(
+        "--sequence PATH is missing, and so are --other_run and --sfm_path, with which it is not "
+        "needed; see pliant evaluate --help");
 
-  const auto truth = OpenTruth(SequenceOfRun(run_path, sequence_path, camera_path), options);
-  if (!truth.ok()) return line.Failure(truth.status().message());
-  const auto evaluation = EvaluateRun(run_path, *truth, options);
+  const auto evaluation = EvaluateAll(request, options);
   if (!evaluation.ok()) return line.Failure(evaluation.status().message());
   if (!output_path.empty())
     if (const Status status = WriteEvaluation(*evaluation, output_path); !status.ok())

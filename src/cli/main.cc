@@ -32,7 +32,7 @@ constexpr std::array kCommands = {
     Command{"simulate", "render a scene that deforms, with depth, poses and the paths of its material",
             SimulateCommand},
     Command{"dataset", "say what a data set holds and what is wrong with it, or convert it", DatasetCommand},
-    Command{"evaluate", "compare a run with the truth of its sequence", EvaluateCommand},
+    Command{"evaluate", "compare a run with the truth of its sequence, or with other runs", EvaluateCommand},
     Command{"compare", "set runs side by side: Pliant's, COLMAP's, other systems'", CompareCommand},
     Command{"truth", "follow the material that pixels of a simulated sequence show", TruthCommand},
     Command{"import", "make a run, or a sequence's truth, of another program's result: COLMAP, TUM, KITTI, EuRoC",

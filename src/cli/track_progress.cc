@@ -14,7 +14,10 @@ namespace pliant::cli {
 void TrackProgress::OnStart(int frames) { progress_.emplace(std::cerr, style_, "track", frames); }
 
 void TrackProgress::OnWarning(const std::string& sentence) {
-  if (style_ != ProgressStyle::kQuiet) SayError("track", "warning: " + sentence);
+  if (progress_)  // which leaves its line first, and is quiet where it is to be
+    progress_->Note("pliant track: warning: " + sentence);
+  else if (style_ != ProgressStyle::kQuiet)
+    SayError("track", "warning: " + sentence);
 }
 
 // A frame that was shown when it was processed is not shown again when its report is final.

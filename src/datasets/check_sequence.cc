@@ -116,10 +116,12 @@ Result<SequenceCheck> CheckSequence(Sequence& sequence, const CheckOptions& opti
   std::map<int, PosedImage> images;
   StereoChecker stereo;
   const int last = wanted.empty() ? (bases.empty() ? -1 : bases.back()) : *wanted.rbegin();
-  for (int position = 0; position <= last; ++position) {
+  ImageChecker checker;
+  for (int position = 0; options.images || position <= last; ++position) {
     auto frame = sequence.Next();
     if (!frame.ok()) return frame.status();
     if (!frame->has_value()) break;
+    if (options.images) checker.Add(**frame);
     const bool is_base = std::find(bases.begin(), bases.end(), position) != bases.end();
     if (!is_base && !wanted.contains(position)) continue;
     const auto depth = sequence.Depth((*frame)->frame_idx);
@@ -145,6 +147,10 @@ Result<SequenceCheck> CheckSequence(Sequence& sequence, const CheckOptions& opti
     check.stereo->enough = check.stereo->matches >= kMinMatches;
   }
   check.wrong = WhatIsWrong(check);
+  if (options.images) {
+    check.images = checker.Check();
+    check.wrong.insert(check.wrong.end(), check.images->wrong.begin(), check.images->wrong.end());
+  }
   return check;
 }
 

@@ -100,6 +100,7 @@ Result<std::optional<SequenceFrame>> DataSetSequence::Next() {
   frame.timestamp_s = data_set_.timestamps_s.empty() ? idx / data_set_.calibration.fps
                                                      : data_set_.timestamps_s[static_cast<std::size_t>(idx)];
   frame.image = **std::move(image);
+  frame.recorded_s = data_set_.timestamps_s.empty() ? images().RecordedS() : std::optional(frame.timestamp_s);
   Result<cv::Mat> mask = Mask(idx, frame.name);
   if (!mask.ok()) return mask.status();
   frame.mask = *std::move(mask);

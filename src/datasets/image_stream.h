@@ -37,6 +37,8 @@ class ImageStream {
   // 8-bit, gray or BGR; nothing beyond the end. `idx` may not be smaller than the time before. Fails with kNotFound or
   // kUnreadable; a list of files can be read on after that, a video that breaks off ends.
   virtual Result<std::optional<cv::Mat>> Read(int idx) = 0;
+  // When the image that Read gave last was taken, by the source's own word; nothing where it says nothing.
+  virtual std::optional<double> RecordedS() const { return std::nullopt; }
 };
 
 // At least one file; `folder` is where they lie.

@@ -40,6 +40,7 @@ class VideoStream final : public ImageStream {
   }
 
   Result<std::optional<cv::Mat>> Read(int idx) override;
+  std::optional<double> RecordedS() const override { return recorded_s_; }
 
  private:
   Status BreaksOff() const;
@@ -50,6 +51,7 @@ class VideoStream final : public ImageStream {
   std::optional<double> fps_;
   int count_ = 0;
   int read_ = 0;  // frames taken from the decoder
+  std::optional<double> recorded_s_;
   bool ended_ = false;
 };
 
@@ -91,6 +93,9 @@ Result<std::optional<cv::Mat>> VideoStream::Read(int idx) {
   cv::Mat decoded;
   if (!capture_.retrieve(decoded) || decoded.empty() || decoded.depth() != CV_8U)
     return Status(ErrorCode::kUnreadable, Title(idx) + " cannot be decoded; copy it again");
+  const double recorded_ms = capture_.get(cv::CAP_PROP_POS_MSEC);
+  const bool is_known = std::isfinite(recorded_ms) && (recorded_ms > 0 || idx == 0);
+  recorded_s_ = is_known ? std::optional(1e-3 * recorded_ms) : std::nullopt;
   return std::optional<cv::Mat>(decoded.clone());  // the decoder reuses its own memory
 }
 

@@ -3,9 +3,54 @@
 
 #include "pliant/evaluation/evaluate_run.h"
 
+#include <system_error>
 #include <utility>
 
 namespace pliant {
+namespace {
+
+Result<EvaluationInput> ReadInput(const std::string& run_path, const OpenedTruth* truth,
+                                  const EvaluationOptions& options) {
+  return truth != nullptr ? ReadEvaluationInput(run_path, *truth->sequence, options.matching)
+                          : ReadEvaluationInput(run_path);
+}
+
+Result<Evaluation> EvaluateWithTruth(const EvaluationInput& run, const OpenedTruth& truth,
+                                     const EvaluationOptions& options) {
+  const Result<MaterialTruth*> material =
+      truth.material.ok() ? Result<MaterialTruth*>(truth.material->get()) : truth.material.status();
+  const auto surface =
+      OpenSurfaceTruth(options.surface_from, run, *truth.sequence, truth.request, options.points.max_depth_step);
+  if (!surface.ok()) return surface.status();
+  Result<Evaluation> evaluation = Evaluate(run, *truth.sequence, material, options, surface->get());
+  if (evaluation.ok()) evaluation->sequence = truth.request.image_path.string();
+  return evaluation;
+}
+
+// Of the images; fails where nothing says it.
+Result<int> WidthPx(const EvaluationInput& run, const OpenedTruth* truth) {
+  if (run.camera) return run.camera->width();
+  if (truth != nullptr) return truth->sequence->camera().width();
+  return Status(ErrorCode::kNotFound, "the run " + run.name +
+                                          " does not say how large its images are: its sparse/ has no camera, as in a "
+                                          "run that was killed; give --sequence");
+}
+
+// Those that were given are an error where they do not serve, those of the sequence a note.
+Status AddSfm(const EvaluationInput& run, const RunReferences& references, const EvaluationOptions& options,
+              Evaluation* evaluation) {
+  const bool of_sequence = references.sfm == nullptr && references.truth != nullptr && references.truth->sfm;
+  if (references.sfm == nullptr && !of_sequence) return Status::Ok();
+  const Result<int> width_px = WidthPx(run, references.truth);
+  if (!width_px.ok()) return width_px.status();
+  const SfmPoints& sfm = of_sequence ? *references.truth->sfm : *references.sfm;
+  Status status = AddSfmError(run, sfm, *width_px, options, evaluation);
+  if (status.ok() || !of_sequence) return status;
+  evaluation->notes.push_back(status.message());
+  return Status::Ok();
+}
+
+}  // namespace
 
 Result<OpenedTruth> OpenTruth(const SequenceRequest& request, const EvaluationOptions& options) {
   OpenedTruth truth;
@@ -14,20 +59,43 @@ Result<OpenedTruth> OpenTruth(const SequenceRequest& request, const EvaluationOp
   if (!sequence.ok()) return sequence.status();
   truth.sequence = *std::move(sequence);
   if (options.Wants(EvaluationPart::kMaterial)) truth.material = OpenMaterialTruth(request.image_path.string());
+  if (!options.parts.empty()) return truth;
+  auto sfm = ReadSfmPointsOfSequence(request.image_path);
+  if (!sfm.ok()) return sfm.status();
+  if (!sfm->empty()) truth.sfm = *std::move(sfm);
   return truth;
+}
+
+Result<SfmPoints> OpenSfmPoints(const std::filesystem::path& path, const Sequence* sequence) {
+  std::error_code error;
+  if (!std::filesystem::is_directory(path, error)) return ReadSfmPoints(path);
+  if (sequence == nullptr)
+    return Status(ErrorCode::kNotFound,
+                  "the images of the model " + path.string() + " belong to frames by their names; give --sequence");
+  return ReadSfmModel(path, *sequence);
 }
 
 Result<Evaluation> EvaluateRun(const std::string& run_path, const OpenedTruth& truth,
                                const EvaluationOptions& options) {
-  const Result<EvaluationInput> input = ReadEvaluationInput(run_path, *truth.sequence, options.matching);
-  if (!input.ok()) return input.status();
-  const Result<MaterialTruth*> material =
-      truth.material.ok() ? Result<MaterialTruth*>(truth.material->get()) : truth.material.status();
-  const auto surface =
-      OpenSurfaceTruth(options.surface_from, *input, *truth.sequence, truth.request, options.points.max_depth_step);
-  if (!surface.ok()) return surface.status();
-  Result<Evaluation> evaluation = Evaluate(*input, *truth.sequence, material, options, surface->get());
-  if (evaluation.ok()) evaluation->sequence = truth.request.image_path.string();
+  return EvaluateRun(run_path, RunReferences{.truth = &truth}, options);
+}
+
+Result<Evaluation> EvaluateRun(const std::string& run_path, const RunReferences& references,
+                               const EvaluationOptions& options) {
+  const Result<EvaluationInput> run = ReadInput(run_path, references.truth, options);
+  if (!run.ok()) return run.status();
+  Result<Evaluation> evaluation = references.truth != nullptr ? EvaluateWithTruth(*run, *references.truth, options)
+                                                              : EvaluateWithoutTruth(*run, options);
+  if (!evaluation.ok()) return evaluation;
+  if (Status status = AddSfm(*run, references, options, &*evaluation); !status.ok()) return status;
+  if (references.other_runs.empty()) return evaluation;
+  const Result<int> width_px = WidthPx(*run, references.truth);
+  if (!width_px.ok()) return width_px.status();
+  for (const std::string& other_path : references.other_runs) {
+    const Result<EvaluationInput> other = ReadInput(other_path, references.truth, options);
+    if (!other.ok()) return other.status();
+    if (Status status = AddConsistency(*run, *other, *width_px, options, &*evaluation); !status.ok()) return status;
+  }
   return evaluation;
 }
 

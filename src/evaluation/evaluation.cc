@@ -146,6 +146,22 @@ Status ComputeParts(const EvaluationInput& run, const CollectedTruth& truth, con
   return Take(EvaluationPart::kFirstMap, std::move(first_map), options, &evaluation->first_map, &evaluation->notes);
 }
 
+// What needs no truth; `sequence_camera` may be null.
+Result<Evaluation> Begin(const EvaluationInput& run, const Camera* sequence_camera) {
+  Evaluation evaluation;
+  evaluation.run = run.name;
+  evaluation.notes = run.notes;
+  evaluation.survival = Survival(run);
+  const Camera* camera = run.camera ? &*run.camera : sequence_camera;
+  if (camera != nullptr) evaluation.reprojection = ComputeReprojectionError(run, *camera);
+  evaluation.run_seconds = run.seconds;
+  if (evaluation.survival.frames_tracked == 0)
+    return Status(ErrorCode::kInsufficient, "the run " + run.name + " has no tracked frame among the " +
+                                                std::to_string(run.frames.size()) +
+                                                " it read; there is nothing to evaluate");
+  return evaluation;
+}
+
 Status CheckProtocols(const Evaluation& evaluation, const EvaluationOptions& options) {
   if (evaluation.surface || evaluation.material) return Status::Ok();
   for (const ErrorProtocol protocol : options.points.protocols)
@@ -174,22 +190,19 @@ void EvaluationOptions::List(OptionTable& table) {
   points.List(table);
   table.BeginGroup("TrajectoryError", "distance of the estimated camera path from the true one");
   trajectory.List(table);
+  table.BeginGroup("SfmError", "depths against those of structure from motion, one scale a frame");
+  sfm.List(table);
+  table.BeginGroup("Consistency", "depths against those of another run, one scale a frame");
+  consistency.List(table);
 }
 
 Result<Evaluation> Evaluate(const EvaluationInput& run, const Sequence& sequence,
                             const Result<MaterialTruth*>& material, const EvaluationOptions& options,
                             SurfaceTruth* surface) {
   if (Status status = CheckBelongsTo(run, sequence, options.matching); !status.ok()) return status;
-  Evaluation evaluation;
-  evaluation.run = run.name;
-  evaluation.notes = run.notes;
-  evaluation.survival = Survival(run);
-  evaluation.reprojection = ComputeReprojectionError(run, run.camera ? *run.camera : sequence.camera());
-  evaluation.run_seconds = run.seconds;
-  if (evaluation.survival.frames_tracked == 0)
-    return Status(ErrorCode::kInsufficient, "the run " + run.name + " has no tracked frame among the " +
-                                                std::to_string(run.frames.size()) +
-                                                " it read; there is nothing to evaluate");
+  Result<Evaluation> begun = Begin(run, &sequence.camera());
+  if (!begun.ok()) return begun.status();
+  Evaluation evaluation = *std::move(begun);
   CollectedTruth truth;
   if (material.ok() && options.Wants(EvaluationPart::kMaterial)) truth.material.emplace(**material, sequence.camera());
   if (surface == nullptr && options.surface_from == SurfaceSource::kPairs)
@@ -207,6 +220,32 @@ Result<Evaluation> Evaluate(const EvaluationInput& run, const Sequence& sequence
   if (Status status = ComputeParts(run, truth, material.status(), options, &evaluation); !status.ok()) return status;
   if (Status status = CheckProtocols(evaluation, options); !status.ok()) return status;
   return evaluation;
+}
+
+Result<Evaluation> EvaluateWithoutTruth(const EvaluationInput& run, const EvaluationOptions& options) {
+  if (!options.parts.empty())
+    return Status(ErrorCode::kNotFound, "no " + std::string(EnumName(options.parts.front())) + " error of the run " +
+                                            run.name + " without its sequence; give --sequence");
+  Result<Evaluation> evaluation = Begin(run, nullptr);
+  if (!evaluation.ok()) return evaluation;
+  if (Status status = CheckProtocols(*evaluation, options); !status.ok()) return status;
+  return evaluation;
+}
+
+Status AddSfmError(const EvaluationInput& run, const SfmPoints& sfm, int width_px, const EvaluationOptions& options,
+                   Evaluation* evaluation) {
+  Result<RelativeDepthError> error = ComputeSfmError(run, sfm, width_px, options.sfm);
+  if (!error.ok()) return error.status();
+  evaluation->sfm = *std::move(error);
+  return Status::Ok();
+}
+
+Status AddConsistency(const EvaluationInput& run, const EvaluationInput& other, int width_px,
+                      const EvaluationOptions& options, Evaluation* evaluation) {
+  Result<RelativeDepthError> depths = CompareRuns(run, other, width_px, options.consistency);
+  if (!depths.ok()) return depths.status();
+  evaluation->consistency.push_back({other.name, *std::move(depths)});
+  return Status::Ok();
 }
 
 }  // namespace pliant

@@ -186,6 +186,30 @@ Json ToJson(const ReprojectionError& e) {
   return {{"points", e.points}, {"median_px", e.median_px}, {"rmse_px", e.rmse_px}};
 }
 
+Json ToJson(const RelativeDepthError& e) {
+  Json frames = Json::array();
+  for (const RelativeDepthFrame& frame : e.frames)
+    frames.push_back({{"frame", frame.frame_idx},
+                      {"points", frame.points},
+                      {"estimate", {{"median_relative_depth", frame.difference}}},
+                      {"null", {{"median_relative_depth", frame.null}}}});
+  return {{"frames_compared", e.frames.size()},
+          {"points", e.points},
+          {"estimate", {{"median_relative_depth", e.difference}}},
+          {"null", {{"median_relative_depth", e.null}}},
+          {"frames", frames}};
+}
+
+Json ToJson(const std::vector<RunConsistency>& consistency) {
+  Json runs = Json::array();
+  for (const RunConsistency& other : consistency) {
+    Json run = {{"other_run", other.other_run}};
+    run.update(ToJson(other.depths));
+    runs.push_back(std::move(run));
+  }
+  return runs;
+}
+
 Json ToJson(const Evaluation& evaluation) {
   return {{"run", evaluation.run},
           {"sequence", evaluation.sequence},
@@ -194,6 +218,8 @@ Json ToJson(const Evaluation& evaluation) {
           {"trajectory", evaluation.trajectory ? ToJson(*evaluation.trajectory) : Json()},
           {"first_map", evaluation.first_map ? ToJson(*evaluation.first_map) : Json()},
           {"reprojection", evaluation.reprojection ? ToJson(*evaluation.reprojection) : Json()},
+          {"sfm", evaluation.sfm ? ToJson(*evaluation.sfm) : Json()},
+          {"consistency", ToJson(evaluation.consistency)},
           {"survival", ToJson(evaluation.survival)},
           {"run_seconds", evaluation.run_seconds ? Json(*evaluation.run_seconds) : Json()},
           {"notes", evaluation.notes}};

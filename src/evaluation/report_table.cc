@@ -97,6 +97,21 @@ std::string FirstMapTable(const FirstMapError& e) {
   return text;
 }
 
+std::string RelativeDepthRows(const RelativeDepthError& e) {
+  return Row("relative depth, median, %", 100 * e.difference, 100 * e.null) +
+         FormatText("  %d points in %zu frames, one scale a frame; median over points, then over frames\n", e.points,
+                    e.frames.size());
+}
+
+std::string SfmTable(const RelativeDepthError& e) {
+  return FormatText("%-40s %10s %10s\n", "against structure from motion", "estimate", "null") + RelativeDepthRows(e);
+}
+
+std::string ConsistencyTable(const RunConsistency& e) {
+  return FormatText("%-40s %10s %10s\n", "against another run", "difference", "null") + "  " + e.other_run + "\n" +
+         RelativeDepthRows(e.depths);
+}
+
 std::string ReprojectionTable(const ReprojectionError& e) {
   return FormatText("reprojection of its own points, px: median %.3f, RMSE %.3f\n", e.median_px, e.rmse_px);
 }
@@ -128,6 +143,8 @@ std::string EvaluationTable(const Evaluation& evaluation) {
   if (evaluation.material) text += MaterialTable(*evaluation.material);
   if (evaluation.trajectory) text += TrajectoryTable(*evaluation.trajectory);
   if (evaluation.first_map) text += FirstMapTable(*evaluation.first_map);
+  if (evaluation.sfm) text += SfmTable(*evaluation.sfm);
+  for (const RunConsistency& other : evaluation.consistency) text += ConsistencyTable(other);
   if (evaluation.reprojection) text += ReprojectionTable(*evaluation.reprojection);
   text += SurvivalTable(evaluation.survival);
   for (const std::string& note : evaluation.notes) text += "note: " + note + "\n";

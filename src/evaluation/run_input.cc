@@ -56,9 +56,9 @@ Status GivePosesFrames(const std::string& name, const std::vector<RunPose>& pose
   return Status::Ok();
 }
 
-// Adds the points to the frames. Of another system's result frames may have points and no pose.
-Status ReadPoints(const std::string& run_path, bool foreign, const Sequence& sequence, EvaluationInput* input,
-                  FrameMap* frames) {
+// Adds the points to the frames. Of another system's result frames may have points and no pose. `sequence` is null
+// where the run is Pliant's own.
+Status ReadPoints(const std::string& run_path, const Sequence* sequence, EvaluationInput* input, FrameMap* frames) {
   Result<ObservationReader> reader = ObservationReader::Open(run_path);
   if (!reader.ok()) return reader.status();
   int without_pose = 0;
@@ -70,9 +70,9 @@ Status ReadPoints(const std::string& run_path, bool foreign, const Sequence& seq
     const auto frame = frames->find(frame_idx);
     if (frame != frames->end() && frame->second.cam_from_world) {
       frame->second.observations = std::move((*rows)->observations);
-    } else if (foreign) {
+    } else if (sequence != nullptr) {
       ++without_pose;
-      FrameAt(frame_idx, sequence.TimestampS(frame_idx).value_or(0), frames);
+      FrameAt(frame_idx, sequence->TimestampS(frame_idx).value_or(0), frames);
     }  // else: a killed run may have written the points of a frame whose pose it had not
   }
   if (without_pose > 0)
@@ -91,6 +91,39 @@ Result<std::optional<Camera>> ReadRunCamera(const std::string& run_path) {
     return std::optional<Camera>(std::move(camera).value());
   }
   return std::optional<Camera>();
+}
+
+// `sequence` may be null.
+Result<EvaluationInput> ReadInput(const std::string& run_path, const Sequence* sequence,
+                                  const MatchingOptions& options) {
+  const Result<Run> run = ReadRun(run_path);
+  if (!run.ok()) return run.status();
+  EvaluationInput input;
+  input.name = run_path;
+  Result<std::optional<Camera>> camera = ReadRunCamera(run_path);
+  if (!camera.ok()) return camera.status();
+  input.camera = *std::move(camera);
+  if (run->summary && run->summary->total_s > 0) input.seconds = run->summary->total_s;
+
+  FrameMap frames;
+  for (const RunFrame& row : run->frames) TakeRow(*run, row, &FrameAt(row.frame_idx, row.timestamp_s, &frames));
+  const bool foreign = run->frames.empty() && !run->summary;
+  if (foreign && sequence == nullptr)
+    return Status(ErrorCode::kNotFound, "the run " + run_path +
+                                            " is another system's, whose poses belong to frames by their times; give "
+                                            "--sequence");
+  if (foreign) {
+    if (Status status =
+            GivePosesFrames(run_path, run->poses, *sequence, options.max_time_difference_s, &input, &frames);
+        !status.ok())
+      return status;
+  } else {
+    for (const RunPose& pose : run->poses)
+      FrameAt(*pose.frame_idx, pose.timestamp_s, &frames).cam_from_world = pose.world_from_cam.Inverse();
+  }
+  if (Status status = ReadPoints(run_path, foreign ? sequence : nullptr, &input, &frames); !status.ok()) return status;
+  for (auto& entry : frames) input.frames.push_back(std::move(entry.second));
+  return input;
 }
 
 // The largest distance between where two cameras of one image size see the same rays, px, on a grid over the image.
@@ -143,30 +176,10 @@ EvaluationFrame FrameFromReport(const FrameReport& report) {
 
 Result<EvaluationInput> ReadEvaluationInput(const std::string& run_path, const Sequence& sequence,
                                             const MatchingOptions& options) {
-  const Result<Run> run = ReadRun(run_path);
-  if (!run.ok()) return run.status();
-  EvaluationInput input;
-  input.name = run_path;
-  Result<std::optional<Camera>> camera = ReadRunCamera(run_path);
-  if (!camera.ok()) return camera.status();
-  input.camera = *std::move(camera);
-  if (run->summary && run->summary->total_s > 0) input.seconds = run->summary->total_s;
-
-  FrameMap frames;
-  for (const RunFrame& row : run->frames) TakeRow(*run, row, &FrameAt(row.frame_idx, row.timestamp_s, &frames));
-  const bool foreign = run->frames.empty() && !run->summary;
-  if (foreign) {
-    if (Status status = GivePosesFrames(run_path, run->poses, sequence, options.max_time_difference_s, &input, &frames);
-        !status.ok())
-      return status;
-  } else {
-    for (const RunPose& pose : run->poses)
-      FrameAt(*pose.frame_idx, pose.timestamp_s, &frames).cam_from_world = pose.world_from_cam.Inverse();
-  }
-  if (Status status = ReadPoints(run_path, foreign, sequence, &input, &frames); !status.ok()) return status;
-  for (auto& entry : frames) input.frames.push_back(std::move(entry.second));
-  return input;
+  return ReadInput(run_path, &sequence, options);
 }
+
+Result<EvaluationInput> ReadEvaluationInput(const std::string& run_path) { return ReadInput(run_path, nullptr, {}); }
 
 Status CheckBelongsTo(const EvaluationInput& run, const Sequence& sequence, const MatchingOptions& options) {
   const std::string advice = "; give the sequence that was tracked";

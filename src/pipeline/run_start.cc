@@ -58,7 +58,7 @@ bool HasDepth(const SequenceRequest& request, const Sequence& sequence) {
 std::vector<std::string> WhatTheFirstFramesSay(const SequenceRequest& request, bool of_poses) {
   auto sequence = OpenSequence(request);
   if (!sequence.ok()) return {};
-  const auto check = CheckSequence(**sequence, {.base_frames = 1, .poses = of_poses});
+  const auto check = CheckSequence(**sequence, {.base_frames = 1, .poses = of_poses, .images = false});
   return check.ok() ? check->wrong : std::vector<std::string>();
 }
 

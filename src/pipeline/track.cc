@@ -16,6 +16,7 @@
 #include "pipeline/working_frame.h"
 #include "pliant/base/prefetcher.h"
 #include "pliant/base/version.h"
+#include "pliant/datasets/check_images.h"
 #include "pliant/estimation/frame/frame_problem.h"
 #include "pliant/tracking/bootstrapping/stereo_pair.h"
 #include "pliant/tracking/stage_times.h"
@@ -313,7 +314,10 @@ Result<RunSummary> RunTrack(const RunRequest& request, const TrackOptions& optio
     observer->OnCamera((*sequence)->camera());
     observer->OnStart((*sequence)->size());
   }
-  const Ending ending = TrackSequence(**sequence, request, usable, *start, truth.get(), *writer, observers);
+  CheckedSequence checked(**sequence);
+  const Ending ending = TrackSequence(checked, request, usable, *start, truth.get(), *writer, observers);
+  for (const std::string& warning : checked.Check().wrong)
+    for (TrackObserver* observer : observers) observer->OnWarning(warning);
   const Status finished = writer->Finish(ending.status, ending.note);
   RunSummary summary = writer->summary();
   if (!finished.ok()) {

@@ -98,6 +98,56 @@ TEST(Program, EvaluateSaysInOneSentenceThatThereIsNoTruthForWhatWasAsked) {
   EXPECT_THAT(bare.out, HasSubstr("tracks\n  frames tracked 4 of 4"));
 }
 
+TEST(Program, EvaluateComparesRunsWithoutASequenceAndWithPointsOfStructureFromMotion) {
+  const std::string sequence = Temporary("seq").string();
+  const std::string run = Temporary("run").string();
+  const std::string later = Temporary("later").string();
+  ASSERT_EQ(Pliant("simulate --quiet --Trajectory.frames 4 --Camera.width 320 --Camera.height 240 --output_path '" +
+                   sequence + "'")
+                .exit,
+            0);
+  const std::string track = "track --quiet --Init.method depth --image_path '" + sequence + "' --output_path '";
+  ASSERT_EQ(Pliant(track + run + "'").exit, 0);
+  ASSERT_EQ(Pliant(track + later + "' --start 1").exit, 0);
+  const std::string evaluate = "evaluate --run '" + run + "' ";
+  const Outcome alone = Pliant(evaluate + "--other_run '" + later + "'");
+  EXPECT_EQ(alone.exit, 0) << alone.err;
+  EXPECT_THAT(alone.out, HasSubstr("against another run"));
+  EXPECT_THAT(alone.out, HasSubstr(" points in 3 frames, one scale a frame"));
+
+  std::ofstream(sequence + "/sfm_points.csv") << "frame,u_px,v_px,depth\n0,10,10,3\n";
+  const Outcome too_few = Pliant(evaluate + "--sequence '" + sequence + "'");
+  EXPECT_EQ(too_few.exit, 0) << too_few.err;
+  EXPECT_THAT(too_few.out, HasSubstr("note: of the 1 tracked frames with points of structure from motion none"));
+  const Outcome given = Pliant(evaluate + "--sfm_path '" + sequence + "/sfm_points.csv'");
+  EXPECT_EQ(given.exit, 1);
+  EXPECT_THAT(given.err, StartsWith("pliant evaluate: of the 1 tracked frames"));
+  EXPECT_THAT(Pliant(evaluate + "--sfm_path '" + sequence + "'").err, HasSubstr("give --sequence"));
+  EXPECT_THAT(Pliant(evaluate + "--other_run '" + ForeignResult("a", 4) + "'").err, HasSubstr("is another system's"));
+}
+
+TEST(Program, DatasetInfoAndTrackSayThatImagesAreRepeated) {
+  const std::string sequence = Temporary("seq").string();
+  const std::string twice = Temporary("twice").string();
+  ASSERT_EQ(Pliant("simulate --quiet --Trajectory.frames 8" + kCoarse + "--output_path '" + sequence + "'").exit, 0);
+  std::filesystem::create_directories(twice + "/images");
+  std::filesystem::copy_file(sequence + "/camera.yaml", twice + "/camera.yaml");
+  for (int k = 0; k < 16; ++k) {
+    const std::string image = "/images/0000" + std::to_string(10 + k) + ".png";
+    std::filesystem::copy_file(sequence + "/images/00000" + std::to_string(k / 2) + ".png", twice + image);
+  }
+  const Outcome info = Pliant("dataset info '" + twice + "'");
+  EXPECT_EQ(info.exit, 1);
+  EXPECT_THAT(info.out, HasSubstr("wrong     8 of 16 images (50 %) repeat the one before"));
+  EXPECT_THAT(info.out, HasSubstr("give --stride 2"));
+  const Outcome strided = Pliant("dataset info '" + twice + "' --stride 2");
+  EXPECT_EQ(strided.exit, 0) << strided.out;
+  EXPECT_THAT(strided.out, HasSubstr("nothing is wrong with the images"));
+  const std::string track = "track --image_path '" + twice + "' --output_path '" + Temporary("run").string() + "'";
+  EXPECT_THAT(Pliant(track).err, HasSubstr("pliant track: warning: 8 of 16 images"));
+  EXPECT_THAT(Pliant(track + " --quiet").err, Not(HasSubstr("warning")));
+}
+
 TEST(Program, ARunIsEvaluatedAndShownWithTheCalibrationItWasMadeWith) {
   const std::string sequence = Temporary("seq").string();
   const std::string run = Temporary("run").string();

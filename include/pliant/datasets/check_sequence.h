@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// What a sequence's own images say of its truth: poses against depth, the rows of stereo pairs, and depth against the
-// baseline. A flipped handedness, a wrong unit and a transposed matrix each leave a trace of their own. A scene that
-// deforms is no obstacle: images a few frames apart are compared.
+// What a sequence's own images say of themselves (check_images.h) and of its truth: poses against depth, the rows of
+// stereo pairs, and depth against the baseline. A flipped handedness, a wrong unit and a transposed matrix each leave a
+// trace of their own. A scene that deforms is no obstacle: images a few frames apart are compared.
 #pragma once
 
 #include <optional>
@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "pliant/base/status.h"
+#include "pliant/datasets/check_images.h"
 #include "pliant/datasets/sequence.h"
 
 namespace pliant {
@@ -19,6 +20,7 @@ struct CheckOptions {
   int base_frames = 5;    // from which images are warped into later ones, spread over the sequence
   int max_points = 2000;  // in each, on a grid
   bool poses = true;      // are checked as well
+  bool images = true;     // are checked as well, all of them
 };
 
 // How well images warped by depth and poses fit, were the poses meant otherwise.
@@ -50,11 +52,13 @@ struct StereoCheck {
 struct SequenceCheck {
   std::optional<PoseCheck> poses;     // nothing: no poses, or no depth
   std::optional<StereoCheck> stereo;  // nothing: no pairs
+  std::optional<ImageCheck> images;   // nothing: they were not to be checked
   // One sentence each: what is wrong, and what to do.
   std::vector<std::string> wrong;
 };
 
-// Reads all frames between the first and the last one compared. Fails as Sequence::Next, Right and Depth.
+// Reads all frames; without `images` those up to the last one that is compared. Fails as Sequence::Next, Right and
+// Depth.
 Result<SequenceCheck> CheckSequence(Sequence& sequence, const CheckOptions& options = {});
 
 }  // namespace pliant

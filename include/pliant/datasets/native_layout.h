@@ -12,6 +12,7 @@ namespace pliant::native {
 inline constexpr const char* kCameraFile = "camera.yaml";
 inline constexpr const char* kPosesFile = "groundtruth.txt";
 inline constexpr const char* kTimesFile = "times.txt";
+inline constexpr const char* kSfmPointsFile = "sfm_points.csv";
 inline constexpr const char* kImageFolder = "images";
 inline constexpr const char* kRightFolder = "right";
 inline constexpr const char* kDepthFolder = "depth";

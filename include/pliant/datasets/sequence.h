@@ -25,6 +25,9 @@ struct SequenceFrame {
   double timestamp_s = 0;
   cv::Mat image;  // 8-bit, 1 (gray) or 3 (BGR) channels, the camera's size
   cv::Mat mask;   // 8-bit, 0 = ignore; empty: no mask
+  // When the source itself says that the image was taken (times.txt, a video's time stamp); timestamp_s of a video is
+  // counted at its rate instead.
+  std::optional<double> recorded_s = std::nullopt;
 };
 
 class Sequence {

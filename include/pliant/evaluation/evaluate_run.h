@@ -1,15 +1,19 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// From a run folder and the path of its sequence to an evaluation.
+// From a run folder, and the paths of what it is compared with, to an evaluation.
 #pragma once
 
+#include <filesystem>
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
 
 #include "pliant/base/status.h"
 #include "pliant/datasets/open_sequence.h"
 #include "pliant/datasets/sequence.h"
+#include "pliant/datasets/sfm_points.h"
 #include "pliant/evaluation/evaluation.h"
 
 namespace pliant {
@@ -19,13 +23,32 @@ struct OpenedTruth {
   SequenceRequest request;
   std::unique_ptr<Sequence> sequence;
   Result<std::unique_ptr<MaterialTruth>> material = Status(ErrorCode::kNotFound, "it is not wanted");
+  std::optional<SfmPoints> sfm;  // nothing: the sequence has none, or other parts were asked for by name
 };
 
-// All of the sequence: without start, end and stride. Fails as OpenSequence does; without the truth of the material it
-// is open all the same.
+// All of the sequence: without start, end and stride. Fails as OpenSequence and ReadSfmPointsOfSequence do; without the
+// truth of the material it is open all the same.
 Result<OpenedTruth> OpenTruth(const SequenceRequest& request, const EvaluationOptions& options);
 
-// Reads the run and evaluates. Fails as ReadEvaluationInput and Evaluate do.
+// Points of structure from motion at `path`: a CSV like sfm_points.csv, or the folder of a COLMAP model, which needs
+// `sequence`, null: there is none. Fails as ReadSfmPoints and ReadSfmModel, and with kNotFound for a model without a
+// sequence.
+Result<SfmPoints> OpenSfmPoints(const std::filesystem::path& path, const Sequence* sequence);
+
+// Reads the run and evaluates, against points of structure from motion too where the sequence has some. Fails as
+// ReadEvaluationInput and Evaluate do.
 Result<Evaluation> EvaluateRun(const std::string& run_path, const OpenedTruth& truth, const EvaluationOptions& options);
+
+// What else a run may be compared with, each of it optional.
+struct RunReferences {
+  const OpenedTruth* truth = nullptr;            // of the run's sequence
+  const SfmPoints* sfm = nullptr;                // else those of `truth`
+  std::span<const std::string> other_runs = {};  // folders of runs of the same recording
+};
+
+// The same with what there is. Fails also as EvaluateWithoutTruth, AddSfmError (`references.sfm`; those of the sequence
+// leave a note) and AddConsistency, and with kNotFound where neither run nor sequence says how large the images are.
+Result<Evaluation> EvaluateRun(const std::string& run_path, const RunReferences& references,
+                               const EvaluationOptions& options);
 
 }  // namespace pliant

@@ -18,8 +18,11 @@
 #include "pliant/evaluation/first_map_error.h"
 #include "pliant/evaluation/material_error.h"
 #include "pliant/evaluation/point_error.h"
+#include "pliant/evaluation/relative_depth.h"
 #include "pliant/evaluation/reprojection_error.h"
+#include "pliant/evaluation/run_consistency.h"
 #include "pliant/evaluation/run_input.h"
+#include "pliant/evaluation/sfm_error.h"
 #include "pliant/evaluation/surface_truth.h"
 #include "pliant/evaluation/track_survival.h"
 #include "pliant/evaluation/trajectory_error.h"
@@ -44,9 +47,17 @@ struct EvaluationOptions {
   MatchingOptions matching;
   PointErrorOptions points;
   TrajectoryErrorOptions trajectory;
+  SfmErrorOptions sfm;
+  RunConsistencyOptions consistency;
 
   bool Wants(EvaluationPart part) const;
-  void List(OptionTable& table);  // groups Evaluation, PointError, TrajectoryError
+  void List(OptionTable& table);  // groups Evaluation, PointError, TrajectoryError, SfmError, Consistency
+};
+
+// How far a run is from another one of the same recording.
+struct RunConsistency {
+  std::string other_run;
+  RelativeDepthError depths;
 };
 
 struct Evaluation {
@@ -57,11 +68,14 @@ struct Evaluation {
   std::optional<TrajectoryError> trajectory;      // where it has poses
   std::optional<FirstMapError> first_map;         // where it has depth and the run says which frames it is from
   std::optional<ReprojectionError> reprojection;  // where it has points
+  std::optional<RelativeDepthError> sfm;          // where there are points of structure from motion
+  std::vector<RunConsistency> consistency;        // with the other runs that were given
   TrackSurvival survival;
   std::optional<double> run_seconds;  // that the run took, where it says so
   std::vector<std::string> notes;     // why a part is missing, what was left out; one sentence each
 };
 
+// All but `sfm` and `consistency`, which AddSfmError and AddConsistency add.
 // `sequence` is used for its truth alone: open it without start, end and stride. `material` is the truth of its
 // material, not null, or why there is none; `surface` that of its surface, null for its depth images. Fails with
 // kMismatch when run and sequence do not belong together (CheckBelongsTo), kInsufficient when no frame was tracked,
@@ -70,5 +84,17 @@ struct Evaluation {
 Result<Evaluation> Evaluate(const EvaluationInput& run, const Sequence& sequence,
                             const Result<MaterialTruth*>& material, const EvaluationOptions& options,
                             SurfaceTruth* surface = nullptr);
+
+// What can be said of a run without its sequence: survival, and reprojection where its folder has its camera. Fails
+// with kInsufficient when no frame was tracked, and with kNotFound where a part was asked for.
+Result<Evaluation> EvaluateWithoutTruth(const EvaluationInput& run, const EvaluationOptions& options);
+
+// Adds the error against points of structure from motion. Fails as ComputeSfmError.
+Status AddSfmError(const EvaluationInput& run, const SfmPoints& sfm, int width_px, const EvaluationOptions& options,
+                   Evaluation* evaluation);
+
+// Adds the comparison with another run. Fails as CompareRuns.
+Status AddConsistency(const EvaluationInput& run, const EvaluationInput& other, int width_px,
+                      const EvaluationOptions& options, Evaluation* evaluation);
 
 }  // namespace pliant

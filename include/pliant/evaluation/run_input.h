@@ -69,6 +69,10 @@ EvaluationFrame FrameFromReport(const FrameReport& report);
 Result<EvaluationInput> ReadEvaluationInput(const std::string& run_path, const Sequence& sequence,
                                             const MatchingOptions& options);
 
+// The same of Pliant's own run, without its sequence. Fails with kNotFound where the folder is another system's result,
+// whose poses only the sequence's times can give to frames.
+Result<EvaluationInput> ReadEvaluationInput(const std::string& run_path);
+
 // Whether run and sequence belong together: every frame of the run is in the sequence, at the same time, and the camera
 // is the same. Fails with kMismatch; the sentence says what does not fit.
 Status CheckBelongsTo(const EvaluationInput& run, const Sequence& sequence, const MatchingOptions& options);

@@ -1,0 +1,251 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/datasets/check_images.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <utility>
+
+#include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "datasets/find_overlay.h"
+#include "pliant/base/statistics.h"
+
+namespace pliant {
+namespace {
+
+constexpr int kGridColumns = 320;  // at least; small enough to be fast, large enough to keep letters
+
+// Repeated images. Each pair of consecutive images is compared with the pairs around it, of which the changes of the
+// larger ones count: in a recording that was converted to three times its rate two of three pairs are repeated.
+constexpr int kNeighbors = 6;              // pairs on either side
+constexpr double kNeighborQuantile = 0.8;  // of their changes
+constexpr double kRepeatedShare = 0.15;  // of that change: below it an image is repeated; re-encoding leaves up to 0.1
+constexpr double kLightOffShare = 0.2;   // of the recording's median level
+constexpr int kMinRepeated = 3;
+constexpr double kMinRepeatedShare = 0.05;  // of the images; fewer are single dropped frames
+
+constexpr double kUnevenFactor = 1.5;  // of the median step
+constexpr int kMinUneven = 3;
+constexpr double kMinUnevenShare = 0.05;  // of the steps
+
+// Masks the wrong way round: what they leave is less than this part of what they take away, in level and in change.
+constexpr double kInvertedShare = 0.35;
+constexpr double kMinTakenShare = 0.2;  // of the pixels: less is a tool or an overlay, not the surroundings of a view
+
+constexpr std::size_t kMaxSamples = 128;  // for overlays and masks, spread over all images
+
+std::string Text(const char* format, double value) {
+  char text[64];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+
+std::string ShareText(int part, int all, const char* what) {
+  return std::to_string(part) + " of " + std::to_string(all) + " " + what + " (" + Text("%.0f", 100.0 * part / all) +
+         " %)";
+}
+
+// How two images differ, gray levels.
+struct Change {
+  double mean = 0;
+  double median = 0;
+  double level = 0;  // mean of the darker image
+};
+
+Change ChangeBetween(const cv::Mat& a, const cv::Mat& b) {
+  cv::Mat difference;
+  cv::absdiff(a, b, difference);
+  std::array<std::size_t, 256> counts{};
+  for (int y = 0; y < difference.rows; ++y)
+    for (int x = 0; x < difference.cols; ++x) ++counts[difference.at<std::uint8_t>(y, x)];
+  std::size_t below = 0;
+  std::size_t median = 0;
+  while (below + counts[median] <= difference.total() / 2) below += counts[median++];
+  return {cv::mean(difference)[0], static_cast<double>(median), std::min(cv::mean(a)[0], cv::mean(b)[0])};
+}
+
+// Mean levels and changes of the two sides of masks, summed over samples.
+struct MaskSide {
+  double pixels = 0;
+  double level = 0;
+  double change = 0;
+};
+
+void AddSide(const GridSample& before, const GridSample& sample, int of_value, MaskSide* side) {
+  cv::Mat where = (sample.valid != 0) == of_value;
+  if (before.valid.size() == where.size()) where &= (before.valid != 0) == of_value;
+  cv::Mat difference;
+  cv::absdiff(before.gray, sample.gray, difference);
+  const int pixels = cv::countNonZero(where);
+  side->pixels += pixels;
+  side->level += pixels * cv::mean(sample.gray, where)[0];
+  side->change += pixels * cv::mean(difference, where)[0];
+}
+
+// Without images in which the light is off: they say nothing of the others.
+std::vector<Change> LitChanges(const std::vector<Change>& changes) {
+  std::vector<double> levels;
+  for (const Change& change : changes) levels.push_back(change.level);
+  const double least = kLightOffShare * Median(std::move(levels));
+  std::vector<Change> lit;
+  for (const Change& change : changes)
+    if (change.level > least) lit.push_back(change);
+  return lit;
+}
+
+void JudgeRepeated(const std::vector<Change>& changes, ImageCheck* check) {
+  const int pairs = static_cast<int>(changes.size());
+  int in_a_row = 0;
+  int most_in_a_row = 0;
+  for (int k = 0; k < pairs; ++k) {
+    std::vector<double> means;
+    std::vector<double> medians;
+    for (int j = std::max(0, k - kNeighbors); j < std::min(pairs, k + kNeighbors + 1); ++j) {
+      means.push_back(changes[static_cast<std::size_t>(j)].mean);
+      medians.push_back(changes[static_cast<std::size_t>(j)].median);
+    }
+    const Change& change = changes[static_cast<std::size_t>(k)];
+    const bool is_repeated = change.mean <= kRepeatedShare * Quantile(std::move(means), kNeighborQuantile) &&
+                             change.median <= kRepeatedShare * Quantile(std::move(medians), kNeighborQuantile);
+    in_a_row = is_repeated ? in_a_row + 1 : 0;
+    most_in_a_row = std::max(most_in_a_row, in_a_row);
+    if (is_repeated) ++check->repeated;
+  }
+  const int images = pairs + 1;
+  if (check->repeated < kMinRepeated || check->repeated < kMinRepeatedShare * images) return;
+  const double share = static_cast<double>(check->repeated) / images;
+  const int period = static_cast<int>(std::lround(1 / std::max(1 - share, 0.01)));
+  const bool every_nth = period >= 2 && most_in_a_row < period && std::abs(share - (1 - 1.0 / period)) < 0.03;
+  check->wrong.push_back(
+      ShareText(check->repeated, images, "images") +
+      " repeat the one before: the video was converted to a higher rate, or images were lost in recording, and points "
+      "seem to stop and then jump; " +
+      (every_nth ? "give --stride " + std::to_string(period) + ", or convert the original at its own rate"
+                 : "leave them out (ffmpeg -i VIDEO -vf mpdecimate -fps_mode passthrough images/%06d.png), or convert "
+                   "the original at its own rate; a --stride may help"));
+}
+
+void JudgeTimes(const std::vector<double>& steps_s, ImageCheck* check) {
+  check->steps = static_cast<int>(steps_s.size());
+  if (steps_s.empty()) return;
+  const double median_s = Median(steps_s);
+  check->median_step_s = median_s;
+  check->longest_step_s = *std::max_element(steps_s.begin(), steps_s.end());
+  check->uneven_steps = static_cast<int>(std::count_if(steps_s.begin(), steps_s.end(), [&](double step_s) {
+    return step_s > kUnevenFactor * median_s || kUnevenFactor * step_s < median_s;
+  }));
+  if (check->uneven_steps < kMinUneven || check->uneven_steps < kMinUnevenShare * check->steps) return;
+  check->wrong.push_back(ShareText(check->uneven_steps, check->steps, "steps between time stamps") +
+                         " differ from the median one of " + Text("%.3g", 1000 * median_s) +
+                         " ms by more than half, the longest is " + Text("%.3g", 1000 * check->longest_step_s) +
+                         " ms: the frame rate varies, points jump where images are missing, and the times of a video "
+                         "are counted at one rate; record at a constant rate, or give a part without gaps (--start, "
+                         "--end), or a sequence with times.txt");
+}
+
+void JudgeMasks(const MaskSide& left, const MaskSide& taken, ImageCheck* check) {
+  if (left.pixels == 0 || taken.pixels == 0 || taken.pixels < kMinTakenShare * (left.pixels + taken.pixels)) return;
+  check->has_masks = true;
+  check->left_level = left.level / left.pixels;
+  check->taken_level = taken.level / taken.pixels;
+  check->masks_are_inverted = check->left_level < kInvertedShare * check->taken_level &&
+                              left.change / left.pixels < kInvertedShare * taken.change / taken.pixels;
+  if (!check->masks_are_inverted) return;
+  check->wrong.push_back("the masks seem to be the wrong way round: what they leave is dark (gray level " +
+                         Text("%.0f", check->left_level) +
+                         " on average) and hardly changes, and what they take away "
+                         "is lit (" +
+                         Text("%.0f", check->taken_level) +
+                         ") and does; in a mask 0 is what is ignored, so invert them");
+}
+
+void JudgeOverlay(ImageCheck* check) {
+  if (!check->overlay) return;
+  const PixelRectangle& found = *check->overlay;
+  const auto number = [](int value) { return std::to_string(value); };
+  check->wrong.push_back("sharp edges in the " + number(found.width) + "x" + number(found.height) + " pixels from (" +
+                         number(found.x) + ", " + number(found.y) +
+                         ") on never change while the rest of the image does: text or a logo that is burned in, and "
+                         "points on it stand still; mask it out with --mask_path");
+}
+
+}  // namespace
+
+struct ImageChecker::State {
+  int step = 1;  // of the grid
+  int images = 0;
+  cv::Mat last;  // on the grid
+  std::vector<Change> changes;
+  std::optional<double> last_time_s;
+  std::vector<double> steps_s;
+  std::vector<GridSample> samples;
+  int sample_every = 1;
+  MaskSide left;
+  MaskSide taken;
+
+  void AddTime(const std::optional<double>& time_s) {
+    // A decoder may not know the time of the last images.
+    if (time_s && last_time_s && *time_s > *last_time_s) steps_s.push_back(*time_s - *last_time_s);
+    last_time_s = time_s;
+  }
+
+  void AddSample(const cv::Mat& gray, const cv::Mat& mask) {
+    GridSample sample = SampleGrid(gray, mask, step);
+    if (!samples.empty() && !sample.valid.empty()) {
+      AddSide(samples.back(), sample, 255, &left);
+      AddSide(samples.back(), sample, 0, &taken);
+    }
+    samples.push_back(std::move(sample));
+    if (samples.size() < kMaxSamples) return;
+    std::size_t kept = 0;  // every second one; as many may follow
+    for (std::size_t k = 0; k < samples.size(); k += 2) std::swap(samples[kept++], samples[k]);
+    samples.resize(kept);
+    sample_every *= 2;
+  }
+};
+
+ImageChecker::ImageChecker() : state_(std::make_unique<State>()) {}
+ImageChecker::ImageChecker(ImageChecker&&) noexcept = default;
+ImageChecker& ImageChecker::operator=(ImageChecker&&) noexcept = default;
+ImageChecker::~ImageChecker() = default;
+
+void ImageChecker::Add(const SequenceFrame& frame) {
+  State& state = *state_;
+  cv::Mat gray = frame.image;
+  if (gray.channels() == 3) cv::cvtColor(frame.image, gray, cv::COLOR_BGR2GRAY);
+  if (state.images == 0) state.step = std::max(1, gray.cols / kGridColumns);
+  cv::Mat grid = GridOf(gray, state.step);
+  if (state.images > 0) state.changes.push_back(ChangeBetween(state.last, grid));
+  state.last = std::move(grid);
+  state.AddTime(frame.recorded_s);
+  if (state.images % state.sample_every == 0) state.AddSample(gray, frame.mask);
+  ++state.images;
+}
+
+ImageCheck ImageChecker::Check() const {
+  ImageCheck check;
+  check.images = state_->images;
+  JudgeRepeated(LitChanges(state_->changes), &check);
+  JudgeTimes(state_->steps_s, &check);
+  JudgeMasks(state_->left, state_->taken, &check);
+  if (check.masks_are_inverted) return check;  // what they leave says nothing
+  const OverlaySearch search = FindOverlay(state_->samples, state_->step);
+  check.tells_overlays = search.tells;
+  check.overlay = search.found;
+  JudgeOverlay(&check);
+  return check;
+}
+
+Result<std::optional<SequenceFrame>> CheckedSequence::Next() {
+  auto frame = source_.Next();
+  if (frame.ok() && frame->has_value()) checker_.Add(**frame);
+  return frame;
+}
+
+}  // namespace pliant
