@@ -67,7 +67,11 @@ Status WriteRunSummary(const std::string& path, const RunSummary& summary) {
       {"camera", summary.description.camera},
       {"oracles", summary.description.oracles},
       {"working_image",
-       {{"scale", summary.description.image_scale}, {"smoothing_px", summary.description.image_smoothing_px}}},
+       {{"scale", summary.description.image_scale},
+        {"smoothing_px", summary.description.image_smoothing_px},
+        {"noise_levels", summary.description.image_noise_levels},
+        {"track_noise_px", summary.description.track_noise_px},
+        {"alive_after_9", summary.description.alive_after_9}}},
       {"status", EnumName(summary.status)},
       {"note", summary.note},
       {"trust", trust},
@@ -115,6 +119,9 @@ Result<RunSummary> ReadRunSummary(const std::string& path) {
     if (const Json working = json.value("working_image", Json()); !working.is_null()) {
       summary.description.image_scale = working.at("scale").get<double>();
       summary.description.image_smoothing_px = working.at("smoothing_px").get<double>();
+      summary.description.image_noise_levels = working.value("noise_levels", 0.0);
+      summary.description.track_noise_px = working.value("track_noise_px", 0.0);
+      summary.description.alive_after_9 = working.value("alive_after_9", 0.0);
     }
     const std::string status = json.at("status").get<std::string>();
     bool known = false;

@@ -75,6 +75,13 @@ std::string OfCamera(const FirstMapEvidence& evidence) {
          Digits(evidence.still_camera_error_ratio, 2) + " times as large, so it moved.";
 }
 
+std::string OfImages(const RunDescription& run) {
+  if (!(run.track_noise_px > 0.0)) return {};
+  return "The first images have a noise of " + Digits(run.image_noise_levels, 1) +
+         " gray levels; points are tracked in them to " + Digits(run.track_noise_px, 2) + " px (working image), and " +
+         Percent(run.alive_after_9, 0) + " of the corners last nine frames.";
+}
+
 std::string OfTracks(const RunSummary& summary) {
   return "Points lie " + Digits(summary.median_reprojection_error_px, 2) +
          " px from where the map has them, in the median (pixels of the source). Points were tracked in images of " +
@@ -117,6 +124,7 @@ std::vector<std::pair<std::string, std::string>> TrustIn(const RunSummary& summa
   add("frames", OfFrames(summary));
   add("depth", OfMaps(summary, OfDepth));
   add("camera", OfMaps(summary, OfCamera));
+  add("images", OfImages(summary.description));
   if (summary.frames_tracked > 0) {
     add("tracks", OfTracks(summary));
     add("coverage", "In the median frame " + Percent(summary.median_coverage, 0) +

@@ -17,6 +17,7 @@
 #include "pliant/image/depth_lookup.h"
 #include "pliant/io/point_cloud.h"
 #include "pliant/photometric/stereo_matching.h"
+#include "pliant/pipeline/sequence_statistics.h"
 
 namespace pliant {
 namespace {
@@ -73,6 +74,7 @@ Result<RunStart> ReadStart(const RunRequest& request, const TrackOptions& option
         "at 1");
   RunStart start;
   start.working_image = ChooseWorkingImage(request.input, options);
+  if (!options.tracker.oracle.Any()) start.images = MeasureFirstImages(request.input, start.working_image, options);
   auto camera = sequence.camera().Resized(start.working_image.scale);
   if (!camera.ok()) return camera.status();
   start.working_camera = *std::move(camera);

@@ -16,11 +16,13 @@
 #include "pliant/image/working_image.h"
 #include "pliant/pipeline/track.h"
 #include "pliant/tracking/bootstrapping/make_initializer.h"
+#include "pliant/tracking/tracks/image_statistics.h"
 
 namespace pliant {
 
 struct RunStart {
   WorkingImage working_image;
+  ImageStatistics images;                // of the first working images
   std::optional<Camera> working_camera;  // of the working images; always there
   std::optional<ModelStart> model;
   cv::Mat cloud_depth_mm;  // of the first frame; empty: there is no cloud

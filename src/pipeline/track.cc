@@ -304,7 +304,10 @@ Result<RunSummary> RunTrack(const RunRequest& request, const TrackOptions& optio
                                    request.input.camera_path.string(),
                                    {oracles.begin(), oracles.end()},
                                    start->working_image.scale,
-                                   start->working_image.smoothing_px},
+                                   start->working_image.smoothing_px,
+                                   start->images.noise_levels,
+                                   start->images.track_noise_px,
+                                   start->images.alive_after_9},
                                   table.ToYaml(), ColumnsOfFrames(), writer_options);
   if (!writer.ok()) return writer.status();
 

@@ -51,8 +51,8 @@ class FramesBeforeTheReference : public testing::Test {
 TEST_F(FramesBeforeTheReference, AreTrackedBackFromIt) {
   const pliant::Run run = Track({});
   EXPECT_EQ(summary_.status, RunStatus::kCompleted) << summary_.note;
-  ASSERT_TRUE(summary_.first_map);
-  EXPECT_EQ(summary_.first_map->reference_frame_idx, kElsewhere + 1);
+  ASSERT_FALSE(summary_.first_maps.empty());
+  EXPECT_EQ(summary_.first_maps.front().reference_frame_idx, kElsewhere + 1);
   EXPECT_EQ(TrackedFrames(run), FramesFrom(0));
   EXPECT_NE(run.frames[kElsewhere].state, TrackingState::kTracking);
   EXPECT_GT(run.frames[0].optimized, run.frames[kElsewhere + 1].optimized / 2);

@@ -90,6 +90,17 @@ TEST(RunTrust, MethodsThatMeasureNothingClaimNothing) {
   EXPECT_THAT(trust, Not(Contains(Key("camera"))));
 }
 
+TEST(RunTrust, SaysHowNoisyTheImagesAreWhereItWasMeasured) {
+  RunSummary summary = Summary(kKnown);
+  EXPECT_THAT(Trust(summary), Not(Contains(Key("images"))));
+  summary.description.image_noise_levels = 1.25;
+  summary.description.track_noise_px = 0.151;
+  summary.description.alive_after_9 = 0.4;
+  const std::string images = Trust(summary).at("images");
+  EXPECT_THAT(images, HasSubstr("to 0.15 px"));
+  EXPECT_THAT(images, HasSubstr("40 % of the corners"));
+}
+
 TEST(RunTrust, ARunWithoutFramesSaysNothing) { EXPECT_TRUE(TrustIn({}).empty()); }
 
 }  // namespace

@@ -71,7 +71,7 @@ TEST_F(ModelStartTest, ItsPointsAreTrackedAsThoseOfTrueDepth) {
   ASSERT_TRUE(summary.ok()) << summary.status().message();
   EXPECT_EQ(summary->status, RunStatus::kCompleted) << summary->note;
   EXPECT_EQ(summary->frames_tracked, kFrames);
-  EXPECT_EQ(summary->first_map->declared_frame_idx, 0);
+  EXPECT_EQ(summary->first_maps.front().declared_frame_idx, 0);
   EXPECT_LT(RmseMm("run"), RmseMm("true") + kFileModel_mm);
 }
 
@@ -97,7 +97,7 @@ TEST_F(ModelStartTest, WaitsForAnImageThatTheModelHas) {
   late.path = folder_.Path("late");
   const auto summary = Track(InitMethod::kColmapModel, "run", late);
   ASSERT_TRUE(summary.ok());
-  EXPECT_EQ(summary->first_map->reference_frame_idx, 3);
+  EXPECT_EQ(summary->first_maps.front().reference_frame_idx, 3);
   EXPECT_EQ(summary->frames_tracked, kFrames) << "those before it are tracked back from it";
 }
 

@@ -42,7 +42,7 @@ class ProvisionalRun : public testing::Test {
   }
 
   // No map is certain; attempts every `every` frames from the 6th after the reference on.
-  Run Tracked(const std::string& name, int threads, Switch provisional) const {
+  pliant::Run Tracked(const std::string& name, int threads, Switch provisional) const {
     TrackOptions options = MakeTrackOptions(Preset::kDefault);
     options.threads = threads;
     options.timings = RunTimings::kNone;
@@ -68,7 +68,7 @@ class ProvisionalRun : public testing::Test {
 };
 
 TEST_F(ProvisionalRun, GoesBackToTheMapAndReportsEveryFrameOnce) {
-  const Run run = Tracked("run", 2, Switch::kOn);
+  const pliant::Run run = Tracked("run", 2, Switch::kOn);
   ASSERT_TRUE(run.summary);
   ASSERT_EQ(run.frames.size(), Rendered().frames.size());
   for (std::size_t k = 0; k < run.frames.size(); ++k) {
@@ -85,15 +85,15 @@ TEST_F(ProvisionalRun, GoesBackToTheMapAndReportsEveryFrameOnce) {
 }
 
 TEST_F(ProvisionalRun, DoesNotDependOnTheThreads) {
-  const Run one = Tracked("one", 1, Switch::kOn);
-  const Run two = Tracked("two", 2, Switch::kOn);
+  const pliant::Run one = Tracked("one", 1, Switch::kOn);
+  const pliant::Run two = Tracked("two", 2, Switch::kOn);
   ASSERT_EQ(one.poses.size(), two.poses.size());
   for (std::size_t k = 0; k < one.poses.size(); ++k)
     EXPECT_EQ(one.poses[k].world_from_cam.translation, two.poses[k].world_from_cam.translation) << k;
 }
 
 TEST_F(ProvisionalRun, WithoutProvisionalMapsThereIsNone) {
-  const Run run = Tracked("strict", 2, Switch::kOff);
+  const pliant::Run run = Tracked("strict", 2, Switch::kOff);
   ASSERT_TRUE(run.summary);
   EXPECT_EQ(run.summary->frames_tracked, 0);
   EXPECT_TRUE(run.summary->first_maps.empty());

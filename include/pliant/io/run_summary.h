@@ -44,6 +44,10 @@ struct RunDescription {
   // The images in which points were tracked: their size by that of the source, and their smoothing in their pixels.
   double image_scale = 1;
   double image_smoothing_px = 0;
+  // Measured on the first of those images, in their pixels and gray levels; 0: unknown.
+  double image_noise_levels = 0;
+  double track_noise_px = 0;  // standard deviation of a coordinate of a point's track
+  double alive_after_9 = 0;   // share of the corners that are tracked through nine frames
 };
 
 // run.json.
