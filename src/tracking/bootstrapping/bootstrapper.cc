@@ -118,10 +118,7 @@ void Bootstrapper::TryInitialize(const PreparedFrame& frame, StageTimes* times, 
 
 // The one whose depths stand out most from their uncertainty is kept.
 void Bootstrapper::PutAside(InitOutcome outcome, const PreparedFrame& frame) {
-  const auto signal = [](const InitMeasurements& measured) {
-    return measured.depth_spread / measured.median_depth_sigma;
-  };
-  if (provisional_ && signal(provisional_->map.outcome.measured) >= signal(outcome.measured)) return;
+  if (provisional_ && provisional_->map.outcome.measured.DepthSignal() >= outcome.measured.DepthSignal()) return;
   provisional_ = Provisional{{frames_, std::move(outcome)}, frame};
 }
 

@@ -173,6 +173,20 @@ Status OptimizePoints(const InitInput& input, const MapDemands& demands, const W
   return Status::Ok();
 }
 
+// (W15) Whether the map is provisional, and may be. Points that are certain by the median distance of all may be near
+// ones of a window that knows nothing: what is left is judged by its own.
+Status CheckDepthSignal(const MapDemands& demands, const WindowInitOptions& options, InitOutcome* outcome) {
+  const InitMeasurements& measured = outcome->measured;
+  const bool stands_out = measured.DepthSignal() >= kMinDepthSignal;
+  outcome->provisional = demands.provisional || !stands_out;
+  const bool known = demands.provisional ? stands_out : measured.median_depth_sigma <= demands.max_sigma;
+  if (known && (!outcome->provisional || options.provisional == Switch::kOn)) return Status::Ok();
+  return {ErrorCode::kInsufficient,
+          "the depths spread by " + Digits(100.0 * measured.depth_spread, 1) + " % and are known to " +
+              Digits(100.0 * measured.median_depth_sigma, 1) +
+              " %: hardly better than one constant depth; move the camera sideways or forwards"};
+}
+
 // At the points of the solution, between the reference and the last view.
 double MedianParallaxDeg(const DeformingWindow& window) {
   const Eigen::Vector3d center = window.cams_from_world.back().OriginInSource();
@@ -260,13 +274,7 @@ Status MakeWindowMap(const InitInput& input, const SolvedWindow& window, const M
                                           " points agree with the frames between those of the window (at least " +
                                           std::to_string(options.min_points) + " must)"};
   measure();
-  outcome->provisional =
-      demands.provisional || outcome->measured.depth_spread < kMinDepthSignal * outcome->measured.median_depth_sigma;
-  if (outcome->provisional && options.provisional == Switch::kOff)
-    return {ErrorCode::kInsufficient,
-            "the depths are known to " + Digits(100.0 * outcome->measured.median_depth_sigma, 1) +
-                " % and spread by no more than " + Digits(100.0 * outcome->measured.depth_spread, 1) +
-                " %: hardly better than one constant depth; move the camera sideways or forwards"};
+  if (Status status = CheckDepthSignal(demands, options, outcome); !status.ok()) return status;
   if (Status status = CheckCameraMotion(input, window, options, outcome); !status.ok()) return status;
   if (Status status = FillOutcome(input, nominal_depth_mm, points, outcome); !status.ok()) return status;
   outcome->rejected = AllRejected(input, points, std::move(rejected));
