@@ -112,15 +112,18 @@ TEST(WindowInitializer, MakesNoMapOnWhichTheSamplesDoNotAgree) {
   const WavingTracks sequence(32);
   WindowInitOptions options;
   options.certain_depth_sigma = options.max_depth_sigma = options.last_depth_sigma = 0.001;
+  options.provisional = Switch::kOff;
   const InitOutcome last = sequence.Try(options, InitMoment::kLastFrame);
   EXPECT_EQ(last.decision, InitDecision::kNewReference);
   EXPECT_THAT(last.reason, HasSubstr("points is known to 0.1 % of the median depth"));
 }
 
 TEST(WindowInitializer, ASequenceThatEndsEarlyMustBeAsCertain) {
+  WindowInitOptions strict;
+  strict.provisional = Switch::kOff;
   for (const unsigned seed : {1U, 2U, 3U}) {
     const WavingTracks sequence(16, CameraMotion::kForwards, 3, 15, seed);
-    const InitOutcome last = sequence.Try({}, InitMoment::kLastFrame);
+    const InitOutcome last = sequence.Try(strict, InitMoment::kLastFrame);
     EXPECT_EQ(last.decision, InitDecision::kNewReference) << seed << ": " << last.reason;
     EXPECT_THAT(last.reason, HasSubstr("points is known to 2.0 % of the median depth"));
   }
@@ -159,7 +162,7 @@ TEST(WindowInitializer, AttemptsAtTheSequencesEndWhatItWouldHaveWaitedFor) {
 }
 
 TEST(WindowInitializer, WhatIsLessCertainThanDemandedIsProvisional) {
-  const WavingTracks sequence(31);
+  const WavingTracks sequence(46);
   WindowInitOptions options;
   options.certain_depth_sigma = options.max_depth_sigma = options.last_depth_sigma = 1e-4;
   const InitOutcome outcome = sequence.Try(options);
@@ -168,29 +171,18 @@ TEST(WindowInitializer, WhatIsLessCertainThanDemandedIsProvisional) {
   EXPECT_TRUE(outcome.deforming);
   EXPECT_GE(outcome.measured.depth_spread, 3 * outcome.measured.median_depth_sigma);
   ASSERT_EQ(outcome.frames.size(), sequence.frames.size());
-  for (const int t : {0, 15, 30}) EXPECT_LT(sequence.ShapeError(outcome, t), 2 * kShape) << t;
+  for (const int t : {0, 20, 45}) EXPECT_LT(sequence.ShapeError(outcome, t), 2 * kShape) << t;
   options.provisional = Switch::kOff;
   EXPECT_EQ(sequence.Try(options).decision, InitDecision::kWait);
 }
 
 TEST(WindowInitializer, AtTheEndAProvisionalMapIsTaken) {
-  const WavingTracks sequence(31);
+  const WavingTracks sequence(46);
   WindowInitOptions options;
   options.certain_depth_sigma = options.max_depth_sigma = options.last_depth_sigma = 1e-4;
   const InitOutcome outcome = sequence.Try(options, InitMoment::kLastFrame);
   ASSERT_EQ(outcome.decision, InitDecision::kMap) << outcome.reason;
   EXPECT_TRUE(outcome.provisional);
-}
-
-// Its depths are known to what is demanded, and one constant depth is as good.
-TEST(WindowInitializer, AMapOfAFlatSceneIsProvisional) {
-  const WavingTracks sequence(61, CameraMotion::kForwards, 0, 0.1);
-  WindowInitOptions options;
-  const InitOutcome outcome = sequence.Try(options);
-  ASSERT_EQ(outcome.decision, InitDecision::kMap) << outcome.reason;
-  EXPECT_TRUE(outcome.provisional) << outcome.measured.depth_spread << " " << outcome.measured.median_depth_sigma;
-  options.provisional = Switch::kOff;
-  EXPECT_NE(sequence.Try(options).decision, InitDecision::kMap);
 }
 
 TEST(WindowInitializer, ARigidSceneNeedsTenFrames) {
