@@ -14,6 +14,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "common"
 import grid
 
 SPAN = 100  # frames at the beginning, and at the end, that are compared
+WITH_MAP = ("tracking", "provisional")  # states
 BACK_WITHIN = 5  # frames after a black-out in which the same map has to be found
 
 COLUMNS = ["set", "amplitude_mm", "omega_rad_s", "seed", "variant", "visible_frames", "tracked_visible", "blackouts",
@@ -60,9 +61,9 @@ def end_point(run, sequence, scale):
 
 def survived(rows, first, last):
     """Whether the frames after a black-out have the map that was there before it, soon enough."""
-    before = next((row for row in reversed(rows[:first]) if row["state"] == "tracking"), None)
+    before = next((row for row in reversed(rows[:first]) if row["state"] in WITH_MAP), None)
     after = rows[last + 1:last + 1 + BACK_WITHIN]
-    return before is not None and any(row["state"] == "tracking" and row["submap"] == before["submap"] for row in after)
+    return before is not None and any(row["state"] in WITH_MAP and row["submap"] == before["submap"] for row in after)
 
 
 def mean(values):
@@ -81,14 +82,14 @@ def figures_of(run, sequence):
     options = simulation_options(sequence, "Interruption")
     times = sorted(positions(pathlib.Path(sequence) / "groundtruth.txt"))
     dark = [interruption(options, "blackout", time) for time in times]
-    tracked = {int(frame["frame"]) for frame in frames if frame["state"] == "tracking"}
+    tracked = {int(frame["frame"]) for frame in frames if frame["state"] in WITH_MAP}
     row["visible_frames"] = dark.count(False)
     row["tracked_visible"] = sum(not dark[idx] for idx in tracked)
     starts = [i for i in range(1, len(dark)) if dark[i] and not dark[i - 1]]
     ends = [next((i for i in range(start, len(dark)) if not dark[i]), len(dark)) - 1 for start in starts]
     row["blackouts"] = len(starts)
     row["blackouts_survived"] = sum(survived(frames, first, last) for first, last in zip(starts, ends))
-    optimized = [int(frame["optimized"]) for frame in frames if frame["state"] == "tracking"]
+    optimized = [int(frame["optimized"]) for frame in frames if frame["state"] in WITH_MAP]
     row["points"], row["fewest_points"] = mean(optimized), min(optimized, default=None)
     row["ms_per_frame"] = mean([sum(float(value) for name, value in frame.items() if name.startswith("ms_"))
                                 for frame in frames])

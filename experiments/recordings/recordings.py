@@ -97,17 +97,22 @@ def main():
                 subprocess.run([str(part) for part in command], check=False, stderr=subprocess.DEVNULL)
             with open(folder / "frames.csv", newline="", encoding="utf-8") as stream:
                 frames = list(csv.DictReader(stream))
-            tracked = [row for row in frames if row["state"] == "tracking"]
+            tracked = [row for row in frames if row["state"] in ("tracking", "provisional")]
+            provisional = sum(row["state"] == "provisional" for row in frames)
             points = [int(row["optimized"]) for row in tracked]
-            working = json.loads((folder / "run.json").read_text())["working_image"]
+            summary = json.loads((folder / "run.json").read_text())
+            working, first_map = summary["working_image"], summary["first_map"]
             judged = {}
             if tracked and (images.parent / "groundtruth.txt").exists():
                 judged = evaluated(arguments.program, folder, evaluations / folder.name, "--sequence", images.parent)
             error = depths(judged.get("sfm"))
-            rows.append([name, variant, f"{len(tracked)} of {len(frames)}", tracked[0]["frame"] if tracked else "",
-                         str(len({row["submap"] for row in tracked})),
+            rows.append([name, variant, f"{len(tracked)} of {len(frames)}", str(provisional),
+                         tracked[0]["frame"] if tracked else "", str(len({row["submap"] for row in tracked})),
                          f"{statistics.median(points):.0f}" if points else "",
-                         f"{working['scale']:.2f}, {working['smoothing_px']:.1f}",
+                         percent(summary["medians"]["coverage"]) if tracked else "",
+                         f"{working['scale']:.2f}, {working['smoothing_px']:.1f}", f"{working['track_noise_px']:.2f} px",
+                         f"{first_map['model']}, {percent(first_map['depth_sigma'])} of "
+                         f"{percent(first_map['depth_spread'])}" if first_map else "",
                          percent(error and error[0]), percent(error and error[1]), percent(path_error(judged))])
             if first and tracked:
                 compared = evaluated(arguments.program, first, evaluations / f"{folder.name}_compared", "--other_run",
@@ -116,8 +121,9 @@ def main():
                     agreements.append([name, variant, str(agreed[2]), percent(agreed[0]), percent(agreed[1])])
             if variant == AS_IT_IS:
                 first = folder if tracked else None
-    for head, body in ((["recording", "variant", "frames with a map", "first", "submaps", "points", "scale, smoothing",
-                         "depth error", "null", "ATE"], rows),
+    for head, body in ((["recording", "variant", "frames with a map", "provisional", "first", "submaps", "points",
+                         "coverage", "scale, smoothing", "track noise", "first map: sigma of spread", "depth error", "null",
+                         "ATE"], rows),
                        (["recording", "compared with", "frames", "depths differ", "spread of the depths"], agreements)):
         print("\n| " + " | ".join(head) + " |\n|" + " --- |" * len(head))
         for row in body:

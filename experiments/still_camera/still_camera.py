@@ -72,11 +72,11 @@ def row(kind, name, options, arguments):
     with open(run / "frames.csv", newline="") as stream:
         states = Counter(line["state"] for line in csv.DictReader(stream))
     error = null = ""
-    if states["tracking"]:
+    if states["tracking"] + states["provisional"]:
         call(arguments.program, "evaluate", "--run", run, "--sequence", sequence, "-o", run / "evaluation")
         surface = json.loads((run / "evaluation" / "evaluation.json").read_text())["surface"]
         error, null = (f"{100 * surface[which]['median_relative_depth']:.1f} %" for which in ("estimate", "null"))
-    return [kind, name, str(states["tracking"]), str(states["ambiguous"]), str(states["initializing"]),
+    return [kind, name, str(states["tracking"] + states["provisional"]), str(states["ambiguous"]), str(states["initializing"]),
             ratios(log.read_text()), error, null]
 
 
@@ -87,7 +87,7 @@ def main():
     parser.add_argument("--only", default="", help="scenes, separated by ';'")
     parser.add_argument("--seed", type=int, default=1, help="of the scenes")
     arguments = parser.parse_args()
-    print("| camera | scene | tracking | ambiguous | initializing | still by moving | depth error | null |")
+    print("| camera | scene | with a map | ambiguous | initializing | still by moving | depth error | null |")
     print("| --- | --- | --- | --- | --- | --- | --- | --- |")
     for kind, scenes in (("still", STILL), ("moving", MOVING)):
         for name, options in scenes.items():
