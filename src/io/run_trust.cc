@@ -103,7 +103,7 @@ std::string Advice(const RunSummary& summary) {
         "tissue. Compare a run begun at another frame: pliant evaluate tells how far they agree.");
   if (FramesIn(summary, TrackingState::kLost) > 0)
     advice.emplace_back("Where the map was lost, look for tools, smoke and fast motion; a mask over tools helps.");
-  if (summary.frames_tracked > 0 && summary.median_coverage < kMinCoverage)
+  if (summary.median_coverage > 0.0 && summary.median_coverage < kMinCoverage)
     advice.emplace_back("Much of the scene has no point: raise --Corners.max_corners, or check the mask.");
   if (static_cast<double>(summary.frames_tracked) < kMinFrameShare * static_cast<double>(summary.frames_read) &&
       FramesIn(summary, TrackingState::kAmbiguous) == 0)
@@ -125,11 +125,10 @@ std::vector<std::pair<std::string, std::string>> TrustIn(const RunSummary& summa
   add("depth", OfMaps(summary, OfDepth));
   add("camera", OfMaps(summary, OfCamera));
   add("images", OfImages(summary.description));
-  if (summary.frames_tracked > 0) {
-    add("tracks", OfTracks(summary));
+  if (summary.median_reprojection_error_px > 0.0) add("tracks", OfTracks(summary));
+  if (summary.median_coverage > 0.0)
     add("coverage", "In the median frame " + Percent(summary.median_coverage, 0) +
                         " of the scene lies near a point (within 1/32 of the image's width).");
-  }
   add("advice", Advice(summary));
   return trust;
 }

@@ -46,7 +46,8 @@ std::vector<FrameReport> FramesBefore::Pass(std::vector<FrameReport> reports) {
       if (static_cast<int>(waiting_.size()) > options_.max_frames_back) release(1);
       continue;
     }
-    if (report.first_map && !waiting_.empty()) {
+    const bool is_reference = report.first_map && report.first_map->reference_frame_idx == report.frame_idx;
+    if (is_reference && !waiting_.empty()) {
       TrackBack(report);
       MoveNewPoints(&report);
     }

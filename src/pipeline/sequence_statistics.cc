@@ -44,8 +44,8 @@ Result<SequenceStatistics> MeasureSequenceStatistics(const SequenceRequest& requ
   if (!sequence.ok()) return sequence.status();
   SequenceStatistics measured{.working_image = ChooseWorkingImage(request, options), .size = {}, .images = {}};
   const int frames = (*sequence)->size();
-  const int distance = std::max(kStatisticsRunFrames, frames / kMaxRuns);
-  const auto runs = MeasureRuns(**sequence, measured.working_image, distance, frames, options, &measured.size);
+  const int distance = std::max(kStatisticsRunFrames, (frames + kMaxRuns - 1) / kMaxRuns);
+  const auto runs = MeasureRuns(**sequence, measured.working_image, distance, kMaxRuns, options, &measured.size);
   if (!runs.ok()) return runs.status();
   if (runs->empty())
     return {ErrorCode::kInsufficient, "the sequence has " + std::to_string(frames) + " frames; statistics need " +

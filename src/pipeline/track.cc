@@ -121,34 +121,45 @@ Ending AtTheEnd(const Tracker& tracker, int frames, const std::string& last_note
   return {RunStatus::kFailed, "the sequence ended without a first map: " + last_note};
 }
 
-// Frames of the sequence, read ahead, in which one can go back.
+// Frames of the sequence, read ahead, in which one can go back: then some are read once more.
 class FrameSource {
  public:
   // All are used as long as this lives.
   FrameSource(Sequence& sequence, const SequenceRequest& input, const TrackOptions& options, const RunStart& start,
               bool wants_depth)
       : input_(input), options_(options), start_(start), wants_depth_(wants_depth) {
-    ReadAhead(sequence);
+    ReadAhead(sequence, &frames_);
   }
 
-  std::optional<Result<ReadFrame>> Next() { return frames_->Next(); }
+  std::optional<Result<ReadFrame>> Next() {
+    if (again_) {
+      if (auto frame = again_->Next()) return frame;
+      again_.reset();
+    }
+    auto frame = frames_->Next();
+    if (frame && frame->ok()) last_frame_idx_ = (*frame)->frame.frame_idx;
+    return frame;
+  }
   // Once there is a map no depth image is read any more; those read ahead in the meantime change nothing.
   void SetWantsDepth(bool wants) { wants_depth_ = wants; }
-  // What comes next is the frame after this one. Fails as OpenSequence does.
+  // What comes next is the frame after this one, which has come already. Fails as OpenSequence does.
   Status GoBackTo(int frame_idx) {
-    frames_.reset();
-    SequenceRequest rest = input_;
-    rest.start = frame_idx + input_.stride;
-    auto reopened = OpenSequence(rest);
+    again_.reset();
+    if (frame_idx >= last_frame_idx_) return Status::Ok();
+    SequenceRequest part = input_;
+    part.start = frame_idx + input_.stride;
+    part.end = last_frame_idx_ + 1;
+    auto reopened = OpenSequence(part);
     if (!reopened.ok()) return reopened.status();
     reopened_ = *std::move(reopened);
-    ReadAhead(*reopened_);
+    ReadAhead(*reopened_, &again_);
     return Status::Ok();
   }
 
  private:
-  void ReadAhead(Sequence& sequence) {
-    frames_.emplace([&] { return NextFrame(sequence, options_.tracker, options_.threads, start_, wants_depth_); },
+  using Frames = std::optional<Prefetcher<Result<ReadFrame>>>;
+  void ReadAhead(Sequence& sequence, Frames* frames) {
+    frames->emplace([&] { return NextFrame(sequence, options_.tracker, options_.threads, start_, wants_depth_); },
                     options_.threads > 1 ? kFramesAhead : 0);
   }
 
@@ -156,8 +167,10 @@ class FrameSource {
   const TrackOptions& options_;
   const RunStart& start_;
   std::atomic<bool> wants_depth_;
+  int last_frame_idx_ = -1;  // of the frames that came for the first time
   std::unique_ptr<Sequence> reopened_;
-  std::optional<Prefetcher<Result<ReadFrame>>> frames_;
+  Frames frames_;
+  Frames again_;
 };
 
 Ending TrackFrames(Sequence& sequence, const RunRequest& request, const TrackOptions& options, const RunStart& start,
@@ -241,7 +254,7 @@ void TrackOptions::List(OptionTable& table) {
             "changes the result",
             1, 1024);
   table.Add("max_frames_back", &max_frames_back, "frames",
-            "before the reference of a first map, tracked backwards in time from it", 0, 100000);
+            "frames without a map, before the reference of a first map, tracked backwards in time from it", 0, 100000);
   table.AddChoice("timings", &timings, "none: wall times are written as 0, so that two runs are equal byte for byte");
   image.List(table);
   tracker.List(table);

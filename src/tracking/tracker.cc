@@ -52,6 +52,12 @@ std::unique_ptr<Initializer> MakeFirstInitializer(const TrackerOptions& options,
   return MakeOracleInitializer(truth, NominalDepth(options.init), options.min_points, std::move(initializer));
 }
 
+double CoverageIn(const PreparedFrame& frame, const std::vector<PointObservation>& observations) {
+  std::vector<Eigen::Vector2d> pixels;
+  for (const PointObservation& seen : observations) pixels.push_back(seen.pixel);
+  return CoverageOf(frame.mask.valid(), pixels);
+}
+
 // The report of a frame in this state, made of its result and of the submap as it is in the end.
 FrameReport MakeReport(const PreparedFrame& frame, TrackingState state, const Submap& submap, const FrameResult& result,
                        const StageTimes& times) {
@@ -74,9 +80,7 @@ FrameReport MakeReport(const PreparedFrame& frame, TrackingState state, const Su
   report.new_points = result.update.new_points;
   report.added = static_cast<int>(report.new_points.size());
   report.refined_points = result.update.refined_points;
-  std::vector<Eigen::Vector2d> pixels;
-  for (const PointObservation& seen : report.observations) pixels.push_back(seen.pixel);
-  report.coverage = CoverageOf(frame.mask.valid(), pixels);
+  report.coverage = CoverageIn(frame, report.observations);
   report.median_reprojection_error_px =
       result.update.median_reprojection_error_px.value_or(result.median_reprojection_error_px);
   return report;
@@ -169,10 +173,13 @@ std::vector<FrameReport> Tracker::Process(const PreparedFrame& frame) {
   FindSubmapAgain(frame);
   const bool has_map = state_ == TrackingState::kTracking || state_ == TrackingState::kLost;
   FrameResult result = has_map ? TrackFrame(frame, &times) : Bootstrap(frame, &times);
-  if (goes_back_to_)  // this frame is still to come
+  std::erase_if(set_aside_, [&](const FrameReport& report) { return report.frame_idx <= frame.frame_idx; });
+  if (goes_back_to_) {
+    set_aside_.push_back(MakeReport(frame, TrackingState::kInitializing, submaps_->current(), result, times));
     held_ = bootstrapper_->Completed(*result.first_map, std::move(held_));
-  else
+  } else {
     Report(frame, result, &times);
+  }
 
   const auto first_held = state_ == TrackingState::kInitializing
                               ? std::ranges::find(held_, bootstrapper_->reference_frame_idx(), &FrameReport::frame_idx)
@@ -207,7 +214,11 @@ FrameResult Tracker::Bootstrap(const PreparedFrame& frame, StageTimes* times) {
 // The frames after it are still to come.
 void Tracker::GoBackTo(PreparedFrame frame) {
   goes_back_to_ = frame.frame_idx;
-  std::erase_if(held_, [&](const FrameReport& report) { return report.frame_idx > frame.frame_idx; });
+  const auto after =
+      std::ranges::find_if(held_, [&](const FrameReport& report) { return report.frame_idx > frame.frame_idx; });
+  set_aside_.assign(std::make_move_iterator(after), std::make_move_iterator(held_.end()));
+  held_.erase(after, held_.end());
+  submaps_->current().blurred_frames = 0;
   submaps_->current().previous = std::move(frame);
 }
 
@@ -275,8 +286,17 @@ void Tracker::Report(const PreparedFrame& frame, const FrameResult& result, Stag
                                              std::to_string(found->merge.into) + ", which this image shows too");
   }
   held_.push_back(std::move(report));
-  if (result.first_map) held_ = bootstrapper_->Completed(*result.first_map, std::move(held_));
+  if (result.first_map) {
+    held_ = bootstrapper_->Completed(*result.first_map, std::move(held_));
+    held_.back().coverage = CoverageIn(frame, held_.back().observations);
+  }
   if (found) submaps_->Apply(*found);
+}
+
+std::vector<FrameReport> Tracker::Finish() {
+  std::vector<FrameReport> reports = std::exchange(held_, {});
+  std::ranges::move(std::exchange(set_aside_, {}), std::back_inserter(reports));
+  return reports;
 }
 
 void Tracker::EndSequence() {

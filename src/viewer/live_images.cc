@@ -70,7 +70,7 @@ void LiveImages::Run() {
     std::string jpeg = ToJpeg(small, quality_);
     lock.lock();
     scale_ = static_cast<double>(small.cols) / image.cols;
-    mb_ += static_cast<double>(jpeg.size()) / 1e6;
+    mb_ += (static_cast<double>(jpeg.size()) - static_cast<double>(jpeg_[frame_idx].size())) / 1e6;
     jpeg_[frame_idx] = std::move(jpeg);
     if (mb_ > max_mb_) {
       for (auto entry = jpeg_.begin(); entry != jpeg_.end() && std::next(entry) != jpeg_.end(); ++entry) {

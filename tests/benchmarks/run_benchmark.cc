@@ -56,7 +56,7 @@ class Meter : public TrackObserver {
  public:
   void OnStart(int) override {}
   void OnFrame(const FrameReport& report) override {
-    if (report.state != TrackingState::kTracking) return;
+    if (!HasPose(report.state)) return;
     const auto now = std::chrono::steady_clock::now();
     if (frames_ > 0) seconds_ += std::chrono::duration<double>(now - last_).count();
     last_ = now;

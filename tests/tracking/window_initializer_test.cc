@@ -169,7 +169,7 @@ TEST(WindowInitializer, WhatIsLessCertainThanDemandedIsProvisional) {
   ASSERT_EQ(outcome.decision, InitDecision::kProvisional) << outcome.reason;
   EXPECT_TRUE(outcome.provisional);
   EXPECT_TRUE(outcome.deforming);
-  EXPECT_GE(outcome.measured.depth_spread, 3 * outcome.measured.median_depth_sigma);
+  EXPECT_GE(outcome.measured.depth_spread, 2 * outcome.measured.median_depth_sigma);
   ASSERT_EQ(outcome.frames.size(), sequence.frames.size());
   for (const int t : {0, 20, 45}) EXPECT_LT(sequence.ShapeError(outcome, t), 2 * kShape) << t;
   options.provisional = Switch::kOff;

@@ -2,9 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // The main job: a sequence in, a run folder out (docs/formats.md). A frame is on disk as soon as its report is final,
-// so that a run which is lost, interrupted, killed or fails leaves what it had. The frames that wait for the first map
-// are final when it is made, and so are the last ones before its reference, which are then tracked back from it; a run
-// that is interrupted or fails before writes them without poses, and one that is killed has not written them.
+// so that a run which is lost, interrupted, killed or fails leaves what it had. The frames that wait for a first map, or
+// in which the map before was lost, are final when it is made or the old one found again: those before its reference are
+// then tracked back from it. A run that is interrupted or fails before writes them without poses, and one that is killed
+// has not written them.
 #pragma once
 
 #include <array>
@@ -61,7 +62,7 @@ struct TrackOptions {
   int seed = 1;
   int threads = 2;  // 1: everything on one thread; 2 and more: images are read ahead, points are followed in parallel
   RunTimings timings = RunTimings::kWritten;
-  int max_frames_back = 10000;  // before the reference of a first map, tracked backwards in time from it
+  int max_frames_back = 10000;  // without a map, before the reference of a first map, tracked backwards in time from it
   ImageOptions image;
   TrackerOptions tracker;
 
@@ -82,17 +83,18 @@ class TrackObserver {
   virtual ~TrackObserver() = default;
   // Before the first frame; `frames` is what the sequence says of its length.
   virtual void OnStart(int frames) = 0;
-  // What is odd about the sequence, before OnStart; a sentence each.
+  // What is odd about the sequence, before OnStart, or about the images that were read, at the end; a sentence each.
   virtual void OnWarning(const std::string& /*sentence*/) {}
   // The sequence's camera, before OnStart.
   virtual void OnCamera(const Camera& /*camera*/) {}
-  // Before a frame is tracked. The image is 8-bit with one or three (BGR) channels; it is not written to any more, so
+  // Before a frame is tracked; once more where tracking went back to a provisional map. The image is 8-bit with one or three (BGR) channels; it is not written to any more, so
   // that it may be kept.
   virtual void OnImage(int /*frame_idx*/, const cv::Mat& /*image*/) {}
   // After a frame's rows are on disk: once a frame, in order of time. A later report's `merge` may move it into another
   // world; the run folder has it there in the end.
   virtual void OnFrame(const FrameReport& report) = 0;
-  // A frame was processed whose report waits for the first map: what is known so far. Its OnFrame follows later.
+  // A frame was processed whose report waits for a map: what is known so far. Its OnFrame follows later. Once more
+  // where tracking went back.
   virtual void OnHeld(const FrameReport& /*report*/) {}
 };
 

@@ -30,7 +30,7 @@ enum class TrackingState {
   kAmbiguous,            // points were followed, but camera and scene cannot be told apart
   kInitializing,         // points are followed; the first map does not exist yet, or never came
   kTracking,             // pose and deformation of this frame are known, if only since a later frame made the map
-  kProvisional,          // the same by a map whose depths are little more certain than one constant depth
+  kProvisional,          // the same by a map that is less certain than demanded, or hardly better than one depth
   kLost,                 // too few points are left
 };
 
@@ -80,7 +80,7 @@ struct RefinedPoint {
 
 // What a first map rests on, as it was measured when it was made; 0 where its method does not measure it.
 struct FirstMapEvidence {
-  bool provisional = false;  // its depths are little more certain than one constant depth, or than was demanded
+  bool provisional = false;  // less certain than demanded, or hardly better than one constant depth
   bool deforming = false;    // the scene deformed, by the model that was chosen
   int points = 0;
   double median_parallax_deg = 0;       // between the reference and the last frame of the window

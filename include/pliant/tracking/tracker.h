@@ -70,7 +70,7 @@ class Tracker {
   // No frame will follow: while the first map is awaited, a last attempt at one. Its frames come from Finish.
   void EndSequence();
   // To be called when no more frames come, whatever the reason: the reports held back become final as they are.
-  std::vector<FrameReport> Finish() { return std::exchange(held_, {}); }
+  std::vector<FrameReport> Finish();
 
   // Whether the next frames' depth images or known points can be of use: before the first map, when that is to come
   // from them, and while another one may be begun.
@@ -108,6 +108,7 @@ class Tracker {
   TrackingState state_ = TrackingState::kWaitingForReference;
   std::vector<FrameReport> held_;  // since the reference
   std::optional<int> goes_back_to_;
+  std::vector<FrameReport> set_aside_;  // of the frames after the one gone back to, until they are processed again
 };
 
 }  // namespace pliant

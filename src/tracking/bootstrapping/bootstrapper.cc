@@ -10,6 +10,14 @@
 #include "tracking/image_fault.h"
 
 namespace pliant {
+namespace {
+
+// Of two provisional maps.
+bool IsBetter(const InitOutcome& a, const InitOutcome& b) {
+  return a.measured.DepthSignal() >= b.measured.DepthSignal();
+}
+
+}  // namespace
 
 Bootstrapper::Bootstrapper(const Camera& camera, const TrackerOptions& options, int threads,
                            const std::optional<PhotometricCalibration>& photometric, TrackSource* tracks,
@@ -97,7 +105,7 @@ void Bootstrapper::TryInitialize(const PreparedFrame& frame, StageTimes* times, 
   if (outcome.ambiguous) provisional_.reset();
   switch (outcome.decision) {
     case InitDecision::kMap:
-      FinishMap(std::move(outcome), step);
+      FinishMapOrGoBack(std::move(outcome), step);
       break;
     case InitDecision::kProvisional:
       PutAside(std::move(outcome), frame);
@@ -116,9 +124,17 @@ void Bootstrapper::TryInitialize(const PreparedFrame& frame, StageTimes* times, 
   }
 }
 
+// A map that is provisional itself does not replace a better one that was put aside.
+void Bootstrapper::FinishMapOrGoBack(InitOutcome outcome, BootstrapStep* step) {
+  if (outcome.provisional && provisional_ && IsBetter(provisional_->map.outcome, outcome))
+    GoBack(step);
+  else
+    FinishMap(std::move(outcome), step);
+}
+
 // The one whose depths stand out most from their uncertainty is kept.
 void Bootstrapper::PutAside(InitOutcome outcome, const PreparedFrame& frame) {
-  if (provisional_ && provisional_->map.outcome.measured.DepthSignal() >= outcome.measured.DepthSignal()) return;
+  if (provisional_ && IsBetter(provisional_->map.outcome, outcome)) return;
   provisional_ = Provisional{{frames_, std::move(outcome)}, frame};
 }
 
@@ -127,8 +143,11 @@ void Bootstrapper::GoBack(BootstrapStep* step) {
   Provisional provisional = *std::exchange(provisional_, std::nullopt);
   const bool present = provisional.frame.frame_idx == frames_.back().frame_idx;
   Abandon();
-  for (const InitObservation& seen : provisional.map.frames.back().observations)
-    tracks_->Resume(seen.id, seen.pixel, provisional.frame);
+  std::erase_if(provisional.map.frames.back().observations,
+                [&](const InitObservation& seen) { return !tracks_->Resume(seen.id, seen.pixel, provisional.frame); });
+  std::erase_if(provisional.map.outcome.frames.back().positions, [&](const InitPosition& point) {
+    return FindById(provisional.map.frames.back().observations, point.id) == nullptr;
+  });
   step->note = provisional.map.outcome.reason;
   frames_ = std::move(provisional.map.frames);
   FinishMap(std::move(provisional.map.outcome), step);
@@ -142,7 +161,7 @@ BootstrapStep Bootstrapper::EndSequence(StageTimes* times) {
   if (outcome.ambiguous && outcome.decision == InitDecision::kNewReference) step.ambiguity = outcome.reason;
   if (outcome.ambiguous) provisional_.reset();
   if (outcome.decision == InitDecision::kMap)
-    FinishMap(std::move(outcome), &step);
+    FinishMapOrGoBack(std::move(outcome), &step);
   else if (provisional_)
     GoBack(&step);
   return step;

@@ -67,6 +67,7 @@ class Bootstrapper {
   void TryInitialize(const PreparedFrame& frame, StageTimes* times, BootstrapStep* step);
   InitOutcome AskInitializer(const cv::Mat& depth_mm, InitMoment moment, StageTimes* times);
   void FinishMap(InitOutcome outcome, BootstrapStep* step);
+  void FinishMapOrGoBack(InitOutcome outcome, BootstrapStep* step);
   void PutAside(InitOutcome outcome, const PreparedFrame& frame);
   void GoBack(BootstrapStep* step);
   std::vector<PointPrediction> PredictPixels(int frame_idx) const;

@@ -29,7 +29,7 @@ std::vector<int> ComparedFrames(std::size_t frames, const std::vector<std::size_
 
 Status CheckCameraMotion(const InitInput& input, const SolvedWindow& window, const WindowInitOptions& options,
                          InitOutcome* outcome) {
-  if (window.solution.window.coefficients.rows() == 0) return Status::Ok();
+  if (window.solution.window.coefficients.rows() == 0 || options.min_still_camera_ratio <= 0.0) return Status::Ok();
   const double focal_px = input.camera.MeanFocalLengthPx();
   auto models = SolveCameraMotionModels(window.solution, focal_px, options.window, input.threads);
   if (!models.ok()) return models.status();

@@ -60,8 +60,8 @@ void InitOptions::List(OptionTable& table) {
                   "suffice; paper: two views at a fixed distance, as published; stereo: a rectified pair of images; "
                   "depth: the sequence's depth image; colmap_model: the points of a COLMAP model");
   table.AddChoice("provisional", &window.provisional,
-                  "window: where no map is certain go back to one whose depths are known at least three times better "
-                  "than one constant depth; its frames have the state provisional");
+                  "window: maps that are less certain than demanded, where no other comes, or hardly better than one "
+                  "constant depth; their frames have the state provisional");
   monocular.List(table);
   stereo.List(table);
   depth.List(table);

@@ -115,7 +115,6 @@ class WindowInitializer final : public Initializer {
       least.certain_sigma = std::min(least.certain_sigma, full.max_sigma);
       least.max_sigma = std::min(least.max_sigma, full.max_sigma);
     }
-    outcome->refinable = options_.refine_rigid == Switch::kOn && window->solution.window.coefficients.rows() == 0;
     return MakeWindowMap(input, *window, least, options_, nominal_depth_mm_, outcome);
   }
 

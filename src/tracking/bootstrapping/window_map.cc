@@ -25,7 +25,8 @@ namespace {
 constexpr double kMaxErrorRatio = 3.0;  // of a point's error by the median one, where sigmas are scaled with it
 // (W15) Of the depths' spread by their median sigma: below it the points are nearly as well put at one distance.
 constexpr double kMinDepthSignal = 3.0;
-constexpr double kMinProvisionalShare = 0.5;  // of the points still seen, that are certain enough
+constexpr double kMinProvisionalSignal = 2.0;  // the same of a map that is put aside
+constexpr double kMinProvisionalShare = 0.5;   // of the points still seen, that are certain enough
 
 // Some of a window's points; `solution` has one each, in the same order.
 struct MapPoints {
@@ -177,9 +178,9 @@ Status OptimizePoints(const InitInput& input, const MapDemands& demands, const W
 // ones of a window that knows nothing: what is left is judged by its own.
 Status CheckDepthSignal(const MapDemands& demands, const WindowInitOptions& options, InitOutcome* outcome) {
   const InitMeasurements& measured = outcome->measured;
-  const bool stands_out = measured.DepthSignal() >= kMinDepthSignal;
-  outcome->provisional = demands.provisional || !stands_out;
-  const bool known = demands.provisional ? stands_out : measured.median_depth_sigma <= demands.max_sigma;
+  outcome->provisional = demands.provisional || measured.DepthSignal() < kMinDepthSignal;
+  const bool known = demands.provisional ? measured.DepthSignal() >= kMinProvisionalSignal
+                                         : measured.median_depth_sigma <= demands.max_sigma;
   if (known && (!outcome->provisional || options.provisional == Switch::kOn)) return Status::Ok();
   return {ErrorCode::kInsufficient,
           "the depths spread by " + Digits(100.0 * measured.depth_spread, 1) + " % and are known to " +
@@ -209,7 +210,8 @@ std::vector<InitRejectedPoint> AllRejected(const InitInput& input, const MapPoin
   return rejected;
 }
 
-Status FillOutcome(const InitInput& input, double nominal_depth_mm, const MapPoints& points, InitOutcome* outcome) {
+Status FillOutcome(const InitInput& input, double nominal_depth_mm, const MapPoints& points, bool refines_rigid,
+                   InitOutcome* outcome) {
   const DeformingWindow& all = points.solution.window;
   const auto nominal = NominalScale(all.points_in_world, nominal_depth_mm);
   if (!nominal.ok()) return nominal.status();
@@ -225,6 +227,7 @@ Status FillOutcome(const InitInput& input, double nominal_depth_mm, const MapPoi
     outcome->frames.push_back(std::move(state));
   }
   outcome->deforming = all.coefficients.rows() > 0;
+  outcome->refinable = !outcome->deforming && refines_rigid;
   outcome->decision = InitDecision::kMap;
   return Status::Ok();
 }
@@ -239,9 +242,9 @@ MapDemands DemandsOf(const WindowInitOptions& options, double relaxed) {
 }
 
 MapDemands ProvisionalDemands(const DeformingWindow& window) {
-  const double certain_sigma = DepthSpread(window) / kMinDepthSignal;
-  return {.certain_sigma = certain_sigma,
-          .max_sigma = 2.0 * certain_sigma,
+  const double spread = DepthSpread(window);
+  return {.certain_sigma = spread / kMinProvisionalSignal,
+          .max_sigma = spread,
           .certain_share = kMinProvisionalShare,
           .provisional = true};
 }
@@ -276,7 +279,9 @@ Status MakeWindowMap(const InitInput& input, const SolvedWindow& window, const M
   measure();
   if (Status status = CheckDepthSignal(demands, options, outcome); !status.ok()) return status;
   if (Status status = CheckCameraMotion(input, window, options, outcome); !status.ok()) return status;
-  if (Status status = FillOutcome(input, nominal_depth_mm, points, outcome); !status.ok()) return status;
+  if (Status status = FillOutcome(input, nominal_depth_mm, points, options.refine_rigid == Switch::kOn, outcome);
+      !status.ok())
+    return status;
   outcome->rejected = AllRejected(input, points, std::move(rejected));
   outcome->reason = std::string(outcome->provisional ? "provisional" : "first") + " map of " +
                     std::to_string(points.ids.size()) + " points from a " +

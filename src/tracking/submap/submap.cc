@@ -83,6 +83,7 @@ void Submap::TakeOver(Submap&& other, TrackSource* tracks) {
     submap->candidates.Clear();
     submap->rigid_history.Stop();  // its frames know one map's points alone
   }
+  provisional = provisional || other.provisional;
   descriptors.TakeOver(std::move(other.descriptors));
   lost_points.TakeOver(std::move(other.lost_points), map.landmarks);
   TakeRestFrom(map.landmarks, &other.map.landmarks);

@@ -48,7 +48,7 @@ struct Submap {
 
   int idx;
   Map map;
-  bool provisional = false;  // its depths are little more certain than one constant depth
+  bool provisional = false;  // it is less certain than demanded, or hardly better than one constant depth
   LostPoints lost_points;
   RigidHistory rigid_history;
   Candidates candidates;
