@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // The main job: a sequence in, a run folder out (docs/formats.md). A frame is on disk as soon as its report is final,
-// so that a run which is lost, interrupted, killed or fails leaves what it had. The frames that wait for a first map, or
-// in which the map before was lost, are final when it is made or the old one found again: those before its reference are
-// then tracked back from it. A run that is interrupted or fails before writes them without poses, and one that is killed
-// has not written them.
+// so that a run which is lost, interrupted, killed or fails leaves what it had. The frames that wait for a first map,
+// or in which the map before was lost, are final when it is made or the old one found again: those before its reference
+// are then tracked back from it. A run that is interrupted or fails before writes them without poses, and one that is
+// killed has not written them.
 #pragma once
 
 #include <array>
@@ -87,8 +87,8 @@ class TrackObserver {
   virtual void OnWarning(const std::string& /*sentence*/) {}
   // The sequence's camera, before OnStart.
   virtual void OnCamera(const Camera& /*camera*/) {}
-  // Before a frame is tracked; once more where tracking went back to a provisional map. The image is 8-bit with one or three (BGR) channels; it is not written to any more, so
-  // that it may be kept.
+  // Before a frame is tracked; once more where tracking went back to a provisional map. The image is 8-bit with one or
+  // three (BGR) channels; it is not written to any more, so that it may be kept.
   virtual void OnImage(int /*frame_idx*/, const cv::Mat& /*image*/) {}
   // After a frame's rows are on disk: once a frame, in order of time. A later report's `merge` may move it into another
   // world; the run folder has it there in the end.

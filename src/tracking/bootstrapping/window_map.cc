@@ -26,7 +26,8 @@ constexpr double kMaxErrorRatio = 3.0;  // of a point's error by the median one,
 // (W15) Of the depths' spread by their median sigma: below it the points are nearly as well put at one distance.
 constexpr double kMinDepthSignal = 3.0;
 constexpr double kMinProvisionalSignal = 2.0;  // the same of a map that is put aside
-constexpr double kMinProvisionalShare = 0.5;   // of the points still seen, that are certain enough
+constexpr double kMaxOwnSigma = 2.0;  // of points by their own median distance, by what was demanded by that of all
+constexpr double kMinProvisionalShare = 0.5;  // of the points still seen, that are certain enough
 
 // Some of a window's points; `solution` has one each, in the same order.
 struct MapPoints {
@@ -180,7 +181,7 @@ Status CheckDepthSignal(const MapDemands& demands, const WindowInitOptions& opti
   const InitMeasurements& measured = outcome->measured;
   outcome->provisional = demands.provisional || measured.DepthSignal() < kMinDepthSignal;
   const bool known = demands.provisional ? measured.DepthSignal() >= kMinProvisionalSignal
-                                         : measured.median_depth_sigma <= demands.max_sigma;
+                                         : measured.median_depth_sigma <= kMaxOwnSigma * demands.max_sigma;
   if (known && (!outcome->provisional || options.provisional == Switch::kOn)) return Status::Ok();
   return {ErrorCode::kInsufficient,
           "the depths spread by " + Digits(100.0 * measured.depth_spread, 1) + " % and are known to " +
