@@ -134,6 +134,7 @@ struct LiveView::Server {
   std::vector<std::string> warnings;
   int frames = 0;  // of the sequence, by its own word
   int read = 0;
+  int last_read_frame_idx = -1;  // some come once more
   TrackingState state = TrackingState::kWaitingForReference;
   bool ended = false;
   bool knows_the_end = false;              // the page
@@ -195,7 +196,8 @@ void LiveView::OnWarning(const std::string& sentence) {
 void LiveView::OnImage(int frame_idx, const cv::Mat& image) {
   server_->images.Add(frame_idx, image);
   const std::lock_guard lock(server_->mutex);
-  ++server_->read;
+  if (frame_idx > server_->last_read_frame_idx) ++server_->read;
+  server_->last_read_frame_idx = std::max(server_->last_read_frame_idx, frame_idx);
 }
 
 void LiveView::OnFrame(const FrameReport& report) {

@@ -65,6 +65,8 @@ TEST(RunTrust, DepthsThatAreHardlyBetterThanOneAreNoneToTrust) {
 TEST(RunTrust, AnAmbiguousRunIsToldWhatToDo) {
   RunSummary summary = Summary(kKnown);
   summary.frames_tracked = 0;
+  summary.median_reprojection_error_px = 0;
+  summary.median_coverage = 0;
   summary.first_maps.clear();
   summary.states = {{TrackingState::kAmbiguous, 100}};
   const auto trust = Trust(summary);

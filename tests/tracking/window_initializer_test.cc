@@ -132,6 +132,7 @@ TEST(WindowInitializer, ASequenceThatEndsEarlyMustBeAsCertain) {
 TEST(WindowInitializer, WaitsWhileMostPointsAreUncertain) {
   const WavingTracks sequence(31);
   WindowInitOptions options;
+  options.provisional = Switch::kOff;
   options.certain_depth_sigma = options.last_depth_sigma = options.max_depth_sigma = 0.002;
   const InitOutcome waiting = sequence.Try(options);
   EXPECT_EQ(waiting.decision, InitDecision::kWait);
