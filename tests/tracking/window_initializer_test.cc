@@ -144,6 +144,7 @@ TEST(WindowInitializer, DemandsLessTheLongerItWaits) {
   // What is not good enough at first is, of the same frames, where the reference is to be given up soon.
   const WavingTracks sequence(31);
   WindowInitOptions options;
+  options.provisional = Switch::kOff;
   options.certain_depth_sigma = options.max_depth_sigma = 0.002;
   EXPECT_EQ(sequence.Try(options).decision, InitDecision::kWait);
   options.last_frame = 32;
