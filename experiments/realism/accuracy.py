@@ -9,14 +9,11 @@ Simulates every scene as the presets `clean` and `endoscope` record it, tracks i
 table. What is there already is kept.
 """
 import argparse
-import csv
-import json
-import subprocess
-from collections import Counter
+import sys
 from pathlib import Path
 
-SURFACE = "--Scene.kind surface"
-HOLD = "--Trajectory.kind hold --Trajectory.tremor_mm 0 --Trajectory.tremor_deg 0"
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "common"))
+from scenes import HOLD, SURFACE, call, depth_errors, frames_with_a_map, states_of  # noqa: E402
 
 # name: options of pliant simulate
 SCENES = {
@@ -39,12 +36,8 @@ SCENES = {
 }
 
 
-def call(*command):
-    return subprocess.run([str(word) for word in command], capture_output=True, text=True)
-
-
 def result(program, folder, options, realism, seed):
-    sequence, run, evaluation = folder / "sequence", folder / "run", folder / "evaluation"
+    sequence, run = folder / "sequence", folder / "run"
     if not (sequence / "groundtruth.txt").exists():
         made = call(program, "simulate", "--quiet", "-o", sequence, "--realism", realism, "--Scene.seed", seed,
                     *options.split())
@@ -52,20 +45,12 @@ def result(program, folder, options, realism, seed):
             raise SystemExit(made.stderr)
     if not (run / "run.json").exists():
         call(program, "track", "--quiet", "-o", run, "--image_path", sequence)
-    with open(run / "frames.csv", encoding="utf-8") as file:
-        states = Counter(row["state"] for row in csv.DictReader(file))
-    with_map = states["tracking"] + states["provisional"]
+    states = states_of(run)
+    with_map = frames_with_a_map(states)
     text = f"{with_map} of {sum(states.values())}"
     if states["provisional"]:
         text += f" ({states['provisional']} provisional)"
-    if with_map == 0:
-        return [text, "", ""]
-    if not (evaluation / "evaluation.json").exists():
-        call(program, "evaluate", "--run", run, "--sequence", sequence, "-o", evaluation)
-    with open(evaluation / "evaluation.json", encoding="utf-8") as file:
-        surface = json.load(file)["surface"]
-    estimate, null = (100 * surface[who]["median_relative_depth"] for who in ("estimate", "null"))
-    return [text, f"{estimate:.1f} %", f"{null:.1f} %"]
+    return [text, *(depth_errors(program, run, sequence) if with_map else ("", ""))]
 
 
 def main():

@@ -12,23 +12,16 @@ Corners, of which small images hold few, are compared with recordings at least a
 Sequences that are there already are kept. Needs nothing but Python.
 """
 import argparse
-import os
 import re
 import statistics
 import subprocess
 import sys
 from pathlib import Path
 
-HERE = Path(__file__).resolve().parent
-RECORDINGS = Path(os.environ.get("PLIANT_RECORDINGS", HERE.parents[2] / "shared" / "data"))
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "common"))
+from clips import CLIPS, RECORDINGS  # noqa: E402
 
-# name: images, other arguments, scale in the first table. da Vinci clips are small; they are taken as they are.
-CASES = {
-    "nasal": ("nasal/images", "--camera {0}/nasal/camera.yaml --mask_path {0}/nasal/mask.png", 0.5),
-    "laparoscopy": ("laparoscopy/endo.mp4", "", 1),
-    "instruments": ("clips/instruments.mp4", "", 1),
-    "gallbladder": ("clips/gallbladder.mp4", "", 1),
-}
+SCALES = {"nasal": 0.5}  # in the first table; others are taken as they are
 BREATH = "--Trajectory.frames 60 --Deformation.amplitude_mm 2"
 # name: arguments of simulate
 SIMULATIONS = {
@@ -90,10 +83,11 @@ def main():
                          ("Working images as pliant track measures them", False)):
         mode = ["--Image.working", "fixed", "--Image.scale"]
         real = {}
-        for name, (images, options, scale) in CASES.items():
+        for name, (images, options) in CLIPS.items():
             if (arguments.recordings / images).exists():
                 real[name] = measure(arguments.program, arguments.recordings / images,
-                                     options.format(arguments.recordings).split() + (mode + [scale] if fixed else []))
+                                     options.format(arguments.recordings).split() +
+                                     (mode + [SCALES.get(name, 1)] if fixed else []))
         simulated = {name: measure(arguments.program, arguments.output_path / name.replace(", ", "_"),
                                    mode + [1] if fixed else []) for name in SIMULATIONS}
         print_table(title, real, simulated)

@@ -11,24 +11,20 @@ other frames, with another seed or another focal length, agree. The figures are 
 import argparse
 import csv
 import json
-import os
 import statistics
 import subprocess
 import sys
 from pathlib import Path
 
-HERE = Path(__file__).resolve().parent
-RECORDINGS = Path(os.environ.get("PLIANT_RECORDINGS", HERE.parents[2] / "shared" / "data"))
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "common"))
+from clips import CLIPS, RECORDINGS  # noqa: E402
 
-# name: images, other arguments, frames between the first frames of the variants
-CASES = {
-    "nasal": ("nasal/images", "--camera {0}/nasal/camera.yaml --mask_path {0}/nasal/mask.png", 2),
-    "laparoscopy": ("laparoscopy/endo.mp4", "", 20),
-    "instruments": ("clips/instruments.mp4", "", 10),
-    "gallbladder": ("clips/gallbladder.mp4", "", 50),
-}
+# frames between the first frames of the variants
+STEPS = {"nasal": 2, "laparoscopy": 20, "instruments": 10, "gallbladder": 50}
 AS_IT_IS = "as it is"  # the variant that the others are compared with
 CALIBRATIONS = {"laparoscopy": "laparoscopy/camera.yaml"}
+
+
 def evaluated(program, run, output_path, *arguments):
     """The evaluation.json that pliant evaluate leaves; empty where it cannot compare."""
     command = [program, "evaluate", "--quiet", "--run", run, "--output_path", output_path, *arguments]
@@ -84,12 +80,12 @@ def main():
     arguments.output_path.mkdir(parents=True, exist_ok=True)
     rows, agreements = [], []
     evaluations = arguments.output_path / "evaluations"
-    for name, (images, options, step) in CASES.items():
+    for name, (images, options) in CLIPS.items():
         images = arguments.recordings / images
         if not images.exists() or (arguments.only and name not in arguments.only.split(",")):
             continue
         first = None
-        for variant, change in variants(name, images, step, arguments.output_path):
+        for variant, change in variants(name, images, STEPS[name], arguments.output_path):
             folder = arguments.output_path / f"{name}_{variant.replace(' ', '_')}"
             if not (folder / "run.json").exists():
                 command = [arguments.program, "track", "--quiet", "--image_path", images, "--output_path", folder,

@@ -8,16 +8,14 @@
 Simulates every scene, tracks it, and prints a table. What is there already is kept.
 """
 import argparse
-import csv
-import json
 import re
-import subprocess
-from collections import Counter
+import sys
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "common"))
+from scenes import HOLD, SURFACE, call, depth_errors, frames_with_a_map, states_of  # noqa: E402
+
 FRAMES = "--Trajectory.frames 70"
-HOLD = "--Trajectory.kind hold --Trajectory.tremor_mm 0 --Trajectory.tremor_deg 0"
-SURFACE = "--Scene.kind surface"
 
 # name: options of pliant simulate
 STILL = {
@@ -48,10 +46,6 @@ MOVING = {
 }
 
 
-def call(*command):
-    return subprocess.run([str(word) for word in command], capture_output=True, text=True)
-
-
 def ratios(log):
     """The evidence of every map and of every reference that was given up for it."""
     found = re.findall(r"stands still the errors (?:would be|are) ([0-9.]+)", log)
@@ -69,15 +63,11 @@ def row(kind, name, options, arguments):
         run.parent.mkdir(parents=True, exist_ok=True)
         tracked = call(arguments.program, "track", "--image_path", sequence, "-o", run)
         log.write_text(tracked.stdout + tracked.stderr)
-    with open(run / "frames.csv", newline="") as stream:
-        states = Counter(line["state"] for line in csv.DictReader(stream))
-    error = null = ""
-    if states["tracking"] + states["provisional"]:
-        call(arguments.program, "evaluate", "--run", run, "--sequence", sequence, "-o", run / "evaluation")
-        surface = json.loads((run / "evaluation" / "evaluation.json").read_text())["surface"]
-        error, null = (f"{100 * surface[which]['median_relative_depth']:.1f} %" for which in ("estimate", "null"))
-    return [kind, name, str(states["tracking"] + states["provisional"]), str(states["ambiguous"]), str(states["initializing"]),
-            ratios(log.read_text()), error, null]
+    states = states_of(run)
+    with_map = frames_with_a_map(states)
+    errors = depth_errors(arguments.program, run, sequence) if with_map else ["", ""]
+    return [kind, name, str(with_map), str(states["ambiguous"]), str(states["initializing"]), ratios(log.read_text()),
+            *errors]
 
 
 def main():
