@@ -16,7 +16,6 @@
 namespace pliant {
 namespace {
 
-// Runs of images that follow each other, some frames apart: what one of them shows may be an exception.
 constexpr int kRuns = 3;
 constexpr int kRunFrames = 16;  // about what a first map takes at least
 constexpr int kRunDistance = 60;
@@ -33,23 +32,9 @@ constexpr std::array kSmoothings_px = {0.0, 0.7, 1.0, 1.4};
 // With which sizes are compared. At the source's own noise all large sizes would lose.
 constexpr double kSmoothingOfSizes_px = 0.7;
 
-using Run = std::vector<SequenceFrame>;
-
-std::vector<Run> ReadRuns(const SequenceRequest& request) {
-  auto sequence = OpenSequence(request);
-  if (!sequence.ok()) return {};
-  std::vector<Run> runs(kRuns);
-  for (int k = 0; k < (kRuns - 1) * kRunDistance + kRunFrames; ++k) {
-    auto next = (*sequence)->Next();
-    if (!next.ok() || !next->has_value()) break;
-    if (k % kRunDistance < kRunFrames) runs[static_cast<std::size_t>(k / kRunDistance)].push_back(**std::move(next));
-  }
-  return runs;
-}
-
-Trackability Measure(const std::vector<Run>& runs, const WorkingImage& working, const TrackOptions& options) {
+Trackability Measure(const std::vector<ImageRun>& runs, const WorkingImage& working, const TrackOptions& options) {
   Trackability all;
-  for (const Run& run : runs) {
+  for (const ImageRun& run : runs) {
     std::vector<PreparedFrame> frames;
     for (const SequenceFrame& frame : run) frames.push_back(PrepareWorkingFrame(frame, working, options.tracker));
     const Trackability measured = MeasureTrackability(frames, options.tracker, options.threads);
@@ -60,7 +45,7 @@ Trackability Measure(const std::vector<Run>& runs, const WorkingImage& working, 
 }
 
 // The first that is as good as the best, to the accuracy of a count; the first of all where none tells.
-WorkingImage FirstAsGoodAsTheBest(const std::vector<Run>& runs, const std::vector<WorkingImage>& candidates,
+WorkingImage FirstAsGoodAsTheBest(const std::vector<ImageRun>& runs, const std::vector<WorkingImage>& candidates,
                                   const TrackOptions& options) {
   std::vector<int> alive;
   for (const WorkingImage& candidate : candidates) alive.push_back(Measure(runs, candidate, options).alive);
@@ -72,10 +57,21 @@ WorkingImage FirstAsGoodAsTheBest(const std::vector<Run>& runs, const std::vecto
 
 }  // namespace
 
-WorkingImage ChooseWorkingImage(const SequenceRequest& request, const TrackOptions& options) {
+std::vector<ImageRun> ReadFirstRuns(const SequenceRequest& request) {
+  auto sequence = OpenSequence(request);
+  if (!sequence.ok()) return {};
+  std::vector<ImageRun> runs(kRuns);
+  for (int k = 0; k < (kRuns - 1) * kRunDistance + kRunFrames; ++k) {
+    auto next = (*sequence)->Next();
+    if (!next.ok() || !next->has_value()) break;
+    if (k % kRunDistance < kRunFrames) runs[static_cast<std::size_t>(k / kRunDistance)].push_back(**std::move(next));
+  }
+  return runs;
+}
+
+WorkingImage ChooseWorkingImage(const std::vector<ImageRun>& runs, const TrackOptions& options) {
   const WorkingImage fixed{options.image.scale, options.image.smoothing_px};
   if (options.image.working != WorkingImageMode::kMeasured || options.tracker.oracle.Any()) return fixed;
-  const std::vector<Run> runs = ReadRuns(request);
   if (runs.empty() || runs.front().size() < 2) return {};
   const Trackability as_is = Measure(runs, {}, options);
   if (as_is.corners >= kMinAlive && as_is.alive >= kLastingShare * as_is.corners) return {};

@@ -9,14 +9,23 @@
 // count of n, the one nearest to the source is chosen.
 #pragma once
 
+#include <vector>
+
 #include "pliant/datasets/open_sequence.h"
 #include "pliant/image/working_image.h"
 #include "pliant/pipeline/track.h"
 
 namespace pliant {
 
-// The source where `options` do not ask for a measurement, or the images do not tell: too few can be read, or too few
-// corners last in any of them. The images that are read are those of `request`.
-WorkingImage ChooseWorkingImage(const SequenceRequest& request, const TrackOptions& options);
+// Images that follow each other.
+using ImageRun = std::vector<SequenceFrame>;
+
+// Three runs of 16 images, 60 apart, from the request's first on: what one of them shows may be an exception. Up to the
+// first image that cannot be read; empty where there is none.
+std::vector<ImageRun> ReadFirstRuns(const SequenceRequest& request);
+
+// The source where `options` do not ask for a measurement, or the images do not tell: there are too few, or too few
+// corners last in any of them.
+WorkingImage ChooseWorkingImage(const std::vector<ImageRun>& runs, const TrackOptions& options);
 
 }  // namespace pliant

@@ -10,6 +10,7 @@
 
 #include "pipeline/choose_working_image.h"
 #include "pipeline/cloud_depth.h"
+#include "pipeline/working_frame.h"
 #include "pliant/base/options.h"
 #include "pliant/base/statistics.h"
 #include "pliant/datasets/check_sequence.h"
@@ -17,7 +18,6 @@
 #include "pliant/image/depth_lookup.h"
 #include "pliant/io/point_cloud.h"
 #include "pliant/photometric/stereo_matching.h"
-#include "pliant/pipeline/sequence_statistics.h"
 
 namespace pliant {
 namespace {
@@ -55,6 +55,20 @@ bool HasDepth(const SequenceRequest& request, const Sequence& sequence) {
   return false;
 }
 
+// Of the runs that are long enough.
+ImageStatistics MeasureImages(const std::vector<ImageRun>& runs, const WorkingImage& working,
+                              const TrackOptions& options) {
+  std::vector<RunMeasurement> measured;
+  for (const ImageRun& run : runs) {
+    if (std::ssize(run) < kStatisticsRunFrames) continue;
+    std::vector<PreparedFrame> frames;
+    for (int k = 0; k < kStatisticsRunFrames; ++k)
+      frames.push_back(PrepareWorkingFrame(run[static_cast<std::size_t>(k)], working, options.tracker));
+    measured.push_back(MeasureRun(frames, options.tracker, options.threads));
+  }
+  return Summarize(measured);
+}
+
 // What cannot be read here is told when it is read to be tracked.
 std::vector<std::string> WhatTheFirstFramesSay(const SequenceRequest& request, bool of_poses) {
   auto sequence = OpenSequence(request);
@@ -73,8 +87,10 @@ Result<RunStart> ReadStart(const RunRequest& request, const TrackOptions& option
         "with an Oracle option points are where the truth has them, in pixels of the source: leave Image.scale "
         "at 1");
   RunStart start;
-  start.working_image = ChooseWorkingImage(request.input, options);
-  if (!options.tracker.oracle.Any()) start.images = MeasureFirstImages(request.input, start.working_image, options);
+  const std::vector<ImageRun> runs =
+      options.tracker.oracle.Any() ? std::vector<ImageRun>() : ReadFirstRuns(request.input);
+  start.working_image = ChooseWorkingImage(runs, options);
+  start.images = MeasureImages(runs, start.working_image, options);
   auto camera = sequence.camera().Resized(start.working_image.scale);
   if (!camera.ok()) return camera.status();
   start.working_camera = *std::move(camera);

@@ -180,7 +180,7 @@ Ending TrackFrames(Sequence& sequence, const RunRequest& request, const TrackOpt
   std::string last_tracked;
   std::string ambiguity;
   int count = 0;
-  for (bool more = true; more;) {
+  while (true) {
     const auto frame = frames.Next();
     if (frame && !frame->ok()) return {RunStatus::kFailed, frame->status().message()};
     if (frame) {
@@ -207,13 +207,11 @@ Ending TrackFrames(Sequence& sequence, const RunRequest& request, const TrackOpt
         return {RunStatus::kInterrupted, "stopped on request after frame " + read.frame.name};
     } else {
       tracker.EndSequence();
-      more = false;
     }
-    if (const auto back = tracker.TakeGoesBackTo()) {
-      if (const Status reopened = frames.GoBackTo(*back); !reopened.ok())
-        return {RunStatus::kFailed, reopened.message()};
-      more = true;
-    }
+    const auto back = tracker.TakeGoesBackTo();
+    if (!frame && !back) break;
+    if (!back) continue;
+    if (const Status reopened = frames.GoBackTo(*back); !reopened.ok()) return {RunStatus::kFailed, reopened.message()};
   }
   if (!tracker.held().empty()) last_note = tracker.held().back().note;
   // What holds for a whole window says more than how the last one ended.

@@ -53,7 +53,7 @@ class MovingTexture : public testing::Test {
   WorkingImage Chosen() const {
     SequenceRequest request;
     request.image_path = folder_.Path("sequence");
-    return ChooseWorkingImage(request, TrackOptions());
+    return ChooseWorkingImage(ReadFirstRuns(request), TrackOptions());
   }
 
   TestFolder folder_;

@@ -24,9 +24,4 @@ struct SequenceStatistics {
 // do, and with kInsufficient where the sequence has no whole run. The result does not depend on options.threads.
 Result<SequenceStatistics> MeasureSequenceStatistics(const SequenceRequest& request, const TrackOptions& options);
 
-// Of up to three runs of the first 130 images, in this working image; 0 frames where they are too few or one of them
-// cannot be read.
-ImageStatistics MeasureFirstImages(const SequenceRequest& request, const WorkingImage& working,
-                                   const TrackOptions& options);
-
 }  // namespace pliant
