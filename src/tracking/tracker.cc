@@ -31,6 +31,7 @@ struct FrameResult {
   double median_reprojection_error_px = 0;
   MapUpdate update = {};
   std::optional<FirstMap> first_map = std::nullopt;
+  std::optional<PreparedFrame> map_frame = std::nullopt;  // that made it, where it was an earlier one
 };
 
 namespace {
@@ -174,12 +175,7 @@ std::vector<FrameReport> Tracker::Process(const PreparedFrame& frame) {
   const bool has_map = state_ == TrackingState::kTracking || state_ == TrackingState::kLost;
   FrameResult result = has_map ? TrackFrame(frame, &times) : Bootstrap(frame, &times);
   std::erase_if(set_aside_, [&](const FrameReport& report) { return report.frame_idx <= frame.frame_idx; });
-  if (goes_back_to_) {
-    set_aside_.push_back(MakeReport(frame, TrackingState::kInitializing, submaps_->current(), result, times));
-    held_ = bootstrapper_->Completed(*result.first_map, std::move(held_));
-  } else {
-    Report(frame, result, &times);
-  }
+  Report(frame, result, &times);
 
   const auto first_held = state_ == TrackingState::kInitializing
                               ? std::ranges::find(held_, bootstrapper_->reference_frame_idx(), &FrameReport::frame_idx)
@@ -204,22 +200,22 @@ FrameResult Tracker::Bootstrap(const PreparedFrame& frame, StageTimes* times) {
   for (const TrackingEvent event : step.events) Apply(event);
   MarkAmbiguous(step.ambiguity, &held_);
   if (step.map) StartMap(*step.map);
-  if (step.map_frame) GoBackTo(*std::move(step.map_frame));
   return {.tracked = step.tracked,
           .losses = std::move(step.losses),
           .note = std::move(step.note),
-          .first_map = std::move(step.map)};
+          .first_map = std::move(step.map),
+          .map_frame = std::move(step.map_frame)};
 }
 
-// The frames after it are still to come.
-void Tracker::GoBackTo(PreparedFrame frame) {
+// The frames after it are still to come: their reports are set aside, before those that were so already.
+void Tracker::GoBackTo(const PreparedFrame& frame) {
   goes_back_to_ = frame.frame_idx;
   const auto after =
       std::ranges::find_if(held_, [&](const FrameReport& report) { return report.frame_idx > frame.frame_idx; });
-  set_aside_.assign(std::make_move_iterator(after), std::make_move_iterator(held_.end()));
+  set_aside_.insert(set_aside_.begin(), std::make_move_iterator(after), std::make_move_iterator(held_.end()));
   held_.erase(after, held_.end());
   submaps_->current().blurred_frames = 0;
-  submaps_->current().previous = std::move(frame);
+  submaps_->current().previous = frame;
 }
 
 void Tracker::StartMap(const FirstMap& first) {
@@ -274,21 +270,23 @@ std::string Tracker::Lose(const PreparedFrame& frame, const std::string& reason,
 
 // The frame's report joins those that are held. Submaps that meet in this frame become one after it was reported.
 void Tracker::Report(const PreparedFrame& frame, const FrameResult& result, StageTimes* times) {
+  const TrackingState state = result.map_frame ? TrackingState::kInitializing : state_;  // of this very frame
   std::optional<Submaps::FoundMerge> found;
-  if (state_ == TrackingState::kTracking) {
+  if (state == TrackingState::kTracking) {
     const StageTimer timer(times, Stage::kInitialize);
     found = submaps_->FindMerge(frame, relocalizer_.get());
   }
-  FrameReport report = MakeReport(frame, state_, submaps_->current(), result, *times);
+  FrameReport report = MakeReport(frame, state, submaps_->current(), result, *times);
   if (found) {
     report.merge = found->merge;
     report.note = WithFault(report.note, "map " + std::to_string(found->merge.submap) + " is now part of map " +
                                              std::to_string(found->merge.into) + ", which this image shows too");
   }
   held_.push_back(std::move(report));
+  if (result.map_frame) GoBackTo(*result.map_frame);
   if (result.first_map) {
     held_ = bootstrapper_->Completed(*result.first_map, std::move(held_));
-    held_.back().coverage = CoverageIn(frame, held_.back().observations);
+    if (!result.map_frame) held_.back().coverage = CoverageIn(frame, held_.back().observations);
   }
   if (found) submaps_->Apply(*found);
 }
@@ -308,7 +306,7 @@ void Tracker::EndSequence() {
   MarkAmbiguous(step.ambiguity, &held_);
   if (!step.map) return;
   StartMap(*step.map);
-  if (step.map_frame) GoBackTo(*std::move(step.map_frame));
+  if (step.map_frame) GoBackTo(*step.map_frame);
   held_ = bootstrapper_->Completed(*step.map, std::move(held_));
 }
 

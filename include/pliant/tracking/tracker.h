@@ -91,7 +91,7 @@ class Tracker {
   void FindSubmapAgain(const PreparedFrame& frame);
   FrameResult Bootstrap(const PreparedFrame& frame, StageTimes* times);
   void StartMap(const FirstMap& first);
-  void GoBackTo(PreparedFrame frame);
+  void GoBackTo(const PreparedFrame& frame);
   FrameResult TrackFrame(const PreparedFrame& frame, StageTimes* times);
   FollowedPoints Follow(const PreparedFrame& frame, Submap* submap, StageTimes* times);
   std::string Lose(const PreparedFrame& frame, const std::string& reason, Submap* submap);
