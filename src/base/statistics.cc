@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 namespace pliant {
 
@@ -24,6 +25,12 @@ double Quantile(std::vector<double> values, double share) {
   std::nth_element(values.begin(), below, values.end());
   if (below + 1 == values.end()) return *below;
   return *below + (rank - std::floor(rank)) * (*std::min_element(below + 1, values.end()) - *below);
+}
+
+double MedianDeviation(std::vector<double> values) {
+  const double median = Median(values);
+  for (double& value : values) value = std::abs(value - median);
+  return Median(std::move(values));
 }
 
 double Mean(const std::vector<double>& values) {

@@ -8,6 +8,7 @@
 #include <bit>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 
 #include "pliant/base/options.h"
 
@@ -21,6 +22,20 @@ bool ParseWhole(std::string_view text, Integer* value) {
 }
 
 }  // namespace
+
+std::string FormatNumber(const char* format, double value) {
+  std::array<char, 64> text{};
+  std::snprintf(text.data(), text.size(), format, value);
+  return text.data();
+}
+
+std::string Digits(double value, int digits) {
+  std::array<char, 64> text{};
+  std::snprintf(text.data(), text.size(), "%.*f", digits, value);
+  return text.data();
+}
+
+std::string Percent(double share, int digits) { return Digits(100.0 * share, digits) + " %"; }
 
 std::string Seconds(double seconds) { return FormatDouble(std::round(1e6 * seconds) / 1e6) + " s"; }
 

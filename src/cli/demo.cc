@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include <array>
-#include <cstdio>
 #include <filesystem>
 #include <iostream>
 
@@ -11,6 +10,7 @@
 #include "cli/interrupt.h"
 #include "cli/run_evaluation.h"
 #include "cli/track_progress.h"
+#include "pliant/base/text.h"
 #include "pliant/pipeline/track.h"
 #include "pliant/simulation/write_sequence.h"
 #include "pliant/viewer/report.h"
@@ -39,17 +39,11 @@ SimulationOptions DemoSimulation() {
   return options;
 }
 
-std::string Text(const char* format, double value) {
-  std::array<char, 64> text;
-  std::snprintf(text.data(), text.size(), format, value);
-  return text.data();
-}
-
 void Print(const SimulationOptions& simulation, const RunSummary& run, const Evaluation& evaluation,
            const std::filesystem::path& output) {
   const TrackSurvival& tracks = evaluation.survival;
   std::cout << "sequence      " << simulation.trajectory.frames << " frames, deforming by "
-            << Text("%.3g", simulation.deformation.amplitude_mm) << " mm\n"
+            << FormatNumber("%.3g", simulation.deformation.amplitude_mm) << " mm\n"
             << "run           " << EnumName(run.status) << ": " << run.note << "\n"
             << "frames        " << run.frames_tracked << " of " << run.frames_read << " tracked\n"
             << "points        " << tracks.first_points << " in the first tracked frame, " << tracks.last_points
@@ -57,16 +51,16 @@ void Print(const SimulationOptions& simulation, const RunSummary& run, const Eva
   if (evaluation.surface) {
     const PointSummary& error = evaluation.surface->plain.estimate;
     const PointSummary& null = evaluation.surface->plain.null;
-    std::cout << "RMSE          " << Text("%.2f mm", error.mean_rmse_mm)
-              << "  (one constant depth instead: " << Text("%.2f mm)", null.mean_rmse_mm) << "\n"
-              << "median error  " << Text("%.2f mm", error.pooled_median_mm)
-              << "  (one constant depth instead: " << Text("%.2f mm)", null.pooled_median_mm) << "\n";
+    std::cout << "RMSE          " << FormatNumber("%.2f mm", error.mean_rmse_mm)
+              << "  (one constant depth instead: " << FormatNumber("%.2f mm)", null.mean_rmse_mm) << "\n"
+              << "median error  " << FormatNumber("%.2f mm", error.pooled_median_mm)
+              << "  (one constant depth instead: " << FormatNumber("%.2f mm)", null.pooled_median_mm) << "\n";
   }
   if (evaluation.trajectory)
-    std::cout << "camera ATE    " << Text("%.2f mm", evaluation.trajectory->ate_rmse_mm) << "  over a path of "
-              << Text("%.1f mm", evaluation.trajectory->true_path_length_mm) << "\n";
+    std::cout << "camera ATE    " << FormatNumber("%.2f mm", evaluation.trajectory->ate_rmse_mm) << "  over a path of "
+              << FormatNumber("%.1f mm", evaluation.trajectory->true_path_length_mm) << "\n";
   for (const std::string& note : evaluation.notes) std::cout << "note          " << note << "\n";
-  std::cout << "speed         " << Text("%.1f frames/s", run.frames_per_second) << "\n"
+  std::cout << "speed         " << FormatNumber("%.1f frames/s", run.frames_per_second) << "\n"
             << "look at       ";
   if (HasReportPage()) std::cout << (output / "report.html").string() << "  (in a browser)\n              ";
   std::cout << (output / "sequence" / "images").string() << "\n"

@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <utility>
 
 #include <opencv2/core.hpp>
@@ -15,6 +14,7 @@
 
 #include "datasets/find_overlay.h"
 #include "pliant/base/statistics.h"
+#include "pliant/base/text.h"
 
 namespace pliant {
 namespace {
@@ -40,15 +40,9 @@ constexpr double kMinTakenShare = 0.2;  // of the pixels: less is a tool or an o
 
 constexpr std::size_t kMaxSamples = 128;  // for overlays and masks, spread over all images
 
-std::string Text(const char* format, double value) {
-  char text[64];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
-
 std::string ShareText(int part, int all, const char* what) {
-  return std::to_string(part) + " of " + std::to_string(all) + " " + what + " (" + Text("%.0f", 100.0 * part / all) +
-         " %)";
+  return std::to_string(part) + " of " + std::to_string(all) + " " + what + " (" +
+         FormatNumber("%.0f", 100.0 * part / all) + " %)";
 }
 
 // How two images differ, gray levels.
@@ -142,8 +136,8 @@ void JudgeTimes(const std::vector<double>& steps_s, ImageCheck* check) {
   }));
   if (check->uneven_steps < kMinUneven || check->uneven_steps < kMinUnevenShare * check->steps) return;
   check->wrong.push_back(ShareText(check->uneven_steps, check->steps, "steps between time stamps") +
-                         " differ from the median one of " + Text("%.3g", 1000 * median_s) +
-                         " ms by more than half, the longest is " + Text("%.3g", 1000 * check->longest_step_s) +
+                         " differ from the median one of " + FormatNumber("%.3g", 1000 * median_s) +
+                         " ms by more than half, the longest is " + FormatNumber("%.3g", 1000 * check->longest_step_s) +
                          " ms: the frame rate varies, points jump where images are missing, and the times of a video "
                          "are counted at one rate; record at a constant rate, or give a part without gaps (--start, "
                          "--end), or a sequence with times.txt");
@@ -158,10 +152,10 @@ void JudgeMasks(const MaskSide& left, const MaskSide& taken, ImageCheck* check) 
                               left.change / left.pixels < kInvertedShare * taken.change / taken.pixels;
   if (!check->masks_are_inverted) return;
   check->wrong.push_back("the masks seem to be the wrong way round: what they leave is dark (gray level " +
-                         Text("%.0f", check->left_level) +
+                         FormatNumber("%.0f", check->left_level) +
                          " on average) and hardly changes, and what they take away "
                          "is lit (" +
-                         Text("%.0f", check->taken_level) +
+                         FormatNumber("%.0f", check->taken_level) +
                          ") and does; in a mask 0 is what is ignored, so invert them");
 }
 

@@ -5,13 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <set>
 #include <utility>
 
 #include "datasets/check_poses.h"
 #include "datasets/check_stereo.h"
+#include "pliant/base/text.h"
 
 namespace pliant {
 namespace {
@@ -33,16 +33,10 @@ std::vector<int> BaseFrames(int frames, int count) {
   return bases;
 }
 
-std::string Number(const char* format, double value) {
-  char text[64];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
-
 std::string Described(const PoseReading& reading) {
   std::string text = reading.name;
   if (reading.scale != 1.0)
-    text += (text.empty() ? "" : ", and ") + ("lengths are " + Number("%g", reading.scale)) + " times as long";
+    text += (text.empty() ? "" : ", and ") + ("lengths are " + FormatNumber("%g", reading.scale)) + " times as long";
   return text;
 }
 
@@ -77,25 +71,25 @@ std::vector<std::string> WhatIsWrong(const SequenceCheck& check) {
   std::vector<std::string> wrong;
   const auto depth_factor = DepthIsTooLarge(check);
   if (depth_factor)
-    wrong.push_back("the depth images say " + Number("%g", *depth_factor) +
+    wrong.push_back("the depth images say " + FormatNumber("%g", *depth_factor) +
                     " times what poses and baseline agree on; give depth in millimeters");
   if (check.poses && check.poses->right == false && !depth_factor)
     wrong.push_back("the poses do not fit the depth: the images agree to " +
-                    Number("%.2f", check.poses->as_given.correlation) + " as they are, and to " +
-                    Number("%.2f", check.poses->best.correlation) + " if " + Described(check.poses->best) +
+                    FormatNumber("%.2f", check.poses->as_given.correlation) + " as they are, and to " +
+                    FormatNumber("%.2f", check.poses->best.correlation) + " if " + Described(check.poses->best) +
                     "; write the poses as right-handed ones of world from camera, in millimeters");
   if (!check.stereo || !check.stereo->enough) return wrong;
   const StereoCheck& stereo = *check.stereo;
   if (stereo.share_right_way < 0.5)
     wrong.push_back("left and right are swapped: of " + std::to_string(stereo.matches) + " points " +
-                    Number("%.0f", 100.0 * (1.0 - stereo.share_right_way)) +
+                    FormatNumber("%.0f", 100.0 * (1.0 - stereo.share_right_way)) +
                     " % lie farther right in the right image; exchange the images");
   if (stereo.median_row_error_px > kMaxRowError_px)
     wrong.push_back("the pairs are not rectified: the rows of " + std::to_string(stereo.matches) +
-                    " points differ by " + Number("%.1f", stereo.median_row_error_px) +
+                    " points differ by " + FormatNumber("%.1f", stereo.median_row_error_px) +
                     " px in the median; give the calibration of these cameras");
   if (stereo.depth_ratio && Differs(*stereo.depth_ratio) && !depth_factor)
-    wrong.push_back("depth and baseline disagree: the depth images say " + Number("%.3g", *stereo.depth_ratio) +
+    wrong.push_back("depth and baseline disagree: the depth images say " + FormatNumber("%.3g", *stereo.depth_ratio) +
                     " times what disparity and baseline say; give both in millimeters");
   return wrong;
 }

@@ -9,16 +9,6 @@
 #include "pliant/base/statistics.h"
 
 namespace pliant {
-namespace {
-
-double MedianDeviation(std::vector<double> logarithms) {
-  const double center = Median(logarithms);
-  for (double& value : logarithms) value = std::abs(value - center);
-  return Median(std::move(logarithms));
-}
-
-}  // namespace
-
 RelativeDepthFrame CompareDepths(int frame_idx, std::span<const DepthPair> pairs, NullDepths null) {
   std::vector<double> ratios;
   std::vector<double> depths;

@@ -4,22 +4,15 @@
 #include "pliant/io/run_trust.h"
 
 #include <algorithm>
-#include <cstdio>
+#include <cctype>
+
+#include "pliant/base/text.h"
 
 namespace pliant {
 namespace {
 
-constexpr double kMinDepthSignal = 3.0;  // of the depths' spread by their sigma (W15)
 constexpr double kMinFrameShare = 0.85;  // with a map
 constexpr double kMinCoverage = 0.5;
-
-std::string Digits(double value, int digits) {
-  char text[64];
-  std::snprintf(text, sizeof text, "%.*f", digits, value);
-  return text;
-}
-
-std::string Percent(double share, int digits) { return Digits(100.0 * share, digits) + " %"; }
 
 std::int64_t FramesIn(const RunSummary& summary, TrackingState state) {
   const auto found = std::ranges::find(summary.states, state, [](const auto& count) { return count.first; });
@@ -43,22 +36,27 @@ bool IsDepthKnown(const FirstMapEvidence& evidence) {
   return evidence.depth_sigma > 0.0 && evidence.depth_spread >= kMinDepthSignal * evidence.depth_sigma;
 }
 
+std::string Capitalized(std::string sentence) {
+  sentence.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(sentence.front())));
+  return sentence;
+}
+
 // Sentences on each map, in order; nothing where there is nothing to say.
 template <class Sentence>
 std::string OfMaps(const RunSummary& summary, Sentence sentence) {
   std::string text;
   for (std::size_t i = 0; i < summary.first_maps.size(); ++i) {
-    const std::string of_map = sentence(summary.first_maps[i].evidence);
+    std::string of_map = sentence(summary.first_maps[i].evidence);
     if (of_map.empty()) continue;
     if (!text.empty()) text += " ";
-    text += (summary.first_maps.size() > 1 ? "Map " + std::to_string(i) + ": t" : "T") + of_map;
+    text += summary.first_maps.size() > 1 ? "Map " + std::to_string(i) + ": " + of_map : Capitalized(of_map);
   }
   return text;
 }
 
 std::string OfDepth(const FirstMapEvidence& evidence) {
   if (!(evidence.depth_sigma > 0.0) || !(evidence.depth_spread > 0.0)) return {};
-  const std::string numbers = "he first map's depths spread by " + Percent(evidence.depth_spread, 1) +
+  const std::string numbers = "the first map's depths spread by " + Percent(evidence.depth_spread, 1) +
                               " and are known to " + Percent(evidence.depth_sigma, 1) + " (" +
                               std::to_string(evidence.points) + " points, parallax " +
                               Digits(evidence.median_parallax_deg, 1) + " deg): ";
@@ -69,9 +67,9 @@ std::string OfDepth(const FirstMapEvidence& evidence) {
 
 std::string OfCamera(const FirstMapEvidence& evidence) {
   if (!(evidence.depth_sigma > 0.0)) return {};
-  if (!evidence.deforming) return "he scene was found to be rigid; all motion is the camera's.";
-  if (!(evidence.still_camera_error_ratio > 0.0)) return "he scene deforms; whether the camera moves was not tested.";
-  return "he scene deforms; with a camera that stands still the errors would be " +
+  if (!evidence.deforming) return "the scene was found to be rigid; all motion is the camera's.";
+  if (!(evidence.still_camera_error_ratio > 0.0)) return "the scene deforms; whether the camera moves was not tested.";
+  return "the scene deforms; with a camera that stands still the errors would be " +
          Digits(evidence.still_camera_error_ratio, 2) + " times as large, so it moved.";
 }
 

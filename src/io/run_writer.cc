@@ -60,6 +60,16 @@ Status PrepareFolder(const std::string& path) {
   return Status::Ok();
 }
 
+// Counts are in the order of the first of each.
+template <class Key>
+void AddTo(const Key& key, std::int64_t count, std::vector<std::pair<Key, std::int64_t>>* counts) {
+  const auto found = std::ranges::find_if(*counts, [&](const auto& entry) { return entry.first == key; });
+  if (found == counts->end())
+    counts->emplace_back(key, count);
+  else
+    found->second += count;
+}
+
 bool IsFinite(const PointObservation& o) {
   return o.pixel.allFinite() && o.position.allFinite() && std::isfinite(o.ssim);
 }
@@ -207,25 +217,13 @@ void RunWriter::State::Count(const FrameReport& report) {
   if (report.first_map && (summary.first_maps.empty() ||
                            summary.first_maps.back().declared_frame_idx != report.first_map->declared_frame_idx))
     summary.first_maps.push_back(*report.first_map);
-  const auto of_state = std::ranges::find(summary.states, report.state, [](const auto& count) { return count.first; });
-  if (of_state == summary.states.end())
-    summary.states.emplace_back(report.state, 1);
-  else
-    ++of_state->second;
+  AddTo(report.state, 1, &summary.states);
   if (report.cam_from_world) median_errors_px.push_back(report.median_reprojection_error_px);
   if (report.coverage) coverages.push_back(*report.coverage);
   if (report.cam_from_world) summary.submaps = std::max(summary.submaps, report.submap + 1);
   summary.observations += static_cast<std::int64_t>(report.observations.size());
   summary.points = static_cast<std::int64_t>(points.size());
-  for (const auto& [reason, count] : report.losses) {
-    const auto it = std::find_if(summary.losses.begin(), summary.losses.end(),
-                                 [&, name = std::string_view(reason)](const auto& loss) { return loss.first == name; });
-    if (it == summary.losses.end()) {
-      summary.losses.emplace_back(reason, count);
-    } else {
-      it->second += count;
-    }
-  }
+  for (const auto& [reason, count] : report.losses) AddTo(reason, count, &summary.losses);
 }
 
 void RunWriter::State::AppendFrameRow(const FrameReport& report) {

@@ -4,22 +4,16 @@
 #include "viewer/run_figures.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <utility>
 
+#include "pliant/base/text.h"
 #include "pliant/io/run_trust.h"
 
 namespace pliant {
 namespace {
 
-std::string Number(const char* format, double value) {
-  char text[64];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
-
-std::string Millimeters(double value) { return Number("%.3f mm", value); }
-std::string Percent(double share) { return Number("%.2f %%", 100 * share); }
+std::string Millimeters(double value) { return FormatNumber("%.3f mm", value); }
+std::string PreciseShare(double share) { return Percent(share, 2); }
 
 class Rows {
  public:
@@ -40,38 +34,38 @@ void AddPointError(const std::string& title, const PointError& error, Rows* rows
   rows->Add("RMSE of one constant depth", Millimeters(null.mean_rmse_mm));
   rows->Add("median, all points", Millimeters(estimate.pooled_median_mm));
   rows->Add("median of one constant depth", Millimeters(null.pooled_median_mm));
-  rows->Add("relative depth, median", Percent(estimate.median_relative_depth));
+  rows->Add("relative depth, median", PreciseShare(estimate.median_relative_depth));
 }
 
 void AddEvaluation(const Evaluation& evaluation, Rows* rows) {
   const TrackSurvival& survival = evaluation.survival;
   rows->Begin("Tracks");
-  rows->Add("points a frame", Number("%.1f", survival.mean_points));
-  rows->Add("length, median", Number("%.1f frames", survival.median_track_length));
+  rows->Add("points a frame", FormatNumber("%.1f", survival.mean_points));
+  rows->Add("length, median", FormatNumber("%.1f frames", survival.median_track_length));
   rows->Add("first frame's points in the last",
             std::to_string(survival.last_alive_of_first) + " of " + std::to_string(survival.first_points));
   if (evaluation.reprojection) {
-    rows->Add("reprojection error, median", Number("%.3f px", evaluation.reprojection->median_px));
-    rows->Add("reprojection error, RMSE", Number("%.3f px", evaluation.reprojection->rmse_px));
+    rows->Add("reprojection error, median", FormatNumber("%.3f px", evaluation.reprojection->median_px));
+    rows->Add("reprojection error, RMSE", FormatNumber("%.3f px", evaluation.reprojection->rmse_px));
   }
   if (evaluation.surface) AddPointError("Surface error", *evaluation.surface, rows);
   if (evaluation.material) {
     AddPointError("Material error", evaluation.material->error, rows);
-    rows->Add("drift, median", Number("%.3f px", evaluation.material->drift.median_px));
+    rows->Add("drift, median", FormatNumber("%.3f px", evaluation.material->drift.median_px));
   }
   if (evaluation.trajectory) {
     const TrajectoryError& camera = *evaluation.trajectory;
     rows->Begin("Camera, aligned by " + std::string(EnumName(camera.alignment)));
     rows->Add("ATE, RMSE", Millimeters(camera.ate_rmse_mm));
     rows->Add("true path", Millimeters(camera.true_path_length_mm));
-    rows->Add("rotation, RMSE", Number("%.3f deg", camera.rotation_rmse_deg));
+    rows->Add("rotation, RMSE", FormatNumber("%.3f deg", camera.rotation_rmse_deg));
     if (camera.rpe_pairs > 0) rows->Add("RPE a frame, RMSE", Millimeters(camera.rpe_translation_rmse_mm));
   }
   if (evaluation.first_map) {
     rows->Begin("First map");
     rows->Add("frames waited", std::to_string(evaluation.first_map->frames_waited));
-    rows->Add("relative depth, median", Percent(evaluation.first_map->declared.estimate.median));
-    rows->Add("relative depth of one constant depth", Percent(evaluation.first_map->declared.null.median));
+    rows->Add("relative depth, median", PreciseShare(evaluation.first_map->declared.estimate.median));
+    rows->Add("relative depth of one constant depth", PreciseShare(evaluation.first_map->declared.null.median));
   }
 }
 
@@ -90,8 +84,8 @@ std::vector<NamedText> RunFigures(const ViewedRun& run, const std::optional<RunS
     rows.Add("points", std::to_string(summary->points));
     rows.Add("observations", std::to_string(summary->observations));
     rows.Add("maps", std::to_string(summary->submaps));
-    if (summary->frames_per_second > 0) rows.Add("frames a second", Number("%.1f", summary->frames_per_second));
-    if (summary->total_s > 0) rows.Add("wall time", Number("%.2f s", summary->total_s));
+    if (summary->frames_per_second > 0) rows.Add("frames a second", FormatNumber("%.1f", summary->frames_per_second));
+    if (summary->total_s > 0) rows.Add("wall time", FormatNumber("%.2f s", summary->total_s));
     for (const std::string& oracle : summary->description.oracles) rows.Add("replaced by the truth", oracle);
     for (const auto& [reason, count] : summary->losses) rows.Add("given up: " + reason, std::to_string(count));
   }

@@ -14,6 +14,13 @@ namespace pliant {
 
 inline std::string Quoted(std::string_view text) { return "'" + std::string(text) + "'"; }
 
+// One number as printf writes it; the format has to be for one double, and gives at most 63 characters.
+std::string FormatNumber(const char* format, double value);
+// With so many digits after the point.
+std::string Digits(double value, int digits);
+// A share of 1 as "12 %", with so many digits after the point.
+std::string Percent(double share, int digits = 0);
+
 // "1.25 s", to a microsecond.
 std::string Seconds(double seconds);
 

@@ -78,6 +78,9 @@ struct RefinedPoint {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  // undeformed, world frame, map units
 };
 
+// (W15) Of the depths' spread by their standard deviation: below it they are hardly better known than by one depth.
+inline constexpr double kMinDepthSignal = 3.0;
+
 // What a first map rests on, as it was measured when it was made; 0 where its method does not measure it.
 struct FirstMapEvidence {
   bool provisional = false;  // less certain than demanded, or hardly better than one constant depth

@@ -19,12 +19,6 @@ constexpr double kMinCosine = 0.12;  // steeper surfaces are not trusted
 constexpr double kFar = 1.8;         // times the median distance: beyond, dark noise and the ambient light count
 constexpr std::size_t kMinLit = 20;
 
-double MedianDeviation(std::vector<double> values) {
-  const double center = Median(values);
-  for (double& value : values) value = std::abs(value - center);
-  return Median(std::move(values));
-}
-
 }  // namespace
 
 std::vector<double> CorrectForInclination(const std::vector<Eigen::Vector3d>& positions_in_cam,

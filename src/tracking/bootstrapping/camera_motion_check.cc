@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "pliant/base/text.h"
 #include "pliant/estimation/window/still_camera.h"
 #include "tracking/bootstrapping/initial_map.h"
 

@@ -10,6 +10,7 @@
 #include <limits>
 
 #include "pliant/base/statistics.h"
+#include "pliant/base/text.h"
 #include "pliant/estimation/two_view/two_view_models.h"
 #include "pliant/geometry/triangulation.h"
 #include "pliant/tracking/bootstrapping/make_initializer.h"

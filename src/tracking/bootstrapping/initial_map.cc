@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
-#include <cstdio>
 
 #include "pliant/base/statistics.h"
 #include "pliant/geometry/triangulation.h"
@@ -189,13 +188,5 @@ Status FillRigidMap(const InitInput& input, const InitialMap& map, const std::ve
   outcome->rejected = std::move(rejected);
   return Status::Ok();
 }
-
-std::string Digits(double value, int digits) {
-  std::array<char, 64> text{};
-  std::snprintf(text.data(), text.size(), "%.*f", digits, value);
-  return text.data();
-}
-
-std::string Percent(double share) { return Digits(100.0 * share, 0) + " %"; }
 
 }  // namespace pliant

@@ -88,8 +88,4 @@ Result<double> NominalScale(const std::vector<Eigen::Vector3d>& positions, doubl
 Status FillRigidMap(const InitInput& input, const InitialMap& map, const std::vector<Rigid3>& cams_from_world,
                     std::vector<InitRejectedPoint> rejected, double nominal_depth_mm, InitOutcome* outcome);
 
-// For a sentence: a number with so many digits after the point, and a share as whole percents.
-std::string Digits(double value, int digits);
-std::string Percent(double share);
-
 }  // namespace pliant

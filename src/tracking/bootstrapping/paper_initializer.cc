@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "pliant/base/statistics.h"
+#include "pliant/base/text.h"
 #include "pliant/tracking/bootstrapping/make_initializer.h"
 #include "tracking/bootstrapping/initial_map.h"
 

@@ -5,6 +5,8 @@
 
 #include <string>
 
+#include "pliant/base/text.h"
+
 namespace pliant {
 namespace {
 

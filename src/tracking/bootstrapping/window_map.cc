@@ -15,17 +15,17 @@
 #include <vector>
 
 #include "pliant/base/statistics.h"
+#include "pliant/base/text.h"
 #include "pliant/geometry/triangulation.h"
+#include "pliant/scene/frame_report.h"
 #include "tracking/bootstrapping/camera_motion_check.h"
 #include "tracking/bootstrapping/initial_map.h"
 
 namespace pliant {
 namespace {
 
-constexpr double kMaxErrorRatio = 3.0;  // of a point's error by the median one, where sigmas are scaled with it
-// (W15) Of the depths' spread by their median sigma: below it the points are nearly as well put at one distance.
-constexpr double kMinDepthSignal = 3.0;
-constexpr double kMinProvisionalSignal = 2.0;  // the same of a map that is put aside
+constexpr double kMaxErrorRatio = 3.0;         // of a point's error by the median one, where sigmas are scaled with it
+constexpr double kMinProvisionalSignal = 2.0;  // as kMinDepthSignal, of a map that is put aside
 constexpr double kMaxOwnSigma = 2.0;  // of points by their own median distance, by what was demanded by that of all
 constexpr double kMinProvisionalShare = 0.5;  // of the points still seen, that are certain enough
 
@@ -211,8 +211,7 @@ std::vector<InitRejectedPoint> AllRejected(const InitInput& input, const MapPoin
   return rejected;
 }
 
-Status FillOutcome(const InitInput& input, double nominal_depth_mm, const MapPoints& points, bool refines_rigid,
-                   InitOutcome* outcome) {
+Status FillOutcome(const InitInput& input, double nominal_depth_mm, const MapPoints& points, InitOutcome* outcome) {
   const DeformingWindow& all = points.solution.window;
   const auto nominal = NominalScale(all.points_in_world, nominal_depth_mm);
   if (!nominal.ok()) return nominal.status();
@@ -228,7 +227,6 @@ Status FillOutcome(const InitInput& input, double nominal_depth_mm, const MapPoi
     outcome->frames.push_back(std::move(state));
   }
   outcome->deforming = all.coefficients.rows() > 0;
-  outcome->refinable = !outcome->deforming && refines_rigid;
   outcome->decision = InitDecision::kMap;
   return Status::Ok();
 }
@@ -280,9 +278,8 @@ Status MakeWindowMap(const InitInput& input, const SolvedWindow& window, const M
   measure();
   if (Status status = CheckDepthSignal(demands, options, outcome); !status.ok()) return status;
   if (Status status = CheckCameraMotion(input, window, options, outcome); !status.ok()) return status;
-  if (Status status = FillOutcome(input, nominal_depth_mm, points, options.refine_rigid == Switch::kOn, outcome);
-      !status.ok())
-    return status;
+  if (Status status = FillOutcome(input, nominal_depth_mm, points, outcome); !status.ok()) return status;
+  outcome->refinable = !outcome->deforming && options.refine_rigid == Switch::kOn;
   outcome->rejected = AllRejected(input, points, std::move(rejected));
   outcome->reason = std::string(outcome->provisional ? "provisional" : "first") + " map of " +
                     std::to_string(points.ids.size()) + " points from a " +

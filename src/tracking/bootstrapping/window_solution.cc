@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "pliant/base/statistics.h"
+#include "pliant/base/text.h"
 #include "pliant/estimation/window/window_refinement.h"
 #include "tracking/bootstrapping/initial_map.h"
 

@@ -56,10 +56,8 @@ std::optional<double> UnitRatio(const std::vector<PixelDistance>& first, std::ve
     if (const auto log_distance = LogDistanceAt(point.pixel, second, radius_px))
       logs.push_back(std::log(point.distance) - *log_distance);
   if (logs.size() < kMinRatios) return std::nullopt;
-  const double median = Median(logs);
-  for (double& log : logs) log = std::abs(log - median);
-  if (Median(std::move(logs)) > max_spread) return std::nullopt;
-  return std::exp(median);
+  if (MedianDeviation(logs) > max_spread) return std::nullopt;
+  return std::exp(Median(std::move(logs)));
 }
 
 }  // namespace
