@@ -50,12 +50,12 @@ struct Recording {
 
 // An image as the camera takes it: another noise each time.
 cv::Mat Taken(const Recording& recording, int k) {
-  static const cv::Mat kWall = Wall();
+  static const cv::Mat wall = Wall();
   const double way_px = recording.speed_px * std::min(k, recording.stops_at);
   const cv::Point2f center(static_cast<float>(kColumns / 2.0 + 20 + way_px),
                            static_cast<float>(kRows / 2.0 + 60 + 30 * std::sin(0.2 * way_px)));
   cv::Mat image;
-  cv::getRectSubPix(kWall, {kColumns, kRows}, center, image);
+  cv::getRectSubPix(wall, {kColumns, kRows}, center, image);
   if (recording.round_view) {
     cv::Mat view(image.size(), CV_8UC1, cv::Scalar(0));
     cv::circle(view, {kColumns / 2, kRows / 2}, 110, 255, cv::FILLED);

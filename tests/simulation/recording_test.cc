@@ -23,7 +23,6 @@ namespace pliant {
 namespace {
 
 using simulation_test::Make;
-using simulation_test::Pinhole160;
 using simulation_test::SamePixels;
 using simulation_test::SmallScene;
 

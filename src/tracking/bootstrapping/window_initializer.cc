@@ -75,7 +75,7 @@ class WindowInitializer final : public Initializer {
     if (status.ok() || outcome->ambiguous) return status;
     // The longer the window the more it holds, and the more there is to go wrong.
     const int shorter = 2 * (since + 1) / 3;
-    const Status of_shorter = Make(
+    Status of_shorter = Make(
         input, SolveWindow(input, static_cast<std::size_t>(shorter), WindowScene::kAny, options_, nominal_depth_mm_),
         LastDemands(shorter - 1), outcome);
     if (of_shorter.ok() || outcome->ambiguous) return of_shorter;
