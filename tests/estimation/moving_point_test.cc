@@ -86,6 +86,27 @@ TEST(MovingPoint, OneWrongViewCountsForLittle) {
   EXPECT_LT(std::abs(LogDistanceError(*point)), 5 * point->log_distance_sigma);
 }
 
+// From a camera that stands still the prior alone says how far away the point is.
+TEST(MovingPoint, APriorBoundsItsDistance) {
+  Random random(7);
+  const double log_distance = std::log(kPoint.norm());
+  const auto views = Views(10, 0.0, 0.0, &random);
+  const DistancePrior prior{std::log((views.back().cam_from_world * kPoint).norm()), 0.01};
+  const auto point = TriangulateMovingPoint(views, 50.0, kNoiseRad, prior);
+  ASSERT_TRUE(point.ok());
+  EXPECT_NEAR(std::log(point->position.norm()), log_distance, 1e-3);
+  EXPECT_NEAR(point->log_distance_sigma, 0.01, 1e-3);
+}
+
+TEST(MovingPoint, APriorThatManyViewsContradictCountsForLittle) {
+  Random random(8);
+  const auto views = Views(20, 2.0, 0.0, &random);
+  const DistancePrior prior{std::log(0.5 * (views.back().cam_from_world * kPoint).norm()), 0.02};
+  const auto point = TriangulateMovingPoint(views, 50.0, kNoiseRad, prior);
+  ASSERT_TRUE(point.ok());
+  EXPECT_LT(std::abs(LogDistanceError(*point)), kMaxSigma);
+}
+
 TEST(MovingPoint, SaysWhatIsMissing) {
   Random random(6);
   EXPECT_EQ(TriangulateMovingPoint(Views(1, 1.0, 0.0, &random), 50.0, kNoiseRad).status().code(),
@@ -94,6 +115,9 @@ TEST(MovingPoint, SaysWhatIsMissing) {
             ErrorCode::kInvalidArgument);
   EXPECT_EQ(TriangulateMovingPoint(Views(5, 1.0, 0.0, &random), 50.0, 0.0).status().code(),
             ErrorCode::kInvalidArgument);
+  EXPECT_EQ(
+      TriangulateMovingPoint(Views(5, 1.0, 0.0, &random), 50.0, kNoiseRad, DistancePrior{4.0, 0.0}).status().code(),
+      ErrorCode::kInvalidArgument);
   // A camera that does not move: either it is said, or the sigma says it.
   const auto still = TriangulateMovingPoint(Views(10, 0.0, 0.0, &random), 50.0, kNoiseRad);
   EXPECT_TRUE(!still.ok() || still->log_distance_sigma > 1.0);

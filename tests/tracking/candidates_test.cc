@@ -17,13 +17,16 @@ constexpr double kAfterCorrection_mm = 1e-4;  // filters that turn with the worl
 constexpr double kCertain = 0.01;             // of the distance: below the certainty that is asked for
 constexpr double kRounding = 1e-9;            // many operations on lengths of about 100 mm
 
+constexpr double kNoSurface = 0.0;  // no point is as certain as that: its own views alone count
+
 Camera TestCamera() { return *Camera::Create("PINHOLE", 640, 480, std::vector<double>{450, 450, 319.5, 239.5}); }
 
 // A wall that bends to and fro, and a camera that passes by.
 struct Scene {
   Camera camera = TestCamera();
   GrowthOptions options;
-  double bend = 0.02;  // gradient of the displacement
+  double bend = 0.02;    // gradient of the displacement
+  double jitter_px = 0;  // of the candidate's pixels, to and fro
 
   static Rigid3 Pose(int t) { return {Eigen::Quaterniond::Identity(), Eigen::Vector3d(-0.8 * t, 0, 0.1 * t)}; }
   Eigen::Vector3d Displaced(const Eigen::Vector3d& rest, int t) const {
@@ -56,11 +59,11 @@ struct Scene {
     }
     return candidates;
   }
-  std::vector<std::pair<PointId, Eigen::Vector3d>> CertainAfter(const Eigen::Vector3d& rest, int last) const {
-    return Follow(rest, last).Certain(Pose(last), MapAt(last));
+  std::vector<Candidates::CertainPoint> CertainAfter(const Eigen::Vector3d& rest, int last) const {
+    return Follow(rest, last).Certain(Pose(last), MapAt(last), kNoSurface);
   }
   Eigen::Vector2d Pixel(const Eigen::Vector3d& rest, int t) const {
-    return *camera.Project(Pose(t) * Displaced(rest, t));
+    return *camera.Project(Pose(t) * Displaced(rest, t)) + (t % 2 == 0 ? 1 : -1) * Eigen::Vector2d(0, jitter_px);
   }
 };
 
@@ -70,9 +73,9 @@ TEST(Candidates, BecomeCertainAtTheRightPlaceWhereTheSceneDeforms) {
   constexpr int kLast = 20;
   const auto certain = scene.CertainAfter(rest, kLast);
   ASSERT_EQ(certain.size(), 1U);
-  EXPECT_EQ(certain[0].first, kCandidate);
+  EXPECT_EQ(certain[0].id, kCandidate);
   const Eigen::Vector3d truth = scene.Displaced(rest, kLast);
-  EXPECT_LT((certain[0].second - truth).norm(), kCertain * truth.norm());
+  EXPECT_LT((certain[0].position - truth).norm(), kCertain * truth.norm());
 }
 
 TEST(Candidates, AreNotCertainAtOnce) {
@@ -96,6 +99,44 @@ TEST(Candidates, FarFromTheMapTheyStayUncertainWhereItBends) {
   Scene soft = stiff;
   soft.bend = 0.05;
   EXPECT_TRUE(soft.CertainAfter(far, kLast).empty());
+}
+
+// The parallax of eight frames says little of a point on the wall; the wall says more.
+TEST(Candidates, OnTheSurfaceOfTheMapTheyAreAsCertainAsItsPoints) {
+  const Eigen::Vector3d on_wall(2, -4, 60);
+  constexpr int kLast = 8;
+  Scene scene;
+  scene.options.scarce_points = 0;
+  scene.options.noise_px = 2.0;
+  scene.jitter_px = 0.3;
+  Candidates candidates = scene.Follow(on_wall, kLast);
+  EXPECT_TRUE(candidates.Certain(Scene::Pose(kLast), scene.MapAt(kLast), kNoSurface).empty());
+  const auto certain = candidates.Certain(Scene::Pose(kLast), scene.MapAt(kLast), 0.03);
+  ASSERT_EQ(certain.size(), 1U);
+  EXPECT_TRUE(certain[0].from_surface);
+  const Eigen::Vector3d truth = scene.Displaced(on_wall, kLast);
+  EXPECT_LT((certain[0].position - truth).norm(), kCertain * truth.norm());
+  const auto landmark = candidates.AsLandmark(certain[0], scene.MapAt(kLast));
+  ASSERT_TRUE(landmark);
+  EXPECT_TRUE(landmark->from_surface);
+}
+
+TEST(Candidates, ThatAreCertainByTheirOwnViewsNeedNoSurface) {
+  constexpr int kLast = 20;
+  const auto certain =
+      Scene().Follow(Eigen::Vector3d(3, -4, 55), kLast).Certain(Scene::Pose(kLast), Scene().MapAt(kLast), 0.03);
+  ASSERT_EQ(certain.size(), 1U);
+  EXPECT_FALSE(certain[0].from_surface);
+}
+
+TEST(Candidates, ASurfaceThatTheirViewsContradictDoesNotMoveThem) {
+  const Eigen::Vector3d before_wall(3, -4, 40);
+  constexpr int kLast = 30;
+  Scene scene;
+  Candidates candidates = scene.Follow(before_wall, kLast);
+  const Eigen::Vector3d truth = scene.Displaced(before_wall, kLast);
+  for (const auto& certain : candidates.Certain(Scene::Pose(kLast), scene.MapAt(kLast), 0.03))
+    EXPECT_LT((certain.position - truth).norm(), 2 * kCertain * truth.norm());
 }
 
 TEST(Candidates, EnterAMapThatRunsShortOfPointsEarlier) {
@@ -126,20 +167,21 @@ TEST(Candidates, AsALandmarkOneHasTheRestAndTheMotionOfItsSurroundings) {
   constexpr int kLast = 12;
   const Eigen::Vector3d rest(3, -4, 55);
   Candidates candidates = scene.Follow(rest, kLast);
-  const auto landmark = candidates.AsLandmark(kCandidate, scene.Displaced(rest, kLast), scene.MapAt(kLast));
+  const auto landmark = candidates.AsLandmark({kCandidate, scene.Displaced(rest, kLast)}, scene.MapAt(kLast));
   ASSERT_TRUE(landmark);
   EXPECT_LT((landmark->rest_position - rest).norm(), kRounding);
   EXPECT_LT((landmark->last_motion - (scene.Displaced(rest, kLast) - scene.Displaced(rest, kLast - 1))).norm(),
             kRounding);
   EXPECT_EQ(landmark->pixel, scene.Pixel(rest, kLast));
-  EXPECT_FALSE(candidates.AsLandmark(kCandidate, rest, Map()));
+  EXPECT_FALSE(candidates.AsLandmark({kCandidate, rest}, Map()));
 }
 
 TEST(Candidates, AreExpectedWhereTheCameraWillSeeThem) {
   const Scene scene;
   const Eigen::Vector3d rest(3, -4, 55);
   Candidates candidates = scene.Follow(rest, 20);
-  ASSERT_EQ(candidates.Certain(Scene::Pose(20), scene.MapAt(20)).size(), 1U);  // its place is now the best guess
+  ASSERT_EQ(candidates.Certain(Scene::Pose(20), scene.MapAt(20), kNoSurface).size(),
+            1U);  // its place is now the best guess
   const auto expected = candidates.Predict(Scene::Pose(21));
   ASSERT_EQ(expected.size(), 1U);
   EXPECT_LT((expected[0].pixel - *scene.camera.Project(Scene::Pose(21) * scene.Displaced(rest, 20))).norm(),
@@ -159,9 +201,9 @@ TEST(Candidates, ACorrectionOfTheMapIsNoMotion) {
   track.id = kCandidate;
   track.pixel = scene.Pixel(rest, kLast);
   ASSERT_TRUE(candidates.AddView(track, Scene::Pose(kLast), after));
-  const auto certain = candidates.Certain(Scene::Pose(kLast), after);
+  const auto certain = candidates.Certain(Scene::Pose(kLast), after, kNoSurface);
   ASSERT_EQ(certain.size(), 1U);
-  EXPECT_LT((certain[0].second - scene.Displaced(rest, kLast)).norm(), kCertain * rest.norm());
+  EXPECT_LT((certain[0].position - scene.Displaced(rest, kLast)).norm(), kCertain * rest.norm());
 }
 
 // Cameras and points moved alike are the same scene.
@@ -183,10 +225,10 @@ TEST(Candidates, MoveWithTheWorld) {
   }
   Map moved = scene.MapAt(kLast);
   for (Landmark& landmark : moved.landmarks) landmark.position = motion * landmark.position;
-  const auto certain = candidates.Certain(Scene::Pose(kLast) * motion.Inverse(), moved);
+  const auto certain = candidates.Certain(Scene::Pose(kLast) * motion.Inverse(), moved, kNoSurface);
   ASSERT_EQ(certain.size(), 1U);
   ASSERT_EQ(stayed.size(), 1U);
-  EXPECT_LT((certain[0].second - motion * stayed[0].second).norm(), kAfterCorrection_mm);
+  EXPECT_LT((certain[0].position - motion * stayed[0].position).norm(), kAfterCorrection_mm);
 }
 
 TEST(Candidates, NeedAMap) {

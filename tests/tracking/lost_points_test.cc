@@ -102,6 +102,16 @@ TEST(LostPoints, AreLookedForInTurn) {
   EXPECT_EQ(lost.Find(PointId{1}), nullptr);
 }
 
+TEST(LostPoints, GiveTheirPlaceUpWhereTheyAreSearchedInVain) {
+  LostPoints lost;
+  lost.Add({PointId{0}, {0, 0, 50}, {0, 0, 50}}, Rigid3());
+  for (int frame = 0; frame < 9; ++frame) lost.Expected(TestCamera(), Rigid3(), 1);
+  EXPECT_EQ(lost.Pixels(TestCamera(), Rigid3()).size(), 1U);
+  lost.Expected(TestCamera(), Rigid3(), 1);
+  EXPECT_TRUE(lost.Pixels(TestCamera(), Rigid3()).empty());
+  EXPECT_EQ(lost.Expected(TestCamera(), Rigid3(), 1).size(), 1U) << "it is searched on";
+}
+
 // Cameras and points moved alike; where they rest stays.
 TEST(LostPoints, AreExpectedAtTheSamePixelsWhenAllButRestIsMoved) {
   const Rigid3 motion(RotationExp({0.02, -0.03, 0.01}), Eigen::Vector3d(1, 2, -3));

@@ -23,6 +23,7 @@ struct Landmark {
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();          // where it was last measured
   double ssim = 1;                                          // of that measurement, to its reference patch
   int times_reestimated = 0;                                // the re-estimated maps that had it
+  bool from_surface = false;                                // its depth, when it entered: by the points around it (G7)
   bool measured = false;                                    // its depth, at the start: by a pair or a depth image
 };
 

@@ -48,6 +48,7 @@ void MapUpdater::Start(FirstMap first, Submap* submap) const {
   const InitOutcome& outcome = first.outcome;
   submap->map = MakeFirstMap(first);
   submap->provisional = outcome.provisional;
+  submap->depth_sigma = outcome.measured.median_depth_sigma;
   for (Landmark& landmark : submap->map.landmarks)
     landmark.measured = options_.init.IsMetric() || options_.oracle.first_map == Switch::kOn;
   submap->last_cam_from_world = outcome.frames.back().cam_from_world;
@@ -116,8 +117,9 @@ void MapUpdater::Grow(const PreparedFrame& frame, Submap* submap, StageTimes* ti
     FollowCandidates(frame, submap);
   }
   const StageTimer timer(times, Stage::kInitialize);
-  for (const auto& [id, position] : submap->candidates.Certain(submap->last_cam_from_world, submap->map))
-    Promote(id, position, submap, update);
+  for (const Candidates::CertainPoint& point :
+       submap->candidates.Certain(submap->last_cam_from_world, submap->map, submap->depth_sigma))
+    Promote(point, submap, update);
   if (options_.growth.window > 0) {
     RememberWindow(frame, submap);
     if (IsReestimationDue(frame.frame_idx, *submap)) ReestimateAny(submap, update);
@@ -161,12 +163,12 @@ void MapUpdater::AddCandidates(const PreparedFrame& frame, Submap* submap) const
 }
 
 // A candidate becomes a landmark.
-void MapUpdater::Promote(PointId id, const Eigen::Vector3d& position, Submap* submap, MapUpdate* update) const {
-  const auto landmark = submap->candidates.AsLandmark(id, position, submap->map);
+void MapUpdater::Promote(const Candidates::CertainPoint& point, Submap* submap, MapUpdate* update) const {
+  const auto landmark = submap->candidates.AsLandmark(point, submap->map);
   if (!landmark) return;
-  InsertById(&update->new_points, {id, landmark->rest_position, submap->candidates.track(id).rgb});
+  InsertById(&update->new_points, {point.id, landmark->rest_position, submap->candidates.track(point.id).rgb});
   InsertById(&submap->map.landmarks, *landmark);
-  submap->candidates.Remove(id);
+  submap->candidates.Remove(point.id);
 }
 
 // The pixels of this frame, for the next re-estimation.
@@ -213,11 +215,12 @@ void MapUpdater::ReestimateAny(Submap* submap, MapUpdate* update) const {
       landmark->rest_position += point.position - landmark->position;
       landmark->position = point.position;
       ++landmark->times_reestimated;
+      landmark->from_surface = false;
       update->refined_points.push_back({landmark->id, landmark->rest_position});
     }
   submap->candidates.TakeCorrection(before, submap->map);
   for (const InitPosition& point : positions)
-    if (submap->map.Find(point.id) == nullptr) Promote(point.id, point.position, submap, update);
+    if (submap->map.Find(point.id) == nullptr) Promote({point.id, point.position}, submap, update);
   if (!outcome.provisional && 2 * positions.size() >= submap->map.landmarks.size()) submap->provisional = false;
   update->note = "the map was re-estimated: " + outcome.reason;
 }

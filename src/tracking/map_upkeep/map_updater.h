@@ -53,7 +53,7 @@ class MapUpdater {
   void Grow(const PreparedFrame& frame, Submap* submap, StageTimes* times, MapUpdate* update) const;
   void FollowCandidates(const PreparedFrame& frame, Submap* submap) const;
   void AddCandidates(const PreparedFrame& frame, Submap* submap) const;
-  void Promote(PointId id, const Eigen::Vector3d& position, Submap* submap, MapUpdate* update) const;
+  void Promote(const Candidates::CertainPoint& point, Submap* submap, MapUpdate* update) const;
 
   void RememberWindow(const PreparedFrame& frame, Submap* submap) const;
   bool IsReestimationDue(int frame_idx, const Submap& submap) const;

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "pliant/base/statistics.h"
+#include "tracking/submap/surface_distances.h"
 
 namespace pliant {
 namespace {
@@ -142,7 +143,7 @@ bool Candidates::AddView(const PointTrack& track, const Rigid3& cam_from_world, 
 }
 
 // (G3), from its best guess, by at most kSolvedViews of its views.
-Result<MovingPoint> Candidates::Triangulate(const Point& point) const {
+Result<MovingPoint> Candidates::Triangulate(const Point& point, const std::optional<DistancePrior>& surface) const {
   const double away = (point.position - point.anchored_at).norm();
   const std::size_t count = std::min(point.rays.size(), kSolvedViews);
   std::vector<MovingPointView> views;
@@ -154,50 +155,62 @@ Result<MovingPoint> Candidates::Triangulate(const Point& point) const {
   }
   const Eigen::Vector3d first = point.position - point.displacements.back().mean;
   return TriangulateMovingPoint(views, (point.cams_from_world.front() * first).norm(),
-                                options_.noise_px / camera_.MeanFocalLengthPx());
+                                options_.noise_px / camera_.MeanFocalLengthPx(), surface);
 }
 
-// Moves its best guess to where its views say; infinite errors where they say nothing.
-MovingPoint Candidates::MoveGuess(Point* point) const {
+// Moves its best guess to where its views say, and the surface where it says something; infinite errors where nothing
+// does.
+MovingPoint Candidates::MoveGuess(const std::optional<DistancePrior>& surface, Point* point) const {
   constexpr double kNone = std::numeric_limits<double>::infinity();
-  const auto placed = Triangulate(*point);
+  const auto placed = Triangulate(*point, surface);
   if (!placed.ok()) return {.log_distance_sigma = kNone, .rms = kNone};
   point->position = placed->position + point->displacements.back().mean;
   return *placed;
 }
 
-std::vector<std::pair<PointId, Eigen::Vector3d>> Candidates::Certain(const Rigid3& cam_from_world, const Map& map) {
+std::vector<Candidates::CertainPoint> Candidates::Certain(const Rigid3& cam_from_world, const Map& map,
+                                                          double map_depth_sigma) {
   std::vector<double> distances;
   for (const Landmark& landmark : map.landmarks) distances.push_back((cam_from_world * landmark.position).norm());
   if (distances.empty()) return {};
+  const double median_distance = Median(std::move(distances));
   // A map that runs short of points takes less certain ones, rather than be lost.
   constexpr double kMaxSlack = 3;
-  const double slack = std::clamp(options_.scarce_points / static_cast<double>(distances.size()), 1.0, kMaxSlack);
-  const double max_sigma = slack * options_.max_depth_sigma * Median(std::move(distances));
+  const double slack = std::clamp(options_.scarce_points / static_cast<double>(map.landmarks.size()), 1.0, kMaxSlack);
   std::vector<std::pair<PointId, MovingPoint>> placed;
   std::vector<double> errors;
   for (auto& [id, point] : points_) {
     if (static_cast<int>(point.rays.size()) < options_.min_views) continue;
-    placed.emplace_back(id, MoveGuess(&point));
+    placed.emplace_back(id, MoveGuess({}, &point));
     if (std::isfinite(placed.back().second.rms)) errors.push_back(placed.back().second.rms);
   }
   if (errors.empty()) return {};
   const double max_error = std::min(options_.max_error, options_.max_error_ratio * Median(std::move(errors)));
-  const auto is_certain = [&](const MovingPoint& guess, const Point& point) {
-    return guess.rms <= max_error && guess.log_distance_sigma * (cam_from_world * point.position).norm() <= max_sigma;
+  const auto is_certain = [&](const MovingPoint& guess, const Point& point, double max_sigma) {
+    return guess.rms <= max_error &&
+           guess.log_distance_sigma * (cam_from_world * point.position).norm() <= max_sigma * median_distance;
   };
-  std::vector<std::pair<PointId, Eigen::Vector3d>> certain;
+  const SurfaceDistances surface(map, cam_from_world, options_.neighbors);
+  std::vector<CertainPoint> certain;
   for (const auto& [id, guess] : placed) {
     Point& point = points_.at(id);
-    if (!is_certain(guess, point)) continue;
+    const double max_sigma = slack * options_.max_depth_sigma;
     // What is known of its surroundings' motion depends on how far from them it turned out to be: once more from there.
-    if (is_certain(MoveGuess(&point), point)) certain.emplace_back(id, point.position);
+    if (is_certain(guess, point, max_sigma)) {
+      if (is_certain(MoveGuess({}, &point), point, max_sigma)) certain.push_back({id, point.position});
+    } else if (const auto prior = surface.At(point.track.pixel, point.rays.back()); prior) {
+      const Eigen::Vector3d before = point.position;
+      if (is_certain(MoveGuess(prior, &point), point, map_depth_sigma))
+        certain.push_back({id, point.position, true});
+      else
+        point.position = before;
+    }
   }
   return certain;
 }
 
-std::optional<Landmark> Candidates::AsLandmark(PointId id, const Eigen::Vector3d& position, const Map& map) const {
-  const Point& point = points_.at(id);
+std::optional<Landmark> Candidates::AsLandmark(const CertainPoint& certain, const Map& map) const {
+  const Point& point = points_.at(certain.id);
   Eigen::Vector3d since_rest = Eigen::Vector3d::Zero();
   Eigen::Vector3d motion = Eigen::Vector3d::Zero();
   int anchors = 0;
@@ -208,12 +221,13 @@ std::optional<Landmark> Candidates::AsLandmark(PointId id, const Eigen::Vector3d
       ++anchors;
     }
   if (anchors == 0) return std::nullopt;
-  return Landmark{.id = id,
-                  .rest_position = position - since_rest / anchors,
-                  .position = position,
+  return Landmark{.id = certain.id,
+                  .rest_position = certain.position - since_rest / anchors,
+                  .position = certain.position,
                   .last_motion = motion / anchors,
                   .pixel = point.track.pixel,
-                  .ssim = point.track.ssim};
+                  .ssim = point.track.ssim,
+                  .from_surface = certain.from_surface};
 }
 
 }  // namespace pliant

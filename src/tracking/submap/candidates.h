@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // Points that are followed but are not in the map yet. One enters it when its depth is certain: the deformation of its
-// surroundings is taken off its motion, and the rest is parallax (docs/method.md, eq. G1 to G4). Patches and pixels
+// surroundings is taken off its motion, and the rest is parallax (docs/method.md, eq. G1 to G4, G7). Patches and pixels
 // are the point tracker's; here is what is known of each point besides.
 #pragma once
 
@@ -55,11 +55,17 @@ class Candidates {
   // The map was corrected: what its points moved by was no motion.
   void TakeCorrection(const Map& before, const Map& after);
 
-  // Those whose depth is certain (G4), with their positions now.
-  std::vector<std::pair<PointId, Eigen::Vector3d>> Certain(const Rigid3& cam_from_world, const Map& map);
-  // One as a landmark at this position: at rest, and moving, as its surroundings are. Nothing when none of them is
-  // left.
-  std::optional<Landmark> AsLandmark(PointId id, const Eigen::Vector3d& position, const Map& map) const;
+  // One whose depth is certain, with its position now.
+  struct CertainPoint {
+    PointId id;
+    Eigen::Vector3d position;
+    bool from_surface = false;  // certain together with the points around it, and not by its own views
+  };
+  // Those whose depth is certain by their own views (G4), or, no less than the map's own points, together with the
+  // surface around them (G7). `map_depth_sigma`: of the map's points, by their distance.
+  std::vector<CertainPoint> Certain(const Rigid3& cam_from_world, const Map& map, double map_depth_sigma);
+  // One as a landmark: at rest, and moving, as its surroundings are. Nothing when none of them is left.
+  std::optional<Landmark> AsLandmark(const CertainPoint& point, const Map& map) const;
 
  private:
   // A landmark that was near when it was chosen, and where it was then.
@@ -87,8 +93,8 @@ class Candidates {
   void ChooseAnchors(const Map& map, Point* point) const;
   std::optional<Displacement> SinceAnchors(const Point& point, const Map& map) const;
   bool AppendView(const Rigid3& cam_from_world, const Map& map, Point* point) const;
-  Result<MovingPoint> Triangulate(const Point& point) const;
-  MovingPoint MoveGuess(Point* point) const;
+  Result<MovingPoint> Triangulate(const Point& point, const std::optional<DistancePrior>& surface) const;
+  MovingPoint MoveGuess(const std::optional<DistancePrior>& surface, Point* point) const;
 
   Camera camera_;
   GrowthOptions options_;

@@ -13,6 +13,7 @@ namespace pliant {
 namespace {
 
 constexpr int kNeighbors = 8;
+constexpr int kVainSearches = 10;  // of a point that should be in sight: it is hidden, or changed, and may stay so
 
 // The change of a neighborhood that faces the camera, between two poses that see it at these positions.
 Eigen::Matrix2d FacingAffine(const Rigid3& before, const Eigen::Vector3d& position_before, const Rigid3& now,
@@ -119,8 +120,10 @@ void LostPoints::Move(const std::vector<Landmark>& seen) {
 
 std::vector<Eigen::Vector2d> LostPoints::Pixels(const Camera& camera, const Rigid3& cam_from_world) const {
   std::vector<Eigen::Vector2d> pixels;
-  for (const auto& [id, point] : points_)
+  for (const auto& [id, point] : points_) {
+    if (point.searches >= kVainSearches) continue;
     if (const auto pixel = PixelOf(camera, cam_from_world * point.landmark.position)) pixels.push_back(*pixel);
+  }
   return pixels;
 }
 

@@ -54,7 +54,8 @@ class LostPoints {
   // affine change is that of a surface that faces the camera.
   std::vector<PointPrediction> Expected(const Camera& camera, const Rigid3& cam_from_world, std::size_t count);
 
-  // Where a camera at this pose should see them.
+  // Where a camera at this pose should see them; without those that were searched in vain so often that another point
+  // may take their place.
   std::vector<Eigen::Vector2d> Pixels(const Camera& camera, const Rigid3& cam_from_world) const;
 
   // All of them, each where it is thought to be now; sorted by id.

@@ -49,6 +49,7 @@ struct Submap {
   int idx;
   Map map;
   bool provisional = false;  // it is less certain than demanded, or hardly better than one constant depth
+  double depth_sigma = 0;    // of the map's points, by their distance, in the median; 0: from metric depth
   LostPoints lost_points;
   RigidHistory rigid_history;
   Candidates candidates;

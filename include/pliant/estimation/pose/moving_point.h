@@ -6,6 +6,7 @@
 // (docs/method.md, eq. G3). Frames: world; units: map units.
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include <Eigen/Core>
@@ -23,16 +24,23 @@ struct MovingPointView {
   double displacement_sigma = 0;                           // of its components
 };
 
+// What is known of the point's distance besides.
+struct DistancePrior {
+  double log_distance = 0;  // from the last view's camera
+  double sigma = 0;
+};
+
 struct MovingPoint {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  // in the first view
   double log_distance_sigma = 0;  // predicted standard deviation of the log of its distance from the first camera
   double rms = 0;  // root mean square of its weighted residuals, in standard deviations: about 1, and 2.1 at most
 };
 
-// The most likely position by all views, Cauchy's loss on each. `start_distance`: a guess, from the first camera;
-// `noise_rad`: standard deviation of a ray. Fails with kInsufficient below two views, kInvalidArgument for a number
-// that is none, and kDegenerate where the views do not bound the distance or put the point behind one of them.
+// The most likely position by all views, and by `prior` where there is one, Cauchy's loss on each. `start_distance`: a
+// guess, from the first camera; `noise_rad`: standard deviation of a ray. Fails with kInsufficient below two views,
+// kInvalidArgument for a number that is none, and kDegenerate where nothing bounds the distance or where the point is
+// put behind a view.
 Result<MovingPoint> TriangulateMovingPoint(std::span<const MovingPointView> views, double start_distance,
-                                           double noise_rad);
+                                           double noise_rad, const std::optional<DistancePrior>& prior = {});
 
 }  // namespace pliant

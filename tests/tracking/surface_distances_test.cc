@@ -1,0 +1,78 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tracking/submap/surface_distances.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "pliant/base/random.h"
+#include "pliant/camera/camera.h"
+
+namespace pliant {
+namespace {
+
+constexpr int kNeighbors = 8;
+
+Camera TestCamera() { return *Camera::Create("PINHOLE", 640, 480, std::vector<double>{450, 450, 319.5, 239.5}); }
+
+// A wall that is slanted, or folded along x = 0; its distances with noise.
+Eigen::Vector3d OnWall(double x, double y, double fold) { return {x, y, 60 + 0.4 * x - 0.2 * y + (x > 0 ? fold : 0)}; }
+
+Map Wall(double noise, double fold = 0) {
+  Random random(1);
+  Map map;
+  for (int y = -5; y <= 5; ++y)
+    for (int x = -5; x <= 5; ++x) {
+      Landmark landmark{.id = PointId{static_cast<std::int64_t>(map.landmarks.size())}};
+      const Eigen::Vector3d on_wall = OnWall(4 * x + 0.5, 4 * y, fold);
+      landmark.position = on_wall * (1.0 + random.Normal(noise));
+      landmark.pixel = *TestCamera().Project(on_wall);
+      map.landmarks.push_back(landmark);
+    }
+  return map;
+}
+
+std::optional<DistancePrior> DistanceAt(const Map& map, const Eigen::Vector3d& point) {
+  return SurfaceDistances(map, Rigid3(), kNeighbors).At(*TestCamera().Project(point), point.normalized());
+}
+
+TEST(SurfaceDistances, AreThoseOfTheWallAndAsCertainAsItsPoints) {
+  constexpr double kNoise = 0.01;
+  int within_two_sigmas = 0;
+  int count = 0;
+  for (int y = -3; y <= 3; ++y)
+    for (int x = -3; x <= 3; ++x) {
+      const Eigen::Vector3d truth = OnWall(4 * x + 2, 4 * y + 2, 0);
+      const auto distance = DistanceAt(Wall(kNoise), truth);
+      ASSERT_TRUE(distance);
+      EXPECT_GT(distance->sigma, 0.7 * kNoise);
+      EXPECT_LT(distance->sigma, 3.0 * kNoise);
+      within_two_sigmas += std::abs(distance->log_distance - std::log(truth.norm())) < 2 * distance->sigma ? 1 : 0;
+      ++count;
+    }
+  EXPECT_GT(within_two_sigmas, 0.9 * count);
+}
+
+TEST(SurfaceDistances, AreUncertainAtAFoldAndBeyondTheMap) {
+  const Map folded = Wall(0.001, 15);
+  const auto flat = DistanceAt(folded, OnWall(-14, 2, 15));
+  const auto fold = DistanceAt(folded, OnWall(0, 2, 15));
+  const auto beyond = DistanceAt(folded, OnWall(-34, 2, 15));
+  ASSERT_TRUE(flat && fold && beyond);
+  EXPECT_GT(fold->sigma, 5 * flat->sigma);
+  EXPECT_GT(beyond->sigma, 2 * flat->sigma);
+}
+
+TEST(SurfaceDistances, AreNotToldByPointsThatHaveTheirsFromTheSurface) {
+  Map map = Wall(0.001);
+  for (Landmark& landmark : map.landmarks) landmark.from_surface = true;
+  EXPECT_FALSE(DistanceAt(map, OnWall(2, 2, 0)));
+  for (int i = 0; i < 5; ++i) map.landmarks[static_cast<std::size_t>(20 * i)].from_surface = false;
+  EXPECT_FALSE(DistanceAt(map, OnWall(2, 2, 0))) << "five points hardly bound a plane";
+  EXPECT_FALSE(DistanceAt(Map(), OnWall(2, 2, 0)));
+}
+
+}  // namespace
+}  // namespace pliant
