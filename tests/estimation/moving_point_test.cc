@@ -107,6 +107,26 @@ TEST(MovingPoint, APriorThatManyViewsContradictCountsForLittle) {
   EXPECT_LT(std::abs(LogDistanceError(*point)), kMaxSigma);
 }
 
+// A step that leads behind a view is refused, whatever was in memory before.
+TEST(MovingPoint, IsTheSameWhateverMemoryHeld) {
+  Random random(9);
+  for (int trial = 0; trial < 200; ++trial) {
+    std::vector<MovingPointView> views = Views(10, 3.0, 0.0, &random);
+    for (MovingPointView& view : views) {
+      view.cam_from_world.translation.z() -= random.Normal(30.0);
+      view.ray = (view.ray + Eigen::Vector3d(random.Normal(0.5), random.Normal(0.5), 0)).normalized();
+    }
+    const auto after = [&](double left_behind) {
+      std::vector<double> scratch;
+      for (std::size_t n = 1; n < 64; ++n) scratch.assign(n, left_behind);
+      scratch = {};
+      const auto point = TriangulateMovingPoint(views, 60.0, kNoiseRad);
+      return point.ok() ? point->position : Eigen::Vector3d(Eigen::Vector3d::Zero());
+    };
+    EXPECT_EQ(after(0.0), after(1e3)) << trial;
+  }
+}
+
 TEST(MovingPoint, SaysWhatIsMissing) {
   Random random(6);
   EXPECT_EQ(TriangulateMovingPoint(Views(1, 1.0, 0.0, &random), 50.0, kNoiseRad).status().code(),

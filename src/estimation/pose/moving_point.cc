@@ -4,6 +4,7 @@
 #include "pliant/estimation/pose/moving_point.h"
 
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include <Eigen/Cholesky>
@@ -60,8 +61,11 @@ class TriangulationProblem {
       const MovingPointView& view = views_[k];
       DirectionResidual direction;
       if (!EvaluateDirection(view.cam_from_world.rotation, view.cam_from_world.translation,
-                             position + view.displacement, view.ray, bases_[k], &direction))
+                             position + view.displacement, view.ray, bases_[k], &direction)) {
+        // The solver looks at the residuals of a step that failed: they must refuse it.
+        Eigen::Map<Eigen::VectorXd>(residuals, NumResiduals()).setConstant(std::numeric_limits<double>::infinity());
         return false;
+      }
       const auto row = 2 * static_cast<Eigen::Index>(k);
       Eigen::Map<Eigen::VectorXd>(residuals, NumResiduals()).segment<2>(row) = weights_[k] * direction.value;
       if (jacobian != nullptr)
