@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <map>
 #include <utility>
 
 #include "pipeline/working_frame.h"
@@ -25,10 +26,10 @@ void AddTimes(const FrameReport& before, FrameReport* report) {
 }  // namespace
 
 FramesBefore::FramesBefore(const SequenceRequest& input, const WorkingImage& working, const Camera& camera,
-                           const TrackOptions& options)
-    : input_(input), working_(working), camera_(camera), options_(options) {
-  // What the map shows is followed, and nothing more.
-  options_.tracker.growth.grow = Switch::kOff;
+                           const TrackOptions& options, Tracker* tracker)
+    : input_(input), working_(working), camera_(camera), options_(options), tracker_(tracker) {
+  // The map grows as it does forwards; a window that runs backwards, with a reference of its own, would contradict it.
+  options_.tracker.growth.window = 0;
   options_.tracker.submaps = Switch::kOff;
   if (options_.tracker.oracle.Any()) options_.max_frames_back = 0;
 }
@@ -81,14 +82,21 @@ void FramesBefore::TrackBack(const FrameReport& reference) {
   if (at_reference.empty()) return;
   Tracker tracker(camera_, options_.tracker, 0, options_.threads);
   tracker.TakeMap(at_reference.front(), reference);
+  tracker.SkipPointIds(tracker_->next_point_id());
+  FollowBack(&tracker, reference);
+  tracker_->SkipPointIds(tracker.next_point_id());
+}
+
+// Until the map is lost.
+void FramesBefore::FollowBack(Tracker* tracker, const FrameReport& reference) {
   for (std::size_t end = waiting_.size(); end > 0;) {
     const std::size_t begin = end - std::min(end, kChunk);
     const auto frames = Read(waiting_[begin].frame_idx, waiting_[end - 1].frame_idx, end - begin);
     if (frames.empty()) return;
     for (; end > begin; --end) {
       FrameReport& waiting = waiting_[end - 1];
-      FrameReport back = std::move(tracker.Process(frames[end - 1 - begin]).front());
-      if (tracker.GaveUp()) return;
+      FrameReport back = std::move(tracker->Process(frames[end - 1 - begin]).front());
+      if (tracker->GaveUp()) return;
       if (!back.cam_from_world) continue;
       AddTimes(waiting, &back);
       back.note = "tracked back from frame " + reference.name + ", the reference of the first map";
@@ -99,17 +107,22 @@ void FramesBefore::TrackBack(const FrameReport& reference) {
 
 // A point is new in the first frame that shows it.
 void FramesBefore::MoveNewPoints(FrameReport* reference) {
-  std::vector<NewPoint>& points = reference->new_points;
-  for (FrameReport& report : waiting_) {
-    for (const PointObservation& seen : report.observations) {
-      const auto point = std::ranges::find(points, seen.id, &NewPoint::id);
-      if (point == points.end()) continue;
-      report.new_points.push_back(*point);
-      points.erase(point);
-    }
+  std::map<PointId, NewPoint> points;
+  const auto take = [&](FrameReport& report) {
+    for (const NewPoint& point : report.new_points) points.emplace(point.id, point);
+    report.new_points.clear();
+  };
+  const auto give = [&](FrameReport& report) {
+    for (const PointObservation& seen : report.observations)
+      if (const auto point = points.extract(seen.id)) report.new_points.push_back(point.mapped());
     report.added = static_cast<int>(report.new_points.size());
-  }
-  reference->added = static_cast<int>(points.size());
+  };
+  for (FrameReport& report : waiting_) take(report);
+  take(*reference);
+  for (FrameReport& report : waiting_) give(report);
+  give(*reference);
+  for (const auto& [id, point] : points) reference->new_points.push_back(point);
+  reference->added = static_cast<int>(reference->new_points.size());
 }
 
 }  // namespace pliant

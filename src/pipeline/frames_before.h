@@ -20,9 +20,10 @@ namespace pliant {
 
 class FramesBefore {
  public:
-  // `camera` is that of the working images.
+  // `camera` is that of the working images; `tracker`, whose reports come, has to outlive this: the points that are new
+  // in frames tracked back get ids that it does not use.
   FramesBefore(const SequenceRequest& input, const WorkingImage& working, const Camera& camera,
-               const TrackOptions& options);
+               const TrackOptions& options, Tracker* tracker);
 
   // Takes the tracker's final reports, in order of time, and answers with those that are to be written, in order of
   // time: the ones that may still get a pose wait here, at most `General.max_frames_back` of them.
@@ -33,12 +34,14 @@ class FramesBefore {
  private:
   std::vector<PreparedFrame> Read(int first, int last, std::size_t count) const;
   void TrackBack(const FrameReport& reference);
+  void FollowBack(Tracker* tracker, const FrameReport& reference);
   void MoveNewPoints(FrameReport* reference);
 
   SequenceRequest input_;
   WorkingImage working_;
   Camera camera_;
   TrackOptions options_;
+  Tracker* tracker_;
   std::vector<FrameReport> waiting_;
 };
 

@@ -224,7 +224,8 @@ Ending TrackSequence(Sequence& sequence, const RunRequest& request, const TrackO
   const Camera& camera = *start.working_camera;
   Tracker tracker(camera, options.tracker, static_cast<std::uint64_t>(options.seed), options.threads, truth,
                   sequence.Photometric());
-  Recorder recorder(writer, observers, start.working_image, {request.input, start.working_image, camera, options});
+  Recorder recorder(writer, observers, start.working_image,
+                    {request.input, start.working_image, camera, options, &tracker});
   const Ending ending = TrackFrames(sequence, request, options, start, tracker, recorder);
   // Whatever the ending: the frames that waited for a map are written too.
   Status recorded = recorder.Record(tracker.Finish());

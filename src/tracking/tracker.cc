@@ -157,12 +157,17 @@ void Tracker::TakeMap(const PreparedFrame& frame, const FrameReport& report) {
   }
   submap.idx = report.submap;
   submap.provisional = report.state == TrackingState::kProvisional;
+  if (report.first_map) submap.depth_sigma = report.first_map->evidence.depth_sigma;
   submap.last_cam_from_world = *report.cam_from_world;
   submap.before_last_cam_from_world = *report.cam_from_world;
   submap.previous = frame;
   submaps_->CountMap();
   Apply(TrackingEvent::kMapCreated);
 }
+
+PointId Tracker::next_point_id() const { return tracks_->next_id(); }
+
+void Tracker::SkipPointIds(PointId next) { tracks_->SkipIds(next); }
 
 std::vector<FrameReport> Tracker::Process(const PreparedFrame& frame) {
   StageTimes times;

@@ -58,6 +58,11 @@ class Tracker {
   // order of time.
   void TakeMap(const PreparedFrame& frame, const FrameReport& report);
 
+  // Ids of new points: the next one's, at least; and to leave those below `next` to others, who report points of the
+  // same run.
+  PointId next_point_id() const;
+  void SkipPointIds(PointId next);
+
   // The reports that became final with this frame, in order of time; each frame is reported once.
   std::vector<FrameReport> Process(const PreparedFrame& frame);
   // The reports that are held back, in order of time, the last processed frame's last: those since the reference while

@@ -5,6 +5,7 @@
 // it started, for as long as that is visible.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include "pliant/tracking/tracks/track_source.h"
@@ -22,6 +23,8 @@ class OracleTracks : public TrackSource {
   }
   std::optional<PointId> Add(const Eigen::Vector2d& pixel, const PreparedFrame& frame) override;
   bool Resume(PointId id, const Eigen::Vector2d& pixel, const PreparedFrame& frame) override;
+  PointId next_id() const override { return PointId{next_id_}; }
+  void SkipIds(PointId next) override { next_id_ = std::max(next_id_, next.value); }
   void Remove(PointId) override {}
   std::vector<PointTrack> Track(const PreparedFrame& previous, const PreparedFrame& current,
                                 std::span<const PointPrediction> predictions) override;

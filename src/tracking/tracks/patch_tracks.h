@@ -4,6 +4,7 @@
 // Point tracks by our own Lucas-Kanade tracker, as a source of tracks.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include "pliant/tracking/tracks/track_source.h"
@@ -19,6 +20,8 @@ class PatchTracks : public TrackSource {
   TrackAbilities abilities() const override { return {}; }
   std::optional<PointId> Add(const Eigen::Vector2d& pixel, const PreparedFrame& frame) override;
   bool Resume(PointId id, const Eigen::Vector2d& pixel, const PreparedFrame& frame) override;
+  PointId next_id() const override { return PointId{next_id_}; }
+  void SkipIds(PointId next) override { next_id_ = std::max(next_id_, next.value); }
   void Remove(PointId id) override { tracker_.Remove(id); }
   std::vector<PointTrack> Track(const PreparedFrame& previous, const PreparedFrame& current,
                                 std::span<const PointPrediction> predictions) override;

@@ -38,6 +38,9 @@ class TrackSource {
   virtual std::optional<PointId> Add(const Eigen::Vector2d& pixel, const PreparedFrame& frame) = 0;
   // The same for a point that has an id already, which is not in use here. False: it cannot be followed.
   virtual bool Resume(PointId id, const Eigen::Vector2d& pixel, const PreparedFrame& frame) = 0;
+  // The id that the next new point gets, at least; and to leave those below `next` to others.
+  virtual PointId next_id() const = 0;
+  virtual void SkipIds(PointId next) = 0;
   // Forgets a point; no effect when it is not known.
   virtual void Remove(PointId id) = 0;
 
