@@ -134,7 +134,10 @@ void WindowInitOptions::List(OptionTable& table) {
   table.Add("last_frame", &last_frame, "frames",
             "frames after the reference at which it is given up if there is no map", 2, 100000);
   table.Add("views", &views, "frames", "frames in the bundle adjustment, spread evenly since the reference", 3, 1000);
-  table.Add("min_views", &min_views, "frames", "minimum number of these frames in which a point is seen", 2, 1000);
+  table.Add("rigid_views", &rigid_views, "frames", "the same for a rigid scene; a re-estimated map takes views", 3,
+            1000);
+  table.Add("min_views", &min_views, "frames",
+            "minimum number of views in which a point is seen, and as large a share of rigid_views", 2, 1000);
   table.Add("min_frame_share", &min_frame_share, "-",
             "minimum share of all frames since the reference in which a point is seen to be added to the map", 0, 1);
   table.Add("max_points", &max_points, "-",

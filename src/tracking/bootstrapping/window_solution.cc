@@ -28,8 +28,8 @@ std::vector<PointId> ChoosePoints(const InitInput& input, const std::vector<std:
   std::map<PointId, int> seen;
   for (const std::size_t view : views)
     for (const InitObservation& observation : input.frames[view].observations) ++seen[observation.id];
-  const int least = std::min(options.min_views, static_cast<int>(views.size()));
-  const int bonus = static_cast<int>(views.size());
+  const auto bonus = static_cast<int>(views.size());
+  const int least = std::max(std::min(options.min_views, bonus), options.min_views * bonus / options.views);
   for (const InitObservation& observation : input.frames.back().observations)
     if (const auto found = seen.find(observation.id); found != seen.end() && found->second >= least)
       found->second += bonus;
@@ -121,12 +121,12 @@ struct PreparedWindow {
   DeformingWindow start;
 };
 
-Result<PreparedWindow> PrepareWindow(const InitInput& input, std::size_t frames, const WindowInitOptions& options,
-                                     double nominal_depth_mm) {
+Result<PreparedWindow> PrepareWindow(const InitInput& input, std::size_t frames, int views,
+                                     const WindowInitOptions& options, double nominal_depth_mm) {
   if (frames < kMinFrames)
     return {ErrorCode::kInsufficient, "a window takes at least " + std::to_string(kMinFrames) + " frames"};
   PreparedWindow window;
-  window.views = SpreadViews(frames, static_cast<std::size_t>(options.views));
+  window.views = SpreadViews(frames, static_cast<std::size_t>(views));
   window.ids = ChoosePoints(input, window.views, options);
   if (window.ids.size() < kMinPoints)
     return {ErrorCode::kInsufficient,
@@ -146,7 +146,7 @@ Result<SolvedWindow> SolveDeforming(const InitInput& input, const PreparedWindow
   // The solution is wrong, or the light is: not at the camera, of another response, on tissue of many colors.
   WindowInitOptions without = options;
   without.light = Switch::kOff;
-  const auto prepared = PrepareWindow(input, window.views.back() + 1, without, nominal_depth_mm);
+  const auto prepared = PrepareWindow(input, window.views.back() + 1, options.views, without, nominal_depth_mm);
   if (!prepared.ok()) return lit;
   auto unlit = SolveDeforming(input, *prepared, without, nominal_depth_mm);
   if (!unlit.ok() || MedianSigma(unlit->solution) > MedianSigma(lit.solution)) return lit;
@@ -222,10 +222,13 @@ DeformingWindow InAllFrames(const InitInput& input, const std::vector<std::size_
 
 Result<SolvedWindow> SolveWindow(const InitInput& input, std::size_t frames, WindowScene scene,
                                  const WindowInitOptions& options, double nominal_depth_mm) {
-  const auto window = PrepareWindow(input, frames, options, nominal_depth_mm);
+  const auto wide = PrepareWindow(input, frames, options.rigid_views, options, nominal_depth_mm);
+  if (!wide.ok()) return wide.status();
+  auto rigid = SolveRigid(input, *wide, options);
+  if (rigid.ok() || scene == WindowScene::kRigid) return rigid;
+  const auto window = PrepareWindow(input, frames, options.views, options, nominal_depth_mm);
   if (!window.ok()) return window.status();
-  auto rigid = SolveRigid(input, *window, options);
-  return rigid.ok() || scene == WindowScene::kRigid ? rigid : SolveDeforming(input, *window, options, nominal_depth_mm);
+  return SolveDeforming(input, *window, options, nominal_depth_mm);
 }
 
 }  // namespace pliant

@@ -19,7 +19,9 @@ Status Reestimate(const InitInput& input, WindowScene scene, const WindowInitOpt
   const bool may_deform = scene == WindowScene::kAny;
   if (may_deform)  // a rotation alone does not constrain the deforming window
     if (Status status = CheckWindowNotARotation(input, &outcome->measured); !status.ok()) return status;
-  const auto window = SolveWindow(input, input.frames.size(), scene, options, nominal_depth_mm);
+  WindowInitOptions as_deforming = options;
+  as_deforming.rigid_views = options.views;
+  const auto window = SolveWindow(input, input.frames.size(), scene, as_deforming, nominal_depth_mm);
   if (!window.ok()) return window.status();
   MapDemands demands = DemandsOf(options, may_deform ? kRelaxed : 0.0);
   // Where the scene is rigid errors are of the tracks alone. What drifts along a contour or over the surface, little at

@@ -77,7 +77,8 @@ struct WindowInitOptions {
   int deforming_frame = 20;              // before it only a rigid scene is attempted
   int last_frame = 50;                   // frames after which a reference is given up
   int views = 8;                         // frames in the problem, spread evenly
-  int min_views = 5;                     // a point must be seen in as many of them
+  int rigid_views = 16;                  // the same for a rigid scene: more cost little there
+  int min_views = 5;                     // of `views` a point must be seen in, and as large a share of rigid_views
   double min_frame_share = 0.375;        // of all frames, in which a point must be seen to join the map
   int max_points = 600;                  // in the problem
   int min_points = 40;                   // fewer certain points in the last frame make no map
