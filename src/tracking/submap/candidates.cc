@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "pliant/base/statistics.h"
@@ -190,7 +191,8 @@ std::vector<Candidates::CertainPoint> Candidates::Certain(const Rigid3& cam_from
     return guess.rms <= max_error &&
            guess.log_distance_sigma * (cam_from_world * point.position).norm() <= max_sigma * median_distance;
   };
-  const SurfaceDistances surface(map, cam_from_world, options_.neighbors);
+  std::optional<SurfaceDistances> surface;  // where no point can be certain by it, it is not asked
+  if (map_depth_sigma > 0.0) surface.emplace(map, cam_from_world, options_.neighbors);
   std::vector<CertainPoint> certain;
   for (const auto& [id, guess] : placed) {
     Point& point = points_.at(id);
@@ -198,7 +200,7 @@ std::vector<Candidates::CertainPoint> Candidates::Certain(const Rigid3& cam_from
     // What is known of its surroundings' motion depends on how far from them it turned out to be: once more from there.
     if (is_certain(guess, point, max_sigma)) {
       if (is_certain(MoveGuess({}, &point), point, max_sigma)) certain.push_back({id, point.position});
-    } else if (const auto prior = surface.At(point.track.pixel, point.rays.back()); prior) {
+    } else if (const auto prior = surface ? surface->At(point.track.pixel, point.rays.back()) : std::nullopt; prior) {
       const Eigen::Vector3d before = point.position;
       if (is_certain(MoveGuess(prior, &point), point, map_depth_sigma))
         certain.push_back({id, point.position, true});
