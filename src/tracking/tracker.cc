@@ -53,6 +53,12 @@ std::unique_ptr<Initializer> MakeFirstInitializer(const TrackerOptions& options,
   return MakeOracleInitializer(truth, NominalDepth(options.init), options.min_points, std::move(initializer));
 }
 
+// A start that takes the scene as rigid needs less.
+std::unique_ptr<Initializer> MakeAlternative(const TrackerOptions& options, std::uint64_t seed) {
+  if (options.init.method != InitMethod::kWindow || options.oracle.Any()) return nullptr;
+  return MakeGatedInitializer(options.init.monocular, Random(seed).Child("alternative initializer"));
+}
+
 double CoverageIn(const PreparedFrame& frame, const std::vector<PointObservation>& observations) {
   std::vector<Eigen::Vector2d> pixels;
   for (const PointObservation& seen : observations) pixels.push_back(seen.pixel);
@@ -124,7 +130,8 @@ Tracker::Tracker(const Camera& camera, const TrackerOptions& options, std::uint6
       oracle_poses_(std::make_unique<OraclePoses>(options.oracle, truth, NominalDepth(options.init))),
       tracks_(MakeTrackSource(options_, threads, truth)),
       bootstrapper_(std::make_unique<Bootstrapper>(camera, options_, threads, photometric, tracks_.get(),
-                                                   oracle_poses_.get(), MakeFirstInitializer(options_, seed, truth))),
+                                                   oracle_poses_.get(), MakeFirstInitializer(options_, seed, truth),
+                                                   MakeAlternative(options_, seed))),
       frame_tracker_(std::make_unique<FrameTracker>(camera, options_, tracks_.get(), oracle_poses_.get())),
       relocalizer_(std::make_unique<Relocalizer>(camera, options_, tracks_->abilities(), frame_tracker_.get())),
       map_updater_(std::make_unique<MapUpdater>(camera, options_, threads, photometric, tracks_.get())),
@@ -135,6 +142,8 @@ Tracker::~Tracker() = default;
 const Map& Tracker::map() const { return submaps_->current().map; }
 
 bool Tracker::HasInactiveSubmaps() const { return submaps_->HasInactive(); }
+
+const std::string& Tracker::WouldStart() const { return bootstrapper_->WouldStart(); }
 
 bool Tracker::NeedsDepth() const { return options_.init.TakesKnownDepth() && map().landmarks.empty(); }
 

@@ -216,6 +216,17 @@ TEST(Robustness, ADepthImageThatNothingNeedsAnyMoreMayBeBroken) {
   }
 }
 
+TEST(Robustness, ARunWithoutAMapNamesTheMethodThatWouldStart) {
+  const TestFolder folder;
+  TrackOptions options;
+  options.tracker.init.window.min_points = 100000;
+  const RunSummary summary = TrackSequenceAt(kSequence, folder.Path("run"), options);
+  EXPECT_EQ(summary.status, RunStatus::kFailed);
+  EXPECT_THAT(summary.note, HasSubstr("--Init.method gated would start in frame "));
+  options.tracker.init.method = InitMethod::kGated;
+  EXPECT_EQ(TrackSequenceAt(kSequence, folder.Path("gated"), options).status, RunStatus::kCompleted) << "it does";
+}
+
 TEST(Robustness, AStartFromDepthWithoutDepthSaysSo) {
   const TestFolder folder;
   const SequenceCopy sequence(folder, 4);

@@ -87,6 +87,8 @@ class Tracker {
   // Whether there are inactive submaps: left, and neither found again nor merged.
   bool HasInactiveSubmaps() const;
   const Map& map() const;
+  // While the first map is awaited: another Init.method that would have made one, as a sentence; empty: none.
+  const std::string& WouldStart() const;
   // Lost for max_lost_frames frames that are neither dark nor frozen, and no new map is to be begun.
   bool GaveUp() const;
 

@@ -12,6 +12,8 @@
 namespace pliant {
 namespace {
 
+constexpr std::size_t kAskAlternativeEvery = 5;  // frames
+
 // Of two provisional maps.
 bool IsBetter(const InitOutcome& a, const InitOutcome& b) {
   return a.measured.DepthSignal() >= b.measured.DepthSignal();
@@ -21,14 +23,16 @@ bool IsBetter(const InitOutcome& a, const InitOutcome& b) {
 
 Bootstrapper::Bootstrapper(const Camera& camera, const TrackerOptions& options, int threads,
                            const std::optional<PhotometricCalibration>& photometric, TrackSource* tracks,
-                           OraclePoses* oracle_poses, std::unique_ptr<Initializer> initializer)
+                           OraclePoses* oracle_poses, std::unique_ptr<Initializer> initializer,
+                           std::unique_ptr<Initializer> alternative)
     : camera_(camera),
       options_(options),
       threads_(threads),
       photometric_(photometric),
       tracks_(tracks),
       oracle_poses_(oracle_poses),
-      initializer_(std::move(initializer)) {}
+      initializer_(std::move(initializer)),
+      alternative_(std::move(alternative)) {}
 
 BootstrapStep Bootstrapper::Process(const PreparedFrame& frame, Submap* submap, StageTimes* times) {
   assert(submap->map.landmarks.empty());
@@ -103,6 +107,8 @@ void Bootstrapper::TryInitialize(const PreparedFrame& frame, StageTimes* times, 
   InitOutcome outcome = AskInitializer(frame.depth_mm, InitMoment::kMoreFollow, times);
   step->note = outcome.reason;
   if (outcome.ambiguous) provisional_.reset();
+  if (outcome.decision != InitDecision::kMap && !outcome.ambiguous && frames_.size() % kAskAlternativeEvery == 0)
+    AskAlternative(InitMoment::kMoreFollow, times);
   switch (outcome.decision) {
     case InitDecision::kMap:
       FinishMapOrGoBack(std::move(outcome), step);
@@ -164,6 +170,8 @@ BootstrapStep Bootstrapper::EndSequence(StageTimes* times) {
     FinishMapOrGoBack(std::move(outcome), &step);
   else if (provisional_)
     GoBack(&step);
+  else if (!outcome.ambiguous)
+    AskAlternative(InitMoment::kLastFrame, times);
   return step;
 }
 
@@ -179,6 +187,16 @@ InitOutcome Bootstrapper::AskInitializer(const cv::Mat& depth_mm, InitMoment mom
   const StageTimer timer(times, Stage::kInitialize);
   const InitInput input{camera_, frames_, depth_mm, moment, threads_, known_depths_, photometric_};
   return initializer_->Try(input);
+}
+
+void Bootstrapper::AskAlternative(InitMoment moment, StageTimes* times) {
+  if (alternative_ == nullptr || !would_start_.empty()) return;
+  const StageTimer timer(times, Stage::kInitialize);
+  const InitOutcome outcome = alternative_->Try({camera_, frames_, {}, moment, threads_, {}, photometric_});
+  if (outcome.decision != InitDecision::kMap) return;
+  would_start_ = "--Init.method " + std::string(alternative_->name()) + " would start in frame " +
+                 std::to_string(frames_.back().frame_idx) + " with " + std::to_string(outcome.points.size()) +
+                 " points, if the scene hardly deforms";
 }
 
 void Bootstrapper::FinishMap(InitOutcome outcome, BootstrapStep* step) {

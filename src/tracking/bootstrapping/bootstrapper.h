@@ -40,10 +40,11 @@ struct BootstrapStep {
 
 class Bootstrapper {
  public:
-  // `tracks` and `oracle_poses` must outlive this. `threads` >= 1 do not change the result.
+  // `tracks` and `oracle_poses` must outlive this. `threads` >= 1 do not change the result. `alternative`, which may be
+  // null, takes more for granted than `initializer`: it makes no map, but is asked whether it would (WouldStart).
   Bootstrapper(const Camera& camera, const TrackerOptions& options, int threads,
                const std::optional<PhotometricCalibration>& photometric, TrackSource* tracks, OraclePoses* oracle_poses,
-               std::unique_ptr<Initializer> initializer);
+               std::unique_ptr<Initializer> initializer, std::unique_ptr<Initializer> alternative);
 
   // The next frame; `submap` has no landmarks yet.
   BootstrapStep Process(const PreparedFrame& frame, Submap* submap, StageTimes* times);
@@ -57,6 +58,9 @@ class Bootstrapper {
   // Gives the reference up, and its points.
   void Abandon();
 
+  // What the alternative answered the first time that it would have made a map: one sentence; empty: it never would.
+  const std::string& WouldStart() const { return would_start_; }
+
   bool HasReference() const { return !frames_.empty(); }
   // There has to be one.
   int reference_frame_idx() const { return frames_.front().frame_idx; }
@@ -66,6 +70,7 @@ class Bootstrapper {
   BootstrapStep FollowReference(const PreparedFrame& frame, Submap* submap, StageTimes* times);
   void TryInitialize(const PreparedFrame& frame, StageTimes* times, BootstrapStep* step);
   InitOutcome AskInitializer(const cv::Mat& depth_mm, InitMoment moment, StageTimes* times);
+  void AskAlternative(InitMoment moment, StageTimes* times);
   void FinishMap(InitOutcome outcome, BootstrapStep* step);
   void FinishMapOrGoBack(InitOutcome outcome, BootstrapStep* step);
   void PutAside(InitOutcome outcome, const PreparedFrame& frame);
@@ -88,11 +93,13 @@ class Bootstrapper {
   TrackSource* tracks_;
   OraclePoses* oracle_poses_;
   std::unique_ptr<Initializer> initializer_;
+  std::unique_ptr<Initializer> alternative_;
 
   std::vector<InitFrame> frames_;           // since the reference; empty: there is none
   std::vector<double> known_depths_;        // of the reference's points, where they are known
   std::string image_fault_;                 // of the last frame
   std::optional<Provisional> provisional_;  // the best one since the reference
+  std::string would_start_;
 };
 
 }  // namespace pliant
