@@ -85,6 +85,11 @@ bool SeesInscribedCircle(const Camera& camera) {
   return true;
 }
 
+// The first parameters.
+std::size_t NumFocalLengths(const Camera& camera) {
+  return camera.Visit([](const auto& model) -> std::size_t { return model.kParamNames.starts_with("fx") ? 2 : 1; });
+}
+
 }  // namespace
 
 Result<Camera> Camera::Create(CameraModelId model, int width, int height, std::span<const double> params) {
@@ -112,9 +117,14 @@ Result<Camera> Camera::Create(std::string_view model_name, int width, int height
                                                  "'; did you mean '" + NearestName(model_name, names) + "'?");
 }
 
+Result<Camera> Camera::WithFocalLengthTimes(double factor) const {
+  std::vector<double> changed(params().begin(), params().end());
+  for (std::size_t i = 0; i < NumFocalLengths(*this); ++i) changed[i] *= factor;
+  return Create(model_id(), width_, height_, changed);
+}
+
 Result<Camera> Camera::Resized(double scale) const {
-  const auto focals =
-      Visit([](const auto& model) -> std::size_t { return model.kParamNames.starts_with("fx") ? 2 : 1; });
+  const std::size_t focals = NumFocalLengths(*this);
   std::vector<double> resized(params().begin(), params().end());
   for (std::size_t i = 0; i < focals; ++i) resized[i] *= scale;
   for (std::size_t i = focals; i < focals + 2; ++i) resized[i] = scale * (resized[i] + 0.5) - 0.5;  // centers of pixels

@@ -29,7 +29,8 @@ Json FirstMapJson(const FirstMapFrames& map) {
           {"error_px", evidence.median_error_px},
           {"depth_sigma", evidence.depth_sigma},
           {"depth_spread", evidence.depth_spread},
-          {"still_camera_error_ratio", evidence.still_camera_error_ratio}};
+          {"still_camera_error_ratio", evidence.still_camera_error_ratio},
+          {"focal_length_factor", evidence.focal_length_factor}};
 }
 
 FirstMapFrames ReadFirstMap(const Json& json) {
@@ -42,7 +43,8 @@ FirstMapFrames ReadFirstMap(const Json& json) {
            .median_error_px = json.value("error_px", 0.0),
            .depth_sigma = json.value("depth_sigma", 0.0),
            .depth_spread = json.value("depth_spread", 0.0),
-           .still_camera_error_ratio = json.value("still_camera_error_ratio", 0.0)}};
+           .still_camera_error_ratio = json.value("still_camera_error_ratio", 0.0),
+           .focal_length_factor = json.value("focal_length_factor", 1.0)}};
 }
 
 }  // namespace

@@ -73,6 +73,12 @@ std::string OfCamera(const FirstMapEvidence& evidence) {
          Digits(evidence.still_camera_error_ratio, 2) + " times as large, so it moved.";
 }
 
+std::string OfCalibration(const FirstMapEvidence& evidence) {
+  if (evidence.focal_length_factor == 1.0) return {};
+  return "the images contradict the calibration: with about " + Digits(evidence.focal_length_factor, 2) +
+         " times its focal length a rigid scene explains them clearly better. Shapes are wrong if it is.";
+}
+
 std::string OfImages(const RunDescription& run) {
   if (!(run.track_noise_px > 0.0)) return {};
   return "The first images have a noise of " + Digits(run.image_noise_levels, 1) +
@@ -99,6 +105,8 @@ std::string Advice(const RunSummary& summary) {
     advice.emplace_back(
         "Depth needs more parallax: move the camera sideways, and further by the distance of the "
         "tissue. Compare a run begun at another frame: pliant evaluate tells how far they agree.");
+  if (count([](const FirstMapEvidence& e) { return e.focal_length_factor != 1.0; }))
+    advice.emplace_back("Calibrate the camera, or check that the calibration is of this lens, zoom and image size.");
   if (FramesIn(summary, TrackingState::kLost) > 0)
     advice.emplace_back("Where the map was lost, look for tools, smoke and fast motion; a mask over tools helps.");
   if (summary.median_coverage > 0.0 && summary.median_coverage < kMinCoverage)
@@ -122,6 +130,7 @@ std::vector<std::pair<std::string, std::string>> TrustIn(const RunSummary& summa
   add("frames", OfFrames(summary));
   add("depth", OfMaps(summary, OfDepth));
   add("camera", OfMaps(summary, OfCamera));
+  add("calibration", OfMaps(summary, OfCalibration));
   add("images", OfImages(summary.description));
   if (summary.median_reprojection_error_px > 0.0) add("tracks", OfTracks(summary));
   if (summary.median_coverage > 0.0)

@@ -51,6 +51,17 @@ TEST_P(EveryCamera, ResizedSeesEveryPointAtTheSamePlaceOfTheImage) {
   }
 }
 
+TEST_P(EveryCamera, ALongerFocalLengthMagnifiesAboutThePrincipalPoint) {
+  constexpr double kFactor = 1.25;
+  const auto longer = camera_.WithFocalLengthTimes(kFactor);
+  ASSERT_TRUE(longer.ok()) << longer.status().message();
+  const Eigen::Vector3d point(4, -3, 40);
+  const Eigen::Vector2d center = *camera_.Project(Eigen::Vector3d::UnitZ());
+  const Eigen::Vector2d expected = center + kFactor * (*camera_.Project(point) - center);
+  EXPECT_LT((*longer->Project(point) - expected).norm(), kPixelRounding);
+  EXPECT_FALSE(camera_.WithFocalLengthTimes(0).ok());
+}
+
 TEST_P(EveryCamera, ProjectsUnprojectedPixelsOntoThemselves) {
   int seen = 0;
   for (const Eigen::Vector2d& pixel : PixelGrid(camera_)) {

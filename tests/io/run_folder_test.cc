@@ -43,6 +43,7 @@ TEST(RunFolder, ComesBackAsItWasReported) {
   EXPECT_EQ(first_map.evidence.points, kFirstMap.evidence.points);
   EXPECT_EQ(first_map.evidence.depth_sigma, kFirstMap.evidence.depth_sigma);
   EXPECT_EQ(first_map.evidence.still_camera_error_ratio, kFirstMap.evidence.still_camera_error_ratio);
+  EXPECT_EQ(first_map.evidence.focal_length_factor, kFirstMap.evidence.focal_length_factor);
   EXPECT_THAT(run->summary->states,
               UnorderedElementsAre(Pair(TrackingState::kWaitingForReference, 1), Pair(TrackingState::kTracking, 4)));
   EXPECT_NEAR(run->summary->median_coverage, kCoverage, kRoundOff);

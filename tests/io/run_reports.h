@@ -21,8 +21,13 @@ inline Camera TestCamera() {
   return Camera::Create("PINHOLE", 640, 480, std::vector<double>{500, 500, 319.5, 239.5}).value();
 }
 
-inline constexpr FirstMapFrames kFirstMap = {
-    12, 14, {.deforming = true, .points = 6, .depth_sigma = 0.0125, .still_camera_error_ratio = 1.75}};
+inline constexpr FirstMapFrames kFirstMap = {12,
+                                             14,
+                                             {.deforming = true,
+                                              .points = 6,
+                                              .depth_sigma = 0.0125,
+                                              .still_camera_error_ratio = 1.75,
+                                              .focal_length_factor = 0.6}};
 inline constexpr double kCoverage = 0.625;
 
 // Frame 0 waits; frames 1 and 2 have their poses from the first map; from frame 1 on, odd points are seen in odd frames

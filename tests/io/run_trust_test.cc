@@ -62,6 +62,15 @@ TEST(RunTrust, DepthsThatAreHardlyBetterThanOneAreNoneToTrust) {
   EXPECT_THAT(trust.at("advice"), HasSubstr("more parallax"));
 }
 
+TEST(RunTrust, SaysThatTheCalibrationIsContradicted) {
+  EXPECT_THAT(Trust(Summary(kKnown)), Not(Contains(Key("calibration"))));
+  FirstMapEvidence contradicted = kKnown;
+  contradicted.focal_length_factor = 0.75;
+  const auto trust = Trust(Summary(contradicted));
+  EXPECT_THAT(trust.at("calibration"), HasSubstr("about 0.75 times its focal length"));
+  EXPECT_THAT(trust.at("advice"), HasSubstr("Calibrate the camera"));
+}
+
 TEST(RunTrust, AnAmbiguousRunIsToldWhatToDo) {
   RunSummary summary = Summary(kKnown);
   summary.frames_tracked = 0;

@@ -61,6 +61,8 @@ class Camera {
 
   // The camera of the same image resized by `scale` > 0, its sides rounded to whole pixels. Fails as Create.
   Result<Camera> Resized(double scale) const;
+  // The camera of a lens whose focal lengths are `factor` > 0 times as long, with the same distortion. Fails as Create.
+  Result<Camera> WithFocalLengthTimes(double factor) const;
 
   CameraModelId model_id() const;
   std::string_view model_name() const { return EnumName(model_id()); }

@@ -12,9 +12,9 @@
 
 namespace pliant {
 
-// Topics (frames, depth, camera, images, tracks, coverage, advice) with one or more sentences each, in this order;
-// those of which nothing is known are left out. Empty for a run that has no frames. Only the summary's own numbers are
-// used.
+// Topics (frames, depth, camera, calibration, images, tracks, coverage, advice) with one or more sentences each, in
+// this order; those of which nothing is known are left out. Empty for a run that has no frames. Only the summary's own
+// numbers are used.
 std::vector<std::pair<std::string, std::string>> TrustIn(const RunSummary& summary);
 
 }  // namespace pliant

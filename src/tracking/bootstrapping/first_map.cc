@@ -20,7 +20,8 @@ FirstMapEvidence EvidenceOf(const InitOutcome& outcome) {
           .median_error_px = measured.median_error_px,
           .depth_sigma = measured.median_depth_sigma,
           .depth_spread = measured.depth_spread,
-          .still_camera_error_ratio = measured.still_camera_error_ratio};
+          .still_camera_error_ratio = measured.still_camera_error_ratio,
+          .focal_length_factor = measured.focal_length_factor};
 }
 
 void ReportFrame(const Camera& camera, const InitFrame& frame, const InitFrameState& state, bool provisional,

@@ -142,8 +142,7 @@ Result<SolvedWindow> SolveDeforming(const InitInput& input, const PreparedWindow
   auto solution = SolveDeformingWindow(window.start, input.camera.MeanFocalLengthPx(), options.window, input.threads);
   if (!solution.ok()) return solution.status();
   SolvedWindow lit{window.views, window.ids, std::move(*solution), false};
-  if (lit.solution.light_error <= kMaxOfSpread * lit.solution.log_distance_spread) return lit;
-  // The solution is wrong, or the light is: not at the camera, of another response, on tissue of many colors.
+  if (!ContradictsLight(lit.solution)) return lit;
   WindowInitOptions without = options;
   without.light = Switch::kOff;
   const auto prepared = PrepareWindow(input, window.views.back() + 1, options.views, without, nominal_depth_mm);
@@ -172,6 +171,10 @@ Result<SolvedWindow> SolveRigid(const InitInput& input, const PreparedWindow& wi
 }
 
 }  // namespace
+
+bool ContradictsLight(const DeformingSolution& solution) {
+  return solution.light_error > kMaxOfSpread * solution.log_distance_spread;
+}
 
 int IndexOf(PointId id, const std::vector<PointId>& ids) {
   const auto found = std::lower_bound(ids.begin(), ids.end(), id);
@@ -218,6 +221,15 @@ DeformingWindow InAllFrames(const InitInput& input, const std::vector<std::size_
     all.observations.insert(all.observations.end(), seen.begin(), seen.end());
   }
   return all;
+}
+
+Result<SolvedWindow> SolveAsRigid(const InitInput& input, std::size_t frames, const WindowInitOptions& options,
+                                  double nominal_depth_mm) {
+  const auto window = PrepareWindow(input, frames, options.rigid_views, options, nominal_depth_mm);
+  if (!window.ok()) return window.status();
+  auto solution = SolveRigidWindow(window->start, input.camera.MeanFocalLengthPx(), options.window, input.threads);
+  if (!solution.ok()) return solution.status();
+  return SolvedWindow{window->views, window->ids, std::move(*solution), false};
 }
 
 Result<SolvedWindow> SolveWindow(const InitInput& input, std::size_t frames, WindowScene scene,

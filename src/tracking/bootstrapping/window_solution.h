@@ -21,6 +21,10 @@ struct SolvedWindow {
   bool light_is_of_no_use = false;  // it was to be used, and was not
 };
 
+// Whether the light says of the distances next to nothing, or something else: the solution is wrong, or the light is
+// not at the camera, of another response, or on tissue of many colors. False where there is no light.
+bool ContradictsLight(const DeformingSolution& solution);
+
 enum class WindowScene { kRigid, kAny };
 
 // The window of the input's first `frames` frames, solved: as a rigid scene if it is one, else, where it may be any,
@@ -28,6 +32,10 @@ enum class WindowScene { kRigid, kAny };
 // kInsufficient, kDegenerate: what is missing, or that the scene deforms.
 Result<SolvedWindow> SolveWindow(const InitInput& input, std::size_t frames, WindowScene scene,
                                  const WindowInitOptions& options, double nominal_depth_mm);
+
+// The same window as if the scene were rigid, whether it is or not: its residual_correlation tells.
+Result<SolvedWindow> SolveAsRigid(const InitInput& input, std::size_t frames, const WindowInitOptions& options,
+                                  double nominal_depth_mm);
 
 // A point's index in the sorted `ids`, or -1.
 int IndexOf(PointId id, const std::vector<PointId>& ids);
