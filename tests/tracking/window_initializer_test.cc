@@ -20,8 +20,10 @@ namespace pliant {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 using test::CameraMotion;
+using test::kNoisePx;
 using test::kNominalMm;
 using test::kShape;
 using test::WavingTracks;
@@ -265,7 +267,7 @@ TEST(WindowInitializer, AVignetteThatIsKnownIsNoDepth) {
   const InitOutcome known = initializer->Try(input);
   ASSERT_EQ(known.decision, InitDecision::kMap) << known.reason;
   for (const int t : {0, 60}) EXPECT_LT(sequence.ShapeError(known, t), kShape) << t;
-  EXPECT_THAT(known.reason, testing::Not(HasSubstr("brightness is no depth cue")));
+  EXPECT_THAT(known.reason, Not(HasSubstr("brightness is no depth cue")));
   EXPECT_THAT(unknown.reason, HasSubstr("brightness is no depth cue"));
 }
 
@@ -284,6 +286,61 @@ TEST(WindowInitializer, SaysThatTheCameraOnlyTurned) {
   EXPECT_THAT(outcome.reason, HasSubstr("rotated or stood still"));
 }
 
+TEST(WindowInitializer, SaysThatTheImagesContradictTheFocalLength) {
+  // About the scene: along the optical axis any focal length would do.
+  WavingTracks rigid(31, CameraMotion::kStill);
+  const Eigen::Vector3d center(0, 0, 60);
+  Random random(3);
+  for (std::size_t t = 0; t < rigid.frames.size(); ++t)
+    for (InitObservation& seen : rigid.frames[t].observations) {
+      const Eigen::Vector3d from_center = rigid.points[static_cast<std::size_t>(seen.id.value)] - center;
+      const Eigen::Quaterniond turn = RotationExp(Eigen::Vector3d(0, 0.01 * static_cast<double>(t), 0));
+      seen.pixel = *rigid.camera.Project(center + turn * from_center) +
+                   kNoisePx * Eigen::Vector2d(random.Normal(), random.Normal());
+    }
+  EXPECT_EQ(rigid.Try({}, InitMoment::kLastFrame).measured.focal_length_factor, 1.0);
+  constexpr double kWrong = 0.75;
+  rigid.camera = rigid.camera.WithFocalLengthTimes(kWrong).value();
+  const InitOutcome outcome = rigid.Try({}, InitMoment::kLastFrame);
+  EXPECT_NEAR(outcome.measured.focal_length_factor, 1 / kWrong, 0.01) << "one of those that are tried";
+  EXPECT_THAT(outcome.reason, HasSubstr("contradict the focal length"));
+}
+
+TEST(WindowInitializer, ASceneThatDeformsDoesNotContradictTheFocalLength) {
+  for (const int frames : {16, 31, 61}) {
+    const InitOutcome outcome = WavingTracks(frames).Try({}, InitMoment::kLastFrame);
+    EXPECT_EQ(outcome.measured.focal_length_factor, 1.0) << frames;
+  }
+}
+
+// The last frames of which see fewer than half of the reference's points.
+WavingTracks LosingPoints(int frames, int from) {
+  WavingTracks sequence(frames);
+  for (std::size_t t = static_cast<std::size_t>(from); t < sequence.frames.size(); ++t)
+    std::erase_if(sequence.frames[t].observations,
+                  [](const InitObservation& seen) { return seen.id.value < kFromTheStart && seen.id.value % 9 > 3; });
+  return sequence;
+}
+
+TEST(WindowInitializer, IsTriedAtOnceWhenHalfOfThePointsAreLost) {
+  EXPECT_THAT(WavingTracks(9).Try({}).reason, HasSubstr("a map is first attempted after"));
+  const InitOutcome tried = LosingPoints(9, 8).Try({});
+  EXPECT_THAT(tried.reason, Not(HasSubstr("a map is first attempted after")));
+  EXPECT_THAT(tried.reason, Not(HasSubstr("are still followed")));
+  EXPECT_THAT(LosingPoints(9, 7).Try({}).reason, HasSubstr("a map is first attempted after"))
+      << "it was tried in the frame before";
+}
+
+TEST(WindowInitializer, AShortDeformingWindowIsTriedWhereHalfOfThePointsAreLostButMakesNoCertainMap) {
+  EXPECT_THAT(WavingTracks(16).Try({}).reason, HasSubstr("the scene deforms: the errors"));
+  WindowInitOptions easy;
+  easy.certain_depth_sigma = easy.max_depth_sigma = 1;
+  easy.min_certain_share = 0;
+  const InitOutcome early = LosingPoints(16, 15).Try(easy);
+  EXPECT_NE(early.decision, InitDecision::kMap);
+  EXPECT_THAT(early.reason, HasSubstr("a window of 16 frames is too short"));
+}
+
 TEST(WindowInitializer, SaysWhenCameraAndSceneCannotBeToldApart) {
   const WavingTracks held(51, CameraMotion::kHeld);
   const InitOutcome outcome = held.Try({});
@@ -294,6 +351,28 @@ TEST(WindowInitializer, SaysWhenCameraAndSceneCannotBeToldApart) {
   WindowInitOptions unasked;
   unasked.min_still_camera_ratio = 0;
   EXPECT_EQ(held.Try(unasked).decision, InitDecision::kMap) << "nothing else refuses it";
+}
+
+// A camera that stands still before a wall of which a part moves, in noisy images.
+WavingTracks PokedWall(int frames) {
+  WavingTracks sequence(frames, CameraMotion::kStill);
+  Random random(8);
+  for (std::size_t t = 0; t < sequence.frames.size(); ++t)
+    for (InitObservation& seen : sequence.frames[t].observations) {
+      const Eigen::Vector3d& point = sequence.points[static_cast<std::size_t>(seen.id.value)];
+      const double poke =
+          std::exp(-point.head<2>().squaredNorm() / (2 * 10 * 10)) * std::sin(0.08 * static_cast<double>(t));
+      seen.pixel += Eigen::Vector2d(20 * poke, 0) + 0.2 * Eigen::Vector2d(random.Normal(), random.Normal());
+    }
+  return sequence;
+}
+
+TEST(WindowInitializer, TakesNoPokeForAMotionOfTheCamera) {
+  for (const int frames : {11, 16, 21, 31, 46}) {
+    const InitOutcome outcome = PokedWall(frames).Try({});
+    EXPECT_NE(outcome.decision, InitDecision::kMap) << frames << ": " << outcome.reason;
+    EXPECT_NE(outcome.decision, InitDecision::kProvisional) << frames << ": " << outcome.reason;
+  }
 }
 
 TEST(WindowInitializer, SaysByHowMuchTheCameraMoves) {

@@ -8,12 +8,16 @@
 #include <utility>
 #include <vector>
 
+#include "pliant/base/statistics.h"
 #include "pliant/base/text.h"
 #include "pliant/estimation/window/still_camera.h"
+#include "pliant/geometry/triangulation.h"
 #include "tracking/bootstrapping/initial_map.h"
 
 namespace pliant {
 namespace {
+
+constexpr double kMinParallaxByError = 10.0;  // of a rigid scene: two views alone then know depths to 14 %
 
 // The frames that no model was fitted to, of which there may be none in a short window: then all but the reference.
 std::vector<int> ComparedFrames(std::size_t frames, const std::vector<std::size_t>& views) {
@@ -26,12 +30,34 @@ std::vector<int> ComparedFrames(std::size_t frames, const std::vector<std::size_
   return between.empty() ? all : between;
 }
 
+// Of the points' directions from the reference and from the view where they differ most, in the median: pixels.
+double LargestParallaxPx(const DeformingWindow& window, double focal_px) {
+  double largest = 0;
+  for (const Rigid3& cam_from_world : window.cams_from_world) {
+    const Eigen::Vector3d center = cam_from_world.OriginInSource();
+    std::vector<double> angles;
+    for (const Eigen::Vector3d& point : window.points_in_world) angles.push_back(AngleBetween(point, point - center));
+    largest = std::max(largest, focal_px * Median(std::move(angles)));
+  }
+  return largest;
+}
+
+Status CheckRigidMotion(const DeformingWindow& window, double focal_px, double median_error_px) {
+  const double parallax_px = LargestParallaxPx(window, focal_px);
+  if (parallax_px >= kMinParallaxByError * median_error_px) return Status::Ok();
+  return {ErrorCode::kDegenerate, "a median parallax of " + Digits(parallax_px, 1) +
+                                      " px does not stand out from errors of " + Digits(median_error_px, 2) +
+                                      " px: the camera hardly moves, or only turns; move it sideways or forwards"};
+}
+
 }  // namespace
 
 Status CheckCameraMotion(const InitInput& input, const SolvedWindow& window, const WindowInitOptions& options,
                          InitOutcome* outcome) {
-  if (window.solution.window.coefficients.rows() == 0 || options.min_still_camera_ratio <= 0.0) return Status::Ok();
+  if (options.min_still_camera_ratio <= 0.0) return Status::Ok();
   const double focal_px = input.camera.MeanFocalLengthPx();
+  if (window.solution.window.coefficients.rows() == 0)
+    return CheckRigidMotion(window.solution.window, focal_px, outcome->measured.median_error_px);
   auto models = SolveCameraMotionModels(window.solution, focal_px, options.window, input.threads);
   if (!models.ok()) return models.status();
   std::vector<PointId> ids;

@@ -7,7 +7,9 @@
 #include <vector>
 
 #include "pliant/base/statistics.h"
+#include "pliant/base/text.h"
 #include "pliant/tracking/bootstrapping/make_initializer.h"
+#include "tracking/bootstrapping/focal_length_check.h"
 #include "tracking/bootstrapping/initial_map.h"
 #include "tracking/bootstrapping/rotation_check.h"
 #include "tracking/bootstrapping/window_map.h"
@@ -15,6 +17,28 @@
 
 namespace pliant {
 namespace {
+
+constexpr int kMinWait = 6;             // frames after the reference
+constexpr double kMaxLightError = 0.2;  // of log distance, in the median: twice what it is where there is light at all
+
+// How many of the reference's points each frame sees.
+std::vector<int> KeptPoints(const std::vector<InitFrame>& frames) {
+  std::vector<int> kept;
+  for (const InitFrame& frame : frames) {
+    int count = 0;
+    for (const InitObservation& seen : frame.observations)
+      if (FindById(frames.front().observations, seen.id) != nullptr) ++count;
+    kept.push_back(count);
+  }
+  return kept;
+}
+
+bool IsRigid(const SolvedWindow& window) { return window.solution.window.shapes.empty(); }
+
+// A rigid scene whose depths differ by more than the light could be wrong by, and not as the light says.
+bool ContradictsLightClearly(const SolvedWindow& window) {
+  return IsRigid(window) && ContradictsLight(window.solution) && window.solution.light_error > kMaxLightError;
+}
 
 class WindowInitializer final : public Initializer {
  public:
@@ -36,8 +60,7 @@ class WindowInitializer final : public Initializer {
       return outcome;
     }
     const bool ends = input.moment == InitMoment::kLastFrame;
-    const bool due = since >= options_.first_frame && (since - options_.first_frame) % options_.every == 0;
-    if (!due && !ends) {
+    if (!IsDue(input) && !ends) {
       outcome.reason = "the window has " + std::to_string(since + 1) + " frames, with " + std::to_string(followed) +
                        " points; a map is first attempted after " + std::to_string(options_.first_frame) +
                        " frames, then every " + std::to_string(options_.every);
@@ -51,16 +74,46 @@ class WindowInitializer final : public Initializer {
       outcome.reason = status.message();
       if (last) outcome.reason += "; given up after " + std::to_string(since) + " frames from one reference";
     }
+    if (status.ok() || last) CheckFocalLength(input, &outcome);
     return outcome;
   }
 
  private:
+  // Whether a map is attempted in the last frame: every few frames, and whenever half of the reference's points that
+  // were there in the last attempt have been lost.
+  bool IsDue(const InitInput& input) const {
+    const std::vector<int> kept = KeptPoints(input.frames);
+    int at_last_attempt = kept.front();
+    bool due = false;
+    for (int since = kMinWait; since < static_cast<int>(kept.size()); ++since) {
+      const int now = kept[static_cast<std::size_t>(since)];
+      due = (since >= options_.first_frame && (since - options_.first_frame) % options_.every == 0) ||
+            2 * now <= at_last_attempt;
+      if (due) at_last_attempt = now;
+    }
+    return due;
+  }
+
+  // It changes nothing but what is said.
+  void CheckFocalLength(const InitInput& input, InitOutcome* outcome) const {
+    double& factor = outcome->measured.focal_length_factor;
+    factor = ContradictingFocalLengthFactor(input, options_, nominal_depth_mm_);
+    if (factor == 1.0) return;
+    outcome->reason += "; the images contradict the focal length: a rigid scene fits clearly better with about " +
+                       Digits(factor, 2) + " times it, check the calibration";
+  }
+
   // What is missing for a map; ok when the outcome is one.
   Status Attempt(const InitInput& input, InitOutcome* outcome) const {
     const auto since = static_cast<int>(input.frames.size()) - 1;
-    const WindowScene scene = since < options_.deforming_frame ? WindowScene::kRigid : WindowScene::kAny;
+    // Where points are lost so fast, more frames would not add to the window. So few make a provisional map at most.
+    const std::vector<int> kept = KeptPoints(input.frames);
+    const bool early = since < options_.deforming_frame;
+    const WindowScene scene = early && 2 * kept.back() > kept.front() ? WindowScene::kRigid : WindowScene::kAny;
     const auto window = SolveWindow(input, input.frames.size(), scene, options_, nominal_depth_mm_);
-    Status status = Make(input, window, DemandsAfter(since), outcome);
+    Status status(ErrorCode::kInsufficient, "the scene deforms, and a window of " + std::to_string(since + 1) +
+                                                " frames is too short for depths that are certain");
+    if (!window.ok() || !early || IsRigid(*window)) status = Make(input, window, DemandsAfter(since), outcome);
     if (status.ok()) return status;
     status = MakeProvisional(input, window, status, outcome);
     if (status.ok()) outcome->decision = InitDecision::kProvisional;
@@ -86,6 +139,7 @@ class WindowInitializer final : public Initializer {
   Status MakeProvisional(const InitInput& input, const Result<SolvedWindow>& window, const Status& status,
                          InitOutcome* outcome) const {
     if (options_.provisional == Switch::kOff || !window.ok() || outcome->ambiguous) return status;
+    if (ContradictsLightClearly(*window)) return status;
     const Status provisional = MakeWindowMap(input, *window, ProvisionalDemands(window->solution.window), options_,
                                              nominal_depth_mm_, outcome);
     return provisional.ok() || outcome->ambiguous ? provisional : status;
@@ -110,7 +164,7 @@ class WindowInitializer final : public Initializer {
     // Another minimum than the right one may look as certain: what no light confirms must be more so, and most of all
     // what the light contradicts.
     const MapDemands full = DemandsOf(options_, 0.0);
-    if (window->light_is_of_no_use) least = full;
+    if (window->light_is_of_no_use || ContradictsLightClearly(*window)) least = full;
     if (options_.light == Switch::kOff) {
       least.certain_sigma = std::min(least.certain_sigma, full.max_sigma);
       least.max_sigma = std::min(least.max_sigma, full.max_sigma);
