@@ -219,7 +219,9 @@ TEST(Robustness, ADepthImageThatNothingNeedsAnyMoreMayBeBroken) {
 TEST(Robustness, ARunWithoutAMapNamesTheMethodThatWouldStart) {
   const TestFolder folder;
   TrackOptions options;
-  options.tracker.init.window.min_points = 100000;
+  WindowInitOptions& window = options.tracker.init.window;
+  window.certain_depth_sigma = window.last_depth_sigma = window.max_depth_sigma = 1e-4;
+  window.provisional = Switch::kOff;
   const RunSummary summary = TrackSequenceAt(kSequence, folder.Path("run"), options);
   EXPECT_EQ(summary.status, RunStatus::kFailed);
   EXPECT_THAT(summary.note, HasSubstr("--Init.method gated would start in frame "));

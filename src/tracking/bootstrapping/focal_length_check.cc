@@ -16,6 +16,8 @@ namespace pliant {
 namespace {
 
 constexpr double kFactors[] = {0.5, 0.6, 0.75, 1.33, 1.7, 2.0};
+constexpr double kFirstStep = 1.15;     // from the best of them towards the next, as a factor
+constexpr int kRefinements = 4;         // each by a step that is half as long: to 1 %
 constexpr double kMinErrorRatio = 1.1;  // of the errors with the calibration's focal length by those with another one
 constexpr int kMaxPoints = 160;         // they tell as much as all
 
@@ -52,19 +54,31 @@ double ContradictingFocalLengthFactor(const InitInput& input, const WindowInitOp
                                       double nominal_depth_mm) {
   WindowInitOptions fewer = options;
   fewer.max_points = std::min(options.max_points, kMaxPoints);
-  const auto calibrated = FitRigid(input, input.camera, fewer, nominal_depth_mm);
+  const auto fit = [&](double factor) -> std::optional<RigidFit> {
+    const auto camera = input.camera.WithFocalLengthTimes(factor);
+    return camera.ok() ? FitRigid(input, *camera, fewer, nominal_depth_mm) : std::nullopt;
+  };
+  const auto calibrated = fit(1.0);
   if (!calibrated) return 1.0;
   double best_factor = 1.0;
-  double best_px = calibrated->error_px / kMinErrorRatio;
-  for (const double factor : kFactors) {
-    const auto camera = input.camera.WithFocalLengthTimes(factor);
-    if (!camera.ok()) continue;
-    const auto fit = FitRigid(input, *camera, fewer, nominal_depth_mm);
-    if (!fit || fit->correlation > options.max_correlation || fit->error_px > best_px) continue;
+  RigidFit best = *calibrated;
+  const auto try_factor = [&](double factor) {
+    const auto other = fit(factor);
+    if (!other || other->error_px >= best.error_px) return;
     best_factor = factor;
-    best_px = fit->error_px;
+    best = *other;
+  };
+  for (const double factor : kFactors) try_factor(factor);
+  if (best_factor == 1.0) return 1.0;
+  // The minimum lies between the neighbors of the best one: on both sides of it, nearer and nearer.
+  double step = kFirstStep;
+  for (int k = 0; k < kRefinements; ++k, step = std::sqrt(step)) {
+    const double center = best_factor;
+    try_factor(center * step);
+    try_factor(center / step);
   }
-  return best_factor;
+  const bool explains = best.correlation <= options.max_correlation;
+  return explains && kMinErrorRatio * best.error_px <= calibrated->error_px ? best_factor : 1.0;
 }
 
 }  // namespace pliant

@@ -10,8 +10,9 @@
 namespace pliant {
 
 // The factor by which the focal length would have to be changed so that a rigid scene explains the frames since the
-// reference, and explains them clearly better than with the calibration's: of a few, the best. 1 where none does: the
-// focal length may be right, the scene may deform, or the camera may have moved too little to tell.
+// reference, and explains them clearly better than with the calibration's: between about a half and two, to a few per
+// cent. 1 where none does: the focal length may be right, the scene may deform, or the camera may have moved too little
+// to tell.
 double ContradictingFocalLengthFactor(const InitInput& input, const WindowInitOptions& options,
                                       double nominal_depth_mm);
 
