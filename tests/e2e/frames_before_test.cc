@@ -3,7 +3,9 @@
 
 // Frames whose reference was given up: once there is a map they are tracked from it back in time.
 #include <algorithm>
+#include <iterator>
 #include <set>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <opencv2/core.hpp>
@@ -90,6 +92,35 @@ TEST_F(FramesBeforeTheReference, StayWithoutAPoseWhereTheyShowSomethingElse) {
   const pliant::Run run = Track({});
   EXPECT_EQ(TrackedFrames(run), FramesFrom(kElsewhere + 1));
   EXPECT_EQ(static_cast<int>(run.frames.size()), kFrames);
+}
+
+// All of the sequence; its first half waits for the map of the second.
+TEST(FramesBefore, TheMapGrowsInThem) {
+  constexpr int kLast = 24;
+  const TestFolder folder;
+  const SequenceCopy sequence(folder, 60);
+  cv::Mat noise = cv::imread(sequence.Image(kLast).string());
+  cv::RNG(1).fill(noise, cv::RNG::UNIFORM, 40, 220);
+  sequence.Replace(kLast, noise);
+  TrackOptions options;
+  options.tracker.init.window.first_frame = kLast + 1;
+  const RunSummary summary = TrackSequenceAt(sequence.path(), folder.Path("run"), options);
+  ASSERT_FALSE(summary.first_maps.empty()) << summary.note;
+  ASSERT_EQ(summary.first_maps.front().reference_frame_idx, kLast + 1);
+  auto reader = ObservationReader::Open(folder.Path("run"));
+  ASSERT_TRUE(reader.ok()) << reader.status().message();
+  std::set<PointId> before;
+  std::set<PointId> after;
+  for (auto frame = reader->Next(); frame.ok() && *frame; frame = reader->Next())
+    for (const PointObservation& seen : (*frame)->observations)
+      ((*frame)->frame_idx < kLast ? before : after).insert(seen.id);
+  std::vector<PointId> new_before;
+  std::ranges::set_difference(before, after, std::back_inserter(new_before));
+  EXPECT_GT(new_before.size(), 20U);
+  // An id belongs to one point: nothing jumps where the two halves meet.
+  const Evaluation evaluation = EvaluateRun(folder.Path("run"), kSequence, ErrorScale::kPerFrame);
+  for (const PointFrameError& frame : evaluation.surface->plain.frames)
+    EXPECT_LT(frame.estimate.median_mm, 1.0) << frame.frame_idx;
 }
 
 TEST_F(FramesBeforeTheReference, AreTheSameForAnyNumberOfThreads) {
