@@ -6,7 +6,7 @@
     recordings.py --program build/release/pliant --output_path RUNS [--recordings DIR] [--only NAME,...]
 
 Runs that are there already are kept. Prints two tables: the runs, and how far runs of one recording that were begun at
-other frames, with another seed or another focal length, agree. The figures are those of pliant evaluate.
+other frames, at a lower frame rate, with half of the corners, another seed or another focal length, agree. The figures are those of pliant evaluate.
 """
 import argparse
 import csv
@@ -51,6 +51,9 @@ def variants(name, images, step, folder):
     yield AS_IT_IS, ""
     for k in (1, 2, 3):
         yield f"begun at {k * step}", f"--start {k * step}"
+    yield "every 2nd frame", "--stride 2"
+    yield "every 3rd frame", "--stride 3"
+    yield "half of the corners", "--Corners.max_corners 250"
     yield "seed 2", "--General.seed 2"
     if name not in CALIBRATIONS:
         return
