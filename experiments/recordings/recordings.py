@@ -6,7 +6,8 @@
     recordings.py --program build/release/pliant --output_path RUNS [--recordings DIR] [--only NAME,...]
 
 Runs that are there already are kept. Prints two tables: the runs, and how far runs of one recording that were begun at
-other frames, at a lower frame rate, with half of the corners, another seed or another focal length, agree. The figures are those of pliant evaluate.
+other frames, at a lower frame rate, with half of the corners, another seed or another focal length, agree. The figures
+are those of pliant evaluate.
 """
 import argparse
 import csv
