@@ -85,7 +85,7 @@ bool SeesInscribedCircle(const Camera& camera) {
   return true;
 }
 
-// The first parameters.
+// How many focal lengths a model has; they are its first parameters.
 std::size_t NumFocalLengths(const Camera& camera) {
   return camera.Visit([](const auto& model) -> std::size_t { return model.kParamNames.starts_with("fx") ? 2 : 1; });
 }

@@ -76,7 +76,8 @@ std::string OfCamera(const FirstMapEvidence& evidence) {
 std::string OfCalibration(const FirstMapEvidence& evidence) {
   if (evidence.focal_length_factor == 1.0) return {};
   return "the images contradict the calibration: with about " + Digits(evidence.focal_length_factor, 2) +
-         " times its focal length a rigid scene explains them clearly better. Shapes are wrong if it is.";
+         " times its focal length a rigid scene explains them clearly better. If the calibration is wrong, so are the "
+         "shapes.";
 }
 
 std::string OfImages(const RunDescription& run) {

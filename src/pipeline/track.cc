@@ -111,25 +111,26 @@ class Recorder {
   FramesBefore before_;
 };
 
-// What else could start, after a run that has no map. Where camera and scene cannot be told apart, only depth helps.
-std::string OtherStarts(const Tracker& tracker, const Sequence& sequence, bool ambiguous) {
+// What else could start, after a run that has no map.
+std::string OtherStarts(const Tracker& tracker, const Sequence& sequence, InitMethod method) {
   std::string other;
-  if (sequence.BaselineMm()) other = "; the sequence has pairs of images: --Init.method stereo starts from one";
-  if (!ambiguous && !tracker.WouldStart().empty()) other += "; " + tracker.WouldStart();
+  if (sequence.BaselineMm() && method != InitMethod::kStereo)
+    other = "; the sequence has pairs of images: --Init.method stereo starts from one";
+  if (!tracker.WouldStart().empty()) other += "; " + tracker.WouldStart();
   return other;
 }
 
 // The ending at the sequence's end; `last_tracked` is the name of the last tracked frame, if there is one, `ambiguity`
 // what was said of ambiguous frames: it says more than how the last window ended.
-Ending AtTheEnd(const Tracker& tracker, const Sequence& sequence, int frames, const std::string& last_note,
+Ending AtTheEnd(const Tracker& tracker, const std::string& other_starts, int frames, const std::string& last_note,
                 const std::string& last_tracked, const std::string& ambiguity) {
   if (tracker.state() == TrackingState::kTracking) return {RunStatus::kCompleted, "the sequence's end was reached"};
   if (tracker.state() == TrackingState::kLost || tracker.HasInactiveSubmaps())
     return {RunStatus::kLost, "after frame " + last_tracked + "; in the sequence's last frame: " + last_note};
   if (frames == 1)
     return {RunStatus::kFailed, "one frame is not enough for a map; give two or more, between which the camera moved"};
-  return {RunStatus::kFailed, "the sequence ended without a first map: " + (ambiguity.empty() ? last_note : ambiguity) +
-                                  OtherStarts(tracker, sequence, !ambiguity.empty())};
+  return {RunStatus::kFailed,
+          "the sequence ended without a first map: " + (ambiguity.empty() ? last_note : ambiguity) + other_starts};
 }
 
 // Frames of the sequence, read ahead, in which one can go back: then some are read once more.
@@ -225,7 +226,8 @@ Ending TrackFrames(Sequence& sequence, const RunRequest& request, const TrackOpt
     if (const Status reopened = frames.GoBackTo(*back); !reopened.ok()) return {RunStatus::kFailed, reopened.message()};
   }
   if (!tracker.held().empty()) last_note = tracker.held().back().note;
-  return AtTheEnd(tracker, sequence, count, last_note, last_tracked, ambiguity);
+  return AtTheEnd(tracker, OtherStarts(tracker, sequence, options.tracker.init.method), count, last_note, last_tracked,
+                  ambiguity);
 }
 
 Ending TrackSequence(Sequence& sequence, const RunRequest& request, const TrackOptions& options, const RunStart& start,

@@ -224,7 +224,7 @@ TEST(Robustness, ARunWithoutAMapNamesTheMethodThatWouldStart) {
   window.provisional = Switch::kOff;
   const RunSummary summary = TrackSequenceAt(kSequence, folder.Path("run"), options);
   EXPECT_EQ(summary.status, RunStatus::kFailed);
-  EXPECT_THAT(summary.note, HasSubstr("--Init.method gated would start in frame "));
+  EXPECT_THAT(summary.note, HasSubstr("--Init.method gated would have made a map by frame "));
   options.tracker.init.method = InitMethod::kGated;
   EXPECT_EQ(TrackSequenceAt(kSequence, folder.Path("gated"), options).status, RunStatus::kCompleted) << "it does";
 }

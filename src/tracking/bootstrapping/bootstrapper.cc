@@ -106,8 +106,11 @@ BootstrapStep Bootstrapper::FollowReference(const PreparedFrame& frame, Submap* 
 void Bootstrapper::TryInitialize(const PreparedFrame& frame, StageTimes* times, BootstrapStep* step) {
   InitOutcome outcome = AskInitializer(frame.depth_mm, InitMoment::kMoreFollow, times);
   step->note = outcome.reason;
-  if (outcome.ambiguous) provisional_.reset();
-  if (outcome.decision != InitDecision::kMap && !outcome.ambiguous && frames_.size() % kAskAlternativeEvery == 0)
+  if (outcome.ambiguous) {
+    provisional_.reset();
+    ForgetAlternative();
+  }
+  if (outcome.decision != InitDecision::kMap && frames_.size() % kAskAlternativeEvery == 0)
     AskAlternative(InitMoment::kMoreFollow, times);
   switch (outcome.decision) {
     case InitDecision::kMap:
@@ -165,12 +168,15 @@ BootstrapStep Bootstrapper::EndSequence(StageTimes* times) {
   InitOutcome outcome = AskInitializer({}, InitMoment::kLastFrame, times);
   step.note = WithFault(outcome.reason, image_fault_);
   if (outcome.ambiguous && outcome.decision == InitDecision::kNewReference) step.ambiguity = outcome.reason;
-  if (outcome.ambiguous) provisional_.reset();
+  if (outcome.ambiguous) {
+    provisional_.reset();
+    ForgetAlternative();
+  }
   if (outcome.decision == InitDecision::kMap)
     FinishMapOrGoBack(std::move(outcome), &step);
   else if (provisional_)
     GoBack(&step);
-  else if (!outcome.ambiguous)
+  else
     AskAlternative(InitMoment::kLastFrame, times);
   return step;
 }
@@ -194,15 +200,21 @@ void Bootstrapper::AskAlternative(InitMoment moment, StageTimes* times) {
   const StageTimer timer(times, Stage::kInitialize);
   const InitOutcome outcome = alternative_->Try({camera_, frames_, {}, moment, threads_, {}, photometric_});
   if (outcome.decision != InitDecision::kMap) return;
-  would_start_ = "--Init.method " + std::string(alternative_->name()) + " would start in frame " +
-                 std::to_string(frames_.back().frame_idx) + " with " + std::to_string(outcome.points.size()) +
-                 " points, if the scene hardly deforms";
+  would_start_ = "--Init.method " + std::string(alternative_->name()) + " would have made a map by frame " +
+                 std::to_string(frames_.back().frame_idx) + ", which is right if the scene hardly deforms";
+}
+
+// There is a map, or it is known that it takes too much for granted.
+void Bootstrapper::ForgetAlternative() {
+  alternative_.reset();
+  would_start_.clear();
 }
 
 void Bootstrapper::FinishMap(InitOutcome outcome, BootstrapStep* step) {
   for (const InitRejectedPoint& rejected : outcome.rejected)
     if (rejected.reason != InitRejection::kLostOnTheWay) step->losses.Add(InitRejectionName(rejected.reason), 1);
   provisional_.reset();
+  ForgetAlternative();
   outcome.decision = InitDecision::kMap;
   oracle_poses_->TakeWorld({camera_, frames_, {}}, &outcome);
   step->map = FirstMap{std::exchange(frames_, {}), std::move(outcome)};

@@ -58,7 +58,8 @@ class Bootstrapper {
   // Gives the reference up, and its points.
   void Abandon();
 
-  // What the alternative answered the first time that it would have made a map: one sentence; empty: it never would.
+  // What the alternative answered the first time that it would have made a map: one sentence; empty: it never would,
+  // there has been a map, or camera and scene could not be told apart.
   const std::string& WouldStart() const { return would_start_; }
 
   bool HasReference() const { return !frames_.empty(); }
@@ -71,6 +72,7 @@ class Bootstrapper {
   void TryInitialize(const PreparedFrame& frame, StageTimes* times, BootstrapStep* step);
   InitOutcome AskInitializer(const cv::Mat& depth_mm, InitMoment moment, StageTimes* times);
   void AskAlternative(InitMoment moment, StageTimes* times);
+  void ForgetAlternative();
   void FinishMap(InitOutcome outcome, BootstrapStep* step);
   void FinishMapOrGoBack(InitOutcome outcome, BootstrapStep* step);
   void PutAside(InitOutcome outcome, const PreparedFrame& frame);

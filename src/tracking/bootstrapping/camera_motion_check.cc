@@ -54,10 +54,10 @@ Status CheckRigidMotion(const DeformingWindow& window, double focal_px, double m
 
 Status CheckCameraMotion(const InitInput& input, const SolvedWindow& window, const WindowInitOptions& options,
                          InitOutcome* outcome) {
-  if (options.min_still_camera_ratio <= 0.0) return Status::Ok();
   const double focal_px = input.camera.MeanFocalLengthPx();
   if (window.solution.window.coefficients.rows() == 0)
     return CheckRigidMotion(window.solution.window, focal_px, outcome->measured.median_error_px);
+  if (options.min_still_camera_ratio <= 0.0) return Status::Ok();
   auto models = SolveCameraMotionModels(window.solution, focal_px, options.window, input.threads);
   if (!models.ok()) return models.status();
   std::vector<PointId> ids;

@@ -19,6 +19,7 @@ constexpr double kFactors[] = {0.5, 0.6, 0.75, 1.33, 1.7, 2.0};
 constexpr double kFirstStep = 1.15;     // from the best of them towards the next, as a factor
 constexpr int kRefinements = 4;         // each by a step that is half as long: to 1 %
 constexpr double kMinErrorRatio = 1.1;  // of the errors with the calibration's focal length by those with another one
+constexpr double kMinErrorPx = 0.01;    // smaller errors are those of the solver
 constexpr int kMaxPoints = 160;         // they tell as much as all
 
 struct RigidFit {
@@ -45,7 +46,8 @@ std::optional<RigidFit> FitRigid(const InitInput& input, const Camera& camera, c
                               input.threads, input.reference_depths, input.photometric};
   const auto window = SolveAsRigid(with_camera, input.frames.size(), options, nominal_depth_mm);
   if (!window.ok()) return std::nullopt;
-  return RigidFit{MedianErrorPx(window->solution.window, camera), window->solution.residual_correlation};
+  return RigidFit{std::max(kMinErrorPx, MedianErrorPx(window->solution.window, camera)),
+                  window->solution.residual_correlation};
 }
 
 }  // namespace

@@ -18,7 +18,7 @@
 namespace pliant {
 namespace {
 
-constexpr int kMinWait = 6;             // frames after the reference
+constexpr int kMinWait = 6;             // frames after the reference, before the first of the other attempts
 constexpr double kMaxLightError = 0.2;  // of log distance, in the median: twice what it is where there is light at all
 
 // How many of the reference's points each frame sees.
@@ -63,18 +63,20 @@ class WindowInitializer final : public Initializer {
     if (!IsDue(input) && !ends) {
       outcome.reason = "the window has " + std::to_string(since + 1) + " frames, with " + std::to_string(followed) +
                        " points; a map is first attempted after " + std::to_string(options_.first_frame) +
-                       " frames, then every " + std::to_string(options_.every);
+                       " frames, then every " + std::to_string(options_.every) +
+                       ", or when half of the points are lost";
       return outcome;
     }
-    const bool last = ends || since + options_.every > options_.last_frame;
+    const bool last = ends || NextRegularAttempt(since) > options_.last_frame;
     Status status = CheckWindowNotARotation(input, &outcome.measured);
+    const bool is_rotation = !status.ok();
     if (status.ok()) status = last ? LastAttempt(input, &outcome) : Attempt(input, &outcome);
     if (!status.ok()) {
       outcome.decision = last ? InitDecision::kNewReference : InitDecision::kWait;
       outcome.reason = status.message();
       if (last) outcome.reason += "; given up after " + std::to_string(since) + " frames from one reference";
     }
-    if (status.ok() || last) CheckFocalLength(input, &outcome);
+    if (status.ok() || (last && !is_rotation)) CheckFocalLength(input, &outcome);
     return outcome;
   }
 
@@ -85,13 +87,19 @@ class WindowInitializer final : public Initializer {
     const std::vector<int> kept = KeptPoints(input.frames);
     int at_last_attempt = kept.front();
     bool due = false;
-    for (int since = kMinWait; since < static_cast<int>(kept.size()); ++since) {
+    for (int since = 1; since < static_cast<int>(kept.size()); ++since) {
       const int now = kept[static_cast<std::size_t>(since)];
-      due = (since >= options_.first_frame && (since - options_.first_frame) % options_.every == 0) ||
-            2 * now <= at_last_attempt;
+      due = since == NextRegularAttempt(since - 1) || (since >= kMinWait && 2 * now <= at_last_attempt);
       if (due) at_last_attempt = now;
     }
     return due;
+  }
+
+  // The first frame after this one, counted since the reference, in which a map is attempted in any case.
+  int NextRegularAttempt(int since) const {
+    const int after_first = since + 1 - options_.first_frame;
+    if (after_first <= 0) return options_.first_frame;
+    return options_.first_frame + (after_first + options_.every - 1) / options_.every * options_.every;
   }
 
   // It changes nothing but what is said.
@@ -180,11 +188,14 @@ class WindowInitializer final : public Initializer {
 
 void WindowInitOptions::List(OptionTable& table) {
   table.BeginGroup("WindowInit", "the first map from a deforming window (Init.method = window)");
-  table.Add("first_frame", &first_frame, "frames", "frames after the reference at which a map is first attempted", 2,
+  table.Add("first_frame", &first_frame, "frames",
+            "frames after the reference at which a map is first attempted; sooner when half of the points are lost", 2,
             100000);
   table.Add("every", &every, "frames", "frames between two attempts", 1, 100000);
   table.Add("deforming_frame", &deforming_frame, "frames",
-            "frames after the reference before which only a rigid scene is attempted", 2, 100000);
+            "frames after the reference before which only a rigid scene is attempted, or, once half of the points are "
+            "lost, a provisional map of any scene",
+            2, 100000);
   table.Add("last_frame", &last_frame, "frames",
             "frames after the reference at which it is given up if there is no map", 2, 100000);
   table.Add("views", &views, "frames", "frames in the bundle adjustment, spread evenly since the reference", 3, 1000);

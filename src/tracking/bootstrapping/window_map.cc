@@ -178,10 +178,12 @@ Status OptimizePoints(const InitInput& input, const MapDemands& demands, const W
 // (W15) Whether the map is provisional, and may be. Points that are certain by the median distance of all may be near
 // ones of a window that knows nothing: what is left is judged by its own. Before a camera that hardly moves noise
 // passes for motion; of a rigid scene nothing else asks for that (W14).
-Status CheckDepthSignal(const MapDemands& demands, bool rigid, const WindowInitOptions& options, InitOutcome* outcome) {
+Status CheckDepthSignal(const SolvedWindow& window, const MapDemands& demands, const WindowInitOptions& options,
+                        InitOutcome* outcome) {
   const InitMeasurements& measured = outcome->measured;
   outcome->provisional = demands.provisional || measured.DepthSignal() < kMinDepthSignal;
   const bool stands_out = measured.DepthSignal() >= kMinProvisionalSignal;
+  const bool rigid = window.solution.window.shapes.empty();
   const double max_sigma = rigid && !stands_out ? options.max_depth_sigma : kMaxOwnSigma * demands.max_sigma;
   const bool known = demands.provisional ? stands_out : measured.median_depth_sigma <= max_sigma;
   if (known && (!outcome->provisional || options.provisional == Switch::kOn)) return Status::Ok();
@@ -278,8 +280,7 @@ Status MakeWindowMap(const InitInput& input, const SolvedWindow& window, const M
                                           " points agree with the frames between those of the window (at least " +
                                           std::to_string(options.min_points) + " must)"};
   measure();
-  if (Status status = CheckDepthSignal(demands, window.solution.window.shapes.empty(), options, outcome); !status.ok())
-    return status;
+  if (Status status = CheckDepthSignal(window, demands, options, outcome); !status.ok()) return status;
   if (Status status = CheckCameraMotion(input, window, options, outcome); !status.ok()) return status;
   if (Status status = FillOutcome(input, nominal_depth_mm, points, outcome); !status.ok()) return status;
   outcome->refinable = !outcome->deforming && options.refine_rigid == Switch::kOn;

@@ -113,7 +113,7 @@ struct InitMeasurements {
   double competing_cost_ratio = 0;  // robust cost of the second best motion over the best one's; infinite: no second
   double median_error_px = 0;       // of the map in its frames
   double still_camera_error_ratio = 0;  // errors of a camera that stands still by those of one that moves; 0: unknown
-  double focal_length_factor = 1;       // times which the calibration's fits clearly better (W16); 1: none
+  double focal_length_factor = 1;       // on the calibration's, with which a rigid scene fits clearly better; 1: none
 
   // (W15) How far the depths stand out from their uncertainty; 0 where that was not measured.
   double DepthSignal() const { return median_depth_sigma > 0 ? depth_spread / median_depth_sigma : 0; }
