@@ -17,10 +17,10 @@ namespace {
 
 constexpr double kFactors[] = {0.5, 0.6, 0.75, 1.33, 1.7, 2.0};
 constexpr double kFirstStep = 1.15;     // from the best of them towards the next, as a factor
-constexpr int kRefinements = 4;         // each by a step that is half as long: to 1 %
+constexpr int kRefinements = 3;         // each by a step that is half as long: to 2 %
 constexpr double kMinErrorRatio = 1.1;  // of the errors with the calibration's focal length by those with another one
 constexpr double kMinErrorPx = 0.01;    // smaller errors are those of the solver
-constexpr int kMaxPoints = 160;         // they tell as much as all
+constexpr int kMaxPoints = 80;          // in as few views as a deforming window has: they tell enough
 
 struct RigidFit {
   double error_px = 0;
@@ -56,6 +56,7 @@ double ContradictingFocalLengthFactor(const InitInput& input, const WindowInitOp
                                       double nominal_depth_mm) {
   WindowInitOptions fewer = options;
   fewer.max_points = std::min(options.max_points, kMaxPoints);
+  fewer.rigid_views = std::min(options.rigid_views, options.views);
   const auto fit = [&](double factor) -> std::optional<RigidFit> {
     const auto camera = input.camera.WithFocalLengthTimes(factor);
     return camera.ok() ? FitRigid(input, *camera, fewer, nominal_depth_mm) : std::nullopt;
