@@ -120,17 +120,15 @@ std::string OtherStarts(const Tracker& tracker, const Sequence& sequence, InitMe
   return other;
 }
 
-// The ending at the sequence's end; `last_tracked` is the name of the last tracked frame, if there is one, `ambiguity`
-// what was said of ambiguous frames: it says more than how the last window ended.
-Ending AtTheEnd(const Tracker& tracker, const std::string& other_starts, int frames, const std::string& last_note,
-                const std::string& last_tracked, const std::string& ambiguity) {
+// The ending at the sequence's end; `last_tracked` is the name of the last tracked frame, if there is one.
+Ending AtTheEnd(const Tracker& tracker, int frames, const std::string& last_note, const std::string& last_tracked,
+                const std::string& other_starts) {
   if (tracker.state() == TrackingState::kTracking) return {RunStatus::kCompleted, "the sequence's end was reached"};
   if (tracker.state() == TrackingState::kLost || tracker.HasInactiveSubmaps())
     return {RunStatus::kLost, "after frame " + last_tracked + "; in the sequence's last frame: " + last_note};
   if (frames == 1)
     return {RunStatus::kFailed, "one frame is not enough for a map; give two or more, between which the camera moved"};
-  return {RunStatus::kFailed,
-          "the sequence ended without a first map: " + (ambiguity.empty() ? last_note : ambiguity) + other_starts};
+  return {RunStatus::kFailed, "the sequence ended without a first map: " + last_note + other_starts};
 }
 
 // Frames of the sequence, read ahead, in which one can go back: then some are read once more.
@@ -226,8 +224,9 @@ Ending TrackFrames(Sequence& sequence, const RunRequest& request, const TrackOpt
     if (const Status reopened = frames.GoBackTo(*back); !reopened.ok()) return {RunStatus::kFailed, reopened.message()};
   }
   if (!tracker.held().empty()) last_note = tracker.held().back().note;
-  return AtTheEnd(tracker, OtherStarts(tracker, sequence, options.tracker.init.method), count, last_note, last_tracked,
-                  ambiguity);
+  // What holds for a whole window says more than how the last one ended.
+  if (last_tracked.empty() && !ambiguity.empty()) last_note = ambiguity;
+  return AtTheEnd(tracker, count, last_note, last_tracked, OtherStarts(tracker, sequence, options.tracker.init.method));
 }
 
 Ending TrackSequence(Sequence& sequence, const RunRequest& request, const TrackOptions& options, const RunStart& start,

@@ -106,10 +106,6 @@ BootstrapStep Bootstrapper::FollowReference(const PreparedFrame& frame, Submap* 
 void Bootstrapper::TryInitialize(const PreparedFrame& frame, StageTimes* times, BootstrapStep* step) {
   InitOutcome outcome = AskInitializer(frame.depth_mm, InitMoment::kMoreFollow, times);
   step->note = outcome.reason;
-  if (outcome.ambiguous) {
-    provisional_.reset();
-    ForgetAlternative();
-  }
   if (outcome.decision != InitDecision::kMap && frames_.size() % kAskAlternativeEvery == 0)
     AskAlternative(InitMoment::kMoreFollow, times);
   switch (outcome.decision) {
@@ -168,10 +164,6 @@ BootstrapStep Bootstrapper::EndSequence(StageTimes* times) {
   InitOutcome outcome = AskInitializer({}, InitMoment::kLastFrame, times);
   step.note = WithFault(outcome.reason, image_fault_);
   if (outcome.ambiguous && outcome.decision == InitDecision::kNewReference) step.ambiguity = outcome.reason;
-  if (outcome.ambiguous) {
-    provisional_.reset();
-    ForgetAlternative();
-  }
   if (outcome.decision == InitDecision::kMap)
     FinishMapOrGoBack(std::move(outcome), &step);
   else if (provisional_)
@@ -192,7 +184,12 @@ void Bootstrapper::Abandon() {
 InitOutcome Bootstrapper::AskInitializer(const cv::Mat& depth_mm, InitMoment moment, StageTimes* times) {
   const StageTimer timer(times, Stage::kInitialize);
   const InitInput input{camera_, frames_, depth_mm, moment, threads_, known_depths_, photometric_};
-  return initializer_->Try(input);
+  InitOutcome outcome = initializer_->Try(input);
+  if (outcome.ambiguous) {  // what is less certain, or takes more for granted, is no answer then
+    provisional_.reset();
+    ForgetAlternative();
+  }
+  return outcome;
 }
 
 void Bootstrapper::AskAlternative(InitMoment moment, StageTimes* times) {

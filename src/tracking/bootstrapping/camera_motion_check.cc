@@ -8,10 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "pliant/base/statistics.h"
 #include "pliant/base/text.h"
 #include "pliant/estimation/window/still_camera.h"
-#include "pliant/geometry/triangulation.h"
 #include "tracking/bootstrapping/initial_map.h"
 
 namespace pliant {
@@ -33,12 +31,8 @@ std::vector<int> ComparedFrames(std::size_t frames, const std::vector<std::size_
 // Of the points' directions from the reference and from the view where they differ most, in the median: pixels.
 double LargestParallaxPx(const DeformingWindow& window, double focal_px) {
   double largest = 0;
-  for (const Rigid3& cam_from_world : window.cams_from_world) {
-    const Eigen::Vector3d center = cam_from_world.OriginInSource();
-    std::vector<double> angles;
-    for (const Eigen::Vector3d& point : window.points_in_world) angles.push_back(AngleBetween(point, point - center));
-    largest = std::max(largest, focal_px * Median(std::move(angles)));
-  }
+  for (const Rigid3& cam_from_world : window.cams_from_world)
+    largest = std::max(largest, focal_px * MedianParallaxRad(window, cam_from_world));
   return largest;
 }
 
@@ -55,8 +49,7 @@ Status CheckRigidMotion(const DeformingWindow& window, double focal_px, double m
 Status CheckCameraMotion(const InitInput& input, const SolvedWindow& window, const WindowInitOptions& options,
                          InitOutcome* outcome) {
   const double focal_px = input.camera.MeanFocalLengthPx();
-  if (window.solution.window.coefficients.rows() == 0)
-    return CheckRigidMotion(window.solution.window, focal_px, outcome->measured.median_error_px);
+  if (window.IsRigid()) return CheckRigidMotion(window.solution.window, focal_px, outcome->measured.median_error_px);
   if (options.min_still_camera_ratio <= 0.0) return Status::Ok();
   auto models = SolveCameraMotionModels(window.solution, focal_px, options.window, input.threads);
   if (!models.ok()) return models.status();

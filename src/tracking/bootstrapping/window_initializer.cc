@@ -21,23 +21,16 @@ namespace {
 constexpr int kMinWait = 6;             // frames after the reference, before the first of the other attempts
 constexpr double kMaxLightError = 0.2;  // of log distance, in the median: twice what it is where there is light at all
 
-// How many of the reference's points each frame sees.
-std::vector<int> KeptPoints(const std::vector<InitFrame>& frames) {
-  std::vector<int> kept;
-  for (const InitFrame& frame : frames) {
-    int count = 0;
-    for (const InitObservation& seen : frame.observations)
-      if (FindById(frames.front().observations, seen.id) != nullptr) ++count;
-    kept.push_back(count);
-  }
-  return kept;
+// How many of the reference's points a frame sees.
+int KeptPoints(const InitFrame& reference, const InitFrame& frame) {
+  return static_cast<int>(std::ranges::count_if(frame.observations, [&](const InitObservation& seen) {
+    return FindById(reference.observations, seen.id) != nullptr;
+  }));
 }
-
-bool IsRigid(const SolvedWindow& window) { return window.solution.window.shapes.empty(); }
 
 // A rigid scene whose depths differ by more than the light could be wrong by, and not as the light says.
 bool ContradictsLightClearly(const SolvedWindow& window) {
-  return IsRigid(window) && ContradictsLight(window.solution) && window.solution.light_error > kMaxLightError;
+  return window.IsRigid() && ContradictsLight(window.solution) && window.solution.light_error > kMaxLightError;
 }
 
 class WindowInitializer final : public Initializer {
@@ -84,11 +77,11 @@ class WindowInitializer final : public Initializer {
   // Whether a map is attempted in the last frame: every few frames, and whenever half of the reference's points that
   // were there in the last attempt have been lost.
   bool IsDue(const InitInput& input) const {
-    const std::vector<int> kept = KeptPoints(input.frames);
-    int at_last_attempt = kept.front();
+    const InitFrame& reference = input.frames.front();
+    auto at_last_attempt = static_cast<int>(reference.observations.size());
     bool due = false;
-    for (int since = 1; since < static_cast<int>(kept.size()); ++since) {
-      const int now = kept[static_cast<std::size_t>(since)];
+    for (int since = 1; since < static_cast<int>(input.frames.size()); ++since) {
+      const int now = KeptPoints(reference, input.frames[static_cast<std::size_t>(since)]);
       due = since == NextRegularAttempt(since - 1) || (since >= kMinWait && 2 * now <= at_last_attempt);
       if (due) at_last_attempt = now;
     }
@@ -115,13 +108,15 @@ class WindowInitializer final : public Initializer {
   Status Attempt(const InitInput& input, InitOutcome* outcome) const {
     const auto since = static_cast<int>(input.frames.size()) - 1;
     // Where points are lost so fast, more frames would not add to the window. So few make a provisional map at most.
-    const std::vector<int> kept = KeptPoints(input.frames);
+    const InitFrame& reference = input.frames.front();
+    const bool half_kept =
+        2 * KeptPoints(reference, input.frames.back()) > static_cast<int>(reference.observations.size());
     const bool early = since < options_.deforming_frame;
-    const WindowScene scene = early && 2 * kept.back() > kept.front() ? WindowScene::kRigid : WindowScene::kAny;
+    const WindowScene scene = early && half_kept ? WindowScene::kRigid : WindowScene::kAny;
     const auto window = SolveWindow(input, input.frames.size(), scene, options_, nominal_depth_mm_);
     Status status(ErrorCode::kInsufficient, "the scene deforms, and a window of " + std::to_string(since + 1) +
                                                 " frames is too short for depths that are certain");
-    if (!window.ok() || !early || IsRigid(*window)) status = Make(input, window, DemandsAfter(since), outcome);
+    if (!window.ok() || !early || window->IsRigid()) status = Make(input, window, DemandsAfter(since), outcome);
     if (status.ok()) return status;
     status = MakeProvisional(input, window, status, outcome);
     if (status.ok()) outcome->decision = InitDecision::kProvisional;

@@ -16,7 +16,6 @@
 
 #include "pliant/base/statistics.h"
 #include "pliant/base/text.h"
-#include "pliant/geometry/triangulation.h"
 #include "pliant/scene/frame_report.h"
 #include "tracking/bootstrapping/camera_motion_check.h"
 #include "tracking/bootstrapping/initial_map.h"
@@ -183,22 +182,13 @@ Status CheckDepthSignal(const SolvedWindow& window, const MapDemands& demands, c
   const InitMeasurements& measured = outcome->measured;
   outcome->provisional = demands.provisional || measured.DepthSignal() < kMinDepthSignal;
   const bool stands_out = measured.DepthSignal() >= kMinProvisionalSignal;
-  const bool rigid = window.solution.window.shapes.empty();
-  const double max_sigma = rigid && !stands_out ? options.max_depth_sigma : kMaxOwnSigma * demands.max_sigma;
+  const double max_sigma = window.IsRigid() && !stands_out ? options.max_depth_sigma : kMaxOwnSigma * demands.max_sigma;
   const bool known = demands.provisional ? stands_out : measured.median_depth_sigma <= max_sigma;
   if (known && (!outcome->provisional || options.provisional == Switch::kOn)) return Status::Ok();
   return {ErrorCode::kInsufficient,
           "the depths spread by " + Digits(100.0 * measured.depth_spread, 1) + " % and are known to " +
               Digits(100.0 * measured.median_depth_sigma, 1) +
               " %: hardly better than one constant depth; move the camera sideways or forwards"};
-}
-
-// At the points of the solution, between the reference and the last view.
-double MedianParallaxDeg(const DeformingWindow& window) {
-  const Eigen::Vector3d center = window.cams_from_world.back().OriginInSource();
-  std::vector<double> angles;
-  for (const Eigen::Vector3d& point : window.points_in_world) angles.push_back(AngleBetween(point, point - center));
-  return Median(std::move(angles)) * 180.0 / std::numbers::pi;
 }
 
 // The points not in the map, each with why.
@@ -267,7 +257,9 @@ Status MakeWindowMap(const InitInput& input, const SolvedWindow& window, const M
   };
   measure();
   outcome->measured.median_error_px = Median(errors_px);
-  outcome->measured.median_parallax_deg = MedianParallaxDeg(window.solution.window);
+  const DeformingWindow& solved = window.solution.window;
+  outcome->measured.median_parallax_deg =
+      MedianParallaxRad(solved, solved.cams_from_world.back()) * 180.0 / std::numbers::pi;
   if (Status status = EnoughCertain(input, window, points, demands, options.min_points, median_distance,
                                     outcome->measured.median_parallax_deg);
       !status.ok())
@@ -286,9 +278,8 @@ Status MakeWindowMap(const InitInput& input, const SolvedWindow& window, const M
   outcome->refinable = !outcome->deforming && options.refine_rigid == Switch::kOn;
   outcome->rejected = AllRejected(input, points, std::move(rejected));
   outcome->reason = std::string(outcome->provisional ? "provisional" : "first") + " map of " +
-                    std::to_string(points.ids.size()) + " points from a " +
-                    (window.solution.window.shapes.empty() ? "rigid" : "deforming") + " window of " +
-                    std::to_string(input.frames.size()) + " frames, depth noise " +
+                    std::to_string(points.ids.size()) + " points from a " + (window.IsRigid() ? "rigid" : "deforming") +
+                    " window of " + std::to_string(input.frames.size()) + " frames, depth noise " +
                     Digits(100.0 * outcome->measured.median_depth_sigma, 1) + " % of the median depth";
   if (const double ratio = outcome->measured.still_camera_error_ratio; ratio > 0.0)
     outcome->reason += "; with a camera that stands still the errors would be " + Digits(ratio, 1) + " times as large";

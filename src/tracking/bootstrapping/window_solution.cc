@@ -12,6 +12,7 @@
 #include "pliant/base/statistics.h"
 #include "pliant/base/text.h"
 #include "pliant/estimation/window/window_refinement.h"
+#include "pliant/geometry/triangulation.h"
 #include "tracking/bootstrapping/initial_map.h"
 
 namespace pliant {
@@ -153,24 +154,37 @@ Result<SolvedWindow> SolveDeforming(const InitInput& input, const PreparedWindow
   return unlit;
 }
 
+Result<SolvedWindow> SolvedAsRigid(const InitInput& input, const PreparedWindow& window,
+                                   const WindowInitOptions& options) {
+  auto solution = SolveRigidWindow(window.start, input.camera.MeanFocalLengthPx(), options.window, input.threads);
+  if (!solution.ok()) return solution.status();
+  return SolvedWindow{window.views, window.ids, std::move(*solution), false};
+}
+
 Result<SolvedWindow> SolveRigid(const InitInput& input, const PreparedWindow& window,
                                 const WindowInitOptions& options) {
-  const double focal_px = input.camera.MeanFocalLengthPx();
   const auto deforms = [&](double correlation) {
     return Status(ErrorCode::kDegenerate,
                   "the scene deforms: the errors of neighbors under a rigid motion have a correlation of " +
                       Digits(correlation, 2));
   };
-  const auto correlation = RigidResidualCorrelation(window.start, focal_px, options.window);
+  const auto correlation = RigidResidualCorrelation(window.start, input.camera.MeanFocalLengthPx(), options.window);
   if (!correlation.ok()) return correlation.status();
   if (*correlation > options.max_correlation) return deforms(*correlation);
-  auto solution = SolveRigidWindow(window.start, focal_px, options.window, input.threads);
-  if (!solution.ok()) return solution.status();
-  if (solution->residual_correlation > options.max_correlation) return deforms(solution->residual_correlation);
-  return SolvedWindow{window.views, window.ids, std::move(*solution), false};
+  auto rigid = SolvedAsRigid(input, window, options);
+  if (rigid.ok() && rigid->solution.residual_correlation > options.max_correlation)
+    return deforms(rigid->solution.residual_correlation);
+  return rigid;
 }
 
 }  // namespace
+
+double MedianParallaxRad(const DeformingWindow& window, const Rigid3& cam_from_world) {
+  const Eigen::Vector3d center = cam_from_world.OriginInSource();
+  std::vector<double> angles;
+  for (const Eigen::Vector3d& point : window.points_in_world) angles.push_back(AngleBetween(point, point - center));
+  return Median(std::move(angles));
+}
 
 bool ContradictsLight(const DeformingSolution& solution) {
   return solution.light_error > kMaxOfSpread * solution.log_distance_spread;
@@ -227,9 +241,7 @@ Result<SolvedWindow> SolveAsRigid(const InitInput& input, std::size_t frames, co
                                   double nominal_depth_mm) {
   const auto window = PrepareWindow(input, frames, options.rigid_views, options, nominal_depth_mm);
   if (!window.ok()) return window.status();
-  auto solution = SolveRigidWindow(window->start, input.camera.MeanFocalLengthPx(), options.window, input.threads);
-  if (!solution.ok()) return solution.status();
-  return SolvedWindow{window->views, window->ids, std::move(*solution), false};
+  return SolvedAsRigid(input, *window, options);
 }
 
 Result<SolvedWindow> SolveWindow(const InitInput& input, std::size_t frames, WindowScene scene,

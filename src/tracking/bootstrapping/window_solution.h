@@ -19,7 +19,12 @@ struct SolvedWindow {
   std::vector<PointId> ids;
   DeformingSolution solution;
   bool light_is_of_no_use = false;  // it was to be used, and was not
+
+  bool IsRigid() const { return solution.window.coefficients.rows() == 0; }
 };
+
+// Of the points, between the reference and a view: median.
+double MedianParallaxRad(const DeformingWindow& window, const Rigid3& cam_from_world);
 
 // Whether the light says of the distances next to nothing, or something else: the solution is wrong, or the light is
 // not at the camera, of another response, or on tissue of many colors. False where there is no light.

@@ -26,7 +26,7 @@ Status Reestimate(const InitInput& input, WindowScene scene, const WindowInitOpt
   MapDemands demands = DemandsOf(options, may_deform ? kRelaxed : 0.0);
   // Where the scene is rigid errors are of the tracks alone. What drifts along a contour or over the surface, little at
   // a time, shows in them.
-  demands.scales_sigmas_with_error = window->solution.window.coefficients.rows() == 0;
+  demands.scales_sigmas_with_error = window->IsRigid();
   outcome->decision = InitDecision::kWait;
   return MakeWindowMap(input, *window, demands, options, nominal_depth_mm, outcome);
 }
