@@ -72,15 +72,14 @@ std::unique_ptr<Initializer> MakePaperInitializer(const MonocularInitOptions& op
 // points are certain, and demands less of them the longer it waits. Points that are uncertain or contradict the
 // solution stay out.
 struct WindowInitOptions {
-  int first_frame =
-      10;         // frames after the reference at which a map is first attempted, or when half of the points are lost
-  int every = 5;  // frames from one attempt to the next
-  int deforming_frame =
-      20;                // before it a rigid scene is attempted, or a provisional map where half of the points are lost
-  int last_frame = 50;   // frames after which a reference is given up
-  int views = 8;         // frames in the problem, spread evenly
-  int rigid_views = 16;  // the same for a rigid scene: more cost little there
-  int min_views = 5;     // of `views` a point must be seen in, and as large a share of rigid_views
+  // Attempts also follow when half of the points are lost, before deforming_frame for a provisional map at most.
+  int first_frame = 10;                  // frames after the reference at which a map is first attempted
+  int every = 5;                         // frames from one attempt to the next
+  int deforming_frame = 20;              // before it only a rigid scene is attempted
+  int last_frame = 50;                   // frames after which a reference is given up
+  int views = 8;                         // frames in the problem, spread evenly
+  int rigid_views = 16;                  // the same for a rigid scene: more cost little there
+  int min_views = 5;                     // of `views` a point must be seen in, and as large a share of rigid_views
   double min_frame_share = 0.375;        // of all frames, in which a point must be seen to join the map
   int max_points = 600;                  // in the problem
   int min_points = 40;                   // fewer certain points in the last frame make no map
