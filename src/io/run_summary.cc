@@ -71,6 +71,7 @@ Status WriteRunSummary(const std::string& path, const RunSummary& summary) {
       {"working_image",
        {{"scale", summary.description.image_scale},
         {"smoothing_px", summary.description.image_smoothing_px},
+        {"patch_size", summary.description.patch_size},
         {"noise_levels", summary.description.image_noise_levels},
         {"track_noise_px", summary.description.track_noise_px},
         {"alive_after_9", summary.description.alive_after_9}}},
@@ -121,6 +122,7 @@ Result<RunSummary> ReadRunSummary(const std::string& path) {
     if (const Json working = json.value("working_image", Json()); !working.is_null()) {
       summary.description.image_scale = working.at("scale").get<double>();
       summary.description.image_smoothing_px = working.at("smoothing_px").get<double>();
+      summary.description.patch_size = working.value("patch_size", 0);
       summary.description.image_noise_levels = working.value("noise_levels", 0.0);
       summary.description.track_noise_px = working.value("track_noise_px", 0.0);
       summary.description.alive_after_9 = working.value("alive_after_9", 0.0);

@@ -29,15 +29,18 @@ constexpr int kMinSide_px = 320;
 constexpr int kMaxSide_px = 1300;
 constexpr std::array kScales = {1.0, 0.75, 1.5, 0.5, 2.0, 1.0 / 3.0, 0.25};  // nearest to the source first
 constexpr std::array kSmoothings_px = {0.0, 0.7, 1.0, 1.4};
+// Of patches in images whose corners do not last: twice the pixels, so that noise moves a patch by 0.7 times as much.
+constexpr double kNoisyPatchScale = 1.41;
 // With which sizes are compared. At the source's own noise all large sizes would lose.
 constexpr double kSmoothingOfSizes_px = 0.7;
 
 Trackability Measure(const std::vector<ImageRun>& runs, const WorkingImage& working, const TrackOptions& options) {
   Trackability all;
+  const TrackerOptions tracker = WorkingOptions(options.tracker, working);
   for (const ImageRun& run : runs) {
     std::vector<PreparedFrame> frames;
-    for (const SequenceFrame& frame : run) frames.push_back(PrepareWorkingFrame(frame, working, options.tracker));
-    const Trackability measured = MeasureTrackability(frames, options.tracker, options.threads);
+    for (const SequenceFrame& frame : run) frames.push_back(PrepareWorkingFrame(frame, working, tracker));
+    const Trackability measured = MeasureTrackability(frames, tracker, options.threads);
     all.corners += measured.corners;
     all.alive += measured.alive;
   }
@@ -79,11 +82,12 @@ WorkingImage ChooseWorkingImage(const std::vector<ImageRun>& runs, const TrackOp
   std::vector<WorkingImage> sizes;
   for (const double scale : kScales) {
     const double side = scale * std::max(source.width, source.height);
-    if (scale == 1 || (side >= kMinSide_px && side <= kMaxSide_px)) sizes.push_back({scale, kSmoothingOfSizes_px});
+    if (scale == 1 || (side >= kMinSide_px && side <= kMaxSide_px))
+      sizes.push_back({scale, kSmoothingOfSizes_px, kNoisyPatchScale});
   }
   const WorkingImage size = FirstAsGoodAsTheBest(runs, sizes, options);
   std::vector<WorkingImage> smoothings;
-  for (const double smoothing_px : kSmoothings_px) smoothings.push_back({size.scale, smoothing_px});
+  for (const double smoothing_px : kSmoothings_px) smoothings.push_back({size.scale, smoothing_px, kNoisyPatchScale});
   return FirstAsGoodAsTheBest(runs, smoothings, options);
 }
 

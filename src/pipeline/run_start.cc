@@ -59,12 +59,13 @@ bool HasDepth(const SequenceRequest& request, const Sequence& sequence) {
 ImageStatistics MeasureImages(const std::vector<ImageRun>& runs, const WorkingImage& working,
                               const TrackOptions& options) {
   std::vector<RunMeasurement> measured;
+  const TrackerOptions tracker = WorkingOptions(options.tracker, working);
   for (const ImageRun& run : runs) {
     if (std::ssize(run) < kStatisticsRunFrames) continue;
     std::vector<PreparedFrame> frames;
     for (int k = 0; k < kStatisticsRunFrames; ++k)
-      frames.push_back(PrepareWorkingFrame(run[static_cast<std::size_t>(k)], working, options.tracker));
-    measured.push_back(MeasureRun(frames, options.tracker, options.threads));
+      frames.push_back(PrepareWorkingFrame(run[static_cast<std::size_t>(k)], working, tracker));
+    measured.push_back(MeasureRun(frames, tracker, options.threads));
   }
   return Summarize(measured);
 }

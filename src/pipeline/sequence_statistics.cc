@@ -21,6 +21,7 @@ Result<SequenceStatistics> MeasureSequenceStatistics(const SequenceRequest& requ
   if (!sequence.ok()) return sequence.status();
   SequenceStatistics measured{
       .working_image = ChooseWorkingImage(ReadFirstRuns(request), options), .size = {}, .images = {}};
+  const TrackerOptions tracker = WorkingOptions(options.tracker, measured.working_image);
   const int frames = (*sequence)->size();
   // Runs of images that follow each other, each `distance` after the one before.
   const int distance = std::max(kStatisticsRunFrames, (frames + kMaxRuns - 1) / kMaxRuns);
@@ -31,10 +32,10 @@ Result<SequenceStatistics> MeasureSequenceStatistics(const SequenceRequest& requ
     if (!next.ok()) return next.status();
     if (!next->has_value()) break;
     if (read % distance >= kStatisticsRunFrames) continue;
-    run.push_back(PrepareWorkingFrame(**next, measured.working_image, options.tracker));
+    run.push_back(PrepareWorkingFrame(**next, measured.working_image, tracker));
     if (std::ssize(run) < kStatisticsRunFrames) continue;
     measured.size = run.front().gray.size();
-    runs.push_back(MeasureRun(run, options.tracker, options.threads));
+    runs.push_back(MeasureRun(run, tracker, options.threads));
     run.clear();
   }
   if (runs.empty())

@@ -248,8 +248,8 @@ Ending TrackSequence(Sequence& sequence, const RunRequest& request, const TrackO
 void ImageOptions::List(OptionTable& table) {
   table.BeginGroup("Image", "the working image: the source resized and smoothed, in which points are tracked");
   table.AddChoice("working", &working,
-                  "measured: the size and smoothing in which most points of the first images last; fixed: by scale and "
-                  "smoothing_px");
+                  "measured: the size and smoothing in which most points of the first images last, with larger patches "
+                  "where the source's own points do not last; fixed: by scale and smoothing_px");
   table.Add("scale", &scale, "-", "fixed: size of the working image divided by that of the source", 0.05, 4);
   table.Add("smoothing_px", &smoothing_px, "px",
             "fixed: standard deviation of the Gaussian that smooths the working image, in its pixels; 0: none", 0, 20);
@@ -311,6 +311,7 @@ Result<RunSummary> RunTrack(const RunRequest& request, const TrackOptions& optio
 
   const auto start = ReadStart(request, usable, **sequence);
   if (!start.ok()) return start.status();
+  usable.tracker = WorkingOptions(std::move(usable.tracker), start->working_image);
 
   OptionTable table;
   TrackOptions listed = options;
@@ -327,6 +328,7 @@ Result<RunSummary> RunTrack(const RunRequest& request, const TrackOptions& optio
                                    {oracles.begin(), oracles.end()},
                                    start->working_image.scale,
                                    start->working_image.smoothing_px,
+                                   usable.tracker.point_tracker.lucas_kanade.patch_size,
                                    start->images.noise_levels,
                                    start->images.track_noise_px,
                                    start->images.alive_after_9},

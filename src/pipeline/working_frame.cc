@@ -3,12 +3,23 @@
 
 #include "pipeline/working_frame.h"
 
+#include <algorithm>
+#include <cmath>
+
+#include "pliant/photometric/patch.h"
+
 namespace pliant {
 
 PreparedFrame PrepareWorkingFrame(const SequenceFrame& frame, const WorkingImage& working,
                                   const TrackerOptions& options) {
   return PrepareFrame(frame.frame_idx, frame.name, frame.timestamp_s, working.Image(frame.image),
                       working.Nearest(frame.mask), options);
+}
+
+TrackerOptions WorkingOptions(TrackerOptions options, const WorkingImage& working) {
+  int& size = options.point_tracker.lucas_kanade.patch_size;
+  size = std::min(static_cast<int>(std::lround(working.patch_scale * size)), kMaxPatchSize);
+  return options;
 }
 
 FrameReport InSourcePixels(FrameReport report, const WorkingImage& working) {

@@ -9,11 +9,15 @@
 #include "pliant/image/working_image.h"
 #include "pliant/scene/frame_report.h"
 #include "pliant/tracking/prepared_frame.h"
+#include "pliant/tracking/tracker_options.h"
 
 namespace pliant {
 
 PreparedFrame PrepareWorkingFrame(const SequenceFrame& frame, const WorkingImage& working,
                                   const TrackerOptions& options);
+
+// The tracker's options for these images.
+TrackerOptions WorkingOptions(TrackerOptions options, const WorkingImage& working);
 
 // The tracker's report with pixels and pixel errors of the source.
 FrameReport InSourcePixels(FrameReport report, const WorkingImage& working);

@@ -32,6 +32,9 @@ TEST(RunFolder, ComesBackAsItWasReported) {
   EXPECT_EQ(run->summary->description.camera, (std::filesystem::current_path() / "stereo.yaml").string());
   EXPECT_EQ(run->summary->description.seed, 7u);
   EXPECT_EQ(run->summary->description.oracles, (std::vector<std::string>{"tracks"}));
+  EXPECT_EQ(run->summary->description.image_scale, 0.75);
+  EXPECT_EQ(run->summary->description.image_smoothing_px, 0.7);
+  EXPECT_EQ(run->summary->description.patch_size, 21);
   EXPECT_EQ(run->summary->frames_read, 5);
   EXPECT_EQ(run->summary->frames_tracked, 4);
   EXPECT_EQ(run->summary->points, kPoints);

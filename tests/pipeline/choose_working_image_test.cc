@@ -8,7 +8,9 @@
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
 
+#include "pipeline/working_frame.h"
 #include "pliant/datasets/native_writer.h"
+#include "pliant/photometric/patch.h"
 #include "support/test_folder.h"
 
 namespace pliant {
@@ -62,12 +64,24 @@ class MovingTexture : public testing::Test {
 TEST_F(MovingTexture, CleanImagesAreUsedAsTheyAre) {
   Write(0.3);
   EXPECT_TRUE(Chosen().IsSource());
+  EXPECT_EQ(Chosen().patch_scale, 1);
 }
 
 TEST_F(MovingTexture, NoisyOnesAreMadeSmallerOrSmoother) {
   Write(kStrongNoise);
   const WorkingImage chosen = Chosen();
   EXPECT_TRUE(chosen.scale < 1 || chosen.smoothing_px > 0) << chosen.scale << ", " << chosen.smoothing_px;
+  EXPECT_GT(chosen.patch_scale, 1);
+}
+
+TEST(WorkingOptions, PatchesGrowUpToTheLargest) {
+  TrackerOptions options;
+  LucasKanadeOptions& lucas_kanade = options.point_tracker.lucas_kanade;
+  lucas_kanade.patch_size = 15;
+  EXPECT_EQ(WorkingOptions(options, {}).point_tracker.lucas_kanade.patch_size, 15);
+  EXPECT_EQ(WorkingOptions(options, {.patch_scale = 1.4}).point_tracker.lucas_kanade.patch_size, 21);
+  lucas_kanade.patch_size = kMaxPatchSize;
+  EXPECT_EQ(WorkingOptions(options, {.patch_scale = 1.4}).point_tracker.lucas_kanade.patch_size, kMaxPatchSize);
 }
 
 }  // namespace

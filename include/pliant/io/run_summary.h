@@ -41,9 +41,11 @@ struct RunDescription {
   std::string input;                      // the images' path, as given
   std::string camera = {};                // the calibration's path, absolute; empty: the one that belongs to the images
   std::vector<std::string> oracles = {};  // parts of the method that were replaced by the truth; empty in an honest run
-  // The images in which points were tracked: their size by that of the source, and their smoothing in their pixels.
+  // The images in which points were tracked: their size by that of the source; in their pixels, their smoothing and the
+  // side of a point's patch (0: unknown).
   double image_scale = 1;
   double image_smoothing_px = 0;
+  int patch_size = 0;
   // Measured on the first of those images, in their pixels and gray levels; 0: unknown.
   double image_noise_levels = 0;
   double track_noise_px = 0;  // standard deviation of a coordinate of a point's track
