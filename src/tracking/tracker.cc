@@ -36,9 +36,10 @@ struct FrameResult {
 
 namespace {
 
-// As published, the graph is wider after a start from metric depth.
-TrackerOptions WithMetricSigma(TrackerOptions options) {
+// What follows from other options. As published, the graph is wider after a start from metric depth.
+TrackerOptions Completed(TrackerOptions options) {
   if (options.init.IsMetric()) options.graph.sigma_mm = options.sigma_metric_mm;
+  options.init.window.window.patch_px = options.point_tracker.lucas_kanade.patch_size;
   return options;
 }
 
@@ -126,7 +127,7 @@ double MedianError(const FollowedPoints& points) {
 
 Tracker::Tracker(const Camera& camera, const TrackerOptions& options, std::uint64_t seed, int threads,
                  TrackingTruth* truth, const std::optional<PhotometricCalibration>& photometric)
-    : options_(WithMetricSigma(options)),
+    : options_(Completed(options)),
       oracle_poses_(std::make_unique<OraclePoses>(options.oracle, truth, NominalDepth(options.init))),
       tracks_(MakeTrackSource(options_, threads, truth)),
       bootstrapper_(std::make_unique<Bootstrapper>(camera, options_, threads, photometric, tracks_.get(),

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <random>
 
 #include <gtest/gtest.h>
 
@@ -29,7 +30,9 @@ constexpr double kSigmaLow = 0.5;      // of the light's own errors, whose devia
 constexpr double kSigmaHigh = 3;       // and some of the correction for tilt, which this light does not have
 constexpr double kAgain_mm = 0.05;     // two solutions that rest where the solver stops
 constexpr double kMaxOfNoise = 0.15;   // correlation of residuals that are noise, of some thousand of them
-constexpr double kMinOfMotion = 0.5;   // of residuals that are a motion of six times the noise
+constexpr double kOneOfFour = 0.2;     // of four neighbors' errors one is the same
+constexpr double kMaxOfIndependent = 0.05;
+constexpr double kMinOfMotion = 0.5;  // of residuals that are a motion of six times the noise
 
 TEST(DeformingWindow, FindsTheShapeOfASceneThatMovesAsFastAsTheCamera) {
   const Scene scene;
@@ -169,6 +172,35 @@ TEST(DeformingWindow, TellsARigidSceneFromOneThatDeformsALittle) {
   ASSERT_TRUE(still.ok() && moving.ok());
   EXPECT_LT(*still, kMaxOfNoise);
   EXPECT_GT(*moving, kMinOfMotion);
+}
+
+// Points on a grid, each with a twin so near that their patches overlap: the errors of two twins are the same noise.
+TEST(DeformingWindow, ErrorsOfPatchesThatOverlapAreNoSignOfMotion) {
+  constexpr int kSide = 12;
+  constexpr int kViews = 10;
+  constexpr double kStep = 0.05;   // rad, of the grid
+  constexpr double kTwin = 0.005;  // rad
+  std::mt19937 random(3);
+  std::normal_distribution<double> noise(0.0, 1e-3);
+  DeformingWindow window;
+  for (int row = 0; row < kSide; ++row)
+    for (int column = 0; column < kSide; ++column)
+      for (const double twin : {0.0, kTwin})
+        window.points_in_world.push_back(50.0 * Eigen::Vector3d(kStep * column + twin, kStep * row, 1));
+  for (int v = 0; v < kViews; ++v) {
+    window.times.push_back(v);
+    window.cams_from_world.emplace_back();
+    Eigen::Vector3d error = Eigen::Vector3d::Zero();
+    for (std::size_t i = 0; i < window.points_in_world.size(); ++i) {
+      if (i % 2 == 0) error = {noise(random), noise(random), 0};
+      window.observations.push_back(
+          {v, static_cast<int>(i), (window.points_in_world[i].normalized() + error).normalized()});
+    }
+  }
+  window.coefficients.resize(0, kViews);
+  window.shapes.assign(window.points_in_world.size(), Eigen::Matrix3Xd(3, 0));
+  EXPECT_GT(ResidualCorrelation(window, 0.0), kOneOfFour);
+  EXPECT_LT(std::abs(ResidualCorrelation(window, 2 * kTwin)), kMaxOfIndependent);
 }
 
 TEST(DeformingWindow, SolvesARigidSceneAsOne) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "estimation/ray_residuals.h"
@@ -18,7 +19,27 @@ namespace {
 
 // Errors larger than this many times the median one count as that large: wrong tracks are like nobody.
 constexpr double kLargestError = 4.0;
-constexpr int kNeighbors = 4;
+constexpr std::size_t kNeighbors = 4;
+
+// The nearest points to each in direction from the reference, of those that are not too near.
+std::vector<std::vector<std::size_t>> NeighborsAtAngle(const DeformingWindow& window, double min_angle_rad) {
+  std::vector<Eigen::Vector3d> directions;
+  for (const Eigen::Vector3d& point : window.points_in_world) directions.push_back(point.normalized());
+  const double min_chord = 2.0 * std::sin(0.5 * min_angle_rad);
+  std::vector<std::vector<std::size_t>> neighbors(directions.size());
+  std::vector<std::pair<double, std::size_t>> others;
+  for (std::size_t i = 0; i < directions.size(); ++i) {
+    others.clear();
+    for (std::size_t j = 0; j < directions.size(); ++j) {
+      const double chord = (directions[i] - directions[j]).norm();
+      if (j != i && chord >= min_chord) others.emplace_back(chord, j);
+    }
+    const std::size_t count = std::min(kNeighbors, others.size());
+    std::partial_sort(others.begin(), others.begin() + static_cast<std::ptrdiff_t>(count), others.end());
+    for (std::size_t k = 0; k < count; ++k) neighbors[i].push_back(others[k].second);
+  }
+  return neighbors;
+}
 
 }  // namespace
 
@@ -38,7 +59,7 @@ std::vector<double> PointErrorsPx(const DeformingWindow& window, double focal_px
   return sums;
 }
 
-double ResidualCorrelation(const DeformingWindow& window) {
+double ResidualCorrelation(const DeformingWindow& window, double min_angle_rad) {
   const auto views = window.cams_from_world.size();
   const auto points = window.points_in_world.size();
   const Eigen::Vector2d none = Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
@@ -58,16 +79,14 @@ double ResidualCorrelation(const DeformingWindow& window) {
     for (Eigen::Vector2d& error : of_view)
       if (error.norm() > largest) error *= largest / error.norm();
 
-  std::vector<Eigen::Vector3d> directions;
-  for (const Eigen::Vector3d& point : window.points_in_world) directions.push_back(point.normalized());
-  const NeighborLists neighbors = NearestNeighbors(directions, kNeighbors);
+  const auto neighbors = NeighborsAtAngle(window, min_angle_rad);
   double products = 0;
   double squares = 0;
   for (const auto& of_view : errors)
     for (std::size_t i = 0; i < points; ++i)
-      for (const int j : neighbors[i]) {
+      for (const std::size_t j : neighbors[i]) {
         const Eigen::Vector2d& a = of_view[i];
-        const Eigen::Vector2d& b = of_view[static_cast<std::size_t>(j)];
+        const Eigen::Vector2d& b = of_view[j];
         if (!a.allFinite() || !b.allFinite()) continue;
         products += a.dot(b);
         squares += 0.5 * (a.squaredNorm() + b.squaredNorm());

@@ -186,7 +186,7 @@ DeformingSolution WithUncertainty(DeformingSolution solution, double focal_px, c
                                   int threads) {
   solution.log_depth_sigmas = FoundLogDepthSigmas(solution, FoundNoisePx(solution.window, focal_px),
                                                   solution.window.points_in_world.size(), focal_px, options, threads);
-  solution.residual_correlation = ResidualCorrelation(solution.window);
+  solution.residual_correlation = ResidualCorrelation(solution.window, options.patch_px / focal_px);
   return solution;
 }
 
@@ -332,7 +332,7 @@ Result<double> RigidResidualCorrelation(const DeformingWindow& start, double foc
   DeformingProblem problem(part, {}, focal_px, options);
   const auto cost = problem.Solve(kRigidFactor * options.max_iterations);
   if (!cost.ok()) return cost.status();
-  return ResidualCorrelation(problem.Window());
+  return ResidualCorrelation(problem.Window(), options.patch_px / focal_px);
 }
 
 }  // namespace pliant

@@ -69,6 +69,7 @@ struct DeformingWindowOptions {
   int nodes = 16;                    // of the surface, at which basis shapes are free; between them: interpolated
   int sample_points = 80;            // in each of the two samples that are solved first
   int max_iterations = 12;           // of one solution; a sixth of it for the last
+  int patch_px = 15;  // side of the tracked patches, which is LucasKanade.patch_size; no option of its own
 
   void List(OptionTable& table);  // group "Window"
 };
@@ -144,7 +145,8 @@ Result<DeformingSolution> OptimizeDeformingPoints(const DeformingSolution& solut
 // point that no other view sees.
 std::vector<double> PointErrorsPx(const DeformingWindow& window, double focal_px);
 
-// Correlation of the errors of points that are neighbors in the reference, over all views, from -1 to 1.
-double ResidualCorrelation(const DeformingWindow& window);
+// Correlation of the errors of points that are neighbors in the reference, over all views, from -1 to 1. Neighbors are
+// the nearest at an angle of at least `min_angle_rad`: the tracks of patches that overlap err alike.
+double ResidualCorrelation(const DeformingWindow& window, double min_angle_rad);
 
 }  // namespace pliant

@@ -83,7 +83,7 @@ struct WindowInitOptions {
   double min_frame_share = 0.375;        // of all frames, in which a point must be seen to join the map
   int max_points = 600;                  // in the problem
   int min_points = 40;                   // fewer certain points in the last frame make no map
-  double max_correlation = 0.25;         // of neighbors' errors under a rigid motion: above, the scene deforms
+  double max_correlation = 0.2;          // of neighbors' errors under a rigid motion: above, the scene deforms
   double certain_depth_sigma = 0.02;     // of a point by the median depth, until deforming_frame
   double last_depth_sigma = 0.06;        // the same at last_frame
   double max_depth_sigma = 0.03;         // a point that is less certain than this, and than those, stays out
