@@ -280,47 +280,6 @@ TEST(WindowInitializer, WhenAllPointsAreOneItSaysSo) {
   EXPECT_FALSE(outcome.reason.empty());
 }
 
-TEST(WindowInitializer, SaysThatTheCameraOnlyTurned) {
-  const InitOutcome outcome = WavingTracks(31, CameraMotion::kRotation).Try({});
-  EXPECT_EQ(outcome.decision, InitDecision::kWait);
-  EXPECT_THAT(outcome.reason, HasSubstr("rotated or stood still"));
-}
-
-enum class SceneMotion { kNone, kWave };
-
-// A camera that turns about the scene: if it moved along its axis, any focal length would do.
-WavingTracks Orbit(int frames, SceneMotion motion) {
-  WavingTracks sequence(frames, CameraMotion::kStill);
-  const Eigen::Vector3d center(0, 0, 60);
-  Random random(3);
-  for (std::size_t t = 0; t < sequence.frames.size(); ++t)
-    for (InitObservation& seen : sequence.frames[t].observations) {
-      const int time = motion == SceneMotion::kWave ? static_cast<int>(t) : 0;
-      const Eigen::Vector3d from_center = sequence.At(static_cast<int>(seen.id.value), time) - center;
-      const Eigen::Quaterniond turn = RotationExp(Eigen::Vector3d(0, 0.01 * static_cast<double>(t), 0));
-      seen.pixel = *sequence.camera.Project(center + turn * from_center) +
-                   kNoisePx * Eigen::Vector2d(random.Normal(), random.Normal());
-    }
-  return sequence;
-}
-
-TEST(WindowInitializer, SaysThatTheImagesContradictTheFocalLength) {
-  WavingTracks rigid = Orbit(31, SceneMotion::kNone);
-  EXPECT_EQ(rigid.Try({}, InitMoment::kLastFrame).measured.focal_length_factor, 1.0);
-  constexpr double kWrong = 0.75;
-  rigid.camera = rigid.camera.WithFocalLengthTimes(kWrong).value();
-  const InitOutcome outcome = rigid.Try({}, InitMoment::kLastFrame);
-  EXPECT_NEAR(outcome.measured.focal_length_factor, 1 / kWrong, 0.05);
-  EXPECT_THAT(outcome.reason, HasSubstr("contradict the focal length"));
-}
-
-TEST(WindowInitializer, ASceneThatDeformsDoesNotContradictTheFocalLength) {
-  for (const int frames : {16, 31, 51}) {
-    const InitOutcome outcome = Orbit(frames, SceneMotion::kWave).Try({}, InitMoment::kLastFrame);
-    EXPECT_EQ(outcome.measured.focal_length_factor, 1.0) << frames;
-  }
-}
-
 // The last frames of which see fewer than half of the reference's points.
 WavingTracks LosingPoints(int frames, int from) {
   WavingTracks sequence(frames);
@@ -347,54 +306,6 @@ TEST(WindowInitializer, AShortDeformingWindowIsTriedWhereHalfOfThePointsAreLostB
   const InitOutcome early = LosingPoints(16, 15).Try(easy);
   EXPECT_NE(early.decision, InitDecision::kMap);
   EXPECT_THAT(early.reason, HasSubstr("a window of 16 frames is too short"));
-}
-
-TEST(WindowInitializer, SaysWhenCameraAndSceneCannotBeToldApart) {
-  const WavingTracks held(51, CameraMotion::kHeld);
-  const InitOutcome outcome = held.Try({});
-  EXPECT_EQ(outcome.decision, InitDecision::kNewReference);
-  EXPECT_TRUE(outcome.ambiguous);
-  EXPECT_LT(outcome.measured.still_camera_error_ratio, WindowInitOptions().min_still_camera_ratio);
-  EXPECT_THAT(outcome.reason, HasSubstr("cannot be told apart"));
-  WindowInitOptions unasked;
-  unasked.min_still_camera_ratio = 0;
-  EXPECT_EQ(held.Try(unasked).decision, InitDecision::kMap) << "nothing else refuses it";
-}
-
-// A camera that stands still before a wall of which a part moves, in noisy images.
-WavingTracks PokedWall(int frames) {
-  WavingTracks sequence(frames, CameraMotion::kStill);
-  Random random(8);
-  for (std::size_t t = 0; t < sequence.frames.size(); ++t)
-    for (InitObservation& seen : sequence.frames[t].observations) {
-      const Eigen::Vector3d& point = sequence.points[static_cast<std::size_t>(seen.id.value)];
-      const double poke =
-          std::exp(-point.head<2>().squaredNorm() / (2 * 10 * 10)) * std::sin(0.08 * static_cast<double>(t));
-      seen.pixel += Eigen::Vector2d(20 * poke, 0) + 0.2 * Eigen::Vector2d(random.Normal(), random.Normal());
-    }
-  return sequence;
-}
-
-TEST(WindowInitializer, TakesNoPokeForAMotionOfTheCamera) {
-  for (const int frames : {11, 16, 21, 31, 46}) {
-    const InitOutcome outcome = PokedWall(frames).Try({});
-    EXPECT_NE(outcome.decision, InitDecision::kMap) << frames << ": " << outcome.reason;
-    EXPECT_NE(outcome.decision, InitDecision::kProvisional) << frames << ": " << outcome.reason;
-  }
-}
-
-TEST(WindowInitializer, SaysByHowMuchTheCameraMoves) {
-  const InitOutcome outcome = WavingTracks(61).Try({});
-  ASSERT_EQ(outcome.decision, InitDecision::kMap) << outcome.reason;
-  EXPECT_FALSE(outcome.ambiguous);
-  EXPECT_GT(outcome.measured.still_camera_error_ratio, WindowInitOptions().min_still_camera_ratio);
-  EXPECT_THAT(outcome.reason, HasSubstr("with a camera that stands still"));
-}
-
-TEST(WindowInitializer, SaysThatTheCameraStoodStill) {
-  const InitOutcome outcome = WavingTracks(31, CameraMotion::kStill).Try({});
-  EXPECT_EQ(outcome.decision, InitDecision::kWait);
-  EXPECT_THAT(outcome.reason, HasSubstr("rotated or stood still"));
 }
 
 // Two views of a plane are explained by two motions, each of which is a minimum of the window's cost.
