@@ -16,11 +16,12 @@ namespace pliant {
 namespace {
 
 constexpr double kFactors[] = {0.5, 0.6, 0.75, 1.33, 1.7, 2.0};
-constexpr double kFirstStep = 1.15;     // from the best of them towards the next, as a factor
-constexpr int kRefinements = 3;         // each by a step that is half as long: to 2 %
-constexpr double kMinErrorRatio = 1.1;  // of the errors with the calibration's focal length by those with another one
-constexpr double kMinErrorPx = 0.01;    // smaller errors are those of the solver
-constexpr int kMaxPoints = 80;          // in as few views as a deforming window has: they tell enough
+constexpr double kFirstStep = 1.15;      // from the best of them towards the next, as a factor
+constexpr int kRefinements = 3;          // each by a step that is half as long: to 2 %
+constexpr double kMinErrorRatio = 1.1;   // of the errors with the calibration's focal length by those with another one
+constexpr double kMinErrorPx = 0.01;     // smaller errors are those of the solver
+constexpr double kMaxCorrelation = 0.1;  // of neighbors' errors (W11) where nothing but noise is left unexplained
+constexpr int kMaxPoints = 80;           // in as few views as a deforming window has: they tell enough
 
 struct RigidFit {
   double error_px = 0;
@@ -80,7 +81,7 @@ double ContradictingFocalLengthFactor(const InitInput& input, const WindowInitOp
     try_factor(center * step);
     try_factor(center / step);
   }
-  const bool explains = best.correlation <= options.max_correlation;
+  const bool explains = best.correlation <= kMaxCorrelation;
   return explains && kMinErrorRatio * best.error_px <= calibrated->error_px ? best_factor : 1.0;
 }
 
