@@ -20,7 +20,6 @@ constexpr double kFirstStep = 1.15;      // from the best of them towards the ne
 constexpr int kRefinements = 3;          // each by a step that is half as long: to 2 %
 constexpr double kMinErrorRatio = 1.1;   // of the errors with the calibration's focal length by those with another one
 constexpr double kMinErrorPx = 0.01;     // smaller errors are those of the solver
-constexpr double kMaxCorrelation = 0.1;  // of neighbors' errors (W11) where nothing but noise is left unexplained
 constexpr int kMaxPoints = 80;           // in as few views as a deforming window has: they tell enough
 
 struct RigidFit {
@@ -81,7 +80,7 @@ double ContradictingFocalLengthFactor(const InitInput& input, const WindowInitOp
     try_factor(center * step);
     try_factor(center / step);
   }
-  const bool explains = best.correlation <= kMaxCorrelation;
+  const bool explains = best.correlation <= kMaxNoiseCorrelation;
   return explains && kMinErrorRatio * best.error_px <= calibrated->error_px ? best_factor : 1.0;
 }
 

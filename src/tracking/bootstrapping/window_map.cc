@@ -176,14 +176,16 @@ Status OptimizePoints(const InitInput& input, const MapDemands& demands, const W
 
 // (W15) Whether the map is provisional, and may be. Points that are certain by the median distance of all may be near
 // ones of a window that knows nothing: what is left is judged by its own. Before a camera that hardly moves noise
-// passes for motion; of a rigid scene nothing else asks for that (W14).
+// passes for motion, and so does tissue that swells; of a rigid scene nothing else asks for that (W14).
 Status CheckDepthSignal(const SolvedWindow& window, const MapDemands& demands, const WindowInitOptions& options,
                         InitOutcome* outcome) {
   const InitMeasurements& measured = outcome->measured;
   outcome->provisional = demands.provisional || measured.DepthSignal() < kMinDepthSignal;
   const bool stands_out = measured.DepthSignal() >= kMinProvisionalSignal;
   const double max_sigma = window.IsRigid() && !stands_out ? options.max_depth_sigma : kMaxOwnSigma * demands.max_sigma;
-  const bool known = demands.provisional ? stands_out : measured.median_depth_sigma <= max_sigma;
+  const bool explained = window.solution.residual_correlation <= kMaxNoiseCorrelation;
+  const bool may_be_motion = window.IsRigid() && !stands_out && !explained;
+  const bool known = demands.provisional ? stands_out : measured.median_depth_sigma <= max_sigma && !may_be_motion;
   if (known && (!outcome->provisional || options.provisional == Switch::kOn)) return Status::Ok();
   return {ErrorCode::kInsufficient,
           "the depths spread by " + Digits(100.0 * measured.depth_spread, 1) + " % and are known to " +
