@@ -16,11 +16,11 @@ namespace pliant {
 namespace {
 
 constexpr double kFactors[] = {0.5, 0.6, 0.75, 1.33, 1.7, 2.0};
-constexpr double kFirstStep = 1.15;      // from the best of them towards the next, as a factor
-constexpr int kRefinements = 3;          // each by a step that is half as long: to 2 %
-constexpr double kMinErrorRatio = 1.1;   // of the errors with the calibration's focal length by those with another one
-constexpr double kMinErrorPx = 0.01;     // smaller errors are those of the solver
-constexpr int kMaxPoints = 80;           // in as few views as a deforming window has: they tell enough
+constexpr double kFirstStep = 1.15;     // from the best of them towards the next, as a factor
+constexpr int kRefinements = 3;         // each by a step that is half as long: to 2 %
+constexpr double kMinErrorRatio = 1.1;  // of the errors with the calibration's focal length by those with another one
+constexpr double kMinErrorPx = 0.01;    // smaller errors are those of the solver
+constexpr int kMaxPoints = 80;          // in as few views as a deforming window has: they tell enough
 
 struct RigidFit {
   double error_px = 0;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include <Eigen/Cholesky>
@@ -16,6 +17,8 @@ namespace {
 
 constexpr std::size_t kMinNeighbors = 6;  // twice the unknowns of a plane
 constexpr double kMinDeviation = 1e-3;    // tissue is not flatter than that
+constexpr double kSmallestGap_px = 8.0;   // gaps are rounded to it times a power of two
+constexpr double kOneSigma = 0.683;       // share of errors below it
 
 }  // namespace
 
@@ -26,16 +29,15 @@ SurfaceDistances::SurfaceDistances(const Map& map, const Rigid3& cam_from_world,
     pixels_.push_back(landmark.pixel);
     points_in_cam_.push_back(cam_from_world * landmark.position);
   }
-  std::vector<double> deviations;
-  for (const Eigen::Vector2d& pixel : pixels_)
-    if (const auto plane = PlaneAt(pixel)) deviations.push_back(plane->deviation);
-  if (!deviations.empty()) typical_deviation_ = Median(std::move(deviations));
 }
 
 // By linear least squares of n . x = 1, whose residuals are relative distances from the plane.
-std::optional<SurfaceDistances::Plane> SurfaceDistances::PlaneAt(const Eigen::Vector2d& pixel) const {
+std::optional<SurfaceDistances::Plane> SurfaceDistances::PlaneAt(const Eigen::Vector2d& pixel,
+                                                                 const Eigen::Vector3d& ray, double gap_px) const {
   std::vector<std::pair<double, std::size_t>> nearest;
-  for (std::size_t i = 0; i < pixels_.size(); ++i) nearest.emplace_back((pixels_[i] - pixel).squaredNorm(), i);
+  for (std::size_t i = 0; i < pixels_.size(); ++i)
+    if (const double squared_px = (pixels_[i] - pixel).squaredNorm(); squared_px > gap_px * gap_px)
+      nearest.emplace_back(squared_px, i);
   const std::size_t count = std::min(nearest.size(), neighbors_);
   if (count < kMinNeighbors) return std::nullopt;
   std::partial_sort(nearest.begin(), nearest.begin() + static_cast<std::ptrdiff_t>(count), nearest.end());
@@ -44,26 +46,41 @@ std::optional<SurfaceDistances::Plane> SurfaceDistances::PlaneAt(const Eigen::Ve
     points.row(static_cast<Eigen::Index>(k)) = points_in_cam_[nearest[k].second].transpose();
   const Eigen::LDLT<Eigen::Matrix3d> factor(points.transpose() * points);
   if (factor.info() != Eigen::Success || !factor.isPositive()) return std::nullopt;
-  Plane plane;
-  plane.normal = factor.solve(points.colwise().sum().transpose());
-  plane.covariance = factor.solve(Eigen::Matrix3d::Identity());
-  const double squares = ((points * plane.normal).array() - 1.0).square().sum();
-  plane.deviation = std::max(kMinDeviation, std::sqrt(squares / static_cast<double>(count - 3)));
-  if (!plane.normal.allFinite() || !plane.covariance.allFinite()) return std::nullopt;
+  const Eigen::Vector3d normal = factor.solve(points.colwise().sum().transpose());
+  const double inverse_distance = normal.dot(ray);
+  if (!(inverse_distance > 0.0) || !normal.allFinite()) return std::nullopt;
+  const Eigen::Vector3d x = ray / inverse_distance;
+  const double squares = ((points * normal).array() - 1.0).square().sum();
+  const Plane plane{-std::log(inverse_distance), std::sqrt(1.0 + x.dot(factor.solve(x))),
+                    std::max(kMinDeviation, std::sqrt(squares / static_cast<double>(count - 3)))};
+  if (!std::isfinite(plane.leverage_sigma)) return std::nullopt;
   return plane;
 }
 
-std::optional<DistancePrior> SurfaceDistances::At(const Eigen::Vector2d& pixel, const Eigen::Vector3d& ray) const {
-  const auto plane = PlaneAt(pixel);
+// What planes whose points are that far away have to deviate by, for the distances of the map's points to be as wrong
+// as they are: the map tells itself how flat it is over which distance.
+double SurfaceDistances::DeviationAcross(double gap_px) {
+  const auto [entry, is_new] = deviations_.try_emplace(gap_px, 0.0);
+  if (!is_new) return entry->second;
+  std::vector<double> errors;
+  for (std::size_t i = 0; i < pixels_.size(); ++i) {
+    const double distance = points_in_cam_[i].norm();
+    const auto plane = PlaneAt(pixels_[i], points_in_cam_[i] / distance, gap_px);
+    if (plane) errors.push_back(std::abs(plane->log_distance - std::log(distance)) / plane->leverage_sigma);
+  }
+  if (!errors.empty()) entry->second = Quantile(std::move(errors), kOneSigma);
+  return entry->second;
+}
+
+std::optional<DistancePrior> SurfaceDistances::At(const Eigen::Vector2d& pixel, const Eigen::Vector3d& ray) {
+  const auto plane = PlaneAt(pixel, ray, 0.0);
   if (!plane) return std::nullopt;
-  const double inverse_distance = plane->normal.dot(ray);
-  if (!(inverse_distance > 0.0)) return std::nullopt;
+  double nearest_px = std::numeric_limits<double>::infinity();
+  for (const Eigen::Vector2d& point : pixels_) nearest_px = std::min(nearest_px, (point - pixel).norm());
+  const double power = std::max(0.0, std::round(std::log2(nearest_px / kSmallestGap_px)));
   // A plane may fit a few points by chance: it is trusted no more than planes are elsewhere.
-  const Eigen::Vector3d x = ray / inverse_distance;
-  const double deviation = std::max(plane->deviation, typical_deviation_);
-  const double sigma = deviation * std::sqrt(1.0 + x.dot(plane->covariance * x));
-  if (!(sigma > 0.0) || !std::isfinite(sigma)) return std::nullopt;
-  return DistancePrior{-std::log(inverse_distance), sigma};
+  const double deviation = std::max(plane->deviation, DeviationAcross(kSmallestGap_px * std::exp2(power)));
+  return DistancePrior{plane->log_distance, deviation * plane->leverage_sigma};
 }
 
 }  // namespace pliant

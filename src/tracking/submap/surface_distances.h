@@ -2,9 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // How far away the surface is between the points of the map: on the plane through the nearest of them, and as surely as
-// they lie on it (docs/method.md, eq. G7).
+// such planes tell the distances of the map's own points (docs/method.md, eq. G7).
 #pragma once
 
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -24,20 +25,22 @@ class SurfaceDistances {
 
   // Along a unit ray of the camera, at its pixel. Nothing where there are too few points, or where their plane is not
   // in front of the camera.
-  std::optional<DistancePrior> At(const Eigen::Vector2d& pixel, const Eigen::Vector3d& ray) const;
+  std::optional<DistancePrior> At(const Eigen::Vector2d& pixel, const Eigen::Vector3d& ray);
 
  private:
   struct Plane {
-    Eigen::Vector3d normal = Eigen::Vector3d::Zero();      // n . x = 1
-    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // of n, where the deviation is 1
-    double deviation = 0;                                  // of its points, by their distance
+    double log_distance = 0;
+    double leverage_sigma = 0;  // of log distance, where the points deviate by 1
+    double deviation = 0;       // of its points, by their distance
   };
-  std::optional<Plane> PlaneAt(const Eigen::Vector2d& pixel) const;
+  // Through the nearest points that are farther than `gap_px` from the pixel.
+  std::optional<Plane> PlaneAt(const Eigen::Vector2d& pixel, const Eigen::Vector3d& ray, double gap_px) const;
+  double DeviationAcross(double gap_px);
 
   std::size_t neighbors_;
   std::vector<Eigen::Vector2d> pixels_;
   std::vector<Eigen::Vector3d> points_in_cam_;
-  double typical_deviation_ = 0;  // of planes at the points themselves, in the median
+  std::map<double, double> deviations_;  // across gaps that were asked for
 };
 
 }  // namespace pliant
