@@ -260,7 +260,7 @@ FrameResult Tracker::TrackFrame(const PreparedFrame& frame, StageTimes* times) {
     return result;
   }
   relocalizer_->Remember(frame, &submap);
-  result.update = map_updater_->Update(frame, &submap, times);  // (W13), (G1) to (G7)
+  result.update = map_updater_->Update(frame, &submap, times);  // (W13), (G1) to (G8)
   result.losses.Add(result.update.losses);
   result.note = WithFault(result.update.note, ImageFault(frame, submap.previous));
   submap.previous = frame;

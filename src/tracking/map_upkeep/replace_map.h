@@ -27,7 +27,7 @@ std::optional<Rigid3> ReplaceMap(const InitOutcome& outcome, const Rigid3& cam_f
 std::vector<InitPosition> ReestimatedPositions(const InitOutcome& outcome, const Rigid3& cam_from_world, const Map& map,
                                                int min_common = 12);
 
-// (G7) Distances of ReestimatedPositions from the camera: a landmark that `n` re-estimated maps had before is moved 1/n
+// (G8) Distances of ReestimatedPositions from the camera: a landmark that `n` re-estimated maps had before is moved 1/n
 // of the way from where it is, in log distance, and at least `min_weight` of it.
 void AverageWithBefore(const Rigid3& cam_from_world, const Map& map, double min_weight,
                        std::vector<InitPosition>* reestimated);
