@@ -7,8 +7,11 @@ namespace pliant {
 
 void LucasKanadeOptions::List(OptionTable& table) {
   table.BeginGroup("LucasKanade", "following one patch from image to image");
-  table.Add("patch_size", &patch_size, "px", "side of the square patch on every level; an even size is made odd", 7,
-            kMaxPatchSize);
+  table.Add("patch_size", &patch_size, "px",
+            "side of the square patch on every level; an even size is made odd; 1.41 times as large where "
+            "Image.working = measured "
+            "finds that more points last then",
+            7, kMaxPatchSize);
   table.Add("levels", &levels, "-", "pyramid levels: each doubles how far a patch may jump", 1, 8);
   table.Add("max_iterations", &max_iterations, "-", "on each level", 1, 100);
   table.Add("epsilon_px", &epsilon_px, "px", "a smaller step ends a level", 1e-4, 1);

@@ -88,7 +88,11 @@ WorkingImage ChooseWorkingImage(const std::vector<ImageRun>& runs, const TrackOp
   const WorkingImage size = FirstAsGoodAsTheBest(runs, sizes, options);
   std::vector<WorkingImage> smoothings;
   for (const double smoothing_px : kSmoothings_px) smoothings.push_back({size.scale, smoothing_px, kNoisyPatchScale});
-  return FirstAsGoodAsTheBest(runs, smoothings, options);
+  const WorkingImage chosen = FirstAsGoodAsTheBest(runs, smoothings, options);
+  if (chosen.IsSource()) return {};  // its corners do not last, but not for noise
+  WorkingImage small_patches = chosen;
+  small_patches.patch_scale = 1;
+  return FirstAsGoodAsTheBest(runs, {small_patches, chosen}, options);
 }
 
 }  // namespace pliant

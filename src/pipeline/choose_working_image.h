@@ -5,7 +5,8 @@
 // Where most of the source's own corners last, nothing is changed. Else it is counted, for several sizes and
 // smoothings, how many corners of an image are left after some frames. Fewer pixels have less noise, and a patch then
 // covers more of the scene; more pixels hold more corners, and a patch follows a finer deformation; the count weighs
-// all of this on the recording itself. Patches are larger then, for the noise that is left. Of those whose count is as
+// all of this on the recording itself. Larger patches are compared with those of
+// the options in the same way, for the noise that is left. Of those whose count is as
 // good as the best one, to the accuracy sqrt(n) of a count of n, the one nearest to the source is chosen.
 #pragma once
 

@@ -18,7 +18,7 @@ PreparedFrame PrepareWorkingFrame(const SequenceFrame& frame, const WorkingImage
 
 TrackerOptions WorkingOptions(TrackerOptions options, const WorkingImage& working) {
   int& size = options.point_tracker.lucas_kanade.patch_size;
-  size = std::min(static_cast<int>(std::lround(working.patch_scale * size)), kMaxPatchSize);
+  size = std::min(static_cast<int>(std::lround(working.patch_scale * size)) | 1, kMaxPatchSize);
   return options;
 }
 

@@ -16,7 +16,7 @@ namespace pliant {
 PreparedFrame PrepareWorkingFrame(const SequenceFrame& frame, const WorkingImage& working,
                                   const TrackerOptions& options);
 
-// The tracker's options for these images.
+// The tracker's options for these images, with the patches that they take: odd, as a patch is, and at most the largest.
 TrackerOptions WorkingOptions(TrackerOptions options, const WorkingImage& working);
 
 // The tracker's report with pixels and pixel errors of the source.

@@ -80,6 +80,8 @@ TEST(WorkingOptions, PatchesGrowUpToTheLargest) {
   lucas_kanade.patch_size = 15;
   EXPECT_EQ(WorkingOptions(options, {}).point_tracker.lucas_kanade.patch_size, 15);
   EXPECT_EQ(WorkingOptions(options, {.patch_scale = 1.4}).point_tracker.lucas_kanade.patch_size, 21);
+  lucas_kanade.patch_size = 17;
+  EXPECT_EQ(WorkingOptions(options, {.patch_scale = 1.41}).point_tracker.lucas_kanade.patch_size, 25);
   lucas_kanade.patch_size = kMaxPatchSize;
   EXPECT_EQ(WorkingOptions(options, {.patch_scale = 1.4}).point_tracker.lucas_kanade.patch_size, kMaxPatchSize);
 }

@@ -65,6 +65,32 @@ TEST(SurfaceDistances, AreUncertainAtAFoldAndBeyondTheMap) {
   EXPECT_GT(beyond->sigma, 2 * flat->sigma);
 }
 
+// The points around a hole in a bowl lie on a plane that tells nothing of the hole's depth.
+TEST(SurfaceDistances, AreAsUncertainAcrossAGapAsTheMapIsBent) {
+  constexpr double kHole_mm = 9;
+  const auto on_bowl = [](double x, double y) { return Eigen::Vector3d(x, y, 60 - 0.03 * (x * x + y * y)); };
+  Map map;
+  for (int y = -7; y <= 7; ++y)
+    for (int x = -7; x <= 7; ++x) {
+      Landmark landmark{.id = PointId{static_cast<std::int64_t>(map.landmarks.size())}};
+      landmark.position = on_bowl(3 * x, 3 * y);
+      landmark.pixel = *TestCamera().Project(landmark.position);
+      if (landmark.position.head<2>().norm() > kHole_mm) map.landmarks.push_back(landmark);
+    }
+  const auto hole = DistanceAt(map, on_bowl(0, 0));
+  const auto beside = DistanceAt(map, on_bowl(13.5, 1.5));
+  ASSERT_TRUE(hole && beside);
+  EXPECT_LT(std::abs(hole->log_distance - std::log(60)), 2 * hole->sigma);
+  EXPECT_GT(hole->sigma, 3 * beside->sigma);
+}
+
+TEST(SurfaceDistances, AreUnknownWhereTheMapHasNoGapAsWide) {
+  Map corner = Wall(0.001);
+  std::erase_if(corner.landmarks, [](const Landmark& landmark) { return landmark.position.head<2>().maxCoeff() > 0; });
+  EXPECT_TRUE(DistanceAt(corner, OnWall(-2, -2, 0)));
+  EXPECT_FALSE(DistanceAt(corner, OnWall(60, 60, 0)));
+}
+
 TEST(SurfaceDistances, AreNotToldByPointsThatHaveTheirsFromTheSurface) {
   Map map = Wall(0.001);
   for (Landmark& landmark : map.landmarks) landmark.from_surface = true;

@@ -23,7 +23,6 @@ using testing::HasSubstr;
 using testing::Not;
 
 using test::CameraMotion;
-using test::kNoisePx;
 using test::kNominalMm;
 using test::kShape;
 using test::WavingTracks;

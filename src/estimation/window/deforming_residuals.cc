@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "estimation/ray_residuals.h"
-#include "estimation/window/light_depth.h"
 #include "pliant/base/statistics.h"
 #include "pliant/estimation/window/deforming_window.h"
 #include "pliant/geometry/triangulation.h"

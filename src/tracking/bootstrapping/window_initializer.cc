@@ -204,8 +204,9 @@ void WindowInitOptions::List(OptionTable& table) {
             "maximum number of points in the bundle adjustment; its time grows with them", 12, 100000);
   table.Add("min_points", &min_points, "-", "minimum number of certain points in the last frame", 12, 100000);
   table.Add("max_correlation", &max_correlation, "-",
-            "maximum correlation of neighbors' reprojection errors under a rigid motion; above it the scene "
-            "deforms",
+            "maximum correlation of the reprojection errors of neighbors, at least a patch apart, under a rigid "
+            "motion; above "
+            "it the scene deforms",
             -1, 1);
   table.Add("certain_depth_sigma", &certain_depth_sigma, "-",
             "maximum standard deviation of depth divided by the median depth, of a certain point, up to "

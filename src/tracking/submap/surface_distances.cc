@@ -19,6 +19,7 @@ constexpr std::size_t kMinNeighbors = 6;  // twice the unknowns of a plane
 constexpr double kMinDeviation = 1e-3;    // tissue is not flatter than that
 constexpr double kSmallestGap_px = 8.0;   // gaps are rounded to it times a power of two
 constexpr double kOneSigma = 0.683;       // share of errors below it
+constexpr std::size_t kMinErrors = 20;    // fewer do not tell their quantile
 
 }  // namespace
 
@@ -36,7 +37,7 @@ std::optional<SurfaceDistances::Plane> SurfaceDistances::PlaneAt(const Eigen::Ve
                                                                  const Eigen::Vector3d& ray, double gap_px) const {
   std::vector<std::pair<double, std::size_t>> nearest;
   for (std::size_t i = 0; i < pixels_.size(); ++i)
-    if (const double squared_px = (pixels_[i] - pixel).squaredNorm(); squared_px > gap_px * gap_px)
+    if (const double squared_px = (pixels_[i] - pixel).squaredNorm(); squared_px >= gap_px * gap_px)
       nearest.emplace_back(squared_px, i);
   const std::size_t count = std::min(nearest.size(), neighbors_);
   if (count < kMinNeighbors) return std::nullopt;
@@ -47,20 +48,23 @@ std::optional<SurfaceDistances::Plane> SurfaceDistances::PlaneAt(const Eigen::Ve
   const Eigen::LDLT<Eigen::Matrix3d> factor(points.transpose() * points);
   if (factor.info() != Eigen::Success || !factor.isPositive()) return std::nullopt;
   const Eigen::Vector3d normal = factor.solve(points.colwise().sum().transpose());
-  const double inverse_distance = normal.dot(ray);
-  if (!(inverse_distance > 0.0) || !normal.allFinite()) return std::nullopt;
-  const Eigen::Vector3d x = ray / inverse_distance;
+  if (!normal.allFinite()) return std::nullopt;
   const double squares = ((points * normal).array() - 1.0).square().sum();
-  const Plane plane{-std::log(inverse_distance), std::sqrt(1.0 + x.dot(factor.solve(x))),
-                    std::max(kMinDeviation, std::sqrt(squares / static_cast<double>(count - 3)))};
+  Plane plane{.deviation = std::max(kMinDeviation, std::sqrt(squares / static_cast<double>(count - 3))),
+              .nearest_px = std::sqrt(nearest.front().first)};
+  const double inverse_distance = normal.dot(ray);
+  plane.log_distance = inverse_distance > 0.0 ? -std::log(inverse_distance) : std::numeric_limits<double>::infinity();
+  if (!std::isfinite(plane.log_distance)) return plane;
+  const Eigen::Vector3d x = ray / inverse_distance;
+  plane.leverage_sigma = std::sqrt(1.0 + x.dot(factor.solve(x)));
   if (!std::isfinite(plane.leverage_sigma)) return std::nullopt;
   return plane;
 }
 
 // What planes whose points are that far away have to deviate by, for the distances of the map's points to be as wrong
 // as they are: the map tells itself how flat it is over which distance.
-double SurfaceDistances::DeviationAcross(double gap_px) {
-  const auto [entry, is_new] = deviations_.try_emplace(gap_px, 0.0);
+std::optional<double> SurfaceDistances::DeviationAcross(double gap_px) {
+  const auto [entry, is_new] = deviations_.try_emplace(gap_px, std::nullopt);
   if (!is_new) return entry->second;
   std::vector<double> errors;
   for (std::size_t i = 0; i < pixels_.size(); ++i) {
@@ -68,19 +72,19 @@ double SurfaceDistances::DeviationAcross(double gap_px) {
     const auto plane = PlaneAt(pixels_[i], points_in_cam_[i] / distance, gap_px);
     if (plane) errors.push_back(std::abs(plane->log_distance - std::log(distance)) / plane->leverage_sigma);
   }
-  if (!errors.empty()) entry->second = Quantile(std::move(errors), kOneSigma);
+  if (errors.size() >= kMinErrors) entry->second = Quantile(std::move(errors), kOneSigma);
   return entry->second;
 }
 
 std::optional<DistancePrior> SurfaceDistances::At(const Eigen::Vector2d& pixel, const Eigen::Vector3d& ray) {
   const auto plane = PlaneAt(pixel, ray, 0.0);
-  if (!plane) return std::nullopt;
-  double nearest_px = std::numeric_limits<double>::infinity();
-  for (const Eigen::Vector2d& point : pixels_) nearest_px = std::min(nearest_px, (point - pixel).norm());
-  const double power = std::max(0.0, std::round(std::log2(nearest_px / kSmallestGap_px)));
+  if (!plane || !std::isfinite(plane->log_distance)) return std::nullopt;
+  const double power = std::max(0.0, std::round(std::log2(plane->nearest_px / kSmallestGap_px)));
+  const auto across = DeviationAcross(kSmallestGap_px * std::exp2(power));
   // A plane may fit a few points by chance: it is trusted no more than planes are elsewhere.
-  const double deviation = std::max(plane->deviation, DeviationAcross(kSmallestGap_px * std::exp2(power)));
-  return DistancePrior{plane->log_distance, deviation * plane->leverage_sigma};
+  const double sigma = across ? std::max(plane->deviation, *across) * plane->leverage_sigma : 0.0;
+  if (!(sigma > 0.0) || !std::isfinite(sigma)) return std::nullopt;
+  return DistancePrior{plane->log_distance, sigma};
 }
 
 }  // namespace pliant
