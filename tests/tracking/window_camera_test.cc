@@ -10,6 +10,8 @@
 #include "pliant/base/random.h"
 #include "pliant/tracking/bootstrapping/make_initializer.h"
 #include "support/waving_tracks.h"
+#include "tracking/bootstrapping/window_map.h"
+#include "tracking/bootstrapping/window_solution.h"
 
 namespace pliant {
 namespace {
@@ -18,6 +20,7 @@ using testing::HasSubstr;
 
 using test::CameraMotion;
 using test::kNoisePx;
+using test::kNominalMm;
 using test::WavingTracks;
 
 TEST(WindowCamera, SaysThatTheCameraOnlyTurned) {
@@ -93,6 +96,21 @@ TEST(WindowCamera, TakesNoPokeForAMotionOfTheCamera) {
     EXPECT_NE(outcome.decision, InitDecision::kMap) << frames << ": " << outcome.reason;
     EXPECT_NE(outcome.decision, InitDecision::kProvisional) << frames << ": " << outcome.reason;
   }
+}
+
+TEST(WindowCamera, ARigidMotionThatExplainsLittleMakesNoMapOfAFlatScene) {
+  const WavingTracks plane(36, CameraMotion::kForwards, 0, 0);
+  const InitInput input{plane.camera, plane.frames, {}};
+  auto window = SolveAsRigid(input, plane.frames.size(), {}, kNominalMm);
+  ASSERT_TRUE(window.ok()) << window.status().message();
+  const auto map_if_correlated = [&](double correlation) {
+    window->solution.residual_correlation = correlation;
+    InitOutcome outcome;
+    return MakeWindowMap(input, *window, DemandsOf({}, 1.0), {}, kNominalMm, &outcome);
+  };
+  const Status of_noise = map_if_correlated(0.5 * kMaxNoiseCorrelation);
+  EXPECT_TRUE(of_noise.ok()) << of_noise.message();
+  EXPECT_THAT(map_if_correlated(1.5 * kMaxNoiseCorrelation).message(), HasSubstr("does not explain all"));
 }
 
 TEST(WindowCamera, SaysByHowMuchTheCameraMoves) {

@@ -185,7 +185,13 @@ Status CheckDepthSignal(const SolvedWindow& window, const MapDemands& demands, c
   const double max_sigma = window.IsRigid() && !stands_out ? options.max_depth_sigma : kMaxOwnSigma * demands.max_sigma;
   const bool explained = window.solution.residual_correlation <= kMaxNoiseCorrelation;
   const bool may_be_motion = window.IsRigid() && !stands_out && !explained;
-  const bool known = demands.provisional ? stands_out : measured.median_depth_sigma <= max_sigma && !may_be_motion;
+  const bool known = demands.provisional ? stands_out : measured.median_depth_sigma <= max_sigma;
+  if (may_be_motion)
+    return {ErrorCode::kDegenerate,
+            "the depths hardly stand out, and a rigid motion does not explain all: the errors of neighbors have a "
+            "correlation of " +
+                Digits(window.solution.residual_correlation, 2) +
+                ", the scene may deform before a camera that stands still; move the camera sideways or forwards"};
   if (known && (!outcome->provisional || options.provisional == Switch::kOn)) return Status::Ok();
   return {ErrorCode::kInsufficient,
           "the depths spread by " + Digits(100.0 * measured.depth_spread, 1) + " % and are known to " +
