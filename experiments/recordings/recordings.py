@@ -110,7 +110,8 @@ def main():
                          tracked[0]["frame"] if tracked else "", str(len({row["submap"] for row in tracked})),
                          f"{statistics.median(points):.0f}" if points else "",
                          percent(summary["medians"]["coverage"]) if tracked else "",
-                         f"{working['scale']:.2f}, {working['smoothing_px']:.1f}", f"{working['track_noise_px']:.2f} px",
+                         f"{working['scale']:.2f}, {working['smoothing_px']:.1f}, {working['patch_size']}",
+                         f"{working['track_noise_px']:.2f} px",
                          f"{first_map['model']}, {percent(first_map['depth_sigma'])} of "
                          f"{percent(first_map['depth_spread'])}" if first_map else "",
                          percent(error and error[0]), percent(error and error[1]), percent(path_error(judged))])
@@ -122,8 +123,8 @@ def main():
             if variant == AS_IT_IS:
                 first = folder if tracked else None
     for head, body in ((["recording", "variant", "frames with a map", "provisional", "first", "submaps", "points",
-                         "coverage", "scale, smoothing", "track noise", "first map: sigma of spread", "depth error", "null",
-                         "ATE"], rows),
+                         "coverage", "scale, smoothing, patch", "track noise", "first map: sigma of spread", "depth error",
+                         "null", "ATE"], rows),
                        (["recording", "compared with", "frames", "depths differ", "spread of the depths"], agreements)):
         print("\n| " + " | ".join(head) + " |\n|" + " --- |" * len(head))
         for row in body:

@@ -89,9 +89,11 @@ WorkingImage ChooseWorkingImage(const std::vector<ImageRun>& runs, const TrackOp
   std::vector<WorkingImage> smoothings;
   for (const double smoothing_px : kSmoothings_px) smoothings.push_back({size.scale, smoothing_px, kNoisyPatchScale});
   const WorkingImage chosen = FirstAsGoodAsTheBest(runs, smoothings, options);
-  if (chosen.IsSource()) return {};  // its corners do not last, but not for noise
   WorkingImage small_patches = chosen;
   small_patches.patch_scale = 1;
+  // Pixels that are neither smoothed nor interpolated hold as much each as the source's: it is not noise that loses
+  // the corners, and a larger patch crosses more folds.
+  if (chosen.scale <= 1 && chosen.smoothing_px == 0) return small_patches;
   return FirstAsGoodAsTheBest(runs, {small_patches, chosen}, options);
 }
 

@@ -247,9 +247,10 @@ Ending TrackSequence(Sequence& sequence, const RunRequest& request, const TrackO
 
 void ImageOptions::List(OptionTable& table) {
   table.BeginGroup("Image", "the working image: the source resized and smoothed, in which points are tracked");
-  table.AddChoice("working", &working,
-                  "measured: the size and smoothing in which most points of the first images last, with larger patches "
-                  "where the source's own points do not last; fixed: by scale and smoothing_px");
+  table.AddChoice(
+      "working", &working,
+      "measured: the size and smoothing in which most points of the first images last, and larger patches where "
+      "more last with them; fixed: by scale and smoothing_px");
   table.Add("scale", &scale, "-", "fixed: size of the working image divided by that of the source", 0.05, 4);
   table.Add("smoothing_px", &smoothing_px, "px",
             "fixed: standard deviation of the Gaussian that smooths the working image, in its pixels; 0: none", 0, 20);
