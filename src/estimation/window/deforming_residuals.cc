@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "estimation/ray_residuals.h"
+#include "estimation/window/window_samples.h"
 #include "pliant/base/statistics.h"
 #include "pliant/estimation/window/deforming_window.h"
 #include "pliant/geometry/triangulation.h"
@@ -22,8 +23,7 @@ constexpr std::size_t kNeighbors = 4;
 
 // The nearest points to each in direction from the reference, of those that are not too near.
 std::vector<std::vector<std::size_t>> NeighborsAtAngle(const DeformingWindow& window, double min_angle_rad) {
-  std::vector<Eigen::Vector3d> directions;
-  for (const Eigen::Vector3d& point : window.points_in_world) directions.push_back(point.normalized());
+  const std::vector<Eigen::Vector3d> directions = DirectionsOf(window.points_in_world);
   const double min_chord = 2.0 * std::sin(0.5 * min_angle_rad);
   std::vector<std::vector<std::size_t>> neighbors(directions.size());
   std::vector<std::pair<double, std::size_t>> others;
