@@ -47,11 +47,28 @@ Trackability Measure(const std::vector<ImageRun>& runs, const WorkingImage& work
   return all;
 }
 
+// How many corners last, in working images of which some are asked for more than once.
+class AliveCounts {
+ public:
+  // Both have to outlive this.
+  AliveCounts(const std::vector<ImageRun>& runs, const TrackOptions& options) : runs_(runs), options_(options) {}
+
+  int Of(const WorkingImage& working) {
+    const auto known = std::ranges::find(counts_, working, &std::pair<WorkingImage, int>::first);
+    if (known != counts_.end()) return known->second;
+    return counts_.emplace_back(working, Measure(runs_, working, options_).alive).second;
+  }
+
+ private:
+  const std::vector<ImageRun>& runs_;
+  const TrackOptions& options_;
+  std::vector<std::pair<WorkingImage, int>> counts_;
+};
+
 // The first that is as good as the best, to the accuracy of a count; the first of all where none tells.
-WorkingImage FirstAsGoodAsTheBest(const std::vector<ImageRun>& runs, const std::vector<WorkingImage>& candidates,
-                                  const TrackOptions& options) {
+WorkingImage FirstAsGoodAsTheBest(const std::vector<WorkingImage>& candidates, AliveCounts* counts) {
   std::vector<int> alive;
-  for (const WorkingImage& candidate : candidates) alive.push_back(Measure(runs, candidate, options).alive);
+  for (const WorkingImage& candidate : candidates) alive.push_back(counts->Of(candidate));
   const int best = *std::ranges::max_element(alive);
   if (best < kMinAlive) return candidates.front();
   const auto chosen = std::ranges::find_if(alive, [&](int count) { return count >= best - std::sqrt(best); });
@@ -85,16 +102,17 @@ WorkingImage ChooseWorkingImage(const std::vector<ImageRun>& runs, const TrackOp
     if (scale == 1 || (side >= kMinSide_px && side <= kMaxSide_px))
       sizes.push_back({scale, kSmoothingOfSizes_px, kNoisyPatchScale});
   }
-  const WorkingImage size = FirstAsGoodAsTheBest(runs, sizes, options);
+  AliveCounts counts(runs, options);
+  const WorkingImage size = FirstAsGoodAsTheBest(sizes, &counts);
   std::vector<WorkingImage> smoothings;
   for (const double smoothing_px : kSmoothings_px) smoothings.push_back({size.scale, smoothing_px, kNoisyPatchScale});
-  const WorkingImage chosen = FirstAsGoodAsTheBest(runs, smoothings, options);
+  const WorkingImage chosen = FirstAsGoodAsTheBest(smoothings, &counts);
   WorkingImage small_patches = chosen;
   small_patches.patch_scale = 1;
   // Pixels that are neither smoothed nor interpolated hold as much each as the source's: it is not noise that loses
   // the corners, and a larger patch crosses more folds.
   if (chosen.scale <= 1 && chosen.smoothing_px == 0) return small_patches;
-  return FirstAsGoodAsTheBest(runs, {small_patches, chosen}, options);
+  return FirstAsGoodAsTheBest({small_patches, chosen}, &counts);
 }
 
 }  // namespace pliant

@@ -16,6 +16,8 @@ struct WorkingImage {
   double smoothing_px = 0;  // standard deviation of a Gaussian, in pixels of the working image; 0: none
   double patch_scale = 1;   // side of the patches that are tracked in it by that of the options; > 0
 
+  bool operator==(const WorkingImage&) const = default;
+
   // Whether the images are the same.
   bool IsSource() const { return scale == 1 && smoothing_px == 0; }
 
