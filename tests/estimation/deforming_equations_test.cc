@@ -9,9 +9,9 @@
 
 #include "estimation/deforming_scene.h"
 #include "estimation/window/deforming_terms.h"
-#include "estimation/window/shape_basis.h"
 #include "estimation/window/view_equations.h"
 #include "pliant/base/random.h"
+#include "pliant/estimation/window/shape_basis.h"
 
 namespace pliant {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "estimation/window/shape_basis.h"
+#include "pliant/estimation/window/shape_basis.h"
 
 #include <cmath>
 #include <vector>

@@ -13,8 +13,8 @@
 
 #include "estimation/window/deforming_equations.h"
 #include "estimation/window/deforming_terms.h"
-#include "estimation/window/shape_basis.h"
 #include "pliant/estimation/window/deforming_window.h"
+#include "pliant/estimation/window/shape_basis.h"
 
 namespace pliant {
 

@@ -11,8 +11,8 @@
 
 #include "estimation/window/light_depth.h"
 #include "estimation/window/point_chart.h"
-#include "estimation/window/shape_basis.h"
 #include "pliant/estimation/window/deforming_window.h"
+#include "pliant/estimation/window/shape_basis.h"
 
 namespace pliant {
 

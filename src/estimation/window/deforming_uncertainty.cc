@@ -9,8 +9,8 @@
 #include <limits>
 
 #include "estimation/window/light_depth.h"
-#include "estimation/window/shape_basis.h"
 #include "pliant/base/statistics.h"
+#include "pliant/estimation/window/shape_basis.h"
 
 namespace pliant {
 namespace {

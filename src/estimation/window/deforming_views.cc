@@ -10,10 +10,10 @@
 
 #include "estimation/window/deforming_problem.h"
 #include "estimation/window/deforming_uncertainty.h"
-#include "estimation/window/shape_basis.h"
 #include "estimation/window/window_samples.h"
 #include "pliant/base/statistics.h"
 #include "pliant/estimation/window/deforming_window.h"
+#include "pliant/estimation/window/shape_basis.h"
 
 namespace pliant {
 namespace {

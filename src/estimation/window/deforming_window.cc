@@ -16,9 +16,9 @@
 #include "estimation/window/deforming_problem.h"
 #include "estimation/window/deforming_uncertainty.h"
 #include "estimation/window/planar_ambiguity.h"
-#include "estimation/window/shape_basis.h"
 #include "estimation/window/window_samples.h"
 #include "pliant/base/statistics.h"
+#include "pliant/estimation/window/shape_basis.h"
 #include "pliant/geometry/decompositions.h"
 #include "pliant/geometry/triangulation.h"
 

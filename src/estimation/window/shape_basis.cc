@@ -1,10 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "estimation/window/shape_basis.h"
+#include "pliant/estimation/window/shape_basis.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "pliant/deformation/graph.h"
@@ -16,6 +17,25 @@ namespace {
 constexpr std::size_t kNearest = 4;
 
 }  // namespace
+
+std::vector<int> SpreadPositions(const std::vector<Eigen::Vector3d>& positions, const std::vector<int>& from,
+                                 std::size_t count) {
+  count = std::min(count, from.size());
+  std::vector<int> chosen;
+  std::vector<double> nearest(from.size(), std::numeric_limits<double>::infinity());
+  std::size_t next = 0;
+  while (chosen.size() < count) {
+    chosen.push_back(from[next]);
+    nearest[next] = -1.0;  // not again
+    for (std::size_t k = 0; k < from.size(); ++k)
+      nearest[k] = std::min(
+          nearest[k],
+          (positions[static_cast<std::size_t>(from[k])] - positions[static_cast<std::size_t>(chosen.back())]).norm());
+    next = static_cast<std::size_t>(std::max_element(nearest.begin(), nearest.end()) - nearest.begin());
+  }
+  std::sort(chosen.begin(), chosen.end());
+  return chosen;
+}
 
 SurfaceNodes NodesAt(const std::vector<Eigen::Vector3d>& points_in_world, const std::vector<int>& at) {
   SurfaceNodes nodes;

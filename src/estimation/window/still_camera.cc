@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "estimation/window/deforming_problem.h"
-#include "estimation/window/shape_basis.h"
 #include "estimation/window/window_samples.h"
 #include "pliant/base/statistics.h"
+#include "pliant/estimation/window/shape_basis.h"
 #include "pliant/geometry/triangulation.h"
 
 namespace pliant {

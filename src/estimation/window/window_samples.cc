@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <numeric>
 #include <utility>
 
+#include "pliant/estimation/window/shape_basis.h"
 #include "pliant/estimation/window/window_refinement.h"
 
 namespace pliant {
@@ -25,24 +25,6 @@ PointSample AllOf(const Directions& directions) {
   PointSample all(directions.size());
   std::iota(all.begin(), all.end(), 0);
   return all;
-}
-
-// Farthest point sampling: each next one is the farthest from those chosen.
-PointSample Spread(const Directions& directions, const PointSample& from, std::size_t count) {
-  PointSample chosen;
-  std::vector<double> nearest(from.size(), std::numeric_limits<double>::infinity());
-  std::size_t next = 0;
-  while (chosen.size() < count) {
-    chosen.push_back(from[next]);
-    nearest[next] = -1.0;  // not again
-    for (std::size_t k = 0; k < from.size(); ++k)
-      nearest[k] = std::min(
-          nearest[k],
-          (directions[static_cast<std::size_t>(from[k])] - directions[static_cast<std::size_t>(chosen.back())]).norm());
-    next = static_cast<std::size_t>(std::max_element(nearest.begin(), nearest.end()) - nearest.begin());
-  }
-  std::sort(chosen.begin(), chosen.end());
-  return chosen;
 }
 
 }  // namespace
@@ -92,7 +74,7 @@ DeformingWindow InSomeViews(const DeformingWindow& window, int count) {
 
 PointSample SpreadPoints(const std::vector<Eigen::Vector3d>& points_in_world, int count) {
   const Directions directions = DirectionsOf(points_in_world);
-  return Spread(directions, AllOf(directions), std::min(static_cast<std::size_t>(count), directions.size()));
+  return SpreadPositions(directions, AllOf(directions), static_cast<std::size_t>(count));
 }
 
 std::vector<PointSample> SamplePoints(const DeformingWindow& window, int size) {
@@ -100,10 +82,10 @@ std::vector<PointSample> SamplePoints(const DeformingWindow& window, int size) {
   const PointSample all = AllOf(directions);
   const std::size_t count = std::min(static_cast<std::size_t>(size), all.size() / 2);
   if (count < kMinSample) return {all};
-  PointSample first = Spread(directions, all, count);
+  PointSample first = SpreadPositions(directions, all, count);
   PointSample others;
   std::set_difference(all.begin(), all.end(), first.begin(), first.end(), std::back_inserter(others));
-  PointSample second = Spread(directions, others, count);
+  PointSample second = SpreadPositions(directions, others, count);
   return {std::move(first), std::move(second)};
 }
 

@@ -26,6 +26,8 @@ namespace {
 constexpr double kMaxErrorRatio = 3.0;         // of a point's error by the median one, where sigmas are scaled with it
 constexpr double kMinProvisionalSignal = 2.0;  // as kMinDepthSignal, of a map that is put aside
 constexpr double kMaxOwnSigma = 2.0;  // of points by their own median distance, by what was demanded by that of all
+// Above it linear sigmas are far too small where tissue moves as fast as the camera.
+constexpr double kMaxProvisionalSigma = 0.06;
 constexpr double kMinProvisionalShare = 0.5;  // of the points still seen, that are certain enough
 
 // Some of a window's points; `solution` has one each, in the same order.
@@ -185,7 +187,8 @@ Status CheckDepthSignal(const SolvedWindow& window, const MapDemands& demands, c
   const double max_sigma = window.IsRigid() && !stands_out ? options.max_depth_sigma : kMaxOwnSigma * demands.max_sigma;
   const bool explained = window.solution.residual_correlation <= kMaxNoiseCorrelation;
   const bool may_be_motion = window.IsRigid() && !stands_out && !explained;
-  const bool known = demands.provisional ? stands_out : measured.median_depth_sigma <= max_sigma;
+  const bool known = demands.provisional ? stands_out && measured.median_depth_sigma <= kMaxProvisionalSigma
+                                         : measured.median_depth_sigma <= max_sigma;
   if (may_be_motion)
     return {ErrorCode::kDegenerate,
             "the depths hardly stand out, and a rigid motion does not explain all: the errors of neighbors have a "
@@ -243,9 +246,9 @@ MapDemands DemandsOf(const WindowInitOptions& options, double relaxed) {
 }
 
 MapDemands ProvisionalDemands(const DeformingWindow& window) {
-  const double spread = DepthSpread(window);
-  return {.certain_sigma = spread / kMinProvisionalSignal,
-          .max_sigma = spread,
+  const double certain_sigma = std::min(DepthSpread(window) / kMinProvisionalSignal, kMaxProvisionalSigma);
+  return {.certain_sigma = certain_sigma,
+          .max_sigma = kMinProvisionalSignal * certain_sigma,
           .certain_share = kMinProvisionalShare,
           .provisional = true};
 }

@@ -25,7 +25,8 @@ struct MapDemands {
 // Those of the options: in full, wholly relaxed (1), or between.
 MapDemands DemandsOf(const WindowInitOptions& options, double relaxed);
 
-// (W15) Those of a provisional map: most of its points' sigmas are small by the spread of their depths.
+// (W15) Those of a provisional map: most of its points' sigmas are small by the spread of their depths, and small
+// enough to be trusted.
 MapDemands ProvisionalDemands(const DeformingWindow& window);
 
 // Fills the outcome in as a map of the whole input, scaled to the nominal depth. What is missing for one else: then

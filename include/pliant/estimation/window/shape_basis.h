@@ -5,6 +5,7 @@
 // around it (docs/method.md, eq. W3).
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include <Eigen/Core>
@@ -12,6 +13,11 @@
 #include "pliant/estimation/window/deforming_window.h"
 
 namespace pliant {
+
+// `count` of those positions whose indices are in `from`, or all of these, spread evenly (farthest point sampling);
+// ascending.
+std::vector<int> SpreadPositions(const std::vector<Eigen::Vector3d>& positions, const std::vector<int>& from,
+                                 std::size_t count);
 
 // At some of the points, without basis shapes.
 SurfaceNodes NodesAt(const std::vector<Eigen::Vector3d>& points_in_world, const std::vector<int>& at);

@@ -1,0 +1,184 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "refinement/bundle_costs.h"
+
+#include <cmath>
+
+#include "pliant/residuals/reprojection.h"
+
+namespace pliant {
+namespace {
+
+using ConstVector3 = Eigen::Map<const Eigen::Vector3d>;
+using ConstVector = Eigen::Map<const Eigen::VectorXd>;
+using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+using Jacobian = Eigen::Map<RowMajorMatrix>;
+
+template <class Model>
+class BundleReprojectionCost final : public ceres::CostFunction {
+ public:
+  BundleReprojectionCost(const Model& model, const PoseIncrement& pose, const Eigen::Vector2d& pixel, double sigma_px,
+                         int rank)
+      : kernel_(model, sigma_px), pose_(&pose), pixel_(pixel), rank_(rank) {
+    set_num_residuals(2);
+    *mutable_parameter_block_sizes() = {6 + rank, 3 + 3 * rank};
+  }
+
+  bool Evaluate(const double* const* parameters, double* residuals, double** jacobians) const override {
+    const double* const point = parameters[1];
+    const double* const coefficients = parameters[0] + 6;
+    Eigen::Vector3d position = ConstVector3(point);
+    for (int r = 0; r < rank_; ++r) position += coefficients[r] * ConstVector3(point + 3 + 3 * r);
+    const ConstVector3 omega(parameters[0]);
+    const Eigen::Vector3d arm = RotateByExp<double>(omega, pose_->Arm(position));
+    Eigen::Vector2d residual;
+    ReprojectionJacobian by_cam_point;
+    if (!kernel_.ResidualAndJacobian(pixel_, arm + pose_->pivot_in_cam() + ConstVector3(parameters[0] + 3), &residual,
+                                     &by_cam_point))
+      return false;
+    Eigen::Map<Eigen::Vector2d>{residuals} = residual;
+    if (jacobians == nullptr) return true;
+    const ReprojectionJacobian by_position =
+        by_cam_point * RotationExp(omega).toRotationMatrix() * pose_->reference_rotation();
+    if (jacobians[1] != nullptr) {
+      Jacobian by_point(jacobians[1], 2, 3 + 3 * rank_);
+      by_point.leftCols(3) = by_position;
+      for (int r = 0; r < rank_; ++r) by_point.middleCols(3 + 3 * r, 3) = coefficients[r] * by_position;
+    }
+    if (jacobians[0] != nullptr) {
+      Jacobian by_view(jacobians[0], 2, 6 + rank_);
+      by_view.leftCols(3) = -by_cam_point * (Skew(arm) * LeftJacobian(omega));
+      by_view.middleCols(3, 3) = by_cam_point;
+      for (int r = 0; r < rank_; ++r) by_view.col(6 + r) = by_position * ConstVector3(point + 3 + 3 * r);
+    }
+    return true;
+  }
+
+ private:
+  ReprojectionKernel<Model> kernel_;
+  const PoseIncrement* pose_;
+  Eigen::Vector2d pixel_;
+  int rank_;
+};
+
+class NodePullCost final : public ceres::CostFunction {
+ public:
+  NodePullCost(double scale, const std::vector<double>& weights, int rank)
+      : scale_(scale), weights_(weights), size_(3 * rank) {
+    set_num_residuals(size_);
+    mutable_parameter_block_sizes()->assign(weights.size() + 1, size_);
+    mutable_parameter_block_sizes()->front() = 3 + size_;
+  }
+
+  bool Evaluate(const double* const* parameters, double* residuals, double** jacobians) const override {
+    Eigen::Map<Eigen::VectorXd> residual(residuals, size_);
+    residual = scale_ * ConstVector(parameters[0] + 3, size_);
+    for (std::size_t n = 0; n < weights_.size(); ++n)
+      residual -= scale_ * weights_[n] * ConstVector(parameters[n + 1], size_);
+    if (jacobians == nullptr) return true;
+    if (jacobians[0] != nullptr) {
+      Jacobian by_point(jacobians[0], size_, 3 + size_);
+      by_point.setZero();
+      by_point.rightCols(size_).diagonal().setConstant(scale_);
+    }
+    for (std::size_t n = 0; n < weights_.size(); ++n)
+      if (jacobians[n + 1] != nullptr)
+        Jacobian{jacobians[n + 1], size_, size_} = -scale_ * weights_[n] * Eigen::MatrixXd::Identity(size_, size_);
+    return true;
+  }
+
+ private:
+  double scale_;
+  std::vector<double> weights_;
+  int size_;
+};
+
+class WeightedSumCost final : public ceres::CostFunction {
+ public:
+  WeightedSumCost(const std::vector<double>& weights, int block_size, int size)
+      : weights_(weights), before_(block_size - size), size_(size) {
+    set_num_residuals(size);
+    mutable_parameter_block_sizes()->assign(weights.size(), block_size);
+  }
+
+  bool Evaluate(const double* const* parameters, double* residuals, double** jacobians) const override {
+    Eigen::Map<Eigen::VectorXd> residual(residuals, size_);
+    residual.setZero();
+    for (std::size_t k = 0; k < weights_.size(); ++k)
+      residual += weights_[k] * ConstVector(parameters[k] + before_, size_);
+    for (std::size_t k = 0; k < weights_.size() && jacobians != nullptr; ++k) {
+      if (jacobians[k] == nullptr) continue;
+      Jacobian by_block(jacobians[k], size_, before_ + size_);
+      by_block.setZero();
+      by_block.rightCols(size_).diagonal().setConstant(weights_[k]);
+    }
+    return true;
+  }
+
+ private:
+  std::vector<double> weights_;
+  int before_;
+  int size_;
+};
+
+class DistanceCost final : public ceres::CostFunction {
+ public:
+  DistanceCost(const PoseIncrement& pose, double distance, double sigma, int rank)
+      : pose_(&pose), distance_(distance), scale_(1.0 / sigma), rank_(rank) {
+    set_num_residuals(1);
+    *mutable_parameter_block_sizes() = {6 + rank, 3 + 3 * rank};
+  }
+
+  bool Evaluate(const double* const* parameters, double* residuals, double** jacobians) const override {
+    const ConstVector3 omega(parameters[0]);
+    const Eigen::Vector3d arm = RotateByExp<double>(omega, pose_->Arm(ConstVector3(parameters[1])));
+    const Eigen::Vector3d in_cam = arm + pose_->pivot_in_cam() + ConstVector3(parameters[0] + 3);
+    const double squared = in_cam.squaredNorm();
+    if (!(squared > 0.0)) return false;
+    residuals[0] = scale_ * std::log(std::sqrt(squared) / distance_);
+    if (jacobians == nullptr) return true;
+    const Eigen::RowVector3d by_cam_point = scale_ / squared * in_cam.transpose();
+    if (jacobians[0] != nullptr) {
+      Eigen::Map<Eigen::RowVectorXd> by_view(jacobians[0], 6 + rank_);
+      by_view.setZero();
+      by_view.head(3) = -by_cam_point * (Skew(arm) * LeftJacobian(omega));
+      by_view.segment(3, 3) = by_cam_point;
+    }
+    if (jacobians[1] != nullptr) {
+      Eigen::Map<Eigen::RowVectorXd> by_point(jacobians[1], 3 + 3 * rank_);
+      by_point.setZero();
+      by_point.leftCols(3) = by_cam_point * RotationExp(omega).toRotationMatrix() * pose_->reference_rotation();
+    }
+    return true;
+  }
+
+ private:
+  const PoseIncrement* pose_;
+  double distance_;
+  double scale_;
+  int rank_;
+};
+
+}  // namespace
+
+ceres::CostFunction* NewBundleReprojectionCost(const Camera& camera, const PoseIncrement& pose,
+                                               const Eigen::Vector2d& pixel, double sigma_px, int rank) {
+  return camera.Visit([&](const auto& model) -> ceres::CostFunction* {
+    return new BundleReprojectionCost(model, pose, pixel, sigma_px, rank);
+  });
+}
+
+ceres::CostFunction* NewNodePullCost(double scale, const std::vector<double>& weights, int rank) {
+  return new NodePullCost(scale, weights, rank);
+}
+
+ceres::CostFunction* NewWeightedSumCost(const std::vector<double>& weights, int block_size, int size) {
+  return new WeightedSumCost(weights, block_size, size);
+}
+
+ceres::CostFunction* NewDistanceCost(const PoseIncrement& pose, double distance, double sigma, int rank) {
+  return new DistanceCost(pose, distance, sigma, rank);
+}
+
+}  // namespace pliant

@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// How much alike the reprojection errors of neighboring points are (docs/method.md, eq. W11).
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "pliant/refinement/refine_recording.h"
+
+namespace pliant {
+
+// Over the used observations of at most 64 views: with the four nearest of the same view that are at least
+// `min_distance_px` away. From -1 to 1; 0 where no two are neighbors.
+double ResidualCorrelation(const Recording& recording, const std::vector<bool>& used,
+                           const std::vector<Eigen::Vector2d>& errors_px, double min_distance_px);
+
+}  // namespace pliant

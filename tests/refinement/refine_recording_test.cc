@@ -1,0 +1,138 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/refinement/refine_recording.h"
+
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "refinement/recorded_scene.h"
+
+namespace pliant {
+namespace {
+
+using refinement_test::kNoisePx;
+using refinement_test::RecordedScene;
+using refinement_test::RecordingCamera;
+
+constexpr double kRigidError = 0.002;    // noise of 0.05 px over some degrees of parallax
+constexpr double kShareOfStart = 0.25;   // of its error; a scene that moves as fast as the camera keeps more than noise
+constexpr double kNoiseAgreement = 0.2;  // the found noise: points and poses adapt to some of it
+constexpr double kUnit = 1e-9;           // medians agree to rounding
+
+Result<RefinedRecording> Refine(const Recording& start, const RefineOptions& options = {},
+                                const RefinementCallback& callback = {}) {
+  return RefineRecording(RecordingCamera(), start, options, callback);
+}
+
+TEST(RefineRecording, OfARigidSceneIsBundleAdjustment) {
+  const RecordedScene scene(0);
+  const auto refined = Refine(scene.Start());
+  ASSERT_TRUE(refined.ok()) << refined.status().message();
+  EXPECT_FALSE(refined->deforming);
+  EXPECT_LT(scene.DepthError(refined->recording), kRigidError);
+  EXPECT_NEAR(refined->noise_px, kNoisePx, kNoiseAgreement * kNoisePx);
+}
+
+TEST(RefineRecording, FindsDepthsOfASceneThatDeforms) {
+  const RecordedScene scene;
+  const Recording start = scene.Start();
+  const auto refined = Refine(start);
+  ASSERT_TRUE(refined.ok()) << refined.status().message();
+  EXPECT_TRUE(refined->deforming);
+  EXPECT_GT(refined->residual_correlation, RefineOptions().max_correlation);
+  EXPECT_LT(scene.DepthError(refined->recording), kShareOfStart * scene.DepthError(start));
+  EXPECT_NEAR(refined->noise_px, kNoisePx, kNoiseAgreement * kNoisePx);
+}
+
+TEST(RefineRecording, ARigidModelOfThatSceneDoesNot) {
+  const RecordedScene scene;
+  const Recording start = scene.Start();
+  const auto refined = Refine(start, {.model = RefinementModel::kRigid});
+  ASSERT_TRUE(refined.ok()) << refined.status().message();
+  EXPECT_FALSE(refined->deforming);
+  EXPECT_GT(refined->noise_px, 10 * kNoisePx);
+}
+
+TEST(RefineRecording, KeepsTheFirstPoseAndTheUnit) {
+  const RecordedScene scene;
+  const Recording start = scene.Start();
+  const auto refined = Refine(start);
+  ASSERT_TRUE(refined.ok()) << refined.status().message();
+  const Rigid3 moved = refined->recording.cams_from_world.front() * start.cams_from_world.front().Inverse();
+  EXPECT_LT(moved.translation.norm(), kUnit);
+  EXPECT_LT(RotationAngle(moved.rotation), 1e-7);
+  std::vector<double> ratios;
+  for (std::size_t o = 0; o < start.observations.size(); ++o) {
+    const auto view = static_cast<std::size_t>(start.observations[o].view_idx);
+    if (refined->is_inlier[o])
+      ratios.push_back((refined->recording.cams_from_world[view] * refined->recording.observations[o].position).norm() /
+                       (start.cams_from_world[view] * start.observations[o].position).norm());
+  }
+  EXPECT_NEAR(Median(ratios), 1.0, kUnit);
+}
+
+TEST(RefineRecording, LeavesWrongTracksOut) {
+  const RecordedScene scene;
+  Recording start = scene.Start();
+  Random random(9);
+  const std::vector<int> wrong = {7, 30, 111};
+  for (RecordedObservation& o : start.observations)  // along an edge, to and fro
+    if (std::find(wrong.begin(), wrong.end(), o.point_idx) != wrong.end()) o.pixel.x() += random.Uniform(-6, 6);
+  const auto refined = Refine(start);
+  ASSERT_TRUE(refined.ok()) << refined.status().message();
+  int left_out = 0;
+  for (std::size_t o = 0; o < start.observations.size(); ++o) {
+    const bool is_wrong = std::find(wrong.begin(), wrong.end(), start.observations[o].point_idx) != wrong.end();
+    if (is_wrong) {
+      EXPECT_FALSE(refined->is_inlier[o]) << "point " << start.observations[o].point_idx;
+    }
+    left_out += !is_wrong && !refined->is_inlier[o] ? 1 : 0;
+  }
+  EXPECT_LT(left_out, 0.02 * static_cast<double>(start.observations.size()));
+}
+
+TEST(RefineRecording, GivesTheSameAgain) {
+  const Recording start = RecordedScene().Start();
+  const auto first = Refine(start);
+  const auto second = Refine(start);
+  ASSERT_TRUE(first.ok() && second.ok());
+  for (std::size_t o = 0; o < start.observations.size(); ++o)
+    ASSERT_EQ(first->recording.observations[o].position, second->recording.observations[o].position);
+}
+
+TEST(RefineRecording, StopsWithTheBestSoFar) {
+  const RecordedScene scene;
+  const Recording start = scene.Start();
+  int iterations = 0;
+  const auto refined = Refine(start, {.model = RefinementModel::kDeforming}, [&](const RefinementProgress& progress) {
+    EXPECT_EQ(progress.stage, "deforming");
+    return ++iterations < 6;
+  });
+  ASSERT_TRUE(refined.ok()) << refined.status().message();
+  EXPECT_TRUE(refined->stopped);
+  EXPECT_EQ(iterations, 6);
+  EXPECT_LT(refined->final_cost, refined->initial_cost);
+}
+
+TEST(RefineRecording, RefusesWhatIsNone) {
+  const Recording start = RecordedScene(0).Start();
+  Recording few = start;
+  few.times.resize(1);
+  few.cams_from_world.resize(1);
+  std::erase_if(few.observations, [](const RecordedObservation& o) { return o.view_idx > 0; });
+  EXPECT_EQ(Refine(few).status().code(), ErrorCode::kInsufficient);
+  Recording unknown = start;
+  unknown.observations.front().point_idx = 100000;
+  EXPECT_EQ(Refine(unknown).status().code(), ErrorCode::kInvalidArgument);
+  Recording nan = start;
+  nan.observations.front().pixel.x() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(Refine(nan).status().code(), ErrorCode::kInvalidArgument);
+  Recording backwards = start;
+  std::swap(backwards.times[3], backwards.times[4]);
+  EXPECT_EQ(Refine(backwards).status().code(), ErrorCode::kInvalidArgument);
+}
+
+}  // namespace
+}  // namespace pliant

@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "refinement/residual_correlation.h"
+
+#include <gtest/gtest.h>
+
+#include "refinement/recorded_scene.h"
+
+namespace pliant {
+namespace {
+
+using refinement_test::RecordedScene;
+
+constexpr double kMaxOfNoise = 0.05;  // of some thousand errors
+constexpr double kMinOfMotion = 0.8;
+
+TEST(ResidualCorrelation, OfNoiseIsNone) {
+  const Recording recording = RecordedScene(0).Start();
+  Random random(5);
+  std::vector<Eigen::Vector2d> errors;
+  for (std::size_t o = 0; o < recording.observations.size(); ++o) errors.emplace_back(random.Normal(), random.Normal());
+  const std::vector<bool> used(errors.size(), true);
+  EXPECT_LT(std::abs(ResidualCorrelation(recording, used, errors, recording.patch_px)), kMaxOfNoise);
+}
+
+TEST(ResidualCorrelation, OfACommonMotionIsNearOne) {
+  const Recording recording = RecordedScene(0).Start();
+  std::vector<Eigen::Vector2d> errors;
+  for (const RecordedObservation& o : recording.observations)
+    errors.emplace_back(std::sin(0.01 * o.pixel.x()), std::cos(0.01 * o.pixel.y()));
+  const std::vector<bool> used(errors.size(), true);
+  EXPECT_GT(ResidualCorrelation(recording, used, errors, recording.patch_px), kMinOfMotion);
+  EXPECT_EQ(ResidualCorrelation(recording, std::vector<bool>(errors.size(), false), errors, recording.patch_px), 0.0);
+}
+
+}  // namespace
+}  // namespace pliant
