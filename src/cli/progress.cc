@@ -24,8 +24,14 @@ ProgressStyle ProgressStyleOfStandardError() {
   return isatty(STDERR_FILENO) != 0 ? ProgressStyle::kBar : ProgressStyle::kLines;
 }
 
-Progress::Progress(std::ostream& out, ProgressStyle style, std::string what, int total)
-    : out_(out), style_(style), what_(std::move(what)), total_(total), start_(Clock::now()), drawn_(start_) {}
+Progress::Progress(std::ostream& out, ProgressStyle style, std::string what, int total, std::string unit)
+    : out_(out),
+      style_(style),
+      what_(std::move(what)),
+      total_(total),
+      unit_(std::move(unit)),
+      start_(Clock::now()),
+      drawn_(start_) {}
 
 Progress::~Progress() {
   if (line_open_) out_ << std::endl;
@@ -42,8 +48,8 @@ std::string Progress::Line(int done, std::string_view detail, Clock::time_point 
   const double seconds = std::chrono::duration<double>(now - start_).count();
   if (seconds > 0) {
     std::array<char, 48> rate;
-    std::snprintf(rate.data(), rate.size(), "  %.1f frames/s", done / seconds);
-    line += rate.data();
+    std::snprintf(rate.data(), rate.size(), "  %.1f ", done / seconds);
+    line += rate.data() + unit_ + "/s";
   }
   if (!detail.empty()) line += "  " + std::string(detail);
   return line;

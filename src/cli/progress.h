@@ -27,8 +27,8 @@ class Progress {
   using Clock = std::chrono::steady_clock;
   static constexpr int kLinesEvery = 25;
 
-  // `out` must outlive this. `total` <= 0: not known.
-  Progress(std::ostream& out, ProgressStyle style, std::string what, int total);
+  // `out` must outlive this. `total` <= 0: not known. `unit` is what is counted.
+  Progress(std::ostream& out, ProgressStyle style, std::string what, int total, std::string unit = "frames");
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
   ~Progress();  // ends the line that is drawn over
@@ -46,6 +46,7 @@ class Progress {
   ProgressStyle style_;
   std::string what_;
   int total_;
+  std::string unit_;
   Clock::time_point start_;
   Clock::time_point drawn_;
   bool line_open_ = false;

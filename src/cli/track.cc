@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdio>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "cli/command_line.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
+#include "cli/run_refinement.h"
 #include "cli/sequence_arguments.h"
 #include "cli/track_progress.h"
 #include "pliant/io/run_trust.h"
@@ -48,6 +50,7 @@ struct TrackArguments {
   std::string output_path;
   Preset preset = Preset::kDefault;
   bool live = false;
+  bool refine = false;
   bool quiet = false;
 };
 
@@ -58,6 +61,8 @@ void AddArguments(TrackArguments* arguments, CommandLine* line) {
                   "the defaults of the options: ours, or every choice and constant as published in the paper");
   line->AddFlag("live", &arguments->live,
                 "serve a view of the run to a browser on this machine while it runs (options Live)");
+  line->AddFlag("refine", &arguments->refine,
+                "then refine the run (pliant refine, options Refine), into a folder with _refined behind its name");
   line->AddFlag("quiet", &arguments->quiet, "say nothing but errors");
 }
 
@@ -79,6 +84,15 @@ int Report(const RunSummary& summary, const TrackArguments& arguments) {
   return kExitOk;
 }
 
+int Refine(const RunRequest& request, const TrackArguments& arguments, const RefineOptions& options) {
+  RefineRequest refinement;
+  refinement.run_path = arguments.output_path;
+  refinement.output_path = std::filesystem::path(arguments.output_path + "/").parent_path().string() + "_refined";
+  refinement.command_line = request.command_line;
+  refinement.stop = request.stop;
+  return RefineAndSay(kManual.command, refinement, options, arguments.quiet ? Saying::kErrors : Saying::kAll);
+}
+
 }  // namespace
 
 int TrackCommand(std::span<const std::string> args) {
@@ -94,6 +108,8 @@ int TrackCommand(std::span<const std::string> args) {
   options.List(table);
   LiveOptions live_options;
   live_options.List(table);
+  RefineOptions refine_options;
+  refine_options.List(table);
   if (const auto exit = line.Resolve(table)) return *exit;
   const InitOptions& init = options.tracker.init;
   if (init.method != InitMethod::kDepth && !init.depth.cloud_path.empty())
@@ -124,7 +140,9 @@ int TrackCommand(std::span<const std::string> args) {
     SayError(kManual.command, summary.status().message());
     return kExitFailed;
   }
-  return Report(*summary, arguments);
+  const int exit_code = Report(*summary, arguments);
+  if (!arguments.refine || summary->frames_tracked == 0 || exit_code != kExitOk) return exit_code;
+  return Refine(request, arguments, refine_options);
 }
 
 }  // namespace pliant::cli

@@ -15,30 +15,6 @@
 namespace pliant {
 namespace {
 
-// The camera and the images' names.
-Result<RunMap> MapFromSequence(const SequenceRequest& request, const Run& run) {
-  const auto sequence = OpenSequence(request);
-  if (!sequence.ok()) return sequence.status();
-  RunMap known;
-  known.camera = (*sequence)->camera();
-  for (const RunFrame& frame : run.frames)
-    if (auto name = (*sequence)->Name(frame.frame_idx)) known.names.emplace(frame.frame_idx, *std::move(name));
-  return known;
-}
-
-Result<RunMap> ReadKnown(const std::string& run_path, const std::string& sequence_path, const Run& run) {
-  if (HasRunMap(run_path)) return ReadRunMap(run_path, run);
-  if (const SequenceRequest request = SequenceOfRun(run_path, sequence_path); !request.image_path.empty()) {
-    auto known = MapFromSequence(request, run);
-    if (known.ok()) return known;
-    return Status(known.status().code(), "the run has no sparse/ to take the camera and the images' names from, and " +
-                                             known.status().message());
-  }
-  return Status(ErrorCode::kNotFound, Quoted(run_path) +
-                                          " has no sparse/ to take the camera and the images' names "
-                                          "from; name its sequence with --sequence");
-}
-
 // Counts and mean errors, and the first position of points that sparse/ does not have.
 Status AddPoints(const RunMap& known, RunSource* source) {
   std::map<PointId, CanonicalPoint> points;
@@ -75,7 +51,7 @@ Result<std::vector<RunSource>> ReadRunSources(const std::string& run_path, const
   if (run->poses.empty())
     return Status(ErrorCode::kInsufficient,
                   "no frame of the run " + Quoted(run_path) + " was tracked; there is nothing to export");
-  auto known = ReadKnown(run_path, sequence_path, *run);
+  auto known = KnownMapOfRun(run_path, SequenceOfRun(run_path, sequence_path), *run);
   if (!known.ok()) return known.status();
   std::map<int, RunSource> sources;  // by submap
   for (std::size_t i = 0; i < run->poses.size(); i += static_cast<std::size_t>(stride)) {

@@ -67,6 +67,7 @@ Status WriteRunSummary(const std::string& path, const RunSummary& summary) {
       {"seed", summary.description.seed},
       {"input", summary.description.input},
       {"camera", summary.description.camera},
+      {"refined_from", summary.description.refined_from},
       {"oracles", summary.description.oracles},
       {"working_image",
        {{"scale", summary.description.image_scale},
@@ -119,6 +120,7 @@ Result<RunSummary> ReadRunSummary(const std::string& path) {
                            json.at("input").get<std::string>(),
                            json.value("camera", ""),
                            json.value("oracles", std::vector<std::string>())};
+    summary.description.refined_from = json.value("refined_from", "");
     if (const Json working = json.value("working_image", Json()); !working.is_null()) {
       summary.description.image_scale = working.at("scale").get<double>();
       summary.description.image_smoothing_px = working.at("smoothing_px").get<double>();

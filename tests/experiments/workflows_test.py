@@ -18,7 +18,7 @@ def dry_run(folder):
     text = snakemake("simulated_colon", folder / "colon", "--dry-run", "--quiet")
     counts = {line.split()[0]: int(line.split()[1]) for line in text.splitlines() if line.split()[1:2] and
               line.split()[1].isdigit()}
-    assert counts["simulate"] == 70 and counts["track"] == 70 * 7 and counts["evaluate"] == 70 * 7, text
+    assert counts["simulate"] == 105 and counts["track"] == counts["evaluate"] == 70 * 7 + 35, text
     text = snakemake("regularizers", folder / "regularizers", "--dry-run", "--quiet", "--config", "sequences=", "sets=dm",
                      "cells=0:0", "seeds=1", "starts=true_map", "choices=spatial_off")
     assert "track" in text and "  2  " in next(line for line in text.splitlines() if line.startswith("track")), text

@@ -7,7 +7,10 @@
 #include <filesystem>
 #include <string>
 
+#include "pliant/base/status.h"
 #include "pliant/datasets/open_sequence.h"
+#include "pliant/io/run_map.h"
+#include "pliant/io/run_reader.h"
 
 namespace pliant {
 
@@ -16,5 +19,10 @@ namespace pliant {
 // fits. All frames. An empty image_path: nothing says which images the run is of.
 SequenceRequest SequenceOfRun(const std::string& run_path, const std::filesystem::path& sequence_path = {},
                               const std::filesystem::path& camera_path = {});
+
+// The camera, the names of the images and the points of `run`, which was read from `run_path`: by its sparse/, or,
+// where there is none (a killed run), camera and names by its sequence. Fails as ReadRunMap and OpenSequence do, and
+// with kNotFound where neither is there.
+Result<RunMap> KnownMapOfRun(const std::string& run_path, const SequenceRequest& sequence, const Run& run);
 
 }  // namespace pliant

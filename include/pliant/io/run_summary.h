@@ -48,8 +48,9 @@ struct RunDescription {
   int patch_size = 0;
   // Measured on the first of those images, in their pixels and gray levels; 0: unknown.
   double image_noise_levels = 0;
-  double track_noise_px = 0;  // standard deviation of a coordinate of a point's track
-  double alive_after_9 = 0;   // share of the corners that are tracked through nine frames
+  double track_noise_px = 0;      // standard deviation of a coordinate of a point's track
+  double alive_after_9 = 0;       // share of the corners that are tracked through nine frames
+  std::string refined_from = {};  // the run that was refined, absolute; empty: a run of its own
 };
 
 // run.json.

@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// A run folder in, the refined run's folder out: every submap by itself (pliant/refinement/refine_recording.h), with
+// the states, times and names of the run. Observations of wrong tracks are left out.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "pliant/base/status.h"
+#include "pliant/io/run_summary.h"
+#include "pliant/refinement/refine_recording.h"
+
+namespace pliant {
+
+struct RefineRequest {
+  std::string run_path;
+  std::string sequence_path;                // images of a run without sparse/; empty: those that its run.json names
+  std::string camera_path;                  // their calibration; empty: the one that belongs to them
+  std::string output_path;                  // a folder, made if need be; not the run's
+  std::vector<std::string> command_line;    // for run.json
+  const std::atomic<bool>* stop = nullptr;  // becomes true when the best so far is to be written; may be null
+};
+
+// What became of one submap.
+struct SubmapRefinement {
+  int submap = 0;
+  bool deforming = false;
+  double residual_correlation = 0;
+  double noise_px = 0;
+  int frames = 0;
+  int points = 0;
+  int observations = 0;
+  int wrong_observations = 0;  // left out
+};
+
+struct RefineSummary {
+  std::vector<SubmapRefinement> submaps;
+  RunSummary run;        // of the refined run
+  bool stopped = false;  // on request: the best so far was written
+};
+
+using RefineProgress = std::function<void(const RefinementProgress&)>;
+
+// Fails with kNotFound, kUnreadable or kMismatch for a run that cannot be read, kInsufficient for one without points or
+// of a single frame, kInvalidArgument for an output folder that is the run's or holds something else, kUnwritable. The
+// output folder is not touched before the refinement is done.
+Result<RefineSummary> RefineRun(const RefineRequest& request, const RefineOptions& options,
+                                const RefineProgress& callback);
+
+}  // namespace pliant

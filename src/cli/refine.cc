@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "cli/command_line.h"
+#include "cli/commands.h"
+#include "cli/interrupt.h"
+#include "cli/run_refinement.h"
+
+namespace pliant::cli {
+namespace {
+
+const Manual kManual = {
+    "refine",
+    "solve for all frames of a run at once",
+    "Reads --run: a run folder that pliant track or pliant import left. Tracking knows only the frames before; here "
+    "all "
+    "camera poses, all points and the motion of the scene are solved for together, from the tracks of the whole "
+    "run.\n\n"
+    "Leaves in --output_path a run folder that evaluate, compare, export and report read like the run's own. Nothing "
+    "is "
+    "written before the refinement is done; Ctrl-C ends it with the best so far.",
+    {"pliant refine --run run --output_path refined",
+     "pliant refine --run run --Refine.model rigid --output_path rigid"},
+};
+
+}  // namespace
+
+int RefineCommand(std::span<const std::string> args) {
+  RefineRequest request;
+  RefineOptions options;
+  bool quiet = false;
+  CommandLine line(kManual);
+  line.Add("run", &request.run_path, "DIR", "run folder", Need::kRequired);
+  line.Add("output_path", &request.output_path, "DIR", "folder to write, made if need be", Need::kRequired);
+  line.Add("sequence", &request.sequence_path, "PATH",
+           "images of a run that has no sparse/; without it those that its run.json names", Need::kOptional);
+  line.Add("camera", &request.camera_path, "FILE", "their calibration; without it the one that belongs to them",
+           Need::kOptional);
+  line.AddFlag("quiet", &quiet, "say nothing but errors");
+  if (const auto exit = line.Parse(args)) return *exit;
+  OptionTable table;
+  options.List(table);
+  if (const auto exit = line.Resolve(table)) return *exit;
+
+  request.command_line = {"pliant", "refine"};
+  request.command_line.insert(request.command_line.end(), args.begin(), args.end());
+  request.stop = &StopOnSignals();
+  return RefineAndSay(kManual.command, request, options, quiet ? Saying::kErrors : Saying::kAll);
+}
+
+}  // namespace pliant::cli

@@ -1,0 +1,226 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/pipeline/refine_run.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstddef>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <system_error>
+#include <utility>
+
+#include "pliant/base/statistics.h"
+#include "pliant/base/text.h"
+#include "pliant/base/version.h"
+#include "pliant/datasets/run_sequence.h"
+#include "pliant/io/run_map.h"
+#include "pliant/io/run_reader.h"
+#include "pliant/io/run_writer.h"
+
+namespace pliant {
+namespace {
+
+// A submap of the run as a recording, and where its numbers come from.
+struct Submap {
+  Recording recording;
+  std::vector<PointId> ids;                                 // of the recording's points
+  std::vector<std::vector<PointObservation>> observations;  // of its views, as in the run
+  std::map<int, int> view_of_frame;
+};
+
+Status CheckPaths(const RefineRequest& request) {
+  std::error_code error;
+  if (std::filesystem::equivalent(request.run_path, request.output_path, error))
+    return {ErrorCode::kInvalidArgument,
+            "the refined run would overwrite the run " + Quoted(request.run_path) + "; give another --output_path"};
+  return Status::Ok();
+}
+
+// The median of what the run says of its first maps' depths; wide where it says nothing.
+double LogDepthSigmaOf(const RunSummary& summary) {
+  constexpr double kUnknown = 0.1;
+  std::vector<double> sigmas;
+  for (const FirstMapFrames& map : summary.first_maps)
+    if (map.evidence.depth_sigma > 0.0) sigmas.push_back(map.evidence.depth_sigma);
+  return sigmas.empty() ? kUnknown : Median(sigmas);
+}
+
+// Means over the observations of each point.
+void SetRestPositions(Recording* recording) {
+  std::vector<int> counts(recording->rest_positions.size(), 0);
+  for (const RecordedObservation& observation : recording->observations) {
+    recording->rest_positions[static_cast<std::size_t>(observation.point_idx)] += observation.position;
+    ++counts[static_cast<std::size_t>(observation.point_idx)];
+  }
+  for (std::size_t i = 0; i < counts.size(); ++i) recording->rest_positions[i] /= std::max(1, counts[i]);
+}
+
+Result<std::map<int, Submap>> ReadSubmaps(const std::string& path, const Run& run) {
+  std::map<int, Submap> submaps;
+  std::map<int, std::map<PointId, int>> index_of;  // by submap
+  std::vector<int> frames_idx;
+  for (const RunPose& pose : run.poses) {
+    if (!pose.frame_idx)
+      return Status(ErrorCode::kMismatch, Quoted(path) +
+                                              " has no frames.csv, so it is another program's; make it a run with "
+                                              "pliant import --format result");
+    frames_idx.push_back(*pose.frame_idx);
+  }
+  const Status status = ForEachFrame(path, frames_idx, [&](std::size_t k, const auto& observations) {
+    const RunPose& pose = run.poses[k];
+    Submap& submap = submaps[pose.submap];
+    const auto view = static_cast<int>(submap.recording.times.size());
+    submap.view_of_frame[*pose.frame_idx] = view;
+    submap.recording.times.push_back(static_cast<double>(*pose.frame_idx));
+    submap.recording.cams_from_world.push_back(pose.world_from_cam.Inverse());
+    submap.observations.push_back(observations);
+    for (const PointObservation& o : observations) {
+      const auto [entry, added] = index_of[pose.submap].try_emplace(o.id, static_cast<int>(submap.ids.size()));
+      if (added) {
+        submap.ids.push_back(o.id);
+        submap.recording.rest_positions.emplace_back(Eigen::Vector3d::Zero());
+      }
+      submap.recording.observations.push_back({view, entry->second, o.pixel, o.position});
+    }
+    return Status::Ok();
+  });
+  if (!status.ok()) return status;
+  const RunDescription& description = run.summary->description;
+  for (auto& [number, submap] : submaps) {
+    SetRestPositions(&submap.recording);
+    submap.recording.log_depth_sigma = LogDepthSigmaOf(*run.summary);
+    if (description.patch_size > 0) submap.recording.patch_px = description.patch_size / description.image_scale;
+  }
+  return submaps;
+}
+
+// The run's reports with refined poses and points.
+class Reporter {
+ public:
+  Reporter(const Run& run, const RunMap& known, const std::map<int, Submap>& submaps,
+           const std::map<int, RefinedRecording>& refined)
+      : run_(run), known_(known), submaps_(submaps), refined_(refined) {
+    for (const auto& [number, recording] : refined) {
+      std::size_t o = 0;
+      const Submap& submap = submaps.at(number);
+      for (std::size_t view = 0; view < submap.observations.size(); ++view) {
+        std::vector<PointObservation> kept;
+        for (PointObservation observation : submap.observations[view]) {
+          observation.position = recording.recording.observations[o].position;
+          if (recording.is_inlier[o]) kept.push_back(observation);
+          ++o;
+        }
+        observations_[number].push_back(std::move(kept));
+      }
+      for (std::size_t i = 0; i < submap.ids.size(); ++i)
+        rest_positions_[submap.ids[i]] = recording.recording.rest_positions[i];
+    }
+  }
+
+  FrameReport Report(const RunFrame& frame) {
+    FrameReport report;
+    report.frame_idx = frame.frame_idx;
+    report.timestamp_s = frame.timestamp_s;
+    report.state = frame.state;
+    report.submap = frame.submap;
+    report.tracked = frame.tracked;
+    report.lost = frame.lost;
+    if (const auto name = known_.names.find(frame.frame_idx); name != known_.names.end()) report.name = name->second;
+    if (!HasPose(frame.state)) return report;
+    const auto view = static_cast<std::size_t>(submaps_.at(frame.submap).view_of_frame.at(frame.frame_idx));
+    report.cam_from_world = refined_.at(frame.submap).recording.cams_from_world[view];
+    report.observations = observations_.at(frame.submap)[view];
+    for (const PointObservation& observation : report.observations) {
+      const auto rest = rest_positions_.find(observation.id);
+      if (rest == rest_positions_.end()) continue;
+      NewPoint point{observation.id, rest->second};
+      if (const auto known = known_.points.find(observation.id); known != known_.points.end())
+        point.rgb = known->second.rgb;
+      report.new_points.push_back(point);
+      rest_positions_.erase(rest);
+    }
+    report.optimized = static_cast<int>(report.observations.size());
+    report.added = static_cast<int>(report.new_points.size());
+    report.median_reprojection_error_px =
+        MedianReprojectionErrorPx(*known_.camera, *report.cam_from_world, report.observations);
+    for (const FirstMapFrames& map : run_.summary->first_maps)
+      if (map.declared_frame_idx == frame.frame_idx) report.first_map = map;
+    return report;
+  }
+
+ private:
+  const Run& run_;
+  const RunMap& known_;
+  const std::map<int, Submap>& submaps_;
+  const std::map<int, RefinedRecording>& refined_;
+  std::map<int, std::vector<std::vector<PointObservation>>> observations_;
+  std::map<PointId, Eigen::Vector3d> rest_positions_;  // of points that have not been reported
+};
+
+// Of a refinement that was stopped too: it is whole, if not at its minimum.
+Result<RunSummary> Write(const RefineRequest& request, const RefineOptions& options, const Run& run,
+                         const RunMap& known, Reporter reporter, double seconds) {
+  OptionTable table;
+  RefineOptions listed = options;
+  listed.List(table);
+  RunWriterOptions writer_options;
+  writer_options.total_s = run.summary->total_s + seconds;
+  RunDescription description = run.summary->description;
+  description.program_version = kVersion;
+  description.command_line = request.command_line;
+  description.refined_from = std::filesystem::absolute(request.run_path).lexically_normal().string();
+  auto writer = RunWriter::Create(request.output_path, *known.camera, description, table.ToYaml(), {}, writer_options);
+  if (!writer.ok()) return writer.status();
+  for (const RunFrame& frame : run.frames)
+    if (Status status = writer->Write(reporter.Report(frame)); !status.ok()) return status;
+  if (Status status = writer->Finish(run.summary->status, run.summary->note); !status.ok()) return status;
+  return writer->summary();
+}
+
+}  // namespace
+
+Result<RefineSummary> RefineRun(const RefineRequest& request, const RefineOptions& options,
+                                const RefineProgress& callback) {
+  const auto begin = std::chrono::steady_clock::now();
+  if (Status status = CheckPaths(request); !status.ok()) return status;
+  const auto run = ReadRun(request.run_path);
+  if (!run.ok()) return run.status();
+  if (run->poses.empty() || !run->summary)
+    return Status(ErrorCode::kInsufficient,
+                  "no frame of the run " + Quoted(request.run_path) + " was tracked; there is nothing to refine");
+  const auto known = KnownMapOfRun(request.run_path,
+                                   SequenceOfRun(request.run_path, request.sequence_path, request.camera_path), *run);
+  if (!known.ok()) return known.status();
+  const auto submaps = ReadSubmaps(request.run_path, *run);
+  if (!submaps.ok()) return submaps.status();
+
+  RefineSummary summary;
+  std::map<int, RefinedRecording> refined;
+  const auto on_iteration = [&](const RefinementProgress& progress) {
+    if (callback) callback(progress);
+    return request.stop == nullptr || !*request.stop;
+  };
+  for (const auto& [number, submap] : *submaps) {
+    auto recording = RefineRecording(*known->camera, submap.recording, options, on_iteration);
+    if (!recording.ok())
+      return Status(recording.status().code(),
+                    "submap " + std::to_string(number) + " cannot be refined: " + recording.status().message());
+    summary.stopped = summary.stopped || recording->stopped;
+    const auto wrong = std::ranges::count(recording->is_inlier, false);
+    summary.submaps.push_back({number, recording->deforming, recording->residual_correlation, recording->noise_px,
+                               static_cast<int>(submap.recording.times.size()), static_cast<int>(submap.ids.size()),
+                               static_cast<int>(submap.recording.observations.size()), static_cast<int>(wrong)});
+    refined.emplace(number, *std::move(recording));
+  }
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  auto written = Write(request, options, *run, *known, Reporter(*run, *known, *submaps, refined), seconds);
+  if (!written.ok()) return written.status();
+  summary.run = *std::move(written);
+  return summary;
+}
+
+}  // namespace pliant

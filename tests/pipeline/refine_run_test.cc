@@ -1,0 +1,125 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/pipeline/refine_run.h"
+
+#include <filesystem>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "pliant/io/run_map.h"
+#include "pliant/io/run_reader.h"
+#include "support/small_run.h"
+#include "support/test_folder.h"
+#include "support/tolerances.h"
+
+namespace pliant {
+namespace {
+
+using testing::HasSubstr;
+
+// The run's points move together by 0.25 mm a frame, which is a motion of the camera: a rigid scene fits exactly.
+constexpr double kExactFit_px = 1e-3;
+
+class RefineRunTest : public testing::Test {
+ protected:
+  Result<RefineSummary> Refine(const std::string& output = "refined", const RefineOptions& options = {}) const {
+    RefineRequest request;
+    request.run_path = folder_.Path("run");
+    request.output_path = folder_.Path(output);
+    request.command_line = {"pliant", "refine"};
+    return RefineRun(request, options, {});
+  }
+
+  TestFolder folder_;
+};
+
+TEST_F(RefineRunTest, LeavesARunOfTheSameFramesAndPoints) {
+  WriteRun(folder_);
+  const auto summary = Refine();
+  ASSERT_TRUE(summary.ok()) << summary.status().message();
+  ASSERT_EQ(summary->submaps.size(), 1U);
+  EXPECT_FALSE(summary->submaps.front().deforming);
+  const auto run = ReadRun(folder_.Path("run"));
+  const auto refined = ReadRun(folder_.Path("refined"));
+  ASSERT_TRUE(run.ok() && refined.ok());
+  ASSERT_EQ(refined->frames.size(), run->frames.size());
+  for (std::size_t k = 0; k < run->frames.size(); ++k) {
+    EXPECT_EQ(refined->frames[k].frame_idx, run->frames[k].frame_idx);
+    EXPECT_EQ(refined->frames[k].state, run->frames[k].state);
+    EXPECT_EQ(refined->frames[k].timestamp_s, run->frames[k].timestamp_s);
+    EXPECT_LT(refined->frames[k].median_reprojection_error_px, kExactFit_px);
+  }
+  EXPECT_EQ(refined->summary->status, RunStatus::kCompleted);
+  EXPECT_EQ(refined->summary->points, kRunPoints);
+  const auto map = ReadRunMap(folder_.Path("refined"), *refined);
+  ASSERT_TRUE(map.ok()) << map.status().message();
+  EXPECT_EQ(map->points.at(PointId{3}).rgb, (std::array<std::uint8_t, 3>{10, 20, 1}));
+  EXPECT_EQ(map->names.at(12), "12.png");
+}
+
+TEST_F(RefineRunTest, RefinesEverySubmapByItself) {
+  WriteRunOfTwoSubmaps(folder_);
+  const auto summary = Refine();
+  ASSERT_TRUE(summary.ok()) << summary.status().message();
+  ASSERT_EQ(summary->submaps.size(), 2U);
+  EXPECT_EQ(summary->submaps[1].submap, 1);
+  EXPECT_EQ(summary->submaps[1].frames, kRunFrames);
+  EXPECT_EQ(summary->run.submaps, 2);
+}
+
+TEST_F(RefineRunTest, DoesNotOverwriteTheRun) {
+  WriteRun(folder_);
+  const std::string before = folder_.Read("run/observations.csv");
+  for (const char* const output : {"run", "run/../run"}) {
+    const auto summary = Refine(output);
+    ASSERT_FALSE(summary.ok());
+    EXPECT_THAT(summary.status().message(), HasSubstr("give another --output_path"));
+  }
+  EXPECT_EQ(folder_.Read("run/observations.csv"), before);
+}
+
+TEST_F(RefineRunTest, SaysWhatARunThatWasKilledLacks) {
+  WriteRun(folder_, End::kKilled);
+  const auto summary = Refine();
+  ASSERT_FALSE(summary.ok());
+  EXPECT_THAT(summary.status().message(), HasSubstr("sparse/"));
+  EXPECT_FALSE(std::filesystem::exists(folder_.Path("refined")));
+}
+
+TEST_F(RefineRunTest, WhatFailsLeavesTheOutputAsItWas) {
+  WriteRun(folder_);
+  ASSERT_TRUE(Refine().ok());
+  const std::string before = folder_.Read("refined/observations.csv");
+  const std::string rows = folder_.Read("run/observations.csv");
+  folder_.Write("run/observations.csv", rows.substr(0, rows.find('\n') + 1));  // a run without points
+  const auto summary = Refine();
+  ASSERT_FALSE(summary.ok());
+  EXPECT_THAT(summary.status().message(), HasSubstr("points"));
+  EXPECT_EQ(folder_.Read("refined/observations.csv"), before);
+}
+
+TEST_F(RefineRunTest, AnOutputFolderWithOtherFilesIsRefused) {
+  WriteRun(folder_);
+  std::filesystem::create_directories(folder_.Path("mine"));
+  folder_.Write("mine/notes.txt", "keep");
+  EXPECT_FALSE(Refine("mine").ok());
+  EXPECT_EQ(folder_.Read("mine/notes.txt"), "keep");
+}
+
+TEST_F(RefineRunTest, AStopLeavesAWholeRun) {
+  WriteRun(folder_);
+  const std::atomic<bool> stop = true;
+  RefineRequest request;
+  request.run_path = folder_.Path("run");
+  request.output_path = folder_.Path("refined");
+  request.stop = &stop;
+  const auto summary = RefineRun(request, {}, {});
+  ASSERT_TRUE(summary.ok()) << summary.status().message();
+  EXPECT_TRUE(summary->stopped);
+  EXPECT_EQ(summary->run.frames_tracked, kRunFrames);
+}
+
+}  // namespace
+}  // namespace pliant
