@@ -56,7 +56,12 @@ class Grid:
                 for seed in self.seeds]
 
     def runs(self):
-        return [f"runs/{variant}/{scene}" for variant in self.variants for scene in self.scenes()]
+        return [f"runs/{variant}/{scene}" for variant in self.variants for scene in self.scenes()
+                if self.is_tracked_by(scene, variant)]
+
+    def is_tracked_by(self, scene, variant):
+        chosen = self.config.get("set_variants", {}).get(SCENE.fullmatch(scene)["set"], "all")
+        return words(chosen) == ["all"] or variant in words(chosen)
 
     def simulate_options(self, scene):
         parts = SCENE.fullmatch(scene)
