@@ -102,6 +102,22 @@ std::vector<GraphEdge> MergeDirections(const NeighborLists& lists) {
 
 NeighborLists NearestNeighbors(Points positions, int count) { return Nearest(positions, positions, true, count); }
 
+NeighborLists NearestNeighborsApart(Points positions, double min_distance, int count) {
+  NeighborLists neighbors(positions.size());
+  std::vector<std::pair<double, int>> others;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    others.clear();
+    for (std::size_t j = 0; j < positions.size(); ++j) {
+      const double distance = (positions[i] - positions[j]).norm();
+      if (j != i && distance >= min_distance) others.emplace_back(distance, static_cast<int>(j));
+    }
+    const auto nearest = others.begin() + std::min<std::ptrdiff_t>(count, std::ssize(others));
+    std::partial_sort(others.begin(), nearest, others.end());
+    for (auto other = others.begin(); other != nearest; ++other) neighbors[i].push_back(other->second);
+  }
+  return neighbors;
+}
+
 NeighborLists NearestNeighbors(Points positions, Points queries, int count) {
   return Nearest(positions, queries, false, count);
 }

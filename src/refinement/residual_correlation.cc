@@ -5,16 +5,16 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <utility>
 
 #include "pliant/base/statistics.h"
+#include "pliant/deformation/graph.h"
 #include "pliant/estimation/window/window_refinement.h"
 
 namespace pliant {
 namespace {
 
 constexpr std::size_t kViews = 64;
-constexpr std::size_t kNeighbors = 4;
+constexpr int kNeighbors = 4;
 constexpr double kCut = 4.0;  // times the median error, which one error counts at most
 
 }  // namespace
@@ -35,19 +35,17 @@ double ResidualCorrelation(const Recording& recording, const std::vector<bool>& 
   double products = 0;
   double squares = 0;
   for (const std::size_t view : SpreadViews(of_view.size(), kViews)) {
-    for (const std::size_t a : of_view[view]) {
-      std::vector<std::pair<double, std::size_t>> near;
-      for (const std::size_t b : of_view[view]) {
-        const double distance = (recording.observations[a].pixel - recording.observations[b].pixel).norm();
-        if (distance >= min_distance_px) near.emplace_back(distance, b);
+    const std::vector<std::size_t>& seen = of_view[view];
+    std::vector<Eigen::Vector3d> pixels;
+    for (const std::size_t o : seen) pixels.push_back(recording.observations[o].pixel.homogeneous());
+    const NeighborLists neighbors = NearestNeighborsApart(pixels, min_distance_px, kNeighbors);
+    for (std::size_t a = 0; a < seen.size(); ++a)
+      for (const int b : neighbors[a]) {
+        const Eigen::Vector2d error_a = error(seen[a]);
+        const Eigen::Vector2d error_b = error(seen[static_cast<std::size_t>(b)]);
+        products += error_a.dot(error_b);
+        squares += 0.5 * (error_a.squaredNorm() + error_b.squaredNorm());
       }
-      const std::size_t count = std::min(kNeighbors, near.size());
-      std::partial_sort(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(count), near.end());
-      for (std::size_t k = 0; k < count; ++k) {
-        products += error(a).dot(error(near[k].second));
-        squares += 0.5 * (error(a).squaredNorm() + error(near[k].second).squaredNorm());
-      }
-    }
   }
   return squares > 0.0 ? products / squares : 0.0;
 }

@@ -160,5 +160,14 @@ TEST(GraphOptions, ListsTheOptionsUnderTheirNames) {
   EXPECT_FALSE(table.Set("Deformation.sigma_mm", "0").ok());
 }
 
+TEST(NearestNeighborsApart, LeavesOutTheOnesThatAreTooNear) {
+  const std::vector<Eigen::Vector3d> positions = {{0, 0, 0}, {1, 0, 0}, {3, 0, 0}, {6, 0, 0}, {-4, 0, 0}};
+  const NeighborLists neighbors = NearestNeighborsApart(positions, 2, 2);
+  EXPECT_EQ(neighbors[0], (std::vector<int>{2, 4}));
+  EXPECT_EQ(neighbors[1], (std::vector<int>{2, 3}));
+  EXPECT_EQ(neighbors[4], (std::vector<int>{0, 1}));
+  EXPECT_TRUE(NearestNeighborsApart(positions, 20, 2)[0].empty());
+}
+
 }  // namespace
 }  // namespace pliant

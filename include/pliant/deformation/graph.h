@@ -66,6 +66,10 @@ NeighborLists NearestNeighbors(std::span<const Eigen::Vector3d> positions, int c
 NeighborLists NearestNeighbors(std::span<const Eigen::Vector3d> positions, std::span<const Eigen::Vector3d> queries,
                                int count);
 
+// The `count` nearest other points of each that are at least `min_distance` away, nearest first; otherwise as the
+// first. Takes time by the square of the number of points.
+NeighborLists NearestNeighborsApart(std::span<const Eigen::Vector3d> positions, double min_distance, int count);
+
 // The graph of `positions` (mm, any one frame). `rest_positions` are the same points undeformed; they may be empty when
 // nothing asks for them, and then rest lengths are the present lengths and no edge is cut. The search is exact, and
 // neighbors at equal distance are taken in the order of their index, so the answer depends on nothing but the input.

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // What a deforming window leaves unexplained.
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -11,6 +10,7 @@
 #include "estimation/ray_residuals.h"
 #include "estimation/window/window_samples.h"
 #include "pliant/base/statistics.h"
+#include "pliant/deformation/graph.h"
 #include "pliant/estimation/window/deforming_window.h"
 #include "pliant/geometry/triangulation.h"
 
@@ -19,26 +19,7 @@ namespace {
 
 // Errors larger than this many times the median one count as that large: wrong tracks are like nobody.
 constexpr double kLargestError = 4.0;
-constexpr std::size_t kNeighbors = 4;
-
-// The nearest points to each in direction from the reference, of those that are not too near.
-std::vector<std::vector<std::size_t>> NeighborsAtAngle(const DeformingWindow& window, double min_angle_rad) {
-  const std::vector<Eigen::Vector3d> directions = DirectionsOf(window.points_in_world);
-  const double min_chord = 2.0 * std::sin(0.5 * min_angle_rad);
-  std::vector<std::vector<std::size_t>> neighbors(directions.size());
-  std::vector<std::pair<double, std::size_t>> others;
-  for (std::size_t i = 0; i < directions.size(); ++i) {
-    others.clear();
-    for (std::size_t j = 0; j < directions.size(); ++j) {
-      const double chord = (directions[i] - directions[j]).norm();
-      if (j != i && chord >= min_chord) others.emplace_back(chord, j);
-    }
-    const std::size_t count = std::min(kNeighbors, others.size());
-    std::partial_sort(others.begin(), others.begin() + static_cast<std::ptrdiff_t>(count), others.end());
-    for (std::size_t k = 0; k < count; ++k) neighbors[i].push_back(others[k].second);
-  }
-  return neighbors;
-}
+constexpr int kNeighbors = 4;
 
 }  // namespace
 
@@ -78,14 +59,15 @@ double ResidualCorrelation(const DeformingWindow& window, double min_angle_rad) 
     for (Eigen::Vector2d& error : of_view)
       if (error.norm() > largest) error *= largest / error.norm();
 
-  const auto neighbors = NeighborsAtAngle(window, min_angle_rad);
+  const double min_chord = 2.0 * std::sin(0.5 * min_angle_rad);
+  const NeighborLists neighbors = NearestNeighborsApart(DirectionsOf(window.points_in_world), min_chord, kNeighbors);
   double products = 0;
   double squares = 0;
   for (const auto& of_view : errors)
     for (std::size_t i = 0; i < points; ++i)
-      for (const std::size_t j : neighbors[i]) {
+      for (const int j : neighbors[i]) {
         const Eigen::Vector2d& a = of_view[i];
-        const Eigen::Vector2d& b = of_view[j];
+        const Eigen::Vector2d& b = of_view[static_cast<std::size_t>(j)];
         if (!a.allFinite() || !b.allFinite()) continue;
         products += a.dot(b);
         squares += 0.5 * (a.squaredNorm() + b.squaredNorm());
