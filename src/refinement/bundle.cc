@@ -100,7 +100,7 @@ class BundleProblem {
     if (!summary.IsSolutionUsable())
       return Status(ErrorCode::kDegenerate, "the refinement found no step that lowers its cost: " + summary.message);
     CopyToState();
-    return BundleSummary{summary.initial_cost, summary.final_cost, static_cast<int>(summary.iterations.size()) - 1};
+    return BundleSummary{summary.initial_cost, summary.final_cost};
   }
 
  private:

@@ -46,7 +46,6 @@ struct BundleSigmas {
 struct BundleSummary {
   double initial_cost = 0;
   double final_cost = 0;
-  int iterations = 0;
 };
 
 // A scene that deforms, with the best `rank` shapes for the motions that the positions of the start have.

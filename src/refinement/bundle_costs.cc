@@ -30,17 +30,14 @@ class BundleReprojectionCost final : public ceres::CostFunction {
     const double* const coefficients = parameters[0] + 6;
     Eigen::Vector3d position = ConstVector3(point);
     for (int r = 0; r < rank_; ++r) position += coefficients[r] * ConstVector3(point + 3 + 3 * r);
-    const ConstVector3 omega(parameters[0]);
-    const Eigen::Vector3d arm = RotateByExp<double>(omega, pose_->Arm(position));
+    const PosedPoint posed = pose_->Posed(parameters[0], position);
     Eigen::Vector2d residual;
     ReprojectionJacobian by_cam_point;
-    if (!kernel_.ResidualAndJacobian(pixel_, arm + pose_->pivot_in_cam() + ConstVector3(parameters[0] + 3), &residual,
-                                     &by_cam_point))
-      return false;
+    if (!kernel_.ResidualAndJacobian(pixel_, posed.in_cam, &residual, &by_cam_point)) return false;
     Eigen::Map<Eigen::Vector2d>{residuals} = residual;
     if (jacobians == nullptr) return true;
     const ReprojectionJacobian by_position =
-        by_cam_point * RotationExp(omega).toRotationMatrix() * pose_->reference_rotation();
+        by_cam_point * RotationExp(posed.omega_rad).toRotationMatrix() * pose_->reference_rotation();
     if (jacobians[1] != nullptr) {
       Jacobian by_point(jacobians[1], 2, 3 + 3 * rank_);
       by_point.leftCols(3) = by_position;
@@ -48,8 +45,7 @@ class BundleReprojectionCost final : public ceres::CostFunction {
     }
     if (jacobians[0] != nullptr) {
       Jacobian by_view(jacobians[0], 2, 6 + rank_);
-      by_view.leftCols(3) = -by_cam_point * (Skew(arm) * LeftJacobian(omega));
-      by_view.middleCols(3, 3) = by_cam_point;
+      by_view.leftCols(6) = by_cam_point * posed.ByIncrement();
       for (int r = 0; r < rank_; ++r) by_view.col(6 + r) = by_position * ConstVector3(point + 3 + 3 * r);
     }
     return true;
@@ -131,24 +127,22 @@ class DistanceCost final : public ceres::CostFunction {
   }
 
   bool Evaluate(const double* const* parameters, double* residuals, double** jacobians) const override {
-    const ConstVector3 omega(parameters[0]);
-    const Eigen::Vector3d arm = RotateByExp<double>(omega, pose_->Arm(ConstVector3(parameters[1])));
-    const Eigen::Vector3d in_cam = arm + pose_->pivot_in_cam() + ConstVector3(parameters[0] + 3);
-    const double squared = in_cam.squaredNorm();
+    const PosedPoint posed = pose_->Posed(parameters[0], ConstVector3(parameters[1]));
+    const double squared = posed.in_cam.squaredNorm();
     if (!(squared > 0.0)) return false;
     residuals[0] = scale_ * std::log(std::sqrt(squared) / distance_);
     if (jacobians == nullptr) return true;
-    const Eigen::RowVector3d by_cam_point = scale_ / squared * in_cam.transpose();
+    const Eigen::RowVector3d by_cam_point = scale_ / squared * posed.in_cam.transpose();
     if (jacobians[0] != nullptr) {
       Eigen::Map<Eigen::RowVectorXd> by_view(jacobians[0], 6 + rank_);
       by_view.setZero();
-      by_view.head(3) = -by_cam_point * (Skew(arm) * LeftJacobian(omega));
-      by_view.segment(3, 3) = by_cam_point;
+      by_view.head(6) = by_cam_point * posed.ByIncrement();
     }
     if (jacobians[1] != nullptr) {
       Eigen::Map<Eigen::RowVectorXd> by_point(jacobians[1], 3 + 3 * rank_);
       by_point.setZero();
-      by_point.leftCols(3) = by_cam_point * RotationExp(omega).toRotationMatrix() * pose_->reference_rotation();
+      by_point.leftCols(3) =
+          by_cam_point * RotationExp(posed.omega_rad).toRotationMatrix() * pose_->reference_rotation();
     }
     return true;
   }

@@ -17,7 +17,7 @@ constexpr double kRidge = 1e-3;  // by the mean square displacement
 constexpr int kMinNodes = 8;
 constexpr int kMinViewsOfNode = 5;
 
-// Displacements from rest, by point and by view.
+// The displacement of a point from its rest position in a view.
 struct Motion {
   int view_idx = 0;
   int point_idx = 0;
@@ -25,10 +25,10 @@ struct Motion {
 };
 
 // Alternating least squares for X_i(v) - X_i = sum_r c_r(v) m_ir, where not every point is seen in every view. The
-// coefficients start as the slowest cosines over the recording, and are smoothed by those of the views around them.
-void Factorize(const std::vector<Motion>& motions, const std::vector<double>& times, BundleState* state) {
+// coefficients start as the slowest cosines over the recording, and end with unit mean square.
+void Factorize(const std::vector<Motion>& motions, BundleState* state) {
   const auto rank = state->coefficients.rows();
-  const auto views = static_cast<Eigen::Index>(times.size());
+  const auto views = state->coefficients.cols();
   double square = 0;
   for (const Motion& motion : motions) square += motion.displacement.squaredNorm();
   const double ridge = kRidge * (square / static_cast<double>(std::max<std::size_t>(1, motions.size())) + 1e-12);
@@ -48,7 +48,8 @@ void Factorize(const std::vector<Motion>& motions, const std::vector<double>& ti
     }
     for (std::size_t i = 0; i < state->shapes.size(); ++i)
       state->shapes[i] = normal[i].ldlt().solve(right[i].transpose()).transpose();
-    std::vector<Eigen::MatrixXd> normal_of_view(times.size(), ridge * Eigen::MatrixXd::Identity(rank, rank));
+    std::vector<Eigen::MatrixXd> normal_of_view(static_cast<std::size_t>(views),
+                                                ridge * Eigen::MatrixXd::Identity(rank, rank));
     Eigen::MatrixXd right_of_view = Eigen::MatrixXd::Zero(rank, views);
     for (const Motion& motion : motions) {
       const Eigen::Matrix3Xd& shape = state->shapes[static_cast<std::size_t>(motion.point_idx)];
@@ -92,7 +93,7 @@ BundleState DeformingStart(const Recording& recording, const RefineOptions& opti
   for (const RecordedObservation& o : recording.observations)
     motions.push_back(
         {o.view_idx, o.point_idx, o.position - recording.rest_positions[static_cast<std::size_t>(o.point_idx)]});
-  Factorize(motions, recording.times, &state);
+  Factorize(motions, &state);
   const std::vector<int> nodes = ChooseNodes(recording, options.nodes_in_view);
   state.nodes = NodesAt(recording.rest_positions, nodes);
   state.nodes.shapes.resize(3 * options.rank, static_cast<Eigen::Index>(nodes.size()));

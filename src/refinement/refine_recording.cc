@@ -111,19 +111,20 @@ class Refinement {
       if (!summary.ok()) return summary.status();
       refined_.initial_cost = summary->initial_cost;
       refined_.final_cost = summary->final_cost;
-      sigmas = FoundSigmas(*state, sigmas);
+      const auto errors_px = ReprojectionErrors(camera_, start_, *state);
+      sigmas = FoundSigmas(*state, errors_px, sigmas);
       refined_.noise_px = sigmas.noise_px;
-      if (round == 0) RejectWrongTracks(*state);
+      if (round == 0) RejectWrongTracks(errors_px);
     }
     return Status::Ok();
   }
 
-  BundleSigmas FoundSigmas(const BundleState& state, const BundleSigmas& sigmas) const {
+  BundleSigmas FoundSigmas(const BundleState& state, const std::vector<Eigen::Vector2d>& errors_px,
+                           const BundleSigmas& sigmas) const {
     BundleSigmas found = sigmas;
-    const auto errors = ReprojectionErrors(camera_, start_, state);
     std::vector<double> lengths;
-    for (std::size_t o = 0; o < errors.size(); ++o)
-      if (used_[o]) lengths.push_back(errors[o].norm());
+    for (std::size_t o = 0; o < errors_px.size(); ++o)
+      if (used_[o]) lengths.push_back(errors_px[o].norm());
     found.noise_px = std::max(kMinNoisePx, Median(lengths) / kRayleighMedian);
     if (state.rank() == 0) return found;
     const ShapeSizes sizes = SizesOf(state.nodes);
@@ -133,13 +134,12 @@ class Refinement {
   }
 
   // Tracks whose error is far above that of the others.
-  void RejectWrongTracks(const BundleState& state) {
-    const auto errors = ReprojectionErrors(camera_, start_, state);
+  void RejectWrongTracks(const std::vector<Eigen::Vector2d>& errors_px) {
     std::vector<double> squares(start_.rest_positions.size(), 0.0);
     std::vector<int> counts(squares.size(), 0);
-    for (std::size_t o = 0; o < errors.size(); ++o) {
+    for (std::size_t o = 0; o < errors_px.size(); ++o) {
       const auto point = static_cast<std::size_t>(start_.observations[o].point_idx);
-      squares[point] += errors[o].squaredNorm();
+      squares[point] += errors_px[o].squaredNorm();
       ++counts[point];
     }
     std::vector<double> rms;
@@ -147,7 +147,7 @@ class Refinement {
       if (counts[i] >= kMinViews) rms.push_back(std::sqrt(squares[i] / counts[i]));
     if (rms.empty()) return;
     const double bound = std::max(kWrongTrack * Median(rms), kMinWrongTrackPx);
-    for (std::size_t o = 0; o < errors.size(); ++o) {
+    for (std::size_t o = 0; o < errors_px.size(); ++o) {
       const auto point = static_cast<std::size_t>(start_.observations[o].point_idx);
       used_[o] = std::sqrt(squares[point] / counts[point]) <= bound;
     }

@@ -15,23 +15,6 @@ using ConstVector3 = Eigen::Map<const Eigen::Vector3d>;
 template <int kRows, int kCols>
 using RowMajor = Eigen::Map<Eigen::Matrix<double, kRows, kCols, Eigen::RowMajor>>;
 
-// A point of the world in the camera frame with its derivatives (eq. E9).
-struct PosedPoint {
-  Eigen::Vector3d in_cam;
-  Eigen::Matrix<double, 3, 6> by_increment;
-};
-
-PosedPoint Pose(const PoseIncrement& pose, const double* increment, const Eigen::Vector3d& point_in_world) {
-  const ConstVector3 omega(increment);
-  const ConstVector3 tau(increment + 3);
-  const Eigen::Vector3d arm = RotateByExp<double>(omega, pose.Arm(point_in_world));
-  PosedPoint posed;
-  posed.in_cam = arm + pose.pivot_in_cam() + tau;
-  posed.by_increment.leftCols<3>() = -Skew(arm) * LeftJacobian(omega);
-  posed.by_increment.rightCols<3>().setIdentity();
-  return posed;
-}
-
 template <class Model>
 class PoseReprojectionCost final : public ceres::SizedCostFunction<2, 6> {
  public:
@@ -40,13 +23,13 @@ class PoseReprojectionCost final : public ceres::SizedCostFunction<2, 6> {
       : kernel_(model, sigma_px), pose_(&pose), point_(point), pixel_(pixel) {}
 
   bool Evaluate(const double* const* parameters, double* residuals, double** jacobians) const override {
-    const PosedPoint posed = Pose(*pose_, parameters[0], point_);
+    const PosedPoint posed = pose_->Posed(parameters[0], point_);
     Eigen::Vector2d residual;
     ReprojectionJacobian jacobian;
     if (!kernel_.ResidualAndJacobian(pixel_, posed.in_cam, &residual, &jacobian)) return false;
     Eigen::Map<Eigen::Vector2d>{residuals} = residual;
     if (jacobians != nullptr && jacobians[0] != nullptr)
-      RowMajor<2, 6>(jacobians[0]).noalias() = jacobian * posed.by_increment;
+      RowMajor<2, 6>(jacobians[0]).noalias() = jacobian * posed.ByIncrement();
     return true;
   }
 
@@ -65,13 +48,13 @@ class ReprojectionCost final : public ceres::SizedCostFunction<2, 6, 3> {
       : kernel_(model, sigma_px), pose_(&pose), position_(position), pixel_(pixel) {}
 
   bool Evaluate(const double* const* parameters, double* residuals, double** jacobians) const override {
-    const PosedPoint posed = Pose(*pose_, parameters[0], position_ + ConstVector3(parameters[1]));
+    const PosedPoint posed = pose_->Posed(parameters[0], position_ + ConstVector3(parameters[1]));
     Eigen::Vector2d residual;
     ReprojectionJacobian jacobian;
     if (!kernel_.ResidualAndJacobian(pixel_, posed.in_cam, &residual, &jacobian)) return false;
     Eigen::Map<Eigen::Vector2d>{residuals} = residual;
     if (jacobians == nullptr) return true;
-    if (jacobians[0] != nullptr) RowMajor<2, 6>(jacobians[0]).noalias() = jacobian * posed.by_increment;
+    if (jacobians[0] != nullptr) RowMajor<2, 6>(jacobians[0]).noalias() = jacobian * posed.ByIncrement();
     if (jacobians[1] != nullptr) {
       RowMajor<2, 3> by_delta(jacobians[1]);
       for (int c = 0; c < 3; ++c)

@@ -56,6 +56,20 @@ inline Eigen::Matrix3d LeftJacobian(const Eigen::Vector3d& omega_rad) {
   return Eigen::Matrix3d::Identity() + b * skew + c * skew * skew;
 }
 
+// A point of the world in the camera frame, and its derivatives by the increment (eq. E9).
+struct PosedPoint {
+  Eigen::Vector3d omega_rad;  // of the increment
+  Eigen::Vector3d arm;        // Exp(omega) R0 (X - pivot)
+  Eigen::Vector3d in_cam;
+
+  Eigen::Matrix<double, 3, 6> ByIncrement() const {
+    Eigen::Matrix<double, 3, 6> by_increment;
+    by_increment.leftCols<3>() = -Skew(arm) * LeftJacobian(omega_rad);
+    by_increment.rightCols<3>().setIdentity();
+    return by_increment;
+  }
+};
+
 class PoseIncrement {
  public:
   PoseIncrement() = default;
@@ -76,6 +90,13 @@ class PoseIncrement {
     const Eigen::Matrix<T, 3, 1> arm = rotation_.cast<T>() * centered;
     const Eigen::Matrix<T, 3, 1> omega = increment.template head<3>();
     return RotateByExp(omega, arm) + pivot_in_cam_.cast<T>() + increment.template tail<3>();
+  }
+
+  // The point at `increment`, which are 6 numbers.
+  PosedPoint Posed(const double* increment, const Eigen::Vector3d& point_in_world) const {
+    const Eigen::Vector3d omega = Eigen::Map<const Eigen::Vector3d>(increment);
+    const Eigen::Vector3d arm = RotateByExp<double>(omega, Arm(point_in_world));
+    return {omega, arm, arm + pivot_in_cam_ + Eigen::Map<const Eigen::Vector3d>(increment + 3)};
   }
 
   // cam_from_world at an increment.
