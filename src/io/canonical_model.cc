@@ -124,6 +124,7 @@ Status WritePoints(FileGroup& group, const std::string& folder, colmap::Format f
 void CountObservation(const Camera& camera, const Rigid3& cam_from_world, const PointObservation& observation,
                       CanonicalPoint* point) {
   ++point->num_observations;
+  point->mean_sigma += (observation.sigma - point->mean_sigma) / static_cast<double>(point->num_observations);
   if (const auto error_px = ReprojectionErrorPx(camera, cam_from_world, observation))
     point->error_px += (*error_px - point->error_px) / static_cast<double>(point->num_observations);
 }

@@ -21,30 +21,59 @@ struct Row {
   PointObservation observation;
 };
 
+// Where the columns that may be missing stand; nothing: they are missing.
+struct OptionalColumns {
+  std::size_t count = 0;  // of all columns
+  std::optional<std::size_t> ssim;
+  std::optional<std::size_t> sigma;
+};
+
+// Nothing: it is no header of observations.csv.
+std::optional<OptionalColumns> ParseHeader(std::string_view header) {
+  if (!header.starts_with(kNeededObservationColumns)) return std::nullopt;
+  const std::vector<std::string_view> names = Split(header, ',');
+  if (names.size() < kNeededObservationColumnCount || names[kNeededObservationColumnCount - 1] != "z")
+    return std::nullopt;
+  OptionalColumns columns;
+  columns.count = names.size();
+  for (std::size_t i = kNeededObservationColumnCount; i < names.size(); ++i) {
+    if (names[i] == kSsimColumn) columns.ssim = i;
+    if (names[i] == kSigmaColumn) columns.sigma = i;
+  }
+  return columns;
+}
+
 // Empty: the row is right; else what is wrong with it.
-std::string ParseRow(std::string_view line, std::string_view columns, Row* row) {
+std::string ParseRow(std::string_view line, const OptionalColumns& columns, Row* row) {
   // Millions of rows are read: the fields stay on the stack.
-  std::array<std::string_view, 8> fields;
+  std::array<std::string_view, kNeededObservationColumnCount> fields;
+  std::string_view ssim;
+  std::string_view sigma;
   std::size_t count = 0;
   for (std::size_t begin = 0; begin <= line.size(); ++count) {
     const std::size_t end = std::min(line.find(',', begin), line.size());
-    if (count < fields.size()) fields[count] = line.substr(begin, end - begin);
+    const std::string_view field = line.substr(begin, end - begin);
+    if (count < fields.size()) fields[count] = field;
+    if (count == columns.ssim) ssim = field;
+    if (count == columns.sigma) sigma = field;
     begin = end + 1;
   }
-  const std::size_t needed = columns == kObservationColumns ? 8 : 7;
-  if (count != needed)
-    return "a row has " + std::to_string(needed) + " columns (" + std::string(columns) + "), this one has " +
+  if (count != columns.count)
+    return "a row has " + std::to_string(columns.count) + " columns, as the first line, this one has " +
            std::to_string(count);
   PointObservation& o = row->observation;
   if (!ParseInt(fields[0], &row->frame_idx) || row->frame_idx < 0)
     return Quoted(fields[0]) + " is not a frame's number";
   if (!ParseInt64(fields[1], &o.id.value) || o.id.value < 0) return Quoted(fields[1]) + " is not a point's id";
-  const std::array<double*, 6> numbers = {&o.pixel.x(),    &o.pixel.y(),    &o.position.x(),
-                                          &o.position.y(), &o.position.z(), &o.ssim};
-  o.ssim = std::numeric_limits<double>::quiet_NaN();
-  for (std::size_t i = 0; i + 2 < needed; ++i)
+  const std::array<double*, 5> numbers = {&o.pixel.x(), &o.pixel.y(), &o.position.x(), &o.position.y(),
+                                          &o.position.z()};
+  for (std::size_t i = 0; i < numbers.size(); ++i)
     if (!ParseFinite(fields[i + 2], numbers[i]))
       return Quoted(fields[i + 2]) + " is not a finite number; leave out points that have no position";
+  o.ssim = std::numeric_limits<double>::quiet_NaN();
+  if (columns.ssim && !ParseFinite(ssim, &o.ssim)) return Quoted(ssim) + " is not a finite number, as ssim must be";
+  if (columns.sigma && (!ParseFinite(sigma, &o.sigma) || o.sigma < 0))
+    return Quoted(sigma) + " is not a standard deviation; write 0 where it is not known";
   return {};
 }
 
@@ -52,7 +81,7 @@ std::string ParseRow(std::string_view line, std::string_view columns, Row* row) 
 
 struct ObservationReader::State {
   LineReader lines;
-  std::string_view columns;
+  OptionalColumns columns;
   bool ours = false;                        // ours end every line, so an open one was cut
   std::optional<Row> ahead = std::nullopt;  // the next frame's first row
   int last_frame_idx = -1;
@@ -71,11 +100,12 @@ Result<ObservationReader> ObservationReader::Open(const std::string& path) {
   std::error_code error;
   const bool ours = std::filesystem::exists(path + "/run.json", error);
   const bool cut = !lines->Next(&header) || (ours && !lines->ended());  // killed before the first row
-  const std::string_view columns =
-      header == kObservationColumnsWithoutSsim ? kObservationColumnsWithoutSsim : kObservationColumns;
-  if (!cut && header != columns)
-    return lines->Error("the first line must be " + Quoted(kObservationColumns) + "; ssim may be missing");
-  return ObservationReader(std::make_unique<State>(State{std::move(lines).value(), columns, ours}));
+  std::optional<OptionalColumns> columns = ParseHeader(header);
+  if (!cut && !columns)
+    return lines->Error("the first line must begin with " + Quoted(kNeededObservationColumns) +
+                        "; ssim and sigma_mm may follow");
+  return ObservationReader(
+      std::make_unique<State>(State{std::move(lines).value(), columns.value_or(OptionalColumns{}), ours}));
 }
 
 Result<std::optional<FrameObservations>> ObservationReader::Next() {

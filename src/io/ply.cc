@@ -3,20 +3,26 @@
 
 #include "pliant/io/ply.h"
 
+#include <cassert>
+
 #include "pliant/base/files.h"
 #include "pliant/base/text.h"
 
 namespace pliant {
 
-Status WritePly(const std::string& path, std::span<const NewPoint> points) {
+Status WritePly(const std::string& path, std::span<const NewPoint> points, std::span<const double> sigmas) {
+  assert(sigmas.empty() || sigmas.size() == points.size());
   auto file = OutputFile::Create(path);
   if (!file.ok()) return file.status();
   std::string out = "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(points.size()) +
                     "\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\n"
-                    "property uchar green\nproperty uchar blue\nend_header\n";
-  for (const NewPoint& point : points) {
+                    "property uchar green\nproperty uchar blue\n" +
+                    (sigmas.empty() ? "" : "property float sigma\n") + "end_header\n";
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const NewPoint& point = points[i];
     for (const double coordinate : point.position) AppendFloat(&out, static_cast<float>(coordinate));
     for (const std::uint8_t channel : point.rgb) AppendBytes(&out, channel, 1);
+    if (!sigmas.empty()) AppendFloat(&out, static_cast<float>(sigmas[i]));
     if (Status status = file->AppendWhenLarge(&out); !status.ok()) return status;
   }
   if (Status status = file->Append(out); !status.ok()) return status;

@@ -12,8 +12,16 @@
 namespace pliant {
 
 inline constexpr std::string_view kRunProgram = "pliant";
-inline constexpr std::string_view kObservationColumns = "frame,point_id,u_px,v_px,x,y,z,ssim";
-inline constexpr std::string_view kObservationColumnsWithoutSsim = "frame,point_id,u_px,v_px,x,y,z";
+inline constexpr std::string_view kObservationColumns = "frame,point_id,u_px,v_px,x,y,z,ssim,sigma_mm";
+// Those that every observations.csv begins with; the others may be missing, and ones that nobody knows follow.
+inline constexpr std::string_view kNeededObservationColumns = "frame,point_id,u_px,v_px,x,y,z";
+inline constexpr std::size_t kNeededObservationColumnCount = 7;
+inline constexpr std::string_view kSsimColumn = "ssim";
+inline constexpr std::string_view kSigmaColumn = "sigma_mm";
+inline constexpr std::string_view kPoseCovarianceFile = "pose_covariance.csv";
+// The upper half, row by row.
+inline constexpr std::string_view kPoseCovarianceColumns =
+    "frame,x_x,x_y,x_z,x_rx,x_ry,x_rz,y_y,y_z,y_rx,y_ry,y_rz,z_z,z_rx,z_ry,z_rz,rx_rx,rx_ry,rx_rz,ry_ry,ry_rz,rz_rz";
 // A column of frames.csv for each term of the cost stands between these, and one for each stage after them.
 inline constexpr std::string_view kFrameColumnsBeforeCosts = "frame,timestamp,state,tracked,optimized,lost,added";
 inline constexpr std::string_view kFrameColumnsAfterCosts = "median_reprojection_error_px,submap";
@@ -34,10 +42,19 @@ inline std::string_view PresentName(std::string_view name) {
 
 // Everything that a run may leave, which the next one in the same folder deletes; of several submaps also map_K.ply and
 // models in sparse/K.
-inline constexpr std::array<std::string_view, 11> kRunFiles = {
-    "config.yaml",      "config.yaml.tmp",      "run.json",   "run.json.tmp",
-    "trajectory.txt",   "trajectory.txt.tmp",   "frames.csv", "frames.csv.tmp",
-    "observations.csv", "observations.csv.tmp", "map.ply"};
+inline constexpr std::array<std::string_view, 13> kRunFiles = {"config.yaml",
+                                                               "config.yaml.tmp",
+                                                               "run.json",
+                                                               "run.json.tmp",
+                                                               "trajectory.txt",
+                                                               "trajectory.txt.tmp",
+                                                               "frames.csv",
+                                                               "frames.csv.tmp",
+                                                               "observations.csv",
+                                                               "observations.csv.tmp",
+                                                               "map.ply",
+                                                               "pose_covariance.csv",
+                                                               "pose_covariance.csv.tmp"};
 inline constexpr std::array<std::string_view, 6> kModelFiles = {"cameras.txt", "cameras.bin",  "images.txt",
                                                                 "images.bin",  "points3D.txt", "points3D.bin"};
 inline std::string SubmapPly(int submap) { return submap == 0 ? "map.ply" : "map_" + std::to_string(submap) + ".ply"; }

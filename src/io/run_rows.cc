@@ -68,7 +68,10 @@ Status MoveObservations(FileGroup& group, const std::string& run_path, std::span
   for (const RunFrameWorld& world : worlds) frames_idx.push_back(world.frame_idx);
   Status status = ForEachFrame(run_path, frames_idx, [&](std::size_t k, const auto& observations) {
     for (PointObservation seen : observations) {
-      if (worlds[k].moved_by) seen.position = *worlds[k].moved_by * seen.position;
+      if (worlds[k].moved_by) {
+        seen.position = *worlds[k].moved_by * seen.position;
+        seen.sigma *= worlds[k].moved_by->scale;
+      }
       AppendObservation(&rows, worlds[k].frame_idx, seen);
     }
     return file->AppendWhenLarge(&rows);
@@ -94,6 +97,8 @@ void AppendObservation(std::string* out, int frame_idx, const PointObservation& 
   }
   out->push_back(',');
   AppendFixed(out, o.ssim, 4);
+  out->push_back(',');
+  AppendFixed(out, o.sigma, 6);
   out->push_back('\n');
 }
 

@@ -71,7 +71,17 @@ void AddTo(const Key& key, std::int64_t count, std::vector<std::pair<Key, std::i
 }
 
 bool IsFinite(const PointObservation& o) {
-  return o.pixel.allFinite() && o.position.allFinite() && std::isfinite(o.ssim);
+  return o.pixel.allFinite() && o.position.allFinite() && std::isfinite(o.ssim) && std::isfinite(o.sigma);
+}
+
+void AppendPoseCovariance(int frame_idx, const PoseCovariance& covariance, std::string* out) {
+  AppendInt(out, frame_idx);
+  for (Eigen::Index row = 0; row < 6; ++row)
+    for (Eigen::Index column = row; column < 6; ++column) {
+      out->push_back(',');
+      AppendExact(out, covariance(row, column));
+    }
+  out->push_back('\n');
 }
 
 }  // namespace
@@ -95,7 +105,8 @@ struct RunWriter::State {
   int last_frame_idx = -1;
   std::chrono::steady_clock::time_point begin = std::chrono::steady_clock::now();
   std::string rows = {};
-  Status failure = {};  // the first row that could not be written
+  std::string pose_covariances = {};  // rows
+  Status failure = {};                // the first row that could not be written
 
   Status Check(const FrameReport& report);
   Status AddPoints(const FrameReport& report);
@@ -161,6 +172,7 @@ Status RunWriter::State::Check(const FrameReport& report) {
   if (report.cam_from_world)
     finite = finite && report.cam_from_world->rotation.coeffs().allFinite() &&
              report.cam_from_world->translation.allFinite();
+  if (report.pose_covariance) finite = finite && report.pose_covariance->allFinite();
   if (report.merge) {
     const Sim3& move = report.merge->into_from_submap;
     finite = finite && std::isfinite(move.scale) && move.rotation.coeffs().allFinite() && move.translation.allFinite();
@@ -261,6 +273,7 @@ Status RunWriter::State::WriteRows(const FrameReport& report) {
     AppendTumLine(&rows, report.timestamp_s, report.cam_from_world->Inverse());
     if (Status status = trajectory.Append(rows); !status.ok()) return status;
     images.push_back({report.frame_idx, report.name, *report.cam_from_world, report.submap});
+    if (report.pose_covariance) AppendPoseCovariance(report.frame_idx, *report.pose_covariance, &pose_covariances);
   }
   worlds.push_back({report.frame_idx, report.submap, report.submap, std::nullopt});
   rows.clear();
@@ -289,6 +302,7 @@ void RunWriter::State::Merge(const SubmapMerge& merge) {
   for (CanonicalPoint& point : points)
     if (point.submap == merge.submap) {
       point.point.position = merge.into_from_submap * point.point.position;
+      point.mean_sigma *= merge.into_from_submap.scale;
       point.submap = merge.into;
     }
   for (RunFrameWorld& world : worlds)
@@ -320,8 +334,12 @@ Status RunWriter::State::WriteSubmap(int submap) const {
   std::ranges::copy_if(points, std::back_inserter(own_points), of_submap);
   std::ranges::copy_if(images, std::back_inserter(own_images), of_submap);
   std::vector<NewPoint> map;
-  for (const CanonicalPoint& point : own_points) map.push_back(point.point);
-  if (Status status = WritePly(path + "/" + SubmapPly(submap), map); !status.ok()) return status;
+  std::vector<double> sigmas;
+  for (const CanonicalPoint& point : own_points) {
+    map.push_back(point.point);
+    sigmas.push_back(point.mean_sigma);
+  }
+  if (Status status = WritePly(path + "/" + SubmapPly(submap), map, sigmas); !status.ok()) return status;
   const std::string folder = path + "/" + SubmapModel(submap, summary.submaps);
   std::error_code error;
   fs::create_directories(folder, error);
@@ -360,6 +378,9 @@ Status RunWriter::Finish(RunStatus run_status, const std::string& note) {
     status = MoveRunRows(s.path, s.worlds, s.images);
     if (!status.ok()) s.summary.submaps = submaps_as_reported;
   }
+  if (status.ok() && !s.pose_covariances.empty())
+    status = WriteFileAtomically(s.path + "/" + std::string(kPoseCovarianceFile),
+                                 std::string(kPoseCovarianceColumns) + "\n" + s.pose_covariances);
   if (status.ok()) status = s.FinishSparse();
   if (!s.median_errors_px.empty()) s.summary.median_reprojection_error_px = Median(std::move(s.median_errors_px));
   if (!s.coverages.empty()) s.summary.median_coverage = Median(std::move(s.coverages));

@@ -3,12 +3,21 @@
 
 #include "pliant/scene/map.h"
 
+#include <cmath>
+
 namespace pliant {
+
+double DistanceSigma(const Landmark& landmark, const Rigid3& cam_from_world) {
+  if (!(landmark.log_distance_sigma > 0.0)) return 0.0;
+  return std::hypot(landmark.log_distance_sigma * (cam_from_world * landmark.position).norm(),
+                    (landmark.position - landmark.determined_at).norm());
+}
 
 Landmark Moved(const Sim3& other_from_world, const Landmark& landmark) {
   Landmark moved = landmark;
   moved.rest_position = other_from_world * landmark.rest_position;
   moved.position = other_from_world * landmark.position;
+  moved.determined_at = other_from_world * landmark.determined_at;
   moved.last_motion = other_from_world.Turn(landmark.last_motion);
   return moved;
 }

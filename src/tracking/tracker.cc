@@ -162,6 +162,8 @@ void Tracker::TakeMap(const PreparedFrame& frame, const FrameReport& report) {
     if (!tracks_->Resume(seen.id, seen.pixel, frame)) continue;
     const auto point = std::ranges::find(report.new_points, seen.id, &NewPoint::id);
     Landmark landmark{.id = seen.id, .rest_position = seen.position, .position = seen.position, .pixel = seen.pixel};
+    landmark.log_distance_sigma = seen.sigma / (*report.cam_from_world * seen.position).norm();
+    landmark.determined_at = seen.position;
     if (point != report.new_points.end()) landmark.rest_position = point->position;
     submap.map.landmarks.push_back(landmark);
   }

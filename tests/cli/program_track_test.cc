@@ -84,7 +84,7 @@ TEST(Program, WithoutStandardStreamsNoMessageGetsIntoTheFiles) {
   ASSERT_EQ(Pliant("simulate --quiet --Trajectory.frames 2" + kCoarse + "--output_path '" + sequence + "'").exit, 0);
   std::system(
       ("'" PLIANT_PROGRAM "' track --image_path '" + sequence + "' --output_path '" + run + "' <&- >&- 2>&-").c_str());
-  EXPECT_EQ(ReadText(run + "/observations.csv"), "frame,point_id,u_px,v_px,x,y,z,ssim\n");
+  EXPECT_EQ(ReadText(run + "/observations.csv"), "frame,point_id,u_px,v_px,x,y,z,ssim,sigma_mm\n");
   EXPECT_EQ(ReadText(run + "/trajectory.txt"), "");
 }
 

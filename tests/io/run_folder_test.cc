@@ -79,6 +79,7 @@ TEST(RunFolder, ComesBackAsItWasReported) {
       EXPECT_LT((o.pixel - report.observations[k].pixel).norm(), kFilePixel_px);
       EXPECT_LT((o.position - report.observations[k].position).norm(), kFileLength_mm);
       EXPECT_EQ(o.ssim, 0.9);
+      EXPECT_EQ(o.sigma, 0.25);
     }
   }
   EXPECT_FALSE(reader->Next()->has_value());
@@ -127,10 +128,10 @@ TEST(RunFolder, RefusesADamagedRowInTheMiddle) {
   const TestFolder folder;
   WriteRun(folder.Path("run"), 5);
   const std::string rows = folder.Read("run/observations.csv");
-  for (const auto& [row, says] : {std::pair("12,0,1,2,3,4,5", "observations.csv:3: a row has 8 columns"),
-                                  std::pair("12,3,1,nan,3,4,5,1", "observations.csv:3: 'nan' is not a finite"),
-                                  std::pair("12,0,1,2,3,4,5,1", "observations.csv:3: point 0 comes twice"),
-                                  std::pair("9,3,1,2,3,4,5,1", "observations.csv:3: frame 9 comes after frame 12")}) {
+  for (const auto& [row, says] : {std::pair("12,0,1,2,3,4,5", "observations.csv:3: a row has 9 columns"),
+                                  std::pair("12,3,1,nan,3,4,5,1,0", "observations.csv:3: 'nan' is not a finite"),
+                                  std::pair("12,0,1,2,3,4,5,1,0", "observations.csv:3: point 0 comes twice"),
+                                  std::pair("9,3,1,2,3,4,5,1,0", "observations.csv:3: frame 9 comes after frame 12")}) {
     std::string damaged = rows;
     const std::size_t second = damaged.find('\n', damaged.find('\n') + 1) + 1;
     damaged.replace(second, damaged.find('\n', second) - second, row);
@@ -209,9 +210,38 @@ TEST(RunFolder, ReadsAnotherProgramsResult) {
   ASSERT_TRUE(last.ok() && last->has_value()) << "a last line without its end is as good as the others";
   EXPECT_EQ((*last)->frame_idx, 7);
   EXPECT_TRUE(std::isnan((*last)->observations[0].ssim));
+  EXPECT_EQ((*last)->observations[0].sigma, 0);
   EXPECT_EQ(ReadRun(folder.Path("none")).status().code(), ErrorCode::kNotFound);
   EXPECT_EQ(ReadRun(folder.Path(std::string(300, 'x'))).status().code(),
             ErrorCode::kNotFound);  // no name may be so long
+}
+
+TEST(RunFolder, ReadsColumnsBehindThoseOfEveryRunByTheirNames) {
+  const TestFolder folder;
+  folder.Write("observations.csv",
+               "frame,point_id,u_px,v_px,x,y,z,color,sigma_mm,ssim\n4,1,10,20,1,2,3,red,0.5,0.75\n");
+  auto reader = ObservationReader::Open(folder.Path(""));
+  ASSERT_TRUE(reader.ok()) << reader.status().message();
+  const auto frame = reader->Next();
+  ASSERT_TRUE(frame.ok() && frame->has_value()) << frame.status().message();
+  EXPECT_EQ((*frame)->observations[0].position.z(), 3);
+  EXPECT_EQ((*frame)->observations[0].sigma, 0.5);
+  EXPECT_EQ((*frame)->observations[0].ssim, 0.75);
+}
+
+TEST(RunFolder, RefusesRowsThatAreNone) {
+  const TestFolder folder;
+  for (const std::string rows : {"frame,point_id,u_px,v_px,x,y,zz\n4,1,10,20,1,2,3\n", "frame,point_id\n4,1\n"}) {
+    folder.Write("observations.csv", rows);
+    EXPECT_FALSE(ObservationReader::Open(folder.Path("")).ok()) << rows;
+  }
+  for (const std::string row : {"4,1,10,20,1,2,3,0.9,-1", "4,1,10,20,1,2,3,0.9,nan", "4,1,10,20,1,2,3,0.9",
+                                "4,1,10,20,1,2,3,0.9,0.1,5", "4,1,10,20,1,2,,0.9,0.1", "4,1,10,20,1,2,3,x,0.1"}) {
+    folder.Write("observations.csv", "frame,point_id,u_px,v_px,x,y,z,ssim,sigma_mm\n" + row + "\n");
+    auto reader = ObservationReader::Open(folder.Path(""));
+    ASSERT_TRUE(reader.ok()) << reader.status().message();
+    EXPECT_FALSE(reader->Next().ok()) << row;
+  }
 }
 
 }  // namespace

@@ -49,7 +49,7 @@ inline FrameReport Report(int frame) {
     const Eigen::Vector3d x(i - 2, 0.5 * i, 50 + 0.25 * frame);
     if (frame == 1) report.new_points.push_back({PointId{3 * i}, x, {10, 20, static_cast<std::uint8_t>(i)}});
     if (i % 2 == 1 && frame % 2 == 0) continue;
-    report.observations.push_back({PointId{3 * i}, *TestCamera().Project(*report.cam_from_world * x), x, 0.9});
+    report.observations.push_back({PointId{3 * i}, *TestCamera().Project(*report.cam_from_world * x), x, 0.9, 0.25});
   }
   report.costs = {{"stretch", 2.5}, {"bending", 0.125}};
   return report;

@@ -104,6 +104,8 @@ TEST_F(MergedSubmaps, AreOneInTheEnd) {
       EXPECT_EQ(observations[k].id, reported.observations[k].id);
       EXPECT_LT((observations[k].position - (i == 1 ? into_from_submap_ * position : position)).norm(), kFileLength_mm);
       EXPECT_LT((observations[k].pixel - reported.observations[k].pixel).norm(), kFilePixel_px);
+      EXPECT_NEAR(observations[k].sigma, (i == 1 ? into_from_submap_.scale : 1) * reported.observations[k].sigma,
+                  kFileLength_mm);
     }
     return Status::Ok();
   });

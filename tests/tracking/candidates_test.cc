@@ -116,7 +116,7 @@ TEST(Candidates, OnTheSurfaceOfTheMapTheyAreAsCertainAsItsPoints) {
   EXPECT_TRUE(certain[0].from_surface);
   const Eigen::Vector3d truth = scene.Displaced(on_wall, kLast);
   EXPECT_LT((certain[0].position - truth).norm(), kCertain * truth.norm());
-  const auto landmark = candidates.AsLandmark(certain[0], scene.MapAt(kLast));
+  const auto landmark = candidates.AsLandmark(certain[0], Scene::Pose(kLast), scene.MapAt(kLast));
   ASSERT_TRUE(landmark);
   EXPECT_TRUE(landmark->from_surface);
 }
@@ -167,13 +167,32 @@ TEST(Candidates, AsALandmarkOneHasTheRestAndTheMotionOfItsSurroundings) {
   constexpr int kLast = 12;
   const Eigen::Vector3d rest(3, -4, 55);
   Candidates candidates = scene.Follow(rest, kLast);
-  const auto landmark = candidates.AsLandmark({kCandidate, scene.Displaced(rest, kLast)}, scene.MapAt(kLast));
+  const auto landmark =
+      candidates.AsLandmark({kCandidate, scene.Displaced(rest, kLast)}, Scene::Pose(kLast), scene.MapAt(kLast));
   ASSERT_TRUE(landmark);
+  EXPECT_EQ(landmark->log_distance_sigma, 0) << "the map does not know its own";
   EXPECT_LT((landmark->rest_position - rest).norm(), kRounding);
   EXPECT_LT((landmark->last_motion - (scene.Displaced(rest, kLast) - scene.Displaced(rest, kLast - 1))).norm(),
             kRounding);
   EXPECT_EQ(landmark->pixel, scene.Pixel(rest, kLast));
-  EXPECT_FALSE(candidates.AsLandmark({kCandidate, rest}, Map()));
+  EXPECT_FALSE(candidates.AsLandmark({kCandidate, rest}, Scene::Pose(kLast), Map()));
+}
+
+TEST(Candidates, AsALandmarkOneIsAsUncertainAsItsSurroundingsAndItsOwnViews) {
+  const Scene scene;
+  constexpr int kLast = 12;
+  const Eigen::Vector3d rest(3, -4, 55);
+  Candidates candidates = scene.Follow(rest, kLast);
+  Map map = scene.MapAt(kLast);
+  for (Landmark& landmark : map.landmarks) {
+    landmark.log_distance_sigma = 0.04;
+    landmark.determined_at = landmark.position;
+  }
+  const Candidates::CertainPoint point{kCandidate, scene.Displaced(rest, kLast), 0.03};
+  const auto landmark = candidates.AsLandmark(point, Scene::Pose(kLast), map);
+  ASSERT_TRUE(landmark);
+  EXPECT_NEAR(landmark->log_distance_sigma, 0.05, kRounding);
+  EXPECT_EQ(landmark->determined_at, point.position);
 }
 
 TEST(Candidates, AreExpectedWhereTheCameraWillSeeThem) {

@@ -17,6 +17,8 @@ const std::array<double, 3> kParams = {100, 31.5, 23.5};
 
 // Three frames of a scene that deforms: point k starts at (5 k - 5, 0, 50) and moves by (k, 0, 1) a frame, the camera
 // by 1 mm to the right; point 1 is lost before the last frame, and point 3 never got into the map.
+constexpr double kLogSigma = 0.02;  // of every distance
+
 struct DeformingStart {
   Camera camera = Camera::Create(CameraModelId::kSimplePinhole, 64, 48, kParams).value();
   FirstMap map;
@@ -40,7 +42,8 @@ struct DeformingStart {
       frames.push_back(frame);
       outcome.frames.push_back(state);
     }
-    for (int k = 0; k < 3; ++k) outcome.points.push_back({PointId{k}, Position(k, 0)});
+    for (int k = 0; k < 3; ++k)
+      outcome.points.push_back({PointId{k}, Position(k, 0), kLogSigma * Position(k, 0).norm()});
   }
 };
 
@@ -54,6 +57,8 @@ TEST(FirstMap, IsThatOfTheLastFrameWithTheMotionIntoIt) {
     EXPECT_EQ(landmark.rest_position, DeformingStart::Position(k, 0));
     EXPECT_EQ(landmark.position, DeformingStart::Position(k, 2));
     EXPECT_EQ(landmark.last_motion, Eigen::Vector3d(k, 0, 1));
+    EXPECT_NEAR(landmark.log_distance_sigma, kLogSigma, kRounding);
+    EXPECT_EQ(landmark.determined_at, landmark.position);
     EXPECT_EQ(landmark.pixel, start.frames[2].observations[k == 0 ? 0 : 1].pixel);
   }
 }
@@ -98,6 +103,7 @@ TEST(FirstMap, GivesEveryFrameItsOwnPositions) {
     for (const PointObservation& seen : report.observations) {
       EXPECT_EQ(seen.position, DeformingStart::Position(static_cast<int>(seen.id.value), t));
       EXPECT_EQ(seen.ssim, 1 - 0.1 * t);
+      EXPECT_NEAR(seen.sigma, kLogSigma * (*report.cam_from_world * seen.position).norm(), kRounding);
       EXPECT_LT((*start.camera.Project(*report.cam_from_world * seen.position) - seen.pixel).norm(), kRounding);
     }
     EXPECT_EQ(report.added, 2 - t);

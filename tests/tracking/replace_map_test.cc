@@ -64,12 +64,16 @@ TEST(ReplaceMap, KeepsTheUnit) {
 
 TEST(ReplaceMap, LeavesThePointsThatItDoesNotHaveWhereTheCameraSeesThem) {
   TwoMaps maps;
-  const Landmark old = *maps.map.Find(PointId{3});
+  Landmark& before = *maps.map.Find(PointId{3});
+  before.log_distance_sigma = 0.02;
+  before.determined_at = before.position + Eigen::Vector3d(0, 1, 0);
+  const Landmark old = before;
   std::vector<RefinedPoint> refined;
   const auto pose = ReplaceMap(maps.outcome, maps.before, &maps.map, &refined);
   ASSERT_TRUE(pose);
   const Landmark& left = *maps.map.Find(PointId{3});
   EXPECT_LT((*pose * left.position - maps.before * old.position).norm(), kRounding);
+  EXPECT_NEAR(DistanceSigma(left, *pose), DistanceSigma(old, maps.before), kRounding);
   EXPECT_LT((left.position - left.rest_position - (old.position - old.rest_position)).norm(), kRounding);
 }
 

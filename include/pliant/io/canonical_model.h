@@ -31,6 +31,7 @@ struct CanonicalPoint {
   double error_px = 0;                // mean reprojection error over its observations
   std::int64_t num_observations = 0;  // that it has in the images; below 2 it is left out
   int submap = 0;
+  double mean_sigma = 0;  // of its distance from the camera, over its observations, map units; 0: not known
 };
 
 inline std::uint32_t ColmapImageId(int frame_idx) { return static_cast<std::uint32_t>(frame_idx) + 1; }

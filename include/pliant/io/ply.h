@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Colored points as a PLY file (binary, little-endian; x y z float, red green blue uchar), which MeshLab, CloudCompare
+// Colored points as a PLY file (binary, little-endian; x y z float, red green blue uchar, and, where it is
+// known, sigma float: the standard deviation of a point's distance from the camera), which MeshLab, CloudCompare
 // and Open3D open.
 #pragma once
 
@@ -13,7 +14,7 @@
 
 namespace pliant {
 
-// Fails with kUnwritable.
-Status WritePly(const std::string& path, std::span<const NewPoint> points);
+// `sigmas` has one entry a point, 0 where it is not known, or none. Fails with kUnwritable.
+Status WritePly(const std::string& path, std::span<const NewPoint> points, std::span<const double> sigmas = {});
 
 }  // namespace pliant

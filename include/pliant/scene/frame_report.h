@@ -56,6 +56,7 @@ struct PointObservation {
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();     // where it was measured
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  // where the point was IN THIS FRAME, world frame, map units
   double ssim = 0;                                     // similarity to its reference patch, at most 1
+  double sigma = 0;  // standard deviation of its distance from the camera, map units; 0: not known
 };
 
 // How far it was measured from where a camera at this pose should see it; nothing where it does not project.
@@ -109,6 +110,9 @@ struct SubmapMerge {
   Sim3 into_from_submap;
 };
 
+// Of a camera's center (world frame, map units) and its rotation (rad, camera frame).
+using PoseCovariance = Eigen::Matrix<double, 6, 6>;
+
 struct FrameReport {
   int frame_idx = 0;  // the sequence's own number
   std::string name;   // image name
@@ -120,11 +124,12 @@ struct FrameReport {
   int submap = 0;
   std::optional<SubmapMerge> merge;  // where there is a pose; the frame itself is still reported as before it
 
-  std::optional<Rigid3> cam_from_world;        // exactly in states tracking and provisional
-  std::vector<PointObservation> observations;  // where there is a pose; sorted by id
-  std::vector<NewPoint> new_points;            // sorted by id
-  std::vector<RefinedPoint> refined_points;    // sorted by id
-  std::optional<FirstMapFrames> first_map;     // where pose and points came with the first map
+  std::optional<Rigid3> cam_from_world;           // exactly in states tracking and provisional
+  std::optional<PoseCovariance> pose_covariance;  // where there is a pose and it is known how certain it is
+  std::vector<PointObservation> observations;     // where there is a pose; sorted by id
+  std::vector<NewPoint> new_points;               // sorted by id
+  std::vector<RefinedPoint> refined_points;       // sorted by id
+  std::optional<FirstMapFrames> first_map;        // where pose and points came with the first map
 
   int tracked = 0;    // points followed into this frame; before the first map those found in it too
   int optimized = 0;  // points in the joint problem's solution, or in the first map

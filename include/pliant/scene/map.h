@@ -11,6 +11,7 @@
 #include <Eigen/Core>
 
 #include "pliant/base/ids.h"
+#include "pliant/geometry/rigid3.h"
 #include "pliant/geometry/sim3.h"
 
 namespace pliant {
@@ -22,10 +23,16 @@ struct Landmark {
   Eigen::Vector3d last_motion = Eigen::Vector3d::Zero();    // delta_i of the last tracked frame
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();          // where it was last measured
   double ssim = 1;                                          // of that measurement, to its reference patch
+  double log_distance_sigma = 0;  // of its distance from the camera when that was determined; 0: not known
+  Eigen::Vector3d determined_at = Eigen::Vector3d::Zero();  // its position then
   int times_reestimated = 0;                                // the re-estimated maps that had it
   bool from_surface = false;                                // its depth, when it entered: by the points around it (G7)
   bool measured = false;                                    // its depth, at the start: by a pair or a depth image
 };
+
+// (E12) Standard deviation of its distance from the camera, map units; 0: not known. What it has moved by since its
+// distance was determined is uncertain by as much: along its ray the regularizers alone say it.
+double DistanceSigma(const Landmark& landmark, const Rigid3& cam_from_world);
 
 // A landmark in another world.
 Landmark Moved(const Sim3& other_from_world, const Landmark& landmark);

@@ -24,13 +24,15 @@ FirstMapEvidence EvidenceOf(const InitOutcome& outcome) {
           .focal_length_factor = measured.focal_length_factor};
 }
 
-void ReportFrame(const Camera& camera, const InitFrame& frame, const InitFrameState& state, bool provisional,
+void ReportFrame(const Camera& camera, const InitFrame& frame, const InitFrameState& state, const InitOutcome& outcome,
                  FrameReport* report) {
   for (const InitPosition& point : state.positions) {
     const InitObservation& seen = *FindById(frame.observations, point.id);
-    report->observations.push_back({point.id, seen.pixel, point.position, seen.ssim});
+    const double log_sigma = FindById(outcome.points, point.id)->LogDistanceSigma();
+    report->observations.push_back(
+        {point.id, seen.pixel, point.position, seen.ssim, log_sigma * (state.cam_from_world * point.position).norm()});
   }
-  report->state = provisional ? TrackingState::kProvisional : TrackingState::kTracking;
+  report->state = outcome.provisional ? TrackingState::kProvisional : TrackingState::kTracking;
   report->cam_from_world = state.cam_from_world;
   report->optimized = static_cast<int>(state.positions.size());
   report->median_reprojection_error_px = MedianReprojectionErrorPx(camera, state.cam_from_world, report->observations);
@@ -51,7 +53,7 @@ std::vector<FrameReport> CompletedReports(const Camera& camera, const FirstMap& 
     }
     report.first_map = FirstMapFrames{frames.front().frame_idx, frames.back().frame_idx, EvidenceOf(outcome)};
     const InitFrameState& state = outcome.frames[static_cast<std::size_t>(frame - frames.begin())];
-    ReportFrame(camera, *frame, state, outcome.provisional, &report);
+    ReportFrame(camera, *frame, state, outcome, &report);
     if (&report != &reports.back())
       report.note = "the pose came with the first map, which was made in frame " + reports.back().name;
     // A point is new in the first frame that shows it.
@@ -78,6 +80,8 @@ Map MakeFirstMap(const FirstMap& first) {
     Landmark landmark{.id = point.id, .rest_position = point.position, .position = now->position};
     if (then != nullptr) landmark.last_motion = now->position - then->position;
     landmark.pixel = FindById(frames[last].observations, point.id)->pixel;
+    landmark.log_distance_sigma = point.LogDistanceSigma();
+    landmark.determined_at = now->position;
     map.landmarks.push_back(landmark);
   }
   return map;

@@ -164,7 +164,7 @@ void MapUpdater::AddCandidates(const PreparedFrame& frame, Submap* submap) const
 
 // A candidate becomes a landmark.
 void MapUpdater::Promote(const Candidates::CertainPoint& point, Submap* submap, MapUpdate* update) const {
-  const auto landmark = submap->candidates.AsLandmark(point, submap->map);
+  const auto landmark = submap->candidates.AsLandmark(point, submap->last_cam_from_world, submap->map);
   if (!landmark) return;
   InsertById(&update->new_points, {point.id, landmark->rest_position, submap->candidates.track(point.id).rgb});
   InsertById(&submap->map.landmarks, *landmark);

@@ -36,6 +36,13 @@ std::optional<Rigid3> ReplaceMap(const InitOutcome& outcome, const Rigid3& cam_f
     const Eigen::Vector3d position = point != nullptr ? *unit * point->position : now_from_before * landmark.position;
     landmark.rest_position = point != nullptr ? position : landmark.rest_position + position - landmark.position;
     landmark.position = position;
+    if (point != nullptr) {
+      const InitPoint* determined = FindById(outcome.points, landmark.id);
+      landmark.log_distance_sigma = determined != nullptr ? determined->LogDistanceSigma() : 0.0;
+      landmark.determined_at = position;
+    } else {
+      landmark.determined_at = now_from_before * landmark.determined_at;
+    }
     landmark.last_motion.setZero();
     refined->push_back({landmark.id, landmark.rest_position});
   }

@@ -199,11 +199,13 @@ std::vector<Candidates::CertainPoint> Candidates::Certain(const Rigid3& cam_from
     const double max_sigma = slack * options_.max_depth_sigma;
     // What is known of its surroundings' motion depends on how far from them it turned out to be: once more from there.
     if (is_certain(guess, point, max_sigma)) {
-      if (is_certain(MoveGuess({}, &point), point, max_sigma)) certain.push_back({id, point.position});
+      const MovingPoint again = MoveGuess({}, &point);
+      if (is_certain(again, point, max_sigma)) certain.push_back({id, point.position, again.log_distance_sigma});
     } else if (const auto prior = surface ? surface->At(point.track.pixel, point.rays.back()) : std::nullopt; prior) {
       const Eigen::Vector3d before = point.position;
-      if (is_certain(MoveGuess(prior, &point), point, map_depth_sigma))
-        certain.push_back({id, point.position, true});
+      const MovingPoint with_surface = MoveGuess(prior, &point);
+      if (is_certain(with_surface, point, map_depth_sigma))
+        certain.push_back({id, point.position, with_surface.log_distance_sigma, true});
       else
         point.position = before;
     }
@@ -211,25 +213,31 @@ std::vector<Candidates::CertainPoint> Candidates::Certain(const Rigid3& cam_from
   return certain;
 }
 
-std::optional<Landmark> Candidates::AsLandmark(const CertainPoint& certain, const Map& map) const {
+std::optional<Landmark> Candidates::AsLandmark(const CertainPoint& certain, const Rigid3& cam_from_world,
+                                               const Map& map) const {
   const Point& point = points_.at(certain.id);
   Eigen::Vector3d since_rest = Eigen::Vector3d::Zero();
   Eigen::Vector3d motion = Eigen::Vector3d::Zero();
+  double log_sigmas = 0;
   int anchors = 0;
   for (const Anchor& anchor : point.anchors)
     if (const Landmark* landmark = map.Find(anchor.id); landmark != nullptr) {
       since_rest += landmark->position - landmark->rest_position;
       motion += landmark->last_motion;
+      log_sigmas += DistanceSigma(*landmark, cam_from_world) / (cam_from_world * landmark->position).norm();
       ++anchors;
     }
   if (anchors == 0) return std::nullopt;
-  return Landmark{.id = certain.id,
-                  .rest_position = certain.position - since_rest / anchors,
-                  .position = certain.position,
-                  .last_motion = motion / anchors,
-                  .pixel = point.track.pixel,
-                  .ssim = point.track.ssim,
-                  .from_surface = certain.from_surface};
+  return Landmark{
+      .id = certain.id,
+      .rest_position = certain.position - since_rest / anchors,
+      .position = certain.position,
+      .last_motion = motion / anchors,
+      .pixel = point.track.pixel,
+      .ssim = point.track.ssim,
+      .log_distance_sigma = log_sigmas > 0.0 ? std::hypot(certain.log_distance_sigma, log_sigmas / anchors) : 0.0,
+      .determined_at = certain.position,
+      .from_surface = certain.from_surface};
 }
 
 }  // namespace pliant

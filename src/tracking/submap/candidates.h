@@ -59,13 +59,15 @@ class Candidates {
   struct CertainPoint {
     PointId id;
     Eigen::Vector3d position;
-    bool from_surface = false;  // certain together with the points around it, and not by its own views
+    double log_distance_sigma = 0;  // against the map; 0: not known
+    bool from_surface = false;      // certain together with the points around it, and not by its own views
   };
   // Those whose depth is certain by their own views (G4), or, no less than the map's own points, together with the
   // surface around them (G7). `map_depth_sigma`: of the map's points, by their distance.
   std::vector<CertainPoint> Certain(const Rigid3& cam_from_world, const Map& map, double map_depth_sigma);
   // One as a landmark: at rest, and moving, as its surroundings are. Nothing when none of them is left.
-  std::optional<Landmark> AsLandmark(const CertainPoint& point, const Map& map) const;
+  // Its distance is as uncertain as theirs, and as its own views leave it.
+  std::optional<Landmark> AsLandmark(const CertainPoint& point, const Rigid3& cam_from_world, const Map& map) const;
 
  private:
   // A landmark that was near when it was chosen, and where it was then.

@@ -78,6 +78,7 @@ void LostPoints::MoveAllButRest(const Rigid3& motion) {
   const Rigid3 back = motion.Inverse();
   for (auto& [id, point] : points_) {
     point.landmark.position = motion * point.landmark.position;
+    point.landmark.determined_at = motion * point.landmark.determined_at;
     point.cam_from_world = point.cam_from_world * back;
     point.seen_at = motion * point.seen_at;
     if (point.own_share) point.own_share = motion.rotation * *point.own_share;

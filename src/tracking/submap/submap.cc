@@ -14,7 +14,8 @@ bool Submap::IsBlurred(const PreparedFrame& frame, const TrackerOptions& options
 std::vector<PointObservation> Submap::Observations() const {
   std::vector<PointObservation> observations;
   for (const Landmark& landmark : map.landmarks)
-    observations.push_back({landmark.id, landmark.pixel, landmark.position, landmark.ssim});
+    observations.push_back(
+        {landmark.id, landmark.pixel, landmark.position, landmark.ssim, DistanceSigma(landmark, last_cam_from_world)});
   return observations;
 }
 
@@ -68,6 +69,7 @@ void Submap::MoveInto(const Sim3& other_from_world) {
 void Submap::MoveAllButRest(const Rigid3& motion) {
   for (Landmark& landmark : map.landmarks) {
     landmark.position = motion * landmark.position;
+    landmark.determined_at = motion * landmark.determined_at;
     landmark.last_motion = motion.rotation * landmark.last_motion;
   }
   lost_points.MoveAllButRest(motion);

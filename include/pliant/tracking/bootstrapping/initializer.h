@@ -82,6 +82,8 @@ struct InitPoint {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  // world, in the reference frame
   double depth_sigma = 0;   // predicted standard deviation along the reference ray, map units; 0: not predicted
   double parallax_rad = 0;  // between the reference and the current frame
+
+  double LogDistanceSigma() const { return depth_sigma > 0.0 ? depth_sigma / position.norm() : 0.0; }
 };
 
 struct InitPosition {
