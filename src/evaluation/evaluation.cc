@@ -31,8 +31,10 @@ Result<PointsWithTruth> PairFrame(const EvaluationFrame& frame, const Camera& ca
                                   SurfaceTruth* surface) {
   PointsWithTruth paired;
   std::vector<Eigen::Vector3d> points_in_cam;
+  std::vector<double> sigmas;
   std::vector<Eigen::Vector2d> pixels;
   for (const PointObservation& observation : frame.observations) {
+    sigmas.push_back(observation.sigma);
     points_in_cam.push_back(*frame.cam_from_world * observation.position);
     pixels.push_back(observation.pixel);
     paired.points.push_back({observation.id, pixels.back(), points_in_cam.back()});
@@ -41,7 +43,7 @@ Result<PointsWithTruth> PairFrame(const EvaluationFrame& frame, const Camera& ca
   if (!depths.ok()) return depths.status();
   if (!depths->has_value()) return paired;
   for (std::size_t i = 0; i < pixels.size(); ++i) paired.points[i].surface = (**depths)[i];
-  paired.surface = PairWithSurface(frame.frame_idx, points_in_cam, pixels, camera, **depths, max_sigma_mm);
+  paired.surface = PairWithSurface(frame.frame_idx, points_in_cam, sigmas, pixels, camera, **depths, max_sigma_mm);
   return paired;
 }
 
@@ -119,6 +121,10 @@ Status ComputeParts(const EvaluationInput& run, const CollectedTruth& truth, con
             Take(EvaluationPart::kSurface, std::move(surface), options, &evaluation->surface, &evaluation->notes);
         !status.ok())
       return status;
+    if (evaluation->surface) {
+      auto uncertainty = ComputeUncertaintyError(truth.surface, *evaluation->surface);
+      if (uncertainty.ok()) evaluation->uncertainty = *std::move(uncertainty);
+    }
   }
   if (options.Wants(EvaluationPart::kMaterial)) {
     Result<MaterialError> material =

@@ -66,6 +66,22 @@ Json ToJson(const PointError& e) {
           {"frames", frames}};
 }
 
+Json ToJson(const UncertaintyError& e) {
+  Json bins = Json::array();
+  for (const UncertaintyBin& bin : e.bins)
+    bins.push_back({{"points", bin.points}, {"sigma_mm", bin.sigma_mm}, {"rmse_mm", bin.rmse_mm}});
+  return {
+      {"points", e.points},
+      {"points_without", e.points_without},
+      {"within_1_sigma", e.within_1_sigma},
+      {"within_2_sigma", e.within_2_sigma},
+      {"nees", e.nees},
+      {"median_ratio", e.median_ratio},
+      {"median_relative_sigma", e.median_sigma},
+      {"bins", bins},
+      {"sparsification", {{"area", e.area}, {"oracle_area", e.oracle_area}, {"curve", e.curve}, {"oracle", e.oracle}}}};
+}
+
 Json ToJson(const DriftFigures& d) {
   return {{"points_px", d.points_px},
           {"rmse_px", d.rmse_px},
@@ -214,6 +230,7 @@ Json ToJson(const Evaluation& evaluation) {
   return {{"run", evaluation.run},
           {"sequence", evaluation.sequence},
           {"surface", evaluation.surface ? ToJson(*evaluation.surface) : Json()},
+          {"uncertainty", evaluation.uncertainty ? ToJson(*evaluation.uncertainty) : Json()},
           {"material", evaluation.material ? ToJson(*evaluation.material) : Json()},
           {"trajectory", evaluation.trajectory ? ToJson(*evaluation.trajectory) : Json()},
           {"first_map", evaluation.first_map ? ToJson(*evaluation.first_map) : Json()},

@@ -43,6 +43,17 @@ std::string PointTable(const char* title, const PointError& e) {
          Describe(e.left_out) + "\n";
 }
 
+std::string UncertaintyTable(const UncertaintyError& e) {
+  return FormatText(
+             "uncertainty (of the distance of a point; %d observations)\n  within 1 sigma %.1f %%, within 2 sigma "
+             "%.1f %% (68.3 and 95.4 where the sigmas are right); NEES %.2f\n",
+             e.points, 100 * e.within_1_sigma, 100 * e.within_2_sigma, e.nees) +
+         FormatText(
+             "  sigma %.2f %% of the distance, median; without the least certain half the RMSE is %.2f of all, of the "
+             "worst half %.2f\n",
+             100 * e.median_sigma, e.curve[UncertaintyError::kSteps / 2], e.oracle[UncertaintyError::kSteps / 2]);
+}
+
 std::string MaterialTable(const MaterialError& e) {
   std::string text = PointTable("material error", e.error);
   const DriftFigures& d = e.drift;
@@ -140,6 +151,7 @@ std::string SurvivalTable(const TrackSurvival& s) {
 std::string EvaluationTable(const Evaluation& evaluation) {
   std::string text = "run " + evaluation.run + "\n";
   if (evaluation.surface) text += PointTable("surface error", *evaluation.surface);
+  if (evaluation.uncertainty) text += UncertaintyTable(*evaluation.uncertainty);
   if (evaluation.material) text += MaterialTable(*evaluation.material);
   if (evaluation.trajectory) text += TrajectoryTable(*evaluation.trajectory);
   if (evaluation.first_map) text += FirstMapTable(*evaluation.first_map);

@@ -10,9 +10,10 @@
 namespace pliant {
 
 PairedFrame PairWithSurface(int frame_idx, std::span<const Eigen::Vector3d> points_in_cam,
-                            std::span<const Eigen::Vector2d> pixels, const Camera& camera,
-                            std::span<const DepthAtPixel> truth, double max_sigma_mm) {
+                            std::span<const double> sigmas, std::span<const Eigen::Vector2d> pixels,
+                            const Camera& camera, std::span<const DepthAtPixel> truth, double max_sigma_mm) {
   assert(points_in_cam.size() == pixels.size() && truth.size() == pixels.size());
+  assert(sigmas.empty() || sigmas.size() == pixels.size());
   const std::vector<std::optional<Eigen::Vector3d>> rays = camera.Unproject(pixels);
   PairedFrame frame;
   frame.frame_idx = frame_idx;
@@ -31,7 +32,8 @@ PairedFrame PairWithSurface(int frame_idx, std::span<const Eigen::Vector3d> poin
       ++frame.left_out.not_finite;
     } else {
       const Eigen::Vector3d ray = *rays[i] / rays[i]->z();
-      frame.pairs.push_back({points_in_cam[i], truth[i].depth_mm * ray, ray, truth[i].sigma_mm});
+      frame.pairs.push_back(
+          {points_in_cam[i], truth[i].depth_mm * ray, ray, truth[i].sigma_mm, sigmas.empty() ? 0.0 : sigmas[i]});
     }
   }
   return frame;

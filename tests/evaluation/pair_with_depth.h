@@ -17,7 +17,7 @@ inline PairedFrame PairWithDepth(int frame_idx, std::span<const Eigen::Vector3d>
                                  double max_depth_step) {
   std::vector<DepthAtPixel> truth;
   for (const Eigen::Vector2d& pixel : pixels) truth.push_back(LookUpDepth(depth_mm, pixel, max_depth_step));
-  return PairWithSurface(frame_idx, points_in_cam, pixels, camera, truth, std::numeric_limits<double>::infinity());
+  return PairWithSurface(frame_idx, points_in_cam, {}, pixels, camera, truth, std::numeric_limits<double>::infinity());
 }
 
 }  // namespace pliant

@@ -167,7 +167,7 @@ TEST(SurfaceError, LeavesOutTruthThatIsUncertainAndSaysHowCertainTheRestIs) {
   const std::vector<Eigen::Vector3d> points(pixels.size(), Eigen::Vector3d(0, 0, 50));
   const std::vector<DepthAtPixel> truth = {
       {DepthLookup::kOk, 50, 0.3}, {DepthLookup::kOk, 50, 1.2}, {DepthLookup::kOk, 50, 0.4}};
-  const auto frame = PairWithSurface(0, points, pixels, TestCamera(), truth, 1.0);
+  const auto frame = PairWithSurface(0, points, {}, pixels, TestCamera(), truth, 1.0);
   EXPECT_EQ(frame.left_out.uncertain, 1);
   ASSERT_EQ(frame.pairs.size(), 2U);
   const auto error = ComputePointError(std::vector{frame}, {});

@@ -26,6 +26,7 @@
 #include "pliant/evaluation/surface_truth.h"
 #include "pliant/evaluation/track_survival.h"
 #include "pliant/evaluation/trajectory_error.h"
+#include "pliant/evaluation/uncertainty_error.h"
 
 namespace pliant {
 
@@ -64,6 +65,7 @@ struct Evaluation {
   std::string run;
   std::string sequence;                           // for reports; the caller's word for it, may be empty
   std::optional<PointError> surface;              // where the sequence has depth
+  std::optional<UncertaintyError> uncertainty;    // of `surface`, where the run says how certain its points are
   std::optional<MaterialError> material;          // where it knows its material
   std::optional<TrajectoryError> trajectory;      // where it has poses
   std::optional<FirstMapError> first_map;         // where it has depth and the run says which frames it is from

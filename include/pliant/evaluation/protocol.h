@@ -57,6 +57,7 @@ struct PointPair {
   Eigen::Vector3d truth;
   Eigen::Vector3d ray = Eigen::Vector3d::UnitZ();
   double truth_sigma_mm = 0;  // of the truth's z; 0: exact, or not known
+  double sigma = 0;           // of the estimate's distance, in its own unit, as the run says; 0: it does not
 };
 
 struct ProtocolOptions {

@@ -17,10 +17,10 @@
 
 namespace pliant {
 
-// Pairs the points of one frame with the truth, for ComputePointError. `points_in_cam`, `pixels` and `truth`, the depth
-// of the surface at each of them, have one length.
+// Pairs the points of one frame with the truth, for ComputePointError. `points_in_cam`, `sigmas` (of their distances,
+// as the run says; none: it does not), `pixels` and `truth`, the depth of the surface at each of them, have one length.
 PairedFrame PairWithSurface(int frame_idx, std::span<const Eigen::Vector3d> points_in_cam,
-                            std::span<const Eigen::Vector2d> pixels, const Camera& camera,
-                            std::span<const DepthAtPixel> truth, double max_sigma_mm);
+                            std::span<const double> sigmas, std::span<const Eigen::Vector2d> pixels,
+                            const Camera& camera, std::span<const DepthAtPixel> truth, double max_sigma_mm);
 
 }  // namespace pliant
