@@ -13,12 +13,11 @@ const Manual kManual = {
     "refine",
     "solve for all frames of a run at once",
     "Reads --run: a run folder that pliant track or pliant import left. Tracking knows only the frames before; here "
-    "all "
-    "camera poses, all points and the motion of the scene are solved for together, from the tracks of the whole "
+    "all camera poses, all points and the motion of the scene are solved for together, from the tracks of the whole "
     "run.\n\n"
-    "Leaves in --output_path a run folder that evaluate, compare, export and report read like the run's own. Nothing "
-    "is "
-    "written before the refinement is done; Ctrl-C ends it with the best so far.",
+    "Leaves in --output_path a run folder that evaluate, compare, export and report read like the run's own, with how "
+    "certain its points (sigma_mm) and poses (pose_covariance.csv) are. Nothing is written before the refinement is "
+    "done; Ctrl-C ends it with the best so far.",
     {"pliant refine --run run --output_path refined",
      "pliant refine --run run --Refine.model rigid --output_path rigid"},
 };

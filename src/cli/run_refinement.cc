@@ -24,10 +24,16 @@ int RefineAndSay(std::string_view command, const RefineRequest& request, const R
   }
   if (saying == Saying::kErrors) return kExitOk;
   if (summary->stopped) std::cout << "note: stopped before the end; this is the best so far\n";
-  for (const SubmapRefinement& submap : summary->submaps)
+  for (const SubmapRefinement& submap : summary->submaps) {
+    if (!submap.failure.empty()) {
+      std::cout << "submap " << submap.submap << " is as it was, since it cannot be refined: " << submap.failure
+                << "\n";
+      continue;
+    }
     std::cout << "submap " << submap.submap << ": " << (submap.deforming ? "deforming" : "rigid") << ", "
               << submap.frames << " frames, " << submap.points << " points, track noise " << Digits(submap.noise_px, 3)
               << " px, " << submap.wrong_observations << " of " << submap.observations << " observations left out\n";
+  }
   std::cout << request.output_path << std::endl;
   return kExitOk;
 }

@@ -98,6 +98,16 @@ Result<std::map<int, Submap>> ReadSubmaps(const std::string& path, const Run& ru
   return submaps;
 }
 
+// A submap that cannot be refined.
+RefinedRecording AsItIs(const Submap& submap) {
+  RefinedRecording recording;
+  recording.recording = submap.recording;
+  recording.is_inlier.assign(submap.recording.observations.size(), true);
+  for (const std::vector<PointObservation>& of_view : submap.observations)
+    for (const PointObservation& observation : of_view) recording.sigmas.push_back(observation.sigma);
+  return recording;
+}
+
 // The run's reports with refined poses and points.
 class Reporter {
  public:
@@ -111,6 +121,7 @@ class Reporter {
         std::vector<PointObservation> kept;
         for (PointObservation observation : submap.observations[view]) {
           observation.position = recording.recording.observations[o].position;
+          observation.sigma = recording.sigmas[o];
           if (recording.is_inlier[o]) kept.push_back(observation);
           ++o;
         }
@@ -133,6 +144,8 @@ class Reporter {
     if (!HasPose(frame.state)) return report;
     const auto view = static_cast<std::size_t>(submaps_.at(frame.submap).view_of_frame.at(frame.frame_idx));
     report.cam_from_world = refined_.at(frame.submap).recording.cams_from_world[view];
+    if (const auto& covariances = refined_.at(frame.submap).pose_covariances; !covariances.empty())
+      report.pose_covariance = covariances[view];
     report.observations = observations_.at(frame.submap)[view];
     for (const PointObservation& observation : report.observations) {
       const auto rest = rest_positions_.find(observation.id);
@@ -200,22 +213,27 @@ Result<RefineSummary> RefineRun(const RefineRequest& request, const RefineOption
 
   RefineSummary summary;
   std::map<int, RefinedRecording> refined;
+  Status failed;
   const auto on_iteration = [&](const RefinementProgress& progress) {
     if (callback) callback(progress);
     return request.stop == nullptr || !*request.stop;
   };
   for (const auto& [number, submap] : *submaps) {
     auto recording = RefineRecording(*known->camera, submap.recording, options, on_iteration);
-    if (!recording.ok())
-      return Status(recording.status().code(),
-                    "submap " + std::to_string(number) + " cannot be refined: " + recording.status().message());
+    const std::string failure = recording.status().message();
+    if (!recording.ok()) {
+      failed = recording.status();
+      recording = AsItIs(submap);
+    }
     summary.stopped = summary.stopped || recording->stopped;
     const auto wrong = std::ranges::count(recording->is_inlier, false);
     summary.submaps.push_back({number, recording->deforming, recording->residual_correlation, recording->noise_px,
                                static_cast<int>(submap.recording.times.size()), static_cast<int>(submap.ids.size()),
-                               static_cast<int>(submap.recording.observations.size()), static_cast<int>(wrong)});
+                               static_cast<int>(submap.recording.observations.size()), static_cast<int>(wrong),
+                               failure});
     refined.emplace(number, *std::move(recording));
   }
+  if (std::ranges::none_of(summary.submaps, &std::string::empty, &SubmapRefinement::failure)) return failed;
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   auto written = Write(request, options, *run, *known, Reporter(*run, *known, *submaps, refined), seconds);
   if (!written.ok()) return written.status();

@@ -43,21 +43,49 @@ struct BundleSigmas {
   double log_distance = 0.2;   // of a point, from the start's
 };
 
+// What is solved for; the rest is held.
+enum class BundlePart {
+  kAll,
+  kViews,   // poses and coefficients, by the points as they are
+  kPoints,  // rest positions and basis shapes, by the views and nodes as they are
+};
+
+// What a solution is made of. `camera` and `recording` must outlive it.
+struct BundleInput {
+  const Camera& camera;
+  const Recording& recording;
+  std::vector<bool> used = {};  // an observation each
+  BundleGraph graph = {};
+  BundleSigmas sigmas = {};
+  double distance = 1;  // median, of the points from the cameras
+  BundlePart part = BundlePart::kAll;
+  // (F9) Errors of a track are alike in all its views, since its patch drifts: all of them count as one measurement.
+  bool one_measurement_per_track = false;
+};
+
 struct BundleSummary {
   double initial_cost = 0;
   double final_cost = 0;
 };
 
 // A scene that deforms, with the best `rank` shapes for the motions that the positions of the start have.
-BundleState DeformingStart(const Recording& recording, const RefineOptions& options);
+BundleState DeformingStart(const Recording& recording, int rank, int nodes_in_view);
 BundleGraph MakeGraph(const BundleState& state, int neighbors);
 
-// Solves for `state`, by the observations in `used`; the first view stays. `distance` is the median distance of the
-// points from the cameras. `callback` gets the cost after every iteration; false ends the solution with the best so
-// far. Fails with kDegenerate where there is no usable step.
-Result<BundleSummary> SolveBundle(const Camera& camera, const Recording& recording, const std::vector<bool>& used,
-                                  const BundleGraph& graph, const BundleSigmas& sigmas, double distance,
-                                  int max_iterations, const std::function<bool(double)>& callback, BundleState* state);
+// Solves for `state`; the first view stays. `callback` gets the cost after every iteration; false ends the solution
+// with the best so far. Fails with kDegenerate where there is no usable step.
+Result<BundleSummary> SolveBundle(const BundleInput& input, int max_iterations,
+                                  const std::function<bool(double)>& callback, BundleState* state);
+
+struct BundleCovariance {
+  // An observation of the recording each: of the log distance from the camera; 0 where its point is not in the problem.
+  std::vector<double> log_distance_sigmas;
+  std::vector<PoseCovariance> poses;  // of the views; the first is zero, for it is the world
+};
+
+// (F9) How certain a solution for all is, with one measurement per track. Fails with kDegenerate where the terms do not
+// determine their variables.
+Result<BundleCovariance> CovarianceOfBundle(const BundleInput& input, const BundleState& state);
 
 // Error of every observation, px; one that does not project has the image's width.
 std::vector<Eigen::Vector2d> ReprojectionErrors(const Camera& camera, const Recording& recording,

@@ -83,20 +83,20 @@ std::vector<int> ChooseNodes(const Recording& recording, int nodes_in_view) {
 
 }  // namespace
 
-BundleState DeformingStart(const Recording& recording, const RefineOptions& options) {
+BundleState DeformingStart(const Recording& recording, int rank, int nodes_in_view) {
   BundleState state;
   state.cams_from_world = recording.cams_from_world;
   state.rest_positions = recording.rest_positions;
-  state.coefficients.setZero(options.rank, static_cast<Eigen::Index>(recording.times.size()));
-  state.shapes.assign(recording.rest_positions.size(), Eigen::Matrix3Xd::Zero(3, options.rank));
+  state.coefficients.setZero(rank, static_cast<Eigen::Index>(recording.times.size()));
+  state.shapes.assign(recording.rest_positions.size(), Eigen::Matrix3Xd::Zero(3, rank));
   std::vector<Motion> motions;
   for (const RecordedObservation& o : recording.observations)
     motions.push_back(
         {o.view_idx, o.point_idx, o.position - recording.rest_positions[static_cast<std::size_t>(o.point_idx)]});
   Factorize(motions, &state);
-  const std::vector<int> nodes = ChooseNodes(recording, options.nodes_in_view);
+  const std::vector<int> nodes = ChooseNodes(recording, nodes_in_view);
   state.nodes = NodesAt(recording.rest_positions, nodes);
-  state.nodes.shapes.resize(3 * options.rank, static_cast<Eigen::Index>(nodes.size()));
+  state.nodes.shapes.resize(3 * rank, static_cast<Eigen::Index>(nodes.size()));
   for (std::size_t n = 0; n < nodes.size(); ++n)
     state.nodes.shapes.col(static_cast<Eigen::Index>(n)) = state.shapes[static_cast<std::size_t>(nodes[n])].reshaped();
   return state;

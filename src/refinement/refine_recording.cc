@@ -23,7 +23,9 @@ constexpr double kRayleighMedian = 1.1774;  // median length of a 2D normal vect
 constexpr double kMinShapeSigma = 0.002;    // below it a scene moves by less than its noise
 constexpr double kWrongTrack = 3.0;         // times the median track's error
 constexpr double kMinWrongTrackPx = 0.5;
-constexpr int kMinViews = 3;  // of a point that has a part in the solution
+constexpr int kRankStep = 2;
+constexpr double kSignificant = 2.0;  // times its standard error: then a correlation asks for more shapes
+constexpr int kMinViews = 3;          // of a point that has a part in the solution
 
 Status CheckRecording(const Recording& recording, const RefineOptions& options) {
   const std::size_t views = recording.times.size();
@@ -46,16 +48,32 @@ Status CheckRecording(const Recording& recording, const RefineOptions& options) 
   return Status::Ok();
 }
 
+// The views of every point, of its used observations.
+std::vector<int> CountViews(const Recording& recording, const std::vector<bool>& used) {
+  std::vector<int> views(recording.rest_positions.size(), 0);
+  for (std::size_t o = 0; o < used.size(); ++o)
+    if (used[o]) ++views[static_cast<std::size_t>(recording.observations[o].point_idx)];
+  return views;
+}
+
+// The observations of points that have enough of them.
+void KeepPointsSeenOften(const Recording& recording, std::vector<bool>* used) {
+  const std::vector<int> views = CountViews(recording, *used);
+  for (std::size_t o = 0; o < used->size(); ++o)
+    if (views[static_cast<std::size_t>(recording.observations[o].point_idx)] < kMinViews) (*used)[o] = false;
+}
+
 class Refinement {
  public:
   Refinement(const Camera& camera, const Recording& start, const RefineOptions& options,
              const RefinementCallback& callback)
-      : camera_(camera), start_(start), options_(options), callback_(callback) {
+      : start_(start), options_(options), callback_(callback), input_{.camera = camera, .recording = start} {
     UseAll();
+    ChooseKeyViews();
     std::vector<double> distances;
     for (const RecordedObservation& o : start.observations)
       distances.push_back((start.cams_from_world[static_cast<std::size_t>(o.view_idx)] * o.position).norm());
-    distance_ = Median(distances);
+    input_.distance = Median(distances);
   }
 
   Result<RefinedRecording> Run() {
@@ -65,70 +83,127 @@ class Refinement {
     bool rigid = options_.model == RefinementModel::kRigid;
     if (options_.model == RefinementModel::kAuto) {
       if (Status status = Solve("rigid", 1, &state); !status.ok()) return status;
-      refined_.residual_correlation =
-          ResidualCorrelation(start_, used_, ReprojectionErrors(camera_, start_, state), start_.patch_px);
+      refined_.residual_correlation = CorrelationOf(state).value;
       rigid = refined_.residual_correlation <= options_.max_correlation;
     }
-    if (!rigid) {
-      UseAll();
-      state = DeformingStart(start_, options_);
-      graph_ = MakeGraph(state, options_.neighbors);
-    }
-    if (Status status = Solve(rigid ? "rigid" : "deforming", kRounds, &state); !status.ok()) return status;
+    if (Status status = rigid ? Solve("rigid", kRounds, &state) : SolveDeforming(&state); !status.ok()) return status;
     refined_.deforming = !rigid;
+    refined_.rank = state.rank();
+    refined_.is_inlier = input_.used;
     refined_.recording = InUnitOfStart(state);
-    refined_.is_inlier = used_;
+    AddCovariance(state);
     refined_.stopped = stopped_;
     return refined_;
   }
 
  private:
-  void UseAll() {
-    used_.assign(start_.observations.size(), true);
-    KeepPointsSeenOften();
+  // With more and more shapes, until neighbors' residuals are not alike any more. One that was stopped leaves the one
+  // before.
+  Status SolveDeforming(BundleState* state) {
+    for (int rank = options_.rank;; rank += kRankStep) {
+      const BundleState state_before = *state;
+      const BundleInput input_before = input_;
+      UseAll();
+      *state = DeformingStart(start_, rank, options_.nodes_in_view);
+      input_.graph = MakeGraph(*state, options_.neighbors);
+      if (Status status = Solve("deforming", kRounds, state); !status.ok()) return status;
+      if (stopped_ && rank > options_.rank) {
+        *state = state_before;
+        TakeBack(input_before);
+      }
+      const NeighborCorrelation left = CorrelationOf(*state);
+      if (stopped_ || rank + kRankStep > options_.max_rank || left.value <= kSignificant * left.standard_error)
+        return Status::Ok();
+    }
   }
 
-  void KeepPointsSeenOften() {
-    std::vector<int> views(start_.rest_positions.size(), 0);
-    for (std::size_t o = 0; o < used_.size(); ++o)
-      if (used_[o]) ++views[static_cast<std::size_t>(start_.observations[o].point_idx)];
-    for (std::size_t o = 0; o < used_.size(); ++o)
-      if (views[static_cast<std::size_t>(start_.observations[o].point_idx)] < kMinViews) used_[o] = false;
+  void TakeBack(const BundleInput& before) {
+    input_.used = before.used;
+    input_.graph = before.graph;
+    input_.sigmas = before.sigmas;
+    refined_.noise_px = before.sigmas.noise_px;
+  }
+
+  // Of neighbors' residuals (W11), in the key views.
+  NeighborCorrelation CorrelationOf(const BundleState& state) const {
+    return ResidualCorrelation(start_, OfKeyViews().used, ReprojectionErrors(input_.camera, start_, state),
+                               start_.patch_px);
+  }
+
+  void UseAll() {
+    input_.used.assign(start_.observations.size(), true);
+    KeepPointsSeenOften(start_, &input_.used);
   }
 
   // Several solutions, the first with the sigmas of the start.
   Status Solve(std::string_view stage, int rounds, BundleState* state) {
-    BundleSigmas sigmas;
-    sigmas.noise_px = kStartNoisePx;
-    sigmas.log_distance = start_.log_depth_sigma;
+    input_.sigmas = {};
+    input_.sigmas.noise_px = kStartNoisePx;
+    input_.sigmas.log_distance = start_.log_depth_sigma;
+    if (Status status = SolveAgain(stage, 1, state); !status.ok()) return status;
+    RejectWrongTracks(ReprojectionErrors(input_.camera, start_, *state));
+    return SolveAgain(stage, rounds - 1, state);
+  }
+
+  // Each with the sigmas that the one before has found.
+  Status SolveAgain(std::string_view stage, int rounds, BundleState* state) {
     for (int round = 0; round < rounds && !stopped_; ++round) {
-      const auto on_iteration = [&](double cost) {
-        stopped_ = stopped_ || (callback_ && !callback_({stage, iterations_++, cost}));
-        return !stopped_;
-      };
-      const auto summary =
-          SolveBundle(camera_, start_, used_, graph_, sigmas, distance_, options_.max_iterations, on_iteration, state);
-      if (!summary.ok()) return summary.status();
-      refined_.initial_cost = summary->initial_cost;
-      refined_.final_cost = summary->final_cost;
-      const auto errors_px = ReprojectionErrors(camera_, start_, *state);
-      sigmas = FoundSigmas(*state, errors_px, sigmas);
-      refined_.noise_px = sigmas.noise_px;
-      if (round == 0) RejectWrongTracks(errors_px);
+      if (Status status = SolveOnce(stage, state); !status.ok()) return status;
+      input_.sigmas = FoundSigmas(*state, ReprojectionErrors(input_.camera, start_, *state));
+      refined_.noise_px = input_.sigmas.noise_px;
     }
     return Status::Ok();
   }
 
-  BundleSigmas FoundSigmas(const BundleState& state, const std::vector<Eigen::Vector2d>& errors_px,
-                           const BundleSigmas& sigmas) const {
-    BundleSigmas found = sigmas;
+  // Of the key views; then of all views by the points, of all points by the views, and of the views once more.
+  Status SolveOnce(std::string_view stage, BundleState* state) {
+    const auto on_iteration = [&](double cost) {
+      stopped_ = stopped_ || (callback_ && !callback_({stage, iterations_++, cost}));
+      return !stopped_;
+    };
+    const auto solve = [&](const BundleInput& input) {
+      return SolveBundle(input, options_.max_iterations, on_iteration, state);
+    };
+    const auto summary = solve(OfKeyViews());
+    if (!summary.ok()) return summary.status();
+    refined_.initial_cost = summary->initial_cost;
+    refined_.final_cost = summary->final_cost;
+    if (key_stride_ == 1) return Status::Ok();
+    for (const BundlePart part : {BundlePart::kViews, BundlePart::kPoints, BundlePart::kViews}) {
+      input_.part = part;
+      if (const auto part_summary = solve(input_); !part_summary.ok()) return part_summary.status();
+    }
+    input_.part = BundlePart::kAll;
+    return Status::Ok();
+  }
+
+  // Where tracks are long, neighboring views say the same of the points: some of them are enough.
+  void ChooseKeyViews() {
+    const std::vector<int> views = CountViews(start_, input_.used);
+    std::vector<double> views_of_track;  // an observation each
+    for (const RecordedObservation& o : start_.observations)
+      views_of_track.push_back(views[static_cast<std::size_t>(o.point_idx)]);
+    key_stride_ = std::max(1, static_cast<int>(std::lround(Median(views_of_track) / options_.views_per_track)));
+  }
+
+  BundleInput OfKeyViews() const {
+    BundleInput input = input_;
+    if (key_stride_ == 1) return input;
+    for (std::size_t o = 0; o < input.used.size(); ++o)
+      input.used[o] = input.used[o] && start_.observations[o].view_idx % key_stride_ == 0;
+    KeepPointsSeenOften(start_, &input.used);
+    return input;
+  }
+
+  BundleSigmas FoundSigmas(const BundleState& state, const std::vector<Eigen::Vector2d>& errors_px) const {
+    BundleSigmas found = input_.sigmas;
     std::vector<double> lengths;
     for (std::size_t o = 0; o < errors_px.size(); ++o)
-      if (used_[o]) lengths.push_back(errors_px[o].norm());
+      if (input_.used[o]) lengths.push_back(errors_px[o].norm());
     found.noise_px = std::max(kMinNoisePx, Median(lengths) / kRayleighMedian);
     if (state.rank() == 0) return found;
     const ShapeSizes sizes = SizesOf(state.nodes);
-    found.size = std::max(kMinShapeSigma, sizes.size / distance_);
+    found.size = std::max(kMinShapeSigma, sizes.size / input_.distance);
     found.gradient = std::max(kMinShapeSigma, sizes.gradient);
     return found;
   }
@@ -149,9 +224,31 @@ class Refinement {
     const double bound = std::max(kWrongTrack * Median(rms), kMinWrongTrackPx);
     for (std::size_t o = 0; o < errors_px.size(); ++o) {
       const auto point = static_cast<std::size_t>(start_.observations[o].point_idx);
-      used_[o] = std::sqrt(squares[point] / counts[point]) <= bound;
+      input_.used[o] = std::sqrt(squares[point] / counts[point]) <= bound;
     }
-    KeepPointsSeenOften();
+    KeepPointsSeenOften(start_, &input_.used);
+  }
+
+  // Where the terms do not determine their variables, nothing is known.
+  void AddCovariance(const BundleState& state) {
+    refined_.sigmas.assign(input_.used.size(), 0.0);
+    const auto covariance = CovarianceOfBundle(OfKeyViews(), state);
+    if (!covariance.ok()) return;
+    for (std::size_t o = 0; o < input_.used.size(); ++o) {
+      const RecordedObservation& observation = refined_.recording.observations[o];
+      const auto view = static_cast<std::size_t>(observation.view_idx);
+      const double distance = (refined_.recording.cams_from_world[view] * observation.position).norm();
+      // A point that too few key views see is known at least as well as at the start.
+      const double sigma =
+          covariance->log_distance_sigmas[o] > 0.0 ? covariance->log_distance_sigmas[o] : start_.log_depth_sigma;
+      if (input_.used[o]) refined_.sigmas[o] = sigma * distance;
+    }
+    const double scale = ScaleToStart(state);
+    for (PoseCovariance pose : covariance->poses) {
+      pose.topRows<3>() *= scale;
+      pose.leftCols<3>() *= scale;
+      refined_.pose_covariances.push_back(pose);
+    }
   }
 
   double DistanceRatio(const BundleState& state, const RecordedObservation& o) const {
@@ -160,14 +257,18 @@ class Refinement {
            (state.cams_from_world[view] * state.Position(o.point_idx, o.view_idx)).norm();
   }
 
+  double ScaleToStart(const BundleState& state) const {
+    std::vector<double> ratios;
+    for (std::size_t o = 0; o < input_.used.size(); ++o)
+      if (input_.used[o]) ratios.push_back(DistanceRatio(state, start_.observations[o]));
+    return ratios.empty() ? 1.0 : Median(ratios);
+  }
+
   // The solution in the start's unit: distances are the start's in the median. A point that had no part in it keeps
   // its place before the camera.
   Recording InUnitOfStart(const BundleState& state) const {
     Recording result = start_;
-    std::vector<double> ratios;
-    for (std::size_t o = 0; o < used_.size(); ++o)
-      if (used_[o]) ratios.push_back(DistanceRatio(state, start_.observations[o]));
-    const double scale = ratios.empty() ? 1.0 : Median(ratios);
+    const double scale = ScaleToStart(state);
     const Eigen::Vector3d origin = state.cams_from_world.front().OriginInSource();
     const auto scaled = [&](const Eigen::Vector3d& x) { return Eigen::Vector3d(origin + scale * (x - origin)); };
     for (std::size_t v = 0; v < result.cams_from_world.size(); ++v) {
@@ -176,23 +277,21 @@ class Refinement {
     }
     for (std::size_t i = 0; i < result.rest_positions.size(); ++i)
       result.rest_positions[i] = scaled(state.rest_positions[i]);
-    for (std::size_t o = 0; o < used_.size(); ++o) {
+    for (std::size_t o = 0; o < input_.used.size(); ++o) {
       RecordedObservation& observation = result.observations[o];
       const auto view = static_cast<std::size_t>(observation.view_idx);
-      observation.position =
-          used_[o] ? scaled(state.Position(observation.point_idx, observation.view_idx))
-                   : result.cams_from_world[view].Inverse() * (start_.cams_from_world[view] * observation.position);
+      observation.position = input_.used[o] ? scaled(state.Position(observation.point_idx, observation.view_idx))
+                                            : result.cams_from_world[view].Inverse() *
+                                                  (start_.cams_from_world[view] * observation.position);
     }
     return result;
   }
 
-  const Camera& camera_;
   const Recording& start_;
   const RefineOptions& options_;
   const RefinementCallback& callback_;
-  std::vector<bool> used_;  // an observation each
-  double distance_ = 1;     // median, of the points from the cameras
-  BundleGraph graph_;
+  BundleInput input_;
+  int key_stride_ = 1;  // every so many views
   RefinedRecording refined_;
   int iterations_ = 0;
   bool stopped_ = false;
@@ -207,8 +306,14 @@ void RefineOptions::List(OptionTable& table) {
             "auto: correlation of neighbors' residuals in the rigid solution, up to which the scene is rigid", -1.0,
             1.0);
   table.Add("max_iterations", &max_iterations, "", "of one solution", 1, 1000);
-  table.Add("rank", &rank, "", "basis shapes of the deformation", 1, 10);
+  table.Add("rank", &rank, "", "basis shapes of the deformation, at first", 1, 10);
+  table.Add("max_rank", &max_rank, "",
+            "at most; two more are tried as long as neighbors' residuals are alike, no more where it is below rank", 1,
+            20);
   table.Add("nodes_in_view", &nodes_in_view, "", "nodes of the surface, in the mean over the frames", 4, 1000);
+  table.Add("views_per_track", &views_per_track, "",
+            "of the median track, that are solved for together; more frames than these are solved for after it", 3,
+            100000);
   table.Add("neighbors", &neighbors, "", "nodes with which a node's basis shapes are compared", 1, 100);
 }
 

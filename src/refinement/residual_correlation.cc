@@ -4,6 +4,7 @@
 #include "refinement/residual_correlation.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 #include "pliant/base/statistics.h"
@@ -19,8 +20,8 @@ constexpr double kCut = 4.0;  // times the median error, which one error counts 
 
 }  // namespace
 
-double ResidualCorrelation(const Recording& recording, const std::vector<bool>& used,
-                           const std::vector<Eigen::Vector2d>& errors_px, double min_distance_px) {
+NeighborCorrelation ResidualCorrelation(const Recording& recording, const std::vector<bool>& used,
+                                        const std::vector<Eigen::Vector2d>& errors_px, double min_distance_px) {
   std::vector<std::vector<std::size_t>> of_view(recording.times.size());
   std::vector<double> lengths;
   for (std::size_t o = 0; o < used.size(); ++o) {
@@ -34,6 +35,7 @@ double ResidualCorrelation(const Recording& recording, const std::vector<bool>& 
   };
   double products = 0;
   double squares = 0;
+  double pairs = 0;
   for (const std::size_t view : SpreadViews(of_view.size(), kViews)) {
     const std::vector<std::size_t>& seen = of_view[view];
     std::vector<Eigen::Vector3d> pixels;
@@ -44,10 +46,12 @@ double ResidualCorrelation(const Recording& recording, const std::vector<bool>& 
         const Eigen::Vector2d error_a = error(seen[a]);
         const Eigen::Vector2d error_b = error(seen[static_cast<std::size_t>(b)]);
         products += error_a.dot(error_b);
+        ++pairs;
         squares += 0.5 * (error_a.squaredNorm() + error_b.squaredNorm());
       }
   }
-  return squares > 0.0 ? products / squares : 0.0;
+  if (!(squares > 0.0)) return {};
+  return {products / squares, 1.0 / std::sqrt(pairs)};
 }
 
 }  // namespace pliant

@@ -12,9 +12,14 @@
 
 namespace pliant {
 
+struct NeighborCorrelation {
+  double value = 0;           // from -1 to 1; 0 where no two are neighbors
+  double standard_error = 0;  // of the value, where errors are independent
+};
+
 // Over the used observations of at most 64 views: with the four nearest of the same view that are at least
-// `min_distance_px` away. From -1 to 1; 0 where no two are neighbors.
-double ResidualCorrelation(const Recording& recording, const std::vector<bool>& used,
-                           const std::vector<Eigen::Vector2d>& errors_px, double min_distance_px);
+// `min_distance_px` away.
+NeighborCorrelation ResidualCorrelation(const Recording& recording, const std::vector<bool>& used,
+                                        const std::vector<Eigen::Vector2d>& errors_px, double min_distance_px);
 
 }  // namespace pliant

@@ -3,7 +3,11 @@
 
 #include "pliant/pipeline/refine_run.h"
 
+#include <algorithm>
+#include <cstdlib>
 #include <filesystem>
+#include <sstream>
+#include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -67,6 +71,43 @@ TEST_F(RefineRunTest, RefinesEverySubmapByItself) {
   EXPECT_EQ(summary->submaps[1].submap, 1);
   EXPECT_EQ(summary->submaps[1].frames, kRunFrames);
   EXPECT_EQ(summary->run.submaps, 2);
+}
+
+TEST_F(RefineRunTest, ASubmapThatCannotBeRefinedStaysAsItIs) {
+  WriteRunOfTwoSubmaps(folder_);
+  std::istringstream rows(folder_.Read("run/observations.csv"));
+  std::string kept;
+  for (std::string row; std::getline(rows, row);)  // of the second submap five points are left, three too few
+    if (const auto id = row.substr(row.find(',') + 1); !(std::atoi(id.c_str()) >= 115)) kept += row + "\n";
+  folder_.Write("run/observations.csv", kept);
+  const auto summary = Refine();
+  ASSERT_TRUE(summary.ok()) << summary.status().message();
+  ASSERT_EQ(summary->submaps.size(), 2U);
+  EXPECT_EQ(summary->submaps[0].failure, "");
+  EXPECT_THAT(summary->submaps[1].failure, HasSubstr("points"));
+  const auto rows_of_second = [&](const std::string& text) { return text.substr(text.find("\n20,100,")); };
+  EXPECT_EQ(rows_of_second(folder_.Read("refined/observations.csv")), rows_of_second(kept));
+}
+
+TEST_F(RefineRunTest, SaysHowCertainPointsAndPosesAre) {
+  WriteRun(folder_);
+  ASSERT_TRUE(Refine().ok());
+  auto reader = ObservationReader::Open(folder_.Path("refined"));
+  ASSERT_TRUE(reader.ok()) << reader.status().message();
+  for (auto frame = reader->Next(); frame.ok() && frame->has_value(); frame = reader->Next())
+    for (const PointObservation& observation : (*frame)->observations) EXPECT_GT(observation.sigma, 0);
+  std::istringstream rows(folder_.Read("refined/pose_covariance.csv"));
+  std::string header;
+  std::getline(rows, header);
+  EXPECT_EQ(header.substr(0, 14), "frame,x_x,x_y,");
+  EXPECT_EQ(std::ranges::count(header, ','), 21);
+  int poses = 0;
+  for (std::string row; std::getline(rows, row); ++poses) {
+    EXPECT_EQ(std::ranges::count(row, ','), 21);
+    const double variance = std::stod(row.substr(row.find(',') + 1));
+    EXPECT_EQ(variance > 0, poses > 0) << "the first pose is the world";
+  }
+  EXPECT_EQ(poses, kRunFrames);
 }
 
 TEST_F(RefineRunTest, DoesNotOverwriteTheRun) {

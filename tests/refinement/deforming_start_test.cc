@@ -16,11 +16,13 @@ using refinement_test::RecordedScene;
 
 constexpr double kLowRankError = 0.05;  // of the amplitude: a wave is of rank two, and no point is seen all the time
 constexpr double kUnitSize = 1e-6;
+constexpr int kRank = 3;
+constexpr int kNodesInView = 12;
 
 TEST(DeformingStart, ExplainsTheMotionsByFewShapes) {
   const RecordedScene scene;
   const Recording recording = scene.Start();
-  const BundleState state = DeformingStart(recording, {});
+  const BundleState state = DeformingStart(recording, kRank, kNodesInView);
   std::vector<double> errors;
   for (const RecordedObservation& o : recording.observations)
     errors.push_back((state.Position(o.point_idx, o.view_idx) - o.position).norm());
@@ -28,24 +30,23 @@ TEST(DeformingStart, ExplainsTheMotionsByFewShapes) {
 }
 
 TEST(DeformingStart, ItsCoefficientsAreOfUnitSize) {
-  const BundleState state = DeformingStart(RecordedScene().Start(), {});
+  const BundleState state = DeformingStart(RecordedScene().Start(), kRank, kNodesInView);
   for (int r = 0; r < state.rank(); ++r)
     EXPECT_NEAR(state.coefficients.row(r).squaredNorm() / static_cast<double>(state.coefficients.cols()), 1.0,
                 kUnitSize);
 }
 
 TEST(DeformingStart, HasTheNodesOfAMeanView) {
-  RefineOptions options;
-  options.nodes_in_view = 12;
+  constexpr int kNeighbors = 6;
   const RecordedScene scene;
   const Recording recording = scene.Start();
-  const BundleState state = DeformingStart(recording, options);
+  const BundleState state = DeformingStart(recording, kRank, kNodesInView);
   const double in_view = static_cast<double>(recording.observations.size()) / scene.views;
   EXPECT_NEAR(static_cast<double>(state.nodes.positions.size()) * in_view / static_cast<double>(scene.points.size()),
-              12, 1);
-  const BundleGraph graph = MakeGraph(state, options.neighbors);
+              kNodesInView, 1);
+  const BundleGraph graph = MakeGraph(state, kNeighbors);
   EXPECT_EQ(graph.nodes_of_point.size(), scene.points.size());
-  EXPECT_EQ(graph.edges.size(), state.nodes.positions.size() * static_cast<std::size_t>(options.neighbors));
+  EXPECT_EQ(graph.edges.size(), state.nodes.positions.size() * static_cast<std::size_t>(kNeighbors));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cmath>
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
@@ -47,13 +48,19 @@ struct RecordedScene {
     return rest + Eigen::Vector3d(0, 0, amplitude_mm * std::sin(0.35 * view + 0.03 * (rest.x() + rest.y())));
   }
 
-  // True tracks with noise, true poses, and every point at a wrong depth.
-  Recording Start() const {
+  // True tracks with noise, true poses, and every point at a wrong depth. `drift_px`: standard deviation of how far a
+  // track drifts from the first to the last view.
+  Recording Start(double drift_px = 0) const {
     Random random(4);
     Recording recording;
     recording.log_depth_sigma = kStartError;
     std::vector<double> factors;
     std::vector<int> seen(points.size(), 0);
+    std::vector<Eigen::Vector2d> drifts_px;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      Random own = random.Child("drift").Child(std::to_string(i));
+      drifts_px.emplace_back(own.Normal(drift_px), own.Normal(drift_px));
+    }
     for (std::size_t i = 0; i < points.size(); ++i) factors.push_back(std::exp(random.Normal(kStartError)));
     recording.rest_positions.assign(points.size(), Eigen::Vector3d::Zero());
     for (int v = 0; v < views; ++v) {
@@ -66,8 +73,9 @@ struct RecordedScene {
         if (!pixel || !RecordingCamera().Contains(*pixel)) continue;
         const Eigen::Vector3d position =
             pose.Inverse() * Eigen::Vector3d(factors[static_cast<std::size_t>(i)] * in_cam);
+        const Eigen::Vector2d drift = static_cast<double>(v) / views * drifts_px[static_cast<std::size_t>(i)];
         recording.observations.push_back(
-            {v, i, *pixel + Eigen::Vector2d(random.Normal(kNoisePx), random.Normal(kNoisePx)), position});
+            {v, i, *pixel + drift + Eigen::Vector2d(random.Normal(kNoisePx), random.Normal(kNoisePx)), position});
         recording.rest_positions[static_cast<std::size_t>(i)] += position;
         ++seen[static_cast<std::size_t>(i)];
       }
@@ -76,17 +84,25 @@ struct RecordedScene {
     return recording;
   }
 
-  // Median relative depth error over all observations, after the best scale of each view.
-  double DepthError(const Recording& recording) const {
-    std::vector<std::vector<double>> logs(recording.times.size());
+  // Error of the log distance of every observation, after the best scale of each view.
+  std::vector<double> LogDistanceErrors(const Recording& recording) const {
+    std::vector<double> errors;
+    std::vector<std::vector<double>> of_view(recording.times.size());
     for (const RecordedObservation& o : recording.observations) {
       const auto view = static_cast<std::size_t>(o.view_idx);
-      logs[view].push_back(std::log((recording.cams_from_world[view] * o.position).z() /
-                                    (poses[view] * At(o.point_idx, o.view_idx)).z()));
+      errors.push_back(std::log((recording.cams_from_world[view] * o.position).norm() /
+                                (poses[view] * At(o.point_idx, o.view_idx)).norm()));
+      of_view[view].push_back(errors.back());
     }
-    std::vector<double> errors;
-    for (const std::vector<double>& of_view : logs)
-      for (const double log_ratio : of_view) errors.push_back(std::abs(log_ratio - Median(of_view)));
+    for (std::size_t o = 0; o < errors.size(); ++o)
+      errors[o] -= Median(of_view[static_cast<std::size_t>(recording.observations[o].view_idx)]);
+    return errors;
+  }
+
+  // Median of their absolute values.
+  double DepthError(const Recording& recording) const {
+    std::vector<double> errors = LogDistanceErrors(recording);
+    for (double& error : errors) error = std::abs(error);
     return Median(errors);
   }
 };

@@ -73,6 +73,48 @@ TEST(RefineRecording, KeepsTheFirstPoseAndTheUnit) {
   EXPECT_NEAR(Median(ratios), 1.0, kUnit);
 }
 
+// Share of the inliers whose error is within so many standard deviations.
+double ShareWithin(double sigmas, const RecordedScene& scene, const RefinedRecording& refined) {
+  const std::vector<double> errors = scene.LogDistanceErrors(refined.recording);
+  double inliers = 0;
+  double within = 0;
+  for (std::size_t o = 0; o < errors.size(); ++o) {
+    if (!refined.is_inlier[o]) continue;
+    const RecordedObservation& observation = refined.recording.observations[o];
+    const auto view = static_cast<std::size_t>(observation.view_idx);
+    const double distance = (refined.recording.cams_from_world[view] * observation.position).norm();
+    ++inliers;
+    within += std::abs(errors[o]) * distance < sigmas * refined.sigmas[o] ? 1 : 0;
+  }
+  return within / inliers;
+}
+
+// A drift looks like parallax: the points' errors are larger than the residuals say.
+TEST(RefineRecording, KnowsHowCertainItsPointsAreFromTracksThatDrift) {
+  for (const double amplitude_mm : {0.0, 4.0}) {
+    const RecordedScene scene(amplitude_mm);
+    const auto refined = Refine(scene.Start(20 * kNoisePx));
+    ASSERT_TRUE(refined.ok()) << refined.status().message();
+    EXPECT_GT(ShareWithin(1, scene, *refined), 0.60) << amplitude_mm;
+    EXPECT_GT(ShareWithin(2, scene, *refined), 0.91) << amplitude_mm;
+    EXPECT_LT(ShareWithin(0.25, scene, *refined), 0.6) << "sigmas that are too large say nothing";
+  }
+}
+
+TEST(RefineRecording, SolvesForFewerViewsAtOnceWhereTracksAreLong) {
+  for (const double amplitude_mm : {0.0, 4.0}) {
+    const RecordedScene scene(amplitude_mm);
+    const Recording start = scene.Start();
+    const auto all = Refine(start);
+    const auto refined = Refine(start, {.max_rank = 3, .views_per_track = 10});
+    ASSERT_TRUE(all.ok() && refined.ok());
+    EXPECT_NE(all->recording.observations[0].position, refined->recording.observations[0].position);
+    EXPECT_LT(scene.DepthError(refined->recording), 0.5 * scene.DepthError(start)) << amplitude_mm;
+    for (std::size_t o = 0; o < start.observations.size(); ++o)
+      ASSERT_EQ(refined->sigmas[o] > 0, static_cast<bool>(refined->is_inlier[o]));
+  }
+}
+
 TEST(RefineRecording, LeavesWrongTracksOut) {
   const RecordedScene scene;
   Recording start = scene.Start();

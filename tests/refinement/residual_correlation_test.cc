@@ -21,7 +21,10 @@ TEST(ResidualCorrelation, OfNoiseIsNone) {
   std::vector<Eigen::Vector2d> errors;
   for (std::size_t o = 0; o < recording.observations.size(); ++o) errors.emplace_back(random.Normal(), random.Normal());
   const std::vector<bool> used(errors.size(), true);
-  EXPECT_LT(std::abs(ResidualCorrelation(recording, used, errors, recording.patch_px)), kMaxOfNoise);
+  const NeighborCorrelation correlation = ResidualCorrelation(recording, used, errors, recording.patch_px);
+  EXPECT_LT(std::abs(correlation.value), kMaxOfNoise);
+  EXPECT_LT(std::abs(correlation.value), 4 * correlation.standard_error);
+  EXPECT_LT(correlation.standard_error, 0.5 * kMaxOfNoise);
 }
 
 TEST(ResidualCorrelation, OfACommonMotionIsNearOne) {
@@ -30,8 +33,9 @@ TEST(ResidualCorrelation, OfACommonMotionIsNearOne) {
   for (const RecordedObservation& o : recording.observations)
     errors.emplace_back(std::sin(0.01 * o.pixel.x()), std::cos(0.01 * o.pixel.y()));
   const std::vector<bool> used(errors.size(), true);
-  EXPECT_GT(ResidualCorrelation(recording, used, errors, recording.patch_px), kMinOfMotion);
-  EXPECT_EQ(ResidualCorrelation(recording, std::vector<bool>(errors.size(), false), errors, recording.patch_px), 0.0);
+  EXPECT_GT(ResidualCorrelation(recording, used, errors, recording.patch_px).value, kMinOfMotion);
+  EXPECT_EQ(ResidualCorrelation(recording, std::vector<bool>(errors.size(), false), errors, recording.patch_px).value,
+            0.0);
 }
 
 }  // namespace

@@ -35,6 +35,7 @@ struct SubmapRefinement {
   int points = 0;
   int observations = 0;
   int wrong_observations = 0;  // left out
+  std::string failure;         // why it is in the refined run as it is in the run; empty: it was refined
 };
 
 struct RefineSummary {
@@ -45,9 +46,10 @@ struct RefineSummary {
 
 using RefineProgress = std::function<void(const RefinementProgress&)>;
 
-// Fails with kNotFound, kUnreadable or kMismatch for a run that cannot be read, kInsufficient for one without points or
-// of a single frame, kInvalidArgument for an output folder that is the run's or holds something else, kUnwritable. The
-// output folder is not touched before the refinement is done.
+// A submap of several that cannot be refined stays as it is. Fails with kNotFound, kUnreadable or kMismatch for a run
+// that cannot be read, kInsufficient for one without points or of a single frame, kInvalidArgument for an output folder
+// that is the run's or holds something else, kUnwritable. The output folder is not touched before the refinement is
+// done.
 Result<RefineSummary> RefineRun(const RefineRequest& request, const RefineOptions& options,
                                 const RefineProgress& callback);
 

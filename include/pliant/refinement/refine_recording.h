@@ -22,6 +22,7 @@
 #include "pliant/base/status.h"
 #include "pliant/camera/camera.h"
 #include "pliant/geometry/rigid3.h"
+#include "pliant/scene/frame_report.h"
 
 namespace pliant {
 
@@ -41,8 +42,10 @@ struct RefineOptions {
   RefinementModel model = RefinementModel::kAuto;
   double max_correlation = 0.2;  // of neighbors' residuals in the rigid solution (W11), up to which the scene is rigid
   int max_iterations = 30;       // of one solution
-  int rank = 3;                  // R, basis shapes
+  int rank = 3;                  // R, basis shapes, at first
+  int max_rank = 5;              // two more are tried as long as neighbors' residuals are alike, up to this
   int nodes_in_view = 24;        // of the surface, in the mean over the views
+  int views_per_track = 40;      // of the median track, that are solved for together; the others after them
   int neighbors = 6;             // nodes that a node's basis shapes are compared with
 
   void List(OptionTable& table);  // group "Refine"
@@ -70,7 +73,12 @@ struct RefinedRecording {
   // An observation each: whether it had a part in the solution, as those of wrong tracks and of points seen in fewer
   // than three views had not.
   std::vector<bool> is_inlier;
-  bool deforming = false;           // the model that was chosen
+  // An observation each: standard deviation of the point's distance from the camera, map units; 0: not known, or no
+  // inlier.
+  std::vector<double> sigmas;
+  std::vector<PoseCovariance> pose_covariances;  // of the views, or none; the first is zero, for it is the world
+  bool deforming = false;                        // the model that was chosen
+  int rank = 0;                                  // basis shapes; 0: rigid
   double residual_correlation = 0;  // of neighbors in the rigid solution (W11); 0 where the model was not asked for
   double noise_px = 0;              // standard deviation of a pixel coordinate, as found
   double initial_cost = 0;          // of the last solution, at its start and end

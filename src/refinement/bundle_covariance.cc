@@ -1,0 +1,255 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "refinement/bundle_covariance.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <map>
+#include <random>
+#include <unordered_map>
+#include <utility>
+
+#include <Eigen/Cholesky>
+#include <Eigen/SparseCholesky>
+#include <ceres/cost_function.h>
+
+namespace pliant {
+namespace {
+
+constexpr int kSamples = 150;  // the standard deviation of a sigma found by n samples is 1 / sqrt(2 n) of it
+constexpr unsigned kSeed = 1;
+
+using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+using BlockPair = std::pair<int, int>;  // the second is not above the first
+
+// A view or a node.
+struct Block {
+  int begin = 0;  // of its numbers among those of all
+  int size = 0;
+};
+
+// The normal equations by blocks: of every point with itself and with the blocks that its terms have, and of these.
+struct PointNormal {
+  Eigen::MatrixXd self;
+  std::map<int, Eigen::MatrixXd> by_block;  // block x point
+};
+
+class Covariance {
+ public:
+  explicit Covariance(const BundleProblem& problem) : problem_(problem), point_normals_(problem.points().size()) {
+    for (const double* const view : problem.views()) AddBlock(view, 6 + problem.rank());
+    for (const double* const node : problem.nodes()) AddBlock(node, 3 * problem.rank());
+    for (std::size_t i = 0; i < problem.points().size(); ++i)
+      point_of_.emplace(problem.points()[i], static_cast<int>(i));
+    AddTerms();
+  }
+
+  Status Sample() {
+    EliminatePoints();
+    std::vector<Eigen::Triplet<double>> entries;
+    for (const auto& [pair, matrix] : normal_)
+      for (Eigen::Index r = 0; r < matrix.rows(); ++r)
+        for (Eigen::Index c = 0; c < matrix.cols(); ++c)
+          if (pair.first != pair.second || r >= c)
+            entries.emplace_back(blocks_[static_cast<std::size_t>(pair.first)].begin + static_cast<int>(r),
+                                 blocks_[static_cast<std::size_t>(pair.second)].begin + static_cast<int>(c),
+                                 matrix(r, c));
+    Eigen::SparseMatrix<double> lower(size_, size_);
+    lower.setFromTriplets(entries.begin(), entries.end());
+    std::vector<int> held;  // the first pose, and poses of views without observations
+    for (int k = 0; k < size_; ++k)
+      if (lower.coeff(k, k) == 0.0) held.push_back(k);
+    for (const int k : held) entries.emplace_back(k, k, 1.0);
+    lower.setFromTriplets(entries.begin(), entries.end());
+    const Eigen::SimplicialLLT<Eigen::SparseMatrix<double>, Eigen::Lower> cholesky(lower);
+    if (cholesky.info() != Eigen::Success)
+      return {ErrorCode::kDegenerate, "the refinement's terms do not determine its variables"};
+    std::mt19937_64 generator(kSeed);
+    std::normal_distribution<double> normal;
+    const Eigen::MatrixXd white = Eigen::MatrixXd::NullaryExpr(size_, kSamples, [&] { return normal(generator); });
+    // P H P^T = L L^T: x = P^T L^-T z has the covariance H^-1.
+    samples_ = cholesky.permutationPinv() * cholesky.matrixU().solve(white);
+    for (const int k : held) samples_.row(k).setZero();
+    return Status::Ok();
+  }
+
+  // Of every view: itself, or the nearest that has observations in the problem.
+  std::vector<int> NearestViewInProblem() const {
+    std::vector<int> known;
+    for (int v = 0; v < static_cast<int>(problem_.views().size()); ++v)
+      if (v == 0 || normal_.contains({v, v})) known.push_back(v);
+    std::vector<int> nearest;
+    for (int v = 0; v < static_cast<int>(problem_.views().size()); ++v)
+      nearest.push_back(*std::ranges::min_element(known, {}, [&](int k) { return std::abs(k - v); }));
+    return nearest;
+  }
+
+  PoseCovariance PoseOf(std::size_t view) const {
+    const PoseIncrement& pose = problem_.poses()[view];
+    // Of the camera's center in the world and its rotation, by the increment at zero.
+    Eigen::Matrix<double, 6, 6> by_increment = Eigen::Matrix<double, 6, 6>::Zero();
+    const Eigen::Matrix3d world_from_cam = pose.reference_rotation().transpose();
+    by_increment.topLeftCorner<3, 3>() = -world_from_cam * Skew(pose.pivot_in_cam());
+    by_increment.topRightCorner<3, 3>() = -world_from_cam;
+    by_increment.bottomLeftCorner<3, 3>().setIdentity();
+    const Eigen::MatrixXd moved = by_increment * samples_.middleRows(blocks_[view].begin, 6);
+    return moved * moved.transpose() / kSamples;
+  }
+
+  // Of the log distances of a point from the cameras of some views.
+  std::vector<double> LogDistanceSigmas(std::size_t point, const std::vector<int>& views) const {
+    const PointNormal& normal = point_normals_[point];
+    if (normal.self.size() == 0) return std::vector<double>(views.size(), 0.0);
+    const Eigen::LLT<Eigen::MatrixXd> own(normal.self);
+    Eigen::MatrixXd moved = Eigen::MatrixXd::Zero(normal.self.rows(), kSamples);
+    for (const auto& [block, matrix] : normal.by_block) moved.noalias() -= matrix.transpose() * SamplesOf(block);
+    own.solveInPlace(moved);
+    std::vector<double> sigmas;
+    for (const int view : views) {
+      const auto [by_view, by_point] = LogDistanceGradient(point, static_cast<std::size_t>(view));
+      const Eigen::RowVectorXd sampled = by_view * SamplesOf(view) + by_point * moved;
+      const double known_views = by_point * own.solve(by_point.transpose());
+      sigmas.push_back(std::sqrt(known_views + sampled.squaredNorm() / kSamples));
+    }
+    return sigmas;
+  }
+
+ private:
+  Eigen::MatrixXd SamplesOf(int block) const {
+    const Block& b = blocks_[static_cast<std::size_t>(block)];
+    return samples_.middleRows(b.begin, b.size);
+  }
+
+  void AddBlock(const double* values, int size) {
+    block_of_.emplace(values, static_cast<int>(blocks_.size()));
+    blocks_.push_back({size_, size});
+    size_ += size;
+  }
+
+  void Add(int a, int b, const Eigen::MatrixXd& by_a, const Eigen::MatrixXd& by_b) {
+    if (a < b) return;
+    AddTo(normal_[{a, b}], by_a.transpose() * by_b);
+  }
+
+  static void AddTo(Eigen::MatrixXd& sum, const Eigen::MatrixXd& term) {
+    if (sum.size() == 0)
+      sum = term;
+    else
+      sum += term;
+  }
+
+  void AddTerms() {
+    std::vector<ceres::ResidualBlockId> terms;
+    problem_.terms().GetResidualBlocks(&terms);
+    std::vector<double*> parameters;
+    for (const ceres::ResidualBlockId& term : terms) {
+      problem_.terms().GetParameterBlocksForResidualBlock(term, &parameters);
+      AddTerm(*problem_.terms().GetCostFunctionForResidualBlock(term),
+              problem_.terms().GetLossFunctionForResidualBlock(term), parameters);
+    }
+  }
+
+  void AddTerm(const ceres::CostFunction& cost, const ceres::LossFunction* loss,
+               const std::vector<double*>& parameters) {
+    std::vector<RowMajorMatrix> jacobians;
+    std::vector<double*> data;
+    for (const int size : cost.parameter_block_sizes()) jacobians.emplace_back(cost.num_residuals(), size);
+    for (RowMajorMatrix& jacobian : jacobians) data.push_back(jacobian.data());
+    Eigen::VectorXd residual(cost.num_residuals());
+    if (!cost.Evaluate(parameters.data(), residual.data(), data.data())) return;
+    double weight = 1.0;
+    if (loss != nullptr) {
+      std::array<double, 3> rho = {};
+      loss->Evaluate(residual.squaredNorm(), rho.data());
+      weight = std::sqrt(rho[1]);
+    }
+    PointNormal* point = nullptr;
+    std::size_t point_at = 0;
+    for (std::size_t p = 0; p < parameters.size(); ++p) {
+      jacobians[p] *= weight;
+      if (const auto found = point_of_.find(parameters[p]); found != point_of_.end()) {
+        point = &point_normals_[static_cast<std::size_t>(found->second)];
+        point_at = p;
+      } else if (parameters[p] == problem_.views().front()) {
+        jacobians[p].leftCols(6).setZero();
+      }
+    }
+    if (point != nullptr) AddTo(point->self, jacobians[point_at].transpose() * jacobians[point_at]);
+    for (std::size_t p = 0; p < parameters.size(); ++p) {
+      if (point != nullptr && p == point_at) continue;
+      const int a = block_of_.at(parameters[p]);
+      if (point != nullptr) AddTo(point->by_block[a], jacobians[p].transpose() * jacobians[point_at]);
+      for (std::size_t q = 0; q < parameters.size(); ++q)
+        if (point == nullptr || q != point_at) Add(a, block_of_.at(parameters[q]), jacobians[p], jacobians[q]);
+    }
+  }
+
+  void EliminatePoints() {
+    for (const PointNormal& point : point_normals_) {
+      if (point.self.size() == 0) continue;
+      const Eigen::LLT<Eigen::MatrixXd> own(point.self);
+      std::vector<std::pair<int, Eigen::MatrixXd>> whitened;
+      for (const auto& [block, matrix] : point.by_block)
+        whitened.emplace_back(block, own.matrixL().solve(matrix.transpose()));
+      for (const auto& [a, by_a] : whitened)
+        for (const auto& [b, by_b] : whitened)
+          if (b <= a) AddTo(normal_[{a, b}], -by_a.transpose() * by_b);
+    }
+  }
+
+  std::pair<Eigen::RowVectorXd, Eigen::RowVectorXd> LogDistanceGradient(std::size_t point, std::size_t view) const {
+    const int rank = problem_.rank();
+    const double* const values = problem_.points()[point];
+    const double* const coefficients = problem_.views()[view] + 6;
+    Eigen::Vector3d position = Eigen::Map<const Eigen::Vector3d>(values);
+    for (int r = 0; r < rank; ++r) position += coefficients[r] * Eigen::Map<const Eigen::Vector3d>(values + 3 + 3 * r);
+    const PosedPoint posed = problem_.poses()[view].Posed(problem_.views()[view], position);
+    const Eigen::RowVector3d by_cam_point = posed.in_cam.transpose() / posed.in_cam.squaredNorm();
+    const Eigen::RowVector3d by_position = by_cam_point * problem_.poses()[view].reference_rotation();
+    Eigen::RowVectorXd by_view(6 + rank);
+    Eigen::RowVectorXd by_point(3 + 3 * rank);
+    by_view.head(6) = by_cam_point * posed.ByIncrement();
+    by_point.head(3) = by_position;
+    for (int r = 0; r < rank; ++r) {
+      by_view(6 + r) = by_position * Eigen::Map<const Eigen::Vector3d>(values + 3 + 3 * r);
+      by_point.segment(3 + 3 * r, 3) = coefficients[r] * by_position;
+    }
+    return {by_view, by_point};
+  }
+
+  const BundleProblem& problem_;
+  std::vector<Block> blocks_;  // views, then nodes
+  std::unordered_map<const double*, int> block_of_;
+  std::unordered_map<const double*, int> point_of_;
+  int size_ = 0;
+  std::map<BlockPair, Eigen::MatrixXd> normal_;  // of blocks; the lower half
+  std::vector<PointNormal> point_normals_;
+  Eigen::MatrixXd samples_;
+};
+
+}  // namespace
+
+Result<BundleCovariance> ComputeCovariance(const BundleProblem& problem, const Recording& recording) {
+  Covariance covariance(problem);
+  if (Status status = covariance.Sample(); !status.ok()) return status;
+  BundleCovariance result;
+  const std::vector<int> nearest = covariance.NearestViewInProblem();
+  for (const int view : nearest) result.poses.push_back(covariance.PoseOf(static_cast<std::size_t>(view)));
+  result.log_distance_sigmas.assign(recording.observations.size(), 0.0);
+  std::vector<std::vector<std::size_t>> observations(recording.rest_positions.size());
+  for (std::size_t o = 0; o < recording.observations.size(); ++o)
+    observations[static_cast<std::size_t>(recording.observations[o].point_idx)].push_back(o);
+  for (std::size_t i = 0; i < observations.size(); ++i) {
+    std::vector<int> views;
+    for (const std::size_t o : observations[i])
+      views.push_back(nearest[static_cast<std::size_t>(recording.observations[o].view_idx)]);
+    const std::vector<double> sigmas = covariance.LogDistanceSigmas(i, views);
+    for (std::size_t k = 0; k < sigmas.size(); ++k) result.log_distance_sigmas[observations[i][k]] = sigmas[k];
+  }
+  return result;
+}
+
+}  // namespace pliant
