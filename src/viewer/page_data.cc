@@ -138,6 +138,8 @@ class Observations {
                    {"depth", Numbers(&ViewedObservation::depth, PackedType::kU16)},
                    {"reprojection_px", Numbers(&ViewedObservation::reprojection_px, PackedType::kU16)},
                    {"ssim", Numbers(&ViewedObservation::ssim, PackedType::kU8)}};
+    packed["sigma"] =
+        Any(&ViewedObservation::sigma) ? Numbers(&ViewedObservation::sigma, PackedType::kU16) : Json(nullptr);
     const bool bright = Any(&ViewedObservation::gain);
     packed["gain"] = bright ? Numbers(&ViewedObservation::gain, PackedType::kU16) : Json(nullptr);
     packed["bias"] = bright ? Numbers(&ViewedObservation::bias, PackedType::kU16) : Json(nullptr);

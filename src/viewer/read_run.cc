@@ -116,6 +116,7 @@ ViewedObservation ToViewed(const PointObservation& observation) {
   viewed.pixel = observation.pixel.cast<float>();
   viewed.position = observation.position.cast<float>();
   viewed.ssim = static_cast<float>(observation.ssim);
+  if (observation.sigma > 0.0) viewed.sigma = static_cast<float>(observation.sigma);
   return viewed;
 }
 

@@ -76,6 +76,9 @@ export function colorModes(report: Report): Mode[] {
     { name: "deformation", label: "deformation", unit, value: (run, o) => run.deformation(o) },
     { name: "similarity", label: "similarity (SSIM)", unit: "", value: (run, o) => run.similarity.values[o] },
   ];
+  if (report.runs.some((run) => run.sigma)) {
+    modes.push({ name: "uncertainty", label: "uncertainty (1 sigma)", unit, value: (run, o) => run.sigma?.values[o] ?? NaN });
+  }
   if (report.runs.some((run) => run.error)) {
     modes.push({ name: "error", label: "error against truth", unit: "mm", value: (run, o) => run.error?.values[o] ?? NaN });
   }

@@ -54,6 +54,7 @@ export interface RunData {
     depth: PackedArray;
     reprojection_px: PackedArray;
     ssim: PackedArray;
+    sigma: PackedArray | null;
     gain: PackedArray | null;
     bias: PackedArray | null;
     truth: PackedArray | null;
@@ -101,6 +102,7 @@ export interface RunPart {
   depth: Float32Array;
   reprojection: Float32Array;
   similarity: Float32Array;
+  sigma: Float32Array | null;
   gain: Float32Array | null;
   bias: Float32Array | null;
   truth: Float32Array | null;
@@ -127,6 +129,7 @@ export function decodeRun(data: RunData): Promise<RunPart> {
     depth: await decodeNumbers(observations.depth, 1),
     reprojection: await decodeNumbers(observations.reprojection_px, 1),
     similarity: await decodeNumbers(observations.ssim, 1),
+    sigma: observations.sigma && await decodeNumbers(observations.sigma, 1),
     gain: observations.gain && await decodeNumbers(observations.gain, 1),
     bias: observations.bias && await decodeNumbers(observations.bias, 1),
     truth: observations.truth && await decodeNumbers(observations.truth, 3),

@@ -75,13 +75,14 @@ export class PointPanel {
   private figures(run: Run): { title: string; unit: string; series: { label: string; value: (o: number) => number }[] }[] {
     const { unit } = this.page.report;
     const one = (title: string, unitOf: string, value: (o: number) => number) => ({ title, unit: unitOf, series: [{ label: "", value }] });
-    const { gain, bias, error } = run;
+    const { sigma, gain, bias, error } = run;
     const figures = [
       one("Depth", unit, (o) => run.depth.values[o]),
       one("Deformation", unit, (o) => run.deformation(o)),
       one("Reprojection error", "px", (o) => run.reprojection.values[o]),
       one("Similarity", "SSIM", (o) => run.similarity.values[o]),
     ];
+    if (sigma) figures.push(one("Uncertainty (1 sigma)", unit, (o) => sigma.values[o]));
     if (gain) figures.push(one("Gain", "", (o) => gain.values[o]));
     if (bias) figures.push(one("Bias", "gray values", (o) => bias.values[o]));
     if (error) figures.push(one("Error against truth", "mm", (o) => error.values[o]));

@@ -64,6 +64,7 @@ export class Run {
   depth = floats();
   reprojection = floats();
   similarity = floats();
+  sigma: Growing<Float32Array> | null = null;   // standard deviation of the distance from the camera
   gain: Growing<Float32Array> | null = null;
   bias: Growing<Float32Array> | null = null;
   truth: Growing<Float32Array> | null = null;
@@ -198,6 +199,7 @@ export class Run {
     this.depth.append(part.depth);
     this.reprojection.append(part.reprojection);
     this.similarity.append(part.similarity);
+    this.sigma = appendOptional(this.sigma, part.sigma, begin, size);
     this.gain = appendOptional(this.gain, part.gain, begin, size);
     this.bias = appendOptional(this.bias, part.bias, begin, size);
     this.truth = appendOptional(this.truth, part.truth, 3 * begin, 3 * size);

@@ -37,6 +37,7 @@ struct ViewedObservation {
   float depth = kUnknown;                              // along the optical axis, in the world's unit
   float reprojection_px = kUnknown;
   float ssim = kUnknown;
+  float sigma = kUnknown;  // standard deviation of its distance from the camera, in the world's unit
   // What maps the gray levels of the point's first patch onto those of this frame's: gain * first + bias.
   float gain = kUnknown;
   float bias = kUnknown;
