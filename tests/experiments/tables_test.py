@@ -2,12 +2,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The tables of the grids of scenes and choices.
 
-usage: tables_test.py tables|choices PLIANT
+usage: tables_test.py tables|before_and_after|choices PLIANT
 """
+
+import os
 
 from support import experiment_modules, main
 
-experiment_modules("simulated_colon", "regularizers")
+experiment_modules("simulated_colon", "regularizers", "refinement")
 
 
 def tables(folder):
@@ -42,6 +44,31 @@ def tables(folder):
             "before\n<!-- table -->\n\nnew\n\n<!-- end of table -->\nafter\n"
 
 
+def before_and_after(folder):
+    """Runs are compared seed by seed; one that has no map before or after has no part in it."""
+    import json
+
+    import before_after
+    import grid
+
+    runs = grid.Grid({"sets": "dm", "set_options": {"dm": ""}, "variants": "online, refined_online", "seeds": "1, 2, 3",
+                      "variant_options": {"online": "", "refined_online": ""}, "cells": "5:2.5"})
+    rmse_mm = {"online": (2.0, 1.0, None), "refined_online": (0.8, 0.6, None)}
+    for variant, values in rmse_mm.items():
+        for seed, value in zip((1, 2, 3), values):
+            evaluation = {"surface": {"estimate": {"mean_rmse_mm": value}}, "run_seconds": 1,
+                          "uncertainty": {"within_1_sigma": 0.7, "within_2_sigma": 0.9, "nees": 1,
+                                          "sparsification": {"area": 0.5, "oracle_area": 0.3}}} if value else {}
+            path = folder / f"runs/{variant}/dm_A5_w2.5_s{seed}/evaluation/evaluation.json"
+            path.parent.mkdir(parents=True)
+            path.write_text(json.dumps(evaluation), encoding="utf-8")
+    os.chdir(folder)
+    before_after.write(runs, folder / "table.md", folder / "table.csv")
+    line = (folder / "table.md").read_text(encoding="utf-8").splitlines()[2]
+    assert line == ("| dm | 5 | 2.5 | online | 2 of 3 | 1.50 | 0.70 | - | - | 0.50 | 0.40..0.60 | 70, 90 | 70, 90 |"), line
+    assert len(grid.read_rows(folder / "table.csv")) == 4
+
+
 def choices(folder):
     """A choice is compared with the default of its own start, in the cells where it tracked about as many frames."""
     import choices as table
@@ -71,4 +98,4 @@ def choices(folder):
 
 
 if __name__ == "__main__":
-    main(tables, choices)
+    main(tables, before_and_after, choices)

@@ -33,6 +33,9 @@ def dry_run(folder):
     text = snakemake("rigid_baseline", folder / "baseline", "--dry-run", "--quiet", "--config", "sequences=", "seeds=1,2")
     counts = {line.split()[0]: line.split()[1] for line in text.splitlines() if len(line.split()) > 1}
     assert counts["track"] == "10" and counts["reconstruct"] == "20" and counts["evaluate"] == "30", text
+    text = snakemake("refinement", folder / "refinement", "--dry-run", "--quiet", "--config", "sequences=", "seeds=1,2")
+    counts = {line.split()[0]: line.split()[1] for line in text.splitlines() if len(line.split()) > 1}
+    assert counts["track"] == counts["refine"] == "28" and counts["evaluate"] == "56", text
     text = snakemake("long_sequences", folder / "long", "--dry-run", "--quiet", "--config", "variants=all", "seeds=1,2")
     counts = {line.split()[0]: line.split()[1] for line in text.splitlines() if len(line.split()) > 1}
     assert counts["simulate"] == "12" and counts["track"] == counts["evaluate"] == str(12 * 10), text
