@@ -60,6 +60,6 @@ def write(runs, markdown_path, csv_path):
                 inside = [median([side[seed] for seed in both], f"within_{k}_sigma") for k in (1, 2)]
                 line.append("-" if inside[0] is None else f"{100 * inside[0]:.0f}, {100 * inside[1]:.0f}")
             body.append(line)
-    header = ["set", "A, mm", "omega, rad/s", "run", "seeds with a map", "RMSE online, mm", "refined", "ATE online, mm", "refined",
-              "RMSE refined by online", "range", "within 1, 2 sigma online, %", "refined"]
+    header = ["set", "A, mm", "omega, rad/s", "run", "seeds with a map", "RMSE online, mm", "refined", "ATE online, mm",
+              "refined", "RMSE refined by online", "range", "within 1, 2 sigma online, %", "refined"]
     pathlib.Path(markdown_path).write_text(grid.markdown(header, body), encoding="utf-8")

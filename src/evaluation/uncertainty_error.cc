@@ -13,8 +13,6 @@
 namespace pliant {
 namespace {
 
-constexpr double kNormalMedian = 0.6745;  // of |x| of a normal x with standard deviation 1
-
 struct Judged {
   double sigma_mm = 0;
   double error_mm = 0;  // absolute
@@ -78,8 +76,9 @@ Result<UncertaintyError> ComputeUncertaintyError(std::span<const PairedFrame> fr
   error.points = static_cast<int>(judged.size());
   error.within_1_sigma = share_below(1.0);
   error.within_2_sigma = share_below(2.0);
-  error.nees = Rms(ratios) * Rms(ratios);
-  error.median_ratio = Median(ratios) / kNormalMedian;
+  const double rms_ratio = Rms(ratios);
+  error.nees = rms_ratio * rms_ratio;
+  error.median_ratio = kMedianToSigma * Median(ratios);
   error.median_sigma = Median(relative);
   std::ranges::stable_sort(judged, {}, &Judged::sigma_mm);
   error.bins = Bins(judged);

@@ -222,7 +222,7 @@ Result<RefineSummary> RefineRun(const RefineRequest& request, const RefineOption
     auto recording = RefineRecording(*known->camera, submap.recording, options, on_iteration);
     const std::string failure = recording.status().message();
     if (!recording.ok()) {
-      failed = recording.status();
+      failed = Status(recording.status().code(), "submap " + std::to_string(number) + " cannot be refined: " + failure);
       recording = AsItIs(submap);
     }
     summary.stopped = summary.stopped || recording->stopped;

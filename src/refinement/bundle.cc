@@ -35,6 +35,13 @@ Result<BundleCovariance> CovarianceOfBundle(const BundleInput& input, const Bund
   return ComputeCovariance(BundleProblem(of_tracks, &unchanged), input.recording);
 }
 
+std::vector<int> CountViews(const Recording& recording, const std::vector<bool>& used) {
+  std::vector<int> views(recording.rest_positions.size(), 0);
+  for (std::size_t o = 0; o < used.size(); ++o)
+    if (used[o]) ++views[static_cast<std::size_t>(recording.observations[o].point_idx)];
+  return views;
+}
+
 std::vector<Eigen::Vector2d> ReprojectionErrors(const Camera& camera, const Recording& recording,
                                                 const BundleState& state) {
   std::vector<Eigen::Vector2d> errors;

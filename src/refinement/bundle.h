@@ -87,6 +87,9 @@ struct BundleCovariance {
 // determine their variables.
 Result<BundleCovariance> CovarianceOfBundle(const BundleInput& input, const BundleState& state);
 
+// The views of every point, of its used observations.
+std::vector<int> CountViews(const Recording& recording, const std::vector<bool>& used);
+
 // Error of every observation, px; one that does not project has the image's width.
 std::vector<Eigen::Vector2d> ReprojectionErrors(const Camera& camera, const Recording& recording,
                                                 const BundleState& state);

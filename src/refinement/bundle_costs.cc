@@ -3,14 +3,16 @@
 
 #include "refinement/bundle_costs.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #include "pliant/residuals/reprojection.h"
+#include "refinement/model_point.h"
 
 namespace pliant {
 namespace {
 
-using ConstVector3 = Eigen::Map<const Eigen::Vector3d>;
 using ConstVector = Eigen::Map<const Eigen::VectorXd>;
 using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 using Jacobian = Eigen::Map<RowMajorMatrix>;
@@ -26,28 +28,14 @@ class BundleReprojectionCost final : public ceres::CostFunction {
   }
 
   bool Evaluate(const double* const* parameters, double* residuals, double** jacobians) const override {
-    const double* const point = parameters[1];
-    const double* const coefficients = parameters[0] + 6;
-    Eigen::Vector3d position = ConstVector3(point);
-    for (int r = 0; r < rank_; ++r) position += coefficients[r] * ConstVector3(point + 3 + 3 * r);
-    const PosedPoint posed = pose_->Posed(parameters[0], position);
+    const ModelPoint point(*pose_, parameters[0], parameters[1], rank_);
     Eigen::Vector2d residual;
     ReprojectionJacobian by_cam_point;
-    if (!kernel_.ResidualAndJacobian(pixel_, posed.in_cam, &residual, &by_cam_point)) return false;
+    if (!kernel_.ResidualAndJacobian(pixel_, point.in_cam(), &residual, &by_cam_point)) return false;
     Eigen::Map<Eigen::Vector2d>{residuals} = residual;
     if (jacobians == nullptr) return true;
-    const ReprojectionJacobian by_position =
-        by_cam_point * RotationExp(posed.omega_rad).toRotationMatrix() * pose_->reference_rotation();
-    if (jacobians[1] != nullptr) {
-      Jacobian by_point(jacobians[1], 2, 3 + 3 * rank_);
-      by_point.leftCols(3) = by_position;
-      for (int r = 0; r < rank_; ++r) by_point.middleCols(3 + 3 * r, 3) = coefficients[r] * by_position;
-    }
-    if (jacobians[0] != nullptr) {
-      Jacobian by_view(jacobians[0], 2, 6 + rank_);
-      by_view.leftCols(6) = by_cam_point * posed.ByIncrement();
-      for (int r = 0; r < rank_; ++r) by_view.col(6 + r) = by_position * ConstVector3(point + 3 + 3 * r);
-    }
+    if (jacobians[0] != nullptr) point.ByView<2>(by_cam_point, jacobians[0]);
+    if (jacobians[1] != nullptr) point.ByPoint<2>(by_cam_point, jacobians[1]);
     return true;
   }
 
@@ -121,29 +109,22 @@ class WeightedSumCost final : public ceres::CostFunction {
 class DistanceCost final : public ceres::CostFunction {
  public:
   DistanceCost(const PoseIncrement& pose, double distance, double sigma, int rank)
-      : pose_(&pose), distance_(distance), scale_(1.0 / sigma), rank_(rank) {
+      : pose_(&pose), distance_(distance), scale_(1.0 / sigma) {
     set_num_residuals(1);
     *mutable_parameter_block_sizes() = {6 + rank, 3 + 3 * rank};
   }
 
   bool Evaluate(const double* const* parameters, double* residuals, double** jacobians) const override {
-    const PosedPoint posed = pose_->Posed(parameters[0], ConstVector3(parameters[1]));
-    const double squared = posed.in_cam.squaredNorm();
+    const ModelPoint at_rest(*pose_, parameters[0], parameters[1], 0);
+    const double squared = at_rest.in_cam().squaredNorm();
     if (!(squared > 0.0)) return false;
     residuals[0] = scale_ * std::log(std::sqrt(squared) / distance_);
     if (jacobians == nullptr) return true;
-    const Eigen::RowVector3d by_cam_point = scale_ / squared * posed.in_cam.transpose();
-    if (jacobians[0] != nullptr) {
-      Eigen::Map<Eigen::RowVectorXd> by_view(jacobians[0], 6 + rank_);
-      by_view.setZero();
-      by_view.head(6) = by_cam_point * posed.ByIncrement();
-    }
-    if (jacobians[1] != nullptr) {
-      Eigen::Map<Eigen::RowVectorXd> by_point(jacobians[1], 3 + 3 * rank_);
-      by_point.setZero();
-      by_point.leftCols(3) =
-          by_cam_point * RotationExp(posed.omega_rad).toRotationMatrix() * pose_->reference_rotation();
-    }
+    const Eigen::RowVector3d by_cam_point = scale_ / squared * at_rest.in_cam().transpose();
+    for (int k = 0; k < 2; ++k)
+      if (jacobians[k] != nullptr) std::fill_n(jacobians[k], parameter_block_sizes()[static_cast<std::size_t>(k)], 0.0);
+    if (jacobians[0] != nullptr) at_rest.ByView<1>(by_cam_point, jacobians[0]);
+    if (jacobians[1] != nullptr) at_rest.ByPoint<1>(by_cam_point, jacobians[1]);
     return true;
   }
 
@@ -151,7 +132,6 @@ class DistanceCost final : public ceres::CostFunction {
   const PoseIncrement* pose_;
   double distance_;
   double scale_;
-  int rank_;
 };
 
 }  // namespace

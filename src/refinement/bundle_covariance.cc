@@ -16,6 +16,8 @@
 #include <Eigen/SparseCholesky>
 #include <ceres/cost_function.h>
 
+#include "refinement/model_point.h"
+
 namespace pliant {
 namespace {
 
@@ -57,12 +59,9 @@ class Covariance {
             entries.emplace_back(blocks_[static_cast<std::size_t>(pair.first)].begin + static_cast<int>(r),
                                  blocks_[static_cast<std::size_t>(pair.second)].begin + static_cast<int>(c),
                                  matrix(r, c));
-    Eigen::SparseMatrix<double> lower(size_, size_);
-    lower.setFromTriplets(entries.begin(), entries.end());
-    std::vector<int> held;  // the first pose, and poses of views without observations
-    for (int k = 0; k < size_; ++k)
-      if (lower.coeff(k, k) == 0.0) held.push_back(k);
+    const std::vector<int> held = NumbersWithoutTerms();
     for (const int k : held) entries.emplace_back(k, k, 1.0);
+    Eigen::SparseMatrix<double> lower(size_, size_);
     lower.setFromTriplets(entries.begin(), entries.end());
     const Eigen::SimplicialLLT<Eigen::SparseMatrix<double>, Eigen::Lower> cholesky(lower);
     if (cholesky.info() != Eigen::Success)
@@ -121,6 +120,18 @@ class Covariance {
   Eigen::MatrixXd SamplesOf(int block) const {
     const Block& b = blocks_[static_cast<std::size_t>(block)];
     return samples_.middleRows(b.begin, b.size);
+  }
+
+  // The first pose, and poses of views without observations.
+  std::vector<int> NumbersWithoutTerms() const {
+    std::vector<int> numbers;
+    for (int b = 0; b < static_cast<int>(blocks_.size()); ++b) {
+      const Block& block = blocks_[static_cast<std::size_t>(b)];
+      const auto terms = normal_.find({b, b});
+      for (int k = 0; k < block.size; ++k)
+        if (terms == normal_.end() || terms->second(k, k) == 0.0) numbers.push_back(block.begin + k);
+    }
+    return numbers;
   }
 
   void AddBlock(const double* values, int size) {
@@ -202,21 +213,12 @@ class Covariance {
 
   std::pair<Eigen::RowVectorXd, Eigen::RowVectorXd> LogDistanceGradient(std::size_t point, std::size_t view) const {
     const int rank = problem_.rank();
-    const double* const values = problem_.points()[point];
-    const double* const coefficients = problem_.views()[view] + 6;
-    Eigen::Vector3d position = Eigen::Map<const Eigen::Vector3d>(values);
-    for (int r = 0; r < rank; ++r) position += coefficients[r] * Eigen::Map<const Eigen::Vector3d>(values + 3 + 3 * r);
-    const PosedPoint posed = problem_.poses()[view].Posed(problem_.views()[view], position);
-    const Eigen::RowVector3d by_cam_point = posed.in_cam.transpose() / posed.in_cam.squaredNorm();
-    const Eigen::RowVector3d by_position = by_cam_point * problem_.poses()[view].reference_rotation();
+    const ModelPoint moved(problem_.poses()[view], problem_.views()[view], problem_.points()[point], rank);
+    const Eigen::RowVector3d by_cam_point = moved.in_cam().transpose() / moved.in_cam().squaredNorm();
     Eigen::RowVectorXd by_view(6 + rank);
     Eigen::RowVectorXd by_point(3 + 3 * rank);
-    by_view.head(6) = by_cam_point * posed.ByIncrement();
-    by_point.head(3) = by_position;
-    for (int r = 0; r < rank; ++r) {
-      by_view(6 + r) = by_position * Eigen::Map<const Eigen::Vector3d>(values + 3 + 3 * r);
-      by_point.segment(3 + 3 * r, 3) = coefficients[r] * by_position;
-    }
+    moved.ByView<1>(by_cam_point, by_view.data());
+    moved.ByPoint<1>(by_cam_point, by_point.data());
     return {by_view, by_point};
   }
 

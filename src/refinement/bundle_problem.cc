@@ -161,10 +161,7 @@ void BundleProblem::Hold(const std::vector<double*>& blocks) {
 }
 
 void BundleProblem::AddReprojection() {
-  std::vector<int> views(points_.size(), 0);
-  for (std::size_t o = 0; o < input_.used.size(); ++o)
-    if (input_.used[o]) ++views[static_cast<std::size_t>(input_.recording.observations[o].point_idx)];
-  for (const int count : views)
+  for (const int count : CountViews(input_.recording, input_.used))
     losses_.push_back(std::make_unique<ceres::ScaledLoss>(
         &loss_, input_.one_measurement_per_track ? 1.0 / std::max(1, count) : 1.0, ceres::DO_NOT_TAKE_OWNERSHIP));
   for (std::size_t o = 0; o < input_.used.size(); ++o) {

@@ -68,9 +68,7 @@ void Factorize(const std::vector<Motion>& motions, BundleState* state) {
 }
 
 std::vector<int> ChooseNodes(const Recording& recording, int nodes_in_view) {
-  std::vector<int> views(recording.rest_positions.size(), 0);
-  for (const RecordedObservation& observation : recording.observations)
-    ++views[static_cast<std::size_t>(observation.point_idx)];
+  const std::vector<int> views = CountViews(recording, std::vector<bool>(recording.observations.size(), true));
   std::vector<int> candidates;
   for (std::size_t i = 0; i < views.size(); ++i)
     if (views[i] >= kMinViewsOfNode) candidates.push_back(static_cast<int>(i));

@@ -48,14 +48,6 @@ Status CheckRecording(const Recording& recording, const RefineOptions& options) 
   return Status::Ok();
 }
 
-// The views of every point, of its used observations.
-std::vector<int> CountViews(const Recording& recording, const std::vector<bool>& used) {
-  std::vector<int> views(recording.rest_positions.size(), 0);
-  for (std::size_t o = 0; o < used.size(); ++o)
-    if (used[o]) ++views[static_cast<std::size_t>(recording.observations[o].point_idx)];
-  return views;
-}
-
 // The observations of points that have enough of them.
 void KeepPointsSeenOften(const Recording& recording, std::vector<bool>* used) {
   const std::vector<int> views = CountViews(recording, *used);
@@ -88,10 +80,10 @@ class Refinement {
     }
     if (Status status = rigid ? Solve("rigid", kRounds, &state) : SolveDeforming(&state); !status.ok()) return status;
     refined_.deforming = !rigid;
-    refined_.rank = state.rank();
     refined_.is_inlier = input_.used;
-    refined_.recording = InUnitOfStart(state);
-    AddCovariance(state);
+    const double scale = ScaleToStart(state);
+    refined_.recording = InUnitOfStart(state, scale);
+    AddCovariance(state, scale);
     refined_.stopped = stopped_;
     return refined_;
   }
@@ -102,6 +94,7 @@ class Refinement {
   Status SolveDeforming(BundleState* state) {
     for (int rank = options_.rank;; rank += kRankStep) {
       const BundleState state_before = *state;
+      const RefinedRecording refined_before = refined_;
       const BundleInput input_before = input_;
       UseAll();
       *state = DeformingStart(start_, rank, options_.nodes_in_view);
@@ -109,24 +102,20 @@ class Refinement {
       if (Status status = Solve("deforming", kRounds, state); !status.ok()) return status;
       if (stopped_ && rank > options_.rank) {
         *state = state_before;
-        TakeBack(input_before);
+        refined_ = refined_before;
+        input_.used = input_before.used;
+        input_.graph = input_before.graph;
+        input_.sigmas = input_before.sigmas;
       }
+      if (stopped_ || rank + kRankStep > options_.max_rank) return Status::Ok();
       const NeighborCorrelation left = CorrelationOf(*state);
-      if (stopped_ || rank + kRankStep > options_.max_rank || left.value <= kSignificant * left.standard_error)
-        return Status::Ok();
+      if (left.value <= kSignificant * left.standard_error) return Status::Ok();
     }
-  }
-
-  void TakeBack(const BundleInput& before) {
-    input_.used = before.used;
-    input_.graph = before.graph;
-    input_.sigmas = before.sigmas;
-    refined_.noise_px = before.sigmas.noise_px;
   }
 
   // Of neighbors' residuals (W11), in the key views.
   NeighborCorrelation CorrelationOf(const BundleState& state) const {
-    return ResidualCorrelation(start_, OfKeyViews().used, ReprojectionErrors(input_.camera, start_, state),
+    return ResidualCorrelation(start_, UsedInKeyViews(), ReprojectionErrors(input_.camera, start_, state),
                                start_.patch_px);
   }
 
@@ -135,22 +124,17 @@ class Refinement {
     KeepPointsSeenOften(start_, &input_.used);
   }
 
-  // Several solutions, the first with the sigmas of the start.
+  // Several solutions, the first with the sigmas of the start, the others with those that the one before has found.
   Status Solve(std::string_view stage, int rounds, BundleState* state) {
     input_.sigmas = {};
     input_.sigmas.noise_px = kStartNoisePx;
     input_.sigmas.log_distance = start_.log_depth_sigma;
-    if (Status status = SolveAgain(stage, 1, state); !status.ok()) return status;
-    RejectWrongTracks(ReprojectionErrors(input_.camera, start_, *state));
-    return SolveAgain(stage, rounds - 1, state);
-  }
-
-  // Each with the sigmas that the one before has found.
-  Status SolveAgain(std::string_view stage, int rounds, BundleState* state) {
     for (int round = 0; round < rounds && !stopped_; ++round) {
       if (Status status = SolveOnce(stage, state); !status.ok()) return status;
-      input_.sigmas = FoundSigmas(*state, ReprojectionErrors(input_.camera, start_, *state));
+      const auto errors_px = ReprojectionErrors(input_.camera, start_, *state);
+      input_.sigmas = FoundSigmas(*state, errors_px);
       refined_.noise_px = input_.sigmas.noise_px;
+      if (round == 0) RejectWrongTracks(errors_px);
     }
     return Status::Ok();
   }
@@ -161,19 +145,19 @@ class Refinement {
       stopped_ = stopped_ || (callback_ && !callback_({stage, iterations_++, cost}));
       return !stopped_;
     };
-    const auto solve = [&](const BundleInput& input) {
-      return SolveBundle(input, options_.max_iterations, on_iteration, state);
-    };
-    const auto summary = solve(OfKeyViews());
+    BundleInput input = input_;
+    input.used = UsedInKeyViews();
+    const auto summary = SolveBundle(input, options_.max_iterations, on_iteration, state);
     if (!summary.ok()) return summary.status();
     refined_.initial_cost = summary->initial_cost;
     refined_.final_cost = summary->final_cost;
     if (key_stride_ == 1) return Status::Ok();
+    input.used = input_.used;
     for (const BundlePart part : {BundlePart::kViews, BundlePart::kPoints, BundlePart::kViews}) {
-      input_.part = part;
-      if (const auto part_summary = solve(input_); !part_summary.ok()) return part_summary.status();
+      input.part = part;
+      const auto of_part = SolveBundle(input, options_.max_iterations, on_iteration, state);
+      if (!of_part.ok()) return of_part.status();
     }
-    input_.part = BundlePart::kAll;
     return Status::Ok();
   }
 
@@ -186,13 +170,13 @@ class Refinement {
     key_stride_ = std::max(1, static_cast<int>(std::lround(Median(views_of_track) / options_.views_per_track)));
   }
 
-  BundleInput OfKeyViews() const {
-    BundleInput input = input_;
-    if (key_stride_ == 1) return input;
-    for (std::size_t o = 0; o < input.used.size(); ++o)
-      input.used[o] = input.used[o] && start_.observations[o].view_idx % key_stride_ == 0;
-    KeepPointsSeenOften(start_, &input.used);
-    return input;
+  std::vector<bool> UsedInKeyViews() const {
+    std::vector<bool> used = input_.used;
+    if (key_stride_ == 1) return used;
+    for (std::size_t o = 0; o < used.size(); ++o)
+      used[o] = used[o] && start_.observations[o].view_idx % key_stride_ == 0;
+    KeepPointsSeenOften(start_, &used);
+    return used;
   }
 
   BundleSigmas FoundSigmas(const BundleState& state, const std::vector<Eigen::Vector2d>& errors_px) const {
@@ -230,9 +214,11 @@ class Refinement {
   }
 
   // Where the terms do not determine their variables, nothing is known.
-  void AddCovariance(const BundleState& state) {
+  void AddCovariance(const BundleState& state, double scale) {
     refined_.sigmas.assign(input_.used.size(), 0.0);
-    const auto covariance = CovarianceOfBundle(OfKeyViews(), state);
+    BundleInput input = input_;
+    input.used = UsedInKeyViews();
+    const auto covariance = CovarianceOfBundle(input, state);
     if (!covariance.ok()) return;
     for (std::size_t o = 0; o < input_.used.size(); ++o) {
       const RecordedObservation& observation = refined_.recording.observations[o];
@@ -243,7 +229,6 @@ class Refinement {
           covariance->log_distance_sigmas[o] > 0.0 ? covariance->log_distance_sigmas[o] : start_.log_depth_sigma;
       if (input_.used[o]) refined_.sigmas[o] = sigma * distance;
     }
-    const double scale = ScaleToStart(state);
     for (PoseCovariance pose : covariance->poses) {
       pose.topRows<3>() *= scale;
       pose.leftCols<3>() *= scale;
@@ -266,9 +251,8 @@ class Refinement {
 
   // The solution in the start's unit: distances are the start's in the median. A point that had no part in it keeps
   // its place before the camera.
-  Recording InUnitOfStart(const BundleState& state) const {
+  Recording InUnitOfStart(const BundleState& state, double scale) const {
     Recording result = start_;
-    const double scale = ScaleToStart(state);
     const Eigen::Vector3d origin = state.cams_from_world.front().OriginInSource();
     const auto scaled = [&](const Eigen::Vector3d& x) { return Eigen::Vector3d(origin + scale * (x - origin)); };
     for (std::size_t v = 0; v < result.cams_from_world.size(); ++v) {

@@ -78,7 +78,6 @@ struct RefinedRecording {
   std::vector<double> sigmas;
   std::vector<PoseCovariance> pose_covariances;  // of the views, or none; the first is zero, for it is the world
   bool deforming = false;                        // the model that was chosen
-  int rank = 0;                                  // basis shapes; 0: rigid
   double residual_correlation = 0;  // of neighbors in the rigid solution (W11); 0 where the model was not asked for
   double noise_px = 0;              // standard deviation of a pixel coordinate, as found
   double initial_cost = 0;          // of the last solution, at its start and end
