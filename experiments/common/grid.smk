@@ -68,6 +68,27 @@ rule track:
         " --General.threads {threads} {params.options} || grep -q '\"status\": \"failed\"' {output}"
 
 
+# A variant refined_X is the run of variant X, refined. Of a run without a map there is nothing to refine: its refined
+# run is that run.
+rule refine:
+    output:
+        "runs/refined_{variant}/{scene}/run.json",
+    input:
+        program=PROGRAM,
+        run="runs/{variant}/{scene}/run.json",
+    params:
+        run="runs/{variant}/{scene}",
+        refined="runs/refined_{variant}/{scene}",
+        options=config.get("refine_options", ""),
+    shell:
+        "rm -rf {params.refined}\n"
+        "if grep -q '\"frames_tracked\": 0' {input.run}; then cp -r {params.run} {params.refined}; else"
+        " {input.program} refine --run {params.run} --output_path {params.refined} --quiet {params.options}; fi"
+
+
+ruleorder: refine > track
+
+
 rule evaluate:
     output:
         "runs/{variant}/{scene}/evaluation/evaluation.json",
