@@ -4,17 +4,18 @@
 #include "cli/progress.h"
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 #include <ostream>
 #include <utility>
 
 #include <unistd.h>
 
+#include "pliant/base/text.h"
+
 namespace pliant::cli {
 namespace {
 
 constexpr int kBarWidth = 24;
+constexpr std::string_view kPercent = "%";
 constexpr std::chrono::milliseconds kDrawEvery{100};  // faster than the eye needs, and cheap
 constexpr std::string_view kToLineStartAndClear = "\r\x1b[K";
 
@@ -37,6 +38,16 @@ Progress::~Progress() {
   if (line_open_) out_ << std::endl;
 }
 
+// By the mean rate so far.
+std::string Progress::Rate(int done, Clock::time_point now) const {
+  const double seconds = std::chrono::duration<double>(now - start_).count();
+  if (seconds <= 0) return "";
+  std::string text;
+  if (unit_ != kPercent) text += "  " + Digits(done / seconds, 1) + " " + unit_ + "/s";
+  if (done > 0 && done < total_) text += "  " + Digits(seconds / done * (total_ - done), 0) + " s left";
+  return text;
+}
+
 std::string Progress::Line(int done, std::string_view detail, Clock::time_point now) const {
   std::string line = what_ + "  ";
   if (style_ == ProgressStyle::kBar && total_ > 0) {
@@ -44,13 +55,12 @@ std::string Progress::Line(int done, std::string_view detail, Clock::time_point 
     line += "[" + std::string(static_cast<std::size_t>(filled), '=') +
             std::string(static_cast<std::size_t>(kBarWidth - filled), ' ') + "]  ";
   }
-  line += std::to_string(done) + (total_ > 0 ? "/" + std::to_string(total_) : "");
-  const double seconds = std::chrono::duration<double>(now - start_).count();
-  if (seconds > 0) {
-    std::array<char, 48> rate;
-    std::snprintf(rate.data(), rate.size(), "  %.1f ", done / seconds);
-    line += rate.data() + unit_ + "/s";
-  }
+  line += std::to_string(done);
+  if (unit_ == kPercent)
+    line += " %";
+  else if (total_ > 0)
+    line += "/" + std::to_string(total_);
+  line += Rate(done, now);
   if (!detail.empty()) line += "  " + std::string(detail);
   return line;
 }
@@ -61,8 +71,9 @@ void Progress::Update(int done, std::string_view detail, Clock::time_point now) 
     out_ << kToLineStartAndClear << Line(done, detail, now) << std::flush;
     drawn_ = now;
     line_open_ = true;
-  } else if (style_ == ProgressStyle::kLines && (last || done % kLinesEvery == 0)) {
+  } else if (style_ == ProgressStyle::kLines && (last || done / kLinesEvery > lines_)) {
     out_ << Line(done, detail, now) << std::endl;
+    lines_ = done / kLinesEvery;
   }
 }
 

@@ -3,7 +3,7 @@
 
 // How far a command is: one line that is drawn over on a terminal, plain lines elsewhere (every kLinesEvery frames, so
 // that a log stays readable), nothing on request.
-//   track  [=========>          ]  45/100  41.3 frames/s  498 points
+//   track  [=========>          ]  45/100  41.3 frames/s  2 s left  498 points
 #pragma once
 
 #include <chrono>
@@ -27,7 +27,7 @@ class Progress {
   using Clock = std::chrono::steady_clock;
   static constexpr int kLinesEvery = 25;
 
-  // `out` must outlive this. `total` <= 0: not known. `unit` is what is counted.
+  // `out` must outlive this. `total` <= 0: not known. `unit` is what is counted; of "%" no rate is shown.
   Progress(std::ostream& out, ProgressStyle style, std::string what, int total, std::string unit = "frames");
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
@@ -40,6 +40,7 @@ class Progress {
   void Note(std::string_view text);
 
  private:
+  std::string Rate(int done, Clock::time_point now) const;
   std::string Line(int done, std::string_view detail, Clock::time_point now) const;
 
   std::ostream& out_;
@@ -49,6 +50,7 @@ class Progress {
   std::string unit_;
   Clock::time_point start_;
   Clock::time_point drawn_;
+  int lines_ = 0;  // multiples of kLinesEvery that have been reached
   bool line_open_ = false;
 };
 

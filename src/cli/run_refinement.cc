@@ -13,9 +13,9 @@ namespace pliant::cli {
 int RefineAndSay(std::string_view command, const RefineRequest& request, const RefineOptions& options, Saying saying) {
   const Result<RefineSummary> summary = [&] {
     Progress progress(std::cerr, saying == Saying::kErrors ? ProgressStyle::kQuiet : ProgressStyleOfStandardError(),
-                      "refine", 0, "iterations");
+                      "refine", 100, "%");
     return RefineRun(request, options, [&](const RefinementProgress& at) {
-      progress.Update(at.iteration, std::string(at.stage) + ", cost " + Digits(at.cost, 1));
+      progress.Update(static_cast<int>(100.0 * at.share), std::string(at.stage) + ", cost " + Digits(at.cost, 1));
     });
   }();
   if (!summary.ok()) {

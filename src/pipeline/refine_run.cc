@@ -98,6 +98,12 @@ Result<std::map<int, Submap>> ReadSubmaps(const std::string& path, const Run& ru
   return submaps;
 }
 
+std::size_t CountObservations(const std::map<int, Submap>& submaps) {
+  std::size_t count = 0;
+  for (const auto& [number, submap] : submaps) count += submap.recording.observations.size();
+  return count;
+}
+
 // A submap that cannot be refined.
 RefinedRecording AsItIs(const Submap& submap) {
   RefinedRecording recording;
@@ -214,11 +220,15 @@ Result<RefineSummary> RefineRun(const RefineRequest& request, const RefineOption
   RefineSummary summary;
   std::map<int, RefinedRecording> refined;
   Status failed;
-  const auto on_iteration = [&](const RefinementProgress& progress) {
-    if (callback) callback(progress);
-    return request.stop == nullptr || !*request.stop;
-  };
+  const double all = static_cast<double>(CountObservations(*submaps));
+  double share_before = 0.0;
   for (const auto& [number, submap] : *submaps) {
+    const double share = static_cast<double>(submap.recording.observations.size()) / all;
+    const auto on_iteration = [&](RefinementProgress progress) {
+      progress.share = share_before + share * progress.share;
+      if (callback) callback(progress);
+      return request.stop == nullptr || !*request.stop;
+    };
     auto recording = RefineRecording(*known->camera, submap.recording, options, on_iteration);
     const std::string failure = recording.status().message();
     if (!recording.ok()) {
@@ -232,6 +242,7 @@ Result<RefineSummary> RefineRun(const RefineRequest& request, const RefineOption
                                static_cast<int>(submap.recording.observations.size()), static_cast<int>(wrong),
                                failure});
     refined.emplace(number, *std::move(recording));
+    share_before += share;
   }
   if (std::ranges::none_of(summary.submaps, &std::string::empty, &SubmapRefinement::failure)) return failed;
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

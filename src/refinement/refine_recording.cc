@@ -17,6 +17,7 @@ namespace {
 
 constexpr std::size_t kMinPoints = 8;
 constexpr int kRounds = 3;  // solutions, each with the sigmas and the tracks that the one before has found
+constexpr double kUsualIterations = 10.0;  // of a solution
 constexpr double kStartNoisePx = 0.3;
 constexpr double kMinNoisePx = 0.02;
 constexpr double kRayleighMedian = 1.1774;  // median length of a 2D normal vector by its standard deviation
@@ -48,6 +49,9 @@ Status CheckRecording(const Recording& recording, const RefineOptions& options) 
   return Status::Ok();
 }
 
+// Of a solution, up to a factor: the square of the numbers of a point.
+double WorkOf(int rank) { return (1.0 + rank) * (1.0 + rank); }
+
 // The observations of points that have enough of them.
 void KeepPointsSeenOften(const Recording& recording, std::vector<bool>* used) {
   const std::vector<int> views = CountViews(recording, *used);
@@ -73,15 +77,19 @@ class Refinement {
     state.cams_from_world = start_.cams_from_world;
     state.rest_positions = start_.rest_positions;
     bool rigid = options_.model == RefinementModel::kRigid;
+    work_ = kRounds * WorkOf(rigid ? 0 : options_.rank);
     if (options_.model == RefinementModel::kAuto) {
+      work_ += WorkOf(0);
       if (Status status = Solve("rigid", 1, &state); !status.ok()) return status;
       refined_.residual_correlation = CorrelationOf(state).value;
       rigid = refined_.residual_correlation <= options_.max_correlation;
+      if (rigid) work_ = (1 + kRounds) * WorkOf(0);
     }
     if (Status status = rigid ? Solve("rigid", kRounds, &state) : SolveDeforming(&state); !status.ok()) return status;
     refined_.deforming = !rigid;
     refined_.is_inlier = input_.used;
     const double scale = ScaleToStart(state);
+    if (callback_ && !stopped_) callback_({"uncertainty", refined_.final_cost, 1.0});
     refined_.recording = InUnitOfStart(state, scale);
     AddCovariance(state, scale);
     refined_.stopped = stopped_;
@@ -110,6 +118,7 @@ class Refinement {
       if (stopped_ || rank + kRankStep > options_.max_rank) return Status::Ok();
       const NeighborCorrelation left = CorrelationOf(*state);
       if (left.value <= kSignificant * left.standard_error) return Status::Ok();
+      work_ += kRounds * WorkOf(rank + kRankStep);
     }
   }
 
@@ -131,6 +140,7 @@ class Refinement {
     input_.sigmas.log_distance = start_.log_depth_sigma;
     for (int round = 0; round < rounds && !stopped_; ++round) {
       if (Status status = SolveOnce(stage, state); !status.ok()) return status;
+      work_done_ += WorkOf(state->rank());
       const auto errors_px = ReprojectionErrors(input_.camera, start_, *state);
       input_.sigmas = FoundSigmas(*state, errors_px);
       refined_.noise_px = input_.sigmas.noise_px;
@@ -141,8 +151,12 @@ class Refinement {
 
   // Of the key views; then of all views by the points, of all points by the views, and of the views once more.
   Status SolveOnce(std::string_view stage, BundleState* state) {
+    int iterations = 0;
     const auto on_iteration = [&](double cost) {
-      stopped_ = stopped_ || (callback_ && !callback_({stage, iterations_++, cost}));
+      const double of_solution = iterations / (iterations + kUsualIterations);
+      const double share = (work_done_ + WorkOf(state->rank()) * of_solution) / work_;
+      ++iterations;
+      stopped_ = stopped_ || (callback_ && !callback_({stage, cost, share}));
       return !stopped_;
     };
     BundleInput input = input_;
@@ -277,7 +291,8 @@ class Refinement {
   BundleInput input_;
   int key_stride_ = 1;  // every so many views
   RefinedRecording refined_;
-  int iterations_ = 0;
+  double work_ = 0.0;  // of all solutions that are known to be needed
+  double work_done_ = 0.0;
   bool stopped_ = false;
 };
 

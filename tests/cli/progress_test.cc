@@ -39,6 +39,26 @@ TEST(Progress, TheRateIsFramesByTimeSinceTheStart) {
   EXPECT_NE(out.str().find("  2.5 frames/s"), std::string::npos) << out.str();
 }
 
+TEST(Progress, TheTimeLeftIsByTheRateSoFar) {
+  std::ostringstream out;
+  Progress progress(out, ProgressStyle::kBar, "track", 100);
+  progress.Update(25, "", Progress::Clock::now() + seconds(10));
+  EXPECT_NE(out.str().find("  30 s left"), std::string::npos) << out.str();
+  progress.Update(100, "", Progress::Clock::now() + seconds(40));
+  EXPECT_EQ(out.str().find(" left", out.str().rfind('\r')), std::string::npos) << out.str();
+}
+
+TEST(Progress, SharesOfTheWorkHaveNoRate) {
+  std::ostringstream out;
+  Progress progress(out, ProgressStyle::kLines, "refine", 100, "%");
+  progress.Update(0, "rigid", Progress::Clock::now() + seconds(1));
+  EXPECT_EQ(out.str(), "");
+  progress.Update(50, "rigid", Progress::Clock::now() + seconds(10));
+  EXPECT_EQ(out.str(), "refine  50 %  10 s left  rigid\n");
+  progress.Update(51, "rigid", Progress::Clock::now() + seconds(11));
+  EXPECT_EQ(std::ranges::count(out.str(), '\n'), 1);
+}
+
 TEST(Progress, TheBarIsDrawnOverAndEndsItsLine) {
   std::ostringstream out;
   {

@@ -4,6 +4,7 @@
 #include "pliant/refinement/refine_recording.h"
 
 #include <limits>
+#include <string_view>
 
 #include <gtest/gtest.h>
 
@@ -156,6 +157,22 @@ TEST(RefineRecording, StopsWithTheBestSoFar) {
   EXPECT_TRUE(refined->stopped);
   EXPECT_EQ(iterations, 6);
   EXPECT_LT(refined->final_cost, refined->initial_cost);
+}
+
+TEST(RefineRecording, SaysHowMuchIsDone) {
+  const Recording start = RecordedScene(0).Start();  // rigid
+  double share = 0.0;
+  std::string_view last;
+  const auto refined = Refine(start, {}, [&](const RefinementProgress& progress) {
+    EXPECT_GE(progress.share, share);
+    EXPECT_LE(progress.share, 1.0);
+    share = progress.share;
+    last = progress.stage;
+    return true;
+  });
+  ASSERT_TRUE(refined.ok()) << refined.status().message();
+  EXPECT_EQ(share, 1.0);
+  EXPECT_EQ(last, "uncertainty");
 }
 
 TEST(RefineRecording, RefusesWhatIsNone) {

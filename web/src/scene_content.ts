@@ -42,6 +42,7 @@ export class SceneContent {
   private readonly trueFrustum = new WideLines(1.5);
   private readonly frustum = new WideLines(1.5);
   private readonly track = new WideLines(2.5);
+  private readonly uncertainty = new WideLines(4);
   private readonly ring = new Marks(11, 0);
   private readonly picture: Mesh<BufferGeometry, MeshBasicMaterial>;
   // Of each row of the current run: how many points had been seen by then, in the order of the map's vertices.
@@ -52,9 +53,9 @@ export class SceneContent {
     this.picture = makePicture();
     this.scene.add(this.grid, ...this.axes, this.map, this.trails, this.errors, this.truthPoints, this.others, this.points,
       ...this.paths.flatMap(({ ahead, done }) => [ahead, done]), this.truePath, this.trueFrustum, this.frustum, this.picture,
-      this.track, this.ring);
-    this.track.renderOrder = this.ring.renderOrder = 1;
-    this.track.material.depthTest = this.ring.material.depthTest = false;
+      this.track, this.uncertainty, this.ring);
+    this.track.renderOrder = this.uncertainty.renderOrder = this.ring.renderOrder = 1;
+    this.track.material.depthTest = this.uncertainty.material.depthTest = this.ring.material.depthTest = false;
   }
 
   build(): void {
@@ -79,6 +80,7 @@ export class SceneContent {
     this.trueFrustum.material.color.set(palette.truth);
     this.frustum.material.color.set(runColor(dark, current));
     this.track.material.color.set(palette.picked);
+    this.uncertainty.material.color.set(palette.picked);
     this.points.setRim(dark ? "#ffffff" : "#000000");
     this.others.setRim(dark ? "#000000" : "#ffffff");
     this.paths.forEach(({ ahead, done }, run) => {
@@ -125,6 +127,7 @@ export class SceneContent {
       this.ring.addMark(run.position.values, now, new Color(paletteOf(store.state.dark).picked).getHex(), "ring");
     }
     this.ring.end();
+    this.uncertainty.setSegments(now === undefined ? [] : uncertaintySegment(run, now));
   }
 
   showImage(bitmap: ImageBitmap | null | undefined): void {
@@ -343,6 +346,16 @@ function segmentsOf(pose: Float32Array, rows: number): { coordinates: number[]; 
 export function poseOf(pose: Float32Array, row: number): { rotation: Quaternion; position: Vector3 } {
   const [qx, qy, qz, qw, x, y, z] = pose.subarray(7 * row, 7 * row + 7);
   return { rotation: new Quaternion(qx, qy, qz, qw), position: new Vector3(x, y, z) };
+}
+
+// Two standard deviations of the distance to both sides along the point's ray; across it a point is known to a pixel.
+function uncertaintySegment(run: Run, observation: number): number[] {
+  const sigma = run.sigma?.values[observation] ?? NaN;
+  const row = run.row.values[observation];
+  if (!(sigma > 0) || !run.hasPose(row)) return [];
+  const point = new Vector3().fromArray(run.position.values, 3 * observation);
+  const reach = point.clone().sub(poseOf(run.pose.values, row).position).setLength(2 * sigma);
+  return [...point.clone().sub(reach).toArray(), ...point.clone().add(reach).toArray()];
 }
 
 // The camera's center and the corners of its image.

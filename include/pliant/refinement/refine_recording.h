@@ -87,9 +87,9 @@ struct RefinedRecording {
 
 // What is known while it goes on; false ends it with the best so far.
 struct RefinementProgress {
-  std::string_view stage;  // "rigid", "deforming"
-  int iteration = 0;       // over all solutions
-  double cost = 0;
+  std::string_view stage;  // "rigid", "deforming", "uncertainty"
+  double cost = 0;         // of the last iteration
+  double share = 0;        // of the work known to be needed that is done, 0 to 1; falls when more shapes are needed
 };
 using RefinementCallback = std::function<bool(const RefinementProgress&)>;
 
