@@ -3,16 +3,13 @@
 
 #include "pliant/datasets/native_writer.h"
 
-#include <cmath>
-#include <cstdint>
-#include <cstdio>
 #include <utility>
-#include <vector>
 
-#include <opencv2/imgcodecs.hpp>
+#include <opencv2/core.hpp>
 
 #include "pliant/base/options.h"
 #include "pliant/datasets/native_layout.h"
+#include "pliant/datasets/png_file.h"
 #include "pliant/io/trajectory.h"
 
 namespace pliant {
@@ -25,23 +22,6 @@ Status Unwritable(const fs::path& path) {
           "cannot write " + path.string() + "; is the folder writable and is there room on the disk?"};
 }
 
-Status WriteBytes(const fs::path& path, const std::vector<unsigned char>& bytes) {
-  std::ofstream file(path, std::ios::binary);
-  file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  file.close();
-  if (file) return Status::Ok();
-  std::error_code error;
-  fs::remove(path, error);  // half a file would be read as a damaged one
-  return Unwritable(path);
-}
-
-// Little compression: noise does not compress.
-Status WritePng(const fs::path& path, const cv::Mat& image) {
-  std::vector<unsigned char> bytes;
-  if (!cv::imencode(".png", image, bytes, {cv::IMWRITE_PNG_COMPRESSION, 1})) return Unwritable(path);
-  return WriteBytes(path, bytes);
-}
-
 // Frames that an earlier sequence left would be read as part of this one. A folder that holds anything else stays.
 Status RemoveFrames(const fs::path& folder) {
   std::error_code error;
@@ -51,19 +31,6 @@ Status RemoveFrames(const fs::path& folder) {
   if (error) return Unwritable(folder);
   fs::remove(folder, error);
   return Status::Ok();
-}
-
-// CV_32FC1 mm -> CV_16UC1 steps of depth_scale_mm; 0 where there is none or it is out of range.
-cv::Mat QuantizeDepth(const cv::Mat& depth_mm, double depth_scale_mm) {
-  cv::Mat steps(depth_mm.size(), CV_16UC1);
-  for (int y = 0; y < depth_mm.rows; ++y) {
-    for (int x = 0; x < depth_mm.cols; ++x) {
-      const double value = std::round(depth_mm.at<float>(y, x) / depth_scale_mm);
-      steps.at<std::uint16_t>(y, x) =
-          value >= 1 && value <= native::kMaxDepthSteps ? static_cast<std::uint16_t>(value) : 0;
-    }
-  }
-  return steps;
 }
 
 }  // namespace

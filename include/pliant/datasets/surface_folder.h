@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Reads surface folders (docs/formats.md): the depth of every pixel of some frames.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <opencv2/core/mat.hpp>
+
+#include "pliant/base/status.h"
+#include "pliant/camera/camera.h"
+
+namespace pliant {
+
+namespace surface {
+inline constexpr const char* kSummaryFile = "surface.json";
+inline constexpr const char* kConfidenceFolder = "confidence";
+inline constexpr double kConfidenceUnit = 1.0 / 65535.0;  // of a standard deviation by the depth
+}  // namespace surface
+
+struct SurfaceFolder {
+  struct Frame {
+    int frame_idx = 0;
+    std::string file_name;  // in depth/ and confidence/
+  };
+
+  std::filesystem::path path;
+  Camera camera;
+  double depth_scale = 1;     // map units
+  std::vector<Frame> frames;  // that have a depth
+};
+
+struct SurfaceDepth {
+  cv::Mat depth;  // CV_32FC1, the camera's size, z along the optical axis, map units; 0 = none
+  cv::Mat sigma;  // CV_32FC1, by the depth
+};
+
+// Fails with kNotFound or kUnreadable.
+Result<SurfaceFolder> ReadSurfaceFolder(const std::filesystem::path& path);
+// Fails also with kMismatch where an image has not the camera's size.
+Result<SurfaceDepth> ReadSurfaceDepth(const SurfaceFolder& folder, const SurfaceFolder::Frame& frame);
+
+}  // namespace pliant

@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/datasets/png_file.h"
+
+#include <cmath>
+#include <cstdint>
+#include <fstream>
+#include <system_error>
+#include <vector>
+
+#include <opencv2/imgcodecs.hpp>
+
+#include "pliant/datasets/native_layout.h"
+
+namespace pliant {
+
+// Little compression: noise does not compress.
+Status WritePng(const std::filesystem::path& path, const cv::Mat& image) {
+  Status unwritable(ErrorCode::kUnwritable,
+                    "cannot write " + path.string() + "; is the folder writable and is there room on the disk?");
+  std::vector<unsigned char> bytes;
+  if (!cv::imencode(".png", image, bytes, {cv::IMWRITE_PNG_COMPRESSION, 1})) return unwritable;
+  std::ofstream file(path, std::ios::binary);
+  file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  file.close();
+  if (file) return Status::Ok();
+  std::error_code error;
+  std::filesystem::remove(path, error);  // half a file would be read as a damaged one
+  return unwritable;
+}
+
+cv::Mat QuantizeDepth(const cv::Mat& depth, double scale) {
+  cv::Mat steps(depth.size(), CV_16UC1);
+  for (int y = 0; y < depth.rows; ++y) {
+    for (int x = 0; x < depth.cols; ++x) {
+      const double value = std::round(depth.at<float>(y, x) / scale);
+      steps.at<std::uint16_t>(y, x) =
+          value >= 1 && value <= native::kMaxDepthSteps ? static_cast<std::uint16_t>(value) : 0;
+    }
+  }
+  return steps;
+}
+
+}  // namespace pliant

@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/datasets/surface_folder.h"
+
+#include <nlohmann/json.hpp>
+
+#include "datasets/image_file.h"
+#include "pliant/base/files.h"
+#include "pliant/base/text.h"
+#include "pliant/datasets/native_layout.h"
+#include "pliant/io/camera_file.h"
+
+namespace pliant {
+
+Result<SurfaceFolder> ReadSurfaceFolder(const std::filesystem::path& path) {
+  const std::string summary = (path / surface::kSummaryFile).string();
+  if (!Exists(summary))
+    return Status(ErrorCode::kNotFound, "there is no surface at " + Quoted(path.string()) +
+                                            " (no surface.json); give a folder that pliant surface left");
+  const auto camera = ReadCameraFile((path / native::kCameraFile).string());
+  if (!camera.ok()) return camera.status();
+  const auto text = ReadFile(summary);
+  if (!text.ok()) return text.status();
+  SurfaceFolder folder{path, camera->camera, camera->depth_scale.value_or(1.0), {}};
+  try {
+    const auto json = nlohmann::json::parse(*text);
+    if (json.at("status") == "interrupted" && !json.contains("frames"))
+      return Status(ErrorCode::kUnreadable,
+                    Quoted(summary) + " says that the surface was never finished; make it again");
+    for (const auto& frame : json.at("frames"))
+      if (frame.at("note").get<std::string>().empty())
+        folder.frames.push_back({frame.at("frame").get<int>(), frame.at("name").get<std::string>()});
+  } catch (const nlohmann::json::exception& error) {
+    return Status(ErrorCode::kUnreadable, Quoted(summary) + " is not a surface's: " + error.what());
+  }
+  return folder;
+}
+
+Result<SurfaceDepth> ReadSurfaceDepth(const SurfaceFolder& folder, const SurfaceFolder::Frame& frame) {
+  SurfaceDepth result;
+  const auto read = [&](const char* kind, double unit, cv::Mat* image) -> Status {
+    const std::filesystem::path path = folder.path / kind / frame.file_name;
+    auto depth = ReadDepthImage(path, unit);
+    if (!depth.ok()) return depth.status();
+    if (depth->cols != folder.camera.width() || depth->rows != folder.camera.height())
+      return {ErrorCode::kMismatch, path.string() + " has not the size of the surface's camera.yaml"};
+    *image = *std::move(depth);
+    return Status::Ok();
+  };
+  if (Status status = read(native::kDepthFolder, folder.depth_scale, &result.depth); !status.ok()) return status;
+  if (Status status = read(surface::kConfidenceFolder, surface::kConfidenceUnit, &result.sigma); !status.ok())
+    return status;
+  return result;
+}
+
+}  // namespace pliant
