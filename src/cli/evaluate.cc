@@ -38,11 +38,14 @@ const Manual kManual = {
     "model), after one scale a frame. --other_run compares them with another run of the same recording, at the same "
     "pixels: two runs that were begun at different frames (pliant track --start), or with different seeds, and that "
     "do not agree are not both right. Neither needs a sequence with truth, so --sequence may be left out then.\n\n"
+    "--surface compares the dense depths of pliant surface with the depth images of the sequence, beside an "
+    "interpolation of the run's points at the same pixels.\n\n"
     "Leaves, where --output_path is given: evaluation.json (every figure) and evaluation.csv (one row a frame). "
     "pliant compare sets several runs side by side.",
     {"pliant evaluate --run run --sequence colon",
      "pliant evaluate --run run --sequence clip.mp4 --camera stereo.yaml --scale none",
      "pliant evaluate --run run --sequence colon --protocol all --scale global --output_path run/evaluation",
+     "pliant evaluate --run run --surface surface --sequence colon",
      "pliant evaluate --run run --other_run run_begun_at_20"},
 };
 
@@ -51,6 +54,7 @@ struct Request {
   std::string sequence_path;
   std::string camera_path;
   std::string sfm_path;
+  std::string surface_path;
   std::vector<std::string> other_runs;
 };
 
@@ -67,7 +71,9 @@ Result<Evaluation> EvaluateAll(const Request& request, const EvaluationOptions& 
     if (!opened.ok()) return opened.status();
     sfm = *std::move(opened);
   }
-  return EvaluateRun(request.run_path, {truth ? &*truth : nullptr, sfm ? &*sfm : nullptr, request.other_runs}, options);
+  return EvaluateRun(request.run_path,
+                     {truth ? &*truth : nullptr, sfm ? &*sfm : nullptr, request.other_runs, request.surface_path},
+                     options);
 }
 
 }  // namespace
@@ -87,6 +93,8 @@ int EvaluateCommand(std::span<const std::string> args) {
       "sfm_path", &request.sfm_path, "PATH",
       "points of structure from motion: a CSV, or the folder of a COLMAP model; else sfm_points.csv of the sequence",
       Need::kOptional);
+  line.Add("surface", &request.surface_path, "DIR", "surface that pliant surface made of the run: its error too",
+           Need::kOptional);
   AddEvaluationArguments(&line, &request.camera_path);
   line.Add("output_path", &output_path, "DIR", "folder for the JSON and CSV files", Need::kOptional);
   line.AddFlag("quiet", &quiet, "print no table");

@@ -38,6 +38,7 @@ constexpr std::array kCommands = {
     Command{"import", "make a run, or a sequence's truth, of another program's result: COLMAP, TUM, KITTI, EuRoC",
             ImportCommand},
     Command{"refine", "solve for all frames of a run at once", RefineCommand},
+    Command{"surface", "dense depth of every frame of a run", SurfaceCommand},
     Command{"export", "write a run in other programs' formats: COLMAP, PLY, TUM", ExportCommand},
     Command{"report", "show runs: a page for the browser, figures, films", ReportCommand},
     Command{"model", "check a COLMAP model, or convert it between text and binary", ModelCommand},

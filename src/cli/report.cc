@@ -11,6 +11,7 @@
 
 #include "cli/command_line.h"
 #include "cli/commands.h"
+#include "cli/frame_list.h"
 #include "cli/interrupt.h"
 #include "cli/progress.h"
 #include "pliant/base/text.h"
@@ -64,13 +65,9 @@ Kind KindOf(const ReportArguments& arguments) {
 // Nothing, or what is wrong with the command line.
 std::string CheckArguments(const ReportArguments& arguments, std::vector<int>* frames_idx) {
   if (!arguments.figure.empty() && arguments.video) return "--figure and --video are two files; give one of them";
-  for (const std::string_view field : Split(arguments.figure, ',')) {
-    if (arguments.figure.empty()) break;
-    int frame_idx = 0;
-    if (!ParseInt(field, &frame_idx) || frame_idx < 0)
-      return "--figure is '" + arguments.figure + "'; give frame numbers with commas between them";
-    frames_idx->push_back(frame_idx);
-  }
+  const auto frames = ParseFrameList(arguments.figure);
+  if (!frames) return "--figure is '" + arguments.figure + "'; give frame numbers with commas between them";
+  *frames_idx = *frames;
   const Kind kind = KindOf(arguments);
   const std::string ending = std::filesystem::path(arguments.output_path).extension().string();
   if (std::find(kind.endings.begin(), kind.endings.end(), ending) != kind.endings.end()) return "";

@@ -50,6 +50,19 @@ Status AddSfm(const EvaluationInput& run, const RunReferences& references, const
   return Status::Ok();
 }
 
+Status AddDense(const EvaluationInput& run, const RunReferences& references, const EvaluationOptions& options,
+                Evaluation* evaluation) {
+  if (references.surface_path.empty()) return Status::Ok();
+  if (references.truth == nullptr)
+    return {ErrorCode::kNotFound, "a surface is compared with the depth images of a sequence; give --sequence"};
+  const auto surface = ReadSurfaceFolder(references.surface_path);
+  if (!surface.ok()) return surface.status();
+  auto dense = ComputeDenseError(*surface, run, *references.truth->sequence, options.points.scale);
+  if (!dense.ok()) return dense.status();
+  evaluation->dense = *std::move(dense);
+  return Status::Ok();
+}
+
 }  // namespace
 
 Result<OpenedTruth> OpenTruth(const SequenceRequest& request, const EvaluationOptions& options) {
@@ -88,6 +101,7 @@ Result<Evaluation> EvaluateRun(const std::string& run_path, const RunReferences&
                                                               : EvaluateWithoutTruth(*run, options);
   if (!evaluation.ok()) return evaluation;
   if (Status status = AddSfm(*run, references, options, &*evaluation); !status.ok()) return status;
+  if (Status status = AddDense(*run, references, options, &*evaluation); !status.ok()) return status;
   if (references.other_runs.empty()) return evaluation;
   const Result<int> width_px = WidthPx(*run, references.truth);
   if (!width_px.ok()) return width_px.status();

@@ -82,6 +82,27 @@ Json ToJson(const UncertaintyError& e) {
       {"sparsification", {{"area", e.area}, {"oracle_area", e.oracle_area}, {"curve", e.curve}, {"oracle", e.oracle}}}};
 }
 
+Json ToJson(const DepthFigures& f) {
+  return {{"abs_rel", f.abs_rel},         {"sq_rel_mm", f.sq_rel_mm},      {"rmse_mm", f.rmse_mm},
+          {"rmse_log", f.rmse_log},       {"below_1.25", f.below[0]},      {"below_1.25_2", f.below[1]},
+          {"below_1.25_3", f.below[2]},   {"within_1_mm", f.within_mm[0]}, {"within_2_mm", f.within_mm[1]},
+          {"within_5_mm", f.within_mm[2]}};
+}
+
+Json ToJson(const DenseError& e) {
+  return {{"frames_compared", e.frames},
+          {"known_share", e.known_share},
+          {"complete_1_mm", e.complete_mm[0]},
+          {"complete_2_mm", e.complete_mm[1]},
+          {"complete_5_mm", e.complete_mm[2]},
+          {"within_1_sigma", e.within_1_sigma},
+          {"within_2_sigma", e.within_2_sigma},
+          {"estimate", ToJson(e.estimate)},
+          {"certain_half", ToJson(e.certain_half)},
+          {"interpolation", ToJson(e.interpolation)},
+          {"null", ToJson(e.null)}};
+}
+
 Json ToJson(const DriftFigures& d) {
   return {{"points_px", d.points_px},
           {"rmse_px", d.rmse_px},
@@ -236,6 +257,7 @@ Json ToJson(const Evaluation& evaluation) {
           {"first_map", evaluation.first_map ? ToJson(*evaluation.first_map) : Json()},
           {"reprojection", evaluation.reprojection ? ToJson(*evaluation.reprojection) : Json()},
           {"sfm", evaluation.sfm ? ToJson(*evaluation.sfm) : Json()},
+          {"dense", evaluation.dense ? ToJson(*evaluation.dense) : Json()},
           {"consistency", ToJson(evaluation.consistency)},
           {"survival", ToJson(evaluation.survival)},
           {"run_seconds", evaluation.run_seconds ? Json(*evaluation.run_seconds) : Json()},

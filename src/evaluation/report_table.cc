@@ -54,6 +54,23 @@ std::string UncertaintyTable(const UncertaintyError& e) {
              100 * e.median_sigma, e.curve[UncertaintyError::kSteps / 2], e.oracle[UncertaintyError::kSteps / 2]);
 }
 
+std::string DenseRow(const char* what, const DepthFigures& f) {
+  return FormatText("  %-26s %8.4f %8.3f %8.3f %8.4f %7.1f %7.1f %7.1f\n", what, f.abs_rel, f.sq_rel_mm, f.rmse_mm,
+                    f.rmse_log, 100 * f.within_mm[0], 100 * f.within_mm[1], 100 * f.within_mm[2]);
+}
+
+std::string DenseTable(const DenseError& e) {
+  return FormatText("dense depth (%d frames; %.1f %% of the pixels with a true depth are known)\n", e.frames,
+                    100 * e.known_share) +
+         FormatText("  %-26s %8s %8s %8s %8s %7s %7s %7s\n", "", "AbsRel", "SqRel", "RMSE", "log", "<1 mm", "<2",
+                    "<5 %") +
+         DenseRow("surface", e.estimate) + DenseRow("  its more certain half", e.certain_half) +
+         DenseRow("points, interpolated", e.interpolation) + DenseRow("one constant depth", e.null) +
+         FormatText("  known to 1, 2, 5 mm: %.1f, %.1f, %.1f %%; within 1 sigma %.1f %%, 2 sigma %.1f %%\n",
+                    100 * e.complete_mm[0], 100 * e.complete_mm[1], 100 * e.complete_mm[2], 100 * e.within_1_sigma,
+                    100 * e.within_2_sigma);
+}
+
 std::string MaterialTable(const MaterialError& e) {
   std::string text = PointTable("material error", e.error);
   const DriftFigures& d = e.drift;
@@ -152,6 +169,7 @@ std::string EvaluationTable(const Evaluation& evaluation) {
   std::string text = "run " + evaluation.run + "\n";
   if (evaluation.surface) text += PointTable("surface error", *evaluation.surface);
   if (evaluation.uncertainty) text += UncertaintyTable(*evaluation.uncertainty);
+  if (evaluation.dense) text += DenseTable(*evaluation.dense);
   if (evaluation.material) text += MaterialTable(*evaluation.material);
   if (evaluation.trajectory) text += TrajectoryTable(*evaluation.trajectory);
   if (evaluation.first_map) text += FirstMapTable(*evaluation.first_map);

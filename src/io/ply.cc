@@ -29,4 +29,28 @@ Status WritePly(const std::string& path, std::span<const NewPoint> points, std::
   return file->Close();
 }
 
+Status WritePly(const std::string& path, const Mesh& mesh) {
+  auto file = OutputFile::Create(path);
+  if (!file.ok()) return file.status();
+  std::string out = "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(mesh.vertices.size()) +
+                    "\nproperty float x\nproperty float y\nproperty float z\nproperty float nx\nproperty float ny\n"
+                    "property float nz\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n"
+                    "property float sigma\nelement face " +
+                    std::to_string(mesh.triangles.size()) + "\nproperty list uchar int vertex_indices\nend_header\n";
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+    for (const float coordinate : mesh.vertices[v]) AppendFloat(&out, coordinate);
+    for (const float coordinate : mesh.normals[v]) AppendFloat(&out, coordinate);
+    for (const std::uint8_t channel : mesh.rgb[v]) AppendBytes(&out, channel, 1);
+    AppendFloat(&out, mesh.sigmas[v]);
+    if (Status status = file->AppendWhenLarge(&out); !status.ok()) return status;
+  }
+  for (const auto& triangle : mesh.triangles) {
+    AppendBytes(&out, 3, 1);
+    for (const std::int32_t v : triangle) AppendBytes(&out, static_cast<std::uint32_t>(v), 4);
+    if (Status status = file->AppendWhenLarge(&out); !status.ok()) return status;
+  }
+  if (Status status = file->Append(out); !status.ok()) return status;
+  return file->Close();
+}
+
 }  // namespace pliant

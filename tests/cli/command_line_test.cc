@@ -12,6 +12,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "cli/frame_list.h"
+
 namespace pliant::cli {
 enum class Fruit { kApple, kPear };
 }
@@ -221,6 +223,14 @@ TEST(CommandLine, AProgramThatDoesOneThingSpeaksUnderItsOwnName) {
   EXPECT_EQ(line.UsageError("no fruit"), kExitUsage);
   EXPECT_EQ(line.Failure("no knife"), kExitFailed);
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "peeler: no fruit\npeeler: no knife\n");
+}
+
+TEST(FrameList, HasNumbersAndRanges) {
+  using testing::ElementsAre;
+  EXPECT_THAT(*ParseFrameList("10,3,20-23"), ElementsAre(10, 3, 20, 21, 22, 23));
+  EXPECT_TRUE(ParseFrameList("")->empty());
+  for (const char* wrong : {"a", "1,,2", "5-3", "-1", "1-2-3", "1.5", "1-", "0-99999999"})
+    EXPECT_FALSE(ParseFrameList(wrong)) << wrong;
 }
 
 }  // namespace

@@ -2,14 +2,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The tables of the grids of scenes and choices.
 
-usage: tables_test.py tables|before_and_after|choices PLIANT
+usage: tables_test.py tables|before_and_after|dense_depths|choices PLIANT
 """
 
 import os
 
 from support import experiment_modules, main
 
-experiment_modules("simulated_colon", "regularizers", "refinement")
+experiment_modules("simulated_colon", "regularizers", "refinement", "surface")
 
 
 def tables(folder):
@@ -69,6 +69,34 @@ def before_and_after(folder):
     assert len(grid.read_rows(folder / "table.csv")) == 4
 
 
+def dense_depths(folder):
+    """A row a run in the CSV; medians over the seeds that have a depth in the table."""
+    import json
+
+    import dense
+    import grid
+
+    runs = grid.Grid({"sets": "dm", "set_options": {"dm": ""}, "variants": "online", "seeds": "1, 2, 3",
+                      "variant_options": {"online": ""}, "cells": "5:2.5"})
+    for seed, rmse in ((1, 0.4), (2, 0.6), (3, None)):
+        path = folder / f"runs/online/dm_A5_w2.5_s{seed}/dense"
+        (path / "surface").mkdir(parents=True)
+        figures = {"rmse_mm": rmse, "abs_rel": 0.01}
+        evaluation = {"surface": {"estimate": {"mean_rmse_mm": 0.5}},
+                      "dense": {"known_share": 0.8, "estimate": figures, "certain_half": figures,
+                                "interpolation": figures, "null": figures, "within_1_sigma": 0.7,
+                                "within_2_sigma": 0.95}} if rmse else {}
+        (path / "evaluation.json").write_text(json.dumps(evaluation), encoding="utf-8")
+        (path / "surface/surface.json").write_text(json.dumps({"frames": [{"seconds": 1.0}, {"seconds": 1.4}]}),
+                                                   encoding="utf-8")
+    os.chdir(folder)
+    dense.write(runs, folder / "table.md", folder / "table.csv")
+    line = (folder / "table.md").read_text(encoding="utf-8").splitlines()[2]
+    assert line == ("| dm | 5 | 2.5 | online | 2 of 3 | 0.50 | 80 | 0.50 | 1.00 | 0.50 | 0.50 | 1.00 | 1.0 | 70 | 95 | "
+                    "1.2 |"), line
+    assert len(grid.read_rows(folder / "table.csv")) == 2
+
+
 def choices(folder):
     """A choice is compared with the default of its own start, in the cells where it tracked about as many frames."""
     import choices as table
@@ -98,4 +126,4 @@ def choices(folder):
 
 
 if __name__ == "__main__":
-    main(tables, before_and_after, choices)
+    main(tables, before_and_after, dense_depths, choices)

@@ -44,10 +44,12 @@ struct RunReferences {
   const OpenedTruth* truth = nullptr;            // of the run's sequence
   const SfmPoints* sfm = nullptr;                // else those of `truth`
   std::span<const std::string> other_runs = {};  // folders of runs of the same recording
+  std::string surface_path = {};                 // folder of a surface that was made of the run; empty: none
 };
 
-// The same with what there is. Fails also as EvaluateWithoutTruth, AddSfmError (`references.sfm`; those of the sequence
-// leave a note) and AddConsistency, and with kNotFound where neither run nor sequence says how large the images are.
+// The same with what there is. Fails also as ReadSurfaceFolder, ComputeDenseError, EvaluateWithoutTruth, AddSfmError
+// (`references.sfm`; those of the sequence leave a note) and AddConsistency, and with kNotFound where neither run nor
+// sequence says how large the images are.
 Result<Evaluation> EvaluateRun(const std::string& run_path, const RunReferences& references,
                                const EvaluationOptions& options);
 

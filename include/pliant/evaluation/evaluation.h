@@ -15,6 +15,7 @@
 #include "pliant/base/options.h"
 #include "pliant/base/status.h"
 #include "pliant/datasets/sequence.h"
+#include "pliant/evaluation/dense_error.h"
 #include "pliant/evaluation/first_map_error.h"
 #include "pliant/evaluation/material_error.h"
 #include "pliant/evaluation/point_error.h"
@@ -72,12 +73,13 @@ struct Evaluation {
   std::optional<ReprojectionError> reprojection;  // where it has points
   std::optional<RelativeDepthError> sfm;          // where there are points of structure from motion
   std::vector<RunConsistency> consistency;        // with the other runs that were given
+  std::optional<DenseError> dense;                // of the surface that was made of the run, where one was given
   TrackSurvival survival;
   std::optional<double> run_seconds;  // that the run took, where it says so
   std::vector<std::string> notes;     // why a part is missing, what was left out; one sentence each
 };
 
-// All but `sfm` and `consistency`, which AddSfmError and AddConsistency add.
+// All but `sfm`, `dense` and `consistency`, which are added where they are asked for.
 // `sequence` is used for its truth alone: open it without start, end and stride. `material` is the truth of its
 // material, not null, or why there is none; `surface` that of its surface, null for its depth images. Fails with
 // kMismatch when run and sequence do not belong together (CheckBelongsTo), kInsufficient when no frame was tracked,

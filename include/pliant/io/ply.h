@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Colored points as a PLY file (binary, little-endian; x y z float, red green blue uchar, and, where it is
+// Colored points, or a mesh, as a PLY file (binary, little-endian; x y z float, red green blue uchar, and, where it is
 // known, sigma float: the standard deviation of a point's distance from the camera), which MeshLab, CloudCompare
 // and Open3D open.
 #pragma once
@@ -11,10 +11,15 @@
 
 #include "pliant/base/status.h"
 #include "pliant/scene/frame_report.h"
+#include "pliant/scene/mesh.h"
 
 namespace pliant {
 
 // `sigmas` has one entry a point, 0 where it is not known, or none. Fails with kUnwritable.
 Status WritePly(const std::string& path, std::span<const NewPoint> points, std::span<const double> sigmas = {});
+
+// A mesh: beside that of a point, nx ny nz float of every vertex, and faces as lists of vertex_indices. Fails with
+// kUnwritable.
+Status WritePly(const std::string& path, const Mesh& mesh);
 
 }  // namespace pliant

@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// A dense depth against the true one, by the figures of the literature on depth (Eigen, Puhrsch and Fergus, NIPS 2014),
+// over the pixels that have both. Beside them the same pixels by what the run's points alone say, and by one depth.
+#pragma once
+
+#include <array>
+
+#include "pliant/base/status.h"
+#include "pliant/datasets/sequence.h"
+#include "pliant/datasets/surface_folder.h"
+#include "pliant/evaluation/protocol.h"
+#include "pliant/evaluation/run_input.h"
+
+namespace pliant {
+
+// Means over the frames; x the depth after its scale, y the true one, mm.
+struct DepthFigures {
+  double abs_rel = 0;                    // mean |x - y| / y
+  double sq_rel_mm = 0;                  // mean (x - y)^2 / y
+  double rmse_mm = 0;                    // root mean (x - y)^2
+  double rmse_log = 0;                   // root mean log(x / y)^2
+  std::array<double, 3> below = {};      // share with max(x / y, y / x) < 1.25, 1.25^2, 1.25^3
+  std::array<double, 3> within_mm = {};  // share with |x - y| < 1, 2, 5 mm
+};
+inline constexpr std::array kDepthBoundsMm = {1.0, 2.0, 5.0};
+
+struct DenseError {
+  int frames = 0;
+  double known_share = 0;                  // of the pixels with a true depth
+  std::array<double, 3> complete_mm = {};  // share of these that are known to 1, 2, 5 mm
+  DepthFigures estimate;
+  DepthFigures certain_half;   // of the pixels with the smaller sigmas
+  DepthFigures interpolation;  // a thin plate through the run's points, at the pixels of `estimate`
+  DepthFigures null;           // one constant depth there
+  double within_1_sigma = 0;   // shares of the pixels of `estimate`
+  double within_2_sigma = 0;
+};
+
+// `scale`: of each frame the median of y / x, one for all frames (the median of these), or none. `run` is the one that
+// the surface was made of. Fails with kMismatch where the surface's images are not the sequence's, kInsufficient where
+// no frame has both depths, and as Sequence and ReadSurfaceDepth.
+Result<DenseError> ComputeDenseError(const SurfaceFolder& surface, const EvaluationInput& run, const Sequence& sequence,
+                                     ErrorScale scale);
+
+}  // namespace pliant

@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// A run folder and its images in, a surface folder out (docs/formats.md): a depth image, its standard deviation and a
+// mesh for every chosen frame, by pliant/surface/dense_depth.h.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "pliant/base/options.h"
+#include "pliant/base/status.h"
+#include "pliant/image/masks.h"
+#include "pliant/surface/dense_depth.h"
+
+namespace pliant {
+
+struct SurfaceRunOptions {
+  DenseDepthOptions depth;
+  MaskOptions masks;
+  int neighbors = 6;               // other images that a frame is compared with
+  double min_common_points = 0.5;  // of the frame's points, that a neighbor has too
+  double max_parallax_deg = 15;    // in the median of these
+  int mesh_step_px = 4;            // of the mesh's vertices; 0: no mesh
+  int threads = 0;                 // 0: as many as the machine has
+
+  void List(OptionTable& table);  // groups "Surface", "Masks"
+};
+
+struct SurfaceRequest {
+  std::string run_path;
+  std::string sequence_path;                // the run's images; empty: those that its run.json names
+  std::string camera_path;                  // their calibration; empty: the one that belongs to them
+  std::string mask_path;                    // as of a SequenceRequest
+  std::string output_path;                  // a folder, made if need be
+  std::vector<int> frames = {};             // numbers in the sequence; empty: all that were tracked
+  std::vector<std::string> command_line;    // for surface.json
+  const std::atomic<bool>* stop = nullptr;  // becomes true when no more frames are wanted; may be null
+};
+
+struct SurfaceFrame {
+  int frame_idx = 0;
+  std::string name;
+  std::vector<int> neighbors;  // frames
+  double known_share = 0;      // of the image's valid pixels, that have a depth
+  double median_sigma = 0;     // of these, by the depth
+  double seconds = 0;
+  std::string note;  // why it has no depth, one sentence; else empty
+};
+
+struct SurfaceSummary {
+  std::vector<SurfaceFrame> frames;
+  bool stopped = false;
+};
+
+// Called after each frame, with how many there are to be.
+using SurfaceProgress = std::function<void(const SurfaceFrame&, int done, int total)>;
+
+// Frames are written as they are done, each whole or not at all. Fails with kNotFound, kUnreadable or kMismatch for a
+// run or images that cannot be read or do not belong together, kInsufficient where no chosen frame was tracked or has a
+// depth, kUnwritable.
+Result<SurfaceSummary> MakeSurface(const SurfaceRequest& request, const SurfaceRunOptions& options,
+                                   const SurfaceProgress& callback);
+
+}  // namespace pliant

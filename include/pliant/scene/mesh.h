@@ -1,0 +1,23 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// A triangle mesh with what is known of its vertices.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace pliant {
+
+struct Mesh {
+  std::vector<Eigen::Vector3f> vertices;
+  std::vector<Eigen::Vector3f> normals;          // a vertex each, of unit length
+  std::vector<std::array<std::uint8_t, 3>> rgb;  // a vertex each
+  std::vector<float> sigmas;                     // a vertex each: standard deviation of the distance from the camera
+  std::vector<std::array<std::int32_t, 3>> triangles;  // indices of vertices
+};
+
+}  // namespace pliant

@@ -1,0 +1,79 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include <iostream>
+
+#include "cli/command_line.h"
+#include "cli/commands.h"
+#include "cli/frame_list.h"
+#include "cli/interrupt.h"
+#include "cli/progress.h"
+#include "pliant/base/text.h"
+#include "pliant/pipeline/surface_run.h"
+
+namespace pliant::cli {
+namespace {
+
+const Manual kManual = {
+    "surface",
+    "dense depth of every frame of a run",
+    "Reads --run: a run folder that pliant track or pliant refine left, and its images. The depth at every pixel is "
+    "found "
+    "by comparing the frame with others, which are seen through the deformation: a point moves as the tracked points "
+    "around it.\n\n"
+    "Leaves in --output_path depth/ (16-bit PNG, times depth_scale of camera.yaml, map units; 0: not known), "
+    "confidence/ "
+    "(standard deviation by the depth, times 65535) and surface.json. Where images say nothing of the depth "
+    "(highlights, no texture, unseen from elsewhere) there is none.",
+    {"pliant surface --run run --output_path surface",
+     "pliant surface --run run --frames 10,20,30 --output_path surface"},
+};
+
+}  // namespace
+
+int SurfaceCommand(std::span<const std::string> args) {
+  SurfaceRequest request;
+  SurfaceRunOptions options;
+  std::string frames;
+  bool quiet = false;
+  CommandLine line(kManual);
+  line.Add("run", &request.run_path, "DIR", "run folder", Need::kRequired);
+  line.Add("output_path", &request.output_path, "DIR", "folder to write, made if need be", Need::kRequired);
+  line.Add("sequence", &request.sequence_path, "PATH", "the run's images; without it those that its run.json names",
+           Need::kOptional);
+  line.Add("camera", &request.camera_path, "FILE", "their calibration; without it the one that belongs to them",
+           Need::kOptional);
+  line.Add("mask_path", &request.mask_path, "PATH", "folder of masks, or one image for all frames (0 = ignore)",
+           Need::kOptional);
+  line.Add("frames", &frames, "FRAMES", "their numbers, with commas; 10-20 are all from 10 to 20; without it all",
+           Need::kOptional);
+  line.AddFlag("quiet", &quiet, "say nothing but errors");
+  if (const auto exit = line.Parse(args)) return *exit;
+  OptionTable table;
+  options.List(table);
+  if (const auto exit = line.Resolve(table)) return *exit;
+
+  const auto chosen = ParseFrameList(frames);
+  if (!chosen) {
+    SayError(kManual.command, "--frames is '" + frames + "'; give frame numbers with commas between them");
+    return kExitUsage;
+  }
+  request.frames = *chosen;
+  request.command_line = {"pliant", "surface"};
+  request.command_line.insert(request.command_line.end(), args.begin(), args.end());
+  request.stop = &StopOnSignals();
+  const auto summary = [&] {
+    Progress progress(std::cerr, quiet ? ProgressStyle::kQuiet : ProgressStyleOfStandardError(), "surface", 0);
+    return MakeSurface(request, options, [&](const SurfaceFrame& frame, int done, int) {
+      progress.Update(done, Digits(100.0 * frame.known_share, 0) + " % known");
+    });
+  }();
+  if (!summary.ok()) {
+    SayError(kManual.command, summary.status().message());
+    return kExitFailed;
+  }
+  if (!quiet) std::cout << request.output_path << std::endl;
+  return kExitOk;
+}
+
+}  // namespace pliant::cli

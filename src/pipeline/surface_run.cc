@@ -1,0 +1,279 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/pipeline/surface_run.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstddef>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <set>
+#include <thread>
+#include <utility>
+
+#include <opencv2/core.hpp>
+
+#include "pipeline/surface_neighbors.h"
+#include "pipeline/surface_writer.h"
+#include "pliant/base/statistics.h"
+#include "pliant/base/text.h"
+#include "pliant/datasets/run_sequence.h"
+#include "pliant/io/run_map.h"
+#include "pliant/io/run_reader.h"
+#include "pliant/surface/depth_mesh.h"
+
+namespace pliant {
+namespace {
+
+Result<std::vector<PosedFrame>> ReadPosedFrames(const std::string& path, const Run& run) {
+  std::vector<PosedFrame> frames;
+  std::vector<int> frames_idx;
+  for (const RunPose& pose : run.poses) {
+    if (!pose.frame_idx)
+      return Status(ErrorCode::kMismatch, Quoted(path) +
+                                              " has no frames.csv, so it is another program's; make it a run with "
+                                              "pliant import --format result");
+    frames_idx.push_back(*pose.frame_idx);
+    frames.push_back({*pose.frame_idx, pose.submap, pose.world_from_cam.Inverse(), {}});
+  }
+  const Status status = ForEachFrame(path, frames_idx, [&](std::size_t k, const auto& observations) {
+    frames[k].observations = observations;
+    std::ranges::sort(frames[k].observations, {}, &PointObservation::id);
+    return Status::Ok();
+  });
+  if (!status.ok()) return status;
+  return frames;
+}
+
+// Which frames are to be done, and when: a frame is done when the last of its images has been read.
+struct Plan {
+  std::vector<std::size_t> references;              // in the order in which they can be done
+  std::vector<std::vector<std::size_t>> neighbors;  // one list each
+  std::map<std::size_t, std::size_t> last_use;      // of an image, by its position: in `references`
+};
+
+std::size_t LastImage(std::size_t reference, const std::vector<std::size_t>& neighbors) {
+  std::size_t last = reference;
+  for (const std::size_t n : neighbors) last = std::max(last, n);
+  return last;
+}
+
+Plan MakePlan(const std::vector<PosedFrame>& frames, const SurfaceRequest& request, const SurfaceRunOptions& options) {
+  std::vector<std::pair<std::size_t, std::vector<std::size_t>>> wanted;
+  const std::set<int> chosen(request.frames.begin(), request.frames.end());
+  for (std::size_t i = 0; i < frames.size(); ++i)
+    if (chosen.empty() || chosen.contains(frames[i].frame_idx))
+      wanted.emplace_back(i, ChooseNeighbors(frames, i, options));
+  std::ranges::stable_sort(wanted, {}, [](const auto& entry) { return LastImage(entry.first, entry.second); });
+  Plan plan;
+  for (auto& [reference, neighbors] : wanted) {
+    for (const std::size_t n : neighbors) plan.last_use[n] = plan.references.size();
+    plan.last_use[reference] = plan.references.size();
+    plan.references.push_back(reference);
+    plan.neighbors.push_back(std::move(neighbors));
+  }
+  return plan;
+}
+
+// The images of a run's frames, read in order, kept as long as they are needed.
+class Images {
+ public:
+  Images(std::unique_ptr<Sequence> sequence, const std::vector<PosedFrame>& frames, const RunMap& known,
+         const MaskOptions& masks)
+      : sequence_(std::move(sequence)), frames_(frames), known_(known), masks_(masks) {}
+
+  // Reads up to the frame at `position`, keeping those that `plan` needs. Fails as Sequence, and with kMismatch where
+  // the images end before it.
+  Status ReadUntil(std::size_t position, const Plan& plan) {
+    while (next_ <= position) {
+      auto read = sequence_->Next();
+      if (!read.ok()) return read.status();
+      if (!read->has_value())
+        return {ErrorCode::kMismatch, "the images end before frame " + std::to_string(frames_[next_].frame_idx) +
+                                          " of the run; are they those that were tracked?"};
+      const SequenceFrame& frame = **read;
+      if (frame.frame_idx < frames_[next_].frame_idx) continue;
+      if (frame.frame_idx > frames_[next_].frame_idx)
+        return {ErrorCode::kMismatch, "the images have no frame " + std::to_string(frames_[next_].frame_idx) +
+                                          " of the run; are they those that were tracked?"};
+      if (Status status = CheckIsOfRun(frame); !status.ok()) return status;
+      if (plan.last_use.contains(next_))
+        views_[next_] = {frame.image, ValidMask(frame.image, frame.mask, masks_), frames_[next_].cam_from_world,
+                         frames_[next_].observations};
+      ++next_;
+    }
+    return Status::Ok();
+  }
+
+  const SurfaceView& At(std::size_t position) const { return views_.at(position); }
+
+  void Forget(const Plan& plan, std::size_t done) {
+    std::erase_if(views_, [&](const auto& entry) { return plan.last_use.at(entry.first) <= done; });
+  }
+
+ private:
+  Status CheckIsOfRun(const SequenceFrame& frame) const {
+    const std::string number = std::to_string(frame.frame_idx);
+    if (frame.image.cols != known_.camera->width() || frame.image.rows != known_.camera->height())
+      return {ErrorCode::kMismatch, "image " + frame.name +
+                                        " has not the size of the run's camera; are the images "
+                                        "those that were tracked?"};
+    const auto name = known_.names.find(frame.frame_idx);
+    if (name != known_.names.end() && !frame.name.empty() && name->second != frame.name)
+      return {ErrorCode::kMismatch, "frame " + number + " of the run is image " + name->second + ", and here it is " +
+                                        frame.name + "; are the images those that were tracked?"};
+    return Status::Ok();
+  }
+
+  std::unique_ptr<Sequence> sequence_;
+  const std::vector<PosedFrame>& frames_;
+  const RunMap& known_;
+  const MaskOptions& masks_;
+  std::map<std::size_t, SurfaceView> views_;
+  std::size_t next_ = 0;
+};
+
+void Describe(const DenseDepth& dense, const cv::Mat& valid, SurfaceFrame* frame) {
+  std::vector<double> sigmas;
+  for (int y = 0; y < dense.sigma.rows; ++y)
+    for (int x = 0; x < dense.sigma.cols; ++x)
+      if (const float sigma = dense.sigma.at<float>(y, x); sigma > 0.0F) sigmas.push_back(sigma);
+  frame->known_share = static_cast<double>(sigmas.size()) / std::max(1, cv::countNonZero(valid));
+  if (!sigmas.empty()) frame->median_sigma = Median(sigmas);
+}
+
+int ThreadsOf(const SurfaceRunOptions& options) {
+  return options.threads > 0 ? options.threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+Result<DenseDepthEstimator> MakeEstimator(const Camera& camera, const Run& run, const SurfaceRunOptions& options) {
+  TrackedImage tracked;
+  if (run.summary) {
+    const RunDescription& description = run.summary->description;
+    tracked.working = {.scale = description.image_scale, .smoothing_px = description.image_smoothing_px};
+    if (description.patch_size > 0) tracked.patch_px = description.patch_size;
+    tracked.noise_levels = description.image_noise_levels;
+  }
+  return DenseDepthEstimator::Create(camera, tracked, options.depth, ThreadsOf(options));
+}
+
+// A bound on the depths of the run: no surface that was tracked is farther.
+double LargestDepth(const std::vector<PosedFrame>& frames) {
+  double largest = 0.0;
+  for (const PosedFrame& frame : frames)
+    for (const PointObservation& o : frame.observations)
+      largest = std::max(largest, (frame.cam_from_world * o.position).norm());
+  return 2.0 * largest;
+}
+
+class SurfaceMaker {
+ public:
+  SurfaceMaker(const SurfaceRequest& request, const SurfaceRunOptions& options, const SurfaceProgress& callback,
+               const Camera& camera, const DenseDepthEstimator& estimator, SurfaceWriter* writer)
+      : request_(request),
+        options_(options),
+        callback_(callback),
+        camera_(camera),
+        estimator_(estimator),
+        writer_(writer) {}
+
+  Result<SurfaceSummary> Make(const std::vector<PosedFrame>& frames, const Plan& plan, const RunMap& known,
+                              Images* images) {
+    SurfaceSummary summary;
+    for (std::size_t k = 0; k < plan.references.size(); ++k) {
+      if (request_.stop != nullptr && *request_.stop) {
+        summary.stopped = true;
+        break;
+      }
+      const std::size_t reference = plan.references[k];
+      if (Status status = images->ReadUntil(LastImage(reference, plan.neighbors[k]), plan); !status.ok()) return status;
+      SurfaceFrame frame;
+      frame.frame_idx = frames[reference].frame_idx;
+      if (const auto name = known.names.find(frame.frame_idx); name != known.names.end()) frame.name = name->second;
+      for (const std::size_t n : plan.neighbors[k]) frame.neighbors.push_back(frames[n].frame_idx);
+      if (Status status = MakeFrame(reference, plan.neighbors[k], *images, &frame); !status.ok()) return status;
+      images->Forget(plan, k);
+      summary.frames.push_back(frame);
+      if (callback_) callback_(frame, static_cast<int>(k) + 1, static_cast<int>(plan.references.size()));
+    }
+    std::ranges::sort(summary.frames, {}, &SurfaceFrame::frame_idx);
+    return summary;
+  }
+
+ private:
+  Status MakeFrame(std::size_t reference, const std::vector<std::size_t>& neighbors, const Images& images,
+                   SurfaceFrame* frame) {
+    const auto begin = std::chrono::steady_clock::now();
+    std::vector<SurfaceView> others;
+    for (const std::size_t n : neighbors) others.push_back(images.At(n));
+    const auto dense = estimator_.Estimate(images.At(reference), others);
+    frame->seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    if (!dense.ok()) {
+      frame->note = dense.status().message();
+      return Status::Ok();
+    }
+    Describe(*dense, images.At(reference).valid, frame);
+    if (Status status = writer_->Write(*frame, *dense); !status.ok() || options_.mesh_step_px == 0) return status;
+    return writer_->Write(*frame, MeshOfDepth(camera_, *dense, images.At(reference).image, options_.mesh_step_px));
+  }
+
+  const SurfaceRequest& request_;
+  const SurfaceRunOptions& options_;
+  const SurfaceProgress& callback_;
+  const Camera& camera_;
+  const DenseDepthEstimator& estimator_;
+  SurfaceWriter* writer_;
+};
+
+}  // namespace
+
+void SurfaceRunOptions::List(OptionTable& table) {
+  depth.List(table);
+  table.Add("neighbors", &neighbors, "", "other images that a frame is compared with", 1, 100);
+  table.Add("min_common_points", &min_common_points, "1", "of the frame's points, that a neighbor has too", 0.0, 1.0);
+  table.Add("max_parallax_deg", &max_parallax_deg, "deg", "of these, in the median", 0.1, 90.0);
+  table.Add("mesh_step_px", &mesh_step_px, "px", "between the vertices of a frame's mesh; 0: no mesh", 0, 1000);
+  table.Add("threads", &threads, "", "0: as many as the machine has; the result is the same", 0, 1024);
+  masks.List(table);
+}
+
+Result<SurfaceSummary> MakeSurface(const SurfaceRequest& request, const SurfaceRunOptions& options,
+                                   const SurfaceProgress& callback) {
+  const auto run = ReadRun(request.run_path);
+  if (!run.ok()) return run.status();
+  if (run->poses.empty())
+    return Status(ErrorCode::kInsufficient,
+                  "no frame of the run " + Quoted(request.run_path) + " was tracked; there is no surface to see");
+  SequenceRequest source = SequenceOfRun(request.run_path, request.sequence_path, request.camera_path);
+  source.mask_path = request.mask_path;
+  if (source.image_path.empty())
+    return Status(ErrorCode::kNotFound,
+                  Quoted(request.run_path) + " does not say which images it is of; name them with --sequence");
+  const auto known = KnownMapOfRun(request.run_path, source, *run);
+  if (!known.ok()) return known.status();
+  const auto frames = ReadPosedFrames(request.run_path, *run);
+  if (!frames.ok()) return frames.status();
+  const Plan plan = MakePlan(*frames, request, options);
+  if (plan.references.empty())
+    return Status(ErrorCode::kInsufficient, "none of the chosen frames was tracked in " + Quoted(request.run_path));
+  auto sequence = OpenSequence(source);
+  if (!sequence.ok()) return sequence.status();
+  const auto estimator = MakeEstimator(*known->camera, *run, options);
+  if (!estimator.ok()) return estimator.status();
+  auto writer = SurfaceWriter::Create(request.output_path, *known->camera, LargestDepth(*frames));
+  if (!writer.ok()) return writer.status();
+  Images images(*std::move(sequence), *frames, *known, options.masks);
+  auto summary = SurfaceMaker(request, options, callback, *known->camera, *estimator, &*writer)
+                     .Make(*frames, plan, *known, &images);
+  if (!summary.ok()) return summary.status();
+  if (Status status = writer->Finish(request, options, *summary); !status.ok()) return status;
+  if (std::ranges::none_of(summary->frames, [](const SurfaceFrame& frame) { return frame.known_share > 0.0; }))
+    return Status(ErrorCode::kInsufficient, summary->frames.empty() || summary->frames.front().note.empty()
+                                                ? "no frame has a depth: the images do not agree anywhere"
+                                                : "no frame has a depth: " + summary->frames.front().note);
+  return summary;
+}
+
+}  // namespace pliant

@@ -1,0 +1,113 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pipeline/surface_writer.h"
+
+#include <system_error>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "pliant/base/files.h"
+#include "pliant/base/text.h"
+#include "pliant/base/version.h"
+#include "pliant/datasets/native_layout.h"
+#include "pliant/datasets/png_file.h"
+#include "pliant/datasets/surface_folder.h"
+#include "pliant/io/camera_file.h"
+#include "pliant/io/ply.h"
+
+namespace pliant {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kMeshFolder = "mesh";
+
+Status Unwritable(const fs::path& path) {
+  return {ErrorCode::kUnwritable,
+          "cannot write " + path.string() + "; is the folder writable and is there room on the disk?"};
+}
+
+// An earlier surface's files. A folder that is not a surface's and not empty is left alone.
+Status RemoveEarlierSurface(const fs::path& path) {
+  std::error_code error;
+  if (!fs::exists(path, error) || fs::is_empty(path, error)) return Status::Ok();
+  if (!fs::exists(path / surface::kSummaryFile, error))
+    return {ErrorCode::kInvalidArgument,
+            Quoted(path.string()) + " holds something other than a surface; give another --output_path"};
+  for (const char* folder : {native::kDepthFolder, surface::kConfidenceFolder, kMeshFolder})
+    fs::remove_all(path / folder, error);
+  return error ? Unwritable(path) : Status::Ok();
+}
+
+// The image's name with the ending .png.
+std::string FileNameOf(const SurfaceFrame& frame) {
+  return frame.name.empty() ? native::FrameFileName(frame.frame_idx)
+                            : fs::path(frame.name).filename().replace_extension(".png").string();
+}
+
+}  // namespace
+
+Result<SurfaceWriter> SurfaceWriter::Create(const std::string& path, const Camera& camera, double largest_depth) {
+  const fs::path folder = path;
+  if (Status status = RemoveEarlierSurface(folder); !status.ok()) return status;
+  std::error_code error;
+  for (const char* kind : {native::kDepthFolder, surface::kConfidenceFolder}) {
+    fs::create_directories(folder / kind, error);
+    if (error) return Unwritable(folder / kind);
+  }
+  const double scale = largest_depth / native::kMaxDepthSteps;
+  if (Status status =
+          WriteCameraFile((folder / native::kCameraFile).string(), {.camera = camera, .depth_scale = scale});
+      !status.ok())
+    return status;
+  // What a surface that is killed leaves says that it is one.
+  if (Status status = WriteFileAtomically((folder / surface::kSummaryFile).string(), "{\"status\": \"interrupted\"}\n");
+      !status.ok())
+    return status;
+  return SurfaceWriter(folder, scale);
+}
+
+Status SurfaceWriter::Write(const SurfaceFrame& frame, const DenseDepth& dense) {
+  const std::string name = FileNameOf(frame);
+  if (Status status = WritePng(path_ / native::kDepthFolder / name, QuantizeDepth(dense.depth, depth_scale_));
+      !status.ok())
+    return status;
+  return WritePng(path_ / surface::kConfidenceFolder / name, QuantizeDepth(dense.sigma, surface::kConfidenceUnit));
+}
+
+Status SurfaceWriter::Write(const SurfaceFrame& frame, const Mesh& mesh) {
+  std::error_code error;
+  fs::create_directories(path_ / kMeshFolder, error);
+  if (error) return Unwritable(path_ / kMeshFolder);
+  return WritePly((path_ / kMeshFolder / fs::path(FileNameOf(frame)).replace_extension(".ply")).string(), mesh);
+}
+
+Status SurfaceWriter::Finish(const SurfaceRequest& request, const SurfaceRunOptions& options,
+                             const SurfaceSummary& summary) {
+  OptionTable table;
+  SurfaceRunOptions listed = options;
+  listed.List(table);
+  if (Status status = WriteFileAtomically((path_ / "config.yaml").string(), table.ToYaml()); !status.ok())
+    return status;
+  Json json = {{"program_version", kVersion},
+               {"command_line", request.command_line},
+               {"status", summary.stopped ? "interrupted" : "completed"},
+               {"run", fs::absolute(request.run_path).lexically_normal().string()},
+               {"depth_scale", depth_scale_},
+               {"frames", Json::array()}};
+  for (const SurfaceFrame& frame : summary.frames)
+    json["frames"].push_back({{"frame", frame.frame_idx},
+                              {"name", FileNameOf(frame)},
+                              {"neighbors", frame.neighbors},
+                              {"known_share", frame.known_share},
+                              {"median_sigma", frame.median_sigma},
+                              {"seconds", frame.seconds},
+                              {"note", frame.note}});
+  return WriteFileAtomically((path_ / surface::kSummaryFile).string(),
+                             json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+}
+
+}  // namespace pliant

@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Writes a surface folder (docs/formats.md), frame by frame.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "pliant/base/status.h"
+#include "pliant/camera/camera.h"
+#include "pliant/pipeline/surface_run.h"
+#include "pliant/scene/mesh.h"
+#include "pliant/surface/dense_depth.h"
+
+namespace pliant {
+
+class SurfaceWriter {
+ public:
+  // Makes the folder, removes frames of an earlier surface there and writes camera.yaml. Depths up to `largest_depth`,
+  // map units, can be written. Fails with kUnwritable, and kInvalidArgument where the folder holds something else.
+  static Result<SurfaceWriter> Create(const std::string& path, const Camera& camera, double largest_depth);
+
+  // Fail with kUnwritable.
+  Status Write(const SurfaceFrame& frame, const DenseDepth& dense);
+  Status Write(const SurfaceFrame& frame, const Mesh& mesh);
+  // surface.json.
+  Status Finish(const SurfaceRequest& request, const SurfaceRunOptions& options, const SurfaceSummary& summary);
+
+ private:
+  SurfaceWriter(std::filesystem::path path, double depth_scale) : path_(std::move(path)), depth_scale_(depth_scale) {}
+
+  std::filesystem::path path_;
+  double depth_scale_;
+};
+
+}  // namespace pliant

@@ -1,0 +1,99 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/evaluation/dense_error.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <opencv2/core.hpp>
+
+#include "pliant/datasets/png_file.h"
+#include "pliant/io/camera_file.h"
+#include "support/rendered_sequence.h"
+#include "support/test_folder.h"
+
+namespace pliant {
+namespace {
+
+constexpr double kDepthScale = 0.005;
+
+class DenseErrorTest : public testing::Test {
+ protected:
+  // A surface of frames 2 and 5: the true depth, changed. Sigma is 2 %, in the left half 1 %.
+  SurfaceFolder WriteSurface(const std::function<void(cv::Mat*)>& change) {
+    for (const char* kind : {"depth", "confidence"}) std::filesystem::create_directories(folder_.Path(kind));
+    EXPECT_TRUE(
+        WriteCameraFile(folder_.Path("camera.yaml"), {.camera = Rendered().camera, .depth_scale = kDepthScale}).ok());
+    std::string frames;
+    for (const int k : {2, 5}) {
+      cv::Mat depth = Rendered().frames[static_cast<std::size_t>(k)].depth.clone();
+      cv::Mat sigma(depth.size(), CV_32F, cv::Scalar(0.02));
+      sigma(cv::Rect(0, 0, depth.cols / 2, depth.rows)).setTo(0.01);
+      change(&depth);
+      const std::string name = std::to_string(k) + ".png";
+      EXPECT_TRUE(WritePng(folder_.Path("depth/" + name), QuantizeDepth(depth, kDepthScale)).ok());
+      EXPECT_TRUE(WritePng(folder_.Path("confidence/" + name), QuantizeDepth(sigma, surface::kConfidenceUnit)).ok());
+      frames += (frames.empty() ? "" : ", ") + std::string("{\"frame\": ") + std::to_string(k) + ", \"name\": \"" +
+                name + "\", \"note\": \"\"}";
+    }
+    folder_.Write("surface.json", "{\"status\": \"completed\", \"frames\": [" + frames + "]}");
+    auto read = ReadSurfaceFolder(folder_.Path("."));
+    EXPECT_TRUE(read.ok()) << read.status().message();
+    return *std::move(read);
+  }
+
+  TestFolder folder_;
+  RenderedSequence sequence_;
+};
+
+TEST_F(DenseErrorTest, TheTruthInAnotherUnitHasNone) {
+  const SurfaceFolder surface = WriteSurface([](cv::Mat* depth) { *depth *= 0.8; });
+  const auto error = ComputeDenseError(surface, {}, sequence_, ErrorScale::kPerFrame);
+  ASSERT_TRUE(error.ok()) << error.status().message();
+  EXPECT_EQ(error->frames, 2);
+  EXPECT_GT(error->known_share, 0.99);
+  EXPECT_LT(error->estimate.abs_rel, 1e-3);
+  EXPECT_LT(error->estimate.rmse_mm, 0.02);
+  EXPECT_EQ(error->estimate.below[0], 1.0);
+  EXPECT_EQ(error->within_1_sigma, 1.0);
+  EXPECT_GT(error->null.abs_rel, 0.02);
+}
+
+TEST_F(DenseErrorTest, WithoutAScaleTheUnitCounts) {
+  const SurfaceFolder surface = WriteSurface([](cv::Mat* depth) { *depth *= 0.75; });
+  const auto error = ComputeDenseError(surface, {}, sequence_, ErrorScale::kNone);
+  ASSERT_TRUE(error.ok());
+  EXPECT_NEAR(error->estimate.abs_rel, 0.25, 1e-3);
+  EXPECT_NEAR(error->estimate.rmse_log, -std::log(0.75), 1e-3);
+  EXPECT_EQ(error->estimate.below[0], 0.0);
+  EXPECT_EQ(error->within_2_sigma, 0.0);
+}
+
+TEST_F(DenseErrorTest, HolesAndTheUncertainHalfAreTold) {
+  const SurfaceFolder surface = WriteSurface([](cv::Mat* depth) {
+    (*depth)(cv::Rect(0, 0, depth->cols, depth->rows / 4)).setTo(0.0F);
+    (*depth)(cv::Rect(depth->cols * 3 / 4, 0, depth->cols / 4, depth->rows)) *= 1.1;  // of the less certain half
+  });
+  const auto error = ComputeDenseError(surface, {}, sequence_, ErrorScale::kPerFrame);
+  ASSERT_TRUE(error.ok());
+  EXPECT_NEAR(error->known_share, 0.75, 0.02);
+  EXPECT_LT(error->certain_half.abs_rel, 1e-3);
+  EXPECT_NEAR(error->estimate.abs_rel, 0.1 / 4, 0.003);
+  EXPECT_NEAR(error->within_2_sigma, 0.75, 0.03);
+  EXPECT_LT(error->complete_mm[1], 0.6);
+}
+
+TEST_F(DenseErrorTest, NeedsFramesAndFilesThatFit) {
+  SurfaceFolder surface = WriteSurface([](cv::Mat*) {});
+  SurfaceFolder none = surface;
+  none.frames.clear();
+  EXPECT_EQ(ComputeDenseError(none, {}, sequence_, ErrorScale::kPerFrame).status().code(), ErrorCode::kInsufficient);
+  EXPECT_TRUE(WritePng(folder_.Path("depth/2.png"), cv::Mat(20, 20, CV_16U, cv::Scalar(900))).ok());
+  EXPECT_EQ(ComputeDenseError(surface, {}, sequence_, ErrorScale::kPerFrame).status().code(), ErrorCode::kMismatch);
+  EXPECT_EQ(ReadSurfaceFolder(folder_.Path("depth")).status().code(), ErrorCode::kNotFound);
+  folder_.Write("surface.json", "{\"status\": \"interrupted\"}");
+  EXPECT_THAT(ReadSurfaceFolder(folder_.Path(".")).status().message(), testing::HasSubstr("never finished"));
+}
+
+}  // namespace
+}  // namespace pliant

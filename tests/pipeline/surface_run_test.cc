@@ -1,0 +1,123 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/pipeline/surface_run.h"
+
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <opencv2/imgcodecs.hpp>
+
+#include "pipeline/surface_neighbors.h"
+#include "support/small_run.h"
+#include "support/test_folder.h"
+
+namespace pliant {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+class SurfaceRunTest : public testing::Test {
+ protected:
+  Result<SurfaceSummary> Make(const std::string& sequence, std::vector<int> frames = {}) const {
+    SurfaceRequest request;
+    request.run_path = folder_.Path("run");
+    request.sequence_path = sequence;
+    request.output_path = folder_.Path("surface");
+    request.frames = std::move(frames);
+    return MakeSurface(request, {}, {});
+  }
+
+  static std::string FileName(int frame) { return std::to_string(frame) + ".png"; }
+
+  // Gray images of the run's frames and of those between, `count` of them.
+  std::string WriteImages(int count) const {
+    const std::string images = folder_.Path("images");
+    std::filesystem::create_directories(images);
+    for (int k = 0; k < count; ++k) cv::imwrite(images + "/" + FileName(k), cv::Mat(480, 640, CV_8U, cv::Scalar(90)));
+    folder_.Write("images/camera.yaml",
+                  "model: PINHOLE\nwidth: 640\nheight: 480\nparams: [500, 500, 319.5, 239.5]\nfps: 25\n");
+    return images;
+  }
+
+  TestFolder folder_;
+};
+
+TEST_F(SurfaceRunTest, SaysWhatIsMissing) {
+  EXPECT_EQ(Make("").status().code(), ErrorCode::kNotFound);
+  WriteRun(folder_);
+  EXPECT_THAT(Make(folder_.Path("nowhere")).status().message(), HasSubstr("nowhere"));
+  const auto other = Make(WriteImages(19), {3});
+  EXPECT_EQ(other.status().code(), ErrorCode::kInsufficient);
+  EXPECT_THAT(other.status().message(), HasSubstr("none of the chosen frames was tracked"));
+}
+
+TEST_F(SurfaceRunTest, ImagesThatEndTooEarlyAreOthers) {
+  WriteRun(folder_);
+  const auto result = Make(WriteImages(13));
+  EXPECT_EQ(result.status().code(), ErrorCode::kMismatch);
+  EXPECT_THAT(result.status().message(), HasSubstr("the images end before frame 14"));
+}
+
+TEST_F(SurfaceRunTest, ImagesOfOtherNamesAreOthers) {
+  WriteRun(folder_);
+  const std::string images = WriteImages(19);
+  std::filesystem::rename(images + "/12.png", images + "/12b.png");
+  const auto result = Make(images);
+  EXPECT_EQ(result.status().code(), ErrorCode::kMismatch);
+  EXPECT_THAT(result.status().message(), HasSubstr("frame 12 of the run is image 12.png, and here it is 12b.png"));
+}
+
+TEST_F(SurfaceRunTest, AFrameWithFewPointsHasNoDepthAndSaysWhy) {
+  WriteRun(folder_);
+  const auto result = Make(WriteImages(19));
+  EXPECT_EQ(result.status().code(), ErrorCode::kInsufficient);
+  EXPECT_THAT(result.status().message(), HasSubstr("needs 12 points"));
+  EXPECT_THAT(folder_.Read("surface/surface.json"), HasSubstr("needs 12 points"));
+}
+
+TEST_F(SurfaceRunTest, LeavesAFolderOfOtherThingsAlone) {
+  WriteRun(folder_);
+  std::filesystem::create_directories(folder_.Path("surface/depth"));
+  folder_.Write("surface/depth/mine.png", "mine");
+  const auto result = Make(WriteImages(19));
+  EXPECT_EQ(result.status().code(), ErrorCode::kInvalidArgument);
+  EXPECT_EQ(folder_.Read("surface/depth/mine.png"), "mine");
+}
+
+// Frames of a camera that moves sideways by a millimeter each; every frame sees the points of `from` to `to`.
+std::vector<PosedFrame> Frames(int count, int points_lost_a_frame) {
+  std::vector<PosedFrame> frames;
+  for (int k = 0; k < count; ++k) {
+    PosedFrame frame{k, 0, {Eigen::Quaterniond::Identity(), Eigen::Vector3d(-k, 0, 0)}, {}};
+    for (int i = 0; i < 40; ++i)
+      frame.observations.push_back({PointId{k * points_lost_a_frame + i}, {}, Eigen::Vector3d(0.1 * i, 0, 50)});
+    frames.push_back(frame);
+  }
+  return frames;
+}
+
+TEST(SurfaceNeighbors, AreOnBothSidesAsFarAsPointsGo) {
+  // Half of the points are common with frames up to ten away.
+  EXPECT_THAT(ChooseNeighbors(Frames(41, 2), 20, {}), ElementsAre(17, 15, 10, 30, 25, 23));
+}
+
+TEST(SurfaceNeighbors, AreAllOnOneSideAtTheEnds) {
+  EXPECT_THAT(ChooseNeighbors(Frames(41, 2), 0, {}), ElementsAre(10, 5, 3, 2, 1));
+  EXPECT_TRUE(ChooseNeighbors(Frames(1, 2), 0, {}).empty());
+}
+
+TEST(SurfaceNeighbors, EndAtTheLargestParallaxAndAtTheSubmap) {
+  SurfaceRunOptions options;
+  options.max_parallax_deg = 2.5;  // between 2 and 3 mm from some 53 mm
+  std::vector<PosedFrame> frames = Frames(41, 1);
+  EXPECT_THAT(ChooseNeighbors(frames, 20, options), ElementsAre(19, 18, 22, 21));
+  for (std::size_t k = 20; k < frames.size(); ++k) frames[k].submap = 1;
+  EXPECT_THAT(ChooseNeighbors(frames, 20, options), ElementsAre(22, 21));
+}
+
+}  // namespace
+}  // namespace pliant
