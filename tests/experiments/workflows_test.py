@@ -32,13 +32,18 @@ def dry_run(folder):
     assert "first_maps" in text and "two_views_table" in text, text  # a table for each document
     text = snakemake("rigid_baseline", folder / "baseline", "--dry-run", "--quiet", "--config", "sequences=", "seeds=1,2")
     counts = {line.split()[0]: line.split()[1] for line in text.splitlines() if len(line.split()) > 1}
-    assert counts["track"] == "10" and counts["reconstruct"] == "20" and counts["evaluate"] == "30", text
+    assert counts["track"] == "10" and counts["reconstruct"] == "20" and counts["evaluate"] == "40", text
+    assert counts["refine"] == "10", text
     text = snakemake("refinement", folder / "refinement", "--dry-run", "--quiet", "--config", "sequences=", "seeds=1,2")
     counts = {line.split()[0]: line.split()[1] for line in text.splitlines() if len(line.split()) > 1}
     assert counts["track"] == counts["refine"] == "28" and counts["evaluate"] == "56", text
+    text = snakemake("surface", folder / "surface", "--dry-run", "--quiet", "--config", "sequences=", "seeds=1,2")
+    counts = {line.split()[0]: line.split()[1] for line in text.splitlines() if len(line.split()) > 1}
+    assert counts["track"] == counts["refine"] == "16" and counts["dense_depth"] == "32", text
     text = snakemake("long_sequences", folder / "long", "--dry-run", "--quiet", "--config", "variants=all", "seeds=1,2")
     counts = {line.split()[0]: line.split()[1] for line in text.splitlines() if len(line.split()) > 1}
-    assert counts["simulate"] == "12" and counts["track"] == counts["evaluate"] == str(12 * 10), text
+    assert counts["simulate"] == counts["refine"] == "12" and counts["track"] == str(12 * 10), text
+    assert counts["evaluate"] == str(12 * 11), text
     text = snakemake("soak", folder / "soak", "--dry-run", "--quiet", "--config", "alone_corners=300,500")
     counts = {line.split()[0]: line.split()[1] for line in text.splitlines() if len(line.split()) > 1}
     assert counts["simulate"] == "1" and counts["repeat"] == "2" and counts["track"] == "4", text
