@@ -35,7 +35,7 @@ class SurfaceRunTest : public testing::Test {
 
   // Gray images of the run's frames and of those between, `count` of them.
   std::string WriteImages(int count) const {
-    const std::string images = folder_.Path("images");
+    std::string images = folder_.Path("images");
     std::filesystem::create_directories(images);
     for (int k = 0; k < count; ++k) cv::imwrite(images + "/" + FileName(k), cv::Mat(480, 640, CV_8U, cv::Scalar(90)));
     folder_.Write("images/camera.yaml",
