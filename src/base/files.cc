@@ -25,6 +25,11 @@ bool Exists(const std::string& path) {
   return std::filesystem::exists(path, error);
 }
 
+Status Unwritable(const std::filesystem::path& path) {
+  return {ErrorCode::kUnwritable,
+          "cannot write " + path.string() + "; is the folder writable and is there room on the disk?"};
+}
+
 Result<OutputFile> OutputFile::Create(const std::string& path) {
   errno = 0;
   std::FILE* file = std::fopen(path.c_str(), "wb");

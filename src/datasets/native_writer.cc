@@ -7,6 +7,7 @@
 
 #include <opencv2/core.hpp>
 
+#include "pliant/base/files.h"
 #include "pliant/base/options.h"
 #include "pliant/datasets/native_layout.h"
 #include "pliant/datasets/png_file.h"
@@ -16,11 +17,6 @@ namespace pliant {
 namespace {
 
 namespace fs = std::filesystem;
-
-Status Unwritable(const fs::path& path) {
-  return {ErrorCode::kUnwritable,
-          "cannot write " + path.string() + "; is the folder writable and is there room on the disk?"};
-}
 
 // Frames that an earlier sequence left would be read as part of this one. A folder that holds anything else stays.
 Status RemoveFrames(const fs::path& folder) {

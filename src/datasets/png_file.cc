@@ -11,23 +11,22 @@
 
 #include <opencv2/imgcodecs.hpp>
 
+#include "pliant/base/files.h"
 #include "pliant/datasets/native_layout.h"
 
 namespace pliant {
 
 // Little compression: noise does not compress.
 Status WritePng(const std::filesystem::path& path, const cv::Mat& image) {
-  Status unwritable(ErrorCode::kUnwritable,
-                    "cannot write " + path.string() + "; is the folder writable and is there room on the disk?");
   std::vector<unsigned char> bytes;
-  if (!cv::imencode(".png", image, bytes, {cv::IMWRITE_PNG_COMPRESSION, 1})) return unwritable;
+  if (!cv::imencode(".png", image, bytes, {cv::IMWRITE_PNG_COMPRESSION, 1})) return Unwritable(path);
   std::ofstream file(path, std::ios::binary);
   file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   file.close();
   if (file) return Status::Ok();
   std::error_code error;
   std::filesystem::remove(path, error);  // half a file would be read as a damaged one
-  return unwritable;
+  return Unwritable(path);
 }
 
 cv::Mat QuantizeDepth(const cv::Mat& depth, double scale) {

@@ -25,11 +25,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kMeshFolder = "mesh";
 
-Status Unwritable(const fs::path& path) {
-  return {ErrorCode::kUnwritable,
-          "cannot write " + path.string() + "; is the folder writable and is there room on the disk?"};
-}
-
 // An earlier surface's files. A folder that is not a surface's and not empty is left alone.
 Status RemoveEarlierSurface(const fs::path& path) {
   std::error_code error;

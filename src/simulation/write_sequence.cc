@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "pliant/base/files.h"
 #include "pliant/datasets/native_layout.h"
 #include "pliant/datasets/native_writer.h"
 #include "pliant/io/camera_file.h"
@@ -24,9 +25,7 @@ Status WriteOptions(const fs::path& path, const SimulationOptions& options) {
   std::ofstream file(path);
   file << ToYaml(options);
   file.close();
-  if (file) return Status::Ok();
-  return {ErrorCode::kUnwritable,
-          "cannot write " + path.string() + "; is the folder writable and is there room on the disk?"};
+  return file ? Status::Ok() : Unwritable(path);
 }
 
 // A sequence that was filmed is not written over.

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <string>
@@ -20,6 +21,9 @@ namespace pliant {
 
 // Whether something is there that can be seen; never throws.
 bool Exists(const std::string& path);
+
+// kUnwritable, for a file or folder that could not be written.
+Status Unwritable(const std::filesystem::path& path);
 
 // A file that is written from its beginning. Append hands everything to the system before it returns.
 class OutputFile {
