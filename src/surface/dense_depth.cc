@@ -13,6 +13,7 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "pliant/base/parallel.h"
 #include "pliant/base/statistics.h"
 #include "surface/depth_certainty.h"
 #include "surface/depth_holes.h"
@@ -126,13 +127,20 @@ Result<DenseDepthEstimator> DenseDepthEstimator::Create(const Camera& camera, co
 Result<Scene> DenseDepthEstimator::State::MakeScene(const SurfaceView& reference,
                                                     std::span<const SurfaceView> neighbors) const {
   auto surface = FitSparseSurface(reference, fine.camera);
+  std::vector<std::optional<SurfaceMotion>> fitted(surface ? neighbors.size() : 0);
+  ParallelFor(
+      static_cast<int>(fitted.size()), threads,
+      [&](int k) {
+        const auto at = static_cast<std::size_t>(k);
+        fitted[at] = FitMotion(reference, neighbors[at], fine.camera);
+      },
+      1);
   std::vector<const SurfaceView*> others;
   std::vector<SurfaceMotion> motions;
-  for (const SurfaceView& neighbor : neighbors) {
-    auto motion = surface ? FitMotion(reference, neighbor, fine.camera) : std::nullopt;
-    if (!motion) continue;
-    others.push_back(&neighbor);
-    motions.push_back(*std::move(motion));
+  for (std::size_t k = 0; k < fitted.size(); ++k) {
+    if (!fitted[k]) continue;
+    others.push_back(&neighbors[k]);
+    motions.push_back(*std::move(fitted[k]));
   }
   if (others.empty())
     return Status(ErrorCode::kInsufficient,
@@ -141,7 +149,7 @@ Result<Scene> DenseDepthEstimator::State::MakeScene(const SurfaceView& reference
 }
 
 cv::Mat DenseDepthEstimator::State::CoarseInverseDistances(const Scene& scene) const {
-  const SizedScene sized(scene, coarse, coarse_comparison);
+  const SizedScene sized(scene, coarse, coarse_comparison, threads);
   const cv::Mat center = scene.surface.inverse_distance.ToImage(
       coarse.size(), static_cast<double>(scene.grid_width) / coarse.camera.width());
   const SweepLevels levels = CoarseLevels(sized, scene.surface, center,
@@ -173,7 +181,7 @@ DenseDepth DenseDepthEstimator::State::Finished(const Scene& scene, const cv::Ma
 }
 
 DenseDepth DenseDepthEstimator::State::FineDepth(const Scene& scene, const cv::Mat& coarse_inverse_distances) const {
-  const SizedScene sized(scene, fine, fine_comparison);
+  const SizedScene sized(scene, fine, fine_comparison, threads);
   cv::Mat center;
   cv::resize(coarse_inverse_distances, center, fine.size(), 0, 0, cv::INTER_LINEAR);
   const SweepLevels levels = FineLevels(sized, center, threads);

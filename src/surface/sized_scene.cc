@@ -3,6 +3,8 @@
 
 #include "surface/sized_scene.h"
 
+#include "pliant/base/parallel.h"
+
 namespace pliant {
 namespace {
 
@@ -41,12 +43,19 @@ SizedCamera::SizedCamera(const Camera& c) : camera(c), rays(c.height(), c.width(
                                     static_cast<float>(ray->z())};
 }
 
-SizedScene::SizedScene(const Scene& scene, const SizedCamera& sized, const Comparison& how)
+SizedScene::SizedScene(const Scene& scene, const SizedCamera& sized, const Comparison& how, int threads)
     : camera(sized),
       reference(MakeReferenceWindows(
           MakeMatchingImage(scene.reference.image, scene.reference.valid, sized.size(), how.smoothing_px),
-          how.window_px, how.noise_variance)) {
-  for (std::size_t v = 0; v < scene.others.size(); ++v) views.push_back(ViewOf(scene, v, sized, how.smoothing_px));
+          how.window_px, how.noise_variance)),
+      views(scene.others.size()) {
+  ParallelFor(
+      static_cast<int>(views.size()), threads,
+      [&](int v) {
+        const auto at = static_cast<std::size_t>(v);
+        views[at] = ViewOf(scene, at, sized, how.smoothing_px);
+      },
+      1);
 }
 
 }  // namespace pliant

@@ -43,7 +43,7 @@ struct Scene {
 };
 
 struct SizedScene {
-  SizedScene(const Scene& scene, const SizedCamera& sized, const Comparison& how);
+  SizedScene(const Scene& scene, const SizedCamera& sized, const Comparison& how, int threads);
 
   const SizedCamera& camera;
   ReferenceWindows reference;
