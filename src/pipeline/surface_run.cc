@@ -179,12 +179,12 @@ class SurfaceMaker {
         estimator_(estimator),
         writer_(writer) {}
 
-  Result<SurfaceSummary> Make(const std::vector<PosedFrame>& frames, const Plan& plan, const RunMap& known,
-                              Images* images) {
-    SurfaceSummary summary;
+  // `summary` has what was done, also where this fails.
+  Status Make(const std::vector<PosedFrame>& frames, const Plan& plan, const RunMap& known, Images* images,
+              SurfaceSummary* summary) {
     for (std::size_t k = 0; k < plan.references.size(); ++k) {
       if (request_.stop != nullptr && *request_.stop) {
-        summary.stopped = true;
+        summary->stopped = true;
         break;
       }
       const std::size_t reference = plan.references[k];
@@ -195,11 +195,10 @@ class SurfaceMaker {
       for (const std::size_t n : plan.neighbors[k]) frame.neighbors.push_back(frames[n].frame_idx);
       if (Status status = MakeFrame(reference, plan.neighbors[k], *images, &frame); !status.ok()) return status;
       images->Forget(plan, k);
-      summary.frames.push_back(frame);
+      summary->frames.push_back(frame);
       if (callback_) callback_(frame, static_cast<int>(k) + 1, static_cast<int>(plan.references.size()));
     }
-    std::ranges::sort(summary.frames, {}, &SurfaceFrame::frame_idx);
-    return summary;
+    return Status::Ok();
   }
 
  private:
@@ -265,14 +264,18 @@ Result<SurfaceSummary> MakeSurface(const SurfaceRequest& request, const SurfaceR
   auto writer = SurfaceWriter::Create(request.output_path, *known->camera, LargestDepth(*frames));
   if (!writer.ok()) return writer.status();
   Images images(*std::move(sequence), *frames, *known, options.masks);
-  auto summary = SurfaceMaker(request, options, callback, *known->camera, *estimator, &*writer)
-                     .Make(*frames, plan, *known, &images);
-  if (!summary.ok()) return summary.status();
-  if (Status status = writer->Finish(request, options, *summary); !status.ok()) return status;
-  if (std::ranges::none_of(summary->frames, [](const SurfaceFrame& frame) { return frame.known_share > 0.0; }))
-    return Status(ErrorCode::kInsufficient, summary->frames.empty() || summary->frames.front().note.empty()
+  SurfaceSummary summary;
+  const Status made = SurfaceMaker(request, options, callback, *known->camera, *estimator, &*writer)
+                          .Make(*frames, plan, *known, &images, &summary);
+  summary.stopped = summary.stopped || !made.ok();
+  std::ranges::sort(summary.frames, {}, &SurfaceFrame::frame_idx);
+  const Status finished = writer->Finish(request, options, summary);
+  if (!made.ok()) return made;
+  if (!finished.ok()) return finished;
+  if (std::ranges::none_of(summary.frames, [](const SurfaceFrame& frame) { return frame.known_share > 0.0; }))
+    return Status(ErrorCode::kInsufficient, summary.frames.empty() || summary.frames.front().note.empty()
                                                 ? "no frame has a depth: the images do not agree anywhere"
-                                                : "no frame has a depth: " + summary->frames.front().note);
+                                                : "no frame has a depth: " + summary.frames.front().note);
   return summary;
 }
 

@@ -11,6 +11,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "pipeline/surface_neighbors.h"
+#include "pliant/datasets/surface_folder.h"
 #include "support/small_run.h"
 #include "support/test_folder.h"
 
@@ -60,6 +61,8 @@ TEST_F(SurfaceRunTest, ImagesThatEndTooEarlyAreOthers) {
   const auto result = Make(WriteImages(13));
   EXPECT_EQ(result.status().code(), ErrorCode::kMismatch);
   EXPECT_THAT(result.status().message(), HasSubstr("the images end before frame 14"));
+  EXPECT_THAT(folder_.Read("surface/surface.json"), HasSubstr("\"status\": \"interrupted\""));
+  EXPECT_TRUE(ReadSurfaceFolder(folder_.Path("surface")).ok());
 }
 
 TEST_F(SurfaceRunTest, ImagesOfOtherNamesAreOthers) {

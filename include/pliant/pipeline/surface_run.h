@@ -58,9 +58,9 @@ struct SurfaceSummary {
 // Called after each frame, with how many there are to be.
 using SurfaceProgress = std::function<void(const SurfaceFrame&, int done, int total)>;
 
-// Frames are written as they are done, each whole or not at all. Fails with kNotFound, kUnreadable or kMismatch for a
-// run or images that cannot be read or do not belong together, kInsufficient where no chosen frame was tracked or has a
-// depth, kUnwritable.
+// Frames are written as they are done, each whole or not at all; a failure leaves those before it. Fails with
+// kNotFound, kUnreadable or kMismatch for a run or images that cannot be read or do not belong together, kInsufficient
+// where no chosen frame was tracked or has a depth, kUnwritable.
 Result<SurfaceSummary> MakeSurface(const SurfaceRequest& request, const SurfaceRunOptions& options,
                                    const SurfaceProgress& callback);
 
