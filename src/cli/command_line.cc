@@ -252,6 +252,12 @@ std::optional<int> CommandLine::Resolve(OptionTable& options) {
   return std::nullopt;
 }
 
+std::vector<std::string> CommandLine::Words(std::span<const std::string> args) const {
+  std::vector<std::string> words = {std::string(manual_.program), std::string(manual_.command)};
+  words.insert(words.end(), args.begin(), args.end());
+  return words;
+}
+
 int CommandLine::UsageError(std::string_view sentence) const {
   Say(NameOf(manual_), sentence);
   return kExitUsage;

@@ -90,6 +90,9 @@ class CommandLine {
   // missing required argument is an error. An exit code when the command is to end here.
   std::optional<int> Resolve(OptionTable& options);
 
+  // The command as it was given, for what it leaves: "pliant", its name, `args`.
+  std::vector<std::string> Words(std::span<const std::string> args) const;
+
   // For errors in the values of arguments that the command itself finds: says it and gives kExitUsage.
   int UsageError(std::string_view sentence) const;
 

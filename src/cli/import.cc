@@ -50,8 +50,7 @@ int ImportCommand(std::span<const std::string> args) {
   options.List(table);
   if (const auto exit = line.Resolve(table)) return *exit;
 
-  request.command_line = {"pliant", "import"};
-  request.command_line.insert(request.command_line.end(), args.begin(), args.end());
+  request.command_line = line.Words(args);
   const auto summary = Import(request, options);
   if (!summary.ok()) return line.Failure(summary.status().message());
   if (quiet) return kExitOk;

@@ -41,8 +41,7 @@ int RefineCommand(std::span<const std::string> args) {
   options.List(table);
   if (const auto exit = line.Resolve(table)) return *exit;
 
-  request.command_line = {"pliant", "refine"};
-  request.command_line.insert(request.command_line.end(), args.begin(), args.end());
+  request.command_line = line.Words(args);
   request.stop = &StopOnSignals();
   return RefineAndSay(kManual.command, request, options, quiet ? Saying::kErrors : Saying::kAll);
 }

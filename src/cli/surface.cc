@@ -54,13 +54,9 @@ int SurfaceCommand(std::span<const std::string> args) {
   if (const auto exit = line.Resolve(table)) return *exit;
 
   const auto chosen = ParseFrameList(frames);
-  if (!chosen) {
-    SayError(kManual.command, "--frames is '" + frames + "'; give frame numbers with commas between them");
-    return kExitUsage;
-  }
+  if (!chosen) return line.UsageError("--frames is '" + frames + "'; give frame numbers with commas between them");
   request.frames = *chosen;
-  request.command_line = {"pliant", "surface"};
-  request.command_line.insert(request.command_line.end(), args.begin(), args.end());
+  request.command_line = line.Words(args);
   request.stop = &StopOnSignals();
   const auto summary = [&] {
     Progress progress(std::cerr, quiet ? ProgressStyle::kQuiet : ProgressStyleOfStandardError(), "surface", 0);
@@ -68,10 +64,7 @@ int SurfaceCommand(std::span<const std::string> args) {
       progress.Update(done, Digits(100.0 * frame.known_share, 0) + " % known");
     });
   }();
-  if (!summary.ok()) {
-    SayError(kManual.command, summary.status().message());
-    return kExitFailed;
-  }
+  if (!summary.ok()) return line.Failure(summary.status().message());
   if (!quiet) std::cout << request.output_path << std::endl;
   return kExitOk;
 }

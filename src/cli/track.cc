@@ -118,8 +118,7 @@ int TrackCommand(std::span<const std::string> args) {
   RunRequest request;
   request.input = arguments.input.Request();
   request.output_path = arguments.output_path;
-  request.command_line = {"pliant", "track"};
-  request.command_line.insert(request.command_line.end(), args.begin(), args.end());
+  request.command_line = line.Words(args);
   request.stop = &StopOnSignals();
 
   std::unique_ptr<LiveView> live;

@@ -15,6 +15,7 @@
 #include "datasets/find_overlay.h"
 #include "pliant/base/statistics.h"
 #include "pliant/base/text.h"
+#include "pliant/image/pyramid.h"
 
 namespace pliant {
 namespace {
@@ -211,8 +212,7 @@ ImageChecker::~ImageChecker() = default;
 
 void ImageChecker::Add(const SequenceFrame& frame) {
   State& state = *state_;
-  cv::Mat gray = frame.image;
-  if (gray.channels() == 3) cv::cvtColor(frame.image, gray, cv::COLOR_BGR2GRAY);
+  const cv::Mat gray = ToGray(frame.image);
   if (state.images == 0) state.step = std::max(1, gray.cols / kGridColumns);
   cv::Mat grid = GridOf(gray, state.step);
   if (state.images > 0) state.changes.push_back(ChangeBetween(state.last, grid));

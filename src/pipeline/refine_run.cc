@@ -13,6 +13,7 @@
 #include <system_error>
 #include <utility>
 
+#include "pipeline/run_frames.h"
 #include "pliant/base/statistics.h"
 #include "pliant/base/text.h"
 #include "pliant/base/version.h"
@@ -62,15 +63,9 @@ void SetRestPositions(Recording* recording) {
 Result<std::map<int, Submap>> ReadSubmaps(const std::string& path, const Run& run) {
   std::map<int, Submap> submaps;
   std::map<int, std::map<PointId, int>> index_of;  // by submap
-  std::vector<int> frames_idx;
-  for (const RunPose& pose : run.poses) {
-    if (!pose.frame_idx)
-      return Status(ErrorCode::kMismatch, Quoted(path) +
-                                              " has no frames.csv, so it is another program's; make it a run with "
-                                              "pliant import --format result");
-    frames_idx.push_back(*pose.frame_idx);
-  }
-  const Status status = ForEachFrame(path, frames_idx, [&](std::size_t k, const auto& observations) {
+  const auto frames_idx = FramesWithPose(path, run);
+  if (!frames_idx.ok()) return frames_idx.status();
+  const Status status = ForEachFrame(path, *frames_idx, [&](std::size_t k, const auto& observations) {
     const RunPose& pose = run.poses[k];
     Submap& submap = submaps[pose.submap];
     const auto view = static_cast<int>(submap.recording.times.size());

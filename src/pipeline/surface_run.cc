@@ -15,11 +15,13 @@
 
 #include <opencv2/core.hpp>
 
+#include "pipeline/run_frames.h"
 #include "pipeline/surface_neighbors.h"
 #include "pipeline/surface_writer.h"
 #include "pliant/base/statistics.h"
 #include "pliant/base/text.h"
 #include "pliant/datasets/run_sequence.h"
+#include "pliant/image/depth_lookup.h"
 #include "pliant/io/run_map.h"
 #include "pliant/io/run_reader.h"
 #include "pliant/surface/depth_mesh.h"
@@ -28,17 +30,12 @@ namespace pliant {
 namespace {
 
 Result<std::vector<PosedFrame>> ReadPosedFrames(const std::string& path, const Run& run) {
+  const auto frames_idx = FramesWithPose(path, run);
+  if (!frames_idx.ok()) return frames_idx.status();
   std::vector<PosedFrame> frames;
-  std::vector<int> frames_idx;
-  for (const RunPose& pose : run.poses) {
-    if (!pose.frame_idx)
-      return Status(ErrorCode::kMismatch, Quoted(path) +
-                                              " has no frames.csv, so it is another program's; make it a run with "
-                                              "pliant import --format result");
-    frames_idx.push_back(*pose.frame_idx);
+  for (const RunPose& pose : run.poses)
     frames.push_back({*pose.frame_idx, pose.submap, pose.world_from_cam.Inverse(), {}});
-  }
-  const Status status = ForEachFrame(path, frames_idx, [&](std::size_t k, const auto& observations) {
+  const Status status = ForEachFrame(path, *frames_idx, [&](std::size_t k, const auto& observations) {
     frames[k].observations = observations;
     std::ranges::sort(frames[k].observations, {}, &PointObservation::id);
     return Status::Ok();
@@ -136,10 +133,7 @@ class Images {
 };
 
 void Describe(const DenseDepth& dense, const cv::Mat& valid, SurfaceFrame* frame) {
-  std::vector<double> sigmas;
-  for (int y = 0; y < dense.sigma.rows; ++y)
-    for (int x = 0; x < dense.sigma.cols; ++x)
-      if (const float sigma = dense.sigma.at<float>(y, x); sigma > 0.0F) sigmas.push_back(sigma);
+  const std::vector<double> sigmas = KnownDepths(dense.sigma);
   frame->known_share = static_cast<double>(sigmas.size()) / std::max(1, cv::countNonZero(valid));
   if (!sigmas.empty()) frame->median_sigma = Median(sigmas);
 }

@@ -17,6 +17,11 @@ namespace {
 constexpr double kMinSigmaLevels = 0.05;  // of a chosen level
 constexpr int kRemotenessStepPx = 8;
 
+// By which sigmas are too small, of errors by them; at least 1.
+double FactorOf(const std::vector<double>& ratios) {
+  return ratios.empty() ? 1.0 : std::max(1.0, kMedianToSigma * Median(ratios));
+}
+
 // At every pixel, interpolated between some.
 cv::Mat RemotenessAt(const SizedCamera& camera, const SparseSurface& surface, const cv::Mat& inverse_distance) {
   const cv::Size size((camera.size().width + kRemotenessStepPx - 1) / kRemotenessStepPx,
@@ -62,8 +67,7 @@ cv::Mat LevelSigmas(const SizedScene& scene, const ChosenLevels& chosen, const c
       // Of each half alone the variance is twice as large, and of the difference four times.
       ratios.push_back(disagreement.at<float>(y, x) / (2.0 * predicted));
     }
-  const double factor = ratios.empty() ? 1.0 : std::max(1.0, kMedianToSigma * Median(ratios));
-  return sigma * factor;
+  return sigma * FactorOf(ratios);
 }
 
 double FactorByPoints(const SizedCamera& camera, const SparseSurface& surface, const cv::Mat& inverse_distance,
@@ -77,7 +81,7 @@ double FactorByPoints(const SizedCamera& camera, const SparseSurface& surface, c
     const float sigma = sigmas.at<float>(y, x);
     if (sigma > 0.0F) ratios.push_back(std::abs(inverse_distance.at<float>(y, x) * point.norm() - 1.0) / sigma);
   }
-  return ratios.empty() ? 1.0 : std::max(1.0, kMedianToSigma * Median(ratios));
+  return FactorOf(ratios);
 }
 
 cv::Mat MotionSigmas(const SizedScene& sized, const Scene& scene, const cv::Mat& inverse_distance,

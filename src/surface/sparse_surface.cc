@@ -61,15 +61,17 @@ GridField FitInverseDistances(const Camera& camera, const std::vector<Eigen::Vec
   return field;
 }
 
+// Without those that are held out: the first of every kHeldOutOf.
+template <class T>
+std::vector<T> Kept(const std::vector<T>& all) {
+  std::vector<T> kept;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (i % kHeldOutOf != 0) kept.push_back(all[i]);
+  return kept;
+}
+
 std::vector<HeldOutPoint> HoldOut(const Camera& camera, const Points& points) {
-  std::vector<Eigen::Vector2d> pixels;
-  std::vector<double> values;
-  for (std::size_t i = 0; i < points.pixels.size(); ++i)
-    if (i % kHeldOutOf != 0) {
-      pixels.push_back(points.pixels[i]);
-      values.push_back(points.inverse_distances[i]);
-    }
-  const GridField field = FitInverseDistances(camera, pixels, values);
+  const GridField field = FitInverseDistances(camera, Kept(points.pixels), Kept(points.inverse_distances));
   std::vector<HeldOutPoint> held_out;
   for (std::size_t i = 0; i < points.pixels.size(); i += kHeldOutOf)
     held_out.push_back({points.pixels[i], std::abs(points.inverse_distances[i] / field.At(points.pixels[i])[0] - 1.0)});
@@ -94,14 +96,8 @@ double Apart(const std::vector<Eigen::Vector3d>& points) {
 
 double HeldOutMotionError(const Camera& camera, const std::vector<Eigen::Vector2d>& pixels,
                           const std::vector<Eigen::Vector3d>& motions, const std::vector<double>& distances) {
-  std::vector<Eigen::Vector2d> kept_pixels;
-  std::vector<Eigen::Vector3d> kept;
-  for (std::size_t i = 0; i < pixels.size(); ++i)
-    if (i % kHeldOutOf != 0) {
-      kept_pixels.push_back(pixels[i]);
-      kept.push_back(motions[i]);
-    }
-  const GridField field = FitThinPlate(SizeOf(camera), Spacing(camera), kept_pixels, Rows(kept), kMotionStiffness);
+  const GridField field =
+      FitThinPlate(SizeOf(camera), Spacing(camera), Kept(pixels), Rows(Kept(motions)), kMotionStiffness);
   std::vector<double> errors;
   for (std::size_t i = 0; i < pixels.size(); i += kHeldOutOf)
     errors.push_back((field.At(pixels[i]) - motions[i]).norm() / distances[i]);
@@ -134,11 +130,12 @@ std::optional<SurfaceMotion> FitMotion(const SurfaceView& reference, const Surfa
     while (there != other.observations.end() && there->id < here.id) ++there;
     if (there == other.observations.end()) break;
     if (there->id != here.id) continue;
-    const auto pixel = camera.Project(reference.cam_from_world * here.position);
+    const Eigen::Vector3d in_cam = reference.cam_from_world * here.position;
+    const auto pixel = camera.Project(in_cam);
     if (!pixel || !camera.Contains(*pixel)) continue;
     pixels.push_back(*pixel);
     motions.push_back(there->position - here.position);
-    distances.push_back((reference.cam_from_world * here.position).norm());
+    distances.push_back(in_cam.norm());
   }
   if (pixels.size() < kMinPoints) return std::nullopt;
   return SurfaceMotion{FitThinPlate(SizeOf(camera), Spacing(camera), pixels, Rows(motions), kMotionStiffness),

@@ -7,18 +7,13 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "pliant/image/pyramid.h"
+
 namespace pliant {
 namespace {
 
 constexpr double kFillSigmaPx = 6.0;
 constexpr float kFarOutside = -1e4F;
-
-cv::Mat GrayOf(const cv::Mat& image) {
-  if (image.channels() == 1) return image;
-  cv::Mat gray;
-  cv::cvtColor(image, gray, cv::COLOR_BGR2GRAY);
-  return gray;
-}
 
 // Highlights would be compared with highlights: they are painted over with what is around them.
 void FillInvalid(const cv::Mat& valid, cv::Mat* intensity) {
@@ -67,7 +62,7 @@ cv::Mat WindowMean(const cv::Mat& values, int window_px) {
 
 MatchingImage MakeMatchingImage(const cv::Mat& image, const cv::Mat& valid, cv::Size size, double smoothing_px) {
   MatchingImage result;
-  cv::Mat gray = GrayOf(image);
+  cv::Mat gray = ToGray(image);
   result.valid = valid;
   if (gray.size() != size) {
     cv::resize(gray, gray, size, 0, 0, cv::INTER_AREA);
