@@ -35,13 +35,15 @@ Status WritePly(const std::string& path, const Mesh& mesh) {
   std::string out = "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(mesh.vertices.size()) +
                     "\nproperty float x\nproperty float y\nproperty float z\nproperty float nx\nproperty float ny\n"
                     "property float nz\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n"
-                    "property float sigma\nelement face " +
+                    "property float sigma\n" +
+                    (mesh.ids.empty() ? "" : "property int vertex\n") + "element face " +
                     std::to_string(mesh.triangles.size()) + "\nproperty list uchar int vertex_indices\nend_header\n";
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
     for (const float coordinate : mesh.vertices[v]) AppendFloat(&out, coordinate);
     for (const float coordinate : mesh.normals[v]) AppendFloat(&out, coordinate);
     for (const std::uint8_t channel : mesh.rgb[v]) AppendBytes(&out, channel, 1);
     AppendFloat(&out, mesh.sigmas[v]);
+    if (!mesh.ids.empty()) AppendBytes(&out, static_cast<std::uint32_t>(mesh.ids[v]), 4);
     if (Status status = file->AppendWhenLarge(&out); !status.ok()) return status;
   }
   for (const auto& triangle : mesh.triangles) {

@@ -8,19 +8,10 @@
 #include <span>
 #include <vector>
 
-#include "pliant/geometry/rigid3.h"
+#include "pipeline/run_views.h"
 #include "pliant/pipeline/surface_run.h"
-#include "pliant/scene/frame_report.h"
 
 namespace pliant {
-
-// A frame of one submap of a run.
-struct PosedFrame {
-  int frame_idx = 0;
-  int submap = 0;
-  Rigid3 cam_from_world;
-  std::vector<PointObservation> observations;  // sorted by id
-};
 
 // (V9) Positions in `frames`, which are in the order of time: as many before as after, at even distances out to the
 // last one with enough points in common and no more than the largest parallax. Fewer at the ends of a submap.

@@ -15,7 +15,8 @@
 
 #include <opencv2/core.hpp>
 
-#include "pipeline/run_frames.h"
+#include "pipeline/run_views.h"
+#include "pipeline/surface_meshes.h"
 #include "pipeline/surface_neighbors.h"
 #include "pipeline/surface_writer.h"
 #include "pliant/base/statistics.h"
@@ -24,25 +25,9 @@
 #include "pliant/image/depth_lookup.h"
 #include "pliant/io/run_map.h"
 #include "pliant/io/run_reader.h"
-#include "pliant/surface/depth_mesh.h"
 
 namespace pliant {
 namespace {
-
-Result<std::vector<PosedFrame>> ReadPosedFrames(const std::string& path, const Run& run) {
-  const auto frames_idx = FramesWithPose(path, run);
-  if (!frames_idx.ok()) return frames_idx.status();
-  std::vector<PosedFrame> frames;
-  for (const RunPose& pose : run.poses)
-    frames.push_back({*pose.frame_idx, pose.submap, pose.world_from_cam.Inverse(), {}});
-  const Status status = ForEachFrame(path, *frames_idx, [&](std::size_t k, const auto& observations) {
-    frames[k].observations = observations;
-    std::ranges::sort(frames[k].observations, {}, &PointObservation::id);
-    return Status::Ok();
-  });
-  if (!status.ok()) return status;
-  return frames;
-}
 
 // Which frames are to be done, and when: a frame is done when the last of its images has been read.
 struct Plan {
@@ -73,64 +58,6 @@ Plan MakePlan(const std::vector<PosedFrame>& frames, const SurfaceRequest& reque
   }
   return plan;
 }
-
-// The images of a run's frames, read in order, kept as long as they are needed.
-class Images {
- public:
-  Images(std::unique_ptr<Sequence> sequence, const std::vector<PosedFrame>& frames, const RunMap& known,
-         const MaskOptions& masks)
-      : sequence_(std::move(sequence)), frames_(frames), known_(known), masks_(masks) {}
-
-  // Reads up to the frame at `position`, keeping those that `plan` needs. Fails as Sequence, and with kMismatch where
-  // the images end before it.
-  Status ReadUntil(std::size_t position, const Plan& plan) {
-    while (next_ <= position) {
-      auto read = sequence_->Next();
-      if (!read.ok()) return read.status();
-      if (!read->has_value())
-        return {ErrorCode::kMismatch, "the images end before frame " + std::to_string(frames_[next_].frame_idx) +
-                                          " of the run; are they those that were tracked?"};
-      const SequenceFrame& frame = **read;
-      if (frame.frame_idx < frames_[next_].frame_idx) continue;
-      if (frame.frame_idx > frames_[next_].frame_idx)
-        return {ErrorCode::kMismatch, "the images have no frame " + std::to_string(frames_[next_].frame_idx) +
-                                          " of the run; are they those that were tracked?"};
-      if (Status status = CheckIsOfRun(frame); !status.ok()) return status;
-      if (plan.last_use.contains(next_))
-        views_[next_] = {frame.image, ValidMask(frame.image, frame.mask, masks_), frames_[next_].cam_from_world,
-                         frames_[next_].observations};
-      ++next_;
-    }
-    return Status::Ok();
-  }
-
-  const SurfaceView& At(std::size_t position) const { return views_.at(position); }
-
-  void Forget(const Plan& plan, std::size_t done) {
-    std::erase_if(views_, [&](const auto& entry) { return plan.last_use.at(entry.first) <= done; });
-  }
-
- private:
-  Status CheckIsOfRun(const SequenceFrame& frame) const {
-    const std::string number = std::to_string(frame.frame_idx);
-    if (frame.image.cols != known_.camera->width() || frame.image.rows != known_.camera->height())
-      return {ErrorCode::kMismatch, "image " + frame.name +
-                                        " has not the size of the run's camera; are the images "
-                                        "those that were tracked?"};
-    const auto name = known_.names.find(frame.frame_idx);
-    if (name != known_.names.end() && !frame.name.empty() && name->second != frame.name)
-      return {ErrorCode::kMismatch, "frame " + number + " of the run is image " + name->second + ", and here it is " +
-                                        frame.name + "; are the images those that were tracked?"};
-    return Status::Ok();
-  }
-
-  std::unique_ptr<Sequence> sequence_;
-  const std::vector<PosedFrame>& frames_;
-  const RunMap& known_;
-  const MaskOptions& masks_;
-  std::map<std::size_t, SurfaceView> views_;
-  std::size_t next_ = 0;
-};
 
 void Describe(const DenseDepth& dense, const cv::Mat& valid, SurfaceFrame* frame) {
   const std::vector<double> sigmas = KnownDepths(dense.sigma);
@@ -164,17 +91,15 @@ double LargestDepth(const std::vector<PosedFrame>& frames) {
 
 class SurfaceMaker {
  public:
-  SurfaceMaker(const SurfaceRequest& request, const SurfaceRunOptions& options, const SurfaceProgress& callback,
-               const Camera& camera, const DenseDepthEstimator& estimator, SurfaceWriter* writer)
+  SurfaceMaker(const SurfaceRequest& request, const SurfaceProgress& callback, const DenseDepthEstimator& estimator,
+               SurfaceWriter* writer)
       : request_(request),
-        options_(options),
         callback_(callback),
-        camera_(camera),
         estimator_(estimator),
         writer_(writer) {}
 
   // `summary` has what was done, also where this fails.
-  Status Make(const std::vector<PosedFrame>& frames, const Plan& plan, const RunMap& known, Images* images,
+  Status Make(const std::vector<PosedFrame>& frames, const Plan& plan, const RunMap& known, RunViews* images,
               SurfaceSummary* summary) {
     for (std::size_t k = 0; k < plan.references.size(); ++k) {
       if (request_.stop != nullptr && *request_.stop) {
@@ -182,13 +107,16 @@ class SurfaceMaker {
         break;
       }
       const std::size_t reference = plan.references[k];
-      if (Status status = images->ReadUntil(LastImage(reference, plan.neighbors[k]), plan); !status.ok()) return status;
+      if (Status status = images->ReadUntil(LastImage(reference, plan.neighbors[k]),
+                                            [&](std::size_t position) { return plan.last_use.contains(position); });
+          !status.ok())
+        return status;
       SurfaceFrame frame;
       frame.frame_idx = frames[reference].frame_idx;
       if (const auto name = known.names.find(frame.frame_idx); name != known.names.end()) frame.name = name->second;
       for (const std::size_t n : plan.neighbors[k]) frame.neighbors.push_back(frames[n].frame_idx);
       if (Status status = MakeFrame(reference, plan.neighbors[k], *images, &frame); !status.ok()) return status;
-      images->Forget(plan, k);
+      images->ForgetUnless([&](std::size_t position) { return plan.last_use.at(position) > k; });
       summary->frames.push_back(frame);
       if (callback_) callback_(frame, static_cast<int>(k) + 1, static_cast<int>(plan.references.size()));
     }
@@ -196,7 +124,7 @@ class SurfaceMaker {
   }
 
  private:
-  Status MakeFrame(std::size_t reference, const std::vector<std::size_t>& neighbors, const Images& images,
+  Status MakeFrame(std::size_t reference, const std::vector<std::size_t>& neighbors, const RunViews& images,
                    SurfaceFrame* frame) {
     const auto begin = std::chrono::steady_clock::now();
     std::vector<SurfaceView> others;
@@ -208,14 +136,11 @@ class SurfaceMaker {
       return Status::Ok();
     }
     Describe(*dense, images.At(reference).valid, frame);
-    if (Status status = writer_->Write(*frame, *dense); !status.ok() || options_.mesh_step_px == 0) return status;
-    return writer_->Write(*frame, MeshOfDepth(camera_, *dense, images.At(reference).image, options_.mesh_step_px));
+    return writer_->Write(*frame, *dense);
   }
 
   const SurfaceRequest& request_;
-  const SurfaceRunOptions& options_;
   const SurfaceProgress& callback_;
-  const Camera& camera_;
   const DenseDepthEstimator& estimator_;
   SurfaceWriter* writer_;
 };
@@ -227,7 +152,11 @@ void SurfaceRunOptions::List(OptionTable& table) {
   table.Add("neighbors", &neighbors, "", "other images that a frame is compared with", 1, 100);
   table.Add("min_common_points", &min_common_points, "1", "of the frame's points, that a neighbor has too", 0.0, 1.0);
   table.Add("max_parallax_deg", &max_parallax_deg, "deg", "of these, in the median", 0.1, 90.0);
-  table.Add("mesh_step_px", &mesh_step_px, "px", "between the vertices of a frame's mesh; 0: no mesh", 0, 1000);
+  table.Add("mesh_columns", &mesh_columns, "", "vertices of the mesh across an image; 0: no mesh", 0, 4096);
+  table.Add("gltf", &gltf, "bool", "surface.glb: the mesh, its texture, its motion and the camera's");
+  table.Add("vtk", &vtk, "bool", "surface.pvd and vtp/: the mesh in every frame, with displacement, strain and sigma");
+  table.Add("obj", &obj, "bool", "obj/: the mesh in every frame, with its texture");
+  table.Add("animation_keys", &animation_keys, "", "frames whose mesh surface.glb has, evenly spread", 1, 10000);
   table.Add("threads", &threads, "", "0: as many as the machine has; the result is the same", 0, 1024);
   masks.List(table);
 }
@@ -257,12 +186,14 @@ Result<SurfaceSummary> MakeSurface(const SurfaceRequest& request, const SurfaceR
   if (!estimator.ok()) return estimator.status();
   auto writer = SurfaceWriter::Create(request.output_path, *known->camera, LargestDepth(*frames));
   if (!writer.ok()) return writer.status();
-  Images images(*std::move(sequence), *frames, *known, options.masks);
+  RunViews images(*std::move(sequence), *frames, *known, options.masks);
   SurfaceSummary summary;
-  const Status made = SurfaceMaker(request, options, callback, *known->camera, *estimator, &*writer)
+  const Status made = SurfaceMaker(request, callback, *estimator, &*writer)
                           .Make(*frames, plan, *known, &images, &summary);
-  summary.stopped = summary.stopped || !made.ok();
   std::ranges::sort(summary.frames, {}, &SurfaceFrame::frame_idx);
+  // Until the meshes are there too, the folder says that it was interrupted.
+  const bool stopped = summary.stopped || !made.ok();
+  summary.stopped = true;
   const Status finished = writer->Finish(request, options, summary);
   if (!made.ok()) return made;
   if (!finished.ok()) return finished;
@@ -270,6 +201,15 @@ Result<SurfaceSummary> MakeSurface(const SurfaceRequest& request, const SurfaceR
     return Status(ErrorCode::kInsufficient, summary.frames.empty() || summary.frames.front().note.empty()
                                                 ? "no frame has a depth: the images do not agree anywhere"
                                                 : "no frame has a depth: " + summary.frames.front().note);
+  if (stopped) return summary;
+  if (options.mesh_columns > 0) {
+    const auto folder = ReadSurfaceFolder(request.output_path);
+    if (!folder.ok()) return folder.status();
+    const MeshSource meshes{*frames, *known, *folder, source};
+    if (Status status = MakeMeshes(meshes, options, ThreadsOf(options)); !status.ok()) return status;
+  }
+  summary.stopped = false;
+  if (Status status = writer->Finish(request, options, summary); !status.ok()) return status;
   return summary;
 }
 

@@ -8,6 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "pipeline/mesh_writer.h"
 #include "pliant/base/files.h"
 #include "pliant/base/text.h"
 #include "pliant/base/version.h"
@@ -15,15 +16,12 @@
 #include "pliant/datasets/png_file.h"
 #include "pliant/datasets/surface_folder.h"
 #include "pliant/io/camera_file.h"
-#include "pliant/io/ply.h"
 
 namespace pliant {
 namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
-
-constexpr const char* kMeshFolder = "mesh";
 
 // An earlier surface's files. A folder that is not a surface's and not empty is left alone.
 Status RemoveEarlierSurface(const fs::path& path) {
@@ -32,9 +30,9 @@ Status RemoveEarlierSurface(const fs::path& path) {
   if (!fs::exists(path / surface::kSummaryFile, error))
     return {ErrorCode::kInvalidArgument,
             Quoted(path.string()) + " holds something other than a surface; give another --output_path"};
-  for (const char* folder : {native::kDepthFolder, surface::kConfidenceFolder, kMeshFolder})
+  for (const char* folder : {native::kDepthFolder, surface::kConfidenceFolder})
     fs::remove_all(path / folder, error);
-  return error ? Unwritable(path) : Status::Ok();
+  return error ? Unwritable(path) : MeshWriter::RemoveEarlier(path);
 }
 
 // The image's name with the ending .png.
@@ -71,13 +69,6 @@ Status SurfaceWriter::Write(const SurfaceFrame& frame, const DenseDepth& dense) 
       !status.ok())
     return status;
   return WritePng(path_ / surface::kConfidenceFolder / name, QuantizeDepth(dense.sigma, surface::kConfidenceUnit));
-}
-
-Status SurfaceWriter::Write(const SurfaceFrame& frame, const Mesh& mesh) {
-  std::error_code error;
-  fs::create_directories(path_ / kMeshFolder, error);
-  if (error) return Unwritable(path_ / kMeshFolder);
-  return WritePly((path_ / kMeshFolder / fs::path(FileNameOf(frame)).replace_extension(".ply")).string(), mesh);
 }
 
 Status SurfaceWriter::Finish(const SurfaceRequest& request, const SurfaceRunOptions& options,

@@ -10,7 +10,6 @@
 #include "pliant/base/status.h"
 #include "pliant/camera/camera.h"
 #include "pliant/pipeline/surface_run.h"
-#include "pliant/scene/mesh.h"
 #include "pliant/surface/dense_depth.h"
 
 namespace pliant {
@@ -23,7 +22,6 @@ class SurfaceWriter {
 
   // Fail with kUnwritable.
   Status Write(const SurfaceFrame& frame, const DenseDepth& dense);
-  Status Write(const SurfaceFrame& frame, const Mesh& mesh);
   // surface.json.
   Status Finish(const SurfaceRequest& request, const SurfaceRunOptions& options, const SurfaceSummary& summary);
 

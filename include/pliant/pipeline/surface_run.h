@@ -23,7 +23,11 @@ struct SurfaceRunOptions {
   int neighbors = 6;               // other images that a frame is compared with
   double min_common_points = 0.5;  // of the frame's points, that a neighbor has too
   double max_parallax_deg = 15;    // in the median of these
-  int mesh_step_px = 4;            // of the mesh's vertices; 0: no mesh
+  int mesh_columns = 96;           // vertices of the mesh across an image; 0: no mesh
+  bool gltf = true;                // which files of it, beside a PLY file a frame
+  bool vtk = true;
+  bool obj = false;
+  int animation_keys = 60;  // frames whose mesh the glTF file has
   int threads = 0;                 // 0: as many as the machine has
 
   void List(OptionTable& table);  // groups "Surface", "Masks"

@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// A mesh that deforms, and the camera that saw it, as one glTF 2.0 file (.glb), which Blender, browsers and slide
+// programs play. Its frame is glTF's: meters, right-handed, Y up. One map unit becomes one millimeter.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+#include <opencv2/core/mat.hpp>
+
+#include "pliant/base/status.h"
+#include "pliant/camera/camera.h"
+#include "pliant/geometry/rigid3.h"
+#include "pliant/scene/mesh.h"
+
+namespace pliant {
+
+// Where the vertices are at a time.
+struct MeshKey {
+  double time_s = 0;
+  std::vector<Eigen::Vector3f> positions;  // a vertex each, world frame, map units
+};
+
+struct CameraKey {
+  double time_s = 0;
+  Rigid3 world_from_cam;
+};
+
+struct MeshAnimation {
+  const Mesh& mesh;                // undeformed, world frame, map units
+  const cv::Mat& texture;          // BGR; empty: the vertices' colors
+  std::span<const MeshKey> keys;   // times increase; between two of them positions change linearly
+  std::span<const CameraKey> path;  // times increase
+  const Camera& camera;            // its focal length and size: glTF knows no distortion
+};
+
+// Keys are morph targets, of which one at a time has weight 1; all weights 0: the undeformed mesh. A mesh without
+// triangles is refused with kInsufficient. Fails with kUnwritable.
+Status WriteGlb(const std::string& path, const MeshAnimation& animation);
+
+}  // namespace pliant

@@ -1,0 +1,317 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/io/gltf.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <sstream>
+#include <tuple>
+#include <utility>
+
+#include <opencv2/imgcodecs.hpp>
+#include <tiny_gltf.h>
+
+#include "pliant/base/files.h"
+#include "pliant/base/text.h"
+#include "pliant/base/version.h"
+
+namespace pliant {
+namespace {
+
+constexpr float kMetersPerUnit = 0.001F;
+constexpr int kJpegQuality = 92;
+constexpr double kNear = 0.001;  // m, of the camera's view
+constexpr double kFar = 10.0;
+
+// From x right, y down, z forward to glTF's x right, y up, z backward.
+Eigen::Vector3f InGltf(const Eigen::Vector3f& v) { return {v.x(), -v.y(), -v.z()}; }
+
+// A vertex as glTF has it: one for each place of the texture at which the mesh's vertex is used.
+struct Corner {
+  std::int32_t vertex = 0;
+  Eigen::Vector2f uv = Eigen::Vector2f::Zero();
+};
+
+struct Corners {
+  std::vector<Corner> corners;
+  std::vector<std::uint32_t> indices;  // three a triangle
+};
+
+Corners SplitAtSeams(const Mesh& mesh) {
+  Corners result;
+  std::map<std::tuple<std::int32_t, float, float>, std::uint32_t> index_of;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::int32_t v = mesh.triangles[t][k];
+      const Eigen::Vector2f uv =
+          mesh.texture_uvs.empty() ? Eigen::Vector2f(Eigen::Vector2f::Zero()) : mesh.texture_uvs[t][k];
+      const auto next = static_cast<std::uint32_t>(result.corners.size());
+      const auto [entry, is_new] = index_of.try_emplace({v, uv.x(), uv.y()}, next);
+      if (is_new) result.corners.push_back({v, uv});
+      result.indices.push_back(entry->second);
+    }
+  return result;
+}
+
+// A glTF model whose data are all in one buffer.
+class ModelBuilder {
+ public:
+  ModelBuilder() {
+    model_.asset.version = "2.0";
+    model_.asset.generator = std::string("Pliant ") + kVersion;
+    model_.buffers.emplace_back();
+  }
+
+  tinygltf::Model& model() { return model_; }
+
+  int AddView(std::span<const unsigned char> bytes, int target) {
+    std::vector<unsigned char>& data = model_.buffers[0].data;
+    while (data.size() % 4 != 0) data.push_back(0);
+    tinygltf::BufferView view;
+    view.buffer = 0;
+    view.byteOffset = data.size();
+    view.byteLength = bytes.size();
+    view.target = target;
+    data.insert(data.end(), bytes.begin(), bytes.end());
+    model_.bufferViews.push_back(view);
+    return static_cast<int>(model_.bufferViews.size()) - 1;
+  }
+
+  // `target`: what the values are of; 0: of an animation.
+  int AddFloats(const std::vector<float>& values, int type, bool with_bounds, int target) {
+    tinygltf::Accessor accessor;
+    accessor.bufferView = AddView(Bytes(values), target);
+    accessor.componentType = TINYGLTF_COMPONENT_TYPE_FLOAT;
+    accessor.type = type;
+    const auto components = static_cast<std::size_t>(tinygltf::GetNumComponentsInType(static_cast<uint32_t>(type)));
+    accessor.count = values.size() / components;
+    if (with_bounds) {
+      accessor.minValues.assign(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(components));
+      accessor.maxValues = accessor.minValues;
+      for (std::size_t i = 0; i < values.size(); ++i) {
+        double& least = accessor.minValues[i % components];
+        double& largest = accessor.maxValues[i % components];
+        least = std::min(least, static_cast<double>(values[i]));
+        largest = std::max(largest, static_cast<double>(values[i]));
+      }
+    }
+    return Add(accessor);
+  }
+
+  int AddIndices(const std::vector<std::uint32_t>& indices) {
+    tinygltf::Accessor accessor;
+    accessor.bufferView = AddView(Bytes(indices), TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
+    accessor.componentType = TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
+    accessor.type = TINYGLTF_TYPE_SCALAR;
+    accessor.count = indices.size();
+    return Add(accessor);
+  }
+
+ private:
+  template <class T>
+  static std::span<const unsigned char> Bytes(const std::vector<T>& values) {
+    return {reinterpret_cast<const unsigned char*>(values.data()), values.size() * sizeof(T)};
+  }
+
+  int Add(const tinygltf::Accessor& accessor) {
+    model_.accessors.push_back(accessor);
+    return static_cast<int>(model_.accessors.size()) - 1;
+  }
+
+  tinygltf::Model model_;
+};
+
+void Append(const Eigen::Vector3f& vector, std::vector<float>* values) {
+  values->insert(values->end(), vector.data(), vector.data() + 3);
+}
+
+// `of` gives a vertex's vector in the mesh's frame.
+template <class Function>
+std::vector<float> OfCorners(const Corners& corners, const Function& of) {
+  std::vector<float> values;
+  for (const Corner& corner : corners.corners) Append(InGltf(of(static_cast<std::size_t>(corner.vertex))), &values);
+  return values;
+}
+
+std::vector<float> Colors(const Corners& corners, const Mesh& mesh) {
+  // COLOR_0 is linear, images are sRGB.
+  std::vector<float> values;
+  for (const Corner& corner : corners.corners)
+    for (const std::uint8_t channel : mesh.rgb[static_cast<std::size_t>(corner.vertex)])
+      values.push_back(std::pow(static_cast<float>(channel) / 255.0F, 2.2F));
+  return values;
+}
+
+std::vector<float> TextureUvs(const Corners& corners) {
+  std::vector<float> values;
+  for (const Corner& corner : corners.corners) values.insert(values.end(), corner.uv.data(), corner.uv.data() + 2);
+  return values;
+}
+
+int AddMaterial(const cv::Mat& texture, ModelBuilder* builder) {
+  tinygltf::Model& model = builder->model();
+  tinygltf::Material material;
+  material.name = "tissue";
+  material.doubleSided = true;
+  material.pbrMetallicRoughness.metallicFactor = 0.0;
+  material.pbrMetallicRoughness.roughnessFactor = 1.0;
+  if (!texture.empty()) {
+    std::vector<unsigned char> jpeg;
+    cv::imencode(".jpg", texture, jpeg, {cv::IMWRITE_JPEG_QUALITY, kJpegQuality});
+    tinygltf::Image image;
+    image.mimeType = "image/jpeg";
+    image.bufferView = builder->AddView(jpeg, 0);
+    model.images.push_back(image);
+    model.samplers.emplace_back();
+    tinygltf::Texture entry;
+    entry.source = 0;
+    entry.sampler = 0;
+    model.textures.push_back(entry);
+    material.pbrMetallicRoughness.baseColorTexture.index = 0;
+  }
+  model.materials.push_back(material);
+  return 0;
+}
+
+void AddMesh(const MeshAnimation& animation, ModelBuilder* builder) {
+  const Mesh& mesh = animation.mesh;
+  const Corners corners = SplitAtSeams(mesh);
+  const auto at = [](const std::vector<Eigen::Vector3f>& vectors) {
+    return [&vectors](std::size_t v) { return vectors[v]; };
+  };
+  tinygltf::Primitive primitive;
+  primitive.mode = TINYGLTF_MODE_TRIANGLES;
+  primitive.material = AddMaterial(animation.texture, builder);
+  primitive.indices = builder->AddIndices(corners.indices);
+  const int target = TINYGLTF_TARGET_ARRAY_BUFFER;
+  primitive.attributes["POSITION"] = builder->AddFloats(
+      OfCorners(corners, [&](std::size_t v) { return Eigen::Vector3f(kMetersPerUnit * mesh.vertices[v]); }),
+      TINYGLTF_TYPE_VEC3, true, target);
+  primitive.attributes["NORMAL"] =
+      builder->AddFloats(OfCorners(corners, at(mesh.normals)), TINYGLTF_TYPE_VEC3, false, target);
+  if (animation.texture.empty())
+    primitive.attributes["COLOR_0"] = builder->AddFloats(Colors(corners, mesh), TINYGLTF_TYPE_VEC3, false, target);
+  else
+    primitive.attributes["TEXCOORD_0"] = builder->AddFloats(TextureUvs(corners), TINYGLTF_TYPE_VEC2, false, target);
+  for (const MeshKey& key : animation.keys) {
+    const auto moved = [&](std::size_t v) {
+      return Eigen::Vector3f(kMetersPerUnit * (key.positions[v] - mesh.vertices[v]));
+    };
+    primitive.targets.push_back(
+        {{"POSITION", builder->AddFloats(OfCorners(corners, moved), TINYGLTF_TYPE_VEC3, true, target)}});
+  }
+  tinygltf::Mesh entry;
+  entry.name = "surface";
+  entry.primitives.push_back(primitive);
+  entry.weights.assign(animation.keys.size(), 0.0);
+  if (!entry.weights.empty()) entry.weights[0] = 1.0;
+  builder->model().meshes.push_back(entry);
+  tinygltf::Node node;
+  node.name = "surface";
+  node.mesh = 0;
+  builder->model().nodes.push_back(node);
+}
+
+void AddCamera(const MeshAnimation& animation, ModelBuilder* builder) {
+  tinygltf::Camera camera;
+  camera.type = "perspective";
+  camera.perspective.yfov = 2.0 * std::atan(0.5 * animation.camera.height() / animation.camera.MeanFocalLengthPx());
+  camera.perspective.aspectRatio = static_cast<double>(animation.camera.width()) / animation.camera.height();
+  camera.perspective.znear = kNear;
+  camera.perspective.zfar = kFar;
+  builder->model().cameras.push_back(camera);
+  tinygltf::Node node;
+  node.name = "camera";
+  node.camera = 0;
+  builder->model().nodes.push_back(node);
+}
+
+constexpr int kSurfaceNode = 0;
+constexpr int kCameraNode = 1;
+
+// What a node does over time.
+void AddChannel(int node, const char* what, int times, int values, tinygltf::Animation* animation) {
+  tinygltf::AnimationSampler sampler;
+  sampler.input = times;
+  sampler.output = values;
+  sampler.interpolation = "LINEAR";
+  animation->samplers.push_back(sampler);
+  tinygltf::AnimationChannel channel;
+  channel.sampler = static_cast<int>(animation->samplers.size()) - 1;
+  channel.target_node = node;
+  channel.target_path = what;
+  animation->channels.push_back(channel);
+}
+
+template <class Keys>
+int AddTimes(const Keys& keys, double start_s, ModelBuilder* builder) {
+  std::vector<float> times;
+  for (const auto& key : keys) times.push_back(static_cast<float>(key.time_s - start_s));
+  return builder->AddFloats(times, TINYGLTF_TYPE_SCALAR, true, 0);
+}
+
+// The rotation of a camera that looks along its -z with y up, as glTF's does, in glTF's world.
+Eigen::Quaternionf RotationInGltf(const Rigid3& world_from_cam) {
+  const Eigen::Vector3d turn(1.0, -1.0, -1.0);
+  const Eigen::Matrix3d rotation = turn.asDiagonal() * world_from_cam.RotationMatrix() * turn.asDiagonal();
+  return Eigen::Quaterniond(rotation).normalized().cast<float>();
+}
+
+void AddAnimation(const MeshAnimation& input, ModelBuilder* builder) {
+  tinygltf::Animation animation;
+  animation.name = "recording";
+  double start_s = 0.0;
+  if (!input.path.empty()) start_s = input.path.front().time_s;
+  if (!input.keys.empty()) start_s = std::min(start_s, input.keys.front().time_s);
+  if (!input.keys.empty()) {
+    const std::size_t count = input.keys.size();
+    std::vector<float> weights(count * count, 0.0F);
+    for (std::size_t k = 0; k < count; ++k) weights[k * count + k] = 1.0F;
+    AddChannel(kSurfaceNode, "weights", AddTimes(input.keys, start_s, builder),
+               builder->AddFloats(weights, TINYGLTF_TYPE_SCALAR, false, 0), &animation);
+  }
+  if (!input.path.empty()) {
+    std::vector<float> translations;
+    std::vector<float> rotations;
+    Eigen::Quaternionf last = Eigen::Quaternionf::Identity();
+    for (const CameraKey& key : input.path) {
+      Append(InGltf(kMetersPerUnit * key.world_from_cam.translation.cast<float>()), &translations);
+      Eigen::Quaternionf rotation = RotationInGltf(key.world_from_cam);
+      if (rotation.dot(last) < 0.0F) rotation.coeffs() *= -1.0F;  // interpolated the short way
+      rotations.insert(rotations.end(), rotation.coeffs().data(), rotation.coeffs().data() + 4);
+      last = rotation;
+    }
+    const int times = AddTimes(input.path, start_s, builder);
+    AddChannel(kCameraNode, "translation", times, builder->AddFloats(translations, TINYGLTF_TYPE_VEC3, false, 0),
+               &animation);
+    AddChannel(kCameraNode, "rotation", times, builder->AddFloats(rotations, TINYGLTF_TYPE_VEC4, false, 0),
+               &animation);
+  }
+  if (!animation.channels.empty()) builder->model().animations.push_back(animation);
+}
+
+}  // namespace
+
+Status WriteGlb(const std::string& path, const MeshAnimation& animation) {
+  if (animation.mesh.triangles.empty())
+    return {ErrorCode::kInsufficient, "the mesh has no triangles; " + Quoted(path) + " is not written"};
+  ModelBuilder builder;
+  AddMesh(animation, &builder);
+  AddCamera(animation, &builder);
+  AddAnimation(animation, &builder);
+  tinygltf::Scene scene;
+  scene.nodes = {kSurfaceNode, kCameraNode};
+  builder.model().scenes.push_back(scene);
+  builder.model().defaultScene = 0;
+  std::ostringstream stream;
+  tinygltf::TinyGLTF writer;
+  if (!writer.WriteGltfSceneToStream(&builder.model(), stream, false, true))
+    return {ErrorCode::kUnwritable, "cannot write " + Quoted(path) + ": the model is too large for a .glb file"};
+  return WriteFileAtomically(path, std::move(stream).str());
+}
+
+}  // namespace pliant

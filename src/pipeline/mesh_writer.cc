@@ -1,0 +1,131 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pipeline/mesh_writer.h"
+
+#include <array>
+#include <cstddef>
+#include <system_error>
+#include <utility>
+
+#include <opencv2/imgcodecs.hpp>
+
+#include "pliant/base/files.h"
+#include "pliant/io/obj.h"
+#include "pliant/io/ply.h"
+#include "pliant/surface/mesh_geometry.h"
+
+namespace pliant {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kPlyFolder = "mesh";
+constexpr const char* kObjFolder = "obj";
+constexpr const char* kVtpFolder = "vtp";
+constexpr const char* kTextureName = "texture";
+constexpr int kJpegQuality = 92;
+
+Status MakeFolder(const fs::path& path) {
+  std::error_code error;
+  fs::create_directories(path, error);
+  return error ? Unwritable(path) : Status::Ok();
+}
+
+VtkArray ViewsOf(const MeshInFrame& now) {
+  VtkArray views{"view", 1, {}};
+  for (const VertexView view : now.views) views.values.push_back(static_cast<float>(view));
+  return views;
+}
+
+Status WriteJpeg(const fs::path& path, const cv::Mat& image) {
+  std::vector<unsigned char> bytes;
+  cv::imencode(".jpg", image, bytes, {cv::IMWRITE_JPEG_QUALITY, kJpegQuality});
+  return WriteFileAtomically(path.string(), {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+}
+
+}  // namespace
+
+std::vector<Eigen::Vector3f> DeformedMesh::Vertices() const {
+  std::vector<Eigen::Vector3f> vertices;
+  for (const Eigen::Vector3d& position : now.positions) vertices.push_back(position.cast<float>());
+  return vertices;
+}
+
+Mesh DeformedMesh::SeenPart() const {
+  Mesh mesh = undeformed;
+  std::vector<bool> seen;
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+    mesh.vertices[v] = (cam_from_world * now.positions[v]).cast<float>();
+    mesh.ids.push_back(static_cast<std::int32_t>(v));
+    seen.push_back(now.views[v] != VertexView::kOutOfView);
+  }
+  mesh.sigmas = now.sigmas;
+  mesh = PartOfMesh(mesh, seen);
+  mesh.normals = VertexNormals(mesh.vertices, mesh.triangles);
+  return mesh;
+}
+
+Status MeshWriter::RemoveEarlier(const fs::path& folder) {
+  std::error_code error;
+  for (const char* kind : {kPlyFolder, kObjFolder, kVtpFolder}) {
+    fs::remove_all(folder / kind, error);
+    if (error) return Unwritable(folder / kind);
+  }
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+    const std::string name = entry.path().stem().string();
+    const std::string ending = entry.path().extension().string();
+    const bool is_mesh = (name.starts_with("surface") && (ending == ".glb" || ending == ".pvd")) ||
+                         (name.starts_with("undeformed") && ending == ".ply") ||
+                         (name.starts_with(kTextureName) && (ending == ".jpg" || ending == ".mtl"));
+    if (is_mesh && !fs::remove(entry.path(), error)) return Unwritable(entry.path());
+  }
+  return Status::Ok();
+}
+
+Status MeshWriter::WriteUndeformed(const Mesh& mesh, const cv::Mat& texture) {
+  if (Status status = WritePly(FileName("undeformed", ".ply").string(), mesh); !status.ok() || !files_.obj)
+    return status;
+  const fs::path image = FileName(kTextureName, ".jpg");
+  if (Status status = WriteJpeg(image, texture); !status.ok()) return status;
+  return WriteObjMaterial(FileName(kTextureName, ".mtl").string(), image.filename().string());
+}
+
+Status MeshWriter::WriteFrame(const std::string& name, const DeformedMesh& deformed) {
+  const Mesh seen = deformed.SeenPart();
+  if (Status status = MakeFolder(folder_ / kPlyFolder); !status.ok()) return status;
+  if (Status status = WritePly((folder_ / kPlyFolder / (name + ".ply")).string(), seen); !status.ok()) return status;
+  if (files_.obj) {
+    if (Status status = MakeFolder(folder_ / kObjFolder); !status.ok()) return status;
+    const std::string material = "../" + FileName(kTextureName, ".mtl").filename().string();
+    if (Status status = WriteObj((folder_ / kObjFolder / (name + ".obj")).string(), seen, material); !status.ok())
+      return status;
+  }
+  if (!files_.vtk) return Status::Ok();
+  if (Status status = MakeFolder(folder_ / kVtpFolder); !status.ok()) return status;
+  Mesh whole = deformed.undeformed;
+  whole.vertices = deformed.Vertices();
+  whole.normals = VertexNormals(whole.vertices, whole.triangles);
+  whole.sigmas = deformed.now.sigmas;
+  VtkArray displacement{"displacement", 3, {}};
+  for (std::size_t v = 0; v < whole.vertices.size(); ++v)
+    for (const float d : Eigen::Vector3f(whole.vertices[v] - deformed.undeformed.vertices[v]))
+      displacement.values.push_back(d);
+  VtkArray area_change{"area_change", 1, {}};
+  VtkArray largest{"largest_stretch", 1, {}};
+  VtkArray least{"least_stretch", 1, {}};
+  for (const TriangleStrain& strain : Strains(deformed.undeformed.vertices, whole.vertices, whole.triangles)) {
+    area_change.values.push_back(strain.area_change);
+    largest.values.push_back(strain.largest_stretch);
+    least.values.push_back(strain.least_stretch);
+  }
+  times_.push_back({deformed.timestamp_s, std::string(kVtpFolder) + "/" + name + ".vtp"});
+  return WriteVtp((folder_ / times_.back().file).string(), whole, std::array{displacement, ViewsOf(deformed.now)},
+                  std::array{area_change, largest, least});
+}
+
+Status MeshWriter::Finish() {
+  return files_.vtk ? WritePvd(FileName("surface", ".pvd").string(), times_) : Status::Ok();
+}
+
+}  // namespace pliant

@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// The frames of a run that a surface is made of: their poses and points from the run folder, their images from the
+// sequence.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "pliant/base/status.h"
+#include "pliant/datasets/sequence.h"
+#include "pliant/image/masks.h"
+#include "pliant/io/run_map.h"
+#include "pliant/io/run_reader.h"
+#include "pliant/surface/dense_depth.h"
+
+namespace pliant {
+
+// A frame of one submap of a run.
+struct PosedFrame {
+  int frame_idx = 0;
+  int submap = 0;
+  double timestamp_s = 0;
+  Rigid3 cam_from_world;
+  std::vector<PointObservation> observations;  // sorted by id
+};
+
+// All that have a pose, in the order of time. Fails as FramesWithPose and ForEachFrame do.
+Result<std::vector<PosedFrame>> ReadPosedFrames(const std::string& path, const Run& run);
+
+// Views of posed frames, read in order and kept as long as they are needed. What it is made from has to outlive it.
+class RunViews {
+ public:
+  RunViews(std::unique_ptr<Sequence> sequence, const std::vector<PosedFrame>& frames, const RunMap& known,
+           const MaskOptions& masks)
+      : sequence_(std::move(sequence)), frames_(frames), known_(known), masks_(masks) {}
+
+  // Reads up to the frame at `position` of the posed frames, and keeps those for which `is_needed`. Fails as Sequence,
+  // and with kMismatch where the images are not those of the run.
+  Status ReadUntil(std::size_t position, const std::function<bool(std::size_t)>& is_needed);
+  // Of a frame that was read and kept.
+  const SurfaceView& At(std::size_t position) const { return views_.at(position); }
+  void ForgetUnless(const std::function<bool(std::size_t)>& is_needed);
+
+ private:
+  Status CheckIsOfRun(const SequenceFrame& frame) const;
+
+  std::unique_ptr<Sequence> sequence_;
+  const std::vector<PosedFrame>& frames_;
+  const RunMap& known_;
+  const MaskOptions& masks_;
+  std::map<std::size_t, SurfaceView> views_;
+  std::size_t next_ = 0;
+};
+
+}  // namespace pliant

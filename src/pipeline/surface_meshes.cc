@@ -1,0 +1,200 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pipeline/surface_meshes.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <opencv2/imgproc.hpp>
+
+#include "pipeline/mesh_writer.h"
+#include "pliant/image/sharpness.h"
+#include "pliant/io/gltf.h"
+#include "pliant/surface/mesh_geometry.h"
+#include "pliant/surface/mesh_texture.h"
+#include "pliant/surface/tracked_mesh.h"
+
+namespace pliant {
+namespace {
+
+constexpr std::size_t kTextureViews = 16;  // images from which a texture is chosen: the sharpest of as many parts
+constexpr int kMaxTextureSize = 4096;      // px, which every graphics card can do
+
+// A frame with a depth.
+struct DenseFrame {
+  std::size_t position = 0;  // in MeshSource::frames
+  SurfaceFolder::Frame file;
+};
+
+// The frames of a submap with a depth, in the order of time.
+std::vector<std::vector<DenseFrame>> DenseFramesBySubmap(const MeshSource& source) {
+  std::map<int, std::vector<DenseFrame>> submaps;
+  for (const SurfaceFolder::Frame& file : source.folder.frames) {
+    const auto frame = std::ranges::find(source.frames, file.frame_idx, &PosedFrame::frame_idx);
+    if (frame == source.frames.end()) continue;
+    const auto position = static_cast<std::size_t>(frame - source.frames.begin());
+    submaps[frame->submap].push_back({position, file});
+  }
+  std::vector<std::vector<DenseFrame>> result;
+  for (auto& [submap, frames] : submaps) {
+    std::ranges::sort(frames, {}, &DenseFrame::position);
+    result.push_back(std::move(frames));
+  }
+  return result;
+}
+
+Result<DenseDepth> ReadDense(const SurfaceFolder& folder, const SurfaceFolder::Frame& file) {
+  auto read = ReadSurfaceDepth(folder, file);
+  if (!read.ok()) return read.status();
+  return DenseDepth{std::move(read->depth), std::move(read->sigma)};
+}
+
+// An image from which a texture may be taken.
+struct SharpImage {
+  std::size_t position = 0;  // in MeshSource::frames
+  cv::Mat image;
+  cv::Mat valid;
+  double sharpness = 0;
+};
+
+// The sharpest image of each of kTextureViews parts of the frames.
+class SharpImages {
+ public:
+  explicit SharpImages(std::size_t frames) : frames_(frames) {}
+
+  // The `k`-th of the frames.
+  void Add(std::size_t k, std::size_t position, const SurfaceView& view) {
+    cv::Mat gray = view.image;
+    if (gray.channels() == 3) cv::cvtColor(view.image, gray, cv::COLOR_BGR2GRAY);
+    const double sharpness = Sharpness(gray, view.valid);
+    const std::size_t part = k * std::min(frames_, kTextureViews) / frames_;
+    if (part == images_.size()) images_.emplace_back();
+    if (images_[part].image.empty() || sharpness > images_[part].sharpness)
+      images_[part] = {position, view.image, view.valid, sharpness};
+  }
+
+  const std::vector<SharpImage>& images() const { return images_; }
+
+ private:
+  std::size_t frames_;
+  std::vector<SharpImage> images_;
+};
+
+class MeshMaker {
+ public:
+  MeshMaker(const MeshSource& source, const SurfaceRunOptions& options, int threads,
+            const std::vector<DenseFrame>& frames)
+      : source_(source),
+        options_(options),
+        frames_(frames),
+        tracked_(source.folder.camera, RestPositionsOf(source.known), options.mesh_columns, threads),
+        images_(frames.size()) {}
+
+  Status Make(MeshWriter* writer) {
+    if (Status status = Build(); !status.ok()) return status;
+    mesh_ = tracked_.undeformed();
+    if (mesh_.triangles.empty()) return Status::Ok();
+    if (options_.gltf || options_.obj) MakeTextureOfImages();
+    if (Status status = writer->WriteUndeformed(mesh_, texture_); !status.ok()) return status;
+    if (Status status = WriteFrames(writer); !status.ok() || !options_.gltf) return status;
+    return WriteGlb(writer->FileName("surface", ".glb").string(),
+                    {mesh_, texture_, keys_, CameraPath(), source_.folder.camera});
+  }
+
+ private:
+  static RestPositions RestPositionsOf(const RunMap& known) {
+    RestPositions rest;
+    for (const auto& [id, point] : known.points) rest[id] = point.position;
+    return rest;
+  }
+
+  Status Build() {
+    auto sequence = OpenSequence(source_.images);
+    if (!sequence.ok()) return sequence.status();
+    RunViews views(*std::move(sequence), source_.frames, source_.known, options_.masks);
+    for (std::size_t k = 0; k < frames_.size(); ++k) {
+      const std::size_t position = frames_[k].position;
+      if (Status status = views.ReadUntil(position, [&](std::size_t other) { return other == position; });
+          !status.ok())
+        return status;
+      const auto dense = ReadDense(source_.folder, frames_[k].file);
+      if (!dense.ok()) return dense.status();
+      tracked_.Add(views.At(position), *dense);
+      images_.Add(k, position, views.At(position));
+      views.ForgetUnless([](std::size_t) { return false; });
+    }
+    tracked_.Finish();
+    return Status::Ok();
+  }
+
+  std::optional<MeshInFrame> InFrame(std::size_t position, const DenseDepth& dense) const {
+    const PosedFrame& frame = source_.frames[position];
+    return tracked_.InFrame({{}, {}, frame.cam_from_world, frame.observations}, dense);
+  }
+
+  void MakeTextureOfImages() {
+    std::vector<TextureView> views;
+    for (const SharpImage& sharp : images_.images()) {
+      auto in_frame = InFrame(sharp.position, {});
+      if (!in_frame) continue;
+      views.push_back({sharp.image, sharp.valid, source_.frames[sharp.position].cam_from_world, *std::move(in_frame),
+                       sharp.sharpness});
+    }
+    texture_ = MakeTexture(source_.folder.camera, views, kMaxTextureSize, &mesh_);
+  }
+
+  Status WriteFrames(MeshWriter* writer) {
+    const std::size_t keys = std::min<std::size_t>(frames_.size(), static_cast<std::size_t>(options_.animation_keys));
+    for (std::size_t k = 0; k < frames_.size(); ++k) {
+      const auto dense = ReadDense(source_.folder, frames_[k].file);
+      if (!dense.ok()) return dense.status();
+      const PosedFrame& frame = source_.frames[frames_[k].position];
+      const auto now = InFrame(frames_[k].position, *dense);
+      if (!now) continue;
+      const DeformedMesh deformed{mesh_, *now, frame.cam_from_world, frame.timestamp_s};
+      if (Status status = writer->WriteFrame(std::filesystem::path(frames_[k].file.file_name).stem(), deformed); !status.ok()) return status;
+      // The keys are as even in time as the frames are.
+      if (keys_.size() < keys && k * (keys - 1) >= keys_.size() * (frames_.size() - 1))
+        keys_.push_back({frame.timestamp_s, deformed.Vertices()});
+    }
+    return writer->Finish();
+  }
+
+  std::vector<CameraKey> CameraPath() const {
+    std::vector<CameraKey> path;
+    for (const DenseFrame& frame : frames_) {
+      const PosedFrame& posed = source_.frames[frame.position];
+      path.push_back({posed.timestamp_s, posed.cam_from_world.Inverse()});
+    }
+    return path;
+  }
+
+  const MeshSource& source_;
+  const SurfaceRunOptions& options_;
+  const std::vector<DenseFrame>& frames_;
+  TrackedMesh tracked_;
+  SharpImages images_;
+  Mesh mesh_;  // undeformed
+  cv::Mat texture_;
+  std::vector<MeshKey> keys_;
+};
+
+}  // namespace
+
+Status MakeMeshes(const MeshSource& source, const SurfaceRunOptions& options, int threads) {
+  const auto submaps = DenseFramesBySubmap(source);
+  for (std::size_t k = 0; k < submaps.size(); ++k) {
+    const std::string suffix = submaps.size() > 1 ? "_" + std::to_string(k) : "";
+    MeshWriter writer(source.folder.path, suffix, {.obj = options.obj, .vtk = options.vtk});
+    if (Status status = MeshMaker(source, options, threads, submaps[k]).Make(&writer); !status.ok()) return status;
+  }
+  return Status::Ok();
+}
+
+}  // namespace pliant

@@ -1,0 +1,303 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/surface/tracked_mesh.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <utility>
+
+#include "pliant/base/statistics.h"
+#include "pliant/image/brightness.h"
+#include "pliant/surface/mesh_geometry.h"
+#include "surface/depth_holes.h"
+#include "surface/mesh_raster.h"
+#include "surface/rest_motion.h"
+
+namespace pliant {
+namespace {
+
+constexpr double kSameSurface = 3.0;  // standard deviations of two depths of one surface
+constexpr double kMinKnown = 0.5;    // of the pixels around a node
+constexpr std::int32_t kNoVertex = -1;
+
+// Whether the distances of a triangle's corners are those of one surface.
+bool IsOneSurface(std::span<const Eigen::Vector3d> in_cam, const Triangle& triangle, double largest_step) {
+  const auto distance = [&](std::size_t k) { return in_cam[static_cast<std::size_t>(triangle[k])].norm(); };
+  const auto [least, largest] = std::minmax({distance(0), distance(1), distance(2)});
+  return largest - least <= largest_step * least;
+}
+
+struct Votes {
+  double weight = 0;  // of a vertex's position along the rays: the sum of inverse variances
+  int confirmed = 1;
+  int contradicted = 0;
+};
+
+// Vertices in a frame.
+struct Placed {
+  std::vector<Eigen::Vector3d> in_cam;
+  std::vector<std::optional<Eigen::Vector2d>> pixels;
+  std::vector<double> depths;
+  MeshRaster raster;
+};
+
+// A depth of a frame, and its standard deviation.
+struct Measured {
+  double depth = 0;  // 0: none
+  double sigma = 0;  // map units
+};
+
+Measured MeasuredAt(const DenseDepth& dense, const Eigen::Vector2d& pixel) {
+  if (dense.depth.empty()) return {};
+  const auto x = static_cast<int>(std::lround(pixel.x()));
+  const auto y = static_cast<int>(std::lround(pixel.y()));
+  if (x < 0 || y < 0 || x >= dense.depth.cols || y >= dense.depth.rows) return {};
+  const double depth = dense.depth.at<float>(y, x);
+  return {depth, dense.sigma.at<float>(y, x) * depth};
+}
+
+// What the pixels nearest to a node say, where half of them know it: the median.
+Measured MeasuredAround(const DenseDepth& dense, const Eigen::Vector2d& pixel, double step_px) {
+  const auto first = [&](double center) { return std::max(0, static_cast<int>(std::ceil(center - 0.5 * step_px))); };
+  const auto last = [&](double center, int size) {
+    return std::min(size - 1, static_cast<int>(std::ceil(center + 0.5 * step_px)) - 1);
+  };
+  std::vector<double> depths;
+  std::vector<double> sigmas;
+  int pixels = 0;
+  for (int y = first(pixel.y()); y <= last(pixel.y(), dense.depth.rows); ++y)
+    for (int x = first(pixel.x()); x <= last(pixel.x(), dense.depth.cols); ++x) {
+      ++pixels;
+      if (!(dense.depth.at<float>(y, x) > 0.0F)) continue;
+      depths.push_back(dense.depth.at<float>(y, x));
+      sigmas.push_back(dense.sigma.at<float>(y, x));
+    }
+  if (depths.empty() || static_cast<double>(depths.size()) < kMinKnown * pixels) return {};
+  const double depth = Median(std::move(depths));
+  return {depth, depth * Median(std::move(sigmas))};
+}
+
+// The vertices that a frame has at the nodes of its grid, and which of them are new.
+struct Grid {
+  std::vector<std::int32_t> vertex;  // row by row; kNoVertex: no surface there, or one that is hidden
+  std::vector<bool> is_new;
+};
+
+}  // namespace
+
+struct TrackedMesh::State {
+  Camera camera;
+  RestPositions rest;
+  int threads = 1;
+  cv::Size nodes = {};
+  double step_px = 1;
+  Mesh mesh = {};
+  std::vector<Votes> votes = {};
+
+  std::vector<Eigen::Vector3d> RestOfVertices() const;
+  Placed Place(const Rigid3& cam_from_world, std::span<const Eigen::Vector3d> positions) const;
+  bool IsHidden(const Placed& placed, std::size_t v, double tolerance) const;
+  void Confirm(const SurfaceView& view, const DenseDepth& dense, const Placed& placed, double motion_error);
+  std::int32_t VertexAt(const Placed& placed, int column, int row, const Measured& measured, double motion_error) const;
+  Grid Compare(const DenseDepth& dense, const Placed& placed, double motion_error) const;
+  void AddVertices(const SurfaceView& view, const DenseDepth& dense, const RestMotion& motion, Grid* grid,
+                   Placed* placed);
+  void AddTriangles(const Grid& grid, const Placed& placed);
+
+  Eigen::Vector2d PixelOf(int column, int row) const { return {column * step_px, row * step_px}; }
+  std::size_t NodeIndex(int column, int row) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(nodes.width) + static_cast<std::size_t>(column);
+  }
+};
+
+std::vector<Eigen::Vector3d> TrackedMesh::State::RestOfVertices() const {
+  std::vector<Eigen::Vector3d> positions;
+  positions.reserve(mesh.vertices.size());
+  for (const Eigen::Vector3f& vertex : mesh.vertices) positions.push_back(vertex.cast<double>());
+  return positions;
+}
+
+Placed TrackedMesh::State::Place(const Rigid3& cam_from_world, std::span<const Eigen::Vector3d> positions) const {
+  Placed placed;
+  for (const Eigen::Vector3d& position : positions) placed.in_cam.push_back(cam_from_world * position);
+  placed.pixels = camera.Project(placed.in_cam);
+  for (const Eigen::Vector3d& point : placed.in_cam) placed.depths.push_back(point.z());
+  placed.raster = RasterizeMesh(placed.pixels, placed.depths, mesh.triangles, nodes, step_px);
+  return placed;
+}
+
+// Whether another part of the mesh is before a vertex, which is in the image.
+bool TrackedMesh::State::IsHidden(const Placed& placed, std::size_t v, double tolerance) const {
+  const int column = std::min(static_cast<int>(std::lround(placed.pixels[v]->x() / step_px)), nodes.width - 1);
+  const int row = std::min(static_cast<int>(std::lround(placed.pixels[v]->y() / step_px)), nodes.height - 1);
+  const double depth = placed.raster.depth.at<float>(row, column);
+  return depth > 0.0 && depth < placed.depths[v] - tolerance;
+}
+
+// (V11) Depths of vertices that are there already.
+void TrackedMesh::State::Confirm(const SurfaceView& view, const DenseDepth& dense, const Placed& placed,
+                                 double motion_error) {
+  const Eigen::Matrix3d world_from_cam = view.cam_from_world.RotationMatrix().transpose();
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+    if (!placed.pixels[v] || !camera.Contains(*placed.pixels[v]) || !(placed.depths[v] > 0.0)) continue;
+    const Measured measured = MeasuredAt(dense, *placed.pixels[v]);
+    if (!(measured.depth > 0.0)) continue;
+    const double own = std::hypot(measured.sigma, motion_error);
+    const double tolerance = kSameSurface * std::hypot(own, mesh.sigmas[v]);
+    const double difference = measured.depth - placed.depths[v];
+    if (difference > tolerance) ++votes[v].contradicted;
+    if (std::abs(difference) > tolerance || IsHidden(placed, v, tolerance)) continue;
+    ++votes[v].confirmed;
+    const double weight = 1.0 / (own * own);
+    votes[v].weight += weight;
+    const Eigen::Vector3d along = placed.in_cam[v] * (difference / placed.depths[v]);
+    mesh.vertices[v] += (world_from_cam * along * (weight / votes[v].weight)).cast<float>();
+    mesh.sigmas[v] = std::min(mesh.sigmas[v], static_cast<float>(own));
+  }
+}
+
+// The vertex that a node's depth belongs to, nearest in the image; kNoVertex: it shows a surface that is not there yet.
+std::int32_t TrackedMesh::State::VertexAt(const Placed& placed, int column, int row, const Measured& measured,
+                                          double motion_error) const {
+  const std::int32_t t = placed.raster.triangle.at<std::int32_t>(row, column);
+  if (t == kNoTriangle) return kNoVertex;
+  std::int32_t nearest = kNoVertex;
+  double least = 0.0;
+  for (const std::int32_t v : mesh.triangles[static_cast<std::size_t>(t)]) {
+    const double distance = (*placed.pixels[static_cast<std::size_t>(v)] - PixelOf(column, row)).norm();
+    if (nearest == kNoVertex || distance < least) {
+      nearest = v;
+      least = distance;
+    }
+  }
+  const double own = std::hypot(measured.sigma, motion_error);
+  const double tolerance = kSameSurface * std::hypot(own, mesh.sigmas[static_cast<std::size_t>(nearest)]);
+  const double before = placed.raster.depth.at<float>(row, column) - measured.depth;
+  return before > tolerance ? kNoVertex : nearest;
+}
+
+Grid TrackedMesh::State::Compare(const DenseDepth& dense, const Placed& placed, double motion_error) const {
+  Grid grid;
+  for (int row = 0; row < nodes.height; ++row)
+    for (int column = 0; column < nodes.width; ++column) {
+      const Measured measured = MeasuredAround(dense, PixelOf(column, row), step_px);
+      const std::int32_t vertex =
+          measured.depth > 0.0 ? VertexAt(placed, column, row, measured, motion_error) : kNoVertex;
+      grid.vertex.push_back(vertex);
+      grid.is_new.push_back(measured.depth > 0.0 && vertex == kNoVertex);
+    }
+  return grid;
+}
+
+void TrackedMesh::State::AddVertices(const SurfaceView& view, const DenseDepth& dense, const RestMotion& motion,
+                                     Grid* grid, Placed* placed) {
+  const Rigid3 world_from_cam = view.cam_from_world.Inverse();
+  std::vector<Eigen::Vector3d> positions;
+  for (int row = 0; row < nodes.height; ++row)
+    for (int column = 0; column < nodes.width; ++column) {
+      const std::size_t node = NodeIndex(column, row);
+      if (!grid->is_new[node]) continue;
+      const Eigen::Vector2d pixel = PixelOf(column, row);
+      const auto ray = camera.Unproject(pixel);
+      if (!ray) {
+        grid->is_new[node] = false;
+        continue;
+      }
+      const Measured measured = MeasuredAround(dense, pixel, step_px);
+      const Eigen::Vector3d in_cam = *ray * (measured.depth / ray->z());
+      grid->vertex[node] = static_cast<std::int32_t>(placed->in_cam.size());
+      placed->in_cam.push_back(in_cam);
+      positions.push_back(world_from_cam * in_cam);
+      mesh.rgb.push_back(ColorAt(view.image, pixel));
+      const double sigma = measured.sigma / measured.depth * in_cam.norm();
+      mesh.sigmas.push_back(static_cast<float>(sigma));
+      votes.push_back({.weight = 1.0 / (sigma * sigma + motion.error() * motion.error())});
+    }
+  for (const Eigen::Vector3d& position : motion.Undeformed(positions, threads))
+    mesh.vertices.push_back(position.cast<float>());
+}
+
+void TrackedMesh::State::AddTriangles(const Grid& grid, const Placed& placed) {
+  const double largest_step = step_px * LargestStepOfASurface(camera.MeanFocalLengthPx());
+  const auto add = [&](std::array<std::size_t, 3> corners) {
+    Triangle triangle{};
+    bool is_new = false;
+    for (std::size_t k = 0; k < 3; ++k) {
+      triangle[k] = grid.vertex[corners[k]];
+      if (triangle[k] == kNoVertex) return;
+      is_new = is_new || grid.is_new[corners[k]];
+    }
+    if (!is_new || triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0]) return;
+    if (IsOneSurface(placed.in_cam, triangle, largest_step)) mesh.triangles.push_back(triangle);
+  };
+  for (int row = 0; row + 1 < nodes.height; ++row)
+    for (int column = 0; column + 1 < nodes.width; ++column) {
+      const std::size_t here = NodeIndex(column, row);
+      const std::size_t below = NodeIndex(column, row + 1);
+      add({here, below, here + 1});
+      add({below, below + 1, here + 1});
+    }
+}
+
+TrackedMesh::TrackedMesh(const Camera& camera, RestPositions rest, int columns, int threads)
+    : state_(std::make_unique<State>(State{.camera = camera, .rest = std::move(rest), .threads = threads})) {
+  state_->step_px = std::max(1.0, static_cast<double>(camera.width()) / columns);
+  state_->nodes = {static_cast<int>(std::floor((camera.width() - 1) / state_->step_px)) + 1,
+                   static_cast<int>(std::floor((camera.height() - 1) / state_->step_px)) + 1};
+}
+
+TrackedMesh::TrackedMesh(TrackedMesh&&) noexcept = default;
+TrackedMesh& TrackedMesh::operator=(TrackedMesh&&) noexcept = default;
+TrackedMesh::~TrackedMesh() = default;
+
+void TrackedMesh::Add(const SurfaceView& view, const DenseDepth& dense) {
+  const auto motion = RestMotion::Create(state_->rest, view.observations);
+  if (!motion) return;
+  std::vector<Eigen::Vector3d> positions = state_->RestOfVertices();
+  const std::vector<Eigen::Vector3d> displacements = motion->Displacements(positions, state_->threads);
+  for (std::size_t v = 0; v < positions.size(); ++v) positions[v] += displacements[v];
+  Placed placed = state_->Place(view.cam_from_world, positions);
+  state_->Confirm(view, dense, placed, motion->error());
+  Grid grid = state_->Compare(dense, placed, motion->error());
+  state_->AddVertices(view, dense, *motion, &grid, &placed);
+  state_->AddTriangles(grid, placed);
+}
+
+void TrackedMesh::Finish() {
+  std::vector<bool> keep;
+  for (const Votes& votes : state_->votes) keep.push_back(votes.contradicted <= votes.confirmed);
+  state_->mesh = PartOfMesh(state_->mesh, keep);
+  state_->votes.clear();
+  state_->mesh.normals = VertexNormals(state_->mesh.vertices, state_->mesh.triangles);
+}
+
+const Mesh& TrackedMesh::undeformed() const { return state_->mesh; }
+
+std::optional<MeshInFrame> TrackedMesh::InFrame(const SurfaceView& view, const DenseDepth& dense) const {
+  const auto motion = RestMotion::Create(state_->rest, view.observations);
+  if (!motion) return std::nullopt;
+  MeshInFrame result;
+  result.positions = state_->RestOfVertices();
+  const std::vector<Eigen::Vector3d> displacements = motion->Displacements(result.positions, state_->threads);
+  for (std::size_t v = 0; v < displacements.size(); ++v) result.positions[v] += displacements[v];
+  const Placed placed = state_->Place(view.cam_from_world, result.positions);
+  for (std::size_t v = 0; v < result.positions.size(); ++v) {
+    const double own = std::hypot(state_->mesh.sigmas[v], motion->error());
+    result.sigmas.push_back(static_cast<float>(own));
+    result.views.push_back(VertexView::kOutOfView);
+    if (!placed.pixels[v] || !state_->camera.Contains(*placed.pixels[v]) || !(placed.depths[v] > 0.0)) continue;
+    const Measured measured = MeasuredAt(dense, *placed.pixels[v]);
+    const double tolerance = kSameSurface * std::hypot(measured.sigma, own);
+    if (state_->IsHidden(placed, v, tolerance)) continue;
+    const bool has_depth = measured.depth > 0.0;
+    if (has_depth && std::abs(measured.depth - placed.depths[v]) > tolerance) continue;
+    result.views.back() = has_depth ? VertexView::kMeasured : VertexView::kInView;
+  }
+  return result;
+}
+
+}  // namespace pliant
