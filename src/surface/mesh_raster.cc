@@ -10,6 +10,8 @@
 namespace pliant {
 namespace {
 
+constexpr double kOnEdge = 1e-3;  // px, and of a triangle: what rounding puts outside of it
+
 double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 // Corners in pixels of the raster, and their inverse depths, which are linear in the image.
@@ -22,8 +24,8 @@ void Draw(const Corners& corners, std::int32_t index, MeshRaster* raster) {
   const auto& [a, b, c] = corners.at;
   const double area = Cross(b - a, c - a);
   if (!(std::abs(area) > 0.0)) return;
-  const Eigen::Vector2d least = a.cwiseMin(b).cwiseMin(c);
-  const Eigen::Vector2d largest = a.cwiseMax(b).cwiseMax(c);
+  const Eigen::Vector2d least = a.cwiseMin(b).cwiseMin(c).array() - kOnEdge;
+  const Eigen::Vector2d largest = a.cwiseMax(b).cwiseMax(c).array() + kOnEdge;
   const int left = std::max(0, static_cast<int>(std::ceil(std::max(-1.0, least.x()))));
   const int top = std::max(0, static_cast<int>(std::ceil(std::max(-1.0, least.y()))));
   const int right = static_cast<int>(std::floor(std::min(largest.x(), raster->depth.cols - 1.0)));
@@ -34,7 +36,7 @@ void Draw(const Corners& corners, std::int32_t index, MeshRaster* raster) {
       const double of_a = Cross(b - p, c - p) / area;
       const double of_b = Cross(c - p, a - p) / area;
       const double of_c = 1.0 - of_a - of_b;
-      if (of_a < 0.0 || of_b < 0.0 || of_c < 0.0) continue;
+      if (of_a < -kOnEdge || of_b < -kOnEdge || of_c < -kOnEdge) continue;
       const double inverse =
           of_a * corners.inverse_depth[0] + of_b * corners.inverse_depth[1] + of_c * corners.inverse_depth[2];
       const auto depth = static_cast<float>(1.0 / inverse);

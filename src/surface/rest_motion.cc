@@ -4,8 +4,10 @@
 #include "surface/rest_motion.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <utility>
 
 #include <Eigen/Cholesky>
@@ -18,8 +20,8 @@
 namespace pliant {
 namespace {
 
-constexpr int kNeighbors = 16;
-constexpr double kDamping = 0.1;  // of the affine part, by the neighbors' own spread
+constexpr std::array kNeighborCounts = {8, 12, 16};
+constexpr double kDamping = 0.03;  // of the affine part, by the neighbors' own spread
 constexpr double kCauchy = 3.0;   // of the residuals by their median
 constexpr int kInversions = 3;
 constexpr double kMinWeight = 1e-3;
@@ -111,12 +113,22 @@ std::optional<RestMotion> RestMotion::Create(const RestPositions& rest,
   }
   if (positions.size() < kMinPoints) return std::nullopt;
   RestMotion motion(std::move(positions), std::move(displacements));
-  motion.error_ = motion.HeldOutError();
+  // Few neighbors follow a rough motion, many average what is wrong of each.
+  int best = kNeighborCounts.front();
+  motion.error_ = std::numeric_limits<double>::max();
+  for (const int count : kNeighborCounts) {
+    motion.neighbors_ = count;
+    const double error = motion.HeldOutError();
+    if (error >= motion.error_) continue;
+    motion.error_ = error;
+    best = count;
+  }
+  motion.neighbors_ = best;
   return motion;
 }
 
 std::vector<Eigen::Vector3d> RestMotion::Displacements(std::span<const Eigen::Vector3d> rest, int threads) const {
-  const NeighborLists neighbors = NearestNeighbors(rest_, rest, kNeighbors);
+  const NeighborLists neighbors = NearestNeighbors(rest_, rest, neighbors_);
   std::vector<Eigen::Vector3d> result(rest.size());
   ParallelFor(static_cast<int>(rest.size()), threads, [&](int i) {
     const auto k = static_cast<std::size_t>(i);
@@ -132,7 +144,9 @@ std::vector<Eigen::Vector3d> RestMotion::Undeformed(std::span<const Eigen::Vecto
     moved.push_back(rest_[k] + displacements_[k]);
     back.push_back(-displacements_[k]);
   }
-  std::vector<Eigen::Vector3d> result = RestMotion(std::move(moved), std::move(back)).Displacements(now, threads);
+  RestMotion inverse(std::move(moved), std::move(back));
+  inverse.neighbors_ = neighbors_;
+  std::vector<Eigen::Vector3d> result = inverse.Displacements(now, threads);
   for (std::size_t i = 0; i < now.size(); ++i) result[i] += now[i];
   for (int n = 0; n < kInversions; ++n) {
     const std::vector<Eigen::Vector3d> displacements = Displacements(result, threads);
@@ -142,7 +156,7 @@ std::vector<Eigen::Vector3d> RestMotion::Undeformed(std::span<const Eigen::Vecto
 }
 
 double RestMotion::HeldOutError() const {
-  const NeighborLists neighbors = NearestNeighbors(rest_, kNeighbors);
+  const NeighborLists neighbors = NearestNeighbors(rest_, neighbors_);
   std::vector<double> errors;
   for (std::size_t k = 0; k < rest_.size(); ++k)
     errors.push_back((DisplacementAt(rest_, displacements_, neighbors[k], rest_[k]) - displacements_[k]).norm());

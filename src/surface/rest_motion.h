@@ -26,7 +26,7 @@ class RestMotion {
   std::vector<Eigen::Vector3d> Displacements(std::span<const Eigen::Vector3d> rest, int threads) const;
   // The undeformed positions of points that are at `now` in the frame.
   std::vector<Eigen::Vector3d> Undeformed(std::span<const Eigen::Vector3d> now, int threads) const;
-  // How far tracked points are that are held out, map units; median.
+  // How far tracked points are off that are held out, map units; median.
   double error() const { return error_; }
 
  private:
@@ -36,6 +36,7 @@ class RestMotion {
 
   std::vector<Eigen::Vector3d> rest_;
   std::vector<Eigen::Vector3d> displacements_;
+  int neighbors_ = 0;  // that tell the best of points that are held out
   double error_ = 0;
 };
 

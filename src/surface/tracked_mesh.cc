@@ -51,17 +51,9 @@ struct Measured {
   double sigma = 0;  // map units
 };
 
-Measured MeasuredAt(const DenseDepth& dense, const Eigen::Vector2d& pixel) {
-  if (dense.depth.empty()) return {};
-  const auto x = static_cast<int>(std::lround(pixel.x()));
-  const auto y = static_cast<int>(std::lround(pixel.y()));
-  if (x < 0 || y < 0 || x >= dense.depth.cols || y >= dense.depth.rows) return {};
-  const double depth = dense.depth.at<float>(y, x);
-  return {depth, dense.sigma.at<float>(y, x) * depth};
-}
-
-// What the pixels nearest to a node say, where half of them know it: the median.
+// What the pixels around say, where half of them know it: the median.
 Measured MeasuredAround(const DenseDepth& dense, const Eigen::Vector2d& pixel, double step_px) {
+  if (dense.depth.empty()) return {};
   const auto first = [&](double center) { return std::max(0, static_cast<int>(std::ceil(center - 0.5 * step_px))); };
   const auto last = [&](double center, int size) {
     return std::min(size - 1, static_cast<int>(std::ceil(center + 0.5 * step_px)) - 1);
@@ -144,7 +136,7 @@ void TrackedMesh::State::Confirm(const SurfaceView& view, const DenseDepth& dens
   const Eigen::Matrix3d world_from_cam = view.cam_from_world.RotationMatrix().transpose();
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
     if (!placed.pixels[v] || !camera.Contains(*placed.pixels[v]) || !(placed.depths[v] > 0.0)) continue;
-    const Measured measured = MeasuredAt(dense, *placed.pixels[v]);
+    const Measured measured = MeasuredAround(dense, *placed.pixels[v], step_px);
     if (!(measured.depth > 0.0)) continue;
     const double own = std::hypot(measured.sigma, motion_error);
     const double tolerance = kSameSurface * std::hypot(own, mesh.sigmas[v]);
@@ -290,7 +282,7 @@ std::optional<MeshInFrame> TrackedMesh::InFrame(const SurfaceView& view, const D
     result.sigmas.push_back(static_cast<float>(own));
     result.views.push_back(VertexView::kOutOfView);
     if (!placed.pixels[v] || !state_->camera.Contains(*placed.pixels[v]) || !(placed.depths[v] > 0.0)) continue;
-    const Measured measured = MeasuredAt(dense, *placed.pixels[v]);
+    const Measured measured = MeasuredAround(dense, *placed.pixels[v], state_->step_px);
     const double tolerance = kSameSurface * std::hypot(measured.sigma, own);
     if (state_->IsHidden(placed, v, tolerance)) continue;
     const bool has_depth = measured.depth > 0.0;
