@@ -101,7 +101,7 @@ Status ExportTum(const RunSource& source, const ExportOptions& /*options*/, cons
 Result<ExportSummary> ExportRun(const ExportRequest& request, const ExportOptions& options) {
   const auto format = FindFormat(request.format);
   if (!format.ok()) return format.status();
-  const auto sources = ReadRunSources(request.run_path, request.sequence_path, options.stride);
+  const auto sources = ReadRunSources(request, options.stride);
   if (!sources.ok()) return sources.status();
   ExportSummary summary;
   for (std::size_t k = 0; k < sources->size(); ++k) {

@@ -44,6 +44,10 @@ struct ExportRequest {
   std::string sequence_path;
   std::string format = "canonical";  // a name of ExportFormats
   std::string output_path;           // a folder, made if need be
+  std::string camera_path = {};      // the calibration of the images; empty: the one that belongs to them
+  // Of formats with images:
+  std::string mask_path = {};     // as of a SequenceRequest
+  std::string surface_path = {};  // a surface folder of the run: frames without a depth are left out; empty: no depths
 };
 
 struct ExportSummary {
