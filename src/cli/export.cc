@@ -17,7 +17,9 @@ namespace {
 std::string ManualText() {
   std::string text =
       "Reads --run: a run folder that pliant track left, also one that was interrupted or killed. Then the camera and "
-      "the images' names are taken from the sequence that it was made of, or from --sequence.\n\n"
+      "the images' names are taken from the sequence that it was made of, or from --sequence. The formats nerfstudio "
+      "and "
+      "endonerf hold the images, which come from there too, and take --surface, a folder that pliant surface left.\n\n"
       "Leaves in --output_path, by --format:";
   for (const ExportFormat& format : ExportFormats())
     text += "\n\n" + std::string(format.name) + ": " + std::string(format.what);
@@ -42,12 +44,19 @@ int ExportCommand(std::span<const std::string> args) {
                     text,
                     {"pliant export --run run --format spacetime --output_path spacetime",
                      "pliant export --run run --format canonical --output_path text --Export.files text",
-                     "pliant export --run run --format database --output_path colmap"}});
+                     "pliant export --run run --format database --output_path colmap",
+                     "pliant export --run run --format nerfstudio --surface surface --output_path splats"}});
   line.Add("run", &request.run_path, "DIR", "run folder", Need::kRequired);
   line.AddChoice("format", &request.format, FormatNames(), "what to write");
   line.Add("output_path", &request.output_path, "DIR", "folder to write, made if need be", Need::kRequired);
   line.Add("sequence", &request.sequence_path, "PATH",
-           "images of a run that has no sparse/; without it those that its run.json names", Need::kOptional);
+           "the run's images, where they are needed; without it those that its run.json names", Need::kOptional);
+  line.Add("camera", &request.camera_path, "FILE", "their calibration; without it the one that belongs to them",
+           Need::kOptional);
+  line.Add("mask_path", &request.mask_path, "PATH", "folder of masks, or one image for all frames (0 = ignore)",
+           Need::kOptional);
+  line.Add("surface", &request.surface_path, "DIR", "depths of the frames; frames without one are left out",
+           Need::kOptional);
   line.AddFlag("quiet", &quiet, "say nothing but errors");
   if (const auto exit = line.Parse(args)) return *exit;
   OptionTable table;

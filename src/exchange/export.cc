@@ -16,6 +16,8 @@
 namespace pliant {
 namespace {
 
+using Needs = ExportFormat::Needs;
+
 constexpr std::array kFormats = {
     ExportFormat{"canonical",
                  "a COLMAP model with one point a track at its undeformed position, all images, their keypoints and "
@@ -43,6 +45,17 @@ constexpr std::array kFormats = {
                  "database.db with tracks as keypoints and verified matches, from which COLMAP's mapper, "
                  "point_triangulator and bundle_adjuster reconstruct; made by the COLMAP that is installed.",
                  ExportDatabase},
+    ExportFormat{"nerfstudio",
+                 "transforms.json with the images, masks and sparse_pc.ply that it names, and of --surface the depths. "
+                 "The poses are in the file's `unit` of map units, so that a step of the depth images is 0.001, which "
+                 "nerfstudio expects.",
+                 ExportNerfstudio, Needs::kRunAndImages},
+    ExportFormat{
+        "endonerf",
+        "poses_bounds.npy, images/, masks/ (255 = not to be learned from) and of --surface depth/, as EndoNeRF "
+        "and programs that follow it read them. The images are those of a pinhole camera with its principal "
+        "point in the middle (pinhole.yaml). A step of the depth images is the unit of the poses.",
+        ExportEndoNerf, Needs::kRunAndImages},
 };
 
 Result<const ExportFormat*> FindFormat(const std::string& name) {
@@ -51,6 +64,18 @@ Result<const ExportFormat*> FindFormat(const std::string& name) {
   std::string names;
   for (const ExportFormat& known : kFormats) names += (names.empty() ? "" : ", ") + std::string(known.name);
   return Status(ErrorCode::kInvalidArgument, "there is no export format " + Quoted(name) + "; there are " + names);
+}
+
+// What only formats with images take must not be given to others.
+Status CheckNeeds(const ExportFormat& format, const ExportRequest& request) {
+  if (format.needs == Needs::kRunAndImages || (request.surface_path.empty() && request.mask_path.empty()))
+    return Status::Ok();
+  std::string names;
+  for (const ExportFormat& known : kFormats)
+    if (known.needs == Needs::kRunAndImages) names += (names.empty() ? "" : " and ") + std::string(known.name);
+  return {ErrorCode::kInvalidArgument, std::string(request.surface_path.empty() ? "--mask_path" : "--surface") +
+                                           " is for the formats " + names + "; the format " + request.format +
+                                           " has no images"};
 }
 
 }  // namespace
@@ -62,6 +87,8 @@ void ExportOptions::List(OptionTable& table) {
   table.AddChoice("files", &files, "of COLMAP's models");
   table.Add("stride", &stride, "frames", "every Nth tracked frame", 1, 100000);
   table.Add("min_matches", &min_matches, "-", "database: images that share fewer tracks are not matched", 1, 1000000);
+  table.AddChoice("mask_unknown_depth", &mask_unknown_depth,
+                  "endonerf, with a surface: pixels without a depth are not to be learned from");
 }
 
 std::array<std::uint8_t, 3> TimeColor(const RunSource& source, const SourceFrame& frame) {
@@ -101,7 +128,8 @@ Status ExportTum(const RunSource& source, const ExportOptions& /*options*/, cons
 Result<ExportSummary> ExportRun(const ExportRequest& request, const ExportOptions& options) {
   const auto format = FindFormat(request.format);
   if (!format.ok()) return format.status();
-  const auto sources = ReadRunSources(request.run_path, request.sequence_path, options.stride);
+  if (Status status = CheckNeeds(**format, request); !status.ok()) return status;
+  const auto sources = ReadRunSources(request, options.stride);
   if (!sources.ok()) return sources.status();
   ExportSummary summary;
   for (std::size_t k = 0; k < sources->size(); ++k) {

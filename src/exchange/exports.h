@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // What ExportFormats lists, each from a run's source into a folder that is there. Their files appear together at the
-// end; of a format with a file or model a frame, each by itself.
+// end; of a format with a file or model a frame and no images, each by itself.
 #pragma once
 
 #include <array>
@@ -23,6 +23,8 @@ Status ExportTrajectories(const RunSource& source, const ExportOptions& options,
 Status ExportTum(const RunSource& source, const ExportOptions& options, const std::string& folder);
 Status ExportColmap4d(const RunSource& source, const ExportOptions& options, const std::string& folder);
 Status ExportDatabase(const RunSource& source, const ExportOptions& options, const std::string& folder);
+Status ExportNerfstudio(const RunSource& source, const ExportOptions& options, const std::string& folder);
+Status ExportEndoNerf(const RunSource& source, const ExportOptions& options, const std::string& folder);
 
 // The color of a frame's time, from the source's first frame to its last: viridis, which is even to the eye and to the
 // color-blind.

@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "exchange/run_images.h"
 #include "pliant/base/text.h"
 #include "pliant/datasets/run_sequence.h"
 #include "pliant/io/run_map.h"
@@ -42,38 +43,66 @@ Status AddPoints(const RunMap& known, RunSource* source) {
   return Status::Ok();
 }
 
+// The frames to export, by submap, without their points.
+Result<std::map<int, RunSource>> ChooseFrames(const Run& run, const RunMap& known, const RunSource& empty, int stride,
+                                              int* without_depth) {
+  std::map<int, RunSource> sources;
+  for (std::size_t i = 0; i < run.poses.size(); i += static_cast<std::size_t>(stride)) {
+    const RunPose& pose = run.poses[i];
+    if (!pose.frame_idx)
+      return Status(ErrorCode::kMismatch, Quoted(empty.run_path) +
+                                              " has no frames.csv, so it is another program's; make it a run with "
+                                              "pliant import --format result");
+    const auto name = known.names.find(*pose.frame_idx);
+    if (name == known.names.end())
+      return Status(ErrorCode::kMismatch, "frame " + std::to_string(*pose.frame_idx) + " of the run " +
+                                              Quoted(empty.run_path) + " has no image; is this its sequence?");
+    if (empty.surface && FindFrame(*empty.surface, *pose.frame_idx) == nullptr) {
+      ++*without_depth;
+      continue;
+    }
+    RunSource& source = sources.try_emplace(pose.submap, empty).first->second;
+    source.frames.push_back({*pose.frame_idx, pose.timestamp_s, name->second, pose.world_from_cam.Inverse()});
+  }
+  if (sources.empty())
+    return Status(ErrorCode::kInsufficient,
+                  "the surface has a depth of none of the frames to export; make one of more "
+                  "frames with pliant surface, or export without --surface");
+  return sources;
+}
+
 }  // namespace
 
-Result<std::vector<RunSource>> ReadRunSources(const std::string& run_path, const std::string& sequence_path,
-                                              int stride) {
-  const auto run = ReadRun(run_path);
+Result<std::vector<RunSource>> ReadRunSources(const ExportRequest& request, int stride) {
+  const auto run = ReadRun(request.run_path);
   if (!run.ok()) return run.status();
   if (run->poses.empty())
     return Status(ErrorCode::kInsufficient,
-                  "no frame of the run " + Quoted(run_path) + " was tracked; there is nothing to export");
-  auto known = KnownMapOfRun(run_path, SequenceOfRun(run_path, sequence_path), *run);
+                  "no frame of the run " + Quoted(request.run_path) + " was tracked; there is nothing to export");
+  SequenceRequest images = SequenceOfRun(request.run_path, request.sequence_path, request.camera_path);
+  images.mask_path = request.mask_path;
+  const auto known = KnownMapOfRun(request.run_path, images, *run);
   if (!known.ok()) return known.status();
-  std::map<int, RunSource> sources;  // by submap
-  for (std::size_t i = 0; i < run->poses.size(); i += static_cast<std::size_t>(stride)) {
-    const RunPose& pose = run->poses[i];
-    if (!pose.frame_idx)
-      return Status(ErrorCode::kMismatch, Quoted(run_path) +
-                                              " has no frames.csv, so it is another program's; make it a run with "
-                                              "pliant import --format result");
-    const auto name = known->names.find(*pose.frame_idx);
-    if (name == known->names.end())
-      return Status(ErrorCode::kMismatch, "frame " + std::to_string(*pose.frame_idx) + " of the run " +
-                                              Quoted(run_path) + " has no image; is this its sequence?");
-    RunSource& source =
-        sources.try_emplace(pose.submap, RunSource{run_path, *known->camera, {}, {}, 0, {}}).first->second;
-    source.frames.push_back({*pose.frame_idx, pose.timestamp_s, name->second, pose.world_from_cam.Inverse()});
+  RunSource empty{request.run_path, *known->camera, images, {}, {}, {}, 0, {}};
+  if (!request.surface_path.empty()) {
+    auto surface = ReadSurfaceOfRun(request.surface_path, request.run_path, *known);
+    if (!surface.ok()) return surface.status();
+    empty.surface = *std::move(surface);
   }
+  int without_depth = 0;
+  auto sources = ChooseFrames(*run, *known, empty, stride, &without_depth);
+  if (!sources.ok()) return sources.status();
   std::vector<RunSource> in_order;
-  for (auto& [submap, source] : sources) {
+  for (auto& [submap, source] : *sources) {
     if (Status status = AddPoints(*known, &source); !status.ok()) return status;
     in_order.push_back(std::move(source));
   }
-  if (run->cut_lines > 0) in_order.front().notes.emplace_back("the run was killed; its complete rows are exported");
+  std::vector<std::string>& notes = in_order.front().notes;
+  if (run->cut_lines > 0) notes.emplace_back("the run was killed; its complete rows are exported");
+  if (without_depth > 0)
+    notes.push_back(std::to_string(without_depth) +
+                    " tracked frames have no depth in the surface and are left out: the programs that read this "
+                    "format want a depth of all frames or of none");
   return in_order;
 }
 

@@ -6,11 +6,15 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "pliant/base/status.h"
 #include "pliant/camera/camera.h"
+#include "pliant/datasets/open_sequence.h"
+#include "pliant/datasets/surface_folder.h"
+#include "pliant/exchange/export.h"
 #include "pliant/geometry/rigid3.h"
 #include "pliant/io/canonical_model.h"
 #include "pliant/io/run_reader.h"
@@ -27,15 +31,17 @@ struct SourceFrame {
 struct RunSource {
   std::string run_path;
   Camera camera;
-  std::vector<SourceFrame> frames;     // that are exported, by frame_idx
-  std::vector<CanonicalPoint> points;  // seen in one of them, by id
-  std::int64_t num_observations = 0;   // in all of them
+  SequenceRequest images;                // that the run was made of; an empty image_path: not known
+  std::optional<SurfaceFolder> surface;  // has a depth of every frame
+  std::vector<SourceFrame> frames;       // that are exported, by frame_idx
+  std::vector<CanonicalPoint> points;    // seen in one of them, by id
+  std::int64_t num_observations = 0;     // in all of them
   std::vector<std::string> notes;
 };
 
-// Every `stride`-th tracked frame of a run, one source a submap, in their order. Fails as ExportRun does.
-Result<std::vector<RunSource>> ReadRunSources(const std::string& run_path, const std::string& sequence_path,
-                                              int stride);
+// Every `stride`-th tracked frame of a run, of these those that the surface, where one is asked for, has a depth of;
+// one source a submap, in their order. Fails as ExportRun does.
+Result<std::vector<RunSource>> ReadRunSources(const ExportRequest& request, int stride);
 
 // Calls `function(frame, observations)` for every frame of the source, in order, also for those that see nothing.
 using FrameFunction = std::function<Status(const SourceFrame&, const std::vector<PointObservation>&)>;

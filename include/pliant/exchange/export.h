@@ -4,7 +4,8 @@
 // A run in other programs' formats; ExportFormats lists them. COLMAP has no time axis for points, so a scene that
 // deforms can be put into its models in three ways (canonical, spacetime, frames), none of which is consistent with
 // bundle adjustment. Units are the run's (map units, mm). Observations are streamed: memory grows with points and
-// frames, not with the number of observations.
+// frames, not with the number of observations. The formats for neural rendering hold the run's images; docs/formats.md
+// has their axes, pixels and units.
 #pragma once
 
 #include <cstdint>
@@ -25,14 +26,19 @@ struct ExportOptions {
   colmap::Format files = colmap::Format::kBinary;  // of COLMAP's models
   int stride = 1;                                  // every Nth tracked frame is exported
   int min_matches = 15;                            // database: pairs of images that share fewer tracks are left out
+  // endonerf, with a surface: pixels without a depth are masked, because its readers take a 0 for a depth.
+  Switch mask_unknown_depth = Switch::kOn;
 
   void List(OptionTable& table);  // group "Export"
 };
 
 struct ExportFormat {
+  enum class Needs { kRun, kRunAndImages };
+
   std::string_view name;
   std::string_view what;  // for people: what it leaves, a sentence
   Status (*write)(const RunSource& source, const ExportOptions& options, const std::string& folder);
+  Needs needs = Needs::kRun;  // a format with images takes mask_path and surface_path of a request
 };
 
 std::span<const ExportFormat> ExportFormats();
@@ -44,6 +50,10 @@ struct ExportRequest {
   std::string sequence_path;
   std::string format = "canonical";  // a name of ExportFormats
   std::string output_path;           // a folder, made if need be
+  std::string camera_path = {};      // the calibration of the images; empty: the one that belongs to them
+  // Of formats with images:
+  std::string mask_path = {};     // as of a SequenceRequest
+  std::string surface_path = {};  // a surface folder of the run: frames without a depth are left out; empty: no depths
 };
 
 struct ExportSummary {
@@ -53,8 +63,10 @@ struct ExportSummary {
   std::vector<std::string> notes;  // what could not be known, a sentence each
 };
 
-// Fails with kNotFound, kUnreadable or kMismatch for what cannot be read; kInsufficient if no frame was tracked;
-// kInvalidArgument if there is no such format or the folder has a model in another one; kUnwritable.
+// Fails with kNotFound, kUnreadable or kMismatch for what cannot be read, and images or a surface that are not the
+// run's; kInsufficient if no frame was tracked, or none has a depth; kInvalidArgument if there is no such format, the
+// folder has a model in another one or images already, or the format has no images to mask or to give depths;
+// kUnwritable.
 Result<ExportSummary> ExportRun(const ExportRequest& request, const ExportOptions& options);
 
 }  // namespace pliant

@@ -1,0 +1,128 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "exchange/run_images.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "pliant/base/files.h"
+#include "pliant/base/text.h"
+#include "pliant/datasets/open_sequence.h"
+
+namespace pliant {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kSameParameter = 1e-6;  // px: files hold more digits
+
+std::string SizeOf(int width, int height) { return std::to_string(width) + "x" + std::to_string(height); }
+
+Status NotOfRun(const std::string& what) {
+  return {ErrorCode::kMismatch, what + "; are the images those that were tracked? Name them with --sequence"};
+}
+
+bool IsSameCamera(const Camera& a, const Camera& b) {
+  return a.model_id() == b.model_id() && std::ranges::equal(a.params(), b.params(), [](double p, double q) {
+           return std::abs(p - q) <= kSameParameter;
+         });
+}
+
+// The run that surface.json names; empty: it names none.
+std::string RunOfSurface(const fs::path& path) {
+  const auto text = ReadFile((path / surface::kSummaryFile).string());
+  if (!text.ok()) return "";
+  const auto json = nlohmann::json::parse(*text, nullptr, false);
+  return json.is_object() && json.contains("run") && json["run"].is_string() ? json["run"].get<std::string>() : "";
+}
+
+// Also where one is a copy of the other.
+bool IsSameRun(const std::string& a, const std::string& b) {
+  std::error_code error;
+  if (fs::equivalent(a, b, error)) return true;
+  const auto path_a = ReadFile(a + "/trajectory.txt");
+  const auto path_b = ReadFile(b + "/trajectory.txt");
+  return path_a.ok() && path_b.ok() && *path_a == *path_b;
+}
+
+}  // namespace
+
+Result<RunImages> RunImages::Open(const RunSource& source) {
+  if (source.images.image_path.empty())
+    return Status(ErrorCode::kNotFound,
+                  Quoted(source.run_path) + " does not say which images it is of; name them with --sequence");
+  if (!Exists(source.images.image_path.string()))
+    return Status(ErrorCode::kNotFound, "the images of the run are not at " +
+                                            Quoted(source.images.image_path.string()) + "; name them with --sequence");
+  auto sequence = OpenSequence(source.images);
+  if (!sequence.ok()) return sequence.status();
+  return RunImages(source, *std::move(sequence));
+}
+
+Result<SequenceFrame> RunImages::Find(const SourceFrame& frame) {
+  const std::string number = "frame " + std::to_string(frame.frame_idx) + " of the run";
+  while (true) {
+    auto next = sequence_->Next();
+    if (!next.ok()) return next.status();
+    if (!next->has_value()) return NotOfRun("the images end before " + number);
+    if ((*next)->frame_idx > frame.frame_idx) return NotOfRun("the images have no " + number);
+    if ((*next)->frame_idx == frame.frame_idx) return **std::move(next);
+  }
+}
+
+Result<RunImage> RunImages::Read(const SourceFrame& frame) {
+  const auto found = Find(frame);
+  if (!found.ok()) return found.status();
+  const Camera& camera = source_->camera;
+  if (found->image.cols != camera.width() || found->image.rows != camera.height())
+    return NotOfRun("image " + found->name + " has " + SizeOf(found->image.cols, found->image.rows) +
+                    " pixels, and the run's camera has " + SizeOf(camera.width(), camera.height()));
+  if (!found->name.empty() && found->name != frame.name)
+    return NotOfRun("frame " + std::to_string(frame.frame_idx) + " of the run is image " + frame.name +
+                    ", and here it is " + found->name);
+  RunImage result{found->image, found->mask, {}};
+  if (found->image.channels() == 1) cv::cvtColor(found->image, result.image, cv::COLOR_GRAY2BGR);
+  if (!source_->surface) return result;
+  const SurfaceFolder::Frame* entry = FindFrame(*source_->surface, frame.frame_idx);
+  auto surface = ReadSurfaceDepth(*source_->surface, *entry);
+  if (!surface.ok()) return surface.status();
+  result.depth = surface->depth;
+  return result;
+}
+
+Result<SurfaceFolder> ReadSurfaceOfRun(const std::string& path, const std::string& run_path, const RunMap& known) {
+  auto surface = ReadSurfaceFolder(path);
+  if (!surface.ok()) return surface.status();
+  const auto mismatch = [&](const std::string& what) {
+    return Status(ErrorCode::kMismatch, "the surface " + Quoted(path) + " " + what + "; make one with pliant surface");
+  };
+  const std::string made_of = RunOfSurface(path);
+  if (Exists(made_of) && !IsSameRun(made_of, run_path))
+    return mismatch("was made of the run " + Quoted(made_of) + ", not of " + Quoted(run_path));
+  const Camera& camera = *known.camera;
+  if (surface->camera.width() != camera.width() || surface->camera.height() != camera.height())
+    return mismatch("has images of " + SizeOf(surface->camera.width(), surface->camera.height()) +
+                    " pixels, and the run of " + SizeOf(camera.width(), camera.height()));
+  if (!IsSameCamera(surface->camera, camera)) return mismatch("has another camera than the run");
+  for (const SurfaceFolder::Frame& frame : surface->frames) {
+    const auto name = known.names.find(frame.frame_idx);
+    if (name != known.names.end() && fs::path(name->second).stem() != fs::path(frame.file_name).stem())
+      return mismatch("calls frame " + std::to_string(frame.frame_idx) + " " + frame.file_name +
+                      ", and the run calls it " + name->second);
+  }
+  return surface;
+}
+
+const SurfaceFolder::Frame* FindFrame(const SurfaceFolder& surface, int frame_idx) {
+  const auto found = std::ranges::find(surface.frames, frame_idx, &SurfaceFolder::Frame::frame_idx);
+  return found != surface.frames.end() ? &*found : nullptr;
+}
+
+}  // namespace pliant

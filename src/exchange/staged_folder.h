@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Files and folders that appear in a folder together, when all of them are written, or not at all. Programs that count
+// the images of a folder must not find those of another export beside them: what is there already is not added to.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "pliant/base/status.h"
+
+namespace pliant {
+
+class StagedFolder {
+ public:
+  // `names` may appear in `folder`, which is there. Fails with kInvalidArgument where it has one of them, kUnwritable.
+  static Result<StagedFolder> Create(const std::filesystem::path& folder, const std::vector<std::string>& names);
+  StagedFolder(StagedFolder&& other) noexcept;
+  StagedFolder& operator=(StagedFolder&&) = delete;
+  ~StagedFolder();  // what was not committed is deleted
+
+  // Where an entry is written until Commit.
+  std::filesystem::path Path(const std::string& name) const { return staged_ / name; }
+  // Makes a subfolder. Fails with kUnwritable.
+  Status AddFolder(const std::string& name) const;
+  // Moves everything to its place. Fails with kUnwritable.
+  Status Commit();
+
+ private:
+  StagedFolder(std::filesystem::path folder, std::filesystem::path staged);
+
+  std::filesystem::path folder_;
+  std::filesystem::path staged_;  // empty: nothing to delete
+};
+
+}  // namespace pliant
