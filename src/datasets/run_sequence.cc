@@ -23,6 +23,12 @@ Result<RunMap> MapFromSequence(const SequenceRequest& request, const Run& run) {
   return known;
 }
 
+std::string SizeOf(int width, int height) { return std::to_string(width) + "x" + std::to_string(height); }
+
+Status NotOfRun(const std::string& what) {
+  return {ErrorCode::kMismatch, what + "; are the images those that were tracked? Name them with --sequence"};
+}
+
 }  // namespace
 
 SequenceRequest SequenceOfRun(const std::string& run_path, const std::filesystem::path& sequence_path,
@@ -49,6 +55,25 @@ Result<RunMap> KnownMapOfRun(const std::string& run_path, const SequenceRequest&
   return Status(ErrorCode::kNotFound, Quoted(run_path) +
                                           " has no sparse/ to take the camera and the images' names "
                                           "from; name its sequence with --sequence");
+}
+
+Result<SequenceFrame> NextFrameOfRun(const Camera& camera, int frame_idx, const std::string& name,
+                                     Sequence* sequence) {
+  const std::string frame_of_run = "frame " + std::to_string(frame_idx) + " of the run";
+  while (true) {
+    auto next = sequence->Next();
+    if (!next.ok()) return next.status();
+    if (!next->has_value()) return NotOfRun("the images end before " + frame_of_run);
+    SequenceFrame& frame = **next;
+    if (frame.frame_idx < frame_idx) continue;
+    if (frame.frame_idx > frame_idx) return NotOfRun("the images have no " + frame_of_run);
+    if (frame.image.cols != camera.width() || frame.image.rows != camera.height())
+      return NotOfRun("image " + frame.name + " has " + SizeOf(frame.image.cols, frame.image.rows) +
+                      " pixels, and the run's camera has " + SizeOf(camera.width(), camera.height()));
+    if (!name.empty() && !frame.name.empty() && frame.name != name)
+      return NotOfRun(frame_of_run + " is image " + name + ", and here it is " + frame.name);
+    return std::move(frame);
+  }
 }
 
 }  // namespace pliant

@@ -14,7 +14,7 @@
 
 #include "pliant/base/files.h"
 #include "pliant/base/text.h"
-#include "pliant/datasets/open_sequence.h"
+#include "pliant/datasets/run_sequence.h"
 
 namespace pliant {
 namespace {
@@ -24,10 +24,6 @@ namespace fs = std::filesystem;
 constexpr double kSameParameter = 1e-6;  // px: files hold more digits
 
 std::string SizeOf(int width, int height) { return std::to_string(width) + "x" + std::to_string(height); }
-
-Status NotOfRun(const std::string& what) {
-  return {ErrorCode::kMismatch, what + "; are the images those that were tracked? Name them with --sequence"};
-}
 
 bool IsSameCamera(const Camera& a, const Camera& b) {
   return a.model_id() == b.model_id() && std::ranges::equal(a.params(), b.params(), [](double p, double q) {
@@ -66,27 +62,9 @@ Result<RunImages> RunImages::Open(const RunSource& source) {
   return RunImages(source, *std::move(sequence));
 }
 
-Result<SequenceFrame> RunImages::Find(const SourceFrame& frame) {
-  const std::string number = "frame " + std::to_string(frame.frame_idx) + " of the run";
-  while (true) {
-    auto next = sequence_->Next();
-    if (!next.ok()) return next.status();
-    if (!next->has_value()) return NotOfRun("the images end before " + number);
-    if ((*next)->frame_idx > frame.frame_idx) return NotOfRun("the images have no " + number);
-    if ((*next)->frame_idx == frame.frame_idx) return **std::move(next);
-  }
-}
-
 Result<RunImage> RunImages::Read(const SourceFrame& frame) {
-  const auto found = Find(frame);
+  const auto found = NextFrameOfRun(source_->camera, frame.frame_idx, frame.name, sequence_.get());
   if (!found.ok()) return found.status();
-  const Camera& camera = source_->camera;
-  if (found->image.cols != camera.width() || found->image.rows != camera.height())
-    return NotOfRun("image " + found->name + " has " + SizeOf(found->image.cols, found->image.rows) +
-                    " pixels, and the run's camera has " + SizeOf(camera.width(), camera.height()));
-  if (!found->name.empty() && found->name != frame.name)
-    return NotOfRun("frame " + std::to_string(frame.frame_idx) + " of the run is image " + frame.name +
-                    ", and here it is " + found->name);
   RunImage result{found->image, found->mask, {}};
   if (found->image.channels() == 1) cv::cvtColor(found->image, result.image, cv::COLOR_GRAY2BGR);
   if (!source_->surface) return result;

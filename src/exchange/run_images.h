@@ -36,7 +36,6 @@ class RunImages {
  private:
   RunImages(const RunSource& source, std::unique_ptr<Sequence> sequence)
       : source_(&source), sequence_(std::move(sequence)) {}
-  Result<SequenceFrame> Find(const SourceFrame& frame);
 
   const RunSource* source_;
   std::unique_ptr<Sequence> sequence_;

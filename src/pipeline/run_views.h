@@ -48,8 +48,6 @@ class RunViews {
   void ForgetUnless(const std::function<bool(std::size_t)>& is_needed);
 
  private:
-  Status CheckIsOfRun(const SequenceFrame& frame) const;
-
   std::unique_ptr<Sequence> sequence_;
   const std::vector<PosedFrame>& frames_;
   const RunMap& known_;

@@ -95,7 +95,7 @@ TEST_F(SurfaceRunTest, LeavesAFolderOfOtherThingsAlone) {
 std::vector<PosedFrame> Frames(int count, int points_lost_a_frame) {
   std::vector<PosedFrame> frames;
   for (int k = 0; k < count; ++k) {
-    PosedFrame frame{k, 0, {Eigen::Quaterniond::Identity(), Eigen::Vector3d(-k, 0, 0)}, {}};
+    PosedFrame frame{k, 0, 0.0, {Eigen::Quaterniond::Identity(), Eigen::Vector3d(-k, 0, 0)}, {}};
     for (int i = 0; i < 40; ++i)
       frame.observations.push_back({PointId{k * points_lost_a_frame + i}, {}, Eigen::Vector3d(0.1 * i, 0, 50)});
     frames.push_back(frame);

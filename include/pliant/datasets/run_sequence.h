@@ -9,6 +9,7 @@
 
 #include "pliant/base/status.h"
 #include "pliant/datasets/open_sequence.h"
+#include "pliant/datasets/sequence.h"
 #include "pliant/io/run_map.h"
 #include "pliant/io/run_reader.h"
 
@@ -24,5 +25,10 @@ SequenceRequest SequenceOfRun(const std::string& run_path, const std::filesystem
 // where there is none (a killed run), camera and names by its sequence. Fails as ReadRunMap and OpenSequence do, and
 // with kNotFound where neither is there.
 Result<RunMap> KnownMapOfRun(const std::string& run_path, const SequenceRequest& sequence, const Run& run);
+
+// Reads on to a frame of a run that has this camera, and calls the frame's image `name` (empty: not known). Fails as
+// Sequence, and with kMismatch where the images are not those of the run: they end before it, leave it out, have
+// another size or another name.
+Result<SequenceFrame> NextFrameOfRun(const Camera& camera, int frame_idx, const std::string& name, Sequence* sequence);
 
 }  // namespace pliant
