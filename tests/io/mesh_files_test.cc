@@ -1,0 +1,223 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Meshes as other programs read them: each file is read back by its format's rules, not by our own writer's.
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <pugixml.hpp>
+#include <tiny_gltf.h>
+
+#include "pliant/io/gltf.h"
+#include "pliant/io/obj.h"
+#include "pliant/io/ply.h"
+#include "pliant/io/vtk.h"
+#include "support/test_folder.h"
+
+namespace pliant {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+// A square of two triangles, 20 map units before the camera, which faces it; its texture has a seam.
+Mesh Square() {
+  Mesh mesh;
+  mesh.vertices = {{-5, -5, 20}, {5, -5, 20}, {-5, 5, 20}, {5, 5, 20}};
+  mesh.normals.assign(4, -Eigen::Vector3f::UnitZ());
+  mesh.rgb = {{255, 0, 0}, {0, 255, 0}, {0, 0, 255}, {9, 9, 9}};
+  mesh.sigmas = {0.1F, 0.2F, 0.3F, 0.4F};
+  mesh.triangles = {{0, 2, 1}, {2, 3, 1}};
+  mesh.texture_uvs = {{Eigen::Vector2f(0, 0), Eigen::Vector2f(0, 0.5F), Eigen::Vector2f(0.5F, 0)},
+                      {Eigen::Vector2f(0.5F, 1), Eigen::Vector2f(1, 1), Eigen::Vector2f(1, 0.5F)}};
+  return mesh;
+}
+
+std::vector<float> FloatsOf(const tinygltf::Model& model, int accessor) {
+  const auto& entry = model.accessors[static_cast<std::size_t>(accessor)];
+  const auto& view = model.bufferViews[static_cast<std::size_t>(entry.bufferView)];
+  std::vector<float> values(view.byteLength / sizeof(float));
+  std::memcpy(values.data(), model.buffers[0].data.data() + view.byteOffset, view.byteLength);
+  return values;
+}
+
+class MeshFilesTest : public testing::Test {
+ protected:
+  tinygltf::Model WriteAndRead(const MeshAnimation& animation) const {
+    const Status status = WriteGlb(folder_.Path("a.glb"), animation);
+    EXPECT_TRUE(status.ok()) << status.message();
+    tinygltf::Model model;
+    std::string error;
+    std::string warning;
+    EXPECT_TRUE(tinygltf::TinyGLTF().LoadBinaryFromFile(&model, &error, &warning, folder_.Path("a.glb")))
+        << error << warning;
+    return model;
+  }
+
+  TestFolder folder_;
+  Mesh mesh_ = Square();
+  cv::Mat texture_ = cv::Mat(8, 8, CV_8UC3, cv::Scalar(10, 20, 200));
+  std::vector<MeshKey> keys_ = {{2.0, mesh_.vertices}, {3.0, {{-5, -5, 21}, {5, -5, 21}, {-5, 5, 21}, {5, 5, 21}}}};
+  std::vector<CameraKey> path_ = {{2.0, {}}, {3.0, {RotationExp({0, 0.5, 0}), Eigen::Vector3d(1, 2, 3)}}};
+  Camera camera_ = Camera::Create(CameraModelId::kPinhole, 640, 480, std::array{400.0, 400.0, 320.0, 240.0}).value();
+};
+
+TEST_F(MeshFilesTest, GltfIsInMetersAndYIsUp) {
+  const tinygltf::Model model = WriteAndRead({mesh_, texture_, keys_, path_, camera_});
+  ASSERT_EQ(model.meshes.size(), 1U);
+  const tinygltf::Primitive& primitive = model.meshes[0].primitives[0];
+  const std::vector<float> positions = FloatsOf(model, primitive.attributes.at("POSITION"));
+  EXPECT_EQ(positions.size(), 3U * 6U);  // two vertices are on the seam
+  EXPECT_FLOAT_EQ(positions[0], -0.005F);
+  EXPECT_FLOAT_EQ(positions[1], 0.005F);
+  EXPECT_FLOAT_EQ(positions[2], -0.020F);
+  const std::vector<float> normals = FloatsOf(model, primitive.attributes.at("NORMAL"));
+  EXPECT_FLOAT_EQ(normals[2], 1.0F);  // towards the camera, which looks along -z
+  const std::vector<float> moved = FloatsOf(model, primitive.targets[1].at("POSITION"));
+  EXPECT_NEAR(moved[2], -0.001F, 1e-8);  // by one millimeter away from it
+}
+
+TEST_F(MeshFilesTest, GltfPlaysTheKeysOneAfterTheOther) {
+  const tinygltf::Model model = WriteAndRead({mesh_, texture_, keys_, path_, camera_});
+  ASSERT_EQ(model.animations.size(), 1U);
+  const tinygltf::Animation& animation = model.animations[0];
+  EXPECT_EQ(animation.channels[0].target_path, "weights");
+  EXPECT_THAT(FloatsOf(model, animation.samplers[0].input), ElementsAre(0, 1));
+  EXPECT_THAT(FloatsOf(model, animation.samplers[0].output), ElementsAre(1, 0, 0, 1));
+  EXPECT_THAT(model.meshes[0].weights, ElementsAre(1, 0));
+}
+
+TEST_F(MeshFilesTest, GltfsCameraLooksAtWhatOursDoes) {
+  const tinygltf::Model model = WriteAndRead({mesh_, texture_, keys_, path_, camera_});
+  EXPECT_NEAR(model.cameras[0].perspective.yfov, 2 * std::atan(240.0 / 400.0), 1e-9);
+  EXPECT_NEAR(model.cameras[0].perspective.aspectRatio, 4.0 / 3.0, 1e-9);
+  const tinygltf::Animation& animation = model.animations[0];
+  const std::vector<float> at = FloatsOf(model, animation.samplers[1].output);
+  const std::vector<float> turned = FloatsOf(model, animation.samplers[2].output);
+  const Eigen::Vector3f center(at[3], at[4], at[5]);
+  const Eigen::Quaternionf rotation(turned[7], turned[4], turned[5], turned[6]);
+  // A point on our optical axis at 10 mm is on that of glTF's camera, its -z, at 10 mm.
+  const Eigen::Vector3d ours = path_[1].world_from_cam * Eigen::Vector3d(0, 0, 10);
+  const Eigen::Vector3f theirs = center + rotation * Eigen::Vector3f(0, 0, -0.01F);
+  EXPECT_TRUE(theirs.isApprox(0.001F * Eigen::Vector3d(ours.x(), -ours.y(), -ours.z()).cast<float>(), 1e-5F));
+}
+
+TEST_F(MeshFilesTest, GltfHasTheTextureInside) {
+  const tinygltf::Model model = WriteAndRead({mesh_, texture_, keys_, path_, camera_});
+  ASSERT_EQ(model.images.size(), 1U);
+  EXPECT_EQ(model.images[0].width, 8);
+  EXPECT_NEAR(model.images[0].image[0], 200, 6);  // RGB
+  const std::vector<float> uvs = FloatsOf(model, model.meshes[0].primitives[0].attributes.at("TEXCOORD_0"));
+  EXPECT_EQ(uvs.size(), 2U * 6U);
+  EXPECT_FLOAT_EQ(uvs[3], 0.5F);
+}
+
+TEST_F(MeshFilesTest, GltfWithoutTextureHasColorsAndWithoutKeysIsStill) {
+  const tinygltf::Model model = WriteAndRead({mesh_, cv::Mat(), {}, {}, camera_});
+  EXPECT_TRUE(model.images.empty());
+  EXPECT_TRUE(model.animations.empty());
+  const std::vector<float> colors = FloatsOf(model, model.meshes[0].primitives[0].attributes.at("COLOR_0"));
+  EXPECT_FLOAT_EQ(colors[0], 1.0F);
+  EXPECT_FLOAT_EQ(colors[1], 0.0F);
+}
+
+TEST_F(MeshFilesTest, GltfNeedsTriangles) {
+  mesh_.triangles.clear();
+  const Status status = WriteGlb(folder_.Path("a.glb"), {mesh_, texture_, keys_, path_, camera_});
+  EXPECT_EQ(status.code(), ErrorCode::kInsufficient);
+  EXPECT_FALSE(std::filesystem::exists(folder_.Path("a.glb")));
+}
+
+TEST_F(MeshFilesTest, GltfIsTheSameTwice) {
+  ASSERT_TRUE(WriteGlb(folder_.Path("a.glb"), {mesh_, texture_, keys_, path_, camera_}).ok());
+  ASSERT_TRUE(WriteGlb(folder_.Path("b.glb"), {mesh_, texture_, keys_, path_, camera_}).ok());
+  EXPECT_EQ(folder_.Read("a.glb"), folder_.Read("b.glb"));
+}
+
+// The values of an array of a .vtp file.
+template <class T>
+std::vector<T> VtpArray(const std::string& file, const char* name) {
+  const std::string head = file.substr(0, file.find("<AppendedData"));
+  const std::size_t data = file.find('_', file.find("<AppendedData")) + 1;
+  pugi::xml_document document;
+  EXPECT_TRUE(document.load_string((head + "</VTKFile>").c_str()));
+  const pugi::xml_node array = document.select_node(("//DataArray[@Name='" + std::string(name) + "']").c_str()).node();
+  const std::size_t offset = data + array.attribute("offset").as_ullong();
+  std::uint64_t bytes = 0;
+  std::memcpy(&bytes, file.data() + offset, sizeof(bytes));
+  std::vector<T> values(bytes / sizeof(T));
+  std::memcpy(values.data(), file.data() + offset + sizeof(bytes), bytes);
+  return values;
+}
+
+TEST_F(MeshFilesTest, VtpHasTheMeshAndItsArrays) {
+  const std::vector<VtkArray> of_vertices = {{"displacement", 3, std::vector<float>(12, 2.5F)}};
+  const std::vector<VtkArray> of_triangles = {{"area_change", 1, {0.25F, -0.5F}}};
+  ASSERT_TRUE(WriteVtp(folder_.Path("a.vtp"), mesh_, of_vertices, of_triangles).ok());
+  const std::string file = folder_.Read("a.vtp");
+  EXPECT_THAT(file, HasSubstr("NumberOfPoints=\"4\" NumberOfPolys=\"2\""));
+  EXPECT_THAT(VtpArray<std::int32_t>(file, "connectivity"), ElementsAre(0, 2, 1, 2, 3, 1));
+  EXPECT_THAT(VtpArray<std::int32_t>(file, "offsets"), ElementsAre(3, 6));
+  EXPECT_EQ(VtpArray<float>(file, "Points")[11], 20.0F);
+  EXPECT_THAT(VtpArray<float>(file, "area_change"), ElementsAre(0.25F, -0.5F));
+  EXPECT_EQ(VtpArray<float>(file, "displacement").size(), 12U);
+  EXPECT_THAT(VtpArray<float>(file, "sigma"), ElementsAre(0.1F, 0.2F, 0.3F, 0.4F));
+  EXPECT_EQ(VtpArray<std::uint8_t>(file, "rgb")[4], 255);
+}
+
+TEST_F(MeshFilesTest, PvdSaysWhichFileIsWhen) {
+  ASSERT_TRUE(WritePvd(folder_.Path("a.pvd"), std::vector<VtkTime>{{0.04, "vtp/a & b.vtp"}, {1.5, "vtp/c.vtp"}}).ok());
+  pugi::xml_document document;
+  ASSERT_TRUE(document.load_string(folder_.Read("a.pvd").c_str()));
+  const auto sets = document.select_nodes("/VTKFile[@type='Collection']/Collection/DataSet");
+  ASSERT_EQ(sets.size(), 2U);
+  EXPECT_STREQ(sets[0].node().attribute("file").value(), "vtp/a & b.vtp");
+  EXPECT_DOUBLE_EQ(sets[0].node().attribute("timestep").as_double(), 0.04);
+  EXPECT_DOUBLE_EQ(sets[1].node().attribute("timestep").as_double(), 1.5);
+}
+
+TEST_F(MeshFilesTest, ObjHasTheTextureFromBelow) {
+  ASSERT_TRUE(WriteObj(folder_.Path("a.obj"), mesh_, "a.mtl").ok());
+  const std::string text = folder_.Read("a.obj");
+  EXPECT_THAT(text, HasSubstr("mtllib a.mtl\nusemtl tissue\n"));
+  EXPECT_THAT(text, HasSubstr("v -5.000000 -5.000000 20.000000\n"));
+  EXPECT_THAT(text, HasSubstr("vt 0.000000 0.500000\n"));
+  EXPECT_THAT(text, HasSubstr("f 1/1/1 3/2/3 2/3/2\nf 3/4/3 4/5/4 2/6/2\n"));
+  ASSERT_TRUE(WriteObjMaterial(folder_.Path("a.mtl"), "a.jpg").ok());
+  EXPECT_THAT(folder_.Read("a.mtl"), HasSubstr("newmtl tissue"));
+  EXPECT_THAT(folder_.Read("a.mtl"), HasSubstr("map_Kd a.jpg"));
+}
+
+TEST_F(MeshFilesTest, ObjWithoutTextureHasColors) {
+  mesh_.texture_uvs.clear();
+  ASSERT_TRUE(WriteObj(folder_.Path("a.obj"), mesh_, "").ok());
+  EXPECT_THAT(folder_.Read("a.obj"), HasSubstr("v 5.000000 -5.000000 20.000000 0.000000 1.000000 0.000000\n"));
+  EXPECT_THAT(folder_.Read("a.obj"), HasSubstr("f 1//1 3//3 2//2\n"));
+}
+
+TEST_F(MeshFilesTest, PlyHasTheVerticesIds) {
+  mesh_.ids = {7, 8, 9, 300};
+  ASSERT_TRUE(WritePly(folder_.Path("a.ply"), mesh_).ok());
+  const std::string text = folder_.Read("a.ply");
+  EXPECT_THAT(text, HasSubstr("property float sigma\nproperty int vertex\nelement face 2\n"));
+  // 31 bytes a vertex before its id.
+  std::int32_t id = 0;
+  std::memcpy(&id, text.data() + text.find("end_header\n") + 11 + 3 * 35 + 31, sizeof(id));
+  EXPECT_EQ(id, 300);
+}
+
+TEST_F(MeshFilesTest, WhatCannotBeWrittenIsSaid) {
+  const std::string nowhere = folder_.Path("nowhere/a");
+  EXPECT_EQ(WriteGlb(nowhere, {mesh_, texture_, keys_, path_, camera_}).code(), ErrorCode::kUnwritable);
+  EXPECT_EQ(WriteVtp(nowhere, mesh_, {}, {}).code(), ErrorCode::kUnwritable);
+  EXPECT_EQ(WritePvd(nowhere, {}).code(), ErrorCode::kUnwritable);
+  EXPECT_EQ(WriteObj(nowhere, mesh_, "").code(), ErrorCode::kUnwritable);
+}
+
+}  // namespace
+}  // namespace pliant
