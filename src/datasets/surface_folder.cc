@@ -10,6 +10,7 @@
 #include "pliant/base/text.h"
 #include "pliant/datasets/native_layout.h"
 #include "pliant/io/camera_file.h"
+#include "pliant/io/point_cloud.h"
 
 namespace pliant {
 
@@ -52,6 +53,16 @@ Result<SurfaceDepth> ReadSurfaceDepth(const SurfaceFolder& folder, const Surface
   if (Status status = read(surface::kConfidenceFolder, surface::kConfidenceUnit, &result.sigma); !status.ok())
     return status;
   return result;
+}
+
+Result<std::vector<Eigen::Vector3d>> ReadSurfaceVertices(const SurfaceFolder& folder,
+                                                         const SurfaceFolder::Frame& frame) {
+  const std::filesystem::path path =
+      folder.path / surface::kMeshFolder / std::filesystem::path(frame.file_name).replace_extension(".ply");
+  if (!Exists(path.string())) return std::vector<Eigen::Vector3d>();
+  auto vertices = ReadPointCloud(path.string());
+  if (!vertices.ok() && vertices.status().code() == ErrorCode::kInsufficient) return std::vector<Eigen::Vector3d>();
+  return vertices;
 }
 
 }  // namespace pliant

@@ -25,6 +25,10 @@ struct Pixels {
   std::vector<double> sigma;          // by the depth
   std::vector<double> interpolation;  // empty: too few points
   int with_truth = 0;
+  // Of the mesh's vertices: those at pixels with a depth of the frame's own come first.
+  std::vector<double> vertex_truth_mm;
+  std::vector<double> vertex_estimate;
+  std::size_t vertices_with_depth = 0;
 };
 
 Pixels PixelsOf(const SurfaceDepth& dense, const cv::Mat& truth_mm, const std::optional<cv::Mat>& interpolated) {
@@ -42,6 +46,21 @@ Pixels PixelsOf(const SurfaceDepth& dense, const cv::Mat& truth_mm, const std::o
       if (interpolated) pixels.interpolation.push_back(interpolated->at<float>(y, x));
     }
   return pixels;
+}
+
+void AddVertices(const Camera& camera, const std::vector<Eigen::Vector3d>& vertices, const SurfaceDepth& dense,
+                 const cv::Mat& truth_mm, Pixels* pixels) {
+  for (const bool with_depth : {true, false}) {
+    for (const Eigen::Vector3d& vertex : vertices) {
+      const auto pixel = camera.Project(vertex);
+      if (!pixel || !camera.Contains(*pixel)) continue;
+      const cv::Point at(static_cast<int>(std::lround(pixel->x())), static_cast<int>(std::lround(pixel->y())));
+      if (!(truth_mm.at<float>(at) > 0.0F) || (dense.depth.at<float>(at) > 0.0F) != with_depth) continue;
+      pixels->vertex_truth_mm.push_back(truth_mm.at<float>(at));
+      pixels->vertex_estimate.push_back(vertex.z());
+    }
+    if (with_depth) pixels->vertices_with_depth = pixels->vertex_truth_mm.size();
+  }
 }
 
 double ScaleOf(const std::vector<double>& estimate, const std::vector<double>& truth) {
@@ -92,6 +111,20 @@ void Add(const DepthFigures& figures, double weight, DepthFigures* sum) {
   }
 }
 
+void AddMesh(const Pixels& pixels, double scale, double weight, DenseError* error) {
+  const std::size_t count = pixels.vertex_truth_mm.size();
+  if (count == 0) return;
+  std::vector<bool> with_depth(count);
+  for (std::size_t i = 0; i < count; ++i) with_depth[i] = i < pixels.vertices_with_depth;
+  const auto estimate = [&](std::size_t i) { return scale * pixels.vertex_estimate[i]; };
+  Add(FiguresOf(pixels.vertex_truth_mm, estimate, with_depth), weight, &error->mesh);
+  with_depth.flip();
+  Add(FiguresOf(pixels.vertex_truth_mm, estimate, with_depth), weight, &error->mesh_alone);
+  error->mesh_vertices += weight * static_cast<double>(count);
+  error->mesh_alone_share +=
+      weight * static_cast<double>(count - pixels.vertices_with_depth) / static_cast<double>(count);
+}
+
 // Adds a frame, as one of `frames`.
 void AddFrame(const Pixels& pixels, double scale, double frames, DenseError* error) {
   const double weight = 1.0 / frames;
@@ -116,6 +149,7 @@ void AddFrame(const Pixels& pixels, double scale, double frames, DenseError* err
   for (std::size_t k = 0; k < 3; ++k) error->complete_mm[k] += weight * share * of_estimate.within_mm[k];
   const double constant = Median(truth);
   Add(FiguresOf(truth, [&](std::size_t) { return constant; }, {}), weight, &error->null);
+  AddMesh(pixels, scale, weight, error);
   if (pixels.interpolation.empty()) return;
   const double own_scale = ScaleOf(pixels.interpolation, truth);
   Add(FiguresOf(truth, [&](std::size_t i) { return own_scale * pixels.interpolation[i]; }, {}), weight,
@@ -143,6 +177,9 @@ Result<DenseError> ComputeDenseError(const SurfaceFolder& surface, const Evaluat
       interpolated = InterpolatedDepth(surface.camera, *of_run->cam_from_world, of_run->observations);
     Pixels pixels = PixelsOf(*dense, **truth_mm, interpolated);
     if (pixels.truth_mm.empty()) continue;
+    const auto vertices = ReadSurfaceVertices(surface, frame);
+    if (!vertices.ok()) return vertices.status();
+    AddVertices(surface.camera, *vertices, *dense, **truth_mm, &pixels);
     scales.push_back(ScaleOf(pixels.estimate, pixels.truth_mm));
     frames.push_back(std::move(pixels));
   }

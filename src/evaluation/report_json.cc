@@ -100,6 +100,10 @@ Json ToJson(const DenseError& e) {
           {"estimate", ToJson(e.estimate)},
           {"certain_half", ToJson(e.certain_half)},
           {"interpolation", ToJson(e.interpolation)},
+          {"mesh", ToJson(e.mesh)},
+          {"mesh_alone", ToJson(e.mesh_alone)},
+          {"mesh_vertices", e.mesh_vertices},
+          {"mesh_alone_share", e.mesh_alone_share},
           {"null", ToJson(e.null)}};
 }
 

@@ -65,6 +65,8 @@ std::string DenseTable(const DenseError& e) {
          FormatText("  %-26s %8s %8s %8s %8s %7s %7s %7s\n", "", "AbsRel", "SqRel", "RMSE", "log", "<1 mm", "<2",
                     "<5 %") +
          DenseRow("surface", e.estimate) + DenseRow("  its more certain half", e.certain_half) +
+         (e.mesh_vertices > 0 ? DenseRow("mesh, where it is known", e.mesh) + DenseRow("mesh elsewhere", e.mesh_alone)
+                              : "") +
          DenseRow("points, interpolated", e.interpolation) + DenseRow("one constant depth", e.null) +
          FormatText("  known to 1, 2, 5 mm: %.1f, %.1f, %.1f %%; within 1 sigma %.1f %%, 2 sigma %.1f %%\n",
                     100 * e.complete_mm[0], 100 * e.complete_mm[1], 100 * e.complete_mm[2], 100 * e.within_1_sigma,

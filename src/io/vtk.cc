@@ -9,6 +9,7 @@
 #include <utility>
 
 #include <pugixml.hpp>
+#include <zlib.h>
 
 #include "pliant/base/files.h"
 #include "pliant/base/text.h"
@@ -18,9 +19,23 @@ namespace {
 
 constexpr const char* kHead =
     "<?xml version=\"1.0\"?>\n"
-    "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n";
+    "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\" "
+    "compressor=\"vtkZLibDataCompressor\">\n";
 
-// The two parts of a file: elements that name arrays, and the arrays' bytes, each after its length.
+// An array's bytes as VTK's zlib compressor has them, in one block: how many blocks, the size of a block, that of a last
+// one that is smaller (0: none is), the compressed size, and the block.
+std::string Compressed(const std::string& bytes) {
+  uLongf size = compressBound(bytes.size());
+  std::string block(size, '\0');
+  compress(reinterpret_cast<Bytef*>(block.data()), &size, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size());
+  block.resize(size);
+  std::string result;
+  for (const std::uint64_t value : {std::uint64_t{1}, std::uint64_t{bytes.size()}, std::uint64_t{0}, std::uint64_t{size}})
+    AppendBytes(&result, value, 8);
+  return result + block;
+}
+
+// The two parts of a file: elements that name arrays, and the arrays' bytes.
 class AppendedArrays {
  public:
   std::string& elements() { return elements_; }
@@ -30,8 +45,7 @@ class AppendedArrays {
     elements_ += "<DataArray type=\"" + std::string(type) + "\" Name=\"" + name + "\" NumberOfComponents=\"" +
                  std::to_string(components) + "\" format=\"appended\" offset=\"" + std::to_string(bytes_.size()) +
                  "\"/>\n";
-    AppendBytes(&bytes_, bytes.size(), 8);
-    bytes_ += bytes;
+    bytes_ += Compressed(bytes);
   }
 
   void Add(const VtkArray& array) {

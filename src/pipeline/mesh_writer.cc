@@ -11,6 +11,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "pliant/base/files.h"
+#include "pliant/datasets/surface_folder.h"
 #include "pliant/io/obj.h"
 #include "pliant/io/ply.h"
 #include "pliant/surface/mesh_geometry.h"
@@ -20,7 +21,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kPlyFolder = "mesh";
 constexpr const char* kObjFolder = "obj";
 constexpr const char* kVtpFolder = "vtp";
 constexpr const char* kTextureName = "texture";
@@ -68,7 +68,7 @@ Mesh DeformedMesh::SeenPart() const {
 
 Status MeshWriter::RemoveEarlier(const fs::path& folder) {
   std::error_code error;
-  for (const char* kind : {kPlyFolder, kObjFolder, kVtpFolder}) {
+  for (const char* kind : {surface::kMeshFolder, kObjFolder, kVtpFolder}) {
     fs::remove_all(folder / kind, error);
     if (error) return Unwritable(folder / kind);
   }
@@ -93,8 +93,8 @@ Status MeshWriter::WriteUndeformed(const Mesh& mesh, const cv::Mat& texture) {
 
 Status MeshWriter::WriteFrame(const std::string& name, const DeformedMesh& deformed) {
   const Mesh seen = deformed.SeenPart();
-  if (Status status = MakeFolder(folder_ / kPlyFolder); !status.ok()) return status;
-  if (Status status = WritePly((folder_ / kPlyFolder / (name + ".ply")).string(), seen); !status.ok()) return status;
+  if (Status status = MakeFolder(folder_ / surface::kMeshFolder); !status.ok()) return status;
+  if (Status status = WritePly((folder_ / surface::kMeshFolder / (name + ".ply")).string(), seen); !status.ok()) return status;
   if (files_.obj) {
     if (Status status = MakeFolder(folder_ / kObjFolder); !status.ok()) return status;
     const std::string material = "../" + FileName(kTextureName, ".mtl").filename().string();

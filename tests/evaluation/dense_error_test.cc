@@ -9,6 +9,7 @@
 
 #include "pliant/datasets/png_file.h"
 #include "pliant/io/camera_file.h"
+#include "pliant/io/ply.h"
 #include "support/rendered_sequence.h"
 #include "support/test_folder.h"
 
@@ -67,6 +68,29 @@ TEST_F(DenseErrorTest, WithoutAScaleTheUnitCounts) {
   EXPECT_NEAR(error->estimate.rmse_log, -std::log(0.75), 1e-3);
   EXPECT_EQ(error->estimate.below[0], 0.0);
   EXPECT_EQ(error->within_2_sigma, 0.0);
+}
+
+TEST_F(DenseErrorTest, TheMeshIsComparedWhereTheFrameHasADepthAndElsewhere) {
+  const SurfaceFolder surface =
+      WriteSurface([](cv::Mat* depth) { (*depth)(cv::Rect(0, 0, depth->cols / 4, depth->rows)).setTo(0.0F); });
+  EXPECT_EQ(ComputeDenseError(surface, {}, sequence_, ErrorScale::kPerFrame)->mesh_vertices, 0);
+  std::filesystem::create_directories(folder_.Path("mesh"));
+  for (const int k : {2, 5}) {
+    std::vector<NewPoint> vertices;
+    const cv::Mat& depth = Rendered().frames[static_cast<std::size_t>(k)].depth;
+    for (int x = 0; x < depth.cols; x += 8) {
+      const Eigen::Vector3d ray = *Rendered().camera.Unproject({x, 40});
+      const double wrong = x < depth.cols / 4 ? 1.1 : 1.02;
+      vertices.push_back({PointId{x}, wrong * depth.at<float>(40, x) / ray.z() * ray});
+    }
+    ASSERT_TRUE(WritePly(folder_.Path("mesh/" + std::to_string(k) + ".ply"), vertices).ok());
+  }
+  const auto error = ComputeDenseError(surface, {}, sequence_, ErrorScale::kPerFrame);
+  ASSERT_TRUE(error.ok()) << error.status().message();
+  EXPECT_NEAR(error->mesh.abs_rel, 0.02, 1e-3);
+  EXPECT_NEAR(error->mesh_alone.abs_rel, 0.1, 1e-3);
+  EXPECT_NEAR(error->mesh_alone_share, 0.25, 0.02);
+  EXPECT_NEAR(error->mesh_vertices, Rendered().camera.width() / 8.0, 1);
 }
 
 TEST_F(DenseErrorTest, HolesAndTheUncertainHalfAreTold) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // Meshes as other programs read them: each file is read back by its format's rules, not by our own writer's.
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -12,6 +13,7 @@
 #include <gtest/gtest.h>
 #include <pugixml.hpp>
 #include <tiny_gltf.h>
+#include <zlib.h>
 
 #include "pliant/io/gltf.h"
 #include "pliant/io/obj.h"
@@ -148,10 +150,14 @@ std::vector<T> VtpArray(const std::string& file, const char* name) {
   EXPECT_TRUE(document.load_string((head + "</VTKFile>").c_str()));
   const pugi::xml_node array = document.select_node(("//DataArray[@Name='" + std::string(name) + "']").c_str()).node();
   const std::size_t offset = data + array.attribute("offset").as_ullong();
-  std::uint64_t bytes = 0;
-  std::memcpy(&bytes, file.data() + offset, sizeof(bytes));
-  std::vector<T> values(bytes / sizeof(T));
-  std::memcpy(values.data(), file.data() + offset + sizeof(bytes), bytes);
+  std::array<std::uint64_t, 4> head_of_block{};  // blocks, size, size of the last, compressed size
+  std::memcpy(head_of_block.data(), file.data() + offset, sizeof(head_of_block));
+  EXPECT_EQ(head_of_block[0], 1U);
+  std::vector<T> values(head_of_block[1] / sizeof(T));
+  uLongf size = head_of_block[1];
+  EXPECT_EQ(uncompress(reinterpret_cast<Bytef*>(values.data()), &size,
+                       reinterpret_cast<const Bytef*>(file.data() + offset + sizeof(head_of_block)), head_of_block[3]),
+            Z_OK);
   return values;
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Core>
 #include <opencv2/core/mat.hpp>
 
 #include "pliant/base/status.h"
@@ -18,6 +19,7 @@ namespace pliant {
 namespace surface {
 inline constexpr const char* kSummaryFile = "surface.json";
 inline constexpr const char* kConfidenceFolder = "confidence";
+inline constexpr const char* kMeshFolder = "mesh";
 inline constexpr double kConfidenceUnit = 1.0 / 65535.0;  // of a standard deviation by the depth
 }  // namespace surface
 
@@ -42,5 +44,9 @@ struct SurfaceDepth {
 Result<SurfaceFolder> ReadSurfaceFolder(const std::filesystem::path& path);
 // Fails also with kMismatch where an image has not the camera's size.
 Result<SurfaceDepth> ReadSurfaceDepth(const SurfaceFolder& folder, const SurfaceFolder::Frame& frame);
+// What the frame shows of the mesh: its vertices in the camera's frame, map units; none where there is no mesh. Fails
+// with kUnreadable.
+Result<std::vector<Eigen::Vector3d>> ReadSurfaceVertices(const SurfaceFolder& folder,
+                                                         const SurfaceFolder::Frame& frame);
 
 }  // namespace pliant
