@@ -18,13 +18,14 @@ const Manual kManual = {
     "surface",
     "dense depth of every frame of a run",
     "Reads --run: a run folder that pliant track or pliant refine left, and its images. The depth at every pixel is "
-    "found "
-    "by comparing the frame with others, which are seen through the deformation: a point moves as the tracked points "
-    "around it.\n\n"
+    "found by comparing the frame with others, which are seen through the deformation: a point moves as the tracked "
+    "points around it.\n\n"
     "Leaves in --output_path depth/ (16-bit PNG, times depth_scale of camera.yaml, map units; 0: not known), "
-    "confidence/ "
-    "(standard deviation by the depth, times 65535) and surface.json. Where images say nothing of the depth "
-    "(highlights, no texture, unseen from elsewhere) there is none.",
+    "confidence/ (standard deviation by the depth, times 65535) and surface.json. Where images say nothing of the "
+    "depth "
+    "(highlights, no texture, unseen from elsewhere) there is none. Then one mesh of all that was seen, whose vertices "
+    "move with the tissue: mesh/ (what a frame shows of it, PLY), undeformed.ply, surface.glb (textured and animated, "
+    "for Blender and browsers), surface.pvd and vtp/ (displacement and strain, for ParaView).",
     {"pliant surface --run run --output_path surface",
      "pliant surface --run run --frames 10,20,30 --output_path surface"},
 };

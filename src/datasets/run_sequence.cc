@@ -57,8 +57,7 @@ Result<RunMap> KnownMapOfRun(const std::string& run_path, const SequenceRequest&
                                           "from; name its sequence with --sequence");
 }
 
-Result<SequenceFrame> NextFrameOfRun(const Camera& camera, int frame_idx, const std::string& name,
-                                     Sequence* sequence) {
+Result<SequenceFrame> NextFrameOfRun(const Camera& camera, int frame_idx, const std::string& name, Sequence* sequence) {
   const std::string frame_of_run = "frame " + std::to_string(frame_idx) + " of the run";
   while (true) {
     auto next = sequence->Next();

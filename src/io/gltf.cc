@@ -288,8 +288,7 @@ void AddAnimation(const MeshAnimation& input, ModelBuilder* builder) {
     const int times = AddTimes(input.path, start_s, builder);
     AddChannel(kCameraNode, "translation", times, builder->AddFloats(translations, TINYGLTF_TYPE_VEC3, false, 0),
                &animation);
-    AddChannel(kCameraNode, "rotation", times, builder->AddFloats(rotations, TINYGLTF_TYPE_VEC4, false, 0),
-               &animation);
+    AddChannel(kCameraNode, "rotation", times, builder->AddFloats(rotations, TINYGLTF_TYPE_VEC4, false, 0), &animation);
   }
   if (!animation.channels.empty()) builder->model().animations.push_back(animation);
 }

@@ -61,16 +61,15 @@ Status WriteObj(const std::string& path, const Mesh& mesh, const std::string& ma
   }
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     out += 'f';
-    for (std::size_t k = 0; k < 3; ++k)
-      AppendCorner(mesh.triangles[t][k], 3 * t + k, !mesh.texture_uvs.empty(), &out);
+    for (std::size_t k = 0; k < 3; ++k) AppendCorner(mesh.triangles[t][k], 3 * t + k, !mesh.texture_uvs.empty(), &out);
     out += '\n';
   }
   return WriteFileAtomically(path, out);
 }
 
 Status WriteObjMaterial(const std::string& path, const std::string& texture_file) {
-  return WriteFileAtomically(path, "# made by Pliant\nnewmtl tissue\nKa 1 1 1\nKd 1 1 1\nKs 0 0 0\nillum 1\nmap_Kd " +
-                                       texture_file + "\n");
+  return WriteFileAtomically(
+      path, "# made by Pliant\nnewmtl tissue\nKa 1 1 1\nKd 1 1 1\nKs 0 0 0\nillum 1\nmap_Kd " + texture_file + "\n");
 }
 
 }  // namespace pliant

@@ -22,15 +22,16 @@ constexpr const char* kHead =
     "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\" "
     "compressor=\"vtkZLibDataCompressor\">\n";
 
-// An array's bytes as VTK's zlib compressor has them, in one block: how many blocks, the size of a block, that of a last
-// one that is smaller (0: none is), the compressed size, and the block.
+// An array's bytes as VTK's zlib compressor has them, in one block: how many blocks, the size of a block, that of a
+// last one that is smaller (0: none is), the compressed size, and the block.
 std::string Compressed(const std::string& bytes) {
   uLongf size = compressBound(bytes.size());
   std::string block(size, '\0');
   compress(reinterpret_cast<Bytef*>(block.data()), &size, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size());
   block.resize(size);
   std::string result;
-  for (const std::uint64_t value : {std::uint64_t{1}, std::uint64_t{bytes.size()}, std::uint64_t{0}, std::uint64_t{size}})
+  for (const std::uint64_t value :
+       {std::uint64_t{1}, std::uint64_t{bytes.size()}, std::uint64_t{0}, std::uint64_t{size}})
     AppendBytes(&result, value, 8);
   return result + block;
 }
@@ -106,11 +107,11 @@ Status WriteVtp(const std::string& path, const Mesh& mesh, std::span<const VtkAr
   arrays.Add("Points", mesh.vertices);
   arrays.elements() += "</Points>\n";
   AddTriangles(mesh, &arrays);
-  return WriteFileAtomically(
-      path, kHead + std::string("<PolyData>\n<Piece NumberOfPoints=\"") +
-                std::to_string(mesh.vertices.size()) + "\" NumberOfPolys=\"" + std::to_string(mesh.triangles.size()) +
-                "\">\n" + arrays.elements() + "</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_" +
-                arrays.bytes() + "\n</AppendedData>\n</VTKFile>\n");
+  return WriteFileAtomically(path, kHead + std::string("<PolyData>\n<Piece NumberOfPoints=\"") +
+                                       std::to_string(mesh.vertices.size()) + "\" NumberOfPolys=\"" +
+                                       std::to_string(mesh.triangles.size()) + "\">\n" + arrays.elements() +
+                                       "</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_" + arrays.bytes() +
+                                       "\n</AppendedData>\n</VTKFile>\n");
 }
 
 Status WritePvd(const std::string& path, std::span<const VtkTime> times) {

@@ -94,7 +94,8 @@ Status MeshWriter::WriteUndeformed(const Mesh& mesh, const cv::Mat& texture) {
 Status MeshWriter::WriteFrame(const std::string& name, const DeformedMesh& deformed) {
   const Mesh seen = deformed.SeenPart();
   if (Status status = MakeFolder(folder_ / surface::kMeshFolder); !status.ok()) return status;
-  if (Status status = WritePly((folder_ / surface::kMeshFolder / (name + ".ply")).string(), seen); !status.ok()) return status;
+  if (Status status = WritePly((folder_ / surface::kMeshFolder / (name + ".ply")).string(), seen); !status.ok())
+    return status;
   if (files_.obj) {
     if (Status status = MakeFolder(folder_ / kObjFolder); !status.ok()) return status;
     const std::string material = "../" + FileName(kTextureName, ".mtl").filename().string();

@@ -120,8 +120,7 @@ class MeshMaker {
     RunViews views(*std::move(sequence), source_.frames, source_.known, options_.masks);
     for (std::size_t k = 0; k < frames_.size(); ++k) {
       const std::size_t position = frames_[k].position;
-      if (Status status = views.ReadUntil(position, [&](std::size_t other) { return other == position; });
-          !status.ok())
+      if (Status status = views.ReadUntil(position, [&](std::size_t other) { return other == position; }); !status.ok())
         return status;
       const auto dense = ReadDense(source_.folder, frames_[k].file);
       if (!dense.ok()) return dense.status();
@@ -158,7 +157,9 @@ class MeshMaker {
       const auto now = InFrame(frames_[k].position, *dense);
       if (!now) continue;
       const DeformedMesh deformed{mesh_, *now, frame.cam_from_world, frame.timestamp_s};
-      if (Status status = writer->WriteFrame(std::filesystem::path(frames_[k].file.file_name).stem(), deformed); !status.ok()) return status;
+      if (Status status = writer->WriteFrame(std::filesystem::path(frames_[k].file.file_name).stem(), deformed);
+          !status.ok())
+        return status;
       // The keys are as even in time as the frames are.
       if (keys_.size() < keys && k * (keys - 1) >= keys_.size() * (frames_.size() - 1))
         keys_.push_back({frame.timestamp_s, deformed.Vertices()});

@@ -93,10 +93,7 @@ class SurfaceMaker {
  public:
   SurfaceMaker(const SurfaceRequest& request, const SurfaceProgress& callback, const DenseDepthEstimator& estimator,
                SurfaceWriter* writer)
-      : request_(request),
-        callback_(callback),
-        estimator_(estimator),
-        writer_(writer) {}
+      : request_(request), callback_(callback), estimator_(estimator), writer_(writer) {}
 
   // `summary` has what was done, also where this fails.
   Status Make(const std::vector<PosedFrame>& frames, const Plan& plan, const RunMap& known, RunViews* images,
@@ -188,8 +185,8 @@ Result<SurfaceSummary> MakeSurface(const SurfaceRequest& request, const SurfaceR
   if (!writer.ok()) return writer.status();
   RunViews images(*std::move(sequence), *frames, *known, options.masks);
   SurfaceSummary summary;
-  const Status made = SurfaceMaker(request, callback, *estimator, &*writer)
-                          .Make(*frames, plan, *known, &images, &summary);
+  const Status made =
+      SurfaceMaker(request, callback, *estimator, &*writer).Make(*frames, plan, *known, &images, &summary);
   std::ranges::sort(summary.frames, {}, &SurfaceFrame::frame_idx);
   // Until the meshes are there too, the folder says that it was interrupted.
   const bool stopped = summary.stopped || !made.ok();

@@ -30,8 +30,7 @@ Status RemoveEarlierSurface(const fs::path& path) {
   if (!fs::exists(path / surface::kSummaryFile, error))
     return {ErrorCode::kInvalidArgument,
             Quoted(path.string()) + " holds something other than a surface; give another --output_path"};
-  for (const char* folder : {native::kDepthFolder, surface::kConfidenceFolder})
-    fs::remove_all(path / folder, error);
+  for (const char* folder : {native::kDepthFolder, surface::kConfidenceFolder}) fs::remove_all(path / folder, error);
   return error ? Unwritable(path) : MeshWriter::RemoveEarlier(path);
 }
 

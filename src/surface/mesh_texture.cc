@@ -235,8 +235,8 @@ cv::Mat MakeTexture(const Camera& camera, std::span<const TextureView> views, in
         corners[k] = seen[chosen[c]].corners[t][k] + Eigen::Vector2d(offset.x, offset.y);
     }
     for (std::size_t k = 0; k < 3; ++k)
-      mesh->texture_uvs[t][k] =
-          (corners[k].array() + 0.5).cast<float>() / Eigen::Array2f(static_cast<float>(size.width), static_cast<float>(size.height));
+      mesh->texture_uvs[t][k] = (corners[k].array() + 0.5).cast<float>() /
+                                Eigen::Array2f(static_cast<float>(size.width), static_cast<float>(size.height));
   }
   const double shrink = static_cast<double>(max_size) / std::max(size.width, size.height);
   if (shrink < 1.0) cv::resize(texture, texture, {}, shrink, shrink, cv::INTER_AREA);

@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::array kNeighborCounts = {8, 12, 16};
 constexpr double kDamping = 0.03;  // of the affine part, by the neighbors' own spread
-constexpr double kCauchy = 3.0;   // of the residuals by their median
+constexpr double kCauchy = 3.0;    // of the residuals by their median
 constexpr int kInversions = 3;
 constexpr double kMinWeight = 1e-3;
 

@@ -21,7 +21,7 @@ namespace pliant {
 namespace {
 
 constexpr double kSameSurface = 3.0;  // standard deviations of two depths of one surface
-constexpr double kMinKnown = 0.5;    // of the pixels around a node
+constexpr double kMinKnown = 0.5;     // of the pixels around a node
 constexpr std::int32_t kNoVertex = -1;
 
 // Whether the distances of a triangle's corners are those of one surface.

@@ -36,8 +36,11 @@ Mesh SmallMesh(const TexturedPlane& plane) {
 }
 
 TextureView ViewOf(const TexturedPlane& plane, const Mesh& mesh, int view) {
-  TextureView result{plane.Image(view), cv::Mat(TexturedPlane::kHeight, TexturedPlane::kWidth, CV_8U, cv::Scalar(255)),
-                     plane.Pose(view), {}, 1.0};
+  TextureView result{plane.Image(view),
+                     cv::Mat(TexturedPlane::kHeight, TexturedPlane::kWidth, CV_8U, cv::Scalar(255)),
+                     plane.Pose(view),
+                     {},
+                     1.0};
   for (const Eigen::Vector3f& vertex : mesh.vertices) result.mesh.positions.push_back(vertex.cast<double>());
   result.mesh.views.assign(mesh.vertices.size(), VertexView::kMeasured);
   return result;

@@ -170,8 +170,8 @@ TEST(TrackedMesh, SaysWhatTheFrameShows) {
   plane.slide_mm = 0;
   const TrackedMesh tracked = MeshOf(plane, {0});
   DenseDepth dense = TrueDepth(plane, 0);
-  dense.depth.rowRange(0, 80).setTo(0.0F);      // not known
-  dense.depth.rowRange(160, 240) *= 0.5F;       // something else before it
+  dense.depth.rowRange(0, 80).setTo(0.0F);  // not known
+  dense.depth.rowRange(160, 240) *= 0.5F;   // something else before it
   const auto now = tracked.InFrame(plane.View(0), dense);
   ASSERT_TRUE(now);
   const auto view_at = [&](std::size_t row) { return now->views[row * 80 + 40]; };

@@ -31,11 +31,11 @@ struct CameraKey {
 };
 
 struct MeshAnimation {
-  const Mesh& mesh;                // undeformed, world frame, map units
-  const cv::Mat& texture;          // BGR; empty: the vertices' colors
-  std::span<const MeshKey> keys;   // times increase; between two of them positions change linearly
+  const Mesh& mesh;                 // undeformed, world frame, map units
+  const cv::Mat& texture;           // BGR; empty: the vertices' colors
+  std::span<const MeshKey> keys;    // times increase; between two of them positions change linearly
   std::span<const CameraKey> path;  // times increase
-  const Camera& camera;            // its focal length and size: glTF knows no distortion
+  const Camera& camera;             // its focal length and size: glTF knows no distortion
 };
 
 // Keys are morph targets, of which one at a time has weight 1; all weights 0: the undeformed mesh. A mesh without

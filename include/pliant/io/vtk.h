@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Meshes over time as VTK's XML files, which ParaView and 3D Slicer open: a PolyData file (.vtp, compressed) a time, and a
-// collection (.pvd) that says which file is when.
+// Meshes over time as VTK's XML files, which ParaView and 3D Slicer open: a PolyData file (.vtp, compressed) a time,
+// and a collection (.pvd) that says which file is when.
 #pragma once
 
 #include <span>

@@ -28,7 +28,7 @@ struct SurfaceRunOptions {
   bool vtk = true;
   bool obj = false;
   int animation_keys = 60;  // frames whose mesh the glTF file has
-  int threads = 0;                 // 0: as many as the machine has
+  int threads = 0;          // 0: as many as the machine has
 
   void List(OptionTable& table);  // groups "Surface", "Masks"
 };
