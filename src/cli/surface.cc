@@ -44,7 +44,7 @@ int SurfaceCommand(std::span<const std::string> args) {
            Need::kOptional);
   line.Add("camera", &request.camera_path, "FILE", "their calibration; without it the one that belongs to them",
            Need::kOptional);
-  line.Add("mask_path", &request.mask_path, "PATH", "folder of masks, or one image for all frames (0 = ignore)",
+  line.Add("mask_path", &request.mask_path, "PATH", "folder of masks, or one image for all frames (0 = ignore); without it the run's",
            Need::kOptional);
   line.Add("frames", &frames, "FRAMES", "their numbers, with commas; 10-20 are all from 10 to 20; without it all",
            Need::kOptional);

@@ -40,7 +40,10 @@ SequenceRequest SequenceOfRun(const std::string& run_path, const std::filesystem
   if (sequence_path.empty()) request.image_path = input;
   std::error_code error;
   const bool same = request.image_path == input || std::filesystem::equivalent(request.image_path, input, error);
-  if (same) request.spare_camera_path = summary->description.camera;
+  if (!same) return request;
+  request.spare_camera_path = summary->description.camera;
+  const std::filesystem::path mask = summary->description.mask;
+  if (std::filesystem::exists(mask, error)) request.mask_path = mask;
   return request;
 }
 

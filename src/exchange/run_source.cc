@@ -80,7 +80,7 @@ Result<std::vector<RunSource>> ReadRunSources(const ExportRequest& request, int 
     return Status(ErrorCode::kInsufficient,
                   "no frame of the run " + Quoted(request.run_path) + " was tracked; there is nothing to export");
   SequenceRequest images = SequenceOfRun(request.run_path, request.sequence_path, request.camera_path);
-  images.mask_path = request.mask_path;
+  if (!request.mask_path.empty()) images.mask_path = request.mask_path;
   const auto known = KnownMapOfRun(request.run_path, images, *run);
   if (!known.ok()) return known.status();
   RunSource empty{request.run_path, *known->camera, images, {}, {}, {}, 0, {}};

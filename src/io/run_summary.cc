@@ -67,6 +67,7 @@ Status WriteRunSummary(const std::string& path, const RunSummary& summary) {
       {"seed", summary.description.seed},
       {"input", summary.description.input},
       {"camera", summary.description.camera},
+      {"mask", summary.description.mask},
       {"refined_from", summary.description.refined_from},
       {"oracles", summary.description.oracles},
       {"working_image",
@@ -119,6 +120,7 @@ Result<RunSummary> ReadRunSummary(const std::string& path) {
                            json.at("seed").get<std::uint64_t>(),
                            json.at("input").get<std::string>(),
                            json.value("camera", ""),
+                           json.value("mask", ""),
                            json.value("oracles", std::vector<std::string>())};
     summary.description.refined_from = json.value("refined_from", "");
     if (const Json working = json.value("working_image", Json()); !working.is_null()) {

@@ -132,8 +132,8 @@ Result<RunWriter> RunWriter::Create(const std::string& output_path, const Camera
   if (Status status = PrepareFolder(output_path); !status.ok()) return status;
   RunSummary summary;
   summary.description = std::move(description);
-  std::string& camera_path = summary.description.camera;
-  if (!camera_path.empty()) camera_path = std::filesystem::absolute(camera_path).lexically_normal().string();
+  for (std::string* path : {&summary.description.camera, &summary.description.mask})
+    if (!path->empty()) *path = std::filesystem::absolute(*path).lexically_normal().string();
   summary.note = "the run was stopped before its end";  // what a killed run says
   if (Status status = WriteRunSummary(output_path + "/run.json", summary); !status.ok()) return status;
   if (Status status = WriteFileAtomically(output_path + "/config.yaml", config_yaml); !status.ok()) return status;

@@ -166,7 +166,7 @@ Result<SurfaceSummary> MakeSurface(const SurfaceRequest& request, const SurfaceR
     return Status(ErrorCode::kInsufficient,
                   "no frame of the run " + Quoted(request.run_path) + " was tracked; there is no surface to see");
   SequenceRequest source = SequenceOfRun(request.run_path, request.sequence_path, request.camera_path);
-  source.mask_path = request.mask_path;
+  if (!request.mask_path.empty()) source.mask_path = request.mask_path;
   if (source.image_path.empty())
     return Status(ErrorCode::kNotFound,
                   Quoted(request.run_path) + " does not say which images it is of; name them with --sequence");

@@ -326,6 +326,7 @@ Result<RunSummary> RunTrack(const RunRequest& request, const TrackOptions& optio
                                    static_cast<std::uint64_t>(options.seed),
                                    request.input.image_path.string(),
                                    request.input.camera_path.string(),
+                                   request.input.mask_path.string(),
                                    {oracles.begin(), oracles.end()},
                                    start->working_image.scale,
                                    start->working_image.smoothing_px,

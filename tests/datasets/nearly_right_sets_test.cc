@@ -259,13 +259,16 @@ TEST_F(NearlyRightSets, ARunsImagesKeepTheCalibrationItWasMadeWith) {
   Text("run/run.json",
        "{\"program\": \"pliant\", \"version\": \"0\", \"command_line\": [], \"seed\": 1, \"input\": \"" +
            Path("images").string() +
-           "\", \"camera\": \"lens.yaml\", \"status\": \"completed\", \"note\": \"\", \"counts\": {\"frames_read\": 0, "
+           "\", \"camera\": \"lens.yaml\", \"mask\": \"" + Path("run").string() +
+           "\", \"status\": \"completed\", \"note\": \"\", \"counts\": {\"frames_read\": 0, "
            "\"frames_tracked\": 0, \"points\": 0, \"observations\": 0, \"losses\": {}}, \"timings\": {\"total_s\": 0, "
            "\"frames_per_second\": 0, \"mean_ms\": {}}}");
   const std::string run = Path("run").string();
   EXPECT_EQ(SequenceOfRun(run).image_path, Path("images"));
   EXPECT_EQ(SequenceOfRun(run).spare_camera_path, "lens.yaml");
   EXPECT_EQ(SequenceOfRun(run, Path("run/../images")).spare_camera_path, "lens.yaml");
+  EXPECT_EQ(SequenceOfRun(run).mask_path, Path("run"));
+  EXPECT_EQ(SequenceOfRun(run, "elsewhere").mask_path, "");
   EXPECT_EQ(SequenceOfRun(run, "elsewhere").spare_camera_path, "");
   EXPECT_EQ(SequenceOfRun(run, "elsewhere", "other.yaml").camera_path, "other.yaml");
   EXPECT_EQ(SequenceOfRun(Path("no_run").string()).image_path, "");

@@ -30,6 +30,7 @@ TEST(RunFolder, ComesBackAsItWasReported) {
   EXPECT_EQ(run->summary->note, "too few points");
   EXPECT_EQ(run->summary->description.command_line, (std::vector<std::string>{"pliant", "track"}));
   EXPECT_EQ(run->summary->description.camera, (std::filesystem::current_path() / "stereo.yaml").string());
+  EXPECT_EQ(run->summary->description.mask, (std::filesystem::current_path() / "masks").string());
   EXPECT_EQ(run->summary->description.seed, 7u);
   EXPECT_EQ(run->summary->description.oracles, (std::vector<std::string>{"tracks"}));
   EXPECT_EQ(run->summary->description.image_scale, 0.75);

@@ -40,6 +40,7 @@ struct RunDescription {
   std::uint64_t seed = 0;
   std::string input;                      // the images' path, as given
   std::string camera = {};                // the calibration's path, absolute; empty: the one that belongs to the images
+  std::string mask = {};                  // the masks' path, absolute; empty: none, or those that belong to the images
   std::vector<std::string> oracles = {};  // parts of the method that were replaced by the truth; empty in an honest run
   // The images in which points were tracked: their size by that of the source; in their pixels, their smoothing and the
   // side of a point's patch (0: unknown).
