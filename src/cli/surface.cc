@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include <iostream>
+#include <optional>
 
 #include "cli/command_line.h"
 #include "cli/commands.h"
@@ -44,8 +45,8 @@ int SurfaceCommand(std::span<const std::string> args) {
            Need::kOptional);
   line.Add("camera", &request.camera_path, "FILE", "their calibration; without it the one that belongs to them",
            Need::kOptional);
-  line.Add("mask_path", &request.mask_path, "PATH", "folder of masks, or one image for all frames (0 = ignore); without it the run's",
-           Need::kOptional);
+  line.Add("mask_path", &request.mask_path, "PATH",
+           "folder of masks, or one image for all frames (0 = ignore); without it the run's", Need::kOptional);
   line.Add("frames", &frames, "FRAMES", "their numbers, with commas; 10-20 are all from 10 to 20; without it all",
            Need::kOptional);
   line.AddFlag("quiet", &quiet, "say nothing but errors");
@@ -59,12 +60,21 @@ int SurfaceCommand(std::span<const std::string> args) {
   request.frames = *chosen;
   request.command_line = line.Words(args);
   request.stop = &StopOnSignals();
-  const auto summary = [&] {
-    Progress progress(std::cerr, quiet ? ProgressStyle::kQuiet : ProgressStyleOfStandardError(), "surface", 0);
-    return MakeSurface(request, options, [&](const SurfaceFrame& frame, int done, int) {
-      progress.Update(done, Digits(100.0 * frame.known_share, 0) + " % known");
-    });
-  }();
+  const ProgressStyle style = quiet ? ProgressStyle::kQuiet : ProgressStyleOfStandardError();
+  std::optional<Progress> depths;
+  std::optional<Progress> mesh;
+  const auto summary = MakeSurface(request, options, [&](SurfaceStage stage, int done, int total, double known_share) {
+    if (stage == SurfaceStage::kDepth) {
+      if (!depths) depths.emplace(std::cerr, style, "depth", total);
+      depths->Update(done, Percent(known_share) + " known");
+    } else {
+      depths.reset();
+      if (!mesh) mesh.emplace(std::cerr, style, "mesh", total);
+      mesh->Update(done, "");
+    }
+  });
+  depths.reset();
+  mesh.reset();
   if (!summary.ok()) return line.Failure(summary.status().message());
   if (!quiet) std::cout << request.output_path << std::endl;
   return kExitOk;

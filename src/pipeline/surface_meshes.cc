@@ -89,20 +89,21 @@ class SharpImages {
 class MeshMaker {
  public:
   MeshMaker(const MeshSource& source, const SurfaceRunOptions& options, int threads,
-            const std::vector<DenseFrame>& frames)
+            const std::vector<DenseFrame>& frames, const std::function<bool()>& go_on)
       : source_(source),
         options_(options),
         frames_(frames),
+        go_on_(go_on),
         tracked_(source.folder.camera, RestPositionsOf(source.known), options.mesh_columns, threads),
         images_(frames.size()) {}
 
   Status Make(MeshWriter* writer) {
-    if (Status status = Build(); !status.ok()) return status;
+    if (Status status = Build(); !status.ok() || stopped_) return status;
     mesh_ = tracked_.undeformed();
     if (mesh_.triangles.empty()) return Status::Ok();
     if (options_.gltf || options_.obj) MakeTextureOfImages();
     if (Status status = writer->WriteUndeformed(mesh_, texture_); !status.ok()) return status;
-    if (Status status = WriteFrames(writer); !status.ok() || !options_.gltf) return status;
+    if (Status status = WriteFrames(writer); !status.ok() || stopped_ || !options_.gltf) return status;
     return WriteGlb(writer->FileName("surface", ".glb").string(),
                     {mesh_, texture_, keys_, CameraPath(), source_.folder.camera});
   }
@@ -118,7 +119,7 @@ class MeshMaker {
     auto sequence = OpenSequence(source_.images);
     if (!sequence.ok()) return sequence.status();
     RunViews views(*std::move(sequence), source_.frames, source_.known, options_.masks);
-    for (std::size_t k = 0; k < frames_.size(); ++k) {
+    for (std::size_t k = 0; k < frames_.size() && !stopped_; ++k) {
       const std::size_t position = frames_[k].position;
       if (Status status = views.ReadUntil(position, [&](std::size_t other) { return other == position; }); !status.ok())
         return status;
@@ -127,6 +128,7 @@ class MeshMaker {
       tracked_.Add(views.At(position), *dense);
       images_.Add(k, position, views.At(position));
       views.ForgetUnless([](std::size_t) { return false; });
+      stopped_ = !go_on_();
     }
     tracked_.Finish();
     return Status::Ok();
@@ -150,7 +152,8 @@ class MeshMaker {
 
   Status WriteFrames(MeshWriter* writer) {
     const std::size_t keys = std::min<std::size_t>(frames_.size(), static_cast<std::size_t>(options_.animation_keys));
-    for (std::size_t k = 0; k < frames_.size(); ++k) {
+    for (std::size_t k = 0; k < frames_.size() && !stopped_; ++k) {
+      stopped_ = !go_on_();
       const auto dense = ReadDense(source_.folder, frames_[k].file);
       if (!dense.ok()) return dense.status();
       const PosedFrame& frame = source_.frames[frames_[k].position];
@@ -179,6 +182,8 @@ class MeshMaker {
   const MeshSource& source_;
   const SurfaceRunOptions& options_;
   const std::vector<DenseFrame>& frames_;
+  const std::function<bool()>& go_on_;
+  bool stopped_ = false;
   TrackedMesh tracked_;
   SharpImages images_;
   Mesh mesh_;  // undeformed
@@ -188,12 +193,18 @@ class MeshMaker {
 
 }  // namespace
 
-Status MakeMeshes(const MeshSource& source, const SurfaceRunOptions& options, int threads) {
+Status MakeMeshes(const MeshSource& source, const SurfaceRunOptions& options, int threads, const MeshProgress& go_on) {
   const auto submaps = DenseFramesBySubmap(source);
+  int total = 0;
+  for (const auto& frames : submaps) total += 2 * static_cast<int>(frames.size());
+  if (!go_on(0, total)) return Status::Ok();
+  int done = 0;
+  const std::function<bool()> step = [&] { return go_on(++done, total); };
   for (std::size_t k = 0; k < submaps.size(); ++k) {
     const std::string suffix = submaps.size() > 1 ? "_" + std::to_string(k) : "";
     MeshWriter writer(source.folder.path, suffix, {.obj = options.obj, .vtk = options.vtk});
-    if (Status status = MeshMaker(source, options, threads, submaps[k]).Make(&writer); !status.ok()) return status;
+    if (Status status = MeshMaker(source, options, threads, submaps[k], step).Make(&writer); !status.ok())
+      return status;
   }
   return Status::Ok();
 }

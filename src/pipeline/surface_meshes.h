@@ -4,6 +4,7 @@
 // The meshes of a surface folder, from the depths that are there.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -22,8 +23,12 @@ struct MeshSource {
   const SequenceRequest& images;
 };
 
-// A mesh of all that the frames of a submap show, and where it is in each of these. Fails as RunViews,
+// Told how many of how many steps are done; false: no more are wanted.
+using MeshProgress = std::function<bool(int done, int total)>;
+
+// A mesh of all that the frames of a submap show, and where it is in each of these. What is
+// begun when no more is wanted is not finished. Fails as RunViews,
 // ReadSurfaceDepth do, and with kUnwritable.
-Status MakeMeshes(const MeshSource& source, const SurfaceRunOptions& options, int threads);
+Status MakeMeshes(const MeshSource& source, const SurfaceRunOptions& options, int threads, const MeshProgress& go_on);
 
 }  // namespace pliant

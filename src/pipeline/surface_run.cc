@@ -98,6 +98,8 @@ class SurfaceMaker {
   // `summary` has what was done, also where this fails.
   Status Make(const std::vector<PosedFrame>& frames, const Plan& plan, const RunMap& known, RunViews* images,
               SurfaceSummary* summary) {
+    const int total = static_cast<int>(plan.references.size());
+    if (callback_) callback_(SurfaceStage::kDepth, 0, total, 0.0);
     for (std::size_t k = 0; k < plan.references.size(); ++k) {
       if (request_.stop != nullptr && *request_.stop) {
         summary->stopped = true;
@@ -115,7 +117,7 @@ class SurfaceMaker {
       if (Status status = MakeFrame(reference, plan.neighbors[k], *images, &frame); !status.ok()) return status;
       images->ForgetUnless([&](std::size_t position) { return plan.last_use.at(position) > k; });
       summary->frames.push_back(frame);
-      if (callback_) callback_(frame, static_cast<int>(k) + 1, static_cast<int>(plan.references.size()));
+      if (callback_) callback_(SurfaceStage::kDepth, static_cast<int>(k) + 1, total, frame.known_share);
     }
     return Status::Ok();
   }
@@ -203,9 +205,13 @@ Result<SurfaceSummary> MakeSurface(const SurfaceRequest& request, const SurfaceR
     const auto folder = ReadSurfaceFolder(request.output_path);
     if (!folder.ok()) return folder.status();
     const MeshSource meshes{*frames, *known, *folder, source};
-    if (Status status = MakeMeshes(meshes, options, ThreadsOf(options)); !status.ok()) return status;
+    const auto go_on = [&](int done, int total) {
+      if (callback) callback(SurfaceStage::kMesh, done, total, 0.0);
+      return request.stop == nullptr || !*request.stop;
+    };
+    if (Status status = MakeMeshes(meshes, options, ThreadsOf(options), go_on); !status.ok()) return status;
   }
-  summary.stopped = false;
+  summary.stopped = request.stop != nullptr && *request.stop;
   if (Status status = writer->Finish(request, options, summary); !status.ok()) return status;
   return summary;
 }

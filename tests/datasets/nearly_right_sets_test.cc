@@ -258,8 +258,7 @@ TEST_F(NearlyRightSets, ARunsImagesKeepTheCalibrationItWasMadeWith) {
   std::filesystem::create_directories(Path("run"));
   Text("run/run.json",
        "{\"program\": \"pliant\", \"version\": \"0\", \"command_line\": [], \"seed\": 1, \"input\": \"" +
-           Path("images").string() +
-           "\", \"camera\": \"lens.yaml\", \"mask\": \"" + Path("run").string() +
+           Path("images").string() + "\", \"camera\": \"lens.yaml\", \"mask\": \"" + Path("run").string() +
            "\", \"status\": \"completed\", \"note\": \"\", \"counts\": {\"frames_read\": 0, "
            "\"frames_tracked\": 0, \"points\": 0, \"observations\": 0, \"losses\": {}}, \"timings\": {\"total_s\": 0, "
            "\"frames_per_second\": 0, \"mean_ms\": {}}}");

@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // The dense surface of a tracked run against the truth of a rigid simulated scene.
+#include <atomic>
 #include <filesystem>
+#include <string>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "e2e/e2e_support.h"
@@ -17,6 +20,7 @@ constexpr double kMinKnown = 0.4;      // of all pixels with a true depth, also 
 constexpr double kMaxAbsRel = 0.012;   // the points' own error is about 0.5 %
 constexpr double kShareOfPlate = 0.7;  // of the error of the interpolated points
 constexpr double kMinWithinTwoSigma = 0.9;
+constexpr double kMinVertices = 2000;  // of 96 x 72 nodes
 
 TEST(RigidScene, ItsSurfaceIsNearerToTheTruthThanItsPointsInterpolated) {
   const TestFolder folder;
@@ -29,7 +33,8 @@ TEST(RigidScene, ItsSurfaceIsNearerToTheTruthThanItsPointsInterpolated) {
   ASSERT_TRUE(summary.ok()) << summary.status().message();
   ASSERT_EQ(summary->frames.size(), 2U);
   for (const char* file :
-       {"depth/000020.png", "confidence/000040.png", "mesh/000020.ply", "camera.yaml", "surface.json", "config.yaml"})
+       {"depth/000020.png", "confidence/000040.png", "mesh/000020.ply", "camera.yaml", "surface.json", "config.yaml",
+        "undeformed.ply", "surface.glb", "surface.pvd", "vtp/000040.vtp"})
     EXPECT_TRUE(std::filesystem::exists(folder.Path(std::string("surface/") + file))) << file;
   const auto surface = ReadSurfaceFolder(request.output_path);
   ASSERT_TRUE(surface.ok()) << surface.status().message();
@@ -44,6 +49,53 @@ TEST(RigidScene, ItsSurfaceIsNearerToTheTruthThanItsPointsInterpolated) {
   EXPECT_LT(error->estimate.abs_rel, kMaxAbsRel);
   EXPECT_LT(error->estimate.rmse_mm, kShareOfPlate * error->interpolation.rmse_mm);
   EXPECT_GT(error->within_2_sigma, kMinWithinTwoSigma);
+  EXPECT_GT(error->mesh_vertices, kMinVertices);
+  EXPECT_LT(error->mesh.abs_rel, kMaxAbsRel);
+}
+
+class SurfaceFiles : public testing::Test {
+ protected:
+  Result<SurfaceSummary> Make(const SurfaceRunOptions& options, const SurfaceProgress& callback = {}) const {
+    SurfaceRequest request;
+    request.run_path = kDefaultRun;
+    request.sequence_path = kSequence;
+    request.output_path = folder_.Path("surface");
+    request.frames = {30};
+    request.stop = &stop_;
+    return MakeSurface(request, options, callback);
+  }
+  bool Has(const std::string& name) const { return std::filesystem::exists(folder_.Path("surface/" + name)); }
+
+  TestFolder folder_;
+  std::atomic<bool> stop_ = false;
+};
+
+TEST_F(SurfaceFiles, AreThoseThatAreWanted) {
+  SurfaceRunOptions options;
+  options.vtk = false;
+  options.obj = true;
+  ASSERT_TRUE(Make(options).ok());
+  for (const char* name : {"mesh/000030.ply", "obj/000030.obj", "texture.jpg", "texture.mtl", "surface.glb"})
+    EXPECT_TRUE(Has(name)) << name;
+  for (const char* name : {"vtp", "surface.pvd"}) EXPECT_FALSE(Has(name)) << name;
+  // Those of an earlier surface go.
+  options.mesh_columns = 0;
+  ASSERT_TRUE(Make(options).ok());
+  EXPECT_TRUE(Has("depth/000030.png"));
+  for (const char* name : {"mesh", "obj", "texture.jpg", "texture.mtl", "surface.glb", "undeformed.ply"})
+    EXPECT_FALSE(Has(name)) << name;
+}
+
+TEST_F(SurfaceFiles, OfASurfaceThatWasStoppedAreWhole) {
+  const auto summary = Make({}, [&](SurfaceStage stage, int done, int, double) {
+    if (stage == SurfaceStage::kMesh && done == 1) stop_ = true;
+  });
+  ASSERT_TRUE(summary.ok()) << summary.status().message();
+  EXPECT_TRUE(summary->stopped);
+  EXPECT_THAT(folder_.Read("surface/surface.json"), testing::HasSubstr("\"status\": \"interrupted\""));
+  EXPECT_TRUE(Has("depth/000030.png"));
+  EXPECT_FALSE(Has("surface.glb"));
+  EXPECT_FALSE(Has("mesh"));
 }
 
 }  // namespace

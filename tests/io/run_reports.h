@@ -57,8 +57,9 @@ inline FrameReport Report(int frame) {
 
 inline RunWriter Writer(const std::string& path, const RunWriterOptions& options = {}) {
   auto writer = RunWriter::Create(
-      path, TestCamera(), {"0.1.0", {"pliant", "track"}, 7, "clip.mp4", "stereo.yaml", "masks", {"tracks"}, 0.75, 0.7, 21},
-      "Track:\n", {kCosts, kStages}, options);
+      path, TestCamera(),
+      {"0.1.0", {"pliant", "track"}, 7, "clip.mp4", "stereo.yaml", "masks", {"tracks"}, 0.75, 0.7, 21}, "Track:\n",
+      {kCosts, kStages}, options);
   EXPECT_TRUE(writer.ok()) << writer.status().message();
   return std::move(writer).value();
 }

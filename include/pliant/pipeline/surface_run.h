@@ -59,8 +59,15 @@ struct SurfaceSummary {
   bool stopped = false;
 };
 
-// Called after each frame, with how many there are to be.
-using SurfaceProgress = std::function<void(const SurfaceFrame&, int done, int total)>;
+enum class SurfaceStage {
+  kDepth,  // depths of frames
+  kMesh,   // frames that the mesh was built from, then those that it was written for
+};
+
+// Called when a stage begins and after each of its frames, with how many are done, and are to be. `known_share` is that
+// of a SurfaceFrame,
+// in stage kDepth.
+using SurfaceProgress = std::function<void(SurfaceStage stage, int done, int total, double known_share)>;
 
 // Frames are written as they are done, each whole or not at all; a failure leaves those before it. Fails with
 // kNotFound, kUnreadable or kMismatch for a run or images that cannot be read or do not belong together, kInsufficient
