@@ -7,7 +7,10 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
+#include <exception>
 #include <map>
+#include <optional>
 #include <sstream>
 #include <tuple>
 #include <utility>
@@ -26,6 +29,10 @@ constexpr float kMetersPerUnit = 0.001F;
 constexpr int kJpegQuality = 92;
 constexpr double kNear = 0.001;  // m, of the camera's view
 constexpr double kFar = 10.0;
+constexpr const char* kGenerator = "Pliant ";
+constexpr const char* kSigma = "_SIGMA";   // an attribute of our own: map units
+constexpr const char* kFrames = "frames";  // extras: of the keys
+constexpr const char* kSubmap = "submap";
 
 // From x right, y down, z forward to glTF's x right, y up, z backward.
 Eigen::Vector3f InGltf(const Eigen::Vector3f& v) { return {v.x(), -v.y(), -v.z()}; }
@@ -62,7 +69,7 @@ class ModelBuilder {
  public:
   ModelBuilder() {
     model_.asset.version = "2.0";
-    model_.asset.generator = std::string("Pliant ") + kVersion;
+    model_.asset.generator = std::string(kGenerator) + kVersion;
     model_.buffers.emplace_back();
   }
 
@@ -197,6 +204,9 @@ void AddMesh(const MeshAnimation& animation, ModelBuilder* builder) {
     primitive.attributes["COLOR_0"] = builder->AddFloats(Colors(corners, mesh), TINYGLTF_TYPE_VEC3, false, target);
   else
     primitive.attributes["TEXCOORD_0"] = builder->AddFloats(TextureUvs(corners), TINYGLTF_TYPE_VEC2, false, target);
+  std::vector<float> sigmas;
+  for (const Corner& corner : corners.corners) sigmas.push_back(mesh.sigmas[static_cast<std::size_t>(corner.vertex)]);
+  primitive.attributes[kSigma] = builder->AddFloats(sigmas, TINYGLTF_TYPE_SCALAR, false, target);
   for (const MeshKey& key : animation.keys) {
     const auto moved = [&](std::size_t v) {
       return Eigen::Vector3f(kMetersPerUnit * (key.positions[v] - mesh.vertices[v]));
@@ -207,6 +217,12 @@ void AddMesh(const MeshAnimation& animation, ModelBuilder* builder) {
   tinygltf::Mesh entry;
   entry.name = "surface";
   entry.primitives.push_back(primitive);
+  tinygltf::Value::Array frames;
+  for (const MeshKey& key : animation.keys) frames.emplace_back(key.frame_idx);
+  tinygltf::Value::Object extras;
+  extras.emplace(kFrames, tinygltf::Value(std::move(frames)));
+  extras.emplace(kSubmap, tinygltf::Value(animation.submap));
+  entry.extras = tinygltf::Value(std::move(extras));
   entry.weights.assign(animation.keys.size(), 0.0);
   if (!entry.weights.empty()) entry.weights[0] = 1.0;
   builder->model().meshes.push_back(entry);
@@ -293,6 +309,86 @@ void AddAnimation(const MeshAnimation& input, ModelBuilder* builder) {
   if (!animation.channels.empty()) builder->model().animations.push_back(animation);
 }
 
+// The values of an accessor of four bytes each, one after the other.
+template <class T>
+std::optional<std::vector<T>> ValuesAt(const tinygltf::Model& model, int accessor, int component_type) {
+  if (accessor < 0 || static_cast<std::size_t>(accessor) >= model.accessors.size()) return std::nullopt;
+  const tinygltf::Accessor& entry = model.accessors[static_cast<std::size_t>(accessor)];
+  if (entry.componentType != component_type || entry.bufferView < 0 ||
+      static_cast<std::size_t>(entry.bufferView) >= model.bufferViews.size())
+    return std::nullopt;
+  const tinygltf::BufferView& view = model.bufferViews[static_cast<std::size_t>(entry.bufferView)];
+  const std::size_t bytes = view.byteLength;
+  if (model.buffers.size() != 1 || view.byteOffset > model.buffers[0].data.size() ||
+      bytes > model.buffers[0].data.size() - view.byteOffset)
+    return std::nullopt;
+  std::vector<T> values(bytes / sizeof(T));
+  std::memcpy(values.data(), model.buffers[0].data.data() + view.byteOffset, values.size() * sizeof(T));
+  return values;
+}
+
+std::optional<std::vector<float>> FloatsAt(const tinygltf::Model& model, int accessor) {
+  return ValuesAt<float>(model, accessor, TINYGLTF_COMPONENT_TYPE_FLOAT);
+}
+
+std::vector<Eigen::Vector3f> VectorsOf(const std::vector<float>& values, float scale) {
+  std::vector<Eigen::Vector3f> vectors;
+  for (std::size_t i = 0; i + 2 < values.size(); i += 3)
+    vectors.emplace_back(scale * InGltf({values[i], values[i + 1], values[i + 2]}));
+  return vectors;
+}
+
+// Throws what tinygltf's and the standard library's accessors throw; nothing: not as we write it.
+std::optional<GltfMesh> MeshIn(const tinygltf::Model& model) {
+  const tinygltf::Mesh& entry = model.meshes.at(0);
+  const tinygltf::Primitive& primitive = entry.primitives.at(0);
+  const auto positions = FloatsAt(model, primitive.attributes.at("POSITION"));
+  const auto normals = FloatsAt(model, primitive.attributes.at("NORMAL"));
+  auto sigmas = FloatsAt(model, primitive.attributes.at(kSigma));
+  const auto indices = ValuesAt<std::int32_t>(model, primitive.indices, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT);
+  if (!positions || !normals || !sigmas || !indices || sigmas->size() * 3 != positions->size()) return std::nullopt;
+  GltfMesh result;
+  Mesh& mesh = result.mesh;
+  mesh.vertices = VectorsOf(*positions, 1.0F / kMetersPerUnit);
+  mesh.normals = VectorsOf(*normals, 1.0F);
+  mesh.sigmas = *std::move(sigmas);
+  for (std::size_t i = 0; i + 2 < indices->size(); i += 3) {
+    mesh.triangles.push_back({(*indices)[i], (*indices)[i + 1], (*indices)[i + 2]});
+    for (const std::int32_t v : mesh.triangles.back())
+      if (v < 0 || static_cast<std::size_t>(v) >= mesh.vertices.size()) return std::nullopt;
+  }
+  if (primitive.attributes.contains("TEXCOORD_0")) {
+    const auto uvs = FloatsAt(model, primitive.attributes.at("TEXCOORD_0"));
+    if (!uvs || uvs->size() != 2 * mesh.vertices.size()) return std::nullopt;
+    const auto uv = [&](std::int32_t v) { return Eigen::Vector2f(uvs->data() + 2 * static_cast<std::size_t>(v)); };
+    for (const auto& t : mesh.triangles) mesh.texture_uvs.push_back({uv(t[0]), uv(t[1]), uv(t[2])});
+    const auto& view = model.bufferViews.at(static_cast<std::size_t>(model.images.at(0).bufferView));
+    result.texture_jpeg.assign(reinterpret_cast<const char*>(model.buffers.at(0).data.data()) + view.byteOffset,
+                               view.byteLength);
+  }
+  if (!entry.extras.IsObject() || !entry.extras.Has(kSubmap) || !entry.extras.Has(kFrames)) return std::nullopt;
+  result.submap = entry.extras.Get(kSubmap).GetNumberAsInt();
+  const tinygltf::Value& frames = entry.extras.Get(kFrames);
+  if (!frames.IsArray() || frames.ArrayLen() != primitive.targets.size()) return std::nullopt;
+  std::vector<float> times;
+  if (!primitive.targets.empty()) times = FloatsAt(model, model.animations.at(0).samplers.at(0).input).value();
+  for (std::size_t k = 0; k < primitive.targets.size(); ++k) {
+    const auto moved = FloatsAt(model, primitive.targets[k].at("POSITION"));
+    if (!moved || moved->size() != positions->size()) return std::nullopt;
+    MeshKey key{frames.Get(static_cast<int>(k)).GetNumberAsInt(), times.at(k),
+                VectorsOf(*moved, 1.0F / kMetersPerUnit)};
+    for (std::size_t v = 0; v < key.positions.size(); ++v) key.positions[v] += mesh.vertices[v];
+    result.keys.push_back(std::move(key));
+  }
+  return result;
+}
+
+// Images are not decoded.
+bool KeepCoded(tinygltf::Image* /*image*/, int /*index*/, std::string* /*error*/, std::string* /*warning*/,
+               int /*width*/, int /*height*/, const unsigned char* /*bytes*/, int /*size*/, void* /*user*/) {
+  return true;
+}
+
 }  // namespace
 
 Status WriteGlb(const std::string& path, const MeshAnimation& animation) {
@@ -311,6 +407,28 @@ Status WriteGlb(const std::string& path, const MeshAnimation& animation) {
   if (!writer.WriteGltfSceneToStream(&builder.model(), stream, false, true))
     return {ErrorCode::kUnwritable, "cannot write " + Quoted(path) + ": the model is too large for a .glb file"};
   return WriteFileAtomically(path, std::move(stream).str());
+}
+
+Result<GltfMesh> ReadGlb(const std::string& path) {
+  const auto bytes = ReadFile(path);
+  if (!bytes.ok()) return bytes.status();
+  const Status unreadable(ErrorCode::kUnreadable,
+                          Quoted(path) + " is not a mesh that pliant surface wrote, or is damaged");
+  tinygltf::TinyGLTF reader;
+  reader.SetImageLoader(KeepCoded, nullptr);
+  tinygltf::Model model;
+  std::string error;
+  std::string warning;
+  try {
+    if (!reader.LoadBinaryFromMemory(&model, &error, &warning, reinterpret_cast<const unsigned char*>(bytes->data()),
+                                     static_cast<unsigned int>(bytes->size())) ||
+        !model.asset.generator.starts_with(kGenerator))
+      return unreadable;
+    auto mesh = MeshIn(model);
+    if (mesh) return *std::move(mesh);
+  } catch (const std::exception&) {  // what is not there
+  }
+  return unreadable;
 }
 
 }  // namespace pliant

@@ -104,8 +104,9 @@ class MeshMaker {
     if (options_.gltf || options_.obj) MakeTextureOfImages();
     if (Status status = writer->WriteUndeformed(mesh_, texture_); !status.ok()) return status;
     if (Status status = WriteFrames(writer); !status.ok() || stopped_ || !options_.gltf) return status;
-    return WriteGlb(writer->FileName("surface", ".glb").string(),
-                    {mesh_, texture_, keys_, CameraPath(), source_.folder.camera});
+    return WriteGlb(
+        writer->FileName("surface", ".glb").string(),
+        {mesh_, texture_, keys_, CameraPath(), source_.folder.camera, source_.frames[frames_.front().position].submap});
   }
 
  private:
@@ -165,7 +166,7 @@ class MeshMaker {
         return status;
       // The keys are as even in time as the frames are.
       if (keys_.size() < keys && k * (keys - 1) >= keys_.size() * (frames_.size() - 1))
-        keys_.push_back({frame.timestamp_s, deformed.Vertices()});
+        keys_.push_back({frame.frame_idx, frame.timestamp_s, deformed.Vertices()});
     }
     return writer->Finish();
   }

@@ -64,13 +64,14 @@ class MeshFilesTest : public testing::Test {
   TestFolder folder_;
   Mesh mesh_ = Square();
   cv::Mat texture_ = cv::Mat(8, 8, CV_8UC3, cv::Scalar(10, 20, 200));
-  std::vector<MeshKey> keys_ = {{2.0, mesh_.vertices}, {3.0, {{-5, -5, 21}, {5, -5, 21}, {-5, 5, 21}, {5, 5, 21}}}};
+  std::vector<MeshKey> keys_ = {{4, 2.0, mesh_.vertices},
+                                {9, 3.0, {{-5, -5, 21}, {5, -5, 21}, {-5, 5, 21}, {5, 5, 21}}}};
   std::vector<CameraKey> path_ = {{2.0, {}}, {3.0, {RotationExp({0, 0.5, 0}), Eigen::Vector3d(1, 2, 3)}}};
   Camera camera_ = Camera::Create(CameraModelId::kPinhole, 640, 480, std::array{400.0, 400.0, 320.0, 240.0}).value();
 };
 
 TEST_F(MeshFilesTest, GltfIsInMetersAndYIsUp) {
-  const tinygltf::Model model = WriteAndRead({mesh_, texture_, keys_, path_, camera_});
+  const tinygltf::Model model = WriteAndRead({mesh_, texture_, keys_, path_, camera_, 3});
   ASSERT_EQ(model.meshes.size(), 1U);
   const tinygltf::Primitive& primitive = model.meshes[0].primitives[0];
   const std::vector<float> positions = FloatsOf(model, primitive.attributes.at("POSITION"));
@@ -85,7 +86,7 @@ TEST_F(MeshFilesTest, GltfIsInMetersAndYIsUp) {
 }
 
 TEST_F(MeshFilesTest, GltfPlaysTheKeysOneAfterTheOther) {
-  const tinygltf::Model model = WriteAndRead({mesh_, texture_, keys_, path_, camera_});
+  const tinygltf::Model model = WriteAndRead({mesh_, texture_, keys_, path_, camera_, 3});
   ASSERT_EQ(model.animations.size(), 1U);
   const tinygltf::Animation& animation = model.animations[0];
   EXPECT_EQ(animation.channels[0].target_path, "weights");
@@ -95,7 +96,7 @@ TEST_F(MeshFilesTest, GltfPlaysTheKeysOneAfterTheOther) {
 }
 
 TEST_F(MeshFilesTest, GltfsCameraLooksAtWhatOursDoes) {
-  const tinygltf::Model model = WriteAndRead({mesh_, texture_, keys_, path_, camera_});
+  const tinygltf::Model model = WriteAndRead({mesh_, texture_, keys_, path_, camera_, 3});
   EXPECT_NEAR(model.cameras[0].perspective.yfov, 2 * std::atan(240.0 / 400.0), 1e-9);
   EXPECT_NEAR(model.cameras[0].perspective.aspectRatio, 4.0 / 3.0, 1e-9);
   const tinygltf::Animation& animation = model.animations[0];
@@ -110,7 +111,7 @@ TEST_F(MeshFilesTest, GltfsCameraLooksAtWhatOursDoes) {
 }
 
 TEST_F(MeshFilesTest, GltfHasTheTextureInside) {
-  const tinygltf::Model model = WriteAndRead({mesh_, texture_, keys_, path_, camera_});
+  const tinygltf::Model model = WriteAndRead({mesh_, texture_, keys_, path_, camera_, 3});
   ASSERT_EQ(model.images.size(), 1U);
   EXPECT_EQ(model.images[0].width, 8);
   EXPECT_NEAR(model.images[0].image[0], 200, 6);  // RGB
@@ -120,7 +121,7 @@ TEST_F(MeshFilesTest, GltfHasTheTextureInside) {
 }
 
 TEST_F(MeshFilesTest, GltfWithoutTextureHasColorsAndWithoutKeysIsStill) {
-  const tinygltf::Model model = WriteAndRead({mesh_, cv::Mat(), {}, {}, camera_});
+  const tinygltf::Model model = WriteAndRead({mesh_, cv::Mat(), {}, {}, camera_, 0});
   EXPECT_TRUE(model.images.empty());
   EXPECT_TRUE(model.animations.empty());
   const std::vector<float> colors = FloatsOf(model, model.meshes[0].primitives[0].attributes.at("COLOR_0"));
@@ -130,15 +131,58 @@ TEST_F(MeshFilesTest, GltfWithoutTextureHasColorsAndWithoutKeysIsStill) {
 
 TEST_F(MeshFilesTest, GltfNeedsTriangles) {
   mesh_.triangles.clear();
-  const Status status = WriteGlb(folder_.Path("a.glb"), {mesh_, texture_, keys_, path_, camera_});
+  const Status status = WriteGlb(folder_.Path("a.glb"), {mesh_, texture_, keys_, path_, camera_, 3});
   EXPECT_EQ(status.code(), ErrorCode::kInsufficient);
   EXPECT_FALSE(std::filesystem::exists(folder_.Path("a.glb")));
 }
 
 TEST_F(MeshFilesTest, GltfIsTheSameTwice) {
-  ASSERT_TRUE(WriteGlb(folder_.Path("a.glb"), {mesh_, texture_, keys_, path_, camera_}).ok());
-  ASSERT_TRUE(WriteGlb(folder_.Path("b.glb"), {mesh_, texture_, keys_, path_, camera_}).ok());
+  ASSERT_TRUE(WriteGlb(folder_.Path("a.glb"), {mesh_, texture_, keys_, path_, camera_, 3}).ok());
+  ASSERT_TRUE(WriteGlb(folder_.Path("b.glb"), {mesh_, texture_, keys_, path_, camera_, 3}).ok());
   EXPECT_EQ(folder_.Read("a.glb"), folder_.Read("b.glb"));
+}
+
+TEST_F(MeshFilesTest, GltfComesBack) {
+  ASSERT_TRUE(WriteGlb(folder_.Path("a.glb"), {mesh_, texture_, keys_, path_, camera_, 3}).ok());
+  const auto read = ReadGlb(folder_.Path("a.glb"));
+  ASSERT_TRUE(read.ok()) << read.status().message();
+  ASSERT_EQ(read->mesh.triangles.size(), 2U);
+  ASSERT_EQ(read->mesh.vertices.size(), 6U);
+  for (std::size_t t = 0; t < 2; ++t)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto here = static_cast<std::size_t>(mesh_.triangles[t][k]);
+      const auto there = static_cast<std::size_t>(read->mesh.triangles[t][k]);
+      EXPECT_TRUE(read->mesh.vertices[there].isApprox(mesh_.vertices[here], 1e-5F));
+      EXPECT_TRUE(read->mesh.normals[there].isApprox(mesh_.normals[here]));
+      EXPECT_EQ(read->mesh.sigmas[there], mesh_.sigmas[here]);
+      EXPECT_EQ(read->mesh.texture_uvs[t][k], mesh_.texture_uvs[t][k]);
+      EXPECT_TRUE(read->keys[1].positions[there].isApprox(keys_[1].positions[here], 1e-5F));
+    }
+  ASSERT_EQ(read->keys.size(), 2U);
+  EXPECT_EQ(read->keys[0].frame_idx, 4);
+  EXPECT_EQ(read->keys[1].frame_idx, 9);
+  EXPECT_EQ(read->keys[1].time_s, 1.0);
+  EXPECT_EQ(read->submap, 3);
+  EXPECT_EQ(read->texture_jpeg.substr(0, 2), "\xff\xd8");
+}
+
+TEST_F(MeshFilesTest, GltfThatIsDamagedOrAnothersIsRefused) {
+  ASSERT_TRUE(WriteGlb(folder_.Path("a.glb"), {mesh_, texture_, keys_, path_, camera_, 3}).ok());
+  const std::string whole = folder_.Read("a.glb");
+  EXPECT_EQ(ReadGlb(folder_.Path("no.glb")).status().code(), ErrorCode::kNotFound);
+  for (std::size_t size : {std::size_t{0}, std::size_t{19}, whole.size() / 2, whole.size() - 1}) {
+    folder_.Write("cut.glb", whole.substr(0, size));
+    EXPECT_EQ(ReadGlb(folder_.Path("cut.glb")).status().code(), ErrorCode::kUnreadable) << size;
+  }
+  for (const auto& [what, instead] :
+       {std::pair("Pliant", "Client"), std::pair("\"_SIGMA\"", "\"_SOGMA\""), std::pair("\"frames\"", "\"phrase\""),
+        std::pair("\"POSITION\"", "\"POSITRON\""), std::pair("\"indices\":0", "\"indices\":9")}) {
+    std::string other = whole;
+    ASSERT_NE(other.find(what), std::string::npos) << what;
+    other.replace(other.find(what), std::strlen(what), instead);
+    folder_.Write("other.glb", other);
+    EXPECT_EQ(ReadGlb(folder_.Path("other.glb")).status().code(), ErrorCode::kUnreadable) << what;
+  }
 }
 
 // The values of an array of a .vtp file.
@@ -219,7 +263,7 @@ TEST_F(MeshFilesTest, PlyHasTheVerticesIds) {
 
 TEST_F(MeshFilesTest, WhatCannotBeWrittenIsSaid) {
   const std::string nowhere = folder_.Path("nowhere/a");
-  EXPECT_EQ(WriteGlb(nowhere, {mesh_, texture_, keys_, path_, camera_}).code(), ErrorCode::kUnwritable);
+  EXPECT_EQ(WriteGlb(nowhere, {mesh_, texture_, keys_, path_, camera_, 3}).code(), ErrorCode::kUnwritable);
   EXPECT_EQ(WriteVtp(nowhere, mesh_, {}, {}).code(), ErrorCode::kUnwritable);
   EXPECT_EQ(WritePvd(nowhere, {}).code(), ErrorCode::kUnwritable);
   EXPECT_EQ(WriteObj(nowhere, mesh_, "").code(), ErrorCode::kUnwritable);

@@ -21,6 +21,7 @@ namespace pliant {
 
 // Where the vertices are at a time.
 struct MeshKey {
+  int frame_idx = 0;
   double time_s = 0;
   std::vector<Eigen::Vector3f> positions;  // a vertex each, world frame, map units
 };
@@ -36,10 +37,22 @@ struct MeshAnimation {
   std::span<const MeshKey> keys;    // times increase; between two of them positions change linearly
   std::span<const CameraKey> path;  // times increase
   const Camera& camera;             // its focal length and size: glTF knows no distortion
+  int submap = 0;                   // of the run, whose world this is
 };
 
 // Keys are morph targets, of which one at a time has weight 1; all weights 0: the undeformed mesh. A mesh without
 // triangles is refused with kInsufficient. Fails with kUnwritable.
 Status WriteGlb(const std::string& path, const MeshAnimation& animation);
+
+// What WriteGlb wrote: every vertex is there once for each of its places in the texture.
+struct GltfMesh {
+  Mesh mesh;                  // undeformed, map units; colors only where there is no texture
+  std::string texture_jpeg;   // the file's bytes; empty: none
+  std::vector<MeshKey> keys;  // times from that of the first key or camera
+  int submap = 0;
+};
+
+// Fails with kNotFound or kUnreadable, also for a file that another program wrote.
+Result<GltfMesh> ReadGlb(const std::string& path);
 
 }  // namespace pliant
