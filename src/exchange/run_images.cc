@@ -9,7 +9,6 @@
 #include <system_error>
 #include <utility>
 
-#include <nlohmann/json.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "pliant/base/files.h"
@@ -29,14 +28,6 @@ bool IsSameCamera(const Camera& a, const Camera& b) {
   return a.model_id() == b.model_id() && std::ranges::equal(a.params(), b.params(), [](double p, double q) {
            return std::abs(p - q) <= kSameParameter;
          });
-}
-
-// The run that surface.json names; empty: it names none.
-std::string RunOfSurface(const fs::path& path) {
-  const auto text = ReadFile((path / surface::kSummaryFile).string());
-  if (!text.ok()) return "";
-  const auto json = nlohmann::json::parse(*text, nullptr, false);
-  return json.is_object() && json.contains("run") && json["run"].is_string() ? json["run"].get<std::string>() : "";
 }
 
 // Also where one is a copy of the other.
@@ -81,7 +72,7 @@ Result<SurfaceFolder> ReadSurfaceOfRun(const std::string& path, const std::strin
   const auto mismatch = [&](const std::string& what) {
     return Status(ErrorCode::kMismatch, "the surface " + Quoted(path) + " " + what + "; make one with pliant surface");
   };
-  const std::string made_of = RunOfSurface(path);
+  const std::string made_of = surface->run.string();
   if (Exists(made_of) && !IsSameRun(made_of, run_path))
     return mismatch("was made of the run " + Quoted(made_of) + ", not of " + Quoted(run_path));
   const Camera& camera = *known.camera;

@@ -30,6 +30,7 @@ struct SurfaceFolder {
   };
 
   std::filesystem::path path;
+  std::filesystem::path run;  // that it was made of, absolute; empty: it does not say
   Camera camera;
   double depth_scale = 1;     // map units
   std::vector<Frame> frames;  // that have a depth
