@@ -34,7 +34,6 @@ constexpr Color kGreen = {0, 0.62, 0.451};
 constexpr Color kYellow = {0.941, 0.894, 0.259};
 
 constexpr int kEmbeddedQuality = 90;
-constexpr double kFrustumOfDepth = 0.25;  // length of the camera as a part of the points' median depth
 constexpr double kDot = 1.0 / 300;        // radius of a point, of the panel's width
 
 void Use(cairo_t* drawing, const Color& color) { cairo_set_source_rgb(drawing, color.red, color.green, color.blue); }
@@ -144,22 +143,26 @@ const ViewedFrame* FindFrame(const ViewedRun& run, int frame_idx) {
   return frame != run.frames.end() && frame->row.frame_idx == frame_idx ? &*frame : nullptr;
 }
 
-Orbit OrbitOf(const View& view, const ViewedRun& run, const FigureOptions& options, double width_px, double height_px) {
+Viewpoint ViewpointOf(const View& view, const ViewedRun& run, const FigureOptions& options, double width_px,
+                      double height_px) {
   std::vector<Eigen::Vector3d> points;
-  std::vector<Eigen::Vector3d> centers;
+  std::vector<Eigen::Vector3d> cameras;  // centers, and corners of their images
+  const auto frustum = FrustumOf(run);
   for (const auto& [id, point] : run.points) points.push_back(point.position);
   Eigen::Vector4d orientation = Eigen::Vector4d::Zero();
   for (const ViewedFrame& frame : run.frames) {
     if (!frame.world_from_cam) continue;
-    centers.push_back(frame.world_from_cam->translation);
+    cameras.push_back(frame.world_from_cam->translation);
+    if (frustum)
+      for (const Eigen::Vector3d& corner : *frustum) cameras.push_back(*frame.world_from_cam * corner);
     const Eigen::Vector4d q = frame.world_from_cam->rotation.coeffs();
     orientation += q.dot(orientation) < 0 ? Eigen::Vector4d(-q) : q;
   }
-  for (const TruePose& pose : view.truth) centers.push_back(pose.world_from_cam.translation);
+  for (const TruePose& pose : view.truth) cameras.push_back(pose.world_from_cam.translation);
   if (points.empty()) points.emplace_back(0, 0, 0);
   const Eigen::Quaterniond mean =
       orientation.norm() > 0 ? Eigen::Quaterniond(orientation.normalized()) : Eigen::Quaterniond::Identity();
-  return {points, centers, mean, options.azimuth_deg, options.elevation_deg, width_px, height_px};
+  return {Orbit(points, cameras, mean, options.azimuth_deg, options.elevation_deg, width_px, height_px), frustum};
 }
 
 void DrawImage(cairo_t* drawing, const Panel& panel, const cv::Mat& image, const ViewedFrame* frame) {
@@ -201,13 +204,19 @@ void DrawPath(const ViewedRun& run, int frame_idx, SceneDrawing* scene) {
   scene->Path(path);
 }
 
+void DrawFrustum(const Rigid3& world_from_cam, const std::array<Eigen::Vector3d, 4>& corners, SceneDrawing* scene) {
+  for (std::size_t i = 0; i < corners.size(); ++i)
+    scene->Path({world_from_cam.translation, world_from_cam * corners[i],
+                 world_from_cam * corners[(i + 1) % corners.size()]});
+}
+
 }  // namespace
 
 void DrawScene(cairo_t* drawing, const Panel& panel, const View& view, const ViewedRun& run, int frame_idx,
-               const Orbit& orbit, const FigureOptions& options) {
+               const Viewpoint& viewpoint, const FigureOptions& options) {
   cairo_save(drawing);
   Clip(drawing, panel);
-  SceneDrawing scene(drawing, panel, orbit);
+  SceneDrawing scene(drawing, panel, viewpoint.orbit);
   const double radius = kDot * panel.width;
   const ViewedFrame* frame = FindFrame(run, frame_idx);
 
@@ -247,13 +256,8 @@ void DrawScene(cairo_t* drawing, const Panel& panel, const View& view, const Vie
   Use(drawing, kBlue);
   cairo_set_line_width(drawing, radius);
   DrawPath(run, frame_idx, &scene);
-  if (frame != nullptr && frame->world_from_cam && run.camera) {
-    const double depth = kFrustumOfDepth * MedianDepth(*frame).value_or(1 / kFrustumOfDepth);
-    if (const auto rays = CornerRays(*run.camera))
-      for (std::size_t i = 0; i < rays->size(); ++i)
-        scene.Path({frame->world_from_cam->translation, *frame->world_from_cam * (depth * (*rays)[i]),
-                    *frame->world_from_cam * (depth * (*rays)[(i + 1) % rays->size()])});
-  }
+  if (frame != nullptr && frame->world_from_cam && viewpoint.frustum)
+    DrawFrustum(*frame->world_from_cam, *viewpoint.frustum, &scene);
   cairo_restore(drawing);
   Use(drawing, kGray);
   cairo_set_line_width(drawing, 1);

@@ -4,7 +4,9 @@
 // The two pictures of a frame, drawn with cairo: the image with its points, and the scene.
 #pragma once
 
+#include <array>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include <cairo.h>
@@ -43,13 +45,18 @@ Status TooLarge(double width_px, double height_px);
 // The frame of a run by its number, or null.
 const ViewedFrame* FindFrame(const ViewedRun& run, int frame_idx);
 
-// The eye that sees all of a run.
-Orbit OrbitOf(const View& view, const ViewedRun& run, const FigureOptions& options, double width_px, double height_px);
+// The eye that sees all of a run, its cameras included, and the camera as it is drawn there.
+struct Viewpoint {
+  Orbit orbit;
+  std::optional<std::array<Eigen::Vector3d, 4>> frustum;  // FrustumOf
+};
+Viewpoint ViewpointOf(const View& view, const ViewedRun& run, const FigureOptions& options, double width_px,
+                      double height_px);
 
 // `image`: 8-bit, 1 or 3 (BGR) channels, of the camera's size; empty where there is none. `frame` may be null.
 void DrawImage(cairo_t* drawing, const Panel& panel, const cv::Mat& image, const ViewedFrame* frame);
 void DrawScene(cairo_t* drawing, const Panel& panel, const View& view, const ViewedRun& run, int frame_idx,
-               const Orbit& orbit, const FigureOptions& options);
+               const Viewpoint& viewpoint, const FigureOptions& options);
 void DrawText(cairo_t* drawing, double left, double baseline, double size, const std::string& text);
 // What the colors of a scene mean, in one line from `left` on.
 void DrawLegend(cairo_t* drawing, double left, double baseline, double size, bool truth);

@@ -46,9 +46,9 @@ Status Draw(cairo_t* drawing, const View& view, const FigureOptions& options, co
   cairo_paint(drawing);
   auto images = FrameImages::Open(view, *frames_idx.begin());
   if (!images.ok()) return images.status();
-  std::vector<Orbit> orbits;
+  std::vector<Viewpoint> viewpoints;
   for (const ViewedRun& run : view.runs)
-    orbits.push_back(OrbitOf(view, run, options, layout.panel_width, layout.panel_height));
+    viewpoints.push_back(ViewpointOf(view, run, options, layout.panel_width, layout.panel_height));
   double left = kGap;
   for (const int frame_idx : frames_idx) {
     DrawText(drawing, left, kLine - 6, kText, "frame " + std::to_string(frame_idx));
@@ -61,7 +61,7 @@ Status Draw(cairo_t* drawing, const View& view, const FigureOptions& options, co
       const ViewedRun& run = view.runs[i];
       if (view.runs.size() > 1) DrawText(drawing, left, top + kLine - 8, kText, run.name);
       top += Layout::RunLine(view);
-      DrawScene(drawing, {left, top, layout.panel_width, layout.panel_height}, view, run, frame_idx, orbits[i],
+      DrawScene(drawing, {left, top, layout.panel_width, layout.panel_height}, view, run, frame_idx, viewpoints[i],
                 options);
       top += layout.panel_height + kGap;
     }

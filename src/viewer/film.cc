@@ -60,7 +60,7 @@ struct FilmLayout {
   const FigureOptions& options;
   double panel_width = 0;
   double panel_height = 0;
-  const std::vector<Orbit>& orbits;  // one a run
+  const std::vector<Viewpoint>& viewpoints;  // one a run
 };
 
 // The frame's number and a legend around its image, where there is one, and a panel for each run.
@@ -77,7 +77,7 @@ void DrawFilmFrame(const FilmLayout& layout, int frame_idx, const cv::Mat& image
   }
   for (std::size_t i = 0; i < view.runs.size(); ++i) {
     DrawScene(drawing.get(), {left, kLine, layout.panel_width, layout.panel_height}, view, view.runs[i], frame_idx,
-              layout.orbits[i], layout.options);
+              layout.viewpoints[i], layout.options);
     if (view.runs.size() > 1) DrawText(drawing.get(), left + kNameLeft, kLine - 6, kText, view.runs[i].name);
     left += layout.panel_width;
   }
@@ -102,8 +102,8 @@ Result<std::vector<std::string>> WriteFilm(const ViewRequest& request, const Fig
   const double panel_height = panel_width * AspectOf(*view);
   const std::size_t panels = (view->sequence ? 1 : 0) + view->runs.size();
   const cv::Size size(Even(static_cast<double>(panels) * panel_width), Even(panel_height + 2 * kLine));
-  std::vector<Orbit> orbits;
-  for (const ViewedRun& run : view->runs) orbits.push_back(OrbitOf(*view, run, options, panel_width, panel_height));
+  std::vector<Viewpoint> viewpoints;
+  for (const ViewedRun& run : view->runs) viewpoints.push_back(ViewpointOf(*view, run, options, panel_width, panel_height));
   auto images = FrameImages::Open(*view, *frames_idx.begin());
   if (!images.ok()) return images.status();
   const std::string draft = std::filesystem::path(output_path).replace_extension(".part.mp4").string();
@@ -125,7 +125,7 @@ Result<std::vector<std::string>> WriteFilm(const ViewRequest& request, const Fig
       if (!read.ok()) return unwritten(read.status());
       image = *read;
     }
-    DrawFilmFrame({*view, options, panel_width, panel_height, orbits}, frame_idx, image, surface.get());
+    DrawFilmFrame({*view, options, panel_width, panel_height, viewpoints}, frame_idx, image, surface.get());
     cairo_surface_flush(surface.get());
     const cv::Mat bgra(size, CV_8UC4, cairo_image_surface_get_data(surface.get()),
                        static_cast<std::size_t>(cairo_image_surface_get_stride(surface.get())));

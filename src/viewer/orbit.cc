@@ -21,7 +21,7 @@ double Radians(double degrees) { return degrees * std::numbers::pi / 180; }
 
 }  // namespace
 
-Orbit::Orbit(std::span<const Eigen::Vector3d> points, std::span<const Eigen::Vector3d> centers,
+Orbit::Orbit(std::span<const Eigen::Vector3d> points, std::span<const Eigen::Vector3d> cameras,
              const Eigen::Quaterniond& world_from_cam, double azimuth_deg, double elevation_deg, double width_px,
              double height_px)
     : width_px_(width_px), height_px_(height_px) {
@@ -31,9 +31,9 @@ Orbit::Orbit(std::span<const Eigen::Vector3d> points, std::span<const Eigen::Vec
     for (const Eigen::Vector3d& point : points) values.push_back(point[i]);
     double low = Quantile(values, 1 - kShare);
     double high = Quantile(values, kShare);
-    for (const Eigen::Vector3d& center : centers) {
-      low = std::min(low, center[i]);
-      high = std::max(high, center[i]);
+    for (const Eigen::Vector3d& camera : cameras) {
+      low = std::min(low, camera[i]);
+      high = std::max(high, camera[i]);
     }
     middle[i] = 0.5 * (low + high);
   }
@@ -50,7 +50,7 @@ Orbit::Orbit(std::span<const Eigen::Vector3d> points, std::span<const Eigen::Vec
   std::vector<double> distances;
   for (const Eigen::Vector3d& point : points) distances.push_back(least_distance(point));
   double distance = std::max(1e-9, Quantile(distances, kShare));
-  for (const Eigen::Vector3d& center : centers) distance = std::max(distance, least_distance(center));
+  for (const Eigen::Vector3d& camera : cameras) distance = std::max(distance, least_distance(camera));
   const Rigid3 world_from_eye{turned, middle - turned * Eigen::Vector3d(0, 0, distance)};
   eye_from_world_ = world_from_eye.Inverse();
 }

@@ -12,6 +12,8 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/videoio.hpp>
 
+#include "viewer/draw_view.h"
+#include "viewer/frame_geometry.h"
 #include "viewer/orbit.h"
 #include "viewer/small_sequence.h"
 
@@ -21,6 +23,7 @@ namespace {
 using testing::HasSubstr;
 using testing::StartsWith;
 
+constexpr double kSmallOfDepth = 0.2;  // a camera, beside how far its points are
 constexpr double kPixel = 1;           // the middle of an image of an even size lies between pixels
 constexpr int kMinCamera = 50;         // pixels of a camera's frame, drawn in lines
 constexpr int kMinLine = 20;           // pixels of a thin line or a few dots
@@ -53,6 +56,43 @@ TEST(Orbit, LooksFromBehindAndAbove) {
   EXPECT_LT(orbit.Project({1, 0, 0}).z(), middle.z());  // the eye is on the right
   EXPECT_GT(orbit.Project({0, 1, 0}).y(), middle.y());
   EXPECT_GT(orbit.Project({0, 1, 0}).z(), middle.z());  // and above
+}
+
+// A few points 50 mm before a camera that goes 10 mm to its right.
+ViewedRun RunOf(const Camera& camera) {
+  ViewedRun run;
+  run.camera = camera;
+  for (int i = 0; i < 3; ++i) {
+    ViewedFrame& frame = run.frames.emplace_back();
+    frame.row.frame_idx = i;
+    frame.world_from_cam = Rigid3{Eigen::Quaterniond::Identity(), {5.0 * i, 0, 0}};
+    for (const int x : {-2, 0, 2}) {
+      ViewedObservation& seen = frame.observations.emplace_back();
+      seen.id = PointId{x + 2};
+      seen.position = {static_cast<float>(x), static_cast<float>(x), 50};
+      seen.depth = 50;
+      run.points.try_emplace(seen.id, NewPoint{seen.id, seen.position.cast<double>()});
+    }
+  }
+  return run;
+}
+
+// A wide lens, whose image is as wide as six times its distance, and a narrow one.
+TEST(Viewpoint, ShowsAllOfASmallCameraOfAnyFieldOfView) {
+  for (const double focal_px : {100.0, 2000.0}) {
+    const auto camera = Camera::Create("PINHOLE", 640, 480, std::vector<double>{focal_px, focal_px, 319.5, 239.5});
+    const ViewedRun run = RunOf(*camera);
+    const auto frustum = FrustumOf(run);
+    ASSERT_TRUE(frustum);
+    const Viewpoint viewpoint = ViewpointOf({}, run, {}, 480, 360);
+    for (const Eigen::Vector3d& corner : *frustum) {
+      EXPECT_LT(corner.norm(), kSmallOfDepth * 50) << focal_px;
+      for (const ViewedFrame& frame : run.frames) {
+        const Eigen::Vector3d at = viewpoint.orbit.Project(*frame.world_from_cam * corner);
+        EXPECT_TRUE(at.x() >= 0 && at.x() <= 480 && at.y() >= 0 && at.y() <= 360) << at.transpose();
+      }
+    }
+  }
 }
 
 class FigureTest : public testing::Test {

@@ -13,7 +13,7 @@ import type { Page } from "./page";
 import { lastAtMost } from "./report";
 import type { Run } from "./run";
 
-const FRUSTUM_OF_DEPTH = 0.2;   // size of the camera as a part of the median depth
+const FRUSTUM_OF_DEPTH = 0.15;   // from the camera's center to a corner of its image, of the median depth
 const GRID_LINES = 10;
 const TRAIL_STEP_OF_SIZE = 1 / 600;   // shorter steps are not drawn by themselves
 
@@ -28,6 +28,8 @@ export class SceneContent {
   private lowest = 0;   // the largest y
   // The ends of the axes, to be labeled.
   readonly axisEnds = [new Vector3(), new Vector3(), new Vector3()];
+  // What the first view shows: nearly all of the points in any frame, and all of the cameras.
+  readonly extent: { points: Vector3[]; all: Vector3[] } = { points: [], all: [] };
 
   private readonly map = new Marks(2.5, 0);
   private readonly points = new Marks(7, 0.28);
@@ -64,6 +66,7 @@ export class SceneContent {
     const { truth } = this.page.report;
     if (truth) this.truePath.setSegments(segmentsOf(truth.pose, truth.frame.length).coordinates, this.size / 120);
     this.buildGrid();
+    this.buildExtent();
     this.paint();
   }
 
@@ -199,6 +202,23 @@ export class SceneContent {
     path.ahead.end();
   }
 
+  private buildExtent(): void {
+    const { report } = this.page;
+    const { points, all } = this.extent;
+    points.length = all.length = 0;
+    const addCameras = (pose: Float32Array, rows: number) => sample(pose, rows, 7, (i) => {
+      if (Number.isNaN(pose[i])) return;
+      all.push(...(report.camera.corners ? this.frustumAt(pose, i / 7, report.camera.corners) : [poseOf(pose, i / 7).position]));
+    });
+    for (const run of report.runs) {
+      sample(run.position.values, run.observations, 3, (i) => {
+        if (!Number.isNaN(run.position.values[i])) points.push(new Vector3().fromArray(run.position.values, i));
+      });
+      addCameras(run.pose.values, run.rows);
+    }
+    if (report.truth) addCameras(report.truth.pose, report.truth.frame.length);
+  }
+
   private buildGrid(): void {
     this.gridStep = niceStep(this.size / GRID_LINES);
     const half = (GRID_LINES / 2) * this.gridStep;
@@ -304,20 +324,25 @@ export class SceneContent {
     const { report, store } = this.page;
     const { layers, visible, current, position, view } = store.state;
     const corners = report.camera.corners;
-    const length = FRUSTUM_OF_DEPTH * this.medianDepth;
     const shown = corners !== null && layers.path && visible[current] && run.hasPose(row);
     const inside = view === "camera";
     this.picture.visible = shown && this.picture.material.map !== null;
     this.putBehind(inside);
     if (shown) {
-      const ends = cornersInWorld(run.pose.values, row, corners, length);
+      const ends = this.frustumAt(run.pose.values, row, corners);
       this.frustum.setSegments(frustumSegments(ends));
       setPicture(this.picture, ends);
     }
     this.frustum.visible = shown && !inside;
     const index = report.truth && layers.truth && corners && !inside ? report.truth.frame.indexOf(report.frames[position]) : -1;
     this.trueFrustum.visible = index >= 0;
-    if (index >= 0) this.trueFrustum.setSegments(frustumSegments(cornersInWorld(report.truth!.pose, index, corners!, length)));
+    if (index >= 0) this.trueFrustum.setSegments(frustumSegments(this.frustumAt(report.truth!.pose, index, corners!)));
+  }
+
+  // The camera's center and the corners of its image, as they are drawn. Their size does not depend on the field of view.
+  frustumAt(pose: Float32Array, row: number, corners: [number, number, number][]): Vector3[] {
+    const longest = Math.max(...corners.map((ray) => Math.hypot(...ray)));
+    return cornersInWorld(pose, row, corners, (FRUSTUM_OF_DEPTH * this.medianDepth) / longest);
   }
 
   // Seen from the camera the image is the background.

@@ -15,6 +15,8 @@ import { type Changed, anyOf } from "./state";
 const CAMERA_FROM_VIEW = new Quaternion(1, 0, 0, 0);
 const FIELD_OF_VIEW_DEG = 45;
 const START_DIRECTION = new Vector3(-0.75, -0.65, -1).normalize();
+const SHARE = 0.998;   // of the points that are in the first view for certain
+const MARGIN = 1.15;
 
 ColorManagement.enabled = false;
 
@@ -70,12 +72,39 @@ export class SceneView {
   // Frames the whole scene.
   reset(): void {
     this.page.store.change({ view: "free" });
-    const distance = (0.5 * this.content.size) / Math.tan((FIELD_OF_VIEW_DEG * Math.PI) / 360);
-    const aspect = Math.min(1, this.container.clientWidth / Math.max(1, this.container.clientHeight));
-    this.controls.target.copy(this.content.center);
-    this.camera.position.copy(this.content.center).addScaledVector(START_DIRECTION, distance / aspect);
+    const { middle, distance } = this.fit();
+    this.controls.target.copy(middle);
+    this.camera.position.copy(middle).addScaledVector(START_DIRECTION, distance);
     this.setDepths();
     this.leaveCamera();
+  }
+
+  // From where nearly all points, and all cameras, are seen as large as the canvas allows: the point in the middle of the
+  // view, and the distance from it. A point at (aside, back) of the center is inside, to one side, where
+  // aside - middle <= tangent * (distance - back).
+  private fit(): { middle: Vector3; distance: number } {
+    const { center, size, extent } = this.content;
+    const aspect = this.container.clientWidth / Math.max(1, this.container.clientHeight) || 1;
+    const right = new Vector3().crossVectors(this.camera.up, START_DIRECTION).normalize();
+    const up = new Vector3().crossVectors(START_DIRECTION, right);
+    const tangent = Math.tan((FIELD_OF_VIEW_DEG * Math.PI) / 360) / MARGIN;
+    const middle = center.clone();
+    let distance = 0;
+    for (const [axis, slope] of [[right, aspect * tangent], [up, tangent]] as const) {
+      const reach = (sign: number) => {
+        const of = (point: Vector3) => {
+          const offset = point.clone().sub(center);
+          return (sign * offset.dot(axis)) / slope + offset.dot(START_DIRECTION);
+        };
+        const points = extent.points.map(of).sort((a, b) => a - b);
+        return extent.all.reduce((most, point) => Math.max(most, of(point)), points[Math.ceil(SHARE * (points.length - 1))] ?? -Infinity);
+      };
+      const [low, high] = [reach(-1), reach(1)];
+      if (!Number.isFinite(low)) continue;
+      middle.addScaledVector(axis, (slope * (high - low)) / 2);
+      distance = Math.max(distance, (high + low) / 2);
+    }
+    return { middle, distance: distance > 0 ? distance : size / tangent };
   }
 
   // As a live scene grows.
@@ -103,6 +132,19 @@ export class SceneView {
   project(position: ArrayLike<number>, offset = 0): [number, number, number] {
     const point = new Vector3().fromArray(position, offset).project(this.camera);
     return [(0.5 + 0.5 * point.x) * this.container.clientWidth, (0.5 - 0.5 * point.y) * this.container.clientHeight, point.z];
+  }
+
+  // The center of the current run's camera and the corners of its image, where there is one.
+  projectFrustum(): [number, number][] {
+    const { report, store } = this.page;
+    const { current, position } = store.state;
+    const run = report.runs[current];
+    const row = report.row(current, position);
+    if (!report.camera.corners || !run.hasPose(row)) return [];
+    return this.content.frustumAt(run.pose.values, row, report.camera.corners).map((end) => {
+      const [x, y] = this.project(end.toArray());
+      return [x, y];
+    });
   }
 
   private pick(x: number, y: number): void {
