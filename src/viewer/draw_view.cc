@@ -123,6 +123,21 @@ std::map<PointId, std::vector<Eigen::Vector3d>> Trails(const ViewedRun& run, std
   return trails;
 }
 
+// Where points are in any frame, and the true surface there.
+void AddObserved(const ViewedRun& run, std::vector<Eigen::Vector3d>* points) {
+  constexpr std::size_t kEnough = 20000;
+  std::size_t count = 0;
+  for (const ViewedFrame& frame : run.frames) count += frame.observations.size();
+  const std::size_t step = 1 + count / kEnough;
+  std::size_t position = 0;
+  for (const ViewedFrame& frame : run.frames)
+    for (const ViewedObservation& o : frame.observations) {
+      if (position++ % step != 0) continue;
+      points->push_back(o.position.cast<double>());
+      if (o.truth.allFinite()) points->push_back(o.truth.cast<double>());
+    }
+}
+
 }  // namespace
 
 double AspectOf(const View& view) {
@@ -149,6 +164,7 @@ Viewpoint ViewpointOf(const View& view, const ViewedRun& run, const FigureOption
   std::vector<Eigen::Vector3d> cameras;  // centers, and corners of their images
   const auto frustum = FrustumOf(run);
   for (const auto& [id, point] : run.points) points.push_back(point.position);
+  AddObserved(run, &points);
   Eigen::Vector4d orientation = Eigen::Vector4d::Zero();
   for (const ViewedFrame& frame : run.frames) {
     if (!frame.world_from_cam) continue;
