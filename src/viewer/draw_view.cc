@@ -207,6 +207,48 @@ void DrawImage(cairo_t* drawing, const Panel& panel, const cv::Mat& image, const
 
 namespace {
 
+void DrawMap(cairo_t* drawing, const ViewedRun& run, double radius, SceneDrawing* scene) {
+  std::vector<Eigen::Vector3d> map;
+  for (const auto& [id, point] : run.points) map.push_back(point.position);
+  Use(drawing, kBlack);
+  scene->Points(map, 0.5 * radius);
+}
+
+// Trails over the truth: they are short, and would vanish under it.
+void DrawFramePoints(cairo_t* drawing, const ViewedRun& run, const ViewedFrame& frame, double radius, int trail_frames,
+                     SceneDrawing* scene) {
+  std::vector<Eigen::Vector3d> now;
+  std::vector<Eigen::Vector3d> truth;
+  for (const ViewedObservation& o : frame.observations) {
+    now.emplace_back(o.position.cast<double>());
+    if (o.truth.allFinite()) truth.emplace_back(o.truth.cast<double>());
+  }
+  Use(drawing, kGreen);
+  cairo_set_line_width(drawing, 0.35 * radius);
+  scene->Rings(truth, radius);
+  Use(drawing, kVermillion);
+  cairo_set_line_width(drawing, 1.2 * radius);
+  cairo_set_line_cap(drawing, CAIRO_LINE_CAP_ROUND);
+  cairo_set_line_join(drawing, CAIRO_LINE_JOIN_ROUND);
+  for (const auto& [id, trail] : Trails(run, static_cast<std::size_t>(&frame - run.frames.data()), trail_frames))
+    scene->Path(trail);
+  scene->Points(now, 0.8 * radius);
+  cairo_set_line_cap(drawing, CAIRO_LINE_CAP_BUTT);
+  cairo_set_line_join(drawing, CAIRO_LINE_JOIN_MITER);
+}
+
+void DrawTruePath(cairo_t* drawing, const View& view, int frame_idx, double radius, SceneDrawing* scene) {
+  std::vector<Eigen::Vector3d> path;
+  for (const TruePose& pose : view.truth)
+    if (pose.frame_idx <= frame_idx) path.push_back(pose.world_from_cam.translation);
+  const std::array<double, 2> dashes = {4 * radius, 3 * radius};
+  cairo_set_line_width(drawing, 0.6 * radius);
+  cairo_set_dash(drawing, dashes.data(), dashes.size(), 0);
+  Use(drawing, kGreen);
+  scene->Path(path);
+  cairo_set_dash(drawing, nullptr, 0, 0);
+}
+
 // The camera's path up to a frame, broken where the camera was lost.
 void DrawPath(const ViewedRun& run, int frame_idx, SceneDrawing* scene) {
   std::vector<Eigen::Vector3d> path;
@@ -235,40 +277,9 @@ void DrawScene(cairo_t* drawing, const Panel& panel, const View& view, const Vie
   SceneDrawing scene(drawing, panel, viewpoint.orbit);
   const double radius = kDot * panel.width;
   const ViewedFrame* frame = FindFrame(run, frame_idx);
-
-  std::vector<Eigen::Vector3d> map;
-  for (const auto& [id, point] : run.points) map.push_back(point.position);
-  Use(drawing, kBlack);
-  scene.Points(map, 0.5 * radius);
-
-  if (frame != nullptr) {
-    Use(drawing, kVermillion);
-    cairo_set_line_width(drawing, 0.7 * radius);
-    for (const auto& [id, trail] :
-         Trails(run, static_cast<std::size_t>(frame - run.frames.data()), options.trail_frames))
-      scene.Path(trail);
-    std::vector<Eigen::Vector3d> now;
-    std::vector<Eigen::Vector3d> truth;
-    for (const ViewedObservation& o : frame->observations) {
-      now.emplace_back(o.position.cast<double>());
-      if (o.truth.allFinite()) truth.emplace_back(o.truth.cast<double>());
-    }
-    scene.Points(now, 0.8 * radius);
-    Use(drawing, kGreen);
-    cairo_set_line_width(drawing, 0.35 * radius);
-    scene.Rings(truth, radius);
-  }
-
-  cairo_set_line_width(drawing, 0.6 * radius);
-  std::vector<Eigen::Vector3d> true_path;
-  for (const TruePose& pose : view.truth)
-    if (pose.frame_idx <= frame_idx) true_path.push_back(pose.world_from_cam.translation);
-  const std::array<double, 2> dashes = {4 * radius, 3 * radius};
-  cairo_set_dash(drawing, dashes.data(), dashes.size(), 0);
-  Use(drawing, kGreen);
-  scene.Path(true_path);
-  cairo_set_dash(drawing, nullptr, 0, 0);
-
+  DrawMap(drawing, run, radius, &scene);
+  if (frame != nullptr) DrawFramePoints(drawing, run, *frame, radius, options.trail_frames, &scene);
+  DrawTruePath(drawing, view, frame_idx, radius, &scene);
   Use(drawing, kBlue);
   cairo_set_line_width(drawing, radius);
   DrawPath(run, frame_idx, &scene);

@@ -27,6 +27,7 @@ constexpr double kSmallOfDepth = 0.2;  // a camera, beside how far its points ar
 constexpr double kPixel = 1;           // the middle of an image of an even size lies between pixels
 constexpr int kMinCamera = 50;         // pixels of a camera's frame, drawn in lines
 constexpr int kMinLine = 20;           // pixels of a thin line or a few dots
+constexpr int kMinTrails = 450;        // of eight trails in two frames, in lines that are as wide as points
 constexpr double kContainerFps = 0.1;  // a container keeps the rate as a fraction of its own
 
 TEST(Orbit, ShowsEveryCameraAndNearlyEveryPoint) {
@@ -127,7 +128,7 @@ TEST_F(FigureTest, DrawsImagesAndScenes) {
     return cv::countNonZero(found);
   };
   EXPECT_GT(count({178, 114, 0}), kMinCamera);
-  EXPECT_GT(count({0, 94, 213}), kMinLine);
+  EXPECT_GT(count({0, 94, 213}), kMinTrails);
   EXPECT_GT(count({115, 158, 0}), kMinLine);
 }
 

@@ -12,7 +12,7 @@ import { Stamps, strokeOnImage } from "./stamps";
 import { type Changed, anyOf } from "./state";
 
 const TAIL_FRAMES = 10;
-const TAIL_COLOR = "rgba(255, 255, 255, 0.65)";
+const TAIL_COLOR = "rgba(255, 255, 255, 0.9)";   // on an image
 const TAIL_STEP_PX = 2.5;   // shorter steps are not drawn by themselves
 const MAX_ZOOM = 20;
 const PREFETCHED = 6;
@@ -141,8 +141,8 @@ export class ImageView {
         context.lineTo(x = px, y = py);
       }
     }
-    context.lineWidth = 1.25;
-    context.strokeStyle = TAIL_COLOR;
+    context.lineWidth = 1.5;
+    context.strokeStyle = this.shown ? TAIL_COLOR : paletteOf(this.page.store.state.dark).text;
     context.stroke();
   }
 

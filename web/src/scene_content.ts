@@ -7,7 +7,7 @@ import {
   BufferAttribute, BufferGeometry, Color, DoubleSide, Mesh, MeshBasicMaterial, NearestFilter, Quaternion, Scene, Texture, Vector3,
 } from "three";
 import { paletteOf, runColor } from "./colors";
-import { ThinLines, WideLines } from "./lines";
+import { ChangingWideLines, ThinLines, WideLines } from "./lines";
 import { Marks, RUN_SHAPES } from "./marks";
 import type { Page } from "./page";
 import { lastAtMost } from "./report";
@@ -32,10 +32,10 @@ export class SceneContent {
   readonly extent: { points: Vector3[]; all: Vector3[] } = { points: [], all: [] };
 
   private readonly map = new Marks(2.5, 0);
-  private readonly points = new Marks(7, 0.28);
+  private readonly points = new Marks(6, 0.28);
   private readonly others = new Marks(6, 0.25);
   private readonly truthPoints = new Marks(4.5, 0);
-  private readonly trails = new ThinLines();
+  private readonly trails = new ChangingWideLines(2);
   private readonly errors = new ThinLines();
   private readonly grid = new ThinLines(0.8);
   private readonly axes = [0, 1, 2].map(() => new WideLines(1.5));
