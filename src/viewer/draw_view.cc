@@ -35,6 +35,7 @@ constexpr Color kYellow = {0.941, 0.894, 0.259};
 
 constexpr int kEmbeddedQuality = 90;
 constexpr double kDot = 1.0 / 300;        // radius of a point, of the panel's width
+constexpr double kSwatch = 1.2;           // width of a color in the legend, of the letters' size
 
 void Use(cairo_t* drawing, const Color& color) { cairo_set_source_rgb(drawing, color.red, color.green, color.blue); }
 
@@ -292,27 +293,81 @@ void DrawScene(cairo_t* drawing, const Panel& panel, const View& view, const Vie
   cairo_stroke(drawing);
 }
 
-void DrawText(cairo_t* drawing, double left, double baseline, double size, const std::string& text) {
+namespace {
+
+void UseFont(cairo_t* drawing, double size) {
   cairo_select_font_face(drawing, "sans-serif", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
   cairo_set_font_size(drawing, size);
-  Use(drawing, kBlack);
-  cairo_move_to(drawing, left, baseline);
-  cairo_show_text(drawing, text.c_str());
 }
 
-void DrawLegend(cairo_t* drawing, double left, double baseline, double size, bool truth) {
-  std::vector<std::pair<Color, const char*>> entries = {
+double WidthOf(cairo_t* drawing, const std::string& text) {
+  cairo_text_extents_t extents;
+  cairo_text_extents(drawing, text.c_str(), &extents);
+  return extents.x_advance;
+}
+
+// Cut at its end, which then says so, until it is no wider than this.
+std::string Fitting(cairo_t* drawing, std::string text, double width) {
+  if (WidthOf(drawing, text) <= width) return text;
+  const std::string ellipsis = "\u2026";
+  while (!text.empty() && WidthOf(drawing, text + ellipsis) > width) {
+    const auto continues = [](char byte) { return (static_cast<unsigned char>(byte) & 0xC0) == 0x80; };
+    while (continues(text.back()) && text.size() > 1) text.pop_back();
+    text.pop_back();
+  }
+  return text + ellipsis;
+}
+
+struct LegendEntry {
+  Color color;
+  const char* text;
+  double left = 0;
+  int line = 0;
+};
+
+// Each beside the one before it, or on the next line where that is full.
+std::vector<LegendEntry> LayOutLegend(cairo_t* drawing, double width, bool truth) {
+  std::vector<LegendEntry> entries = {
       {kBlack, "undeformed map"}, {kVermillion, "deformation"}, {kBlue, "camera"}};
-  if (truth) entries.emplace_back(kGreen, "truth");
-  for (const auto& [color, text] : entries) {
-    Use(drawing, color);
-    Dot(drawing, left + 0.4 * size, baseline - 0.35 * size, 0.35 * size);
+  if (truth) entries.push_back({kGreen, "truth"});
+  UseFont(drawing, kText);
+  double left = 0;
+  int line = 0;
+  for (LegendEntry& entry : entries) {
+    const double taken = kSwatch * kText + WidthOf(drawing, entry.text);
+    if (left > 0 && left + taken > width) {
+      left = 0;
+      ++line;
+    }
+    entry.left = left;
+    entry.line = line;
+    left += taken + 1.5 * kText;
+  }
+  return entries;
+}
+
+}  // namespace
+
+void DrawText(cairo_t* drawing, double left, double baseline, double width, const std::string& text) {
+  UseFont(drawing, kText);
+  Use(drawing, kBlack);
+  cairo_move_to(drawing, left, baseline);
+  cairo_show_text(drawing, Fitting(drawing, text, width).c_str());
+}
+
+double LegendHeight(double width, bool truth) {
+  const Surface scratch(cairo_image_surface_create(CAIRO_FORMAT_A8, 1, 1));
+  const Drawing drawing(cairo_create(scratch.get()));
+  return kLine * (1 + LayOutLegend(drawing.get(), width, truth).back().line);
+}
+
+void DrawLegend(cairo_t* drawing, double left, double top, double width, bool truth) {
+  for (const LegendEntry& entry : LayOutLegend(drawing, width, truth)) {
+    const double baseline = top + kLine * (entry.line + 1) - 8;
+    Use(drawing, entry.color);
+    Dot(drawing, left + entry.left + 0.4 * kText, baseline - 0.35 * kText, 0.35 * kText);
     cairo_fill(drawing);
-    left += 1.2 * size;
-    DrawText(drawing, left, baseline, size, text);
-    cairo_text_extents_t extents;
-    cairo_text_extents(drawing, text, &extents);
-    left += extents.x_advance + 1.5 * size;
+    DrawText(drawing, left + entry.left + kSwatch * kText, baseline, width, entry.text);
   }
 }
 

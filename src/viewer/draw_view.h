@@ -57,8 +57,10 @@ Viewpoint ViewpointOf(const View& view, const ViewedRun& run, const FigureOption
 void DrawImage(cairo_t* drawing, const Panel& panel, const cv::Mat& image, const ViewedFrame* frame);
 void DrawScene(cairo_t* drawing, const Panel& panel, const View& view, const ViewedRun& run, int frame_idx,
                const Viewpoint& viewpoint, const FigureOptions& options);
-void DrawText(cairo_t* drawing, double left, double baseline, double size, const std::string& text);
-// What the colors of a scene mean, in one line from `left` on.
-void DrawLegend(cairo_t* drawing, double left, double baseline, double size, bool truth);
+// In one line of at most this width: what does not fit is cut at its end.
+void DrawText(cairo_t* drawing, double left, double baseline, double width, const std::string& text);
+// What the colors of a scene mean, in as many lines as this width needs.
+double LegendHeight(double width, bool truth);
+void DrawLegend(cairo_t* drawing, double left, double top, double width, bool truth);
 
 }  // namespace pliant

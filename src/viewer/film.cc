@@ -19,6 +19,7 @@
 namespace pliant {
 namespace {
 
+constexpr double kMargin = 6;
 constexpr double kNameLeft = 110;  // beside the frame's number
 constexpr double kUsualFps = 30;
 
@@ -78,11 +79,14 @@ void DrawFilmFrame(const FilmLayout& layout, int frame_idx, const cv::Mat& image
   for (std::size_t i = 0; i < view.runs.size(); ++i) {
     DrawScene(drawing.get(), {left, kLine, layout.panel_width, layout.panel_height}, view, view.runs[i], frame_idx,
               layout.viewpoints[i], layout.options);
-    if (view.runs.size() > 1) DrawText(drawing.get(), left + kNameLeft, kLine - 6, kText, view.runs[i].name);
+    if (view.runs.size() > 1) {
+      const double name_left = left > 0 ? kMargin : kNameLeft;
+      DrawText(drawing.get(), left + name_left, kLine - 6, layout.panel_width - name_left, view.runs[i].name);
+    }
     left += layout.panel_width;
   }
-  DrawText(drawing.get(), 6, kLine - 6, kText, "frame " + std::to_string(frame_idx));
-  DrawLegend(drawing.get(), 6, cairo_image_surface_get_height(surface) - 7, kText, !view.truth.empty());
+  DrawText(drawing.get(), kMargin, kLine - 6, kNameLeft - kMargin, "frame " + std::to_string(frame_idx));
+  DrawLegend(drawing.get(), kMargin, kLine + layout.panel_height, left - 2 * kMargin, !view.truth.empty());
 }
 
 }  // namespace
@@ -101,7 +105,9 @@ Result<std::vector<std::string>> WriteFilm(const ViewRequest& request, const Fig
   const double panel_width = options.panel_width_px;
   const double panel_height = panel_width * AspectOf(*view);
   const std::size_t panels = (view->sequence ? 1 : 0) + view->runs.size();
-  const cv::Size size(Even(static_cast<double>(panels) * panel_width), Even(panel_height + 2 * kLine));
+  const double width = static_cast<double>(panels) * panel_width;
+  const double legend_height = LegendHeight(width - 2 * kMargin, !view->truth.empty());
+  const cv::Size size(Even(width), Even(panel_height + kLine + legend_height));
   std::vector<Viewpoint> viewpoints;
   for (const ViewedRun& run : view->runs) viewpoints.push_back(ViewpointOf(*view, run, options, panel_width, panel_height));
   auto images = FrameImages::Open(*view, *frames_idx.begin());

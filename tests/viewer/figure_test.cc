@@ -97,6 +97,13 @@ TEST(Viewpoint, ShowsAllOfASmallCameraOfAnyFieldOfView) {
   }
 }
 
+// Pixels of a color in a part of a picture.
+int CountPixels(const cv::Mat& picture, const cv::Scalar& bgr) {
+  cv::Mat found;
+  cv::inRange(picture, bgr - cv::Scalar::all(40), bgr + cv::Scalar::all(40), found);
+  return cv::countNonZero(found);
+}
+
 class FigureTest : public testing::Test {
  protected:
   void SetUp() override {
@@ -122,14 +129,30 @@ TEST_F(FigureTest, DrawsImagesAndScenes) {
   ASSERT_FALSE(figure.empty());
   EXPECT_EQ(figure.cols, 8 + 2 * 968);
   // The camera's blue, the trails' red and the truth's green are there.
-  const auto count = [&](const cv::Scalar& bgr) {
-    cv::Mat found;
-    cv::inRange(figure, bgr - cv::Scalar::all(40), bgr + cv::Scalar::all(40), found);
-    return cv::countNonZero(found);
-  };
-  EXPECT_GT(count({178, 114, 0}), kMinCamera);
-  EXPECT_GT(count({0, 94, 213}), kMinTrails);
-  EXPECT_GT(count({115, 158, 0}), kMinLine);
+  EXPECT_GT(CountPixels(figure, {178, 114, 0}), kMinCamera);
+  EXPECT_GT(CountPixels(figure, {0, 94, 213}), kMinTrails);
+  EXPECT_GT(CountPixels(figure, {115, 158, 0}), kMinLine);
+}
+
+TEST_F(FigureTest, OneNarrowColumnHasTheWholeLegend) {
+  ASSERT_TRUE(Write("figure.png", {10}).ok());
+  const cv::Mat figure = cv::imread(folder_.Path("figure.png"));
+  const int height = static_cast<int>(LegendHeight(160, /*truth=*/true));
+  EXPECT_GT(height, kLine);
+  const cv::Mat legend = figure.rowRange(figure.rows - height, figure.rows);
+  for (const cv::Scalar& bgr : {cv::Scalar(0, 94, 213), cv::Scalar(178, 114, 0), cv::Scalar(115, 158, 0)})
+    EXPECT_GT(CountPixels(legend, bgr), kMinLine) << bgr;
+}
+
+TEST_F(FigureTest, ALongNameStaysAboveItsScene) {
+  const std::string longer = folder_.Path("a run whose name is longer than its scene is wide");
+  std::filesystem::copy(folder_.Path("run"), longer, std::filesystem::copy_options::recursive);
+  ViewRequest request = Request();
+  request.run_paths.push_back(longer);
+  ASSERT_TRUE(WriteFigure(request, options_, {10}, folder_.Path("figure.png")).ok());
+  const cv::Mat figure = cv::imread(folder_.Path("figure.png"));
+  const cv::Mat margin = figure.colRange(figure.cols - 6, figure.cols);
+  EXPECT_EQ(CountPixels(margin, cv::Scalar(255, 255, 255)), static_cast<int>(margin.total()));
 }
 
 TEST_F(FigureTest, WritesVectors) {

@@ -12,14 +12,15 @@ const FOCAL_PX = 300;
 const ELEMENT = '<script type="application/json" id="pliant-data">';
 
 // Frames `from` to `to`, without `to`. Points lie `beside` to the right of the grid and are moved by `step` every frame;
-// frames of which `isLost` says so have neither pose nor points. `truth`: the surface is known, half a unit behind the points.
-export function runOf({ name = "run", from = 0, to, beside = 0, step = 0.05, isLost = () => false, truth = false }) {
+// frames of which `isLost` says so have neither pose nor points. The world's origin is `away` behind the camera. `truth`: the
+// surface is known, half a unit behind the points.
+export function runOf({ name = "run", from = 0, to, beside = 0, step = 0.05, isLost = () => false, away = 0, truth = false }) {
   const frames = Array.from({ length: Math.max(0, to - from) }, (_, i) => from + i);
   const tracked = frames.filter((frame) => !isLost(frame));
   const seen = tracked.length ? Array.from({ length: POINTS }, (_, i) => i) : [];
-  const place = (point) => [(point % 8) * 6 - 21 + beside, Math.floor(point / 8) * 6 - 15, 60];
+  const place = (point) => [(point % 8) * 6 - 21 + beside, Math.floor(point / 8) * 6 - 15, 60 + away];
   const all = seen.flatMap((point) => tracked.map((frame) => ({ point, frame, position: place(point).map((x) => x + step * frame) })));
-  const pixels = all.map(({ frame, position: [x, y, z] }) => [WIDTH / 2 + (FOCAL_PX * (x - frame)) / z, HEIGHT / 2 + (FOCAL_PX * y) / z]);
+  const pixels = all.map(({ frame, position: [x, y, z] }) => [WIDTH / 2 + (FOCAL_PX * (x - frame)) / (z - away), HEIGHT / 2 + (FOCAL_PX * y) / (z - away)]);
   const column = (value) => frames.map(value);
   const count = (value) => column((frame) => (isLost(frame) ? 0 : value));
   return {
@@ -29,12 +30,12 @@ export function runOf({ name = "run", from = 0, to, beside = 0, step = 0.05, isL
       submap: column(() => 0), note: {}, tracked: count(POINTS), optimized: count(POINTS), lost: column(() => 0), added: column(() => 0),
       reprojection_px: column((frame) => (isLost(frame) ? null : 0.5 + 0.01 * frame)),
       costs: { reprojection: column((frame) => (isLost(frame) ? null : 10)) }, stages_ms: { track: column(() => 5) }, errors: {}, scale: null,
-      pose: pack(frames.map((frame) => (isLost(frame) ? new Array(7).fill(NaN) : [0, 0, 0, 1, frame, 0, 0])), 7),
+      pose: pack(frames.map((frame) => (isLost(frame) ? new Array(7).fill(NaN) : [0, 0, 0, 1, frame, 0, away])), 7),
     },
     points: { id: packIntegers(seen), rest: pack(seen.map(place), 3), rgb: pack(seen.map(() => [200, 120, 90]), 3) },
     observations: {
       count: seen.map(() => tracked.length), row: packIntegers(all.map(({ frame }) => frame - from)), pixel: pack(pixels, 2),
-      position: pack(all.map(({ position }) => position), 3), depth: pack(all.map(({ position }) => [position[2]]), 1),
+      position: pack(all.map(({ position }) => position), 3), depth: pack(all.map(({ position }) => [position[2] - away]), 1),
       reprojection_px: pack(all.map(() => [0.4]), 1), ssim: pack(all.map(() => [0.9]), 1), gain: null, bias: null,
       truth: truth ? pack(all.map(({ position: [x, y, z] }) => [x, y, z + 0.5]), 3) : null,
       error_mm: truth ? pack(all.map(() => [0.5]), 1) : null,

@@ -28,3 +28,57 @@ testMadeUp("shows the last positions of points on a light image", dataOf(runOf({
   await goTo(page, 19);
   assert.ok(before - await countPixels(page, "#image", LIGHT_GRAY) > POINTS * PIXELS_OF_A_TRAIL);
 });
+
+// Labels that need many digits, and frames whose number is long.
+const precise = runOf({ from: 9000, to: 10001 });
+precise.frames.scale = precise.frames.frame.map((frame) => 0.9912 + 1e-7 * (frame - 9000));
+precise.frames.costs = {};   // their axis is logarithmic
+precise.frames.reprojection_px = precise.frames.frame.map((frame) => 1e-5 * (frame - 9500));
+for (const viewport of [{ width: 1440, height: 900 }, { width: 390, height: 844 }]) {
+  testMadeUp(`labels the axes of plots in full, ${viewport.width} pixels wide`, dataOf(precise), async (page) => {
+    const labels = await page.evaluate(() => window.labels);
+    assert.ok(labels.length > 10);
+    for (const { text, left, right, top, bottom, width, height } of labels) {
+      assert.ok(left >= 0 && right <= width && top >= 0 && bottom <= height, `${text}: ${left} to ${right} of ${width}, ${top} to ${bottom}`);
+    }
+    const plots = new Set(labels.map(({ plot }) => plot));
+    for (const plot of plots) {
+      const texts = labels.filter((label) => label.plot === plot && label.text !== "").map(({ text }) => text);
+      const values = texts.map(Number).filter((value) => value < 9000);
+      const steps = values.slice(1).map((value, i) => value - values[i]);
+      assert.ok(steps.every((step) => Math.abs(step - steps[0]) < 1e-3 * Math.abs(steps[0])) || texts.length === 0, `uneven labels ${texts}`);
+    }
+  }, { viewport, before: recordLabels });
+}
+
+// Runs in the page: what is written into a plot, in pixels of its canvas; of a plot that is drawn again the last time.
+function recordLabels() {
+  window.labels = [];
+  const original = CanvasRenderingContext2D.prototype.fillText;
+  const clear = CanvasRenderingContext2D.prototype.clearRect;
+  const plots = new Map();
+  CanvasRenderingContext2D.prototype.clearRect = function (...rest) {
+    window.labels = window.labels.filter(({ plot }) => plot !== plots.get(this.canvas));
+    return clear.apply(this, rest);
+  };
+  CanvasRenderingContext2D.prototype.fillText = function (text, x, y, ...rest) {
+    if (!plots.has(this.canvas)) plots.set(this.canvas, plots.size);
+    const box = this.measureText(text);
+    const at = this.getTransform().transformPoint({ x, y });
+    window.labels.push({
+      text, plot: plots.get(this.canvas), left: at.x - box.actualBoundingBoxLeft, right: at.x + box.actualBoundingBoxRight,
+      top: at.y - box.actualBoundingBoxAscent, bottom: at.y + box.actualBoundingBoxDescent,
+      width: this.canvas.width, height: this.canvas.height,
+    });
+    return original.call(this, text, x, y, ...rest);
+  };
+}
+
+// The truth may put the world's origin far away.
+testMadeUp("shows the axes of a scene that is far from its origin", dataOf(runOf({ to: 20, away: 500 })), async (page) => {
+  const box = await page.locator("#scene").boundingBox();
+  for (const label of await page.locator("#scene .axis").all()) {
+    const { x, y, width, height } = await label.boundingBox();
+    assert.ok(x > box.x && x + width < box.x + box.width && y > box.y && y + height < box.y + box.height, `${x}, ${y}`);
+  }
+});

@@ -26,9 +26,10 @@ export class SceneContent {
   medianDepth = 1;
   gridStep = 1;
   private lowest = 0;   // the largest y
-  // The ends of the axes, to be labeled.
+  // At the origin of the world, or at the corner of the scene that is nearest to it. Their ends are labeled.
+  private readonly axesOrigin = new Vector3();
   readonly axisEnds = [new Vector3(), new Vector3(), new Vector3()];
-  // What the first view shows: nearly all of the points in any frame, and all of the cameras.
+  // What the first view shows: nearly all of the points in any frame, and all of the cameras and the axes.
   readonly extent: { points: Vector3[]; all: Vector3[] } = { points: [], all: [] };
 
   private readonly map = new Marks(2.5, 0);
@@ -167,6 +168,7 @@ export class SceneContent {
       return [values[Math.floor(0.01 * (values.length - 1))], values[Math.ceil(0.99 * (values.length - 1))]];
     });
     this.center.fromArray(ends.map(([low, high]) => (low + high) / 2));
+    this.axesOrigin.fromArray(ends.map(([low, high]) => Math.min(high, Math.max(low, 0))));
     this.size = Math.hypot(...ends.map(([low, high]) => high - low)) || 1;
     this.empty = ends.every(([low, high]) => low === high);
     depths.sort((a, b) => a - b);
@@ -217,6 +219,7 @@ export class SceneContent {
       addCameras(run.pose.values, run.rows);
     }
     if (report.truth) addCameras(report.truth.pose, report.truth.frame.length);
+    all.push(this.axesOrigin, ...this.axisEnds);
   }
 
   private buildGrid(): void {
@@ -235,8 +238,9 @@ export class SceneContent {
     }
     this.grid.end();
     this.axes.forEach((axis, i) => {
-      this.axisEnds[i].set(0, 0, 0).setComponent(i, this.gridStep);
-      axis.setSegments([0, 0, 0, ...this.axisEnds[i].toArray()]);
+      this.axisEnds[i].copy(this.axesOrigin);
+      this.axisEnds[i].setComponent(i, this.axesOrigin.getComponent(i) + this.gridStep);
+      axis.setSegments([...this.axesOrigin.toArray(), ...this.axisEnds[i].toArray()]);
     });
   }
 

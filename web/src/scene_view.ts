@@ -79,7 +79,7 @@ export class SceneView {
     this.leaveCamera();
   }
 
-  // From where nearly all points, and all cameras, are seen as large as the canvas allows: the point in the middle of the
+  // From where nearly all points, and all cameras and axes, are seen as large as the canvas allows: the point in the middle of the
   // view, and the distance from it. A point at (aside, back) of the center is inside, to one side, where
   // aside - middle <= tangent * (distance - back).
   private fit(): { middle: Vector3; distance: number } {
