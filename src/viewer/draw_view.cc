@@ -32,6 +32,11 @@ constexpr Color kBlue = {0, 0.447, 0.698};
 constexpr Color kVermillion = {0.835, 0.369, 0};
 constexpr Color kGreen = {0, 0.62, 0.451};
 constexpr Color kYellow = {0.941, 0.894, 0.259};
+constexpr Color kSkyBlue = {0.337, 0.706, 0.914};
+constexpr Color kPurple = {0.8, 0.475, 0.655};
+constexpr Color kWhite = {1, 1, 1};
+// Of the runs' points in the image, in turn.
+constexpr std::array<Color, 4> kRunColors = {kYellow, kSkyBlue, kPurple, kWhite};
 
 constexpr int kEmbeddedQuality = 90;
 constexpr double kDot = 1.0 / 300;        // radius of a point, of the panel's width
@@ -182,7 +187,29 @@ Viewpoint ViewpointOf(const View& view, const ViewedRun& run, const FigureOption
   return {Orbit(points, cameras, mean, options.azimuth_deg, options.elevation_deg, width_px, height_px), frustum};
 }
 
-void DrawImage(cairo_t* drawing, const Panel& panel, const cv::Mat& image, const ViewedFrame* frame) {
+namespace {
+
+const Color& ColorOfRun(std::size_t run) { return kRunColors[run % kRunColors.size()]; }
+
+// In pixels of the image. Of several runs the first one's points are the smallest, and above the others: runs often
+// have points at the same pixels.
+void DrawImagePoints(cairo_t* drawing, const View& view, int frame_idx, double radius) {
+  for (std::size_t i = view.runs.size(); i-- > 0;) {
+    const ViewedFrame* frame = FindFrame(view.runs[i], frame_idx);
+    if (frame == nullptr) continue;
+    const double size = radius * (1 + static_cast<double>(i));
+    for (const ViewedObservation& o : frame->observations) Dot(drawing, o.pixel.x() + 0.5, o.pixel.y() + 0.5, size);
+    Use(drawing, ColorOfRun(i));
+    cairo_fill_preserve(drawing);
+    Use(drawing, kBlack);
+    cairo_set_line_width(drawing, 0.35 * radius);
+    cairo_stroke(drawing);
+  }
+}
+
+}  // namespace
+
+void DrawImage(cairo_t* drawing, const Panel& panel, const cv::Mat& image, const View& view, int frame_idx) {
   if (image.empty()) return;
   cairo_save(drawing);
   Clip(drawing, panel);
@@ -194,15 +221,7 @@ void DrawImage(cairo_t* drawing, const Panel& panel, const cv::Mat& image, const
   cairo_set_source_surface(drawing, surface.get(), 0, 0);
   cairo_pattern_set_filter(cairo_get_source(drawing), CAIRO_FILTER_GOOD);
   cairo_paint(drawing);
-  if (frame != nullptr) {
-    const double radius = 1.2 * kDot * panel.width / scale;
-    for (const ViewedObservation& o : frame->observations) Dot(drawing, o.pixel.x() + 0.5, o.pixel.y() + 0.5, radius);
-    Use(drawing, kYellow);
-    cairo_fill_preserve(drawing);
-    Use(drawing, kBlack);
-    cairo_set_line_width(drawing, 0.35 * radius);
-    cairo_stroke(drawing);
-  }
+  DrawImagePoints(drawing, view, frame_idx, 1.2 * kDot * panel.width / scale);
   cairo_restore(drawing);
 }
 
@@ -353,6 +372,20 @@ void DrawText(cairo_t* drawing, double left, double baseline, double width, cons
   Use(drawing, kBlack);
   cairo_move_to(drawing, left, baseline);
   cairo_show_text(drawing, Fitting(drawing, text, width).c_str());
+}
+
+void DrawRunName(cairo_t* drawing, double left, double baseline, double width, const View& view, std::size_t run) {
+  double name_left = left;
+  if (view.sequence) {
+    Dot(drawing, left + 0.4 * kText, baseline - 0.35 * kText, 0.35 * kText);
+    Use(drawing, ColorOfRun(run));
+    cairo_fill_preserve(drawing);
+    Use(drawing, kBlack);
+    cairo_set_line_width(drawing, 1);
+    cairo_stroke(drawing);
+    name_left += kSwatch * kText;
+  }
+  DrawText(drawing, name_left, baseline, left + width - name_left, view.runs[run].name);
 }
 
 double LegendHeight(double width, bool truth) {

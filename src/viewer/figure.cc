@@ -56,12 +56,11 @@ Status Draw(cairo_t* drawing, const View& view, const FigureOptions& options, co
     DrawText(drawing, left, kLine - 6, layout.panel_width, "frame " + std::to_string(frame_idx));
     const auto image = images->At(frame_idx);
     if (!image.ok()) return image.status();
-    DrawImage(drawing, {left, kLine, layout.panel_width, layout.image_height}, *image,
-              FindFrame(view.runs.front(), frame_idx));
+    DrawImage(drawing, {left, kLine, layout.panel_width, layout.image_height}, *image, view, frame_idx);
     double top = kLine + layout.image_height + kGap;
     for (std::size_t i = 0; i < view.runs.size(); ++i) {
       const ViewedRun& run = view.runs[i];
-      if (view.runs.size() > 1) DrawText(drawing, left, top + kLine - 8, layout.panel_width, run.name);
+      if (view.runs.size() > 1) DrawRunName(drawing, left, top + kLine - 8, layout.panel_width, view, i);
       top += Layout::RunLine(view);
       DrawScene(drawing, {left, top, layout.panel_width, layout.panel_height}, view, run, frame_idx, viewpoints[i],
                 options);

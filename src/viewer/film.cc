@@ -72,8 +72,7 @@ void DrawFilmFrame(const FilmLayout& layout, int frame_idx, const cv::Mat& image
   cairo_paint(drawing.get());
   double left = 0;
   if (!image.empty()) {
-    DrawImage(drawing.get(), {left, kLine, layout.panel_width, layout.panel_height}, image,
-              FindFrame(view.runs.front(), frame_idx));
+    DrawImage(drawing.get(), {left, kLine, layout.panel_width, layout.panel_height}, image, view, frame_idx);
     left += layout.panel_width;
   }
   for (std::size_t i = 0; i < view.runs.size(); ++i) {
@@ -81,7 +80,7 @@ void DrawFilmFrame(const FilmLayout& layout, int frame_idx, const cv::Mat& image
               layout.viewpoints[i], layout.options);
     if (view.runs.size() > 1) {
       const double name_left = left > 0 ? kMargin : kNameLeft;
-      DrawText(drawing.get(), left + name_left, kLine - 6, layout.panel_width - name_left, view.runs[i].name);
+      DrawRunName(drawing.get(), left + name_left, kLine - 6, layout.panel_width - name_left, view, i);
     }
     left += layout.panel_width;
   }

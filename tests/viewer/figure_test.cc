@@ -155,6 +155,22 @@ TEST_F(FigureTest, ALongNameStaysAboveItsScene) {
   EXPECT_EQ(CountPixels(margin, cv::Scalar(255, 255, 255)), static_cast<int>(margin.total()));
 }
 
+TEST_F(FigureTest, ShowsThePointsOfEveryRunInTheImage) {
+  std::filesystem::copy(folder_.Path("run"), folder_.Path("other"), std::filesystem::copy_options::recursive);
+  ViewRequest request = Request();
+  options_.panel_width_px = 960;
+  const auto count = [&] {
+    EXPECT_TRUE(WriteFigure(request, options_, {10}, folder_.Path("figure.png")).ok());
+    const cv::Mat image = cv::imread(folder_.Path("figure.png")).rowRange(30, 740);
+    return std::pair{CountPixels(image, {66, 228, 240}), CountPixels(image, {233, 180, 86})};  // yellow, sky blue
+  };
+  EXPECT_GT(count().first, kMinLine);
+  EXPECT_EQ(count().second, 0);
+  request.run_paths.push_back(folder_.Path("other"));  // whose points are at the same pixels
+  EXPECT_GT(count().first, kMinLine);
+  EXPECT_GT(count().second, kMinLine);
+}
+
 TEST_F(FigureTest, WritesVectors) {
   ASSERT_TRUE(Write("figure.svg").ok());
   EXPECT_THAT(folder_.Read("figure.svg"), HasSubstr("<svg"));

@@ -82,3 +82,27 @@ testMadeUp("shows the axes of a scene that is far from its origin", dataOf(runOf
     assert.ok(x > box.x && x + width < box.x + box.width && y > box.y && y + height < box.y + box.height, `${x}, ${y}`);
   }
 });
+
+const BLUE = "#0072b2";    // of the first run
+const AMBER = "#c77f00";   // of the second one
+const PIXELS_OF_A_POINT = 4;
+
+// At the same pixels, as those of a run and its refinement.
+const two = dataOf(runOf({ name: "one", to: 5 }), runOf({ name: "other", to: 5 }));
+testMadeUp("shows the points of every run that is switched on, in the run's color", two, async (page) => {
+  const counts = async () => {
+    await page.waitForTimeout(300);
+    return [await countPixels(page, "#image", BLUE), await countPixels(page, "#image", AMBER)];
+  };
+  const all = POINTS * PIXELS_OF_A_POINT;
+  const [dots, corners] = await counts();   // the second run's points lie under those of the first
+  assert.ok(dots > all && corners > POINTS, `${dots}, ${corners}`);
+  await screenshot(page, "points_of_two_runs");
+  await page.locator("#runs input").nth(1).uncheck();
+  const [first, hidden] = await counts();
+  assert.ok(first > all && hidden < POINTS, `${first}, ${hidden}`);
+  await page.locator("#runs input").nth(1).check();
+  await page.locator("#runs input").nth(0).uncheck();
+  const [none, second] = await counts();
+  assert.ok(none < POINTS && second > all, `${none}, ${second}`);
+});

@@ -246,10 +246,11 @@ export class SceneContent {
 
   private showPoints(run: Run, observations: Uint32Array): void {
     this.points.begin(observations.length);
-    if (this.page.store.state.layers.points) {
+    const { layers, dark } = this.page.store.state;
+    if (layers.points) {
       for (const o of observations) {
         const shape = run.isLost(o) ? "cross" : run.isReturned(o) ? "ring" : "disc";
-        this.points.addMark(run.position.values, o, this.page.coloring.color(run, o), shape);
+        this.points.addMark(run.position.values, o, this.page.coloring.color(run, o, dark), shape);
       }
     }
     this.points.end();
