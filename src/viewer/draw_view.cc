@@ -151,6 +151,13 @@ double AspectOf(const View& view) {
   return view.camera ? static_cast<double>(view.camera->height()) / view.camera->width() : kUsual;
 }
 
+bool HasTruth(const View& view) {
+  const auto known = [](const ViewedObservation& o) { return o.truth.allFinite(); };
+  const auto any = [&](const ViewedFrame& frame) { return std::ranges::any_of(frame.observations, known); };
+  return !view.truth.empty() ||
+         std::ranges::any_of(view.runs, [&](const ViewedRun& run) { return std::ranges::any_of(run.frames, any); });
+}
+
 Status TooLarge(double width_px, double height_px) {
   return {ErrorCode::kInvalidArgument, "a picture of " + std::to_string(std::lround(width_px)) + " x " +
                                            std::to_string(std::lround(height_px)) +

@@ -39,6 +39,9 @@ inline constexpr double kLine = 22;  // height of a line of them
 // Height by width of the view's images.
 double AspectOf(const View& view);
 
+// Whether there is truth to draw: the camera's true path, or the true surface at a point.
+bool HasTruth(const View& view);
+
 // The sentence for a picture that cairo cannot hold.
 Status TooLarge(double width_px, double height_px);
 

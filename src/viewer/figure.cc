@@ -25,7 +25,7 @@ struct Layout {
   double height = 0;
   double image_height = 0;  // 0: no images
   double panel_width = 0;
-  double panel_height = 0;   // of a scene
+  double panel_height = 0;  // of a scene
   double legend_height = 0;
 
   Layout(const View& view, const FigureOptions& options, std::size_t frames) {
@@ -33,7 +33,7 @@ struct Layout {
     panel_height = panel_width * AspectOf(view);
     image_height = view.sequence ? panel_height : 0;
     width = kGap + static_cast<double>(frames) * (panel_width + kGap);
-    legend_height = LegendHeight(width - 2 * kGap, !view.truth.empty());
+    legend_height = LegendHeight(width - 2 * kGap, HasTruth(view));
     height = kLine + image_height + kGap +
              static_cast<double>(view.runs.size()) * (panel_height + kGap + RunLine(view)) + legend_height;
   }
@@ -68,7 +68,7 @@ Status Draw(cairo_t* drawing, const View& view, const FigureOptions& options, co
     }
     left += layout.panel_width + kGap;
   }
-  DrawLegend(drawing, kGap, layout.height - layout.legend_height, layout.width - 2 * kGap, !view.truth.empty());
+  DrawLegend(drawing, kGap, layout.height - layout.legend_height, layout.width - 2 * kGap, HasTruth(view));
   return Status::Ok();
 }
 

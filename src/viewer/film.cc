@@ -62,6 +62,7 @@ struct FilmLayout {
   double panel_width = 0;
   double panel_height = 0;
   const std::vector<Viewpoint>& viewpoints;  // one a run
+  const bool truth;                          // HasTruth
 };
 
 // The frame's number and a legend around its image, where there is one, and a panel for each run.
@@ -85,7 +86,7 @@ void DrawFilmFrame(const FilmLayout& layout, int frame_idx, const cv::Mat& image
     left += layout.panel_width;
   }
   DrawText(drawing.get(), kMargin, kLine - 6, kNameLeft - kMargin, "frame " + std::to_string(frame_idx));
-  DrawLegend(drawing.get(), kMargin, kLine + layout.panel_height, left - 2 * kMargin, !view.truth.empty());
+  DrawLegend(drawing.get(), kMargin, kLine + layout.panel_height, left - 2 * kMargin, layout.truth);
 }
 
 }  // namespace
@@ -105,10 +106,12 @@ Result<std::vector<std::string>> WriteFilm(const ViewRequest& request, const Fig
   const double panel_height = panel_width * AspectOf(*view);
   const std::size_t panels = (view->sequence ? 1 : 0) + view->runs.size();
   const double width = static_cast<double>(panels) * panel_width;
-  const double legend_height = LegendHeight(width - 2 * kMargin, !view->truth.empty());
+  const bool truth = HasTruth(*view);
+  const double legend_height = LegendHeight(width - 2 * kMargin, truth);
   const cv::Size size(Even(width), Even(panel_height + kLine + legend_height));
   std::vector<Viewpoint> viewpoints;
-  for (const ViewedRun& run : view->runs) viewpoints.push_back(ViewpointOf(*view, run, options, panel_width, panel_height));
+  for (const ViewedRun& run : view->runs)
+    viewpoints.push_back(ViewpointOf(*view, run, options, panel_width, panel_height));
   auto images = FrameImages::Open(*view, *frames_idx.begin());
   if (!images.ok()) return images.status();
   const std::string draft = std::filesystem::path(output_path).replace_extension(".part.mp4").string();
@@ -130,7 +133,7 @@ Result<std::vector<std::string>> WriteFilm(const ViewRequest& request, const Fig
       if (!read.ok()) return unwritten(read.status());
       image = *read;
     }
-    DrawFilmFrame({*view, options, panel_width, panel_height, viewpoints}, frame_idx, image, surface.get());
+    DrawFilmFrame({*view, options, panel_width, panel_height, viewpoints, truth}, frame_idx, image, surface.get());
     cairo_surface_flush(surface.get());
     const cv::Mat bgra(size, CV_8UC4, cairo_image_surface_get_data(surface.get()),
                        static_cast<std::size_t>(cairo_image_surface_get_stride(surface.get())));

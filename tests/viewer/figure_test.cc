@@ -144,6 +144,19 @@ TEST_F(FigureTest, OneNarrowColumnHasTheWholeLegend) {
     EXPECT_GT(CountPixels(legend, bgr), kMinLine) << bgr;
 }
 
+TEST_F(FigureTest, TheLegendNamesATruthThatHasNoPoses) {
+  const auto green_in_legend = [&] {
+    EXPECT_TRUE(Write("figure.png").ok());
+    const cv::Mat figure = cv::imread(folder_.Path("figure.png"));
+    return CountPixels(figure.rowRange(figure.rows - static_cast<int>(kLine), figure.rows), {115, 158, 0});
+  };
+  options_.panel_width_px = 300;
+  std::filesystem::remove(folder_.Path("sequence/groundtruth.txt"));
+  EXPECT_GT(green_in_legend(), kMinLine);
+  std::filesystem::remove_all(folder_.Path("sequence/depth"));
+  EXPECT_EQ(green_in_legend(), 0);
+}
+
 TEST_F(FigureTest, ALongNameStaysAboveItsScene) {
   const std::string longer = folder_.Path("a run whose name is longer than its scene is wide");
   std::filesystem::copy(folder_.Path("run"), longer, std::filesystem::copy_options::recursive);
