@@ -190,8 +190,11 @@ Json Texts(const std::vector<NamedText>& texts, bool as_options) {
   return rows;
 }
 
+std::string UnitOf(bool in_millimeters) { return in_millimeters ? "mm" : "map units"; }
+
 Json RunData(const ViewedRun& run) {
   return {{"name", run.name},
+          {"unit", UnitOf(run.in_millimeters)},
           {"status", run.status},
           {"note", run.note},
           {"figures", Texts(run.figures, false)},
@@ -240,7 +243,7 @@ Json PageData(const View& view, const ViewImages& images, const std::string& tit
           {"version", kVersion},
           {"title", title},
           {"live", false},
-          {"unit", view.in_millimeters ? "mm" : "map units"},
+          {"unit", UnitOf(view.in_millimeters)},
           {"notes", view.notes},
           {"camera", CameraData(view.camera)},
           {"images", ImageData(images)},

@@ -72,6 +72,13 @@ TEST_F(ReportTest, HoldsTheRun) {
   EXPECT_TRUE(run["observations"]["gain"].is_null());
 }
 
+TEST_F(ReportTest, SaysWhereLengthsAreMillimeters) {
+  folder_.Write("run/config.yaml", "Init:\n  method: stereo\n");
+  ASSERT_TRUE(Write().ok());
+  EXPECT_EQ(Data()["unit"], "mm");
+  EXPECT_EQ(Data()["runs"][0]["unit"], "mm");
+}
+
 TEST_F(ReportTest, HoldsImagesAndWhatTheySayOfBrightness) {
   sequence_ = folder_.Path("sequence");
   WriteSmallSequence(sequence_, Truth::kDepthAndPoses);
@@ -81,7 +88,8 @@ TEST_F(ReportTest, HoldsImagesAndWhatTheySayOfBrightness) {
   ASSERT_TRUE(summary.ok()) << summary.status().message();
   EXPECT_EQ(summary->images, static_cast<std::size_t>(kRunFrames));
   const ordered_json data = Data();
-  EXPECT_EQ(data["unit"], "mm");
+  EXPECT_EQ(data["unit"], "mm");  // the truth's
+  EXPECT_EQ(data["runs"][0]["unit"], "map units");
   EXPECT_EQ(data["truth"]["frame"].size(), static_cast<std::size_t>(kRunFrames));
   EXPECT_DOUBLE_EQ(data["images"]["scale"], 0.5);
   EXPECT_THAT(data["images"]["frame"], ElementsAre(10, 12, 14, 16, 18));

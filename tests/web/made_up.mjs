@@ -24,7 +24,7 @@ export function runOf({ name = "run", from = 0, to, beside = 0, step = 0.05, isL
   const column = (value) => frames.map(value);
   const count = (value) => column((frame) => (isLost(frame) ? 0 : value));
   return {
-    name, status: "running", note: "", figures: [["Frames", "tracked", String(to)]], options: [["Tracking.option", "1"]],
+    name, unit: "map units", status: "running", note: "", figures: [["Frames", "tracked", String(to)]], options: [["Tracking.option", "1"]],
     frames: {
       frame: frames, time: column((frame) => frame / 30), state: column((frame) => (isLost(frame) ? "lost" : "tracking")),
       submap: column(() => 0), note: {}, tracked: count(POINTS), optimized: count(POINTS), lost: column(() => 0), added: column(() => 0),

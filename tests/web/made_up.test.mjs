@@ -106,3 +106,11 @@ testMadeUp("shows the points of every run that is switched on, in the run's colo
   const [none, second] = await counts();
   assert.ok(none < POINTS && second > all, `${none}, ${second}`);
 });
+
+const metric = { ...dataOf({ ...runOf({ to: 5 }), unit: "mm" }), unit: "mm" };
+metric.runs[0].frames.scale = [1, 1.01, 1, 0.99, 1];
+testMadeUp("says millimeters of a run whose unit it is", metric, async (page) => {
+  assert.match(await page.locator("#scale-high").textContent(), /mm$/);
+  assert.match(await page.locator("#scene-caption").textContent(), /mm$/);
+  assert.doesNotMatch(await page.locator("main").textContent(), /map unit/);
+});

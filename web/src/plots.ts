@@ -34,7 +34,7 @@ export function figuresOf(run: Run): Figure[] {
     { title: "Cost by term", unit: "", log: true, series: listed(frames.costs) },
     { title: "Time by stage", unit: "ms", stacked: true, series: listed(frames.stages_ms) },
     {
-      title: "Scale against truth", unit: "mm per map unit", series: [{ label: "scale", values: frames.scale ?? [] }],
+      title: "Scale against truth", unit: run.unit === "mm" ? "true mm per mm of the run" : "mm per map unit", series: [{ label: "scale", values: frames.scale ?? [] }],
     },
   ];
   for (const figure of figures) figure.series = figure.series.filter(({ values }) => values.some((value) => value !== null));

@@ -41,6 +41,7 @@ const FRAME_GROUPS = ["costs", "stages_ms", "errors"] as const;
 
 export class Run {
   name = "";
+  unit = "";
   status = "";
   note = "";
   figures: [string, string, string][] = [];
@@ -130,8 +131,8 @@ export class Run {
 
   append(part: RunPart): void {
     const from = this.rows;
-    const { name, status, note, figures, options } = part.data;
-    Object.assign(this, { name, status, note, figures, options });
+    const { name, unit, status, note, figures, options } = part.data;
+    Object.assign(this, { name, unit, status, note, figures, options });
     this.appendFrames(part, from);
     this.appendPoints(part);
     this.appendObservations(part, from);

@@ -48,6 +48,7 @@ export class SceneView {
     new ResizeObserver(() => this.resize()).observe(this.container);
     this.content.build();
     this.content.showFrame();
+    this.showCaption();
     this.reset();
   }
 
@@ -65,8 +66,12 @@ export class SceneView {
     if (anyOf(changed, "view") && this.page.store.state.view === "free") this.leaveCamera();
     if (anyOf(changed, "position", "current", "view", "revision")) this.follow();
     if (anyOf(changed, "position", "current", "visible", "picked", "color", "layers", "trail", "view", "dark", "revision")) this.render();
-    setText(byId("scene-caption"), this.page.store.state.layers.grid
-      ? `grid ${Number(content.gridStep.toPrecision(1))} ${this.page.report.unit}` : "");
+    this.showCaption();
+  }
+
+  private showCaption(): void {
+    const { report, store } = this.page;
+    setText(byId("scene-caption"), store.state.layers.grid ? `grid ${Number(this.content.gridStep.toPrecision(1))} ${report.unit}` : "");
   }
 
   // Frames the whole scene.
