@@ -8,6 +8,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <sstream>
 #include <utility>
 #include <vector>
 
@@ -39,8 +40,8 @@ constexpr Color kWhite = {1, 1, 1};
 constexpr std::array<Color, 4> kRunColors = {kYellow, kSkyBlue, kPurple, kWhite};
 
 constexpr int kEmbeddedQuality = 90;
-constexpr double kDot = 1.0 / 300;        // radius of a point, of the panel's width
-constexpr double kSwatch = 1.2;           // width of a color in the legend, of the letters' size
+constexpr double kDot = 1.0 / 300;  // radius of a point, of the panel's width
+constexpr double kSwatch = 1.2;     // width of a color in the legend, of the letters' size
 
 void Use(cairo_t* drawing, const Color& color) { cairo_set_source_rgb(drawing, color.red, color.green, color.blue); }
 
@@ -73,6 +74,29 @@ void AttachJpeg(const cv::Mat& image, cairo_surface_t* surface) {
   cairo_surface_set_mime_data(
       surface, CAIRO_MIME_TYPE_JPEG, reinterpret_cast<const unsigned char*>(jpeg->data()), jpeg->size(),
       [](void* text) { delete static_cast<std::string*>(text); }, jpeg);
+}
+
+void UseFont(cairo_t* drawing, double size) {
+  cairo_select_font_face(drawing, "sans-serif", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
+  cairo_set_font_size(drawing, size);
+}
+
+double WidthOf(cairo_t* drawing, const std::string& text) {
+  cairo_text_extents_t extents;
+  cairo_text_extents(drawing, text.c_str(), &extents);
+  return extents.x_advance;
+}
+
+// Cut at its end, which then says so, until it is no wider than this.
+std::string Fitting(cairo_t* drawing, std::string text, double width) {
+  if (WidthOf(drawing, text) <= width) return text;
+  const std::string ellipsis = "\u2026";
+  while (!text.empty() && WidthOf(drawing, text + ellipsis) > width) {
+    const auto continues = [](char byte) { return (static_cast<unsigned char>(byte) & 0xC0) == 0x80; };
+    while (continues(text.back()) && text.size() > 1) text.pop_back();
+    text.pop_back();
+  }
+  return text + ellipsis;
 }
 
 class SceneDrawing {
@@ -291,8 +315,27 @@ void DrawPath(const ViewedRun& run, int frame_idx, SceneDrawing* scene) {
 
 void DrawFrustum(const Rigid3& world_from_cam, const std::array<Eigen::Vector3d, 4>& corners, SceneDrawing* scene) {
   for (std::size_t i = 0; i < corners.size(); ++i)
-    scene->Path({world_from_cam.translation, world_from_cam * corners[i],
-                 world_from_cam * corners[(i + 1) % corners.size()]});
+    scene->Path(
+        {world_from_cam.translation, world_from_cam * corners[i], world_from_cam * corners[(i + 1) % corners.size()]});
+}
+
+}  // namespace
+
+namespace {
+
+// Why there is no pose to draw, if there is none; else empty.
+std::string WhyNoPose(const ViewedRun& run, int frame_idx) {
+  const auto has_pose = [](const ViewedFrame& frame) { return frame.world_from_cam.has_value(); };
+  if (std::ranges::none_of(run.frames, has_pose)) {
+    const std::string status = run.status.empty() ? "" : " (" + run.status + ")";
+    return "This run has no map" + status + (run.note.empty() ? "." : ": " + run.note);
+  }
+  const ViewedFrame* frame = FindFrame(run, frame_idx);
+  if (frame == nullptr) return "This run has no frame " + std::to_string(frame_idx) + ".";
+  if (has_pose(*frame)) return {};
+  std::string state(EnumName(frame->row.state));
+  std::ranges::replace(state, '_', ' ');
+  return "No pose in this frame: " + state + (frame->note.empty() ? "" : ", " + frame->note);
 }
 
 }  // namespace
@@ -313,6 +356,7 @@ void DrawScene(cairo_t* drawing, const Panel& panel, const View& view, const Vie
   if (frame != nullptr && frame->world_from_cam && viewpoint.frustum)
     DrawFrustum(*frame->world_from_cam, *viewpoint.frustum, &scene);
   cairo_restore(drawing);
+  DrawParagraph(drawing, panel, WhyNoPose(run, frame_idx));
   Use(drawing, kGray);
   cairo_set_line_width(drawing, 1);
   cairo_rectangle(drawing, panel.left, panel.top, panel.width, panel.height);
@@ -320,29 +364,6 @@ void DrawScene(cairo_t* drawing, const Panel& panel, const View& view, const Vie
 }
 
 namespace {
-
-void UseFont(cairo_t* drawing, double size) {
-  cairo_select_font_face(drawing, "sans-serif", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
-  cairo_set_font_size(drawing, size);
-}
-
-double WidthOf(cairo_t* drawing, const std::string& text) {
-  cairo_text_extents_t extents;
-  cairo_text_extents(drawing, text.c_str(), &extents);
-  return extents.x_advance;
-}
-
-// Cut at its end, which then says so, until it is no wider than this.
-std::string Fitting(cairo_t* drawing, std::string text, double width) {
-  if (WidthOf(drawing, text) <= width) return text;
-  const std::string ellipsis = "\u2026";
-  while (!text.empty() && WidthOf(drawing, text + ellipsis) > width) {
-    const auto continues = [](char byte) { return (static_cast<unsigned char>(byte) & 0xC0) == 0x80; };
-    while (continues(text.back()) && text.size() > 1) text.pop_back();
-    text.pop_back();
-  }
-  return text + ellipsis;
-}
 
 struct LegendEntry {
   Color color;
@@ -353,8 +374,7 @@ struct LegendEntry {
 
 // Each beside the one before it, or on the next line where that is full.
 std::vector<LegendEntry> LayOutLegend(cairo_t* drawing, double width, bool truth) {
-  std::vector<LegendEntry> entries = {
-      {kBlack, "undeformed map"}, {kVermillion, "deformation"}, {kBlue, "camera"}};
+  std::vector<LegendEntry> entries = {{kBlack, "undeformed map"}, {kVermillion, "deformation"}, {kBlue, "camera"}};
   if (truth) entries.push_back({kGreen, "truth"});
   UseFont(drawing, kText);
   double left = 0;
@@ -373,6 +393,26 @@ std::vector<LegendEntry> LayOutLegend(cairo_t* drawing, double width, bool truth
 }
 
 }  // namespace
+
+void DrawParagraph(cairo_t* drawing, const Panel& panel, const std::string& text) {
+  constexpr double kInset = 12;
+  const double width = panel.width - 2 * kInset;
+  UseFont(drawing, kText);
+  std::vector<std::string> lines;
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    if (lines.empty() || WidthOf(drawing, lines.back() + " " + word) > width)
+      lines.push_back(word);
+    else
+      lines.back() += " " + word;
+  }
+  const auto room = static_cast<std::size_t>(std::max(1.0, std::floor((panel.height - kInset) / kLine)));
+  for (std::size_t i = 0; i < std::min(room, lines.size()); ++i) {
+    const bool is_cut = i + 1 == room && lines.size() > room;
+    DrawText(drawing, panel.left + kInset, panel.top + kLine * static_cast<double>(i + 1), width,
+             is_cut ? lines[i] + "\u2026" : lines[i]);
+  }
+}
 
 void DrawText(cairo_t* drawing, double left, double baseline, double width, const std::string& text) {
   UseFont(drawing, kText);

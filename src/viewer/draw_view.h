@@ -59,12 +59,15 @@ Viewpoint ViewpointOf(const View& view, const ViewedRun& run, const FigureOption
 // `image`: 8-bit, 1 or 3 (BGR) channels, of the camera's size; empty where there is none. With the points of all runs,
 // each run's in its color.
 void DrawImage(cairo_t* drawing, const Panel& panel, const cv::Mat& image, const View& view, int frame_idx);
+// A frame without a pose says why.
 void DrawScene(cairo_t* drawing, const Panel& panel, const View& view, const ViewedRun& run, int frame_idx,
                const Viewpoint& viewpoint, const FigureOptions& options);
 // In one line of at most this width: what does not fit is cut at its end.
 void DrawText(cairo_t* drawing, double left, double baseline, double width, const std::string& text);
 // The same of a run's name, with the color of its points in the image where there are images.
 void DrawRunName(cairo_t* drawing, double left, double baseline, double width, const View& view, std::size_t run);
+// From the panel's top left corner, in as many lines as fit.
+void DrawParagraph(cairo_t* drawing, const Panel& panel, const std::string& text);
 // What the colors of a scene mean, in as many lines as this width needs.
 double LegendHeight(double width, bool truth);
 void DrawLegend(cairo_t* drawing, double left, double top, double width, bool truth);

@@ -26,6 +26,7 @@ using testing::StartsWith;
 constexpr double kSmallOfDepth = 0.2;  // a camera, beside how far its points are
 constexpr double kPixel = 1;           // the middle of an image of an even size lies between pixels
 constexpr int kMinCamera = 50;         // pixels of a camera's frame, drawn in lines
+constexpr int kMinLetters = 200;       // pixels of a sentence
 constexpr int kMinLine = 20;           // pixels of a thin line or a few dots
 constexpr int kMinTrails = 450;        // of eight trails in two frames, in lines that are as wide as points
 constexpr double kContainerFps = 0.1;  // a container keeps the rate as a fraction of its own
@@ -182,6 +183,27 @@ TEST_F(FigureTest, ShowsThePointsOfEveryRunInTheImage) {
   request.run_paths.push_back(folder_.Path("other"));  // whose points are at the same pixels
   EXPECT_GT(count().first, kMinLine);
   EXPECT_GT(count().second, kMinLine);
+}
+
+TEST_F(FigureTest, SaysWhyARunHasNothingToShow) {
+  {
+    auto writer =
+        RunWriter::Create(folder_.Path("run"), TestCamera(), {"0.1.0", {"pliant"}, 7, "nowhere", {}}, "Track:\n", {});
+    ASSERT_TRUE(writer.ok()) << writer.status().message();
+    for (int i = 0; i < kRunFrames; ++i) {
+      FrameReport report;
+      report.frame_idx = Report(i).frame_idx;
+      report.timestamp_s = Report(i).timestamp_s;
+      report.state = TrackingState::kInitializing;
+      ASSERT_TRUE(writer->Write(report).ok());
+    }
+    ASSERT_TRUE(writer->Finish(RunStatus::kFailed, "the camera did not move").ok());
+  }
+  options_.panel_width_px = 320;
+  ASSERT_TRUE(Write("figure.png", {10}).ok());
+  const cv::Mat figure = cv::imread(folder_.Path("figure.png"));
+  const int bottom = figure.rows - static_cast<int>(kLine) - 12;  // inside the scene's panel
+  EXPECT_GT(CountPixels(figure(cv::Range(bottom - 220, bottom), cv::Range(12, 324)), {0, 0, 0}), kMinLetters);
 }
 
 TEST_F(FigureTest, WritesVectors) {

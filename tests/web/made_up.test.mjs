@@ -114,3 +114,16 @@ testMadeUp("says millimeters of a run whose unit it is", metric, async (page) =>
   assert.match(await page.locator("#scene-caption").textContent(), /mm$/);
   assert.doesNotMatch(await page.locator("main").textContent(), /map unit/);
 });
+
+const failed = dataOf({ ...runOf({ name: "still", to: 5, isLost: () => true }), status: "failed", note: "the camera did not move" });
+testMadeUp("says why a run has nothing to show", failed, async (page) => {
+  assert.match(await page.locator("#notes").textContent(), /"still" has no tracked frame: the camera did not move/);
+  assert.match(await page.locator("#scene").innerText(), /the camera did not move/);
+  assert.equal(await page.locator("#scene-caption").textContent(), "", "a grid without a scene has no unit");
+  await screenshot(page, "failed");
+});
+
+testMadeUp("says nothing of the kind of a run that was tracked", dataOf(runOf({ to: 5 })), async (page) => {
+  assert.ok(await page.locator("#notes").isHidden());
+  assert.equal((await page.locator("#scene .message").textContent()), "");
+});

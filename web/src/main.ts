@@ -198,8 +198,7 @@ function makeScene(page: Page): SceneView | null {
 }
 
 function notesOf(report: Report): string[] {
-  const untracked = report.runs.filter((run) => !run.frames.state.some((state) => state === "tracking" || state === "provisional"));
-  return [...report.notes, ...untracked.map(({ name }) => `The run "${name}" has no tracked frame.`)];
+  return [...report.notes, ...report.runs.map((run) => run.whyNothing()).filter((sentence) => sentence !== "")];
 }
 
 function showNotes(report: Report): void {

@@ -101,6 +101,12 @@ export class Run {
     return found.reverse();
   }
 
+  // In one sentence, of a run that has no frame with a pose; else nothing.
+  whyNothing(): string {
+    for (let row = 0; row < this.rows; ++row) if (this.hasPose(row)) return "";
+    return `The run "${this.name}" has no tracked frame${this.note ? `: ${this.note}` : ""}.`;
+  }
+
   hasPose(row: number): boolean {
     return row >= 0 && !Number.isNaN(this.pose.values[7 * row]);
   }

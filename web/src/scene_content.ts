@@ -109,8 +109,8 @@ export class SceneContent {
     this.showOthers();
     this.showPaths();
     this.showCamera(run, row);
-    this.grid.visible = layers.grid;
-    for (const axis of this.axes) axis.visible = layers.grid;
+    this.grid.visible = layers.grid && !this.empty;
+    for (const axis of this.axes) axis.visible = this.grid.visible;
   }
 
   showPicked(): void {

@@ -27,6 +27,7 @@ export class SceneView {
   private readonly controls: OrbitControls;
   private readonly content: SceneContent;
   private readonly labels = ["x", "y", "z"].map((name) => element("span", { textContent: name, className: "axis" }));
+  private readonly message = element("p", { className: "message" });
   private requested = false;
 
   // Throws where there is no WebGL.
@@ -37,7 +38,7 @@ export class SceneView {
     const canvas = this.renderer.domElement;
     canvas.setAttribute("role", "img");
     canvas.setAttribute("aria-label", "3D view of the points and of the camera's path");
-    this.container.append(canvas, ...this.labels);
+    this.container.append(canvas, ...this.labels, this.message);
     this.content = new SceneContent(page);
     this.camera.up.set(0, -1, 0);
     this.controls = new OrbitControls(this.camera, canvas);
@@ -48,7 +49,7 @@ export class SceneView {
     new ResizeObserver(() => this.resize()).observe(this.container);
     this.content.build();
     this.content.showFrame();
-    this.showCaption();
+    this.showTexts();
     this.reset();
   }
 
@@ -66,12 +67,13 @@ export class SceneView {
     if (anyOf(changed, "view") && this.page.store.state.view === "free") this.leaveCamera();
     if (anyOf(changed, "position", "current", "view", "revision")) this.follow();
     if (anyOf(changed, "position", "current", "visible", "picked", "color", "layers", "trail", "view", "dark", "revision")) this.render();
-    this.showCaption();
+    this.showTexts();
   }
 
-  private showCaption(): void {
+  private showTexts(): void {
     const { report, store } = this.page;
-    setText(byId("scene-caption"), store.state.layers.grid ? `grid ${Number(this.content.gridStep.toPrecision(1))} ${report.unit}` : "");
+    setText(this.message, report.runs[store.state.current].whyNothing());
+    setText(byId("scene-caption"), store.state.layers.grid && !this.content.empty ? `grid ${Number(this.content.gridStep.toPrecision(1))} ${report.unit}` : "");
   }
 
   // Frames the whole scene.
@@ -227,7 +229,7 @@ export class SceneView {
     this.requested = false;
     this.camera.updateMatrixWorld();
     this.renderer.render(this.content.scene, this.camera);
-    const { grid } = this.page.store.state.layers;
+    const grid = this.page.store.state.layers.grid && !this.content.empty;
     this.labels.forEach((label, axis) => {
       const [x, y, depth] = this.project(this.content.axisEnds[axis].toArray());
       label.hidden = !grid || depth >= 1;
