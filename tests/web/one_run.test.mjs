@@ -114,12 +114,14 @@ for (const view of ["image", "scene"]) {
   });
 }
 
-// In the first view, in every frame.
+// In the first view, in every frame, also where the point's panel makes the scene's narrower.
 testReport("shows the camera small and inside the scene's panel", REPORT, async (page) => {
-  const box = await page.locator("#scene").boundingBox();
   const { frames } = await state(page);
   for (const position of [0, Math.floor(frames / 2), frames - 1]) {
     await goTo(page, position);
+    if (position > 0) await press(page, "n");
+    await page.waitForTimeout(300);
+    const box = await page.locator("#scene").boundingBox();
     const ends = await page.evaluate(() => window.pliant.frustumOnScreen());
     assert.equal(ends.length, 5);
     for (const { x, y } of ends) {

@@ -29,6 +29,7 @@ export class SceneView {
   private readonly labels = ["x", "y", "z"].map((name) => element("span", { textContent: name, className: "axis" }));
   private readonly message = element("p", { className: "message" });
   private requested = false;
+  private untouched = true;   // nobody has moved the view since it was fitted
 
   // Throws where there is no WebGL.
   constructor(private readonly page: Page) {
@@ -43,7 +44,10 @@ export class SceneView {
     this.camera.up.set(0, -1, 0);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.addEventListener("change", () => this.request());
-    this.controls.addEventListener("start", () => page.store.change({ view: "free" }));
+    this.controls.addEventListener("start", () => {
+      this.untouched = false;
+      page.store.change({ view: "free" });
+    });
     onClick(canvas, (x, y) => this.pick(x, y));
     canvas.addEventListener("dblclick", () => this.reset());
     new ResizeObserver(() => this.resize()).observe(this.container);
@@ -76,9 +80,14 @@ export class SceneView {
     setText(byId("scene-caption"), store.state.layers.grid && !this.content.empty ? `grid ${Number(this.content.gridStep.toPrecision(1))} ${report.unit}` : "");
   }
 
-  // Frames the whole scene.
+  // Shows the whole scene.
   reset(): void {
     this.page.store.change({ view: "free" });
+    this.fitView();
+  }
+
+  private fitView(): void {
+    this.untouched = true;
     const { middle, distance } = this.fit();
     this.controls.target.copy(middle);
     this.camera.position.copy(middle).addScaledVector(START_DIRECTION, distance);
@@ -174,6 +183,7 @@ export class SceneView {
     const run = report.runs[current];
     const row = report.row(current, position);
     if (view === "free" || !run.hasPose(row)) return;
+    this.untouched = false;
     const pose = poseOf(run.pose.values, row);
     const ahead = new Vector3(0, 0, 1).applyQuaternion(pose.rotation);
     const depth = this.content.medianDepth;
@@ -215,6 +225,7 @@ export class SceneView {
     this.renderer.setSize(clientWidth, clientHeight);
     this.camera.aspect = clientWidth / clientHeight;
     this.camera.updateProjectionMatrix();
+    if (this.untouched && this.page.store.state.view === "free") this.fitView();
     this.follow();
     this.render();
   }
