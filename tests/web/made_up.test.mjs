@@ -127,3 +127,24 @@ testMadeUp("says nothing of the kind of a run that was tracked", dataOf(runOf({ 
   assert.ok(await page.locator("#notes").isHidden());
   assert.equal((await page.locator("#scene .message").textContent()), "");
 });
+
+// The first map has frames 0 to 3, the camera is lost in 6 and 7.
+const gaps = runOf({ to: 12, isLost: (frame) => frame === 6 || frame === 7 });
+gaps.frames.costs.reprojection = gaps.frames.costs.reprojection.map((cost, row) => (row < 4 ? null : cost));
+testMadeUp("plots errors only where there are any, and says what they do not say", dataOf(gaps), async (page) => {
+  const plot = page.locator("#plots .plot").filter({ hasText: "Reprojection error" });
+  const values = async (position) => {
+    await goTo(page, position);
+    return plot.locator(".value").allTextContents();
+  };
+  assert.deepEqual(await values(2), ["0.520", "–"]);
+  assert.deepEqual(await values(5), ["–", "0.550"]);
+  assert.deepEqual(await values(6), ["–", "–"]);
+  assert.match(await plot.textContent(), /its own displacement.*No value: 2 of 12 frames/);
+});
+
+testMadeUp("says nothing of displacements of a rigid result", dataOf({ ...runOf({ to: 5 }), frames: { ...runOf({ to: 5 }).frames, costs: {} } }), async (page) => {
+  const plot = page.locator("#plots .plot").filter({ hasText: "Reprojection error" });
+  assert.equal(await plot.locator(".value").count(), 1);
+  assert.equal(await plot.locator(".hint").textContent(), "");
+});

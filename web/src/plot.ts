@@ -20,6 +20,7 @@ export interface PlotOptions {
   unit: string;
   log?: boolean;
   stacked?: boolean;
+  note?: string;   // below the legend
   frames: number[];
   series: Series[];
   dark: boolean;
@@ -37,6 +38,7 @@ export class Plot {
   readonly element: HTMLElement;
   private readonly body = element("div", { className: "plot-body" });
   private readonly legend = element("ul", { className: "plot-legend" });
+  private readonly note = element("p", { className: "muted hint" });
   private readonly line = element("div", { className: "plot-now" });
   private readonly logButton = element("button", { type: "button", textContent: "log", title: "logarithmic scale" });
   private readonly values: HTMLElement[] = [];
@@ -55,7 +57,8 @@ export class Plot {
       this.log = !this.log;
       this.make();
     });
-    this.element = element("figure", { className: "plot" }, head, this.body, this.legend);
+    this.element = element("figure", { className: "plot" }, head, this.body, this.legend, this.note);
+    setText(this.note, options.note ?? "");
     options.series.forEach((series, i) => this.legend.append(this.legendItem(series, i)));
     this.make();
   }
@@ -64,7 +67,8 @@ export class Plot {
     return this.options.series.length;
   }
 
-  setData(frames: number[], series: Series[]): void {
+  setData(frames: number[], series: Series[], note?: string): void {
+    setText(this.note, note ?? "");
     this.options.frames = frames;
     series.forEach(({ values }, i) => { this.options.series[i].values = values; });
     this.plot.setData(this.data());
