@@ -148,3 +148,13 @@ testMadeUp("says nothing of displacements of a rigid result", dataOf({ ...runOf(
   assert.equal(await plot.locator(".value").count(), 1);
   assert.equal(await plot.locator(".hint").textContent(), "");
 });
+
+const named = ["rigid_baseline_dm_A2.5", "refined_default_dm_A2.5"].map((name) => ({
+  ...runOf({ name, to: 5 }), options: [["WindowInit.min_still_camera_ratio", name], ["Tracking.max_lost_frames", "30"]],
+}));
+testMadeUp("shows tables with long names on a phone", dataOf(...named), async (page) => {
+  for (const table of await page.locator(".table").all()) {
+    const [needed, width] = await table.evaluate((box) => [box.scrollWidth, box.clientWidth]);
+    assert.ok(needed <= width, `${needed} of ${width} pixels`);
+  }
+}, { viewport: { width: 390, height: 844 } });
