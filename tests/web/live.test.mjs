@@ -26,22 +26,25 @@ test("follows a run while it goes on", { skip: report ? false : "PLIANT_REPORT i
 });
 
 async function follow(page, run) {
-  await eventually(page, () => document.getElementById("message").textContent === "Waiting for the first map: frame 12 of 40.");
+  await eventually(page, () => document.getElementById("message").textContent === "Waiting for the first map: frame 12 of 60.");
   const frames = (count) => eventually(page, (rows) => window.pliant.state?.().frames === rows, count);
   const atEnd = () => eventually(page, () => window.pliant.state().position === window.pliant.state().frames - 1);
   run.rows = 5;
   await frames(5);
   await atEnd();
   assert.equal((await state(page)).points.length, POINTS);
-  run.rows = 12;
-  await frames(12);
+  run.rows = 40;   // the camera has left what was seen of the scene at first
+  await frames(40);
   await atEnd();
+  const box = await page.locator("#scene").boundingBox();
+  await eventually(page, ({ x, y, width, height }) => window.pliant.frustumOnScreen().every((end) =>
+    end.x > x && end.x < x + width && end.y > y && end.y < y + height), box);
   await press(page, "n");
-  await eventually(page, () => document.getElementById("point-length").textContent === "seen in 12 of 12 frames");
+  await eventually(page, () => document.getElementById("point-length").textContent === "seen in 40 of 40 frames");
 
   await press(page, "Home");
-  run.rows = 15;
-  await frames(15);
+  run.rows = 45;
+  await frames(45);
   assert.equal((await state(page)).position, 0, "it stays where the user went");
   await page.locator("#newest").click();
   await atEnd();
@@ -78,7 +81,7 @@ function answer(url, response, { epoch, rows, running }) {
   } else if (url.pathname === "/data") {
     const from = Number(url.searchParams.get("epoch")) === epoch ? Number(url.searchParams.get("from")) : 0;
     response.end(JSON.stringify({
-      epoch, from, running, frames_in_sequence: 40, read: 12, state: rows ? "tracking" : "initializing", image_scale: 0.5, image_frames: [0],
+      epoch, from, running, frames_in_sequence: 60, read: 12, state: rows ? "tracking" : "initializing", image_scale: 0.5, image_frames: [0],
       data: { ...dataOf(runOf({ from, to: rows })), live: true },
     }));
   } else if (/^\/image\/\d+\.jpg$/.test(url.pathname)) {

@@ -63,6 +63,7 @@ export class SceneView {
       const wasEmpty = content.empty;
       content.build();
       if (wasEmpty && !content.empty) this.reset();
+      else if (this.untouched && !this.showsAll()) this.fitView();
       else this.setDepths();
     } else if (anyOf(changed, "current", "dark")) content.paint();
     if (anyOf(changed, "position", "revision", "dark", "playing")) this.showImage();
@@ -121,6 +122,14 @@ export class SceneView {
       distance = Math.max(distance, (high + low) / 2);
     }
     return { middle, distance: distance > 0 ? distance : size / tangent };
+  }
+
+  private showsAll(): boolean {
+    const { clientWidth, clientHeight } = this.container;
+    return this.content.extent.all.every((point) => {
+      const [x, y, depth] = this.project(point.toArray());
+      return depth < 1 && x >= 0 && x <= clientWidth && y >= 0 && y <= clientHeight;
+    });
   }
 
   // As a live scene grows.
