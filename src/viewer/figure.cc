@@ -26,14 +26,16 @@ struct Layout {
   double image_height = 0;  // 0: no images
   double panel_width = 0;
   double panel_height = 0;  // of a scene
+  double legend_height = 0;
 
   Layout(const View& view, const FigureOptions& options, std::size_t frames) {
     panel_width = options.panel_width_px;
     panel_height = panel_width * AspectOf(view);
     image_height = view.sequence ? panel_height : 0;
     width = kGap + static_cast<double>(frames) * (panel_width + kGap);
+    legend_height = LegendHeight(width - 2 * kGap, HasTruth(view));
     height = kLine + image_height + kGap +
-             static_cast<double>(view.runs.size()) * (panel_height + kGap + RunLine(view)) + kLine;
+             static_cast<double>(view.runs.size()) * (panel_height + kGap + RunLine(view)) + legend_height;
   }
 
   static double RunLine(const View& view) { return view.runs.size() > 1 ? kLine : 0; }
@@ -46,28 +48,27 @@ Status Draw(cairo_t* drawing, const View& view, const FigureOptions& options, co
   cairo_paint(drawing);
   auto images = FrameImages::Open(view, *frames_idx.begin());
   if (!images.ok()) return images.status();
-  std::vector<Orbit> orbits;
+  std::vector<Viewpoint> viewpoints;
   for (const ViewedRun& run : view.runs)
-    orbits.push_back(OrbitOf(view, run, options, layout.panel_width, layout.panel_height));
+    viewpoints.push_back(ViewpointOf(view, run, options, layout.panel_width, layout.panel_height));
   double left = kGap;
   for (const int frame_idx : frames_idx) {
-    DrawText(drawing, left, kLine - 6, kText, "frame " + std::to_string(frame_idx));
+    DrawText(drawing, left, kLine - 6, layout.panel_width, "frame " + std::to_string(frame_idx));
     const auto image = images->At(frame_idx);
     if (!image.ok()) return image.status();
-    DrawImage(drawing, {left, kLine, layout.panel_width, layout.image_height}, *image,
-              FindFrame(view.runs.front(), frame_idx));
+    DrawImage(drawing, {left, kLine, layout.panel_width, layout.image_height}, *image, view, frame_idx);
     double top = kLine + layout.image_height + kGap;
     for (std::size_t i = 0; i < view.runs.size(); ++i) {
       const ViewedRun& run = view.runs[i];
-      if (view.runs.size() > 1) DrawText(drawing, left, top + kLine - 8, kText, run.name);
+      if (view.runs.size() > 1) DrawRunName(drawing, left, top + kLine - 8, layout.panel_width, view, i);
       top += Layout::RunLine(view);
-      DrawScene(drawing, {left, top, layout.panel_width, layout.panel_height}, view, run, frame_idx, orbits[i],
+      DrawScene(drawing, {left, top, layout.panel_width, layout.panel_height}, view, run, frame_idx, viewpoints[i],
                 options);
       top += layout.panel_height + kGap;
     }
     left += layout.panel_width + kGap;
   }
-  DrawLegend(drawing, kGap, layout.height - 8, kText, !view.truth.empty());
+  DrawLegend(drawing, kGap, layout.height - layout.legend_height, layout.width - 2 * kGap, HasTruth(view));
   return Status::Ok();
 }
 

@@ -19,6 +19,7 @@
 namespace pliant {
 namespace {
 
+constexpr double kMargin = 6;
 constexpr double kNameLeft = 110;  // beside the frame's number
 constexpr double kUsualFps = 30;
 
@@ -60,7 +61,8 @@ struct FilmLayout {
   const FigureOptions& options;
   double panel_width = 0;
   double panel_height = 0;
-  const std::vector<Orbit>& orbits;  // one a run
+  const std::vector<Viewpoint>& viewpoints;  // one a run
+  const bool truth;                          // HasTruth
 };
 
 // The frame's number and a legend around its image, where there is one, and a panel for each run.
@@ -71,18 +73,20 @@ void DrawFilmFrame(const FilmLayout& layout, int frame_idx, const cv::Mat& image
   cairo_paint(drawing.get());
   double left = 0;
   if (!image.empty()) {
-    DrawImage(drawing.get(), {left, kLine, layout.panel_width, layout.panel_height}, image,
-              FindFrame(view.runs.front(), frame_idx));
+    DrawImage(drawing.get(), {left, kLine, layout.panel_width, layout.panel_height}, image, view, frame_idx);
     left += layout.panel_width;
   }
   for (std::size_t i = 0; i < view.runs.size(); ++i) {
     DrawScene(drawing.get(), {left, kLine, layout.panel_width, layout.panel_height}, view, view.runs[i], frame_idx,
-              layout.orbits[i], layout.options);
-    if (view.runs.size() > 1) DrawText(drawing.get(), left + kNameLeft, kLine - 6, kText, view.runs[i].name);
+              layout.viewpoints[i], layout.options);
+    if (view.runs.size() > 1) {
+      const double name_left = left > 0 ? kMargin : kNameLeft;
+      DrawRunName(drawing.get(), left + name_left, kLine - 6, layout.panel_width - name_left, view, i);
+    }
     left += layout.panel_width;
   }
-  DrawText(drawing.get(), 6, kLine - 6, kText, "frame " + std::to_string(frame_idx));
-  DrawLegend(drawing.get(), 6, cairo_image_surface_get_height(surface) - 7, kText, !view.truth.empty());
+  DrawText(drawing.get(), kMargin, kLine - 6, kNameLeft - kMargin, "frame " + std::to_string(frame_idx));
+  DrawLegend(drawing.get(), kMargin, kLine + layout.panel_height, left - 2 * kMargin, layout.truth);
 }
 
 }  // namespace
@@ -101,9 +105,13 @@ Result<std::vector<std::string>> WriteFilm(const ViewRequest& request, const Fig
   const double panel_width = options.panel_width_px;
   const double panel_height = panel_width * AspectOf(*view);
   const std::size_t panels = (view->sequence ? 1 : 0) + view->runs.size();
-  const cv::Size size(Even(static_cast<double>(panels) * panel_width), Even(panel_height + 2 * kLine));
-  std::vector<Orbit> orbits;
-  for (const ViewedRun& run : view->runs) orbits.push_back(OrbitOf(*view, run, options, panel_width, panel_height));
+  const double width = static_cast<double>(panels) * panel_width;
+  const bool truth = HasTruth(*view);
+  const double legend_height = LegendHeight(width - 2 * kMargin, truth);
+  const cv::Size size(Even(width), Even(panel_height + kLine + legend_height));
+  std::vector<Viewpoint> viewpoints;
+  for (const ViewedRun& run : view->runs)
+    viewpoints.push_back(ViewpointOf(*view, run, options, panel_width, panel_height));
   auto images = FrameImages::Open(*view, *frames_idx.begin());
   if (!images.ok()) return images.status();
   const std::string draft = std::filesystem::path(output_path).replace_extension(".part.mp4").string();
@@ -125,7 +133,7 @@ Result<std::vector<std::string>> WriteFilm(const ViewRequest& request, const Fig
       if (!read.ok()) return unwritten(read.status());
       image = *read;
     }
-    DrawFilmFrame({*view, options, panel_width, panel_height, orbits}, frame_idx, image, surface.get());
+    DrawFilmFrame({*view, options, panel_width, panel_height, viewpoints, truth}, frame_idx, image, surface.get());
     cairo_surface_flush(surface.get());
     const cv::Mat bgra(size, CV_8UC4, cairo_image_surface_get_data(surface.get()),
                        static_cast<std::size_t>(cairo_image_surface_get_stride(surface.get())));

@@ -14,45 +14,45 @@ namespace pliant {
 namespace {
 
 constexpr double kFieldOfViewDeg = 40;  // across the smaller side
-constexpr double kShare = 0.98;         // of the points that are in the panel for certain
+constexpr double kShare = 0.998;        // of the points that are in the panel for certain
 constexpr double kMargin = 1.08;
 
 double Radians(double degrees) { return degrees * std::numbers::pi / 180; }
 
 }  // namespace
 
-Orbit::Orbit(std::span<const Eigen::Vector3d> points, std::span<const Eigen::Vector3d> centers,
+Orbit::Orbit(std::span<const Eigen::Vector3d> points, std::span<const Eigen::Vector3d> cameras,
              const Eigen::Quaterniond& world_from_cam, double azimuth_deg, double elevation_deg, double width_px,
              double height_px)
     : width_px_(width_px), height_px_(height_px) {
-  Eigen::Vector3d middle;
-  for (int i = 0; i < 3; ++i) {
-    std::vector<double> values;
-    for (const Eigen::Vector3d& point : points) values.push_back(point[i]);
-    double low = Quantile(values, 1 - kShare);
-    double high = Quantile(values, kShare);
-    for (const Eigen::Vector3d& center : centers) {
-      low = std::min(low, center[i]);
-      high = std::max(high, center[i]);
-    }
-    middle[i] = 0.5 * (low + high);
-  }
   // Right, down and ahead of the eye: the camera's, turned to its right and upwards.
   const Eigen::Quaterniond turned = world_from_cam *
                                     Eigen::AngleAxisd(-Radians(azimuth_deg), Eigen::Vector3d::UnitY()) *
                                     Eigen::AngleAxisd(-Radians(elevation_deg), Eigen::Vector3d::UnitX());
   focal_px_ = 0.5 * std::min(width_px, height_px) / std::tan(Radians(0.5 * kFieldOfViewDeg));
-  const auto least_distance = [&](const Eigen::Vector3d& point) {  // from which it is just inside
-    const Eigen::Vector3d seen = turned.conjugate() * (point - middle);
-    const double aside = std::max(std::abs(seen.x()) / (0.5 * width_px), std::abs(seen.y()) / (0.5 * height_px));
-    return kMargin * focal_px_ * aside - seen.z();
-  };
-  std::vector<double> distances;
-  for (const Eigen::Vector3d& point : points) distances.push_back(least_distance(point));
-  double distance = std::max(1e-9, Quantile(distances, kShare));
-  for (const Eigen::Vector3d& center : centers) distance = std::max(distance, least_distance(center));
-  const Rigid3 world_from_eye{turned, middle - turned * Eigen::Vector3d(0, 0, distance)};
-  eye_from_world_ = world_from_eye.Inverse();
+  const Eigen::Vector3d origin = points.front();
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();  // of the view, in turned axes from the origin
+  double distance = 1e-9;                            // of the eye from it
+  for (int axis = 0; axis < 2; ++axis) {
+    // A point is inside to one side where its offset there is at most slope * its distance along the view.
+    const double slope = 0.5 * (axis == 0 ? width_px : height_px) / (kMargin * focal_px_);
+    const auto reach = [&](int sign) {
+      const auto of = [&](const Eigen::Vector3d& point) {
+        const Eigen::Vector3d seen = turned.conjugate() * (point - origin);
+        return sign * seen[axis] / slope - seen.z();
+      };
+      std::vector<double> reaches;
+      for (const Eigen::Vector3d& point : points) reaches.push_back(of(point));
+      double most = Quantile(std::move(reaches), kShare);
+      for (const Eigen::Vector3d& camera : cameras) most = std::max(most, of(camera));
+      return most;
+    };
+    const double low = reach(-1);
+    const double high = reach(1);
+    middle[axis] = 0.5 * slope * (high - low);
+    distance = std::max(distance, 0.5 * (high + low));
+  }
+  eye_from_world_ = Rigid3{turned, origin + turned * (middle - Eigen::Vector3d(0, 0, distance))}.Inverse();
 }
 
 Eigen::Vector3d Orbit::Project(const Eigen::Vector3d& point) const {

@@ -14,10 +14,10 @@ namespace pliant {
 
 class Orbit {
  public:
-  // Round the middle of `points` (not empty), from behind and above of a camera that looks so, and from so far away
-  // that nearly all of them, and all of `centers`, are seen in a panel of this size. Panel pixels, from its top left
+  // From behind and above of a camera that looks so, and from where nearly all of `points` (not empty), and all of
+  // `cameras`, are seen as large as a panel of this size allows. Panel pixels, from its top left
   // corner.
-  Orbit(std::span<const Eigen::Vector3d> points, std::span<const Eigen::Vector3d> centers,
+  Orbit(std::span<const Eigen::Vector3d> points, std::span<const Eigen::Vector3d> cameras,
         const Eigen::Quaterniond& world_from_cam, double azimuth_deg, double elevation_deg, double width_px,
         double height_px);
 

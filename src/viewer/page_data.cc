@@ -55,6 +55,19 @@ Json FramePosesOf(const ViewedRun& run) {
   return PackFloats(values, 7);
 }
 
+// What a run writes as 0 where there is nothing to measure is null: the error of a frame without a pose, or of points
+// that were placed at their pixels, and the terms of a frame for which no joint problem was solved.
+Json ReprojectionErrorOf(const ViewedFrame& frame) {
+  const double error_px = frame.row.median_reprojection_error_px;
+  return frame.world_from_cam && error_px > 0 ? Number(error_px) : Json(nullptr);
+}
+
+Json CostIn(const ViewedFrame& frame, const std::string& term) {
+  const auto& costs = frame.row.costs;
+  const bool solved = std::ranges::any_of(costs, [](const CostTerm& cost) { return cost.value != 0; });
+  return solved ? Number(CostOf(costs, term)) : Json(nullptr);
+}
+
 Json Frames(const ViewedRun& run) {
   const auto row = [](auto member) { return [member](const ViewedFrame& f) { return Json(f.row.*member); }; };
   Json frames = {{"frame", Column(run, row(&RunFrame::frame_idx))},
@@ -74,13 +87,13 @@ Json Frames(const ViewedRun& run) {
   frames["optimized"] = known(&RunFrame::optimized);
   frames["lost"] = known(&RunFrame::lost);
   frames["added"] = known(&RunFrame::added);
-  frames["reprojection_px"] = known(&RunFrame::median_reprojection_error_px);
+  frames["reprojection_px"] =
+      Column(run, [&](const ViewedFrame& f) { return has ? ReprojectionErrorOf(f) : Json(nullptr); });
   if (has) {
     for (const CostTerm& cost : run.frames.empty() ? std::vector<CostTerm>() : run.frames.front().row.costs) {
       std::string label = cost.name;
       std::ranges::replace(label, '_', ' ');
-      frames["costs"][label] =
-          Column(run, [&](const ViewedFrame& f) { return Number(CostOf(f.row.costs, cost.name)); });
+      frames["costs"][label] = Column(run, [&](const ViewedFrame& f) { return CostIn(f, cost.name); });
     }
     for (std::size_t i = 0; i < run.stage_names.size(); ++i)
       frames["stages_ms"][run.stage_names[i]] = Column(run, [i](const ViewedFrame& f) {
@@ -190,8 +203,11 @@ Json Texts(const std::vector<NamedText>& texts, bool as_options) {
   return rows;
 }
 
+std::string UnitOf(bool in_millimeters) { return in_millimeters ? "mm" : "map units"; }
+
 Json RunData(const ViewedRun& run) {
   return {{"name", run.name},
+          {"unit", UnitOf(run.in_millimeters)},
           {"status", run.status},
           {"note", run.note},
           {"figures", Texts(run.figures, false)},
@@ -240,7 +256,7 @@ Json PageData(const View& view, const ViewImages& images, const std::string& tit
           {"version", kVersion},
           {"title", title},
           {"live", false},
-          {"unit", view.in_millimeters ? "mm" : "map units"},
+          {"unit", UnitOf(view.in_millimeters)},
           {"notes", view.notes},
           {"camera", CameraData(view.camera)},
           {"images", ImageData(images)},

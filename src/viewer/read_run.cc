@@ -103,6 +103,21 @@ void AddPoints(const RunMap& map, ViewedRun* run) {
   }
 }
 
+// Whether the unit of a run's maps is the millimeter; of a refined run, of the run that was refined.
+Result<bool> IsMetric(const ReadViewedRun& read) {
+  constexpr int kMaxRefinements = 100;  // one after the other; a run that names itself ends
+  std::vector<NamedText> options = read.run.options;
+  std::string from = read.summary ? read.summary->description.refined_from : std::string();
+  for (int i = 0; i < kMaxRefinements && !from.empty(); ++i) {
+    auto refined = ReadRunOptions(from);
+    if (!refined.ok()) return refined.status();
+    options = *std::move(refined);
+    const auto summary = ReadRunSummary(from + "/run.json");
+    from = summary.ok() ? summary->description.refined_from : std::string();
+  }
+  return AreMetric(options);
+}
+
 }  // namespace
 
 std::string RunName(const std::string& run_path) {
@@ -171,6 +186,9 @@ Result<ReadViewedRun> ReadRunForView(const std::string& run_path, const Sequence
   auto options = ReadRunOptions(run_path);
   if (!options.ok()) return options.status();
   read.run.options = *std::move(options);
+  const auto metric = IsMetric(read);
+  if (!metric.ok()) return metric.status();
+  read.run.in_millimeters = *metric;
   return read;
 }
 

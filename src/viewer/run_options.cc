@@ -6,6 +6,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include "pliant/base/files.h"
+#include "pliant/tracking/bootstrapping/make_initializer.h"
 
 namespace pliant {
 
@@ -23,6 +24,16 @@ Result<std::vector<NamedText>> ReadRunOptions(const std::string& run_path) {
     return Status(ErrorCode::kUnreadable, path + " is not a run's: " + error.what());
   }
   return options;
+}
+
+bool AreMetric(const std::vector<NamedText>& options) {
+  InitOptions init;
+  OptionTable table;
+  init.List(table);
+  for (const NamedText& option : options)
+    if (option.group == "Init")
+      static_cast<void>(table.Set("Init." + option.name, option.value));  // of another version: is as it is by default
+  return init.IsMetric();
 }
 
 }  // namespace pliant

@@ -95,18 +95,27 @@ void TakeNames(const std::vector<std::string>& run_paths, View* view) {
   }
 }
 
-// Everything into one world: the truth's, else that of the first run's first submap.
+// The runs that tell the scale first.
+std::vector<ViewedRun*> InOrderOfScale(View* view) {
+  std::vector<ViewedRun*> runs;
+  for (ViewedRun& run : view->runs) runs.push_back(&run);
+  std::stable_partition(runs.begin(), runs.end(), [](const ViewedRun* run) { return run->in_millimeters; });
+  return runs;
+}
+
+// Everything into one world: the truth's, else that of the first submap of the first run, or of the first one that is
+// in millimeters.
 void Align(const FramePoses& truth, View* view) {
   FramePoses reference = truth;  // and whatever has been placed beside it
   FrameDepths reference_depths;
   bool placed_after = false;
-  for (ViewedRun& run : view->runs) {
+  for (ViewedRun* const run : InOrderOfScale(view)) {
     FramePoses before;
     double depth_before = 1;
-    for (const int submap : SubmapsOf(run)) {
-      const FramePoses poses = PosesOf(run, submap);
-      const FrameDepths depths = DepthsOf(run, submap);
-      std::optional<double> scale = MedianScale(run, submap);
+    for (const int submap : SubmapsOf(*run)) {
+      const FramePoses poses = PosesOf(*run, submap);
+      const FrameDepths depths = DepthsOf(*run, submap);
+      std::optional<double> scale = MedianScale(*run, submap);
       if (!scale) scale = DepthRatio(depths, reference_depths);
       std::optional<Sim3> world = reference.empty() ? Sim3() : AlignWorlds(poses, reference, scale, MedianOf(depths));
       if (!world && !before.empty()) {
@@ -114,12 +123,12 @@ void Align(const FramePoses& truth, View* view) {
         placed_after = true;
       }
       if (world)
-        Move(*world, submap, &run);
+        Move(*world, submap, run);
       else
-        view->notes.push_back("the run " + run.name + " has no frame in common with " +
+        view->notes.push_back("the run " + run->name + " has no frame in common with " +
                               (truth.empty() ? "the first one" : "the truth") + "; it is shown in a world of its own");
-      before = PosesOf(run, submap);
-      const FrameDepths placed_depths = DepthsOf(run, submap);
+      before = PosesOf(*run, submap);
+      const FrameDepths placed_depths = DepthsOf(*run, submap);
       depth_before = MedianOf(placed_depths);
       if (!world) continue;
       reference.insert(before.begin(), before.end());
@@ -200,7 +209,9 @@ Result<View> OpenView(const ViewRequest& request, const ViewOptions& options) {
     if (!view.camera) view.camera = run.camera;
   const FramePoses truth = has_images ? TruePoses(*sequence->sequence, view.runs) : FramePoses();
   for (const auto& [frame_idx, pose] : truth) view.truth.push_back({frame_idx, pose});
-  view.in_millimeters = !truth.empty();
+  view.in_millimeters = !truth.empty() || std::ranges::any_of(view.runs, [](const ViewedRun& run) {
+    return run.in_millimeters && !SubmapsOf(run).empty();
+  });
   Align(truth, &view);
   return view;
 }

@@ -12,6 +12,8 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/videoio.hpp>
 
+#include "viewer/draw_view.h"
+#include "viewer/frame_geometry.h"
 #include "viewer/orbit.h"
 #include "viewer/small_sequence.h"
 
@@ -21,9 +23,12 @@ namespace {
 using testing::HasSubstr;
 using testing::StartsWith;
 
+constexpr double kSmallOfDepth = 0.2;  // a camera, beside how far its points are
 constexpr double kPixel = 1;           // the middle of an image of an even size lies between pixels
 constexpr int kMinCamera = 50;         // pixels of a camera's frame, drawn in lines
+constexpr int kMinLetters = 200;       // pixels of a sentence
 constexpr int kMinLine = 20;           // pixels of a thin line or a few dots
+constexpr int kMinTrails = 450;        // of eight trails in two frames, in lines that are as wide as points
 constexpr double kContainerFps = 0.1;  // a container keeps the rate as a fraction of its own
 
 TEST(Orbit, ShowsEveryCameraAndNearlyEveryPoint) {
@@ -44,15 +49,60 @@ TEST(Orbit, ShowsEveryCameraAndNearlyEveryPoint) {
 // Seen from behind the camera, to its right and above: what is ahead is farther, what is right is right, down is down.
 TEST(Orbit, LooksFromBehindAndAbove) {
   const std::vector<Eigen::Vector3d> points = {{-10, -10, -10}, {10, 10, 10}};
-  const Orbit orbit(points, {}, Eigen::Quaterniond::Identity(), 40, 25, 480, 360);
+  const Orbit orbit(points, points, Eigen::Quaterniond::Identity(), 40, 25, 480, 360);
   const Eigen::Vector3d middle = orbit.Project({0, 0, 0});
-  EXPECT_NEAR(middle.x(), 240, kPixel);
-  EXPECT_NEAR(middle.y(), 180, kPixel);
+  // As far from the lower edge as from the upper one, or the same to the sides.
+  const Eigen::Vector3d ends = orbit.Project(points[0]) + orbit.Project(points[1]);
+  EXPECT_LT(std::min(std::abs(ends.x() / 2 - 240), std::abs(ends.y() / 2 - 180)), kPixel);
   EXPECT_GT(orbit.Project({0, 0, 1}).z(), middle.z());
   EXPECT_GT(orbit.Project({1, 0, 0}).x(), middle.x());
   EXPECT_LT(orbit.Project({1, 0, 0}).z(), middle.z());  // the eye is on the right
   EXPECT_GT(orbit.Project({0, 1, 0}).y(), middle.y());
   EXPECT_GT(orbit.Project({0, 1, 0}).z(), middle.z());  // and above
+}
+
+// A few points 50 mm before a camera that goes 10 mm to its right.
+ViewedRun RunOf(const Camera& camera) {
+  ViewedRun run;
+  run.camera = camera;
+  for (int i = 0; i < 3; ++i) {
+    ViewedFrame& frame = run.frames.emplace_back();
+    frame.row.frame_idx = i;
+    frame.world_from_cam = Rigid3{Eigen::Quaterniond::Identity(), {5.0 * i, 0, 0}};
+    for (const int x : {-2, 0, 2}) {
+      ViewedObservation& seen = frame.observations.emplace_back();
+      seen.id = PointId{x + 2};
+      seen.position = {static_cast<float>(x), static_cast<float>(x), 50};
+      seen.depth = 50;
+      run.points.try_emplace(seen.id, NewPoint{seen.id, seen.position.cast<double>()});
+    }
+  }
+  return run;
+}
+
+// A wide lens, whose image is as wide as six times its distance, and a narrow one.
+TEST(Viewpoint, ShowsAllOfASmallCameraOfAnyFieldOfView) {
+  for (const double focal_px : {100.0, 2000.0}) {
+    const auto camera = Camera::Create("PINHOLE", 640, 480, std::vector<double>{focal_px, focal_px, 319.5, 239.5});
+    const ViewedRun run = RunOf(*camera);
+    const auto frustum = FrustumOf(run);
+    ASSERT_TRUE(frustum);
+    const Viewpoint viewpoint = ViewpointOf({}, run, {}, 480, 360);
+    for (const Eigen::Vector3d& corner : *frustum) {
+      EXPECT_LT(corner.norm(), kSmallOfDepth * 50) << focal_px;
+      for (const ViewedFrame& frame : run.frames) {
+        const Eigen::Vector3d at = viewpoint.orbit.Project(*frame.world_from_cam * corner);
+        EXPECT_TRUE(at.x() >= 0 && at.x() <= 480 && at.y() >= 0 && at.y() <= 360) << at.transpose();
+      }
+    }
+  }
+}
+
+// Pixels of a color in a part of a picture.
+int CountPixels(const cv::Mat& picture, const cv::Scalar& bgr) {
+  cv::Mat found;
+  cv::inRange(picture, bgr - cv::Scalar::all(40), bgr + cv::Scalar::all(40), found);
+  return cv::countNonZero(found);
 }
 
 class FigureTest : public testing::Test {
@@ -80,14 +130,80 @@ TEST_F(FigureTest, DrawsImagesAndScenes) {
   ASSERT_FALSE(figure.empty());
   EXPECT_EQ(figure.cols, 8 + 2 * 968);
   // The camera's blue, the trails' red and the truth's green are there.
-  const auto count = [&](const cv::Scalar& bgr) {
-    cv::Mat found;
-    cv::inRange(figure, bgr - cv::Scalar::all(40), bgr + cv::Scalar::all(40), found);
-    return cv::countNonZero(found);
+  EXPECT_GT(CountPixels(figure, {178, 114, 0}), kMinCamera);
+  EXPECT_GT(CountPixels(figure, {0, 94, 213}), kMinTrails);
+  EXPECT_GT(CountPixels(figure, {115, 158, 0}), kMinLine);
+}
+
+TEST_F(FigureTest, OneNarrowColumnHasTheWholeLegend) {
+  ASSERT_TRUE(Write("figure.png", {10}).ok());
+  const cv::Mat figure = cv::imread(folder_.Path("figure.png"));
+  const int height = static_cast<int>(LegendHeight(160, /*truth=*/true));
+  EXPECT_GT(height, kLine);
+  const cv::Mat legend = figure.rowRange(figure.rows - height, figure.rows);
+  for (const cv::Scalar& bgr : {cv::Scalar(0, 94, 213), cv::Scalar(178, 114, 0), cv::Scalar(115, 158, 0)})
+    EXPECT_GT(CountPixels(legend, bgr), kMinLine) << bgr;
+}
+
+TEST_F(FigureTest, TheLegendNamesATruthThatHasNoPoses) {
+  const auto green_in_legend = [&] {
+    EXPECT_TRUE(Write("figure.png").ok());
+    const cv::Mat figure = cv::imread(folder_.Path("figure.png"));
+    return CountPixels(figure.rowRange(figure.rows - static_cast<int>(kLine), figure.rows), {115, 158, 0});
   };
-  EXPECT_GT(count({178, 114, 0}), kMinCamera);
-  EXPECT_GT(count({0, 94, 213}), kMinLine);
-  EXPECT_GT(count({115, 158, 0}), kMinLine);
+  options_.panel_width_px = 300;
+  std::filesystem::remove(folder_.Path("sequence/groundtruth.txt"));
+  EXPECT_GT(green_in_legend(), kMinLine);
+  std::filesystem::remove_all(folder_.Path("sequence/depth"));
+  EXPECT_EQ(green_in_legend(), 0);
+}
+
+TEST_F(FigureTest, ALongNameStaysAboveItsScene) {
+  const std::string longer = folder_.Path("a run whose name is longer than its scene is wide");
+  std::filesystem::copy(folder_.Path("run"), longer, std::filesystem::copy_options::recursive);
+  ViewRequest request = Request();
+  request.run_paths.push_back(longer);
+  ASSERT_TRUE(WriteFigure(request, options_, {10}, folder_.Path("figure.png")).ok());
+  const cv::Mat figure = cv::imread(folder_.Path("figure.png"));
+  const cv::Mat margin = figure.colRange(figure.cols - 6, figure.cols);
+  EXPECT_EQ(CountPixels(margin, cv::Scalar(255, 255, 255)), static_cast<int>(margin.total()));
+}
+
+TEST_F(FigureTest, ShowsThePointsOfEveryRunInTheImage) {
+  std::filesystem::copy(folder_.Path("run"), folder_.Path("other"), std::filesystem::copy_options::recursive);
+  ViewRequest request = Request();
+  options_.panel_width_px = 960;
+  const auto count = [&] {
+    EXPECT_TRUE(WriteFigure(request, options_, {10}, folder_.Path("figure.png")).ok());
+    const cv::Mat image = cv::imread(folder_.Path("figure.png")).rowRange(30, 740);
+    return std::pair{CountPixels(image, {66, 228, 240}), CountPixels(image, {233, 180, 86})};  // yellow, sky blue
+  };
+  EXPECT_GT(count().first, kMinLine);
+  EXPECT_EQ(count().second, 0);
+  request.run_paths.push_back(folder_.Path("other"));  // whose points are at the same pixels
+  EXPECT_GT(count().first, kMinLine);
+  EXPECT_GT(count().second, kMinLine);
+}
+
+TEST_F(FigureTest, SaysWhyARunHasNothingToShow) {
+  {
+    auto writer =
+        RunWriter::Create(folder_.Path("run"), TestCamera(), {"0.1.0", {"pliant"}, 7, "nowhere", {}}, "Track:\n", {});
+    ASSERT_TRUE(writer.ok()) << writer.status().message();
+    for (int i = 0; i < kRunFrames; ++i) {
+      FrameReport report;
+      report.frame_idx = Report(i).frame_idx;
+      report.timestamp_s = Report(i).timestamp_s;
+      report.state = TrackingState::kInitializing;
+      ASSERT_TRUE(writer->Write(report).ok());
+    }
+    ASSERT_TRUE(writer->Finish(RunStatus::kFailed, "the camera did not move").ok());
+  }
+  options_.panel_width_px = 320;
+  ASSERT_TRUE(Write("figure.png", {10}).ok());
+  const cv::Mat figure = cv::imread(folder_.Path("figure.png"));
+  const int bottom = figure.rows - static_cast<int>(kLine) - 12;  // inside the scene's panel
+  EXPECT_GT(CountPixels(figure(cv::Range(bottom - 220, bottom), cv::Range(12, 324)), {0, 0, 0}), kMinLetters);
 }
 
 TEST_F(FigureTest, WritesVectors) {

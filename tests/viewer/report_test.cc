@@ -72,6 +72,42 @@ TEST_F(ReportTest, HoldsTheRun) {
   EXPECT_TRUE(run["observations"]["gain"].is_null());
 }
 
+// A frame of the first map, one that the joint problem was solved for, one without a pose.
+TEST_F(ReportTest, WhatARunCouldNotMeasureIsNotZero) {
+  constexpr double kFirstMap_px = 0.5;
+  constexpr double kJoint_px = 0.001;
+  {
+    auto writer = RunWriter::Create(folder_.Path("run"), TestCamera(), {"0.1.0", {"pliant"}, 7, "nowhere", {}},
+                                    "Track:\n", {.costs = {"reprojection", "edge_length"}, .stages = {}});
+    ASSERT_TRUE(writer.ok()) << writer.status().message();
+    FrameReport report = Report(0);
+    report.median_reprojection_error_px = kFirstMap_px;
+    ASSERT_TRUE(writer->Write(report).ok());
+    report = Report(1);
+    report.costs = {{"reprojection", 2.0}, {"edge_length", 0.0}};
+    report.median_reprojection_error_px = kJoint_px;
+    ASSERT_TRUE(writer->Write(report).ok());
+    FrameReport lost;
+    lost.frame_idx = Report(2).frame_idx;
+    lost.timestamp_s = Report(2).timestamp_s;
+    lost.state = TrackingState::kLost;
+    ASSERT_TRUE(writer->Write(lost).ok());
+    ASSERT_TRUE(writer->Finish(RunStatus::kCompleted, "").ok());
+  }
+  ASSERT_TRUE(Write().ok());
+  const ordered_json frames = Data()["runs"][0]["frames"];
+  EXPECT_THAT(frames["reprojection_px"], ElementsAre(kFirstMap_px, kJoint_px, nullptr));
+  EXPECT_THAT(frames["costs"]["reprojection"], ElementsAre(nullptr, 2.0, nullptr));
+  EXPECT_THAT(frames["costs"]["edge length"], ElementsAre(nullptr, 0.0, nullptr));
+}
+
+TEST_F(ReportTest, SaysWhereLengthsAreMillimeters) {
+  folder_.Write("run/config.yaml", "Init:\n  method: stereo\n");
+  ASSERT_TRUE(Write().ok());
+  EXPECT_EQ(Data()["unit"], "mm");
+  EXPECT_EQ(Data()["runs"][0]["unit"], "mm");
+}
+
 TEST_F(ReportTest, HoldsImagesAndWhatTheySayOfBrightness) {
   sequence_ = folder_.Path("sequence");
   WriteSmallSequence(sequence_, Truth::kDepthAndPoses);
@@ -81,7 +117,8 @@ TEST_F(ReportTest, HoldsImagesAndWhatTheySayOfBrightness) {
   ASSERT_TRUE(summary.ok()) << summary.status().message();
   EXPECT_EQ(summary->images, static_cast<std::size_t>(kRunFrames));
   const ordered_json data = Data();
-  EXPECT_EQ(data["unit"], "mm");
+  EXPECT_EQ(data["unit"], "mm");  // the truth's
+  EXPECT_EQ(data["runs"][0]["unit"], "map units");
   EXPECT_EQ(data["truth"]["frame"].size(), static_cast<std::size_t>(kRunFrames));
   EXPECT_DOUBLE_EQ(data["images"]["scale"], 0.5);
   EXPECT_THAT(data["images"]["frame"], ElementsAre(10, 12, 14, 16, 18));

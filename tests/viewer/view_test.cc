@@ -102,23 +102,25 @@ TEST_F(ViewTest, BringsTheRunIntoTheWorldOfTheTruth) {
   EXPECT_THAT(run.figures, Contains(testing::Field(&NamedText::group, HasSubstr("Surface error"))));
 }
 
+// The run of WriteRun in another world and unit.
+void WriteRunInWorld(const Sim3& world, const std::string& path, const std::string& refined_from = "") {
+  RunDescription description;
+  description.refined_from = refined_from;
+  auto writer = RunWriter::Create(path, TestCamera(), description, "Track:\n  option: 3\n", {});
+  ASSERT_TRUE(writer.ok()) << writer.status().message();
+  for (int i = 0; i < kRunFrames; ++i) {
+    FrameReport report = Report(i);
+    report.cam_from_world = PoseInWorld(world, *report.cam_from_world);
+    for (PointObservation& o : report.observations) o.position = world * o.position;
+    for (NewPoint& point : report.new_points) point.position = world * point.position;
+    ASSERT_TRUE(writer->Write(report).ok());
+  }
+  ASSERT_TRUE(writer->Finish(RunStatus::kCompleted, "").ok());
+}
+
 TEST_F(ViewTest, ShowsRunsOfOneSceneInOneWorld) {
   WriteRun(folder_);
-  // The same run in another world and unit.
-  const Sim3 other = {0.3, kTruthFromRun.rotation, {1, 1, 1}};
-  {
-    auto writer = RunWriter::Create(folder_.Path("b/run"), TestCamera(), {"0.1.0", {"pliant"}, 7, "nowhere", {}},
-                                    "Track:\n  option: 3\n", {});
-    ASSERT_TRUE(writer.ok()) << writer.status().message();
-    for (int i = 0; i < kRunFrames; ++i) {
-      FrameReport report = Report(i);
-      report.cam_from_world = PoseInWorld(other, *report.cam_from_world);
-      for (PointObservation& o : report.observations) o.position = other * o.position;
-      for (NewPoint& point : report.new_points) point.position = other * point.position;
-      ASSERT_TRUE(writer->Write(report).ok());
-    }
-    ASSERT_TRUE(writer->Finish(RunStatus::kCompleted, "").ok());
-  }
+  WriteRunInWorld({0.3, kTruthFromRun.rotation, {1, 1, 1}}, folder_.Path("b/run"));
   const auto view =
       OpenView({.run_paths = {folder_.Path("run"), folder_.Path("b/run")}, .sequence_path = "", .camera_path = ""}, {});
   ASSERT_TRUE(view.ok()) << view.status().message();
@@ -135,6 +137,47 @@ TEST_F(ViewTest, ShowsRunsOfOneSceneInOneWorld) {
       EXPECT_NEAR(a.observations[k].depth, b.observations[k].depth, kAlignedPoint_mm);
     }
   }
+}
+
+// A start from known depth tells the scale.
+TEST_F(ViewTest, ARunWithTrueMillimetersIsShownInMillimeters) {
+  WriteRun(folder_);
+  const auto in_millimeters = [&](const std::string& options) {
+    folder_.Write("run/config.yaml", options);
+    const auto view = Open();
+    EXPECT_TRUE(view.ok()) << view.status().message();
+    EXPECT_EQ(view->in_millimeters, view->runs.front().in_millimeters);
+    return view->in_millimeters;
+  };
+  EXPECT_TRUE(in_millimeters("Init:\n  method: stereo\n"));
+  EXPECT_TRUE(in_millimeters("Init:\n  method: depth\n"));
+  EXPECT_TRUE(in_millimeters("Init:\n  method: colmap_model\n  model_unit_mm: 1000\n"));
+  EXPECT_FALSE(in_millimeters("Init:\n  method: colmap_model\n  model_unit_mm: 0\n"));
+  EXPECT_FALSE(in_millimeters("Init:\n  method: window\n"));
+  EXPECT_FALSE(in_millimeters("Init:\n  method: of another version\n"));
+}
+
+TEST_F(ViewTest, ARefinedRunHasTheUnitOfTheRunItRefined) {
+  WriteRun(folder_);
+  folder_.Write("run/config.yaml", "Init:\n  method: stereo\n");
+  WriteRunInWorld({}, folder_.Path("refined"), folder_.Path("run"));
+  WriteRunInWorld({}, folder_.Path("again"), folder_.Path("refined"));
+  const auto view = OpenView({.run_paths = {folder_.Path("again")}, .sequence_path = "", .camera_path = ""}, {});
+  ASSERT_TRUE(view.ok()) << view.status().message();
+  EXPECT_TRUE(view->in_millimeters);
+}
+
+TEST_F(ViewTest, TheRunThatTellsTheScaleScalesTheOthers) {
+  constexpr double kScale = 0.3;
+  WriteRunInWorld({kScale, kTruthFromRun.rotation, {1, 1, 1}}, folder_.Path("monocular"));
+  WriteRun(folder_);
+  folder_.Write("run/config.yaml", "Init:\n  method: depth\n");
+  const auto view = OpenView(
+      {.run_paths = {folder_.Path("monocular"), folder_.Path("run")}, .sequence_path = "", .camera_path = ""}, {});
+  ASSERT_TRUE(view.ok()) << view.status().message();
+  EXPECT_TRUE(view->in_millimeters);
+  for (const ViewedRun& run : view->runs)
+    EXPECT_NEAR(run.frames[2].observations[1].depth, (PoseAt(2) * PositionAt(1, 2)).z(), kAlignedPoint_mm) << run.name;
 }
 
 TEST_F(ViewTest, PutsSubmapsThatNothingConnectsOneAfterTheOther) {

@@ -6,8 +6,14 @@ import { eventually, goTo, lonelyPoint, press, screenshot, state, testReport } f
 
 const REPORT = "PLIANT_REPORT";
 const READABLE_CONTRAST = 4.5;  // WCAG 2.1, level AA, for text
+const SMALL = 0.3;              // of the camera, beside the points that it sees
 // A click lands within a frame or two: handles and margins take some of the width.
 const nearlyThere = (frames) => 0.05 * frames + 2;
+
+function extentOf(places) {
+  const span = (values) => Math.max(...values) - Math.min(...values);
+  return Math.hypot(span(places.map(({ x }) => x)), span(places.map(({ y }) => y)));
+}
 
 async function goToTheMiddle(page) {
   await goTo(page, Math.floor((await state(page)).frames / 2));
@@ -107,6 +113,24 @@ for (const view of ["image", "scene"]) {
     await page.locator("#point").waitFor({ state: "hidden" });
   });
 }
+
+// In the first view, in every frame, also where the point's panel makes the scene's narrower.
+testReport("shows the camera small and inside the scene's panel", REPORT, async (page) => {
+  const { frames } = await state(page);
+  for (const position of [0, Math.floor(frames / 2), frames - 1]) {
+    await goTo(page, position);
+    if (position > 0) await press(page, "n");
+    await page.waitForTimeout(300);
+    const box = await page.locator("#scene").boundingBox();
+    const ends = await page.evaluate(() => window.pliant.frustumOnScreen());
+    assert.equal(ends.length, 5);
+    for (const { x, y } of ends) {
+      assert.ok(x > box.x && x < box.x + box.width && y > box.y && y < box.y + box.height, `frame ${position}: ${x}, ${y}`);
+    }
+    const points = await page.evaluate(() => window.pliant.state().points.map((id) => window.pliant.screenOf(id, "scene")));
+    assert.ok(extentOf(ends) < SMALL * extentOf(points), `frame ${position}: ${extentOf(ends)} of ${extentOf(points)} pixels`);
+  }
+});
 
 testReport("says when the picked point is not seen", REPORT, async (page) => {
   await goToTheMiddle(page);

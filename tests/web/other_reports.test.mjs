@@ -2,12 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 import assert from "node:assert/strict";
-import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
-import { tmpdir } from "node:os";
-import { join } from "node:path";
+import { readFileSync } from "node:fs";
 import { test } from "node:test";
-import { pathToFileURL } from "node:url";
-import { eventually, goTo, lonelyPoint, press, screenshot, state, testReport, withPage } from "./support.mjs";
+import { dataTextOf, pageWith } from "./made_up.mjs";
+import { eventually, goTo, lonelyPoint, press, screenshot, state, testReport, withPageOf } from "./support.mjs";
 
 const TWO = "PLIANT_REPORT_TWO";
 const NO_IMAGES = "PLIANT_REPORT_NO_IMAGES";
@@ -72,19 +70,10 @@ for (const [name, change, sentence] of broken) {
   const path = process.env[NO_IMAGES];
   test(name, { skip: path ? false : `${NO_IMAGES} is not set` }, async () => {
     const report = readFileSync(path, "utf8");
-    const from = report.indexOf(">", report.indexOf('<script type="application/json" id="pliant-data"')) + 1;
-    const to = report.indexOf("</script>", from);
-    const folder = mkdtempSync(join(tmpdir(), "pliant-"));
-    try {
-      const file = join(folder, "report.html");
-      writeFileSync(file, report.slice(0, from) + change(report.slice(from, to)) + report.slice(to));
-      await withPage(pathToFileURL(file).href, async (page) => {
-        assert.match(await page.locator("#message").textContent(), sentence);
-        assert.ok(await page.locator("#message").isVisible());
-      });
-    } finally {
-      rmSync(folder, { recursive: true });
-    }
+    await withPageOf(pageWith(change(dataTextOf(report)), report), async (page) => {
+      assert.match(await page.locator("#message").textContent(), sentence);
+      assert.ok(await page.locator("#message").isVisible());
+    });
   });
 }
 

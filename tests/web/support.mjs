@@ -9,11 +9,13 @@
 
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
-import { mkdirSync } from "node:fs";
+import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { createRequire } from "node:module";
+import { tmpdir } from "node:os";
 import { join, resolve } from "node:path";
 import { after, before, test } from "node:test";
 import { pathToFileURL } from "node:url";
+import { pageWith } from "./made_up.mjs";
 
 const TIMEOUT_MS = 120000;   // of a step, on a machine that has other things to do
 const { chromium } = createRequire(join(resolve(process.env.PLIANT_NODE_MODULES), "package.json"))("playwright-core");
@@ -58,6 +60,42 @@ export async function withPage(url, run, { allowed, tolerated, before: prepare, 
   } finally {
     await page.close();
   }
+}
+
+// The page of this text, opened from disk.
+export async function withPageOf(text, run, options) {
+  const folder = mkdtempSync(join(tmpdir(), "pliant-"));
+  try {
+    const file = join(folder, "report.html");
+    writeFileSync(file, text);
+    await withPage(pathToFileURL(file).href, run, options);
+  } finally {
+    rmSync(folder, { recursive: true });
+  }
+}
+
+// A test of a report with these data (made_up.mjs).
+export function testMadeUp(name, data, run, options) {
+  const path = process.env.PLIANT_REPORT;
+  test(name, { skip: path ? false : "PLIANT_REPORT is not set" }, async () => {
+    await withPageOf(pageWith(JSON.stringify(data), readFileSync(path, "utf8")), run, options);
+  });
+}
+
+// How many pixels of an element, as it is shown, have nearly this color ("#rrggbb").
+export async function countPixels(page, selector, color) {
+  const png = (await page.locator(selector).screenshot()).toString("base64");
+  return page.evaluate(async ([base64, wanted]) => {
+    const bytes = Uint8Array.from(atob(base64), (character) => character.charCodeAt(0));
+    const bitmap = await createImageBitmap(new Blob([bytes], { type: "image/png" }));
+    const context = Object.assign(document.createElement("canvas"), { width: bitmap.width, height: bitmap.height }).getContext("2d");
+    context.drawImage(bitmap, 0, 0);
+    const { data } = context.getImageData(0, 0, bitmap.width, bitmap.height);
+    const rgb = [1, 3, 5].map((at) => parseInt(wanted.slice(at, at + 2), 16));
+    let count = 0;
+    for (let i = 0; i < data.length; i += 4) if (rgb.every((value, channel) => Math.abs(data[i + channel] - value) < 24)) ++count;
+    return count;
+  }, [png, color]);
 }
 
 export function state(page) {

@@ -60,16 +60,20 @@ const TABLE = Array.from({ length: LEVELS }, (_, level) => {
 });
 const UNKNOWN = 0x8c959f;
 
+// The mode in which runs are told apart; it is there where there are several.
+export const BY_RUN = "run";
+
 export interface Mode {
   name: string;
   label: string;
   unit: string;
-  value: ((run: Run, observation: number) => number) | null;   // null: the point's own color
+  value: ((run: Run, observation: number) => number) | null;   // null: the point's own color, or its run's
 }
 
 export function colorModes(report: Report): Mode[] {
   const { unit } = report;
   const modes: Mode[] = [
+    ...(report.runs.length > 1 ? [{ name: BY_RUN, label: "run", unit: "", value: null }] : []),
     { name: "age", label: "age", unit: "frames", value: (run, o) => run.age(o) },
     { name: "residual", label: "reprojection error", unit: "px", value: (run, o) => run.reprojection.values[o] },
     { name: "depth", label: "depth", unit, value: (run, o) => run.depth.values[o] },
@@ -89,10 +93,10 @@ export function colorModes(report: Report): Mode[] {
 // A mode with its range: the 2nd to the 98th percentile over all observations of all runs, so that colors neither flicker from
 // frame to frame nor differ between runs.
 export class Coloring {
-  constructor(readonly mode: Mode, readonly low: number, readonly high: number) {}
+  private constructor(readonly mode: Mode, readonly low: number, readonly high: number, private readonly runs: Run[]) {}
 
   static of(mode: Mode, report: Report): Coloring {
-    if (!mode.value) return new Coloring(mode, 0, 1);
+    if (!mode.value) return new Coloring(mode, 0, 1, report.runs);
     const values: number[] = [];
     for (const run of report.runs) {
       const step = Math.max(1, Math.floor(run.observations / 20000));
@@ -101,14 +105,15 @@ export class Coloring {
         if (!Number.isNaN(value)) values.push(value);
       }
     }
-    if (values.length === 0) return new Coloring(mode, NaN, NaN);
+    if (values.length === 0) return new Coloring(mode, NaN, NaN, report.runs);
     values.sort((a, b) => a - b);
     const low = values[Math.floor(0.02 * (values.length - 1))];
     const high = values[Math.ceil(0.98 * (values.length - 1))];
-    return new Coloring(mode, low, high > low ? high : low + 1);
+    return new Coloring(mode, low, high > low ? high : low + 1, report.runs);
   }
 
-  color(run: Run, observation: number): number {
+  color(run: Run, observation: number, dark: boolean): number {
+    if (this.mode.name === BY_RUN) return numberOf(runColor(dark, this.runs.indexOf(run)));
     if (!this.mode.value) {
       const c = 3 * run.point.values[observation];
       const rgb = run.rgb.values;
@@ -119,6 +124,11 @@ export class Coloring {
     const level = Math.round(((value - this.low) / (this.high - this.low)) * (LEVELS - 1));
     return TABLE[level < 0 ? 0 : level >= LEVELS ? LEVELS - 1 : level] ?? UNKNOWN;
   }
+}
+
+// Of "#rrggbb".
+export function numberOf(color: string): number {
+  return parseInt(color.slice(1), 16);
 }
 
 export function css(color: number): string {

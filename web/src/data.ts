@@ -40,6 +40,7 @@ export interface FrameData {
 
 export interface RunData {
   name: string;
+  unit: string;
   status: string;
   note: string;
   figures: [string, string, string][];

@@ -1,10 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The current frame's image with the points of the current run.
+// The current frame's image with the points of the visible runs: of the current one with their trails, of the others in the runs'
+// colors and shapes, as in the 3D view.
 
-import { paletteOf } from "./colors";
+import { numberOf, paletteOf, runColor } from "./colors";
 import { byId, onClick, prepare, setText } from "./dom";
+import { RUN_SHAPES } from "./marks";
 import type { Page } from "./page";
 import { pickNearest } from "./picking";
 import type { Run } from "./run";
@@ -12,7 +14,7 @@ import { Stamps, strokeOnImage } from "./stamps";
 import { type Changed, anyOf } from "./state";
 
 const TAIL_FRAMES = 10;
-const TAIL_COLOR = "rgba(255, 255, 255, 0.65)";
+const TAIL_COLOR = "rgba(255, 255, 255, 0.9)";   // on an image
 const TAIL_STEP_PX = 2.5;   // shorter steps are not drawn by themselves
 const MAX_ZOOM = 20;
 const PREFETCHED = 6;
@@ -40,7 +42,7 @@ export class ImageView {
   }
 
   update(changed: Changed): void {
-    if (anyOf(changed, "position", "current", "picked", "color", "layers", "dark", "revision")) this.draw();
+    if (anyOf(changed, "position", "current", "visible", "picked", "color", "layers", "dark", "revision")) this.draw();
   }
 
   reset(): void {
@@ -64,8 +66,10 @@ export class ImageView {
     setText(this.caption, this.captionOf(frame));
 
     this.drawImage(context);
+    if (!state.layers.points) return;
+    this.drawOthers(context);
     const row = report.row(state.current, state.position);
-    if (!state.layers.points || row < 0) return;
+    if (row < 0 || !state.visible[state.current]) return;
     const run = report.runs[state.current];
     this.drawPoints(context, run, row);
     this.drawPicked(context, run, row);
@@ -113,13 +117,26 @@ export class ImageView {
     this.drawTails(context, run, observations);
     for (const o of observations) {
       const [x, y] = this.project(run.pixel.values[2 * o], run.pixel.values[2 * o + 1]);
-      const color = this.page.coloring.color(run, o);
+      const color = this.page.coloring.color(run, o, this.page.store.state.dark);
       const lost = run.isLost(o);
       const returned = run.isReturned(o);
       if (!lost && !returned) this.stamps.draw(context, x, y, color, "dot");
       if (lost) this.stamps.draw(context, x, y, color, "cross");
       if (returned) this.stamps.draw(context, x, y, color, "ring");
     }
+  }
+
+  private drawOthers(context: CanvasRenderingContext2D): void {
+    const { report, store } = this.page;
+    const { visible, current, position, dark } = store.state;
+    report.runs.forEach((run, index) => {
+      if (index === current || !visible[index]) return;
+      const color = numberOf(runColor(dark, index));
+      for (const o of run.observationsOfRow(report.row(index, position))) {
+        const [x, y] = this.project(run.pixel.values[2 * o], run.pixel.values[2 * o + 1]);
+        this.stamps.draw(context, x, y, color, RUN_SHAPES[index % RUN_SHAPES.length]);
+      }
+    });
   }
 
   // In one path: a path a color is much slower.
@@ -141,8 +158,8 @@ export class ImageView {
         context.lineTo(x = px, y = py);
       }
     }
-    context.lineWidth = 1.25;
-    context.strokeStyle = TAIL_COLOR;
+    context.lineWidth = 1.5;
+    context.strokeStyle = this.shown ? TAIL_COLOR : paletteOf(this.page.store.state.dark).text;
     context.stroke();
   }
 

@@ -1,9 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Segments in the 3D view: thin ones that change with every frame, and ones with a width or dashes that are set once.
+// Segments in the 3D view: ones that change with every frame, thin or with a width, and ones with a width or dashes that are set
+// once.
 
-import { BufferAttribute, BufferGeometry, DynamicDrawUsage, LineBasicMaterial, LineSegments } from "three";
+import {
+  BufferAttribute, BufferGeometry, DynamicDrawUsage, InstancedInterleavedBuffer, InterleavedBufferAttribute, LineBasicMaterial, LineSegments,
+} from "three";
 import { LineMaterial } from "three/examples/jsm/lines/LineMaterial.js";
 import { LineSegments2 } from "three/examples/jsm/lines/LineSegments2.js";
 import { LineSegmentsGeometry } from "three/examples/jsm/lines/LineSegmentsGeometry.js";
@@ -49,6 +52,51 @@ export class ThinLines extends LineSegments<BufferGeometry, LineBasicMaterial> {
     this.geometry.dispose();
     this.geometry = new BufferGeometry();
     this.geometry.setAttribute("position", new BufferAttribute(array, 3).setUsage(DynamicDrawUsage));
+  }
+}
+
+export class ChangingWideLines extends LineSegments2 {
+  private used = 0;
+  private array = new Float32Array(0);
+
+  constructor(widthPx: number) {
+    super(new LineSegmentsGeometry(), new LineMaterial({ linewidth: widthPx }));
+    this.frustumCulled = false;
+    this.reserve(1024);
+  }
+
+  begin(): void {
+    this.used = 0;
+  }
+
+  // From point i of `from` to point j of `to`.
+  addSegment(from: Float32Array, i: number, to: Float32Array, j: number): void {
+    if (this.used + 6 > this.array.length) this.reserve(this.array.length / 3);
+    for (let axis = 0; axis < 3; ++axis) {
+      this.array[this.used + axis] = from[3 * i + axis];
+      this.array[this.used + 3 + axis] = to[3 * j + axis];
+    }
+    this.used += 6;
+  }
+
+  end(): void {
+    const { data } = this.geometry.getAttribute("instanceStart") as InterleavedBufferAttribute;
+    data.clearUpdateRanges();
+    data.addUpdateRange(0, this.used);
+    data.needsUpdate = true;
+    this.geometry.instanceCount = this.used / 6;
+    this.visible = this.used > 0;
+  }
+
+  private reserve(segments: number): void {
+    const array = new Float32Array(6 * segments);
+    array.set(this.array.subarray(0, this.used));
+    this.array = array;
+    this.geometry.dispose();
+    this.geometry = new LineSegmentsGeometry();
+    const ends = new InstancedInterleavedBuffer(array, 6, 1).setUsage(DynamicDrawUsage);
+    this.geometry.setAttribute("instanceStart", new InterleavedBufferAttribute(ends, 3, 0));
+    this.geometry.setAttribute("instanceEnd", new InterleavedBufferAttribute(ends, 3, 3));
   }
 }
 

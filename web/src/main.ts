@@ -29,6 +29,7 @@ declare global {
       state?: () => object;
       // Where a point of the current frame is, in the page's pixels.
       screenOf?: (pointId: number, view: "image" | "scene") => { x: number; y: number } | null;
+      frustumOnScreen?: () => { x: number; y: number }[];   // likewise: the camera's center and the corners of its image
       framesPerSecond?: () => number;   // over the last second of playing
     };
   }
@@ -197,8 +198,7 @@ function makeScene(page: Page): SceneView | null {
 }
 
 function notesOf(report: Report): string[] {
-  const untracked = report.runs.filter((run) => !run.frames.state.some((state) => state === "tracking" || state === "provisional"));
-  return [...report.notes, ...untracked.map(({ name }) => `The run "${name}" has no tracked frame.`)];
+  return [...report.notes, ...report.runs.map((run) => run.whyNothing()).filter((sentence) => sentence !== "")];
 }
 
 function showNotes(report: Report): void {
@@ -232,6 +232,10 @@ function offerToTests(page: Page, timeline: Timeline, image: ImageView, scene: S
     };
   };
   window.pliant.framesPerSecond = () => timeline.framesPerSecond();
+  window.pliant.frustumOnScreen = () => {
+    const box = byId("scene").getBoundingClientRect();
+    return (scene?.projectFrustum() ?? []).map(([x, y]) => ({ x: box.left + x, y: box.top + y }));
+  };
   window.pliant.screenOf = (pointId, view) => {
     const run = report.runs[store.state.current];
     const row = report.row(store.state.current, store.state.position);

@@ -9,7 +9,7 @@ export const SHAPES = { disc: 0, square: 1, triangle: 2, diamond: 3, cross: 4, r
 export type Shape = keyof typeof SHAPES;
 
 // Those of the runs that are not the current one.
-export const RUN_SHAPES: Shape[] = ["square", "triangle", "diamond"];
+export const RUN_SHAPES = ["square", "triangle", "diamond"] as const satisfies Shape[];
 
 const VERTEX = `
 attribute float shape;

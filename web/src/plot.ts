@@ -20,6 +20,7 @@ export interface PlotOptions {
   unit: string;
   log?: boolean;
   stacked?: boolean;
+  note?: string;   // below the legend
   frames: number[];
   series: Series[];
   dark: boolean;
@@ -29,11 +30,15 @@ export interface PlotOptions {
 }
 
 const ZOOM_A_STEP = 1.25;
+const LABEL_FONT = "11px system-ui, sans-serif";
+const LABEL_GAP_PX = 4;
+const LEAST_LABEL_PX = 42;   // so that plots beside each other begin at the same place
 
 export class Plot {
   readonly element: HTMLElement;
   private readonly body = element("div", { className: "plot-body" });
   private readonly legend = element("ul", { className: "plot-legend" });
+  private readonly note = element("p", { className: "muted hint" });
   private readonly line = element("div", { className: "plot-now" });
   private readonly logButton = element("button", { type: "button", textContent: "log", title: "logarithmic scale" });
   private readonly values: HTMLElement[] = [];
@@ -52,7 +57,8 @@ export class Plot {
       this.log = !this.log;
       this.make();
     });
-    this.element = element("figure", { className: "plot" }, head, this.body, this.legend);
+    this.element = element("figure", { className: "plot" }, head, this.body, this.legend, this.note);
+    setText(this.note, options.note ?? "");
     options.series.forEach((series, i) => this.legend.append(this.legendItem(series, i)));
     this.make();
   }
@@ -61,7 +67,8 @@ export class Plot {
     return this.options.series.length;
   }
 
-  setData(frames: number[], series: Series[]): void {
+  setData(frames: number[], series: Series[], note?: string): void {
+    setText(this.note, note ?? "");
     this.options.frames = frames;
     series.forEach(({ values }, i) => { this.options.series[i].values = values; });
     this.plot.setData(this.data());
@@ -109,17 +116,21 @@ export class Plot {
     const { series, stacked, dark, height } = this.options;
     const palette = paletteOf(dark);
     const axis: uPlot.Axis = {
-      stroke: palette.text, font: "11px system-ui, sans-serif", grid: { stroke: palette.grid, width: 1 }, ticks: { show: false }, gap: 4,
+      stroke: palette.text, font: LABEL_FONT, grid: { stroke: palette.grid, width: 1 }, ticks: { show: false }, gap: LABEL_GAP_PX,
     };
     return {
       width: Math.max(100, this.body.clientWidth),
       height,
-      padding: [6, 8, 0, 0],
+      // Half of the last frame's label is beyond the end of the axis.
+      padding: [7, () => 2 + widthOf(String(this.options.frames[this.options.frames.length - 1])) / 2, 0, 0],
       legend: { show: false },
       scales: { x: { time: false }, y: this.log ? { distr: 3 } : { range: (_, min, max) => rangeOf(min, max, stacked ?? false) } },
       axes: [
-        { ...axis, size: 22, space: 60, incrs: [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000] },
-        { ...axis, size: 46, space: 28, values: (_, ticks) => ticks.map((tick) => (tick === null ? "" : compact(tick))) },
+        { ...axis, size: 22, space: 60, incrs: [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000], values: (_, ticks) => ticks.map(String) },
+        {
+          ...axis, space: 28, values: (_, ticks) => ticks.map((tick) => (tick === null ? "" : compact(tick))),
+          size: (_, labels) => LABEL_GAP_PX + Math.max(LEAST_LABEL_PX, ...(labels ?? []).map(widthOf)),
+        },
       ],
       cursor: {
         y: false,
@@ -214,10 +225,18 @@ function rangeOf(min: number, max: number, stacked: boolean): [number, number] {
   return [stacked || (min >= 0 && min < 0.5 * max) ? 0 : low, high];
 }
 
+// All digits that a tick has: those next to it may differ in the last one.
 function compact(value: number): string {
   const size = Math.abs(value);
-  if (size >= 1e4 || (size < 1e-3 && size > 0)) return value.toExponential(0);
-  return String(Number(value.toPrecision(4)));
+  const digits = Number(value.toPrecision(10));
+  return size >= 1e5 || (size < 1e-3 && size > 0) ? digits.toExponential() : String(digits);
+}
+
+const ruler = document.createElement("canvas").getContext("2d")!;
+
+function widthOf(label: string): number {
+  ruler.font = LABEL_FONT;
+  return Math.ceil(ruler.measureText(label).width);
 }
 
 function nearestIndex(numbers: number[], value: number): number {

@@ -16,9 +16,12 @@ interface Figure {
   unit: string;
   log?: boolean;
   stacked?: boolean;
+  note?: string;    // what its values do not say
   series: { label: string; values: Column }[];   // the main one first
 }
 
+export const DISPLACED = "After the first map every point has its own displacement in every frame. It takes up the reprojection error, of " +
+  "right and wrong points alike: values near zero do not say that the map is right. Frames in which the map was refined stand out.";
 const DASHES = [[6, 4], [2, 3], [10, 3, 2, 3], [4, 2], [1, 2], [12, 4], [8, 2, 2, 2]];
 
 export function figuresOf(run: Run): Figure[] {
@@ -30,15 +33,31 @@ export function figuresOf(run: Run): Figure[] {
       series: (["tracked", "optimized", "lost", "added"] as const).map((name) => ({ label: name, values: frames[name] })),
     },
     { title: "Error against truth", unit: "mm", series: listed(frames.errors) },
-    { title: "Reprojection error", unit: "px", series: [{ label: "median", values: frames.reprojection_px }] },
+    { title: "Reprojection error", unit: "px", ...reprojectionErrors(run) },
     { title: "Cost by term", unit: "", log: true, series: listed(frames.costs) },
     { title: "Time by stage", unit: "ms", stacked: true, series: listed(frames.stages_ms) },
     {
-      title: "Scale against truth", unit: "mm per map unit", series: [{ label: "scale", values: frames.scale ?? [] }],
+      title: "Scale against truth", unit: run.unit === "mm" ? "true mm per mm of the run" : "mm per map unit", series: [{ label: "scale", values: frames.scale ?? [] }],
     },
   ];
   for (const figure of figures) figure.series = figure.series.filter(({ values }) => values.some((value) => value !== null));
   return figures;
+}
+
+// Where the joint problem was solved, the displacements of the points take up their error: such values cannot be compared with
+// others, and are a series of their own.
+function reprojectionErrors(run: Run): Pick<Figure, "note" | "series"> {
+  const { reprojection_px: errors, costs } = run.frames;
+  const isJoint = (row: number) => Object.values(costs).some((values) => values[row] !== null);
+  const joint = errors.map((error, row) => (isJoint(row) ? error : null));
+  const notes = [];
+  if (joint.some((error) => error !== null)) notes.push(DISPLACED);
+  const without = errors.filter((error) => error === null).length;
+  if (without > 0) notes.push(`No value: ${without} of ${errors.length} frames, which have no pose or no error to measure.`);
+  return {
+    note: notes.join(" "),
+    series: [{ label: "median", values: errors.map((error, row) => (isJoint(row) ? null : error)) }, { label: "median, displaced points", values: joint }],
+  };
 }
 
 export class Plots {
@@ -61,8 +80,8 @@ export class Plots {
     const { frames } = this.page.report;
     const { dark } = this.page.store.state;
     for (const plot of this.plots) plot.destroy();
-    this.plots = this.figures().map(({ title, unit, log, stacked, series }) => new Plot({
-      title, unit, log, stacked, series, frames, dark, height: 170,
+    this.plots = this.figures().map(({ title, unit, log, stacked, note, series }) => new Plot({
+      title, unit, log, stacked, note, series, frames, dark, height: 170,
       go: this.go,
       zoom: (range) => {
         this.range = range;
@@ -81,7 +100,7 @@ export class Plots {
     const same = figures.length === this.plots.length && figures.every(({ series }, i) => series.length === this.plots[i].size);
     if (!same) return this.build();
     this.plots.forEach((plot, i) => {
-      plot.setData(this.page.report.frames, figures[i].series);
+      plot.setData(this.page.report.frames, figures[i].series, figures[i].note);
       if (this.range) plot.setRange(this.range);
     });
   }

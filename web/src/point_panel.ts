@@ -7,6 +7,7 @@ import { paletteOf, runColor } from "./colors";
 import { byId, setText } from "./dom";
 import type { Page } from "./page";
 import { Plot } from "./plot";
+import { DISPLACED } from "./plots";
 import type { Run } from "./run";
 import { type Changed, anyOf } from "./state";
 
@@ -57,8 +58,8 @@ export class PointPanel {
     setText(byId("point-first"), `frame ${first}`);
     setText(byId("point-last"), `frame ${last}`);
     setText(byId("point-length"), `seen in ${this.observations.length} of ${last - first + 1} frames`);
-    this.made = this.figures(run).map(({ title, unit, series }) => new Plot({
-      title, unit, frames: report.frames, dark, height: 84, go: this.go,
+    this.made = this.figures(run).map(({ title, unit, note, series }) => new Plot({
+      title, unit, note, frames: report.frames, dark, height: 84, go: this.go,
       series: series.map(({ label, value }, i) => ({
         label, values: this.spread(run, value), color: i === 0 ? runColor(dark, current) : paletteOf(dark).series[0],
         dash: i === 0 ? [] : [6, 4],
@@ -72,14 +73,14 @@ export class PointPanel {
     }
   }
 
-  private figures(run: Run): { title: string; unit: string; series: { label: string; value: (o: number) => number }[] }[] {
+  private figures(run: Run): { title: string; unit: string; note?: string; series: { label: string; value: (o: number) => number }[] }[] {
     const { unit } = this.page.report;
     const one = (title: string, unitOf: string, value: (o: number) => number) => ({ title, unit: unitOf, series: [{ label: "", value }] });
     const { sigma, gain, bias, error } = run;
     const figures = [
       one("Depth", unit, (o) => run.depth.values[o]),
       one("Deformation", unit, (o) => run.deformation(o)),
-      one("Reprojection error", "px", (o) => run.reprojection.values[o]),
+      { ...one("Reprojection error", "px", (o) => run.reprojection.values[o]), note: Object.keys(run.frames.costs).length > 0 ? DISPLACED : "" },
       one("Similarity", "SSIM", (o) => run.similarity.values[o]),
     ];
     if (sigma) figures.push(one("Uncertainty (1 sigma)", unit, (o) => sigma.values[o]));

@@ -41,6 +41,7 @@ const FRAME_GROUPS = ["costs", "stages_ms", "errors"] as const;
 
 export class Run {
   name = "";
+  unit = "";
   status = "";
   note = "";
   figures: [string, string, string][] = [];
@@ -100,6 +101,12 @@ export class Run {
     return found.reverse();
   }
 
+  // In one sentence, of a run that has no frame with a pose; else nothing.
+  whyNothing(): string {
+    for (let row = 0; row < this.rows; ++row) if (this.hasPose(row)) return "";
+    return `The run "${this.name}" has no tracked frame${this.note ? `: ${this.note}` : ""}.`;
+  }
+
   hasPose(row: number): boolean {
     return row >= 0 && !Number.isNaN(this.pose.values[7 * row]);
   }
@@ -130,8 +137,8 @@ export class Run {
 
   append(part: RunPart): void {
     const from = this.rows;
-    const { name, status, note, figures, options } = part.data;
-    Object.assign(this, { name, status, note, figures, options });
+    const { name, unit, status, note, figures, options } = part.data;
+    Object.assign(this, { name, unit, status, note, figures, options });
     this.appendFrames(part, from);
     this.appendPoints(part);
     this.appendObservations(part, from);

@@ -7,13 +7,13 @@ import {
   BufferAttribute, BufferGeometry, Color, DoubleSide, Mesh, MeshBasicMaterial, NearestFilter, Quaternion, Scene, Texture, Vector3,
 } from "three";
 import { paletteOf, runColor } from "./colors";
-import { ThinLines, WideLines } from "./lines";
+import { ChangingWideLines, ThinLines, WideLines } from "./lines";
 import { Marks, RUN_SHAPES } from "./marks";
 import type { Page } from "./page";
 import { lastAtMost } from "./report";
 import type { Run } from "./run";
 
-const FRUSTUM_OF_DEPTH = 0.2;   // size of the camera as a part of the median depth
+const FRUSTUM_OF_DEPTH = 0.15;   // from the camera's center to a corner of its image, of the median depth
 const GRID_LINES = 10;
 const TRAIL_STEP_OF_SIZE = 1 / 600;   // shorter steps are not drawn by themselves
 
@@ -26,14 +26,17 @@ export class SceneContent {
   medianDepth = 1;
   gridStep = 1;
   private lowest = 0;   // the largest y
-  // The ends of the axes, to be labeled.
+  // At the origin of the world, or at the corner of the scene that is nearest to it. Their ends are labeled.
+  private readonly axesOrigin = new Vector3();
   readonly axisEnds = [new Vector3(), new Vector3(), new Vector3()];
+  // What the first view shows: nearly all of the points in any frame, and all of the cameras and the axes.
+  readonly extent: { points: Vector3[]; all: Vector3[] } = { points: [], all: [] };
 
   private readonly map = new Marks(2.5, 0);
-  private readonly points = new Marks(7, 0.28);
+  private readonly points = new Marks(6, 0.28);
   private readonly others = new Marks(6, 0.25);
   private readonly truthPoints = new Marks(4.5, 0);
-  private readonly trails = new ThinLines();
+  private readonly trails = new ChangingWideLines(2);
   private readonly errors = new ThinLines();
   private readonly grid = new ThinLines(0.8);
   private readonly axes = [0, 1, 2].map(() => new WideLines(1.5));
@@ -64,6 +67,7 @@ export class SceneContent {
     const { truth } = this.page.report;
     if (truth) this.truePath.setSegments(segmentsOf(truth.pose, truth.frame.length).coordinates, this.size / 120);
     this.buildGrid();
+    this.buildExtent();
     this.paint();
   }
 
@@ -105,8 +109,8 @@ export class SceneContent {
     this.showOthers();
     this.showPaths();
     this.showCamera(run, row);
-    this.grid.visible = layers.grid;
-    for (const axis of this.axes) axis.visible = layers.grid;
+    this.grid.visible = layers.grid && !this.empty;
+    for (const axis of this.axes) axis.visible = this.grid.visible;
   }
 
   showPicked(): void {
@@ -164,6 +168,7 @@ export class SceneContent {
       return [values[Math.floor(0.01 * (values.length - 1))], values[Math.ceil(0.99 * (values.length - 1))]];
     });
     this.center.fromArray(ends.map(([low, high]) => (low + high) / 2));
+    this.axesOrigin.fromArray(ends.map(([low, high]) => Math.min(high, Math.max(low, 0))));
     this.size = Math.hypot(...ends.map(([low, high]) => high - low)) || 1;
     this.empty = ends.every(([low, high]) => low === high);
     depths.sort((a, b) => a - b);
@@ -199,6 +204,24 @@ export class SceneContent {
     path.ahead.end();
   }
 
+  private buildExtent(): void {
+    const { report } = this.page;
+    const { points, all } = this.extent;
+    points.length = all.length = 0;
+    const addCameras = (pose: Float32Array, rows: number) => sample(pose, rows, 7, (i) => {
+      if (Number.isNaN(pose[i])) return;
+      all.push(...(report.camera.corners ? this.frustumAt(pose, i / 7, report.camera.corners) : [poseOf(pose, i / 7).position]));
+    });
+    for (const run of report.runs) {
+      sample(run.position.values, run.observations, 3, (i) => {
+        if (!Number.isNaN(run.position.values[i])) points.push(new Vector3().fromArray(run.position.values, i));
+      });
+      addCameras(run.pose.values, run.rows);
+    }
+    if (report.truth) addCameras(report.truth.pose, report.truth.frame.length);
+    all.push(this.axesOrigin, ...this.axisEnds);
+  }
+
   private buildGrid(): void {
     this.gridStep = niceStep(this.size / GRID_LINES);
     const half = (GRID_LINES / 2) * this.gridStep;
@@ -215,17 +238,19 @@ export class SceneContent {
     }
     this.grid.end();
     this.axes.forEach((axis, i) => {
-      this.axisEnds[i].set(0, 0, 0).setComponent(i, this.gridStep);
-      axis.setSegments([0, 0, 0, ...this.axisEnds[i].toArray()]);
+      this.axisEnds[i].copy(this.axesOrigin);
+      this.axisEnds[i].setComponent(i, this.axesOrigin.getComponent(i) + this.gridStep);
+      axis.setSegments([...this.axesOrigin.toArray(), ...this.axisEnds[i].toArray()]);
     });
   }
 
   private showPoints(run: Run, observations: Uint32Array): void {
     this.points.begin(observations.length);
-    if (this.page.store.state.layers.points) {
+    const { layers, dark } = this.page.store.state;
+    if (layers.points) {
       for (const o of observations) {
         const shape = run.isLost(o) ? "cross" : run.isReturned(o) ? "ring" : "disc";
-        this.points.addMark(run.position.values, o, this.page.coloring.color(run, o), shape);
+        this.points.addMark(run.position.values, o, this.page.coloring.color(run, o, dark), shape);
       }
     }
     this.points.end();
@@ -304,20 +329,25 @@ export class SceneContent {
     const { report, store } = this.page;
     const { layers, visible, current, position, view } = store.state;
     const corners = report.camera.corners;
-    const length = FRUSTUM_OF_DEPTH * this.medianDepth;
     const shown = corners !== null && layers.path && visible[current] && run.hasPose(row);
     const inside = view === "camera";
     this.picture.visible = shown && this.picture.material.map !== null;
     this.putBehind(inside);
     if (shown) {
-      const ends = cornersInWorld(run.pose.values, row, corners, length);
+      const ends = this.frustumAt(run.pose.values, row, corners);
       this.frustum.setSegments(frustumSegments(ends));
       setPicture(this.picture, ends);
     }
     this.frustum.visible = shown && !inside;
     const index = report.truth && layers.truth && corners && !inside ? report.truth.frame.indexOf(report.frames[position]) : -1;
     this.trueFrustum.visible = index >= 0;
-    if (index >= 0) this.trueFrustum.setSegments(frustumSegments(cornersInWorld(report.truth!.pose, index, corners!, length)));
+    if (index >= 0) this.trueFrustum.setSegments(frustumSegments(this.frustumAt(report.truth!.pose, index, corners!)));
+  }
+
+  // The camera's center and the corners of its image, as they are drawn. Their size does not depend on the field of view.
+  frustumAt(pose: Float32Array, row: number, corners: [number, number, number][]): Vector3[] {
+    const longest = Math.max(...corners.map((ray) => Math.hypot(...ray)));
+    return cornersInWorld(pose, row, corners, (FRUSTUM_OF_DEPTH * this.medianDepth) / longest);
   }
 
   // Seen from the camera the image is the background.

@@ -15,6 +15,8 @@ import { type Changed, anyOf } from "./state";
 const CAMERA_FROM_VIEW = new Quaternion(1, 0, 0, 0);
 const FIELD_OF_VIEW_DEG = 45;
 const START_DIRECTION = new Vector3(-0.75, -0.65, -1).normalize();
+const SHARE = 0.998;   // of the points that are in the first view for certain
+const MARGIN = 1.15;
 
 ColorManagement.enabled = false;
 
@@ -25,7 +27,9 @@ export class SceneView {
   private readonly controls: OrbitControls;
   private readonly content: SceneContent;
   private readonly labels = ["x", "y", "z"].map((name) => element("span", { textContent: name, className: "axis" }));
+  private readonly message = element("p", { className: "message" });
   private requested = false;
+  private untouched = true;   // nobody has moved the view since it was fitted
 
   // Throws where there is no WebGL.
   constructor(private readonly page: Page) {
@@ -35,17 +39,21 @@ export class SceneView {
     const canvas = this.renderer.domElement;
     canvas.setAttribute("role", "img");
     canvas.setAttribute("aria-label", "3D view of the points and of the camera's path");
-    this.container.append(canvas, ...this.labels);
+    this.container.append(canvas, ...this.labels, this.message);
     this.content = new SceneContent(page);
     this.camera.up.set(0, -1, 0);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.addEventListener("change", () => this.request());
-    this.controls.addEventListener("start", () => page.store.change({ view: "free" }));
+    this.controls.addEventListener("start", () => {
+      this.untouched = false;
+      page.store.change({ view: "free" });
+    });
     onClick(canvas, (x, y) => this.pick(x, y));
     canvas.addEventListener("dblclick", () => this.reset());
     new ResizeObserver(() => this.resize()).observe(this.container);
     this.content.build();
     this.content.showFrame();
+    this.showTexts();
     this.reset();
   }
 
@@ -55,6 +63,7 @@ export class SceneView {
       const wasEmpty = content.empty;
       content.build();
       if (wasEmpty && !content.empty) this.reset();
+      else if (this.untouched && !this.showsAll()) this.fitView();
       else this.setDepths();
     } else if (anyOf(changed, "current", "dark")) content.paint();
     if (anyOf(changed, "position", "revision", "dark", "playing")) this.showImage();
@@ -63,19 +72,64 @@ export class SceneView {
     if (anyOf(changed, "view") && this.page.store.state.view === "free") this.leaveCamera();
     if (anyOf(changed, "position", "current", "view", "revision")) this.follow();
     if (anyOf(changed, "position", "current", "visible", "picked", "color", "layers", "trail", "view", "dark", "revision")) this.render();
-    setText(byId("scene-caption"), this.page.store.state.layers.grid
-      ? `grid ${Number(content.gridStep.toPrecision(1))} ${this.page.report.unit}` : "");
+    this.showTexts();
   }
 
-  // Frames the whole scene.
+  private showTexts(): void {
+    const { report, store } = this.page;
+    setText(this.message, report.runs[store.state.current].whyNothing());
+    setText(byId("scene-caption"), store.state.layers.grid && !this.content.empty ? `grid ${Number(this.content.gridStep.toPrecision(1))} ${report.unit}` : "");
+  }
+
+  // Shows the whole scene.
   reset(): void {
     this.page.store.change({ view: "free" });
-    const distance = (0.5 * this.content.size) / Math.tan((FIELD_OF_VIEW_DEG * Math.PI) / 360);
-    const aspect = Math.min(1, this.container.clientWidth / Math.max(1, this.container.clientHeight));
-    this.controls.target.copy(this.content.center);
-    this.camera.position.copy(this.content.center).addScaledVector(START_DIRECTION, distance / aspect);
+    this.fitView();
+  }
+
+  private fitView(): void {
+    this.untouched = true;
+    const { middle, distance } = this.fit();
+    this.controls.target.copy(middle);
+    this.camera.position.copy(middle).addScaledVector(START_DIRECTION, distance);
     this.setDepths();
     this.leaveCamera();
+  }
+
+  // From where nearly all points, and all cameras and axes, are seen as large as the canvas allows: the point in the middle of the
+  // view, and the distance from it. A point at (aside, back) of the center is inside, to one side, where
+  // aside - middle <= tangent * (distance - back).
+  private fit(): { middle: Vector3; distance: number } {
+    const { center, size, extent } = this.content;
+    const aspect = this.container.clientWidth / Math.max(1, this.container.clientHeight) || 1;
+    const right = new Vector3().crossVectors(this.camera.up, START_DIRECTION).normalize();
+    const up = new Vector3().crossVectors(START_DIRECTION, right);
+    const tangent = Math.tan((FIELD_OF_VIEW_DEG * Math.PI) / 360) / MARGIN;
+    const middle = center.clone();
+    let distance = 0;
+    for (const [axis, slope] of [[right, aspect * tangent], [up, tangent]] as const) {
+      const reach = (sign: number) => {
+        const of = (point: Vector3) => {
+          const offset = point.clone().sub(center);
+          return (sign * offset.dot(axis)) / slope + offset.dot(START_DIRECTION);
+        };
+        const points = extent.points.map(of).sort((a, b) => a - b);
+        return extent.all.reduce((most, point) => Math.max(most, of(point)), points[Math.ceil(SHARE * (points.length - 1))] ?? -Infinity);
+      };
+      const [low, high] = [reach(-1), reach(1)];
+      if (!Number.isFinite(low)) continue;
+      middle.addScaledVector(axis, (slope * (high - low)) / 2);
+      distance = Math.max(distance, (high + low) / 2);
+    }
+    return { middle, distance: distance > 0 ? distance : size / tangent };
+  }
+
+  private showsAll(): boolean {
+    const { clientWidth, clientHeight } = this.container;
+    return this.content.extent.all.every((point) => {
+      const [x, y, depth] = this.project(point.toArray());
+      return depth < 1 && x >= 0 && x <= clientWidth && y >= 0 && y <= clientHeight;
+    });
   }
 
   // As a live scene grows.
@@ -105,6 +159,19 @@ export class SceneView {
     return [(0.5 + 0.5 * point.x) * this.container.clientWidth, (0.5 - 0.5 * point.y) * this.container.clientHeight, point.z];
   }
 
+  // The center of the current run's camera and the corners of its image, where there is one.
+  projectFrustum(): [number, number][] {
+    const { report, store } = this.page;
+    const { current, position } = store.state;
+    const run = report.runs[current];
+    const row = report.row(current, position);
+    if (!report.camera.corners || !run.hasPose(row)) return [];
+    return this.content.frustumAt(run.pose.values, row, report.camera.corners).map((end) => {
+      const [x, y] = this.project(end.toArray());
+      return [x, y];
+    });
+  }
+
   private pick(x: number, y: number): void {
     pickNearest(this.page, x, y, (run, o) => {
       const [px, py, depth] = this.project(run.position.values, 3 * o);
@@ -125,6 +192,7 @@ export class SceneView {
     const run = report.runs[current];
     const row = report.row(current, position);
     if (view === "free" || !run.hasPose(row)) return;
+    this.untouched = false;
     const pose = poseOf(run.pose.values, row);
     const ahead = new Vector3(0, 0, 1).applyQuaternion(pose.rotation);
     const depth = this.content.medianDepth;
@@ -166,6 +234,7 @@ export class SceneView {
     this.renderer.setSize(clientWidth, clientHeight);
     this.camera.aspect = clientWidth / clientHeight;
     this.camera.updateProjectionMatrix();
+    if (this.untouched && this.page.store.state.view === "free") this.fitView();
     this.follow();
     this.render();
   }
@@ -180,7 +249,7 @@ export class SceneView {
     this.requested = false;
     this.camera.updateMatrixWorld();
     this.renderer.render(this.content.scene, this.camera);
-    const { grid } = this.page.store.state.layers;
+    const grid = this.page.store.state.layers.grid && !this.content.empty;
     this.labels.forEach((label, axis) => {
       const [x, y, depth] = this.project(this.content.axisEnds[axis].toArray());
       label.hidden = !grid || depth >= 1;

@@ -11,8 +11,15 @@ const SIZE_PX = 14;
 const SLOTS = 24;   // a side of the sheet
 const RIM = "rgba(0, 0, 0, 0.6)";
 
-export const STAMPS = ["dot", "cross", "ring"] as const;
+export const STAMPS = ["dot", "cross", "ring", "square", "triangle", "diamond"] as const;
 export type Stamp = (typeof STAMPS)[number];
+
+// Larger than a dot, whose corners they show under it: runs often have points at the same pixels.
+const CORNERS: Record<"square" | "triangle" | "diamond", [number, number][]> = {
+  square: [[-4.2, -4.2], [4.2, -4.2], [4.2, 4.2], [-4.2, 4.2]],
+  triangle: [[0, -6.2], [5.6, 3.8], [-5.6, 3.8]],
+  diamond: [[0, -6], [6, 0], [0, 6], [-6, 0]],
+};
 
 export class Stamps {
   private readonly sheet = document.createElement("canvas");
@@ -41,10 +48,13 @@ export class Stamps {
       context.lineTo(4.5, 4.5);
       context.moveTo(-4.5, 4.5);
       context.lineTo(4.5, -4.5);
-    } else {
+    } else if (stamp === "dot" || stamp === "ring") {
       context.arc(0, 0, stamp === "dot" ? RADIUS_PX : RADIUS_PX + 1.5, 0, 2 * Math.PI);
+    } else {
+      CORNERS[stamp].forEach(([x, y], i) => (i === 0 ? context.moveTo(x, y) : context.lineTo(x, y)));
+      context.closePath();
     }
-    if (stamp === "dot") {
+    if (stamp !== "cross" && stamp !== "ring") {
       context.fillStyle = css(color);
       context.fill();
       context.lineWidth = 1;

@@ -3,6 +3,8 @@
 //
 // What the page shows. Views read the state, change it through `change`, and are told once a redraw what has changed.
 
+import { BY_RUN } from "./colors";
+
 export const LAYERS = ["map", "points", "trails", "path", "truth", "grid"] as const;
 export type Layer = (typeof LAYERS)[number];
 
@@ -74,7 +76,7 @@ export function firstState(runs: number): State {
     current: 0,
     visible: new Array(runs).fill(true),
     picked: null,
-    color: "depth",
+    color: runs > 1 ? BY_RUN : "depth",
     layers: { map: true, points: true, trails: true, path: true, truth: true, grid: true },
     trail: 30,
     view: "free",

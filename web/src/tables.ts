@@ -54,7 +54,7 @@ export class Tables {
   private table(rows: Row[], what: string): HTMLElement {
     const { runs } = this.page.report;
     const head = element("tr", {}, element("th", { scope: "col", textContent: what }),
-      ...runs.map((run) => element("th", { scope: "col", textContent: run.name })));
+      ...runs.map((run) => element("th", { scope: "col" }, ...breakable(run.name))));
     const body = element("tbody");
     let group = "";
     for (const row of rows) {
@@ -62,11 +62,16 @@ export class Tables {
         group = row.group;
         body.append(element("tr", { className: "group" }, element("th", { scope: "rowgroup", colSpan: runs.length + 1, textContent: group })));
       }
-      body.append(element("tr", {}, element("th", { scope: "row", textContent: row.name }),
+      body.append(element("tr", {}, element("th", { scope: "row" }, ...breakable(row.name)),
         ...row.values.map((value) => element("td", { textContent: value ?? "–" }))));
     }
     return element("table", {}, element("thead", {}, head), body);
   }
+}
+
+// May go on in the next line after these signs, as names of options and runs have no spaces.
+function breakable(name: string): (Node | string)[] {
+  return name.split(/(?<=[._/])/).flatMap((part, i) => (i === 0 ? [part] : [element("wbr"), part]));
 }
 
 // Rows of equal group and name are one; groups stay together, in the order in which they come first.

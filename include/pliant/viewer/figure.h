@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Runs as stills and films, drawn without a display: images with the tracked points above (in a film: beside) the scene
-// in 3D, as in the paper's figures: the undeformed map in black, each point's trail of deformation in red, the camera's
-// path and its frustum in blue; the true surface and path in green where they are known.
+// Runs as stills and films, drawn without a display: images with the tracked points of all runs, each run's in a color
+// of its own, above (in a film: beside) the scene in 3D, as in the paper's figures: the undeformed map in black, each
+// point's trail of deformation in red, the camera's path and its frustum in blue; the true surface and path in green
+// where they are known. A frame without a pose says why it has none.
 #pragma once
 
 #include <functional>

@@ -63,6 +63,7 @@ struct ViewedRun {
   std::string name;
   std::string status;  // of run.json, and what it says beside it; empty: another system's result
   std::string note;
+  bool in_millimeters = false;           // its own unit, as far as options tell; else its map units
   bool has_rows = true;                  // false: counts, costs and stages are not known
   std::optional<Camera> camera;          // where the run or its sequence says it
   std::vector<std::string> stage_names;  // of RunFrame::stage_ms
@@ -82,7 +83,7 @@ struct TruePose {
 struct View {
   std::vector<ViewedRun> runs;              // in one world
   std::vector<TruePose> truth;              // the true camera path in it; empty: not known
-  bool in_millimeters = false;              // else the first run's map units
+  bool in_millimeters = false;              // else its unit is the first run's map unit
   std::optional<Camera> camera;             // nothing: neither the sequence nor a run says
   std::optional<SequenceRequest> sequence;  // the images; nothing: there are none
   std::vector<std::string> notes;           // what is missing or left out; one sentence each
@@ -105,7 +106,8 @@ struct ViewRequest {
 std::string RunName(const std::string& run_path);
 
 // Reads the runs, finds their sequence, takes over its truth and brings everything into one world: the truth's where
-// there is true motion of the camera, in millimeters, else the first run's. A run's worlds are turned and scaled onto
+// there is true motion of the camera, in millimeters, else that of the first run whose unit is the millimeter, else the
+// first run's. A run's worlds are turned and scaled onto
 // it by the camera's poses and the points' depths in common frames; one without a common frame is a note. Fails with
 // what reading a run or its truth fails with, kMismatch where a run is not of the sequence that was named, and
 // kInsufficient where no run has a frame. A sequence that was not named, and is missing or not that of a run, is a

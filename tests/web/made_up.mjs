@@ -1,0 +1,80 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The data of a page (web/README.md) about a made-up run: a grid of points before a camera that moves sideways.
+
+import { deflateSync } from "node:zlib";
+
+export const POINTS = 48;
+export const WIDTH = 320;
+export const HEIGHT = 240;
+const FOCAL_PX = 300;
+const ELEMENT = '<script type="application/json" id="pliant-data">';
+
+// Frames `from` to `to`, without `to`. Points lie `beside` to the right of the grid and are moved by `step` every frame;
+// frames of which `isLost` says so have neither pose nor points. The world's origin is `away` behind the camera. `truth`: the
+// surface is known, half a unit behind the points.
+export function runOf({ name = "run", from = 0, to, beside = 0, step = 0.05, isLost = () => false, away = 0, truth = false }) {
+  const frames = Array.from({ length: Math.max(0, to - from) }, (_, i) => from + i);
+  const tracked = frames.filter((frame) => !isLost(frame));
+  const seen = tracked.length ? Array.from({ length: POINTS }, (_, i) => i) : [];
+  const place = (point) => [(point % 8) * 6 - 21 + beside, Math.floor(point / 8) * 6 - 15, 60 + away];
+  const all = seen.flatMap((point) => tracked.map((frame) => ({ point, frame, position: place(point).map((x) => x + step * frame) })));
+  const pixels = all.map(({ frame, position: [x, y, z] }) => [WIDTH / 2 + (FOCAL_PX * (x - frame)) / (z - away), HEIGHT / 2 + (FOCAL_PX * y) / (z - away)]);
+  const column = (value) => frames.map(value);
+  const count = (value) => column((frame) => (isLost(frame) ? 0 : value));
+  return {
+    name, unit: "map units", status: "running", note: "", figures: [["Frames", "tracked", String(to)]], options: [["Tracking.option", "1"]],
+    frames: {
+      frame: frames, time: column((frame) => frame / 30), state: column((frame) => (isLost(frame) ? "lost" : "tracking")),
+      submap: column(() => 0), note: {}, tracked: count(POINTS), optimized: count(POINTS), lost: column(() => 0), added: column(() => 0),
+      reprojection_px: column((frame) => (isLost(frame) ? null : 0.5 + 0.01 * frame)),
+      costs: { reprojection: column((frame) => (isLost(frame) ? null : 10)) }, stages_ms: { track: column(() => 5) }, errors: {}, scale: null,
+      pose: pack(frames.map((frame) => (isLost(frame) ? new Array(7).fill(NaN) : [0, 0, 0, 1, frame, 0, away])), 7),
+    },
+    points: { id: packIntegers(seen), rest: pack(seen.map(place), 3), rgb: pack(seen.map(() => [200, 120, 90]), 3) },
+    observations: {
+      count: seen.map(() => tracked.length), row: packIntegers(all.map(({ frame }) => frame - from)), pixel: pack(pixels, 2),
+      position: pack(all.map(({ position }) => position), 3), depth: pack(all.map(({ position }) => [position[2] - away]), 1),
+      reprojection_px: pack(all.map(() => [0.4]), 1), ssim: pack(all.map(() => [0.9]), 1), gain: null, bias: null,
+      truth: truth ? pack(all.map(({ position: [x, y, z] }) => [x, y, z + 0.5]), 3) : null,
+      error_mm: truth ? pack(all.map(() => [0.5]), 1) : null,
+    },
+  };
+}
+
+export function dataOf(...runs) {
+  return {
+    format: 1, version: "0", title: "made up", live: false, unit: "map units", notes: [], images: null, truth: null,
+    camera: { width: WIDTH, height: HEIGHT, corners: [[-0.53, -0.4, 1], [0.53, -0.4, 1], [0.53, 0.4, 1], [-0.53, 0.4, 1]] },
+    runs,
+  };
+}
+
+// What a report holds.
+export function dataTextOf(report) {
+  const begin = report.indexOf(ELEMENT) + ELEMENT.length;
+  return report.slice(begin, report.indexOf("</script>", begin));
+}
+
+// The page of a report with other data.
+export function pageWith(dataText, report) {
+  const begin = report.indexOf(ELEMENT) + ELEMENT.length;
+  return report.slice(0, begin) + dataText.replaceAll("<", "\\u003c") + report.slice(report.indexOf("</script>", begin));
+}
+
+function pack(rows, columns) {
+  const bytes = Array.from({ length: columns }, (_, column) => planes(new Float32Array(rows.map((row) => row[column])).buffer));
+  return { type: "f32", rows: rows.length, columns, data: deflateSync(Buffer.concat(bytes)).toString("base64") };
+}
+
+function packIntegers(values) {
+  return { type: "u32", rows: values.length, columns: 1, delta: false, data: deflateSync(planes(new Uint32Array(values).buffer)).toString("base64") };
+}
+
+// The lowest byte of every number, then the next one.
+function planes(buffer) {
+  const bytes = Buffer.from(buffer);
+  const count = bytes.length / 4;
+  return Buffer.from(Array.from({ length: bytes.length }, (_, i) => bytes[4 * (i % count) + Math.floor(i / count)]));
+}

@@ -1,0 +1,160 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Reports of made-up runs: what they show depends on nothing but their data.
+
+import assert from "node:assert/strict";
+import { POINTS, dataOf, runOf } from "./made_up.mjs";
+import { countPixels, goTo, press, screenshot, testMadeUp } from "./support.mjs";
+
+const ORANGE = "#d55e00";      // of trails
+const LIGHT_GRAY = "#dde1e6";
+const PIXELS_OF_A_TRAIL = 10;  // at least
+
+testMadeUp("shows trails that are not much longer than a point", dataOf(runOf({ to: 20 })), async (page) => {
+  await goTo(page, 19);
+  await page.waitForTimeout(300);
+  assert.ok(await countPixels(page, "#scene", ORANGE) > POINTS * PIXELS_OF_A_TRAIL);
+  await screenshot(page, "trails");
+  await press(page, "t");
+  await page.waitForTimeout(300);
+  assert.ok(await countPixels(page, "#scene", ORANGE) < POINTS);
+});
+
+// There is no image here, so that they lie on a light gray.
+testMadeUp("shows the last positions of points on a light image", dataOf(runOf({ to: 20 })), async (page) => {
+  await goTo(page, 0);
+  const before = await countPixels(page, "#image", LIGHT_GRAY);
+  await goTo(page, 19);
+  assert.ok(before - await countPixels(page, "#image", LIGHT_GRAY) > POINTS * PIXELS_OF_A_TRAIL);
+});
+
+// Labels that need many digits, and frames whose number is long.
+const precise = runOf({ from: 9000, to: 10001 });
+precise.frames.scale = precise.frames.frame.map((frame) => 0.9912 + 1e-7 * (frame - 9000));
+precise.frames.costs = {};   // their axis is logarithmic
+precise.frames.reprojection_px = precise.frames.frame.map((frame) => 1e-5 * (frame - 9500));
+for (const viewport of [{ width: 1440, height: 900 }, { width: 390, height: 844 }]) {
+  testMadeUp(`labels the axes of plots in full, ${viewport.width} pixels wide`, dataOf(precise), async (page) => {
+    const labels = await page.evaluate(() => window.labels);
+    assert.ok(labels.length > 10);
+    for (const { text, left, right, top, bottom, width, height } of labels) {
+      assert.ok(left >= 0 && right <= width && top >= 0 && bottom <= height, `${text}: ${left} to ${right} of ${width}, ${top} to ${bottom}`);
+    }
+    const plots = new Set(labels.map(({ plot }) => plot));
+    for (const plot of plots) {
+      const texts = labels.filter((label) => label.plot === plot && label.text !== "").map(({ text }) => text);
+      const values = texts.map(Number).filter((value) => value < 9000);
+      const steps = values.slice(1).map((value, i) => value - values[i]);
+      assert.ok(steps.every((step) => Math.abs(step - steps[0]) < 1e-3 * Math.abs(steps[0])) || texts.length === 0, `uneven labels ${texts}`);
+    }
+  }, { viewport, before: recordLabels });
+}
+
+// Runs in the page: what is written into a plot, in pixels of its canvas; of a plot that is drawn again the last time.
+function recordLabels() {
+  window.labels = [];
+  const original = CanvasRenderingContext2D.prototype.fillText;
+  const clear = CanvasRenderingContext2D.prototype.clearRect;
+  const plots = new Map();
+  CanvasRenderingContext2D.prototype.clearRect = function (...rest) {
+    window.labels = window.labels.filter(({ plot }) => plot !== plots.get(this.canvas));
+    return clear.apply(this, rest);
+  };
+  CanvasRenderingContext2D.prototype.fillText = function (text, x, y, ...rest) {
+    if (!plots.has(this.canvas)) plots.set(this.canvas, plots.size);
+    const box = this.measureText(text);
+    const at = this.getTransform().transformPoint({ x, y });
+    window.labels.push({
+      text, plot: plots.get(this.canvas), left: at.x - box.actualBoundingBoxLeft, right: at.x + box.actualBoundingBoxRight,
+      top: at.y - box.actualBoundingBoxAscent, bottom: at.y + box.actualBoundingBoxDescent,
+      width: this.canvas.width, height: this.canvas.height,
+    });
+    return original.call(this, text, x, y, ...rest);
+  };
+}
+
+// The truth may put the world's origin far away.
+testMadeUp("shows the axes of a scene that is far from its origin", dataOf(runOf({ to: 20, away: 500 })), async (page) => {
+  const box = await page.locator("#scene").boundingBox();
+  for (const label of await page.locator("#scene .axis").all()) {
+    const { x, y, width, height } = await label.boundingBox();
+    assert.ok(x > box.x && x + width < box.x + box.width && y > box.y && y + height < box.y + box.height, `${x}, ${y}`);
+  }
+});
+
+const BLUE = "#0072b2";    // of the first run
+const AMBER = "#c77f00";   // of the second one
+const PIXELS_OF_A_POINT = 4;
+
+// At the same pixels, as those of a run and its refinement.
+const two = dataOf(runOf({ name: "one", to: 5 }), runOf({ name: "other", to: 5 }));
+testMadeUp("shows the points of every run that is switched on, in the run's color", two, async (page) => {
+  const counts = async () => {
+    await page.waitForTimeout(300);
+    return [await countPixels(page, "#image", BLUE), await countPixels(page, "#image", AMBER)];
+  };
+  const all = POINTS * PIXELS_OF_A_POINT;
+  const [dots, corners] = await counts();   // the second run's points lie under those of the first
+  assert.ok(dots > all && corners > POINTS, `${dots}, ${corners}`);
+  await screenshot(page, "points_of_two_runs");
+  await page.locator("#runs input").nth(1).uncheck();
+  const [first, hidden] = await counts();
+  assert.ok(first > all && hidden < POINTS, `${first}, ${hidden}`);
+  await page.locator("#runs input").nth(1).check();
+  await page.locator("#runs input").nth(0).uncheck();
+  const [none, second] = await counts();
+  assert.ok(none < POINTS && second > all, `${none}, ${second}`);
+});
+
+const metric = { ...dataOf({ ...runOf({ to: 5 }), unit: "mm" }), unit: "mm" };
+metric.runs[0].frames.scale = [1, 1.01, 1, 0.99, 1];
+testMadeUp("says millimeters of a run whose unit it is", metric, async (page) => {
+  assert.match(await page.locator("#scale-high").textContent(), /mm$/);
+  assert.match(await page.locator("#scene-caption").textContent(), /mm$/);
+  assert.doesNotMatch(await page.locator("main").textContent(), /map unit/);
+});
+
+const failed = dataOf({ ...runOf({ name: "still", to: 5, isLost: () => true }), status: "failed", note: "the camera did not move" });
+testMadeUp("says why a run has nothing to show", failed, async (page) => {
+  assert.match(await page.locator("#notes").textContent(), /"still" has no tracked frame: the camera did not move/);
+  assert.match(await page.locator("#scene").innerText(), /the camera did not move/);
+  assert.equal(await page.locator("#scene-caption").textContent(), "", "a grid without a scene has no unit");
+  await screenshot(page, "failed");
+});
+
+testMadeUp("says nothing of the kind of a run that was tracked", dataOf(runOf({ to: 5 })), async (page) => {
+  assert.ok(await page.locator("#notes").isHidden());
+  assert.equal((await page.locator("#scene .message").textContent()), "");
+});
+
+// The first map has frames 0 to 3, the camera is lost in 6 and 7.
+const gaps = runOf({ to: 12, isLost: (frame) => frame === 6 || frame === 7 });
+gaps.frames.costs.reprojection = gaps.frames.costs.reprojection.map((cost, row) => (row < 4 ? null : cost));
+testMadeUp("plots errors only where there are any, and says what they do not say", dataOf(gaps), async (page) => {
+  const plot = page.locator("#plots .plot").filter({ hasText: "Reprojection error" });
+  const values = async (position) => {
+    await goTo(page, position);
+    return plot.locator(".value").allTextContents();
+  };
+  assert.deepEqual(await values(2), ["0.520", "–"]);
+  assert.deepEqual(await values(5), ["–", "0.550"]);
+  assert.deepEqual(await values(6), ["–", "–"]);
+  assert.match(await plot.textContent(), /its own displacement.*No value: 2 of 12 frames/);
+});
+
+testMadeUp("says nothing of displacements of a rigid result", dataOf({ ...runOf({ to: 5 }), frames: { ...runOf({ to: 5 }).frames, costs: {} } }), async (page) => {
+  const plot = page.locator("#plots .plot").filter({ hasText: "Reprojection error" });
+  assert.equal(await plot.locator(".value").count(), 1);
+  assert.equal(await plot.locator(".hint").textContent(), "");
+});
+
+const named = ["rigid_baseline_dm_A2.5", "refined_default_dm_A2.5"].map((name) => ({
+  ...runOf({ name, to: 5 }), options: [["WindowInit.min_still_camera_ratio", name], ["Tracking.max_lost_frames", "30"]],
+}));
+testMadeUp("shows tables with long names on a phone", dataOf(...named), async (page) => {
+  for (const table of await page.locator(".table").all()) {
+    const [needed, width] = await table.evaluate((box) => [box.scrollWidth, box.clientWidth]);
+    assert.ok(needed <= width, `${needed} of ${width} pixels`);
+  }
+}, { viewport: { width: 390, height: 844 } });
