@@ -117,6 +117,8 @@ int ReportCommand(std::span<const std::string> args) {
            Need::kOptional);
   line.Add("camera", &arguments.view.camera_path, "FILE",
            "calibration of the sequence; not needed where it has its own, or for the run's images", Need::kOptional);
+  line.Add("surface", &arguments.view.surface_paths, "DIR",
+           "a surface folder of the run (pliant surface), whose mesh the page shows", Need::kOptional);
   line.Add("output_path", &arguments.output_path, "FILE", "what is written: .html; .png, .svg or .pdf; .mp4",
            Need::kRequired);
   line.Add("figure", &arguments.figure, "FRAMES", "a still of these frames: their numbers, with commas",

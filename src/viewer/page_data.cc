@@ -205,7 +205,44 @@ Json Texts(const std::vector<NamedText>& texts, bool as_options) {
 
 std::string UnitOf(bool in_millimeters) { return in_millimeters ? "mm" : "map units"; }
 
+Json Positions(const std::vector<Eigen::Vector3f>& positions, const std::vector<Eigen::Vector3f>& from) {
+  std::vector<float> values;
+  for (std::size_t v = 0; v < positions.size(); ++v)
+    for (int i = 0; i < 3; ++i) values.push_back(positions[v][i] - (from.empty() ? 0.0F : from[v][i]));
+  return PackQuantized(values, 3, PackedType::kU16);
+}
+
+Json MeshData(const GltfMesh& surface) {
+  const Mesh& mesh = surface.mesh;
+  std::vector<std::uint32_t> triangles;
+  std::vector<float> uvs(2 * mesh.vertices.size());
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto v = static_cast<std::size_t>(mesh.triangles[t][k]);
+      triangles.push_back(static_cast<std::uint32_t>(v));
+      if (mesh.texture_uvs.empty()) continue;
+      uvs[2 * v] = mesh.texture_uvs[t][k].x();
+      uvs[2 * v + 1] = mesh.texture_uvs[t][k].y();
+    }
+  Json frames = Json::array();
+  Json displacements = Json::array();
+  for (const MeshKey& key : surface.keys) {
+    frames.push_back(key.frame_idx);
+    displacements.push_back(Positions(key.positions, mesh.vertices));
+  }
+  return {{"submap", surface.submap},
+          {"rest", Positions(mesh.vertices, {})},
+          {"triangles", PackWhole(triangles, 3, PackedType::kU32)},
+          {"uv", PackQuantized(uvs, 2, PackedType::kU16)},
+          {"sigma", PackQuantized(mesh.sigmas, 1, PackedType::kU16)},
+          {"texture", surface.texture_jpeg.empty() ? Json() : Json(Base64(surface.texture_jpeg))},
+          {"frame", frames},
+          {"displacement", displacements}};
+}
+
 Json RunData(const ViewedRun& run) {
+  Json meshes = Json::array();
+  for (const GltfMesh& mesh : run.meshes) meshes.push_back(MeshData(mesh));
   return {{"name", run.name},
           {"unit", UnitOf(run.in_millimeters)},
           {"status", run.status},
@@ -214,7 +251,8 @@ Json RunData(const ViewedRun& run) {
           {"options", Texts(run.options, true)},
           {"frames", Frames(run)},
           {"points", Points(run)},
-          {"observations", Observations(run).ToJson()}};
+          {"observations", Observations(run).ToJson()},
+          {"meshes", meshes}};
 }
 
 Json CameraData(const std::optional<Camera>& camera) {

@@ -17,6 +17,7 @@
 #include "viewer/align_runs.h"
 #include "viewer/read_run.h"
 #include "viewer/run_figures.h"
+#include "viewer/view_mesh.h"
 
 namespace pliant {
 namespace {
@@ -163,6 +164,8 @@ void Move(const Sim3& world_from_run, int submap, ViewedRun* run) {
       moved.insert(o.id);
     }
   }
+  for (GltfMesh& mesh : run->meshes)
+    if (mesh.submap == submap) Move(world_from_run, &mesh);
   for (const PointId id : moved) {
     Eigen::Vector3d& position = run->points.at(id).position;
     position = world_from_run * position;
@@ -198,6 +201,7 @@ Result<View> OpenView(const ViewRequest& request, const ViewOptions& options) {
     view.runs.push_back(std::move(run));
   }
   TakeNames(request.run_paths, &view);
+  if (Status status = AddMeshes(request, &view); !status.ok()) return status;
   if (std::all_of(view.runs.begin(), view.runs.end(), [](const ViewedRun& run) { return run.frames.empty(); }))
     return Status(ErrorCode::kInsufficient,
                   "no frame was read in the run " + request.run_paths.front() + "; there is nothing to show");

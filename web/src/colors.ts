@@ -119,11 +119,14 @@ export class Coloring {
       const rgb = run.rgb.values;
       return Number.isNaN(rgb[c]) ? UNKNOWN : ((rgb[c] & 0xf8) << 16) | ((rgb[c + 1] & 0xf8) << 8) | (rgb[c + 2] & 0xf8);
     }
-    const value = this.mode.value(run, observation);
-    if (!(value === value)) return UNKNOWN;
-    const level = Math.round(((value - this.low) / (this.high - this.low)) * (LEVELS - 1));
-    return TABLE[level < 0 ? 0 : level >= LEVELS ? LEVELS - 1 : level] ?? UNKNOWN;
+    return gradientColor(this.mode.value(run, observation), this.low, this.high);
   }
+}
+
+export function gradientColor(value: number, low: number, high: number): number {
+  if (!(value === value)) return UNKNOWN;
+  const level = Math.round(((value - low) / (high - low)) * (LEVELS - 1));
+  return TABLE[level < 0 ? 0 : level >= LEVELS ? LEVELS - 1 : level] ?? UNKNOWN;
 }
 
 // Of "#rrggbb".

@@ -3,6 +3,8 @@
 //
 // What the page is given (web/README.md), and its packed arrays decoded.
 
+import { Surface } from "./surface";
+
 export const FORMAT = 1;
 
 // A sentence for the reader of the page.
@@ -38,6 +40,18 @@ export interface FrameData {
   pose: PackedArray;
 }
 
+// A mesh of the surface: its undeformed vertices, and what they are displaced by in some of the frames.
+export interface MeshData {
+  submap: number;
+  rest: PackedArray;
+  triangles: PackedArray;
+  uv: PackedArray;        // from the texture's upper left corner
+  sigma: PackedArray;
+  texture: string | null; // a JPEG file in base64
+  frame: number[];
+  displacement: PackedArray[];
+}
+
 export interface RunData {
   name: string;
   unit: string;
@@ -61,6 +75,7 @@ export interface RunData {
     truth: PackedArray | null;
     error_mm: PackedArray | null;
   };
+  meshes?: MeshData[];
 }
 
 export interface CameraData {
@@ -108,6 +123,7 @@ export interface RunPart {
   bias: Float32Array | null;
   truth: Float32Array | null;
   error: Float32Array | null;
+  surfaces: Surface[];
 }
 
 export function checkFormat(data: Partial<Data>): void {
@@ -135,7 +151,19 @@ export function decodeRun(data: RunData): Promise<RunPart> {
     bias: observations.bias && await decodeNumbers(observations.bias, 1),
     truth: observations.truth && await decodeNumbers(observations.truth, 3),
     error: observations.error_mm && await decodeNumbers(observations.error_mm, 1),
+    surfaces: await Promise.all((data.meshes ?? []).map(decodeMesh)),
   }));
+}
+
+async function decodeMesh(data: MeshData): Promise<Surface> {
+  return new Surface(data.submap, data.frame, {
+    rest: await decodeNumbers(data.rest, 3),
+    triangles: Uint32Array.from(await decodeNumbers(data.triangles, 3)),
+    uv: await decodeNumbers(data.uv, 2),
+    sigma: await decodeNumbers(data.sigma, 1),
+    displacements: await Promise.all(data.displacement.map((array) => decodeNumbers(array, 3))),
+    texture: data.texture === null ? null : bytesOfBase64(data.texture),
+  });
 }
 
 export function decodePoses(poses: PackedArray): Promise<Float32Array> {

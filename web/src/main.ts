@@ -150,6 +150,8 @@ function start(report: Report, images: Images | null, live: boolean): (answer: A
       run: (key) => timeline.go(key === "Home" ? 0 : report.frames.length - 1),
     },
     { keys: ["c", "Shift+c"], shown: "c, shift c", what: "next color, the one before", run: (key) => toolbar.cycleColor(key === "c" ? 1 : -1) },
+    { keys: ["s"], shown: "s", what: "surface", run: () => toolbar.toggleLayer("surface") },
+    { keys: ["u"], shown: "u", what: "next color of the surface", run: () => toolbar.cycleSurfaceColor() },
     { keys: ["m"], shown: "m", what: "undeformed map", run: () => toolbar.toggleLayer("map") },
     { keys: ["o"], shown: "o", what: "points", run: () => toolbar.toggleLayer("points") },
     { keys: ["t"], shown: "t", what: "trails", run: () => toolbar.toggleLayer("trails") },
@@ -222,13 +224,13 @@ function pickNext(page: Page, step: number): void {
 function offerToTests(page: Page, timeline: Timeline, image: ImageView, scene: SceneView | null): void {
   const { report, store } = page;
   window.pliant.state = () => {
-    const { position, playing, color, picked, current, visible, theme, dark, view, layers, trail, speed, loop, newest } = store.state;
+    const { position, playing, color, picked, current, visible, theme, dark, view, layers, surfaceColor, trail, speed, loop, newest } = store.state;
     const observations = report.runs[current].observationsOfRow(report.row(current, position));
     const run = report.runs[current];
     return {
       frame: report.frames[position], position, frames: report.frames.length, playing, color, picked,
       currentRun: report.runs[current].name, visibleRuns: report.runs.filter((_, i) => visible[i]).map(({ name }) => name),
-      theme, dark, view, layers, trail, speed, loop, newest, points: [...observations].map((o) => run.id.values[run.point.values[o]]),
+      theme, dark, view, layers, surfaceColor, trail, speed, loop, newest, points: [...observations].map((o) => run.id.values[run.point.values[o]]),
     };
   };
   window.pliant.framesPerSecond = () => timeline.framesPerSecond();

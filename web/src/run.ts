@@ -5,6 +5,7 @@
 // observation to the one before of the same point. Rows are only ever appended.
 
 import type { FrameData, RunPart } from "./data";
+import type { Surface } from "./surface";
 
 type Numbers = Float32Array | Uint32Array | Int32Array;
 
@@ -46,6 +47,7 @@ export class Run {
   note = "";
   figures: [string, string, string][] = [];
   options: [string, string][] = [];
+  surfaces: Surface[] = [];
 
   frames: Omit<FrameData, "pose"> = emptyFrames();
   pose = floats();
@@ -139,6 +141,7 @@ export class Run {
     const from = this.rows;
     const { name, unit, status, note, figures, options } = part.data;
     Object.assign(this, { name, unit, status, note, figures, options });
+    if (part.surfaces.length > 0) this.surfaces = part.surfaces;
     this.appendFrames(part, from);
     this.appendPoints(part);
     this.appendObservations(part, from);

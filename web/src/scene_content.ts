@@ -4,7 +4,7 @@
 // What stands in the 3D view. `build` makes what depends on the runs alone, `showFrame` what depends on the frame.
 
 import {
-  BufferAttribute, BufferGeometry, Color, DoubleSide, Mesh, MeshBasicMaterial, NearestFilter, Quaternion, Scene, Texture, Vector3,
+  AmbientLight, BufferAttribute, BufferGeometry, Color, DirectionalLight, DoubleSide, Mesh, MeshBasicMaterial, NearestFilter, Quaternion, Scene, Texture, Vector3,
 } from "three";
 import { paletteOf, runColor } from "./colors";
 import { ChangingWideLines, ThinLines, WideLines } from "./lines";
@@ -12,6 +12,7 @@ import { Marks, RUN_SHAPES } from "./marks";
 import type { Page } from "./page";
 import { lastAtMost } from "./report";
 import type { Run } from "./run";
+import { SurfaceMesh } from "./surface_mesh";
 
 const FRUSTUM_OF_DEPTH = 0.15;   // from the camera's center to a corner of its image, of the median depth
 const GRID_LINES = 10;
@@ -47,13 +48,18 @@ export class SceneContent {
   private readonly track = new WideLines(2.5);
   private readonly uncertainty = new WideLines(4);
   private readonly ring = new Marks(11, 0);
+  private readonly surfaces: SurfaceMesh[][];   // of each run
+  private readonly lamp = new DirectionalLight(0xffffff, 0.7 * Math.PI);
   private readonly picture: Mesh<BufferGeometry, MeshBasicMaterial>;
   // Of each row of the current run: how many points had been seen by then, in the order of the map's vertices.
   private known = new Uint32Array(0);
 
-  constructor(private readonly page: Page) {
+  // `changed` is called when something that had to be decoded can be seen.
+  constructor(private readonly page: Page, changed: () => void) {
+    this.surfaces = page.report.runs.map((run) => run.surfaces.map((surface) => new SurfaceMesh(surface, changed)));
     this.paths = page.report.runs.map(() => ({ ahead: new ThinLines(0.4), done: new WideLines(2.5), count: new Uint32Array(0) }));
     this.picture = makePicture();
+    this.scene.add(new AmbientLight(0xffffff, 0.3 * Math.PI), this.lamp, this.lamp.target, ...this.surfaces.flat().map(({ object }) => object));
     this.scene.add(this.grid, ...this.axes, this.map, this.trails, this.errors, this.truthPoints, this.others, this.points,
       ...this.paths.flatMap(({ ahead, done }) => [ahead, done]), this.truePath, this.trueFrustum, this.frustum, this.picture,
       this.track, this.uncertainty, this.ring);
@@ -103,6 +109,7 @@ export class SceneContent {
     this.map.visible = layers.map && visible[current];
     const lastRow = lastAtMost(run.frames.frame, report.frames[position]);
     this.map.geometry.setDrawRange(0, lastRow < 0 ? 0 : this.known[lastRow] ?? 0);
+    this.showSurface(run, row);
     this.showPoints(run, observations);
     this.showTrails(run, observations);
     this.showTruth(run, observations);
@@ -242,6 +249,22 @@ export class SceneContent {
       this.axisEnds[i].setComponent(i, this.axesOrigin.getComponent(i) + this.gridStep);
       axis.setSegments([...this.axesOrigin.toArray(), ...this.axisEnds[i].toArray()]);
     });
+  }
+
+  // Seen from `position`, what is around `target` is lit best.
+  putLamp(position: Vector3, target: Vector3): void {
+    this.lamp.position.copy(position);
+    this.lamp.target.position.copy(target);
+  }
+
+  // Of the current run: that of the frame's submap.
+  private showSurface(run: Run, row: number): void {
+    const { report, store } = this.page;
+    const { current, position, layers, visible, surfaceColor } = store.state;
+    this.surfaces.forEach((meshes, index) => meshes.forEach(({ object, surface }, k) => {
+      object.visible = index === current && visible[index] && layers.surface && row >= 0 && run.frames.submap[row] === surface.submap;
+      if (object.visible) meshes[k].show(report.frames[position], surfaceColor);
+    }));
   }
 
   private showPoints(run: Run, observations: Uint32Array): void {

@@ -40,7 +40,7 @@ export class SceneView {
     canvas.setAttribute("role", "img");
     canvas.setAttribute("aria-label", "3D view of the points and of the camera's path");
     this.container.append(canvas, ...this.labels, this.message);
-    this.content = new SceneContent(page);
+    this.content = new SceneContent(page, () => this.request());
     this.camera.up.set(0, -1, 0);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.addEventListener("change", () => this.request());
@@ -67,11 +67,11 @@ export class SceneView {
       else this.setDepths();
     } else if (anyOf(changed, "current", "dark")) content.paint();
     if (anyOf(changed, "position", "revision", "dark", "playing")) this.showImage();
-    if (anyOf(changed, "position", "current", "visible", "color", "layers", "trail", "view", "dark", "revision")) content.showFrame();
+    if (anyOf(changed, "position", "current", "visible", "color", "layers", "surfaceColor", "trail", "view", "dark", "revision")) content.showFrame();
     if (anyOf(changed, "position", "current", "picked", "dark", "revision")) content.showPicked();
     if (anyOf(changed, "view") && this.page.store.state.view === "free") this.leaveCamera();
     if (anyOf(changed, "position", "current", "view", "revision")) this.follow();
-    if (anyOf(changed, "position", "current", "visible", "picked", "color", "layers", "trail", "view", "dark", "revision")) this.render();
+    if (anyOf(changed, "position", "current", "visible", "picked", "color", "layers", "surfaceColor", "trail", "view", "dark", "revision")) this.render();
     this.showTexts();
   }
 
@@ -248,6 +248,7 @@ export class SceneView {
   private render(): void {
     this.requested = false;
     this.camera.updateMatrixWorld();
+    this.content.putLamp(this.camera.position, this.controls.target);
     this.renderer.render(this.content.scene, this.camera);
     const grid = this.page.store.state.layers.grid && !this.content.empty;
     this.labels.forEach((label, axis) => {

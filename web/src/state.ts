@@ -4,8 +4,9 @@
 // What the page shows. Views read the state, change it through `change`, and are told once a redraw what has changed.
 
 import { BY_RUN } from "./colors";
+import type { SurfaceColor } from "./surface";
 
-export const LAYERS = ["map", "points", "trails", "path", "truth", "grid"] as const;
+export const LAYERS = ["surface", "map", "points", "trails", "path", "truth", "grid"] as const;
 export type Layer = (typeof LAYERS)[number];
 
 export const VIEWS = ["free", "camera", "chase"] as const;
@@ -24,6 +25,7 @@ export interface State {
   picked: number | null;  // id of a point of the current run
   color: string;         // name of a color mode
   layers: Record<Layer, boolean>;
+  surfaceColor: SurfaceColor;
   trail: number;          // frames
   view: View;
   theme: Theme;
@@ -77,7 +79,8 @@ export function firstState(runs: number): State {
     visible: new Array(runs).fill(true),
     picked: null,
     color: runs > 1 ? BY_RUN : "depth",
-    layers: { map: true, points: true, trails: true, path: true, truth: true, grid: true },
+    surfaceColor: "image",
+    layers: { surface: true, map: true, points: true, trails: true, path: true, truth: true, grid: true },
     trail: 30,
     view: "free",
     theme: "auto",

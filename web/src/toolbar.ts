@@ -7,11 +7,13 @@ import { GRADIENT, type Mode, colorModes, paletteOf, runColor } from "./colors";
 import { byId, element, setText, short } from "./dom";
 import { RUN_SHAPES } from "./marks";
 import type { Page } from "./page";
+import type { Report } from "./report";
 import { type Changed, LAYERS, type Layer, THEMES, type Theme, VIEWS, anyOf } from "./state";
+import { SURFACE_COLORS, type SurfaceColor } from "./surface";
 
 const SHAPE_SIGNS = { square: "■", triangle: "▲", diamond: "◆" } as Record<string, string>;
 const LAYER_TITLES: Record<Layer, string> = {
-  map: "the undeformed map (m)", points: "the points where they are now (o)", trails: "where they were in the last frames, from where they rest (t)",
+  surface: "the surface that pliant surface made (s)", map: "the undeformed map (m)", points: "the points where they are now (o)", trails: "where they were in the last frames, from where they rest (t)",
   path: "the camera's path (p)", truth: "true camera path and surface (g)", grid: "grid and axes (x)",
 };
 const prefersDark = window.matchMedia("(prefers-color-scheme: dark)");
@@ -19,6 +21,7 @@ const prefersDark = window.matchMedia("(prefers-color-scheme: dark)");
 export class Toolbar {
   private readonly modes: Mode[];
   private readonly color = byId<HTMLSelectElement>("color");
+  private readonly surfaceColor = byId<HTMLSelectElement>("surface-color");
   private readonly trail = byId<HTMLInputElement>("trail");
   private readonly layers: Record<string, HTMLButtonElement> = {};
   private readonly runs: { box: HTMLInputElement; button: HTMLButtonElement }[];
@@ -31,6 +34,10 @@ export class Toolbar {
     byId("gradient").style.backgroundImage = GRADIENT;
     this.runs = report.runs.map((run, index) => this.makeRun(run.name, index));
     for (const layer of LAYERS) this.makeLayer(layer);
+    byId("surface-tools").hidden = !hasSurface(report);
+    this.surfaceColor.append(...SURFACE_COLORS.map((color) => element("option", { value: color, textContent: color })));
+    this.surfaceColor.addEventListener("change", () => store.change({ surfaceColor: this.surfaceColor.value as SurfaceColor }));
+    byId("surface-gradient").style.backgroundImage = GRADIENT;
     this.trail.addEventListener("input", () => store.change({ trail: Number(this.trail.value) }));
     for (const view of VIEWS) byId(`view-${view}`).addEventListener("click", () => store.change({ view }));
     byId("theme").addEventListener("click", () => this.cycleTheme());
@@ -40,13 +47,18 @@ export class Toolbar {
   }
 
   update(changed: Changed): void {
-    if (anyOf(changed, "current", "visible", "color", "layers", "trail", "view", "theme", "dark", "revision")) this.showAll();
+    if (anyOf(changed, "current", "visible", "color", "layers", "surfaceColor", "trail", "view", "theme", "dark", "revision")) this.showAll();
   }
 
   cycleColor(step: number): void {
     const { store } = this.page;
     const index = this.modes.findIndex(({ name }) => name === store.state.color);
     store.change({ color: this.modes[(index + step + this.modes.length) % this.modes.length].name });
+  }
+
+  cycleSurfaceColor(): void {
+    const { store } = this.page;
+    store.change({ surfaceColor: SURFACE_COLORS[(SURFACE_COLORS.indexOf(store.state.surfaceColor) + 1) % SURFACE_COLORS.length] });
   }
 
   cycleView(): void {
@@ -92,7 +104,9 @@ export class Toolbar {
     const button = element("button", { type: "button", title: LAYER_TITLES[layer] },
       element("span", { className: "swatch", ariaHidden: "true" }), layer);
     button.addEventListener("click", () => this.toggleLayer(layer));
-    button.hidden = layer === "truth" && !this.page.report.truth && !this.page.report.runs.some((run) => run.truth);
+    const { report } = this.page;
+    button.hidden = (layer === "truth" && !report.truth && !report.runs.some((run) => run.truth)) ||
+      (layer === "surface" && !hasSurface(report));
     this.layers[layer] = button;
     byId("layers").append(button);
   }
@@ -101,6 +115,7 @@ export class Toolbar {
     const { state } = this.page.store;
     this.showRuns();
     this.showLegend();
+    this.showSurfaceLegend();
     const palette = paletteOf(state.dark);
     const swatches: Partial<Record<Layer, string>> = {
       map: palette.map, trails: palette.trails, path: runColor(state.dark, state.current), truth: palette.truth,
@@ -129,6 +144,19 @@ export class Toolbar {
     });
   }
 
+  private showSurfaceLegend(): void {
+    const { report, store } = this.page;
+    const { surfaceColor, current } = store.state;
+    this.surfaceColor.value = surfaceColor;
+    const surface = report.runs[current].surfaces[0];
+    byId("surface-scale").hidden = surfaceColor === "image" || !surface;
+    if (surfaceColor === "image" || !surface) return;
+    const { low, high } = surface.range(surfaceColor);
+    const change = surfaceColor === "area change";
+    setText(byId("surface-low"), change ? `${short(100 * low)}` : short(low));
+    setText(byId("surface-high"), change ? `${short(100 * high)} %` : `${short(high)} ${report.unit}`);
+  }
+
   private showLegend(): void {
     const { mode, low, high } = this.page.coloring;
     this.color.value = mode.name;
@@ -137,4 +165,8 @@ export class Toolbar {
     setText(byId("scale-low"), known ? short(low) : "no values");
     setText(byId("scale-high"), known ? `${short(high)} ${mode.unit}` : "");
   }
+}
+
+function hasSurface(report: Report): boolean {
+  return report.runs.some((run) => run.surfaces.length > 0);
 }

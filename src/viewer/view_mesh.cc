@@ -1,0 +1,71 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "viewer/view_mesh.h"
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <system_error>
+#include <utility>
+
+#include "pliant/base/files.h"
+#include "pliant/base/text.h"
+#include "pliant/datasets/surface_folder.h"
+
+namespace pliant {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The run that the surface was made of; of one that is not there any more, the only run that is shown.
+std::optional<std::size_t> RunOf(const SurfaceFolder& surface, const std::vector<std::string>& run_paths) {
+  std::error_code error;
+  for (std::size_t i = 0; i < run_paths.size(); ++i)
+    if (fs::equivalent(surface.run, run_paths[i], error)) return i;
+  if (run_paths.size() == 1 && !Exists(surface.run.string())) return 0;
+  return std::nullopt;
+}
+
+// surface.glb, or of several submaps surface_0.glb, surface_1.glb, ...
+std::vector<fs::path> MeshFilesOf(const fs::path& folder) {
+  std::vector<fs::path> files;
+  if (Exists((folder / "surface.glb").string())) files.push_back(folder / "surface.glb");
+  const auto numbered = [&] { return folder / ("surface_" + std::to_string(files.size()) + ".glb"); };
+  while (Exists(numbered().string())) files.push_back(numbered());
+  return files;
+}
+
+}  // namespace
+
+Status AddMeshes(const ViewRequest& request, View* view) {
+  for (const std::string& path : request.surface_paths) {
+    const auto surface = ReadSurfaceFolder(path);
+    if (!surface.ok()) return surface.status();
+    const auto run = RunOf(*surface, request.run_paths);
+    if (!run)
+      return {ErrorCode::kMismatch, "the surface " + Quoted(path) + " was made of the run " +
+                                        Quoted(surface->run.string()) + ", which is not among those that are shown"};
+    const std::vector<fs::path> files = MeshFilesOf(path);
+    if (files.empty())
+      return {ErrorCode::kNotFound, Quoted(path) + " has no surface.glb to show; make it again with pliant surface"};
+    for (const fs::path& file : files) {
+      auto mesh = ReadGlb(file.string());
+      if (!mesh.ok()) return mesh.status();
+      view->runs[*run].meshes.push_back(*std::move(mesh));
+    }
+  }
+  return Status::Ok();
+}
+
+void Move(const Sim3& other_from_world, GltfMesh* mesh) {
+  const auto transform = [&](std::vector<Eigen::Vector3f>* positions) {
+    for (Eigen::Vector3f& position : *positions)
+      position = (other_from_world * position.cast<double>()).cast<float>();
+  };
+  transform(&mesh->mesh.vertices);
+  for (MeshKey& key : mesh->keys) transform(&key.positions);
+  for (float& sigma : mesh->mesh.sigmas) sigma *= static_cast<float>(other_from_world.scale);
+}
+
+}  // namespace pliant
