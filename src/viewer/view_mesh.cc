@@ -60,8 +60,7 @@ Status AddMeshes(const ViewRequest& request, View* view) {
 
 void Move(const Sim3& other_from_world, GltfMesh* mesh) {
   const auto transform = [&](std::vector<Eigen::Vector3f>* positions) {
-    for (Eigen::Vector3f& position : *positions)
-      position = (other_from_world * position.cast<double>()).cast<float>();
+    for (Eigen::Vector3f& position : *positions) position = (other_from_world * position.cast<double>()).cast<float>();
   };
   transform(&mesh->mesh.vertices);
   for (MeshKey& key : mesh->keys) transform(&key.positions);

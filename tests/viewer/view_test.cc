@@ -3,12 +3,14 @@
 
 #include "pliant/viewer/view.h"
 
+#include <array>
 #include <cmath>
 #include <filesystem>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "pliant/io/gltf.h"
 #include "support/tolerances.h"
 #include "viewer/small_sequence.h"
 
@@ -272,6 +274,65 @@ TEST_F(ViewTest, ARunWithoutAFrameIsAnError) {
 }
 
 TEST_F(ViewTest, WhatIsNoRunIsAnError) { EXPECT_EQ(Open().status().code(), ErrorCode::kNotFound); }
+
+// A surface folder of the run, whose only triangle is displaced by (0, 0, 1) in frame 2.
+void WriteSurface(const TestFolder& folder, const std::string& run_path) {
+  std::filesystem::create_directories(folder.Path("surface"));
+  folder.Write("surface/camera.yaml", "model: PINHOLE\nwidth: 640\nheight: 480\nparams: [500, 500, 319.5, 239.5]\n");
+  folder.Write("surface/surface.json", "{\"status\": \"completed\", \"run\": \"" + run_path + "\", \"frames\": []}");
+  Mesh mesh;
+  mesh.vertices = {{0, 0, 20}, {0, 4, 20}, {4, 0, 20}};
+  mesh.normals.assign(3, -Eigen::Vector3f::UnitZ());
+  mesh.rgb.resize(3);
+  mesh.sigmas = {0.5F, 0.5F, 1.0F};
+  mesh.triangles = {{0, 1, 2}};
+  const std::vector<MeshKey> keys = {{2, 0.1, {{0, 0, 21}, {0, 4, 21}, {4, 0, 21}}}};
+  const Camera camera =
+      Camera::Create(CameraModelId::kPinhole, 640, 480, std::array{500.0, 500.0, 319.5, 239.5}).value();
+  ASSERT_TRUE(WriteGlb(folder.Path("surface/surface.glb"), {mesh, cv::Mat(), keys, {}, camera, 0}).ok());
+}
+
+TEST_F(ViewTest, TheSurfaceIsInTheSameWorldAsTheRun) {
+  WriteRun(folder_);
+  WriteSurface(folder_, folder_.Path("run"));
+  sequence_ = folder_.Path("sequence");
+  WriteSmallSequence(sequence_, Truth::kDepthAndPoses);
+  const auto alone = Open();
+  const auto view = OpenView({.run_paths = {folder_.Path("run")},
+                              .sequence_path = sequence_,
+                              .camera_path = "",
+                              .surface_paths = {folder_.Path("surface")}},
+                             {});
+  ASSERT_TRUE(view.ok()) << view.status().message();
+  ASSERT_EQ(view->runs[0].meshes.size(), 1U);
+  const GltfMesh& mesh = view->runs[0].meshes[0];
+  const double scale = *view->runs[0].scales[2];
+  EXPECT_NEAR((mesh.mesh.vertices[1] - mesh.mesh.vertices[0]).norm(), 4 * scale, 0.02 * scale);
+  EXPECT_NEAR(mesh.mesh.sigmas[2], scale, 0.02 * scale);
+  EXPECT_NEAR((mesh.keys[0].positions[0] - mesh.mesh.vertices[0]).norm(), scale, 0.02 * scale);
+  // As far from the run's points as in its own world.
+  const auto& point = view->runs[0].points.at(PointId{3}).position;
+  EXPECT_NEAR((mesh.mesh.vertices[0].cast<double>() - point).norm(),
+              scale * (Eigen::Vector3d(0, 0, 20) - Undeformed(1)).norm(), 0.05 * scale * Undeformed(1).norm());
+}
+
+TEST_F(ViewTest, ASurfaceOfAnotherRunIsRefused) {
+  WriteRun(folder_);
+  std::filesystem::create_directories(folder_.Path("other"));
+  WriteSurface(folder_, folder_.Path("other"));
+  ViewRequest request{.run_paths = {folder_.Path("run")}, .sequence_path = "", .camera_path = ""};
+  request.surface_paths = {folder_.Path("surface")};
+  const auto other = OpenView(request, {});
+  EXPECT_EQ(other.status().code(), ErrorCode::kMismatch);
+  EXPECT_THAT(other.status().message(), HasSubstr("was made of the run"));
+  // One whose run has been moved belongs to the only run that is shown.
+  std::filesystem::remove_all(folder_.Path("other"));
+  EXPECT_TRUE(OpenView(request, {}).ok());
+  std::filesystem::remove(folder_.Path("surface/surface.glb"));
+  EXPECT_THAT(OpenView(request, {}).status().message(), HasSubstr("has no surface.glb to show"));
+  request.surface_paths = {folder_.Path("nowhere")};
+  EXPECT_EQ(OpenView(request, {}).status().code(), ErrorCode::kNotFound);
+}
 
 }  // namespace
 }  // namespace pliant

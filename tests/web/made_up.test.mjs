@@ -4,7 +4,7 @@
 // Reports of made-up runs: what they show depends on nothing but their data.
 
 import assert from "node:assert/strict";
-import { POINTS, dataOf, runOf } from "./made_up.mjs";
+import { POINTS, dataOf, runOf, surfaceOf } from "./made_up.mjs";
 import { countPixels, goTo, press, screenshot, testMadeUp } from "./support.mjs";
 
 const ORANGE = "#d55e00";      // of trails
@@ -158,3 +158,43 @@ testMadeUp("shows tables with long names on a phone", dataOf(...named), async (p
     assert.ok(needed <= width, `${needed} of ${width} pixels`);
   }
 }, { viewport: { width: 390, height: 844 } });
+
+const WHITE = "#ffffff";
+const withSurface = { ...runOf({ to: 20 }), meshes: [surfaceOf()] };
+
+testMadeUp("shows the surface, colored by what is chosen", dataOf(withSurface), async (page) => {
+  const legend = async () => {
+    await page.waitForTimeout(100);
+    return page.locator("#surface-scale").innerText();
+  };
+  await press(page, "o");   // without points
+  await goTo(page, 10);
+  assert.equal((await page.evaluate(() => window.pliant.state())).surfaceColor, "image");
+  assert.equal(await page.locator("#surface-scale").isVisible(), false);
+  await press(page, "u");
+  assert.match(await legend(), /0\s*6\s*map units/);   // displaced by 2 to 6
+  await screenshot(page, "surface");
+  await press(page, "u");
+  assert.match(await legend(), /%/);
+  await press(page, "u");
+  assert.equal((await page.evaluate(() => window.pliant.state())).surfaceColor, "uncertainty");
+  assert.match(await legend(), /0\s*0.660\s*map units/);
+  await page.waitForTimeout(300);
+  const white = await countPixels(page, "#scene", WHITE);
+  await press(page, "s");
+  await page.waitForTimeout(300);
+  assert.ok(await countPixels(page, "#scene", WHITE) > white + 10000, "the surface is gone");
+});
+
+testMadeUp("shows no surface where there is none", dataOf(runOf({ to: 5 })), async (page) => {
+  assert.equal(await page.locator("#surface-tools").isVisible(), false);
+  assert.equal(await page.getByRole("button", { name: "surface", exact: true }).isVisible(), false);
+});
+
+testMadeUp("shows the surface of the frame's own submap alone", dataOf({ ...runOf({ to: 5 }), meshes: [surfaceOf({ submap: 3 })] }), async (page) => {
+  await page.waitForTimeout(300);
+  const white = await countPixels(page, "#scene", WHITE);
+  await press(page, "s");
+  await page.waitForTimeout(300);
+  assert.equal(await countPixels(page, "#scene", WHITE), white);
+});

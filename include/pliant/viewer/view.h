@@ -70,7 +70,7 @@ struct ViewedRun {
   std::vector<std::string> stage_names;  // of RunFrame::stage_ms
   std::vector<ViewedFrame> frames;       // every frame read, in order
   std::map<PointId, NewPoint> points;    // undeformed, of every point that is shown
-  std::vector<GltfMesh> meshes;          // of its surface, at most one a submap; their normals are those of its own world
+  std::vector<GltfMesh> meshes;  // of its surface, at most one a submap; their normals are those of its own world
   std::vector<std::pair<std::string, std::vector<std::optional<double>>>> errors;  // by name, one value a frame
   std::vector<std::optional<double>> scales;  // mm a unit of the run, one a frame; empty: not known
   std::vector<NamedText> figures;
@@ -102,7 +102,7 @@ struct ViewRequest {
   std::string sequence_path;  // empty: the one that the first run's run.json names, if it is still there
   std::string camera_path;    // of the sequence; may be empty
   std::vector<std::string> surface_paths = {};  // surface folders of some of the runs
-  bool figures = true;        // false: no tables, for which the material of a simulated scene must be followed
+  bool figures = true;  // false: no tables, for which the material of a simulated scene must be followed
 };
 
 // What a run is called: its folder's name.
