@@ -5,7 +5,7 @@
 
 import assert from "node:assert/strict";
 import { POINTS, dataOf, runOf, surfaceOf } from "./made_up.mjs";
-import { countPixels, goTo, press, screenshot, testMadeUp } from "./support.mjs";
+import { countPixels, goTo, press, redrawn, screenshot, testMadeUp } from "./support.mjs";
 
 const ORANGE = "#d55e00";      // of trails
 const LIGHT_GRAY = "#dde1e6";
@@ -164,7 +164,7 @@ const withSurface = { ...runOf({ to: 20 }), meshes: [surfaceOf()] };
 
 testMadeUp("shows the surface, colored by what is chosen", dataOf(withSurface), async (page) => {
   const legend = async () => {
-    await page.waitForTimeout(100);
+    await redrawn(page);
     return page.locator("#surface-scale").innerText();
   };
   await press(page, "o");   // without points

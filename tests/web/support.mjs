@@ -117,6 +117,12 @@ export async function goTo(page, position) {
     slider.dispatchEvent(new Event("input"));
   }, position);
   await eventually(page, (value) => window.pliant.state().position === value, position);
+  await redrawn(page);
+}
+
+// Waits until the views show what the state says.
+export function redrawn(page) {
+  return page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
 }
 
 // A frame in which there are many points, and of these the one that lies farthest from the others in this view.
