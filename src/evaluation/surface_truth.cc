@@ -4,12 +4,8 @@
 #include "pliant/evaluation/surface_truth.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
-#include "pliant/base/statistics.h"
-#include "pliant/image/masks.h"
-#include "pliant/image/pyramid.h"
 #include "pliant/photometric/stereo_matching.h"
 
 namespace pliant {
@@ -47,7 +43,9 @@ class OfPairs final : public SurfaceTruth {
     if (!left->has_value()) return depths;
     const auto right = sequence_->Right();
     if (!right.ok()) return right.status();
-    if (right->has_value()) depths = Measure(**left, **right, pixels);
+    if (right->has_value())
+      depths = DepthsOfPair(sequence_->camera(), *sequence_->BaselineMm(), (*left)->image, (*left)->mask, **right,
+                            pixels, threads_);
     return depths;
   }
 
@@ -64,29 +62,6 @@ class OfPairs final : public SurfaceTruth {
       if (last_idx_ == frame_idx) return frame;
     }
     return std::optional<SequenceFrame>();
-  }
-
-  std::vector<DepthAtPixel> Measure(const SequenceFrame& left, const cv::Mat& right,
-                                    std::span<const Eigen::Vector2d> pixels) const {
-    const LucasKanadeOptions lucas_kanade;
-    const auto pyramid = [&](const cv::Mat& image) { return ImagePyramid(ToGray(image), lucas_kanade.levels); };
-    const SupportMask left_mask(ValidMask(left.image, left.mask, {}));
-    const SupportMask right_mask(ValidMask(right, {}, {}));
-    const auto matches =
-        MatchAlongRows(pyramid(left.image), left_mask, pyramid(right), right_mask, pixels, {}, lucas_kanade, threads_);
-    std::vector<double> rows_px;
-    for (const auto& match : matches)
-      if (match) rows_px.push_back(std::abs(match->row_px));
-    const double sigma_row_px = rows_px.empty() ? 0.0 : kMedianToSigma * Median(std::move(rows_px));
-    const double focal_baseline = sequence_->camera().HorizontalFocalLengthPx() * *sequence_->BaselineMm();
-    std::vector<DepthAtPixel> depths(pixels.size(), {DepthLookup::kNoDepth});
-    for (std::size_t i = 0; i < pixels.size(); ++i) {
-      if (!matches[i]) continue;
-      const double depth_mm = focal_baseline / matches[i]->disparity_px;
-      const double sigma_px = std::hypot(sigma_row_px, matches[i]->left_right_px);
-      depths[i] = {DepthLookup::kOk, depth_mm, depth_mm * depth_mm / focal_baseline * sigma_px};
-    }
-    return depths;
   }
 
   std::unique_ptr<Sequence> sequence_;

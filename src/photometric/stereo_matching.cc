@@ -10,6 +10,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "pliant/base/parallel.h"
+#include "pliant/base/statistics.h"
 #include "pliant/photometric/lucas_kanade.h"
 
 namespace pliant {
@@ -167,6 +168,28 @@ std::vector<std::optional<RowMatch>> MatchAlongRows(const ImagePyramid& left, co
           Refine({left, left_mask}, {right, right_mask}, pixel, *whole, options, lucas_kanade);
   });
   return matches;
+}
+
+std::vector<DepthAtPixel> DepthsOfPair(const Camera& camera, double baseline_mm, const cv::Mat& left,
+                                       const cv::Mat& left_mask, const cv::Mat& right,
+                                       std::span<const Eigen::Vector2d> pixels, int threads) {
+  const LucasKanadeOptions lucas_kanade;
+  const auto pyramid = [&](const cv::Mat& image) { return ImagePyramid(ToGray(image), lucas_kanade.levels); };
+  const auto matches = MatchAlongRows(pyramid(left), SupportMask(ValidMask(left, left_mask, {})), pyramid(right),
+                                      SupportMask(ValidMask(right, {}, {})), pixels, {}, lucas_kanade, threads);
+  std::vector<double> rows_px;
+  for (const auto& match : matches)
+    if (match) rows_px.push_back(std::abs(match->row_px));
+  const double sigma_row_px = rows_px.empty() ? 0.0 : kMedianToSigma * Median(std::move(rows_px));
+  const double focal_baseline = camera.HorizontalFocalLengthPx() * baseline_mm;
+  std::vector<DepthAtPixel> depths(pixels.size(), {DepthLookup::kNoDepth});
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    if (!matches[i]) continue;
+    const double depth_mm = focal_baseline / matches[i]->disparity_px;
+    const double sigma_px = std::hypot(sigma_row_px, matches[i]->left_right_px);
+    depths[i] = {DepthLookup::kOk, depth_mm, depth_mm * depth_mm / focal_baseline * sigma_px};
+  }
+  return depths;
 }
 
 }  // namespace pliant

@@ -9,6 +9,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,23 +37,31 @@ Result<std::vector<PosedFrame>> ReadPosedFrames(const std::string& path, const R
 // Views of posed frames, read in order and kept as long as they are needed. What it is made from has to outlive it.
 class RunViews {
  public:
+  // `pair_threads`: to bring right images into the run's unit; 0: these are not read.
   RunViews(std::unique_ptr<Sequence> sequence, const std::vector<PosedFrame>& frames, const RunMap& known,
-           const MaskOptions& masks)
-      : sequence_(std::move(sequence)), frames_(frames), known_(known), masks_(masks) {}
+           const MaskOptions& masks, int pair_threads = 0)
+      : sequence_(std::move(sequence)), frames_(frames), known_(known), masks_(masks), pair_threads_(pair_threads) {}
 
   // Reads up to the frame at `position` of the posed frames, and keeps those for which `is_needed`. Fails as Sequence,
   // and with kMismatch where the images are not those of the run.
   Status ReadUntil(std::size_t position, const std::function<bool(std::size_t)>& is_needed);
   // Of a frame that was read and kept.
   const SurfaceView& At(std::size_t position) const { return views_.at(position); }
+  // What the right camera of a pair has seen at the same time, in the run's unit; null where there is none, or its
+  // depths are not those of the run's points but for a factor.
+  const SurfaceView* RightOf(std::size_t position) const;
   void ForgetUnless(const std::function<bool(std::size_t)>& is_needed);
 
  private:
+  std::optional<SurfaceView> RightView(const SurfaceView& left, const cv::Mat& mask, const cv::Mat& right) const;
+
   std::unique_ptr<Sequence> sequence_;
   const std::vector<PosedFrame>& frames_;
   const RunMap& known_;
   const MaskOptions& masks_;
+  int pair_threads_;
   std::map<std::size_t, SurfaceView> views_;
+  std::map<std::size_t, SurfaceView> rights_;
   std::size_t next_ = 0;
 };
 

@@ -126,8 +126,14 @@ class SurfaceMaker {
   Status MakeFrame(std::size_t reference, const std::vector<std::size_t>& neighbors, const RunViews& images,
                    SurfaceFrame* frame) {
     const auto begin = std::chrono::steady_clock::now();
+    // Between the images of a pair nothing moves: others, which are seen through the deformation, would add errors.
+    const SurfaceView* right = images.RightOf(reference);
+    frame->has_pair = right != nullptr;
     std::vector<SurfaceView> others;
-    for (const std::size_t n : neighbors) others.push_back(images.At(n));
+    if (right != nullptr)
+      others.push_back(*right);
+    else
+      for (const std::size_t n : neighbors) others.push_back(images.At(n));
     const auto dense = estimator_.Estimate(images.At(reference), others);
     frame->seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     if (!dense.ok()) {
@@ -151,6 +157,7 @@ void SurfaceRunOptions::List(OptionTable& table) {
   table.Add("neighbors", &neighbors, "", "other images that a frame is compared with", 1, 100);
   table.Add("min_common_points", &min_common_points, "1", "of the frame's points, that a neighbor has too", 0.0, 1.0);
   table.Add("max_parallax_deg", &max_parallax_deg, "deg", "of these, in the median", 0.1, 90.0);
+  table.Add("pairs", &pairs, "bool", "a frame that has a right image is compared with that alone");
   table.Add("mesh_columns", &mesh_columns, "", "vertices of the mesh across an image; 0: no mesh", 0, 4096);
   table.Add("gltf", &gltf, "bool", "surface.glb: the mesh, its texture, its motion and the camera's");
   table.Add("vtk", &vtk, "bool", "surface.pvd and vtp/: the mesh in every frame, with displacement, strain and sigma");
@@ -185,7 +192,7 @@ Result<SurfaceSummary> MakeSurface(const SurfaceRequest& request, const SurfaceR
   if (!estimator.ok()) return estimator.status();
   auto writer = SurfaceWriter::Create(request.output_path, *known->camera, LargestDepth(*frames));
   if (!writer.ok()) return writer.status();
-  RunViews images(*std::move(sequence), *frames, *known, options.masks);
+  RunViews images(*std::move(sequence), *frames, *known, options.masks, options.pairs ? ThreadsOf(options) : 0);
   SurfaceSummary summary;
   const Status made =
       SurfaceMaker(request, callback, *estimator, &*writer).Make(*frames, plan, *known, &images, &summary);

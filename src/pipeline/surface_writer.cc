@@ -87,6 +87,7 @@ Status SurfaceWriter::Finish(const SurfaceRequest& request, const SurfaceRunOpti
     json["frames"].push_back({{"frame", frame.frame_idx},
                               {"name", FileNameOf(frame)},
                               {"neighbors", frame.neighbors},
+                              {"pair", frame.has_pair},
                               {"known_share", frame.known_share},
                               {"median_sigma", frame.median_sigma},
                               {"seconds", frame.seconds},

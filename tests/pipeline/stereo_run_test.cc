@@ -14,7 +14,9 @@
 
 #include "pliant/base/statistics.h"
 #include "pliant/datasets/convert_sequence.h"
+#include "pliant/datasets/surface_folder.h"
 #include "pliant/io/trajectory.h"
+#include "pliant/pipeline/surface_run.h"
 #include "pliant/pipeline/track.h"
 #include "support/rendered_sequence.h"
 #include "support/test_folder.h"
@@ -185,6 +187,45 @@ TEST_F(StereoRun, FailsWithItsReasonWhereARightImageCannotBeRead) {
   ASSERT_TRUE(summary.ok()) << summary.status().message();
   EXPECT_EQ(summary->status, RunStatus::kFailed);
   EXPECT_THAT(summary->note, HasSubstr("right/000000.png is truncated"));
+}
+
+// Median relative error of the surface's depths in some frames.
+double SurfaceError(const std::string& path) {
+  const auto surface = ReadSurfaceFolder(path);
+  EXPECT_TRUE(surface.ok()) << surface.status().message();
+  std::vector<double> errors;
+  for (const SurfaceFolder::Frame& frame : surface->frames) {
+    const auto dense = ReadSurfaceDepth(*surface, frame);
+    EXPECT_TRUE(dense.ok()) << dense.status().message();
+    const cv::Mat& truth_mm = Rendered().frames[static_cast<std::size_t>(frame.frame_idx)].depth;
+    for (int y = 0; y < truth_mm.rows; ++y)
+      for (int x = 0; x < truth_mm.cols; ++x)
+        if (dense->depth.at<float>(y, x) > 0 && truth_mm.at<float>(y, x) > 0)
+          errors.push_back(std::abs(dense->depth.at<float>(y, x) / truth_mm.at<float>(y, x) - 1.0));
+  }
+  EXPECT_GT(errors.size(), 1000U);
+  return Median(errors);
+}
+
+TEST_F(StereoRun, ItsSurfaceIsSeenInThePairs) {
+  RunRequest request;
+  request.input.image_path = Sequence(/*mono=*/false);
+  request.output_path = folder_.Path("run");
+  ASSERT_TRUE(RunTrack(request, StereoOptions(), {}).ok());
+  SurfaceRequest surface;
+  surface.run_path = folder_.Path("run");
+  surface.output_path = folder_.Path("surface");
+  surface.frames = {4, 8};
+  SurfaceRunOptions options;
+  options.mesh_columns = 0;
+  const auto by_pairs = MakeSurface(surface, options, {});
+  ASSERT_TRUE(by_pairs.ok()) << by_pairs.status().message();
+  for (const SurfaceFrame& frame : by_pairs->frames) EXPECT_TRUE(frame.has_pair);
+  EXPECT_LT(SurfaceError(surface.output_path), kDepthFromStereo);
+  options.pairs = false;
+  const auto by_neighbors = MakeSurface(surface, options, {});
+  ASSERT_TRUE(by_neighbors.ok()) << by_neighbors.status().message();
+  for (const SurfaceFrame& frame : by_neighbors->frames) EXPECT_FALSE(frame.has_pair);
 }
 
 }  // namespace

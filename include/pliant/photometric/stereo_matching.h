@@ -19,6 +19,7 @@
 #include "pliant/base/options.h"
 #include "pliant/base/status.h"
 #include "pliant/camera/camera.h"
+#include "pliant/image/depth_lookup.h"
 #include "pliant/image/masks.h"
 #include "pliant/image/pyramid.h"
 #include "pliant/photometric/patch.h"
@@ -66,5 +67,13 @@ std::vector<std::optional<RowMatch>> MatchAlongRows(const ImagePyramid& left, co
                                                     std::span<const Eigen::Vector2d> pixels,
                                                     const StereoMatchingOptions& options,
                                                     const LucasKanadeOptions& lucas_kanade, int threads);
+
+// The same as depths of a whole image, matched as tracked points are by default. `left`, `right`: 8-bit, 1 or 3 (BGR)
+// channels; `left_mask`: CV_8UC1, 0 = ignore, or empty. kNoDepth without a certain match. The standard deviation of a
+// disparity is that of the rows of the matches, which ought to agree, and what the match followed back is off, together
+// (docs/method.md, eq. B6).
+std::vector<DepthAtPixel> DepthsOfPair(const Camera& camera, double baseline_mm, const cv::Mat& left,
+                                       const cv::Mat& left_mask, const cv::Mat& right,
+                                       std::span<const Eigen::Vector2d> pixels, int threads);
 
 }  // namespace pliant

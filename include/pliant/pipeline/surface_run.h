@@ -23,6 +23,7 @@ struct SurfaceRunOptions {
   int neighbors = 6;               // other images that a frame is compared with
   double min_common_points = 0.5;  // of the frame's points, that a neighbor has too
   double max_parallax_deg = 15;    // in the median of these
+  bool pairs = true;               // a frame that has a right image is compared with that alone
   int mesh_columns = 96;           // vertices of the mesh across an image; 0: no mesh
   bool gltf = true;                // which files of it, beside a PLY file a frame
   bool vtk = true;
@@ -48,6 +49,7 @@ struct SurfaceFrame {
   int frame_idx = 0;
   std::string name;
   std::vector<int> neighbors;  // frames
+  bool has_pair = false;       // it was compared with its right image, not with neighbors
   double known_share = 0;      // of the image's valid pixels, that have a depth
   double median_sigma = 0;     // of these, by the depth
   double seconds = 0;
