@@ -16,6 +16,8 @@ FIGURES = [("points: RMSE, mm", ("surface", "estimate", "mean_rmse_mm"), 2, 1),
            ("points, interpolated: RMSE, mm", ("dense", "interpolation", "rmse_mm"), 2, 1),
            ("AbsRel, %", ("dense", "interpolation", "abs_rel"), 2, 100),
            ("one depth: AbsRel, %", ("dense", "null", "abs_rel"), 1, 100),
+           ("mesh: RMSE, mm", ("dense", "mesh", "rmse_mm"), 2, 1),
+           ("mesh elsewhere: within 2 mm, %", ("dense", "mesh_alone", "within_2_mm"), 0, 100),
            ("within 1 sigma, %", ("dense", "within_1_sigma"), 0, 100),
            ("within 2 sigma, %", ("dense", "within_2_sigma"), 0, 100)]
 

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
 #include <span>
 #include <utility>
 
@@ -22,6 +23,7 @@ namespace {
 
 constexpr double kSameSurface = 3.0;  // standard deviations of two depths of one surface
 constexpr double kMinKnown = 0.5;     // of the pixels around a node
+constexpr int kMinPiece = 20;         // triangles of a connected piece
 constexpr std::int32_t kNoVertex = -1;
 
 // Whether the distances of a triangle's corners are those of one surface.
@@ -69,8 +71,28 @@ Measured MeasuredAround(const DenseDepth& dense, const Eigen::Vector2d& pixel, d
       sigmas.push_back(dense.sigma.at<float>(y, x));
     }
   if (depths.empty() || static_cast<double>(depths.size()) < kMinKnown * pixels) return {};
-  const double depth = Median(std::move(depths));
-  return {depth, depth * Median(std::move(sigmas))};
+  // One of the depths: at a contour the mean of two is that of no surface.
+  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
+  std::ranges::nth_element(depths, middle);
+  return {*middle, *middle * Median(std::move(sigmas))};
+}
+
+// Whether a vertex belongs to a piece of at least `least` triangles.
+std::vector<bool> InLargePieces(const Mesh& mesh, int least) {
+  std::vector<std::size_t> parent(mesh.vertices.size());
+  std::iota(parent.begin(), parent.end(), std::size_t{0});
+  const auto root_of = [&](std::size_t v) {
+    while (parent[v] != v) v = parent[v] = parent[parent[v]];
+    return v;
+  };
+  for (const Triangle& triangle : mesh.triangles)
+    for (const std::int32_t v : triangle)
+      parent[root_of(static_cast<std::size_t>(v))] = root_of(static_cast<std::size_t>(triangle[0]));
+  std::vector<int> triangles(mesh.vertices.size(), 0);
+  for (const Triangle& triangle : mesh.triangles) ++triangles[root_of(static_cast<std::size_t>(triangle[0]))];
+  std::vector<bool> in_large;
+  for (std::size_t v = 0; v < parent.size(); ++v) in_large.push_back(triangles[root_of(v)] >= least);
+  return in_large;
 }
 
 // The vertices that a frame has at the nodes of its grid, and which of them are new.
@@ -263,6 +285,7 @@ void TrackedMesh::Finish() {
   std::vector<bool> keep;
   for (const Votes& votes : state_->votes) keep.push_back(votes.contradicted <= votes.confirmed);
   state_->mesh = PartOfMesh(state_->mesh, keep);
+  state_->mesh = PartOfMesh(state_->mesh, InLargePieces(state_->mesh, kMinPiece));
   state_->votes.clear();
   state_->mesh.normals = VertexNormals(state_->mesh.vertices, state_->mesh.triangles);
 }

@@ -81,10 +81,11 @@ def dense_depths(folder):
     for seed, rmse in ((1, 0.4), (2, 0.6), (3, None)):
         path = folder / f"runs/online/dm_A5_w2.5_s{seed}/dense"
         (path / "surface").mkdir(parents=True)
-        figures = {"rmse_mm": rmse, "abs_rel": 0.01}
+        figures = {"rmse_mm": rmse, "abs_rel": 0.01, "within_2_mm": 0.9}
         evaluation = {"surface": {"estimate": {"mean_rmse_mm": 0.5}},
                       "dense": {"known_share": 0.8, "estimate": figures, "certain_half": figures,
-                                "interpolation": figures, "null": figures, "within_1_sigma": 0.7,
+                                "interpolation": figures, "null": figures, "mesh": figures,
+                                "mesh_alone": figures, "within_1_sigma": 0.7,
                                 "within_2_sigma": 0.95}} if rmse else {}
         (path / "evaluation.json").write_text(json.dumps(evaluation), encoding="utf-8")
         (path / "surface/surface.json").write_text(json.dumps({"frames": [{"seconds": 1.0}, {"seconds": 1.4}]}),
@@ -92,8 +93,8 @@ def dense_depths(folder):
     os.chdir(folder)
     dense.write(runs, folder / "table.md", folder / "table.csv")
     line = (folder / "table.md").read_text(encoding="utf-8").splitlines()[2]
-    assert line == ("| dm | 5 | 2.5 | online | 2 of 3 | 0.50 | 80 | 0.50 | 1.00 | 0.50 | 0.50 | 1.00 | 1.0 | 70 | 95 | "
-                    "1.2 |"), line
+    assert line == ("| dm | 5 | 2.5 | online | 2 of 3 | 0.50 | 80 | 0.50 | 1.00 | 0.50 | 0.50 | 1.00 | 1.0 | 0.50 | 90 | "
+                    "70 | 95 | 1.2 |"), line
     assert len(grid.read_rows(folder / "table.csv")) == 2
 
 

@@ -142,6 +142,20 @@ TEST(TrackedMesh, WhatMoreFramesContradictThanConfirmGoes) {
     EXPECT_NEAR(vertex.z(), 50 + 0.3 * vertex.x(), 1.5);
 }
 
+TEST(TrackedMesh, HasNoSmallPieces) {
+  const TexturedPlane plane;
+  DenseDepth dense = TrueDepth(plane, 0);
+  cv::Mat keep(dense.depth.size(), CV_8U, cv::Scalar(0));
+  keep(cv::Rect(0, 0, 200, 240)).setTo(1);
+  keep(cv::Rect(240, 100, 10, 10)).setTo(1);  // of two times two nodes
+  dense.depth.setTo(0.0F, keep == 0);
+  TrackedMesh tracked(plane.camera, RestOf(plane), kColumns, 1);
+  tracked.Add(plane.View(0), dense);
+  tracked.Finish();
+  for (const Eigen::Vector3f& vertex : tracked.undeformed().vertices)
+    EXPECT_LT(plane.camera.Project(vertex.cast<double>())->x(), 202);
+}
+
 TEST(TrackedMesh, FramesTogetherAreNearerThanOne) {
   TexturedPlane plane;
   plane.slide_mm = 0;

@@ -48,7 +48,7 @@ class TrackedMesh {
   // A frame and its depth; frames in the order of time. A frame with fewer than 12 points adds nothing.
   void Add(const SurfaceView& view, const DenseDepth& dense);
   // After the last frame: takes away the vertices that more frames contradict than confirm (they see another surface
-  // behind them), and gives the others their normals.
+  // behind them), and small pieces; gives the others their normals.
   void Finish();
 
   // World frame, map units; the sigmas are those of the frames that saw the vertices best.
