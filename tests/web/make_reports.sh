@@ -3,7 +3,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 #
 # usage: make_reports.sh PLIANT SEQUENCE FOLDER
-# The reports that the tests of the page open: of one run with truth, of two runs, and of a run whose images are gone.
+# What the tests of the page open: reports of one run with truth, of two runs, of a run whose images are gone, and of one
+# with its surface, whose folder stays too.
 set -euo pipefail
 pliant=$1 sequence=$(realpath "$2") folder=$3
 
@@ -15,5 +16,7 @@ ln -s "$sequence" images_that_go
 "$pliant" track --image_path "$sequence" --output_path fixed_map --end 40 --Growth.grow off --quiet
 "$pliant" report --run ours --sequence "$sequence" -o one.html --quiet
 "$pliant" report --run ours --run fixed_map --sequence "$sequence" -o two.html --quiet
+"$pliant" surface --run ours --sequence "$sequence" --frames 10,20,30 --output_path surface --quiet
+"$pliant" report --run ours --sequence "$sequence" --surface surface -o surface.html --quiet
 rm images_that_go
 "$pliant" report --run ours -o no_images.html --quiet
