@@ -383,12 +383,6 @@ std::optional<GltfMesh> MeshIn(const tinygltf::Model& model) {
   return result;
 }
 
-// Images are not decoded.
-bool KeepCoded(tinygltf::Image* /*image*/, int /*index*/, std::string* /*error*/, std::string* /*warning*/,
-               int /*width*/, int /*height*/, const unsigned char* /*bytes*/, int /*size*/, void* /*user*/) {
-  return true;
-}
-
 }  // namespace
 
 Status WriteGlb(const std::string& path, const MeshAnimation& animation) {
@@ -415,7 +409,6 @@ Result<GltfMesh> ReadGlb(const std::string& path) {
   const Status unreadable(ErrorCode::kUnreadable,
                           Quoted(path) + " is not a mesh that pliant surface wrote, or is damaged");
   tinygltf::TinyGLTF reader;
-  reader.SetImageLoader(KeepCoded, nullptr);
   tinygltf::Model model;
   std::string error;
   std::string warning;
