@@ -7,9 +7,11 @@
 
 #include "e2e/e2e_support.h"
 #include "pliant/base/statistics.h"
+#include "pliant/datasets/surface_folder.h"
 #include "pliant/image/pyramid.h"
 #include "pliant/io/camera_file.h"
 #include "pliant/io/point_cloud.h"
+#include "pliant/pipeline/surface_run.h"
 
 namespace pliant {
 namespace {
@@ -18,6 +20,7 @@ constexpr std::int64_t kMinNasalFrames = 33;  // of 35
 constexpr double kNasalWidth_px = 1920;
 constexpr std::size_t kMinPorcine = 200;  // map points that the published disparities cover
 constexpr double kDisparity = 0.01;       // median, relative: half a step of 8-bit disparities of some 50
+constexpr double kMinPorcineKnown = 0.7;  // of the pixels with a published disparity
 constexpr std::size_t kMinCloth = 300;    // map points of the first image, most of which are followed to the last
 constexpr double kCloud = 0.02;           // median, relative: steps between the cloud's points, and the motion itself
 
@@ -102,6 +105,8 @@ std::optional<double> DisparityAt(const cv::Mat& disparities, const Eigen::Vecto
   return SampleBilinear(disparities, pixel.x(), pixel.y());
 }
 
+constexpr double kFocalBaseline = 1120.2260379 * 4.1434591;  // of the porcine pairs, px mm
+
 TEST(Recordings, TheStereoMapOfThePorcinePairIsThatOfItsDisparities) {
   const std::string folder_path = RecordingOrSkip("porcine_stereo");
   if (folder_path.empty()) GTEST_SKIP() << "no recordings at " << PLIANT_TEST_RECORDINGS;
@@ -114,11 +119,39 @@ TEST(Recordings, TheStereoMapOfThePorcinePairIsThatOfItsDisparities) {
   EXPECT_EQ(summary.frames_tracked, 10) << summary.note;
   std::vector<double> errors;
   for (const PointObservation& seen : ObservationsOf(folder.Path("run"), 0)) {
-    constexpr double kFocalBaseline = 1120.2260379 * 4.1434591;
     if (const auto disparity = DisparityAt(disparities, seen.pixel))
       errors.push_back(std::abs(seen.position.z() * *disparity / kFocalBaseline - 1.0));
   }
   ASSERT_GT(errors.size(), kMinPorcine);
+  EXPECT_LT(Median(errors), kDisparity);
+}
+
+TEST(Recordings, TheSurfaceOfThePorcinePairIsThatOfItsDisparities) {
+  const std::string folder_path = RecordingOrSkip("porcine_stereo");
+  if (folder_path.empty()) GTEST_SKIP() << "no recordings at " << PLIANT_TEST_RECORDINGS;
+  const cv::Mat disparities = cv::imread(folder_path + "/disparity_0000.png", cv::IMREAD_GRAYSCALE);
+  const TestFolder folder;
+  TrackOptions options;
+  options.tracker.init.method = InitMethod::kStereo;
+  TrackSequenceAt(folder_path, folder.Path("run"), options);
+  SurfaceRequest request;
+  request.run_path = folder.Path("run");
+  request.output_path = folder.Path("surface");
+  request.frames = {0};
+  ASSERT_TRUE(MakeSurface(request, {}, {}).ok());
+  const auto surface = ReadSurfaceFolder(request.output_path);
+  ASSERT_TRUE(surface.ok()) << surface.status().message();
+  const auto dense = ReadSurfaceDepth(*surface, surface->frames.at(0));
+  ASSERT_TRUE(dense.ok()) << dense.status().message();
+  ASSERT_EQ(dense->depth.size(), disparities.size());
+  std::vector<double> errors;
+  for (int y = 0; y < disparities.rows; ++y)
+    for (int x = 0; x < disparities.cols; ++x) {
+      const double disparity = disparities.at<std::uint8_t>(y, x);
+      if (disparity > 0 && dense->depth.at<float>(y, x) > 0)
+        errors.push_back(std::abs(dense->depth.at<float>(y, x) * disparity / kFocalBaseline - 1.0));
+    }
+  EXPECT_GT(static_cast<double>(errors.size()), kMinPorcineKnown * cv::countNonZero(disparities));
   EXPECT_LT(Median(errors), kDisparity);
 }
 
