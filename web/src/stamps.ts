@@ -10,6 +10,8 @@ const RADIUS_PX = 3;
 const SIZE_PX = 14;
 const SLOTS = 24;   // a side of the sheet
 const RIM = "rgba(0, 0, 0, 0.6)";
+const LABEL_FONT = "600 13px system-ui, sans-serif";
+const LABEL_GAP_PX = 10;   // from what is labeled, and from the edge
 
 export const STAMPS = ["dot", "cross", "ring", "square", "triangle", "diamond"] as const;
 export type Stamp = (typeof STAMPS)[number];
@@ -81,4 +83,19 @@ export function strokeOnImage(context: CanvasRenderingContext2D, color: string):
   context.lineWidth = 2;
   context.strokeStyle = color;
   context.stroke();
+}
+
+// Beside this place, and inside the canvas.
+export function writeOnImage(context: CanvasRenderingContext2D, text: string, x: number, y: number, color: string): void {
+  context.font = LABEL_FONT;
+  context.textBaseline = "middle";
+  const { clientWidth, clientHeight } = context.canvas;
+  const left = Math.max(LABEL_GAP_PX, Math.min(x + LABEL_GAP_PX, clientWidth - context.measureText(text).width - LABEL_GAP_PX));
+  const middle = Math.max(LABEL_GAP_PX, Math.min(y - LABEL_GAP_PX, clientHeight - LABEL_GAP_PX));
+  context.lineWidth = 4;
+  context.lineJoin = "round";
+  context.strokeStyle = RIM;
+  context.strokeText(text, left, middle);
+  context.fillStyle = color;
+  context.fillText(text, left, middle);
 }
