@@ -242,7 +242,7 @@ testMadeUp("measures the distance of two points in every frame", dataOf(stretche
   await goTo(page, 10);
   assert.equal(await textOf(page, "#ruler-length"), "46.2 map units to point 7, +10.0 % since frame 0");
   assert.equal(await textOf(page, "#scene .ruler-label"), "46.2 map units");
-  assert.deepEqual(await plotted(page, "Distance to point 7"), ["46.2"]);
+  assert.deepEqual(await plotted(page, "Distance"), ["46.2"]);
   assert.deepEqual(await plotted(page, "Its change since frame 0"), ["10.0"]);
   await screenshot(page, "ruler");
   await press(page, "d");
@@ -254,12 +254,12 @@ testMadeUp("says why there is no distance, and leaves a gap in its plot", dataOf
   await goTo(page, 4);
   assert.equal(await textOf(page, "#ruler-length"), "");
   assert.equal(await textOf(page, "#ruler-state"), "No distance: point 7 is not seen in this frame.");
-  assert.deepEqual(await plotted(page, "Distance to point 7"), ["–"]);
+  assert.deepEqual(await plotted(page, "Distance"), ["–"]);
   assert.equal(await page.locator("#scene .ruler-label").isVisible(), false);
   await screenshot(page, "ruler_gap");
   await goTo(page, 6);
   assert.equal(await textOf(page, "#ruler-state"), "");
-  assert.deepEqual(await plotted(page, "Distance to point 7"), ["44.5"]);
+  assert.deepEqual(await plotted(page, "Distance"), ["44.5"]);
 });
 
 for (const [view, color] of [["image", CYAN], ["scene", TEAL]]) {
@@ -299,7 +299,7 @@ testMadeUp("says how uncertain a distance is", { ...dataOf(stretched({ sigma: SI
     assert.match(rest, /^\(1 sigma\) to point 7/);
     assert.equal(await textOf(page, "#scene .ruler-label"), `${distance} ± ${sigma} mm`);
   }
-  const [value, low, high] = (await plotted(page, "Distance to point 7")).map(Number);
+  const [value, low, high] = (await plotted(page, "Distance")).map(Number);
   assert.ok(low < value && value < high);
   assert.equal(await textOf(page, "#ruler-unit"), "");
   await screenshot(page, "ruler_sigma");
@@ -310,7 +310,7 @@ testMadeUp("removes the ruler with escape, then the pick", dataOf(stretched()), 
   await press(page, "Escape");
   assert.deepEqual(await endsOf(page), [0, null]);
   assert.equal(await textOf(page, "#ruler-length"), "");
-  assert.deepEqual(await plotted(page, "Distance to point 7"), []);
+  assert.deepEqual(await plotted(page, "Distance"), []);
   await press(page, "Escape");
   assert.deepEqual(await endsOf(page), [null, null]);
   assert.ok(await page.locator("#point").isHidden());
@@ -371,5 +371,5 @@ testMadeUp("says so of points that are never seen together", dataOf(apart), asyn
   await goTo(page, 10);
   await click(page, 7, "image", ["Shift"]);
   assert.match(await textOf(page, "#ruler-state"), /point 0 is not seen in this frame\. There is no frame in which both/);
-  assert.deepEqual(await plotted(page, "Distance to point 7"), []);
+  assert.deepEqual(await plotted(page, "Distance"), []);
 });

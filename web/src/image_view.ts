@@ -9,7 +9,7 @@ import { type Click, byId, onClick, prepare, setText } from "./dom";
 import { RUN_SHAPES } from "./marks";
 import type { Page } from "./page";
 import { pickNearest } from "./picking";
-import { lengthText, readingNow } from "./ruler";
+import { lengthText, readingNow, sideOfLabel } from "./ruler";
 import type { Run } from "./run";
 import { Stamps, strokeOnImage, writeOnImage } from "./stamps";
 import { type Changed, anyOf } from "./state";
@@ -189,8 +189,9 @@ export class ImageView {
     this.lineTo(context, run, to);
     strokeOnImage(context, color);
     this.drawRing(context, run, to, color);
-    const [[x0, y0], [x1, y1]] = reading.ends.map((o) => this.project(run.pixel.values[2 * o], run.pixel.values[2 * o + 1]));
-    writeOnImage(context, lengthText(reading, this.page.report.unit), (x0 + x1) / 2, (y0 + y1) / 2, color);
+    const [a, b] = reading.ends.map((o) => this.project(run.pixel.values[2 * o], run.pixel.values[2 * o + 1]));
+    const text = lengthText(reading, this.page.report.unit);
+    writeOnImage(context, text, (a[0] + b[0]) / 2, (a[1] + b[1]) / 2, sideOfLabel(a, b), color);
   }
 
   private drawRing(context: CanvasRenderingContext2D, run: Run, o: number, color: string): void {

@@ -105,11 +105,10 @@ export class PointPanel {
     const [first] = readings.values();
     if (!first) return [];
     const at = (o: number) => readings.get(run.row.values[o]);
-    const offset = (sigmas: number) => (o: number) => (at(o)?.distance ?? NaN) + sigmas * (at(o)?.sigma ?? NaN);
-    const distance = one(`Distance to point ${measured}`, this.page.report.unit, (o) => at(o)?.distance ?? NaN);
-    if ([...readings.values()].some(({ sigma }) => sigma > 0)) {
-      distance.series.push({ label: "−σ", value: offset(-1) }, { label: "+σ", value: offset(1) });
-    }
+    const offset = (sigmas: number) => (o: number) => (at(o)?.distance ?? NaN) + (sigmas === 0 ? 0 : sigmas * (at(o)?.sigma ?? NaN));
+    const certain = ![...readings.values()].some(({ sigma }) => sigma > 0);
+    const distance = one(certain ? "Distance" : "Distance ± 1 sigma", this.page.report.unit, offset(0));
+    if (!certain) distance.series.push({ label: "less", value: offset(-1) }, { label: "more", value: offset(1) });
     const since = run.frames.frame[run.row.values[first.ends[0]]];
     return [distance, one(`Its change since frame ${since}`, "%", (o) => {
       const reading = at(o);

@@ -69,6 +69,11 @@ export function percentOf(reading: Reading, first: Reading): number {
   return first.distance > 0 ? 100 * (reading.distance / first.distance - 1) : NaN;
 }
 
+// Where a label at the middle of the ruler, to the right of it, does not cross it: above, or below a ruler that rises to the right.
+export function sideOfLabel([x0, y0]: number[], [x1, y1]: number[]): 1 | -1 {
+  return (x1 - x0) * (y1 - y0) < 0 ? 1 : -1;
+}
+
 function observationsOf(run: Run, id: number | null): number[] {
   const point = id === null ? undefined : run.pointWithId(id);
   return point === undefined ? [] : run.observationsOfPoint(point);

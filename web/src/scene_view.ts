@@ -8,7 +8,7 @@ import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { type Click, byId, element, onClick, setText } from "./dom";
 import type { Page } from "./page";
 import { pickNearest } from "./picking";
-import { lengthText, readingNow } from "./ruler";
+import { lengthText, readingNow, sideOfLabel } from "./ruler";
 import { SceneContent, poseOf } from "./scene_content";
 import { type Changed, anyOf } from "./state";
 
@@ -268,8 +268,10 @@ export class SceneView {
     this.rulerLabel.hidden = true;
     if (!reading) return;
     const [from, to] = reading.ends.map((o) => new Vector3().fromArray(report.runs[store.state.current].position.values, 3 * o));
+    const side = sideOfLabel(this.project(from.toArray()), this.project(to.toArray()));
     const [x, y, depth] = this.project(from.add(to).divideScalar(2).toArray());
     this.rulerLabel.hidden = depth >= 1;
+    this.rulerLabel.classList.toggle("below", side > 0);
     setText(this.rulerLabel, lengthText(reading, report.unit));
     this.rulerLabel.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`;
   }

@@ -85,14 +85,14 @@ export function strokeOnImage(context: CanvasRenderingContext2D, color: string):
   context.stroke();
 }
 
-// Beside this place, and inside the canvas.
-export function writeOnImage(context: CanvasRenderingContext2D, text: string, x: number, y: number, color: string): void {
+// To the right of this place, above (side -1) or below it (1), and inside the canvas.
+export function writeOnImage(context: CanvasRenderingContext2D, text: string, x: number, y: number, side: 1 | -1, color: string): void {
   context.font = LABEL_FONT;
   context.textBaseline = "middle";
   const { clientWidth, clientHeight } = context.canvas;
   const left = Math.max(LABEL_GAP_PX, Math.min(x + LABEL_GAP_PX, clientWidth - context.measureText(text).width - LABEL_GAP_PX));
-  const middle = Math.max(LABEL_GAP_PX, Math.min(y - LABEL_GAP_PX, clientHeight - LABEL_GAP_PX));
-  context.lineWidth = 4;
+  const middle = Math.max(LABEL_GAP_PX, Math.min(y + side * LABEL_GAP_PX, clientHeight - LABEL_GAP_PX));
+  context.lineWidth = 3;
   context.lineJoin = "round";
   context.strokeStyle = RIM;
   context.strokeText(text, left, middle);
