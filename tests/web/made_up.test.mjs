@@ -313,7 +313,7 @@ testMadeUp("removes the ruler with escape, then the pick", dataOf(stretched()), 
   assert.deepEqual(await plotted(page, "Distance"), []);
   await press(page, "Escape");
   assert.deepEqual(await endsOf(page), [null, null]);
-  assert.ok(await page.locator("#point").isHidden());
+  await page.locator("#point").waitFor({ state: "hidden" });
 });
 
 testMadeUp("picks both ends of the ruler with the keyboard", dataOf(stretched()), async (page) => {
