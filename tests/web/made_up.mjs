@@ -11,15 +11,20 @@ export const HEIGHT = 240;
 const FOCAL_PX = 300;
 const ELEMENT = '<script type="application/json" id="pliant-data">';
 
-// Frames `from` to `to`, without `to`. Points lie `beside` to the right of the grid and are moved by `step` every frame;
-// frames of which `isLost` says so have neither pose nor points. The world's origin is `away` behind the camera. `truth`: the
-// surface is known, half a unit behind the points.
-export function runOf({ name = "run", from = 0, to, beside = 0, step = 0.05, isLost = () => false, away = 0, truth = false }) {
+// Frames `from` to `to`, without `to`. Points lie `beside` to the right of the grid and are moved by `step` every frame; in frame f
+// the grid is 1 + `stretch` f times as wide. Frames of which `isLost` says so have neither pose nor points; points are seen where
+// `isSeen` says so, with the standard deviation `sigma`. The world's origin is `away` behind the camera. `truth`: the surface is
+// known, half a unit behind the points.
+export function runOf({
+  name = "run", from = 0, to, beside = 0, step = 0.05, stretch = 0, isLost = () => false, isSeen = () => true, sigma = null, away = 0, truth = false,
+}) {
   const frames = Array.from({ length: Math.max(0, to - from) }, (_, i) => from + i);
   const tracked = frames.filter((frame) => !isLost(frame));
   const seen = tracked.length ? Array.from({ length: POINTS }, (_, i) => i) : [];
   const place = (point) => [(point % 8) * 6 - 21 + beside, Math.floor(point / 8) * 6 - 15, 60 + away];
-  const all = seen.flatMap((point) => tracked.map((frame) => ({ point, frame, position: place(point).map((x) => x + step * frame) })));
+  const placeIn = (point, frame) => place(point).map((x, axis) => (axis === 0 ? 1 + stretch * frame : 1) * x + step * frame);
+  const framesOf = (point) => tracked.filter((frame) => isSeen(point, frame));
+  const all = seen.flatMap((point) => framesOf(point).map((frame) => ({ point, frame, position: placeIn(point, frame) })));
   const pixels = all.map(({ frame, position: [x, y, z] }) => [WIDTH / 2 + (FOCAL_PX * (x - frame)) / (z - away), HEIGHT / 2 + (FOCAL_PX * y) / (z - away)]);
   const column = (value) => frames.map(value);
   const count = (value) => column((frame) => (isLost(frame) ? 0 : value));
@@ -34,9 +39,9 @@ export function runOf({ name = "run", from = 0, to, beside = 0, step = 0.05, isL
     },
     points: { id: packIntegers(seen), rest: pack(seen.map(place), 3), rgb: pack(seen.map(() => [200, 120, 90]), 3) },
     observations: {
-      count: seen.map(() => tracked.length), row: packIntegers(all.map(({ frame }) => frame - from)), pixel: pack(pixels, 2),
+      count: seen.map((point) => framesOf(point).length), row: packIntegers(all.map(({ frame }) => frame - from)), pixel: pack(pixels, 2),
       position: pack(all.map(({ position }) => position), 3), depth: pack(all.map(({ position }) => [position[2] - away]), 1),
-      reprojection_px: pack(all.map(() => [0.4]), 1), ssim: pack(all.map(() => [0.9]), 1), gain: null, bias: null,
+      reprojection_px: pack(all.map(() => [0.4]), 1), ssim: pack(all.map(() => [0.9]), 1), sigma: sigma && pack(all.map(() => [sigma]), 1), gain: null, bias: null,
       truth: truth ? pack(all.map(({ position: [x, y, z] }) => [x, y, z + 0.5]), 3) : null,
       error_mm: truth ? pack(all.map(() => [0.5]), 1) : null,
     },

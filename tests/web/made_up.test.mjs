@@ -5,7 +5,7 @@
 
 import assert from "node:assert/strict";
 import { POINTS, dataOf, runOf, surfaceOf } from "./made_up.mjs";
-import { countPixels, goTo, press, redrawn, screenshot, testMadeUp } from "./support.mjs";
+import { countPixels, goTo, press, redrawn, screenshot, state, testMadeUp } from "./support.mjs";
 
 const ORANGE = "#d55e00";      // of trails
 const LIGHT_GRAY = "#dde1e6";
@@ -197,4 +197,179 @@ testMadeUp("shows the surface of the frame's own submap alone", dataOf({ ...runO
   await press(page, "s");
   await page.waitForTimeout(300);
   assert.equal(await countPixels(page, "#scene", WHITE), white);
+});
+
+// Points 0 and 7 are the ends of the first row of the grid: 42 (1 + f / 100) from each other in frame f. Point 7 is not seen in frames
+// 4 and 5.
+const CYAN = "#22e6f2";    // of the ruler in the image
+const TEAL = "#008fa3";    // in the scene
+const SIGMA = 0.5;
+const PHONE = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true, deviceScaleFactor: 2 };
+const isSeen = (point, frame) => point !== 7 || frame < 4 || frame > 5;
+const stretched = (options) => runOf({ to: 20, step: 0, stretch: 0.01, isSeen, ...options });
+
+async function click(page, id, view, modifiers = []) {
+  const box = await page.locator(`#${view}`).boundingBox();
+  const { x, y } = await page.evaluate(([point, where]) => window.pliant.screenOf(point, where), [id, view]);
+  await page.locator(`#${view}`).click({ position: { x: x - box.x, y: y - box.y }, modifiers });
+  await redrawn(page);
+}
+
+async function measure(page) {
+  await click(page, 0, "image");
+  await click(page, 7, "image", ["Shift"]);
+  assert.deepEqual(await endsOf(page), [0, 7]);
+}
+
+async function endsOf(page) {
+  const { picked, measured } = await state(page);
+  return [picked, measured];
+}
+
+async function textOf(page, id) {
+  await redrawn(page);
+  return page.locator(id).textContent();
+}
+
+async function plotted(page, title) {
+  return page.locator("#point-plots .plot").filter({ hasText: title }).locator(".value").allTextContents();
+}
+
+testMadeUp("measures the distance of two points in every frame", dataOf(stretched()), async (page) => {
+  await measure(page);
+  assert.equal(await textOf(page, "#ruler-length"), "42 map units to point 7, +0.0 % since frame 0");
+  assert.match(await textOf(page, "#ruler-unit"), /no measurement/);
+  await goTo(page, 10);
+  assert.equal(await textOf(page, "#ruler-length"), "46.2 map units to point 7, +10.0 % since frame 0");
+  assert.equal(await textOf(page, "#scene .ruler-label"), "46.2 map units");
+  assert.deepEqual(await plotted(page, "Distance"), ["46.2"]);
+  assert.deepEqual(await plotted(page, "Its change since frame 0"), ["10.0"]);
+  await screenshot(page, "ruler");
+  await press(page, "d");
+  await screenshot(page, "ruler_dark");
+});
+
+testMadeUp("says why there is no distance, and leaves a gap in its plot", dataOf(stretched()), async (page) => {
+  await measure(page);
+  await goTo(page, 4);
+  assert.equal(await textOf(page, "#ruler-length"), "");
+  assert.equal(await textOf(page, "#ruler-state"), "No distance: point 7 is not seen in this frame.");
+  assert.deepEqual(await plotted(page, "Distance"), ["–"]);
+  assert.equal(await page.locator("#scene .ruler-label").isVisible(), false);
+  await screenshot(page, "ruler_gap");
+  await goTo(page, 6);
+  assert.equal(await textOf(page, "#ruler-state"), "");
+  assert.deepEqual(await plotted(page, "Distance"), ["44.5"]);
+});
+
+for (const [view, color] of [["image", CYAN], ["scene", TEAL]]) {
+  testMadeUp(`draws the ruler in the ${view} where both points are seen`, dataOf(stretched()), async (page) => {
+    const pixels = async () => {
+      await page.waitForTimeout(300);
+      return countPixels(page, `#${view}`, color);
+    };
+    await click(page, 0, view);
+    const without = await pixels();
+    await click(page, 7, view, ["Shift"]);
+    assert.deepEqual(await endsOf(page), [0, 7]);
+    const [a, b] = await page.evaluate((where) => [0, 7].map((id) => window.pliant.screenOf(id, where)), view);
+    const line = await pixels() - without;
+    assert.ok(line > 1.5 * Math.hypot(a.x - b.x, a.y - b.y), `${line} pixels`);
+    assert.ok(Math.hypot(a.x - b.x, a.y - b.y) > 100, "too short to tell");
+    await goTo(page, 4);
+    assert.ok(await pixels() < without + 20);
+    await goTo(page, 6);
+    assert.ok(await pixels() - without > 100);
+  });
+}
+
+// To the first order: each end's standard deviation times the cosine of its ray and the ruler.
+function sigmaOfRow(frame) {
+  const half = 21 * (1 + 0.01 * frame);
+  return Math.hypot(...[-half, half].map((x) => (SIGMA * (x - frame)) / Math.hypot(x - frame, -15, 60)));
+}
+
+testMadeUp("says how uncertain a distance is", { ...dataOf(stretched({ sigma: SIGMA })), unit: "mm" }, async (page) => {
+  await measure(page);
+  for (const frame of [0, 10]) {
+    await goTo(page, frame);
+    const [, distance, sigma, rest] = (await textOf(page, "#ruler-length")).match(/^([\d.]+) ± ([\d.]+) mm (.*)$/);
+    assert.equal(Number(distance), 42 + 0.42 * frame);
+    assert.ok(Math.abs(Number(sigma) - sigmaOfRow(frame)) < 0.006, `${sigma} instead of ${sigmaOfRow(frame)}`);
+    assert.match(rest, /^\(1 sigma\) to point 7/);
+    assert.equal(await textOf(page, "#scene .ruler-label"), `${distance} ± ${sigma} mm`);
+  }
+  const [value, low, high] = (await plotted(page, "Distance")).map(Number);
+  assert.ok(low < value && value < high);
+  assert.equal(await textOf(page, "#ruler-unit"), "");
+  await screenshot(page, "ruler_sigma");
+});
+
+testMadeUp("removes the ruler with escape, then the pick", dataOf(stretched()), async (page) => {
+  await measure(page);
+  await press(page, "Escape");
+  assert.deepEqual(await endsOf(page), [0, null]);
+  assert.equal(await textOf(page, "#ruler-length"), "");
+  assert.deepEqual(await plotted(page, "Distance"), []);
+  await press(page, "Escape");
+  assert.deepEqual(await endsOf(page), [null, null]);
+  await page.locator("#point").waitFor({ state: "hidden" });
+});
+
+testMadeUp("picks both ends of the ruler with the keyboard", dataOf(stretched()), async (page) => {
+  await press(page, "Shift+N");
+  assert.deepEqual(await endsOf(page), [0, null], "the first pick is the first end");
+  await press(page, "Shift+N", "Shift+N");
+  assert.deepEqual(await endsOf(page), [0, 2]);
+  await press(page, "Shift+B", "Shift+B");
+  assert.deepEqual(await endsOf(page), [0, 1], "not the picked point itself");
+  assert.equal(await textOf(page, "#ruler-length"), "6 map units to point 1, +0.0 % since frame 0");
+  await press(page, "n");
+  assert.deepEqual(await endsOf(page), [2, 1], "the ruler's first end moves, past the other one");
+  await page.locator("#measure").focus();
+  await press(page, "Enter", "n");
+  assert.deepEqual(await endsOf(page), [2, 3]);
+  await press(page, "?");
+  assert.match(await page.locator("#help").innerText(), /shift n.*ruler/);
+});
+
+testMadeUp("measures by touch", dataOf(stretched()), async (page) => {
+  const tap = async (id) => {
+    await page.locator("#image").scrollIntoViewIfNeeded();
+    const { x, y } = await page.evaluate((point) => window.pliant.screenOf(point, "image"), id);
+    await page.touchscreen.tap(x, y);
+    await redrawn(page);
+  };
+  await tap(0);
+  await page.locator("#measure").tap();
+  assert.match(await textOf(page, "#measure-hint"), /other point/);
+  await press(page, "Escape");
+  assert.equal((await state(page)).measuring, false);
+  assert.equal((await state(page)).picked, 0, "only what was begun is given up");
+  await page.locator("#measure").tap();
+  await tap(0);
+  assert.deepEqual(await endsOf(page), [0, null], "a point is no distance from itself");
+  await tap(7);
+  assert.deepEqual(await endsOf(page), [0, 7]);
+  assert.equal(await textOf(page, "#measure-hint"), "");
+  assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= window.innerWidth), "it scrolls sideways");
+  await screenshot(page, "ruler_phone", { fullPage: true });
+  await page.locator("#unmeasure").tap();
+  assert.deepEqual(await endsOf(page), [0, null]);
+}, PHONE);
+
+testMadeUp("removes the ruler and the pick when another run is shown", dataOf(stretched({ name: "one" }), stretched({ name: "other" })), async (page) => {
+  await measure(page);
+  await press(page, "2");
+  assert.equal((await state(page)).currentRun, "other");
+  assert.deepEqual(await endsOf(page), [null, null]);
+});
+
+const apart = runOf({ to: 20, isSeen: (point, frame) => (point === 7) === (frame >= 10) });
+testMadeUp("says so of points that are never seen together", dataOf(apart), async (page) => {
+  await click(page, 0, "image");
+  await goTo(page, 10);
+  await click(page, 7, "image", ["Shift"]);
+  assert.match(await textOf(page, "#ruler-state"), /point 0 is not seen in this frame\. There is no frame in which both/);
+  assert.deepEqual(await plotted(page, "Distance"), []);
 });

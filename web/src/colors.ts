@@ -14,6 +14,7 @@ export interface Palette {
   trails: string;
   truth: string;
   picked: string;
+  ruler: string;
   runs: string[];
   series: string[];   // of one plot, after the first
   states: Record<string, string>;
@@ -21,14 +22,14 @@ export interface Palette {
 
 // Darkened where the original is too pale on white.
 const LIGHT: Palette = {
-  background: "#ffffff", grid: "#dde1e6", text: "#57606a", map: "#1b1f23", trails: "#d55e00", truth: "#009e73", picked: "#c2185b",
+  background: "#ffffff", grid: "#dde1e6", text: "#57606a", map: "#1b1f23", trails: "#d55e00", truth: "#009e73", picked: "#c2185b", ruler: "#008fa3",
   runs: ["#0072b2", "#c77f00", "#b0548a", "#2f93cc", "#8f8700", "#57606a", "#7a4fb5", "#00796b", "#a13d00"],
   series: ["#00805d", "#b0548a", "#57606a", "#d55e00", "#2f93cc", "#8f8700", "#7a4fb5"],
   states: { tracking: "#0072b2", provisional: "#56b4e9", lost: "#d55e00", initializing: "#8c959f", ambiguous: "#c77f00", waiting_for_reference: "#b0548a" },
 };
 
 const DARK: Palette = {
-  background: "#101316", grid: "#2b3138", text: "#9aa4ae", map: "#b9c0c7", trails: "#e8721c", truth: "#1fbf92", picked: "#ff79b0",
+  background: "#101316", grid: "#2b3138", text: "#9aa4ae", map: "#b9c0c7", trails: "#e8721c", truth: "#1fbf92", picked: "#ff79b0", ruler: "#22e6f2",
   runs: ["#56b4e9", "#e69f00", "#cc79a7", "#4a90d9", "#f0e442", "#9aa4ae", "#b39ddb", "#4db6ac", "#ff8a50"],
   series: ["#1fbf92", "#cc79a7", "#9aa4ae", "#e8721c", "#4a90d9", "#f0e442", "#b39ddb"],
   states: { tracking: "#3d9bd6", provisional: "#9fd3f5", lost: "#e8721c", initializing: "#7d8894", ambiguous: "#e69f00", waiting_for_reference: "#cc79a7" },

@@ -41,14 +41,22 @@ export const CLICK_RADIUS_PX = 12;
 const DRAG_PX = 4;
 
 // A press that did not become a drag, at the element's pixel.
-export function onClick(target: HTMLElement, use: (x: number, y: number) => void): void {
+export interface Click {
+  x: number;
+  y: number;
+  shift: boolean;
+}
+
+export function onClick(target: HTMLElement, use: (click: Click) => void): void {
   let from: PointerEvent | null = null;
   target.addEventListener("pointerdown", (event) => { from = event.button === 0 ? event : null; });
   target.addEventListener("pointerup", (event) => {
     if (from && Math.hypot(event.clientX - from.clientX, event.clientY - from.clientY) < DRAG_PX) {
       const box = target.getBoundingClientRect();
-      use(event.clientX - box.left, event.clientY - box.top);
+      use({ x: event.clientX - box.left, y: event.clientY - box.top, shift: event.shiftKey });
     }
     from = null;
   });
+  // Else the browser selects the page's text up to here.
+  target.addEventListener("mousedown", (event) => { if (event.shiftKey) event.preventDefault(); });
 }

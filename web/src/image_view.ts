@@ -5,12 +5,13 @@
 // colors and shapes, as in the 3D view.
 
 import { numberOf, paletteOf, runColor } from "./colors";
-import { byId, onClick, prepare, setText } from "./dom";
+import { type Click, byId, onClick, prepare, setText } from "./dom";
 import { RUN_SHAPES } from "./marks";
 import type { Page } from "./page";
 import { pickNearest } from "./picking";
+import { lengthText, readingNow, sideOfLabel } from "./ruler";
 import type { Run } from "./run";
-import { Stamps, strokeOnImage } from "./stamps";
+import { Stamps, strokeOnImage, writeOnImage } from "./stamps";
 import { type Changed, anyOf } from "./state";
 
 const TAIL_FRAMES = 10;
@@ -32,7 +33,7 @@ export class ImageView {
 
   constructor(private readonly page: Page) {
     new ResizeObserver(() => this.draw()).observe(this.canvas);
-    onClick(this.canvas, (x, y) => this.pick(x, y));
+    onClick(this.canvas, (click) => this.pick(click));
     this.canvas.addEventListener("wheel", (event) => {
       event.preventDefault();
       this.zoomAt(event.offsetX, event.offsetY, Math.exp(-0.0015 * event.deltaY));
@@ -42,7 +43,7 @@ export class ImageView {
   }
 
   update(changed: Changed): void {
-    if (anyOf(changed, "position", "current", "visible", "picked", "color", "layers", "dark", "revision")) this.draw();
+    if (anyOf(changed, "position", "current", "visible", "picked", "measured", "color", "layers", "dark", "revision")) this.draw();
   }
 
   reset(): void {
@@ -73,6 +74,7 @@ export class ImageView {
     const run = report.runs[state.current];
     this.drawPoints(context, run, row);
     this.drawPicked(context, run, row);
+    this.drawRuler(context, run);
   }
 
   // Where the canvas shows a pixel of the camera.
@@ -174,7 +176,26 @@ export class ImageView {
     strokeOnImage(context, color);
     const now = observations.find((o) => run.row.values[o] === row);
     if (now === undefined) return;
-    const [x, y] = this.project(run.pixel.values[2 * now], run.pixel.values[2 * now + 1]);
+    this.drawRing(context, run, now, color);
+  }
+
+  private drawRuler(context: CanvasRenderingContext2D, run: Run): void {
+    const reading = readingNow(this.page);
+    if (!reading) return;
+    const color = paletteOf(true).ruler;
+    const [from, to] = reading.ends;
+    context.beginPath();
+    this.moveTo(context, run, from);
+    this.lineTo(context, run, to);
+    strokeOnImage(context, color);
+    this.drawRing(context, run, to, color);
+    const [a, b] = reading.ends.map((o) => this.project(run.pixel.values[2 * o], run.pixel.values[2 * o + 1]));
+    const text = lengthText(reading, this.page.report.unit);
+    writeOnImage(context, text, (a[0] + b[0]) / 2, (a[1] + b[1]) / 2, sideOfLabel(a, b), color);
+  }
+
+  private drawRing(context: CanvasRenderingContext2D, run: Run, o: number, color: string): void {
+    const [x, y] = this.project(run.pixel.values[2 * o], run.pixel.values[2 * o + 1]);
     context.beginPath();
     context.arc(x, y, 8, 0, 2 * Math.PI);
     strokeOnImage(context, color);
@@ -188,8 +209,8 @@ export class ImageView {
     context.lineTo(...this.project(run.pixel.values[2 * o], run.pixel.values[2 * o + 1]));
   }
 
-  private pick(x: number, y: number): void {
-    pickNearest(this.page, x, y, (run, o) => this.project(run.pixel.values[2 * o], run.pixel.values[2 * o + 1]));
+  private pick(click: Click): void {
+    pickNearest(this.page, click, (run, o) => this.project(run.pixel.values[2 * o], run.pixel.values[2 * o + 1]));
   }
 
   private zoomAt(x: number, y: number, factor: number): void {

@@ -14,6 +14,8 @@ import type { Page } from "./page";
 import { Plots } from "./plots";
 import { PointPanel } from "./point_panel";
 import { Report } from "./report";
+import { type End, changeOfEscape, changeOfPick, endOfPick } from "./ruler";
+import { RulerPanel } from "./ruler_panel";
 import { SceneView } from "./scene_view";
 import { type Changed, Store, anyOf, firstState } from "./state";
 import { Tables } from "./tables";
@@ -96,10 +98,8 @@ function start(report: Report, images: Images | null, live: boolean): (answer: A
   const page: Page = {
     report, store, images,
     coloring: coloring(),
-    pick: (observation) => {
-      const run = report.runs[state.current];
-      store.change({ picked: observation === null ? null : run.id.values[run.point.values[observation]] });
-    },
+    pick: (id, end) => store.change(changeOfPick(state, id, end)),
+    unpick: () => store.change({ picked: null, measured: null, measuring: false }),
   };
 
   const toolbar = new Toolbar(page);
@@ -108,7 +108,7 @@ function start(report: Report, images: Images | null, live: boolean): (answer: A
   const image = new ImageView(page);
   const scene = makeScene(page);
   const point = new PointPanel(page, go);
-  const views = [toolbar, timeline, image, ...(scene ? [scene] : []), new Plots(page, go), point, new Tables(page)];
+  const views = [toolbar, timeline, image, ...(scene ? [scene] : []), new Plots(page, go), point, new RulerPanel(page), new Tables(page)];
   let observations = report.runs[0].observations;
   store.listen((changed: Changed) => {
     const grown = report.runs[0].observations > RANGE_GROWTH * observations || report.runs[0].observations < observations;
@@ -160,8 +160,12 @@ function start(report: Report, images: Images | null, live: boolean): (answer: A
     { keys: ["x"], shown: "x", what: "grid and axes", run: () => toolbar.toggleLayer("grid") },
     { keys: ["f"], shown: "f", what: "3D view: free, from the camera, behind it", run: () => toolbar.cycleView() },
     { keys: ["r"], shown: "r", what: "show the whole scene and image", run: reset },
-    { keys: ["n", "b"], shown: "n, b", what: "pick the next point, the one before", run: (key) => pickNext(page, key === "n" ? 1 : -1) },
-    { keys: ["Escape"], shown: "esc", what: "unpick", run: () => page.pick(null) },
+    { keys: ["n", "b"], shown: "n, b", what: "pick the next point, the one before", run: (key) => pickNext(page, key === "n" ? 1 : -1, "picked") },
+    {
+      keys: ["Shift+n", "Shift+b"], shown: "shift n, shift b", what: "the same for the other end of a ruler",
+      run: (key) => pickNext(page, key === "Shift+n" ? 1 : -1, "measured"),
+    },
+    { keys: ["Escape"], shown: "esc", what: "remove the ruler, then unpick", run: () => store.change(changeOfEscape(state)) },
     {
       keys: ["1", "2", "3", "4", "5", "6", "7", "8", "9"], shown: "1 … 9", what: "show this run in full",
       run: (key) => toolbar.makeCurrent(Number(key) - 1),
@@ -209,26 +213,29 @@ function showNotes(report: Report): void {
   byId("notes-list").replaceChildren(...notes.map((text) => element("li", { textContent: text })));
 }
 
-// Of the points of this frame, by id.
-function pickNext(page: Page, step: number): void {
+// Of the points of this frame, by id, without the ruler's other end; a new ruler begins beside the picked point.
+function pickNext(page: Page, step: number, wanted: End): void {
   const { report, store } = page;
-  const { current, position, picked } = store.state;
+  const { current, position, picked, measured } = store.state;
   const run = report.runs[current];
-  const ids = [...run.observationsOfRow(report.row(current, position))].map((o) => run.id.values[run.point.values[o]]).sort((a, b) => a - b);
+  const end = endOfPick(store.state, wanted);
+  const [from, other] = end === "measured" ? [measured ?? picked, picked] : [picked, measured];
+  const ids = [...run.observationsOfRow(report.row(current, position))].map((o) => run.id.values[run.point.values[o]])
+    .filter((id) => id !== other).sort((a, b) => a - b);
   if (ids.length === 0) return;
-  const next = picked === null ? (step > 0 ? 0 : ids.length - 1)
-    : step > 0 ? ids.findIndex((id) => id > picked) : ids.length - 1 - [...ids].reverse().findIndex((id) => id < picked);
-  store.change({ picked: ids[(next + ids.length) % ids.length] });
+  const next = from === null ? (step > 0 ? 0 : ids.length - 1)
+    : step > 0 ? ids.findIndex((id) => id > from) : ids.length - 1 - [...ids].reverse().findIndex((id) => id < from);
+  page.pick(ids[(next + ids.length) % ids.length], end);
 }
 
 function offerToTests(page: Page, timeline: Timeline, image: ImageView, scene: SceneView | null): void {
   const { report, store } = page;
   window.pliant.state = () => {
-    const { position, playing, color, picked, current, visible, theme, dark, view, layers, surfaceColor, trail, speed, loop, newest } = store.state;
+    const { position, playing, color, picked, measured, measuring, current, visible, theme, dark, view, layers, surfaceColor, trail, speed, loop, newest } = store.state;
     const observations = report.runs[current].observationsOfRow(report.row(current, position));
     const run = report.runs[current];
     return {
-      frame: report.frames[position], position, frames: report.frames.length, playing, color, picked,
+      frame: report.frames[position], position, frames: report.frames.length, playing, color, picked, measured, measuring,
       currentRun: report.runs[current].name, visibleRuns: report.runs.filter((_, i) => visible[i]).map(({ name }) => name),
       theme, dark, view, layers, surfaceColor, trail, speed, loop, newest, points: [...observations].map((o) => run.id.values[run.point.values[o]]),
     };

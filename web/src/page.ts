@@ -6,6 +6,7 @@
 import type { Coloring } from "./colors";
 import type { Images } from "./images";
 import type { Report } from "./report";
+import type { End } from "./ruler";
 import type { Store } from "./state";
 
 export interface Page {
@@ -13,6 +14,7 @@ export interface Page {
   store: Store;
   images: Images | null;
   coloring: Coloring;
-  // Picks the point of an observation of the current run.
-  pick(observation: number | null): void;
+  // Picks a point of the current run, by its id.
+  pick(id: number, end: End): void;
+  unpick(): void;
 }

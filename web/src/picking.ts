@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A press on a view picks the point of this frame that is closest to it there, if one is near.
+// A press on a view picks the point of this frame that is closest to it there, if one is near; with shift as the ruler's other end.
 
-import { CLICK_RADIUS_PX } from "./dom";
+import { CLICK_RADIUS_PX, type Click } from "./dom";
 import type { Page } from "./page";
 import type { Run } from "./run";
 
 // `project` says where an observation is in the view, or null where it does not show it.
-export function pickNearest(page: Page, x: number, y: number, project: (run: Run, observation: number) => [number, number] | null): void {
+export function pickNearest(page: Page, { x, y, shift }: Click, project: (run: Run, observation: number) => [number, number] | null): void {
   const { report, store } = page;
   const run = report.runs[store.state.current];
   let best: number | null = null;
@@ -20,5 +20,5 @@ export function pickNearest(page: Page, x: number, y: number, project: (run: Run
     least = distance;
     best = o;
   }
-  if (best !== null) page.pick(best);
+  if (best !== null) page.pick(run.id.values[run.point.values[best]], shift ? "measured" : "picked");
 }

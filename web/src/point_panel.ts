@@ -8,11 +8,19 @@ import { byId, setText } from "./dom";
 import type { Page } from "./page";
 import { Plot } from "./plot";
 import { DISPLACED } from "./plots";
+import { percentOf, readingsOf } from "./ruler";
 import type { Run } from "./run";
 import { type Changed, anyOf } from "./state";
 
 const PATCH_PX = 31;
 const ENLARGED = 4;
+
+interface Figure {
+  title: string;
+  unit: string;
+  note?: string;
+  series: { label: string; value: (observation: number) => number }[];
+}
 
 export class PointPanel {
   private readonly panel = byId("point");
@@ -21,15 +29,15 @@ export class PointPanel {
   private observations: number[] = [];
 
   constructor(private readonly page: Page, private readonly go: (position: number) => void) {
-    byId("unpick").addEventListener("click", () => page.pick(null));
+    byId("unpick").addEventListener("click", () => page.unpick());
     byId("point-first").addEventListener("click", () => this.goTo(this.observations[0]));
     byId("point-last").addEventListener("click", () => this.goTo(this.observations[this.observations.length - 1]));
     new ResizeObserver(() => this.made.forEach((plot) => plot.resize())).observe(this.plots);
   }
 
   update(changed: Changed): void {
-    if (anyOf(changed, "picked", "current", "dark", "revision")) this.build();
-    if (anyOf(changed, "picked", "position", "current", "dark", "revision")) this.showFrame();
+    if (anyOf(changed, "picked", "measured", "current", "dark", "revision")) this.build();
+    if (anyOf(changed, "picked", "measured", "position", "current", "dark", "revision")) this.showFrame();
   }
 
   // An image may have come.
@@ -73,11 +81,11 @@ export class PointPanel {
     }
   }
 
-  private figures(run: Run): { title: string; unit: string; note?: string; series: { label: string; value: (o: number) => number }[] }[] {
+  private figures(run: Run): Figure[] {
     const { unit } = this.page.report;
-    const one = (title: string, unitOf: string, value: (o: number) => number) => ({ title, unit: unitOf, series: [{ label: "", value }] });
     const { sigma, gain, bias, error } = run;
     const figures = [
+      ...this.rulerFigures(run),
       one("Depth", unit, (o) => run.depth.values[o]),
       one("Deformation", unit, (o) => run.deformation(o)),
       { ...one("Reprojection error", "px", (o) => run.reprojection.values[o]), note: Object.keys(run.frames.costs).length > 0 ? DISPLACED : "" },
@@ -88,6 +96,24 @@ export class PointPanel {
     if (bias) figures.push(one("Bias", "gray values", (o) => bias.values[o]));
     if (error) figures.push(one("Error against truth", "mm", (o) => error.values[o]));
     return figures.filter(({ series }) => this.observations.some((o) => !Number.isNaN(series[0].value(o))));
+  }
+
+  // Of the frames in which both ends of the ruler were seen.
+  private rulerFigures(run: Run): Figure[] {
+    const { picked, measured } = this.page.store.state;
+    const readings = readingsOf(run, picked, measured);
+    const [first] = readings.values();
+    if (!first) return [];
+    const at = (o: number) => readings.get(run.row.values[o]);
+    const offset = (sigmas: number) => (o: number) => (at(o)?.distance ?? NaN) + (sigmas === 0 ? 0 : sigmas * (at(o)?.sigma ?? NaN));
+    const certain = ![...readings.values()].some(({ sigma }) => sigma > 0);
+    const distance = one(certain ? "Distance" : "Distance ± 1 sigma", this.page.report.unit, offset(0));
+    if (!certain) distance.series.push({ label: "less", value: offset(-1) }, { label: "more", value: offset(1) });
+    const since = run.frames.frame[run.row.values[first.ends[0]]];
+    return [distance, one(`Its change since frame ${since}`, "%", (o) => {
+      const reading = at(o);
+      return reading ? percentOf(reading, first) : NaN;
+    })];
   }
 
   private spread(run: Run, value: (o: number) => number): (number | null)[] {
@@ -156,4 +182,8 @@ export class PointPanel {
     const run = report.runs[store.state.current];
     this.go(report.positionOf(run.frames.frame[run.row.values[observation]]));
   }
+}
+
+function one(title: string, unit: string, value: (observation: number) => number): Figure {
+  return { title, unit, series: [{ label: "", value }] };
 }

@@ -96,6 +96,12 @@ export class Run {
     return this.pointOfId.get(id);
   }
 
+  // Of the point with this id in this row.
+  observationOf(id: number, row: number): number | undefined {
+    const point = this.pointOfId.get(id);
+    return this.observationsOfRow(row).find((o) => this.point.values[o] === point);
+  }
+
   // In order of time.
   observationsOfPoint(point: number): number[] {
     const found = [];

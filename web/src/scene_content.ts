@@ -11,6 +11,7 @@ import { ChangingWideLines, ThinLines, WideLines } from "./lines";
 import { Marks, RUN_SHAPES } from "./marks";
 import type { Page } from "./page";
 import { lastAtMost } from "./report";
+import { readingNow } from "./ruler";
 import type { Run } from "./run";
 import { SurfaceMesh } from "./surface_mesh";
 
@@ -47,7 +48,8 @@ export class SceneContent {
   private readonly frustum = new WideLines(1.5);
   private readonly track = new WideLines(2.5);
   private readonly uncertainty = new WideLines(4);
-  private readonly ring = new Marks(11, 0);
+  private readonly rings = new Marks(11, 0);
+  private readonly ruler = new WideLines(3);
   private readonly surfaces: SurfaceMesh[][];   // of each run
   private readonly lamp = new DirectionalLight(0xffffff, 0.7 * Math.PI);
   private readonly picture: Mesh<BufferGeometry, MeshBasicMaterial>;
@@ -62,9 +64,11 @@ export class SceneContent {
     this.scene.add(new AmbientLight(0xffffff, 0.3 * Math.PI), this.lamp, this.lamp.target, ...this.surfaces.flat().map(({ object }) => object));
     this.scene.add(this.grid, ...this.axes, this.map, this.trails, this.errors, this.truthPoints, this.others, this.points,
       ...this.paths.flatMap(({ ahead, done }) => [ahead, done]), this.truePath, this.trueFrustum, this.frustum, this.picture,
-      this.track, this.uncertainty, this.ring);
-    this.track.renderOrder = this.uncertainty.renderOrder = this.ring.renderOrder = 1;
-    this.track.material.depthTest = this.uncertainty.material.depthTest = this.ring.material.depthTest = false;
+      this.track, this.uncertainty, this.ruler, this.rings);
+    for (const object of [this.track, this.uncertainty, this.ruler, this.rings]) {
+      object.renderOrder = 1;
+      object.material.depthTest = false;
+    }
   }
 
   build(): void {
@@ -91,6 +95,7 @@ export class SceneContent {
     this.frustum.material.color.set(runColor(dark, current));
     this.track.material.color.set(palette.picked);
     this.uncertainty.material.color.set(palette.picked);
+    this.ruler.material.color.set(palette.ruler);
     this.points.setRim(dark ? "#ffffff" : "#000000");
     this.others.setRim(dark ? "#000000" : "#ffffff");
     this.paths.forEach(({ ahead, done }, run) => {
@@ -133,12 +138,19 @@ export class SceneContent {
     this.track.setSegments(coordinates);
     const row = report.row(current, position);
     const now = observations.find((o) => run.row.values[o] === row);
-    this.ring.begin(1);
-    if (now !== undefined) {
-      this.ring.addMark(run.position.values, now, new Color(paletteOf(store.state.dark).picked).getHex(), "ring");
-    }
-    this.ring.end();
     this.uncertainty.setSegments(now === undefined ? [] : uncertaintySegment(run, now));
+    const reading = readingNow(this.page);
+    this.ruler.setSegments(reading ? reading.ends.flatMap((o) => [...run.position.values.subarray(3 * o, 3 * o + 3)]) : []);
+    this.showRings(run, now, reading?.ends[1]);
+  }
+
+  private showRings(run: Run, picked: number | undefined, measured: number | undefined): void {
+    const palette = paletteOf(this.page.store.state.dark);
+    this.rings.begin(2);
+    for (const [o, color] of [[picked, palette.picked], [measured, palette.ruler]] as const) {
+      if (o !== undefined) this.rings.addMark(run.position.values, o, new Color(color).getHex(), "ring");
+    }
+    this.rings.end();
   }
 
   showImage(bitmap: ImageBitmap | null | undefined): void {

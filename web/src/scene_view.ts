@@ -5,9 +5,10 @@
 
 import { ColorManagement, LinearSRGBColorSpace, PerspectiveCamera, Quaternion, Vector3, WebGLRenderer } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
-import { byId, element, onClick, setText } from "./dom";
+import { type Click, byId, element, onClick, setText } from "./dom";
 import type { Page } from "./page";
 import { pickNearest } from "./picking";
+import { lengthText, readingNow, sideOfLabel } from "./ruler";
 import { SceneContent, poseOf } from "./scene_content";
 import { type Changed, anyOf } from "./state";
 
@@ -27,6 +28,7 @@ export class SceneView {
   private readonly controls: OrbitControls;
   private readonly content: SceneContent;
   private readonly labels = ["x", "y", "z"].map((name) => element("span", { textContent: name, className: "axis" }));
+  private readonly rulerLabel = element("span", { className: "ruler-label" });
   private readonly message = element("p", { className: "message" });
   private requested = false;
   private untouched = true;   // nobody has moved the view since it was fitted
@@ -39,7 +41,7 @@ export class SceneView {
     const canvas = this.renderer.domElement;
     canvas.setAttribute("role", "img");
     canvas.setAttribute("aria-label", "3D view of the points and of the camera's path");
-    this.container.append(canvas, ...this.labels, this.message);
+    this.container.append(canvas, ...this.labels, this.rulerLabel, this.message);
     this.content = new SceneContent(page, () => this.request());
     this.camera.up.set(0, -1, 0);
     this.controls = new OrbitControls(this.camera, canvas);
@@ -48,7 +50,7 @@ export class SceneView {
       this.untouched = false;
       page.store.change({ view: "free" });
     });
-    onClick(canvas, (x, y) => this.pick(x, y));
+    onClick(canvas, (click) => this.pick(click));
     canvas.addEventListener("dblclick", () => this.reset());
     new ResizeObserver(() => this.resize()).observe(this.container);
     this.content.build();
@@ -68,10 +70,10 @@ export class SceneView {
     } else if (anyOf(changed, "current", "dark")) content.paint();
     if (anyOf(changed, "position", "revision", "dark", "playing")) this.showImage();
     if (anyOf(changed, "position", "current", "visible", "color", "layers", "surfaceColor", "trail", "view", "dark", "revision")) content.showFrame();
-    if (anyOf(changed, "position", "current", "picked", "dark", "revision")) content.showPicked();
+    if (anyOf(changed, "position", "current", "picked", "measured", "dark", "revision")) content.showPicked();
     if (anyOf(changed, "view") && this.page.store.state.view === "free") this.leaveCamera();
     if (anyOf(changed, "position", "current", "view", "revision")) this.follow();
-    if (anyOf(changed, "position", "current", "visible", "picked", "color", "layers", "surfaceColor", "trail", "view", "dark", "revision")) this.render();
+    if (anyOf(changed, "position", "current", "visible", "picked", "measured", "color", "layers", "surfaceColor", "trail", "view", "dark", "revision")) this.render();
     this.showTexts();
   }
 
@@ -172,8 +174,8 @@ export class SceneView {
     });
   }
 
-  private pick(x: number, y: number): void {
-    pickNearest(this.page, x, y, (run, o) => {
+  private pick(click: Click): void {
+    pickNearest(this.page, click, (run, o) => {
       const [px, py, depth] = this.project(run.position.values, 3 * o);
       return depth < 1 ? [px, py] : null;
     });
@@ -256,6 +258,22 @@ export class SceneView {
       label.hidden = !grid || depth >= 1;
       label.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`;
     });
+    this.showRulerLabel();
+  }
+
+  // Beside the middle of the ruler.
+  private showRulerLabel(): void {
+    const { report, store } = this.page;
+    const reading = readingNow(this.page);
+    this.rulerLabel.hidden = true;
+    if (!reading) return;
+    const [from, to] = reading.ends.map((o) => new Vector3().fromArray(report.runs[store.state.current].position.values, 3 * o));
+    const side = sideOfLabel(this.project(from.toArray()), this.project(to.toArray()));
+    const [x, y, depth] = this.project(from.add(to).divideScalar(2).toArray());
+    this.rulerLabel.hidden = depth >= 1;
+    this.rulerLabel.classList.toggle("below", side > 0);
+    setText(this.rulerLabel, lengthText(reading, report.unit));
+    this.rulerLabel.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`;
   }
 }
 

@@ -10,6 +10,8 @@ const RADIUS_PX = 3;
 const SIZE_PX = 14;
 const SLOTS = 24;   // a side of the sheet
 const RIM = "rgba(0, 0, 0, 0.6)";
+const LABEL_FONT = "600 13px system-ui, sans-serif";
+const LABEL_GAP_PX = 10;   // from the text's middle line to the edge
 
 export const STAMPS = ["dot", "cross", "ring", "square", "triangle", "diamond"] as const;
 export type Stamp = (typeof STAMPS)[number];
@@ -81,4 +83,18 @@ export function strokeOnImage(context: CanvasRenderingContext2D, color: string):
   context.lineWidth = 2;
   context.strokeStyle = color;
   context.stroke();
+}
+
+// On a dark plate, to the right of this place, above (side -1) or below it (1), and inside the canvas.
+export function writeOnImage(context: CanvasRenderingContext2D, text: string, x: number, y: number, side: 1 | -1, color: string): void {
+  context.font = LABEL_FONT;
+  context.textBaseline = "middle";
+  const { clientWidth, clientHeight } = context.canvas;
+  const { width } = context.measureText(text);
+  const left = Math.max(LABEL_GAP_PX, Math.min(x + LABEL_GAP_PX, clientWidth - width - LABEL_GAP_PX));
+  const middle = Math.max(LABEL_GAP_PX, Math.min(y + side * (LABEL_GAP_PX + 4), clientHeight - LABEL_GAP_PX));
+  context.fillStyle = RIM;
+  context.fillRect(left - 4, middle - LABEL_GAP_PX, width + 8, 2 * LABEL_GAP_PX);
+  context.fillStyle = color;
+  context.fillText(text, left, middle);
 }

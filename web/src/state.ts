@@ -23,6 +23,8 @@ export interface State {
   current: number;        // index of the run that is shown in full
   visible: boolean[];     // of each run
   picked: number | null;  // id of a point of the current run
+  measured: number | null;   // id of the point at the other end of the ruler
+  measuring: boolean;     // the next pick is the ruler's other end
   color: string;         // name of a color mode
   layers: Record<Layer, boolean>;
   surfaceColor: SurfaceColor;
@@ -78,6 +80,8 @@ export function firstState(runs: number): State {
     current: 0,
     visible: new Array(runs).fill(true),
     picked: null,
+    measured: null,
+    measuring: false,
     color: runs > 1 ? BY_RUN : "depth",
     surfaceColor: "image",
     layers: { surface: true, map: true, points: true, trails: true, path: true, truth: true, grid: true },

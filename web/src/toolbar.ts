@@ -78,7 +78,7 @@ export class Toolbar {
   makeCurrent(run: number): void {
     const { report, store } = this.page;
     if (run >= report.runs.length || run === store.state.current) return;
-    store.change({ current: run, picked: null, visible: store.state.visible.map((visible, i) => visible || i === run) });
+    store.change({ current: run, picked: null, measured: null, measuring: false, visible: store.state.visible.map((visible, i) => visible || i === run) });
   }
 
   private setTheme(theme: Theme): void {
