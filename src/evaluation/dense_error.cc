@@ -29,6 +29,10 @@ struct Pixels {
   std::vector<double> vertex_truth_mm;
   std::vector<double> vertex_estimate;
   std::size_t vertices_with_depth = 0;
+
+  std::size_t Vertices(bool with_depth) const {
+    return with_depth ? vertices_with_depth : vertex_truth_mm.size() - vertices_with_depth;
+  }
 };
 
 Pixels PixelsOf(const SurfaceDepth& dense, const cv::Mat& truth_mm, const std::optional<cv::Mat>& interpolated) {
@@ -111,18 +115,29 @@ void Add(const DepthFigures& figures, double weight, DepthFigures* sum) {
   }
 }
 
-void AddMesh(const Pixels& pixels, double scale, double weight, DenseError* error) {
-  const std::size_t count = pixels.vertex_truth_mm.size();
-  if (count == 0) return;
-  std::vector<bool> with_depth(count);
-  for (std::size_t i = 0; i < count; ++i) with_depth[i] = i < pixels.vertices_with_depth;
-  const auto estimate = [&](std::size_t i) { return scale * pixels.vertex_estimate[i]; };
-  Add(FiguresOf(pixels.vertex_truth_mm, estimate, with_depth), weight, &error->mesh);
-  with_depth.flip();
-  Add(FiguresOf(pixels.vertex_truth_mm, estimate, with_depth), weight, &error->mesh_alone);
-  error->mesh_vertices += weight * static_cast<double>(count);
-  error->mesh_alone_share +=
-      weight * static_cast<double>(count - pixels.vertices_with_depth) / static_cast<double>(count);
+void AddMesh(const std::vector<Pixels>& frames, const std::vector<double>& scales, DenseError* error) {
+  const auto add = [&](bool with_depth, DepthFigures* figures) {
+    double count = 0.0;
+    for (const Pixels& pixels : frames) count += pixels.Vertices(with_depth) > 0 ? 1.0 : 0.0;
+    for (std::size_t k = 0; k < frames.size(); ++k) {
+      const Pixels& pixels = frames[k];
+      if (pixels.Vertices(with_depth) == 0) continue;
+      std::vector<bool> counts(pixels.vertex_truth_mm.size());
+      for (std::size_t i = 0; i < counts.size(); ++i) counts[i] = (i < pixels.vertices_with_depth) == with_depth;
+      const auto estimate = [&](std::size_t i) { return scales[k] * pixels.vertex_estimate[i]; };
+      Add(FiguresOf(pixels.vertex_truth_mm, estimate, counts), 1.0 / count, figures);
+    }
+  };
+  add(true, &error->mesh);
+  add(false, &error->mesh_alone);
+  double all = 0.0;
+  double alone = 0.0;
+  for (const Pixels& pixels : frames) {
+    all += static_cast<double>(pixels.vertex_truth_mm.size());
+    alone += static_cast<double>(pixels.Vertices(false));
+  }
+  error->mesh_vertices = all / static_cast<double>(frames.size());
+  error->mesh_alone_share = all > 0.0 ? alone / all : 0.0;
 }
 
 // Adds a frame, as one of `frames`.
@@ -149,7 +164,6 @@ void AddFrame(const Pixels& pixels, double scale, double frames, DenseError* err
   for (std::size_t k = 0; k < 3; ++k) error->complete_mm[k] += weight * share * of_estimate.within_mm[k];
   const double constant = Median(truth);
   Add(FiguresOf(truth, [&](std::size_t) { return constant; }, {}), weight, &error->null);
-  AddMesh(pixels, scale, weight, error);
   if (pixels.interpolation.empty()) return;
   const double own_scale = ScaleOf(pixels.interpolation, truth);
   Add(FiguresOf(truth, [&](std::size_t i) { return own_scale * pixels.interpolation[i]; }, {}), weight,
@@ -188,10 +202,11 @@ Result<DenseError> ComputeDenseError(const SurfaceFolder& surface, const Evaluat
                   "no frame of the surface " + Quoted(surface.path.string()) + " has pixels whose true depth is known");
   DenseError error;
   error.frames = static_cast<int>(frames.size());
-  for (std::size_t k = 0; k < frames.size(); ++k) {
-    const double s = scale == ErrorScale::kPerFrame ? scales[k] : scale == ErrorScale::kGlobal ? Median(scales) : 1.0;
-    AddFrame(frames[k], s, static_cast<double>(frames.size()), &error);
-  }
+  if (scale != ErrorScale::kPerFrame)
+    std::ranges::fill(scales, scale == ErrorScale::kGlobal ? Median(std::vector<double>(scales)) : 1.0);
+  for (std::size_t k = 0; k < frames.size(); ++k)
+    AddFrame(frames[k], scales[k], static_cast<double>(frames.size()), &error);
+  AddMesh(frames, scales, &error);
   return error;
 }
 

@@ -27,8 +27,9 @@ namespace {
 
 constexpr float kMetersPerUnit = 0.001F;
 constexpr int kJpegQuality = 92;
-constexpr double kNear = 0.001;  // m, of the camera's view
-constexpr double kFar = 10.0;
+// The camera's view begins and ends at so many times the median distance of the vertices from where it begins.
+constexpr float kNear = 0.02F;
+constexpr float kFar = 200.0F;
 constexpr const char* kGenerator = "Pliant ";
 constexpr const char* kSigma = "_SIGMA";   // an attribute of our own: map units
 constexpr const char* kFrames = "frames";  // extras: of the keys
@@ -232,13 +233,26 @@ void AddMesh(const MeshAnimation& animation, ModelBuilder* builder) {
   builder->model().nodes.push_back(node);
 }
 
+// Of the vertices from the first camera, m.
+float MedianDistance(const MeshAnimation& animation) {
+  Eigen::Vector3f center = Eigen::Vector3f::Zero();
+  if (!animation.path.empty()) center = animation.path.front().world_from_cam.translation.cast<float>();
+  std::vector<float> distances;
+  for (const Eigen::Vector3f& vertex : animation.mesh.vertices)
+    distances.push_back(kMetersPerUnit * (vertex - center).norm());
+  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
+  std::ranges::nth_element(distances, middle);
+  return std::max(*middle, 1e-6F);
+}
+
 void AddCamera(const MeshAnimation& animation, ModelBuilder* builder) {
   tinygltf::Camera camera;
   camera.type = "perspective";
   camera.perspective.yfov = 2.0 * std::atan(0.5 * animation.camera.height() / animation.camera.MeanFocalLengthPx());
   camera.perspective.aspectRatio = static_cast<double>(animation.camera.width()) / animation.camera.height();
-  camera.perspective.znear = kNear;
-  camera.perspective.zfar = kFar;
+  const float distance = MedianDistance(animation);
+  camera.perspective.znear = static_cast<double>(kNear * distance);
+  camera.perspective.zfar = static_cast<double>(kFar * distance);
   builder->model().cameras.push_back(camera);
   tinygltf::Node node;
   node.name = "camera";
@@ -346,7 +360,9 @@ std::optional<GltfMesh> MeshIn(const tinygltf::Model& model) {
   const auto normals = FloatsAt(model, primitive.attributes.at("NORMAL"));
   auto sigmas = FloatsAt(model, primitive.attributes.at(kSigma));
   const auto indices = ValuesAt<std::int32_t>(model, primitive.indices, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT);
-  if (!positions || !normals || !sigmas || !indices || sigmas->size() * 3 != positions->size()) return std::nullopt;
+  if (!positions || !normals || !sigmas || !indices || sigmas->size() * 3 != positions->size() ||
+      normals->size() != positions->size())
+    return std::nullopt;
   GltfMesh result;
   Mesh& mesh = result.mesh;
   mesh.vertices = VectorsOf(*positions, 1.0F / kMetersPerUnit);
@@ -363,6 +379,8 @@ std::optional<GltfMesh> MeshIn(const tinygltf::Model& model) {
     const auto uv = [&](std::int32_t v) { return Eigen::Vector2f(uvs->data() + 2 * static_cast<std::size_t>(v)); };
     for (const auto& t : mesh.triangles) mesh.texture_uvs.push_back({uv(t[0]), uv(t[1]), uv(t[2])});
     const auto& view = model.bufferViews.at(static_cast<std::size_t>(model.images.at(0).bufferView));
+    const std::size_t size = model.buffers.at(0).data.size();
+    if (view.byteOffset > size || view.byteLength > size - view.byteOffset) return std::nullopt;
     result.texture_jpeg.assign(reinterpret_cast<const char*>(model.buffers.at(0).data.data()) + view.byteOffset,
                                view.byteLength);
   }

@@ -32,6 +32,16 @@ Status MakeFolder(const fs::path& path) {
   return error ? Unwritable(path) : Status::Ok();
 }
 
+// NAME, or NAME_ and a number, with an ending that we give it.
+bool IsOurs(const fs::path& path) {
+  std::string name = path.stem().string();
+  const std::size_t number = name.find_last_not_of("0123456789");
+  if (number != std::string::npos && number + 1 < name.size() && name[number] == '_') name.resize(number);
+  const std::string ending = path.extension().string();
+  return (name == "surface" && (ending == ".glb" || ending == ".pvd")) || (name == "undeformed" && ending == ".ply") ||
+         (name == kTextureName && (ending == ".jpg" || ending == ".mtl"));
+}
+
 VtkArray ViewsOf(const MeshInFrame& now) {
   VtkArray views{"view", 1, {}};
   for (const VertexView view : now.views) views.values.push_back(static_cast<float>(view));
@@ -72,14 +82,8 @@ Status MeshWriter::RemoveEarlier(const fs::path& folder) {
     fs::remove_all(folder / kind, error);
     if (error) return Unwritable(folder / kind);
   }
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
-    const std::string name = entry.path().stem().string();
-    const std::string ending = entry.path().extension().string();
-    const bool is_mesh = (name.starts_with("surface") && (ending == ".glb" || ending == ".pvd")) ||
-                         (name.starts_with("undeformed") && ending == ".ply") ||
-                         (name.starts_with(kTextureName) && (ending == ".jpg" || ending == ".mtl"));
-    if (is_mesh && !fs::remove(entry.path(), error)) return Unwritable(entry.path());
-  }
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+    if (IsOurs(entry->path()) && !fs::remove(entry->path(), error)) return Unwritable(entry->path());
   return Status::Ok();
 }
 

@@ -18,7 +18,7 @@
 
 namespace pliant {
 
-// A mesh in a frame.
+// A mesh in a frame; what it refers to outlives it.
 struct DeformedMesh {
   const Mesh& undeformed;  // world frame, with its texture
   const MeshInFrame& now;
@@ -44,7 +44,8 @@ class MeshWriter {
   // Removes the files of an earlier surface. Fails with kUnwritable.
   static Status RemoveEarlier(const std::filesystem::path& folder);
 
-  // Fail with kUnwritable.
+  // Fail with kUnwritable. First the undeformed mesh (world frame) with the texture (BGR) that obj/ refers to; then the
+  // frames: mesh/ and obj/ in the camera's frame, vtp/ in the world's; then the list of these.
   Status WriteUndeformed(const Mesh& mesh, const cv::Mat& texture);
   // `name`: of the frame's files, without an ending.
   Status WriteFrame(const std::string& name, const DeformedMesh& mesh);

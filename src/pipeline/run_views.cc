@@ -34,7 +34,8 @@ Result<std::vector<PosedFrame>> ReadPosedFrames(const std::string& path, const R
   return frames;
 }
 
-Status RunViews::ReadUntil(std::size_t position, const std::function<bool(std::size_t)>& is_needed) {
+Status RunViews::ReadUntil(std::size_t position, const std::function<bool(std::size_t)>& is_needed,
+                           const std::function<bool(std::size_t)>& needs_right) {
   for (; next_ <= position; ++next_) {
     const PosedFrame& posed = frames_[next_];
     const auto name = known_.names.find(posed.frame_idx);
@@ -44,7 +45,8 @@ Status RunViews::ReadUntil(std::size_t position, const std::function<bool(std::s
     if (!is_needed(next_)) continue;
     const SurfaceView& view = views_[next_] = {frame->image, ValidMask(frame->image, frame->mask, masks_),
                                                posed.cam_from_world, posed.observations};
-    if (pair_threads_ == 0 || !CheckPairs("a surface", *known_.camera, sequence_->BaselineMm()).ok()) continue;
+    if (pair_threads_ == 0 || !needs_right || !needs_right(next_)) continue;
+    if (!CheckPairs("a surface", *known_.camera, sequence_->BaselineMm()).ok()) continue;
     const auto right = sequence_->Right();
     if (!right.ok()) return right.status();
     if (!right->has_value()) continue;

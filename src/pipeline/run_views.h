@@ -44,7 +44,9 @@ class RunViews {
 
   // Reads up to the frame at `position` of the posed frames, and keeps those for which `is_needed`. Fails as Sequence,
   // and with kMismatch where the images are not those of the run.
-  Status ReadUntil(std::size_t position, const std::function<bool(std::size_t)>& is_needed);
+  // Right images are read of those for which `needs_right`.
+  Status ReadUntil(std::size_t position, const std::function<bool(std::size_t)>& is_needed,
+                   const std::function<bool(std::size_t)>& needs_right = {});
   // Of a frame that was read and kept.
   const SurfaceView& At(std::size_t position) const { return views_.at(position); }
   // What the right camera of a pair has seen at the same time, in the run's unit; null where there is none, or its

@@ -57,7 +57,7 @@ Result<DenseDepth> ReadDense(const SurfaceFolder& folder, const SurfaceFolder::F
 
 // An image from which a texture may be taken.
 struct SharpImage {
-  std::size_t position = 0;  // in MeshSource::frames
+  DenseFrame frame;
   cv::Mat image;
   cv::Mat valid;
   double sharpness = 0;
@@ -69,14 +69,14 @@ class SharpImages {
   explicit SharpImages(std::size_t frames) : frames_(frames) {}
 
   // The `k`-th of the frames.
-  void Add(std::size_t k, std::size_t position, const SurfaceView& view) {
+  void Add(std::size_t k, const DenseFrame& frame, const SurfaceView& view) {
     cv::Mat gray = view.image;
     if (gray.channels() == 3) cv::cvtColor(view.image, gray, cv::COLOR_BGR2GRAY);
     const double sharpness = Sharpness(gray, view.valid);
     const std::size_t part = k * std::min(frames_, kTextureViews) / frames_;
     if (part == images_.size()) images_.emplace_back();
     if (images_[part].image.empty() || sharpness > images_[part].sharpness)
-      images_[part] = {position, view.image, view.valid, sharpness};
+      images_[part] = {frame, view.image, view.valid, sharpness};
   }
 
   const std::vector<SharpImage>& images() const { return images_; }
@@ -94,14 +94,16 @@ class MeshMaker {
         options_(options),
         frames_(frames),
         go_on_(go_on),
-        tracked_(source.folder.camera, RestPositionsOf(source.known), options.mesh_columns, threads),
+        tracked_(source.folder.camera, RestPositionsOf(source, source.frames[frames.front().position].submap),
+                 options.mesh_columns, threads),
         images_(frames.size()) {}
 
   Status Make(MeshWriter* writer) {
     if (Status status = Build(); !status.ok() || stopped_) return status;
     mesh_ = tracked_.undeformed();
     if (mesh_.triangles.empty()) return Status::Ok();
-    if (options_.gltf || options_.obj) MakeTextureOfImages();
+    if (options_.gltf || options_.obj)
+      if (Status status = MakeTextureOfImages(); !status.ok()) return status;
     if (Status status = writer->WriteUndeformed(mesh_, texture_); !status.ok()) return status;
     if (Status status = WriteFrames(writer); !status.ok() || stopped_ || !options_.gltf) return status;
     return WriteGlb(
@@ -109,10 +111,17 @@ class MeshMaker {
         {mesh_, texture_, keys_, CameraPath(), source_.folder.camera, source_.frames[frames_.front().position].submap});
   }
 
+  bool stopped() const { return stopped_; }
+
  private:
-  static RestPositions RestPositionsOf(const RunMap& known) {
+  // Points that the run's map does not have, as that of a killed run, rest where they were seen first.
+  static RestPositions RestPositionsOf(const MeshSource& source, int submap) {
     RestPositions rest;
-    for (const auto& [id, point] : known.points) rest[id] = point.position;
+    for (const auto& [id, point] : source.known.points) rest[id] = point.position;
+    for (const PosedFrame& frame : source.frames)
+      if (frame.submap == submap)
+        for (const PointObservation& observation : frame.observations)
+          rest.try_emplace(observation.id, observation.position);
     return rest;
   }
 
@@ -127,7 +136,7 @@ class MeshMaker {
       const auto dense = ReadDense(source_.folder, frames_[k].file);
       if (!dense.ok()) return dense.status();
       tracked_.Add(views.At(position), *dense);
-      images_.Add(k, position, views.At(position));
+      images_.Add(k, frames_[k], views.At(position));
       views.ForgetUnless([](std::size_t) { return false; });
       stopped_ = !go_on_();
     }
@@ -140,21 +149,24 @@ class MeshMaker {
     return tracked_.InFrame({{}, {}, frame.cam_from_world, frame.observations}, dense);
   }
 
-  void MakeTextureOfImages() {
+  Status MakeTextureOfImages() {
     std::vector<TextureView> views;
     for (const SharpImage& sharp : images_.images()) {
-      auto in_frame = InFrame(sharp.position, {});
+      const auto dense = ReadDense(source_.folder, sharp.frame.file);
+      if (!dense.ok()) return dense.status();
+      const std::size_t position = sharp.frame.position;
+      auto in_frame = InFrame(position, *dense);
       if (!in_frame) continue;
-      views.push_back({sharp.image, sharp.valid, source_.frames[sharp.position].cam_from_world, *std::move(in_frame),
-                       sharp.sharpness});
+      views.push_back(
+          {sharp.image, sharp.valid, source_.frames[position].cam_from_world, *std::move(in_frame), sharp.sharpness});
     }
     texture_ = MakeTexture(source_.folder.camera, views, kMaxTextureSize, &mesh_);
+    return Status::Ok();
   }
 
   Status WriteFrames(MeshWriter* writer) {
     const std::size_t keys = std::min<std::size_t>(frames_.size(), static_cast<std::size_t>(options_.animation_keys));
     for (std::size_t k = 0; k < frames_.size() && !stopped_; ++k) {
-      stopped_ = !go_on_();
       const auto dense = ReadDense(source_.folder, frames_[k].file);
       if (!dense.ok()) return dense.status();
       const PosedFrame& frame = source_.frames[frames_[k].position];
@@ -167,6 +179,7 @@ class MeshMaker {
       // The keys are as even in time as the frames are.
       if (keys_.size() < keys && k * (keys - 1) >= keys_.size() * (frames_.size() - 1))
         keys_.push_back({frame.frame_idx, frame.timestamp_s, deformed.Vertices()});
+      stopped_ = !go_on_() && k + 1 < frames_.size();
     }
     return writer->Finish();
   }
@@ -194,20 +207,22 @@ class MeshMaker {
 
 }  // namespace
 
-Status MakeMeshes(const MeshSource& source, const SurfaceRunOptions& options, int threads, const MeshProgress& go_on) {
+Result<bool> MakeMeshes(const MeshSource& source, const SurfaceRunOptions& options, int threads,
+                        const MeshProgress& go_on) {
   const auto submaps = DenseFramesBySubmap(source);
   int total = 0;
   for (const auto& frames : submaps) total += 2 * static_cast<int>(frames.size());
-  if (!go_on(0, total)) return Status::Ok();
+  if (!go_on(0, total)) return false;
   int done = 0;
   const std::function<bool()> step = [&] { return go_on(++done, total); };
   for (std::size_t k = 0; k < submaps.size(); ++k) {
     const std::string suffix = submaps.size() > 1 ? "_" + std::to_string(k) : "";
     MeshWriter writer(source.folder.path, suffix, {.obj = options.obj, .vtk = options.vtk});
-    if (Status status = MeshMaker(source, options, threads, submaps[k], step).Make(&writer); !status.ok())
-      return status;
+    MeshMaker maker(source, options, threads, submaps[k], step);
+    if (Status status = maker.Make(&writer); !status.ok()) return status;
+    if (maker.stopped()) return false;
   }
-  return Status::Ok();
+  return true;
 }
 
 }  // namespace pliant

@@ -26,9 +26,10 @@ struct MeshSource {
 // Told how many of how many steps are done; false: no more are wanted.
 using MeshProgress = std::function<bool(int done, int total)>;
 
-// A mesh of all that the frames of a submap show, and where it is in each of these. What is
-// begun when no more is wanted is not finished. Fails as RunViews,
-// ReadSurfaceDepth do, and with kUnwritable.
-Status MakeMeshes(const MeshSource& source, const SurfaceRunOptions& options, int threads, const MeshProgress& go_on);
+// A mesh of all that the frames of a submap show, and where it is in each of these. False where no more was wanted
+// before the end: files of frames are whole then, but not all there. Fails as RunViews and ReadSurfaceDepth do, and
+// with kUnwritable.
+Result<bool> MakeMeshes(const MeshSource& source, const SurfaceRunOptions& options, int threads,
+                        const MeshProgress& go_on);
 
 }  // namespace pliant

@@ -99,6 +99,7 @@ class SurfaceMaker {
   Status Make(const std::vector<PosedFrame>& frames, const Plan& plan, const RunMap& known, RunViews* images,
               SurfaceSummary* summary) {
     const int total = static_cast<int>(plan.references.size());
+    const std::set<std::size_t> is_reference(plan.references.begin(), plan.references.end());
     if (callback_) callback_(SurfaceStage::kDepth, 0, total, 0.0);
     for (std::size_t k = 0; k < plan.references.size(); ++k) {
       if (request_.stop != nullptr && *request_.stop) {
@@ -106,8 +107,10 @@ class SurfaceMaker {
         break;
       }
       const std::size_t reference = plan.references[k];
-      if (Status status = images->ReadUntil(LastImage(reference, plan.neighbors[k]),
-                                            [&](std::size_t position) { return plan.last_use.contains(position); });
+      if (Status status = images->ReadUntil(
+              LastImage(reference, plan.neighbors[k]),
+              [&](std::size_t position) { return plan.last_use.contains(position); },
+              [&](std::size_t position) { return is_reference.contains(position); });
           !status.ok())
         return status;
       SurfaceFrame frame;
@@ -162,7 +165,7 @@ void SurfaceRunOptions::List(OptionTable& table) {
   table.Add("gltf", &gltf, "bool", "surface.glb: the mesh, its texture, its motion and the camera's");
   table.Add("vtk", &vtk, "bool", "surface.pvd and vtp/: the mesh in every frame, with displacement, strain and sigma");
   table.Add("obj", &obj, "bool", "obj/: the mesh in every frame, with its texture");
-  table.Add("animation_keys", &animation_keys, "", "frames whose mesh surface.glb has, evenly spread", 1, 10000);
+  table.Add("animation_keys", &animation_keys, "", "frames whose mesh surface.glb has, evenly spread", 1, 1000);
   table.Add("threads", &threads, "", "0: as many as the machine has; the result is the same", 0, 1024);
   masks.List(table);
 }
@@ -176,6 +179,9 @@ Result<SurfaceSummary> MakeSurface(const SurfaceRequest& request, const SurfaceR
                   "no frame of the run " + Quoted(request.run_path) + " was tracked; there is no surface to see");
   SequenceRequest source = SequenceOfRun(request.run_path, request.sequence_path, request.camera_path);
   if (!request.mask_path.empty()) source.mask_path = request.mask_path;
+  if (source.mask_path.empty() && run->summary && !run->summary->description.mask.empty())
+    return Status(ErrorCode::kNotFound, "the masks that the run was tracked with are not at " +
+                                            Quoted(run->summary->description.mask) + "; name them with --mask_path");
   if (source.image_path.empty())
     return Status(ErrorCode::kNotFound,
                   Quoted(request.run_path) + " does not say which images it is of; name them with --sequence");
@@ -208,6 +214,7 @@ Result<SurfaceSummary> MakeSurface(const SurfaceRequest& request, const SurfaceR
                                                 ? "no frame has a depth: the images do not agree anywhere"
                                                 : "no frame has a depth: " + summary.frames.front().note);
   if (stopped) return summary;
+  summary.stopped = false;
   if (options.mesh_columns > 0) {
     const auto folder = ReadSurfaceFolder(request.output_path);
     if (!folder.ok()) return folder.status();
@@ -216,9 +223,10 @@ Result<SurfaceSummary> MakeSurface(const SurfaceRequest& request, const SurfaceR
       if (callback) callback(SurfaceStage::kMesh, done, total, 0.0);
       return request.stop == nullptr || !*request.stop;
     };
-    if (Status status = MakeMeshes(meshes, options, ThreadsOf(options), go_on); !status.ok()) return status;
+    const auto finished_meshes = MakeMeshes(meshes, options, ThreadsOf(options), go_on);
+    if (!finished_meshes.ok()) return finished_meshes.status();
+    summary.stopped = !*finished_meshes;
   }
-  summary.stopped = request.stop != nullptr && *request.stop;
   if (Status status = writer->Finish(request, options, summary); !status.ok()) return status;
   return summary;
 }

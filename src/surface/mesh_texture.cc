@@ -146,6 +146,7 @@ cv::Rect UsedPart(const SeenTriangles& seen, const std::vector<int>& assigned, i
       largest = largest.cwiseMax(corner);
     }
   }
+  if (least.x() > largest.x()) return {};  // nothing is taken from it
   const cv::Point first(static_cast<int>(std::floor(least.x())) - kBorderPx,
                         static_cast<int>(std::floor(least.y())) - kBorderPx);
   const cv::Point last(static_cast<int>(std::ceil(largest.x())) + kBorderPx + 1,
@@ -215,9 +216,11 @@ cv::Mat MakeTexture(const Camera& camera, std::span<const TextureView> views, in
   const cv::Size size = LayOut(&pieces);
 
   cv::Mat texture(size, CV_8UC3, cv::Scalar::all(0));
-  for (std::size_t c = 0; c < chosen.size(); ++c)
+  for (std::size_t c = 0; c < chosen.size(); ++c) {
+    if (pieces[c].of_image.empty()) continue;
     InColor(views[chosen[c]].image)(pieces[c].of_image)
         .convertTo(texture(cv::Rect(pieces[c].at, pieces[c].of_image.size())), CV_8U, gains[c]);
+  }
   int swatch = 0;
   mesh->texture_uvs.assign(mesh->triangles.size(), {});
   for (std::size_t t = 0; t < assigned.size(); ++t) {

@@ -37,6 +37,8 @@ struct Votes {
   double weight = 0;  // of a vertex's position along the rays: the sum of inverse variances
   int confirmed = 1;
   int contradicted = 0;
+
+  bool IsGood() const { return contradicted <= confirmed; }
 };
 
 // Vertices in a frame.
@@ -50,7 +52,12 @@ struct Placed {
 // A depth of a frame, and its standard deviation.
 struct Measured {
   double depth = 0;  // 0: none
-  double sigma = 0;  // map units
+  double sigma = 0;  // of the distance, relative
+
+  // Of the distance of a point, together with that of its motion.
+  double SigmaOf(const Eigen::Vector3d& in_cam, double motion_error) const {
+    return std::hypot(sigma * in_cam.norm(), motion_error);
+  }
 };
 
 // What the pixels around say, where half of them know it: the median.
@@ -66,7 +73,7 @@ Measured MeasuredAround(const DenseDepth& dense, const Eigen::Vector2d& pixel, d
   for (int y = first(pixel.y()); y <= last(pixel.y(), dense.depth.rows); ++y)
     for (int x = first(pixel.x()); x <= last(pixel.x(), dense.depth.cols); ++x) {
       ++pixels;
-      if (!(dense.depth.at<float>(y, x) > 0.0F)) continue;
+      if (!(dense.depth.at<float>(y, x) > 0.0F) || !(dense.sigma.at<float>(y, x) > 0.0F)) continue;
       depths.push_back(dense.depth.at<float>(y, x));
       sigmas.push_back(dense.sigma.at<float>(y, x));
     }
@@ -74,7 +81,7 @@ Measured MeasuredAround(const DenseDepth& dense, const Eigen::Vector2d& pixel, d
   // One of the depths: at a contour the mean of two is that of no surface.
   const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
   std::ranges::nth_element(depths, middle);
-  return {*middle, *middle * Median(std::move(sigmas))};
+  return {*middle, Median(std::move(sigmas))};
 }
 
 // Whether a vertex belongs to a piece of at least `least` triangles.
@@ -140,16 +147,33 @@ Placed TrackedMesh::State::Place(const Rigid3& cam_from_world, std::span<const E
   for (const Eigen::Vector3d& position : positions) placed.in_cam.push_back(cam_from_world * position);
   placed.pixels = camera.Project(placed.in_cam);
   for (const Eigen::Vector3d& point : placed.in_cam) placed.depths.push_back(point.z());
-  placed.raster = RasterizeMesh(placed.pixels, placed.depths, mesh.triangles, nodes, step_px);
+  // What is wrong, as far as is known, hides nothing.
+  std::vector<std::optional<Eigen::Vector2d>> pixels = placed.pixels;
+  for (std::size_t v = 0; v < votes.size(); ++v)
+    if (!votes[v].IsGood()) pixels[v].reset();
+  placed.raster = RasterizeMesh(pixels, placed.depths, mesh.triangles, nodes, step_px);
   return placed;
 }
 
-// Whether another part of the mesh is before a vertex, which is in the image.
+// Whether another part of the mesh is before a vertex, which is in the image: by the plane of the triangle that is
+// nearest at the node beside it.
 bool TrackedMesh::State::IsHidden(const Placed& placed, std::size_t v, double tolerance) const {
-  const int column = std::min(static_cast<int>(std::lround(placed.pixels[v]->x() / step_px)), nodes.width - 1);
-  const int row = std::min(static_cast<int>(std::lround(placed.pixels[v]->y() / step_px)), nodes.height - 1);
-  const double depth = placed.raster.depth.at<float>(row, column);
-  return depth > 0.0 && depth < placed.depths[v] - tolerance;
+  const Eigen::Vector2d& pixel = *placed.pixels[v];
+  const int column = std::min(static_cast<int>(std::lround(pixel.x() / step_px)), nodes.width - 1);
+  const int row = std::min(static_cast<int>(std::lround(pixel.y() / step_px)), nodes.height - 1);
+  const std::int32_t t = placed.raster.triangle.at<std::int32_t>(row, column);
+  if (t == kNoTriangle) return false;
+  const Triangle& triangle = mesh.triangles[static_cast<std::size_t>(t)];
+  if (std::ranges::find(triangle, static_cast<std::int32_t>(v)) != triangle.end()) return false;
+  const auto corner = [&](std::size_t k) { return placed.in_cam[static_cast<std::size_t>(triangle[k])]; };
+  const Eigen::Vector3d normal = (corner(1) - corner(0)).cross(corner(2) - corner(0));
+  const Eigen::Vector3d ray = placed.in_cam[v] / placed.depths[v];
+  const double along = normal.dot(ray);
+  const double on_plane = along != 0.0 ? normal.dot(corner(0)) / along : 0.0;
+  const double at_node = placed.raster.depth.at<float>(row, column);
+  // Seen along the plane it says nothing; then what is at the node does.
+  const double depth = on_plane > 0.5 * at_node && on_plane < 2.0 * at_node ? on_plane : at_node;
+  return depth < placed.depths[v] - tolerance;
 }
 
 // (V11) Depths of vertices that are there already.
@@ -160,8 +184,9 @@ void TrackedMesh::State::Confirm(const SurfaceView& view, const DenseDepth& dens
     if (!placed.pixels[v] || !camera.Contains(*placed.pixels[v]) || !(placed.depths[v] > 0.0)) continue;
     const Measured measured = MeasuredAround(dense, *placed.pixels[v], step_px);
     if (!(measured.depth > 0.0)) continue;
-    const double own = std::hypot(measured.sigma, motion_error);
-    const double tolerance = kSameSurface * std::hypot(own, mesh.sigmas[v]);
+    const double own = measured.SigmaOf(placed.in_cam[v], motion_error);
+    const double tolerance =
+        kSameSurface * std::hypot(own, mesh.sigmas[v]) * placed.depths[v] / placed.in_cam[v].norm();
     const double difference = measured.depth - placed.depths[v];
     if (difference > tolerance) ++votes[v].contradicted;
     if (std::abs(difference) > tolerance || IsHidden(placed, v, tolerance)) continue;
@@ -188,8 +213,10 @@ std::int32_t TrackedMesh::State::VertexAt(const Placed& placed, int column, int 
       least = distance;
     }
   }
-  const double own = std::hypot(measured.sigma, motion_error);
-  const double tolerance = kSameSurface * std::hypot(own, mesh.sigmas[static_cast<std::size_t>(nearest)]);
+  const Eigen::Vector3d& in_cam = placed.in_cam[static_cast<std::size_t>(nearest)];
+  const double own = measured.SigmaOf(in_cam, motion_error);
+  const double tolerance =
+      kSameSurface * std::hypot(own, mesh.sigmas[static_cast<std::size_t>(nearest)]) * in_cam.z() / in_cam.norm();
   const double before = placed.raster.depth.at<float>(row, column) - measured.depth;
   return before > tolerance ? kNoVertex : nearest;
 }
@@ -227,9 +254,9 @@ void TrackedMesh::State::AddVertices(const SurfaceView& view, const DenseDepth& 
       placed->in_cam.push_back(in_cam);
       positions.push_back(world_from_cam * in_cam);
       mesh.rgb.push_back(ColorAt(view.image, pixel));
-      const double sigma = measured.sigma / measured.depth * in_cam.norm();
+      const double sigma = measured.SigmaOf(in_cam, motion.error());
       mesh.sigmas.push_back(static_cast<float>(sigma));
-      votes.push_back({.weight = 1.0 / (sigma * sigma + motion.error() * motion.error())});
+      votes.push_back({.weight = 1.0 / (sigma * sigma)});
     }
   for (const Eigen::Vector3d& position : motion.Undeformed(positions, threads))
     mesh.vertices.push_back(position.cast<float>());
@@ -283,7 +310,7 @@ void TrackedMesh::Add(const SurfaceView& view, const DenseDepth& dense) {
 
 void TrackedMesh::Finish() {
   std::vector<bool> keep;
-  for (const Votes& votes : state_->votes) keep.push_back(votes.contradicted <= votes.confirmed);
+  for (const Votes& votes : state_->votes) keep.push_back(votes.IsGood());
   state_->mesh = PartOfMesh(state_->mesh, keep);
   state_->mesh = PartOfMesh(state_->mesh, InLargePieces(state_->mesh, kMinPiece));
   state_->votes.clear();
@@ -306,7 +333,8 @@ std::optional<MeshInFrame> TrackedMesh::InFrame(const SurfaceView& view, const D
     result.views.push_back(VertexView::kOutOfView);
     if (!placed.pixels[v] || !state_->camera.Contains(*placed.pixels[v]) || !(placed.depths[v] > 0.0)) continue;
     const Measured measured = MeasuredAround(dense, *placed.pixels[v], state_->step_px);
-    const double tolerance = kSameSurface * std::hypot(measured.sigma, own);
+    const double tolerance = kSameSurface * std::hypot(measured.SigmaOf(placed.in_cam[v], 0.0), own) *
+                             placed.depths[v] / placed.in_cam[v].norm();
     if (state_->IsHidden(placed, v, tolerance)) continue;
     const bool has_depth = measured.depth > 0.0;
     if (has_depth && std::abs(measured.depth - placed.depths[v]) > tolerance) continue;

@@ -4,8 +4,11 @@
 #include "viewer/view_mesh.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -27,13 +30,23 @@ std::optional<std::size_t> RunOf(const SurfaceFolder& surface, const std::vector
   return std::nullopt;
 }
 
-// surface.glb, or of several submaps surface_0.glb, surface_1.glb, ...
+// surface.glb, or of several submaps surface_0.glb, surface_1.glb, ..., of which some may have no mesh.
 std::vector<fs::path> MeshFilesOf(const fs::path& folder) {
-  std::vector<fs::path> files;
-  if (Exists((folder / "surface.glb").string())) files.push_back(folder / "surface.glb");
-  const auto numbered = [&] { return folder / ("surface_" + std::to_string(files.size()) + ".glb"); };
-  while (Exists(numbered().string())) files.push_back(numbered());
-  return files;
+  std::map<std::int64_t, fs::path> files;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    std::int64_t number = -1;
+    constexpr std::string_view kBegin = "surface_";
+    constexpr std::string_view kEnd = ".glb";
+    const bool numbered =
+        name.starts_with(kBegin) && name.ends_with(kEnd) && name.size() > kBegin.size() + kEnd.size() &&
+        ParseInt64(std::string_view(name).substr(kBegin.size(), name.size() - kBegin.size() - kEnd.size()), &number);
+    if (numbered || name == "surface.glb") files.emplace(number, entry->path());
+  }
+  std::vector<fs::path> sorted;
+  for (auto& [number, path] : files) sorted.push_back(std::move(path));
+  return sorted;
 }
 
 }  // namespace

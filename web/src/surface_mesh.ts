@@ -23,12 +23,12 @@ export class SurfaceMesh {
     this.object = new Mesh(this.geometry, this.textured);
     this.object.frustumCulled = false;
     if (!texture) return;
-    void createImageBitmap(new Blob([texture], { type: "image/jpeg" })).then((bitmap) => {
+    createImageBitmap(new Blob([texture], { type: "image/jpeg" })).then((bitmap) => {
       this.textured.map = new Texture(bitmap);
       this.textured.map.needsUpdate = true;
       this.textured.needsUpdate = true;
       changed();
-    });
+    }, () => changed());   // damaged: it stays white
   }
 
   show(frame: number, color: SurfaceColor): void {

@@ -47,6 +47,7 @@ export class Toolbar {
   }
 
   update(changed: Changed): void {
+    if (anyOf(changed, "position")) this.showSurfaceLegend();
     if (anyOf(changed, "current", "visible", "color", "layers", "surfaceColor", "trail", "view", "theme", "dark", "revision")) this.showAll();
   }
 
@@ -146,9 +147,11 @@ export class Toolbar {
 
   private showSurfaceLegend(): void {
     const { report, store } = this.page;
-    const { surfaceColor, current } = store.state;
+    const { surfaceColor, current, position } = store.state;
     this.surfaceColor.value = surfaceColor;
-    const surface = report.runs[current].surfaces[0];
+    const run = report.runs[current];
+    const submap = run.frames.submap[report.row(current, position)];
+    const surface = run.surfaces.find((candidate) => candidate.submap === submap) ?? run.surfaces[0];
     byId("surface-scale").hidden = surfaceColor === "image" || !surface;
     if (surfaceColor === "image" || !surface) return;
     const { low, high } = surface.range(surfaceColor);

@@ -34,8 +34,9 @@ struct DenseError {
   DepthFigures certain_half;   // of the pixels with the smaller sigmas
   DepthFigures interpolation;  // a thin plate through the run's points, at the pixels of `estimate`
   DepthFigures null;           // one constant depth there
-  DepthFigures mesh;           // of the mesh's vertices, where the frame has a depth of its own too
-  DepthFigures mesh_alone;     // where it has none: also of tissue that is hidden here
+  DepthFigures mesh;           // of the mesh's vertices, where the frame has a depth of its own too; over the frames
+                               // that have such ones
+  DepthFigures mesh_alone;     // where it has none: also of tissue that is hidden here; likewise
   double mesh_vertices = 0;    // mean over the frames; 0: there is no mesh
   double mesh_alone_share = 0;
   double within_1_sigma = 0;  // shares of the pixels of `estimate`

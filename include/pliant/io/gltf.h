@@ -46,7 +46,7 @@ Status WriteGlb(const std::string& path, const MeshAnimation& animation);
 
 // What WriteGlb wrote: every vertex is there once for each of its places in the texture.
 struct GltfMesh {
-  Mesh mesh;                  // undeformed, map units; colors only where there is no texture
+  Mesh mesh;                  // undeformed, map units; without colors
   std::string texture_jpeg;   // the file's bytes; empty: none
   std::vector<MeshKey> keys;  // times from that of the first key or camera
   int submap = 0;

@@ -21,7 +21,7 @@ using Triangle = std::array<std::int32_t, 3>;
 std::vector<Eigen::Vector3f> VertexNormals(std::span<const Eigen::Vector3f> vertices,
                                            std::span<const Triangle> triangles);
 
-// The vertices with `keep`, with all that is known of them, and the triangles that have no others.
+// The vertices with `keep` (one entry a vertex), with all that is known of them, and the triangles that have no others.
 Mesh PartOfMesh(const Mesh& mesh, const std::vector<bool>& keep);
 
 // How a triangle is deformed in its plane.

@@ -24,9 +24,10 @@ struct TextureView {
   double sharpness = 1;  // of the image, in any unit
 };
 
-// (V13) Sets `mesh->texture_uvs`. A triangle is taken from the image that shows it best: large, sharp and valid; from
-// as few images as that allows, their brightness made equal where they meet. One that no image shows has the mean color
-// of its vertices. The texture is BGR, at most `max_size` px wide and high.
+// (V13) Sets `mesh->texture_uvs`. The mesh has colors, and the views its vertices. A triangle is taken from the image
+// that shows it best: large, sharp and valid; from as few images as that allows, their brightness made equal where they
+// meet. One that no image shows has the mean color of its vertices. The texture is BGR, at most `max_size` px wide and
+// high.
 cv::Mat MakeTexture(const Camera& camera, std::span<const TextureView> views, int max_size, Mesh* mesh);
 
 }  // namespace pliant

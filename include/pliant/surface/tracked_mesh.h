@@ -45,7 +45,8 @@ class TrackedMesh {
   TrackedMesh& operator=(TrackedMesh&&) noexcept;
   ~TrackedMesh();
 
-  // A frame and its depth; frames in the order of time. A frame with fewer than 12 points adds nothing.
+  // A frame and its depth; frames in the order of time, none after Finish. A frame with fewer than 12 points adds
+  // nothing.
   void Add(const SurfaceView& view, const DenseDepth& dense);
   // After the last frame: takes away the vertices that more frames contradict than confirm (they see another surface
   // behind them), and small pieces; gives the others their normals.
