@@ -21,10 +21,20 @@ export interface Range {
 }
 
 export class Surface {
+  // The triangles without the seams of the texture, at which a vertex is there once for each side: of these the first.
+  readonly seamless: Uint32Array;
   private readonly ranges = new Map<SurfaceColor, Range>();
 
   // `frames`: those of the keys, which grow.
-  constructor(readonly submap: number, readonly frames: number[], readonly arrays: SurfaceArrays) {}
+  constructor(readonly submap: number, readonly frames: number[], readonly arrays: SurfaceArrays) {
+    const { rest, triangles } = arrays;
+    const first = new Map<string, number>();
+    this.seamless = triangles.map((v) => {
+      const place = rest.subarray(3 * v, 3 * v + 3).join();
+      if (!first.has(place)) first.set(place, v);
+      return first.get(place)!;
+    });
+  }
 
   get vertices(): number {
     return this.arrays.rest.length / 3;
@@ -80,7 +90,8 @@ export class Surface {
 
   // Area of the triangles around a vertex by that of the undeformed ones, minus 1.
   private areaChangesOf(positions: Float32Array): Float32Array {
-    const { rest, triangles } = this.arrays;
+    const { rest } = this.arrays;
+    const triangles = this.seamless;
     const before = new Float32Array(this.vertices);
     const after = new Float32Array(this.vertices);
     for (let t = 0; t < triangles.length; t += 3) {
@@ -92,7 +103,7 @@ export class Surface {
         after[v] += areaAfter;
       }
     }
-    return after.map((area, v) => (before[v] > 0 ? area / before[v] - 1 : 0));
+    return after.map((area, v) => (before[v] > 0 ? area / before[v] - 1 : NaN));
   }
 }
 

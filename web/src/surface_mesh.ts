@@ -10,6 +10,8 @@ import type { Surface, SurfaceColor } from "./surface";
 export class SurfaceMesh {
   readonly object: Mesh;
   private readonly geometry = new BufferGeometry();
+  private readonly withSeams: BufferAttribute;
+  private readonly seamless: BufferAttribute;
   private readonly textured = new MeshBasicMaterial({ side: DoubleSide });
   private readonly colored = new MeshLambertMaterial({ side: DoubleSide, vertexColors: true });
 
@@ -19,7 +21,9 @@ export class SurfaceMesh {
     this.geometry.setAttribute("position", new BufferAttribute(rest.slice(), 3));
     this.geometry.setAttribute("color", new BufferAttribute(new Float32Array(rest.length), 3));
     this.geometry.setAttribute("uv", new BufferAttribute(uv, 2));
-    this.geometry.setIndex(new BufferAttribute(triangles, 1));
+    this.withSeams = new BufferAttribute(triangles, 1);
+    this.seamless = new BufferAttribute(surface.seamless, 1);
+    this.geometry.setIndex(this.withSeams);
     this.object = new Mesh(this.geometry, this.textured);
     this.object.frustumCulled = false;
     if (!texture) return;
@@ -36,6 +40,7 @@ export class SurfaceMesh {
     const attribute = this.geometry.getAttribute("position") as BufferAttribute;
     attribute.array.set(positions);
     attribute.needsUpdate = true;
+    this.geometry.setIndex(color === "image" ? this.withSeams : this.seamless);
     if (color === "image") {
       this.object.material = this.textured;
       return;
