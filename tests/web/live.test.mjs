@@ -92,4 +92,3 @@ function answer(url, response, { epoch, rows, running }) {
     response.end();
   }
 }
-
