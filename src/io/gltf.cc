@@ -15,7 +15,6 @@
 #include <tuple>
 #include <utility>
 
-#include <opencv2/imgcodecs.hpp>
 #include <tiny_gltf.h>
 
 #include "pliant/base/files.h"
@@ -26,7 +25,6 @@ namespace pliant {
 namespace {
 
 constexpr float kMetersPerUnit = 0.001F;
-constexpr int kJpegQuality = 92;
 // The camera's view begins and ends at so many times the median distance of the vertices from where it begins.
 constexpr float kNear = 0.02F;
 constexpr float kFar = 200.0F;
@@ -160,19 +158,18 @@ std::vector<float> TextureUvs(const Corners& corners) {
   return values;
 }
 
-int AddMaterial(const cv::Mat& texture, ModelBuilder* builder) {
+int AddMaterial(std::string_view texture_jpeg, ModelBuilder* builder) {
   tinygltf::Model& model = builder->model();
   tinygltf::Material material;
   material.name = "tissue";
   material.doubleSided = true;
   material.pbrMetallicRoughness.metallicFactor = 0.0;
   material.pbrMetallicRoughness.roughnessFactor = 1.0;
-  if (!texture.empty()) {
-    std::vector<unsigned char> jpeg;
-    cv::imencode(".jpg", texture, jpeg, {cv::IMWRITE_JPEG_QUALITY, kJpegQuality});
+  if (!texture_jpeg.empty()) {
     tinygltf::Image image;
     image.mimeType = "image/jpeg";
-    image.bufferView = builder->AddView(jpeg, 0);
+    image.bufferView =
+        builder->AddView({reinterpret_cast<const unsigned char*>(texture_jpeg.data()), texture_jpeg.size()}, 0);
     model.images.push_back(image);
     model.samplers.emplace_back();
     tinygltf::Texture entry;
@@ -193,7 +190,7 @@ void AddMesh(const MeshAnimation& animation, ModelBuilder* builder) {
   };
   tinygltf::Primitive primitive;
   primitive.mode = TINYGLTF_MODE_TRIANGLES;
-  primitive.material = AddMaterial(animation.texture, builder);
+  primitive.material = AddMaterial(animation.texture_jpeg, builder);
   primitive.indices = builder->AddIndices(corners.indices);
   const int target = TINYGLTF_TARGET_ARRAY_BUFFER;
   primitive.attributes["POSITION"] = builder->AddFloats(
@@ -201,7 +198,7 @@ void AddMesh(const MeshAnimation& animation, ModelBuilder* builder) {
       TINYGLTF_TYPE_VEC3, true, target);
   primitive.attributes["NORMAL"] =
       builder->AddFloats(OfCorners(corners, at(mesh.normals)), TINYGLTF_TYPE_VEC3, false, target);
-  if (animation.texture.empty())
+  if (animation.texture_jpeg.empty())
     primitive.attributes["COLOR_0"] = builder->AddFloats(Colors(corners, mesh), TINYGLTF_TYPE_VEC3, false, target);
   else
     primitive.attributes["TEXCOORD_0"] = builder->AddFloats(TextureUvs(corners), TINYGLTF_TYPE_VEC2, false, target);

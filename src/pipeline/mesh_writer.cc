@@ -8,8 +8,6 @@
 #include <system_error>
 #include <utility>
 
-#include <opencv2/imgcodecs.hpp>
-
 #include "pliant/base/files.h"
 #include "pliant/datasets/surface_folder.h"
 #include "pliant/io/obj.h"
@@ -24,7 +22,6 @@ namespace fs = std::filesystem;
 constexpr const char* kObjFolder = "obj";
 constexpr const char* kVtpFolder = "vtp";
 constexpr const char* kTextureName = "texture";
-constexpr int kJpegQuality = 92;
 
 Status MakeFolder(const fs::path& path) {
   std::error_code error;
@@ -48,10 +45,24 @@ VtkArray ViewsOf(const MeshInFrame& now) {
   return views;
 }
 
-Status WriteJpeg(const fs::path& path, const cv::Mat& image) {
-  std::vector<unsigned char> bytes;
-  cv::imencode(".jpg", image, bytes, {cv::IMWRITE_JPEG_QUALITY, kJpegQuality});
-  return WriteFileAtomically(path.string(), {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+// From the undeformed positions.
+VtkArray Displacements(const Mesh& undeformed, const Mesh& now) {
+  VtkArray displacement{"displacement", 3, {}};
+  for (std::size_t v = 0; v < now.vertices.size(); ++v)
+    for (const float d : Eigen::Vector3f(now.vertices[v] - undeformed.vertices[v])) displacement.values.push_back(d);
+  return displacement;
+}
+
+std::array<VtkArray, 3> StrainArrays(const Mesh& undeformed, const Mesh& now) {
+  VtkArray area_change{"area_change", 1, {}};
+  VtkArray largest{"largest_stretch", 1, {}};
+  VtkArray least{"least_stretch", 1, {}};
+  for (const TriangleStrain& strain : Strains(undeformed.vertices, now.vertices, now.triangles)) {
+    area_change.values.push_back(strain.area_change);
+    largest.values.push_back(strain.largest_stretch);
+    least.values.push_back(strain.least_stretch);
+  }
+  return {area_change, largest, least};
 }
 
 }  // namespace
@@ -76,6 +87,14 @@ Mesh DeformedMesh::SeenPart() const {
   return mesh;
 }
 
+Mesh DeformedMesh::Whole() const {
+  Mesh mesh = undeformed;
+  mesh.vertices = Vertices();
+  mesh.normals = VertexNormals(mesh.vertices, mesh.triangles);
+  mesh.sigmas = now.sigmas;
+  return mesh;
+}
+
 Status MeshWriter::RemoveEarlier(const fs::path& folder) {
   std::error_code error;
   for (const char* kind : {surface::kMeshFolder, kObjFolder, kVtpFolder}) {
@@ -87,11 +106,11 @@ Status MeshWriter::RemoveEarlier(const fs::path& folder) {
   return Status::Ok();
 }
 
-Status MeshWriter::WriteUndeformed(const Mesh& mesh, const cv::Mat& texture) {
+Status MeshWriter::WriteUndeformed(const Mesh& mesh, std::string_view texture_jpeg) {
   if (Status status = WritePly(FileName("undeformed", ".ply").string(), mesh); !status.ok() || !files_.obj)
     return status;
   const fs::path image = FileName(kTextureName, ".jpg");
-  if (Status status = WriteJpeg(image, texture); !status.ok()) return status;
+  if (Status status = WriteFileAtomically(image.string(), texture_jpeg); !status.ok()) return status;
   return WriteObjMaterial(FileName(kTextureName, ".mtl").string(), image.filename().string());
 }
 
@@ -108,25 +127,11 @@ Status MeshWriter::WriteFrame(const std::string& name, const DeformedMesh& defor
   }
   if (!files_.vtk) return Status::Ok();
   if (Status status = MakeFolder(folder_ / kVtpFolder); !status.ok()) return status;
-  Mesh whole = deformed.undeformed;
-  whole.vertices = deformed.Vertices();
-  whole.normals = VertexNormals(whole.vertices, whole.triangles);
-  whole.sigmas = deformed.now.sigmas;
-  VtkArray displacement{"displacement", 3, {}};
-  for (std::size_t v = 0; v < whole.vertices.size(); ++v)
-    for (const float d : Eigen::Vector3f(whole.vertices[v] - deformed.undeformed.vertices[v]))
-      displacement.values.push_back(d);
-  VtkArray area_change{"area_change", 1, {}};
-  VtkArray largest{"largest_stretch", 1, {}};
-  VtkArray least{"least_stretch", 1, {}};
-  for (const TriangleStrain& strain : Strains(deformed.undeformed.vertices, whole.vertices, whole.triangles)) {
-    area_change.values.push_back(strain.area_change);
-    largest.values.push_back(strain.largest_stretch);
-    least.values.push_back(strain.least_stretch);
-  }
+  const Mesh whole = deformed.Whole();
   times_.push_back({deformed.timestamp_s, std::string(kVtpFolder) + "/" + name + ".vtp"});
-  return WriteVtp((folder_ / times_.back().file).string(), whole, std::array{displacement, ViewsOf(deformed.now)},
-                  std::array{area_change, largest, least});
+  return WriteVtp((folder_ / times_.back().file).string(), whole,
+                  std::array{Displacements(deformed.undeformed, whole), ViewsOf(deformed.now)},
+                  StrainArrays(deformed.undeformed, whole));
 }
 
 Status MeshWriter::Finish() {

@@ -6,9 +6,8 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
-
-#include <opencv2/core/mat.hpp>
 
 #include "pliant/base/status.h"
 #include "pliant/geometry/rigid3.h"
@@ -27,6 +26,7 @@ struct DeformedMesh {
 
   std::vector<Eigen::Vector3f> Vertices() const;  // world frame
   Mesh SeenPart() const;                          // camera frame, with ids: what the frame shows of it
+  Mesh Whole() const;                             // world frame
 };
 
 struct MeshFiles {
@@ -44,9 +44,10 @@ class MeshWriter {
   // Removes the files of an earlier surface. Fails with kUnwritable.
   static Status RemoveEarlier(const std::filesystem::path& folder);
 
-  // Fail with kUnwritable. First the undeformed mesh (world frame) with the texture (BGR) that obj/ refers to; then the
+  // Fail with kUnwritable. First the undeformed mesh (world frame) with the texture (a JPEG
+  // file's bytes) that obj/ refers to; then the
   // frames: mesh/ and obj/ in the camera's frame, vtp/ in the world's; then the list of these.
-  Status WriteUndeformed(const Mesh& mesh, const cv::Mat& texture);
+  Status WriteUndeformed(const Mesh& mesh, std::string_view texture_jpeg);
   // `name`: of the frame's files, without an ending.
   Status WriteFrame(const std::string& name, const DeformedMesh& mesh);
   Status Finish();

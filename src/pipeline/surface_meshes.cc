@@ -11,6 +11,7 @@
 #include <string>
 #include <utility>
 
+#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "pipeline/mesh_writer.h"
@@ -25,6 +26,7 @@ namespace {
 
 constexpr std::size_t kTextureViews = 16;  // images from which a texture is chosen: the sharpest of as many parts
 constexpr int kMaxTextureSize = 4096;      // px, which every graphics card can do
+constexpr int kTextureQuality = 92;        // of its JPEG file
 
 // A frame with a depth.
 struct DenseFrame {
@@ -104,11 +106,11 @@ class MeshMaker {
     if (mesh_.triangles.empty()) return Status::Ok();
     if (options_.gltf || options_.obj)
       if (Status status = MakeTextureOfImages(); !status.ok()) return status;
-    if (Status status = writer->WriteUndeformed(mesh_, texture_); !status.ok()) return status;
+    if (Status status = writer->WriteUndeformed(mesh_, texture_jpeg_); !status.ok()) return status;
     if (Status status = WriteFrames(writer); !status.ok() || stopped_ || !options_.gltf) return status;
     return WriteGlb(
         writer->FileName("surface", ".glb").string(),
-        {mesh_, texture_, keys_, CameraPath(), source_.folder.camera, source_.frames[frames_.front().position].submap});
+        {mesh_, texture_jpeg_, keys_, CameraPath(), source_.folder.camera, PosedOf(frames_.front()).submap});
   }
 
   bool stopped() const { return stopped_; }
@@ -144,8 +146,9 @@ class MeshMaker {
     return Status::Ok();
   }
 
-  std::optional<MeshInFrame> InFrame(std::size_t position, const DenseDepth& dense) const {
-    const PosedFrame& frame = source_.frames[position];
+  const PosedFrame& PosedOf(const DenseFrame& frame) const { return source_.frames[frame.position]; }
+
+  std::optional<MeshInFrame> InFrame(const PosedFrame& frame, const DenseDepth& dense) const {
     return tracked_.InFrame({{}, {}, frame.cam_from_world, frame.observations}, dense);
   }
 
@@ -154,13 +157,15 @@ class MeshMaker {
     for (const SharpImage& sharp : images_.images()) {
       const auto dense = ReadDense(source_.folder, sharp.frame.file);
       if (!dense.ok()) return dense.status();
-      const std::size_t position = sharp.frame.position;
-      auto in_frame = InFrame(position, *dense);
+      const PosedFrame& frame = PosedOf(sharp.frame);
+      auto in_frame = InFrame(frame, *dense);
       if (!in_frame) continue;
-      views.push_back(
-          {sharp.image, sharp.valid, source_.frames[position].cam_from_world, *std::move(in_frame), sharp.sharpness});
+      views.push_back({sharp.image, sharp.valid, frame.cam_from_world, *std::move(in_frame), sharp.sharpness});
     }
-    texture_ = MakeTexture(source_.folder.camera, views, kMaxTextureSize, &mesh_);
+    std::vector<unsigned char> jpeg;
+    cv::imencode(".jpg", MakeTexture(source_.folder.camera, views, kMaxTextureSize, &mesh_), jpeg,
+                 {cv::IMWRITE_JPEG_QUALITY, kTextureQuality});
+    texture_jpeg_.assign(jpeg.begin(), jpeg.end());
     return Status::Ok();
   }
 
@@ -169,8 +174,8 @@ class MeshMaker {
     for (std::size_t k = 0; k < frames_.size() && !stopped_; ++k) {
       const auto dense = ReadDense(source_.folder, frames_[k].file);
       if (!dense.ok()) return dense.status();
-      const PosedFrame& frame = source_.frames[frames_[k].position];
-      const auto now = InFrame(frames_[k].position, *dense);
+      const PosedFrame& frame = PosedOf(frames_[k]);
+      const auto now = InFrame(frame, *dense);
       if (!now) continue;
       const DeformedMesh deformed{mesh_, *now, frame.cam_from_world, frame.timestamp_s};
       if (Status status = writer->WriteFrame(std::filesystem::path(frames_[k].file.file_name).stem(), deformed);
@@ -187,7 +192,7 @@ class MeshMaker {
   std::vector<CameraKey> CameraPath() const {
     std::vector<CameraKey> path;
     for (const DenseFrame& frame : frames_) {
-      const PosedFrame& posed = source_.frames[frame.position];
+      const PosedFrame& posed = PosedOf(frame);
       path.push_back({posed.timestamp_s, posed.cam_from_world.Inverse()});
     }
     return path;
@@ -201,7 +206,7 @@ class MeshMaker {
   TrackedMesh tracked_;
   SharpImages images_;
   Mesh mesh_;  // undeformed
-  cv::Mat texture_;
+  std::string texture_jpeg_;
   std::vector<MeshKey> keys_;
 };
 

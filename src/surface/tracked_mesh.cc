@@ -60,6 +60,11 @@ struct Measured {
   }
 };
 
+// How far apart two depths of one surface may be, by the standard deviations of the distances.
+double Tolerance(const Eigen::Vector3d& in_cam, double sigma, double other_sigma) {
+  return kSameSurface * std::hypot(sigma, other_sigma) * in_cam.z() / in_cam.norm();
+}
+
 // What the pixels around say, where half of them know it: the median.
 Measured MeasuredAround(const DenseDepth& dense, const Eigen::Vector2d& pixel, double step_px) {
   if (dense.depth.empty()) return {};
@@ -106,6 +111,7 @@ std::vector<bool> InLargePieces(const Mesh& mesh, int least) {
 struct Grid {
   std::vector<std::int32_t> vertex;  // row by row; kNoVertex: no surface there, or one that is hidden
   std::vector<bool> is_new;
+  std::vector<Measured> measured;
 };
 
 }  // namespace
@@ -119,14 +125,16 @@ struct TrackedMesh::State {
   Mesh mesh = {};
   std::vector<Votes> votes = {};
 
-  std::vector<Eigen::Vector3d> RestOfVertices() const;
+  std::vector<Eigen::Vector3d> Moved(const RestMotion& motion) const;
   Placed Place(const Rigid3& cam_from_world, std::span<const Eigen::Vector3d> positions) const;
+  bool IsInImage(const Placed& placed, std::size_t v) const {
+    return placed.pixels[v] && camera.Contains(*placed.pixels[v]) && placed.depths[v] > 0.0;
+  }
   bool IsHidden(const Placed& placed, std::size_t v, double tolerance) const;
   void Confirm(const SurfaceView& view, const DenseDepth& dense, const Placed& placed, double motion_error);
   std::int32_t VertexAt(const Placed& placed, int column, int row, const Measured& measured, double motion_error) const;
   Grid Compare(const DenseDepth& dense, const Placed& placed, double motion_error) const;
-  void AddVertices(const SurfaceView& view, const DenseDepth& dense, const RestMotion& motion, Grid* grid,
-                   Placed* placed);
+  void AddVertices(const SurfaceView& view, const RestMotion& motion, Grid* grid, Placed* placed);
   void AddTriangles(const Grid& grid, const Placed& placed);
 
   Eigen::Vector2d PixelOf(int column, int row) const { return {column * step_px, row * step_px}; }
@@ -135,10 +143,13 @@ struct TrackedMesh::State {
   }
 };
 
-std::vector<Eigen::Vector3d> TrackedMesh::State::RestOfVertices() const {
+// The vertices, world frame.
+std::vector<Eigen::Vector3d> TrackedMesh::State::Moved(const RestMotion& motion) const {
   std::vector<Eigen::Vector3d> positions;
   positions.reserve(mesh.vertices.size());
   for (const Eigen::Vector3f& vertex : mesh.vertices) positions.push_back(vertex.cast<double>());
+  const std::vector<Eigen::Vector3d> displacements = motion.Displacements(positions, threads);
+  for (std::size_t v = 0; v < positions.size(); ++v) positions[v] += displacements[v];
   return positions;
 }
 
@@ -181,12 +192,11 @@ void TrackedMesh::State::Confirm(const SurfaceView& view, const DenseDepth& dens
                                  double motion_error) {
   const Eigen::Matrix3d world_from_cam = view.cam_from_world.RotationMatrix().transpose();
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
-    if (!placed.pixels[v] || !camera.Contains(*placed.pixels[v]) || !(placed.depths[v] > 0.0)) continue;
+    if (!IsInImage(placed, v)) continue;
     const Measured measured = MeasuredAround(dense, *placed.pixels[v], step_px);
     if (!(measured.depth > 0.0)) continue;
     const double own = measured.SigmaOf(placed.in_cam[v], motion_error);
-    const double tolerance =
-        kSameSurface * std::hypot(own, mesh.sigmas[v]) * placed.depths[v] / placed.in_cam[v].norm();
+    const double tolerance = Tolerance(placed.in_cam[v], own, mesh.sigmas[v]);
     const double difference = measured.depth - placed.depths[v];
     if (difference > tolerance) ++votes[v].contradicted;
     if (std::abs(difference) > tolerance || IsHidden(placed, v, tolerance)) continue;
@@ -214,9 +224,8 @@ std::int32_t TrackedMesh::State::VertexAt(const Placed& placed, int column, int 
     }
   }
   const Eigen::Vector3d& in_cam = placed.in_cam[static_cast<std::size_t>(nearest)];
-  const double own = measured.SigmaOf(in_cam, motion_error);
   const double tolerance =
-      kSameSurface * std::hypot(own, mesh.sigmas[static_cast<std::size_t>(nearest)]) * in_cam.z() / in_cam.norm();
+      Tolerance(in_cam, measured.SigmaOf(in_cam, motion_error), mesh.sigmas[static_cast<std::size_t>(nearest)]);
   const double before = placed.raster.depth.at<float>(row, column) - measured.depth;
   return before > tolerance ? kNoVertex : nearest;
 }
@@ -230,12 +239,12 @@ Grid TrackedMesh::State::Compare(const DenseDepth& dense, const Placed& placed, 
           measured.depth > 0.0 ? VertexAt(placed, column, row, measured, motion_error) : kNoVertex;
       grid.vertex.push_back(vertex);
       grid.is_new.push_back(measured.depth > 0.0 && vertex == kNoVertex);
+      grid.measured.push_back(measured);
     }
   return grid;
 }
 
-void TrackedMesh::State::AddVertices(const SurfaceView& view, const DenseDepth& dense, const RestMotion& motion,
-                                     Grid* grid, Placed* placed) {
+void TrackedMesh::State::AddVertices(const SurfaceView& view, const RestMotion& motion, Grid* grid, Placed* placed) {
   const Rigid3 world_from_cam = view.cam_from_world.Inverse();
   std::vector<Eigen::Vector3d> positions;
   for (int row = 0; row < nodes.height; ++row)
@@ -248,7 +257,7 @@ void TrackedMesh::State::AddVertices(const SurfaceView& view, const DenseDepth& 
         grid->is_new[node] = false;
         continue;
       }
-      const Measured measured = MeasuredAround(dense, pixel, step_px);
+      const Measured& measured = grid->measured[node];
       const Eigen::Vector3d in_cam = *ray * (measured.depth / ray->z());
       grid->vertex[node] = static_cast<std::int32_t>(placed->in_cam.size());
       placed->in_cam.push_back(in_cam);
@@ -298,13 +307,10 @@ TrackedMesh::~TrackedMesh() = default;
 void TrackedMesh::Add(const SurfaceView& view, const DenseDepth& dense) {
   const auto motion = RestMotion::Create(state_->rest, view.observations);
   if (!motion) return;
-  std::vector<Eigen::Vector3d> positions = state_->RestOfVertices();
-  const std::vector<Eigen::Vector3d> displacements = motion->Displacements(positions, state_->threads);
-  for (std::size_t v = 0; v < positions.size(); ++v) positions[v] += displacements[v];
-  Placed placed = state_->Place(view.cam_from_world, positions);
+  Placed placed = state_->Place(view.cam_from_world, state_->Moved(*motion));
   state_->Confirm(view, dense, placed, motion->error());
   Grid grid = state_->Compare(dense, placed, motion->error());
-  state_->AddVertices(view, dense, *motion, &grid, &placed);
+  state_->AddVertices(view, *motion, &grid, &placed);
   state_->AddTriangles(grid, placed);
 }
 
@@ -323,18 +329,15 @@ std::optional<MeshInFrame> TrackedMesh::InFrame(const SurfaceView& view, const D
   const auto motion = RestMotion::Create(state_->rest, view.observations);
   if (!motion) return std::nullopt;
   MeshInFrame result;
-  result.positions = state_->RestOfVertices();
-  const std::vector<Eigen::Vector3d> displacements = motion->Displacements(result.positions, state_->threads);
-  for (std::size_t v = 0; v < displacements.size(); ++v) result.positions[v] += displacements[v];
+  result.positions = state_->Moved(*motion);
   const Placed placed = state_->Place(view.cam_from_world, result.positions);
   for (std::size_t v = 0; v < result.positions.size(); ++v) {
     const double own = std::hypot(state_->mesh.sigmas[v], motion->error());
     result.sigmas.push_back(static_cast<float>(own));
     result.views.push_back(VertexView::kOutOfView);
-    if (!placed.pixels[v] || !state_->camera.Contains(*placed.pixels[v]) || !(placed.depths[v] > 0.0)) continue;
+    if (!state_->IsInImage(placed, v)) continue;
     const Measured measured = MeasuredAround(dense, *placed.pixels[v], state_->step_px);
-    const double tolerance = kSameSurface * std::hypot(measured.SigmaOf(placed.in_cam[v], 0.0), own) *
-                             placed.depths[v] / placed.in_cam[v].norm();
+    const double tolerance = Tolerance(placed.in_cam[v], measured.SigmaOf(placed.in_cam[v], 0.0), own);
     if (state_->IsHidden(placed, v, tolerance)) continue;
     const bool has_depth = measured.depth > 0.0;
     if (has_depth && std::abs(measured.depth - placed.depths[v]) > tolerance) continue;

@@ -289,7 +289,7 @@ void WriteSurface(const TestFolder& folder, const std::string& run_path) {
   const std::vector<MeshKey> keys = {{2, 0.1, {{0, 0, 21}, {0, 4, 21}, {4, 0, 21}}}};
   const Camera camera =
       Camera::Create(CameraModelId::kPinhole, 640, 480, std::array{500.0, 500.0, 319.5, 239.5}).value();
-  ASSERT_TRUE(WriteGlb(folder.Path("surface/surface.glb"), {mesh, cv::Mat(), keys, {}, camera, 0}).ok());
+  ASSERT_TRUE(WriteGlb(folder.Path("surface/surface.glb"), {mesh, "", keys, {}, camera, 0}).ok());
 }
 
 TEST_F(ViewTest, TheSurfaceIsInTheSameWorldAsTheRun) {

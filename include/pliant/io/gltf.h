@@ -7,10 +7,10 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
-#include <opencv2/core/mat.hpp>
 
 #include "pliant/base/status.h"
 #include "pliant/camera/camera.h"
@@ -33,7 +33,7 @@ struct CameraKey {
 
 struct MeshAnimation {
   const Mesh& mesh;                 // undeformed, world frame, map units
-  const cv::Mat& texture;           // BGR; empty: the vertices' colors
+  std::string_view texture_jpeg;    // a JPEG file's bytes; empty: the vertices' colors
   std::span<const MeshKey> keys;    // times increase; between two of them positions change linearly
   std::span<const CameraKey> path;  // times increase
   const Camera& camera;             // its focal length and size: glTF knows no distortion
