@@ -10,6 +10,7 @@
 
 #include "cli/command_line.h"
 #include "cli/commands.h"
+#include "cli/sequence_arguments.h"
 
 namespace pliant::cli {
 namespace {
@@ -51,10 +52,8 @@ int ExportCommand(std::span<const std::string> args) {
   line.Add("output_path", &request.output_path, "DIR", "folder to write, made if need be", Need::kRequired);
   line.Add("sequence", &request.sequence_path, "PATH",
            "the run's images, where they are needed; without it those that its run.json names", Need::kOptional);
-  line.Add("camera", &request.camera_path, "FILE", "their calibration; without it the one that belongs to them",
-           Need::kOptional);
-  line.Add("mask_path", &request.mask_path, "PATH",
-           "folder of masks, or one image for all frames (0 = ignore); without it the run's", Need::kOptional);
+  AddCameraOfRun(&line, &request.camera_path);
+  AddMasksOfRun(&line, &request.mask_path);
   line.Add("surface", &request.surface_path, "DIR", "depths of the frames; frames without one are left out",
            Need::kOptional);
   line.AddFlag("quiet", &quiet, "say nothing but errors");

@@ -5,6 +5,7 @@
 #include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "cli/run_refinement.h"
+#include "cli/sequence_arguments.h"
 
 namespace pliant::cli {
 namespace {
@@ -33,8 +34,7 @@ int RefineCommand(std::span<const std::string> args) {
   line.Add("output_path", &request.output_path, "DIR", "folder to write, made if need be", Need::kRequired);
   line.Add("sequence", &request.sequence_path, "PATH",
            "images of a run that has no sparse/; without it those that its run.json names", Need::kOptional);
-  line.Add("camera", &request.camera_path, "FILE", "their calibration; without it the one that belongs to them",
-           Need::kOptional);
+  AddCameraOfRun(&line, &request.camera_path);
   line.AddFlag("quiet", &quiet, "say nothing but errors");
   if (const auto exit = line.Parse(args)) return *exit;
   OptionTable table;

@@ -33,4 +33,14 @@ SequenceRequest SequenceArguments::Request() const {
           .stride = stride};
 }
 
+void AddCameraOfRun(CommandLine* line, std::string* camera_path) {
+  line->Add("camera", camera_path, "FILE", "their calibration; without it the one that belongs to them",
+            Need::kOptional);
+}
+
+void AddMasksOfRun(CommandLine* line, std::string* mask_path) {
+  line->Add("mask_path", mask_path, "PATH",
+            "folder of masks, or one image for all frames (0 = ignore); without it the run's", Need::kOptional);
+}
+
 }  // namespace pliant::cli

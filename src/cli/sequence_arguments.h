@@ -27,4 +27,8 @@ struct SequenceArguments {
   SequenceRequest Request() const;
 };
 
+// Of a command that reads the images of a run.
+void AddCameraOfRun(CommandLine* line, std::string* camera_path);
+void AddMasksOfRun(CommandLine* line, std::string* mask_path);
+
 }  // namespace pliant::cli

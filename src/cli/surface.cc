@@ -9,6 +9,7 @@
 #include "cli/frame_list.h"
 #include "cli/interrupt.h"
 #include "cli/progress.h"
+#include "cli/sequence_arguments.h"
 #include "pliant/base/text.h"
 #include "pliant/pipeline/surface_run.h"
 
@@ -43,10 +44,8 @@ int SurfaceCommand(std::span<const std::string> args) {
   line.Add("output_path", &request.output_path, "DIR", "folder to write, made if need be", Need::kRequired);
   line.Add("sequence", &request.sequence_path, "PATH", "the run's images; without it those that its run.json names",
            Need::kOptional);
-  line.Add("camera", &request.camera_path, "FILE", "their calibration; without it the one that belongs to them",
-           Need::kOptional);
-  line.Add("mask_path", &request.mask_path, "PATH",
-           "folder of masks, or one image for all frames (0 = ignore); without it the run's", Need::kOptional);
+  AddCameraOfRun(&line, &request.camera_path);
+  AddMasksOfRun(&line, &request.mask_path);
   line.Add("frames", &frames, "FRAMES", "their numbers, with commas; 10-20 are all from 10 to 20; without it all",
            Need::kOptional);
   line.AddFlag("quiet", &quiet, "say nothing but errors");

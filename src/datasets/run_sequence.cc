@@ -6,6 +6,8 @@
 #include <system_error>
 #include <utility>
 
+#include "datasets/image_file.h"
+#include "pliant/base/files.h"
 #include "pliant/base/text.h"
 #include "pliant/io/run_summary.h"
 
@@ -22,8 +24,6 @@ Result<RunMap> MapFromSequence(const SequenceRequest& request, const Run& run) {
     if (auto name = (*sequence)->Name(frame.frame_idx)) known.names.emplace(frame.frame_idx, *std::move(name));
   return known;
 }
-
-std::string SizeOf(int width, int height) { return std::to_string(width) + "x" + std::to_string(height); }
 
 Status NotOfRun(const std::string& what) {
   return {ErrorCode::kMismatch, what + "; are the images those that were tracked? Name them with --sequence"};
@@ -60,6 +60,16 @@ Result<RunMap> KnownMapOfRun(const std::string& run_path, const SequenceRequest&
                                           "from; name its sequence with --sequence");
 }
 
+Result<std::unique_ptr<Sequence>> OpenImagesOfRun(const std::string& run_path, const SequenceRequest& request) {
+  if (request.image_path.empty())
+    return Status(ErrorCode::kNotFound,
+                  Quoted(run_path) + " does not say which images it is of; name them with --sequence");
+  if (!Exists(request.image_path.string()))
+    return Status(ErrorCode::kNotFound, "the images of the run are not at " + Quoted(request.image_path.string()) +
+                                            "; name them with --sequence");
+  return OpenSequence(request);
+}
+
 Result<SequenceFrame> NextFrameOfRun(const Camera& camera, int frame_idx, const std::string& name, Sequence* sequence) {
   const std::string frame_of_run = "frame " + std::to_string(frame_idx) + " of the run";
   while (true) {
@@ -70,8 +80,8 @@ Result<SequenceFrame> NextFrameOfRun(const Camera& camera, int frame_idx, const 
     if (frame.frame_idx < frame_idx) continue;
     if (frame.frame_idx > frame_idx) return NotOfRun("the images have no " + frame_of_run);
     if (frame.image.cols != camera.width() || frame.image.rows != camera.height())
-      return NotOfRun("image " + frame.name + " has " + SizeOf(frame.image.cols, frame.image.rows) +
-                      " pixels, and the run's camera has " + SizeOf(camera.width(), camera.height()));
+      return NotOfRun("image " + frame.name + " has " + SizeText(frame.image) + " pixels, and the run's camera has " +
+                      SizeText(camera.width(), camera.height()));
     if (!name.empty() && !frame.name.empty() && frame.name != name)
       return NotOfRun(frame_of_run + " is image " + name + ", and here it is " + frame.name);
     return std::move(frame);

@@ -11,6 +11,7 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "datasets/image_file.h"
 #include "pliant/base/files.h"
 #include "pliant/base/text.h"
 #include "pliant/datasets/run_sequence.h"
@@ -21,8 +22,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kSameParameter = 1e-6;  // px: files hold more digits
-
-std::string SizeOf(int width, int height) { return std::to_string(width) + "x" + std::to_string(height); }
 
 bool IsSameCamera(const Camera& a, const Camera& b) {
   return a.model_id() == b.model_id() && std::ranges::equal(a.params(), b.params(), [](double p, double q) {
@@ -42,13 +41,7 @@ bool IsSameRun(const std::string& a, const std::string& b) {
 }  // namespace
 
 Result<RunImages> RunImages::Open(const RunSource& source) {
-  if (source.images.image_path.empty())
-    return Status(ErrorCode::kNotFound,
-                  Quoted(source.run_path) + " does not say which images it is of; name them with --sequence");
-  if (!Exists(source.images.image_path.string()))
-    return Status(ErrorCode::kNotFound, "the images of the run are not at " +
-                                            Quoted(source.images.image_path.string()) + "; name them with --sequence");
-  auto sequence = OpenSequence(source.images);
+  auto sequence = OpenImagesOfRun(source.run_path, source.images);
   if (!sequence.ok()) return sequence.status();
   return RunImages(source, *std::move(sequence));
 }
@@ -77,8 +70,8 @@ Result<SurfaceFolder> ReadSurfaceOfRun(const std::string& path, const std::strin
     return mismatch("was made of the run " + Quoted(made_of) + ", not of " + Quoted(run_path));
   const Camera& camera = *known.camera;
   if (surface->camera.width() != camera.width() || surface->camera.height() != camera.height())
-    return mismatch("has images of " + SizeOf(surface->camera.width(), surface->camera.height()) +
-                    " pixels, and the run of " + SizeOf(camera.width(), camera.height()));
+    return mismatch("has images of " + SizeText(surface->camera.width(), surface->camera.height()) +
+                    " pixels, and the run of " + SizeText(camera.width(), camera.height()));
   if (!IsSameCamera(surface->camera, camera)) return mismatch("has another camera than the run");
   for (const SurfaceFolder::Frame& frame : surface->frames) {
     const auto name = known.names.find(frame.frame_idx);

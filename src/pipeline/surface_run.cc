@@ -182,9 +182,8 @@ Result<SurfaceSummary> MakeSurface(const SurfaceRequest& request, const SurfaceR
   if (source.mask_path.empty() && run->summary && !run->summary->description.mask.empty())
     return Status(ErrorCode::kNotFound, "the masks that the run was tracked with are not at " +
                                             Quoted(run->summary->description.mask) + "; name them with --mask_path");
-  if (source.image_path.empty())
-    return Status(ErrorCode::kNotFound,
-                  Quoted(request.run_path) + " does not say which images it is of; name them with --sequence");
+  auto sequence = OpenImagesOfRun(request.run_path, source);
+  if (!sequence.ok()) return sequence.status();
   const auto known = KnownMapOfRun(request.run_path, source, *run);
   if (!known.ok()) return known.status();
   const auto frames = ReadPosedFrames(request.run_path, *run);
@@ -192,8 +191,6 @@ Result<SurfaceSummary> MakeSurface(const SurfaceRequest& request, const SurfaceR
   const Plan plan = MakePlan(*frames, request, options);
   if (plan.references.empty())
     return Status(ErrorCode::kInsufficient, "none of the chosen frames was tracked in " + Quoted(request.run_path));
-  auto sequence = OpenSequence(source);
-  if (!sequence.ok()) return sequence.status();
   const auto estimator = MakeEstimator(*known->camera, *run, options);
   if (!estimator.ok()) return estimator.status();
   auto writer = SurfaceWriter::Create(request.output_path, *known->camera, LargestDepth(*frames));

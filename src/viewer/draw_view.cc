@@ -319,10 +319,6 @@ void DrawFrustum(const Rigid3& world_from_cam, const std::array<Eigen::Vector3d,
         {world_from_cam.translation, world_from_cam * corners[i], world_from_cam * corners[(i + 1) % corners.size()]});
 }
 
-}  // namespace
-
-namespace {
-
 // Why there is no pose to draw, if there is none; else empty.
 std::string WhyNoPose(const ViewedRun& run, int frame_idx) {
   const auto has_pose = [](const ViewedFrame& frame) { return frame.world_from_cam.has_value(); };

@@ -200,12 +200,18 @@ TEST(NerfstudioExport, DepthsAreInTheUnitOfThePosesAndFramesWithoutAreLeftOut) {
   }
 }
 
+// mask.png, in which a corner is not to be used.
+cv::Mat WriteMask(const TestFolder& folder) {
+  cv::Mat mask(480, 640, CV_8UC1, cv::Scalar(255));
+  mask(cv::Rect(0, 0, 100, 50)) = 0;
+  EXPECT_TRUE(WritePng(folder.Path("mask.png"), mask).ok());
+  return mask;
+}
+
 TEST(NerfstudioExport, MasksKeepWhatIsUsed) {
   const TestFolder folder;
   WriteNeuralRun(folder, TestCamera());
-  cv::Mat mask(480, 640, CV_8UC1, cv::Scalar(255));
-  mask(cv::Rect(0, 0, 100, 50)) = 0;
-  ASSERT_TRUE(WritePng(folder.Path("mask.png"), mask).ok());
+  const cv::Mat mask = WriteMask(folder);
   ExportRequest request;
   request.mask_path = folder.Path("mask.png");
   ASSERT_TRUE(Export(folder, "nerfstudio", request).ok());
@@ -310,9 +316,7 @@ TEST(EndoNerfExport, PixelsWithoutADepthAreUsedOnRequest) {
 TEST(EndoNerfExport, MasksAreWhiteWhereTheSequencesAreBlack) {
   const TestFolder folder;
   WriteNeuralRun(folder, TestCamera());
-  cv::Mat mask(480, 640, CV_8UC1, cv::Scalar(255));
-  mask(cv::Rect(0, 0, 100, 50)) = 0;
-  ASSERT_TRUE(WritePng(folder.Path("mask.png"), mask).ok());
+  const cv::Mat mask = WriteMask(folder);
   ExportRequest request;
   request.mask_path = folder.Path("mask.png");
   ASSERT_TRUE(Export(folder, "endonerf", request).ok());

@@ -11,92 +11,97 @@ import { LineMaterial } from "three/examples/jsm/lines/LineMaterial.js";
 import { LineSegments2 } from "three/examples/jsm/lines/LineSegments2.js";
 import { LineSegmentsGeometry } from "three/examples/jsm/lines/LineSegmentsGeometry.js";
 
-export class ThinLines extends LineSegments<BufferGeometry, LineBasicMaterial> {
-  private used = 0;
-  private array = new Float32Array(0);
+// The ends of segments, six numbers each, in an array that grows.
+class Segments {
+  used = 0;
+  array = new Float32Array(0);
 
-  constructor(opacity = 1) {
-    super(new BufferGeometry(), new LineBasicMaterial({ transparent: opacity < 1, opacity }));
-    this.frustumCulled = false;
-    this.reserve(1024);
-  }
-
-  begin(): void {
-    this.used = 0;
-  }
+  // `grown` is called with every new array.
+  constructor(private readonly grown: (array: Float32Array) => void) {}
 
   // From point i of `from` to point j of `to`.
-  addSegment(from: Float32Array, i: number, to: Float32Array, j: number): void {
+  add(from: Float32Array, i: number, to: Float32Array, j: number): void {
     if (this.used + 6 > this.array.length) this.reserve(this.array.length / 3);
-    const array = this.array;
-    array[this.used++] = from[3 * i];
-    array[this.used++] = from[3 * i + 1];
-    array[this.used++] = from[3 * i + 2];
-    array[this.used++] = to[3 * j];
-    array[this.used++] = to[3 * j + 1];
-    array[this.used++] = to[3 * j + 2];
-  }
-
-  end(): void {
-    const attribute = this.geometry.getAttribute("position") as BufferAttribute;
-    attribute.clearUpdateRanges();
-    attribute.addUpdateRange(0, this.used);
-    attribute.needsUpdate = true;
-    this.geometry.setDrawRange(0, this.used / 3);
-  }
-
-  private reserve(segments: number): void {
-    const array = new Float32Array(6 * segments);
-    array.set(this.array.subarray(0, this.used));
-    this.array = array;
-    this.geometry.dispose();
-    this.geometry = new BufferGeometry();
-    this.geometry.setAttribute("position", new BufferAttribute(array, 3).setUsage(DynamicDrawUsage));
-  }
-}
-
-export class ChangingWideLines extends LineSegments2 {
-  private used = 0;
-  private array = new Float32Array(0);
-
-  constructor(widthPx: number) {
-    super(new LineSegmentsGeometry(), new LineMaterial({ linewidth: widthPx }));
-    this.frustumCulled = false;
-    this.reserve(1024);
-  }
-
-  begin(): void {
-    this.used = 0;
-  }
-
-  // From point i of `from` to point j of `to`.
-  addSegment(from: Float32Array, i: number, to: Float32Array, j: number): void {
-    if (this.used + 6 > this.array.length) this.reserve(this.array.length / 3);
+    const { array, used } = this;
     for (let axis = 0; axis < 3; ++axis) {
-      this.array[this.used + axis] = from[3 * i + axis];
-      this.array[this.used + 3 + axis] = to[3 * j + axis];
+      array[used + axis] = from[3 * i + axis];
+      array[used + 3 + axis] = to[3 * j + axis];
     }
     this.used += 6;
   }
 
-  end(): void {
-    const { data } = this.geometry.getAttribute("instanceStart") as InterleavedBufferAttribute;
-    data.clearUpdateRanges();
-    data.addUpdateRange(0, this.used);
-    data.needsUpdate = true;
-    this.geometry.instanceCount = this.used / 6;
-    this.visible = this.used > 0;
-  }
-
-  private reserve(segments: number): void {
+  reserve(segments: number): void {
     const array = new Float32Array(6 * segments);
     array.set(this.array.subarray(0, this.used));
     this.array = array;
-    this.geometry.dispose();
-    this.geometry = new LineSegmentsGeometry();
-    const ends = new InstancedInterleavedBuffer(array, 6, 1).setUsage(DynamicDrawUsage);
-    this.geometry.setAttribute("instanceStart", new InterleavedBufferAttribute(ends, 3, 0));
-    this.geometry.setAttribute("instanceEnd", new InterleavedBufferAttribute(ends, 3, 3));
+    this.grown(array);
+  }
+}
+
+export class ThinLines extends LineSegments<BufferGeometry, LineBasicMaterial> {
+  private readonly segments: Segments;
+
+  constructor(opacity = 1) {
+    super(new BufferGeometry(), new LineBasicMaterial({ transparent: opacity < 1, opacity }));
+    this.frustumCulled = false;
+    this.segments = new Segments((array) => {
+      this.geometry.dispose();
+      this.geometry = new BufferGeometry();
+      this.geometry.setAttribute("position", new BufferAttribute(array, 3).setUsage(DynamicDrawUsage));
+    });
+    this.segments.reserve(1024);
+  }
+
+  begin(): void {
+    this.segments.used = 0;
+  }
+
+  addSegment(from: Float32Array, i: number, to: Float32Array, j: number): void {
+    this.segments.add(from, i, to, j);
+  }
+
+  end(): void {
+    const { used } = this.segments;
+    const attribute = this.geometry.getAttribute("position") as BufferAttribute;
+    attribute.clearUpdateRanges();
+    attribute.addUpdateRange(0, used);
+    attribute.needsUpdate = true;
+    this.geometry.setDrawRange(0, used / 3);
+  }
+}
+
+export class ChangingWideLines extends LineSegments2 {
+  private readonly segments: Segments;
+
+  constructor(widthPx: number) {
+    super(new LineSegmentsGeometry(), new LineMaterial({ linewidth: widthPx }));
+    this.frustumCulled = false;
+    this.segments = new Segments((array) => {
+      this.geometry.dispose();
+      this.geometry = new LineSegmentsGeometry();
+      const ends = new InstancedInterleavedBuffer(array, 6, 1).setUsage(DynamicDrawUsage);
+      this.geometry.setAttribute("instanceStart", new InterleavedBufferAttribute(ends, 3, 0));
+      this.geometry.setAttribute("instanceEnd", new InterleavedBufferAttribute(ends, 3, 3));
+    });
+    this.segments.reserve(1024);
+  }
+
+  begin(): void {
+    this.segments.used = 0;
+  }
+
+  addSegment(from: Float32Array, i: number, to: Float32Array, j: number): void {
+    this.segments.add(from, i, to, j);
+  }
+
+  end(): void {
+    const { used } = this.segments;
+    const { data } = this.geometry.getAttribute("instanceStart") as InterleavedBufferAttribute;
+    data.clearUpdateRanges();
+    data.addUpdateRange(0, used);
+    data.needsUpdate = true;
+    this.geometry.instanceCount = used / 6;
+    this.visible = used > 0;
   }
 }
 

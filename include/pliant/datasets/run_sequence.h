@@ -5,6 +5,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 
 #include "pliant/base/status.h"
@@ -26,6 +27,10 @@ SequenceRequest SequenceOfRun(const std::string& run_path, const std::filesystem
 // where there is none (a killed run), camera and names by its sequence. Fails as ReadRunMap and OpenSequence do, and
 // with kNotFound where neither is there.
 Result<RunMap> KnownMapOfRun(const std::string& run_path, const SequenceRequest& sequence, const Run& run);
+
+// The images of the run at `run_path`: what SequenceOfRun says. Fails with kNotFound where that names none, or they are
+// not there, and as OpenSequence does.
+Result<std::unique_ptr<Sequence>> OpenImagesOfRun(const std::string& run_path, const SequenceRequest& request);
 
 // Reads on to a frame of a run that has this camera, and calls the frame's image `name` (empty: not known). Fails as
 // Sequence, and with kMismatch where the images are not those of the run: they end before it, leave it out, have
