@@ -26,6 +26,7 @@ struct Scene {
   std::vector<Eigen::Vector3d> points;  // in the reference
   std::vector<Rigid3> poses;
   double amplitude_mm = 4;
+  double noise_px = kNoisePx;
 
   explicit Scene(int views = 13, double relief_mm = 15) {
     Random random(3);
@@ -58,7 +59,7 @@ struct Scene {
       start.times.push_back(Time(v));
       for (int i = 0; i < static_cast<int>(points.size()); ++i) {
         const Eigen::Vector3d x = poses[static_cast<std::size_t>(v)] * At(i, v);
-        const double noise = kNoisePx / kFocalPx * x.norm();
+        const double noise = noise_px / kFocalPx * x.norm();
         const Eigen::Vector3d seen = x + noise * Eigen::Vector3d(random.Normal(), random.Normal(), 0);
         DeformingObservation observation{v, i, seen.normalized()};
         if (light_sigma > 0) observation.log_light = std::log(x.norm()) + 1.7 + random.Normal(light_sigma);

@@ -19,6 +19,7 @@ namespace {
 
 constexpr int kIterationsFactor = 5;  // of a solution's iterations: the still camera starts far from its minimum
 constexpr double kMinError = 0.2;     // by the median one
+constexpr double kNoiseSigmas = 3.0;  // what noise alone may leave, in standard deviations of its correlation
 
 // The camera's translation as three uniform basis shapes, one an axis of the world.
 void GiveTranslationToScene(DeformingWindow* window, SurfaceNodes* nodes) {
@@ -61,6 +62,13 @@ std::vector<double> ErrorsIn(const DeformingWindow& window, const std::vector<in
   return errors;
 }
 
+// The ratio of the errors that neighbors share, where the moving camera leaves noise alone; else 0.
+double SharedErrorRatio(const NeighborErrors& moving, const NeighborErrors& still) {
+  if (moving.Correlation() > kMaxNoiseCorrelation || still.Correlation() <= kMaxNoiseCorrelation) return 0.0;
+  const double noise = kNoiseSigmas * moving.correlation_sigma * moving.all;
+  return std::sqrt((still.shared + noise) / (std::max(moving.shared, 0.0) + noise));
+}
+
 }  // namespace
 
 Result<CameraMotionModels> SolveCameraMotionModels(const DeformingSolution& solution, double focal_px,
@@ -87,7 +95,8 @@ Result<CameraMotionModels> SolveCameraMotionModels(const DeformingSolution& solu
   return CameraMotionModels{sample, std::move(*moving), std::move(*still)};
 }
 
-double StillCameraErrorRatio(const CameraMotionModels& models, const std::vector<int>& view_idxs) {
+double StillCameraErrorRatio(const CameraMotionModels& models, const std::vector<int>& view_idxs,
+                             double min_angle_rad) {
   const std::vector<double> moving = ErrorsIn(models.moving, view_idxs);
   const std::vector<double> still = ErrorsIn(models.still, view_idxs);
   if (moving.empty()) return 1.0;
@@ -95,7 +104,9 @@ double StillCameraErrorRatio(const CameraMotionModels& models, const std::vector
   double sum = 0;
   for (std::size_t k = 0; k < moving.size(); ++k)
     sum += std::log(std::hypot(still[k], least) / std::hypot(moving[k], least));
-  return std::exp(sum / static_cast<double>(moving.size()));
+  return std::max(std::exp(sum / static_cast<double>(moving.size())),
+                  SharedErrorRatio(ErrorsOfNeighbors(models.moving, view_idxs, min_angle_rad),
+                                   ErrorsOfNeighbors(models.still, view_idxs, min_angle_rad)));
 }
 
 }  // namespace pliant

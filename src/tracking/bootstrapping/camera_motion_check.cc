@@ -61,7 +61,8 @@ Status CheckCameraMotion(const InitInput& input, const SolvedWindow& window, con
     if (!all.ok()) return all.status();
     *model = std::move(*all);
   }
-  const double ratio = StillCameraErrorRatio(*models, ComparedFrames(input.frames.size(), window.views));
+  const double ratio = StillCameraErrorRatio(*models, ComparedFrames(input.frames.size(), window.views),
+                                             options.window.patch_px / focal_px);
   outcome->measured.still_camera_error_ratio = ratio;
   outcome->ambiguous = ratio < options.min_still_camera_ratio;
   if (!outcome->ambiguous) return Status::Ok();

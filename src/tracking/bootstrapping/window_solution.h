@@ -14,9 +14,6 @@
 
 namespace pliant {
 
-// Largest residual_correlation (W11) of a window that leaves noise alone unexplained.
-inline constexpr double kMaxNoiseCorrelation = 0.1;
-
 struct SolvedWindow {
   std::vector<std::size_t> views;
   std::vector<PointId> ids;

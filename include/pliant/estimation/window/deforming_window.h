@@ -145,8 +145,26 @@ Result<DeformingSolution> OptimizeDeformingPoints(const DeformingSolution& solut
 // point that no other view sees.
 std::vector<double> PointErrorsPx(const DeformingWindow& window, double focal_px);
 
-// Correlation of the errors of points that are neighbors in the reference, over all views, from -1 to 1. Neighbors are
-// the nearest at an angle of at least `min_angle_rad`: the tracks of patches that overlap err alike.
+// Errors of points that are neighbors in the reference, as chords of unit rays: those of noise differ, those of a wrong
+// model are alike.
+struct NeighborErrors {
+  double shared = 0;  // mean of e_i . e_j, without unit; noise alone: about 0, of either sign
+  double all = 0;     // mean of (|e_i|^2 + |e_j|^2) / 2
+  // Standard deviation of the correlation of noise: by the pairs of one view, as a point's errors last over views.
+  double correlation_sigma = 0;
+  // From -1 to 1 (W11); 0 where there are no errors.
+  double Correlation() const { return all > 0.0 ? shared / all : 0.0; }
+};
+
+// Largest correlation of a window that leaves noise alone unexplained.
+inline constexpr double kMaxNoiseCorrelation = 0.1;
+
+// Over the views in `view_idxs`. Neighbors are the nearest at an angle of at least `min_angle_rad`: the tracks of
+// patches that overlap err alike. Errors above four times the median one count as that large.
+NeighborErrors ErrorsOfNeighbors(const DeformingWindow& window, const std::vector<int>& view_idxs,
+                                 double min_angle_rad);
+
+// Their correlation over all views (W11).
 double ResidualCorrelation(const DeformingWindow& window, double min_angle_rad);
 
 }  // namespace pliant
