@@ -10,6 +10,7 @@ import grid
 # Heading, where it is in evaluation.json, digits, factor.
 FIGURES = [("points: RMSE, mm", ("surface", "estimate", "mean_rmse_mm"), 2, 1),
            ("known, %", ("dense", "known_share"), 0, 100),
+           ("of textured, %", ("dense", "textured", "known_share"), 0, 100),
            ("RMSE, mm", ("dense", "estimate", "rmse_mm"), 2, 1),
            ("AbsRel, %", ("dense", "estimate", "abs_rel"), 2, 100),
            ("more certain half: RMSE, mm", ("dense", "certain_half", "rmse_mm"), 2, 1),
@@ -23,9 +24,15 @@ FIGURES = [("points: RMSE, mm", ("surface", "estimate", "mean_rmse_mm"), 2, 1),
 
 
 def at(evaluation, path):
+    """None where the evaluation has not this figure."""
     for key in path:
-        evaluation = evaluation[key]
+        evaluation = (evaluation or {}).get(key)
     return evaluation
+
+
+def median(values):
+    known = [value for value in values if value is not None]
+    return statistics.median(known) if known else None
 
 
 def row_of(run):
@@ -53,7 +60,8 @@ def write(runs, markdown_path, csv_path):
     for key, members in cells.items():
         line = list(key) + [f"{len(members)} of {len(runs.seeds)}"]
         for _, path, digits, factor in FIGURES:
-            line.append(grid.number(factor * statistics.median(row[".".join(path)] for row in members), digits))
+            value = median(row[".".join(path)] for row in members)
+            line.append(grid.number(None if value is None else factor * value, digits))
         body.append(line + [grid.number(statistics.median(row["seconds_a_frame"] for row in members), 1)])
     header = ["set", "A, mm", "omega, rad/s", "run", "seeds"] + [heading for heading, _, _, _ in FIGURES]
     pathlib.Path(markdown_path).write_text(grid.markdown(header + ["seconds a frame"], body), encoding="utf-8")

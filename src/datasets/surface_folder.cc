@@ -23,7 +23,7 @@ Result<SurfaceFolder> ReadSurfaceFolder(const std::filesystem::path& path) {
   if (!camera.ok()) return camera.status();
   const auto text = ReadFile(summary);
   if (!text.ok()) return text.status();
-  SurfaceFolder folder{path, {}, camera->camera, camera->depth_scale.value_or(1.0), {}};
+  SurfaceFolder folder{path, {}, camera->camera, camera->depth_scale.value_or(1.0), {}, {}};
   try {
     const auto json = nlohmann::json::parse(*text);
     if (json.at("status") == "interrupted" && !json.contains("frames"))
@@ -32,7 +32,13 @@ Result<SurfaceFolder> ReadSurfaceFolder(const std::filesystem::path& path) {
     folder.run = json.value("run", "");
     for (const auto& frame : json.at("frames"))
       if (frame.at("note").get<std::string>().empty())
-        folder.frames.push_back({frame.at("frame").get<int>(), frame.at("name").get<std::string>()});
+        folder.frames.push_back({frame.at("frame").get<int>(), frame.at("name").get<std::string>(),
+                                 frame.value("neighbors", std::vector<int>()), frame.value("pair", false)});
+    if (json.contains("windows")) {
+      const auto& windows = json.at("windows");
+      folder.windows = {windows.at("image_width").get<int>(), windows.at("side").get<int>(),
+                        windows.at("smoothing_px").get<double>(), windows.at("noise_levels").get<double>()};
+    }
   } catch (const nlohmann::json::exception& error) {
     return Status(ErrorCode::kUnreadable, Quoted(summary) + " is not a surface's: " + error.what());
   }

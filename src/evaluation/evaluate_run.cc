@@ -6,6 +6,8 @@
 #include <system_error>
 #include <utility>
 
+#include "pliant/evaluation/dense_completeness.h"
+
 namespace pliant {
 namespace {
 
@@ -60,6 +62,17 @@ Status AddDense(const EvaluationInput& run, const RunReferences& references, con
   auto dense = ComputeDenseError(*surface, run, *references.truth->sequence, options.points.scale);
   if (!dense.ok()) return dense.status();
   evaluation->dense = *std::move(dense);
+  // The images are read once more, from their beginning.
+  const auto images = OpenSequence(references.truth->request);
+  if (!images.ok()) return images.status();
+  Result<std::unique_ptr<MaterialTruth>> opened = Status(ErrorCode::kNotFound, "there is one already");
+  if (!references.truth->material.ok()) opened = OpenMaterialTruth(references.truth->request.image_path.string());
+  MaterialTruth* material = references.truth->material.ok() ? references.truth->material->get()
+                            : opened.ok()                   ? opened->get()
+                                                            : nullptr;
+  const auto textured = ComputeDenseCompleteness(*surface, images->get(), material, {});
+  if (!textured.ok()) return textured.status();
+  evaluation->dense->textured = *textured;
   return Status::Ok();
 }
 

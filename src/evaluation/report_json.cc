@@ -90,21 +90,23 @@ Json ToJson(const DepthFigures& f) {
 }
 
 Json ToJson(const DenseError& e) {
-  return {{"frames_compared", e.frames},
-          {"known_share", e.known_share},
-          {"complete_1_mm", e.complete_mm[0]},
-          {"complete_2_mm", e.complete_mm[1]},
-          {"complete_5_mm", e.complete_mm[2]},
-          {"within_1_sigma", e.within_1_sigma},
-          {"within_2_sigma", e.within_2_sigma},
-          {"estimate", ToJson(e.estimate)},
-          {"certain_half", ToJson(e.certain_half)},
-          {"interpolation", ToJson(e.interpolation)},
-          {"mesh", ToJson(e.mesh)},
-          {"mesh_alone", ToJson(e.mesh_alone)},
-          {"mesh_vertices", e.mesh_vertices},
-          {"mesh_alone_share", e.mesh_alone_share},
-          {"null", ToJson(e.null)}};
+  Json json = {{"frames_compared", e.frames},
+               {"known_share", e.known_share},
+               {"complete_1_mm", e.complete_mm[0]},
+               {"complete_2_mm", e.complete_mm[1]},
+               {"complete_5_mm", e.complete_mm[2]},
+               {"within_1_sigma", e.within_1_sigma},
+               {"within_2_sigma", e.within_2_sigma},
+               {"estimate", ToJson(e.estimate)},
+               {"certain_half", ToJson(e.certain_half)},
+               {"interpolation", ToJson(e.interpolation)},
+               {"mesh", ToJson(e.mesh)},
+               {"mesh_alone", ToJson(e.mesh_alone)},
+               {"mesh_vertices", e.mesh_vertices},
+               {"mesh_alone_share", e.mesh_alone_share},
+               {"null", ToJson(e.null)}};
+  if (e.textured) json["textured"] = {{"share", e.textured->share}, {"known_share", e.textured->known_share}};
+  return json;
 }
 
 Json ToJson(const DriftFigures& d) {

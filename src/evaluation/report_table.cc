@@ -62,6 +62,9 @@ std::string DenseRow(const char* what, const DepthFigures& f) {
 std::string DenseTable(const DenseError& e) {
   return FormatText("dense depth (%d frames; %.1f %% of the pixels with a true depth are known)\n", e.frames,
                     100 * e.known_share) +
+         (e.textured ? FormatText("  of the %.1f %% that have texture and are seen in other images: %.1f %%\n",
+                                  100 * e.textured->share, 100 * e.textured->known_share)
+                     : "") +
          FormatText("  %-26s %8s %8s %8s %8s %7s %7s %7s\n", "", "AbsRel", "SqRel", "RMSE", "log", "<1 mm", "<2",
                     "<5 %") +
          DenseRow("surface", e.estimate) + DenseRow("  its more certain half", e.certain_half) +

@@ -196,7 +196,7 @@ Result<SurfaceSummary> MakeSurface(const SurfaceRequest& request, const SurfaceR
   auto writer = SurfaceWriter::Create(request.output_path, *known->camera, LargestDepth(*frames));
   if (!writer.ok()) return writer.status();
   RunViews images(*std::move(sequence), *frames, *known, options.masks, options.pairs ? ThreadsOf(options) : 0);
-  SurfaceSummary summary;
+  SurfaceSummary summary{estimator->windows(), {}};
   const Status made =
       SurfaceMaker(request, callback, *estimator, &*writer).Make(*frames, plan, *known, &images, &summary);
   std::ranges::sort(summary.frames, {}, &SurfaceFrame::frame_idx);

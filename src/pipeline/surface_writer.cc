@@ -82,6 +82,11 @@ Status SurfaceWriter::Finish(const SurfaceRequest& request, const SurfaceRunOpti
                {"status", summary.stopped ? "interrupted" : "completed"},
                {"run", fs::absolute(request.run_path).lexically_normal().string()},
                {"depth_scale", depth_scale_},
+               {"windows",
+                {{"image_width", summary.windows.width_px},
+                 {"side", summary.windows.window_px},
+                 {"smoothing_px", summary.windows.smoothing_px},
+                 {"noise_levels", summary.windows.noise_levels}}},
                {"frames", Json::array()}};
   for (const SurfaceFrame& frame : summary.frames)
     json["frames"].push_back({{"frame", frame.frame_idx},

@@ -215,4 +215,9 @@ Result<DenseDepth> DenseDepthEstimator::Estimate(const SurfaceView& reference,
   return state_->FineDepth(*scene, state_->CoarseInverseDistances(*scene));
 }
 
+ComparedWindows DenseDepthEstimator::windows() const {
+  const Comparison& how = state_->fine_comparison;
+  return {state_->fine.camera.width(), how.window_px, how.smoothing_px, std::sqrt(how.noise_variance)};
+}
+
 }  // namespace pliant

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@
 
 #include "pliant/base/status.h"
 #include "pliant/camera/camera.h"
+#include "pliant/image/texture.h"
 
 namespace pliant {
 
@@ -26,14 +28,17 @@ inline constexpr double kConfidenceUnit = 1.0 / 65535.0;  // of a standard devia
 struct SurfaceFolder {
   struct Frame {
     int frame_idx = 0;
-    std::string file_name;  // in depth/ and confidence/
+    std::string file_name;       // in depth/ and confidence/
+    std::vector<int> neighbors;  // frames that it was compared with
+    bool has_pair = false;       // it was compared with its right image instead
   };
 
   std::filesystem::path path;
   std::filesystem::path run;  // that it was made of, absolute; empty: it does not say
   Camera camera;
-  double depth_scale = 1;     // map units
-  std::vector<Frame> frames;  // that have a depth
+  double depth_scale = 1;                  // map units
+  std::vector<Frame> frames;               // that have a depth
+  std::optional<ComparedWindows> windows;  // nothing: it does not say
 };
 
 struct SurfaceDepth {

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 
 #include "pliant/base/status.h"
 #include "pliant/datasets/sequence.h"
@@ -26,6 +27,12 @@ struct DepthFigures {
 };
 inline constexpr std::array kDepthBoundsMm = {1.0, 2.0, 5.0};
 
+// Of the pixels where a depth can be expected (ComputeDenseCompleteness).
+struct DenseCompleteness {
+  double share = 0;        // such pixels, of those with a true depth
+  double known_share = 0;  // of such pixels, that have a depth
+};
+
 struct DenseError {
   int frames = 0;
   double known_share = 0;                  // of the pixels with a true depth
@@ -41,6 +48,7 @@ struct DenseError {
   double mesh_alone_share = 0;
   double within_1_sigma = 0;  // shares of the pixels of `estimate`
   double within_2_sigma = 0;
+  std::optional<DenseCompleteness> textured;  // nothing: it is not known what other images see
 };
 
 // `scale`: of each frame the median of y / x, one for all frames (the median of these), or none. `run` is the one that

@@ -13,6 +13,7 @@
 #include "pliant/base/options.h"
 #include "pliant/base/status.h"
 #include "pliant/image/masks.h"
+#include "pliant/image/texture.h"
 #include "pliant/surface/dense_depth.h"
 
 namespace pliant {
@@ -57,6 +58,7 @@ struct SurfaceFrame {
 };
 
 struct SurfaceSummary {
+  ComparedWindows windows;
   std::vector<SurfaceFrame> frames;
   bool stopped = false;
 };

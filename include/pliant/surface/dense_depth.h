@@ -17,6 +17,7 @@
 #include "pliant/base/status.h"
 #include "pliant/camera/camera.h"
 #include "pliant/geometry/rigid3.h"
+#include "pliant/image/texture.h"
 #include "pliant/image/working_image.h"
 #include "pliant/scene/frame_report.h"
 
@@ -65,6 +66,9 @@ class DenseDepthEstimator {
   // Of `reference`, by `neighbors`. The same input gives the same answer on any number of threads. Fails with
   // kInsufficient where there are no neighbors, or fewer than 12 points in common with each of them.
   Result<DenseDepth> Estimate(const SurfaceView& reference, std::span<const SurfaceView> neighbors) const;
+
+  // By which windows images are compared in the end.
+  ComparedWindows windows() const;
 
  private:
   struct State;
