@@ -34,11 +34,10 @@ Result<CameraMotionModels> SolveCameraMotionModels(const DeformingSolution& solu
 
 // How many times larger the reprojection errors of the camera that stands still are: the geometric mean over the
 // observations of the views in `view_idxs`, which both windows have in the same order. Errors below a fifth of the
-// median one count as that large. Where the moving camera leaves noise alone and the other one does not (neighbors at
-// `min_angle_rad` or more err alike, kMaxNoiseCorrelation), noise hides the difference: then the ratio of what
-// neighbors share, if that is larger; three
-// standard deviations of what noise alone shares count as left. About 1: camera and scene cannot be
-// told apart. 1 where there is no observation.
+// median one count as that large. Noise hides the difference: where the moving camera leaves noise alone and the other
+// one does not, it is the ratio of what neighbors at `min_angle_rad` or more share (ErrorsOfNeighbors), if that is
+// larger; three standard deviations of what noise shares by chance are added to both. About 1: camera and scene cannot
+// be told apart. 1 where there is no observation.
 double StillCameraErrorRatio(const CameraMotionModels& models, const std::vector<int>& view_idxs, double min_angle_rad);
 
 }  // namespace pliant
