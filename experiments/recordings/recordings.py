@@ -5,9 +5,9 @@
 
     recordings.py --program build/release/pliant --output_path RUNS [--recordings DIR] [--only NAME,...]
 
-Runs that are there already are kept. Prints two tables: the runs, and how far runs of one recording that were begun at
-other frames, at a lower frame rate, with half of the corners, another seed or another focal length, agree. The figures
-are those of pliant evaluate.
+Runs that are there already are kept. Prints three tables: the runs; how far runs of one recording that were begun at
+other frames, at a lower frame rate, with half of the corners, another seed or another focal length, agree; and the same
+of the runs begun at other frames after pliant refine. The figures are those of pliant evaluate.
 """
 import argparse
 import csv
@@ -70,8 +70,29 @@ def variants(name, images, step, folder):
         yield f"focal length {percent:+d} %", f"--camera {path}"
 
 
-def percent(value):
-    return "" if value is None else f"{100 * value:.1f} %"
+def percent(value, digits=1):
+    return "" if value is None else f"{100 * value:.{digits}f} %"
+
+
+def refined(program, run):
+    """The folder of the run after pliant refine with default options; none where it cannot be refined."""
+    folder = run.with_name(f"{run.name}_refined")
+    if not (folder / "run.json").exists():
+        command = [program, "refine", "--quiet", "--run", run, "--output_path", folder]
+        if subprocess.run([str(part) for part in command], check=False, stderr=subprocess.DEVNULL).returncode != 0:
+            return None
+    return folder
+
+
+def judgment(program, run, first, images, evaluations):
+    """Depth error and ATE of a run against the truth, and how far its depths are from those of another run."""
+    judged, agreed = {}, None
+    if run and (images.parent / "groundtruth.txt").exists():
+        judged = evaluated(program, run, evaluations / run.name, "--sequence", images.parent)
+    if run and first and run != first:
+        compared = evaluated(program, first, evaluations / f"{run.name}_compared", "--other_run", run)
+        agreed = depths(next(iter(compared.get("consistency", [])), None))
+    return depths(judged.get("sfm")), path_error(judged), agreed
 
 
 def main():
@@ -82,13 +103,13 @@ def main():
     parser.add_argument("--only", default="")
     arguments = parser.parse_args()
     arguments.output_path.mkdir(parents=True, exist_ok=True)
-    rows, agreements = [], []
+    rows, agreements, refinements = [], [], []
     evaluations = arguments.output_path / "evaluations"
     for name, (images, options) in CLIPS.items():
         images = arguments.recordings / images
         if not images.exists() or (arguments.only and name not in arguments.only.split(",")):
             continue
-        first = None
+        first = first_after = None
         for variant, change in variants(name, images, STEPS[name], arguments.output_path):
             folder = arguments.output_path / f"{name}_{variant.replace(' ', '_')}"
             if not (folder / "run.json").exists():
@@ -102,10 +123,10 @@ def main():
             points = [int(row["optimized"]) for row in tracked]
             summary = json.loads((folder / "run.json").read_text())
             working, first_map = summary["working_image"], summary["first_map"]
-            judged = {}
-            if tracked and (images.parent / "groundtruth.txt").exists():
-                judged = evaluated(arguments.program, folder, evaluations / folder.name, "--sequence", images.parent)
-            error = depths(judged.get("sfm"))
+            run = folder if tracked else None
+            if variant == AS_IT_IS:
+                first, first_after = run, None
+            error, ate, agreed = judgment(arguments.program, run, first, images, evaluations)
             rows.append([name, variant, f"{len(tracked)} of {len(frames)}", str(provisional),
                          tracked[0]["frame"] if tracked else "", str(len({row["submap"] for row in tracked})),
                          f"{statistics.median(points):.0f}" if points else "",
@@ -114,18 +135,24 @@ def main():
                          f"{working['track_noise_px']:.2f} px",
                          f"{first_map['model']}, {percent(first_map['depth_sigma'])} of "
                          f"{percent(first_map['depth_spread'])}" if first_map else "",
-                         percent(error and error[0]), percent(error and error[1]), percent(path_error(judged))])
-            if first and tracked:
-                compared = evaluated(arguments.program, first, evaluations / f"{folder.name}_compared", "--other_run",
-                                     folder)
-                if agreed := depths(next(iter(compared.get("consistency", [])), None)):
-                    agreements.append([name, variant, str(agreed[2]), percent(agreed[0]), percent(agreed[1])])
+                         percent(error and error[0]), percent(error and error[1]), percent(ate)])
+            if agreed:
+                agreements.append([name, variant, str(agreed[2]), percent(agreed[0]), percent(agreed[1])])
+            if not run or not (variant == AS_IT_IS or variant.startswith("begun at")):
+                continue
+            after = refined(arguments.program, run)
             if variant == AS_IT_IS:
-                first = folder if tracked else None
+                first_after = after
+            error_after, ate_after, agreed_after = judgment(arguments.program, after, first_after, images, evaluations)
+            values = (error and error[0], error_after and error_after[0], ate, ate_after, agreed and agreed[0],
+                      agreed_after and agreed_after[0])
+            refinements.append([name, variant, *(percent(value, 2) for value in values)])
     for head, body in ((["recording", "variant", "frames with a map", "provisional", "first", "submaps", "points",
                          "coverage", "scale, smoothing, patch", "track noise", "first map: sigma of spread", "depth error",
                          "null", "ATE"], rows),
-                       (["recording", "compared with", "frames", "depths differ", "spread of the depths"], agreements)):
+                       (["recording", "compared with", "frames", "depths differ", "spread of the depths"], agreements),
+                       (["recording", "variant", "depth error", "refined", "ATE", "refined", "depths differ",
+                         "refined"], refinements)):
         print("\n| " + " | ".join(head) + " |\n|" + " --- |" * len(head))
         for row in body:
             print("| " + " | ".join(row) + " |")
