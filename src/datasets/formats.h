@@ -22,6 +22,9 @@ struct DataSetFormat {
   std::string (*lacks)(const std::filesystem::path& path) = nullptr;
 };
 
+// The images of `request.given`. Fails with kMismatch where their times are not as many.
+Result<DataSet> OpenGivenImages(const SequenceRequest& request);
+
 // In the order in which they are asked; the last two, a folder of images and a video, take what no other does.
 std::span<const DataSetFormat> DataSetFormats();
 

@@ -25,10 +25,14 @@ Result<const DataSetFormat*> FormatAt(const std::filesystem::path& path) {
 }
 
 Result<std::unique_ptr<Sequence>> OpenWithCamera(const SequenceRequest& request) {
-  const auto format = FormatAt(request.image_path);
-  if (!format.ok()) return format.status();
+  const DataSetFormat* format = nullptr;
+  if (!request.given) {
+    const auto found = FormatAt(request.image_path);
+    if (!found.ok()) return found.status();
+    format = *found;
+  }
   if (const Result<FrameRange> range = FrameRange::From(request); !range.ok()) return range.status();
-  Result<DataSet> data_set = (*format)->open(request);
+  Result<DataSet> data_set = format == nullptr ? OpenGivenImages(request) : format->open(request);
   if (!data_set.ok()) return data_set.status();
   return ReadDataSet(*std::move(data_set), request);
 }

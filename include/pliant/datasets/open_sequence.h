@@ -17,6 +17,7 @@
 #include <string_view>
 
 #include "pliant/base/status.h"
+#include "pliant/datasets/given_images.h"
 #include "pliant/datasets/sequence.h"
 
 namespace pliant {
@@ -31,6 +32,8 @@ struct SequenceRequest {
   int start = 0;                         // first frame, by its number in the source
   int end = -1;                          // one past the last frame; -1: to the end
   int stride = 1;                        // every stride-th frame from `start` on
+  // Instead of what lies at image_path, which is empty then, and of a calibration; null: none.
+  std::shared_ptr<const GivenImages> given = nullptr;
 };
 
 // Opens the source and checks all that can be seen without decoding every frame: the calibration, the first image's

@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Images that the program has already, in memory or from a camera, as a sequence: SequenceRequest::given.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include <opencv2/core/mat.hpp>
+
+#include "pliant/base/status.h"
+#include "pliant/camera/camera.h"
+#include "pliant/camera/photometric_calibration.h"
+
+namespace pliant {
+
+class ImageSource {
+ public:
+  virtual ~ImageSource() = default;
+
+  // How many images there are; 0: that is not known before the last one was read.
+  virtual int count() const = 0;
+  // Image `idx` from 0, 8-bit with one or three (BGR) channels, which is not written to any more; nothing beyond the
+  // end. Images are asked for in any order, more than once (tracking goes back), and by several threads at a time.
+  // Fails with kUnreadable.
+  virtual Result<std::optional<cv::Mat>> Read(int idx) = 0;
+};
+
+struct GivenImages {
+  Camera camera;                                                     // of all images
+  std::optional<PhotometricCalibration> photometric = std::nullopt;  // of the camera, where it is known
+  double fps = 30.0;                                                 // where there are no times
+  std::vector<double> timestamps_s = {};                             // one an image; empty: number / fps
+  std::shared_ptr<ImageSource> images;
+};
+
+}  // namespace pliant
