@@ -1,0 +1,107 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/pipeline/image_tracker.h"
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "pliant/datasets/given_images.h"
+#include "support/rendered_sequence.h"
+#include "support/temporary_folder.h"
+
+namespace pliant {
+namespace {
+
+using testing::HasSubstr;
+
+class RenderedImages final : public ImageSource {
+ public:
+  int count() const override { return static_cast<int>(Rendered().frames.size()); }
+  Result<std::optional<cv::Mat>> Read(int idx) override {
+    return idx < count() ? std::optional(Rendered().frames[static_cast<std::size_t>(idx)].image) : std::nullopt;
+  }
+};
+
+class KeepReports final : public TrackObserver {
+ public:
+  void OnStart(int /*frames*/) override {}
+  void OnFrame(const FrameReport& report) override { reports.push_back(report); }
+  std::vector<FrameReport> reports;
+};
+
+TrackOptions FixedImages() {
+  TrackOptions options;
+  options.image.working = WorkingImageMode::kFixed;
+  options.max_frames_back = 0;
+  return options;
+}
+
+TEST(ImageTracker, ReportsWhatARunOfTheSameImagesReports) {
+  const TemporaryFolder folder("image_tracker");
+  RunRequest request;
+  request.input.given = std::make_shared<GivenImages>(
+      GivenImages{.camera = Rendered().camera, .images = std::make_shared<RenderedImages>()});
+  request.output_path = folder.Path("run");
+  TrackOptions options = FixedImages();
+  options.image.smoothing_px = 0.7;
+  KeepReports run;
+  const auto summary = RunTrack(request, options, std::array<TrackObserver*, 1>{&run});
+  ASSERT_TRUE(summary.ok()) << summary.status().message();
+
+  auto tracker = ImageTracker::Create(Rendered().camera, std::nullopt, options);
+  ASSERT_TRUE(tracker.ok()) << tracker.status().message();
+  std::vector<FrameReport> reports;
+  RenderedSequence sequence;
+  while (auto frame = *sequence.Next()) {
+    auto done = tracker->Process(*frame);
+    ASSERT_TRUE(done.ok());
+    for (FrameReport& report : *done) reports.push_back(std::move(report));
+  }
+  for (FrameReport& report : tracker->Finish()) reports.push_back(std::move(report));
+
+  ASSERT_EQ(reports.size(), run.reports.size());
+  std::size_t observations = 0;
+  for (std::size_t k = 0; k < reports.size(); ++k) {
+    EXPECT_EQ(reports[k].frame_idx, static_cast<int>(k));
+    EXPECT_EQ(reports[k].state, run.reports[k].state);
+    EXPECT_EQ(reports[k].note, run.reports[k].note);
+    ASSERT_EQ(reports[k].observations.size(), run.reports[k].observations.size());
+    observations += reports[k].observations.size();
+    for (std::size_t i = 0; i < reports[k].observations.size(); ++i) {
+      EXPECT_EQ(reports[k].observations[i].pixel, run.reports[k].observations[i].pixel);
+      EXPECT_EQ(reports[k].observations[i].position, run.reports[k].observations[i].position);
+    }
+  }
+  EXPECT_GT(observations, 0U);
+}
+
+TEST(ImageTracker, RefusesOptionsThatNeedMoreThanImages) {
+  for (const InitMethod method : {InitMethod::kDepth, InitMethod::kStereo, InitMethod::kColmapModel}) {
+    TrackOptions options = FixedImages();
+    options.tracker.init.method = method;
+    EXPECT_EQ(ImageTracker::Create(Rendered().camera, std::nullopt, options).status().code(),
+              ErrorCode::kInvalidArgument);
+  }
+}
+
+TEST(ImageTracker, PassesOverAnImageOfAnotherSize) {
+  auto tracker = ImageTracker::Create(Rendered().camera, std::nullopt, FixedImages());
+  ASSERT_TRUE(tracker.ok());
+  SequenceFrame frame;
+  frame.name = "small.png";
+  frame.image = cv::Mat::zeros(12, 16, CV_8UC1);
+  const Status status = tracker->Process(frame).status();
+  EXPECT_EQ(status.code(), ErrorCode::kMismatch);
+  EXPECT_THAT(status.message(), HasSubstr("image small.png has 16x12 pixels, and the camera 320x240"));
+  EXPECT_TRUE(tracker->Finish().empty());
+}
+
+}  // namespace
+}  // namespace pliant
