@@ -10,6 +10,7 @@
 #include "cli/commands.h"
 #include "cli/run_evaluation.h"
 #include "pliant/datasets/run_sequence.h"
+#include "pliant/evaluation/evaluate_run.h"
 #include "pliant/evaluation/report.h"
 
 namespace pliant::cli {
@@ -82,8 +83,7 @@ Status WriteAll(const std::vector<std::optional<Evaluation>>& evaluations, const
     if (evaluations[i])
       if (Status status = WriteEvaluation(*evaluations[i], folder + "/" + std::to_string(i)); !status.ok())
         return status;
-  if (Status status = WriteReport(folder, "comparison.json", ComparisonJson(good)); !status.ok()) return status;
-  return WriteReport(folder, "comparison.csv", ComparisonCsv(good));
+  return WriteComparison(good, folder);
 }
 
 }  // namespace

@@ -11,6 +11,8 @@
 #include "cli/run_evaluation.h"
 #include "cli/track_progress.h"
 #include "pliant/base/text.h"
+#include "pliant/evaluation/evaluate_run.h"
+#include "pliant/evaluation/report.h"
 #include "pliant/pipeline/track.h"
 #include "pliant/simulation/write_sequence.h"
 #include "pliant/viewer/report.h"

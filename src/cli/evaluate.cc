@@ -2,15 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include <iostream>
-#include <optional>
 #include <string>
-#include <utility>
-#include <vector>
 
 #include "cli/command_line.h"
 #include "cli/commands.h"
 #include "cli/run_evaluation.h"
-#include "pliant/datasets/run_sequence.h"
 #include "pliant/evaluation/report.h"
 
 namespace pliant::cli {
@@ -49,37 +45,10 @@ const Manual kManual = {
      "pliant evaluate --run run --other_run run_begun_at_20"},
 };
 
-struct Request {
-  std::string run_path;
-  std::string sequence_path;
-  std::string camera_path;
-  std::string sfm_path;
-  std::string surface_path;
-  std::vector<std::string> other_runs;
-};
-
-Result<Evaluation> EvaluateAll(const Request& request, const EvaluationOptions& options) {
-  std::optional<OpenedTruth> truth;
-  if (!request.sequence_path.empty()) {
-    auto opened = OpenTruth(SequenceOfRun(request.run_path, request.sequence_path, request.camera_path), options);
-    if (!opened.ok()) return opened.status();
-    truth = *std::move(opened);
-  }
-  std::optional<SfmPoints> sfm;
-  if (!request.sfm_path.empty()) {
-    auto opened = OpenSfmPoints(request.sfm_path, truth ? truth->sequence.get() : nullptr);
-    if (!opened.ok()) return opened.status();
-    sfm = *std::move(opened);
-  }
-  return EvaluateRun(request.run_path,
-                     {truth ? &*truth : nullptr, sfm ? &*sfm : nullptr, request.other_runs, request.surface_path},
-                     options);
-}
-
 }  // namespace
 
 int EvaluateCommand(std::span<const std::string> args) {
-  Request request;
+  EvaluationRequest request;
   std::string output_path;
   EvaluationOptions options;
   bool quiet = false;
@@ -107,7 +76,7 @@ int EvaluateCommand(std::span<const std::string> args) {
         "--sequence PATH is missing, and so are --other_run and --sfm_path, with which it is not "
         "needed; see pliant evaluate --help");
 
-  const auto evaluation = EvaluateAll(request, options);
+  const auto evaluation = EvaluateRun(request, options);
   if (!evaluation.ok()) return line.Failure(evaluation.status().message());
   if (!output_path.empty())
     if (const Status status = WriteEvaluation(*evaluation, output_path); !status.ok())

@@ -3,11 +3,8 @@
 
 #include "pliant/viewer/report.h"
 
-#include <algorithm>
 #include <cstdio>
-#include <filesystem>
 #include <iostream>
-#include <span>
 
 #include "cli/command_line.h"
 #include "cli/commands.h"
@@ -16,6 +13,7 @@
 #include "cli/progress.h"
 #include "pliant/base/text.h"
 #include "pliant/viewer/figure.h"
+#include "pliant/viewer/output.h"
 
 namespace pliant::cli {
 namespace {
@@ -47,33 +45,17 @@ struct ReportArguments {
   bool quiet = false;
 };
 
-// What is written, and the endings that its file may have.
-struct Kind {
-  const char* name;
-  std::span<const std::string_view> endings;
-};
-
-Kind KindOf(const ReportArguments& arguments) {
-  static constexpr std::string_view kPage[] = {".html", ".htm"};
-  static constexpr std::string_view kFigure[] = {".png", ".svg", ".pdf"};
-  static constexpr std::string_view kFilm[] = {".mp4"};
-  if (!arguments.figure.empty()) return {"a figure", kFigure};
-  if (arguments.video) return {"a film", kFilm};
-  return {"a report", kPage};
-}
-
 // Nothing, or what is wrong with the command line.
 std::string CheckArguments(const ReportArguments& arguments, std::vector<int>* frames_idx) {
   if (!arguments.figure.empty() && arguments.video) return "--figure and --video are two files; give one of them";
   const auto frames = ParseFrameList(arguments.figure);
   if (!frames) return "--figure is '" + arguments.figure + "'; give frame numbers with commas between them";
   *frames_idx = *frames;
-  const Kind kind = KindOf(arguments);
-  const std::string ending = std::filesystem::path(arguments.output_path).extension().string();
-  if (std::find(kind.endings.begin(), kind.endings.end(), ending) != kind.endings.end()) return "";
-  std::string endings;
-  for (const std::string_view known : kind.endings) endings += (endings.empty() ? "" : " or ") + std::string(known);
-  return "--output_path is '" + arguments.output_path + "'; " + kind.name + " ends with " + endings;
+  const ViewOutput output = !arguments.figure.empty() ? ViewOutput::kFigure
+                            : arguments.video         ? ViewOutput::kFilm
+                                                      : ViewOutput::kPage;
+  const Status ending = CheckEnding(output, arguments.output_path);
+  return ending.ok() ? "" : "--" + ending.message();
 }
 
 void PrintNotes(const std::vector<std::string>& notes) {

@@ -3,13 +3,6 @@
 
 #include "cli/run_evaluation.h"
 
-#include <filesystem>
-#include <fstream>
-#include <system_error>
-#include <utility>
-
-#include "pliant/evaluation/report.h"
-
 namespace pliant::cli {
 
 void AddEvaluationArguments(CommandLine* line, std::string* camera_path) {
@@ -23,23 +16,6 @@ void AddEvaluationArguments(CommandLine* line, std::string* camera_path) {
                  "it, all that there is truth for");
   line->Add("camera", camera_path, "FILE",
             "calibration of the sequence; not needed where it has its own, or for the run's images", Need::kOptional);
-}
-
-Status WriteReport(const std::string& folder, const std::string& file_name, const std::string& text) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) return {ErrorCode::kUnwritable, "cannot make the folder " + folder + ": " + error.message()};
-  const std::filesystem::path path = std::filesystem::path(folder) / file_name;
-  std::ofstream file(path, std::ios::binary);
-  file << text << std::flush;
-  if (!file)
-    return {ErrorCode::kUnwritable, "cannot write " + path.string() + "; is the disk full or the folder closed?"};
-  return Status::Ok();
-}
-
-Status WriteEvaluation(const Evaluation& evaluation, const std::string& folder) {
-  if (Status status = WriteReport(folder, "evaluation.json", EvaluationJson(evaluation)); !status.ok()) return status;
-  return WriteReport(folder, "evaluation.csv", EvaluationCsv(evaluation));
 }
 
 }  // namespace pliant::cli

@@ -7,18 +7,10 @@
 #include <string>
 
 #include "cli/command_line.h"
-#include "pliant/base/status.h"
-#include "pliant/evaluation/evaluate_run.h"
 
 namespace pliant::cli {
 
 // --protocol, --scale, --parts, --camera.
 void AddEvaluationArguments(CommandLine* line, std::string* camera_path);
-
-// Writes `text` into `folder`, which is made where it is not there. Fails with kUnwritable.
-Status WriteReport(const std::string& folder, const std::string& file_name, const std::string& text);
-
-// Writes evaluation.json and evaluation.csv into `folder`.
-Status WriteEvaluation(const Evaluation& evaluation, const std::string& folder);
 
 }  // namespace pliant::cli

@@ -67,9 +67,8 @@ void AddArguments(TrackArguments* arguments, CommandLine* line) {
 }
 
 int Report(const RunSummary& summary, const TrackArguments& arguments) {
-  if (summary.status == RunStatus::kFailed || summary.status == RunStatus::kInterrupted) {
-    SayError(kManual.command, summary.note + "; " + std::to_string(summary.frames_tracked) + " tracked frames are in " +
-                                  arguments.output_path);
+  if (const Status end = EndOf(summary, arguments.output_path); !end.ok()) {
+    SayError(kManual.command, end.message());
     return kExitFailed;
   }
   if (arguments.quiet) return kExitOk;
@@ -111,9 +110,7 @@ int TrackCommand(std::span<const std::string> args) {
   RefineOptions refine_options;
   refine_options.List(table);
   if (const auto exit = line.Resolve(table)) return *exit;
-  const InitOptions& init = options.tracker.init;
-  if (init.method != InitMethod::kDepth && !init.depth.cloud_path.empty())
-    return line.UsageError("--Init.depth_cloud is for a start from depth; give --Init.method depth as well");
+  if (const Status status = CheckTrackOptions(options); !status.ok()) return line.UsageError(status.message());
 
   RunRequest request;
   request.input = arguments.input.Request();

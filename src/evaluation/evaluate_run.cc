@@ -6,6 +6,7 @@
 #include <system_error>
 #include <utility>
 
+#include "pliant/datasets/run_sequence.h"
 #include "pliant/evaluation/dense_completeness.h"
 
 namespace pliant {
@@ -124,6 +125,24 @@ Result<Evaluation> EvaluateRun(const std::string& run_path, const RunReferences&
     if (Status status = AddConsistency(*run, *other, *width_px, options, &*evaluation); !status.ok()) return status;
   }
   return evaluation;
+}
+
+Result<Evaluation> EvaluateRun(const EvaluationRequest& request, const EvaluationOptions& options) {
+  std::optional<OpenedTruth> truth;
+  if (!request.sequence_path.empty()) {
+    auto opened = OpenTruth(SequenceOfRun(request.run_path, request.sequence_path, request.camera_path), options);
+    if (!opened.ok()) return opened.status();
+    truth = *std::move(opened);
+  }
+  std::optional<SfmPoints> sfm;
+  if (!request.sfm_path.empty()) {
+    auto opened = OpenSfmPoints(request.sfm_path, truth ? truth->sequence.get() : nullptr);
+    if (!opened.ok()) return opened.status();
+    sfm = *std::move(opened);
+  }
+  return EvaluateRun(request.run_path,
+                     {truth ? &*truth : nullptr, sfm ? &*sfm : nullptr, request.other_runs, request.surface_path},
+                     options);
 }
 
 }  // namespace pliant

@@ -295,6 +295,19 @@ TrackOptions MakeTrackOptions(Preset preset) {
   return options;
 }
 
+Status CheckTrackOptions(const TrackOptions& options) {
+  const InitOptions& init = options.tracker.init;
+  if (init.method != InitMethod::kDepth && !init.depth.cloud_path.empty())
+    return {ErrorCode::kInvalidArgument, "Init.depth_cloud is for a start from depth; give Init.method depth as well"};
+  return Status::Ok();
+}
+
+Status EndOf(const RunSummary& summary, const std::string& output_path) {
+  if (summary.status != RunStatus::kFailed && summary.status != RunStatus::kInterrupted) return Status::Ok();
+  return {summary.status == RunStatus::kFailed ? ErrorCode::kInsufficient : ErrorCode::kInterrupted,
+          summary.note + "; " + std::to_string(summary.frames_tracked) + " tracked frames are in " + output_path};
+}
+
 Result<RunSummary> RunTrack(const RunRequest& request, const TrackOptions& options,
                             std::span<TrackObserver* const> observers) {
   // More threads than processors gain nothing, and TBB complains of them on standard error.

@@ -23,7 +23,7 @@ using testing::StartsWith;
 TEST(Program, AStartFromACloudTakesItsMethodAndSaysWhenTheUnitIsUnlikely) {
   const Outcome usage = Pliant("track --image_path x --output_path y --Init.depth_cloud cloud.txt");
   EXPECT_EQ(usage.exit, 2);
-  EXPECT_THAT(usage.err, HasSubstr("give --Init.method depth as well"));
+  EXPECT_THAT(usage.err, HasSubstr("give Init.method depth as well"));
   const std::string sequence = Temporary("seq").string();
   const std::string cloud = Temporary("cloud.txt").string();
   ASSERT_EQ(Pliant("simulate --quiet --Trajectory.frames 2 --Camera.width 320 --Camera.height 240 --output_path '" +

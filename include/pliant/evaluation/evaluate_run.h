@@ -9,6 +9,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "pliant/base/status.h"
 #include "pliant/datasets/open_sequence.h"
@@ -52,5 +53,16 @@ struct RunReferences {
 // sequence says how large the images are.
 Result<Evaluation> EvaluateRun(const std::string& run_path, const RunReferences& references,
                                const EvaluationOptions& options);
+
+// The same by the paths of all of it.
+struct EvaluationRequest {
+  std::string run_path;
+  std::string sequence_path = {};  // of the truth, or without one; empty: it is compared with the others alone
+  std::string camera_path = {};    // the calibration of the sequence; empty: the one that belongs to it
+  std::string sfm_path = {};       // as OpenSfmPoints; empty: those of the sequence
+  std::string surface_path = {};   // as RunReferences
+  std::vector<std::string> other_runs = {};  // likewise
+};
+Result<Evaluation> EvaluateRun(const EvaluationRequest& request, const EvaluationOptions& options);
 
 }  // namespace pliant

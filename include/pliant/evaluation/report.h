@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 
+#include "pliant/base/status.h"
 #include "pliant/evaluation/evaluation.h"
 
 namespace pliant {
@@ -24,5 +25,10 @@ std::string EvaluationCsv(const Evaluation& evaluation);
 std::string ComparisonTable(std::span<const Evaluation> evaluations);
 std::string ComparisonJson(std::span<const Evaluation> evaluations);
 std::string ComparisonCsv(std::span<const Evaluation> evaluations);
+
+// Writes evaluation.json and evaluation.csv, comparison.json and comparison.csv, into `folder`, which is made where it
+// is not there. Fails with kUnwritable.
+Status WriteEvaluation(const Evaluation& evaluation, const std::string& folder);
+Status WriteComparison(std::span<const Evaluation> evaluations, const std::string& folder);
 
 }  // namespace pliant

@@ -71,6 +71,9 @@ struct TrackOptions {
 
 TrackOptions MakeTrackOptions(Preset preset);
 
+// Fails with kInvalidArgument where options contradict each other.
+Status CheckTrackOptions(const TrackOptions& options);
+
 struct RunRequest {
   SequenceRequest input;
   std::string output_path;
@@ -106,5 +109,9 @@ class TrackObserver {
 // The result depends on input, options and seed, not on the number of threads. Sets OpenCV's number of threads.
 Result<RunSummary> RunTrack(const RunRequest& request, const TrackOptions& options,
                             std::span<TrackObserver* const> observers);
+
+// Whether a run of this summary, in the folder `output_path`, did all that it could: kInterrupted and kInsufficient say
+// how an interrupted and a failed one ended, and how much there is of it.
+Status EndOf(const RunSummary& summary, const std::string& output_path);
 
 }  // namespace pliant
