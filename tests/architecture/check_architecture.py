@@ -19,13 +19,13 @@ import re
 import sys
 
 MODULES = ("base geometry image camera colmap scene io datasets simulation photometric deformation residuals estimation "
-           "refinement surface tracking evaluation exchange pipeline viewer cli").split()
+           "refinement surface tracking evaluation exchange pipeline viewer python cli").split()
 # Where a library may be included: in the files of one module whose names begin so; where nothing is said, in one file of it.
 LIBRARY_HOMES = {"flann": ("deformation", ""), "opengv": ("estimation", "opengv_"), "assimp": ("simulation", "")}
 # The folders of a module, bottom to top, where the upper ones build on the lower ones.
 FOLDERS = {"tracking": "tracks submap frame relocalization bootstrapping map_upkeep".split()}
 SPDX = ("SPDX-FileCopyrightText: ", "SPDX-License-Identifier: BSD-3-Clause")
-SPDX_SUFFIXES = {".h", ".cc", ".py", ".cmake", ".sh"}
+SPDX_SUFFIXES = {".h", ".cc", ".py", ".pyi", ".cmake", ".sh"}
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*["<]([^">]+)[">]')
 FORBIDDEN_CALL = re.compile(
@@ -96,7 +96,7 @@ def check_calls(root):
 
 def check_spdx(root):
     paths = [root / "run", root / ".ci" / "run", root / "CMakeLists.txt"]
-    for folder in ("cmake", "include", "src", "tests", "third_party_configs", "experiments"):
+    for folder in ("cmake", "include", "src", "python", "tests", "third_party_configs", "experiments"):
         paths += [p for p in sorted((root / folder).rglob("*"))
                   if p.suffix in SPDX_SUFFIXES or p.name == "CMakeLists.txt"]
     for path in paths:

@@ -1,0 +1,28 @@
+# SPDX-FileCopyrightText: 2026 The Pliant authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Pliant: camera pose and scene deformation from one moving camera.
+
+    import pliant
+    run = pliant.track("clip.mp4", "run", camera="camera.yaml")
+    print(run.summary["status"], run.poses.world_from_cam.shape)
+    points = run.frame(10)                        # of one frame
+    frames, positions = run.path(points.point_id[0])   # of one point
+
+docs/python.md has more. Conventions of all of it: a camera looks along z, x is to the right and y down; pixel (0, 0) is
+the center of the first pixel; images are uint8, of color in the order blue, green, red (as OpenCV reads them);
+b_from_a maps points of frame a to frame b; lengths are map units: millimeters after a metric start, else such that the
+first map has Init.nominal_depth_mm as its median depth; times are seconds.
+"""
+
+from . import kernels
+from ._pliant import Camera, Error, FrameReport, Tracker, __version__
+from .jobs import evaluate, export, read_camera, refine, report, simulate, surface, track
+from .options import Options, options
+from .run import Run, open_run
+from .tables import Frames, Observations, Points, Poses
+
+__all__ = [
+    "Camera", "Error", "FrameReport", "Frames", "Observations", "Options", "Points", "Poses", "Run", "Tracker",
+    "__version__", "evaluate", "export", "kernels", "open_run", "options", "read_camera", "refine", "report", "simulate",
+    "surface", "track",
+]

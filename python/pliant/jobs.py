@@ -1,0 +1,224 @@
+# SPDX-FileCopyrightText: 2026 The Pliant authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The jobs of the command line: from files to files.
+
+All of them let other threads of the program run meanwhile. Ctrl-C ends them as it ends the command line's: what there
+is so far is on disk, and KeyboardInterrupt is raised. evaluate, export and a page or figure of report are too short
+for that and finish first. Options are dictionaries with the names of the command line (pliant.options lists them); one
+that is not there, or a value that it does not take, is a ValueError. What could not be done is a pliant.Error. What is
+odd about an input, and was read all the same, is a UserWarning.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Union
+
+from . import _pliant
+from .run import Run
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+StrPath = Union[str, "os.PathLike[str]"]
+RunOrPath = Union[Run, StrPath]
+OptionValues = Mapping[str, Any]
+
+
+def _text(path: StrPath | None) -> str:
+    return "" if path is None else os.fspath(path)
+
+
+def _run_path(run: RunOrPath) -> str:
+    return os.fspath(run.folder if isinstance(run, Run) else run)
+
+
+def _several(paths: Any) -> list[str]:
+    """The run or the path, or those of a list."""
+    if isinstance(paths, (Run, str, os.PathLike)):
+        paths = [paths]
+    return [_run_path(path) for path in paths]
+
+
+def _options(options: OptionValues | None) -> dict[str, Any] | None:
+    return dict(options) if isinstance(options, Mapping) else options
+
+
+def read_camera(path: StrPath) -> _pliant.Camera:
+    """The camera of a calibration file: camera.yaml, COLMAP's cameras.txt or cameras.bin, or OpenCV's YAML or XML.
+
+    Raises pliant.Error where it cannot be read, and ValueError where it cannot be meant.
+    """
+    return _pliant.read_camera(os.fspath(path))
+
+
+def simulate(output_path: StrPath, options: OptionValues | None = None, *, realism: str = "clean",
+             on_progress: Callable[[int, int], Any] | None = None) -> None:
+    """Renders a scene that deforms as a sequence with depth and poses.
+
+    Args:
+        output_path: folder of the sequence, made if need be.
+        options: such as {"Trajectory.frames": 60}.
+        realism: the defaults of the options, clean or endoscope.
+        on_progress: called with the frames that are done and the frames that are to be.
+    """
+    _pliant.simulate(os.fspath(output_path), _options(options), realism, on_progress)
+
+
+def track(input: StrPath | Iterable[NDArray[np.uint8]], output_path: StrPath, options: OptionValues | None = None, *,
+          camera: StrPath | _pliant.Camera | None = None, timestamps: Sequence[float] | None = None,
+          preset: str = "default", mask_path: StrPath | None = None, start: int = 0, end: int | None = None,
+          stride: int = 1, on_frame: Callable[[_pliant.FrameReport], Any] | None = None) -> Run:
+    """Camera pose and the motion of every point.
+
+    Args:
+        input: a folder of images, a video or a data set; or images: a list or array of them, or anything that is
+            iterated over. An image is uint8 (height, width), or (height, width, 3) in the order blue, green, red, as
+            OpenCV reads it. What has a length and an index is asked for an image whenever it is needed; the images of
+            another iterable are kept in memory to the end, since tracking may go back.
+        output_path: run folder, made if need be.
+        options: such as {"Init.method": "window", "Growth.grow": False, "General.seed": 3}.
+        camera: of a path the calibration file (None: the one that belongs to the images), of images a pliant.Camera.
+        timestamps: of a list of images, seconds, one an image; None: by the camera's fps, 30 where it has none.
+        preset: the defaults of the options, default or paper.
+        mask_path: folder of masks, or one image for all frames; 0: ignore this pixel.
+        start, end, stride: the first frame, one past the last one (None: to the end), and every which frame.
+        on_frame: called with the pliant.FrameReport of every frame, in order, as it is final and on disk. An exception
+            ends the run after the frame and is raised.
+
+    Returns:
+        The run, also one that ended while the camera was lost (summary["status"] is "lost").
+
+    Raises:
+        pliant.Error: the images cannot be read, or there is no map; the run folder has what there was until then.
+    """
+    request: dict[str, Any] = {"mask_path": _text(mask_path), "start": start, "end": -1 if end is None else end,
+                               "stride": stride}
+    output = os.fspath(output_path)
+    if isinstance(input, (str, os.PathLike)):
+        if isinstance(camera, _pliant.Camera):
+            raise ValueError("camera is a pliant.Camera, and the input a path; give the path of its calibration")
+        if timestamps is not None:
+            raise ValueError("timestamps are for images that are given; those of a path come from its times.txt")
+        request.update(image_path=os.fspath(input), camera_path=_text(camera))
+        _pliant.track_path(request, output, _options(options), preset, on_frame)
+    else:
+        if not isinstance(camera, _pliant.Camera):
+            raise ValueError("images need their camera; give a pliant.Camera (pliant.read_camera reads a file)")
+        request.update(images=input, camera=camera, timestamps=list(timestamps) if timestamps is not None else [])
+        _pliant.track_images(request, output, _options(options), preset, on_frame)
+    return Run(output)
+
+
+def refine(run: RunOrPath, output_path: StrPath, options: OptionValues | None = None, *,
+           sequence: StrPath | None = None, camera: StrPath | None = None,
+           on_progress: Callable[[str, float, float], Any] | None = None) -> Run:
+    """Solves for all frames of a run at once. Ctrl-C ends it with the best so far.
+
+    Args:
+        run: a run or its folder.
+        output_path: folder of the refined run, made if need be; not the run's.
+        options: such as {"Refine.model": "rigid"}.
+        sequence, camera: images of a run that has no sparse/, and their calibration file.
+        on_progress: called with the stage's name, the share that is done (0 to 1) and the cost.
+
+    Returns:
+        The refined run.
+    """
+    request = {"run_path": _run_path(run), "sequence_path": _text(sequence), "camera_path": _text(camera),
+               "output_path": os.fspath(output_path)}
+    _pliant.refine(request, _options(options), on_progress)
+    return Run(output_path)
+
+
+def surface(run: RunOrPath, output_path: StrPath, options: OptionValues | None = None, *,
+            frames: Sequence[int] | None = None, sequence: StrPath | None = None, camera: StrPath | None = None,
+            mask_path: StrPath | None = None,
+            on_progress: Callable[[str, int, int], Any] | None = None) -> dict[str, Any]:
+    """Dense depth of the frames of a run, and a mesh that moves with the tissue (docs/formats.md).
+
+    Args:
+        run: a run or its folder.
+        output_path: surface folder, made if need be.
+        frames: numbers of the frames; None: all that have a pose.
+        sequence, camera, mask_path: the images, their calibration file and masks; None: those of the run.
+        on_progress: called with "depth" or "mesh", the frames that are done and the frames that are to be.
+
+    Returns:
+        surface.json.
+    """
+    request = {"run_path": _run_path(run), "sequence_path": _text(sequence), "camera_path": _text(camera),
+               "mask_path": _text(mask_path), "output_path": os.fspath(output_path)}
+    _pliant.surface(request, [int(frame) for frame in frames or []], _options(options), on_progress)
+    with open(os.path.join(os.fspath(output_path), "surface.json"), encoding="utf-8") as file:
+        return json.load(file)
+
+
+def evaluate(run: RunOrPath, sequence: StrPath | None = None, options: OptionValues | None = None, *,
+             camera: StrPath | None = None, other_runs: Any = (), sfm_path: StrPath | None = None,
+             surface_path: StrPath | None = None, output_path: StrPath | None = None) -> dict[str, Any]:
+    """How far a run is from the truth of its sequence, from other runs, or from structure from motion.
+
+    Args:
+        run: a run or its folder.
+        sequence: with truth; not needed with other_runs or sfm_path.
+        options: such as {"PointError.scale": "global"}.
+        camera: calibration file of the sequence; None: the one that belongs to it.
+        other_runs: runs of the same recording.
+        sfm_path: points of structure from motion, a CSV or a COLMAP model.
+        surface_path: a surface folder of the run, whose error is told too.
+        output_path: folder for evaluation.json and evaluation.csv; None: they are not written.
+
+    Returns:
+        evaluation.json; docs/formats.md has its names. NaN is None.
+    """
+    others = _several(other_runs)
+    if sequence is None and not others and sfm_path is None:
+        raise ValueError("there is nothing to compare the run with; give sequence, other_runs or sfm_path")
+    request = {"run_path": _run_path(run), "sequence_path": _text(sequence), "camera_path": _text(camera),
+               "sfm_path": _text(sfm_path), "surface_path": _text(surface_path), "other_runs": others}
+    return json.loads(_pliant.evaluate(request, _options(options), _text(output_path)))
+
+
+def export(run: RunOrPath, output_path: StrPath, format: str = "canonical", options: OptionValues | None = None, *,
+           sequence: StrPath | None = None, camera: StrPath | None = None, mask_path: StrPath | None = None,
+           surface_path: StrPath | None = None) -> dict[str, Any]:
+    """Writes a run in the format of another program (docs/formats.md lists them).
+
+    Args:
+        run: a run or its folder.
+        output_path: folder to write, made if need be.
+        format: its name, such as canonical, spacetime, ply or nerfstudio.
+        sequence, camera, mask_path: the images, their calibration file and masks; None: those of the run.
+        surface_path: a surface folder of the run, for formats with depths.
+
+    Returns:
+        frames, points, observations (how many were written), and notes (what could not be known).
+    """
+    request = {"run_path": _run_path(run), "sequence_path": _text(sequence), "format": format,
+               "output_path": os.fspath(output_path), "camera_path": _text(camera), "mask_path": _text(mask_path),
+               "surface_path": _text(surface_path)}
+    return _pliant.export(request, _options(options))
+
+
+def report(runs: Any, output_path: StrPath, options: OptionValues | None = None, *, figure: Sequence[int] | None = None,
+           sequence: StrPath | None = None, camera: StrPath | None = None, surface_paths: Any = ()) -> list[str]:
+    """Shows runs: a page for the browser (.html), with `figure` a still (.png, .svg or .pdf), or a film (.mp4).
+
+    Args:
+        runs: a run or its folder, or several of them.
+        output_path: the file; its ending says what is written.
+        options: such as {"Report.image_width_px": 640} or {"Figure.trail_frames": 10}.
+        figure: numbers of the frames of a still.
+        sequence, camera: the images, with truth where there is truth, and their calibration file.
+        surface_paths: surface folders of the runs, whose meshes the page shows.
+
+    Returns:
+        What is missing or left out, a sentence each.
+    """
+    request = {"run_paths": _several(runs), "sequence_path": _text(sequence), "camera_path": _text(camera),
+               "surface_paths": _several(surface_paths)}
+    return _pliant.report(request, [int(frame) for frame in figure or []], _options(options), os.fspath(output_path))

@@ -1,0 +1,98 @@
+# SPDX-FileCopyrightText: 2026 The Pliant authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Run folders."""
+
+from __future__ import annotations
+
+import json
+import os
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from . import _pliant
+from .tables import Frames, Observations, Points, Poses
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+
+class Run:
+    """A run folder: what track, refine or import left, also of a run that was interrupted or killed, or another
+    program's trajectory.txt and observations.csv. Made by pliant.open_run.
+
+    Attributes:
+        folder: its path.
+        frames: pliant.Frames, every frame that was read; empty in another program's run.
+        poses: pliant.Poses of the frames that have one.
+
+    The rest is read when it is asked for the first time, and kept.
+    """
+
+    def __init__(self, path: str | os.PathLike[str]):
+        self.folder = Path(path)
+        self.frames: Frames
+        self.poses: Poses
+        self.frames, self.poses = _pliant.read_run(os.fspath(path))
+
+    def __repr__(self) -> str:
+        return f"<pliant.Run {os.fspath(self.folder)}: {len(self.poses)} of {len(self.frames)} frames have a pose>"
+
+    @cached_property
+    def summary(self) -> dict[str, Any]:
+        """run.json (docs/formats.md): status, note, counts, times; empty in another program's run."""
+        file = self.folder / "run.json"
+        return json.loads(file.read_text(encoding="utf-8")) if file.exists() else {}
+
+    @cached_property
+    def observations(self) -> Observations:
+        """Every point in every frame."""
+        return _pliant.read_observations(os.fspath(self.folder))
+
+    @cached_property
+    def _map(self) -> tuple[_pliant.Camera | None, dict[int, str], Points]:
+        return _pliant.read_map(os.fspath(self.folder))
+
+    @property
+    def camera(self) -> _pliant.Camera | None:
+        """The camera of the images."""
+        return self._map[0]
+
+    @property
+    def names(self) -> dict[int, str]:
+        """The names of the images, by the frame's number."""
+        return self._map[1]
+
+    @property
+    def points(self) -> Points:
+        """The undeformed map; empty where a killed run has none."""
+        return self._map[2]
+
+    def frame(self, frame_idx: int) -> Observations:
+        """The points of the frame with this number, sorted by point_id; views, not copies. None: no rows."""
+        first, last = np.searchsorted(self.observations.frame_idx, [frame_idx, frame_idx + 1])
+        return self.observations[first:last]
+
+    def path(self, point_id: int) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
+        """The way of a point: numbers of the frames that have it (n,), and its positions in them (n, 3), world frame of
+        each frame's map, map units."""
+        order, ids = self._by_point
+        first, last = np.searchsorted(ids, [point_id, point_id + 1])
+        rows = order[first:last]
+        return self.observations.frame_idx[rows], self.observations.position[rows]
+
+    @cached_property
+    def _by_point(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """The rows of the observations in the order of the points, and the points in this order."""
+        order = np.argsort(self.observations.point_id, kind="stable")
+        return order, self.observations.point_id[order]
+
+
+def open_run(path: str | os.PathLike[str]) -> Run:
+    """Opens a run folder.
+
+    Raises pliant.Error with the code not_found (no folder, or no run in it), unreadable (file and line) or mismatch.
+    """
+    return Run(path)

@@ -1,0 +1,105 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "python/arrays.h"
+
+#include <algorithm>
+
+#include "python/errors.h"
+
+namespace py = pybind11;
+
+namespace pliant::python {
+namespace {
+
+std::string ShapeText(const py::array& array) {
+  return py::cast<std::string>(py::str(array.dtype())) + " of shape " +
+         py::cast<std::string>(py::str(array.attr("shape")));
+}
+
+// An object that is no array is one of its elements; raises TypeError where NumPy makes none of it.
+py::array AnyArray(const py::handle& object, const std::string& what, const std::string& wanted) {
+  if (!py::isinstance<py::array>(object))
+    RaiseTypeError(what + " is " + wanted + ", not " +
+                   py::cast<std::string>(py::str(py::type::of(object).attr("__name__"))));
+  return py::reinterpret_borrow<py::array>(object);
+}
+
+cv::Mat CopyOf(const py::array& array, int channels) {
+  const auto bytes = py::array_t<std::uint8_t, py::array::c_style | py::array::forcecast>::ensure(array);
+  if (!bytes) throw py::error_already_set();
+  cv::Mat image(static_cast<int>(bytes.shape(0)), static_cast<int>(bytes.shape(1)), CV_8UC(channels));
+  std::copy_n(bytes.data(), bytes.size(), image.data);
+  return image;
+}
+
+constexpr py::ssize_t kMostPixels = 100'000;  // a side
+
+bool IsImageSide(py::ssize_t size) { return size > 0 && size <= kMostPixels; }
+
+}  // namespace
+
+py::list ListOf(const std::vector<std::string>& texts) {
+  py::list list;
+  for (const std::string& text : texts) list.append(text);
+  return list;
+}
+
+void AppendMatrix(const Rigid3& b_from_a, std::vector<double>* numbers) {
+  const Eigen::Matrix3d rotation = b_from_a.RotationMatrix();
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) numbers->push_back(rotation(row, column));
+    numbers->push_back(b_from_a.translation[row]);
+  }
+  numbers->insert(numbers->end(), {0.0, 0.0, 0.0, 1.0});
+}
+
+py::array_t<double> MatrixOf(const Rigid3& b_from_a) {
+  std::vector<double> numbers;
+  AppendMatrix(b_from_a, &numbers);
+  py::array_t<double> matrix({4, 4});
+  std::copy(numbers.begin(), numbers.end(), matrix.mutable_data());
+  return matrix;
+}
+
+py::array_t<double> PointsOf(const py::handle& object, int columns, const std::string& what) {
+  const std::string wanted = "an array of real numbers of shape (n, " + std::to_string(columns) + ")";
+  const py::array array = AnyArray(object, what, wanted);
+  const char kind = array.dtype().kind();
+  if (kind != 'f' && kind != 'i' && kind != 'u')
+    RaiseTypeError(what + " is " + wanted + "; this one is " + ShapeText(array));
+  if (array.ndim() != 2 || array.shape(1) != columns)
+    RaiseValueError(what + " is " + wanted + "; this one is " + ShapeText(array));
+  auto points = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(array);
+  if (!points) throw py::error_already_set();
+  return points;
+}
+
+cv::Mat ImageOf(const py::handle& object, const std::string& what) {
+  const std::string wanted =
+      "a NumPy array of dtype uint8 and shape (height, width), or (height, width, 3) in the order blue, green, red";
+  const py::array array = AnyArray(object, what, wanted);
+  if (!array.dtype().is(py::dtype::of<std::uint8_t>()) && !array.dtype().equal(py::dtype::of<std::uint8_t>()))
+    RaiseTypeError(what + " is " + wanted + "; this one is " + ShapeText(array));
+  const bool gray = array.ndim() == 2;
+  if ((!gray && (array.ndim() != 3 || array.shape(2) != 3)) || !IsImageSide(array.shape(0)) ||
+      !IsImageSide(array.shape(1)))
+    RaiseValueError(what + " is " + wanted + "; this one is " + ShapeText(array));
+  return CopyOf(array, gray ? 1 : 3);
+}
+
+cv::Mat MaskOf(const py::handle& object) {
+  if (object.is_none()) return {};
+  const std::string wanted = "a NumPy array of dtype uint8 or bool and shape (height, width), 0: ignore this pixel";
+  const py::array array = AnyArray(object, "the mask", wanted);
+  const char kind = array.dtype().kind();
+  if (kind != 'b' && (kind != 'u' || array.itemsize() != 1))
+    RaiseTypeError("the mask is " + wanted + "; this one is " + ShapeText(array));
+  if (array.ndim() != 2 || !IsImageSide(array.shape(0)) || !IsImageSide(array.shape(1)))
+    RaiseValueError("the mask is " + wanted + "; this one is " + ShapeText(array));
+  cv::Mat mask = CopyOf(array, 1);
+  if (kind == 'b') mask.setTo(255, mask);
+  return mask;
+}
+
+}  // namespace pliant::python

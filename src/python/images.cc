@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "python/images.h"
+
+#include <string>
+#include <utility>
+
+#include "python/arrays.h"
+#include "python/errors.h"
+
+namespace py = pybind11;
+
+namespace pliant::python {
+
+PythonImages::PythonImages(py::object images) : images_(std::move(images)) {
+  if (py::hasattr(images_, "__len__") && py::hasattr(images_, "__getitem__")) {
+    count_ = static_cast<int>(py::len(images_));
+    if (count_ == 0) RaiseValueError("there are no images to track; give at least two");
+    return;
+  }
+  if (!py::hasattr(images_, "__iter__"))
+    RaiseTypeError("the input is " + py::cast<std::string>(py::str(py::type::of(images_).attr("__name__"))) +
+                   "; give a path, or an iterable of images");
+  iterator_ = py::iter(images_);
+}
+
+// Nothing beyond the end.
+std::optional<cv::Mat> PythonImages::Get(int idx) {
+  const std::string title = "image " + std::to_string(idx);
+  if (count_ > 0) {
+    if (idx >= count_) return std::nullopt;
+    return ImageOf(images_[py::int_(idx)], title);
+  }
+  while (static_cast<int>(kept_.size()) <= idx && iterator_ != py::iterator::sentinel()) {
+    kept_.push_back(ImageOf(*iterator_, "image " + std::to_string(kept_.size())));
+    ++iterator_;
+  }
+  return idx < static_cast<int>(kept_.size()) ? std::optional(kept_[static_cast<std::size_t>(idx)]) : std::nullopt;
+}
+
+Result<std::optional<cv::Mat>> PythonImages::Read(int idx) {
+  const std::lock_guard lock(mutex_);
+  if (!error_) {
+    const py::gil_scoped_acquire acquire;
+    try {
+      return Get(idx);
+    } catch (...) {
+      error_ = std::current_exception();
+    }
+  }
+  return Status(ErrorCode::kUnreadable, "image " + std::to_string(idx) + " could not be had from the program");
+}
+
+void PythonImages::Raise() const {
+  if (error_) std::rethrow_exception(error_);
+}
+
+}  // namespace pliant::python

@@ -1,0 +1,187 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <pybind11/stl.h>
+
+#include "pliant/evaluation/evaluate_run.h"
+#include "pliant/evaluation/report.h"
+#include "pliant/exchange/export.h"
+#include "pliant/pipeline/refine_run.h"
+#include "pliant/pipeline/surface_run.h"
+#include "pliant/simulation/write_sequence.h"
+#include "pliant/viewer/figure.h"
+#include "pliant/viewer/output.h"
+#include "pliant/viewer/report.h"
+#include "python/bind.h"
+#include "python/errors.h"
+#include "python/interrupt.h"
+#include "python/options.h"
+
+namespace py = pybind11;
+
+namespace pliant::python {
+namespace {
+
+using Texts = std::vector<std::string>;
+
+// The texts of `request`, by the names of their fields.
+std::string Text(const py::dict& request, const char* name) { return py::cast<std::string>(request[name]); }
+Texts AllTexts(const py::dict& request, const char* name) { return py::cast<Texts>(request[name]); }
+
+// Calls the library without the GIL, and raises what a callback or a signal left.
+template <class Job>
+auto WithoutGil(Interrupt* interrupt, const Job& job) {
+  auto result = [&] {
+    const py::gil_scoped_release release;
+    return job();
+  }();
+  interrupt->Raise();
+  return result;
+}
+
+void Simulate(const std::string& output_path, const py::object& options, const std::string& realism,
+              const py::object& on_progress) {
+  const auto simulation = OptionsOf(options, MakeSimulationOptions(EnumOf<Realism>(realism, "realism")));
+  Interrupt interrupt;
+  Texts warnings;
+  const Status status = WithoutGil(&interrupt, [&] {
+    auto simulator = Simulator::Create(simulation);
+    if (!simulator.ok()) return simulator.status();
+    warnings = simulator->warnings();
+    return WriteSequence(*simulator, output_path, [&](int done, int total) {
+      if (!on_progress.is_none()) interrupt.Call([&] { on_progress(done, total); });
+      return interrupt.stop() ? SimulationContinue::kStop : SimulationContinue::kYes;
+    });
+  });
+  Warn(warnings);
+  RaiseUnlessOk(status);
+}
+
+void Refine(const py::dict& request, const py::object& options, const py::object& on_progress) {
+  const auto refine_options = OptionsOf<RefineOptions>(options);
+  Interrupt interrupt;
+  const RefineRequest refine_request{.run_path = Text(request, "run_path"),
+                                     .sequence_path = Text(request, "sequence_path"),
+                                     .camera_path = Text(request, "camera_path"),
+                                     .output_path = Text(request, "output_path"),
+                                     .command_line = {"pliant.refine"},
+                                     .stop = &interrupt.stop()};
+  const auto summary = ValueOf(WithoutGil(&interrupt, [&] {
+    return RefineRun(refine_request, refine_options, [&](const RefinementProgress& at) {
+      if (!on_progress.is_none()) interrupt.Call([&] { on_progress(std::string(at.stage), at.share, at.cost); });
+    });
+  }));
+  Texts left;
+  for (const SubmapRefinement& submap : summary.submaps)
+    if (!submap.failure.empty())
+      left.push_back("submap " + std::to_string(submap.submap) +
+                     " is as it was, since it cannot be refined: " + submap.failure);
+  Warn(left);
+}
+
+void Surface(const py::dict& request, const std::vector<int>& frames, const py::object& options,
+             const py::object& on_progress) {
+  const auto surface_options = OptionsOf<SurfaceRunOptions>(options);
+  Interrupt interrupt;
+  const SurfaceRequest surface_request{.run_path = Text(request, "run_path"),
+                                       .sequence_path = Text(request, "sequence_path"),
+                                       .camera_path = Text(request, "camera_path"),
+                                       .mask_path = Text(request, "mask_path"),
+                                       .output_path = Text(request, "output_path"),
+                                       .frames = frames,
+                                       .command_line = {"pliant.surface"},
+                                       .stop = &interrupt.stop()};
+  RaiseUnlessOk(WithoutGil(&interrupt, [&] {
+                  return MakeSurface(surface_request, surface_options,
+                                     [&](SurfaceStage stage, int done, int total, double /*known_share*/) {
+                                       if (on_progress.is_none()) return;
+                                       const char* name = stage == SurfaceStage::kDepth ? "depth" : "mesh";
+                                       interrupt.Call([&] { on_progress(name, done, total); });
+                                     });
+                }).status());
+}
+
+// evaluation.json.
+std::string Evaluate(const py::dict& request, const py::object& options, const std::string& output_path) {
+  const auto evaluation_options = OptionsOf<EvaluationOptions>(options);
+  const EvaluationRequest evaluation_request{.run_path = Text(request, "run_path"),
+                                             .sequence_path = Text(request, "sequence_path"),
+                                             .camera_path = Text(request, "camera_path"),
+                                             .sfm_path = Text(request, "sfm_path"),
+                                             .surface_path = Text(request, "surface_path"),
+                                             .other_runs = AllTexts(request, "other_runs")};
+  Interrupt interrupt;
+  const auto evaluation =
+      ValueOf(WithoutGil(&interrupt, [&] { return EvaluateRun(evaluation_request, evaluation_options); }));
+  if (!output_path.empty()) RaiseUnlessOk(WriteEvaluation(evaluation, output_path));
+  return EvaluationJson(evaluation);
+}
+
+py::dict Export(const py::dict& request, const py::object& options) {
+  const auto export_options = OptionsOf<ExportOptions>(options);
+  const ExportRequest export_request{.run_path = Text(request, "run_path"),
+                                     .sequence_path = Text(request, "sequence_path"),
+                                     .format = Text(request, "format"),
+                                     .output_path = Text(request, "output_path"),
+                                     .camera_path = Text(request, "camera_path"),
+                                     .mask_path = Text(request, "mask_path"),
+                                     .surface_path = Text(request, "surface_path")};
+  Interrupt interrupt;
+  const auto summary = ValueOf(WithoutGil(&interrupt, [&] { return ExportRun(export_request, export_options); }));
+  py::dict done;
+  done["frames"] = summary.frames;
+  done["points"] = summary.points;
+  done["observations"] = summary.observations;
+  done["notes"] = summary.notes;
+  return done;
+}
+
+Result<Texts> WritePage(const ViewRequest& view, const ReportOptions& options, const std::string& output_path) {
+  const auto summary = WriteReportPage(view, options, output_path);
+  if (!summary.ok()) return summary.status();
+  return summary->notes;
+}
+
+// What is missing, a sentence each. The ending of `output_path` says what is written.
+Texts Report(const py::dict& request, const std::vector<int>& frames, const py::object& options,
+             const std::string& output_path) {
+  ReportOptions report_options;
+  FigureOptions figure_options;
+  OptionTable table;
+  report_options.List(table);
+  figure_options.List(table);
+  SetOptions(options, &table);
+  figure_options.view = report_options.view;
+  const ViewRequest view{.run_paths = AllTexts(request, "run_paths"),
+                         .sequence_path = Text(request, "sequence_path"),
+                         .camera_path = Text(request, "camera_path"),
+                         .surface_paths = AllTexts(request, "surface_paths")};
+  const ViewOutput output = !frames.empty()                                            ? ViewOutput::kFigure
+                            : std::filesystem::path(output_path).extension() == ".mp4" ? ViewOutput::kFilm
+                                                                                       : ViewOutput::kPage;
+  RaiseUnlessOk(CheckEnding(output, output_path));
+  Interrupt interrupt;
+  return ValueOf(WithoutGil(&interrupt, [&]() -> Result<Texts> {
+    if (output == ViewOutput::kFigure) return WriteFigure(view, figure_options, frames, output_path);
+    if (output == ViewOutput::kPage) return WritePage(view, report_options, output_path);
+    return WriteFilm(view, figure_options, output_path, [&](int, int) { return !interrupt.stop(); });
+  }));
+}
+
+}  // namespace
+
+void BindJobs(py::module_& module) {
+  module.def("simulate", &Simulate);
+  module.def("refine", &Refine);
+  module.def("surface", &Surface);
+  module.def("evaluate", &Evaluate);
+  module.def("export", &Export);
+  module.def("report", &Report);
+}
+
+}  // namespace pliant::python

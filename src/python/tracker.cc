@@ -1,0 +1,181 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <pybind11/stl.h>
+
+#include "pliant/base/options.h"
+#include "pliant/pipeline/image_tracker.h"
+#include "python/arrays.h"
+#include "python/bind.h"
+#include "python/calibration.h"
+#include "python/errors.h"
+#include "python/observations.h"
+#include "python/options.h"
+
+namespace py = pybind11;
+
+namespace pliant::python {
+namespace {
+
+constexpr double kDefaultFps = 30.0;
+
+// Numbers the images and gives them times.
+class PythonTracker {
+ public:
+  PythonTracker(const Calibration& calibration, const py::object& options, const std::string& preset,
+                const py::iterable& examples)
+      : fps_(calibration.fps.value_or(kDefaultFps)),
+        tracker_(
+            Create(calibration, OptionsOf(options, MakeTrackOptions(EnumOf<Preset>(preset, "preset"))), examples)) {}
+
+  std::vector<FrameReport> Process(const py::object& image, const py::object& mask, std::optional<double> timestamp) {
+    if (finished_) RaiseValueError("the tracker is finished; make another one for other images");
+    SequenceFrame frame = FrameOf(next_idx_, image, "the image");
+    frame.mask = MaskOf(mask);
+    frame.timestamp_s = timestamp.value_or(next_idx_ / fps_);
+    if (!std::isfinite(frame.timestamp_s)) RaiseValueError("timestamp is not a finite number; give seconds, or None");
+    auto reports = [&] {
+      const py::gil_scoped_release release;
+      return tracker_.Process(frame);
+    }();
+    if (reports.ok()) ++next_idx_;
+    return ValueOf(std::move(reports));
+  }
+
+  std::vector<FrameReport> Finish() {
+    const py::gil_scoped_release release;
+    if (std::exchange(finished_, true)) return {};
+    return tracker_.Finish();
+  }
+
+  std::string state() const { return std::string(EnumName(tracker_.state())); }
+  std::size_t held_count() const { return tracker_.held_count(); }
+  double working_scale() const { return tracker_.working_image().scale; }
+
+ private:
+  static SequenceFrame FrameOf(int frame_idx, const py::handle& image, const std::string& title) {
+    std::array<char, 32> name;
+    std::snprintf(name.data(), name.size(), "%06d.png", frame_idx);
+    SequenceFrame frame;
+    frame.frame_idx = frame_idx;
+    frame.name = name.data();
+    frame.image = ImageOf(image, title);
+    return frame;
+  }
+
+  static ImageTracker Create(const Calibration& calibration, const TrackOptions& options,
+                             const py::iterable& examples) {
+    std::vector<SequenceFrame> frames;
+    for (const py::handle image : examples)
+      frames.push_back(FrameOf(static_cast<int>(frames.size()), image, "example " + std::to_string(frames.size())));
+    return ValueOf([&] {
+      const py::gil_scoped_release release;
+      return ImageTracker::Create(calibration.camera, calibration.photometric, options, frames);
+    }());
+  }
+
+  double fps_;
+  ImageTracker tracker_;
+  int next_idx_ = 0;
+  bool finished_ = false;
+};
+
+template <class Value>
+py::dict DictOf(const std::vector<std::pair<std::string, Value>>& pairs) {
+  py::dict dict;
+  for (const auto& [name, value] : pairs) dict[py::str(name)] = value;
+  return dict;
+}
+
+py::object Pose(const FrameReport& report) {
+  return report.cam_from_world ? py::object(MatrixOf(*report.cam_from_world)) : py::none();
+}
+
+py::object InversePose(const FrameReport& report) {
+  return report.cam_from_world ? py::object(MatrixOf(report.cam_from_world->Inverse())) : py::none();
+}
+
+py::object ObservationsOf(const FrameReport& report) {
+  ObservationColumns columns;
+  columns.Append(report.frame_idx, report.observations);
+  return columns.Take();
+}
+
+py::dict CostsOf(const FrameReport& report) {
+  py::dict costs;
+  for (const CostTerm& term : report.costs) costs[py::str(term.name)] = term.value;
+  return costs;
+}
+
+void BindReport(py::module_& module) {
+  py::class_<FrameReport>(module, "FrameReport", "What is known of one frame when it is final.")
+      .def_readonly("frame_idx", &FrameReport::frame_idx, "Number of the frame, from 0.")
+      .def_readonly("name", &FrameReport::name, "Name of the image.")
+      .def_readonly("timestamp", &FrameReport::timestamp_s, "Seconds.")
+      .def_property_readonly(
+          "state", [](const FrameReport& r) { return std::string(EnumName(r.state)); },
+          "waiting_for_reference, initializing, ambiguous, tracking, provisional or lost (docs/concepts.md).")
+      .def_readonly("note", &FrameReport::note, "Why the state is what it is: a sentence, or empty.")
+      .def_readonly("submap", &FrameReport::submap, "The map that pose and points are in: each has its own world.")
+      .def_property_readonly("cam_from_world", &Pose,
+                             "(4, 4) float64, or None: no pose. point_in_cam = cam_from_world @ point_in_world.")
+      .def_property_readonly("world_from_cam", &InversePose, "The inverse of cam_from_world, or None.")
+      .def_property_readonly("observations", &ObservationsOf,
+                             "pliant.Observations of this frame, sorted by point_id; empty where there is no pose.")
+      .def_readonly("tracked", &FrameReport::tracked, "Points followed into this frame.")
+      .def_readonly("optimized", &FrameReport::optimized, "Points of the solution.")
+      .def_readonly("lost", &FrameReport::lost, "Points given up in this frame.")
+      .def_readonly("added", &FrameReport::added, "Points new in this frame.")
+      .def_property_readonly(
+          "losses", [](const FrameReport& r) { return DictOf(r.losses); }, "Points given up, by reason.")
+      .def_property_readonly("costs", &CostsOf, "Cost terms at the solution, by name.")
+      .def_property_readonly(
+          "stage_ms", [](const FrameReport& r) { return DictOf(r.stage_ms); }, "Wall time, ms, by stage.")
+      .def_readonly("median_reprojection_error_px", &FrameReport::median_reprojection_error_px, "Pixels.")
+      .def("__repr__", [](const FrameReport& r) {
+        return "<pliant.FrameReport " + r.name + ": " + std::string(EnumName(r.state)) + ", " +
+               std::to_string(r.observations.size()) + " points>";
+      });
+}
+
+}  // namespace
+
+void BindTracker(py::module_& module) {
+  BindReport(module);
+  py::class_<PythonTracker>(
+      module, "Tracker",
+      "Tracks images as they come, without a run folder.\n\n"
+      "camera: pliant.Camera of the images. options, preset: as of pliant.track. examples: images that follow each "
+      "other (16 are enough) as the camera will see them, by which the size and smoothing of the images that points "
+      "are tracked in are chosen, as pliant.track does; without them the images are taken as they are, or as "
+      "Image.scale "
+      "and Image.smoothing_px say where Image.working is 'fixed'. Pixels of reports are those of the given images.\n\n"
+      "Frames before the reference of the first map stay without a pose: pliant.track, which can read images again, "
+      "tracks them back in time.\n\n"
+      "Raises ValueError for options that need more than images (a start from depth, for example).")
+      .def(py::init<const Calibration&, const py::object&, const std::string&, const py::iterable&>(),
+           py::arg("camera"), py::arg("options") = py::none(), py::kw_only(), py::arg("preset") = "default",
+           py::arg("examples") = py::tuple())
+      .def("process", &PythonTracker::Process, py::arg("image"), py::arg("mask") = py::none(),
+           py::arg("timestamp") = py::none(),
+           "The reports that became final with this image, in order of time; each image is reported once.\n\n"
+           "image: uint8 (height, width), or (height, width, 3) in the order blue, green, red, of the camera's size; "
+           "it is copied. mask: uint8 or bool (height, width), 0: ignore this pixel. timestamp: seconds; without it "
+           "number / fps of the camera (30 where it has none).\n\n"
+           "From the reference image on reports are held back until there is a map, which gives these frames too "
+           "their poses and points.")
+      .def("finish", &PythonTracker::Finish, "No more images come: the reports that are held back.")
+      .def_property_readonly("state", &PythonTracker::state, "The state after the last image.")
+      .def_property_readonly("held", &PythonTracker::held_count, "How many reports are held back.")
+      .def_property_readonly("working_scale", &PythonTracker::working_scale,
+                             "Size of the images that points are tracked in, by that of the given ones.");
+}
+
+}  // namespace pliant::python

@@ -1,0 +1,97 @@
+# SPDX-FileCopyrightText: 2026 The Pliant authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The other jobs, on the sequence and the run of the end-to-end tests."""
+
+import json
+import unittest
+import warnings
+
+import numpy as np
+
+import pliant
+from support import RUN, SEQUENCE, TestCase, sentence
+
+COARSE = {"Camera.width": 160, "Camera.height": 120, "Sensor.samples": 1, "Scene.view_mm": 80,
+          "Scene.mesh_step_mm": 2, "Texture.smallest_mm": 2, "Texture.texel_mm": 0.8}
+
+
+class Jobs(TestCase):
+    def test_a_simulated_sequence_is_one_and_progress_is_told(self):
+        told = []
+        pliant.simulate(self.folder / "seq", {**COARSE, "Trajectory.frames": 3},
+                        on_progress=lambda *at: told.append(at))
+        self.assertEqual(told, [(0, 3), (1, 3), (2, 3), (3, 3)])
+        self.assertEqual(len(list((self.folder / "seq" / "images").iterdir())), 3)
+        self.assertEqual(pliant.read_camera(self.folder / "seq" / "camera.yaml").width, 160)
+        with self.assertRaisesRegex(ValueError, "give one of clean | endoscope"):
+            pliant.simulate(self.folder / "seq", realism="cleen")
+        with self.assertRaisesRegex(ValueError, "did you mean 'Trajectory.frames'"):
+            pliant.simulate(self.folder / "seq", {"Trajectory.frame": 1})
+
+    def test_a_refined_run_is_a_run(self):
+        told = []
+        run = pliant.open_run(RUN)
+        refined = pliant.refine(run, self.folder / "refined", on_progress=lambda *at: told.append(at))
+        self.assertEqual(len(refined.poses), len(run.poses))
+        self.assertTrue(np.all(refined.observations.sigma > 0))
+        self.assertEqual(told[-1][1], 1)
+        with self.assertRaises(ValueError) as caught:
+            pliant.refine(run, RUN)
+        sentence(self, caught.exception)
+
+    def test_a_surface_has_depths_of_the_frames(self):
+        told = []
+        summary = pliant.surface(RUN, self.folder / "surface", {"Surface.vtk": False, "Surface.gltf": False},
+                                 frames=[20, 40], on_progress=lambda *at: told.append(at))
+        self.assertEqual([frame["frame"] for frame in summary["frames"]], [20, 40])
+        self.assertEqual(len(list((self.folder / "surface" / "depth").iterdir())), 2)
+        self.assertIn(("depth", 2, 2), told)
+        with self.assertRaises(pliant.Error):
+            pliant.surface(RUN, self.folder / "other", frames=[9999])
+
+    def test_an_evaluation_is_its_json(self):
+        evaluation = pliant.evaluate(RUN, SEQUENCE, output_path=self.folder)
+        self.assertEqual(evaluation, json.loads((self.folder / "evaluation.json").read_text()))
+        self.assertTrue((self.folder / "evaluation.csv").exists())
+        surface = evaluation["surface"]
+        self.assertLess(surface["estimate"]["pooled_median_mm"], surface["null"]["pooled_median_mm"])
+        same = pliant.evaluate(pliant.open_run(RUN), other_runs=RUN)
+        self.assertEqual(len(same["consistency"]), 1)
+        with self.assertRaises(ValueError) as caught:
+            pliant.evaluate(RUN)
+        self.assertIn("there is nothing to compare the run with", sentence(self, caught.exception))
+
+    def test_an_export_leaves_the_files_of_its_format(self):
+        done = pliant.export(RUN, self.folder / "colmap", "spacetime", {"Export.files": "text", "Export.stride": 10})
+        self.assertGreater(done["observations"], 0)
+        self.assertTrue(list((self.folder / "colmap").rglob("points3D.txt")))
+        with self.assertRaises(ValueError) as caught:
+            pliant.export(RUN, self.folder / "x", "colmop")
+        sentence(self, caught.exception)
+
+    def test_reports_figures_and_films_go_by_their_ending(self):
+        options = {"Report.image_width_px": 80, "Figure.panel_width_px": 120}
+        pliant.report(RUN, self.folder / "page.html", options)
+        self.assertIn("<html", (self.folder / "page.html").read_text()[:1000].lower())
+        pliant.report([RUN], self.folder / "figure.png", options, figure=[20, 40])
+        self.assertEqual((self.folder / "figure.png").read_bytes()[:4], b"\x89PNG")
+        with self.assertRaises(ValueError) as caught:
+            pliant.report(RUN, self.folder / "page.png")
+        self.assertIn("a report ends with .html or .htm", sentence(self, caught.exception))
+        with self.assertRaisesRegex(ValueError, "a figure ends with .png or .svg or .pdf"):
+            pliant.report(RUN, self.folder / "page.html", figure=[20])
+
+    def test_what_is_odd_about_a_sequence_is_a_warning(self):
+        (self.folder / "seq").mkdir()
+        pliant.simulate(self.folder / "seq", {**COARSE, "Trajectory.frames": 4})
+        (self.folder / "seq" / "depth" / "000001.png").unlink()
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            with self.assertRaises(pliant.Error):
+                pliant.track(self.folder / "seq", self.folder / "run")
+        self.assertEqual([str(warning.message) for warning in caught if "depth image" in str(warning.message)],
+                         ["1 of 4 images have no depth image, the first is 000001.png (frame 1)"])
+
+
+if __name__ == "__main__":
+    unittest.main()
