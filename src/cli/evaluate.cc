@@ -7,6 +7,7 @@
 #include "cli/command_line.h"
 #include "cli/commands.h"
 #include "cli/run_evaluation.h"
+#include "pliant/evaluation/evaluate_run.h"
 #include "pliant/evaluation/report.h"
 
 namespace pliant::cli {
