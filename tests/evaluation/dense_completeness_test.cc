@@ -28,7 +28,7 @@ class SeenIn final : public MaterialTruth {
   }
   Result<std::vector<std::optional<MaterialState>>> Observe(int frame_idx,
                                                             std::span<const MaterialId> points) override {
-    MaterialState state;
+    MaterialState state{.point_in_cam = Eigen::Vector3d::UnitZ(), .pixel = {}, .visibility = {}};
     const bool seen = std::ranges::find(frames_, frame_idx) != frames_.end();
     state.visibility = seen ? MaterialVisibility::kVisible : MaterialVisibility::kOccluded;
     return std::vector<std::optional<MaterialState>>(points.size(), state);
