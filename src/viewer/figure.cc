@@ -11,8 +11,12 @@
 #include <cairo-pdf.h>
 #include <cairo-svg.h>
 
-#include "viewer/draw_view.h"
+#include "viewer/draw_image.h"
+#include "viewer/draw_legend.h"
+#include "viewer/draw_scene.h"
+#include "viewer/drawing.h"
 #include "viewer/frame_images.h"
+#include "viewer/view_lookup.h"
 
 namespace pliant {
 namespace {
@@ -72,10 +76,10 @@ Status Draw(cairo_t* drawing, const View& view, const FigureOptions& options, co
   return Status::Ok();
 }
 
-Surface MakeSurface(const std::string& ending, const std::string& path, const Layout& layout) {
-  if (ending == ".svg") return Surface(cairo_svg_surface_create(path.c_str(), layout.width, layout.height));
-  if (ending == ".pdf") return Surface(cairo_pdf_surface_create(path.c_str(), layout.width, layout.height));
-  return Surface(
+CairoSurface MakeSurface(const std::string& ending, const std::string& path, const Layout& layout) {
+  if (ending == ".svg") return CairoSurface(cairo_svg_surface_create(path.c_str(), layout.width, layout.height));
+  if (ending == ".pdf") return CairoSurface(cairo_pdf_surface_create(path.c_str(), layout.width, layout.height));
+  return CairoSurface(
       cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(layout.width), static_cast<int>(layout.height)));
 }
 
@@ -116,7 +120,7 @@ Result<std::vector<std::string>> WriteFigure(const ViewRequest& request, const F
   const std::set<int> columns(frames_idx.begin(), frames_idx.end());
   const Layout layout(*view, options, columns.size());
   const std::string draft = output_path + ".part";
-  const Surface surface = MakeSurface(path.extension().string(), draft, layout);
+  const CairoSurface surface = MakeSurface(path.extension().string(), draft, layout);
   if (path.extension() == ".png" && cairo_surface_status(surface.get()) != CAIRO_STATUS_SUCCESS)
     return TooLarge(layout.width, layout.height);
   const Drawing drawing(cairo_create(surface.get()));

@@ -13,8 +13,12 @@
 
 #include "pliant/base/statistics.h"
 #include "pliant/viewer/figure.h"
-#include "viewer/draw_view.h"
+#include "viewer/draw_image.h"
+#include "viewer/draw_legend.h"
+#include "viewer/draw_scene.h"
+#include "viewer/drawing.h"
 #include "viewer/frame_images.h"
+#include "viewer/view_lookup.h"
 
 namespace pliant {
 namespace {
@@ -123,7 +127,7 @@ Result<std::vector<std::string>> WriteFilm(const ViewRequest& request, const Fig
   cv::VideoWriter writer;
   if (!OpenWriter(draft, options.fps > 0 ? options.fps : FramesPerSecond(*view), size, &writer))
     return unwritten(Unwritable(output_path));
-  const Surface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, size.width, size.height));
+  const CairoSurface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, size.width, size.height));
   if (cairo_surface_status(surface.get()) != CAIRO_STATUS_SUCCESS) return unwritten(TooLarge(size.width, size.height));
   int done = 0;
   for (const int frame_idx : frames_idx) {

@@ -12,7 +12,9 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/videoio.hpp>
 
-#include "viewer/draw_view.h"
+#include "viewer/draw_legend.h"
+#include "viewer/draw_scene.h"
+#include "viewer/drawing.h"
 #include "viewer/frame_geometry.h"
 #include "viewer/orbit.h"
 #include "viewer/small_sequence.h"

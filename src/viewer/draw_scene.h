@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// The scene of a frame: the map, the trails of its points, the camera's path, and the truth.
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include <Eigen/Core>
+
+#include "pliant/viewer/figure.h"
+#include "pliant/viewer/view.h"
+#include "viewer/drawing.h"
+#include "viewer/orbit.h"
+
+namespace pliant {
+
+// The eye that sees all of a run, its cameras included, and the camera as it is drawn there.
+struct Viewpoint {
+  Orbit orbit;
+  std::optional<std::array<Eigen::Vector3d, 4>> frustum;  // FrustumOf
+};
+Viewpoint ViewpointOf(const View& view, const ViewedRun& run, const FigureOptions& options, double width_px,
+                      double height_px);
+
+// A frame without a pose says why.
+void DrawScene(cairo_t* drawing, const Panel& panel, const View& view, const ViewedRun& run, int frame_idx,
+               const Viewpoint& viewpoint, const FigureOptions& options);
+
+}  // namespace pliant
