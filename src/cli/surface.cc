@@ -25,7 +25,8 @@ const Manual kManual = {
     "Leaves in --output_path depth/ (16-bit PNG, times depth_scale of camera.yaml, map units; 0: not known), "
     "confidence/ (standard deviation by the depth, times 65535) and surface.json. Where images say nothing of the "
     "depth "
-    "(highlights, no texture, unseen from elsewhere) there is none. Then one mesh of all that was seen, whose vertices "
+    "(highlights, no texture, unseen from elsewhere) there is none, unless --Surface.fill fills small holes, which "
+    "filled/ marks. Then one mesh of all that was seen, whose vertices "
     "move with the tissue: mesh/ (what a frame shows of it, PLY), undeformed.ply, surface.glb (textured and animated, "
     "for Blender and browsers), surface.pvd and vtp/ (displacement and strain, for ParaView).",
     {"pliant surface --run run --output_path surface",

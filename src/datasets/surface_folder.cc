@@ -59,7 +59,21 @@ Result<SurfaceDepth> ReadSurfaceDepth(const SurfaceFolder& folder, const Surface
   if (Status status = read(native::kDepthFolder, folder.depth_scale, &result.depth); !status.ok()) return status;
   if (Status status = read(surface::kConfidenceFolder, surface::kConfidenceUnit, &result.sigma); !status.ok())
     return status;
+  const std::filesystem::path filled = folder.path / surface::kFilledFolder / frame.file_name;
+  if (!Exists(filled.string())) return result;
+  auto mask = ReadMaskImage(filled);
+  if (!mask.ok()) return mask.status();
+  if (mask->size() != result.depth.size())
+    return Status(ErrorCode::kMismatch, filled.string() + " has not the size of the surface's camera.yaml");
+  result.filled = *std::move(mask);
   return result;
+}
+
+void SurfaceDepth::KeepMeasured() {
+  if (filled.empty()) return;
+  depth.setTo(0.0F, filled);
+  sigma.setTo(0.0F, filled);
+  filled.release();
 }
 
 Result<std::vector<Eigen::Vector3d>> ReadSurfaceVertices(const SurfaceFolder& folder,

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <utility>
@@ -25,6 +26,8 @@ struct Pixels {
   std::vector<double> sigma;          // by the depth
   std::vector<double> interpolation;  // empty: too few points
   int with_truth = 0;
+  std::vector<double> filled_truth_mm;  // of those that were filled, which are not among the others
+  std::vector<double> filled_estimate;
   // Of the mesh's vertices: those at pixels with a depth of the frame's own come first.
   std::vector<double> vertex_truth_mm;
   std::vector<double> vertex_estimate;
@@ -43,6 +46,11 @@ Pixels PixelsOf(const SurfaceDepth& dense, const cv::Mat& truth_mm, const std::o
       if (!(truth > 0.0F)) continue;
       ++pixels.with_truth;
       const float depth = dense.depth.at<float>(y, x);
+      if (!dense.filled.empty() && dense.filled.at<std::uint8_t>(y, x) != 0) {
+        pixels.filled_truth_mm.push_back(truth);
+        pixels.filled_estimate.push_back(depth);
+        continue;
+      }
       if (!(depth > 0.0F) || (interpolated && !(interpolated->at<float>(y, x) > 0.0F))) continue;
       pixels.truth_mm.push_back(truth);
       pixels.estimate.push_back(depth);
@@ -140,6 +148,20 @@ void AddMesh(const std::vector<Pixels>& frames, const std::vector<double>& scale
   error->mesh_alone_share = all > 0.0 ? alone / all : 0.0;
 }
 
+// The pixels that were filled.
+void AddFilled(const std::vector<Pixels>& frames, const std::vector<double>& scales, DenseError* error) {
+  const auto count = static_cast<double>(
+      std::ranges::count_if(frames, [](const Pixels& pixels) { return !pixels.filled_truth_mm.empty(); }));
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    const Pixels& pixels = frames[k];
+    if (pixels.filled_truth_mm.empty()) continue;
+    const auto estimate = [&](std::size_t i) { return scales[k] * pixels.filled_estimate[i]; };
+    Add(FiguresOf(pixels.filled_truth_mm, estimate, {}), 1.0 / count, &error->filled);
+    error->filled_share +=
+        static_cast<double>(pixels.filled_truth_mm.size()) / (pixels.with_truth * static_cast<double>(frames.size()));
+  }
+}
+
 // Adds a frame, as one of `frames`.
 void AddFrame(const Pixels& pixels, double scale, double frames, DenseError* error) {
   const double weight = 1.0 / frames;
@@ -180,7 +202,7 @@ Result<DenseError> ComputeDenseError(const SurfaceFolder& surface, const Evaluat
     const auto truth_mm = sequence.Depth(frame.frame_idx);
     if (!truth_mm.ok()) return truth_mm.status();
     if (!truth_mm->has_value()) continue;
-    const auto dense = ReadSurfaceDepth(surface, frame);
+    auto dense = ReadSurfaceDepth(surface, frame);
     if (!dense.ok()) return dense.status();
     if ((*truth_mm)->size() != dense->depth.size())
       return Status(ErrorCode::kMismatch, "the true depth of frame " + std::to_string(frame.frame_idx) +
@@ -190,6 +212,7 @@ Result<DenseError> ComputeDenseError(const SurfaceFolder& surface, const Evaluat
     if (of_run != run.frames.end() && of_run->cam_from_world)
       interpolated = InterpolatedDepth(surface.camera, *of_run->cam_from_world, of_run->observations);
     Pixels pixels = PixelsOf(*dense, **truth_mm, interpolated);
+    dense->KeepMeasured();
     if (pixels.truth_mm.empty()) continue;
     const auto vertices = ReadSurfaceVertices(surface, frame);
     if (!vertices.ok()) return vertices.status();
@@ -206,6 +229,7 @@ Result<DenseError> ComputeDenseError(const SurfaceFolder& surface, const Evaluat
     std::ranges::fill(scales, scale == ErrorScale::kGlobal ? Median(std::vector<double>(scales)) : 1.0);
   for (std::size_t k = 0; k < frames.size(); ++k)
     AddFrame(frames[k], scales[k], static_cast<double>(frames.size()), &error);
+  AddFilled(frames, scales, &error);
   AddMesh(frames, scales, &error);
   return error;
 }

@@ -100,6 +100,8 @@ Json ToJson(const DenseError& e) {
                {"estimate", ToJson(e.estimate)},
                {"certain_half", ToJson(e.certain_half)},
                {"interpolation", ToJson(e.interpolation)},
+               {"filled", ToJson(e.filled)},
+               {"filled_share", e.filled_share},
                {"mesh", ToJson(e.mesh)},
                {"mesh_alone", ToJson(e.mesh_alone)},
                {"mesh_vertices", e.mesh_vertices},

@@ -68,6 +68,7 @@ std::string DenseTable(const DenseError& e) {
          FormatText("  %-26s %8s %8s %8s %8s %7s %7s %7s\n", "", "AbsRel", "SqRel", "RMSE", "log", "<1 mm", "<2",
                     "<5 %") +
          DenseRow("surface", e.estimate) + DenseRow("  its more certain half", e.certain_half) +
+         (e.filled_share > 0 ? DenseRow("filled holes", e.filled) : "") +
          (e.mesh_vertices > 0 ? DenseRow("mesh, where it is known", e.mesh) + DenseRow("mesh elsewhere", e.mesh_alone)
                               : "") +
          DenseRow("points, interpolated", e.interpolation) + DenseRow("one constant depth", e.null) +

@@ -45,6 +45,7 @@ Status RunViews::ReadUntil(std::size_t position, const std::function<bool(std::s
     if (!is_needed(next_)) continue;
     const SurfaceView& view = views_[next_] = {frame->image, ValidMask(frame->image, frame->mask, masks_),
                                                posed.cam_from_world, posed.observations};
+    masks_given_[next_] = frame->mask;
     if (pair_threads_ == 0 || !needs_right || !needs_right(next_)) continue;
     if (!CheckPairs("a surface", *known_.camera, sequence_->BaselineMm()).ok()) continue;
     const auto right = sequence_->Right();
@@ -63,6 +64,13 @@ const SurfaceView* RunViews::RightOf(std::size_t position) const {
 void RunViews::ForgetUnless(const std::function<bool(std::size_t)>& is_needed) {
   for (auto* views : {&views_, &rights_})
     std::erase_if(*views, [&](const auto& entry) { return !is_needed(entry.first); });
+  std::erase_if(masks_given_, [&](const auto& entry) { return !is_needed(entry.first); });
+}
+
+cv::Mat RunViews::TissueIn(std::size_t position) const {
+  MaskOptions masks = masks_;
+  masks.highlights = Switch::kOff;
+  return ValidMask(views_.at(position).image, masks_given_.at(position), masks);
 }
 
 // One map unit is as many millimeters as the pair's depths of the frame's points say.

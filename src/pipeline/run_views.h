@@ -52,6 +52,8 @@ class RunViews {
   // What the right camera of a pair has seen at the same time, in the run's unit; null where there is none, or its
   // depths are not those of the run's points but for a factor.
   const SurfaceView* RightOf(std::size_t position) const;
+  // CV_8UC1, 0 = not tissue: excluded by a mask, or outside of the field of view. Tissue under a highlight is.
+  cv::Mat TissueIn(std::size_t position) const;
   void ForgetUnless(const std::function<bool(std::size_t)>& is_needed);
 
  private:
@@ -64,6 +66,7 @@ class RunViews {
   int pair_threads_;
   std::map<std::size_t, SurfaceView> views_;
   std::map<std::size_t, SurfaceView> rights_;
+  std::map<std::size_t, cv::Mat> masks_given_;
   std::size_t next_ = 0;
 };
 

@@ -51,9 +51,11 @@ std::vector<std::vector<DenseFrame>> DenseFramesBySubmap(const MeshSource& sourc
   return result;
 }
 
+// What was measured in it.
 Result<DenseDepth> ReadDense(const SurfaceFolder& folder, const SurfaceFolder::Frame& file) {
   auto read = ReadSurfaceDepth(folder, file);
   if (!read.ok()) return read.status();
+  read->KeepMeasured();
   return DenseDepth{std::move(read->depth), std::move(read->sigma)};
 }
 

@@ -25,6 +25,7 @@
 #include "pliant/image/depth_lookup.h"
 #include "pliant/io/run_map.h"
 #include "pliant/io/run_reader.h"
+#include "pliant/surface/fill_holes.h"
 
 namespace pliant {
 namespace {
@@ -91,9 +92,9 @@ double LargestDepth(const std::vector<PosedFrame>& frames) {
 
 class SurfaceMaker {
  public:
-  SurfaceMaker(const SurfaceRequest& request, const SurfaceProgress& callback, const DenseDepthEstimator& estimator,
-               SurfaceWriter* writer)
-      : request_(request), callback_(callback), estimator_(estimator), writer_(writer) {}
+  SurfaceMaker(const SurfaceRequest& request, const SurfaceRunOptions& options, const SurfaceProgress& callback,
+               const DenseDepthEstimator& estimator, SurfaceWriter* writer)
+      : request_(request), options_(options), callback_(callback), estimator_(estimator), writer_(writer) {}
 
   // `summary` has what was done, also where this fails.
   Status Make(const std::vector<PosedFrame>& frames, const Plan& plan, const RunMap& known, RunViews* images,
@@ -117,7 +118,8 @@ class SurfaceMaker {
       frame.frame_idx = frames[reference].frame_idx;
       if (const auto name = known.names.find(frame.frame_idx); name != known.names.end()) frame.name = name->second;
       for (const std::size_t n : plan.neighbors[k]) frame.neighbors.push_back(frames[n].frame_idx);
-      if (Status status = MakeFrame(reference, plan.neighbors[k], *images, &frame); !status.ok()) return status;
+      if (Status status = MakeFrame(reference, plan.neighbors[k], *known.camera, *images, &frame); !status.ok())
+        return status;
       images->ForgetUnless([&](std::size_t position) { return plan.last_use.at(position) > k; });
       summary->frames.push_back(frame);
       if (callback_) callback_(SurfaceStage::kDepth, static_cast<int>(k) + 1, total, frame.known_share);
@@ -126,8 +128,8 @@ class SurfaceMaker {
   }
 
  private:
-  Status MakeFrame(std::size_t reference, const std::vector<std::size_t>& neighbors, const RunViews& images,
-                   SurfaceFrame* frame) {
+  Status MakeFrame(std::size_t reference, const std::vector<std::size_t>& neighbors, const Camera& camera,
+                   const RunViews& images, SurfaceFrame* frame) {
     const auto begin = std::chrono::steady_clock::now();
     // Between the images of a pair nothing moves: others, which are seen through the deformation, would add errors.
     const SurfaceView* right = images.RightOf(reference);
@@ -137,17 +139,24 @@ class SurfaceMaker {
       others.push_back(*right);
     else
       for (const std::size_t n : neighbors) others.push_back(images.At(n));
-    const auto dense = estimator_.Estimate(images.At(reference), others);
+    auto dense = estimator_.Estimate(images.At(reference), others);
     frame->seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     if (!dense.ok()) {
       frame->note = dense.status().message();
       return Status::Ok();
     }
     Describe(*dense, images.At(reference).valid, frame);
-    return writer_->Write(*frame, *dense);
+    SurfaceMaps maps{*std::move(dense), {}};
+    if (options_.fill > 0) {
+      maps.filled = FillHoles(camera, images.TissueIn(reference), options_.fill, &maps.dense);
+      frame->filled_share = static_cast<double>(cv::countNonZero(maps.filled)) /
+                            std::max(1, cv::countNonZero(images.At(reference).valid));
+    }
+    return writer_->Write(*frame, maps);
   }
 
   const SurfaceRequest& request_;
+  const SurfaceRunOptions& options_;
   const SurfaceProgress& callback_;
   const DenseDepthEstimator& estimator_;
   SurfaceWriter* writer_;
@@ -165,6 +174,8 @@ void SurfaceRunOptions::List(OptionTable& table) {
   table.Add("gltf", &gltf, "bool", "surface.glb: the mesh, its texture, its motion and the camera's");
   table.Add("vtk", &vtk, "bool", "surface.pvd and vtp/: the mesh in every frame, with displacement, strain and sigma");
   table.Add("obj", &obj, "bool", "obj/: the mesh in every frame, with its texture");
+  table.Add("fill", &fill, "px", "holes of at most this area are filled from their rim, and marked; 0: none", 0,
+            100000);
   table.Add("animation_keys", &animation_keys, "", "frames whose mesh surface.glb has, evenly spread", 1, 1000);
   table.Add("threads", &threads, "", "0: as many as the machine has; the result is the same", 0, 1024);
   masks.List(table);
@@ -193,12 +204,12 @@ Result<SurfaceSummary> MakeSurface(const SurfaceRequest& request, const SurfaceR
     return Status(ErrorCode::kInsufficient, "none of the chosen frames was tracked in " + Quoted(request.run_path));
   const auto estimator = MakeEstimator(*known->camera, *run, options);
   if (!estimator.ok()) return estimator.status();
-  auto writer = SurfaceWriter::Create(request.output_path, *known->camera, LargestDepth(*frames));
+  auto writer = SurfaceWriter::Create(request.output_path, *known->camera, LargestDepth(*frames), options);
   if (!writer.ok()) return writer.status();
   RunViews images(*std::move(sequence), *frames, *known, options.masks, options.pairs ? ThreadsOf(options) : 0);
   SurfaceSummary summary{estimator->windows(), {}};
   const Status made =
-      SurfaceMaker(request, callback, *estimator, &*writer).Make(*frames, plan, *known, &images, &summary);
+      SurfaceMaker(request, options, callback, *estimator, &*writer).Make(*frames, plan, *known, &images, &summary);
   std::ranges::sort(summary.frames, {}, &SurfaceFrame::frame_idx);
   // Until the meshes are there too, the folder says that it was interrupted.
   const bool stopped = summary.stopped || !made.ok();

@@ -5,6 +5,7 @@
 
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -30,7 +31,8 @@ Status RemoveEarlierSurface(const fs::path& path) {
   if (!fs::exists(path / surface::kSummaryFile, error))
     return {ErrorCode::kInvalidArgument,
             Quoted(path.string()) + " holds something other than a surface; give another --output_path"};
-  for (const char* folder : {native::kDepthFolder, surface::kConfidenceFolder}) fs::remove_all(path / folder, error);
+  for (const char* folder : {native::kDepthFolder, surface::kConfidenceFolder, surface::kFilledFolder})
+    fs::remove_all(path / folder, error);
   return error ? Unwritable(path) : MeshWriter::RemoveEarlier(path);
 }
 
@@ -42,11 +44,14 @@ std::string FileNameOf(const SurfaceFrame& frame) {
 
 }  // namespace
 
-Result<SurfaceWriter> SurfaceWriter::Create(const std::string& path, const Camera& camera, double largest_depth) {
+Result<SurfaceWriter> SurfaceWriter::Create(const std::string& path, const Camera& camera, double largest_depth,
+                                            const SurfaceRunOptions& options) {
   const fs::path folder = path;
   if (Status status = RemoveEarlierSurface(folder); !status.ok()) return status;
+  std::vector<const char*> kinds = {native::kDepthFolder, surface::kConfidenceFolder};
+  if (options.fill > 0) kinds.push_back(surface::kFilledFolder);
   std::error_code error;
-  for (const char* kind : {native::kDepthFolder, surface::kConfidenceFolder}) {
+  for (const char* kind : kinds) {
     fs::create_directories(folder / kind, error);
     if (error) return Unwritable(folder / kind);
   }
@@ -62,12 +67,14 @@ Result<SurfaceWriter> SurfaceWriter::Create(const std::string& path, const Camer
   return SurfaceWriter(folder, scale);
 }
 
-Status SurfaceWriter::Write(const SurfaceFrame& frame, const DenseDepth& dense) {
+Status SurfaceWriter::Write(const SurfaceFrame& frame, const SurfaceMaps& maps) {
   const std::string name = FileNameOf(frame);
-  if (Status status = WritePng(path_ / native::kDepthFolder / name, QuantizeDepth(dense.depth, depth_scale_));
+  if (!maps.filled.empty())
+    if (Status status = WritePng(path_ / surface::kFilledFolder / name, maps.filled); !status.ok()) return status;
+  if (Status status = WritePng(path_ / native::kDepthFolder / name, QuantizeDepth(maps.dense.depth, depth_scale_));
       !status.ok())
     return status;
-  return WritePng(path_ / surface::kConfidenceFolder / name, QuantizeDepth(dense.sigma, surface::kConfidenceUnit));
+  return WritePng(path_ / surface::kConfidenceFolder / name, QuantizeDepth(maps.dense.sigma, surface::kConfidenceUnit));
 }
 
 Status SurfaceWriter::Finish(const SurfaceRequest& request, const SurfaceRunOptions& options,
@@ -94,6 +101,7 @@ Status SurfaceWriter::Finish(const SurfaceRequest& request, const SurfaceRunOpti
                               {"neighbors", frame.neighbors},
                               {"pair", frame.has_pair},
                               {"known_share", frame.known_share},
+                              {"filled_share", frame.filled_share},
                               {"median_sigma", frame.median_sigma},
                               {"seconds", frame.seconds},
                               {"note", frame.note}});

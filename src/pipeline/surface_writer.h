@@ -14,14 +14,21 @@
 
 namespace pliant {
 
+// What a frame has.
+struct SurfaceMaps {
+  DenseDepth dense;
+  cv::Mat filled;  // CV_8UC1, 255 where the depth was filled; empty: holes are not filled
+};
+
 class SurfaceWriter {
  public:
   // Makes the folder, removes frames of an earlier surface there and writes camera.yaml. Depths up to `largest_depth`,
   // map units, can be written. Fails with kUnwritable, and kInvalidArgument where the folder holds something else.
-  static Result<SurfaceWriter> Create(const std::string& path, const Camera& camera, double largest_depth);
+  static Result<SurfaceWriter> Create(const std::string& path, const Camera& camera, double largest_depth,
+                                      const SurfaceRunOptions& options);
 
   // Fail with kUnwritable.
-  Status Write(const SurfaceFrame& frame, const DenseDepth& dense);
+  Status Write(const SurfaceFrame& frame, const SurfaceMaps& maps);
   // surface.json.
   Status Finish(const SurfaceRequest& request, const SurfaceRunOptions& options, const SurfaceSummary& summary);
 

@@ -20,7 +20,9 @@ constexpr double kMinKnown = 0.4;      // of all pixels with a true depth, also 
 constexpr double kMaxAbsRel = 0.012;   // the points' own error is about 0.5 %
 constexpr double kShareOfPlate = 0.7;  // of the error of the interpolated points
 constexpr double kMinWithinTwoSigma = 0.9;
-constexpr double kMinVertices = 2000;  // of 96 x 72 nodes
+constexpr double kMinVertices = 2000;       // of 96 x 72 nodes
+constexpr int kFilledPx = 400;              // holes of highlights
+constexpr double kMaxAbsRelFilled = 0.02;   // somewhat less than what is measured
 
 TEST(RigidScene, ItsSurfaceIsNearerToTheTruthThanItsPointsInterpolated) {
   const TestFolder folder;
@@ -64,6 +66,13 @@ class SurfaceFiles : public testing::Test {
     request.stop = &stop_;
     return MakeSurface(request, options, callback);
   }
+  SurfaceDepth Depth() const {
+    const auto surface = ReadSurfaceFolder(folder_.Path("surface"));
+    EXPECT_TRUE(surface.ok()) << surface.status().message();
+    auto depth = ReadSurfaceDepth(*surface, surface->frames.front());
+    EXPECT_TRUE(depth.ok()) << depth.status().message();
+    return *std::move(depth);
+  }
   bool Has(const std::string& name) const { return std::filesystem::exists(folder_.Path("surface/" + name)); }
 
   TestFolder folder_;
@@ -84,6 +93,35 @@ TEST_F(SurfaceFiles, AreThoseThatAreWanted) {
   EXPECT_TRUE(Has("depth/000030.png"));
   for (const char* name : {"mesh", "obj", "texture.jpg", "texture.mtl", "surface.glb", "undeformed.ply"})
     EXPECT_FALSE(Has(name)) << name;
+}
+
+// What is filled is nearly as good as what is measured around it, and changes nothing of the mesh.
+TEST_F(SurfaceFiles, MarkWhatWasFilled) {
+  SurfaceRunOptions options;
+  options.gltf = options.vtk = false;
+  ASSERT_TRUE(Make(options).ok());
+  EXPECT_FALSE(Has("filled"));
+  const std::string mesh = folder_.Read("surface/undeformed.ply");
+  const auto measured = Depth();
+  options.fill = kFilledPx;
+  const auto summary = Make(options);
+  ASSERT_TRUE(summary.ok()) << summary.status().message();
+  EXPECT_GT(summary->frames[0].filled_share, 0.0);
+  EXPECT_EQ(folder_.Read("surface/undeformed.ply"), mesh);
+  auto filled = Depth();
+  ASSERT_GT(cv::countNonZero(filled.filled), 0);
+  EXPECT_EQ(cv::countNonZero((filled.filled != 0) & (measured.depth > 0)), 0);
+  EXPECT_EQ(cv::countNonZero((filled.filled != 0) & (filled.depth == 0)), 0);
+  filled.KeepMeasured();
+  EXPECT_EQ(cv::countNonZero(filled.depth != measured.depth), 0);
+
+  const auto sequence = OpenSequence({.image_path = kSequence});
+  ASSERT_TRUE(sequence.ok());
+  const auto surface = ReadSurfaceFolder(folder_.Path("surface"));
+  const auto error = ComputeDenseError(*surface, *ReadEvaluationInput(kDefaultRun), **sequence, ErrorScale::kPerFrame);
+  ASSERT_TRUE(error.ok()) << error.status().message();
+  EXPECT_GT(error->filled_share, 0.0);
+  EXPECT_LT(error->filled.abs_rel, kMaxAbsRelFilled);
 }
 
 TEST_F(SurfaceFiles, OfASurfaceThatWasStoppedAreWhole) {

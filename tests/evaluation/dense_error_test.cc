@@ -93,6 +93,24 @@ TEST_F(DenseErrorTest, TheMeshIsComparedWhereTheFrameHasADepthAndElsewhere) {
   EXPECT_NEAR(error->mesh_vertices, Rendered().camera.width() / 8.0, 1);
 }
 
+TEST_F(DenseErrorTest, WhatWasFilledIsApart) {
+  const auto strip = [](const cv::Mat& image) { return cv::Rect(0, 0, image.cols / 8, image.rows); };
+  const SurfaceFolder surface = WriteSurface([&](cv::Mat* depth) { (*depth)(strip(*depth)) *= 1.1; });
+  EXPECT_EQ(ComputeDenseError(surface, {}, sequence_, ErrorScale::kPerFrame)->filled_share, 0.0);
+  std::filesystem::create_directories(folder_.Path("filled"));
+  for (const char* name : {"filled/2.png", "filled/5.png"}) {
+    cv::Mat filled(Rendered().camera.height(), Rendered().camera.width(), CV_8U, cv::Scalar(0));
+    filled(strip(filled)).setTo(255);
+    ASSERT_TRUE(WritePng(folder_.Path(name), filled).ok());
+  }
+  const auto error = ComputeDenseError(surface, {}, sequence_, ErrorScale::kPerFrame);
+  ASSERT_TRUE(error.ok()) << error.status().message();
+  EXPECT_LT(error->estimate.abs_rel, 1e-3);
+  EXPECT_NEAR(error->known_share, 7.0 / 8, 0.02);
+  EXPECT_NEAR(error->filled.abs_rel, 0.1, 1e-3);
+  EXPECT_NEAR(error->filled_share, 1.0 / 8, 0.02);
+}
+
 TEST_F(DenseErrorTest, HolesAndTheUncertainHalfAreTold) {
   const SurfaceFolder surface = WriteSurface([](cv::Mat* depth) {
     (*depth)(cv::Rect(0, 0, depth->cols, depth->rows / 4)).setTo(0.0F);

@@ -21,6 +21,7 @@ namespace pliant {
 namespace surface {
 inline constexpr const char* kSummaryFile = "surface.json";
 inline constexpr const char* kConfidenceFolder = "confidence";
+inline constexpr const char* kFilledFolder = "filled";
 inline constexpr const char* kMeshFolder = "mesh";
 inline constexpr double kConfidenceUnit = 1.0 / 65535.0;  // of a standard deviation by the depth
 }  // namespace surface
@@ -44,6 +45,11 @@ struct SurfaceFolder {
 struct SurfaceDepth {
   cv::Mat depth;  // CV_32FC1, the camera's size, z along the optical axis, map units; 0 = none
   cv::Mat sigma;  // CV_32FC1, by the depth
+  // CV_8UC1, not 0 where the depth was filled from the rim of a hole, and not measured; empty: nowhere.
+  cv::Mat filled = {};
+
+  // Takes the depths away that were filled.
+  void KeepMeasured();
 };
 
 // Fails with kNotFound or kUnreadable.

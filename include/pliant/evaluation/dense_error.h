@@ -41,6 +41,9 @@ struct DenseError {
   DepthFigures certain_half;   // of the pixels with the smaller sigmas
   DepthFigures interpolation;  // a thin plate through the run's points, at the pixels of `estimate`
   DepthFigures null;           // one constant depth there
+  DepthFigures filled;         // of the pixels that were filled from the rim of a hole, which are none of the others;
+                               // over the frames that have such ones
+  double filled_share = 0;     // of the pixels with a true depth; 0: holes were not filled
   DepthFigures mesh;           // of the mesh's vertices, where the frame has a depth of its own too; over the frames
                                // that have such ones
   DepthFigures mesh_alone;     // where it has none: also of tissue that is hidden here; likewise

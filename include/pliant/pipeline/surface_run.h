@@ -29,6 +29,7 @@ struct SurfaceRunOptions {
   bool gltf = true;                // which files of it, beside a PLY file a frame
   bool vtk = true;
   bool obj = false;
+  int fill = 0;             // pixels of the largest hole of a depth image that is filled from its rim; 0: none
   int animation_keys = 60;  // frames whose mesh the glTF file has
   int threads = 0;          // 0: as many as the machine has
 
@@ -52,7 +53,8 @@ struct SurfaceFrame {
   std::vector<int> neighbors;  // frames
   bool has_pair = false;       // it was compared with its right image, not with neighbors
   double known_share = 0;      // of the image's valid pixels, that have a depth
-  double median_sigma = 0;     // of these, by the depth
+  double filled_share = 0;     // filled pixels by the number of valid ones; not among `known_share`
+  double median_sigma = 0;     // of those that are known, by the depth
   double seconds = 0;
   std::string note;  // why it has no depth, one sentence; else empty
 };
