@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstddef>
 #include <filesystem>
 #include <map>
@@ -26,6 +27,7 @@
 #include "pliant/io/run_map.h"
 #include "pliant/io/run_reader.h"
 #include "pliant/surface/fill_holes.h"
+#include "pliant/surface/normals.h"
 
 namespace pliant {
 namespace {
@@ -70,15 +72,20 @@ int ThreadsOf(const SurfaceRunOptions& options) {
   return options.threads > 0 ? options.threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
-Result<DenseDepthEstimator> MakeEstimator(const Camera& camera, const Run& run, const SurfaceRunOptions& options) {
+TrackedImage TrackedImageOf(const Run& run) {
   TrackedImage tracked;
-  if (run.summary) {
-    const RunDescription& description = run.summary->description;
-    tracked.working = {.scale = description.image_scale, .smoothing_px = description.image_smoothing_px};
-    if (description.patch_size > 0) tracked.patch_px = description.patch_size;
-    tracked.noise_levels = description.image_noise_levels;
-  }
-  return DenseDepthEstimator::Create(camera, tracked, options.depth, ThreadsOf(options));
+  if (!run.summary) return tracked;
+  const RunDescription& description = run.summary->description;
+  tracked.working = {.scale = description.image_scale, .smoothing_px = description.image_smoothing_px};
+  if (description.patch_size > 0) tracked.patch_px = description.patch_size;
+  tracked.noise_levels = description.image_noise_levels;
+  return tracked;
+}
+
+// Side of a compared window, in pixels of the camera; odd. Depths tell nothing smaller.
+int ComparedWindowPx(const TrackedImage& tracked, const DenseDepthOptions& options) {
+  const double side = options.window * tracked.patch_px / tracked.working.scale;
+  return 2 * std::max(1, static_cast<int>(std::lround((side - 1) / 2))) + 1;
 }
 
 // A bound on the depths of the run: no surface that was tracked is farther.
@@ -92,9 +99,15 @@ double LargestDepth(const std::vector<PosedFrame>& frames) {
 
 class SurfaceMaker {
  public:
+  // `window_px`: of the normals.
   SurfaceMaker(const SurfaceRequest& request, const SurfaceRunOptions& options, const SurfaceProgress& callback,
-               const DenseDepthEstimator& estimator, SurfaceWriter* writer)
-      : request_(request), options_(options), callback_(callback), estimator_(estimator), writer_(writer) {}
+               const DenseDepthEstimator& estimator, int window_px, SurfaceWriter* writer)
+      : request_(request),
+        options_(options),
+        callback_(callback),
+        estimator_(estimator),
+        window_px_(window_px),
+        writer_(writer) {}
 
   // `summary` has what was done, also where this fails.
   Status Make(const std::vector<PosedFrame>& frames, const Plan& plan, const RunMap& known, RunViews* images,
@@ -146,12 +159,13 @@ class SurfaceMaker {
       return Status::Ok();
     }
     Describe(*dense, images.At(reference).valid, frame);
-    SurfaceMaps maps{*std::move(dense), {}};
+    SurfaceMaps maps{*std::move(dense), {}, {}};
     if (options_.fill > 0) {
       maps.filled = FillHoles(camera, images.TissueIn(reference), options_.fill, &maps.dense);
       frame->filled_share = static_cast<double>(cv::countNonZero(maps.filled)) /
                             std::max(1, cv::countNonZero(images.At(reference).valid));
     }
+    if (options_.normals_png) maps.normals = NormalsOfDepth(camera, maps.dense.depth, window_px_);
     return writer_->Write(*frame, maps);
   }
 
@@ -159,6 +173,7 @@ class SurfaceMaker {
   const SurfaceRunOptions& options_;
   const SurfaceProgress& callback_;
   const DenseDepthEstimator& estimator_;
+  int window_px_;
   SurfaceWriter* writer_;
 };
 
@@ -176,6 +191,8 @@ void SurfaceRunOptions::List(OptionTable& table) {
   table.Add("obj", &obj, "bool", "obj/: the mesh in every frame, with its texture");
   table.Add("fill", &fill, "px", "holes of at most this area are filled from their rim, and marked; 0: none", 0,
             100000);
+  table.Add("exr", &exr, "bool", "exr/: the depth as OpenEXR, 32-bit floats");
+  table.Add("normals_png", &normals_png, "bool", "normals/: of the depth, (n + 1) / 2 in red, green, blue");
   table.Add("animation_keys", &animation_keys, "", "frames whose mesh surface.glb has, evenly spread", 1, 1000);
   table.Add("threads", &threads, "", "0: as many as the machine has; the result is the same", 0, 1024);
   masks.List(table);
@@ -202,14 +219,16 @@ Result<SurfaceSummary> MakeSurface(const SurfaceRequest& request, const SurfaceR
   const Plan plan = MakePlan(*frames, request, options);
   if (plan.references.empty())
     return Status(ErrorCode::kInsufficient, "none of the chosen frames was tracked in " + Quoted(request.run_path));
-  const auto estimator = MakeEstimator(*known->camera, *run, options);
+  const TrackedImage tracked = TrackedImageOf(*run);
+  const auto estimator = DenseDepthEstimator::Create(*known->camera, tracked, options.depth, ThreadsOf(options));
   if (!estimator.ok()) return estimator.status();
   auto writer = SurfaceWriter::Create(request.output_path, *known->camera, LargestDepth(*frames), options);
   if (!writer.ok()) return writer.status();
   RunViews images(*std::move(sequence), *frames, *known, options.masks, options.pairs ? ThreadsOf(options) : 0);
   SurfaceSummary summary{estimator->windows(), {}};
   const Status made =
-      SurfaceMaker(request, options, callback, *estimator, &*writer).Make(*frames, plan, *known, &images, &summary);
+      SurfaceMaker(request, options, callback, *estimator, ComparedWindowPx(tracked, options.depth), &*writer)
+          .Make(*frames, plan, *known, &images, &summary);
   std::ranges::sort(summary.frames, {}, &SurfaceFrame::frame_idx);
   // Until the meshes are there too, the folder says that it was interrupted.
   const bool stopped = summary.stopped || !made.ok();

@@ -3,12 +3,15 @@
 
 #include "pipeline/surface_writer.h"
 
+#include <cmath>
+#include <cstdint>
 #include <system_error>
 #include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 
+#include "pipeline/exr_file.h"
 #include "pipeline/mesh_writer.h"
 #include "pliant/base/files.h"
 #include "pliant/base/text.h"
@@ -24,6 +27,22 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
+constexpr const char* kExrFolder = "exr";
+constexpr const char* kNormalsFolder = "normals";
+
+// CV_32FC3 in camera axes -> (n + 1) / 2 of 255, x, y, z in red, green, blue; black where there is none.
+cv::Mat NormalsInColors(const cv::Mat& normals) {
+  cv::Mat bgr(normals.size(), CV_8UC3, cv::Scalar::all(0));
+  for (int y = 0; y < normals.rows; ++y)
+    for (int x = 0; x < normals.cols; ++x) {
+      const auto& normal = normals.at<cv::Vec3f>(y, x);
+      if (normal == cv::Vec3f(0, 0, 0)) continue;
+      for (int c = 0; c < 3; ++c)
+        bgr.at<cv::Vec3b>(y, x)[2 - c] = static_cast<std::uint8_t>(std::lround(127.5F * (normal[c] + 1.0F)));
+    }
+  return bgr;
+}
+
 // An earlier surface's files. A folder that is not a surface's and not empty is left alone.
 Status RemoveEarlierSurface(const fs::path& path) {
   std::error_code error;
@@ -31,7 +50,8 @@ Status RemoveEarlierSurface(const fs::path& path) {
   if (!fs::exists(path / surface::kSummaryFile, error))
     return {ErrorCode::kInvalidArgument,
             Quoted(path.string()) + " holds something other than a surface; give another --output_path"};
-  for (const char* folder : {native::kDepthFolder, surface::kConfidenceFolder, surface::kFilledFolder})
+  for (const char* folder :
+       {native::kDepthFolder, surface::kConfidenceFolder, surface::kFilledFolder, kExrFolder, kNormalsFolder})
     fs::remove_all(path / folder, error);
   return error ? Unwritable(path) : MeshWriter::RemoveEarlier(path);
 }
@@ -50,6 +70,8 @@ Result<SurfaceWriter> SurfaceWriter::Create(const std::string& path, const Camer
   if (Status status = RemoveEarlierSurface(folder); !status.ok()) return status;
   std::vector<const char*> kinds = {native::kDepthFolder, surface::kConfidenceFolder};
   if (options.fill > 0) kinds.push_back(surface::kFilledFolder);
+  if (options.exr) kinds.push_back(kExrFolder);
+  if (options.normals_png) kinds.push_back(kNormalsFolder);
   std::error_code error;
   for (const char* kind : kinds) {
     fs::create_directories(folder / kind, error);
@@ -64,13 +86,20 @@ Result<SurfaceWriter> SurfaceWriter::Create(const std::string& path, const Camer
   if (Status status = WriteFileAtomically((folder / surface::kSummaryFile).string(), "{\"status\": \"interrupted\"}\n");
       !status.ok())
     return status;
-  return SurfaceWriter(folder, scale);
+  return SurfaceWriter(folder, scale, options.exr);
 }
 
 Status SurfaceWriter::Write(const SurfaceFrame& frame, const SurfaceMaps& maps) {
   const std::string name = FileNameOf(frame);
   if (!maps.filled.empty())
     if (Status status = WritePng(path_ / surface::kFilledFolder / name, maps.filled); !status.ok()) return status;
+  if (exr_)
+    if (Status status = WriteDepthExr(path_ / kExrFolder / fs::path(name).replace_extension(".exr"), maps.dense.depth);
+        !status.ok())
+      return status;
+  if (!maps.normals.empty())
+    if (Status status = WritePng(path_ / kNormalsFolder / name, NormalsInColors(maps.normals)); !status.ok())
+      return status;
   if (Status status = WritePng(path_ / native::kDepthFolder / name, QuantizeDepth(maps.dense.depth, depth_scale_));
       !status.ok())
     return status;

@@ -17,7 +17,8 @@ namespace pliant {
 // What a frame has.
 struct SurfaceMaps {
   DenseDepth dense;
-  cv::Mat filled;  // CV_8UC1, 255 where the depth was filled; empty: holes are not filled
+  cv::Mat filled;   // CV_8UC1, 255 where the depth was filled; empty: holes are not filled
+  cv::Mat normals;  // CV_32FC3, camera frame, zero: none; empty: not wanted
 };
 
 class SurfaceWriter {
@@ -33,10 +34,12 @@ class SurfaceWriter {
   Status Finish(const SurfaceRequest& request, const SurfaceRunOptions& options, const SurfaceSummary& summary);
 
  private:
-  SurfaceWriter(std::filesystem::path path, double depth_scale) : path_(std::move(path)), depth_scale_(depth_scale) {}
+  SurfaceWriter(std::filesystem::path path, double depth_scale, bool exr)
+      : path_(std::move(path)), depth_scale_(depth_scale), exr_(exr) {}
 
   std::filesystem::path path_;
   double depth_scale_;
+  bool exr_;
 };
 
 }  // namespace pliant

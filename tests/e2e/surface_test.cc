@@ -8,10 +8,13 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <opencv2/imgcodecs.hpp>
 
 #include "e2e/e2e_support.h"
+#include "pliant/base/statistics.h"
 #include "pliant/evaluation/dense_error.h"
 #include "pliant/pipeline/surface_run.h"
+#include "pliant/surface/normals.h"
 
 namespace pliant {
 namespace {
@@ -23,6 +26,9 @@ constexpr double kMinWithinTwoSigma = 0.9;
 constexpr double kMinVertices = 2000;       // of 96 x 72 nodes
 constexpr int kFilledPx = 400;              // holes of highlights
 constexpr double kMaxAbsRelFilled = 0.02;   // somewhat less than what is measured
+constexpr int kTruthWindowPx = 5;           // the true depth has steps of its 16 bits
+constexpr double kUnitInBytes = 0.01;       // of a unit vector with three bytes
+constexpr double kMaxMedianAngle_deg = 15;  // folds are sharper than a compared window
 
 TEST(RigidScene, ItsSurfaceIsNearerToTheTruthThanItsPointsInterpolated) {
   const TestFolder folder;
@@ -122,6 +128,39 @@ TEST_F(SurfaceFiles, MarkWhatWasFilled) {
   ASSERT_TRUE(error.ok()) << error.status().message();
   EXPECT_GT(error->filled_share, 0.0);
   EXPECT_LT(error->filled.abs_rel, kMaxAbsRelFilled);
+}
+
+TEST_F(SurfaceFiles, HaveNormalsAndFloatsOnRequest) {
+  SurfaceRunOptions options;
+  options.mesh_columns = 0;
+  options.exr = options.normals_png = true;
+  ASSERT_TRUE(Make(options).ok());
+  EXPECT_TRUE(Has("exr/000030.exr"));
+  const cv::Mat normals = cv::imread(folder_.Path("surface/normals/000030.png"));
+  const auto sequence = OpenSequence({.image_path = kSequence});
+  ASSERT_TRUE(sequence.ok());
+  const auto true_depth = (*sequence)->Depth(30);
+  ASSERT_TRUE(true_depth.ok() && true_depth->has_value());
+  const cv::Mat truth = NormalsOfDepth((*sequence)->camera(), **true_depth, kTruthWindowPx);
+  ASSERT_EQ(normals.size(), truth.size());
+  std::vector<double> angles_deg;
+  for (int y = 0; y < normals.rows; ++y)
+    for (int x = 0; x < normals.cols; ++x) {
+      const auto& bgr = normals.at<cv::Vec3b>(y, x);
+      const auto& expected = truth.at<cv::Vec3f>(y, x);
+      if (bgr == cv::Vec3b(0, 0, 0) || expected == cv::Vec3f(0, 0, 0)) continue;
+      const Eigen::Vector3d n = Eigen::Vector3d(bgr[2], bgr[1], bgr[0]) / 127.5 - Eigen::Vector3d::Ones();
+      EXPECT_NEAR(n.norm(), 1, kUnitInBytes);
+      const double cosine = n.normalized().dot(Eigen::Vector3d(expected[0], expected[1], expected[2]));
+      angles_deg.push_back(kDegPerRad * std::acos(std::min(1.0, cosine)));
+    }
+  ASSERT_GT(angles_deg.size(), 0.3 * static_cast<double>(normals.total()));
+  EXPECT_LT(Median(angles_deg), kMaxMedianAngle_deg);
+  // Those of an earlier surface go.
+  options.exr = options.normals_png = false;
+  ASSERT_TRUE(Make(options).ok());
+  EXPECT_FALSE(Has("exr"));
+  EXPECT_FALSE(Has("normals"));
 }
 
 TEST_F(SurfaceFiles, OfASurfaceThatWasStoppedAreWhole) {

@@ -29,9 +29,11 @@ struct SurfaceRunOptions {
   bool gltf = true;                // which files of it, beside a PLY file a frame
   bool vtk = true;
   bool obj = false;
-  int fill = 0;             // pixels of the largest hole of a depth image that is filled from its rim; 0: none
-  int animation_keys = 60;  // frames whose mesh the glTF file has
-  int threads = 0;          // 0: as many as the machine has
+  int fill = 0;              // pixels of the largest hole of a depth image that is filled from its rim; 0: none
+  bool exr = false;          // depths as OpenEXR files too
+  bool normals_png = false;  // normals of the depth images
+  int animation_keys = 60;   // frames whose mesh the glTF file has
+  int threads = 0;           // 0: as many as the machine has
 
   void List(OptionTable& table);  // groups "Surface", "Masks"
 };

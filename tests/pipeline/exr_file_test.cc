@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pipeline/exr_file.h"
+
+#include <filesystem>
+
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfInputFile.h>
+#include <gtest/gtest.h>
+#include <opencv2/core.hpp>
+
+#include "support/test_folder.h"
+
+namespace pliant {
+namespace {
+
+TEST(DepthExr, HoldsTheFloatsAsTheyAre) {
+  const TestFolder folder;
+  cv::Mat depth(37, 53, CV_32F);
+  cv::RNG(3).fill(depth, cv::RNG::UNIFORM, 0.001, 1000.0);
+  depth.at<float>(5, 7) = 0;
+  ASSERT_TRUE(WriteDepthExr(folder.Path("depth.exr"), depth).ok());
+
+  Imf::InputFile file(folder.Path("depth.exr").c_str());
+  ASSERT_NE(file.header().channels().findChannel("Z"), nullptr);
+  EXPECT_EQ(file.header().channels().findChannel("Z")->type, Imf::FLOAT);
+  cv::Mat read(37, 53, CV_32F);
+  Imf::FrameBuffer pixels;
+  pixels.insert("Z", Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(read.data), sizeof(float), read.step[0]));
+  file.setFrameBuffer(pixels);
+  file.readPixels(0, 36);
+  EXPECT_EQ(cv::countNonZero(read != depth), 0);
+}
+
+TEST(DepthExr, AFolderThatIsNotThereIsNamed) {
+  const TestFolder folder;
+  const Status status = WriteDepthExr(folder.Path("nowhere/depth.exr"), cv::Mat(4, 4, CV_32F, cv::Scalar(1)));
+  EXPECT_EQ(status.code(), ErrorCode::kUnwritable);
+  EXPECT_NE(status.message().find("nowhere"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace pliant
