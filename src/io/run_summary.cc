@@ -69,6 +69,7 @@ Status WriteRunSummary(const std::string& path, const RunSummary& summary) {
       {"camera", summary.description.camera},
       {"mask", summary.description.mask},
       {"refined_from", summary.description.refined_from},
+      {"metric", summary.description.metric ? Json(*summary.description.metric) : Json()},
       {"oracles", summary.description.oracles},
       {"working_image",
        {{"scale", summary.description.image_scale},
@@ -123,6 +124,8 @@ Result<RunSummary> ReadRunSummary(const std::string& path) {
                            json.value("mask", ""),
                            json.value("oracles", std::vector<std::string>())};
     summary.description.refined_from = json.value("refined_from", "");
+    if (const Json metric = json.value("metric", Json()); !metric.is_null())
+      summary.description.metric = metric.get<bool>();
     if (const Json working = json.value("working_image", Json()); !working.is_null()) {
       summary.description.image_scale = working.at("scale").get<double>();
       summary.description.image_smoothing_px = working.at("smoothing_px").get<double>();

@@ -346,7 +346,9 @@ Result<RunSummary> RunTrack(const RunRequest& request, const TrackOptions& optio
                                    usable.tracker.point_tracker.lucas_kanade.patch_size,
                                    start->images.noise_levels,
                                    start->images.track_noise_px,
-                                   start->images.alive_after_9},
+                                   start->images.alive_after_9,
+                                   "",
+                                   options.tracker.init.IsMetric()},
                                   table.ToYaml(), ColumnsOfFrames(), writer_options);
   if (!writer.ok()) return writer.status();
 

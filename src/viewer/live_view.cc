@@ -45,8 +45,11 @@ int Number(const httplib::Request& request, const char* name) {
 }  // namespace
 
 struct LiveView::Server {
-  Server(const std::string& name, const LiveOptions& options)
-      : title(name), images(options.image_width_px, options.image_quality, options.max_image_mb), run(name) {}
+  Server(const LiveRunName& shown, const LiveOptions& options)
+      : title(shown.name),
+        in_millimeters(shown.in_millimeters),
+        images(options.image_width_px, options.image_quality, options.max_image_mb),
+        run(shown.name) {}
 
   bool Listen(int wanted_port) {
     // Not the library's own, by which two programs could share a port.
@@ -105,6 +108,7 @@ struct LiveView::Server {
     }
     view.runs.push_back(std::move(part).ToRun());  // without holding up the tracker
     view.camera = view.runs.front().camera;
+    view.in_millimeters = view.runs.front().in_millimeters = in_millimeters;
     answer["image_frames"] = images.Frames();
     answer["image_scale"] = images.scale();
     answer["data"] = PageData(view, {}, title);
@@ -126,6 +130,7 @@ struct LiveView::Server {
   }
 
   const std::string title;
+  const bool in_millimeters;
   LiveImages images;
   std::mutex mutex;
   std::condition_variable changed;
@@ -153,9 +158,9 @@ void LiveOptions::List(OptionTable& table) {
             100000.0);
 }
 
-Result<std::unique_ptr<LiveView>> LiveView::Start(const std::string& title, const LiveOptions& options) {
+Result<std::unique_ptr<LiveView>> LiveView::Start(const LiveRunName& shown, const LiveOptions& options) {
   if (Status status = CheckPageAsset(); !status.ok()) return status;
-  auto server = std::make_unique<Server>(title, options);
+  auto server = std::make_unique<Server>(shown, options);
   if (!server->Listen(options.port))
     return Status(ErrorCode::kUnwritable, "the live view finds no free port on this machine; run without --live");
   return std::unique_ptr<LiveView>(new LiveView(std::move(server)));

@@ -103,8 +103,10 @@ void AddPoints(const RunMap& map, ViewedRun* run) {
   }
 }
 
-// Whether the unit of a run's maps is the millimeter; of a refined run, of the run that was refined.
+// Whether the unit of a run's maps is the millimeter. Where it does not say so itself, its options tell; those of a
+// refined run are those of the run that was refined.
 Result<bool> IsMetric(const ReadViewedRun& read) {
+  if (read.summary && read.summary->description.metric) return *read.summary->description.metric;
   constexpr int kMaxRefinements = 100;  // one after the other; a run that names itself ends
   std::vector<NamedText> options = read.run.options;
   std::string from = read.summary ? read.summary->description.refined_from : std::string();

@@ -36,6 +36,7 @@ TEST(RunFolder, ComesBackAsItWasReported) {
   EXPECT_EQ(run->summary->description.image_scale, 0.75);
   EXPECT_EQ(run->summary->description.image_smoothing_px, 0.7);
   EXPECT_EQ(run->summary->description.patch_size, 21);
+  EXPECT_EQ(run->summary->description.metric, std::nullopt);
   EXPECT_EQ(run->summary->frames_read, 5);
   EXPECT_EQ(run->summary->frames_tracked, 4);
   EXPECT_EQ(run->summary->points, kPoints);

@@ -79,6 +79,9 @@ TEST_F(ModelStartTest, AModelOfUnknownUnitIsScaledToTheNominalDepth) {
   ModelInitOptions model = Model();
   model.unit_mm = 0;
   ASSERT_TRUE(Track(InitMethod::kColmapModel, "run", model).ok());
+  // Other than that of true depth, the run says that its unit is none.
+  EXPECT_EQ(ReadRunSummary(folder_.Path("true/run.json"))->description.metric, true);
+  EXPECT_EQ(ReadRunSummary(folder_.Path("run/run.json"))->description.metric, false);
   const auto map = colmap::ReadModel(folder_.Path("run/sparse"));
   ASSERT_TRUE(map.ok());
   std::vector<double> depths;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <optional>
 #include <sstream>
 #include <string>
 
@@ -61,6 +62,19 @@ TEST_F(RefineRunTest, LeavesARunOfTheSameFramesAndPoints) {
   ASSERT_TRUE(map.ok()) << map.status().message();
   EXPECT_EQ(map->points.at(PointId{3}).rgb, (std::array<std::uint8_t, 3>{10, 20, 1}));
   EXPECT_EQ(map->names.at(12), "12.png");
+}
+
+// Of an earlier version's run nothing is made up.
+TEST_F(RefineRunTest, KeepsTheUnitThatTheRunStates) {
+  WriteRun(folder_);
+  ASSERT_TRUE(Refine().ok());
+  EXPECT_EQ(ReadRunSummary(folder_.Path("refined/run.json"))->description.metric, std::nullopt);
+  std::string summary = folder_.Read("run/run.json");
+  const std::string unknown = "\"metric\": null";
+  ASSERT_THAT(summary, HasSubstr(unknown));
+  folder_.Write("run/run.json", summary.replace(summary.find(unknown), unknown.size(), "\"metric\": true"));
+  ASSERT_TRUE(Refine("again").ok());
+  EXPECT_EQ(ReadRunSummary(folder_.Path("again/run.json"))->description.metric, true);
 }
 
 TEST_F(RefineRunTest, RefinesEverySubmapByItself) {

@@ -28,7 +28,7 @@ constexpr double kQuantized_mm = 0.01;  // 16 bits over the extent of the points
 class LiveViewTest : public testing::Test {
  protected:
   void SetUp() override {
-    auto live = LiveView::Start("run", {.port = 0});
+    auto live = LiveView::Start({"run", true}, {.port = 0});
     ASSERT_TRUE(live.ok()) << live.status().message();
     live_ = *std::move(live);
     url_ = live_->Url();
@@ -57,6 +57,8 @@ TEST_F(LiveViewTest, GivesThePageAndWhatIsNew) {
   EXPECT_EQ(first["frames_in_sequence"], kRunFrames);
   EXPECT_THAT(first["data"]["runs"][0]["frames"]["frame"], ElementsAre(10, 12));
   EXPECT_EQ(first["data"]["camera"]["width"], 640);
+  EXPECT_EQ(first["data"]["unit"], "mm");
+  EXPECT_EQ(first["data"]["runs"][0]["unit"], "mm");
   live_->OnFrame(Report(2));
   const ordered_json then = Data(0, 2);
   EXPECT_EQ(then["from"], 2);
@@ -126,7 +128,7 @@ TEST_F(LiveViewTest, AnswersThisMachineAlone) {
 
 TEST_F(LiveViewTest, APortThatIsTakenBecomesAnother) {
   const int taken = std::stoi(url_.substr(url_.rfind(':') + 1));
-  const auto other = LiveView::Start("other", {.port = taken});
+  const auto other = LiveView::Start({"other"}, {.port = taken});
   ASSERT_TRUE(other.ok()) << other.status().message();
   EXPECT_NE((*other)->Url(), url_);
 }

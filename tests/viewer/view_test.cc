@@ -105,9 +105,7 @@ TEST_F(ViewTest, BringsTheRunIntoTheWorldOfTheTruth) {
 }
 
 // The run of WriteRun in another world and unit.
-void WriteRunInWorld(const Sim3& world, const std::string& path, const std::string& refined_from = "") {
-  RunDescription description;
-  description.refined_from = refined_from;
+void WriteRunInWorld(const Sim3& world, const std::string& path, const RunDescription& description = {}) {
   auto writer = RunWriter::Create(path, TestCamera(), description, "Track:\n  option: 3\n", {});
   ASSERT_TRUE(writer.ok()) << writer.status().message();
   for (int i = 0; i < kRunFrames; ++i) {
@@ -162,11 +160,34 @@ TEST_F(ViewTest, ARunWithTrueMillimetersIsShownInMillimeters) {
 TEST_F(ViewTest, ARefinedRunHasTheUnitOfTheRunItRefined) {
   WriteRun(folder_);
   folder_.Write("run/config.yaml", "Init:\n  method: stereo\n");
-  WriteRunInWorld({}, folder_.Path("refined"), folder_.Path("run"));
-  WriteRunInWorld({}, folder_.Path("again"), folder_.Path("refined"));
+  RunDescription description;
+  description.refined_from = folder_.Path("run");
+  WriteRunInWorld({}, folder_.Path("refined"), description);
+  description.refined_from = folder_.Path("refined");
+  WriteRunInWorld({}, folder_.Path("again"), description);
   const auto view = OpenView({.run_paths = {folder_.Path("again")}, .sequence_path = "", .camera_path = ""}, {});
   ASSERT_TRUE(view.ok()) << view.status().message();
   EXPECT_TRUE(view->in_millimeters);
+}
+
+// Also where the run that was refined is not there any more, and against its options.
+TEST_F(ViewTest, ARunThatSaysItsUnitHasIt) {
+  const auto in_millimeters = [&] {
+    const auto view = OpenView({.run_paths = {folder_.Path("refined")}, .sequence_path = "", .camera_path = ""}, {});
+    EXPECT_TRUE(view.ok()) << view.status().message();
+    return view->in_millimeters;
+  };
+  RunDescription description;
+  description.refined_from = folder_.Path("gone");
+  WriteRunInWorld({}, folder_.Path("refined"), description);
+  EXPECT_FALSE(in_millimeters());
+  description.metric = true;
+  WriteRunInWorld({}, folder_.Path("refined"), description);
+  EXPECT_TRUE(in_millimeters());
+  description.metric = false;
+  WriteRunInWorld({}, folder_.Path("refined"), description);
+  folder_.Write("refined/config.yaml", "Init:\n  method: stereo\n");
+  EXPECT_FALSE(in_millimeters());
 }
 
 TEST_F(ViewTest, TheRunThatTellsTheScaleScalesTheOthers) {

@@ -52,6 +52,9 @@ struct RunDescription {
   double track_noise_px = 0;      // standard deviation of a coordinate of a point's track
   double alive_after_9 = 0;       // share of the corners that are tracked through nine frames
   std::string refined_from = {};  // the run that was refined, absolute; empty: a run of its own
+  // Whether a map unit is a millimeter, since the map starts from known depth; nothing: it does not say (an earlier
+  // version's, or another program's result).
+  std::optional<bool> metric = {};
 };
 
 // run.json.

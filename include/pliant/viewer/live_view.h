@@ -24,11 +24,17 @@ struct LiveOptions {
   void List(OptionTable& table);  // group "Live"
 };
 
+// The run that is shown.
+struct LiveRunName {
+  std::string name;
+  bool in_millimeters = false;  // its unit; else map units
+};
+
 class LiveView final : public TrackObserver {
  public:
-  // Begins to serve; `title` names the run. Port 0, or one that is in use, becomes a free one. Fails with
+  // Begins to serve. Port 0, or one that is in use, becomes a free one. Fails with
   // kUnwritable where no port can be had, and with kNotFound in a build without the page (PLIANT_BUILD_VIEWER=OFF).
-  static Result<std::unique_ptr<LiveView>> Start(const std::string& title, const LiveOptions& options);
+  static Result<std::unique_ptr<LiveView>> Start(const LiveRunName& shown, const LiveOptions& options);
   // Ceases to serve. Who has asked in the last seconds gets the last frames first.
   ~LiveView() override;
   LiveView(const LiveView&) = delete;
