@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "surface/mesh_raster.h"
+#include "pliant/surface/mesh_raster.h"
 
 #include <algorithm>
 #include <cmath>

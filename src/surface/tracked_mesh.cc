@@ -14,16 +14,15 @@
 #include "pliant/base/statistics.h"
 #include "pliant/image/brightness.h"
 #include "pliant/surface/mesh_geometry.h"
+#include "pliant/surface/placed_mesh.h"
 #include "surface/depth_holes.h"
-#include "surface/mesh_raster.h"
 #include "surface/rest_motion.h"
 
 namespace pliant {
 namespace {
 
-constexpr double kSameSurface = 3.0;  // standard deviations of two depths of one surface
-constexpr double kMinKnown = 0.5;     // of the pixels around a node
-constexpr int kMinPiece = 20;         // triangles of a connected piece
+constexpr double kMinKnown = 0.5;  // of the pixels around a node
+constexpr int kMinPiece = 20;      // triangles of a connected piece
 constexpr std::int32_t kNoVertex = -1;
 
 // Whether the distances of a triangle's corners are those of one surface.
@@ -41,14 +40,6 @@ struct Votes {
   bool IsGood() const { return contradicted <= confirmed; }
 };
 
-// Vertices in a frame.
-struct Placed {
-  std::vector<Eigen::Vector3d> in_cam;
-  std::vector<std::optional<Eigen::Vector2d>> pixels;
-  std::vector<double> depths;
-  MeshRaster raster;
-};
-
 // A depth of a frame, and its standard deviation.
 struct Measured {
   double depth = 0;  // 0: none
@@ -59,11 +50,6 @@ struct Measured {
     return std::hypot(sigma * in_cam.norm(), motion_error);
   }
 };
-
-// How far apart two depths of one surface may be, by the standard deviations of the distances.
-double Tolerance(const Eigen::Vector3d& in_cam, double sigma, double other_sigma) {
-  return kSameSurface * std::hypot(sigma, other_sigma) * in_cam.z() / in_cam.norm();
-}
 
 // What the pixels around say, where half of them know it: the median.
 Measured MeasuredAround(const DenseDepth& dense, const Eigen::Vector2d& pixel, double step_px) {
@@ -126,16 +112,13 @@ struct TrackedMesh::State {
   std::vector<Votes> votes = {};
 
   std::vector<Eigen::Vector3d> Moved(const RestMotion& motion) const;
-  Placed Place(const Rigid3& cam_from_world, std::span<const Eigen::Vector3d> positions) const;
-  bool IsInImage(const Placed& placed, std::size_t v) const {
-    return placed.pixels[v] && camera.Contains(*placed.pixels[v]) && placed.depths[v] > 0.0;
-  }
-  bool IsHidden(const Placed& placed, std::size_t v, double tolerance) const;
-  void Confirm(const SurfaceView& view, const DenseDepth& dense, const Placed& placed, double motion_error);
-  std::int32_t VertexAt(const Placed& placed, int column, int row, const Measured& measured, double motion_error) const;
-  Grid Compare(const DenseDepth& dense, const Placed& placed, double motion_error) const;
-  void AddVertices(const SurfaceView& view, const RestMotion& motion, Grid* grid, Placed* placed);
-  void AddTriangles(const Grid& grid, const Placed& placed);
+  PlacedMesh Place(const Rigid3& cam_from_world, std::span<const Eigen::Vector3d> positions) const;
+  void Confirm(const SurfaceView& view, const DenseDepth& dense, const PlacedMesh& placed, double motion_error);
+  std::int32_t VertexAt(const PlacedMesh& placed, int column, int row, const Measured& measured,
+                        double motion_error) const;
+  Grid Compare(const DenseDepth& dense, const PlacedMesh& placed, double motion_error) const;
+  void AddVertices(const SurfaceView& view, const RestMotion& motion, Grid* grid, PlacedMesh* placed);
+  void AddTriangles(const Grid& grid, const PlacedMesh& placed);
 
   Eigen::Vector2d PixelOf(int column, int row) const { return {column * step_px, row * step_px}; }
   std::size_t NodeIndex(int column, int row) const {
@@ -153,53 +136,28 @@ std::vector<Eigen::Vector3d> TrackedMesh::State::Moved(const RestMotion& motion)
   return positions;
 }
 
-Placed TrackedMesh::State::Place(const Rigid3& cam_from_world, std::span<const Eigen::Vector3d> positions) const {
-  Placed placed;
-  for (const Eigen::Vector3d& position : positions) placed.in_cam.push_back(cam_from_world * position);
-  placed.pixels = camera.Project(placed.in_cam);
-  for (const Eigen::Vector3d& point : placed.in_cam) placed.depths.push_back(point.z());
+PlacedMesh TrackedMesh::State::Place(const Rigid3& cam_from_world, std::span<const Eigen::Vector3d> positions) const {
+  std::vector<Eigen::Vector3d> in_cam;
+  for (const Eigen::Vector3d& position : positions) in_cam.push_back(cam_from_world * position);
   // What is wrong, as far as is known, hides nothing.
-  std::vector<std::optional<Eigen::Vector2d>> pixels = placed.pixels;
-  for (std::size_t v = 0; v < votes.size(); ++v)
-    if (!votes[v].IsGood()) pixels[v].reset();
-  placed.raster = RasterizeMesh(pixels, placed.depths, mesh.triangles, nodes, step_px);
-  return placed;
-}
-
-// Whether another part of the mesh is before a vertex, which is in the image: by the plane of the triangle that is
-// nearest at the node beside it.
-bool TrackedMesh::State::IsHidden(const Placed& placed, std::size_t v, double tolerance) const {
-  const Eigen::Vector2d& pixel = *placed.pixels[v];
-  const int column = std::min(static_cast<int>(std::lround(pixel.x() / step_px)), nodes.width - 1);
-  const int row = std::min(static_cast<int>(std::lround(pixel.y() / step_px)), nodes.height - 1);
-  const std::int32_t t = placed.raster.triangle.at<std::int32_t>(row, column);
-  if (t == kNoTriangle) return false;
-  const Triangle& triangle = mesh.triangles[static_cast<std::size_t>(t)];
-  if (std::ranges::find(triangle, static_cast<std::int32_t>(v)) != triangle.end()) return false;
-  const auto corner = [&](std::size_t k) { return placed.in_cam[static_cast<std::size_t>(triangle[k])]; };
-  const Eigen::Vector3d normal = (corner(1) - corner(0)).cross(corner(2) - corner(0));
-  const Eigen::Vector3d ray = placed.in_cam[v] / placed.depths[v];
-  const double along = normal.dot(ray);
-  const double on_plane = along != 0.0 ? normal.dot(corner(0)) / along : 0.0;
-  const double at_node = placed.raster.depth.at<float>(row, column);
-  // Seen along the plane it says nothing; then what is at the node does.
-  const double depth = on_plane > 0.5 * at_node && on_plane < 2.0 * at_node ? on_plane : at_node;
-  return depth < placed.depths[v] - tolerance;
+  std::vector<bool> hides;
+  for (const Votes& vote : votes) hides.push_back(vote.IsGood());
+  return PlaceMesh(camera, std::move(in_cam), mesh.triangles, hides, step_px);
 }
 
 // (V11) Depths of vertices that are there already.
-void TrackedMesh::State::Confirm(const SurfaceView& view, const DenseDepth& dense, const Placed& placed,
+void TrackedMesh::State::Confirm(const SurfaceView& view, const DenseDepth& dense, const PlacedMesh& placed,
                                  double motion_error) {
   const Eigen::Matrix3d world_from_cam = view.cam_from_world.RotationMatrix().transpose();
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
-    if (!IsInImage(placed, v)) continue;
+    if (!placed.IsInImage(camera, v)) continue;
     const Measured measured = MeasuredAround(dense, *placed.pixels[v], step_px);
     if (!(measured.depth > 0.0)) continue;
     const double own = measured.SigmaOf(placed.in_cam[v], motion_error);
-    const double tolerance = Tolerance(placed.in_cam[v], own, mesh.sigmas[v]);
+    const double tolerance = DepthTolerance(placed.in_cam[v], own, mesh.sigmas[v]);
     const double difference = measured.depth - placed.depths[v];
     if (difference > tolerance) ++votes[v].contradicted;
-    if (std::abs(difference) > tolerance || IsHidden(placed, v, tolerance)) continue;
+    if (std::abs(difference) > tolerance || placed.IsHidden(mesh.triangles, v, tolerance)) continue;
     ++votes[v].confirmed;
     const double weight = 1.0 / (own * own);
     votes[v].weight += weight;
@@ -210,7 +168,7 @@ void TrackedMesh::State::Confirm(const SurfaceView& view, const DenseDepth& dens
 }
 
 // The vertex that a node's depth belongs to, nearest in the image; kNoVertex: it shows a surface that is not there yet.
-std::int32_t TrackedMesh::State::VertexAt(const Placed& placed, int column, int row, const Measured& measured,
+std::int32_t TrackedMesh::State::VertexAt(const PlacedMesh& placed, int column, int row, const Measured& measured,
                                           double motion_error) const {
   const std::int32_t t = placed.raster.triangle.at<std::int32_t>(row, column);
   if (t == kNoTriangle) return kNoVertex;
@@ -225,12 +183,12 @@ std::int32_t TrackedMesh::State::VertexAt(const Placed& placed, int column, int 
   }
   const Eigen::Vector3d& in_cam = placed.in_cam[static_cast<std::size_t>(nearest)];
   const double tolerance =
-      Tolerance(in_cam, measured.SigmaOf(in_cam, motion_error), mesh.sigmas[static_cast<std::size_t>(nearest)]);
+      DepthTolerance(in_cam, measured.SigmaOf(in_cam, motion_error), mesh.sigmas[static_cast<std::size_t>(nearest)]);
   const double before = placed.raster.depth.at<float>(row, column) - measured.depth;
   return before > tolerance ? kNoVertex : nearest;
 }
 
-Grid TrackedMesh::State::Compare(const DenseDepth& dense, const Placed& placed, double motion_error) const {
+Grid TrackedMesh::State::Compare(const DenseDepth& dense, const PlacedMesh& placed, double motion_error) const {
   Grid grid;
   for (int row = 0; row < nodes.height; ++row)
     for (int column = 0; column < nodes.width; ++column) {
@@ -244,7 +202,8 @@ Grid TrackedMesh::State::Compare(const DenseDepth& dense, const Placed& placed, 
   return grid;
 }
 
-void TrackedMesh::State::AddVertices(const SurfaceView& view, const RestMotion& motion, Grid* grid, Placed* placed) {
+void TrackedMesh::State::AddVertices(const SurfaceView& view, const RestMotion& motion, Grid* grid,
+                                     PlacedMesh* placed) {
   const Rigid3 world_from_cam = view.cam_from_world.Inverse();
   std::vector<Eigen::Vector3d> positions;
   for (int row = 0; row < nodes.height; ++row)
@@ -271,7 +230,7 @@ void TrackedMesh::State::AddVertices(const SurfaceView& view, const RestMotion& 
     mesh.vertices.push_back(position.cast<float>());
 }
 
-void TrackedMesh::State::AddTriangles(const Grid& grid, const Placed& placed) {
+void TrackedMesh::State::AddTriangles(const Grid& grid, const PlacedMesh& placed) {
   const double largest_step = step_px * LargestStepOfASurface(camera.MeanFocalLengthPx());
   const auto add = [&](std::array<std::size_t, 3> corners) {
     Triangle triangle{};
@@ -307,7 +266,7 @@ TrackedMesh::~TrackedMesh() = default;
 void TrackedMesh::Add(const SurfaceView& view, const DenseDepth& dense) {
   const auto motion = RestMotion::Create(state_->rest, view.observations);
   if (!motion) return;
-  Placed placed = state_->Place(view.cam_from_world, state_->Moved(*motion));
+  PlacedMesh placed = state_->Place(view.cam_from_world, state_->Moved(*motion));
   state_->Confirm(view, dense, placed, motion->error());
   Grid grid = state_->Compare(dense, placed, motion->error());
   state_->AddVertices(view, *motion, &grid, &placed);
@@ -330,15 +289,15 @@ std::optional<MeshInFrame> TrackedMesh::InFrame(const SurfaceView& view, const D
   if (!motion) return std::nullopt;
   MeshInFrame result;
   result.positions = state_->Moved(*motion);
-  const Placed placed = state_->Place(view.cam_from_world, result.positions);
+  const PlacedMesh placed = state_->Place(view.cam_from_world, result.positions);
   for (std::size_t v = 0; v < result.positions.size(); ++v) {
     const double own = std::hypot(state_->mesh.sigmas[v], motion->error());
     result.sigmas.push_back(static_cast<float>(own));
     result.views.push_back(VertexView::kOutOfView);
-    if (!state_->IsInImage(placed, v)) continue;
+    if (!placed.IsInImage(state_->camera, v)) continue;
     const Measured measured = MeasuredAround(dense, *placed.pixels[v], state_->step_px);
-    const double tolerance = Tolerance(placed.in_cam[v], measured.SigmaOf(placed.in_cam[v], 0.0), own);
-    if (state_->IsHidden(placed, v, tolerance)) continue;
+    const double tolerance = DepthTolerance(placed.in_cam[v], measured.SigmaOf(placed.in_cam[v], 0.0), own);
+    if (placed.IsHidden(state_->mesh.triangles, v, tolerance)) continue;
     const bool has_depth = measured.depth > 0.0;
     if (has_depth && std::abs(measured.depth - placed.depths[v]) > tolerance) continue;
     result.views.back() = has_depth ? VertexView::kMeasured : VertexView::kInView;

@@ -212,7 +212,8 @@ Json Positions(const std::vector<Eigen::Vector3f>& positions, const std::vector<
   return PackQuantized(values, 3, PackedType::kU16);
 }
 
-Json MeshData(const GltfMesh& surface) {
+Json MeshData(const ViewedMesh& viewed) {
+  const GltfMesh& surface = viewed.surface;
   const Mesh& mesh = surface.mesh;
   std::vector<std::uint32_t> triangles;
   std::vector<float> uvs(2 * mesh.vertices.size());
@@ -230,6 +231,9 @@ Json MeshData(const GltfMesh& surface) {
     frames.push_back(key.frame_idx);
     displacements.push_back(Positions(key.positions, mesh.vertices));
   }
+  Json errors = viewed.errors_mm.empty() ? Json() : Json::array();
+  for (const std::vector<float>& error_mm : viewed.errors_mm)
+    errors.push_back(PackQuantized(error_mm, 1, PackedType::kU16));
   return {{"submap", surface.submap},
           {"rest", Positions(mesh.vertices, {})},
           {"triangles", PackWhole(triangles, 3, PackedType::kU32)},
@@ -237,12 +241,13 @@ Json MeshData(const GltfMesh& surface) {
           {"sigma", PackQuantized(mesh.sigmas, 1, PackedType::kU16)},
           {"texture", surface.texture_jpeg.empty() ? Json() : Json(Base64(surface.texture_jpeg))},
           {"frame", frames},
-          {"displacement", displacements}};
+          {"displacement", displacements},
+          {"error_mm", errors}};
 }
 
 Json RunData(const ViewedRun& run) {
   Json meshes = Json::array();
-  for (const GltfMesh& mesh : run.meshes) meshes.push_back(MeshData(mesh));
+  for (const ViewedMesh& mesh : run.meshes) meshes.push_back(MeshData(mesh));
   return {{"name", run.name},
           {"unit", UnitOf(run.in_millimeters)},
           {"status", run.status},

@@ -164,8 +164,8 @@ void Move(const Sim3& world_from_run, int submap, ViewedRun* run) {
       moved.insert(o.id);
     }
   }
-  for (GltfMesh& mesh : run->meshes)
-    if (mesh.submap == submap) Move(world_from_run, &mesh);
+  for (ViewedMesh& mesh : run->meshes)
+    if (mesh.surface.submap == submap) Move(world_from_run, &mesh.surface);
   for (const PointId id : moved) {
     Eigen::Vector3d& position = run->points.at(id).position;
     position = world_from_run * position;
@@ -180,10 +180,13 @@ Result<View> OpenView(const ViewRequest& request, const ViewOptions& options) {
   const std::int64_t max_observations = options.max_observations / static_cast<std::int64_t>(request.run_paths.size());
   const bool named = !request.sequence_path.empty();
   bool has_images = false;
+  auto meshes = ReadMeshes(request);
+  if (!meshes.ok()) return meshes.status();
   for (const std::string& run_path : request.run_paths) {
     auto read = ReadRunForView(run_path, sequence ? sequence->sequence.get() : nullptr, max_observations);
     if (!read.ok()) return read.status();
     ViewedRun& run = read->run;
+    run.meshes = std::move((*meshes)[view.runs.size()]);
     view.notes.insert(view.notes.end(), read->notes.begin(), read->notes.end());
     const Status fits = sequence ? CheckBelongsTo(FramesOf(run), *sequence->sequence, {}) : Status::Ok();
     if (!fits.ok() && named) return fits;
@@ -201,7 +204,6 @@ Result<View> OpenView(const ViewRequest& request, const ViewOptions& options) {
     view.runs.push_back(std::move(run));
   }
   TakeNames(request.run_paths, &view);
-  if (Status status = AddMeshes(request, &view); !status.ok()) return status;
   if (std::all_of(view.runs.begin(), view.runs.end(), [](const ViewedRun& run) { return run.frames.empty(); }))
     return Status(ErrorCode::kInsufficient,
                   "no frame was read in the run " + request.run_paths.front() + "; there is nothing to show");

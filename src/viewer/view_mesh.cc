@@ -51,24 +51,27 @@ std::vector<fs::path> MeshFilesOf(const fs::path& folder) {
 
 }  // namespace
 
-Status AddMeshes(const ViewRequest& request, View* view) {
+Result<std::vector<std::vector<ViewedMesh>>> ReadMeshes(const ViewRequest& request) {
+  std::vector<std::vector<ViewedMesh>> meshes(request.run_paths.size());
   for (const std::string& path : request.surface_paths) {
     const auto surface = ReadSurfaceFolder(path);
     if (!surface.ok()) return surface.status();
     const auto run = RunOf(*surface, request.run_paths);
     if (!run)
-      return {ErrorCode::kMismatch, "the surface " + Quoted(path) + " was made of the run " +
-                                        Quoted(surface->run.string()) + ", which is not among those that are shown"};
+      return Status(ErrorCode::kMismatch, "the surface " + Quoted(path) + " was made of the run " +
+                                              Quoted(surface->run.string()) +
+                                              ", which is not among those that are shown");
     const std::vector<fs::path> files = MeshFilesOf(path);
     if (files.empty())
-      return {ErrorCode::kNotFound, Quoted(path) + " has no surface.glb to show; make it again with pliant surface"};
+      return Status(ErrorCode::kNotFound,
+                    Quoted(path) + " has no surface.glb to show; make it again with pliant surface");
     for (const fs::path& file : files) {
       auto mesh = ReadGlb(file.string());
       if (!mesh.ok()) return mesh.status();
-      view->runs[*run].meshes.push_back(*std::move(mesh));
+      meshes[*run].push_back({.surface = *std::move(mesh)});
     }
   }
-  return Status::Ok();
+  return meshes;
 }
 
 void Move(const Sim3& other_from_world, GltfMesh* mesh) {

@@ -28,6 +28,7 @@ constexpr double kPath_rad = 1e-3;
 constexpr double kDepthOfPlane = 0.05;     // relative; the camera turns and moves a little before the plane
 constexpr double kFloatPixel_px = 1e-2;    // positions are floats in a world that is 500 px for one unit of depth
 constexpr double kFloatError_mm = 1e-4;    // the same sum from floats
+constexpr double kVertexError_mm = 1e-2;   // depth images have steps, and meshes in files floats
 constexpr double kAligned_mm = 1e-3;       // two paths from files, aligned with each other
 constexpr double kAlignedPoint_mm = 1e-2;  // the same at the arm of the points
 
@@ -326,7 +327,7 @@ TEST_F(ViewTest, TheSurfaceIsInTheSameWorldAsTheRun) {
                              {});
   ASSERT_TRUE(view.ok()) << view.status().message();
   ASSERT_EQ(view->runs[0].meshes.size(), 1U);
-  const GltfMesh& mesh = view->runs[0].meshes[0];
+  const GltfMesh& mesh = view->runs[0].meshes[0].surface;
   const double scale = *view->runs[0].scales[2];
   EXPECT_NEAR((mesh.mesh.vertices[1] - mesh.mesh.vertices[0]).norm(), 4 * scale, 0.02 * scale);
   EXPECT_NEAR(mesh.mesh.sigmas[2], scale, 0.02 * scale);
@@ -335,6 +336,47 @@ TEST_F(ViewTest, TheSurfaceIsInTheSameWorldAsTheRun) {
   const auto& point = view->runs[0].points.at(PointId{3}).position;
   EXPECT_NEAR((mesh.mesh.vertices[0].cast<double>() - point).norm(),
               scale * (Eigen::Vector3d(0, 0, 20) - Undeformed(1)).norm(), 0.05 * scale * Undeformed(1).norm());
+}
+
+// A triangle parallel to the true plane, before the camera of the third frame, and another one that it hides in part.
+TEST_F(ViewTest, VerticesThatAFrameShowsHaveTheirError) {
+  WriteRun(folder_);
+  std::filesystem::create_directories(folder_.Path("surface"));
+  folder_.Write("surface/camera.yaml", "model: PINHOLE\nwidth: 640\nheight: 480\nparams: [500, 500, 319.5, 239.5]\n");
+  folder_.Write("surface/surface.json",
+                "{\"status\": \"completed\", \"run\": \"" + folder_.Path("run") + "\", \"frames\": []}");
+  Mesh mesh;
+  for (const Eigen::Vector3d& in_cam :
+       {Eigen::Vector3d(-4, -4, 40), Eigen::Vector3d(-4, 8, 40), Eigen::Vector3d(8, -4, 40),
+        Eigen::Vector3d(-1, -1, 45), Eigen::Vector3d(-1, 20, 45), Eigen::Vector3d(60, -1, 45)})
+    mesh.vertices.push_back((PoseAt(2).Inverse() * in_cam).cast<float>());
+  mesh.normals.assign(6, -Eigen::Vector3f::UnitZ());
+  mesh.rgb.resize(6);
+  mesh.sigmas.assign(6, 0.1F);
+  mesh.triangles = {{0, 1, 2}, {3, 4, 5}};
+  const std::vector<MeshKey> keys = {{14, 0.1, mesh.vertices}};
+  ASSERT_TRUE(WriteGlb(folder_.Path("surface/surface.glb"), {mesh, "", keys, {}, TestCamera(), 0}).ok());
+  ViewRequest request{.run_paths = {folder_.Path("run")}, .sequence_path = "", .camera_path = ""};
+  request.surface_paths = {folder_.Path("surface")};
+  const auto without_truth = OpenView(request, {});
+  ASSERT_TRUE(without_truth.ok()) << without_truth.status().message();
+  EXPECT_THAT(without_truth->runs[0].meshes[0].errors_mm, IsEmpty());
+
+  request.sequence_path = folder_.Path("sequence");
+  WriteSmallSequence(request.sequence_path, Truth::kDepthAndPoses);
+  const auto view = OpenView(request, {});
+  ASSERT_TRUE(view.ok()) << view.status().message();
+  const ViewedMesh& viewed = view->runs[0].meshes[0];
+  ASSERT_EQ(viewed.errors_mm.size(), 1U);
+  const double scale = *view->runs[0].scales[2];
+  const auto error_mm = [&](double z, double x, double y) {
+    return std::abs(scale * z - kPlaneDepth_mm) * Eigen::Vector3d(x / z, y / z, 1).norm();
+  };
+  EXPECT_NEAR(viewed.errors_mm[0][0], error_mm(40, -4, -4), kVertexError_mm);
+  EXPECT_NEAR(viewed.errors_mm[0][2], error_mm(40, 8, -4), kVertexError_mm);
+  EXPECT_TRUE(std::isnan(viewed.errors_mm[0][3]));  // hidden
+  EXPECT_NEAR(viewed.errors_mm[0][4], error_mm(45, -1, 20), kVertexError_mm);
+  EXPECT_TRUE(std::isnan(viewed.errors_mm[0][5]));  // out of the image
 }
 
 TEST_F(ViewTest, ASurfaceOfAnotherRunIsRefused) {

@@ -186,6 +186,22 @@ testMadeUp("shows the surface, colored by what is chosen", dataOf(withSurface), 
   assert.ok(await countPixels(page, "#scene", WHITE) > white + 10000, "the surface is gone");
 });
 
+testMadeUp("offers the error of a surface where there is a truth", dataOf(withSurface), async (page) => {
+  assert.deepEqual(await page.locator("#surface-color option").allInnerTexts(), ["image", "displacement", "area change", "uncertainty"]);
+  for (let i = 0; i < 4; ++i) await press(page, "u");
+  assert.equal((await page.evaluate(() => window.pliant.state())).surfaceColor, "image");
+});
+
+testMadeUp("colors the surface by its error", dataOf({ ...runOf({ to: 20 }), meshes: [surfaceOf({ errors: true })] }), async (page) => {
+  await press(page, "o");
+  await goTo(page, 10);
+  await page.locator("#surface-color").selectOption("error");
+  await page.waitForTimeout(300);
+  assert.equal((await page.evaluate(() => window.pliant.state())).surfaceColor, "error");
+  assert.match(await page.locator("#surface-scale").innerText(), /0\s*3\s*mm/);
+  await screenshot(page, "surface_error");
+});
+
 testMadeUp("shows no surface where there is none", dataOf(runOf({ to: 5 })), async (page) => {
   assert.equal(await page.locator("#surface-tools").isVisible(), false);
   assert.equal(await page.getByRole("button", { name: "surface", exact: true }).isVisible(), false);

@@ -50,6 +50,7 @@ export interface MeshData {
   texture: string | null; // a JPEG file in base64
   frame: number[];
   displacement: PackedArray[];
+  error_mm?: PackedArray[] | null;   // one a frame: distances from the true surface
 }
 
 export interface RunData {
@@ -162,6 +163,7 @@ async function decodeMesh(data: MeshData): Promise<Surface> {
     uv: await decodeNumbers(data.uv, 2),
     sigma: await decodeNumbers(data.sigma, 1),
     displacements: await Promise.all(data.displacement.map((array) => decodeNumbers(array, 3))),
+    errors: await Promise.all((data.error_mm ?? []).map((array) => decodeNumbers(array, 1))),
     texture: data.texture === null ? null : bytesOfBase64(data.texture),
   });
 }

@@ -3,7 +3,7 @@
 //
 // A mesh of the tissue that a run has seen, where it is in a frame, and the figures that it can be colored by.
 
-export const SURFACE_COLORS = ["image", "displacement", "area change", "uncertainty"] as const;
+export const SURFACE_COLORS = ["image", "displacement", "area_change", "uncertainty", "error"] as const;
 export type SurfaceColor = (typeof SURFACE_COLORS)[number];
 
 export interface SurfaceArrays {
@@ -13,6 +13,7 @@ export interface SurfaceArrays {
   sigma: Float32Array;            // standard deviation of the distance from the camera
   displacements: Float32Array[];  // of each key, from the undeformed positions
   texture: Uint8Array<ArrayBuffer> | null;   // a JPEG file
+  errors: Float32Array[];         // of each key, from the true surface; NaN: not seen, or not known; none: there is no truth
 }
 
 export interface Range {
@@ -45,21 +46,17 @@ export class Surface {
     const { rest, displacements } = this.arrays;
     const positions = rest.slice();
     if (displacements.length === 0) return positions;
-    let next = this.frames.findIndex((key) => key > frame);
-    if (next < 0) next = this.frames.length;
-    const before = Math.max(0, next - 1);
-    const after = Math.min(next, this.frames.length - 1);
-    const length = this.frames[after] - this.frames[before];
-    const share = length > 0 ? (frame - this.frames[before]) / length : 0;
+    const { before, after, share } = this.keysAround(frame);
     for (let i = 0; i < positions.length; ++i) {
       positions[i] += (1 - share) * displacements[before][i] + share * displacements[after][i];
     }
     return positions;
   }
 
-  // One a vertex.
-  values(color: SurfaceColor, positions: Float32Array): Float32Array {
+  // One a vertex, where it is in the frame.
+  values(color: SurfaceColor, frame: number, positions: Float32Array): Float32Array {
     if (color === "uncertainty") return this.arrays.sigma;
+    if (color === "error") return this.errorsAt(frame);
     return color === "displacement" ? this.displacementsOf(positions) : this.areaChangesOf(positions);
   }
 
@@ -70,14 +67,32 @@ export class Surface {
     const values: number[] = [];
     const step = Math.max(1, Math.floor((this.vertices * Math.max(1, this.frames.length)) / 100000));
     for (const frame of this.frames.length > 0 && color !== "uncertainty" ? this.frames : [0]) {
-      const all = this.values(color, this.positionsAt(frame));
+      const all = this.values(color, frame, this.positionsAt(frame));
       for (let v = 0; v < all.length; v += step) if (Number.isFinite(all[v])) values.push(Math.abs(all[v]));
     }
     values.sort((a, b) => a - b);
     const high = values[Math.ceil(0.98 * (values.length - 1))] || 1;
-    const range = { low: color === "area change" ? -high : 0, high };
+    const range = { low: color === "area_change" ? -high : 0, high };
     this.ranges.set(color, range);
     return range;
+  }
+
+  // The two keys around a frame, and the share of the later one.
+  private keysAround(frame: number): { before: number; after: number; share: number } {
+    let next = this.frames.findIndex((key) => key > frame);
+    if (next < 0) next = this.frames.length;
+    const before = Math.max(0, next - 1);
+    const after = Math.min(next, this.frames.length - 1);
+    const length = this.frames[after] - this.frames[before];
+    return { before, after, share: length > 0 ? (frame - this.frames[before]) / length : 0 };
+  }
+
+  // Between two keys they change evenly, where both know them.
+  private errorsAt(frame: number): Float32Array {
+    const { errors } = this.arrays;
+    if (errors.length === 0) return new Float32Array(this.vertices).fill(NaN);
+    const { before, after, share } = this.keysAround(frame);
+    return share === 0 ? errors[before] : errors[before].map((error, v) => (1 - share) * error + share * errors[after][v]);
   }
 
   private displacementsOf(positions: Float32Array): Float32Array {

@@ -47,7 +47,7 @@ export class SurfaceMesh {
     }
     this.object.material = this.colored;
     this.geometry.computeVertexNormals();
-    this.paint(this.surface.values(color, positions), this.surface.range(color));
+    this.paint(this.surface.values(color, frame, positions), this.surface.range(color));
   }
 
   private paint(values: Float32Array, { low, high }: { low: number; high: number }): void {

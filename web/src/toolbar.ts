@@ -22,6 +22,7 @@ export class Toolbar {
   private readonly modes: Mode[];
   private readonly color = byId<HTMLSelectElement>("color");
   private readonly surfaceColor = byId<HTMLSelectElement>("surface-color");
+  private readonly surfaceColors: SurfaceColor[];
   private readonly trail = byId<HTMLInputElement>("trail");
   private readonly layers: Record<string, HTMLButtonElement> = {};
   private readonly runs: { box: HTMLInputElement; button: HTMLButtonElement }[];
@@ -35,7 +36,8 @@ export class Toolbar {
     this.runs = report.runs.map((run, index) => this.makeRun(run.name, index));
     for (const layer of LAYERS) this.makeLayer(layer);
     byId("surface-tools").hidden = !hasSurface(report);
-    this.surfaceColor.append(...SURFACE_COLORS.map((color) => element("option", { value: color, textContent: color })));
+    this.surfaceColors = SURFACE_COLORS.filter((color) => color !== "error" || hasSurfaceErrors(report));
+    this.surfaceColor.append(...this.surfaceColors.map((color) => element("option", { value: color, textContent: color.replace("_", " ") })));
     this.surfaceColor.addEventListener("change", () => store.change({ surfaceColor: this.surfaceColor.value as SurfaceColor }));
     byId("surface-gradient").style.backgroundImage = GRADIENT;
     this.trail.addEventListener("input", () => store.change({ trail: Number(this.trail.value) }));
@@ -59,7 +61,7 @@ export class Toolbar {
 
   cycleSurfaceColor(): void {
     const { store } = this.page;
-    store.change({ surfaceColor: SURFACE_COLORS[(SURFACE_COLORS.indexOf(store.state.surfaceColor) + 1) % SURFACE_COLORS.length] });
+    store.change({ surfaceColor: this.surfaceColors[(this.surfaceColors.indexOf(store.state.surfaceColor) + 1) % this.surfaceColors.length] });
   }
 
   cycleView(): void {
@@ -155,9 +157,9 @@ export class Toolbar {
     byId("surface-scale").hidden = surfaceColor === "image" || !surface;
     if (surfaceColor === "image" || !surface) return;
     const { low, high } = surface.range(surfaceColor);
-    const change = surfaceColor === "area change";
+    const change = surfaceColor === "area_change";
     setText(byId("surface-low"), change ? `${short(100 * low)}` : short(low));
-    setText(byId("surface-high"), change ? `${short(100 * high)} %` : `${short(high)} ${report.unit}`);
+    setText(byId("surface-high"), change ? `${short(100 * high)} %` : `${short(high)} ${surfaceColor === "error" ? "mm" : report.unit}`);
   }
 
   private showLegend(): void {
@@ -172,4 +174,8 @@ export class Toolbar {
 
 function hasSurface(report: Report): boolean {
   return report.runs.some((run) => run.surfaces.length > 0);
+}
+
+function hasSurfaceErrors(report: Report): boolean {
+  return report.runs.some((run) => run.surfaces.some(({ arrays }) => arrays.errors.length > 0));
 }

@@ -60,6 +60,14 @@ struct NamedText {
   std::string value;
 };
 
+// A mesh of a run's surface; its normals are those of its own world.
+struct ViewedMesh {
+  GltfMesh surface;
+  // Of every key, the distance of each vertex from the true surface at its pixel; not a number where the frame does not
+  // show the vertex, or its truth is not known. Empty: there is no truth.
+  std::vector<std::vector<float>> errors_mm = {};
+};
+
 struct ViewedRun {
   std::string name;
   std::string status;  // of run.json, and what it says beside it; empty: another system's result
@@ -70,7 +78,7 @@ struct ViewedRun {
   std::vector<std::string> stage_names;  // of RunFrame::stage_ms
   std::vector<ViewedFrame> frames;       // every frame read, in order
   std::map<PointId, NewPoint> points;    // undeformed, of every point that is shown
-  std::vector<GltfMesh> meshes;  // of its surface, at most one a submap; their normals are those of its own world
+  std::vector<ViewedMesh> meshes;        // of its surface, at most one a submap
   std::vector<std::pair<std::string, std::vector<std::optional<double>>>> errors;  // by name, one value a frame
   std::vector<std::optional<double>> scales;  // mm a unit of the run, one a frame; empty: not known
   std::vector<NamedText> figures;
