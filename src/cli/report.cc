@@ -26,7 +26,8 @@ const Manual kManual = {
     "tables of figures and options. It opens from disk in any browser, without a network, and can be sent to "
     "someone.\n\n"
     "With --figure it writes a still instead: the images of the chosen frames with their points above, the scene as it "
-    "was then below, a row for each run. With --video it writes a film of all frames.\n\n"
+    "was then below, a row for each run. With --video it writes a film of all frames. With --surface all of them show "
+    "the mesh that pliant surface made, in a still and a film colored by --Figure.surface_color.\n\n"
     "Reads --run, one or more: run folders that pliant track or pliant import left, also of runs that were "
     "interrupted or killed, or other systems' results. They are brought into one world by their cameras. Reads the "
     "images, and the truth where there is truth, from --sequence, or from where the first run's run.json says they "
@@ -34,7 +35,8 @@ const Manual kManual = {
     "Leaves the file --output_path. In pictures the undeformed map is black, a point's trail of deformation orange, "
     "the camera blue, and the truth green.",
     {"pliant report --run run -o report.html", "pliant report --run ours --run rigid --sequence colon -o both.html",
-     "pliant report --run run --figure 10,40,70 -o figure.svg", "pliant report --run run --video -o film.mp4"},
+     "pliant report --run run --figure 10,40,70 -o figure.svg", "pliant report --run run --video -o film.mp4",
+     "pliant report --run run --surface surface --figure 10 --Figure.surface_color displacement -o figure.pdf"},
 };
 
 struct ReportArguments {
@@ -100,7 +102,7 @@ int ReportCommand(std::span<const std::string> args) {
   line.Add("camera", &arguments.view.camera_path, "FILE",
            "calibration of the sequence; not needed where it has its own, or for the run's images", Need::kOptional);
   line.Add("surface", &arguments.view.surface_paths, "DIR",
-           "a surface folder of the run (pliant surface), whose mesh the page shows", Need::kOptional);
+           "a surface folder of the run (pliant surface), whose mesh is shown", Need::kOptional);
   line.Add("output_path", &arguments.output_path, "FILE", "what is written: .html; .png, .svg or .pdf; .mp4",
            Need::kRequired);
   line.Add("figure", &arguments.figure, "FRAMES", "a still of these frames: their numbers, with commas",

@@ -19,8 +19,9 @@ namespace {
 
 class SceneDrawing {
  public:
-  SceneDrawing(cairo_t* drawing, const Panel& panel, const Orbit& orbit)
-      : drawing_(drawing), panel_(panel), orbit_(orbit) {}
+  // `mesh`: what may hide points; null: nothing.
+  SceneDrawing(cairo_t* drawing, const Panel& panel, const Orbit& orbit, const MeshPicture* mesh)
+      : drawing_(drawing), panel_(panel), orbit_(orbit), mesh_(mesh) {}
 
   void Path(const std::vector<Eigen::Vector3d>& points) {
     bool begun = false;
@@ -42,14 +43,15 @@ class SceneDrawing {
   void Circles(const std::vector<Eigen::Vector3d>& points, double radius) {
     for (const Eigen::Vector3d& point : points) {
       const Eigen::Vector3d seen = orbit_.Project(point);
-      if (seen.z() > 0) Dot(drawing_, panel_.left + seen.x(), panel_.top + seen.y(), radius);
+      if (seen.z() > 0 && !(mesh_ != nullptr && mesh_->Hides(seen)))
+        Dot(drawing_, panel_.left + seen.x(), panel_.top + seen.y(), radius);
     }
   }
 
-  // False: behind the eye.
+  // False: behind the eye, or the mesh.
   bool Go(const Eigen::Vector3d& point, void (*go)(cairo_t*, double, double)) {
     const Eigen::Vector3d seen = orbit_.Project(point);
-    if (!(seen.z() > 0)) return false;
+    if (!(seen.z() > 0) || (mesh_ != nullptr && mesh_->Hides(seen))) return false;
     go(drawing_, panel_.left + seen.x(), panel_.top + seen.y());
     return true;
   }
@@ -57,6 +59,7 @@ class SceneDrawing {
   cairo_t* drawing_;
   const Panel& panel_;
   const Orbit& orbit_;
+  const MeshPicture* mesh_;
 };
 
 // The present frame's points, each from its undeformed position through the last frames to where it is.
@@ -84,6 +87,17 @@ void AddObserved(const ViewedRun& run, std::vector<Eigen::Vector3d>* points) {
       points->push_back(o.position.cast<double>());
       if (o.truth.allFinite()) points->push_back(o.truth.cast<double>());
     }
+}
+
+void DrawMesh(cairo_t* drawing, const Panel& panel, const MeshPicture& mesh) {
+  const CairoSurface surface = ImageSurface(mesh.bgra);
+  cairo_save(drawing);
+  cairo_translate(drawing, panel.left, panel.top);
+  cairo_scale(drawing, 1 / mesh.scale, 1 / mesh.scale);
+  cairo_set_source_surface(drawing, surface.get(), 0, 0);
+  cairo_pattern_set_filter(cairo_get_source(drawing), CAIRO_FILTER_GOOD);
+  cairo_paint(drawing);
+  cairo_restore(drawing);
 }
 
 void DrawMap(cairo_t* drawing, const ViewedRun& run, double radius, SceneDrawing* scene) {
@@ -171,6 +185,8 @@ Viewpoint ViewpointOf(const View& view, const ViewedRun& run, const FigureOption
   const auto frustum = FrustumOf(run);
   for (const auto& [id, point] : run.points) points.push_back(point.position);
   AddObserved(run, &points);
+  for (const ViewedMesh& mesh : run.meshes)
+    for (const Eigen::Vector3f& vertex : mesh.surface.mesh.vertices) points.push_back(vertex.cast<double>());
   Eigen::Vector4d orientation = Eigen::Vector4d::Zero();
   for (const ViewedFrame& frame : run.frames) {
     if (!frame.world_from_cam) continue;
@@ -187,16 +203,24 @@ Viewpoint ViewpointOf(const View& view, const ViewedRun& run, const FigureOption
   return {Orbit(points, cameras, mean, options.azimuth_deg, options.elevation_deg, width_px, height_px), frustum};
 }
 
-void DrawScene(cairo_t* drawing, const Panel& panel, const View& view, const ViewedRun& run, int frame_idx,
-               const Viewpoint& viewpoint, const FigureOptions& options) {
+SceneDrawer::SceneDrawer(const View& view, const FigureOptions& options, double width_px, double height_px)
+    : view_(view), options_(options), meshes_(view, options.surface_color) {
+  for (const ViewedRun& run : view.runs) viewpoints_.push_back(ViewpointOf(view, run, options, width_px, height_px));
+}
+
+void SceneDrawer::Draw(cairo_t* drawing, const Panel& panel, std::size_t run_index, int frame_idx) const {
+  const ViewedRun& run = view_.runs[run_index];
+  const Viewpoint& viewpoint = viewpoints_[run_index];
   cairo_save(drawing);
   Clip(drawing, panel);
-  SceneDrawing scene(drawing, panel, viewpoint.orbit);
+  const auto mesh = meshes_.Paint(run_index, frame_idx, viewpoint.orbit, panel);
+  if (mesh) DrawMesh(drawing, panel, *mesh);
+  SceneDrawing scene(drawing, panel, viewpoint.orbit, mesh ? &*mesh : nullptr);
   const double radius = kDot * panel.width;
   const ViewedFrame* frame = FindFrame(run, frame_idx);
-  DrawMap(drawing, run, radius, &scene);
-  if (frame != nullptr) DrawFramePoints(drawing, run, *frame, radius, options.trail_frames, &scene);
-  DrawTruePath(drawing, view, frame_idx, radius, &scene);
+  if (!mesh) DrawMap(drawing, run, radius, &scene);
+  if (frame != nullptr) DrawFramePoints(drawing, run, *frame, radius, options_.trail_frames, &scene);
+  DrawTruePath(drawing, view_, frame_idx, radius, &scene);
   Use(drawing, kBlue);
   cairo_set_line_width(drawing, radius);
   DrawPath(run, frame_idx, &scene);
@@ -208,6 +232,14 @@ void DrawScene(cairo_t* drawing, const Panel& panel, const View& view, const Vie
   cairo_set_line_width(drawing, 1);
   cairo_rectangle(drawing, panel.left, panel.top, panel.width, panel.height);
   cairo_stroke(drawing);
+}
+
+LegendContent SceneDrawer::Legend() const {
+  const auto has_mesh = [](const ViewedRun& run) { return !run.meshes.empty(); };
+  return {.map = !std::ranges::all_of(view_.runs, has_mesh),
+          .truth = HasTruth(view_),
+          .unknown = meshes_.scale() && options_.surface_color == SurfaceColor::kError,
+          .scale = meshes_.scale()};
 }
 
 }  // namespace pliant

@@ -5,12 +5,16 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <optional>
+#include <vector>
 
 #include <Eigen/Core>
 
 #include "pliant/viewer/figure.h"
 #include "pliant/viewer/view.h"
+#include "viewer/draw_legend.h"
+#include "viewer/draw_mesh.h"
 #include "viewer/drawing.h"
 #include "viewer/orbit.h"
 
@@ -24,8 +28,22 @@ struct Viewpoint {
 Viewpoint ViewpointOf(const View& view, const ViewedRun& run, const FigureOptions& options, double width_px,
                       double height_px);
 
-// A frame without a pose says why.
-void DrawScene(cairo_t* drawing, const Panel& panel, const View& view, const ViewedRun& run, int frame_idx,
-               const Viewpoint& viewpoint, const FigureOptions& options);
+// Draws the runs of a view in any of their frames, all panels of one size. View and options must outlive it.
+class SceneDrawer {
+ public:
+  SceneDrawer(const View& view, const FigureOptions& options, double width_px, double height_px);
+
+  // A frame without a pose says why.
+  void Draw(cairo_t* drawing, const Panel& panel, std::size_t run, int frame_idx) const;
+
+  // What its colors mean.
+  LegendContent Legend() const;
+
+ private:
+  const View& view_;
+  const FigureOptions& options_;
+  MeshPainter meshes_;
+  std::vector<Viewpoint> viewpoints_;  // one a run
+};
 
 }  // namespace pliant

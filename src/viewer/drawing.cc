@@ -53,9 +53,11 @@ void Clip(cairo_t* drawing, const Panel& panel) {
 }
 
 CairoSurface ImageSurface(const cv::Mat& image) {
-  cv::Mat bgra;
-  cv::cvtColor(image, bgra, image.channels() == 1 ? cv::COLOR_GRAY2BGRA : cv::COLOR_BGR2BGRA);
-  CairoSurface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, bgra.cols, bgra.rows));
+  cv::Mat bgra = image;
+  if (image.channels() != 4)
+    cv::cvtColor(image, bgra, image.channels() == 1 ? cv::COLOR_GRAY2BGRA : cv::COLOR_BGR2BGRA);
+  const cairo_format_t format = image.channels() == 4 ? CAIRO_FORMAT_ARGB32 : CAIRO_FORMAT_RGB24;
+  CairoSurface surface(cairo_image_surface_create(format, bgra.cols, bgra.rows));
   const int stride = cairo_image_surface_get_stride(surface.get());
   unsigned char* pixels = cairo_image_surface_get_data(surface.get());
   cairo_surface_flush(surface.get());

@@ -57,7 +57,7 @@ void Dot(cairo_t* drawing, double x, double y, double radius);
 // What is drawn next stays inside of the panel.
 void Clip(cairo_t* drawing, const Panel& panel);
 
-// `image`: 8-bit, 1 or 3 (BGR) channels.
+// `image`: 8-bit, 1, 3 (BGR) or 4 channels (BGRA, multiplied with its opacity).
 CairoSurface ImageSurface(const cv::Mat& image);
 
 // The sentence for a picture that cairo cannot hold.

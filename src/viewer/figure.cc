@@ -13,6 +13,7 @@
 
 #include "viewer/draw_image.h"
 #include "viewer/draw_legend.h"
+#include "viewer/draw_mesh.h"
 #include "viewer/draw_scene.h"
 #include "viewer/drawing.h"
 #include "viewer/frame_images.h"
@@ -23,56 +24,58 @@ namespace {
 
 constexpr double kGap = 8;
 
+// The size of a panel.
+struct PanelSize {
+  double width = 0;
+  double height = 0;
+
+  PanelSize(const View& view, const FigureOptions& options)
+      : width(options.panel_width_px), height(width * AspectOf(view)) {}
+};
+
 // The page of a figure, in points of 1/72 inch (png: pixels).
 struct Layout {
   double width = 0;
   double height = 0;
   double image_height = 0;  // 0: no images
-  double panel_width = 0;
-  double panel_height = 0;  // of a scene
+  PanelSize panel;          // of a scene
   double legend_height = 0;
 
-  Layout(const View& view, const FigureOptions& options, std::size_t frames) {
-    panel_width = options.panel_width_px;
-    panel_height = panel_width * AspectOf(view);
-    image_height = view.sequence ? panel_height : 0;
-    width = kGap + static_cast<double>(frames) * (panel_width + kGap);
-    legend_height = LegendHeight(width - 2 * kGap, HasTruth(view));
+  Layout(const View& view, const PanelSize& panel_size, const LegendContent& legend, std::size_t frames)
+      : panel(panel_size) {
+    image_height = view.sequence ? panel.height : 0;
+    width = kGap + static_cast<double>(frames) * (panel.width + kGap);
+    legend_height = LegendHeight(width - 2 * kGap, legend);
     height = kLine + image_height + kGap +
-             static_cast<double>(view.runs.size()) * (panel_height + kGap + RunLine(view)) + legend_height;
+             static_cast<double>(view.runs.size()) * (panel.height + kGap + RunLine(view)) + legend_height;
   }
 
   static double RunLine(const View& view) { return view.runs.size() > 1 ? kLine : 0; }
 };
 
 // Draws all of the figure. Fails as FrameImages does.
-Status Draw(cairo_t* drawing, const View& view, const FigureOptions& options, const Layout& layout,
+Status Draw(cairo_t* drawing, const View& view, const SceneDrawer& scenes, const Layout& layout,
             const std::set<int>& frames_idx) {
   cairo_set_source_rgb(drawing, 1, 1, 1);
   cairo_paint(drawing);
   auto images = FrameImages::Open(view, *frames_idx.begin());
   if (!images.ok()) return images.status();
-  std::vector<Viewpoint> viewpoints;
-  for (const ViewedRun& run : view.runs)
-    viewpoints.push_back(ViewpointOf(view, run, options, layout.panel_width, layout.panel_height));
   double left = kGap;
   for (const int frame_idx : frames_idx) {
-    DrawText(drawing, left, kLine - 6, layout.panel_width, "frame " + std::to_string(frame_idx));
+    DrawText(drawing, left, kLine - 6, layout.panel.width, "frame " + std::to_string(frame_idx));
     const auto image = images->At(frame_idx);
     if (!image.ok()) return image.status();
-    DrawImage(drawing, {left, kLine, layout.panel_width, layout.image_height}, *image, view, frame_idx);
+    DrawImage(drawing, {left, kLine, layout.panel.width, layout.image_height}, *image, view, frame_idx);
     double top = kLine + layout.image_height + kGap;
     for (std::size_t i = 0; i < view.runs.size(); ++i) {
-      const ViewedRun& run = view.runs[i];
-      if (view.runs.size() > 1) DrawRunName(drawing, left, top + kLine - 8, layout.panel_width, view, i);
+      if (view.runs.size() > 1) DrawRunName(drawing, left, top + kLine - 8, layout.panel.width, view, i);
       top += Layout::RunLine(view);
-      DrawScene(drawing, {left, top, layout.panel_width, layout.panel_height}, view, run, frame_idx, viewpoints[i],
-                options);
-      top += layout.panel_height + kGap;
+      scenes.Draw(drawing, {left, top, layout.panel.width, layout.panel.height}, i, frame_idx);
+      top += layout.panel.height + kGap;
     }
-    left += layout.panel_width + kGap;
+    left += layout.panel.width + kGap;
   }
-  DrawLegend(drawing, kGap, layout.height - layout.legend_height, layout.width - 2 * kGap, HasTruth(view));
+  DrawLegend(drawing, kGap, layout.height - layout.legend_height, layout.width - 2 * kGap, scenes.Legend());
   return Status::Ok();
 }
 
@@ -106,6 +109,7 @@ void FigureOptions::List(OptionTable& table) {
   table.Add("azimuth_deg", &azimuth_deg, "deg",
             "viewpoint of the scene: from behind the camera, turned to its right by this", -360.0, 360.0);
   table.Add("elevation_deg", &elevation_deg, "deg", "and raised above it by this", -89.0, 89.0);
+  table.AddChoice("surface_color", &surface_color, "of the mesh of a surface (report --surface)");
   table.Add("fps", &fps, "1/s", "of a film; 0: the sequence's", 0.0, 1000.0);
 }
 
@@ -115,16 +119,19 @@ Result<std::vector<std::string>> WriteFigure(const ViewRequest& request, const F
   pictures.figures = false;
   const auto view = OpenView(pictures, options.view);
   if (!view.ok()) return view.status();
+  if (Status status = CheckSurfaceColor(*view, options.surface_color); !status.ok()) return status;
   if (Status status = CheckFrames(*view, frames_idx); !status.ok()) return status;
   const std::filesystem::path path = output_path;
   const std::set<int> columns(frames_idx.begin(), frames_idx.end());
-  const Layout layout(*view, options, columns.size());
+  const PanelSize panel(*view, options);
+  const SceneDrawer scenes(*view, options, panel.width, panel.height);
+  const Layout layout(*view, panel, scenes.Legend(), columns.size());
   const std::string draft = output_path + ".part";
   const CairoSurface surface = MakeSurface(path.extension().string(), draft, layout);
   if (path.extension() == ".png" && cairo_surface_status(surface.get()) != CAIRO_STATUS_SUCCESS)
     return TooLarge(layout.width, layout.height);
   const Drawing drawing(cairo_create(surface.get()));
-  const Status drawn = Draw(drawing.get(), *view, options, layout, columns);
+  const Status drawn = Draw(drawing.get(), *view, scenes, layout, columns);
   bool written = cairo_status(drawing.get()) == CAIRO_STATUS_SUCCESS;
   if (drawn.ok() && path.extension() == ".png")
     written = written && cairo_surface_write_to_png(surface.get(), draft.c_str()) == CAIRO_STATUS_SUCCESS;

@@ -15,6 +15,7 @@
 #include "pliant/viewer/figure.h"
 #include "viewer/draw_image.h"
 #include "viewer/draw_legend.h"
+#include "viewer/draw_mesh.h"
 #include "viewer/draw_scene.h"
 #include "viewer/drawing.h"
 #include "viewer/frame_images.h"
@@ -23,7 +24,7 @@
 namespace pliant {
 namespace {
 
-constexpr double kMargin = 6;
+constexpr double kFilmMargin = 6;
 constexpr double kNameLeft = 110;  // beside the frame's number
 constexpr double kUsualFps = 30;
 
@@ -62,11 +63,9 @@ Status Unwritable(const std::string& path) {
 // What all frames of a film share.
 struct FilmLayout {
   const View& view;
-  const FigureOptions& options;
+  const SceneDrawer& scenes;
   double panel_width = 0;
   double panel_height = 0;
-  const std::vector<Viewpoint>& viewpoints;  // one a run
-  const bool truth;                          // HasTruth
 };
 
 // The frame's number and a legend around its image, where there is one, and a panel for each run.
@@ -81,16 +80,15 @@ void DrawFilmFrame(const FilmLayout& layout, int frame_idx, const cv::Mat& image
     left += layout.panel_width;
   }
   for (std::size_t i = 0; i < view.runs.size(); ++i) {
-    DrawScene(drawing.get(), {left, kLine, layout.panel_width, layout.panel_height}, view, view.runs[i], frame_idx,
-              layout.viewpoints[i], layout.options);
+    layout.scenes.Draw(drawing.get(), {left, kLine, layout.panel_width, layout.panel_height}, i, frame_idx);
     if (view.runs.size() > 1) {
-      const double name_left = left > 0 ? kMargin : kNameLeft;
+      const double name_left = left > 0 ? kFilmMargin : kNameLeft;
       DrawRunName(drawing.get(), left + name_left, kLine - 6, layout.panel_width - name_left, view, i);
     }
     left += layout.panel_width;
   }
-  DrawText(drawing.get(), kMargin, kLine - 6, kNameLeft - kMargin, "frame " + std::to_string(frame_idx));
-  DrawLegend(drawing.get(), kMargin, kLine + layout.panel_height, left - 2 * kMargin, layout.truth);
+  DrawText(drawing.get(), kFilmMargin, kLine - 6, kNameLeft - kFilmMargin, "frame " + std::to_string(frame_idx));
+  DrawLegend(drawing.get(), kFilmMargin, kLine + layout.panel_height, left - 2 * kFilmMargin, layout.scenes.Legend());
 }
 
 }  // namespace
@@ -102,6 +100,7 @@ Result<std::vector<std::string>> WriteFilm(const ViewRequest& request, const Fig
   pictures.figures = false;
   const auto view = OpenView(pictures, options.view);
   if (!view.ok()) return view.status();
+  if (Status status = CheckSurfaceColor(*view, options.surface_color); !status.ok()) return status;
   std::set<int> frames_idx;
   for (const ViewedRun& run : view->runs)
     for (const ViewedFrame& frame : run.frames) frames_idx.insert(frame.row.frame_idx);
@@ -110,12 +109,9 @@ Result<std::vector<std::string>> WriteFilm(const ViewRequest& request, const Fig
   const double panel_height = panel_width * AspectOf(*view);
   const std::size_t panels = (view->sequence ? 1 : 0) + view->runs.size();
   const double width = static_cast<double>(panels) * panel_width;
-  const bool truth = HasTruth(*view);
-  const double legend_height = LegendHeight(width - 2 * kMargin, truth);
+  const SceneDrawer scenes(*view, options, panel_width, panel_height);
+  const double legend_height = LegendHeight(width - 2 * kFilmMargin, scenes.Legend());
   const cv::Size size(Even(width), Even(panel_height + kLine + legend_height));
-  std::vector<Viewpoint> viewpoints;
-  for (const ViewedRun& run : view->runs)
-    viewpoints.push_back(ViewpointOf(*view, run, options, panel_width, panel_height));
   auto images = FrameImages::Open(*view, *frames_idx.begin());
   if (!images.ok()) return images.status();
   const std::string draft = std::filesystem::path(output_path).replace_extension(".part.mp4").string();
@@ -137,7 +133,7 @@ Result<std::vector<std::string>> WriteFilm(const ViewRequest& request, const Fig
       if (!read.ok()) return unwritten(read.status());
       image = *read;
     }
-    DrawFilmFrame({*view, options, panel_width, panel_height, viewpoints, truth}, frame_idx, image, surface.get());
+    DrawFilmFrame({*view, scenes, panel_width, panel_height}, frame_idx, image, surface.get());
     cairo_surface_flush(surface.get());
     const cv::Mat bgra(size, CV_8UC4, cairo_image_surface_get_data(surface.get()),
                        static_cast<std::size_t>(cairo_image_surface_get_stride(surface.get())));

@@ -24,6 +24,9 @@ class Orbit {
   // x, y in the panel and the distance along the view; behind the eye the distance is not positive.
   Eigen::Vector3d Project(const Eigen::Vector3d& point) const;
 
+  // From where the scene is seen, in its world.
+  Eigen::Vector3d Eye() const { return eye_from_world_.OriginInSource(); }
+
  private:
   Rigid3 eye_from_world_;
   double focal_px_ = 1;

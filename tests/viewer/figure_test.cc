@@ -10,8 +10,10 @@
 #include <gtest/gtest.h>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
 
+#include "pliant/io/gltf.h"
 #include "viewer/draw_legend.h"
 #include "viewer/draw_scene.h"
 #include "viewer/drawing.h"
@@ -31,6 +33,7 @@ constexpr int kMinCamera = 50;         // pixels of a camera's frame, drawn in l
 constexpr int kMinLetters = 200;       // pixels of a sentence
 constexpr int kMinLine = 20;           // pixels of a thin line or a few dots
 constexpr int kMinTrails = 450;        // of eight trails in two frames, in lines that are as wide as points
+constexpr int kMinSurface = 2000;      // pixels of a square that fills a good part of a panel
 constexpr double kContainerFps = 0.1;  // a container keeps the rate as a fraction of its own
 
 TEST(Orbit, ShowsEveryCameraAndNearlyEveryPoint) {
@@ -140,7 +143,7 @@ TEST_F(FigureTest, DrawsImagesAndScenes) {
 TEST_F(FigureTest, OneNarrowColumnHasTheWholeLegend) {
   ASSERT_TRUE(Write("figure.png", {10}).ok());
   const cv::Mat figure = cv::imread(folder_.Path("figure.png"));
-  const int height = static_cast<int>(LegendHeight(160, /*truth=*/true));
+  const int height = static_cast<int>(LegendHeight(160, {.map = true, .truth = true}));
   EXPECT_GT(height, kLine);
   const cv::Mat legend = figure.rowRange(figure.rows - height, figure.rows);
   for (const cv::Scalar& bgr : {cv::Scalar(0, 94, 213), cv::Scalar(178, 114, 0), cv::Scalar(115, 158, 0)})
@@ -206,6 +209,91 @@ TEST_F(FigureTest, SaysWhyARunHasNothingToShow) {
   const cv::Mat figure = cv::imread(folder_.Path("figure.png"));
   const int bottom = figure.rows - static_cast<int>(kLine) - 12;  // inside the scene's panel
   EXPECT_GT(CountPixels(figure(cv::Range(bottom - 220, bottom), cv::Range(12, 324)), {0, 0, 0}), kMinLetters);
+}
+
+// A square behind the run's points, whose right half moves by up to 2 until the frame 14. It faces the cameras.
+void WriteSquare(const TestFolder& folder) {
+  std::filesystem::create_directories(folder.Path("surface"));
+  folder.Write("surface/camera.yaml", "model: PINHOLE\nwidth: 640\nheight: 480\nparams: [500, 500, 319.5, 239.5]\n");
+  folder.Write("surface/surface.json",
+               "{\"status\": \"completed\", \"run\": \"" + folder.Path("run") + "\", \"frames\": []}");
+  constexpr int kNodes = 9;
+  Mesh mesh;
+  for (int row = 0; row < kNodes; ++row)
+    for (int column = 0; column < kNodes; ++column) {
+      mesh.vertices.emplace_back(4 * (column - 4), 4 * (row - 4), 60);
+      mesh.sigmas.push_back(0.5F);
+      const int v = row * kNodes + column;
+      if (row + 1 == kNodes || column + 1 == kNodes) continue;
+      mesh.triangles.push_back({v, v + kNodes, v + 1});
+      mesh.triangles.push_back({v + kNodes, v + kNodes + 1, v + 1});
+    }
+  mesh.normals.assign(mesh.vertices.size(), -Eigen::Vector3f::UnitZ());
+  mesh.rgb.resize(mesh.vertices.size());
+  std::vector<MeshKey> keys = {{10, 0.0, mesh.vertices}, {14, 0.1, mesh.vertices}};
+  for (Eigen::Vector3f& position : keys[1].positions) position.z() += std::max(0.0F, position.x() / 8);
+  ASSERT_TRUE(WriteGlb(folder.Path("surface/surface.glb"), {mesh, "", keys, {}, TestCamera(), 0}).ok());
+}
+
+TEST_F(FigureTest, DrawsTheSurfaceInTheColorsOfItsValues) {
+  WriteSquare(folder_);
+  options_.panel_width_px = 480;
+  options_.surface_color = SurfaceColor::kDisplacement;
+  ViewRequest request = Request();
+  request.surface_paths = {folder_.Path("surface")};
+  const auto draw = [&](const char* name) {
+    EXPECT_TRUE(WriteFigure(request, options_, {10, 14}, folder_.Path(name)).ok());
+    return cv::imread(folder_.Path(name));
+  };
+  const cv::Mat figure = draw("figure.png");
+  ASSERT_FALSE(figure.empty());
+  const int bottom = figure.rows - static_cast<int>(kLine);  // of the panels; below is the legend
+  const cv::Mat first = figure(cv::Range(400, bottom), cv::Range(0, 488));
+  const cv::Mat then = figure(cv::Range(400, bottom), cv::Range(488, figure.cols));
+  const cv::Scalar lowest(84, 1, 68);
+  EXPECT_GT(CountPixels(first, lowest), kMinSurface);  // all of it is where it rests
+  EXPECT_GT(CountPixels(then, lowest), kMinSurface / 4);
+  EXPECT_LT(CountPixels(then, lowest), CountPixels(first, lowest) * 3 / 4);
+  const cv::Scalar highest(37, 231, 253);
+  EXPECT_EQ(CountPixels(first, highest), 0);
+  // The legend has the colors, and names their range.
+  const cv::Mat legend = figure.rowRange(bottom, figure.rows);
+  EXPECT_GT(CountPixels(legend, highest), kMinLine);
+  // Seen from behind it hides nothing.
+  options_.azimuth_deg = 170;
+  const cv::Mat behind = draw("behind.png");
+  EXPECT_EQ(CountPixels(behind(cv::Range(400, bottom), cv::Range(0, 488)), lowest), 0);
+}
+
+TEST_F(FigureTest, DrawsTheSurfaceInAFilmAndInVectors) {
+  WriteSquare(folder_);
+  options_.panel_width_px = 320;
+  options_.surface_color = SurfaceColor::kError;
+  ViewRequest request = Request();
+  request.surface_paths = {folder_.Path("surface")};
+  ASSERT_TRUE(WriteFilm(request, options_, folder_.Path("film.mp4"), [](int, int) { return true; }).ok());
+  cv::VideoCapture film(folder_.Path("film.mp4"));
+  cv::Mat frame;
+  ASSERT_TRUE(film.read(frame));
+  cv::Mat hsv;
+  cv::cvtColor(frame(cv::Range(30, 240), cv::Range(330, 630)), hsv, cv::COLOR_BGR2HSV);
+  cv::Mat colored;
+  cv::inRange(hsv, cv::Scalar(0, 60, 30), cv::Scalar(180, 255, 255), colored);
+  EXPECT_GT(cv::countNonZero(colored), kMinSurface);
+  ASSERT_TRUE(WriteFigure(request, options_, {14}, folder_.Path("figure.svg")).ok());
+  EXPECT_THAT(folder_.Read("figure.svg"), HasSubstr("data:image/png"));
+}
+
+TEST_F(FigureTest, ColorsThatNothingHasAreRefused) {
+  options_.surface_color = SurfaceColor::kAreaChange;
+  EXPECT_THAT(Write("figure.png").message(), HasSubstr("is 'area_change', but there is no surface"));
+  WriteSquare(folder_);
+  options_.surface_color = SurfaceColor::kError;
+  std::filesystem::remove_all(folder_.Path("sequence/depth"));
+  ViewRequest request = Request();
+  request.surface_paths = {folder_.Path("surface")};
+  EXPECT_THAT(WriteFigure(request, options_, {10}, folder_.Path("figure.png")).status().message(),
+              HasSubstr("the true surface is not known"));
 }
 
 TEST_F(FigureTest, WritesVectors) {

@@ -7,8 +7,11 @@
 // where they are known. A frame without a pose says why it has none.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "pliant/base/options.h"
@@ -17,6 +20,23 @@
 
 namespace pliant {
 
+// What a mesh of the tissue is colored by; the values have the names that the page of a report uses.
+enum class SurfaceColor {
+  kImage,         // its texture
+  kDisplacement,  // from the undeformed positions
+  kAreaChange,    // of the triangles around a vertex, by the undeformed area
+  kUncertainty,   // standard deviation of the distance from the camera
+  kError,         // distance from the true surface
+};
+template <>
+struct EnumNames<SurfaceColor> {
+  static constexpr std::array kNames = {std::pair{SurfaceColor::kImage, std::string_view("image")},
+                                        std::pair{SurfaceColor::kDisplacement, std::string_view("displacement")},
+                                        std::pair{SurfaceColor::kAreaChange, std::string_view("area_change")},
+                                        std::pair{SurfaceColor::kUncertainty, std::string_view("uncertainty")},
+                                        std::pair{SurfaceColor::kError, std::string_view("error")}};
+};
+
 struct FigureOptions {
   ViewOptions view;
   int panel_width_px = 480;   // of an image; a scene is as large
@@ -24,6 +44,7 @@ struct FigureOptions {
   double azimuth_deg = 40;    // from where the scene is seen: round its vertical, from behind the camera to its right
   double elevation_deg = 25;  // and above
   double fps = 0;             // of a film; 0: the sequence's
+  SurfaceColor surface_color = SurfaceColor::kImage;
 
   void List(OptionTable& table);  // group "Figure"; not those of the view
 };
