@@ -17,6 +17,8 @@
 namespace pliant {
 namespace {
 
+constexpr double kOnMesh = 0.6;  // of the radius of a point that is drawn over a mesh, whose colors are to be seen
+
 class SceneDrawing {
  public:
   // `mesh`: what may hide points; null: nothing.
@@ -219,7 +221,8 @@ void SceneDrawer::Draw(cairo_t* drawing, const Panel& panel, std::size_t run_ind
   const double radius = kDot * panel.width;
   const ViewedFrame* frame = FindFrame(run, frame_idx);
   if (!mesh) DrawMap(drawing, run, radius, &scene);
-  if (frame != nullptr) DrawFramePoints(drawing, run, *frame, radius, options_.trail_frames, &scene);
+  if (frame != nullptr)
+    DrawFramePoints(drawing, run, *frame, mesh ? kOnMesh * radius : radius, options_.trail_frames, &scene);
   DrawTruePath(drawing, view_, frame_idx, radius, &scene);
   Use(drawing, kBlue);
   cairo_set_line_width(drawing, radius);
