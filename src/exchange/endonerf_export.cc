@@ -4,6 +4,7 @@
 // The layout of EndoNeRF's data: LLFF's poses_bounds.npy, whose camera is a pinhole that looks out of the middle of
 // the image, with images, depths and masks of that camera, which belong to the poses in the order of their names.
 
+#include <array>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -16,6 +17,7 @@
 #include "exchange/neural_scene.h"
 #include "exchange/run_images.h"
 #include "exchange/staged_folder.h"
+#include "io/npy.h"
 #include "pliant/base/files.h"
 #include "pliant/base/statistics.h"
 #include "pliant/base/text.h"
@@ -30,7 +32,8 @@ namespace {
 
 constexpr const char* kPosesFile = "poses_bounds.npy";
 constexpr const char* kCameraFile = "pinhole.yaml";
-constexpr int kColumns = 17;  // a 3 x 5 matrix, row by row: axes, center, (height, width, focal length); near, far
+constexpr std::size_t kColumns =
+    17;  // a 3 x 5 matrix, row by row: axes, center, (height, width, focal length); near, far
 // The fewest steps that the typical depth has: rounding then moves it by 0.5 % or less. Not many more than EndoNeRF's
 // own depths have, because some of its constants are steps.
 constexpr double kStepsOfTypicalDepth = 100;
@@ -92,20 +95,10 @@ void AppendRow(const SourceFrame& frame, const Camera& camera, double unit, cons
   for (const double share : {kNearShare, kFarShare}) rows->push_back(Quantile(depths, share) / unit);
 }
 
-// NumPy's format 1.0, of double precision numbers: its header is padded so that the numbers begin at a multiple of 64.
-std::string NpyOf(const std::vector<double>& rows, int columns) {
-  std::string header = "{'descr': '<f8', 'fortran_order': False, 'shape': (" + std::to_string(rows.size() / columns) +
-                       ", " + std::to_string(columns) + "), }";
-  constexpr std::size_t kPreamble = 10;
-  header.append(63 - (kPreamble + header.size()) % 64, ' ');
-  header += '\n';
-  std::string bytes = "\x93NUMPY";
-  AppendBytes(&bytes, 1, 1);
-  AppendBytes(&bytes, 0, 1);
-  AppendBytes(&bytes, header.size(), 2);
-  bytes += header;
-  for (const double value : rows) AppendDouble(&bytes, value);
-  return bytes;
+std::string NpyOf(const std::vector<double>& rows) {
+  std::string data;
+  for (const double value : rows) AppendDouble(&data, value);
+  return NpyBytes("<f8", std::array{rows.size() / kColumns, std::size_t{kColumns}}, data);
 }
 
 // Writes the images of a source's frames, and collects the rows of the poses.
@@ -134,7 +127,7 @@ class EndoNerfWriter {
   }
 
   Status Finish() const {
-    if (Status status = WriteFileAtomically(staged_.Path(kPosesFile).string(), NpyOf(rows_, kColumns)); !status.ok())
+    if (Status status = WriteFileAtomically(staged_.Path(kPosesFile).string(), NpyOf(rows_)); !status.ok())
       return status;
     return WriteCameraFile(staged_.Path(kCameraFile).string(), {.camera = pinhole_, .depth_scale = unit_});
   }

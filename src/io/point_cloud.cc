@@ -5,13 +5,13 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <optional>
 #include <string_view>
 #include <utility>
 
+#include "io/npy.h"
 #include "pliant/base/files.h"
 #include "pliant/base/options.h"
 #include "pliant/base/text.h"
@@ -33,45 +33,16 @@ double At(std::string_view bytes, std::size_t offset) {
   return static_cast<double>(value);
 }
 
-// The text between `begin` and `end` that follows `key` in a NumPy header.
-std::string Entry(const std::string& header, const std::string& key, char begin, char end) {
-  const std::size_t at = header.find("'" + key + "'");
-  if (at == std::string::npos) return {};
-  const std::size_t first = header.find(begin, header.find(':', at));
-  const std::size_t last = header.find(end, first + 1);
-  if (first == std::string::npos || last == std::string::npos) return {};
-  return header.substr(first + 1, last - first - 1);
-}
-
 Result<Points> ReadNpy(const std::string& path, std::string_view bytes) {
-  constexpr std::size_t kHead = 10;
-  if (bytes.size() < kHead) return Unreadable(path, "is cut off");
-  const bool is_long = bytes[6] > 1;
-  const std::size_t head = is_long ? kHead + 2 : kHead;
-  if (bytes.size() < head) return Unreadable(path, "is cut off");
-  const auto length = static_cast<std::size_t>(is_long ? At<std::uint32_t>(bytes, 8) : At<std::uint16_t>(bytes, 8));
-  if (bytes.size() < head + length) return Unreadable(path, "is cut off");
-  const std::string header(bytes.substr(head, length));
-  const std::string type = Entry(header, "descr", '\'', '\'');
-  const std::string shape = Entry(header, "shape", '(', ')');
-  const auto sizes = ParseNumbers(shape);
-  const double rows = sizes && sizes->size() > 1 ? (*sizes)[0] : -1.0;
-  const double cols = sizes && sizes->size() > 1 ? (*sizes)[1] : -1.0;
-  if ((type != "<f4" && type != "<f8") || header.find("'fortran_order': False") == std::string::npos ||
-      !(cols >= 3 && cols <= 64 && rows >= 0 && rows <= 1e9))
-    return Unreadable(path, "is not an array of N x 3 floats, rows first; save it as np.float32 of this shape");
-  const std::size_t width = type == "<f4" ? 4 : 8;
-  const auto stride = static_cast<std::size_t>(cols) * width;
-  const auto count = static_cast<std::size_t>(rows);
-  const std::string_view data = bytes.substr(head + length);
-  if (data.size() / stride < count) return Unreadable(path, "is cut off: its header says " + shape);
+  const auto array = ParseNpy(Quoted(path), bytes);
+  if (!array.ok()) return array.status();
+  if (array->kind != NpyArray::Kind::kFloat || array->shape.size() != 2 || array->shape[1] < 3)
+    return Unreadable(path, "is not an array of N x 3 floats, but of the shape " + ShapeText(array->shape) +
+                                " and the type " + array->type + "; save it as np.float32 of this shape");
   Points points;
-  for (std::size_t i = 0; i < count; ++i) {
-    Eigen::Vector3d point;
-    for (std::size_t k = 0; k < 3; ++k)
-      point[static_cast<Eigen::Index>(k)] =
-          width == 4 ? At<float>(data, i * stride + 4 * k) : At<double>(data, i * stride + 8 * k);
-    points.push_back(point);
+  for (std::size_t i = 0; i < array->shape[0]; ++i) {
+    const std::size_t first = i * array->shape[1];
+    points.emplace_back(array->At(first), array->At(first + 1), array->At(first + 2));
   }
   return points;
 }
@@ -223,7 +194,7 @@ Result<Points> ReadPointCloud(const std::string& path) {
   if (extension == ".npy" || extension == ".ply") {
     const auto bytes = ReadFile(path);
     if (!bytes.ok()) return bytes.status();
-    const bool is_npy = bytes->starts_with("\x93NUMPY");
+    const bool is_npy = IsNpy(*bytes);
     if (!is_npy && !bytes->starts_with("ply")) return Unreadable(path, "is not what its name says; copy it again");
     points = is_npy ? ReadNpy(path, *bytes) : ReadPly(path, *bytes);
   } else {

@@ -89,7 +89,7 @@ INSTANTIATE_TEST_SUITE_P(
         Damaged{"Integers", "a.npy", Npy("<i4", "1, 3", Bytes<int>({1, 2, 3})), "not an array of N x 3 floats"},
         Damaged{"TwoColumns", "a.npy", Npy("<f4", "1, 2", Bytes<float>({1, 2})), "not an array of N x 3 floats"},
         Damaged{"Absurd", "a.npy", Npy("<f8", "999999999, 3", ""), "is cut off"},
-        Damaged{"NoNumberOfColumns", "a.npy", Npy("<f4", "2, nan", ""), "not an array of N x 3 floats"},
+        Damaged{"NoNumberOfColumns", "a.npy", Npy("<f4", "2, nan", ""), "has a header that is damaged"},
         Damaged{"NoNumberOfVertices", "a.ply", "ply\nformat ascii 1.0\nelement vertex nan\nend_header\n",
                 "no valid number of vertices"},
         Damaged{"NotWhatItSays", "a.npy", "hello", "is not what its name says"},
