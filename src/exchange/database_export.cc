@@ -5,9 +5,9 @@
 #include <filesystem>
 #include <utility>
 
+#include "colmap/sqlite.h"
 #include "exchange/exports.h"
 #include "exchange/program.h"
-#include "exchange/sqlite.h"
 #include "pliant/base/text.h"
 #include "pliant/colmap/convert.h"
 

@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 #include <sqlite3.h>
 
-#include "exchange/sqlite.h"
+#include "colmap/sqlite.h"
 #include "pliant/exchange/export.h"
 #include "support/small_run.h"
 #include "support/test_folder.h"

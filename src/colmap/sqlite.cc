@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "exchange/sqlite.h"
+#include "colmap/sqlite.h"
 
 #include <algorithm>
 
@@ -34,15 +34,17 @@ Status SqliteDatabase::Failure(const std::string& what) const {
   const std::string message =
       "cannot " + what + " the database " + Quoted(path_) + ": " + sqlite3_errmsg(database_.get());
   if (code == SQLITE_BUSY || code == SQLITE_LOCKED)
-    return {ErrorCode::kUnwritable, message + "; another program has it open; close that program first"};
-  if (code == SQLITE_NOTADB || code == SQLITE_CORRUPT) return {ErrorCode::kUnreadable, message};
+    return {access_ == SqliteAccess::kRead ? ErrorCode::kUnreadable : ErrorCode::kUnwritable, message + "; another program has it open; close that program first"};
+  if (code == SQLITE_NOTADB || code == SQLITE_CORRUPT || access_ == SqliteAccess::kRead)
+    return {ErrorCode::kUnreadable, message};
   return {ErrorCode::kUnwritable, message};
 }
 
-Result<SqliteDatabase> SqliteDatabase::Open(const std::string& path) {
+Result<SqliteDatabase> SqliteDatabase::Open(const std::string& path, SqliteAccess access) {
   sqlite3* handle = nullptr;
-  const int code = sqlite3_open_v2(path.c_str(), &handle, SQLITE_OPEN_READWRITE, nullptr);
-  SqliteDatabase database(path, handle);
+  const int flags = access == SqliteAccess::kRead ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE;
+  const int code = sqlite3_open_v2(path.c_str(), &handle, flags, nullptr);
+  SqliteDatabase database(path, access, handle);
   if (code != SQLITE_OK) return database.Failure("open");
   sqlite3_busy_timeout(handle, kBusyMs);
   return database;
@@ -93,6 +95,34 @@ Status SqliteInsert::Add(const std::vector<SqliteValue>& values) {
   if (sqlite3_step(statement_.get()) != SQLITE_DONE) return database_->Failure("write");
   sqlite3_reset(statement_.get());
   return Status::Ok();
+}
+
+Result<SqliteQuery> SqliteQuery::Create(SqliteDatabase& database, const std::string& sql) {
+  sqlite3_stmt* handle = nullptr;
+  if (sqlite3_prepare_v2(database.database_.get(), sql.c_str(), -1, &handle, nullptr) != SQLITE_OK)
+    return database.Failure("read");
+  return SqliteQuery(database, handle);
+}
+
+Result<bool> SqliteQuery::Next() {
+  const int code = sqlite3_step(statement_.get());
+  if (code == SQLITE_ROW) return true;
+  if (code == SQLITE_DONE) return false;
+  return database_->Failure("read");
+}
+
+std::int64_t SqliteQuery::Int(int column) const { return sqlite3_column_int64(statement_.get(), column); }
+
+std::string_view SqliteQuery::Text(int column) const {
+  const auto* text = reinterpret_cast<const char*>(sqlite3_column_text(statement_.get(), column));
+  if (text == nullptr) return {};
+  return {text, static_cast<std::size_t>(sqlite3_column_bytes(statement_.get(), column))};
+}
+
+std::string_view SqliteQuery::Bytes(int column) const {
+  const auto* bytes = static_cast<const char*>(sqlite3_column_blob(statement_.get(), column));
+  if (bytes == nullptr) return {};
+  return {bytes, static_cast<std::size_t>(sqlite3_column_bytes(statement_.get(), column))};
 }
 
 }  // namespace pliant

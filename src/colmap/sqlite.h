@@ -1,13 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// A SQLite database that is filled row by row, columns by name.
+// A SQLite database that is filled row by row, columns by name, or read.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -24,10 +25,13 @@ struct SqliteBlob {
 };
 using SqliteValue = std::variant<std::nullptr_t, std::int64_t, double, std::string, SqliteBlob>;
 
+enum class SqliteAccess { kWrite, kRead };
+
 class SqliteDatabase {
  public:
   // A database that is there. Fails with kUnreadable if it is none, kUnwritable if it cannot be written or is locked.
-  static Result<SqliteDatabase> Open(const std::string& path);
+  // One that is only read fails with kUnreadable alone.
+  static Result<SqliteDatabase> Open(const std::string& path, SqliteAccess access = SqliteAccess::kWrite);
 
   // Names of a table's columns; empty: there is no such table.
   Result<std::vector<std::string>> Columns(const std::string& table);
@@ -35,13 +39,16 @@ class SqliteDatabase {
 
  private:
   friend class SqliteInsert;
+  friend class SqliteQuery;
   struct Closer {
     void operator()(sqlite3* database) const;
   };
-  SqliteDatabase(std::string path, sqlite3* database) : path_(std::move(path)), database_(database) {}
+  SqliteDatabase(std::string path, SqliteAccess access, sqlite3* database)
+      : path_(std::move(path)), access_(access), database_(database) {}
   Status Failure(const std::string& what) const;
 
   std::string path_;
+  SqliteAccess access_;
   std::unique_ptr<sqlite3, Closer> database_;
 };
 
@@ -62,6 +69,27 @@ class SqliteInsert {
 
   SqliteDatabase* database_;
   std::unique_ptr<sqlite3_stmt, Finalizer> statement_;
+};
+
+// The rows of a query, one after the other.
+class SqliteQuery {
+ public:
+  // Fails with kUnreadable where the database has no such table or column, or is damaged.
+  static Result<SqliteQuery> Create(SqliteDatabase& database, const std::string& sql);
+
+  // False at the end. Fails with kUnreadable.
+  Result<bool> Next();
+  // Of the present row; 0 or empty where the column has no value of this kind. The text and the bytes are valid until
+  // Next.
+  std::int64_t Int(int column) const;
+  std::string_view Text(int column) const;
+  std::string_view Bytes(int column) const;
+
+ private:
+  SqliteQuery(SqliteDatabase& database, sqlite3_stmt* statement) : database_(&database), statement_(statement) {}
+
+  SqliteDatabase* database_;
+  std::unique_ptr<sqlite3_stmt, SqliteInsert::Finalizer> statement_;
 };
 
 }  // namespace pliant
