@@ -1,0 +1,141 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/datasets/sequence_tracks.h"
+
+#include <filesystem>
+#include <map>
+#include <optional>
+
+#include "datasets/image_file.h"
+#include "pliant/base/text.h"
+#include "pliant/io/track_file.h"
+
+namespace pliant {
+namespace {
+
+constexpr double kMaxOutsideShare = 0.05;  // trackers call some points seen that have just left the image
+constexpr std::size_t kMinPixels = 100;    // fewer say nothing of the images' size
+
+Status Mismatch(const std::string& sentence) { return {ErrorCode::kMismatch, sentence}; }
+
+// A database's places in its list of images become the sequence's frames.
+Status NameFrames(const std::string& path, const Sequence& sequence, TrackFile* file) {
+  if (file->images.empty()) return Status::Ok();
+  std::map<std::string, int> frames;
+  for (int k = 0; k < sequence.size(); ++k)
+    if (const auto name = sequence.Name(k)) frames.emplace(std::filesystem::path(*name).filename().string(), k);
+  std::vector<std::optional<int>> frame_of;
+  int known = 0;
+  for (const TrackFileImage& image : file->images) {
+    const auto found = frames.find(std::filesystem::path(image.name).filename().string());
+    frame_of.push_back(found == frames.end() ? std::nullopt : std::optional(found->second));
+    if (!frame_of.back()) continue;
+    ++known;
+    if (image.width != static_cast<std::uint64_t>(sequence.camera().width()) ||
+        image.height != static_cast<std::uint64_t>(sequence.camera().height()))
+      return Mismatch("the database " + Quoted(path) + " has images of " + std::to_string(image.width) + "x" +
+                      std::to_string(image.height) + " pixels, and the sequence of " +
+                      SizeText(sequence.camera().width(), sequence.camera().height()) +
+                      "; match the images of the sequence");
+  }
+  if (known == 0)
+    return Mismatch("none of the " + std::to_string(file->images.size()) + " images of the database " + Quoted(path) +
+                    " has the name of an image of the sequence; give the database of its images");
+  for (PixelTrack& track : file->tracks) {
+    std::erase_if(track.pixels,
+                  [&](const TrackPixel& seen) { return !frame_of[static_cast<std::size_t>(seen.frame_idx)]; });
+    for (TrackPixel& seen : track.pixels) seen.frame_idx = *frame_of[static_cast<std::size_t>(seen.frame_idx)];
+    std::ranges::sort(track.pixels, {}, &TrackPixel::frame_idx);
+  }
+  return Status::Ok();
+}
+
+Status CheckFrames(const std::string& path, int frames, const TrackFile& file) {
+  if (file.frames && *file.frames != frames)
+    return Mismatch(
+        "the arrays in " + Quoted(path) + " have " + std::to_string(*file.frames) + " frames and the images " +
+        std::to_string(frames) +
+        "; entry t of their first axis is frame t of the images, and (points, frames, 2) is to be transposed");
+  for (const PixelTrack& track : file.tracks)
+    if (!track.pixels.empty() && track.pixels.back().frame_idx >= frames)
+      return Mismatch("track " + std::to_string(track.id.value) + " in " + Quoted(path) + " has frame " +
+                      std::to_string(track.pixels.back().frame_idx) + ", and the images are the frames 0 to " +
+                      std::to_string(frames - 1));
+  return Status::Ok();
+}
+
+// Leaves pixels out that lie outside the image, and notes it.
+Status CheckPixelsInImage(const std::string& path, const Camera& camera, SequenceTracks* tracks) {
+  std::size_t seen_pixels = 0;
+  std::size_t outside = 0;
+  Eigen::Vector2d largest(0, 0);
+  std::optional<TrackPixel> example;
+  for (PixelTrack& track : tracks->tracks)
+    std::erase_if(track.pixels, [&](const TrackPixel& seen) {
+      const bool inside = camera.Contains(seen.pixel, -0.5);
+      if (!seen.visible) return false;
+      ++seen_pixels;
+      largest = largest.cwiseMax(seen.pixel);
+      if (inside) return false;
+      ++outside;
+      example = seen;
+      return true;
+    });
+  const std::string size = SizeText(camera.width(), camera.height());
+  const std::string advice =
+      "; give tracks in pixels of these images, not of smaller or larger ones, and not from 0 to 1";
+  if (static_cast<double>(outside) > kMaxOutsideShare * static_cast<double>(seen_pixels))
+    return Mismatch(std::to_string(outside) + " of the " + std::to_string(seen_pixels) + " pixels in " + Quoted(path) +
+                    " lie outside the images of " + size + " pixels, for example (" + Digits(example->pixel.x(), 1) +
+                    ", " + Digits(example->pixel.y(), 1) + ") in frame " + std::to_string(example->frame_idx) + advice);
+  if (seen_pixels >= kMinPixels && largest.x() < 0.5 * camera.width() && largest.y() < 0.5 * camera.height())
+    return Mismatch("all pixels in " + Quoted(path) + " lie in the upper left " + Digits(largest.x() + 1, 0) + "x" +
+                    Digits(largest.y() + 1, 0) + " pixels of the images, which have " + size + advice);
+  if (outside > 0)
+    tracks->notes.push_back(std::to_string(outside) + " of the " + std::to_string(seen_pixels) + " pixels in " +
+                            Quoted(path) + " lie outside the image and count as not seen");
+  return Status::Ok();
+}
+
+}  // namespace
+
+void TrackFileOptions::List(OptionTable& table) {
+  table.BeginGroup("TrackFile", "point tracks of another program, instead of our own");
+  table.Add("path", &path, "path", "CSV, .npz, .npy or COLMAP database (docs/tracks.md); empty: our own tracks");
+  table.AddChoice("pixel_origin", &pixel_origin,
+                  "what (0, 0) is in the file: center of the first pixel (CoTracker, OpenCV) or its upper left corner "
+                  "(TAP-Vid, TAPIR); a database is known to have the corner");
+  table.Add("max_sigma_px", &max_sigma_px, "px", "a point with a larger sigma_px counts as not seen in that frame",
+            0.001, 1e6);
+}
+
+Result<SequenceTracks> ReadTracksOfSequence(const TrackFileOptions& options, const SequenceRequest& request) {
+  SequenceRequest whole = request;
+  whole.start = 0;
+  whole.end = -1;
+  whole.stride = 1;
+  const auto sequence = OpenSequence(whole);
+  if (!sequence.ok()) return sequence.status();
+  auto file = ReadTrackFile(options.path);
+  if (!file.ok()) return file.status();
+  if (Status status = NameFrames(options.path, **sequence, &*file); !status.ok()) return status;
+  if (Status status = CheckFrames(options.path, (*sequence)->size(), *file); !status.ok()) return status;
+  const bool corner = options.pixel_origin == PixelOrigin::kCorner && file->images.empty();
+  for (PixelTrack& track : file->tracks)
+    for (TrackPixel& seen : track.pixels) {
+      if (corner) seen.pixel -= Eigen::Vector2d(0.5, 0.5);
+      if (seen.sigma_px > options.max_sigma_px) seen.visible = false;
+    }
+  SequenceTracks tracks{std::move(file->tracks), std::move(file->notes)};
+  if (Status status = CheckPixelsInImage(options.path, (*sequence)->camera(), &tracks); !status.ok()) return status;
+  std::erase_if(tracks.tracks,
+                [](const PixelTrack& track) { return std::ranges::none_of(track.pixels, &TrackPixel::visible); });
+  if (tracks.tracks.empty())
+    return Status(ErrorCode::kInsufficient,
+                  Quoted(options.path) + " has no pixel in the image with a sigma_px of TrackFile.max_sigma_px (" +
+                      FormatDouble(options.max_sigma_px) + ") or less");
+  return tracks;
+}
+
+}  // namespace pliant
