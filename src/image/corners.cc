@@ -97,29 +97,6 @@ class Cells {
   std::vector<std::vector<Eigen::Vector2d>> taken_;
 };
 
-// Rounds: in round k every cell that holds k points takes its strongest candidate left, strong cells first, until
-// enough are taken. So each part of the image gets its share before any part gets more.
-std::vector<Corner> Spread(const std::vector<Corner>& candidates, std::span<const Eigen::Vector2d> existing,
-                           cv::Size size, double side, const CornerOptions& options) {
-  Cells cells(size, side);
-  for (const Eigen::Vector2d& p : existing) cells.Take(p);
-  std::vector<Corner> chosen;
-  std::vector<char> done(candidates.size(), 0);
-  std::size_t left = candidates.size();
-  const auto limit = static_cast<std::size_t>(options.max_corners);
-  for (int round = 0; left > 0 && chosen.size() < limit; ++round) {
-    for (std::size_t i = 0; i < candidates.size() && chosen.size() < limit; ++i) {
-      if (done[i] != 0 || cells.count(cells.Index(candidates[i].pixel)) > round) continue;
-      done[i] = 1;
-      --left;
-      if (cells.Crowded(candidates[i].pixel, options.min_distance_px)) continue;
-      cells.Take(candidates[i].pixel);
-      chosen.push_back(candidates[i]);
-    }
-  }
-  return chosen;
-}
-
 }  // namespace
 
 void CornerOptions::List(OptionTable& table) {
@@ -136,6 +113,31 @@ void CornerOptions::List(OptionTable& table) {
   table.Add("contour_radius_px", &contour_radius_px, "px", "how far to each side brightness is compared", 2, 200);
 }
 
+// Rounds: in round k every cell that holds k points takes its strongest candidate left, strong cells first, until
+// enough are taken. So each part of the image gets its share before any part gets more.
+std::vector<std::size_t> SpreadPoints(std::span<const Eigen::Vector2d> pixels, const cv::Mat& valid,
+                                      std::span<const Eigen::Vector2d> existing, const CornerOptions& options) {
+  const double area = std::max(1, cv::countNonZero(valid));
+  const double wanted = options.max_corners + static_cast<double>(existing.size());
+  Cells cells(valid.size(), std::max({std::sqrt(area / wanted), options.min_distance_px, 1.0}));
+  for (const Eigen::Vector2d& p : existing) cells.Take(p);
+  std::vector<std::size_t> chosen;
+  std::vector<char> done(pixels.size(), 0);
+  std::size_t left = pixels.size();
+  const auto limit = static_cast<std::size_t>(options.max_corners);
+  for (int round = 0; left > 0 && chosen.size() < limit; ++round) {
+    for (std::size_t i = 0; i < pixels.size() && chosen.size() < limit; ++i) {
+      if (done[i] != 0 || cells.count(cells.Index(pixels[i])) > round) continue;
+      done[i] = 1;
+      --left;
+      if (cells.Crowded(pixels[i], options.min_distance_px)) continue;
+      cells.Take(pixels[i]);
+      chosen.push_back(i);
+    }
+  }
+  return chosen;
+}
+
 std::vector<Corner> DetectCorners(const cv::Mat& gray, const cv::Mat& valid, std::span<const Eigen::Vector2d> existing,
                                   const CornerOptions& options) {
   assert(gray.type() == CV_8UC1 && !gray.empty());
@@ -144,10 +146,10 @@ std::vector<Corner> DetectCorners(const cv::Mat& gray, const cv::Mat& valid, std
   std::vector<Corner> candidates = Candidates(gray, usable, options);
   DropWeak(options.quality_level, kNoiseFloor, &candidates);
   DropContours(gray, options, &candidates);
-  const double area = std::max(1, cv::countNonZero(usable));
-  const double wanted = options.max_corners + static_cast<double>(existing.size());
-  const double side = std::max({std::sqrt(area / wanted), options.min_distance_px, 1.0});
-  std::vector<Corner> corners = Spread(candidates, existing, gray.size(), side, options);
+  std::vector<Eigen::Vector2d> pixels;
+  for (const Corner& candidate : candidates) pixels.push_back(candidate.pixel);
+  std::vector<Corner> corners;
+  for (const std::size_t i : SpreadPoints(pixels, usable, existing, options)) corners.push_back(candidates[i]);
   std::sort(corners.begin(), corners.end(), [](const Corner& a, const Corner& b) {
     return a.pixel.y() != b.pixel.y() ? a.pixel.y() < b.pixel.y() : a.pixel.x() < b.pixel.x();
   });

@@ -5,6 +5,7 @@
 // usable image, without those that lie on occluding contours. The same input gives the same corners in the same order.
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -40,6 +41,12 @@ struct Corner {
 // towards max_corners. Sorted by row, then column.
 std::vector<Corner> DetectCorners(const cv::Mat& gray, const cv::Mat& valid, std::span<const Eigen::Vector2d> existing,
                                   const CornerOptions& options);
+
+// Of points in order of preference, those that are taken: at most `options.max_corners`, options.min_distance_px apart
+// and from those that exist, spread so that each part of the usable image gets its share before any gets more. Places
+// in `pixels`, in the order taken. `valid` is not empty; it and `existing` as in DetectCorners.
+std::vector<std::size_t> SpreadPoints(std::span<const Eigen::Vector2d> pixels, const cv::Mat& valid,
+                                      std::span<const Eigen::Vector2d> existing, const CornerOptions& options);
 
 // How much the surroundings of each pixel look like an occluding contour, 0 to 1, in a CV_8UC1 image: with the light at
 // the camera a near surface is bright and a far one dark, so a contour is a step between two sides that are each far

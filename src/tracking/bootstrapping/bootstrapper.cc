@@ -3,10 +3,10 @@
 
 #include "tracking/bootstrapping/bootstrapper.h"
 
+#include <algorithm>
 #include <cassert>
 #include <utility>
 
-#include "pliant/image/corners.h"
 #include "tracking/image_fault.h"
 
 namespace pliant {
@@ -237,17 +237,17 @@ std::vector<PointPrediction> Bootstrapper::PredictPixels(int frame_idx) const {
   return predictions;
 }
 
-// Adds corners away from the points that are there.
+// Adds new points away from those that are there.
 void Bootstrapper::AddCorners(const PreparedFrame& frame, const LocalBrightness& brightness, int max_corners,
                               InitFrame* points) {
   if (max_corners <= 0) return;
   const std::vector<Eigen::Vector2d> existing = PixelsOf(points->observations);
   CornerOptions corners = options_.corners;
   corners.max_corners = max_corners;
-  for (const Corner& corner : DetectCorners(frame.gray, frame.mask.valid(), existing, corners))
-    if (const auto id = tracks_->Add(corner.pixel, frame))
-      points->observations.push_back(
-          {*id, corner.pixel, 1.0, brightness.At(corner.pixel), ColorAt(frame.image, corner.pixel)});
+  for (const NewTrack& track : tracks_->AddNew(frame, existing, corners))
+    points->observations.push_back(
+        {track.id, track.pixel, 1.0, brightness.At(track.pixel), ColorAt(frame.image, track.pixel)});
+  std::ranges::sort(points->observations, {}, &InitObservation::id);
 }
 
 void Bootstrapper::AddKnownPoints(const PreparedFrame& frame, const LocalBrightness& brightness, InitFrame* points) {

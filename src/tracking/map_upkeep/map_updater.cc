@@ -144,7 +144,7 @@ void MapUpdater::FollowCandidates(const PreparedFrame& frame, Submap* submap) co
   tracks_->Keep(seen);
 }
 
-// Corners where there is neither a point of the map, nor a candidate, nor a lost point.
+// New points where there is neither a point of the map, nor a candidate, nor a lost point.
 void MapUpdater::AddCandidates(const PreparedFrame& frame, Submap* submap) const {
   const auto wanted =
       options_.corners.max_corners - static_cast<int>(submap->map.landmarks.size() + submap->candidates.size());
@@ -154,12 +154,10 @@ void MapUpdater::AddCandidates(const PreparedFrame& frame, Submap* submap) const
   for (const CandidateTrack& track : submap->candidates.tracks()) occupied.push_back(track.pixel);
   CornerOptions corners = options_.corners;
   corners.max_corners = wanted;
-  for (const Corner& corner : DetectCorners(frame.gray, frame.mask.valid(), occupied, corners)) {
-    const auto id = tracks_->Add(corner.pixel, frame);
-    if (id && !submap->candidates.Add({*id, corner.pixel, 1.0, ColorAt(frame.image, corner.pixel)},
-                                      submap->last_cam_from_world, submap->map))
-      tracks_->Remove(*id);
-  }
+  for (const NewTrack& track : tracks_->AddNew(frame, occupied, corners))
+    if (!submap->candidates.Add({track.id, track.pixel, 1.0, ColorAt(frame.image, track.pixel)},
+                                submap->last_cam_from_world, submap->map))
+      tracks_->Remove(track.id);
 }
 
 // A candidate becomes a landmark.

@@ -5,7 +5,6 @@
 
 #include <map>
 
-#include "pliant/image/corners.h"
 #include "tracking/tracks/patch_tracks.h"
 
 namespace pliant {
@@ -17,11 +16,9 @@ std::vector<std::vector<Eigen::Vector2d>> FollowCorners(std::span<const Prepared
   PatchTracks tracks(options.point_tracker, threads);
   std::vector<PointPrediction> predictions;
   std::map<PointId, std::vector<Eigen::Vector2d>> pixels;
-  for (const Corner& corner : DetectCorners(first.gray, first.mask.valid(), {}, options.corners)) {
-    const auto id = tracks.Add(corner.pixel, first);
-    if (!id) continue;
-    predictions.push_back({*id, corner.pixel, Eigen::Matrix2d::Identity()});
-    pixels[*id] = {corner.pixel};
+  for (const NewTrack& track : tracks.AddNew(first, {}, options.corners)) {
+    predictions.push_back({track.id, track.pixel, Eigen::Matrix2d::Identity()});
+    pixels[track.id] = {track.pixel};
   }
   for (std::size_t k = 1; k < frames.size(); ++k) {
     std::vector<PointPrediction> next;

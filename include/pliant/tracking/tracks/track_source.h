@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Where point tracks come from: our Lucas-Kanade tracker (patch_tracks.h), the truth of a simulated scene
-// (oracle_tracks.h), or another source of one's own. One source serves all submaps of a run; it gives every point an id
-// that no other point of the run has. Pixels: (0, 0) is the center of the first pixel.
+// Where point tracks come from: our Lucas-Kanade tracker (patch_tracks.h), another program (given_tracks.h), the truth
+// of a simulated scene (oracle_tracks.h), or another source of one's own. One source serves all submaps of a run; it
+// gives every point an id that no other point of the run has. Pixels: (0, 0) is the center of the first pixel.
 //
 // A source follows in attempts: Track begins one, Find adds to it, and Keep makes what the attempt found the points'
 // own. What is not kept is forgotten when the next attempt begins, so that a result that is not used leaves no trace.
@@ -16,6 +16,7 @@
 #include <Eigen/Core>
 
 #include "pliant/base/ids.h"
+#include "pliant/image/corners.h"
 #include "pliant/tracking/prepared_frame.h"
 #include "pliant/tracking/tracks/point_tracker.h"
 
@@ -23,10 +24,15 @@ namespace pliant {
 
 // What a source can do besides following the points of the reference image.
 struct TrackAbilities {
-  bool adds_points = true;      // Add works in any image, not only in the reference
+  bool adds_points = true;      // Add and AddNew work in any image, not only in the reference
   bool finds_points = true;     // Find
   bool tracks_blurred = true;   // TrackIntoBlur
   bool sees_appearance = true;  // its points can be recognized by their looks (relocalization)
+};
+
+struct NewTrack {
+  PointId id;
+  Eigen::Vector2d pixel;
 };
 
 class TrackSource {
@@ -34,6 +40,10 @@ class TrackSource {
   virtual ~TrackSource() = default;
   virtual TrackAbilities abilities() const = 0;
 
+  // Starts to follow points of the source's own choice: at most `corners.max_corners`, spread over the usable image,
+  // away from those that exist. Sorted by id. Here: the image's corners; a source that knows its points offers those.
+  virtual std::vector<NewTrack> AddNew(const PreparedFrame& frame, std::span<const Eigen::Vector2d> existing,
+                                       const CornerOptions& corners);
   // Starts to follow the point that is seen at `pixel`; nothing when it cannot be followed.
   virtual std::optional<PointId> Add(const Eigen::Vector2d& pixel, const PreparedFrame& frame) = 0;
   // The same for a point that has an id already, which is not in use here. False: it cannot be followed.
