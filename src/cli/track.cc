@@ -42,6 +42,7 @@ const Manual kManual = {
     "frames.csv says which one a frame belongs to). A run that ends while the camera is lost has the status "
     "`lost` in run.json; that is a result, not a failure: the exit code is 0.",
     {"pliant track --image_path clip.mp4 --camera camera.yaml --output_path run",
+     "pliant track --image_path seq --output_path run --tracks cotracker.npz",
      "pliant track --image_path seq --output_path run --preset paper --start 100 --end 400"},
 };
 
@@ -59,6 +60,12 @@ void AddArguments(TrackArguments* arguments, CommandLine* line) {
   line->Add("output_path", &arguments->output_path, "DIR", "run folder; made where it is not there", Need::kRequired);
   line->AddChoice("preset", &arguments->preset,
                   "the defaults of the options: ours, or every choice and constant as published in the paper");
+  line->AddAlias("tracks", "TrackFile.path", "FILE",
+                 "follow the point tracks of another program instead of our own: CSV, .npz, .npy or a COLMAP database "
+                 "(docs/tracks.md)");
+  line->AddAlias("tracks_pixel_origin", "TrackFile.pixel_origin", "center|corner",
+                 "what (0, 0) is in that file: the center of the first pixel (the default; CoTracker, OpenCV), or its "
+                 "upper left corner (TAP-Vid, TAPIR)");
   line->AddFlag("live", &arguments->live,
                 "serve a view of the run to a browser on this machine while it runs (options Live)");
   line->AddFlag("refine", &arguments->refine,

@@ -70,6 +70,7 @@ Status WriteRunSummary(const std::string& path, const RunSummary& summary) {
       {"mask", summary.description.mask},
       {"refined_from", summary.description.refined_from},
       {"metric", summary.description.metric ? Json(*summary.description.metric) : Json()},
+      {"tracks", summary.description.tracks},
       {"oracles", summary.description.oracles},
       {"working_image",
        {{"scale", summary.description.image_scale},
@@ -126,6 +127,7 @@ Result<RunSummary> ReadRunSummary(const std::string& path) {
     summary.description.refined_from = json.value("refined_from", "");
     if (const Json metric = json.value("metric", Json()); !metric.is_null())
       summary.description.metric = metric.get<bool>();
+    summary.description.tracks = json.value("tracks", "");
     if (const Json working = json.value("working_image", Json()); !working.is_null()) {
       summary.description.image_scale = working.at("scale").get<double>();
       summary.description.image_smoothing_px = working.at("smoothing_px").get<double>();

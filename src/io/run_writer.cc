@@ -132,7 +132,7 @@ Result<RunWriter> RunWriter::Create(const std::string& output_path, const Camera
   if (Status status = PrepareFolder(output_path); !status.ok()) return status;
   RunSummary summary;
   summary.description = std::move(description);
-  for (std::string* path : {&summary.description.camera, &summary.description.mask})
+  for (std::string* path : {&summary.description.camera, &summary.description.mask, &summary.description.tracks})
     if (!path->empty()) *path = std::filesystem::absolute(*path).lexically_normal().string();
   summary.note = "the run was stopped before its end";  // what a killed run says
   if (Status status = WriteRunSummary(output_path + "/run.json", summary); !status.ok()) return status;

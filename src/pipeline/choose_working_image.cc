@@ -91,7 +91,7 @@ std::vector<ImageRun> ReadFirstRuns(const SequenceRequest& request) {
 
 WorkingImage ChooseWorkingImage(const std::vector<ImageRun>& runs, const TrackOptions& options) {
   const WorkingImage fixed{options.image.scale, options.image.smoothing_px};
-  if (options.image.working != WorkingImageMode::kMeasured || options.tracker.oracle.Any()) return fixed;
+  if (options.image.working != WorkingImageMode::kMeasured || options.FollowsInSource()) return fixed;
   if (runs.empty() || runs.front().size() < 2) return {};
   const Trackability as_is = Measure(runs, {}, options);
   if (as_is.corners >= kMinAlive && as_is.alive >= kLastingShare * as_is.corners) return {};

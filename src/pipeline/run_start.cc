@@ -78,18 +78,35 @@ std::vector<std::string> WhatTheFirstFramesSay(const SequenceRequest& request, b
   return check.ok() ? check->wrong : std::vector<std::string>();
 }
 
+// Where a file of tracks is given.
+Status ReadTracks(const RunRequest& request, const TrackOptions& options, RunStart* start) {
+  if (!options.track_file.IsGiven()) return Status::Ok();
+  if (options.tracker.oracle.tracks == Switch::kOn)
+    return {ErrorCode::kInvalidArgument,
+            "a file of tracks and Oracle.tracks both say where points are; give one of them"};
+  auto tracks = ReadTracksOfSequence(options.track_file, request.input);
+  if (!tracks.ok()) return tracks.status();
+  start->tracks = std::move(tracks->tracks);
+  start->warnings = std::move(tracks->notes);
+  return Status::Ok();
+}
+
+void Append(std::vector<std::string> more, std::vector<std::string>* warnings) {
+  warnings->insert(warnings->end(), more.begin(), more.end());
+}
+
 }  // namespace
 
 Result<RunStart> ReadStart(const RunRequest& request, const TrackOptions& options, const Sequence& sequence) {
   const InitOptions& init = options.tracker.init;
-  if (options.tracker.oracle.Any() && options.image.working == WorkingImageMode::kFixed && options.image.scale != 1.0)
+  if (options.FollowsInSource() && options.image.working == WorkingImageMode::kFixed && options.image.scale != 1.0)
     return Status(
         ErrorCode::kInvalidArgument,
-        "with an Oracle option points are where the truth has them, in pixels of the source: leave Image.scale "
-        "at 1");
+        "with an Oracle option or a file of tracks points are where these have them, in pixels of the source: "
+        "leave Image.scale at 1");
   RunStart start;
-  const std::vector<ImageRun> runs =
-      options.tracker.oracle.Any() ? std::vector<ImageRun>() : ReadFirstRuns(request.input);
+  if (Status status = ReadTracks(request, options, &start); !status.ok()) return status;
+  const std::vector<ImageRun> runs = options.FollowsInSource() ? std::vector<ImageRun>() : ReadFirstRuns(request.input);
   start.working_image = ChooseWorkingImage(runs, options);
   start.images = MeasureImages(runs, start.working_image, options);
   auto camera = sequence.camera().Resized(start.working_image.scale);
@@ -106,7 +123,7 @@ Result<RunStart> ReadStart(const RunRequest& request, const TrackOptions& option
     auto depth_mm = ReadCloud(init.depth, sequence.camera());
     if (!depth_mm.ok()) return depth_mm.status();
     start.cloud_depth_mm = *std::move(depth_mm);
-    start.warnings = CloudWarnings(init.depth.cloud_path, start.cloud_depth_mm);
+    Append(CloudWarnings(init.depth.cloud_path, start.cloud_depth_mm), &start.warnings);
   } else if (init.method == InitMethod::kDepth && !HasDepth(request.input, sequence)) {
     return Status(ErrorCode::kNotFound, "a start from depth needs depth images, and " +
                                             request.input.image_path.string() +
@@ -119,7 +136,7 @@ Result<RunStart> ReadStart(const RunRequest& request, const TrackOptions& option
         !status.ok())
       return status;
   if (init.method == InitMethod::kStereo || (init.method == InitMethod::kDepth && !from_cloud))
-    start.warnings = WhatTheFirstFramesSay(request.input, /*of_poses=*/init.method == InitMethod::kDepth);
+    Append(WhatTheFirstFramesSay(request.input, /*of_poses=*/init.method == InitMethod::kDepth), &start.warnings);
   return start;
 }
 

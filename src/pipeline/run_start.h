@@ -15,6 +15,7 @@
 #include "pliant/datasets/sequence.h"
 #include "pliant/image/working_image.h"
 #include "pliant/pipeline/track.h"
+#include "pliant/scene/pixel_track.h"
 #include "pliant/tracking/bootstrapping/make_initializer.h"
 #include "pliant/tracking/tracks/image_statistics.h"
 
@@ -27,12 +28,14 @@ struct RunStart {
   std::optional<ModelStart> model;
   cv::Mat cloud_depth_mm;  // of the first frame; empty: there is no cloud
   int first_frame_idx = 0;
-  // What the first frames themselves say against the pairs or the depth that the map is to come from.
+  std::vector<PixelTrack> tracks;  // of another program; empty: there are none
+  // What is odd about the tracks or the cloud, and what the first frames themselves say against the pairs or the depth
+  // that the map is to come from.
   std::vector<std::string> warnings;
 };
 
-// Fails where the sequence has not what Init.method asks for, and as the readers of models and clouds do, and where a
-// camera cannot be resized.
+// Fails where the sequence has not what Init.method asks for, and as the readers of tracks, models and clouds do, and
+// where a camera cannot be resized.
 Result<RunStart> ReadStart(const RunRequest& request, const TrackOptions& options, const Sequence& sequence);
 
 }  // namespace pliant

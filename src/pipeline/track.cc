@@ -232,10 +232,10 @@ Ending TrackFrames(Sequence& sequence, const RunRequest& request, const TrackOpt
 Ending TrackSequence(Sequence& sequence, const RunRequest& request, const TrackOptions& options, const RunStart& start,
                      TrackingTruth* truth, RunWriter& writer, std::span<TrackObserver* const> observers) {
   const Camera& camera = *start.working_camera;
-  Tracker tracker(camera, options.tracker, static_cast<std::uint64_t>(options.seed), options.threads, truth,
-                  sequence.Photometric());
+  Tracker tracker(camera, options.tracker, static_cast<std::uint64_t>(options.seed), options.threads,
+                  {truth, start.tracks, sequence.Photometric()});
   Recorder recorder(writer, observers, start.working_image,
-                    {request.input, start.working_image, camera, options, &tracker});
+                    {request.input, start.working_image, camera, options, start.tracks, &tracker});
   const Ending ending = TrackFrames(sequence, request, options, start, tracker, recorder);
   // Whatever the ending: the frames that waited for a map are written too.
   Status recorded = recorder.Record(tracker.Finish());
@@ -267,6 +267,7 @@ void TrackOptions::List(OptionTable& table) {
             "frames without a map, before the reference of a first map, tracked backwards in time from it", 0, 100000);
   table.AddChoice("timings", &timings, "none: wall times are written as 0, so that two runs are equal byte for byte");
   image.List(table);
+  track_file.List(table);
   tracker.List(table);
 }
 
@@ -348,7 +349,8 @@ Result<RunSummary> RunTrack(const RunRequest& request, const TrackOptions& optio
                                    start->images.track_noise_px,
                                    start->images.alive_after_9,
                                    "",
-                                   options.tracker.init.IsMetric()},
+                                   options.tracker.init.IsMetric(),
+                                    options.track_file.path},
                                   table.ToYaml(), ColumnsOfFrames(), writer_options);
   if (!writer.ok()) return writer.status();
 

@@ -126,16 +126,16 @@ double MedianError(const FollowedPoints& points) {
 }  // namespace
 
 Tracker::Tracker(const Camera& camera, const TrackerOptions& options, std::uint64_t seed, int threads,
-                 TrackingTruth* truth, const std::optional<PhotometricCalibration>& photometric)
+                 const TrackerInputs& inputs)
     : options_(Completed(options)),
-      oracle_poses_(std::make_unique<OraclePoses>(options.oracle, truth, NominalDepth(options.init))),
-      tracks_(MakeTrackSource(options_, threads, truth)),
-      bootstrapper_(std::make_unique<Bootstrapper>(camera, options_, threads, photometric, tracks_.get(),
-                                                   oracle_poses_.get(), MakeFirstInitializer(options_, seed, truth),
-                                                   MakeAlternative(options_, seed))),
+      oracle_poses_(std::make_unique<OraclePoses>(options.oracle, inputs.truth, NominalDepth(options.init))),
+      tracks_(MakeTrackSource(options_, seed, threads, inputs)),
+      bootstrapper_(std::make_unique<Bootstrapper>(
+          camera, options_, threads, inputs.photometric, tracks_.get(), oracle_poses_.get(),
+          MakeFirstInitializer(options_, seed, inputs.truth), MakeAlternative(options_, seed))),
       frame_tracker_(std::make_unique<FrameTracker>(camera, options_, tracks_.get(), oracle_poses_.get())),
       relocalizer_(std::make_unique<Relocalizer>(camera, options_, tracks_->abilities(), frame_tracker_.get())),
-      map_updater_(std::make_unique<MapUpdater>(camera, options_, threads, photometric, tracks_.get())),
+      map_updater_(std::make_unique<MapUpdater>(camera, options_, threads, inputs.photometric, tracks_.get())),
       submaps_(std::make_unique<Submaps>(camera, options_, tracks_.get())) {}
 
 Tracker::~Tracker() = default;

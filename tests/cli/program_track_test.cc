@@ -44,6 +44,34 @@ TEST(Program, AStartFromACloudTakesItsMethodAndSaysWhenTheUnitIsUnlikely) {
   EXPECT_THAT(in_meters.err, Not(HasSubstr("median depth")));
 }
 
+TEST(Program, TracksOfOtherImagesAreOneSentenceAndExitCodeOne) {
+  const std::string sequence = Temporary("seq_of_tracks").string();
+  const std::string tracks = Temporary("tracks.csv").string();
+  ASSERT_EQ(Pliant("simulate --quiet --Trajectory.frames 2 --Camera.width 320 --Camera.height 240 --output_path '" +
+                   sequence + "'")
+                .exit,
+            0);
+  const std::string of = " --tracks '" + tracks + "' ";
+  const std::string track =
+      "track --image_path '" + sequence + "' --output_path '" + Temporary("run").string() + "'" + of;
+  const std::string evaluate = "evaluate --sequence '" + sequence + "'" + of;
+  for (const std::string& rows : {"0,0,700,20\n", "0,0,10,nan\n", "2,0,10,20\n", "0,0,10\n"}) {
+    std::ofstream(tracks) << "frame,track_id,u_px,v_px\n" << rows;
+    for (const std::string& command : {track, evaluate}) {
+      const Outcome outcome = Pliant(command);
+      EXPECT_EQ(outcome.exit, 1) << outcome.err;
+      EXPECT_THAT(outcome.err, HasSubstr(tracks));
+      EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+    }
+  }
+  std::ofstream(tracks) << "frame,track_id,u_px,v_px\n0,0,100.5,100\n1,0,100.5,100\n";
+  const Outcome scored = Pliant(evaluate + "--tracks_pixel_origin corner");
+  EXPECT_EQ(scored.exit, 0) << scored.err;
+  EXPECT_THAT(scored.out, HasSubstr("tracks against the truth"));
+  EXPECT_EQ(Pliant("evaluate --sequence x --run y" + of).exit, 2);
+  EXPECT_EQ(Pliant("evaluate" + of).exit, 2);
+}
+
 TEST(Program, AnInputThatIsNotThereIsOneSentenceAndExitCodeOne) {
   const std::string nowhere = Temporary("nowhere").string();
   for (const std::string& arguments :

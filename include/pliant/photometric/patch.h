@@ -36,7 +36,7 @@ enum class PatchFailure {
   kGainOutOfRange,   // the brightness change is not plausible
   kLowSimilarity,    // SSIM below its threshold
   kForwardBackward,  // followed back, it does not return to where it came from
-  kOccluded,         // something lies before it; only the truth can say so
+  kOccluded,         // something lies before it; only the truth, or another program, can say so
 };
 template <>
 struct EnumNames<PatchFailure> {

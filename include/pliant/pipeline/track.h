@@ -22,6 +22,7 @@
 #include "pliant/base/status.h"
 #include "pliant/camera/camera.h"
 #include "pliant/datasets/open_sequence.h"
+#include "pliant/datasets/sequence_tracks.h"
 #include "pliant/io/run_summary.h"
 #include "pliant/io/run_writer.h"
 #include "pliant/scene/frame_report.h"
@@ -64,9 +65,12 @@ struct TrackOptions {
   RunTimings timings = RunTimings::kWritten;
   int max_frames_back = 10000;  // without a map, before the reference of a first map, tracked backwards in time from it
   ImageOptions image;
+  TrackFileOptions track_file;  // where it is given, points are followed by it
   TrackerOptions tracker;
 
-  void List(OptionTable& table);  // groups "General", "Image" and the tracker's
+  // Whether pixels come from outside, in those of the source: the tracker then works in the source's images.
+  bool FollowsInSource() const { return tracker.oracle.Any() || track_file.IsGiven(); }
+  void List(OptionTable& table);  // groups "General", "Image", "TrackFile" and the tracker's
 };
 
 TrackOptions MakeTrackOptions(Preset preset);

@@ -15,13 +15,12 @@
 #include <vector>
 
 #include "pliant/camera/camera.h"
-#include "pliant/camera/photometric_calibration.h"
 #include "pliant/scene/frame_report.h"
 #include "pliant/scene/map.h"
 #include "pliant/tracking/prepared_frame.h"
 #include "pliant/tracking/state.h"
+#include "pliant/tracking/tracker_inputs.h"
 #include "pliant/tracking/tracker_options.h"
-#include "pliant/tracking/tracks/oracle.h"
 
 namespace pliant {
 
@@ -47,10 +46,8 @@ struct Submap;
 class Tracker {
  public:
   // `threads` >= 1 work on one frame; the result does not depend on it. `seed` decides RANSAC's samples.
-  // `truth` is what the oracle switches ask; it must be there when one is on, and outlive this.
-  // `photometric`: of the camera, where it is known; first maps that use the light then trust it.
   Tracker(const Camera& camera, const TrackerOptions& options, std::uint64_t seed, int threads,
-          TrackingTruth* truth = nullptr, const std::optional<PhotometricCalibration>& photometric = std::nullopt);
+          const TrackerInputs& inputs = {});
   ~Tracker();
 
   // Begins with the map that was reported in this frame, instead of a first map of its own: the points that are

@@ -20,6 +20,8 @@ void OracleOptions::List(OptionTable& table) {
                    "parts of the method replaced by the truth of a simulated sequence, to see what bounds it");
   table.AddChoice("first_map", &first_map, "on: the first map's points have their true depths");
   table.AddChoice("tracks", &tracks, "on: points are at the pixels of the material points that they started on");
+  table.Add("track_noise_px", &track_noise_px, "px",
+            "standard deviation of the noise of each coordinate that is added to true tracks", 0, 100);
   table.AddChoice("poses", &poses, "on: the camera's poses are the true ones, and held");
 }
 

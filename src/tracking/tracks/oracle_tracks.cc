@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <string>
 
 #include "pliant/photometric/patch.h"
 
@@ -46,6 +47,10 @@ std::vector<PointTrack> OracleTracks::Track(const PreparedFrame&, const Prepared
     track.id = ids[tracks.size()];
     track.pixel = located.pixel;
     track.ssim = 1;
+    if (noise_px_ > 0) {
+      Random random = random_.Child(std::to_string(track.id.value) + " " + std::to_string(current.frame_idx));
+      for (double& coordinate : track.pixel) coordinate += random.Normal(noise_px_);
+    }
     if (located.sight == TrueTrack::Sight::kOccluded) track.failure = PatchFailure::kOccluded;
     if (located.sight == TrueTrack::Sight::kOutsideImage) track.failure = PatchFailure::kOutOfImage;
     tracks.push_back(track);

@@ -6,7 +6,8 @@
 //   first_map  the first image with enough corners is the reference, and the map exists there: every corner that shows
 //              the surface, at its true depth on the ray of its pixel. Unit and sigmas are those of Init.method (mm, or
 //              scaled to the nominal median depth), so that the map's error alone is switched off.
-//   tracks     a point's pixel is that of the material point that it started on, for as long as that is visible.
+//   tracks     a point's pixel is that of the material point that it started on, for as long as that is visible, with
+//              noise of a known size where that is wanted.
 //   poses      the camera's pose is the true one and is held in the joint problem. World frame: the reference camera;
 //              unit: the map's own, one unit being worth the median of the points' estimated by true depths.
 #pragma once
@@ -29,6 +30,7 @@ struct OracleOptions {
   Switch first_map = Switch::kOff;
   Switch tracks = Switch::kOff;
   Switch poses = Switch::kOff;
+  double track_noise_px = 0;  // standard deviation of a coordinate of a true track, after its first frame
 
   bool Any() const;
   std::vector<std::string_view> Names() const;  // of those that are on, in the order above
