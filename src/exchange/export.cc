@@ -45,6 +45,13 @@ constexpr std::array kFormats = {
                  "database.db with tracks as keypoints and verified matches, from which COLMAP's mapper, "
                  "point_triangulator and bundle_adjuster reconstruct; made by the COLMAP that is installed.",
                  ExportDatabase},
+    ExportFormat{"tracks_csv",
+                 "tracks.csv, the points' pixels alone: frame,track_id,u_px,v_px, which pliant track --tracks reads.",
+                 ExportTracksCsv},
+    ExportFormat{"tracks_npz",
+                 "tracks.npz, the same as NumPy's arrays tracks (frames, points, 2), visibility (frames, points) and "
+                 "track_id (points), over all frames of the images.",
+                 ExportTracksNpz},
     ExportFormat{"nerfstudio",
                  "transforms.json with the images, masks and sparse_pc.ply that it names, and of --surface the depths. "
                  "The poses are in the file's `unit` of map units, so that a step of the depth images is 0.001, which "

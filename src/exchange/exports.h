@@ -23,6 +23,8 @@ Status ExportTrajectories(const RunSource& source, const ExportOptions& options,
 Status ExportTum(const RunSource& source, const ExportOptions& options, const std::string& folder);
 Status ExportColmap4d(const RunSource& source, const ExportOptions& options, const std::string& folder);
 Status ExportDatabase(const RunSource& source, const ExportOptions& options, const std::string& folder);
+Status ExportTracksCsv(const RunSource& source, const ExportOptions& options, const std::string& folder);
+Status ExportTracksNpz(const RunSource& source, const ExportOptions& options, const std::string& folder);
 Status ExportNerfstudio(const RunSource& source, const ExportOptions& options, const std::string& folder);
 Status ExportEndoNerf(const RunSource& source, const ExportOptions& options, const std::string& folder);
 

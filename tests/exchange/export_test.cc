@@ -15,6 +15,7 @@
 #include "pliant/colmap/convert.h"
 #include "pliant/io/run_reader.h"
 #include "pliant/io/run_writer.h"
+#include "pliant/io/track_file.h"
 #include "pliant/io/trajectory.h"
 #include "support/small_run.h"
 #include "support/test_folder.h"
@@ -39,6 +40,26 @@ colmap::Model ReadValidModel(const std::string& path) {
 }
 
 Eigen::Vector3d PositionOf(const colmap::Point3D& point) { return {point.xyz[0], point.xyz[1], point.xyz[2]}; }
+
+TEST(Export, TracksAreThePixelsOfThePointsInBothForms) {
+  const TestFolder folder;
+  WriteRun(folder);
+  for (const char* name : {"tracks.csv", "tracks.npz"}) {
+    const auto summary = Export(folder, name == std::string("tracks.csv") ? "tracks_csv" : "tracks_npz");
+    ASSERT_TRUE(summary.ok()) << summary.status().message();
+    const auto file = ReadTrackFile(folder.Path("out/") + name);
+    ASSERT_TRUE(file.ok()) << file.status().message();
+    ASSERT_EQ(file->tracks.size(), static_cast<std::size_t>(kRunPoints));
+    for (int i = 0; i < kRunPoints; ++i) {
+      const PixelTrack& track = file->tracks[static_cast<std::size_t>(i)];
+      EXPECT_EQ(track.id, PointId{3 * i});
+      EXPECT_EQ(PixelIn(track, 12) == nullptr, i % 2 == 1);
+      const Eigen::Vector2d pixel = *TestCamera().Project(PoseAt(2) * PositionAt(i, 2));
+      EXPECT_LT((PixelIn(track, 14)->pixel - pixel).norm(), kFilePixel_px);
+    }
+  }
+  EXPECT_EQ(ReadTrackFile(folder.Path("out/tracks.npz"))->frames, 19);  // what the run read: the images are not there
+}
 
 TEST(Export, CanonicalHasOnePointATrackAtItsUndeformedPosition) {
   for (const colmap::Format files : {colmap::Format::kBinary, colmap::Format::kText}) {
