@@ -37,14 +37,33 @@ const Manual kManual = {
     "do not agree are not both right. Neither needs a sequence with truth, so --sequence may be left out then.\n\n"
     "--surface compares the dense depths of pliant surface with the depth images of the sequence, beside an "
     "interpolation of the run's points at the same pixels.\n\n"
+    "On a simulated sequence the tracks themselves are scored in the images, as TAP-Vid does: points within 1, 2, 4, 8 "
+    "and 16 px, Jaccard, occlusion accuracy. --tracks does so for a file of another program's tracks, without a "
+    "run.\n\n"
     "Leaves, where --output_path is given: evaluation.json (every figure) and evaluation.csv (one row a frame). "
     "pliant compare sets several runs side by side.",
     {"pliant evaluate --run run --sequence colon",
      "pliant evaluate --run run --sequence clip.mp4 --camera stereo.yaml --scale none",
      "pliant evaluate --run run --sequence colon --protocol all --scale global --output_path run/evaluation",
      "pliant evaluate --run run --surface surface --sequence colon",
-     "pliant evaluate --run run --other_run run_begun_at_20"},
+     "pliant evaluate --run run --other_run run_begun_at_20",
+     "pliant evaluate --tracks cotracker.npz --sequence colon"},
 };
+
+// An exit code where the arguments contradict each other (the sentence has been said).
+std::optional<int> CheckArguments(const EvaluationRequest& request, const CommandLine& line) {
+  if (request.run_path.empty() == request.track_file.path.empty())
+    return line.UsageError(request.run_path.empty()
+                               ? "--run DIR is missing; see pliant evaluate --help"
+                               : "--run and --tracks are evaluated one at a time; give one of them");
+  if (request.sequence_path.empty() && request.track_file.IsGiven())
+    return line.UsageError("--tracks are compared with the truth of a sequence; give --sequence PATH");
+  if (request.sequence_path.empty() && request.other_runs.empty() && request.sfm_path.empty())
+    return line.UsageError(
+        "--sequence PATH is missing, and so are --other_run and --sfm_path, with which it is not "
+        "needed; see pliant evaluate --help");
+  return std::nullopt;
+}
 
 }  // namespace
 
@@ -54,7 +73,11 @@ int EvaluateCommand(std::span<const std::string> args) {
   EvaluationOptions options;
   bool quiet = false;
   CommandLine line(kManual);
-  line.Add("run", &request.run_path, "DIR", "run folder", Need::kRequired);
+  line.Add("run", &request.run_path, "DIR", "run folder; needed unless --tracks is given", Need::kOptional);
+  line.AddAlias("tracks", "TrackFile.path", "FILE",
+                "instead of a run: a file of point tracks, as pliant track --tracks reads it");
+  line.AddAlias("tracks_pixel_origin", "TrackFile.pixel_origin", "center|corner",
+                "what (0, 0) is in that file: the center of the first pixel (the default), or its upper left corner");
   line.Add("sequence", &request.sequence_path, "PATH",
            "sequence with truth: a folder, or a video of pairs; needed unless --other_run or --sfm_path is given",
            Need::kOptional);
@@ -71,11 +94,9 @@ int EvaluateCommand(std::span<const std::string> args) {
   if (const auto exit = line.Parse(args)) return *exit;
   OptionTable table;
   options.List(table);
+  request.track_file.List(table);
   if (const auto exit = line.Resolve(table)) return *exit;
-  if (request.sequence_path.empty() && request.other_runs.empty() && request.sfm_path.empty())
-    return line.UsageError(
-        "--sequence PATH is missing, and so are --other_run and --sfm_path, with which it is not "
-        "needed; see pliant evaluate --help");
+  if (const auto exit = CheckArguments(request, line)) return *exit;
 
   const auto evaluation = EvaluateRun(request, options);
   if (!evaluation.ok()) return line.Failure(evaluation.status().message());

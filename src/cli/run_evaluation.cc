@@ -11,7 +11,7 @@ void AddEvaluationArguments(CommandLine* line, std::string* camera_path) {
   line->AddAlias("scale", "PointError.scale", "per_frame|global|none",
                  "what a run is multiplied with: the best scale of each frame (the paper's protocol after a monocular "
                  "start), one for all frames, or nothing (runs in true millimeters)");
-  line->AddAlias("parts", "Evaluation.parts", "surface|material|camera|first_map|all",
+  line->AddAlias("parts", "Evaluation.parts", "surface|material|camera|first_map|tracks|all",
                  "what to compute: one, several with commas, or all; an error where there is no truth for it. Without "
                  "it, all that there is truth for");
   line->Add("camera", camera_path, "FILE",

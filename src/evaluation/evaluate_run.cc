@@ -85,12 +85,26 @@ Result<OpenedTruth> OpenTruth(const SequenceRequest& request, const EvaluationOp
   Result<std::unique_ptr<Sequence>> sequence = OpenSequence(request);
   if (!sequence.ok()) return sequence.status();
   truth.sequence = *std::move(sequence);
-  if (options.Wants(EvaluationPart::kMaterial)) truth.material = OpenMaterialTruth(request.image_path.string());
+  if (options.Wants(EvaluationPart::kMaterial) || options.Wants(EvaluationPart::kTracks))
+    truth.material = OpenMaterialTruth(request.image_path.string());
   if (!options.parts.empty()) return truth;
   auto sfm = ReadSfmPointsOfSequence(request.image_path);
   if (!sfm.ok()) return sfm.status();
   if (!sfm->empty()) truth.sfm = *std::move(sfm);
   return truth;
+}
+
+Result<Evaluation> EvaluateTrackFile(const TrackFileOptions& file, const OpenedTruth& truth) {
+  const auto tracks = ReadTracksOfSequence(file, truth.request);
+  if (!tracks.ok()) return tracks.status();
+  const Result<MaterialTruth*> material =
+      truth.material.ok() ? Result<MaterialTruth*>(truth.material->get()) : truth.material.status();
+  auto evaluation =
+      EvaluateTracks(file.path, tracks->tracks, truth.sequence->size(), truth.sequence->camera(), material);
+  if (!evaluation.ok()) return evaluation;
+  evaluation->sequence = truth.request.image_path.string();
+  evaluation->notes = tracks->notes;
+  return evaluation;
 }
 
 Result<SfmPoints> OpenSfmPoints(const std::filesystem::path& path, const Sequence* sequence) {
@@ -130,10 +144,15 @@ Result<Evaluation> EvaluateRun(const std::string& run_path, const RunReferences&
 Result<Evaluation> EvaluateRun(const EvaluationRequest& request, const EvaluationOptions& options) {
   std::optional<OpenedTruth> truth;
   if (!request.sequence_path.empty()) {
-    auto opened = OpenTruth(SequenceOfRun(request.run_path, request.sequence_path, request.camera_path), options);
+    auto opened =
+        OpenTruth(request.run_path.empty()
+                      ? SequenceRequest{.image_path = request.sequence_path, .camera_path = request.camera_path}
+                      : SequenceOfRun(request.run_path, request.sequence_path, request.camera_path),
+                  options);
     if (!opened.ok()) return opened.status();
     truth = *std::move(opened);
   }
+  if (request.run_path.empty() && truth) return EvaluateTrackFile(request.track_file, *truth);
   std::optional<SfmPoints> sfm;
   if (!request.sfm_path.empty()) {
     auto opened = OpenSfmPoints(request.sfm_path, truth ? truth->sequence.get() : nullptr);

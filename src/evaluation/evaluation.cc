@@ -4,6 +4,8 @@
 #include "pliant/evaluation/evaluation.h"
 
 #include <algorithm>
+#include <map>
+#include <numeric>
 #include <utility>
 
 #include "pliant/evaluation/surface_error.h"
@@ -152,6 +154,28 @@ Status ComputeParts(const EvaluationInput& run, const CollectedTruth& truth, con
   return Take(EvaluationPart::kFirstMap, std::move(first_map), options, &evaluation->first_map, &evaluation->notes);
 }
 
+// The points of a run as tracks in its images.
+std::vector<PixelTrack> TracksOf(const EvaluationInput& run) {
+  std::map<PointId, PixelTrack> tracks;
+  for (const EvaluationFrame& frame : run.frames)
+    for (const PointObservation& seen : frame.observations)
+      tracks[seen.id].pixels.push_back({frame.frame_idx, seen.pixel});
+  std::vector<PixelTrack> result;
+  for (auto& [id, track] : tracks) result.push_back({id, std::move(track.pixels)});
+  return result;
+}
+
+Status ComputeTracks(const EvaluationInput& run, const Camera& camera, const Result<MaterialTruth*>& material,
+                     const EvaluationOptions& options, Evaluation* evaluation) {
+  // That there is no such truth was said of the material error.
+  if (!options.Wants(EvaluationPart::kTracks) || (options.parts.empty() && !material.ok())) return Status::Ok();
+  std::vector<int> frames;
+  for (const EvaluationFrame& frame : run.frames) frames.push_back(frame.frame_idx);
+  Result<TrackError> error = material.ok() ? ComputeTrackError(TracksOf(run), frames, camera, **material)
+                                           : Result<TrackError>(material.status());
+  return Take(EvaluationPart::kTracks, std::move(error), options, &evaluation->tracks, &evaluation->notes);
+}
+
 // What needs no truth; `sequence_camera` may be null.
 Result<Evaluation> Begin(const EvaluationInput& run, const Camera* sequence_camera) {
   Evaluation evaluation;
@@ -224,6 +248,8 @@ Result<Evaluation> Evaluate(const EvaluationInput& run, const Sequence& sequence
         "the surface of frame " + std::to_string(*truth.own_pair) +
         " is not evaluated with its pair of images: a map was made from that frame alone, perhaps from the same pair");
   if (Status status = ComputeParts(run, truth, material.status(), options, &evaluation); !status.ok()) return status;
+  if (Status status = ComputeTracks(run, sequence.camera(), material, options, &evaluation); !status.ok())
+    return status;
   if (Status status = CheckProtocols(evaluation, options); !status.ok()) return status;
   return evaluation;
 }
@@ -235,6 +261,27 @@ Result<Evaluation> EvaluateWithoutTruth(const EvaluationInput& run, const Evalua
   Result<Evaluation> evaluation = Begin(run, nullptr);
   if (!evaluation.ok()) return evaluation;
   if (Status status = CheckProtocols(*evaluation, options); !status.ok()) return status;
+  return evaluation;
+}
+
+Result<Evaluation> EvaluateTracks(const std::string& name, std::span<const PixelTrack> tracks, int frames,
+                                  const Camera& camera, const Result<MaterialTruth*>& material) {
+  if (!material.ok()) return material.status();
+  Evaluation evaluation;
+  evaluation.run = name;
+  std::vector<int> frames_idx(static_cast<std::size_t>(frames));
+  std::iota(frames_idx.begin(), frames_idx.end(), 0);
+  auto error = ComputeTrackError(tracks, frames_idx, camera, **material);
+  if (!error.ok()) return error.status();
+  evaluation.tracks = *std::move(error);
+  std::vector<FrameTracks> rows;
+  for (const int frame_idx : frames_idx) {
+    FrameTracks& row = rows.emplace_back(FrameTracks{.frame_idx = frame_idx, .tracked = true, .ids = {}});
+    for (const PixelTrack& track : tracks)
+      if (const TrackPixel* pixel = PixelIn(track, frame_idx); pixel != nullptr && pixel->visible)
+        row.ids.push_back(track.id);
+  }
+  evaluation.survival = ComputeTrackSurvival(rows);
   return evaluation;
 }
 

@@ -227,6 +227,21 @@ Json ToJson(const TrackSurvival& s) {
           {"frames", frames}};
 }
 
+Json ToJson(const TrackError& e) {
+  Json json = {{"tracks", e.tracks}, {"without_truth", e.without_truth}, {"points", e.points}, {"visible", e.visible}};
+  for (std::size_t k = 0; k < e.within.size(); ++k) {
+    const std::string distance = std::to_string(static_cast<int>(TrackError::kDistances_px[k]));
+    json["within_" + distance] = e.within[k];
+    json["jaccard_" + distance] = e.jaccard[k];
+  }
+  json.update({{"average_within", e.average_within},
+               {"average_jaccard", e.average_jaccard},
+               {"occlusion_accuracy", e.occlusion_accuracy},
+               {"survival", e.survival},
+               {"median_px", e.median_px}});
+  return json;
+}
+
 Json ToJson(const ReprojectionError& e) {
   return {{"points", e.points}, {"median_px", e.median_px}, {"rmse_px", e.rmse_px}};
 }
@@ -263,6 +278,7 @@ Json ToJson(const Evaluation& evaluation) {
           {"material", evaluation.material ? ToJson(*evaluation.material) : Json()},
           {"trajectory", evaluation.trajectory ? ToJson(*evaluation.trajectory) : Json()},
           {"first_map", evaluation.first_map ? ToJson(*evaluation.first_map) : Json()},
+          {"tracks", evaluation.tracks ? ToJson(*evaluation.tracks) : Json()},
           {"reprojection", evaluation.reprojection ? ToJson(*evaluation.reprojection) : Json()},
           {"sfm", evaluation.sfm ? ToJson(*evaluation.sfm) : Json()},
           {"dense", evaluation.dense ? ToJson(*evaluation.dense) : Json()},

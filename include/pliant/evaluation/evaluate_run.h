@@ -14,6 +14,7 @@
 #include "pliant/base/status.h"
 #include "pliant/datasets/open_sequence.h"
 #include "pliant/datasets/sequence.h"
+#include "pliant/datasets/sequence_tracks.h"
 #include "pliant/datasets/sfm_points.h"
 #include "pliant/evaluation/evaluation.h"
 
@@ -40,6 +41,10 @@ Result<SfmPoints> OpenSfmPoints(const std::filesystem::path& path, const Sequenc
 // ReadEvaluationInput and Evaluate do.
 Result<Evaluation> EvaluateRun(const std::string& run_path, const OpenedTruth& truth, const EvaluationOptions& options);
 
+// Evaluates a file of tracks on its own, in all frames of the sequence. Fails as ReadTracksOfSequence and
+// EvaluateTracks.
+Result<Evaluation> EvaluateTrackFile(const TrackFileOptions& file, const OpenedTruth& truth);
+
 // What else a run may be compared with, each of it optional.
 struct RunReferences {
   const OpenedTruth* truth = nullptr;            // of the run's sequence
@@ -62,6 +67,7 @@ struct EvaluationRequest {
   std::string sfm_path = {};       // as OpenSfmPoints; empty: those of the sequence
   std::string surface_path = {};   // as RunReferences
   std::vector<std::string> other_runs = {};  // likewise
+  TrackFileOptions track_file = {};          // where run_path is empty: compared with the truth instead of a run
 };
 Result<Evaluation> EvaluateRun(const EvaluationRequest& request, const EvaluationOptions& options);
 

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -25,20 +26,22 @@
 #include "pliant/evaluation/run_input.h"
 #include "pliant/evaluation/sfm_error.h"
 #include "pliant/evaluation/surface_truth.h"
+#include "pliant/evaluation/track_error.h"
 #include "pliant/evaluation/track_survival.h"
 #include "pliant/evaluation/trajectory_error.h"
 #include "pliant/evaluation/uncertainty_error.h"
 
 namespace pliant {
 
-enum class EvaluationPart { kSurface, kMaterial, kCamera, kFirstMap };
+enum class EvaluationPart { kSurface, kMaterial, kCamera, kFirstMap, kTracks };
 
 template <>
 struct EnumNames<EvaluationPart> {
   static constexpr std::array kNames = {std::pair{EvaluationPart::kSurface, std::string_view("surface")},
                                         std::pair{EvaluationPart::kMaterial, std::string_view("material")},
                                         std::pair{EvaluationPart::kCamera, std::string_view("camera")},
-                                        std::pair{EvaluationPart::kFirstMap, std::string_view("first_map")}};
+                                        std::pair{EvaluationPart::kFirstMap, std::string_view("first_map")},
+                                        std::pair{EvaluationPart::kTracks, std::string_view("tracks")}};
 };
 
 struct EvaluationOptions {
@@ -70,6 +73,7 @@ struct Evaluation {
   std::optional<MaterialError> material;          // where it knows its material
   std::optional<TrajectoryError> trajectory;      // where it has poses
   std::optional<FirstMapError> first_map;         // where it has depth and the run says which frames it is from
+  std::optional<TrackError> tracks;               // in the images, where it knows its material
   std::optional<ReprojectionError> reprojection;  // where it has points
   std::optional<RelativeDepthError> sfm;          // where there are points of structure from motion
   std::vector<RunConsistency> consistency;        // with the other runs that were given
@@ -92,6 +96,11 @@ Result<Evaluation> Evaluate(const EvaluationInput& run, const Sequence& sequence
 // What can be said of a run without its sequence: survival, and reprojection where its folder has its camera. Fails
 // with kInsufficient when no frame was tracked, and with kNotFound where a part was asked for.
 Result<Evaluation> EvaluateWithoutTruth(const EvaluationInput& run, const EvaluationOptions& options);
+
+// What can be said of tracks alone, `frames` being all of the sequence: their error and survival. Fails as
+// ComputeTrackError, or as `material`.
+Result<Evaluation> EvaluateTracks(const std::string& name, std::span<const PixelTrack> tracks, int frames,
+                                  const Camera& camera, const Result<MaterialTruth*>& material);
 
 // Adds the error against points of structure from motion. Fails as ComputeSfmError.
 Status AddSfmError(const EvaluationInput& run, const SfmPoints& sfm, int width_px, const EvaluationOptions& options,

@@ -1,0 +1,88 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Point tracks out of a run, and into another one.
+#include <map>
+#include <vector>
+
+#include <gmock/gmock.h>
+
+#include "e2e/e2e_support.h"
+#include "pliant/evaluation/evaluate_run.h"
+#include "pliant/io/track_file.h"
+
+namespace pliant {
+namespace {
+
+constexpr double kMaxRmse_mm = 2.0;     // plain, untrimmed, scale per frame, as with our own tracks
+constexpr double kShareOfNull = 0.5;    // a map that says more than that all is at one depth
+constexpr double kMinWithin = 0.9;      // delta_avg of our own tracks of a rigid scene
+constexpr std::size_t kFewPoints = 60;  // that are seen at a time
+
+std::vector<PixelTrack> TracksOfDefaultRun() {
+  std::map<PointId, PixelTrack> tracks;
+  auto reader = ObservationReader::Open(kDefaultRun).value();
+  for (auto rows = reader.Next(); rows.ok() && rows->has_value(); rows = reader.Next())
+    for (const PointObservation& seen : (*rows)->observations)
+      tracks[seen.id].pixels.push_back({(*rows)->frame_idx, seen.pixel});
+  std::vector<PixelTrack> result;
+  for (auto& [id, track] : tracks) result.push_back({id, track.pixels});
+  return result;
+}
+
+// A track is kept where fewer than kFewPoints of those that are kept are seen in its first frame.
+std::vector<PixelTrack> Thinned(const std::vector<PixelTrack>& tracks) {
+  std::map<int, std::size_t> seen;
+  std::vector<PixelTrack> kept;
+  for (const PixelTrack& track : tracks) {
+    if (seen[track.pixels.front().frame_idx] >= kFewPoints) continue;
+    for (const TrackPixel& pixel : track.pixels) ++seen[pixel.frame_idx];
+    kept.push_back(track);
+  }
+  return kept;
+}
+
+Evaluation Evaluated(const TestFolder& folder, const std::vector<PixelTrack>& tracks) {
+  TrackOptions options;
+  options.track_file.path = folder.Path("tracks.npz");
+  EXPECT_TRUE(WriteTrackNpz(options.track_file.path, tracks, 60).ok());
+  const RunSummary summary = TrackSequenceAt(kSequence, folder.Path("run"), options);
+  EXPECT_EQ(summary.status, RunStatus::kCompleted) << summary.note;
+  EXPECT_EQ(summary.frames_tracked, 60);
+  return EvaluateRun(folder.Path("run"), kSequence, ErrorScale::kPerFrame);
+}
+
+TEST(RigidScene, TracksOfARunFromAFileGiveAMapAsOurOwnTracksDo) {
+  const TestFolder folder;
+  const Evaluation evaluation = Evaluated(folder, TracksOfDefaultRun());
+  EXPECT_LT(evaluation.surface->plain.estimate.mean_rmse_mm, kMaxRmse_mm);
+}
+
+TEST(RigidScene, SixtyTracksAtATimeGiveAMap) {
+  const TestFolder folder;
+  const PointSummary estimate = Evaluated(folder, Thinned(TracksOfDefaultRun())).surface->plain.estimate;
+  const PointSummary null = EvaluateRun(kDefaultRun, kSequence, ErrorScale::kPerFrame).surface->plain.null;
+  EXPECT_LT(estimate.mean_rmse_mm, kShareOfNull * null.mean_rmse_mm);
+}
+
+TEST(RigidScene, OurTracksAreScoredAgainstTheTruth) {
+  const TestFolder folder;
+  EvaluationOptions options;
+  options.parts = {EvaluationPart::kTracks};
+  const auto truth = OpenTruth({.image_path = kSequence}, options);
+  ASSERT_TRUE(truth.ok()) << truth.status().message();
+  const auto run = EvaluateRun(kDefaultRun, *truth, options);
+  ASSERT_TRUE(run.ok()) << run.status().message();
+  ASSERT_TRUE(run->tracks);
+  EXPECT_FALSE(run->surface);
+  EXPECT_GT(run->tracks->average_within, kMinWithin);
+  EXPECT_LE(run->tracks->average_jaccard, run->tracks->average_within);
+  ASSERT_TRUE(WriteTrackNpz(folder.Path("tracks.npz"), TracksOfDefaultRun(), 60).ok());
+  const auto file = EvaluateTrackFile({.path = folder.Path("tracks.npz")}, *truth);
+  ASSERT_TRUE(file.ok()) << file.status().message();
+  EXPECT_NEAR(file->tracks->average_within, run->tracks->average_within, 1e-3);  // a file has floats
+  EXPECT_EQ(file->survival.tracks, run->survival.tracks);
+}
+
+}  // namespace
+}  // namespace pliant
