@@ -1,0 +1,158 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The Pliant authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""What `pliant track --tracks` makes of tracks from outside, on simulated colons. README.md beside this file.
+
+usage: point_tracks.py [--build DIR] [--output_path DIR] [--sequences DIR] [--amplitudes 0,2.5,5,10] [--seeds 1,2]
+"""
+import argparse
+import csv
+import json
+import subprocess
+import sys
+from collections import defaultdict
+from pathlib import Path
+
+import numpy as np
+
+SCENE = "--Deformation.wavelength_mm 628.3185307179587 --Trajectory.speed_mm_s 15 --Trajectory.frames 100".split()
+OMEGA_RAD_S = "2.5"
+NOISE_PX = 0.3
+THINNED = 60  # points that are seen at a time
+FIRST_MAP_ALONE = "--Growth.grow off --Tracking.find_lost off".split()
+VARIANTS = ("own", "oracle", "truth", "opencv", "thinned")
+
+
+def pliant(arguments, *args):
+    command = [str(arguments.build / "pliant"), *map(str, args)]
+    result = subprocess.run(command, capture_output=True, text=True, check=False)
+    if result.returncode != 0:
+        print(" ".join(command), result.stderr, file=sys.stderr)
+    return result.returncode == 0
+
+
+def sequence_of(arguments, amplitude, seed):
+    name = f"dm_A{amplitude}_w{OMEGA_RAD_S}_s{seed}"
+    if arguments.sequences and (arguments.sequences / name / "done").exists():
+        return arguments.sequences / name
+    folder = arguments.output_path / "sequences" / name
+    if not (folder / "done").exists():
+        pliant(arguments, "simulate", "--quiet", "--output_path", folder, "--Deformation.amplitude_mm", amplitude,
+               "--Deformation.omega_rad_s", OMEGA_RAD_S, "--Scene.seed", seed, *SCENE)
+        (folder / "done").touch()
+    return folder
+
+
+def rows_of(path):
+    with open(path, newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def write_tracks(path, rows):
+    """rows: (frame, track_id, u, v)."""
+    lines = [f"{frame},{track},{u:.4f},{v:.4f}" for frame, track, u, v in sorted(rows)]
+    path.write_text("frame,track_id,u_px,v_px\n" + "\n".join(lines) + "\n", encoding="utf-8")
+
+
+def write_noisy_truth(arguments, sequence, run, path, seed):
+    """The true paths of the points of a run, from where each was first seen, with noise."""
+    first = {}
+    for row in rows_of(run / "observations.csv"):
+        first.setdefault(row["point_id"], row)
+    starts = path.with_suffix(".starts.csv")
+    starts.write_text("frame,u_px,v_px\n" + "".join(f"{r['frame']},{r['u_px']},{r['v_px']}\n" for r in first.values()),
+                      encoding="utf-8")
+    begin = [int(row["frame"]) for row in first.values()]
+    paths = path.with_suffix(".paths.csv")
+    pliant(arguments, "truth", "--quiet", "--sequence", sequence, "--points", starts, "--output_path", paths)
+    random = np.random.default_rng(seed)
+    rows = []
+    for row in rows_of(paths):
+        point, frame = int(row["point"]), int(row["frame"])
+        if row["visibility"] != "visible" or frame < begin[point]:
+            continue
+        noise = random.normal(0, NOISE_PX, 2)
+        rows.append((frame, point, float(row["u_px"]) + noise[0], float(row["v_px"]) + noise[1]))
+    write_tracks(path, rows)
+
+
+def write_thinned(source, path):
+    """A track is kept where fewer than THINNED of those kept are seen in its first frame."""
+    tracks = defaultdict(list)
+    for row in rows_of(source):
+        tracks[int(row["track_id"])].append((int(row["frame"]), float(row["u_px"]), float(row["v_px"])))
+    order = sorted(tracks, key=lambda track: (tracks[track][0][0], -len(tracks[track]), track))
+    seen = defaultdict(int)
+    kept = []
+    for track in order:
+        if seen[tracks[track][0][0]] >= THINNED:
+            continue
+        for frame, u, v in tracks[track]:
+            seen[frame] += 1
+            kept.append((frame, track, u, v))
+    write_tracks(path, kept)
+
+
+def options_of(arguments, variant, sequence, folder, seed):
+    if variant == "own":
+        return []
+    if variant == "oracle":
+        return ["--Oracle.tracks", "on", "--Oracle.track_noise_px", NOISE_PX, *FIRST_MAP_ALONE]
+    path = folder / f"{variant}.csv"
+    if variant == "truth":
+        write_noisy_truth(arguments, sequence, folder / "oracle", path, seed)
+        return ["--tracks", path, *FIRST_MAP_ALONE]
+    if variant == "opencv":
+        subprocess.run([arguments.build / "pliant_opencv_tracks", sequence, path], check=True, capture_output=True)
+    if variant == "thinned":
+        write_thinned(folder / "opencv.csv", path)
+    return ["--tracks", path]
+
+
+def figures_of(run):
+    path = run / "evaluation" / "evaluation.json"
+    counts = json.loads((run / "run.json").read_text(encoding="utf-8"))["counts"]
+    if not path.exists():
+        return {"tracked": counts["frames_tracked"]}
+    evaluation = json.loads(path.read_text(encoding="utf-8"))
+    return {"tracked": counts["frames_tracked"],
+            "points": evaluation["survival"]["mean_points"],
+            "rmse": evaluation["surface"]["estimate"]["mean_rmse_mm"],
+            "null": evaluation["surface"]["null"]["mean_rmse_mm"],
+            "within": evaluation["tracks"]["average_within"],
+            "jaccard": evaluation["tracks"]["average_jaccard"]}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--build", type=Path, default=Path("build/release"))
+    parser.add_argument("--output_path", type=Path, default=Path("build/experiments/point_tracks"))
+    parser.add_argument("--sequences", type=Path, help="sequences of the experiment simulated_colon, where they are there")
+    parser.add_argument("--amplitudes", default="0,2.5,5,10")
+    parser.add_argument("--seeds", default="1,2")
+    arguments = parser.parse_args()
+    print("| A mm | seed | tracks | frames | points | RMSE mm | null mm | within, mean % | Jaccard, mean % |")
+    print("| --- | --- | --- | --- | --- | --- | --- | --- | --- |")
+    for amplitude in arguments.amplitudes.split(","):
+        for seed in arguments.seeds.split(","):
+            sequence = sequence_of(arguments, amplitude, seed)
+            folder = arguments.output_path / sequence.name
+            folder.mkdir(parents=True, exist_ok=True)
+            for variant in VARIANTS:
+                run = folder / variant
+                pliant(arguments, "track", "--quiet", "--image_path", sequence, "--output_path", run,
+                       *options_of(arguments, variant, sequence, folder, int(seed)))
+                pliant(arguments, "evaluate", "--quiet", "--run", run, "--sequence", sequence, "--output_path",
+                       run / "evaluation")
+                f = figures_of(run)
+                cells = [f"{f['tracked']}"]
+                if "rmse" in f:
+                    cells += [f"{f['points']:.0f}", f"{f['rmse']:.2f}", f"{f['null']:.2f}", f"{100 * f['within']:.1f}",
+                              f"{100 * f['jaccard']:.1f}"]
+                else:
+                    cells += ["-"] * 5
+                print(f"| {amplitude} | {seed} | {variant} | " + " | ".join(cells) + " |", flush=True)
+
+
+if __name__ == "__main__":
+    main()
