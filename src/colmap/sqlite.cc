@@ -34,7 +34,8 @@ Status SqliteDatabase::Failure(const std::string& what) const {
   const std::string message =
       "cannot " + what + " the database " + Quoted(path_) + ": " + sqlite3_errmsg(database_.get());
   if (code == SQLITE_BUSY || code == SQLITE_LOCKED)
-    return {access_ == SqliteAccess::kRead ? ErrorCode::kUnreadable : ErrorCode::kUnwritable, message + "; another program has it open; close that program first"};
+    return {access_ == SqliteAccess::kRead ? ErrorCode::kUnreadable : ErrorCode::kUnwritable,
+            message + "; another program has it open; close that program first"};
   if (code == SQLITE_NOTADB || code == SQLITE_CORRUPT || access_ == SqliteAccess::kRead)
     return {ErrorCode::kUnreadable, message};
   return {ErrorCode::kUnwritable, message};

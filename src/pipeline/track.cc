@@ -350,7 +350,7 @@ Result<RunSummary> RunTrack(const RunRequest& request, const TrackOptions& optio
                                    start->images.alive_after_9,
                                    "",
                                    options.tracker.init.IsMetric(),
-                                    options.track_file.path},
+                                   options.track_file.path},
                                   table.ToYaml(), ColumnsOfFrames(), writer_options);
   if (!writer.ok()) return writer.status();
 

@@ -16,7 +16,7 @@ struct ComparedWindows {
   double noise_levels = 1;  // standard deviation of the smoothed image's noise, as ImageNoise measures it
 };
 
-// (V14) CV_8UC1 of the image's size, 255 where the window around a usable pixel has texture in every direction: the
+// (V16) CV_8UC1 of the image's size, 255 where the window around a usable pixel has texture in every direction: the
 // smaller eigenvalue of its gradient tensor is larger than noise alone would make it, by three standard deviations.
 // `image` is 8-bit with 1 or 3 (BGR) channels, `valid` CV_8UC1 of its size, 0 = not usable. It is compared at
 // `windows.width_px`, or at its own size where that is smaller.

@@ -55,7 +55,7 @@ struct RunDescription {
   // Whether a map unit is a millimeter, since the map starts from known depth; nothing: it does not say (an earlier
   // version's, or another program's result).
   std::optional<bool> metric = {};
-  std::string tracks = {};        // the file of tracks that was followed, absolute; empty: our own tracker's
+  std::string tracks = {};  // the file of tracks that was followed, absolute; empty: our own tracker's
 };
 
 // run.json.
