@@ -16,6 +16,8 @@ namespace pliant::python {
 
 class ObservationColumns {
  public:
+  // Makes room for so many rows, where that is known about; there may be more.
+  void Reserve(std::size_t rows);
   void Append(int frame_idx, std::span<const PointObservation> observations);
   // pliant.Observations, which takes the columns over.
   pybind11::object Take();

@@ -1,8 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
+#include <algorithm>
 #include <cstdint>
+#include <filesystem>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -89,10 +92,16 @@ py::tuple ReadRunTables(const std::string& path) {
   return py::make_tuple(Table("Frames")(**FrameColumns(run)), Table("Poses")(**PoseColumns(run.poses)));
 }
 
+// Hardly a row of a run is shorter.
+constexpr std::size_t kBytesOfRow = 48;
+
 Result<ObservationColumns> ReadColumns(const std::string& path) {
   auto reader = ObservationReader::Open(path);
   if (!reader.ok()) return reader.status();
   ObservationColumns columns;
+  std::error_code error;
+  if (const auto bytes = std::filesystem::file_size(path + "/observations.csv", error); !error)
+    columns.Reserve(bytes / kBytesOfRow);
   while (true) {
     const auto frame = reader->Next();
     if (!frame.ok()) return frame.status();
@@ -138,14 +147,32 @@ py::tuple ReadMap(const std::string& path) {
 
 }  // namespace
 
+void ObservationColumns::Reserve(std::size_t rows) {
+  frame_idx_.reserve(rows);
+  point_id_.reserve(rows);
+  pixel_.reserve(2 * rows);
+  position_.reserve(3 * rows);
+  ssim_.reserve(rows);
+  sigma_.reserve(rows);
+}
+
+// Millions of rows come: each column grows once a frame, and is then written in place.
 void ObservationColumns::Append(int frame_idx, std::span<const PointObservation> observations) {
-  frame_idx_.insert(frame_idx_.end(), observations.size(), frame_idx);
-  for (const PointObservation& seen : observations) {
-    point_id_.push_back(seen.id.value);
-    pixel_.insert(pixel_.end(), seen.pixel.data(), seen.pixel.data() + 2);
-    position_.insert(position_.end(), seen.position.data(), seen.position.data() + 3);
-    ssim_.push_back(seen.ssim);
-    sigma_.push_back(seen.sigma);
+  const std::size_t before = point_id_.size();
+  const std::size_t count = before + observations.size();
+  frame_idx_.resize(count, frame_idx);
+  point_id_.resize(count);
+  pixel_.resize(2 * count);
+  position_.resize(3 * count);
+  ssim_.resize(count);
+  sigma_.resize(count);
+  for (std::size_t row = before; const PointObservation& seen : observations) {
+    point_id_[row] = seen.id.value;
+    std::copy_n(seen.pixel.data(), 2, &pixel_[2 * row]);
+    std::copy_n(seen.position.data(), 3, &position_[3 * row]);
+    ssim_[row] = seen.ssim;
+    sigma_[row] = seen.sigma;
+    ++row;
   }
 }
 

@@ -60,6 +60,7 @@ TEST(ImageTracker, ReportsWhatARunOfTheSameImagesReports) {
   std::vector<FrameReport> reports;
   RenderedSequence sequence;
   while (auto frame = *sequence.Next()) {
+    frame->name = run.reports[static_cast<std::size_t>(frame->frame_idx)].name;
     auto done = tracker->Process(*frame);
     ASSERT_TRUE(done.ok());
     for (FrameReport& report : *done) reports.push_back(std::move(report));

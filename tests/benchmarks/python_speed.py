@@ -1,0 +1,116 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The Pliant authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""What Python costs: reading a large run, and tracking through the package beside the program.
+
+usage: PYTHONPATH=build/release/python:tests/python python3 tests/benchmarks/python_speed.py PROGRAM [REPETITIONS]
+
+Prints processor times, the least of the repetitions: of reading a run of 1,000 frames with 500 points each; of tracking
+60 simulated frames by the program and by pliant.track, whose callback takes each frame's points; and of what
+pliant.Tracker does in Python's service for a frame (the image is copied, the points become arrays) beside the frame.
+"""
+
+import pathlib
+import resource
+import subprocess
+import sys
+import tempfile
+
+import numpy as np
+
+import pliant
+import support
+
+FRAMES, POINTS = 1000, 500
+OPTIONS = {"General.threads": 1, "Image.working": "fixed"}
+
+
+def processor_seconds(who):
+    usage = resource.getrusage(who)
+    return usage.ru_utime + usage.ru_stime
+
+
+def least(repetitions, who, function):
+    """The least processor time of calling `function`, s."""
+    times = []
+    for _ in range(repetitions):
+        before = processor_seconds(who)
+        function()
+        times.append(processor_seconds(who) - before)
+    return min(times)
+
+
+def write_run(folder):
+    """A run of the given size, as another program would leave it."""
+    random = np.random.default_rng(1)
+    folder.mkdir()
+    rows = FRAMES * POINTS
+    numbers = np.column_stack([np.repeat(np.arange(FRAMES), POINTS), np.tile(np.arange(POINTS), FRAMES),
+                               random.uniform(0, 640, (rows, 2)), random.normal(60, 20, (rows, 3)),
+                               random.uniform(0, 1, (rows, 2))])
+    np.savetxt(folder / "observations.csv", numbers, fmt="%d,%d,%.4f,%.4f,%.6f,%.6f,%.6f,%.4f,%.6f", comments="",
+               header="frame,point_id,u_px,v_px,x,y,z,ssim,sigma_mm")
+    (folder / "trajectory.txt").write_text("".join(f"{i / 30:.6f} 0 0 {i} 0 0 0 1\n" for i in range(FRAMES)))
+
+
+def reading(folder, repetitions):
+    write_run(folder)
+
+    def read():
+        run = pliant.open_run(folder)
+        assert len(run.observations) == FRAMES * POINTS and len(run.poses) == FRAMES
+    return least(repetitions, resource.RUSAGE_SELF, read)
+
+
+def tracking(program, sequence, folder, repetitions):
+    """Of the program and of pliant.track, s."""
+    flags = [part for name, value in OPTIONS.items() for part in (f"--{name}", str(value))]
+    command = [program, "track", "--image_path", sequence, "--output_path", folder / "a", "--quiet", *flags]
+    by_program = least(repetitions, resource.RUSAGE_CHILDREN, lambda: subprocess.run(command, check=True))
+    by_package = least(repetitions, resource.RUSAGE_SELF, lambda: pliant.track(
+        sequence, folder / "b", OPTIONS, on_frame=lambda report: report.observations.position.sum()))
+    return by_program, by_package
+
+
+def service(sequence, repetitions):
+    """Of a frame of pliant.Tracker, and of what it does for Python in it, s."""
+    images = [support.read_png(path) for path in sorted((sequence / "images").iterdir())]
+    camera = pliant.read_camera(sequence / "camera.yaml")
+    reports = []
+
+    def track():
+        tracker = pliant.Tracker(camera, OPTIONS)
+        reports[:] = [report for image in images for report in tracker.process(image)] + tracker.finish()
+    frame = least(repetitions, resource.RUSAGE_SELF, track) / len(images)
+
+    # An image that is refused for its mask is copied all the same.
+    tracker, mask = pliant.Tracker(camera, OPTIONS), np.zeros((1, 1), np.uint8)
+
+    def serve():
+        for image, report in zip(images, reports):
+            try:
+                tracker.process(image, mask)
+            except pliant.Error:
+                pass
+            report.observations, report.cam_from_world
+    return frame, least(repetitions, resource.RUSAGE_SELF, serve) / len(images)
+
+
+def main():
+    program = pathlib.Path(sys.argv[1]).resolve()
+    repetitions = int(sys.argv[2]) if len(sys.argv) > 2 else 5
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        print(f"reading {FRAMES} frames of {POINTS} points: {reading(folder / 'large', repetitions):.3f} s", flush=True)
+        sequence = folder / "colon"
+        pliant.simulate(sequence, {"Trajectory.frames": 60})
+        by_program, by_package = tracking(program, sequence, folder, repetitions)
+        print(f"tracking 60 frames: {by_program:.3f} s by the program, {by_package:.3f} s by pliant.track "
+              f"({100 * (by_package / by_program - 1):+.1f} %)", flush=True)
+        frame, served = service(sequence, repetitions)
+        print(f"pliant.Tracker: {1000 * frame:.2f} ms a frame, {1000 * served:.3f} ms of it for Python "
+              f"({100 * served / frame:.1f} %)")
+
+
+if __name__ == "__main__":
+    main()
