@@ -49,7 +49,7 @@ ImageTracker::ImageTracker(const Camera& source, const Camera& working_camera, c
     : camera_(source), working_(working), options_(options) {
   options_.tracker = WorkingOptions(std::move(options_.tracker), working);
   tracker_ = std::make_unique<Tracker>(working_camera, options_.tracker, static_cast<std::uint64_t>(options.seed),
-                                       options.threads, nullptr, photometric);
+                                       options.threads, TrackerInputs{.photometric = photometric});
 }
 
 Result<std::vector<FrameReport>> ImageTracker::Process(const SequenceFrame& frame) {
