@@ -127,7 +127,7 @@ int TrackCommand(std::span<const std::string> args) {
 
   std::unique_ptr<LiveView> live;
   if (arguments.live) {
-    auto started = LiveView::Start({RunName(arguments.output_path), init.IsMetric()}, live_options);
+    auto started = LiveView::Start({RunName(arguments.output_path), options.tracker.init.IsMetric()}, live_options);
     if (!started.ok()) return line.Failure(started.status().message());
     live = *std::move(started);
     if (!arguments.quiet) std::cerr << "live view: " << live->Url() << std::endl;
