@@ -55,7 +55,7 @@ TEST(Program, TracksOfOtherImagesAreOneSentenceAndExitCodeOne) {
   const std::string track =
       "track --image_path '" + sequence + "' --output_path '" + Temporary("run").string() + "'" + of;
   const std::string evaluate = "evaluate --sequence '" + sequence + "'" + of;
-  for (const std::string& rows : {"0,0,700,20\n", "0,0,10,nan\n", "2,0,10,20\n", "0,0,10\n"}) {
+  for (const char* rows : {"0,0,700,20\n", "0,0,10,nan\n", "2,0,10,20\n", "0,0,10\n"}) {
     std::ofstream(tracks) << "frame,track_id,u_px,v_px\n" << rows;
     for (const std::string& command : {track, evaluate}) {
       const Outcome outcome = Pliant(command);

@@ -7,6 +7,7 @@
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
 #include <ImfInputFile.h>
 #include <gtest/gtest.h>
 #include <opencv2/core.hpp>
