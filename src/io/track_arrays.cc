@@ -48,9 +48,13 @@ Status CheckTracks(const std::string& path, const NpyArray& tracks) {
 // An array beside the tracks that has a value a frame and point.
 Status CheckBeside(const std::string& path, const std::string& name, const NpyArray& tracks, const NpyArray& array) {
   const auto expected = AxesOf(tracks, 3).first(2);
-  std::span<const std::size_t> axes = AxesOf(array, 2);
-  if (axes.size() == 3 && axes[2] == 1) axes = axes.first(2);  // (T, N, 1), as some trackers give it
-  if (std::ranges::equal(axes, expected)) return Status::Ok();
+  const auto is_expected = [&](std::span<const std::size_t> axes) {
+    const bool has_last = axes.size() == 3 && axes.back() == 1;  // (T, N, 1), as some trackers give it
+    return std::ranges::equal(axes, expected) || (has_last && std::ranges::equal(axes.first(2), expected));
+  };
+  const std::span<const std::size_t> shape = array.shape;
+  if (is_expected(shape) || (!shape.empty() && shape.front() == 1 && is_expected(shape.subspan(1))))
+    return Status::Ok();
   return {ErrorCode::kUnreadable, name + " in " + path + " has the shape " + ShapeText(array.shape) +
                                       ", and the tracks have " + ShapeText(tracks.shape) +
                                       "; it has to be (frames, points)"};
