@@ -68,8 +68,11 @@ std::vector<float> ErrorsAt(const ViewedMesh& mesh, int frame_idx) {
   const BetweenKeys around = KeysAround(mesh.surface.keys, frame_idx);
   if (around.share == 0.0F) return mesh.errors_mm[around.before];
   std::vector<float> errors;
-  for (std::size_t v = 0; v < vertices; ++v)
-    errors.push_back(std::lerp(mesh.errors_mm[around.before][v], mesh.errors_mm[around.after][v], around.share));
+  for (std::size_t v = 0; v < vertices; ++v) {
+    // Not std::lerp, which may give the other one where one is not a number.
+    const float before = mesh.errors_mm[around.before][v];
+    errors.push_back(before + around.share * (mesh.errors_mm[around.after][v] - before));
+  }
   return errors;
 }
 
