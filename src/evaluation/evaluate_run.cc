@@ -66,11 +66,14 @@ Status AddDense(const EvaluationInput& run, const RunReferences& references, con
   // The images are read once more, from their beginning.
   const auto images = OpenSequence(references.truth->request);
   if (!images.ok()) return images.status();
-  Result<std::unique_ptr<MaterialTruth>> opened = Status(ErrorCode::kNotFound, "there is one already");
-  if (!references.truth->material.ok()) opened = OpenMaterialTruth(references.truth->request.image_path.string());
-  MaterialTruth* material = references.truth->material.ok() ? references.truth->material->get()
-                            : opened.ok()                   ? opened->get()
-                                                            : nullptr;
+  std::unique_ptr<MaterialTruth> opened;  // where no other part has asked for it
+  MaterialTruth* material = nullptr;
+  if (references.truth->material.ok()) {
+    material = references.truth->material->get();
+  } else if (auto truth = OpenMaterialTruth(references.truth->request.image_path.string()); truth.ok()) {
+    opened = *std::move(truth);
+    material = opened.get();
+  }
   const auto textured = ComputeDenseCompleteness(*surface, images->get(), material, {});
   if (!textured.ok()) return textured.status();
   evaluation->dense->textured = *textured;

@@ -43,17 +43,19 @@ std::vector<NewTrack> GivenTracks::AddNew(const PreparedFrame& frame, std::span<
     if (const TrackPixel* seen = SeenIn(track, frame.frame_idx); seen != nullptr && IsUsable(frame, seen->pixel))
       offers.push_back({&track, seen->pixel, LengthFrom(track, frame.frame_idx)});
   std::ranges::stable_sort(offers, std::ranges::greater(), &Offer::length);
-  std::vector<Eigen::Vector2d> pixels;
-  for (const Offer& offer : offers) pixels.push_back(offer.pixel);
+  const auto pixels_of = [](const std::vector<Offer>& some) {
+    std::vector<Eigen::Vector2d> pixels;
+    for (const Offer& offer : some) pixels.push_back(offer.pixel);
+    return pixels;
+  };
   if (corners.contour_filter == Switch::kOn) {
-    const std::vector<double> contours = ContourMeasure(frame.gray, pixels, corners.contour_radius_px);
+    const std::vector<double> contours = ContourMeasure(frame.gray, pixels_of(offers), corners.contour_radius_px);
     std::vector<Offer> off_contours;
     for (std::size_t i = 0; i < offers.size(); ++i)
       if (contours[i] <= corners.contour_threshold) off_contours.push_back(offers[i]);
     offers = std::move(off_contours);
-    pixels.clear();
-    for (const Offer& offer : offers) pixels.push_back(offer.pixel);
   }
+  const std::vector<Eigen::Vector2d> pixels = pixels_of(offers);
   const cv::Mat valid =
       frame.mask.unrestricted() ? cv::Mat(frame.gray.size(), CV_8UC1, cv::Scalar(255)) : frame.mask.valid();
   std::vector<NewTrack> added;
