@@ -3,6 +3,7 @@
 
 #include "pliant/datasets/match_poses.h"
 
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <utility>
@@ -10,35 +11,75 @@
 #include "pliant/base/text.h"
 
 namespace pliant {
+namespace {
+
+struct TimeUnit {
+  const char* name;
+  double seconds;
+};
+
+constexpr std::array<TimeUnit, 4> kTimeUnits{
+    {{"seconds", 1.0}, {"milliseconds", 1e-3}, {"microseconds", 1e-6}, {"nanoseconds", 1e-9}}};
+
+using FrameAtTime = std::map<double, int>;  // seconds of the sequence's clock
+
+struct NearestPose {
+  double difference_s = 0;
+  const TimedPose* pose = nullptr;
+};
+
+// By frame number.
+std::map<int, NearestPose> NearestPoses(std::span<const TimedPose> poses, const FrameAtTime& frame_at, double unit_s,
+                                        double max_difference_s) {
+  std::map<int, NearestPose> nearest;
+  for (const TimedPose& pose : poses) {
+    const double time_s = unit_s * pose.timestamp_s;
+    auto after = frame_at.lower_bound(time_s);
+    if (after == frame_at.end() ||
+        (after != frame_at.begin() && time_s - std::prev(after)->first < after->first - time_s))
+      --after;
+    const double difference_s = std::abs(after->first - time_s);
+    if (difference_s > max_difference_s) continue;
+    const auto [it, is_new] = nearest.try_emplace(after->second, NearestPose{difference_s, &pose});
+    if (!is_new && difference_s < it->second.difference_s) it->second = {difference_s, &pose};
+  }
+  return nearest;
+}
+
+std::string Span(double first_s, double last_s) { return Seconds(first_s) + " to " + Seconds(last_s); }
+
+}  // namespace
+
 Result<MatchedPoses> MatchPoses(std::span<const TimedPose> poses, const Sequence& sequence, double max_difference_s,
                                 const std::string& name) {
-  std::map<double, int> frame_at;  // the sequence's frames by time
+  FrameAtTime frame_at;
   for (int i = 0; i < sequence.size(); ++i)
     if (const auto time_s = sequence.TimestampS(i)) frame_at.emplace(*time_s, i);
   if (frame_at.empty())
     return Status(ErrorCode::kMismatch,
                   "the sequence has no times to which the poses of " + name + " could be matched");
-  std::map<int, std::pair<double, const TimedPose*>> nearest;  // by frame number
-  for (const TimedPose& pose : poses) {
-    auto after = frame_at.lower_bound(pose.timestamp_s);
-    if (after == frame_at.end() ||
-        (after != frame_at.begin() && pose.timestamp_s - std::prev(after)->first < after->first - pose.timestamp_s))
-      --after;
-    const double difference_s = std::abs(after->first - pose.timestamp_s);
-    if (difference_s > max_difference_s) continue;
-    const auto [it, is_new] = nearest.try_emplace(after->second, difference_s, &pose);
-    if (!is_new && difference_s < it->second.first) it->second = {difference_s, &pose};
+  std::map<int, NearestPose> nearest;
+  const TimeUnit* unit = kTimeUnits.data();
+  for (const TimeUnit& candidate : kTimeUnits) {
+    auto found = NearestPoses(poses, frame_at, candidate.seconds, max_difference_s);
+    if (found.size() <= nearest.size()) continue;
+    nearest = std::move(found);
+    unit = &candidate;
   }
-  if (nearest.empty() && !poses.empty())
+  const bool by_chance = nearest.size() == 1 && poses.size() > 1 && frame_at.size() > 1;
+  if ((nearest.empty() && !poses.empty()) || by_chance)
     return Status(ErrorCode::kMismatch,
-                  "no pose of " + name + " is within " + Seconds(max_difference_s) + " of a frame: its times go from " +
-                      Seconds(poses.front().timestamp_s) + " to " + Seconds(poses.back().timestamp_s) +
-                      ", the sequence's from " + Seconds(frame_at.begin()->first) + " to " +
-                      Seconds(frame_at.rbegin()->first) + "; write times in seconds of the sequence's clock");
+                  (by_chance ? "only one of the poses of " : "no pose of ") + name + " is within " +
+                      Seconds(max_difference_s) + " of a frame: its times go from " +
+                      Span(poses.front().timestamp_s, poses.back().timestamp_s) + ", the sequence's from " +
+                      Span(frame_at.begin()->first, frame_at.rbegin()->first) +
+                      "; write times in seconds of the sequence's clock");
   MatchedPoses matched;
-  for (const auto& [frame_idx, match] : nearest)
-    matched.world_from_cam.emplace(frame_idx, match.second->world_from_cam);
-  matched.left_out = static_cast<int>(poses.size() - nearest.size());
+  for (const auto& [frame_idx, match] : nearest) matched.world_from_cam.emplace(frame_idx, match.pose->world_from_cam);
+  if (unit->seconds != 1.0) matched.notes.push_back("the times of " + name + " are read as " + unit->name);
+  if (const auto left_out = poses.size() - nearest.size(); left_out > 0)
+    matched.notes.push_back(std::to_string(left_out) + " of " + std::to_string(poses.size()) + " poses of " + name +
+                            " are not near any frame in time and are left out");
   return matched;
 }
 

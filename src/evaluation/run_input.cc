@@ -50,9 +50,7 @@ Status GivePosesFrames(const std::string& name, const std::vector<RunPose>& pose
   if (!matched.ok()) return matched.status();
   for (const auto& [frame_idx, world_from_cam] : matched->world_from_cam)
     FrameAt(frame_idx, *sequence.TimestampS(frame_idx), frames).cam_from_world = world_from_cam.Inverse();
-  if (matched->left_out > 0)
-    input->notes.push_back(std::to_string(matched->left_out) + " of " + std::to_string(poses.size()) + " poses of " +
-                           name + " are not near any frame in time and are left out");
+  input->notes.insert(input->notes.end(), matched->notes.begin(), matched->notes.end());
   return Status::Ok();
 }
 

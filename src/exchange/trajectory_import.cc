@@ -37,9 +37,7 @@ Result<Imported> ReadTrajectory(const std::string& path, ImportFormat format, co
   Imported imported;
   for (const auto& [frame_idx, world_from_cam] : matched->world_from_cam)
     imported.frames.emplace(frame_idx, ImportedFrame{world_from_cam.Inverse(), {}});
-  if (matched->left_out > 0)
-    imported.notes.push_back(std::to_string(matched->left_out) + " of " + std::to_string(poses->size()) +
-                             " poses are not near any frame in time");
+  imported.notes = matched->notes;
   return imported;
 }
 

@@ -253,6 +253,28 @@ TEST_F(ImportTest, CameraPathsOfOtherSystemsComeToTheirFrames) {
             true);
 }
 
+TEST_F(ImportTest, TimesInOtherUnitsThanSecondsAreRecognizedAndSaid) {
+  folder_.Write("orbslam3.txt", "40400000.000000 1 2 3 0 0 0 1\n118000000.000000 4 5 6 0 0 0 1\n");
+  folder_.Write("milliseconds.txt", "40.4 1 2 3 0 0 0 1\n118 4 5 6 0 0 0 1\n");
+  for (const char* unit : {"nanoseconds", "milliseconds"}) {
+    std::filesystem::remove_all(folder_.Path("out"));
+    const std::string file = unit == std::string("nanoseconds") ? "orbslam3.txt" : "milliseconds.txt";
+    const auto summary = ImportFrom(file, ImportFormat::kTum);
+    ASSERT_TRUE(summary.ok()) << summary.status().message();
+    EXPECT_EQ(summary->frames, 2) << file;
+    ASSERT_EQ(summary->notes.size(), 1U);
+    EXPECT_THAT(summary->notes.front(), HasSubstr(unit));
+  }
+}
+
+TEST_F(ImportTest, OnePoseOfSeveralThatIsNearAFrameIsThereByChance) {
+  folder_.Write("path", "0 1 2 3 0 0 0 1\n5e20 4 5 6 0 0 0 1\n6e20 4 5 6 0 0 0 1\n");
+  const Status status = ImportFrom("path", ImportFormat::kTum).status();
+  EXPECT_EQ(status.code(), ErrorCode::kMismatch);
+  EXPECT_THAT(status.message(), HasSubstr("only one"));
+  EXPECT_THAT(status.message(), HasSubstr("sequence's clock"));
+}
+
 TEST_F(ImportTest, DamagedCameraPathsAreNamedByLine) {
   const std::vector<std::tuple<const char*, ImportFormat, const char*>> cases = {
       {"1 0 0 0 0 1 0 0 0 0 1\n", ImportFormat::kKitti, "12 numbers"},

@@ -7,6 +7,7 @@
 #include <map>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "pliant/base/status.h"
 #include "pliant/datasets/sequence.h"
@@ -17,12 +18,13 @@ namespace pliant {
 
 struct MatchedPoses {
   std::map<int, Rigid3> world_from_cam;  // by frame
-  int left_out = 0;                      // poses that are near no frame, or less near than another one
+  std::vector<std::string> notes;        // sentences: poses that are left out, times in another unit than seconds
 };
 
 // Gives each pose to the frame nearest in time, if it is not further than `max_difference_s`; of several poses near one
-// frame the nearest is taken. `name` is the poses' in messages. Fails with kMismatch if the sequence has no times, or
-// no pose is near a frame.
+// frame the nearest is taken. Times that come to more frames when they are read as milli-, micro- or nanoseconds are
+// read so. `name` is the poses' in messages. Fails with kMismatch if the sequence has no times, if no pose is near a
+// frame, or if only one of several is near one of several frames: by chance.
 Result<MatchedPoses> MatchPoses(std::span<const TimedPose> poses, const Sequence& sequence, double max_difference_s,
                                 const std::string& name);
 
