@@ -132,7 +132,8 @@ Result<RunWriter> RunWriter::Create(const std::string& output_path, const Camera
   if (Status status = PrepareFolder(output_path); !status.ok()) return status;
   RunSummary summary;
   summary.description = std::move(description);
-  for (std::string* path : {&summary.description.camera, &summary.description.mask, &summary.description.tracks})
+  RunDescription& paths = summary.description;
+  for (std::string* path : {&paths.input, &paths.camera, &paths.mask, &paths.tracks})
     if (!path->empty()) *path = std::filesystem::absolute(*path).lexically_normal().string();
   summary.note = "the run was stopped before its end";  // what a killed run says
   if (Status status = WriteRunSummary(output_path + "/run.json", summary); !status.ok()) return status;

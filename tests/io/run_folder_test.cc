@@ -29,6 +29,7 @@ TEST(RunFolder, ComesBackAsItWasReported) {
   EXPECT_EQ(run->summary->status, RunStatus::kLost);
   EXPECT_EQ(run->summary->note, "too few points");
   EXPECT_EQ(run->summary->description.command_line, (std::vector<std::string>{"pliant", "track"}));
+  EXPECT_EQ(run->summary->description.input, (std::filesystem::current_path() / "clip.mp4").string());
   EXPECT_EQ(run->summary->description.camera, (std::filesystem::current_path() / "stereo.yaml").string());
   EXPECT_EQ(run->summary->description.mask, (std::filesystem::current_path() / "masks").string());
   EXPECT_EQ(run->summary->description.seed, 7u);

@@ -38,7 +38,7 @@ struct RunDescription {
   std::string program_version;
   std::vector<std::string> command_line;
   std::uint64_t seed = 0;
-  std::string input;                      // the images' path, as given
+  std::string input;                      // the images' path, absolute; empty: images of a program
   std::string camera = {};                // the calibration's path, absolute; empty: the one that belongs to the images
   std::string mask = {};                  // the masks' path, absolute; empty: none, or those that belong to the images
   std::vector<std::string> oracles = {};  // parts of the method that were replaced by the truth; empty in an honest run
