@@ -23,12 +23,12 @@ constexpr double kMinKnown = 0.4;      // of all pixels with a true depth, also 
 constexpr double kMaxAbsRel = 0.012;   // the points' own error is about 0.5 %
 constexpr double kShareOfPlate = 0.7;  // of the error of the interpolated points
 constexpr double kMinWithinTwoSigma = 0.9;
-constexpr double kMinVertices = 2000;       // of 96 x 72 nodes
-constexpr int kFilledPx = 400;              // holes of highlights
-constexpr double kMaxAbsRelFilled = 0.02;   // not measured on this scene yet
-constexpr int kTruthWindowPx = 5;           // the true depth has steps of its 16 bits
-constexpr double kUnitInBytes = 0.01;       // of a unit vector with three bytes
-constexpr double kMaxMedianAngle_deg = 15;  // folds are sharper than a compared window
+constexpr double kMinVertices = 2000;      // of 96 x 72 nodes
+constexpr int kFilledPx = 400;             // holes of highlights
+constexpr double kMaxAbsRelFilled = 0.01;  // twice that of the known pixels
+constexpr int kTruthWindowPx = 5;          // the true depth has steps of its 16 bits
+constexpr double kUnitInBytes = 0.01;      // of a unit vector with three bytes
+constexpr double kMaxMedianAngle_deg = 8;  // folds are sharper than a compared window
 
 TEST(RigidScene, ItsSurfaceIsNearerToTheTruthThanItsPointsInterpolated) {
   const TestFolder folder;
