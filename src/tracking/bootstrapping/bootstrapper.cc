@@ -262,7 +262,8 @@ void Bootstrapper::AddKnownPoints(const PreparedFrame& frame, const LocalBrightn
   }
 }
 
-// The reference's points in this frame, with corners where there are none every Nth frame.
+// The reference's points in this frame, and every Nth frame, or whenever the source has them, new ones where there are
+// none.
 InitFrame Bootstrapper::FollowedFrame(const PreparedFrame& frame, const Submap& submap, LossCounts* losses) {
   InitFrame followed{frame.frame_idx, {}};
   const LocalBrightness brightness(frame.image, frame.mask.valid());
@@ -278,7 +279,9 @@ InitFrame Bootstrapper::FollowedFrame(const PreparedFrame& frame, const Submap& 
     }
   }
   tracks_->Keep(kept);
-  if (initializer_->TakesLaterPoints() && frames_.size() % static_cast<std::size_t>(options_.top_up_frames) == 0)
+  const bool is_due =
+      tracks_->abilities().adds_always || frames_.size() % static_cast<std::size_t>(options_.top_up_frames) == 0;
+  if (initializer_->TakesLaterPoints() && is_due)
     AddCorners(frame, brightness, options_.corners.max_corners - static_cast<int>(kept.size()), &followed);
   return followed;
 }

@@ -46,10 +46,11 @@ class WindowInitializer final : public Initializer {
     const int since = static_cast<int>(input.frames.size()) - 1;
     const int followed = static_cast<int>(input.frames.back().observations.size());
     outcome.measured.correspondences = followed;
-    if (followed < options_.min_points) {
+    const int needed = NeededPoints(input, options_);
+    if (followed < needed) {
       outcome.decision = InitDecision::kNewReference;
       outcome.reason = "only " + std::to_string(followed) + " points are still followed (at least " +
-                       std::to_string(options_.min_points) + " must be)";
+                       std::to_string(needed) + " must be)";
       return outcome;
     }
     const bool ends = input.moment == InitMoment::kLastFrame;
@@ -202,7 +203,9 @@ void WindowInitOptions::List(OptionTable& table) {
             "minimum share of all frames since the reference in which a point is seen to be added to the map", 0, 1);
   table.Add("max_points", &max_points, "-",
             "maximum number of points in the bundle adjustment; its time grows with them", 12, 100000);
-  table.Add("min_points", &min_points, "-", "minimum number of certain points in the last frame", 12, 100000);
+  table.Add("min_points", &min_points, "-",
+            "minimum number of certain points in the last frame; half of the reference's points where these are fewer",
+            12, 100000);
   table.Add("max_correlation", &max_correlation, "-",
             "maximum correlation of the reprojection errors of neighbors, at least a patch apart, under a rigid "
             "motion; above "

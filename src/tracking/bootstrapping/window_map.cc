@@ -24,6 +24,7 @@ namespace pliant {
 namespace {
 
 constexpr double kMaxErrorRatio = 3.0;         // of a point's error by the median one, where sigmas are scaled with it
+constexpr int kFewestPoints = 12;              // the least that WindowInit.min_points may be
 constexpr double kMinProvisionalSignal = 2.0;  // as kMinDepthSignal, of a map that is put aside
 constexpr double kMaxOwnSigma = 2.0;  // of points by their own median distance, by what was demanded by that of all
 // Above it linear sigmas are far too small where tissue moves as fast as the camera.
@@ -253,6 +254,11 @@ MapDemands ProvisionalDemands(const DeformingWindow& window) {
           .provisional = true};
 }
 
+int NeededPoints(const InitInput& input, const WindowInitOptions& options) {
+  const int half = static_cast<int>(input.frames.front().observations.size()) / 2;
+  return std::min(options.min_points, std::max(half, kFewestPoints));
+}
+
 Status MakeWindowMap(const InitInput& input, const SolvedWindow& window, const MapDemands& demands,
                      const WindowInitOptions& options, double nominal_depth_mm, InitOutcome* outcome) {
   const double focal_px = input.camera.MeanFocalLengthPx();
@@ -271,17 +277,18 @@ Status MakeWindowMap(const InitInput& input, const SolvedWindow& window, const M
   const DeformingWindow& solved = window.solution.window;
   outcome->measured.median_parallax_deg =
       MedianParallaxRad(solved, solved.cams_from_world.back()) * 180.0 / std::numbers::pi;
-  if (Status status = EnoughCertain(input, window, points, demands, options.min_points, median_distance,
+  if (Status status = EnoughCertain(input, window, points, demands, NeededPoints(input, options), median_distance,
                                     outcome->measured.median_parallax_deg);
       !status.ok())
     return status;
   if (Status status = OptimizeAllViews(input, window, options, &points); !status.ok()) return status;
   std::vector<InitRejectedPoint> rejected;
   if (Status status = OptimizePoints(input, demands, options, &points, &rejected); !status.ok()) return status;
-  if (const int left = CountSeen(input.frames.back(), points.ids); left < options.min_points)
+  const int needed = NeededPoints(input, options);
+  if (const int left = CountSeen(input.frames.back(), points.ids); left < needed)
     return {ErrorCode::kInsufficient, "only " + std::to_string(left) +
                                           " points agree with the frames between those of the window (at least " +
-                                          std::to_string(options.min_points) + " must)"};
+                                          std::to_string(needed) + " must)"};
   measure();
   if (Status status = CheckDepthSignal(window, demands, options, outcome); !status.ok()) return status;
   if (Status status = CheckCameraMotion(input, window, options, outcome); !status.ok()) return status;

@@ -29,6 +29,9 @@ MapDemands DemandsOf(const WindowInitOptions& options, double relaxed);
 // enough to be trusted.
 MapDemands ProvisionalDemands(const DeformingWindow& window);
 
+// How many points a map needs: those of the options, or half of the reference's points where these are few.
+int NeededPoints(const InitInput& input, const WindowInitOptions& options);
+
 // Fills the outcome in as a map of the whole input, scaled to the nominal depth. What is missing for one else: then
 // only the outcome's measurements are filled in.
 Status MakeWindowMap(const InitInput& input, const SolvedWindow& window, const MapDemands& demands,

@@ -125,8 +125,8 @@ void MapUpdater::Grow(const PreparedFrame& frame, Submap* submap, StageTimes* ti
     if (IsReestimationDue(frame.frame_idx, *submap)) ReestimateAny(submap, update);
   }
   const bool half_full = 2 * submap->map.landmarks.size() >= static_cast<std::size_t>(options_.corners.max_corners);
-  if (frame.frame_idx % (half_full ? 2 * options_.growth.every : options_.growth.every) == 0)
-    AddCandidates(frame, submap);
+  const int every = half_full ? 2 * options_.growth.every : options_.growth.every;
+  if (tracks_->abilities().adds_always || frame.frame_idx % every == 0) AddCandidates(frame, submap);
 }
 
 void MapUpdater::FollowCandidates(const PreparedFrame& frame, Submap* submap) const {

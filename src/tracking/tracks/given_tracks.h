@@ -24,7 +24,7 @@ class GivenTracks : public TrackSource {
   // `tracks`, sorted by id, must outlive this.
   explicit GivenTracks(std::span<const PixelTrack> tracks);
 
-  TrackAbilities abilities() const override { return {.tracks_blurred = false}; }
+  TrackAbilities abilities() const override { return {.tracks_blurred = false, .adds_always = true}; }
   // The tracks that are seen in this image at usable pixels and off contours; those that are seen longest come first.
   std::vector<NewTrack> AddNew(const PreparedFrame& frame, std::span<const Eigen::Vector2d> existing,
                                const CornerOptions& corners) override;

@@ -28,6 +28,7 @@ struct TrackAbilities {
   bool finds_points = true;     // Find
   bool tracks_blurred = true;   // TrackIntoBlur
   bool sees_appearance = true;  // its points can be recognized by their looks (relocalization)
+  bool adds_always = false;  // asked for new points in every frame, not every few: it is the source that chooses them
 };
 
 struct NewTrack {
