@@ -14,15 +14,16 @@ b_from_a maps points of frame a to frame b; lengths are map units: millimeters a
 first map has Init.nominal_depth_mm as its median depth; times are seconds.
 """
 
-from . import kernels
+from . import extensions, kernels
 from ._pliant import Camera, Error, FrameReport, Tracker, __version__
+from .extensions import FirstMap, NewReference, Wait, register_initializer
 from .jobs import evaluate, export, read_camera, refine, report, simulate, surface, track
 from .options import Options, options
 from .run import Run, open_run
 from .tables import Frames, Observations, Points, Poses
 
 __all__ = [
-    "Camera", "Error", "FrameReport", "Frames", "Observations", "Options", "Points", "Poses", "Run", "Tracker",
-    "__version__", "evaluate", "export", "kernels", "open_run", "options", "read_camera", "refine", "report", "simulate",
-    "surface", "track",
+    "Camera", "Error", "FirstMap", "FrameReport", "Frames", "NewReference", "Observations", "Options", "Points", "Poses",
+    "Run", "Tracker", "Wait", "__version__", "evaluate", "export", "extensions", "kernels", "open_run", "options",
+    "read_camera", "refine", "register_initializer", "report", "simulate", "surface", "track",
 ]

@@ -17,6 +17,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Union
 
 from . import _pliant
+from .extensions import Initializer, PointFollower, asker, follower, registered_initializer
 from .run import Run
 
 if TYPE_CHECKING:
@@ -71,7 +72,8 @@ def simulate(output_path: StrPath, options: OptionValues | None = None, *, reali
 def track(input: StrPath | Iterable[NDArray[np.uint8]], output_path: StrPath, options: OptionValues | None = None, *,
           camera: StrPath | _pliant.Camera | None = None, timestamps: Sequence[float] | None = None,
           preset: str = "default", mask_path: StrPath | None = None, start: int = 0, end: int | None = None,
-          stride: int = 1, on_frame: Callable[[_pliant.FrameReport], Any] | None = None) -> Run:
+          stride: int = 1, initializer: Initializer | None = None, tracks: PointFollower | StrPath | None = None,
+          on_frame: Callable[[_pliant.FrameReport], Any] | None = None) -> Run:
     """Camera pose and the motion of every point.
 
     Args:
@@ -86,6 +88,10 @@ def track(input: StrPath | Iterable[NDArray[np.uint8]], output_path: StrPath, op
         preset: the defaults of the options, default or paper.
         mask_path: folder of masks, or one image for all frames; 0: ignore this pixel.
         start, end, stride: the first frame, one past the last one (None: to the end), and every which frame.
+        initializer: makes first maps in place of Init.method; a function (pliant.extensions.Initializer). One that is
+            registered (pliant.register_initializer) is chosen by its name in Init.method.
+        tracks: follows points in place of Pliant's own tracker: an object (pliant.extensions.PointFollower), or the file
+            of another program's tracks (docs/tracks.md).
         on_frame: called with the pliant.FrameReport of every frame, in order, as it is final and on disk. An exception
             ends the run after the frame and is raised.
 
@@ -98,18 +104,28 @@ def track(input: StrPath | Iterable[NDArray[np.uint8]], output_path: StrPath, op
     request: dict[str, Any] = {"mask_path": _text(mask_path), "start": start, "end": -1 if end is None else end,
                                "stride": stride}
     output = os.fspath(output_path)
+    options = _options(options)
+    name = "python"
+    if options is not None and (registered := registered_initializer(options.get("Init.method"))) is not None:
+        if initializer is not None:
+            raise ValueError("there is an initializer, and Init.method names another one; give one of them")
+        name, initializer = options.pop("Init.method"), registered
+    if isinstance(tracks, (str, os.PathLike)):
+        options, tracks = {**(options or {}), "TrackFile.path": os.fspath(tracks)}, None
+    request.update(initializer=None if initializer is None else asker(initializer), initializer_name=name,
+                   tracks=None if tracks is None else follower(tracks))
     if isinstance(input, (str, os.PathLike)):
         if isinstance(camera, _pliant.Camera):
             raise ValueError("camera is a pliant.Camera, and the input a path; give the path of its calibration")
         if timestamps is not None:
             raise ValueError("timestamps are for images that are given; those of a path come from its times.txt")
         request.update(image_path=os.fspath(input), camera_path=_text(camera))
-        _pliant.track_path(request, output, _options(options), preset, on_frame)
+        _pliant.track_path(request, output, options, preset, on_frame)
     else:
         if not isinstance(camera, _pliant.Camera):
             raise ValueError("images need their camera; give a pliant.Camera (pliant.read_camera reads a file)")
         request.update(images=input, camera=camera, timestamps=list(timestamps) if timestamps is not None else [])
-        _pliant.track_images(request, output, _options(options), preset, on_frame)
+        _pliant.track_images(request, output, options, preset, on_frame)
     return Run(output)
 
 

@@ -72,6 +72,7 @@ Status WriteRunSummary(const std::string& path, const RunSummary& summary) {
       {"metric", summary.description.metric ? Json(*summary.description.metric) : Json()},
       {"tracks", summary.description.tracks},
       {"oracles", summary.description.oracles},
+      {"extensions", summary.description.extensions},
       {"working_image",
        {{"scale", summary.description.image_scale},
         {"smoothing_px", summary.description.image_smoothing_px},
@@ -128,6 +129,7 @@ Result<RunSummary> ReadRunSummary(const std::string& path) {
     if (const Json metric = json.value("metric", Json()); !metric.is_null())
       summary.description.metric = metric.get<bool>();
     summary.description.tracks = json.value("tracks", "");
+    summary.description.extensions = json.value("extensions", std::vector<std::string>());
     if (const Json working = json.value("working_image", Json()); !working.is_null()) {
       summary.description.image_scale = working.at("scale").get<double>();
       summary.description.image_smoothing_px = working.at("smoothing_px").get<double>();

@@ -26,8 +26,8 @@ void AddTimes(const FrameReport& before, FrameReport* report) {
 }  // namespace
 
 FramesBefore::FramesBefore(const SequenceRequest& input, const WorkingImage& working, const Camera& camera,
-                           const TrackOptions& options, std::span<const PixelTrack> tracks, Tracker* tracker)
-    : input_(input), working_(working), camera_(camera), options_(options), tracks_(tracks), tracker_(tracker) {
+                           const TrackOptions& options, const TrackerInputs& inputs, Tracker* tracker)
+    : input_(input), working_(working), camera_(camera), options_(options), inputs_(inputs), tracker_(tracker) {
   // The map grows as it does forwards; a window that runs backwards, with a reference of its own, would contradict it.
   options_.tracker.growth.window = 0;
   options_.tracker.submaps = Switch::kOff;
@@ -80,7 +80,7 @@ std::vector<PreparedFrame> FramesBefore::Read(int first, int last, std::size_t c
 void FramesBefore::TrackBack(const FrameReport& reference) {
   const std::vector<PreparedFrame> at_reference = Read(reference.frame_idx, reference.frame_idx, 1);
   if (at_reference.empty()) return;
-  Tracker tracker(camera_, options_.tracker, 0, options_.threads, {.tracks = tracks_});
+  Tracker tracker(camera_, options_.tracker, 0, options_.threads, inputs_);
   tracker.TakeMap(at_reference.front(), reference);
   tracker.SkipPointIds(tracker_->next_point_id());
   FollowBack(&tracker, reference);

@@ -7,7 +7,6 @@
 #pragma once
 
 #include <cstddef>
-#include <span>
 #include <vector>
 
 #include "pliant/camera/camera.h"
@@ -22,9 +21,9 @@ namespace pliant {
 class FramesBefore {
  public:
   // `camera` is that of the working images; `tracker`, whose reports come, has to outlive this: the points that are new
-  // in frames tracked back get ids that it does not use. So have `tracks`, those of another program that it follows.
+  // in frames tracked back get ids that it does not use. `inputs` are the tracker's, of which the oracles are not used.
   FramesBefore(const SequenceRequest& input, const WorkingImage& working, const Camera& camera,
-               const TrackOptions& options, std::span<const PixelTrack> tracks, Tracker* tracker);
+               const TrackOptions& options, const TrackerInputs& inputs, Tracker* tracker);
 
   // Takes the tracker's final reports, in order of time, and answers with those that are to be written, in order of
   // time: the ones that may still get a pose wait here, at most `General.max_frames_back` of them.
@@ -42,7 +41,7 @@ class FramesBefore {
   WorkingImage working_;
   Camera camera_;
   TrackOptions options_;
-  std::span<const PixelTrack> tracks_;
+  TrackerInputs inputs_;
   Tracker* tracker_;
   std::vector<FrameReport> waiting_;
 };

@@ -232,10 +232,10 @@ Ending TrackFrames(Sequence& sequence, const RunRequest& request, const TrackOpt
 Ending TrackSequence(Sequence& sequence, const RunRequest& request, const TrackOptions& options, const RunStart& start,
                      TrackingTruth* truth, RunWriter& writer, std::span<TrackObserver* const> observers) {
   const Camera& camera = *start.working_camera;
-  Tracker tracker(camera, options.tracker, static_cast<std::uint64_t>(options.seed), options.threads,
-                  {truth, start.tracks, sequence.Photometric()});
+  const TrackerInputs inputs{truth, start.tracks, sequence.Photometric(), request.extensions};
+  Tracker tracker(camera, options.tracker, static_cast<std::uint64_t>(options.seed), options.threads, inputs);
   Recorder recorder(writer, observers, start.working_image,
-                    {request.input, start.working_image, camera, options, start.tracks, &tracker});
+                    {request.input, start.working_image, camera, options, inputs, &tracker});
   const Ending ending = TrackFrames(sequence, request, options, start, tracker, recorder);
   // Whatever the ending: the frames that waited for a map are written too.
   Status recorded = recorder.Record(tracker.Finish());
@@ -350,7 +350,8 @@ Result<RunSummary> RunTrack(const RunRequest& request, const TrackOptions& optio
                                    start->images.alive_after_9,
                                    "",
                                    options.tracker.init.IsMetric(),
-                                   options.track_file.path},
+                                   options.track_file.path,
+                                   request.extensions.Names()},
                                   table.ToYaml(), ColumnsOfFrames(), writer_options);
   if (!writer.ok()) return writer.status();
 

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include <Eigen/LU>
+
 #include "python/errors.h"
 
 namespace py = pybind11;
@@ -73,6 +75,32 @@ py::array_t<double> PointsOf(const py::handle& object, int columns, const std::s
   auto points = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(array);
   if (!points) throw py::error_already_set();
   return points;
+}
+
+std::vector<Eigen::Vector3d> VectorsOf(const py::handle& array, const std::string& what) {
+  const auto numbers = PointsOf(array, 3, what);
+  std::vector<Eigen::Vector3d> vectors(static_cast<std::size_t>(numbers.shape(0)));
+  const double* from = numbers.data();
+  for (Eigen::Vector3d& vector : vectors) {
+    vector = Eigen::Map<const Eigen::Vector3d>(from);
+    from += 3;
+  }
+  return vectors;
+}
+
+Rigid3 RigidOf(const py::handle& array, const std::string& what) {
+  constexpr double kTolerance = 1e-6;  // of single precision
+  using Matrix = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
+  const auto numbers = PointsOf(array, 4, what);
+  if (numbers.shape(0) != 4)
+    RaiseValueError(what + " has " + std::to_string(numbers.shape(0)) + " rows; a rigid motion is a 4x4 matrix");
+  const Matrix matrix = Eigen::Map<const Matrix>(numbers.data());
+  const Eigen::Matrix3d rotation = matrix.topLeftCorner<3, 3>();
+  const bool rigid = matrix.allFinite() && rotation.determinant() > 0 &&
+                     (rotation * rotation.transpose()).isIdentity(kTolerance) &&
+                     matrix.row(3).isApprox(Eigen::RowVector4d::Unit(3), kTolerance);
+  if (!rigid) RaiseValueError(what + " is no rigid motion; give a rotation, a translation and the row 0, 0, 0, 1");
+  return {rotation, matrix.topRightCorner<3, 1>()};
 }
 
 cv::Mat ImageOf(const py::handle& object, const std::string& what) {

@@ -41,6 +41,11 @@ pybind11::array_t<double> MatrixOf(const Rigid3& b_from_a);
 // `what` ("points_in_cam").
 pybind11::array_t<double> PointsOf(const pybind11::handle& array, int columns, const std::string& what);
 
+// The same of three columns, as vectors.
+std::vector<Eigen::Vector3d> VectorsOf(const pybind11::handle& array, const std::string& what);
+// A rigid motion of an array of shape (4, 4). Raises ValueError, as above, also where it is none.
+Rigid3 RigidOf(const pybind11::handle& array, const std::string& what);
+
 // A copy of an image: dtype uint8, shape (height, width) or (height, width, 3) in the order blue, green, red; any
 // layout in memory. Raises TypeError or ValueError.
 cv::Mat ImageOf(const pybind11::handle& array, const std::string& what);

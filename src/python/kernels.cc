@@ -8,8 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include <Eigen/LU>
-
 #include "pliant/deformation/graph.h"
 #include "pliant/estimation/two_view/relative_pose.h"
 #include "pliant/geometry/triangulation.h"
@@ -22,32 +20,6 @@ namespace py = pybind11;
 
 namespace pliant::python {
 namespace {
-
-std::vector<Eigen::Vector3d> VectorsOf(const py::handle& array, const std::string& what) {
-  const auto numbers = PointsOf(array, 3, what);
-  std::vector<Eigen::Vector3d> vectors(static_cast<std::size_t>(numbers.shape(0)));
-  const double* from = numbers.data();
-  for (Eigen::Vector3d& vector : vectors) {
-    vector = Eigen::Map<const Eigen::Vector3d>(from);
-    from += 3;
-  }
-  return vectors;
-}
-
-Rigid3 RigidOf(const py::handle& array, const std::string& what) {
-  constexpr double kTolerance = 1e-6;  // of single precision
-  using Matrix = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
-  const auto numbers = PointsOf(array, 4, what);
-  if (numbers.shape(0) != 4)
-    RaiseValueError(what + " has " + std::to_string(numbers.shape(0)) + " rows; a rigid motion is a 4x4 matrix");
-  const Matrix matrix = Eigen::Map<const Matrix>(numbers.data());
-  const Eigen::Matrix3d rotation = matrix.topLeftCorner<3, 3>();
-  const bool rigid = matrix.allFinite() && rotation.determinant() > 0 &&
-                     (rotation * rotation.transpose()).isIdentity(kTolerance) &&
-                     matrix.row(3).isApprox(Eigen::RowVector4d::Unit(3), kTolerance);
-  if (!rigid) RaiseValueError(what + " is no rigid motion; give a rotation, a translation and the row 0, 0, 0, 1");
-  return {rotation, matrix.topRightCorner<3, 1>()};
-}
 
 // (points_in_cam0, whether there is one).
 py::tuple TriangulateRays(const py::object& cam1_from_cam0, const py::object& rays0, const py::object& rays1,

@@ -15,6 +15,7 @@
 #include "python/bind.h"
 #include "python/calibration.h"
 #include "python/errors.h"
+#include "python/extensions.h"
 #include "python/images.h"
 #include "python/interrupt.h"
 #include "python/options.h"
@@ -41,14 +42,15 @@ class PythonObserver final : public TrackObserver {
   std::vector<std::string> warnings_;
 };
 
-void RunAndRaise(RunRequest request, const py::object& options, const std::string& preset, const py::object& on_frame,
-                 const PythonImages* images) {
+void RunAndRaise(const py::dict& input, RunRequest request, const py::object& options, const std::string& preset,
+                 const py::object& on_frame, const PythonImages* images) {
   const TrackOptions track_options = OptionsOf(options, MakeTrackOptions(EnumOf<Preset>(preset, "preset")));
   RaiseUnlessOk(CheckTrackOptions(track_options));
   Interrupt interrupt;
   PythonObserver observer(on_frame, &interrupt);
   request.stop = &interrupt.stop();
   request.command_line = {"pliant.track"};
+  request.extensions = ExtensionsOf(input, track_options.tracker, &interrupt);
   const Result<RunSummary> summary = [&] {
     const py::gil_scoped_release release;
     return RunTrack(request, track_options, std::array<TrackObserver*, 1>{&observer});
@@ -59,7 +61,7 @@ void RunAndRaise(RunRequest request, const py::object& options, const std::strin
   RaiseUnlessOk(EndOf(ValueOf(summary), request.output_path));
 }
 
-// `input`: the fields of a SequenceRequest by name.
+// `input`: the fields of a SequenceRequest by name, and those of ExtensionsOf.
 void TrackPath(const py::dict& input, const std::string& output_path, const py::object& options,
                const std::string& preset, const py::object& on_frame) {
   RunRequest request;
@@ -70,10 +72,11 @@ void TrackPath(const py::dict& input, const std::string& output_path, const py::
                    .end = py::cast<int>(input["end"]),
                    .stride = py::cast<int>(input["stride"])};
   request.output_path = output_path;
-  RunAndRaise(std::move(request), options, preset, on_frame, nullptr);
+  RunAndRaise(input, std::move(request), options, preset, on_frame, nullptr);
 }
 
-// `input`: images, camera, timestamps (a list, empty: by the camera's rate), and fields of a SequenceRequest by name.
+// `input`: images, camera, timestamps (a list, empty: by the camera's rate), and fields of a SequenceRequest
+// and of ExtensionsOf by name.
 void TrackImages(const py::dict& input, const std::string& output_path, const py::object& options,
                  const std::string& preset, const py::object& on_frame) {
   const auto& calibration = py::cast<const Calibration&>(input["camera"]);
@@ -90,7 +93,7 @@ void TrackImages(const py::dict& input, const std::string& output_path, const py
                    .stride = py::cast<int>(input["stride"]),
                    .given = std::make_shared<GivenImages>(std::move(given))};
   request.output_path = output_path;
-  RunAndRaise(std::move(request), options, preset, on_frame, images.get());
+  RunAndRaise(input, std::move(request), options, preset, on_frame, images.get());
 }
 
 }  // namespace

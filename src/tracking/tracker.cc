@@ -47,16 +47,19 @@ std::optional<double> NominalDepth(const InitOptions& options) {
   return options.IsMetric() ? std::nullopt : std::optional(options.monocular.nominal_depth_mm);
 }
 
-std::unique_ptr<Initializer> MakeFirstInitializer(const TrackerOptions& options, std::uint64_t seed,
-                                                  TrackingTruth* truth) {
+std::shared_ptr<const Initializer> MakeFirstInitializer(const TrackerOptions& options, std::uint64_t seed,
+                                                        const TrackerInputs& inputs) {
+  if (inputs.extensions.initializer) return inputs.extensions.initializer;
   auto initializer = MakeInitializer(options.init, Random(seed).Child("initializer"));
   if (options.oracle.first_map == Switch::kOff) return initializer;
-  return MakeOracleInitializer(truth, NominalDepth(options.init), options.min_points, std::move(initializer));
+  return MakeOracleInitializer(inputs.truth, NominalDepth(options.init), options.min_points, std::move(initializer));
 }
 
 // A start that takes the scene as rigid needs less.
-std::unique_ptr<Initializer> MakeAlternative(const TrackerOptions& options, std::uint64_t seed) {
-  if (options.init.method != InitMethod::kWindow || options.oracle.Any()) return nullptr;
+std::unique_ptr<Initializer> MakeAlternative(const TrackerOptions& options, std::uint64_t seed,
+                                             const TrackerInputs& inputs) {
+  if (inputs.extensions.initializer || options.init.method != InitMethod::kWindow || options.oracle.Any())
+    return nullptr;
   return MakeGatedInitializer(options.init.monocular, Random(seed).Child("alternative initializer"));
 }
 
@@ -130,9 +133,9 @@ Tracker::Tracker(const Camera& camera, const TrackerOptions& options, std::uint6
     : options_(Completed(options)),
       oracle_poses_(std::make_unique<OraclePoses>(options.oracle, inputs.truth, NominalDepth(options.init))),
       tracks_(MakeTrackSource(options_, seed, threads, inputs)),
-      bootstrapper_(std::make_unique<Bootstrapper>(
-          camera, options_, threads, inputs.photometric, tracks_.get(), oracle_poses_.get(),
-          MakeFirstInitializer(options_, seed, inputs.truth), MakeAlternative(options_, seed))),
+      bootstrapper_(std::make_unique<Bootstrapper>(camera, options_, threads, inputs.photometric, tracks_.get(),
+                                                   oracle_poses_.get(), MakeFirstInitializer(options_, seed, inputs),
+                                                   MakeAlternative(options_, seed, inputs))),
       frame_tracker_(std::make_unique<FrameTracker>(camera, options_, tracks_.get(), oracle_poses_.get())),
       relocalizer_(std::make_unique<Relocalizer>(camera, options_, tracks_->abilities(), frame_tracker_.get())),
       map_updater_(std::make_unique<MapUpdater>(camera, options_, threads, inputs.photometric, tracks_.get())),

@@ -87,6 +87,7 @@ std::vector<NamedText> RunFigures(const ViewedRun& run, const std::optional<RunS
     if (summary->frames_per_second > 0) rows.Add("frames a second", FormatNumber("%.1f", summary->frames_per_second));
     if (summary->total_s > 0) rows.Add("wall time", FormatNumber("%.2f s", summary->total_s));
     for (const std::string& oracle : summary->description.oracles) rows.Add("replaced by the truth", oracle);
+    for (const std::string& part : summary->description.extensions) rows.Add("given by a program", part);
     for (const auto& [reason, count] : summary->losses) rows.Add("given up: " + reason, std::to_string(count));
   }
   if (summary) {

@@ -56,6 +56,8 @@ struct RunDescription {
   // version's, or another program's result).
   std::optional<bool> metric = {};
   std::string tracks = {};  // the file of tracks that was followed, absolute; empty: our own tracker's
+  // Parts of the method that the calling program gave in place of ours: "initializer NAME", "tracks".
+  std::vector<std::string> extensions = {};
 };
 
 // run.json.

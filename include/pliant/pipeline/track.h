@@ -82,6 +82,7 @@ struct RunRequest {
   SequenceRequest input;
   std::string output_path;
   std::vector<std::string> command_line;    // for run.json
+  TrackerExtensions extensions = {};        // asked from the calling thread
   const std::atomic<bool>* stop = nullptr;  // becomes true when the run is to end after the present frame; may be null
 };
 

@@ -9,6 +9,7 @@
 
 #include "pliant/camera/photometric_calibration.h"
 #include "pliant/scene/pixel_track.h"
+#include "pliant/tracking/extensions.h"
 #include "pliant/tracking/tracks/oracle.h"
 
 namespace pliant {
@@ -21,6 +22,7 @@ struct TrackerInputs {
   std::span<const PixelTrack> tracks = {};
   // Of the camera, where it is known; first maps that use the light then trust it.
   std::optional<PhotometricCalibration> photometric = std::nullopt;
+  TrackerExtensions extensions = {};
 };
 
 }  // namespace pliant

@@ -23,7 +23,7 @@ bool IsBetter(const InitOutcome& a, const InitOutcome& b) {
 
 Bootstrapper::Bootstrapper(const Camera& camera, const TrackerOptions& options, int threads,
                            const std::optional<PhotometricCalibration>& photometric, TrackSource* tracks,
-                           OraclePoses* oracle_poses, std::unique_ptr<Initializer> initializer,
+                           OraclePoses* oracle_poses, std::shared_ptr<const Initializer> initializer,
                            std::unique_ptr<Initializer> alternative)
     : camera_(camera),
       options_(options),

@@ -44,7 +44,7 @@ class Bootstrapper {
   // null, takes more for granted than `initializer`: it makes no map, but is asked whether it would (WouldStart).
   Bootstrapper(const Camera& camera, const TrackerOptions& options, int threads,
                const std::optional<PhotometricCalibration>& photometric, TrackSource* tracks, OraclePoses* oracle_poses,
-               std::unique_ptr<Initializer> initializer, std::unique_ptr<Initializer> alternative);
+               std::shared_ptr<const Initializer> initializer, std::unique_ptr<Initializer> alternative);
 
   // The next frame; `submap` has no landmarks yet.
   BootstrapStep Process(const PreparedFrame& frame, Submap* submap, StageTimes* times);
@@ -94,7 +94,7 @@ class Bootstrapper {
   std::optional<PhotometricCalibration> photometric_;
   TrackSource* tracks_;
   OraclePoses* oracle_poses_;
-  std::unique_ptr<Initializer> initializer_;
+  std::shared_ptr<const Initializer> initializer_;
   std::unique_ptr<Initializer> alternative_;
 
   std::vector<InitFrame> frames_;           // since the reference; empty: there is none

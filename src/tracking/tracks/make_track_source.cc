@@ -11,6 +11,7 @@ namespace pliant {
 
 std::unique_ptr<TrackSource> MakeTrackSource(const TrackerOptions& options, std::uint64_t seed, int threads,
                                              const TrackerInputs& inputs) {
+  if (inputs.extensions.make_tracks) return inputs.extensions.make_tracks();
   if (!inputs.tracks.empty()) return std::make_unique<GivenTracks>(inputs.tracks);
   if (options.oracle.tracks == Switch::kOn)
     return std::make_unique<OracleTracks>(inputs.truth, options.point_tracker.lucas_kanade,

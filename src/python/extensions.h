@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// First maps and point tracks from objects of Python (python/pliant/extensions.py), called while the library runs
+// without the GIL.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include "pliant/tracking/extensions.h"
+#include "pliant/tracking/tracker_options.h"
+#include "python/interrupt.h"
+
+namespace pliant::python {
+
+// `given`: "initializer" and "tracks", callables of extensions.py or None, and "initializer_name". They, and
+// `interrupt`, which takes their exceptions, must outlive what uses the extensions.
+TrackerExtensions ExtensionsOf(const pybind11::dict& given, const TrackerOptions& options, Interrupt* interrupt);
+
+}  // namespace pliant::python

@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Parts that a program gives to the tracker are asked in place of its own.
+#include "pliant/tracking/extensions.h"
+
+#include <gmock/gmock.h>
+
+#include "pliant/base/random.h"
+#include "pliant/tracking/bootstrapping/make_initializer.h"
+#include "tracking/tracker_from_images.h"
+#include "tracking/tracks/patch_tracks.h"
+
+namespace pliant {
+namespace {
+
+using testing::ElementsAre;
+using tracking_test::kFrames;
+using tracking_test::TrackerFromImages;
+
+class Extensions : public TrackerFromImages {
+ protected:
+  static std::vector<FrameReport> Run(const TrackerOptions& options, const TrackerExtensions& extensions) {
+    Tracker tracker(*camera_, options, 1, 1, {.extensions = extensions});
+    std::vector<FrameReport> reports;
+    for (int i = 0; i < kFrames; ++i)
+      for (FrameReport& report : Show(i, i, &tracker)) reports.push_back(std::move(report));
+    return reports;
+  }
+  static void ExpectSame(const std::vector<FrameReport>& some, const std::vector<FrameReport>& others) {
+    ASSERT_EQ(some.size(), others.size());
+    for (std::size_t k = 0; k < some.size(); ++k) {
+      ASSERT_EQ(some[k].observations.size(), others[k].observations.size()) << k;
+      for (std::size_t i = 0; i < some[k].observations.size(); ++i)
+        EXPECT_EQ(some[k].observations[i].position, others[k].observations[i].position);
+    }
+  }
+};
+
+TEST_F(Extensions, AGivenInitializerMakesTheFirstMap) {
+  TrackerOptions options;
+  options.init.method = InitMethod::kGated;
+  const std::vector<FrameReport> of_options = Run(options, {});
+  ASSERT_FALSE(of_options.empty());
+  options.init.method = InitMethod::kWindow;  // which has no map in so few frames
+  ASSERT_TRUE(Run(options, {}).empty());
+  TrackerExtensions extensions;
+  extensions.initializer = MakeGatedInitializer(options.init.monocular, Random(1).Child("initializer"));
+  EXPECT_THAT(extensions.Names(), ElementsAre("initializer gated"));
+  ExpectSame(Run(options, extensions), of_options);
+}
+
+TEST_F(Extensions, AGivenSourceFollowsThePoints) {
+  TrackerOptions options;
+  options.init.method = InitMethod::kGated;
+  int made = 0;
+  TrackerExtensions extensions;
+  extensions.make_tracks = [&] {
+    ++made;
+    return std::make_unique<PatchTracks>(options.point_tracker, 1);
+  };
+  EXPECT_THAT(extensions.Names(), ElementsAre("tracks"));
+  ExpectSame(Run(options, extensions), Run(options, {}));
+  EXPECT_EQ(made, 1);
+}
+
+}  // namespace
+}  // namespace pliant
