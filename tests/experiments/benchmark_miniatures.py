@@ -15,7 +15,7 @@ BASELINE_MM = 5
 C3VD_STEP_MM = 100 / 65535
 OPTIONS = ["--Camera.width", str(WIDTH), "--Camera.height", str(HEIGHT), "--Camera.baseline_mm", str(BASELINE_MM),
            "--Scene.mesh_step_mm", "0.8", "--Scene.view_mm", "120", "--Texture.texel_mm", "0.3",
-           "--Texture.smallest_mm", "0.8", "--Trajectory.frames", str(FRAMES)]
+           "--Texture.smallest_mm", "0.8", "--Deformation.amplitude_mm", "0", "--Trajectory.frames", str(FRAMES)]
 
 
 def matrix(words):
