@@ -28,7 +28,7 @@ import windows
 
 PLIANT = os.path.abspath(sys.argv[2])
 # Of a rigid scene that is tracked nearly without error: above what the runs give, below what a wrong unit, axis or
-# order would give. The path is nearly straight, so even poses that are inverted are off by a sixth of a millimeter only.
+# order would give. The path is nearly straight, so even inverted poses are off by a sixth of a millimeter only.
 MAX_ATE_MM = 0.05
 MAX_ATE_OF_VIDEO_MM = 0.12
 MAX_POINTS_MM = 8

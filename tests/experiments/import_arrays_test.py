@@ -193,6 +193,20 @@ def arrays_tapip3d(folder):
     assert scores["tracks"] == len(z) and scores["average_within"] > 0.98 and scores["median_px"] < 0.1, scores
 
 
+def orb_slam3_path(folder):
+    """CameraTrajectory.txt needs no script: TUM lines of the camera in ns, a space at their end, not of all frames."""
+    scene = scene_in(folder)
+    (folder / "CameraTrajectory.txt").write_text("".join(
+        f"{1e9 * k / 30:.6f} " + "".join(f"{value:.9f} " for value in tum(pose)) + "\n"
+        for k, pose in enumerate(their_poses(scene)) if k >= 3))
+    pliant("import", "--format", "tum", "--input_path", folder / "CameraTrajectory.txt", "--sequence", scene.folder,
+           "--Import.unit_mm", UNIT_MM, "--output_path", folder / "run")
+    pliant("evaluate", "--run", folder / "run", "--sequence", scene.folder, "--output_path", folder / "evaluation")
+    trajectory = json.loads((folder / "evaluation/evaluation.json").read_text(encoding="utf-8"))["trajectory"]
+    assert trajectory["poses"] == FRAMES - 3 and trajectory["ate_rmse_mm"] < MAX_ATE_MM, trajectory
+    assert abs(trajectory["scale"] - 1) < 0.01, trajectory["scale"]
+
+
 def arrays_pixels(_folder):
     """Pixels of resized and cut images, of a size that is no multiple of 8."""
     assert import_arrays.resized((1350, 1080)) == (495, 396)
@@ -252,4 +266,4 @@ def arrays_complaints(folder):
     assert run("megasam", saved(), *size, "--stride", "0", "--output_path", folder)[0] == 2
 
 
-main(arrays_droid, arrays_megasam, arrays_tapip3d, arrays_pixels, arrays_times, arrays_complaints)
+main(arrays_droid, arrays_megasam, arrays_tapip3d, orb_slam3_path, arrays_pixels, arrays_times, arrays_complaints)
