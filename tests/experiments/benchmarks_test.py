@@ -254,6 +254,11 @@ def benchmark_endoslam(folder):
     check_camera(sequences[0])
     check_points(sequences[0])
     assert summary[0]["sequences"] == "1 of 3" and "left out: Small Intestine, Stomach." in text, text
+    # No first map: the row says so, and the mean does not count it.
+    text, (summary, sequences) = run_on(folder, "endoslam", "--data", folder / "endoslam", "--camera",
+                                        folder / "camera.yaml", "--track", "--Tracking.min_corners 10000")
+    assert (sequences[0]["tracked"], sequences[0]["ATE RMSE, mm"]) == ("0", "-"), sequences
+    assert summary[0]["sequences"] == "0 of 3" and "Colon: no map (" in text, text
 
 
 def benchmark_scared(folder):
