@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import json
 import os
+import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Union
 
@@ -106,7 +107,8 @@ def track(input: StrPath | Iterable[NDArray[np.uint8]], output_path: StrPath, op
     output = os.fspath(output_path)
     options = _options(options)
     name = "python"
-    if options is not None and (registered := registered_initializer(options.get("Init.method"))) is not None:
+    method = options.get("Init.method") if isinstance(options, dict) else None
+    if options is not None and (registered := registered_initializer(method)) is not None:
         if initializer is not None:
             raise ValueError("there is an initializer, and Init.method names another one; give one of them")
         name, initializer = options.pop("Init.method"), registered
@@ -173,30 +175,56 @@ def surface(run: RunOrPath, output_path: StrPath, options: OptionValues | None =
         return json.load(file)
 
 
-def evaluate(run: RunOrPath, sequence: StrPath | None = None, options: OptionValues | None = None, *,
+def evaluate(run: RunOrPath | None, sequence: StrPath | None = None, options: OptionValues | None = None, *,
              camera: StrPath | None = None, other_runs: Any = (), sfm_path: StrPath | None = None,
-             surface_path: StrPath | None = None, output_path: StrPath | None = None) -> dict[str, Any]:
+             surface_path: StrPath | None = None, tracks: StrPath | None = None,
+             output_path: StrPath | None = None) -> dict[str, Any]:
     """How far a run is from the truth of its sequence, from other runs, or from structure from motion.
 
     Args:
-        run: a run or its folder.
+        run: a run or its folder; None: `tracks` are compared.
         sequence: with truth; not needed with other_runs or sfm_path.
         options: such as {"PointError.scale": "global"}.
         camera: calibration file of the sequence; None: the one that belongs to it.
         other_runs: runs of the same recording.
         sfm_path: points of structure from motion, a CSV or a COLMAP model.
         surface_path: a surface folder of the run, whose error is told too.
+        tracks: file of another program's point tracks (docs/tracks.md), compared with the truth of the sequence.
         output_path: folder for evaluation.json and evaluation.csv; None: they are not written.
 
     Returns:
         evaluation.json; docs/formats.md has its names. NaN is None.
     """
     others = _several(other_runs)
+    if (run is None) == (tracks is None):
+        raise ValueError("a run or tracks are evaluated, one at a time; give one of them")
+    if tracks is not None and sequence is None:
+        raise ValueError("tracks are compared with the truth of a sequence; give sequence")
     if sequence is None and not others and sfm_path is None:
         raise ValueError("there is nothing to compare the run with; give sequence, other_runs or sfm_path")
-    request = {"run_path": _run_path(run), "sequence_path": _text(sequence), "camera_path": _text(camera),
-               "sfm_path": _text(sfm_path), "surface_path": _text(surface_path), "other_runs": others}
+    request = {"run_path": "" if run is None else _run_path(run), "sequence_path": _text(sequence),
+               "camera_path": _text(camera), "sfm_path": _text(sfm_path), "surface_path": _text(surface_path),
+               "other_runs": others, "track_file_path": _text(tracks)}
     return json.loads(_pliant.evaluate(request, _options(options), _text(output_path)))
+
+
+def import_result(input_path: StrPath, output_path: StrPath, sequence: StrPath, format: str = "colmap",
+                  options: OptionValues | None = None, *, camera: StrPath | None = None) -> Run:
+    """Turns what another program made of a sequence into a run. What was left out is a UserWarning.
+
+    Args:
+        input_path: a COLMAP model's folder, a result's folder (docs/formats.md), or a file with a camera path.
+        output_path: run folder, made if need be.
+        sequence: the images that it was made of.
+        format: colmap, result, tum, kitti or euroc.
+        options: such as {"Import.unit_mm": 1000}.
+        camera: calibration file of images that have none; of a model its own, where it is None.
+    """
+    request = {"input_path": os.fspath(input_path), "sequence_path": os.fspath(sequence), "camera_path": _text(camera),
+               "format": format, "as": "run", "output_path": os.fspath(output_path)}
+    for note in _pliant.import_result(request, _options(options)):
+        warnings.warn(note, UserWarning, stacklevel=2)
+    return Run(output_path)
 
 
 def export(run: RunOrPath, output_path: StrPath, format: str = "canonical", options: OptionValues | None = None, *,

@@ -297,7 +297,10 @@ Status AddConsistency(const EvaluationInput& run, const EvaluationInput& other, 
                       const EvaluationOptions& options, Evaluation* evaluation) {
   Result<RelativeDepthError> depths = CompareRuns(run, other, width_px, options.consistency);
   if (!depths.ok()) return depths.status();
-  evaluation->consistency.push_back({other.name, *std::move(depths)});
+  RunConsistency consistency{other.name, *std::move(depths), std::nullopt};
+  if (auto path = CompareCameraPaths(run, other, options.consistency, options.trajectory); path.ok())
+    consistency.path = *std::move(path);
+  evaluation->consistency.push_back(std::move(consistency));
   return Status::Ok();
 }
 

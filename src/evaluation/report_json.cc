@@ -260,11 +260,22 @@ Json ToJson(const RelativeDepthError& e) {
           {"frames", frames}};
 }
 
+// Lengths would be in units of the other run's map: shares say more.
+Json PathJson(const std::optional<TrajectoryError>& path) {
+  if (!path) return {};
+  return {{"poses", path->poses},
+          {"submaps", path->submaps},
+          {"ate_share", path->AteShare()},
+          {"rpe_translation_share", path->RpeShare()},
+          {"rpe_rotation_rmse_deg", path->rpe_rotation_rmse_deg}};
+}
+
 Json ToJson(const std::vector<RunConsistency>& consistency) {
   Json runs = Json::array();
   for (const RunConsistency& other : consistency) {
     Json run = {{"other_run", other.other_run}};
     run.update(ToJson(other.depths));
+    run["camera_path"] = PathJson(other.path);
     runs.push_back(std::move(run));
   }
   return runs;

@@ -143,7 +143,12 @@ std::string SfmTable(const RelativeDepthError& e) {
 
 std::string ConsistencyTable(const RunConsistency& e) {
   return FormatText("%-40s %10s %10s\n", "against another run", "difference", "null") + "  " + e.other_run + "\n" +
-         RelativeDepthRows(e.depths);
+         RelativeDepthRows(e.depths) +
+         (e.path ? FormatText(
+                       "  camera path: %.2f %% of its length apart (ATE after a similarity, %d poses); from frame to "
+                       "frame %.1f %% of a step and %.3f deg\n",
+                       100 * e.path->AteShare(), e.path->poses, 100 * e.path->RpeShare(), e.path->rpe_rotation_rmse_deg)
+                 : "");
 }
 
 std::string ReprojectionTable(const ReprojectionError& e) {

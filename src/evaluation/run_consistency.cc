@@ -67,4 +67,21 @@ Result<RelativeDepthError> CompareRuns(const EvaluationInput& run, const Evaluat
                                           " points at the same pixels; compare runs of one recording");
 }
 
+Result<TrajectoryError> CompareCameraPaths(const EvaluationInput& run, const EvaluationInput& other,
+                                           const RunConsistencyOptions& options,
+                                           const TrajectoryErrorOptions& trajectory) {
+  const std::map<int, const EvaluationFrame*> others = FramesOf(other, options.order);
+  std::map<std::pair<int, int>, int> worlds;  // of a submap of the run and one of the other
+  std::vector<PosePair> pairs;
+  for (const EvaluationFrame& frame : run.frames) {
+    const auto same = others.find(frame.frame_idx);
+    if (!frame.cam_from_world || same == others.end()) continue;
+    const auto [world, is_new] =
+        worlds.try_emplace({frame.submap, same->second->submap}, static_cast<int>(worlds.size()));
+    pairs.push_back(
+        {frame.frame_idx, frame.cam_from_world->Inverse(), same->second->cam_from_world->Inverse(), world->second});
+  }
+  return ComputeTrajectoryError(pairs, trajectory);
+}
+
 }  // namespace pliant

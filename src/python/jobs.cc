@@ -11,6 +11,7 @@
 #include "pliant/evaluation/evaluate_run.h"
 #include "pliant/evaluation/report.h"
 #include "pliant/exchange/export.h"
+#include "pliant/exchange/import.h"
 #include "pliant/pipeline/refine_run.h"
 #include "pliant/pipeline/surface_run.h"
 #include "pliant/simulation/write_sequence.h"
@@ -114,12 +115,27 @@ std::string Evaluate(const py::dict& request, const py::object& options, const s
                                              .camera_path = Text(request, "camera_path"),
                                              .sfm_path = Text(request, "sfm_path"),
                                              .surface_path = Text(request, "surface_path"),
-                                             .other_runs = AllTexts(request, "other_runs")};
+                                             .other_runs = AllTexts(request, "other_runs"),
+                                             .track_file = {.path = Text(request, "track_file_path")}};
   Interrupt interrupt;
   const auto evaluation =
       ValueOf(WithoutGil(&interrupt, [&] { return EvaluateRun(evaluation_request, evaluation_options); }));
   if (!output_path.empty()) RaiseUnlessOk(WriteEvaluation(evaluation, output_path));
   return EvaluationJson(evaluation);
+}
+
+// What was left out, a sentence each.
+Texts ImportAny(const py::dict& request, const py::object& options) {
+  const auto import_options = OptionsOf<ImportOptions>(options);
+  const ImportRequest import_request{.input_path = Text(request, "input_path"),
+                                     .sequence_path = Text(request, "sequence_path"),
+                                     .camera_path = Text(request, "camera_path"),
+                                     .format = EnumOf<ImportFormat>(Text(request, "format"), "format"),
+                                     .as = EnumOf<ImportAs>(Text(request, "as"), "as"),
+                                     .output_path = Text(request, "output_path"),
+                                     .command_line = {"pliant.import_result"}};
+  Interrupt interrupt;
+  return ValueOf(WithoutGil(&interrupt, [&] { return Import(import_request, import_options); })).notes;
 }
 
 py::dict Export(const py::dict& request, const py::object& options) {
@@ -180,6 +196,7 @@ void BindJobs(py::module_& module) {
   module.def("refine", &Refine);
   module.def("surface", &Surface);
   module.def("evaluate", &Evaluate);
+  module.def("import_result", &ImportAny);
   module.def("export", &Export);
   module.def("report", &Report);
 }

@@ -7,6 +7,7 @@
 
 #include "pliant/evaluation/evaluation.h"
 #include "pliant/exchange/export.h"
+#include "pliant/exchange/import.h"
 #include "pliant/pipeline/refine_run.h"
 #include "pliant/pipeline/surface_run.h"
 #include "pliant/pipeline/track.h"
@@ -76,10 +77,11 @@ py::tuple ListOptions(const std::string& job, const std::string& preset) {
   if (job == "refine") return Listed(RefineOptions());
   if (job == "surface") return Listed(SurfaceRunOptions());
   if (job == "evaluate") return Listed(EvaluationOptions());
+  if (job == "import") return Listed(ImportOptions());
   if (job == "export") return Listed(ExportOptions());
   if (job == "report") return Listed(ReportOptions(), FigureOptions());
   RaiseValueError("there are no options of '" + job +
-                  "'; give one of track | simulate | refine | surface | evaluate | export | report");
+                  "'; give one of track | simulate | refine | surface | evaluate | import | export | report");
 }
 
 }  // namespace

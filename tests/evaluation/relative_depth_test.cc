@@ -109,6 +109,35 @@ TEST(CompareRuns, ComparesOnlyWhatIsAtTheSamePixelsAndBeforeTheCamera) {
   EXPECT_EQ(CompareRuns(run, behind, kWidth_px, {})->points, 3 * (kPoints - 1));
 }
 
+// The run's cameras go along a parabola.
+void MoveCameras(double scale, double last_step, EvaluationInput* run) {
+  for (std::size_t k = 0; k < run->frames.size(); ++k) {
+    const double x = static_cast<double>(k) + (k + 1 == run->frames.size() ? last_step : 0.0);
+    const Rigid3 world_from_cam(Eigen::Quaterniond::Identity(), scale * Eigen::Vector3d(x, 0.1 * x * x, 0));
+    run->frames[k].cam_from_world = world_from_cam.Inverse();
+  }
+}
+
+TEST(CompareCameraPaths, IsTheErrorAfterASimilarityOfFramesOfTheSameSubmaps) {
+  EvaluationInput run = MadeRun("a", 0, 10, DepthOf);
+  EvaluationInput other = MadeRun("b", 0, 10, DepthOf);
+  MoveCameras(1, 0, &run);
+  MoveCameras(3, 0, &other);
+  const auto same = CompareCameraPaths(run, other, {}, {});
+  ASSERT_TRUE(same.ok()) << same.status().message();
+  EXPECT_EQ(same->poses, 10);
+  EXPECT_NEAR(same->AteShare(), 0, kRoundOff);
+  EXPECT_NEAR(same->RpeShare(), 0, kRoundOff);
+  MoveCameras(3, 0.5, &other);
+  const auto apart = CompareCameraPaths(run, other, {}, {});
+  ASSERT_TRUE(apart.ok());
+  EXPECT_GT(apart->AteShare(), 0.005);
+  EXPECT_GT(apart->RpeShare(), 0.05);
+  for (std::size_t k = 5; k < 10; ++k) other.frames[k].submap = 1;
+  EXPECT_EQ(CompareCameraPaths(run, other, {}, {})->submaps, 2);
+  EXPECT_EQ(CompareCameraPaths(run, MadeRun("c", 0, 2, DepthOf), {}, {}).status().code(), ErrorCode::kInsufficient);
+}
+
 // Reconstructed points at the run's pixels, and one far from all of them.
 SfmPoints Reconstructed(int frames, double (*depth)(int point)) {
   SfmPoints sfm;

@@ -61,6 +61,33 @@ class Jobs(TestCase):
             pliant.evaluate(RUN)
         self.assertIn("there is nothing to compare the run with", sentence(self, caught.exception))
 
+    def test_what_was_exported_is_imported(self):
+        pliant.export(RUN, self.folder / "model", "canonical")
+        run = pliant.import_result(self.folder / "model", self.folder / "run", SEQUENCE)
+        self.assertEqual(len(run.poses), len(pliant.open_run(RUN).poses))
+        pliant.export(RUN, self.folder / "path", "tum")
+        path = next((self.folder / "path").glob("*.txt"))
+        lines = [line.split() for line in path.read_text().splitlines() if not line.startswith("#")]
+        path.write_text("".join(" ".join([f"{1e9 * float(t):.0f}", *rest]) + "\n" for t, *rest in lines))
+        with self.assertWarnsRegex(UserWarning, "nanoseconds"):
+            run = pliant.import_result(path, self.folder / "from_path", SEQUENCE, "tum")
+        self.assertEqual(len(run.poses), len(lines))
+        with self.assertRaisesRegex(ValueError, "format"):
+            pliant.import_result(path, self.folder / "none", SEQUENCE, "no_such")
+
+    def test_tracks_of_a_file_are_scored(self):
+        pliant.export(RUN, self.folder / "tracks", "tracks_npz", sequence=SEQUENCE)
+        file = next((self.folder / "tracks").glob("*.npz"))
+        self.assertGreater(pliant.evaluate(None, SEQUENCE, tracks=file)["tracks"]["average_within"], 0.9)
+        for arguments in ({"run": None}, {"run": RUN, "tracks": file}, {"run": None, "tracks": file, "sequence": None}):
+            with self.assertRaises(ValueError):
+                pliant.evaluate(**{"sequence": SEQUENCE, **arguments})
+
+    def test_the_camera_paths_of_two_runs_are_compared(self):
+        other = pliant.evaluate(RUN, other_runs=RUN)["consistency"][0]
+        self.assertLess(other["camera_path"]["ate_share"], 1e-9)
+        self.assertGreater(other["camera_path"]["poses"], 50)
+
     def test_an_export_leaves_the_files_of_its_format(self):
         done = pliant.export(RUN, self.folder / "colmap", "spacetime", {"Export.files": "text", "Export.stride": 10})
         self.assertGreater(done["observations"], 0)

@@ -42,7 +42,8 @@ TEST_F(Extensions, AGivenInitializerMakesTheFirstMap) {
   options.init.method = InitMethod::kGated;
   const std::vector<FrameReport> of_options = Run(options, {});
   ASSERT_FALSE(of_options.empty());
-  options.init.method = InitMethod::kWindow;  // which has no map in so few frames
+  options.init.method = InitMethod::kWindow;
+  options.init.window.first_frame = 10 * kFrames;
   ASSERT_TRUE(Run(options, {}).empty());
   TrackerExtensions extensions;
   extensions.initializer = MakeGatedInitializer(options.init.monocular, Random(1).Child("initializer"));

@@ -63,6 +63,7 @@ struct EvaluationOptions {
 struct RunConsistency {
   std::string other_run;
   RelativeDepthError depths;
+  std::optional<TrajectoryError> path;  // CompareCameraPaths; nothing: too few poses, or a camera that never moves
 };
 
 struct Evaluation {

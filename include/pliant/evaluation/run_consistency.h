@@ -5,7 +5,8 @@
 // with fewer points or backwards. In every frame that both have, the points of the run are compared with the nearest
 // points of the other run, if they are near enough: their depths, after one scale a frame (relative_depth.h). Beside
 // the difference stands the null, the spread of the run's own depths: where the runs do not differ by clearly less,
-// their depth is worth no more than one constant depth. Runs that agree can still be wrong together.
+// their depth is worth no more than one constant depth. Their camera paths are compared after a similarity. Runs that
+// agree can still be wrong together.
 #pragma once
 
 #include <array>
@@ -16,6 +17,7 @@
 #include "pliant/base/status.h"
 #include "pliant/evaluation/relative_depth.h"
 #include "pliant/evaluation/run_input.h"
+#include "pliant/evaluation/trajectory_error.h"
 
 namespace pliant {
 
@@ -44,5 +46,11 @@ struct RunConsistencyOptions {
 // points to compare.
 Result<RelativeDepthError> CompareRuns(const EvaluationInput& run, const EvaluationInput& other, int width_px,
                                        const RunConsistencyOptions& options);
+
+// The camera path of the run against that of the other run, which stands where the truth does: lengths are in its map
+// units, not in millimeters. Frames in the same two submaps are aligned together. Fails as ComputeTrajectoryError.
+Result<TrajectoryError> CompareCameraPaths(const EvaluationInput& run, const EvaluationInput& other,
+                                           const RunConsistencyOptions& options,
+                                           const TrajectoryErrorOptions& trajectory);
 
 }  // namespace pliant

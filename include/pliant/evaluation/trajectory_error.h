@@ -87,6 +87,12 @@ struct TrajectoryError {
   // The path is nearly a line, and no wider than a few times the ATE: the turn about it, and so the rotation error, is
   // hardly known.
   bool TurnIsUnknown() const;
+  // Without a unit: the ATE by the length of the true path, and the RPE's translation by the mean true step; 0: the
+  // path has no length.
+  double AteShare() const { return true_path_length_mm > 0 ? ate_rmse_mm / true_path_length_mm : 0; }
+  double RpeShare() const {
+    return true_path_length_mm > 0 ? rpe_translation_rmse_mm * rpe_pairs / true_path_length_mm : 0;
+  }
   Sim3 truth_from_run;         // the alignment of the submap with the most poses
   std::vector<int> frame_idx;  // the frames compared
   std::vector<double> ate_mm;  // of each of them
