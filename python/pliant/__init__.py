@@ -20,10 +20,12 @@ from .extensions import FirstMap, NewReference, Wait, register_initializer
 from .jobs import evaluate, export, import_result, read_camera, refine, report, simulate, surface, track
 from .options import Options, options
 from .run import Run, open_run
+from .sequence import Sequence, SequenceFrame, open_sequence
 from .tables import Frames, Observations, Points, Poses
 
 __all__ = [
-    "Camera", "Error", "FirstMap", "FrameReport", "Frames", "NewReference", "Observations", "Options", "Points", "Poses",
-    "Run", "Tracker", "Wait", "__version__", "evaluate", "export", "extensions", "import_result", "kernels", "open_run",
-    "options", "read_camera", "refine", "register_initializer", "report", "simulate", "surface", "track",
+    "Camera", "Error", "FirstMap", "FrameReport", "Frames", "NewReference", "Observations", "Options", "Points",
+    "Poses", "Run", "Sequence", "SequenceFrame", "Tracker", "Wait", "__version__", "evaluate", "export",
+    "extensions", "import_result", "kernels", "open_run", "open_sequence", "options", "read_camera", "refine",
+    "register_initializer", "report", "simulate", "surface", "track",
 ]

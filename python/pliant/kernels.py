@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The Pliant authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Steps of the tracker by themselves, on arrays: two-view geometry and the graph of the deformation."""
+"""Steps of the tracker by themselves, on arrays: two-view geometry, the graph of the deformation, the problem of a frame
+and that of a window."""
 
 from __future__ import annotations
 
@@ -8,10 +9,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from . import _pliant
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import NDArray
 
 
@@ -89,3 +91,95 @@ def deformation_graph(positions: NDArray[Any], rest_positions: NDArray[Any] | No
     """
     return DeformationGraph(*_pliant.deformation_graph(positions, rest_positions,
                                                        None if options is None else dict(options)))
+
+
+@dataclass(frozen=True, eq=False)
+class FrameSolution:
+    """One frame (docs/method.md, E5): the camera, and every point where it is now.
+
+    Attributes:
+        cam_from_world: (4, 4) float64.
+        position: (n, 3) float64, world; of a point that is not used as it was.
+        used: (n,) bool; False: the point does not project under the initial pose.
+        reprojection_error_px: (n,) float64, infinite where it is not used.
+        disagreement: (n,) float64, how much of a point's motion no neighbor shares, in the unit of the positions.
+        costs, initial_costs: by name, at the solution and at the start.
+        iterations, converged: of the solver.
+    """
+
+    cam_from_world: NDArray[np.float64]
+    position: NDArray[np.float64]
+    used: NDArray[np.bool_]
+    reprojection_error_px: NDArray[np.float64]
+    disagreement: NDArray[np.float64]
+    costs: dict[str, float]
+    initial_costs: dict[str, float]
+    iterations: int
+    converged: bool
+
+
+def solve_frame(camera: _pliant.Camera, positions: NDArray[Any], pixels: NDArray[Any], cam_from_world: NDArray[Any], *,
+                rest_positions: NDArray[Any] | None = None, held: bool = False,
+                options: Mapping[str, Any] | None = None) -> FrameSolution:
+    """The joint problem of one frame: camera pose and a displacement of every point.
+
+    Args:
+        camera: of the image.
+        positions: (n, 3), world, where the points were in the frame before, mm.
+        pixels: (n, 2), where they are seen now.
+        cam_from_world: (4, 4), where the search begins.
+        rest_positions: (n, 3), the points undeformed; needed for edge lengths at rest and cut edges alone.
+        held: the pose is known and stays.
+        options: of the groups Optimization and Deformation, such as {"Optimization.solver": "levenberg_marquardt"}.
+
+    Raises ValueError for numbers that are not finite, and pliant.Error: counts that differ (mismatch), too few points
+    before the camera (insufficient), no usable solution (degenerate).
+    """
+    return FrameSolution(*_pliant.solve_frame(camera, positions, pixels, cam_from_world, rest_positions, held,
+                                              None if options is None else dict(options)))
+
+
+@dataclass(frozen=True, eq=False)
+class WindowSolution:
+    """A window (docs/method.md, W1): the position of point i in view v is points[i] + shapes[i] @ coefficients[:, v].
+
+    Attributes:
+        cams_from_world: (v, 4, 4) float64; the first is the identity.
+        points: (n, 3) float64, in the first view.
+        coefficients: (r, v) float64; r is 0 of a rigid scene.
+        shapes: (n, 3, r) float64.
+        log_depth_sigma: (n,) float64, standard deviation of the logarithm of the distance; infinite: not known.
+        cost: of the solution.
+        residual_correlation: how much alike the errors of neighbors are: about 0 where all but noise is explained.
+    """
+
+    cams_from_world: NDArray[np.float64]
+    points: NDArray[np.float64]
+    coefficients: NDArray[np.float64]
+    shapes: NDArray[np.float64]
+    log_depth_sigma: NDArray[np.float64]
+    cost: float
+    residual_correlation: float
+
+
+def solve_window(times: NDArray[Any], cams_from_world: NDArray[Any], points: NDArray[Any], rays: NDArray[Any],
+                 view_idx: NDArray[Any], point_idx: NDArray[Any], focal_px: float, *, deforming: bool = True,
+                 options: Mapping[str, Any] | None = None) -> WindowSolution:
+    """Bundle adjustment of a window, in which the scene may deform.
+
+    Args:
+        times: (v,), of the views, in frames since the first one, which is 0.
+        cams_from_world: (v, 4, 4), the poses of a rigid start; the first is the identity.
+        points: (n, 3), the points of a rigid start, in the first view, any unit.
+        rays: (m, 3), unit rays in their views' cameras, in any order.
+        view_idx, point_idx: (m,), of which view and which point they are.
+        focal_px: mean focal length, which turns pixels into angles.
+        deforming: basis shapes and coefficients too; False: a rigid scene.
+        options: of the group Window, such as {"Window.rank": 2}.
+
+    Raises ValueError for what cannot be meant, and pliant.Error: too few views or points (insufficient), no usable step
+    (degenerate).
+    """
+    start = {"times": np.asarray(times, dtype=float), "cams_from_world": np.asarray(cams_from_world),
+             "points": points, "rays": rays, "view_idx": np.asarray(view_idx), "point_idx": np.asarray(point_idx)}
+    return WindowSolution(*_pliant.solve_window(start, focal_px, deforming, None if options is None else dict(options)))

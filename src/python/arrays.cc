@@ -103,6 +103,16 @@ Rigid3 RigidOf(const py::handle& array, const std::string& what) {
   return {rotation, matrix.topRightCorner<3, 1>()};
 }
 
+py::array_t<std::uint8_t> ImageArray(const cv::Mat& image) {
+  std::vector<py::ssize_t> shape = {image.rows, image.cols};
+  if (image.channels() > 1) shape.push_back(image.channels());
+  py::array_t<std::uint8_t> array(shape);
+  const auto row_bytes = static_cast<std::size_t>(image.cols) * image.elemSize();
+  for (int row = 0; row < image.rows; ++row)
+    std::copy_n(image.ptr<std::uint8_t>(row), row_bytes, array.mutable_data() + row * row_bytes);
+  return array;
+}
+
 cv::Mat ImageOf(const py::handle& object, const std::string& what) {
   const std::string wanted =
       "a NumPy array of dtype uint8 and shape (height, width), or (height, width, 3) in the order blue, green, red";

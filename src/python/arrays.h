@@ -46,6 +46,9 @@ std::vector<Eigen::Vector3d> VectorsOf(const pybind11::handle& array, const std:
 // A rigid motion of an array of shape (4, 4). Raises ValueError, as above, also where it is none.
 Rigid3 RigidOf(const pybind11::handle& array, const std::string& what);
 
+// A copy of an 8-bit image, (height, width) or (height, width, 3).
+pybind11::array_t<std::uint8_t> ImageArray(const cv::Mat& image);
+
 // A copy of an image: dtype uint8, shape (height, width) or (height, width, 3) in the order blue, green, red; any
 // layout in memory. Raises TypeError or ValueError.
 cv::Mat ImageOf(const pybind11::handle& array, const std::string& what);

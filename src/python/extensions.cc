@@ -186,10 +186,7 @@ class PythonTracks final : public TrackSource {
   }
 
   static py::tuple ImageTuple(const PreparedFrame& frame) {
-    py::array_t<std::uint8_t> gray({frame.gray.rows, frame.gray.cols});
-    for (int row = 0; row < frame.gray.rows; ++row)
-      std::copy_n(frame.gray.ptr<std::uint8_t>(row), frame.gray.cols, gray.mutable_data(row, 0));
-    return py::make_tuple(frame.frame_idx, frame.timestamp_s, gray);
+    return py::make_tuple(frame.frame_idx, frame.timestamp_s, ImageArray(frame.gray));
   }
 
   void Found(const Eigen::Vector2d& pixel, const PreparedFrame& frame, PointTrack* track) {

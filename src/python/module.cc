@@ -9,9 +9,11 @@ PYBIND11_MODULE(_pliant, module) {
   pliant::python::BindErrors(module);
   pliant::python::BindOptions(module);
   pliant::python::BindCamera(module);
+  pliant::python::BindSequence(module);
   pliant::python::BindRun(module);
   pliant::python::BindTracker(module);
   pliant::python::BindTrack(module);
   pliant::python::BindJobs(module);
   pliant::python::BindKernels(module);
+  pliant::python::BindSolvers(module);
 }

@@ -86,5 +86,100 @@ class Graph(TestCase):
         self.assertEqual(caught.exception.code, "mismatch")
 
 
+class Frame(TestCase):
+    """A camera before a bumpy surface, a part of which has moved."""
+
+    camera = pliant.Camera("PINHOLE", 640, 480, [500, 500, 319.5, 239.5])
+    grid = np.stack(np.meshgrid(np.linspace(-25, 25, 9), np.linspace(-18, 18, 7)), axis=-1).reshape(-1, 2)
+    before = np.column_stack([grid, 60 + 4 * np.sin(grid[:, 0] / 7)])
+    moved = before + np.column_stack([1.5 * np.exp(-(grid ** 2).sum(axis=1) / 100), np.zeros((len(grid), 2))])
+
+    def pixels(self, pose):
+        return self.camera.project(self.moved @ pose[:3, :3].T + pose[:3, 3])
+
+    def test_pose_and_displacements_explain_the_pixels(self):
+        pose = np.eye(4)
+        pose[:3, 3] = [0.8, -0.4, 0.2]
+        solutions = [kernels.solve_frame(self.camera, self.before, self.pixels(pose), np.eye(4),
+                                         options={"Optimization.solver": solver})
+                     for solver in ("lbfgs", "levenberg_marquardt")]
+        for solution in solutions:
+            self.assertTrue(solution.used.all() and solution.converged)
+            self.assertLess(np.median(solution.reprojection_error_px), 0.1)
+            self.assertLess(sum(solution.costs.values()), 0.01 * sum(solution.initial_costs.values()))
+        np.testing.assert_allclose(solutions[0].position, solutions[1].position, atol=0.05)
+        held = kernels.solve_frame(self.camera, self.before, self.pixels(pose), pose, held=True)
+        np.testing.assert_allclose(held.cam_from_world, pose)
+        moved_by = np.linalg.norm(held.position - self.before, axis=1)
+        middle = len(moved_by) // 2
+        self.assertGreater(moved_by[middle], 0.7 * 1.5)
+        self.assertLess(moved_by[0], 0.2 * moved_by[middle])
+
+    def test_wrong_input_is_one_sentence(self):
+        with self.assertRaises(pliant.Error) as caught:
+            kernels.solve_frame(self.camera, self.before, self.pixels(np.eye(4))[:-1], np.eye(4))
+        self.assertEqual(caught.exception.code, "mismatch")
+        for call in (lambda: kernels.solve_frame(self.camera, self.before * np.nan, self.before[:, :2], np.eye(4)),
+                     lambda: kernels.solve_frame(self.camera, self.before, self.before[:, :2], 2 * np.eye(4)),
+                     lambda: kernels.solve_frame(self.camera, self.before, self.before[:, :2], np.eye(4),
+                                                 options={"Optimization.none": 1})):
+            with self.assertRaises(ValueError) as raised:
+                call()
+            sentence(self, raised.exception)
+
+
+class Window(TestCase):
+    """A camera that goes sideways before a surface, in ten views."""
+
+    points = Frame.before
+    times = np.arange(10.0)
+
+    def start(self, wave):
+        poses = np.tile(np.eye(4), (len(self.times), 1, 1))
+        poses[:, 0, 3] = -0.7 * self.times
+        poses[:, 1, 3] = -0.2 * self.times
+        rays, view_idx, point_idx = [], [], []
+        for view, pose in enumerate(poses):
+            lift = wave * np.sin(2 * np.pi * view / 9) * np.exp(-(Frame.grid ** 2).sum(axis=1) / 200)
+            positions = self.points + lift[:, None] * [0, 0, 1]
+            rays.append(unit(positions @ pose[:3, :3].T + pose[:3, 3]))
+            view_idx += [view] * len(positions)
+            point_idx += range(len(positions))
+        return poses, np.concatenate(rays), view_idx, point_idx
+
+    def test_a_rigid_window_is_recovered(self):
+        poses, rays, view_idx, point_idx = self.start(0)
+        noisy = self.points * np.random.default_rng(1).normal(1, 0.03, (len(self.points), 1))
+        solution = kernels.solve_window(self.times, poses, noisy, rays, view_idx, point_idx, 500, deforming=False)
+        scale = np.median(np.linalg.norm(self.points, axis=1)) / np.median(np.linalg.norm(solution.points, axis=1))
+        np.testing.assert_allclose(scale * solution.points, self.points, rtol=1e-3, atol=0.05)
+        self.assertEqual(solution.coefficients.shape, (0, 10))
+        self.assertEqual(solution.shapes.shape, (len(self.points), 3, 0))
+
+    def test_a_deforming_window_has_shapes_and_coefficients(self):
+        poses, rays, view_idx, point_idx = self.start(2.0)
+        arguments = (self.times, poses, self.points, rays, view_idx, point_idx, 500)
+        rigid = kernels.solve_window(*arguments, deforming=False)
+        solution = kernels.solve_window(*arguments, options={"Window.rank": 2})
+        self.assertEqual(solution.shapes.shape[2], len(solution.coefficients))
+        self.assertGreater(len(solution.coefficients), 0)
+        np.testing.assert_array_equal(solution.coefficients[:, 0], 0)
+        self.assertGreater(rigid.residual_correlation, 0.5)
+        self.assertLess(solution.cost, 0.5 * rigid.cost)
+
+    def test_wrong_input_is_one_sentence(self):
+        poses, rays, view_idx, point_idx = self.start(0)
+        for change in ({"view_idx": [99] * len(rays)}, {"point_idx": point_idx[:-1]}, {"focal_px": 0},
+                       {"cams_from_world": poses[:-1]}, {"cams_from_world": 2 * poses}):
+            arguments = {"times": self.times, "cams_from_world": poses, "points": self.points, "rays": rays,
+                         "view_idx": view_idx, "point_idx": point_idx, "focal_px": 500, **change}
+            with self.subTest(list(change)), self.assertRaises(ValueError) as raised:
+                kernels.solve_window(**arguments)
+            sentence(self, raised.exception)
+        with self.assertRaises(pliant.Error) as caught:
+            kernels.solve_window(self.times[:2], poses[:2], self.points, rays[:126], view_idx[:126], point_idx[:126], 500)
+        self.assertEqual(caught.exception.code, "insufficient")
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -1,0 +1,78 @@
+# SPDX-FileCopyrightText: 2026 The Pliant authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The images of a folder, a video or a data set, with their truth where there is truth."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from . import _pliant
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from .jobs import StrPath
+
+
+class SequenceFrame(NamedTuple):
+    """One frame of a sequence."""
+
+    frame_idx: int
+    name: str
+    timestamp: float                     # seconds
+    image: NDArray[np.uint8]             # (height, width), or (height, width, 3) in the order blue, green, red
+    mask: NDArray[np.uint8] | None       # (height, width), 0: ignore this pixel; None: no mask
+    right: NDArray[np.uint8] | None      # right image of a rectified pair
+
+
+class Sequence:
+    """A sequence that can be iterated over, again and again: every iteration reads it from its first frame.
+
+    Attributes:
+        camera: its pliant.Camera.
+        baseline_mm: distance of the cameras of a rectified pair; None: there are no pairs.
+    """
+
+    def __init__(self, source: _pliant.SequenceSource):
+        self._source = source
+        self.camera: _pliant.Camera = source.camera
+        self.baseline_mm: float | None = source.baseline_mm
+
+    def __len__(self) -> int:
+        """How many frames there are; of a video what its container says."""
+        return self._source.size
+
+    def __iter__(self) -> Iterator[SequenceFrame]:
+        reader = self._source.begin()
+        while (frame := reader.next()) is not None:
+            yield SequenceFrame(*frame)
+
+    def depth(self, frame_idx: int) -> NDArray[np.float32] | None:
+        """(height, width), z along the optical axis in mm, 0: none there; None where the sequence has no depth."""
+        return self._source.depth(frame_idx)
+
+    def world_from_cam(self, frame_idx: int) -> NDArray[np.float64] | None:
+        """(4, 4), the true pose; None where the sequence has none."""
+        return self._source.world_from_cam(frame_idx)
+
+
+def open_sequence(path: StrPath, *, camera: StrPath | None = None, mask_path: StrPath | None = None, start: int = 0,
+                  end: int | None = None, stride: int = 1) -> Sequence:
+    """A folder of images, a video or a data set (docs/datasets.md), read as pliant.track reads it.
+
+    Args:
+        path: where it is.
+        camera: calibration file; None: the one that belongs to the images.
+        mask_path: folder of masks, or one image for all frames.
+        start, end, stride: the first frame, one past the last one (None: to the end), and every which frame.
+
+    Raises pliant.Error where it cannot be read, also while it is iterated over.
+    """
+    return Sequence(_pliant.SequenceSource({
+        "image_path": os.fspath(path), "camera_path": "" if camera is None else os.fspath(camera),
+        "mask_path": "" if mask_path is None else os.fspath(mask_path), "start": start,
+        "end": -1 if end is None else end, "stride": stride}))
