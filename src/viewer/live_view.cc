@@ -10,11 +10,11 @@
 #include <thread>
 #include <utility>
 
-#include <httplib.h>
 #include <nlohmann/json.hpp>
 
 #include "viewer/live_images.h"
 #include "viewer/live_run.h"
+#include "viewer/loopback_server.h"
 #include "viewer/page_asset.h"
 #include "viewer/page_data.h"
 
@@ -23,19 +23,11 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr const char* kLoopback = "127.0.0.1";
 constexpr int kAnswerThreads = 8;  // of which each page that waits for news takes one
 constexpr std::chrono::seconds kLongestPause(20);
 // At the end: who asked so lately is about to ask again.
 constexpr std::chrono::seconds kStillLooking(2);
 constexpr std::chrono::milliseconds kLastImages(700);  // for the page to fetch the image of the last frame
-
-// A page of another site must not read it by naming this machine after itself.
-bool IsForThisMachine(const httplib::Request& request) {
-  const std::string host = request.get_header_value("Host");
-  const std::string name = host.substr(0, host.rfind(':'));
-  return name == kLoopback || name == "localhost";
-}
 
 int Number(const httplib::Request& request, const char* name) {
   int value = 0;
@@ -49,43 +41,23 @@ struct LiveView::Server {
       : title(shown.name),
         in_millimeters(shown.in_millimeters),
         images(options.image_width_px, options.image_quality, options.max_image_mb),
-        run(shown.name) {}
-
-  bool Listen(int wanted_port) {
-    // Not the library's own, by which two programs could share a port.
-    http.set_socket_options([](socket_t socket) {
-      const int yes = 1;
-      setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+        run(shown.name),
+        http(kAnswerThreads, LowerImageThreadPriority) {
+    http.Get("/", [this](const auto&, auto* response) {
+      SetBody(PageWith({{"format", kPageFormat}, {"live", true}, {"title", title}}), "text/html", response);
     });
-    http.set_keep_alive_max_count(1);  // an idle connection would hold a thread, and the end of the run
-    http.new_task_queue = [] { return new httplib::ThreadPool(kAnswerThreads); };
-    http.set_pre_routing_handler([](const httplib::Request& request, httplib::Response& response) {
-      thread_local const bool low_priority = (LowerImageThreadPriority(), true);
-      if (low_priority && IsForThisMachine(request)) return httplib::Server::HandlerResponse::Unhandled;
-      response.status = 403;
-      return httplib::Server::HandlerResponse::Handled;
-    });
-    http.Get("/", [this](const auto&, auto& response) {
-      response.set_content(PageWith({{"format", kPageFormat}, {"live", true}, {"title", title}}), "text/html");
-    });
-    http.Get("/data", [this](const auto& request, auto& response) {
+    http.Get("/data", [this](const auto& request, auto* response) {
       const std::chrono::milliseconds pause(Number(request, "wait_ms"));
-      response.set_content(Data(Number(request, "epoch"), Number(request, "from"), pause), "application/json");
+      SetBody(Data(Number(request, "epoch"), Number(request, "from"), pause), "application/json", response);
     });
-    http.Get(R"(/image/(\d+)\.jpg)", [this](const auto& request, auto& response) {
+    http.Get(R"(/image/(\d+)\.jpg)", [this](const auto& request, auto* response) {
       int frame_idx = 0;
-      const std::string jpeg = ParseInt(request.matches[1].str(), &frame_idx) ? images.At(frame_idx) : std::string();
+      std::string jpeg = ParseInt(request.matches[1].str(), &frame_idx) ? images.At(frame_idx) : std::string();
       if (jpeg.empty())
-        response.status = 404;
+        response->status = 404;
       else
-        response.set_content(jpeg, "image/jpeg");
+        SetBody(std::move(jpeg), "image/jpeg", response);
     });
-    port = wanted_port;
-    if (wanted_port == 0 || !http.bind_to_port(kLoopback, wanted_port)) port = http.bind_to_any_port(kLoopback);
-    if (port <= 0) return false;
-    thread = std::thread([this] { http.listen_after_bind(); });
-    while (!http.is_running()) std::this_thread::yield();  // before that it cannot be stopped
-    return true;
   }
 
   // What came after the rows that the page has, at the end of the pause or of the run.
@@ -144,9 +116,7 @@ struct LiveView::Server {
   bool ended = false;
   bool knows_the_end = false;              // the page
   std::optional<Clock::time_point> asked;  // last, by a page
-  int port = 0;
-  httplib::Server http;
-  std::thread thread;
+  LoopbackServer http;
 };
 
 void LiveOptions::List(OptionTable& table) {
@@ -161,7 +131,7 @@ void LiveOptions::List(OptionTable& table) {
 Result<std::unique_ptr<LiveView>> LiveView::Start(const LiveRunName& shown, const LiveOptions& options) {
   if (Status status = CheckPageAsset(); !status.ok()) return status;
   auto server = std::make_unique<Server>(shown, options);
-  if (!server->Listen(options.port))
+  if (!server->http.Start(options.port))
     return Status(ErrorCode::kUnwritable, "the live view finds no free port on this machine; run without --live");
   return std::unique_ptr<LiveView>(new LiveView(std::move(server)));
 }
@@ -175,13 +145,10 @@ LiveView::~LiveView() {
   }
   server_->changed.notify_all();
   server_->WaitForThoseWhoLook();
-  server_->http.stop();
-  server_->thread.join();
+  server_->http.Stop();
 }
 
-std::string LiveView::Url() const {
-  return std::string("http://") + kLoopback + ":" + std::to_string(server_->port) + "/";
-}
+std::string LiveView::Url() const { return "http://127.0.0.1:" + std::to_string(server_->http.port()) + "/"; }
 
 void LiveView::OnCamera(const Camera& camera) {
   const std::lock_guard lock(server_->mutex);

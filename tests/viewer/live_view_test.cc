@@ -3,14 +3,20 @@
 
 #include "pliant/viewer/live_view.h"
 
+#include <atomic>
 #include <chrono>
+#include <memory>
 #include <thread>
+#include <vector>
 
+#include <arpa/inet.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <httplib.h>
 #include <nlohmann/json.hpp>
 #include <opencv2/core.hpp>
+#include <sys/socket.h>
+#include <unistd.h>
 
 #include "support/small_run.h"
 #include "viewer/unpack_array.h"
@@ -126,6 +132,27 @@ TEST_F(LiveViewTest, AnswersThisMachineAlone) {
   EXPECT_THAT(url_, testing::StartsWith("http://127.0.0.1:"));
 }
 
+TEST_F(LiveViewTest, GivesNothingToThoseWhoSendBodiesOrWantRanges) {
+  httplib::Client client(url_.substr(0, url_.size() - 1));
+  const auto posted = client.Post("/data", std::string(1 << 24, 'x'), "text/plain");
+  EXPECT_TRUE(!posted || posted->status == 405);  // or the connection is closed while the body is sent
+  std::string ranges = "bytes=0-";
+  for (int k = 0; k < 1000; ++k) ranges += ",0-";
+  const auto answer = client.Get("/", {{"Range", ranges}});
+  ASSERT_TRUE(answer);
+  EXPECT_EQ(answer->status, 416);
+  EXPECT_EQ(answer->body, "");
+}
+
+TEST_F(LiveViewTest, GivesPagesUncompressed) {
+  httplib::Client client(url_.substr(0, url_.size() - 1));
+  client.set_decompress(false);
+  const auto page = client.Get("/", {{"Accept-Encoding", "br, gzip, deflate"}});
+  ASSERT_TRUE(page);
+  EXPECT_EQ(page->get_header_value("Content-Encoding"), "");
+  EXPECT_THAT(page->body, HasSubstr("</html>"));
+}
+
 TEST_F(LiveViewTest, APortThatIsTakenBecomesAnother) {
   const int taken = std::stoi(url_.substr(url_.rfind(':') + 1));
   const auto other = LiveView::Start({"other"}, {.port = taken});
@@ -143,6 +170,45 @@ TEST_F(LiveViewTest, AnIdleConnectionDoesNotKeepItFromEnding) {
   httplib::Client client(url_.substr(0, url_.size() - 1));
   client.set_keep_alive(true);
   EXPECT_EQ(client.Get("/")->status, 200);
+  const auto begin = std::chrono::steady_clock::now();
+  live_.reset();
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(1));
+}
+
+// A client that sends the beginning of a request, and then a byte now and then.
+class SlowClient {
+ public:
+  explicit SlowClient(const std::string& url) : socket_(socket(AF_INET, SOCK_STREAM, 0)) {
+    sockaddr_in address = {};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(static_cast<std::uint16_t>(std::stoi(url.substr(url.rfind(':') + 1))));
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    EXPECT_EQ(connect(socket_, reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
+    sender_ = std::thread([this] {
+      const std::string begin = "GET / HTTP/1.1\r\nHost: localhost\r\nX: ";
+      send(socket_, begin.data(), begin.size(), MSG_NOSIGNAL);
+      while (!ends_ && send(socket_, "x", 1, MSG_NOSIGNAL) == 1)
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    });
+  }
+  ~SlowClient() {
+    ends_ = true;
+    sender_.join();
+    close(socket_);
+  }
+  SlowClient(const SlowClient&) = delete;
+  SlowClient& operator=(const SlowClient&) = delete;
+
+ private:
+  int socket_;
+  std::atomic<bool> ends_ = false;
+  std::thread sender_;
+};
+
+TEST_F(LiveViewTest, SlowClientsDoNotKeepItFromEnding) {
+  std::vector<std::unique_ptr<SlowClient>> clients;  // more than are answered at a time, and as many as are let in
+  for (int k = 0; k < 12; ++k) clients.push_back(std::make_unique<SlowClient>(url_.substr(0, url_.size() - 1)));
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
   const auto begin = std::chrono::steady_clock::now();
   live_.reset();
   EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(1));
