@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include <array>
+#include <csignal>
 #include <cstdlib>
 #include <exception>
 #include <iostream>
@@ -92,6 +93,9 @@ void OpenStandardStreams() {
 // it.
 void QuietVideoDecoder() { setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0); }
 
+// A write beyond the limit of a file's size then fails as one to a full disk does, instead of ending the program.
+void SurviveFileSizeLimit() { std::signal(SIGXFSZ, SIG_IGN); }
+
 }  // namespace
 }  // namespace pliant::cli
 
@@ -99,6 +103,7 @@ int main(int argc, char** argv) {
   const std::vector<std::string> args(argv + (argc > 0 ? 1 : 0), argv + argc);
   pliant::cli::OpenStandardStreams();
   pliant::cli::QuietVideoDecoder();
+  pliant::cli::SurviveFileSizeLimit();
   try {
     const int exit = pliant::cli::Run(args);
     if (std::cout.flush() || exit != pliant::cli::kExitOk) return exit;

@@ -11,6 +11,7 @@
 #include <cairo-pdf.h>
 #include <cairo-svg.h>
 
+#include "pliant/base/files.h"
 #include "viewer/draw_image.h"
 #include "viewer/draw_legend.h"
 #include "viewer/draw_mesh.h"
@@ -79,9 +80,19 @@ Status Draw(cairo_t* drawing, const View& view, const SceneDrawer& scenes, const
   return Status::Ok();
 }
 
-CairoSurface MakeSurface(const std::string& ending, const std::string& path, const Layout& layout) {
-  if (ending == ".svg") return CairoSurface(cairo_svg_surface_create(path.c_str(), layout.width, layout.height));
-  if (ending == ".pdf") return CairoSurface(cairo_pdf_surface_create(path.c_str(), layout.width, layout.height));
+// For Cairo: `file` is a std::string.
+cairo_status_t AppendBytes(void* file, const unsigned char* bytes, unsigned int count) {
+  static_cast<std::string*>(file)->append(reinterpret_cast<const char*>(bytes), count);
+  return CAIRO_STATUS_SUCCESS;
+}
+
+// What is drawn comes into `file`, of a .png when it is asked for. Cairo's own writing to a file does not tell of a
+// disk that is full.
+CairoSurface MakeSurface(const std::string& ending, const Layout& layout, std::string* file) {
+  if (ending == ".svg")
+    return CairoSurface(cairo_svg_surface_create_for_stream(AppendBytes, file, layout.width, layout.height));
+  if (ending == ".pdf")
+    return CairoSurface(cairo_pdf_surface_create_for_stream(AppendBytes, file, layout.width, layout.height));
   return CairoSurface(
       cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(layout.width), static_cast<int>(layout.height)));
 }
@@ -126,24 +137,21 @@ Result<std::vector<std::string>> WriteFigure(const ViewRequest& request, const F
   const PanelSize panel(*view, options);
   const SceneDrawer scenes(*view, options, panel.width, panel.height);
   const Layout layout(*view, panel, scenes.Legend(), columns.size());
-  const std::string draft = output_path + ".part";
-  const CairoSurface surface = MakeSurface(path.extension().string(), draft, layout);
+  std::string file;
+  const CairoSurface surface = MakeSurface(path.extension().string(), layout, &file);
   if (path.extension() == ".png" && cairo_surface_status(surface.get()) != CAIRO_STATUS_SUCCESS)
     return TooLarge(layout.width, layout.height);
   const Drawing drawing(cairo_create(surface.get()));
   const Status drawn = Draw(drawing.get(), *view, scenes, layout, columns);
-  bool written = cairo_status(drawing.get()) == CAIRO_STATUS_SUCCESS;
-  if (drawn.ok() && path.extension() == ".png")
-    written = written && cairo_surface_write_to_png(surface.get(), draft.c_str()) == CAIRO_STATUS_SUCCESS;
-  cairo_surface_finish(surface.get());
-  written = written && cairo_surface_status(surface.get()) == CAIRO_STATUS_SUCCESS;
-  std::error_code error;
-  if (drawn.ok() && written) std::filesystem::rename(draft, path, error);
-  if (drawn.ok() && written && !error) return view->notes;
-  std::filesystem::remove(draft, error);
   if (!drawn.ok()) return drawn;
-  return {ErrorCode::kUnwritable,
-          "cannot write " + output_path + "; is the folder there and is there room on the disk?"};
+  bool complete = cairo_status(drawing.get()) == CAIRO_STATUS_SUCCESS;
+  if (path.extension() == ".png")
+    complete = complete && cairo_surface_write_to_png_stream(surface.get(), AppendBytes, &file) == CAIRO_STATUS_SUCCESS;
+  cairo_surface_finish(surface.get());
+  if (!complete || cairo_surface_status(surface.get()) != CAIRO_STATUS_SUCCESS)
+    return TooLarge(layout.width, layout.height);
+  if (Status status = WriteFileAtomically(output_path, file); !status.ok()) return status;
+  return view->notes;
 }
 
 }  // namespace pliant

@@ -41,11 +41,13 @@ inline const std::string kCoarse =
     " --Scene.view_mm 80 --Scene.mesh_step_mm 2 --Texture.smallest_mm 2 --Texture.texel_mm 0.8 --Camera.width 64"
     " --Camera.height 48 --Sensor.samples 1 ";
 
-// Runs `pliant arguments` through the shell, with standard error in a file (so no terminal).
-inline Outcome Pliant(const std::string& arguments) {
+// Runs `pliant arguments` through the shell, after the command `before`, with standard error in a file (so no
+// terminal).
+inline Outcome Pliant(const std::string& arguments, const std::string& before = "true") {
   const std::filesystem::path out = Temporary("out.txt");
   const std::filesystem::path err = Temporary("err.txt");
-  const std::string command = "'" PLIANT_PROGRAM "' " + arguments + " >'" + out.string() + "' 2>'" + err.string() + "'";
+  const std::string command =
+      before + "; '" PLIANT_PROGRAM "' " + arguments + " >'" + out.string() + "' 2>'" + err.string() + "'";
   const int status = std::system(command.c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, ReadText(out), ReadText(err)};
 }

@@ -19,6 +19,26 @@ using namespace program_test;
 using testing::HasSubstr;
 using testing::StartsWith;
 
+// As on a full disk: a file can have 2 kB, no more.
+TEST(Program, WhatDoesNotFitIsOneSentenceAndNoFile) {
+  const std::string limit = "ulimit -f 4";
+  const std::string sequence = Temporary("seq").string();
+  const std::string simulate = "simulate --quiet --Trajectory.frames 4" + kCoarse + "--output_path '";
+  ASSERT_EQ(Pliant(simulate + sequence + "'").exit, 0);
+  const std::string run = ForeignResult("run", 4);
+  for (const std::string ending : {"pdf", "svg", "png"}) {
+    const std::string path = Temporary("figure." + ending).string();
+    const Outcome figure =
+        Pliant("report --run '" + run + "' --sequence '" + sequence + "' --figure 1,2 -o '" + path + "'", limit);
+    EXPECT_EQ(figure.exit, 1) << ending << figure.err;
+    EXPECT_THAT(figure.err, HasSubstr(path));
+    EXPECT_FALSE(std::filesystem::exists(path));
+  }
+  const Outcome simulated = Pliant(simulate + Temporary("other").string() + "'", limit);
+  EXPECT_EQ(simulated.exit, 1);
+  EXPECT_EQ(std::ranges::count(simulated.err, '\n'), 1) << simulated.err;
+}
+
 TEST(Program, CompareSetsRunsOfOtherSystemsSideBySide) {
   const std::string sequence = Temporary("seq").string();
   ASSERT_EQ(Pliant("simulate --quiet --Trajectory.frames 4" + kCoarse + "--output_path '" + sequence + "'").exit, 0);
