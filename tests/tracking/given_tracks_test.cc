@@ -61,6 +61,16 @@ TEST(GivenTracks, OfferNothingWherePointsAreOrTheMaskIs) {
   EXPECT_THAT(Ids(GivenTracks(kTracks).AddNew(Frame(2, mask), {}, {})), ElementsAre(6, 12));
 }
 
+TEST(GivenTracks, LeaveContoursOutWhereThereAreEnoughOthers) {
+  cv::Mat step(kHeight, kWidth, CV_8UC1, cv::Scalar(30));
+  step.colRange(80, kWidth).setTo(180);
+  const PreparedFrame frame = PrepareFrame(0, "image", 0, step, {}, {});
+  const std::vector<PixelTrack> on_the_step = {{PointId{1}, {{0, {80, 60}}}}};
+  EXPECT_THAT(Ids(GivenTracks(on_the_step).AddNew(frame, {}, {})), ElementsAre(1)) << "there are no others";
+  const std::vector<Eigen::Vector2d> existing(40, Eigen::Vector2d(20, 20));
+  EXPECT_THAT(GivenTracks(on_the_step).AddNew(frame, existing, {}), IsEmpty());
+}
+
 TEST(GivenTracks, FollowPointsWhileTheyAreSeenAndFindThemAgain) {
   GivenTracks tracks(kTracks);
   ASSERT_THAT(tracks.AddNew(Frame(0), {}, {}), SizeIs(1));

@@ -47,7 +47,8 @@ testReport("plays and pauses with the space key", REPORT, async (page) => {
   await press(page, " ");
   assert.equal((await state(page)).playing, true);
   await eventually(page, (position) => window.pliant.state().position > position + 5, before);
-  if ((await state(page)).playing) await press(page, " ");
+  // It may come to its end just before a key is pressed, which then begins it again.
+  for (let tries = 0; tries < 5 && (await state(page)).playing; ++tries) await press(page, " ");
   const { position, playing } = await state(page);
   assert.equal(playing, false);
   await page.waitForTimeout(400);

@@ -61,12 +61,14 @@ BootstrapStep Bootstrapper::TakeReference(const PreparedFrame& frame, Submap* su
     step.tracked = static_cast<int>(reference.observations.size());
     frames_.push_back(std::move(reference));
   }
-  if (step.tracked < options_.min_corners) {
+  const int needed =
+      tracks_->abilities().adds_always ? std::min(kFewestPoints, options_.min_corners) : options_.min_corners;
+  if (step.tracked < needed) {
     Abandon();
     step.events = {TrackingEvent::kTooFewCorners};
     step.note = WithFault("no reference yet: " + std::to_string(step.tracked) +
                               (initializer_->TakesKnownPoints() ? " points of the model" : " corners") +
-                              ", of at least " + std::to_string(options_.min_corners),
+                              ", of at least " + std::to_string(needed),
                           ImageFault(frame, submap->previous));
   } else {
     TryInitialize(frame, times, &step);

@@ -24,7 +24,6 @@ namespace pliant {
 namespace {
 
 constexpr double kMaxErrorRatio = 3.0;         // of a point's error by the median one, where sigmas are scaled with it
-constexpr int kFewestPoints = 12;              // the least that WindowInit.min_points may be
 constexpr double kMinProvisionalSignal = 2.0;  // as kMinDepthSignal, of a map that is put aside
 constexpr double kMaxOwnSigma = 2.0;  // of points by their own median distance, by what was demanded by that of all
 // Above it linear sigmas are far too small where tissue moves as fast as the camera.

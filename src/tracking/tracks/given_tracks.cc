@@ -9,6 +9,8 @@ namespace pliant {
 namespace {
 
 constexpr double kSamePoint_px = 0.5;
+constexpr std::size_t kFewTracks =
+    40;  // in an image, as for Tracking.min_corners: then those on contours are taken, too
 
 // In how many frames from this one on a track is seen.
 std::ptrdiff_t LengthFrom(const PixelTrack& track, int frame_idx) {
@@ -53,7 +55,7 @@ std::vector<NewTrack> GivenTracks::AddNew(const PreparedFrame& frame, std::span<
     std::vector<Offer> off_contours;
     for (std::size_t i = 0; i < offers.size(); ++i)
       if (contours[i] <= corners.contour_threshold) off_contours.push_back(offers[i]);
-    offers = std::move(off_contours);
+    if (existing.size() + off_contours.size() >= kFewTracks) offers = std::move(off_contours);
   }
   const std::vector<Eigen::Vector2d> pixels = pixels_of(offers);
   const cv::Mat valid =

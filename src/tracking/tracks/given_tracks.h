@@ -25,7 +25,8 @@ class GivenTracks : public TrackSource {
   explicit GivenTracks(std::span<const PixelTrack> tracks);
 
   TrackAbilities abilities() const override { return {.tracks_blurred = false, .adds_always = true}; }
-  // The tracks that are seen in this image at usable pixels and off contours; those that are seen longest come first.
+  // The tracks that are seen in this image at usable pixels, and off contours unless there are few; those that are seen
+  // longest come first.
   std::vector<NewTrack> AddNew(const PreparedFrame& frame, std::span<const Eigen::Vector2d> existing,
                                const CornerOptions& corners) override;
   // The track that is seen nearest to the pixel, half a pixel away at most.

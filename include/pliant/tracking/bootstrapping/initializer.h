@@ -137,6 +137,8 @@ struct InitOutcome {
   bool refinable = false;  // of a rigid scene: the frames that follow can make it better
 };
 
+inline constexpr int kFewestPoints = 12;  // that a map is made of, whoever follows them
+
 class Initializer {
  public:
   virtual ~Initializer() = default;
