@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """First maps and point tracks that are written in Python, for pliant.track.
 
-Pixels are those of the images that points are tracked in (run.json: working_image): the given ones, resized and smoothed
-as they were measured to be tracked best in. {"Image.working": "fixed"} leaves them as they are.
+Pixels are those of the images that points are tracked in (run.json: working_image): the given ones, resized and
+smoothed as they were measured to be tracked best in. {"Image.working": "fixed"} leaves them as they are.
 """
 
 from __future__ import annotations
@@ -54,14 +54,14 @@ class NewReference:
 class FirstMap:
     """A map: its points stand still in the frames since the reference.
 
-    It is scaled, once, so that the median depth in the reference is Init.nominal_depth_mm. Points that were followed and
-    are not in it may join it later.
+    It is scaled, once, so that the median depth in the reference is Init.nominal_depth_mm. Points that were followed
+    and are not in it may join it later.
     """
 
     point_id: ArrayLike         # (M,)
     position: ArrayLike         # (M, 3), in the world, which is the camera of the reference
-    # (F, 4, 4), of every frame since the reference; the first is the identity. Frames between the first and the last may
-    # be NaN: their poses are then estimated by the points.
+    # (F, 4, 4), of every frame since the reference; the first is the identity. Frames between the first and the last
+    # may be NaN: their poses are then estimated by the points.
     cam_from_world: ArrayLike
     sigma: ArrayLike | None = None  # (M,), standard deviation of the depth, in the unit of position; None: not known
     provisional: bool = False   # its frames get the state provisional
@@ -121,10 +121,13 @@ def asker(initializer: Initializer) -> Callable[[list[Any], _pliant.Camera, bool
             decision = "wait" if isinstance(answer, Wait) else "new_reference"
             return {"decision": decision, "reason": str(answer.reason)}
         if not isinstance(answer, FirstMap):
-            raise TypeError("an initializer returns pliant.FirstMap, pliant.Wait, pliant.NewReference or None; this one "
-                            f"returned {type(answer).__name__}")
+            raise TypeError("an initializer returns pliant.FirstMap, pliant.Wait, pliant.NewReference or None; this "
+                            f"one returned {type(answer).__name__}")
+        point_id = np.asarray(answer.point_id)
+        if point_id.size and point_id.dtype.kind not in "iu":
+            raise TypeError(f"point_id of a map are whole numbers; these are {point_id.dtype}")
         sigma = None if answer.sigma is None else np.asarray(answer.sigma, dtype=float).reshape(-1)
-        return {"decision": "map", "reason": str(answer.reason), "point_id": np.asarray(answer.point_id),
+        return {"decision": "map", "reason": str(answer.reason), "point_id": point_id,
                 "position": np.asarray(answer.position), "cam_from_world": np.asarray(answer.cam_from_world),
                 "sigma": sigma, "provisional": bool(answer.provisional)}
 
@@ -133,7 +136,10 @@ def asker(initializer: Initializer) -> Callable[[list[Any], _pliant.Camera, bool
 
 def follower(tracks: PointFollower) -> Callable[[Any, Any, Any, Any], tuple[NDArray[Any], NDArray[Any]]]:
     """What the library calls."""
-    follow = tracks.follow
+    follow = getattr(tracks, "follow", None)
+    if not callable(follow):
+        raise TypeError(f"tracks is a {type(tracks).__name__}; give an object with a method follow, or the path of a "
+                        "file")
 
     def call(previous: Any, image: Any, pixel: Any, predicted: Any) -> tuple[NDArray[Any], NDArray[Any]]:
         pixels, seen = follow(TrackedImage(*previous), TrackedImage(*image), pixel, predicted)

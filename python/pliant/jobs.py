@@ -91,8 +91,8 @@ def track(input: StrPath | Iterable[NDArray[np.uint8]], output_path: StrPath, op
         start, end, stride: the first frame, one past the last one (None: to the end), and every which frame.
         initializer: makes first maps in place of Init.method; a function (pliant.extensions.Initializer). One that is
             registered (pliant.register_initializer) is chosen by its name in Init.method.
-        tracks: follows points in place of Pliant's own tracker: an object (pliant.extensions.PointFollower), or the file
-            of another program's tracks (docs/tracks.md).
+        tracks: follows points in place of Pliant's own tracker: an object (pliant.extensions.PointFollower), or the
+            file of another program's tracks (docs/tracks.md).
         on_frame: called with the pliant.FrameReport of every frame, in order, as it is final and on disk. An exception
             ends the run after the frame and is raised.
 

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The Pliant authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Steps of the tracker by themselves, on arrays: two-view geometry, the graph of the deformation, the problem of a frame
-and that of a window."""
+"""Steps of the tracker by themselves, on arrays: two-view geometry, the graph of the deformation, the problem of a
+frame and that of a window."""
 
 from __future__ import annotations
 

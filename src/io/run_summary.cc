@@ -47,6 +47,29 @@ FirstMapFrames ReadFirstMap(const Json& json) {
            .focal_length_factor = json.value("focal_length_factor", 1.0)}};
 }
 
+RunDescription ReadDescription(const Json& json) {
+  RunDescription description = {json.at("version").get<std::string>(),
+                                json.at("command_line").get<std::vector<std::string>>(),
+                                json.at("seed").get<std::uint64_t>(),
+                                json.at("input").get<std::string>(),
+                                json.value("camera", ""),
+                                json.value("mask", ""),
+                                json.value("oracles", std::vector<std::string>())};
+  description.refined_from = json.value("refined_from", "");
+  if (const Json metric = json.value("metric", Json()); !metric.is_null()) description.metric = metric.get<bool>();
+  description.tracks = json.value("tracks", "");
+  description.extensions = json.value("extensions", std::vector<std::string>());
+  if (const Json working = json.value("working_image", Json()); !working.is_null()) {
+    description.image_scale = working.at("scale").get<double>();
+    description.image_smoothing_px = working.at("smoothing_px").get<double>();
+    description.patch_size = working.value("patch_size", 0);
+    description.image_noise_levels = working.value("noise_levels", 0.0);
+    description.track_noise_px = working.value("track_noise_px", 0.0);
+    description.alive_after_9 = working.value("alive_after_9", 0.0);
+  }
+  return description;
+}
+
 }  // namespace
 
 Status WriteRunSummary(const std::string& path, const RunSummary& summary) {
@@ -118,26 +141,7 @@ Result<RunSummary> ReadRunSummary(const std::string& path) {
     if (json.at("program").get<std::string>() != kRunProgram)
       return Status(ErrorCode::kUnreadable, Quoted(path) + " was not written by Pliant");
     RunSummary summary;
-    summary.description = {json.at("version").get<std::string>(),
-                           json.at("command_line").get<std::vector<std::string>>(),
-                           json.at("seed").get<std::uint64_t>(),
-                           json.at("input").get<std::string>(),
-                           json.value("camera", ""),
-                           json.value("mask", ""),
-                           json.value("oracles", std::vector<std::string>())};
-    summary.description.refined_from = json.value("refined_from", "");
-    if (const Json metric = json.value("metric", Json()); !metric.is_null())
-      summary.description.metric = metric.get<bool>();
-    summary.description.tracks = json.value("tracks", "");
-    summary.description.extensions = json.value("extensions", std::vector<std::string>());
-    if (const Json working = json.value("working_image", Json()); !working.is_null()) {
-      summary.description.image_scale = working.at("scale").get<double>();
-      summary.description.image_smoothing_px = working.at("smoothing_px").get<double>();
-      summary.description.patch_size = working.value("patch_size", 0);
-      summary.description.image_noise_levels = working.value("noise_levels", 0.0);
-      summary.description.track_noise_px = working.value("track_noise_px", 0.0);
-      summary.description.alive_after_9 = working.value("alive_after_9", 0.0);
-    }
+    summary.description = ReadDescription(json);
     const std::string status = json.at("status").get<std::string>();
     bool known = false;
     for (const auto& [value, name] : EnumNames<RunStatus>::kNames) {

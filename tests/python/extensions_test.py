@@ -120,6 +120,8 @@ class Initializers(TestCase):
         for number, (changes, message) in enumerate(cases):
             with self.subTest(message), self.assertRaisesRegex(ValueError, message):
                 self.track(spoiled(**changes), f"case{number}")
+        with self.assertRaisesRegex(TypeError, "whole numbers"):
+            self.track(spoiled(point_id=lambda i: i + 0.5), "halves")
         with self.assertRaisesRegex(TypeError, "FirstMap"):
             self.track(lambda frames, camera, is_last: 5, "five")
 
@@ -169,6 +171,11 @@ class Names(TestCase):
         with self.assertRaises(TypeError) as raised:
             pliant.register_initializer("five", 5)
         self.assertIn("cannot be called", sentence(self, raised.exception))
+
+    def test_what_cannot_follow_is_no_source_of_tracks(self):
+        with self.assertRaises(TypeError) as raised:
+            pliant.track(SEQUENCE, self.folder / "run", tracks=5)
+        self.assertIn("follow", sentence(self, raised.exception))
 
 
 if __name__ == "__main__":

@@ -177,7 +177,8 @@ class Window(TestCase):
                 kernels.solve_window(**arguments)
             sentence(self, raised.exception)
         with self.assertRaises(pliant.Error) as caught:
-            kernels.solve_window(self.times[:2], poses[:2], self.points, rays[:126], view_idx[:126], point_idx[:126], 500)
+            kernels.solve_window(self.times[:2], poses[:2], self.points, rays[:126], view_idx[:126], point_idx[:126],
+                                 500)
         self.assertEqual(caught.exception.code, "insufficient")
 
 
