@@ -243,6 +243,28 @@ Ending TrackSequence(Sequence& sequence, const RunRequest& request, const TrackO
   return recorded.ok() || ending.status == RunStatus::kFailed ? ending : Ending{RunStatus::kFailed, recorded.message()};
 }
 
+// `options` are those of the working image.
+RunDescription DescriptionOf(const RunRequest& request, const TrackOptions& options, const RunStart& start) {
+  const std::vector<std::string_view> oracles = options.tracker.oracle.Names();
+  return {kVersion,
+          request.command_line,
+          static_cast<std::uint64_t>(options.seed),
+          request.input.image_path.string(),
+          request.input.camera_path.string(),
+          request.input.mask_path.string(),
+          {oracles.begin(), oracles.end()},
+          start.working_image.scale,
+          start.working_image.smoothing_px,
+          options.tracker.point_tracker.lucas_kanade.patch_size,
+          start.images.noise_levels,
+          start.images.track_noise_px,
+          start.images.alive_after_9,
+          "",
+          options.tracker.init.IsMetric(),
+          options.track_file.path,
+          request.extensions.Names()};
+}
+
 }  // namespace
 
 void ImageOptions::List(OptionTable& table) {
@@ -333,25 +355,7 @@ Result<RunSummary> RunTrack(const RunRequest& request, const TrackOptions& optio
   listed.List(table);
   RunWriterOptions writer_options;
   writer_options.timings = options.timings;
-  const std::vector<std::string_view> oracles = options.tracker.oracle.Names();
-  auto writer = RunWriter::Create(request.output_path, (*sequence)->camera(),
-                                  {kVersion,
-                                   request.command_line,
-                                   static_cast<std::uint64_t>(options.seed),
-                                   request.input.image_path.string(),
-                                   request.input.camera_path.string(),
-                                   request.input.mask_path.string(),
-                                   {oracles.begin(), oracles.end()},
-                                   start->working_image.scale,
-                                   start->working_image.smoothing_px,
-                                   usable.tracker.point_tracker.lucas_kanade.patch_size,
-                                   start->images.noise_levels,
-                                   start->images.track_noise_px,
-                                   start->images.alive_after_9,
-                                   "",
-                                   options.tracker.init.IsMetric(),
-                                   options.track_file.path,
-                                   request.extensions.Names()},
+  auto writer = RunWriter::Create(request.output_path, (*sequence)->camera(), DescriptionOf(request, usable, *start),
                                   table.ToYaml(), ColumnsOfFrames(), writer_options);
   if (!writer.ok()) return writer.status();
 

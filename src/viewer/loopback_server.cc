@@ -15,7 +15,7 @@
 #include <netinet/in.h>
 #include <sys/socket.h>
 
-#include "pliant/base/text.h"
+#include "pliant/base/options.h"
 
 namespace pliant {
 namespace {
