@@ -13,6 +13,7 @@
 #include <utility>
 
 #include <Eigen/Cholesky>
+#include <Eigen/OrderingMethods>
 #include <Eigen/SparseCholesky>
 #include <ceres/cost_function.h>
 
@@ -25,6 +26,7 @@ constexpr int kSamples = 150;  // the standard deviation of a sigma found by n s
 constexpr unsigned kSeed = 1;
 
 using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+using Permutation = Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int>;
 using BlockPair = std::pair<int, int>;  // the second is not above the first
 
 // A view or a node.
@@ -51,27 +53,20 @@ class Covariance {
 
   Status Sample() {
     EliminatePoints();
-    std::vector<Eigen::Triplet<double>> entries;
-    for (const auto& [pair, matrix] : normal_)
-      for (Eigen::Index r = 0; r < matrix.rows(); ++r)
-        for (Eigen::Index c = 0; c < matrix.cols(); ++c)
-          if (pair.first != pair.second || r >= c)
-            entries.emplace_back(blocks_[static_cast<std::size_t>(pair.first)].begin + static_cast<int>(r),
-                                 blocks_[static_cast<std::size_t>(pair.second)].begin + static_cast<int>(c),
-                                 matrix(r, c));
-    const std::vector<int> held = NumbersWithoutTerms();
-    for (const int k : held) entries.emplace_back(k, k, 1.0);
-    Eigen::SparseMatrix<double> lower(size_, size_);
-    lower.setFromTriplets(entries.begin(), entries.end());
-    const Eigen::SimplicialLLT<Eigen::SparseMatrix<double>, Eigen::Lower> cholesky(lower);
+    const Permutation order = EliminationOrder();
+    std::vector<int> held;
+    for (const int k : NumbersWithoutTerms()) held.push_back(order.indices()[k]);
+    const Eigen::SimplicialLLT<Eigen::SparseMatrix<double>, Eigen::Lower, Eigen::NaturalOrdering<int>> cholesky(
+        LowerNormal(order, held));
     if (cholesky.info() != Eigen::Success)
       return {ErrorCode::kDegenerate, "the refinement's terms do not determine its variables"};
     std::mt19937_64 generator(kSeed);
     std::normal_distribution<double> normal;
     const Eigen::MatrixXd white = Eigen::MatrixXd::NullaryExpr(size_, kSamples, [&] { return normal(generator); });
     // P H P^T = L L^T: x = P^T L^-T z has the covariance H^-1.
-    samples_ = cholesky.permutationPinv() * cholesky.matrixU().solve(white);
+    samples_ = cholesky.matrixU().solve(white);
     for (const int k : held) samples_.row(k).setZero();
+    samples_ = order.transpose() * samples_;
     return Status::Ok();
   }
 
@@ -120,6 +115,44 @@ class Covariance {
   Eigen::MatrixXd SamplesOf(int block) const {
     const Block& b = blocks_[static_cast<std::size_t>(block)];
     return samples_.middleRows(b.begin, b.size);
+  }
+
+  // Where each number goes. Of whole blocks: the numbers of a block have the same neighbors, and an ordering of single
+  // numbers does not see that (of 600 views it left ten times the work).
+  Permutation EliminationOrder() const {
+    const auto count = static_cast<int>(blocks_.size());
+    std::vector<Eigen::Triplet<double>> entries;
+    for (const auto& [pair, matrix] : normal_) {
+      entries.emplace_back(pair.first, pair.second, 1.0);
+      entries.emplace_back(pair.second, pair.first, 1.0);
+    }
+    Eigen::SparseMatrix<double> neighbors(count, count);
+    neighbors.setFromTriplets(entries.begin(), entries.end());
+    Permutation blocks;
+    Eigen::AMDOrdering<int>()(neighbors, blocks);
+    Permutation order(size_);
+    int next = 0;
+    for (const int b : blocks.indices()) {
+      const Block& block = blocks_[static_cast<std::size_t>(b)];
+      for (int k = 0; k < block.size; ++k) order.indices()[block.begin + k] = next++;
+    }
+    return order;
+  }
+
+  // The lower half in that order; numbers that are held stand alone.
+  Eigen::SparseMatrix<double> LowerNormal(const Permutation& order, const std::vector<int>& held) const {
+    std::vector<Eigen::Triplet<double>> entries;
+    for (const auto& [pair, matrix] : normal_)
+      for (Eigen::Index r = 0; r < matrix.rows(); ++r)
+        for (Eigen::Index c = 0; c < matrix.cols(); ++c) {
+          const int a = order.indices()[blocks_[static_cast<std::size_t>(pair.first)].begin + r];
+          const int b = order.indices()[blocks_[static_cast<std::size_t>(pair.second)].begin + c];
+          if (pair.first != pair.second || a >= b) entries.emplace_back(std::max(a, b), std::min(a, b), matrix(r, c));
+        }
+    for (const int k : held) entries.emplace_back(k, k, 1.0);
+    Eigen::SparseMatrix<double> lower(size_, size_);
+    lower.setFromTriplets(entries.begin(), entries.end());
+    return lower;
   }
 
   // The first pose, and poses of views without observations.

@@ -13,13 +13,19 @@
 
 #include "refinement/bundle_costs.h"
 
+// Of OpenMP, whose header comes with some compilers alone.
+extern "C" {
+int omp_get_max_active_levels();
+void omp_set_max_active_levels(int max_levels);
+}
+
 namespace pliant {
 namespace {
 
 constexpr double kLossScale = 2.0;           // Cauchy, in standard deviations
 constexpr double kMinDistance = 0.04;        // of nodes and points, by the median distance from the camera
 constexpr double kFunctionTolerance = 1e-3;  // what is left changes depths by less than their noise
-constexpr int kMaxDenseParameters = 1000;
+constexpr int kMaxDenseParameters = 2000;    // above it most pairs of views share no point
 
 class Callback final : public ceres::IterationCallback {
  public:
@@ -30,6 +36,19 @@ class Callback final : public ceres::IterationCallback {
 
  private:
   const std::function<bool(double)>& function_;
+};
+
+// CHOLMOD asks OpenMP for four threads at every supernode, on any machine. The supernodes here are small: with two
+// cores half of the time goes into waking threads.
+class OneOpenMpThread {
+ public:
+  OneOpenMpThread() { omp_set_max_active_levels(0); }
+  ~OneOpenMpThread() { omp_set_max_active_levels(before_); }
+  OneOpenMpThread(const OneOpenMpThread&) = delete;
+  OneOpenMpThread& operator=(const OneOpenMpThread&) = delete;
+
+ private:
+  int before_ = omp_get_max_active_levels();
 };
 
 // Poses as increments about the mean of the points that a view sees.
@@ -83,6 +102,7 @@ Result<BundleSummary> BundleProblem::Solve(int max_iterations, const std::functi
   Callback on_iteration(callback);
   options.callbacks.push_back(&on_iteration);
   ceres::Solver::Summary summary;
+  const OneOpenMpThread one_thread;
   ceres::Solve(options, problem_.get(), &summary);
   if (!summary.IsSolutionUsable())
     return Status(ErrorCode::kDegenerate, "the refinement found no step that lowers its cost: " + summary.message);
@@ -90,27 +110,26 @@ Result<BundleSummary> BundleProblem::Solve(int max_iterations, const std::functi
   return BundleSummary{summary.initial_cost, summary.final_cost};
 }
 
-// Points are eliminated. Where the scene deforms every point is brought to its best after each step, too: coefficients
-// against shapes is a curved valley.
+// A few views see the same points: their normal equations, without the points, are dense. Those of many views and the
+// parts' are sparse, and the best order to eliminate in is found for all variables together. Where the scene deforms
+// every point is brought to its best after each step, too: coefficients against shapes is a curved valley.
 void BundleProblem::SetLinearSolver(ceres::Solver::Options* options) {
-  if (input_.part != BundlePart::kAll) {
-    options->linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
-    return;
-  }
-  const auto views = static_cast<int>(std::ranges::count(is_view_in_problem_, true));
-  const int dense = views * (6 + rank_) + static_cast<int>(nodes_.size()) * 3 * rank_;
-  options->linear_solver_type = dense <= kMaxDenseParameters ? ceres::DENSE_SCHUR : ceres::SPARSE_SCHUR;
-  options->linear_solver_ordering = std::make_shared<ceres::ParameterBlockOrdering>();
+  options->linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
+  if (input_.part != BundlePart::kAll) return;
+  const auto points = std::make_shared<ceres::ParameterBlockOrdering>();
+  for (std::size_t i = 0; i < points_.size(); ++i)
+    if (is_point_in_problem_[i]) points->AddElementToGroup(points_[i], 0);
   options->use_inner_iterations = rank_ > 0;
-  options->inner_iteration_ordering = std::make_shared<ceres::ParameterBlockOrdering>();
+  options->inner_iteration_ordering = points;
+  const auto views = static_cast<int>(std::ranges::count(is_view_in_problem_, true));
+  const int without_points = views * (6 + rank_) + static_cast<int>(nodes_.size()) * 3 * rank_;
+  if (without_points > kMaxDenseParameters) return;
+  options->linear_solver_type = ceres::DENSE_SCHUR;
+  options->linear_solver_ordering = std::make_shared<ceres::ParameterBlockOrdering>(*points);
   std::vector<double*> blocks;
   problem_->GetParameterBlocks(&blocks);
-  for (double* const block : blocks) options->linear_solver_ordering->AddElementToGroup(block, 1);
-  for (std::size_t i = 0; i < points_.size(); ++i) {
-    if (!is_point_in_problem_[i]) continue;
-    options->linear_solver_ordering->AddElementToGroup(points_[i], 0);
-    options->inner_iteration_ordering->AddElementToGroup(points_[i], 0);
-  }
+  for (double* const block : blocks)
+    if (!points->IsMember(block)) options->linear_solver_ordering->AddElementToGroup(block, 1);
 }
 
 // Blocks stand in one array: Ceres orders them by their address, and with it its sums.

@@ -10,13 +10,15 @@
 
 #include "pliant/base/statistics.h"
 #include "refinement/bundle.h"
+#include "refinement/key_views.h"
 #include "refinement/residual_correlation.h"
 
 namespace pliant {
 namespace {
 
 constexpr std::size_t kMinPoints = 8;
-constexpr int kRounds = 3;  // solutions, each with the sigmas and the tracks that the one before has found
+constexpr int kRounds = 2;  // solutions of few views, each with the sigmas and the tracks that the one before has found
+constexpr int kFewViewsPerTrack = 15;      // of the median track, in these; with all of them follows one more solution
 constexpr double kUsualIterations = 10.0;  // of a solution
 constexpr double kStartNoisePx = 0.3;
 constexpr double kMinNoisePx = 0.02;
@@ -26,7 +28,6 @@ constexpr double kWrongTrack = 3.0;         // times the median track's error
 constexpr double kMinWrongTrackPx = 0.5;
 constexpr int kRankStep = 2;
 constexpr double kSignificant = 2.0;  // times its standard error: then a correlation asks for more shapes
-constexpr int kMinViews = 3;          // of a point that has a part in the solution
 
 Status CheckRecording(const Recording& recording, const RefineOptions& options) {
   const std::size_t views = recording.times.size();
@@ -49,15 +50,8 @@ Status CheckRecording(const Recording& recording, const RefineOptions& options) 
   return Status::Ok();
 }
 
-// Of a solution, up to a factor: the square of the numbers of a point.
-double WorkOf(int rank) { return (1.0 + rank) * (1.0 + rank); }
-
-// The observations of points that have enough of them.
-void KeepPointsSeenOften(const Recording& recording, std::vector<bool>* used) {
-  const std::vector<int> views = CountViews(recording, *used);
-  for (std::size_t o = 0; o < used->size(); ++o)
-    if (views[static_cast<std::size_t>(recording.observations[o].point_idx)] < kMinViews) (*used)[o] = false;
-}
+// Of a solution for every so many views, up to a factor: the square of the numbers of a point in each of them.
+double WorkOf(int rank, int stride) { return (1.0 + rank) * (1.0 + rank) / stride; }
 
 class Refinement {
  public:
@@ -65,7 +59,8 @@ class Refinement {
              const RefinementCallback& callback)
       : start_(start), options_(options), callback_(callback), input_{.camera = camera, .recording = start} {
     UseAll();
-    ChooseKeyViews();
+    stride_ = StrideOfKeyViews(start_, input_.used, options.views_per_track);
+    wide_stride_ = std::max(stride_, StrideOfKeyViews(start_, input_.used, kFewViewsPerTrack));
     std::vector<double> distances;
     for (const RecordedObservation& o : start.observations)
       distances.push_back((start.cams_from_world[static_cast<std::size_t>(o.view_idx)] * o.position).norm());
@@ -77,15 +72,15 @@ class Refinement {
     state.cams_from_world = start_.cams_from_world;
     state.rest_positions = start_.rest_positions;
     bool rigid = options_.model == RefinementModel::kRigid;
-    work_ = kRounds * WorkOf(rigid ? 0 : options_.rank);
+    work_ = WorkOfAll(rigid ? 0 : options_.rank);
     if (options_.model == RefinementModel::kAuto) {
-      work_ += WorkOf(0);
-      if (Status status = Solve("rigid", 1, &state); !status.ok()) return status;
-      refined_.residual_correlation = CorrelationOf(state).value;
+      work_ += WorkOf(0, wide_stride_);
+      if (Status status = SolveForFewViews("rigid", 1, &state); !status.ok()) return status;
+      refined_.residual_correlation = CorrelationOf(state, wide_stride_).value;
       rigid = refined_.residual_correlation <= options_.max_correlation;
-      if (rigid) work_ = (1 + kRounds) * WorkOf(0);
+      if (rigid) work_ = WorkOf(0, wide_stride_) + WorkOfAll(0);
     }
-    if (Status status = rigid ? Solve("rigid", kRounds, &state) : SolveDeforming(&state); !status.ok()) return status;
+    if (Status status = rigid ? Solve("rigid", &state) : SolveDeforming(&state); !status.ok()) return status;
     refined_.deforming = !rigid;
     refined_.is_inlier = input_.used;
     const double scale = ScaleToStart(state);
@@ -107,7 +102,7 @@ class Refinement {
       UseAll();
       *state = DeformingStart(start_, rank, options_.nodes_in_view);
       input_.graph = MakeGraph(*state, options_.neighbors);
-      if (Status status = Solve("deforming", kRounds, state); !status.ok()) return status;
+      if (Status status = Solve("deforming", state); !status.ok()) return status;
       if (stopped_ && rank > options_.rank) {
         *state = state_before;
         refined_ = refined_before;
@@ -116,16 +111,18 @@ class Refinement {
         input_.sigmas = input_before.sigmas;
       }
       if (stopped_ || rank + kRankStep > options_.max_rank) return Status::Ok();
-      const NeighborCorrelation left = CorrelationOf(*state);
+      const NeighborCorrelation left = CorrelationOf(*state, stride_);
       if (left.value <= kSignificant * left.standard_error) return Status::Ok();
-      work_ += kRounds * WorkOf(rank + kRankStep);
+      work_ += WorkOfAll(rank + kRankStep);
     }
   }
 
-  // Of neighbors' residuals (W11), in the key views.
-  NeighborCorrelation CorrelationOf(const BundleState& state) const {
-    return ResidualCorrelation(start_, UsedInKeyViews(), ReprojectionErrors(input_.camera, start_, state),
-                               start_.patch_px);
+  double WorkOfAll(int rank) const { return kRounds * WorkOf(rank, wide_stride_) + WorkOf(rank, stride_); }
+
+  // Of neighbors' residuals (W11), in the views that were solved for.
+  NeighborCorrelation CorrelationOf(const BundleState& state, int stride) const {
+    return ResidualCorrelation(start_, UsedInKeyViews(start_, input_.used, stride),
+                               ReprojectionErrors(input_.camera, start_, state), start_.patch_px);
   }
 
   void UseAll() {
@@ -133,96 +130,94 @@ class Refinement {
     KeepPointsSeenOften(start_, &input_.used);
   }
 
-  // Several solutions, the first with the sigmas of the start, the others with those that the one before has found.
-  Status Solve(std::string_view stage, int rounds, BundleState* state) {
+  // Several solutions for few views, the first with the sigmas of the start, the others with those that the one before
+  // has found.
+  Status SolveForFewViews(std::string_view stage, int rounds, BundleState* state) {
     input_.sigmas = {};
     input_.sigmas.noise_px = kStartNoisePx;
     input_.sigmas.log_distance = start_.log_depth_sigma;
     for (int round = 0; round < rounds && !stopped_; ++round) {
-      if (Status status = SolveOnce(stage, state); !status.ok()) return status;
-      work_done_ += WorkOf(state->rank());
-      const auto errors_px = ReprojectionErrors(input_.camera, start_, *state);
-      input_.sigmas = FoundSigmas(*state, errors_px);
-      refined_.noise_px = input_.sigmas.noise_px;
-      if (round == 0) RejectWrongTracks(errors_px);
+      if (Status status = SolveKeyViews(stage, wide_stride_, state); !status.ok()) return status;
+      if (round == 0) RejectWrongTracks(*state, UsedInKeyViews(start_, input_.used, wide_stride_));
     }
     return Status::Ok();
   }
 
-  // Of the key views; then of all views by the points, of all points by the views, and of the views once more.
-  Status SolveOnce(std::string_view stage, BundleState* state) {
+  // For few views, for as many as were asked for, for all.
+  Status Solve(std::string_view stage, BundleState* state) {
+    if (Status status = SolveForFewViews(stage, kRounds, state); !status.ok()) return status;
+    if (Status status = FollowKeyViews(wide_stride_, state); !status.ok() || stopped_) return status;
+    RejectWrongTracks(*state, input_.used);  // also those that few views did not see
+    if (Status status = SolveKeyViews(stage, stride_, state); !status.ok()) return status;
+    return FollowKeyViews(stride_, state);
+  }
+
+  Status SolveKeyViews(std::string_view stage, int stride, BundleState* state) {
     int iterations = 0;
     const auto on_iteration = [&](double cost) {
       const double of_solution = iterations / (iterations + kUsualIterations);
-      const double share = (work_done_ + WorkOf(state->rank()) * of_solution) / work_;
+      const double share = (work_done_ + WorkOf(state->rank(), stride) * of_solution) / work_;
       ++iterations;
       stopped_ = stopped_ || (callback_ && !callback_({stage, cost, share}));
       return !stopped_;
     };
     BundleInput input = input_;
-    input.used = UsedInKeyViews();
+    input.used = UsedInKeyViews(start_, input_.used, stride);
     const auto summary = SolveBundle(input, options_.max_iterations, on_iteration, state);
     if (!summary.ok()) return summary.status();
     refined_.initial_cost = summary->initial_cost;
     refined_.final_cost = summary->final_cost;
-    if (key_stride_ == 1) return Status::Ok();
-    input.used = input_.used;
+    work_done_ += WorkOf(state->rank(), stride);
+    SetFoundSigmas(*state, input.used);
+    return Status::Ok();
+  }
+
+  // All views by the points of the key views, all points by the views, and the views once more: many small problems,
+  // which no stop interrupts, since they bring all into one world.
+  Status FollowKeyViews(int stride, BundleState* state) const {
+    if (stride == 1) return Status::Ok();
+    BundleInput input = input_;
+    InterpolateViews(start_, UsedInKeyViews(start_, input_.used, stride), state);
     for (const BundlePart part : {BundlePart::kViews, BundlePart::kPoints, BundlePart::kViews}) {
       input.part = part;
-      const auto of_part = SolveBundle(input, options_.max_iterations, on_iteration, state);
+      const auto of_part = SolveBundle(input, options_.max_iterations, {}, state);
       if (!of_part.ok()) return of_part.status();
     }
     return Status::Ok();
   }
 
-  // Where tracks are long, neighboring views say the same of the points: some of them are enough.
-  void ChooseKeyViews() {
-    const std::vector<int> views = CountViews(start_, input_.used);
-    std::vector<double> views_of_track;  // an observation each
-    for (const RecordedObservation& o : start_.observations)
-      views_of_track.push_back(views[static_cast<std::size_t>(o.point_idx)]);
-    key_stride_ = std::max(1, static_cast<int>(std::lround(Median(views_of_track) / options_.views_per_track)));
-  }
-
-  std::vector<bool> UsedInKeyViews() const {
-    std::vector<bool> used = input_.used;
-    if (key_stride_ == 1) return used;
-    for (std::size_t o = 0; o < used.size(); ++o)
-      used[o] = used[o] && start_.observations[o].view_idx % key_stride_ == 0;
-    KeepPointsSeenOften(start_, &used);
-    return used;
-  }
-
-  BundleSigmas FoundSigmas(const BundleState& state, const std::vector<Eigen::Vector2d>& errors_px) const {
-    BundleSigmas found = input_.sigmas;
+  void SetFoundSigmas(const BundleState& state, const std::vector<bool>& used) {
+    const auto errors_px = ReprojectionErrors(input_.camera, start_, state);
     std::vector<double> lengths;
     for (std::size_t o = 0; o < errors_px.size(); ++o)
-      if (input_.used[o]) lengths.push_back(errors_px[o].norm());
-    found.noise_px = std::max(kMinNoisePx, Median(lengths) / kRayleighMedian);
-    if (state.rank() == 0) return found;
+      if (used[o]) lengths.push_back(errors_px[o].norm());
+    input_.sigmas.noise_px = std::max(kMinNoisePx, Median(lengths) / kRayleighMedian);
+    refined_.noise_px = input_.sigmas.noise_px;
+    if (state.rank() == 0) return;
     const ShapeSizes sizes = SizesOf(state.nodes);
-    found.size = std::max(kMinShapeSigma, sizes.size / input_.distance);
-    found.gradient = std::max(kMinShapeSigma, sizes.gradient);
-    return found;
+    input_.sigmas.size = std::max(kMinShapeSigma, sizes.size / input_.distance);
+    input_.sigmas.gradient = std::max(kMinShapeSigma, sizes.gradient);
   }
 
-  // Tracks whose error is far above that of the others.
-  void RejectWrongTracks(const std::vector<Eigen::Vector2d>& errors_px) {
+  // Tracks whose error, in those observations, is far above that of the others.
+  void RejectWrongTracks(const BundleState& state, const std::vector<bool>& used) {
+    const auto errors_px = ReprojectionErrors(input_.camera, start_, state);
     std::vector<double> squares(start_.rest_positions.size(), 0.0);
     std::vector<int> counts(squares.size(), 0);
     for (std::size_t o = 0; o < errors_px.size(); ++o) {
+      if (!used[o]) continue;
       const auto point = static_cast<std::size_t>(start_.observations[o].point_idx);
       squares[point] += errors_px[o].squaredNorm();
       ++counts[point];
     }
     std::vector<double> rms;
     for (std::size_t i = 0; i < squares.size(); ++i)
-      if (counts[i] >= kMinViews) rms.push_back(std::sqrt(squares[i] / counts[i]));
+      if (counts[i] > 0) rms.push_back(std::sqrt(squares[i] / counts[i]));
     if (rms.empty()) return;
     const double bound = std::max(kWrongTrack * Median(rms), kMinWrongTrackPx);
     for (std::size_t o = 0; o < errors_px.size(); ++o) {
       const auto point = static_cast<std::size_t>(start_.observations[o].point_idx);
-      input_.used[o] = std::sqrt(squares[point] / counts[point]) <= bound;
+      if (counts[point] > 0 && std::sqrt(squares[point] / counts[point]) > bound) input_.used[o] = false;
     }
     KeepPointsSeenOften(start_, &input_.used);
   }
@@ -231,7 +226,7 @@ class Refinement {
   void AddCovariance(const BundleState& state, double scale) {
     refined_.sigmas.assign(input_.used.size(), 0.0);
     BundleInput input = input_;
-    input.used = UsedInKeyViews();
+    input.used = UsedInKeyViews(start_, input_.used, stride_);
     const auto covariance = CovarianceOfBundle(input, state);
     if (!covariance.ok()) return;
     for (std::size_t o = 0; o < input_.used.size(); ++o) {
@@ -289,7 +284,8 @@ class Refinement {
   const RefineOptions& options_;
   const RefinementCallback& callback_;
   BundleInput input_;
-  int key_stride_ = 1;  // every so many views
+  int stride_ = 1;       // of the key views
+  int wide_stride_ = 1;  // of the few views that are solved for first
   RefinedRecording refined_;
   double work_ = 0.0;  // of all solutions that are known to be needed
   double work_done_ = 0.0;
