@@ -148,6 +148,7 @@ class Refinement {
     if (Status status = SolveForFewViews(stage, kRounds, state); !status.ok()) return status;
     if (Status status = FollowKeyViews(wide_stride_, state); !status.ok() || stopped_) return status;
     RejectWrongTracks(*state, input_.used);  // also those that few views did not see
+    SetFoundSigmas(*state, input_.used);     // few views leave residuals that are too small: more of them adapts
     if (Status status = SolveKeyViews(stage, stride_, state); !status.ok()) return status;
     return FollowKeyViews(stride_, state);
   }

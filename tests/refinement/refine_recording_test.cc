@@ -3,6 +3,7 @@
 
 #include "pliant/refinement/refine_recording.h"
 
+#include <algorithm>
 #include <limits>
 #include <string_view>
 
@@ -136,6 +137,28 @@ TEST(RefineRecording, LeavesWrongTracksOut) {
   EXPECT_LT(left_out, 0.02 * static_cast<double>(start.observations.size()));
 }
 
+// Of short tracks few views say nothing.
+TEST(RefineRecording, LeavesWrongTracksOutThatAreShort) {
+  const RecordedScene scene;
+  Recording start = scene.Start();
+  Random random(9);
+  const std::vector<int> wrong = {60, 100, 140};
+  std::erase_if(start.observations, [&](const RecordedObservation& o) {
+    return std::find(wrong.begin(), wrong.end(), o.point_idx) != wrong.end() && (o.view_idx < 17 || o.view_idx > 20);
+  });
+  for (RecordedObservation& o : start.observations)
+    if (std::find(wrong.begin(), wrong.end(), o.point_idx) != wrong.end()) o.pixel.x() += random.Uniform(-6, 6);
+  const auto refined = Refine(start, {.max_rank = 3, .views_per_track = 12});
+  ASSERT_TRUE(refined.ok()) << refined.status().message();
+  int views = 0;
+  for (std::size_t o = 0; o < start.observations.size(); ++o) {
+    if (std::find(wrong.begin(), wrong.end(), start.observations[o].point_idx) == wrong.end()) continue;
+    EXPECT_FALSE(refined->is_inlier[o]) << "point " << start.observations[o].point_idx;
+    ++views;
+  }
+  EXPECT_GE(views, 8);
+}
+
 TEST(RefineRecording, GivesTheSameAgain) {
   const Recording start = RecordedScene().Start();
   const auto first = Refine(start);
@@ -157,6 +180,21 @@ TEST(RefineRecording, StopsWithTheBestSoFar) {
   EXPECT_TRUE(refined->stopped);
   EXPECT_EQ(iterations, 6);
   EXPECT_LT(refined->final_cost, refined->initial_cost);
+}
+
+// Views that have had no part in a solution follow those that had: all are in one world.
+TEST(RefineRecording, LeavesOneWorldWhereverItIsStopped) {
+  const RecordedScene scene;
+  const Recording start = scene.Start();
+  for (const int after : {1, 4, 12, 20, 28}) {
+    int iterations = 0;
+    const auto refined = Refine(start, {.max_rank = 3, .views_per_track = 10},
+                                [&](const RefinementProgress&) { return ++iterations < after; });
+    ASSERT_TRUE(refined.ok()) << refined.status().message();
+    EXPECT_TRUE(refined->stopped);
+    EXPECT_LT(scene.DepthError(refined->recording), scene.DepthError(start)) << "stopped after " << after;
+    EXPECT_LT(refined->noise_px, 0.05 * RecordingCamera().width());
+  }
 }
 
 TEST(RefineRecording, SaysHowMuchIsDone) {
