@@ -15,8 +15,8 @@
 
 // Of OpenMP, whose header comes with some compilers alone.
 extern "C" {
-int omp_get_max_active_levels();
-void omp_set_max_active_levels(int max_levels);
+int omp_get_max_active_levels();                 // NOLINT(readability-identifier-naming)
+void omp_set_max_active_levels(int max_levels);  // NOLINT(readability-identifier-naming)
 }
 
 namespace pliant {
