@@ -24,10 +24,6 @@ std::vector<std::size_t> ViewsWith(const Recording& recording, const std::vector
   return views;
 }
 
-Rigid3 Between(const Rigid3& a, const Rigid3& b, double share) {
-  return {a.rotation.slerp(share, b.rotation), (1.0 - share) * a.translation + share * b.translation};
-}
-
 }  // namespace
 
 int StrideOfKeyViews(const Recording& recording, const std::vector<bool>& used, int views_per_track) {
@@ -68,7 +64,7 @@ void InterpolateViews(const Recording& recording, const std::vector<bool>& used,
     const double share = before == after ? 0.0
                                          : (recording.times[v] - recording.times[before]) /
                                                (recording.times[after] - recording.times[before]);
-    state->cams_from_world[v] = recording.cams_from_world[v] * Between(change(before), change(after), share);
+    state->cams_from_world[v] = recording.cams_from_world[v] * Interpolated(change(before), change(after), share);
     if (state->rank() > 0)
       state->coefficients.col(static_cast<Eigen::Index>(v)) =
           (1.0 - share) * state->coefficients.col(static_cast<Eigen::Index>(before)) +

@@ -48,10 +48,7 @@ Centerline::Centerline(double length_mm, double bend_deg_per_cm, int seed) {
 Rigid3 Centerline::WorldFromFrame(double s_mm) const {
   const double position = std::clamp(s_mm / kCenterlineStepMm, 0.0, static_cast<double>(frames_.size()) - 1.001);
   const auto i = static_cast<std::size_t>(position);
-  const double t = position - static_cast<double>(i);
-  const Rigid3& a = frames_[i];
-  const Rigid3& b = frames_[i + 1];
-  return {a.rotation.slerp(t, b.rotation), (1.0 - t) * a.translation + t * b.translation};
+  return Interpolated(frames_[i], frames_[i + 1], position - static_cast<double>(i));
 }
 
 }  // namespace pliant::simulation

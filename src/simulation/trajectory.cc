@@ -177,9 +177,7 @@ Rigid3 Path::FromFile(double time_s) const {
   if (after == poses_.end()) return poses_.back().world_from_cam;
   const TimedPose& a = *(after - 1);
   const TimedPose& b = *after;
-  const double t = (time_s - a.timestamp_s) / (b.timestamp_s - a.timestamp_s);
-  return {a.world_from_cam.rotation.slerp(t, b.world_from_cam.rotation),
-          (1.0 - t) * a.world_from_cam.translation + t * b.world_from_cam.translation};
+  return Interpolated(a.world_from_cam, b.world_from_cam, (time_s - a.timestamp_s) / (b.timestamp_s - a.timestamp_s));
 }
 
 Rigid3 Path::Tremor(double time_s) const {

@@ -36,6 +36,11 @@ inline Rigid3 operator*(const Rigid3& c_from_b, const Rigid3& b_from_a) {
   return {c_from_b.rotation * b_from_a.rotation, c_from_b * b_from_a.translation};
 }
 
+// Between a (share 0) and b (share 1): the rotation turns evenly about one axis, the translation moves along a line.
+inline Rigid3 Interpolated(const Rigid3& a, const Rigid3& b, double share) {
+  return {a.rotation.slerp(share, b.rotation), (1.0 - share) * a.translation + share * b.translation};
+}
+
 // The rotation by |omega| radians about omega (exponential map of SO(3)); exact to rounding near zero.
 inline Eigen::Quaterniond RotationExp(const Eigen::Vector3d& omega_rad) {
   const double angle = omega_rad.norm();

@@ -223,11 +223,8 @@ DeformingWindow InAllFrames(const InitInput& input, const std::vector<std::size_
     const double share =
         before == next ? 0.0
                        : static_cast<double>(k - views[before]) / static_cast<double>(views[next] - views[before]);
-    const Rigid3& a = solved.cams_from_world[before];
-    const Rigid3& b = solved.cams_from_world[next];
     all.times.push_back(input.frames[k].frame_idx - input.frames.front().frame_idx);
-    all.cams_from_world.emplace_back(a.rotation.slerp(share, b.rotation),
-                                     (1.0 - share) * a.translation + share * b.translation);
+    all.cams_from_world.push_back(Interpolated(solved.cams_from_world[before], solved.cams_from_world[next], share));
     all.coefficients.col(static_cast<Eigen::Index>(k)) =
         (1.0 - share) * solved.coefficients.col(static_cast<Eigen::Index>(before)) +
         share * solved.coefficients.col(static_cast<Eigen::Index>(next));
