@@ -13,6 +13,7 @@
 #include "io/run_format.h"
 #include "io/run_rows.h"
 #include "pliant/base/files.h"
+#include "pliant/base/folder_lock.h"
 #include "pliant/base/statistics.h"
 #include "pliant/base/text.h"
 #include "pliant/io/ply.h"
@@ -40,11 +41,17 @@ std::vector<std::string> FilesOfRun(int submaps) {
   return files;
 }
 
-// Makes the folder, or empties it of a former run.
-Status PrepareFolder(const std::string& path) {
+// Makes the folder, and takes it: two runs in one folder would each remove the other's files.
+Result<FolderLock> TakeFolder(const std::string& path) {
   std::error_code error;
   fs::create_directories(path, error);
   if (error) return Unwritable(path, error);
+  return FolderLock::Take(path);
+}
+
+// Empties the folder of a former run.
+Status EmptyFolder(const std::string& path) {
+  std::error_code error;
   const bool empty = fs::is_empty(path, error);
   if (error) return Unwritable(path, error);
   if (empty) return Status::Ok();
@@ -88,6 +95,7 @@ void AppendPoseCovariance(int frame_idx, const PoseCovariance& covariance, std::
 
 struct RunWriter::State {
   std::string path;
+  FolderLock lock;
   Camera camera;
   RunColumns columns;
   RunWriterOptions options;
@@ -129,7 +137,9 @@ const RunSummary& RunWriter::summary() const { return state_->summary; }
 Result<RunWriter> RunWriter::Create(const std::string& output_path, const Camera& camera, RunDescription description,
                                     const std::string& config_yaml, RunColumns columns,
                                     const RunWriterOptions& options) {
-  if (Status status = PrepareFolder(output_path); !status.ok()) return status;
+  auto lock = TakeFolder(output_path);
+  if (!lock.ok()) return lock.status();
+  if (Status status = EmptyFolder(output_path); !status.ok()) return status;
   RunSummary summary;
   summary.description = std::move(description);
   RunDescription& paths = summary.description;
@@ -152,9 +162,9 @@ Result<RunWriter> RunWriter::Create(const std::string& output_path, const Camera
   if (Status status = frames->Append(header + "\n"); !status.ok()) return status;
   if (Status status = observations->Append(std::string(kObservationColumns) + "\n"); !status.ok()) return status;
 
-  auto state =
-      std::make_unique<State>(State{output_path, camera, std::move(columns), options, std::move(trajectory).value(),
-                                    std::move(frames).value(), std::move(observations).value()});
+  auto state = std::make_unique<State>(State{output_path, *std::move(lock), camera, std::move(columns), options,
+                                             std::move(trajectory).value(), std::move(frames).value(),
+                                             std::move(observations).value()});
   state->summary = std::move(summary);
   state->stage_total_ms.assign(state->columns.stages.size(), 0.0);
   return RunWriter(std::move(state));

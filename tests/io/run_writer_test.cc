@@ -36,6 +36,21 @@ TEST(RunWriter, ReplacesAFormerRunAndNothingElse) {
   EXPECT_EQ(no_folder.status().code(), ErrorCode::kUnwritable);
 }
 
+TEST(RunWriter, LeavesARunAloneThatIsBeingWritten) {
+  const TestFolder folder;
+  {
+    RunWriter writer = Writer(folder.Path("run"));
+    ASSERT_TRUE(writer.Write(Report(0)).ok());
+    const auto second = RunWriter::Create(folder.Path("run"), TestCamera(), {}, "", {kCosts, kStages});
+    ASSERT_FALSE(second.ok());
+    EXPECT_EQ(second.status().code(), ErrorCode::kUnwritable);
+    EXPECT_THAT(second.status().message(), HasSubstr("another process is writing into"));
+    ASSERT_TRUE(writer.Finish(RunStatus::kCompleted, "").ok());
+  }
+  EXPECT_TRUE(std::filesystem::exists(folder.Path("run/map.ply")));
+  EXPECT_TRUE(RunWriter::Create(folder.Path("run"), TestCamera(), {}, "", {kCosts, kStages}).ok());
+}
+
 TEST(RunWriter, GivesTheSameBytesTwiceWithoutTimings) {
   const TestFolder folder;
   for (const char* run : {"a", "b"}) WriteRun(folder.Path(run), 5, {.timings = RunTimings::kNone});

@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// One writer at a time: a folder that is being written into is not written into by another process, or twice by one.
+#pragma once
+
+#include <filesystem>
+#include <utility>
+
+#include "pliant/base/status.h"
+
+namespace pliant {
+
+class FolderLock {
+ public:
+  // Of a folder that is there. Leaves no file, and ends with this object or the process, however that ends. On a file
+  // system that knows no locks it always succeeds. Fails with kUnwritable while another one holds it, and where the
+  // folder cannot be opened.
+  static Result<FolderLock> Take(const std::filesystem::path& folder);
+
+  FolderLock(FolderLock&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
+  FolderLock& operator=(FolderLock&& other) noexcept {
+    std::swap(descriptor_, other.descriptor_);
+    return *this;
+  }
+  ~FolderLock();
+
+ private:
+  explicit FolderLock(int descriptor) : descriptor_(descriptor) {}
+
+  int descriptor_;  // -1: moved away
+};
+
+}  // namespace pliant
