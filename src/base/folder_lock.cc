@@ -22,13 +22,15 @@ Result<FolderLock> FolderLock::Take(const std::filesystem::path& folder) {
                                               "; choose another folder or change its permissions");
   FolderLock lock(descriptor);
   if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
-    return Status(ErrorCode::kUnwritable, "another process is writing into " + Quoted(folder.string()) +
+    return Status(ErrorCode::kUnwritable, "another run is being written into " + Quoted(folder.string()) +
                                               "; wait for its end, or give another folder");
   return lock;
 }
 
 FolderLock::~FolderLock() {
-  if (descriptor_ >= 0) ::close(descriptor_);
+  if (descriptor_ < 0) return;
+  ::flock(descriptor_, LOCK_UN);  // a child of this process may hold the descriptor open
+  ::close(descriptor_);
 }
 
 }  // namespace pliant

@@ -13,7 +13,8 @@ namespace pliant {
 
 class FolderLock {
  public:
-  // Of a folder that is there. Leaves no file, and ends with this object or the process, however that ends. On a file
+  // Of a folder that is there. Leaves no file, and ends with this object, or with the process and the children that it
+  // was forked into, however these end. On a file
   // system that knows no locks it always succeeds. Fails with kUnwritable while another one holds it, and where the
   // folder cannot be opened.
   static Result<FolderLock> Take(const std::filesystem::path& folder);
