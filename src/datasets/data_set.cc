@@ -10,6 +10,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "datasets/calibration_files.h"
+#include "datasets/depth_prior_file.h"
 #include "datasets/image_file.h"
 #include "datasets/image_list.h"
 #include "datasets/pair_streams.h"
@@ -20,6 +21,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// Of the frames that are read, how many have none where others have one; `has` says it of a frame.
+template <class Has>
+void WarnOfMissing(const std::string& what, const FrameRange& range, const DataSet& data_set, const Has& has,
+                   std::vector<std::string>* warnings) {
+  int missing = 0;
+  int first = -1;
+  for (int idx = range.start; idx < range.end; idx += range.stride) {
+    if (has(static_cast<std::size_t>(idx))) continue;
+    if (missing++ == 0) first = idx;
+  }
+  if (missing > 0)
+    warnings->push_back(std::to_string(missing) + " of " + std::to_string(range.Count()) + " images have no " + what +
+                        ", the first is " + data_set.images->Name(first) + " (frame " + std::to_string(first) + ")");
+}
+
 class DataSetSequence final : public Sequence {
  public:
   DataSetSequence(DataSet data_set, const FrameRange& range)
@@ -27,6 +43,7 @@ class DataSetSequence final : public Sequence {
 
   Status CheckFirstImage() const;
   Status OpenMasks();
+  Status OpenDepthPriors(const std::filesystem::path& folder);
 
   const Camera& camera() const override { return data_set_.calibration.camera; }
   int size() const override { return range_.Count(); }
@@ -45,12 +62,14 @@ class DataSetSequence final : public Sequence {
   Status CheckSize(const cv::Mat& image, const std::string& title) const;
   Result<cv::Mat> Mask(int idx, const std::string& name) const;
   Result<cv::Mat> RawMask(int idx) const;
+  Result<cv::Mat> DepthPrior(int idx, const std::string& name) const;
 
   DataSet data_set_;
   FrameRange range_;
   int next_idx_;
   int last_idx_ = -1;  // the frame that Next gave last
   std::optional<CompanionImages> masks_;
+  std::optional<CompanionImages> depth_priors_;
 };
 
 // A calibration of other images is the commonest mistake: it is told before anything runs. A first image that cannot
@@ -79,6 +98,41 @@ Status DataSetSequence::OpenMasks() {
   return Status::Ok();
 }
 
+// Images may be without one.
+Status DataSetSequence::OpenDepthPriors(const fs::path& folder) {
+  if (folder.empty()) return Status::Ok();
+  if (data_set_.warp)
+    return {ErrorCode::kMismatch,
+            "the images of this sequence are rectified as they are read, and the depth priors in " + folder.string() +
+                " are not; write the rectified images with pliant dataset convert, and make the priors of them"};
+  std::error_code error;
+  if (!fs::is_directory(folder, error) && fs::exists(folder, error))
+    return {ErrorCode::kMismatch, folder.string() + " is one file; depth priors are a folder with a file an image"};
+  const auto counts =
+      images().count_is_exact() ? CompanionImages::Counts::kMustAgree : CompanionImages::Counts::kMayDiffer;
+  Result<CompanionImages> priors =
+      CompanionImages::Open("depth prior", folder, Stems(images()), counts, CompanionKind::kDepths);
+  if (!priors.ok()) return priors.status();
+  depth_priors_ = *std::move(priors);
+  if (!images().count_is_exact())
+    return depth_priors_->by_name() ? Status::Ok()
+                                    : Status(ErrorCode::kMismatch,
+                                             "how many images there are is not known before the last, so the depth "
+                                             "priors in " +
+                                                 folder.string() +
+                                                 " belong to them by name; name the "
+                                                 "first one like its image, " +
+                                                 images().Name(0));
+  WarnOfMissing(
+      "depth prior", range_, data_set_,
+      [&](std::size_t idx) {
+        const auto frame_idx = static_cast<int>(idx);
+        return !depth_priors_->Find(frame_idx, fs::path(images().Name(frame_idx)).stem().string()).empty();
+      },
+      &data_set_.warnings);
+  return Status::Ok();
+}
+
 Status DataSetSequence::CheckSize(const cv::Mat& image, const std::string& title) const {
   if (image.cols == camera().width() && image.rows == camera().height()) return Status::Ok();
   return {ErrorCode::kMismatch, title + " is " + SizeText(image) + ", but the calibration and the first image are " +
@@ -104,6 +158,9 @@ Result<std::optional<SequenceFrame>> DataSetSequence::Next() {
   Result<cv::Mat> mask = Mask(idx, frame.name);
   if (!mask.ok()) return mask.status();
   frame.mask = *std::move(mask);
+  Result<cv::Mat> depth_prior = DepthPrior(idx, frame.name);
+  if (!depth_prior.ok()) return depth_prior.status();
+  frame.depth_prior = *std::move(depth_prior);
   return std::optional<SequenceFrame>(std::move(frame));
 }
 
@@ -126,6 +183,13 @@ Result<cv::Mat> DataSetSequence::RawMask(int idx) const {
   if (data_set_.warp) mask = data_set_.warp->ApplyNearest(mask);
   if (!data_set_.inside.empty()) mask &= data_set_.inside;
   return mask;
+}
+
+Result<cv::Mat> DataSetSequence::DepthPrior(int idx, const std::string& name) const {
+  if (!depth_priors_) return cv::Mat();
+  const fs::path file = depth_priors_->Find(idx, fs::path(name).stem().string());
+  if (file.empty()) return cv::Mat();
+  return ReadDepthPrior(file, camera().width(), camera().height());
 }
 
 std::optional<double> DataSetSequence::BaselineMm() const {
@@ -175,21 +239,6 @@ Result<std::optional<StereoCalibration>> ReadPairCalibration(const fs::path& fil
   const auto calibration = ReadStereoIni(file);
   if (!calibration.ok()) return calibration.status();
   return std::optional(*calibration);
-}
-
-// Of the frames that are read, how many have no truth where others have one; `has` says it of a frame.
-template <class Has>
-void WarnOfMissing(const std::string& what, const FrameRange& range, const DataSet& data_set, const Has& has,
-                   std::vector<std::string>* warnings) {
-  int missing = 0;
-  int first = -1;
-  for (int idx = range.start; idx < range.end; idx += range.stride) {
-    if (has(static_cast<std::size_t>(idx))) continue;
-    if (missing++ == 0) first = idx;
-  }
-  if (missing > 0)
-    warnings->push_back(std::to_string(missing) + " of " + std::to_string(range.Count()) + " images have no " + what +
-                        ", the first is " + data_set.images->Name(first) + " (frame " + std::to_string(first) + ")");
 }
 
 void WarnOfMissingTruth(const FrameRange& range, DataSet* data_set) {
@@ -301,6 +350,7 @@ Result<std::unique_ptr<Sequence>> ReadDataSet(DataSet data_set, const SequenceRe
   auto sequence = std::make_unique<DataSetSequence>(std::move(data_set), *range);
   if (Status status = sequence->CheckFirstImage(); !status.ok()) return status;
   if (Status status = sequence->OpenMasks(); !status.ok()) return status;
+  if (Status status = sequence->OpenDepthPriors(request.depth_prior_path); !status.ok()) return status;
   return std::unique_ptr<Sequence>(std::move(sequence));
 }
 

@@ -7,6 +7,7 @@
 #include <array>
 #include <cctype>
 #include <limits>
+#include <span>
 #include <system_error>
 #include <utility>
 
@@ -20,13 +21,15 @@ namespace fs = std::filesystem;
 
 bool IsDigit(char c) { return c >= '0' && c <= '9'; }
 
-bool IsImageName(const fs::path& path) {
-  constexpr std::array<std::string_view, 6> kExtensions = {".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff"};
+constexpr std::array<std::string_view, 6> kImageEndings = {".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff"};
+constexpr std::array<std::string_view, 5> kDepthEndings = {".png", ".tif", ".tiff", ".exr", ".npy"};
+
+bool HasEnding(const fs::path& path, std::span<const std::string_view> endings) {
   if (path.filename().string().starts_with('.')) return false;
   std::string extension = path.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return std::find(kExtensions.begin(), kExtensions.end(), extension) != kExtensions.end();
+  return std::ranges::find(endings, extension) != endings.end();
 }
 
 // The digits at `at` without leading zeros; moves `at` past them.
@@ -58,7 +61,9 @@ bool NaturalLess(std::string_view a, std::string_view b) {
   return a < b;
 }
 
-Result<std::vector<fs::path>> ListImages(const fs::path& folder) {
+Result<std::vector<fs::path>> ListImages(const fs::path& folder, CompanionKind kind) {
+  const bool depths = kind == CompanionKind::kDepths;
+  const auto endings = depths ? std::span<const std::string_view>(kDepthEndings) : kImageEndings;
   std::error_code error;
   if (!fs::exists(folder, error))
     return Status(ErrorCode::kNotFound, "there is no folder " + folder.string() + "; check the path");
@@ -67,14 +72,15 @@ Result<std::vector<fs::path>> ListImages(const fs::path& folder) {
   std::vector<fs::path> images;
   fs::directory_iterator entry(folder, error);
   for (; !error && entry != fs::directory_iterator(); entry.increment(error))
-    if (std::error_code ignored; IsImageName(entry->path()) && !entry->is_directory(ignored))
+    if (std::error_code ignored; HasEnding(entry->path(), endings) && !entry->is_directory(ignored))
       images.push_back(entry->path());
   if (error)
     return Status(ErrorCode::kUnreadable,
                   "cannot list the folder " + folder.string() + " (" + error.message() + "); check its permissions");
   if (images.empty())
-    return Status(ErrorCode::kNotFound,
-                  "the folder " + folder.string() + " holds no image (png, jpg, jpeg, bmp, tif, tiff); check the path");
+    return Status(ErrorCode::kNotFound, "the folder " + folder.string() + " holds no image (" +
+                                            (depths ? "png, tif, tiff, exr, npy" : "png, jpg, jpeg, bmp, tif, tiff") +
+                                            "); check the path");
   std::sort(images.begin(), images.end(), [](const fs::path& a, const fs::path& b) {
     return NaturalLess(a.filename().string(), b.filename().string());
   });
@@ -144,7 +150,8 @@ void WarnOfGaps(const ImageStream& images, std::vector<std::string>* warnings) {
 }
 
 Result<CompanionImages> CompanionImages::Open(std::string what, const fs::path& path,
-                                              const std::vector<std::string>& frame_stems, Counts counts) {
+                                              const std::vector<std::string>& frame_stems, Counts counts,
+                                              CompanionKind kind) {
   CompanionImages companion;
   companion.what_ = std::move(what);
   companion.path_ = path;
@@ -154,7 +161,7 @@ Result<CompanionImages> CompanionImages::Open(std::string what, const fs::path& 
     companion.files_ = {path};
     return companion;
   }
-  Result<std::vector<fs::path>> files = ListImages(path);
+  Result<std::vector<fs::path>> files = ListImages(path, kind);
   if (!files.ok()) return files.status();
   companion.files_ = *std::move(files);
   for (const fs::path& file : companion.files_) companion.file_of_stem_.emplace(file.stem().string(), file);

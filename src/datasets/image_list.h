@@ -22,9 +22,15 @@ namespace pliant {
 // (frame02, frame2) fall back to bytes.
 bool NaturalLess(std::string_view a, std::string_view b);
 
-// The png, jpg, jpeg, bmp, tif and tiff files of a folder (hidden ones left out), in natural order of their names.
+enum class CompanionKind {
+  kImages,  // png, jpg, jpeg, bmp, tif, tiff
+  kDepths,  // png, tif, tiff, exr, npy
+};
+
+// The files of a folder that are of this kind by their endings (hidden ones left out), in natural order of their names.
 // Fails with kNotFound (no such folder, or no image in it) and kUnreadable (not a folder, or it cannot be listed).
-Result<std::vector<std::filesystem::path>> ListImages(const std::filesystem::path& folder);
+Result<std::vector<std::filesystem::path>> ListImages(const std::filesystem::path& folder,
+                                                      CompanionKind kind = CompanionKind::kImages);
 
 // The frames of a request: start, start + stride, ... below end.
 struct FrameRange {
@@ -57,8 +63,11 @@ class CompanionImages {
   // `what` names them in messages ("mask"). A folder, or one file that serves every frame. Fails with kNotFound or
   // kUnreadable as ListImages, with kMismatch when the order decides and the counts disagree.
   static Result<CompanionImages> Open(std::string what, const std::filesystem::path& path,
-                                      const std::vector<std::string>& frame_stems, Counts counts);
+                                      const std::vector<std::string>& frame_stems, Counts counts,
+                                      CompanionKind kind = CompanionKind::kImages);
 
+  // Whether files belong to frames by their names.
+  bool by_name() const { return by_stem_; }
   // The file for a frame; empty: there is none.
   std::filesystem::path Find(int frame_idx, const std::string& frame_stem) const;
   // As Find, but none is an error, kNotFound.

@@ -29,9 +29,11 @@ struct SequenceRequest {
   // One that is tried where none is named, and that of the images is missing or does not fit.
   std::filesystem::path spare_camera_path = {};
   std::filesystem::path mask_path = {};  // folder of masks, or one image for all frames; empty: the sequence's masks/
-  int start = 0;                         // first frame, by its number in the source
-  int end = -1;                          // one past the last frame; -1: to the end
-  int stride = 1;                        // every stride-th frame from `start` on
+  // Folder of depth images of another program, by the images' names; empty: none. Images may be without one.
+  std::filesystem::path depth_prior_path = {};
+  int start = 0;   // first frame, by its number in the source
+  int end = -1;    // one past the last frame; -1: to the end
+  int stride = 1;  // every stride-th frame from `start` on
   // Instead of what lies at image_path, which is empty then, and of a calibration; null: none.
   std::shared_ptr<const GivenImages> given = nullptr;
 };

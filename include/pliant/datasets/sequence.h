@@ -25,6 +25,9 @@ struct SequenceFrame {
   double timestamp_s = 0;
   cv::Mat image;  // 8-bit, 1 (gray) or 3 (BGR) channels, the camera's size
   cv::Mat mask;   // 8-bit, 0 = ignore; empty: no mask
+  // Of another program (SequenceRequest::depth_prior_path): CV_32FC1 of any size, over the whole image, values as the
+  // file has them, 0 or less and NaN = none; empty: there is none.
+  cv::Mat depth_prior = {};
   // When the source itself says that the image was taken (times.txt, a video's time stamp); timestamp_s of a video is
   // counted at its rate instead.
   std::optional<double> recorded_s = std::nullopt;
