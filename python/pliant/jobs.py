@@ -74,7 +74,7 @@ def track(input: StrPath | Iterable[NDArray[np.uint8]], output_path: StrPath, op
           camera: StrPath | _pliant.Camera | None = None, timestamps: Sequence[float] | None = None,
           preset: str = "default", mask_path: StrPath | None = None, start: int = 0, end: int | None = None,
           stride: int = 1, initializer: Initializer | None = None, tracks: PointFollower | StrPath | None = None,
-          on_frame: Callable[[_pliant.FrameReport], Any] | None = None) -> Run:
+          depth_prior: StrPath | None = None, on_frame: Callable[[_pliant.FrameReport], Any] | None = None) -> Run:
     """Camera pose and the motion of every point.
 
     Args:
@@ -93,6 +93,7 @@ def track(input: StrPath | Iterable[NDArray[np.uint8]], output_path: StrPath, op
             registered (pliant.register_initializer) is chosen by its name in Init.method.
         tracks: follows points in place of Pliant's own tracker: an object (pliant.extensions.PointFollower), or the
             file of another program's tracks (docs/tracks.md).
+        depth_prior: folder of another program's depth images, a file an image (docs/your_own_video.md).
         on_frame: called with the pliant.FrameReport of every frame, in order, as it is final and on disk. An exception
             ends the run after the frame and is raised.
 
@@ -114,6 +115,8 @@ def track(input: StrPath | Iterable[NDArray[np.uint8]], output_path: StrPath, op
         name, initializer = options.pop("Init.method"), registered
     if isinstance(tracks, (str, os.PathLike)):
         options, tracks = {**(options or {}), "TrackFile.path": os.fspath(tracks)}, None
+    if depth_prior is not None:
+        options = {**(options or {}), "DepthPrior.path": os.fspath(depth_prior)}
     request.update(initializer=None if initializer is None else asker(initializer), initializer_name=name,
                    tracks=None if tracks is None else follower(tracks))
     if isinstance(input, (str, os.PathLike)):

@@ -66,6 +66,10 @@ void AddArguments(TrackArguments* arguments, CommandLine* line) {
   line->AddAlias("tracks_pixel_origin", "TrackFile.pixel_origin", "center|corner",
                  "what (0, 0) is in that file: the center of the first pixel (the default; CoTracker, OpenCV), or its "
                  "upper left corner (TAP-Vid, TAPIR)");
+  line->AddAlias(
+      "depth_prior", "DepthPrior.path", "DIR",
+      "depth images of another program, such as a network's, a file an image: a weak measurement whose scale "
+      "and shift are not known (docs/your_own_video.md)");
   line->AddFlag("live", &arguments->live,
                 "serve a view of the run to a browser on this machine while it runs (options Live)");
   line->AddFlag("refine", &arguments->refine,

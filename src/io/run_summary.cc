@@ -58,6 +58,7 @@ RunDescription ReadDescription(const Json& json) {
   description.refined_from = json.value("refined_from", "");
   if (const Json metric = json.value("metric", Json()); !metric.is_null()) description.metric = metric.get<bool>();
   description.tracks = json.value("tracks", "");
+  description.depth_prior = json.value("depth_prior", "");
   description.extensions = json.value("extensions", std::vector<std::string>());
   if (const Json working = json.value("working_image", Json()); !working.is_null()) {
     description.image_scale = working.at("scale").get<double>();
@@ -94,6 +95,7 @@ Status WriteRunSummary(const std::string& path, const RunSummary& summary) {
       {"refined_from", summary.description.refined_from},
       {"metric", summary.description.metric ? Json(*summary.description.metric) : Json()},
       {"tracks", summary.description.tracks},
+      {"depth_prior", summary.description.depth_prior},
       {"oracles", summary.description.oracles},
       {"extensions", summary.description.extensions},
       {"working_image",

@@ -65,6 +65,17 @@ std::string OfDepth(const FirstMapEvidence& evidence) {
                                          : "the shape can be trusted to about that.");
 }
 
+// What a start from one image, which is provisional from the first frame on, took for granted.
+std::string OfPrior(const RunSummary& summary) {
+  if (summary.description.depth_prior.empty()) return {};
+  const bool alone = std::ranges::any_of(summary.first_maps, [](const FirstMapFrames& map) {
+    return map.evidence.provisional && !(map.evidence.depth_sigma > 0.0);
+  });
+  return alone ? "The first map's depths are those of the depth prior in one image, up to a scale; nothing confirmed "
+                 "them."
+               : "A depth prior was given; it counts where brightness is no depth cue.";
+}
+
 std::string OfCamera(const FirstMapEvidence& evidence) {
   if (!(evidence.depth_sigma > 0.0)) return {};
   if (!evidence.deforming) return "the scene was found to be rigid; all motion is the camera's.";
@@ -100,8 +111,9 @@ std::string Advice(const RunSummary& summary) {
   };
   if (FramesIn(summary, TrackingState::kAmbiguous) > 0)
     advice.emplace_back(
-        "If the camera does stand still, start from depth (--Init.method depth --Tracking.camera_motion "
-        "none); if it moves, move it further and not evenly.");
+        "If the camera does stand still, start from depth (--Init.method depth --Tracking.camera_motion none), or from "
+        "a network's (--depth_prior DIR --Init.method depth_prior --Tracking.camera_motion none); if it moves, move it "
+        "further and not evenly.");
   if (count([](const FirstMapEvidence& e) { return e.depth_sigma > 0.0 && !IsDepthKnown(e); }))
     advice.emplace_back(
         "Depth needs more parallax: move the camera sideways, and further by the distance of the "
@@ -130,6 +142,7 @@ std::vector<std::pair<std::string, std::string>> TrustIn(const RunSummary& summa
   if (summary.frames_read == 0) return trust;
   add("frames", OfFrames(summary));
   add("depth", OfMaps(summary, OfDepth));
+  add("depth_prior", OfPrior(summary));
   add("camera", OfMaps(summary, OfCamera));
   add("calibration", OfMaps(summary, OfCalibration));
   add("images", OfImages(summary.description));

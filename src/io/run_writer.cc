@@ -143,7 +143,7 @@ Result<RunWriter> RunWriter::Create(const std::string& output_path, const Camera
   RunSummary summary;
   summary.description = std::move(description);
   RunDescription& paths = summary.description;
-  for (std::string* path : {&paths.input, &paths.camera, &paths.mask, &paths.tracks})
+  for (std::string* path : {&paths.input, &paths.camera, &paths.mask, &paths.tracks, &paths.depth_prior})
     if (!path->empty()) *path = std::filesystem::absolute(*path).lexically_normal().string();
   summary.note = "the run was stopped before its end";  // what a killed run says
   if (Status status = WriteRunSummary(output_path + "/run.json", summary); !status.ok()) return status;

@@ -17,6 +17,9 @@ namespace {
 Status NeedsImagesAlone(const TrackerOptions& options) {
   if (options.oracle.Any())
     return {ErrorCode::kInvalidArgument, "Oracle options ask the truth of a simulated sequence; track its folder"};
+  if (options.depth_prior.IsGiven())
+    return {ErrorCode::kInvalidArgument,
+            "DepthPrior.path is a folder, and here depth priors come with their images; leave it empty"};
   if (options.init.TakesKnownDepth())
     return {ErrorCode::kInvalidArgument, "Init.method " + std::string(EnumName(options.init.method)) +
                                              " needs more than images; track a sequence that has it"};
@@ -57,6 +60,9 @@ Result<std::vector<FrameReport>> ImageTracker::Process(const SequenceFrame& fram
   if (!frame.mask.empty())
     if (Status status = CheckImageSize(frame.mask, "the mask of image " + frame.name, camera_); !status.ok())
       return status;
+  if (!frame.depth_prior.empty() && frame.depth_prior.type() != CV_32FC1)
+    return Status(ErrorCode::kInvalidArgument,
+                  "the depth prior of image " + frame.name + " is not of 32-bit floats with one channel; convert it");
   kept_.push_back(frame);
   std::vector<FrameReport> done = ProcessFrom(kept_.size() - 1);
   ForgetFrames();

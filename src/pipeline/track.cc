@@ -262,6 +262,7 @@ RunDescription DescriptionOf(const RunRequest& request, const TrackOptions& opti
           "",
           options.tracker.init.IsMetric(),
           options.track_file.path,
+          options.tracker.depth_prior.path,
           request.extensions.Names()};
 }
 
@@ -322,6 +323,10 @@ Status CheckTrackOptions(const TrackOptions& options) {
   const InitOptions& init = options.tracker.init;
   if (init.method != InitMethod::kDepth && !init.depth.cloud_path.empty())
     return {ErrorCode::kInvalidArgument, "Init.depth_cloud is for a start from depth; give Init.method depth as well"};
+  if (init.method == InitMethod::kDepthPrior && !options.tracker.depth_prior.IsGiven())
+    return {ErrorCode::kInvalidArgument,
+            "Init.method depth_prior starts from the depth images of another program; name their folder with "
+            "--depth_prior (DepthPrior.path)"};
   return Status::Ok();
 }
 
@@ -331,8 +336,10 @@ Status EndOf(const RunSummary& summary, const std::string& output_path) {
           summary.note + "; " + std::to_string(summary.frames_tracked) + " tracked frames are in " + output_path};
 }
 
-Result<RunSummary> RunTrack(const RunRequest& request, const TrackOptions& options,
+Result<RunSummary> RunTrack(const RunRequest& given, const TrackOptions& options,
                             std::span<TrackObserver* const> observers) {
+  RunRequest request = given;
+  if (options.tracker.depth_prior.IsGiven()) request.input.depth_prior_path = options.tracker.depth_prior.path;
   // More threads than processors gain nothing, and TBB complains of them on standard error.
   TrackOptions usable = options;
   usable.threads = std::min(options.threads, std::max(2, static_cast<int>(std::thread::hardware_concurrency())));

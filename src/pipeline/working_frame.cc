@@ -12,8 +12,10 @@ namespace pliant {
 
 PreparedFrame PrepareWorkingFrame(const SequenceFrame& frame, const WorkingImage& working,
                                   const TrackerOptions& options) {
-  return PrepareFrame(frame.frame_idx, frame.name, frame.timestamp_s, working.Image(frame.image),
-                      working.Nearest(frame.mask), options);
+  PreparedFrame prepared = PrepareFrame(frame.frame_idx, frame.name, frame.timestamp_s, working.Image(frame.image),
+                                        working.Nearest(frame.mask), options);
+  prepared.depth_prior = frame.depth_prior;
+  return prepared;
 }
 
 TrackerOptions WorkingOptions(TrackerOptions options, const WorkingImage& working) {

@@ -140,4 +140,18 @@ cv::Mat MaskOf(const py::handle& object) {
   return mask;
 }
 
+cv::Mat DepthPriorOf(const py::handle& object) {
+  if (object.is_none()) return {};
+  const std::string wanted = "a NumPy array of dtype float32 or float64 and shape (height, width), 0 or NaN: none";
+  const py::array array = AnyArray(object, "the depth prior", wanted);
+  if (array.dtype().kind() != 'f' || array.itemsize() < 4)
+    RaiseTypeError("the depth prior is " + wanted + "; this one is " + ShapeText(array));
+  if (array.ndim() != 2 || !IsImageSide(array.shape(0)) || !IsImageSide(array.shape(1)))
+    RaiseValueError("the depth prior is " + wanted + "; this one is " + ShapeText(array));
+  const auto values = py::array_t<float, py::array::c_style | py::array::forcecast>::ensure(array);
+  cv::Mat prior(static_cast<int>(values.shape(0)), static_cast<int>(values.shape(1)), CV_32FC1);
+  std::copy_n(values.data(), values.size(), prior.ptr<float>());
+  return prior;
+}
+
 }  // namespace pliant::python

@@ -54,5 +54,7 @@ pybind11::array_t<std::uint8_t> ImageArray(const cv::Mat& image);
 cv::Mat ImageOf(const pybind11::handle& array, const std::string& what);
 // A mask: dtype uint8 or bool, shape (height, width), 0 or False: ignore this pixel; None: empty.
 cv::Mat MaskOf(const pybind11::handle& array);
+// A depth prior: dtype float32 or float64, shape (height, width), as float32; None: empty.
+cv::Mat DepthPriorOf(const pybind11::handle& array);
 
 }  // namespace pliant::python

@@ -35,10 +35,12 @@ class PythonTracker {
         tracker_(
             Create(calibration, OptionsOf(options, MakeTrackOptions(EnumOf<Preset>(preset, "preset"))), examples)) {}
 
-  std::vector<FrameReport> Process(const py::object& image, const py::object& mask, std::optional<double> timestamp) {
+  std::vector<FrameReport> Process(const py::object& image, const py::object& mask, std::optional<double> timestamp,
+                                   const py::object& depth_prior) {
     if (finished_) RaiseValueError("the tracker is finished; make another one for other images");
     SequenceFrame frame = FrameOf(next_idx_, image, "the image");
     frame.mask = MaskOf(mask);
+    frame.depth_prior = DepthPriorOf(depth_prior);
     frame.timestamp_s = timestamp.value_or(next_idx_ / fps_);
     if (!std::isfinite(frame.timestamp_s)) RaiseValueError("timestamp is not a finite number; give seconds, or None");
     auto reports = [&] {
@@ -164,11 +166,12 @@ void BindTracker(py::module_& module) {
            py::arg("camera"), py::arg("options") = py::none(), py::kw_only(), py::arg("preset") = "default",
            py::arg("examples") = py::tuple())
       .def("process", &PythonTracker::Process, py::arg("image"), py::arg("mask") = py::none(),
-           py::arg("timestamp") = py::none(),
+           py::arg("timestamp") = py::none(), py::arg("depth_prior") = py::none(),
            "The reports that became final with this image, in order of time; each image is reported once.\n\n"
            "image: uint8 (height, width), or (height, width, 3) in the order blue, green, red, of the camera's size; "
            "it is copied. mask: uint8 or bool (height, width), 0: ignore this pixel. timestamp: seconds; without it "
-           "number / fps of the camera (30 where it has none).\n\n"
+           "number / fps of the camera (30 where it has none). depth_prior: float32 or float64 (height, width), the "
+           "depth of another program, up to a scale and a shift (options DepthPrior); 0 or NaN: none.\n\n"
            "From the reference image on reports are held back until there is a map, which gives these frames too "
            "their poses and points.")
       .def("finish", &PythonTracker::Finish, "No more images come: the reports that are held back.")

@@ -39,6 +39,8 @@ namespace {
 // What follows from other options. As published, the graph is wider after a start from metric depth.
 TrackerOptions Completed(TrackerOptions options) {
   if (options.init.IsMetric()) options.graph.sigma_mm = options.sigma_metric_mm;
+  options.init.window.prior = options.depth_prior.window;
+  options.init.prior_kind = options.depth_prior.kind;
   options.init.window.window.patch_px = options.point_tracker.lucas_kanade.patch_size;
   return options;
 }

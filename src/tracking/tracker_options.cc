@@ -50,6 +50,7 @@ void TrackerOptions::List(OptionTable& table) {
   table.Renamed("gauge_share", "common_motion_share");
   growth.List(table);
   relocalization.List(table);
+  depth_prior.List(table);
   oracle.List(table);
 }
 

@@ -23,7 +23,7 @@ MODULES = ("base geometry image camera colmap scene io datasets simulation photo
 # Where a library may be included: in the files of one module whose names begin so; where nothing is said, in one file of it.
 LIBRARY_HOMES = {"flann": ("deformation", ""), "opengv": ("estimation", "opengv_"), "assimp": ("simulation", "")}
 # The folders of a module, bottom to top, where the upper ones build on the lower ones.
-FOLDERS = {"tracking": "tracks submap frame relocalization bootstrapping map_upkeep".split()}
+FOLDERS = {"tracking": "tracks submap depth_prior frame relocalization bootstrapping map_upkeep".split()}
 SPDX = ("SPDX-FileCopyrightText: ", "SPDX-License-Identifier: BSD-3-Clause")
 SPDX_SUFFIXES = {".h", ".cc", ".py", ".pyi", ".cmake", ".sh"}
 

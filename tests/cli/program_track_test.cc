@@ -44,6 +44,31 @@ TEST(Program, AStartFromACloudTakesItsMethodAndSaysWhenTheUnitIsUnlikely) {
   EXPECT_THAT(in_meters.err, Not(HasSubstr("median depth")));
 }
 
+TEST(Program, AStartFromADepthPriorTakesItsFolder) {
+  const Outcome usage = Pliant("track --image_path x --output_path y --Init.method depth_prior");
+  EXPECT_EQ(usage.exit, 2);
+  EXPECT_THAT(usage.err, HasSubstr("name their folder with --depth_prior"));
+  const std::string sequence = Temporary("seq_of_prior").string();
+  ASSERT_EQ(Pliant("simulate --quiet --Trajectory.frames 3 --Camera.width 320 --Camera.height 240 --output_path '" +
+                   sequence + "'")
+                .exit,
+            0);
+  const std::string run = Temporary("run_from_prior").string();
+  const std::string track =
+      "track --image_path '" + sequence + "' --output_path '" + run + "' --Init.method depth_prior --depth_prior ";
+  const Outcome none = Pliant(track + "'" + sequence + "/none'");
+  EXPECT_EQ(none.exit, 1);
+  EXPECT_THAT(none.err, HasSubstr("there is no folder"));
+  const Outcome from_prior = Pliant(track + "'" + sequence + "/depth' --DepthPrior.kind depth");
+  EXPECT_EQ(from_prior.exit, 0) << from_prior.err;
+  EXPECT_THAT(from_prior.out, HasSubstr("3 of 3 frames tracked"));
+  EXPECT_THAT(from_prior.out, HasSubstr("nothing confirmed them"));
+  std::ifstream summary(run + "/run.json");
+  const std::string text((std::istreambuf_iterator<char>(summary)), {});
+  EXPECT_THAT(text, HasSubstr("\"depth_prior\": \"" + sequence + "/depth\""));
+  EXPECT_THAT(text, HasSubstr("\"metric\": false"));
+}
+
 TEST(Program, TracksOfOtherImagesAreOneSentenceAndExitCodeOne) {
   const std::string sequence = Temporary("seq_of_tracks").string();
   const std::string tracks = Temporary("tracks.csv").string();

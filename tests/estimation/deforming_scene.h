@@ -62,7 +62,7 @@ struct Scene {
         const double noise = noise_px / kFocalPx * x.norm();
         const Eigen::Vector3d seen = x + noise * Eigen::Vector3d(random.Normal(), random.Normal(), 0);
         DeformingObservation observation{v, i, seen.normalized()};
-        if (light_sigma > 0) observation.log_light = std::log(x.norm()) + 1.7 + random.Normal(light_sigma);
+        if (light_sigma > 0) observation.log_cue = std::log(x.norm()) + 1.7 + random.Normal(light_sigma);
         start.observations.push_back(observation);
         if (v == 0) start.points_in_world.push_back(60 * observation.ray);
       }

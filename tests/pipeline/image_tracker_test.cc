@@ -4,6 +4,7 @@
 #include "pliant/pipeline/image_tracker.h"
 
 #include <array>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -12,6 +13,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "pliant/base/statistics.h"
 #include "pliant/datasets/given_images.h"
 #include "support/rendered_sequence.h"
 #include "support/temporary_folder.h"
@@ -90,6 +92,51 @@ TEST(ImageTracker, RefusesOptionsThatNeedMoreThanImages) {
     EXPECT_EQ(ImageTracker::Create(Rendered().camera, std::nullopt, options).status().code(),
               ErrorCode::kInvalidArgument);
   }
+}
+
+// Of one image, up to a scale, whatever the camera does.
+TEST(ImageTracker, StartsFromADepthPriorAndSaysThatItIsProvisional) {
+  constexpr double kShape = 0.02;  // of log distance, where the prior has no error but its unit
+  TrackOptions options = FixedImages();
+  options.tracker.init.method = InitMethod::kDepthPrior;
+  options.tracker.depth_prior.kind = DepthPriorKind::kDepth;
+  auto tracker = ImageTracker::Create(Rendered().camera, std::nullopt, options);
+  ASSERT_TRUE(tracker.ok()) << tracker.status().message();
+  RenderedSequence sequence;
+  auto frame = *sequence.Next();
+  frame->depth_prior = 0.01 * Rendered().frames.front().depth;
+  const auto reports = tracker->Process(*frame);
+  ASSERT_TRUE(reports.ok());
+  ASSERT_EQ(reports->size(), 1U);
+  const FrameReport& report = reports->front();
+  EXPECT_EQ(report.state, TrackingState::kProvisional);
+  ASSERT_GT(report.observations.size(), 40U);
+  std::vector<double> log_ratios;
+  for (const PointObservation& seen : report.observations) {
+    const auto x = static_cast<int>(std::lround(seen.pixel.x()));
+    const auto y = static_cast<int>(std::lround(seen.pixel.y()));
+    log_ratios.push_back(std::log(seen.position.z() / Rendered().frames.front().depth.at<float>(y, x)));
+  }
+  EXPECT_LT(MedianDeviation(log_ratios), kShape);
+
+  frame->frame_idx = 1;
+  frame->depth_prior = cv::Mat(240, 320, CV_16UC1, cv::Scalar::all(1));
+  EXPECT_THAT(tracker->Process(*frame).status().message(), HasSubstr("the depth prior of image"));
+  options.tracker.depth_prior.path = "priors";
+  EXPECT_EQ(ImageTracker::Create(Rendered().camera, std::nullopt, options).status().code(),
+            ErrorCode::kInvalidArgument);
+}
+
+TEST(ImageTracker, WithoutADepthPriorAStartFromItSaysSo) {
+  TrackOptions options = FixedImages();
+  options.tracker.init.method = InitMethod::kDepthPrior;
+  auto tracker = ImageTracker::Create(Rendered().camera, std::nullopt, options);
+  RenderedSequence sequence;
+  const auto reports = tracker->Process(**sequence.Next());
+  ASSERT_TRUE(reports.ok());
+  ASSERT_EQ(reports->size(), 1U);
+  EXPECT_FALSE(reports->front().cam_from_world.has_value());
+  EXPECT_THAT(reports->front().note, HasSubstr("the image has no depth prior"));
 }
 
 TEST(ImageTracker, PassesOverAnImageOfAnotherSize) {

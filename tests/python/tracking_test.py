@@ -55,6 +55,20 @@ class Images(TestCase):
         self.assertEqual(posed[-1].name, f"{COUNT - 1:06d}.png")
         self.assertEqual(set(posed[-1].costs), set(run.frames.costs))
 
+    def test_a_depth_prior_starts_a_map_in_one_image(self):
+        options = {"Init.method": "depth_prior", "DepthPrior.kind": "depth", **FIXED}
+        run = pliant.track(SEQUENCE, self.folder / "run", options, depth_prior=SEQUENCE / "depth", end=3)
+        self.assertEqual(set(run.frames.state), {"provisional"})
+        self.assertEqual(run.summary["depth_prior"], str((SEQUENCE / "depth").resolve()))
+        tracker = pliant.Tracker(self.camera, options)
+        prior = np.full(self.images[0].shape[:2], 3.0)
+        reports = tracker.process(self.images[0], depth_prior=prior)
+        self.assertEqual([report.state for report in reports], ["provisional"])
+        with self.assertRaisesRegex(TypeError, "the depth prior is a NumPy array of dtype float32"):
+            tracker.process(self.images[1], depth_prior=prior.astype(np.uint8))
+        with self.assertRaisesRegex(ValueError, "shape"):
+            tracker.process(self.images[1], depth_prior=np.ones((2, 3, 4), np.float32))
+
     def test_an_exception_in_a_callback_ends_the_run_and_is_raised(self):
         def stop(report):
             if report.frame_idx == 20:

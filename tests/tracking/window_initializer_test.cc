@@ -249,6 +249,46 @@ TEST(WindowInitializer, DoesNotBelieveALightThatSaysNothing) {
   EXPECT_THAT(outcome.reason, HasSubstr("brightness is no depth cue"));
 }
 
+// A depth prior, relative to its own unit, with errors of a tenth; the light says nothing.
+TEST(WindowInitializer, UsesADepthPriorWhereBrightnessIsNoCue) {
+  WavingTracks sequence(61);
+  Random random(9);
+  std::vector<double> albedos;
+  std::vector<double> errors;
+  for (std::size_t i = 0; i < sequence.points.size(); ++i) {
+    albedos.push_back(std::exp(random.Normal(0.7)));
+    errors.push_back(random.Normal(0.1));
+  }
+  for (std::size_t t = 0; t < sequence.frames.size(); ++t)
+    for (InitObservation& seen : sequence.frames[t].observations) {
+      const int i = static_cast<int>(seen.id.value);
+      seen.brightness = std::min(255.0, 80 * albedos[static_cast<std::size_t>(i)]);
+      seen.log_prior = std::log((sequence.poses[t] * sequence.At(i, static_cast<int>(t))).norm()) +
+                       errors[static_cast<std::size_t>(i)] - 3.0;
+    }
+  for (const Switch light : {Switch::kOn, Switch::kOff}) {
+    WindowInitOptions options;
+    options.light = light;
+    const InitOutcome outcome = sequence.Try(options);
+    ASSERT_EQ(outcome.decision, InitDecision::kMap) << outcome.reason;
+    EXPECT_THAT(outcome.reason, HasSubstr("the depth prior was used"));
+    for (const int t : {0, 60}) EXPECT_LT(sequence.ShapeError(outcome, t), kShape) << t;
+    options.prior = Switch::kOff;
+    EXPECT_THAT(sequence.Try(options, InitMoment::kLastFrame).reason, Not(HasSubstr("depth prior")));
+  }
+}
+
+// Where brightness is a cue the prior changes nothing.
+TEST(WindowInitializer, ALightThatIsRightIsTrustedBeforeADepthPrior) {
+  WavingTracks sequence(61);
+  const InitOutcome without = sequence.Try({});
+  for (InitFrame& frame : sequence.frames)
+    for (InitObservation& seen : frame.observations) seen.log_prior = std::sin(seen.pixel.x());
+  const InitOutcome with = sequence.Try({});
+  ASSERT_EQ(with.points.size(), without.points.size());
+  for (std::size_t i = 0; i < with.points.size(); ++i) EXPECT_EQ(with.points[i].position, without.points[i].position);
+}
+
 // A lens that shades the border, or a light that points ahead: known, it does no harm.
 TEST(WindowInitializer, AVignetteThatIsKnownIsNoDepth) {
   const PhotometricCalibration lens{.gamma = 1.6, .vignetting = 4, .light_spread = 6};

@@ -55,7 +55,8 @@ struct RunDescription {
   // Whether a map unit is a millimeter, since the map starts from known depth; nothing: it does not say (an earlier
   // version's, or another program's result).
   std::optional<bool> metric = {};
-  std::string tracks = {};  // the file of tracks that was followed, absolute; empty: our own tracker's
+  std::string tracks = {};       // the file of tracks that was followed, absolute; empty: our own tracker's
+  std::string depth_prior = {};  // the folder of the depth prior, absolute; empty: none
   // Parts of the method that the calling program gave in place of ours: "initializer NAME", "tracks".
   std::vector<std::string> extensions = {};
 };

@@ -33,6 +33,8 @@ struct PreparedFrame {
   ImagePyramid pyramid;
   SupportMask mask;
   cv::Mat depth_mm;  // CV_32FC1 or empty; only a start from depth uses it
+  // CV_32FC1 of any size, over the whole image, or empty: up to scale and shift; 0 or less and NaN = none.
+  cv::Mat depth_prior;
   // Instead of corners, the best first; only a start from a model or a pair uses them, when it takes a reference.
   std::function<std::vector<PixelDepth>()> known_points;
   double sharpness = 0;   // of the image, gray levels

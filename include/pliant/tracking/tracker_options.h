@@ -15,6 +15,7 @@
 #include "pliant/image/corners.h"
 #include "pliant/image/masks.h"
 #include "pliant/tracking/bootstrapping/make_initializer.h"
+#include "pliant/tracking/depth_prior/depth_prior_options.h"
 #include "pliant/tracking/frame/neighbor_agreement.h"
 #include "pliant/tracking/map_upkeep/growth_options.h"
 #include "pliant/tracking/relocalization/relocalization_options.h"
@@ -45,6 +46,7 @@ struct TrackerOptions {
   AgreementOptions agreement;
   GrowthOptions growth;
   RelocalizationOptions relocalization;
+  DepthPriorOptions depth_prior;
   OracleOptions oracle;
 
   double sigma_metric_mm = 55.0;  // instead of graph.sigma_mm after a start from metric depth, as published
@@ -66,7 +68,7 @@ struct TrackerOptions {
   Switch submaps = Switch::kOn;         // another one is begun then; off: the tracker gives up
 
   // Groups Corners, Masks, LucasKanade, PointTracker, Init, CameraPose, Deformation, Optimization, Tracking, Growth,
-  // Relocalization, AbsolutePose, Oracle, and those of the initializers.
+  // Relocalization, AbsolutePose, DepthPrior, Oracle, and those of the initializers.
   void List(OptionTable& table);
 };
 

@@ -118,9 +118,10 @@ void DeformingTerms::PrepareCoefficients() {
 void DeformingTerms::PrepareLight() {
   std::vector<double> light(charts_.size(), std::numeric_limits<double>::quiet_NaN());
   for (const DeformingObservation& observation : start_.observations)
-    if (observation.view_idx == 0) light[static_cast<std::size_t>(observation.point_idx)] = observation.log_light;
-  light =
-      CorrectForInclination(start_.points_in_world, NearestNeighbors(start_.points_in_world, kNormalNeighbors), light);
+    if (observation.view_idx == 0) light[static_cast<std::size_t>(observation.point_idx)] = observation.log_cue;
+  if (start_.cue == DistanceCue::kLight)
+    light = CorrectForInclination(start_.points_in_world, NearestNeighbors(start_.points_in_world, kNormalNeighbors),
+                                  light);
   const auto log_distance = [&](std::size_t i) { return std::log(start_.points_in_world[i].norm()); };
   std::vector<double> offsets;
   for (std::size_t i = 0; i < light.size(); ++i)

@@ -28,20 +28,26 @@ std::array<int, 3> ComparedViews(const DeformingWindow& window) {
 // all; zeros: no light.
 LightFit CompareWindowWithLight(const DeformingWindow& window) {
   const std::array<int, 3> views = ComparedViews(window);
-  LightFit mean;
+  std::vector<LightFit> fits;
   for (const int view : views) {
     std::vector<Eigen::Vector3d> positions;
-    std::vector<double> log_light;
+    std::vector<double> log_cue;
     for (const DeformingObservation& observation : window.observations) {
       if (observation.view_idx != view) continue;
       positions.push_back(window.cams_from_world[static_cast<std::size_t>(view)] *
                           window.Position(observation.point_idx, view));
-      log_light.push_back(observation.log_light);
+      log_cue.push_back(observation.log_cue);
     }
-    const LightFit fit = CompareWithLight(positions, log_light);
-    if (!(fit.error > 0.0)) return {};
-    mean.error += fit.error / static_cast<double>(views.size());
-    mean.spread += fit.spread / static_cast<double>(views.size());
+    const LightFit fit =
+        window.cue == DistanceCue::kLight ? CompareWithLight(positions, log_cue) : CompareWithPrior(positions, log_cue);
+    if (fit.error > 0.0) fits.push_back(fit);
+  }
+  // Every frame has a brightness; a depth prior may lack in some.
+  if (fits.empty() || (window.cue == DistanceCue::kLight && fits.size() < views.size())) return {};
+  LightFit mean;
+  for (const LightFit& fit : fits) {
+    mean.error += fit.error / static_cast<double>(fits.size());
+    mean.spread += fit.spread / static_cast<double>(fits.size());
   }
   return mean;
 }

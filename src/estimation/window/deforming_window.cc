@@ -278,7 +278,7 @@ Result<DeformingSolution> SolveDeformingWindow(const DeformingWindow& start, dou
                                              " and 1 sample point or more"};
   const int rank = std::min(options.rank, static_cast<int>(start.times.size()) - 1);
   const bool lit = std::any_of(start.observations.begin(), start.observations.end(),
-                               [](const auto& observation) { return std::isfinite(observation.log_light); });
+                               [](const auto& observation) { return std::isfinite(observation.log_cue); });
   const int last_rank = lit ? std::max(1, rank - 1) : rank;
   const SampleProblem common{start, SpreadPoints(start.points_in_world, options.nodes), focal_px, options};
   const std::vector<PointSample> point_samples = SamplePoints(start, options.sample_points);

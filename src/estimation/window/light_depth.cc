@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "pliant/base/statistics.h"
 #include "pliant/geometry/decompositions.h"
@@ -18,6 +19,18 @@ constexpr double kCosineExponent = 0.4;
 constexpr double kMinCosine = 0.12;  // steeper surfaces are not trusted
 constexpr double kFar = 1.8;         // times the median distance: beyond, dark noise and the ambient light count
 constexpr std::size_t kMinLit = 20;
+
+LightFit FitWithin(double far, const std::vector<double>& distances, const std::vector<double>& log_cue) {
+  std::vector<double> offsets;
+  std::vector<double> logs;
+  for (std::size_t i = 0; i < log_cue.size(); ++i) {
+    if (!std::isfinite(log_cue[i]) || !(distances[i] > 0.0) || distances[i] >= far) continue;
+    logs.push_back(std::log(distances[i]));
+    offsets.push_back(logs.back() - log_cue[i]);
+  }
+  if (offsets.size() < kMinLit) return {};
+  return {MedianDeviation(std::move(offsets)), MedianDeviation(std::move(logs))};
+}
 
 }  // namespace
 
@@ -58,16 +71,13 @@ LightFit CompareWithLight(const std::vector<Eigen::Vector3d>& positions_in_cam, 
       CorrectForInclination(positions_in_cam, NearestNeighbors(positions_in_cam, kNormalNeighbors), log_light);
   std::vector<double> distances;
   for (const Eigen::Vector3d& position : positions_in_cam) distances.push_back(position.norm());
-  const double far = kFar * Median(distances);
-  std::vector<double> offsets;
-  std::vector<double> logs;
-  for (std::size_t i = 0; i < light.size(); ++i) {
-    if (!std::isfinite(light[i]) || !(distances[i] > 0.0) || distances[i] >= far) continue;
-    logs.push_back(std::log(distances[i]));
-    offsets.push_back(logs.back() - light[i]);
-  }
-  if (offsets.size() < kMinLit) return {};
-  return {MedianDeviation(std::move(offsets)), MedianDeviation(std::move(logs))};
+  return FitWithin(kFar * Median(distances), distances, light);
+}
+
+LightFit CompareWithPrior(const std::vector<Eigen::Vector3d>& positions_in_cam, const std::vector<double>& log_prior) {
+  std::vector<double> distances;
+  for (const Eigen::Vector3d& position : positions_in_cam) distances.push_back(position.norm());
+  return FitWithin(std::numeric_limits<double>::infinity(), distances, log_prior);
 }
 
 }  // namespace pliant

@@ -27,5 +27,7 @@ struct LightFit {
   double spread = 0;  // of log |x| alone: what a light that says nothing leaves
 };
 LightFit CompareWithLight(const std::vector<Eigen::Vector3d>& positions_in_cam, const std::vector<double>& log_light);
+// The same of a cue that says the distance itself, how far it may be.
+LightFit CompareWithPrior(const std::vector<Eigen::Vector3d>& positions_in_cam, const std::vector<double>& log_prior);
 
 }  // namespace pliant

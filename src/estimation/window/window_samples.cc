@@ -94,6 +94,7 @@ DeformingWindow PartOf(const DeformingWindow& window, const PointSample& sample)
   part.times = window.times;
   part.cams_from_world = window.cams_from_world;
   part.camera = window.camera;
+  part.cue = window.cue;
   std::vector<int> index(window.points_in_world.size(), -1);
   for (const int i : sample) {
     index[static_cast<std::size_t>(i)] = static_cast<int>(part.points_in_world.size());

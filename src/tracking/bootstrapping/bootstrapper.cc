@@ -7,6 +7,7 @@
 #include <cassert>
 #include <utility>
 
+#include "tracking/depth_prior/prior_distances.h"
 #include "tracking/image_fault.h"
 
 namespace pliant {
@@ -246,9 +247,10 @@ void Bootstrapper::AddCorners(const PreparedFrame& frame, const LocalBrightness&
   const std::vector<Eigen::Vector2d> existing = PixelsOf(points->observations);
   CornerOptions corners = options_.corners;
   corners.max_corners = max_corners;
+  const PriorDistances prior(frame, camera_, options_.depth_prior);
   for (const NewTrack& track : tracks_->AddNew(frame, existing, corners))
-    points->observations.push_back(
-        {track.id, track.pixel, 1.0, brightness.At(track.pixel), ColorAt(frame.image, track.pixel)});
+    points->observations.push_back({track.id, track.pixel, 1.0, brightness.At(track.pixel),
+                                    ColorAt(frame.image, track.pixel), prior.LogAt(track.pixel)});
   std::ranges::sort(points->observations, {}, &InitObservation::id);
 }
 
@@ -269,11 +271,12 @@ void Bootstrapper::AddKnownPoints(const PreparedFrame& frame, const LocalBrightn
 InitFrame Bootstrapper::FollowedFrame(const PreparedFrame& frame, const Submap& submap, LossCounts* losses) {
   InitFrame followed{frame.frame_idx, {}};
   const LocalBrightness brightness(frame.image, frame.mask.valid());
+  const PriorDistances prior(frame, camera_, options_.depth_prior);
   std::vector<PointId> kept;
   for (const PointTrack& track : tracks_->Track(submap.previous, frame, PredictPixels(frame.frame_idx))) {
     if (track.failure == PatchFailure::kNone) {
-      followed.observations.push_back(
-          {track.id, track.pixel, track.ssim, brightness.At(track.pixel), ColorAt(frame.image, track.pixel)});
+      followed.observations.push_back({track.id, track.pixel, track.ssim, brightness.At(track.pixel),
+                                       ColorAt(frame.image, track.pixel), prior.LogAt(track.pixel)});
       kept.push_back(track.id);
     } else {
       tracks_->Remove(track.id);

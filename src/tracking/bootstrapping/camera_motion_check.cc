@@ -70,7 +70,7 @@ Status CheckCameraMotion(const InitInput& input, const SolvedWindow& window, con
           "camera and scene cannot be told apart: with a camera that stands still the errors are " + Digits(ratio, 2) +
               " times as large, and they must be " + Digits(options.min_still_camera_ratio, 2) +
               " times as large to show that it moves; move it further and not evenly, or, if it does stand still, "
-              "start from depth (--Init.method depth --Tracking.camera_motion none)"};
+              "start from depth (--Init.method depth or depth_prior, with --Tracking.camera_motion none)"};
 }
 
 }  // namespace pliant

@@ -24,7 +24,7 @@ void MonocularInitOptions::List(OptionTable& table) {
             0.05, 50);
   table.Add("max_iterations", &max_iterations, "-", "gated, paper: maximum number of RANSAC samples of one attempt", 1,
             100000);
-  table.Add("min_points", &min_points, "-", "gated: minimum number of points of a map", 12, 100000);
+  table.Add("min_points", &min_points, "-", "gated, depth_prior: minimum number of points of a map", 12, 100000);
   table.Add("paper_frames", &paper_frames, "frames", "paper: frames between the two views", 1, 1000);
   table.Add("min_parallax_deg", &min_parallax_deg, "deg",
             "gated: minimum median parallax after compensation of the rotation; depth noise is inverse to it", 0.01,
@@ -55,10 +55,12 @@ void MonocularInitOptions::List(OptionTable& table) {
 
 void InitOptions::List(OptionTable& table) {
   table.BeginGroup("Init", "the first map");
-  table.AddChoice("method", &method,
-                  "window: all frames since the reference, of a deforming scene; gated: waits until two views "
-                  "suffice; paper: two views at a fixed distance, as published; stereo: a rectified pair of images; "
-                  "depth: the sequence's depth image; colmap_model: the points of a COLMAP model");
+  table.AddChoice(
+      "method", &method,
+      "window: all frames since the reference, of a deforming scene; gated: waits until two views "
+      "suffice; paper: two views at a fixed distance, as published; stereo: a rectified pair of images; "
+      "depth: the sequence's depth image; colmap_model: the points of a COLMAP model; depth_prior: the depth "
+      "prior of one image, provisional");
   table.AddChoice("provisional", &window.provisional,
                   "window: maps that are less certain than demanded, where no other comes, or hardly better than one "
                   "constant depth; their frames have the state provisional");
@@ -83,6 +85,8 @@ std::unique_ptr<Initializer> MakeInitializer(const InitOptions& options, Random 
                                          .unit_mm = options.model.unit_mm,
                                          .min_points = options.model.min_points},
                                         options.monocular.nominal_depth_mm);
+    case InitMethod::kDepthPrior:
+      return MakePriorInitializer(options.monocular, options.window, options.prior_kind);
     case InitMethod::kPaper:
       return MakePaperInitializer(options.monocular, random);
     case InitMethod::kGated:

@@ -30,7 +30,8 @@ int KeptPoints(const InitFrame& reference, const InitFrame& frame) {
 
 // A rigid scene whose depths differ by more than the light could be wrong by, and not as the light says.
 bool ContradictsLightClearly(const SolvedWindow& window) {
-  return window.IsRigid() && ContradictsLight(window.solution) && window.solution.light_error > kMaxLightError;
+  return window.IsRigid() && window.solution.window.cue == DistanceCue::kLight && ContradictsLight(window.solution) &&
+         window.solution.light_error > kMaxLightError;
 }
 
 class WindowInitializer final : public Initializer {

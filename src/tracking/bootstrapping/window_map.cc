@@ -59,6 +59,7 @@ MapPoints ChooseCertain(const MapPoints& points, const std::vector<double>& erro
   to.window.times = from.window.times;
   to.window.cams_from_world = from.window.cams_from_world;
   to.window.coefficients = from.window.coefficients;
+  to.window.cue = from.window.cue;
   for (const std::size_t i : order) {
     const bool agrees = errors_px[i] <= max_error_px;
     if (!agrees || !(points.depth_sigmas[i] <= max_sigma)) {
@@ -155,7 +156,8 @@ Status OptimizePoints(const InitInput& input, const MapDemands& demands, const W
   const std::vector<PointId> added = WindowPointsToAdd(input, *points, options.min_frame_share);
   std::vector<DeformingObservation> observations;
   for (std::size_t k = 0; k < input.frames.size(); ++k) {
-    const auto seen = SeenIn(input, input.frames[k], added, static_cast<int>(k), options);
+    const auto seen =
+        SeenIn(input, input.frames[k], added, static_cast<int>(k), WithCue(options, points->solution.window.cue));
     observations.insert(observations.end(), seen.begin(), seen.end());
   }
   auto optimized = OptimizeDeformingPoints(points->solution, observations, static_cast<int>(added.size()), focal_px,
@@ -301,6 +303,7 @@ Status MakeWindowMap(const InitInput& input, const SolvedWindow& window, const M
   if (const double ratio = outcome->measured.still_camera_error_ratio; ratio > 0.0)
     outcome->reason += "; with a camera that stands still the errors would be " + Digits(ratio, 1) + " times as large";
   if (window.light_is_of_no_use) outcome->reason += "; brightness is no depth cue in these images and was not used";
+  if (window.solution.window.cue == DistanceCue::kPrior) outcome->reason += "; the depth prior was used";
   return Status::Ok();
 }
 

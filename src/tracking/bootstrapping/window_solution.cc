@@ -4,7 +4,9 @@
 #include "tracking/bootstrapping/window_solution.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <string>
 #include <utility>
@@ -22,6 +24,24 @@ constexpr std::size_t kMinPoints = 12;
 constexpr std::size_t kMinFrames = 6;
 // A light that leaves more of the spread of log distances than this says nothing of distance.
 constexpr double kMaxOfSpread = 0.8;
+constexpr std::ptrdiff_t kMinPriorPoints = 40;  // of a frame, to be compared with the solution
+
+// In the frames that a solution is compared with it in, at least.
+bool HasPrior(const InitInput& input, std::size_t frames, const WindowInitOptions& options) {
+  if (options.prior == Switch::kOff) return false;
+  return std::ranges::all_of(std::array{std::size_t{0}, frames - 1}, [&](std::size_t k) {
+    const auto known = std::ranges::count_if(input.frames[k].observations, [](const InitObservation& observation) {
+      return std::isfinite(observation.log_prior);
+    });
+    return known >= kMinPriorPoints;
+  });
+}
+
+WindowInitOptions WithoutCue(WindowInitOptions options) {
+  options.light = Switch::kOff;
+  options.cue = DistanceCue::kLight;
+  return options;
+}
 
 // The points that are seen in enough views; where they are too many, those still seen, then those seen most.
 std::vector<PointId> ChoosePoints(const InitInput& input, const std::vector<std::size_t>& views,
@@ -55,11 +75,11 @@ void AddNewPoints(const std::vector<DeformingObservation>& observations, const s
   std::vector<double> distances;
   std::vector<double> offsets;  // log distance less the light's
   for (const DeformingObservation& observation : observations) {
-    if (std::isfinite(observation.log_light)) lights.push_back(observation.log_light);
+    if (std::isfinite(observation.log_cue)) lights.push_back(observation.log_cue);
     const auto found = known->find(ids[static_cast<std::size_t>(observation.point_idx)]);
     if (found == known->end()) continue;
     distances.push_back((cam_from_world * found->second).norm());
-    if (std::isfinite(observation.log_light)) offsets.push_back(std::log(distances.back()) - observation.log_light);
+    if (std::isfinite(observation.log_cue)) offsets.push_back(std::log(distances.back()) - observation.log_cue);
   }
   const double unlit = distances.empty() ? nominal_depth_mm : Median(distances);
   double offset = 0;
@@ -68,7 +88,7 @@ void AddNewPoints(const std::vector<DeformingObservation>& observations, const s
   else if (!lights.empty())
     offset = std::log(nominal_depth_mm) - Median(lights);
   for (const DeformingObservation& observation : observations) {
-    const double distance = std::isfinite(observation.log_light) ? std::exp(offset + observation.log_light) : unlit;
+    const double distance = std::isfinite(observation.log_cue) ? std::exp(offset + observation.log_cue) : unlit;
     known->try_emplace(ids[static_cast<std::size_t>(observation.point_idx)],
                        cam_from_world.Inverse() * (distance * observation.ray));
   }
@@ -79,6 +99,7 @@ void AddNewPoints(const std::vector<DeformingObservation>& observations, const s
 Result<DeformingWindow> Start(const InitInput& input, const std::vector<std::size_t>& views,
                               const WindowInitOptions& options, double nominal_depth_mm, std::vector<PointId>* ids) {
   DeformingWindow start;
+  start.cue = options.cue;
   Positions known;
   Rigid3 near;
   for (std::size_t v = 0; v < views.size(); ++v) {
@@ -138,20 +159,33 @@ Result<PreparedWindow> PrepareWindow(const InitInput& input, std::size_t frames,
   return window;
 }
 
-Result<SolvedWindow> SolveDeforming(const InitInput& input, const PreparedWindow& window,
-                                    const WindowInitOptions& options, double nominal_depth_mm) {
+Result<SolvedWindow> SolvedWithCue(const InitInput& input, const PreparedWindow& window,
+                                   const WindowInitOptions& options) {
   auto solution = SolveDeformingWindow(window.start, input.camera.MeanFocalLengthPx(), options.window, input.threads);
   if (!solution.ok()) return solution.status();
-  SolvedWindow lit{window.views, window.ids, std::move(*solution), false};
-  if (!ContradictsLight(lit.solution)) return lit;
-  WindowInitOptions without = options;
-  without.light = Switch::kOff;
-  const auto prepared = PrepareWindow(input, window.views.back() + 1, options.views, without, nominal_depth_mm);
-  if (!prepared.ok()) return lit;
-  auto unlit = SolveDeforming(input, *prepared, without, nominal_depth_mm);
-  if (!unlit.ok() || MedianSigma(unlit->solution) > MedianSigma(lit.solution)) return lit;
-  unlit->light_is_of_no_use = true;
-  return unlit;
+  return SolvedWindow{window.views, window.ids, std::move(*solution), false};
+}
+
+// Where the solution contradicts its cue, the depth prior is one, unless it is contradicted too; else there is none.
+Result<SolvedWindow> SolveDeforming(const InitInput& input, const PreparedWindow& window,
+                                    const WindowInitOptions& options, double nominal_depth_mm) {
+  auto first = SolvedWithCue(input, window, options);
+  if (!first.ok() || !ContradictsLight(first->solution)) return first;
+  const std::size_t frames = window.views.back() + 1;
+  std::vector<WindowInitOptions> others;
+  if (options.cue == DistanceCue::kLight && HasPrior(input, frames, options))
+    others.push_back(WithCue(options, DistanceCue::kPrior));
+  others.push_back(WithoutCue(options));
+  for (const WindowInitOptions& other : others) {
+    const auto prepared = PrepareWindow(input, frames, options.views, other, nominal_depth_mm);
+    if (!prepared.ok()) continue;
+    auto solved = SolvedWithCue(input, *prepared, other);
+    if (!solved.ok() || ContradictsLight(solved->solution)) continue;
+    if (MedianSigma(solved->solution) > MedianSigma(first->solution)) continue;
+    solved->light_is_of_no_use = options.cue == DistanceCue::kLight;
+    return solved;
+  }
+  return first;
 }
 
 Result<SolvedWindow> SolvedAsRigid(const InitInput& input, const PreparedWindow& window,
@@ -195,15 +229,24 @@ int IndexOf(PointId id, const std::vector<PointId>& ids) {
   return found != ids.end() && *found == id ? static_cast<int>(found - ids.begin()) : -1;
 }
 
+WindowInitOptions WithCue(WindowInitOptions options, DistanceCue cue) {
+  options.cue = cue;
+  if (cue == DistanceCue::kPrior) options.light = Switch::kOn;
+  return options;
+}
+
 std::vector<DeformingObservation> SeenIn(const InitInput& input, const InitFrame& frame,
                                          const std::vector<PointId>& ids, int view_idx,
                                          const WindowInitOptions& options) {
   const PhotometricCalibration light = input.photometric.value_or(PhotometricCalibration{.gamma = options.gamma});
   std::vector<DeformingObservation> observations;
   for (const WindowObservation& seen : ObservationsOf(input.camera, frame, ids, view_idx)) {
-    const PointId id = ids[static_cast<std::size_t>(seen.point_idx)];
-    const double brightness = options.light == Switch::kOn ? FindById(frame.observations, id)->brightness : 0.0;
-    observations.push_back({view_idx, seen.point_idx, seen.ray, LogDistanceFromLight(light, brightness, seen.ray)});
+    const InitObservation& observation = *FindById(frame.observations, ids[static_cast<std::size_t>(seen.point_idx)]);
+    double log_cue = std::numeric_limits<double>::quiet_NaN();
+    if (options.light == Switch::kOn)
+      log_cue = options.cue == DistanceCue::kPrior ? observation.log_prior
+                                                   : LogDistanceFromLight(light, observation.brightness, seen.ray);
+    observations.push_back({view_idx, seen.point_idx, seen.ray, log_cue});
   }
   return observations;
 }
@@ -215,6 +258,7 @@ DeformingWindow InAllFrames(const InitInput& input, const std::vector<std::size_
   all.points_in_world = solved.points_in_world;
   all.shapes = solved.shapes;
   all.camera = solved.camera;
+  all.cue = solved.cue;
   all.coefficients.resize(solved.coefficients.rows(), static_cast<Eigen::Index>(input.frames.size()));
   std::size_t next = 0;  // the first solved view that is not before the frame
   for (std::size_t k = 0; k < input.frames.size(); ++k) {
@@ -228,7 +272,7 @@ DeformingWindow InAllFrames(const InitInput& input, const std::vector<std::size_
     all.coefficients.col(static_cast<Eigen::Index>(k)) =
         (1.0 - share) * solved.coefficients.col(static_cast<Eigen::Index>(before)) +
         share * solved.coefficients.col(static_cast<Eigen::Index>(next));
-    const auto seen = SeenIn(input, input.frames[k], ids, static_cast<int>(k), options);
+    const auto seen = SeenIn(input, input.frames[k], ids, static_cast<int>(k), WithCue(options, solved.cue));
     all.observations.insert(all.observations.end(), seen.begin(), seen.end());
   }
   return all;
@@ -243,13 +287,17 @@ Result<SolvedWindow> SolveAsRigid(const InitInput& input, std::size_t frames, co
 
 Result<SolvedWindow> SolveWindow(const InitInput& input, std::size_t frames, WindowScene scene,
                                  const WindowInitOptions& options, double nominal_depth_mm) {
-  const auto wide = PrepareWindow(input, frames, options.rigid_views, options, nominal_depth_mm);
+  if (frames < kMinFrames)
+    return {ErrorCode::kInsufficient, "a window takes at least " + std::to_string(kMinFrames) + " frames"};
+  const bool prior_alone = options.light == Switch::kOff && HasPrior(input, frames, options);
+  const WindowInitOptions cued = prior_alone ? WithCue(options, DistanceCue::kPrior) : options;
+  const auto wide = PrepareWindow(input, frames, cued.rigid_views, cued, nominal_depth_mm);
   if (!wide.ok()) return wide.status();
-  auto rigid = SolveRigid(input, *wide, options);
+  auto rigid = SolveRigid(input, *wide, cued);
   if (rigid.ok() || scene == WindowScene::kRigid) return rigid;
-  const auto window = PrepareWindow(input, frames, options.views, options, nominal_depth_mm);
+  const auto window = PrepareWindow(input, frames, cued.views, cued, nominal_depth_mm);
   if (!window.ok()) return window.status();
-  return SolveDeforming(input, *window, options, nominal_depth_mm);
+  return SolveDeforming(input, *window, cued, nominal_depth_mm);
 }
 
 }  // namespace pliant

@@ -33,7 +33,8 @@ bool ContradictsLight(const DeformingSolution& solution);
 enum class WindowScene { kRigid, kAny };
 
 // The window of the input's first `frames` frames, solved: as a rigid scene if it is one, else, where it may be any,
-// with coefficients; where the light turns out to say nothing of these, without light if that is more certain.
+// with coefficients; where the light turns out to say nothing of these, with the depth prior, and where that does not
+// either, with none, if that is more certain.
 // kInsufficient, kDegenerate: what is missing, or that the scene deforms.
 Result<SolvedWindow> SolveWindow(const InitInput& input, std::size_t frames, WindowScene scene,
                                  const WindowInitOptions& options, double nominal_depth_mm);
@@ -41,6 +42,9 @@ Result<SolvedWindow> SolveWindow(const InitInput& input, std::size_t frames, Win
 // The same window as if the scene were rigid, whether it is or not: its residual_correlation tells.
 Result<SolvedWindow> SolveAsRigid(const InitInput& input, std::size_t frames, const WindowInitOptions& options,
                                   double nominal_depth_mm);
+
+// The options with another cue; a depth prior is one also where the light is not.
+WindowInitOptions WithCue(WindowInitOptions options, DistanceCue cue);
 
 // A point's index in the sorted `ids`, or -1.
 int IndexOf(PointId id, const std::vector<PointId>& ids);

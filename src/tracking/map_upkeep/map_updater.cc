@@ -4,9 +4,11 @@
 #include "tracking/map_upkeep/map_updater.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "pliant/image/brightness.h"
+#include "tracking/depth_prior/prior_distances.h"
 #include "tracking/map_upkeep/common_motion.h"
 #include "tracking/map_upkeep/drifted_points.h"
 #include "tracking/map_upkeep/reestimate_map.h"
@@ -172,11 +174,18 @@ void MapUpdater::Promote(const Candidates::CertainPoint& point, Submap* submap, 
 // The pixels of this frame, for the next re-estimation.
 void MapUpdater::RememberWindow(const PreparedFrame& frame, Submap* submap) const {
   const LocalBrightness brightness(frame.image, frame.mask.valid());
+  PriorDistances prior(frame, camera_, options_.depth_prior);
+  const bool aligned = prior.AlignTo(submap->map, submap->last_cam_from_world);
   InitFrame seen{frame.frame_idx, {}};
-  for (const Landmark& landmark : submap->map.landmarks)
-    seen.observations.push_back({landmark.id, landmark.pixel, landmark.ssim, brightness.At(landmark.pixel)});
-  for (const CandidateTrack& track : submap->candidates.tracks())
-    seen.observations.push_back({track.id, track.pixel, track.ssim, brightness.At(track.pixel)});
+  const auto see = [&](PointId id, const Eigen::Vector2d& pixel, double ssim) {
+    seen.observations.push_back({.id = id,
+                                 .pixel = pixel,
+                                 .ssim = ssim,
+                                 .brightness = brightness.At(pixel),
+                                 .log_prior = aligned ? prior.LogAt(pixel) : std::numeric_limits<double>::quiet_NaN()});
+  };
+  for (const Landmark& landmark : submap->map.landmarks) see(landmark.id, landmark.pixel, landmark.ssim);
+  for (const CandidateTrack& track : submap->candidates.tracks()) see(track.id, track.pixel, track.ssim);
   std::ranges::sort(seen.observations, {}, &InitObservation::id);
   std::vector<InitFrame>& frames = submap->window_frames;
   frames.push_back(std::move(seen));

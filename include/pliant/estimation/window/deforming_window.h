@@ -31,8 +31,14 @@ struct DeformingObservation {
   int view_idx = 0;
   int point_idx = 0;
   Eigen::Vector3d ray = Eigen::Vector3d::UnitZ();  // unit, in the view's camera
-  // Log distance up to a constant of the view, from brightness (LogDistanceFromLight); NaN: unknown.
-  double log_light = std::numeric_limits<double>::quiet_NaN();
+  // Log distance up to a constant of the view, from brightness (LogDistanceFromLight) or a depth prior; NaN: unknown.
+  double log_cue = std::numeric_limits<double>::quiet_NaN();
+};
+
+// What a distance that comes with a ray is from.
+enum class DistanceCue {
+  kLight,  // at the camera: brightness, which also falls with the surface's inclination (W6)
+  kPrior,  // a depth prior: the distance itself
 };
 
 // How the camera may move in a window.
@@ -49,6 +55,7 @@ struct DeformingWindow {
   std::vector<Eigen::Matrix3Xd> shapes;            // basis shapes, m_ir: 3 x R a point, map units
   std::vector<DeformingObservation> observations;  // any order
   WindowCamera camera = WindowCamera::kFree;
+  DistanceCue cue = DistanceCue::kLight;
 
   // X_i(v), world frame.
   Eigen::Vector3d Position(int point_idx, int view_idx) const;
@@ -94,7 +101,7 @@ struct DeformingSolution {
   // How much alike the errors of neighbors are (W11): about 0 where the window explains all but noise, near 1 where
   // the scene moves in ways that it has not.
   double residual_correlation = 0;
-  double light_error = 0;  // median deviation of log distance from what the light says (W8); 0: there is no light
+  double light_error = 0;          // median deviation of log distance from what the cue says (W8); 0: there is none
   double log_distance_spread = 0;  // the same from one distance for all: a light that says something is well below it
 
   // A point's log_depth_sigmas and, where there are samples, sample_sigmas together.

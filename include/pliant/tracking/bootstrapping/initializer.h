@@ -9,6 +9,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -31,6 +32,8 @@ struct InitObservation {
   double ssim = 1;        // similarity to its reference patch, at most 1
   double brightness = 0;  // of the surface around it, 0 to 255 (LocalBrightness); 0: unknown
   std::array<std::uint8_t, 3> rgb = {128, 128, 128};
+  double log_prior = std::numeric_limits<double>::quiet_NaN();  // log distance by a depth prior, up to a constant of
+                                                                // the frame; NaN: unknown
 };
 
 std::vector<Eigen::Vector2d> PixelsOf(const std::vector<InitObservation>& observations);

@@ -20,6 +20,7 @@
 #include "pliant/geometry/triangulation.h"
 #include "pliant/tracking/bootstrapping/initializer.h"
 #include "pliant/tracking/bootstrapping/stereo_start.h"
+#include "pliant/tracking/depth_prior/depth_prior_options.h"
 
 namespace pliant {
 
@@ -95,6 +96,9 @@ struct WindowInitOptions {
   double gamma = 2.2;
   Switch refine_rigid = Switch::kOn;  // the map is re-estimated as the window grows, while the scene is rigid
   DeformingWindowOptions window;
+  // No options of their own: the cue that is asked first, and whether a depth prior may be (DepthPrior.window).
+  DistanceCue cue = DistanceCue::kLight;
+  Switch prior = Switch::kOn;
 
   void List(OptionTable& table);  // group "WindowInit", and "Window"
 };
@@ -133,7 +137,13 @@ struct KnownPoints {
 
 std::unique_ptr<Initializer> MakeKnownPointsInitializer(const KnownPoints& known, double nominal_depth_mm);
 
-enum class InitMethod { kWindow, kGated, kPaper, kStereo, kDepth, kColmapModel };
+// The depth prior of the reference image (InitObservation::log_prior), up to a scale, with the shift that the light
+// says: at once, and provisional. It needs no parallax. Of `window` the light is
+// used. `kind` as in DepthPriorOptions.
+std::unique_ptr<Initializer> MakePriorInitializer(const MonocularInitOptions& options, const WindowInitOptions& window,
+                                                  DepthPriorKind kind);
+
+enum class InitMethod { kWindow, kGated, kPaper, kStereo, kDepth, kColmapModel, kDepthPrior };
 template <>
 struct EnumNames<InitMethod> {
   static constexpr std::array kNames = {std::pair{InitMethod::kWindow, std::string_view("window")},
@@ -141,7 +151,8 @@ struct EnumNames<InitMethod> {
                                         std::pair{InitMethod::kPaper, std::string_view("paper")},
                                         std::pair{InitMethod::kStereo, std::string_view("stereo")},
                                         std::pair{InitMethod::kDepth, std::string_view("depth")},
-                                        std::pair{InitMethod::kColmapModel, std::string_view("colmap_model")}};
+                                        std::pair{InitMethod::kColmapModel, std::string_view("colmap_model")},
+                                        std::pair{InitMethod::kDepthPrior, std::string_view("depth_prior")}};
 };
 
 struct InitOptions {
@@ -151,6 +162,7 @@ struct InitOptions {
   DepthInitOptions depth;
   ModelInitOptions model;
   WindowInitOptions window;
+  DepthPriorKind prior_kind = DepthPriorKind::kInverseDepth;  // DepthPrior.kind; no option of its own
 
   // Whether the map has true units (then the published sigma for metric starts applies).
   bool IsMetric() const {
