@@ -20,9 +20,9 @@ constexpr double kAligned = 0.01;  // of log distance: of scale and shift found 
 constexpr double kFloat = 1e-5;    // values of images are floats
 
 const Camera& TheCamera() {
-  static const Camera kCamera =
+  static const Camera camera =
       Camera::Create(CameraModelId::kSimplePinhole, kSide, kSide, std::array{200.0, 119.5, 119.5}).value();
-  return kCamera;
+  return camera;
 }
 
 // z along the optical axis at a pixel.
