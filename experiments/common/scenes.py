@@ -1,13 +1,39 @@
 # SPDX-FileCopyrightText: 2026 The Pliant authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Simulated scenes of the experiments that are scripts: the options they share, and what became of their runs."""
+import argparse
 import csv
 import json
+import re
 import subprocess
 from collections import Counter
+from pathlib import Path
 
 HOLD = "--Trajectory.kind hold --Trajectory.tremor_mm 0 --Trajectory.tremor_deg 0"  # of pliant simulate
 SURFACE = "--Scene.kind surface"
+
+
+def scene_arguments(description):
+    """Of a script that simulates scenes and tracks them."""
+    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--program", type=Path, required=True)
+    parser.add_argument("--output_path", type=Path, required=True)
+    parser.add_argument("--only", default="", help="scenes, separated by ';'")
+    parser.add_argument("--seed", type=int, default=1, help="of the scenes")
+    return parser.parse_args()
+
+
+def slug(text):
+    return re.sub(r"[^a-z0-9]+", "_", text.lower())
+
+
+def simulated(arguments, name, options):
+    """The folder of a scene's sequence, which is simulated unless it is there."""
+    folder = arguments.output_path / "sequences" / f"{slug(name)}_{arguments.seed}"
+    if not (folder / "simulation.yaml").exists():
+        call(arguments.program, "simulate", "--quiet", "-o", folder, "--Scene.seed", arguments.seed,
+             *options.split()).check_returncode()
+    return folder
 
 
 def call(*command):

@@ -8,16 +8,15 @@
 Simulates every scene, makes depth images with a network's errors (degrade.py), tracks with and without them, and
 prints two tables. What is there already is kept.
 """
-import argparse
 import json
-import re
 import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "common"))
 from degrade import degrade  # noqa: E402
-from scenes import HOLD, SURFACE, call, depth_errors, frames_with_a_map, states_of  # noqa: E402
+from scenes import (HOLD, SURFACE, call, depth_errors, frames_with_a_map, scene_arguments, simulated,  # noqa: E402
+                    slug, states_of)
 
 STILL_FRAMES = "--Trajectory.frames 70"
 # name: options of pliant simulate
@@ -46,19 +45,12 @@ MOVING_TRACKS = {
 }
 
 
-def slug(text):
-    return re.sub(r"[^a-z0-9]+", "_", text.lower())
-
-
 class Bench:
     def __init__(self, arguments):
         self.arguments = arguments
 
     def sequence(self, kind, name, options):
-        folder = self.arguments.output_path / "sequences" / f"{slug(kind + ' ' + name)}_{self.arguments.seed}"
-        if not (folder / "simulation.yaml").exists():
-            call(self.arguments.program, "simulate", "--quiet", "-o", folder, "--Scene.seed", self.arguments.seed,
-                 *options.split()).check_returncode()
+        folder = simulated(self.arguments, f"{kind} {name}", options)
         if not (folder / "prior").exists():
             degrade(folder, folder / "prior", self.arguments.seed)
         return folder
@@ -94,12 +86,7 @@ class Bench:
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--program", type=Path, required=True)
-    parser.add_argument("--output_path", type=Path, required=True)
-    parser.add_argument("--only", default="", help="scenes, separated by ';'")
-    parser.add_argument("--seed", type=int, default=1, help="of the scenes and of the network's errors")
-    bench = Bench(parser.parse_args())
+    bench = Bench(scene_arguments(__doc__))
     bench.table("camera that stands still", STILL, STILL_TRACKS, STILL_FRAMES)
     bench.table("moving camera", MOVING, MOVING_TRACKS, "--Trajectory.frames 100")
 

@@ -3,17 +3,17 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Is a camera that stands still before a scene that deforms told from one that moves?
 
-    still_camera.py --program build/release/pliant --output_path RESULTS [--only NAME,...] [--seed N]
+    still_camera.py --program build/release/pliant --output_path RESULTS [--only "NAME;..."] [--seed N]
 
 Simulates every scene, tracks it, and prints a table. What is there already is kept.
 """
-import argparse
 import re
 import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "common"))
-from scenes import HOLD, SURFACE, call, depth_errors, frames_with_a_map, states_of  # noqa: E402
+from scenes import (HOLD, SURFACE, call, depth_errors, frames_with_a_map, scene_arguments, simulated,  # noqa: E402
+                    states_of)
 
 FRAMES = "--Trajectory.frames 70"
 
@@ -53,11 +53,8 @@ def ratios(log):
 
 
 def row(kind, name, options, arguments):
-    slug = re.sub(r"[^a-z0-9]+", "_", f"{kind} {name}".lower()) + f"_{arguments.seed}"
-    sequence, run = arguments.output_path / "sequences" / slug, arguments.output_path / "runs" / slug
-    if not (sequence / "simulation.yaml").exists():
-        call(arguments.program, "simulate", "--quiet", "-o", sequence, "--Scene.seed", arguments.seed,
-             *FRAMES.split(), *options.split()).check_returncode()
+    sequence = simulated(arguments, f"{kind} {name}", f"{FRAMES} {options}")
+    run = arguments.output_path / "runs" / sequence.name
     log = run.with_suffix(".log")
     if not log.exists():
         run.parent.mkdir(parents=True, exist_ok=True)
@@ -71,12 +68,7 @@ def row(kind, name, options, arguments):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--program", type=Path, required=True)
-    parser.add_argument("--output_path", type=Path, required=True)
-    parser.add_argument("--only", default="", help="scenes, separated by ';'")
-    parser.add_argument("--seed", type=int, default=1, help="of the scenes")
-    arguments = parser.parse_args()
+    arguments = scene_arguments(__doc__)
     print("| camera | scene | with a map | ambiguous | initializing | still by moving | depth error | null |")
     print("| --- | --- | --- | --- | --- | --- | --- | --- |")
     for kind, scenes in (("still", STILL), ("moving", MOVING)):
