@@ -59,10 +59,14 @@ class DataSetSequence final : public Sequence {
 
  private:
   ImageStream& images() const { return *data_set_.images; }
+  CompanionImages::Counts Counts() const {
+    return images().count_is_exact() ? CompanionImages::Counts::kMustAgree : CompanionImages::Counts::kMayDiffer;
+  }
   Status CheckSize(const cv::Mat& image, const std::string& title) const;
   Result<cv::Mat> Mask(int idx, const std::string& name) const;
   Result<cv::Mat> RawMask(int idx) const;
-  Result<cv::Mat> DepthPrior(int idx, const std::string& name) const;
+  fs::path DepthPriorFile(int idx) const;
+  Result<cv::Mat> DepthPrior(int idx) const;
 
   DataSet data_set_;
   FrameRange range_;
@@ -87,9 +91,7 @@ Status DataSetSequence::CheckFirstImage() const {
 
 Status DataSetSequence::OpenMasks() {
   if (data_set_.mask_path.empty()) return Status::Ok();
-  const auto counts =
-      images().count_is_exact() ? CompanionImages::Counts::kMustAgree : CompanionImages::Counts::kMayDiffer;
-  Result<CompanionImages> masks = CompanionImages::Open("mask", data_set_.mask_path, Stems(images()), counts);
+  Result<CompanionImages> masks = CompanionImages::Open("mask", data_set_.mask_path, Stems(images()), Counts());
   if (!masks.ok()) return masks.status();
   if (images().count_is_exact())
     for (int idx = range_.start; idx < range_.end; idx += range_.stride)
@@ -108,28 +110,18 @@ Status DataSetSequence::OpenDepthPriors(const fs::path& folder) {
   std::error_code error;
   if (!fs::is_directory(folder, error) && fs::exists(folder, error))
     return {ErrorCode::kMismatch, folder.string() + " is one file; depth priors are a folder with a file an image"};
-  const auto counts =
-      images().count_is_exact() ? CompanionImages::Counts::kMustAgree : CompanionImages::Counts::kMayDiffer;
   Result<CompanionImages> priors =
-      CompanionImages::Open("depth prior", folder, Stems(images()), counts, CompanionKind::kDepths);
+      CompanionImages::Open("depth prior", folder, Stems(images()), Counts(), CompanionKind::kDepths);
   if (!priors.ok()) return priors.status();
   depth_priors_ = *std::move(priors);
-  if (!images().count_is_exact())
-    return depth_priors_->by_name() ? Status::Ok()
-                                    : Status(ErrorCode::kMismatch,
-                                             "how many images there are is not known before the last, so the depth "
-                                             "priors in " +
-                                                 folder.string() +
-                                                 " belong to them by name; name the "
-                                                 "first one like its image, " +
-                                                 images().Name(0));
-  WarnOfMissing(
-      "depth prior", range_, data_set_,
-      [&](std::size_t idx) {
-        const auto frame_idx = static_cast<int>(idx);
-        return !depth_priors_->Find(frame_idx, fs::path(images().Name(frame_idx)).stem().string()).empty();
-      },
-      &data_set_.warnings);
+  if (!images().count_is_exact() && !depth_priors_->by_name())
+    return {ErrorCode::kMismatch, "how many images there are is not known before the last, so the depth priors in " +
+                                      folder.string() + " belong to them by name; name the first one like its image, " +
+                                      images().Name(0)};
+  if (images().count_is_exact())
+    WarnOfMissing(
+        "depth prior", range_, data_set_,
+        [&](std::size_t idx) { return !DepthPriorFile(static_cast<int>(idx)).empty(); }, &data_set_.warnings);
   return Status::Ok();
 }
 
@@ -158,7 +150,7 @@ Result<std::optional<SequenceFrame>> DataSetSequence::Next() {
   Result<cv::Mat> mask = Mask(idx, frame.name);
   if (!mask.ok()) return mask.status();
   frame.mask = *std::move(mask);
-  Result<cv::Mat> depth_prior = DepthPrior(idx, frame.name);
+  Result<cv::Mat> depth_prior = DepthPrior(idx);
   if (!depth_prior.ok()) return depth_prior.status();
   frame.depth_prior = *std::move(depth_prior);
   return std::optional<SequenceFrame>(std::move(frame));
@@ -185,9 +177,12 @@ Result<cv::Mat> DataSetSequence::RawMask(int idx) const {
   return mask;
 }
 
-Result<cv::Mat> DataSetSequence::DepthPrior(int idx, const std::string& name) const {
-  if (!depth_priors_) return cv::Mat();
-  const fs::path file = depth_priors_->Find(idx, fs::path(name).stem().string());
+fs::path DataSetSequence::DepthPriorFile(int idx) const {
+  return depth_priors_->Find(idx, fs::path(images().Name(idx)).stem().string());
+}
+
+Result<cv::Mat> DataSetSequence::DepthPrior(int idx) const {
+  const fs::path file = depth_priors_ ? DepthPriorFile(idx) : fs::path();
   if (file.empty()) return cv::Mat();
   return ReadDepthPrior(file, camera().width(), camera().height());
 }

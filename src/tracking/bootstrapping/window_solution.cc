@@ -28,7 +28,7 @@ constexpr std::ptrdiff_t kMinPriorPoints = 40;  // of a frame, to be compared wi
 
 // In the frames that a solution is compared with it in, at least.
 bool HasPrior(const InitInput& input, std::size_t frames, const WindowInitOptions& options) {
-  if (options.prior == Switch::kOff) return false;
+  if (options.prior == Switch::kOff || frames < kMinFrames) return false;
   return std::ranges::all_of(std::array{std::size_t{0}, frames - 1}, [&](std::size_t k) {
     const auto known = std::ranges::count_if(input.frames[k].observations, [](const InitObservation& observation) {
       return std::isfinite(observation.log_prior);
@@ -287,8 +287,6 @@ Result<SolvedWindow> SolveAsRigid(const InitInput& input, std::size_t frames, co
 
 Result<SolvedWindow> SolveWindow(const InitInput& input, std::size_t frames, WindowScene scene,
                                  const WindowInitOptions& options, double nominal_depth_mm) {
-  if (frames < kMinFrames)
-    return {ErrorCode::kInsufficient, "a window takes at least " + std::to_string(kMinFrames) + " frames"};
   const bool prior_alone = options.light == Switch::kOff && HasPrior(input, frames, options);
   const WindowInitOptions cued = prior_alone ? WithCue(options, DistanceCue::kPrior) : options;
   const auto wide = PrepareWindow(input, frames, cued.rigid_views, cued, nominal_depth_mm);
