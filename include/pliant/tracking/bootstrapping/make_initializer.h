@@ -138,8 +138,7 @@ struct KnownPoints {
 std::unique_ptr<Initializer> MakeKnownPointsInitializer(const KnownPoints& known, double nominal_depth_mm);
 
 // The depth prior of the reference image (InitObservation::log_prior), up to a scale, with the shift that the light
-// says: at once, and provisional. It needs no parallax. Of `window` the light is
-// used. `kind` as in DepthPriorOptions.
+// says: at once, and provisional. It needs no parallax. Of `window` the light is used. `kind` as in DepthPriorOptions.
 std::unique_ptr<Initializer> MakePriorInitializer(const MonocularInitOptions& options, const WindowInitOptions& window,
                                                   DepthPriorKind kind);
 

@@ -17,7 +17,7 @@ namespace pliant {
 // What a value of such an image grows with, linearly: each up to a scale and a shift of the image.
 enum class DepthPriorKind {
   kInverseDepth,  // 1 / z: MiDaS, Depth Anything; also a disparity
-  kDepth,         // z: Marigold, ZoeDepth, Monodepth's depth
+  kDepth,         // z: metric networks, Monodepth's depth
 };
 template <>
 struct EnumNames<DepthPriorKind> {
