@@ -4,7 +4,8 @@
 # Everything Pliant links. The installed package includes this file too, so both find the same libraries.
 find_package(Threads REQUIRED)
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
-find_package(OpenCV 4.5 REQUIRED COMPONENTS core imgproc imgcodecs videoio video features2d calib3d)
+find_package(OpenCV 4.5 REQUIRED COMPONENTS core imgproc imgcodecs videoio video features2d calib3d
+             OPTIONAL_COMPONENTS aruco)
 find_package(Ceres 2.1 REQUIRED)
 find_package(opengv CONFIG REQUIRED)
 find_package(flann CONFIG REQUIRED)

@@ -17,15 +17,16 @@ first map has Init.nominal_depth_mm as its median depth; times are seconds.
 from . import extensions, kernels
 from ._pliant import Camera, Error, FrameReport, Tracker, __version__
 from .extensions import FirstMap, NewReference, Wait, register_initializer
-from .jobs import evaluate, export, import_result, read_camera, refine, report, simulate, surface, track
+from .jobs import (Calibration, calibrate, evaluate, export, import_result, read_camera, refine, report, simulate,
+                   surface, track)
 from .options import Options, options
 from .run import Run, open_run
 from .sequence import Sequence, SequenceFrame, open_sequence
 from .tables import Frames, Observations, Points, Poses
 
 __all__ = [
-    "Camera", "Error", "FirstMap", "FrameReport", "Frames", "NewReference", "Observations", "Options", "Points",
-    "Poses", "Run", "Sequence", "SequenceFrame", "Tracker", "Wait", "__version__", "evaluate", "export",
+    "Calibration", "Camera", "Error", "FirstMap", "FrameReport", "Frames", "NewReference", "Observations", "Options",
+    "Points", "Poses", "Run", "Sequence", "SequenceFrame", "Tracker", "Wait", "__version__", "calibrate", "evaluate", "export",
     "extensions", "import_result", "kernels", "open_run", "open_sequence", "options", "read_camera", "refine",
     "register_initializer", "report", "simulate", "surface", "track",
 ]

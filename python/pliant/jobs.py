@@ -15,6 +15,7 @@ import json
 import os
 import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Union
 
 from . import _pliant
@@ -55,6 +56,49 @@ def read_camera(path: StrPath) -> _pliant.Camera:
     Raises pliant.Error where it cannot be read, and ValueError where it cannot be meant.
     """
     return _pliant.read_camera(os.fspath(path))
+
+
+@dataclass(frozen=True)
+class Calibration:
+    """What pliant.calibrate found.
+
+    Attributes:
+        camera: the camera.
+        sigmas: standard deviation of each of camera.params.
+        error_px: root mean square of the reprojection errors.
+        covered_share: share of the image in which there were points of the board, 0 to 1.
+        advice: what would make the calibration better, a sentence each.
+        images: name, use ("used", "fits badly", "like another", "no board") and reprojection error in px (None where
+            the image was not used) of every image in which the board was searched for.
+    """
+
+    camera: _pliant.Camera
+    sigmas: list[float]
+    error_px: float
+    covered_share: float
+    advice: list[str]
+    images: list[tuple[str, str, float | None]]
+
+
+def calibrate(image_path: StrPath, board: str, output_path: StrPath | None = None,
+              options: OptionValues | None = None, *, figure: StrPath | None = None,
+              on_progress: Callable[[int, int], Any] | None = None) -> Calibration:
+    """Calibrates a camera from images or a video of a flat board.
+
+    Args:
+        image_path: folder of images, or a video.
+        board: such as "chessboard:9x6:2.0" (inner corners, side of a square in mm); see pliant calibrate --help.
+        output_path: of camera.yaml; None: it is not written.
+        options: such as {"Calibrate.model": "OPENCV_FISHEYE"}.
+        figure: a picture of the errors, .png, .svg or .pdf.
+        on_progress: called with the images that were searched for the board and the images that are to be.
+
+    Raises:
+        pliant.Error: the board is not seen, or the images do not determine the camera. Nothing is written then.
+    """
+    request = {"image_path": os.fspath(image_path), "board": board, "output_path": _text(output_path),
+               "figure": _text(figure)}
+    return Calibration(**_pliant.calibrate(request, _options(options), on_progress))
 
 
 def simulate(output_path: StrPath, options: OptionValues | None = None, *, realism: str = "clean",

@@ -10,6 +10,7 @@
 
 namespace pliant::cli {
 
+int CalibrateCommand(std::span<const std::string> args);
 int TrackCommand(std::span<const std::string> args);
 int SimulateCommand(std::span<const std::string> args);
 int EvaluateCommand(std::span<const std::string> args);

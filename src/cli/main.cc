@@ -30,6 +30,7 @@ struct Command {
 
 constexpr std::array kCommands = {
     Command{"track", "camera pose and the motion of every point, from a folder of images or a video", TrackCommand},
+    Command{"calibrate", "camera.yaml from images or a video of a calibration board", CalibrateCommand},
     Command{"simulate", "render a scene that deforms, with depth, poses and the paths of its material",
             SimulateCommand},
     Command{"dataset", "say what a data set holds and what is wrong with it, or convert it", DatasetCommand},
@@ -61,7 +62,8 @@ int Run(std::span<const std::string> args) {
     return kExitUsage;
   }
   const std::string& name = args.front();
-  if (name == "--help" || name == "help") {
+  if (name == "help" && args.size() > 1) return Run(std::vector<std::string>{args[1], "--help"});
+  if (name == "--help" || name == "-h" || name == "help") {
     std::cout << Usage();
     return kExitOk;
   }

@@ -26,7 +26,7 @@ namespace pliant {
 namespace {
 
 // A submap of the run as a recording, and where its numbers come from.
-struct Submap {
+struct RefinedSubmap {
   Recording recording;
   std::vector<PointId> ids;                                 // of the recording's points
   std::vector<std::vector<PointObservation>> observations;  // of its views, as in the run
@@ -60,14 +60,14 @@ void SetRestPositions(Recording* recording) {
   for (std::size_t i = 0; i < counts.size(); ++i) recording->rest_positions[i] /= std::max(1, counts[i]);
 }
 
-Result<std::map<int, Submap>> ReadSubmaps(const std::string& path, const Run& run) {
-  std::map<int, Submap> submaps;
+Result<std::map<int, RefinedSubmap>> ReadSubmaps(const std::string& path, const Run& run) {
+  std::map<int, RefinedSubmap> submaps;
   std::map<int, std::map<PointId, int>> index_of;  // by submap
   const auto frames_idx = FramesWithPose(path, run);
   if (!frames_idx.ok()) return frames_idx.status();
   const Status status = ForEachFrame(path, *frames_idx, [&](std::size_t k, const auto& observations) {
     const RunPose& pose = run.poses[k];
-    Submap& submap = submaps[pose.submap];
+    RefinedSubmap& submap = submaps[pose.submap];
     const auto view = static_cast<int>(submap.recording.times.size());
     submap.view_of_frame[*pose.frame_idx] = view;
     submap.recording.times.push_back(static_cast<double>(*pose.frame_idx));
@@ -93,14 +93,14 @@ Result<std::map<int, Submap>> ReadSubmaps(const std::string& path, const Run& ru
   return submaps;
 }
 
-std::size_t CountObservations(const std::map<int, Submap>& submaps) {
+std::size_t CountObservations(const std::map<int, RefinedSubmap>& submaps) {
   std::size_t count = 0;
   for (const auto& [number, submap] : submaps) count += submap.recording.observations.size();
   return count;
 }
 
 // A submap that cannot be refined.
-RefinedRecording AsItIs(const Submap& submap) {
+RefinedRecording AsItIs(const RefinedSubmap& submap) {
   RefinedRecording recording;
   recording.recording = submap.recording;
   recording.is_inlier.assign(submap.recording.observations.size(), true);
@@ -112,12 +112,12 @@ RefinedRecording AsItIs(const Submap& submap) {
 // The run's reports with refined poses and points.
 class Reporter {
  public:
-  Reporter(const Run& run, const RunMap& known, const std::map<int, Submap>& submaps,
+  Reporter(const Run& run, const RunMap& known, const std::map<int, RefinedSubmap>& submaps,
            const std::map<int, RefinedRecording>& refined)
       : run_(run), known_(known), submaps_(submaps), refined_(refined) {
     for (const auto& [number, recording] : refined) {
       std::size_t o = 0;
-      const Submap& submap = submaps.at(number);
+      const RefinedSubmap& submap = submaps.at(number);
       for (std::size_t view = 0; view < submap.observations.size(); ++view) {
         std::vector<PointObservation> kept;
         for (PointObservation observation : submap.observations[view]) {
@@ -169,7 +169,7 @@ class Reporter {
  private:
   const Run& run_;
   const RunMap& known_;
-  const std::map<int, Submap>& submaps_;
+  const std::map<int, RefinedSubmap>& submaps_;
   const std::map<int, RefinedRecording>& refined_;
   std::map<int, std::vector<std::vector<PointObservation>>> observations_;
   std::map<PointId, Eigen::Vector3d> rest_positions_;  // of points that have not been reported

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -12,13 +14,16 @@
 #include "pliant/evaluation/report.h"
 #include "pliant/exchange/export.h"
 #include "pliant/exchange/import.h"
+#include "pliant/pipeline/calibrate_images.h"
 #include "pliant/pipeline/refine_run.h"
 #include "pliant/pipeline/surface_run.h"
 #include "pliant/simulation/write_sequence.h"
+#include "pliant/viewer/calibration_figure.h"
 #include "pliant/viewer/figure.h"
 #include "pliant/viewer/output.h"
 #include "pliant/viewer/report.h"
 #include "python/bind.h"
+#include "python/calibration.h"
 #include "python/errors.h"
 #include "python/interrupt.h"
 #include "python/options.h"
@@ -61,6 +66,34 @@ void Simulate(const std::string& output_path, const py::object& options, const s
   });
   Warn(warnings);
   RaiseUnlessOk(status);
+}
+
+// The camera, a standard deviation a parameter, and what else the calibration says of itself.
+py::dict Calibrate(const py::dict& request, const py::object& options, const py::object& on_progress) {
+  const auto calibrate_options = OptionsOf<CalibrateOptions>(options);
+  const CalibrateRequest calibrate_request{.image_path = Text(request, "image_path"),
+                                           .board = ValueOf(ParseBoard(Text(request, "board"))),
+                                           .output_path = Text(request, "output_path")};
+  Interrupt interrupt;
+  const auto summary = ValueOf(WithoutGil(&interrupt, [&] {
+    return CalibrateImages(calibrate_request, calibrate_options, [&](int done, int total) {
+      if (total > 0 && !on_progress.is_none()) interrupt.Call([&] { on_progress(done, total); });
+      return !interrupt.stop().load();
+    });
+  }));
+  if (const std::string figure = Text(request, "figure"); !figure.empty())
+    RaiseUnlessOk(WriteCalibrationFigure(summary, figure));
+  std::vector<std::tuple<std::string, std::string, std::optional<double>>> images;
+  for (const CalibrationImage& image : summary.images) {
+    const bool is_view = image.view_idx >= 0;
+    const auto view = static_cast<std::size_t>(image.view_idx);
+    images.emplace_back(image.name, EnumName(image.use),
+                        is_view ? std::optional(summary.calibration.views[view].rms_px) : std::nullopt);
+  }
+  using py::literals::operator""_a;
+  return py::dict("camera"_a = Calibration{summary.calibration.camera}, "sigmas"_a = summary.calibration.sigmas,
+                  "error_px"_a = summary.calibration.rms_px, "covered_share"_a = summary.covered_share,
+                  "advice"_a = summary.advice, "images"_a = images);
 }
 
 void Refine(const py::dict& request, const py::object& options, const py::object& on_progress) {
@@ -193,6 +226,7 @@ Texts Report(const py::dict& request, const std::vector<int>& frames, const py::
 
 void BindJobs(py::module_& module) {
   module.def("simulate", &Simulate);
+  module.def("calibrate", &Calibrate);
   module.def("refine", &Refine);
   module.def("surface", &Surface);
   module.def("evaluate", &Evaluate);

@@ -8,6 +8,7 @@
 #include "pliant/evaluation/evaluation.h"
 #include "pliant/exchange/export.h"
 #include "pliant/exchange/import.h"
+#include "pliant/pipeline/calibrate_images.h"
 #include "pliant/pipeline/refine_run.h"
 #include "pliant/pipeline/surface_run.h"
 #include "pliant/pipeline/track.h"
@@ -73,6 +74,7 @@ py::tuple Listed(Options... options) {
 
 py::tuple ListOptions(const std::string& job, const std::string& preset) {
   if (job == "track") return Listed(MakeTrackOptions(EnumOf<Preset>(preset, "preset")));
+  if (job == "calibrate") return Listed(CalibrateOptions());
   if (job == "simulate") return Listed(MakeSimulationOptions(EnumOf<Realism>(preset, "realism")));
   if (job == "refine") return Listed(RefineOptions());
   if (job == "surface") return Listed(SurfaceRunOptions());
@@ -80,8 +82,9 @@ py::tuple ListOptions(const std::string& job, const std::string& preset) {
   if (job == "import") return Listed(ImportOptions());
   if (job == "export") return Listed(ExportOptions());
   if (job == "report") return Listed(ReportOptions(), FigureOptions());
-  RaiseValueError("there are no options of '" + job +
-                  "'; give one of track | simulate | refine | surface | evaluate | import | export | report");
+  RaiseValueError(
+      "there are no options of '" + job +
+      "'; give one of track | calibrate | simulate | refine | surface | evaluate | import | export | report");
 }
 
 }  // namespace

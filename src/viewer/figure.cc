@@ -4,20 +4,16 @@
 #include "pliant/viewer/figure.h"
 
 #include <algorithm>
-#include <filesystem>
 #include <set>
 #include <string>
 
-#include <cairo-pdf.h>
-#include <cairo-svg.h>
-
-#include "pliant/base/files.h"
 #include "viewer/draw_image.h"
 #include "viewer/draw_legend.h"
 #include "viewer/draw_mesh.h"
 #include "viewer/draw_scene.h"
 #include "viewer/drawing.h"
 #include "viewer/frame_images.h"
+#include "viewer/picture_file.h"
 #include "viewer/view_lookup.h"
 
 namespace pliant {
@@ -57,8 +53,6 @@ struct Layout {
 // Draws all of the figure. Fails as FrameImages does.
 Status Draw(cairo_t* drawing, const View& view, const SceneDrawer& scenes, const Layout& layout,
             const std::set<int>& frames_idx) {
-  cairo_set_source_rgb(drawing, 1, 1, 1);
-  cairo_paint(drawing);
   auto images = FrameImages::Open(view, *frames_idx.begin());
   if (!images.ok()) return images.status();
   double left = kGap;
@@ -78,23 +72,6 @@ Status Draw(cairo_t* drawing, const View& view, const SceneDrawer& scenes, const
   }
   DrawLegend(drawing, kGap, layout.height - layout.legend_height, layout.width - 2 * kGap, scenes.Legend());
   return Status::Ok();
-}
-
-// For Cairo: `file` is a std::string.
-cairo_status_t AppendBytes(void* file, const unsigned char* bytes, unsigned int count) {
-  static_cast<std::string*>(file)->append(reinterpret_cast<const char*>(bytes), count);
-  return CAIRO_STATUS_SUCCESS;
-}
-
-// What is drawn comes into `file`, of a .png when it is asked for. Cairo's own writing to a file does not tell of a
-// disk that is full.
-CairoSurface MakeSurface(const std::string& ending, const Layout& layout, std::string* file) {
-  if (ending == ".svg")
-    return CairoSurface(cairo_svg_surface_create_for_stream(AppendBytes, file, layout.width, layout.height));
-  if (ending == ".pdf")
-    return CairoSurface(cairo_pdf_surface_create_for_stream(AppendBytes, file, layout.width, layout.height));
-  return CairoSurface(
-      cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(layout.width), static_cast<int>(layout.height)));
 }
 
 Status CheckFrames(const View& view, const std::vector<int>& frames_idx) {
@@ -132,25 +109,13 @@ Result<std::vector<std::string>> WriteFigure(const ViewRequest& request, const F
   if (!view.ok()) return view.status();
   if (Status status = CheckSurfaceColor(*view, options.surface_color); !status.ok()) return status;
   if (Status status = CheckFrames(*view, frames_idx); !status.ok()) return status;
-  const std::filesystem::path path = output_path;
   const std::set<int> columns(frames_idx.begin(), frames_idx.end());
   const PanelSize panel(*view, options);
   const SceneDrawer scenes(*view, options, panel.width, panel.height);
   const Layout layout(*view, panel, scenes.Legend(), columns.size());
-  std::string file;
-  const CairoSurface surface = MakeSurface(path.extension().string(), layout, &file);
-  if (path.extension() == ".png" && cairo_surface_status(surface.get()) != CAIRO_STATUS_SUCCESS)
-    return TooLarge(layout.width, layout.height);
-  const Drawing drawing(cairo_create(surface.get()));
-  const Status drawn = Draw(drawing.get(), *view, scenes, layout, columns);
-  if (!drawn.ok()) return drawn;
-  bool complete = cairo_status(drawing.get()) == CAIRO_STATUS_SUCCESS;
-  if (path.extension() == ".png")
-    complete = complete && cairo_surface_write_to_png_stream(surface.get(), AppendBytes, &file) == CAIRO_STATUS_SUCCESS;
-  cairo_surface_finish(surface.get());
-  if (!complete || cairo_surface_status(surface.get()) != CAIRO_STATUS_SUCCESS)
-    return TooLarge(layout.width, layout.height);
-  if (Status status = WriteFileAtomically(output_path, file); !status.ok()) return status;
+  const Status written = WritePicture(output_path, layout.width, layout.height,
+                                      [&](cairo_t* drawing) { return Draw(drawing, *view, scenes, layout, columns); });
+  if (!written.ok()) return written;
   return view->notes;
 }
 

@@ -53,20 +53,18 @@ class PerspectiveModel {
     const T y = point[1] / point[2];
     const T r2 = x * x + y * y;
     if (!(r2 < max_radius_sq_)) return false;
-    if constexpr (kDistortions == 0) {
-      pixel[0] = fx() * x + cx();
-      pixel[1] = fy() * y + cy();
-    } else {
-      const T radial = 1.0 + r2 * (k1() + r2 * k2());
-      T xd = x * radial;
-      T yd = y * radial;
-      if constexpr (kDistortions == 4) {
-        xd += 2.0 * p1() * x * y + p2() * (r2 + 2.0 * x * x);
-        yd += 2.0 * p2() * x * y + p1() * (r2 + 2.0 * y * y);
-      }
-      pixel[0] = fx() * xd + cx();
-      pixel[1] = fy() * yd + cy();
-    }
+    ProjectNormalized(params_.data(), x, y, r2, pixel);
+    return true;
+  }
+
+  // The formula for parameters of type P that are being estimated: in front of the camera, without the domain's bound
+  // on r, which depends on them.
+  template <class P, class T>
+  static bool ProjectUnbounded(const P* params, const T point[3], T pixel[2]) {
+    if (!(point[2] > 0.0)) return false;
+    const T x = point[0] / point[2];
+    const T y = point[1] / point[2];
+    ProjectNormalized(params, x, y, x * x + y * y, pixel);
     return true;
   }
 
@@ -97,6 +95,34 @@ class PerspectiveModel {
 
  private:
   static constexpr double kLargestRadius = 1e8;
+
+  template <class P, class T>
+  static void ProjectNormalized(const P* params, const T& x, const T& y, const T& r2, T pixel[2]) {
+    const P& fx = params[0];
+    const P& fy = params[kFocals - 1];
+    const P& cx = params[kFocals];
+    const P& cy = params[kFocals + 1];
+    if constexpr (kDistortions == 0) {
+      pixel[0] = fx * x + cx;
+      pixel[1] = fy * y + cy;
+    } else {
+      const P* const k = params + kFocals + 2;
+      T radial;
+      if constexpr (kDistortions == 1) {
+        radial = 1.0 + r2 * k[0];
+      } else {
+        radial = 1.0 + r2 * (k[0] + r2 * k[1]);
+      }
+      T xd = x * radial;
+      T yd = y * radial;
+      if constexpr (kDistortions == 4) {
+        xd += 2.0 * k[2] * x * y + k[3] * (r2 + 2.0 * x * x);
+        yd += 2.0 * k[3] * x * y + k[2] * (r2 + 2.0 * y * y);
+      }
+      pixel[0] = fx * xd + cx;
+      pixel[1] = fy * yd + cy;
+    }
+  }
 
   double Distortion(int idx) const { return idx < kDistortions ? params_[kFocals + 2 + idx] : 0.0; }
   double k1() const { return Distortion(0); }
@@ -176,23 +202,13 @@ class OpenCvFisheye {
   bool Project(const T point[3], T pixel[2]) const {
     using std::atan2;
     using std::sqrt;
-    const T r2 = point[0] * point[0] + point[1] * point[1];
-    const T z2 = point[2] * point[2];
-    const T norm2 = r2 + z2;
-    if (!(norm2 > 0.0 && norm2 < std::numeric_limits<double>::max())) return false;
-    T scale;
-    if (point[2] > 0.0 && r2 < kNearAxis * z2) {
-      scale = (1.0 + (params_[4] - 1.0 / 3.0) * r2 / z2) / point[2];
-    } else {
-      const T r = sqrt(r2);
-      const T theta = atan2(r, point[2]);
-      if (!(theta < max_theta_)) return false;
-      const T t2 = theta * theta;
-      scale = theta * (1.0 + t2 * (params_[4] + t2 * (params_[5] + t2 * (params_[6] + t2 * params_[7])))) / r;
-    }
-    pixel[0] = fx() * (scale * point[0]) + cx();
-    pixel[1] = fy() * (scale * point[1]) + cy();
-    return true;
+    return ProjectBelow(max_theta_, params_.data(), point, pixel);
+  }
+
+  // The formula for parameters of type P that are being estimated: without the domain's bound on theta.
+  template <class P, class T>
+  static bool ProjectUnbounded(const P* params, const T point[3], T pixel[2]) {
+    return ProjectBelow(std::numeric_limits<double>::infinity(), params, point, pixel);
   }
 
   bool ProjectWithJacobian(const double point[3], double pixel[2], double jacobian[6]) const;
@@ -202,6 +218,30 @@ class OpenCvFisheye {
   // Below this (r / z)^2 the first two terms of theta_d / r in r / z are exact to rounding, and r need not be divided
   // by.
   static constexpr double kNearAxis = 1e-8;
+
+  template <class P, class T>
+  static bool ProjectBelow(double max_theta, const P* params, const T point[3], T pixel[2]) {
+    using std::atan2;
+    using std::sqrt;
+    const P* const k = params + 4;
+    const T r2 = point[0] * point[0] + point[1] * point[1];
+    const T z2 = point[2] * point[2];
+    const T norm2 = r2 + z2;
+    if (!(norm2 > 0.0 && norm2 < std::numeric_limits<double>::max())) return false;
+    T scale;
+    if (point[2] > 0.0 && r2 < kNearAxis * z2) {
+      scale = (1.0 + (k[0] - 1.0 / 3.0) * r2 / z2) / point[2];
+    } else {
+      const T r = sqrt(r2);
+      const T theta = atan2(r, point[2]);
+      if (!(theta < max_theta)) return false;
+      const T t2 = theta * theta;
+      scale = theta * (1.0 + t2 * (k[0] + t2 * (k[1] + t2 * (k[2] + t2 * k[3])))) / r;
+    }
+    pixel[0] = params[0] * (scale * point[0]) + params[2];
+    pixel[1] = params[1] * (scale * point[1]) + params[3];
+    return true;
+  }
 
   double DistortedAngle(double theta, double* derivative) const;
 

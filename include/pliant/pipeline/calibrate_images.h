@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Images or a video of a calibration board in, camera.yaml out. Of more images than Calibrate.max_images the sharpest
+// one of every stretch is looked at; of those that show the board the most different ones are used.
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "pliant/base/options.h"
+#include "pliant/base/status.h"
+#include "pliant/calibration/board.h"
+#include "pliant/calibration/calibrate_camera.h"
+#include "pliant/calibration/find_board.h"
+
+namespace pliant {
+
+struct CalibrateOptions {
+  ModelChoice model = ModelChoice::kAuto;
+  int max_images = 120;  // in which the board is searched for
+  int max_views = 40;    // that are used
+  int threads = 2;
+
+  void List(OptionTable& table);  // group "Calibrate"
+};
+
+struct CalibrateRequest {
+  std::filesystem::path image_path;  // folder of images, native sequence or video
+  CalibrationBoard board;
+  std::filesystem::path output_path;  // of camera.yaml; empty: nothing is written
+};
+
+// What became of an image in which the board was searched for.
+enum class ImageUse { kUsed, kOutlier, kAlike, kNoBoard };
+template <>
+struct EnumNames<ImageUse> {
+  static constexpr std::array kNames = {std::pair{ImageUse::kUsed, std::string_view("used")},
+                                        std::pair{ImageUse::kOutlier, std::string_view("fits badly")},
+                                        std::pair{ImageUse::kAlike, std::string_view("like another")},
+                                        std::pair{ImageUse::kNoBoard, std::string_view("no board")}};
+};
+
+struct CalibrationImage {
+  std::string name;
+  ImageUse use = ImageUse::kNoBoard;
+  int view_idx = -1;  // among CalibrateSummary::views; -1: none
+};
+
+struct CalibrateSummary {
+  CameraCalibration calibration;
+  std::vector<BoardView> views = {};          // those of the calibration
+  std::vector<CalibrationImage> images = {};  // in order
+  int images_read = 0;                        // of which `images` are the sharpest
+  double covered_share = 0;                   // of the image, by points of the board
+  std::vector<std::string> advice = {};       // what would make it better, a sentence each
+};
+
+// Called as images are done: how many of how many (0: not known). True: go on.
+using CalibrateProgress = std::function<bool(int, int)>;
+
+// Fails with kNotFound and kUnreadable for images that cannot be read, kMismatch for images of different sizes,
+// kInsufficient where the board is not seen, is larger than was said (the sentence says what is seen) or the images do
+// not determine the camera, kInterrupted by `progress`, and kUnwritable. camera.yaml is written at the end only.
+Result<CalibrateSummary> CalibrateImages(const CalibrateRequest& request, const CalibrateOptions& options,
+                                         const CalibrateProgress& progress);
+
+}  // namespace pliant

@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Parameters of a camera and poses of a board, fitted to views of it.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "pliant/calibration/find_board.h"
+#include "pliant/camera/camera.h"
+#include "pliant/geometry/rigid3.h"
+
+namespace pliant {
+
+// Rotation vector and translation: cam_from_board, rad and mm.
+using BoardPose = std::array<double, 6>;
+
+// What is being estimated. A pose for every view of the problem.
+struct BoardFit {
+  CameraModelId model = CameraModelId::kPinhole;
+  std::vector<double> params;
+  int num_free = 0;  // so many of the first parameters are estimated; the others, of the distortion, are 0
+  std::vector<BoardPose> poses;
+};
+
+Rigid3 ToRigid3(const BoardPose& pose);
+
+// The poses of the views by the homographies between their rays in `camera` and the board. False where one has too few
+// rays, or lies on a line.
+bool StartPoses(const Camera& camera, std::span<const Eigen::Vector3d> board_points, std::span<const BoardView> views,
+                std::vector<BoardPose>* poses);
+
+// Whether the free parameters of the camera are moved, or the poses only.
+enum class Intrinsics { kHeld, kFree };
+
+// Moves `fit` to the least robust cost over the views; those of `without` (one flag a view; empty: none) count for
+// nothing, and keep their poses. False where a point cannot be projected at the start, or nothing is left.
+bool Solve(std::span<const Eigen::Vector3d> board_points, std::span<const BoardView> views,
+           const std::vector<bool>& without, Intrinsics intrinsics, int max_iterations, BoardFit* fit);
+
+// Measured minus projected, by point; points that cannot be projected have infinite ones.
+std::vector<Eigen::Vector2d> Residuals(std::span<const Eigen::Vector3d> board_points, const BoardView& view,
+                                       const BoardFit& fit, const BoardPose& pose);
+
+// The standard deviations of the parameters by the inverse of the normal equations and the residuals' own size; empty
+// where the views do not determine them. Of a parameter that is not free it is 0.
+std::vector<double> CovarianceSigmas(std::span<const Eigen::Vector3d> board_points, std::span<const BoardView> views,
+                                     const std::vector<bool>& without, const BoardFit& fit);
+
+// The number of the model's parameters that are not of the distortion, which stand first.
+int NumPinholeParams(CameraModelId model);
+
+}  // namespace pliant

@@ -1,0 +1,369 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/calibration/calibrate_camera.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <string>
+
+#include "calibration/board_problem.h"
+#include "pliant/base/parallel.h"
+#include "pliant/base/statistics.h"
+#include "pliant/base/text.h"
+
+namespace pliant {
+namespace {
+
+// Horizontal fields of view that the estimation begins with.
+constexpr std::array kPerspectiveStarts_deg = {20.0, 35.0, 50.0, 65.0, 80.0, 95.0, 110.0, 130.0};
+constexpr std::array kFisheyeStarts_deg = {50.0, 80.0, 110.0, 140.0, 170.0, 200.0};
+constexpr double kWidestPerspective_deg = 160;
+constexpr int kStartIterations = 15;
+constexpr int kMaxIterations = 100;
+// A view is left out when its error is so many times the median view's.
+constexpr double kOutlierFactor = 3;
+constexpr int kMaxGroups = 8;  // of held-out views
+constexpr int kEvenAndOdd = 2;
+
+struct CalibrationInput {
+  std::vector<Eigen::Vector3d> points;
+  std::span<const BoardView> views;
+  int width = 0;
+  int height = 0;
+  int threads = 1;
+};
+
+constexpr std::array kModels = {CameraModelId::kSimplePinhole, CameraModelId::kPinhole, CameraModelId::kSimpleRadial,
+                                CameraModelId::kRadial,        CameraModelId::kOpenCv,  CameraModelId::kOpenCvFisheye};
+
+std::vector<CameraModelId> ModelsOf(ModelChoice choice) {
+  if (choice == ModelChoice::kAuto) return {kModels.begin(), kModels.end()};
+  return {kModels[static_cast<std::size_t>(choice) - 1]};
+}
+
+int NumParams(CameraModelId model) {
+  switch (model) {
+    case CameraModelId::kSimplePinhole:
+      return SimplePinhole::kNumParams;
+    case CameraModelId::kPinhole:
+      return Pinhole::kNumParams;
+    case CameraModelId::kSimpleRadial:
+      return SimpleRadial::kNumParams;
+    case CameraModelId::kRadial:
+      return Radial::kNumParams;
+    case CameraModelId::kOpenCv:
+      return OpenCv::kNumParams;
+    case CameraModelId::kOpenCvFisheye:
+      break;
+  }
+  return OpenCvFisheye::kNumParams;
+}
+
+// The parameters of `model` that say the same as f, cx and cy, without distortion.
+std::vector<double> PinholeParams(CameraModelId model, double focal_px, double cx, double cy) {
+  std::vector<double> params(static_cast<std::size_t>(NumParams(model)), 0.0);
+  const auto first = static_cast<std::size_t>(NumPinholeParams(model));
+  std::fill_n(params.begin(), first - 2, focal_px);
+  params[first - 2] = cx;
+  params[first - 1] = cy;
+  return params;
+}
+
+double MedianError(const CalibrationInput& input, const BoardFit& fit) {
+  std::vector<double> errors;
+  for (std::size_t view = 0; view < input.views.size(); ++view)
+    for (const Eigen::Vector2d& residual : Residuals(input.points, input.views[view], fit, fit.poses[view]))
+      errors.push_back(residual.norm());
+  return Median(errors);
+}
+
+// A perspective model of a lens that is wider than any drifts to ever shorter focal lengths.
+bool IsPlausible(const CalibrationInput& input, const BoardFit& fit) {
+  if (fit.model == CameraModelId::kOpenCvFisheye) return fit.params.front() > 0;
+  return fit.params.front() > 0.5 * input.width / std::tan(0.5 * kWidestPerspective_deg / kDegPerRad);
+}
+
+// The best of fits that begin with several fields of view. Lenses without and with strong distortion agree near their
+// axis, so a radial model of one parameter is enough to begin with; a fisheye's start is its own first term.
+std::optional<BoardFit> FitFromStarts(const CalibrationInput& input, CameraModelId model,
+                                      std::span<const double> fields_deg) {
+  std::vector<std::optional<BoardFit>> fits(fields_deg.size());
+  std::vector<double> errors(fields_deg.size(), std::numeric_limits<double>::infinity());
+  const double cx = 0.5 * (input.width - 1);
+  const double cy = 0.5 * (input.height - 1);
+  const bool is_fisheye = model == CameraModelId::kOpenCvFisheye;
+  ParallelFor(
+      static_cast<int>(fields_deg.size()), input.threads,
+      [&](int i) {
+        const auto idx = static_cast<std::size_t>(i);
+        const double half_rad = 0.5 * fields_deg[idx] / kDegPerRad;
+        const double focal_px = 0.5 * input.width / (is_fisheye ? half_rad : std::tan(half_rad));
+        BoardFit fit{model, PinholeParams(model, focal_px, cx, cy), NumPinholeParams(model) + 1, {}};
+        const auto camera = Camera::Create(model, input.width, input.height, fit.params);
+        if (!camera.ok() || !StartPoses(*camera, input.points, input.views, &fit.poses)) return;
+        if (!Solve(input.points, input.views, {}, Intrinsics::kFree, kStartIterations, &fit)) return;
+        if (!IsPlausible(input, fit)) return;
+        errors[idx] = MedianError(input, fit);
+        fits[idx] = std::move(fit);
+      },
+      1);
+  const auto best = std::min_element(errors.begin(), errors.end());
+  if (!std::isfinite(*best)) return std::nullopt;
+  return std::move(fits[static_cast<std::size_t>(best - errors.begin())]);
+}
+
+// A perspective fit in the parameters of another perspective model, all of them free.
+BoardFit Converted(const BoardFit& radial, CameraModelId model) {
+  BoardFit fit{model, PinholeParams(model, radial.params[0], radial.params[1], radial.params[2]), NumParams(model),
+               radial.poses};
+  const auto first = static_cast<std::size_t>(NumPinholeParams(model));
+  if (fit.params.size() > first) fit.params[first] = radial.params[3];
+  return fit;
+}
+
+// One fit a model; of a fisheye, whose last coefficients only a view up to the image's border determines, also with
+// fewer of them.
+std::vector<BoardFit> FirstFits(const CalibrationInput& input, const std::vector<CameraModelId>& models) {
+  std::vector<BoardFit> fits;
+  std::optional<BoardFit> radial;
+  for (const CameraModelId model : models) {
+    if (model == CameraModelId::kOpenCvFisheye) {
+      const auto fisheye = FitFromStarts(input, model, kFisheyeStarts_deg);
+      for (const int num_free : {5, 6, 8}) {
+        if (!fisheye) break;
+        fits.push_back(*fisheye);
+        fits.back().num_free = num_free;
+      }
+      continue;
+    }
+    if (!radial) radial = FitFromStarts(input, CameraModelId::kSimpleRadial, kPerspectiveStarts_deg);
+    if (radial) fits.push_back(Converted(*radial, model));
+  }
+  std::erase_if(fits, [&](BoardFit& fit) {
+    return !Solve(input.points, input.views, {}, Intrinsics::kFree, kMaxIterations, &fit) || !IsPlausible(input, fit);
+  });
+  return fits;
+}
+
+double ViewRms(const CalibrationInput& input, const BoardView& view, const BoardFit& fit, const BoardPose& pose) {
+  std::vector<double> errors;
+  for (const Eigen::Vector2d& residual : Residuals(input.points, view, fit, pose)) errors.push_back(residual.norm());
+  return Rms(errors);
+}
+
+// The views whose error is much larger than the others'.
+std::vector<bool> Outliers(const CalibrationInput& input, const BoardFit& fit) {
+  std::vector<double> errors;
+  for (std::size_t view = 0; view < input.views.size(); ++view)
+    errors.push_back(ViewRms(input, input.views[view], fit, fit.poses[view]));
+  const double bound = kOutlierFactor * Median(errors);
+  std::vector<bool> outliers;
+  for (const double error : errors) outliers.push_back(error > bound);
+  return outliers;
+}
+
+int NumUsed(const std::vector<bool>& without) {
+  return static_cast<int>(std::count(without.begin(), without.end(), false));
+}
+
+// The points of a view whose place in it is even, or odd.
+BoardView HalfOf(const BoardView& view, int parity) {
+  BoardView half;
+  for (std::size_t i = 0; i < view.pixels.size(); ++i) {
+    if (static_cast<int>(i % kEvenAndOdd) != parity) continue;
+    half.point_ids.push_back(view.point_ids[i]);
+    half.pixels.push_back(view.pixels[i]);
+  }
+  return half;
+}
+
+// The error of one view under parameters that do not know it: each half of its points under the pose of the other.
+double PredictionError(const CalibrationInput& input, const BoardView& view, const BoardFit& fit,
+                       const BoardPose& start) {
+  std::vector<double> errors;
+  for (int parity = 0; parity < kEvenAndOdd; ++parity) {
+    const BoardView half = HalfOf(view, parity);
+    BoardFit alone{fit.model, fit.params, fit.num_free, {start}};
+    if (!Solve(input.points, {&half, 1}, {}, Intrinsics::kHeld, kMaxIterations, &alone))
+      return std::numeric_limits<double>::infinity();
+    for (const Eigen::Vector2d& residual :
+         Residuals(input.points, HalfOf(view, 1 - parity), alone, alone.poses.front()))
+      errors.push_back(residual.norm());
+  }
+  return Rms(errors);
+}
+
+// What fits without one group of views after the other say of a model.
+struct GroupFits {
+  std::vector<double> prediction_errors_px;  // a used view each
+  std::vector<double> jackknife_sigmas;      // a parameter each
+};
+
+std::optional<GroupFits> FitGroups(const CalibrationInput& input, const std::vector<bool>& outliers,
+                                   const BoardFit& fit) {
+  std::vector<std::size_t> used;
+  for (std::size_t view = 0; view < outliers.size(); ++view)
+    if (!outliers[view]) used.push_back(view);
+  const int groups = std::min<int>(kMaxGroups, static_cast<int>(used.size()));
+  std::vector<std::vector<double>> params(static_cast<std::size_t>(groups));
+  std::vector<double> errors(used.size(), std::numeric_limits<double>::infinity());
+  ParallelFor(
+      groups, input.threads,
+      [&](int group) {
+        std::vector<bool> without = outliers;
+        for (std::size_t i = static_cast<std::size_t>(group); i < used.size(); i += static_cast<std::size_t>(groups))
+          without[used[i]] = true;
+        BoardFit others = fit;
+        if (!Solve(input.points, input.views, without, Intrinsics::kFree, kMaxIterations, &others)) return;
+        for (std::size_t i = static_cast<std::size_t>(group); i < used.size(); i += static_cast<std::size_t>(groups))
+          errors[i] = PredictionError(input, input.views[used[i]], others, fit.poses[used[i]]);
+        params[static_cast<std::size_t>(group)] = others.params;
+      },
+      1);
+  for (const std::vector<double>& group : params)
+    if (group.empty()) return std::nullopt;
+  GroupFits result;
+  result.prediction_errors_px = errors;
+  for (std::size_t i = 0; i < fit.params.size(); ++i) {
+    double mean = 0;
+    for (const std::vector<double>& group : params) mean += group[i] / groups;
+    double sum = 0;
+    for (const std::vector<double>& group : params) sum += (group[i] - mean) * (group[i] - mean);
+    result.jackknife_sigmas.push_back(std::sqrt((groups - 1.0) / groups * sum));
+  }
+  return result;
+}
+
+// A model with all that is known of it.
+struct Candidate {
+  BoardFit fit;
+  Camera camera;
+  std::vector<double> sigmas;
+  std::vector<double> prediction_errors_px;
+};
+
+std::optional<Candidate> Evaluate(const CalibrationInput& input, const std::vector<bool>& outliers, BoardFit fit) {
+  if (!Solve(input.points, input.views, outliers, Intrinsics::kFree, kMaxIterations, &fit)) return std::nullopt;
+  auto camera = Camera::Create(fit.model, input.width, input.height, fit.params);
+  if (!camera.ok()) return std::nullopt;
+  std::vector<double> sigmas = CovarianceSigmas(input.points, input.views, outliers, fit);
+  if (sigmas.empty() || !(sigmas.front() < kLargestFocalLengthSigma * fit.params.front())) return std::nullopt;
+  const auto groups = FitGroups(input, outliers, fit);
+  if (!groups) return std::nullopt;
+  for (std::size_t i = 0; i < sigmas.size(); ++i) sigmas[i] = std::max(sigmas[i], groups->jackknife_sigmas[i]);
+  if (!(sigmas.front() < kLargestFocalLengthSigma * fit.params.front())) return std::nullopt;
+  return Candidate{std::move(fit), *std::move(camera), std::move(sigmas), groups->prediction_errors_px};
+}
+
+HeldOutError Compared(const Candidate& candidate, const Candidate& best) {
+  HeldOutError error;
+  error.model = candidate.fit.model;
+  error.num_params = candidate.fit.num_free;
+  error.rms_px = Mean(candidate.prediction_errors_px);
+  std::vector<double> excess;
+  for (std::size_t i = 0; i < candidate.prediction_errors_px.size(); ++i)
+    excess.push_back(candidate.prediction_errors_px[i] - best.prediction_errors_px[i]);
+  error.excess_px = Mean(excess);
+  double sum = 0;
+  for (const double value : excess) sum += (value - error.excess_px) * (value - error.excess_px);
+  const double count = static_cast<double>(excess.size());
+  error.excess_sigma_px = std::sqrt(sum / (count * std::max(1.0, count - 1)));
+  return error;
+}
+
+// The candidate of the fewest parameters that is no worse than the best one by more than a standard error.
+std::size_t Choose(const std::vector<Candidate>& candidates, std::vector<HeldOutError>* errors) {
+  const auto error_of = [](const Candidate& candidate) { return Mean(candidate.prediction_errors_px); };
+  const auto best = std::min_element(candidates.begin(), candidates.end(),
+                                     [&](const auto& a, const auto& b) { return error_of(a) < error_of(b); });
+  auto chosen = static_cast<std::size_t>(best - candidates.begin());
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    errors->push_back(Compared(candidates[i], *best));
+    if (errors->back().excess_px <= errors->back().excess_sigma_px &&
+        candidates[i].fit.num_free < candidates[chosen].fit.num_free)
+      chosen = i;
+  }
+  return chosen;
+}
+
+double TiltDeg(const Rigid3& cam_from_board, const std::vector<Eigen::Vector3d>& points, const BoardView& view) {
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();
+  for (const int id : view.point_ids) center += points[static_cast<std::size_t>(id)];
+  const Eigen::Vector3d ray = (cam_from_board * (center / static_cast<double>(view.point_ids.size()))).normalized();
+  const Eigen::Vector3d normal = cam_from_board.rotation * Eigen::Vector3d::UnitZ();
+  return kDegPerRad * std::acos(std::min(1.0, std::abs(normal.dot(ray))));
+}
+
+std::vector<FittedView> FittedViews(const CalibrationInput& input, const std::vector<bool>& outliers,
+                                    const BoardFit& fit) {
+  std::vector<FittedView> views;
+  for (std::size_t i = 0; i < input.views.size(); ++i) {
+    BoardPose pose = fit.poses[i];
+    if (outliers[i]) {
+      BoardFit alone{fit.model, fit.params, fit.num_free, {pose}};
+      if (Solve(input.points, input.views.subspan(i, 1), {}, Intrinsics::kHeld, kMaxIterations, &alone))
+        pose = alone.poses.front();
+    }
+    FittedView view;
+    view.is_outlier = outliers[i];
+    view.cam_from_board = ToRigid3(pose);
+    view.residuals_px = Residuals(input.points, input.views[i], fit, pose);
+    view.rms_px = ViewRms(input, input.views[i], fit, pose);
+    view.tilt_deg = TiltDeg(view.cam_from_board, input.points, input.views[i]);
+    views.push_back(std::move(view));
+  }
+  return views;
+}
+
+double RmsOf(const std::vector<FittedView>& views) {
+  std::vector<double> errors;
+  for (const FittedView& view : views)
+    if (!view.is_outlier)
+      for (const Eigen::Vector2d& residual : view.residuals_px) errors.push_back(residual.norm());
+  return Rms(errors);
+}
+
+Status TooFew(std::size_t views) {
+  return {ErrorCode::kInsufficient, "the board is seen in " + std::to_string(views) + " images that differ, and " +
+                                        std::to_string(kFewestCalibrationViews) +
+                                        " are the least; add images of the board from other sides"};
+}
+
+}  // namespace
+
+Result<CameraCalibration> CalibrateCamera(const CalibrationBoard& board, std::span<const BoardView> views, int width,
+                                          int height, ModelChoice model, int threads) {
+  if (views.size() < kFewestCalibrationViews) return TooFew(views.size());
+  const CalibrationInput input{board.Points(), views, width, height, threads};
+  const Status undetermined(ErrorCode::kInsufficient,
+                            "the images do not determine the focal length; add images in which the board is tilted by "
+                            "30 to 45 degrees, in several directions, and fills other parts of the image");
+
+  std::vector<BoardFit> fits = FirstFits(input, ModelsOf(model));
+
+  // Outliers are those of the fit with the smallest error.
+  if (fits.empty()) return undetermined;
+  const auto best = std::min_element(fits.begin(), fits.end(), [&](const auto& a, const auto& b) {
+    return MedianError(input, a) < MedianError(input, b);
+  });
+  const std::vector<bool> outliers = Outliers(input, *best);
+  if (NumUsed(outliers) < kFewestCalibrationViews) return TooFew(static_cast<std::size_t>(NumUsed(outliers)));
+
+  std::vector<Candidate> candidates;
+  for (BoardFit& fit : fits)
+    if (auto candidate = Evaluate(input, outliers, std::move(fit))) candidates.push_back(*std::move(candidate));
+  if (candidates.empty()) return undetermined;
+  std::vector<HeldOutError> held_out;
+  Candidate& chosen = candidates[Choose(candidates, &held_out)];
+  CameraCalibration calibration{.camera = std::move(chosen.camera)};
+  calibration.sigmas = std::move(chosen.sigmas);
+  calibration.views = FittedViews(input, outliers, chosen.fit);
+  calibration.rms_px = RmsOf(calibration.views);
+  calibration.held_out = std::move(held_out);
+  return calibration;
+}
+
+}  // namespace pliant

@@ -1,0 +1,21 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// ChArUco boards by OpenCV's contributed module aruco, which is not everywhere.
+#pragma once
+
+#include <optional>
+
+#include <opencv2/core/mat.hpp>
+
+#include "pliant/base/status.h"
+#include "pliant/calibration/board.h"
+#include "pliant/calibration/find_board.h"
+
+namespace pliant {
+
+// As CheckBoardIsSupported and FindBoard.
+Status CheckCharucoIsSupported(const CalibrationBoard& board);
+std::optional<BoardView> FindCharuco(const cv::Mat& gray, const CalibrationBoard& board);
+
+}  // namespace pliant

@@ -1,0 +1,164 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/calibration/choose_views.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string_view>
+
+#include <opencv2/calib3d.hpp>
+
+#include "pliant/base/text.h"
+
+namespace pliant {
+namespace {
+
+constexpr double kAlikeShare = 0.01;  // of the image's diagonal
+constexpr int kCells = 12;
+
+// What advice is given below, or above.
+constexpr int kFewViews = 8;
+constexpr double kSmallTilt_deg = 25;
+constexpr double kLargeFocalLengthSigma = 0.01;
+constexpr double kManyOutliers = 0.2;
+
+using Outline = std::array<Eigen::Vector2d, 4>;
+
+// Where the board's outermost points are in the image, by the homography to those that are seen.
+Outline OutlineOf(const CalibrationBoard& board, const std::vector<Eigen::Vector3d>& points, const BoardView& view) {
+  std::vector<cv::Point2d> on_board;
+  std::vector<cv::Point2d> in_image;
+  for (std::size_t i = 0; i < view.pixels.size(); ++i) {
+    const Eigen::Vector3d& point = points[static_cast<std::size_t>(view.point_ids[i])];
+    on_board.emplace_back(point.x(), point.y());
+    in_image.emplace_back(view.pixels[i].x(), view.pixels[i].y());
+  }
+  const cv::Mat homography = cv::findHomography(on_board, in_image);
+  const int last = board.NumPoints() - 1;
+  const std::array<int, 4> corners = {0, board.columns - 1, last, last - board.columns + 1};
+  Outline outline;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const Eigen::Vector3d& corner = points[static_cast<std::size_t>(corners[i])];
+    const auto seen = std::find(view.point_ids.begin(), view.point_ids.end(), corners[i]);
+    if (seen != view.point_ids.end()) {
+      outline[i] = view.pixels[static_cast<std::size_t>(seen - view.point_ids.begin())];
+    } else if (homography.empty()) {
+      outline[i] = view.pixels.front();
+    } else {
+      std::vector<cv::Point2d> projected;
+      cv::perspectiveTransform(std::vector<cv::Point2d>{{corner.x(), corner.y()}}, projected, homography);
+      outline[i] = {projected[0].x, projected[0].y};
+    }
+  }
+  return outline;
+}
+
+double AreaOf(const Outline& outline) {
+  double twice = 0;
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const Eigen::Vector2d& a = outline[i];
+    const Eigen::Vector2d& b = outline[(i + 1) % outline.size()];
+    twice += a.x() * b.y() - b.x() * a.y();
+  }
+  return 0.5 * std::abs(twice);
+}
+
+double Distance(const Outline& a, const Outline& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]).squaredNorm();
+  return std::sqrt(sum / static_cast<double>(a.size()));
+}
+
+// Calls `function(x, y)` with the place in the image, 0 to 1 along each side, of every point that was used.
+template <class Function>
+void ForEachUsedPoint(std::span<const BoardView> views, const CameraCalibration& calibration, Function&& function) {
+  for (std::size_t view = 0; view < views.size(); ++view) {
+    if (calibration.views[view].is_outlier) continue;
+    for (const Eigen::Vector2d& pixel : views[view].pixels)
+      function(std::clamp((pixel.x() + 0.5) / calibration.camera.width(), 0.0, 1.0 - 1e-9),
+               std::clamp((pixel.y() + 0.5) / calibration.camera.height(), 0.0, 1.0 - 1e-9));
+  }
+}
+
+// Parts of the image, three by three, without a point: "the upper left, the right".
+std::string EmptyParts(std::span<const BoardView> views, const CameraCalibration& calibration) {
+  constexpr std::array<std::string_view, 9> kNames = {"upper left", "top",        "upper right", "left",       "center",
+                                                      "right",      "lower left", "bottom",      "lower right"};
+  std::array<bool, 9> seen{};
+  ForEachUsedPoint(views, calibration, [&](double x, double y) {
+    seen[3 * static_cast<std::size_t>(3 * y) + static_cast<std::size_t>(3 * x)] = true;
+  });
+  std::string parts;
+  for (std::size_t i = 0; i < seen.size(); ++i)
+    if (!seen[i]) parts += (parts.empty() ? "the " : ", the ") + std::string(kNames[i]);
+  return parts;
+}
+
+}  // namespace
+
+std::vector<int> ChooseVariedViews(const CalibrationBoard& board, std::span<const BoardView> views, int width,
+                                   int height, int max_views) {
+  if (views.empty()) return {};
+  const std::vector<Eigen::Vector3d> points = board.Points();
+  std::vector<Outline> outlines;
+  for (const BoardView& view : views) outlines.push_back(OutlineOf(board, points, view));
+  const double alike_px = kAlikeShare * std::hypot(width, height);
+  std::vector<double> nearest(views.size(), std::numeric_limits<double>::infinity());
+  std::vector<int> chosen;
+  std::size_t next = 0;
+  for (std::size_t i = 1; i < views.size(); ++i)
+    if (AreaOf(outlines[i]) > AreaOf(outlines[next])) next = i;
+  while (static_cast<int>(chosen.size()) < max_views && nearest[next] > alike_px) {
+    chosen.push_back(static_cast<int>(next));
+    for (std::size_t i = 0; i < views.size(); ++i)
+      nearest[i] = std::min(nearest[i], Distance(outlines[i], outlines[next]));
+    next = static_cast<std::size_t>(std::max_element(nearest.begin(), nearest.end()) - nearest.begin());
+  }
+  std::sort(chosen.begin(), chosen.end());
+  return chosen;
+}
+
+double CoveredShare(std::span<const BoardView> views, const CameraCalibration& calibration) {
+  const Camera& camera = calibration.camera;
+  const double cell_px = static_cast<double>(std::max(camera.width(), camera.height())) / kCells;
+  const int columns = std::max(1, static_cast<int>(std::lround(camera.width() / cell_px)));
+  const int rows = std::max(1, static_cast<int>(std::lround(camera.height() / cell_px)));
+  std::vector<bool> seen(static_cast<std::size_t>(columns * rows), false);
+  ForEachUsedPoint(views, calibration, [&](double x, double y) {
+    seen[static_cast<std::size_t>(static_cast<int>(rows * y) * columns + static_cast<int>(columns * x))] = true;
+  });
+  return static_cast<double>(std::count(seen.begin(), seen.end(), true)) / static_cast<double>(seen.size());
+}
+
+std::vector<std::string> CalibrationAdvice(std::span<const BoardView> views, const CameraCalibration& calibration) {
+  std::vector<std::string> advice;
+  int used = 0;
+  double tilt_deg = 0;
+  for (const FittedView& view : calibration.views) {
+    if (view.is_outlier) continue;
+    ++used;
+    tilt_deg = std::max(tilt_deg, view.tilt_deg);
+  }
+  const int outliers = static_cast<int>(calibration.views.size()) - used;
+  const double sigma = calibration.FocalLengthSigmaPx() / calibration.camera.MeanFocalLengthPx();
+  if (used < kFewViews)
+    advice.push_back("only " + std::to_string(used) + " images were used; take 15 or more, from different sides");
+  if (tilt_deg < kSmallTilt_deg)
+    advice.push_back("the board is tilted by " + Digits(tilt_deg, 0) +
+                     " degrees at most; tilt it by 30 to 45, in several directions");
+  if (const std::string parts = EmptyParts(views, calibration); !parts.empty())
+    advice.push_back("no point of the board lies in these parts of the image: " + parts +
+                     "; the distortion is not known there");
+  if (sigma > kLargeFocalLengthSigma)
+    advice.push_back("the focal length is known to " + Percent(sigma, 1) +
+                     " only; take images in which the board is larger and tilted more");
+  if (outliers > kManyOutliers * static_cast<double>(calibration.views.size()))
+    advice.push_back(std::to_string(outliers) + " of " + std::to_string(calibration.views.size()) +
+                     " images fit badly; look for blur, and whether the board is flat");
+  return advice;
+}
+
+}  // namespace pliant

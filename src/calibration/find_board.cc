@@ -1,0 +1,136 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/calibration/find_board.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <opencv2/calib3d.hpp>
+#include <opencv2/features2d.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "calibration/charuco.h"
+
+namespace pliant {
+namespace {
+
+// Longest side at which the search takes some tenths of a second, and below which squares get too small for it.
+constexpr double kLargestSearched_px = 960;
+constexpr double kSmallestSearched_px = 640;
+constexpr int kChessboardFlags = cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_ACCURACY;
+
+cv::Mat Resized(const cv::Mat& gray, double scale) {
+  cv::Mat resized;
+  cv::resize(gray, resized, {}, scale, scale, scale < 1 ? cv::INTER_AREA : cv::INTER_CUBIC);
+  return resized;
+}
+
+// The scales to search at, the likeliest first.
+std::vector<double> SearchScales(const cv::Mat& gray) {
+  const double longest = std::max(gray.cols, gray.rows);
+  if (longest > kLargestSearched_px)
+    return {kLargestSearched_px / longest, std::min(1.0, 2 * kLargestSearched_px / longest)};
+  if (longest < kSmallestSearched_px) {
+    // Corners of enlarged images are the more exact ones.
+    const double larger = std::ceil(kSmallestSearched_px / longest);
+    return {larger, larger + 1, 1.0};
+  }
+  return {1.0};
+}
+
+// In the image that was scaled by `scale`, the centers of whose pixels are at whole numbers, too.
+void Unscale(double scale, std::vector<cv::Point2f>* points) {
+  for (cv::Point2f& point : *points) {
+    point.x = static_cast<float>((point.x + 0.5) / scale - 0.5);
+    point.y = static_cast<float>((point.y + 0.5) / scale - 0.5);
+  }
+}
+
+// Of neighbors in a grid of points, row by row.
+double ShortestStep(const std::vector<cv::Point2f>& points, int columns) {
+  double shortest = cv::norm(points[1] - points[0]);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto step_to = [&](std::size_t other) { shortest = std::min(shortest, cv::norm(points[other] - points[i])); };
+    if ((i + 1) % static_cast<std::size_t>(columns) != 0) step_to(i + 1);
+    if (i + static_cast<std::size_t>(columns) < points.size()) step_to(i + static_cast<std::size_t>(columns));
+  }
+  return shortest;
+}
+
+// Corners that were found in a smaller image, in the whole one.
+void Refine(const cv::Mat& gray, int columns, std::vector<cv::Point2f>* corners) {
+  const int reach = std::clamp(static_cast<int>(0.3 * ShortestStep(*corners, columns)), 2, 15);
+  cv::cornerSubPix(gray, *corners, {reach, reach}, {-1, -1},
+                   {cv::TermCriteria::EPS + cv::TermCriteria::MAX_ITER, 50, 1e-3});
+}
+
+bool FindChessboard(const cv::Mat& gray, cv::Size size, std::vector<cv::Point2f>* corners) {
+  return cv::findChessboardCornersSB(gray, size, *corners, kChessboardFlags) ||
+         cv::findChessboardCornersSB(gray, size, *corners, kChessboardFlags | cv::CALIB_CB_EXHAUSTIVE);
+}
+
+bool FindCircles(const cv::Mat& gray, const CalibrationBoard& board, std::vector<cv::Point2f>* centers) {
+  const int grid = board.kind == BoardKind::kCircles ? cv::CALIB_CB_SYMMETRIC_GRID : cv::CALIB_CB_ASYMMETRIC_GRID;
+  cv::SimpleBlobDetector::Params params;
+  params.maxArea = static_cast<float>(gray.total()) / static_cast<float>(board.NumPoints());
+  params.minDistBetweenBlobs = 4;
+  const cv::Ptr<cv::FeatureDetector> blobs = cv::SimpleBlobDetector::create(params);
+  const cv::Size size(board.columns, board.rows);
+  return cv::findCirclesGrid(gray, size, *centers, grid, blobs) ||
+         cv::findCirclesGrid(gray, size, *centers, grid | cv::CALIB_CB_CLUSTERING, blobs);
+}
+
+// All points of a board that is seen as a whole; none where it is not.
+std::vector<cv::Point2f> FindWholeBoard(const cv::Mat& gray, const CalibrationBoard& board) {
+  const bool is_chessboard = board.kind == BoardKind::kChessboard;
+  for (const double scale : SearchScales(gray)) {
+    const cv::Mat searched = scale == 1.0 ? gray : Resized(gray, scale);
+    std::vector<cv::Point2f> points;
+    const bool found = is_chessboard ? FindChessboard(searched, {board.columns, board.rows}, &points)
+                                     : FindCircles(searched, board, &points);
+    if (!found || points.size() != static_cast<std::size_t>(board.NumPoints())) continue;
+    Unscale(scale, &points);
+    if (is_chessboard && scale < 1.0) Refine(gray, board.columns, &points);
+    return points;
+  }
+  return {};
+}
+
+}  // namespace
+
+Status CheckBoardIsSupported(const CalibrationBoard& board) {
+  return board.kind == BoardKind::kCharuco ? CheckCharucoIsSupported(board) : Status::Ok();
+}
+
+std::optional<BoardView> FindBoard(const cv::Mat& gray, const CalibrationBoard& board) {
+  if (board.kind == BoardKind::kCharuco) return FindCharuco(gray, board);
+  const std::vector<cv::Point2f> points = FindWholeBoard(gray, board);
+  if (points.empty()) return std::nullopt;
+  BoardView view;
+  view.point_ids.resize(points.size());
+  std::iota(view.point_ids.begin(), view.point_ids.end(), 0);
+  for (const cv::Point2f& point : points) view.pixels.emplace_back(point.x, point.y);
+  return view;
+}
+
+std::optional<ChessboardSize> LargestChessboard(const cv::Mat& gray) {
+  const double scale = SearchScales(gray).front();
+  const cv::Mat searched = scale == 1.0 ? gray : Resized(gray, scale);
+  cv::Mat corners;
+  cv::Mat meta;
+  if (!cv::findChessboardCornersSB(searched, {3, 3}, corners,
+                                   kChessboardFlags | cv::CALIB_CB_EXHAUSTIVE | cv::CALIB_CB_LARGER, meta))
+    return std::nullopt;
+  return ChessboardSize{std::max(meta.cols, meta.rows), std::min(meta.cols, meta.rows)};
+}
+
+bool IsMirrored(const cv::Mat& gray, const CalibrationBoard& board) {
+  if (board.kind != BoardKind::kCharuco) return false;
+  cv::Mat mirrored;
+  cv::flip(gray, mirrored, 1);
+  return FindCharuco(mirrored, board).has_value();
+}
+
+}  // namespace pliant

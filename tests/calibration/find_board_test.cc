@@ -1,0 +1,85 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/calibration/find_board.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <opencv2/imgproc.hpp>
+
+#include "support/board_views.h"
+
+namespace pliant {
+namespace {
+
+const CalibrationBoard kBoard = {BoardKind::kChessboard, 7, 5, 2.0};
+
+Camera CameraOf(int width, int height, double focal_px) {
+  return Camera::Create("PINHOLE", width, height,
+                        std::vector<double>{focal_px, focal_px, 0.5 * (width - 1), 0.5 * (height - 1)})
+      .value();
+}
+
+// The largest distance of a corner from where it is; the order may be turned by half a turn.
+double LargestError(const BoardView& view, const Camera& camera, const Rigid3& cam_from_board) {
+  const std::vector<Eigen::Vector3d> points = kBoard.Points();
+  double forward = 0;
+  double backward = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Eigen::Vector2d pixel = *camera.Project(cam_from_board * points[i]);
+    forward = std::max(forward, (view.pixels[i] - pixel).norm());
+    backward = std::max(backward, (view.pixels[points.size() - 1 - i] - pixel).norm());
+  }
+  return std::min(forward, backward);
+}
+
+TEST(FindBoard, FindsCornersToASmallPartOfAPixel) {
+  // Of rendered images without noise; in the last one a square is 11 px wide.
+  struct Case {
+    int width;
+    int height;
+    double tolerance_px;
+  };
+  for (const auto& [width, height, tolerance_px] : {Case{640, 480, 0.15}, {1280, 960, 0.15}, {200, 150, 0.3}}) {
+    const Camera camera = CameraOf(width, height, 0.8 * width);
+    const Rigid3 pose = BoardPoseAt(kBoard, {1, -0.5, 22}, 0.4, 0.7);
+    const auto view = FindBoard(ImageOf(kBoard, camera, pose), kBoard);
+    ASSERT_TRUE(view.has_value()) << width;
+    ASSERT_EQ(view->pixels.size(), 35u);
+    EXPECT_LT(LargestError(*view, camera, pose), tolerance_px) << width;
+  }
+}
+
+TEST(FindBoard, FindsNothingInAnEmptyImage) {
+  EXPECT_FALSE(FindBoard(cv::Mat(240, 320, CV_8UC1, cv::Scalar(0)), kBoard).has_value());
+  EXPECT_FALSE(LargestChessboard(cv::Mat(240, 320, CV_8UC1, cv::Scalar(128))).has_value());
+}
+
+TEST(FindBoard, TellsHowLargeAChessboardIs) {
+  const Camera camera = CameraOf(640, 480, 500);
+  const cv::Mat image = ImageOf(kBoard, camera, BoardPoseAt(kBoard, {0, 0, 22}, 0.3, 0.7));
+  EXPECT_EQ(LargestChessboard(image), (ChessboardSize{7, 5}));
+}
+
+TEST(FindBoard, FindsCircles) {
+  for (const BoardKind kind : {BoardKind::kCircles, BoardKind::kAsymmetricCircles}) {
+    const CalibrationBoard board = {kind, 4, 7, 40.0};
+    cv::Mat image(480, 640, CV_8UC1, cv::Scalar(255));
+    for (const Eigen::Vector3d& point : board.Points())
+      cv::circle(image, cv::Point(120 + static_cast<int>(point.x()), 80 + static_cast<int>(point.y())), 12,
+                 cv::Scalar(0), cv::FILLED, cv::LINE_AA);
+    const auto view = FindBoard(image, board);
+    ASSERT_TRUE(view.has_value()) << EnumName(kind);
+    EXPECT_EQ(view->pixels.size(), 28u);
+  }
+}
+
+TEST(FindBoard, NamesTheNearestDictionary) {
+  const CalibrationBoard board = {BoardKind::kCharuco, 7, 4, 10.0, 7.0, "5X5_101"};
+  const Status status = CheckBoardIsSupported(board);
+  ASSERT_FALSE(status.ok());
+  EXPECT_THAT(status.message(), testing::AnyOf(testing::HasSubstr("5X5_100"), testing::HasSubstr("aruco")));
+}
+
+}  // namespace
+}  // namespace pliant

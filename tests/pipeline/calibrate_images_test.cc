@@ -1,0 +1,147 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/pipeline/calibrate_images.h"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "pliant/base/files.h"
+#include "pliant/io/camera_file.h"
+#include "support/board_views.h"
+#include "support/temporary_folder.h"
+
+namespace pliant {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+const CalibrationBoard kBoard = {BoardKind::kChessboard, 7, 5, 2.0};
+const Camera kCamera = Camera::Create("RADIAL", 480, 360, std::vector<double>{400, 236, 181, -0.2, 0.05}).value();
+
+class CalibrateImagesTest : public testing::Test {
+ protected:
+  // Images of the board from `count` sides, after which come those that are given.
+  CalibrateRequest Request(int count, const std::vector<cv::Mat>& others = {}) {
+    std::vector<cv::Mat> images;
+    for (const Rigid3& pose : VariedBoardPoses(kBoard, kCamera, count, 7))
+      images.push_back(ImageOf(kBoard, kCamera, pose));
+    images.insert(images.end(), others.begin(), others.end());
+    fs::create_directories(folder_ / "boards");
+    int number = 10;
+    for (const cv::Mat& image : images)
+      cv::imwrite(folder_ / "boards" / ("board_" + std::to_string(number++) + ".png"), image);
+    return {folder_ / "boards", kBoard, folder_ / "camera.yaml"};
+  }
+
+  static Result<CalibrateSummary> Calibrate(const CalibrateRequest& request, const CalibrateOptions& options = {}) {
+    return CalibrateImages(request, options, [](int, int) { return true; });
+  }
+
+  // Says `part`, and leaves camera.yaml as it was.
+  void ExpectFailure(const CalibrateRequest& request, ErrorCode code, const std::string& part) {
+    ASSERT_TRUE(WriteFileAtomically(request.output_path, "before").ok());
+    const auto summary = Calibrate(request);
+    ASSERT_FALSE(summary.ok());
+    EXPECT_EQ(summary.status().code(), code);
+    EXPECT_THAT(summary.status().message(), HasSubstr(part));
+    EXPECT_EQ(ReadFile(request.output_path).value(), "before");
+  }
+
+  const TemporaryFolder temporary_ = TemporaryFolder("calibrate");
+  const fs::path folder_ = temporary_.Path("");
+};
+
+TEST_F(CalibrateImagesTest, WritesTheCamera) {
+  const cv::Mat empty(360, 480, CV_8UC1, cv::Scalar(128));
+  const auto summary = Calibrate(Request(12, {empty}));
+  ASSERT_TRUE(summary.ok()) << summary.status().message();
+  const auto file = ReadCameraFile(folder_ / "camera.yaml");
+  ASSERT_TRUE(file.ok()) << file.status().message();
+  constexpr double kFocalTolerance = 0.003;  // of the focal length
+  constexpr double kCenterTolerance_px = 1.0;
+  EXPECT_NEAR(file->camera.MeanFocalLengthPx(), 400, 400 * kFocalTolerance);
+  const auto center = file->camera.Project(Eigen::Vector3d(0, 0, 1));
+  EXPECT_LT((*center - Eigen::Vector2d(236, 181)).norm(), kCenterTolerance_px);
+  EXPECT_EQ(summary->images_read, 13);
+  ASSERT_EQ(summary->images.size(), 13u);
+  EXPECT_EQ(summary->images[0].name, "board_10.png");
+  EXPECT_EQ(summary->images[0].use, ImageUse::kUsed);
+  EXPECT_EQ(summary->images[12].use, ImageUse::kNoBoard);
+  EXPECT_GT(summary->covered_share, 0.4);
+}
+
+TEST_F(CalibrateImagesTest, SearchesTheSharpestImageOfEveryStretch) {
+  CalibrateRequest request = Request(0);
+  int number = 0;
+  for (const Rigid3& pose : VariedBoardPoses(kBoard, kCamera, 8, 7)) {
+    const cv::Mat sharp = ImageOf(kBoard, kCamera, pose);
+    cv::Mat blurred;
+    cv::GaussianBlur(sharp, blurred, {}, 3);
+    for (int i = 0; i < 4; ++i)
+      cv::imwrite(folder_ / "boards" / (std::to_string(100 + number++) + ".png"), i == 2 ? sharp : blurred);
+  }
+  CalibrateOptions options;
+  options.max_images = 8;
+  options.model = ModelChoice::kSimpleRadial;
+  const auto summary = Calibrate(request, options);
+  ASSERT_TRUE(summary.ok()) << summary.status().message();
+  EXPECT_EQ(summary->images_read, 32);
+  ASSERT_EQ(summary->images.size(), 8u);
+  for (std::size_t i = 0; i < 8; ++i) EXPECT_EQ(summary->images[i].name, std::to_string(102 + 4 * i) + ".png");
+}
+
+TEST_F(CalibrateImagesTest, NamesTheSizeOfABoardThatWasGivenTooSmall) {
+  CalibrateRequest request = Request(6);
+  request.board = {BoardKind::kChessboard, 5, 4, 2.0};
+  ExpectFailure(request, ErrorCode::kInsufficient, "chessboard:7x5:2");
+}
+
+TEST_F(CalibrateImagesTest, NamesTheSizeOfABoardThatWasGivenTooLarge) {
+  CalibrateRequest request = Request(6);
+  request.board = {BoardKind::kChessboard, 9, 6, 2.0};
+  ExpectFailure(request, ErrorCode::kInsufficient, "chessboard:7x5:2");
+}
+
+TEST_F(CalibrateImagesTest, RefusesImagesWithoutABoard) {
+  const CalibrateRequest request = Request(0, {cv::Mat(360, 480, CV_8UC1, cv::Scalar(0))});
+  ExpectFailure(request, ErrorCode::kInsufficient, "is in none of the 1 images");
+}
+
+TEST_F(CalibrateImagesTest, RefusesOneImage) {
+  ExpectFailure(Request(1), ErrorCode::kInsufficient, "add images of the board from other sides");
+}
+
+TEST_F(CalibrateImagesTest, RefusesImagesThatAreAllAlike) {
+  const Rigid3 pose = BoardPoseAt(kBoard, {0, 0, 22}, 0.3, 0.5);
+  const cv::Mat image = ImageOf(kBoard, kCamera, pose);
+  ExpectFailure(Request(0, {image, image, image, image, image}), ErrorCode::kInsufficient, "in 1 images that differ");
+}
+
+TEST_F(CalibrateImagesTest, RefusesImagesOfDifferentSizes) {
+  const CalibrateRequest request = Request(3, {cv::Mat(240, 320, CV_8UC1, cv::Scalar(0))});
+  ExpectFailure(request, ErrorCode::kMismatch, "is 320x240 and");
+}
+
+TEST_F(CalibrateImagesTest, SaysWhereThereIsNothing) {
+  const CalibrateRequest request = {folder_ / "none", kBoard, folder_ / "camera.yaml"};
+  ExpectFailure(request, ErrorCode::kNotFound, "none");
+}
+
+TEST_F(CalibrateImagesTest, EndsOnRequest) {
+  const CalibrateRequest request = Request(3);
+  const auto summary = CalibrateImages(request, {}, [](int done, int) { return done == 0; });
+  ASSERT_FALSE(summary.ok());
+  EXPECT_EQ(summary.status().code(), ErrorCode::kInterrupted);
+  EXPECT_FALSE(Exists(request.output_path));
+}
+
+}  // namespace
+}  // namespace pliant
