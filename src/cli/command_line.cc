@@ -52,8 +52,17 @@ std::string NameOf(std::string_view program, std::string_view command) {
 // How it is called: "pliant track".
 std::string NameOf(const Manual& manual) { return NameOf(manual.program, manual.command); }
 
-// As CLI11 takes them. Where the result goes has a short name too, the usual one.
-std::string FlagsOf(const std::string& name) { return (name == "output_path" ? "-o,--" : "--") + name; }
+// The usual short names.
+std::string ShortFlagOf(const std::string& name) {
+  if (name == "output_path") return "-o";
+  return name == "help" ? "-h" : "";
+}
+
+// As CLI11 takes them.
+std::string FlagsOf(const std::string& name) {
+  const std::string short_flag = ShortFlagOf(name);
+  return short_flag + (short_flag.empty() ? "--" : ",--") + name;
+}
 
 void Say(std::string_view name, std::string_view sentence) { std::cerr << name << ": " << sentence << std::endl; }
 
@@ -81,7 +90,7 @@ int RunVerb(std::string_view command, std::span<const Verb> verbs, std::span<con
     usage += (usage.empty() ? "usage: " : "       ") + ("pliant " + std::string(command)) + " " +
              std::string(verb.name) + " " + std::string(verb.arguments) + "\n";
   usage += "\nWith --help each of them prints its manual.\n";
-  const bool asked = name == "--help" || name == "help";
+  const bool asked = name == "--help" || name == "-h" || name == "help";
   if (!asked) SayError(command, name.empty() ? "give one of its verbs" : "it has no verb " + Quoted(name));
   (asked ? std::cout : std::cerr) << usage;
   return asked ? kExitOk : kExitUsage;
@@ -156,7 +165,7 @@ Status CommandLine::ReadArguments(std::span<const std::string> args) {
   app.set_help_flag();  // the manual is ours
   for (Argument& argument : arguments_) {
     if (argument.placeholder.empty()) {
-      app.add_flag_callback("--" + argument.name, [&argument] { argument.given = {""}; });
+      app.add_flag_callback(FlagsOf(argument.name), [&argument] { argument.given = {""}; });
     } else if (argument.times == Times::kSeveral) {
       app.add_option_function<std::vector<std::string>>(
              "--" + argument.name, [&argument](const std::vector<std::string>& values) { argument.given = values; })
@@ -187,9 +196,10 @@ std::optional<int> CommandLine::Parse(std::span<const std::string> args) {
   Add("config", &config_path_, "FILE", "YAML file of options, as --print_config prints it; flags win over it",
       Need::kOptional);
   AddFlag("print_config", &print_config_, "print every option as resolved, with unit and reason, and end");
-  AddFlag("help", &help_, "print this manual and end");
+  AddFlag("help", &help_, manual_.main_options.empty() ? "print this manual and end" : "print the manual and end");
+  if (!manual_.main_options.empty()) AddFlag("help-all", &help_all_, "print the manual with every option and end");
   const Status status = ReadArguments(args);
-  if (status.ok() || help_) return std::nullopt;
+  if (status.ok() || help_ || help_all_) return std::nullopt;
   return UsageError(status.message());
 }
 
@@ -232,8 +242,8 @@ Status CommandLine::ApplyFlags(OptionTable& options) const {
 }
 
 std::optional<int> CommandLine::Resolve(OptionTable& options) {
-  if (help_) {
-    std::cout << ManualText(options) << std::flush;
+  if (help_ || help_all_) {
+    std::cout << ManualText(options, help_all_ ? Detail::kAll : Detail::kMain) << std::flush;
     return kExitOk;
   }
   if (!config_path_.empty()) {
@@ -268,7 +278,36 @@ int CommandLine::Failure(std::string_view sentence) const {
   return kExitFailed;
 }
 
-std::string CommandLine::ManualText(const OptionTable& options) const {
+bool CommandLine::IsShown(const OptionField& field, Detail detail) const {
+  const auto& shown = manual_.main_options;
+  return detail == Detail::kAll || shown.empty() || std::find(shown.begin(), shown.end(), field.name) != shown.end();
+}
+
+std::string CommandLine::OptionsText(const OptionTable& options, Detail detail) const {
+  if (options.fields().empty()) return "";
+  const bool is_part = detail == Detail::kMain && !manual_.main_options.empty();
+  std::string text =
+      "\nOPTIONS\n" + Wrap(std::string("Given as --Group.option VALUE or --Group.option=VALUE, or in the "
+                                       "file of --config. Each is shown with its default and its unit "
+                                       "or choices.") +
+                               (is_part ? " These are the most used ones; --help-all shows all " +
+                                              std::to_string(options.fields().size()) + "."
+                                        : ""),
+                           2);
+  for (const auto& [group, why] : options.groups()) {
+    std::string fields;
+    for (const OptionField& field : options.fields()) {
+      if (!field.name.starts_with(group + ".") || !IsShown(field, detail)) continue;
+      const std::string value = field.get();
+      fields += "    --" + field.name + " " + (value.empty() ? "\"\"" : value) + "  [" + field.unit + "]\n" +
+                Wrap(field.why, 8);
+    }
+    if (!fields.empty()) text += "\n" + Wrap(group + ": " + why, 2) + fields;
+  }
+  return text;
+}
+
+std::string CommandLine::ManualText(const OptionTable& options, Detail detail) const {
   const std::string program = NameOf(manual_);
   std::string usage = program;
   std::string arguments;
@@ -276,7 +315,7 @@ std::string CommandLine::ManualText(const OptionTable& options) const {
     std::string flag = "--" + argument.name + (argument.placeholder.empty() ? "" : " ") + argument.placeholder;
     if (argument.positional == Positional::kYes) flag = "[--" + argument.name + "] " + argument.placeholder;
     if (argument.need == Need::kRequired) usage += " " + flag;
-    if (argument.name == "output_path") flag = "-o, " + flag;
+    if (const std::string short_flag = ShortFlagOf(argument.name); !short_flag.empty()) flag = short_flag + ", " + flag;
     if (argument.times == Times::kSeveral) flag += " [--" + argument.name + " ...]";
     std::string why = argument.why;
     if (argument.need == Need::kRequired) why += " (required)";
@@ -286,22 +325,7 @@ std::string CommandLine::ManualText(const OptionTable& options) const {
   std::string text = program + " - " + std::string(manual_.summary) + "\n\nUSAGE\n" +
                      Wrap(usage + " [ARGUMENTS] [--Group.option VALUE ...]", 2) + "\nDESCRIPTION\n" +
                      WrapParagraphs(manual_.text, 2) + "\nARGUMENTS\n" + arguments;
-  if (!options.fields().empty()) {
-    text += "\nOPTIONS\n" +
-            Wrap(
-                "Given as --Group.option VALUE or --Group.option=VALUE, or in the file of --config. Each is shown with "
-                "its default and its unit or choices.",
-                2);
-  }
-  for (const auto& [group, why] : options.groups()) {
-    text += "\n" + Wrap(group + ": " + why, 2);
-    for (const OptionField& field : options.fields()) {
-      if (!field.name.starts_with(group + ".")) continue;
-      const std::string value = field.get();
-      text += "    --" + field.name + " " + (value.empty() ? "\"\"" : value) + "  [" + field.unit + "]\n" +
-              Wrap(field.why, 8);
-    }
-  }
+  text += OptionsText(options, detail);
   text +=
       "\nEXIT CODES\n  0  done\n  1  the run failed or was interrupted; the reason is on standard error\n"
       "  2  the command line or the file of --config is wrong\n\nEXAMPLES\n";

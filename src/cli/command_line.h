@@ -8,8 +8,8 @@
 //   TrackOptions options = MakeTrackOptions(preset);       what the arguments choose as defaults
 //   OptionTable table;  options.List(table);
 //   if (auto exit = line.Resolve(table)) return *exit;     --config FILE, then the flags; --help, --print_config
-// Every command gets --config, --print_config and --help from here. Exit codes and where text goes: results and manuals
-// to standard output, errors and progress to standard error, one sentence an error.
+// Every command gets --config, --print_config, --help and --help-all from here. Exit codes and where text goes: results
+// and manuals to standard output, errors and progress to standard error, one sentence an error.
 #pragma once
 
 #include <functional>
@@ -33,6 +33,8 @@ struct Manual {
   std::string_view summary;  // one line, no full stop
   std::string_view text;     // what it does, what it reads, what it leaves; paragraphs separated by an empty line
   std::vector<std::string_view> examples;
+  // The options that --help describes, where there are many; --help-all describes all of them. Empty: all.
+  std::vector<std::string_view> main_options = {};
   std::string_view program = "pliant";
 };
 
@@ -99,8 +101,9 @@ class CommandLine {
   // For what could not be carried out: says it and gives kExitFailed.
   int Failure(std::string_view sentence) const;
 
-  // The manual of `--help`.
-  std::string ManualText(const OptionTable& options) const;
+  enum class Detail { kMain, kAll };
+  // The manual of `--help`, or of `--help-all`.
+  std::string ManualText(const OptionTable& options, Detail detail) const;
 
  private:
   // `set` gets one of the names; `value` is the one that it has at first.
@@ -120,6 +123,8 @@ class CommandLine {
     Positional positional = Positional::kNo;
   };
 
+  bool IsShown(const OptionField& field, Detail detail) const;
+  std::string OptionsText(const OptionTable& options, Detail detail) const;
   void AddArgument(Argument argument);
   Status ReadArguments(std::span<const std::string> args);
   Status ApplyFlags(OptionTable& options) const;
@@ -131,6 +136,7 @@ class CommandLine {
   std::string config_path_;
   bool print_config_ = false;
   bool help_ = false;
+  bool help_all_ = false;
 };
 
 }  // namespace pliant::cli

@@ -8,6 +8,7 @@
 #include "cli/command_line.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
+#include "cli/main_simulation_options.h"
 #include "cli/run_evaluation.h"
 #include "cli/track_progress.h"
 #include "pliant/base/text.h"
@@ -29,6 +30,7 @@ const Manual kManual = {
     "Leaves in --output_path: sequence/ (see pliant simulate --help), run/ (see pliant track --help), evaluation.json, "
     "evaluation.csv, and report.html (see pliant report --help; not in a build without the report page).",
     {"pliant demo", "pliant demo --output_path /tmp/demo --Deformation.amplitude_mm 5"},
+    MainSimulationOptions(),
 };
 
 SimulationOptions DemoSimulation() {

@@ -8,6 +8,7 @@
 #include "cli/command_line.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
+#include "cli/main_simulation_options.h"
 #include "cli/progress.h"
 #include "pliant/simulation/write_sequence.h"
 
@@ -35,6 +36,7 @@ const Manual kManual = {
      "pliant simulate --output_path ct --Scene.kind mesh --Scene.mesh_path colon.stl --Trajectory.kind file "
      "--Trajectory.path poses.txt",
      "pliant simulate --output_path again --config colon/simulation.yaml"},
+    MainSimulationOptions(),
 };
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdio>
+#include <ctime>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -41,9 +42,12 @@ const Manual kManual = {
     "camera is searched for in every frame, and after a while another map is begun (map_1.ply, sparse/0 and sparse/1; "
     "frames.csv says which one a frame belongs to). A run that ends while the camera is lost has the status "
     "`lost` in run.json; that is a result, not a failure: the exit code is 0.",
-    {"pliant track --image_path clip.mp4 --camera camera.yaml --output_path run",
+    {"pliant track clip.mp4 --camera camera.yaml --output_path run",
      "pliant track --image_path seq --output_path run --tracks cotracker.npz",
      "pliant track --image_path seq --output_path run --preset paper --start 100 --end 400"},
+    {"General.seed", "General.threads", "Masks.highlights", "Masks.border", "Corners.max_corners", "Init.method",
+     "Init.provisional", "Init.nominal_depth_mm", "Tracking.camera_motion", "Tracking.submaps", "Growth.grow",
+     "Refine.model"},
 };
 
 struct TrackArguments {
@@ -56,8 +60,10 @@ struct TrackArguments {
 };
 
 void AddArguments(TrackArguments* arguments, CommandLine* line) {
-  arguments->input.AddTo(line, "image_path");
-  line->Add("output_path", &arguments->output_path, "DIR", "run folder; made where it is not there", Need::kRequired);
+  arguments->input.AddTo(line, "image_path", Positional::kYes);
+  line->Add("output_path", &arguments->output_path, "DIR",
+            "run folder; made where it is not there (default: the images' name with date and time, here)",
+            Need::kOptional);
   line->AddChoice("preset", &arguments->preset,
                   "the defaults of the options: ours, or every choice and constant as published in the paper");
   line->AddAlias("tracks", "TrackFile.path", "FILE",
@@ -75,6 +81,18 @@ void AddArguments(TrackArguments* arguments, CommandLine* line) {
   line->AddFlag("refine", &arguments->refine,
                 "then refine the run (pliant refine, options Refine), into a folder with _refined behind its name");
   line->AddFlag("quiet", &arguments->quiet, "say nothing but errors");
+}
+
+// A folder in the working folder, for a run that was not named: clip_20260131_174501.
+std::string DatedFolder(const std::string& image_path) {
+  const std::filesystem::path path = std::filesystem::path(image_path).lexically_normal();
+  const std::string name = path.has_filename() ? path.stem().string() : path.parent_path().filename().string();
+  const std::time_t now = std::time(nullptr);
+  std::tm local{};
+  localtime_r(&now, &local);
+  std::array<char, 32> date;
+  std::strftime(date.data(), date.size(), "%Y%m%d_%H%M%S", &local);
+  return (name.empty() || name == "." || name == ".." ? "run" : name) + "_" + date.data();
 }
 
 int Report(const RunSummary& summary, const TrackArguments& arguments) {
@@ -123,6 +141,7 @@ int TrackCommand(std::span<const std::string> args) {
   if (const auto exit = line.Resolve(table)) return *exit;
   if (const Status status = CheckTrackOptions(options); !status.ok()) return line.UsageError(status.message());
 
+  if (arguments.output_path.empty()) arguments.output_path = DatedFolder(arguments.input.path);
   RunRequest request;
   request.input = arguments.input.Request();
   request.output_path = arguments.output_path;

@@ -255,7 +255,8 @@ Result<fs::path> FindCalibration(const SequenceRequest& request) {
   fs::path file = beside / "camera.yaml";
   if (!fs::is_regular_file(file, error))
     return Status(ErrorCode::kNotFound, "there is no calibration for " + request.image_path.string() + ": no file " +
-                                            file.string() + "; write one, or name a calibration file");
+                                            file.string() +
+                                            "; name a calibration file, or make one with pliant calibrate");
   return file;
 }
 

@@ -218,7 +218,8 @@ TEST(CommandLine, HelpIsAManualOfEveryArgumentAndOption) {
 TEST(CommandLine, AProgramThatDoesOneThingSpeaksUnderItsOwnName) {
   CommandLine line({.command = "", .summary = "peel", .text = "Peels.", .examples = {}, .program = "peeler"});
   const OptionTable none;
-  EXPECT_THAT(line.ManualText(none), testing::StartsWith("peeler - peel\n\nUSAGE\n  peeler [ARGUMENTS]"));
+  EXPECT_THAT(line.ManualText(none, CommandLine::Detail::kAll),
+              testing::StartsWith("peeler - peel\n\nUSAGE\n  peeler [ARGUMENTS]"));
   testing::internal::CaptureStderr();
   EXPECT_EQ(line.UsageError("no fruit"), kExitUsage);
   EXPECT_EQ(line.Failure("no knife"), kExitFailed);

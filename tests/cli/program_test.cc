@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // The program's usage: its manual, its options, what a call may not say.
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -58,6 +59,36 @@ TEST(Program, AnUnknownCommandNamesTheNearestOne) {
   EXPECT_EQ(outcome.err, "pliant: there is no command 'trakc'; did you mean 'track'? pliant --help lists them\n");
 }
 
+TEST(Program, CalibrateRefusesWhatIsNoBoardAndImagesWithoutOne) {
+  const std::string output = " -o '" + Temporary("camera.yaml").string() + "'";
+  const Outcome no_board = Pliant("calibrate --image_path . --board 9x6" + output);
+  EXPECT_EQ(no_board.exit, 2);
+  EXPECT_THAT(no_board.err, HasSubstr("chessboard:9x6:2.0"));
+  const Outcome ending = Pliant("calibrate --image_path . --board chessboard:9x6:2 --figure a.gif" + output);
+  EXPECT_EQ(ending.exit, 2);
+  EXPECT_THAT(ending.err, HasSubstr(".svg"));
+  const Outcome nothing = Pliant("calibrate --image_path none --board chessboard:9x6:2" + output);
+  EXPECT_EQ(nothing.exit, 1);
+  EXPECT_THAT(nothing.err, HasSubstr("there is nothing at 'none'"));
+  EXPECT_FALSE(std::filesystem::exists(Temporary("camera.yaml")));
+}
+
+TEST(Program, TheShortManualHasTheMainOptionsAndSaysHowToSeeAll) {
+  const std::vector<std::pair<std::string, std::vector<OptionField>>> commands = {
+      {"track", FieldsOf<TrackOptions>()}, {"simulate", FieldsOf<SimulationOptions>()}};
+  for (const auto& [command, fields] : commands) {
+    const Outcome outcome = Pliant(command + " -h");
+    EXPECT_EQ(outcome.exit, 0) << command;
+    EXPECT_THAT(outcome.out, HasSubstr("--help-all shows all"));
+    const auto shown = std::count_if(fields.begin(), fields.end(), [&](const OptionField& field) {
+      return outcome.out.find("    --" + field.name + " ") != std::string::npos;
+    });
+    EXPECT_GE(shown, 11) << command;
+    EXPECT_LE(shown, 20) << command;
+    EXPECT_EQ(Pliant("help " + command).out, outcome.out);
+  }
+}
+
 TEST(Program, TheManualOfACommandNamesEveryOptionWithUnitAndReason) {
   const std::vector<std::pair<std::string, std::vector<OptionField>>> commands = {
       {"track", FieldsOf<TrackOptions>()},     {"simulate", FieldsOf<SimulationOptions>()},
@@ -65,7 +96,8 @@ TEST(Program, TheManualOfACommandNamesEveryOptionWithUnitAndReason) {
       {"track", FieldsOf<LiveOptions>()},      {"report", FieldsOf<ReportOptions>()},
       {"report", FieldsOf<FigureOptions>()}};
   for (const auto& [command, fields] : commands) {
-    const Outcome outcome = Pliant(command + " --help");
+    const bool has_more = command == "track" || command == "simulate" || command == "demo";
+    const Outcome outcome = Pliant(command + (has_more ? " --help-all" : " --help"));
     EXPECT_EQ(outcome.exit, 0) << command;
     ASSERT_FALSE(fields.empty());
     for (const OptionField& field : fields) {
