@@ -122,7 +122,7 @@ def render(arguments, name, look):
          "--Scene.kind", "mesh", "--Scene.mesh_path", folder / "board.obj", "--Scene.seed", arguments.seed,
          "--Trajectory.kind", "file", "--Trajectory.path", folder / "poses.txt", "--Trajectory.frames", VIEWS,
          "--Camera.model", model, "--Camera.params", ",".join(map(str, params)), "--Light.specular", 0,
-         "--Sensor.shutter_s", 0, "--Recording.lost_share", 0, "--Recording.video_qp", 0).check_returncode()
+         "--Sensor.shutter_s", 0, "--Sensor.readout_s", 0, "--Recording.lost_share", 0, "--Recording.video_qp", 0).check_returncode()
     return folder / "boards"
 
 
