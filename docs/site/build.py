@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Builds the documentation site from the Markdown of the project: the command behind `./run docs`.
 
-usage: build.py --program PLIANT --python_path FOLDER --output_path DIR [--without_cpp_api]
+usage: build.py --program PLIANT --python_path FOLDER --output_path DIR
 
 PLIANT prints the manuals of its commands, FOLDER holds the built Python package. Leaves DIR/html (index.html is the
 first page), and in DIR/source what Sphinx and Doxygen read. Warnings are errors.
@@ -122,8 +122,8 @@ def manual_page(lines):
 
 def write_options(program, source):
     names = []
-    table = ["# Commands and options", "", "The manuals that `pliant COMMAND --help` prints. `--print_config` prints all",
-             "options of a command in the form that `--config FILE` reads.", "", "| command | what it does |",
+    table = ["# Commands and options", "", "The manuals that `pliant COMMAND --help` prints. `--print_config` prints",
+             "all options of a command in the form that `--config FILE` reads.", "", "| command | what it does |",
              "| --- | --- |"]
     for command in commands(program):
         lines = manual(program, *command)
@@ -265,7 +265,6 @@ def main():
     parser.add_argument("--program", type=pathlib.Path, required=True)
     parser.add_argument("--python_path", type=pathlib.Path, required=True)
     parser.add_argument("--output_path", type=pathlib.Path, required=True)
-    parser.add_argument("--without_cpp_api", action="store_true")
     given = parser.parse_args()
     output = given.output_path.resolve()
     source, extra, html = output / "source", output / "extra", output / "html"
@@ -276,17 +275,13 @@ def main():
     shutil.rmtree(extra, ignore_errors=True)
     copy_linked_files(source, extra)
     tags = output / "cpp_api.tags"
-    if given.without_cpp_api:
-        write(tags, "<tagfile/>")
-        write(source / "cpp_api.md", "# C++ API\n\nThis build of the documentation has no C++ API.\n")
-    else:
-        run_doxygen(extra / "api" / "cpp", tags)
-        write_cpp_api(source, tags)
+    run_doxygen(extra / "api" / "cpp", tags)
+    write_cpp_api(source, tags)
     shutil.rmtree(html, ignore_errors=True)
     environment = {**os.environ, "PYTHONPATH": str(given.python_path.resolve()), "PYTHONDONTWRITEBYTECODE": "1"}
     result = subprocess.run(
-        ["sphinx-build", "-q", "-W", "--keep-going", "-b", "html", "-c", str(SITE), "-D", f"html_extra_path={extra}", "-d", str(output / "doctrees"),
-         str(source), str(html)], env=environment, check=False)
+        ["sphinx-build", "-q", "-W", "--keep-going", "-b", "html", "-c", str(SITE), "-d", str(output / "doctrees"), "-D",
+         f"html_extra_path={extra}", str(source), str(html)], env=environment, check=False)
     if result.returncode:
         sys.exit("build.py: Sphinx has warnings (see above)")
     mend_furo(html / "_static")

@@ -11,6 +11,7 @@ usage: check_architecture.py ROOT
 4. Every source, header, script and CMake list begins with the two SPDX lines.
 5. A private header in a folder of a module (src/estimation/window, say) is included in that folder only; where the
    folders of a module have an order, in those above it and above all of them too.
+6. Every relative link in a Markdown file leads to a file, and its anchor to a heading or an `<a id="...">` there.
 Prints one line a violation, `file:line: sentence`, and exits with 1 if there is one.
 """
 
@@ -27,6 +28,7 @@ FOLDERS = {"tracking": "tracks submap depth_prior frame relocalization bootstrap
 SPDX = ("SPDX-FileCopyrightText: ", "SPDX-License-Identifier: BSD-3-Clause")
 SPDX_SUFFIXES = {".h", ".cc", ".py", ".pyi", ".cmake", ".sh"}
 
+LINK = re.compile(r"\[[^\[\]]*\]\(<?([^()\s>]+)>?(?: \"[^\"]*\")?\)|(?:src|href|srcset)=\"([^\"]+)\"")
 INCLUDE = re.compile(r'^\s*#\s*include\s*["<]([^">]+)[">]')
 FORBIDDEN_CALL = re.compile(
     r"\bstd::(cout|cerr|clog)\b|(?<![\w.>])(std::)?(printf|fprintf|vprintf|vfprintf|puts|fputs|putchar|perror|exit|"
@@ -96,7 +98,7 @@ def check_calls(root):
 
 def check_spdx(root):
     paths = [root / "run", root / ".ci" / "run", root / "CMakeLists.txt"]
-    for folder in ("cmake", "include", "src", "python", "tests", "third_party_configs", "experiments"):
+    for folder in ("cmake", "include", "src", "python", "tests", "third_party_configs", "experiments", "docs"):
         paths += [p for p in sorted((root / folder).rglob("*"))
                   if p.suffix in SPDX_SUFFIXES or p.name == "CMakeLists.txt"]
     for path in paths:
@@ -124,7 +126,48 @@ def check_private_folders(root):
                 yield path, number, f"{match.group(1)} is private to its folder"
 
 
-CHECKS = (check_module_order, check_library_homes, check_calls, check_spdx, check_private_folders)
+def without_code(text):
+    """Markdown with fenced blocks and `code` blanked, line by line as before."""
+    def blank(match):
+        return re.sub(r"[^\n]", " ", match.group())
+    return re.sub(r"`[^`\n]+`", blank, re.sub(r"^```.*?^```", blank, text, flags=re.DOTALL | re.MULTILINE))
+
+
+def anchors(text):
+    """The names that links to this Markdown may end with, as GitHub makes them."""
+    found = set(re.findall(r'<a id="([^"]+)">', text))
+    for heading in re.findall(r"^#{1,6} +(.+?)\s*$", re.sub(r"^```.*?^```", "", text, flags=re.DOTALL | re.MULTILINE),
+                              re.MULTILINE):
+        heading = re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", heading)
+        name = re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-")
+        number = 0
+        while (f"{name}-{number}" if number else name) in found:
+            number += 1
+        found.add(f"{name}-{number}" if number else name)
+    return found
+
+
+def check_links(root):
+    ignored = {"build", "node_modules", "work"}
+    for path in sorted(root.rglob("*.md")):
+        parts = path.relative_to(root).parts
+        if any(part in ignored or part.startswith(".") for part in parts):
+            continue
+        text = without_code(path.read_text())
+        for match in LINK.finditer(text):
+            link = match.group(1) or match.group(2)
+            if re.match(r"\w+:", link):
+                continue
+            number = text.count("\n", 0, match.start()) + 1
+            name, _, anchor = link.partition("#")
+            target = path.parent / name if name else path
+            if not target.exists():
+                yield path, number, f"the link {link} leads nowhere"
+            elif anchor and target.suffix == ".md" and anchor not in anchors(target.read_text()):
+                yield path, number, f"{target.name} has no heading '#{anchor}'"
+
+
+CHECKS = (check_module_order, check_library_homes, check_calls, check_spdx, check_private_folders, check_links)
 
 
 def violations(root):

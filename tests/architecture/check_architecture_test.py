@@ -81,6 +81,23 @@ class Rules(unittest.TestCase):
         found = violations({"src/io/CMakeLists.txt": "no head\n"})
         self.assertEqual(found, ["src/io/CMakeLists.txt:1: the two SPDX lines are not the first ones"])
 
+    def test_a_link_that_leads_nowhere_is_found(self):
+        page = "no head\n\n# A page: `code`, 2 words\n\n"
+        found = violations({"docs/a.md": page + "[a](b.md), [wrapped\ntext](c.md)\n", "docs/b.md": "no head\n"})
+        self.assertEqual(found, ["docs/a.md:5: the link c.md leads nowhere"])
+        found = violations({"docs/a.md": page + "![a](b.png) and <img src=\"c.png\">\n"})
+        self.assertEqual(found, ["docs/a.md:5: the link b.png leads nowhere", "docs/a.md:5: the link c.png leads nowhere"])
+
+    def test_an_anchor_that_is_not_there_is_found(self):
+        pages = {"docs/b.md": 'no head\n## The terms: (E1) `x_y`\n## Twice\n## Twice\n<a id="free"></a>\n```\n# none\n```\n'}
+        good = "[a](b.md#the-terms-e1-x_y) [b](b.md#twice-1) [c](b.md#free) [d](#here) <https://a.b/#c>\n"
+        self.assertEqual(violations({**pages, "docs/a.md": "no head\n# Here\n" + good}), [])
+        found = violations({**pages, "docs/a.md": "no head\n[a](b.md#none) [b](#here)\n"})
+        self.assertEqual(found, ["docs/a.md:2: b.md has no heading '#none'", "docs/a.md:2: a.md has no heading '#here'"])
+
+    def test_a_link_in_code_is_none(self):
+        self.assertEqual(violations({"docs/a.md": "no head\n`[a](b)`\n```\n[a](b)\n```\n"}), [])
+
 
 if __name__ == "__main__":
     unittest.main()
