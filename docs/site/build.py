@@ -35,7 +35,7 @@ NAVIGATION = (
     ("Use", (("Getting started", "README"), ("Installation", "docs/building"), "examples/notebooks/README",
              "docs/your_own_video", "options/index", "docs/evaluation", "docs/report", "docs/datasets",
              "docs/simulation", "docs/tracks", "docs/formats", "docs/exchange")),
-    ("Program", (("Python", "docs/python"), "python_api", ("C++ library", "docs/library"), "cpp_api")),
+    ("Python and C++", (("Python", "docs/python"), "python_api", ("C++ library", "docs/library"), "cpp_api")),
     ("Understand", ("docs/concepts", "docs/method", "experiments/README", "docs/troubleshooting", "docs/gallery")),
     ("Develop", ("CONTRIBUTING", "docs/architecture", "tests/README", ("The report's page", "web/README"),
                  ("All pages", "docs/README"), ("Changes", "CHANGELOG"))),
@@ -55,8 +55,10 @@ def write(path, text):
 
 
 def escaped(text):
-    """Text that Markdown prints as it is."""
-    return re.sub(r"[\\`*_{}\[\]<>#|~$]", r"\\\g<0>", text)
+    """Text that Markdown prints as it is, but for `code`."""
+    parts = re.split(r"(`[^`]+`)", text)
+    parts[::2] = [re.sub(r"[\\`*_{}\[\]<>#|~$]", r"\\\g<0>", part) for part in parts[::2]]
+    return "".join(parts)
 
 
 # ---- the options: manuals of the program as pages
@@ -128,7 +130,9 @@ def write_options(program, source):
     for command in commands(program):
         lines = manual(program, *command)
         name = "_".join(command)
-        write(source / "options" / f"{name}.md", manual_page(lines))
+        page = re.sub(r"docs/([\w\\]+)\.md", lambda match: f"[{match.group()}](../{match.group()})".replace(
+            "\\_", "_"), manual_page(lines))
+        write(source / "options" / f"{name}.md", page)
         table.append(f"| [{' '.join(command)}]({name}.md) | {escaped(lines[0].split(' - ', 1)[1])} |")
         names.append(name)
     write(source / "options" / "index.md", "\n".join(table) + "\n" + toctree(names))
@@ -280,8 +284,8 @@ def main():
     shutil.rmtree(html, ignore_errors=True)
     environment = {**os.environ, "PYTHONPATH": str(given.python_path.resolve()), "PYTHONDONTWRITEBYTECODE": "1"}
     result = subprocess.run(
-        ["sphinx-build", "-q", "-W", "--keep-going", "-b", "html", "-c", str(SITE), "-d", str(output / "doctrees"), "-D",
-         f"html_extra_path={extra}", str(source), str(html)], env=environment, check=False)
+        ["sphinx-build", "-q", "-W", "--keep-going", "-b", "html", "-c", str(SITE), "-d", str(output / "doctrees"),
+         "-D", f"html_extra_path={extra}", str(source), str(html)], env=environment, check=False)
     if result.returncode:
         sys.exit("build.py: Sphinx has warnings (see above)")
     mend_furo(html / "_static")

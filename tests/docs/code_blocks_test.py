@@ -14,7 +14,8 @@ import re
 import subprocess
 import sys
 
-PAGES = ("README.md", "CONTRIBUTING.md", "docs/**/*.md", "examples/**/*.md", "experiments/**/*.md", "tests/*.md", "web/*.md")
+PAGES = ("README.md", "CONTRIBUTING.md", "docs/**/*.md", "examples/**/*.md", "experiments/**/*.md", "tests/*.md",
+         "web/*.md")
 FENCE = re.compile(r"^```(\w*)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 FEWEST = {"commands": 40, "python": 10, "messages": 30}  # that are there to be checked
 
@@ -29,8 +30,8 @@ def pages(root):
 def shell_lines(text):
     """(line number, command) of the indented blocks and those that are marked as shell; continued lines are joined."""
     def blank(match):
-        keep = match.group(2) if match.group(1) in ("sh", "bash", "shell", "console") else ""
-        return "\n" + ("    " + keep.replace("\n", "\n    ") if keep else "\n" * (match.group(2).count("\n") - 1)) + "\n"
+        mark = "    " if match.group(1) in ("sh", "bash", "shell", "console") else "| "
+        return "\n" + "".join(mark + line + "\n" for line in match.group(2).splitlines())
     joined, number = "", 0
     for current, line in enumerate(FENCE.sub(blank, text).splitlines(), 1):
         if not line.startswith("    "):
@@ -92,7 +93,8 @@ def check_python(text):
 
 def sentences(root):
     """The texts of the program: every source file with the literals that continue over lines joined."""
-    return [re.sub(r'"\s*\n\s*"', "", path.read_text(encoding="utf-8")) for path in sorted((root / "src").rglob("*.cc"))]
+    paths = sorted((root / "src").rglob("*.cc"))
+    return [re.sub(r'"\s*\n\s*"', "", path.read_text(encoding="utf-8")) for path in paths]
 
 
 def check_messages(text, sources):
@@ -117,8 +119,8 @@ def main(what, root, program):
     if what == "commands":
         manuals = Manuals(program)
         check = functools.partial(check_commands, manuals=manuals)
-        finds_what_is_wrong(check, "    pliant trak --image_path x\n    build/release/pliant track --no_flag 1 -o run \\\n"
-                                   "        --Growth.grow off --Growth.no_option 1  # pliant track --in_a_comment\n"
+        finds_what_is_wrong(check, "    pliant trak --image_path x\n    build/release/pliant track --no_flag 1 \\\n"
+                                   "        -o run --Growth.grow off --Growth.no_option 1  # pliant track --comment\n"
                                    "```sh\npliant dataset inf x\n```\n", 4)
     elif what == "python":
         check = check_python

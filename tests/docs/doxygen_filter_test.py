@@ -59,8 +59,8 @@ class Comments(unittest.TestCase):
         lines = doxygen_filter.filtered(text, PATH).split("\n")
         self.assertEqual(lines, [
             r"/// \defgroup estimation__pose__camera_pose pose/camera_pose.h", r"/// \ingroup estimation", "///",
-            "/// The pose. In mm.", "#pragma once", "", r"namespace pliant { /** \addtogroup estimation__pose__camera_pose",
-            r" * \{ */", "int F();", "", r"/** \} */ }  // namespace pliant", ""])
+            "/// The pose. In mm.", "#pragma once", "",
+            r"namespace pliant { /** \addtogroup estimation__pose__camera_pose", r" * \{ */", "int F();", "", r"/** \} */ }  // namespace pliant", ""])
 
     def test_every_header_is_a_group_and_only_comments_differ(self):
         def code(text):
