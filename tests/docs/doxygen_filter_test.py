@@ -1,9 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The Pliant authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""docs/site/doxygen_filter.py shows Doxygen the comments of declarations, and of nothing else.
-
-usage: doxygen_filter_test.py [DOXYGEN_HTML]     (a folder that ./run docs left, whose texts are looked at too)
-"""
+"""docs/site/doxygen_filter.py shows Doxygen the comments of declarations, and of nothing else."""
 
 import pathlib
 import re
@@ -60,7 +57,8 @@ class Comments(unittest.TestCase):
         self.assertEqual(lines, [
             r"/// \defgroup estimation__pose__camera_pose pose/camera_pose.h", r"/// \ingroup estimation", "///",
             "/// The pose. In mm.", "#pragma once", "",
-            r"namespace pliant { /** \addtogroup estimation__pose__camera_pose", r" * \{ */", "int F();", "", r"/** \} */ }  // namespace pliant", ""])
+            r"namespace pliant { /** \addtogroup estimation__pose__camera_pose", r" * \{ */",
+            "int F();", "", r"/** \} */ }  // namespace pliant", ""])
 
     def test_every_header_is_a_group_and_only_comments_differ(self):
         def code(text):
