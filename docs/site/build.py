@@ -64,8 +64,11 @@ def escaped(text):
 # ---- the options: manuals of the program as pages
 
 def manual(program, *command):
-    result = subprocess.run([program, *command, "--help"], stdout=subprocess.PIPE, text=True, check=True)
-    return result.stdout.splitlines()
+    """The lines of the whole manual: that of --help may leave out options."""
+    def printed(flag):
+        return subprocess.run([program, *command, flag], stdout=subprocess.PIPE, text=True, check=True).stdout
+    text = printed("--help")
+    return (printed("--help-all") if "--help-all" in text and command else text).splitlines()
 
 
 def commands(program):
@@ -124,7 +127,7 @@ def manual_page(lines):
 
 def write_options(program, source):
     names = []
-    table = ["# Commands and options", "", "The manuals that `pliant COMMAND --help` prints. `--print_config` prints",
+    table = ["# Commands and options", "", "The manuals that `pliant COMMAND --help-all` prints. `--print_config` prints",
              "all options of a command in the form that `--config FILE` reads.", "", "| command | what it does |",
              "| --- | --- |"]
     for command in commands(program):

@@ -53,9 +53,13 @@ class Manuals:
 
     @functools.lru_cache(maxsize=None)
     def text(self, *command):
-        result = subprocess.run([self.program, *command, "--help"], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-                                text=True, check=False)
-        return result.stdout if result.returncode == 0 else None
+        """The whole manual: that of --help may leave out options. None: there is no such command."""
+        for flag in ("--help-all", "--help"):
+            result = subprocess.run([self.program, *command, flag], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                                    text=True, check=False)
+            if result.returncode == 0:
+                return result.stdout
+        return None
 
     def complaints(self, line):
         """What is wrong with the calls of the program in a shell line."""
@@ -67,7 +71,7 @@ class Manuals:
                 yield f"there is no command 'pliant {' '.join(command)}'"
                 continue
             for flag in re.findall(r"(?<=\s)(--?[A-Za-z][\w.]*)", call):
-                if flag in ("--help", "--version"):
+                if flag in ("--help", "--help-all", "--version"):
                     continue
                 if not re.search(rf"(?:^|[\s,\[]){re.escape(flag)}(?![\w.])", manual):
                     yield f"'pliant {' '.join(command)}' does not know {flag}"
