@@ -19,6 +19,7 @@ namespace {
 // Longest side at which the search takes some tenths of a second, and below which squares get too small for it.
 constexpr double kLargestSearched_px = 960;
 constexpr double kSmallestSearched_px = 640;
+constexpr double kNoiseSmoothing_px = 1.5;
 constexpr int kChessboardFlags = cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_ACCURACY;
 
 cv::Mat Resized(const cv::Mat& gray, double scale) {
@@ -38,6 +39,19 @@ std::vector<double> SearchScales(const cv::Mat& gray) {
     return {larger, larger + 1, 1.0};
   }
   return {1.0};
+}
+
+// How to search: at each scale as it is, then at the first one without the noise.
+struct Search {
+  double scale = 1;
+  double smoothing_px = 0;
+};
+
+std::vector<Search> Searches(const cv::Mat& gray) {
+  std::vector<Search> searches;
+  for (const double scale : SearchScales(gray)) searches.push_back({scale});
+  searches.push_back({searches.front().scale, kNoiseSmoothing_px});
+  return searches;
 }
 
 // In the image that was scaled by `scale`, the centers of whose pixels are at whole numbers, too.
@@ -85,8 +99,9 @@ bool FindCircles(const cv::Mat& gray, const CalibrationBoard& board, std::vector
 // All points of a board that is seen as a whole; none where it is not.
 std::vector<cv::Point2f> FindWholeBoard(const cv::Mat& gray, const CalibrationBoard& board) {
   const bool is_chessboard = board.kind == BoardKind::kChessboard;
-  for (const double scale : SearchScales(gray)) {
-    const cv::Mat searched = scale == 1.0 ? gray : Resized(gray, scale);
+  for (const auto& [scale, smoothing_px] : Searches(gray)) {
+    cv::Mat searched = scale == 1.0 ? gray : Resized(gray, scale);
+    if (smoothing_px > 0) cv::GaussianBlur(searched, searched, {}, smoothing_px);
     std::vector<cv::Point2f> points;
     const bool found = is_chessboard ? FindChessboard(searched, {board.columns, board.rows}, &points)
                                      : FindCircles(searched, board, &points);
