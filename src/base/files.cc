@@ -18,6 +18,21 @@ std::string Beside(const std::string& path) { return path + ".tmp"; }
 
 std::string Reason(int error) { return std::generic_category().message(error); }
 
+// A regular file that is there.
+Result<std::ifstream> OpenToRead(const std::string& path) {
+  std::error_code error;
+  const auto kind = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(kind))
+    return Status(ErrorCode::kNotFound, "there is no file " + Quoted(path) + "; check the path");
+  if (std::filesystem::is_directory(kind))
+    return Status(ErrorCode::kUnreadable, Quoted(path) + " is a folder; give a file in it");
+  if (!std::filesystem::is_regular_file(kind))  // which may be endless
+    return Status(ErrorCode::kUnreadable, Quoted(path) + " is a pipe or a device; give a file");
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) return Status(ErrorCode::kUnreadable, "cannot read " + Quoted(path) + "; check its permissions");
+  return stream;
+}
+
 }  // namespace
 
 bool Exists(const std::string& path) {
@@ -106,26 +121,17 @@ Status OverwriteFile(const std::string& path, std::string_view text) {
 }
 
 Result<std::string> ReadFile(const std::string& path) {
-  auto reader = LineReader::Open(path);  // checks that it is there and a file
-  if (!reader.ok()) return reader.status();
-  std::ifstream stream(path, std::ios::binary);
-  std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
-  if (stream.bad()) return Status(ErrorCode::kUnreadable, "cannot read " + Quoted(path) + " to its end");
+  auto stream = OpenToRead(path);
+  if (!stream.ok()) return stream.status();
+  std::string text((std::istreambuf_iterator<char>(*stream)), std::istreambuf_iterator<char>());
+  if (stream->bad()) return Status(ErrorCode::kUnreadable, "cannot read " + Quoted(path) + " to its end");
   return text;
 }
 
 Result<LineReader> LineReader::Open(const std::string& path) {
-  std::error_code error;
-  const auto kind = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(kind))
-    return Status(ErrorCode::kNotFound, "there is no file " + Quoted(path) + "; check the path");
-  if (std::filesystem::is_directory(kind))
-    return Status(ErrorCode::kUnreadable, Quoted(path) + " is a folder; give a file in it");
-  if (!std::filesystem::is_regular_file(kind))  // which may be endless
-    return Status(ErrorCode::kUnreadable, Quoted(path) + " is a pipe or a device; give a file");
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) return Status(ErrorCode::kUnreadable, "cannot read " + Quoted(path) + "; check its permissions");
-  return LineReader(path, std::move(stream));
+  auto stream = OpenToRead(path);
+  if (!stream.ok()) return stream.status();
+  return LineReader(path, *std::move(stream));
 }
 
 bool LineReader::Next(std::string_view* line) {

@@ -64,7 +64,24 @@ std::string FlagsOf(const std::string& name) {
   return short_flag + (short_flag.empty() ? "--" : ",--") + name;
 }
 
-void Say(std::string_view name, std::string_view sentence) { std::cerr << name << ": " << sentence << std::endl; }
+constexpr std::size_t kLongestSentence = 400;
+constexpr std::size_t kKeptEnd = 120;  // of a longer one: what to do stands there
+
+bool IsInsideOfCharacter(char byte) { return (static_cast<unsigned char>(byte) & 0xC0U) == 0x80U; }  // of UTF-8
+
+// The middle of a sentence that quotes too much of an input is left out.
+std::string Shortened(std::string_view sentence) {
+  if (sentence.size() <= kLongestSentence) return std::string(sentence);
+  std::size_t end = sentence.size() - kKeptEnd;
+  while (end < sentence.size() && IsInsideOfCharacter(sentence[end])) ++end;
+  std::size_t begin = kLongestSentence - kKeptEnd - 5;  // the dots and the blanks around them
+  while (begin > 0 && IsInsideOfCharacter(sentence[begin])) --begin;
+  return std::string(sentence.substr(0, begin)) + " ... " + std::string(sentence.substr(end));
+}
+
+void Say(std::string_view name, std::string_view sentence) {
+  std::cerr << name << ": " << Shortened(sentence) << std::endl;
+}
 
 // Paragraphs, separated by empty lines as they come.
 std::string WrapParagraphs(std::string_view text, std::size_t indent) {

@@ -215,6 +215,15 @@ TEST(CommandLine, HelpIsAManualOfEveryArgumentAndOption) {
   for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), kManualColumns) << line;
 }
 
+TEST(CommandLine, AMessageThatQuotesALongInputIsShortened) {
+  const Outcome outcome = Give({"--to", "X", "--pieces", std::string(3000, 'x')});
+  EXPECT_EQ(outcome.exit, kExitUsage);
+  EXPECT_LE(outcome.err.size(), std::string("pliant fill: ").size() + 400 + 1);
+  EXPECT_THAT(outcome.err, HasSubstr("--pieces is 'xxx"));
+  EXPECT_THAT(outcome.err, HasSubstr(" ... "));
+  EXPECT_THAT(outcome.err, HasSubstr("give a whole number from"));
+}
+
 TEST(CommandLine, AProgramThatDoesOneThingSpeaksUnderItsOwnName) {
   CommandLine line({.command = "", .summary = "peel", .text = "Peels.", .examples = {}, .program = "peeler"});
   const OptionTable none;
