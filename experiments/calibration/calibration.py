@@ -118,7 +118,7 @@ def render(arguments, name, look):
         place, turn = -turned.T @ moved, quaternion(turned.T)
         lines.append(" ".join(repr(float(number)) for number in (i / 30, *place, *turn)))
     (folder / "poses.txt").write_text("\n".join(lines) + "\n")
-    call(arguments.program, "simulate", "--quiet", "-o", folder / "boards", "--realism", look,
+    call(arguments.program, "simulate", "--quiet", "--overwrite", "-o", folder / "boards", "--realism", look,
          "--Scene.kind", "mesh", "--Scene.mesh_path", folder / "board.obj", "--Scene.seed", arguments.seed,
          "--Trajectory.kind", "file", "--Trajectory.path", folder / "poses.txt", "--Trajectory.frames", VIEWS,
          "--Camera.model", model, "--Camera.params", ",".join(map(str, params)), "--Light.specular", 0,

@@ -47,7 +47,7 @@ rule simulate:
         options=lambda wildcards: GRID.simulate_options(wildcards.scene),
     threads: THREADS
     shell:
-        "{input} simulate --output_path sequences/{wildcards.scene} --quiet {params.options} --Simulation.threads {threads}"
+        "{input} simulate --overwrite --output_path sequences/{wildcards.scene} --quiet {params.options} --Simulation.threads {threads}"
 
 
 # A run that never found a first map is an answer (`failed`, no frame tracked); an interrupted one is none.

@@ -31,7 +31,7 @@ def simulated(arguments, name, options):
     """The folder of a scene's sequence, which is simulated unless it is there."""
     folder = arguments.output_path / "sequences" / f"{slug(name)}_{arguments.seed}"
     if not (folder / "simulation.yaml").exists():
-        call(arguments.program, "simulate", "--quiet", "-o", folder, "--Scene.seed", arguments.seed,
+        call(arguments.program, "simulate", "--quiet", "--overwrite", "-o", folder, "--Scene.seed", arguments.seed,
              *options.split()).check_returncode()
     return folder
 

@@ -37,7 +37,7 @@ def sequence_of(arguments, amplitude, seed):
         return arguments.sequences / name
     folder = arguments.output_path / "sequences" / name
     if not (folder / "done").exists():
-        pliant(arguments, "simulate", "--quiet", "--output_path", folder, "--Deformation.amplitude_mm", amplitude,
+        pliant(arguments, "simulate", "--quiet", "--overwrite", "--output_path", folder, "--Deformation.amplitude_mm", amplitude,
                "--Deformation.omega_rad_s", OMEGA_RAD_S, "--Scene.seed", seed, *SCENE)
         (folder / "done").touch()
     return folder

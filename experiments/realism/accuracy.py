@@ -39,7 +39,7 @@ SCENES = {
 def result(program, folder, options, realism, seed):
     sequence, run = folder / "sequence", folder / "run"
     if not (sequence / "groundtruth.txt").exists():
-        made = call(program, "simulate", "--quiet", "-o", sequence, "--realism", realism, "--Scene.seed", seed,
+        made = call(program, "simulate", "--quiet", "--overwrite", "-o", sequence, "--realism", realism, "--Scene.seed", seed,
                     *options.split())
         if made.returncode != 0:
             raise SystemExit(made.stderr)

@@ -78,7 +78,7 @@ def main():
     for name, options in SIMULATIONS.items():
         folder = arguments.output_path / name.replace(", ", "_")
         if not (folder / "times.txt").exists():
-            run(arguments.program, "simulate", "--quiet", "--output_path", folder, *options.split())
+            run(arguments.program, "simulate", "--quiet", "--overwrite", "--output_path", folder, *options.split())
     for title, fixed in (("Images as they are, nasal at half size", True),
                          ("Working images as pliant track measures them", False)):
         mode = ["--Image.working", "fixed", "--Image.scale"]

@@ -7,6 +7,7 @@
 
 #include "cli/command_line.h"
 #include "cli/commands.h"
+#include "cli/output_folder.h"
 
 namespace pliant::cli {
 namespace {
@@ -35,6 +36,7 @@ const Manual kManual = {
 int ImportCommand(std::span<const std::string> args) {
   ImportRequest request;
   ImportOptions options;
+  OutputFolder output;
   bool quiet = false;
   CommandLine line(kManual);
   line.Add("input_path", &request.input_path, "PATH", "what to import", Need::kRequired);
@@ -43,13 +45,16 @@ int ImportCommand(std::span<const std::string> args) {
   line.Add("camera", &request.camera_path, "FILE",
            "calibration of images that have no camera.yaml; without it the one of a COLMAP model", Need::kOptional);
   line.AddChoice("as", &request.as, "what to make of it");
-  line.Add("output_path", &request.output_path, "DIR", "folder to write, made if need be", Need::kRequired);
+  output.AddTo(&line, "folder to write, made if need be", Need::kRequired);
   line.AddFlag("quiet", &quiet, "say nothing but errors");
   if (const auto exit = line.Parse(args)) return *exit;
   OptionTable table;
   options.List(table);
   if (const auto exit = line.Resolve(table)) return *exit;
 
+  if (request.as == ImportAs::kRun)
+    if (const auto exit = output.Check(line, output.path, OutputFolder::Content::kRun)) return *exit;
+  request.output_path = output.path;
   request.command_line = line.Words(args);
   const auto summary = Import(request, options);
   if (!summary.ok()) return line.Failure(summary.status().message());

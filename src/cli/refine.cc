@@ -4,6 +4,7 @@
 #include "cli/command_line.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
+#include "cli/output_folder.h"
 #include "cli/run_refinement.h"
 #include "cli/sequence_arguments.h"
 
@@ -28,10 +29,11 @@ const Manual kManual = {
 int RefineCommand(std::span<const std::string> args) {
   RefineRequest request;
   RefineOptions options;
+  OutputFolder output;
   bool quiet = false;
   CommandLine line(kManual);
   line.Add("run", &request.run_path, "DIR", "run folder", Need::kRequired);
-  line.Add("output_path", &request.output_path, "DIR", "folder to write, made if need be", Need::kRequired);
+  output.AddTo(&line, "folder to write, made if need be", Need::kRequired);
   line.Add("sequence", &request.sequence_path, "PATH",
            "images of a run that has no sparse/; without it those that its run.json names", Need::kOptional);
   AddCameraOfRun(&line, &request.camera_path);
@@ -41,6 +43,8 @@ int RefineCommand(std::span<const std::string> args) {
   options.List(table);
   if (const auto exit = line.Resolve(table)) return *exit;
 
+  if (const auto exit = output.Check(line, output.path, OutputFolder::Content::kRun)) return *exit;
+  request.output_path = output.path;
   request.command_line = line.Words(args);
   request.stop = &StopOnSignals();
   return RefineAndSay(kManual.command, request, options, quiet ? Saying::kErrors : Saying::kAll);

@@ -9,6 +9,7 @@
 #include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "cli/main_simulation_options.h"
+#include "cli/output_folder.h"
 #include "cli/progress.h"
 #include "pliant/simulation/write_sequence.h"
 
@@ -42,12 +43,11 @@ const Manual kManual = {
 }  // namespace
 
 int SimulateCommand(std::span<const std::string> args) {
-  std::string output_path;
+  OutputFolder output;
   Realism realism = Realism::kClean;
   bool quiet = false;
   CommandLine line(kManual);
-  line.Add("output_path", &output_path, "DIR", "folder of the new sequence; made where it is not there",
-           Need::kRequired);
+  output.AddTo(&line, "folder of the new sequence; made where it is not there", Need::kRequired);
   line.AddChoice(
       "realism", &realism,
       "the defaults of the options: a clean camera, or noise, weak texture, sharpening, compression and lost "
@@ -59,6 +59,7 @@ int SimulateCommand(std::span<const std::string> args) {
   OptionTable table;
   options.List(table);
   if (const auto exit = line.Resolve(table)) return *exit;
+  if (const auto exit = output.Check(line, output.path, OutputFolder::Content::kSequence)) return *exit;
 
   const std::atomic<bool>& stop = StopOnSignals();
   using Clock = std::chrono::steady_clock;
@@ -72,7 +73,7 @@ int SimulateCommand(std::span<const std::string> args) {
     if (!quiet)
       for (const std::string& warning : simulator->warnings()) SayError(kManual.command, "warning: " + warning);
     Progress progress(std::cerr, quiet ? ProgressStyle::kQuiet : ProgressStyleOfStandardError(), "simulate", frames);
-    status = WriteSequence(*simulator, output_path, [&](int done, int) {
+    status = WriteSequence(*simulator, output.path, [&](int done, int) {
       if (done == 0) scene_stood = Clock::now();
       progress.Update(done, "");
       return stop ? SimulationContinue::kStop : SimulationContinue::kYes;
@@ -88,7 +89,7 @@ int SimulateCommand(std::span<const std::string> args) {
   char timing[96];
   std::snprintf(timing, sizeof(timing), "scene built in %.1f s, %.1f frames/s", scene_s, frames / frames_s);
   std::cerr << timing << "\n";
-  std::cout << frames << " frames in " << output_path << std::endl;
+  std::cout << frames << " frames in " << output.path << std::endl;
   return kExitOk;
 }
 

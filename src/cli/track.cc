@@ -14,6 +14,7 @@
 #include "cli/command_line.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
+#include "cli/output_folder.h"
 #include "cli/run_refinement.h"
 #include "cli/sequence_arguments.h"
 #include "cli/track_progress.h"
@@ -52,7 +53,7 @@ const Manual kManual = {
 
 struct TrackArguments {
   SequenceArguments input;
-  std::string output_path;
+  OutputFolder output;
   Preset preset = Preset::kDefault;
   bool live = false;
   bool refine = false;
@@ -61,9 +62,9 @@ struct TrackArguments {
 
 void AddArguments(TrackArguments* arguments, CommandLine* line) {
   arguments->input.AddTo(line, "image_path", Positional::kYes);
-  line->Add("output_path", &arguments->output_path, "DIR",
-            "run folder; made where it is not there (default: the images' name with date and time, here)",
-            Need::kOptional);
+  arguments->output.AddTo(line,
+                          "run folder; made where it is not there (default: the images' name with date and time, here)",
+                          Need::kOptional);
   line->AddChoice("preset", &arguments->preset,
                   "the defaults of the options: ours, or every choice and constant as published in the paper");
   line->AddAlias("tracks", "TrackFile.path", "FILE",
@@ -96,7 +97,7 @@ std::string DatedFolder(const std::string& image_path) {
 }
 
 int Report(const RunSummary& summary, const TrackArguments& arguments) {
-  if (const Status end = EndOf(summary, arguments.output_path); !end.ok()) {
+  if (const Status end = EndOf(summary, arguments.output.path); !end.ok()) {
     SayError(kManual.command, end.message());
     return kExitFailed;
   }
@@ -107,15 +108,19 @@ int Report(const RunSummary& summary, const TrackArguments& arguments) {
   std::cout << EnumName(summary.status) << ": " << summary.note << "\n"
             << summary.frames_tracked << " of " << summary.frames_read << " frames tracked" << maps << ", "
             << summary.points << " points, " << rate.data() << "\n"
-            << arguments.output_path << std::endl;
+            << arguments.output.path << std::endl;
   for (const auto& [topic, sentence] : TrustIn(summary)) std::cout << "  " << topic << ": " << sentence << "\n";
   return kExitOk;
 }
 
+std::string RefinedFolder(const std::string& run_path) {
+  return std::filesystem::path(run_path + "/").parent_path().string() + "_refined";
+}
+
 int Refine(const RunRequest& request, const TrackArguments& arguments, const RefineOptions& options) {
   RefineRequest refinement;
-  refinement.run_path = arguments.output_path;
-  refinement.output_path = std::filesystem::path(arguments.output_path + "/").parent_path().string() + "_refined";
+  refinement.run_path = arguments.output.path;
+  refinement.output_path = RefinedFolder(arguments.output.path);
   refinement.command_line = request.command_line;
   refinement.stop = request.stop;
   return RefineAndSay(kManual.command, refinement, options, arguments.quiet ? Saying::kErrors : Saying::kAll);
@@ -141,16 +146,20 @@ int TrackCommand(std::span<const std::string> args) {
   if (const auto exit = line.Resolve(table)) return *exit;
   if (const Status status = CheckTrackOptions(options); !status.ok()) return line.UsageError(status.message());
 
-  if (arguments.output_path.empty()) arguments.output_path = DatedFolder(arguments.input.path);
+  OutputFolder& output = arguments.output;
+  if (output.path.empty()) output.path = DatedFolder(arguments.input.path);
+  if (const auto exit = output.Check(line, output.path, OutputFolder::Content::kRun)) return *exit;
+  if (arguments.refine)
+    if (const auto exit = output.Check(line, RefinedFolder(output.path), OutputFolder::Content::kRun)) return *exit;
   RunRequest request;
   request.input = arguments.input.Request();
-  request.output_path = arguments.output_path;
+  request.output_path = arguments.output.path;
   request.command_line = line.Words(args);
   request.stop = &StopOnSignals();
 
   std::unique_ptr<LiveView> live;
   if (arguments.live) {
-    auto started = LiveView::Start({RunName(arguments.output_path), options.tracker.init.IsMetric()}, live_options);
+    auto started = LiveView::Start({RunName(arguments.output.path), options.tracker.init.IsMetric()}, live_options);
     if (!started.ok()) return line.Failure(started.status().message());
     live = *std::move(started);
     if (!arguments.quiet) std::cerr << "live view: " << live->Url() << std::endl;

@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Where a command leaves a run or a sequence: what is there already is replaced on request only.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "cli/command_line.h"
+
+namespace pliant::cli {
+
+struct OutputFolder {
+  enum class Content { kRun, kSequence };
+
+  std::string path;
+  bool overwrite = false;
+
+  // --output_path and --overwrite.
+  void AddTo(CommandLine* line, std::string why, Need need);
+  // An exit code where there is a run with poses, or a sequence with images, that is not to be replaced (the sentence
+  // has been said). `folder`: `path`, or another one that the command writes.
+  std::optional<int> Check(const CommandLine& line, const std::string& folder, Content content) const;
+};
+
+}  // namespace pliant::cli
