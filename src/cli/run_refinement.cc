@@ -24,6 +24,13 @@ int RefineAndSay(std::string_view command, const RefineRequest& request, const R
   }
   if (saying == Saying::kErrors) return kExitOk;
   if (summary->stopped) std::cout << "note: stopped before the end; this is the best so far\n";
+  if (const auto& focal = summary->focal_length) {
+    if (focal->failure.empty())
+      std::cout << "focal length " << Digits(focal->estimated_px, 1) << " +- " << Digits(focal->sigma_px, 1)
+                << " px, assumed were " << Digits(focal->assumed_px, 1) << " px\n";
+    else
+      std::cout << "focal length kept at " << Digits(focal->assumed_px, 1) << " px: " << focal->failure << "\n";
+  }
   for (const SubmapRefinement& submap : summary->submaps) {
     if (!submap.failure.empty()) {
       std::cout << "submap " << submap.submap << " is as it was, since it cannot be refined: " << submap.failure

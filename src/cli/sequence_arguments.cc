@@ -3,14 +3,23 @@
 
 #include "cli/sequence_arguments.h"
 
+#include "pliant/camera/assumed_camera.h"
+
 namespace pliant::cli {
+namespace {
+
+constexpr const char* kUnknownCamera = "unknown";
+
+}  // namespace
 
 void SequenceArguments::AddTo(CommandLine* line, const std::string& name, Positional positional) {
   constexpr int kMaxFrame = 2147483647;
   line->Add(name, &path, "PATH", "a data set: folder of images, native sequence, video or another (docs/datasets.md)",
             Need::kRequired, positional);
   line->Add("camera", &camera_path, "FILE",
-            "calibration; not needed where camera.yaml lies in the folder or beside the video", Need::kOptional);
+            "calibration; not needed where camera.yaml lies in the folder or beside the video; unknown: there is none",
+            Need::kOptional);
+  line->Add("fov_deg", &fov_deg, "of an unknown camera: horizontal field of view that is assumed, degrees", 10, 150);
   line->Add("mask_path", &mask_path, "PATH", "folder of masks, or one image for all frames; 0 = ignore this pixel",
             Need::kOptional);
   line->Add("start", &start, "first frame, by its number in the source", 0, kMaxFrame);
@@ -26,7 +35,7 @@ std::optional<int> SequenceArguments::Check(const CommandLine& line) const {
 
 SequenceRequest SequenceArguments::Request() const {
   return {.image_path = path,
-          .camera_path = camera_path,
+          .camera_path = camera_path == kUnknownCamera ? AssumedCameraName(fov_deg) : camera_path,
           .mask_path = mask_path,
           .start = start,
           .end = end,

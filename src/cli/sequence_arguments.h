@@ -14,7 +14,8 @@ namespace pliant::cli {
 
 struct SequenceArguments {
   std::string path;
-  std::string camera_path;
+  std::string camera_path;  // "unknown": a camera with fov_deg
+  int fov_deg = 70;
   std::string mask_path;
   int start = 0;
   int end = -1;

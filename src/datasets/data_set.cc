@@ -14,6 +14,7 @@
 #include "datasets/image_file.h"
 #include "datasets/image_list.h"
 #include "datasets/pair_streams.h"
+#include "pliant/camera/assumed_camera.h"
 #include "pliant/io/camera_file.h"
 
 namespace pliant {
@@ -293,6 +294,19 @@ Result<DataSet> RectifiedHalves(const StereoCalibration& calibration, const fs::
   return RectifiedPairs(calibration, calibration_path, image, layout, SplitEyes(std::move(images), layout, image));
 }
 
+Result<DataSet> WithAssumedCamera(const SequenceRequest& request, const fs::path& name,
+                                  const std::optional<cv::Size>& size, std::unique_ptr<ImageStream> images) {
+  if (!size)
+    return Status(ErrorCode::kUnreadable, images->Title(0) + " does not tell its size; give a calibration file");
+  const auto camera = MakeAssumedCamera(name.string(), size->width, size->height);
+  if (!camera.ok()) return camera.status();
+  DataSet data_set{.calibration = {*camera, name}, .images = std::move(images), .mask_path = request.mask_path};
+  if (data_set.images->fps()) data_set.calibration.fps = *data_set.images->fps();
+  data_set.warnings.push_back("the camera is not calibrated (" + name.string() +
+                              " degrees are assumed): if the assumed field of view is wrong, so are depths and motion");
+  return data_set;
+}
+
 Result<DataSet> Calibrated(const SequenceRequest& request, std::unique_ptr<ImageStream> images,
                            const std::optional<SourceCalibration>& published) {
   const Result<fs::path> path = FindCalibration(request);
@@ -309,6 +323,7 @@ Result<DataSet> Calibrated(const SequenceRequest& request, std::unique_ptr<Image
   }
   if (!path.ok()) return path.status();
   const std::optional<cv::Size> size = images->SizeAt(0);
+  if (IsAssumedCamera(path->string())) return WithAssumedCamera(request, *path, size, std::move(images));
   const auto stereo = ReadPairCalibration(*path);
   if (!stereo.ok()) return stereo.status();
   if (stereo->has_value() && size) {

@@ -7,6 +7,7 @@
 #include <cctype>
 
 #include "pliant/base/text.h"
+#include "pliant/camera/assumed_camera.h"
 
 namespace pliant {
 namespace {
@@ -91,6 +92,12 @@ std::string OfCalibration(const FirstMapEvidence& evidence) {
          "shapes.";
 }
 
+std::string OfAssumedCamera(const RunDescription& run) {
+  if (!IsAssumedCamera(run.camera)) return {};
+  return "The camera is not calibrated; " + run.camera +
+         " degrees were assumed. If that is wrong, so are depths and motion.";
+}
+
 std::string OfImages(const RunDescription& run) {
   if (!(run.track_noise_px > 0.0)) return {};
   return "The first images have a noise of " + Digits(run.image_noise_levels, 1) +
@@ -102,6 +109,14 @@ std::string OfTracks(const RunSummary& summary) {
   return "Points lie " + Digits(summary.median_reprojection_error_px, 2) +
          " px from where the map has them, in the median (pixels of the source). Points were tracked in images of " +
          Digits(summary.description.image_scale, 2) + " times the source's size.";
+}
+
+// Sentences as one text; empty ones are left out.
+std::string Joined(const std::vector<std::string>& sentences) {
+  std::string text;
+  for (const std::string& sentence : sentences)
+    if (!sentence.empty()) text += (text.empty() ? "" : " ") + sentence;
+  return text;
 }
 
 std::string Advice(const RunSummary& summary) {
@@ -120,6 +135,10 @@ std::string Advice(const RunSummary& summary) {
         "tissue. Compare a run begun at another frame: pliant evaluate tells how far they agree.");
   if (count([](const FirstMapEvidence& e) { return e.focal_length_factor != 1.0; }))
     advice.emplace_back("Calibrate the camera, or check that the calibration is of this lens, zoom and image size.");
+  else if (IsAssumedCamera(summary.description.camera))
+    advice.emplace_back(
+        "Calibrate the camera (pliant calibrate), or let pliant refine estimate its focal length where the scene is "
+        "rigid.");
   if (FramesIn(summary, TrackingState::kLost) > 0)
     advice.emplace_back("Where the map was lost, look for tools, smoke and fast motion; a mask over tools helps.");
   if (summary.median_coverage > 0.0 && summary.median_coverage < kMinCoverage)
@@ -127,9 +146,7 @@ std::string Advice(const RunSummary& summary) {
   if (static_cast<double>(summary.frames_tracked) < kMinFrameShare * static_cast<double>(summary.frames_read) &&
       FramesIn(summary, TrackingState::kAmbiguous) == 0)
     advice.emplace_back("Where there is no map, the camera moved too little or the points lasted too briefly.");
-  std::string text;
-  for (const std::string& sentence : advice) text += (text.empty() ? "" : " ") + sentence;
-  return text;
+  return Joined(advice);
 }
 
 }  // namespace
@@ -144,7 +161,7 @@ std::vector<std::pair<std::string, std::string>> TrustIn(const RunSummary& summa
   add("depth", OfMaps(summary, OfDepth));
   add("depth_prior", OfPrior(summary));
   add("camera", OfMaps(summary, OfCamera));
-  add("calibration", OfMaps(summary, OfCalibration));
+  add("calibration", Joined({OfAssumedCamera(summary.description), OfMaps(summary, OfCalibration)}));
   add("images", OfImages(summary.description));
   if (summary.median_reprojection_error_px > 0.0) add("tracks", OfTracks(summary));
   if (summary.median_coverage > 0.0)

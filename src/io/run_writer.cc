@@ -16,6 +16,7 @@
 #include "pliant/base/folder_lock.h"
 #include "pliant/base/statistics.h"
 #include "pliant/base/text.h"
+#include "pliant/camera/assumed_camera.h"
 #include "pliant/io/ply.h"
 #include "pliant/io/trajectory.h"
 
@@ -144,7 +145,7 @@ Result<RunWriter> RunWriter::Create(const std::string& output_path, const Camera
   summary.description = std::move(description);
   RunDescription& paths = summary.description;
   for (std::string* path : {&paths.input, &paths.camera, &paths.mask, &paths.tracks, &paths.depth_prior})
-    if (!path->empty()) *path = std::filesystem::absolute(*path).lexically_normal().string();
+    if (!path->empty() && !IsAssumedCamera(*path)) *path = std::filesystem::absolute(*path).lexically_normal().string();
   summary.note = "the run was stopped before its end";  // what a killed run says
   if (Status status = WriteRunSummary(output_path + "/run.json", summary); !status.ok()) return status;
   if (Status status = WriteFileAtomically(output_path + "/config.yaml", config_yaml); !status.ok()) return status;

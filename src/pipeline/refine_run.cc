@@ -17,10 +17,14 @@
 #include "pliant/base/statistics.h"
 #include "pliant/base/text.h"
 #include "pliant/base/version.h"
+#include "pliant/camera/assumed_camera.h"
+#include "pliant/datasets/native_layout.h"
 #include "pliant/datasets/run_sequence.h"
+#include "pliant/io/camera_file.h"
 #include "pliant/io/run_map.h"
 #include "pliant/io/run_reader.h"
 #include "pliant/io/run_writer.h"
+#include "pliant/refinement/focal_length.h"
 
 namespace pliant {
 namespace {
@@ -32,6 +36,8 @@ struct RefinedSubmap {
   std::vector<std::vector<PointObservation>> observations;  // of its views, as in the run
   std::map<int, int> view_of_frame;
 };
+
+constexpr double kUnknownLogDepthSigma = 0.5;
 
 Status CheckPaths(const RefineRequest& request) {
   std::error_code error;
@@ -175,9 +181,30 @@ class Reporter {
   std::map<PointId, Eigen::Vector3d> rest_positions_;  // of points that have not been reported
 };
 
+// From the submap with the most observations.
+RefinedFocalLength FocalLengthOf(const Camera& camera, const std::map<int, RefinedSubmap>& submaps,
+                                 const RefineOptions& options) {
+  const auto largest = std::ranges::max_element(
+      submaps, {}, [](const auto& numbered) { return numbered.second.recording.observations.size(); });
+  RefinedFocalLength result{.assumed_px = camera.MeanFocalLengthPx(), .failure = {}};
+  const auto estimate = EstimateFocalLength(camera, largest->second.recording, options);
+  if (!estimate.ok()) {
+    result.failure = estimate.status().message();
+    return result;
+  }
+  result.estimated_px = estimate->factor * result.assumed_px;
+  result.sigma_px = estimate->log_sigma * result.estimated_px;
+  return result;
+}
+
+bool IsFocalLengthWanted(const RefineOptions& options, const RunDescription& run) {
+  return options.focal_length == FocalLength::kEstimated ||
+         (options.focal_length == FocalLength::kAuto && IsAssumedCamera(run.camera));
+}
+
 // Of a refinement that was stopped too: it is whole, if not at its minimum.
 Result<RunSummary> Write(const RefineRequest& request, const RefineOptions& options, const Run& run,
-                         const RunMap& known, Reporter reporter, double seconds) {
+                         const RunMap& known, bool has_new_camera, Reporter reporter, double seconds) {
   OptionTable table;
   RefineOptions listed = options;
   listed.List(table);
@@ -187,10 +214,14 @@ Result<RunSummary> Write(const RefineRequest& request, const RefineOptions& opti
   description.program_version = kVersion;
   description.command_line = request.command_line;
   description.refined_from = std::filesystem::absolute(request.run_path).lexically_normal().string();
+  const std::string camera_file = request.output_path + "/" + native::kCameraFile;
+  if (has_new_camera) description.camera = camera_file;
   auto writer = RunWriter::Create(request.output_path, *known.camera, description, table.ToYaml(), {}, writer_options);
   if (!writer.ok()) return writer.status();
   for (const RunFrame& frame : run.frames)
     if (Status status = writer->Write(reporter.Report(frame)); !status.ok()) return status;
+  if (has_new_camera)
+    if (Status status = WriteCameraFile(camera_file, {*known.camera}); !status.ok()) return status;
   if (Status status = writer->Finish(run.summary->status, run.summary->note); !status.ok()) return status;
   return writer->summary();
 }
@@ -206,13 +237,25 @@ Result<RefineSummary> RefineRun(const RefineRequest& request, const RefineOption
   if (run->poses.empty() || !run->summary)
     return Status(ErrorCode::kInsufficient,
                   "no frame of the run " + Quoted(request.run_path) + " was tracked; there is nothing to refine");
-  const auto known = KnownMapOfRun(request.run_path,
-                                   SequenceOfRun(request.run_path, request.sequence_path, request.camera_path), *run);
+  auto known = KnownMapOfRun(request.run_path,
+                             SequenceOfRun(request.run_path, request.sequence_path, request.camera_path), *run);
   if (!known.ok()) return known.status();
-  const auto submaps = ReadSubmaps(request.run_path, *run);
+  auto submaps = ReadSubmaps(request.run_path, *run);
   if (!submaps.ok()) return submaps.status();
 
   RefineSummary summary;
+  bool has_new_camera = false;
+  if (IsFocalLengthWanted(options, run->summary->description)) {
+    summary.focal_length = FocalLengthOf(*known->camera, *submaps, options);
+    const auto camera =
+        known->camera->WithFocalLengthTimes(summary.focal_length->estimated_px / summary.focal_length->assumed_px);
+    has_new_camera = summary.focal_length->failure.empty() && camera.ok();
+    if (has_new_camera) {
+      known->camera = *camera;
+      // Depths under another focal length are a start, and no measurement.
+      for (auto& [number, submap] : *submaps) submap.recording.log_depth_sigma = kUnknownLogDepthSigma;
+    }
+  }
   std::map<int, RefinedRecording> refined;
   Status failed;
   const double all = static_cast<double>(CountObservations(*submaps));
@@ -241,7 +284,8 @@ Result<RefineSummary> RefineRun(const RefineRequest& request, const RefineOption
   }
   if (std::ranges::none_of(summary.submaps, &std::string::empty, &SubmapRefinement::failure)) return failed;
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  auto written = Write(request, options, *run, *known, Reporter(*run, *known, *submaps, refined), seconds);
+  auto written =
+      Write(request, options, *run, *known, has_new_camera, Reporter(*run, *known, *submaps, refined), seconds);
   if (!written.ok()) return written.status();
   summary.run = *std::move(written);
   return summary;

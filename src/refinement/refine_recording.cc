@@ -10,13 +10,13 @@
 
 #include "pliant/base/statistics.h"
 #include "refinement/bundle.h"
+#include "refinement/check_recording.h"
 #include "refinement/key_views.h"
 #include "refinement/residual_correlation.h"
 
 namespace pliant {
 namespace {
 
-constexpr std::size_t kMinPoints = 8;
 constexpr int kRounds = 2;  // solutions of few views, each with the sigmas and the tracks that the one before has found
 constexpr int kFewViewsPerTrack = 15;      // of the median track, in these; with all of them follows one more solution
 constexpr double kUsualIterations = 10.0;  // of a solution
@@ -28,27 +28,6 @@ constexpr double kWrongTrack = 3.0;         // times the median track's error
 constexpr double kMinWrongTrackPx = 0.5;
 constexpr int kRankStep = 2;
 constexpr double kSignificant = 2.0;  // times its standard error: then a correlation asks for more shapes
-
-Status CheckRecording(const Recording& recording, const RefineOptions& options) {
-  const std::size_t views = recording.times.size();
-  if (views < 2 || recording.rest_positions.size() < kMinPoints)
-    return {ErrorCode::kInsufficient, "a refinement needs 2 frames and " + std::to_string(kMinPoints) +
-                                          " points, and there are " + std::to_string(views) + " and " +
-                                          std::to_string(recording.rest_positions.size())};
-  if (recording.cams_from_world.size() != views || options.rank < 1 || !(recording.log_depth_sigma > 0))
-    return {ErrorCode::kInvalidArgument,
-            "a recording needs a time and a pose for every view, a rank and a sigma above 0"};
-  for (std::size_t v = 1; v < views; ++v)
-    if (!(recording.times[v] > recording.times[v - 1]))
-      return {ErrorCode::kInvalidArgument, "the times of a recording must ascend"};
-  for (const RecordedObservation& o : recording.observations) {
-    const bool known = o.view_idx >= 0 && static_cast<std::size_t>(o.view_idx) < views && o.point_idx >= 0 &&
-                       static_cast<std::size_t>(o.point_idx) < recording.rest_positions.size();
-    if (!known || !o.pixel.allFinite() || !o.position.allFinite())
-      return {ErrorCode::kInvalidArgument, "an observation of a recording has an index or a number that is none"};
-  }
-  return Status::Ok();
-}
 
 // Of a solution for every so many views, up to a factor: the square of the numbers of a point in each of them.
 double WorkOf(int rank, int stride) { return (1.0 + rank) * (1.0 + rank) / stride; }
@@ -310,6 +289,8 @@ void RefineOptions::List(OptionTable& table) {
   table.Add("views_per_track", &views_per_track, "",
             "of the median track, that are solved for together; more frames than these are solved for after it", 3,
             100000);
+  table.AddChoice("focal_length", &focal_length,
+                  "of the run's camera, from its largest rigid submap; auto: estimated where the camera was assumed");
   table.Add("neighbors", &neighbors, "", "nodes with which a node's basis shapes are compared", 1, 100);
 }
 

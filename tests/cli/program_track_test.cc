@@ -119,6 +119,59 @@ TEST(Program, AnOutputThatCannotBeMadeIsExitCodeOne) {
   EXPECT_THAT(outcome.err, HasSubstr(file.string()));
 }
 
+TEST(Program, WhatIsThereIsReplacedOnRequestOnly) {
+  const std::string sequence = Temporary("seq").string();
+  const std::string simulate = "simulate --quiet --Trajectory.frames 2" + kCoarse + "--output_path '" + sequence + "'";
+  ASSERT_EQ(Pliant(simulate).exit, 0);
+  const Outcome again = Pliant(simulate);
+  EXPECT_EQ(again.exit, 2);
+  EXPECT_EQ(again.err, "pliant simulate: '" + sequence +
+                           "' holds a sequence already; give another --output_path, or --overwrite to replace it\n");
+  EXPECT_EQ(Pliant(simulate + " --overwrite").exit, 0);
+
+  const std::string run = Temporary("run").string();
+  const std::string import = "import --quiet --format tum --input_path '" + sequence +
+                             "/groundtruth.txt' --sequence '" + sequence + "' --output_path '" + run + "'";
+  ASSERT_EQ(Pliant(import).exit, 0);
+  const std::string before = ReadText(run + "/run.json");
+  for (const std::string& command : {import, "track --quiet --image_path '" + sequence + "' -o '" + run + "'",
+                                     "refine --quiet --run x -o '" + run + "'"}) {
+    const Outcome outcome = Pliant(command);
+    EXPECT_EQ(outcome.exit, 2) << command;
+    EXPECT_THAT(outcome.err, HasSubstr("holds a run already"));
+  }
+  EXPECT_EQ(ReadText(run + "/run.json"), before);
+  EXPECT_EQ(Pliant(import + " --overwrite").exit, 0);
+}
+
+TEST(Program, AnUnknownCameraIsAssumedAndTheRunSaysSo) {
+  const std::string sequence = Temporary("seq").string();
+  const std::string run = Temporary("run").string();
+  ASSERT_EQ(Pliant("simulate --quiet --Trajectory.frames 2" + kCoarse + "-o '" + sequence + "'").exit, 0);
+  std::filesystem::remove(sequence + "/camera.yaml");
+  const std::string track = "track '" + sequence + "/images' -o '" + run + "'";
+  EXPECT_THAT(Pliant(track).err, HasSubstr("pliant calibrate"));
+  const Outcome outcome = Pliant(track + " --camera unknown --fov_deg 60");
+  EXPECT_THAT(outcome.err, HasSubstr("the camera is not calibrated (fov:60 degrees are assumed)"));
+  EXPECT_THAT(ReadText(run + "/run.json"), HasSubstr("\"camera\": \"fov:60\""));
+  const Outcome wide = Pliant(track + " --camera unknown --fov_deg 170");
+  EXPECT_EQ(wide.exit, 2);
+  EXPECT_THAT(wide.err, HasSubstr("a whole number from 10 to 150"));
+}
+
+TEST(Program, ARunWithoutANameHasTheImagesNameAndTheDate) {
+  const std::string sequence = Temporary("clip").string();
+  ASSERT_EQ(Pliant("simulate --quiet --Trajectory.frames 2" + kCoarse + "-o '" + sequence + "'").exit, 0);
+  const std::filesystem::path working = Temporary("working");
+  std::filesystem::create_directories(working);
+  Pliant("track --quiet '" + sequence + "/'", "cd '" + working.string() + "'");
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(working)) names.push_back(entry.path().filename());
+  ASSERT_EQ(names.size(), 1u);
+  EXPECT_THAT(names.front(), testing::MatchesRegex("clip_[0-9]+_[0-9]+"));
+  EXPECT_TRUE(std::filesystem::exists(working / names.front() / "run.json"));
+}
+
 TEST(Program, QuietSaysNothingAndProgressGoesToStandardError) {
   const std::string small = "--Trajectory.frames 2" + kCoarse;
   const std::string output = "--output_path '" + Temporary("seq").string() + "'";
@@ -126,7 +179,7 @@ TEST(Program, QuietSaysNothingAndProgressGoesToStandardError) {
   ASSERT_EQ(loud.exit, 0) << loud.err;
   EXPECT_THAT(loud.err, HasSubstr("simulate  2/2"));
   EXPECT_THAT(loud.out, StartsWith("2 frames in "));
-  const Outcome quiet = Pliant("simulate --quiet " + small + output);
+  const Outcome quiet = Pliant("simulate --quiet --overwrite " + small + output);
   EXPECT_EQ(quiet.exit, 0);
   EXPECT_EQ(quiet.out + quiet.err, "");
 }

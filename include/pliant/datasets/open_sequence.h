@@ -24,7 +24,8 @@ namespace pliant {
 
 struct SequenceRequest {
   std::filesystem::path image_path = {};  // folder of images, video file or native sequence
-  // Calibration; empty: camera.yaml in image_path, for a video beside the file, else the data set's own.
+  // Calibration, or an assumed camera (pliant/camera/assumed_camera.h); empty: camera.yaml in image_path, for a video
+  // beside the file, else the data set's own.
   std::filesystem::path camera_path = {};
   // One that is tried where none is named, and that of the images is missing or does not fit.
   std::filesystem::path spare_camera_path = {};

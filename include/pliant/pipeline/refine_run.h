@@ -7,6 +7,7 @@
 
 #include <atomic>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,18 +39,28 @@ struct SubmapRefinement {
   std::string failure;         // why it is in the refined run as it is in the run; empty: it was refined
 };
 
+// What became of the focal length where it was to be estimated.
+struct RefinedFocalLength {
+  double assumed_px = 0;
+  double estimated_px = 0;  // 0: it was not, and `failure` says why
+  double sigma_px = 0;
+  std::string failure;
+};
+
 struct RefineSummary {
   std::vector<SubmapRefinement> submaps;
+  std::optional<RefinedFocalLength> focal_length;
   RunSummary run;        // of the refined run
   bool stopped = false;  // on request: the best so far was written
 };
 
 using RefineProgress = std::function<void(const RefinementProgress&)>;
 
-// A submap of several that cannot be refined stays as it is. Fails with kNotFound, kUnreadable or kMismatch for a run
-// that cannot be read, kInsufficient for one without points or of a single frame, kInvalidArgument for an output folder
-// that is the run's or holds something else, kUnwritable. The output folder is not touched before the refinement is
-// done.
+// A submap of several that cannot be refined stays as it is. A focal length that is estimated is that of the refined
+// run, whose folder then holds its camera.yaml; where the recording does not determine it the camera's is kept. Fails
+// with kNotFound, kUnreadable or kMismatch for a run that cannot be read, kInsufficient for one without points or of a
+// single frame, kInvalidArgument for an output folder that is the run's or holds something else, kUnwritable. The
+// output folder is not touched before the refinement is done.
 Result<RefineSummary> RefineRun(const RefineRequest& request, const RefineOptions& options,
                                 const RefineProgress& callback);
 

@@ -38,6 +38,19 @@ struct EnumNames<RefinementModel> {
                                         std::pair{RefinementModel::kDeforming, std::string_view("deforming")}};
 };
 
+// Whether the focal length is estimated, too (pliant/refinement/focal_length.h).
+enum class FocalLength {
+  kAuto,  // of a camera that was assumed
+  kHeld,
+  kEstimated,
+};
+template <>
+struct EnumNames<FocalLength> {
+  static constexpr std::array kNames = {std::pair{FocalLength::kAuto, std::string_view("auto")},
+                                        std::pair{FocalLength::kHeld, std::string_view("held")},
+                                        std::pair{FocalLength::kEstimated, std::string_view("estimated")}};
+};
+
 struct RefineOptions {
   RefinementModel model = RefinementModel::kAuto;
   double max_correlation = 0.2;  // of neighbors' residuals in the rigid solution (W11), up to which the scene is rigid
@@ -47,6 +60,7 @@ struct RefineOptions {
   int nodes_in_view = 24;        // of the surface, in the mean over the views
   int views_per_track = 40;      // of the median track, that are solved for together; the others after them
   int neighbors = 6;             // nodes that a node's basis shapes are compared with
+  FocalLength focal_length = FocalLength::kAuto;  // of a run's camera; RefineRecording holds it
 
   void List(OptionTable& table);  // group "Refine"
 };

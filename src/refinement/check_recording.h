@@ -1,0 +1,15 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#pragma once
+
+#include "pliant/base/status.h"
+#include "pliant/refinement/refine_recording.h"
+
+namespace pliant {
+
+// Whether a recording can be solved for: kInsufficient below two views or eight points, kInvalidArgument for indices or
+// numbers that are none.
+Status CheckRecording(const Recording& recording, const RefineOptions& options);
+
+}  // namespace pliant
