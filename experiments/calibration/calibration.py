@@ -33,6 +33,9 @@ LENSES = {
     "fisheye": ("OPENCV_FISHEYE", (290.0, 291.0, 318.0, 241.0, -0.03, 0.006, -0.002, 0.0003)),
 }
 LOOKS = ("clean", "endoscope")
+# A dull board before a clean lens that is held still.
+SET_UP = ("--Light.specular 0 --Sensor.shutter_s 0 --Sensor.readout_s 0 --Sensor.drops 0 --Sensor.debris 0"
+          " --Recording.lost_share 0 --Recording.video_qp 0")
 
 
 def write_board(folder):
@@ -121,8 +124,7 @@ def render(arguments, name, look):
     call(arguments.program, "simulate", "--quiet", "--overwrite", "-o", folder / "boards", "--realism", look,
          "--Scene.kind", "mesh", "--Scene.mesh_path", folder / "board.obj", "--Scene.seed", arguments.seed,
          "--Trajectory.kind", "file", "--Trajectory.path", folder / "poses.txt", "--Trajectory.frames", VIEWS,
-         "--Camera.model", model, "--Camera.params", ",".join(map(str, params)), "--Light.specular", 0,
-         "--Sensor.shutter_s", 0, "--Sensor.readout_s", 0, "--Recording.lost_share", 0, "--Recording.video_qp", 0).check_returncode()
+         "--Camera.model", model, "--Camera.params", ",".join(map(str, params)), *SET_UP.split()).check_returncode()
     return folder / "boards"
 
 

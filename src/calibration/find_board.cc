@@ -41,16 +41,20 @@ std::vector<double> SearchScales(const cv::Mat& gray) {
   return {1.0};
 }
 
-// How to search: at each scale as it is, then at the first one without the noise.
+enum class Effort { kFast, kExhaustive };
+
+// How to search: at the likeliest scale as it is, thoroughly, at the others, and without the noise.
 struct Search {
   double scale = 1;
   double smoothing_px = 0;
+  Effort effort = Effort::kFast;
 };
 
 std::vector<Search> Searches(const cv::Mat& gray) {
-  std::vector<Search> searches;
-  for (const double scale : SearchScales(gray)) searches.push_back({scale});
-  searches.push_back({searches.front().scale, kNoiseSmoothing_px});
+  const std::vector<double> scales = SearchScales(gray);
+  std::vector<Search> searches = {{scales.front()}, {scales.front(), 0, Effort::kExhaustive}};
+  for (std::size_t i = 1; i < scales.size(); ++i) searches.push_back({scales[i]});
+  searches.push_back({scales.front(), kNoiseSmoothing_px});
   return searches;
 }
 
@@ -80,9 +84,9 @@ void Refine(const cv::Mat& gray, int columns, std::vector<cv::Point2f>* corners)
                    {cv::TermCriteria::EPS + cv::TermCriteria::MAX_ITER, 50, 1e-3});
 }
 
-bool FindChessboard(const cv::Mat& gray, cv::Size size, std::vector<cv::Point2f>* corners) {
-  return cv::findChessboardCornersSB(gray, size, *corners, kChessboardFlags) ||
-         cv::findChessboardCornersSB(gray, size, *corners, kChessboardFlags | cv::CALIB_CB_EXHAUSTIVE);
+bool FindChessboard(const cv::Mat& gray, cv::Size size, Effort effort, std::vector<cv::Point2f>* corners) {
+  const int exhaustive = effort == Effort::kExhaustive ? cv::CALIB_CB_EXHAUSTIVE : 0;
+  return cv::findChessboardCornersSB(gray, size, *corners, kChessboardFlags | exhaustive);
 }
 
 bool FindCircles(const cv::Mat& gray, const CalibrationBoard& board, std::vector<cv::Point2f>* centers) {
@@ -99,11 +103,12 @@ bool FindCircles(const cv::Mat& gray, const CalibrationBoard& board, std::vector
 // All points of a board that is seen as a whole; none where it is not.
 std::vector<cv::Point2f> FindWholeBoard(const cv::Mat& gray, const CalibrationBoard& board) {
   const bool is_chessboard = board.kind == BoardKind::kChessboard;
-  for (const auto& [scale, smoothing_px] : Searches(gray)) {
+  for (const auto& [scale, smoothing_px, effort] : Searches(gray)) {
+    if (effort == Effort::kExhaustive && !is_chessboard) continue;
     cv::Mat searched = scale == 1.0 ? gray : Resized(gray, scale);
     if (smoothing_px > 0) cv::GaussianBlur(searched, searched, {}, smoothing_px);
     std::vector<cv::Point2f> points;
-    const bool found = is_chessboard ? FindChessboard(searched, {board.columns, board.rows}, &points)
+    const bool found = is_chessboard ? FindChessboard(searched, {board.columns, board.rows}, effort, &points)
                                      : FindCircles(searched, board, &points);
     if (!found || points.size() != static_cast<std::size_t>(board.NumPoints())) continue;
     Unscale(scale, &points);

@@ -58,6 +58,20 @@ std::string ShortFlagOf(const std::string& name) {
   return name == "help" ? "-h" : "";
 }
 
+// With `--Group.option VALUE` as one word: CLI11 knows no options, and would take their values for arguments without a
+// name.
+std::vector<std::string> WithOptionsJoined(std::span<const std::string> args) {
+  std::vector<std::string> joined;
+  for (std::size_t i = 0; i < args.size(); ++i) {
+    joined.push_back(args[i]);
+    const bool is_option = args[i].starts_with("--") && args[i].find('.') != std::string::npos;
+    const bool has_value = args[i].find('=') != std::string::npos;
+    if (is_option && !has_value && i + 1 < args.size() && !args[i + 1].starts_with("--"))
+      joined.back() += "=" + args[++i];
+  }
+  return joined;
+}
+
 // As CLI11 takes them.
 std::string FlagsOf(const std::string& name) {
   const std::string short_flag = ShortFlagOf(name);
@@ -194,7 +208,8 @@ Status CommandLine::ReadArguments(std::span<const std::string> args) {
     }
   }
   try {
-    app.parse(std::vector<std::string>(args.rbegin(), args.rend()));  // CLI11 takes them from the back
+    const std::vector<std::string> joined = WithOptionsJoined(args);
+    app.parse(std::vector<std::string>(joined.rbegin(), joined.rend()));  // CLI11 takes them from the back
   } catch (const CLI::ParseError& error) {
     return {ErrorCode::kInvalidArgument, ArgumentError(error)};
   }

@@ -24,7 +24,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kImagesForSize = 9;  // in which larger chessboards are looked for
+constexpr int kImagesForSize = 9;      // in which larger chessboards are looked for
+constexpr int kFewestCorners = 4 * 5;  // of one that is named: smaller ones are seen in tissue, too
 
 struct Candidate {
   std::string name;
@@ -35,7 +36,10 @@ struct Candidate {
 // The sharpest image of every stretch of a stream, of whatever length: stretches become longer as there are more.
 class SharpestImages {
  public:
-  explicit SharpestImages(int max_images) : max_images_(static_cast<std::size_t>(max_images)) {}
+  // `expected`: images of the stream, where that is known; 0: not.
+  SharpestImages(int max_images, int expected)
+      : max_images_(static_cast<std::size_t>(max_images)),
+        stretch_(std::max(1, (expected + max_images - 1) / max_images)) {}
 
   void Add(Candidate candidate) {
     if (in_last_ == 0 || in_last_ == stretch_) {
@@ -68,7 +72,7 @@ class SharpestImages {
 
   std::size_t max_images_;
   std::vector<Candidate> candidates_;
-  int stretch_ = 1;
+  int stretch_;
   int in_last_ = 0;  // images that the last candidate stands for
 };
 
@@ -93,7 +97,7 @@ Result<std::unique_ptr<ImageStream>> OpenStream(const fs::path& path) {
 Result<ReadImages> ReadAll(const fs::path& path, int max_images, const CalibrateProgress& progress) {
   auto stream = OpenStream(path);
   if (!stream.ok()) return stream.status();
-  SharpestImages sharpest(max_images);
+  SharpestImages sharpest(max_images, (*stream)->count());
   ReadImages read;
   read.fps = (*stream)->fps();
   std::optional<cv::Size> size;
@@ -177,10 +181,10 @@ Status NotSeen(const CalibrateRequest& request, const std::vector<Candidate>& ca
                          " images of " + request.image_path.string() + " that were searched; ";
   std::vector<const Candidate*> all;
   for (const Candidate& candidate : candidates) all.push_back(&candidate);
-  constexpr int kFewestAgreeing = 2;
   if (request.board.kind == BoardKind::kChessboard) {
     const SeenSize seen = MostSeenSize(all, threads);
-    if (seen.images >= kFewestAgreeing) return {ErrorCode::kInsufficient, sentence + SeenSentence(seen, request.board)};
+    if (2 * seen.images > seen.looked_at && seen.size.longer * seen.size.shorter >= kFewestCorners)
+      return {ErrorCode::kInsufficient, sentence + SeenSentence(seen, request.board)};
   }
   if (std::any_of(all.begin(), all.end(),
                   [&](const Candidate* candidate) { return IsMirrored(candidate->gray, request.board); }))

@@ -215,6 +215,20 @@ TEST(CommandLine, HelpIsAManualOfEveryArgumentAndOption) {
   for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), kManualColumns) << line;
 }
 
+TEST(CommandLine, TheValueOfAnOptionIsNoArgumentWithoutAName) {
+  std::string path;
+  BasketOptions options;
+  OptionTable table;
+  options.List(table);
+  CommandLine line(kManual);
+  line.Add("to", &path, "PATH", "where it goes", Need::kRequired, Positional::kYes);
+  const std::vector<std::string> args = {"--Basket.count", "7", "here"};
+  ASSERT_FALSE(line.Parse(args).has_value());
+  ASSERT_FALSE(line.Resolve(table).has_value());
+  EXPECT_EQ(path, "here");
+  EXPECT_EQ(options.count, 7);
+}
+
 TEST(CommandLine, AMessageThatQuotesALongInputIsShortened) {
   const Outcome outcome = Give({"--to", "X", "--pieces", std::string(3000, 'x')});
   EXPECT_EQ(outcome.exit, kExitUsage);
