@@ -86,7 +86,7 @@ TEST(Program, ImportMakesARunOfACameraPathAndSaysWhatItCannotRead) {
   EXPECT_EQ(path.exit, 0) << path.err;
   EXPECT_THAT(path.out, HasSubstr("ATE RMSE 0.000"));
 
-  const Outcome none = Pliant(import + "--input_path '" + sequence + "/nowhere'");
+  const Outcome none = Pliant(import + "--overwrite --input_path '" + sequence + "/nowhere'");
   EXPECT_EQ(none.exit, 1);
   EXPECT_EQ(std::count(none.err.begin(), none.err.end(), '\n'), 1) << none.err;
   EXPECT_THAT(none.err, StartsWith("pliant import: "));

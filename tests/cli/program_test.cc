@@ -150,7 +150,7 @@ TEST(Program, AnUnknownOptionNamesItsNeighborAndExitsWithTwo) {
 }
 
 TEST(Program, AMissingArgumentExitsWithTwo) {
-  for (const auto& [arguments, missing] : {std::pair{"track --image_path a", "--output_path"},
+  for (const auto& [arguments, missing] : {std::pair{"refine --run a", "--output_path"},
                                            {"track --output_path b", "--image_path"},
                                            {"simulate", "--output_path"},
                                            {"evaluate --run a", "--sequence"}}) {

@@ -38,7 +38,7 @@ TEST(Program, AStartFromACloudTakesItsMethodAndSaysWhenTheUnitIsUnlikely) {
   const std::string track = "track --Init.method depth --image_path '" + sequence + "' --output_path '" +
                             Temporary("run").string() + "' --Init.depth_cloud '" + cloud + "' ";
   EXPECT_THAT(Pliant(track).err, HasSubstr("has a median depth of 0.05 mm; if its unit is the meter"));
-  const Outcome in_meters = Pliant(track + "--Init.depth_cloud_unit_mm 1000");
+  const Outcome in_meters = Pliant(track + "--overwrite --Init.depth_cloud_unit_mm 1000");
   EXPECT_EQ(in_meters.exit, 0) << in_meters.err;
   EXPECT_THAT(in_meters.out, HasSubstr("2 of 2 frames tracked"));
   EXPECT_THAT(in_meters.err, Not(HasSubstr("median depth")));
