@@ -19,7 +19,8 @@ target_compile_options(pliant_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshad
                        $<$<CXX_COMPILER_ID:GNU>:-Wno-stringop-overflow>
                        $<$<CXX_COMPILER_ID:GNU>:-Wno-stringop-overread>
                        $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
-if(PROJECT_IS_TOP_LEVEL)
+option(PLIANT_WARNINGS_ARE_ERRORS "Let a warning end the build" ${PROJECT_IS_TOP_LEVEL})
+if(PLIANT_WARNINGS_ARE_ERRORS)
   target_compile_options(pliant_warnings INTERFACE -Werror)
 endif()
 
