@@ -1,0 +1,89 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: 2026 The Pliant authors
+# SPDX-License-Identifier: BSD-3-Clause
+#
+# usage: install_test.sh PACKAGES ROOT
+#
+# Makes a new, minimal Debian 12 in the folder ROOT, installs the packages of the folder PACKAGES with apt, uses each of
+# them as its users do, and purges them: nothing of them may be left. Runs as root, needs debootstrap and a network, and
+# takes some minutes. ROOT is removed first, and stays for a look when it fails.
+#
+# environment
+#   PLIANT_DEBIAN_MIRROR   the archive to install from (default: http://deb.debian.org/debian)
+set -euo pipefail
+
+source=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
+packages=$(realpath "$1")
+root=$(realpath -m "$2")
+mirror=${PLIANT_DEBIAN_MIRROR:-http://deb.debian.org/debian}
+names=(pliant python3-pliant libpliant-dev)
+
+say() { printf '\n== %s\n' "$*"; }
+inside() { env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin LC_ALL=C.UTF-8 HOME=/root DEBIAN_FRONTEND=noninteractive chroot "$root" "$@"; }
+package() { (cd "$packages" && echo "/tmp/$(ls "$1"_*.deb)"); }
+install() { inside apt-get -qq install -y --no-install-recommends "$@" >>"$root/tmp/apt.log" 2>&1 || { tail -30 "$root/tmp/apt.log"; return 1; }; }
+installed_kb() { inside dpkg-query -W -f '${Installed-Size}\n' | awk '{sum += $1} END {print sum}'; }
+
+if ((EUID != 0)); then
+  echo "install_test.sh: only root can make a Debian to install into" >&2
+  exit 1
+fi
+
+leave_proc() { if mountpoint -q "$root/proc"; then umount "$root/proc"; fi; }
+leave_proc
+rm -rf --one-file-system "$root"
+
+say "a minimal Debian 12 in $root"
+mkdir -p "$(dirname "$root")"
+debootstrap --variant=minbase bookworm "$root" "$mirror" >"$root.log" || { tail "$root.log"; exit 1; }
+rm "$root.log"
+trap leave_proc EXIT
+mount -t proc proc "$root/proc"
+inside apt-get -qq update
+cp "$packages"/*.deb "$root/tmp"
+
+say "pliant"
+before_kb=$(installed_kb)
+install "$(package pliant)"
+after_kb=$(installed_kb)
+echo "$(((after_kb - before_kb) / 1024)) MB installed, with everything that it depends on"
+inside pliant --version
+inside pliant demo --output_path /tmp/demo
+inside bash -c '. /usr/share/bash-completion/completions/pliant && complete -p pliant'
+test -s "$root/usr/share/man/man1/pliant-track.1.gz"
+
+say "python3-pliant"
+install "$(package python3-pliant)"
+inside python3 -c '
+import pliant
+run = pliant.open_run("/tmp/demo/run")
+print(pliant.__version__, pliant.__file__, run)
+pliant.simulate("/tmp/from_python", {"Trajectory.frames": 2})
+'
+
+say "libpliant-dev"
+install "$(package libpliant-dev)" cmake g++ make
+cp -r "$source/tests/consumer/project" "$root/tmp/project"
+inside cmake -S /tmp/project -B /tmp/project/build >/dev/null
+inside cmake --build /tmp/project/build
+inside /tmp/project/build/consumer /tmp/demo/sequence /tmp/consumer_run | tail -n 1
+
+say "purge"
+for name in "${names[@]}"; do inside dpkg -L "$name"; done | sort -u >"$root/tmp/files"
+inside apt-get -qq purge -y "${names[@]}" >>"$root/tmp/apt.log" 2>&1
+status=0
+while read -r file; do
+  # A folder may belong to other packages too.
+  if [[ ! -d $root$file && (-e $root$file || -L $root$file) ]]; then
+    echo "left: $file" && status=1
+  fi
+done <"$root/tmp/files"
+left=$(find "$root" -xdev -iname '*pliant*' -not -path "$root/tmp/*" -not -path "$root/proc/*" -printf '/%P\n')
+if [[ -n $left ]]; then echo "left: $left" && status=1; fi
+if inside dpkg-query -W "${names[@]}" 2>/dev/null; then status=1; fi
+if ((status == 0)); then
+  echo "nothing is left of them"
+  leave_proc
+  rm -rf --one-file-system "$root"
+fi
+exit "$status"
