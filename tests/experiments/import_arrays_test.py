@@ -90,7 +90,7 @@ def pliant(*arguments):
 def evaluated(folder, scene):
     """The evaluation of the result as a run: of its path and its points, with one scale for the whole run's path."""
     pliant("import", "--format", "result", "--input_path", folder / "result", "--sequence", scene.folder,
-           "--output_path", folder / "run")
+           "--output_path", folder / "run", "--overwrite")
     pliant("evaluate", "--run", folder / "run", "--sequence", scene.folder, "--output_path", folder / "evaluation")
     return json.loads((folder / "evaluation/evaluation.json").read_text(encoding="utf-8"))
 
@@ -200,7 +200,7 @@ def orb_slam3_path(folder):
         f"{1e9 * k / 30:.6f} " + "".join(f"{value:.9f} " for value in tum(pose)) + "\n"
         for k, pose in enumerate(their_poses(scene)) if k >= 3))
     pliant("import", "--format", "tum", "--input_path", folder / "CameraTrajectory.txt", "--sequence", scene.folder,
-           "--Import.unit_mm", UNIT_MM, "--output_path", folder / "run")
+           "--Import.unit_mm", UNIT_MM, "--output_path", folder / "run", "--overwrite")
     pliant("evaluate", "--run", folder / "run", "--sequence", scene.folder, "--output_path", folder / "evaluation")
     trajectory = json.loads((folder / "evaluation/evaluation.json").read_text(encoding="utf-8"))["trajectory"]
     assert trajectory["poses"] == FRAMES - 3 and trajectory["ate_rmse_mm"] < MAX_ATE_MM, trajectory
