@@ -36,7 +36,7 @@ std::vector<double> SearchScales(const cv::Mat& gray) {
   if (longest < kSmallestSearched_px) {
     // Corners of enlarged images are the more exact ones.
     const double larger = std::ceil(kSmallestSearched_px / longest);
-    return {larger, larger + 1, 1.0};
+    return {larger, 1.0};
   }
   return {1.0};
 }

@@ -23,7 +23,7 @@ FEWEST = {"commands": 40, "python": 10, "messages": 30}  # that are there to be 
 def pages(root):
     for pattern in PAGES:
         for path in sorted(root.glob(pattern)):
-            if "work" not in path.parts:
+            if "work" not in path.relative_to(root).parts:
                 yield path
 
 
