@@ -87,7 +87,7 @@ void DrawBars(cairo_t* drawing, const CalibrateSummary& summary, const Panel& pa
   const std::vector<FittedView>& views = summary.calibration.views;
   double highest = summary.calibration.rms_px;
   for (const FittedView& view : views)
-    if (std::isfinite(view.rms_px)) highest = std::max(highest, view.rms_px);
+    if (!view.is_outlier) highest = std::max(highest, view.rms_px);
   if (!(highest > 0)) return;
   const double step = panel.width / static_cast<double>(views.size());
   const auto height_of = [&](double rms_px) { return panel.height * std::min(1.0, rms_px / highest); };
@@ -118,8 +118,8 @@ Status WriteCalibrationFigure(const CalibrateSummary& summary, const std::string
                       [&](cairo_t* drawing) {
                         Use(drawing, kBlack);
                         DrawText(drawing, kPageGap, 1.4 * kLine, kPanelWidth,
-                                 std::string(camera.model_name()) + ": points of the board, errors enlarged " +
-                                     Digits(kErrorFactor, 0) + " times, and a straight grid through the lens");
+                                 std::string(camera.model_name()) + ": points of the board, errors times " +
+                                     Digits(kErrorFactor, 0) + "; a straight grid");
                         cairo_save(drawing);
                         Clip(drawing, image);
                         const PixelsToPanel to_panel{image, scale};
