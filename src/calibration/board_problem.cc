@@ -178,6 +178,10 @@ bool StartPose(const Camera& camera, std::span<const Eigen::Vector3d> board_poin
 
 }  // namespace
 
+int NumParams(CameraModelId model) {
+  return WithModel(model, []<class Model>() { return Model::kNumParams; });
+}
+
 int NumPinholeParams(CameraModelId model) {
   return model == CameraModelId::kSimplePinhole || model == CameraModelId::kSimpleRadial ||
                  model == CameraModelId::kRadial

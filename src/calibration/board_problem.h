@@ -51,6 +51,7 @@ std::vector<Eigen::Vector2d> Residuals(std::span<const Eigen::Vector3d> board_po
 std::vector<double> CovarianceSigmas(std::span<const Eigen::Vector3d> board_points, std::span<const BoardView> views,
                                      const std::vector<bool>& without, const BoardFit& fit);
 
+int NumParams(CameraModelId model);
 // The number of the model's parameters that are not of the distortion, which stand first.
 int NumPinholeParams(CameraModelId model);
 

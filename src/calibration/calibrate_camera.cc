@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 #include <string>
 
@@ -42,24 +41,6 @@ constexpr std::array kModels = {CameraModelId::kSimplePinhole, CameraModelId::kP
 std::vector<CameraModelId> ModelsOf(ModelChoice choice) {
   if (choice == ModelChoice::kAuto) return {kModels.begin(), kModels.end()};
   return {kModels[static_cast<std::size_t>(choice) - 1]};
-}
-
-int NumParams(CameraModelId model) {
-  switch (model) {
-    case CameraModelId::kSimplePinhole:
-      return SimplePinhole::kNumParams;
-    case CameraModelId::kPinhole:
-      return Pinhole::kNumParams;
-    case CameraModelId::kSimpleRadial:
-      return SimpleRadial::kNumParams;
-    case CameraModelId::kRadial:
-      return Radial::kNumParams;
-    case CameraModelId::kOpenCv:
-      return OpenCv::kNumParams;
-    case CameraModelId::kOpenCvFisheye:
-      break;
-  }
-  return OpenCvFisheye::kNumParams;
 }
 
 // The parameters of `model` that say the same as f, cx and cy, without distortion.

@@ -8,14 +8,13 @@
 #include <memory>
 #include <mutex>
 
-#include <opencv2/imgproc.hpp>
-
 #include "datasets/image_file.h"
 #include "datasets/image_stream.h"
 #include "pliant/base/parallel.h"
 #include "pliant/base/text.h"
 #include "pliant/calibration/choose_views.h"
 #include "pliant/datasets/native_layout.h"
+#include "pliant/image/pyramid.h"
 #include "pliant/image/sharpness.h"
 #include "pliant/io/camera_file.h"
 
@@ -115,12 +114,7 @@ Result<ReadImages> ReadAll(const fs::path& path, int max_images, const Calibrate
                                               first_title + " is " + SizeText(size->width, size->height) +
                                               "; calibrate with images of one size");
     }
-    Candidate candidate{(*stream)->Name(read.count), {}};
-    if ((*image)->channels() == 1) {
-      candidate.gray = **image;
-    } else {
-      cv::cvtColor(**image, candidate.gray, cv::COLOR_BGR2GRAY);
-    }
+    Candidate candidate{(*stream)->Name(read.count), ToGray(**image)};
     candidate.sharpness = Sharpness(candidate.gray, {});
     sharpest.Add(std::move(candidate));
     ++read.count;

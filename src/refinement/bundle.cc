@@ -3,6 +3,9 @@
 
 #include "refinement/bundle.h"
 
+#include <algorithm>
+
+#include "pliant/base/statistics.h"
 #include "refinement/bundle_covariance.h"
 #include "refinement/bundle_problem.h"
 
@@ -53,6 +56,22 @@ std::vector<Eigen::Vector2d> ReprojectionErrors(const Camera& camera, const Reco
                            : Eigen::Vector2d(static_cast<double>(camera.width()), 0.0));
   }
   return errors;
+}
+
+double MedianDistance(const Recording& recording) {
+  std::vector<double> distances;
+  for (const RecordedObservation& o : recording.observations)
+    distances.push_back((recording.cams_from_world[static_cast<std::size_t>(o.view_idx)] * o.position).norm());
+  return Median(distances);
+}
+
+double NoisePx(const std::vector<Eigen::Vector2d>& errors_px, const std::vector<bool>& used) {
+  constexpr double kMinNoisePx = 0.02;
+  constexpr double kRayleighMedian = 1.1774;  // median length of a 2D normal vector by its standard deviation
+  std::vector<double> lengths;
+  for (std::size_t o = 0; o < errors_px.size(); ++o)
+    if (used[o]) lengths.push_back(errors_px[o].norm());
+  return std::max(kMinNoisePx, Median(lengths) / kRayleighMedian);
 }
 
 }  // namespace pliant

@@ -90,6 +90,12 @@ Result<BundleCovariance> CovarianceOfBundle(const BundleInput& input, const Bund
 // The views of every point, of its used observations.
 std::vector<int> CountViews(const Recording& recording, const std::vector<bool>& used);
 
+// Of the points from the cameras, over the observations.
+double MedianDistance(const Recording& recording);
+
+// Standard deviation of a pixel coordinate, from the median error of the used observations; at least 0.02 px (F8).
+double NoisePx(const std::vector<Eigen::Vector2d>& errors_px, const std::vector<bool>& used);
+
 // Error of every observation, px; one that does not project has the image's width.
 std::vector<Eigen::Vector2d> ReprojectionErrors(const Camera& camera, const Recording& recording,
                                                 const BundleState& state);

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -26,9 +25,7 @@ constexpr double kFineLogStep = 0.02;  // of the parabola through the costs arou
 constexpr int kViewsPerTrack = 15;
 constexpr double kStartLogDepthSigma = 5;  // holds the unit, and says nothing of the depths, which are wrong
 constexpr double kStartNoise_px = 0.3;
-constexpr double kMinNoise_px = 0.02;
-constexpr double kMedianLength = 1.1774;  // of a 2D normal vector by its standard deviation
-constexpr double kWrongTrack = 3;         // times the median track's error
+constexpr double kWrongTrack = 3;  // times the median track's error
 
 struct Solution {
   double log_factor = 0;
@@ -43,10 +40,7 @@ class FocalLengthSearch {
     used_.assign(recording.observations.size(), true);
     KeepPointsSeenOften(recording, &used_);
     used_ = UsedInKeyViews(recording, used_, StrideOfKeyViews(recording, used_, kViewsPerTrack));
-    std::vector<double> distances;
-    for (const RecordedObservation& o : recording.observations)
-      distances.push_back((recording.cams_from_world[static_cast<std::size_t>(o.view_idx)] * o.position).norm());
-    distance_ = Median(distances);
+    distance_ = MedianDistance(recording);
   }
 
   Result<FocalLengthEstimate> Run() {
@@ -104,13 +98,7 @@ class FocalLengthSearch {
     return ReprojectionErrors(*CameraAt(solution.log_factor), recording_, solution.state);
   }
 
-  double NoiseOf(const Solution& solution) const {
-    const auto errors_px = ErrorsOf(solution);
-    std::vector<double> lengths;
-    for (std::size_t o = 0; o < errors_px.size(); ++o)
-      if (used_[o]) lengths.push_back(errors_px[o].norm());
-    return std::max(kMinNoise_px, Median(lengths) / kMedianLength);
-  }
+  double NoiseOf(const Solution& solution) const { return NoisePx(ErrorsOf(solution), used_); }
 
   void RejectWrongTracks(const Solution& solution) {
     const auto errors_px = ErrorsOf(solution);

@@ -21,10 +21,8 @@ constexpr int kRounds = 2;  // solutions of few views, each with the sigmas and 
 constexpr int kFewViewsPerTrack = 15;      // of the median track, in these; with all of them follows one more solution
 constexpr double kUsualIterations = 10.0;  // of a solution
 constexpr double kStartNoisePx = 0.3;
-constexpr double kMinNoisePx = 0.02;
-constexpr double kRayleighMedian = 1.1774;  // median length of a 2D normal vector by its standard deviation
-constexpr double kMinShapeSigma = 0.002;    // below it a scene moves by less than its noise
-constexpr double kWrongTrack = 3.0;         // times the median track's error
+constexpr double kMinShapeSigma = 0.002;  // below it a scene moves by less than its noise
+constexpr double kWrongTrack = 3.0;       // times the median track's error
 constexpr double kMinWrongTrackPx = 0.5;
 constexpr int kRankStep = 2;
 constexpr double kSignificant = 2.0;  // times its standard error: then a correlation asks for more shapes
@@ -40,10 +38,7 @@ class Refinement {
     UseAll();
     stride_ = StrideOfKeyViews(start_, input_.used, options.views_per_track);
     wide_stride_ = std::max(stride_, StrideOfKeyViews(start_, input_.used, kFewViewsPerTrack));
-    std::vector<double> distances;
-    for (const RecordedObservation& o : start.observations)
-      distances.push_back((start.cams_from_world[static_cast<std::size_t>(o.view_idx)] * o.position).norm());
-    input_.distance = Median(distances);
+    input_.distance = MedianDistance(start);
   }
 
   Result<RefinedRecording> Run() {
@@ -168,10 +163,7 @@ class Refinement {
 
   void SetFoundSigmas(const BundleState& state, const std::vector<bool>& used) {
     const auto errors_px = ReprojectionErrors(input_.camera, start_, state);
-    std::vector<double> lengths;
-    for (std::size_t o = 0; o < errors_px.size(); ++o)
-      if (used[o]) lengths.push_back(errors_px[o].norm());
-    input_.sigmas.noise_px = std::max(kMinNoisePx, Median(lengths) / kRayleighMedian);
+    input_.sigmas.noise_px = NoisePx(errors_px, used);
     refined_.noise_px = input_.sigmas.noise_px;
     if (state.rank() == 0) return;
     const ShapeSizes sizes = SizesOf(state.nodes);
