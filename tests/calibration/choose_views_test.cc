@@ -46,8 +46,10 @@ TEST(ChooseViews, SaysWhatIsMissing) {
 
 TEST(ChooseViews, AsksForMoreTilt) {
   std::vector<Rigid3> poses;
-  for (int i = 0; i < 16; ++i)
-    poses.push_back(BoardPoseAt(kBoard, {1.0 * (i % 4) - 1.5, 1.0 * (i / 4) - 1.5, 20.0 + i % 3}, 0.3, 0.9 * i));
+  for (int i = 0; i < 16; ++i) {
+    const int row = i / 4;
+    poses.push_back(BoardPoseAt(kBoard, {1.0 * (i % 4) - 1.5, row - 1.5, 20.0 + i % 3}, 0.3, 0.9 * i));
+  }
   const std::vector<BoardView> views = ViewsOf(kBoard, kCamera, poses, 0.02, 1);
   const auto calibration = CalibrateCamera(kBoard, views, 640, 480, ModelChoice::kSimplePinhole, 1);
   ASSERT_TRUE(calibration.ok()) << calibration.status().message();
