@@ -5,7 +5,6 @@
 
 #include <cerrno>
 #include <filesystem>
-#include <iterator>
 #include <system_error>
 
 namespace pliant {
@@ -18,19 +17,21 @@ std::string Beside(const std::string& path) { return path + ".tmp"; }
 
 std::string Reason(int error) { return std::generic_category().message(error); }
 
-// A regular file that is there.
-Result<std::ifstream> OpenToRead(const std::string& path) {
+// Whether it is a regular file that is there.
+Status CheckIsFile(const std::string& path) {
   std::error_code error;
   const auto kind = std::filesystem::status(path, error);
   if (!std::filesystem::exists(kind))
-    return Status(ErrorCode::kNotFound, "there is no file " + Quoted(path) + "; check the path");
+    return {ErrorCode::kNotFound, "there is no file " + Quoted(path) + "; check the path"};
   if (std::filesystem::is_directory(kind))
-    return Status(ErrorCode::kUnreadable, Quoted(path) + " is a folder; give a file in it");
+    return {ErrorCode::kUnreadable, Quoted(path) + " is a folder; give a file in it"};
   if (!std::filesystem::is_regular_file(kind))  // which may be endless
-    return Status(ErrorCode::kUnreadable, Quoted(path) + " is a pipe or a device; give a file");
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) return Status(ErrorCode::kUnreadable, "cannot read " + Quoted(path) + "; check its permissions");
-  return stream;
+    return {ErrorCode::kUnreadable, Quoted(path) + " is a pipe or a device; give a file"};
+  return Status::Ok();
+}
+
+Status Unreadable(const std::string& path, int error) {
+  return {ErrorCode::kUnreadable, "cannot read " + Quoted(path) + ": " + Reason(error) + "; check the file and its folder"};
 }
 
 }  // namespace
@@ -121,17 +122,28 @@ Status OverwriteFile(const std::string& path, std::string_view text) {
 }
 
 Result<std::string> ReadFile(const std::string& path) {
-  auto stream = OpenToRead(path);
-  if (!stream.ok()) return stream.status();
-  std::string text((std::istreambuf_iterator<char>(*stream)), std::istreambuf_iterator<char>());
-  if (stream->bad()) return Status(ErrorCode::kUnreadable, "cannot read " + Quoted(path) + " to its end");
+  if (Status status = CheckIsFile(path); !status.ok()) return status;
+  errno = 0;
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
+  if (file == nullptr) return Unreadable(path, errno);
+  std::string text;
+  std::size_t size = 0;
+  do {
+    text.resize(size + kLargeBuffer);
+    size += std::fread(text.data() + size, 1, kLargeBuffer, file.get());
+  } while (size == text.size());
+  if (std::ferror(file.get()) != 0) return Unreadable(path, errno);
+  text.resize(size);
+  text.shrink_to_fit();
   return text;
 }
 
 Result<LineReader> LineReader::Open(const std::string& path) {
-  auto stream = OpenToRead(path);
-  if (!stream.ok()) return stream.status();
-  return LineReader(path, *std::move(stream));
+  if (Status status = CheckIsFile(path); !status.ok()) return status;
+  errno = 0;
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) return Unreadable(path, errno);
+  return LineReader(path, std::move(stream));
 }
 
 bool LineReader::Next(std::string_view* line) {
