@@ -36,7 +36,8 @@ NAVIGATION = (
              "docs/your_own_video", "options/index", "docs/evaluation", "docs/report", "docs/datasets",
              "docs/simulation", "docs/tracks", "docs/formats", "docs/exchange")),
     ("Python and C++", (("Python", "docs/python"), "python_api", ("C++ library", "docs/library"), "cpp_api")),
-    ("Understand", ("docs/concepts", "docs/method", "experiments/README", "docs/troubleshooting", "docs/gallery")),
+    ("Understand", ("docs/concepts", "docs/method", "docs/results", "experiments/README", "docs/troubleshooting",
+                    "docs/gallery")),
     ("Develop", ("CONTRIBUTING", "docs/architecture", "tests/README", ("The report's page", "web/README"),
                  ("All pages", "docs/README"), ("Changes", "CHANGELOG"))),
 )
