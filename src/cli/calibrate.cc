@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include <cstdio>
-#include <iostream>
 #include <optional>
 
 #include "cli/command_line.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
+#include "cli/messages.h"
 #include "cli/progress.h"
 #include "pliant/base/text.h"
 #include "pliant/pipeline/calibrate_images.h"
@@ -35,13 +35,20 @@ const Manual kManual = {
      "--output_path camera.yaml --figure camera.png"},
 };
 
+template <class... Values>
+std::string Text(const char* format, Values... values) {
+  std::array<char, 256> text;
+  std::snprintf(text.data(), text.size(), format, values...);
+  return text.data();
+}
+
 // One line a parameter: name, value, standard deviation.
-void PrintParameters(const CameraCalibration& calibration) {
+void SayParameters(const CameraCalibration& calibration) {
   const std::string names(calibration.camera.Visit([](const auto& model) { return model.kParamNames; }));
   std::size_t i = 0;
   for (const std::string_view name : Split(names, ',')) {
-    std::printf("  %-4s %14.6g  +- %.2g\n", std::string(name).c_str(), calibration.camera.params()[i],
-                calibration.sigmas[i]);
+    SayResult(Text("  %-4s %14.6g  +- %.2g", std::string(name).c_str(), calibration.camera.params()[i],
+                   calibration.sigmas[i]));
     ++i;
   }
 }
@@ -52,41 +59,41 @@ int CountOf(const CalibrateSummary& summary, ImageUse use) {
   return count;
 }
 
-void PrintImages(const CalibrateSummary& summary) {
+void SayImages(const CalibrateSummary& summary) {
   const auto searched = static_cast<int>(summary.images.size());
-  std::printf("images        %d, %d searched, %d with the board, %d used", summary.images_read, searched,
-              searched - CountOf(summary, ImageUse::kNoBoard), CountOf(summary, ImageUse::kUsed));
-  if (const int alike = CountOf(summary, ImageUse::kAlike); alike > 0) std::printf(", %d like others", alike);
-  if (const int outliers = CountOf(summary, ImageUse::kOutlier); outliers > 0) std::printf(", %d fit badly", outliers);
-  std::printf("\n");
+  std::string counts = Text("images        %d, %d searched, %d with the board, %d used", summary.images_read, searched,
+                            searched - CountOf(summary, ImageUse::kNoBoard), CountOf(summary, ImageUse::kUsed));
+  if (const int alike = CountOf(summary, ImageUse::kAlike); alike > 0) counts += Text(", %d like others", alike);
+  if (const int outliers = CountOf(summary, ImageUse::kOutlier); outliers > 0)
+    counts += Text(", %d fit badly", outliers);
+  SayResult(counts);
   for (const CalibrationImage& image : summary.images) {
     if (image.use == ImageUse::kNoBoard && searched > 20) continue;
     if (image.view_idx < 0) {
       if (image.use == ImageUse::kNoBoard)
-        std::printf("  %-24s %s\n", image.name.c_str(), std::string(EnumName(image.use)).c_str());
+        SayResult(Text("  %-24s %s", image.name.c_str(), std::string(EnumName(image.use)).c_str()));
       continue;
     }
     const FittedView& view = summary.calibration.views[static_cast<std::size_t>(image.view_idx)];
-    std::printf("  %-24s %6.2f px, tilted by %2.0f deg%s\n", image.name.c_str(), view.rms_px, view.tilt_deg,
-                view.is_outlier ? ", not used: fits badly" : "");
+    SayResult(Text("  %-24s %6.2f px, tilted by %2.0f deg%s", image.name.c_str(), view.rms_px, view.tilt_deg,
+                   view.is_outlier ? ", not used: fits badly" : ""));
   }
 }
 
-void Print(const CalibrateSummary& summary) {
+void Say(const CalibrateSummary& summary) {
   const CameraCalibration& calibration = summary.calibration;
-  PrintImages(summary);
-  std::printf("held out      ");
+  SayImages(summary);
   for (std::size_t i = 0; i < calibration.held_out.size(); ++i) {
     const HeldOutError& error = calibration.held_out[i];
-    std::printf("%s%s (%d parameters) %.3f px\n", i == 0 ? "" : "              ",
-                std::string(EnumName(error.model)).c_str(), error.num_params, error.rms_px);
+    SayResult(Text("%s%s (%d parameters) %.3f px", i == 0 ? "held out      " : "              ",
+                   std::string(EnumName(error.model)).c_str(), error.num_params, error.rms_px));
   }
-  std::printf("model         %s, %dx%d\n", std::string(calibration.camera.model_name()).c_str(),
-              calibration.camera.width(), calibration.camera.height());
-  PrintParameters(calibration);
-  std::printf("error         %.3f px RMS\n", calibration.rms_px);
-  std::printf("coverage      %s of the image\n", Percent(summary.covered_share).c_str());
-  for (const std::string& advice : summary.advice) std::printf("note: %s\n", advice.c_str());
+  SayResult(Text("model         %s, %dx%d", std::string(calibration.camera.model_name()).c_str(),
+                 calibration.camera.width(), calibration.camera.height()));
+  SayParameters(calibration);
+  SayResult(Text("error         %.3f px RMS", calibration.rms_px));
+  SayResult("coverage      " + Percent(summary.covered_share) + " of the image");
+  for (const std::string& advice : summary.advice) SayNote(advice);
 }
 
 }  // namespace
@@ -96,7 +103,6 @@ int CalibrateCommand(std::span<const std::string> args) {
   std::string board_text;
   std::string output_path;
   std::string figure_path;
-  bool quiet = false;
   CalibrateOptions options;
   CommandLine line(kManual);
   line.Add("image_path", &image_path, "PATH", "folder of images, or video, of the board", Need::kRequired);
@@ -104,7 +110,6 @@ int CalibrateCommand(std::span<const std::string> args) {
            Need::kRequired);
   line.Add("output_path", &output_path, "FILE", "camera.yaml to write", Need::kRequired);
   line.Add("figure", &figure_path, "FILE", "picture of the errors to write: .png, .svg or .pdf", Need::kOptional);
-  line.AddFlag("quiet", &quiet, "say nothing but errors");
   if (const auto exit = line.Parse(args)) return *exit;
   OptionTable table;
   options.List(table);
@@ -118,24 +123,20 @@ int CalibrateCommand(std::span<const std::string> args) {
 
   const std::atomic<bool>& stop = StopOnSignals();
   const auto summary = [&] {
-    const ProgressStyle style = quiet ? ProgressStyle::kQuiet : ProgressStyleOfStandardError();
     std::optional<Progress> progress;
     return CalibrateImages({image_path, *board, output_path}, options, [&](int done, int total) {
-      if (total > 0 && !progress) progress.emplace(std::cerr, style, "calibrate", total, "images");
+      if (total > 0 && !progress) progress.emplace("calibrate", total, "images");
       if (progress) progress->Update(done, "searched for the board");
       return !stop.load();
     });
   }();
   if (!summary.ok()) return line.Failure(summary.status().message());
-  if (!quiet) {
-    Print(*summary);
-    std::fflush(stdout);
-    std::cout << output_path << std::endl;
-  }
+  Say(*summary);
+  SayResult(output_path);
   if (figure_path.empty()) return kExitOk;
   if (const Status status = WriteCalibrationFigure(*summary, figure_path); !status.ok())
     return line.Failure(status.message());
-  if (!quiet) std::cout << figure_path << std::endl;
+  SayResult(figure_path);
   return kExitOk;
 }
 

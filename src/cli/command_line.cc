@@ -4,7 +4,6 @@
 #include "cli/command_line.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <iostream>
 #include <set>
 #include <sstream>
@@ -12,6 +11,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "cli/messages.h"
 #include "pliant/base/text.h"
 #include "pliant/io/options_file.h"
 
@@ -72,29 +72,17 @@ std::vector<std::string> WithOptionsJoined(std::span<const std::string> args) {
   return joined;
 }
 
+bool AsksForJson(std::span<const std::string> args) {
+  for (std::size_t i = 0; i < args.size(); ++i)
+    if (args[i] == "--log_format=json" || (args[i] == "--log_format" && i + 1 < args.size() && args[i + 1] == "json"))
+      return true;
+  return false;
+}
+
 // As CLI11 takes them.
 std::string FlagsOf(const std::string& name) {
   const std::string short_flag = ShortFlagOf(name);
   return short_flag + (short_flag.empty() ? "--" : ",--") + name;
-}
-
-constexpr std::size_t kLongestSentence = 400;
-constexpr std::size_t kKeptEnd = 120;  // of a longer one: what to do stands there
-
-bool IsInsideOfCharacter(char byte) { return (static_cast<unsigned char>(byte) & 0xC0U) == 0x80U; }  // of UTF-8
-
-// The middle of a sentence that quotes too much of an input is left out.
-std::string Shortened(std::string_view sentence) {
-  if (sentence.size() <= kLongestSentence) return std::string(sentence);
-  std::size_t end = sentence.size() - kKeptEnd;
-  while (end < sentence.size() && IsInsideOfCharacter(sentence[end])) ++end;
-  std::size_t begin = kLongestSentence - kKeptEnd - 5;  // the dots and the blanks around them
-  while (begin > 0 && IsInsideOfCharacter(sentence[begin])) --begin;
-  return std::string(sentence.substr(0, begin)) + " ... " + std::string(sentence.substr(end));
-}
-
-void Say(std::string_view name, std::string_view sentence) {
-  std::cerr << name << ": " << Shortened(sentence) << std::endl;
 }
 
 // Paragraphs, separated by empty lines as they come.
@@ -110,8 +98,6 @@ std::string WrapParagraphs(std::string_view text, std::size_t indent) {
 
 }  // namespace
 
-void SayError(std::string_view command, std::string_view sentence) { Say(NameOf("pliant", command), sentence); }
-
 int RunVerb(std::string_view command, std::span<const Verb> verbs, std::span<const std::string> args) {
   const std::string name = args.empty() ? "" : args.front();
   for (const Verb& verb : verbs)
@@ -122,12 +108,13 @@ int RunVerb(std::string_view command, std::span<const Verb> verbs, std::span<con
              std::string(verb.name) + " " + std::string(verb.arguments) + "\n";
   usage += "\nWith --help each of them prints its manual.\n";
   const bool asked = name == "--help" || name == "-h" || name == "help";
-  if (!asked) SayError(command, name.empty() ? "give one of its verbs" : "it has no verb " + Quoted(name));
+  TheLogging() = {NameOf("pliant", command)};
+  if (!asked) SayError(name.empty() ? "give one of its verbs" : "it has no verb " + Quoted(name));
   (asked ? std::cout : std::cerr) << usage;
   return asked ? kExitOk : kExitUsage;
 }
 
-CommandLine::CommandLine(Manual manual) : manual_(std::move(manual)) {}
+CommandLine::CommandLine(Manual manual) : manual_(std::move(manual)) { TheLogging() = {NameOf(manual_)}; }
 
 void CommandLine::AddArgument(Argument argument) { arguments_.push_back(std::move(argument)); }
 
@@ -225,12 +212,18 @@ Status CommandLine::ReadArguments(std::span<const std::string> args) {
 }
 
 std::optional<int> CommandLine::Parse(std::span<const std::string> args) {
+  Logging& logging = TheLogging();
+  if (AsksForJson(args)) logging.format = LogFormat::kJson;  // also where the command line is wrong
   Add("config", &config_path_, "FILE", "YAML file of options, as --print_config prints it; flags win over it",
       Need::kOptional);
   AddFlag("print_config", &print_config_, "print every option as resolved, with unit and reason, and end");
+  AddFlag("quiet", &quiet_, "say nothing but errors: --log_level error");
+  AddChoice("log_level", &logging.level, "the least that is said; results and progress are info");
+  AddChoice("log_format", &logging.format, "of every line that is said; json: an object a line, for programs");
   AddFlag("help", &help_, manual_.main_options.empty() ? "print this manual and end" : "print the manual and end");
   if (!manual_.main_options.empty()) AddFlag("help-all", &help_all_, "print the manual with every option and end");
   const Status status = ReadArguments(args);
+  if (quiet_) logging.level = LogLevel::kError;
   if (status.ok() || help_ || help_all_) return std::nullopt;
   return UsageError(status.message());
 }
@@ -301,12 +294,12 @@ std::vector<std::string> CommandLine::Words(std::span<const std::string> args) c
 }
 
 int CommandLine::UsageError(std::string_view sentence) const {
-  Say(NameOf(manual_), sentence);
+  SayError(sentence);
   return kExitUsage;
 }
 
 int CommandLine::Failure(std::string_view sentence) const {
-  Say(NameOf(manual_), sentence);
+  SayError(sentence);
   return kExitFailed;
 }
 

@@ -8,8 +8,8 @@
 //   TrackOptions options = MakeTrackOptions(preset);       what the arguments choose as defaults
 //   OptionTable table;  options.List(table);
 //   if (auto exit = line.Resolve(table)) return *exit;     --config FILE, then the flags; --help, --print_config
-// Every command gets --config, --print_config, --help and --help-all from here. Exit codes and where text goes: results
-// and manuals to standard output, errors and progress to standard error, one sentence an error.
+// Every command gets --config, --print_config, --help, --help-all and what messages.h needs from here. Manuals go to
+// standard output.
 #pragma once
 
 #include <functional>
@@ -42,9 +42,6 @@ enum class Need { kRequired, kOptional };
 
 // Whether an argument may also be given without its name.
 enum class Positional { kNo, kYes };
-
-// Says "pliant COMMAND: sentence" on standard error.
-void SayError(std::string_view command, std::string_view sentence);
 
 // A command of commands: pliant model check.
 struct Verb {
@@ -135,6 +132,7 @@ class CommandLine {
   std::vector<std::string> extras_;  // the options' flags and their values: what CLI11 did not know, and aliases
   std::string config_path_;
   bool print_config_ = false;
+  bool quiet_ = false;
   bool help_ = false;
   bool help_all_ = false;
 };

@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include <filesystem>
-#include <iostream>
 #include <map>
 #include <optional>
 
 #include "cli/command_line.h"
 #include "cli/commands.h"
+#include "cli/messages.h"
 #include "cli/run_evaluation.h"
 #include "pliant/datasets/run_sequence.h"
 #include "pliant/evaluation/evaluate_run.h"
@@ -65,14 +65,14 @@ std::vector<std::optional<Evaluation>> EvaluateAll(const Request& request, const
     if (!truth || sequences[i].image_path != sequences[i - 1].image_path ||
         sequences[i].spare_camera_path != sequences[i - 1].spare_camera_path) {
       truth = OpenTruth(sequences[i], options);
-      if (!truth->ok()) SayError(kManual.command, truth->status().message());
+      if (!truth->ok()) SayError(truth->status().message());
     }
     if (!truth->ok()) continue;
     Result<Evaluation> evaluation = EvaluateRun(request.run_paths[i], **truth, options);
     if (evaluation.ok())
       evaluations[i] = *std::move(evaluation);
     else
-      SayError(kManual.command, evaluation.status().message());
+      SayError(evaluation.status().message());
   }
   return evaluations;
 }
@@ -91,14 +91,12 @@ Status WriteAll(const std::vector<std::optional<Evaluation>>& evaluations, const
 int CompareCommand(std::span<const std::string> args) {
   Request request;
   EvaluationOptions options;
-  bool quiet = false;
   CommandLine line(kManual);
   line.Add("run", &request.run_paths, "DIR", "run folder", Need::kRequired);
   line.Add("sequence", &request.sequence_paths, "PATH",
            "the images, with truth where there is; one for all runs, or one for each", Need::kRequired);
   AddEvaluationArguments(&line, &request.camera_path);
   line.Add("output_path", &request.output_path, "DIR", "folder for the JSON and CSV files", Need::kOptional);
-  line.AddFlag("quiet", &quiet, "print no table");
   if (const auto exit = line.Parse(args)) return *exit;
 
   OptionTable table;
@@ -116,7 +114,7 @@ int CompareCommand(std::span<const std::string> args) {
   if (!request.output_path.empty())
     if (const Status status = WriteAll(evaluations, good, request.output_path); !status.ok())
       return line.Failure(status.message());
-  if (!quiet && !good.empty()) std::cout << ComparisonTable(good) << std::flush;
+  if (!good.empty()) SayResult(ComparisonTable(good));
   return good.size() == evaluations.size() ? kExitOk : kExitFailed;
 }
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <iostream>
 #include <string>
 #include <vector>
 
@@ -12,6 +11,7 @@
 #include "cli/command_line.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
+#include "cli/messages.h"
 #include "cli/progress.h"
 #include "cli/sequence_arguments.h"
 #include "pliant/base/statistics.h"
@@ -73,7 +73,7 @@ std::string Text(const char* format, Values... values) {
 }
 
 void PrintLine(const std::string& name, const std::string& text) {
-  std::cout << name << std::string(std::max<std::size_t>(1, 10 - name.size()), ' ') << text << "\n";
+  SayResult(name + std::string(std::max<std::size_t>(1, 10 - name.size()), ' ') + text);
 }
 
 std::string DepthText(const Sequence& sequence, int frame_idx) {
@@ -154,9 +154,9 @@ void PrintCheck(const SequenceCheck& check, bool has_pairs) {
   for (const std::string& wrong : check.wrong) PrintLine("wrong", wrong);
   const bool checked = (check.poses && check.poses->right) || (check.stereo && check.stereo->enough);
   if (check.wrong.empty())
-    std::cout << (checked ? "nothing is wrong with what was checked\n"
-                          : "nothing is wrong with the images; of their truth nothing could be checked: that takes "
-                            "pairs of images, or poses and depth\n");
+    SayResult(checked ? "nothing is wrong with what was checked"
+                      : "nothing is wrong with the images; of their truth nothing could be checked: that takes pairs "
+                        "of images, or poses and depth");
 }
 
 int InfoCommand(std::span<const std::string> args) {
@@ -181,11 +181,9 @@ int InfoCommand(std::span<const std::string> args) {
 int ConvertCommand(std::span<const std::string> args) {
   SequenceArguments arguments;
   std::string output_path;
-  bool quiet = false;
   CommandLine line(kConvertManual);
   arguments.AddTo(&line, "input_path");
   line.Add("output_path", &output_path, "DIR", "folder of the new sequence", Need::kRequired);
-  line.AddFlag("quiet", &quiet, "say nothing but errors");
   if (const auto exit = line.Parse(args)) return *exit;
   OptionTable no_options;
   if (const auto exit = line.Resolve(no_options)) return *exit;
@@ -194,21 +192,18 @@ int ConvertCommand(std::span<const std::string> args) {
   const auto sequence = OpenSequence(arguments.Request());
   if (!sequence.ok()) return line.Failure(sequence.status().message());
   const std::atomic<bool>& stop = StopOnSignals();
-  Progress progress(std::cerr, quiet ? ProgressStyle::kQuiet : ProgressStyleOfStandardError(), "convert",
-                    (*sequence)->size());
+  Progress progress("convert", (*sequence)->size());
   const auto summary = ConvertSequence(**sequence, output_path, [&](int done) {
     progress.Update(done, "");
     return !stop;
   });
   if (!summary.ok()) return line.Failure(summary.status().message());
-  for (const std::string& warning : (*sequence)->Warnings()) SayError(kConvertManual.command, "warning: " + warning);
+  for (const std::string& warning : (*sequence)->Warnings()) SayWarning(warning);
   if (summary->clipped_depths > 0)
-    SayError(kConvertManual.command, "warning: " + std::to_string(summary->clipped_depths) +
-                                         " pixels are too far away for 16 bits and have no depth");
-  if (!quiet)
-    std::cout << Text("%d frames, %d pairs, %d masks, %d depth images, %d poses in ", summary->frames, summary->right,
-                      summary->masks, summary->depths, summary->poses)
-              << output_path << std::endl;
+    SayWarning(std::to_string(summary->clipped_depths) + " pixels are too far away for 16 bits and have no depth");
+  SayResult(Text("%d frames, %d pairs, %d masks, %d depth images, %d poses in ", summary->frames, summary->right,
+                 summary->masks, summary->depths, summary->poses) +
+            output_path);
   return kExitOk;
 }
 

@@ -3,12 +3,12 @@
 
 #include <array>
 #include <filesystem>
-#include <iostream>
 
 #include "cli/command_line.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "cli/main_simulation_options.h"
+#include "cli/messages.h"
 #include "cli/run_evaluation.h"
 #include "cli/track_progress.h"
 #include "pliant/base/text.h"
@@ -46,38 +46,41 @@ SimulationOptions DemoSimulation() {
 void Print(const SimulationOptions& simulation, const RunSummary& run, const Evaluation& evaluation,
            const std::filesystem::path& output) {
   const TrackSurvival& tracks = evaluation.survival;
-  std::cout << "sequence      " << simulation.trajectory.frames << " frames, deforming by "
-            << FormatNumber("%.3g", simulation.deformation.amplitude_mm) << " mm\n"
-            << "run           " << EnumName(run.status) << ": " << run.note << "\n"
-            << "frames        " << run.frames_tracked << " of " << run.frames_read << " tracked\n"
-            << "points        " << tracks.first_points << " in the first tracked frame, " << tracks.last_points
-            << " in the last, " << tracks.last_alive_of_first << " in both\n";
+  const auto say = [](const std::string& name, const std::string& text) {
+    SayResult(name + std::string(14 - name.size(), ' ') + text);
+  };
+  say("sequence", std::to_string(simulation.trajectory.frames) + " frames, deforming by " +
+                      FormatNumber("%.3g", simulation.deformation.amplitude_mm) + " mm");
+  say("run", std::string(EnumName(run.status)) + ": " + run.note);
+  say("frames", std::to_string(run.frames_tracked) + " of " + std::to_string(run.frames_read) + " tracked");
+  say("points", std::to_string(tracks.first_points) + " in the first tracked frame, " +
+                    std::to_string(tracks.last_points) + " in the last, " + std::to_string(tracks.last_alive_of_first) +
+                    " in both");
   if (evaluation.surface) {
     const PointSummary& error = evaluation.surface->plain.estimate;
     const PointSummary& null = evaluation.surface->plain.null;
-    std::cout << "RMSE          " << FormatNumber("%.2f mm", error.mean_rmse_mm)
-              << "  (one constant depth instead: " << FormatNumber("%.2f mm)", null.mean_rmse_mm) << "\n"
-              << "median error  " << FormatNumber("%.2f mm", error.pooled_median_mm)
-              << "  (one constant depth instead: " << FormatNumber("%.2f mm)", null.pooled_median_mm) << "\n";
+    say("RMSE", FormatNumber("%.2f mm", error.mean_rmse_mm) +
+                    FormatNumber("  (one constant depth instead: %.2f mm)", null.mean_rmse_mm));
+    say("median error", FormatNumber("%.2f mm", error.pooled_median_mm) +
+                            FormatNumber("  (one constant depth instead: %.2f mm)", null.pooled_median_mm));
   }
   if (evaluation.trajectory)
-    std::cout << "camera ATE    " << FormatNumber("%.2f mm", evaluation.trajectory->ate_rmse_mm) << "  over a path of "
-              << FormatNumber("%.1f mm", evaluation.trajectory->true_path_length_mm) << "\n";
-  for (const std::string& note : evaluation.notes) std::cout << "note          " << note << "\n";
-  std::cout << "speed         " << FormatNumber("%.1f frames/s", run.frames_per_second) << "\n"
-            << "look at       ";
-  if (HasReportPage()) std::cout << (output / "report.html").string() << "  (in a browser)\n              ";
-  std::cout << (output / "sequence" / "images").string() << "\n"
-            << "              " << (output / "run" / "map.ply").string() << "\n"
-            << "              " << (output / "run" / "observations.csv").string() << "\n"
-            << "              " << (output / "evaluation.json").string() << std::endl;
+    say("camera ATE", FormatNumber("%.2f mm", evaluation.trajectory->ate_rmse_mm) +
+                          FormatNumber("  over a path of %.1f mm", evaluation.trajectory->true_path_length_mm));
+  for (const std::string& note : evaluation.notes) say("note", note);
+  say("speed", FormatNumber("%.1f frames/s", run.frames_per_second));
+  std::vector<std::string> places;
+  if (HasReportPage()) places.push_back((output / "report.html").string() + "  (in a browser)");
+  for (const char* place : {"sequence/images", "run/map.ply", "run/observations.csv", "evaluation.json"})
+    places.push_back((output / place).string());
+  for (std::size_t i = 0; i < places.size(); ++i) say(i == 0 ? "look at" : "", places[i]);
 }
 
-Status RunDemo(const SimulationOptions& simulation, const std::filesystem::path& output, ProgressStyle style) {
+Status RunDemo(const SimulationOptions& simulation, const std::filesystem::path& output) {
   const std::atomic<bool>& stop = StopOnSignals();
   const std::filesystem::path sequence = output / "sequence";
   {
-    Progress progress(std::cerr, style, "simulate", simulation.trajectory.frames);
+    Progress progress("simulate", simulation.trajectory.frames);
     if (Status status = WriteSequence(simulation, sequence,
                                       [&](int done, int) {
                                         progress.Update(done, "");
@@ -92,7 +95,7 @@ Status RunDemo(const SimulationOptions& simulation, const std::filesystem::path&
   request.command_line = {"pliant", "demo"};
   request.stop = &stop;
   const Result<RunSummary> run = [&] {
-    TrackProgress progress(style);
+    TrackProgress progress;
     const std::array<TrackObserver*, 1> observers = {&progress};
     return RunTrack(request, MakeTrackOptions(Preset::kDefault), observers);
   }();
@@ -118,10 +121,8 @@ Status RunDemo(const SimulationOptions& simulation, const std::filesystem::path&
 
 int DemoCommand(std::span<const std::string> args) {
   std::string output_path = "pliant_demo";
-  bool quiet = false;
   CommandLine line(kManual);
   line.Add("output_path", &output_path, "DIR", "folder for everything; made where it is not there", Need::kOptional);
-  line.AddFlag("quiet", &quiet, "show no progress");
   if (const auto exit = line.Parse(args)) return *exit;
 
   SimulationOptions simulation = DemoSimulation();
@@ -129,9 +130,8 @@ int DemoCommand(std::span<const std::string> args) {
   simulation.List(table);
   if (const auto exit = line.Resolve(table)) return *exit;
 
-  const ProgressStyle style = quiet ? ProgressStyle::kQuiet : ProgressStyleOfStandardError();
-  if (const Status status = RunDemo(simulation, output_path, style); !status.ok()) {
-    SayError(kManual.command, status.message());
+  if (const Status status = RunDemo(simulation, output_path); !status.ok()) {
+    SayError(status.message());
     return kExitFailed;
   }
   return kExitOk;

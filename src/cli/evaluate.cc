@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include <iostream>
 #include <string>
 
 #include "cli/command_line.h"
 #include "cli/commands.h"
+#include "cli/messages.h"
 #include "cli/run_evaluation.h"
 #include "pliant/evaluation/evaluate_run.h"
 #include "pliant/evaluation/report.h"
@@ -71,7 +71,6 @@ int EvaluateCommand(std::span<const std::string> args) {
   EvaluationRequest request;
   std::string output_path;
   EvaluationOptions options;
-  bool quiet = false;
   CommandLine line(kManual);
   line.Add("run", &request.run_path, "DIR", "run folder; needed unless --tracks is given", Need::kOptional);
   line.AddAlias("tracks", "TrackFile.path", "FILE",
@@ -90,7 +89,6 @@ int EvaluateCommand(std::span<const std::string> args) {
            Need::kOptional);
   AddEvaluationArguments(&line, &request.camera_path);
   line.Add("output_path", &output_path, "DIR", "folder for the JSON and CSV files", Need::kOptional);
-  line.AddFlag("quiet", &quiet, "print no table");
   if (const auto exit = line.Parse(args)) return *exit;
   OptionTable table;
   options.List(table);
@@ -103,7 +101,7 @@ int EvaluateCommand(std::span<const std::string> args) {
   if (!output_path.empty())
     if (const Status status = WriteEvaluation(*evaluation, output_path); !status.ok())
       return line.Failure(status.message());
-  if (!quiet) std::cout << EvaluationTable(*evaluation) << std::flush;
+  SayResult(EvaluationTable(*evaluation));
   return kExitOk;
 }
 

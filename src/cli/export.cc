@@ -3,13 +3,13 @@
 
 #include "pliant/exchange/export.h"
 
-#include <iostream>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "cli/command_line.h"
 #include "cli/commands.h"
+#include "cli/messages.h"
 #include "cli/sequence_arguments.h"
 
 namespace pliant::cli {
@@ -38,7 +38,6 @@ std::vector<std::string_view> FormatNames() {
 int ExportCommand(std::span<const std::string> args) {
   ExportRequest request;
   ExportOptions options;
-  bool quiet = false;
   const std::string text = ManualText();
   CommandLine line({"export",
                     "write a run in other programs' formats",
@@ -56,7 +55,6 @@ int ExportCommand(std::span<const std::string> args) {
   AddMasksOfRun(&line, &request.mask_path);
   line.Add("surface", &request.surface_path, "DIR", "depths of the frames; frames without one are left out",
            Need::kOptional);
-  line.AddFlag("quiet", &quiet, "say nothing but errors");
   if (const auto exit = line.Parse(args)) return *exit;
   OptionTable table;
   options.List(table);
@@ -64,10 +62,9 @@ int ExportCommand(std::span<const std::string> args) {
 
   const auto summary = ExportRun(request, options);
   if (!summary.ok()) return line.Failure(summary.status().message());
-  if (quiet) return kExitOk;
-  for (const std::string& note : summary->notes) std::cout << "note: " << note << "\n";
-  std::cout << summary->frames << " frames, " << summary->points << " points, " << summary->observations
-            << " observations in " << request.output_path << "\n";
+  for (const std::string& note : summary->notes) SayNote(note);
+  SayResult(std::to_string(summary->frames) + " frames, " + std::to_string(summary->points) + " points, " +
+            std::to_string(summary->observations) + " observations in " + request.output_path);
   return kExitOk;
 }
 

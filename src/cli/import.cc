@@ -3,10 +3,9 @@
 
 #include "pliant/exchange/import.h"
 
-#include <iostream>
-
 #include "cli/command_line.h"
 #include "cli/commands.h"
+#include "cli/messages.h"
 #include "cli/output_folder.h"
 
 namespace pliant::cli {
@@ -37,7 +36,6 @@ int ImportCommand(std::span<const std::string> args) {
   ImportRequest request;
   ImportOptions options;
   OutputFolder output;
-  bool quiet = false;
   CommandLine line(kManual);
   line.Add("input_path", &request.input_path, "PATH", "what to import", Need::kRequired);
   line.AddChoice("format", &request.format, "what it is");
@@ -46,7 +44,6 @@ int ImportCommand(std::span<const std::string> args) {
            "calibration of images that have no camera.yaml; without it the one of a COLMAP model", Need::kOptional);
   line.AddChoice("as", &request.as, "what to make of it");
   output.AddTo(&line, "folder to write, made if need be", Need::kRequired);
-  line.AddFlag("quiet", &quiet, "say nothing but errors");
   if (const auto exit = line.Parse(args)) return *exit;
   OptionTable table;
   options.List(table);
@@ -58,10 +55,10 @@ int ImportCommand(std::span<const std::string> args) {
   request.command_line = line.Words(args);
   const auto summary = Import(request, options);
   if (!summary.ok()) return line.Failure(summary.status().message());
-  if (quiet) return kExitOk;
-  for (const std::string& note : summary->notes) std::cout << "note: " << note << "\n";
-  std::cout << summary->frames << " of " << summary->sequence_frames << " frames, " << summary->points << " points, "
-            << summary->observations << " observations in " << request.output_path << "\n";
+  for (const std::string& note : summary->notes) SayNote(note);
+  SayResult(std::to_string(summary->frames) + " of " + std::to_string(summary->sequence_frames) + " frames, " +
+            std::to_string(summary->points) + " points, " + std::to_string(summary->observations) +
+            " observations in " + request.output_path);
   return kExitOk;
 }
 

@@ -16,6 +16,7 @@
 
 #include "cli/command_line.h"
 #include "cli/commands.h"
+#include "cli/messages.h"
 #include "pliant/base/options.h"
 #include "pliant/base/version.h"
 
@@ -76,8 +77,8 @@ int Run(std::span<const std::string> args) {
     if (command.name == name) return command.run(args.subspan(1));
     names.emplace_back(command.name);
   }
-  SayError("", "there is no command '" + name + "'; did you mean '" + NearestName(name, names) +
-                   "'? pliant --help lists them");
+  SayError("there is no command '" + name + "'; did you mean '" + NearestName(name, names) +
+           "'? pliant --help lists them");
   return kExitUsage;
 }
 
@@ -109,10 +110,10 @@ int main(int argc, char** argv) {
   try {
     const int exit = pliant::cli::Run(args);
     if (std::cout.flush() || exit != pliant::cli::kExitOk) return exit;
-    pliant::cli::SayError("", "cannot write to standard output; is the disk full?");
+    pliant::cli::SayError("cannot write to standard output; is the disk full?");
     return pliant::cli::kExitFailed;
   } catch (const std::exception& error) {  // a library ran out of memory or met what it did not expect
-    pliant::cli::SayError("", error.what());
+    pliant::cli::SayError(error.what());
     return pliant::cli::kExitFailed;
   }
 }

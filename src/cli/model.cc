@@ -3,10 +3,9 @@
 
 #include "pliant/colmap/model.h"
 
-#include <iostream>
-
 #include "cli/command_line.h"
 #include "cli/commands.h"
+#include "cli/messages.h"
 #include "pliant/base/text.h"
 #include "pliant/colmap/check.h"
 
@@ -57,15 +56,15 @@ int CheckCommand(std::span<const std::string> args) {
 
   const auto model = colmap::ReadModel(path);
   if (!model.ok()) return line.Failure(model.status().message());
-  std::cout << Counts(*model) << "\n";
+  SayResult(Counts(*model));
   const std::vector<colmap::Finding> findings = colmap::CheckModel(*model);
   for (const colmap::Finding& finding : findings)
-    std::cout << (finding.severity == colmap::Severity::kError ? "error: " : "warning: ") << finding.what << ": "
-              << finding.count << ", the first: " << finding.example << "\n";
+    SayResult((finding.severity == colmap::Severity::kError ? "error: " : "warning: ") + std::string(finding.what) +
+              ": " + std::to_string(finding.count) + ", the first: " + finding.example);
   const auto format = colmap::FindModel(path);
   if (format.ok() && *format == colmap::Format::kBoth)
-    std::cout << "note: there are text files too; COLMAP reads the binary ones\n";
-  if (findings.empty()) std::cout << "nothing is wrong\n";
+    SayNote("there are text files too; COLMAP reads the binary ones");
+  if (findings.empty()) SayResult("nothing is wrong");
   return colmap::IsValid(findings) ? kExitOk : kExitFailed;
 }
 

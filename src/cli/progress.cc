@@ -4,11 +4,12 @@
 #include "cli/progress.h"
 
 #include <algorithm>
-#include <ostream>
+#include <iostream>
 #include <utility>
 
 #include <unistd.h>
 
+#include "cli/messages.h"
 #include "pliant/base/text.h"
 
 namespace pliant::cli {
@@ -22,8 +23,13 @@ constexpr std::string_view kToLineStartAndClear = "\r\x1b[K";
 }  // namespace
 
 ProgressStyle ProgressStyleOfStandardError() {
+  if (TheLogging().level < LogLevel::kInfo) return ProgressStyle::kQuiet;
+  if (TheLogging().format == LogFormat::kJson) return ProgressStyle::kJson;
   return isatty(STDERR_FILENO) != 0 ? ProgressStyle::kBar : ProgressStyle::kLines;
 }
+
+Progress::Progress(std::string what, int total, std::string unit)
+    : Progress(std::cerr, ProgressStyleOfStandardError(), std::move(what), total, std::move(unit)) {}
 
 Progress::Progress(std::ostream& out, ProgressStyle style, std::string what, int total, std::string unit)
     : out_(out),
@@ -38,14 +44,21 @@ Progress::~Progress() {
   if (line_open_) out_ << std::endl;
 }
 
-// By the mean rate so far.
-std::string Progress::Rate(int done, Clock::time_point now) const {
+Progress::Speed Progress::SpeedAt(int done, Clock::time_point now) const {
   const double seconds = std::chrono::duration<double>(now - start_).count();
-  if (seconds <= 0) return "";
-  std::string text;
-  if (unit_ != kPercent) text += "  " + Digits(done / seconds, 1) + " " + unit_ + "/s";
-  if (done > 0 && done < total_) text += "  " + Digits(seconds / done * (total_ - done), 0) + " s left";
-  return text;
+  if (seconds <= 0 || done <= 0) return {};
+  return {done / seconds, done < total_ ? seconds / done * (total_ - done) : 0};
+}
+
+std::string Progress::JsonLine(int done, std::string_view detail, Clock::time_point now) const {
+  std::string members = "\"task\":" + JsonString(what_) + ",\"done\":" + std::to_string(done);
+  if (total_ > 0) members += ",\"total\":" + std::to_string(total_);
+  members += ",\"unit\":" + JsonString(unit_);
+  const Speed speed = SpeedAt(done, now);
+  if (speed.per_second > 0) members += ",\"per_second\":" + Digits(speed.per_second, 3);
+  if (total_ > 0 && speed.per_second > 0) members += ",\"seconds_left\":" + Digits(speed.seconds_left, 1);
+  if (!detail.empty()) members += ",\"text\":" + JsonString(detail);
+  return EventLine("progress", members);
 }
 
 std::string Progress::Line(int done, std::string_view detail, Clock::time_point now) const {
@@ -60,7 +73,9 @@ std::string Progress::Line(int done, std::string_view detail, Clock::time_point 
     line += " %";
   else if (total_ > 0)
     line += "/" + std::to_string(total_);
-  line += Rate(done, now);
+  const Speed speed = SpeedAt(done, now);
+  if (unit_ != kPercent && speed.per_second > 0) line += "  " + Digits(speed.per_second, 1) + " " + unit_ + "/s";
+  if (speed.seconds_left > 0) line += "  " + Digits(speed.seconds_left, 0) + " s left";
   if (!detail.empty()) line += "  " + std::string(detail);
   return line;
 }
@@ -71,17 +86,25 @@ void Progress::Update(int done, std::string_view detail, Clock::time_point now) 
     out_ << kToLineStartAndClear << Line(done, detail, now) << std::flush;
     drawn_ = now;
     line_open_ = true;
-  } else if (style_ == ProgressStyle::kLines && (last || done / kLinesEvery > lines_)) {
-    out_ << Line(done, detail, now) << std::endl;
+  } else if ((style_ == ProgressStyle::kLines || style_ == ProgressStyle::kJson) &&
+             (last || done / kLinesEvery > lines_)) {
+    out_ << (style_ == ProgressStyle::kJson ? JsonLine(done, detail, now) : Line(done, detail, now) + "\n")
+         << std::flush;
     lines_ = done / kLinesEvery;
   }
 }
 
-void Progress::Note(std::string_view text) {
-  if (style_ == ProgressStyle::kQuiet) return;
+void Progress::ClearBar() {
   if (line_open_) out_ << kToLineStartAndClear;
   line_open_ = false;
-  out_ << text << std::endl;
+}
+
+void Progress::Note(std::string_view text) {
+  if (style_ == ProgressStyle::kQuiet) return;
+  ClearBar();
+  out_ << (style_ == ProgressStyle::kJson ? EventLine("note", "\"text\":" + JsonString(text))
+                                          : std::string(text) + "\n")
+       << std::flush;
 }
 
 }  // namespace pliant::cli

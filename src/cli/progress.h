@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // How far a command is: one line that is drawn over on a terminal, plain lines elsewhere (every kLinesEvery frames, so
-// that a log stays readable), nothing on request.
+// that a log stays readable), JSON or nothing on request (messages.h).
 //   track  [=========>          ]  45/100  41.3 frames/s  2 s left  498 points
 #pragma once
 
@@ -16,10 +16,11 @@ namespace pliant::cli {
 enum class ProgressStyle {
   kBar,    // for terminals
   kLines,  // for files and pipes
+  kJson,   // for programs, as kLines
   kQuiet,
 };
 
-// The style for standard error as it is: kBar on a terminal, else kLines.
+// The style for standard error as it is, and as TheLogging() wants it: kBar on a terminal, else kLines.
 ProgressStyle ProgressStyleOfStandardError();
 
 class Progress {
@@ -27,7 +28,9 @@ class Progress {
   using Clock = std::chrono::steady_clock;
   static constexpr int kLinesEvery = 25;
 
-  // `out` must outlive this. `total` <= 0: not known. `unit` is what is counted; of "%" no rate is shown.
+  // On standard error, in its style. `total` <= 0: not known. `unit` is what is counted; of "%" no rate is shown.
+  explicit Progress(std::string what, int total = 0, std::string unit = "frames");
+  // `out` must outlive this.
   Progress(std::ostream& out, ProgressStyle style, std::string what, int total, std::string unit = "frames");
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
@@ -38,9 +41,17 @@ class Progress {
   void Update(int done, std::string_view detail, Clock::time_point now);
   // A line of its own, above the bar.
   void Note(std::string_view text);
+  // Takes the bar away until it is drawn again, for other messages.
+  void ClearBar();
 
  private:
-  std::string Rate(int done, Clock::time_point now) const;
+  // The mean so far, and what it says of the end; 0: not known.
+  struct Speed {
+    double per_second = 0;
+    double seconds_left = 0;
+  };
+  Speed SpeedAt(int done, Clock::time_point now) const;
+  std::string JsonLine(int done, std::string_view detail, Clock::time_point now) const;
   std::string Line(int done, std::string_view detail, Clock::time_point now) const;
 
   std::ostream& out_;

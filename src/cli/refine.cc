@@ -30,14 +30,12 @@ int RefineCommand(std::span<const std::string> args) {
   RefineRequest request;
   RefineOptions options;
   OutputFolder output;
-  bool quiet = false;
   CommandLine line(kManual);
   line.Add("run", &request.run_path, "DIR", "run folder", Need::kRequired);
   output.AddTo(&line, "folder to write, made if need be", Need::kRequired);
   line.Add("sequence", &request.sequence_path, "PATH",
            "images of a run that has no sparse/; without it those that its run.json names", Need::kOptional);
   AddCameraOfRun(&line, &request.camera_path);
-  line.AddFlag("quiet", &quiet, "say nothing but errors");
   if (const auto exit = line.Parse(args)) return *exit;
   OptionTable table;
   options.List(table);
@@ -47,7 +45,7 @@ int RefineCommand(std::span<const std::string> args) {
   request.output_path = output.path;
   request.command_line = line.Words(args);
   request.stop = &StopOnSignals();
-  return RefineAndSay(kManual.command, request, options, quiet ? Saying::kErrors : Saying::kAll);
+  return RefineAndSay(request, options);
 }
 
 }  // namespace pliant::cli

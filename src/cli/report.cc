@@ -4,12 +4,12 @@
 #include "pliant/viewer/report.h"
 
 #include <cstdio>
-#include <iostream>
 
 #include "cli/command_line.h"
 #include "cli/commands.h"
 #include "cli/frame_list.h"
 #include "cli/interrupt.h"
+#include "cli/messages.h"
 #include "cli/progress.h"
 #include "pliant/base/text.h"
 #include "pliant/viewer/figure.h"
@@ -44,7 +44,6 @@ struct ReportArguments {
   std::string output_path;
   std::string figure;  // frames with commas; empty: none
   bool video = false;
-  bool quiet = false;
 };
 
 // Nothing, or what is wrong with the command line.
@@ -60,25 +59,24 @@ std::string CheckArguments(const ReportArguments& arguments, std::vector<int>* f
   return ending.ok() ? "" : "--" + ending.message();
 }
 
-void PrintNotes(const std::vector<std::string>& notes) {
-  for (const std::string& note : notes) std::cout << "note: " << note << "\n";
+void SayNotes(const std::vector<std::string>& notes) {
+  for (const std::string& note : notes) SayNote(note);
 }
 
 int WritePage(const CommandLine& line, const ReportArguments& arguments, const ReportOptions& options) {
   const auto summary = WriteReportPage(arguments.view, options, arguments.output_path);
   if (!summary.ok()) return line.Failure(summary.status().message());
-  if (arguments.quiet) return kExitOk;
-  PrintNotes(summary->notes);
+  SayNotes(summary->notes);
   char text[128];
   std::snprintf(text, sizeof text, "%d frames, %lld observations, %zu images, %.1f MB in ", summary->frames,
                 static_cast<long long>(summary->observations), summary->images, summary->megabytes);
-  std::cout << text << arguments.output_path << std::endl;
+  SayResult(text + arguments.output_path);
   return kExitOk;
 }
 
 Result<std::vector<std::string>> WriteFilmWithProgress(const ReportArguments& arguments, const FigureOptions& options) {
   const std::atomic<bool>& stop = StopOnSignals();
-  Progress progress(std::cerr, arguments.quiet ? ProgressStyle::kQuiet : ProgressStyleOfStandardError(), "film", 0);
+  Progress progress("film");
   bool stopped = false;
   auto notes = WriteFilm(arguments.view, options, arguments.output_path, [&](int done, int frames) {
     progress.Update(done, "of " + std::to_string(frames));
@@ -108,7 +106,6 @@ int ReportCommand(std::span<const std::string> args) {
   line.Add("figure", &arguments.figure, "FRAMES", "a still of these frames: their numbers, with commas",
            Need::kOptional);
   line.AddFlag("video", &arguments.video, "a film of all frames");
-  line.AddFlag("quiet", &arguments.quiet, "say nothing but errors");
   if (const auto exit = line.Parse(args)) return *exit;
   ReportOptions report_options;
   FigureOptions figure_options;
@@ -124,9 +121,8 @@ int ReportCommand(std::span<const std::string> args) {
   const auto notes = arguments.video ? WriteFilmWithProgress(arguments, figure_options)
                                      : WriteFigure(arguments.view, figure_options, frames_idx, arguments.output_path);
   if (!notes.ok()) return line.Failure(notes.status().message());
-  if (arguments.quiet) return kExitOk;
-  PrintNotes(*notes);
-  std::cout << arguments.output_path << std::endl;
+  SayNotes(*notes);
+  SayResult(arguments.output_path);
   return kExitOk;
 }
 

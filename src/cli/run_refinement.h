@@ -11,10 +11,8 @@
 
 namespace pliant::cli {
 
-enum class Saying { kAll, kErrors };
-
-// Refines, with a progress bar, and says what became of it, unless only errors are to be said. `stop` of the request is
-// set by Ctrl-C. Gives the exit code.
-int RefineAndSay(std::string_view command, const RefineRequest& request, const RefineOptions& options, Saying saying);
+// Refines, with a progress bar, and says what became of it. `stop` of the request is set by Ctrl-C. Gives the exit
+// code.
+int RefineAndSay(const RefineRequest& request, const RefineOptions& options);
 
 }  // namespace pliant::cli

@@ -3,12 +3,12 @@
 
 #include <chrono>
 #include <cstdio>
-#include <iostream>
 
 #include "cli/command_line.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "cli/main_simulation_options.h"
+#include "cli/messages.h"
 #include "cli/output_folder.h"
 #include "cli/progress.h"
 #include "pliant/simulation/write_sequence.h"
@@ -45,14 +45,12 @@ const Manual kManual = {
 int SimulateCommand(std::span<const std::string> args) {
   OutputFolder output;
   Realism realism = Realism::kClean;
-  bool quiet = false;
   CommandLine line(kManual);
   output.AddTo(&line, "folder of the new sequence; made where it is not there", Need::kRequired);
   line.AddChoice(
       "realism", &realism,
       "the defaults of the options: a clean camera, or noise, weak texture, sharpening, compression and lost "
       "frames as in real endoscopic recordings");
-  line.AddFlag("quiet", &quiet, "say nothing but errors");
   if (const auto exit = line.Parse(args)) return *exit;
 
   SimulationOptions options = MakeSimulationOptions(realism);
@@ -70,9 +68,8 @@ int SimulateCommand(std::span<const std::string> args) {
   int frames = 0;
   if (status.ok()) {
     frames = simulator->frame_count();
-    if (!quiet)
-      for (const std::string& warning : simulator->warnings()) SayError(kManual.command, "warning: " + warning);
-    Progress progress(std::cerr, quiet ? ProgressStyle::kQuiet : ProgressStyleOfStandardError(), "simulate", frames);
+    for (const std::string& warning : simulator->warnings()) SayWarning(warning);
+    Progress progress("simulate", frames);
     status = WriteSequence(*simulator, output.path, [&](int done, int) {
       if (done == 0) scene_stood = Clock::now();
       progress.Update(done, "");
@@ -80,16 +77,15 @@ int SimulateCommand(std::span<const std::string> args) {
     });
   }
   if (!status.ok()) {
-    SayError(kManual.command, status.message());
+    SayError(status.message());
     return status.code() == ErrorCode::kInvalidArgument ? kExitUsage : kExitFailed;
   }
-  if (quiet) return kExitOk;
   const double scene_s = std::chrono::duration<double>(scene_stood - started).count();
   const double frames_s = std::chrono::duration<double>(Clock::now() - scene_stood).count();
   char timing[96];
   std::snprintf(timing, sizeof(timing), "scene built in %.1f s, %.1f frames/s", scene_s, frames / frames_s);
-  std::cerr << timing << "\n";
-  std::cout << frames << " frames in " << output.path << std::endl;
+  SayResult(std::to_string(frames) + " frames in " + output.path);
+  SayNote(timing);
   return kExitOk;
 }
 

@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include <iostream>
 #include <optional>
 
 #include "cli/command_line.h"
 #include "cli/commands.h"
 #include "cli/frame_list.h"
 #include "cli/interrupt.h"
+#include "cli/messages.h"
 #include "cli/progress.h"
 #include "cli/sequence_arguments.h"
 #include "pliant/base/text.h"
@@ -39,7 +39,6 @@ int SurfaceCommand(std::span<const std::string> args) {
   SurfaceRequest request;
   SurfaceRunOptions options;
   std::string frames;
-  bool quiet = false;
   CommandLine line(kManual);
   line.Add("run", &request.run_path, "DIR", "run folder", Need::kRequired);
   line.Add("output_path", &request.output_path, "DIR", "folder to write, made if need be", Need::kRequired);
@@ -49,7 +48,6 @@ int SurfaceCommand(std::span<const std::string> args) {
   AddMasksOfRun(&line, &request.mask_path);
   line.Add("frames", &frames, "FRAMES", "their numbers, with commas; 10-20 are all from 10 to 20; without it all",
            Need::kOptional);
-  line.AddFlag("quiet", &quiet, "say nothing but errors");
   if (const auto exit = line.Parse(args)) return *exit;
   OptionTable table;
   options.List(table);
@@ -60,23 +58,22 @@ int SurfaceCommand(std::span<const std::string> args) {
   request.frames = *chosen;
   request.command_line = line.Words(args);
   request.stop = &StopOnSignals();
-  const ProgressStyle style = quiet ? ProgressStyle::kQuiet : ProgressStyleOfStandardError();
   std::optional<Progress> depths;
   std::optional<Progress> mesh;
   const auto summary = MakeSurface(request, options, [&](SurfaceStage stage, int done, int total, double known_share) {
     if (stage == SurfaceStage::kDepth) {
-      if (!depths) depths.emplace(std::cerr, style, "depth", total);
+      if (!depths) depths.emplace("depth", total);
       depths->Update(done, Percent(known_share) + " known");
     } else {
       depths.reset();
-      if (!mesh) mesh.emplace(std::cerr, style, "mesh", total);
+      if (!mesh) mesh.emplace("mesh", total);
       mesh->Update(done, "");
     }
   });
   depths.reset();
   mesh.reset();
   if (!summary.ok()) return line.Failure(summary.status().message());
-  if (!quiet) std::cout << request.output_path << std::endl;
+  SayResult(request.output_path);
   return kExitOk;
 }
 

@@ -7,13 +7,13 @@
 #include <cstdio>
 #include <ctime>
 #include <filesystem>
-#include <iostream>
 #include <memory>
 #include <vector>
 
 #include "cli/command_line.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
+#include "cli/messages.h"
 #include "cli/output_folder.h"
 #include "cli/run_refinement.h"
 #include "cli/sequence_arguments.h"
@@ -57,7 +57,6 @@ struct TrackArguments {
   Preset preset = Preset::kDefault;
   bool live = false;
   bool refine = false;
-  bool quiet = false;
 };
 
 void AddArguments(TrackArguments* arguments, CommandLine* line) {
@@ -81,7 +80,6 @@ void AddArguments(TrackArguments* arguments, CommandLine* line) {
                 "serve a view of the run to a browser on this machine while it runs (options Live)");
   line->AddFlag("refine", &arguments->refine,
                 "then refine the run (pliant refine, options Refine), into a folder with _refined behind its name");
-  line->AddFlag("quiet", &arguments->quiet, "say nothing but errors");
 }
 
 // A folder in the working folder, for a run that was not named: clip_20260131_174501.
@@ -98,18 +96,16 @@ std::string DatedFolder(const std::string& image_path) {
 
 int Report(const RunSummary& summary, const TrackArguments& arguments) {
   if (const Status end = EndOf(summary, arguments.output.path); !end.ok()) {
-    SayError(kManual.command, end.message());
+    SayError(end.message());
     return kExitFailed;
   }
-  if (arguments.quiet) return kExitOk;
   std::array<char, 64> rate;
   std::snprintf(rate.data(), rate.size(), "%.1f frames/s", summary.frames_per_second);
   const std::string maps = summary.submaps > 1 ? " in " + std::to_string(summary.submaps) + " maps" : "";
-  std::cout << EnumName(summary.status) << ": " << summary.note << "\n"
-            << summary.frames_tracked << " of " << summary.frames_read << " frames tracked" << maps << ", "
-            << summary.points << " points, " << rate.data() << "\n"
-            << arguments.output.path << std::endl;
-  for (const auto& [topic, sentence] : TrustIn(summary)) std::cout << "  " << topic << ": " << sentence << "\n";
+  SayResult(std::string(EnumName(summary.status)) + ": " + summary.note + "\n" +
+            std::to_string(summary.frames_tracked) + " of " + std::to_string(summary.frames_read) + " frames tracked" +
+            maps + ", " + std::to_string(summary.points) + " points, " + rate.data() + "\n" + arguments.output.path);
+  for (const auto& [topic, sentence] : TrustIn(summary)) SayResult("  " + topic + ": " + sentence);
   return kExitOk;
 }
 
@@ -123,7 +119,7 @@ int Refine(const RunRequest& request, const TrackArguments& arguments, const Ref
   refinement.output_path = RefinedFolder(arguments.output.path);
   refinement.command_line = request.command_line;
   refinement.stop = request.stop;
-  return RefineAndSay(kManual.command, refinement, options, arguments.quiet ? Saying::kErrors : Saying::kAll);
+  return RefineAndSay(refinement, options);
 }
 
 }  // namespace
@@ -162,17 +158,17 @@ int TrackCommand(std::span<const std::string> args) {
     auto started = LiveView::Start({RunName(arguments.output.path), options.tracker.init.IsMetric()}, live_options);
     if (!started.ok()) return line.Failure(started.status().message());
     live = *std::move(started);
-    if (!arguments.quiet) std::cerr << "live view: " << live->Url() << std::endl;
+    SayNote("live view: " + live->Url());
   }
   const Result<RunSummary> summary = [&] {
-    TrackProgress progress(arguments.quiet ? ProgressStyle::kQuiet : ProgressStyleOfStandardError());
+    TrackProgress progress;
     std::vector<TrackObserver*> observers = {&progress};
     if (live) observers.push_back(live.get());
     return RunTrack(request, options, observers);
   }();
   live.reset();
   if (!summary.ok()) {
-    SayError(kManual.command, summary.status().message());
+    SayError(summary.status().message());
     return kExitFailed;
   }
   const int exit_code = Report(*summary, arguments);

@@ -7,17 +7,15 @@
 #include <iostream>
 #include <string>
 
-#include "cli/command_line.h"
+#include "cli/messages.h"
 
 namespace pliant::cli {
 
 void TrackProgress::OnStart(int frames) { progress_.emplace(std::cerr, style_, "track", frames); }
 
 void TrackProgress::OnWarning(const std::string& sentence) {
-  if (progress_)  // which leaves its line first, and is quiet where it is to be
-    progress_->Note("pliant track: warning: " + sentence);
-  else if (style_ != ProgressStyle::kQuiet)
-    SayError("track", "warning: " + sentence);
+  if (progress_) progress_->ClearBar();
+  SayWarning(sentence);
 }
 
 // A frame that was shown when it was processed is not shown again when its report is final.

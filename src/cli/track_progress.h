@@ -13,7 +13,7 @@ namespace pliant::cli {
 
 class TrackProgress : public TrackObserver {
  public:
-  explicit TrackProgress(ProgressStyle style) : style_(style) {}
+  explicit TrackProgress(ProgressStyle style = ProgressStyleOfStandardError()) : style_(style) {}
   void OnWarning(const std::string& sentence) override;
   void OnStart(int frames) override;
   void OnFrame(const FrameReport& report) override;

@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include <algorithm>
-#include <iostream>
 
 #include "cli/command_line.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
+#include "cli/messages.h"
 #include "cli/progress.h"
 #include "pliant/simulation/material_truth.h"
 #include "pliant/simulation/open_simulation.h"
@@ -36,7 +36,6 @@ struct Arguments {
   std::string output_path;
   int grid_px = 0;
   int frame_idx = 0;
-  bool quiet = false;
 };
 
 Status Follow(const Arguments& arguments) {
@@ -49,8 +48,7 @@ Status Follow(const Arguments& arguments) {
   const std::atomic<bool>& stop = StopOnSignals();
   Result<std::vector<MaterialPath>> paths(std::vector<MaterialPath>{});
   {
-    Progress progress(std::cerr, arguments.quiet ? ProgressStyle::kQuiet : ProgressStyleOfStandardError(), "truth",
-                      simulator->frame_count());
+    Progress progress("truth", simulator->frame_count());
     paths = FollowMaterial(*simulator, *starts, [&](int done, int) {
       progress.Update(done, "");
       return stop ? SimulationContinue::kStop : SimulationContinue::kYes;
@@ -59,9 +57,8 @@ Status Follow(const Arguments& arguments) {
   if (!paths.ok()) return paths.status();
   if (Status status = WriteMaterialPaths(arguments.output_path, *paths); !status.ok()) return status;
   const auto found = std::ranges::count_if(*paths, [](const MaterialPath& path) { return path.point.has_value(); });
-  if (!arguments.quiet)
-    std::cout << found << " of " << paths->size() << " points in " << simulator->frame_count() << " frames in "
-              << arguments.output_path << std::endl;
+  SayResult(std::to_string(found) + " of " + std::to_string(paths->size()) + " points in " +
+            std::to_string(simulator->frame_count()) + " frames in " + arguments.output_path);
   return Status::Ok();
 }
 
@@ -75,7 +72,6 @@ int TruthCommand(std::span<const std::string> args) {
   line.Add("grid_px", &arguments.grid_px, "follow every Nth pixel each way instead; 0: none", 0, 10000);
   line.Add("frame", &arguments.frame_idx, "frame of the grid", 0, 1000000);
   line.Add("output_path", &arguments.output_path, "FILE", "CSV file to write", Need::kRequired);
-  line.AddFlag("quiet", &arguments.quiet, "say nothing but errors");
   if (const auto exit = line.Parse(args)) return *exit;
   OptionTable no_options;
   if (const auto exit = line.Resolve(no_options)) return *exit;
@@ -83,7 +79,7 @@ int TruthCommand(std::span<const std::string> args) {
     return line.UsageError("give either --points FILE or --grid_px N");
   const Status status = Follow(arguments);
   if (status.ok()) return kExitOk;
-  SayError(kManual.command, status.message());
+  SayError(status.message());
   return status.code() == ErrorCode::kInvalidArgument ? kExitUsage : kExitFailed;
 }
 

@@ -54,7 +54,7 @@ struct Outcome {
   std::string to = {};
   int pieces = 1;
   Fruit fruit = Fruit::kApple;
-  bool quiet = false;
+  bool ripe = false;
   BasketOptions options = {};
 };
 
@@ -66,7 +66,7 @@ Outcome Give(const std::vector<std::string>& args) {
   line.Add("to", &outcome.to, "PATH", "where it goes", Need::kRequired);
   line.Add("pieces", &outcome.pieces, "how many", 0, 100);
   line.AddChoice("fruit", &outcome.fruit, "kind");
-  line.AddFlag("quiet", &outcome.quiet, "say nothing");
+  line.AddFlag("ripe", &outcome.ripe, "only ripe ones");
   line.AddAlias("kg", "Basket.weight", "KG", "a short name");
   std::optional<int> exit = line.Parse(args);
   OptionTable table;
@@ -85,13 +85,13 @@ std::filesystem::path WriteTemporary(const std::string& name, const std::string&
 }
 
 TEST(CommandLine, ArgumentsAndOptionsMayBeMixedInBothSpellings) {
-  const Outcome outcome = Give({"--Basket.count", "5", "--to", "X", "--Basket.weight=-2.5", "--quiet", "--fruit=pear",
+  const Outcome outcome = Give({"--Basket.count", "5", "--to", "X", "--Basket.weight=-2.5", "--ripe", "--fruit=pear",
                                 "--pieces", "7", "--Basket.open", "true"});
   EXPECT_EQ(outcome.exit, -1) << outcome.err;
   EXPECT_EQ(outcome.to, "X");
   EXPECT_EQ(outcome.pieces, 7);
   EXPECT_EQ(outcome.fruit, Fruit::kPear);
-  EXPECT_TRUE(outcome.quiet);
+  EXPECT_TRUE(outcome.ripe);
   EXPECT_EQ(outcome.options.count, 5);
   EXPECT_EQ(outcome.options.weight, -2.5);
   EXPECT_TRUE(outcome.options.open);

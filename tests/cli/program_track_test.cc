@@ -6,10 +6,13 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <set>
+#include <sstream>
 #include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "cli/program_outcome.h"
 
@@ -242,7 +245,41 @@ TEST(Program, TrackLiveSaysWhereToLookAndEndsWithTheRun) {
   const std::string sequence = Temporary("sequence").string();
   ASSERT_EQ(Pliant("simulate --quiet --Trajectory.frames 4" + kCoarse + "--output_path '" + sequence + "'").exit, 0);
   const std::string run = " --output_path '" + Temporary("run").string() + "' --live --Live.port 0";
-  EXPECT_THAT(Pliant("track --image_path '" + sequence + "'" + run).err, HasSubstr("live view: http://127.0.0.1:"));
+  EXPECT_THAT(Pliant("track --image_path '" + sequence + "'" + run).out, HasSubstr("live view: http://127.0.0.1:"));
+}
+
+// Every line that a command says is an object, whatever it is about.
+TEST(Program, JsonLinesAreReadByPrograms) {
+  const std::string sequence = Temporary("sequence").string();
+  const std::string json = " --log_format json ";
+  const Outcome simulated =
+      Pliant("simulate" + json + "--Trajectory.frames 4" + kCoarse + "--output_path '" + sequence + "'");
+  ASSERT_EQ(simulated.exit, 0) << simulated.err;
+  std::set<std::string> events;
+  std::istringstream lines(simulated.out + simulated.err + Pliant("track" + json + "--image_path /nowhere").err +
+                           Pliant("track --fruit" + json).err);
+  for (std::string line; std::getline(lines, line);) {
+    const auto event = nlohmann::json::parse(line, nullptr, false);
+    ASSERT_TRUE(event.is_object()) << line;
+    EXPECT_THAT(event["command"].get<std::string>(), testing::StartsWith("pliant ")) << line;
+    events.insert(event["event"].get<std::string>());
+    if (event["event"] == "progress") {
+      EXPECT_EQ(event["done"], event["total"]) << line;
+    }
+  }
+  EXPECT_THAT(events, testing::UnorderedElementsAre("error", "note", "progress", "result"));
+}
+
+TEST(Program, TheLogLevelLeavesOutWhatIsLess) {
+  const std::string sequence = Temporary("sequence").string();
+  const std::string simulate = "simulate --Trajectory.frames 2" + kCoarse + "--output_path '" + sequence + "'";
+  const Outcome info = Pliant(simulate);
+  EXPECT_THAT(info.out, HasSubstr("2 frames in "));
+  const Outcome warning = Pliant(simulate + " --overwrite --log_level warning");
+  EXPECT_EQ(warning.exit, 0);
+  EXPECT_EQ(warning.out + warning.err, "");
+  EXPECT_THAT(Pliant(simulate + " --log_level loud").err,
+              HasSubstr("--log_level is 'loud'; give one of error|warning|info"));
 }
 
 }  // namespace
