@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "exchange/staged_folder.h"
+#include "pliant/base/staged_folder.h"
 
 #include <system_error>
 #include <utility>

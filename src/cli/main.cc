@@ -54,7 +54,9 @@ std::string Usage() {
   for (const Command& command : kCommands)
     text += "  " + std::string(command.name) + std::string(12 - command.name.size(), ' ') +
             std::string(command.summary) + "\n";
-  return text + "\npliant COMMAND --help is the command's manual; pliant --version prints the version.\n";
+  return text +
+         "\npliant COMMAND --help is the command's manual; pliant --version prints the versions of it and of its "
+         "libraries.\n";
 }
 
 int Run(std::span<const std::string> args) {
@@ -69,7 +71,7 @@ int Run(std::span<const std::string> args) {
     return kExitOk;
   }
   if (name == "--version") {
-    std::cout << "pliant " << kVersion << "\n";
+    std::cout << "pliant " << kVersion << "\nbuilt by " << BuildText() << "\nwith " << LibrariesText() << "\n";
     return kExitOk;
   }
   std::vector<std::string> names;
