@@ -12,6 +12,7 @@
 #include "cli/messages.h"
 #include "cli/progress.h"
 #include "pliant/base/text.h"
+#include "pliant/viewer/bundle.h"
 #include "pliant/viewer/figure.h"
 #include "pliant/viewer/output.h"
 
@@ -27,7 +28,9 @@ const Manual kManual = {
     "someone.\n\n"
     "With --figure it writes a still instead: the images of the chosen frames with their points above, the scene as it "
     "was then below, a row for each run. With --video it writes a film of all frames. With --surface all of them show "
-    "the mesh that pliant surface made, in a still and a film colored by --Figure.surface_color.\n\n"
+    "the mesh that pliant surface made, in a still and a film colored by --Figure.surface_color. With --bundle it "
+    "writes a folder of at most 5 MB to send with a question: options, run.json, frames.csv, poses, calibration and "
+    "versions of one run, without names of files, and without images unless --bundle_images adds ten of them.\n\n"
     "Reads --run, one or more: run folders that pliant track or pliant import left, also of runs that were "
     "interrupted or killed, or other systems' results. They are brought into one world by their cameras. Reads the "
     "images, and the truth where there is truth, from --sequence, or from where the first run's run.json says they "
@@ -36,6 +39,7 @@ const Manual kManual = {
     "the camera blue, and the truth green.",
     {"pliant report --run run -o report.html", "pliant report --run ours --run rigid --sequence colon -o both.html",
      "pliant report --run run --figure 10,40,70 -o figure.svg", "pliant report --run run --video -o film.mp4",
+     "pliant report --run run --bundle -o bundle",
      "pliant report --run run --surface surface --figure 10 --Figure.surface_color displacement -o figure.pdf"},
 };
 
@@ -44,11 +48,17 @@ struct ReportArguments {
   std::string output_path;
   std::string figure;  // frames with commas; empty: none
   bool video = false;
+  bool bundle = false;
+  bool bundle_images = false;
 };
 
 // Nothing, or what is wrong with the command line.
 std::string CheckArguments(const ReportArguments& arguments, std::vector<int>* frames_idx) {
-  if (!arguments.figure.empty() && arguments.video) return "--figure and --video are two files; give one of them";
+  const int outputs = (arguments.figure.empty() ? 0 : 1) + (arguments.video ? 1 : 0) + (arguments.bundle ? 1 : 0);
+  if (outputs > 1) return "--figure, --video and --bundle are written one at a time; give one of them";
+  if (arguments.bundle_images && !arguments.bundle) return "--bundle_images adds images to a bundle; give --bundle too";
+  if (arguments.bundle)
+    return arguments.view.run_paths.size() > 1 ? "--bundle is of one run; give one --run" : std::string();
   const auto frames = ParseFrameList(arguments.figure);
   if (!frames) return "--figure is '" + arguments.figure + "'; give frame numbers with commas between them";
   *frames_idx = *frames;
@@ -71,6 +81,19 @@ int WritePage(const CommandLine& line, const ReportArguments& arguments, const R
   std::snprintf(text, sizeof text, "%d frames, %lld observations, %zu images, %.1f MB in ", summary->frames,
                 static_cast<long long>(summary->observations), summary->images, summary->megabytes);
   SayResult(text + arguments.output_path);
+  return kExitOk;
+}
+
+int WriteRunBundle(const CommandLine& line, const ReportArguments& arguments) {
+  const auto summary = WriteBundle({.run_path = arguments.view.run_paths.front(),
+                                    .output_path = arguments.output_path,
+                                    .sequence_path = arguments.view.sequence_path,
+                                    .camera_path = arguments.view.camera_path,
+                                    .images = arguments.bundle_images ? BundledImages::kSome : BundledImages::kNone});
+  if (!summary.ok()) return line.Failure(summary.status().message());
+  SayNotes(summary->notes);
+  SayResult(std::to_string(summary->files.size()) + " files, " + Digits(summary->megabytes, 1) + " MB in " +
+            arguments.output_path + "; look through them before you send them");
   return kExitOk;
 }
 
@@ -101,11 +124,13 @@ int ReportCommand(std::span<const std::string> args) {
            "calibration of the sequence; not needed where it has its own, or for the run's images", Need::kOptional);
   line.Add("surface", &arguments.view.surface_paths, "DIR",
            "a surface folder of the run (pliant surface), whose mesh is shown", Need::kOptional);
-  line.Add("output_path", &arguments.output_path, "FILE", "what is written: .html; .png, .svg or .pdf; .mp4",
-           Need::kRequired);
+  line.Add("output_path", &arguments.output_path, "FILE",
+           "what is written: .html; .png, .svg or .pdf; .mp4; the folder of a bundle", Need::kRequired);
   line.Add("figure", &arguments.figure, "FRAMES", "a still of these frames: their numbers, with commas",
            Need::kOptional);
   line.AddFlag("video", &arguments.video, "a film of all frames");
+  line.AddFlag("bundle", &arguments.bundle, "a folder to send with a question, without images");
+  line.AddFlag("bundle_images", &arguments.bundle_images, "add ten images of the recording to it");
   if (const auto exit = line.Parse(args)) return *exit;
   ReportOptions report_options;
   FigureOptions figure_options;
@@ -117,6 +142,7 @@ int ReportCommand(std::span<const std::string> args) {
   std::vector<int> frames_idx;
   if (const std::string wrong = CheckArguments(arguments, &frames_idx); !wrong.empty()) return line.UsageError(wrong);
 
+  if (arguments.bundle) return WriteRunBundle(line, arguments);
   if (arguments.figure.empty() && !arguments.video) return WritePage(line, arguments, report_options);
   const auto notes = arguments.video ? WriteFilmWithProgress(arguments, figure_options)
                                      : WriteFigure(arguments.view, figure_options, frames_idx, arguments.output_path);

@@ -1,0 +1,255 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/viewer/bundle.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <regex>
+#include <sstream>
+#include <system_error>
+#include <thread>
+
+#include <nlohmann/json.hpp>
+#include <sys/utsname.h>
+
+#include "pliant/base/files.h"
+#include "pliant/base/staged_folder.h"
+#include "pliant/base/text.h"
+#include "pliant/base/version.h"
+#include "pliant/datasets/run_sequence.h"
+#include "pliant/io/camera_file.h"
+#include "pliant/io/run_summary.h"
+#include "viewer/view_images.h"
+
+namespace pliant {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kMaxTableBytes = 1500000;  // of frames.csv, and of trajectory.txt
+constexpr std::size_t kMaxImageBytes = 180000;
+constexpr int kJpegQuality = 92;
+
+constexpr const char* kReadMe = "README.txt";
+constexpr const char* kVersions = "versions.txt";
+constexpr const char* kSummary = "run.json";
+constexpr const char* kConfig = "config.yaml";
+constexpr const char* kCamera = "camera.yaml";
+
+std::string Placeholder(const std::string& path) { return "<path>" + fs::path(path).extension().string(); }
+
+// The files and folders that a run speaks of, by their whole names; the run's own folder, too.
+std::vector<fs::path> KnownPaths(const std::string& run_path, const RunDescription& run) {
+  std::vector<fs::path> paths = {fs::absolute(run_path + "/").parent_path()};
+  for (const std::string* path : {&run.input, &run.camera, &run.mask, &run.refined_from, &run.tracks, &run.depth_prior})
+    if (!path->empty()) paths.emplace_back(*path);
+  return paths;
+}
+
+std::string ReplacedAll(std::string text, const std::string& from, const std::string& to) {
+  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
+    text.replace(at, from.size(), to);
+  return text;
+}
+
+std::string Cleaned(std::string sentence, const std::vector<fs::path>& known) {
+  for (const fs::path& path : known) sentence = ReplacedAll(std::move(sentence), path.string(), Placeholder(path));
+  return WithoutPaths(sentence);
+}
+
+// A word of the command line: "clip.mp4", "--camera=data/camera.yaml", "run of monday".
+std::string CleanedWord(const std::string& word, const std::vector<fs::path>& known) {
+  static const std::regex kFile(R"re(.*/.*|.*\.[A-Za-z]\w*)re");
+  const std::size_t begin = word.starts_with("--") && word.find('=') != std::string::npos ? word.find('=') + 1 : 0;
+  const std::string value = word.substr(begin);
+  const bool is_known =
+      std::any_of(known.begin(), known.end(), [&](const fs::path& path) { return path.filename() == value; });
+  const bool is_name = begin == 0 && word.starts_with("-");  // of an argument
+  if (is_known || (!is_name && std::regex_match(value, kFile))) return word.substr(0, begin) + Placeholder(value);
+  return word;
+}
+
+Json Cleaned(const Json& json, const std::vector<fs::path>& known) {
+  if (json.is_string()) return Cleaned(json.get<std::string>(), known);
+  if (!json.is_structured()) return json;
+  Json cleaned = json;
+  for (Json& value : cleaned) value = Cleaned(value, known);
+  return cleaned;
+}
+
+std::string CleanedSummary(const std::string& text, const std::vector<fs::path>& known) {
+  const Json summary = Json::parse(text);
+  Json cleaned = Cleaned(summary, known);
+  Json words = Json::array();
+  for (const Json& word : summary.at("command_line")) words.push_back(CleanedWord(word.get<std::string>(), known));
+  cleaned["command_line"] = std::move(words);
+  return cleaned.dump(2) + "\n";
+}
+
+// Of config.yaml: `name_path: value  # why`.
+std::string CleanedOptions(const std::string& yaml) {
+  static const std::regex kPathOption(R"re((\n\s+\w*path: )([^"\s#][^\s#]*|"[^"\n]+"))re");
+  return WithoutPaths(std::regex_replace(yaml, kPathOption, "$1<path>"));
+}
+
+// Every second line below the header is left out, as often as it takes.
+std::string Thinned(const std::string& table, bool has_header, std::vector<std::string>* notes,
+                    const std::string& name) {
+  if (table.size() <= kMaxTableBytes) return table;
+  const std::size_t step = table.size() / kMaxTableBytes + 1;
+  std::istringstream lines(table);
+  std::string thinned;
+  std::string line;
+  for (std::size_t i = 0; std::getline(lines, line); ++i)
+    if ((has_header && i == 0) || i % step == (has_header ? 1 % step : 0)) thinned += line + "\n";
+  notes->push_back("of " + name + " the bundle has one line in " + std::to_string(step));
+  return thinned;
+}
+
+std::string SystemText() {
+  std::string text;
+  utsname system{};
+  if (uname(&system) == 0) text = std::string(system.sysname) + " " + system.release + ", " + system.machine + "\n";
+  if (const auto release = ReadFile("/etc/os-release"); release.ok()) {
+    std::istringstream lines(*release);
+    for (std::string line; std::getline(lines, line);)
+      if (line.starts_with("PRETTY_NAME=")) text += line.substr(12) + "\n";
+  }
+  return text + std::to_string(std::thread::hardware_concurrency()) + " processors\n";
+}
+
+std::string VersionsText(const RunDescription& run) {
+  return "pliant " + std::string(kVersion) + ", built by " + std::string(BuildText()) + "\nwith " +
+         std::string(LibrariesText()) + "\nthe run is of version " + run.program_version + "\n" + SystemText();
+}
+
+// Small enough, at whatever size.
+std::string SmallJpeg(cv::Mat image) {
+  std::string jpeg = ToJpeg(image, kJpegQuality);
+  while (jpeg.size() > kMaxImageBytes && image.cols > 64) {
+    image = Shrink(image, image.cols * 3 / 4);
+    jpeg = ToJpeg(image, kJpegQuality);
+  }
+  return jpeg;
+}
+
+class Bundle {
+ public:
+  Bundle(const BundleRequest& request, StagedFolder staged) : request_(request), staged_(std::move(staged)) {}
+
+  Status Add(const std::string& name, const std::string& content) {
+    if (Status status = WriteFileAtomically(staged_.Path(name).string(), content); !status.ok()) return status;
+    summary_.files.push_back(name);
+    summary_.megabytes += static_cast<double>(content.size()) / 1e6;
+    return Status::Ok();
+  }
+
+  Status AddTable(const std::string& name, bool has_header) {
+    const auto table = ReadFile(request_.run_path + "/" + name);
+    if (!table.ok()) {
+      summary_.notes.push_back("the run has no " + name);
+      return Status::Ok();
+    }
+    return Add(name, Thinned(*table, has_header, &summary_.notes, name));
+  }
+
+  // The calibration, and images evenly spread over the recording.
+  Status AddSequence() {
+    const SequenceRequest request = SequenceOfRun(request_.run_path, request_.sequence_path, request_.camera_path);
+    auto sequence = OpenImagesOfRun(request_.run_path, request);
+    if (!sequence.ok()) {
+      summary_.notes.push_back("there is no camera.yaml and there are no images: " +
+                               WithoutPaths(sequence.status().message()));
+      return Status::Ok();
+    }
+    const fs::path camera = staged_.Path(kCamera);
+    if (Status status = WriteCameraFile(camera.string(), {.camera = (*sequence)->camera()}); !status.ok())
+      return status;
+    summary_.files.emplace_back(kCamera);
+    std::error_code error;
+    summary_.megabytes += static_cast<double>(fs::file_size(camera, error)) / 1e6;
+    if (request_.images == BundledImages::kNone) return Status::Ok();
+    return AddImages(**sequence);
+  }
+
+  Result<BundleSummary> Finish() {
+    std::string text =
+        "A bundle of a run of Pliant, to be sent with a question. Look through it before you send it.\n\n"
+        "The folders and names of files are left out of its texts.";
+    text += request_.images == BundledImages::kNone
+                ? " It holds no images.\n"
+                : " It holds images of the recording (images/), which whoever gets it can see.\n";
+    for (const std::string& note : summary_.notes) text += "\nnote: " + note;
+    if (Status status = Add(kReadMe, text + (summary_.notes.empty() ? "" : "\n")); !status.ok()) return status;
+    if (Status status = staged_.Commit(); !status.ok()) return status;
+    return summary_;
+  }
+
+ private:
+  Status AddImages(Sequence& sequence) {
+    if (Status status = staged_.AddFolder("images"); !status.ok()) return status;
+    const int count = std::max(1, sequence.size());
+    int taken = 0;
+    for (int i = 0; taken < kMaxBundledImages; ++i) {
+      auto frame = sequence.Next();
+      if (!frame.ok()) {
+        summary_.notes.push_back("the images end early: " + WithoutPaths(frame.status().message()));
+        break;
+      }
+      if (!frame->has_value()) break;
+      if (static_cast<long long>(i) * kMaxBundledImages < static_cast<long long>(taken) * count) continue;
+      if (Status status = Add("images/" + std::to_string((*frame)->frame_idx) + ".jpg", SmallJpeg((*frame)->image));
+          !status.ok())
+        return status;
+      ++taken;
+    }
+    return Status::Ok();
+  }
+
+  const BundleRequest& request_;
+  StagedFolder staged_;
+  BundleSummary summary_;
+};
+
+}  // namespace
+
+std::string WithoutPaths(const std::string& text) {
+  // In single quotes; from a / on; with a / and an ending.
+  static const std::regex kPath(
+      R"re('([^'\n]*/[^'\n]*)'|(^|[\s"'=:(,\[])(/[^\s/"',)\]][^\s"',)\]]*|[^\s"'=:(,\[/]+/[^\s"',)\]]*\.[A-Za-z]\w*))re");
+  std::string cleaned;
+  auto last = text.cbegin();
+  for (std::sregex_iterator match(text.begin(), text.end(), kPath), end; match != end; ++match) {
+    const auto& path = (*match)[1].matched ? (*match)[1] : (*match)[3];
+    cleaned.append(last, path.first);
+    cleaned += Placeholder(path.str());
+    last = path.second;
+  }
+  return cleaned.append(last, text.cend());
+}
+
+Result<BundleSummary> WriteBundle(const BundleRequest& request) {
+  const auto summary_text = ReadFile(request.run_path + "/" + kSummary);
+  if (!summary_text.ok()) return summary_text.status();
+  const auto run = ReadRunSummary(request.run_path + "/" + kSummary);
+  if (!run.ok()) return run.status();
+  auto staged = StagedFolder::Create(
+      request.output_path, {kReadMe, kVersions, kSummary, kConfig, kCamera, "frames.csv", "trajectory.txt", "images"});
+  if (!staged.ok()) return staged.status();
+  const std::vector<fs::path> known = KnownPaths(request.run_path, run->description);
+  Bundle bundle(request, *std::move(staged));
+  if (Status status = bundle.Add(kVersions, VersionsText(run->description)); !status.ok()) return status;
+  if (Status status = bundle.Add(kSummary, CleanedSummary(*summary_text, known)); !status.ok()) return status;
+  if (const auto config = ReadFile(request.run_path + "/" + kConfig); config.ok())
+    if (Status status = bundle.Add(kConfig, CleanedOptions(*config)); !status.ok()) return status;
+  if (Status status = bundle.AddTable("frames.csv", true); !status.ok()) return status;
+  if (Status status = bundle.AddTable("trajectory.txt", false); !status.ok()) return status;
+  if (Status status = bundle.AddSequence(); !status.ok()) return status;
+  return bundle.Finish();
+}
+
+}  // namespace pliant
