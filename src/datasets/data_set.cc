@@ -43,6 +43,7 @@ class DataSetSequence final : public Sequence {
       : data_set_(std::move(data_set)), range_(range), next_idx_(range.start) {}
 
   Status CheckFirstImage() const;
+  Status CheckMasks(const CompanionImages& masks) const;
   Status OpenMasks();
   Status OpenDepthPriors(const std::filesystem::path& folder);
 
@@ -90,13 +91,25 @@ Status DataSetSequence::CheckFirstImage() const {
                                     (twice ? ", or of both cameras where an image holds a pair" : "")};
 }
 
+// A video may end before its container says so: there only a gap before a frame that has a mask is one for certain.
+Status DataSetSequence::CheckMasks(const CompanionImages& masks) const {
+  const bool exact = images().count_is_exact();
+  const int end = range_.end == -1 ? images().count() : range_.end;
+  Status missing = Status::Ok();
+  for (int idx = range_.start; idx < end; idx += range_.stride) {
+    const auto found = masks.Require(idx, images().Name(idx));
+    if (!found.ok() && exact) return found.status();
+    if (found.ok() && !missing.ok()) return missing;
+    if (!found.ok() && missing.ok()) missing = found.status();
+  }
+  return Status::Ok();
+}
+
 Status DataSetSequence::OpenMasks() {
   if (data_set_.mask_path.empty()) return Status::Ok();
   Result<CompanionImages> masks = CompanionImages::Open("mask", data_set_.mask_path, Stems(images()), Counts());
   if (!masks.ok()) return masks.status();
-  if (images().count_is_exact())
-    for (int idx = range_.start; idx < range_.end; idx += range_.stride)
-      if (const auto found = masks->Require(idx, images().Name(idx)); !found.ok()) return found.status();
+  if (const Status status = CheckMasks(*masks); !status.ok()) return status;
   masks_ = *std::move(masks);
   return Status::Ok();
 }

@@ -109,6 +109,18 @@ TEST_F(OpenSequenceTest, TellsWhenAVideoFrameHasNoMask) {
   EXPECT_THAT(sequence->Next().status().message(), HasSubstr("no mask for the frame 000001.png"));
 }
 
+TEST_F(OpenSequenceTest, TellsAtOnceOfAGapInAVideosMasks) {
+  WriteVideo("clip.avi", 3);
+  WriteCamera();
+  for (const char* name : {"m/000000.png", "m/000002.png"})
+    Write(name, cv::Mat(kHeight, kWidth, CV_8UC1, cv::Scalar::all(255)));
+  SequenceRequest request = Request("clip.avi");
+  request.mask_path = Path("m");
+  const auto sequence = OpenSequence(request);
+  ASSERT_FALSE(sequence.ok());
+  EXPECT_THAT(sequence.status().message(), HasSubstr("no mask for the frame 000001.png"));
+}
+
 TEST_F(OpenSequenceTest, TellsWhatIsWrongWithADepthImage) {
   WriteNative(2);
   Write("depth/000000.png", cv::Mat(kHeight, kWidth, CV_8UC1, cv::Scalar::all(9)));
