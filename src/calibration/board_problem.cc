@@ -14,6 +14,7 @@
 #include <ceres/crs_matrix.h>
 #include <ceres/rotation.h>
 
+#include "calibration/board_residual.h"
 #include "pliant/base/statistics.h"
 
 namespace pliant {
@@ -25,52 +26,6 @@ constexpr int kLossRounds = 3;
 // Of the normal equations with unit diagonal, below which rounding decides.
 constexpr double kSmallestEigenvalue = 1e-13;
 
-// Calls function.operator()<Model>() with the model of the id.
-template <class Function>
-auto WithModel(CameraModelId model, Function&& function) {
-  switch (model) {
-    case CameraModelId::kSimplePinhole:
-      return function.template operator()<SimplePinhole>();
-    case CameraModelId::kPinhole:
-      return function.template operator()<Pinhole>();
-    case CameraModelId::kSimpleRadial:
-      return function.template operator()<SimpleRadial>();
-    case CameraModelId::kRadial:
-      return function.template operator()<Radial>();
-    case CameraModelId::kOpenCv:
-      return function.template operator()<OpenCv>();
-    case CameraModelId::kOpenCvFisheye:
-      break;
-  }
-  return function.template operator()<OpenCvFisheye>();
-}
-
-// Projected minus measured pixel of one point.
-template <class Model>
-struct BoardResidual {
-  Eigen::Vector3d point;
-  Eigen::Vector2d pixel;
-
-  template <class T>
-  bool operator()(const T* params, const T* pose, T* residual) const {
-    const T in_board[3] = {T(point.x()), T(point.y()), T(point.z())};
-    T in_cam[3];
-    ceres::AngleAxisRotatePoint(pose, in_board, in_cam);
-    for (int i = 0; i < 3; ++i) in_cam[i] += pose[3 + i];
-    if (!Model::ProjectUnbounded(params, in_cam, residual)) return false;
-    residual[0] -= pixel.x();
-    residual[1] -= pixel.y();
-    return true;
-  }
-};
-
-ceres::CostFunction* MakeResidual(CameraModelId model, const Eigen::Vector3d& point, const Eigen::Vector2d& pixel) {
-  return WithModel(model, [&]<class Model>() -> ceres::CostFunction* {
-    return new ceres::AutoDiffCostFunction<BoardResidual<Model>, 2, Model::kNumParams, 6>(
-        new BoardResidual<Model>{point, pixel});
-  });
-}
-
 bool IsLeftOut(const std::vector<bool>& without, std::size_t view) { return !without.empty() && without[view]; }
 
 void AddResiduals(std::span<const Eigen::Vector3d> board_points, std::span<const BoardView> views,
@@ -79,7 +34,7 @@ void AddResiduals(std::span<const Eigen::Vector3d> board_points, std::span<const
     if (IsLeftOut(without, view)) continue;
     for (std::size_t i = 0; i < views[view].pixels.size(); ++i) {
       const Eigen::Vector3d& point = board_points[static_cast<std::size_t>(views[view].point_ids[i])];
-      problem->AddResidualBlock(MakeResidual(fit->model, point, views[view].pixels[i]), loss, fit->params.data(),
+      problem->AddResidualBlock(MakeBoardResidual(fit->model, point, views[view].pixels[i]), loss, fit->params.data(),
                                 fit->poses[view].data());
     }
   }
@@ -177,6 +132,14 @@ bool StartPose(const Camera& camera, std::span<const Eigen::Vector3d> board_poin
 }
 
 }  // namespace
+
+ceres::CostFunction* MakeBoardResidual(CameraModelId model, const Eigen::Vector3d& point,
+                                       const Eigen::Vector2d& pixel) {
+  return WithModel(model, [&]<class Model>() -> ceres::CostFunction* {
+    return new ceres::AutoDiffCostFunction<BoardResidual<Model>, 2, Model::kNumParams, 6>(
+        new BoardResidual<Model>{point, pixel});
+  });
+}
 
 int NumParams(CameraModelId model) {
   return WithModel(model, []<class Model>() { return Model::kNumParams; });

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <Eigen/Core>
+#include <ceres/cost_function.h>
 
 #include "pliant/calibration/find_board.h"
 #include "pliant/camera/camera.h"
@@ -50,6 +51,9 @@ std::vector<Eigen::Vector2d> Residuals(std::span<const Eigen::Vector3d> board_po
 // where the views do not determine them. Of a parameter that is not free it is 0.
 std::vector<double> CovarianceSigmas(std::span<const Eigen::Vector3d> board_points, std::span<const BoardView> views,
                                      const std::vector<bool>& without, const BoardFit& fit);
+
+// The error of a point of the board, of the parameters and the pose.
+ceres::CostFunction* MakeBoardResidual(CameraModelId model, const Eigen::Vector3d& point, const Eigen::Vector2d& pixel);
 
 int NumParams(CameraModelId model);
 // The number of the model's parameters that are not of the distortion, which stand first.

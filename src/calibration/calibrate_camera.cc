@@ -38,8 +38,12 @@ struct CalibrationInput {
 constexpr std::array kModels = {CameraModelId::kSimplePinhole, CameraModelId::kPinhole, CameraModelId::kSimpleRadial,
                                 CameraModelId::kRadial,        CameraModelId::kOpenCv,  CameraModelId::kOpenCvFisheye};
 
-std::vector<CameraModelId> ModelsOf(ModelChoice choice) {
-  if (choice == ModelChoice::kAuto) return {kModels.begin(), kModels.end()};
+std::vector<CameraModelId> ModelsOf(ModelChoice choice, Lenses lenses) {
+  if (choice == ModelChoice::kAuto) {
+    std::vector<CameraModelId> models(kModels.begin(), kModels.end());
+    if (lenses == Lenses::kPerspective) std::erase(models, CameraModelId::kOpenCvFisheye);
+    return models;
+  }
   return {kModels[static_cast<std::size_t>(choice) - 1]};
 }
 
@@ -316,14 +320,14 @@ Status TooFew(std::size_t views) {
 }  // namespace
 
 Result<CameraCalibration> CalibrateCamera(const CalibrationBoard& board, std::span<const BoardView> views, int width,
-                                          int height, ModelChoice model, int threads) {
+                                          int height, ModelChoice model, int threads, Lenses lenses) {
   if (views.size() < kFewestCalibrationViews) return TooFew(views.size());
   const CalibrationInput input{board.Points(), views, width, height, threads};
   const Status undetermined(ErrorCode::kInsufficient,
                             "the images do not determine the focal length; add images in which the board is tilted by "
                             "30 to 45 degrees, in several directions, and fills other parts of the image");
 
-  std::vector<BoardFit> fits = FirstFits(input, ModelsOf(model));
+  std::vector<BoardFit> fits = FirstFits(input, ModelsOf(model, lenses));
 
   // Outliers are those of the fit with the smallest error.
   if (fits.empty()) return undetermined;

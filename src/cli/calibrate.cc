@@ -1,8 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
+#include <algorithm>
+#include <array>
+#include <atomic>
 #include <cstdio>
+#include <filesystem>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "cli/command_line.h"
 #include "cli/commands.h"
@@ -28,11 +34,15 @@ const Manual kManual = {
     "Of a video the sharp frames that differ are chosen, images that fit badly are left out, and the camera model is "
     "chosen by images that are held out. Prints how far the result can be trusted: reprojection error, standard "
     "deviation of every parameter, and what is missing. --figure draws it. Writes --output_path at the end only.\n\n"
+    "Of two cameras that see the board at the same time, --right_path names the images of the right one, in the same "
+    "order, or --pairs says how each image holds both. Then --output_path becomes a stereo calibration (OpenCV's YAML) "
+    "with the right camera's pose in the left one, in mm.\n\n"
     "Good images: 15 to 40, sharp, the board as large as half of the image, in its corners too, tilted by 30 to 45 "
     "degrees in several directions.",
     {"pliant calibrate --image_path board.mp4 --board chessboard:9x6:2.0 --output_path camera.yaml",
      "pliant calibrate --image_path boards --board charuco:8x5:10:7:5X5_100 --Calibrate.model OPENCV_FISHEYE "
-     "--output_path camera.yaml --figure camera.png"},
+     "--output_path camera.yaml --figure camera.png",
+     "pliant calibrate --image_path pairs.mp4 --pairs left_right --board chessboard:9x6:2.0 --output_path stereo.yaml"},
 };
 
 template <class... Values>
@@ -43,12 +53,11 @@ std::string Text(const char* format, Values... values) {
 }
 
 // One line a parameter: name, value, standard deviation.
-void SayParameters(const CameraCalibration& calibration) {
-  const std::string names(calibration.camera.Visit([](const auto& model) { return model.kParamNames; }));
+void SayParameters(const Camera& camera, const std::vector<double>& sigmas) {
+  const std::string names(camera.Visit([](const auto& model) { return model.kParamNames; }));
   std::size_t i = 0;
   for (const std::string_view name : Split(names, ',')) {
-    SayResult(Text("  %-4s %14.6g  +- %.2g", std::string(name).c_str(), calibration.camera.params()[i],
-                   calibration.sigmas[i]));
+    SayResult(Text("  %-4s %14.6g  +- %.2g", std::string(name).c_str(), camera.params()[i], sigmas[i]));
     ++i;
   }
 }
@@ -90,54 +99,120 @@ void Say(const CalibrateSummary& summary) {
   }
   SayResult(Text("model         %s, %dx%d", std::string(calibration.camera.model_name()).c_str(),
                  calibration.camera.width(), calibration.camera.height()));
-  SayParameters(calibration);
+  SayParameters(calibration.camera, calibration.sigmas);
   SayResult(Text("error         %.3f px RMS", calibration.rms_px));
   SayResult("coverage      " + Percent(summary.covered_share) + " of the image");
   for (const std::string& advice : summary.advice) SayNote(advice);
+}
+
+void Say(const CalibratePairsSummary& summary) {
+  const StereoCameras& stereo = summary.stereo;
+  SayResult("left camera");
+  Say(summary.left);
+  SayResult("right camera");
+  Say(summary.right);
+  const auto pairs = static_cast<int>(stereo.is_outlier.size());
+  const auto outliers = static_cast<int>(std::count(stereo.is_outlier.begin(), stereo.is_outlier.end(), true));
+  SayResult(Text("pairs         %d, %d fit badly", pairs, outliers));
+  SayResult(Text("error         %.3f px RMS in both", stereo.rms_px));
+  const Eigen::Vector3d center = stereo.right_from_left.OriginInSource();
+  SayResult(Text("baseline      %.4f mm +- %.2g: right camera at %.4f, %.4f, %.4f mm of the left one",
+                 stereo.BaselineMm(), stereo.baseline_sigma_mm, center.x(), center.y(), center.z()));
+  SayResult(Text("rotation      %.3f deg +- %.2g between the cameras",
+                 kDegPerRad * RotationAngle(stereo.right_from_left.rotation), stereo.rotation_sigma_deg));
+}
+
+// "camera.png" of the right camera: "camera_right.png".
+std::string RightFigurePath(const std::string& path) {
+  const std::filesystem::path left(path);
+  return (left.parent_path() / (left.stem().string() + "_right" + left.extension().string())).string();
+}
+
+struct Figure {
+  const CalibrateSummary* summary;
+  std::string path;
+};
+
+// The outcome in words and pictures.
+int Finish(const CommandLine& line, const std::string& output_path, const std::vector<Figure>& figures) {
+  SayResult(output_path);
+  for (const Figure& figure : figures) {
+    if (const Status status = WriteCalibrationFigure(*figure.summary, figure.path); !status.ok())
+      return line.Failure(status.message());
+    SayResult(figure.path);
+  }
+  return kExitOk;
+}
+
+// Nothing, or what is wrong with the command line.
+std::string CheckPairs(const CalibrateRequest& request, ModelChoice model) {
+  if (!request.right_path.empty() && request.pairs != PairImages::kNone)
+    return "--right_path and --pairs are two ways to give pairs; give one of them";
+  if (request.HasPairs() && model == ModelChoice::kOpenCvFisheye)
+    return "pairs of fisheye cameras cannot be rectified; choose a perspective --Calibrate.model, or calibrate one "
+           "camera";
+  return "";
 }
 
 }  // namespace
 
 int CalibrateCommand(std::span<const std::string> args) {
   std::string image_path;
+  std::string right_path;
   std::string board_text;
   std::string output_path;
   std::string figure_path;
+  CalibrateRequest request;
   CalibrateOptions options;
   CommandLine line(kManual);
   line.Add("image_path", &image_path, "PATH", "folder of images, or video, of the board", Need::kRequired);
+  line.Add("right_path", &right_path, "PATH", "those of a right camera at the same moments", Need::kOptional);
+  line.AddChoice("pairs", &request.pairs,
+                 "whether each image holds both views of a pair, the left one on the left, or on top");
   line.Add("board", &board_text, "BOARD", "kind, size and side of the board, such as chessboard:9x6:2.0",
            Need::kRequired);
-  line.Add("output_path", &output_path, "FILE", "camera.yaml to write", Need::kRequired);
-  line.Add("figure", &figure_path, "FILE", "picture of the errors to write: .png, .svg or .pdf", Need::kOptional);
+  line.Add("output_path", &output_path, "FILE", "camera.yaml, or stereo.yaml of pairs, to write", Need::kRequired);
+  line.Add("figure", &figure_path, "FILE",
+           "picture of the errors to write: .png, .svg or .pdf; of pairs a second one with _right behind its name",
+           Need::kOptional);
   if (const auto exit = line.Parse(args)) return *exit;
   OptionTable table;
   options.List(table);
   if (const auto exit = line.Resolve(table)) return *exit;
+  request.image_path = image_path;
+  request.right_path = right_path;
+  request.output_path = output_path;
   const auto board = ParseBoard(board_text);
   if (!board.ok()) return line.UsageError(board.status().message());
+  request.board = *board;
   if (const Status status = CheckBoardIsSupported(*board); !status.ok()) return line.UsageError(status.message());
+  if (const std::string wrong = CheckPairs(request, options.model); !wrong.empty()) return line.UsageError(wrong);
   if (!figure_path.empty())
     if (const Status status = CheckEnding(ViewOutput::kFigure, figure_path); !status.ok())
       return line.UsageError(status.message());
 
   const std::atomic<bool>& stop = StopOnSignals();
-  const auto summary = [&] {
-    std::optional<Progress> progress;
-    return CalibrateImages({image_path, *board, output_path}, options, [&](int done, int total) {
-      if (total > 0 && !progress) progress.emplace("calibrate", total, "images");
-      if (progress) progress->Update(done, "searched for the board");
-      return !stop.load();
-    });
-  }();
+  std::optional<Progress> progress;
+  const auto on_progress = [&](int done, int total) {
+    if (total > 0 && !progress) progress.emplace("calibrate", total, "images");
+    if (progress) progress->Update(done, "searched for the board");
+    return !stop.load();
+  };
+  if (!request.HasPairs()) {
+    const auto summary = CalibrateImages(request, options, on_progress);
+    progress.reset();
+    if (!summary.ok()) return line.Failure(summary.status().message());
+    Say(*summary);
+    return Finish(line, output_path,
+                  figure_path.empty() ? std::vector<Figure>() : std::vector<Figure>{{&*summary, figure_path}});
+  }
+  const auto summary = CalibratePairs(request, options, on_progress);
+  progress.reset();
   if (!summary.ok()) return line.Failure(summary.status().message());
   Say(*summary);
-  SayResult(output_path);
-  if (figure_path.empty()) return kExitOk;
-  if (const Status status = WriteCalibrationFigure(*summary, figure_path); !status.ok())
-    return line.Failure(status.message());
-  SayResult(figure_path);
-  return kExitOk;
+  std::vector<Figure> figures;
+  if (!figure_path.empty()) figures = {{&summary->left, figure_path}, {&summary->right, RightFigurePath(figure_path)}};
+  return Finish(line, output_path, figures);
 }
 
 }  // namespace pliant::cli

@@ -4,8 +4,10 @@
 #include "pliant/io/camera_file.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
+#include <span>
 
 #include <opencv2/core.hpp>
 
@@ -301,6 +303,34 @@ Status WriteCameraFile(const std::string& path, const CameraFile& file) {
     text += "]\n";
   }
   return WriteFileAtomically(path, text + "unit: mm\n");
+}
+
+namespace {
+
+std::string OpenCvMatrix(std::string_view name, int rows, int cols, std::span<const double> values) {
+  std::string text = std::string(name) + ": !!opencv-matrix\n   rows: " + std::to_string(rows) +
+                     "\n   cols: " + std::to_string(cols) + "\n   dt: d\n   data: [ ";
+  for (std::size_t i = 0; i < values.size(); ++i) text += (i == 0 ? "" : ", ") + FormatDouble(values[i]);
+  return text + " ]\n";
+}
+
+std::string OpenCvEye(const std::string& number, const StereoCalibration::Eye& eye) {
+  return OpenCvMatrix("M" + number, 3, 3, std::array{eye.fx, 0.0, eye.cx, 0.0, eye.fy, eye.cy, 0.0, 0.0, 1.0}) +
+         OpenCvMatrix("D" + number, 1, static_cast<int>(eye.distortion.size()), eye.distortion);
+}
+
+}  // namespace
+
+Status WriteStereoCalibration(const std::string& path, const StereoCalibration& calibration) {
+  std::string text = "%YAML:1.0\n---\n";
+  if (calibration.image_size)
+    text += "image_width: " + std::to_string(calibration.image_size->width) +
+            "\nimage_height: " + std::to_string(calibration.image_size->height) + "\n";
+  text += OpenCvEye("1", calibration.left) + OpenCvEye("2", calibration.right);
+  const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> rotation = calibration.right_from_left.RotationMatrix();
+  text += OpenCvMatrix("R", 3, 3, {rotation.data(), 9});
+  text += OpenCvMatrix("T", 3, 1, {calibration.right_from_left.translation.data(), 3});
+  return WriteFileAtomically(path, text);
 }
 
 }  // namespace pliant

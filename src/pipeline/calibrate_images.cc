@@ -8,123 +8,17 @@
 #include <memory>
 #include <mutex>
 
-#include "datasets/image_file.h"
-#include "datasets/image_stream.h"
+#include "pipeline/board_images.h"
 #include "pliant/base/parallel.h"
 #include "pliant/base/text.h"
 #include "pliant/calibration/choose_views.h"
-#include "pliant/datasets/native_layout.h"
-#include "pliant/image/pyramid.h"
-#include "pliant/image/sharpness.h"
 #include "pliant/io/camera_file.h"
 
 namespace pliant {
 namespace {
 
-namespace fs = std::filesystem;
-
 constexpr int kImagesForSize = 9;      // in which larger chessboards are looked for
 constexpr int kFewestCorners = 4 * 5;  // of one that is named: smaller ones are seen in tissue, too
-
-struct Candidate {
-  std::string name;
-  cv::Mat gray;
-  double sharpness = 0;
-};
-
-// The sharpest image of every stretch of a stream, of whatever length: stretches become longer as there are more.
-class SharpestImages {
- public:
-  // `expected`: images of the stream, where that is known; 0: not.
-  SharpestImages(int max_images, int expected)
-      : max_images_(static_cast<std::size_t>(max_images)),
-        stretch_(std::max(1, (expected + max_images - 1) / max_images)) {}
-
-  void Add(Candidate candidate) {
-    if (in_last_ == 0 || in_last_ == stretch_) {
-      if (candidates_.size() == 2 * max_images_) Halve();
-      candidates_.push_back(std::move(candidate));
-      in_last_ = 1;
-      return;
-    }
-    ++in_last_;
-    if (candidate.sharpness > candidates_.back().sharpness) candidates_.back() = std::move(candidate);
-  }
-
-  // At most as many as were asked for.
-  std::vector<Candidate> Take() {
-    if (candidates_.size() > max_images_) Halve();
-    return std::move(candidates_);
-  }
-
- private:
-  void Halve() {
-    std::vector<Candidate> half;
-    for (std::size_t i = 0; i < candidates_.size(); i += 2) {
-      const bool second = i + 1 < candidates_.size() && candidates_[i + 1].sharpness > candidates_[i].sharpness;
-      half.push_back(std::move(candidates_[second ? i + 1 : i]));
-    }
-    candidates_ = std::move(half);
-    stretch_ *= 2;
-    in_last_ = stretch_;
-  }
-
-  std::size_t max_images_;
-  std::vector<Candidate> candidates_;
-  int stretch_;
-  int in_last_ = 0;  // images that the last candidate stands for
-};
-
-struct ReadImages {
-  std::vector<Candidate> candidates;
-  int count = 0;
-  std::optional<double> fps;
-};
-
-Result<std::unique_ptr<ImageStream>> OpenStream(const fs::path& path) {
-  std::error_code error;
-  if (!fs::is_directory(path, error)) {
-    if (!fs::exists(path, error))
-      return Status(ErrorCode::kNotFound, "there is nothing at " + Quoted(path.string()) +
-                                              "; give a folder of images, or a video, of the board");
-    return StreamVideo(path);
-  }
-  const fs::path images = path / native::kImageFolder;
-  return StreamFolder(fs::is_directory(images, error) ? images : path);
-}
-
-Result<ReadImages> ReadAll(const fs::path& path, int max_images, const CalibrateProgress& progress) {
-  auto stream = OpenStream(path);
-  if (!stream.ok()) return stream.status();
-  SharpestImages sharpest(max_images, (*stream)->count());
-  ReadImages read;
-  read.fps = (*stream)->fps();
-  std::optional<cv::Size> size;
-  std::string first_title;
-  while (true) {
-    if ((*stream)->count_is_exact() && read.count == (*stream)->count()) break;
-    auto image = (*stream)->Read(read.count);
-    if (!image.ok()) return image.status();
-    if (!*image) break;
-    if (!size) {
-      size = (*image)->size();
-      first_title = (*stream)->Title(read.count);
-    } else if ((*image)->size() != *size) {
-      return Status(ErrorCode::kMismatch, (*stream)->Title(read.count) + " is " + SizeText(**image) + " and " +
-                                              first_title + " is " + SizeText(size->width, size->height) +
-                                              "; calibrate with images of one size");
-    }
-    Candidate candidate{(*stream)->Name(read.count), ToGray(**image)};
-    candidate.sharpness = Sharpness(candidate.gray, {});
-    sharpest.Add(std::move(candidate));
-    ++read.count;
-    if (!progress(0, 0)) return Status(ErrorCode::kInterrupted, "the calibration was stopped");
-  }
-  read.candidates = sharpest.Take();
-  if (read.candidates.empty())
-    return Status(ErrorCode::kUnreadable, Quoted(path.string()) + " has no image; give images of the board");
-  return read;
-}
 
 // Whether `larger` is a chessboard of which one of `board`'s size is a part.
 bool IsPart(const CalibrationBoard& board, const ChessboardSize& larger) {
@@ -143,22 +37,22 @@ struct SeenSize {
   int looked_at = 0;
 };
 
-SeenSize MostSeenSize(const std::vector<const Candidate*>& candidates, int threads) {
-  const int count = std::min(kImagesForSize, static_cast<int>(candidates.size()));
+SeenSize MostSeenSize(const std::vector<cv::Mat>& images, int threads) {
+  const int count = std::min(kImagesForSize, static_cast<int>(images.size()));
   std::vector<std::optional<ChessboardSize>> sizes(static_cast<std::size_t>(count));
   ParallelFor(
       count, threads,
       [&](int i) {
-        const std::size_t at = static_cast<std::size_t>(i) * candidates.size() / static_cast<std::size_t>(count);
-        sizes[static_cast<std::size_t>(i)] = LargestChessboard(candidates[at]->gray);
+        const std::size_t at = static_cast<std::size_t>(i) * images.size() / static_cast<std::size_t>(count);
+        sizes[static_cast<std::size_t>(i)] = LargestChessboard(images[at]);
       },
       1);
-  std::map<std::pair<int, int>, int> images;
+  std::map<std::pair<int, int>, int> images_of_size;
   for (const auto& size : sizes)
-    if (size) ++images[{size->longer, size->shorter}];
+    if (size) ++images_of_size[{size->longer, size->shorter}];
   SeenSize seen;
   seen.looked_at = count;
-  for (const auto& [size, number] : images)
+  for (const auto& [size, number] : images_of_size)
     if (number >= seen.images) seen = {{size.first, size.second}, number, count};
   return seen;
 }
@@ -169,26 +63,24 @@ std::string SeenSentence(const SeenSize& seen, const CalibrationBoard& board) {
          "chessboard:" + SizeName(seen.size) + ":" + FormatDouble(board.spacing_mm);
 }
 
-// Why the board is in none of the images.
-Status NotSeen(const CalibrateRequest& request, const std::vector<Candidate>& candidates, int threads) {
-  std::string sentence = "the " + request.board.Title() + " is in none of the " + std::to_string(candidates.size()) +
-                         " images of " + request.image_path.string() + " that were searched; ";
-  std::vector<const Candidate*> all;
-  for (const Candidate& candidate : candidates) all.push_back(&candidate);
+// Why the board is in none of the images of one camera.
+Status NotSeen(const CalibrateRequest& request, const std::string& source, const std::vector<cv::Mat>& images,
+               int threads) {
+  std::string sentence = "the " + request.board.Title() + " is in none of the " + std::to_string(images.size()) +
+                         " images of " + source + " that were searched; ";
   if (request.board.kind == BoardKind::kChessboard) {
-    const SeenSize seen = MostSeenSize(all, threads);
+    const SeenSize seen = MostSeenSize(images, threads);
     if (2 * seen.images > seen.looked_at && seen.size.longer * seen.size.shorter >= kFewestCorners)
       return {ErrorCode::kInsufficient, sentence + SeenSentence(seen, request.board)};
   }
-  if (std::any_of(all.begin(), all.end(),
-                  [&](const Candidate* candidate) { return IsMirrored(candidate->gray, request.board); }))
+  if (std::any_of(images.begin(), images.end(), [&](const cv::Mat& image) { return IsMirrored(image, request.board); }))
     return {ErrorCode::kInsufficient, sentence + "it is in their mirror images: flip them first"};
   return {ErrorCode::kInsufficient,
           sentence + "check its kind and size, and that all of it is in view, sharp and evenly lit"};
 }
 
 // A part of a larger chessboard looks like a whole one, but another part in every image.
-Status CheckSize(const CalibrateRequest& request, const std::vector<const Candidate*>& with_board, int threads) {
+Status CheckSize(const CalibrateRequest& request, const std::vector<cv::Mat>& with_board, int threads) {
   if (request.board.kind != BoardKind::kChessboard) return Status::Ok();
   const SeenSize seen = MostSeenSize(with_board, threads);
   if (2 * seen.images <= seen.looked_at || !IsPart(request.board, seen.size)) return Status::Ok();
@@ -196,32 +88,128 @@ Status CheckSize(const CalibrateRequest& request, const std::vector<const Candid
           "the " + request.board.Title() + " is a part of what the images show: " + SeenSentence(seen, request.board)};
 }
 
-struct Detections {
-  std::vector<std::optional<BoardView>> of_candidate;
-  bool stopped = false;
-};
+// The board in every image of one camera.
+using Detections = std::vector<std::optional<BoardView>>;
 
-Detections FindBoards(const std::vector<Candidate>& candidates, const CalibrationBoard& board, int threads,
-                      const CalibrateProgress& progress) {
-  Detections found;
-  found.of_candidate.resize(candidates.size());
+// By camera. Nothing where `progress` ended the search.
+std::optional<std::vector<Detections>> FindBoards(const std::vector<BoardImage>& images, const CalibrationBoard& board,
+                                                  int threads, const CalibrateProgress& progress) {
+  const std::size_t cameras = images.front().gray.size();
+  std::vector<Detections> found(cameras, Detections(images.size()));
   std::mutex mutex;
   int done = 0;
+  bool stopped = false;
   ParallelFor(
-      static_cast<int>(candidates.size()), threads,
+      static_cast<int>(images.size()), threads,
       [&](int i) {
         const auto idx = static_cast<std::size_t>(i);
         {
           const std::scoped_lock lock(mutex);
-          if (found.stopped) return;
+          if (stopped) return;
         }
-        found.of_candidate[idx] = FindBoard(candidates[idx].gray, board);
+        for (std::size_t camera = 0; camera < cameras; ++camera)
+          found[camera][idx] = FindBoard(images[idx].gray[camera], board);
         const std::scoped_lock lock(mutex);
         ++done;
-        if (!progress(done, static_cast<int>(candidates.size()))) found.stopped = true;
+        if (!progress(done, static_cast<int>(images.size()))) stopped = true;
       },
       1);
+  if (stopped) return std::nullopt;
   return found;
+}
+
+// What was read and found, whatever is made of it.
+struct BoardRecording {
+  BoardImages read;
+  std::vector<Detections> found;  // by camera
+};
+
+Result<BoardRecording> SearchBoards(const CalibrateRequest& request, const CalibrateOptions& options,
+                                    const CalibrateProgress& progress) {
+  if (Status status = CheckBoardIsSupported(request.board); !status.ok()) return status;
+  auto read = ReadBoardImages(request, options.max_images, progress);
+  if (!read.ok()) return read.status();
+  auto found = FindBoards(read->images, request.board, options.threads, progress);
+  if (!found) return Status(ErrorCode::kInterrupted, "the calibration was stopped");
+  return BoardRecording{*std::move(read), *std::move(found)};
+}
+
+// One camera of the recording, alone. `source` is what messages call its images.
+Result<CalibrateSummary> CalibrateOne(const CalibrateRequest& request, const CalibrateOptions& options,
+                                      const BoardRecording& recording, std::size_t camera, Lenses lenses,
+                                      const std::string& source) {
+  const std::vector<BoardImage>& images = recording.read.images;
+  const Detections& found = recording.found[camera];
+  std::vector<BoardView> seen;
+  std::vector<std::size_t> image_of_seen;
+  std::vector<cv::Mat> all;
+  std::vector<cv::Mat> with_board;
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    all.push_back(images[i].gray[camera]);
+    if (!found[i]) continue;
+    seen.push_back(*found[i]);
+    image_of_seen.push_back(i);
+    with_board.push_back(images[i].gray[camera]);
+  }
+  if (seen.empty()) return NotSeen(request, source, all, options.threads);
+  if (Status status = CheckSize(request, with_board, options.threads); !status.ok()) return status;
+
+  const cv::Size size = all.front().size();
+  const std::vector<int> chosen = ChooseVariedViews(request.board, seen, size.width, size.height, options.max_views);
+  std::vector<BoardView> views;
+  for (const int view : chosen) views.push_back(seen[static_cast<std::size_t>(view)]);
+  auto calibration =
+      CalibrateCamera(request.board, views, size.width, size.height, options.model, options.threads, lenses);
+  if (!calibration.ok()) return Status(calibration.status().code(), source + ": " + calibration.status().message());
+
+  CalibrateSummary summary{.calibration = *std::move(calibration)};
+  summary.images_read = recording.read.count;
+  for (std::size_t i = 0; i < images.size(); ++i)
+    summary.images.push_back({images[i].name, found[i] ? ImageUse::kAlike : ImageUse::kNoBoard});
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    CalibrationImage& image = summary.images[image_of_seen[static_cast<std::size_t>(chosen[i])]];
+    image.use = summary.calibration.views[i].is_outlier ? ImageUse::kOutlier : ImageUse::kUsed;
+    image.view_idx = static_cast<int>(i);
+  }
+  summary.views = std::move(views);
+  summary.covered_share = CoveredShare(summary.views, summary.calibration);
+  summary.advice = CalibrationAdvice(summary.views, summary.calibration);
+  return summary;
+}
+
+// The most different ones of the moments in which both cameras see all of the board, or the same points of it.
+struct BoardPairs {
+  std::vector<BoardView> left;
+  std::vector<BoardView> right;
+};
+
+BoardPairs ChoosePairs(const CalibrateRequest& request, const CalibrateOptions& options,
+                       const BoardRecording& recording) {
+  BoardPairs both;
+  for (std::size_t i = 0; i < recording.read.images.size(); ++i) {
+    if (!recording.found[0][i] || !recording.found[1][i]) continue;
+    both.left.push_back(*recording.found[0][i]);
+    both.right.push_back(*recording.found[1][i]);
+  }
+  const cv::Size size = recording.read.images.front().gray.front().size();
+  BoardPairs chosen;
+  for (const int pair : ChooseVariedViews(request.board, both.left, size.width, size.height, options.max_views)) {
+    chosen.left.push_back(both.left[static_cast<std::size_t>(pair)]);
+    chosen.right.push_back(both.right[static_cast<std::size_t>(pair)]);
+  }
+  return chosen;
+}
+
+// As OpenCV has it: fx, fy, cx, cy and k1, k2, p1, p2.
+StereoCalibration::Eye EyeOf(const Camera& camera) {
+  const std::span<const double> params = camera.params();
+  const bool one_focal_length = camera.model_id() == CameraModelId::kSimplePinhole ||
+                                camera.model_id() == CameraModelId::kSimpleRadial ||
+                                camera.model_id() == CameraModelId::kRadial;
+  const std::size_t first = one_focal_length ? 0 : 1;
+  StereoCalibration::Eye eye{params[0], params[first], params[first + 1], params[first + 2], {0, 0, 0, 0}};
+  for (std::size_t i = first + 3; i < params.size(); ++i) eye.distortion[i - first - 3] = params[i];
+  return eye;
 }
 
 }  // namespace
@@ -237,51 +225,38 @@ void CalibrateOptions::List(OptionTable& table) {
 
 Result<CalibrateSummary> CalibrateImages(const CalibrateRequest& request, const CalibrateOptions& options,
                                          const CalibrateProgress& progress) {
-  if (Status status = CheckBoardIsSupported(request.board); !status.ok()) return status;
-  auto read = ReadAll(request.image_path, options.max_images, progress);
-  if (!read.ok()) return read.status();
-  const std::vector<Candidate>& candidates = read->candidates;
-  const Detections found = FindBoards(candidates, request.board, options.threads, progress);
-  if (found.stopped) return Status(ErrorCode::kInterrupted, "the calibration was stopped");
-
-  std::vector<BoardView> seen;
-  std::vector<std::size_t> candidate_of_seen;
-  std::vector<const Candidate*> with_board;
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    if (!found.of_candidate[i]) continue;
-    seen.push_back(*found.of_candidate[i]);
-    candidate_of_seen.push_back(i);
-    with_board.push_back(&candidates[i]);
-  }
-  if (seen.empty()) return NotSeen(request, candidates, options.threads);
-  if (Status status = CheckSize(request, with_board, options.threads); !status.ok()) return status;
-
-  const cv::Size size = candidates.front().gray.size();
-  const std::vector<int> chosen = ChooseVariedViews(request.board, seen, size.width, size.height, options.max_views);
-  std::vector<BoardView> views;
-  for (const int view : chosen) views.push_back(seen[static_cast<std::size_t>(view)]);
-  auto calibration = CalibrateCamera(request.board, views, size.width, size.height, options.model, options.threads);
-  if (!calibration.ok())
-    return Status(calibration.status().code(), request.image_path.string() + ": " + calibration.status().message());
-
-  CalibrateSummary summary{.calibration = *std::move(calibration)};
-  summary.images_read = read->count;
-  for (std::size_t i = 0; i < candidates.size(); ++i)
-    summary.images.push_back({candidates[i].name, found.of_candidate[i] ? ImageUse::kAlike : ImageUse::kNoBoard});
-  for (std::size_t i = 0; i < chosen.size(); ++i) {
-    CalibrationImage& image = summary.images[candidate_of_seen[static_cast<std::size_t>(chosen[i])]];
-    image.use = summary.calibration.views[i].is_outlier ? ImageUse::kOutlier : ImageUse::kUsed;
-    image.view_idx = static_cast<int>(i);
-  }
-  summary.views = std::move(views);
-  summary.covered_share = CoveredShare(summary.views, summary.calibration);
-  summary.advice = CalibrationAdvice(summary.views, summary.calibration);
-  if (!request.output_path.empty()) {
-    CameraFile file{summary.calibration.camera};
-    file.fps = read->fps;
-    if (Status status = WriteCameraFile(request.output_path.string(), file); !status.ok()) return status;
-  }
+  const auto recording = SearchBoards(request, options, progress);
+  if (!recording.ok()) return recording.status();
+  auto summary = CalibrateOne(request, options, *recording, 0, Lenses::kAll, request.image_path.string());
+  if (!summary.ok() || request.output_path.empty()) return summary;
+  CameraFile file{summary->calibration.camera};
+  file.fps = recording->read.fps;
+  if (Status status = WriteCameraFile(request.output_path.string(), file); !status.ok()) return status;
   return summary;
+}
+
+Result<CalibratePairsSummary> CalibratePairs(const CalibrateRequest& request, const CalibrateOptions& options,
+                                             const CalibrateProgress& progress) {
+  const auto recording = SearchBoards(request, options, progress);
+  if (!recording.ok()) return recording.status();
+  const bool is_apart = !request.right_path.empty();
+  const std::string source = request.image_path.string();
+  auto left =
+      CalibrateOne(request, options, *recording, 0, Lenses::kPerspective, is_apart ? source : source + " (left)");
+  if (!left.ok()) return left.status();
+  auto right = CalibrateOne(request, options, *recording, 1, Lenses::kPerspective,
+                            is_apart ? request.right_path.string() : source + " (right)");
+  if (!right.ok()) return right.status();
+  const BoardPairs pairs = ChoosePairs(request, options, *recording);
+  auto stereo = CalibrateStereo(request.board, left->calibration.camera, right->calibration.camera, pairs.left,
+                                pairs.right, options.threads);
+  if (!stereo.ok()) return stereo.status();
+  if (!request.output_path.empty()) {
+    const StereoCalibration file{EyeOf(stereo->left), EyeOf(stereo->right), stereo->right_from_left,
+                                 ImageSize{stereo->left.width(), stereo->left.height()}};
+    if (Status status = WriteStereoCalibration(request.output_path.string(), file); !status.ok()) return status;
+  }
+  return CalibratePairsSummary{*std::move(left), *std::move(right), *std::move(stereo)};
 }
 
 }  // namespace pliant

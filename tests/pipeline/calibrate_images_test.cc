@@ -3,8 +3,10 @@
 
 #include "pliant/pipeline/calibrate_images.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -13,6 +15,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "pliant/base/files.h"
+#include "pliant/datasets/open_sequence.h"
 #include "pliant/io/camera_file.h"
 #include "support/board_views.h"
 #include "support/temporary_folder.h"
@@ -141,6 +144,100 @@ TEST_F(CalibrateImagesTest, EndsOnRequest) {
   ASSERT_FALSE(summary.ok());
   EXPECT_EQ(summary.status().code(), ErrorCode::kInterrupted);
   EXPECT_FALSE(Exists(request.output_path));
+}
+
+// Pairs of images, of both cameras, of which the right one is 6 mm to the right.
+class CalibratePairsTest : public CalibrateImagesTest {
+ protected:
+  static constexpr double kBaseline_mm = 6;
+  static constexpr std::size_t kPairs = 8;
+
+  struct Images {
+    std::vector<cv::Mat> left;
+    std::vector<cv::Mat> right;
+  };
+
+  // Rendered once for all tests.
+  static const Images& AllImages() {
+    static const Images images = [] {
+      const Rigid3 right_from_left(Eigen::Quaterniond::Identity(), Eigen::Vector3d(-kBaseline_mm, 0, 0));
+      Images rendered;
+      for (const Rigid3& pose : VariedBoardPoses(kBoard, kCamera, 40, 7)) {
+        const auto is_seen = [&](const Eigen::Vector3d& point) {
+          const auto pixel = kCamera.Project(right_from_left * (pose * point));
+          return pixel && kCamera.Contains(*pixel, 8);
+        };
+        if (rendered.left.size() == kPairs || !std::ranges::all_of(kBoard.Points(), is_seen)) continue;
+        rendered.left.push_back(ImageOf(kBoard, kCamera, pose));
+        rendered.right.push_back(ImageOf(kBoard, kCamera, right_from_left * pose));
+      }
+      return rendered;
+    }();
+    return images;
+  }
+
+  // In left/ and right/, and beside each other in both/.
+  void SetUp() override {
+    for (const char* name : {"left", "right", "both"}) fs::create_directories(folder_ / name);
+    const Images& images = AllImages();
+    for (std::size_t i = 0; i < images.left.size(); ++i) {
+      cv::Mat both;
+      cv::hconcat(images.left[i], images.right[i], both);
+      const std::string name = std::to_string(10 + i) + ".png";
+      cv::imwrite(folder_ / "left" / name, images.left[i]);
+      cv::imwrite(folder_ / "right" / name, images.right[i]);
+      cv::imwrite(folder_ / "both" / name, both);
+    }
+  }
+
+  CalibrateRequest Apart() const {
+    return {.image_path = folder_ / "left",
+            .board = kBoard,
+            .output_path = folder_ / "stereo.yaml",
+            .right_path = folder_ / "right"};
+  }
+
+  static Result<CalibratePairsSummary> Pairs(const CalibrateRequest& request) {
+    return CalibratePairs(request, {.model = ModelChoice::kRadial}, [](int, int) { return true; });
+  }
+};
+
+TEST_F(CalibratePairsTest, WritesAStereoCalibrationThatSequencesTake) {
+  const auto summary = Pairs(Apart());
+  ASSERT_TRUE(summary.ok()) << summary.status().message();
+  EXPECT_NEAR(summary->stereo.BaselineMm(), kBaseline_mm, 0.05);
+  const auto file = ReadStereoCalibration(folder_ / "stereo.yaml");
+  ASSERT_TRUE(file.ok()) << file.status().message();
+  ASSERT_TRUE(file->has_value());
+  EXPECT_LT(((*file)->right_from_left.translation - summary->stereo.right_from_left.translation).norm(), 1e-9);
+  EXPECT_NEAR((*file)->left.fx, 400, 1.2);
+  EXPECT_EQ((*file)->image_size->width, 480);
+  CalibrateRequest both = Apart();
+  both.image_path = folder_ / "both";
+  both.right_path.clear();
+  both.pairs = PairImages::kLeftRight;
+  const auto of_both = Pairs(both);
+  ASSERT_TRUE(of_both.ok()) << of_both.status().message();
+  EXPECT_EQ(of_both->stereo.BaselineMm(), summary->stereo.BaselineMm());
+  const auto sequence = OpenSequence({.image_path = folder_ / "both", .camera_path = folder_ / "stereo.yaml"});
+  ASSERT_TRUE(sequence.ok()) << sequence.status().message();
+  ASSERT_TRUE((*sequence)->BaselineMm().has_value());
+  EXPECT_NEAR(*(*sequence)->BaselineMm(), kBaseline_mm, 0.05);
+}
+
+TEST_F(CalibratePairsTest, WrongPairsAreASentenceAndNoFile) {
+  fs::remove(folder_ / "right" / "17.png");
+  const auto unequal = Pairs(Apart());
+  ASSERT_FALSE(unequal.ok());
+  EXPECT_EQ(unequal.status().code(), ErrorCode::kMismatch);
+  EXPECT_THAT(unequal.status().message(), HasSubstr("left' has 8 images and "));
+  CalibrateRequest exchanged = Apart();
+  fs::remove(folder_ / "left" / "17.png");
+  std::swap(exchanged.image_path, exchanged.right_path);
+  const auto wrong = Pairs(exchanged);
+  ASSERT_FALSE(wrong.ok());
+  EXPECT_THAT(wrong.status().message(), HasSubstr("exchange the two"));
+  EXPECT_FALSE(fs::exists(folder_ / "stereo.yaml"));
 }
 
 }  // namespace

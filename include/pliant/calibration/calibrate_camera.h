@@ -40,6 +40,9 @@ struct EnumNames<ModelChoice> {
                                         std::pair{ModelChoice::kOpenCvFisheye, std::string_view("OPENCV_FISHEYE")}};
 };
 
+// Among which ModelChoice::kAuto chooses.
+enum class Lenses { kAll, kPerspective };
+
 // Of one view, in the order of the input.
 struct FittedView {
   bool is_outlier = false;                         // left out: its residuals are larger than the others' by far
@@ -75,6 +78,6 @@ inline constexpr double kLargestFocalLengthSigma = 0.05;
 // Fails with kInsufficient for fewer than kFewestCalibrationViews views, for views that do not determine the focal
 // length (all of one pose, or all parallel to the image), and where no model fits.
 Result<CameraCalibration> CalibrateCamera(const CalibrationBoard& board, std::span<const BoardView> views, int width,
-                                          int height, ModelChoice model, int threads);
+                                          int height, ModelChoice model, int threads, Lenses lenses = Lenses::kAll);
 
 }  // namespace pliant

@@ -73,6 +73,10 @@ inline constexpr double kShortestBaseline_mm = 0.5;
 // rectified. Errors as ReadCameraFile.
 Result<std::optional<StereoCalibration>> ReadStereoCalibration(const std::string& path);
 
+// Writes it as OpenCV does (YAML: image_width, image_height, M1, D1, M2, D2, R, T), so that ReadStereoCalibration gives
+// the same numbers back. Fails with kUnwritable.
+Status WriteStereoCalibration(const std::string& path, const StereoCalibration& calibration);
+
 // Fails with kNotFound, kUnreadable (not a calibration, or damaged) or kInvalidArgument (a calibration that cannot be
 // meant: a wrong number of parameters, not-a-number, an unknown model, no image size, several cameras).
 Result<CameraFile> ReadCameraFile(const std::string& path, const CameraFileOptions& options = {});

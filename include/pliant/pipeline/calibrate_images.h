@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Images or a video of a calibration board in, camera.yaml out. Of more images than Calibrate.max_images the sharpest
-// one of every stretch is looked at; of those that show the board the most different ones are used.
+// Images or a video of a calibration board in, camera.yaml out; of two cameras that see it at the same time their
+// stereo calibration. Of more images than Calibrate.max_images the sharpest one of every stretch is looked at; of those
+// that show the board the most different ones are used.
 #pragma once
 
 #include <atomic>
@@ -18,6 +19,7 @@
 #include "pliant/base/status.h"
 #include "pliant/calibration/board.h"
 #include "pliant/calibration/calibrate_camera.h"
+#include "pliant/calibration/calibrate_stereo.h"
 #include "pliant/calibration/find_board.h"
 
 namespace pliant {
@@ -31,10 +33,25 @@ struct CalibrateOptions {
   void List(OptionTable& table);  // group "Calibrate"
 };
 
+// How one image holds a pair.
+enum class PairImages { kNone, kLeftRight, kTopBottom };
+template <>
+struct EnumNames<PairImages> {
+  static constexpr std::array kNames = {std::pair{PairImages::kNone, std::string_view("none")},
+                                        std::pair{PairImages::kLeftRight, std::string_view("left_right")},
+                                        std::pair{PairImages::kTopBottom, std::string_view("top_bottom")}};
+};
+
 struct CalibrateRequest {
   std::filesystem::path image_path;  // folder of images, native sequence or video
   CalibrationBoard board;
-  std::filesystem::path output_path;  // of camera.yaml; empty: nothing is written
+  std::filesystem::path output_path;  // of camera.yaml, or of the stereo calibration; empty: nothing is written
+  // Of two cameras: where the right one's images are, of the same moments in the same order, or how each image holds
+  // both (the left one's on the left, or on top).
+  std::filesystem::path right_path = {};
+  PairImages pairs = PairImages::kNone;
+
+  bool HasPairs() const { return !right_path.empty() || pairs != PairImages::kNone; }
 };
 
 // What became of an image in which the board was searched for.
@@ -62,6 +79,12 @@ struct CalibrateSummary {
   std::vector<std::string> advice = {};       // what would make it better, a sentence each
 };
 
+struct CalibratePairsSummary {
+  CalibrateSummary left;  // each camera alone
+  CalibrateSummary right;
+  StereoCameras stereo;
+};
+
 // Called as images are done: how many of how many (0: not known). True: go on.
 using CalibrateProgress = std::function<bool(int, int)>;
 
@@ -70,5 +93,11 @@ using CalibrateProgress = std::function<bool(int, int)>;
 // not determine the camera, kInterrupted by `progress`, and kUnwritable. camera.yaml is written at the end only.
 Result<CalibrateSummary> CalibrateImages(const CalibrateRequest& request, const CalibrateOptions& options,
                                          const CalibrateProgress& progress);
+
+// Of a request that has pairs. Writes an OpenCV stereo calibration, in millimeters, as SequenceRequest::camera_path
+// takes it. The models are perspective ones, since pairs are rectified. Fails as CalibrateImages and CalibrateStereo
+// do, and with kMismatch where the two cameras have different numbers of images.
+Result<CalibratePairsSummary> CalibratePairs(const CalibrateRequest& request, const CalibrateOptions& options,
+                                             const CalibrateProgress& progress);
 
 }  // namespace pliant
