@@ -57,6 +57,10 @@ class Citation(unittest.TestCase):
         self.assertIn(f"\nversion: {VERSION}\n", (SOURCE / "CITATION.cff").read_text())
         self.assertIn(f"version = {{{VERSION}}}", (SOURCE / "README.md").read_text())
 
+    def test_the_change_log_has_the_version_and_the_date_of_the_citation(self):
+        date = re.search(r"\ndate-released: (\S+)\n", (SOURCE / "CITATION.cff").read_text()).group(1)
+        self.assertIn(f"\n## {VERSION}, {date}\n", (SOURCE / "CHANGELOG.md").read_text())
+
 
 if __name__ == "__main__":
     unittest.main(argv=sys.argv[:1])

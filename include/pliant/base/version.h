@@ -8,7 +8,7 @@
 
 namespace pliant {
 
-inline constexpr const char* kVersion = "0.1.0";  // CMakeLists.txt reads it from here
+inline constexpr const char* kVersion = "0.2.0";  // CMakeLists.txt reads it from here
 
 // "GNU 12.2.0, x86_64, Release".
 std::string_view BuildText();
