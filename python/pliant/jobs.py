@@ -101,6 +101,52 @@ def calibrate(image_path: StrPath, board: str, output_path: StrPath | None = Non
     return Calibration(**_pliant.calibrate(request, _options(options), on_progress))
 
 
+@dataclass(frozen=True)
+class StereoCalibration:
+    """What pliant.calibrate_stereo found.
+
+    Attributes:
+        left, right: each camera alone.
+        left_camera, right_camera: both, estimated together.
+        right_from_left: 4 x 4, a point of the left camera in the right one, mm.
+        baseline_mm, baseline_sigma_mm: the distance of the cameras, and its standard deviation.
+        error_px: root mean square of the reprojection errors in both.
+    """
+
+    left: Calibration
+    right: Calibration
+    left_camera: _pliant.Camera
+    right_camera: _pliant.Camera
+    right_from_left: NDArray[np.float64]
+    baseline_mm: float
+    baseline_sigma_mm: float
+    error_px: float
+
+
+def calibrate_stereo(image_path: StrPath, board: str, output_path: StrPath | None = None,
+                     options: OptionValues | None = None, *, right_path: StrPath | None = None, pairs: str = "none",
+                     on_progress: Callable[[int, int], Any] | None = None) -> StereoCalibration:
+    """Calibrates two cameras that see a flat board at the same time.
+
+    Args:
+        image_path, board, options, on_progress: see pliant.calibrate. The models are perspective ones.
+        output_path: of the stereo calibration (OpenCV's YAML), as the camera of a sequence takes it; None: it is not
+            written.
+        right_path: images or video of the right camera, in the same order.
+        pairs: "left_right" or "top_bottom" where each image holds both views.
+
+    Raises:
+        pliant.Error: the board is not seen, or the pairs do not determine the cameras. Nothing is written then.
+        ValueError: neither or both of right_path and pairs are given.
+    """
+    if (right_path is None) == (pairs == "none"):
+        raise ValueError("give the right camera's images as right_path, or how each image holds both as pairs")
+    request = {"image_path": os.fspath(image_path), "board": board, "output_path": _text(output_path),
+               "right_path": _text(right_path), "pairs": pairs}
+    found = _pliant.calibrate_stereo(request, _options(options), on_progress)
+    return StereoCalibration(**{**found, "left": Calibration(**found["left"]), "right": Calibration(**found["right"])})
+
+
 def simulate(output_path: StrPath, options: OptionValues | None = None, *, realism: str = "clean",
              on_progress: Callable[[int, int], Any] | None = None) -> None:
     """Renders a scene that deforms as a sequence with depth and poses.

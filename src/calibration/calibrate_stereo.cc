@@ -27,7 +27,8 @@ constexpr int kLossRounds = 3;
 // A pair is left out when its error is so many times the median pair's; no pair fits when the median pair's is so many
 // times that of each camera alone.
 constexpr double kOutlierFactor = 3;
-constexpr int kMaxGroups = 8;  // of pairs that are left out, one group after the other
+constexpr double kShortestBaseline = 1e-3;  // by the distance of the board
+constexpr int kMaxGroups = 8;               // of pairs that are left out, one group after the other
 
 constexpr std::size_t kMostParams = OpenCv::kNumParams;
 using CameraParams = std::array<double, kMostParams>;  // fewer of a smaller model
@@ -260,8 +261,11 @@ std::optional<MountSigmas> JackknifeSigmas(const StereoInput& input, const std::
   return MountSigmas{std::sqrt(share * baseline), std::sqrt(share * rotation)};
 }
 
-Status CheckMount(const Rigid3& right_from_left) {
+Status CheckMount(const Rigid3& right_from_left, double depth_mm) {
   const Eigen::Vector3d center = right_from_left.OriginInSource();
+  if (center.norm() < kShortestBaseline * depth_mm)
+    return {ErrorCode::kInsufficient,
+            "the two cameras are at the same place; are both series of images of the same camera?"};
   if (std::abs(center.x()) < std::abs(center.y()))
     return {ErrorCode::kInsufficient,
             "the second camera is above or below the first one; pairs are of cameras side by side"};
@@ -335,7 +339,7 @@ Result<StereoCameras> CalibrateStereo(const CalibrationBoard& board, const Camer
   if (!SolvePairs(input, outliers, &fit)) return NoRig(median_px, Median(alone_px));
 
   StereoCameras stereo{left, right, ToRigid3(fit.right_from_left)};
-  if (Status status = CheckMount(stereo.right_from_left); !status.ok()) return status;
+  if (Status status = CheckMount(stereo.right_from_left, depth_mm); !status.ok()) return status;
   const auto sigmas = JackknifeSigmas(input, outliers, fit, threads);
   auto refined_left =
       Camera::Create(fit.left_model, left.width(), left.height(), ToVector(fit.left_model, fit.left_params));

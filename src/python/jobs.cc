@@ -22,6 +22,7 @@
 #include "pliant/viewer/figure.h"
 #include "pliant/viewer/output.h"
 #include "pliant/viewer/report.h"
+#include "python/arrays.h"
 #include "python/bind.h"
 #include "python/calibration.h"
 #include "python/errors.h"
@@ -68,21 +69,16 @@ void Simulate(const std::string& output_path, const py::object& options, const s
   RaiseUnlessOk(status);
 }
 
+// Tells Python of images that were searched; stops when that raises, or on Ctrl-C.
+CalibrateProgress Told(const py::object& on_progress, Interrupt* interrupt) {
+  return [&on_progress, interrupt](int done, int total) {
+    if (total > 0 && !on_progress.is_none()) interrupt->Call([&] { on_progress(done, total); });
+    return !interrupt->stop().load();
+  };
+}
+
 // The camera, a standard deviation a parameter, and what else the calibration says of itself.
-py::dict Calibrate(const py::dict& request, const py::object& options, const py::object& on_progress) {
-  const auto calibrate_options = OptionsOf<CalibrateOptions>(options);
-  const CalibrateRequest calibrate_request{.image_path = Text(request, "image_path"),
-                                           .board = ValueOf(ParseBoard(Text(request, "board"))),
-                                           .output_path = Text(request, "output_path")};
-  Interrupt interrupt;
-  const auto summary = ValueOf(WithoutGil(&interrupt, [&] {
-    return CalibrateImages(calibrate_request, calibrate_options, [&](int done, int total) {
-      if (total > 0 && !on_progress.is_none()) interrupt.Call([&] { on_progress(done, total); });
-      return !interrupt.stop().load();
-    });
-  }));
-  if (const std::string figure = Text(request, "figure"); !figure.empty())
-    RaiseUnlessOk(WriteCalibrationFigure(summary, figure));
+py::dict CalibrationDict(const CalibrateSummary& summary) {
   std::vector<std::tuple<std::string, std::string, std::optional<double>>> images;
   for (const CalibrationImage& image : summary.images) {
     const bool is_view = image.view_idx >= 0;
@@ -94,6 +90,39 @@ py::dict Calibrate(const py::dict& request, const py::object& options, const py:
   return py::dict("camera"_a = Calibration{summary.calibration.camera}, "sigmas"_a = summary.calibration.sigmas,
                   "error_px"_a = summary.calibration.rms_px, "covered_share"_a = summary.covered_share,
                   "advice"_a = summary.advice, "images"_a = images);
+}
+
+py::dict Calibrate(const py::dict& request, const py::object& options, const py::object& on_progress) {
+  const auto calibrate_options = OptionsOf<CalibrateOptions>(options);
+  const CalibrateRequest calibrate_request{.image_path = Text(request, "image_path"),
+                                           .board = ValueOf(ParseBoard(Text(request, "board"))),
+                                           .output_path = Text(request, "output_path")};
+  Interrupt interrupt;
+  const auto summary = ValueOf(WithoutGil(&interrupt, [&] {
+    return CalibrateImages(calibrate_request, calibrate_options, Told(on_progress, &interrupt));
+  }));
+  if (const std::string figure = Text(request, "figure"); !figure.empty())
+    RaiseUnlessOk(WriteCalibrationFigure(summary, figure));
+  return CalibrationDict(summary);
+}
+
+// Both cameras, alone and together.
+py::dict CalibrateStereoPairs(const py::dict& request, const py::object& options, const py::object& on_progress) {
+  const auto calibrate_options = OptionsOf<CalibrateOptions>(options);
+  const CalibrateRequest calibrate_request{.image_path = Text(request, "image_path"),
+                                           .board = ValueOf(ParseBoard(Text(request, "board"))),
+                                           .output_path = Text(request, "output_path"),
+                                           .right_path = Text(request, "right_path"),
+                                           .pairs = EnumOf<PairImages>(Text(request, "pairs"), "pairs")};
+  Interrupt interrupt;
+  const auto summary = ValueOf(WithoutGil(
+      &interrupt, [&] { return CalibratePairs(calibrate_request, calibrate_options, Told(on_progress, &interrupt)); }));
+  const StereoCameras& stereo = summary.stereo;
+  using py::literals::operator""_a;
+  return py::dict("left"_a = CalibrationDict(summary.left), "right"_a = CalibrationDict(summary.right),
+                  "left_camera"_a = Calibration{stereo.left}, "right_camera"_a = Calibration{stereo.right},
+                  "right_from_left"_a = MatrixOf(stereo.right_from_left), "baseline_mm"_a = stereo.BaselineMm(),
+                  "baseline_sigma_mm"_a = stereo.baseline_sigma_mm, "error_px"_a = stereo.rms_px);
 }
 
 void Refine(const py::dict& request, const py::object& options, const py::object& on_progress) {
@@ -227,6 +256,7 @@ Texts Report(const py::dict& request, const std::vector<int>& frames, const py::
 void BindJobs(py::module_& module) {
   module.def("simulate", &Simulate);
   module.def("calibrate", &Calibrate);
+  module.def("calibrate_stereo", &CalibrateStereoPairs);
   module.def("refine", &Refine);
   module.def("surface", &Surface);
   module.def("evaluate", &Evaluate);

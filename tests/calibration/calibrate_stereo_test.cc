@@ -124,6 +124,13 @@ TEST(CalibrateStereo, ACameraBelowTheOtherIsRefused) {
   EXPECT_THAT(stereo.status().message(), HasSubstr("above or below"));
 }
 
+TEST(CalibrateStereo, OneCameraTwiceIsNoPair) {
+  const Pairs pairs = MakePairs(8, kNoise_px);
+  const auto stereo = CalibrateStereo(kBoard, kLeft, kLeft, pairs.left, pairs.left, 1);
+  ASSERT_FALSE(stereo.ok());
+  EXPECT_THAT(stereo.status().message(), HasSubstr("at the same place"));
+}
+
 TEST(CalibrateStereo, TwoPairsAreTooFew) {
   const auto stereo = Calibrate(MakePairs(2, kNoise_px));
   ASSERT_FALSE(stereo.ok());

@@ -31,6 +31,26 @@ class Calibrate(TestCase):
     def test_its_options_are_listed(self):
         self.assertEqual(pliant.options("calibrate")["Calibrate.model"], "auto")
 
+    def test_pairs_are_given_in_one_way(self):
+        with self.assertRaisesRegex(ValueError, "right_path"):
+            pliant.calibrate_stereo(SEQUENCE, "chessboard:7x6:2")
+        with self.assertRaisesRegex(ValueError, "right_path"):
+            pliant.calibrate_stereo(SEQUENCE, "chessboard:7x6:2", right_path=SEQUENCE, pairs="left_right")
+
+    def test_pairs_without_the_board_are_an_error(self):
+        with self.assertRaises(pliant.Error) as caught:
+            pliant.calibrate_stereo(SEQUENCE, "chessboard:7x6:2", options={"Calibrate.max_images": 3},
+                                    right_path=SEQUENCE)
+        sentence(self, caught.exception)
+        self.assertIn("is in none of the", str(caught.exception))
+
+    @unittest.skipUnless(BOARDS.exists(), f"there are no images in {BOARDS}")
+    def test_one_camera_twice_is_no_pair(self):
+        with self.assertRaises(pliant.Error) as caught:
+            pliant.calibrate_stereo(BOARDS, "chessboard:7x6:2", options={"Calibrate.model": "RADIAL"},
+                                    right_path=BOARDS)
+        self.assertIn("at the same place", str(caught.exception))
+
     @unittest.skipUnless(BOARDS.exists(), f"there are no images in {BOARDS}")
     def test_a_camera_from_images_of_a_real_board(self):
         found = pliant.calibrate(BOARDS, "chessboard:7x6:2", self.folder / "camera.yaml",
