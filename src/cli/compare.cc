@@ -2,12 +2,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 
 #include "cli/command_line.h"
 #include "cli/commands.h"
+#include "cli/interrupt.h"
 #include "cli/messages.h"
+#include "cli/progress.h"
 #include "cli/run_evaluation.h"
 #include "pliant/datasets/run_sequence.h"
 #include "pliant/evaluation/evaluate_run.h"
@@ -61,6 +64,7 @@ std::vector<std::optional<Evaluation>> EvaluateAll(const Request& request, const
   std::vector<std::optional<Evaluation>> evaluations(request.run_paths.size());
   std::optional<Result<OpenedTruth>> truth;
   const std::vector<SequenceRequest> sequences = SequencesOf(request);
+  JobBars bars(StopOnSignals());
   for (std::size_t i = 0; i < request.run_paths.size(); ++i) {
     if (!truth || sequences[i].image_path != sequences[i - 1].image_path ||
         sequences[i].spare_camera_path != sequences[i - 1].spare_camera_path) {
@@ -68,7 +72,7 @@ std::vector<std::optional<Evaluation>> EvaluateAll(const Request& request, const
       if (!truth->ok()) SayError(truth->status().message());
     }
     if (!truth->ok()) continue;
-    Result<Evaluation> evaluation = EvaluateRun(request.run_paths[i], **truth, options);
+    Result<Evaluation> evaluation = EvaluateRun(request.run_paths[i], **truth, options, std::ref(bars));
     if (evaluation.ok())
       evaluations[i] = *std::move(evaluation);
     else

@@ -1,11 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
+#include <functional>
 #include <string>
 
 #include "cli/command_line.h"
 #include "cli/commands.h"
+#include "cli/interrupt.h"
 #include "cli/messages.h"
+#include "cli/progress.h"
 #include "cli/run_evaluation.h"
 #include "pliant/evaluation/evaluate_run.h"
 #include "pliant/evaluation/report.h"
@@ -96,7 +99,10 @@ int EvaluateCommand(std::span<const std::string> args) {
   if (const auto exit = line.Resolve(table)) return *exit;
   if (const auto exit = CheckArguments(request, line)) return *exit;
 
-  const auto evaluation = EvaluateRun(request, options);
+  const auto evaluation = [&] {
+    JobBars bars(StopOnSignals());
+    return EvaluateRun(request, options, std::ref(bars));
+  }();
   if (!evaluation.ok()) return line.Failure(evaluation.status().message());
   if (!output_path.empty())
     if (const Status status = WriteEvaluation(*evaluation, output_path); !status.ok())

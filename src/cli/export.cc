@@ -3,13 +3,16 @@
 
 #include "pliant/exchange/export.h"
 
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "cli/command_line.h"
 #include "cli/commands.h"
+#include "cli/interrupt.h"
 #include "cli/messages.h"
+#include "cli/progress.h"
 #include "cli/sequence_arguments.h"
 
 namespace pliant::cli {
@@ -60,7 +63,10 @@ int ExportCommand(std::span<const std::string> args) {
   options.List(table);
   if (const auto exit = line.Resolve(table)) return *exit;
 
-  const auto summary = ExportRun(request, options);
+  const auto summary = [&] {
+    JobBars bars(StopOnSignals());
+    return ExportRun(request, options, std::ref(bars));
+  }();
   if (!summary.ok()) return line.Failure(summary.status().message());
   for (const std::string& note : summary->notes) SayNote(note);
   SayResult(std::to_string(summary->frames) + " frames, " + std::to_string(summary->points) + " points, " +

@@ -107,4 +107,14 @@ void Progress::Note(std::string_view text) {
        << std::flush;
 }
 
+bool JobBars::operator()(std::string_view task, int done, int total) {
+  if (!bar_ || task != task_) {
+    bar_.reset();
+    task_ = task;
+    bar_.emplace(task_, total);
+  }
+  bar_->Update(done, "");
+  return !stop_.load();
+}
+
 }  // namespace pliant::cli

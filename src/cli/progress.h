@@ -6,8 +6,10 @@
 //   track  [=========>          ]  45/100  41.3 frames/s  2 s left  498 points
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <iosfwd>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -63,6 +65,21 @@ class Progress {
   Clock::time_point drawn_;
   int lines_ = 0;  // multiples of kLinesEvery that have been reached
   bool line_open_ = false;
+};
+
+// The progress of a job that has several tasks, and its end on request: a bar a task.
+class JobBars {
+ public:
+  // Ends the job when this is set; must outlive it.
+  explicit JobBars(const std::atomic<bool>& stop) : stop_(stop) {}
+
+  // As a JobProgress: false: stop.
+  bool operator()(std::string_view task, int done, int total);
+
+ private:
+  const std::atomic<bool>& stop_;
+  std::string task_;
+  std::optional<Progress> bar_;
 };
 
 }  // namespace pliant::cli

@@ -4,6 +4,7 @@
 #include "pliant/viewer/report.h"
 
 #include <cstdio>
+#include <functional>
 
 #include "cli/command_line.h"
 #include "cli/commands.h"
@@ -74,7 +75,10 @@ void SayNotes(const std::vector<std::string>& notes) {
 }
 
 int WritePage(const CommandLine& line, const ReportArguments& arguments, const ReportOptions& options) {
-  const auto summary = WriteReportPage(arguments.view, options, arguments.output_path);
+  const auto summary = [&] {
+    JobBars bars(StopOnSignals());
+    return WriteReportPage(arguments.view, options, arguments.output_path, std::ref(bars));
+  }();
   if (!summary.ok()) return line.Failure(summary.status().message());
   SayNotes(summary->notes);
   char text[128];

@@ -19,13 +19,13 @@ Result<EvaluationInput> ReadInput(const std::string& run_path, const OpenedTruth
 }
 
 Result<Evaluation> EvaluateWithTruth(const EvaluationInput& run, const OpenedTruth& truth,
-                                     const EvaluationOptions& options) {
+                                     const EvaluationOptions& options, const JobProgress& progress) {
   const Result<MaterialTruth*> material =
       truth.material.ok() ? Result<MaterialTruth*>(truth.material->get()) : truth.material.status();
   const auto surface =
       OpenSurfaceTruth(options.surface_from, run, *truth.sequence, truth.request, options.points.max_depth_step);
   if (!surface.ok()) return surface.status();
-  Result<Evaluation> evaluation = Evaluate(run, *truth.sequence, material, options, surface->get());
+  Result<Evaluation> evaluation = Evaluate(run, *truth.sequence, material, options, surface->get(), progress);
   if (evaluation.ok()) evaluation->sequence = truth.request.image_path.string();
   return evaluation;
 }
@@ -119,17 +119,18 @@ Result<SfmPoints> OpenSfmPoints(const std::filesystem::path& path, const Sequenc
   return ReadSfmModel(path, *sequence);
 }
 
-Result<Evaluation> EvaluateRun(const std::string& run_path, const OpenedTruth& truth,
-                               const EvaluationOptions& options) {
-  return EvaluateRun(run_path, RunReferences{.truth = &truth}, options);
+Result<Evaluation> EvaluateRun(const std::string& run_path, const OpenedTruth& truth, const EvaluationOptions& options,
+                               const JobProgress& progress) {
+  return EvaluateRun(run_path, RunReferences{.truth = &truth}, options, progress);
 }
 
 Result<Evaluation> EvaluateRun(const std::string& run_path, const RunReferences& references,
-                               const EvaluationOptions& options) {
+                               const EvaluationOptions& options, const JobProgress& progress) {
   const Result<EvaluationInput> run = ReadInput(run_path, references.truth, options);
   if (!run.ok()) return run.status();
-  Result<Evaluation> evaluation = references.truth != nullptr ? EvaluateWithTruth(*run, *references.truth, options)
-                                                              : EvaluateWithoutTruth(*run, options);
+  Result<Evaluation> evaluation = references.truth != nullptr
+                                      ? EvaluateWithTruth(*run, *references.truth, options, progress)
+                                      : EvaluateWithoutTruth(*run, options);
   if (!evaluation.ok()) return evaluation;
   if (Status status = AddSfm(*run, references, options, &*evaluation); !status.ok()) return status;
   if (Status status = AddDense(*run, references, options, &*evaluation); !status.ok()) return status;
@@ -144,7 +145,8 @@ Result<Evaluation> EvaluateRun(const std::string& run_path, const RunReferences&
   return evaluation;
 }
 
-Result<Evaluation> EvaluateRun(const EvaluationRequest& request, const EvaluationOptions& options) {
+Result<Evaluation> EvaluateRun(const EvaluationRequest& request, const EvaluationOptions& options,
+                               const JobProgress& progress) {
   std::optional<OpenedTruth> truth;
   if (!request.sequence_path.empty()) {
     auto opened =
@@ -164,7 +166,7 @@ Result<Evaluation> EvaluateRun(const EvaluationRequest& request, const Evaluatio
   }
   return EvaluateRun(request.run_path,
                      {truth ? &*truth : nullptr, sfm ? &*sfm : nullptr, request.other_runs, request.surface_path},
-                     options);
+                     options, progress);
 }
 
 }  // namespace pliant

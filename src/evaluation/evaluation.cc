@@ -228,7 +228,7 @@ void EvaluationOptions::List(OptionTable& table) {
 
 Result<Evaluation> Evaluate(const EvaluationInput& run, const Sequence& sequence,
                             const Result<MaterialTruth*>& material, const EvaluationOptions& options,
-                            SurfaceTruth* surface) {
+                            SurfaceTruth* surface, const JobProgress& progress) {
   if (Status status = CheckBelongsTo(run, sequence, options.matching); !status.ok()) return status;
   Result<Evaluation> begun = Begin(run, &sequence.camera());
   if (!begun.ok()) return begun.status();
@@ -239,9 +239,12 @@ Result<Evaluation> Evaluate(const EvaluationInput& run, const Sequence& sequence
     return Status(ErrorCode::kInvalidArgument, "SurfaceSource pairs needs an opened PairTruth");
   const std::unique_ptr<SurfaceTruth> images = SurfaceTruthFromDepthImages(sequence, options.points.max_depth_step);
   if (surface == nullptr) surface = images.get();
+  int done = 0;
   for (const EvaluationFrame& frame : run.frames) {
-    if (!frame.cam_from_world) continue;
-    if (Status status = CollectFrame(frame, sequence, options, surface, &truth); !status.ok()) return status;
+    if (frame.cam_from_world)
+      if (Status status = CollectFrame(frame, sequence, options, surface, &truth); !status.ok()) return status;
+    if (Status status = Tell(progress, "evaluate", ++done, static_cast<int>(run.frames.size())); !status.ok())
+      return status;
   }
   if (truth.own_pair)
     evaluation.notes.push_back(

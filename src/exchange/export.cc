@@ -132,12 +132,14 @@ Status ExportTum(const RunSource& source, const ExportOptions& /*options*/, cons
   return WriteFileAtomically(folder + "/trajectory.txt", lines);
 }
 
-Result<ExportSummary> ExportRun(const ExportRequest& request, const ExportOptions& options) {
+Result<ExportSummary> ExportRun(const ExportRequest& request, const ExportOptions& options,
+                                const JobProgress& progress) {
   const auto format = FindFormat(request.format);
   if (!format.ok()) return format.status();
   if (Status status = CheckNeeds(**format, request); !status.ok()) return status;
-  const auto sources = ReadRunSources(request, options.stride);
+  auto sources = ReadRunSources(request, options.stride);
   if (!sources.ok()) return sources.status();
+  for (RunSource& source : *sources) source.progress = progress;
   ExportSummary summary;
   for (std::size_t k = 0; k < sources->size(); ++k) {
     const RunSource& source = (*sources)[k];

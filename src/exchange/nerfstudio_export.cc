@@ -113,7 +113,10 @@ Status ExportNerfstudio(const RunSource& source, const ExportOptions& /*options*
   json["ply_file_path"] = kPointsFile;
   json["unit"] = unit;  // nerfstudio passes over it
   json["frames"] = Json::array();
+  int done = 0;
   for (const SourceFrame& frame : source.frames) {
+    if (Status status = Tell(source.progress, "export", ++done, static_cast<int>(source.frames.size())); !status.ok())
+      return status;
     const auto image = images->Read(frame);
     if (!image.ok()) return image.status();
     auto entry = WriteFrame(*staged, source, frame, *image, unit);

@@ -110,6 +110,9 @@ Status ForEachFrame(const RunSource& source, const FrameFunction& function) {
   std::vector<int> frames_idx;
   for (const SourceFrame& frame : source.frames) frames_idx.push_back(frame.frame_idx);
   return ForEachFrame(source.run_path, frames_idx, [&](std::size_t k, const auto& observations) {
+    if (Status status = Tell(source.progress, "export", static_cast<int>(k + 1), static_cast<int>(frames_idx.size()));
+        !status.ok())
+      return status;
     return function(source.frames[k], observations);
   });
 }

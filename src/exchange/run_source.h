@@ -37,6 +37,7 @@ struct RunSource {
   std::vector<CanonicalPoint> points;    // seen in one of them, by id
   std::int64_t num_observations = 0;     // in all of them
   std::vector<std::string> notes;
+  JobProgress progress = {};  // told of frames that are written; may be empty
 };
 
 // Every `stride`-th tracked frame of a run, of these those that the surface, where one is asked for, has a depth of;

@@ -10,6 +10,7 @@
 
 #include <pybind11/stl.h>
 
+#include "pliant/base/job_progress.h"
 #include "pliant/evaluation/evaluate_run.h"
 #include "pliant/evaluation/report.h"
 #include "pliant/exchange/export.h"
@@ -49,6 +50,10 @@ auto WithoutGil(Interrupt* interrupt, const Job& job) {
   }();
   interrupt->Raise();
   return result;
+}
+
+JobProgress EndingBy(const Interrupt& interrupt) {
+  return [&interrupt](std::string_view /*task*/, int /*done*/, int /*total*/) { return !interrupt.stop().load(); };
 }
 
 void Simulate(const std::string& output_path, const py::object& options, const std::string& realism,
@@ -180,8 +185,8 @@ std::string Evaluate(const py::dict& request, const py::object& options, const s
                                              .other_runs = AllTexts(request, "other_runs"),
                                              .track_file = {.path = Text(request, "track_file_path")}};
   Interrupt interrupt;
-  const auto evaluation =
-      ValueOf(WithoutGil(&interrupt, [&] { return EvaluateRun(evaluation_request, evaluation_options); }));
+  const auto evaluation = ValueOf(
+      WithoutGil(&interrupt, [&] { return EvaluateRun(evaluation_request, evaluation_options, EndingBy(interrupt)); }));
   if (!output_path.empty()) RaiseUnlessOk(WriteEvaluation(evaluation, output_path));
   return EvaluationJson(evaluation);
 }
@@ -210,7 +215,8 @@ py::dict Export(const py::dict& request, const py::object& options) {
                                      .mask_path = Text(request, "mask_path"),
                                      .surface_path = Text(request, "surface_path")};
   Interrupt interrupt;
-  const auto summary = ValueOf(WithoutGil(&interrupt, [&] { return ExportRun(export_request, export_options); }));
+  const auto summary =
+      ValueOf(WithoutGil(&interrupt, [&] { return ExportRun(export_request, export_options, EndingBy(interrupt)); }));
   py::dict done;
   done["frames"] = summary.frames;
   done["points"] = summary.points;
@@ -219,8 +225,9 @@ py::dict Export(const py::dict& request, const py::object& options) {
   return done;
 }
 
-Result<Texts> WritePage(const ViewRequest& view, const ReportOptions& options, const std::string& output_path) {
-  const auto summary = WriteReportPage(view, options, output_path);
+Result<Texts> WritePage(const ViewRequest& view, const ReportOptions& options, const std::string& output_path,
+                        const Interrupt& interrupt) {
+  const auto summary = WriteReportPage(view, options, output_path, EndingBy(interrupt));
   if (!summary.ok()) return summary.status();
   return summary->notes;
 }
@@ -246,7 +253,7 @@ Texts Report(const py::dict& request, const std::vector<int>& frames, const py::
   Interrupt interrupt;
   return ValueOf(WithoutGil(&interrupt, [&]() -> Result<Texts> {
     if (output == ViewOutput::kFigure) return WriteFigure(view, figure_options, frames, output_path);
-    if (output == ViewOutput::kPage) return WritePage(view, report_options, output_path);
+    if (output == ViewOutput::kPage) return WritePage(view, report_options, output_path, interrupt);
     return WriteFilm(view, figure_options, output_path, [&](int, int) { return !interrupt.stop(); });
   }));
 }

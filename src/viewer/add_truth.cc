@@ -157,9 +157,10 @@ EvaluationInput FramesOf(const ViewedRun& run) {
   return frames;
 }
 
-Result<Evaluation> AddTruth(const std::string& run_path, const OpenedTruth& truth, ViewedRun* run) {
+Result<Evaluation> AddTruth(const std::string& run_path, const OpenedTruth& truth, const JobProgress& progress,
+                            ViewedRun* run) {
   const EvaluationOptions options;
-  Result<Evaluation> evaluation = EvaluateRun(run_path, truth, options);
+  Result<Evaluation> evaluation = EvaluateRun(run_path, truth, options, progress);
   if (!evaluation.ok()) return evaluation.status();
   AddErrors(*evaluation, run);
   if (!evaluation->surface) return evaluation;

@@ -18,6 +18,7 @@ EvaluationInput FramesOf(const ViewedRun& run);
 
 // Adds errors, scales and each point's true position to a run in its own worlds, and gives the figures. Fails as
 // EvaluateRun does; a sequence without truth adds nothing.
-Result<Evaluation> AddTruth(const std::string& run_path, const OpenedTruth& truth, ViewedRun* run);
+Result<Evaluation> AddTruth(const std::string& run_path, const OpenedTruth& truth, const JobProgress& progress,
+                            ViewedRun* run);
 
 }  // namespace pliant

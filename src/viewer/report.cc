@@ -24,13 +24,13 @@ void ReportOptions::List(OptionTable& table) {
 bool HasReportPage() { return CheckPageAsset().ok(); }
 
 Result<ReportSummary> WriteReportPage(const ViewRequest& request, const ReportOptions& options,
-                                      const std::string& output_path) {
-  auto view = OpenView(request, options.view);
+                                      const std::string& output_path, const JobProgress& progress) {
+  auto view = OpenView(request, options.view, progress);
   if (!view.ok()) return view.status();
   if (Status status = CheckPageAsset(); !status.ok()) return status;
   ViewImages images;
   if (view->sequence) {
-    auto read = ReadViewImages(options, &*view);
+    auto read = ReadViewImages(options, progress, &*view);
     if (!read.ok()) return read.status();
     images = *std::move(read);
   }

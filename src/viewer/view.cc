@@ -172,7 +172,7 @@ void Move(const Sim3& world_from_run, int submap, ViewedRun* run) {
   }
 }
 
-Result<View> OpenView(const ViewRequest& request, const ViewOptions& options) {
+Result<View> OpenView(const ViewRequest& request, const ViewOptions& options, const JobProgress& progress) {
   View view;
   auto opened = OpenItsSequence(request, &view);
   if (!opened.ok()) return opened.status();
@@ -195,7 +195,7 @@ Result<View> OpenView(const ViewRequest& request, const ViewOptions& options) {
     if (sequence && fits.ok()) {
       has_images = true;
       if (!SubmapsOf(run).empty()) {
-        auto evaluated = AddTruth(run_path, *sequence, &run);
+        auto evaluated = AddTruth(run_path, *sequence, progress, &run);
         if (!evaluated.ok()) return evaluated.status();
         evaluation = *std::move(evaluated);
       }

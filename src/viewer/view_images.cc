@@ -84,7 +84,7 @@ std::string ToJpeg(const cv::Mat& image, int quality) {
   return {bytes.begin(), bytes.end()};
 }
 
-Result<ViewImages> ReadViewImages(const ReportOptions& options, View* view) {
+Result<ViewImages> ReadViewImages(const ReportOptions& options, const JobProgress& progress, View* view) {
   std::set<int> wanted;
   for (const ViewedRun& run : view->runs)
     for (const ViewedFrame& frame : run.frames) wanted.insert(frame.row.frame_idx);
@@ -94,7 +94,9 @@ Result<ViewImages> ReadViewImages(const ReportOptions& options, View* view) {
   if (!source.ok()) return source.status();
   std::vector<FirstPatches> first(view->runs.size());
   std::vector<std::size_t> position(view->runs.size(), 0);
+  int done = 0;
   for (const int frame_idx : wanted) {
+    if (Status status = Tell(progress, "images", done++, static_cast<int>(wanted.size())); !status.ok()) return status;
     const auto image = source->At(frame_idx);
     if (!image.ok()) {
       view->notes.push_back("later images are not shown: " + image.status().message());

@@ -31,6 +31,6 @@ std::string ToJpeg(const cv::Mat& image, int quality);
 // Reads the frames of the view's runs once. Every second image is left out, as often as it takes for those that stay to
 // fit into the options' max_image_mb. An image that cannot be read ends the reading and is a note. Gain and bias of
 // every observation are found by least squares over an 11 x 11 patch around its pixel. Fails as OpenSequence does.
-Result<ViewImages> ReadViewImages(const ReportOptions& options, View* view);
+Result<ViewImages> ReadViewImages(const ReportOptions& options, const JobProgress& progress, View* view);
 
 }  // namespace pliant

@@ -58,6 +58,24 @@ TEST(Evaluate, IsZeroWithoutNoiseWhateverTheScale) {
   EXPECT_THAT(evaluation->notes, testing::ElementsAre(HasSubstr("no material error")));
 }
 
+TEST(Evaluate, TellsOfEveryFrameAndEndsOnRequest) {
+  std::vector<int> told;
+  const auto up_to = [&](int last) {
+    told.clear();
+    return Evaluate(MakeRun(8, 3, 0), TruthSequence(8), kNoMaterial, {}, nullptr,
+                    [&, last](std::string_view task, int done, int total) {
+                      EXPECT_EQ(task, "evaluate");
+                      EXPECT_EQ(total, 8);
+                      told.push_back(done);
+                      return done < last;
+                    });
+  };
+  EXPECT_TRUE(up_to(9).ok());
+  EXPECT_THAT(told, testing::ElementsAre(1, 2, 3, 4, 5, 6, 7, 8));
+  EXPECT_EQ(up_to(3).status().code(), ErrorCode::kInterrupted);
+  EXPECT_EQ(told.size(), 3U);
+}
+
 TEST(Evaluate, TellsWhatIsMissingAndGoesOnWithTheRest) {
   const auto depth = Evaluate(MakeRun(8, 1, 1), TruthSequence(8, TruthSequence::Truth::kDepthOnly), kNoMaterial, {});
   ASSERT_TRUE(depth.ok());

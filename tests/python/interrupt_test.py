@@ -8,7 +8,7 @@ import threading
 import unittest
 
 import pliant
-from support import SEQUENCE, TestCase
+from support import RUN, SEQUENCE, TestCase
 
 
 def interrupt_after(seconds):
@@ -47,6 +47,14 @@ class CtrlC(TestCase):
                             on_progress=lambda done, total: timers or timers.append(interrupt_after(0.3)))
         self.assertGreater(len(list((self.folder / "seq" / "images").iterdir())), 0)
         self.assertTrue((self.folder / "seq" / "camera.yaml").exists())
+
+    def test_an_evaluation_ends_and_leaves_nothing(self):
+        out = self.folder / "evaluation"
+        timer = interrupt_after(0.05)
+        with self.assertRaises(KeyboardInterrupt):
+            pliant.evaluate(RUN, SEQUENCE, output_path=out)
+        timer.join()
+        self.assertFalse(out.exists())
 
     def test_what_python_does_about_a_signal_is_as_before(self):
         before = signal.getsignal(signal.SIGINT)

@@ -5,6 +5,9 @@
 
 #include <cmath>
 #include <filesystem>
+#include <set>
+#include <string>
+#include <string_view>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -45,6 +48,26 @@ class ReportTest : public testing::Test {
   TestFolder folder_;
   std::string sequence_;
 };
+
+TEST_F(ReportTest, EndsOnRequestAndLeavesTheReportBefore) {
+  WriteSmallSequence(folder_.Path("seq"), Truth::kDepthAndPoses);
+  sequence_ = folder_.Path("seq");
+  ASSERT_TRUE(Write().ok());
+  const std::string before = folder_.Read("report.html");
+  std::set<std::string> tasks;
+  for (const std::string last : {"evaluate", "images"}) {
+    const auto summary =
+        WriteReportPage({.run_paths = {folder_.Path("run")}, .sequence_path = sequence_, .camera_path = ""}, {},
+                        folder_.Path("report.html"), [&](std::string_view task, int /*done*/, int total) {
+                          EXPECT_GE(total, kRunFrames);
+                          tasks.emplace(task);
+                          return task != last;
+                        });
+    EXPECT_EQ(summary.status().code(), ErrorCode::kInterrupted);
+    EXPECT_EQ(folder_.Read("report.html"), before);
+  }
+  EXPECT_THAT(tasks, ElementsAre("evaluate", "images"));
+}
 
 TEST_F(ReportTest, HoldsTheRun) {
   const auto summary = Write();

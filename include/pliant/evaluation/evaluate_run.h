@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "pliant/base/job_progress.h"
 #include "pliant/base/status.h"
 #include "pliant/datasets/open_sequence.h"
 #include "pliant/datasets/sequence.h"
@@ -39,7 +40,8 @@ Result<SfmPoints> OpenSfmPoints(const std::filesystem::path& path, const Sequenc
 
 // Reads the run and evaluates, against points of structure from motion too where the sequence has some. Fails as
 // ReadEvaluationInput and Evaluate do.
-Result<Evaluation> EvaluateRun(const std::string& run_path, const OpenedTruth& truth, const EvaluationOptions& options);
+Result<Evaluation> EvaluateRun(const std::string& run_path, const OpenedTruth& truth, const EvaluationOptions& options,
+                               const JobProgress& progress = {});
 
 // Evaluates a file of tracks on its own, in all frames of the sequence. Fails as ReadTracksOfSequence and
 // EvaluateTracks.
@@ -57,7 +59,7 @@ struct RunReferences {
 // (`references.sfm`; those of the sequence leave a note) and AddConsistency, and with kNotFound where neither run nor
 // sequence says how large the images are.
 Result<Evaluation> EvaluateRun(const std::string& run_path, const RunReferences& references,
-                               const EvaluationOptions& options);
+                               const EvaluationOptions& options, const JobProgress& progress = {});
 
 // The same by the paths of all of it.
 struct EvaluationRequest {
@@ -69,6 +71,7 @@ struct EvaluationRequest {
   std::vector<std::string> other_runs = {};  // likewise
   TrackFileOptions track_file = {};          // where run_path is empty: compared with the truth instead of a run
 };
-Result<Evaluation> EvaluateRun(const EvaluationRequest& request, const EvaluationOptions& options);
+Result<Evaluation> EvaluateRun(const EvaluationRequest& request, const EvaluationOptions& options,
+                               const JobProgress& progress = {});
 
 }  // namespace pliant

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "pliant/base/job_progress.h"
 #include "pliant/base/options.h"
 #include "pliant/base/status.h"
 #include "pliant/datasets/sequence.h"
@@ -90,9 +91,10 @@ struct Evaluation {
 // kMismatch when run and sequence do not belong together (CheckBelongsTo), kInsufficient when no frame was tracked,
 // kNotFound when the sequence has not the truth for a part or a protocol that
 // was asked for; with what a part reports that was asked for, and with what the truth reports when it cannot be read.
+// `progress` is told of the frames (task "evaluate").
 Result<Evaluation> Evaluate(const EvaluationInput& run, const Sequence& sequence,
                             const Result<MaterialTruth*>& material, const EvaluationOptions& options,
-                            SurfaceTruth* surface = nullptr);
+                            SurfaceTruth* surface = nullptr, const JobProgress& progress = {});
 
 // What can be said of a run without its sequence: survival, and reprojection where its folder has its camera. Fails
 // with kInsufficient when no frame was tracked, and with kNotFound where a part was asked for.

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "pliant/base/job_progress.h"
 #include "pliant/base/options.h"
 #include "pliant/base/status.h"
 #include "pliant/viewer/view.h"
@@ -36,8 +37,9 @@ struct ReportSummary {
 bool HasReportPage();
 
 // Replaces the file at once: a reader sees the old one or the new one. Fails as OpenView does, with kUnwritable, and
-// with kNotFound in a build without the page.
+// with kNotFound in a build without the page. `progress` is told of frames that are compared with their truth and of
+// images.
 Result<ReportSummary> WriteReportPage(const ViewRequest& request, const ReportOptions& options,
-                                      const std::string& output_path);
+                                      const std::string& output_path, const JobProgress& progress = {});
 
 }  // namespace pliant

@@ -16,6 +16,7 @@
 #include <Eigen/Core>
 
 #include "pliant/base/ids.h"
+#include "pliant/base/job_progress.h"
 #include "pliant/base/options.h"
 #include "pliant/base/status.h"
 #include "pliant/camera/camera.h"
@@ -123,7 +124,7 @@ std::string RunName(const std::string& run_path);
 // what reading a run or its truth fails with, kMismatch where a run is not of the sequence that was named, and
 // kInsufficient where no run has a frame. A sequence that was not named, and is missing or not that of a run, is a
 // note.
-Result<View> OpenView(const ViewRequest& request, const ViewOptions& options);
+Result<View> OpenView(const ViewRequest& request, const ViewOptions& options, const JobProgress& progress = {});
 
 // The run's world (or that of one of its submaps) into another one.
 void Move(const Sim3& world_from_run, int submap, ViewedRun* run);
