@@ -10,6 +10,7 @@
 #include <iterator>
 #include <set>
 
+#include "io/former_run.h"
 #include "io/run_format.h"
 #include "io/run_rows.h"
 #include "pliant/base/files.h"
@@ -30,42 +31,12 @@ Status Unwritable(const std::string& path, const std::error_code& error) {
                                       "; choose another folder or change its permissions"};
 }
 
-// A killed run says of no submaps, and has no models.
-std::vector<std::string> FilesOfRun(int submaps) {
-  std::vector<std::string> files(kRunFiles.begin(), kRunFiles.end());
-  for (int submap = 0; submap < std::max(1, submaps); ++submap) {
-    if (submap > 0) files.push_back(SubmapPly(submap));
-    for (const std::string_view name : kModelFiles)
-      files.push_back(SubmapModel(submap, submaps) + "/" + std::string(name));
-    if (submaps > 1) files.push_back(SubmapModel(submap, submaps));
-  }
-  return files;
-}
-
 // Makes the folder, and takes it: two runs in one folder would each remove the other's files.
 Result<FolderLock> TakeFolder(const std::string& path) {
   std::error_code error;
   fs::create_directories(path, error);
   if (error) return Unwritable(path, error);
   return FolderLock::Take(path);
-}
-
-// Empties the folder of a former run.
-Status EmptyFolder(const std::string& path) {
-  std::error_code error;
-  const bool empty = fs::is_empty(path, error);
-  if (error) return Unwritable(path, error);
-  if (empty) return Status::Ok();
-  const auto run = ReadRunSummary(path + "/run.json");
-  if (!run.ok())
-    return {ErrorCode::kInvalidArgument,
-            "the folder " + Quoted(path) + " holds files that are not a run's; give a new or an empty folder"};
-  for (const std::string& name : FilesOfRun(run->submaps)) {
-    fs::remove(fs::path(path) / name, error);
-    if (error == std::errc::directory_not_empty) continue;  // with somebody else's files
-    if (error) return Unwritable(path, error);
-  }
-  return Status::Ok();
 }
 
 // Counts are in the order of the first of each.
@@ -97,6 +68,7 @@ void AppendPoseCovariance(int frame_idx, const PoseCovariance& covariance, std::
 struct RunWriter::State {
   std::string path;
   FolderLock lock;
+  FormerRun former;
   Camera camera;
   RunColumns columns;
   RunWriterOptions options;
@@ -140,7 +112,8 @@ Result<RunWriter> RunWriter::Create(const std::string& output_path, const Camera
                                     const RunWriterOptions& options) {
   auto lock = TakeFolder(output_path);
   if (!lock.ok()) return lock.status();
-  if (Status status = EmptyFolder(output_path); !status.ok()) return status;
+  auto former = FormerRun::SetAside(output_path);
+  if (!former.ok()) return former.status();
   RunSummary summary;
   summary.description = std::move(description);
   RunDescription& paths = summary.description;
@@ -163,9 +136,9 @@ Result<RunWriter> RunWriter::Create(const std::string& output_path, const Camera
   if (Status status = frames->Append(header + "\n"); !status.ok()) return status;
   if (Status status = observations->Append(std::string(kObservationColumns) + "\n"); !status.ok()) return status;
 
-  auto state = std::make_unique<State>(State{output_path, *std::move(lock), camera, std::move(columns), options,
-                                             std::move(trajectory).value(), std::move(frames).value(),
-                                             std::move(observations).value()});
+  auto state = std::make_unique<State>(State{output_path, *std::move(lock), *std::move(former), camera,
+                                             std::move(columns), options, std::move(trajectory).value(),
+                                             std::move(frames).value(), std::move(observations).value()});
   state->summary = std::move(summary);
   state->stage_total_ms.assign(state->columns.stages.size(), 0.0);
   return RunWriter(std::move(state));
@@ -300,6 +273,7 @@ Status RunWriter::Write(const FrameReport& report) {
   if (Status status = s.AddPoints(report); !status.ok()) return status;
   s.Count(report);
   s.failure = s.WriteRows(report);
+  if (s.failure.ok() && report.cam_from_world) s.former.Forget();
   if (report.merge) s.Merge(*report.merge);
   return s.failure;
 }
@@ -398,6 +372,14 @@ Status RunWriter::Finish(RunStatus run_status, const std::string& note) {
   if (!s.coverages.empty()) s.summary.median_coverage = Median(std::move(s.coverages));
   s.summary.status = status.ok() ? run_status : RunStatus::kFailed;
   s.summary.note = status.ok() ? note : status.message();
+  // What ran to its end is a result even without a map; what did not takes nobody's place.
+  const bool has_ended = s.summary.status == RunStatus::kCompleted || s.summary.status == RunStatus::kLost;
+  if (s.former.IsAside() && !has_ended) {
+    s.former.Restore();
+    s.summary.note += "; the run that was in the folder before is still there";
+    return status;
+  }
+  s.former.Forget();
   const Status written = WriteRunSummary(s.path + "/run.json", s.summary);
   return status.ok() ? written : status;
 }

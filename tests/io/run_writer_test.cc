@@ -6,6 +6,8 @@
 #include <cmath>
 #include <csignal>
 #include <filesystem>
+#include <map>
+#include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -34,6 +36,64 @@ TEST(RunWriter, ReplacesAFormerRunAndNothingElse) {
   EXPECT_EQ(refused.status().code(), ErrorCode::kInvalidArgument);
   const auto no_folder = RunWriter::Create(folder.Path("other.txt/run"), TestCamera(), {}, "", {kCosts, kStages});
   EXPECT_EQ(no_folder.status().code(), ErrorCode::kUnwritable);
+}
+
+// The bytes of all files of a folder, by their names.
+std::map<std::string, std::string> ContentOf(const TestFolder& folder, const std::string& name) {
+  std::map<std::string, std::string> content;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder.Path(name)))
+    if (entry.is_regular_file()) {
+      const std::string path = std::filesystem::relative(entry.path(), folder.Path("")).string();
+      content[path] = folder.Read(path);
+    }
+  return content;
+}
+
+TEST(RunWriter, ARunThatFailsBeforeItHasAPoseLeavesTheFormerOne) {
+  const TestFolder folder;
+  WriteRun(folder.Path("run"), 5);
+  const auto former = ContentOf(folder, "run");
+  for (const RunStatus status : {RunStatus::kFailed, RunStatus::kInterrupted}) {
+    RunWriter writer = Writer(folder.Path("run"));
+    ASSERT_TRUE(writer.Write(Report(0)).ok());
+    EXPECT_TRUE(writer.Finish(status, "the image is damaged").ok());
+    EXPECT_EQ(writer.summary().note, "the image is damaged; the run that was in the folder before is still there");
+    EXPECT_EQ(ContentOf(folder, "run"), former);
+  }
+  { const RunWriter without_finish = Writer(folder.Path("run")); }
+  EXPECT_EQ(ContentOf(folder, "run"), former);
+}
+
+TEST(RunWriter, ARunWithAPoseOrAnEndTakesThePlaceOfTheFormerOne) {
+  for (const bool has_pose : {true, false}) {
+    const TestFolder folder;
+    WriteRun(folder.Path("run"), 5);
+    RunWriter writer = Writer(folder.Path("run"));
+    ASSERT_TRUE(writer.Write(Report(has_pose ? 1 : 0)).ok());
+    EXPECT_EQ(std::filesystem::exists(folder.Path("run/.former_run")), !has_pose);
+    ASSERT_TRUE(writer.Finish(has_pose ? RunStatus::kInterrupted : RunStatus::kCompleted, "it is so").ok());
+    EXPECT_FALSE(std::filesystem::exists(folder.Path("run/.former_run")));
+    const auto run = ReadRun(folder.Path("run"));
+    ASSERT_TRUE(run.ok()) << run.status().message();
+    EXPECT_EQ(run->frames.size(), 1U);
+    EXPECT_EQ(run->summary->note, "it is so");
+  }
+}
+
+// A killed run restores nothing; the next one in the folder still can.
+TEST(RunWriter, WhatAKilledRunHadSetAsideIsRestoredByTheNextThatFails) {
+  const TestFolder folder;
+  WriteRun(folder.Path("run"), 5);
+  const auto former = ContentOf(folder, "run");
+  {
+    RunWriter killed = Writer(folder.Path("run"));
+    std::filesystem::copy(folder.Path("run"), folder.Path("copy"), std::filesystem::copy_options::recursive);
+  }
+  std::filesystem::remove_all(folder.Path("run"));
+  std::filesystem::rename(folder.Path("copy"), folder.Path("run"));
+  ASSERT_TRUE(std::filesystem::exists(folder.Path("run/.former_run/trajectory.txt")));
+  ASSERT_TRUE(Writer(folder.Path("run")).Finish(RunStatus::kFailed, "").ok());
+  EXPECT_EQ(ContentOf(folder, "run"), former);
 }
 
 TEST(RunWriter, LeavesARunAloneThatIsBeingWritten) {

@@ -55,8 +55,9 @@ struct RunWriterOptions {
 
 class RunWriter {
  public:
-  // Makes the folder (and those above it) and begins its files. A former run's files are deleted first; a folder that
-  // holds anything else, and no run, is refused.
+  // Makes the folder (and those above it) and begins its files. A former run with poses is set aside, and deleted when
+  // this one has a pose, or has come to its end without one; where it fails or is stopped before, or the writer goes
+  // without Finish, the former run is restored. A folder that holds anything else, and no run, is refused.
   // Fails with kInvalidArgument (a folder with other content) or kUnwritable.
   static Result<RunWriter> Create(const std::string& output_path, const Camera& camera, RunDescription description,
                                   const std::string& config_yaml, RunColumns columns,
@@ -72,7 +73,7 @@ class RunWriter {
 
   // Brings the rows of merged submaps into one world, writes map.ply, sparse/ and the final run.json; to be called
   // once, whatever ended the run. run.json is attempted even when the others fail, and then says `failed` with the
-  // reason.
+  // reason. Where a former run is restored, summary().note alone says what became of this one.
   Status Finish(RunStatus status, const std::string& note);
 
   const RunSummary& summary() const;

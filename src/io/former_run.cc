@@ -1,0 +1,118 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "io/former_run.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "io/run_format.h"
+#include "pliant/base/text.h"
+#include "pliant/io/run_summary.h"
+
+namespace pliant {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kAside = ".former_run";
+
+Status Unwritable(const fs::path& path, const std::error_code& error) {
+  return {ErrorCode::kUnwritable, "cannot write into " + Quoted(path.string()) + ": " + error.message() +
+                                      "; choose another folder or change its permissions"};
+}
+
+// Files, and then the folders of models, where `folder` has them. A killed run says of no submaps, and has no models.
+std::vector<std::string> FilesOfRun(const fs::path& folder) {
+  const auto run = ReadRunSummary((folder / "run.json").string());
+  const int submaps = run.ok() ? run->submaps : 0;
+  std::vector<std::string> names(kRunFiles.begin(), kRunFiles.end());
+  for (int submap = 0; submap < std::max(1, submaps); ++submap) {
+    if (submap > 0) names.push_back(SubmapPly(submap));
+    for (const std::string_view name : kModelFiles)
+      names.push_back(SubmapModel(submap, submaps) + "/" + std::string(name));
+  }
+  for (int submap = 0; submaps > 1 && submap < submaps; ++submap) names.push_back(SubmapModel(submap, submaps));
+  names.emplace_back("sparse");
+  std::error_code error;
+  std::erase_if(names, [&](const std::string& name) { return !fs::exists(folder / name, error); });
+  return names;
+}
+
+bool HasPoses(const fs::path& folder) {
+  std::error_code error;
+  const auto size = fs::file_size(folder / "trajectory.txt", error);
+  return !error && size > 0 && fs::exists(folder / "run.json", error);
+}
+
+// Folders that hold somebody else's files stay.
+Status Delete(const fs::path& folder) {
+  std::error_code error;
+  for (const std::string& name : FilesOfRun(folder)) {
+    fs::remove(folder / name, error);
+    if (error && error != std::errc::directory_not_empty) return Unwritable(folder, error);
+  }
+  return Status::Ok();
+}
+
+Status MoveRun(const fs::path& from, const fs::path& to) {
+  std::error_code error;
+  for (const std::string& name : FilesOfRun(from)) {
+    if (fs::is_directory(from / name, error)) {
+      fs::remove(from / name, error);  // which is empty now, or not ours
+      continue;
+    }
+    fs::create_directories((to / name).parent_path(), error);
+    if (!error) fs::rename(from / name, to / name, error);
+    if (error) return Unwritable(to, error);
+  }
+  return Status::Ok();
+}
+
+}  // namespace
+
+FormerRun::FormerRun(FormerRun&& other) noexcept : folder_(std::exchange(other.folder_, {})) {}
+
+FormerRun::~FormerRun() { Restore(); }
+
+Result<FormerRun> FormerRun::SetAside(const std::string& folder) {
+  const fs::path aside = fs::path(folder) / kAside;
+  std::error_code error;
+  const bool was_aside = fs::exists(aside, error);
+  const bool is_empty = fs::is_empty(folder, error);
+  if (error) return Unwritable(folder, error);
+  if (is_empty) return FormerRun({});
+  if (!ReadRunSummary(folder + "/run.json").ok() && !was_aside)
+    return Status(ErrorCode::kInvalidArgument,
+                  "the folder " + Quoted(folder) + " holds files that are not a run's; give a new or an empty folder");
+  if (HasPoses(folder)) {
+    fs::remove_all(aside, error);
+    if (Status moved = MoveRun(folder, aside); !moved.ok()) {
+      const Status back = MoveRun(aside, folder);
+      return back.ok() ? moved : back;
+    }
+    return FormerRun(folder);
+  }
+  if (Status status = Delete(folder); !status.ok()) return status;
+  return FormerRun(was_aside ? folder : std::string());
+}
+
+void FormerRun::Forget() {
+  if (!IsAside()) return;
+  std::error_code error;
+  fs::remove_all(fs::path(std::exchange(folder_, {})) / kAside, error);
+}
+
+void FormerRun::Restore() {
+  if (!IsAside()) return;
+  const fs::path folder = std::exchange(folder_, {});
+  const fs::path aside = folder / kAside;
+  std::error_code error;
+  if (!Delete(folder).ok()) return;
+  if (MoveRun(aside, folder).ok()) fs::remove_all(aside, error);
+}
+
+}  // namespace pliant

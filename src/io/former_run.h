@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// The run that a folder holds when another one is written there: set aside until the new one has something to show.
+#pragma once
+
+#include <string>
+
+#include "pliant/base/status.h"
+
+namespace pliant {
+
+class FormerRun {
+ public:
+  // Moves the files of a run that has poses from `folder` into a subfolder, and deletes those of one that has none.
+  // What a killed run had set aside stays so. Fails with kInvalidArgument where the folder holds something else and no
+  // run, and kUnwritable.
+  static Result<FormerRun> SetAside(const std::string& folder);
+  FormerRun(FormerRun&& other) noexcept;
+  FormerRun& operator=(FormerRun&&) = delete;
+  ~FormerRun();  // restores it, unless it was forgotten
+
+  // Whether there is one to restore.
+  bool IsAside() const { return !folder_.empty(); }
+  // Deletes it.
+  void Forget();
+  // Deletes the files of the new run and moves those of the former one back.
+  void Restore();
+
+ private:
+  explicit FormerRun(std::string folder) : folder_(std::move(folder)) {}
+
+  std::string folder_;  // empty: nothing is aside
+};
+
+}  // namespace pliant
