@@ -6,7 +6,8 @@
     calibration.py --program build/release/pliant --output_path RESULTS [--only "NAME;..."] [--seed N]
 
 Renders a chessboard from 24 sides through lenses of every camera model, clean and as an endoscope records it,
-calibrates with and without knowledge of the model, and prints a table. What is there already is kept.
+calibrates with and without knowledge of the model, and prints a table; then the same for pairs of cameras. What is
+there already is kept.
 """
 import math
 import re
@@ -33,6 +34,9 @@ LENSES = {
     "fisheye": ("OPENCV_FISHEYE", (290.0, 291.0, 318.0, 241.0, -0.03, 0.006, -0.002, 0.0003)),
 }
 LOOKS = ("clean", "endoscope")
+PAIRS = ("laparoscope", "radial", "colonoscope")  # both cameras have such a lens, the right one's a little different
+RIGHT_CENTER_MM = np.array([4.3, 0.1, -0.05])  # in the left camera
+RIGHT_TURN = np.radians([0.1, -0.6, 0.3])
 # A dull board before a clean lens that is held still.
 SET_UP = ("--Light.specular 0 --Sensor.shutter_s 0 --Sensor.readout_s 0 --Sensor.drops 0 --Sensor.debris 0"
           " --Recording.lost_share 0 --Recording.video_qp 0")
@@ -88,8 +92,9 @@ def quaternion(matrix):
             (matrix[1, 0] - matrix[0, 1]) / (4 * w), w]
 
 
-def camera_from_board(model, params, random):
-    """Views in which the whole board is in the image, tilted by 5 to 40 degrees, near its edges too."""
+def camera_from_board(model, params, random, right=None):
+    """Views in which the whole board is in the image, tilted by 5 to 40 degrees, near its edges too; with the
+    parameters of a right camera in its image too."""
     corners = np.array([(x, y, 0) for y in range(ROWS) for x in range(COLUMNS)]) * SQUARE_MM
     center = corners.mean(0)
     poses = []
@@ -104,9 +109,35 @@ def camera_from_board(model, params, random):
         if in_camera[:, 2].min() < 5:
             continue
         pixels = project(model, params, in_camera)
+        if right:
+            seen_right = project(model, right, (in_camera - RIGHT_CENTER_MM) @ rotation(RIGHT_TURN).T)
+            pixels = np.concatenate([pixels, seen_right])
         if (pixels > 12).all() and (pixels < np.array([WIDTH, HEIGHT]) - 12).all():
             poses.append((turned, place - turned @ center))
     return poses
+
+
+def right_lens(name):
+    """The model and the parameters of the right camera of a pair."""
+    model, params = LENSES[name]
+    shared = model in ("SIMPLE_PINHOLE", "SIMPLE_RADIAL", "RADIAL")
+    center = 1 if shared else 2
+    changed = [1.005 * number for number in params[:center]] + [params[center] - 9, params[center + 1] + 5]
+    return model, (*changed, *params[center + 2:])
+
+
+def render_boards(arguments, folder, boards, look, lens, poses):
+    """The images of a camera that stands at these poses before the board."""
+    model, params = lens
+    lines = []
+    for i, (turned, moved) in enumerate(poses):
+        place, turn = -turned.T @ moved, quaternion(turned.T)
+        lines.append(" ".join(repr(float(number)) for number in (i / 30, *place, *turn)))
+    (folder / f"{boards}.txt").write_text("\n".join(lines) + "\n")
+    call(arguments.program, "simulate", "--quiet", "--overwrite", "-o", folder / boards, "--realism", look,
+         "--Scene.kind", "mesh", "--Scene.mesh_path", folder / "board.obj", "--Scene.seed", arguments.seed,
+         "--Trajectory.kind", "file", "--Trajectory.path", folder / f"{boards}.txt", "--Trajectory.frames", VIEWS,
+         "--Camera.model", model, "--Camera.params", ",".join(map(str, params)), *SET_UP.split()).check_returncode()
 
 
 def render(arguments, name, look):
@@ -115,17 +146,24 @@ def render(arguments, name, look):
         return folder / "boards"
     folder.mkdir(parents=True, exist_ok=True)
     write_board(folder)
-    model, params = LENSES[name]
-    lines = []
-    for i, (turned, moved) in enumerate(camera_from_board(model, params, np.random.default_rng(arguments.seed))):
-        place, turn = -turned.T @ moved, quaternion(turned.T)
-        lines.append(" ".join(repr(float(number)) for number in (i / 30, *place, *turn)))
-    (folder / "poses.txt").write_text("\n".join(lines) + "\n")
-    call(arguments.program, "simulate", "--quiet", "--overwrite", "-o", folder / "boards", "--realism", look,
-         "--Scene.kind", "mesh", "--Scene.mesh_path", folder / "board.obj", "--Scene.seed", arguments.seed,
-         "--Trajectory.kind", "file", "--Trajectory.path", folder / "poses.txt", "--Trajectory.frames", VIEWS,
-         "--Camera.model", model, "--Camera.params", ",".join(map(str, params)), *SET_UP.split()).check_returncode()
+    poses = camera_from_board(*LENSES[name], np.random.default_rng(arguments.seed))
+    render_boards(arguments, folder, "boards", look, LENSES[name], poses)
     return folder / "boards"
+
+
+def render_pair(arguments, name, look):
+    folder = arguments.output_path / "sequences" / f"{slug(name)}_pair_{look}_{arguments.seed}"
+    if (folder / "right" / "simulation.yaml").exists():
+        return folder
+    folder.mkdir(parents=True, exist_ok=True)
+    write_board(folder)
+    right = right_lens(name)
+    poses = camera_from_board(*LENSES[name], np.random.default_rng(arguments.seed), right[1])
+    mount = rotation(RIGHT_TURN)
+    render_boards(arguments, folder, "left", look, LENSES[name], poses)
+    render_boards(arguments, folder, "right", look, right,
+                  [(mount @ turned, mount @ (moved - RIGHT_CENTER_MM)) for turned, moved in poses])
+    return folder
 
 
 def errors(true_model, true_params, model, params):
@@ -158,32 +196,68 @@ def read_camera(path):
             tuple(float(number) for number in re.search(r"params: \[(.*)\]", text)[1].split(",")))
 
 
-def main():
-    arguments = scene_arguments(__doc__)
+def print_cameras(arguments):
     print("| lens | images | model | images used | error, px | focal length | center, px | circle, px | corner, px |")
     print("| --- | --- | --- | --- | --- | --- | --- | --- | --- |")
-    for name, (model, params) in LENSES.items():
-        if arguments.only and name not in arguments.only.split(";"):
-            continue
-        for look in LOOKS:
-            boards = render(arguments, name, look)
-            for choice in (model, "auto"):
-                camera = boards.parent / f"camera_{choice}.yaml"
-                said = boards.parent / f"calibrate_{choice}.txt"
-                if not camera.exists():
-                    done = call(arguments.program, "calibrate", "--image_path", boards, "--board",
-                                f"chessboard:{COLUMNS}x{ROWS}:{SQUARE_MM}", "--Calibrate.model", choice,
-                                "-o", camera, "--figure", camera.with_suffix(".png"))
-                    if not camera.exists():
-                        raise SystemExit(done.stderr)
-                    said.write_text(done.stdout)
-                found, estimated = read_camera(camera)
-                text = said.read_text()
-                used = re.search(r"(\d+) used", text)[1]
-                rms = re.search(r"error +([\d.]+) px", text)[1]
-                title = f"{model}, given" if choice != "auto" else f"{found}, chosen"
-                print(f"| {name} | {look} | {title} | {used} of {VIEWS} | {rms} | "
-                      + " | ".join(errors(model, params, found, estimated)) + " |", flush=True)
+    for name, look in wanted(arguments, LENSES):
+        model, params = LENSES[name]
+        boards = render(arguments, name, look)
+        for choice in (model, "auto"):
+            camera = boards.parent / f"camera_{choice}.yaml"
+            text = calibrated(arguments, camera, "--image_path", boards, "--Calibrate.model", choice)
+            found, estimated = read_camera(camera)
+            used = re.search(r"(\d+) used", text)[1]
+            rms = re.search(r"error +([\d.]+) px", text)[1]
+            title = f"{model}, given" if choice != "auto" else f"{found}, chosen"
+            print(f"| {name} | {look} | {title} | {used} of {VIEWS} | {rms} | "
+                  + " | ".join(errors(model, params, found, estimated)) + " |", flush=True)
+
+
+def print_pairs(arguments):
+    print("| lenses | images | pairs | error, px | baseline off by | it says | rotation off by, deg | it says |")
+    print("| --- | --- | --- | --- | --- | --- | --- | --- |")
+    for name, look in wanted(arguments, PAIRS):
+        folder = render_pair(arguments, name, look)
+        stereo = folder / "stereo.yaml"
+        text = calibrated(arguments, stereo, "--image_path", folder / "left", "--right_path", folder / "right")
+        read = stereo.read_text()
+        turned, moved = (np.array([float(number) for number in re.search(rf"\n{key}: .*?data: \[(.*?)\]", read, re.S)[1]
+                                   .split(",")]) for key in "RT")
+        baseline, sigma = map(float, re.search(r"baseline +([\d.]+) mm \+- (\S+):", text).groups())
+        assert math.isclose(baseline, np.linalg.norm(moved), rel_tol=1e-3)
+        true_mm = np.linalg.norm(RIGHT_CENTER_MM)
+        between = turned.reshape(3, 3) @ rotation(RIGHT_TURN).T
+        angle = math.degrees(math.acos(min(1.0, (np.trace(between) - 1) / 2)))
+        pairs, rms, angle_sigma = (re.search(pattern, text)[1] for pattern in (
+            r"pairs +(.*)", r"([0-9.]+) px RMS in both", r"rotation .*?[+]- ([0-9.e-]+)"))
+        print(f"| {name} | {look} | {pairs} | {rms} | {100 * (baseline / true_mm - 1):+.2f} % "
+              f"| {100 * sigma / true_mm:.2f} % | {angle:.3f} | {angle_sigma} |", flush=True)
+
+
+def wanted(arguments, names):
+    for name in names:
+        if not arguments.only or name in arguments.only.split(";"):
+            for look in LOOKS:
+                yield name, look
+
+
+def calibrated(arguments, camera, *images):
+    """What the calibration said; it is kept beside it."""
+    said = camera.with_suffix(".txt")
+    if not camera.exists():
+        done = call(arguments.program, "calibrate", *images, "--board", f"chessboard:{COLUMNS}x{ROWS}:{SQUARE_MM}",
+                    "-o", camera, "--figure", camera.with_suffix(".png"))
+        if not camera.exists():
+            raise SystemExit(done.stderr)
+        said.write_text(done.stdout)
+    return said.read_text()
+
+
+def main():
+    arguments = scene_arguments(__doc__)
+    print_cameras(arguments)
+    print()
+    print_pairs(arguments)
 
 
 if __name__ == "__main__":

@@ -4,7 +4,6 @@
 #include "pliant/pipeline/track.h"
 
 #include <array>
-#include <cstdio>
 #include <ctime>
 #include <filesystem>
 #include <memory>
@@ -18,6 +17,7 @@
 #include "cli/run_refinement.h"
 #include "cli/sequence_arguments.h"
 #include "cli/track_progress.h"
+#include "pliant/base/text.h"
 #include "pliant/io/run_trust.h"
 #include "pliant/viewer/live_view.h"
 #include "pliant/viewer/view.h"
@@ -99,12 +99,12 @@ int Report(const RunSummary& summary, const TrackArguments& arguments) {
     SayError(end.message());
     return kExitFailed;
   }
-  std::array<char, 64> rate;
-  std::snprintf(rate.data(), rate.size(), "%.1f frames/s", summary.frames_per_second);
+  const std::string rate =  // with --General.timings none it is not known
+      summary.frames_per_second > 0 ? ", " + Digits(summary.frames_per_second, 1) + " frames/s" : "";
   const std::string maps = summary.submaps > 1 ? " in " + std::to_string(summary.submaps) + " maps" : "";
   SayResult(std::string(EnumName(summary.status)) + ": " + summary.note + "\n" +
             std::to_string(summary.frames_tracked) + " of " + std::to_string(summary.frames_read) + " frames tracked" +
-            maps + ", " + std::to_string(summary.points) + " points, " + rate.data() + "\n" + arguments.output.path);
+            maps + ", " + std::to_string(summary.points) + " points" + rate + "\n" + arguments.output.path);
   for (const auto& [topic, sentence] : TrustIn(summary)) SayResult("  " + topic + ": " + sentence);
   return kExitOk;
 }

@@ -81,6 +81,12 @@ Result<std::vector<fs::path>> ListImages(const fs::path& folder, CompanionKind k
     return Status(ErrorCode::kNotFound, "the folder " + folder.string() + " holds no image (" +
                                             (depths ? "png, tif, tiff, exr, npy" : "png, jpg, jpeg, bmp, tif, tiff") +
                                             "); check the path");
+  // Names are written into lines of text files, COLMAP's among them.
+  if (std::any_of(images.begin(), images.end(), [](const fs::path& image) {
+        return image.filename().string().find_first_of("\n\r") != std::string::npos;
+      }))
+    return Status(ErrorCode::kInvalidArgument,
+                  "the folder " + folder.string() + " holds an image whose name has a line break; rename it");
   std::sort(images.begin(), images.end(), [](const fs::path& a, const fs::path& b) {
     return NaturalLess(a.filename().string(), b.filename().string());
   });

@@ -44,6 +44,23 @@ Status Append(const std::string& path, const aiMesh& mesh, bool with_uv, MeshFil
   return Status::Ok();
 }
 
+// Assimp takes over what a file says of its faces as it is, and its further steps fall over faces without corners and
+// corners that are no vertices.
+Status CheckFaces(const std::string& path, const aiScene& scene) {
+  for (unsigned i = 0; i < scene.mNumMeshes; ++i) {
+    const aiMesh& mesh = *scene.mMeshes[i];
+    for (unsigned k = 0; k < mesh.mNumFaces; ++k) {
+      const aiFace& face = mesh.mFaces[k];
+      const bool right = face.mNumIndices > 0 && std::all_of(face.mIndices, face.mIndices + face.mNumIndices,
+                                                             [&](unsigned index) { return index < mesh.mNumVertices; });
+      if (!right)
+        return {ErrorCode::kUnreadable, "face " + std::to_string(k) + " of the mesh " + path +
+                                            " has no corners, or one that is not a vertex; export it again"};
+    }
+  }
+  return Status::Ok();
+}
+
 // The picture that the first material with one names, beside the mesh.
 Status ReadPicture(const std::string& path, const aiScene& scene, cv::Mat* image) {
   for (unsigned i = 0; i < scene.mNumMaterials; ++i) {
@@ -75,20 +92,22 @@ Result<MeshFile> ReadMeshFile(const std::string& path) {
                                                           aiComponent_TANGENTS_AND_BITANGENTS |
                                                           aiComponent_BONEWEIGHTS | aiComponent_ANIMATIONS);
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-  const aiScene* scene =
-      importer.ReadFile(path, aiProcess_RemoveComponent | aiProcess_Triangulate | aiProcess_PreTransformVertices |
-                                  aiProcess_JoinIdenticalVertices | aiProcess_SortByPType);
   const Status no_faces(ErrorCode::kInsufficient,
                         "the mesh " + path + " has no faces; a cloud of points shows nothing");
-  if (scene == nullptr) {
-    const std::string reason = importer.GetErrorString();
-    // Assimp's own steps stumble over a file that is right but has nothing but points.
-    const aiScene* as_it_is = importer.ReadFile(path, 0);
-    if (as_it_is != nullptr && std::none_of(as_it_is->mMeshes, as_it_is->mMeshes + as_it_is->mNumMeshes,
-                                            [](const aiMesh* mesh) { return mesh->mNumFaces > 0; }))
-      return no_faces;
-    return {ErrorCode::kUnreadable, "the mesh " + path + " cannot be read as OBJ, PLY or STL: " + reason};
-  }
+  const auto unreadable = [&] {
+    return Status(ErrorCode::kUnreadable,
+                  "the mesh " + path + " cannot be read as OBJ, PLY or STL: " + importer.GetErrorString());
+  };
+  const aiScene* scene = importer.ReadFile(path, 0);
+  if (scene == nullptr) return unreadable();
+  if (std::none_of(scene->mMeshes, scene->mMeshes + scene->mNumMeshes,
+                   [](const aiMesh* mesh) { return mesh->mNumFaces > 0; }))
+    return no_faces;
+  if (Status status = CheckFaces(path, *scene); !status.ok()) return status;
+  scene =
+      importer.ApplyPostProcessing(aiProcess_RemoveComponent | aiProcess_Triangulate | aiProcess_PreTransformVertices |
+                                   aiProcess_JoinIdenticalVertices | aiProcess_SortByPType);
+  if (scene == nullptr) return unreadable();
   bool with_uv = false;
   for (unsigned i = 0; i < scene->mNumMeshes; ++i) with_uv = with_uv || scene->mMeshes[i]->HasTextureCoords(0);
   MeshFile mesh;

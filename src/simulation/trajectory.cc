@@ -39,6 +39,11 @@ Result<std::vector<TimedPose>> ReadPath(const SimulationOptions::Trajectory& opt
   auto poses = ReadTumTrajectory(options.path);
   if (!poses.ok()) return poses.status();
   if (poses->empty()) return {ErrorCode::kInsufficient, "the camera path " + options.path + " has no pose in it"};
+  constexpr double kFarthestMm = 1e6;  // beyond it a float, with which rays are cast, has no tenths
+  for (const TimedPose& pose : *poses)
+    if (!(pose.world_from_cam.translation.norm() < kFarthestMm))
+      return {ErrorCode::kInvalidArgument, "the camera path " + options.path + " has a pose more than " +
+                                               FormatDouble(kFarthestMm) + " mm from the origin; is its unit mm?"};
   const double first_s = poses->front().timestamp_s;
   for (TimedPose& pose : *poses) pose.timestamp_s -= first_s;
   const double last_frame_s = (options.frames - 1) / options.fps;

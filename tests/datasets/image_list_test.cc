@@ -3,7 +3,13 @@
 
 #include "datasets/image_list.h"
 
+#include <filesystem>
+#include <fstream>
+#include <string>
+
 #include <gtest/gtest.h>
+
+#include "support/temporary_folder.h"
 
 namespace pliant {
 namespace {
@@ -15,6 +21,16 @@ TEST(NaturalLess, ComparesNumbersAsNumbers) {
   EXPECT_TRUE(NaturalLess("9", "10000000000000000000000000"));
   EXPECT_FALSE(NaturalLess("x1", "x1"));
   EXPECT_NE(NaturalLess("x01", "x1"), NaturalLess("x1", "x01"));
+}
+
+TEST(ListImages, RefusesNamesThatDoNotFitIntoALine) {
+  const TemporaryFolder folder("images");
+  for (const char* name : {"a.png", "b\nc.png"}) std::ofstream(folder.Path(name)) << "x";
+  const auto images = ListImages(folder.Path(""));
+  ASSERT_FALSE(images.ok());
+  EXPECT_NE(images.status().message().find("a line break"), std::string::npos) << images.status().message();
+  std::filesystem::remove(folder.Path("b\nc.png"));
+  EXPECT_TRUE(ListImages(folder.Path("")).ok());
 }
 
 }  // namespace

@@ -77,6 +77,7 @@ TEST(RunWriter, ARunWithAPoseOrAnEndTakesThePlaceOfTheFormerOne) {
     ASSERT_TRUE(run.ok()) << run.status().message();
     EXPECT_EQ(run->frames.size(), 1U);
     EXPECT_EQ(run->summary->note, "it is so");
+    EXPECT_EQ(std::filesystem::exists(folder.Path("run/sparse")), has_pose) << "a model without images is none";
   }
 }
 

@@ -222,6 +222,11 @@ TEST_F(MeshSceneTest, SaysWhatIsWrongWithAMesh) {
                             "float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\nnan 0 "
                             "0\n0 30 0\n3 0 1 2\n")),
               HasSubstr("nan.ply has a vertex that is not a finite number"));
+  const std::string four =
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face "
+      "2\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n30 0 0\n30 30 0\n0 30 0\n3 0 1 2\n";
+  for (const char* face : {"3 0 1 -1\n", "4 0 1 2 9999999\n", "3 0 2 4\n", "0\n"})
+    EXPECT_THAT(message(Write("face.ply", four + face)), HasSubstr("face 1 of the mesh")) << face;
   EXPECT_THAT(message(WriteObj()), HasSubstr("Scene.mesh_scale"));  // meters taken for millimeters
   EXPECT_THAT(message(WritePly(), 1e5), HasSubstr("Scene.mesh_scale"));
   SimulationOptions options = Room(WritePly(), TrajectoryKind::kHold, 1);
@@ -246,6 +251,8 @@ TEST_F(MeshSceneTest, FollowsAFileOfPosesAndFillsInBetween) {
   EXPECT_THAT(Simulator::Create(options).status().message(), HasSubstr("lasts 2 s"));
   options.trajectory.path = Write("bad.txt", "0 1 2 3\n");
   EXPECT_THAT(Simulator::Create(options).status().message(), HasSubstr("bad.txt"));
+  options.trajectory.path = Write("far.txt", "0 0 0 -30 0 0 0 1\n1 1e308 0 0 0 0 0 1\n9 0 0 -30 0 0 0 1\n");
+  EXPECT_THAT(Simulator::Create(options).status().message(), HasSubstr("far.txt has a pose more than 1000000 mm"));
   options.trajectory.path = Write("empty.txt", "# nothing\n");
   EXPECT_THAT(Simulator::Create(options).status().message(), HasSubstr("no pose"));
   options.trajectory.path = (folder_ / "none.txt").string();
