@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The Pliant authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""debian/ and CITATION.cff say the same as the rest of the project.
+"""debian/, CITATION.cff and the project that uses the library say the same as the rest of the project.
 
 usage: debian_test.py SOURCE VERSION
 """
@@ -60,6 +60,12 @@ class Citation(unittest.TestCase):
     def test_the_change_log_has_the_version_and_the_date_of_the_citation(self):
         date = re.search(r"\ndate-released: (\S+)\n", (SOURCE / "CITATION.cff").read_text()).group(1)
         self.assertIn(f"\n## {VERSION}, {date}\n", (SOURCE / "CHANGELOG.md").read_text())
+
+
+class Library(unittest.TestCase):
+    def test_the_project_that_uses_it_asks_for_its_minor_version(self):
+        text = (SOURCE / "tests" / "consumer" / "project" / "CMakeLists.txt").read_text()
+        self.assertIn(f"find_package(Pliant {VERSION.rpartition('.')[0]} REQUIRED)", text)
 
 
 if __name__ == "__main__":
