@@ -19,7 +19,7 @@ TEST(Map, FindsALandmarkByIdAndSaysWhenThereIsNone) {
 
 constexpr double kRounding = 1e-12;
 
-// (E12) 4 % of 50 mm, and 1.5 mm that it has moved by since.
+// (E13) 4 % of 50 mm, and 1.5 mm that it has moved by since.
 TEST(Landmark, ThatHasMovedIsAsUncertainAsItsMotion) {
   Landmark landmark{
       .id = PointId{1}, .position = {30, 0, 40}, .log_distance_sigma = 0.04, .determined_at = {30, 0, 38.5}};

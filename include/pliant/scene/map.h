@@ -30,7 +30,7 @@ struct Landmark {
   bool measured = false;                                    // its depth, at the start: by a pair or a depth image
 };
 
-// (E12) Standard deviation of its distance from the camera, map units; 0: not known. What it has moved by since its
+// (E13) Standard deviation of its distance from the camera, map units; 0: not known. What it has moved by since its
 // distance was determined is uncertain by as much: along its ray the regularizers alone say it.
 double DistanceSigma(const Landmark& landmark, const Rigid3& cam_from_world);
 
