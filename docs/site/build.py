@@ -155,7 +155,7 @@ def write_notebooks(source):
             parts.append(f"```python\n{text}\n```" if cell["cell_type"] == "code" else text)
         write(path.with_suffix(".md"), "\n\n".join(parts) + f"\n\n[The notebook itself]({path.name}).\n")
         names.append(path.stem)
-    for page in [folder / "README.md", source / "docs" / "python.md"]:
+    for page in [folder / "README.md", source / "docs" / "tracks.md"]:
         page.write_text(re.sub(r"\.ipynb\)", ".md)", page.read_text(encoding="utf-8")), encoding="utf-8")
     append(folder / "README.md", toctree(names))
 
