@@ -67,6 +67,13 @@ def link_equations(app, doctree):
             text.parent.replace(text, new)
 
 
+def mark_short_code(app, doctree):
+    """Code of words that fit on a line of a phone, which are not to break at their dashes."""
+    for node in doctree.findall(nodes.literal):
+        if all(len(word) <= 40 for word in node.astext().split()):
+            node["classes"].append("whole")
+
+
 def keep_code(app, what, name, obj, options, lines):
     """Indented lines in the docstring of a module are code."""
     if what == "module":
@@ -78,4 +85,5 @@ def keep_code(app, what, name, obj, options, lines):
 def setup(app):
     app.connect("doctree-read", add_html_anchors)
     app.connect("doctree-read", link_equations)
+    app.connect("doctree-read", mark_short_code)
     app.connect("autodoc-process-docstring", keep_code)
