@@ -32,12 +32,11 @@ COPIED = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "tests/README.md", "we
 NOT_COPIED = shutil.ignore_patterns("__pycache__", "work", "site", ".snakemake", ".ipynb_checkpoints")
 # (heading of the navigation, its pages; a page is a path, or a title with a path)
 NAVIGATION = (
-    ("Use", (("Getting started", "README"), ("Installation", "docs/building"), "examples/notebooks/README",
-             "docs/your_own_video", "options/index", "docs/evaluation", "docs/report", "docs/datasets",
-             "docs/simulation", "docs/tracks", "docs/formats", "docs/exchange")),
+    ("Use", (("Getting started", "README"), ("Installation", "docs/building"), "docs/your_own_video",
+             "docs/troubleshooting", "options/index", "examples/notebooks/README", "docs/evaluation", "docs/report",
+             "docs/datasets", "docs/simulation", "docs/tracks", "docs/formats", "docs/exchange")),
     ("Python and C++", (("Python", "docs/python"), "python_api", ("C++ library", "docs/library"), "cpp_api")),
-    ("Understand", ("docs/concepts", "docs/method", "docs/results", "experiments/README", "docs/troubleshooting",
-                    "docs/gallery")),
+    ("Understand", ("docs/concepts", "docs/method", "docs/results", "experiments/README", "docs/gallery")),
     ("Develop", ("CONTRIBUTING", "docs/architecture", "tests/README", ("The report's page", "web/README"),
                  ("All pages", "docs/README"), ("Changes", "CHANGELOG"))),
 )
@@ -128,8 +127,9 @@ def manual_page(lines):
 
 def write_options(program, source):
     names = []
-    table = ["# Commands and options", "", "The manuals that `pliant COMMAND --help-all` prints. `--print_config` prints",
-             "all options of a command in the form that `--config FILE` reads.", "", "| command | what it does |",
+    table = ["# Commands and options", "", "The manuals that `pliant COMMAND --help` prints; here with all options, as",
+             "`--help-all` of the longest ones. `--print_config` prints the options of a command in the form that",
+             "`--config FILE` reads.", "", "| command | what it does |",
              "| --- | --- |"]
     for command in commands(program):
         lines = manual(program, *command)
