@@ -102,7 +102,7 @@ def main():
     for name, pairs in (("the pair", "on"), ("the left images alone", "off")):
         surface = arguments.output_path / f"pairs_{pairs}"
         made = call(arguments.program, "surface", "--run", run, "--frames", 0, "--Surface.pairs", pairs,
-                    "--Surface.mesh_columns", 0, "--output_path", surface, "--quiet")
+                    "--Surface.mesh_columns", 0, "--output_path", surface, "--quiet", "--overwrite")
         if made.returncode != 0:
             print(f"| {name} | 0: {made.stderr.strip().split(': ', 1)[-1]} | | | | |")
         else:

@@ -4,9 +4,9 @@
 
 All of them let other threads of the program run meanwhile. Ctrl-C ends them as it ends the command line's: what there
 is so far is on disk, and KeyboardInterrupt is raised; evaluate, export and a page of report leave what was there
-before. A figure is too short for that and finishes first. Options are dictionaries with the names of the command line (pliant.options lists them); one
-that is not there, or a value that it does not take, is a ValueError. What could not be done is a pliant.Error. What is
-odd about an input, and was read all the same, is a UserWarning.
+before. A figure is too short for that and finishes first. Options are dictionaries with the names of the command line
+(pliant.options lists them); one that is not there, or a value that it does not take, is a ValueError. What could not be
+done is a pliant.Error. What is odd about an input, and was read all the same, is a UserWarning.
 """
 
 from __future__ import annotations

@@ -220,8 +220,8 @@ std::optional<int> CommandLine::Parse(std::span<const std::string> args) {
   AddFlag("quiet", &quiet_, "say nothing but errors: --log_level error");
   AddChoice("log_level", &logging.level, "the least that is said; results and progress are info");
   AddChoice("log_format", &logging.format, "of every line that is said; json: an object a line, for programs");
-  AddFlag("help", &help_, manual_.main_options.empty() ? "print this manual and end" : "print the manual and end");
-  if (!manual_.main_options.empty()) AddFlag("help-all", &help_all_, "print the manual with every option and end");
+  AddFlag("help", &help_, "print the manual and end");
+  AddFlag("help-all", &help_all_, "print the manual with every option and end");
   const Status status = ReadArguments(args);
   if (quiet_) logging.level = LogLevel::kError;
   if (status.ok() || help_ || help_all_) return std::nullopt;

@@ -27,6 +27,28 @@ bool HoldsSequence(const fs::path& folder) {
   return fs::is_directory(images, error) && !fs::is_empty(images, error) && !error;
 }
 
+bool HoldsSurface(const fs::path& folder) {
+  std::error_code error;
+  return fs::exists(folder / "surface.json", error);
+}
+
+struct Kind {
+  const char* name;
+  bool (*is_there)(const fs::path& folder);
+};
+
+Kind KindOf(OutputFolder::Content content) {
+  switch (content) {
+    case OutputFolder::Content::kSequence:
+      return {"sequence", HoldsSequence};
+    case OutputFolder::Content::kSurface:
+      return {"surface", HoldsSurface};
+    case OutputFolder::Content::kRun:
+      break;
+  }
+  return {"run", HoldsRun};
+}
+
 }  // namespace
 
 void OutputFolder::AddTo(CommandLine* line, std::string why, Need need) {
@@ -35,9 +57,9 @@ void OutputFolder::AddTo(CommandLine* line, std::string why, Need need) {
 }
 
 std::optional<int> OutputFolder::Check(const CommandLine& line, const std::string& folder, Content content) const {
-  const bool is_taken = content == Content::kRun ? HoldsRun(folder) : HoldsSequence(folder);
-  if (overwrite || !is_taken) return std::nullopt;
-  return line.UsageError(Quoted(folder) + " holds a " + (content == Content::kRun ? "run" : "sequence") +
+  const Kind kind = KindOf(content);
+  if (overwrite || !kind.is_there(folder)) return std::nullopt;
+  return line.UsageError(Quoted(folder) + " holds a " + kind.name +
                          " already; give another --output_path, or --overwrite to replace it");
 }
 

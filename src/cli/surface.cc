@@ -8,6 +8,7 @@
 #include "cli/frame_list.h"
 #include "cli/interrupt.h"
 #include "cli/messages.h"
+#include "cli/output_folder.h"
 #include "cli/progress.h"
 #include "cli/sequence_arguments.h"
 #include "pliant/base/text.h"
@@ -38,10 +39,11 @@ const Manual kManual = {
 int SurfaceCommand(std::span<const std::string> args) {
   SurfaceRequest request;
   SurfaceRunOptions options;
+  OutputFolder output;
   std::string frames;
   CommandLine line(kManual);
   line.Add("run", &request.run_path, "DIR", "run folder", Need::kRequired);
-  line.Add("output_path", &request.output_path, "DIR", "folder to write, made if need be", Need::kRequired);
+  output.AddTo(&line, "folder to write, made if need be", Need::kRequired);
   line.Add("sequence", &request.sequence_path, "PATH", "the run's images; without it those that its run.json names",
            Need::kOptional);
   AddCameraOfRun(&line, &request.camera_path);
@@ -56,6 +58,8 @@ int SurfaceCommand(std::span<const std::string> args) {
   const auto chosen = ParseFrameList(frames);
   if (!chosen) return line.UsageError("--frames is '" + frames + "'; give frame numbers with commas between them");
   request.frames = *chosen;
+  if (const auto exit = output.Check(line, output.path, OutputFolder::Content::kSurface)) return *exit;
+  request.output_path = output.path;
   request.command_line = line.Words(args);
   request.stop = &StopOnSignals();
   std::optional<Progress> depths;

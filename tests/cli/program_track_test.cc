@@ -248,6 +248,17 @@ TEST(Program, TrackLiveSaysWhereToLookAndEndsWithTheRun) {
   EXPECT_THAT(Pliant("track --image_path '" + sequence + "'" + run).out, HasSubstr("live view: http://127.0.0.1:"));
 }
 
+TEST(Program, ASurfaceIsReplacedOnRequestOnly) {
+  const std::filesystem::path surface = Temporary("surface");
+  std::filesystem::create_directories(surface);
+  std::ofstream(surface / "surface.json") << "{}";
+  const std::string command = "surface --run nothing -o '" + surface.string() + "'";
+  const Outcome refused = Pliant(command);
+  EXPECT_EQ(refused.exit, 2);
+  EXPECT_THAT(refused.err, HasSubstr("holds a surface already; give another --output_path, or --overwrite"));
+  EXPECT_EQ(Pliant(command + " --overwrite").exit, 1) << "there is no run";
+}
+
 // Every line that a command says is an object, whatever it is about.
 TEST(Program, JsonLinesAreReadByPrograms) {
   const std::string sequence = Temporary("sequence").string();
