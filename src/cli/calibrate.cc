@@ -2,9 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include <algorithm>
-#include <array>
 #include <atomic>
-#include <cstdio>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -45,19 +43,12 @@ const Manual kManual = {
      "pliant calibrate --image_path pairs.mp4 --pairs left_right --board chessboard:9x6:2.0 --output_path stereo.yaml"},
 };
 
-template <class... Values>
-std::string Text(const char* format, Values... values) {
-  std::array<char, 256> text;
-  std::snprintf(text.data(), text.size(), format, values...);
-  return text.data();
-}
-
 // One line a parameter: name, value, standard deviation.
 void SayParameters(const Camera& camera, const std::vector<double>& sigmas) {
   const std::string names(camera.Visit([](const auto& model) { return model.kParamNames; }));
   std::size_t i = 0;
   for (const std::string_view name : Split(names, ',')) {
-    SayResult(Text("  %-4s %14.6g  +- %.2g", std::string(name).c_str(), camera.params()[i], sigmas[i]));
+    SayResult(Formatted("  %-4s %14.6g  +- %.2g", std::string(name).c_str(), camera.params()[i], sigmas[i]));
     ++i;
   }
 }
@@ -70,22 +61,23 @@ int CountOf(const CalibrateSummary& summary, ImageUse use) {
 
 void SayImages(const CalibrateSummary& summary) {
   const auto searched = static_cast<int>(summary.images.size());
-  std::string counts = Text("images        %d, %d searched, %d with the board, %d used", summary.images_read, searched,
-                            searched - CountOf(summary, ImageUse::kNoBoard), CountOf(summary, ImageUse::kUsed));
-  if (const int alike = CountOf(summary, ImageUse::kAlike); alike > 0) counts += Text(", %d like others", alike);
+  std::string counts =
+      Formatted("images        %d, %d searched, %d with the board, %d used", summary.images_read, searched,
+                searched - CountOf(summary, ImageUse::kNoBoard), CountOf(summary, ImageUse::kUsed));
+  if (const int alike = CountOf(summary, ImageUse::kAlike); alike > 0) counts += Formatted(", %d like others", alike);
   if (const int outliers = CountOf(summary, ImageUse::kOutlier); outliers > 0)
-    counts += Text(", %d fit badly", outliers);
+    counts += Formatted(", %d fit badly", outliers);
   SayResult(counts);
   for (const CalibrationImage& image : summary.images) {
     if (image.use == ImageUse::kNoBoard && searched > 20) continue;
     if (image.view_idx < 0) {
       if (image.use == ImageUse::kNoBoard)
-        SayResult(Text("  %-24s %s", image.name.c_str(), std::string(EnumName(image.use)).c_str()));
+        SayResult(Formatted("  %-24s %s", image.name.c_str(), std::string(EnumName(image.use)).c_str()));
       continue;
     }
     const FittedView& view = summary.calibration.views[static_cast<std::size_t>(image.view_idx)];
-    SayResult(Text("  %-24s %6.2f px, tilted by %2.0f deg%s", image.name.c_str(), view.rms_px, view.tilt_deg,
-                   view.is_outlier ? ", not used: fits badly" : ""));
+    SayResult(Formatted("  %-24s %6.2f px, tilted by %2.0f deg%s", image.name.c_str(), view.rms_px, view.tilt_deg,
+                        view.is_outlier ? ", not used: fits badly" : ""));
   }
 }
 
@@ -94,32 +86,35 @@ void Say(const CalibrateSummary& summary) {
   SayImages(summary);
   for (std::size_t i = 0; i < calibration.held_out.size(); ++i) {
     const HeldOutError& error = calibration.held_out[i];
-    SayResult(Text("%s%s (%d parameters) %.3f px", i == 0 ? "held out      " : "              ",
-                   std::string(EnumName(error.model)).c_str(), error.num_params, error.rms_px));
+    SayResult(Formatted("%s%s (%d parameters) %.3f px", i == 0 ? "held out      " : "              ",
+                        std::string(EnumName(error.model)).c_str(), error.num_params, error.rms_px));
   }
-  SayResult(Text("model         %s, %dx%d", std::string(calibration.camera.model_name()).c_str(),
-                 calibration.camera.width(), calibration.camera.height()));
+  SayResult(Formatted("model         %s, %dx%d", std::string(calibration.camera.model_name()).c_str(),
+                      calibration.camera.width(), calibration.camera.height()));
   SayParameters(calibration.camera, calibration.sigmas);
-  SayResult(Text("error         %.3f px RMS", calibration.rms_px));
+  SayResult(Formatted("error         %.3f px RMS", calibration.rms_px));
   SayResult("coverage      " + Percent(summary.covered_share) + " of the image");
   for (const std::string& advice : summary.advice) SayNote(advice);
 }
 
 void Say(const CalibratePairsSummary& summary) {
   const StereoCameras& stereo = summary.stereo;
-  SayResult("left camera");
+  SayResult("left camera, alone");
   Say(summary.left);
-  SayResult("right camera");
+  SayResult("right camera, alone");
   Say(summary.right);
+  SayResult("left and right camera, together");
+  SayParameters(stereo.left, summary.left.calibration.sigmas);
+  SayParameters(stereo.right, summary.right.calibration.sigmas);
   const auto pairs = static_cast<int>(stereo.is_outlier.size());
   const auto outliers = static_cast<int>(std::count(stereo.is_outlier.begin(), stereo.is_outlier.end(), true));
-  SayResult(Text("pairs         %d, %d fit badly", pairs, outliers));
-  SayResult(Text("error         %.3f px RMS in both", stereo.rms_px));
+  SayResult(Formatted("pairs         %d, %d fit badly", pairs, outliers));
+  SayResult(Formatted("error         %.3f px RMS in both", stereo.rms_px));
   const Eigen::Vector3d center = stereo.right_from_left.OriginInSource();
-  SayResult(Text("baseline      %.4f mm +- %.2g: right camera at %.4f, %.4f, %.4f mm of the left one",
-                 stereo.BaselineMm(), stereo.baseline_sigma_mm, center.x(), center.y(), center.z()));
-  SayResult(Text("rotation      %.3f deg +- %.2g between the cameras",
-                 kDegPerRad * RotationAngle(stereo.right_from_left.rotation), stereo.rotation_sigma_deg));
+  SayResult(Formatted("baseline      %.4f mm +- %.2g: right camera at %.4f, %.4f, %.4f mm of the left one",
+                      stereo.BaselineMm(), stereo.baseline_sigma_mm, center.x(), center.y(), center.z()));
+  SayResult(Formatted("rotation      %.3f deg +- %.2g between the cameras",
+                      kDegPerRad * RotationAngle(stereo.right_from_left.rotation), stereo.rotation_sigma_deg));
 }
 
 // "camera.png" of the right camera: "camera_right.png".

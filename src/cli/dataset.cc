@@ -65,13 +65,6 @@ const Manual kStatisticsManual = {
     {"pliant dataset statistics clip.mp4", "pliant dataset statistics seq --Image.working fixed --Image.scale 0.5"},
 };
 
-template <class... Values>
-std::string Text(const char* format, Values... values) {
-  char text[256];
-  std::snprintf(text, sizeof text, format, values...);
-  return text;
-}
-
 void PrintLine(const std::string& name, const std::string& text) {
   SayResult(name + std::string(std::max<std::size_t>(1, 10 - name.size()), ' ') + text);
 }
@@ -83,7 +76,8 @@ std::string DepthText(const Sequence& sequence, int frame_idx) {
   const std::vector<double> depths = KnownDepths(**depth_mm);
   if (depths.empty()) return "none in the first frame";
   const auto [low, high] = std::minmax_element(depths.begin(), depths.end());
-  return Text("%.1f to %.1f mm in the first frame, ", *low, *high) + Text("%.1f mm in the median", Median(depths));
+  return Formatted("%.1f to %.1f mm in the first frame, ", *low, *high) +
+         Formatted("%.1f mm in the median", Median(depths));
 }
 
 std::string PosesText(const Sequence& sequence, const SequenceRequest& request) {
@@ -98,7 +92,7 @@ std::string PosesText(const Sequence& sequence, const SequenceRequest& request) 
     ++poses;
   }
   if (poses == 0) return "none";
-  return Text("%d of %d, a path of %.1f mm", poses, sequence.size(), path_mm);
+  return Formatted("%d of %d, a path of %.1f mm", poses, sequence.size(), path_mm);
 }
 
 void PrintDescription(const Sequence& sequence, const SequenceRequest& request) {
@@ -108,14 +102,14 @@ void PrintDescription(const Sequence& sequence, const SequenceRequest& request) 
   std::string frames = std::to_string(sequence.size());
   const auto first = sequence.TimestampS(request.start);
   const auto second = sequence.TimestampS(request.start + request.stride);
-  if (first && second && *second > *first) frames += Text(", %.3g a second", 1.0 / (*second - *first));
+  if (first && second && *second > *first) frames += Formatted(", %.3g a second", 1.0 / (*second - *first));
   PrintLine("frames", frames);
-  PrintLine("camera", std::string(camera.model_name()) + Text(" %dx%d, focal length %.1f px", camera.width(),
-                                                              camera.height(), camera.MeanFocalLengthPx()));
-  PrintLine("pairs", sequence.BaselineMm() ? Text("rectified, baseline %.4g mm", *sequence.BaselineMm()) : "none");
+  PrintLine("camera", std::string(camera.model_name()) + Formatted(" %dx%d, focal length %.1f px", camera.width(),
+                                                                   camera.height(), camera.MeanFocalLengthPx()));
+  PrintLine("pairs", sequence.BaselineMm() ? Formatted("rectified, baseline %.4g mm", *sequence.BaselineMm()) : "none");
   if (const auto light = sequence.Photometric())
-    PrintLine("light",
-              Text("gamma %.3g, vignetting %.3g, spread %.3g", light->gamma, light->vignetting, light->light_spread));
+    PrintLine("light", Formatted("gamma %.3g, vignetting %.3g, spread %.3g", light->gamma, light->vignetting,
+                                 light->light_spread));
   PrintLine("depth", DepthText(sequence, request.start));
   PrintLine("poses", PosesText(sequence, request));
   for (const std::string& warning : sequence.Warnings()) PrintLine("warning", warning);
@@ -134,8 +128,8 @@ void PrintImageCheck(const ImageCheck& check) {
 void PrintCheck(const SequenceCheck& check, bool has_pairs) {
   if (check.poses) {
     const PoseCheck& poses = *check.poses;
-    std::string text =
-        Text("%d pairs of images, warped by depth and poses, agree to %.2f", poses.pairs, poses.as_given.correlation);
+    std::string text = Formatted("%d pairs of images, warped by depth and poses, agree to %.2f", poses.pairs,
+                                 poses.as_given.correlation);
     PrintLine(poses.right ? "checked" : "unchecked",
               poses.right ? text : text + ", which says nothing about the poses: too little motion or structure");
   } else {
@@ -143,13 +137,13 @@ void PrintCheck(const SequenceCheck& check, bool has_pairs) {
   }
   if (check.stereo)
     PrintLine(check.stereo->enough ? "checked" : "unchecked",
-              Text("%d points in pairs, rows differ by %.2f px in the median", check.stereo->matches,
-                   check.stereo->median_row_error_px));
+              Formatted("%d points in pairs, rows differ by %.2f px in the median", check.stereo->matches,
+                        check.stereo->median_row_error_px));
   else if (has_pairs)
     PrintLine("unchecked", "pairs: no point of the left image is found in the right one");
   if (check.stereo && check.stereo->depth_ratio)
     PrintLine(check.stereo->enough ? "checked" : "unchecked",
-              Text("depth is %.3f of what the baseline says", *check.stereo->depth_ratio));
+              Formatted("depth is %.3f of what the baseline says", *check.stereo->depth_ratio));
   if (check.images) PrintImageCheck(*check.images);
   for (const std::string& wrong : check.wrong) PrintLine("wrong", wrong);
   const bool checked = (check.poses && check.poses->right) || (check.stereo && check.stereo->enough);
@@ -201,8 +195,8 @@ int ConvertCommand(std::span<const std::string> args) {
   for (const std::string& warning : (*sequence)->Warnings()) SayWarning(warning);
   if (summary->clipped_depths > 0)
     SayWarning(std::to_string(summary->clipped_depths) + " pixels are too far away for 16 bits and have no depth");
-  SayResult(Text("%d frames, %d pairs, %d masks, %d depth images, %d poses in ", summary->frames, summary->right,
-                 summary->masks, summary->depths, summary->poses) +
+  SayResult(Formatted("%d frames, %d pairs, %d masks, %d depth images, %d poses in ", summary->frames, summary->right,
+                      summary->masks, summary->depths, summary->poses) +
             output_path);
   return kExitOk;
 }
@@ -216,13 +210,13 @@ void ListStatisticsOptions(TrackOptions* options, OptionTable* table) {
 
 void PrintStatistics(const SequenceStatistics& measured) {
   const ImageStatistics& images = measured.images;
-  PrintLine("image", Text("%dx%d, scale %.3g, smoothing %.2g px", measured.size.width, measured.size.height,
-                          measured.working_image.scale, measured.working_image.smoothing_px));
+  PrintLine("image", Formatted("%dx%d, scale %.3g, smoothing %.2g px", measured.size.width, measured.size.height,
+                               measured.working_image.scale, measured.working_image.smoothing_px));
   PrintLine("frames", std::to_string(images.frames));
-  PrintLine("noise", Text("%.2f gray levels", images.noise_levels));
-  PrintLine("corners", Text("%.0f in a frame", images.corners));
-  PrintLine("alive", Text("%.3f after 1 frame, %.3f after 9", images.alive_after_1, images.alive_after_9));
-  PrintLine("tracks", Text("%.3f px noise", images.track_noise_px));
+  PrintLine("noise", Formatted("%.2f gray levels", images.noise_levels));
+  PrintLine("corners", Formatted("%.0f in a frame", images.corners));
+  PrintLine("alive", Formatted("%.3f after 1 frame, %.3f after 9", images.alive_after_1, images.alive_after_9));
+  PrintLine("tracks", Formatted("%.3f px noise", images.track_noise_px));
 }
 
 int StatisticsCommand(std::span<const std::string> args) {

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <array>
+#include <cstdio>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -34,6 +35,14 @@ void SayWarning(std::string_view sentence);
 void SayNote(std::string_view sentence);
 // What was found: a line, or several with line ends between them.
 void SayResult(std::string_view text);
+
+// As printf writes them.
+template <class... Values>
+std::string Formatted(const char* format, Values... values) {
+  std::array<char, 256> text;
+  std::snprintf(text.data(), text.size(), format, values...);
+  return text.data();
+}
 
 // {"event":"name","command":"pliant track",members}; `members` is JSON, without its braces.
 std::string EventLine(std::string_view event, std::string_view members);

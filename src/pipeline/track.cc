@@ -332,8 +332,10 @@ Status CheckTrackOptions(const TrackOptions& options) {
 
 Status EndOf(const RunSummary& summary, const std::string& output_path) {
   if (summary.status != RunStatus::kFailed && summary.status != RunStatus::kInterrupted) return Status::Ok();
-  return {summary.status == RunStatus::kFailed ? ErrorCode::kInsufficient : ErrorCode::kInterrupted,
-          summary.note + "; " + std::to_string(summary.frames_tracked) + " tracked frames are in " + output_path};
+  std::string sentence = summary.note;
+  if (summary.frames_tracked > 0)
+    sentence += "; " + std::to_string(summary.frames_tracked) + " tracked frames are in " + output_path;
+  return {summary.status == RunStatus::kFailed ? ErrorCode::kInsufficient : ErrorCode::kInterrupted, sentence};
 }
 
 Result<RunSummary> RunTrack(const RunRequest& given, const TrackOptions& options,
