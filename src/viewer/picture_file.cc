@@ -24,7 +24,11 @@ cairo_status_t AppendBytes(void* file, const unsigned char* bytes, unsigned int 
 // disk that is full.
 CairoSurface MakeSurface(const std::string& ending, double width, double height, std::string* file) {
   if (ending == ".svg") return CairoSurface(cairo_svg_surface_create_for_stream(AppendBytes, file, width, height));
-  if (ending == ".pdf") return CairoSurface(cairo_pdf_surface_create_for_stream(AppendBytes, file, width, height));
+  if (ending == ".pdf") {
+    CairoSurface pdf(cairo_pdf_surface_create_for_stream(AppendBytes, file, width, height));
+    cairo_pdf_surface_set_metadata(pdf.get(), CAIRO_PDF_METADATA_CREATE_DATE, "");  // else that of now
+    return pdf;
+  }
   return CairoSurface(
       cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(width), static_cast<int>(height)));
 }
