@@ -74,13 +74,13 @@ Status TooLarge(double width_px, double height_px) {
                                            "--Figure.panel_width_px"};
 }
 
-double TextWidth(cairo_t* drawing, const std::string& text) {
-  UseFont(drawing, kText);
+double TextWidth(cairo_t* drawing, const std::string& text, double size) {
+  UseFont(drawing, size);
   return WidthOf(drawing, text);
 }
 
-void DrawText(cairo_t* drawing, double left, double baseline, double width, const std::string& text) {
-  UseFont(drawing, kText);
+void DrawText(cairo_t* drawing, double left, double baseline, double width, const std::string& text, double size) {
+  UseFont(drawing, size);
   Use(drawing, kBlack);
   cairo_move_to(drawing, left, baseline);
   cairo_show_text(drawing, Fitting(drawing, text, width).c_str());

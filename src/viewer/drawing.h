@@ -63,10 +63,11 @@ CairoSurface ImageSurface(const cv::Mat& image);
 // The sentence for a picture that cairo cannot hold.
 Status TooLarge(double width_px, double height_px);
 
-// What the text takes, at kText.
-double TextWidth(cairo_t* drawing, const std::string& text);
+// What the text takes, with letters of this size.
+double TextWidth(cairo_t* drawing, const std::string& text, double size = kText);
 // In one line of at most this width: what does not fit is cut at its end.
-void DrawText(cairo_t* drawing, double left, double baseline, double width, const std::string& text);
+void DrawText(cairo_t* drawing, double left, double baseline, double width, const std::string& text,
+              double size = kText);
 // From the panel's top left corner, in as many lines as fit.
 void DrawParagraph(cairo_t* drawing, const Panel& panel, const std::string& text);
 
