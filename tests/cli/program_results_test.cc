@@ -45,8 +45,9 @@ TEST(Program, CompareSetsRunsOfOtherSystemsSideBySide) {
   const std::string a = ForeignResult("a", 4);
   const std::string b = ForeignResult("b", 3);
   const std::string out = Temporary("out").string();
+  const std::string figure = Temporary("figure.pdf").string();
   const Outcome both = Pliant("compare --run '" + a + "' --run '" + b + "' --sequence '" + sequence +
-                              "' --protocol all --output_path '" + out + "'");
+                              "' --protocol all --output_path '" + out + "' --figure '" + figure + "'");
   ASSERT_EQ(both.exit, 0) << both.err;
   EXPECT_THAT(both.out, HasSubstr(a));
   EXPECT_THAT(both.out, HasSubstr("3/3"));
@@ -54,6 +55,7 @@ TEST(Program, CompareSetsRunsOfOtherSystemsSideBySide) {
   EXPECT_THAT(ReadText(out + "/comparison.csv"), HasSubstr("surface_lmeds_mean_rmse_mm"));
   EXPECT_THAT(ReadText(out + "/comparison.json"), HasSubstr("\"material\": {"));
   EXPECT_THAT(ReadText(out + "/1/evaluation.csv"), StartsWith("frame,tracked,points,"));
+  EXPECT_THAT(ReadText(figure), StartsWith("%PDF"));
 
   const Outcome one = Pliant("evaluate --run '" + a + "' --sequence '" + sequence + "' --parts material");
   EXPECT_EQ(one.exit, 0) << one.err;
@@ -66,6 +68,10 @@ TEST(Program, CompareSetsRunsOfOtherSystemsSideBySide) {
   EXPECT_THAT(half.err, HasSubstr(b + "x"));
   EXPECT_EQ(std::count(half.err.begin(), half.err.end(), '\n'), 1) << half.err;
   EXPECT_THAT(half.out, HasSubstr("4/4"));
+
+  const Outcome ending = Pliant("compare --run a --run b --sequence c --figure d.gif");
+  EXPECT_EQ(ending.exit, 2);
+  EXPECT_EQ(std::count(ending.err.begin(), ending.err.end(), '\n'), 1) << ending.err;
 
   const Outcome pairs = Pliant("compare --run a --run b --run c --sequence d --sequence e");
   EXPECT_EQ(pairs.exit, 2);
