@@ -43,7 +43,7 @@ struct LineStyle {
   std::size_t count = 1;
 };
 
-// The first five differ in both, the first 42 in one of both.
+// The first six differ in both, the first 42 in one of both.
 LineStyle StyleOfLine(std::size_t index, std::size_t count);
 
 struct PlotPoint {
