@@ -186,7 +186,7 @@ class Measure {
   Drawing drawing_;
 };
 
-struct LegendEntry {
+struct LineEntry {
   std::string text;
   std::optional<LineStyle> style;  // nothing: the null
   double left = 0;
@@ -213,10 +213,10 @@ std::string Shortened(const Measure& measure, const std::string& text, double wi
 }
 
 // In one row where all fit into it, else in columns of one width.
-void ArrangeLegend(const Measure& measure, double width, std::vector<LegendEntry>* entries) {
+void ArrangeLegend(const Measure& measure, double width, std::vector<LineEntry>* entries) {
   std::vector<double> widths;
   double total = -kLegendGap;
-  for (LegendEntry& entry : *entries) {
+  for (LineEntry& entry : *entries) {
     entry.text = Shortened(measure, entry.text, width - kSampleWidth - kSampleGap);
     widths.push_back(kSampleWidth + kSampleGap + measure(entry.text, kLabelText));
     total += widths.back() + kLegendGap;
@@ -226,7 +226,7 @@ void ArrangeLegend(const Measure& measure, double width, std::vector<LegendEntry
       static_cast<std::size_t>(std::max(1.0, std::floor((width + kLegendGap) / (widest + kLegendGap))));
   double left = 0;
   for (std::size_t i = 0; i < entries->size(); ++i) {
-    LegendEntry& entry = (*entries)[i];
+    LineEntry& entry = (*entries)[i];
     entry.left = total <= width ? left : static_cast<double>(i % columns) * (widest + kLegendGap);
     entry.row = total <= width ? 0 : static_cast<int>(i / columns);
     left += widths[i] + kLegendGap;
@@ -238,7 +238,7 @@ struct Layout {
   std::vector<PanelContent> contents;
   std::vector<Plot> plots;        // one a content
   std::vector<LineStyle> styles;  // one a run
-  std::vector<LegendEntry> legend;
+  std::vector<LineEntry> legend;
   double legend_left = 0;
   double height = 0;
 
@@ -275,7 +275,7 @@ struct Layout {
 };
 
 void DrawLegend(cairo_t* drawing, const Layout& layout) {
-  for (const LegendEntry& entry : layout.legend) {
+  for (const LineEntry& entry : layout.legend) {
     const double left = layout.legend_left + entry.left;
     const double middle = kTop + kLegendRow * (entry.row + 0.5);
     if (entry.style)
