@@ -22,6 +22,11 @@ say() { printf '\n== %s\n' "$*"; }
 inside() { env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin LC_ALL=C.UTF-8 HOME=/root DEBIAN_FRONTEND=noninteractive chroot "$root" "$@"; }
 package() { (cd "$packages" && echo "/tmp/$(ls "$1"_*.deb)"); }
 install() { inside apt-get -qq install -y --no-install-recommends "$@" >>"$root/tmp/apt.log" 2>&1 || { tail -30 "$root/tmp/apt.log"; return 1; }; }
+# What Bash offers for the last of the words.
+completed() {
+  inside bash -c '. /usr/share/bash-completion/completions/pliant; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _pliant
+    echo "${COMPREPLY[*]}"' bash "$@"
+}
 installed_kb() { inside dpkg-query -W -f '${Installed-Size}\n' | awk '{sum += $1} END {print sum}'; }
 
 if ((EUID != 0)); then
@@ -50,7 +55,20 @@ echo "$(((after_kb - before_kb) / 1024)) MB installed, with everything that it d
 inside pliant --version
 inside pliant demo --output_path /tmp/demo
 inside bash -c '. /usr/share/bash-completion/completions/pliant && complete -p pliant'
-test -s "$root/usr/share/man/man1/pliant-track.1.gz"
+offered=$(completed pliant calibrate --ri)
+echo "pliant calibrate --ri is completed to: $offered"
+test "$offered" = --right_path
+
+say "man pages"
+install man-db
+pages=("$root"/usr/share/man/man1/pliant*.1.gz)
+for page in "${pages[@]}"; do
+  page=${page#"$root"}
+  warnings=$(inside env MANROFFSEQ= man --warnings=w -E UTF-8 -l -Tutf8 -Z "$page" 2>&1 >/dev/null) || warnings+="man failed"
+  if [[ -n $warnings ]]; then printf '%s: %s\n' "$page" "$warnings" && exit 1; fi
+done
+inside man --where pliant pliant-track pliant-dataset-info
+echo "${#pages[@]} pages without a warning"
 
 say "python3-pliant"
 install "$(package python3-pliant)"
