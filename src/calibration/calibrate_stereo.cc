@@ -287,6 +287,71 @@ Status NoRig(double pair_px, double alone_px) {
                                         " px for each camera alone; are both images of a pair of the same moment?"};
 }
 
+// Where the cameras and the pairs are to begin with, each camera alone.
+struct StereoStart {
+  StereoFit fit;
+  double depth_mm = 0;  // of the board, median
+  double alone_px = 0;  // error of a view, median
+};
+
+// Turns right views that begin at the board's other end.
+std::optional<StereoStart> StartPairs(const CalibrationBoard& board, const Camera& left, const Camera& right,
+                                      StereoInput* input) {
+  const auto alone_left = FitAlone(left, input->points, input->left);
+  const auto alone_right = FitAlone(right, input->points, input->right);
+  if (!alone_left || !alone_right) return std::nullopt;
+  std::vector<double> alone_px;
+  std::vector<double> depths_mm;
+  PairPoses poses;
+  for (std::size_t i = 0; i < input->left.size(); ++i) {
+    alone_px.push_back(RmsOf(*alone_left, input->points, input->left[i], alone_left->poses[i]));
+    alone_px.push_back(RmsOf(*alone_right, input->points, input->right[i], alone_right->poses[i]));
+    const Rigid3 left_from_board = ToRigid3(alone_left->poses[i]);
+    const Rigid3 right_from_board = ToRigid3(alone_right->poses[i]);
+    depths_mm.push_back(left_from_board.translation.norm());
+    poses.as_given.push_back(right_from_board * left_from_board.Inverse());
+    if (LooksTheSameTurned(board))
+      poses.turned.push_back(Turned(right_from_board, input->points) * left_from_board.Inverse());
+  }
+  const double depth_mm = Median(depths_mm);
+  const Rigid3 consensus = Consensus(poses, depth_mm);
+  for (std::size_t i = 0; i < poses.turned.size(); ++i)
+    if (Distance(consensus, poses.turned[i], depth_mm) < Distance(consensus, poses.as_given[i], depth_mm))
+      input->right[i] = Turned(input->right[i], board.NumPoints());
+  return StereoStart{{left.model_id(), right.model_id(), ToArray(alone_left->params), ToArray(alone_right->params),
+                      ToBoardPose(consensus), alone_left->poses},
+                     depth_mm,
+                     Median(alone_px)};
+}
+
+// Solves for all pairs, then without those that fit badly.
+Result<std::vector<bool>> FitPairs(const StereoInput& input, double alone_px, StereoFit* fit) {
+  std::vector<bool> outliers(input.left.size(), false);
+  if (!SolvePairs(input, outliers, fit)) return NoRig(std::numeric_limits<double>::infinity(), alone_px);
+  std::vector<double> pair_px;
+  for (std::size_t pair = 0; pair < outliers.size(); ++pair) pair_px.push_back(PairRms(input, *fit, pair));
+  const double median_px = Median(pair_px);
+  if (!(median_px < kOutlierFactor * alone_px)) return NoRig(median_px, alone_px);
+  std::size_t used = 0;
+  for (std::size_t pair = 0; pair < outliers.size(); ++pair) {
+    outliers[pair] = pair_px[pair] > kOutlierFactor * median_px;
+    used += outliers[pair] ? 0 : 1;
+  }
+  if (used < kFewestCalibrationPairs) return TooFew(used);
+  if (!SolvePairs(input, outliers, fit)) return NoRig(median_px, alone_px);
+  return outliers;
+}
+
+void AddErrors(const StereoInput& input, const StereoFit& fit, StereoCameras* stereo) {
+  std::vector<double> errors;
+  for (std::size_t pair = 0; pair < input.left.size(); ++pair) {
+    stereo->pair_rms_px.push_back(PairRms(input, fit, pair));
+    if (stereo->is_outlier[pair]) continue;
+    for (const Eigen::Vector2d& residual : PairResiduals(input, fit, pair)) errors.push_back(residual.norm());
+  }
+  stereo->rms_px = Rms(errors);
+}
+
 }  // namespace
 
 Result<StereoCameras> CalibrateStereo(const CalibrationBoard& board, const Camera& left, const Camera& right,
@@ -298,49 +363,16 @@ Result<StereoCameras> CalibrateStereo(const CalibrationBoard& board, const Camer
                     "pairs of fisheye cameras cannot be rectified; choose a perspective Calibrate.model");
   if (left_views.size() < kFewestCalibrationPairs) return TooFew(left_views.size());
   StereoInput input{board.Points(), {left_views.begin(), left_views.end()}, {right_views.begin(), right_views.end()}};
-  const auto alone_left = FitAlone(left, input.points, input.left);
-  const auto alone_right = FitAlone(right, input.points, input.right);
-  if (!alone_left || !alone_right)
+  auto start = StartPairs(board, left, right, &input);
+  if (!start)
     return Status(ErrorCode::kInsufficient, "the board's pose is not found in every pair; leave out blurred images");
+  StereoFit& fit = start->fit;
+  auto outliers = FitPairs(input, start->alone_px, &fit);
+  if (!outliers.ok()) return outliers.status();
 
-  std::vector<double> alone_px;
-  std::vector<double> depths_mm;
-  PairPoses poses;
-  for (std::size_t i = 0; i < input.left.size(); ++i) {
-    alone_px.push_back(RmsOf(*alone_left, input.points, input.left[i], alone_left->poses[i]));
-    alone_px.push_back(RmsOf(*alone_right, input.points, input.right[i], alone_right->poses[i]));
-    const Rigid3 left_from_board = ToRigid3(alone_left->poses[i]);
-    const Rigid3 right_from_board = ToRigid3(alone_right->poses[i]);
-    depths_mm.push_back(left_from_board.translation.norm());
-    poses.as_given.push_back(right_from_board * left_from_board.Inverse());
-    if (LooksTheSameTurned(board))
-      poses.turned.push_back(Turned(right_from_board, input.points) * left_from_board.Inverse());
-  }
-  const double depth_mm = Median(depths_mm);
-  const Rigid3 consensus = Consensus(poses, depth_mm);
-  for (std::size_t i = 0; i < poses.turned.size(); ++i)
-    if (Distance(consensus, poses.turned[i], depth_mm) < Distance(consensus, poses.as_given[i], depth_mm))
-      input.right[i] = Turned(input.right[i], board.NumPoints());
-
-  StereoFit fit{left.model_id(),        right.model_id(), ToArray(alone_left->params), ToArray(alone_right->params),
-                ToBoardPose(consensus), alone_left->poses};
-  std::vector<bool> outliers(input.left.size(), false);
-  if (!SolvePairs(input, outliers, &fit)) return NoRig(std::numeric_limits<double>::infinity(), Median(alone_px));
-  std::vector<double> pair_px;
-  for (std::size_t pair = 0; pair < outliers.size(); ++pair) pair_px.push_back(PairRms(input, fit, pair));
-  const double median_px = Median(pair_px);
-  if (!(median_px < kOutlierFactor * Median(alone_px))) return NoRig(median_px, Median(alone_px));
-  std::size_t used = 0;
-  for (std::size_t pair = 0; pair < outliers.size(); ++pair) {
-    outliers[pair] = pair_px[pair] > kOutlierFactor * median_px;
-    used += outliers[pair] ? 0 : 1;
-  }
-  if (used < kFewestCalibrationPairs) return TooFew(used);
-  if (!SolvePairs(input, outliers, &fit)) return NoRig(median_px, Median(alone_px));
-
-  StereoCameras stereo{left, right, ToRigid3(fit.right_from_left)};
-  if (Status status = CheckMount(stereo.right_from_left, depth_mm); !status.ok()) return status;
-  const auto sigmas = JackknifeSigmas(input, outliers, fit, threads);
+  const Rigid3 right_from_left = ToRigid3(fit.right_from_left);
+  if (Status status = CheckMount(right_from_left, start->depth_mm); !status.ok()) return status;
+  const auto sigmas = JackknifeSigmas(input, *outliers, fit, threads);
   auto refined_left =
       Camera::Create(fit.left_model, left.width(), left.height(), ToVector(fit.left_model, fit.left_params));
   auto refined_right =
@@ -348,18 +380,10 @@ Result<StereoCameras> CalibrateStereo(const CalibrationBoard& board, const Camer
   if (!sigmas || !refined_left.ok() || !refined_right.ok())
     return Status(ErrorCode::kInsufficient,
                   "the pairs do not determine how the cameras are mounted; add pairs in which the board is tilted");
-  stereo.left = *std::move(refined_left);
-  stereo.right = *std::move(refined_right);
-  stereo.baseline_sigma_mm = sigmas->baseline_mm;
-  stereo.rotation_sigma_deg = sigmas->rotation_deg;
-  std::vector<double> errors;
-  for (std::size_t pair = 0; pair < outliers.size(); ++pair) {
-    stereo.pair_rms_px.push_back(PairRms(input, fit, pair));
-    if (outliers[pair]) continue;
-    for (const Eigen::Vector2d& residual : PairResiduals(input, fit, pair)) errors.push_back(residual.norm());
-  }
-  stereo.rms_px = Rms(errors);
-  stereo.is_outlier = std::move(outliers);
+  StereoCameras stereo{*std::move(refined_left), *std::move(refined_right), right_from_left, sigmas->baseline_mm,
+                       sigmas->rotation_deg};
+  stereo.is_outlier = *std::move(outliers);
+  AddErrors(input, fit, &stereo);
   return stereo;
 }
 

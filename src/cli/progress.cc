@@ -111,9 +111,10 @@ bool JobBars::operator()(std::string_view task, int done, int total) {
   if (!bar_ || task != task_) {
     bar_.reset();
     task_ = task;
+    start_ = Progress::Clock::now();
     bar_.emplace(task_, total);
   }
-  bar_->Update(done, "");
+  if (Progress::Clock::now() - start_ >= kSilence) bar_->Update(done, "");
   return !stop_.load();
 }
 

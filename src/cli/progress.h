@@ -67,9 +67,12 @@ class Progress {
   bool line_open_ = false;
 };
 
-// The progress of a job that has several tasks, and its end on request: a bar a task.
+// The progress of a job that has several tasks, and its end on request: a bar for each task that takes longer than
+// kSilence.
 class JobBars {
  public:
+  static constexpr std::chrono::seconds kSilence{1};
+
   // Ends the job when this is set; must outlive it.
   explicit JobBars(const std::atomic<bool>& stop) : stop_(stop) {}
 
@@ -79,6 +82,7 @@ class JobBars {
  private:
   const std::atomic<bool>& stop_;
   std::string task_;
+  Progress::Clock::time_point start_;
   std::optional<Progress> bar_;
 };
 

@@ -63,13 +63,13 @@ std::string Cleaned(std::string sentence, const std::vector<fs::path>& known) {
 
 // A word of the command line: "clip.mp4", "--camera=data/camera.yaml", "run of monday".
 std::string CleanedWord(const std::string& word, const std::vector<fs::path>& known) {
-  static const std::regex kFile(R"re(.*/.*|.*\.[A-Za-z]\w*)re");
+  static const std::regex file(R"re(.*/.*|.*\.[A-Za-z]\w*)re");
   const std::size_t begin = word.starts_with("--") && word.find('=') != std::string::npos ? word.find('=') + 1 : 0;
   const std::string value = word.substr(begin);
   const bool is_known =
       std::any_of(known.begin(), known.end(), [&](const fs::path& path) { return path.filename() == value; });
   const bool is_name = begin == 0 && word.starts_with("-");  // of an argument
-  if (is_known || (!is_name && std::regex_match(value, kFile))) return word.substr(0, begin) + Placeholder(value);
+  if (is_known || (!is_name && std::regex_match(value, file))) return word.substr(0, begin) + Placeholder(value);
   return word;
 }
 
@@ -92,8 +92,8 @@ std::string CleanedSummary(const std::string& text, const std::vector<fs::path>&
 
 // Of config.yaml: `name_path: value  # why`.
 std::string CleanedOptions(const std::string& yaml) {
-  static const std::regex kPathOption(R"re((\n\s+\w*path: )([^"\s#][^\s#]*|"[^"\n]+"))re");
-  return WithoutPaths(std::regex_replace(yaml, kPathOption, "$1<path>"));
+  static const std::regex path_option(R"re((\n\s+\w*path: )([^"\s#][^\s#]*|"[^"\n]+"))re");
+  return WithoutPaths(std::regex_replace(yaml, path_option, "$1<path>"));
 }
 
 // Every second line below the header is left out, as often as it takes.
@@ -219,11 +219,11 @@ class Bundle {
 
 std::string WithoutPaths(const std::string& text) {
   // In single quotes; from a / on; with a / and an ending.
-  static const std::regex kPath(
+  static const std::regex path_pattern(
       R"re('([^'\n]*/[^'\n]*)'|(^|[\s"'=:(,\[])(/[^\s/"',)\]][^\s"',)\]]*|[^\s"'=:(,\[/]+/[^\s"',)\]]*\.[A-Za-z]\w*))re");
   std::string cleaned;
   auto last = text.cbegin();
-  for (std::sregex_iterator match(text.begin(), text.end(), kPath), end; match != end; ++match) {
+  for (std::sregex_iterator match(text.begin(), text.end(), path_pattern), end; match != end; ++match) {
     const auto& path = (*match)[1].matched ? (*match)[1] : (*match)[3];
     cleaned.append(last, path.first);
     cleaned += Placeholder(path.str());

@@ -4,6 +4,7 @@
 #include "cli/progress.h"
 
 #include <algorithm>
+#include <atomic>
 #include <sstream>
 
 #include <gtest/gtest.h>
@@ -100,6 +101,17 @@ TEST(Progress, QuietSaysNothing) {
     progress.Note("lost");
   }
   EXPECT_EQ(out.str(), "");
+}
+
+TEST(JobBars, SayNothingOfShortTasksAndEndTheJobOnRequest) {
+  std::atomic<bool> stop = false;
+  JobBars bars(stop);
+  testing::internal::CaptureStderr();
+  EXPECT_TRUE(bars("evaluate", 1, 2));
+  EXPECT_TRUE(bars("images", 2, 2));
+  stop = true;
+  EXPECT_FALSE(bars("images", 2, 2));
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
 FrameReport Report(int frame_idx, TrackingState state, const std::string& note) {
