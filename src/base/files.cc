@@ -31,7 +31,8 @@ Status CheckIsFile(const std::string& path) {
 }
 
 Status Unreadable(const std::string& path, int error) {
-  return {ErrorCode::kUnreadable, "cannot read " + Quoted(path) + ": " + Reason(error) + "; check the file and its folder"};
+  return {ErrorCode::kUnreadable,
+          "cannot read " + Quoted(path) + ": " + Reason(error) + "; check the file and its folder"};
 }
 
 }  // namespace

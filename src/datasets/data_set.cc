@@ -109,7 +109,7 @@ Status DataSetSequence::OpenMasks() {
   if (data_set_.mask_path.empty()) return Status::Ok();
   Result<CompanionImages> masks = CompanionImages::Open("mask", data_set_.mask_path, Stems(images()), Counts());
   if (!masks.ok()) return masks.status();
-  if (const Status status = CheckMasks(*masks); !status.ok()) return status;
+  if (Status status = CheckMasks(*masks); !status.ok()) return status;
   masks_ = *std::move(masks);
   return Status::Ok();
 }

@@ -326,7 +326,6 @@ Status RunWriter::State::WriteSubmap(int submap) const {
     sigmas.push_back(point.mean_sigma);
   }
   if (Status status = WritePly(path + "/" + SubmapPly(submap), map, sigmas); !status.ok()) return status;
-  if (own_images.empty()) return Status::Ok();  // a model without images is none
   const std::string folder = path + "/" + SubmapModel(submap, summary.submaps);
   std::error_code error;
   fs::create_directories(folder, error);

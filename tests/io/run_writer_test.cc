@@ -77,7 +77,6 @@ TEST(RunWriter, ARunWithAPoseOrAnEndTakesThePlaceOfTheFormerOne) {
     ASSERT_TRUE(run.ok()) << run.status().message();
     EXPECT_EQ(run->frames.size(), 1U);
     EXPECT_EQ(run->summary->note, "it is so");
-    EXPECT_EQ(std::filesystem::exists(folder.Path("run/sparse")), has_pose) << "a model without images is none";
   }
 }
 
@@ -189,7 +188,7 @@ TEST(RunWriter, ReportsAFullDiskAndKeepsWhatItWrote) {
 TEST(RunWriter, TellsHowTheRunEndedWhereNoNewFileCanBeMade) {
   const TestFolder folder;
   RunWriter writer = Writer(folder.Path("run"));
-  ASSERT_TRUE(writer.Write(Report(0)).ok());
+  for (int frame = 0; frame < 2; ++frame) ASSERT_TRUE(writer.Write(Report(frame)).ok());
   // Folders in the way of the files stand in for a disk without room for new ones.
   std::filesystem::create_directories(folder.Path("run/run.json.tmp"));
   std::filesystem::create_directories(folder.Path("run/sparse/cameras.txt"));

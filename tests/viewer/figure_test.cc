@@ -191,6 +191,7 @@ TEST_F(FigureTest, ShowsThePointsOfEveryRunInTheImage) {
 }
 
 TEST_F(FigureTest, SaysWhyARunHasNothingToShow) {
+  std::filesystem::remove_all(folder_.Path("run"));  // which a run that fails would leave in its place
   {
     auto writer =
         RunWriter::Create(folder_.Path("run"), TestCamera(), {"0.1.0", {"pliant"}, 7, "nowhere", {}}, "Track:\n", {});
