@@ -42,8 +42,8 @@ Result<std::vector<TimedPose>> ReadPath(const SimulationOptions::Trajectory& opt
   constexpr double kFarthestMm = 1e6;  // beyond it a float, with which rays are cast, has no tenths
   for (const TimedPose& pose : *poses)
     if (!(pose.world_from_cam.translation.norm() < kFarthestMm))
-      return {ErrorCode::kInvalidArgument, "the camera path " + options.path + " has a pose more than " +
-                                               FormatDouble(kFarthestMm) + " mm from the origin; is its unit mm?"};
+      return {ErrorCode::kInvalidArgument,
+              "the camera path " + options.path + " has a pose more than 1 km from the origin; is its unit mm?"};
   const double first_s = poses->front().timestamp_s;
   for (TimedPose& pose : *poses) pose.timestamp_s -= first_s;
   const double last_frame_s = (options.frames - 1) / options.fps;

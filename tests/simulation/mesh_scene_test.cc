@@ -252,7 +252,7 @@ TEST_F(MeshSceneTest, FollowsAFileOfPosesAndFillsInBetween) {
   options.trajectory.path = Write("bad.txt", "0 1 2 3\n");
   EXPECT_THAT(Simulator::Create(options).status().message(), HasSubstr("bad.txt"));
   options.trajectory.path = Write("far.txt", "0 0 0 -30 0 0 0 1\n1 1e308 0 0 0 0 0 1\n9 0 0 -30 0 0 0 1\n");
-  EXPECT_THAT(Simulator::Create(options).status().message(), HasSubstr("far.txt has a pose more than 1000000 mm"));
+  EXPECT_THAT(Simulator::Create(options).status().message(), HasSubstr("far.txt has a pose more than 1 km"));
   options.trajectory.path = Write("empty.txt", "# nothing\n");
   EXPECT_THAT(Simulator::Create(options).status().message(), HasSubstr("no pose"));
   options.trajectory.path = (folder_ / "none.txt").string();
