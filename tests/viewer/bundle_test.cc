@@ -12,6 +12,7 @@
 
 #include "pliant/base/files.h"
 #include "pliant/base/version.h"
+#include "support/test_folder.h"
 #include "viewer/small_sequence.h"
 
 namespace pliant {
@@ -35,11 +36,6 @@ TEST(WithoutPaths, LeavesOutFoldersAndNamesAndNothingElse) {
 class BundleTest : public testing::Test {
  protected:
   void SetUp() override {
-    const fs::path root = fs::path(testing::TempDir()) / "smith";
-    fs::remove_all(root);
-    run_ = (root / "run of smith").string();
-    sequence_ = (root / "seq").string();
-    bundle_ = (root / "bundle").string();
     fs::create_directories(run_);
     WriteSmallSequence(sequence_, Truth::kNone);
     RunSummary summary;
@@ -61,7 +57,10 @@ class BundleTest : public testing::Test {
     return texts;
   }
 
-  std::string run_, sequence_, bundle_;
+  TestFolder folder_;
+  std::string run_ = folder_.Path("smith/run of smith");
+  std::string sequence_ = folder_.Path("smith/seq");
+  std::string bundle_ = folder_.Path("smith/bundle");
 };
 
 TEST_F(BundleTest, HoldsWhatExplainsTheRunAndNothingPrivate) {
