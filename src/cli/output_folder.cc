@@ -8,18 +8,12 @@
 
 #include "pliant/base/text.h"
 #include "pliant/datasets/native_layout.h"
+#include "pliant/io/run_writer.h"
 
 namespace pliant::cli {
 namespace {
 
 namespace fs = std::filesystem;
-
-// A run that failed before it had a pose is nothing to keep.
-bool HoldsRun(const fs::path& folder) {
-  std::error_code error;
-  const auto size = fs::file_size(folder / "trajectory.txt", error);
-  return !error && size > 0 && fs::exists(folder / "run.json", error);
-}
 
 bool HoldsSequence(const fs::path& folder) {
   std::error_code error;

@@ -12,6 +12,7 @@
 #include "io/run_format.h"
 #include "pliant/base/text.h"
 #include "pliant/io/run_summary.h"
+#include "pliant/io/run_writer.h"
 
 namespace pliant {
 namespace {
@@ -19,11 +20,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kAside = ".former_run";
-
-Status Unwritable(const fs::path& path, const std::error_code& error) {
-  return {ErrorCode::kUnwritable, "cannot write into " + Quoted(path.string()) + ": " + error.message() +
-                                      "; choose another folder or change its permissions"};
-}
 
 // Files, and then the folders of models, where `folder` has them. A killed run says of no submaps, and has no models.
 std::vector<std::string> FilesOfRun(const fs::path& folder) {
@@ -42,18 +38,12 @@ std::vector<std::string> FilesOfRun(const fs::path& folder) {
   return names;
 }
 
-bool HasPoses(const fs::path& folder) {
-  std::error_code error;
-  const auto size = fs::file_size(folder / "trajectory.txt", error);
-  return !error && size > 0 && fs::exists(folder / "run.json", error);
-}
-
 // Folders that hold somebody else's files stay.
 Status Delete(const fs::path& folder) {
   std::error_code error;
   for (const std::string& name : FilesOfRun(folder)) {
     fs::remove(folder / name, error);
-    if (error && error != std::errc::directory_not_empty) return Unwritable(folder, error);
+    if (error && error != std::errc::directory_not_empty) return UnwritableFolder(folder, error);
   }
   return Status::Ok();
 }
@@ -67,12 +57,23 @@ Status MoveRun(const fs::path& from, const fs::path& to) {
     }
     fs::create_directories((to / name).parent_path(), error);
     if (!error) fs::rename(from / name, to / name, error);
-    if (error) return Unwritable(to, error);
+    if (error) return UnwritableFolder(to, error);
   }
   return Status::Ok();
 }
 
 }  // namespace
+
+Status UnwritableFolder(const fs::path& folder, const std::error_code& error) {
+  return {ErrorCode::kUnwritable, "cannot write into " + Quoted(folder.string()) + ": " + error.message() +
+                                      "; choose another folder or change its permissions"};
+}
+
+bool HoldsRun(const fs::path& folder) {
+  std::error_code error;
+  const auto size = fs::file_size(folder / "trajectory.txt", error);
+  return !error && size > 0 && fs::exists(folder / "run.json", error);
+}
 
 FormerRun::FormerRun(FormerRun&& other) noexcept : folder_(std::exchange(other.folder_, {})) {}
 
@@ -83,12 +84,12 @@ Result<FormerRun> FormerRun::SetAside(const std::string& folder) {
   std::error_code error;
   const bool was_aside = fs::exists(aside, error);
   const bool is_empty = fs::is_empty(folder, error);
-  if (error) return Unwritable(folder, error);
+  if (error) return UnwritableFolder(folder, error);
   if (is_empty) return FormerRun({});
   if (!ReadRunSummary(folder + "/run.json").ok() && !was_aside)
     return Status(ErrorCode::kInvalidArgument,
                   "the folder " + Quoted(folder) + " holds files that are not a run's; give a new or an empty folder");
-  if (HasPoses(folder)) {
+  if (HoldsRun(folder)) {
     fs::remove_all(aside, error);
     if (Status moved = MoveRun(folder, aside); !moved.ok()) {
       const Status back = MoveRun(aside, folder);

@@ -4,11 +4,17 @@
 // The run that a folder holds when another one is written there: set aside until the new one has something to show.
 #pragma once
 
+#include <filesystem>
 #include <string>
+#include <system_error>
+#include <utility>
 
 #include "pliant/base/status.h"
 
 namespace pliant {
+
+// kUnwritable, with the system's reason.
+Status UnwritableFolder(const std::filesystem::path& folder, const std::error_code& error);
 
 class FormerRun {
  public:

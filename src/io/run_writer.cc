@@ -26,16 +26,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Status Unwritable(const std::string& path, const std::error_code& error) {
-  return {ErrorCode::kUnwritable, "cannot write into " + Quoted(path) + ": " + error.message() +
-                                      "; choose another folder or change its permissions"};
-}
-
 // Makes the folder, and takes it: two runs in one folder would each remove the other's files.
 Result<FolderLock> TakeFolder(const std::string& path) {
   std::error_code error;
   fs::create_directories(path, error);
-  if (error) return Unwritable(path, error);
+  if (error) return UnwritableFolder(path, error);
   return FolderLock::Take(path);
 }
 
@@ -329,7 +324,7 @@ Status RunWriter::State::WriteSubmap(int submap) const {
   const std::string folder = path + "/" + SubmapModel(submap, summary.submaps);
   std::error_code error;
   fs::create_directories(folder, error);
-  if (error) return Unwritable(folder, error);
+  if (error) return UnwritableFolder(folder, error);
   return WriteCanonicalModel(folder, options.sparse_format, camera, own_images, own_points, path);
 }
 

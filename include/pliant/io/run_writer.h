@@ -14,6 +14,7 @@
 #pragma once
 
 #include <array>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -52,6 +53,9 @@ struct RunWriterOptions {
   colmap::Format sparse_format = colmap::Format::kBoth;
   std::optional<double> total_s = std::nullopt;  // what the run took; nothing: the time from Create to Finish
 };
+
+// Whether the folder holds a run with poses; one that failed before it had any is nothing to keep.
+bool HoldsRun(const std::filesystem::path& folder);
 
 class RunWriter {
  public:
