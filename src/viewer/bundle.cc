@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <memory>
-#include <optional>
 #include <regex>
 #include <sstream>
 #include <system_error>

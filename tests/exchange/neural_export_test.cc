@@ -208,31 +208,6 @@ cv::Mat WriteMask(const TestFolder& folder) {
   return mask;
 }
 
-TEST(Export, EndsOnRequestAndLeavesNothing) {
-  const TestFolder folder;
-  WriteNeuralRun(folder, TestCamera());
-  int stopped = 0;
-  for (const ExportFormat& format : ExportFormats()) {
-    ExportRequest request;
-    request.run_path = folder.Path("run");
-    request.format = format.name;
-    request.output_path = folder.Path("out_" + request.format);
-    bool told = false;
-    const auto summary = ExportRun(request, {}, [&](std::string_view task, int done, int total) {
-      EXPECT_EQ(task, "export");
-      told = told || done == total;
-      return done < total;
-    });
-    if (!told) continue;  // it goes through no frames
-    ++stopped;
-    EXPECT_EQ(summary.status().code(), ErrorCode::kInterrupted) << format.name;
-    if (format.name == "frames" || format.name == "ply") continue;  // files a frame: those that are written stay
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(request.output_path))
-      EXPECT_TRUE(!entry.is_regular_file() || entry.path().extension() == ".log") << entry.path();  // of COLMAP
-  }
-  EXPECT_GE(stopped, 8);
-}
-
 TEST(NerfstudioExport, MasksKeepWhatIsUsed) {
   const TestFolder folder;
   WriteNeuralRun(folder, TestCamera());

@@ -37,8 +37,7 @@ struct BundleSummary {
 Result<BundleSummary> WriteBundle(const BundleRequest& request);
 
 // `text` without the folders and names of files: what stands in single quotes and has a /, and a word that begins with
-// a
-// /, or has one and an ending, become <path> with that ending: "<path>.mp4".
+// a / or has one and an ending, become <path> with that ending: "<path>.mp4".
 std::string WithoutPaths(const std::string& text);
 
 }  // namespace pliant
