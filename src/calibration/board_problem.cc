@@ -48,19 +48,16 @@ void HoldParamsFrom(int first, BoardFit* fit, ceres::Problem* problem) {
   problem->SetManifold(fit->params.data(), new ceres::SubsetManifold(num_params, held));
 }
 
-// The standard deviation of a residual in one direction, whatever outliers there are; not finite: a point cannot be
-// projected.
+// Of all views that count.
 double ResidualSigma(std::span<const Eigen::Vector3d> board_points, std::span<const BoardView> views,
                      const std::vector<bool>& without, const BoardFit& fit) {
-  std::vector<double> sizes;
+  std::vector<Eigen::Vector2d> all;
   for (std::size_t view = 0; view < views.size(); ++view) {
     if (IsLeftOut(without, view)) continue;
-    for (const Eigen::Vector2d& residual : Residuals(board_points, views[view], fit, fit.poses[view])) {
-      if (!residual.allFinite()) return std::numeric_limits<double>::infinity();
-      sizes.insert(sizes.end(), {std::abs(residual.x()), std::abs(residual.y())});
-    }
+    const std::vector<Eigen::Vector2d> residuals = Residuals(board_points, views[view], fit, fit.poses[view]);
+    all.insert(all.end(), residuals.begin(), residuals.end());
   }
-  return sizes.empty() ? std::numeric_limits<double>::infinity() : kMedianToSigma * Median(sizes);
+  return CoordinateSigma(all);
 }
 
 // The homography from the board (x, y, 1) to rays, up to scale (direct linear transform).
@@ -152,6 +149,25 @@ int NumPinholeParams(CameraModelId model) {
              : 4;
 }
 
+BoardPose ToBoardPose(const Rigid3& cam_from_board) {
+  return ToBoardPose(cam_from_board.RotationMatrix(), cam_from_board.translation);
+}
+
+double RmsLength(std::span<const Eigen::Vector2d> residuals) {
+  std::vector<double> lengths;
+  for (const Eigen::Vector2d& residual : residuals) lengths.push_back(residual.norm());
+  return Rms(lengths);
+}
+
+double CoordinateSigma(std::span<const Eigen::Vector2d> residuals) {
+  std::vector<double> sizes;
+  for (const Eigen::Vector2d& residual : residuals) {
+    if (!residual.allFinite()) return std::numeric_limits<double>::infinity();
+    sizes.insert(sizes.end(), {std::abs(residual.x()), std::abs(residual.y())});
+  }
+  return sizes.empty() ? std::numeric_limits<double>::infinity() : kMedianToSigma * Median(sizes);
+}
+
 Rigid3 ToRigid3(const BoardPose& pose) {
   return {RotationExp({pose[0], pose[1], pose[2]}), Eigen::Vector3d(pose[3], pose[4], pose[5])};
 }
@@ -181,38 +197,46 @@ std::vector<Eigen::Vector2d> Residuals(std::span<const Eigen::Vector3d> board_po
   return residuals;
 }
 
-bool Solve(std::span<const Eigen::Vector3d> board_points, std::span<const BoardView> views,
-           const std::vector<bool>& without, Intrinsics intrinsics, int max_iterations, BoardFit* fit) {
+bool SolveRobustly(int max_iterations, const std::function<double()>& sigma,
+                   const std::function<void(ceres::LossFunction*, ceres::Problem*, ceres::Solver::Options*)>& build) {
   for (int round = 0; round < kLossRounds; ++round) {
-    const double sigma = ResidualSigma(board_points, views, without, *fit);
-    if (!std::isfinite(sigma)) return false;
+    const double scale = sigma();
+    if (!std::isfinite(scale)) return false;
     ceres::Problem::Options problem_options;
     problem_options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    ceres::CauchyLoss loss(std::max(kLossSigmas * sigma, 1e-9));
+    ceres::CauchyLoss loss(std::max(kLossSigmas * scale, 1e-9));
     ceres::Problem problem(problem_options);
-    AddResiduals(board_points, views, without, &loss, fit, &problem);
-    if (intrinsics == Intrinsics::kHeld) {
-      problem.SetParameterBlockConstant(fit->params.data());
-    } else {
-      HoldParamsFrom(fit->num_free, fit, &problem);
-    }
     ceres::Solver::Options options;
-    options.linear_solver_type = intrinsics == Intrinsics::kHeld ? ceres::SPARSE_NORMAL_CHOLESKY : ceres::DENSE_SCHUR;
-    if (intrinsics != Intrinsics::kHeld) {
-      options.linear_solver_ordering = std::make_shared<ceres::ParameterBlockOrdering>();
-      for (std::size_t view = 0; view < views.size(); ++view)
-        if (!IsLeftOut(without, view)) options.linear_solver_ordering->AddElementToGroup(fit->poses[view].data(), 0);
-      options.linear_solver_ordering->AddElementToGroup(fit->params.data(), 1);
-    }
     options.max_num_iterations = max_iterations;
     options.function_tolerance = 1e-10;
     options.logging_type = ceres::SILENT;
     options.num_threads = 1;
+    build(&loss, &problem, &options);
     ceres::Solver::Summary summary;
     ceres::Solve(options, &problem, &summary);
     if (!summary.IsSolutionUsable()) return false;
   }
   return true;
+}
+
+bool Solve(std::span<const Eigen::Vector3d> board_points, std::span<const BoardView> views,
+           const std::vector<bool>& without, Intrinsics intrinsics, int max_iterations, BoardFit* fit) {
+  const auto build = [&](ceres::LossFunction* loss, ceres::Problem* problem, ceres::Solver::Options* options) {
+    AddResiduals(board_points, views, without, loss, fit, problem);
+    if (intrinsics == Intrinsics::kHeld) {
+      problem->SetParameterBlockConstant(fit->params.data());
+      options->linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
+      return;
+    }
+    HoldParamsFrom(fit->num_free, fit, problem);
+    options->linear_solver_type = ceres::DENSE_SCHUR;
+    options->linear_solver_ordering = std::make_shared<ceres::ParameterBlockOrdering>();
+    for (std::size_t view = 0; view < views.size(); ++view)
+      if (!IsLeftOut(without, view)) options->linear_solver_ordering->AddElementToGroup(fit->poses[view].data(), 0);
+    options->linear_solver_ordering->AddElementToGroup(fit->params.data(), 1);
+  };
+  return SolveRobustly(
+      max_iterations, [&] { return ResidualSigma(board_points, views, without, *fit); }, build);
 }
 
 std::vector<double> CovarianceSigmas(std::span<const Eigen::Vector3d> board_points, std::span<const BoardView> views,

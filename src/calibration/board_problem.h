@@ -5,11 +5,12 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <span>
 #include <vector>
 
 #include <Eigen/Core>
-#include <ceres/cost_function.h>
+#include <ceres/ceres.h>
 
 #include "pliant/calibration/find_board.h"
 #include "pliant/camera/camera.h"
@@ -29,11 +30,24 @@ struct BoardFit {
 };
 
 Rigid3 ToRigid3(const BoardPose& pose);
+BoardPose ToBoardPose(const Rigid3& cam_from_board);
+
+// Root mean square of the residuals' lengths, px.
+double RmsLength(std::span<const Eigen::Vector2d> residuals);
+// The standard deviation of one coordinate, whatever outliers there are; infinite where there is no residual, or one of
+// them is not finite: a point that cannot be projected.
+double CoordinateSigma(std::span<const Eigen::Vector2d> residuals);
 
 // The poses of the views by the homographies between their rays in `camera` and the board. False where one has too few
 // rays, or lies on a line.
 bool StartPoses(const Camera& camera, std::span<const Eigen::Vector3d> board_points, std::span<const BoardView> views,
                 std::vector<BoardPose>* poses);
+
+// Solves a problem several times, each time with a robust loss whose scale is that of the residuals before. `sigma` is
+// the standard deviation of a coordinate as it is now; `build` makes the problem, and says how it is solved. False
+// where `sigma` is not finite, or Ceres fails.
+bool SolveRobustly(int max_iterations, const std::function<double()>& sigma,
+                   const std::function<void(ceres::LossFunction*, ceres::Problem*, ceres::Solver::Options*)>& build);
 
 // Whether the free parameters of the camera are moved, or the poses only.
 enum class Intrinsics { kHeld, kFree };

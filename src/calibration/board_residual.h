@@ -39,7 +39,16 @@ void Transform(const T* pose, const T* from, T* to) {
   for (int i = 0; i < 3; ++i) to[i] += pose[3 + i];
 }
 
-// Projected minus measured pixel of one point.
+// Projected minus measured pixel of a point in the camera's frame. False where it cannot be projected.
+template <class Model, class T>
+bool PixelDifference(const T* params, const T* in_cam, const Eigen::Vector2d& pixel, T* residual) {
+  if (!Model::ProjectUnbounded(params, in_cam, residual)) return false;
+  residual[0] -= pixel.x();
+  residual[1] -= pixel.y();
+  return true;
+}
+
+// Of one point of the board.
 template <class Model>
 struct BoardResidual {
   Eigen::Vector3d point;
@@ -50,10 +59,7 @@ struct BoardResidual {
     const T in_board[3] = {T(point.x()), T(point.y()), T(point.z())};
     T in_cam[3];
     Transform(pose, in_board, in_cam);
-    if (!Model::ProjectUnbounded(params, in_cam, residual)) return false;
-    residual[0] -= pixel.x();
-    residual[1] -= pixel.y();
-    return true;
+    return PixelDifference<Model>(params, in_cam, pixel, residual);
   }
 };
 
@@ -70,10 +76,7 @@ struct RightBoardResidual {
     Transform(left_from_board, in_board, in_left);
     T in_right[3];
     Transform(right_from_left, in_left, in_right);
-    if (!Model::ProjectUnbounded(params, in_right, residual)) return false;
-    residual[0] -= pixel.x();
-    residual[1] -= pixel.y();
-    return true;
+    return PixelDifference<Model>(params, in_right, pixel, residual);
   }
 };
 

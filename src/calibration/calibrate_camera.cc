@@ -134,9 +134,7 @@ std::vector<BoardFit> FirstFits(const CalibrationInput& input, const std::vector
 }
 
 double ViewRms(const CalibrationInput& input, const BoardView& view, const BoardFit& fit, const BoardPose& pose) {
-  std::vector<double> errors;
-  for (const Eigen::Vector2d& residual : Residuals(input.points, view, fit, pose)) errors.push_back(residual.norm());
-  return Rms(errors);
+  return RmsLength(Residuals(input.points, view, fit, pose));
 }
 
 // The views whose error is much larger than the others'.

@@ -10,8 +10,6 @@
 #include <optional>
 #include <string>
 
-#include <ceres/ceres.h>
-
 #include "calibration/board_problem.h"
 #include "calibration/board_residual.h"
 #include "pliant/base/parallel.h"
@@ -22,8 +20,6 @@ namespace pliant {
 namespace {
 
 constexpr int kMaxIterations = 100;
-constexpr double kLossSigmas = 3;  // as of one camera
-constexpr int kLossRounds = 3;
 // A pair is left out when its error is so many times the median pair's; no pair fits when the median pair's is so many
 // times that of each camera alone.
 constexpr double kOutlierFactor = 3;
@@ -59,13 +55,6 @@ struct StereoInput {
   std::vector<BoardView> right;
 };
 
-BoardPose ToBoardPose(const Rigid3& rigid) {
-  const Eigen::AngleAxisd turn(rigid.rotation);
-  const Eigen::Vector3d rotation = turn.angle() * turn.axis();
-  const Eigen::Vector3d& t = rigid.translation;
-  return {rotation.x(), rotation.y(), rotation.z(), t.x(), t.y(), t.z()};
-}
-
 // The poses of the board before one camera alone.
 std::optional<BoardFit> FitAlone(const Camera& camera, const std::vector<Eigen::Vector3d>& points,
                                  std::span<const BoardView> views) {
@@ -74,13 +63,6 @@ std::optional<BoardFit> FitAlone(const Camera& camera, const std::vector<Eigen::
   if (!StartPoses(camera, points, views, &fit.poses)) return std::nullopt;
   if (!Solve(points, views, {}, Intrinsics::kHeld, kMaxIterations, &fit)) return std::nullopt;
   return fit;
-}
-
-double RmsOf(const BoardFit& fit, const std::vector<Eigen::Vector3d>& points, const BoardView& view,
-             const BoardPose& pose) {
-  std::vector<double> errors;
-  for (const Eigen::Vector2d& residual : Residuals(points, view, fit, pose)) errors.push_back(residual.norm());
-  return Rms(errors);
 }
 
 // The same points, the last one first.
@@ -160,20 +142,19 @@ std::vector<Eigen::Vector2d> PairResiduals(const StereoInput& input, const Stere
 }
 
 double PairRms(const StereoInput& input, const StereoFit& fit, std::size_t pair) {
-  std::vector<double> errors;
-  for (const Eigen::Vector2d& residual : PairResiduals(input, fit, pair)) errors.push_back(residual.norm());
-  return Rms(errors);
+  return RmsLength(PairResiduals(input, fit, pair));
 }
 
-// Of one coordinate, whatever outliers there are.
-double ResidualSigma(const StereoInput& input, const std::vector<bool>& without, const StereoFit& fit) {
-  std::vector<double> sizes;
+// Of all pairs that count.
+std::vector<Eigen::Vector2d> AllResiduals(const StereoInput& input, const std::vector<bool>& without,
+                                          const StereoFit& fit) {
+  std::vector<Eigen::Vector2d> all;
   for (std::size_t pair = 0; pair < input.left.size(); ++pair) {
     if (without[pair]) continue;
-    for (const Eigen::Vector2d& residual : PairResiduals(input, fit, pair))
-      sizes.insert(sizes.end(), {std::abs(residual.x()), std::abs(residual.y())});
+    const std::vector<Eigen::Vector2d> residuals = PairResiduals(input, fit, pair);
+    all.insert(all.end(), residuals.begin(), residuals.end());
   }
-  return kMedianToSigma * Median(sizes);
+  return all;
 }
 
 void AddPair(const StereoInput& input, std::size_t pair, ceres::LossFunction* loss, StereoFit* fit,
@@ -196,32 +177,19 @@ void AddPair(const StereoInput& input, std::size_t pair, ceres::LossFunction* lo
 }
 
 bool SolvePairs(const StereoInput& input, const std::vector<bool>& without, StereoFit* fit) {
-  for (int round = 0; round < kLossRounds; ++round) {
-    const double sigma = ResidualSigma(input, without, *fit);
-    if (!std::isfinite(sigma)) return false;
-    ceres::Problem::Options problem_options;
-    problem_options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    ceres::CauchyLoss loss(std::max(kLossSigmas * sigma, 1e-9));
-    ceres::Problem problem(problem_options);
-    ceres::Solver::Options options;
-    options.linear_solver_type = ceres::DENSE_SCHUR;
-    options.linear_solver_ordering = std::make_shared<ceres::ParameterBlockOrdering>();
+  const auto build = [&](ceres::LossFunction* loss, ceres::Problem* problem, ceres::Solver::Options* options) {
+    options->linear_solver_type = ceres::DENSE_SCHUR;
+    options->linear_solver_ordering = std::make_shared<ceres::ParameterBlockOrdering>();
     for (std::size_t pair = 0; pair < input.left.size(); ++pair) {
       if (without[pair]) continue;
-      AddPair(input, pair, &loss, fit, &problem);
-      options.linear_solver_ordering->AddElementToGroup(fit->left_from_board[pair].data(), 0);
+      AddPair(input, pair, loss, fit, problem);
+      options->linear_solver_ordering->AddElementToGroup(fit->left_from_board[pair].data(), 0);
     }
     for (double* block : {fit->left_params.data(), fit->right_params.data(), fit->right_from_left.data()})
-      options.linear_solver_ordering->AddElementToGroup(block, 1);
-    options.max_num_iterations = kMaxIterations;
-    options.function_tolerance = 1e-10;
-    options.logging_type = ceres::SILENT;
-    options.num_threads = 1;
-    ceres::Solver::Summary summary;
-    ceres::Solve(options, &problem, &summary);
-    if (!summary.IsSolutionUsable()) return false;
-  }
-  return true;
+      options->linear_solver_ordering->AddElementToGroup(block, 1);
+  };
+  return SolveRobustly(
+      kMaxIterations, [&] { return CoordinateSigma(AllResiduals(input, without, *fit)); }, build);
 }
 
 struct MountSigmas {
@@ -304,8 +272,8 @@ std::optional<StereoStart> StartPairs(const CalibrationBoard& board, const Camer
   std::vector<double> depths_mm;
   PairPoses poses;
   for (std::size_t i = 0; i < input->left.size(); ++i) {
-    alone_px.push_back(RmsOf(*alone_left, input->points, input->left[i], alone_left->poses[i]));
-    alone_px.push_back(RmsOf(*alone_right, input->points, input->right[i], alone_right->poses[i]));
+    alone_px.push_back(RmsLength(Residuals(input->points, input->left[i], *alone_left, alone_left->poses[i])));
+    alone_px.push_back(RmsLength(Residuals(input->points, input->right[i], *alone_right, alone_right->poses[i])));
     const Rigid3 left_from_board = ToRigid3(alone_left->poses[i]);
     const Rigid3 right_from_board = ToRigid3(alone_right->poses[i]);
     depths_mm.push_back(left_from_board.translation.norm());
@@ -342,16 +310,6 @@ Result<std::vector<bool>> FitPairs(const StereoInput& input, double alone_px, St
   return outliers;
 }
 
-void AddErrors(const StereoInput& input, const StereoFit& fit, StereoCameras* stereo) {
-  std::vector<double> errors;
-  for (std::size_t pair = 0; pair < input.left.size(); ++pair) {
-    stereo->pair_rms_px.push_back(PairRms(input, fit, pair));
-    if (stereo->is_outlier[pair]) continue;
-    for (const Eigen::Vector2d& residual : PairResiduals(input, fit, pair)) errors.push_back(residual.norm());
-  }
-  stereo->rms_px = Rms(errors);
-}
-
 }  // namespace
 
 Result<StereoCameras> CalibrateStereo(const CalibrationBoard& board, const Camera& left, const Camera& right,
@@ -383,7 +341,8 @@ Result<StereoCameras> CalibrateStereo(const CalibrationBoard& board, const Camer
   StereoCameras stereo{*std::move(refined_left), *std::move(refined_right), right_from_left, sigmas->baseline_mm,
                        sigmas->rotation_deg};
   stereo.is_outlier = *std::move(outliers);
-  AddErrors(input, fit, &stereo);
+  for (std::size_t pair = 0; pair < input.left.size(); ++pair) stereo.pair_rms_px.push_back(PairRms(input, fit, pair));
+  stereo.rms_px = RmsLength(AllResiduals(input, stereo.is_outlier, fit));
   return stereo;
 }
 

@@ -141,7 +141,7 @@ int Finish(const CommandLine& line, const std::string& output_path, const std::v
 
 // Nothing, or what is wrong with the command line.
 std::string CheckPairs(const CalibrateRequest& request, ModelChoice model) {
-  if (!request.right_path.empty() && request.pairs != PairImages::kNone)
+  if (!request.right_path.empty() && request.pairs != PairLayout::kApart)
     return "--right_path and --pairs are two ways to give pairs; give one of them";
   if (request.HasPairs() && model == ModelChoice::kOpenCvFisheye)
     return "pairs of fisheye cameras cannot be rectified; choose a perspective --Calibrate.model, or calibrate one "

@@ -11,6 +11,7 @@
 
 #include "pliant/base/status.h"
 #include "pliant/camera/camera.h"
+#include "pliant/datasets/pair_layout.h"
 #include "pliant/geometry/rigid3.h"
 #include "pliant/io/camera_file.h"
 
@@ -42,13 +43,6 @@ struct RectifiedPair {
 // of an interlaced video, become as high as they are to be. `raw` is the size of one eye's image. Fails with
 // kInvalidArgument where the calibration is none of a pair side by side.
 Result<RectifiedPair> RectifyPair(const StereoCalibration& calibration, cv::Size raw);
-
-// How one image holds a pair.
-enum class PairLayout {
-  kApart,      // it does not: the right ones are images of their own
-  kLeftRight,  // left half, right half
-  kTopBottom,  // the left eye's on top
-};
 
 // The layout in which a calibration's left camera looks out of the middle of an image, as all do; by the size that the
 // calibration says, where it says one. Fails with kMismatch where no layout does.

@@ -89,11 +89,10 @@ Result<std::vector<Stream>> OpenStreams(const CalibrateRequest& request) {
   std::vector<Stream> streams;
   auto first = OpenStream(request.image_path);
   if (!first.ok()) return first.status();
-  if (request.pairs != PairImages::kNone) {
+  if (request.pairs != PairLayout::kApart) {
     const auto size = (*first)->SizeAt(0);
     if (!size) return Status(ErrorCode::kUnreadable, Quoted(request.image_path.string()) + " has no image that opens");
-    const PairLayout layout = request.pairs == PairImages::kLeftRight ? PairLayout::kLeftRight : PairLayout::kTopBottom;
-    EyeStreams eyes = SplitEyes(*std::move(first), layout, *size);
+    EyeStreams eyes = SplitEyes(*std::move(first), request.pairs, *size);
     streams.push_back(std::move(eyes.left));
     streams.push_back(std::move(eyes.right));
     return streams;

@@ -8,6 +8,7 @@
 #include <memory>
 #include <mutex>
 
+#include "calibration/board_problem.h"
 #include "pipeline/board_images.h"
 #include "pliant/base/parallel.h"
 #include "pliant/base/text.h"
@@ -202,13 +203,12 @@ BoardPairs ChoosePairs(const CalibrateRequest& request, const CalibrateOptions& 
 
 // As OpenCV has it: fx, fy, cx, cy and k1, k2, p1, p2.
 StereoCalibration::Eye EyeOf(const Camera& camera) {
+  auto eye = camera.Visit([](const auto& model) {
+    return StereoCalibration::Eye{model.fx(), model.fy(), model.cx(), model.cy(), {0, 0, 0, 0}};
+  });
   const std::span<const double> params = camera.params();
-  const bool one_focal_length = camera.model_id() == CameraModelId::kSimplePinhole ||
-                                camera.model_id() == CameraModelId::kSimpleRadial ||
-                                camera.model_id() == CameraModelId::kRadial;
-  const std::size_t first = one_focal_length ? 0 : 1;
-  StereoCalibration::Eye eye{params[0], params[first], params[first + 1], params[first + 2], {0, 0, 0, 0}};
-  for (std::size_t i = first + 3; i < params.size(); ++i) eye.distortion[i - first - 3] = params[i];
+  const auto distortion = params.subspan(static_cast<std::size_t>(NumPinholeParams(camera.model_id())));
+  std::copy(distortion.begin(), distortion.end(), eye.distortion.begin());
   return eye;
 }
 

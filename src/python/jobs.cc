@@ -118,7 +118,7 @@ py::dict CalibrateStereoPairs(const py::dict& request, const py::object& options
                                            .board = ValueOf(ParseBoard(Text(request, "board"))),
                                            .output_path = Text(request, "output_path"),
                                            .right_path = Text(request, "right_path"),
-                                           .pairs = EnumOf<PairImages>(Text(request, "pairs"), "pairs")};
+                                           .pairs = EnumOf<PairLayout>(Text(request, "pairs"), "pairs")};
   Interrupt interrupt;
   const auto summary = ValueOf(WithoutGil(
       &interrupt, [&] { return CalibratePairs(calibrate_request, calibrate_options, Told(on_progress, &interrupt)); }));

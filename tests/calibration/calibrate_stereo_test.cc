@@ -4,6 +4,7 @@
 #include "pliant/calibration/calibrate_stereo.h"
 
 #include <algorithm>
+#include <string>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -101,42 +102,36 @@ TEST(CalibrateStereo, LeavesOutAPairOfTwoMoments) {
   EXPECT_NEAR(stereo->BaselineMm(), kRightFromLeft.translation.norm(), kFewSigmas * stereo->baseline_sigma_mm);
 }
 
+// With kInsufficient, and a sentence that says `part`.
+void ExpectRefused(const Result<StereoCameras>& stereo, const std::string& part) {
+  ASSERT_FALSE(stereo.ok());
+  EXPECT_EQ(stereo.status().code(), ErrorCode::kInsufficient);
+  EXPECT_THAT(stereo.status().message(), HasSubstr(part));
+}
+
 TEST(CalibrateStereo, PairsThatNoMountExplainsAreRefused) {
   Pairs pairs = MakePairs(10, kNoise_px);
   std::rotate(pairs.right.begin(), pairs.right.begin() + 3, pairs.right.end());
-  const auto stereo = Calibrate(pairs);
-  ASSERT_FALSE(stereo.ok());
-  EXPECT_EQ(stereo.status().code(), ErrorCode::kInsufficient);
-  EXPECT_THAT(stereo.status().message(), HasSubstr("of the same moment?"));
+  ExpectRefused(Calibrate(pairs), "of the same moment?");
 }
 
 TEST(CalibrateStereo, CamerasThatAreExchangedAreRefused) {
   const Pairs pairs = MakePairs(8, kNoise_px);
-  const auto stereo = CalibrateStereo(kBoard, kRight, kLeft, pairs.right, pairs.left, 1);
-  ASSERT_FALSE(stereo.ok());
-  EXPECT_THAT(stereo.status().message(), HasSubstr("to the left of the left one by 4.2 mm; exchange the two"));
+  ExpectRefused(CalibrateStereo(kBoard, kRight, kLeft, pairs.right, pairs.left, 1),
+                "to the left of the left one by 4.2 mm; exchange the two");
 }
 
 TEST(CalibrateStereo, ACameraBelowTheOtherIsRefused) {
   const Rigid3 below(Eigen::Quaterniond::Identity(), Eigen::Vector3d(0, -4, 0));
-  const auto stereo = Calibrate(MakePairs(8, kNoise_px, below));
-  ASSERT_FALSE(stereo.ok());
-  EXPECT_THAT(stereo.status().message(), HasSubstr("above or below"));
+  ExpectRefused(Calibrate(MakePairs(8, kNoise_px, below)), "above or below");
 }
 
 TEST(CalibrateStereo, OneCameraTwiceIsNoPair) {
   const Pairs pairs = MakePairs(8, kNoise_px);
-  const auto stereo = CalibrateStereo(kBoard, kLeft, kLeft, pairs.left, pairs.left, 1);
-  ASSERT_FALSE(stereo.ok());
-  EXPECT_THAT(stereo.status().message(), HasSubstr("at the same place"));
+  ExpectRefused(CalibrateStereo(kBoard, kLeft, kLeft, pairs.left, pairs.left, 1), "at the same place");
 }
 
-TEST(CalibrateStereo, TwoPairsAreTooFew) {
-  const auto stereo = Calibrate(MakePairs(2, kNoise_px));
-  ASSERT_FALSE(stereo.ok());
-  EXPECT_EQ(stereo.status().code(), ErrorCode::kInsufficient);
-  EXPECT_THAT(stereo.status().message(), HasSubstr("in 2 pairs"));
-}
+TEST(CalibrateStereo, TwoPairsAreTooFew) { ExpectRefused(Calibrate(MakePairs(2, kNoise_px)), "in 2 pairs"); }
 
 }  // namespace
 }  // namespace pliant

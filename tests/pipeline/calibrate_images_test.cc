@@ -215,7 +215,7 @@ TEST_F(CalibratePairsTest, WritesAStereoCalibrationThatSequencesTake) {
   CalibrateRequest both = Apart();
   both.image_path = folder_ / "both";
   both.right_path.clear();
-  both.pairs = PairImages::kLeftRight;
+  both.pairs = PairLayout::kLeftRight;
   const auto of_both = Pairs(both);
   ASSERT_TRUE(of_both.ok()) << of_both.status().message();
   EXPECT_EQ(of_both->stereo.BaselineMm(), summary->stereo.BaselineMm());

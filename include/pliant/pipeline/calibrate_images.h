@@ -21,6 +21,7 @@
 #include "pliant/calibration/calibrate_camera.h"
 #include "pliant/calibration/calibrate_stereo.h"
 #include "pliant/calibration/find_board.h"
+#include "pliant/datasets/pair_layout.h"
 
 namespace pliant {
 
@@ -33,15 +34,6 @@ struct CalibrateOptions {
   void List(OptionTable& table);  // group "Calibrate"
 };
 
-// How one image holds a pair.
-enum class PairImages { kNone, kLeftRight, kTopBottom };
-template <>
-struct EnumNames<PairImages> {
-  static constexpr std::array kNames = {std::pair{PairImages::kNone, std::string_view("none")},
-                                        std::pair{PairImages::kLeftRight, std::string_view("left_right")},
-                                        std::pair{PairImages::kTopBottom, std::string_view("top_bottom")}};
-};
-
 struct CalibrateRequest {
   std::filesystem::path image_path;  // folder of images, native sequence or video
   CalibrationBoard board;
@@ -49,9 +41,9 @@ struct CalibrateRequest {
   // Of two cameras: where the right one's images are, of the same moments in the same order, or how each image holds
   // both (the left one's on the left, or on top).
   std::filesystem::path right_path = {};
-  PairImages pairs = PairImages::kNone;
+  PairLayout pairs = PairLayout::kApart;
 
-  bool HasPairs() const { return !right_path.empty() || pairs != PairImages::kNone; }
+  bool HasPairs() const { return !right_path.empty() || pairs != PairLayout::kApart; }
 };
 
 // What became of an image in which the board was searched for.
