@@ -5,6 +5,7 @@
 
 #include <cassert>
 
+#include <sys/resource.h>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
@@ -23,6 +24,11 @@ void ParallelFor(int count, int threads, const std::function<void(int)>& body, i
       for (int i = range.begin(); i < range.end(); ++i) body(i);
     });
   });
+}
+
+void LowerThreadPriority() {
+  constexpr int kLowPriority = 10;
+  setpriority(PRIO_PROCESS, 0, kLowPriority);  // Linux: of the calling thread alone
 }
 
 }  // namespace pliant

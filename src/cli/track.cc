@@ -4,9 +4,12 @@
 #include "pliant/pipeline/track.h"
 
 #include <array>
+#include <atomic>
+#include <chrono>
 #include <ctime>
 #include <filesystem>
 #include <memory>
+#include <thread>
 #include <vector>
 
 #include "cli/command_line.h"
@@ -33,7 +36,8 @@ const Manual kManual = {
     "camera has moved enough (Init.method); it has no scale of its own and is scaled once, so that its median depth is "
     "the configured nominal depth.\n\n"
     "Reads --image_path: a native sequence (a folder with images/ and camera.yaml), any folder of png, jpg, bmp or tif "
-    "images in natural order, or a video file. Reads --camera: camera.yaml, COLMAP's cameras.txt or cameras.bin, or an "
+    "images in natural order, a video file, or live: device:0 (a camera), an address (rtsp://, http://, ...) or - "
+    "(standard input). Reads --camera: camera.yaml, COLMAP's cameras.txt or cameras.bin, or an "
     "OpenCV calibration in YAML or XML; without it, camera.yaml in the folder or beside the video. Pixel (0, 0) is the "
     "center of the first pixel.\n\n"
     "Leaves in --output_path: config.yaml (every option as resolved), run.json (what ran and how it ended), "
@@ -44,6 +48,7 @@ const Manual kManual = {
     "frames.csv says which one a frame belongs to). A run that ends while the camera is lost has the status "
     "`lost` in run.json; that is a result, not a failure: the exit code is 0.",
     {"pliant track clip.mp4 --camera camera.yaml --output_path run",
+     "pliant track device:0 --camera camera.yaml --output_path run --live",
      "pliant track --image_path seq --output_path run --tracks cotracker.npz",
      "pliant track --image_path seq --output_path run --preset paper --start 100 --end 400"},
     {"General.seed", "General.threads", "Masks.highlights", "Masks.border", "Corners.max_corners", "Init.method",
@@ -56,6 +61,7 @@ struct TrackArguments {
   OutputFolder output;
   Preset preset = Preset::kDefault;
   bool live = false;
+  bool live_keep = false;
   bool refine = false;
 };
 
@@ -78,6 +84,8 @@ void AddArguments(TrackArguments* arguments, CommandLine* line) {
       "and shift are not known (docs/your_own_video.md)");
   line->AddFlag("live", &arguments->live,
                 "serve a view of the run to a browser on this machine while it runs (options Live)");
+  line->AddFlag("live_keep", &arguments->live_keep,
+                "with --live: go on serving the view after the run has ended, until Ctrl-C");
   line->AddFlag("refine", &arguments->refine,
                 "then refine the run (pliant refine, options Refine), into a folder with _refined behind its name");
 }
@@ -85,7 +93,9 @@ void AddArguments(TrackArguments* arguments, CommandLine* line) {
 // A folder in the working folder, for a run that was not named: clip_20260131_174501.
 std::string DatedFolder(const std::string& image_path) {
   const std::filesystem::path path = std::filesystem::path(image_path).lexically_normal();
-  const std::string name = path.has_filename() ? path.stem().string() : path.parent_path().filename().string();
+  const std::string name = IsLiveSource(image_path) ? "live"
+                           : path.has_filename()    ? path.stem().string()
+                                                    : path.parent_path().filename().string();
   const std::time_t now = std::time(nullptr);
   std::tm local{};
   localtime_r(&now, &local);
@@ -105,6 +115,9 @@ int Report(const RunSummary& summary, const TrackArguments& arguments) {
   SayResult(std::string(EnumName(summary.status)) + ": " + summary.note + "\n" +
             std::to_string(summary.frames_tracked) + " of " + std::to_string(summary.frames_read) + " frames tracked" +
             maps + ", " + std::to_string(summary.points) + " points" + rate + "\n" + arguments.output.path);
+  if (summary.stream)
+    SayResult("  " + std::to_string(summary.stream->skipped) + " of " + std::to_string(summary.stream->received) +
+              " images that came were skipped; the others are in " + RecordingOf(arguments.output.path).string());
   for (const auto& [topic, sentence] : TrustIn(summary)) SayResult("  " + topic + ": " + sentence);
   return kExitOk;
 }
@@ -120,6 +133,15 @@ int Refine(const RunRequest& request, const TrackArguments& arguments, const Ref
   refinement.command_line = request.command_line;
   refinement.stop = request.stop;
   return RefineAndSay(refinement, options);
+}
+
+// Until the next Ctrl-C; one that has ended a run on a live source is over.
+void KeepServing(LiveView* live) {
+  live->KeepRun();
+  std::atomic<bool>& stop = StopOnSignals();
+  stop = false;
+  SayNote("the live view stays at " + live->Url() + "; Ctrl-C ends it");
+  while (!stop) std::this_thread::sleep_for(std::chrono::milliseconds(50));
 }
 
 }  // namespace
@@ -141,12 +163,16 @@ int TrackCommand(std::span<const std::string> args) {
   refine_options.List(table);
   if (const auto exit = line.Resolve(table)) return *exit;
   if (const Status status = CheckTrackOptions(options); !status.ok()) return line.UsageError(status.message());
+  if (arguments.live_keep && !arguments.live) return line.UsageError("--live_keep is for --live; give that as well");
 
   OutputFolder& output = arguments.output;
   if (output.path.empty()) output.path = DatedFolder(arguments.input.path);
   if (const auto exit = output.Check(line, output.path, OutputFolder::Content::kRun)) return *exit;
   if (arguments.refine)
     if (const auto exit = output.Check(line, RefinedFolder(output.path), OutputFolder::Content::kRun)) return *exit;
+  if (IsLiveSource(arguments.input.path))
+    if (const auto exit = output.Check(line, RecordingOf(output.path).string(), OutputFolder::Content::kSequence))
+      return *exit;
   RunRequest request;
   request.input = arguments.input.Request();
   request.output_path = arguments.output.path;
@@ -166,14 +192,16 @@ int TrackCommand(std::span<const std::string> args) {
     if (live) observers.push_back(live.get());
     return RunTrack(request, options, observers);
   }();
-  live.reset();
   if (!summary.ok()) {
     SayError(summary.status().message());
     return kExitFailed;
   }
-  const int exit_code = Report(*summary, arguments);
-  if (!arguments.refine || summary->frames_tracked == 0 || exit_code != kExitOk) return exit_code;
-  return Refine(request, arguments, refine_options);
+  if (!arguments.live_keep) live.reset();
+  int exit_code = Report(*summary, arguments);
+  if (arguments.refine && summary->frames_tracked > 0 && exit_code == kExitOk)
+    exit_code = Refine(request, arguments, refine_options);
+  if (live) KeepServing(live.get());
+  return exit_code;
 }
 
 }  // namespace pliant::cli

@@ -65,6 +65,7 @@ class DataSetSequence final : public Sequence {
     return images().count_is_exact() ? CompanionImages::Counts::kMustAgree : CompanionImages::Counts::kMayDiffer;
   }
   Status CheckSize(const cv::Mat& image, const std::string& title) const;
+  double TimeOf(int idx) const;
   Result<cv::Mat> Mask(int idx, const std::string& name) const;
   Result<cv::Mat> RawMask(int idx) const;
   fs::path DepthPriorFile(int idx) const;
@@ -157,8 +158,7 @@ Result<std::optional<SequenceFrame>> DataSetSequence::Next() {
   SequenceFrame frame;
   frame.frame_idx = idx;
   frame.name = images().Name(idx);
-  frame.timestamp_s = data_set_.timestamps_s.empty() ? idx / data_set_.calibration.fps
-                                                     : data_set_.timestamps_s[static_cast<std::size_t>(idx)];
+  frame.timestamp_s = TimeOf(idx);
   frame.image = **std::move(image);
   frame.recorded_s = data_set_.timestamps_s.empty() ? images().RecordedS() : std::optional(frame.timestamp_s);
   Result<cv::Mat> mask = Mask(idx, frame.name);
@@ -234,8 +234,12 @@ std::optional<Rigid3> DataSetSequence::WorldFromCamera(int frame_idx) const {
 
 std::optional<double> DataSetSequence::TimestampS(int frame_idx) const {
   if (frame_idx < 0 || (images().count() > 0 && frame_idx >= images().count())) return std::nullopt;
-  return data_set_.timestamps_s.empty() ? frame_idx / data_set_.calibration.fps
-                                        : data_set_.timestamps_s[static_cast<std::size_t>(frame_idx)];
+  return TimeOf(frame_idx);
+}
+
+double DataSetSequence::TimeOf(int idx) const {
+  if (!data_set_.timestamps_s.empty()) return data_set_.timestamps_s[static_cast<std::size_t>(idx)];
+  return images().TimestampS(idx).value_or(idx / data_set_.calibration.fps);
 }
 
 std::optional<std::string> DataSetSequence::Name(int frame_idx) const {

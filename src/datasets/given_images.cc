@@ -33,6 +33,7 @@ class GivenStream final : public ImageStream {
     return image.ok() && image->has_value() ? std::optional((*image)->size()) : std::nullopt;
   }
   Result<std::optional<cv::Mat>> Read(int idx) override { return images_->Read(idx); }
+  std::optional<double> TimestampS(int idx) const override { return images_->TimestampS(idx); }
 
  private:
   std::filesystem::path path_ = "the list of images";
@@ -55,6 +56,7 @@ Result<DataSet> OpenGivenImages(const SequenceRequest& request) {
                    .timestamps_s = given.timestamps_s};
   data_set.calibration.fps = given.fps;
   data_set.calibration.photometric = given.photometric;
+  data_set.warnings = given.warnings;
   return data_set;
 }
 

@@ -39,6 +39,8 @@ class ImageStream {
   virtual Result<std::optional<cv::Mat>> Read(int idx) = 0;
   // When the image that Read gave last was taken, by the source's own word; nothing where it says nothing.
   virtual std::optional<double> RecordedS() const { return std::nullopt; }
+  // The time of image `idx`, which was read, seconds; nothing: it goes by its number.
+  virtual std::optional<double> TimestampS(int /*idx*/) const { return std::nullopt; }
 };
 
 // At least one file; `folder` is where they lie.

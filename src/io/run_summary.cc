@@ -110,6 +110,8 @@ Status WriteRunSummary(const std::string& path, const RunSummary& summary) {
       {"trust", trust},
       {"first_map", first_maps.empty() ? Json() : first_maps.front()},
       {"first_maps", first_maps},
+      {"stream", summary.stream ? Json{{"received", summary.stream->received}, {"skipped", summary.stream->skipped}}
+                                : Json()},
       {"medians",
        {{"reprojection_error_px", summary.median_reprojection_error_px}, {"coverage", summary.median_coverage}}},
       {"counts",
@@ -157,6 +159,8 @@ Result<RunSummary> ReadRunSummary(const std::string& path) {
     for (const Json& map : json.value("first_maps", Json::array())) summary.first_maps.push_back(ReadFirstMap(map));
     if (const Json map = json.value("first_map", Json()); summary.first_maps.empty() && !map.is_null())
       summary.first_maps.push_back(ReadFirstMap(map));
+    if (const Json stream = json.value("stream", Json()); !stream.is_null())
+      summary.stream = {stream.at("received").get<std::int64_t>(), stream.at("skipped").get<std::int64_t>()};
     if (const Json medians = json.value("medians", Json()); !medians.is_null()) {
       summary.median_reprojection_error_px = medians.at("reprojection_error_px").get<double>();
       summary.median_coverage = medians.at("coverage").get<double>();

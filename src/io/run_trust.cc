@@ -106,9 +106,13 @@ std::string OfImages(const RunDescription& run) {
 }
 
 std::string OfTracks(const RunSummary& summary) {
-  return "Points lie " + Digits(summary.median_reprojection_error_px, 2) +
-         " px from where the map has them, in the median (pixels of the source). Points were tracked in images of " +
-         Digits(summary.description.image_scale, 2) + " times the source's size.";
+  // While a map is provisional, points are where the images have them.
+  const std::string error = summary.median_reprojection_error_px > 0
+                                ? "Points lie " + Digits(summary.median_reprojection_error_px, 2) +
+                                      " px from where the map has them, in the median (pixels of the source). "
+                                : "";
+  return error + "Points were tracked in images of " + Digits(summary.description.image_scale, 2) +
+         " times the source's size.";
 }
 
 // Sentences as one text; empty ones are left out.

@@ -102,6 +102,8 @@ RunWriter::~RunWriter() = default;
 
 const RunSummary& RunWriter::summary() const { return state_->summary; }
 
+void RunWriter::SetStream(const StreamCounts& stream) { state_->summary.stream = stream; }
+
 Result<RunWriter> RunWriter::Create(const std::string& output_path, const Camera& camera, RunDescription description,
                                     const std::string& config_yaml, RunColumns columns,
                                     const RunWriterOptions& options) {

@@ -81,7 +81,10 @@ std::vector<ImageRun> ReadFirstRuns(const SequenceRequest& request) {
   auto sequence = OpenSequence(request);
   if (!sequence.ok()) return {};
   std::vector<ImageRun> runs(kRuns);
-  for (int k = 0; k < (kRuns - 1) * kRunDistance + kRunFrames; ++k) {
+  // Images that have yet to come would be waited for.
+  const bool is_live = request.given && request.given->images->IsLive();
+  const int last_run = is_live ? 0 : kRuns - 1;
+  for (int k = 0; k < last_run * kRunDistance + kRunFrames; ++k) {
     auto next = (*sequence)->Next();
     if (!next.ok() || !next->has_value()) break;
     if (k % kRunDistance < kRunFrames) runs[static_cast<std::size_t>(k / kRunDistance)].push_back(**std::move(next));

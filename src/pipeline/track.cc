@@ -16,6 +16,7 @@
 #include "pipeline/working_frame.h"
 #include "pliant/base/prefetcher.h"
 #include "pliant/base/version.h"
+#include "pliant/camera/assumed_camera.h"
 #include "pliant/datasets/check_images.h"
 #include "pliant/estimation/frame/frame_problem.h"
 #include "pliant/tracking/bootstrapping/stereo_pair.h"
@@ -64,6 +65,8 @@ std::optional<Result<ReadFrame>> NextFrame(Sequence& sequence, const TrackerOpti
   }
   return read;
 }
+
+bool IsLive(const SequenceRequest& input) { return input.given && input.given->images->IsLive(); }
 
 // How a run ended.
 struct Ending {
@@ -170,7 +173,7 @@ class FrameSource {
   using Frames = std::optional<Prefetcher<Result<ReadFrame>>>;
   void ReadAhead(Sequence& sequence, Frames* frames) {
     frames->emplace([&] { return NextFrame(sequence, options_.tracker, options_.threads, start_, wants_depth_); },
-                    options_.threads > 1 ? kFramesAhead : 0);
+                    options_.threads > 1 && !IsLive(input_) ? kFramesAhead : 0);
   }
 
   const SequenceRequest& input_;
@@ -266,6 +269,22 @@ RunDescription DescriptionOf(const RunRequest& request, const TrackOptions& opti
           request.extensions.Names()};
 }
 
+// Turns the request into one of the source's images.
+Result<std::shared_ptr<LiveSource>> OpenLive(const LiveInputOptions& options, RunRequest* request) {
+  SequenceRequest& input = request->input;
+  auto live = LiveSource::Open({.source = input.image_path,
+                                .camera_path = input.camera_path,
+                                .recording_path = RecordingOf(request->output_path),
+                                .options = options,
+                                .stop = request->stop});
+  if (!live.ok()) return live;
+  input.given = LiveSource::Given(*live);
+  input.image_path = RecordingOf(request->output_path);
+  if (!IsAssumedCamera(input.camera_path.string())) input.camera_path.clear();  // the recording has it
+  request->stop = nullptr;
+  return live;
+}
+
 }  // namespace
 
 void ImageOptions::List(OptionTable& table) {
@@ -289,6 +308,7 @@ void TrackOptions::List(OptionTable& table) {
   table.Add("max_frames_back", &max_frames_back, "frames",
             "frames without a map, before the reference of a first map, tracked backwards in time from it", 0, 100000);
   table.AddChoice("timings", &timings, "none: wall times are written as 0, so that two runs are equal byte for byte");
+  live_input.List(table);
   image.List(table);
   track_file.List(table);
   tracker.List(table);
@@ -341,6 +361,12 @@ Status EndOf(const RunSummary& summary, const std::string& output_path) {
 Result<RunSummary> RunTrack(const RunRequest& given, const TrackOptions& options,
                             std::span<TrackObserver* const> observers) {
   RunRequest request = given;
+  std::shared_ptr<LiveSource> live;
+  if (!request.input.given && IsLiveSource(request.input.image_path)) {
+    auto opened = OpenLive(options.live_input, &request);
+    if (!opened.ok()) return opened.status();
+    live = *std::move(opened);
+  }
   if (options.tracker.depth_prior.IsGiven()) request.input.depth_prior_path = options.tracker.depth_prior.path;
   // More threads than processors gain nothing, and TBB complains of them on standard error.
   TrackOptions usable = options;
@@ -378,6 +404,7 @@ Result<RunSummary> RunTrack(const RunRequest& given, const TrackOptions& options
   const Ending ending = TrackSequence(checked, request, usable, *start, truth.get(), *writer, observers);
   for (const std::string& warning : checked.Check().wrong)
     for (TrackObserver* observer : observers) observer->OnWarning(warning);
+  if (live) writer->SetStream(live->counts());
   const Status finished = writer->Finish(ending.status, ending.note);
   RunSummary summary = writer->summary();
   if (!finished.ok()) {

@@ -6,19 +6,15 @@
 #include <chrono>
 #include <iterator>
 
-#include <sys/resource.h>
-
+#include "pliant/base/parallel.h"
 #include "viewer/view_images.h"
 
 namespace pliant {
 namespace {
 
 constexpr std::chrono::milliseconds kBetweenImages(100);
-constexpr int kLowPriority = 10;
 
 }  // namespace
-
-void LowerImageThreadPriority() { setpriority(PRIO_PROCESS, 0, kLowPriority); }  // Linux: of the calling thread alone
 
 LiveImages::LiveImages(int width_px, int quality, double max_mb)
     : width_px_(width_px), quality_(quality), max_mb_(max_mb), thread_([this] { Run(); }) {}
@@ -59,7 +55,7 @@ double LiveImages::scale() const {
 }
 
 void LiveImages::Run() {
-  LowerImageThreadPriority();
+  LowerThreadPriority();
   std::unique_lock lock(mutex_);
   while (true) {
     changed_.wait(lock, [&] { return ended_ || next_; });

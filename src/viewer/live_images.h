@@ -18,9 +18,6 @@
 
 namespace pliant {
 
-// The calling thread gets what the others leave.
-void LowerImageThreadPriority();
-
 class LiveImages {
  public:
   LiveImages(int width_px, int quality, double max_mb);

@@ -12,6 +12,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "pliant/base/parallel.h"
 #include "viewer/live_images.h"
 #include "viewer/live_run.h"
 #include "viewer/loopback_server.h"
@@ -42,7 +43,7 @@ struct LiveView::Server {
         in_millimeters(shown.in_millimeters),
         images(options.image_width_px, options.image_quality, options.max_image_mb),
         run(shown.name),
-        http(kAnswerThreads, LowerImageThreadPriority) {
+        http(kAnswerThreads, LowerThreadPriority) {
     http.Get("/", [this](const auto&, auto* response) {
       SetBody(PageWith({{"format", kPageFormat}, {"live", true}, {"title", title}}), "text/html", response);
     });
@@ -72,7 +73,8 @@ struct LiveView::Server {
       --waiting;
       const int begin = epoch == run.epoch() && from <= run.rows() ? from : 0;
       answer = {{"epoch", run.epoch()},         {"from", begin}, {"running", !ended},
-                {"frames_in_sequence", frames}, {"read", read},  {"state", EnumName(state)}};
+                {"kept", kept},                 {"frames_in_sequence", frames},
+                {"read", read},                 {"state", EnumName(state)}};
       part = run.From(begin);
       view.notes = warnings;
       asked = Clock::now();
@@ -114,6 +116,7 @@ struct LiveView::Server {
   int last_read_frame_idx = -1;  // some come once more
   TrackingState state = TrackingState::kWaitingForReference;
   bool ended = false;
+  bool kept = false;                       // beyond the run's end
   bool knows_the_end = false;              // the page
   std::optional<Clock::time_point> asked;  // last, by a page
   LoopbackServer http;
@@ -139,14 +142,22 @@ Result<std::unique_ptr<LiveView>> LiveView::Start(const LiveRunName& shown, cons
 LiveView::LiveView(std::unique_ptr<Server> server) : server_(std::move(server)) {}
 
 LiveView::~LiveView() {
+  const bool was_kept = server_->kept;
+  EndRun(/*keep=*/was_kept);
+  if (!was_kept) server_->WaitForThoseWhoLook();
+  server_->http.Stop();
+}
+
+void LiveView::EndRun(bool keep) {
   {
     const std::lock_guard lock(server_->mutex);
     server_->ended = true;
+    server_->kept = keep;
   }
   server_->changed.notify_all();
-  server_->WaitForThoseWhoLook();
-  server_->http.Stop();
 }
+
+void LiveView::KeepRun() { EndRun(/*keep=*/true); }
 
 std::string LiveView::Url() const { return "http://127.0.0.1:" + std::to_string(server_->http.port()) + "/"; }
 

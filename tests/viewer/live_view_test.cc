@@ -74,6 +74,24 @@ TEST_F(LiveViewTest, GivesThePageAndWhatIsNew) {
   EXPECT_EQ(Data(0, 99)["from"], 0);  // of another run
 }
 
+TEST_F(LiveViewTest, ARunThatIsKeptIsServedAfterItsEnd) {
+  live_->OnImage(10, cv::Mat(48, 64, CV_8UC1, cv::Scalar(90)));
+  live_->OnFrame(Report(0));
+  EXPECT_EQ(Data(0, 0)["kept"], false);
+  while (Data(0, 0)["image_frames"].empty()) std::this_thread::yield();  // it is encoded on a thread of its own
+  live_->KeepRun();
+  const ordered_json data = Data(0, 0);
+  EXPECT_EQ(data["running"], false);
+  EXPECT_EQ(data["kept"], true);
+  EXPECT_THAT(data["data"]["runs"][0]["frames"]["frame"], ElementsAre(10));
+  const auto image = httplib::Client(url_.substr(0, url_.size() - 1)).Get("/image/10.jpg");
+  ASSERT_TRUE(image);
+  EXPECT_EQ(image->status, 200);
+  const auto begin = std::chrono::steady_clock::now();
+  live_.reset();  // nobody is waited for: the program has been asked to end
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(1));
+}
+
 TEST_F(LiveViewTest, ARefinedPointIsNewAgain) {
   live_->OnFrame(Report(0));
   FrameReport report = Report(1);

@@ -15,6 +15,7 @@ export interface Answer {
   epoch: number;
   from: number;
   running: boolean;
+  kept: boolean;  // where the run has ended: the program goes on serving it
   frames_in_sequence: number;
   read: number;
   state: string;
@@ -62,7 +63,8 @@ function drawing(): Promise<number> {
   return new Promise((resolve) => requestAnimationFrame((begin) => setTimeout(() => resolve(performance.now() - begin))));
 }
 
-function sentence({ running, state, read, frames_in_sequence: total }: Answer, rows: number): string {
+function sentence({ running, kept, state, read, frames_in_sequence: total }: Answer, rows: number): string {
+  if (!running && kept) return "The run has ended. It can be looked at here until the program is ended.";
   if (!running) return "The run has ended, and its images with it: `pliant report` makes a page that keeps them.";
   const frame = total > 0 ? `frame ${read} of ${total}` : `frame ${read}`;
   if (state === "initializing" || state === "ambiguous" || state === "waiting_for_reference" || rows === 0) return `Waiting for the first map: ${frame}.`;

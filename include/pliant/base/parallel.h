@@ -16,4 +16,7 @@ inline constexpr int kManySmallItems = 16;
 // number of threads.
 void ParallelFor(int count, int threads, const std::function<void(int)>& body, int grain = kManySmallItems);
 
+// The calling thread gets what the others of the machine leave.
+void LowerThreadPriority();
+
 }  // namespace pliant

@@ -6,6 +6,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <opencv2/core/mat.hpp>
@@ -26,6 +27,11 @@ class ImageSource {
   // end. Images are asked for in any order, more than once (tracking goes back), and by several threads at a time.
   // Fails with kUnreadable.
   virtual Result<std::optional<cv::Mat>> Read(int idx) = 0;
+
+  // When image `idx`, which was read, was taken, seconds; nothing: GivenImages says it.
+  virtual std::optional<double> TimestampS(int /*idx*/) const { return std::nullopt; }
+  // Whether images arrive while they are tracked: none is read before it is needed, since a newer one may have come.
+  virtual bool IsLive() const { return false; }
 };
 
 struct GivenImages {
@@ -34,6 +40,7 @@ struct GivenImages {
   double fps = 30.0;                                                 // where there are no times
   std::vector<double> timestamps_s = {};                             // one an image; empty: number / fps
   std::shared_ptr<ImageSource> images;
+  std::vector<std::string> warnings = {};  // what is odd about them, a sentence each
 };
 
 }  // namespace pliant

@@ -61,6 +61,12 @@ struct RunDescription {
   std::vector<std::string> extensions = {};
 };
 
+// Images of a source that went on while they were tracked.
+struct StreamCounts {
+  std::int64_t received = 0;
+  std::int64_t skipped = 0;  // of those: newer ones had come
+};
+
 // run.json.
 struct RunSummary {
   RunDescription description;
@@ -68,6 +74,7 @@ struct RunSummary {
   std::string note;                        // why the run ended, one sentence
   std::vector<FirstMapFrames> first_maps;  // one a map that was made, in the order of time
 
+  std::optional<StreamCounts> stream;  // nothing: all images were there before
   std::int64_t frames_read = 0;
   std::int64_t frames_tracked = 0;                             // that have a pose
   std::vector<std::pair<TrackingState, std::int64_t>> states;  // frames in each state that occurred

@@ -75,6 +75,9 @@ class RunWriter {
   // new. A term or a stage that the report does not name is 0.
   Status Write(const FrameReport& report);
 
+  // What became of the images of a live source; before Finish.
+  void SetStream(const StreamCounts& stream);
+
   // Brings the rows of merged submaps into one world, writes map.ply, sparse/ and the final run.json; to be called
   // once, whatever ended the run. run.json is attempted even when the others fail, and then says `failed` with the
   // reason. Where a former run is restored, summary().note alone says what became of this one.

@@ -21,6 +21,7 @@
 #include "pliant/base/options.h"
 #include "pliant/base/status.h"
 #include "pliant/camera/camera.h"
+#include "pliant/datasets/live_source.h"
 #include "pliant/datasets/open_sequence.h"
 #include "pliant/datasets/sequence_tracks.h"
 #include "pliant/io/run_summary.h"
@@ -64,6 +65,7 @@ struct TrackOptions {
   int threads = 2;  // 1: everything on one thread; 2 and more: images are read ahead, points are followed in parallel
   RunTimings timings = RunTimings::kWritten;
   int max_frames_back = 10000;  // without a map, before the reference of a first map, tracked backwards in time from it
+  LiveInputOptions live_input;  // where the image path names a live source
   ImageOptions image;
   TrackFileOptions track_file;  // where it is given, points are followed by it
   TrackerOptions tracker;
@@ -79,6 +81,8 @@ TrackOptions MakeTrackOptions(Preset preset);
 Status CheckTrackOptions(const TrackOptions& options);
 
 struct RunRequest {
+  // An image path may name a live source (pliant/datasets/live_source.h): its images are recorded as the sequence
+  // RecordingOf(output_path), which is the run's input from then on. `stop` ends it like the end of a sequence.
   SequenceRequest input;
   std::string output_path;
   std::vector<std::string> command_line;    // for run.json

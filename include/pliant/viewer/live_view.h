@@ -40,6 +40,9 @@ class LiveView final : public TrackObserver {
   LiveView(const LiveView&) = delete;
   LiveView& operator=(const LiveView&) = delete;
 
+  // The run has ended; it is served as it is until this object goes.
+  void KeepRun();
+
   std::string Url() const;  // "http://127.0.0.1:8765/"
 
   void OnCamera(const Camera& camera) override;
@@ -51,6 +54,7 @@ class LiveView final : public TrackObserver {
 
  private:
   struct Server;
+  void EndRun(bool keep);
   explicit LiveView(std::unique_ptr<Server> server);
   std::unique_ptr<Server> server_;
 };

@@ -1,0 +1,109 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "datasets/frame_grabber.h"
+
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <string_view>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include <unistd.h>
+
+#include "pliant/base/options.h"
+#include "pliant/base/text.h"
+
+namespace pliant {
+namespace {
+
+constexpr std::string_view kDevice = "device:";
+using Clock = std::chrono::steady_clock;
+
+constexpr double kMostOfTheTimeout = 0.9;
+constexpr int kMaxDevice = 255;  // Video4Linux has no more
+
+Result<int> DeviceNumber(std::string_view source) {
+  int number = -1;
+  if (ParseInt(source.substr(kDevice.size()), &number) && number >= 0 && number <= kMaxDevice) return number;
+  return Status(ErrorCode::kInvalidArgument, Quoted(source) + " names no camera; write device:0 for /dev/video0");
+}
+
+Status CheckDevice(int number) {
+  const std::string file = "/dev/video" + std::to_string(number);
+  std::error_code error;
+  if (!std::filesystem::exists(file, error))
+    return {ErrorCode::kNotFound, "there is no camera " + file + "; plug it in, or name another device"};
+  if (access(file.c_str(), R_OK | W_OK) != 0)
+    return {ErrorCode::kUnreadable,
+            "the camera " + file + " may not be opened; add yourself to the group that owns it, often video"};
+  return Status::Ok();
+}
+
+std::string CannotBeDecoded(const std::string& source) {
+  if (source == "-")
+    return "standard input is no video that can be decoded, or ends before its first image; pipe one into the "
+           "program, as in ffmpeg -i VIDEO -f yuv4mpegpipe - | pliant track -";
+  if (source.starts_with(kDevice))
+    return "the camera " + Quoted(source) + " cannot be read; check that no other program uses it";
+  return "the stream " + Quoted(source) + " cannot be opened; check its address, and that it is being sent";
+}
+
+}  // namespace
+
+Result<std::unique_ptr<FrameGrabber>> FrameGrabber::Open(const std::string& source, double timeout_s,
+                                                         std::function<bool()> is_stopped) {
+  std::unique_ptr<FrameGrabber> grabber(new FrameGrabber);
+  grabber->timeout_s_ = timeout_s;
+  if (source == "-") {
+    auto input = StandardInput::Open(timeout_s, is_stopped);
+    if (!input.ok()) return input.status();
+    grabber->standard_input_ = *std::move(input);
+  }
+  Status opened = Status::Ok();
+  try {
+    opened = grabber->OpenCapture(source, timeout_s);
+  } catch (const cv::Exception&) {
+    opened = Status(ErrorCode::kUnreadable, CannotBeDecoded(source));
+  }
+  if (is_stopped()) return Status(ErrorCode::kInterrupted, "stopped on request before the first image");
+  if (!opened.ok()) return opened;
+  const double fps = grabber->capture_.get(cv::CAP_PROP_FPS);
+  if (std::isfinite(fps) && fps > 0 && fps < 1e4) grabber->fps_ = fps;
+  return grabber;
+}
+
+Status FrameGrabber::OpenCapture(const std::string& source, double timeout_s) {
+  if (source.starts_with(kDevice)) {
+    const auto number = DeviceNumber(source);
+    if (!number.ok()) return number.status();
+    if (Status status = CheckDevice(*number); !status.ok()) return status;
+    capture_.open(*number, cv::CAP_V4L2);
+  } else {
+    const std::string address = standard_input_ ? "pipe:" + std::to_string(standard_input_->descriptor()) : source;
+    // Standard input ends by itself, and may wait for as long as tracking takes.
+    const int timeout_ms = standard_input_ ? 1000000000 : static_cast<int>(1000 * timeout_s);
+    capture_.open(address, cv::CAP_FFMPEG,
+                  {cv::CAP_PROP_OPEN_TIMEOUT_MSEC, timeout_ms, cv::CAP_PROP_READ_TIMEOUT_MSEC, timeout_ms});
+  }
+  return capture_.isOpened() ? Status::Ok() : Status(ErrorCode::kUnreadable, CannotBeDecoded(source));
+}
+
+std::optional<cv::Mat> FrameGrabber::Grab() {
+  const auto begin = Clock::now();
+  try {
+    cv::Mat decoded;
+    if (capture_.read(decoded) && !decoded.empty() && decoded.depth() == CV_8U)
+      return decoded.clone();  // the decoder reuses its own memory
+  } catch (const cv::Exception&) {
+    // A stream that cannot be decoded any further has ended.
+  }
+  // A decoder that waited in vain says no more than one whose stream has ended.
+  const double waited_s = std::chrono::duration<double>(Clock::now() - begin).count();
+  has_stalled_ = standard_input_ ? standard_input_->has_stalled() : waited_s > kMostOfTheTimeout * timeout_s_;
+  return std::nullopt;
+}
+
+}  // namespace pliant

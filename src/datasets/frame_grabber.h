@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// One image after the other from a camera, a stream over the network or standard input, through OpenCV.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <opencv2/core/mat.hpp>
+#include <opencv2/videoio.hpp>
+
+#include "datasets/standard_input.h"
+#include "pliant/base/status.h"
+
+namespace pliant {
+
+class FrameGrabber {
+ public:
+  // Waits for the source's header. `is_stopped` is asked from several threads, and may become true at any time: then
+  // this and Grab come to an end, at once for standard input, within the time-out otherwise.
+  // Fails with kNotFound, kUnreadable or kInterrupted.
+  static Result<std::unique_ptr<FrameGrabber>> Open(const std::string& source, double timeout_s,
+                                                    std::function<bool()> is_stopped);
+
+  // Waits for the next image, 8-bit BGR; nothing at the source's end, or where it stalls. To be called by one thread,
+  // as has_stalled.
+  std::optional<cv::Mat> Grab();
+  // Whether Grab has waited in vain, so that it gives nothing.
+  bool has_stalled() const { return has_stalled_; }
+  // Images a second, where the source says it.
+  std::optional<double> fps() const { return fps_; }
+
+ private:
+  FrameGrabber() = default;
+  Status OpenCapture(const std::string& source, double timeout_s);
+
+  std::unique_ptr<StandardInput> standard_input_;  // outlives the capture that reads it
+  cv::VideoCapture capture_;
+  std::optional<double> fps_;
+  double timeout_s_ = 0;
+  bool has_stalled_ = false;
+};
+
+}  // namespace pliant

@@ -1,0 +1,236 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/datasets/live_source.h"
+
+#include <atomic>
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <thread>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <opencv2/core.hpp>
+
+#include "datasets/sequence_files.h"
+#include "pliant/camera/assumed_camera.h"
+#include "pliant/datasets/open_sequence.h"
+#include "support/piped_video.h"
+
+namespace pliant {
+namespace {
+
+using testing::HasSubstr;
+using Clock = std::chrono::steady_clock;
+
+constexpr int kFps = 20;
+
+bool AreEqual(const cv::Mat& a, const cv::Mat& b) { return a.size() == b.size() && cv::norm(a, b, cv::NORM_INF) == 0; }
+
+class LiveSourceTest : public SequenceFiles {
+ protected:
+  void SetUp() override {
+    SequenceFiles::SetUp();
+    WriteCamera();
+    request_ = {.source = "-", .camera_path = Path("camera.yaml"), .recording_path = Path("recording")};
+    request_.options.frames = LiveFrames::kAll;
+    request_.options.timeout_s = 10;
+  }
+
+  // As video has gray levels: 16 is black, 235 is white.
+  static cv::Mat Gray(int idx) { return cv::Mat(kHeight, kWidth, CV_8UC1, cv::Scalar(40 + 20 * idx)); }
+  static double DecodedLevel(int idx) { return (40 + 20 * idx - 16) * 255.0 / 219.0; }
+  void Send(int from, int to) const {
+    for (int idx = from; idx < to; ++idx) pipe_.Image(Gray(idx));
+  }
+
+  PipedVideo pipe_;
+  LiveRequest request_;
+};
+
+TEST(IsLiveSource, TellsAddressesFromFiles) {
+  for (const char* live : {"-", "device:0", "rtsp://10.0.0.2/stream", "http://host:8080/video", "udp://@:1234"})
+    EXPECT_TRUE(IsLiveSource(live)) << live;
+  for (const char* file : {"", "clip.mp4", "device", "/dev/video0", "http", "folder/-", "./-"})
+    EXPECT_FALSE(IsLiveSource(file)) << file;
+}
+
+TEST(RecordingOf, IsBesideTheRun) {
+  EXPECT_EQ(RecordingOf("a/run"), "a/run_recording");
+  EXPECT_EQ(RecordingOf("a/run/"), "a/run_recording");
+}
+
+TEST_F(LiveSourceTest, GivesEveryImageAndRecordsItAsASequence) {
+  pipe_.Header(kWidth, kHeight, kFps);
+  Send(0, 6);
+  pipe_.Close();
+  auto source = LiveSource::Open(request_);
+  ASSERT_TRUE(source.ok()) << source.status().message();
+  std::vector<cv::Mat> images;
+  while (true) {
+    const auto image = (*source)->Read(static_cast<int>(images.size()));
+    ASSERT_TRUE(image.ok()) << image.status().message();
+    if (!image->has_value()) break;
+    images.push_back(**image);
+  }
+  ASSERT_EQ(images.size(), 6U);
+  for (std::size_t k = 0; k < images.size(); ++k)
+    EXPECT_NEAR(cv::mean(images[k])[0], DecodedLevel(static_cast<int>(k)), 2);
+  EXPECT_EQ((*source)->TimestampS(3), 3.0 / kFps);
+  EXPECT_EQ((*source)->TimestampS(6), std::nullopt);
+  EXPECT_EQ((*source)->counts().received, 6);
+  EXPECT_EQ((*source)->counts().skipped, 0);
+  EXPECT_TRUE(AreEqual(**(*source)->Read(2), images[2]));  // tracking goes back
+  source->reset();                                         // all is on disk then
+  const auto recorded = OpenSequence({.image_path = Path("recording")});
+  ASSERT_TRUE(recorded.ok()) << recorded.status().message();
+  EXPECT_EQ((*recorded)->size(), 6);
+  for (std::size_t k = 0; k < images.size(); ++k) {
+    const auto frame = (*recorded)->Next();
+    ASSERT_TRUE(frame.ok() && frame->has_value());
+    EXPECT_TRUE(AreEqual((*frame)->image, images[k]));
+    EXPECT_EQ((*frame)->timestamp_s, static_cast<double>(k) / kFps);
+  }
+}
+
+TEST_F(LiveSourceTest, SkipsAndCountsWhatCameWhileTrackingWasBusy) {
+  request_.options.frames = LiveFrames::kNewest;
+  pipe_.Header(kWidth, kHeight, kFps);
+  Send(0, 5);
+  pipe_.Close();
+  auto source = LiveSource::Open(request_);
+  ASSERT_TRUE(source.ok()) << source.status().message();
+  while ((*source)->counts().received < 5) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  const auto newest = (*source)->Read(0);
+  ASSERT_TRUE(newest.ok() && newest->has_value());
+  EXPECT_NEAR(cv::mean(**newest)[0], DecodedLevel(4), 2);
+  EXPECT_FALSE((*source)->Read(1)->has_value());
+  EXPECT_EQ((*source)->counts().skipped, 4);
+  EXPECT_GE((*source)->TimestampS(0), 0);
+}
+
+TEST_F(LiveSourceTest, IsASequenceWhoseTimesAreTheSources) {
+  pipe_.Header(kWidth, kHeight, kFps);
+  Send(0, 5);
+  pipe_.Close();
+  auto source = LiveSource::Open(request_);
+  ASSERT_TRUE(source.ok()) << source.status().message();
+  SequenceRequest of_images{.image_path = "recording", .start = 1, .stride = 2};
+  of_images.given = LiveSource::Given(*source);
+  const auto sequence = OpenSequence(of_images);
+  ASSERT_TRUE(sequence.ok()) << sequence.status().message();
+  for (const int idx : {1, 3}) {
+    const auto frame = (*sequence)->Next();
+    ASSERT_TRUE(frame.ok() && frame->has_value());
+    EXPECT_EQ((*frame)->frame_idx, idx);
+    EXPECT_EQ((*frame)->timestamp_s, static_cast<double>(idx) / kFps);
+  }
+  EXPECT_FALSE((*sequence)->Next()->has_value());
+}
+
+TEST_F(LiveSourceTest, ASourceThatStallsFailsAndOneThatIsStoppedEnds) {
+  std::atomic<bool> stop = false;
+  request_.stop = &stop;
+  request_.options.timeout_s = 0.5;
+  pipe_.Header(kWidth, kHeight, kFps);
+  Send(0, 3);
+  auto source = LiveSource::Open(request_);
+  ASSERT_TRUE(source.ok()) << source.status().message();
+  for (int idx = 0; idx < 3; ++idx) ASSERT_TRUE((*source)->Read(idx)->has_value());
+  const auto begin = Clock::now();
+  const auto stalled = (*source)->Read(3);
+  EXPECT_EQ(stalled.status().code(), ErrorCode::kUnreadable);
+  EXPECT_THAT(stalled.status().message(), HasSubstr("standard input has sent no image for"));
+  EXPECT_LT(std::chrono::duration<double>(Clock::now() - begin).count(), 5);
+  EXPECT_TRUE((*source)->Read(0)->has_value());
+  stop = true;
+  EXPECT_FALSE((*source)->Read(3)->has_value());
+}
+
+TEST_F(LiveSourceTest, IsStoppedWhileItWaits) {
+  std::atomic<bool> stop = false;
+  request_.stop = &stop;
+  pipe_.Header(kWidth, kHeight, kFps);
+  Send(0, 1);
+  auto source = LiveSource::Open(request_);
+  ASSERT_TRUE(source.ok()) << source.status().message();
+  ASSERT_TRUE((*source)->Read(0)->has_value());
+  std::thread stopper([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    stop = true;
+  });
+  const auto begin = Clock::now();
+  EXPECT_FALSE((*source)->Read(1)->has_value());
+  source->reset();
+  EXPECT_LT(std::chrono::duration<double>(Clock::now() - begin).count(), 3);
+  stopper.join();
+}
+
+TEST_F(LiveSourceTest, WhatIsNoVideoIsRefusedAndLeavesNothing) {
+  pipe_.Write("this is no video, whatever one makes of it\n");
+  pipe_.Close();
+  const auto source = LiveSource::Open(request_);
+  EXPECT_EQ(source.status().code(), ErrorCode::kUnreadable);
+  EXPECT_THAT(source.status().message(), HasSubstr("standard input is no video that can be decoded"));
+  EXPECT_FALSE(std::filesystem::exists(Path("recording")));
+}
+
+TEST_F(LiveSourceTest, ACalibrationOfOtherImagesIsRefused) {
+  WriteCamera("other.yaml", 128, 96);
+  request_.camera_path = Path("other.yaml");
+  pipe_.Header(kWidth, kHeight, kFps);
+  Send(0, 2);
+  pipe_.Close();
+  const auto source = LiveSource::Open(request_);
+  EXPECT_EQ(source.status().code(), ErrorCode::kMismatch);
+  EXPECT_THAT(source.status().message(), HasSubstr("is for images of 128x96, but those of standard input are 64x48"));
+  EXPECT_FALSE(std::filesystem::exists(Path("recording")));
+}
+
+TEST_F(LiveSourceTest, AnUnknownCameraIsAssumed) {
+  request_.camera_path = AssumedCameraName(70);
+  pipe_.Header(kWidth, kHeight, kFps);
+  Send(0, 2);
+  pipe_.Close();
+  const auto source = LiveSource::Open(request_);
+  ASSERT_TRUE(source.ok()) << source.status().message();
+  EXPECT_THAT(LiveSource::Given(*source)->warnings, testing::ElementsAre(HasSubstr("the camera is not calibrated")));
+}
+
+TEST_F(LiveSourceTest, ARecordingThatCannotBeWrittenIsAnError) {
+  Text("file", "");
+  request_.recording_path = Path("file") / "recording";
+  pipe_.Header(kWidth, kHeight, kFps);
+  Send(0, 2);
+  pipe_.Close();
+  EXPECT_EQ(LiveSource::Open(request_).status().code(), ErrorCode::kUnwritable);
+}
+
+TEST_F(LiveSourceTest, TwoRunsDoNotRecordIntoOneFolder) {
+  pipe_.Header(kWidth, kHeight, kFps);
+  Send(0, 2);
+  pipe_.Close();
+  const auto source = LiveSource::Open(request_);
+  ASSERT_TRUE(source.ok()) << source.status().message();
+  PipedVideo other;
+  other.Header(kWidth, kHeight, kFps);
+  other.Image(Gray(0));
+  other.Close();
+  EXPECT_EQ(LiveSource::Open(request_).status().code(), ErrorCode::kUnwritable);
+}
+
+TEST_F(LiveSourceTest, CamerasThatAreNotThereAreNamed) {
+  request_.source = "device:250";
+  EXPECT_EQ(LiveSource::Open(request_).status().code(), ErrorCode::kNotFound);
+  for (const char* wrong : {"device:", "device:x", "device:-1", "device:1000"}) {
+    request_.source = wrong;
+    EXPECT_EQ(LiveSource::Open(request_).status().code(), ErrorCode::kInvalidArgument) << wrong;
+  }
+  request_.source = "http://127.0.0.1:9/nothing";
+  EXPECT_THAT(LiveSource::Open(request_).status().message(), HasSubstr("cannot be opened"));
+}
+
+}  // namespace
+}  // namespace pliant

@@ -1,0 +1,113 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Runs whose images arrive while they are tracked.
+#include <atomic>
+#include <filesystem>
+#include <string>
+#include <thread>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <opencv2/imgproc.hpp>
+
+#include "pliant/base/files.h"
+#include "pliant/datasets/live_source.h"
+#include "pliant/io/camera_file.h"
+#include "pliant/io/run_summary.h"
+#include "pliant/pipeline/track.h"
+#include "support/piped_video.h"
+#include "support/rendered_sequence.h"
+#include "support/test_folder.h"
+
+namespace pliant {
+namespace {
+
+constexpr int kFps = 30;
+
+class LiveRun : public testing::Test {
+ protected:
+  void SetUp() override {
+    ASSERT_TRUE(WriteCameraFile(folder_.Path("camera.yaml"), {.camera = Rendered().camera, .fps = kFps}).ok());
+    options_.image.working = WorkingImageMode::kFixed;  // else it is measured on fewer images than are in a file
+    options_.timings = RunTimings::kNone;
+    options_.live_input.frames = LiveFrames::kAll;
+  }
+
+  RunRequest RequestOf(const std::string& image_path, const std::string& name) const {
+    RunRequest request;
+    request.input.image_path = image_path;
+    request.output_path = folder_.Path(name);
+    return request;
+  }
+  void Send(const PipedVideo& pipe) const {
+    pipe.Header(Rendered().camera.width(), Rendered().camera.height(), kFps);
+    for (const SimulatedFrame& frame : Rendered().frames) {
+      cv::Mat gray = frame.image;
+      if (gray.channels() == 3) cv::cvtColor(frame.image, gray, cv::COLOR_BGR2GRAY);
+      pipe.Image(gray);
+    }
+  }
+
+  TestFolder folder_;
+  TrackOptions options_;
+};
+
+TEST_F(LiveRun, OfEveryImageEqualsTheRunOfItsRecording) {
+  PipedVideo pipe;
+  std::thread sender([&] {
+    Send(pipe);
+    pipe.Close();
+  });
+  RunRequest request = RequestOf("-", "live");
+  request.input.camera_path = folder_.Path("camera.yaml");
+  const auto live = RunTrack(request, options_, {});
+  sender.join();
+  ASSERT_TRUE(live.ok()) << live.status().message();
+  const std::string recording = RecordingOf(request.output_path);
+  EXPECT_EQ(live->description.input, recording);
+  const auto written = ReadRunSummary(folder_.Path("live/run.json"));
+  ASSERT_TRUE(written.ok() && written->stream);
+  EXPECT_EQ(written->stream->received, std::ssize(Rendered().frames));
+  EXPECT_EQ(written->stream->skipped, 0);
+
+  const auto again = RunTrack(RequestOf(recording, "again"), options_, {});
+  ASSERT_TRUE(again.ok()) << again.status().message();
+  EXPECT_FALSE(again->stream);
+  EXPECT_EQ(again->status, live->status);
+  EXPECT_EQ(live->frames_read, std::ssize(Rendered().frames));
+  for (const char* file : {"frames.csv", "observations.csv", "trajectory.txt"})
+    EXPECT_EQ(folder_.Read(std::string("live/") + file), folder_.Read(std::string("again/") + file)) << file;
+}
+
+TEST_F(LiveRun, ThatIsStoppedEndsLikeASequence) {
+  PipedVideo pipe;
+  std::thread sender([&] { Send(pipe); });  // and no end
+  std::atomic<bool> stop = false;
+  class StopAfterTen final : public TrackObserver {
+   public:
+    explicit StopAfterTen(std::atomic<bool>* stop) : stop_(*stop) {}
+    void OnStart(int /*frames*/) override {}
+    void OnFrame(const FrameReport& /*report*/) override {}
+    void OnImage(int frame_idx, const cv::Mat& /*image*/) override {
+      if (frame_idx == 9) stop_ = true;
+    }
+
+   private:
+    std::atomic<bool>& stop_;
+  } observer(&stop);
+  RunRequest request = RequestOf("-", "stopped");
+  request.input.camera_path = folder_.Path("camera.yaml");
+  request.stop = &stop;
+  TrackObserver* const observers[] = {&observer};
+  const auto summary = RunTrack(request, options_, observers);
+  pipe.GiveUp();
+  sender.join();
+  ASSERT_TRUE(summary.ok()) << summary.status().message();
+  EXPECT_NE(summary->status, RunStatus::kInterrupted);
+  EXPECT_GE(summary->frames_read, 10);
+  EXPECT_LT(summary->frames_read, std::ssize(Rendered().frames));
+}
+
+}  // namespace
+}  // namespace pliant
