@@ -14,7 +14,10 @@ namespace {
 void Say(const RefinedFocalLength& focal) {
   if (focal.failure.empty())
     SayResult("focal length " + Digits(focal.estimated_px, 1) + " +- " + Digits(focal.sigma_px, 1) +
-              " px, assumed were " + Digits(focal.assumed_px, 1) + " px");
+              " px, assumed were " + Digits(focal.assumed_px, 1) + " px" +
+              (focal.distortion_sigma > 0
+                   ? "; distortion k " + Digits(focal.distortion, 3) + " +- " + Digits(focal.distortion_sigma, 3)
+                   : ""));
   else
     SayResult("focal length kept at " + Digits(focal.assumed_px, 1) + " px: " + focal.failure);
 }

@@ -24,7 +24,7 @@
 #include "pliant/io/run_map.h"
 #include "pliant/io/run_reader.h"
 #include "pliant/io/run_writer.h"
-#include "pliant/refinement/focal_length.h"
+#include "pliant/refinement/self_calibration.h"
 
 namespace pliant {
 namespace {
@@ -182,18 +182,22 @@ class Reporter {
 };
 
 // From the submap with the most observations.
-RefinedFocalLength FocalLengthOf(const Camera& camera, const std::map<int, RefinedSubmap>& submaps,
-                                 const RefineOptions& options) {
+Result<SelfCalibration> CalibrationOf(const Camera& camera, const std::map<int, RefinedSubmap>& submaps,
+                                      const RefineOptions& options) {
   const auto largest = std::ranges::max_element(
       submaps, {}, [](const auto& numbered) { return numbered.second.recording.observations.size(); });
-  RefinedFocalLength result{.assumed_px = camera.MeanFocalLengthPx(), .failure = {}};
-  const auto estimate = EstimateFocalLength(camera, largest->second.recording, options);
-  if (!estimate.ok()) {
-    result.failure = estimate.status().message();
-    return result;
+  return SelfCalibrate(camera, largest->second.recording, options);
+}
+
+RefinedFocalLength FocalLengthOf(const Camera& assumed, const Result<SelfCalibration>& calibration) {
+  RefinedFocalLength result{.assumed_px = assumed.MeanFocalLengthPx(), .failure = calibration.status().message()};
+  if (!calibration.ok()) return result;
+  result.estimated_px = calibration->camera.MeanFocalLengthPx();
+  result.sigma_px = calibration->log_focal_sigma * result.estimated_px;
+  if (calibration->distortion_sigma) {
+    result.distortion = calibration->camera.params().back();
+    result.distortion_sigma = *calibration->distortion_sigma;
   }
-  result.estimated_px = estimate->factor * result.assumed_px;
-  result.sigma_px = estimate->log_sigma * result.estimated_px;
   return result;
 }
 
@@ -246,12 +250,11 @@ Result<RefineSummary> RefineRun(const RefineRequest& request, const RefineOption
   RefineSummary summary;
   bool has_new_camera = false;
   if (IsFocalLengthWanted(options, run->summary->description)) {
-    summary.focal_length = FocalLengthOf(*known->camera, *submaps, options);
-    const auto camera =
-        known->camera->WithFocalLengthTimes(summary.focal_length->estimated_px / summary.focal_length->assumed_px);
-    has_new_camera = summary.focal_length->failure.empty() && camera.ok();
+    const auto calibration = CalibrationOf(*known->camera, *submaps, options);
+    summary.focal_length = FocalLengthOf(*known->camera, calibration);
+    has_new_camera = calibration.ok();
     if (has_new_camera) {
-      known->camera = *camera;
+      known->camera = calibration->camera;
       // Depths under another focal length are a start, and no measurement.
       for (auto& [number, submap] : *submaps) submap.recording.log_depth_sigma = kUnknownLogDepthSigma;
     }

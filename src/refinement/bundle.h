@@ -43,6 +43,9 @@ struct BundleSigmas {
   double log_distance = 0.2;   // of a point, from the start's
 };
 
+// Of Cauchy's loss, in standard deviations of an error.
+inline constexpr double kBundleLossScale = 2.0;
+
 // What is solved for; the rest is held.
 enum class BundlePart {
   kAll,
@@ -61,6 +64,8 @@ struct BundleInput {
   BundlePart part = BundlePart::kAll;
   // (F9) Errors of a track are alike in all its views, since its patch drifts: all of them count as one measurement.
   bool one_measurement_per_track = false;
+  // By which share the cost still falls when the solution ends: what is left changes depths by less than their noise.
+  double function_tolerance = 1e-3;
 };
 
 struct BundleSummary {

@@ -12,20 +12,13 @@
 #include <ceres/types.h>
 
 #include "refinement/bundle_costs.h"
-
-// Of OpenMP, whose header comes with some compilers alone.
-extern "C" {
-int omp_get_max_active_levels();                 // NOLINT(readability-identifier-naming)
-void omp_set_max_active_levels(int max_levels);  // NOLINT(readability-identifier-naming)
-}
+#include "refinement/one_openmp_thread.h"
 
 namespace pliant {
 namespace {
 
-constexpr double kLossScale = 2.0;           // Cauchy, in standard deviations
-constexpr double kMinDistance = 0.04;        // of nodes and points, by the median distance from the camera
-constexpr double kFunctionTolerance = 1e-3;  // what is left changes depths by less than their noise
-constexpr int kMaxDenseParameters = 2000;    // above it most pairs of views share no point
+constexpr double kMinDistance = 0.04;      // of nodes and points, by the median distance from the camera
+constexpr int kMaxDenseParameters = 2000;  // above it most pairs of views share no point
 
 class Callback final : public ceres::IterationCallback {
  public:
@@ -36,19 +29,6 @@ class Callback final : public ceres::IterationCallback {
 
  private:
   const std::function<bool(double)>& function_;
-};
-
-// CHOLMOD asks OpenMP for four threads at every supernode, on any machine. The supernodes here are small: with two
-// cores half of the time goes into waking threads.
-class OneOpenMpThread {
- public:
-  OneOpenMpThread() { omp_set_max_active_levels(0); }
-  ~OneOpenMpThread() { omp_set_max_active_levels(before_); }
-  OneOpenMpThread(const OneOpenMpThread&) = delete;
-  OneOpenMpThread& operator=(const OneOpenMpThread&) = delete;
-
- private:
-  int before_ = omp_get_max_active_levels();
 };
 
 // Poses as increments about the mean of the points that a view sees.
@@ -75,7 +55,7 @@ BundleProblem::BundleProblem(const BundleInput& input, BundleState* state)
       poses_(PosesOf(input.recording, *state)),
       is_view_in_problem_(poses_.size(), false),
       is_point_in_problem_(state->rest_positions.size(), false),
-      loss_(kLossScale) {
+      loss_(kBundleLossScale) {
   CopyFromState();
   ceres::Problem::Options options;
   options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
@@ -96,7 +76,7 @@ Result<BundleSummary> BundleProblem::Solve(int max_iterations, const std::functi
   ceres::Solver::Options options;
   options.max_num_iterations = max_iterations;
   SetLinearSolver(&options);
-  options.function_tolerance = kFunctionTolerance;
+  options.function_tolerance = input_.function_tolerance;
   options.num_threads = 1;  // the order of sums, and so the result, depends on no number of threads
   options.logging_type = ceres::SILENT;
   Callback on_iteration(callback);

@@ -281,8 +281,10 @@ void RefineOptions::List(OptionTable& table) {
   table.Add("views_per_track", &views_per_track, "",
             "of the median track, that are solved for together; more frames than these are solved for after it", 3,
             100000);
-  table.AddChoice("focal_length", &focal_length,
-                  "of the run's camera, from its largest rigid submap; auto: estimated where the camera was assumed");
+  table.AddChoice(
+      "focal_length", &focal_length,
+      "of the run's camera, with its distortion, from its largest rigid submap; auto: estimated where the camera was "
+      "assumed");
   table.Add("neighbors", &neighbors, "", "nodes with which a node's basis shapes are compared", 1, 100);
 }
 

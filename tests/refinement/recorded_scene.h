@@ -28,6 +28,7 @@ inline const Camera& RecordingCamera() {
 struct RecordedScene {
   double amplitude_mm = 4;
   int views = 40;
+  Camera camera = RecordingCamera();
   std::vector<Eigen::Vector3d> points;
   std::vector<Rigid3> poses;
 
@@ -69,8 +70,8 @@ struct RecordedScene {
       recording.cams_from_world.push_back(pose);
       for (int i = 0; i < static_cast<int>(points.size()); ++i) {
         const Eigen::Vector3d in_cam = pose * At(i, v);
-        const auto pixel = RecordingCamera().Project(in_cam);
-        if (!pixel || !RecordingCamera().Contains(*pixel)) continue;
+        const auto pixel = camera.Project(in_cam);
+        if (!pixel || !camera.Contains(*pixel)) continue;
         const Eigen::Vector3d position =
             pose.Inverse() * Eigen::Vector3d(factors[static_cast<std::size_t>(i)] * in_cam);
         const Eigen::Vector2d drift = static_cast<double>(v) / views * drifts_px[static_cast<std::size_t>(i)];

@@ -44,6 +44,8 @@ struct RefinedFocalLength {
   double assumed_px = 0;
   double estimated_px = 0;  // 0: it was not, and `failure` says why
   double sigma_px = 0;
+  double distortion = 0;        // k of SIMPLE_RADIAL; 0: held
+  double distortion_sigma = 0;  // likewise
   std::string failure;
 };
 

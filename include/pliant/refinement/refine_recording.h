@@ -38,7 +38,7 @@ struct EnumNames<RefinementModel> {
                                         std::pair{RefinementModel::kDeforming, std::string_view("deforming")}};
 };
 
-// Whether the focal length is estimated, too (pliant/refinement/focal_length.h).
+// Whether the focal length is estimated, too (pliant/refinement/self_calibration.h).
 enum class FocalLength {
   kAuto,  // of a camera that was assumed
   kHeld,
