@@ -5,8 +5,6 @@
 
 #include <cmath>
 #include <cstdint>
-#include <fstream>
-#include <system_error>
 #include <vector>
 
 #include <opencv2/imgcodecs.hpp>
@@ -20,13 +18,7 @@ namespace pliant {
 Status WritePng(const std::filesystem::path& path, const cv::Mat& image) {
   std::vector<unsigned char> bytes;
   if (!cv::imencode(".png", image, bytes, {cv::IMWRITE_PNG_COMPRESSION, 1})) return Unwritable(path);
-  std::ofstream file(path, std::ios::binary);
-  file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  file.close();
-  if (file) return Status::Ok();
-  std::error_code error;
-  std::filesystem::remove(path, error);  // half a file would be read as a damaged one
-  return Unwritable(path);
+  return WriteFileAtomically(path.string(), {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
 cv::Mat QuantizeDepth(const cv::Mat& depth, double scale) {

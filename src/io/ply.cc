@@ -12,7 +12,8 @@ namespace pliant {
 
 Status WritePly(const std::string& path, std::span<const NewPoint> points, std::span<const double> sigmas) {
   assert(sigmas.empty() || sigmas.size() == points.size());
-  auto file = OutputFile::Create(path);
+  FileGroup group;
+  auto file = group.Create(path);
   if (!file.ok()) return file.status();
   std::string out = "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(points.size()) +
                     "\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\n"
@@ -26,11 +27,13 @@ Status WritePly(const std::string& path, std::span<const NewPoint> points, std::
     if (Status status = file->AppendWhenLarge(&out); !status.ok()) return status;
   }
   if (Status status = file->Append(out); !status.ok()) return status;
-  return file->Close();
+  if (Status status = file->Close(); !status.ok()) return status;
+  return group.Commit();
 }
 
 Status WritePly(const std::string& path, const Mesh& mesh) {
-  auto file = OutputFile::Create(path);
+  FileGroup group;
+  auto file = group.Create(path);
   if (!file.ok()) return file.status();
   std::string out = "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(mesh.vertices.size()) +
                     "\nproperty float x\nproperty float y\nproperty float z\nproperty float nx\nproperty float ny\n"
@@ -52,7 +55,8 @@ Status WritePly(const std::string& path, const Mesh& mesh) {
     if (Status status = file->AppendWhenLarge(&out); !status.ok()) return status;
   }
   if (Status status = file->Append(out); !status.ok()) return status;
-  return file->Close();
+  if (Status status = file->Close(); !status.ok()) return status;
+  return group.Commit();
 }
 
 }  // namespace pliant

@@ -135,12 +135,9 @@ Result<std::vector<Rigid3>> ReadKittiPoses(const std::string& path) {
 }
 
 Status WriteTumTrajectory(const std::string& path, std::span<const TimedPose> poses) {
-  auto file = OutputFile::Create(path);
-  if (!file.ok()) return file.status();
   std::string text;
   for (const TimedPose& pose : poses) AppendTumLine(&text, pose.timestamp_s, pose.world_from_cam);
-  if (Status status = file->Append(text); !status.ok()) return status;
-  return file->Close();
+  return WriteFileAtomically(path, text);
 }
 
 }  // namespace pliant

@@ -12,6 +12,7 @@
 #include <string_view>
 #include <system_error>
 
+#include "pliant/base/files.h"
 #include "pliant/base/options.h"
 
 namespace pliant {
@@ -146,19 +147,17 @@ Result<std::vector<MaterialPath>> FollowMaterial(Simulator& simulator, std::span
 }
 
 Status WriteMaterialPaths(const fs::path& path, std::span<const MaterialPath> paths) {
-  std::ofstream file(path, std::ios::binary);
-  file << "point,frame,u_px,v_px,x,y,z,depth_mm,visibility\n";
-  std::string rows;
-  for (std::size_t i = 0; i < paths.size() && file; ++i) {
-    rows.clear();
+  FileGroup group;
+  auto file = group.Create(path.string());
+  if (!file.ok()) return file.status();
+  std::string rows = "point,frame,u_px,v_px,x,y,z,depth_mm,visibility\n";
+  for (std::size_t i = 0; i < paths.size(); ++i) {
     for (std::size_t k = 0; k < paths[i].observations.size(); ++k) AppendRow(&rows, i, k, paths[i].observations[k]);
-    file << rows;
+    if (Status status = file->AppendWhenLarge(&rows); !status.ok()) return status;
   }
-  file.close();
-  if (!file)
-    return {ErrorCode::kUnwritable,
-            "cannot write " + path.string() + "; is the folder there and writable, and is there room on the disk?"};
-  return Status::Ok();
+  if (Status status = file->Append(rows); !status.ok()) return status;
+  if (Status status = file->Close(); !status.ok()) return status;
+  return group.Commit();
 }
 
 }  // namespace pliant

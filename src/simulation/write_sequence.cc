@@ -3,7 +3,6 @@
 
 #include "pliant/simulation/write_sequence.h"
 
-#include <fstream>
 #include <future>
 #include <string>
 #include <utility>
@@ -22,10 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 Status WriteOptions(const fs::path& path, const SimulationOptions& options) {
-  std::ofstream file(path);
-  file << ToYaml(options);
-  file.close();
-  return file ? Status::Ok() : Unwritable(path);
+  return WriteFileAtomically(path.string(), ToYaml(options));
 }
 
 // A sequence that was filmed is not written over.
