@@ -33,6 +33,12 @@ std::string TextEvent(std::string_view event, std::string_view text) {
   return EventLine(event, "\"text\":" + JsonString(text));
 }
 
+void SayLine(std::string_view event, std::string_view kind, std::string_view sentence) {
+  std::cerr << (IsJson() ? TextEvent(event, Shortened(sentence))
+                         : Shortened(TheLogging().command + ": " + std::string(kind) + std::string(sentence)) + "\n")
+            << std::flush;
+}
+
 }  // namespace
 
 Logging& TheLogging() {
@@ -49,17 +55,11 @@ std::string EventLine(std::string_view event, std::string_view members) {
          (members.empty() ? "" : ",") + std::string(members) + "}\n";
 }
 
-void SayError(std::string_view sentence) {
-  const std::string shortened = Shortened(sentence);
-  std::cerr << (IsJson() ? TextEvent("error", shortened) : TheLogging().command + ": " + shortened + "\n")
-            << std::flush;
-}
+void SayError(std::string_view sentence) { SayLine("error", "", sentence); }
 
 void SayWarning(std::string_view sentence) {
   if (TheLogging().level < LogLevel::kWarning) return;
-  const std::string shortened = Shortened(sentence);
-  std::cerr << (IsJson() ? TextEvent("warning", shortened) : TheLogging().command + ": warning: " + shortened + "\n")
-            << std::flush;
+  SayLine("warning", "warning: ", sentence);
 }
 
 void SayNote(std::string_view sentence) {
