@@ -27,17 +27,18 @@ import doxygen_filter
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SITE = ROOT / "docs" / "site"
 # Other files to which a page links are copied too.
-COPIED = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "tests/README.md", "web/README.md", "docs", "experiments",
+COPIED = ("README.md", "CONTRIBUTING.md", "SECURITY.md", "CHANGELOG.md", "tests/README.md", "web/README.md", "docs", "experiments",
           "examples")
 NOT_COPIED = shutil.ignore_patterns("__pycache__", "work", "site", ".snakemake", ".ipynb_checkpoints")
 # (heading of the navigation, its pages; a page is a path, or a title with a path)
 NAVIGATION = (
     ("Use", (("Getting started", "README"), ("Installation", "docs/building"), "docs/your_own_video",
              "docs/troubleshooting", "options/index", "examples/notebooks/README", "docs/evaluation", "docs/report",
-             "docs/datasets", "docs/simulation", "docs/tracks", "docs/formats", "docs/exchange")),
+             "docs/datasets", "docs/simulation", "docs/tracks", "docs/formats", "docs/exchange",
+             "docs/reliability")),
     ("Python and C++", (("Python", "docs/python"), "python_api", ("C++ library", "docs/library"), "cpp_api")),
     ("Understand", ("docs/concepts", "docs/method", "docs/results", "experiments/README", "docs/gallery")),
-    ("Develop", ("CONTRIBUTING", "docs/architecture", "tests/README", ("The report's page", "web/README"),
+    ("Develop", ("CONTRIBUTING", "SECURITY", "docs/architecture", "tests/README", ("The report's page", "web/README"),
                  ("All pages", "docs/README"), ("Changes", "CHANGELOG"))),
 )
 
