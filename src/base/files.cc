@@ -87,6 +87,11 @@ FileGroup::~FileGroup() {
 }
 
 Result<OutputFile> FileGroup::Create(const std::string& path) {
+  // A device or a pipe, such as /dev/stdout, is written into: to rename a file to its name would replace it.
+  std::error_code error;
+  const auto type = std::filesystem::status(path, error).type();
+  if (type == std::filesystem::file_type::character || type == std::filesystem::file_type::fifo)
+    return OutputFile::Create(path);
   auto file = OutputFile::Create(Beside(path));
   if (file.ok()) paths_.push_back(path);
   return file;

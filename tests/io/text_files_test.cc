@@ -3,9 +3,13 @@
 
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "pliant/base/files.h"
 #include "pliant/base/text.h"
@@ -45,6 +49,20 @@ TEST(OutputFile, SaysThatTheDiskIsFull) {
   EXPECT_EQ(status.code(), ErrorCode::kUnwritable);
   EXPECT_THAT(status.message(), HasSubstr("'/dev/full': No space left"));
   EXPECT_EQ(OutputFile::Create("/nowhere/file").status().code(), ErrorCode::kUnwritable);
+}
+
+TEST(WriteFileAtomically, WritesIntoAPipeAndLeavesItOne) {
+  const TestFolder folder;
+  const std::string path = folder.Path("pipe");
+  ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);
+  const int reader = open(path.c_str(), O_RDWR | O_CLOEXEC);
+  ASSERT_GE(reader, 0);
+  EXPECT_TRUE(WriteFileAtomically(path, "x").ok());
+  EXPECT_TRUE(std::filesystem::is_fifo(path));
+  char read_back = 0;
+  EXPECT_EQ(read(reader, &read_back, 1), 1);
+  EXPECT_EQ(read_back, 'x');
+  close(reader);
 }
 
 struct TestOptions {

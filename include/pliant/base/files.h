@@ -54,7 +54,8 @@ class FileGroup {
   FileGroup& operator=(const FileGroup&) = delete;
   ~FileGroup();
 
-  // A new file of the group, which is to become `path`; the caller closes it before Commit.
+  // A new file of the group, which is to become `path`; the caller closes it before Commit. A device or a pipe that is
+  // there is written into at once.
   Result<OutputFile> Create(const std::string& path);
   Status Commit();
 
