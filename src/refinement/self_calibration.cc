@@ -204,7 +204,7 @@ class IntrinsicsSearch {
     Solution solution = start;
     if (!SolveFreeIntrinsics(recording_, used_, noise_px_, &intrinsics, &solution.state).ok()) return std::nullopt;
     solution.at = {std::log(intrinsics.focal_px / camera_.MeanFocalLengthPx()), intrinsics.k};
-    return solution;
+    return CameraAt(solution.at) ? std::optional(solution) : std::nullopt;  // some are no camera's
   }
 
   // The second derivatives of the costs around a solution for both; nothing where they are no minimum's.

@@ -71,6 +71,7 @@ READERS = [
     _reader("run/observations.csv", "evaluate --run run --sequence seq -o OUT"),
     _reader("run/observations.csv", "export --run run -o OUT"),
     _reader("run/observations.csv", "refine --run run -o OUT"),
+    _reader("run/observations.csv", "refine --run run -o OUT --Refine.focal_length estimated"),
     _reader("run/map.ply", "report --run run -o OUT.html"),
     _reader("run/sparse/*.bin", "model check run/sparse"),
     _reader("refined/*.csv", "compare --run run --run refined --sequence seq"),
