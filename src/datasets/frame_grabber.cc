@@ -54,7 +54,7 @@ std::string CannotBeDecoded(const std::string& source) {
 }  // namespace
 
 Result<std::unique_ptr<FrameGrabber>> FrameGrabber::Open(const std::string& source, double timeout_s,
-                                                         std::function<bool()> is_stopped) {
+                                                         const std::function<bool()>& is_stopped) {
   std::unique_ptr<FrameGrabber> grabber(new FrameGrabber);
   grabber->timeout_s_ = timeout_s;
   if (source == "-") {

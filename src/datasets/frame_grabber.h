@@ -24,7 +24,7 @@ class FrameGrabber {
   // this and Grab come to an end, at once for standard input, within the time-out otherwise.
   // Fails with kNotFound, kUnreadable or kInterrupted.
   static Result<std::unique_ptr<FrameGrabber>> Open(const std::string& source, double timeout_s,
-                                                    std::function<bool()> is_stopped);
+                                                    const std::function<bool()>& is_stopped);
 
   // Waits for the next image, 8-bit BGR; nothing at the source's end, or where it stalls. To be called by one thread,
   // as has_stalled.
