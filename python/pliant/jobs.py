@@ -168,8 +168,9 @@ def track(input: StrPath | Iterable[NDArray[np.uint8]], output_path: StrPath, op
     """Camera pose and the motion of every point.
 
     Args:
-        input: a folder of images, a video or a data set; or images: a list or array of them, or anything that is
-            iterated over. An image is uint8 (height, width), or (height, width, 3) in the order blue, green, red, as
+        input: a folder of images, a video or a data set; a camera ("device:0"), a stream ("rtsp://...") or standard
+            input ("-"), whose images are recorded beside the run; or images: a list or array of them, or anything that
+            is iterated over. An image is uint8 (height, width), or (height, width, 3) in the order blue, green, red, as
             OpenCV reads it. What has a length and an index is asked for an image whenever it is needed; the images of
             another iterable are kept in memory to the end, since tracking may go back.
         output_path: run folder, made if need be.

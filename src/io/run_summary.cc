@@ -71,17 +71,32 @@ RunDescription ReadDescription(const Json& json) {
   return description;
 }
 
+Json StreamJson(const RunSummary& summary) {
+  if (!summary.stream) return {};
+  return {{"received", summary.stream->received}, {"skipped", summary.stream->skipped}};
+}
+
+Json CountsJson(const RunSummary& summary) {
+  Json losses = Json::object();
+  for (const auto& [reason, count] : summary.losses) losses[reason] = count;
+  Json states = Json::object();
+  for (const auto& [state, count] : summary.states) states[EnumName(state)] = count;
+  return {{"frames_read", summary.frames_read},
+          {"frames_tracked", summary.frames_tracked},
+          {"states", states},
+          {"submaps", summary.submaps},
+          {"points", summary.points},
+          {"observations", summary.observations},
+          {"losses", losses}};
+}
+
 }  // namespace
 
 Status WriteRunSummary(const std::string& path, const RunSummary& summary) {
-  Json losses = Json::object();
-  for (const auto& [reason, count] : summary.losses) losses[reason] = count;
   Json mean_ms = Json::object();
   for (const auto& [stage, ms] : summary.mean_ms) mean_ms[stage] = ms;
   Json first_maps = Json::array();
   for (const FirstMapFrames& map : summary.first_maps) first_maps.push_back(FirstMapJson(map));
-  Json states = Json::object();
-  for (const auto& [state, count] : summary.states) states[EnumName(state)] = count;
   Json trust = Json::object();
   for (const auto& [topic, sentence] : TrustIn(summary)) trust[topic] = sentence;
   Json json = {
@@ -110,18 +125,10 @@ Status WriteRunSummary(const std::string& path, const RunSummary& summary) {
       {"trust", trust},
       {"first_map", first_maps.empty() ? Json() : first_maps.front()},
       {"first_maps", first_maps},
-      {"stream", summary.stream ? Json{{"received", summary.stream->received}, {"skipped", summary.stream->skipped}}
-                                : Json()},
+      {"stream", StreamJson(summary)},
       {"medians",
        {{"reprojection_error_px", summary.median_reprojection_error_px}, {"coverage", summary.median_coverage}}},
-      {"counts",
-       {{"frames_read", summary.frames_read},
-        {"frames_tracked", summary.frames_tracked},
-        {"states", states},
-        {"submaps", summary.submaps},
-        {"points", summary.points},
-        {"observations", summary.observations},
-        {"losses", losses}}},
+      {"counts", CountsJson(summary)},
       {"timings",
        {{"total_s", summary.total_s}, {"frames_per_second", summary.frames_per_second}, {"mean_ms", mean_ms}}}};
   // Paths need not be UTF-8.
