@@ -238,7 +238,7 @@ class IntrinsicsSearch {
       solution = SolveForBoth(*solution);
     }
     if (solution) noise_px_ = NoiseOf(*solution);
-    const auto minimum = solution ? WithCurvature(*solution) : std::nullopt;
+    auto minimum = solution ? WithCurvature(*solution) : std::nullopt;
     if (minimum) {
       const double sigma = Sigmas(*minimum).y();
       if (sigma < kLargestDistortionSigma * distortion_unit_ &&
