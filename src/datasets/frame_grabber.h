@@ -4,7 +4,6 @@
 // One image after the other from a camera, a stream over the network or standard input, through OpenCV.
 #pragma once
 
-#include <atomic>
 #include <functional>
 #include <memory>
 #include <optional>

@@ -82,8 +82,7 @@ std::vector<ImageRun> ReadFirstRuns(const SequenceRequest& request) {
   if (!sequence.ok()) return {};
   std::vector<ImageRun> runs(kRuns);
   // Images that have yet to come would be waited for.
-  const bool is_live = request.given && request.given->images->IsLive();
-  const int last_run = is_live ? 0 : kRuns - 1;
+  const int last_run = request.IsLive() ? 0 : kRuns - 1;
   for (int k = 0; k < last_run * kRunDistance + kRunFrames; ++k) {
     auto next = (*sequence)->Next();
     if (!next.ok() || !next->has_value()) break;

@@ -66,8 +66,6 @@ std::optional<Result<ReadFrame>> NextFrame(Sequence& sequence, const TrackerOpti
   return read;
 }
 
-bool IsLive(const SequenceRequest& input) { return input.given && input.given->images->IsLive(); }
-
 // How a run ended.
 struct Ending {
   RunStatus status = RunStatus::kCompleted;
@@ -173,7 +171,7 @@ class FrameSource {
   using Frames = std::optional<Prefetcher<Result<ReadFrame>>>;
   void ReadAhead(Sequence& sequence, Frames* frames) {
     frames->emplace([&] { return NextFrame(sequence, options_.tracker, options_.threads, start_, wants_depth_); },
-                    options_.threads > 1 && !IsLive(input_) ? kFramesAhead : 0);
+                    options_.threads > 1 && !input_.IsLive() ? kFramesAhead : 0);
   }
 
   const SequenceRequest& input_;

@@ -46,6 +46,13 @@ class LiveSourceTest : public SequenceFiles {
     for (int idx = from; idx < to; ++idx) pipe_.Image(Gray(idx));
   }
 
+  // From the header to the end.
+  void SendVideo(int images) {
+    pipe_.Header(kWidth, kHeight, kFps);
+    Send(0, images);
+    pipe_.Close();
+  }
+
   PipedVideo pipe_;
   LiveRequest request_;
 };
@@ -63,9 +70,7 @@ TEST(RecordingOf, IsBesideTheRun) {
 }
 
 TEST_F(LiveSourceTest, GivesEveryImageAndRecordsItAsASequence) {
-  pipe_.Header(kWidth, kHeight, kFps);
-  Send(0, 6);
-  pipe_.Close();
+  SendVideo(6);
   auto source = LiveSource::Open(request_);
   ASSERT_TRUE(source.ok()) << source.status().message();
   std::vector<cv::Mat> images;
@@ -97,9 +102,7 @@ TEST_F(LiveSourceTest, GivesEveryImageAndRecordsItAsASequence) {
 
 TEST_F(LiveSourceTest, SkipsAndCountsWhatCameWhileTrackingWasBusy) {
   request_.options.frames = LiveFrames::kNewest;
-  pipe_.Header(kWidth, kHeight, kFps);
-  Send(0, 5);
-  pipe_.Close();
+  SendVideo(5);
   auto source = LiveSource::Open(request_);
   ASSERT_TRUE(source.ok()) << source.status().message();
   while ((*source)->counts().received < 5) std::this_thread::sleep_for(std::chrono::milliseconds(5));
@@ -112,9 +115,7 @@ TEST_F(LiveSourceTest, SkipsAndCountsWhatCameWhileTrackingWasBusy) {
 }
 
 TEST_F(LiveSourceTest, IsASequenceWhoseTimesAreTheSources) {
-  pipe_.Header(kWidth, kHeight, kFps);
-  Send(0, 5);
-  pipe_.Close();
+  SendVideo(5);
   auto source = LiveSource::Open(request_);
   ASSERT_TRUE(source.ok()) << source.status().message();
   SequenceRequest of_images{.image_path = "recording", .start = 1, .stride = 2};
@@ -180,9 +181,7 @@ TEST_F(LiveSourceTest, WhatIsNoVideoIsRefusedAndLeavesNothing) {
 TEST_F(LiveSourceTest, ACalibrationOfOtherImagesIsRefused) {
   WriteCamera("other.yaml", 128, 96);
   request_.camera_path = Path("other.yaml");
-  pipe_.Header(kWidth, kHeight, kFps);
-  Send(0, 2);
-  pipe_.Close();
+  SendVideo(2);
   const auto source = LiveSource::Open(request_);
   EXPECT_EQ(source.status().code(), ErrorCode::kMismatch);
   EXPECT_THAT(source.status().message(), HasSubstr("is for images of 128x96, but those of standard input are 64x48"));
@@ -191,9 +190,7 @@ TEST_F(LiveSourceTest, ACalibrationOfOtherImagesIsRefused) {
 
 TEST_F(LiveSourceTest, AnUnknownCameraIsAssumed) {
   request_.camera_path = AssumedCameraName(70);
-  pipe_.Header(kWidth, kHeight, kFps);
-  Send(0, 2);
-  pipe_.Close();
+  SendVideo(2);
   const auto source = LiveSource::Open(request_);
   ASSERT_TRUE(source.ok()) << source.status().message();
   EXPECT_THAT(LiveSource::Given(*source)->warnings, testing::ElementsAre(HasSubstr("the camera is not calibrated")));
@@ -202,16 +199,12 @@ TEST_F(LiveSourceTest, AnUnknownCameraIsAssumed) {
 TEST_F(LiveSourceTest, ARecordingThatCannotBeWrittenIsAnError) {
   Text("file", "");
   request_.recording_path = Path("file") / "recording";
-  pipe_.Header(kWidth, kHeight, kFps);
-  Send(0, 2);
-  pipe_.Close();
+  SendVideo(2);
   EXPECT_EQ(LiveSource::Open(request_).status().code(), ErrorCode::kUnwritable);
 }
 
 TEST_F(LiveSourceTest, TwoRunsDoNotRecordIntoOneFolder) {
-  pipe_.Header(kWidth, kHeight, kFps);
-  Send(0, 2);
-  pipe_.Close();
+  SendVideo(2);
   const auto source = LiveSource::Open(request_);
   ASSERT_TRUE(source.ok()) << source.status().message();
   PipedVideo other;

@@ -6,11 +6,14 @@
 // earlier images, and since reports, surfaces and refinements are made of them afterwards.
 #pragma once
 
+#include <array>
 #include <atomic>
-#include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 
 #include "pliant/base/options.h"
 #include "pliant/base/status.h"

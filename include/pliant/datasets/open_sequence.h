@@ -35,8 +35,12 @@ struct SequenceRequest {
   int start = 0;   // first frame, by its number in the source
   int end = -1;    // one past the last frame; -1: to the end
   int stride = 1;  // every stride-th frame from `start` on
-  // Instead of what lies at image_path, which is empty then, and of a calibration; null: none.
+  // Instead of what lies at image_path, and of a calibration; null: none. Where image_path is not empty, these images
+  // are recorded there.
   std::shared_ptr<const GivenImages> given = nullptr;
+
+  // Whether the images arrive while they are read.
+  bool IsLive() const { return given && given->images->IsLive(); }
 };
 
 // Opens the source and checks all that can be seen without decoding every frame: the calibration, the first image's

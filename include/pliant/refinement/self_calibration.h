@@ -18,7 +18,7 @@ namespace pliant {
 struct SelfCalibration {
   Camera camera;               // the given one with the focal length found; SIMPLE_RADIAL where distortion was found
   double log_focal_sigma = 0;  // standard deviation of the logarithm of the focal length
-  // Of the coefficient k; nothing: none was estimated, or it is zero to twice its standard deviation.
+  // Of the coefficient k; nothing: none was estimated, or it is zero to three of its standard deviations.
   std::optional<double> distortion_sigma = {};
 };
 
