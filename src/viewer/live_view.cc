@@ -72,9 +72,8 @@ struct LiveView::Server {
       changed.wait_for(lock, std::min<Clock::duration>(pause, kLongestPause), [&] { return ended; });
       --waiting;
       const int begin = epoch == run.epoch() && from <= run.rows() ? from : 0;
-      answer = {{"epoch", run.epoch()},         {"from", begin}, {"running", !ended},
-                {"kept", kept},                 {"frames_in_sequence", frames},
-                {"read", read},                 {"state", EnumName(state)}};
+      answer = {{"epoch", run.epoch()},         {"from", begin}, {"running", !ended},       {"kept", kept},
+                {"frames_in_sequence", frames}, {"read", read},  {"state", EnumName(state)}};
       part = run.From(begin);
       view.notes = warnings;
       asked = Clock::now();
