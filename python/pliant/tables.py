@@ -46,6 +46,7 @@ class Frames(_Table):
         median_reprojection_error_px: (F,) float64, pixels; 0 where there is no pose.
         costs: cost terms at the solution, (F,) float64 by name.
         stage_ms: wall time of a stage, ms, (F,) float64 by name.
+        latency_ms: wall time from the frame's arrival until it was done, ms, (F,) float64; 0: not measured.
     """
 
     frame_idx: NDArray[np.int32]
@@ -59,6 +60,7 @@ class Frames(_Table):
     median_reprojection_error_px: NDArray[np.float64]
     costs: dict[str, NDArray[np.float64]]
     stage_ms: dict[str, NDArray[np.float64]]
+    latency_ms: NDArray[np.float64]
 
     def __len__(self) -> int:
         return len(self.frame_idx)
@@ -73,7 +75,7 @@ class Frames(_Table):
             "frame_idx", "timestamp", "state", "submap", "tracked", "optimized", "lost", "added",
             "median_reprojection_error_px")}
         return {**plain, **{f"cost_{name}": values for name, values in self.costs.items()},
-                **{f"ms_{name}": values for name, values in self.stage_ms.items()}}
+                **{f"ms_{name}": values for name, values in self.stage_ms.items()}, "latency_ms": self.latency_ms}
 
 
 @dataclass(frozen=True, repr=False, eq=False)

@@ -198,8 +198,10 @@ int TrackCommand(std::span<const std::string> args) {
   }
   if (!arguments.live_keep) live.reset();
   int exit_code = Report(*summary, arguments);
-  if (arguments.refine && summary->frames_tracked > 0 && exit_code == kExitOk)
+  if (arguments.refine && summary->frames_tracked > 0 && exit_code == kExitOk) {
+    if (IsLiveSource(arguments.input.path)) StopOnSignals() = false;  // Ctrl-C has ended the source
     exit_code = Refine(request, arguments, refine_options);
+  }
   if (live) KeepServing(live.get());
   return exit_code;
 }

@@ -93,7 +93,7 @@ Result<LiveCalibration> CalibrationOf(const LiveRequest& request, cv::Size size,
 
 struct Arrival {
   cv::Mat image;
-  double time_s = 0;
+  Clock::time_point time;
 };
 
 }  // namespace
@@ -133,7 +133,8 @@ struct LiveSource::State {
   bool has_stalled = false;  // that is why
   std::optional<Clock::time_point> first_arrival, last_arrival;
   StreamCounts counts;
-  std::vector<double> times_s;                    // of the images that were taken
+  std::vector<Clock::time_point> arrivals;        // of the images that were taken
+  std::vector<double> times_s;                    // of these
   std::deque<std::pair<int, cv::Mat>> unwritten;  // of those, in order
   Status written = Status::Ok();                  // what became of recording them
 
@@ -154,7 +155,7 @@ void LiveSource::State::Receive() {
     else if (next)
       ++counts.skipped;
     ++counts.received;
-    next = Arrival{*std::move(image), SecondsBetween(*first_arrival, now)};
+    next = Arrival{*std::move(image), now};
     changed.notify_all();
   }
   const std::lock_guard lock(mutex);
@@ -205,7 +206,9 @@ Result<std::optional<cv::Mat>> LiveSource::State::Take(std::unique_lock<std::mut
     changed.wait_for(lock, kPoll);
   if (!written.ok()) return written;
   const int idx = static_cast<int>(times_s.size());
-  times_s.push_back(request.options.frames == LiveFrames::kAll ? idx / calibration->calibration.fps : next->time_s);
+  arrivals.push_back(next->time);
+  times_s.push_back(request.options.frames == LiveFrames::kAll ? idx / calibration->calibration.fps
+                                                               : SecondsBetween(*first_arrival, next->time));
   const cv::Mat image = std::exchange(next, std::nullopt)->image;
   unwritten.emplace_back(idx, image);
   changed.notify_all();
@@ -217,6 +220,9 @@ void LiveInputOptions::List(OptionTable& table) {
   table.AddChoice("frames", &frames,
                   "newest: those that arrive while tracking is busy are skipped and counted; all: every one is "
                   "tracked, a pipe waits, a camera falls behind");
+  table.Add("handover_frames", &handover_frames, "frames",
+            "newest: minimum of Tracking.handover_frames; frames before the first map are not tracked backwards", 0,
+            1000);
   table.Add("timeout_s", &timeout_s, "s", "without an image, after which the run ends", 0.5, 3600);
 }
 
@@ -303,6 +309,18 @@ std::optional<double> LiveSource::TimestampS(int idx) const {
   return idx >= 0 && std::cmp_less(idx, state_->times_s.size())
              ? std::optional(state_->times_s[static_cast<std::size_t>(idx)])
              : std::nullopt;
+}
+
+std::optional<Clock::time_point> LiveSource::Arrived(int idx) const {
+  const std::lock_guard lock(state_->mutex);
+  return idx >= 0 && std::cmp_less(idx, state_->arrivals.size())
+             ? std::optional(state_->arrivals[static_cast<std::size_t>(idx)])
+             : std::nullopt;
+}
+
+int LiveSource::Passed() const {
+  const std::lock_guard lock(state_->mutex);
+  return state_->has_ended ? 0 : static_cast<int>(state_->arrivals.size());
 }
 
 StreamCounts LiveSource::counts() const {

@@ -28,6 +28,7 @@ inline constexpr std::string_view kFrameColumnsAfterCosts = "median_reprojection
 inline constexpr std::string_view kCostPrefix = "cost_";
 inline constexpr std::string_view kStagePrefix = "ms_";
 inline constexpr std::string_view kSubmapColumn = "submap";
+inline constexpr std::string_view kLatencyColumn = "latency_ms";  // the last one; earlier versions had none
 
 // What earlier versions called otherwise, in state, stages and reasons of losses: their name, and the one of today.
 inline constexpr std::array kEarlierNames = {

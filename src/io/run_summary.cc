@@ -71,6 +71,11 @@ RunDescription ReadDescription(const Json& json) {
   return description;
 }
 
+Json LatencyJson(const RunSummary& summary) {
+  if (!summary.latency) return {};
+  return {{"p50", summary.latency->p50}, {"p99", summary.latency->p99}, {"max", summary.latency->max}};
+}
+
 Json StreamJson(const RunSummary& summary) {
   if (!summary.stream) return {};
   return {{"received", summary.stream->received}, {"skipped", summary.stream->skipped}};
@@ -130,7 +135,10 @@ Status WriteRunSummary(const std::string& path, const RunSummary& summary) {
        {{"reprojection_error_px", summary.median_reprojection_error_px}, {"coverage", summary.median_coverage}}},
       {"counts", CountsJson(summary)},
       {"timings",
-       {{"total_s", summary.total_s}, {"frames_per_second", summary.frames_per_second}, {"mean_ms", mean_ms}}}};
+       {{"total_s", summary.total_s},
+        {"frames_per_second", summary.frames_per_second},
+        {"mean_ms", mean_ms},
+        {"latency_ms", LatencyJson(summary)}}}};
   // Paths need not be UTF-8.
   const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
   Status status = WriteFileAtomically(path, text);
@@ -188,6 +196,9 @@ Result<RunSummary> ReadRunSummary(const std::string& path) {
     summary.frames_per_second = timings.at("frames_per_second").get<double>();
     for (const auto& [stage, ms] : timings.at("mean_ms").items())
       summary.mean_ms.emplace_back(PresentName(stage), ms.get<double>());
+    if (const Json latency = timings.value("latency_ms", Json()); !latency.is_null())
+      summary.latency = {latency.at("p50").get<double>(), latency.at("p99").get<double>(),
+                         latency.at("max").get<double>()};
     return summary;
   } catch (const Json::exception& error) {
     return Status(ErrorCode::kUnreadable, Quoted(path) + " is not a run's run.json: " + error.what());

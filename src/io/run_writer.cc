@@ -48,6 +48,11 @@ bool IsFinite(const PointObservation& o) {
   return o.pixel.allFinite() && o.position.allFinite() && std::isfinite(o.ssim) && std::isfinite(o.sigma);
 }
 
+std::optional<Latency> LatencyOf(const std::vector<double>& ms) {
+  if (ms.empty()) return std::nullopt;
+  return Latency{Quantile(ms, 0.5), Quantile(ms, 0.99), *std::ranges::max_element(ms)};
+}
+
 void AppendPoseCovariance(int frame_idx, const PoseCovariance& covariance, std::string* out) {
   AppendInt(out, frame_idx);
   for (Eigen::Index row = 0; row < 6; ++row)
@@ -73,6 +78,7 @@ struct RunWriter::State {
   RunSummary summary = {};
   std::vector<double> median_errors_px = {};  // a frame with a pose
   std::vector<double> coverages = {};         // a frame that has one
+  std::vector<double> latencies_ms = {};      // a frame whose latency was measured
   // What the sparse model needs beside observations.csv: one entry a tracked frame and one a point.
   std::vector<CanonicalImage> images = {};
   std::vector<CanonicalPoint> points = {};
@@ -130,6 +136,7 @@ Result<RunWriter> RunWriter::Create(const std::string& output_path, const Camera
   for (const std::string& cost : columns.costs) header.append(",").append(kCostPrefix).append(cost);
   header.append(",").append(kFrameColumnsAfterCosts);
   for (const std::string& stage : columns.stages) header.append(",").append(kStagePrefix).append(stage);
+  header.append(",").append(kLatencyColumn);
   if (Status status = frames->Append(header + "\n"); !status.ok()) return status;
   if (Status status = observations->Append(std::string(kObservationColumns) + "\n"); !status.ok()) return status;
 
@@ -145,7 +152,8 @@ Status RunWriter::State::Check(const FrameReport& report) {
   const std::string where = "frame " + std::to_string(report.frame_idx) + ": ";
   const auto invalid = [&](const std::string& what) { return Status(ErrorCode::kInvalidArgument, where + what); };
   if (report.frame_idx <= last_frame_idx) return invalid("frames must come in growing order");
-  bool finite = std::isfinite(report.timestamp_s) && std::isfinite(report.median_reprojection_error_px);
+  bool finite = std::isfinite(report.timestamp_s) && std::isfinite(report.median_reprojection_error_px) &&
+                std::isfinite(report.latency_ms);
   for (const CostTerm& cost : report.costs) {
     finite = finite && std::isfinite(cost.value);
     if (std::ranges::find(columns.costs, cost.name) == columns.costs.end())
@@ -214,6 +222,7 @@ void RunWriter::State::Count(const FrameReport& report) {
   AddTo(report.state, 1, &summary.states);
   if (report.cam_from_world) median_errors_px.push_back(report.median_reprojection_error_px);
   if (report.coverage) coverages.push_back(*report.coverage);
+  if (report.latency_ms > 0 && options.timings == RunTimings::kWritten) latencies_ms.push_back(report.latency_ms);
   if (report.cam_from_world) summary.submaps = std::max(summary.submaps, report.submap + 1);
   summary.observations += static_cast<std::int64_t>(report.observations.size());
   summary.points = static_cast<std::int64_t>(points.size());
@@ -243,6 +252,7 @@ void RunWriter::State::AppendFrameRow(const FrameReport& report) {
     stage_total_ms[i] += ms;
     number(ms, 3);
   }
+  number(options.timings == RunTimings::kWritten ? report.latency_ms : 0.0, 3);
   rows.push_back('\n');
 }
 
@@ -355,6 +365,7 @@ Status RunWriter::Finish(RunStatus run_status, const std::string& note) {
     s.summary.mean_ms.emplace_back(
         s.columns.stages[i],
         s.stage_total_ms[i] / static_cast<double>(std::max<std::int64_t>(s.summary.frames_read, 1)));
+  s.summary.latency = LatencyOf(s.latencies_ms);
   if (status.ok()) {
     const int submaps_as_reported = s.summary.submaps;
     s.NumberSubmaps();

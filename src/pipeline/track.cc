@@ -4,7 +4,9 @@
 #include "pliant/pipeline/track.h"
 
 #include <algorithm>
+#include <chrono>
 #include <exception>
+#include <map>
 #include <memory>
 #include <thread>
 
@@ -25,7 +27,10 @@
 namespace pliant {
 namespace {
 
+using Clock = std::chrono::steady_clock;
+
 constexpr int kFramesAhead = 3;
+constexpr int kLiveFramesAhead = 1;  // it is prepared while tracking is busy; more would be old by then
 
 struct ReadFrame {
   PreparedFrame frame;
@@ -86,6 +91,8 @@ class Recorder {
            FramesBefore before)
       : writer_(writer), observers_(observers), working_(working), before_(std::move(before)) {}
 
+  // The frame's latency, once it is known; to be called before its report is recorded.
+  void SetLatency(int frame_idx, double ms) { latencies_ms_[frame_idx] = ms; }
   Status Record(std::vector<FrameReport> reports) { return Write(before_.Pass(std::move(reports))); }
   // No map comes any more.
   Status Finish() { return Write(before_.Finish()); }
@@ -99,6 +106,7 @@ class Recorder {
  private:
   Status Write(std::vector<FrameReport> reports) {
     for (FrameReport& of_tracker : reports) {
+      if (const auto latency = latencies_ms_.extract(of_tracker.frame_idx)) of_tracker.latency_ms = latency.mapped();
       const FrameReport report = InSourcePixels(std::move(of_tracker), working_);
       if (Status written = writer_.Write(report); !written.ok()) return written;
       for (TrackObserver* observer : observers_) observer->OnFrame(report);
@@ -110,6 +118,7 @@ class Recorder {
   std::span<TrackObserver* const> observers_;
   WorkingImage working_;
   FramesBefore before_;
+  std::map<int, double> latencies_ms_;  // of frames that are not written yet
 };
 
 // What else could start, after a run that has no map.
@@ -142,15 +151,25 @@ class FrameSource {
     ReadAhead(sequence, &frames_);
   }
 
+  // An image of a file arrives when it is asked for.
   std::optional<Result<ReadFrame>> Next() {
     if (again_) {
       if (auto frame = again_->Next()) return frame;
       again_.reset();
     }
+    arrived_ = Clock::now();
     auto frame = frames_->Next();
-    if (frame && frame->ok()) last_frame_idx_ = (*frame)->frame.frame_idx;
+    if (!frame || !frame->ok()) return frame;
+    last_frame_idx_ = (*frame)->frame.frame_idx;
+    if (input_.IsLive()) {
+      const auto arrived = input_.given->images->Arrived(last_frame_idx_);
+      arrived_ = arrived.value_or(arrived_);
+    }
     return frame;
   }
+  // Of those that came for the first time the last one, and for how long it has been there.
+  int last_frame_idx() const { return last_frame_idx_; }
+  double LatencyMs() const { return std::chrono::duration<double, std::milli>(Clock::now() - arrived_).count(); }
   // Once there is a map no depth image is read any more; those read ahead in the meantime change nothing.
   void SetWantsDepth(bool wants) { wants_depth_ = wants; }
   // What comes next is the frame after this one, which has come already. Fails as OpenSequence does.
@@ -171,7 +190,7 @@ class FrameSource {
   using Frames = std::optional<Prefetcher<Result<ReadFrame>>>;
   void ReadAhead(Sequence& sequence, Frames* frames) {
     frames->emplace([&] { return NextFrame(sequence, options_.tracker, options_.threads, start_, wants_depth_); },
-                    options_.threads > 1 && !input_.IsLive() ? kFramesAhead : 0);
+                    options_.threads == 1 ? 0 : (input_.IsLive() ? kLiveFramesAhead : kFramesAhead));
   }
 
   const SequenceRequest& input_;
@@ -179,6 +198,7 @@ class FrameSource {
   const RunStart& start_;
   std::atomic<bool> wants_depth_;
   int last_frame_idx_ = -1;  // of the frames that came for the first time
+  Clock::time_point arrived_;
   std::unique_ptr<Sequence> reopened_;
   Frames frames_;
   Frames again_;
@@ -200,6 +220,7 @@ Ending TrackFrames(Sequence& sequence, const RunRequest& request, const TrackOpt
       if (tracker.NeedsDepth() && !read.depth.ok()) return {RunStatus::kFailed, read.depth.message()};
       recorder.Show(read);
       std::vector<FrameReport> done = tracker.Process(read.frame);
+      recorder.SetLatency(frames.last_frame_idx(), frames.LatencyMs());
       ++count;
       frames.SetWantsDepth(tracker.WantsDepth());
       const FrameReport& present = tracker.held().empty() ? done.back() : tracker.held().back();
@@ -265,6 +286,14 @@ RunDescription DescriptionOf(const RunRequest& request, const TrackOptions& opti
           options.track_file.path,
           options.tracker.depth_prior.path,
           request.extensions.Names()};
+}
+
+// What follows from images that do not wait: nothing may hold tracking up.
+TrackOptions Completed(TrackOptions options) {
+  if (options.live_input.frames != LiveFrames::kNewest) return options;
+  options.max_frames_back = 0;
+  options.tracker.handover_frames = std::max(options.tracker.handover_frames, options.live_input.handover_frames);
+  return options;
 }
 
 // Turns the request into one of the source's images.
@@ -356,15 +385,16 @@ Status EndOf(const RunSummary& summary, const std::string& output_path) {
   return {summary.status == RunStatus::kFailed ? ErrorCode::kInsufficient : ErrorCode::kInterrupted, sentence};
 }
 
-Result<RunSummary> RunTrack(const RunRequest& given, const TrackOptions& options,
+Result<RunSummary> RunTrack(const RunRequest& given, const TrackOptions& wanted,
                             std::span<TrackObserver* const> observers) {
   RunRequest request = given;
   std::shared_ptr<LiveSource> live;
   if (!request.input.given && IsLiveSource(request.input.image_path)) {
-    auto opened = OpenLive(options.live_input, &request);
+    auto opened = OpenLive(wanted.live_input, &request);
     if (!opened.ok()) return opened.status();
     live = *std::move(opened);
   }
+  const TrackOptions options = request.input.IsLive() ? Completed(wanted) : wanted;
   if (options.tracker.depth_prior.IsGiven()) request.input.depth_prior_path = options.tracker.depth_prior.path;
   // More threads than processors gain nothing, and TBB complains of them on standard error.
   TrackOptions usable = options;
@@ -381,6 +411,11 @@ Result<RunSummary> RunTrack(const RunRequest& given, const TrackOptions& options
 
   const auto start = ReadStart(request, usable, **sequence);
   if (!start.ok()) return start.status();
+  if (request.input.IsLive() && options.live_input.frames == LiveFrames::kNewest) {
+    request.input.start = std::max(request.input.start, request.input.given->images->Passed());
+    sequence = OpenSequence(request.input);
+    if (!sequence.ok()) return sequence.status();
+  }
   usable.tracker = WorkingOptions(std::move(usable.tracker), start->working_image);
 
   OptionTable table;

@@ -64,6 +64,7 @@ py::dict FrameColumns(const Run& run) {
     stage_ms[py::str(run.stage_names[k])] =
         Column<double>(frames, [&](const RunFrame& frame) { return frame.stage_ms[k]; });
   columns["stage_ms"] = stage_ms;
+  columns["latency_ms"] = Column<double>(frames, [](const RunFrame& frame) { return frame.latency_ms; });
   return columns;
 }
 

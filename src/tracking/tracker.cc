@@ -8,12 +8,12 @@
 #include <string>
 
 #include "pliant/base/random.h"
-#include "pliant/base/statistics.h"
-#include "pliant/image/coverage.h"
 #include "pliant/tracking/stage_times.h"
 #include "tracking/bootstrapping/bootstrapper.h"
 #include "tracking/bootstrapping/oracle_initializer.h"
+#include "tracking/catch_up.h"
 #include "tracking/frame/frame_tracker.h"
+#include "tracking/frame_result.h"
 #include "tracking/image_fault.h"
 #include "tracking/map_upkeep/map_updater.h"
 #include "tracking/relocalization/relocalizer.h"
@@ -21,20 +21,19 @@
 #include "tracking/tracks/make_track_source.h"
 
 namespace pliant {
-
-// What one frame gave, for its report.
-struct FrameResult {
-  int tracked = 0;  // points followed into the frame, before any was rejected
-  LossCounts losses = {};
-  std::string note = {};
-  std::vector<CostTerm> costs = NoFrameCosts();
-  double median_reprojection_error_px = 0;
-  MapUpdate update = {};
-  std::optional<FirstMap> first_map = std::nullopt;
-  std::optional<PreparedFrame> map_frame = std::nullopt;  // that made it, where it was an earlier one
-};
-
 namespace {
+
+constexpr std::size_t kFramesAtOnce = 3;  // that a map catches up with in the time of one
+
+// Attempts beside tracking take about half of the time until they are answered, and ask for no more than the map: some
+// of those that would be made are left out. The last one is not earlier than it would be.
+void AttemptLessOften(int handover_frames, WindowInitOptions* window) {
+  const int steps = std::max(1, (handover_frames / 2 + window->every - 1) / window->every);
+  window->every *= steps;
+  const int attempts = (window->last_frame - window->first_frame + window->every - 1) / window->every;
+  window->last_frame = std::max(window->last_frame, window->first_frame + attempts * window->every);
+  window->checks_focal_length = false;
+}
 
 // What follows from other options. As published, the graph is wider after a start from metric depth.
 TrackerOptions Completed(TrackerOptions options) {
@@ -42,6 +41,7 @@ TrackerOptions Completed(TrackerOptions options) {
   options.init.window.prior = options.depth_prior.window;
   options.init.prior_kind = options.depth_prior.kind;
   options.init.window.window.patch_px = options.point_tracker.lucas_kanade.patch_size;
+  if (options.handover_frames > 0) AttemptLessOften(options.handover_frames, &options.init.window);
   return options;
 }
 
@@ -58,74 +58,17 @@ std::shared_ptr<const Initializer> MakeFirstInitializer(const TrackerOptions& op
 }
 
 // A start that takes the scene as rigid needs less.
-std::unique_ptr<Initializer> MakeAlternative(const TrackerOptions& options, std::uint64_t seed,
-                                             const TrackerInputs& inputs) {
+std::shared_ptr<const Initializer> MakeAlternative(const TrackerOptions& options, std::uint64_t seed,
+                                                   const TrackerInputs& inputs) {
   if (inputs.extensions.initializer || options.init.method != InitMethod::kWindow || options.oracle.Any())
     return nullptr;
   return MakeGatedInitializer(options.init.monocular, Random(seed).Child("alternative initializer"));
 }
 
-double CoverageIn(const PreparedFrame& frame, const std::vector<PointObservation>& observations) {
-  std::vector<Eigen::Vector2d> pixels;
-  for (const PointObservation& seen : observations) pixels.push_back(seen.pixel);
-  return CoverageOf(frame.mask.valid(), pixels);
-}
-
-// The report of a frame in this state, made of its result and of the submap as it is in the end.
-FrameReport MakeReport(const PreparedFrame& frame, TrackingState state, const Submap& submap, const FrameResult& result,
-                       const StageTimes& times) {
-  FrameReport report;
-  report.frame_idx = frame.frame_idx;
-  report.name = frame.name;
-  report.timestamp_s = frame.timestamp_s;
-  report.state = state == TrackingState::kTracking && submap.provisional ? TrackingState::kProvisional : state;
-  report.note = result.note;
-  report.submap = submap.idx;
-  report.tracked = result.tracked + static_cast<int>(result.update.new_points.size());
-  report.losses = result.losses.by_reason();
-  report.lost = result.losses.total();
-  report.stage_ms = times.ByName();
-  report.costs = result.costs;
-  if (state != TrackingState::kTracking || result.first_map) return report;
-  report.cam_from_world = submap.last_cam_from_world;
-  report.observations = submap.Observations();
-  report.optimized = static_cast<int>(report.observations.size());
-  report.new_points = result.update.new_points;
-  report.added = static_cast<int>(report.new_points.size());
-  report.refined_points = result.update.refined_points;
-  report.coverage = CoverageIn(frame, report.observations);
-  report.median_reprojection_error_px =
-      result.update.median_reprojection_error_px.value_or(result.median_reprojection_error_px);
-  return report;
-}
-
-// The attempt after the last frame is reported with that frame.
-void AddLastAttempt(const BootstrapStep& step, const StageTimes& times, FrameReport* report) {
-  LossCounts losses;
-  for (const auto& [reason, count] : report->losses) losses.Add(reason, count);
-  losses.Add(step.losses);
-  report->losses = losses.by_reason();
-  report->lost = losses.total();
-  report->note = step.note;
-  const auto added = times.ByName();
-  for (std::size_t k = 0; k < added.size(); ++k) report->stage_ms[k].second += added[k].second;
-}
-
-// Frames in which points were followed from a reference that came to nothing, since camera and scene could not be told
-// apart; nothing where there is no `reason`.
-void MarkAmbiguous(const std::string& reason, std::vector<FrameReport>* reports) {
-  if (reason.empty()) return;
-  for (FrameReport& report : *reports) {
-    if (report.state != TrackingState::kInitializing) continue;
-    report.state = TrackingState::kAmbiguous;
-    report.note = reason;
-  }
-}
-
-double MedianError(const FollowedPoints& points) {
-  std::vector<double> errors;
-  for (const FramePoint& point : points.solved) errors.push_back(point.reprojection_error_px);
-  return Median(std::move(errors));
+// A start from known depth needs one frame alone, and another program's is asked where it was given.
+int HandoverOfFirstMap(const TrackerOptions& options, const TrackerInputs& inputs) {
+  const bool at_once = options.init.IsMetric() || options.oracle.Any() || inputs.extensions.initializer != nullptr;
+  return at_once ? 0 : options.handover_frames;
 }
 
 }  // namespace
@@ -135,9 +78,9 @@ Tracker::Tracker(const Camera& camera, const TrackerOptions& options, std::uint6
     : options_(Completed(options)),
       oracle_poses_(std::make_unique<OraclePoses>(options.oracle, inputs.truth, NominalDepth(options.init))),
       tracks_(MakeTrackSource(options_, seed, threads, inputs)),
-      bootstrapper_(std::make_unique<Bootstrapper>(camera, options_, threads, inputs.photometric, tracks_.get(),
-                                                   oracle_poses_.get(), MakeFirstInitializer(options_, seed, inputs),
-                                                   MakeAlternative(options_, seed, inputs))),
+      bootstrapper_(std::make_unique<Bootstrapper>(
+          camera, options_, threads, HandoverOfFirstMap(options_, inputs), inputs.photometric, tracks_.get(),
+          oracle_poses_.get(), MakeFirstInitializer(options_, seed, inputs), MakeAlternative(options_, seed, inputs))),
       frame_tracker_(std::make_unique<FrameTracker>(camera, options_, tracks_.get(), oracle_poses_.get())),
       relocalizer_(std::make_unique<Relocalizer>(camera, options_, tracks_->abilities(), frame_tracker_.get())),
       map_updater_(std::make_unique<MapUpdater>(camera, options_, threads, inputs.photometric, tracks_.get())),
@@ -210,7 +153,8 @@ std::vector<FrameReport> Tracker::Process(const PreparedFrame& frame) {
 // While the current map is lost, or another one awaited, those that were left are searched. What there is of one that
 // is awaited is dropped.
 void Tracker::FindSubmapAgain(const PreparedFrame& frame) {
-  if (state_ == TrackingState::kTracking || frame.frame_idx % options_.relocalization.search_every != 0) return;
+  if (state_ == TrackingState::kTracking || catch_up_) return;
+  if (frame.frame_idx % options_.relocalization.search_every != 0) return;
   const auto former = state_ == TrackingState::kLost ? Submaps::Former::kInactive : Submaps::Former::kDropped;
   if (!submaps_->FindAgain(frame, former, relocalizer_.get())) return;
   bootstrapper_->Abandon();
@@ -221,12 +165,42 @@ FrameResult Tracker::Bootstrap(const PreparedFrame& frame, StageTimes* times) {
   BootstrapStep step = bootstrapper_->Process(frame, &submaps_->current(), times);
   for (const TrackingEvent event : step.events) Apply(event);
   MarkAmbiguous(step.ambiguity, &held_);
-  if (step.map) StartMap(*step.map);
-  return {.tracked = step.tracked,
-          .losses = std::move(step.losses),
-          .note = std::move(step.note),
-          .first_map = std::move(step.map),
-          .map_frame = std::move(step.map_frame)};
+  FrameResult result{.tracked = step.tracked, .losses = std::move(step.losses), .note = std::move(step.note)};
+  if (step.has_to_catch_up) {
+    BeginCatchUp(*std::move(step.map));
+  } else if (step.map) {
+    StartMap(*step.map);
+    result.first_map = std::move(step.map);
+    result.map_frame = std::move(step.map_frame);
+  }
+  if (!catch_up_) return result;
+  const std::vector<InitFrame>& frames = bootstrapper_->followed();
+  catch_up_->GoOn(frames, kFramesAtOnce, &held_, times, &result);
+  if (catch_up_->reached() == frames.size() && frames.back().frame_idx == frame.frame_idx) {
+    EndCatchUp(&result);
+    if (state_ == TrackingState::kTracking) relocalizer_->Remember(frame, &submaps_->current());
+  }
+  return result;
+}
+
+void Tracker::BeginCatchUp(FirstMap first) {
+  catch_up_ = std::make_unique<CatchUp>(std::move(first), submaps_->current(), bootstrapper_->followed().back(),
+                                        options_, tracks_.get(), frame_tracker_.get(), map_updater_.get());
+}
+
+// The map has reached the present frame, and becomes the current one.
+void Tracker::EndCatchUp(FrameResult* result) {
+  Submap submap = catch_up_->TakeSubmap(bootstrapper_->followed().back());
+  submap.previous = submaps_->current().previous;
+  submaps_->current() = std::move(submap);
+  submaps_->CountMap();
+  result->first_map = catch_up_->TakeFirst();
+  result->has_caught_up = true;
+  result->note = result->first_map->outcome.reason;
+  Apply(TrackingEvent::kMapCreated);
+  if (catch_up_->state() == TrackingState::kLost) Apply(TrackingEvent::kTooFewPoints);
+  bootstrapper_->Release();
+  catch_up_.reset();
 }
 
 // The frames after it are still to come: their reports are set aside, before those that were so already.
@@ -259,9 +233,7 @@ FrameResult Tracker::TrackFrame(const PreparedFrame& frame, StageTimes* times) {
   submap.Commit(solved.points, solved.solution.cam_from_world, state_, options_, tracks_.get());  // (R1)
   map_updater_->RemoveCommonMotion(&submap);                                                      // (E12)
   Apply(TrackingEvent::kFrameTracked);
-  result.losses = solved.points.losses;
-  result.costs = solved.solution.costs;
-  result.median_reprojection_error_px = MedianError(solved.points);
+  AddSolved(solved, &result);
   if (solved.points.in_blur) {
     result.note = "the image is blurred";
     return result;
@@ -284,6 +256,7 @@ FollowedPoints Tracker::Follow(const PreparedFrame& frame, Submap* submap, Stage
 // Nothing is given up: the map and the tracks stay as they were in the last good frame. Returns the frame's note.
 std::string Tracker::Lose(const PreparedFrame& frame, const std::string& reason, Submap* submap) {
   if (state_ == TrackingState::kTracking) relocalizer_->RememberLastView(submap);
+  map_updater_->Forget();
   Apply(TrackingEvent::kTooFewPoints);
   const std::string fault = ImageFault(frame, submap->previous);
   if (fault.empty()) ++submap->lost_frames;
@@ -307,10 +280,26 @@ void Tracker::Report(const PreparedFrame& frame, const FrameResult& result, Stag
   held_.push_back(std::move(report));
   if (result.map_frame) GoBackTo(*result.map_frame);
   if (result.first_map) {
-    held_ = bootstrapper_->Completed(*result.first_map, std::move(held_));
+    CompleteHeld(*result.first_map);
     if (!result.map_frame) held_.back().coverage = CoverageIn(frame, held_.back().observations);
   }
-  if (found) submaps_->Apply(*found);
+  if (found) {
+    submaps_->Apply(*found);
+    map_updater_->Forget();
+  }
+}
+
+// The reports of the frames that the first map was made of. Those since are complete, or were passed over.
+void Tracker::CompleteHeld(const FirstMap& first) {
+  const auto since = std::ranges::find_if(
+      held_, [&](const FrameReport& report) { return report.frame_idx > first.frames.back().frame_idx; });
+  std::vector<FrameReport> later(std::make_move_iterator(since), std::make_move_iterator(held_.end()));
+  held_.erase(since, held_.end());
+  held_ = bootstrapper_->Completed(first, std::move(held_));
+  for (FrameReport& report : later) {
+    if (report.state == TrackingState::kInitializing) report.state = TrackingState::kLost;
+    held_.push_back(std::move(report));
+  }
 }
 
 std::vector<FrameReport> Tracker::Finish() {
@@ -322,14 +311,25 @@ std::vector<FrameReport> Tracker::Finish() {
 void Tracker::EndSequence() {
   if (state_ != TrackingState::kInitializing || held_.empty()) return;
   StageTimes times;
-  BootstrapStep step = bootstrapper_->EndSequence(&times);
-  for (const TrackingEvent event : step.events) Apply(event);
-  AddLastAttempt(step, times, &held_.back());
-  MarkAmbiguous(step.ambiguity, &held_);
-  if (!step.map) return;
-  StartMap(*step.map);
-  if (step.map_frame) GoBackTo(*step.map_frame);
-  held_ = bootstrapper_->Completed(*step.map, std::move(held_));
+  FrameResult result;
+  if (!catch_up_) {
+    BootstrapStep step = bootstrapper_->EndSequence(&times);
+    for (const TrackingEvent event : step.events) Apply(event);
+    AddLastAttempt(step, times, &held_.back());
+    MarkAmbiguous(step.ambiguity, &held_);
+    if (step.has_to_catch_up) {
+      BeginCatchUp(*std::move(step.map));
+    } else if (step.map) {
+      StartMap(*step.map);
+      if (step.map_frame) GoBackTo(*step.map_frame);
+      CompleteHeld(*step.map);
+    }
+  }
+  if (!catch_up_) return;
+  const std::vector<InitFrame>& frames = bootstrapper_->followed();
+  catch_up_->GoOn(frames, frames.size(), &held_, &times, &result);
+  EndCatchUp(&result);
+  CompleteHeld(*result.first_map);
 }
 
 }  // namespace pliant

@@ -47,6 +47,11 @@ void TrackerOptions::List(OptionTable& table) {
   table.Add("max_lost_frames", &max_lost_frames, "frames",
             "the map is left after this many lost frames in a row that are not dark", 1, 1000000);
   table.AddChoice("submaps", &submaps, "begin a new submap when the map is left; off: the run ends");
+  table.Add(
+      "handover_frames", &handover_frames, "frames",
+      "first maps and re-estimated maps are computed beside tracking and taken over after this many frames (those "
+      "of a rigid scene that are refined: a third); 0: the frame in which a map is due waits for it",
+      0, 1000);
   table.Renamed("gauge_share", "common_motion_share");
   growth.List(table);
   relocalization.List(table);

@@ -85,6 +85,11 @@ std::vector<NamedText> RunFigures(const ViewedRun& run, const std::optional<RunS
     rows.Add("observations", std::to_string(summary->observations));
     rows.Add("maps", std::to_string(summary->submaps));
     if (summary->frames_per_second > 0) rows.Add("frames a second", FormatNumber("%.1f", summary->frames_per_second));
+    if (summary->latency) {
+      const auto& [p50, p99, max] = *summary->latency;
+      rows.Add("latency of a frame", FormatNumber("%.0f ms (median)", p50) + FormatNumber(", %.0f (99 %%)", p99) +
+                                         FormatNumber(", %.0f (worst)", max));
+    }
     if (summary->total_s > 0) rows.Add("wall time", FormatNumber("%.2f s", summary->total_s));
     for (const std::string& oracle : summary->description.oracles) rows.Add("replaced by the truth", oracle);
     for (const std::string& part : summary->description.extensions) rows.Add("given by a program", part);

@@ -5,13 +5,22 @@
 // 500 points are placed at once (a start from depth) and stay in view. The argument is the number of threads. Counters:
 //   frames_per_second  over the frames in state tracking       points     followed in a frame, mean
 //   memory_mb          resident after a frame, largest         memory_growth_mb  from the first third to the end
+//
+// And a scene that deforms, from images that arrive at 30 frames/s, with first maps and re-estimations beside tracking:
+//   p50_ms, p99_ms, max_ms  latency of a frame, from its arrival until it was done, and by the median:
+//   p99_by_median, max_by_median   tracked, skipped  share of the frames
 #include <algorithm>
 #include <array>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <memory>
+#include <mutex>
+#include <optional>
 #include <string>
 #include <system_error>
+#include <thread>
+#include <utility>
 #include <vector>
 
 #include <benchmark/benchmark.h>
@@ -19,11 +28,14 @@
 #include <unistd.h>
 
 #include "pliant/pipeline/track.h"
+#include "pliant/simulation/simulator.h"
 #include "pliant/simulation/write_sequence.h"
 #include "support/temporary_folder.h"
 
 namespace pliant {
 namespace {
+
+using Clock = std::chrono::steady_clock;
 
 constexpr int kFrames = 90;
 
@@ -57,7 +69,7 @@ class Meter : public TrackObserver {
   void OnStart(int) override {}
   void OnFrame(const FrameReport& report) override {
     if (!HasPose(report.state)) return;
-    const auto now = std::chrono::steady_clock::now();
+    const auto now = Clock::now();
     if (frames_ > 0) seconds_ += std::chrono::duration<double>(now - last_).count();
     last_ = now;
     ++frames_;
@@ -81,7 +93,7 @@ class Meter : public TrackObserver {
   int frames_ = 0;
   long points_ = 0;
   double seconds_ = 0;
-  std::chrono::steady_clock::time_point last_;
+  Clock::time_point last_;
   std::vector<double> resident_mb_;
 };
 
@@ -108,6 +120,99 @@ void BM_Run(benchmark::State& state) {
   }
   meter.Report(state);
 }
+constexpr int kRendered = 100;
+constexpr int kShown = 600;
+constexpr std::chrono::duration<double> kInterval(1.0 / 30.0);
+
+// A camera in front of a scene that goes forwards, backwards, and so on, from the first time that an image is asked
+// for: the newest one counts.
+class ArrivingImages : public ImageSource {
+ public:
+  explicit ArrivingImages(std::vector<cv::Mat> images) : images_(std::move(images)) {}
+  int count() const override { return 0; }
+  bool IsLive() const override { return true; }
+  int Passed() const override {
+    const std::lock_guard lock(mutex_);
+    return passed_ = static_cast<int>(taken_.size());
+  }
+  // Of the images that arrived since tracking began.
+  double SkippedShare() const {
+    const int arrived = taken_.back() + 1 - taken_[static_cast<std::size_t>(passed_)];
+    return 1 - static_cast<double>(std::ssize(taken_) - passed_) / arrived;
+  }
+  std::optional<Clock::time_point> Arrived(int idx) const override {
+    const std::lock_guard lock(mutex_);
+    return ArrivalOf(taken_[static_cast<std::size_t>(idx)]);
+  }
+  Result<std::optional<cv::Mat>> Read(int idx) override {
+    const std::lock_guard lock(mutex_);
+    if (taken_.empty()) begin_ = Clock::now();
+    if (std::cmp_equal(taken_.size(), idx)) {
+      const int next = taken_.empty() ? 0 : taken_.back() + 1;
+      const int number = std::max(next, static_cast<int>((Clock::now() - begin_) / kInterval));
+      if (number >= kShown) return std::optional<cv::Mat>();
+      std::this_thread::sleep_until(ArrivalOf(number));
+      taken_.push_back(number);
+    }
+    const int turns = static_cast<int>(images_.size()) - 1;
+    const int at = taken_[static_cast<std::size_t>(idx)] % (2 * turns);
+    return std::optional(images_[static_cast<std::size_t>(at <= turns ? at : 2 * turns - at)]);
+  }
+
+ private:
+  Clock::time_point ArrivalOf(int number) const {
+    return begin_ + std::chrono::duration_cast<Clock::duration>(number * kInterval);
+  }
+
+  std::vector<cv::Mat> images_;
+  mutable std::mutex mutex_;
+  Clock::time_point begin_;
+  std::vector<int> taken_;  // the camera's number of each
+  mutable int passed_ = 0;  // of these, before tracking began
+};
+
+void BM_Latency(benchmark::State& state) {
+  SimulationOptions scene;
+  scene.trajectory.frames = kRendered;
+  scene.trajectory.speed_mm_s = 15;
+  scene.deformation.amplitude_mm = 2.5;
+  scene.sensor.samples = 1;
+  auto simulator = Simulator::Create(scene);
+  if (!simulator.ok()) {
+    state.SkipWithError(simulator.status().message().c_str());
+    return;
+  }
+  std::vector<cv::Mat> images;
+  for (int idx = 0; idx < kRendered; ++idx) images.push_back(simulator->Render(idx).image.clone());
+  TrackOptions options = MakeTrackOptions(Preset::kDefault);
+  options.image.working = WorkingImageMode::kFixed;
+  const TemporaryFolder folder("latency_benchmark");
+  RunSummary summary;
+  std::shared_ptr<ArrivingImages> source;
+  for (auto _ : state) {
+    source = std::make_shared<ArrivingImages>(images);
+    RunRequest request;
+    GivenImages given{.camera = simulator->camera(), .images = source};
+    request.input.given = std::make_shared<const GivenImages>(std::move(given));
+    request.output_path = folder.Path("run");
+    const Result<RunSummary> run = RunTrack(request, options, {});
+    if (!run.ok() || !run->latency) {
+      state.SkipWithError("the images were not tracked");
+      return;
+    }
+    summary = *run;
+  }
+  const Latency& latency = *summary.latency;
+  state.counters["p50_ms"] = latency.p50;
+  state.counters["p99_ms"] = latency.p99;
+  state.counters["max_ms"] = latency.max;
+  state.counters["p99_by_median"] = latency.p99 / latency.p50;
+  state.counters["max_by_median"] = latency.max / latency.p50;
+  state.counters["tracked"] = static_cast<double>(summary.frames_tracked) / static_cast<double>(summary.frames_read);
+  state.counters["skipped"] = source->SkippedShare();
+}
+BENCHMARK(BM_Latency)->Unit(benchmark::kMillisecond)->UseRealTime()->Iterations(1);
+
 BENCHMARK(BM_Run)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime()->Iterations(1);
 
 }  // namespace

@@ -114,6 +114,26 @@ TEST_F(LiveSourceTest, SkipsAndCountsWhatCameWhileTrackingWasBusy) {
   EXPECT_GE((*source)->TimestampS(0), 0);
 }
 
+TEST_F(LiveSourceTest, KnowsWhenAnImageArrivedAndWhichOnesArePassed) {
+  request_.options.frames = LiveFrames::kNewest;
+  pipe_.Header(kWidth, kHeight, kFps);
+  Send(0, 1);
+  auto source = LiveSource::Open(request_);
+  ASSERT_TRUE(source.ok()) << source.status().message();
+  ASSERT_TRUE((*source)->Read(0)->has_value());
+  const auto between = Clock::now();
+  Send(1, 2);
+  ASSERT_TRUE((*source)->Read(1)->has_value());
+  EXPECT_LT(*(*source)->Arrived(0), between);
+  EXPECT_GT(*(*source)->Arrived(1), between);
+  EXPECT_LT(*(*source)->Arrived(1), Clock::now());
+  EXPECT_FALSE((*source)->Arrived(2));
+  EXPECT_EQ((*source)->Passed(), 2);
+  pipe_.Close();
+  EXPECT_FALSE((*source)->Read(2)->has_value());
+  EXPECT_EQ((*source)->Passed(), 0) << "no newer ones will come";
+}
+
 TEST_F(LiveSourceTest, IsASequenceWhoseTimesAreTheSources) {
   SendVideo(5);
   auto source = LiveSource::Open(request_);

@@ -125,6 +125,29 @@ TEST(RunWriter, GivesTheSameBytesTwiceWithoutTimings) {
   EXPECT_GT(files, kMinFiles);
 }
 
+TEST(RunWriter, TellsHowLongEveryFrameTook) {
+  const TestFolder folder;
+  for (const RunTimings timings : {RunTimings::kWritten, RunTimings::kNone}) {
+    const bool written = timings == RunTimings::kWritten;
+    RunWriter writer = Writer(folder.Path("run"), {.timings = timings});
+    for (int i = 0; i < 5; ++i) {
+      FrameReport report = Report(i);
+      report.latency_ms = i == 0 ? 0 : 10.0 * i;  // that of the first is not known
+      ASSERT_TRUE(writer.Write(report).ok());
+    }
+    ASSERT_TRUE(writer.Finish(RunStatus::kCompleted, "done").ok());
+    const auto run = ReadRun(folder.Path("run"));
+    ASSERT_TRUE(run.ok() && run->summary) << run.status().message();
+    for (std::size_t i = 0; i < 5; ++i)
+      EXPECT_EQ(run->frames[i].latency_ms, written ? 10.0 * static_cast<double>(i) : 0);
+    ASSERT_EQ(run->summary->latency.has_value(), written);
+    if (!written) continue;
+    EXPECT_EQ(run->summary->latency->p50, 25);
+    EXPECT_GT(run->summary->latency->p99, 39);
+    EXPECT_EQ(run->summary->latency->max, 40);
+  }
+}
+
 TEST(RunWriter, RefusesReportsThatCannotBeMeant) {
   const TestFolder folder;
   RunWriter writer = Writer(folder.Path("run"));
@@ -134,6 +157,9 @@ TEST(RunWriter, RefusesReportsThatCannotBeMeant) {
   report = Report(1);
   report.stage_ms = {{"other", 1.0}};
   EXPECT_THAT(writer.Write(report).message(), HasSubstr("no column for the stage 'other'"));
+  report = Report(1);
+  report.latency_ms = std::nan("");
+  EXPECT_THAT(writer.Write(report).message(), HasSubstr("not finite"));
   report = Report(1);
   report.costs = {{"other", 1.0}};
   EXPECT_THAT(writer.Write(report).message(), HasSubstr("no column for the cost term 'other'"));

@@ -23,7 +23,7 @@ class Reading(TestCase):
         self.assertEqual(len(frames), len(rows))
         plain = {"frame": frames.frame_idx, "timestamp": frames.timestamp, "tracked": frames.tracked,
                  "optimized": frames.optimized, "lost": frames.lost, "added": frames.added, "submap": frames.submap,
-                 "median_reprojection_error_px": frames.median_reprojection_error_px}
+                 "median_reprojection_error_px": frames.median_reprojection_error_px, "latency_ms": frames.latency_ms}
         plain.update({"cost_" + name: values for name, values in frames.costs.items()})
         plain.update({"ms_" + name: values for name, values in frames.stage_ms.items()})
         self.assertLessEqual({name for name in header if name.startswith(("cost_", "ms_"))}, set(plain))

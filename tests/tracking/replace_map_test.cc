@@ -8,6 +8,8 @@
 
 #include <gtest/gtest.h>
 
+#include "support/small_run.h"
+
 namespace pliant {
 namespace {
 
@@ -41,7 +43,7 @@ TEST(ReplaceMap, KeepsTheUnit) {
   TwoMaps maps;
   const Map old = maps.map;
   std::vector<RefinedPoint> refined;
-  const auto pose = ReplaceMap(maps.outcome, maps.before, &maps.map, &refined);
+  const auto pose = ReplaceMap(maps.outcome, {maps.map, maps.before}, &maps.map, &refined);
   ASSERT_TRUE(pose);
   // Of the eight in both the median is between the fifth and the sixth: 0.505.
   const double scale = 0.5 * (1 / 0.50 + 1 / 0.51);
@@ -69,7 +71,7 @@ TEST(ReplaceMap, LeavesThePointsThatItDoesNotHaveWhereTheCameraSeesThem) {
   before.determined_at = before.position + Eigen::Vector3d(0, 1, 0);
   const Landmark old = before;
   std::vector<RefinedPoint> refined;
-  const auto pose = ReplaceMap(maps.outcome, maps.before, &maps.map, &refined);
+  const auto pose = ReplaceMap(maps.outcome, {maps.map, maps.before}, &maps.map, &refined);
   ASSERT_TRUE(pose);
   const Landmark& left = *maps.map.Find(PointId{3});
   EXPECT_LT((*pose * left.position - maps.before * old.position).norm(), kRounding);
@@ -82,9 +84,30 @@ TEST(ReplaceMap, OfOtherPointsChangesNothing) {
   maps.outcome.frames[1].positions = {{PointId{20}, Eigen::Vector3d(0, 0, 50)}};
   const Eigen::Vector3d first = maps.map.landmarks.front().position;
   std::vector<RefinedPoint> refined;
-  EXPECT_FALSE(ReplaceMap(maps.outcome, maps.before, &maps.map, &refined));
+  EXPECT_FALSE(ReplaceMap(maps.outcome, {maps.map, maps.before}, &maps.map, &refined));
   EXPECT_EQ(maps.map.landmarks.front().position, first);
   EXPECT_TRUE(refined.empty());
+}
+
+// The scene is rigid: what was found of an earlier frame holds in the present one.
+TEST(ReplaceMap, OfAnEarlierFramePutsThePointsWhereItFoundThem) {
+  TwoMaps maps;
+  const MapInFrame then{maps.map, maps.before};
+  TwoMaps at_once;
+  std::vector<RefinedPoint> refined;
+  ASSERT_TRUE(ReplaceMap(at_once.outcome, then, &at_once.map, &refined));
+  std::erase_if(maps.map.landmarks, [](const Landmark& landmark) { return landmark.id == PointId{8}; });
+  for (Landmark& landmark : maps.map.landmarks) landmark.pixel += Eigen::Vector2d(4, 1);
+  refined.clear();
+  const auto pose = ReplaceMap(maps.outcome, then, &maps.map, &refined);
+  ASSERT_TRUE(pose);
+  EXPECT_EQ(refined.size(), 8U);
+  // Without the eighth the unit is that of the seven: 1 / 0.50.
+  const double unit = (1 / 0.50) / (0.5 * (1 / 0.50 + 1 / 0.51));
+  for (const Landmark& landmark : maps.map.landmarks) {
+    if (landmark.id == PointId{3}) continue;  // which the outcome does not have
+    EXPECT_LT((landmark.position - unit * at_once.map.Find(landmark.id)->position).norm(), kRounding);
+  }
 }
 
 // The outcome's own world does not matter, nor its unit: the camera stays where it is.
@@ -99,6 +122,57 @@ TEST(ReestimatedPositions, AreInTheMapsWorldAndUnit) {
     EXPECT_LT((maps.before * positions[k].position - scale * (maps.after * point.position)).norm(), kRounding);
   }
   EXPECT_TRUE(ReestimatedPositions(maps.outcome, maps.before, maps.map, 9).empty()) << "eight are in both";
+}
+
+// Re-estimated positions of a frame, and the map some frames later: it was moved and deformed meanwhile.
+struct Later : TwoMaps {
+  Camera camera = TestCamera();
+  MapInFrame then{map, before};
+  Rigid3 cam_now = Rigid3(RotationExp(Eigen::Vector3d(0.12, -0.18, 0.05)), Eigen::Vector3d(2, -2, -9));
+  std::vector<InitPosition> reestimated = ReestimatedPositions(outcome, before, map, 8);
+  Eigen::Vector2d pixel_of_20{300, 200};
+
+  Later() {
+    for (Landmark& landmark : map.landmarks) landmark.position += Eigen::Vector3d(1, 0.1 * landmark.id.value, -0.5);
+  }
+  std::vector<InitPosition> InPresent() const {
+    return BringForward(reestimated, then, camera, {map, cam_now},
+                        [&](PointId id) { return id == PointId{20} ? &pixel_of_20 : nullptr; });
+  }
+};
+
+TEST(BringForward, ChangesDistancesAsTheyChangedThen) {
+  const Later later;
+  const auto positions = later.InPresent();
+  ASSERT_EQ(positions.size(), 9U);
+  for (const InitPosition& point : positions) {
+    const Landmark* landmark = later.map.Find(point.id);
+    if (landmark == nullptr) continue;
+    const Eigen::Vector3d was = later.before * later.then.map.Find(point.id)->position;
+    const Eigen::Vector3d found = later.before * FindById(later.reestimated, point.id)->position;
+    const Eigen::Vector3d is = later.cam_now * landmark->position;
+    EXPECT_LT((later.cam_now * point.position - found.norm() / was.norm() * is).norm(), kRounding);
+  }
+}
+
+TEST(BringForward, PutsAPointOutsideTheMapWhereItIsSeen) {
+  const Later later;
+  const auto positions = later.InPresent();
+  const InitPosition* point = FindById(positions, PointId{20});
+  ASSERT_NE(point, nullptr);
+  const Eigen::Vector3d in_cam = later.cam_now * point->position;
+  EXPECT_LT((*later.camera.Project(in_cam) - later.pixel_of_20).norm(), 1e-6);
+  EXPECT_NEAR(in_cam.norm(), (later.cam_now * FindById(later.reestimated, PointId{20})->position).norm(), kRounding);
+}
+
+TEST(BringForward, LeavesOutWhatIsNotSeenAnyMoreAndWhatHasBecomeALandmark) {
+  Later later;
+  std::erase_if(later.map.landmarks, [](const Landmark& landmark) { return landmark.id == PointId{5}; });
+  later.map.landmarks.push_back({.id = PointId{20}, .position = Eigen::Vector3d(0, 0, 50)});
+  const auto positions = later.InPresent();
+  EXPECT_EQ(FindById(positions, PointId{5}), nullptr);
+  EXPECT_EQ(FindById(positions, PointId{20}), nullptr);
+  EXPECT_EQ(positions.size(), 7U);
 }
 
 // A mean over the maps that had a point, in log distance; the newest counts for a fifth at least.

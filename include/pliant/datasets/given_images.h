@@ -4,6 +4,7 @@
 // Images that the program has already, in memory or from a camera, as a sequence: SequenceRequest::given.
 #pragma once
 
+#include <chrono>
 #include <memory>
 #include <optional>
 #include <string>
@@ -32,6 +33,10 @@ class ImageSource {
   virtual std::optional<double> TimestampS(int /*idx*/) const { return std::nullopt; }
   // Whether images arrive while they are tracked: none is read before it is needed, since a newer one may have come.
   virtual bool IsLive() const { return false; }
+  // How many images were read that newer ones will follow: what is read before tracking begins is old by then.
+  virtual int Passed() const { return 0; }
+  // When image `idx`, which was read, was there; nothing: it was all the time.
+  virtual std::optional<std::chrono::steady_clock::time_point> Arrived(int /*idx*/) const { return std::nullopt; }
 };
 
 struct GivenImages {

@@ -8,6 +8,7 @@
 
 #include <array>
 #include <atomic>
+#include <chrono>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -36,6 +37,8 @@ struct EnumNames<LiveFrames> {
 struct LiveInputOptions {
   LiveFrames frames = LiveFrames::kNewest;
   double timeout_s = 10;  // without an image, after which the source counts as stalled
+  // newest: Tracking.handover_frames, at least; and General.max_frames_back is 0: nothing holds tracking up.
+  int handover_frames = 15;
 
   void List(OptionTable& table);  // group "LiveInput"
 };
@@ -77,6 +80,9 @@ class LiveSource final : public ImageSource {
   Result<std::optional<cv::Mat>> Read(int idx) override;
   // Of an image that was taken.
   std::optional<double> TimestampS(int idx) const override;
+  std::optional<std::chrono::steady_clock::time_point> Arrived(int idx) const override;
+
+  int Passed() const override;
 
   // So far.
   StreamCounts counts() const;

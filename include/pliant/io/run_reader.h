@@ -34,6 +34,7 @@ struct RunFrame {
   double median_reprojection_error_px = 0;
   int submap = 0;                // whose world the frame's pose and points are in
   std::vector<double> stage_ms;  // as Run::stage_names
+  double latency_ms = 0;         // FrameReport::latency_ms; 0 where it was not measured
 };
 
 struct RunPose {

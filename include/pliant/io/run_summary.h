@@ -67,6 +67,13 @@ struct StreamCounts {
   std::int64_t skipped = 0;  // of those: newer ones had come
 };
 
+// Of frames, from arrival until everything was done that a frame asked for, in milliseconds.
+struct Latency {
+  double p50 = 0;
+  double p99 = 0;
+  double max = 0;
+};
+
 // run.json.
 struct RunSummary {
   RunDescription description;
@@ -88,6 +95,7 @@ struct RunSummary {
   double total_s = 0;
   double frames_per_second = 0;
   std::vector<std::pair<std::string, double>> mean_ms;  // a frame, by stage
+  std::optional<Latency> latency;                       // nothing: not measured
 };
 
 // Writes it under another name and renames it, so that there is always a whole file. Fails with kUnwritable.

@@ -141,6 +141,7 @@ struct FrameReport {
   double median_reprojection_error_px = 0;
   std::optional<double> coverage;  // share of what the image shows of the scene that is near a point (CoverageOf)
   std::vector<std::pair<std::string, double>> stage_ms;  // wall time by stage; fixed order and names
+  double latency_ms = 0;  // from the frame's arrival until everything was done that it asked for; 0: not measured
 };
 
 }  // namespace pliant

@@ -25,6 +25,7 @@
 namespace pliant {
 
 class Bootstrapper;
+class CatchUp;
 class FrameTracker;
 class MapUpdater;
 class OraclePoses;
@@ -95,6 +96,9 @@ class Tracker {
   void FindSubmapAgain(const PreparedFrame& frame);
   FrameResult Bootstrap(const PreparedFrame& frame, StageTimes* times);
   void StartMap(const FirstMap& first);
+  void BeginCatchUp(FirstMap first);
+  void EndCatchUp(FrameResult* result);
+  void CompleteHeld(const FirstMap& first);
   void GoBackTo(const PreparedFrame& frame);
   FrameResult TrackFrame(const PreparedFrame& frame, StageTimes* times);
   FollowedPoints Follow(const PreparedFrame& frame, Submap* submap, StageTimes* times);
@@ -110,7 +114,8 @@ class Tracker {
   std::unique_ptr<MapUpdater> map_updater_;
   std::unique_ptr<Submaps> submaps_;
   TrackingState state_ = TrackingState::kWaitingForReference;
-  std::vector<FrameReport> held_;  // since the reference
+  std::unique_ptr<CatchUp> catch_up_;  // while the first map is of an earlier frame
+  std::vector<FrameReport> held_;      // since the reference
   std::optional<int> goes_back_to_;
   std::vector<FrameReport> set_aside_;  // of the frames after the one gone back to, until they are processed again
 };

@@ -66,6 +66,9 @@ struct TrackerOptions {
   int max_blurred_frames = 30;          // in a row: then the blur is taken to stay
   int max_lost_frames = 10;             // after so many lost frames in a row that show something the map is left
   Switch submaps = Switch::kOn;         // another one is begun then; off: the tracker gives up
+  // After so many frames a map that was made beside tracking, the first or a re-estimated one, is taken over; 0: made
+  // and taken over in the frame in which it is due, which waits for it.
+  int handover_frames = 0;
 
   // Groups Corners, Masks, LucasKanade, PointTracker, Init, CameraPose, Deformation, Optimization, Tracking, Growth,
   // Relocalization, AbsolutePose, DepthPrior, Oracle, and those of the initializers.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <limits>
 #include <utility>
 
 #include "tracking/depth_prior/prior_distances.h"
@@ -22,13 +23,14 @@ bool IsBetter(const InitOutcome& a, const InitOutcome& b) {
 
 }  // namespace
 
-Bootstrapper::Bootstrapper(const Camera& camera, const TrackerOptions& options, int threads,
+Bootstrapper::Bootstrapper(const Camera& camera, const TrackerOptions& options, int threads, int handover_frames,
                            const std::optional<PhotometricCalibration>& photometric, TrackSource* tracks,
                            OraclePoses* oracle_poses, std::shared_ptr<const Initializer> initializer,
-                           std::unique_ptr<Initializer> alternative)
+                           std::shared_ptr<const Initializer> alternative)
     : camera_(camera),
       options_(options),
       threads_(threads),
+      handover_frames_(handover_frames),
       photometric_(photometric),
       tracks_(tracks),
       oracle_poses_(oracle_poses),
@@ -105,18 +107,64 @@ BootstrapStep Bootstrapper::FollowReference(const PreparedFrame& frame, Submap* 
   return step;
 }
 
-// Asks the initializer. Afterwards there is a map in the step, or it waits and the reference stays, or there is none.
+// Asks the initializer, unless a map catches up. Afterwards there is a map in the step, or it waits and the reference
+// stays, or there is none.
 void Bootstrapper::TryInitialize(const PreparedFrame& frame, StageTimes* times, BootstrapStep* step) {
-  InitOutcome outcome = AskInitializer(frame.depth_mm, InitMoment::kMoreFollow, times);
+  if (has_map_) {
+    step->note = "the first map catches up";
+    step->events.push_back(TrackingEvent::kMapAwaited);
+  } else if (auto answer = NextAnswer(frame, times)) {
+    TakeAnswer(*std::move(answer), step);
+  } else {
+    step->note = last_reason_;
+    step->events.push_back(TrackingEvent::kMapAwaited);
+  }
+}
+
+// To this frame or to an earlier one; nothing: none was asked for that long ago.
+std::optional<Bootstrapper::Answer> Bootstrapper::NextAnswer(const PreparedFrame& frame, StageTimes* times) {
+  const StageTimer timer(times, Stage::kInitialize);
+  if (handover_frames_ == 0) {
+    const auto alternative = frames_.size() % kAskAlternativeEvery == 0 ? AlternativeToAsk() : nullptr;
+    return AskInitializers(frames_, known_depths_, frame, InitMoment::kMoreFollow, threads_, alternative.get());
+  }
+  const auto step = static_cast<int>(frames_.size());
+  const WorkPlace place = threads_ > 1 ? WorkPlace::kBeside : WorkPlace::kHere;
+  answers_.Ask(step + handover_frames_, place, [this, frame, frames = frames_, known_depths = known_depths_] {
+    return AskInitializers(frames, known_depths, frame, InitMoment::kMoreFollow, threads_, nullptr);
+  });
+  return answers_.Take(step);
+}
+
+// Beside tracking it reads only what does not change. `alternative`: null: it is not asked.
+Bootstrapper::Answer Bootstrapper::AskInitializers(const std::vector<InitFrame>& frames,
+                                                   const std::vector<double>& known_depths, const PreparedFrame& last,
+                                                   InitMoment moment, int threads,
+                                                   const Initializer* alternative) const {
+  Answer answer{.frames = frames.size(), .last = last};
+  answer.outcome = initializer_->Try({camera_, frames, last.depth_mm, moment, threads, known_depths, photometric_});
+  const bool is_settled = answer.outcome.decision == InitDecision::kMap || answer.outcome.ambiguous;
+  if (alternative != nullptr && !is_settled)
+    answer.alternative = alternative->Try({camera_, frames, {}, moment, threads, {}, photometric_});
+  return answer;
+}
+
+// Null where what it would answer is known.
+std::shared_ptr<const Initializer> Bootstrapper::AlternativeToAsk() const {
+  return would_start_.empty() ? alternative_ : nullptr;
+}
+
+void Bootstrapper::TakeAnswer(Answer answer, BootstrapStep* step) {
+  const InitOutcome& outcome = answer.outcome;
+  last_reason_ = outcome.reason;
   step->note = outcome.reason;
-  if (outcome.decision != InitDecision::kMap && frames_.size() % kAskAlternativeEvery == 0)
-    AskAlternative(InitMoment::kMoreFollow, times);
+  TakeAlternative(answer);
   switch (outcome.decision) {
     case InitDecision::kMap:
-      FinishMapOrGoBack(std::move(outcome), step);
+      FinishMapOrGoBack(std::move(answer), step);
       break;
     case InitDecision::kProvisional:
-      PutAside(std::move(outcome), frame);
+      PutAside(std::move(answer));
       step->events.push_back(TrackingEvent::kMapAwaited);
       break;
     case InitDecision::kWait:
@@ -132,47 +180,119 @@ void Bootstrapper::TryInitialize(const PreparedFrame& frame, StageTimes* times, 
   }
 }
 
+void Bootstrapper::TakeAlternative(const Answer& answer) {
+  if (answer.outcome.ambiguous) {  // what is less certain, or takes more for granted, is no answer then
+    provisional_.reset();
+    ForgetAlternative();
+  }
+  if (!answer.alternative || answer.alternative->decision != InitDecision::kMap || AlternativeToAsk() == nullptr)
+    return;
+  would_start_ = "--Init.method " + std::string(alternative_->name()) + " would have made a map by frame " +
+                 std::to_string(answer.last.frame_idx) + ", which is right if the scene hardly deforms";
+}
+
+// There is a map, or it is known that it takes too much for granted.
+void Bootstrapper::ForgetAlternative() {
+  alternative_.reset();
+  would_start_.clear();
+}
+
+Bootstrapper::Made Bootstrapper::MapOf(Answer answer) const {
+  const auto end = frames_.begin() + static_cast<std::ptrdiff_t>(answer.frames);
+  return {{{frames_.begin(), end}, std::move(answer.outcome)}, std::move(answer.last)};
+}
+
+// Whether most of its points are still there.
+bool Bootstrapper::IsFollowed(const FirstMap& map) const {
+  const std::vector<InitPosition>& points = map.outcome.frames.back().positions;
+  const auto followed = std::ranges::count_if(
+      points, [&](const InitPosition& point) { return FindById(frames_.back().observations, point.id) != nullptr; });
+  return 2 * followed >= std::ssize(points);
+}
+
 // A map that is provisional itself does not replace a better one that was put aside.
-void Bootstrapper::FinishMapOrGoBack(InitOutcome outcome, BootstrapStep* step) {
-  if (outcome.provisional && provisional_ && IsBetter(provisional_->map.outcome, outcome))
+void Bootstrapper::FinishMapOrGoBack(Answer answer, BootstrapStep* step) {
+  if (answer.outcome.provisional && provisional_ && IsBetter(provisional_->map.outcome, answer.outcome)) {
     GoBack(step);
+    return;
+  }
+  Made made = MapOf(std::move(answer));
+  if (IsFollowed(made.map))
+    FinishMap(std::move(made.map), step);
   else
-    FinishMap(std::move(outcome), step);
+    Retrack(std::move(made), step);
 }
 
 // The one whose depths stand out most from their uncertainty is kept.
-void Bootstrapper::PutAside(InitOutcome outcome, const PreparedFrame& frame) {
-  if (provisional_ && IsBetter(provisional_->map.outcome, outcome)) return;
-  provisional_ = Provisional{{frames_, std::move(outcome)}, frame};
+void Bootstrapper::PutAside(Answer answer) {
+  if (provisional_ && IsBetter(provisional_->map.outcome, answer.outcome)) return;
+  provisional_ = MapOf(std::move(answer));
 }
 
-// To the map that was put aside: its points are followed again from the frame it was made in.
+// To the map that was put aside.
 void Bootstrapper::GoBack(BootstrapStep* step) {
-  Provisional provisional = *std::exchange(provisional_, std::nullopt);
-  const bool present = provisional.frame.frame_idx == frames_.back().frame_idx;
-  Abandon();
-  std::erase_if(provisional.map.frames.back().observations,
-                [&](const InitObservation& seen) { return !tracks_->Resume(seen.id, seen.pixel, provisional.frame); });
-  std::erase_if(provisional.map.outcome.frames.back().positions, [&](const InitPosition& point) {
-    return FindById(provisional.map.frames.back().observations, point.id) == nullptr;
-  });
+  Made provisional = *std::exchange(provisional_, std::nullopt);
   step->note = provisional.map.outcome.reason;
-  frames_ = std::move(provisional.map.frames);
-  FinishMap(std::move(provisional.map.outcome), step);
-  if (!present) step->map_frame = std::move(provisional.frame);
+  if (handover_frames_ > 0 && IsFollowed(provisional.map))
+    FinishMap(std::move(provisional.map), step);
+  else
+    Retrack(std::move(provisional), step);
+}
+
+// The points of the map are followed again from the frame that it is of.
+void Bootstrapper::Retrack(Made made, BootstrapStep* step) {
+  const bool present = made.frame.frame_idx == frames_.back().frame_idx;
+  Abandon();
+  std::erase_if(made.map.frames.back().observations,
+                [&](const InitObservation& seen) { return !tracks_->Resume(seen.id, seen.pixel, made.frame); });
+  std::erase_if(made.map.outcome.frames.back().positions, [&](const InitPosition& point) {
+    return FindById(made.map.frames.back().observations, point.id) == nullptr;
+  });
+  frames_ = made.map.frames;
+  FinishMap(std::move(made.map), step);
+  if (!present) step->map_frame = std::move(made.frame);
+}
+
+// Of the first frames since the reference, or of all. The bootstrapper begins anew.
+void Bootstrapper::FinishMap(FirstMap map, BootstrapStep* step) {
+  for (const InitRejectedPoint& rejected : map.outcome.rejected)
+    if (rejected.reason != InitRejection::kLostOnTheWay) step->losses.Add(InitRejectionName(rejected.reason), 1);
+  provisional_.reset();
+  ForgetAlternative();
+  map.outcome.decision = InitDecision::kMap;
+  oracle_poses_->TakeWorld({camera_, map.frames, {}}, &map.outcome);
+  has_map_ = step->has_to_catch_up = map.frames.size() < frames_.size();
+  answers_.Drop();
+  step->map = std::move(map);
+  if (has_map_) return;
+  frames_.clear();
+  step->events.push_back(TrackingEvent::kMapCreated);
+}
+
+void Bootstrapper::Release() {
+  frames_.clear();
+  has_map_ = false;
 }
 
 BootstrapStep Bootstrapper::EndSequence(StageTimes* times) {
   BootstrapStep step;
-  InitOutcome outcome = AskInitializer({}, InitMoment::kLastFrame, times);
-  step.note = WithFault(outcome.reason, image_fault_);
-  if (outcome.ambiguous && outcome.decision == InitDecision::kNewReference) step.ambiguity = outcome.reason;
-  if (outcome.decision == InitDecision::kMap)
-    FinishMapOrGoBack(std::move(outcome), &step);
+  const StageTimer timer(times, Stage::kInitialize);
+  while (auto answer = answers_.Take(std::numeric_limits<int>::max())) {
+    TakeAnswer(*std::move(answer), &step);
+    if (step.map || !HasReference()) return step;
+  }
+  PreparedFrame last;
+  last.frame_idx = frames_.back().frame_idx;
+  const auto alternative = provisional_ ? nullptr : AlternativeToAsk();
+  Answer answer = AskInitializers(frames_, known_depths_, last, InitMoment::kLastFrame, threads_, alternative.get());
+  step.note = WithFault(answer.outcome.reason, image_fault_);
+  TakeAlternative(answer);
+  if (answer.outcome.ambiguous && answer.outcome.decision == InitDecision::kNewReference)
+    step.ambiguity = answer.outcome.reason;
+  if (answer.outcome.decision == InitDecision::kMap)
+    FinishMapOrGoBack(std::move(answer), &step);
   else if (provisional_)
     GoBack(&step);
-  else
-    AskAlternative(InitMoment::kLastFrame, times);
   return step;
 }
 
@@ -182,43 +302,9 @@ void Bootstrapper::Abandon() {
   frames_.clear();
   known_depths_.clear();
   provisional_.reset();
-}
-
-InitOutcome Bootstrapper::AskInitializer(const cv::Mat& depth_mm, InitMoment moment, StageTimes* times) {
-  const StageTimer timer(times, Stage::kInitialize);
-  const InitInput input{camera_, frames_, depth_mm, moment, threads_, known_depths_, photometric_};
-  InitOutcome outcome = initializer_->Try(input);
-  if (outcome.ambiguous) {  // what is less certain, or takes more for granted, is no answer then
-    provisional_.reset();
-    ForgetAlternative();
-  }
-  return outcome;
-}
-
-void Bootstrapper::AskAlternative(InitMoment moment, StageTimes* times) {
-  if (alternative_ == nullptr || !would_start_.empty()) return;
-  const StageTimer timer(times, Stage::kInitialize);
-  const InitOutcome outcome = alternative_->Try({camera_, frames_, {}, moment, threads_, {}, photometric_});
-  if (outcome.decision != InitDecision::kMap) return;
-  would_start_ = "--Init.method " + std::string(alternative_->name()) + " would have made a map by frame " +
-                 std::to_string(frames_.back().frame_idx) + ", which is right if the scene hardly deforms";
-}
-
-// There is a map, or it is known that it takes too much for granted.
-void Bootstrapper::ForgetAlternative() {
-  alternative_.reset();
-  would_start_.clear();
-}
-
-void Bootstrapper::FinishMap(InitOutcome outcome, BootstrapStep* step) {
-  for (const InitRejectedPoint& rejected : outcome.rejected)
-    if (rejected.reason != InitRejection::kLostOnTheWay) step->losses.Add(InitRejectionName(rejected.reason), 1);
-  provisional_.reset();
-  ForgetAlternative();
-  outcome.decision = InitDecision::kMap;
-  oracle_poses_->TakeWorld({camera_, frames_, {}}, &outcome);
-  step->map = FirstMap{std::exchange(frames_, {}), std::move(outcome)};
-  step->events.push_back(TrackingEvent::kMapCreated);
+  has_map_ = false;
+  last_reason_ = "the first map is attempted beside tracking";
+  answers_.Drop();
 }
 
 // Constant velocity in the image: there is no map yet.

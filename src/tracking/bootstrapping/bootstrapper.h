@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "pliant/base/delayed_answers.h"
 #include "pliant/camera/camera.h"
 #include "pliant/camera/photometric_calibration.h"
 #include "pliant/image/brightness.h"
@@ -34,17 +35,21 @@ struct BootstrapStep {
   // Why camera and scene cannot be told apart in the frames since a reference that was given up for it; else empty.
   std::string ambiguity = {};
   std::optional<FirstMap> map = std::nullopt;  // when the initializer made one; the bootstrapper then begins anew
-  // Where the map was made in an earlier frame, and put aside: that frame. Tracking goes on after it.
+  // Where the map is of an earlier frame, one of the two: it has to catch up with the frames in which the bootstrapper
+  // follows its points until Release; or tracking goes on after that frame.
+  bool has_to_catch_up = false;
   std::optional<PreparedFrame> map_frame = std::nullopt;
 };
 
 class Bootstrapper {
  public:
-  // `tracks` and `oracle_poses` must outlive this. `threads` >= 1 do not change the result. `alternative`, which may be
-  // null, takes more for granted than `initializer`: it makes no map, but is asked whether it would (WouldStart).
-  Bootstrapper(const Camera& camera, const TrackerOptions& options, int threads,
+  // `tracks` and `oracle_poses` must outlive this. `threads` >= 1 do not change the result. `handover_frames` >= 0
+  // after a frame it is known whether it makes a map; the initializer is then asked beside tracking. `alternative`,
+  // which may be null, takes more for granted than `initializer`: it makes no map, but is asked whether it would
+  // (WouldStart).
+  Bootstrapper(const Camera& camera, const TrackerOptions& options, int threads, int handover_frames,
                const std::optional<PhotometricCalibration>& photometric, TrackSource* tracks, OraclePoses* oracle_poses,
-               std::shared_ptr<const Initializer> initializer, std::unique_ptr<Initializer> alternative);
+               std::shared_ptr<const Initializer> initializer, std::shared_ptr<const Initializer> alternative);
 
   // The next frame; `submap` has no landmarks yet.
   BootstrapStep Process(const PreparedFrame& frame, Submap* submap, StageTimes* times);
@@ -57,6 +62,10 @@ class Bootstrapper {
   }
   // Gives the reference up, and its points.
   void Abandon();
+  // While a map catches up: the frames since the reference, of which the last may be the present one.
+  const std::vector<InitFrame>& followed() const { return frames_; }
+  // It has caught up: its points are others' now.
+  void Release();
 
   // What the alternative answered the first time that it would have made a map: one sentence; empty: it never would,
   // there has been a map, or camera and scene could not be told apart.
@@ -69,39 +78,58 @@ class Bootstrapper {
  private:
   BootstrapStep TakeReference(const PreparedFrame& frame, Submap* submap, StageTimes* times);
   BootstrapStep FollowReference(const PreparedFrame& frame, Submap* submap, StageTimes* times);
+  // A map, and the frame that it is of.
+  struct Made {
+    FirstMap map;
+    PreparedFrame frame;
+  };
+  // What the initializers say of the frames up to one of them.
+  struct Answer {
+    std::size_t frames = 0;  // since the reference
+    PreparedFrame last;      // of these
+    InitOutcome outcome = {};
+    std::optional<InitOutcome> alternative = std::nullopt;  // where it was asked
+  };
+
+  Answer AskInitializers(const std::vector<InitFrame>& frames, const std::vector<double>& known_depths,
+                         const PreparedFrame& last, InitMoment moment, int threads,
+                         const Initializer* alternative) const;
+  std::shared_ptr<const Initializer> AlternativeToAsk() const;
+  std::optional<Answer> NextAnswer(const PreparedFrame& frame, StageTimes* times);
   void TryInitialize(const PreparedFrame& frame, StageTimes* times, BootstrapStep* step);
-  InitOutcome AskInitializer(const cv::Mat& depth_mm, InitMoment moment, StageTimes* times);
-  void AskAlternative(InitMoment moment, StageTimes* times);
+  void TakeAnswer(Answer answer, BootstrapStep* step);
+  void TakeAlternative(const Answer& answer);
   void ForgetAlternative();
-  void FinishMap(InitOutcome outcome, BootstrapStep* step);
-  void FinishMapOrGoBack(InitOutcome outcome, BootstrapStep* step);
-  void PutAside(InitOutcome outcome, const PreparedFrame& frame);
+  Made MapOf(Answer answer) const;
+  bool IsFollowed(const FirstMap& map) const;
+  void FinishMap(FirstMap map, BootstrapStep* step);
+  void FinishMapOrGoBack(Answer answer, BootstrapStep* step);
+  void PutAside(Answer answer);
   void GoBack(BootstrapStep* step);
+  void Retrack(Made made, BootstrapStep* step);
   std::vector<PointPrediction> PredictPixels(int frame_idx) const;
   void AddCorners(const PreparedFrame& frame, const LocalBrightness& brightness, int max_corners, InitFrame* points);
   void AddKnownPoints(const PreparedFrame& frame, const LocalBrightness& brightness, InitFrame* points);
   InitFrame FollowedFrame(const PreparedFrame& frame, const Submap& submap, LossCounts* losses);
 
-  // A provisional map, and the frame it was made in.
-  struct Provisional {
-    FirstMap map;
-    PreparedFrame frame;
-  };
-
   Camera camera_;
   TrackerOptions options_;
   int threads_;
+  int handover_frames_;
   std::optional<PhotometricCalibration> photometric_;
   TrackSource* tracks_;
   OraclePoses* oracle_poses_;
   std::shared_ptr<const Initializer> initializer_;
-  std::unique_ptr<Initializer> alternative_;
+  std::shared_ptr<const Initializer> alternative_;
 
-  std::vector<InitFrame> frames_;           // since the reference; empty: there is none
-  std::vector<double> known_depths_;        // of the reference's points, where they are known
-  std::string image_fault_;                 // of the last frame
-  std::optional<Provisional> provisional_;  // the best one since the reference
+  bool has_map_ = false;              // one that catches up
+  std::vector<InitFrame> frames_;     // since the reference; empty: there is none
+  std::vector<double> known_depths_;  // of the reference's points, where they are known
+  std::string image_fault_;           // of the last frame
+  std::optional<Made> provisional_;   // the best one since the reference
   std::string would_start_;
+  std::string last_reason_;         // of the last answer
+  DelayedAnswers<Answer> answers_;  // steps: the number of frames since the reference; ends before what it reads
 };
 
 }  // namespace pliant

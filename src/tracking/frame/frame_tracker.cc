@@ -100,10 +100,25 @@ FollowedPoints FrameTracker::Follow(const PreparedFrame& frame, const Submap& su
 }
 
 FollowedPoints FrameTracker::Follow(const PreparedFrame& frame, const Submap& submap) const {
-  const auto known = KnownPose(frame.frame_idx, submap);
-  return Follow(
-      frame, submap,
-      known ? *known : PredictCameraPose(submap.before_last_cam_from_world, submap.last_cam_from_world));  // (E6)
+  return Follow(frame, submap, PredictPose(frame.frame_idx, submap));
+}
+
+FollowedPoints FrameTracker::Followed(const InitFrame& frame, const Submap& submap) const {
+  FollowedPoints followed;
+  followed.cam_from_world = PredictPose(frame.frame_idx, submap);
+  followed.expected = std::ssize(submap.map.landmarks);
+  for (const Landmark& landmark : submap.map.landmarks) {
+    if (const InitObservation* seen = FindById(frame.observations, landmark.id); seen != nullptr)
+      followed.Add(landmark, {.id = seen->id, .pixel = seen->pixel, .ssim = seen->ssim});
+    else
+      followed.unseen.push_back(landmark.id);
+  }
+  return followed;
+}
+
+Rigid3 FrameTracker::PredictPose(int frame_idx, const Submap& submap) const {
+  const auto known = KnownPose(frame_idx, submap);
+  return known ? *known : PredictCameraPose(submap.before_last_cam_from_world, submap.last_cam_from_world);  // (E6)
 }
 
 void FrameTracker::FindLost(const PreparedFrame& frame, const Rigid3& cam_from_world, Submap* submap,

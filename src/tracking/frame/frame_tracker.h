@@ -43,15 +43,19 @@ class FrameTracker {
   // pose itself (E6).
   FollowedPoints Follow(const PreparedFrame& frame, const Submap& submap, const Rigid3& cam_from_world) const;
   FollowedPoints Follow(const PreparedFrame& frame, const Submap& submap) const;
+  // The landmarks as they were followed into this frame before there was a map.
+  FollowedPoints Followed(const InitFrame& frame, const Submap& submap) const;
   // Adds lost points that are where they are expected (R2). They take part in the frame's problem like the others.
   void FindLost(const PreparedFrame& frame, const Rigid3& cam_from_world, Submap* submap,
                 FollowedPoints* followed) const;
 
-  // The frame's pose and displacements from the points that were followed into it. `state`: before this frame.
+  // The frame's pose and displacements from the points that were followed into it. `state`: before this frame; lost
+  // points are searched while it is tracking.
   SolvedFrame Solve(const PreparedFrame& frame, TrackingState state, FollowedPoints followed, Submap* submap,
                     StageTimes* times) const;
 
  private:
+  Rigid3 PredictPose(int frame_idx, const Submap& submap) const;
   std::vector<PointPrediction> PredictPixels(const Submap& submap, const Rigid3& cam_from_world) const;
   bool IsBlurred(const PreparedFrame& frame, const Submap& submap) const;
   Rigid3 EstimatePose(const FollowedPoints& followed, StageTimes* times) const;

@@ -7,12 +7,12 @@
 #include <limits>
 #include <utility>
 
+#include "pliant/estimation/pose/camera_pose.h"
 #include "pliant/image/brightness.h"
 #include "tracking/depth_prior/prior_distances.h"
 #include "tracking/map_upkeep/common_motion.h"
 #include "tracking/map_upkeep/drifted_points.h"
 #include "tracking/map_upkeep/reestimate_map.h"
-#include "tracking/map_upkeep/replace_map.h"
 
 namespace pliant {
 namespace {
@@ -41,12 +41,33 @@ bool MapUpdater::EstimatesPoses() const {
   return options_.camera_motion == CameraMotion::kFree && options_.oracle.poses == Switch::kOff;
 }
 
-InitOutcome MapUpdater::Reestimate(const std::vector<InitFrame>& frames, WindowScene scene) const {
-  return ReestimateMap({camera_, frames, {}, InitMoment::kMoreFollow, threads_, {}, photometric_}, scene,
-                       options_.init.window, options_.init.monocular.nominal_depth_mm);
+// From frames of which the last is the present one.
+void MapUpdater::Reestimate(const std::vector<InitFrame>& frames, WindowScene scene, const Submap& submap) {
+  Reestimation reestimation{scene, {submap.map, submap.last_cam_from_world}};
+  const bool beside = threads_ > 1 && options_.handover_frames > 0;
+  const int threads = threads_;
+  // To refine a rigid map takes much less time, and every frame without it is tracked with a worse one.
+  const int delay = scene == WindowScene::kRigid ? (options_.handover_frames + 2) / 3 : options_.handover_frames;
+  reestimations_.Ask(updates_ + delay, beside ? WorkPlace::kBeside : WorkPlace::kHere,
+                     [this, threads, frames, made = std::move(reestimation)]() mutable {
+                       made.outcome =
+                           ReestimateMap({camera_, frames, {}, InitMoment::kMoreFollow, threads, {}, photometric_},
+                                         made.scene, options_.init.window, options_.init.monocular.nominal_depth_mm);
+                       return std::move(made);
+                     });
 }
 
-void MapUpdater::Start(FirstMap first, Submap* submap) const {
+void MapUpdater::TakeReestimations(Submap* submap, MapUpdate* update) {
+  while (const auto made = reestimations_.Take(updates_)) {
+    if (made->scene == WindowScene::kRigid)
+      TakeRigid(*made, submap, update);
+    else
+      TakeAny(*made, submap, update);
+  }
+}
+
+void MapUpdater::Start(FirstMap first, Submap* submap) {
+  Forget();
   const InitOutcome& outcome = first.outcome;
   submap->map = MakeFirstMap(first);
   submap->provisional = outcome.provisional;
@@ -77,23 +98,61 @@ void MapUpdater::RemoveCommonMotion(Submap* submap) const {
     submap->MoveAllButRest(CommonMotionToRest(submap->map, options_.common_motion_share));
 }
 
-MapUpdate MapUpdater::Update(const PreparedFrame& frame, Submap* submap, StageTimes* times) const {
+void MapUpdater::KeepFollowed(const InitFrame& present, Submap* submap) const {
+  const auto is_lost = [&](PointId id) { return FindById(present.observations, id) == nullptr; };
+  std::erase_if(submap->map.landmarks, [&](const Landmark& landmark) { return is_lost(landmark.id); });
+  for (const CandidateTrack& track : submap->candidates.tracks())
+    if (is_lost(track.id)) submap->candidates.Remove(track.id);
+}
+
+void MapUpdater::AddFollowed(const InitFrame& frame, Submap* submap) const {
+  for (const CandidateTrack& track : submap->candidates.tracks()) {
+    const InitObservation* seen = FindById(frame.observations, track.id);
+    const bool is_kept =
+        seen != nullptr && submap->candidates.AddView({.id = seen->id, .pixel = seen->pixel, .ssim = seen->ssim},
+                                                      submap->last_cam_from_world, submap->map);
+    if (!is_kept) submap->candidates.Remove(track.id);
+  }
+  IsRefinementDue(frame.frame_idx, submap);
+  if (options_.growth.window > 0) AddToWindow(frame, submap);
+}
+
+void MapUpdater::AdoptFollowed(const InitFrame& present, Submap* submap) const {
+  for (const InitObservation& seen : present.observations) {
+    if (submap->map.Find(seen.id) != nullptr || submap->candidates.Pixel(seen.id) != nullptr) continue;
+    if (submap->lost_points.Find(seen.id) != nullptr) continue;
+    if (!GrowsMap() ||
+        !submap->candidates.Add({seen.id, seen.pixel, seen.ssim, seen.rgb}, submap->last_cam_from_world, submap->map))
+      tracks_->Remove(seen.id);
+  }
+}
+
+MapUpdate MapUpdater::Update(const PreparedFrame& frame, Submap* submap, StageTimes* times) {
   MapUpdate update;
-  if (!submap->rigid_history.empty()) {
+  ++updates_;
+  {
     const StageTimer timer(times, Stage::kInitialize);
-    RefineRigid(frame.frame_idx, submap, &update);
+    if (IsRefinementDue(frame.frame_idx, submap))
+      Reestimate(submap->rigid_history.frames(), WindowScene::kRigid, *submap);
+    TakeReestimations(submap, &update);
   }
   if (GrowsMap()) Grow(frame, submap, times, &update);
   return update;
 }
 
-// While the scene is rigid (W13).
-void MapUpdater::RefineRigid(int frame_idx, Submap* submap, MapUpdate* update) const {
+// While the scene is rigid its history takes this frame.
+bool MapUpdater::IsRefinementDue(int frame_idx, Submap* submap) const {
+  if (submap->rigid_history.empty()) return false;
   InitFrame frame{frame_idx, {}};
   for (const Landmark& seen : submap->map.landmarks)
     frame.observations.push_back({.id = seen.id, .pixel = seen.pixel, .ssim = seen.ssim});
-  if (!submap->rigid_history.Add(std::move(frame))) return;
-  const InitOutcome outcome = Reestimate(submap->rigid_history.frames(), WindowScene::kRigid);
+  return submap->rigid_history.Add(std::move(frame));
+}
+
+// Of a rigid scene (W13).
+void MapUpdater::TakeRigid(const Reestimation& reestimation, Submap* submap, MapUpdate* update) const {
+  const auto& [scene, then, outcome] = reestimation;
+  if (submap->rigid_history.empty()) return;
   if (outcome.decision == InitDecision::kNewReference) {
     submap->rigid_history.Stop();
     update->note = "the map is not refined any more: " + outcome.reason;
@@ -101,19 +160,35 @@ void MapUpdater::RefineRigid(int frame_idx, Submap* submap, MapUpdate* update) c
   if (outcome.decision != InitDecision::kMap) return;
   RejectReprojectionOutliers(outcome, submap, &update->losses);
   const Map before = submap->map;
-  const auto cam_from_world = ReplaceMap(outcome, submap->last_cam_from_world, &submap->map, &update->refined_points);
-  if (!cam_from_world) return;
+  const auto then_from_world = ReplaceMap(outcome, then, &submap->map, &update->refined_points);
+  if (!then_from_world) return;
   submap->candidates.TakeCorrection(before, submap->map);
+  const Rigid3 cam_from_world = PoseInWorldOf(*then_from_world, then, *submap);
   submap->before_last_cam_from_world =
-      submap->before_last_cam_from_world * submap->last_cam_from_world.Inverse() * *cam_from_world;
-  submap->last_cam_from_world = *cam_from_world;
-  update->median_reprojection_error_px = MedianReprojectionErrorPx(camera_, *cam_from_world, submap->Observations());
+      submap->before_last_cam_from_world * submap->last_cam_from_world.Inverse() * cam_from_world;
+  submap->last_cam_from_world = cam_from_world;
+  update->median_reprojection_error_px = MedianReprojectionErrorPx(camera_, cam_from_world, submap->Observations());
   if (!outcome.provisional) submap->provisional = false;
   update->note = "the map was refined: " + outcome.reason;
 }
 
+// The camera of the present frame in the world into which the map was moved; `then_from_world`: that of an earlier
+// frame, in this world.
+Rigid3 MapUpdater::PoseInWorldOf(const Rigid3& then_from_world, const MapInFrame& then, const Submap& submap) const {
+  if (options_.handover_frames == 0) return then_from_world;
+  std::vector<Eigen::Vector3d> positions;
+  std::vector<Eigen::Vector2d> pixels;
+  for (const Landmark& landmark : submap.map.landmarks) {
+    positions.push_back(landmark.position);
+    pixels.push_back(landmark.pixel);
+  }
+  const Rigid3 guess = submap.last_cam_from_world * then.cam_from_world.Inverse() * then_from_world;
+  const auto estimate = EstimateCameraPose(camera_, positions, pixels, guess, options_.pose);
+  return estimate.ok() ? estimate->cam_from_world : guess;
+}
+
 // Candidates are followed with the pose and the deformation that the map has given; those that are certain enter it.
-void MapUpdater::Grow(const PreparedFrame& frame, Submap* submap, StageTimes* times, MapUpdate* update) const {
+void MapUpdater::Grow(const PreparedFrame& frame, Submap* submap, StageTimes* times, MapUpdate* update) {
   {
     const StageTimer timer(times, Stage::kPhotometric);
     FollowCandidates(frame, submap);
@@ -124,7 +199,10 @@ void MapUpdater::Grow(const PreparedFrame& frame, Submap* submap, StageTimes* ti
     Promote(point, submap, update);
   if (options_.growth.window > 0) {
     RememberWindow(frame, submap);
-    if (IsReestimationDue(frame.frame_idx, *submap)) ReestimateAny(submap, update);
+    if (IsReestimationDue(frame.frame_idx, *submap)) {
+      Reestimate(submap->window_frames, WindowScene::kAny, *submap);
+      TakeReestimations(submap, update);
+    }
   }
   const bool half_full = 2 * submap->map.landmarks.size() >= static_cast<std::size_t>(options_.corners.max_corners);
   const int every = half_full ? 2 * options_.growth.every : options_.growth.every;
@@ -187,8 +265,12 @@ void MapUpdater::RememberWindow(const PreparedFrame& frame, Submap* submap) cons
   for (const Landmark& landmark : submap->map.landmarks) see(landmark.id, landmark.pixel, landmark.ssim);
   for (const CandidateTrack& track : submap->candidates.tracks()) see(track.id, track.pixel, track.ssim);
   std::ranges::sort(seen.observations, {}, &InitObservation::id);
+  AddToWindow(std::move(seen), submap);
+}
+
+void MapUpdater::AddToWindow(InitFrame frame, Submap* submap) const {
   std::vector<InitFrame>& frames = submap->window_frames;
-  frames.push_back(std::move(seen));
+  frames.push_back(std::move(frame));
   const auto length = static_cast<std::size_t>(options_.growth.window) + 1;
   if (frames.size() > length) frames.erase(frames.begin(), frames.end() - static_cast<std::ptrdiff_t>(length));
 }
@@ -208,12 +290,15 @@ bool MapUpdater::IsReestimationDue(int frame_idx, const Submap& submap) const {
 }
 
 // From the pixels of the last frames alone, so that no error of the map outlives them (G5).
-void MapUpdater::ReestimateAny(Submap* submap, MapUpdate* update) const {
-  const InitOutcome outcome = Reestimate(submap->window_frames, WindowScene::kAny);
+void MapUpdater::TakeAny(const Reestimation& reestimation, Submap* submap, MapUpdate* update) const {
+  const auto& [scene, then, outcome] = reestimation;
   if (outcome.decision != InitDecision::kMap) return;
-  std::vector<InitPosition> positions = ReestimatedPositions(outcome, submap->last_cam_from_world, submap->map);
+  std::vector<InitPosition> positions = ReestimatedPositions(outcome, then.cam_from_world, then.map);
   if (positions.empty()) return;
   RejectReprojectionOutliers(outcome, submap, &update->losses);
+  if (options_.handover_frames > 0)
+    positions = BringForward(positions, then, camera_, {submap->map, submap->last_cam_from_world},
+                             [&](PointId id) { return submap->candidates.Pixel(id); });
   RejectDrifted(&positions, submap, &update->losses);
   AverageWithBefore(submap->last_cam_from_world, submap->map, options_.growth.min_reestimation_weight, &positions);
   const Map before = submap->map;

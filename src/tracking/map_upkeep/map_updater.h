@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "pliant/base/delayed_answers.h"
 #include "pliant/camera/camera.h"
 #include "pliant/camera/photometric_calibration.h"
 #include "pliant/scene/frame_report.h"
@@ -17,6 +18,7 @@
 #include "pliant/tracking/tracks/track_source.h"
 #include "tracking/bootstrapping/first_map.h"
 #include "tracking/bootstrapping/window_solution.h"
+#include "tracking/map_upkeep/replace_map.h"
 #include "tracking/submap/submap.h"
 #include "tracking/tracks/loss_counts.h"
 
@@ -33,31 +35,52 @@ struct MapUpdate {
 
 class MapUpdater {
  public:
-  // `tracks` must outlive this. `threads` >= 1 do not change the result.
+  // `tracks` must outlive this. `threads` >= 1 do not change the result. A re-estimated map is taken over
+  // options.handover_frames updates after it was due, one of a rigid scene after a third of them; it is then made
+  // beside tracking.
   MapUpdater(const Camera& camera, const TrackerOptions& options, int threads,
              const std::optional<PhotometricCalibration>& photometric, TrackSource* tracks);
 
   // An empty submap gets its first map; points of uncertain depth become candidates.
-  void Start(FirstMap first, Submap* submap) const;
+  void Start(FirstMap first, Submap* submap);
+  // A map that has just been started is of an earlier frame than `present`: only what is still followed there stays.
+  void KeepFollowed(const InitFrame& present, Submap* submap) const;
+  // After a frame was committed into which the points were followed before there was a map.
+  void AddFollowed(const InitFrame& frame, Submap* submap) const;
+  // The other points of the last of these frames become candidates.
+  void AdoptFollowed(const InitFrame& present, Submap* submap) const;
   // What all points have done together since rest is given to the camera, a share in each frame (E12).
   void RemoveCommonMotion(Submap* submap) const;
   // After a sharp frame was committed.
-  MapUpdate Update(const PreparedFrame& frame, Submap* submap, StageTimes* times) const;
+  MapUpdate Update(const PreparedFrame& frame, Submap* submap, StageTimes* times);
+  // What is under way is not wanted any more: the view was lost, or another map or world is the current one.
+  void Forget() { reestimations_.Drop(); }
 
  private:
+  // A map made anew of the pixels of the frames up to the one of `then`, in which the present map was that.
+  struct Reestimation {
+    WindowScene scene = WindowScene::kAny;
+    MapInFrame then;
+    InitOutcome outcome = {};
+  };
+
   bool GrowsMap() const;
   bool EstimatesPoses() const;
-  InitOutcome Reestimate(const std::vector<InitFrame>& frames, WindowScene scene) const;
 
-  void RefineRigid(int frame_idx, Submap* submap, MapUpdate* update) const;
-  void Grow(const PreparedFrame& frame, Submap* submap, StageTimes* times, MapUpdate* update) const;
+  void Reestimate(const std::vector<InitFrame>& frames, WindowScene scene, const Submap& submap);
+  void TakeReestimations(Submap* submap, MapUpdate* update);
+  void TakeRigid(const Reestimation& reestimation, Submap* submap, MapUpdate* update) const;
+  void TakeAny(const Reestimation& reestimation, Submap* submap, MapUpdate* update) const;
+  Rigid3 PoseInWorldOf(const Rigid3& then_from_world, const MapInFrame& then, const Submap& submap) const;
+  bool IsRefinementDue(int frame_idx, Submap* submap) const;
+  void Grow(const PreparedFrame& frame, Submap* submap, StageTimes* times, MapUpdate* update);
   void FollowCandidates(const PreparedFrame& frame, Submap* submap) const;
   void AddCandidates(const PreparedFrame& frame, Submap* submap) const;
   void Promote(const Candidates::CertainPoint& point, Submap* submap, MapUpdate* update) const;
 
   void RememberWindow(const PreparedFrame& frame, Submap* submap) const;
+  void AddToWindow(InitFrame frame, Submap* submap) const;
   bool IsReestimationDue(int frame_idx, const Submap& submap) const;
-  void ReestimateAny(Submap* submap, MapUpdate* update) const;
 
   void Remove(PointId id, Submap* submap) const;
   void RejectReprojectionOutliers(const InitOutcome& outcome, Submap* submap, LossCounts* losses) const;
@@ -68,6 +91,8 @@ class MapUpdater {
   int threads_;
   std::optional<PhotometricCalibration> photometric_;
   TrackSource* tracks_;
+  int updates_ = 0;
+  DelayedAnswers<Reestimation> reestimations_;  // steps: updates; ends before what it reads
 };
 
 }  // namespace pliant

@@ -12,25 +12,27 @@
 namespace pliant {
 namespace {
 
-// (W13) The map's unit in the outcome's; nothing when fewer than `min_common` points are in both.
-std::optional<double> UnitOf(const InitFrameState& now, const Rigid3& cam_from_world, const Map& map, int min_common) {
+// (W13) The map's unit in the outcome's; nothing when fewer than `min_common` of the `counted` points are in both.
+std::optional<double> UnitOf(const InitFrameState& last, const Rigid3& cam_from_world, const Map& map,
+                             const Map& counted, int min_common) {
   std::vector<double> ratios;
   for (const Landmark& landmark : map.landmarks)
-    if (const InitPosition* point = FindById(now.positions, landmark.id); point != nullptr)
-      ratios.push_back((cam_from_world * landmark.position).norm() / (now.cam_from_world * point->position).norm());
+    if (const InitPosition* point = FindById(last.positions, landmark.id);
+        point != nullptr && counted.Find(landmark.id) != nullptr)
+      ratios.push_back((cam_from_world * landmark.position).norm() / (last.cam_from_world * point->position).norm());
   if (static_cast<int>(ratios.size()) < min_common) return std::nullopt;
   return Median(std::move(ratios));
 }
 
 }  // namespace
 
-std::optional<Rigid3> ReplaceMap(const InitOutcome& outcome, const Rigid3& cam_from_world, Map* map,
+std::optional<Rigid3> ReplaceMap(const InitOutcome& outcome, const MapInFrame& then, Map* map,
                                  std::vector<RefinedPoint>* refined) {
   const InitFrameState& now = outcome.frames.back();
-  const auto unit = UnitOf(now, cam_from_world, *map, 1);
+  const auto unit = UnitOf(now, then.cam_from_world, then.map, *map, 1);
   if (!unit) return std::nullopt;
   const Rigid3 now_from_world(now.cam_from_world.rotation, *unit * now.cam_from_world.translation);
-  const Rigid3 now_from_before = now_from_world.Inverse() * cam_from_world;
+  const Rigid3 now_from_before = now_from_world.Inverse() * then.cam_from_world;
   for (Landmark& landmark : map->landmarks) {
     const InitPosition* point = FindById(now.positions, landmark.id);
     const Eigen::Vector3d position = point != nullptr ? *unit * point->position : now_from_before * landmark.position;
@@ -52,12 +54,34 @@ std::optional<Rigid3> ReplaceMap(const InitOutcome& outcome, const Rigid3& cam_f
 std::vector<InitPosition> ReestimatedPositions(const InitOutcome& outcome, const Rigid3& cam_from_world, const Map& map,
                                                int min_common) {
   const InitFrameState& now = outcome.frames.back();
-  const auto unit = UnitOf(now, cam_from_world, map, min_common);
+  const auto unit = UnitOf(now, cam_from_world, map, map, min_common);
   if (!unit) return {};
   const Rigid3 world_from_cam = cam_from_world.Inverse();
   std::vector<InitPosition> positions;
   for (const InitPosition& point : now.positions)
     positions.push_back({point.id, world_from_cam * Eigen::Vector3d(*unit * (now.cam_from_world * point.position))});
+  return positions;
+}
+
+std::vector<InitPosition> BringForward(const std::vector<InitPosition>& reestimated, const MapInFrame& then,
+                                       const Camera& camera, const MapInFrame& now,
+                                       const std::function<const Eigen::Vector2d*(PointId)>& pixel_of) {
+  const Rigid3 world_from_cam = now.cam_from_world.Inverse();
+  std::vector<InitPosition> positions;
+  for (const InitPosition& point : reestimated) {
+    const Landmark* before = then.map.Find(point.id);
+    const Landmark* landmark = now.map.Find(point.id);
+    if (before != nullptr && landmark != nullptr) {
+      const double change =
+          (then.cam_from_world * point.position).norm() / (then.cam_from_world * before->position).norm();
+      positions.push_back(
+          {point.id, world_from_cam * Eigen::Vector3d(change * (now.cam_from_world * landmark->position))});
+    } else if (const Eigen::Vector2d* pixel = pixel_of(point.id); before == nullptr && landmark == nullptr && pixel) {
+      if (const auto ray = camera.Unproject(*pixel))
+        positions.push_back(
+            {point.id, world_from_cam * Eigen::Vector3d((now.cam_from_world * point.position).norm() * *ray)});
+    }
+  }
   return positions;
 }
 

@@ -1,14 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// A re-estimated map, in the unit of the present one: in the current frame the points of both are as far from the
-// camera, in the median (docs/method.md, eq. W13). The last of an outcome's frames is the current one, in which the
-// present map has the camera at `cam_from_world`.
+// A re-estimated map, in the unit of the present one: in the last of its frames the points of both are as far from the
+// camera, in the median (docs/method.md, eq. W13). That frame is the current one, or an earlier one where the map was
+// re-estimated beside tracking.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <vector>
 
+#include "pliant/camera/camera.h"
 #include "pliant/geometry/rigid3.h"
 #include "pliant/scene/frame_report.h"
 #include "pliant/scene/map.h"
@@ -16,16 +18,30 @@
 
 namespace pliant {
 
+// A map and its camera in one frame.
+struct MapInFrame {
+  Map map;
+  Rigid3 cam_from_world;
+};
+
 // Of the same reference, and of a scene that is rigid: points are put where the outcome has them, and are there at
-// rest; those that it does not have stay where the camera sees them. Returns the camera's pose, and appends the points
-// with their new undeformed positions; nothing changes when the two have no point in common.
-std::optional<Rigid3> ReplaceMap(const InitOutcome& outcome, const Rigid3& cam_from_world, Map* map,
+// rest; those that it does not have stay where the camera sees them. `then` is of the outcome's last frame; what `map`
+// has no more does not count. Returns the camera's pose in that frame, and appends the points with their new undeformed
+// positions; nothing changes when the two have no point in common.
+std::optional<Rigid3> ReplaceMap(const InitOutcome& outcome, const MapInFrame& then, Map* map,
                                  std::vector<RefinedPoint>* refined);
 
-// Of another reference: where the outcome's points are in the current frame, in the map's world, with the camera kept;
+// Of another reference: where the outcome's points are in its last frame, in the map's world, with the camera kept;
 // sorted by id. None when fewer than `min_common` are in both.
 std::vector<InitPosition> ReestimatedPositions(const InitOutcome& outcome, const Rigid3& cam_from_world, const Map& map,
                                                int min_common = 12);
+
+// (G9) Re-estimated positions of an earlier frame in the present one: the distance of a landmark changes by as much as
+// it did then, and another point is as far away as it was, where `pixel_of` sees it. What became a landmark since is
+// left out, as is what is not seen any more.
+std::vector<InitPosition> BringForward(const std::vector<InitPosition>& reestimated, const MapInFrame& then,
+                                       const Camera& camera, const MapInFrame& now,
+                                       const std::function<const Eigen::Vector2d*(PointId)>& pixel_of);
 
 // (G8) Distances of ReestimatedPositions from the camera: a landmark that `n` re-estimated maps had before is moved 1/n
 // of the way from where it is, in log distance, and at least `min_weight` of it.

@@ -42,6 +42,11 @@ class Candidates {
 
   // There has to be one with this id.
   const CandidateTrack& track(PointId id) const { return points_.at(id).track; }
+  // Where one was last seen; null where there is none with this id.
+  const Eigen::Vector2d* Pixel(PointId id) const {
+    const auto found = points_.find(id);
+    return found == points_.end() ? nullptr : &found->second.track.pixel;
+  }
 
   // A new one. False: its pixel has no ray, or the map no points, and it is none.
   bool Add(const CandidateTrack& track, const Rigid3& cam_from_world, const Map& map);

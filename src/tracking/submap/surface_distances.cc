@@ -30,28 +30,25 @@ SurfaceDistances::SurfaceDistances(const Map& map, const Rigid3& cam_from_world,
     pixels_.push_back(landmark.pixel);
     points_in_cam_.push_back(cam_from_world * landmark.position);
   }
+  nearest_.emplace(pixels_);
 }
 
 // By linear least squares of n . x = 1, whose residuals are relative distances from the plane.
 std::optional<SurfaceDistances::Plane> SurfaceDistances::PlaneAt(const Eigen::Vector2d& pixel,
                                                                  const Eigen::Vector3d& ray, double gap_px) const {
-  std::vector<std::pair<double, std::size_t>> nearest;
-  for (std::size_t i = 0; i < pixels_.size(); ++i)
-    if (const double squared_px = (pixels_[i] - pixel).squaredNorm(); squared_px >= gap_px * gap_px)
-      nearest.emplace_back(squared_px, i);
-  const std::size_t count = std::min(nearest.size(), neighbors_);
+  const std::vector<NearestInPlane::Neighbor> nearest = nearest_->To(pixel, neighbors_, gap_px);
+  const std::size_t count = nearest.size();
   if (count < kMinNeighbors) return std::nullopt;
-  std::partial_sort(nearest.begin(), nearest.begin() + static_cast<std::ptrdiff_t>(count), nearest.end());
   Eigen::MatrixX3d points(static_cast<Eigen::Index>(count), 3);
   for (std::size_t k = 0; k < count; ++k)
-    points.row(static_cast<Eigen::Index>(k)) = points_in_cam_[nearest[k].second].transpose();
+    points.row(static_cast<Eigen::Index>(k)) = points_in_cam_[nearest[k].index].transpose();
   const Eigen::LDLT<Eigen::Matrix3d> factor(points.transpose() * points);
   if (factor.info() != Eigen::Success || !factor.isPositive()) return std::nullopt;
   const Eigen::Vector3d normal = factor.solve(points.colwise().sum().transpose());
   if (!normal.allFinite()) return std::nullopt;
   const double squares = ((points * normal).array() - 1.0).square().sum();
   Plane plane{.deviation = std::max(kMinDeviation, std::sqrt(squares / static_cast<double>(count - 3))),
-              .nearest_px = std::sqrt(nearest.front().first)};
+              .nearest_px = std::sqrt(nearest.front().squared_distance)};
   const double inverse_distance = normal.dot(ray);
   plane.log_distance = inverse_distance > 0.0 ? -std::log(inverse_distance) : std::numeric_limits<double>::infinity();
   if (!std::isfinite(plane.log_distance)) return plane;

@@ -14,6 +14,7 @@
 #include "pliant/estimation/pose/moving_point.h"
 #include "pliant/geometry/rigid3.h"
 #include "pliant/scene/map.h"
+#include "tracking/tracks/nearest_in_plane.h"
 
 namespace pliant {
 
@@ -42,6 +43,7 @@ class SurfaceDistances {
   std::size_t neighbors_;
   std::vector<Eigen::Vector2d> pixels_;
   std::vector<Eigen::Vector3d> points_in_cam_;
+  std::optional<NearestInPlane> nearest_;               // of the pixels
   std::map<double, std::optional<double>> deviations_;  // across gaps that were asked for
 };
 

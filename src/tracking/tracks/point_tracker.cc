@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <numeric>
 
 #include <Eigen/LU>
 #include <Eigen/SVD>
 
 #include "pliant/base/parallel.h"
+#include "tracking/tracks/nearest_in_plane.h"
 
 namespace pliant {
 namespace {
@@ -265,50 +265,6 @@ std::vector<PointTrack> PointTracker::ForEach(std::span<const PointPrediction> p
 
 namespace {
 
-// Finds nearest neighbors among points in order of x: from a point outwards, until x alone is too far.
-class NearestInPlane {
- public:
-  explicit NearestInPlane(std::span<const Eigen::Vector2d> points) : points_(points), order_(points.size()) {
-    std::iota(order_.begin(), order_.end(), std::size_t{0});
-    std::sort(order_.begin(), order_.end(),
-              [&](std::size_t a, std::size_t b) { return std::pair(points[a].x(), a) < std::pair(points[b].x(), b); });
-    rank_.resize(order_.size());
-    for (std::size_t k = 0; k < order_.size(); ++k) rank_[order_[k]] = k;
-  }
-
-  // Positions of the `count` nearest other points, nearest first; ties by position.
-  std::vector<std::size_t> Of(std::size_t center, std::size_t count) const {
-    std::vector<std::pair<double, std::size_t>> best;
-    best.reserve(count + 1);
-    // Whether points farther along x than this one may still be nearer.
-    const auto visit = [&](std::size_t j) {
-      const Eigen::Vector2d offset = points_[j] - points_[center];
-      if (best.size() == count && offset.x() * offset.x() > best.back().first) return false;
-      const std::pair<double, std::size_t> entry(offset.squaredNorm(), j);
-      if (best.size() < count || entry < best.back()) {
-        best.insert(std::upper_bound(best.begin(), best.end(), entry), entry);
-        if (best.size() > count) best.pop_back();
-      }
-      return true;
-    };
-    bool left = true;
-    bool right = true;
-    for (std::size_t step = 1; left || right; ++step) {
-      left = left && step <= rank_[center] && visit(order_[rank_[center] - step]);
-      right = right && rank_[center] + step < order_.size() && visit(order_[rank_[center] + step]);
-    }
-    std::vector<std::size_t> nearest;
-    nearest.reserve(best.size());
-    for (const auto& entry : best) nearest.push_back(entry.second);
-    return nearest;
-  }
-
- private:
-  std::span<const Eigen::Vector2d> points_;
-  std::vector<std::size_t> order_;
-  std::vector<std::size_t> rank_;
-};
-
 Eigen::Matrix2d FitAffine(std::span<const Eigen::Vector2d> from, std::span<const Eigen::Vector2d> to,
                           const std::vector<double>& weights, double damping_px) {
   Eigen::Matrix2d normal = damping_px * damping_px * Eigen::Matrix2d::Identity();
@@ -333,7 +289,7 @@ std::vector<Eigen::Matrix2d> NeighborhoodAffines(std::span<const Eigen::Vector2d
   for (std::size_t i = 0; i < from.size(); ++i) {
     std::vector<Eigen::Vector2d> before;
     std::vector<Eigen::Vector2d> after;
-    for (const std::size_t j : nearest.Of(i, static_cast<std::size_t>(neighbors))) {
+    for (const auto& [squared_px, j] : nearest.ToPoint(i, static_cast<std::size_t>(neighbors))) {
       before.push_back(from[j] - from[i]);
       after.push_back(to[j] - to[i]);
     }

@@ -96,9 +96,11 @@ struct WindowInitOptions {
   double gamma = 2.2;
   Switch refine_rigid = Switch::kOn;  // the map is re-estimated as the window grows, while the scene is rigid
   DeformingWindowOptions window;
-  // No options of their own: the cue that is asked first, and whether a depth prior may be (DepthPrior.window).
+  // No options of their own: the cue that is asked first, whether a depth prior may be (DepthPrior.window), and whether
+  // it is said where the images contradict the focal length.
   DistanceCue cue = DistanceCue::kLight;
   Switch prior = Switch::kOn;
+  bool checks_focal_length = true;  // takes as long as the map (W16)
 
   void List(OptionTable& table);  // group "WindowInit", and "Window"
 };

@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tracking/catch_up.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace pliant {
+
+CatchUp::CatchUp(FirstMap first, Submap submap, const InitFrame& present, const TrackerOptions& options,
+                 TrackSource* tracks, const FrameTracker* frame_tracker, MapUpdater* map_updater)
+    : options_(options),
+      tracks_(tracks),
+      frame_tracker_(frame_tracker),
+      map_updater_(map_updater),
+      first_(std::move(first)),
+      submap_(std::move(submap)),
+      reached_(first_.frames.size()) {
+  map_updater_->Start(first_, &submap_);
+  map_updater_->KeepFollowed(present, &submap_);
+}
+
+void CatchUp::GoOn(const std::vector<InitFrame>& frames, std::size_t most, std::vector<FrameReport>* held,
+                   StageTimes* times, FrameResult* result) {
+  for (const std::size_t end = std::min(frames.size(), reached_ + most); reached_ < end; ++reached_) {
+    const InitFrame& frame = frames[reached_];
+    state_ = Solve(frame, times, result);
+    const auto report = std::ranges::find(*held, frame.frame_idx, &FrameReport::frame_idx);
+    if (report == held->end()) continue;  // the present one has none yet
+    report->state = ReportedState(state_, submap_);
+    if (state_ == TrackingState::kTracking) AddSolution(submap_, *result, &*report);
+  }
+}
+
+// A frame into which the points were followed before there was a map: no lost ones are searched.
+TrackingState CatchUp::Solve(const InitFrame& frame, StageTimes* times, FrameResult* result) {
+  PreparedFrame number_alone;
+  number_alone.frame_idx = frame.frame_idx;
+  const SolvedFrame solved = frame_tracker_->Solve(number_alone, TrackingState::kInitializing,
+                                                   frame_tracker_->Followed(frame, submap_), &submap_, times);
+  if (!solved.failure.empty()) return TrackingState::kLost;
+  submap_.Commit(solved.points, solved.solution.cam_from_world, state_, options_, tracks_);
+  map_updater_->RemoveCommonMotion(&submap_);
+  map_updater_->AddFollowed(frame, &submap_);
+  AddSolved(solved, result);
+  return TrackingState::kTracking;
+}
+
+Submap CatchUp::TakeSubmap(const InitFrame& present) {
+  map_updater_->KeepFollowed(present, &submap_);
+  map_updater_->AdoptFollowed(present, &submap_);
+  return std::move(submap_);
+}
+
+}  // namespace pliant
