@@ -56,8 +56,8 @@ std::string FindColumns(std::string_view line, FrameColumns* columns) {
   columns->numbers = {{find("timestamp"), &RunFrame::timestamp_s},
                       {find("median_reprojection_error_px"), &RunFrame::median_reprojection_error_px}};
   for (std::size_t i = 0; i < names.size(); ++i) {
+    if (names[i] == kLatencyColumn) columns->numbers.push_back({i, &RunFrame::latency_ms});
     // Runs of before there were submaps have no such column: theirs is 0.
-    if (names[i] == kLatencyColumn) columns->numbers.emplace_back(i, &RunFrame::latency_ms);
     if (names[i] == kSubmapColumn) columns->counts.push_back({i, &RunFrame::submap});
     if (names[i].starts_with(kCostPrefix))
       columns->costs.push_back({i, std::string(names[i].substr(kCostPrefix.size()))});

@@ -157,7 +157,7 @@ TEST(RunFolder, FindsTheColumnsOfFramesByTheirNames) {
   const std::string frames = folder.Read("run/frames.csv");
   EXPECT_TRUE(
       frames.starts_with("frame,timestamp,state,tracked,optimized,lost,added,cost_stretch,cost_bending,"
-                         "median_reprojection_error_px,submap,ms_pyramid,ms_tracking\n"));
+                         "median_reprojection_error_px,submap,ms_pyramid,ms_tracking,latency_ms\n"));
   folder.Write("run/frames.csv",
                "state,frame,unknown,timestamp,tracked,optimized,lost,added,median_reprojection_error_px,cost_a\n"
                "waiting_for_reference,10,?,0,0,0,0,0,0,0\n"
