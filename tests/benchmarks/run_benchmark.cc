@@ -9,6 +9,8 @@
 // And a scene that deforms, from images that arrive at 30 frames/s, with first maps and re-estimations beside tracking:
 //   p50_ms, p99_ms, max_ms  latency of a frame, from its arrival until it was done, and by the median:
 //   p99_by_median, max_by_median   tracked, skipped  share of the frames
+//
+// And what a point costs, by the number of points (the argument): us_a_point on one thread, points a frame.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -30,6 +32,7 @@
 #include "pliant/pipeline/track.h"
 #include "pliant/simulation/simulator.h"
 #include "pliant/simulation/write_sequence.h"
+#include "pliant/tracking/stage_times.h"
 #include "support/temporary_folder.h"
 
 namespace pliant {
@@ -120,6 +123,8 @@ void BM_Run(benchmark::State& state) {
   }
   meter.Report(state);
 }
+BENCHMARK(BM_Run)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime()->Iterations(1);
+
 constexpr int kRendered = 100;
 constexpr int kShown = 600;
 constexpr std::chrono::duration<double> kInterval(1.0 / 30.0);
@@ -211,9 +216,72 @@ void BM_Latency(benchmark::State& state) {
   state.counters["tracked"] = static_cast<double>(summary.frames_tracked) / static_cast<double>(summary.frames_read);
   state.counters["skipped"] = source->SkippedShare();
 }
+
 BENCHMARK(BM_Latency)->Unit(benchmark::kMillisecond)->UseRealTime()->Iterations(1);
 
-BENCHMARK(BM_Run)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime()->Iterations(1);
+// What a tracked point costs in images of 1920x1080: all stages that look at points, after the first frames.
+class PointMeter : public TrackObserver {
+ public:
+  void OnStart(int) override {}
+  void OnFrame(const FrameReport& report) override {
+    if (!HasPose(report.state) || report.frame_idx < kSkipped) return;
+    for (const auto& [stage, ms] : report.stage_ms)
+      if (stage != EnumName(Stage::kPrepare) && stage != EnumName(Stage::kInitialize)) ms_ += ms;
+    points_ += report.tracked;
+    ++frames_;
+  }
+  int frames() const { return frames_; }
+  double PointsAFrame() const { return static_cast<double>(points_) / frames_; }
+  double MicrosecondsAPoint() const { return 1e3 * ms_ / static_cast<double>(points_); }
+
+ private:
+  static constexpr int kSkipped = 3;
+  int frames_ = 0;
+  long points_ = 0;
+  double ms_ = 0;
+};
+
+const std::filesystem::path& LargeSequencePath() {
+  static const TemporaryFolder folder("points_benchmark");
+  static const std::filesystem::path path = [] {
+    SimulationOptions options;
+    options.trajectory.kind = TrajectoryKind::kHold;
+    options.trajectory.frames = 12;
+    options.camera.width = 1920;
+    options.camera.height = 1080;
+    options.deformation.amplitude_mm = 1.0;
+    options.sensor.samples = 1;
+    const std::filesystem::path sequence = folder.Path("sequence");
+    return WriteSequence(options, sequence).ok() ? sequence : std::filesystem::path();
+  }();
+  return path;
+}
+
+void BM_Points(benchmark::State& state) {
+  TrackOptions options = MakeTrackOptions(Preset::kDefault);
+  options.threads = 1;
+  options.image.working = WorkingImageMode::kFixed;
+  options.tracker.init.method = InitMethod::kDepth;
+  options.tracker.corners.max_corners = static_cast<int>(state.range(0));
+  options.tracker.corners.min_distance_px = 5;
+  options.tracker.max_lost_points = options.tracker.corners.max_corners;
+  RunRequest request;
+  request.input.image_path = LargeSequencePath();
+  request.output_path = (LargeSequencePath().parent_path() / "run").string();
+  PointMeter meter;
+  const std::array<TrackObserver*, 1> observers = {&meter};
+  for (auto _ : state) {
+    meter = PointMeter();
+    const Result<RunSummary> run = RunTrack(request, options, observers);
+    if (!run.ok() || meter.frames() == 0) {
+      state.SkipWithError("the sequence was not tracked");
+      return;
+    }
+  }
+  state.counters["points"] = meter.PointsAFrame();
+  state.counters["us_a_point"] = meter.MicrosecondsAPoint();
+}
+BENCHMARK(BM_Points)->Arg(500)->Arg(2000)->Arg(10000)->Unit(benchmark::kMillisecond)->UseRealTime()->Iterations(1);
 
 }  // namespace
 }  // namespace pliant
