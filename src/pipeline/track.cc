@@ -157,9 +157,10 @@ class FrameSource {
       if (auto frame = again_->Next()) return frame;
       again_.reset();
     }
-    arrived_ = Clock::now();
+    const auto asked = Clock::now();
     auto frame = frames_->Next();
     if (!frame || !frame->ok()) return frame;
+    arrived_ = asked;
     last_frame_idx_ = (*frame)->frame.frame_idx;
     if (input_.IsLive()) {
       const auto arrived = input_.given->images->Arrived(last_frame_idx_);
@@ -289,7 +290,7 @@ RunDescription DescriptionOf(const RunRequest& request, const TrackOptions& opti
 }
 
 // What follows from images that do not wait: nothing may hold tracking up.
-TrackOptions Completed(TrackOptions options) {
+TrackOptions ForLiveInput(TrackOptions options) {
   if (options.live_input.frames != LiveFrames::kNewest) return options;
   options.max_frames_back = 0;
   options.tracker.handover_frames = std::max(options.tracker.handover_frames, options.live_input.handover_frames);
@@ -394,7 +395,7 @@ Result<RunSummary> RunTrack(const RunRequest& given, const TrackOptions& wanted,
     if (!opened.ok()) return opened.status();
     live = *std::move(opened);
   }
-  const TrackOptions options = request.input.IsLive() ? Completed(wanted) : wanted;
+  const TrackOptions options = request.input.IsLive() ? ForLiveInput(wanted) : wanted;
   if (options.tracker.depth_prior.IsGiven()) request.input.depth_prior_path = options.tracker.depth_prior.path;
   // More threads than processors gain nothing, and TBB complains of them on standard error.
   TrackOptions usable = options;
@@ -411,7 +412,9 @@ Result<RunSummary> RunTrack(const RunRequest& given, const TrackOptions& wanted,
 
   const auto start = ReadStart(request, usable, **sequence);
   if (!start.ok()) return start.status();
-  if (request.input.IsLive() && options.live_input.frames == LiveFrames::kNewest) {
+  // A cloud belongs to the first image, and an end counts from it.
+  const bool begins_anew = request.input.end < 0 && start->cloud_depth_mm.empty();
+  if (request.input.IsLive() && options.live_input.frames == LiveFrames::kNewest && begins_anew) {
     request.input.start = std::max(request.input.start, request.input.given->images->Passed());
     sequence = OpenSequence(request.input);
     if (!sequence.ok()) return sequence.status();

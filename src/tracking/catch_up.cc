@@ -25,11 +25,19 @@ void CatchUp::GoOn(const std::vector<InitFrame>& frames, std::size_t most, std::
                    StageTimes* times, FrameResult* result) {
   for (const std::size_t end = std::min(frames.size(), reached_ + most); reached_ < end; ++reached_) {
     const InitFrame& frame = frames[reached_];
-    state_ = Solve(frame, times, result);
+    FrameResult solved;
+    state_ = Solve(frame, times, &solved);
     const auto report = std::ranges::find(*held, frame.frame_idx, &FrameReport::frame_idx);
-    if (report == held->end()) continue;  // the present one has none yet
+    if (report == held->end()) {
+      result->losses.Add(solved.losses);
+      result->costs = std::move(solved.costs);
+      result->median_reprojection_error_px = solved.median_reprojection_error_px;
+      continue;
+    }
     report->state = ReportedState(state_, submap_);
-    if (state_ == TrackingState::kTracking) AddSolution(submap_, *result, &*report);
+    report->note = failure_.empty() ? "solved when the first map had been made, of earlier frames" : failure_;
+    AddLosses(solved.losses, &*report);
+    if (state_ == TrackingState::kTracking) AddSolution(submap_, solved, &*report);
   }
 }
 
@@ -39,7 +47,8 @@ TrackingState CatchUp::Solve(const InitFrame& frame, StageTimes* times, FrameRes
   number_alone.frame_idx = frame.frame_idx;
   const SolvedFrame solved = frame_tracker_->Solve(number_alone, TrackingState::kInitializing,
                                                    frame_tracker_->Followed(frame, submap_), &submap_, times);
-  if (!solved.failure.empty()) return TrackingState::kLost;
+  failure_ = solved.failure;
+  if (!failure_.empty()) return TrackingState::kLost;
   submap_.Commit(solved.points, solved.solution.cam_from_world, state_, options_, tracks_);
   map_updater_->RemoveCommonMotion(&submap_);
   map_updater_->AddFollowed(frame, &submap_);
@@ -49,7 +58,9 @@ TrackingState CatchUp::Solve(const InitFrame& frame, StageTimes* times, FrameRes
 
 Submap CatchUp::TakeSubmap(const InitFrame& present) {
   map_updater_->KeepFollowed(present, &submap_);
-  map_updater_->AdoptFollowed(present, &submap_);
+  // The source has forgotten them, in the frame in which they were lost.
+  submap_.lost_points.Clear();
+  if (state_ == TrackingState::kTracking) map_updater_->AdoptFollowed(first_.frames.back(), present, &submap_);
   return std::move(submap_);
 }
 

@@ -6,6 +6,8 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "pliant/tracking/stage_times.h"
@@ -21,15 +23,16 @@ class CatchUp {
           const FrameTracker* frame_tracker, MapUpdater* map_updater);
 
   // `frames`: those since the reference. Solves the next ones, at most so many, and completes their reports where these
-  // are held. `result`: of the last one.
+  // are held. `result`: of the one that is not held, which is the present frame.
   void GoOn(const std::vector<InitFrame>& frames, std::size_t most, std::vector<FrameReport>* held, StageTimes* times,
             FrameResult* result);
   // The frames that it has reached, the map's own included.
   std::size_t reached() const { return reached_; }
-  // Of the last of them: tracking or lost.
+  // Of the last of them: tracking or lost, and why.
   TrackingState state() const { return state_; }
+  const std::string& failure() const { return failure_; }
 
-  // Once it has reached the last frame: the submap with its points and, as candidates, the others that are followed.
+  // Once it has reached the last frame: the submap with its points and, as candidates, those that are followed since.
   Submap TakeSubmap(const InitFrame& present);
   FirstMap TakeFirst() { return std::move(first_); }
 
@@ -44,6 +47,7 @@ class CatchUp {
   Submap submap_;
   std::size_t reached_;
   TrackingState state_ = TrackingState::kTracking;
+  std::string failure_;
 };
 
 }  // namespace pliant

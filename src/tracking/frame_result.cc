@@ -67,12 +67,16 @@ FrameReport MakeReport(const PreparedFrame& frame, TrackingState state, const Su
   return report;
 }
 
+void AddLosses(const LossCounts& losses, FrameReport* report) {
+  LossCounts all;
+  for (const auto& [reason, count] : report->losses) all.Add(reason, count);
+  all.Add(losses);
+  report->losses = all.by_reason();
+  report->lost = all.total();
+}
+
 void AddLastAttempt(const BootstrapStep& step, const StageTimes& times, FrameReport* report) {
-  LossCounts losses;
-  for (const auto& [reason, count] : report->losses) losses.Add(reason, count);
-  losses.Add(step.losses);
-  report->losses = losses.by_reason();
-  report->lost = losses.total();
+  AddLosses(step.losses, report);
   report->note = step.note;
   const auto added = times.ByName();
   for (std::size_t k = 0; k < added.size(); ++k) report->stage_ms[k].second += added[k].second;

@@ -44,6 +44,7 @@ void AddSolution(const Submap& submap, const FrameResult& result, FrameReport* r
 FrameReport MakeReport(const PreparedFrame& frame, TrackingState state, const Submap& submap, const FrameResult& result,
                        const StageTimes& times);
 
+void AddLosses(const LossCounts& losses, FrameReport* report);
 // The attempt after the last frame is reported with that frame.
 void AddLastAttempt(const BootstrapStep& step, const StageTimes& times, FrameReport* report);
 // Frames in which points were followed from a reference that came to nothing, since camera and scene could not be told

@@ -32,7 +32,7 @@ void AttemptLessOften(int handover_frames, WindowInitOptions* window) {
   window->every *= steps;
   const int attempts = (window->last_frame - window->first_frame + window->every - 1) / window->every;
   window->last_frame = std::max(window->last_frame, window->first_frame + attempts * window->every);
-  window->checks_focal_length = false;
+  window->focal_length_check = Switch::kOff;
 }
 
 // What follows from other options. As published, the graph is wider after a start from metric depth.
@@ -67,7 +67,8 @@ std::shared_ptr<const Initializer> MakeAlternative(const TrackerOptions& options
 
 // A start from known depth needs one frame alone, and another program's is asked where it was given.
 int HandoverOfFirstMap(const TrackerOptions& options, const TrackerInputs& inputs) {
-  const bool at_once = options.init.IsMetric() || options.oracle.Any() || inputs.extensions.initializer != nullptr;
+  const bool at_once = options.init.TakesKnownDepth() || options.init.method == InitMethod::kDepthPrior ||
+                       options.oracle.Any() || inputs.extensions.initializer != nullptr;
   return at_once ? 0 : options.handover_frames;
 }
 
@@ -178,7 +179,10 @@ FrameResult Tracker::Bootstrap(const PreparedFrame& frame, StageTimes* times) {
   catch_up_->GoOn(frames, kFramesAtOnce, &held_, times, &result);
   if (catch_up_->reached() == frames.size() && frames.back().frame_idx == frame.frame_idx) {
     EndCatchUp(&result);
-    if (state_ == TrackingState::kTracking) relocalizer_->Remember(frame, &submaps_->current());
+    if (state_ == TrackingState::kTracking)
+      relocalizer_->Remember(frame, &submaps_->current());
+    else
+      relocalizer_->RememberLastView(&submaps_->current());
   }
   return result;
 }
@@ -196,7 +200,7 @@ void Tracker::EndCatchUp(FrameResult* result) {
   submaps_->CountMap();
   result->first_map = catch_up_->TakeFirst();
   result->has_caught_up = true;
-  result->note = result->first_map->outcome.reason;
+  result->note = catch_up_->failure().empty() ? result->first_map->outcome.reason : catch_up_->failure();
   Apply(TrackingEvent::kMapCreated);
   if (catch_up_->state() == TrackingState::kLost) Apply(TrackingEvent::kTooFewPoints);
   bootstrapper_->Release();
@@ -281,7 +285,8 @@ void Tracker::Report(const PreparedFrame& frame, const FrameResult& result, Stag
   if (result.map_frame) GoBackTo(*result.map_frame);
   if (result.first_map) {
     CompleteHeld(*result.first_map);
-    if (!result.map_frame) held_.back().coverage = CoverageIn(frame, held_.back().observations);
+    if (!result.map_frame && held_.back().cam_from_world)
+      held_.back().coverage = CoverageIn(frame, held_.back().observations);
   }
   if (found) {
     submaps_->Apply(*found);

@@ -52,8 +52,8 @@ std::vector<PixelTrack> LongestFirst(std::vector<PixelTrack> tracks) {
   return tracks;
 }
 
-Evaluation Evaluated(const TestFolder& folder, const std::vector<PixelTrack>& tracks, int least_frames = 60) {
-  TrackOptions options;
+Evaluation Evaluated(const TestFolder& folder, const std::vector<PixelTrack>& tracks, int least_frames = 60,
+                     TrackOptions options = {}) {
   options.track_file.path = folder.Path("tracks.npz");
   EXPECT_TRUE(WriteTrackNpz(options.track_file.path, tracks, 60).ok());
   const RunSummary summary = TrackSequenceAt(kSequence, folder.Path("run"), options);
@@ -65,6 +65,15 @@ Evaluation Evaluated(const TestFolder& folder, const std::vector<PixelTrack>& tr
 TEST(RigidScene, TracksOfARunFromAFileGiveAMapAsOurOwnTracksDo) {
   const TestFolder folder;
   const Evaluation evaluation = Evaluated(folder, TracksOfDefaultRun());
+  EXPECT_LT(evaluation.surface->plain.estimate.mean_rmse_mm, kMaxRmse_mm);
+}
+
+// The source goes on with points that a map has rejected while it caught up: they do not come back.
+TEST(RigidScene, TracksFromAFileGiveAMapThatIsHandedOverLater) {
+  const TestFolder folder;
+  TrackOptions options;
+  options.tracker.handover_frames = 6;
+  const Evaluation evaluation = Evaluated(folder, TracksOfDefaultRun(), 60, options);
   EXPECT_LT(evaluation.surface->plain.estimate.mean_rmse_mm, kMaxRmse_mm);
 }
 

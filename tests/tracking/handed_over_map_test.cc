@@ -93,6 +93,32 @@ TEST_F(HandedOverMap, IsTakenWhereTheSequenceEndsBefore) {
   }
 }
 
+// What the reference alone tells needs no frame after it.
+TEST_F(HandedOverMap, FromKnownDepthIsTakenAtOnce) {
+  for (const InitMethod method : {InitMethod::kDepth, InitMethod::kDepthPrior, InitMethod::kColmapModel}) {
+    TrackerOptions options = Options(3);
+    options.init.method = method;
+    options.depth_prior.kind = DepthPriorKind::kDepth;
+    Tracker tracker(*camera_, options, 1, 1);
+    for (int i = 0; i < 5; ++i) {
+      PreparedFrame frame = PrepareFrame(i, NameOf(i), i / 30.0, (*images_)[static_cast<std::size_t>(i)], {}, options);
+      frame.depth_mm = *depth_;
+      if (method == InitMethod::kDepthPrior) frame.depth_prior = *depth_;
+      frame.known_points = [] {
+        std::vector<PixelDepth> points;
+        for (int k = 0; k < 150; ++k) {
+          const Eigen::Vector2d pixel(20 + 18.7 * (k % 15), 20 + 20.3 * (k / 15));
+          points.push_back({pixel, depth_->at<float>(static_cast<int>(pixel.y()), static_cast<int>(pixel.x()))});
+        }
+        return points;
+      };
+      const std::vector<FrameReport> reports = tracker.Process(frame);
+      ASSERT_EQ(reports.size(), 1U) << EnumName(method) << ", frame " << i;
+      EXPECT_TRUE(reports.front().cam_from_world) << EnumName(method) << ": " << reports.front().note;
+    }
+  }
+}
+
 TEST_F(HandedOverMap, IsNotLookedForOnceTheReferenceIsLost) {
   Tracker tracker(*camera_, Options(3), 1, 1);
   for (int i = 0; i < 5; ++i) Show(i, i, &tracker);

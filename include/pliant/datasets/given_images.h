@@ -31,7 +31,7 @@ class ImageSource {
 
   // When image `idx`, which was read, was taken, seconds; nothing: GivenImages says it.
   virtual std::optional<double> TimestampS(int /*idx*/) const { return std::nullopt; }
-  // Whether images arrive while they are tracked: none is read before it is needed, since a newer one may have come.
+  // Whether images arrive while they are tracked: one at most is read ahead, since newer ones come.
   virtual bool IsLive() const { return false; }
   // How many images were read that newer ones will follow: what is read before tracking begins is old by then.
   virtual int Passed() const { return 0; }

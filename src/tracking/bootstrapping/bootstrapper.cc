@@ -366,7 +366,8 @@ InitFrame Bootstrapper::FollowedFrame(const PreparedFrame& frame, const Submap& 
       kept.push_back(track.id);
     } else {
       tracks_->Remove(track.id);
-      losses->Add(EnumName(track.failure), 1);
+      // The source knows no more of what a map rejects that catches up.
+      if (track.failure != PatchFailure::kUnknownPoint) losses->Add(EnumName(track.failure), 1);
     }
   }
   tracks_->Keep(kept);

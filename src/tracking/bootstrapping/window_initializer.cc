@@ -71,7 +71,8 @@ class WindowInitializer final : public Initializer {
       outcome.reason = status.message();
       if (last) outcome.reason += "; given up after " + std::to_string(since) + " frames from one reference";
     }
-    if (options_.checks_focal_length && (status.ok() || (last && !is_rotation))) CheckFocalLength(input, &outcome);
+    if (options_.focal_length_check == Switch::kOn && (status.ok() || (last && !is_rotation)))
+      CheckFocalLength(input, &outcome);
     return outcome;
   }
 

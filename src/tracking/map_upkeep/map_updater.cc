@@ -113,15 +113,16 @@ void MapUpdater::AddFollowed(const InitFrame& frame, Submap* submap) const {
                                                       submap->last_cam_from_world, submap->map);
     if (!is_kept) submap->candidates.Remove(track.id);
   }
-  IsRefinementDue(frame.frame_idx, submap);
+  // A refinement that is due here comes later: the next frames of the map have to be reached first.
+  if (!submap->rigid_history.empty()) AddToRigidHistory(frame.frame_idx, submap);
   if (options_.growth.window > 0) AddToWindow(frame, submap);
 }
 
-void MapUpdater::AdoptFollowed(const InitFrame& present, Submap* submap) const {
+void MapUpdater::AdoptFollowed(const InitFrame& known, const InitFrame& present, Submap* submap) const {
   for (const InitObservation& seen : present.observations) {
     if (submap->map.Find(seen.id) != nullptr || submap->candidates.Pixel(seen.id) != nullptr) continue;
-    if (submap->lost_points.Find(seen.id) != nullptr) continue;
-    if (!GrowsMap() ||
+    const bool is_rejected = FindById(known.observations, seen.id) != nullptr;
+    if (is_rejected || !GrowsMap() ||
         !submap->candidates.Add({seen.id, seen.pixel, seen.ssim, seen.rgb}, submap->last_cam_from_world, submap->map))
       tracks_->Remove(seen.id);
   }
@@ -130,9 +131,9 @@ void MapUpdater::AdoptFollowed(const InitFrame& present, Submap* submap) const {
 MapUpdate MapUpdater::Update(const PreparedFrame& frame, Submap* submap, StageTimes* times) {
   MapUpdate update;
   ++updates_;
-  {
+  if (!submap->rigid_history.empty()) {
     const StageTimer timer(times, Stage::kInitialize);
-    if (IsRefinementDue(frame.frame_idx, submap))
+    if (AddToRigidHistory(frame.frame_idx, submap))
       Reestimate(submap->rigid_history.frames(), WindowScene::kRigid, *submap);
     TakeReestimations(submap, &update);
   }
@@ -140,9 +141,8 @@ MapUpdate MapUpdater::Update(const PreparedFrame& frame, Submap* submap, StageTi
   return update;
 }
 
-// While the scene is rigid its history takes this frame.
-bool MapUpdater::IsRefinementDue(int frame_idx, Submap* submap) const {
-  if (submap->rigid_history.empty()) return false;
+// Whether the map of a rigid scene is to be refined now; the history takes this frame.
+bool MapUpdater::AddToRigidHistory(int frame_idx, Submap* submap) const {
   InitFrame frame{frame_idx, {}};
   for (const Landmark& seen : submap->map.landmarks)
     frame.observations.push_back({.id = seen.id, .pixel = seen.pixel, .ssim = seen.ssim});
@@ -199,10 +199,8 @@ void MapUpdater::Grow(const PreparedFrame& frame, Submap* submap, StageTimes* ti
     Promote(point, submap, update);
   if (options_.growth.window > 0) {
     RememberWindow(frame, submap);
-    if (IsReestimationDue(frame.frame_idx, *submap)) {
-      Reestimate(submap->window_frames, WindowScene::kAny, *submap);
-      TakeReestimations(submap, update);
-    }
+    if (IsReestimationDue(frame.frame_idx, *submap)) Reestimate(submap->window_frames, WindowScene::kAny, *submap);
+    TakeReestimations(submap, update);  // the candidates were followed into this frame
   }
   const bool half_full = 2 * submap->map.landmarks.size() >= static_cast<std::size_t>(options_.corners.max_corners);
   const int every = half_full ? 2 * options_.growth.every : options_.growth.every;

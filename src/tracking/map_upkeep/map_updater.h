@@ -47,8 +47,9 @@ class MapUpdater {
   void KeepFollowed(const InitFrame& present, Submap* submap) const;
   // After a frame was committed into which the points were followed before there was a map.
   void AddFollowed(const InitFrame& frame, Submap* submap) const;
-  // The other points of the last of these frames become candidates.
-  void AdoptFollowed(const InitFrame& present, Submap* submap) const;
+  // The other points of the last of these frames become candidates, except those that the map's own frame `known`
+  // shows: they were rejected.
+  void AdoptFollowed(const InitFrame& known, const InitFrame& present, Submap* submap) const;
   // What all points have done together since rest is given to the camera, a share in each frame (E12).
   void RemoveCommonMotion(Submap* submap) const;
   // After a sharp frame was committed.
@@ -72,7 +73,7 @@ class MapUpdater {
   void TakeRigid(const Reestimation& reestimation, Submap* submap, MapUpdate* update) const;
   void TakeAny(const Reestimation& reestimation, Submap* submap, MapUpdate* update) const;
   Rigid3 PoseInWorldOf(const Rigid3& then_from_world, const MapInFrame& then, const Submap& submap) const;
-  bool IsRefinementDue(int frame_idx, Submap* submap) const;
+  bool AddToRigidHistory(int frame_idx, Submap* submap) const;
   void Grow(const PreparedFrame& frame, Submap* submap, StageTimes* times, MapUpdate* update);
   void FollowCandidates(const PreparedFrame& frame, Submap* submap) const;
   void AddCandidates(const PreparedFrame& frame, Submap* submap) const;

@@ -100,7 +100,7 @@ struct WindowInitOptions {
   // it is said where the images contradict the focal length.
   DistanceCue cue = DistanceCue::kLight;
   Switch prior = Switch::kOn;
-  bool checks_focal_length = true;  // takes as long as the map (W16)
+  Switch focal_length_check = Switch::kOn;  // takes as long as the map (W16)
 
   void List(OptionTable& table);  // group "WindowInit", and "Window"
 };
