@@ -68,7 +68,6 @@ TEST(RigidScene, TracksOfARunFromAFileGiveAMapAsOurOwnTracksDo) {
   EXPECT_LT(evaluation.surface->plain.estimate.mean_rmse_mm, kMaxRmse_mm);
 }
 
-// The source goes on with points that a map has rejected while it caught up: they do not come back.
 TEST(RigidScene, TracksFromAFileGiveAMapThatIsHandedOverLater) {
   const TestFolder folder;
   TrackOptions options;
