@@ -297,6 +297,19 @@ TrackOptions ForLiveInput(TrackOptions options) {
   return options;
 }
 
+// The live images of which the working image was chosen are old by now: tracking begins after them. Unless a cloud of
+// depths belongs to the first image, or an end counts from it.
+Status PassOldImages(const TrackOptions& options, const RunStart& start, SequenceRequest* input,
+                     std::unique_ptr<Sequence>* sequence) {
+  if (!input->IsLive() || options.live_input.frames != LiveFrames::kNewest) return Status::Ok();
+  if (input->end >= 0 || !start.cloud_depth_mm.empty()) return Status::Ok();
+  input->start = std::max(input->start, input->given->images->Passed());
+  auto reopened = OpenSequence(*input);
+  if (!reopened.ok()) return reopened.status();
+  *sequence = *std::move(reopened);
+  return Status::Ok();
+}
+
 // Turns the request into one of the source's images.
 Result<std::shared_ptr<LiveSource>> OpenLive(const LiveInputOptions& options, RunRequest* request) {
   SequenceRequest& input = request->input;
@@ -412,13 +425,7 @@ Result<RunSummary> RunTrack(const RunRequest& given, const TrackOptions& wanted,
 
   const auto start = ReadStart(request, usable, **sequence);
   if (!start.ok()) return start.status();
-  // A cloud belongs to the first image, and an end counts from it.
-  const bool begins_anew = request.input.end < 0 && start->cloud_depth_mm.empty();
-  if (request.input.IsLive() && options.live_input.frames == LiveFrames::kNewest && begins_anew) {
-    request.input.start = std::max(request.input.start, request.input.given->images->Passed());
-    sequence = OpenSequence(request.input);
-    if (!sequence.ok()) return sequence.status();
-  }
+  if (const Status begun = PassOldImages(options, *start, &request.input, &*sequence); !begun.ok()) return begun;
   usable.tracker = WorkingOptions(std::move(usable.tracker), start->working_image);
 
   OptionTable table;

@@ -107,7 +107,8 @@ TEST_F(HandedOverMap, FromKnownDepthIsTakenAtOnce) {
       frame.known_points = [] {
         std::vector<PixelDepth> points;
         for (int k = 0; k < 150; ++k) {
-          const Eigen::Vector2d pixel(20 + 18.7 * (k % 15), 20 + 20.3 * (k / 15));
+          const int row = k / 15;
+          const Eigen::Vector2d pixel(20 + 18.7 * (k % 15), 20 + 20.3 * row);
           points.push_back({pixel, depth_->at<float>(static_cast<int>(pixel.y()), static_cast<int>(pixel.x()))});
         }
         return points;
