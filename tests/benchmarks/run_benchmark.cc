@@ -50,20 +50,30 @@ double ResidentMb() {
   return resident_pages * static_cast<double>(sysconf(_SC_PAGESIZE)) * 1e-6;
 }
 
-// The sequence, rendered once; empty when that failed.
+// Writes a scene that stays in view; the empty path when that failed.
+std::filesystem::path WriteHeldScene(const std::filesystem::path& sequence, int frames, int width, int height) {
+  SimulationOptions options;
+  options.trajectory.kind = TrajectoryKind::kHold;
+  options.trajectory.frames = frames;
+  options.camera.width = width;
+  options.camera.height = height;
+  options.deformation.amplitude_mm = 1.0;
+  options.sensor.samples = 1;
+  const bool written = WriteSequence(options, sequence).ok();
+  malloc_trim(0);  // the renderer's memory is not the tracker's
+  return written ? sequence : std::filesystem::path();
+}
+
+// The sequences are rendered once.
 const std::filesystem::path& SequencePath() {
   static const TemporaryFolder folder("run_benchmark");
-  static const std::filesystem::path path = [] {
-    SimulationOptions options;
-    options.trajectory.kind = TrajectoryKind::kHold;
-    options.trajectory.frames = kFrames;
-    options.deformation.amplitude_mm = 1.0;
-    options.sensor.samples = 1;
-    const std::filesystem::path sequence = folder.Path("sequence");
-    const bool written = WriteSequence(options, sequence).ok();
-    malloc_trim(0);  // the renderer's memory is not the tracker's
-    return written ? sequence : std::filesystem::path();
-  }();
+  static const std::filesystem::path path = WriteHeldScene(folder.Path("sequence"), kFrames, 640, 480);
+  return path;
+}
+
+const std::filesystem::path& LargeSequencePath() {
+  static const TemporaryFolder folder("points_benchmark");
+  static const std::filesystem::path path = WriteHeldScene(folder.Path("sequence"), 12, 1920, 1080);
   return path;
 }
 
@@ -240,22 +250,6 @@ class PointMeter : public TrackObserver {
   long points_ = 0;
   double ms_ = 0;
 };
-
-const std::filesystem::path& LargeSequencePath() {
-  static const TemporaryFolder folder("points_benchmark");
-  static const std::filesystem::path path = [] {
-    SimulationOptions options;
-    options.trajectory.kind = TrajectoryKind::kHold;
-    options.trajectory.frames = 12;
-    options.camera.width = 1920;
-    options.camera.height = 1080;
-    options.deformation.amplitude_mm = 1.0;
-    options.sensor.samples = 1;
-    const std::filesystem::path sequence = folder.Path("sequence");
-    return WriteSequence(options, sequence).ok() ? sequence : std::filesystem::path();
-  }();
-  return path;
-}
 
 void BM_Points(benchmark::State& state) {
   TrackOptions options = MakeTrackOptions(Preset::kDefault);

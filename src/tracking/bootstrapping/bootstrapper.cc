@@ -126,12 +126,12 @@ std::optional<Bootstrapper::Answer> Bootstrapper::NextAnswer(const PreparedFrame
   const StageTimer timer(times, Stage::kInitialize);
   if (handover_frames_ == 0) {
     const auto alternative = frames_.size() % kAskAlternativeEvery == 0 ? AlternativeToAsk() : nullptr;
-    return AskInitializers(frames_, known_depths_, frame, InitMoment::kMoreFollow, threads_, alternative.get());
+    return AskInitializers(frames_, known_depths_, frame, InitMoment::kMoreFollow, alternative.get());
   }
   const auto step = static_cast<int>(frames_.size());
   const WorkPlace place = threads_ > 1 ? WorkPlace::kBeside : WorkPlace::kHere;
   answers_.Ask(step + handover_frames_, place, [this, frame, frames = frames_, known_depths = known_depths_] {
-    return AskInitializers(frames, known_depths, frame, InitMoment::kMoreFollow, threads_, nullptr);
+    return AskInitializers(frames, known_depths, frame, InitMoment::kMoreFollow, nullptr);
   });
   return answers_.Take(step);
 }
@@ -139,13 +139,12 @@ std::optional<Bootstrapper::Answer> Bootstrapper::NextAnswer(const PreparedFrame
 // Beside tracking it reads only what does not change. `alternative`: null: it is not asked.
 Bootstrapper::Answer Bootstrapper::AskInitializers(const std::vector<InitFrame>& frames,
                                                    const std::vector<double>& known_depths, const PreparedFrame& last,
-                                                   InitMoment moment, int threads,
-                                                   const Initializer* alternative) const {
+                                                   InitMoment moment, const Initializer* alternative) const {
   Answer answer{.frames = frames.size(), .last = last};
-  answer.outcome = initializer_->Try({camera_, frames, last.depth_mm, moment, threads, known_depths, photometric_});
+  answer.outcome = initializer_->Try({camera_, frames, last.depth_mm, moment, threads_, known_depths, photometric_});
   const bool is_settled = answer.outcome.decision == InitDecision::kMap || answer.outcome.ambiguous;
   if (alternative != nullptr && !is_settled)
-    answer.alternative = alternative->Try({camera_, frames, {}, moment, threads, {}, photometric_});
+    answer.alternative = alternative->Try({camera_, frames, {}, moment, threads_, {}, photometric_});
   return answer;
 }
 
@@ -284,7 +283,7 @@ BootstrapStep Bootstrapper::EndSequence(StageTimes* times) {
   PreparedFrame last;
   last.frame_idx = frames_.back().frame_idx;
   const auto alternative = provisional_ ? nullptr : AlternativeToAsk();
-  Answer answer = AskInitializers(frames_, known_depths_, last, InitMoment::kLastFrame, threads_, alternative.get());
+  Answer answer = AskInitializers(frames_, known_depths_, last, InitMoment::kLastFrame, alternative.get());
   step.note = WithFault(answer.outcome.reason, image_fault_);
   TakeAlternative(answer);
   if (answer.outcome.ambiguous && answer.outcome.decision == InitDecision::kNewReference)

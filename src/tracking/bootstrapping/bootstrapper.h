@@ -92,8 +92,7 @@ class Bootstrapper {
   };
 
   Answer AskInitializers(const std::vector<InitFrame>& frames, const std::vector<double>& known_depths,
-                         const PreparedFrame& last, InitMoment moment, int threads,
-                         const Initializer* alternative) const;
+                         const PreparedFrame& last, InitMoment moment, const Initializer* alternative) const;
   std::shared_ptr<const Initializer> AlternativeToAsk() const;
   std::optional<Answer> NextAnswer(const PreparedFrame& frame, StageTimes* times);
   void TryInitialize(const PreparedFrame& frame, StageTimes* times, BootstrapStep* step);

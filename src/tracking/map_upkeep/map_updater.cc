@@ -45,13 +45,12 @@ bool MapUpdater::EstimatesPoses() const {
 void MapUpdater::Reestimate(const std::vector<InitFrame>& frames, WindowScene scene, const Submap& submap) {
   Reestimation reestimation{scene, {submap.map, submap.last_cam_from_world}};
   const bool beside = threads_ > 1 && options_.handover_frames > 0;
-  const int threads = threads_;
   // To refine a rigid map takes much less time, and every frame without it is tracked with a worse one.
   const int delay = scene == WindowScene::kRigid ? (options_.handover_frames + 2) / 3 : options_.handover_frames;
   reestimations_.Ask(updates_ + delay, beside ? WorkPlace::kBeside : WorkPlace::kHere,
-                     [this, threads, frames, made = std::move(reestimation)]() mutable {
+                     [this, frames, made = std::move(reestimation)]() mutable {
                        made.outcome =
-                           ReestimateMap({camera_, frames, {}, InitMoment::kMoreFollow, threads, {}, photometric_},
+                           ReestimateMap({camera_, frames, {}, InitMoment::kMoreFollow, threads_, {}, photometric_},
                                          made.scene, options_.init.window, options_.init.monocular.nominal_depth_mm);
                        return std::move(made);
                      });
