@@ -13,6 +13,7 @@
 #include "datasets/depth_prior_file.h"
 #include "datasets/image_file.h"
 #include "datasets/image_list.h"
+#include "datasets/image_size.h"
 #include "datasets/pair_streams.h"
 #include "pliant/camera/assumed_camera.h"
 #include "pliant/io/camera_file.h"
@@ -37,6 +38,21 @@ void WarnOfMissing(const std::string& what, const FrameRange& range, const DataS
                         ", the first is " + data_set.images->Name(first) + " (frame " + std::to_string(first) + ")");
 }
 
+Status CheckStoredSizes(const ImageStream& images, const FrameRange& range) {
+  std::optional<std::pair<int, cv::Size>> first;
+  for (int idx = range.start; idx < range.end; idx += range.stride) {
+    const std::optional<cv::Size> size = images.StoredSize(idx);
+    if (!size) continue;
+    if (!first) first = {idx, *size};
+    if (*size != first->second)
+      return {ErrorCode::kMismatch, images.Title(idx) + " is " + SizeText(size->width, size->height) + ", but " +
+                                        images.Name(first->first) + " is " +
+                                        SizeText(first->second.width, first->second.height) +
+                                        "; the size may not change within a sequence"};
+  }
+  return Status::Ok();
+}
+
 class DataSetSequence final : public Sequence {
  public:
   DataSetSequence(DataSet data_set, const FrameRange& range)
@@ -50,6 +66,7 @@ class DataSetSequence final : public Sequence {
   const Camera& camera() const override { return data_set_.calibration.camera; }
   int size() const override { return range_.Count(); }
   Result<std::optional<SequenceFrame>> Next() override;
+  Status CheckSizes() const override;
   std::optional<PhotometricCalibration> Photometric() const override { return data_set_.calibration.photometric; }
   std::optional<double> BaselineMm() const override;
   Result<std::optional<cv::Mat>> Right() override;
@@ -137,6 +154,22 @@ Status DataSetSequence::OpenDepthPriors(const fs::path& folder) {
     WarnOfMissing(
         "depth prior", range_, data_set_,
         [&](std::size_t idx) { return !DepthPriorFile(static_cast<int>(idx)).empty(); }, &data_set_.warnings);
+  return Status::Ok();
+}
+
+Status DataSetSequence::CheckSizes() const {
+  const FrameRange range{range_.start, range_.end == -1 ? images().count() : range_.end, range_.stride};
+  if (Status status = CheckStoredSizes(images(), range); !status.ok()) return status;
+  if (BaselineMm())
+    if (Status status = CheckStoredSizes(*data_set_.right, range); !status.ok()) return status;
+  if (!masks_) return Status::Ok();
+  for (int idx = range.start; idx < range.end; idx += range.stride) {
+    const fs::path mask = masks_->Find(idx, fs::path(images().Name(idx)).stem().string());
+    const std::optional<cv::Size> size = ReadImageSize(mask);
+    if (!size) continue;
+    if (Status status = CheckFrameMaskSize(mask, *size, {camera().width(), camera().height()}); !status.ok())
+      return status;
+  }
   return Status::Ok();
 }
 

@@ -201,15 +201,20 @@ Result<fs::path> CompanionImages::Require(int frame_idx, const std::string& fram
   return file;
 }
 
+Status CheckFrameMaskSize(const fs::path& mask, cv::Size size, cv::Size images) {
+  if (size == images) return Status::Ok();
+  return {ErrorCode::kMismatch, "the mask " + mask.string() + " is " + SizeText(size.width, size.height) +
+                                    ", but the images are " + SizeText(images.width, images.height) +
+                                    "; masks have the images' size"};
+}
+
 Result<cv::Mat> ReadFrameMask(const CompanionImages& masks, int frame_idx, const std::string& frame_name, int width,
                               int height) {
   const Result<fs::path> file = masks.Require(frame_idx, frame_name);
   if (!file.ok()) return file.status();
   Result<cv::Mat> mask = ReadMaskImage(*file);
-  if (mask.ok() && (mask->cols != width || mask->rows != height))
-    return Status(ErrorCode::kMismatch, "the mask " + file->string() + " is " + SizeText(*mask) +
-                                            ", but the images are " + SizeText(width, height) +
-                                            "; masks have the images' size");
+  if (!mask.ok()) return mask;
+  if (Status status = CheckFrameMaskSize(*file, mask->size(), {width, height}); !status.ok()) return status;
   return mask;
 }
 

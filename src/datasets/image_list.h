@@ -82,6 +82,8 @@ class CompanionImages {
   std::map<std::string, std::filesystem::path> file_of_stem_;
 };
 
+// Fails with kMismatch where a mask has not the size of the images.
+Status CheckFrameMaskSize(const std::filesystem::path& mask, cv::Size size, cv::Size images);
 // The mask of one frame, checked against the camera's size (kMismatch).
 Result<cv::Mat> ReadFrameMask(const CompanionImages& masks, int frame_idx, const std::string& frame_name, int width,
                               int height);

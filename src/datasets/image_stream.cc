@@ -7,6 +7,7 @@
 
 #include "datasets/image_file.h"
 #include "datasets/image_list.h"
+#include "datasets/image_size.h"
 
 namespace pliant {
 namespace {
@@ -28,6 +29,10 @@ class FileStream final : public ImageStream {
     const Result<cv::Mat> image = ReadImage(At(idx));
     if (!image.ok()) return std::nullopt;
     return image->size();
+  }
+
+  std::optional<cv::Size> StoredSize(int idx) const override {
+    return idx < count() ? ReadImageSize(At(idx)) : std::nullopt;
   }
 
   Result<std::optional<cv::Mat>> Read(int idx) override {

@@ -28,6 +28,7 @@ class DerivedStream : public ImageStream {
   std::optional<double> fps() const override { return source_->fps(); }
   std::string Name(int idx) const override { return source_->Name(idx); }
   std::string Title(int idx) const override { return source_->Title(idx); }
+  std::optional<cv::Size> StoredSize(int idx) const override { return source_->StoredSize(idx); }
   std::optional<double> RecordedS() const override { return source_->RecordedS(); }
 
  protected:

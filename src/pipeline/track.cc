@@ -416,6 +416,7 @@ Result<RunSummary> RunTrack(const RunRequest& given, const TrackOptions& wanted,
   cv::setNumThreads(usable.threads);
   auto sequence = OpenSequence(request.input);
   if (!sequence.ok()) return sequence.status();
+  if (Status status = (*sequence)->CheckSizes(); !status.ok()) return status;
   std::unique_ptr<TrackingTruth> truth;
   if (options.tracker.oracle.Any()) {
     auto opened = OpenSimulationTruth(request.input.image_path, **sequence);

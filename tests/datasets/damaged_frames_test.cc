@@ -80,6 +80,33 @@ TEST_F(OpenSequenceTest, TellsWhenTheImageSizeChanges) {
   ExpectBadFrame(*Open(Request()), 4, 2, ErrorCode::kMismatch, "64x48");
 }
 
+TEST_F(OpenSequenceTest, FindsAnImageOfAnotherSizeWithoutDecodingIt) {
+  for (const char* extension : {".png", ".jpg", ".bmp"}) {
+    std::filesystem::remove_all(Path("images"));
+    WriteCamera();
+    for (int idx = 0; idx < 4; ++idx) Write("images/00000" + std::to_string(idx) + extension, Image(idx));
+    EXPECT_TRUE(Open(Request())->CheckSizes().ok()) << extension;
+    Write(std::string("images/000002") + extension, Image(2, 32, 24));
+    const Status status = Open(Request())->CheckSizes();
+    EXPECT_EQ(status.code(), ErrorCode::kMismatch) << extension;
+    EXPECT_THAT(status.message(), HasSubstr(std::string("000002") + extension + " is 32x24, but 000000"));
+    SequenceRequest before = Request();
+    before.end = 2;
+    EXPECT_TRUE(Open(before)->CheckSizes().ok()) << extension;
+    Truncate(std::string("images/000002") + extension, 0.01);
+    EXPECT_TRUE(Open(Request())->CheckSizes().ok()) << "a file without a head has no size, " << extension;
+  }
+}
+
+TEST_F(OpenSequenceTest, FindsAMaskOfAnotherSizeWithoutDecodingIt) {
+  WriteNative(3);
+  for (int idx = 0; idx < 3; ++idx)
+    Write("masks/00000" + std::to_string(idx) + ".png", cv::Mat(kHeight, kWidth, CV_8UC1, cv::Scalar::all(255)));
+  EXPECT_TRUE(Open(Request())->CheckSizes().ok());
+  Write("masks/000002.png", cv::Mat(8, 8, CV_8UC1, cv::Scalar::all(255)));
+  EXPECT_THAT(Open(Request())->CheckSizes().message(), HasSubstr("000002.png is 8x8, but the images are 64x48"));
+}
+
 TEST_F(OpenSequenceTest, TellsWhenAVideoBreaksOff) {
   WriteVideo("clip.avi", 20);
   WriteCamera();
