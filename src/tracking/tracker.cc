@@ -8,6 +8,7 @@
 #include <string>
 
 #include "pliant/base/random.h"
+#include "pliant/scene/serialize.h"
 #include "pliant/tracking/stage_times.h"
 #include "tracking/bootstrapping/bootstrapper.h"
 #include "tracking/bootstrapping/oracle_initializer.h"
@@ -335,6 +336,15 @@ void Tracker::EndSequence() {
   catch_up_->GoOn(frames, frames.size(), &held_, &times, &result);
   EndCatchUp(&result);
   CompleteHeld(*result.first_map);
+}
+
+bool Tracker::IsSerializable() const {
+  return catch_up_ == nullptr && !options_.oracle.Any() && tracks_->IsSerializable();
+}
+
+void Tracker::Serialize(StateArchive& archive) {
+  tracks_->Serialize(archive);
+  archive(*bootstrapper_, *map_updater_, *submaps_, state_, held_, goes_back_to_, set_aside_);
 }
 
 }  // namespace pliant

@@ -14,6 +14,9 @@
 #include <optional>
 #include <thread>
 #include <utility>
+#include <vector>
+
+#include "pliant/base/state_archive.h"
 
 namespace pliant {
 
@@ -63,6 +66,20 @@ class DelayedAnswers {
     std::future<Answer> answer = std::move(asked_.front().answer);
     asked_.pop_front();
     return answer.get();
+  }
+
+  // Waits for all that was asked for; none of it is asked again when it is read.
+  void Serialize(StateArchive& archive) {
+    std::vector<std::pair<int, Answer>> answers;
+    if (!archive.reads())
+      for (Asked& asked : asked_) answers.emplace_back(asked.due, asked.answer.get());
+    archive(answers);
+    asked_.clear();
+    for (auto& [due, answer] : answers) {
+      std::promise<Answer> given;
+      given.set_value(std::move(answer));
+      asked_.push_back({due, given.get_future()});
+    }
   }
 
   // No answer that was asked for is wanted any more.

@@ -12,6 +12,8 @@
 
 namespace pliant {
 
+class StateArchive;
+
 struct MaskOptions {
   Switch highlights = Switch::kOn;
   int highlight_level = 235;           // gray levels: brighter is saturated, whatever its color
@@ -47,6 +49,7 @@ class SupportMask {
   // Share of usable pixels in [x - radius, x + radius] x [y - radius, y + radius], 0..1.
   double Fraction(int x, int y, int radius) const;
   bool Valid(int x, int y) const;
+  void Serialize(StateArchive& archive);
   const cv::Mat& valid() const { return valid_; }
 
  private:

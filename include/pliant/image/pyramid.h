@@ -16,6 +16,8 @@
 
 namespace pliant {
 
+class StateArchive;
+
 // 8-bit gray of an 8-bit image with 1 (returned as it is, not copied) or 3 (BGR; ITU-R BT.601 weights) channels.
 cv::Mat ToGray(const cv::Mat& image);
 
@@ -41,6 +43,7 @@ class ImagePyramid {
   }
   // A level without its padding; a view.
   cv::Mat Level(int level) const;
+  void Serialize(StateArchive& archive);
 
  private:
   std::vector<cv::Mat> padded_;

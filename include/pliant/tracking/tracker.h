@@ -31,6 +31,7 @@ class MapUpdater;
 class OraclePoses;
 class Relocalizer;
 class StageTimes;
+class StateArchive;
 class Submaps;
 class TrackSource;
 struct FirstMap;
@@ -87,6 +88,12 @@ class Tracker {
   const Map& map() const;
   // While the first map is awaited: another Init.method that would have made one, as a sentence; empty: none.
   const std::string& WouldStart() const;
+  // Whether all that the tracker keeps can be written: not while a first map catches up, nor with parts of a calling
+  // program, or of the truth, that keep something of their own.
+  bool IsSerializable() const;
+  // Between two calls of Process. What is read was written by a tracker that was made alike.
+  void Serialize(StateArchive& archive);
+
   // Lost for max_lost_frames frames that are neither dark nor frozen, and no new map is to be begun.
   bool GaveUp() const;
 

@@ -10,6 +10,7 @@
 
 #include "tracking/depth_prior/prior_distances.h"
 #include "tracking/image_fault.h"
+#include "tracking/serialize.h"
 
 namespace pliant {
 namespace {
@@ -376,5 +377,11 @@ InitFrame Bootstrapper::FollowedFrame(const PreparedFrame& frame, const Submap& 
     AddCorners(frame, brightness, options_.corners.max_corners - static_cast<int>(kept.size()), &followed);
   return followed;
 }
+
+void Bootstrapper::Serialize(StateArchive& archive) {
+  archive(has_map_, frames_, known_depths_, image_fault_, provisional_, would_start_, last_reason_, answers_);
+}
+void Bootstrapper::Made::Serialize(StateArchive& archive) { archive.Members<2>(*this); }
+void Bootstrapper::Answer::Serialize(StateArchive& archive) { archive.Members<4>(*this); }
 
 }  // namespace pliant

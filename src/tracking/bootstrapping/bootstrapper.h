@@ -71,6 +71,8 @@ class Bootstrapper {
   // there has been a map, or camera and scene could not be told apart.
   const std::string& WouldStart() const { return would_start_; }
 
+  void Serialize(StateArchive& archive);
+
   bool HasReference() const { return !frames_.empty(); }
   // There has to be one.
   int reference_frame_idx() const { return frames_.front().frame_idx; }
@@ -82,6 +84,7 @@ class Bootstrapper {
   struct Made {
     FirstMap map;
     PreparedFrame frame;
+    void Serialize(StateArchive& archive);
   };
   // What the initializers say of the frames up to one of them.
   struct Answer {
@@ -89,6 +92,7 @@ class Bootstrapper {
     PreparedFrame last;      // of these
     InitOutcome outcome = {};
     std::optional<InitOutcome> alternative = std::nullopt;  // where it was asked
+    void Serialize(StateArchive& archive);
   };
 
   Answer AskInitializers(const std::vector<InitFrame>& frames, const std::vector<double>& known_depths,

@@ -13,6 +13,7 @@
 #include "tracking/map_upkeep/common_motion.h"
 #include "tracking/map_upkeep/drifted_points.h"
 #include "tracking/map_upkeep/reestimate_map.h"
+#include "tracking/serialize.h"
 
 namespace pliant {
 namespace {
@@ -338,5 +339,8 @@ void MapUpdater::RejectDrifted(std::vector<InitPosition>* reestimated, Submap* s
   }
   losses->Add("drifted", static_cast<int>(drifted.size()));
 }
+
+void MapUpdater::Serialize(StateArchive& archive) { archive(updates_, reestimations_); }
+void MapUpdater::Reestimation::Serialize(StateArchive& archive) { archive.Members<3>(*this); }
 
 }  // namespace pliant

@@ -57,12 +57,15 @@ class MapUpdater {
   // What is under way is not wanted any more: the view was lost, or another map or world is the current one.
   void Forget() { reestimations_.Drop(); }
 
+  void Serialize(StateArchive& archive);
+
  private:
   // A map made anew of the pixels of the frames up to the one of `then`, in which the present map was that.
   struct Reestimation {
     WindowScene scene = WindowScene::kAny;
     MapInFrame then;
     InitOutcome outcome = {};
+    void Serialize(StateArchive& archive);
   };
 
   bool GrowsMap() const;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "pliant/base/state_archive.h"
 #include "tracking/relocalization/submap_merging.h"
 
 namespace pliant {
@@ -68,6 +69,15 @@ void Submaps::Apply(const FoundMerge& found) {
   current_->idx = found.merge.into;
   current_->TakeOver(std::move(inactive), tracks_);
   inactive_.erase(inactive_.begin() + static_cast<std::ptrdiff_t>(found.inactive));
+}
+
+void Submaps::Serialize(StateArchive& archive) {
+  archive(*current_, maps_made_);
+  inactive_.resize(archive.Size(inactive_.size()));
+  for (std::unique_ptr<Submap>& submap : inactive_) {
+    if (archive.reads()) submap = std::make_unique<Submap>(0, camera_, options_);
+    archive(*submap);
+  }
 }
 
 }  // namespace pliant

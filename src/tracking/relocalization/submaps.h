@@ -44,6 +44,8 @@ class Submaps {
   // The two become the current one. The older one's world stays.
   void Apply(const FoundMerge& found);
 
+  void Serialize(StateArchive& archive);
+
  private:
   bool CanMerge() const;
 

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "pliant/base/statistics.h"
+#include "tracking/serialize.h"
 #include "tracking/submap/surface_distances.h"
 
 namespace pliant {
@@ -239,5 +240,10 @@ std::optional<Landmark> Candidates::AsLandmark(const CertainPoint& certain, cons
       .determined_at = certain.position,
       .from_surface = certain.from_surface};
 }
+
+void Candidates::Serialize(StateArchive& archive) { archive(points_); }
+void Candidates::Anchor::Serialize(StateArchive& archive) { archive.Members<2>(*this); }
+void Candidates::Displacement::Serialize(StateArchive& archive) { archive.Members<3>(*this); }
+void Candidates::Point::Serialize(StateArchive& archive) { archive.Members<8>(*this); }
 
 }  // namespace pliant

@@ -23,6 +23,8 @@
 
 namespace pliant {
 
+class StateArchive;
+
 // One point in one frame.
 struct CandidateTrack {
   PointId id;
@@ -74,17 +76,21 @@ class Candidates {
   // Its distance is as uncertain as theirs, and as its own views leave it.
   std::optional<Landmark> AsLandmark(const CertainPoint& point, const Rigid3& cam_from_world, const Map& map) const;
 
+  void Serialize(StateArchive& archive);
+
  private:
   // A landmark that was near when it was chosen, and where it was then.
   struct Anchor {
     PointId id;
     Eigen::Vector3d position;
+    void Serialize(StateArchive& archive);
   };
   // Of its surroundings, since the first view (G1, G2).
   struct Displacement {
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();
     double sigma = 0;     // how much the anchors differ
     double gradient = 0;  // the same by the distance between them
+    void Serialize(StateArchive& archive);
   };
   struct Point {
     CandidateTrack track;
@@ -95,6 +101,7 @@ class Candidates {
     std::vector<Anchor> anchors;
     Eigen::Vector3d anchored_at = Eigen::Vector3d::Zero();  // their mean position
     Displacement before;                                    // until they were chosen
+    void Serialize(StateArchive& archive);
   };
 
   void ChooseAnchors(const Map& map, Point* point) const;

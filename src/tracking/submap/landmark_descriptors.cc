@@ -6,6 +6,8 @@
 #include <algorithm>
 
 #include "pliant/image/descriptors.h"
+#include "pliant/image/serialize.h"
+#include "pliant/scene/serialize.h"
 
 namespace pliant {
 
@@ -51,5 +53,7 @@ Result<AbsolutePose> LandmarkDescriptors::Recognize(const DescribedImage& image,
   }
   return EstimateAbsolutePose(points, rays, camera.MeanFocalLengthPx(), options_.pose);
 }
+
+void LandmarkDescriptors::Serialize(StateArchive& archive) { archive(descriptors_); }
 
 }  // namespace pliant

@@ -22,6 +22,8 @@
 
 namespace pliant {
 
+class StateArchive;
+
 // The corners of an image, and what they look like, a row each.
 struct DescribedImage {
   std::vector<Eigen::Vector2d> pixels;
@@ -45,6 +47,8 @@ class LandmarkDescriptors {
   // The camera of an image that sees some of these landmarks, wherever it may be. Fails as EstimateAbsolutePose does.
   Result<AbsolutePose> Recognize(const DescribedImage& image, const Camera& camera,
                                  const std::vector<Landmark>& landmarks) const;
+
+  void Serialize(StateArchive& archive);
 
  private:
   RelocalizationOptions options_;

@@ -8,6 +8,7 @@
 #include <Eigen/LU>
 
 #include "pliant/deformation/graph.h"
+#include "pliant/scene/serialize.h"
 
 namespace pliant {
 namespace {
@@ -161,5 +162,8 @@ const Landmark* LostPoints::Find(PointId id) const {
   const auto found = points_.find(id);
   return found == points_.end() ? nullptr : &found->second.landmark;
 }
+
+void LostPoints::Serialize(StateArchive& archive) { archive(points_, next_order_); }
+void LostPoints::Point::Serialize(StateArchive& archive) { archive.Members<6>(*this); }
 
 }  // namespace pliant

@@ -18,6 +18,8 @@
 
 namespace pliant {
 
+class StateArchive;
+
 // The displacement since rest of the landmarks around each of `positions` (weights as in R1). Neighbors are searched
 // among `anchors`, one a landmark: where it is now, or at rest. Zero where there are no landmarks.
 std::vector<Eigen::Vector3d> DisplacementsAt(const std::vector<Landmark>& landmarks,
@@ -63,6 +65,8 @@ class LostPoints {
   // Null where it is not lost.
   const Landmark* Find(PointId id) const;
 
+  void Serialize(StateArchive& archive);
+
  private:
   struct Point {
     Landmark landmark;        // `position` is where it is thought to be now
@@ -72,6 +76,7 @@ class LostPoints {
     std::optional<Eigen::Vector3d> own_share;
     int searches = 0;
     std::int64_t order = 0;  // in which they were lost
+    void Serialize(StateArchive& archive);
   };
   std::map<PointId, Point> points_;
   std::int64_t next_order_ = 0;

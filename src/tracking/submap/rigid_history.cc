@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "tracking/serialize.h"
+
 namespace pliant {
 namespace {
 
@@ -45,5 +47,7 @@ void RigidHistory::Thin() {
   frames_.resize(kept);
   every_ *= 2;
 }
+
+void RigidHistory::Serialize(StateArchive& archive) { archive(frames_, every_, seen_, next_attempt_); }
 
 }  // namespace pliant

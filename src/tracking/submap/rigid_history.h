@@ -12,6 +12,8 @@
 
 namespace pliant {
 
+class StateArchive;
+
 // The frames of which the map can be made again. When they get too many every other one is left out, of those there are
 // and of those that follow.
 class RigidHistory {
@@ -25,6 +27,8 @@ class RigidHistory {
 
   bool empty() const { return frames_.empty(); }
   const std::vector<InitFrame>& frames() const { return frames_; }
+
+  void Serialize(StateArchive& archive);
 
  private:
   void Thin();

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "tracking/serialize.h"
+
 namespace pliant {
 
 bool Submap::IsBlurred(const PreparedFrame& frame, const TrackerOptions& options) const {
@@ -96,5 +98,7 @@ void Submap::RemoveFrom(TrackSource* tracks) const {
   for (const Landmark& landmark : KnownLandmarks()) tracks->Remove(landmark.id);
   for (const CandidateTrack& track : candidates.tracks()) tracks->Remove(track.id);
 }
+
+void Submap::Serialize(StateArchive& archive) { archive.Members<15>(*this); }
 
 }  // namespace pliant

@@ -46,6 +46,8 @@ struct Submap {
   // The source forgets all points of this submap.
   void RemoveFrom(TrackSource* tracks) const;
 
+  void Serialize(StateArchive& archive);
+
   int idx;
   Map map;
   bool provisional = false;  // it is less certain than demanded, or hardly better than one constant depth

@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "pliant/scene/serialize.h"
+
 namespace pliant {
 namespace {
 
@@ -129,6 +131,18 @@ std::vector<PointTrack> GivenTracks::Find(const PreparedFrame& current, std::spa
 std::vector<PointTrack> GivenTracks::TrackIntoBlur(const PreparedFrame&, const PreparedFrame& blurred,
                                                    std::span<const PointPrediction> predictions) const {
   return Locate(blurred.frame_idx, predictions);
+}
+
+void GivenTracks::Serialize(StateArchive& archive) {
+  std::map<PointId, PointId> tracks_of_points;
+  for (const auto& [id, track] : followed_) tracks_of_points[id] = track->id;
+  archive(tracks_of_points, next_id_, takes_ids_of_tracks_);
+  if (!archive.reads()) return;
+  followed_.clear();
+  for (const auto& [id, track] : tracks_of_points) {
+    followed_[id] = FindById(tracks_, track);
+    if (followed_[id] == nullptr) return archive.Fail();
+  }
 }
 
 }  // namespace pliant

@@ -41,6 +41,8 @@ class GivenTracks : public TrackSource {
   void Keep(std::span<const PointId>) override {}
   std::vector<PointTrack> TrackIntoBlur(const PreparedFrame& previous, const PreparedFrame& blurred,
                                         std::span<const PointPrediction> predictions) const override;
+  bool IsSerializable() const override { return true; }
+  void Serialize(StateArchive& archive) override;
 
  private:
   const PixelTrack* Nearest(const Eigen::Vector2d& pixel, int frame_idx) const;

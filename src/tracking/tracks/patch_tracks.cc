@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "pliant/scene/serialize.h"
 #include "tracking/tracks/blurred_tracks.h"
 
 namespace pliant {
@@ -37,5 +38,7 @@ std::vector<PointTrack> PatchTracks::TrackIntoBlur(const PreparedFrame& previous
   for (const PointPrediction& prediction : predictions) pixels.push_back(tracker_.PixelOf(prediction.id));
   return pliant::TrackIntoBlur(previous, blurred, pixels, predictions, options_, threads_);
 }
+
+void PatchTracks::Serialize(StateArchive& archive) { archive(tracker_, next_id_); }
 
 }  // namespace pliant

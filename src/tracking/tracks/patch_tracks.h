@@ -29,6 +29,8 @@ class PatchTracks : public TrackSource {
   void Keep(std::span<const PointId> ids) override { tracker_.Keep(ids); }
   std::vector<PointTrack> TrackIntoBlur(const PreparedFrame& previous, const PreparedFrame& blurred,
                                         std::span<const PointPrediction> predictions) const override;
+  bool IsSerializable() const override { return true; }
+  void Serialize(StateArchive& archive) override;
 
  private:
   PointTrackerOptions options_;

@@ -11,6 +11,8 @@
 #include <Eigen/SVD>
 
 #include "pliant/base/parallel.h"
+#include "pliant/photometric/serialize.h"
+#include "pliant/scene/serialize.h"
 #include "tracking/tracks/nearest_in_plane.h"
 
 namespace pliant {
@@ -302,6 +304,19 @@ std::vector<Eigen::Matrix2d> NeighborhoodAffines(std::span<const Eigen::Vector2d
     affines.push_back(FitAffine(before, after, weights, damping_px));
   }
   return affines;
+}
+
+void PointTracker::Serialize(StateArchive& archive) {
+  std::vector<PointId> ids;
+  for (const auto& [id, point] : points_) ids.push_back(id);
+  archive(ids, attempt_);
+  if (archive.reads()) points_.clear();
+  for (const PointId id : ids) {
+    Point& point = points_[id];
+    for (ReferencePatch* patch : {&point.reference, &point.latest})
+      pliant::Serialize(archive, options_.lucas_kanade, *patch);
+    archive(point.pixel, point.affine_from_reference, point.reference_affine_from_first, point.age);
+  }
 }
 
 }  // namespace pliant

@@ -24,6 +24,8 @@
 
 namespace pliant {
 
+class StateArchive;
+
 enum class PatchPolicy { kPeriodic, kAdaptive };
 template <>
 struct EnumNames<PatchPolicy> {
@@ -97,6 +99,9 @@ class PointTracker {
   // What the attempt found of these points is right: they are now where it found them. Of others it is forgotten with
   // the next attempt. Ids that are not known, or were not found, have no effect.
   void Keep(std::span<const PointId> ids);
+
+  // Between two attempts.
+  void Serialize(StateArchive& archive);
 
  private:
   // What an attempt found of a point; it becomes the point's own with Keep.

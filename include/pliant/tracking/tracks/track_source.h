@@ -22,6 +22,8 @@
 
 namespace pliant {
 
+class StateArchive;
+
 // What a source can do besides following the points of the reference image.
 struct TrackAbilities {
   bool adds_points = true;      // Add and AddNew work in any image, not only in the reference
@@ -69,6 +71,11 @@ class TrackSource {
   // the sharp image has them.
   virtual std::vector<PointTrack> TrackIntoBlur(const PreparedFrame& previous, const PreparedFrame& blurred,
                                                 std::span<const PointPrediction> predictions) const = 0;
+
+  // Whether Serialize writes all that the source keeps, so that a run can be resumed.
+  virtual bool IsSerializable() const { return false; }
+  // Between two attempts. What is read was written by a source that was made alike.
+  virtual void Serialize(StateArchive& /*archive*/) {}
 };
 
 }  // namespace pliant
