@@ -164,7 +164,8 @@ def track(input: StrPath | Iterable[NDArray[np.uint8]], output_path: StrPath, op
           camera: StrPath | _pliant.Camera | None = None, timestamps: Sequence[float] | None = None,
           preset: str = "default", mask_path: StrPath | None = None, start: int = 0, end: int | None = None,
           stride: int = 1, initializer: Initializer | None = None, tracks: PointFollower | StrPath | None = None,
-          depth_prior: StrPath | None = None, on_frame: Callable[[_pliant.FrameReport], Any] | None = None) -> Run:
+          depth_prior: StrPath | None = None, resume: bool = False,
+          on_frame: Callable[[_pliant.FrameReport], Any] | None = None) -> Run:
     """Camera pose and the motion of every point.
 
     Args:
@@ -185,6 +186,9 @@ def track(input: StrPath | Iterable[NDArray[np.uint8]], output_path: StrPath, op
         tracks: follows points in place of Pliant's own tracker: an object (pliant.extensions.PointFollower), or the
             file of another program's tracks (docs/tracks.md).
         depth_prior: folder of another program's depth images, a file an image (docs/your_own_video.md).
+        resume: go on with the run in output_path that was stopped or killed, from its last checkpoint
+            ({"General.checkpoint_frames": N}); the other arguments are given again as they were. Not with images that
+            are given.
         on_frame: called with the pliant.FrameReport of every frame, in order, as it is final and on disk. An exception
             ends the run after the frame and is raised.
 
@@ -195,7 +199,7 @@ def track(input: StrPath | Iterable[NDArray[np.uint8]], output_path: StrPath, op
         pliant.Error: the images cannot be read, or there is no map; the run folder has what there was until then.
     """
     request: dict[str, Any] = {"mask_path": _text(mask_path), "start": start, "end": -1 if end is None else end,
-                               "stride": stride}
+                               "stride": stride, "resume": resume}
     output = os.fspath(output_path)
     options = _options(options)
     name = "python"
@@ -218,6 +222,8 @@ def track(input: StrPath | Iterable[NDArray[np.uint8]], output_path: StrPath, op
         request.update(image_path=os.fspath(input), camera_path=_text(camera))
         _pliant.track_path(request, output, options, preset, on_frame)
     else:
+        if resume:
+            raise ValueError("images that are given do not come again, so such a run cannot be resumed; give a path")
         if not isinstance(camera, _pliant.Camera):
             raise ValueError("images need their camera; give a pliant.Camera (pliant.read_camera reads a file)")
         request.update(images=input, camera=camera, timestamps=list(timestamps) if timestamps is not None else [])

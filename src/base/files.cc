@@ -7,6 +7,9 @@
 #include <filesystem>
 #include <system_error>
 
+#include <fcntl.h>
+#include <unistd.h>
+
 namespace pliant {
 namespace {
 
@@ -57,6 +60,24 @@ Result<OutputFile> OutputFile::Create(const std::string& path) {
   return OutputFile(path, file);
 }
 
+Result<OutputFile> OutputFile::Continue(const std::string& path, std::int64_t size) {
+  std::error_code error;
+  const auto there = std::filesystem::file_size(path, error);
+  if (error || there < static_cast<std::uintmax_t>(size))
+    return Status(ErrorCode::kUnreadable,
+                  Quoted(path) + " is shorter than it was, or is not there; it cannot be continued");
+  std::filesystem::resize_file(path, static_cast<std::uintmax_t>(size), error);
+  errno = 0;
+  std::FILE* file = error ? nullptr : std::fopen(path.c_str(), "ab");
+  if (file == nullptr)
+    return Status(ErrorCode::kUnwritable,
+                  "cannot write " + Quoted(path) + ": " + (error ? error.message() : Reason(errno)));
+  std::setvbuf(file, nullptr, _IONBF, 0);
+  OutputFile continued(path, file);
+  continued.size_ = size;
+  return continued;
+}
+
 Status OutputFile::Failure() const {
   return {ErrorCode::kUnwritable,
           "cannot write " + Quoted(path_) + ": " + Reason(errno) + "; what was written before stays"};
@@ -65,6 +86,7 @@ Status OutputFile::Failure() const {
 Status OutputFile::Append(std::string_view text) {
   errno = 0;
   if (std::fwrite(text.data(), 1, text.size(), file_.get()) != text.size()) return Failure();
+  size_ += static_cast<std::int64_t>(text.size());
   return Status::Ok();
 }
 
@@ -73,6 +95,12 @@ Status OutputFile::AppendWhenLarge(std::string* buffer) {
   Status status = Append(*buffer);
   buffer->clear();
   return status;
+}
+
+Status OutputFile::Sync() {
+  errno = 0;
+  if (std::fflush(file_.get()) != 0 || fsync(fileno(file_.get())) != 0) return Failure();
+  return Status::Ok();
 }
 
 Status OutputFile::Close() {
@@ -105,6 +133,16 @@ Status FileGroup::Commit() {
     paths_.erase(paths_.begin());
   }
   return Status::Ok();
+}
+
+Status SyncFolder(const std::filesystem::path& folder) {
+  errno = 0;
+  const int descriptor = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  const bool synced = descriptor >= 0 && fsync(descriptor) == 0;
+  const int reason = errno;
+  if (descriptor >= 0) close(descriptor);
+  if (synced) return Status::Ok();
+  return {ErrorCode::kUnwritable, "cannot write into " + Quoted(folder.string()) + ": " + Reason(reason)};
 }
 
 Status WriteFileAtomically(const std::string& path, std::string_view text) {

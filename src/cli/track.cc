@@ -50,7 +50,8 @@ const Manual kManual = {
     {"pliant track clip.mp4 --camera camera.yaml --output_path run",
      "pliant track device:0 --camera camera.yaml --output_path run --live",
      "pliant track --image_path seq --output_path run --tracks cotracker.npz",
-     "pliant track --image_path seq --output_path run --preset paper --start 100 --end 400"},
+     "pliant track --image_path seq --output_path run --preset paper --start 100 --end 400",
+     "pliant track hours.mp4 --camera camera.yaml --output_path run --resume"},
     {"General.seed", "General.threads", "Masks.highlights", "Masks.border", "Corners.max_corners", "Init.method",
      "Init.provisional", "Init.nominal_depth_mm", "Tracking.camera_motion", "Tracking.submaps", "Growth.grow",
      "Refine.model"},
@@ -63,6 +64,7 @@ struct TrackArguments {
   bool live = false;
   bool live_keep = false;
   bool refine = false;
+  bool resume = false;
 };
 
 void AddArguments(TrackArguments* arguments, CommandLine* line) {
@@ -82,6 +84,9 @@ void AddArguments(TrackArguments* arguments, CommandLine* line) {
       "depth_prior", "DepthPrior.path", "DIR",
       "depth images of another program, such as a network's, a file an image: a weak measurement whose scale "
       "and shift are not known (docs/your_own_video.md)");
+  line->AddFlag("resume", &arguments->resume,
+                "go on with the run in --output_path that was stopped or killed, from its last checkpoint (option "
+                "General.checkpoint_frames); the other arguments are given again as they were");
   line->AddFlag("live", &arguments->live,
                 "serve a view of the run to a browser on this machine while it runs (options Live)");
   line->AddFlag("live_keep", &arguments->live_keep,
@@ -166,8 +171,13 @@ int TrackCommand(std::span<const std::string> args) {
   if (arguments.live_keep && !arguments.live) return line.UsageError("--live_keep is for --live; give that as well");
 
   OutputFolder& output = arguments.output;
+  if (arguments.resume && output.path.empty())
+    return line.UsageError("--resume needs the folder of the run that is gone on with; name it with --output_path");
+  if (arguments.resume && output.overwrite)
+    return line.UsageError("--resume goes on with a run and --overwrite begins a new one; give one of them");
   if (output.path.empty()) output.path = DatedFolder(arguments.input.path);
-  if (const auto exit = output.Check(line, output.path, OutputFolder::Content::kRun)) return *exit;
+  if (!arguments.resume)
+    if (const auto exit = output.Check(line, output.path, OutputFolder::Content::kRun)) return *exit;
   if (arguments.refine)
     if (const auto exit = output.Check(line, RefinedFolder(output.path), OutputFolder::Content::kRun)) return *exit;
   if (IsLiveSource(arguments.input.path))
@@ -176,6 +186,7 @@ int TrackCommand(std::span<const std::string> args) {
   RunRequest request;
   request.input = arguments.input.Request();
   request.output_path = arguments.output.path;
+  request.resume = arguments.resume;
   request.command_line = line.Words(args);
   request.stop = &StopOnSignals();
 

@@ -13,9 +13,11 @@
 #include <opencv2/imgproc.hpp>
 
 #include "datasets/find_overlay.h"
+#include "pliant/base/state_archive.h"
 #include "pliant/base/statistics.h"
 #include "pliant/base/text.h"
 #include "pliant/image/pyramid.h"
+#include "pliant/image/serialize.h"
 
 namespace pliant {
 namespace {
@@ -51,6 +53,7 @@ struct Change {
   double mean = 0;
   double median = 0;
   double level = 0;  // mean of the darker image
+  void Serialize(StateArchive& archive) { archive.Members<3>(*this); }
 };
 
 Change ChangeBetween(const cv::Mat& a, const cv::Mat& b) {
@@ -70,6 +73,7 @@ struct MaskSide {
   double pixels = 0;
   double level = 0;
   double change = 0;
+  void Serialize(StateArchive& archive) { archive.Members<3>(*this); }
 };
 
 void AddSide(const GridSample& before, const GridSample& sample, int of_value, MaskSide* side) {
@@ -221,6 +225,8 @@ void ImageChecker::Add(const SequenceFrame& frame) {
   if (state.images % state.sample_every == 0) state.AddSample(gray, frame.mask);
   ++state.images;
 }
+
+void ImageChecker::Serialize(StateArchive& archive) { archive.Members<10>(*state_); }
 
 ImageCheck ImageChecker::Check() const {
   ImageCheck check;

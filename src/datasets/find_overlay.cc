@@ -10,6 +10,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "pliant/base/statistics.h"
+#include "pliant/image/serialize.h"
 
 namespace pliant {
 namespace {
@@ -157,5 +158,7 @@ OverlaySearch FindOverlay(const std::vector<GridSample>& samples, int step) {
   if (!group) return {true, std::nullopt};
   return {true, PixelRectangle{group->x * step, group->y * step, group->width * step, group->height * step}};
 }
+
+void Serialize(StateArchive& archive, GridSample& sample) { archive.Members<3>(sample); }
 
 }  // namespace pliant

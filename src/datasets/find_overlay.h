@@ -20,11 +20,15 @@ namespace pliant {
 cv::Mat GridOf(const cv::Mat& image, int step);
 
 // One image on the grid.
+class StateArchive;
+
 struct GridSample {
   cv::Mat gray;      // CV_8UC1
   cv::Mat contrast;  // CV_8UC1: largest minus smallest level among the 3x3 pixels of the image around each
   cv::Mat valid;     // CV_8UC1, 0 = masked out; empty: all are valid
 };
+
+void Serialize(StateArchive& archive, GridSample& sample);
 
 GridSample SampleGrid(const cv::Mat& gray, const cv::Mat& mask, int step);
 

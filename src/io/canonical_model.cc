@@ -12,6 +12,7 @@
 #include "pliant/base/text.h"
 #include "pliant/colmap/convert.h"
 #include "pliant/io/run_reader.h"
+#include "pliant/scene/serialize.h"
 
 namespace pliant {
 namespace {
@@ -142,5 +143,8 @@ Status WriteCanonicalModel(const std::string& folder, colmap::Format format, con
   if (Status status = WritePoints(group, folder, format, shown, images, run_path); !status.ok()) return status;
   return group.Commit();
 }
+
+void Serialize(StateArchive& archive, CanonicalImage& image) { archive.Members<4>(image); }
+void Serialize(StateArchive& archive, CanonicalPoint& point) { archive.Members<5>(point); }
 
 }  // namespace pliant

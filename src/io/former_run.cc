@@ -33,19 +33,30 @@ std::vector<std::string> FilesOfRun(const fs::path& folder) {
   }
   for (int submap = 0; submaps > 1 && submap < submaps; ++submap) names.push_back(SubmapModel(submap, submaps));
   names.emplace_back("sparse");
+  names.emplace_back(kCheckpointState);
+  names.push_back(std::string(kCheckpointState) + ".tmp");
+  for (const std::string_view rows : kRowFiles)
+    names.push_back(std::string(kCheckpointFolder) + "/" + std::string(rows));
+  names.emplace_back(kCheckpointFolder);
   std::error_code error;
   std::erase_if(names, [&](const std::string& name) { return !fs::exists(folder / name, error); });
   return names;
 }
 
 // Folders that hold somebody else's files stay.
-Status Delete(const fs::path& folder) {
+template <class Keep>
+Status DeleteBut(const fs::path& folder, const Keep& keep) {
   std::error_code error;
   for (const std::string& name : FilesOfRun(folder)) {
+    if (keep(name)) continue;
     fs::remove(folder / name, error);
     if (error && error != std::errc::directory_not_empty) return UnwritableFolder(folder, error);
   }
   return Status::Ok();
+}
+
+Status Delete(const fs::path& folder) {
+  return DeleteBut(folder, [](const std::string&) { return false; });
 }
 
 Status MoveRun(const fs::path& from, const fs::path& to) {
@@ -67,6 +78,12 @@ Status MoveRun(const fs::path& from, const fs::path& to) {
 Status UnwritableFolder(const fs::path& folder, const std::error_code& error) {
   return {ErrorCode::kUnwritable, "cannot write into " + Quoted(folder.string()) + ": " + error.message() +
                                       "; choose another folder or change its permissions"};
+}
+
+Status DeleteResults(const fs::path& folder) {
+  return DeleteBut(folder, [](const std::string& name) {
+    return name.starts_with(kCheckpointFolder) || std::ranges::find(kRowFiles, name) != kRowFiles.end();
+  });
 }
 
 bool HoldsRun(const fs::path& folder) {
@@ -99,6 +116,11 @@ Result<FormerRun> FormerRun::SetAside(const std::string& folder) {
   }
   if (Status status = Delete(folder); !status.ok()) return status;
   return FormerRun(was_aside ? folder : std::string());
+}
+
+FormerRun FormerRun::OfResumed(const std::string& folder) {
+  std::error_code error;
+  return FormerRun(fs::exists(fs::path(folder) / kAside, error) ? folder : std::string());
 }
 
 void FormerRun::Forget() {

@@ -16,12 +16,17 @@ namespace pliant {
 // kUnwritable, with the system's reason.
 Status UnwritableFolder(const std::filesystem::path& folder, const std::error_code& error);
 
+// What Finish made of a run that is resumed, without its rows and its checkpoint, is deleted.
+Status DeleteResults(const std::filesystem::path& folder);
+
 class FormerRun {
  public:
   // Moves the files of a run that has poses from `folder` into a subfolder, and deletes those of one that has none.
   // What a killed run had set aside stays so. Fails with kInvalidArgument where the folder holds something else and no
   // run, and kUnwritable.
   static Result<FormerRun> SetAside(const std::string& folder);
+  // What was set aside by a run that is resumed.
+  static FormerRun OfResumed(const std::string& folder);
   FormerRun(FormerRun&& other) noexcept;
   FormerRun& operator=(FormerRun&&) = delete;
   ~FormerRun();  // restores it, unless it was forgotten

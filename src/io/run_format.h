@@ -56,6 +56,11 @@ inline constexpr std::array<std::string_view, 13> kRunFiles = {"config.yaml",
                                                                "map.ply",
                                                                "pose_covariance.csv",
                                                                "pose_covariance.csv.tmp"};
+// (pliant/io/checkpoint.h)
+inline constexpr std::string_view kCheckpointFolder = "checkpoint";
+inline constexpr std::string_view kCheckpointState = "checkpoint/state";
+// The files that are written row by row.
+inline constexpr std::array<std::string_view, 3> kRowFiles = {"trajectory.txt", "frames.csv", "observations.csv"};
 inline constexpr std::array<std::string_view, 6> kModelFiles = {"cameras.txt", "cameras.bin",  "images.txt",
                                                                 "images.bin",  "points3D.txt", "points3D.bin"};
 inline std::string SubmapPly(int submap) { return submap == 0 ? "map.ply" : "map_" + std::to_string(submap) + ".ply"; }

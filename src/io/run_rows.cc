@@ -11,6 +11,7 @@
 #include "pliant/base/text.h"
 #include "pliant/io/run_reader.h"
 #include "pliant/io/trajectory.h"
+#include "pliant/scene/serialize.h"
 
 namespace pliant {
 namespace {
@@ -113,5 +114,7 @@ Status MoveRunRows(const std::string& run_path, std::span<const RunFrameWorld> w
   if (Status status = MoveObservations(group, run_path, worlds); !status.ok()) return status;
   return group.Commit();
 }
+
+void Serialize(StateArchive& archive, RunFrameWorld& world) { archive.Members<4>(world); }
 
 }  // namespace pliant

@@ -15,6 +15,8 @@
 
 namespace pliant {
 
+class StateArchive;
+
 // A row of observations.csv.
 void AppendObservation(std::string* out, int frame_idx, const PointObservation& o);
 
@@ -25,6 +27,8 @@ struct RunFrameWorld {
   int submap = 0;                // as it is now
   std::optional<Sim3> moved_by;  // from the one to the other; nothing: it is the same world
 };
+
+void Serialize(StateArchive& archive, RunFrameWorld& world);
 
 // Brings the rows of trajectory.txt, observations.csv and frames.csv into the worlds that their frames have now; where
 // nothing has changed nothing is written. `worlds` has an entry for every row of frames.csv, `images` one for every

@@ -18,8 +18,10 @@
 #include "pliant/base/statistics.h"
 #include "pliant/base/text.h"
 #include "pliant/camera/assumed_camera.h"
+#include "pliant/io/checkpoint.h"
 #include "pliant/io/ply.h"
 #include "pliant/io/trajectory.h"
+#include "pliant/scene/serialize.h"
 
 namespace pliant {
 namespace {
@@ -86,6 +88,7 @@ struct RunWriter::State {
   std::vector<double> stage_total_ms = {};
   int last_frame_idx = -1;
   std::chrono::steady_clock::time_point begin = std::chrono::steady_clock::now();
+  double elapsed_before_s = 0;  // before the run was resumed
   std::string rows = {};
   std::string pose_covariances = {};  // rows
   Status failure = {};                // the first row that could not be written
@@ -99,6 +102,11 @@ struct RunWriter::State {
   Status WriteRows(const FrameReport& report);
   Status WriteSubmap(int submap) const;
   Status FinishSparse() const;
+  // What is counted on the way, without the files.
+  void SerializeCounts(StateArchive& archive);
+  double ElapsedS() const {
+    return elapsed_before_s + std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  }
 };
 
 RunWriter::RunWriter(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -110,6 +118,57 @@ const RunSummary& RunWriter::summary() const { return state_->summary; }
 
 void RunWriter::SetStream(const StreamCounts& stream) { state_->summary.stream = stream; }
 
+namespace {
+
+// run.json as a killed run leaves it, and config.yaml.
+Result<RunSummary> WriteBeginning(const std::string& output_path, RunDescription description,
+                                  const std::string& config_yaml) {
+  RunSummary summary;
+  summary.description = std::move(description);
+  RunDescription& paths = summary.description;
+  for (std::string* path : {&paths.input, &paths.camera, &paths.mask, &paths.tracks, &paths.depth_prior})
+    if (!path->empty() && !IsAssumedCamera(*path)) *path = std::filesystem::absolute(*path).lexically_normal().string();
+  summary.note = "the run was stopped before its end";
+  if (Status status = WriteRunSummary(output_path + "/run.json", summary); !status.ok()) return status;
+  if (Status status = WriteFileAtomically(output_path + "/config.yaml", config_yaml); !status.ok()) return status;
+  return summary;
+}
+
+std::string HeaderOfFrames(const RunColumns& columns) {
+  std::string header(kFrameColumnsBeforeCosts);
+  for (const std::string& cost : columns.costs) header.append(",").append(kCostPrefix).append(cost);
+  header.append(",").append(kFrameColumnsAfterCosts);
+  for (const std::string& stage : columns.stages) header.append(",").append(kStagePrefix).append(stage);
+  return header.append(",").append(kLatencyColumn).append("\n");
+}
+
+// Rows as they were written, beside the checkpoint; Finish may replace the files by others.
+Status KeepRows(const std::string& run_path) {
+  std::error_code error;
+  for (const std::string_view name : kRowFiles) {
+    const fs::path kept = fs::path(run_path) / kCheckpointFolder / name;
+    fs::remove(kept, error);
+    fs::create_hard_link(fs::path(run_path) / name, kept, error);
+    if (error) fs::copy_file(fs::path(run_path) / name, kept, error);  // a file system without links
+    if (error) return UnwritableFolder(kept.parent_path(), error);
+  }
+  return Status::Ok();
+}
+
+Status TakeKeptRows(const std::string& run_path) {
+  std::error_code error;
+  for (const std::string_view name : kRowFiles) {
+    const fs::path kept = fs::path(run_path) / kCheckpointFolder / name;
+    if (!fs::exists(kept, error)) continue;
+    fs::rename(kept, fs::path(run_path) / name, error);
+    if (error) return UnwritableFolder(run_path, error);
+    fs::remove(kept, error);  // two names of one file are not renamed
+  }
+  return Status::Ok();
+}
+
+}  // namespace
+
 Result<RunWriter> RunWriter::Create(const std::string& output_path, const Camera& camera, RunDescription description,
                                     const std::string& config_yaml, RunColumns columns,
                                     const RunWriterOptions& options) {
@@ -117,35 +176,72 @@ Result<RunWriter> RunWriter::Create(const std::string& output_path, const Camera
   if (!lock.ok()) return lock.status();
   auto former = FormerRun::SetAside(output_path);
   if (!former.ok()) return former.status();
-  RunSummary summary;
-  summary.description = std::move(description);
-  RunDescription& paths = summary.description;
-  for (std::string* path : {&paths.input, &paths.camera, &paths.mask, &paths.tracks, &paths.depth_prior})
-    if (!path->empty() && !IsAssumedCamera(*path)) *path = std::filesystem::absolute(*path).lexically_normal().string();
-  summary.note = "the run was stopped before its end";  // what a killed run says
-  if (Status status = WriteRunSummary(output_path + "/run.json", summary); !status.ok()) return status;
-  if (Status status = WriteFileAtomically(output_path + "/config.yaml", config_yaml); !status.ok()) return status;
-
+  auto summary = WriteBeginning(output_path, std::move(description), config_yaml);
+  if (!summary.ok()) return summary.status();
   auto trajectory = OutputFile::Create(output_path + "/trajectory.txt");
   if (!trajectory.ok()) return trajectory.status();
   auto frames = OutputFile::Create(output_path + "/frames.csv");
   if (!frames.ok()) return frames.status();
   auto observations = OutputFile::Create(output_path + "/observations.csv");
   if (!observations.ok()) return observations.status();
-  std::string header(kFrameColumnsBeforeCosts);
-  for (const std::string& cost : columns.costs) header.append(",").append(kCostPrefix).append(cost);
-  header.append(",").append(kFrameColumnsAfterCosts);
-  for (const std::string& stage : columns.stages) header.append(",").append(kStagePrefix).append(stage);
-  header.append(",").append(kLatencyColumn);
-  if (Status status = frames->Append(header + "\n"); !status.ok()) return status;
+  if (Status status = frames->Append(HeaderOfFrames(columns)); !status.ok()) return status;
   if (Status status = observations->Append(std::string(kObservationColumns) + "\n"); !status.ok()) return status;
 
   auto state = std::make_unique<State>(State{output_path, *std::move(lock), *std::move(former), camera,
                                              std::move(columns), options, std::move(trajectory).value(),
                                              std::move(frames).value(), std::move(observations).value()});
-  state->summary = std::move(summary);
+  state->summary = *std::move(summary);
   state->stage_total_ms.assign(state->columns.stages.size(), 0.0);
   return RunWriter(std::move(state));
+}
+
+Result<RunWriter> RunWriter::Resume(const std::string& output_path, const Camera& camera, RunDescription description,
+                                    const std::string& config_yaml, RunColumns columns, const RunWriterOptions& options,
+                                    StateArchive& archive) {
+  auto lock = TakeFolder(output_path);
+  if (!lock.ok()) return lock.status();
+  std::array<std::int64_t, 3> sizes = {};
+  archive(sizes);
+  if (!archive.ok()) return Status(ErrorCode::kUnreadable, "the checkpoint of " + output_path + " is damaged");
+  if (Status status = TakeKeptRows(output_path); !status.ok()) return status;
+  auto trajectory = OutputFile::Continue(output_path + "/trajectory.txt", sizes[0]);
+  if (!trajectory.ok()) return trajectory.status();
+  auto frames = OutputFile::Continue(output_path + "/frames.csv", sizes[1]);
+  if (!frames.ok()) return frames.status();
+  auto observations = OutputFile::Continue(output_path + "/observations.csv", sizes[2]);
+  if (!observations.ok()) return observations.status();
+  if (Status status = DeleteResults(output_path); !status.ok()) return status;
+  auto summary = WriteBeginning(output_path, std::move(description), config_yaml);
+  if (!summary.ok()) return summary.status();
+
+  auto state = std::make_unique<State>(State{output_path, *std::move(lock), FormerRun::OfResumed(output_path), camera,
+                                             std::move(columns), options, std::move(trajectory).value(),
+                                             std::move(frames).value(), std::move(observations).value()});
+  state->summary = *std::move(summary);
+  state->SerializeCounts(archive);
+  if (state->stage_total_ms.size() != state->columns.stages.size()) archive.Fail();
+  if (!archive.ok()) return Status(ErrorCode::kUnreadable, "the checkpoint of " + output_path + " is damaged");
+  return RunWriter(std::move(state));
+}
+
+Status RunWriter::Serialize(StateArchive& archive) {
+  State& s = *state_;
+  if (!s.failure.ok()) return s.failure;
+  for (OutputFile* file : {&s.trajectory, &s.frames, &s.observations})
+    if (Status status = file->Sync(); !status.ok()) return status;
+  std::array<std::int64_t, 3> sizes = {s.trajectory.size(), s.frames.size(), s.observations.size()};
+  archive(sizes);
+  s.SerializeCounts(archive);
+  return Status::Ok();
+}
+
+void RunWriter::State::SerializeCounts(StateArchive& archive) {
+  double elapsed_s = ElapsedS();
+  archive(elapsed_s, summary.first_maps, summary.frames_read, summary.frames_tracked, summary.states, summary.submaps,
+          summary.points, summary.observations, summary.losses);
+  archive(median_errors_px, coverages, latencies_ms, images, points, worlds, stage_total_ms, last_frame_idx,
+          pose_covariances);
+  if (archive.reads()) elapsed_before_s = elapsed_s;
 }
 
 Status RunWriter::State::Check(const FrameReport& report) {
@@ -356,8 +452,7 @@ Status RunWriter::Finish(RunStatus run_status, const std::string& note) {
   for (OutputFile* file : {&s.observations, &s.trajectory, &s.frames})
     if (Status closed = file->Close(); status.ok()) status = closed;
   if (s.options.timings == RunTimings::kWritten) {
-    s.summary.total_s =
-        s.options.total_s.value_or(std::chrono::duration<double>(std::chrono::steady_clock::now() - s.begin).count());
+    s.summary.total_s = s.options.total_s.value_or(s.ElapsedS());
     if (s.summary.total_s > 0)
       s.summary.frames_per_second = static_cast<double>(s.summary.frames_read) / s.summary.total_s;
   }
@@ -366,6 +461,8 @@ Status RunWriter::Finish(RunStatus run_status, const std::string& note) {
         s.columns.stages[i],
         s.stage_total_ms[i] / static_cast<double>(std::max<std::int64_t>(s.summary.frames_read, 1)));
   s.summary.latency = LatencyOf(s.latencies_ms);
+  const bool may_be_resumed = run_status == RunStatus::kInterrupted || run_status == RunStatus::kFailed;
+  if (status.ok() && may_be_resumed && HasCheckpoint(s.path)) status = KeepRows(s.path);
   if (status.ok()) {
     const int submaps_as_reported = s.summary.submaps;
     s.NumberSubmaps();
@@ -389,6 +486,7 @@ Status RunWriter::Finish(RunStatus run_status, const std::string& note) {
   }
   s.former.Forget();
   const Status written = WriteRunSummary(s.path + "/run.json", s.summary);
+  if (std::error_code error; written.ok() && has_ended) fs::remove_all(fs::path(s.path) / kCheckpointFolder, error);
   return status.ok() ? written : status;
 }
 

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "pipeline/working_frame.h"
+#include "pliant/scene/serialize.h"
 
 namespace pliant {
 namespace {
@@ -124,5 +125,7 @@ void FramesBefore::MoveNewPoints(FrameReport* reference) {
   for (const auto& [id, point] : points) reference->new_points.push_back(point);
   reference->added = static_cast<int>(reference->new_points.size());
 }
+
+void FramesBefore::Serialize(StateArchive& archive) { archive(waiting_); }
 
 }  // namespace pliant

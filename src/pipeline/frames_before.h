@@ -18,6 +18,8 @@
 
 namespace pliant {
 
+class StateArchive;
+
 class FramesBefore {
  public:
   // `camera` is that of the working images; `tracker`, whose reports come, has to outlive this: the points that are new
@@ -30,6 +32,8 @@ class FramesBefore {
   std::vector<FrameReport> Pass(std::vector<FrameReport> reports);
   // Those that wait, as they are: no map comes any more.
   std::vector<FrameReport> Finish();
+
+  void Serialize(StateArchive& archive);
 
  private:
   std::vector<PreparedFrame> Read(int first, int last, std::size_t count) const;

@@ -72,6 +72,7 @@ void TrackPath(const py::dict& input, const std::string& output_path, const py::
                    .end = py::cast<int>(input["end"]),
                    .stride = py::cast<int>(input["stride"])};
   request.output_path = output_path;
+  request.resume = py::cast<bool>(input["resume"]);
   RunAndRaise(input, std::move(request), options, preset, on_frame, nullptr);
 }
 

@@ -6,7 +6,8 @@
 usage: campaign.py PROGRAM WORK [--minutes M | --cases N] [--seed S] [--jobs J]
 
 Cases are drawn by the seed: damaged inputs (mutation), signals at random instants (kill), full disks (disk, as root),
-and limits on the size and the number of files (limit). After each of them the program has to have ended by itself
+limits on the size and the number of files (limit), and runs that are stopped at random instants and resumed until they
+end, which then have to be those that were not stopped byte for byte (resume). After each of them the program has to have ended by itself
 within a minute, with exit code 0, 1 or 2, a sentence of at most 400 characters where it failed, no file that breaks off
 under its final name, and no more than 1 GB of memory. WORK/campaign.json has the counts; what does not hold stays in
 WORK/wrong/NUMBER with its input and its command, and makes the exit code 1.
@@ -34,7 +35,8 @@ import mutations
 LONGEST_S = 60
 STOP_WITHIN_S = 20
 MOST_MEMORY_KB = 1_000_000
-KINDS = ["mutation"] * 12 + ["kill"] * 4 + ["limit"] * 2 + ["disk"] * 2
+MOST_PARTS = 20  # of a run that is resumed
+KINDS = ["mutation"] * 12 + ["kill"] * 4 + ["limit"] * 2 + ["disk"] * 2 + ["resume"] * 2
 
 
 class Ended:
@@ -154,6 +156,21 @@ class Case:
         if again.code != 0:
             self.wrong.append(f"does not run again: {again.code} {again.stderr[-500:]}")
         self.check(again)
+
+    def resume(self):
+        command = self.command_of([*material.RESUMABLE, "-o", "OUT", "--resume"])
+        self.what["stops"] = []
+        for _ in range(MOST_PARTS):
+            stop = self.chance.choice([signal.SIGKILL, signal.SIGTERM, signal.SIGINT])
+            after_s = 0.1 + 0.9 * self.chance.random()
+            self.what["stops"].append(f"{stop.name} {after_s:.3f}")
+            ended = run(command, self.folder, after_s, stop)
+            self.check(ended, stop)
+            if ended.code == 0:
+                break
+        else:
+            self.check(run(command, self.folder))
+        self.wrong += checks.differing_runs(self.folder / "whole", self.folder / "out")
 
     def limit(self):
         what = self.chance.choice([resource.RLIMIT_FSIZE, resource.RLIMIT_NOFILE])

@@ -66,6 +66,21 @@ class Checks(unittest.TestCase):
             self.assertEqual(checks.wrong_files(folder), [])
 
 
+    def test_runs(self):
+        with tempfile.TemporaryDirectory() as name:
+            one, other = pathlib.Path(name, "one"), pathlib.Path(name, "other")
+            for folder, word in ((one, "a"), (other, "b")):
+                folder.mkdir()
+                (folder / "frames.csv").write_text("1,2")
+                (folder / "run.json").write_text(f'{{"command_line": ["{word}"], "points": 3}}')
+            self.assertEqual(checks.differing_runs(one, other), [])
+            (other / "frames.csv").write_text("1,3")
+            (other / "map.ply").write_text("ply")
+            (one / "run.json").write_text('{"command_line": [], "points": 4}')
+            self.assertEqual(checks.differing_runs(one, other),
+                             ["frames.csv differs", "map.ply is in one run only", "run.json differs"])
+
+
 class Mutations(unittest.TestCase):
     def test_every_one_changes_something_and_repeats(self):
         data = b"ply 1 2.5 -3e4\nline\n" * 20

@@ -106,3 +106,18 @@ def _wrong_ply(data):
             needed += count * sizes[words[1]]
     return "" if (len(body) >= needed if has_list else len(body) == needed) else "a PLY whose data break off"
 
+
+def differing_runs(one, other):
+    """In which files two run folders differ; command line and paths in run.json do not count."""
+    names = {path.relative_to(folder) for folder in (one, other) for path in folder.rglob("*") if path.is_file()}
+    differing = []
+    for name in sorted(names):
+        if not (one / name).exists() or not (other / name).exists():
+            differing.append(f"{name} is in one run only")
+            continue
+        data = [(folder / name).read_bytes() for folder in (one, other)]
+        if name.name == "run.json":
+            data = [{**json.loads(text), "command_line": None, "input": None} for text in data]
+        if data[0] != data[1]:
+            differing.append(f"{name} differs")
+    return differing

@@ -29,10 +29,16 @@ Status Unwritable(const std::filesystem::path& path);
 class OutputFile {
  public:
   static Result<OutputFile> Create(const std::string& path);
+  // A file that is there, cut to its first `size` bytes, at its end. Fails with kUnreadable where it has fewer, and
+  // with kUnwritable.
+  static Result<OutputFile> Continue(const std::string& path, std::int64_t size);
   Status Append(std::string_view text);
   // Hands `buffer` over and empties it when it has grown large.
   Status AppendWhenLarge(std::string* buffer);
+  // What was written survives that the power goes.
+  Status Sync();
   Status Close();
+  std::int64_t size() const { return size_; }
 
  private:
   struct Closer {
@@ -41,6 +47,7 @@ class OutputFile {
   OutputFile(std::string path, std::FILE* file) : path_(std::move(path)), file_(file) {}
   Status Failure() const;
 
+  std::int64_t size_ = 0;
   std::string path_;
   std::unique_ptr<std::FILE, Closer> file_;
 };
@@ -62,6 +69,9 @@ class FileGroup {
  private:
   std::vector<std::string> paths_;
 };
+
+// The names of the files in a folder survive that the power goes. Fails with kUnwritable.
+Status SyncFolder(const std::filesystem::path& folder);
 
 // Replaces a whole file: a reader sees the old one or the new one.
 Status WriteFileAtomically(const std::string& path, std::string_view text);

@@ -17,6 +17,8 @@
 
 namespace pliant {
 
+class StateArchive;
+
 // Of an image; pixels from `x` to `x` + `width` - 1.
 struct PixelRectangle {
   int x = 0;
@@ -59,6 +61,8 @@ class ImageChecker {
   // Of all that were added.
   ImageCheck Check() const;
 
+  void Serialize(StateArchive& archive);
+
  private:
   struct State;
   std::unique_ptr<State> state_;
@@ -84,6 +88,9 @@ class CheckedSequence final : public Sequence {
 
   // Of what was read so far.
   ImageCheck Check() const { return checker_.Check(); }
+
+  // What is known of the images; not the source.
+  void Serialize(StateArchive& archive) { checker_.Serialize(archive); }
 
  private:
   Sequence& source_;

@@ -19,6 +19,8 @@
 
 namespace pliant {
 
+class StateArchive;
+
 struct CanonicalImage {
   int frame_idx = 0;  // its observations carry this; the image's id is frame_idx + 1
   std::string name;
@@ -44,6 +46,9 @@ auto FindPoint(Points& points, PointId id) -> decltype(points.data()) {
                        [](const CanonicalPoint& point, PointId wanted) { return point.point.id < wanted; });
   return found != points.end() && found->point.id == id ? &*found : nullptr;
 }
+
+void Serialize(StateArchive& archive, CanonicalImage& image);
+void Serialize(StateArchive& archive, CanonicalPoint& point);
 
 // Counts one more observation; a point that does not project there adds nothing to its mean error.
 void CountObservation(const Camera& camera, const Rigid3& cam_from_world, const PointObservation& observation,

@@ -31,6 +31,8 @@
 
 namespace pliant {
 
+class StateArchive;
+
 enum class RunTimings {
   kWritten,
   kNone,  // zeros instead, so that two runs can be compared byte by byte
@@ -66,6 +68,12 @@ class RunWriter {
   static Result<RunWriter> Create(const std::string& output_path, const Camera& camera, RunDescription description,
                                   const std::string& config_yaml, RunColumns columns,
                                   const RunWriterOptions& options = {});
+  // Goes on with a run that was stopped, or killed, from what Serialize wrote when these frames were the last: rows of
+  // later ones are cut off, and what Finish made is deleted. The arguments are those of Create; a former run that is
+  // still aside stays so. Fails with kUnreadable where rows are missing, or the archive is damaged, and kUnwritable.
+  static Result<RunWriter> Resume(const std::string& output_path, const Camera& camera, RunDescription description,
+                                  const std::string& config_yaml, RunColumns columns, const RunWriterOptions& options,
+                                  StateArchive& archive);
   RunWriter(RunWriter&&) noexcept;
   RunWriter& operator=(RunWriter&&) noexcept;
   ~RunWriter();  // without Finish the folder stays what a killed run leaves
@@ -75,12 +83,16 @@ class RunWriter {
   // new. A term or a stage that the report does not name is 0.
   Status Write(const FrameReport& report);
 
+  // Writes what Resume needs; all rows are then on the disk itself. Fails with kUnwritable.
+  Status Serialize(StateArchive& archive);
+
   // What became of the images of a live source; before Finish.
   void SetStream(const StreamCounts& stream);
 
   // Brings the rows of merged submaps into one world, writes map.ply, sparse/ and the final run.json; to be called
   // once, whatever ended the run. run.json is attempted even when the others fail, and then says `failed` with the
-  // reason. Where a former run is restored, summary().note alone says what became of this one.
+  // reason. The checkpoint of a run that has come to its end is deleted, else its rows are kept beside it. Where a
+  // former run is restored, summary().note alone says what became of this one.
   Status Finish(RunStatus status, const std::string& note);
 
   const RunSummary& summary() const;

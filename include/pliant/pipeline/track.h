@@ -63,6 +63,7 @@ struct ImageOptions {
 struct TrackOptions {
   int seed = 1;
   int threads = 2;  // 1: everything on one thread; 2 and more: images are read ahead, points are followed in parallel
+  int checkpoint_frames = 1000;  // what RunRequest::resume goes on with is written every Nth frame; 0: never
   RunTimings timings = RunTimings::kWritten;
   int max_frames_back = 10000;  // without a map, before the reference of a first map, tracked backwards in time from it
   LiveInputOptions live_input;  // where the image path names a live source
@@ -85,6 +86,11 @@ struct RunRequest {
   // RecordingOf(output_path), which is the run's input from then on. `stop` ends it like the end of a sequence.
   SequenceRequest input;
   std::string output_path;
+  // Go on with the run in output_path that was stopped, failed or was killed, from its last checkpoint (option
+  // General.checkpoint_frames), with the same result as if it had not been: bytes too, but for wall times. Where it has
+  // no checkpoint it begins anew, and where it has come to its end there is nothing to do. Observers are told of the
+  // frames that follow.
+  bool resume = false;
   std::vector<std::string> command_line;    // for run.json
   TrackerExtensions extensions = {};        // asked from the calling thread
   const std::atomic<bool>* stop = nullptr;  // becomes true when the run is to end after the present frame; may be null
@@ -111,7 +117,8 @@ class TrackObserver {
 };
 
 // Runs the tracker over the sequence. Fails when there is nothing to run on: an input that cannot be opened, an output
-// that cannot be made. Once frames are read the answer is a summary, whose status and note say how the run ended:
+// that cannot be made, a checkpoint that is damaged or of another run. Once frames are read the answer is a summary,
+// whose status and note say how the run ended:
 //   completed    at the sequence's end            lost    too few points (the note says in which frame)
 //   interrupted  `stop` became true               failed  an image could not be read, a row not be written, or the
 //                                                         sequence ended without a first map

@@ -1,0 +1,81 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/io/checkpoint.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <system_error>
+
+#include <zlib.h>
+
+#include "io/former_run.h"
+#include "io/run_format.h"
+#include "pliant/base/files.h"
+#include "pliant/base/state_archive.h"
+#include "pliant/base/version.h"
+
+namespace pliant {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kMagic = "Pliant checkpoint\n";
+constexpr std::size_t kMaxHead = 100;  // bytes: a version and a checksum
+
+std::string StateFile(const std::string& run_path) { return run_path + "/" + std::string(kCheckpointState); }
+
+std::uint32_t Checksum(std::string_view bytes) {
+  return static_cast<std::uint32_t>(crc32_z(0, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()));
+}
+
+}  // namespace
+
+bool HasCheckpoint(const std::string& run_path) { return Exists(StateFile(run_path)); }
+
+Status WriteCheckpoint(const std::string& run_path, std::string_view state) {
+  std::error_code error;
+  fs::create_directories(fs::path(StateFile(run_path)).parent_path(), error);
+  if (error) return UnwritableFolder(run_path, error);
+  std::string version(kVersion);
+  std::uint32_t checksum = Checksum(state);
+  StateArchive head;
+  head(version, checksum);
+  FileGroup group;
+  auto file = group.Create(StateFile(run_path));
+  if (!file.ok()) return file.status();
+  for (const std::string_view part : {kMagic, std::string_view(head.bytes()), state})
+    if (Status status = file->Append(part); !status.ok()) return status;
+  if (Status status = file->Sync(); !status.ok()) return status;
+  if (Status status = file->Close(); !status.ok()) return status;
+  if (Status status = group.Commit(); !status.ok()) return status;
+  return SyncFolder(fs::path(StateFile(run_path)).parent_path());
+}
+
+Result<std::string> ReadCheckpoint(const std::string& run_path) {
+  const std::string path = StateFile(run_path);
+  const auto damaged = [&] {
+    return Status(ErrorCode::kUnreadable,
+                  "the checkpoint " + path + " is damaged; track the sequence anew, with --overwrite");
+  };
+  auto bytes = ReadFile(path);
+  if (!bytes.ok()) return bytes.status();
+  if (!bytes->starts_with(kMagic)) return damaged();
+  StateArchive head = StateArchive::Reading(bytes->substr(kMagic.size(), kMaxHead));
+  std::string version;
+  std::uint32_t checksum = 0;
+  head(version, checksum);
+  if (!head.ok()) return damaged();
+  if (version != kVersion)
+    return Status(ErrorCode::kMismatch, "the checkpoint " + path + " is of version " + Quoted(version) +
+                                            ", and this is " + std::string(kVersion) +
+                                            "; resume the run with that version, or track the sequence anew, with "
+                                            "--overwrite");
+  StateArchive written;
+  written(version, checksum);
+  bytes->erase(0, kMagic.size() + written.bytes().size());
+  if (Checksum(*bytes) != checksum) return damaged();
+  return bytes;
+}
+
+}  // namespace pliant

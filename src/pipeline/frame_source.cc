@@ -1,0 +1,112 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pipeline/frame_source.h"
+
+#include <utility>
+
+#include "pipeline/working_frame.h"
+#include "pliant/base/state_archive.h"
+#include "pliant/tracking/bootstrapping/stereo_pair.h"
+
+namespace pliant {
+namespace {
+
+constexpr int kFramesAhead = 3;
+constexpr int kLiveFramesAhead = 1;  // it is prepared while tracking is busy; more would be old by then
+
+}  // namespace
+
+FrameSource::FrameSource(CheckedSequence& sequence, const SequenceRequest& input, const TrackOptions& options,
+                         const RunStart& start, bool wants_depth, int last_frame_idx, int checkpoint_frames)
+    : input_(input),
+      options_(options),
+      start_(start),
+      wants_depth_(wants_depth),
+      checkpoint_frames_(checkpoint_frames),
+      last_frame_idx_(last_frame_idx) {
+  ReadAhead(
+      [this, &sequence] {
+        auto read = Read(sequence);
+        if (read && read->ok() && IsCheckpoint((*read)->frame.frame_idx)) {
+          StateArchive archive;
+          archive(sequence);
+          (*read)->checked = archive.bytes();
+        }
+        return read;
+      },
+      &frames_);
+}
+
+bool FrameSource::IsCheckpoint(int frame_idx) const {
+  return checkpoint_frames_ > 0 && ((frame_idx - input_.start) / input_.stride + 1) % checkpoint_frames_ == 0;
+}
+
+std::optional<Result<ReadFrame>> FrameSource::Read(Sequence& sequence) const {
+  const WorkingImage& working = start_.working_image;
+  auto next = sequence.Next();
+  if (!next.ok()) return next.status();
+  if (!next->has_value()) return std::nullopt;
+  const SequenceFrame& frame = **next;
+  ReadFrame read{PrepareWorkingFrame(frame, working, options_.tracker), frame.image, {}, {}};
+  if (!wants_depth_) return read;
+  if (options_.tracker.init.method == InitMethod::kColmapModel) {
+    read.frame.known_points = [&start = start_, name = frame.name] {
+      std::vector<PixelDepth> points = start.model->PointsIn(name);
+      for (PixelDepth& point : points) point.pixel = start.working_image.ToWorking(point.pixel);
+      return points;
+    };
+  } else if (!start_.cloud_depth_mm.empty()) {
+    if (frame.frame_idx == start_.first_frame_idx) read.frame.depth_mm = working.Nearest(start_.cloud_depth_mm);
+  } else if (options_.tracker.init.method == InitMethod::kStereo) {
+    const auto right = sequence.Right();
+    read.depth = right.status();
+    if (right.ok() && right->has_value())
+      read.frame.known_points = [left = read.frame, right = working.Image(**right), camera = *start_.working_camera,
+                                 baseline_mm = sequence.BaselineMm().value_or(0.0), &options = options_.tracker,
+                                 threads = options_.threads] {
+        return PointsOfPair(left, right, camera, baseline_mm, options, threads);
+      };
+  } else {
+    const auto depth = sequence.Depth(frame.frame_idx);
+    read.depth = depth.status();
+    if (depth.ok() && depth->has_value()) read.frame.depth_mm = working.Nearest(**depth);
+  }
+  return read;
+}
+
+std::optional<Result<ReadFrame>> FrameSource::Next() {
+  if (again_) {
+    if (auto frame = again_->Next()) return frame;
+    again_.reset();
+  }
+  const auto asked = Clock::now();
+  auto frame = frames_->Next();
+  if (!frame || !frame->ok()) return frame;
+  arrived_ = asked;
+  last_frame_idx_ = (*frame)->frame.frame_idx;
+  if (input_.IsLive()) {
+    const auto arrived = input_.given->images->Arrived(last_frame_idx_);
+    arrived_ = arrived.value_or(arrived_);
+  }
+  return frame;
+}
+
+Status FrameSource::GoBackTo(int frame_idx) {
+  again_.reset();
+  if (frame_idx >= last_frame_idx_) return Status::Ok();
+  SequenceRequest part = input_;
+  part.start = frame_idx + input_.stride;
+  part.end = last_frame_idx_ + 1;
+  auto reopened = OpenSequence(part);
+  if (!reopened.ok()) return reopened.status();
+  reopened_ = *std::move(reopened);
+  ReadAhead([this] { return Read(*reopened_); }, &again_);
+  return Status::Ok();
+}
+
+void FrameSource::ReadAhead(std::function<std::optional<Result<ReadFrame>>()> read, Frames* frames) const {
+  frames->emplace(std::move(read), options_.threads == 1 ? 0 : (input_.IsLive() ? kLiveFramesAhead : kFramesAhead));
+}
+
+}  // namespace pliant
