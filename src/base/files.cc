@@ -190,6 +190,12 @@ Result<LineReader> LineReader::Open(const std::string& path) {
   return LineReader(path, std::move(stream));
 }
 
+Status LineReader::End() const {
+  if (!stream_.bad()) return Status::Ok();
+  return {ErrorCode::kUnreadable, "cannot read " + Quoted(path_) + " beyond line " + std::to_string(number_) +
+                                      "; check the disk, or copy the file again"};
+}
+
 bool LineReader::Next(std::string_view* line) {
   if (!std::getline(stream_, line_)) return false;
   ++number_;

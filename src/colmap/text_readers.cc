@@ -111,6 +111,7 @@ Result<std::vector<Row>> ReadRows(const std::string& path, const Parse& parse) {
     if (fields.error().empty() && !fields.empty()) fields.Fail("there is more on the line than there should be");
     if (!fields.error().empty()) return reader->Error(fields.error());
   }
+  if (Status status = reader->End(); !status.ok()) return status;
   return rows;
 }
 
@@ -167,6 +168,7 @@ Result<std::vector<Image>> ReadTextImages(const std::string& path, Observations 
       return reader->Error(keypoints.error() + "; the line should have the observations of image " +
                            std::to_string(image.id) + ", X Y POINT3D_ID each. Is it missing?");
   }
+  if (Status status = reader->End(); !status.ok()) return status;
   return images;
 }
 

@@ -103,6 +103,7 @@ Result<Listed> ReadList(const fs::path& camera, std::vector<std::string>* warnin
     list.times_s.push_back(kNanosecond_s * time_ns);
     list.files.push_back(file);
   }
+  if (Status status = reader->End(); !status.ok()) return status;
   files.WarnOfMissing(camera / "data.csv", warnings);
   if (list.files.empty())
     return Status(ErrorCode::kNotFound,

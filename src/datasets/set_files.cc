@@ -117,6 +117,7 @@ Result<std::vector<NumberRow>> ReadNumberRows(const fs::path& file, std::size_t 
                            "' does not have them");
     rows.push_back({reader->number(), *std::move(numbers)});
   }
+  if (Status status = reader->End(); !status.ok()) return status;
   return rows;
 }
 

@@ -109,6 +109,7 @@ Result<SfmPoints> ReadSfmPoints(const std::filesystem::path& path) {
                            std::to_string(columns));
     if (Status status = AddRow(*reader, fields, *places, &points); !status.ok()) return status;
   }
+  if (Status status = reader->End(); !status.ok()) return status;
   if (!places)
     return Status(ErrorCode::kUnreadable, path.string() + " is empty; its first line must be frame,u_px,v_px,depth");
   return points;

@@ -36,6 +36,7 @@ Result<std::map<std::string, double>> ReadIni(const fs::path& file) {
     if (equals != std::string::npos && ParseDouble(Trimmed(std::string_view(text).substr(equals + 1)), &value))
       values[section + "." + Trimmed(std::string_view(text).substr(0, equals))] = value;
   }
+  if (Status status = reader->End(); !status.ok()) return status;
   return values;
 }
 

@@ -38,6 +38,7 @@ Result<std::map<double, fs::path>> ReadTimedFiles(const fs::path& file, std::vec
     const fs::path listed = file.parent_path() / fields[1];
     if (files.Has(listed)) list.emplace(time_s, listed);
   }
+  if (Status status = reader->End(); !status.ok()) return status;
   files.WarnOfMissing(file, warnings);
   return list;
 }

@@ -100,6 +100,7 @@ Result<ObservationReader> ObservationReader::Open(const std::string& path) {
   std::error_code error;
   const bool ours = std::filesystem::exists(path + "/run.json", error);
   const bool cut = !lines->Next(&header) || (ours && !lines->ended());  // killed before the first row
+  if (Status status = lines->End(); !status.ok()) return status;
   std::optional<OptionalColumns> columns = ParseHeader(header);
   if (!cut && !columns)
     return lines->Error("the first line must begin with " + Quoted(kNeededObservationColumns) +
@@ -139,6 +140,7 @@ Result<std::optional<FrameObservations>> ObservationReader::Next() {
     }
     frame = FrameObservations{row.frame_idx, {row.observation}};
   }
+  if (Status status = state_->lines.End(); !status.ok()) return status;
   return frame;
 }
 

@@ -183,6 +183,7 @@ Result<Points> ReadTextCloud(const std::string& path) {
         return reader->Error("a point has three numbers");
     points.push_back(point);
   }
+  if (Status status = reader->End(); !status.ok()) return status;
   return points;
 }
 

@@ -97,7 +97,7 @@ Status ReadFrames(const std::string& path, Run* run) {
   auto lines = LineReader::Open(path);
   if (!lines.ok()) return lines.status();
   std::string_view line;
-  if (!lines->Next(&line) || !lines->ended()) return Status::Ok();  // killed before the first row
+  if (!lines->Next(&line) || !lines->ended()) return lines->End();  // killed before the first row
   FrameColumns columns;
   if (const std::string missing = FindColumns(line, &columns); !missing.empty())
     return lines->Error("the first line names no column " + Quoted(missing) + "; a run's has " +
@@ -114,7 +114,7 @@ Status ReadFrames(const std::string& path, Run* run) {
       return lines->Error("frame " + std::to_string(frame.frame_idx) + " is not after the row before");
     run->frames.push_back(std::move(frame));
   }
-  return Status::Ok();
+  return lines->End();
 }
 
 // Gives the poses the frames of frames.csv that were tracked.

@@ -29,6 +29,7 @@ Status RewriteLines(FileGroup& group, const std::string& path, const Change& cha
     if (Status status = change(number, line, &rows); !status.ok()) return status;
     if (Status status = file->AppendWhenLarge(&rows); !status.ok()) return status;
   }
+  if (Status status = lines->End(); !status.ok()) return status;
   if (Status status = file->Append(rows); !status.ok()) return status;
   return file->Close();
 }

@@ -149,7 +149,8 @@ Status WriteRunSummary(const std::string& path, const RunSummary& summary) {
   json.erase("trust");
   json["first_maps"].clear();
   const std::string shorter = json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-  return shorter.size() > kBlock ? status : OverwriteFile(path, shorter);
+  if (shorter.size() <= kBlock) static_cast<void>(OverwriteFile(path, shorter));
+  return status;
 }
 
 Result<RunSummary> ReadRunSummary(const std::string& path) {

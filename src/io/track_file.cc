@@ -84,6 +84,7 @@ Result<TrackFile> ReadTrackCsv(const std::string& path) {
       return reader->Error("track " + std::to_string(row.id.value) + " comes twice in frame " +
                            std::to_string(row.seen.frame_idx) + "; a track has one pixel a frame");
   }
+  if (Status status = reader->End(); !status.ok()) return status;
   TrackFile file;
   for (const auto& [id, pixels] : tracks) {
     PixelTrack& track = file.tracks.emplace_back(PixelTrack{id, {}});

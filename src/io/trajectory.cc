@@ -86,6 +86,7 @@ Result<std::vector<Value>> ReadLines(const std::string& path, Parse parse, Check
     if (Status status = check(*reader, values, *value); !status.ok()) return status;
     values.push_back(*value);
   }
+  if (Status status = reader->End(); !status.ok()) return status;
   return values;
 }
 

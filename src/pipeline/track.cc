@@ -218,8 +218,9 @@ RunDescription DescriptionOf(const RunRequest& request, const TrackOptions& opti
           request.extensions.Names()};
 }
 
-// Of a run that has come to its end: there is nothing to resume.
+// Of a run that has come to its end, with which its checkpoint is deleted: there is nothing to resume.
 std::optional<RunSummary> SummaryOfEnded(const std::string& run_path) {
+  if (HasCheckpoint(run_path)) return std::nullopt;
   auto summary = ReadRunSummary(run_path + "/run.json");
   if (!summary.ok() || (summary->status != RunStatus::kCompleted && summary->status != RunStatus::kLost))
     return std::nullopt;

@@ -3,11 +3,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Damages what the program reads, kills it, fills its disk and takes its resources away, and checks what must hold.
 
-usage: campaign.py PROGRAM WORK [--minutes M | --cases N] [--seed S] [--jobs J]
+usage: campaign.py PROGRAM WORK [--fail_nth LIBRARY] [--minutes M | --cases N] [--seed S] [--jobs J]
 
 Cases are drawn by the seed: damaged inputs (mutation), signals at random instants (kill), full disks (disk, as root),
-limits on the size and the number of files (limit), and runs that are stopped at random instants and resumed until they
-end, which then have to be those that were not stopped byte for byte (resume). After each of them the program has to have ended by itself
+limits on the size and the number of files (limit), runs that are stopped at random instants and resumed until they end,
+which then have to be those that were not stopped byte for byte (resume), and, with LIBRARY (fail_nth.c), one call that
+fails: the n-th open, read, write, fsync, rename, mkdir or thread start (fault). After each of them the program has to have ended by itself
 within a minute, with exit code 0, 1 or 2, a sentence of at most 400 characters where it failed, no file that breaks off
 under its final name, and no more than 1 GB of memory. WORK/campaign.json has the counts; what does not hold stays in
 WORK/wrong/NUMBER with its input and its command, and makes the exit code 1.
@@ -36,7 +37,8 @@ LONGEST_S = 60
 STOP_WITHIN_S = 20
 MOST_MEMORY_KB = 1_000_000
 MOST_PARTS = 20  # of a run that is resumed
-KINDS = ["mutation"] * 12 + ["kill"] * 4 + ["limit"] * 2 + ["disk"] * 2 + ["resume"] * 2
+KINDS = ["mutation"] * 12 + ["kill"] * 4 + ["limit"] * 2 + ["disk"] * 2 + ["resume"] * 2 + ["fault"] * 4
+FAULTS = ["open", "read", "write", "fsync", "rename", "mkdir", "thread"]
 
 
 class Ended:
@@ -65,7 +67,7 @@ class Reader(threading.Thread):
         return self.text
 
 
-def run(command, folder, stop_after_s=None, stop=signal.SIGKILL, limits=None, longest_s=LONGEST_S):
+def run(command, folder, stop_after_s=None, stop=signal.SIGKILL, limits=None, longest_s=LONGEST_S, environment=None):
     """Runs it in `folder`, whose file `input` is its standard input where there is one."""
     def prepare():
         for what, most in (limits or {}).items():
@@ -74,7 +76,7 @@ def run(command, folder, stop_after_s=None, stop=signal.SIGKILL, limits=None, lo
     stdin_path = folder / "input"
     with open(stdin_path if stdin_path.exists() else os.devnull, "rb") as stdin:
         process = subprocess.Popen(command, cwd=folder, stdin=stdin, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                                   start_new_session=True, preexec_fn=prepare)
+                                   start_new_session=True, preexec_fn=prepare, env={**os.environ, **(environment or {})})
     readers = [Reader(process.stdout), Reader(process.stderr)]
     begin = time.monotonic()
     hung, stopped = False, False
@@ -97,6 +99,8 @@ def run(command, folder, stop_after_s=None, stop=signal.SIGKILL, limits=None, lo
 
 class Case:
     """One case: a folder with the material, what is done, and what did not hold."""
+
+    fail_nth = None  # the library
 
     def __init__(self, program, source, folder, seed):
         self.program, self.source, self.folder = str(program), source, folder
@@ -172,6 +176,24 @@ class Case:
             self.check(run(command, self.folder))
         self.wrong += checks.differing_runs(self.folder / "whole", self.folder / "out")
 
+    # The n-th of as many calls as the command makes when none fails.
+    def fault(self):
+        words = self.chance.choice([*material.WRITERS, (*material.RESUMABLE, "-o", "OUT")])
+        command = self.command_of(words)
+        counts_path = self.folder / "counts"
+        loaded = {"LD_PRELOAD": str(Case.fail_nth)}
+        self.check(run(command, self.folder, environment={**loaded, "PLIANT_FAIL_COUNTS": str(counts_path)}))
+        counts = {kind: int(count) for kind, count in map(str.split, counts_path.read_text().splitlines())}
+        for path in self.outputs():
+            shutil.rmtree(path) if path.is_dir() else path.unlink()
+        kind = self.chance.choice([kind for kind in FAULTS if counts[kind] > 0])
+        self.what["fault"] = f"{kind}:{self.chance.randint(1, counts[kind])}"
+        failed = run(command, self.folder, environment={**loaded, "PLIANT_FAIL": self.what["fault"]})
+        self.check(failed)
+        if failed.code != 0 and words[:len(material.RESUMABLE)] == material.RESUMABLE:
+            self.check(run([*command, "--resume"], self.folder))
+            self.wrong += checks.differing_runs(self.folder / "whole", self.folder / "out")
+
     def limit(self):
         what = self.chance.choice([resource.RLIMIT_FSIZE, resource.RLIMIT_NOFILE])
         most = (self.chance.choice([0, 100, 4096, 20000, 100000, 1000000]) if what == resource.RLIMIT_FSIZE else
@@ -199,6 +221,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("program", type=pathlib.Path)
     parser.add_argument("work", type=pathlib.Path)
+    parser.add_argument("--fail_nth", type=pathlib.Path, default=None)
     parser.add_argument("--minutes", type=float, default=None)
     parser.add_argument("--cases", type=int, default=None)
     parser.add_argument("--seed", type=int, default=1)
@@ -212,6 +235,9 @@ def main():
     if not can_mount():
         KINDS[:] = [kind for kind in KINDS if kind != "disk"]
         print("no full disks: only root can mount them", file=sys.stderr)
+    Case.fail_nth = arguments.fail_nth and arguments.fail_nth.resolve()
+    if Case.fail_nth is None:
+        KINDS[:] = [kind for kind in KINDS if kind != "fault"]
     if arguments.minutes is None and arguments.cases is None:
         arguments.minutes = 30.0
     end = time.monotonic() + 60 * arguments.minutes if arguments.minutes is not None else None

@@ -3,6 +3,8 @@
 """What a campaign damages and what it runs: a small simulated sequence with everything that is made of it."""
 
 import dataclasses
+import pathlib
+import shutil
 import subprocess
 
 BOARD = "%YAML:1.0\n---\nimage_width: 160\nimage_height: 120\nK: !!opencv-matrix\n   rows: 3\n   cols: 3\n   dt: d\n" \
@@ -18,10 +20,12 @@ RESUMABLE = ("track", "seq", "--General.timings", "none", "--General.checkpoint_
 
 
 def make(program, folder):
-    """Makes it once; a folder that is there is taken as it is."""
-    if (folder / "done").exists():
+    """Makes it once; a folder that this version of it made is taken as it is."""
+    version = pathlib.Path(__file__).read_text(encoding="utf-8")
+    if (folder / "done").exists() and (folder / "done").read_text(encoding="utf-8") == version:
         return
-    folder.mkdir(parents=True, exist_ok=True)
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
 
     def run(*arguments):
         subprocess.run([program, *arguments, "--quiet"], cwd=folder, check=True)
@@ -42,7 +46,7 @@ def make(program, folder):
     run("report", "--run", "run", "--video", "-o", "film.mp4")
     (folder / "opencv.yaml").write_text(BOARD, encoding="utf-8")
     (folder / "opencv.xml").write_text(XML, encoding="utf-8")
-    (folder / "done").touch()
+    (folder / "done").write_text(version, encoding="utf-8")
 
 
 @dataclasses.dataclass(frozen=True)

@@ -84,8 +84,10 @@ class LineReader {
  public:
   static Result<LineReader> Open(const std::string& path);
 
-  // False at the end.
+  // False at the end, and where the file cannot be read to its end: End tells which.
   bool Next(std::string_view* line);
+  // After Next was false: kUnreadable where lines are missing.
+  Status End() const;
   // Of the line that Next gave: its number from 1, and whether a line end followed it.
   std::int64_t number() const { return number_; }
   bool ended() const { return ended_; }
