@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <exception>
 #include <iostream>
+#include <new>
 #include <span>
 #include <string>
 #include <string_view>
@@ -102,6 +103,15 @@ void QuietVideoDecoder() { setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0); }
 // A write beyond the limit of a file's size then fails as one to a full disk does, instead of ending the program.
 void SurviveFileSizeLimit() { std::signal(SIGXFSZ, SIG_IGN); }
 
+// Of what a library threw that ran out of memory, or met what it did not expect.
+std::string SentenceOf(const std::exception& error) {
+  const bool no_memory = dynamic_cast<const std::bad_alloc*>(&error) != nullptr ||
+                         std::string_view(error.what()).find("Insufficient memory") != std::string_view::npos;
+  return no_memory ? "there is not enough memory; give smaller images, fewer points or a part of the frames, or end "
+                     "other programs"
+                   : error.what();
+}
+
 }  // namespace
 }  // namespace pliant::cli
 
@@ -115,8 +125,8 @@ int main(int argc, char** argv) {
     if (std::cout.flush() || exit != pliant::cli::kExitOk) return exit;
     pliant::cli::SayError("cannot write to standard output; is the disk full?");
     return pliant::cli::kExitFailed;
-  } catch (const std::exception& error) {  // a library ran out of memory or met what it did not expect
-    pliant::cli::SayError(error.what());
+  } catch (const std::exception& error) {
+    pliant::cli::SayError(pliant::cli::SentenceOf(error));
     return pliant::cli::kExitFailed;
   }
 }
