@@ -80,6 +80,22 @@ class Images(TestCase):
         self.assertLess(len(run.frames), COUNT)
         self.assertGreater(len(run.frames), 20)
 
+    def test_a_run_that_was_stopped_is_resumed(self):
+        def stop(report):
+            if report.frame_idx == 18:
+                raise LookupError("enough")
+        options = {**FIXED, "General.checkpoint_frames": 5}
+        whole = pliant.track(SEQUENCE, self.folder / "whole", options, end=COUNT)
+        with self.assertRaises(LookupError):
+            pliant.track(SEQUENCE, self.folder / "run", options, end=COUNT, on_frame=stop)
+        seen = []
+        run = pliant.track(SEQUENCE, self.folder / "run", options, end=COUNT, resume=True,
+                           on_frame=lambda report: seen.append(report.frame_idx))
+        self.assertGreater(seen[0], 10)
+        self.same_files(run, whole)
+        with self.assertRaisesRegex(ValueError, "cannot be resumed; give a path"):
+            pliant.track(self.images, self.folder / "run", options, camera=self.camera, resume=True)
+
     def test_an_exception_in_a_generator_is_raised(self):
         def broken():
             yield from self.images[:5]
