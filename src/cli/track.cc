@@ -9,6 +9,7 @@
 #include <ctime>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <thread>
 #include <vector>
 
@@ -131,6 +132,24 @@ std::string RefinedFolder(const std::string& run_path) {
   return std::filesystem::path(run_path + "/").parent_path().string() + "_refined";
 }
 
+// Names the output folder where it was not named. An exit code where it, or what else is written, is not to be
+// replaced; what a resumed run was refined to is.
+std::optional<int> ChooseOutput(const CommandLine& line, TrackArguments* arguments) {
+  OutputFolder& output = arguments->output;
+  if (arguments->resume && output.path.empty())
+    return line.UsageError("--resume needs the folder of the run that is gone on with; name it with --output_path");
+  if (arguments->resume && output.overwrite)
+    return line.UsageError("--resume goes on with a run and --overwrite begins a new one; give one of them");
+  if (output.path.empty()) output.path = DatedFolder(arguments->input.path);
+  if (!arguments->resume)
+    if (const auto exit = output.Check(line, output.path, OutputFolder::Content::kRun)) return exit;
+  if (arguments->refine && !arguments->resume)
+    if (const auto exit = output.Check(line, RefinedFolder(output.path), OutputFolder::Content::kRun)) return exit;
+  if (IsLiveSource(arguments->input.path))
+    return output.Check(line, RecordingOf(output.path).string(), OutputFolder::Content::kSequence);
+  return std::nullopt;
+}
+
 int Refine(const RunRequest& request, const TrackArguments& arguments, const RefineOptions& options) {
   RefineRequest refinement;
   refinement.run_path = arguments.output.path;
@@ -170,19 +189,7 @@ int TrackCommand(std::span<const std::string> args) {
   if (const Status status = CheckTrackOptions(options); !status.ok()) return line.UsageError(status.message());
   if (arguments.live_keep && !arguments.live) return line.UsageError("--live_keep is for --live; give that as well");
 
-  OutputFolder& output = arguments.output;
-  if (arguments.resume && output.path.empty())
-    return line.UsageError("--resume needs the folder of the run that is gone on with; name it with --output_path");
-  if (arguments.resume && output.overwrite)
-    return line.UsageError("--resume goes on with a run and --overwrite begins a new one; give one of them");
-  if (output.path.empty()) output.path = DatedFolder(arguments.input.path);
-  if (!arguments.resume)
-    if (const auto exit = output.Check(line, output.path, OutputFolder::Content::kRun)) return *exit;
-  if (arguments.refine)
-    if (const auto exit = output.Check(line, RefinedFolder(output.path), OutputFolder::Content::kRun)) return *exit;
-  if (IsLiveSource(arguments.input.path))
-    if (const auto exit = output.Check(line, RecordingOf(output.path).string(), OutputFolder::Content::kSequence))
-      return *exit;
+  if (const auto exit = ChooseOutput(line, &arguments)) return *exit;
   RunRequest request;
   request.input = arguments.input.Request();
   request.output_path = arguments.output.path;

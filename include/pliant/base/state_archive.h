@@ -48,7 +48,7 @@ class StateArchive {
   // All members of a struct without bases, of which there are so many: another number does not compile.
   template <std::size_t kCount, class Struct>
   void Members(Struct& value) {
-    std::apply([this](auto&... members) { (Transfer(members), ...); }, Tied<kCount>(value));
+    std::apply([this](auto&... members) { (this->Transfer(members), ...); }, Tied<kCount>(value));
   }
   // `size` bytes that lie in a row.
   void Bytes(void* data, std::size_t size);
