@@ -147,6 +147,28 @@ TEST(Program, WhatIsThereIsReplacedOnRequestOnly) {
   EXPECT_EQ(Pliant(import + " --overwrite").exit, 0);
 }
 
+TEST(Program, ResumeNeedsARunAndAFinishedOneHasNothingToDo) {
+  EXPECT_THAT(Pliant("track x --resume").err, HasSubstr("name it with --output_path"));
+  const Outcome both = Pliant("track x --output_path y --resume --overwrite");
+  EXPECT_EQ(both.exit, 2);
+  EXPECT_THAT(both.err, HasSubstr("--resume goes on with a run and --overwrite begins a new one"));
+  const Outcome live = Pliant("track - --output_path y --resume");
+  EXPECT_EQ(live.exit, 1);
+  EXPECT_THAT(live.err, HasSubstr("such a run cannot be resumed"));
+  const std::string sequence = Temporary("seq_to_resume").string();
+  ASSERT_EQ(Pliant("simulate --quiet --Trajectory.frames 3 --Camera.width 320 --Camera.height 240 --output_path '" +
+                   sequence + "'")
+                .exit,
+            0);
+  const std::string track = "track --Init.method depth --image_path '" + sequence + "' --output_path '" +
+                            Temporary("run_to_resume").string() + "' --resume";
+  EXPECT_THAT(Pliant(track).out, HasSubstr("3 of 3 frames tracked"));
+  const Outcome again = Pliant(track);
+  EXPECT_EQ(again.exit, 0);
+  EXPECT_THAT(again.out, HasSubstr("3 of 3 frames tracked"));
+  EXPECT_THAT(again.err, Not(HasSubstr("tracking (first map"))) << "no frame is read";
+}
+
 TEST(Program, AnUnknownCameraIsAssumedAndTheRunSaysSo) {
   const std::string sequence = Temporary("seq").string();
   const std::string run = Temporary("run").string();
