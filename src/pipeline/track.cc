@@ -227,6 +227,34 @@ std::optional<RunSummary> SummaryOfEnded(const std::string& run_path) {
   return *std::move(summary);
 }
 
+// Nothing: the run begins with its first frame. Fails with kInvalidArgument where it cannot be resumed, and as
+// OpenCheckpoint.
+Result<std::optional<OpenedCheckpoint>> CheckpointOf(const RunRequest& request) {
+  if (!request.resume) return std::optional<OpenedCheckpoint>();
+  if (request.input.given || IsLiveSource(request.input.image_path))
+    return Status(ErrorCode::kInvalidArgument,
+                  "images that come from a live source or a program do not come again: such a run cannot be resumed");
+  return OpenCheckpoint(request.output_path);
+}
+
+void TellBeginning(const Sequence& sequence, const RunStart& start, std::span<TrackObserver* const> observers) {
+  for (TrackObserver* observer : observers) {
+    for (const std::string& warning : sequence.Warnings()) observer->OnWarning(warning);
+    for (const std::string& warning : start.warnings) observer->OnWarning(warning);
+    observer->OnCamera(sequence.camera());
+  }
+}
+
+RunSummary FinishRun(RunWriter& writer, const Ending& ending) {
+  const Status finished = writer.Finish(ending.status, ending.note);
+  RunSummary summary = writer.summary();
+  if (!finished.ok()) {
+    summary.status = RunStatus::kFailed;
+    summary.note = finished.message();
+  }
+  return summary;
+}
+
 // `usable`: the options of the working image; `options`: as they are listed.
 Result<RunWriter> BeginWriting(const RunRequest& request, const TrackOptions& usable, const TrackOptions& options,
                                const RunStart& start, const Camera& camera,
@@ -257,17 +285,11 @@ Status EndOf(const RunSummary& summary, const std::string& output_path) {
 Result<RunSummary> RunTrack(const RunRequest& given, const TrackOptions& wanted,
                             std::span<TrackObserver* const> observers) {
   RunRequest request = given;
-  std::optional<OpenedCheckpoint> checkpoint;
-  if (request.resume) {
-    if (request.input.given || IsLiveSource(request.input.image_path))
-      return Status(ErrorCode::kInvalidArgument,
-                    "images that come from a live source or a program do not come again: "
-                    "such a run cannot be resumed");
+  if (request.resume)
     if (auto ended = SummaryOfEnded(request.output_path)) return *std::move(ended);
-    auto opened = OpenCheckpoint(request.output_path);
-    if (!opened.ok()) return opened.status();
-    checkpoint = *std::move(opened);
-  }
+  auto opened_checkpoint = CheckpointOf(request);
+  if (!opened_checkpoint.ok()) return opened_checkpoint.status();
+  std::optional<OpenedCheckpoint> checkpoint = *std::move(opened_checkpoint);
   std::shared_ptr<LiveSource> live;
   if (!request.input.given && IsLiveSource(request.input.image_path)) {
     auto opened = OpenLive(wanted.live_input, &request);
@@ -299,11 +321,7 @@ Result<RunSummary> RunTrack(const RunRequest& given, const TrackOptions& wanted,
   if (const Status begun = PassOldImages(options, *start, &request.input, &*sequence); !begun.ok()) return begun;
   usable.tracker = WorkingOptions(std::move(usable.tracker), start->working_image);
 
-  for (TrackObserver* observer : observers) {
-    for (const std::string& warning : (*sequence)->Warnings()) observer->OnWarning(warning);
-    for (const std::string& warning : start->warnings) observer->OnWarning(warning);
-    observer->OnCamera((*sequence)->camera());
-  }
+  TellBeginning(**sequence, *start, observers);
   int frames = (*sequence)->size();
   if (checkpoint) {
     frames -= (checkpoint->point.frame_idx - request.input.start) / request.input.stride + 1;
@@ -323,13 +341,7 @@ Result<RunSummary> RunTrack(const RunRequest& given, const TrackOptions& wanted,
   for (const std::string& warning : checked.Check().wrong)
     for (TrackObserver* observer : observers) observer->OnWarning(warning);
   if (live) writer->SetStream(live->counts());
-  const Status finished = writer->Finish(ending.status, ending.note);
-  RunSummary summary = writer->summary();
-  if (!finished.ok()) {
-    summary.status = RunStatus::kFailed;
-    summary.note = finished.message();
-  }
-  return summary;
+  return FinishRun(*writer, ending);
 }
 
 }  // namespace pliant
