@@ -82,7 +82,8 @@ Status UnwritableFolder(const fs::path& folder, const std::error_code& error) {
 
 Status DeleteResults(const fs::path& folder) {
   return DeleteBut(folder, [](const std::string& name) {
-    return name.starts_with(kCheckpointFolder) || std::ranges::find(kRowFiles, name) != kRowFiles.end();
+    return name == "run.json" || name == "config.yaml" || name.starts_with(kCheckpointFolder) ||
+           std::ranges::find(kRowFiles, name) != kRowFiles.end();
   });
 }
 

@@ -219,6 +219,7 @@ Result<RunWriter> RunWriter::Resume(const std::string& output_path, const Camera
                                              std::move(frames).value(), std::move(observations).value()});
   state->summary = *std::move(summary);
   state->SerializeCounts(archive);
+  if (state->summary.frames_tracked > 0) state->former.Forget();
   if (state->stage_total_ms.size() != state->columns.stages.size()) archive.Fail();
   if (!archive.ok()) return Status(ErrorCode::kUnreadable, "the checkpoint of " + output_path + " is damaged");
   return RunWriter(std::move(state));
@@ -461,8 +462,7 @@ Status RunWriter::Finish(RunStatus run_status, const std::string& note) {
         s.columns.stages[i],
         s.stage_total_ms[i] / static_cast<double>(std::max<std::int64_t>(s.summary.frames_read, 1)));
   s.summary.latency = LatencyOf(s.latencies_ms);
-  const bool may_be_resumed = run_status == RunStatus::kInterrupted || run_status == RunStatus::kFailed;
-  if (status.ok() && may_be_resumed && HasCheckpoint(s.path)) status = KeepRows(s.path);
+  if (status.ok() && HasCheckpoint(s.path)) status = KeepRows(s.path);
   if (status.ok()) {
     const int submaps_as_reported = s.summary.submaps;
     s.NumberSubmaps();
@@ -486,7 +486,10 @@ Status RunWriter::Finish(RunStatus run_status, const std::string& note) {
   }
   s.former.Forget();
   const Status written = WriteRunSummary(s.path + "/run.json", s.summary);
-  if (std::error_code error; written.ok() && has_ended) fs::remove_all(fs::path(s.path) / kCheckpointFolder, error);
+  if (std::error_code error; written.ok() && has_ended) {
+    fs::remove(fs::path(s.path) / kCheckpointState, error);  // first: what is left then is no checkpoint
+    fs::remove_all(fs::path(s.path) / kCheckpointFolder, error);
+  }
   return status.ok() ? written : status;
 }
 

@@ -4,6 +4,7 @@
 #include "pipeline/run_checkpoint.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <utility>
 #include <vector>
 
@@ -33,6 +34,8 @@ RunIdentity IdentityOf(const RunRequest& request, const TrackOptions& options, c
   RunIdentity identity;
   for (const OptionField& field : table.fields()) identity.options += field.name + " " + field.get() + "\n";
   for (const std::string& name : request.extensions.Names()) identity.options += name + "\n";
+  if (!input.mask_path.empty())
+    identity.options += "mask_path " + std::filesystem::absolute(input.mask_path).lexically_normal().string() + "\n";
   identity.frames = "--start " + std::to_string(input.start) + " --end " + std::to_string(input.end) + " --stride " +
                     std::to_string(input.stride);
   identity.camera =

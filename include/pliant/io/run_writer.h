@@ -91,7 +91,7 @@ class RunWriter {
 
   // Brings the rows of merged submaps into one world, writes map.ply, sparse/ and the final run.json; to be called
   // once, whatever ended the run. run.json is attempted even when the others fail, and then says `failed` with the
-  // reason. The checkpoint of a run that has come to its end is deleted, else its rows are kept beside it. Where a
+  // reason. The checkpoint of a run that has come to its end is deleted; before, its rows are kept beside it. Where a
   // former run is restored, summary().note alone says what became of this one.
   Status Finish(RunStatus status, const std::string& note);
 

@@ -379,6 +379,9 @@ InitFrame Bootstrapper::FollowedFrame(const PreparedFrame& frame, const Submap& 
 }
 
 void Bootstrapper::Serialize(StateArchive& archive) {
+  bool asks_alternative = alternative_ != nullptr;
+  archive(asks_alternative);
+  if (!asks_alternative) alternative_.reset();
   archive(has_map_, frames_, known_depths_, image_fault_, provisional_, would_start_, last_reason_, answers_);
 }
 void Bootstrapper::Made::Serialize(StateArchive& archive) { archive.Members<2>(*this); }
