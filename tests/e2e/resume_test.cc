@@ -171,6 +171,10 @@ TEST_F(ResumedRun, OfARunThatHasEndedHasNothingToDo) {
   ASSERT_TRUE(summary.ok()) << summary.status().message();
   EXPECT_EQ(summary->frames_tracked, whole->frames_tracked);
   EXPECT_EQ(stopper.first_frame_idx, -1) << "no frame is read";
+  options_.threads = 1;
+  EXPECT_TRUE(Track("parts", true, 0).ok());
+  options_.seed = 7;
+  EXPECT_THAT(Track("parts", true, 0).status().message(), HasSubstr("has come to its end with other options"));
   EXPECT_EQ(std::filesystem::last_write_time(folder_.Path("parts/run.json")), written);
 }
 
