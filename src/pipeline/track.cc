@@ -265,6 +265,18 @@ void TellBeginning(const Sequence& sequence, const RunStart& start, std::span<Tr
   }
 }
 
+void TellOfImages(const CheckedSequence& checked, std::span<TrackObserver* const> observers) {
+  for (const std::string& warning : checked.Check().wrong)
+    for (TrackObserver* observer : observers) observer->OnWarning(warning);
+}
+
+// Null: no oracle is on.
+Result<std::unique_ptr<TrackingTruth>> TruthOf(const TrackOptions& options, const RunRequest& request,
+                                               const Sequence& sequence) {
+  if (!options.tracker.oracle.Any()) return std::unique_ptr<TrackingTruth>();
+  return OpenSimulationTruth(request.input.image_path, sequence);
+}
+
 RunSummary FinishRun(RunWriter& writer, const Ending& ending) {
   const Status finished = writer.Finish(ending.status, ending.note);
   RunSummary summary = writer.summary();
@@ -332,12 +344,8 @@ Result<RunSummary> RunTrack(const RunRequest& given, const TrackOptions& wanted,
   if (checkpoint)
     if (Status status = CheckIdentity(checkpoint->point.run, identity, request.output_path); !status.ok())
       return status;
-  std::unique_ptr<TrackingTruth> truth;
-  if (options.tracker.oracle.Any()) {
-    auto opened = OpenSimulationTruth(request.input.image_path, **sequence);
-    if (!opened.ok()) return opened.status();
-    truth = *std::move(opened);
-  }
+  const auto truth = TruthOf(options, request, **sequence);
+  if (!truth.ok()) return truth.status();
 
   const auto start = ReadStart(request, usable, **sequence);
   if (!start.ok()) return start.status();
@@ -354,15 +362,14 @@ Result<RunSummary> RunTrack(const RunRequest& given, const TrackOptions& wanted,
   auto writer = BeginWriting(request, usable, options, *start, (*sequence)->camera(), &checkpoint);
   if (!writer.ok()) return writer.status();
   CheckedSequence checked(**sequence);
-  FrameLoop loop(checked, request, identity, usable, *start, truth.get(), *writer, observers);
+  FrameLoop loop(checked, request, identity, usable, *start, truth->get(), *writer, observers);
   if (checkpoint) {
     if (Status status = loop.TakeCheckpoint(*checkpoint); !status.ok()) return status;
     checkpoint.reset();
   }
   for (TrackObserver* observer : observers) observer->OnStart(std::max(frames, 0));
   const Ending ending = loop.Run();
-  for (const std::string& warning : checked.Check().wrong)
-    for (TrackObserver* observer : observers) observer->OnWarning(warning);
+  TellOfImages(checked, observers);
   if (live) writer->SetStream(live->counts());
   return FinishRun(*writer, ending);
 }
