@@ -28,7 +28,7 @@ void StateArchive::Bytes(void* data, std::size_t size) {
 std::size_t StateArchive::Size(std::size_t size) {
   std::uint64_t count = size;
   Bytes(&count, sizeof count);
-  ok_ = ok_ && (!reads_ || count <= bytes_.size() - at_);
+  if (reads_) CheckLeft(count, 1);
   return ok_ ? static_cast<std::size_t>(count) : 0;
 }
 

@@ -16,12 +16,12 @@
 
 namespace pliant {
 
+class StateArchive;
+
 // Every `step`-th pixel of an image each way, from the first on.
 cv::Mat GridOf(const cv::Mat& image, int step);
 
 // One image on the grid.
-class StateArchive;
-
 struct GridSample {
   cv::Mat gray;      // CV_8UC1
   cv::Mat contrast;  // CV_8UC1: largest minus smallest level among the 3x3 pixels of the image around each

@@ -4,8 +4,11 @@
 #include "io/run_rows.h"
 
 #include <algorithm>
+#include <filesystem>
+#include <system_error>
 #include <vector>
 
+#include "io/former_run.h"
 #include "io/run_format.h"
 #include "pliant/base/files.h"
 #include "pliant/base/text.h"
@@ -15,6 +18,8 @@
 
 namespace pliant {
 namespace {
+
+namespace fs = std::filesystem;
 
 // The lines of a file, each through `change`, which has its number from 0.
 template <class Change>
@@ -117,5 +122,29 @@ Status MoveRunRows(const std::string& run_path, std::span<const RunFrameWorld> w
 }
 
 void Serialize(StateArchive& archive, RunFrameWorld& world) { archive.Members<4>(world); }
+
+Status KeepRows(const std::string& run_path) {
+  std::error_code error;
+  for (const std::string_view name : kRowFiles) {
+    const fs::path kept = fs::path(run_path) / kCheckpointFolder / name;
+    fs::remove(kept, error);
+    fs::create_hard_link(fs::path(run_path) / name, kept, error);
+    if (error) fs::copy_file(fs::path(run_path) / name, kept, error);  // a file system without links
+    if (error) return UnwritableFolder(kept.parent_path(), error);
+  }
+  return Status::Ok();
+}
+
+Status TakeKeptRows(const std::string& run_path) {
+  std::error_code error;
+  for (const std::string_view name : kRowFiles) {
+    const fs::path kept = fs::path(run_path) / kCheckpointFolder / name;
+    if (!fs::exists(kept, error)) continue;
+    fs::rename(kept, fs::path(run_path) / name, error);
+    if (error) return UnwritableFolder(run_path, error);
+    fs::remove(kept, error);  // two names of one file are not renamed
+  }
+  return Status::Ok();
+}
 
 }  // namespace pliant

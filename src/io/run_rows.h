@@ -37,4 +37,9 @@ void Serialize(StateArchive& archive, RunFrameWorld& world);
 Status MoveRunRows(const std::string& run_path, std::span<const RunFrameWorld> worlds,
                    std::span<const CanonicalImage> images);
 
+// Keeps the files of rows as they are beside the run's checkpoint, which is there, since they may be replaced by
+// others; and takes what was kept back. Fails with kUnwritable.
+Status KeepRows(const std::string& run_path);
+Status TakeKeptRows(const std::string& run_path);
+
 }  // namespace pliant

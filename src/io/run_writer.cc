@@ -142,31 +142,6 @@ std::string HeaderOfFrames(const RunColumns& columns) {
   return header.append(",").append(kLatencyColumn).append("\n");
 }
 
-// Rows as they were written, beside the checkpoint; Finish may replace the files by others.
-Status KeepRows(const std::string& run_path) {
-  std::error_code error;
-  for (const std::string_view name : kRowFiles) {
-    const fs::path kept = fs::path(run_path) / kCheckpointFolder / name;
-    fs::remove(kept, error);
-    fs::create_hard_link(fs::path(run_path) / name, kept, error);
-    if (error) fs::copy_file(fs::path(run_path) / name, kept, error);  // a file system without links
-    if (error) return UnwritableFolder(kept.parent_path(), error);
-  }
-  return Status::Ok();
-}
-
-Status TakeKeptRows(const std::string& run_path) {
-  std::error_code error;
-  for (const std::string_view name : kRowFiles) {
-    const fs::path kept = fs::path(run_path) / kCheckpointFolder / name;
-    if (!fs::exists(kept, error)) continue;
-    fs::rename(kept, fs::path(run_path) / name, error);
-    if (error) return UnwritableFolder(run_path, error);
-    fs::remove(kept, error);  // two names of one file are not renamed
-  }
-  return Status::Ok();
-}
-
 }  // namespace
 
 Result<RunWriter> RunWriter::Create(const std::string& output_path, const Camera& camera, RunDescription description,

@@ -35,8 +35,7 @@ struct ReadFrame {
 class FrameSource {
  public:
   // All are used as long as this lives. `last_frame_idx`: the frame before the first; -1: there is none.
-  // `checkpoint_frames`: after each so many frames since input.start the run may be
-  // resumed; 0: after none.
+  // `checkpoint_frames`: after each so many frames since input.start the run may be resumed; 0: after none.
   FrameSource(CheckedSequence& sequence, const SequenceRequest& input, const TrackOptions& options,
               const RunStart& start, bool wants_depth, int last_frame_idx, int checkpoint_frames);
 
@@ -49,7 +48,6 @@ class FrameSource {
   void SetWantsDepth(bool wants) { wants_depth_ = wants; }
   // What comes next is the frame after this one, which has come already. Fails as OpenSequence does.
   Status GoBackTo(int frame_idx);
-  bool IsBack() const { return again_.has_value(); }
 
  private:
   using Clock = std::chrono::steady_clock;

@@ -10,6 +10,7 @@
 
 #include "pliant/base/text.h"
 #include "pliant/io/checkpoint.h"
+#include "pliant/io/options_file.h"
 
 namespace pliant {
 namespace {
@@ -22,17 +23,39 @@ std::pair<std::string, std::string> FirstDifference(const std::string& a, const 
   return {in_a == of_a.end() ? "" : std::string(*in_a), in_b == of_b.end() ? "" : std::string(*in_b)};
 }
 
+// A line each, without those that never change a result.
+std::string ComparedOptions(TrackOptions options) {
+  options.threads = 1;
+  options.checkpoint_frames = 0;
+  OptionTable table;
+  options.List(table);
+  std::string lines;
+  for (const OptionField& field : table.fields()) lines += field.name + " " + field.get() + "\n";
+  return lines;
+}
+
 }  // namespace
+
+Result<std::optional<RunSummary>> SummaryOfEnded(const std::string& run_path, const TrackOptions& options) {
+  if (HasCheckpoint(run_path)) return std::optional<RunSummary>();
+  auto summary = ReadRunSummary(run_path + "/run.json");
+  if (!summary.ok() || (summary->status != RunStatus::kCompleted && summary->status != RunStatus::kLost))
+    return std::optional<RunSummary>();
+  TrackOptions of_run;
+  OptionTable table;
+  of_run.List(table);
+  const Status loaded = LoadOptionsFile(run_path + "/config.yaml", table);
+  if (!loaded.ok() || ComparedOptions(of_run) != ComparedOptions(options))
+    return Status(ErrorCode::kMismatch, "the run in " + run_path +
+                                            " has come to its end with other options: there is nothing to resume; "
+                                            "give another --output_path, or --overwrite to replace it");
+  return std::optional(*std::move(summary));
+}
 
 RunIdentity IdentityOf(const RunRequest& request, const TrackOptions& options, const Camera& camera) {
   const SequenceRequest& input = request.input;
-  TrackOptions listed = options;
-  listed.threads = 1;
-  listed.checkpoint_frames = 0;
-  OptionTable table;
-  listed.List(table);
   RunIdentity identity;
-  for (const OptionField& field : table.fields()) identity.options += field.name + " " + field.get() + "\n";
+  identity.options = ComparedOptions(options);
   for (const std::string& name : request.extensions.Names()) identity.options += name + "\n";
   if (!input.mask_path.empty())
     identity.options += "mask_path " + std::filesystem::absolute(input.mask_path).lexically_normal().string() + "\n";

@@ -30,6 +30,10 @@ struct ResumePoint {
 };
 void Serialize(StateArchive& archive, ResumePoint& point);
 
+// Of a run that has come to its end, with which its checkpoint is deleted: there is nothing to resume. Fails with
+// kMismatch where it had other options.
+Result<std::optional<RunSummary>> SummaryOfEnded(const std::string& run_path, const TrackOptions& options);
+
 // The checkpoint in the request's output folder, opened behind its head; nothing: the run begins with its first frame.
 // Fails as ReadCheckpoint.
 struct OpenedCheckpoint {

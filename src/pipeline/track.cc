@@ -16,8 +16,6 @@
 #include "pipeline/run_start.h"
 #include "pipeline/simulation_truth.h"
 #include "pipeline/working_frame.h"
-#include "pliant/base/files.h"
-#include "pliant/base/text.h"
 #include "pliant/base/version.h"
 #include "pliant/estimation/frame/frame_problem.h"
 #include "pliant/io/checkpoint.h"
@@ -218,33 +216,6 @@ RunDescription DescriptionOf(const RunRequest& request, const TrackOptions& opti
           options.track_file.path,
           options.tracker.depth_prior.path,
           request.extensions.Names()};
-}
-
-// A run's options without those that never change its result.
-std::string ComparableOptions(const std::string& yaml) {
-  std::string comparable;
-  for (const std::string_view line : Split(yaml, '\n'))
-    if (!line.starts_with("  threads:") && !line.starts_with("  checkpoint_frames:"))
-      comparable.append(line).push_back('\n');
-  return comparable;
-}
-
-// Of a run that has come to its end, with which its checkpoint is deleted: there is nothing to resume. Fails with
-// kMismatch where it had other options.
-Result<std::optional<RunSummary>> SummaryOfEnded(const std::string& run_path, const TrackOptions& options) {
-  if (HasCheckpoint(run_path)) return std::optional<RunSummary>();
-  auto summary = ReadRunSummary(run_path + "/run.json");
-  if (!summary.ok() || (summary->status != RunStatus::kCompleted && summary->status != RunStatus::kLost))
-    return std::optional<RunSummary>();
-  TrackOptions listed = options;
-  OptionTable table;
-  listed.List(table);
-  const auto config = ReadFile(run_path + "/config.yaml");
-  if (!config.ok() || ComparableOptions(*config) != ComparableOptions(table.ToYaml()))
-    return Status(ErrorCode::kMismatch, "the run in " + run_path +
-                                            " has come to its end with other options: there is nothing to resume; "
-                                            "give another --output_path, or --overwrite to replace it");
-  return std::optional(*std::move(summary));
 }
 
 // Nothing: the run begins with its first frame. Fails with kInvalidArgument where it cannot be resumed, and as
