@@ -22,6 +22,7 @@
 #include "cli/sequence_arguments.h"
 #include "cli/track_progress.h"
 #include "pliant/base/text.h"
+#include "pliant/io/checkpoint.h"
 #include "pliant/io/run_trust.h"
 #include "pliant/viewer/live_view.h"
 #include "pliant/viewer/view.h"
@@ -204,6 +205,7 @@ int TrackCommand(std::span<const std::string> args) {
     live = *std::move(started);
     SayNote("live view: " + live->Url());
   }
+  const bool had_ended = arguments.resume && EndedRun(request.output_path).has_value();
   const Result<RunSummary> summary = [&] {
     TrackProgress progress;
     std::vector<TrackObserver*> observers = {&progress};
@@ -216,11 +218,13 @@ int TrackCommand(std::span<const std::string> args) {
   }
   if (!arguments.live_keep) live.reset();
   int exit_code = Report(*summary, arguments);
-  if (arguments.refine && summary->frames_tracked > 0 && exit_code == kExitOk) {
+  if (had_ended && live) SayNote("the run had ended before: the live view has nothing to show");
+  if (arguments.refine && summary->frames_tracked > 0 && exit_code == kExitOk &&
+      !(had_ended && EndedRun(RefinedFolder(request.output_path)))) {
     if (IsLiveSource(arguments.input.path)) StopOnSignals() = false;  // Ctrl-C has ended the source
     exit_code = Refine(request, arguments, refine_options);
   }
-  if (live) KeepServing(live.get());
+  if (live && !had_ended) KeepServing(live.get());
   return exit_code;
 }
 

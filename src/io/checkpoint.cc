@@ -33,6 +33,14 @@ std::uint32_t Checksum(std::string_view bytes) {
 
 bool HasCheckpoint(const std::string& run_path) { return Exists(StateFile(run_path)); }
 
+std::optional<RunSummary> EndedRun(const std::string& run_path) {
+  auto summary = ReadRunSummary(run_path + "/run.json");
+  const bool ended = summary.ok() &&
+                     (summary->status == RunStatus::kCompleted || summary->status == RunStatus::kLost) &&
+                     !HasCheckpoint(run_path);
+  return ended ? std::optional(*std::move(summary)) : std::nullopt;
+}
+
 Status WriteCheckpoint(const std::string& run_path, std::string_view state) {
   std::error_code error;
   fs::create_directories(fs::path(StateFile(run_path)).parent_path(), error);
@@ -49,7 +57,9 @@ Status WriteCheckpoint(const std::string& run_path, std::string_view state) {
   if (Status status = file->Sync(); !status.ok()) return status;
   if (Status status = file->Close(); !status.ok()) return status;
   if (Status status = group.Commit(); !status.ok()) return status;
-  return SyncFolder(fs::path(StateFile(run_path)).parent_path());
+  for (const fs::path& folder : {fs::path(StateFile(run_path)).parent_path(), fs::path(run_path)})
+    if (Status status = SyncFolder(folder); !status.ok()) return status;
+  return Status::Ok();
 }
 
 Result<std::string> ReadCheckpoint(const std::string& run_path) {

@@ -60,6 +60,8 @@ RunDescription ReadDescription(const Json& json) {
   description.tracks = json.value("tracks", "");
   description.depth_prior = json.value("depth_prior", "");
   description.extensions = json.value("extensions", std::vector<std::string>());
+  if (const Json range = json.value("frames", Json()); !range.is_null())
+    description.range = {range.at("start").get<int>(), range.at("end").get<int>(), range.at("stride").get<int>()};
   if (const Json working = json.value("working_image", Json()); !working.is_null()) {
     description.image_scale = working.at("scale").get<double>();
     description.image_smoothing_px = working.at("smoothing_px").get<double>();
@@ -112,6 +114,10 @@ Status WriteRunSummary(const std::string& path, const RunSummary& summary) {
       {"input", summary.description.input},
       {"camera", summary.description.camera},
       {"mask", summary.description.mask},
+      {"frames",
+       {{"start", summary.description.range.start},
+        {"end", summary.description.range.end},
+        {"stride", summary.description.range.stride}}},
       {"refined_from", summary.description.refined_from},
       {"metric", summary.description.metric ? Json(*summary.description.metric) : Json()},
       {"tracks", summary.description.tracks},

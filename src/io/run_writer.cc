@@ -175,6 +175,9 @@ Result<RunWriter> RunWriter::Resume(const std::string& output_path, const Camera
                                     StateArchive& archive) {
   auto lock = TakeFolder(output_path);
   if (!lock.ok()) return lock.status();
+  if (!HasCheckpoint(output_path))
+    return Status(ErrorCode::kMismatch, "another process has ended the run in " + output_path +
+                                            " meanwhile: there is nothing left to resume");
   std::array<std::int64_t, 3> sizes = {};
   archive(sizes);
   if (!archive.ok()) return Status(ErrorCode::kUnreadable, "the checkpoint of " + output_path + " is damaged");

@@ -162,7 +162,7 @@ class FrameLoop {
   // A run that cannot write one goes on: the former one is still there.
   void WriteCheckpointAfter(const ReadFrame& read) {
     StateArchive archive;
-    ResumePoint point{identity_, read.frame.frame_idx, read.frame.name};
+    ResumePoint point{identity_, read.frame.frame_idx, read.frame.name, ChecksumOf(read.image)};
     archive(point);
     Status status = writer_.Serialize(archive);
     if (status.ok()) {
@@ -215,17 +215,14 @@ RunDescription DescriptionOf(const RunRequest& request, const TrackOptions& opti
           options.tracker.init.IsMetric(),
           options.track_file.path,
           options.tracker.depth_prior.path,
-          request.extensions.Names()};
+          request.extensions.Names(),
+          SelectionOf(request.input)};
 }
 
-// Nothing: the run begins with its first frame. Fails with kInvalidArgument where it cannot be resumed, and as
-// OpenCheckpoint.
-Result<std::optional<OpenedCheckpoint>> CheckpointOf(const RunRequest& request) {
-  if (!request.resume) return std::optional<OpenedCheckpoint>();
-  if (request.input.given || IsLiveSource(request.input.image_path))
-    return Status(ErrorCode::kInvalidArgument,
-                  "images that come from a live source or a program do not come again: such a run cannot be resumed");
-  return OpenCheckpoint(request.output_path);
+Status CheckImagesComeAgain(const SequenceRequest& input) {
+  if (!input.given && !IsLiveSource(input.image_path)) return Status::Ok();
+  return {ErrorCode::kInvalidArgument,
+          "images that come from a live source or a program do not come again: such a run cannot be resumed"};
 }
 
 void TellBeginning(const Sequence& sequence, const RunStart& start, std::span<TrackObserver* const> observers) {
@@ -288,14 +285,16 @@ Status EndOf(const RunSummary& summary, const std::string& output_path) {
 Result<RunSummary> RunTrack(const RunRequest& given, const TrackOptions& wanted,
                             std::span<TrackObserver* const> observers) {
   RunRequest request = given;
+  std::optional<OpenedCheckpoint> checkpoint;  // nothing: the run begins with its first frame
   if (request.resume) {
-    auto ended = SummaryOfEnded(request.output_path, wanted);
+    if (Status status = CheckImagesComeAgain(request.input); !status.ok()) return status;
+    auto ended = SummaryOfEnded(request, wanted);
     if (!ended.ok()) return ended.status();
     if (ended->has_value()) return **std::move(ended);
+    auto opened = OpenCheckpoint(request.output_path);
+    if (!opened.ok()) return opened.status();
+    checkpoint = *std::move(opened);
   }
-  auto opened_checkpoint = CheckpointOf(request);
-  if (!opened_checkpoint.ok()) return opened_checkpoint.status();
-  std::optional<OpenedCheckpoint> checkpoint = *std::move(opened_checkpoint);
   std::shared_ptr<LiveSource> live;
   if (!request.input.given && IsLiveSource(request.input.image_path)) {
     auto opened = OpenLive(wanted.live_input, &request);
@@ -311,7 +310,7 @@ Result<RunSummary> RunTrack(const RunRequest& given, const TrackOptions& wanted,
   auto sequence = OpenSequence(request.input);
   if (!sequence.ok()) return sequence.status();
   if (Status status = (*sequence)->CheckSizes(); !status.ok()) return status;
-  const RunIdentity identity = IdentityOf(request, options, (*sequence)->camera());
+  const RunIdentity identity = IdentityOf(request, options, **sequence);
   if (checkpoint)
     if (Status status = CheckIdentity(checkpoint->point.run, identity, request.output_path); !status.ok())
       return status;

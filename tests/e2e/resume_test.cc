@@ -175,6 +175,16 @@ TEST_F(ResumedRun, OfARunThatHasEndedHasNothingToDo) {
   EXPECT_TRUE(Track("parts", true, 0).ok());
   options_.seed = 7;
   EXPECT_THAT(Track("parts", true, 0).status().message(), HasSubstr("has come to its end with other options"));
+  options_.seed = 1;
+  RunRequest shorter = Request("parts");
+  shorter.resume = true;
+  shorter.input.end = kFrames - 1;
+  EXPECT_THAT(RunTrack(shorter, options_, {}).status().message(),
+              HasSubstr("has come to its end with other frames, --start 0 --end 40 --stride 1"));
+  const SequenceCopy copy(folder_, kFrames);
+  sequence_ = copy.path();
+  EXPECT_THAT(Track("parts", true, 0).status().message(),
+              HasSubstr("has come to its end with other images, '" + kSequence));
   EXPECT_EQ(std::filesystem::last_write_time(folder_.Path("parts/run.json")), written);
 }
 
@@ -200,6 +210,10 @@ TEST_F(ResumedRun, IsRefusedWithOtherOptionsFramesOrImages) {
   RunRequest longer = request;
   longer.input.end = kFrames + 1;
   EXPECT_THAT(refused(longer, options_), HasSubstr("'--start 0 --end 41 --stride 1'"));
+  const std::string image = folder_.Read("sequence/images/000019.png");
+  copy.Fill(19, 19, 128);
+  EXPECT_THAT(refused(request, options_), HasSubstr("its last frame was '000019.png'"));
+  folder_.Write("sequence/images/000019.png", image);
   std::filesystem::rename(copy.Image(19), folder_.Path("sequence/images/000019b.png"));
   EXPECT_THAT(refused(request, options_), HasSubstr("its last frame was '000019.png'"));
 }

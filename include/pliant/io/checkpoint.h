@@ -6,10 +6,12 @@
 // other worlds). The state is that of the program's memory: for the same version of the program alone.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 
 #include "pliant/base/status.h"
+#include "pliant/io/run_summary.h"
 
 namespace pliant {
 
@@ -20,5 +22,8 @@ Status WriteCheckpoint(const std::string& run_path, std::string_view state);
 // kMismatch for one of another version.
 Result<std::string> ReadCheckpoint(const std::string& run_path);
 bool HasCheckpoint(const std::string& run_path);
+
+// Of a run that has come to its end, so that there is nothing to resume; nothing: there is none.
+std::optional<RunSummary> EndedRun(const std::string& run_path);
 
 }  // namespace pliant

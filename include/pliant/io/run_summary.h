@@ -34,6 +34,14 @@ struct EnumNames<RunStatus> {
 };
 
 // What is known when a run begins.
+// Which of a recording's frames a run takes.
+struct FrameSelection {
+  int start = 0;   // the first
+  int end = -1;    // one past the last; -1: to the recording's end
+  int stride = 1;  // of so many frames one
+  bool operator==(const FrameSelection&) const = default;
+};
+
 struct RunDescription {
   std::string program_version;
   std::vector<std::string> command_line;
@@ -59,6 +67,7 @@ struct RunDescription {
   std::string depth_prior = {};  // the folder of the depth prior, absolute; empty: none
   // Parts of the method that the calling program gave in place of ours: "initializer NAME", "tracks".
   std::vector<std::string> extensions = {};
+  FrameSelection range = {};  // all frames in runs of earlier versions, which do not say
 };
 
 // Images of a source that went on while they were tracked.
