@@ -21,17 +21,21 @@ constexpr double kMuchNoisePx = 1.0;
 constexpr double kLittle = 0.05;  // of the scene's camera motion
 constexpr int kManyViews = 25;
 
-// The ratio over all views but the reference.
-double RatioOf(const Scene& scene) {
+constexpr double kByChance = 3.0;  // standard errors
+
+// Over all views but the reference.
+CameraMotionEvidence EvidenceOf(const Scene& scene) {
   const auto solution = SolveDeformingWindow(scene.Start(0), kFocalPx, {});
   EXPECT_TRUE(solution.ok()) << solution.status().message();
   const auto models = SolveCameraMotionModels(*solution, kFocalPx, {});
   EXPECT_TRUE(models.ok()) << models.status().message();
-  if (!models.ok()) return 0;
+  if (!models.ok()) return {};
   std::vector<int> views(scene.poses.size() - 1);
   std::iota(views.begin(), views.end(), 1);
-  return StillCameraErrorRatio(*models, views, 0.0);
+  return EvidenceOfCameraMotion(*models, views, 0.0);
 }
+
+double RatioOf(const Scene& scene) { return EvidenceOf(scene).error_ratio; }
 
 Scene BeforeAStillCamera() {
   Scene scene;
@@ -57,8 +61,28 @@ TEST(StillCamera, IsToldFromOneThatMovesALittleInMuchNoise) {
   Scene still(kManyViews);
   for (Rigid3& pose : still.poses) pose = Rigid3();
   moving.noise_px = still.noise_px = kMuchNoisePx;
-  EXPECT_LT(RatioOf(still), kAlike);
-  EXPECT_GT(RatioOf(moving), kFarWorse);
+  const CameraMotionEvidence of_still = EvidenceOf(still);
+  const CameraMotionEvidence of_moving = EvidenceOf(moving);
+  EXPECT_LT(of_still.error_ratio, kAlike);
+  EXPECT_GT(of_moving.error_ratio, kFarWorse);
+  EXPECT_GT(of_moving.significance, kByChance);
+  EXPECT_TRUE(of_still.moving_leaves_noise && of_moving.moving_leaves_noise);
+}
+
+// The camera is shifted against its solution, by which all errors are alike.
+TEST(StillCamera, AModelThatLeavesMoreThanNoiseSaysSo) {
+  Scene scene(kManyViews);
+  const auto solution = SolveDeformingWindow(scene.Start(0), kFocalPx, {});
+  ASSERT_TRUE(solution.ok());
+  auto models = SolveCameraMotionModels(*solution, kFocalPx, {});
+  ASSERT_TRUE(models.ok());
+  for (Rigid3& pose : models->moving.cams_from_world) pose.translation.x() += 1.0;
+  std::vector<int> views(scene.poses.size() - 1);
+  std::iota(views.begin(), views.end(), 1);
+  const CameraMotionEvidence evidence = EvidenceOfCameraMotion(*models, views, 0.0);
+  EXPECT_FALSE(evidence.moving_leaves_noise);
+  EXPECT_LT(evidence.error_ratio, 1.0);
+  EXPECT_LT(evidence.significance, -kByChance);
 }
 
 TEST(StillCamera, HasNoTranslationInItsModelAndNoHigherRank) {
@@ -90,7 +114,9 @@ TEST(StillCamera, IsAsGoodWhereNothingIsCompared) {
   ASSERT_TRUE(solution.ok());
   const auto models = SolveCameraMotionModels(*solution, kFocalPx, {});
   ASSERT_TRUE(models.ok());
-  EXPECT_EQ(StillCameraErrorRatio(*models, {}, 0.0), 1.0);
+  const CameraMotionEvidence evidence = EvidenceOfCameraMotion(*models, {}, 0.0);
+  EXPECT_EQ(evidence.error_ratio, 1.0);
+  EXPECT_EQ(evidence.significance, 0.0);
 }
 
 }  // namespace

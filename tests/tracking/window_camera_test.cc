@@ -121,6 +121,41 @@ TEST(WindowCamera, SaysByHowMuchTheCameraMoves) {
   EXPECT_THAT(outcome.reason, HasSubstr("with a camera that stands still"));
 }
 
+// Errors alone would never do here, as in images in which noise hides what they tell.
+WindowInitOptions WithoutErrors() {
+  WindowInitOptions options;
+  options.min_still_camera_ratio = 1e3;
+  return options;
+}
+
+TEST(WindowCamera, DepthsThatStandOutShowThatTheCameraMoves) {
+  const InitOutcome last = WavingTracks(61).Try(WithoutErrors());
+  EXPECT_EQ(last.decision, InitDecision::kMap) << last.reason;
+  EXPECT_TRUE(last.moves_by_depth);
+  EXPECT_FALSE(last.ambiguous || last.camera_may_stand_still);
+  const InitOutcome early = WavingTracks(41).Try(WithoutErrors());
+  EXPECT_EQ(early.decision, InitDecision::kProvisional) << "a later window may contradict it: " << early.reason;
+  EXPECT_TRUE(early.moves_by_depth);
+}
+
+TEST(WindowCamera, DepthsShowNothingWhereAnEarlierWindowContradictsThem) {
+  const WavingTracks moving(61);
+  const InitOutcome outcome = MakeWindowInitializer(WithoutErrors(), kNominalMm)
+                                  ->Try({.camera = moving.camera,
+                                         .frames = moving.frames,
+                                         .reference_depth_mm = {},
+                                         .camera_may_stand_still = true});
+  EXPECT_EQ(outcome.decision, InitDecision::kNewReference);
+  EXPECT_TRUE(outcome.ambiguous);
+  EXPECT_FALSE(outcome.camera_may_stand_still) << "this window itself says that it moves";
+}
+
+TEST(WindowCamera, AHeldCameraMayStandStillWhateverTheDepths) {
+  const InitOutcome outcome = WavingTracks(51, CameraMotion::kHeld).Try({});
+  EXPECT_TRUE(outcome.camera_may_stand_still);
+  EXPECT_FALSE(outcome.moves_by_depth);
+}
+
 TEST(WindowCamera, SaysThatTheCameraStoodStill) {
   const InitOutcome outcome = WavingTracks(31, CameraMotion::kStill).Try({});
   EXPECT_EQ(outcome.decision, InitDecision::kWait);

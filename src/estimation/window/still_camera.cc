@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -50,16 +52,39 @@ Result<DeformingWindow> Solved(const DeformingWindow& start, const SurfaceNodes&
   return problem.Window();
 }
 
-// Angles between the rays that were seen and where the points are, in the order of the observations of these views.
-std::vector<double> ErrorsIn(const DeformingWindow& window, const std::vector<int>& view_idxs) {
-  std::vector<double> errors;
-  for (const DeformingObservation& observation : window.observations) {
-    if (std::find(view_idxs.begin(), view_idxs.end(), observation.view_idx) == view_idxs.end()) continue;
-    const Eigen::Vector3d x = window.cams_from_world[static_cast<std::size_t>(observation.view_idx)] *
-                              window.Position(observation.point_idx, observation.view_idx);
-    errors.push_back(AngleBetween(x, observation.ray));
+// The angle between a ray that was seen and where its point is.
+double ErrorOf(const DeformingObservation& observation, const DeformingWindow& window) {
+  const Eigen::Vector3d x = window.cams_from_world[static_cast<std::size_t>(observation.view_idx)] *
+                            window.Position(observation.point_idx, observation.view_idx);
+  return AngleBetween(x, observation.ray);
+}
+
+// Of one observation, under both models.
+struct ErrorPair {
+  int point_idx = 0;
+  double moving = 0;
+  double still = 0;
+};
+
+std::vector<ErrorPair> ErrorsIn(const CameraMotionModels& models, const std::vector<int>& view_idxs) {
+  std::vector<ErrorPair> errors;
+  for (std::size_t k = 0; k < models.moving.observations.size(); ++k) {
+    const DeformingObservation& seen = models.moving.observations[k];
+    if (std::ranges::find(view_idxs, seen.view_idx) == view_idxs.end()) continue;
+    errors.push_back(
+        {seen.point_idx, ErrorOf(seen, models.moving), ErrorOf(models.still.observations[k], models.still)});
   }
   return errors;
+}
+
+// The mean of the points' values by its standard error; 0 where there are fewer than two or they do not differ.
+double StandardErrorsFromZero(const std::vector<double>& values) {
+  if (values.size() < 2) return 0.0;
+  const auto n = static_cast<double>(values.size());
+  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / n;
+  double squares = 0;
+  for (const double value : values) squares += (value - mean) * (value - mean);
+  return squares > 0.0 ? mean / std::sqrt(squares / (n - 1.0) / n) : 0.0;
 }
 
 // The ratio of the errors that neighbors share, where the moving camera leaves noise alone; else 0.
@@ -95,18 +120,28 @@ Result<CameraMotionModels> SolveCameraMotionModels(const DeformingSolution& solu
   return CameraMotionModels{sample, std::move(*moving), std::move(*still)};
 }
 
-double StillCameraErrorRatio(const CameraMotionModels& models, const std::vector<int>& view_idxs,
-                             double min_angle_rad) {
-  const std::vector<double> moving = ErrorsIn(models.moving, view_idxs);
-  const std::vector<double> still = ErrorsIn(models.still, view_idxs);
-  if (moving.empty()) return 1.0;
-  const double least = kMinError * Median(moving);
+CameraMotionEvidence EvidenceOfCameraMotion(const CameraMotionModels& models, const std::vector<int>& view_idxs,
+                                            double min_angle_rad) {
+  const std::vector<ErrorPair> errors = ErrorsIn(models, view_idxs);
+  if (errors.empty()) return {};
+  std::vector<double> of_moving;
+  for (const ErrorPair& error : errors) of_moving.push_back(error.moving);
+  const double least = kMinError * Median(std::move(of_moving));
   double sum = 0;
-  for (std::size_t k = 0; k < moving.size(); ++k)
-    sum += std::log(std::hypot(still[k], least) / std::hypot(moving[k], least));
-  return std::max(std::exp(sum / static_cast<double>(moving.size())),
-                  SharedErrorRatio(ErrorsOfNeighbors(models.moving, view_idxs, min_angle_rad),
-                                   ErrorsOfNeighbors(models.still, view_idxs, min_angle_rad)));
+  std::map<int, std::pair<double, int>> of_points;  // sums and counts
+  for (const ErrorPair& error : errors) {
+    const double log_ratio = std::log(std::hypot(error.still, least) / std::hypot(error.moving, least));
+    sum += log_ratio;
+    auto& [of_point, count] = of_points[error.point_idx];
+    of_point += log_ratio;
+    ++count;
+  }
+  std::vector<double> means;
+  for (const auto& [point, of_point] : of_points) means.push_back(of_point.first / of_point.second);
+  const NeighborErrors moving = ErrorsOfNeighbors(models.moving, view_idxs, min_angle_rad);
+  const NeighborErrors still = ErrorsOfNeighbors(models.still, view_idxs, min_angle_rad);
+  return {std::max(std::exp(sum / static_cast<double>(errors.size())), SharedErrorRatio(moving, still)),
+          StandardErrorsFromZero(means), moving.Correlation() <= kMaxNoiseCorrelation};
 }
 
 }  // namespace pliant

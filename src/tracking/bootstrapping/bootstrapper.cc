@@ -127,22 +127,27 @@ std::optional<Bootstrapper::Answer> Bootstrapper::NextAnswer(const PreparedFrame
   const StageTimer timer(times, Stage::kInitialize);
   if (handover_frames_ == 0) {
     const auto alternative = frames_.size() % kAskAlternativeEvery == 0 ? AlternativeToAsk() : nullptr;
-    return AskInitializers(frames_, known_depths_, frame, InitMoment::kMoreFollow, alternative.get());
+    return AskInitializers(frames_, known_depths_, camera_may_stand_still_, frame, InitMoment::kMoreFollow,
+                           alternative.get());
   }
   const auto step = static_cast<int>(frames_.size());
   const WorkPlace place = threads_ > 1 ? WorkPlace::kBeside : WorkPlace::kHere;
-  answers_.Ask(step + handover_frames_, place, [this, frame, frames = frames_, known_depths = known_depths_] {
-    return AskInitializers(frames, known_depths, frame, InitMoment::kMoreFollow, nullptr);
-  });
+  answers_.Ask(
+      step + handover_frames_, place,
+      [this, frame, frames = frames_, known_depths = known_depths_, may_stand_still = camera_may_stand_still_] {
+        return AskInitializers(frames, known_depths, may_stand_still, frame, InitMoment::kMoreFollow, nullptr);
+      });
   return answers_.Take(step);
 }
 
 // Beside tracking it reads only what does not change. `alternative`: null: it is not asked.
 Bootstrapper::Answer Bootstrapper::AskInitializers(const std::vector<InitFrame>& frames,
-                                                   const std::vector<double>& known_depths, const PreparedFrame& last,
-                                                   InitMoment moment, const Initializer* alternative) const {
+                                                   const std::vector<double>& known_depths, bool may_stand_still,
+                                                   const PreparedFrame& last, InitMoment moment,
+                                                   const Initializer* alternative) const {
   Answer answer{.frames = frames.size(), .last = last};
-  answer.outcome = initializer_->Try({camera_, frames, last.depth_mm, moment, threads_, known_depths, photometric_});
+  answer.outcome = initializer_->Try(
+      {camera_, frames, last.depth_mm, moment, threads_, known_depths, photometric_, may_stand_still});
   const bool is_settled = answer.outcome.decision == InitDecision::kMap || answer.outcome.ambiguous;
   if (alternative != nullptr && !is_settled)
     answer.alternative = alternative->Try({camera_, frames, {}, moment, threads_, {}, photometric_});
@@ -182,9 +187,11 @@ void Bootstrapper::TakeAnswer(Answer answer, BootstrapStep* step) {
 
 void Bootstrapper::TakeAlternative(const Answer& answer) {
   if (answer.outcome.ambiguous) {  // what is less certain, or takes more for granted, is no answer then
-    provisional_.reset();
+    const bool is_weak = provisional_ && provisional_->map.outcome.measured.DepthSignal() < kMinDepthSignal;
+    if (is_weak || answer.outcome.camera_may_stand_still) provisional_.reset();
     ForgetAlternative();
   }
+  camera_may_stand_still_ |= answer.outcome.camera_may_stand_still;
   if (!answer.alternative || answer.alternative->decision != InitDecision::kMap || AlternativeToAsk() == nullptr)
     return;
   would_start_ = "--Init.method " + std::string(alternative_->name()) + " would have made a map by frame " +
@@ -258,6 +265,7 @@ void Bootstrapper::FinishMap(FirstMap map, BootstrapStep* step) {
   for (const InitRejectedPoint& rejected : map.outcome.rejected)
     if (rejected.reason != InitRejection::kLostOnTheWay) step->losses.Add(InitRejectionName(rejected.reason), 1);
   provisional_.reset();
+  camera_may_stand_still_ = false;
   ForgetAlternative();
   map.outcome.decision = InitDecision::kMap;
   oracle_poses_->TakeWorld({camera_, map.frames, {}}, &map.outcome);
@@ -284,7 +292,8 @@ BootstrapStep Bootstrapper::EndSequence(StageTimes* times) {
   PreparedFrame last;
   last.frame_idx = frames_.back().frame_idx;
   const auto alternative = provisional_ ? nullptr : AlternativeToAsk();
-  Answer answer = AskInitializers(frames_, known_depths_, last, InitMoment::kLastFrame, alternative.get());
+  Answer answer =
+      AskInitializers(frames_, known_depths_, camera_may_stand_still_, last, InitMoment::kLastFrame, alternative.get());
   step.note = WithFault(answer.outcome.reason, image_fault_);
   TakeAlternative(answer);
   if (answer.outcome.ambiguous && answer.outcome.decision == InitDecision::kNewReference)
@@ -302,6 +311,7 @@ void Bootstrapper::Abandon() {
   frames_.clear();
   known_depths_.clear();
   provisional_.reset();
+  camera_may_stand_still_ = false;
   has_map_ = false;
   last_reason_ = "the first map is attempted beside tracking";
   answers_.Drop();
@@ -382,7 +392,8 @@ void Bootstrapper::Serialize(StateArchive& archive) {
   bool asks_alternative = alternative_ != nullptr;
   archive(asks_alternative);
   if (!asks_alternative) alternative_.reset();
-  archive(has_map_, frames_, known_depths_, image_fault_, provisional_, would_start_, last_reason_, answers_);
+  archive(has_map_, frames_, known_depths_, image_fault_, provisional_, camera_may_stand_still_, would_start_,
+          last_reason_, answers_);
 }
 void Bootstrapper::Made::Serialize(StateArchive& archive) { archive.Members<2>(*this); }
 void Bootstrapper::Answer::Serialize(StateArchive& archive) { archive.Members<4>(*this); }

@@ -96,7 +96,8 @@ class Bootstrapper {
   };
 
   Answer AskInitializers(const std::vector<InitFrame>& frames, const std::vector<double>& known_depths,
-                         const PreparedFrame& last, InitMoment moment, const Initializer* alternative) const;
+                         bool may_stand_still, const PreparedFrame& last, InitMoment moment,
+                         const Initializer* alternative) const;
   std::shared_ptr<const Initializer> AlternativeToAsk() const;
   std::optional<Answer> NextAnswer(const PreparedFrame& frame, StageTimes* times);
   void TryInitialize(const PreparedFrame& frame, StageTimes* times, BootstrapStep* step);
@@ -125,11 +126,12 @@ class Bootstrapper {
   std::shared_ptr<const Initializer> initializer_;
   std::shared_ptr<const Initializer> alternative_;
 
-  bool has_map_ = false;              // one that catches up
-  std::vector<InitFrame> frames_;     // since the reference; empty: there is none
-  std::vector<double> known_depths_;  // of the reference's points, where they are known
-  std::string image_fault_;           // of the last frame
-  std::optional<Made> provisional_;   // the best one since the reference
+  bool has_map_ = false;                 // one that catches up
+  std::vector<InitFrame> frames_;        // since the reference; empty: there is none
+  std::vector<double> known_depths_;     // of the reference's points, where they are known
+  std::string image_fault_;              // of the last frame
+  std::optional<Made> provisional_;      // the best one since the reference
+  bool camera_may_stand_still_ = false;  // as an answer since the reference said
   std::string would_start_;
   std::string last_reason_;         // of the last answer
   DelayedAnswers<Answer> answers_;  // steps: the number of frames since the reference; ends before what it reads

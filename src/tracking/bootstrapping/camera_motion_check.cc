@@ -10,11 +10,13 @@
 
 #include "pliant/base/text.h"
 #include "pliant/estimation/window/still_camera.h"
+#include "pliant/scene/frame_report.h"
 #include "tracking/bootstrapping/initial_map.h"
 
 namespace pliant {
 namespace {
 
+constexpr double kMinSignificance = 3.0;      // standard errors
 constexpr double kMinParallaxByError = 10.0;  // of a rigid scene: two views alone then know depths to 14 %
 
 // The frames that no model was fitted to, of which there may be none in a short window: then all but the reference.
@@ -44,6 +46,13 @@ Status CheckRigidMotion(const DeformingWindow& window, double focal_px, double m
                                       " px: the camera hardly moves, or only turns; move it sideways or forwards"};
 }
 
+// (W18) Where noise is most of both errors their ratio is near 1, whatever the camera does. Depths then show its
+// motion: before a camera that stands still they are as uncertain as they differ.
+bool MovesByDepth(const CameraMotionEvidence& evidence, const InitMeasurements& measured) {
+  return evidence.moving_leaves_noise && evidence.significance >= kMinSignificance &&
+         measured.DepthSignal() >= kMinDepthSignal;
+}
+
 }  // namespace
 
 Status CheckCameraMotion(const InitInput& input, const SolvedWindow& window, const WindowInitOptions& options,
@@ -61,10 +70,14 @@ Status CheckCameraMotion(const InitInput& input, const SolvedWindow& window, con
     if (!all.ok()) return all.status();
     *model = std::move(*all);
   }
-  const double ratio = StillCameraErrorRatio(*models, ComparedFrames(input.frames.size(), window.views),
-                                             options.window.patch_px / focal_px);
+  const CameraMotionEvidence evidence = EvidenceOfCameraMotion(
+      *models, ComparedFrames(input.frames.size(), window.views), options.window.patch_px / focal_px);
+  const double ratio = evidence.error_ratio;
   outcome->measured.still_camera_error_ratio = ratio;
-  outcome->ambiguous = ratio < options.min_still_camera_ratio;
+  const bool is_clear = ratio >= options.min_still_camera_ratio;
+  outcome->camera_may_stand_still = !is_clear && evidence.significance < kMinSignificance;
+  outcome->moves_by_depth = !is_clear && !input.camera_may_stand_still && MovesByDepth(evidence, outcome->measured);
+  outcome->ambiguous = !is_clear && !outcome->moves_by_depth;
   if (!outcome->ambiguous) return Status::Ok();
   return {ErrorCode::kDegenerate,
           "camera and scene cannot be told apart: with a camera that stands still the errors are " + Digits(ratio, 2) +

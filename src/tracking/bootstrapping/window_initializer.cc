@@ -120,6 +120,8 @@ class WindowInitializer final : public Initializer {
     Status status(ErrorCode::kInsufficient, "the scene deforms, and a window of " + std::to_string(since + 1) +
                                                 " frames is too short for depths that are certain");
     if (!window.ok() || !early || window->IsRigid()) status = Make(input, window, DemandsAfter(since), outcome);
+    // What the depths alone show is left for later windows to contradict.
+    if (status.ok() && outcome->moves_by_depth) outcome->decision = InitDecision::kProvisional;
     if (status.ok()) return status;
     status = MakeProvisional(input, window, status, outcome);
     if (status.ok()) outcome->decision = InitDecision::kProvisional;

@@ -45,10 +45,21 @@ std::vector<double> DepthSigmas(const DeformingSolution& solution) {
   return sigmas;
 }
 
-// Those whose errors (`errors_px`, one each) and sigmas are small enough, sorted by id, without their observations;
-// `rejected`, which may be null, becomes the others.
+// u_i: sigmas by the median distance, or by the point's own where that is larger and counts.
+std::vector<double> Uncertainties(const MapPoints& points, const MapDemands& demands, double median_distance) {
+  std::vector<double> uncertainties;
+  for (std::size_t i = 0; i < points.ids.size(); ++i) {
+    const double own = demands.far_by_own_distance ? points.solution.window.points_in_world[i].norm() : 0.0;
+    uncertainties.push_back(points.depth_sigmas[i] / std::max(own, median_distance));
+  }
+  return uncertainties;
+}
+
+// Those whose errors (`errors_px`, one each) and uncertainties are small enough, sorted by id, without their
+// observations; `rejected`, which may be null, becomes the others.
 MapPoints ChooseCertain(const MapPoints& points, const std::vector<double>& errors_px, double max_error_px,
-                        double max_sigma, std::vector<InitRejectedPoint>* rejected) {
+                        const MapDemands& demands, double median_distance, std::vector<InitRejectedPoint>* rejected) {
+  const std::vector<double> uncertainties = Uncertainties(points, demands, median_distance);
   const DeformingSolution& from = points.solution;
   std::vector<std::size_t> order(points.ids.size());
   std::iota(order.begin(), order.end(), 0);
@@ -62,7 +73,7 @@ MapPoints ChooseCertain(const MapPoints& points, const std::vector<double>& erro
   to.window.cue = from.window.cue;
   for (const std::size_t i : order) {
     const bool agrees = errors_px[i] <= max_error_px;
-    if (!agrees || !(points.depth_sigmas[i] <= max_sigma)) {
+    if (!agrees || !(uncertainties[i] <= demands.max_sigma)) {
       if (rejected != nullptr)
         rejected->push_back({points.ids[i], agrees ? InitRejection::kUncertainDepth : InitRejection::kReprojection});
       continue;
@@ -108,9 +119,10 @@ int CountSeen(const InitFrame& frame, const std::vector<PointId>& ids) {
 
 Status EnoughCertain(const InitInput& input, const SolvedWindow& window, const MapPoints& points,
                      const MapDemands& demands, int min_points, double median_distance, double median_parallax_deg) {
+  const std::vector<double> uncertainties = Uncertainties(points, demands, median_distance);
   std::vector<PointId> certain_ids;
   for (std::size_t k = 0; k < points.ids.size(); ++k)
-    if (points.depth_sigmas[k] <= demands.certain_sigma * median_distance) certain_ids.push_back(points.ids[k]);
+    if (uncertainties[k] <= demands.certain_sigma) certain_ids.push_back(points.ids[k]);
   const int seen = CountSeen(input.frames.back(), window.ids);
   const int certain = CountSeen(input.frames.back(), certain_ids);
   if (certain >= min_points && certain >= demands.certain_share * seen) return Status::Ok();
@@ -173,8 +185,7 @@ Status OptimizePoints(const InitInput& input, const MapDemands& demands, const W
     max_error_px = std::min(max_error_px, kMaxErrorRatio * median_px);
     for (std::size_t i = 0; i < all.ids.size(); ++i) all.depth_sigmas[i] *= std::max(1.0, errors_px[i] / median_px);
   }
-  *points =
-      ChooseCertain(all, errors_px, max_error_px, demands.max_sigma * all.solution.window.MedianDistance(), rejected);
+  *points = ChooseCertain(all, errors_px, max_error_px, demands, all.solution.window.MedianDistance(), rejected);
   return Status::Ok();
 }
 
@@ -252,6 +263,7 @@ MapDemands ProvisionalDemands(const DeformingWindow& window) {
   return {.certain_sigma = certain_sigma,
           .max_sigma = kMinProvisionalSignal * certain_sigma,
           .certain_share = kMinProvisionalShare,
+          .far_by_own_distance = window.coefficients.rows() > 0,
           .provisional = true};
 }
 
@@ -266,11 +278,11 @@ Status MakeWindowMap(const InitInput& input, const SolvedWindow& window, const M
   const MapPoints all{window.ids, DepthSigmas(window.solution), window.solution};
   const std::vector<double> errors_px = PointErrorsPx(window.solution.window, focal_px);
   const double median_distance = window.solution.window.MedianDistance();
-  MapPoints points = ChooseCertain(all, errors_px, options.max_error_px, demands.max_sigma * median_distance, nullptr);
+  MapPoints points = ChooseCertain(all, errors_px, options.max_error_px, demands, median_distance, nullptr);
   const auto measure = [&] {
     outcome->measured.inliers = static_cast<int>(points.ids.size());
     outcome->measured.median_depth_sigma =
-        points.ids.empty() ? 0.0 : Median(points.depth_sigmas) / points.solution.window.MedianDistance();
+        points.ids.empty() ? 0.0 : Median(Uncertainties(points, demands, points.solution.window.MedianDistance()));
     outcome->measured.depth_spread = points.ids.empty() ? 0.0 : DepthSpread(points.solution.window);
   };
   measure();

@@ -16,7 +16,8 @@ struct MapDemands {
   // Of a point by the median depth: at most so much for it to be certain, and to enter the map.
   double certain_sigma = 0;
   double max_sigma = 0;
-  double certain_share = 0;  // of the points still seen, at least
+  double certain_share = 0;          // of the points still seen, at least
+  bool far_by_own_distance = false;  // points farther than the median are judged by their own depth
   // Points whose errors stand out are less certain in proportion, and left out where they do so by three times.
   bool scales_sigmas_with_error = false;
   bool provisional = false;  // less than the options demand

@@ -32,12 +32,23 @@ constexpr int kModelRank = 2;
 Result<CameraMotionModels> SolveCameraMotionModels(const DeformingSolution& solution, double focal_px,
                                                    const DeformingWindowOptions& options, int threads = 1);
 
-// How many times larger the reprojection errors of the camera that stands still are: the geometric mean over the
-// observations of the views in `view_idxs`, which both windows have in the same order. Errors below a fifth of the
-// median one count as that large. Noise hides the difference: where the moving camera leaves noise alone and the other
-// one does not, it is the ratio of what neighbors at `min_angle_rad` or more share (ErrorsOfNeighbors), if that is
-// larger; three standard deviations of what noise shares by chance are added to both. About 1: camera and scene cannot
-// be told apart. 1 where there is no observation.
-double StillCameraErrorRatio(const CameraMotionModels& models, const std::vector<int>& view_idxs, double min_angle_rad);
+// What the images say of the two.
+struct CameraMotionEvidence {
+  // How many times larger the reprojection errors of the camera that stands still are. About 1: camera and scene cannot
+  // be told apart.
+  double error_ratio = 1;
+  // Whether errors as large are no accident: their mean logarithm's excess over that of the moving camera's, in
+  // standard errors over the points; 0: unknown.
+  double significance = 0;
+  bool moving_leaves_noise = false;  // it does: its errors are no more alike than those of noise (kMaxNoiseCorrelation)
+};
+
+// Over the views in `view_idxs`; both windows have the same observations. The ratio is the geometric mean over the
+// observations; errors below a fifth of the median one count as that large. Noise hides the difference: where the
+// moving camera leaves noise alone and the other one does not, it is the ratio of what neighbors at `min_angle_rad` or
+// more share (ErrorsOfNeighbors), if that is larger; three standard deviations of what noise shares by chance are added
+// to both.
+CameraMotionEvidence EvidenceOfCameraMotion(const CameraMotionModels& models, const std::vector<int>& view_idxs,
+                                            double min_angle_rad);
 
 }  // namespace pliant

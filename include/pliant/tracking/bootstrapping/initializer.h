@@ -60,6 +60,7 @@ struct InitInput {
   // z of the reference's points, in their order, in any unit; empty: not known.
   std::vector<double> reference_depths = {};
   std::optional<PhotometricCalibration> photometric = std::nullopt;  // where it is known
+  bool camera_may_stand_still = false;  // as an answer since the reference said (InitOutcome)
 };
 
 enum class InitDecision {
@@ -128,7 +129,9 @@ struct InitOutcome {
   InitDecision decision = InitDecision::kWait;
   std::string reason;  // one sentence with its numbers; of a map too
   InitMeasurements measured;
-  bool ambiguous = false;  // no map, since a camera that stands still explains the images too
+  bool ambiguous = false;               // no map, since a camera that stands still explains the images too
+  bool camera_may_stand_still = false;  // it explains them as well but for chance
+  bool moves_by_depth = false;          // the depths alone show that the camera moves (W18)
 
   // Filled in for kMap and kProvisional alone.
   std::vector<InitFrameState> frames;       // one a frame of the input, in its order; the first pose is the identity
