@@ -30,7 +30,8 @@ Json FirstMapJson(const FirstMapFrames& map) {
           {"depth_sigma", evidence.depth_sigma},
           {"depth_spread", evidence.depth_spread},
           {"still_camera_error_ratio", evidence.still_camera_error_ratio},
-          {"focal_length_factor", evidence.focal_length_factor}};
+          {"focal_length_factor", evidence.focal_length_factor},
+          {"moves_by_depth", evidence.moves_by_depth}};
 }
 
 FirstMapFrames ReadFirstMap(const Json& json) {
@@ -44,7 +45,8 @@ FirstMapFrames ReadFirstMap(const Json& json) {
            .depth_sigma = json.value("depth_sigma", 0.0),
            .depth_spread = json.value("depth_spread", 0.0),
            .still_camera_error_ratio = json.value("still_camera_error_ratio", 0.0),
-           .focal_length_factor = json.value("focal_length_factor", 1.0)}};
+           .focal_length_factor = json.value("focal_length_factor", 1.0),
+           .moves_by_depth = json.value("moves_by_depth", false)}};
 }
 
 RunDescription ReadDescription(const Json& json) {

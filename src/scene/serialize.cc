@@ -14,7 +14,7 @@ void Serialize(StateArchive& archive, CostTerm& cost) { archive.Members<2>(cost)
 void Serialize(StateArchive& archive, PointObservation& observation) { archive.Members<5>(observation); }
 void Serialize(StateArchive& archive, NewPoint& point) { archive.Members<3>(point); }
 void Serialize(StateArchive& archive, RefinedPoint& point) { archive.Members<2>(point); }
-void Serialize(StateArchive& archive, FirstMapEvidence& evidence) { archive.Members<9>(evidence); }
+void Serialize(StateArchive& archive, FirstMapEvidence& evidence) { archive.Members<10>(evidence); }
 void Serialize(StateArchive& archive, FirstMapFrames& frames) { archive.Members<3>(frames); }
 void Serialize(StateArchive& archive, SubmapMerge& merge) { archive.Members<3>(merge); }
 void Serialize(StateArchive& archive, FrameReport& report) {

@@ -50,6 +50,16 @@ TEST(RunTrust, SaysWhatAGoodRunHas) {
   EXPECT_THAT(trust, Not(Contains(Key("advice"))));
 }
 
+TEST(RunTrust, SaysThatDepthsAloneShowThatTheCameraMoves) {
+  FirstMapEvidence noisy = kKnown;
+  noisy.still_camera_error_ratio = 1.12;
+  noisy.moves_by_depth = true;
+  EXPECT_THAT(Trust(Summary(kKnown)).at("camera"), HasSubstr("so it moved."));
+  const std::string camera = Trust(Summary(noisy)).at("camera");
+  EXPECT_THAT(camera, HasSubstr("1.12 times as large, too little to tell in so much noise"));
+  EXPECT_THAT(camera, Not(HasSubstr("so it moved")));
+}
+
 TEST(RunTrust, DepthsThatAreHardlyBetterThanOneAreNoneToTrust) {
   FirstMapEvidence flat = kKnown;
   flat.depth_spread = 0.02;

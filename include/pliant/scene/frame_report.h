@@ -93,6 +93,7 @@ struct FirstMapEvidence {
   double depth_spread = 0;              // the error of one constant depth: median of |log(depth / median depth)| (W15)
   double still_camera_error_ratio = 0;  // errors of a camera that stands still by those of one that moves (W14)
   double focal_length_factor = 1;  // on the calibration's, with which a rigid scene fits clearly better (W16); 1: none
+  bool moves_by_depth = false;     // that ratio does not show that the camera moves, but the depths do (W18)
 };
 
 // From which frame to which a first map was made; these and all between have their poses and points from it.

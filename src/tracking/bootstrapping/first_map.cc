@@ -21,7 +21,8 @@ FirstMapEvidence EvidenceOf(const InitOutcome& outcome) {
           .depth_sigma = measured.median_depth_sigma,
           .depth_spread = measured.depth_spread,
           .still_camera_error_ratio = measured.still_camera_error_ratio,
-          .focal_length_factor = measured.focal_length_factor};
+          .focal_length_factor = measured.focal_length_factor,
+          .moves_by_depth = outcome.moves_by_depth};
 }
 
 void ReportFrame(const Camera& camera, const InitFrame& frame, const InitFrameState& state, const InitOutcome& outcome,
