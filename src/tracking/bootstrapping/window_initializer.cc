@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "pliant/base/statistics.h"
@@ -148,9 +149,17 @@ class WindowInitializer final : public Initializer {
                          InitOutcome* outcome) const {
     if (options_.provisional == Switch::kOff || !window.ok() || outcome->ambiguous) return status;
     if (ContradictsLightClearly(*window)) return status;
-    const Status provisional = MakeWindowMap(input, *window, ProvisionalDemands(window->solution.window), options_,
-                                             nominal_depth_mm_, outcome);
-    return provisional.ok() || outcome->ambiguous ? provisional : status;
+    Status missing = status;
+    for (const bool far_by_own_distance : {false, true}) {
+      // Sigmas of rigid windows know nothing of a deformation: they are not taken for more than they are.
+      if (outcome->camera_may_stand_still || (far_by_own_distance && window->IsRigid())) break;
+      const bool was_ambiguous = outcome->ambiguous;
+      const MapDemands demands = ProvisionalDemands(window->solution.window, far_by_own_distance);
+      Status made = MakeWindowMap(input, *window, demands, options_, nominal_depth_mm_, outcome);
+      if (made.ok()) return made;
+      if (outcome->ambiguous && !was_ambiguous) missing = std::move(made);
+    }
+    return missing;
   }
 
   MapDemands LastDemands(int since) const {

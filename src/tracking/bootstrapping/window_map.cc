@@ -55,6 +55,15 @@ std::vector<double> Uncertainties(const MapPoints& points, const MapDemands& dem
   return uncertainties;
 }
 
+// (W15) By the median distance, or of the points' log distances, as their spread is.
+double MedianSigma(const MapPoints& points, bool by_own_distance) {
+  std::vector<double> sigmas;
+  for (std::size_t i = 0; i < points.ids.size(); ++i)
+    sigmas.push_back(points.depth_sigmas[i] /
+                     (by_own_distance ? points.solution.window.points_in_world[i].norm() : 1.0));
+  return Median(std::move(sigmas)) / (by_own_distance ? 1.0 : points.solution.window.MedianDistance());
+}
+
 // Those whose errors (`errors_px`, one each) and uncertainties are small enough, sorted by id, without their
 // observations; `rejected`, which may be null, becomes the others.
 MapPoints ChooseCertain(const MapPoints& points, const std::vector<double>& errors_px, double max_error_px,
@@ -258,12 +267,12 @@ MapDemands DemandsOf(const WindowInitOptions& options, double relaxed) {
           .certain_share = (1.0 - relaxed) * options.min_certain_share};
 }
 
-MapDemands ProvisionalDemands(const DeformingWindow& window) {
+MapDemands ProvisionalDemands(const DeformingWindow& window, bool far_by_own_distance) {
   const double certain_sigma = std::min(DepthSpread(window) / kMinProvisionalSignal, kMaxProvisionalSigma);
   return {.certain_sigma = certain_sigma,
           .max_sigma = kMinProvisionalSignal * certain_sigma,
           .certain_share = kMinProvisionalShare,
-          .far_by_own_distance = window.coefficients.rows() > 0,
+          .far_by_own_distance = far_by_own_distance,
           .provisional = true};
 }
 
@@ -281,8 +290,7 @@ Status MakeWindowMap(const InitInput& input, const SolvedWindow& window, const M
   MapPoints points = ChooseCertain(all, errors_px, options.max_error_px, demands, median_distance, nullptr);
   const auto measure = [&] {
     outcome->measured.inliers = static_cast<int>(points.ids.size());
-    outcome->measured.median_depth_sigma =
-        points.ids.empty() ? 0.0 : Median(Uncertainties(points, demands, points.solution.window.MedianDistance()));
+    outcome->measured.median_depth_sigma = points.ids.empty() ? 0.0 : MedianSigma(points, demands.far_by_own_distance);
     outcome->measured.depth_spread = points.ids.empty() ? 0.0 : DepthSpread(points.solution.window);
   };
   measure();

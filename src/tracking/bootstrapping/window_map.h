@@ -17,7 +17,8 @@ struct MapDemands {
   double certain_sigma = 0;
   double max_sigma = 0;
   double certain_share = 0;          // of the points still seen, at least
-  bool far_by_own_distance = false;  // points farther than the median are judged by their own depth
+  // Points farther than the median are judged by their own depth, and the map by their log depths.
+  bool far_by_own_distance = false;
   // Points whose errors stand out are less certain in proportion, and left out where they do so by three times.
   bool scales_sigmas_with_error = false;
   bool provisional = false;  // less than the options demand
@@ -28,7 +29,7 @@ MapDemands DemandsOf(const WindowInitOptions& options, double relaxed);
 
 // (W15) Those of a provisional map: most of its points' sigmas are small by the spread of their depths, and small
 // enough to be trusted.
-MapDemands ProvisionalDemands(const DeformingWindow& window);
+MapDemands ProvisionalDemands(const DeformingWindow& window, bool far_by_own_distance);
 
 // How many points a map needs: those of the options, or half of the reference's points where these are few.
 int NeededPoints(const InitInput& input, const WindowInitOptions& options);
