@@ -16,7 +16,7 @@ struct MapDemands {
   // Of a point by the median depth: at most so much for it to be certain, and to enter the map.
   double certain_sigma = 0;
   double max_sigma = 0;
-  double certain_share = 0;          // of the points still seen, at least
+  double certain_share = 0;  // of the points still seen, at least
   // Points farther than the median are judged by their own depth, and the map by their log depths.
   bool far_by_own_distance = false;
   // Points whose errors stand out are less certain in proportion, and left out where they do so by three times.
