@@ -33,7 +33,6 @@ struct EnumNames<RunStatus> {
                                         std::pair{RunStatus::kFailed, std::string_view("failed")}};
 };
 
-// What is known when a run begins.
 // Which of a recording's frames a run takes.
 struct FrameSelection {
   int start = 0;   // the first
@@ -42,6 +41,7 @@ struct FrameSelection {
   bool operator==(const FrameSelection&) const = default;
 };
 
+// What is known when a run begins.
 struct RunDescription {
   std::string program_version;
   std::vector<std::string> command_line;

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -81,7 +80,7 @@ std::vector<ErrorPair> ErrorsIn(const CameraMotionModels& models, const std::vec
 double StandardErrorsFromZero(const std::vector<double>& values) {
   if (values.size() < 2) return 0.0;
   const auto n = static_cast<double>(values.size());
-  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / n;
+  const double mean = Mean(values);
   double squares = 0;
   for (const double value : values) squares += (value - mean) * (value - mean);
   return squares > 0.0 ? mean / std::sqrt(squares / (n - 1.0) / n) : 0.0;
