@@ -21,7 +21,10 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kMagic = "Pliant checkpoint\n";
-constexpr std::size_t kMaxHead = 100;  // bytes: a version and a checksum
+constexpr std::size_t kMaxHead = 400;  // bytes: a version and a checksum
+
+// Another compiler or machine may round otherwise, and the rest of a run would not be what it would have been.
+std::string ThisProgram() { return std::string(kVersion) + " (" + std::string(BuildText()) + ")"; }
 
 std::string StateFile(const std::string& run_path) { return run_path + "/" + std::string(kCheckpointState); }
 
@@ -45,7 +48,7 @@ Status WriteCheckpoint(const std::string& run_path, std::string_view state) {
   std::error_code error;
   fs::create_directories(fs::path(StateFile(run_path)).parent_path(), error);
   if (error) return UnwritableFolder(run_path, error);
-  std::string version(kVersion);
+  std::string version = ThisProgram();
   std::uint32_t checksum = Checksum(state);
   StateArchive head;
   head(version, checksum);
@@ -76,9 +79,9 @@ Result<std::string> ReadCheckpoint(const std::string& run_path) {
   std::uint32_t checksum = 0;
   head(version, checksum);
   if (!head.ok()) return damaged();
-  if (version != kVersion)
+  if (version != ThisProgram())
     return Status(ErrorCode::kMismatch, "the checkpoint " + path + " is of version " + Quoted(version) +
-                                            ", and this is " + std::string(kVersion) +
+                                            ", and this is " + ThisProgram() +
                                             "; resume the run with that version, or track the sequence anew, with "
                                             "--overwrite");
   StateArchive written;

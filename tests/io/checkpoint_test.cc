@@ -55,6 +55,10 @@ TEST(Checkpoint, IsRefusedWhereItIsDamagedOrOfAnotherVersion) {
   folder.Write("run/checkpoint/state", other);
   EXPECT_EQ(ReadCheckpoint(folder.Path("run")).status().code(), ErrorCode::kMismatch);
   EXPECT_THAT(ReadCheckpoint(folder.Path("run")).status().message(), HasSubstr("of version '9."));
+  other = whole;
+  other.replace(other.find('('), 1, "<");
+  folder.Write("run/checkpoint/state", other);
+  EXPECT_EQ(ReadCheckpoint(folder.Path("run")).status().code(), ErrorCode::kMismatch) << "another build";
 }
 
 class ResumedWriter : public testing::Test {

@@ -3,7 +3,8 @@
 
 // What a run needs to be resumed: RUN/checkpoint/state, written every Nth frame while the run lasts and deleted at its
 // end. A run that is stopped keeps it, and beside it its rows as they were written (Finish may have moved some into
-// other worlds). The state is that of the program's memory: for the same version of the program alone.
+// other worlds). The state is that of the program's memory: for the same version of the program alone, built with the
+// same compiler for the same machine.
 #pragma once
 
 #include <optional>
@@ -19,7 +20,7 @@ namespace pliant {
 // Fails with kUnwritable.
 Status WriteCheckpoint(const std::string& run_path, std::string_view state);
 // The state. Fails with kNotFound where there is no checkpoint, with kUnreadable for one that is damaged and with
-// kMismatch for one of another version.
+// kMismatch for one of another version or build.
 Result<std::string> ReadCheckpoint(const std::string& run_path);
 bool HasCheckpoint(const std::string& run_path);
 
