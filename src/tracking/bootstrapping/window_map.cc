@@ -205,7 +205,8 @@ Status CheckDepthSignal(const SolvedWindow& window, const MapDemands& demands, c
                         InitOutcome* outcome) {
   const InitMeasurements& measured = outcome->measured;
   outcome->provisional = demands.provisional || measured.DepthSignal() < kMinDepthSignal;
-  const bool stands_out = measured.DepthSignal() >= kMinProvisionalSignal;
+  const bool stands_out =
+      measured.DepthSignal() >= (demands.far_by_own_distance ? kMinDepthSignal : kMinProvisionalSignal);
   const double max_sigma = window.IsRigid() && !stands_out ? options.max_depth_sigma : kMaxOwnSigma * demands.max_sigma;
   const bool explained = window.solution.residual_correlation <= kMaxNoiseCorrelation;
   const bool may_be_motion = window.IsRigid() && !stands_out && !explained;

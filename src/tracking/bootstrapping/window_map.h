@@ -17,7 +17,8 @@ struct MapDemands {
   double certain_sigma = 0;
   double max_sigma = 0;
   double certain_share = 0;  // of the points still seen, at least
-  // Points farther than the median are judged by their own depth, and the map by their log depths.
+  // Points farther than the median are judged by their own depth, and the map by their log depths, which have to stand
+  // out as those of a certain map do (kMinDepthSignal).
   bool far_by_own_distance = false;
   // Points whose errors stand out are less certain in proportion, and left out where they do so by three times.
   bool scales_sigmas_with_error = false;
