@@ -23,6 +23,7 @@ from clips import CLIPS, RECORDINGS  # noqa: E402
 # frames between the first frames of the variants
 STEPS = {"nasal": 2, "laparoscopy": 20, "instruments": 10, "gallbladder": 50}
 AS_IT_IS = "as it is"  # the variant that the others are compared with
+COVERAGES = ("coverage", "followed_coverage")  # of points of the map, and with those that are only followed
 CALIBRATIONS = {"laparoscopy": "laparoscopy/camera.yaml"}
 
 
@@ -130,7 +131,7 @@ def main():
             rows.append([name, variant, f"{len(tracked)} of {len(frames)}", str(provisional),
                          tracked[0]["frame"] if tracked else "", str(len({row["submap"] for row in tracked})),
                          f"{statistics.median(points):.0f}" if points else "",
-                         percent(summary["medians"]["coverage"]) if tracked else "",
+                         *(percent(summary["medians"][of]) if tracked else "" for of in COVERAGES),
                          f"{working['scale']:.2f}, {working['smoothing_px']:.1f}, {working['patch_size']}",
                          f"{working['track_noise_px']:.2f} px",
                          f"{first_map['model']}, {percent(first_map['depth_sigma'])} of "
@@ -148,8 +149,8 @@ def main():
                       agreed_after and agreed_after[0])
             refinements.append([name, variant, *(percent(value, 2) for value in values)])
     for head, body in ((["recording", "variant", "frames with a map", "provisional", "first", "submaps", "points",
-                         "coverage", "scale, smoothing, patch", "track noise", "first map: sigma of spread", "depth error",
-                         "null", "ATE"], rows),
+                         "coverage", "followed", "scale, smoothing, patch", "track noise", "first map: sigma of spread",
+                         "depth error", "null", "ATE"], rows),
                        (["recording", "compared with", "frames", "depths differ", "spread of the depths"], agreements),
                        (["recording", "variant", "depth error", "refined", "ATE", "refined", "depths differ",
                          "refined"], refinements)):

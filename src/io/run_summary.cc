@@ -85,6 +85,12 @@ Json StreamJson(const RunSummary& summary) {
   return {{"received", summary.stream->received}, {"skipped", summary.stream->skipped}};
 }
 
+Json MediansJson(const RunSummary& summary) {
+  return {{"reprojection_error_px", summary.median_reprojection_error_px},
+          {"coverage", summary.median_coverage},
+          {"followed_coverage", summary.median_followed_coverage}};
+}
+
 Json CountsJson(const RunSummary& summary) {
   Json losses = Json::object();
   for (const auto& [reason, count] : summary.losses) losses[reason] = count;
@@ -108,45 +114,43 @@ Status WriteRunSummary(const std::string& path, const RunSummary& summary) {
   for (const FirstMapFrames& map : summary.first_maps) first_maps.push_back(FirstMapJson(map));
   Json trust = Json::object();
   for (const auto& [topic, sentence] : TrustIn(summary)) trust[topic] = sentence;
-  Json json = {
-      {"program", kRunProgram},
-      {"version", summary.description.program_version},
-      {"command_line", summary.description.command_line},
-      {"seed", summary.description.seed},
-      {"input", summary.description.input},
-      {"camera", summary.description.camera},
-      {"mask", summary.description.mask},
-      {"frames",
-       {{"start", summary.description.range.start},
-        {"end", summary.description.range.end},
-        {"stride", summary.description.range.stride}}},
-      {"refined_from", summary.description.refined_from},
-      {"metric", summary.description.metric ? Json(*summary.description.metric) : Json()},
-      {"tracks", summary.description.tracks},
-      {"depth_prior", summary.description.depth_prior},
-      {"oracles", summary.description.oracles},
-      {"extensions", summary.description.extensions},
-      {"working_image",
-       {{"scale", summary.description.image_scale},
-        {"smoothing_px", summary.description.image_smoothing_px},
-        {"patch_size", summary.description.patch_size},
-        {"noise_levels", summary.description.image_noise_levels},
-        {"track_noise_px", summary.description.track_noise_px},
-        {"alive_after_9", summary.description.alive_after_9}}},
-      {"status", EnumName(summary.status)},
-      {"note", summary.note},
-      {"trust", trust},
-      {"first_map", first_maps.empty() ? Json() : first_maps.front()},
-      {"first_maps", first_maps},
-      {"stream", StreamJson(summary)},
-      {"medians",
-       {{"reprojection_error_px", summary.median_reprojection_error_px}, {"coverage", summary.median_coverage}}},
-      {"counts", CountsJson(summary)},
-      {"timings",
-       {{"total_s", summary.total_s},
-        {"frames_per_second", summary.frames_per_second},
-        {"mean_ms", mean_ms},
-        {"latency_ms", LatencyJson(summary)}}}};
+  Json json = {{"program", kRunProgram},
+               {"version", summary.description.program_version},
+               {"command_line", summary.description.command_line},
+               {"seed", summary.description.seed},
+               {"input", summary.description.input},
+               {"camera", summary.description.camera},
+               {"mask", summary.description.mask},
+               {"frames",
+                {{"start", summary.description.range.start},
+                 {"end", summary.description.range.end},
+                 {"stride", summary.description.range.stride}}},
+               {"refined_from", summary.description.refined_from},
+               {"metric", summary.description.metric ? Json(*summary.description.metric) : Json()},
+               {"tracks", summary.description.tracks},
+               {"depth_prior", summary.description.depth_prior},
+               {"oracles", summary.description.oracles},
+               {"extensions", summary.description.extensions},
+               {"working_image",
+                {{"scale", summary.description.image_scale},
+                 {"smoothing_px", summary.description.image_smoothing_px},
+                 {"patch_size", summary.description.patch_size},
+                 {"noise_levels", summary.description.image_noise_levels},
+                 {"track_noise_px", summary.description.track_noise_px},
+                 {"alive_after_9", summary.description.alive_after_9}}},
+               {"status", EnumName(summary.status)},
+               {"note", summary.note},
+               {"trust", trust},
+               {"first_map", first_maps.empty() ? Json() : first_maps.front()},
+               {"first_maps", first_maps},
+               {"stream", StreamJson(summary)},
+               {"medians", MediansJson(summary)},
+               {"counts", CountsJson(summary)},
+               {"timings",
+                {{"total_s", summary.total_s},
+                 {"frames_per_second", summary.frames_per_second},
+                 {"mean_ms", mean_ms},
+                 {"latency_ms", LatencyJson(summary)}}}};
   // Paths need not be UTF-8.
   const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
   Status status = WriteFileAtomically(path, text);
@@ -188,6 +192,7 @@ Result<RunSummary> ReadRunSummary(const std::string& path) {
     if (const Json medians = json.value("medians", Json()); !medians.is_null()) {
       summary.median_reprojection_error_px = medians.at("reprojection_error_px").get<double>();
       summary.median_coverage = medians.at("coverage").get<double>();
+      summary.median_followed_coverage = medians.value("followed_coverage", 0.0);
     }
     const Json& counts = json.at("counts");
     summary.frames_read = counts.at("frames_read").get<std::int64_t>();

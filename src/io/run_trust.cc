@@ -125,6 +125,15 @@ std::string Joined(const std::vector<std::string>& sentences) {
   return text;
 }
 
+std::string OfCoverage(const RunSummary& summary) {
+  std::string text = "In the median frame " + Percent(summary.median_coverage, 0) +
+                     " of the scene lies near a point (within 1/32 of the image's width)";
+  if (summary.median_followed_coverage > summary.median_coverage)
+    text += ", and " + Percent(summary.median_followed_coverage, 0) +
+            " with points that are followed but whose depth is not certain enough for the map";
+  return text + ".";
+}
+
 std::string Advice(const RunSummary& summary) {
   std::vector<std::string> advice;
   const auto count = [&](auto test) {
@@ -148,7 +157,9 @@ std::string Advice(const RunSummary& summary) {
   if (FramesIn(summary, TrackingState::kLost) > 0)
     advice.emplace_back("Where the map was lost, look for tools, smoke and fast motion; a mask over tools helps.");
   if (summary.median_coverage > 0.0 && summary.median_coverage < kMinCoverage)
-    advice.emplace_back("Much of the scene has no point: raise --Corners.max_corners, or check the mask.");
+    advice.emplace_back(summary.median_followed_coverage < kMinCoverage
+                            ? "Much of the scene has no point: raise --Corners.max_corners, or check the mask."
+                            : "Much of the scene has points whose depth is not certain: move the camera sideways.");
   if (static_cast<double>(summary.frames_tracked) < kMinFrameShare * static_cast<double>(summary.frames_read) &&
       FramesIn(summary, TrackingState::kAmbiguous) == 0)
     advice.emplace_back("Where there is no map, the camera moved too little or the points lasted too briefly.");
@@ -170,9 +181,7 @@ std::vector<std::pair<std::string, std::string>> TrustIn(const RunSummary& summa
   add("calibration", Joined({OfAssumedCamera(summary.description), OfMaps(summary, OfCalibration)}));
   add("images", OfImages(summary.description));
   if (summary.median_reprojection_error_px > 0.0) add("tracks", OfTracks(summary));
-  if (summary.median_coverage > 0.0)
-    add("coverage", "In the median frame " + Percent(summary.median_coverage, 0) +
-                        " of the scene lies near a point (within 1/32 of the image's width).");
+  if (summary.median_coverage > 0.0) add("coverage", OfCoverage(summary));
   add("advice", Advice(summary));
   return trust;
 }

@@ -80,7 +80,8 @@ struct RunWriter::State {
   RunSummary summary = {};
   std::vector<double> median_errors_px = {};  // a frame with a pose
   std::vector<double> coverages = {};         // a frame that has one
-  std::vector<double> latencies_ms = {};      // a frame whose latency was measured
+  std::vector<double> followed_coverages = {};
+  std::vector<double> latencies_ms = {};  // a frame whose latency was measured
   // What the sparse model needs beside observations.csv: one entry a tracked frame and one a point.
   std::vector<CanonicalImage> images = {};
   std::vector<CanonicalPoint> points = {};
@@ -218,8 +219,8 @@ void RunWriter::State::SerializeCounts(StateArchive& archive) {
   double elapsed_s = ElapsedS();
   archive(elapsed_s, summary.first_maps, summary.frames_read, summary.frames_tracked, summary.states, summary.submaps,
           summary.points, summary.observations, summary.losses);
-  archive(median_errors_px, coverages, latencies_ms, images, points, worlds, stage_total_ms, last_frame_idx,
-          pose_covariances);
+  archive(median_errors_px, coverages, followed_coverages, latencies_ms, images, points, worlds, stage_total_ms,
+          last_frame_idx, pose_covariances);
   if (archive.reads()) elapsed_before_s = elapsed_s;
 }
 
@@ -297,6 +298,7 @@ void RunWriter::State::Count(const FrameReport& report) {
   AddTo(report.state, 1, &summary.states);
   if (report.cam_from_world) median_errors_px.push_back(report.median_reprojection_error_px);
   if (report.coverage) coverages.push_back(*report.coverage);
+  if (report.followed_coverage) followed_coverages.push_back(*report.followed_coverage);
   if (report.latency_ms > 0 && options.timings == RunTimings::kWritten) latencies_ms.push_back(report.latency_ms);
   if (report.cam_from_world) summary.submaps = std::max(summary.submaps, report.submap + 1);
   summary.observations += static_cast<std::int64_t>(report.observations.size());
@@ -453,6 +455,7 @@ Status RunWriter::Finish(RunStatus run_status, const std::string& note) {
   if (status.ok()) status = s.FinishSparse();
   if (!s.median_errors_px.empty()) s.summary.median_reprojection_error_px = Median(std::move(s.median_errors_px));
   if (!s.coverages.empty()) s.summary.median_coverage = Median(std::move(s.coverages));
+  if (!s.followed_coverages.empty()) s.summary.median_followed_coverage = Median(std::move(s.followed_coverages));
   s.summary.status = status.ok() ? run_status : RunStatus::kFailed;
   s.summary.note = status.ok() ? note : status.message();
   // What ran to its end is a result even without a map; what did not takes nobody's place.

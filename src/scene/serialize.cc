@@ -20,10 +20,10 @@ void Serialize(StateArchive& archive, SubmapMerge& merge) { archive.Members<3>(m
 void Serialize(StateArchive& archive, FrameReport& report) {
   auto& [frame_idx, name, timestamp_s, state, note, submap, merge, cam_from_world, pose_covariance, observations,
          new_points, refined_points, first_map, tracked, optimized, lost, added, losses, costs,
-         median_reprojection_error_px, coverage, stage_ms, latency_ms] = report;
+         median_reprojection_error_px, coverage, followed_coverage, stage_ms, latency_ms] = report;
   archive(frame_idx, name, timestamp_s, state, note, submap, merge, cam_from_world, pose_covariance, observations);
   archive(new_points, refined_points, first_map, tracked, optimized, lost, added, losses, costs);
-  archive(median_reprojection_error_px, coverage, stage_ms, latency_ms);
+  archive(median_reprojection_error_px, coverage, followed_coverage, stage_ms, latency_ms);
 }
 
 }  // namespace pliant

@@ -25,10 +25,13 @@ void AddSolved(const SolvedFrame& solved, FrameResult* result) {
   result->median_reprojection_error_px = MedianError(solved.points);
 }
 
-double CoverageIn(const PreparedFrame& frame, const std::vector<PointObservation>& observations) {
+void AddCoverage(const PreparedFrame& frame, const Candidates& candidates, FrameReport* report) {
   std::vector<Eigen::Vector2d> pixels;
-  for (const PointObservation& seen : observations) pixels.push_back(seen.pixel);
-  return CoverageOf(frame.mask.valid(), pixels);
+  for (const PointObservation& seen : report->observations) pixels.push_back(seen.pixel);
+  report->coverage = CoverageOf(frame.mask.valid(), pixels);
+  const std::vector<Eigen::Vector2d> followed = candidates.FollowedPixels();
+  pixels.insert(pixels.end(), followed.begin(), followed.end());
+  report->followed_coverage = CoverageOf(frame.mask.valid(), pixels);
 }
 
 TrackingState ReportedState(TrackingState state, const Submap& submap) {
@@ -63,7 +66,7 @@ FrameReport MakeReport(const PreparedFrame& frame, TrackingState state, const Su
   report.costs = result.costs;
   if (state != TrackingState::kTracking || (result.first_map && !result.has_caught_up)) return report;
   AddSolution(submap, result, &report);
-  report.coverage = CoverageIn(frame, report.observations);
+  AddCoverage(frame, submap.candidates, &report);
   return report;
 }
 

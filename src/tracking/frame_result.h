@@ -31,7 +31,8 @@ struct FrameResult {
   std::optional<PreparedFrame> map_frame = std::nullopt;  // that made it, where tracking goes on after an earlier one
 };
 
-double CoverageIn(const PreparedFrame& frame, const std::vector<PointObservation>& observations);
+// How much of what the frame shows has a point of `report`, and, of `candidates`, one that is followed.
+void AddCoverage(const PreparedFrame& frame, const Candidates& candidates, FrameReport* report);
 
 // What a solved frame gave.
 void AddSolved(const SolvedFrame& solved, FrameResult* result);

@@ -287,7 +287,7 @@ void Tracker::Report(const PreparedFrame& frame, const FrameResult& result, Stag
   if (result.first_map) {
     CompleteHeld(*result.first_map);
     if (!result.map_frame && held_.back().cam_from_world)
-      held_.back().coverage = CoverageIn(frame, held_.back().observations);
+      AddCoverage(frame, submaps_->current().candidates, &held_.back());
   }
   if (found) {
     submaps_->Apply(*found);

@@ -53,6 +53,7 @@ TEST(RunFolder, ComesBackAsItWasReported) {
   EXPECT_THAT(run->summary->states,
               UnorderedElementsAre(Pair(TrackingState::kWaitingForReference, 1), Pair(TrackingState::kTracking, 4)));
   EXPECT_NEAR(run->summary->median_coverage, kCoverage, kRoundOff);
+  EXPECT_NEAR(run->summary->median_followed_coverage, kFollowedCoverage, kRoundOff);
   EXPECT_EQ(run->summary->losses,
             (std::vector<std::pair<std::string, std::int64_t>>{{"similarity", 10}, {"border", 5}}));
   EXPECT_NEAR(run->summary->mean_ms[1].second, 2.25, kRoundOff);

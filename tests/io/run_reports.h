@@ -29,6 +29,7 @@ inline constexpr FirstMapFrames kFirstMap = {12,
                                               .still_camera_error_ratio = 1.75,
                                               .focal_length_factor = 0.6}};
 inline constexpr double kCoverage = 0.625;
+inline constexpr double kFollowedCoverage = 0.75;
 
 // Frame 0 waits; frames 1 and 2 have their poses from the first map; from frame 1 on, odd points are seen in odd frames
 // only.
@@ -44,6 +45,7 @@ inline FrameReport Report(int frame) {
   report.cam_from_world = Rigid3(RotationExp({0, 0.01 * frame, 0}), Eigen::Vector3d(0.1 * frame, 0, 0.5));
   if (frame <= 2) report.first_map = kFirstMap;
   report.coverage = kCoverage;
+  report.followed_coverage = kFollowedCoverage;
   report.tracked = kPoints;
   for (int i = 0; i < kPoints; ++i) {
     const Eigen::Vector3d x(i - 2, 0.5 * i, 50 + 0.25 * frame);

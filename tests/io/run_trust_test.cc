@@ -50,6 +50,18 @@ TEST(RunTrust, SaysWhatAGoodRunHas) {
   EXPECT_THAT(trust, Not(Contains(Key("advice"))));
 }
 
+TEST(RunTrust, TellsWhetherTextureOrDepthIsMissing) {
+  RunSummary summary = Summary(kKnown);
+  summary.median_coverage = 0.3;
+  summary.median_followed_coverage = 0.4;
+  EXPECT_THAT(Trust(summary).at("coverage"), HasSubstr("30 % of the scene lies near a point"));
+  EXPECT_THAT(Trust(summary).at("coverage"), HasSubstr("and 40 % with points that are followed"));
+  EXPECT_THAT(Trust(summary).at("advice"), HasSubstr("--Corners.max_corners"));
+  summary.median_followed_coverage = 0.8;
+  EXPECT_THAT(Trust(summary).at("advice"), HasSubstr("move the camera sideways"));
+  EXPECT_THAT(Trust(summary).at("advice"), Not(HasSubstr("--Corners.max_corners")));
+}
+
 TEST(RunTrust, SaysThatDepthsAloneShowThatTheCameraMoves) {
   FirstMapEvidence noisy = kKnown;
   noisy.still_camera_error_ratio = 1.12;

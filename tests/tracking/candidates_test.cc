@@ -154,6 +154,15 @@ TEST(Candidates, EnterAMapThatRunsShortOfPointsEarlier) {
   EXPECT_EQ(first_certain(100000), first_certain(147)) << "no more than three times as uncertain";
 }
 
+TEST(Candidates, AreFollowedFromTheirSecondViewOn) {
+  const Scene scene;
+  const Eigen::Vector3d rest(3, -4, 55);
+  EXPECT_TRUE(scene.Follow(rest, 0).FollowedPixels().empty()) << "new in the frame";
+  const std::vector<Eigen::Vector2d> pixels = scene.Follow(rest, 1).FollowedPixels();
+  ASSERT_EQ(pixels.size(), 1U);
+  EXPECT_EQ(pixels[0], scene.Pixel(rest, 1));
+}
+
 TEST(Candidates, AreGivenUpWhenTheyAreOld) {
   Scene scene;
   scene.options.max_views = 10;

@@ -95,8 +95,9 @@ struct RunSummary {
   std::int64_t frames_tracked = 0;                             // that have a pose
   std::vector<std::pair<TrackingState, std::int64_t>> states;  // frames in each state that occurred
   double median_reprojection_error_px = 0;                     // of the frames' medians; 0: there is none
-  double median_coverage = 0;  // of frames that were tracked (FrameReport::coverage); 0: unknown
-  int submaps = 0;             // maps with a world of their own, one after the other
+  double median_coverage = 0;           // of frames that were tracked (FrameReport::coverage); 0: unknown
+  double median_followed_coverage = 0;  // the same with points that have no certain depth yet; 0: unknown
+  int submaps = 0;                      // maps with a world of their own, one after the other
   std::int64_t points = 0;
   std::int64_t observations = 0;
   std::vector<std::pair<std::string, std::int64_t>> losses;  // points given up, by reason

@@ -141,6 +141,8 @@ struct FrameReport {
   std::vector<CostTerm> costs;  // at the solution; all 0 where there is none
   double median_reprojection_error_px = 0;
   std::optional<double> coverage;  // share of what the image shows of the scene that is near a point (CoverageOf)
+  // The same, counting points too that were followed into this frame and have no certain depth yet.
+  std::optional<double> followed_coverage;
   std::vector<std::pair<std::string, double>> stage_ms;  // wall time by stage; fixed order and names
   double latency_ms = 0;  // from the frame's arrival until everything was done that it asked for; 0: not measured
 };

@@ -27,6 +27,13 @@ std::vector<CandidateTrack> Candidates::tracks() const {
   return tracks;
 }
 
+std::vector<Eigen::Vector2d> Candidates::FollowedPixels() const {
+  std::vector<Eigen::Vector2d> pixels;
+  for (const auto& [id, point] : points_)
+    if (point.rays.size() > 1) pixels.push_back(point.track.pixel);
+  return pixels;
+}
+
 // The landmarks nearest to it in the image.
 void Candidates::ChooseAnchors(const Map& map, Point* point) const {
   std::vector<std::pair<double, const Landmark*>> nearest;

@@ -44,6 +44,8 @@ class Candidates {
 
   // There has to be one with this id.
   const CandidateTrack& track(PointId id) const { return points_.at(id).track; }
+  // Those that were followed into the last frame: not those that are new in it.
+  std::vector<Eigen::Vector2d> FollowedPixels() const;
   // Where one was last seen; null where there is none with this id.
   const Eigen::Vector2d* Pixel(PointId id) const {
     const auto found = points_.find(id);
