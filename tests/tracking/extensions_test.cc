@@ -51,6 +51,50 @@ TEST_F(Extensions, AGivenInitializerMakesTheFirstMap) {
   ExpectSame(Run(options, extensions), of_options);
 }
 
+// First a provisional map of a rigid scene whose depths stand out; then one that is less certain, of a scene that
+// deforms or not; then none.
+class TwoMaps final : public Initializer {
+ public:
+  TwoMaps(const InitOptions& options, bool second_deforms)
+      : gated_(MakeGatedInitializer(options.monocular, Random(1).Child("initializer"))),
+        second_deforms_(second_deforms) {}
+  std::string_view name() const override { return "two maps"; }
+  InitOutcome Try(const InitInput& input) const override {
+    InitOutcome outcome;
+    if (made_ < 2) outcome = gated_->Try(input);
+    if (outcome.decision == InitDecision::kMap) {
+      outcome.decision = InitDecision::kProvisional;
+      outcome.provisional = true;
+      outcome.measured.depth_spread = 0.2;
+      outcome.measured.median_depth_sigma = made_ == 0 ? 0.02 : 0.08;
+      outcome.deforming = made_ == 1 && second_deforms_;
+      ++made_;
+    }
+    if (input.moment == InitMoment::kLastFrame) outcome.decision = InitDecision::kNewReference;
+    return outcome;
+  }
+  int made() const { return made_; }
+
+ private:
+  std::shared_ptr<const Initializer> gated_;
+  bool second_deforms_;
+  mutable int made_ = 0;
+};
+
+TEST_F(Extensions, AProvisionalMapOfARigidSceneGivesWayToOneThatDeforms) {
+  for (const bool second_deforms : {false, true}) {
+    const auto initializer = std::make_shared<TwoMaps>(InitOptions(), second_deforms);
+    Tracker tracker(*camera_, {}, 1, 1, {.extensions = {.initializer = initializer}});
+    for (int i = 0; i < kFrames; ++i) EXPECT_TRUE(Show(i, i, &tracker).empty());
+    EXPECT_EQ(initializer->made(), 2);
+    tracker.EndSequence();
+    const std::vector<FrameReport> reports = tracker.Finish();
+    ASSERT_FALSE(reports.empty());
+    ASSERT_TRUE(reports.front().first_map);
+    EXPECT_EQ(reports.front().first_map->evidence.deforming, second_deforms);
+  }
+}
+
 TEST_F(Extensions, AGivenSourceFollowsThePoints) {
   TrackerOptions options;
   options.init.method = InitMethod::kGated;

@@ -17,9 +17,11 @@ namespace {
 
 constexpr std::size_t kAskAlternativeEvery = 5;  // frames
 
-// Of two provisional maps.
-bool IsBetter(const InitOutcome& a, const InitOutcome& b) {
-  return a.measured.DepthSignal() >= b.measured.DepthSignal();
+// Of two provisional maps, the second one of a longer window. Sigmas of a rigid window know nothing of a deformation:
+// where a longer one deforms they do not count.
+bool IsBetter(const InitOutcome& first, const InitOutcome& second) {
+  const bool is_comparable = first.deforming || !second.deforming;
+  return is_comparable && first.measured.DepthSignal() >= second.measured.DepthSignal();
 }
 
 }  // namespace
@@ -230,7 +232,7 @@ void Bootstrapper::FinishMapOrGoBack(Answer answer, BootstrapStep* step) {
     Retrack(std::move(made), step);
 }
 
-// The one whose depths stand out most from their uncertainty is kept.
+// The one whose depths stand out most from their uncertainty is kept, or the one that knows of a deformation.
 void Bootstrapper::PutAside(Answer answer) {
   if (provisional_ && IsBetter(provisional_->map.outcome, answer.outcome)) return;
   provisional_ = MapOf(std::move(answer));
