@@ -108,13 +108,11 @@ std::string OfImages(const RunDescription& run) {
 }
 
 std::string OfTracks(const RunSummary& summary) {
-  // While a map is provisional, points are where the images have them.
-  const std::string error = summary.median_reprojection_error_px > 0
-                                ? "Points lie " + Digits(summary.median_reprojection_error_px, 2) +
-                                      " px from where the map has them, in the median (pixels of the source). "
-                                : "";
-  return error + "Points were tracked in images of " + Digits(summary.description.image_scale, 2) +
-         " times the source's size.";
+  // Points of a map that deforms are nearly where the images have them.
+  const double error_px = summary.median_reprojection_error_px;
+  return "Points lie " + (error_px < 0.01 ? "less than 0.01" : Digits(error_px, 2)) +
+         " px from where the map has them, in the median (pixels of the source). Points were tracked in images of " +
+         Digits(summary.description.image_scale, 2) + " times the source's size.";
 }
 
 // Sentences as one text; empty ones are left out.

@@ -50,6 +50,12 @@ TEST(RunTrust, SaysWhatAGoodRunHas) {
   EXPECT_THAT(trust, Not(Contains(Key("advice"))));
 }
 
+TEST(RunTrust, SaysNoErrorThatIsZero) {
+  RunSummary summary = Summary(kKnown);
+  summary.median_reprojection_error_px = 0.002;
+  EXPECT_THAT(Trust(summary).at("tracks"), HasSubstr("Points lie less than 0.01 px"));
+}
+
 TEST(RunTrust, TellsWhetherTextureOrDepthIsMissing) {
   RunSummary summary = Summary(kKnown);
   summary.median_coverage = 0.3;
