@@ -3,15 +3,17 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Damages what the program reads, kills it, fills its disk and takes its resources away, and checks what must hold.
 
-usage: campaign.py PROGRAM WORK [--fail_nth LIBRARY] [--minutes M | --cases N] [--seed S] [--jobs J]
+usage: campaign.py PROGRAM WORK [--fail_nth LIBRARY] [--minutes M | --cases N] [--seed S] [--jobs J] [--kinds KIND ...]
 
 Cases are drawn by the seed: damaged inputs (mutation), signals at random instants (kill), full disks (disk, as root),
 limits on the size and the number of files (limit), runs that are stopped at random instants and resumed until they end,
-which then have to be those that were not stopped byte for byte (resume), and, with LIBRARY (fail_nth.c), one call that
-fails: the n-th open, read, write, fsync, rename, mkdir or thread start (fault). After each of them the program has to have ended by itself
-within a minute, with exit code 0, 1 or 2, a sentence of at most 400 characters where it failed, no file that breaks off
-under its final name, and no more than 1 GB of memory. WORK/campaign.json has the counts; what does not hold stays in
-WORK/wrong/NUMBER with its input and its command, and makes the exit code 1.
+which then have to be those that were not stopped byte for byte (resume), random options (options), scenes and motions
+from which geometry cannot be had (scene), and, with LIBRARY (fail_nth.c), one call that fails: the n-th open, read,
+write, fsync, rename, mkdir or thread start (fault). After each of them the program has to have ended by itself within a
+minute, with exit code 0, 1 or 2, a sentence of at most 400 characters where it failed, no file that breaks off under
+its final name, and no more than 1 GB of memory. After random options and scenes the run has finite numbers, quaternions
+of unit length, documented states, and as many poses as tracked frames. WORK/campaign.json has the counts; what does not
+hold stays in WORK/wrong/NUMBER with its input and its command, and makes the exit code 1.
 """
 
 import argparse
@@ -32,12 +34,15 @@ import time
 import checks
 import material
 import mutations
+import options
+import scenes
 
 LONGEST_S = 60
 STOP_WITHIN_S = 20
 MOST_MEMORY_KB = 1_000_000
 MOST_PARTS = 20  # of a run that is resumed
-KINDS = ["mutation"] * 12 + ["kill"] * 4 + ["limit"] * 2 + ["disk"] * 2 + ["resume"] * 2 + ["fault"] * 4
+KINDS = ["mutation"] * 12 + ["kill"] * 4 + ["limit"] * 2 + ["disk"] * 2 + ["resume"] * 2 + ["fault"] * 4 + \
+        ["options"] * 4 + ["scene"] * 4
 FAULTS = ["open", "read", "write", "fsync", "rename", "mkdir", "thread"]
 
 
@@ -194,6 +199,40 @@ class Case:
             self.check(run([*command, "--resume"], self.folder))
             self.wrong += checks.differing_runs(self.folder / "whole", self.folder / "out")
 
+    def options(self):
+        self.track(self.chance.choice(["seq", "moving", "moving"]), *self.drawn_options())
+
+    def scene(self):
+        names = [self.chance.choice(sorted(table)) for table in (scenes.SHAPES, scenes.MOTIONS)]
+        names += [self.chance.choice(scenes.SPOILS), self.chance.choice(scenes.RATES_HZ), self.chance.choice([0, 18])]
+        self.what["scene"] = names
+        scenes.write(self.folder / "scene", *names, self.what["seed"])
+        words = ["--tracks", "scene/tracks.csv"] if self.chance.random() < 0.5 else []
+        if self.chance.random() < 0.5:  # what a dozen points suffice for
+            words += ["--Tracking.min_corners", "8", "--Init.min_points", "12", "--WindowInit.min_points", "12"]
+        if self.chance.random() < 0.3:
+            words += self.drawn_options()
+        self.track("scene", *words, "--Init.method", self.chance.choice(["window", "window", "gated", "paper"]))
+
+    def drawn_options(self):
+        drawn = options.draw(self.program, self.chance)
+        (self.folder / "options.yaml").write_text(options.yaml(drawn), encoding="utf-8")
+        self.what["options"] = len(drawn)
+        return ["--config", "options.yaml"]
+
+    def track(self, *words):
+        """And with some of the runs, what is made of one."""
+        ended = run(self.command_of(["track", *words, "-o", "OUT"]), self.folder)
+        if ended.code == 0 and self.chance.random() < 0.3:
+            self.check(ended)
+            command = self.chance.choice(["refine --run out -o OUT", "report --run out -o OUT.html",
+                                          "export --run out -o OUT",
+                                          f"evaluate --run out --sequence {words[0]} -o OUT"])
+            ended = run(self.command_of(command.split(), "out_of_it"), self.folder)
+        self.check(ended)
+        for path in self.outputs():
+            self.wrong += [f"left {path.name}/{what}" for what in checks.wrong_run(path)]
+
     def limit(self):
         what = self.chance.choice([resource.RLIMIT_FSIZE, resource.RLIMIT_NOFILE])
         most = (self.chance.choice([0, 100, 4096, 20000, 100000, 1000000]) if what == resource.RLIMIT_FSIZE else
@@ -226,6 +265,7 @@ def main():
     parser.add_argument("--cases", type=int, default=None)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
+    parser.add_argument("--kinds", nargs="+", choices=sorted(set(KINDS)), default=sorted(set(KINDS)))
     arguments = parser.parse_args()
     work = arguments.work.resolve()
     source, wrong = work / "material", work / "wrong"
@@ -235,6 +275,7 @@ def main():
     if not can_mount():
         KINDS[:] = [kind for kind in KINDS if kind != "disk"]
         print("no full disks: only root can mount them", file=sys.stderr)
+    KINDS[:] = [kind for kind in KINDS if kind in arguments.kinds]
     Case.fail_nth = arguments.fail_nth and arguments.fail_nth.resolve()
     if Case.fail_nth is None:
         KINDS[:] = [kind for kind in KINDS if kind != "fault"]

@@ -6,6 +6,7 @@
 usage: campaign_test.py
 """
 
+import math
 import pathlib
 import random
 import stat
@@ -16,6 +17,8 @@ import unittest
 
 import checks
 import mutations
+import options
+import scenes
 
 CAMPAIGN = pathlib.Path(__file__).with_name("campaign.py")
 
@@ -29,8 +32,23 @@ if pathlib.Path.cwd().name == "material":
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text("1 2 3\\n")
     sys.exit(0)
+if "--print_config" in sys.argv:
+    given = [word[2:] for word in sys.argv if word.startswith("--Group.")]
+    if given:
+        print("pliant track: " + given[0] + " is 'x'; give a number from 0.001 to 1e+06 px", file=sys.stderr)
+        sys.exit(2)
+    print("Group:  # of options\\n  one: 3   # [px] a size\\n  two: a   # [a | b] a choice")
+    sys.exit(0)
 {behavior}
 """
+# Leaves a run whose rows in frames.csv, trajectory.txt are these.
+RUN = """
+if name and sys.argv[1] == "track":
+    pathlib.Path(name).mkdir()
+    pathlib.Path(name, "frames.csv").write_text("frame,state,cost\\n" + {frames!r})
+    pathlib.Path(name, "trajectory.txt").write_text({trajectory!r})
+"""
+POSE = "0 1 2 3 0.6 0 0 0.8\n"
 FILES = ["seq/camera.yaml", "seq/times.txt", "seq/groundtruth.txt", "seq/simulation.yaml", "seq/images/000000.png",
          "seq/right/000000.png", "seq/depth/000000.png", "run/run.json", "run/config.yaml", "run/frames.csv",
          "run/trajectory.txt", "refined/frames.csv", "run/observations.csv", "run/map.ply", "run/sparse/images.bin", "text/images.txt",
@@ -81,6 +99,78 @@ class Checks(unittest.TestCase):
                              ["frames.csv differs", "map.ply is in one run only", "run.json differs"])
 
 
+    def test_numbers_of_a_run(self):
+        ply = b"ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty float x\n" \
+              b"property uchar red\nend_header\n"
+        good = {"frames.csv": b"frame,state\n0,tracking\n1,lost\n", "trajectory.txt": POSE.encode(),
+                "sparse/images.txt": b"# Images\n1 0.8 0 0.6 0 1 2 3 1 inf.png\n\n2 1 0 0 0 1 2 3 1 info.png\n1 2 -1\n",
+                "observations.csv": b"frame,z\n0,0.0\n0,1e30\n", "map.ply": ply + b"\0\0\x80\x3f\xff",
+                "run.json": b'{"note": "information; finance, nancy"}'}
+        bad = {"frames.csv": [b"frame,state\n0,tracking\n1,confused\n", b"frame,state\n0,lost\n",
+                              b"frame,state,cost\n0,tracking,-inf\n"],
+               "trajectory.txt": [b"0 1 nan 3 0.6 0 0 0.8\n", b"0 1 2 3 0.6 0 0 0.81\n", b"0 1 2 3 0 0 0 0\n",
+                                  POSE.encode() * 2],
+               "sparse/images.txt": [b"1 0.8 0 0.6 0 1 2 3 1 0.png\n\n2 1 1 0 0 1 2 3 1 1.png\n1 2 -1\n"],
+               "observations.csv": [b"frame,z\n0,NaN\n", b"frame,z\n0,0.000\n1,-0.000\n"], "run.json": [b'{"error": NaN}', b'{"error": -Infinity}'],
+               "map.ply": [ply + b"\0\0\x80\x7f\xff", ply + b"\0\0\xc0\x7f\xff",
+                           ply.replace(b"binary_little_endian", b"ascii") + b"nan 1\n"]}
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            (folder / "sparse").mkdir()
+            for file, data in good.items():
+                (folder / file).write_bytes(data)
+            self.assertEqual(checks.wrong_run(folder), [])
+            for file, all_data in bad.items():
+                for data in all_data:
+                    (folder / file).write_bytes(data)
+                    self.assertEqual(len(checks.wrong_run(folder)), 1, data)
+                    (folder / file).write_bytes(good[file])
+
+
+class Scenes(unittest.TestCase):
+    def depths(self, shape):
+        return [z for _, _, z in scenes.SHAPES[shape](random.Random(1))]
+
+    def test_shapes_are_what_they_are_called(self):
+        self.assertEqual(len(self.depths("dozen")), 12)
+        self.assertEqual(len(set(self.depths("plane"))), 1)
+        self.assertGreater(max(self.depths("depths_1_to_1000")), 500 * min(self.depths("depths_1_to_1000")))
+        self.assertGreater(min(self.depths("far_away")), 1e7)
+        line = scenes.SHAPES["line"](random.Random(1))
+        for point in line[2:]:
+            shares = [(at - first) / (second - first) for at, first, second in zip(point, *line[:2])]
+            self.assertLess(max(shares) - min(shares), 1e-9)
+
+    def test_motions_are_what_they_are_called(self):
+        def moved(motion, first, last):
+            frames = scenes.tracks("plane", motion, 0, random.Random(1))
+            both = [(frames[first][dot], frames[last][dot]) for dot in frames[first].keys() & frames[last].keys()]
+            return [(there[0] - here[0], there[1] - here[1]) for here, there in both]
+
+        for u_px, v_px in moved("one_pixel", 0, scenes.FRAMES - 1):
+            self.assertTrue(math.isclose(u_px, -80 / 60, rel_tol=1e-9) and v_px == 0)
+        self.assertGreater(len(moved("300_pixels", 0, 2)), 100)
+        self.assertEqual(moved("300_pixels", 0, 1), [])
+        self.assertEqual(set(moved("still", 0, 20)), {(0.0, 0.0)})
+        self.assertEqual(scenes.camera("quarter_turns", 21, 18), ((0.8 * 18 + 0.5 * 3, 0.1 * 18, 0.0), 270.0))
+
+    def test_images_are_spoiled(self):
+        gray = [scenes.GRAY] * 10000
+        noisy = scenes.spoil(gray, 0, "noise", random.Random(1))
+        self.assertAlmostEqual(math.sqrt(sum((level - scenes.GRAY) ** 2 for level in noisy) / len(noisy)), 50, delta=5)
+        self.assertEqual([set(scenes.spoil([7], 9, what, None)) for what in ("none", "equal", "black", "white")],
+                         [{7}, {scenes.GRAY}, {0}, {255}])
+        self.assertEqual(scenes.spoil([7], 8, "black", None), [7])
+
+    def test_dots_are_where_the_tracks_say(self):
+        drawn = scenes.image({0: (100.25, 50.75)}, [(0, 0, 0)])
+        weights = [level - scenes.GRAY for level in drawn]
+        places = [sum(weight * at for weight, at in zip(weights, values)) / sum(weights) for values in
+                  ([i % scenes.WIDTH for i in range(len(drawn))], [i // scenes.WIDTH for i in range(len(drawn))])]
+        self.assertAlmostEqual(places[0], 100.25, delta=0.05)
+        self.assertAlmostEqual(places[1], 50.75, delta=0.05)
+
+
 class Mutations(unittest.TestCase):
     def test_every_one_changes_something_and_repeats(self):
         data = b"ply 1 2.5 -3e4\nline\n" * 20
@@ -96,13 +186,14 @@ class Mutations(unittest.TestCase):
 
 
 class Campaign(unittest.TestCase):
-    def run_on(self, behavior):
+    def run_on(self, behavior, *arguments):
         with tempfile.TemporaryDirectory() as name:
             program = pathlib.Path(name) / "program"
             program.write_text(PROGRAM.format(python=sys.executable, files=FILES, behavior=behavior))
             program.chmod(program.stat().st_mode | stat.S_IXUSR)
-            done = subprocess.run([sys.executable, "-B", CAMPAIGN, program, name + "/work", "--cases", "10"], text=True,
-                                  stdout=subprocess.PIPE, stderr=subprocess.PIPE, check=False)
+            done = subprocess.run([sys.executable, "-B", CAMPAIGN, program, name + "/work", "--cases", "10",
+                                   *arguments], text=True, stdout=subprocess.PIPE,
+                                  stderr=subprocess.PIPE, check=False)
             kept = list((pathlib.Path(name) / "work" / "wrong").iterdir())
             return done, kept
 
@@ -123,6 +214,33 @@ class Campaign(unittest.TestCase):
         self.assertEqual(done.returncode, 1)
         self.assertIn("a PDF without its end", done.stderr)
         self.assertTrue(kept)
+
+    def test_numbers_are_checked_after_random_options_and_hostile_scenes(self):
+        for kind in ("options", "scene"):
+            for frames, trajectory, what in [("0,tracking,1\n", POSE, None),
+                                             ("0,tracking,nan\n", POSE, "frames.csv: nan"),
+                                             ("0,tracking,1\n", POSE.replace("0.6", "0"), "no rotation")]:
+                behavior = RUN.format(frames=frames, trajectory=trajectory)
+                done, kept = self.run_on(behavior, "--kinds", kind, "--cases", "3")
+                self.assertIn(f"(3 {kind})", done.stdout)
+                self.assertEqual(done.returncode, 1 if what else 0, done.stderr)
+                self.assertEqual(len(kept), 3 if what else 0)
+                if what:
+                    self.assertIn(what, done.stderr)
+
+    def test_options_are_drawn_within_their_ranges(self):
+        with tempfile.TemporaryDirectory() as name:
+            program = pathlib.Path(name) / "program"
+            program.write_text(PROGRAM.format(python=sys.executable, files=FILES, behavior=""))
+            program.chmod(program.stat().st_mode | stat.S_IXUSR)
+            drawn = [options.draw(str(program), random.Random(seed)) for seed in range(200)]
+        sizes = [float(one["Group.one"]) for one in drawn if "Group.one" in one]
+        self.assertEqual({one.get("Group.two") for one in drawn}, {"a", "b", None})
+        self.assertTrue(all(0.001 <= size <= 1e6 for size in sizes))
+        self.assertGreater(len(set(sizes)), 50)
+        self.assertLess(min(sizes), 0.1)
+        self.assertGreater(max(sizes), 1000)
+        self.assertEqual(options.yaml({"B.x": "1", "A.y": "b", "A.x": "2"}), "A:\n  x: 2\n  y: b\nB:\n  x: 1\n")
 
 
 if __name__ == "__main__":

@@ -2,13 +2,24 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What must hold whatever happens to the program: how it ends, what it says, and what it leaves on disk."""
 
+import csv
 import json
+import math
 import pathlib
+import re
+import struct
 import xml.etree.ElementTree
 import zipfile
 
 MOST_CHARACTERS = 400
+STATES = {"waiting_for_reference", "initializing", "ambiguous", "tracking", "provisional", "lost"}  # docs/formats.md
+NO_NUMBER = re.compile(r"(?<![\w.])[-+]?(nan|inf|infinity)(?![\w.])", re.IGNORECASE)
 CRASHES = {-4: "SIGILL", -6: "SIGABRT", -7: "SIGBUS", -8: "SIGFPE", -11: "SIGSEGV", -25: "SIGXFSZ", -31: "SIGSYS"}
+
+
+PLY_TYPES = {b"char": "b", b"uchar": "B", b"short": "h", b"ushort": "H", b"int": "i", b"uint": "I", b"float": "f",
+             b"double": "d", b"int8": "b", b"uint8": "B", b"int16": "h", b"uint16": "H", b"int32": "i", b"uint32": "I",
+             b"float32": "f", b"float64": "d"}
 
 
 def wrong_end(code, stderr, stopped_by=None, stdout=""):
@@ -86,25 +97,49 @@ def _is_xml(data):
         return False
 
 
+def _ply_elements(head):
+    """Of each element its number and the types of its properties; b"list" of one with a list."""
+    elements = []
+    for words in (line.split() for line in head.splitlines()):
+        if words[:1] == [b"element"]:
+            elements.append((int(words[2]), []))
+        elif words[:1] == [b"property"]:
+            elements[-1][1].extend(words[1:3] if words[1] == b"list" else words[1:2])
+    return elements
+
+
 def _wrong_ply(data):
     head, found, body = data.partition(b"end_header\n")
     if not found:
         return "a PLY without its header"
     if b"format binary" not in head:
         return ""
-    sizes = {b"char": 1, b"uchar": 1, b"short": 2, b"ushort": 2, b"int": 4, b"uint": 4, b"float": 4, b"double": 8,
-             b"int8": 1, b"uint8": 1, b"int16": 2, b"uint16": 2, b"int32": 4, b"uint32": 4, b"float32": 4, b"float64": 8}
-    needed, count, has_list = 0, 0, False
-    for line in head.splitlines():
-        words = line.split()
-        if words[:1] == [b"element"]:
-            count = int(words[2])
-        elif words[:2] == [b"property", b"list"]:
-            has_list = True
-            needed += count * sizes[words[2]]
-        elif words[:1] == [b"property"]:
-            needed += count * sizes[words[1]]
+    needed, has_list = 0, False
+    for count, types in _ply_elements(head):
+        has_list = has_list or b"list" in types
+        needed += count * sum(struct.calcsize(PLY_TYPES[name]) for name in types if name != b"list")
     return "" if (len(body) >= needed if has_list else len(body) == needed) else "a PLY whose data break off"
+
+
+def _has_numbers(data):
+    """Whether all numbers of the elements up to the first one with a list are finite."""
+    head, _, body = data.partition(b"end_header\n")
+    if b"format binary" not in head:
+        return not NO_NUMBER.search(body.decode("utf-8", errors="replace"))
+    for count, types in _ply_elements(head):
+        if b"list" in types:
+            break
+        row = struct.Struct("<" + "".join(PLY_TYPES[name] for name in types))
+        rows, body = body[:count * row.size], body[count * row.size:]
+        if not all(math.isfinite(value) for values in row.iter_unpack(rows) for value in values):
+            return False
+    return True
+
+
+def _rotations(lines, first):
+    """Whether the four words from the `first` of each line are a quaternion of unit length, up to its digits."""
+    quaternions = [[float(word) for word in line.split()[first:first + 4]] for line in lines]
+    return all(abs(math.hypot(*quaternion) - 1) < 1e-6 for quaternion in quaternions)
 
 
 def differing_runs(one, other):
@@ -121,3 +156,32 @@ def differing_runs(one, other):
         if data[0] != data[1]:
             differing.append(f"{name} differs")
     return differing
+
+
+def wrong_run(folder):
+    """What is wrong with the numbers of a run that has ended, "NAME: what"."""
+    wrong, states, poses = [], [], None
+    for path in sorted(pathlib.Path(folder).rglob("*")):
+        if path.suffix == ".ply" and not _has_numbers(path.read_bytes()):
+            wrong.append(f"{path.name}: not a number")
+        if path.suffix not in (".txt", ".csv", ".json"):
+            continue
+        text = path.read_text(encoding="utf-8")
+        lines = [line for line in text.splitlines() if not line.startswith("#")]
+        if found := NO_NUMBER.search(text):
+            wrong.append(f"{path.name}: {found[0]}")
+        if path.name == "trajectory.txt":
+            poses = len(lines)
+            wrong += [] if _rotations(lines, 4) else ["trajectory.txt: no rotation"]
+        elif path.name == "images.txt":
+            wrong += [] if _rotations(lines[::2], 1) else ["images.txt: no rotation"]
+        elif path.name == "frames.csv":
+            states = [row["state"] for row in csv.DictReader(lines)]
+            wrong += [f"frames.csv: state {state}" for state in sorted(set(states) - STATES)]
+        elif path.name == "observations.csv" and len(lines) > 1:
+            rows = list(csv.DictReader(lines))
+            wrong += [] if any(float(row["z"]) for row in rows) else ["observations.csv: all points are at depth 0"]
+    with_pose = sum(state in ("tracking", "provisional") for state in states)
+    if poses not in (None, with_pose):
+        wrong.append(f"trajectory.txt: {poses} poses of {with_pose} tracked frames")
+    return wrong

@@ -32,6 +32,10 @@ def make(program, folder):
 
     run("simulate", "-o", "seq", "--Trajectory.frames", "24", "--Camera.width", "160", "--Camera.height", "120",
         "--Camera.baseline_mm", "4")
+    run("simulate", "-o", "moving", "--Trajectory.frames", "48", "--Camera.width", "240", "--Camera.height", "180",
+        "--Scene.kind", "surface", "--Trajectory.kind", "sway", "--Trajectory.sway_period_s", "1.6",
+        "--Deformation.amplitude_mm", "2", "--Deformation.omega_rad_s", "8", "--Interruption.blackout_period_s", "1",
+        "--Interruption.blackout_s", "0.1", "--Sensor.samples", "1")
     (folder / "seq" / "masks").mkdir()
     for image in sorted((folder / "seq" / "images").iterdir()):  # any image is a mask
         (folder / "seq" / "masks" / image.name).write_bytes(image.read_bytes())
