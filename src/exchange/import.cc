@@ -10,6 +10,8 @@
 
 #include "exchange/imported.h"
 #include "pliant/base/files.h"
+#include "pliant/base/options.h"
+#include "pliant/base/statistics.h"
 #include "pliant/base/text.h"
 #include "pliant/base/version.h"
 #include "pliant/datasets/open_sequence.h"
@@ -54,6 +56,20 @@ void MultiplyUnit(double unit_mm, Imported* imported) {
     frame.cam_from_world.translation *= unit_mm;
     for (PointObservation& observation : frame.observations) observation.position *= unit_mm;
   }
+}
+
+// Where there are points: what is too small for the files of a run would be written as zeros.
+Status CheckUnit(const Imported& imported, double unit_mm) {
+  std::vector<double> distances_mm;
+  for (const auto& [frame_idx, frame] : imported.frames)
+    for (const PointObservation& observation : frame.observations)
+      distances_mm.push_back((frame.cam_from_world * observation.position).norm());
+  if (distances_mm.empty()) return Status::Ok();
+  const double median_mm = Median(std::move(distances_mm));
+  if (median_mm >= kMinMapDepth_mm) return Status::Ok();
+  return {ErrorCode::kMismatch, "with a unit of " + FormatDouble(unit_mm) + " mm the points are " +
+                                    FormatDouble(median_mm) + " mm from the cameras, in the median; a run holds " +
+                                    FormatDouble(kMinMapDepth_mm) + " mm and more: give another --Import.unit_mm"};
 }
 
 // Frames in order of time become reports as a tracker would give them. The map is there as a whole: the first frame
@@ -182,6 +198,7 @@ Result<ImportSummary> Import(const ImportRequest& request, const ImportOptions& 
     return Status(ErrorCode::kInsufficient,
                   Quoted(request.input_path) + " gives no frame a pose; there is nothing to import");
   MultiplyUnit(options.unit_mm, &*imported);
+  if (Status status = CheckUnit(*imported, options.unit_mm); !status.ok()) return status;
   const Camera& camera = imported->camera ? *imported->camera : (*sequence)->camera();
   const Status written = request.as == ImportAs::kRun ? WriteRun(request, options, *imported, camera, **sequence)
                                                       : WriteTruth(request, *imported, camera, **sequence);

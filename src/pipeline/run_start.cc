@@ -81,9 +81,6 @@ std::vector<std::string> WhatTheFirstFramesSay(const SequenceRequest& request, b
 // Where a file of tracks is given.
 Status ReadTracks(const RunRequest& request, const TrackOptions& options, RunStart* start) {
   if (!options.track_file.IsGiven()) return Status::Ok();
-  if (options.tracker.oracle.tracks == Switch::kOn)
-    return {ErrorCode::kInvalidArgument,
-            "a file of tracks and Oracle.tracks both say where points are; give one of them"};
   auto tracks = ReadTracksOfSequence(options.track_file, request.input);
   if (!tracks.ok()) return tracks.status();
   start->tracks = std::move(tracks->tracks);
@@ -99,11 +96,6 @@ void Append(std::vector<std::string> more, std::vector<std::string>* warnings) {
 
 Result<RunStart> ReadStart(const RunRequest& request, const TrackOptions& options, const Sequence& sequence) {
   const InitOptions& init = options.tracker.init;
-  if (options.FollowsInSource() && options.image.working == WorkingImageMode::kFixed && options.image.scale != 1.0)
-    return Status(
-        ErrorCode::kInvalidArgument,
-        "with an Oracle option or a file of tracks points are where these have them, in pixels of the source: "
-        "leave Image.scale at 1");
   RunStart start;
   if (Status status = ReadTracks(request, options, &start); !status.ok()) return status;
   const std::vector<ImageRun> runs = options.FollowsInSource() ? std::vector<ImageRun>() : ReadFirstRuns(request.input);

@@ -284,6 +284,7 @@ Status EndOf(const RunSummary& summary, const std::string& output_path) {
 
 Result<RunSummary> RunTrack(const RunRequest& given, const TrackOptions& wanted,
                             std::span<TrackObserver* const> observers) {
+  if (Status status = CheckTrackOptions(wanted); !status.ok()) return status;
   RunRequest request = given;
   std::optional<OpenedCheckpoint> checkpoint;  // nothing: the run begins with its first frame
   if (request.resume) {

@@ -68,6 +68,13 @@ Status CheckTrackOptions(const TrackOptions& options) {
     return {ErrorCode::kInvalidArgument,
             "Init.method depth_prior starts from the depth images of another program; name their folder with "
             "--depth_prior (DepthPrior.path)"};
+  if (options.track_file.IsGiven() && options.tracker.oracle.tracks == Switch::kOn)
+    return {ErrorCode::kInvalidArgument,
+            "a file of tracks and Oracle.tracks both say where points are; give one of them"};
+  if (options.FollowsInSource() && options.image.working == WorkingImageMode::kFixed && options.image.scale != 1.0)
+    return {ErrorCode::kInvalidArgument,
+            "with an Oracle option or a file of tracks points are where these have them, in pixels of the source: "
+            "leave Image.scale at 1"};
   return Status::Ok();
 }
 

@@ -45,7 +45,6 @@ class PythonObserver final : public TrackObserver {
 void RunAndRaise(const py::dict& input, RunRequest request, const py::object& options, const std::string& preset,
                  const py::object& on_frame, const PythonImages* images) {
   const TrackOptions track_options = OptionsOf(options, MakeTrackOptions(EnumOf<Preset>(preset, "preset")));
-  RaiseUnlessOk(CheckTrackOptions(track_options));
   Interrupt interrupt;
   PythonObserver observer(on_frame, &interrupt);
   request.stop = &interrupt.stop();

@@ -23,6 +23,15 @@ using namespace program_test;
 using testing::HasSubstr;
 using testing::StartsWith;
 
+TEST(Program, OptionsThatExcludeEachOtherAreWrongUsage) {
+  const Outcome scaled = Pliant("track x -o y --Oracle.poses on --Image.working fixed --Image.scale 2");
+  EXPECT_EQ(scaled.exit, 2);
+  EXPECT_THAT(scaled.err, HasSubstr("leave Image.scale at 1"));
+  const Outcome twice = Pliant("track x -o y --tracks tracks.csv --Oracle.tracks on");
+  EXPECT_EQ(twice.exit, 2);
+  EXPECT_THAT(twice.err, HasSubstr("both say where points are"));
+}
+
 TEST(Program, AStartFromACloudTakesItsMethodAndSaysWhenTheUnitIsUnlikely) {
   const Outcome usage = Pliant("track --image_path x --output_path y --Init.depth_cloud cloud.txt");
   EXPECT_EQ(usage.exit, 2);

@@ -124,6 +124,15 @@ TEST_F(ImportTest, WhatWasImportedIsExportedAsTheSameModel) {
   for (std::size_t i = 0; i < first->images.size(); ++i) EXPECT_EQ(first->images[i].name, again->images[i].name);
 }
 
+TEST_F(ImportTest, AUnitThatLeavesZerosIsRefused) {
+  WriteModel();
+  ImportOptions options;
+  options.unit_mm = 1e-9;
+  const auto imported = ImportModel(options);
+  EXPECT_EQ(imported.status().code(), ErrorCode::kMismatch);
+  EXPECT_THAT(imported.status().message(), testing::HasSubstr("give another --Import.unit_mm"));
+}
+
 TEST_F(ImportTest, TheUnitIsMultiplied) {
   WriteModel();
   ImportOptions options;

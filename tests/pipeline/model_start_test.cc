@@ -90,6 +90,16 @@ TEST_F(ModelStartTest, AModelOfUnknownUnitIsScaledToTheNominalDepth) {
   EXPECT_NEAR(depths[depths.size() / 2], MonocularInitOptions().nominal_depth_mm, kMedianOfOthers_mm);
 }
 
+TEST_F(ModelStartTest, AModelThatIsTooSmallForTheFilesIsNoMap) {
+  ModelInitOptions model = Model();
+  model.unit_mm = 1e-9;
+  const auto summary = Track(InitMethod::kColmapModel, "run", model);
+  ASSERT_TRUE(summary.ok()) << summary.status().message();
+  EXPECT_EQ(summary->status, RunStatus::kFailed);
+  EXPECT_EQ(summary->frames_tracked, 0);
+  EXPECT_THAT(summary->note, testing::HasSubstr("give the length of its unit in mm"));
+}
+
 TEST_F(ModelStartTest, WaitsForAnImageThatTheModelHas) {
   auto model = colmap::ReadModel(folder_.Path("true/sparse"));
   ASSERT_TRUE(model.ok());

@@ -79,6 +79,9 @@ struct RefinedPoint {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  // undeformed, world frame, map units
 };
 
+// Of a map, in the median: lengths are written with six decimals.
+inline constexpr double kMinMapDepth_mm = 1e-3;
+
 // (W15) Of the depths' spread by their standard deviation: below it they are hardly better known than by one depth.
 inline constexpr double kMinDepthSignal = 3.0;
 

@@ -17,7 +17,7 @@ void MonocularInitOptions::List(OptionTable& table) {
                   "bundle adjustment over window_frames frames");
   table.AddChoice("triangulation", &triangulation, "gated, paper: triangulation of a point from two rays");
   table.Add("nominal_depth_mm", &nominal_depth_mm, "mm", "median depth to which a map of unknown scale is scaled, once",
-            1e-3, 1e6);
+            0.1, 1e6);
   table.Add("max_error_px", &max_error_px, "px",
             "gated, paper: inlier threshold per view; tight, because deformation looks like noise and grows "
             "with time",
