@@ -3,6 +3,7 @@
 
 #include "pliant/exchange/import.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <set>
@@ -18,6 +19,7 @@
 #include "pliant/io/camera_file.h"
 #include "pliant/io/run_writer.h"
 #include "pliant/io/trajectory.h"
+#include "pliant/scene/map.h"
 
 namespace pliant {
 namespace {
@@ -58,18 +60,23 @@ void MultiplyUnit(double unit_mm, Imported* imported) {
   }
 }
 
-// Where there are points: what is too small for the files of a run would be written as zeros.
+// What is too small for the files would be written as zeros: the points' distances, or, where there are none, the path
+// of a camera that moves.
 Status CheckUnit(const Imported& imported, double unit_mm) {
   std::vector<double> distances_mm;
-  for (const auto& [frame_idx, frame] : imported.frames)
+  double path_mm = 0;
+  const Eigen::Vector3d first = imported.frames.begin()->second.cam_from_world.OriginInSource();
+  for (const auto& [frame_idx, frame] : imported.frames) {
+    path_mm = std::max(path_mm, (frame.cam_from_world.OriginInSource() - first).norm());
     for (const PointObservation& observation : frame.observations)
       distances_mm.push_back((frame.cam_from_world * observation.position).norm());
-  if (distances_mm.empty()) return Status::Ok();
-  const double median_mm = Median(std::move(distances_mm));
-  if (median_mm >= kMinMapDepth_mm) return Status::Ok();
-  return {ErrorCode::kMismatch, "with a unit of " + FormatDouble(unit_mm) + " mm the points are " +
-                                    FormatDouble(median_mm) + " mm from the cameras, in the median; a run holds " +
-                                    FormatDouble(kMinMapDepth_mm) + " mm and more: give another --Import.unit_mm"};
+  }
+  const double length_mm = distances_mm.empty() ? path_mm : Median(std::move(distances_mm));
+  if (length_mm == 0.0 || length_mm >= kMinHeldDistance_mm) return Status::Ok();
+  return {ErrorCode::kMismatch, "with a unit of " + FormatDouble(unit_mm) +
+                                    " mm the points, or the camera's path, are " + FormatDouble(length_mm) +
+                                    " mm away; the files hold " + FormatDouble(kMinHeldDistance_mm) +
+                                    " mm and more: give another --Import.unit_mm"};
 }
 
 // Frames in order of time become reports as a tracker would give them. The map is there as a whole: the first frame

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <sstream>
 #include <system_error>
 
 #include <zlib.h>
@@ -23,13 +24,17 @@ namespace fs = std::filesystem;
 constexpr std::string_view kMagic = "Pliant checkpoint\n";
 constexpr std::size_t kMaxHead = 400;  // bytes: a version and a checksum
 
-// Another compiler or machine may round otherwise, and the rest of a run would not be what it would have been.
-std::string ThisProgram() { return std::string(kVersion) + " (" + std::string(BuildText()) + ")"; }
-
 std::string StateFile(const std::string& run_path) { return run_path + "/" + std::string(kCheckpointState); }
 
 std::uint32_t Checksum(std::string_view bytes) {
   return static_cast<std::uint32_t>(crc32_z(0, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()));
+}
+
+// Another compiler, machine or library may round otherwise, and the rest of a run would not be what it would have been.
+std::string ThisProgram() {
+  std::ostringstream text;
+  text << kVersion << " (" << BuildText() << ", libraries " << std::hex << Checksum(LibrariesText()) << ")";
+  return text.str();
 }
 
 }  // namespace
@@ -82,7 +87,7 @@ Result<std::string> ReadCheckpoint(const std::string& run_path) {
   if (version != ThisProgram())
     return Status(ErrorCode::kMismatch, "the checkpoint " + path + " is of version " + Quoted(version) +
                                             ", and this is " + ThisProgram() +
-                                            "; resume the run with that version, or track the sequence anew, with "
+                                            "; resume the run with that program, or track the sequence anew, with "
                                             "--overwrite");
   StateArchive written;
   written(version, checksum);

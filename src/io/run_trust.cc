@@ -108,7 +108,7 @@ std::string OfImages(const RunDescription& run) {
 }
 
 std::string OfTracks(const RunSummary& summary) {
-  // Points of a map that deforms are nearly where the images have them.
+  // Points of a map that deforms are nearly where the images have them: two decimals would say 0.00.
   const double error_px = summary.median_reprojection_error_px;
   return "Points lie " + (error_px < 0.01 ? "less than 0.01" : Digits(error_px, 2)) +
          " px from where the map has them, in the median (pixels of the source). Points were tracked in images of " +
@@ -124,11 +124,12 @@ std::string Joined(const std::vector<std::string>& sentences) {
 }
 
 std::string OfCoverage(const RunSummary& summary) {
-  std::string text = "In the median frame " + Percent(summary.median_coverage, 0) +
-                     " of the scene lies near a point (within 1/32 of the image's width)";
-  if (summary.median_followed_coverage > summary.median_coverage)
-    text += ", and " + Percent(summary.median_followed_coverage, 0) +
-            " with points that are followed but whose depth is not certain enough for the map";
+  const std::string of_map = Percent(summary.median_coverage, 0);
+  const std::string followed = Percent(summary.median_followed_coverage, 0);
+  std::string text =
+      "In the median frame " + of_map + " of the scene lies near a point (within 1/32 of the image's width)";
+  if (summary.median_followed_coverage > summary.median_coverage && followed != of_map)
+    text += ", and " + followed + " with points that are followed but whose depth is not certain enough for the map";
   return text + ".";
 }
 

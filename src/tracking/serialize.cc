@@ -23,6 +23,6 @@ void Serialize(StateArchive& archive, InitMeasurements& measured) { archive.Memb
 void Serialize(StateArchive& archive, InitOutcome& outcome) { archive.Members<12>(outcome); }
 void Serialize(StateArchive& archive, FirstMap& first) { archive.Members<2>(first); }
 void Serialize(StateArchive& archive, MapInFrame& then) { archive.Members<2>(then); }
-void Serialize(StateArchive& archive, CandidateTrack& track) { archive.Members<4>(track); }
+void Serialize(StateArchive& archive, CandidateTrack& track) { archive.Members<5>(track); }
 
 }  // namespace pliant

@@ -228,9 +228,10 @@ class Case:
             command = self.chance.choice(["refine --run out -o OUT", "report --run out -o OUT.html",
                                           "export --run out -o OUT",
                                           f"evaluate --run out --sequence {words[0]} -o OUT"])
+            self.what["before"] = self.what["command"]
             ended = run(self.command_of(command.split(), "out_of_it"), self.folder)
         self.check(ended)
-        for path in self.outputs():
+        for path in [] if self.wrong else self.outputs():
             self.wrong += [f"left {path.name}/{what}" for what in checks.wrong_run(path)]
 
     def limit(self):
@@ -279,6 +280,8 @@ def main():
     Case.fail_nth = arguments.fail_nth and arguments.fail_nth.resolve()
     if Case.fail_nth is None:
         KINDS[:] = [kind for kind in KINDS if kind != "fault"]
+    if not KINDS:
+        parser.error("none of these kinds can be drawn: disk needs root, fault --fail_nth")
     if arguments.minutes is None and arguments.cases is None:
         arguments.minutes = 30.0
     end = time.monotonic() + 60 * arguments.minutes if arguments.minutes is not None else None

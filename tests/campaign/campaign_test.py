@@ -111,7 +111,8 @@ class Checks(unittest.TestCase):
                "trajectory.txt": [b"0 1 nan 3 0.6 0 0 0.8\n", b"0 1 2 3 0.6 0 0 0.81\n", b"0 1 2 3 0 0 0 0\n",
                                   POSE.encode() * 2],
                "sparse/images.txt": [b"1 0.8 0 0.6 0 1 2 3 1 0.png\n\n2 1 1 0 0 1 2 3 1 1.png\n1 2 -1\n"],
-               "observations.csv": [b"frame,z\n0,NaN\n", b"frame,z\n0,0.000\n1,-0.000\n"], "run.json": [b'{"error": NaN}', b'{"error": -Infinity}'],
+               "observations.csv": [b"frame,z\n0,NaN\n", b"frame,z\n0,0.000\n1,-0.000\n"],
+               "run.json": [b'{"error": NaN}', b'{"error": -Infinity}'],
                "map.ply": [ply + b"\0\0\x80\x7f\xff", ply + b"\0\0\xc0\x7f\xff",
                            ply.replace(b"binary_little_endian", b"ascii") + b"nan 1\n"]}
         with tempfile.TemporaryDirectory() as name:

@@ -15,8 +15,6 @@ MOST_CHARACTERS = 400
 STATES = {"waiting_for_reference", "initializing", "ambiguous", "tracking", "provisional", "lost"}  # docs/formats.md
 NO_NUMBER = re.compile(r"(?<![\w.])[-+]?(nan|inf|infinity)(?![\w.])", re.IGNORECASE)
 CRASHES = {-4: "SIGILL", -6: "SIGABRT", -7: "SIGBUS", -8: "SIGFPE", -11: "SIGSEGV", -25: "SIGXFSZ", -31: "SIGSYS"}
-
-
 PLY_TYPES = {b"char": "b", b"uchar": "B", b"short": "h", b"ushort": "H", b"int": "i", b"uint": "I", b"float": "f",
              b"double": "d", b"int8": "b", b"uint8": "B", b"int16": "h", b"uint16": "H", b"int32": "i", b"uint32": "I",
              b"float32": "f", b"float64": "d"}
@@ -158,30 +156,46 @@ def differing_runs(one, other):
     return differing
 
 
-def wrong_run(folder):
-    """What is wrong with the numbers of a run that has ended, "NAME: what"."""
-    wrong, states, poses = [], [], None
-    for path in sorted(pathlib.Path(folder).rglob("*")):
-        if path.suffix == ".ply" and not _has_numbers(path.read_bytes()):
-            wrong.append(f"{path.name}: not a number")
-        if path.suffix not in (".txt", ".csv", ".json"):
-            continue
-        text = path.read_text(encoding="utf-8")
-        lines = [line for line in text.splitlines() if not line.startswith("#")]
-        if found := NO_NUMBER.search(text):
-            wrong.append(f"{path.name}: {found[0]}")
-        if path.name == "trajectory.txt":
-            poses = len(lines)
-            wrong += [] if _rotations(lines, 4) else ["trajectory.txt: no rotation"]
-        elif path.name == "images.txt":
-            wrong += [] if _rotations(lines[::2], 1) else ["images.txt: no rotation"]
-        elif path.name == "frames.csv":
-            states = [row["state"] for row in csv.DictReader(lines)]
-            wrong += [f"frames.csv: state {state}" for state in sorted(set(states) - STATES)]
-        elif path.name == "observations.csv" and len(lines) > 1:
-            rows = list(csv.DictReader(lines))
-            wrong += [] if any(float(row["z"]) for row in rows) else ["observations.csv: all points are at depth 0"]
-    with_pose = sum(state in ("tracking", "provisional") for state in states)
-    if poses not in (None, with_pose):
-        wrong.append(f"trajectory.txt: {poses} poses of {with_pose} tracked frames")
+def _wrong_numbers(path):
+    """What is wrong with the numbers in one file of a run."""
+    if path.suffix == ".ply":
+        return [] if _has_numbers(path.read_bytes()) else ["not a number"]
+    if path.suffix not in (".txt", ".csv", ".json"):
+        return []
+    text = path.read_text(encoding="utf-8")
+    lines = [line for line in text.splitlines() if not line.startswith("#")]
+    wrong = [found[0]] if (found := NO_NUMBER.search(text)) else []
+    if path.name == "trajectory.txt":
+        wrong += [] if _rotations(lines, 4) else ["no rotation"]
+    elif path.name == "images.txt":
+        wrong += [] if _rotations(lines[::2], 1) else ["no rotation"]
+    elif path.name == "frames.csv":
+        states = {row["state"] for row in csv.DictReader(lines)}
+        wrong += [f"state {state}" for state in sorted(states - STATES)]
+    elif path.name == "observations.csv" and len(lines) > 1:
+        wrong += [] if any(float(row["z"]) for row in csv.DictReader(lines)) else ["all points are at depth 0"]
     return wrong
+
+
+def _wrong_count(folder):
+    """Whether each tracked frame has a pose."""
+    trajectory, frames = folder / "trajectory.txt", folder / "frames.csv"
+    if not trajectory.exists() or not frames.exists():
+        return []
+    poses = sum(not line.startswith("#") for line in trajectory.read_text(encoding="utf-8").splitlines())
+    with open(frames, newline="", encoding="utf-8") as rows:
+        tracked = sum(row["state"] in ("tracking", "provisional") for row in csv.DictReader(rows))
+    return [] if poses == tracked else [f"trajectory.txt: {poses} poses of {tracked} tracked frames"]
+
+
+def wrong_run(path):
+    """What is wrong with the numbers of a run that has ended, or of what was made of one (a file or a folder), "NAME:
+    what"."""
+    path = pathlib.Path(path)
+    wrong = []
+    for file in [path] if path.is_file() else sorted(path.rglob("*")):
+        try:
+            wrong += [f"{file.name}: {what}" for what in _wrong_numbers(file)] if file.is_file() else []
+        except (ValueError, KeyError, IndexError, TypeError, struct.error) as error:
+            wrong.append(f"{file.name}: {error!r}")
+    return wrong + (_wrong_count(path) if not wrong else [])

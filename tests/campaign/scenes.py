@@ -61,8 +61,9 @@ def camera(motion, frame, begin):
 
 def tracks(shape, motion, begin, chance):
     """Of every frame the pixels of the dots in its image, {dot: (u, v)}. Until the frame `begin` they are a cloud that
-    a camera passes, of which a map can be made."""
-    before, points = SHAPES["cloud"](chance), SHAPES[shape](chance)
+    a camera passes, of which a map can be made; another shape takes the place of it at once."""
+    before = SHAPES["cloud"](chance)
+    points = before if shape in ("cloud", "no_shape") else SHAPES[shape](chance)
     frames = []
     for frame in range(FRAMES):
         center, angle_deg = camera(motion, frame, begin)

@@ -97,7 +97,7 @@ TEST_F(ModelStartTest, AModelThatIsTooSmallForTheFilesIsNoMap) {
   ASSERT_TRUE(summary.ok()) << summary.status().message();
   EXPECT_EQ(summary->status, RunStatus::kFailed);
   EXPECT_EQ(summary->frames_tracked, 0);
-  EXPECT_THAT(summary->note, testing::HasSubstr("give the length of its unit in mm"));
+  EXPECT_THAT(summary->note, testing::HasSubstr("check the unit (Init.model_unit_mm"));
 }
 
 TEST_F(ModelStartTest, WaitsForAnImageThatTheModelHas) {

@@ -4,7 +4,7 @@
 // What a run needs to be resumed: RUN/checkpoint/state, written every Nth frame while the run lasts and deleted at its
 // end. A run that is stopped keeps it, and beside it its rows as they were written (Finish may have moved some into
 // other worlds). The state is that of the program's memory: for the same version of the program alone, built with the
-// same compiler for the same machine.
+// same compiler and libraries for the same machine.
 #pragma once
 
 #include <optional>

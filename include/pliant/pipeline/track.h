@@ -116,7 +116,8 @@ class TrackObserver {
   virtual void OnHeld(const FrameReport& /*report*/) {}
 };
 
-// Runs the tracker over the sequence. Fails when there is nothing to run on: an input that cannot be opened, an output
+// Runs the tracker over the sequence. Fails when there is nothing to run on: options that
+// contradict each other (CheckTrackOptions), an input that cannot be opened, an output
 // that cannot be made, a checkpoint that is damaged or of another run. Once frames are read the answer is a summary,
 // whose status and note say how the run ended:
 //   completed    at the sequence's end            lost    too few points (the note says in which frame)

@@ -79,9 +79,6 @@ struct RefinedPoint {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  // undeformed, world frame, map units
 };
 
-// Of a map, in the median: lengths are written with six decimals.
-inline constexpr double kMinMapDepth_mm = 1e-3;
-
 // (W15) Of the depths' spread by their standard deviation: below it they are hardly better known than by one depth.
 inline constexpr double kMinDepthSignal = 3.0;
 
@@ -144,7 +141,8 @@ struct FrameReport {
   std::vector<CostTerm> costs;  // at the solution; all 0 where there is none
   double median_reprojection_error_px = 0;
   std::optional<double> coverage;  // share of what the image shows of the scene that is near a point (CoverageOf)
-  // The same, counting points too that were followed into this frame and have no certain depth yet.
+  // The same, counting points too that are followed and have no certain depth yet; in a blurred frame these are where
+  // the last sharp one had them.
   std::optional<double> followed_coverage;
   std::vector<std::pair<std::string, double>> stage_ms;  // wall time by stage; fixed order and names
   double latency_ms = 0;  // from the frame's arrival until everything was done that it asked for; 0: not measured

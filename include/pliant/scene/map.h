@@ -16,6 +16,9 @@
 
 namespace pliant {
 
+// Lengths in the files of a run have six decimals: below it less than three digits are left.
+inline constexpr double kMinHeldDistance_mm = 1e-3;
+
 struct Landmark {
   PointId id;
   Eigen::Vector3d rest_position = Eigen::Vector3d::Zero();  // when it entered the map: undeformed

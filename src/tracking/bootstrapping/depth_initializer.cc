@@ -40,6 +40,10 @@ class DepthInitializer final : public Initializer {
                        std::to_string(options_.min_points) + " that a map needs";
       return outcome;
     }
+    if (Status held = CheckHeldDepths(outcome.points); !held.ok()) {
+      outcome = {.decision = InitDecision::kNewReference, .reason = held.message()};
+      return outcome;
+    }
     outcome.decision = InitDecision::kMap;
     outcome.reason =
         "first map of " + count + " points from the " + (options_.cloud_path.empty() ? "depth image" : "point cloud");

@@ -7,8 +7,10 @@
 #include <array>
 #include <cassert>
 
+#include "pliant/base/options.h"
 #include "pliant/base/statistics.h"
 #include "pliant/geometry/triangulation.h"
+#include "pliant/scene/map.h"
 
 namespace pliant {
 namespace {
@@ -160,6 +162,18 @@ void BackProjectDepths(const InitInput& input, const std::vector<std::optional<d
   }
   outcome->measured.correspondences = static_cast<int>(observations.size());
   outcome->measured.inliers = static_cast<int>(outcome->points.size());
+}
+
+Status CheckHeldDepths(const std::vector<InitPoint>& points) {
+  std::vector<double> depths_mm;
+  for (const InitPoint& point : points) depths_mm.push_back(point.position.z());
+  const double median_mm = Median(std::move(depths_mm));
+  if (median_mm >= kMinHeldDistance_mm) return Status::Ok();
+  return {
+      ErrorCode::kMismatch,
+      "the points are " + FormatDouble(median_mm) + " mm from the camera, in the median, and the files of a run hold " +
+          FormatDouble(kMinHeldDistance_mm) +
+          " mm and more: check the unit (Init.model_unit_mm, Init.depth_cloud_unit_mm, depth_scale or the baseline)"};
 }
 
 Result<double> NominalScale(const std::vector<Eigen::Vector3d>& positions, double nominal_depth_mm) {

@@ -79,6 +79,9 @@ void FillRigidFrames(const InitInput& input, const std::vector<Rigid3>& cams_fro
 // observations; where there is no depth, or no ray, the point is rejected. Counts them.
 void BackProjectDepths(const InitInput& input, const std::vector<std::optional<double>>& depths, InitOutcome* outcome);
 
+// Fails with kMismatch where the points, in mm, are nearer than the files of a run can hold.
+Status CheckHeldDepths(const std::vector<InitPoint>& points);
+
 // Map units to mm: by it the median depth (z in the reference camera) is nominal_depth_mm. Fails with kDegenerate when
 // the median depth is not positive.
 Result<double> NominalScale(const std::vector<Eigen::Vector3d>& positions, double nominal_depth_mm);

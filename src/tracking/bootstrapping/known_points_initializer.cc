@@ -1,12 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include <utility>
 #include <vector>
 
-#include "pliant/base/options.h"
-#include "pliant/base/statistics.h"
-#include "pliant/scene/frame_report.h"
 #include "pliant/tracking/bootstrapping/make_initializer.h"
 #include "tracking/bootstrapping/initial_map.h"
 
@@ -37,16 +33,11 @@ class KnownPointsInitializer final : public Initializer {
                        " that a map needs";
       return outcome;
     }
-    std::vector<double> scaled_mm;
-    for (const Eigen::Vector3d& position : positions) scaled_mm.push_back(*scale * position.z());
-    if (const double depth_mm = Median(std::move(scaled_mm)); depth_mm < kMinMapDepth_mm) {
-      outcome.decision = InitDecision::kNewReference;
-      outcome.reason = std::string(known_.source) + " has a median depth of " + FormatDouble(depth_mm) +
-                       " mm, of at least " + FormatDouble(kMinMapDepth_mm) +
-                       " that a run can hold; give the length of its unit in mm";
+    for (InitPoint& point : outcome.points) point.position *= *scale;
+    if (Status held = CheckHeldDepths(outcome.points); !held.ok()) {
+      outcome = {.decision = InitDecision::kNewReference, .reason = held.message()};
       return outcome;
     }
-    for (InitPoint& point : outcome.points) point.position *= *scale;
     outcome.decision = InitDecision::kMap;
     outcome.reason = "first map of " + count + " points from " + std::string(known_.source);
     FillRigidFrames(input, {Rigid3()}, &outcome);  // the reference alone: this start never waits

@@ -16,6 +16,7 @@ void MonocularInitOptions::List(OptionTable& table) {
                   "gated: refinement of the relative pose: none, the pair (opengv; two_view: with a robust loss), or "
                   "bundle adjustment over window_frames frames");
   table.AddChoice("triangulation", &triangulation, "gated, paper: triangulation of a point from two rays");
+  // At least: what is written has six decimals.
   table.Add("nominal_depth_mm", &nominal_depth_mm, "mm", "median depth to which a map of unknown scale is scaled, once",
             0.1, 1e6);
   table.Add("max_error_px", &max_error_px, "px",

@@ -85,7 +85,7 @@ void MapUpdater::Start(FirstMap first, Submap* submap) {
     const bool uncertain =
         rejected.reason == InitRejection::kUncertainDepth || rejected.reason == InitRejection::kTooFewViews;
     if (!GrowsMap() || !uncertain || seen == nullptr ||
-        !submap->candidates.Add({seen->id, seen->pixel, seen->ssim, seen->rgb}, submap->last_cam_from_world,
+        !submap->candidates.Add({seen->id, seen->pixel, seen->ssim, seen->rgb, true}, submap->last_cam_from_world,
                                 submap->map))
       tracks_->Remove(rejected.id);
   }
@@ -123,7 +123,8 @@ void MapUpdater::AdoptFollowed(const InitFrame& known, const InitFrame& present,
     if (submap->map.Find(seen.id) != nullptr || submap->candidates.Pixel(seen.id) != nullptr) continue;
     const bool is_rejected = FindById(known.observations, seen.id) != nullptr;
     if (is_rejected || !GrowsMap() ||
-        !submap->candidates.Add({seen.id, seen.pixel, seen.ssim, seen.rgb}, submap->last_cam_from_world, submap->map))
+        !submap->candidates.Add({seen.id, seen.pixel, seen.ssim, seen.rgb, true}, submap->last_cam_from_world,
+                                submap->map))
       tracks_->Remove(seen.id);
   }
 }

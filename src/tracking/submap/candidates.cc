@@ -30,7 +30,7 @@ std::vector<CandidateTrack> Candidates::tracks() const {
 std::vector<Eigen::Vector2d> Candidates::FollowedPixels() const {
   std::vector<Eigen::Vector2d> pixels;
   for (const auto& [id, point] : points_)
-    if (point.rays.size() > 1) pixels.push_back(point.track.pixel);
+    if (point.track.followed) pixels.push_back(point.track.pixel);
   return pixels;
 }
 
@@ -146,6 +146,7 @@ bool Candidates::AddView(const PointTrack& track, const Rigid3& cam_from_world, 
   Point& point = points_.at(track.id);
   point.track.pixel = track.pixel;
   point.track.ssim = track.ssim;
+  point.track.followed = true;
   if (static_cast<int>(point.rays.size()) < options_.max_views && AppendView(cam_from_world, map, &point)) return true;
   points_.erase(track.id);
   return false;

@@ -31,6 +31,7 @@ struct CandidateTrack {
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
   double ssim = 1;
   std::array<std::uint8_t, 3> rgb = {128, 128, 128};  // where it was first seen
+  bool followed = false;                              // into a frame after that
 };
 
 class Candidates {
@@ -44,7 +45,7 @@ class Candidates {
 
   // There has to be one with this id.
   const CandidateTrack& track(PointId id) const { return points_.at(id).track; }
-  // Those that were followed into the last frame: not those that are new in it.
+  // Those that were followed, where they were last seen: not those that are new.
   std::vector<Eigen::Vector2d> FollowedPixels() const;
   // Where one was last seen; null where there is none with this id.
   const Eigen::Vector2d* Pixel(PointId id) const {
