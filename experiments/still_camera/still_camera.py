@@ -48,7 +48,7 @@ MOVING = {
 
 def ratios(log):
     """The evidence of every map and of every reference that was given up for it."""
-    found = re.findall(r"stands still the errors (?:would be|are) ([0-9.]+)", log)
+    found = re.findall(r"stands still the errors (?:would be|are) ([0-9]+[.][0-9]{2}) times", log)
     return ", ".join(sorted(set(found), key=found.index))
 
 

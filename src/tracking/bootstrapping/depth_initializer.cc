@@ -41,7 +41,9 @@ class DepthInitializer final : public Initializer {
       return outcome;
     }
     if (Status held = CheckHeldDepths(outcome.points); !held.ok()) {
-      outcome = {.decision = InitDecision::kNewReference, .reason = held.message()};
+      outcome.decision = InitDecision::kNewReference;
+      outcome.reason = held.message();
+      outcome.points.clear();
       return outcome;
     }
     outcome.decision = InitDecision::kMap;

@@ -35,7 +35,9 @@ class KnownPointsInitializer final : public Initializer {
     }
     for (InitPoint& point : outcome.points) point.position *= *scale;
     if (Status held = CheckHeldDepths(outcome.points); !held.ok()) {
-      outcome = {.decision = InitDecision::kNewReference, .reason = held.message()};
+      outcome.decision = InitDecision::kNewReference;
+      outcome.reason = held.message();
+      outcome.points.clear();
       return outcome;
     }
     outcome.decision = InitDecision::kMap;
