@@ -54,6 +54,9 @@ TEST(Program, AStartFromACloudTakesItsMethodAndSaysWhenTheUnitIsUnlikely) {
   EXPECT_EQ(in_meters.exit, 0) << in_meters.err;
   EXPECT_THAT(in_meters.out, HasSubstr("2 of 2 frames tracked"));
   EXPECT_THAT(in_meters.err, Not(HasSubstr("median depth")));
+  const Outcome in_nothing = Pliant(track + "--overwrite --Init.depth_cloud_unit_mm 1e-9");
+  EXPECT_EQ(in_nothing.exit, 1);
+  EXPECT_THAT(in_nothing.err, HasSubstr("the files of a run hold 0.001 mm and more"));
 }
 
 TEST(Program, AStartFromADepthPriorTakesItsFolder) {

@@ -238,6 +238,9 @@ TEST_F(ImportTest, CameraPathsOfOtherSystemsComeToTheirFrames) {
   folder_.Write("tum.txt", "# a comment\n0.0404 1 2 3 0 0 0 1\n0.118 4 5 6 0 0 0 1\n9 0 0 0 0 0 0 1\n");
   folder_.Write("euroc.csv", "#timestamp [ns], p, q\n40400000, 1, 2, 3, 1, 0, 0, 0, 9\n118000000,4,5,6,1,0,0,0,9\n");
   folder_.Write("kitti.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n0 -1 0 1 1 0 0 2 0 0 1 3\n");
+  ImportOptions none;
+  none.unit_mm = 1e-9;
+  EXPECT_EQ(ImportFrom("tum.txt", ImportFormat::kTum, none).status().code(), ErrorCode::kMismatch);
   ImportOptions meters;
   meters.unit_mm = 1000;
   for (const auto& [file, format, frame] :

@@ -285,7 +285,12 @@ TEST_F(TrackerFromImages, TheMapGrowsWhereTheImageShowsMore) {
     EXPECT_EQ(report.added, static_cast<int>(report.new_points.size()));
     for (const NewPoint& point : report.new_points) EXPECT_TRUE(map.insert(point.id).second) << "twice";
     ExpectFromTheMap(report, map, *camera_);
+    ASSERT_TRUE(report.coverage && report.followed_coverage);
+    EXPECT_GE(*report.followed_coverage, *report.coverage);
   }
+  // What came into sight is followed before it is in the map.
+  EXPECT_TRUE(std::ranges::any_of(
+      grown, [](const FrameReport& report) { return *report.followed_coverage > *report.coverage + 0.05; }));
 }
 
 // A stain moves to and fro on the scene. From frame to frame that may be the scene that deforms; over the frames of
