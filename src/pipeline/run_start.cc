@@ -18,6 +18,7 @@
 #include "pliant/image/depth_lookup.h"
 #include "pliant/io/point_cloud.h"
 #include "pliant/photometric/stereo_matching.h"
+#include "pliant/scene/map.h"
 
 namespace pliant {
 namespace {
@@ -32,6 +33,11 @@ Result<cv::Mat> ReadCloud(const DepthInitOptions& options, const Camera& camera)
                   "the point cloud '" + options.cloud_path +
                       "' has nothing in front of the camera and in its image; give it in the first frame's camera, x "
                       "right, y down, z ahead");
+  if (const double median_mm = Median(KnownDepths(depth_mm)); median_mm < kMinHeldDistance_mm)
+    return Status(ErrorCode::kMismatch, "the point cloud '" + options.cloud_path + "' is " + FormatDouble(median_mm) +
+                                            " mm away, in the median, and the files of a run hold " +
+                                            FormatDouble(kMinHeldDistance_mm) +
+                                            " mm and more: give another Init.depth_cloud_unit_mm");
   return depth_mm;
 }
 

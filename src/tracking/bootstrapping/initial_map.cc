@@ -169,11 +169,10 @@ Status CheckHeldDepths(const std::vector<InitPoint>& points) {
   for (const InitPoint& point : points) depths_mm.push_back(point.position.z());
   const double median_mm = Median(std::move(depths_mm));
   if (median_mm >= kMinHeldDistance_mm) return Status::Ok();
-  return {
-      ErrorCode::kMismatch,
-      "the points are " + FormatDouble(median_mm) + " mm from the camera, in the median, and the files of a run hold " +
-          FormatDouble(kMinHeldDistance_mm) +
-          " mm and more: check the unit (Init.model_unit_mm, Init.depth_cloud_unit_mm, depth_scale or the baseline)"};
+  return {ErrorCode::kMismatch, "the points are " + FormatDouble(median_mm) +
+                                    " mm from the camera, in the median, and the files of a run hold " +
+                                    FormatDouble(kMinHeldDistance_mm) +
+                                    " mm and more: check the unit (Init.model_unit_mm, depth_scale or the baseline)"};
 }
 
 Result<double> NominalScale(const std::vector<Eigen::Vector3d>& positions, double nominal_depth_mm) {
