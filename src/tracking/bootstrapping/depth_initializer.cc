@@ -40,16 +40,7 @@ class DepthInitializer final : public Initializer {
                        std::to_string(options_.min_points) + " that a map needs";
       return outcome;
     }
-    if (Status held = CheckHeldDepths(outcome.points); !held.ok()) {
-      outcome.decision = InitDecision::kNewReference;
-      outcome.reason = held.message();
-      outcome.points.clear();
-      return outcome;
-    }
-    outcome.decision = InitDecision::kMap;
-    outcome.reason =
-        "first map of " + count + " points from the " + (options_.cloud_path.empty() ? "depth image" : "point cloud");
-    FillRigidFrames(input, {Rigid3()}, &outcome);  // the reference alone: this start never waits
+    FillKnownMap(input, options_.cloud_path.empty() ? "the depth image" : "the point cloud", &outcome);
     return outcome;
   }
 

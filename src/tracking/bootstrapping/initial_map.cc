@@ -164,15 +164,21 @@ void BackProjectDepths(const InitInput& input, const std::vector<std::optional<d
   outcome->measured.inliers = static_cast<int>(outcome->points.size());
 }
 
-Status CheckHeldDepths(const std::vector<InitPoint>& points) {
+void FillKnownMap(const InitInput& input, std::string_view source, InitOutcome* outcome) {
   std::vector<double> depths_mm;
-  for (const InitPoint& point : points) depths_mm.push_back(point.position.z());
-  const double median_mm = Median(std::move(depths_mm));
-  if (median_mm >= kMinHeldDistance_mm) return Status::Ok();
-  return {ErrorCode::kMismatch, "the points are " + FormatDouble(median_mm) +
-                                    " mm from the camera, in the median, and the files of a run hold " +
-                                    FormatDouble(kMinHeldDistance_mm) +
-                                    " mm and more: check the unit (Init.model_unit_mm, depth_scale or the baseline)"};
+  for (const InitPoint& point : outcome->points) depths_mm.push_back(point.position.z());
+  if (const double median_mm = Median(std::move(depths_mm)); median_mm < kMinHeldDistance_mm) {
+    outcome->decision = InitDecision::kNewReference;
+    outcome->reason = "the points are " + FormatDouble(median_mm) +
+                      " mm from the camera, in the median, and the files of a run hold " +
+                      FormatDouble(kMinHeldDistance_mm) +
+                      " mm and more: check the unit (Init.model_unit_mm, depth_scale or the baseline)";
+    outcome->points.clear();
+    return;
+  }
+  outcome->decision = InitDecision::kMap;
+  outcome->reason = "first map of " + std::to_string(outcome->points.size()) + " points from " + std::string(source);
+  FillRigidFrames(input, {Rigid3()}, outcome);
 }
 
 Result<double> NominalScale(const std::vector<Eigen::Vector3d>& positions, double nominal_depth_mm) {

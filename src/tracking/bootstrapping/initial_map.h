@@ -8,6 +8,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
@@ -79,8 +80,9 @@ void FillRigidFrames(const InitInput& input, const std::vector<Rigid3>& cams_fro
 // observations; where there is no depth, or no ray, the point is rejected. Counts them.
 void BackProjectDepths(const InitInput& input, const std::vector<std::optional<double>>& depths, InitOutcome* outcome);
 
-// Fails with kMismatch where the points, in mm, are nearer than the files of a run can hold.
-Status CheckHeldDepths(const std::vector<InitPoint>& points);
+// Fills an outcome in, whose points have known depths in mm, as a map of the reference alone: such a start never waits.
+// No map where they are nearer than the files of a run can hold. `source`: what the depths come from.
+void FillKnownMap(const InitInput& input, std::string_view source, InitOutcome* outcome);
 
 // Map units to mm: by it the median depth (z in the reference camera) is nominal_depth_mm. Fails with kDegenerate when
 // the median depth is not positive.

@@ -34,15 +34,7 @@ class KnownPointsInitializer final : public Initializer {
       return outcome;
     }
     for (InitPoint& point : outcome.points) point.position *= *scale;
-    if (Status held = CheckHeldDepths(outcome.points); !held.ok()) {
-      outcome.decision = InitDecision::kNewReference;
-      outcome.reason = held.message();
-      outcome.points.clear();
-      return outcome;
-    }
-    outcome.decision = InitDecision::kMap;
-    outcome.reason = "first map of " + count + " points from " + std::string(known_.source);
-    FillRigidFrames(input, {Rigid3()}, &outcome);  // the reference alone: this start never waits
+    FillKnownMap(input, known_.source, &outcome);
     return outcome;
   }
 
