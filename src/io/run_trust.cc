@@ -79,10 +79,14 @@ std::string OfPrior(const RunSummary& summary) {
 
 std::string OfCamera(const FirstMapEvidence& evidence) {
   if (!(evidence.depth_sigma > 0.0)) return {};
-  if (!evidence.deforming) return "the scene was found to be rigid; all motion is the camera's.";
-  if (!(evidence.still_camera_error_ratio > 0.0)) return "the scene deforms; whether the camera moves was not tested.";
-  const std::string by_errors = "the scene deforms; with a camera that stands still the errors would be " +
-                                Digits(evidence.still_camera_error_ratio, 2) + " times as large, ";
+  const bool was_tested = evidence.still_camera_error_ratio > 0.0;
+  if (!evidence.deforming && !was_tested) return "the scene was found to be rigid; all motion is the camera's.";
+  if (!was_tested) return "the scene deforms; whether the camera moves was not tested.";
+  const std::string by_errors =
+      std::string(evidence.deforming ? "the scene deforms"
+                                     : "the scene deforms, but so little that a rigid map knows its depths better") +
+      "; with a camera that stands still the errors would be " + Digits(evidence.still_camera_error_ratio, 2) +
+      " times as large, ";
   if (!evidence.moves_by_depth) return by_errors + "so it moved.";
   return by_errors + "too little to tell in so much noise; that it moved is said by the depths, which stand out.";
 }

@@ -113,10 +113,19 @@ TEST(RunTrust, AnAmbiguousRunIsToldWhatToDo) {
   EXPECT_THAT(trust, Not(Contains(Key("tracks"))));
 }
 
+TEST(RunTrust, SaysThatARigidMapIsOfASceneThatDeformsLittle) {
+  FirstMapEvidence trembling = kKnown;
+  trembling.deforming = false;
+  const auto trust = Trust(Summary(trembling));
+  EXPECT_THAT(trust.at("camera"), HasSubstr("The scene deforms, but so little that a rigid map knows its depths better; "
+                                            "with a camera that stands still"));
+}
+
 TEST(RunTrust, TellsSeveralMapsApart) {
   RunSummary summary = Summary(kKnown);
   FirstMapEvidence rigid = kKnown;
   rigid.deforming = false;
+  rigid.still_camera_error_ratio = 0;
   summary.first_maps.push_back({50, 60, rigid});
   const auto trust = Trust(summary);
   EXPECT_THAT(trust.at("camera"), HasSubstr("Map 0: the scene deforms"));

@@ -17,10 +17,10 @@ namespace {
 
 constexpr std::size_t kAskAlternativeEvery = 5;  // frames
 
-// Of two provisional maps, the second one of a longer window. Sigmas of a rigid window know nothing of a deformation:
-// where a longer one deforms they do not count.
+// Of two provisional maps, the second one of a longer window. Sigmas of a rigid window may know nothing of a
+// deformation: where a longer one deforms they do not count.
 bool IsBetter(const InitOutcome& first, const InitOutcome& second) {
-  const bool is_comparable = first.deforming || !second.deforming;
+  const bool is_comparable = first.allows_deformation || !second.allows_deformation;
   return is_comparable && first.measured.DepthSignal() >= second.measured.DepthSignal();
 }
 

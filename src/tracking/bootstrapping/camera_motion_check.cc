@@ -55,11 +55,15 @@ bool MovesByDepth(const CameraMotionEvidence& evidence, const InitMeasurements& 
 
 }  // namespace
 
-Status CheckCameraMotion(const InitInput& input, const SolvedWindow& window, const WindowInitOptions& options,
+Status CheckCameraMotion(const InitInput& input, const SolvedWindow& chosen, const WindowInitOptions& options,
                          InitOutcome* outcome) {
   const double focal_px = input.camera.MeanFocalLengthPx();
-  if (window.IsRigid()) return CheckRigidMotion(window.solution.window, focal_px, outcome->measured.median_error_px);
+  if (chosen.IsRigid()) {
+    Status status = CheckRigidMotion(chosen.solution.window, focal_px, outcome->measured.median_error_px);
+    if (!status.ok() || chosen.deforming == nullptr) return status;
+  }
   if (options.min_still_camera_ratio <= 0.0) return Status::Ok();
+  const SolvedWindow& window = chosen.IsRigid() ? *chosen.deforming : chosen;
   auto models = SolveCameraMotionModels(window.solution, focal_px, options.window, input.threads);
   if (!models.ok()) return models.status();
   std::vector<PointId> ids;
@@ -76,7 +80,8 @@ Status CheckCameraMotion(const InitInput& input, const SolvedWindow& window, con
   outcome->measured.still_camera_error_ratio = ratio;
   const bool is_clear = ratio >= options.min_still_camera_ratio;
   outcome->camera_may_stand_still = !is_clear && evidence.significance < kMinSignificance;
-  outcome->moves_by_depth = !is_clear && !input.camera_may_stand_still && MovesByDepth(evidence, outcome->measured);
+  outcome->moves_by_depth =
+      !is_clear && !chosen.IsRigid() && !input.camera_may_stand_still && MovesByDepth(evidence, outcome->measured);
   outcome->ambiguous = !is_clear && !outcome->moves_by_depth;
   if (!outcome->ambiguous) return Status::Ok();
   return {ErrorCode::kDegenerate,

@@ -29,10 +29,11 @@ int KeptPoints(const InitFrame& reference, const InitFrame& frame) {
   }));
 }
 
-// A rigid scene whose depths differ by more than the light could be wrong by, and not as the light says.
+// A rigid scene whose depths differ by more than the light could be wrong by, and not as the light says. Halves that
+// agree show that it is no other minimum.
 bool ContradictsLightClearly(const SolvedWindow& window) {
-  return window.IsRigid() && window.solution.window.cue == DistanceCue::kLight && ContradictsLight(window.solution) &&
-         window.solution.light_error > kMaxLightError;
+  return !window.AllowsDeformation() && window.solution.window.cue == DistanceCue::kLight &&
+         ContradictsLight(window.solution) && window.solution.light_error > kMaxLightError;
 }
 
 class WindowInitializer final : public Initializer {
@@ -120,7 +121,8 @@ class WindowInitializer final : public Initializer {
     const auto window = SolveWindow(input, input.frames.size(), scene, options_, nominal_depth_mm_);
     Status status(ErrorCode::kInsufficient, "the scene deforms, and a window of " + std::to_string(since + 1) +
                                                 " frames is too short for depths that are certain");
-    if (!window.ok() || !early || window->IsRigid()) status = Make(input, window, DemandsAfter(since), outcome);
+    if (!window.ok() || !early || !window->AllowsDeformation())
+      status = Make(input, window, DemandsAfter(since), outcome);
     // What the depths alone show is left for later windows to contradict.
     if (status.ok() && outcome->moves_by_depth) outcome->decision = InitDecision::kProvisional;
     if (status.ok()) return status;

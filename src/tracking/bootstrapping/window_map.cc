@@ -119,6 +119,12 @@ double DepthSpread(const DeformingWindow& window) {
   return std::min(LogSpread(std::move(depths)), LogSpread(std::move(distances)));
 }
 
+// Errors of a rigid window in a scene that deforms are the scene's: what is wrong stands out from them.
+double MaxErrorPx(const SolvedWindow& window, const std::vector<double>& errors_px, const WindowInitOptions& options) {
+  return window.deforming == nullptr ? options.max_error_px
+                                     : std::max(options.max_error_px, kMaxErrorRatio * Median(errors_px));
+}
+
 // How many of `ids` a frame sees.
 int CountSeen(const InitFrame& frame, const std::vector<PointId>& ids) {
   return static_cast<int>(
@@ -172,7 +178,7 @@ std::vector<PointId> WindowPointsToAdd(const InitInput& input, const MapPoints& 
 // Optimizes all points by all frames, with poses and coefficients fixed, after others that were seen in enough frames
 // were added. What is uncertain, or wrong between the views of the problem, is then left out.
 Status OptimizePoints(const InitInput& input, const MapDemands& demands, const WindowInitOptions& options,
-                      MapPoints* points, std::vector<InitRejectedPoint>* rejected) {
+                      double max_error_px, MapPoints* points, std::vector<InitRejectedPoint>* rejected) {
   const double focal_px = input.camera.MeanFocalLengthPx();
   const std::vector<PointId> added = WindowPointsToAdd(input, *points, options.min_frame_share);
   std::vector<DeformingObservation> observations;
@@ -188,7 +194,6 @@ Status OptimizePoints(const InitInput& input, const MapDemands& demands, const W
   all.ids.insert(all.ids.end(), added.begin(), added.end());
   all.depth_sigmas = DepthSigmas(all.solution);
   const std::vector<double> errors_px = PointErrorsPx(all.solution.window, focal_px);
-  double max_error_px = options.max_error_px;
   if (demands.scales_sigmas_with_error) {
     const double median_px = Median(errors_px);
     max_error_px = std::min(max_error_px, kMaxErrorRatio * median_px);
@@ -288,7 +293,8 @@ Status MakeWindowMap(const InitInput& input, const SolvedWindow& window, const M
   const MapPoints all{window.ids, DepthSigmas(window.solution), window.solution};
   const std::vector<double> errors_px = PointErrorsPx(window.solution.window, focal_px);
   const double median_distance = window.solution.window.MedianDistance();
-  MapPoints points = ChooseCertain(all, errors_px, options.max_error_px, demands, median_distance, nullptr);
+  const double max_error_px = MaxErrorPx(window, errors_px, options);
+  MapPoints points = ChooseCertain(all, errors_px, max_error_px, demands, median_distance, nullptr);
   const auto measure = [&] {
     outcome->measured.inliers = static_cast<int>(points.ids.size());
     outcome->measured.median_depth_sigma = points.ids.empty() ? 0.0 : MedianSigma(points, demands.far_by_own_distance);
@@ -305,7 +311,8 @@ Status MakeWindowMap(const InitInput& input, const SolvedWindow& window, const M
     return status;
   if (Status status = OptimizeAllViews(input, window, options, &points); !status.ok()) return status;
   std::vector<InitRejectedPoint> rejected;
-  if (Status status = OptimizePoints(input, demands, options, &points, &rejected); !status.ok()) return status;
+  if (Status status = OptimizePoints(input, demands, options, max_error_px, &points, &rejected); !status.ok())
+    return status;
   const int needed = NeededPoints(input, options);
   if (const int left = CountSeen(input.frames.back(), points.ids); left < needed)
     return {ErrorCode::kInsufficient, "only " + std::to_string(left) +
@@ -316,6 +323,7 @@ Status MakeWindowMap(const InitInput& input, const SolvedWindow& window, const M
   if (Status status = CheckCameraMotion(input, window, options, outcome); !status.ok()) return status;
   if (Status status = FillOutcome(input, nominal_depth_mm, points, outcome); !status.ok()) return status;
   outcome->refinable = !outcome->deforming && options.refine_rigid == Switch::kOn;
+  outcome->allows_deformation = window.AllowsDeformation();
   outcome->rejected = AllRejected(input, points, std::move(rejected));
   outcome->reason = std::string(outcome->provisional ? "provisional" : "first") + " map of " +
                     std::to_string(points.ids.size()) + " points from a " + (window.IsRigid() ? "rigid" : "deforming") +
@@ -323,6 +331,8 @@ Status MakeWindowMap(const InitInput& input, const SolvedWindow& window, const M
                     Digits(100.0 * outcome->measured.median_depth_sigma, 1) + " % of the median depth";
   if (const double ratio = outcome->measured.still_camera_error_ratio; ratio > 0.0)
     outcome->reason += "; with a camera that stands still the errors would be " + Digits(ratio, 1) + " times as large";
+  if (window.deforming != nullptr)
+    outcome->reason += "; the scene deforms, but so little that depths are more certain without a model of it";
   if (window.light_is_of_no_use) outcome->reason += "; brightness is no depth cue in these images and was not used";
   if (window.solution.window.cue == DistanceCue::kPrior) outcome->reason += "; the depth prior was used";
   return Status::Ok();

@@ -16,6 +16,7 @@
 #include "pliant/estimation/window/window_refinement.h"
 #include "pliant/geometry/triangulation.h"
 #include "tracking/bootstrapping/initial_map.h"
+#include "tracking/bootstrapping/window_halves.h"
 
 namespace pliant {
 namespace {
@@ -163,7 +164,7 @@ Result<SolvedWindow> SolvedWithCue(const InitInput& input, const PreparedWindow&
                                    const WindowInitOptions& options) {
   auto solution = SolveDeformingWindow(window.start, input.camera.MeanFocalLengthPx(), options.window, input.threads);
   if (!solution.ok()) return solution.status();
-  return SolvedWindow{window.views, window.ids, std::move(*solution), false};
+  return SolvedWindow{window.views, window.ids, std::move(*solution)};
 }
 
 // Where the solution contradicts its cue, the depth prior is one, unless it is contradicted too; else there is none.
@@ -192,7 +193,7 @@ Result<SolvedWindow> SolvedAsRigid(const InitInput& input, const PreparedWindow&
                                    const WindowInitOptions& options) {
   auto solution = SolveRigidWindow(window.start, input.camera.MeanFocalLengthPx(), options.window, input.threads);
   if (!solution.ok()) return solution.status();
-  return SolvedWindow{window.views, window.ids, std::move(*solution), false};
+  return SolvedWindow{window.views, window.ids, std::move(*solution)};
 }
 
 Result<SolvedWindow> SolveRigid(const InitInput& input, const PreparedWindow& window,
@@ -208,6 +209,21 @@ Result<SolvedWindow> SolveRigid(const InitInput& input, const PreparedWindow& wi
   auto rigid = SolvedAsRigid(input, window, options);
   if (rigid.ok() && rigid->solution.residual_correlation > options.max_correlation)
     return deforms(rigid->solution.residual_correlation);
+  return rigid;
+}
+
+// (W19) The rigid window in place of the deforming one where it knows depths better, by what its halves say of it.
+Result<SolvedWindow> MoreCertain(const InitInput& input, const PreparedWindow& wide, SolvedWindow deforming,
+                                 const WindowInitOptions& options, double nominal_depth_mm) {
+  auto rigid = SolvedAsRigid(input, wide, options);
+  const double sigma = MedianSigma(deforming.solution);
+  if (!rigid.ok() || !(MedianSigma(rigid->solution) < sigma)) return deforming;
+  const std::vector<double> of_halves = SigmasOfHalves(input, *rigid, options, nominal_depth_mm);
+  std::vector<double>& sigmas = rigid->solution.sample_sigmas;
+  if (sigmas.empty()) sigmas.assign(of_halves.size(), 0.0);
+  std::ranges::transform(sigmas, of_halves, sigmas.begin(), [](double a, double b) { return std::max(a, b); });
+  if (!(MedianSigma(rigid->solution) < sigma)) return deforming;
+  rigid->deforming = std::make_shared<const SolvedWindow>(std::move(deforming));
   return rigid;
 }
 
@@ -295,7 +311,9 @@ Result<SolvedWindow> SolveWindow(const InitInput& input, std::size_t frames, Win
   if (rigid.ok() || scene == WindowScene::kRigid) return rigid;
   const auto window = PrepareWindow(input, frames, cued.views, cued, nominal_depth_mm);
   if (!window.ok()) return window.status();
-  return SolveDeforming(input, *window, cued, nominal_depth_mm);
+  auto deforming = SolveDeforming(input, *window, cued, nominal_depth_mm);
+  if (!deforming.ok()) return deforming;
+  return MoreCertain(input, *wide, *std::move(deforming), cued, nominal_depth_mm);
 }
 
 }  // namespace pliant

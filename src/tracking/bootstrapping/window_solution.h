@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <vector>
 
 #include "pliant/base/status.h"
@@ -19,8 +20,13 @@ struct SolvedWindow {
   std::vector<PointId> ids;
   DeformingSolution solution;
   bool light_is_of_no_use = false;  // it was to be used, and was not
+  // Of a rigid window that leaves more than noise unexplained, and knows depths better all the same: the same window
+  // with coefficients. Else null.
+  std::shared_ptr<const SolvedWindow> deforming = nullptr;
 
   bool IsRigid() const { return solution.window.coefficients.rows() == 0; }
+  // Whether the sigmas allow for a deformation.
+  bool AllowsDeformation() const { return !IsRigid() || deforming != nullptr; }
 };
 
 // Of the points, between the reference and a view: median.
@@ -34,7 +40,8 @@ enum class WindowScene { kRigid, kAny };
 
 // The window of the input's first `frames` frames, solved: as a rigid scene if it is one, else, where it may be any,
 // with coefficients; where the light turns out to say nothing of these, with the depth prior, and where that does not
-// either, with none, if that is more certain.
+// either, with none, if that is more certain. Where its halves agree so well that a rigid scene leaves depths less
+// uncertain than coefficients do, as a rigid scene all the same (W19).
 // kInsufficient, kDegenerate: what is missing, or that the scene deforms.
 Result<SolvedWindow> SolveWindow(const InitInput& input, std::size_t frames, WindowScene scene,
                                  const WindowInitOptions& options, double nominal_depth_mm);

@@ -139,8 +139,9 @@ struct InitOutcome {
   std::vector<InitRejectedPoint> rejected;  // the other points, sorted by id
   // The depths are known hardly better than one constant depth, or to less than was demanded.
   bool provisional = false;
-  bool deforming = false;  // the scene deformed, by the model that was chosen
-  bool refinable = false;  // of a rigid scene: the frames that follow can make it better
+  bool deforming = false;           // the scene deformed, by the model that was chosen
+  bool allows_deformation = false;  // its sigmas do, whatever the model
+  bool refinable = false;           // of a rigid scene: the frames that follow can make it better
 };
 
 inline constexpr int kFewestPoints = 12;  // that a map is made of, whoever follows them

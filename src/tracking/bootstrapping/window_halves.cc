@@ -1,0 +1,85 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tracking/bootstrapping/window_halves.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <iterator>
+#include <limits>
+#include <utility>
+
+#include "pliant/base/statistics.h"
+
+namespace pliant {
+namespace {
+
+constexpr std::size_t kMinCommonPoints = 12;
+
+// Log distances of a solution's points from one of its views, in the order of `ids`; NaN where it has no such point.
+std::vector<double> LogDistances(const SolvedWindow& window, std::size_t view, const std::vector<PointId>& ids) {
+  const DeformingWindow& solved = window.solution.window;
+  std::vector<double> distances;
+  for (const PointId id : ids) {
+    const int point = IndexOf(id, window.ids);
+    distances.push_back(
+        point < 0
+            ? std::numeric_limits<double>::quiet_NaN()
+            : std::log(
+                  (solved.cams_from_world[view] * solved.points_in_world[static_cast<std::size_t>(point)]).norm()));
+  }
+  return distances;
+}
+
+// |x - y| / sqrt 2 after one scale; NaN where a point lacks. Empty where too few are in both.
+std::vector<double> Differences(const std::vector<double>& x, const std::vector<double>& y) {
+  std::vector<double> differences;
+  std::vector<double> known;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    differences.push_back(x[i] - y[i]);
+    if (std::isfinite(differences.back())) known.push_back(differences.back());
+  }
+  if (known.size() < kMinCommonPoints) return {};
+  const double scale = Median(std::move(known));
+  for (double& difference : differences) difference = std::abs(difference - scale) / std::sqrt(2.0);
+  return differences;
+}
+
+}  // namespace
+
+std::vector<double> SigmasOfHalves(const InitInput& input, const SolvedWindow& rigid, const WindowInitOptions& options,
+                                   double nominal_depth_mm) {
+  const double unknown = std::numeric_limits<double>::infinity();
+  const std::vector<double> none(rigid.ids.size(), unknown);
+  const std::size_t middle_view = rigid.views.size() / 2;
+  const std::size_t middle = rigid.views[middle_view];
+  const std::size_t end = rigid.views.back() + 1;
+  const auto frame = [&](std::size_t k) { return input.frames.begin() + static_cast<std::ptrdiff_t>(k); };
+  const std::vector<InitFrame> later_frames(frame(middle), frame(end));
+  const InitInput from_middle{input.camera, later_frames, {}, input.moment, input.threads, {}, input.photometric};
+  const auto earlier = SolveAsRigid(input, middle + 1, options, nominal_depth_mm);
+  const auto later = SolveAsRigid(from_middle, later_frames.size(), options, nominal_depth_mm);
+  if (!earlier.ok() || !later.ok()) return none;
+  const std::array<std::vector<double>, 3> distances{
+      LogDistances(rigid, middle_view, rigid.ids),
+      LogDistances(*earlier, earlier->views.size() - 1, rigid.ids),
+      LogDistances(*later, 0, rigid.ids),
+  };
+  std::vector<double> sigmas(rigid.ids.size(), 0.0);
+  for (const auto& [a, b] : {std::pair{0, 1}, std::pair{0, 2}, std::pair{1, 2}}) {
+    const std::vector<double> differences =
+        Differences(distances[static_cast<std::size_t>(a)], distances[static_cast<std::size_t>(b)]);
+    if (differences.empty()) return none;
+    for (std::size_t i = 0; i < sigmas.size(); ++i)
+      if (std::isfinite(differences[i])) sigmas[i] = std::max(sigmas[i], differences[i]);
+  }
+  std::vector<double> known;
+  std::ranges::copy_if(sigmas, std::back_inserter(known), [](double sigma) { return sigma > 0.0; });
+  const double median = Median(std::move(known));
+  std::ranges::replace(sigmas, 0.0, median);
+  return sigmas;
+}
+
+}  // namespace pliant

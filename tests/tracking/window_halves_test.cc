@@ -1,0 +1,137 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tracking/bootstrapping/window_halves.h"
+
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "pliant/base/statistics.h"
+#include "support/waving_tracks.h"
+
+namespace pliant {
+namespace {
+
+using testing::Each;
+using testing::HasSubstr;
+
+using test::CameraMotion;
+using test::kNominalMm;
+using test::WavingTracks;
+
+constexpr int kFrames = 61;
+constexpr double kRigid_mm = 0;
+constexpr double kTremor_mm = 0.05;  // 0.4 px: more than the noise of the tracks
+constexpr double kWave_mm = 1;
+constexpr double kMaxRigidSigma = 0.003;  // where nothing deforms
+
+InitInput InputOf(const WavingTracks& sequence) { return {sequence.camera, sequence.frames, {}}; }
+
+SolvedWindow Rigid(const WavingTracks& sequence) {
+  return SolveAsRigid(InputOf(sequence), sequence.frames.size(), {}, kNominalMm).value();
+}
+
+SolvedWindow Solved(const WavingTracks& sequence) {
+  return SolveWindow(InputOf(sequence), sequence.frames.size(), WindowScene::kAny, {}, kNominalMm).value();
+}
+
+double MedianSigma(const SolvedWindow& window) {
+  std::vector<double> sigmas;
+  for (std::size_t i = 0; i < window.ids.size(); ++i) sigmas.push_back(window.solution.LogDepthSigma(i));
+  return Median(sigmas);
+}
+
+// Median error of log distance in the reference, after one scale.
+double Error(const WavingTracks& sequence, const SolvedWindow& window) {
+  std::vector<double> errors;
+  for (std::size_t i = 0; i < window.ids.size(); ++i)
+    errors.push_back(std::log(window.solution.window.points_in_world[i].norm() /
+                              sequence.points[static_cast<std::size_t>(window.ids[i].value)].norm()));
+  const double scale = Median(errors);
+  for (double& error : errors) error = std::abs(error - scale);
+  return Median(errors);
+}
+
+// A lens whose distortion is not in the calibration: its errors are alike at neighbors, too.
+WavingTracks Distorted(WavingTracks sequence, double k) {
+  for (InitFrame& frame : sequence.frames)
+    for (InitObservation& seen : frame.observations) {
+      const Eigen::Vector2d from_center = seen.pixel - Eigen::Vector2d(319.5, 239.5);
+      seen.pixel += k * from_center * (from_center / 450).squaredNorm();
+    }
+  return sequence;
+}
+
+TEST(WindowHalves, AgreeWhereNothingDeforms) {
+  const WavingTracks sequence(kFrames, CameraMotion::kForwards, kRigid_mm);
+  const SolvedWindow window = Rigid(sequence);
+  const std::vector<double> sigmas = SigmasOfHalves(InputOf(sequence), window, {}, kNominalMm);
+  ASSERT_EQ(sigmas.size(), window.ids.size());
+  EXPECT_LT(Median(sigmas), kMaxRigidSigma);
+  EXPECT_GT(Median(sigmas), Error(sequence, window) / 2);
+}
+
+TEST(WindowHalves, DifferByWhatADeformationMakesOfDepths) {
+  const WavingTracks sequence(kFrames, CameraMotion::kForwards, kWave_mm);
+  const SolvedWindow window = Rigid(sequence);
+  const double linear = MedianSigma(window);
+  const double error = Error(sequence, window);
+  EXPECT_GT(error, 1.5 * linear);  // which knows nothing of a deformation
+  const double of_halves = Median(SigmasOfHalves(InputOf(sequence), window, {}, kNominalMm));
+  EXPECT_GT(of_halves, error);
+  EXPECT_LT(of_halves, 3 * error);
+}
+
+TEST(WindowHalves, SayNothingWhereTheyAreTooShort) {
+  const WavingTracks sequence(9, CameraMotion::kForwards, kRigid_mm);
+  EXPECT_THAT(SigmasOfHalves(InputOf(sequence), Rigid(sequence), {}, kNominalMm),
+              Each(std::numeric_limits<double>::infinity()));
+}
+
+TEST(WindowHalves, ATremorOrAWrongLensDoesNotCostTheDepthsOfARigidScene) {
+  for (const double k : {0.0, 0.02}) {
+    const WavingTracks sequence = Distorted(WavingTracks(kFrames, CameraMotion::kForwards, kTremor_mm), k);
+    const SolvedWindow window = Solved(sequence);
+    ASSERT_TRUE(window.IsRigid()) << k;
+    EXPECT_GT(window.solution.residual_correlation, WindowInitOptions().max_correlation) << k;
+    ASSERT_NE(window.deforming, nullptr) << k;
+    EXPECT_FALSE(window.deforming->IsRigid()) << k;
+    EXPECT_LT(MedianSigma(window), MedianSigma(*window.deforming)) << k;
+    EXPECT_LT(Error(sequence, window), Error(sequence, *window.deforming)) << k;
+  }
+}
+
+TEST(WindowHalves, AWaveIsNotTakenForRigid) {
+  for (const unsigned seed : {1U, 2U, 3U}) {
+    const SolvedWindow window = Solved(WavingTracks(kFrames, CameraMotion::kForwards, kWave_mm, 15, seed));
+    EXPECT_FALSE(window.IsRigid()) << seed;
+    EXPECT_EQ(window.deforming, nullptr) << seed;
+  }
+}
+
+TEST(WindowHalves, AMapOfATremorSaysSo) {
+  const WavingTracks sequence(kFrames, CameraMotion::kForwards, kTremor_mm);
+  WindowInitOptions options;
+  options.min_still_camera_ratio = 0;
+  const InitOutcome outcome = sequence.Try(options);
+  ASSERT_EQ(outcome.decision, InitDecision::kMap) << outcome.reason;
+  EXPECT_FALSE(outcome.deforming);
+  EXPECT_TRUE(outcome.allows_deformation);
+  EXPECT_THAT(outcome.reason, HasSubstr("the scene deforms, but so little"));
+}
+
+// A scene that deforms at all may do so before a camera that stands still: here in one way, as the camera moves.
+TEST(WindowHalves, WhetherTheCameraMovesIsAskedAllTheSame) {
+  const WavingTracks sequence(kFrames, CameraMotion::kForwards, kTremor_mm);
+  const InitOutcome outcome = sequence.Try({});
+  EXPECT_TRUE(outcome.ambiguous) << outcome.reason;
+  EXPECT_LT(outcome.measured.still_camera_error_ratio, WindowInitOptions().min_still_camera_ratio);
+}
+
+}  // namespace
+}  // namespace pliant
