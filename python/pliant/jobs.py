@@ -3,10 +3,10 @@
 """The jobs of the command line: from files to files.
 
 All of them let other threads of the program run meanwhile. Ctrl-C ends them as it ends the command line's: what there
-is so far is on disk, and KeyboardInterrupt is raised; evaluate, export and a page of report leave what was there
-before. A figure is too short for that and finishes first. Options are dictionaries with the names of the command line
-(pliant.options lists them); one that is not there, or a value that it does not take, is a ValueError. What could not be
-done is a pliant.Error. What is odd about an input, and was read all the same, is a UserWarning.
+is so far is on disk, and KeyboardInterrupt is raised; evaluate, compare, export and a page of report leave what was
+there before. A figure is too short for that and finishes first. Options are dictionaries with the names of the command
+line (pliant.options lists them); one that is not there, or a value that it does not take, is a ValueError. What could
+not be done is a pliant.Error. What is odd about an input, and was read all the same, is a UserWarning.
 """
 
 from __future__ import annotations
@@ -306,6 +306,34 @@ def evaluate(run: RunOrPath | None, sequence: StrPath | None = None, options: Op
                "camera_path": _text(camera), "sfm_path": _text(sfm_path), "surface_path": _text(surface_path),
                "other_runs": others, "track_file_path": _text(tracks)}
     return json.loads(_pliant.evaluate(request, _options(options), _text(output_path)))
+
+
+def compare(runs: Any, sequence: StrPath | Iterable[StrPath], options: OptionValues | None = None, *,
+            camera: StrPath | None = None, output_path: StrPath | None = None,
+            figure: StrPath | None = None) -> dict[str, Any]:
+    """Sets runs side by side: each is evaluated against the truth of its sequence.
+
+    Args:
+        runs: the runs or their folders.
+        sequence: the images, with truth where there is; one for all runs, or a list with one for each.
+        options: as of pliant.evaluate, such as {"PointError.protocol": "all"}.
+        camera: calibration file of the sequences; None: the one that belongs to them.
+        output_path: folder for comparison.json and comparison.csv, and for evaluation.json and evaluation.csv of each
+            run in 0/, 1/, ... in their order; None: they are not written.
+        figure: a figure of the errors over the frames, .png, .svg or .pdf; None: none.
+
+    Returns:
+        comparison.json: in "runs" what pliant.evaluate returns of each run without its frames, in their order ("run" is
+        its folder). A run that cannot be evaluated is left out, and is a UserWarning.
+
+    Raises:
+        pliant.Error: none of the runs can be evaluated, or a file cannot be written.
+        ValueError: there is no run, or there are neither one sequence nor as many as runs.
+    """
+    sequences = [sequence] if isinstance(sequence, (str, os.PathLike)) else list(sequence)
+    request = {"run_paths": _several(runs), "sequence_paths": [os.fspath(path) for path in sequences],
+               "camera_path": _text(camera)}
+    return json.loads(_pliant.compare(request, _options(options), _text(output_path), _text(figure)))
 
 
 def import_result(input_path: StrPath, output_path: StrPath, sequence: StrPath, format: str = "colmap",

@@ -1,10 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include <filesystem>
 #include <functional>
-#include <map>
-#include <optional>
 
 #include "cli/command_line.h"
 #include "cli/commands.h"
@@ -12,8 +9,7 @@
 #include "cli/messages.h"
 #include "cli/progress.h"
 #include "cli/run_evaluation.h"
-#include "pliant/datasets/run_sequence.h"
-#include "pliant/evaluation/evaluate_run.h"
+#include "pliant/evaluation/compare_runs.h"
 #include "pliant/evaluation/report.h"
 #include "pliant/viewer/comparison_figure.h"
 #include "pliant/viewer/output.h"
@@ -40,99 +36,46 @@ const Manual kManual = {
      "pliant compare --run ours --run theirs --sequence colon --protocol all --output_path comparison"},
 };
 
-struct Request {
-  std::vector<std::string> run_paths;
-  std::vector<std::string> sequence_paths;  // one, or as many as runs
-  std::string camera_path;
-  std::string output_path;
-  std::string figure_path;
-};
-
-// A run that does not say its calibration takes that of another one of the same images.
-std::vector<SequenceRequest> SequencesOf(const Request& request) {
-  std::vector<SequenceRequest> sequences;
-  std::map<std::filesystem::path, std::filesystem::path> spare_of;
-  for (std::size_t i = 0; i < request.run_paths.size(); ++i) {
-    const std::string& path = request.sequence_paths[request.sequence_paths.size() == 1 ? 0 : i];
-    sequences.push_back(SequenceOfRun(request.run_paths[i], path, request.camera_path));
-    if (!sequences.back().spare_camera_path.empty()) spare_of.emplace(path, sequences.back().spare_camera_path);
-  }
-  for (SequenceRequest& sequence : sequences)
-    if (const auto spare = spare_of.find(sequence.image_path);
-        spare != spare_of.end() && sequence.spare_camera_path.empty())
-      sequence.spare_camera_path = spare->second;
-  return sequences;
-}
-
-// A sequence that several runs in a row share is opened once.
-std::vector<std::optional<Evaluation>> EvaluateAll(const Request& request, const EvaluationOptions& options) {
-  std::vector<std::optional<Evaluation>> evaluations(request.run_paths.size());
-  std::optional<Result<OpenedTruth>> truth;
-  const std::vector<SequenceRequest> sequences = SequencesOf(request);
-  JobBars bars(StopOnSignals());
-  for (std::size_t i = 0; i < request.run_paths.size(); ++i) {
-    if (!truth || sequences[i].image_path != sequences[i - 1].image_path ||
-        sequences[i].spare_camera_path != sequences[i - 1].spare_camera_path) {
-      truth = OpenTruth(sequences[i], options);
-      if (!truth->ok()) SayError(truth->status().message());
-    }
-    if (!truth->ok()) continue;
-    Result<Evaluation> evaluation = EvaluateRun(request.run_paths[i], **truth, options, std::ref(bars));
-    if (evaluation.ok())
-      evaluations[i] = *std::move(evaluation);
-    else
-      SayError(evaluation.status().message());
-  }
-  return evaluations;
-}
-
-Status WriteAll(const std::vector<std::optional<Evaluation>>& evaluations, const std::vector<Evaluation>& good,
-                const std::string& folder) {
-  for (std::size_t i = 0; i < evaluations.size(); ++i)
-    if (evaluations[i])
-      if (Status status = WriteEvaluation(*evaluations[i], folder + "/" + std::to_string(i)); !status.ok())
-        return status;
-  return WriteComparison(good, folder);
-}
-
 }  // namespace
 
 int CompareCommand(std::span<const std::string> args) {
-  Request request;
+  CompareRequest request;
+  std::string output_path;
+  std::string figure_path;
   EvaluationOptions options;
   CommandLine line(kManual);
   line.Add("run", &request.run_paths, "DIR", "run folder", Need::kRequired);
   line.Add("sequence", &request.sequence_paths, "PATH",
            "the images, with truth where there is; one for all runs, or one for each", Need::kRequired);
   AddEvaluationArguments(&line, &request.camera_path);
-  line.Add("output_path", &request.output_path, "DIR", "folder for the JSON and CSV files", Need::kOptional);
-  line.Add("figure", &request.figure_path, "FILE", "figure of the errors over the frames to write: .png, .svg or .pdf",
+  line.Add("output_path", &output_path, "DIR", "folder for the JSON and CSV files", Need::kOptional);
+  line.Add("figure", &figure_path, "FILE", "figure of the errors over the frames to write: .png, .svg or .pdf",
            Need::kOptional);
   if (const auto exit = line.Parse(args)) return *exit;
 
   OptionTable table;
   options.List(table);
   if (const auto exit = line.Resolve(table)) return *exit;
-  if (request.sequence_paths.size() != 1 && request.sequence_paths.size() != request.run_paths.size())
-    return line.UsageError("--sequence is given " + std::to_string(request.sequence_paths.size()) + " times for " +
-                           std::to_string(request.run_paths.size()) +
-                           " runs; give one for all of them, or one for each");
-  if (!request.figure_path.empty())
-    if (const Status status = CheckEnding(ViewOutput::kFigure, request.figure_path); !status.ok())
+  if (const Status status = CheckCompareRequest(request); !status.ok()) return line.UsageError(status.message());
+  if (!figure_path.empty())
+    if (const Status status = CheckEnding(ViewOutput::kFigure, figure_path); !status.ok())
       return line.UsageError(status.message());
 
-  const std::vector<std::optional<Evaluation>> evaluations = EvaluateAll(request, options);
-  std::vector<Evaluation> good;
-  for (const std::optional<Evaluation>& evaluation : evaluations)
-    if (evaluation) good.push_back(*evaluation);
-  if (!request.output_path.empty())
-    if (const Status status = WriteAll(evaluations, good, request.output_path); !status.ok())
+  const Result<RunComparison> comparison = [&] {
+    JobBars bars(StopOnSignals());
+    return CompareRuns(request, options, std::ref(bars));
+  }();
+  if (!comparison.ok()) return line.Failure(comparison.status().message());
+  for (const Status& failure : comparison->failures) SayError(failure.message());
+  if (!output_path.empty())
+    if (const Status status = WriteRunComparison(*comparison, output_path); !status.ok())
       return line.Failure(status.message());
-  if (!good.empty()) SayResult(ComparisonTable(good));
-  if (!good.empty() && !request.figure_path.empty())
-    if (const Status status = WriteComparisonFigure(good, request.figure_path); !status.ok())
+  const std::vector<Evaluation> evaluated = comparison->Evaluated();
+  if (!evaluated.empty()) SayResult(ComparisonTable(evaluated));
+  if (!evaluated.empty() && !figure_path.empty())
+    if (const Status status = WriteComparisonFigure(evaluated, figure_path); !status.ok())
       return line.Failure(status.message());
-  return good.size() == evaluations.size() ? kExitOk : kExitFailed;
+  return comparison->failures.empty() ? kExitOk : kExitFailed;
 }
 
 }  // namespace pliant::cli

@@ -11,6 +11,7 @@
 #include <pybind11/stl.h>
 
 #include "pliant/base/job_progress.h"
+#include "pliant/evaluation/compare_runs.h"
 #include "pliant/evaluation/evaluate_run.h"
 #include "pliant/evaluation/report.h"
 #include "pliant/exchange/export.h"
@@ -20,6 +21,7 @@
 #include "pliant/pipeline/surface_run.h"
 #include "pliant/simulation/write_sequence.h"
 #include "pliant/viewer/calibration_figure.h"
+#include "pliant/viewer/comparison_figure.h"
 #include "pliant/viewer/figure.h"
 #include "pliant/viewer/output.h"
 #include "pliant/viewer/report.h"
@@ -191,6 +193,27 @@ std::string Evaluate(const py::dict& request, const py::object& options, const s
   return EvaluationJson(evaluation);
 }
 
+// comparison.json of the runs that can be evaluated; the others are warnings.
+std::string Compare(const py::dict& request, const py::object& options, const std::string& output_path,
+                    const std::string& figure) {
+  const auto evaluation_options = OptionsOf<EvaluationOptions>(options);
+  const CompareRequest compare_request{.run_paths = AllTexts(request, "run_paths"),
+                                       .sequence_paths = AllTexts(request, "sequence_paths"),
+                                       .camera_path = Text(request, "camera_path")};
+  if (!figure.empty()) RaiseUnlessOk(CheckEnding(ViewOutput::kFigure, figure));
+  Interrupt interrupt;
+  const auto comparison = ValueOf(
+      WithoutGil(&interrupt, [&] { return CompareRuns(compare_request, evaluation_options, EndingBy(interrupt)); }));
+  const std::vector<Evaluation> evaluated = comparison.Evaluated();
+  if (evaluated.empty()) Raise(comparison.failures.front());
+  if (!output_path.empty()) RaiseUnlessOk(WriteRunComparison(comparison, output_path));
+  if (!figure.empty()) RaiseUnlessOk(WriteComparisonFigure(evaluated, figure));
+  Texts failures;
+  for (const Status& failure : comparison.failures) failures.push_back(failure.message());
+  Warn(failures);
+  return ComparisonJson(evaluated);
+}
+
 // What was left out, a sentence each.
 Texts ImportAny(const py::dict& request, const py::object& options) {
   const auto import_options = OptionsOf<ImportOptions>(options);
@@ -267,6 +290,7 @@ void BindJobs(py::module_& module) {
   module.def("refine", &Refine);
   module.def("surface", &Surface);
   module.def("evaluate", &Evaluate);
+  module.def("compare", &Compare);
   module.def("import_result", &ImportAny);
   module.def("export", &Export);
   module.def("report", &Report);

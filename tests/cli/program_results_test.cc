@@ -76,7 +76,7 @@ TEST(Program, CompareSetsRunsOfOtherSystemsSideBySide) {
   const Outcome pairs = Pliant("compare --run a --run b --run c --sequence d --sequence e");
   EXPECT_EQ(pairs.exit, 2);
   EXPECT_EQ(pairs.err,
-            "pliant compare: --sequence is given 2 times for 3 runs; give one for all of them, or one for each\n");
+            "pliant compare: the number of sequences is 2 for 3 runs; give one for all of them, or one for each\n");
 }
 
 TEST(Program, ImportMakesARunOfACameraPathAndSaysWhatItCannotRead) {

@@ -61,6 +61,37 @@ class Jobs(TestCase):
             pliant.evaluate(RUN)
         self.assertIn("there is nothing to compare the run with", sentence(self, caught.exception))
 
+    def test_runs_are_compared_as_the_command_line_does(self):
+        options = {"PointError.protocol": "all"}
+        comparison = pliant.compare([pliant.open_run(RUN), RUN], SEQUENCE, options, output_path=self.folder,
+                                    figure=self.folder / "figure.svg")
+        self.assertEqual(comparison, json.loads((self.folder / "comparison.json").read_text()))
+        self.assertEqual([run["run"] for run in comparison["runs"]], 2 * [str(RUN)])
+        alone = pliant.evaluate(RUN, SEQUENCE, options)
+        for run in comparison["runs"]:
+            self.assertEqual(run["surface"]["estimate"]["pooled_median_mm"],
+                             alone["surface"]["estimate"]["pooled_median_mm"])
+            self.assertEqual(set(run), set(alone) - {"frames"})
+        self.assertEqual(len((self.folder / "comparison.csv").read_text().splitlines()), 3)
+        self.assertTrue((self.folder / "1" / "evaluation.csv").exists())
+        self.assertIn("<svg", (self.folder / "figure.svg").read_text())
+
+    def test_a_run_that_cannot_be_compared_is_a_warning_or_an_error(self):
+        missing = self.folder / "missing"
+        with self.assertWarnsRegex(UserWarning, "missing"):
+            comparison = pliant.compare([missing, RUN], [SEQUENCE, SEQUENCE])
+        self.assertEqual([run["run"] for run in comparison["runs"]], [str(RUN)])
+        for arguments, kind, message in [(([missing], SEQUENCE), pliant.Error, "missing"),
+                                         (([RUN, RUN], [SEQUENCE] * 3), ValueError, "sequences is 3 for 2 runs"),
+                                         (([], SEQUENCE), ValueError, "no run to compare"),
+                                         ((RUN, SEQUENCE, {"PointError.scales": 1}), ValueError, "PointError.scale")]:
+            with self.subTest(message), self.assertRaises(kind) as caught:
+                pliant.compare(*arguments, output_path=self.folder / "nothing")
+            self.assertIn(message, sentence(self, caught.exception))
+        self.assertFalse((self.folder / "nothing").exists())
+        with self.assertRaisesRegex(ValueError, "a figure ends with .png or .svg or .pdf"):
+            pliant.compare(RUN, SEQUENCE, figure=self.folder / "figure.gif")
+
     def test_what_was_exported_is_imported(self):
         pliant.export(RUN, self.folder / "model", "canonical")
         run = pliant.import_result(self.folder / "model", self.folder / "run", SEQUENCE)

@@ -1,0 +1,87 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/evaluation/compare_runs.h"
+
+#include <filesystem>
+#include <map>
+#include <utility>
+
+#include "pliant/datasets/run_sequence.h"
+#include "pliant/evaluation/evaluate_run.h"
+#include "pliant/evaluation/report.h"
+
+namespace pliant {
+namespace {
+
+// A run that does not say its calibration takes that of another one of the same images.
+std::vector<SequenceRequest> SequencesOf(const CompareRequest& request) {
+  std::vector<SequenceRequest> sequences;
+  std::map<std::filesystem::path, std::filesystem::path> spare_of;
+  for (std::size_t i = 0; i < request.run_paths.size(); ++i) {
+    const std::string& path = request.sequence_paths[request.sequence_paths.size() == 1 ? 0 : i];
+    sequences.push_back(SequenceOfRun(request.run_paths[i], path, request.camera_path));
+    if (!sequences.back().spare_camera_path.empty()) spare_of.emplace(path, sequences.back().spare_camera_path);
+  }
+  for (SequenceRequest& sequence : sequences)
+    if (const auto spare = spare_of.find(sequence.image_path);
+        spare != spare_of.end() && sequence.spare_camera_path.empty())
+      sequence.spare_camera_path = spare->second;
+  return sequences;
+}
+
+bool IsSame(const SequenceRequest& a, const SequenceRequest& b) {
+  return a.image_path == b.image_path && a.spare_camera_path == b.spare_camera_path;
+}
+
+}  // namespace
+
+std::vector<Evaluation> RunComparison::Evaluated() const {
+  std::vector<Evaluation> evaluated;
+  for (const std::optional<Evaluation>& evaluation : evaluations)
+    if (evaluation) evaluated.push_back(*evaluation);
+  return evaluated;
+}
+
+Status CheckCompareRequest(const CompareRequest& request) {
+  const std::size_t runs = request.run_paths.size();
+  const std::size_t sequences = request.sequence_paths.size();
+  if (runs == 0) return {ErrorCode::kInvalidArgument, "there is no run to compare; give the folders of two or more"};
+  if (sequences == 1 || sequences == runs) return Status::Ok();
+  return {ErrorCode::kInvalidArgument, "the number of sequences is " + std::to_string(sequences) + " for " +
+                                           std::to_string(runs) + " runs; give one for all of them, or one for each"};
+}
+
+Result<RunComparison> CompareRuns(const CompareRequest& request, const EvaluationOptions& options,
+                                  const JobProgress& progress) {
+  if (Status status = CheckCompareRequest(request); !status.ok()) return status;
+  RunComparison comparison;
+  comparison.evaluations.resize(request.run_paths.size());
+  const std::vector<SequenceRequest> sequences = SequencesOf(request);
+  std::optional<Result<OpenedTruth>> truth;
+  for (std::size_t i = 0; i < request.run_paths.size(); ++i) {
+    if (!truth || !IsSame(sequences[i], sequences[i - 1])) {
+      truth = OpenTruth(sequences[i], options);
+      if (!truth->ok()) comparison.failures.push_back(truth->status());
+    }
+    if (!truth->ok()) continue;
+    Result<Evaluation> evaluation = EvaluateRun(request.run_paths[i], **truth, options, progress);
+    if (evaluation.ok())
+      comparison.evaluations[i] = *std::move(evaluation);
+    else if (evaluation.status().code() == ErrorCode::kInterrupted)
+      return evaluation.status();
+    else
+      comparison.failures.push_back(evaluation.status());
+  }
+  return comparison;
+}
+
+Status WriteRunComparison(const RunComparison& comparison, const std::string& folder) {
+  for (std::size_t i = 0; i < comparison.evaluations.size(); ++i)
+    if (comparison.evaluations[i])
+      if (Status status = WriteEvaluation(*comparison.evaluations[i], folder + "/" + std::to_string(i)); !status.ok())
+        return status;
+  return WriteComparison(comparison.Evaluated(), folder);
+}
+
+}  // namespace pliant
