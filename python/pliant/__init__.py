@@ -15,7 +15,7 @@ first map has Init.nominal_depth_mm as its median depth; times are seconds.
 """
 
 from . import extensions, kernels
-from ._pliant import Camera, Error, FrameReport, Tracker, __version__
+from ._pliant import Camera, Error, FrameReport, __version__
 from .extensions import FirstMap, NewReference, Wait, register_initializer
 from .jobs import (Calibration, StereoCalibration, calibrate, calibrate_stereo, compare, evaluate, export,
                    import_result, read_camera, refine, report, simulate, surface, track)
@@ -23,6 +23,7 @@ from .options import Options, options
 from .run import Run, open_run
 from .sequence import Sequence, SequenceFrame, open_sequence
 from .tables import Frames, Observations, Points, Poses
+from .tracker import Tracker
 
 __all__ = [
     "Calibration", "Camera", "Error", "FirstMap", "FrameReport", "Frames", "NewReference", "Observations", "Options",

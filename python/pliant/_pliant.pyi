@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The Pliant authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The compiled part. Camera, Error, FrameReport and Tracker are documented in their docstrings."""
+"""The compiled part. Camera, Error and FrameReport are documented in their docstrings."""
 
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any, Optional
@@ -68,8 +68,8 @@ class FrameReport:
     def median_reprojection_error_px(self) -> float: ...
 
 class Tracker:
-    def __init__(self, camera: Camera, options: Optional[dict[str, Any]] = None, *, preset: str = "default",
-                 examples: Iterable[NDArray[np.uint8]] = ()) -> None: ...
+    def __init__(self, camera: Camera, options: Optional[dict[str, Any]], preset: str,
+                 examples: Iterable[NDArray[np.uint8]], extensions: dict[str, Any]) -> None: ...
     @property
     def state(self) -> str: ...
     @property

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The Pliant authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""First maps and point tracks that are written in Python, for pliant.track.
+"""First maps and point tracks that are written in Python, for pliant.track and pliant.Tracker.
 
 Pixels are those of the images that points are tracked in (run.json: working_image): the given ones, resized and
 smoothed as they were measured to be tracked best in. {"Image.working": "fixed"} leaves them as they are.
@@ -94,7 +94,7 @@ _initializers: dict[str, Initializer] = {}
 
 
 def register_initializer(name: str, initializer: Initializer) -> None:
-    """Makes {"Init.method": name} in the options of pliant.track stand for this function.
+    """Makes {"Init.method": name} in the options of pliant.track and pliant.Tracker stand for this function.
 
     Raises ValueError for the name of a method that Pliant has.
     """
@@ -103,11 +103,6 @@ def register_initializer(name: str, initializer: Initializer) -> None:
     if name in options("track").unit["Init.method"].split(" | "):
         raise ValueError(f"{name!r} is a method of Pliant; give your initializer another name")
     _initializers[name] = initializer
-
-
-def registered_initializer(name: Any) -> Initializer | None:
-    """The function of this name; None: there is none."""
-    return _initializers.get(name) if isinstance(name, str) else None
 
 
 def asker(initializer: Initializer) -> Callable[[list[Any], _pliant.Camera, bool], dict[str, Any]]:
@@ -146,3 +141,16 @@ def follower(tracks: PointFollower) -> Callable[[Any, Any, Any, Any], tuple[NDAr
         return np.asarray(pixels), np.asarray(seen)
 
     return call
+
+
+def chosen(options: Any, initializer: Initializer | None, tracks: Any) -> tuple[Any, dict[str, Any]]:
+    """The options without a name that is registered, and what the library calls."""
+    name = "python"
+    method = options.get("Init.method") if isinstance(options, dict) else None
+    if isinstance(method, str) and method in _initializers:
+        if initializer is not None:
+            raise ValueError("there is an initializer, and Init.method names another one; give one of them")
+        options = {key: value for key, value in options.items() if key != "Init.method"}
+        name, initializer = method, _initializers[method]
+    return options, {"initializer": None if initializer is None else asker(initializer), "initializer_name": name,
+                     "tracks": None if tracks is None else follower(tracks)}

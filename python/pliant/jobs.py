@@ -19,7 +19,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Union
 
 from . import _pliant
-from .extensions import Initializer, PointFollower, asker, follower, registered_initializer
+from .extensions import Initializer, PointFollower, chosen
 from .run import Run
 
 if TYPE_CHECKING:
@@ -202,18 +202,12 @@ def track(input: StrPath | Iterable[NDArray[np.uint8]], output_path: StrPath, op
                                "stride": stride, "resume": resume}
     output = os.fspath(output_path)
     options = _options(options)
-    name = "python"
-    method = options.get("Init.method") if isinstance(options, dict) else None
-    if options is not None and (registered := registered_initializer(method)) is not None:
-        if initializer is not None:
-            raise ValueError("there is an initializer, and Init.method names another one; give one of them")
-        name, initializer = options.pop("Init.method"), registered
     if isinstance(tracks, (str, os.PathLike)):
         options, tracks = {**(options or {}), "TrackFile.path": os.fspath(tracks)}, None
     if depth_prior is not None:
         options = {**(options or {}), "DepthPrior.path": os.fspath(depth_prior)}
-    request.update(initializer=None if initializer is None else asker(initializer), initializer_name=name,
-                   tracks=None if tracks is None else follower(tracks))
+    options, extensions = chosen(options, initializer, tracks)
+    request.update(extensions)
     if isinstance(input, (str, os.PathLike)):
         if isinstance(camera, _pliant.Camera):
             raise ValueError("camera is a pliant.Camera, and the input a path; give the path of its calibration")

@@ -14,7 +14,11 @@
 namespace pliant {
 namespace {
 
-Status NeedsImagesAlone(const TrackerOptions& options) {
+Status NeedsImagesAlone(const TrackOptions& track_options) {
+  const TrackerOptions& options = track_options.tracker;
+  if (track_options.track_file.IsGiven())
+    return {ErrorCode::kInvalidArgument,
+            "TrackFile.path is a file of the tracks of a sequence; track its folder, or leave it empty"};
   if (options.oracle.Any())
     return {ErrorCode::kInvalidArgument, "Oracle options ask the truth of a simulated sequence; track its folder"};
   if (options.depth_prior.IsGiven())
@@ -37,22 +41,24 @@ Status CheckImageSize(const cv::Mat& image, const std::string& what, const Camer
 
 Result<ImageTracker> ImageTracker::Create(const Camera& camera,
                                           const std::optional<PhotometricCalibration>& photometric,
-                                          const TrackOptions& options, std::span<const SequenceFrame> examples) {
-  if (Status status = NeedsImagesAlone(options.tracker); !status.ok()) return status;
+                                          const TrackOptions& options, std::span<const SequenceFrame> examples,
+                                          const TrackerExtensions& extensions) {
+  if (Status status = NeedsImagesAlone(options); !status.ok()) return status;
   for (const SequenceFrame& frame : examples)
     if (Status status = CheckImageSize(frame.image, "image " + frame.name, camera); !status.ok()) return status;
   const WorkingImage working = ChooseWorkingImage({ImageRun(examples.begin(), examples.end())}, options);
   auto working_camera = camera.Resized(working.scale);
   if (!working_camera.ok()) return working_camera.status();
-  return ImageTracker(camera, *working_camera, working, photometric, options);
+  return ImageTracker(camera, *working_camera, working, {.photometric = photometric, .extensions = extensions},
+                      options);
 }
 
 ImageTracker::ImageTracker(const Camera& source, const Camera& working_camera, const WorkingImage& working,
-                           const std::optional<PhotometricCalibration>& photometric, const TrackOptions& options)
+                           const TrackerInputs& inputs, const TrackOptions& options)
     : camera_(source), working_(working), options_(options) {
   options_.tracker = WorkingOptions(std::move(options_.tracker), working);
   tracker_ = std::make_unique<Tracker>(working_camera, options_.tracker, static_cast<std::uint64_t>(options.seed),
-                                       options.threads, TrackerInputs{.photometric = photometric});
+                                       options.threads, inputs);
 }
 
 Result<std::vector<FrameReport>> ImageTracker::Process(const SequenceFrame& frame) {

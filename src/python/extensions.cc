@@ -57,19 +57,19 @@ std::vector<std::optional<Rigid3>> PosesOf(const py::handle& array) {
 
 class PythonInitializer final : public Initializer {
  public:
-  PythonInitializer(py::handle ask, std::string name, const TrackerOptions& options, Interrupt* interrupt)
+  PythonInitializer(py::handle ask, std::string name, const TrackerOptions& options, Callbacks* callbacks)
       : ask_(ask),
         name_(std::move(name)),
         nominal_depth_mm_(options.init.monocular.nominal_depth_mm),
         min_points_(options.min_points),
-        interrupt_(interrupt) {}
+        callbacks_(callbacks) {}
 
   std::string_view name() const override { return name_; }
 
   InitOutcome Try(const InitInput& input) const override {
     InitOutcome outcome;
     outcome.measured.correspondences = static_cast<int>(input.frames.back().observations.size());
-    interrupt_->Call([&] { Ask(input, &outcome); });
+    callbacks_->Call([&] { Ask(input, &outcome); });
     return outcome;
   }
 
@@ -112,12 +112,12 @@ class PythonInitializer final : public Initializer {
   std::string name_;
   double nominal_depth_mm_;
   int min_points_;
-  Interrupt* interrupt_;
+  Callbacks* callbacks_;
 };
 
 class PythonTracks final : public TrackSource {
  public:
-  PythonTracks(py::handle follow, Interrupt* interrupt) : follow_(follow), interrupt_(interrupt) {}
+  PythonTracks(py::handle follow, Callbacks* callbacks) : follow_(follow), callbacks_(callbacks) {}
 
   TrackAbilities abilities() const override { return {.finds_points = false, .tracks_blurred = false}; }
 
@@ -151,7 +151,7 @@ class PythonTracks final : public TrackSource {
       expected.push_back(track.pixel);
     }
     if (asked.empty()) return tracks;
-    interrupt_->Call([&] {
+    callbacks_->Call([&] {
       const auto answer = py::cast<py::tuple>(
           follow_(ImageTuple(previous), ImageTuple(current), PixelArray(from), PixelArray(expected)));
       const auto pixels = PointsOf(answer[0], 2, "the pixels that follow returns");
@@ -206,7 +206,7 @@ class PythonTracks final : public TrackSource {
   }
 
   py::handle follow_;
-  Interrupt* interrupt_;
+  Callbacks* callbacks_;
   std::int64_t next_id_ = 0;
   std::map<PointId, Eigen::Vector2d> kept_;   // where they were last kept
   std::map<PointId, Eigen::Vector2d> found_;  // by the present attempt
@@ -214,15 +214,15 @@ class PythonTracks final : public TrackSource {
 
 }  // namespace
 
-TrackerExtensions ExtensionsOf(const py::dict& given, const TrackerOptions& options, Interrupt* interrupt) {
+TrackerExtensions ExtensionsOf(const py::dict& given, const TrackerOptions& options, Callbacks* callbacks) {
   TrackerExtensions extensions;
   const py::handle initializer = given["initializer"];
   const py::handle tracks = given["tracks"];
   if (!initializer.is_none())
     extensions.initializer = std::make_shared<PythonInitializer>(
-        initializer, py::cast<std::string>(given["initializer_name"]), options, interrupt);
+        initializer, py::cast<std::string>(given["initializer_name"]), options, callbacks);
   if (!tracks.is_none())
-    extensions.make_tracks = [tracks, interrupt] { return std::make_unique<PythonTracks>(tracks, interrupt); };
+    extensions.make_tracks = [tracks, callbacks] { return std::make_unique<PythonTracks>(tracks, callbacks); };
   return extensions;
 }
 

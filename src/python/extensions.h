@@ -9,12 +9,12 @@
 
 #include "pliant/tracking/extensions.h"
 #include "pliant/tracking/tracker_options.h"
-#include "python/interrupt.h"
+#include "python/callbacks.h"
 
 namespace pliant::python {
 
 // `given`: "initializer" and "tracks", callables of extensions.py or None, and "initializer_name". They, and
-// `interrupt`, which takes their exceptions, must outlive what uses the extensions.
-TrackerExtensions ExtensionsOf(const pybind11::dict& given, const TrackerOptions& options, Interrupt* interrupt);
+// `callbacks`, which takes their exceptions, must outlive what uses the extensions.
+TrackerExtensions ExtensionsOf(const pybind11::dict& given, const TrackerOptions& options, Callbacks* callbacks);
 
 }  // namespace pliant::python

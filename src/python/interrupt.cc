@@ -50,19 +50,8 @@ Interrupt::~Interrupt() {
   active_stop = outer_;
 }
 
-void Interrupt::Call(const std::function<void()>& function) {
-  if (error_) return;
-  const py::gil_scoped_acquire acquire;
-  try {
-    function();
-  } catch (...) {
-    error_ = std::current_exception();
-    stop_ = true;
-  }
-}
-
 void Interrupt::Raise() {
-  if (error_) std::rethrow_exception(error_);
+  RaiseError();
   if (PyErr_CheckSignals() != 0) throw py::error_already_set();
 }
 

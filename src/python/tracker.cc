@@ -15,7 +15,9 @@
 #include "python/arrays.h"
 #include "python/bind.h"
 #include "python/calibration.h"
+#include "python/callbacks.h"
 #include "python/errors.h"
+#include "python/extensions.h"
 #include "python/observations.h"
 #include "python/options.h"
 
@@ -30,8 +32,9 @@ constexpr double kDefaultFps = 30.0;
 class PythonTracker {
  public:
   PythonTracker(const Calibration& calibration, const py::object& options, const std::string& preset,
-                const py::iterable& examples)
+                const py::iterable& examples, py::dict extensions)
       : fps_(calibration.fps.value_or(kDefaultFps)),
+        extensions_(std::move(extensions)),
         tracker_(
             Create(calibration, OptionsOf(options, MakeTrackOptions(EnumOf<Preset>(preset, "preset"))), examples)) {}
 
@@ -47,14 +50,19 @@ class PythonTracker {
       const py::gil_scoped_release release;
       return tracker_.Process(frame);
     }();
+    RaiseFromCallback();
     if (reports.ok()) ++next_idx_;
     return ValueOf(std::move(reports));
   }
 
   std::vector<FrameReport> Finish() {
-    const py::gil_scoped_release release;
     if (std::exchange(finished_, true)) return {};
-    return tracker_.Finish();
+    auto reports = [&] {
+      const py::gil_scoped_release release;
+      return tracker_.Finish();
+    }();
+    RaiseFromCallback();
+    return reports;
   }
 
   std::string state() const { return std::string(EnumName(tracker_.state())); }
@@ -72,18 +80,26 @@ class PythonTracker {
     return frame;
   }
 
-  static ImageTracker Create(const Calibration& calibration, const TrackOptions& options,
-                             const py::iterable& examples) {
+  // A frame without the answer of an extension is no frame to go on from.
+  void RaiseFromCallback() {
+    if (callbacks_.failed()) finished_ = true;
+    callbacks_.RaiseError();
+  }
+
+  ImageTracker Create(const Calibration& calibration, const TrackOptions& options, const py::iterable& examples) {
     std::vector<SequenceFrame> frames;
     for (const py::handle image : examples)
       frames.push_back(FrameOf(static_cast<int>(frames.size()), image, "example " + std::to_string(frames.size())));
+    const TrackerExtensions extensions = ExtensionsOf(extensions_, options.tracker, &callbacks_);
     return ValueOf([&] {
       const py::gil_scoped_release release;
-      return ImageTracker::Create(calibration.camera, calibration.photometric, options, frames);
+      return ImageTracker::Create(calibration.camera, calibration.photometric, options, frames, extensions);
     }());
   }
 
   double fps_;
+  py::dict extensions_;  // that the tracker calls
+  Callbacks callbacks_;
   ImageTracker tracker_;
   int next_idx_ = 0;
   bool finished_ = false;
@@ -151,20 +167,10 @@ void BindReport(py::module_& module) {
 
 void BindTracker(py::module_& module) {
   BindReport(module);
-  py::class_<PythonTracker>(
-      module, "Tracker",
-      "Tracks images as they come, without a run folder.\n\n"
-      "camera: pliant.Camera of the images. options, preset: as of pliant.track. examples: images that follow each "
-      "other (16 are enough) as the camera will see them, by which the size and smoothing of the images that points "
-      "are tracked in are chosen, as pliant.track does; without them the images are taken as they are, or as "
-      "Image.scale "
-      "and Image.smoothing_px say where Image.working is 'fixed'. Pixels of reports are those of the given images.\n\n"
-      "Frames before the reference of the first map stay without a pose: pliant.track, which can read images again, "
-      "tracks them back in time.\n\n"
-      "Raises ValueError for options that need more than images (a start from depth, for example).")
-      .def(py::init<const Calibration&, const py::object&, const std::string&, const py::iterable&>(),
-           py::arg("camera"), py::arg("options") = py::none(), py::kw_only(), py::arg("preset") = "default",
-           py::arg("examples") = py::tuple())
+  py::class_<PythonTracker>(module, "Tracker",
+                            "The tracker of pliant.Tracker, which makes `extensions` of what the program gives.")
+      .def(py::init<const Calibration&, const py::object&, const std::string&, const py::iterable&, py::dict>(),
+           py::arg("camera"), py::arg("options"), py::arg("preset"), py::arg("examples"), py::arg("extensions"))
       .def("process", &PythonTracker::Process, py::arg("image"), py::arg("mask") = py::none(),
            py::arg("timestamp") = py::none(), py::arg("depth_prior") = py::none(),
            "The reports that became final with this image, in order of time; each image is reported once.\n\n"

@@ -92,6 +92,10 @@ TEST(ImageTracker, RefusesOptionsThatNeedMoreThanImages) {
     EXPECT_EQ(ImageTracker::Create(Rendered().camera, std::nullopt, options).status().code(),
               ErrorCode::kInvalidArgument);
   }
+  TrackOptions options = FixedImages();
+  options.track_file.path = "tracks.npz";
+  EXPECT_THAT(ImageTracker::Create(Rendered().camera, std::nullopt, options).status().message(),
+              HasSubstr("TrackFile.path"));
 }
 
 // Of one image, up to a scale, whatever the camera does.

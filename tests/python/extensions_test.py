@@ -8,7 +8,7 @@ import unittest
 import numpy as np
 
 import pliant
-from support import RUN, SEQUENCE, TestCase, sentence
+from support import RUN, SEQUENCE, TestCase, images, sentence
 
 FRAMES = 40
 FIXED = {"General.timings": "none", "Image.working": "fixed"}
@@ -164,6 +164,57 @@ class Tracks(TestCase):
                                 (lambda p: (p * np.nan, np.ones(len(p), bool)), "not a number")]:
             with self.subTest(message), self.assertRaisesRegex(ValueError, message):
                 pliant.track(SEQUENCE, self.folder / "run", FIXED, end=FRAMES, tracks=Wrong(answer))
+
+
+class InMemory(TestCase):
+    """pliant.Tracker takes the same parts."""
+
+    camera = pliant.read_camera(SEQUENCE / "camera.yaml")
+    options = {**FIXED, "General.max_frames_back": 0}
+
+    def process(self, count=FRAMES, **extensions):
+        tracker = pliant.Tracker(self.camera, self.options, **extensions)
+        reports = []
+        for image in images(count):
+            reports += tracker.process(image)
+        return reports + tracker.finish()
+
+    def same(self, reports, run):
+        self.assertEqual([report.state for report in reports], list(run.frames.state))
+        position = np.concatenate([report.observations.position for report in reports])
+        self.assertGreater(len(position), FRAMES * LEAST_POINTS)
+        np.testing.assert_allclose(position, run.observations.position, atol=1e-5)
+
+    def test_a_tracker_reports_what_a_run_has_with_an_initializer_of_the_program(self):
+        run = pliant.track(SEQUENCE, self.folder / "run", self.options, end=FRAMES, initializer=two_views)
+        self.same(self.process(initializer=two_views), run)
+        pliant.register_initializer("in_memory", two_views)
+        self.options = {**self.options, "Init.method": "in_memory"}
+        self.same(self.process(), run)
+
+    def test_a_tracker_reports_what_a_run_has_with_tracks_of_the_program(self):
+        recorded = pliant.open_run(RUN)
+        run = pliant.track(SEQUENCE, self.folder / "run", self.options, end=FRAMES, tracks=RecordedTracks(recorded))
+        tracks = RecordedTracks(recorded)
+        self.same(self.process(tracks=tracks), run)
+        self.assertGreaterEqual(tracks.calls, FRAMES - 1)
+
+    def test_an_exception_in_it_is_raised_and_finishes_the_tracker(self):
+        def broken(frames, camera, is_last):
+            raise LookupError("broken on purpose")
+
+        tracker = pliant.Tracker(self.camera, self.options, initializer=broken)
+        with self.assertRaisesRegex(LookupError, "on purpose"):
+            for image in images(5):
+                tracker.process(image)
+        with self.assertRaisesRegex(ValueError, "the tracker is finished"):
+            tracker.process(images(1)[0])
+        self.assertEqual(tracker.finish(), [])
+
+    def test_a_file_of_tracks_is_refused(self):
+        with self.assertRaises(ValueError) as raised:
+            pliant.Tracker(self.camera, tracks="tracks.npz")
+        self.assertIn("pliant.track", sentence(self, raised.exception))
 
 
 class Names(TestCase):

@@ -249,7 +249,8 @@ class InMemory(TestCase):
         self.assertEqual([report.frame_idx for report in tracker.finish()], [0])
 
     def test_a_start_that_needs_more_than_images_is_a_value_error(self):
-        for options in ({"Init.method": "depth"}, {"Init.method": "stereo"}, {"Oracle.poses": True}):
+        for options in ({"Init.method": "depth"}, {"Init.method": "stereo"}, {"Oracle.poses": True},
+                        {"TrackFile.path": "tracks.npz"}):
             with self.assertRaises(ValueError) as caught:
                 pliant.Tracker(self.camera, options)
             sentence(self, caught.exception)

@@ -17,6 +17,7 @@
 #include "pliant/image/working_image.h"
 #include "pliant/pipeline/track.h"
 #include "pliant/scene/frame_report.h"
+#include "pliant/tracking/extensions.h"
 #include "pliant/tracking/tracker.h"
 
 namespace pliant {
@@ -25,10 +26,12 @@ class ImageTracker {
  public:
   // `examples`: images that follow each other (16 are enough) as the camera will see them, by which the working image
   // is chosen where Image.working is `measured`; without them it is the image itself. Fails with kInvalidArgument for
-  // options that need more than images (Oracle, and an Init.method that starts from depth, pairs or a model), and for a
-  // camera that cannot be resized.
+  // options that need more than images (Oracle, a file of tracks, and an Init.method that starts from depth, pairs or a
+  // model), and for a camera that cannot be resized. `extensions` are asked in Process and Finish, in the calling
+  // thread; their pixels are those of the working image.
   static Result<ImageTracker> Create(const Camera& camera, const std::optional<PhotometricCalibration>& photometric,
-                                     const TrackOptions& options, std::span<const SequenceFrame> examples = {});
+                                     const TrackOptions& options, std::span<const SequenceFrame> examples = {},
+                                     const TrackerExtensions& extensions = {});
 
   // The reports that became final with this frame, in order of time; each frame is reported once. From the reference on
   // reports are held back until there is a map. Frames come in order of time. Fails with kMismatch for an image or mask
@@ -46,7 +49,7 @@ class ImageTracker {
 
  private:
   ImageTracker(const Camera& source, const Camera& working_camera, const WorkingImage& working,
-               const std::optional<PhotometricCalibration>& photometric, const TrackOptions& options);
+               const TrackerInputs& inputs, const TrackOptions& options);
   std::vector<FrameReport> ProcessFrom(std::size_t next);
   void GoBack(std::size_t* next);
   void ForgetFrames();

@@ -1,0 +1,48 @@
+# SPDX-FileCopyrightText: 2026 The Pliant authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Tracking of images as they come."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Any
+
+from . import _pliant
+from .extensions import Initializer, PointFollower, chosen
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+
+class Tracker(_pliant.Tracker):
+    """Tracks images as they come, without a run folder.
+
+    Frames before the reference of the first map stay without a pose: pliant.track, which can read images again, tracks
+    them back in time. Pixels of reports are those of the given images.
+    """
+
+    def __init__(self, camera: _pliant.Camera, options: Mapping[str, Any] | None = None, *, preset: str = "default",
+                 examples: Iterable[NDArray[np.uint8]] = (), initializer: Initializer | None = None,
+                 tracks: PointFollower | None = None):
+        """
+        Args:
+            camera: of the images.
+            options, preset: as of pliant.track.
+            examples: images that follow each other (16 are enough) as the camera will see them, by which the size and
+                smoothing of the images that points are tracked in are chosen, as pliant.track does; without them the
+                images are taken as they are, or as Image.scale and Image.smoothing_px say where Image.working is
+                "fixed".
+            initializer, tracks: as of pliant.track, but for files of tracks. They are called in process() and finish(),
+                in the thread that calls these. An exception in them is raised there, and the tracker is finished: it
+                takes no more images.
+
+        Raises:
+            ValueError: options that need more than images (a start from depth, for example).
+        """
+        if isinstance(tracks, (str, os.PathLike)):
+            raise ValueError("a file of tracks belongs to the frames of a sequence; give it to pliant.track")
+        chosen_options, extensions = chosen(dict(options) if isinstance(options, Mapping) else options, initializer,
+                                            tracks)
+        super().__init__(camera, chosen_options, preset, examples, extensions)
