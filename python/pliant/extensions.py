@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The Pliant authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""First maps and point tracks that are written in Python, for pliant.track and pliant.Tracker.
+"""First maps, point tracks and cost terms that are written in Python, for pliant.track and pliant.Tracker.
 
 Pixels are those of the images that points are tracked in (run.json: working_image): the given ones, resized and
 smoothed as they were measured to be tracked best in. {"Image.working": "fixed"} leaves them as they are.
@@ -8,6 +8,7 @@ smoothed as they were measured to be tracked best in. {"Image.working": "fixed"}
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Callable, NamedTuple, Protocol, Union
 
@@ -90,7 +91,43 @@ class PointFollower(Protocol):
         """
 
 
+class CostFrame(NamedTuple):
+    """What a cost term is asked about: the points of one frame, and where they are tried.
+
+    Points that do not project under the initial pose are not in it. All is in the world of the frame's map, in map
+    units (millimeters after a metric start).
+    """
+
+    frame_idx: int
+    point_id: NDArray[np.int64]     # (N,), ascending; in pliant.kernels.solve_frame the rows of `positions`
+    position: NDArray[np.float64]   # (N, 3), where they are tried
+    previous: NDArray[np.float64]   # (N, 3), in the frame before
+    pixel: NDArray[np.float64]      # (N, 2), where they are seen, of the images that points are tracked in
+    edges: NDArray[np.int32]        # (E, 2), of the deformation graph: rows of the columns above, the smaller one first
+    weight: NDArray[np.float64]     # (E,), of the edges, 0 to 1
+    rest_length: NDArray[np.float64]  # (E,), of the edges in the undeformed map
+    cam_from_world: NDArray[np.float64]  # (4, 4), where the search for the pose starts
+
+
+class Cost(Protocol):
+    """A term 0.5 * |residuals|^2 that is added to the joint problem of every frame (docs/method.md, E5).
+
+    It depends on the camera's pose only through the points.
+    """
+
+    def evaluate(self, frame: CostFrame) -> tuple[ArrayLike, Any]:
+        """
+        Called again and again while a frame is solved.
+
+        Returns:
+            residuals: (R,), finite, in units of their standard deviations; R is the same in all calls of a frame.
+            jacobian: their derivatives by frame.position.reshape(-1): (R, 3N), an array, a sparse matrix of SciPy, or
+                a tuple (row, column, value) of three arrays (K,), whose entries of the same place add up.
+        """
+
+
 _initializers: dict[str, Initializer] = {}
+_costs: dict[str, Cost] = {}
 
 
 def register_initializer(name: str, initializer: Initializer) -> None:
@@ -103,6 +140,85 @@ def register_initializer(name: str, initializer: Initializer) -> None:
     if name in options("track").unit["Init.method"].split(" | "):
         raise ValueError(f"{name!r} is a method of Pliant; give your initializer another name")
     _initializers[name] = initializer
+
+
+def register_cost(name: str, cost: Cost) -> None:
+    """Makes cost=name of pliant.track and pliant.Tracker stand for this object.
+
+    The term's value is the column cost_<name> of frames.csv. Raises ValueError for a name that is not made of letters,
+    digits and underscores, or that a term of Pliant has.
+    """
+    _coster(cost)
+    if not re.fullmatch(r"[A-Za-z0-9_]+", name):
+        raise ValueError(f"{name!r} names a column of frames.csv; give your cost a name of letters, digits and _")
+    if name in _pliant.cost_names():
+        raise ValueError(f"{name!r} is a term of Pliant; give your cost another name")
+    _costs[name] = cost
+
+
+def _triplets(jacobian: Any, rows: int, columns: int) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any]]:
+    """The entries (row, column, value) of a Jacobian, checked."""
+    if isinstance(jacobian, tuple):
+        if len(jacobian) != 3:
+            raise ValueError(f"the jacobian of a cost is a tuple of {len(jacobian)}; give (row, column, value)")
+        row, column, value = (np.asarray(part) for part in jacobian)
+        if not row.shape == column.shape == value.shape or row.ndim != 1:
+            raise ValueError("row, column and value of the jacobian of a cost have to be three arrays (K,) of one "
+                             f"length; these are {row.shape}, {column.shape} and {value.shape}")
+        if row.size and (row.dtype.kind not in "iu" or column.dtype.kind not in "iu"):
+            raise TypeError("row and column of the jacobian of a cost are whole numbers; these are "
+                            f"{row.dtype} and {column.dtype}")
+        if row.size and (min(row.min(), column.min()) < 0 or row.max() >= rows or column.max() >= columns):
+            raise ValueError(f"the jacobian of a cost has entries outside of its shape ({rows}, {columns})")
+    else:
+        sparse = callable(getattr(jacobian, "tocoo", None))
+        whole = jacobian if sparse else np.asarray(jacobian, dtype=float)
+        if whole.shape != (rows, columns):
+            raise ValueError(f"the jacobian of a cost has the shape {whole.shape}, and {rows} residuals of "
+                             f"{columns // 3} points need ({rows}, {columns})")
+        if sparse:
+            entries = whole.tocoo()
+            row, column, value = entries.row, entries.col, entries.data
+        else:
+            row, column = np.nonzero(whole)
+            value = whole[row, column]
+    return row.astype(np.int32), column.astype(np.int32), value.astype(float)
+
+
+def _coster(cost: Cost) -> Callable[..., tuple[NDArray[Any], NDArray[Any], NDArray[Any], NDArray[Any]]]:
+    """What the library calls."""
+    evaluate = getattr(cost, "evaluate", None)
+    if not callable(evaluate):
+        raise TypeError(f"a cost is a {type(cost).__name__}; give an object with a method evaluate, or the name of a "
+                        "registered one")
+
+    def call(*columns: Any) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any], NDArray[Any]]:
+        frame = CostFrame(*columns)
+        answer = evaluate(frame)
+        if not isinstance(answer, tuple) or len(answer) != 2:
+            raise TypeError(f"evaluate of a cost returns (residuals, jacobian); this one returned "
+                            f"{type(answer).__name__}")
+        residuals = np.asarray(answer[0], dtype=float)
+        if residuals.ndim != 1:
+            raise ValueError(f"the residuals of a cost have the shape {residuals.shape}; give (R,)")
+        row, column, value = _triplets(answer[1], len(residuals), 3 * len(frame.position))
+        if not np.all(np.isfinite(residuals)) or not np.all(np.isfinite(value)):
+            raise ValueError("a cost returned a residual or a derivative that is not a finite number")
+        return residuals, row, column, value
+
+    return call
+
+
+def chosen_cost(cost: Cost | str | None) -> dict[str, Any]:
+    """What the library calls, and its name."""
+    if cost is None:
+        return {"cost": None, "cost_name": ""}
+    if not isinstance(cost, str):
+        return {"cost": _coster(cost), "cost_name": "python"}
+    if cost not in _costs:
+        known = ", ".join(sorted(_costs)) or "none"
+        raise ValueError(f"there is no cost {cost!r} (registered: {known}); pliant.register_cost gives it its name")
+    return {"cost": _coster(_costs[cost]), "cost_name": cost}
 
 
 def asker(initializer: Initializer) -> Callable[[list[Any], _pliant.Camera, bool], dict[str, Any]]:
@@ -143,7 +259,8 @@ def follower(tracks: PointFollower) -> Callable[[Any, Any, Any, Any], tuple[NDAr
     return call
 
 
-def chosen(options: Any, initializer: Initializer | None, tracks: Any) -> tuple[Any, dict[str, Any]]:
+def chosen(options: Any, initializer: Initializer | None, tracks: Any,
+           cost: Cost | str | None) -> tuple[Any, dict[str, Any]]:
     """The options without a name that is registered, and what the library calls."""
     name = "python"
     method = options.get("Init.method") if isinstance(options, dict) else None
@@ -153,4 +270,4 @@ def chosen(options: Any, initializer: Initializer | None, tracks: Any) -> tuple[
         options = {key: value for key, value in options.items() if key != "Init.method"}
         name, initializer = method, _initializers[method]
     return options, {"initializer": None if initializer is None else asker(initializer), "initializer_name": name,
-                     "tracks": None if tracks is None else follower(tracks)}
+                     "tracks": None if tracks is None else follower(tracks), **chosen_cost(cost)}

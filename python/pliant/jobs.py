@@ -19,7 +19,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Union
 
 from . import _pliant
-from .extensions import Initializer, PointFollower, chosen
+from .extensions import Cost, Initializer, PointFollower, chosen
 from .run import Run
 
 if TYPE_CHECKING:
@@ -164,7 +164,7 @@ def track(input: StrPath | Iterable[NDArray[np.uint8]], output_path: StrPath, op
           camera: StrPath | _pliant.Camera | None = None, timestamps: Sequence[float] | None = None,
           preset: str = "default", mask_path: StrPath | None = None, start: int = 0, end: int | None = None,
           stride: int = 1, initializer: Initializer | None = None, tracks: PointFollower | StrPath | None = None,
-          depth_prior: StrPath | None = None, resume: bool = False,
+          cost: Cost | str | None = None, depth_prior: StrPath | None = None, resume: bool = False,
           on_frame: Callable[[_pliant.FrameReport], Any] | None = None) -> Run:
     """Camera pose and the motion of every point.
 
@@ -185,6 +185,8 @@ def track(input: StrPath | Iterable[NDArray[np.uint8]], output_path: StrPath, op
             registered (pliant.register_initializer) is chosen by its name in Init.method.
         tracks: follows points in place of Pliant's own tracker: an object (pliant.extensions.PointFollower), or the
             file of another program's tracks (docs/tracks.md).
+        cost: a term that is added to the joint problem of every frame: an object (pliant.extensions.Cost), or the name
+            of one that is registered (pliant.register_cost).
         depth_prior: folder of another program's depth images, a file an image (docs/your_own_video.md).
         resume: go on with the run in output_path that was stopped or killed, from its last checkpoint
             ({"General.checkpoint_frames": N}); the other arguments are given again as they were. Not with images that
@@ -206,7 +208,7 @@ def track(input: StrPath | Iterable[NDArray[np.uint8]], output_path: StrPath, op
         options, tracks = {**(options or {}), "TrackFile.path": os.fspath(tracks)}, None
     if depth_prior is not None:
         options = {**(options or {}), "DepthPrior.path": os.fspath(depth_prior)}
-    options, extensions = chosen(options, initializer, tracks)
+    options, extensions = chosen(options, initializer, tracks, cost)
     request.update(extensions)
     if isinstance(input, (str, os.PathLike)):
         if isinstance(camera, _pliant.Camera):

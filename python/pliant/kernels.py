@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _pliant
+from .extensions import Cost, chosen_cost
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -120,7 +121,7 @@ class FrameSolution:
 
 def solve_frame(camera: _pliant.Camera, positions: NDArray[Any], pixels: NDArray[Any], cam_from_world: NDArray[Any], *,
                 rest_positions: NDArray[Any] | None = None, held: bool = False,
-                options: Mapping[str, Any] | None = None) -> FrameSolution:
+                options: Mapping[str, Any] | None = None, cost: Cost | str | None = None) -> FrameSolution:
     """The joint problem of one frame: camera pose and a displacement of every point.
 
     Args:
@@ -131,12 +132,13 @@ def solve_frame(camera: _pliant.Camera, positions: NDArray[Any], pixels: NDArray
         rest_positions: (n, 3), the points undeformed; needed for edge lengths at rest and cut edges alone.
         held: the pose is known and stays.
         options: of the groups Optimization and Deformation, such as {"Optimization.solver": "levenberg_marquardt"}.
+        cost: a term that is added, as of pliant.track.
 
-    Raises ValueError for numbers that are not finite, and pliant.Error: counts that differ (mismatch), too few points
-    before the camera (insufficient), no usable solution (degenerate).
+    Raises ValueError for numbers that are not finite, what a cost raises, and pliant.Error: counts that differ
+    (mismatch), too few points before the camera (insufficient), no usable solution (degenerate).
     """
     return FrameSolution(*_pliant.solve_frame(camera, positions, pixels, cam_from_world, rest_positions, held,
-                                              None if options is None else dict(options)))
+                                              None if options is None else dict(options), chosen_cost(cost)))
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,7 +9,7 @@ from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from . import _pliant
-from .extensions import Initializer, PointFollower, chosen
+from .extensions import Cost, Initializer, PointFollower, chosen
 
 if TYPE_CHECKING:
     import numpy as np
@@ -25,7 +25,7 @@ class Tracker(_pliant.Tracker):
 
     def __init__(self, camera: _pliant.Camera, options: Mapping[str, Any] | None = None, *, preset: str = "default",
                  examples: Iterable[NDArray[np.uint8]] = (), initializer: Initializer | None = None,
-                 tracks: PointFollower | None = None):
+                 tracks: PointFollower | None = None, cost: Cost | str | None = None):
         """
         Args:
             camera: of the images.
@@ -34,9 +34,9 @@ class Tracker(_pliant.Tracker):
                 smoothing of the images that points are tracked in are chosen, as pliant.track does; without them the
                 images are taken as they are, or as Image.scale and Image.smoothing_px say where Image.working is
                 "fixed".
-            initializer, tracks: as of pliant.track, but for files of tracks. They are called in process() and finish(),
-                in the thread that calls these. An exception in them is raised there, and the tracker is finished: it
-                takes no more images.
+            initializer, tracks, cost: as of pliant.track, but for files of tracks. They are called in process() and
+                finish(), in the thread that calls these. An exception in them is raised there, and the tracker is
+                finished: it takes no more images.
 
         Raises:
             ValueError: options that need more than images (a start from depth, for example).
@@ -44,5 +44,5 @@ class Tracker(_pliant.Tracker):
         if isinstance(tracks, (str, os.PathLike)):
             raise ValueError("a file of tracks belongs to the frames of a sequence; give it to pliant.track")
         chosen_options, extensions = chosen(dict(options) if isinstance(options, Mapping) else options, initializer,
-                                            tracks)
+                                            tracks, cost)
         super().__init__(camera, chosen_options, preset, examples, extensions)

@@ -30,9 +30,10 @@ struct Ending {
   std::string note;
 };
 
-RunColumns ColumnsOfFrames() {
+RunColumns ColumnsOfFrames(const TrackerExtensions& extensions) {
   RunColumns columns;
   for (CostTerm& term : NoFrameCosts()) columns.costs.push_back(std::move(term.name));
+  if (extensions.cost) columns.costs.emplace_back(extensions.cost->name());
   columns.stages = StageNames();
   return columns;
 }
@@ -266,10 +267,10 @@ Result<RunWriter> BeginWriting(const RunRequest& request, const TrackOptions& us
   writer_options.timings = options.timings;
   RunDescription description = DescriptionOf(request, usable, start);
   if (checkpoint->has_value())
-    return RunWriter::Resume(request.output_path, camera, std::move(description), table.ToYaml(), ColumnsOfFrames(),
-                             writer_options, (*checkpoint)->archive);
-  return RunWriter::Create(request.output_path, camera, std::move(description), table.ToYaml(), ColumnsOfFrames(),
-                           writer_options);
+    return RunWriter::Resume(request.output_path, camera, std::move(description), table.ToYaml(),
+                             ColumnsOfFrames(request.extensions), writer_options, (*checkpoint)->archive);
+  return RunWriter::Create(request.output_path, camera, std::move(description), table.ToYaml(),
+                           ColumnsOfFrames(request.extensions), writer_options);
 }
 
 }  // namespace

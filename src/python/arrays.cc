@@ -56,6 +56,14 @@ void AppendMatrix(const Rigid3& b_from_a, std::vector<double>* numbers) {
   numbers->insert(numbers->end(), {0.0, 0.0, 0.0, 1.0});
 }
 
+py::array_t<double> PositionsArray(std::span<const Eigen::Vector3d> positions) {
+  std::vector<double> numbers;
+  numbers.reserve(3 * positions.size());
+  for (const Eigen::Vector3d& position : positions)
+    numbers.insert(numbers.end(), {position.x(), position.y(), position.z()});
+  return ArrayOf(std::move(numbers), {3});
+}
+
 py::array_t<double> MatrixOf(const Rigid3& b_from_a) {
   std::vector<double> numbers;
   AppendMatrix(b_from_a, &numbers);

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -29,6 +30,9 @@ pybind11::array_t<T> ArrayOf(std::vector<T> numbers, const std::vector<pybind11:
   const pybind11::capsule owner(owned.release(), [](void* memory) { delete static_cast<std::vector<T>*>(memory); });
   return pybind11::array_t<T>(shape, data, owner);
 }
+
+// Of shape (n, 3).
+pybind11::array_t<double> PositionsArray(std::span<const Eigen::Vector3d> positions);
 
 // Of `frame_count` texts.
 pybind11::list ListOf(const std::vector<std::string>& texts);

@@ -15,6 +15,7 @@
 #include "pliant/tracking/bootstrapping/rigid_map.h"
 #include "python/arrays.h"
 #include "python/calibration.h"
+#include "python/cost.h"
 #include "python/errors.h"
 namespace py = pybind11;
 
@@ -223,6 +224,7 @@ TrackerExtensions ExtensionsOf(const py::dict& given, const TrackerOptions& opti
         initializer, py::cast<std::string>(given["initializer_name"]), options, callbacks);
   if (!tracks.is_none())
     extensions.make_tracks = [tracks, callbacks] { return std::make_unique<PythonTracks>(tracks, callbacks); };
+  extensions.cost = FrameCostOf(given, callbacks);
   return extensions;
 }
 

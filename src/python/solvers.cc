@@ -16,6 +16,7 @@
 #include "python/arrays.h"
 #include "python/bind.h"
 #include "python/calibration.h"
+#include "python/cost.h"
 #include "python/errors.h"
 #include "python/options.h"
 
@@ -23,13 +24,6 @@ namespace py = pybind11;
 
 namespace pliant::python {
 namespace {
-
-py::array_t<double> PositionsArray(const std::vector<Eigen::Vector3d>& positions) {
-  std::vector<double> numbers;
-  for (const Eigen::Vector3d& position : positions)
-    numbers.insert(numbers.end(), {position.x(), position.y(), position.z()});
-  return ArrayOf(std::move(numbers), {3});
-}
 
 py::dict Costs(const std::vector<CostTerm>& costs) {
   py::dict dict;
@@ -40,7 +34,7 @@ py::dict Costs(const std::vector<CostTerm>& costs) {
 // (cam_from_world, positions, used, reprojection_error_px, disagreement, costs, initial_costs, iterations, converged).
 py::tuple SolveFrame(const Calibration& calibration, const py::object& positions, const py::object& pixels,
                      const py::object& cam_from_world, const py::object& rest_positions, bool held,
-                     const py::object& options) {
+                     const py::object& options, const py::dict& cost) {
   const auto points = VectorsOf(positions, "positions");
   const auto seen = PointsOf(pixels, 2, "pixels");
   std::vector<Eigen::Vector2d> at;
@@ -54,13 +48,25 @@ py::tuple SolveFrame(const Calibration& calibration, const py::object& positions
   graph_options.List(table);
   frame_options.List(table);
   SetOptions(options, &table);
-  const FrameSolution solution = ValueOf([&]() -> Result<FrameSolution> {
+  Callbacks callbacks;
+  const auto frame_cost = FrameCostOf(cost, &callbacks);
+  std::vector<PointId> ids;
+  for (std::size_t i = 0; i < points.size(); ++i) ids.push_back(PointId{static_cast<std::int64_t>(i)});
+  auto solved = [&]() -> Result<FrameSolution> {
     const py::gil_scoped_release release;
     const auto graph = BuildDeformationGraph(points, rest, graph_options);
     if (!graph.ok()) return graph.status();
-    const FrameProblemInput input{points, at, graph->edges, start, held ? FramePose::kHeld : FramePose::kEstimated};
+    const FrameProblemInput input{.positions = points,
+                                  .pixels = at,
+                                  .edges = graph->edges,
+                                  .initial_cam_from_world = start,
+                                  .pose = held ? FramePose::kHeld : FramePose::kEstimated,
+                                  .cost = frame_cost.get(),
+                                  .ids = ids};
     return SolveFrameProblem(calibration.camera, input, frame_options);
-  }());
+  }();
+  callbacks.RaiseError();
+  const FrameSolution solution = ValueOf(std::move(solved));
   std::vector<Eigen::Vector3d> moved;
   py::array_t<bool> used(static_cast<py::ssize_t>(solution.points.size()));
   std::vector<double> errors_px;
@@ -135,6 +141,11 @@ py::tuple SolveWindow(const py::dict& start, double focal_px, bool deforming, co
 
 void BindSolvers(py::module_& module) {
   module.def("solve_frame", &SolveFrame);
+  module.def("cost_names", [] {
+    std::vector<std::string> names;
+    for (const CostTerm& term : NoFrameCosts()) names.push_back(term.name);
+    return names;
+  });
   module.def("solve_window", &SolveWindow);
 }
 

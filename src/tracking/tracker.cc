@@ -83,7 +83,8 @@ Tracker::Tracker(const Camera& camera, const TrackerOptions& options, std::uint6
       bootstrapper_(std::make_unique<Bootstrapper>(
           camera, options_, threads, HandoverOfFirstMap(options_, inputs), inputs.photometric, tracks_.get(),
           oracle_poses_.get(), MakeFirstInitializer(options_, seed, inputs), MakeAlternative(options_, seed, inputs))),
-      frame_tracker_(std::make_unique<FrameTracker>(camera, options_, tracks_.get(), oracle_poses_.get())),
+      frame_tracker_(
+          std::make_unique<FrameTracker>(camera, options_, tracks_.get(), oracle_poses_.get(), inputs.extensions.cost)),
       relocalizer_(std::make_unique<Relocalizer>(camera, options_, tracks_->abilities(), frame_tracker_.get())),
       map_updater_(std::make_unique<MapUpdater>(camera, options_, threads, inputs.photometric, tracks_.get())),
       submaps_(std::make_unique<Submaps>(camera, options_, tracks_.get())) {}

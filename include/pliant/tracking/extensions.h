@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Parts of the tracker that the calling program gives in place of ours.
+// Parts of the tracker that the calling program gives in place of ours, or adds to them.
 #pragma once
 
 #include <functional>
@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "pliant/estimation/frame/frame_cost.h"
 #include "pliant/tracking/bootstrapping/initializer.h"
 #include "pliant/tracking/tracks/track_source.h"
 
@@ -21,11 +22,15 @@ struct TrackerExtensions {
   // are tracked back by in time have one of their own. Asked from one thread.
   std::function<std::unique_ptr<TrackSource>()> make_tracks = {};
 
-  // What is given, for run.json: "initializer NAME", "tracks".
+  // Adds a term to the joint problem of every frame; null: none. Asked from one thread.
+  std::shared_ptr<const FrameCost> cost = nullptr;
+
+  // What is given, for run.json: "initializer NAME", "tracks", "cost NAME".
   std::vector<std::string> Names() const {
     std::vector<std::string> names;
     if (initializer) names.push_back("initializer " + std::string(initializer->name()));
     if (make_tracks) names.emplace_back("tracks");
+    if (cost) names.push_back("cost " + std::string(cost->name()));
     return names;
   }
 };

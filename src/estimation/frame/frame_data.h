@@ -23,6 +23,9 @@ struct FrameData {
   std::vector<GraphEdge> edges;            // between points here, sorted by (i, j)
   PoseIncrement pose;                      // around the initial pose, pivot at the points' mean
   FramePose pose_is = FramePose::kEstimated;
+  const FrameCost* cost = nullptr;  // the program's own term, or none
+  int frame_idx = 0;
+  std::vector<PointId> ids;  // of the points here, or none
 
   int num_points() const { return static_cast<int>(positions.size()); }
 };

@@ -18,6 +18,7 @@ Result<FrameEstimate> SolveFrameByLevenbergMarquardt(const FrameData& data, cons
     for (const auto& term : terms) term->AddPointBlock(i, &blocks);
   for (const GraphEdge& edge : data.edges)
     for (const auto& term : terms) term->AddEdgeBlock(edge, &blocks);
+  for (const auto& term : terms) term->AddFrameBlock(&blocks);
   if (data.pose_is == FramePose::kHeld) problem.SetParameterBlockConstant(blocks.increment.data());
 
   ceres::Solver::Options options;

@@ -20,6 +20,9 @@ Status CheckInput(const FrameProblemInput& input) {
   if (input.pixels.size() != count)
     return {ErrorCode::kMismatch, "the joint problem was given " + std::to_string(count) + " positions but " +
                                       std::to_string(input.pixels.size()) + " pixels"};
+  if (!input.ids.empty() && input.ids.size() != count)
+    return {ErrorCode::kMismatch, "the joint problem was given " + std::to_string(count) + " positions but " +
+                                      std::to_string(input.ids.size()) + " point ids"};
   bool finite = input.initial_cam_from_world.rotation.coeffs().allFinite() &&
                 input.initial_cam_from_world.translation.allFinite();
   for (const Eigen::Vector3d& position : input.positions) finite = finite && position.allFinite();
@@ -45,6 +48,8 @@ Result<FrameData> BuildData(const Camera& camera, const FrameProblemInput& input
   data.camera = &camera;
   data.options = options;
   data.pose_is = input.pose;
+  data.cost = input.cost;
+  data.frame_idx = input.frame_idx;
   std::vector<int> number(input.positions.size(), -1);
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < input.positions.size(); ++i) {
@@ -53,6 +58,7 @@ Result<FrameData> BuildData(const Camera& camera, const FrameProblemInput& input
     data.input_idx.push_back(static_cast<int>(i));
     data.positions.push_back(input.positions[i]);
     data.pixels.push_back(input.pixels[i]);
+    if (!input.ids.empty()) data.ids.push_back(input.ids[i]);
     sum += input.positions[i];
   }
   if (data.num_points() < options.min_points)
@@ -138,14 +144,15 @@ Result<FrameSolution> SolveFrameProblem(const Camera& camera, const FrameProblem
   const auto data = BuildData(camera, input, options);
   if (!data.ok()) return data.status();
   const FrameTerms terms = MakeFrameTerms(*data);
+  auto initial_costs = FrameCosts(terms, input.initial_cam_from_world, data->positions);
+  if (!initial_costs)  // all points project there
+    return {ErrorCode::kDegenerate, "the term of the program's own has no value at the start of the joint problem"};
   const auto estimate = options.solver == FrameSolver::kLbfgs ? SolveFrameByLbfgs(*data, terms)
                                                               : SolveFrameByLevenbergMarquardt(*data, terms);
   if (!estimate.ok()) return estimate.status();
 
-  auto initial_costs = FrameCosts(terms, input.initial_cam_from_world, data->positions);
   auto costs = FrameCosts(terms, estimate->cam_from_world, estimate->positions);
-  if (!initial_costs || !costs)
-    return {ErrorCode::kDegenerate, "the joint problem's solution puts a point behind the camera"};
+  if (!costs) return {ErrorCode::kDegenerate, "the joint problem's solution puts a point behind the camera"};
   FrameSolution solution;
   solution.initial_costs = *std::move(initial_costs);
   solution.costs = *std::move(costs);

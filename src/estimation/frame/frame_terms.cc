@@ -3,8 +3,10 @@
 
 #include "estimation/frame/frame_terms.h"
 
+#include <algorithm>
 #include <array>
 
+#include "estimation/frame/program_term.h"
 #include "pliant/residuals/ceres_adapter.h"
 #include "pliant/residuals/edge_length.h"
 #include "pliant/residuals/huber.h"
@@ -276,6 +278,7 @@ FrameTerms MakeFrameTerms(const FrameData& data) {
   FrameTerms terms;
   for (const ListedTerm& term : kTerms)
     if (term.is_on(data.options)) terms.push_back(term.make(term.name, data));
+  if (data.cost != nullptr) terms.push_back(MakeProgramTerm(data));
   return terms;
 }
 
@@ -291,8 +294,11 @@ std::optional<std::vector<CostTerm>> FrameCosts(const FrameTerms& terms, const R
   for (const auto& term : terms) {
     const std::optional<double> cost = term->Cost(cam_from_world, positions);
     if (!cost) return std::nullopt;
-    for (CostTerm& named : costs)
-      if (named.name == term->name()) named.value = *cost;
+    const auto named = std::ranges::find(costs, term->name(), &CostTerm::name);
+    if (named != costs.end())
+      named->value = *cost;
+    else
+      costs.push_back({std::string(term->name()), *cost});
   }
   return costs;
 }

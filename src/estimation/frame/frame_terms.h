@@ -77,6 +77,8 @@ class FrameTerm {
   // Its residual block of a point, or of an edge, for Ceres.
   virtual void AddPointBlock(int /*i*/, FrameBlocks*) const {}
   virtual void AddEdgeBlock(const GraphEdge&, FrameBlocks*) const {}
+  // Or one of all points.
+  virtual void AddFrameBlock(FrameBlocks*) const {}
 
  protected:
   const FrameData& data_;
@@ -87,7 +89,7 @@ class FrameTerm {
 
 using FrameTerms = std::vector<std::unique_ptr<FrameTerm>>;
 
-// Those that data.options switch on, in the list's order; `data` must outlive them.
+// Those that data.options switch on, in the list's order, then the program's own; `data` must outlive them.
 FrameTerms MakeFrameTerms(const FrameData& data);
 
 // The costs by name, 0 of what is switched off; nothing where a point does not project.

@@ -33,8 +33,10 @@ SolvedFrame FrameTracker::Solve(const PreparedFrame& frame, TrackingState state,
   }
   const auto solution = [&] {
     const StageTimer timer(times, Stage::kJoint);
-    return SolveFrameProblem(camera_, {followed.positions, followed.pixels, graph.edges, pose, held},
-                             options_.problem);  // (E5)
+    return SolveFrameProblem(
+        camera_,
+        {followed.positions, followed.pixels, graph.edges, pose, held, cost_.get(), frame.frame_idx, followed.ids},
+        options_.problem);  // (E5)
   }();
   if (!solution.ok()) {
     solved.failure = solution.status().message();

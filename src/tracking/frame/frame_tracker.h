@@ -5,8 +5,10 @@
 // reads a submap and returns what it found; the tracker decides what becomes of it.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "pliant/camera/camera.h"
@@ -31,10 +33,10 @@ struct SolvedFrame {
 
 class FrameTracker {
  public:
-  // `tracks` and `oracle_poses` must outlive this.
+  // `tracks` and `oracle_poses` must outlive this. `cost`: a term of the program's own, or null.
   FrameTracker(const Camera& camera, const TrackerOptions& options, TrackSource* tracks,
-               const OraclePoses* oracle_poses)
-      : camera_(camera), options_(options), tracks_(tracks), oracle_poses_(oracle_poses) {}
+               const OraclePoses* oracle_poses, std::shared_ptr<const FrameCost> cost)
+      : camera_(camera), options_(options), tracks_(tracks), oracle_poses_(oracle_poses), cost_(std::move(cost)) {}
 
   // The pose that is known without estimating it: the truth's, or that of a camera that stands still.
   std::optional<Rigid3> KnownPose(int frame_idx, const Submap& submap) const;
@@ -69,6 +71,7 @@ class FrameTracker {
   TrackerOptions options_;
   TrackSource* tracks_;
   const OraclePoses* oracle_poses_;
+  std::shared_ptr<const FrameCost> cost_;
 };
 
 }  // namespace pliant

@@ -12,7 +12,8 @@
 // with the sums over ij going over the paper's directed pairs, and rho Huber's on the squared norm: rho(s) = s up to
 // chi2, 2 sqrt(chi2 s) - chi2 beyond. World frame, mm; pixels with (0, 0) at the center of the first pixel. What pose
 // and displacements could share (a motion of everything at once) is settled by the temporal term: it goes to the camera
-// as far as it is rigid. Source: Gomez Rodriguez, Montiel, Tardos, IROS 2022 (arXiv 2204.08309), section III.
+// as far as it is rigid. The calling program may add a term (frame_cost.h). Source: Gomez Rodriguez, Montiel, Tardos,
+// IROS 2022 (arXiv 2204.08309), section III.
 #pragma once
 
 #include <array>
@@ -29,6 +30,7 @@
 #include "pliant/base/status.h"
 #include "pliant/camera/camera.h"
 #include "pliant/deformation/graph.h"
+#include "pliant/estimation/frame/frame_cost.h"
 #include "pliant/geometry/rigid3.h"
 #include "pliant/scene/cost_term.h"
 
@@ -79,6 +81,9 @@ struct FrameProblemInput {
   std::span<const GraphEdge> edges;            // of BuildDeformationGraph(positions)
   Rigid3 initial_cam_from_world;               // where the search starts, with delta = 0
   FramePose pose = FramePose::kEstimated;
+  const FrameCost* cost = nullptr;  // a term of the program's own, with what it is told; null: none
+  int frame_idx = 0;
+  std::span<const PointId> ids = {};  // ascending; or none
 };
 
 // What became of one point. Points outside the problem keep their position and infinite errors.
@@ -92,7 +97,7 @@ struct FramePoint {
   double disagreement_mm = std::numeric_limits<double>::infinity();
 };
 
-// The terms' names, in their order, with costs of 0.
+// The terms' names, in their order, with costs of 0; that of a program's own term comes after them.
 std::vector<CostTerm> NoFrameCosts();
 
 struct FrameSolution {
@@ -109,7 +114,8 @@ struct FrameSolution {
 // Solves the problem. Single-threaded; the same input gives the same bits, and depends on no earlier call.
 // Fails with kMismatch for counts that differ or edges that point outside, kInvalidArgument for numbers that are not
 // finite, kInsufficient for fewer than min_points points that project under the initial pose, kDegenerate when Ceres
-// finds no usable solution. Running out of iterations is no failure: see `converged`.
+// finds no usable solution, or the program's own term has no value at the start. Running out of iterations is no
+// failure: see `converged`.
 Result<FrameSolution> SolveFrameProblem(const Camera& camera, const FrameProblemInput& input,
                                         const FrameProblemOptions& options);
 
