@@ -143,7 +143,7 @@ Status DataSetSequence::OpenDepthPriors(const fs::path& folder) {
   if (!fs::is_directory(folder, error) && fs::exists(folder, error))
     return {ErrorCode::kMismatch, folder.string() + " is one file; depth priors are a folder with a file an image"};
   Result<CompanionImages> priors =
-      CompanionImages::Open("depth prior", folder, Stems(images()), Counts(), CompanionKind::kDepths);
+      CompanionImages::Open("depth prior", folder, Stems(images()), Counts(), CompanionKind::kDepthPriors);
   if (!priors.ok()) return priors.status();
   depth_priors_ = *std::move(priors);
   if (!images().count_is_exact() && !depth_priors_->by_name())

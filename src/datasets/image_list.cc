@@ -22,7 +22,20 @@ namespace fs = std::filesystem;
 bool IsDigit(char c) { return c >= '0' && c <= '9'; }
 
 constexpr std::array<std::string_view, 6> kImageEndings = {".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff"};
-constexpr std::array<std::string_view, 5> kDepthEndings = {".png", ".tif", ".tiff", ".exr", ".npy"};
+constexpr std::array<std::string_view, 5> kDepthEndings = {".png", ".tif", ".tiff", ".npy", ".exr"};
+
+std::span<const std::string_view> EndingsOf(CompanionKind kind) {
+  if (kind == CompanionKind::kImages) return kImageEndings;
+  const std::span<const std::string_view> all = kDepthEndings;
+  return kind == CompanionKind::kDepthPriors ? all : all.first(all.size() - 1);  // without .exr
+}
+
+// "png, jpg".
+std::string ListText(std::span<const std::string_view> endings) {
+  std::string text;
+  for (const std::string_view ending : endings) text += (text.empty() ? "" : ", ") + std::string(ending.substr(1));
+  return text;
+}
 
 bool HasEnding(const fs::path& path, std::span<const std::string_view> endings) {
   if (path.filename().string().starts_with('.')) return false;
@@ -62,8 +75,7 @@ bool NaturalLess(std::string_view a, std::string_view b) {
 }
 
 Result<std::vector<fs::path>> ListImages(const fs::path& folder, CompanionKind kind) {
-  const bool depths = kind == CompanionKind::kDepths;
-  const auto endings = depths ? std::span<const std::string_view>(kDepthEndings) : kImageEndings;
+  const auto endings = EndingsOf(kind);
   std::error_code error;
   if (!fs::exists(folder, error))
     return Status(ErrorCode::kNotFound, "there is no folder " + folder.string() + "; check the path");
@@ -78,9 +90,8 @@ Result<std::vector<fs::path>> ListImages(const fs::path& folder, CompanionKind k
     return Status(ErrorCode::kUnreadable,
                   "cannot list the folder " + folder.string() + " (" + error.message() + "); check its permissions");
   if (images.empty())
-    return Status(ErrorCode::kNotFound, "the folder " + folder.string() + " holds no image (" +
-                                            (depths ? "png, tif, tiff, exr, npy" : "png, jpg, jpeg, bmp, tif, tiff") +
-                                            "); check the path");
+    return Status(ErrorCode::kNotFound,
+                  "the folder " + folder.string() + " holds no image (" + ListText(endings) + "); check the path");
   // Names are written into lines of text files, COLMAP's among them.
   if (std::any_of(images.begin(), images.end(), [](const fs::path& image) {
         return image.filename().string().find_first_of("\n\r") != std::string::npos;

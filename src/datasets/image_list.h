@@ -23,8 +23,9 @@ namespace pliant {
 bool NaturalLess(std::string_view a, std::string_view b);
 
 enum class CompanionKind {
-  kImages,  // png, jpg, jpeg, bmp, tif, tiff
-  kDepths,  // png, tif, tiff, exr, npy
+  kImages,       // png, jpg, jpeg, bmp, tif, tiff
+  kDepthMaps,    // png, tif, tiff, npy
+  kDepthPriors,  // png, tif, tiff, exr, npy
 };
 
 // The files of a folder that are of this kind by their endings (hidden ones left out), in natural order of their names.

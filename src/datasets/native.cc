@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "datasets/depth_array.h"
 #include "datasets/formats.h"
 #include "datasets/image_file.h"
 #include "datasets/image_list.h"
@@ -52,10 +53,11 @@ Result<std::vector<double>> ReadTimes(const fs::path& file) {
 }
 
 // The images of one of the sequence's folders, by the names of its frames.
-Result<CompanionImages> OpenCompanions(const std::string& what, const fs::path& folder, const ImageStream& images) {
+Result<CompanionImages> OpenCompanions(const std::string& what, const fs::path& folder, const ImageStream& images,
+                                       CompanionKind kind = CompanionKind::kImages) {
   if (!IsFolder(folder))  // one image may mask every frame, but is not the depth of every frame
     return Status(ErrorCode::kUnreadable, folder.string() + " is a file where a folder of images is expected");
-  return CompanionImages::Open(what, folder, Stems(images), CompanionImages::Counts::kMustAgree);
+  return CompanionImages::Open(what, folder, Stems(images), CompanionImages::Counts::kMustAgree, kind);
 }
 
 // A line an image, in their order; fewer belong to the images of their times.
@@ -99,12 +101,12 @@ Status AddTimesAndTruth(const fs::path& folder, DataSet* data_set) {
 
 Status AddDepth(const fs::path& folder, DataSet* data_set) {
   if (!Exists(folder)) return Status::Ok();
-  const Result<CompanionImages> depth = OpenCompanions("depth", folder, *data_set->images);
+  const Result<CompanionImages> depth = OpenCompanions("depth", folder, *data_set->images, CompanionKind::kDepthMaps);
   if (!depth.ok()) return depth.status();
   for (const std::string& stem : Stems(*data_set->images))
     data_set->depth_files.push_back(depth->Find(static_cast<int>(data_set->depth_files.size()), stem));
   data_set->read_depth = [scale = data_set->calibration.depth_scale.value_or(1.0)](const fs::path& file) {
-    return ReadDepthImage(file, scale);
+    return file.extension() == ".npy" ? ReadDepthMap(file) : ReadDepthImage(file, scale);
   };
   return Status::Ok();
 }

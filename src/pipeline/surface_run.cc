@@ -192,6 +192,7 @@ void SurfaceRunOptions::List(OptionTable& table) {
   table.Add("fill", &fill, "px", "holes of at most this area are filled from their rim, and marked; 0: none", 0,
             100000);
   table.Add("exr", &exr, "bool", "exr/: the depth as OpenEXR, 32-bit floats");
+  table.Add("npy", &npy, "bool", "npy/: the depth as arrays of NumPy, float32, (height, width)");
   table.Add("normals_png", &normals_png, "bool", "normals/: of the depth, (n + 1) / 2 in red, green, blue");
   table.Add("animation_keys", &animation_keys, "", "frames whose mesh surface.glb has, evenly spread", 1, 1000);
   table.Add("threads", &threads, "", "0: as many as the machine has; the result is the same", 0, 1024);

@@ -3,14 +3,17 @@
 
 #include "pipeline/surface_writer.h"
 
+#include <array>
 #include <cmath>
 #include <cstdint>
+#include <string_view>
 #include <system_error>
 #include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 
+#include "io/npy.h"
 #include "pipeline/exr_file.h"
 #include "pipeline/mesh_writer.h"
 #include "pliant/base/files.h"
@@ -28,6 +31,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kExrFolder = "exr";
+constexpr const char* kNpyFolder = "npy";
 constexpr const char* kNormalsFolder = "normals";
 
 // CV_32FC3 in camera axes -> (n + 1) / 2 of 255, x, y, z in red, green, blue; black where there is none.
@@ -43,6 +47,14 @@ cv::Mat NormalsInColors(const cv::Mat& normals) {
   return bgr;
 }
 
+// CV_32FC1.
+Status WriteDepthArray(const fs::path& path, const cv::Mat& depth) {
+  const cv::Mat whole = depth.isContinuous() ? depth : depth.clone();
+  const std::array<std::size_t, 2> shape = {static_cast<std::size_t>(depth.rows), static_cast<std::size_t>(depth.cols)};
+  const std::string_view bytes(reinterpret_cast<const char*>(whole.data), whole.total() * whole.elemSize());
+  return WriteFileAtomically(path.string(), NpyBytes("<f4", shape, bytes));
+}
+
 // An earlier surface's files. A folder that is not a surface's and not empty is left alone.
 Status RemoveEarlierSurface(const fs::path& path) {
   std::error_code error;
@@ -50,8 +62,8 @@ Status RemoveEarlierSurface(const fs::path& path) {
   if (!fs::exists(path / surface::kSummaryFile, error))
     return {ErrorCode::kInvalidArgument,
             Quoted(path.string()) + " holds something other than a surface; give another --output_path"};
-  for (const char* folder :
-       {native::kDepthFolder, surface::kConfidenceFolder, surface::kFilledFolder, kExrFolder, kNormalsFolder})
+  for (const char* folder : {native::kDepthFolder, surface::kConfidenceFolder, surface::kFilledFolder, kExrFolder,
+                             kNpyFolder, kNormalsFolder})
     fs::remove_all(path / folder, error);
   return error ? Unwritable(path) : MeshWriter::RemoveEarlier(path);
 }
@@ -71,6 +83,7 @@ Result<SurfaceWriter> SurfaceWriter::Create(const std::string& path, const Camer
   std::vector<const char*> kinds = {native::kDepthFolder, surface::kConfidenceFolder};
   if (options.fill > 0) kinds.push_back(surface::kFilledFolder);
   if (options.exr) kinds.push_back(kExrFolder);
+  if (options.npy) kinds.push_back(kNpyFolder);
   if (options.normals_png) kinds.push_back(kNormalsFolder);
   std::error_code error;
   for (const char* kind : kinds) {
@@ -86,7 +99,7 @@ Result<SurfaceWriter> SurfaceWriter::Create(const std::string& path, const Camer
   if (Status status = WriteFileAtomically((folder / surface::kSummaryFile).string(), "{\"status\": \"interrupted\"}\n");
       !status.ok())
     return status;
-  return SurfaceWriter(folder, scale, options.exr);
+  return SurfaceWriter(folder, scale, options);
 }
 
 Status SurfaceWriter::Write(const SurfaceFrame& frame, const SurfaceMaps& maps) {
@@ -95,6 +108,11 @@ Status SurfaceWriter::Write(const SurfaceFrame& frame, const SurfaceMaps& maps) 
     if (Status status = WritePng(path_ / surface::kFilledFolder / name, maps.filled); !status.ok()) return status;
   if (exr_)
     if (Status status = WriteDepthExr(path_ / kExrFolder / fs::path(name).replace_extension(".exr"), maps.dense.depth);
+        !status.ok())
+      return status;
+  if (npy_)
+    if (Status status =
+            WriteDepthArray(path_ / kNpyFolder / fs::path(name).replace_extension(".npy"), maps.dense.depth);
         !status.ok())
       return status;
   if (!maps.normals.empty())

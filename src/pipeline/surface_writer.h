@@ -34,12 +34,13 @@ class SurfaceWriter {
   Status Finish(const SurfaceRequest& request, const SurfaceRunOptions& options, const SurfaceSummary& summary);
 
  private:
-  SurfaceWriter(std::filesystem::path path, double depth_scale, bool exr)
-      : path_(std::move(path)), depth_scale_(depth_scale), exr_(exr) {}
+  SurfaceWriter(std::filesystem::path path, double depth_scale, const SurfaceRunOptions& options)
+      : path_(std::move(path)), depth_scale_(depth_scale), exr_(options.exr), npy_(options.npy) {}
 
   std::filesystem::path path_;
   double depth_scale_;
   bool exr_;
+  bool npy_;
 };
 
 }  // namespace pliant

@@ -123,7 +123,7 @@ TEST_F(DepthPriorTest, OneFileOrAFolderWithoutDepthsIsRefused) {
   Text("prior/readme.txt", "later");
   const auto refused = OpenSequence(WithPriors());
   ASSERT_FALSE(refused.ok());
-  EXPECT_THAT(refused.status().message(), HasSubstr("holds no image (png, tif, tiff, exr, npy)"));
+  EXPECT_THAT(refused.status().message(), HasSubstr("holds no image (png, tif, tiff, npy, exr)"));
 }
 
 }  // namespace

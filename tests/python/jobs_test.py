@@ -3,13 +3,14 @@
 """The other jobs, on the sequence and the run of the end-to-end tests."""
 
 import json
+import shutil
 import unittest
 import warnings
 
 import numpy as np
 
 import pliant
-from support import RUN, SEQUENCE, TestCase, sentence
+from support import RUN, SEQUENCE, TestCase, read_png16, sentence
 
 COARSE = {"Camera.width": 160, "Camera.height": 120, "Sensor.samples": 1, "Scene.view_mm": 80,
           "Scene.mesh_step_mm": 2, "Texture.smallest_mm": 2, "Texture.texel_mm": 0.8}
@@ -48,6 +49,28 @@ class Jobs(TestCase):
         self.assertIn(("depth", 2, 2), told)
         with self.assertRaises(pliant.Error):
             pliant.surface(RUN, self.folder / "other", frames=[9999])
+
+    def test_depth_of_a_surface_is_an_array_that_a_sequence_may_have(self):
+        options = {"Surface.vtk": False, "Surface.gltf": False, "Surface.npy": True}
+        scale = pliant.surface(RUN, self.folder / "surface", options, frames=[20])["depth_scale"]
+        [file] = (self.folder / "surface" / "npy").iterdir()
+        depth = np.load(file)
+        self.assertEqual((file.name, depth.dtype, depth.shape), ("000020.npy", np.float32, (480, 640)))
+        steps = read_png16(self.folder / "surface" / "depth" / "000020.png")
+        np.testing.assert_allclose(depth, steps * scale, atol=0.51 * scale)
+        self.assertGreater(np.count_nonzero(depth), depth.size / 4)
+
+        sequence = self.folder / "sequence"
+        (sequence / "images").mkdir(parents=True)
+        (sequence / "depth").mkdir()
+        shutil.copy(SEQUENCE / "camera.yaml", sequence)
+        shutil.copy(SEQUENCE / "images" / "000020.png", sequence / "images" / "000020.png")
+        shutil.copy(file, sequence / "depth")
+        np.testing.assert_array_equal(pliant.open_sequence(sequence).depth(0), depth)
+        np.save(sequence / "depth" / "000020.npy", depth.astype(int))
+        with self.assertRaises(pliant.Error) as caught:
+            pliant.open_sequence(sequence).depth(0)
+        self.assertIn("float32 or float64, in millimeters", sentence(self, caught.exception))
 
     def test_an_evaluation_is_its_json(self):
         evaluation = pliant.evaluate(RUN, SEQUENCE, output_path=self.folder)

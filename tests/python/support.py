@@ -31,6 +31,20 @@ def read_csv(path):
 
 def read_png(path):
     """An 8-bit PNG as OpenCV gives it, by Python alone: (height, width) or (height, width, 3) blue, green, red."""
+    bits, color, image = read_png_bytes(path)
+    assert bits == 8 and color in (0, 2), (bits, color)
+    return image[:, :, 0] if color == 0 else np.ascontiguousarray(image[:, :, ::-1])
+
+
+def read_png16(path):
+    """A 16-bit PNG of one channel: (height, width)."""
+    bits, color, image = read_png_bytes(path)
+    assert bits == 16 and color == 0, (bits, color)
+    return image[:, :, 0].astype(np.uint16) << 8 | image[:, :, 1]
+
+
+def read_png_bytes(path):
+    """Bits of a channel, type of colors, and the bytes of every pixel: (height, width, bytes a pixel)."""
     import struct
     import zlib
     data = path.read_bytes()
@@ -41,14 +55,13 @@ def read_png(path):
         chunks[kind] += data[at + 8:at + 8 + length]
         at += 12 + length
     width, height, depth, color = struct.unpack(">IIBB", chunks[b"IHDR"][:10])
-    assert depth == 8 and color in (0, 2), (depth, color)
-    channels = 1 if color == 0 else 3
+    channels = (1 if color == 0 else 3) * depth // 8
     rows = np.frombuffer(zlib.decompress(chunks[b"IDAT"]), np.uint8).reshape(height, 1 + width * channels)
     image = np.zeros((height, width * channels), np.uint8)
     above = np.zeros(width * channels, np.uint8)
     for y, row in enumerate(rows):
         above = image[y] = unfiltered(int(row[0]), row[1:], above, channels)
-    return image if channels == 1 else np.ascontiguousarray(image.reshape(height, width, 3)[:, :, ::-1])
+    return depth, color, image.reshape(height, width, channels)
 
 
 def unfiltered(kind, row, above, channels):

@@ -31,6 +31,7 @@ struct SurfaceRunOptions {
   bool obj = false;
   int fill = 0;              // pixels of the largest hole of a depth image that is filled from its rim; 0: none
   bool exr = false;          // depths as OpenEXR files too
+  bool npy = false;          // and as arrays of NumPy
   bool normals_png = false;  // normals of the depth images
   int animation_keys = 60;   // frames whose mesh the glTF file has
   int threads = 0;           // 0: as many as the machine has
