@@ -17,8 +17,8 @@ first map has Init.nominal_depth_mm as its median depth; times are seconds.
 from . import extensions, kernels
 from ._pliant import Camera, Error, FrameReport, __version__
 from .extensions import FirstMap, NewReference, Wait, register_cost, register_initializer
-from .jobs import (Calibration, StereoCalibration, calibrate, calibrate_stereo, compare, evaluate, export,
-                   import_result, read_camera, refine, report, simulate, surface, track)
+from .jobs import (Calibration, StereoCalibration, calibrate, calibrate_stereo, compare, evaluate, evaluate_stir,
+                   export, import_result, read_camera, refine, report, simulate, surface, track)
 from .options import Options, options
 from .run import Run, open_run
 from .sequence import Sequence, SequenceFrame, open_sequence
@@ -28,7 +28,7 @@ from .tracker import Tracker
 __all__ = [
     "Calibration", "Camera", "Error", "FirstMap", "FrameReport", "Frames", "NewReference", "Observations", "Options",
     "Points", "Poses", "Run", "Sequence", "SequenceFrame", "StereoCalibration", "Tracker", "Wait", "__version__",
-    "calibrate", "calibrate_stereo", "compare", "evaluate", "export", "extensions", "import_result", "kernels",
-    "open_run", "open_sequence", "options", "read_camera", "refine", "register_cost", "register_initializer",
-    "report", "simulate", "surface", "track",
+    "calibrate", "calibrate_stereo", "compare", "evaluate", "evaluate_stir", "export", "extensions", "import_result",
+    "kernels", "open_run", "open_sequence", "options", "read_camera", "refine", "register_cost",
+    "register_initializer", "report", "simulate", "surface", "track",
 ]

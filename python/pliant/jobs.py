@@ -304,6 +304,26 @@ def evaluate(run: RunOrPath | None, sequence: StrPath | None = None, options: Op
     return json.loads(_pliant.evaluate(request, _options(options), _text(output_path)))
 
 
+def evaluate_stir(tracked: StrPath, start: StrPath, end: StrPath, *,
+                  output_path: StrPath | None = None) -> dict[str, Any]:
+    """Scores points at the end of recordings as the STIR challenge does (docs/tracks.md).
+
+    Args:
+        tracked: JSON with where the points are at the end, by recording; pliant.export(run, folder, "stir") writes it.
+        start, end: the labelled points of the start and the end, likewise: [x, y] in pixels, (0, 0) being the center
+            of the first one, or [x, y, z] in the camera, mm.
+        output_path: folder for stir.json; None: it is not written.
+
+    Returns:
+        stir.json: "unit" (px or mm), "thresholds", and of the "estimate" and of the "null" (nothing moves): "within"
+        (share of the points at most that far from the nearest label), "average_within", "end_point_error", "points".
+
+    Raises:
+        pliant.Error: a file cannot be read, or the files do not belong together.
+    """
+    return json.loads(_pliant.evaluate_stir(os.fspath(tracked), os.fspath(start), os.fspath(end), _text(output_path)))
+
+
 def compare(runs: Any, sequence: StrPath | Iterable[StrPath], options: OptionValues | None = None, *,
             camera: StrPath | None = None, output_path: StrPath | None = None,
             figure: StrPath | None = None) -> dict[str, Any]:

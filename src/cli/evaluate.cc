@@ -12,6 +12,7 @@
 #include "cli/run_evaluation.h"
 #include "pliant/evaluation/evaluate_run.h"
 #include "pliant/evaluation/report.h"
+#include "pliant/evaluation/stir_error.h"
 
 namespace pliant::cli {
 namespace {
@@ -43,14 +44,17 @@ const Manual kManual = {
     "On a simulated sequence the tracks themselves are scored in the images, as TAP-Vid does: points within 1, 2, 4, 8 "
     "and 16 px, Jaccard, occlusion accuracy. --tracks does so for a file of another program's tracks, without a "
     "run.\n\n"
+    "--stir scores points at the end of recordings as the STIR challenge does, with its files: the tracked points, and "
+    "the labelled ones of the start (--stir_start) and the end (--stir_end). It needs neither a run nor a sequence; "
+    "pliant export --format stir writes a run's. --output_path then has stir.json.\n\n"
     "Leaves, where --output_path is given: evaluation.json (every figure) and evaluation.csv (one row a frame). "
     "pliant compare sets several runs side by side.",
     {"pliant evaluate --run run --sequence colon",
      "pliant evaluate --run run --sequence clip.mp4 --camera stereo.yaml --scale none",
      "pliant evaluate --run run --sequence colon --protocol all --scale global --output_path run/evaluation",
      "pliant evaluate --run run --surface surface --sequence colon",
-     "pliant evaluate --run run --other_run run_begun_at_20",
-     "pliant evaluate --tracks cotracker.npz --sequence colon"},
+     "pliant evaluate --run run --other_run run_begun_at_20", "pliant evaluate --tracks cotracker.npz --sequence colon",
+     "pliant evaluate --stir positions.json --stir_start start.json --stir_end end.json"},
 };
 
 // An exit code where the arguments contradict each other (the sentence has been said).
@@ -68,6 +72,29 @@ std::optional<int> CheckArguments(const EvaluationRequest& request, const Comman
   return std::nullopt;
 }
 
+// Nothing where --stir and its two files are not given; else an exit code.
+std::optional<int> EvaluateStirFiles(const StirRequest& stir, const EvaluationRequest& request,
+                                     const std::string& output_path, const CommandLine& line) {
+  if (stir.tracked_path.empty() && stir.start_path.empty() && stir.end_path.empty()) return std::nullopt;
+  if (stir.tracked_path.empty() || stir.start_path.empty() || stir.end_path.empty())
+    return line.UsageError("--stir, --stir_start and --stir_end belong together; give all three");
+  if (!request.run_path.empty() || !request.sequence_path.empty() || request.track_file.IsGiven())
+    return line.UsageError("--stir is scored by itself; leave --run, --tracks and --sequence out");
+  const auto error = EvaluateStir(stir);
+  if (!error.ok()) return line.Failure(error.status().message());
+  if (!output_path.empty())
+    if (const Status status = WriteStirError(*error, output_path); !status.ok()) return line.Failure(status.message());
+  SayResult(StirTable(*error));
+  return kExitOk;
+}
+
+void AddStirArguments(CommandLine* line, StirRequest* stir) {
+  line->Add("stir", &stir->tracked_path, "FILE", "instead of a run: tracked points in the JSON of the STIR challenge",
+            Need::kOptional);
+  line->Add("stir_start", &stir->start_path, "FILE", "the labelled points of the start, likewise", Need::kOptional);
+  line->Add("stir_end", &stir->end_path, "FILE", "the labelled points of the end, likewise", Need::kOptional);
+}
+
 }  // namespace
 
 int EvaluateCommand(std::span<const std::string> args) {
@@ -75,7 +102,7 @@ int EvaluateCommand(std::span<const std::string> args) {
   std::string output_path;
   EvaluationOptions options;
   CommandLine line(kManual);
-  line.Add("run", &request.run_path, "DIR", "run folder; needed unless --tracks is given", Need::kOptional);
+  line.Add("run", &request.run_path, "DIR", "run folder; needed unless --tracks or --stir is given", Need::kOptional);
   line.AddAlias("tracks", "TrackFile.path", "FILE",
                 "instead of a run: a file of point tracks, as pliant track --tracks reads it");
   line.AddAlias("tracks_pixel_origin", "TrackFile.pixel_origin", "center|corner",
@@ -90,6 +117,8 @@ int EvaluateCommand(std::span<const std::string> args) {
       Need::kOptional);
   line.Add("surface", &request.surface_path, "DIR", "surface that pliant surface made of the run: its error too",
            Need::kOptional);
+  StirRequest stir;
+  AddStirArguments(&line, &stir);
   AddEvaluationArguments(&line, &request.camera_path);
   line.Add("output_path", &output_path, "DIR", "folder for the JSON and CSV files", Need::kOptional);
   if (const auto exit = line.Parse(args)) return *exit;
@@ -97,6 +126,7 @@ int EvaluateCommand(std::span<const std::string> args) {
   options.List(table);
   request.track_file.List(table);
   if (const auto exit = line.Resolve(table)) return *exit;
+  if (const auto exit = EvaluateStirFiles(stir, request, output_path, line)) return *exit;
   if (const auto exit = CheckArguments(request, line)) return *exit;
 
   const auto evaluation = [&] {

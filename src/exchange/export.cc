@@ -52,6 +52,10 @@ constexpr std::array kFormats = {
                  "tracks.npz, the same as NumPy's arrays tracks (frames, points, 2), visibility (frames, points) and "
                  "track_id (points), over all frames of the images.",
                  ExportTracksNpz},
+    ExportFormat{"stir",
+                 "positions.json and, of runs in millimeters, positions3d.json: where the points of the file "
+                 "--Export.start_points, or else the run's own, are in its last frame, as the STIR challenge has it.",
+                 ExportStir},
     ExportFormat{"nerfstudio",
                  "transforms.json with the images, masks and sparse_pc.ply that it names, and of --surface the depths. "
                  "The poses are in the file's `unit` of map units, so that a step of the depth images is 0.001, which "
@@ -96,6 +100,10 @@ void ExportOptions::List(OptionTable& table) {
   table.Add("min_matches", &min_matches, "-", "database: images that share fewer tracks are not matched", 1, 1000000);
   table.AddChoice("mask_unknown_depth", &mask_unknown_depth,
                   "endonerf, with a surface: pixels without a depth are not to be learned from");
+  table.Add("start_points", &start_points, "file",
+            "stir: JSON with the labelled points of the start, px; empty: the run's own points");
+  table.Add("recording", &recording, "name",
+            "stir: the recording's name in that file; may be left out where it has one alone");
 }
 
 std::array<std::uint8_t, 3> TimeColor(const RunSource& source, const SourceFrame& frame) {

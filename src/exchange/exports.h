@@ -25,6 +25,7 @@ Status ExportColmap4d(const RunSource& source, const ExportOptions& options, con
 Status ExportDatabase(const RunSource& source, const ExportOptions& options, const std::string& folder);
 Status ExportTracksCsv(const RunSource& source, const ExportOptions& options, const std::string& folder);
 Status ExportTracksNpz(const RunSource& source, const ExportOptions& options, const std::string& folder);
+Status ExportStir(const RunSource& source, const ExportOptions& options, const std::string& folder);
 Status ExportNerfstudio(const RunSource& source, const ExportOptions& options, const std::string& folder);
 Status ExportEndoNerf(const RunSource& source, const ExportOptions& options, const std::string& folder);
 

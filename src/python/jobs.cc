@@ -14,6 +14,7 @@
 #include "pliant/evaluation/compare_runs.h"
 #include "pliant/evaluation/evaluate_run.h"
 #include "pliant/evaluation/report.h"
+#include "pliant/evaluation/stir_error.h"
 #include "pliant/exchange/export.h"
 #include "pliant/exchange/import.h"
 #include "pliant/pipeline/calibrate_images.h"
@@ -193,6 +194,14 @@ std::string Evaluate(const py::dict& request, const py::object& options, const s
   return EvaluationJson(evaluation);
 }
 
+// stir.json.
+std::string EvaluateStirFiles(const std::string& tracked, const std::string& start, const std::string& end,
+                              const std::string& output_path) {
+  const auto error = ValueOf(EvaluateStir({.tracked_path = tracked, .start_path = start, .end_path = end}));
+  if (!output_path.empty()) RaiseUnlessOk(WriteStirError(error, output_path));
+  return StirJson(error);
+}
+
 // comparison.json of the runs that can be evaluated; the others are warnings.
 std::string Compare(const py::dict& request, const py::object& options, const std::string& output_path,
                     const std::string& figure) {
@@ -290,6 +299,7 @@ void BindJobs(py::module_& module) {
   module.def("refine", &Refine);
   module.def("surface", &Surface);
   module.def("evaluate", &Evaluate);
+  module.def("evaluate_stir", &EvaluateStirFiles);
   module.def("compare", &Compare);
   module.def("import_result", &ImportAny);
   module.def("export", &Export);

@@ -79,6 +79,28 @@ TEST(Program, CompareSetsRunsOfOtherSystemsSideBySide) {
             "pliant compare: the number of sequences is 2 for 3 runs; give one for all of them, or one for each\n");
 }
 
+TEST(Program, EvaluateScoresPointsAsTheStirChallengeDoes) {
+  const std::string start = Temporary("start.json").string();
+  const std::string tracked = Temporary("tracked.json").string();
+  std::ofstream(start) << R"({"0/left/seq00": [[10, 20], [30, 40]]})";
+  std::ofstream(tracked) << R"({"0/left/seq00": [[15, 20], [30, 46]]})";
+  const std::string out = Temporary("out").string();
+  const std::string files = " --stir_start '" + start + "' --stir_end '" + start + "'";
+  const Outcome scored = Pliant("evaluate --stir '" + tracked + "'" + files + " --output_path '" + out + "'");
+  ASSERT_EQ(scored.exit, 0) << scored.err;
+  EXPECT_THAT(scored.out, HasSubstr("estimate       0.0   100.0   100.0   100.0   100.0    80.0            5.50"));
+  EXPECT_THAT(ReadText(out + "/stir.json"), HasSubstr("\"average_within\": 0.8"));
+
+  EXPECT_EQ(Pliant("evaluate --stir '" + tracked + "'").err,
+            "pliant evaluate: --stir, --stir_start and --stir_end belong together; give all three\n");
+  const Outcome both = Pliant("evaluate --run run --stir '" + tracked + "'" + files);
+  EXPECT_EQ(both.exit, 2);
+  EXPECT_THAT(both.err, HasSubstr("leave --run, --tracks and --sequence out"));
+  const Outcome none = Pliant("evaluate --stir '" + tracked + "x'" + files);
+  EXPECT_EQ(none.exit, 1);
+  EXPECT_THAT(none.err, HasSubstr("tracked.jsonx"));
+}
+
 TEST(Program, ImportMakesARunOfACameraPathAndSaysWhatItCannotRead) {
   const std::string sequence = Temporary("seq").string();
   ASSERT_EQ(Pliant("simulate --quiet --Trajectory.frames 4" + kCoarse + "--output_path '" + sequence + "'").exit, 0);

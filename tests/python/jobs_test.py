@@ -137,6 +137,28 @@ class Jobs(TestCase):
             with self.assertRaises(ValueError):
                 pliant.evaluate(**{"sequence": SEQUENCE, **arguments})
 
+    def test_points_are_scored_as_the_stir_challenge_does(self):
+        pliant.export(RUN, self.folder / "out", "stir", {"Export.recording": "a"})
+        out = self.folder / "out"
+        start, positions = (json.loads((out / name).read_text())["a"] for name in ("start.json", "positions.json"))
+        run = pliant.open_run(RUN)
+        last = run.frame(run.poses.frame_idx[-1])
+        nearest = np.linalg.norm(np.array(positions)[:, None] - last.pixel, axis=2).min(axis=1)
+        self.assertLess(nearest.max(), 1e-9)
+        labels = [positions[k] for k in range(0, len(positions), 10)]
+        (self.folder / "end.json").write_text(json.dumps({"a": labels}))
+        (self.folder / "labels.json").write_text(json.dumps({"a": [start[k] for k in range(0, len(start), 10)]}))
+        pliant.export(RUN, self.folder / "carried", "stir", {"Export.start_points": str(self.folder / "labels.json")})
+        score = pliant.evaluate_stir(self.folder / "carried" / "positions.json", self.folder / "labels.json",
+                                     self.folder / "end.json", output_path=self.folder)
+        self.assertEqual(score, json.loads((self.folder / "stir.json").read_text()))
+        self.assertEqual((score["unit"], score["estimate"]["points"]), ("px", len(labels)))
+        self.assertLess(score["estimate"]["end_point_error"], 0.5)
+        self.assertLess(score["estimate"]["end_point_error"], 0.2 * score["null"]["end_point_error"])
+        with self.assertRaises(pliant.Error) as caught:
+            pliant.evaluate_stir(self.folder / "missing.json", self.folder / "labels.json", self.folder / "end.json")
+        self.assertIn("missing.json", sentence(self, caught.exception))
+
     def test_the_camera_paths_of_two_runs_are_compared(self):
         other = pliant.evaluate(RUN, other_runs=RUN)["consistency"][0]
         self.assertLess(other["camera_path"]["ate_share"], 1e-9)

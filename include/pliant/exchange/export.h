@@ -29,6 +29,10 @@ struct ExportOptions {
   int min_matches = 15;                            // database: pairs of images that share fewer tracks are left out
   // endonerf, with a surface: pixels without a depth are masked, because its readers take a 0 for a depth.
   Switch mask_unknown_depth = Switch::kOn;
+  // stir: a file of the labelled points of the run's first frame (io/stir_file.h, px), and the name that the recording
+  // has in it. Empty: the run's own points; the one name that there is, or the path of the images.
+  std::string start_points = {};
+  std::string recording = {};
 
   void List(OptionTable& table);  // group "Export"
 };
