@@ -18,6 +18,7 @@ import numpy as np
 SCENE = "--Deformation.wavelength_mm 628.3185307179587 --Trajectory.speed_mm_s 15 --Trajectory.frames 100".split()
 OMEGA_RAD_S = "2.5"
 NOISE_PX = 0.3
+CORNERS_OF = range(0, 100, 10)  # frames whose corners have a true track
 THINNED = 60  # points that are seen at a time
 FIRST_MAP_ALONE = "--Growth.grow off --Tracking.find_lost off".split()
 VARIANTS = ("own", "oracle", "truth", "opencv", "thinned")
@@ -32,7 +33,7 @@ def pliant(arguments, *args):
 
 
 def sequence_of(arguments, amplitude, seed):
-    name = f"dm_A{amplitude}_w{OMEGA_RAD_S}_s{seed}"
+    name = f"dm_A{amplitude}_w{OMEGA_RAD_S if float(amplitude) > 0 else 0}_s{seed}"
     if arguments.sequences and (arguments.sequences / name / "done").exists():
         return arguments.sequences / name
     folder = arguments.output_path / "sequences" / name
@@ -54,15 +55,21 @@ def write_tracks(path, rows):
     path.write_text("frame,track_id,u_px,v_px\n" + "\n".join(lines) + "\n", encoding="utf-8")
 
 
-def write_noisy_truth(arguments, sequence, run, path, seed):
-    """The true paths of the points of a run, from where each was first seen, with noise."""
-    first = {}
-    for row in rows_of(run / "observations.csv"):
-        first.setdefault(row["point_id"], row)
+def write_noisy_truth(arguments, sequence, path, seed):
+    """The true paths of the corners of the frames CORNERS_OF, each from its frame on, with noise.
+
+    A start from the depth of such a frame says which corners it has.
+    """
+    first = []
+    for frame in CORNERS_OF:
+        corners = path.with_suffix(f".corners{frame}")
+        pliant(arguments, "track", "--quiet", "--overwrite", "--image_path", sequence, "--output_path", corners,
+               "--start", frame, "--end", frame + 1, "--Init.method", "depth")
+        first += rows_of(corners / "observations.csv")
     starts = path.with_suffix(".starts.csv")
-    starts.write_text("frame,u_px,v_px\n" + "".join(f"{r['frame']},{r['u_px']},{r['v_px']}\n" for r in first.values()),
+    starts.write_text("frame,u_px,v_px\n" + "".join(f"{r['frame']},{r['u_px']},{r['v_px']}\n" for r in first),
                       encoding="utf-8")
-    begin = [int(row["frame"]) for row in first.values()]
+    begin = [int(row["frame"]) for row in first]
     paths = path.with_suffix(".paths.csv")
     pliant(arguments, "truth", "--quiet", "--sequence", sequence, "--points", starts, "--output_path", paths)
     random = np.random.default_rng(seed)
@@ -100,7 +107,7 @@ def options_of(arguments, variant, sequence, folder, seed):
         return ["--Oracle.tracks", "on", "--Oracle.track_noise_px", NOISE_PX, *FIRST_MAP_ALONE]
     path = folder / f"{variant}.csv"
     if variant == "truth":
-        write_noisy_truth(arguments, sequence, folder / "oracle", path, seed)
+        write_noisy_truth(arguments, sequence, path, seed)
         return ["--tracks", path, *FIRST_MAP_ALONE]
     if variant == "opencv":
         subprocess.run([arguments.build / "pliant_opencv_tracks", sequence, path], check=True, capture_output=True)
