@@ -65,7 +65,7 @@ struct RunDescription {
   std::optional<bool> metric = {};
   std::string tracks = {};       // the file of tracks that was followed, absolute; empty: our own tracker's
   std::string depth_prior = {};  // the folder of the depth prior, absolute; empty: none
-  // Parts of the method that the calling program gave in place of ours: "initializer NAME", "tracks".
+  // Parts that the calling program gave: "initializer NAME", "tracks", "cost NAME".
   std::vector<std::string> extensions = {};
   FrameSelection range = {};  // all frames in runs of earlier versions, which do not say
 };
