@@ -386,6 +386,22 @@ TEST(WindowInitializer, APlaneThatWavesIsKnownOrRefused) {
   EXPECT_GT(maps, kMinMaps);
 }
 
+// Its depths are known, but do not stand out: a later window may do better. At the end there is none.
+TEST(WindowInitializer, ADeformingMapWhoseDepthsHardlyStandOutIsPutAside) {
+  int maps = 0;
+  WindowInitOptions options;
+  options.min_still_camera_ratio = 0;
+  for (const unsigned seed : {1U, 2U, 3U}) {
+    const WavingTracks plane(46, CameraMotion::kForwards, 1, 0, seed);
+    const InitOutcome at_the_end = plane.Try(options, InitMoment::kLastFrame);
+    if (at_the_end.decision != InitDecision::kMap) continue;
+    ++maps;
+    EXPECT_TRUE(at_the_end.provisional) << seed;
+    EXPECT_EQ(plane.Try(options).decision, InitDecision::kProvisional) << seed;
+  }
+  EXPECT_GT(maps, 0);
+}
+
 TEST(WindowInitializer, APointThatIsSeenBrieflyJoinsTheMap) {
   WavingTracks sequence(61);
   // Every tenth in half of the frames alone: too few of the problem's views.

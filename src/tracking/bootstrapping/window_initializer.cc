@@ -123,8 +123,9 @@ class WindowInitializer final : public Initializer {
                                                 " frames is too short for depths that are certain");
     if (!window.ok() || !early || !window->AllowsDeformation())
       status = Make(input, window, DemandsAfter(since), outcome);
-    // What the depths alone show is left for later windows to contradict.
-    if (status.ok() && outcome->moves_by_depth) outcome->decision = InitDecision::kProvisional;
+    // In a scene that deforms depths that hardly stand out may do so later, and what they alone show be contradicted.
+    if (status.ok() && window->AllowsDeformation() && (outcome->provisional || outcome->moves_by_depth))
+      outcome->decision = InitDecision::kProvisional;
     if (status.ok()) return status;
     status = MakeProvisional(input, window, status, outcome);
     if (status.ok()) outcome->decision = InitDecision::kProvisional;
