@@ -117,8 +117,9 @@ TEST(RunTrust, SaysThatARigidMapIsOfASceneThatDeformsLittle) {
   FirstMapEvidence trembling = kKnown;
   trembling.deforming = false;
   const auto trust = Trust(Summary(trembling));
-  EXPECT_THAT(trust.at("camera"), HasSubstr("The scene deforms, but so little that a rigid map knows its depths better; "
-                                            "with a camera that stands still"));
+  EXPECT_THAT(trust.at("camera"),
+              HasSubstr("The scene deforms, but so little that a rigid map knows its depths better; "
+                        "with a camera that stands still"));
 }
 
 TEST(RunTrust, TellsSeveralMapsApart) {
