@@ -4,18 +4,24 @@
 """What default options give on the real recordings that are there, with truth and without.
 
     recordings.py --program build/release/pliant --output_path RUNS [--recordings DIR] [--only NAME,...]
+                  [--colmap PROGRAM --sfm NAME,...]
 
-Runs that are there already are kept. Prints three tables: the runs; how far runs of one recording that were begun at
-other frames, at a lower frame rate, with half of the corners, another seed or another focal length, agree; and the same
-of the runs begun at other frames after pliant refine. The figures are those of pliant evaluate.
+Runs that are there already are kept. For the recordings of --sfm, which have no truth, COLMAP reconstructs every fifth
+frame, and its points are what depths are compared with. Prints three tables: the runs; how far runs of one recording
+that were begun at other frames, at a lower frame rate, with half of the corners, another seed or another focal length,
+agree; and the same of the runs begun at other frames after pliant refine. The figures are those of pliant evaluate.
 """
 import argparse
 import csv
+import itertools
 import json
 import statistics
 import subprocess
 import sys
 from pathlib import Path
+
+import cv2
+import yaml
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "common"))
 from clips import CLIPS, RECORDINGS  # noqa: E402
@@ -85,9 +91,35 @@ def refined(program, run):
     return folder
 
 
-def judgment(program, run, first, images, evaluations):
-    """Depth error and ATE of a run against the truth, and how far its depths are from those of another run."""
+def structure_from_motion(colmap, video, calibration, folder):
+    """The largest of COLMAP's models of every fifth frame of a video, with its calibration; none where it has none."""
+    images, models = folder / "images", folder / "models"
+    if not models.exists():
+        images.mkdir(parents=True)
+        models.mkdir()
+        frames = cv2.VideoCapture(str(video))
+        for number in itertools.takewhile(lambda _: frames.grab(), itertools.count()):
+            if number % 5 == 0:
+                cv2.imwrite(str(images / f"{number:06d}.png"), frames.retrieve()[1])
+        camera = yaml.safe_load(calibration.read_text())
+        database = ["--database_path", folder / "database.db"]
+        held = [f"--Mapper.ba_refine_{what}=0" for what in ("focal_length", "principal_point", "extra_params")]
+        for command in (["feature_extractor", *database, "--image_path", images, "--ImageReader.single_camera=1",
+                         f"--ImageReader.camera_model={camera['model']}", "--SiftExtraction.use_gpu=0",
+                         f"--ImageReader.camera_params={','.join(map(str, camera['params']))}"],
+                        ["exhaustive_matcher", *database, "--SiftMatching.use_gpu=0"],
+                        ["mapper", *database, "--image_path", images, "--output_path", models, *held]):
+            with open(folder / f"{command[0]}.log", "w", encoding="utf-8") as log:
+                subprocess.run([colmap, *map(str, command)], check=False, stdout=log, stderr=log)
+    return max(models.iterdir(), key=lambda model: (model / "images.bin").stat().st_size, default=None)
+
+
+def judgment(program, run, first, images, model, evaluations):
+    """Depth error and ATE of a run against the truth or a model of COLMAP, and how far its depths are from those of
+    another run."""
     judged, agreed = {}, None
+    if run and model:
+        judged = evaluated(program, run, evaluations / run.name, "--sequence", images, "--sfm_path", model)
     if run and (images.parent / "groundtruth.txt").exists():
         judged = evaluated(program, run, evaluations / run.name, "--sequence", images.parent)
     if run and first and run != first:
@@ -102,6 +134,8 @@ def main():
     parser.add_argument("--output_path", required=True, type=Path)
     parser.add_argument("--recordings", default=RECORDINGS, type=Path)
     parser.add_argument("--only", default="")
+    parser.add_argument("--colmap", default="colmap")
+    parser.add_argument("--sfm", default="", help="recordings that COLMAP reconstructs")
     arguments = parser.parse_args()
     arguments.output_path.mkdir(parents=True, exist_ok=True)
     rows, agreements, refinements = [], [], []
@@ -110,6 +144,10 @@ def main():
         images = arguments.recordings / images
         if not images.exists() or (arguments.only and name not in arguments.only.split(",")):
             continue
+        model = None
+        if name in arguments.sfm.split(","):
+            model = structure_from_motion(arguments.colmap, images, images.parent / "camera.yaml",
+                                          arguments.output_path / f"{name}_colmap")
         first = first_after = None
         for variant, change in variants(name, images, STEPS[name], arguments.output_path):
             folder = arguments.output_path / f"{name}_{variant.replace(' ', '_')}"
@@ -127,7 +165,7 @@ def main():
             run = folder if tracked else None
             if variant == AS_IT_IS:
                 first, first_after = run, None
-            error, ate, agreed = judgment(arguments.program, run, first, images, evaluations)
+            error, ate, agreed = judgment(arguments.program, run, first, images, model, evaluations)
             rows.append([name, variant, f"{len(tracked)} of {len(frames)}", str(provisional),
                          tracked[0]["frame"] if tracked else "", str(len({row["submap"] for row in tracked})),
                          f"{statistics.median(points):.0f}" if points else "",
@@ -144,7 +182,8 @@ def main():
             after = refined(arguments.program, run)
             if variant == AS_IT_IS:
                 first_after = after
-            error_after, ate_after, agreed_after = judgment(arguments.program, after, first_after, images, evaluations)
+            error_after, ate_after, agreed_after = judgment(arguments.program, after, first_after, images, model,
+                                                            evaluations)
             values = (error and error[0], error_after and error_after[0], ate, ate_after, agreed and agreed[0],
                       agreed_after and agreed_after[0])
             refinements.append([name, variant, *(percent(value, 2) for value in values)])

@@ -110,19 +110,17 @@ class CostFrame(NamedTuple):
 
 
 class Cost(Protocol):
-    """A term 0.5 * |residuals|^2 that is added to the joint problem of every frame (docs/method.md, E5).
+    """A term that is added to the joint problem of every frame: half the sum of squares of its residuals.
 
-    It depends on the camera's pose only through the points.
+    docs/method.md, E5. It depends on the camera's pose only through the points.
     """
 
     def evaluate(self, frame: CostFrame) -> tuple[ArrayLike, Any]:
-        """
-        Called again and again while a frame is solved.
+        """The residuals and their derivatives; called again and again while a frame is solved.
 
-        Returns:
-            residuals: (R,), finite, in units of their standard deviations; R is the same in all calls of a frame.
-            jacobian: their derivatives by frame.position.reshape(-1): (R, 3N), an array, a sparse matrix of SciPy, or
-                a tuple (row, column, value) of three arrays (K,), whose entries of the same place add up.
+        The residuals are (R,), finite, in units of their standard deviations; R is the same in all calls of a frame.
+        Their derivatives by frame.position.reshape(-1) are (R, 3N): an array, a sparse matrix of SciPy, or a tuple
+        (row, column, value) of three arrays (K,), whose entries of the same place add up.
         """
 
 

@@ -52,7 +52,7 @@ std::vector<double> Differences(const std::vector<double>& x, const std::vector<
 std::vector<double> SigmasOfHalves(const InitInput& input, const SolvedWindow& rigid, const WindowInitOptions& options,
                                    double nominal_depth_mm) {
   const double unknown = std::numeric_limits<double>::infinity();
-  const std::vector<double> none(rigid.ids.size(), unknown);
+  std::vector<double> none(rigid.ids.size(), unknown);
   const std::size_t middle_view = rigid.views.size() / 2;
   const std::size_t middle = rigid.views[middle_view];
   const std::size_t end = rigid.views.back() + 1;
