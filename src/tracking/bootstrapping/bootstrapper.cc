@@ -20,7 +20,8 @@ constexpr std::size_t kAskAlternativeEvery = 5;  // frames
 // Of two provisional maps, the second one of a longer window. Sigmas of a rigid window may know nothing of a
 // deformation: where a longer one deforms they do not count.
 bool IsBetter(const InitOutcome& first, const InitOutcome& second) {
-  const bool is_comparable = first.allows_deformation || !second.allows_deformation;
+  const auto allows_deformation = [](const InitOutcome& map) { return map.deforming || map.allows_deformation; };
+  const bool is_comparable = allows_deformation(first) || !allows_deformation(second);
   return is_comparable && first.measured.DepthSignal() >= second.measured.DepthSignal();
 }
 

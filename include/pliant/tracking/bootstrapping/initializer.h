@@ -140,7 +140,7 @@ struct InitOutcome {
   // The depths are known hardly better than one constant depth, or to less than was demanded.
   bool provisional = false;
   bool deforming = false;           // the scene deformed, by the model that was chosen
-  bool allows_deformation = false;  // its sigmas do, whatever the model
+  bool allows_deformation = false;  // of a rigid scene: its sigmas do, though the model does not
   bool refinable = false;           // of a rigid scene: the frames that follow can make it better
 };
 
