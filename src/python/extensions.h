@@ -14,8 +14,7 @@
 namespace pliant::python {
 
 // `given`: "initializer" and "tracks", callables of extensions.py or None, "initializer_name", and what FrameCostOf
-// takes. They, and
-// `callbacks`, which takes their exceptions, must outlive what uses the extensions.
+// takes. They, and `callbacks`, which takes their exceptions, must outlive what uses the extensions.
 TrackerExtensions ExtensionsOf(const pybind11::dict& given, const TrackerOptions& options, Callbacks* callbacks);
 
 }  // namespace pliant::python

@@ -51,8 +51,7 @@ std::vector<double> Differences(const std::vector<double>& x, const std::vector<
 
 std::vector<double> SigmasOfHalves(const InitInput& input, const SolvedWindow& rigid, const WindowInitOptions& options,
                                    double nominal_depth_mm) {
-  const double unknown = std::numeric_limits<double>::infinity();
-  std::vector<double> none(rigid.ids.size(), unknown);
+  std::vector<double> none(rigid.ids.size(), std::numeric_limits<double>::infinity());
   const std::size_t middle_view = rigid.views.size() / 2;
   const std::size_t middle = rigid.views[middle_view];
   const std::size_t end = rigid.views.back() + 1;
@@ -77,8 +76,7 @@ std::vector<double> SigmasOfHalves(const InitInput& input, const SolvedWindow& r
   }
   std::vector<double> known;
   std::ranges::copy_if(sigmas, std::back_inserter(known), [](double sigma) { return sigma > 0.0; });
-  const double median = Median(std::move(known));
-  std::ranges::replace(sigmas, 0.0, median);
+  std::ranges::replace(sigmas, 0.0, Median(std::move(known)));
   return sigmas;
 }
 
