@@ -37,7 +37,7 @@ struct RefinedSubmap {
   std::map<int, int> view_of_frame;
 };
 
-constexpr double kUnknownLogDepthSigma = 0.5;
+constexpr double kStartLogDepthSigma = 0.3;  // keeps those in the scene of which pixels say nothing
 
 Status CheckPaths(const RefineRequest& request) {
   std::error_code error;
@@ -47,13 +47,13 @@ Status CheckPaths(const RefineRequest& request) {
   return Status::Ok();
 }
 
-// The median of what the run says of its first maps' depths; wide where it says nothing.
+// (F7) Depths that the run has found by motion come from the pixels that are used again: they are a start, and no
+// measurement. Those of a pair, of depth images or of another program may say more.
 double LogDepthSigmaOf(const RunSummary& summary) {
-  constexpr double kUnknown = 0.1;
-  std::vector<double> sigmas;
-  for (const FirstMapFrames& map : summary.first_maps)
-    if (map.evidence.depth_sigma > 0.0) sigmas.push_back(map.evidence.depth_sigma);
-  return sigmas.empty() ? kUnknown : Median(sigmas);
+  constexpr double kFromElsewhere = 0.1;
+  const bool by_motion =
+      std::ranges::any_of(summary.first_maps, [](const auto& map) { return map.evidence.depth_sigma > 0.0; });
+  return by_motion ? kStartLogDepthSigma : kFromElsewhere;
 }
 
 // Means over the observations of each point.
@@ -256,7 +256,7 @@ Result<RefineSummary> RefineRun(const RefineRequest& request, const RefineOption
     if (has_new_camera) {
       known->camera = calibration->camera;
       // Depths under another focal length are a start, and no measurement.
-      for (auto& [number, submap] : *submaps) submap.recording.log_depth_sigma = kUnknownLogDepthSigma;
+      for (auto& [number, submap] : *submaps) submap.recording.log_depth_sigma = kStartLogDepthSigma;
     }
   }
   std::map<int, RefinedRecording> refined;

@@ -12,9 +12,24 @@
 namespace pliant {
 namespace {
 
-// The found sizes are those of shapes that their own prior has made small, by about so much (found on simulated
-// colons).
-constexpr double kShrunk = 4.0;
+// (F9) Of a track as one measurement, a coordinate: what a drift moves along the epipolar line goes into the depth, and
+// its residuals show the other coordinate alone.
+double TrackNoisePx(const BundleInput& input, const BundleState& state) {
+  const auto errors_px = ReprojectionErrors(input.camera, input.recording, state);
+  std::vector<double> squares(input.recording.rest_positions.size(), 0.0);
+  for (std::size_t o = 0; o < errors_px.size(); ++o)
+    if (input.used[o])
+      squares[static_cast<std::size_t>(input.recording.observations[o].point_idx)] += errors_px[o].squaredNorm();
+  const std::vector<int> views = CountViews(input.recording, input.used);
+  double sum = 0.0;
+  int tracks = 0;
+  for (std::size_t i = 0; i < squares.size(); ++i) {
+    if (views[i] == 0) continue;
+    sum += squares[i] / views[i];
+    ++tracks;
+  }
+  return std::max(input.sigmas.noise_px, std::sqrt(sum / std::max(1, tracks)));
+}
 
 }  // namespace
 
@@ -32,8 +47,7 @@ Result<BundleSummary> SolveBundle(const BundleInput& input, int max_iterations,
 Result<BundleCovariance> CovarianceOfBundle(const BundleInput& input, const BundleState& state) {
   BundleInput of_tracks = input;
   of_tracks.one_measurement_per_track = true;
-  of_tracks.sigmas.size *= kShrunk;
-  of_tracks.sigmas.gradient *= kShrunk;
+  of_tracks.sigmas.noise_px = TrackNoisePx(input, state);
   BundleState unchanged = state;
   return ComputeCovariance(BundleProblem(of_tracks, &unchanged), input.recording);
 }

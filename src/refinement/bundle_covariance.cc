@@ -67,7 +67,20 @@ class Covariance {
     samples_ = cholesky.matrixU().solve(white);
     for (const int k : held) samples_.row(k).setZero();
     samples_ = order.transpose() * samples_;
+    common_.setZero(kSamples);
     return Status::Ok();
+  }
+
+  // From here on in the unit that keeps the mean of the log distances of the points, each from its middle view.
+  void SetUnit(const std::vector<std::vector<int>>& views_of_point) {
+    Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(kSamples);
+    int count = 0;
+    for (std::size_t i = 0; i < point_normals_.size(); ++i) {
+      if (point_normals_[i].self.size() == 0) continue;
+      sum += SampledLogDistance(i, SampledPoint(i), views_of_point[i][views_of_point[i].size() / 2]);
+      ++count;
+    }
+    common_ = sum / std::max(1, count);
   }
 
   // Of every view: itself, or the nearest that has observations in the problem.
@@ -89,7 +102,8 @@ class Covariance {
     by_increment.topLeftCorner<3, 3>() = -world_from_cam * Skew(pose.pivot_in_cam());
     by_increment.topRightCorner<3, 3>() = -world_from_cam;
     by_increment.bottomLeftCorner<3, 3>().setIdentity();
-    const Eigen::MatrixXd moved = by_increment * samples_.middleRows(blocks_[view].begin, 6);
+    Eigen::MatrixXd moved = by_increment * samples_.middleRows(blocks_[view].begin, 6);
+    moved.topRows<3>() -= CenterFromFirst(view) * common_;
     return moved * moved.transpose() / kSamples;
   }
 
@@ -98,13 +112,11 @@ class Covariance {
     const PointNormal& normal = point_normals_[point];
     if (normal.self.size() == 0) return std::vector<double>(views.size(), 0.0);
     const Eigen::LLT<Eigen::MatrixXd> own(normal.self);
-    Eigen::MatrixXd moved = Eigen::MatrixXd::Zero(normal.self.rows(), kSamples);
-    for (const auto& [block, matrix] : normal.by_block) moved.noalias() -= matrix.transpose() * SamplesOf(block);
-    own.solveInPlace(moved);
+    const Eigen::MatrixXd moved = SampledPoint(point);
     std::vector<double> sigmas;
     for (const int view : views) {
-      const auto [by_view, by_point] = LogDistanceGradient(point, static_cast<std::size_t>(view));
-      const Eigen::RowVectorXd sampled = by_view * SamplesOf(view) + by_point * moved;
+      const Eigen::RowVectorXd sampled = SampledLogDistance(point, moved, view) - common_;
+      const Eigen::RowVectorXd by_point = LogDistanceGradient(point, static_cast<std::size_t>(view)).second;
       const double known_views = by_point * own.solve(by_point.transpose());
       sigmas.push_back(std::sqrt(known_views + sampled.squaredNorm() / kSamples));
     }
@@ -112,6 +124,26 @@ class Covariance {
   }
 
  private:
+  // A point's numbers, by the samples of views and nodes.
+  Eigen::MatrixXd SampledPoint(std::size_t point) const {
+    const PointNormal& normal = point_normals_[point];
+    Eigen::MatrixXd moved = Eigen::MatrixXd::Zero(normal.self.rows(), kSamples);
+    for (const auto& [block, matrix] : normal.by_block) moved.noalias() -= matrix.transpose() * SamplesOf(block);
+    Eigen::LLT<Eigen::MatrixXd>(normal.self).solveInPlace(moved);
+    return moved;
+  }
+
+  Eigen::RowVectorXd SampledLogDistance(std::size_t point, const Eigen::MatrixXd& sampled_point, int view) const {
+    const auto [by_view, by_point] = LogDistanceGradient(point, static_cast<std::size_t>(view));
+    return by_view * SamplesOf(view) + by_point * sampled_point;
+  }
+
+  // The center of a camera, from the first one's.
+  Eigen::Vector3d CenterFromFirst(std::size_t view) const {
+    const auto center = [&](std::size_t v) { return problem_.poses()[v].Pose(Vector6d::Zero()).OriginInSource(); };
+    return center(view) - center(0);
+  }
+
   Eigen::MatrixXd SamplesOf(int block) const {
     const Block& b = blocks_[static_cast<std::size_t>(block)];
     return samples_.middleRows(b.begin, b.size);
@@ -263,6 +295,7 @@ class Covariance {
   std::map<BlockPair, Eigen::MatrixXd> normal_;  // of blocks; the lower half
   std::vector<PointNormal> point_normals_;
   Eigen::MatrixXd samples_;
+  Eigen::RowVectorXd common_;  // of all log distances, a sample each
 };
 
 }  // namespace
@@ -270,18 +303,22 @@ class Covariance {
 Result<BundleCovariance> ComputeCovariance(const BundleProblem& problem, const Recording& recording) {
   Covariance covariance(problem);
   if (Status status = covariance.Sample(); !status.ok()) return status;
-  BundleCovariance result;
   const std::vector<int> nearest = covariance.NearestViewInProblem();
+  const std::size_t points = recording.rest_positions.size();
+  std::vector<std::vector<std::size_t>> observations(points);
+  std::vector<std::vector<int>> views(points);
+  for (std::size_t o = 0; o < recording.observations.size(); ++o) {
+    const auto point = static_cast<std::size_t>(recording.observations[o].point_idx);
+    observations[point].push_back(o);
+    views[point].push_back(nearest[static_cast<std::size_t>(recording.observations[o].view_idx)]);
+  }
+  covariance.SetUnit(views);
+
+  BundleCovariance result;
   for (const int view : nearest) result.poses.push_back(covariance.PoseOf(static_cast<std::size_t>(view)));
   result.log_distance_sigmas.assign(recording.observations.size(), 0.0);
-  std::vector<std::vector<std::size_t>> observations(recording.rest_positions.size());
-  for (std::size_t o = 0; o < recording.observations.size(); ++o)
-    observations[static_cast<std::size_t>(recording.observations[o].point_idx)].push_back(o);
-  for (std::size_t i = 0; i < observations.size(); ++i) {
-    std::vector<int> views;
-    for (const std::size_t o : observations[i])
-      views.push_back(nearest[static_cast<std::size_t>(recording.observations[o].view_idx)]);
-    const std::vector<double> sigmas = covariance.LogDistanceSigmas(i, views);
+  for (std::size_t i = 0; i < points; ++i) {
+    const std::vector<double> sigmas = covariance.LogDistanceSigmas(i, views[i]);
     for (std::size_t k = 0; k < sigmas.size(); ++k) result.log_distance_sigmas[observations[i][k]] = sigmas[k];
   }
   return result;

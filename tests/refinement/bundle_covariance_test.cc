@@ -3,9 +3,17 @@
 
 #include "refinement/bundle_covariance.h"
 
-#include <ceres/covariance.h>
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <vector>
+
+#include <Eigen/Cholesky>
+#include <Eigen/SparseCore>
+#include <ceres/crs_matrix.h>
 #include <gtest/gtest.h>
 
+#include "pliant/base/statistics.h"
 #include "refinement/bundle.h"
 #include "refinement/recorded_scene.h"
 
@@ -41,67 +49,116 @@ class BundleCovarianceTest : public testing::TestWithParam<double> {
   BundleState state_;
 };
 
-// Ceres inverts the same normal equations in its own way.
-TEST_P(BundleCovarianceTest, IsThatOfCeres) {
+// Derivatives by all numbers that Ceres solves for, one after another.
+class Variables {
+ public:
+  explicit Variables(const BundleProblem& problem) : problem_(problem) {
+    for (const auto* const all : {&problem.views(), &problem.nodes(), &problem.points()})
+      for (double* const block : *all)
+        if (problem.terms().HasParameterBlock(block) && !problem.terms().IsParameterBlockConstant(block)) Add(block);
+  }
+
+  // J^T J of all terms.
+  Eigen::MatrixXd Normal() const {
+    ceres::Problem::EvaluateOptions options;
+    options.parameter_blocks = blocks_;
+    ceres::CRSMatrix jacobian;
+    EXPECT_TRUE(problem_.terms().Evaluate(options, nullptr, nullptr, nullptr, &jacobian));
+    const Eigen::Map<const Eigen::SparseMatrix<double, Eigen::RowMajor>> sparse(
+        jacobian.num_rows, jacobian.num_cols, static_cast<Eigen::Index>(jacobian.values.size()), jacobian.rows.data(),
+        jacobian.cols.data(), jacobian.values.data());
+    return Eigen::MatrixXd(sparse.transpose() * sparse);
+  }
+
+  // By small steps. The first view has no pose to solve for.
+  Eigen::VectorXd Gradient(const std::function<double()>& value, const std::vector<double*>& of_blocks) const {
+    Eigen::VectorXd gradient = Eigen::VectorXd::Zero(size_);
+    for (double* const block : of_blocks) {
+      const auto found = std::ranges::find(blocks_, block);
+      if (found == blocks_.end()) continue;
+      const int first = begins_[static_cast<std::size_t>(found - blocks_.begin())];
+      const int held = problem_.terms().ParameterBlockSize(block) - problem_.terms().ParameterBlockTangentSize(block);
+      for (int k = held; k < problem_.terms().ParameterBlockSize(block); ++k) {
+        constexpr double kStep = 1e-6;
+        const double before = block[k];
+        block[k] = before + kStep;
+        const double above = value();
+        block[k] = before - kStep;
+        gradient(first + k - held) = (above - value()) / (2 * kStep);
+        block[k] = before;
+      }
+    }
+    return gradient;
+  }
+
+ private:
+  void Add(double* block) {
+    blocks_.push_back(block);
+    begins_.push_back(size_);
+    size_ += problem_.terms().ParameterBlockTangentSize(block);
+  }
+
+  const BundleProblem& problem_;
+  std::vector<double*> blocks_;
+  std::vector<int> begins_;
+  int size_ = 0;
+};
+
+// The normal equations solved at once, for the log distance of a point and for cameras, in the unit of the points.
+TEST_P(BundleCovarianceTest, IsThatOfTheNormalEquations) {
   const BundleProblem problem(input_, &state_);
   const auto covariance = ComputeCovariance(problem, start_);
   ASSERT_TRUE(covariance.ok()) << covariance.status().message();
-  ceres::Covariance expected({});
-  const std::vector<std::size_t> views = {1, 17, 39};
+  const Variables variables(problem);
+  const Eigen::LLT<Eigen::MatrixXd> normal(variables.Normal());
+  const auto sigma = [&](const Eigen::VectorXd& gradient) { return std::sqrt(gradient.dot(normal.solve(gradient))); };
+
+  const auto pose = [&](std::size_t view) {
+    return problem.poses()[view].Pose(Eigen::Map<const Vector6d>(problem.views()[view]));
+  };
+  const auto log_distance_gradient = [&](std::size_t point, std::size_t view) {
+    const auto log_distance = [&] {
+      Eigen::Vector3d position = Eigen::Map<const Eigen::Vector3d>(problem.points()[point]);
+      for (int r = 0; r < problem.rank(); ++r)
+        position += problem.views()[view][6 + r] *
+                    Eigen::Map<const Eigen::Vector3d>(problem.points()[point] + 3 + static_cast<std::ptrdiff_t>(3) * r);
+      return std::log((pose(view) * position).norm());
+    };
+    return variables.Gradient(log_distance, {problem.views()[view], problem.points()[point]});
+  };
+
+  std::vector<std::vector<int>> views_of_point(start_.rest_positions.size());
+  for (const RecordedObservation& o : start_.observations)
+    views_of_point[static_cast<std::size_t>(o.point_idx)].push_back(o.view_idx);
+  Eigen::VectorXd unit =
+      log_distance_gradient(0, static_cast<std::size_t>(views_of_point[0][views_of_point[0].size() / 2]));
+  int points = 1;
+  for (std::size_t i = 1; i < views_of_point.size(); ++i) {
+    if (views_of_point[i].empty()) continue;
+    unit += log_distance_gradient(i, static_cast<std::size_t>(views_of_point[i][views_of_point[i].size() / 2]));
+    ++points;
+  }
+  unit /= points;
+
   const std::size_t observation = start_.observations.size() / 2;
-  const auto of_view = static_cast<std::size_t>(start_.observations[observation].view_idx);
-  const auto of_point = static_cast<std::size_t>(start_.observations[observation].point_idx);
-  double* const view_block = problem.views()[of_view];
-  double* const point_block = problem.points()[of_point];
-  std::vector<std::pair<const double*, const double*>> blocks = {
-      {point_block, point_block}, {view_block, point_block}, {view_block, view_block}};
-  for (const std::size_t view : views) blocks.emplace_back(problem.views()[view], problem.views()[view]);
-  ASSERT_TRUE(expected.Compute(blocks, &problem.terms()));
-  using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  const int view_size = 6 + problem.rank();
-  const int point_size = 3 + 3 * problem.rank();
-  const auto block = [&](const double* a, int rows, const double* b, int columns) {
-    RowMajorMatrix matrix(rows, columns);
-    EXPECT_TRUE(expected.GetCovarianceBlock(a, b, matrix.data()));
-    return matrix;
-  };
-
-  for (const std::size_t view : views) {
-    const RowMajorMatrix of_increment = block(problem.views()[view], view_size, problem.views()[view], view_size);
-    const Eigen::Matrix3d rotation = covariance->poses[view].bottomRightCorner<3, 3>();
-    for (int k = 0; k < 3; ++k)
-      EXPECT_NEAR(std::sqrt(rotation(k, k) / of_increment(k, k)), 1, kSampled) << "view " << view;
-    // The center by small steps of the increment.
-    RowMajorMatrix by_increment(3, 6);
-    for (int k = 0; k < 6; ++k) {
-      constexpr double kStep = 1e-6;
-      const auto at = [&](double step) { return problem.poses()[view].Pose(step * Vector6d::Unit(k)); };
-      by_increment.col(k) = (at(kStep).OriginInSource() - at(-kStep).OriginInSource()) / (2 * kStep);
+  const RecordedObservation& seen = start_.observations[observation];
+  EXPECT_NEAR(covariance->log_distance_sigmas[observation] /
+                  sigma(log_distance_gradient(static_cast<std::size_t>(seen.point_idx),
+                                              static_cast<std::size_t>(seen.view_idx)) -
+                        unit),
+              1, kSampled);
+  for (const std::size_t view : {1U, 17U, 39U})
+    for (int k = 0; k < 3; ++k) {
+      const auto center = [&] { return pose(view).OriginInSource()(k); };
+      const double from_first = center() - pose(0).OriginInSource()(k);
+      const Eigen::VectorXd gradient = variables.Gradient(center, {problem.views()[view]}) - from_first * unit;
+      EXPECT_NEAR(std::sqrt(covariance->poses[view](k, k)) / sigma(gradient), 1, kSampled) << view << ", " << k;
+      const auto turn = [&] { return problem.views()[view][k]; };
+      EXPECT_NEAR(
+          std::sqrt(covariance->poses[view](3 + k, 3 + k)) / sigma(variables.Gradient(turn, {problem.views()[view]})),
+          1, kSampled)
+          << view << ", " << k;
     }
-    const Eigen::Matrix3d center = by_increment * of_increment.topLeftCorner(6, 6) * by_increment.transpose();
-    for (int k = 0; k < 3; ++k)
-      EXPECT_NEAR(std::sqrt(covariance->poses[view](k, k) / center(k, k)), 1, kSampled) << "view " << view;
-  }
-
-  // The log distance by small steps of view and point.
-  const auto log_distance = [&](const Eigen::VectorXd& step) {
-    const Eigen::VectorXd view = Eigen::Map<Eigen::VectorXd>(view_block, view_size) + step.head(view_size);
-    const Eigen::VectorXd point = Eigen::Map<Eigen::VectorXd>(point_block, point_size) + step.tail(point_size);
-    Eigen::Vector3d position = point.head<3>();
-    for (int r = 0; r < problem.rank(); ++r) position += view(6 + r) * point.segment<3>(3 + 3 * r);
-    return std::log((problem.poses()[of_view].Pose(view.head<6>()) * position).norm());
-  };
-  Eigen::VectorXd gradient(view_size + point_size);
-  for (int k = 0; k < gradient.size(); ++k) {
-    const Eigen::VectorXd step = 1e-6 * Eigen::VectorXd::Unit(gradient.size(), k);
-    gradient(k) = (log_distance(step) - log_distance(-step)) / 2e-6;
-  }
-  Eigen::MatrixXd joint(gradient.size(), gradient.size());
-  const RowMajorMatrix mixed = block(view_block, view_size, point_block, point_size);
-  joint << block(view_block, view_size, view_block, view_size), mixed, mixed.transpose(),
-      block(point_block, point_size, point_block, point_size);
-  const double sigma = std::sqrt(gradient.dot(joint * gradient));
-  EXPECT_NEAR(covariance->log_distance_sigmas[observation] / sigma, 1, kSampled);
 }
 
 TEST_P(BundleCovarianceTest, OfTheFirstPoseIsZero) {
@@ -109,6 +166,20 @@ TEST_P(BundleCovarianceTest, OfTheFirstPoseIsZero) {
   ASSERT_TRUE(covariance.ok()) << covariance.status().message();
   EXPECT_EQ(covariance->poses.front().norm(), 0);
   EXPECT_GT(covariance->poses.back().norm(), 0);
+}
+
+// (F9) The unit is the run's: that the pixels do not know it makes no depth uncertain.
+TEST_P(BundleCovarianceTest, TheUnitIsKnown) {
+  input_.sigmas.log_distance = 1;
+  const auto covariance = CovarianceOfBundle(input_, state_);
+  input_.sigmas.log_distance = 30;
+  const auto without_unit = CovarianceOfBundle(input_, state_);
+  ASSERT_TRUE(covariance.ok() && without_unit.ok());
+  EXPECT_NEAR(Median(without_unit->log_distance_sigmas) / Median(covariance->log_distance_sigmas), 1, 0.1);
+  const auto center_sigma = [](const BundleCovariance& of) {
+    return std::sqrt(of.poses.back().topLeftCorner<3, 3>().trace());
+  };
+  EXPECT_NEAR(center_sigma(*without_unit) / center_sigma(*covariance), 1, 0.1);
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, BundleCovarianceTest, testing::Values(0.0, 4.0));

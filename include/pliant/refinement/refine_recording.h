@@ -79,7 +79,7 @@ struct Recording {
   std::vector<Eigen::Vector3d> rest_positions;    // of the points, world frame, map units
   std::vector<RecordedObservation> observations;  // sorted by view
   double patch_px = 15;                           // side of a tracked patch, in the camera's pixels
-  double log_depth_sigma = 0.03;                  // of the points' positions: relative, along their rays
+  double log_depth_sigma = 0.3;                   // (F7) of the points' distances, by other than these pixels
 };
 
 struct RefinedRecording {
