@@ -18,6 +18,9 @@ constexpr std::size_t kLargeBuffer = 1 << 20;
 // The name under which a file is written before it is renamed.
 std::string Beside(const std::string& path) { return path + ".tmp"; }
 
+// The second name of a file that one called `name` replaces, until all renames are done.
+std::string Former(const std::string& name) { return name + ".former"; }
+
 std::string Reason(int error) { return std::generic_category().message(error); }
 
 // Whether it is a regular file that is there.
@@ -109,6 +112,33 @@ Status OutputFile::Close() {
   return Status::Ok();
 }
 
+Status RenameTogether(const std::vector<Renaming>& renamings) {
+  std::error_code error;
+  std::size_t done = 0;
+  for (; done < renamings.size(); ++done) {
+    const auto& [from, to] = renamings[done];
+    // A second name for what is replaced. A file system without such names keeps no former file.
+    std::error_code no_former;
+    if (renamings.size() > 1) std::filesystem::create_hard_link(to, Former(from), no_former);
+    std::filesystem::rename(from, to, error);
+    if (error) break;
+  }
+  std::error_code ignored;
+  if (!error) {
+    if (renamings.size() > 1)
+      for (const Renaming& renaming : renamings) std::filesystem::remove(Former(renaming.from), ignored);
+    return Status::Ok();
+  }
+  std::filesystem::remove(Former(renamings[done].from), ignored);
+  const Status failure(ErrorCode::kUnwritable,
+                       "cannot write " + Quoted(renamings[done].to) + ": " + error.message() + "; nothing was written");
+  while (done-- > 0) {
+    std::filesystem::rename(renamings[done].to, renamings[done].from, ignored);
+    std::filesystem::rename(Former(renamings[done].from), renamings[done].to, ignored);
+  }
+  return failure;
+}
+
 FileGroup::~FileGroup() {
   std::error_code error;
   for (const std::string& path : paths_) std::filesystem::remove(Beside(path), error);
@@ -126,13 +156,11 @@ Result<OutputFile> FileGroup::Create(const std::string& path) {
 }
 
 Status FileGroup::Commit() {
-  while (!paths_.empty()) {
-    std::error_code error;
-    std::filesystem::rename(Beside(paths_.front()), paths_.front(), error);
-    if (error) return {ErrorCode::kUnwritable, "cannot write " + Quoted(paths_.front()) + ": " + error.message()};
-    paths_.erase(paths_.begin());
-  }
-  return Status::Ok();
+  std::vector<Renaming> renamings;
+  for (const std::string& path : paths_) renamings.push_back({Beside(path), path});
+  Status status = RenameTogether(renamings);
+  if (status.ok()) paths_.clear();
+  return status;
 }
 
 Status SyncFolder(const std::filesystem::path& folder) {

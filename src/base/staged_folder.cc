@@ -16,6 +16,18 @@ namespace fs = std::filesystem;
 
 constexpr const char* kUnfinished = ".unfinished";
 
+// What is in `from` is to be in `to`.
+void AddRenamings(const fs::path& from, const fs::path& to, std::vector<Renaming>* renamings, std::error_code* error) {
+  for (fs::directory_iterator entry(from, *error), end; !*error && entry != end; entry.increment(*error)) {
+    const fs::path place = to / entry->path().filename();
+    std::error_code absent;
+    if (entry->is_directory(absent) && fs::is_directory(place, absent))
+      AddRenamings(entry->path(), place, renamings, error);
+    else
+      renamings->push_back({entry->path().string(), place.string()});
+  }
+}
+
 }  // namespace
 
 StagedFolder::StagedFolder(fs::path folder, fs::path staged) : folder_(std::move(folder)), staged_(std::move(staged)) {}
@@ -28,11 +40,16 @@ StagedFolder::~StagedFolder() {
   if (!staged_.empty()) fs::remove_all(staged_, error);
 }
 
-Result<StagedFolder> StagedFolder::Create(const fs::path& folder, const std::vector<std::string>& names) {
+Status CheckAbsent(const fs::path& folder, const std::vector<std::string>& names) {
   for (const std::string& name : names)
     if (Exists((folder / name).string()))
-      return Status(ErrorCode::kInvalidArgument,
-                    Quoted((folder / name).string()) + " is there already; delete it or give another --output_path");
+      return {ErrorCode::kInvalidArgument,
+              Quoted((folder / name).string()) + " is there already; delete it or give another --output_path"};
+  return Status::Ok();
+}
+
+Result<StagedFolder> StagedFolder::Create(const fs::path& folder, const std::vector<std::string>& names) {
+  if (Status status = CheckAbsent(folder, names); !status.ok()) return status;
   StagedFolder result(folder, folder / kUnfinished);
   std::error_code error;
   fs::remove_all(result.staged_, error);  // that of an export that was killed
@@ -49,11 +66,9 @@ Status StagedFolder::AddFolder(const std::string& name) const {
 
 Status StagedFolder::Commit() {
   std::error_code error;
-  for (fs::directory_iterator entry(staged_, error), end; !error && entry != end; entry.increment(error)) {
-    fs::rename(entry->path(), folder_ / entry->path().filename(), error);
-    if (error) return Unwritable(folder_ / entry->path().filename());
-  }
-  return error ? Unwritable(folder_) : Status::Ok();
+  std::vector<Renaming> renamings;
+  AddRenamings(staged_, folder_, &renamings, &error);
+  return error ? Unwritable(folder_) : RenameTogether(renamings);
 }
 
 }  // namespace pliant

@@ -3,9 +3,13 @@
 
 #include "pliant/colmap/model.h"
 
+#include <functional>
+
 #include "cli/command_line.h"
 #include "cli/commands.h"
+#include "cli/interrupt.h"
 #include "cli/messages.h"
+#include "cli/progress.h"
 #include "pliant/base/text.h"
 #include "pliant/colmap/check.h"
 
@@ -82,10 +86,13 @@ int ConvertCommand(std::span<const std::string> args) {
   OptionTable no_options;
   if (const auto exit = line.Resolve(no_options)) return *exit;
 
-  const auto model = colmap::ReadModel(input_path);
-  if (!model.ok()) return line.Failure(model.status().message());
-  const colmap::Rigs rigs = with_rigs && !model->rigs.empty() ? colmap::Rigs::kWritten : colmap::Rigs::kLeftOut;
-  const Status status = colmap::WriteModel(output_path, *model, format, rigs);
+  const Status status = [&] {
+    JobBars bars(StopOnSignals());
+    const auto model = colmap::ReadModel(input_path, colmap::Observations::kRead, std::ref(bars));
+    if (!model.ok()) return model.status();
+    const colmap::Rigs rigs = with_rigs && !model->rigs.empty() ? colmap::Rigs::kWritten : colmap::Rigs::kLeftOut;
+    return colmap::WriteModel(output_path, *model, format, rigs, std::ref(bars));
+  }();
   return status.ok() ? kExitOk : line.Failure(status.message());
 }
 

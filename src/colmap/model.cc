@@ -27,6 +27,8 @@ constexpr std::array kCameraModels = {CameraModelInfo{0, "SIMPLE_PINHOLE", 3},
                                       CameraModelInfo{10, "THIN_PRISM_FISHEYE", 12},
                                       CameraModelInfo{11, "RAD_TAN_THIN_PRISM_FISHEYE", 16}};
 constexpr std::array<std::string_view, 3> kFiles = {"cameras", "images", "points3D"};
+constexpr std::string_view kReadTask = "read";
+constexpr int kNumFiles = 3;
 
 // What is missing of a format's three files; empty: nothing.
 std::string MissingFile(const std::string& folder, std::string_view extension) {
@@ -109,13 +111,14 @@ Result<Format> FindModel(const std::string& folder) {
                                           " (cameras, images and points3D, as .bin or .txt)");
 }
 
-Result<Model> ReadModel(const std::string& folder, Observations observations) {
+Result<Model> ReadModel(const std::string& folder, Observations observations, const JobProgress& progress) {
   const auto format = FindModel(folder);
   if (!format.ok()) return format.status();
-  return ReadModel(folder, *format == Format::kText ? Format::kText : Format::kBinary, observations);
+  return ReadModel(folder, *format == Format::kText ? Format::kText : Format::kBinary, observations, progress);
 }
 
-Result<Model> ReadModel(const std::string& folder, Format format, Observations observations) {
+Result<Model> ReadModel(const std::string& folder, Format format, Observations observations,
+                        const JobProgress& progress) {
   assert(format != Format::kBoth);
   const bool text = format == Format::kText;
   const auto path = [&](std::size_t file) {
@@ -124,13 +127,16 @@ Result<Model> ReadModel(const std::string& folder, Format format, Observations o
   Model model;
   Status status = Put(text ? ReadTextCameras(path(0)) : ReadBinaryCameras(path(0)), &model.cameras);
   if (status.ok()) status = CheckIds(model.cameras, "camera", path(0));
+  if (status.ok()) status = Tell(progress, kReadTask, 1, kNumFiles);
   if (status.ok())
     status = Put(text ? ReadTextImages(path(1), observations) : ReadBinaryImages(path(1), observations), &model.images);
   if (status.ok()) status = CheckIds(model.images, "image", path(1));
+  if (status.ok()) status = Tell(progress, kReadTask, 2, kNumFiles);
   if (status.ok())
     status =
         Put(text ? ReadTextPoints(path(2), observations) : ReadBinaryPoints(path(2), observations), &model.points3D);
   if (status.ok()) status = CheckIds(model.points3D, "point", path(2));
+  if (status.ok()) status = Tell(progress, kReadTask, kNumFiles, kNumFiles);
   if (status.ok()) status = ReadRigs(folder, format, &model);
   if (!status.ok()) return status;
   return model;

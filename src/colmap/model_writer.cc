@@ -11,17 +11,30 @@
 namespace pliant::colmap {
 namespace {
 
+constexpr int kRowsBetweenTold = 1000;
+
+// What is written to, and who is told.
+struct Output {
+  FileGroup group = {};
+  const JobProgress& progress;
+};
+
 // Writes one file: a header, and then every row by `append(row, buffer)`.
 template <class Rows, class Append>
-Status WriteRows(FileGroup& group, const std::string& path, const std::string& header, const Rows& rows,
+Status WriteRows(Output& output, const std::string& path, const std::string& header, const Rows& rows,
                  const Append& append) {
-  auto file = group.Create(path);
+  auto file = output.group.Create(path);
   if (!file.ok()) return file.status();
   std::string buffer = header;
+  int done = 0;
   for (const auto& row : rows) {
     append(row, &buffer);
+    if (++done % kRowsBetweenTold == 0)
+      if (Status status = Tell(output.progress, "write", done, static_cast<int>(rows.size())); !status.ok())
+        return status;
     if (Status status = file->AppendWhenLarge(&buffer); !status.ok()) return status;
   }
+  if (Status status = Tell(output.progress, "write", done, static_cast<int>(rows.size())); !status.ok()) return status;
   if (Status status = file->Append(buffer); !status.ok()) return status;
   return file->Close();
 }
@@ -38,44 +51,44 @@ std::string Mean(std::size_t sum, std::size_t count) {
   return text;
 }
 
-Status WriteText(FileGroup& group, const std::string& folder, const Model& model, Rigs rigs) {
+Status WriteText(Output& output, const std::string& folder, const Model& model, Rigs rigs) {
   std::size_t observations = 0;
   for (const Point3D& point : model.points3D) observations += point.track.size();
-  Status status = WriteRows(group, folder + "/cameras.txt", CamerasHeader(model.cameras.size()) + "\n", model.cameras,
+  Status status = WriteRows(output, folder + "/cameras.txt", CamerasHeader(model.cameras.size()) + "\n", model.cameras,
                             AppendTextCamera);
   if (status.ok())
-    status = WriteRows(group, folder + "/images.txt",
+    status = WriteRows(output, folder + "/images.txt",
                        ImagesHeader(model.images.size()) +
                            ", mean observations per image: " + Mean(observations, model.images.size()) + "\n",
                        model.images,
                        [](const Image& image, std::string* out) { AppendTextImage(image, Digits::kExact, out); });
   if (status.ok())
-    status = WriteRows(group, folder + "/points3D.txt",
+    status = WriteRows(output, folder + "/points3D.txt",
                        PointsHeader(model.points3D.size()) +
                            ", mean track length: " + Mean(observations, model.points3D.size()) + "\n",
                        model.points3D, [](const Point3D& point, std::string* out) {
                          AppendTextPoint(point, point.track, Digits::kExact, out);
                        });
   if (rigs == Rigs::kLeftOut || !status.ok()) return status;
-  status = WriteRows(group, folder + "/rigs.txt", RigsHeader(model.rigs.size()) + "\n", model.rigs, AppendTextRig);
+  status = WriteRows(output, folder + "/rigs.txt", RigsHeader(model.rigs.size()) + "\n", model.rigs, AppendTextRig);
   if (!status.ok()) return status;
-  return WriteRows(group, folder + "/frames.txt", FramesHeader(model.frames.size()) + "\n", model.frames,
+  return WriteRows(output, folder + "/frames.txt", FramesHeader(model.frames.size()) + "\n", model.frames,
                    AppendTextFrame);
 }
 
-Status WriteBinary(FileGroup& group, const std::string& folder, const Model& model, Rigs rigs) {
+Status WriteBinary(Output& output, const std::string& folder, const Model& model, Rigs rigs) {
   Status status =
-      WriteRows(group, folder + "/cameras.bin", BinaryCount(model.cameras.size()), model.cameras, AppendBinaryCamera);
+      WriteRows(output, folder + "/cameras.bin", BinaryCount(model.cameras.size()), model.cameras, AppendBinaryCamera);
   if (status.ok())
     status =
-        WriteRows(group, folder + "/images.bin", BinaryCount(model.images.size()), model.images, AppendBinaryImage);
+        WriteRows(output, folder + "/images.bin", BinaryCount(model.images.size()), model.images, AppendBinaryImage);
   if (status.ok())
-    status = WriteRows(group, folder + "/points3D.bin", BinaryCount(model.points3D.size()), model.points3D,
+    status = WriteRows(output, folder + "/points3D.bin", BinaryCount(model.points3D.size()), model.points3D,
                        [](const Point3D& point, std::string* out) { AppendBinaryPoint(point, point.track, out); });
   if (rigs == Rigs::kLeftOut || !status.ok()) return status;
-  status = WriteRows(group, folder + "/rigs.bin", BinaryCount(model.rigs.size()), model.rigs, AppendBinaryRig);
+  status = WriteRows(output, folder + "/rigs.bin", BinaryCount(model.rigs.size()), model.rigs, AppendBinaryRig);
   if (!status.ok()) return status;
-  return WriteRows(group, folder + "/frames.bin", BinaryCount(model.frames.size()), model.frames, AppendBinaryFrame);
+  return WriteRows(output, folder + "/frames.bin", BinaryCount(model.frames.size()), model.frames, AppendBinaryFrame);
 }
 
 Status CheckWritable(const Model& model) {
@@ -107,18 +120,19 @@ Status CheckFolder(const std::string& folder, Format format) {
   return Status::Ok();
 }
 
-Status WriteModel(const std::string& folder, const Model& model, Format format, Rigs rigs) {
+Status WriteModel(const std::string& folder, const Model& model, Format format, Rigs rigs,
+                  const JobProgress& progress) {
   if (Status status = CheckWritable(model); !status.ok()) return status;
   if (Status status = CheckFolder(folder, format); !status.ok()) return status;
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) return {ErrorCode::kUnwritable, "cannot make the folder " + Quoted(folder) + ": " + error.message()};
-  FileGroup group;
+  Output output{.progress = progress};
   if (format != Format::kBinary)
-    if (Status status = WriteText(group, folder, model, rigs); !status.ok()) return status;
+    if (Status status = WriteText(output, folder, model, rigs); !status.ok()) return status;
   if (format != Format::kText)
-    if (Status status = WriteBinary(group, folder, model, rigs); !status.ok()) return status;
-  return group.Commit();
+    if (Status status = WriteBinary(output, folder, model, rigs); !status.ok()) return status;
+  return output.group.Commit();
 }
 
 }  // namespace pliant::colmap

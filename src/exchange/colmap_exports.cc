@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include <cmath>
-#include <filesystem>
 
 #include <nlohmann/json.hpp>
 
@@ -10,6 +9,7 @@
 #include "colmap/rows.h"
 #include "exchange/exports.h"
 #include "pliant/base/files.h"
+#include "pliant/base/staged_folder.h"
 #include "pliant/base/text.h"
 #include "pliant/colmap/convert.h"
 
@@ -84,31 +84,31 @@ std::int64_t Nanoseconds(double seconds) { return std::llround(seconds * 1e9); }
 
 }  // namespace
 
-Status ExportColmapCanonical(const RunSource& source, const ExportOptions& options, const std::string& folder) {
-  if (Status status = colmap::CheckFolder(folder, options.files); !status.ok()) return status;
+Status ExportColmapCanonical(const RunSource& source, const ExportOptions& options, const ExportFolder& folder) {
+  if (Status status = colmap::CheckFolder(folder.place, options.files); !status.ok()) return status;
   std::vector<CanonicalImage> images;
   for (const SourceFrame& frame : source.frames) images.push_back({frame.frame_idx, frame.name, frame.cam_from_world});
-  return WriteCanonicalModel(folder, options.files, source.camera, images, source.points, source.run_path);
+  return WriteCanonicalModel(folder.path, options.files, source.camera, images, source.points, source.run_path);
 }
 
-Status ExportColmapSpacetime(const RunSource& source, const ExportOptions& options, const std::string& folder) {
-  if (Status status = colmap::CheckFolder(folder, options.files); !status.ok()) return status;
+Status ExportColmapSpacetime(const RunSource& source, const ExportOptions& options, const ExportFolder& folder) {
+  if (Status status = colmap::CheckFolder(folder.place, options.files); !status.ok()) return status;
   FileGroup group;
   const auto nothing_else = [](const SourceFrame&, const auto&) { return Status::Ok(); };
-  if (Status status = WriteSpacetime(source, options.files, folder, group, nothing_else); !status.ok()) return status;
+  if (Status status = WriteSpacetime(source, options.files, folder.path, group, nothing_else); !status.ok())
+    return status;
   return group.Commit();
 }
 
-Status ExportColmapFrames(const RunSource& source, const ExportOptions& options, const std::string& folder) {
+Status ExportColmapFrames(const RunSource& source, const ExportOptions& options, const ExportFolder& folder) {
+  std::vector<std::string> names;
+  for (const SourceFrame& frame : source.frames) names.push_back(NumberOf(frame));
+  if (Status status = CheckAbsent(folder.place, names); !status.ok()) return status;
   return ForEachFrame(source, [&](const SourceFrame& frame, const auto& observations) {
-    const std::string model_folder = folder + "/" + NumberOf(frame);
-    std::error_code error;
-    std::filesystem::create_directories(model_folder, error);
-    if (error)
-      return Status(ErrorCode::kUnwritable, "cannot make the folder " + Quoted(model_folder) + ": " + error.message());
-    if (Status status = colmap::CheckFolder(model_folder, options.files); !status.ok()) return status;
+    if (Status status = folder.AddFolder(NumberOf(frame)); !status.ok()) return status;
     FileGroup group;
-    auto model = ModelStream::Create(group, model_folder, options.files, source.camera, 1, observations.size());
+    auto model =
+        ModelStream::Create(group, folder.Path(NumberOf(frame)), options.files, source.camera, 1, observations.size());
     if (!model.ok()) return model.status();
     const auto id_of = [](PointId id) { return static_cast<std::uint64_t>(id.value); };
     if (Status status = AddFrame(source, frame, observations, id_of, std::nullopt, &*model); !status.ok())
@@ -118,12 +118,12 @@ Status ExportColmapFrames(const RunSource& source, const ExportOptions& options,
   });
 }
 
-Status ExportColmap4d(const RunSource& source, const ExportOptions& options, const std::string& folder) {
-  if (Status status = colmap::CheckFolder(folder, options.files); !status.ok()) return status;
+Status ExportColmap4d(const RunSource& source, const ExportOptions& options, const ExportFolder& folder) {
+  if (Status status = colmap::CheckFolder(folder.place, options.files); !status.ok()) return status;
   FileGroup group;
-  auto times = group.Create(folder + "/times.bin");
+  auto times = group.Create(folder.Path("times.bin"));
   if (!times.ok()) return times.status();
-  auto points = group.Create(folder + "/points_t.bin");
+  auto points = group.Create(folder.Path("points_t.bin"));
   if (!points.ok()) return points.status();
   std::string image_rows;
   std::string point_rows;
@@ -139,12 +139,12 @@ Status ExportColmap4d(const RunSource& source, const ExportOptions& options, con
     }
     return points->AppendWhenLarge(&point_rows);
   };
-  if (Status status = WriteSpacetime(source, options.files, folder, group, add_times); !status.ok()) return status;
+  if (Status status = WriteSpacetime(source, options.files, folder.path, group, add_times); !status.ok()) return status;
   for (const auto& [file, rows] : {std::pair(&*times, &image_rows), std::pair(&*points, &point_rows)}) {
     if (Status written = file->Append(*rows); !written.ok()) return written;
     if (Status closed = file->Close(); !closed.ok()) return closed;
   }
-  auto meta = group.Create(folder + "/time_meta.json");
+  auto meta = group.Create(folder.Path("time_meta.json"));
   if (!meta.ok()) return meta.status();
   const nlohmann::ordered_json content = {{"version", "1.0"},
                                           {"time_convention", "mid_exposure"},

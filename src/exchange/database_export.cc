@@ -132,21 +132,22 @@ Status Fill(const std::string& path, const RunSource& source, const ExportOption
 
 }  // namespace
 
-Status ExportDatabase(const RunSource& source, const ExportOptions& options, const std::string& folder) {
-  const std::string path = folder + "/database.db";
+Status ExportDatabase(const RunSource& source, const ExportOptions& options, const ExportFolder& folder) {
+  const std::string path = folder.Path("database.db");
+  const std::string log = folder.place + "/database_creator.log";  // stays after a failure
   const std::string beside = path + ".tmp";
   std::error_code error;
   std::filesystem::remove(beside, error);
+  std::filesystem::create_directories(folder.place, error);
   // The program that is installed knows its own schema.
-  Status status =
-      RunProgram({"colmap", "database_creator", "--database_path", beside}, folder + "/database_creator.log");
+  Status status = RunProgram({"colmap", "database_creator", "--database_path", beside}, log);
   if (status.ok()) status = Fill(beside, source, options);
   if (status.ok()) {
     std::filesystem::rename(beside, path, error);
     if (error) status = {ErrorCode::kUnwritable, "cannot write " + Quoted(path) + ": " + error.message()};
   }
   if (status.ok())
-    std::filesystem::remove(folder + "/database_creator.log", error);
+    std::filesystem::remove(log, error);
   else
     std::filesystem::remove(beside, error);
   return status;

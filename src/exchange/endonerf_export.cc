@@ -105,14 +105,14 @@ std::string NpyOf(const std::vector<double>& rows) {
 class EndoNerfWriter {
  public:
   EndoNerfWriter(const Camera& raw, const Camera& pinhole, double typical_depth, const ExportOptions& options,
-                 const StagedFolder& staged)
+                 const ExportFolder& folder)
       : pinhole_(pinhole),
         warp_(WarpBetween(raw, pinhole)),
         inside_(warp_.Inside()),
         typical_depth_(typical_depth),
         unit_(PowerOfTenUpTo(typical_depth / kStepsOfTypicalDepth)),
         mask_unknown_depth_(options.mask_unknown_depth),
-        staged_(staged) {}
+        folder_(folder) {}
 
   Status Write(const SourceFrame& frame, const RunImage& raw, const std::vector<PointObservation>& observations) {
     const RunImage image = Warped(raw, warp_);
@@ -127,15 +127,14 @@ class EndoNerfWriter {
   }
 
   Status Finish() const {
-    if (Status status = WriteFileAtomically(staged_.Path(kPosesFile).string(), NpyOf(rows_)); !status.ok())
-      return status;
-    return WriteCameraFile(staged_.Path(kCameraFile).string(), {.camera = pinhole_, .depth_scale = unit_});
+    if (Status status = WriteFileAtomically(folder_.Path(kPosesFile), NpyOf(rows_)); !status.ok()) return status;
+    return WriteCameraFile(folder_.Path(kCameraFile), {.camera = pinhole_, .depth_scale = unit_});
   }
 
  private:
   Status WriteImage(const char* folder, const SourceFrame& frame, const cv::Mat& image) const {
-    if (Status status = staged_.AddFolder(folder); !status.ok()) return status;
-    return WritePng(staged_.Path(folder) / (NumberOf(frame) + ".png"), image);
+    if (Status status = folder_.AddFolder(folder); !status.ok()) return status;
+    return WritePng(folder_.Path(std::string(folder) + "/" + NumberOf(frame) + ".png"), image);
   }
 
   const Camera& pinhole_;
@@ -144,29 +143,28 @@ class EndoNerfWriter {
   double typical_depth_;
   double unit_;
   Switch mask_unknown_depth_;
-  const StagedFolder& staged_;
+  const ExportFolder& folder_;
   std::vector<double> rows_;
 };
 
 }  // namespace
 
-Status ExportEndoNerf(const RunSource& source, const ExportOptions& options, const std::string& folder) {
-  auto staged = StagedFolder::Create(
-      folder, {kPosesFile, kCameraFile, native::kImageFolder, native::kDepthFolder, native::kMaskFolder});
-  if (!staged.ok()) return staged.status();
+Status ExportEndoNerf(const RunSource& source, const ExportOptions& options, const ExportFolder& folder) {
+  Status status = CheckAbsent(
+      folder.place, {kPosesFile, kCameraFile, native::kImageFolder, native::kDepthFolder, native::kMaskFolder});
+  if (!status.ok()) return status;
   auto images = RunImages::Open(source);
   if (!images.ok()) return images.status();
   const auto depth = TypicalDepth(source);
   if (!depth.ok()) return depth.status();
   const auto pinhole = CenteredPinhole(source.camera);
   if (!pinhole.ok()) return pinhole.status();
-  EndoNerfWriter writer(source.camera, *pinhole, *depth, options, *staged);
-  Status status = ForEachFrame(source, [&](const SourceFrame& frame, const auto& observations) {
+  EndoNerfWriter writer(source.camera, *pinhole, *depth, options, folder);
+  status = ForEachFrame(source, [&](const SourceFrame& frame, const auto& observations) {
     const auto image = images->Read(frame);
     return image.ok() ? writer.Write(frame, *image, observations) : image.status();
   });
-  if (status.ok()) status = writer.Finish();
-  return status.ok() ? staged->Commit() : status;
+  return status.ok() ? writer.Finish() : status;
 }
 
 }  // namespace pliant

@@ -7,9 +7,11 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <optional>
 
 #include "exchange/exports.h"
 #include "pliant/base/files.h"
+#include "pliant/base/staged_folder.h"
 #include "pliant/base/text.h"
 #include "pliant/io/trajectory.h"
 
@@ -17,6 +19,7 @@ namespace pliant {
 namespace {
 
 using Needs = ExportFormat::Needs;
+using Leaves = ExportFormat::Leaves;
 
 constexpr std::array kFormats = {
     ExportFormat{"canonical",
@@ -31,10 +34,10 @@ constexpr std::array kFormats = {
         ExportColmapSpacetime},
     ExportFormat{"frames",
                  "a COLMAP model a frame, in folders 000000, 000001, ..., with the points where they were then.",
-                 ExportColmapFrames},
+                 ExportColmapFrames, Leaves::kManyFiles},
     ExportFormat{"ply",
                  "a file a frame, with color, track id and the displacement dx, dy, dz from the undeformed position.",
-                 ExportPly},
+                 ExportPly, Leaves::kManyFiles},
     ExportFormat{"trajectories",
                  "trajectories.ply, every point in every frame, those of a track joined by edges, colored by time.",
                  ExportTrajectories},
@@ -55,18 +58,18 @@ constexpr std::array kFormats = {
     ExportFormat{"stir",
                  "positions.json and, of runs in millimeters, positions3d.json: where the points of the file "
                  "--Export.start_points, or else the run's own, are in its last frame, as the STIR challenge has it.",
-                 ExportStir},
+                 ExportStir, Leaves::kManyFiles},
     ExportFormat{"nerfstudio",
                  "transforms.json with the images, masks and sparse_pc.ply that it names, and of --surface the depths. "
                  "The poses are in the file's `unit` of map units, so that a step of the depth images is 0.001, which "
                  "nerfstudio expects.",
-                 ExportNerfstudio, Needs::kRunAndImages},
+                 ExportNerfstudio, Leaves::kManyFiles, Needs::kRunAndImages},
     ExportFormat{
         "endonerf",
         "poses_bounds.npy, images/, masks/ (255 = not to be learned from) and of --surface depth/, as EndoNeRF "
         "and programs that follow it read them. The images are those of a pinhole camera with its principal "
         "point in the middle (pinhole.yaml). A step of the depth images is the unit of the poses.",
-        ExportEndoNerf, Needs::kRunAndImages},
+        ExportEndoNerf, Leaves::kManyFiles, Needs::kRunAndImages},
 };
 
 Result<const ExportFormat*> FindFormat(const std::string& name) {
@@ -75,6 +78,13 @@ Result<const ExportFormat*> FindFormat(const std::string& name) {
   std::string names;
   for (const ExportFormat& known : kFormats) names += (names.empty() ? "" : ", ") + std::string(known.name);
   return Status(ErrorCode::kInvalidArgument, "there is no export format " + Quoted(name) + "; there are " + names);
+}
+
+Status MakeFolder(const std::string& path) {
+  std::error_code error;
+  std::filesystem::create_directories(path, error);
+  if (!error) return Status::Ok();
+  return {ErrorCode::kUnwritable, "cannot make the folder " + Quoted(path) + ": " + error.message()};
 }
 
 // What only formats with images take must not be given to others.
@@ -133,12 +143,14 @@ std::string NumberOf(const SourceFrame& frame) {
   return text.insert(0, 6 - std::min<std::size_t>(6, text.size()), '0');
 }
 
-Status ExportTum(const RunSource& source, const ExportOptions& /*options*/, const std::string& folder) {
+Status ExportTum(const RunSource& source, const ExportOptions& /*options*/, const ExportFolder& folder) {
   std::string lines;
   for (const SourceFrame& frame : source.frames)
     AppendTumLine(&lines, frame.timestamp_s, frame.cam_from_world.Inverse());
-  return WriteFileAtomically(folder + "/trajectory.txt", lines);
+  return WriteFileAtomically(folder.Path("trajectory.txt"), lines);
 }
+
+Status ExportFolder::AddFolder(const std::string& name) const { return MakeFolder(Path(name)); }
 
 Result<ExportSummary> ExportRun(const ExportRequest& request, const ExportOptions& options,
                                 const JobProgress& progress) {
@@ -148,21 +160,29 @@ Result<ExportSummary> ExportRun(const ExportRequest& request, const ExportOption
   auto sources = ReadRunSources(request, options.stride);
   if (!sources.ok()) return sources.status();
   for (RunSource& source : *sources) source.progress = progress;
+  // What is more than a group of files is written elsewhere and moved when all of it is there.
+  std::optional<StagedFolder> staged;
+  if (Status status = MakeFolder(request.output_path); !status.ok()) return status;
+  if (sources->size() > 1 || (*format)->leaves == Leaves::kManyFiles) {
+    auto created = StagedFolder::Create(request.output_path, {});
+    if (!created.ok()) return created.status();
+    staged.emplace(*std::move(created));
+  }
   ExportSummary summary;
   for (std::size_t k = 0; k < sources->size(); ++k) {
     const RunSource& source = (*sources)[k];
-    const std::string folder =
-        sources->size() > 1 ? request.output_path + "/" + std::to_string(k) : request.output_path;
-    std::error_code error;
-    std::filesystem::create_directories(folder, error);
-    if (error)
-      return Status(ErrorCode::kUnwritable, "cannot make the folder " + Quoted(folder) + ": " + error.message());
+    const std::string submap = sources->size() > 1 ? "/" + std::to_string(k) : "";
+    const std::string top = staged ? staged->Path("").string() : request.output_path;
+    const ExportFolder folder{top + submap, request.output_path + submap};
+    if (Status status = MakeFolder(folder.path); !status.ok()) return status;
     if (Status status = (*format)->write(source, options, folder); !status.ok()) return status;
     summary.frames += static_cast<int>(source.frames.size());
     summary.points += static_cast<int>(source.points.size());
     summary.observations += source.num_observations;
     summary.notes.insert(summary.notes.end(), source.notes.begin(), source.notes.end());
   }
+  if (staged)
+    if (Status status = staged->Commit(); !status.ok()) return status;
   if (sources->size() > 1)
     summary.notes.push_back("the run has " + std::to_string(sources->size()) +
                             " submaps, each with its own world and unit: one folder each");

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// What ExportFormats lists, each from a run's source into a folder that is there. Their files appear together at the
-// end; of a format with a file or model a frame and no images, each by itself.
+// What ExportFormats lists, each from a run's source into a folder that is there. ExportRun lets the files of those
+// that write many appear together; the others do so themselves.
 #pragma once
 
 #include <array>
@@ -15,19 +15,28 @@
 
 namespace pliant {
 
-Status ExportColmapCanonical(const RunSource& source, const ExportOptions& options, const std::string& folder);
-Status ExportColmapSpacetime(const RunSource& source, const ExportOptions& options, const std::string& folder);
-Status ExportColmapFrames(const RunSource& source, const ExportOptions& options, const std::string& folder);
-Status ExportPly(const RunSource& source, const ExportOptions& options, const std::string& folder);
-Status ExportTrajectories(const RunSource& source, const ExportOptions& options, const std::string& folder);
-Status ExportTum(const RunSource& source, const ExportOptions& options, const std::string& folder);
-Status ExportColmap4d(const RunSource& source, const ExportOptions& options, const std::string& folder);
-Status ExportDatabase(const RunSource& source, const ExportOptions& options, const std::string& folder);
-Status ExportTracksCsv(const RunSource& source, const ExportOptions& options, const std::string& folder);
-Status ExportTracksNpz(const RunSource& source, const ExportOptions& options, const std::string& folder);
-Status ExportStir(const RunSource& source, const ExportOptions& options, const std::string& folder);
-Status ExportNerfstudio(const RunSource& source, const ExportOptions& options, const std::string& folder);
-Status ExportEndoNerf(const RunSource& source, const ExportOptions& options, const std::string& folder);
+struct ExportFolder {
+  std::string path;   // where files are written
+  std::string place;  // where they will be seen: the same, or where `path` is moved when everything is written
+
+  std::string Path(const std::string& name) const { return path + "/" + name; }
+  // Makes a subfolder. Fails with kUnwritable.
+  Status AddFolder(const std::string& name) const;
+};
+
+Status ExportColmapCanonical(const RunSource& source, const ExportOptions& options, const ExportFolder& folder);
+Status ExportColmapSpacetime(const RunSource& source, const ExportOptions& options, const ExportFolder& folder);
+Status ExportColmapFrames(const RunSource& source, const ExportOptions& options, const ExportFolder& folder);
+Status ExportPly(const RunSource& source, const ExportOptions& options, const ExportFolder& folder);
+Status ExportTrajectories(const RunSource& source, const ExportOptions& options, const ExportFolder& folder);
+Status ExportTum(const RunSource& source, const ExportOptions& options, const ExportFolder& folder);
+Status ExportColmap4d(const RunSource& source, const ExportOptions& options, const ExportFolder& folder);
+Status ExportDatabase(const RunSource& source, const ExportOptions& options, const ExportFolder& folder);
+Status ExportTracksCsv(const RunSource& source, const ExportOptions& options, const ExportFolder& folder);
+Status ExportTracksNpz(const RunSource& source, const ExportOptions& options, const ExportFolder& folder);
+Status ExportStir(const RunSource& source, const ExportOptions& options, const ExportFolder& folder);
+Status ExportNerfstudio(const RunSource& source, const ExportOptions& options, const ExportFolder& folder);
+Status ExportEndoNerf(const RunSource& source, const ExportOptions& options, const ExportFolder& folder);
 
 // The color of a frame's time, from the source's first frame to its last: viridis, which is even to the eye and to the
 // color-blind.

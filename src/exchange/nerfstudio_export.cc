@@ -66,23 +66,23 @@ double TimeOf(const RunSource& source, const SourceFrame& frame) {
 }
 
 // Writes an image of the frame and names it in `json`.
-Status AddImage(const StagedFolder& staged, const char* folder, const SourceFrame& frame, const cv::Mat& image,
+Status AddImage(const ExportFolder& out, const char* folder, const SourceFrame& frame, const cv::Mat& image,
                 const char* key, Json* json) {
   const std::string name = std::string(folder) + "/" + NumberOf(frame) + ".png";
   (*json)[key] = name;
-  if (Status status = staged.AddFolder(folder); !status.ok()) return status;
-  return WritePng(staged.Path(name), image);
+  if (Status status = out.AddFolder(folder); !status.ok()) return status;
+  return WritePng(out.Path(name), image);
 }
 
-Result<Json> WriteFrame(const StagedFolder& staged, const RunSource& source, const SourceFrame& frame,
+Result<Json> WriteFrame(const ExportFolder& out, const RunSource& source, const SourceFrame& frame,
                         const RunImage& image, double unit) {
   Json json;
-  Status status = AddImage(staged, native::kImageFolder, frame, image.image, "file_path", &json);
+  Status status = AddImage(out, native::kImageFolder, frame, image.image, "file_path", &json);
   if (status.ok() && !image.depth.empty())
-    status = AddImage(staged, native::kDepthFolder, frame, QuantizeDepth(image.depth, kDepthStep * unit),
+    status = AddImage(out, native::kDepthFolder, frame, QuantizeDepth(image.depth, kDepthStep * unit),
                       "depth_file_path", &json);
   if (status.ok() && !image.mask.empty())
-    status = AddImage(staged, native::kMaskFolder, frame, image.mask, "mask_path", &json);
+    status = AddImage(out, native::kMaskFolder, frame, image.mask, "mask_path", &json);
   if (!status.ok()) return status;
   json["time"] = TimeOf(source, frame);
   json["transform_matrix"] = PoseJson(frame.cam_from_world, unit);
@@ -100,10 +100,11 @@ std::vector<NewPoint> PointsIn(double unit, const std::vector<CanonicalPoint>& p
 
 }  // namespace
 
-Status ExportNerfstudio(const RunSource& source, const ExportOptions& /*options*/, const std::string& folder) {
-  auto staged = StagedFolder::Create(
-      folder, {kTransformsFile, kPointsFile, native::kImageFolder, native::kDepthFolder, native::kMaskFolder});
-  if (!staged.ok()) return staged.status();
+Status ExportNerfstudio(const RunSource& source, const ExportOptions& /*options*/, const ExportFolder& folder) {
+  if (Status status = CheckAbsent(folder.place, {kTransformsFile, kPointsFile, native::kImageFolder,
+                                                 native::kDepthFolder, native::kMaskFolder});
+      !status.ok())
+    return status;
   auto images = RunImages::Open(source);
   if (!images.ok()) return images.status();
   const auto depth = TypicalDepth(source);
@@ -119,15 +120,12 @@ Status ExportNerfstudio(const RunSource& source, const ExportOptions& /*options*
       return status;
     const auto image = images->Read(frame);
     if (!image.ok()) return image.status();
-    auto entry = WriteFrame(*staged, source, frame, *image, unit);
+    auto entry = WriteFrame(folder, source, frame, *image, unit);
     if (!entry.ok()) return entry.status();
     json["frames"].push_back(*std::move(entry));
   }
-  if (Status status = WritePly(staged->Path(kPointsFile).string(), PointsIn(unit, source.points)); !status.ok())
-    return status;
-  if (Status status = WriteFileAtomically(staged->Path(kTransformsFile).string(), json.dump(2) + "\n"); !status.ok())
-    return status;
-  return staged->Commit();
+  if (Status status = WritePly(folder.Path(kPointsFile), PointsIn(unit, source.points)); !status.ok()) return status;
+  return WriteFileAtomically(folder.Path(kTransformsFile), json.dump(2) + "\n");
 }
 
 }  // namespace pliant

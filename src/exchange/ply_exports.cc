@@ -6,6 +6,7 @@
 
 #include "exchange/exports.h"
 #include "pliant/base/files.h"
+#include "pliant/base/staged_folder.h"
 #include "pliant/base/text.h"
 
 namespace pliant {
@@ -23,7 +24,10 @@ void AppendColor(const std::array<std::uint8_t, 3>& rgb, std::string* out) {
 
 }  // namespace
 
-Status ExportPly(const RunSource& source, const ExportOptions& /*options*/, const std::string& folder) {
+Status ExportPly(const RunSource& source, const ExportOptions& /*options*/, const ExportFolder& folder) {
+  std::vector<std::string> names;
+  for (const SourceFrame& frame : source.frames) names.push_back(NumberOf(frame) + ".ply");
+  if (Status status = CheckAbsent(folder.place, names); !status.ok()) return status;
   return ForEachFrame(source, [&](const SourceFrame& frame, const auto& observations) {
     std::string out = kPlyHead;
     out += "comment dx dy dz: from the undeformed position\nelement vertex " + std::to_string(observations.size()) +
@@ -37,13 +41,13 @@ Status ExportPly(const RunSource& source, const ExportOptions& /*options*/, cons
       AppendBytes(&out, static_cast<std::uint64_t>(o.id.value), 4);
       AppendPosition(o.position - point.position, &out);
     }
-    return WriteFileAtomically(folder + "/" + NumberOf(frame) + ".ply", out);
+    return WriteFileAtomically(folder.Path(NumberOf(frame) + ".ply"), out);
   });
 }
 
-Status ExportTrajectories(const RunSource& source, const ExportOptions& /*options*/, const std::string& folder) {
+Status ExportTrajectories(const RunSource& source, const ExportOptions& /*options*/, const ExportFolder& folder) {
   FileGroup group;
-  auto file = group.Create(folder + "/trajectories.ply");
+  auto file = group.Create(folder.Path("trajectories.ply"));
   if (!file.ok()) return file.status();
   const auto edges = source.num_observations - static_cast<std::int64_t>(source.points.size());
   std::string out = kPlyHead;

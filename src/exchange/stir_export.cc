@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <filesystem>
 #include <map>
 #include <span>
 #include <tuple>
@@ -102,10 +101,6 @@ bool IsMetric(const RunSource& source) {
   return summary.ok() && summary->description.metric.value_or(false);
 }
 
-std::string Path(const std::string& folder, const char* name) {
-  return (std::filesystem::path(folder) / name).string();
-}
-
 Status Write(const std::string& recording, std::vector<Eigen::Vector3d> points, int dimensions,
              const std::string& path) {
   return WriteStirPoints({.dimensions = dimensions, .of_recording = {{recording, std::move(points)}}}, path);
@@ -118,7 +113,7 @@ std::vector<Eigen::Vector3d> Pixels(std::span<const Eigen::Vector2d> pixels) {
 }
 
 // The labelled points of the start where they are at the end.
-Status WriteCarried(const RunSource& source, const ExportOptions& options, const std::string& folder) {
+Status WriteCarried(const RunSource& source, const ExportOptions& options, const ExportFolder& folder) {
   const auto start = ReadStirPoints(options.start_points);
   if (!start.ok()) return start.status();
   if (start->dimensions != 2)
@@ -135,15 +130,15 @@ Status WriteCarried(const RunSource& source, const ExportOptions& options, const
   for (const Eigen::Vector3d& point : found->second) pixels.emplace_back(point.head<2>());
   const auto way = Follow(source, std::move(pixels));
   if (!way.ok()) return way.status();
-  if (Status status = Write(recording, Pixels(way->pixels), 2, Path(folder, "positions.json")); !status.ok())
+  if (Status status = Write(recording, Pixels(way->pixels), 2, folder.Path("positions.json")); !status.ok())
     return status;
   if (!IsMetric(source)) return Status::Ok();
   auto points = Lifted(source, *way);
-  return points.ok() ? Write(recording, *std::move(points), 3, Path(folder, "positions3d.json")) : points.status();
+  return points.ok() ? Write(recording, *std::move(points), 3, folder.Path("positions3d.json")) : points.status();
 }
 
 // The run's own points that its first and its last frame show.
-Status WriteOwn(const RunSource& source, const ExportOptions& options, const std::string& folder) {
+Status WriteOwn(const RunSource& source, const ExportOptions& options, const ExportFolder& folder) {
   const auto way = Follow(source, {});
   if (!way.ok()) return way.status();
   std::string recording = options.recording;
@@ -164,16 +159,16 @@ Status WriteOwn(const RunSource& source, const ExportOptions& options, const std
   const bool metric = IsMetric(source);
   for (const auto& [k, name, name3d] :
        {std::tuple(0U, "start.json", "start3d.json"), std::tuple(1U, "positions.json", "positions3d.json")}) {
-    if (Status status = Write(recording, Pixels(pixels[k]), 2, Path(folder, name)); !status.ok()) return status;
+    if (Status status = Write(recording, Pixels(pixels[k]), 2, folder.Path(name)); !status.ok()) return status;
     if (!metric) continue;
-    if (Status status = Write(recording, points[k], 3, Path(folder, name3d)); !status.ok()) return status;
+    if (Status status = Write(recording, points[k], 3, folder.Path(name3d)); !status.ok()) return status;
   }
   return Status::Ok();
 }
 
 }  // namespace
 
-Status ExportStir(const RunSource& source, const ExportOptions& options, const std::string& folder) {
+Status ExportStir(const RunSource& source, const ExportOptions& options, const ExportFolder& folder) {
   return options.start_points.empty() ? WriteOwn(source, options, folder) : WriteCarried(source, options, folder);
 }
 

@@ -39,14 +39,14 @@ int NumFrames(const RunSource& source) {
 
 }  // namespace
 
-Status ExportTracksCsv(const RunSource& source, const ExportOptions& /*options*/, const std::string& folder) {
+Status ExportTracksCsv(const RunSource& source, const ExportOptions& /*options*/, const ExportFolder& folder) {
   const auto tracks = TracksOf(source);
-  return tracks.ok() ? WriteTrackCsv(folder + "/tracks.csv", *tracks) : tracks.status();
+  return tracks.ok() ? WriteTrackCsv(folder.Path("tracks.csv"), *tracks) : tracks.status();
 }
 
-Status ExportTracksNpz(const RunSource& source, const ExportOptions& /*options*/, const std::string& folder) {
+Status ExportTracksNpz(const RunSource& source, const ExportOptions& /*options*/, const ExportFolder& folder) {
   const auto tracks = TracksOf(source);
-  return tracks.ok() ? WriteTrackNpz(folder + "/tracks.npz", *tracks, NumFrames(source)) : tracks.status();
+  return tracks.ok() ? WriteTrackNpz(folder.Path("tracks.npz"), *tracks, NumFrames(source)) : tracks.status();
 }
 
 }  // namespace pliant

@@ -3,6 +3,8 @@
 
 #include "pliant/base/files.h"
 
+#include <algorithm>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -11,10 +13,13 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include "pliant/base/staged_folder.h"
 #include "support/temporary_folder.h"
 
 namespace pliant {
 namespace {
+
+namespace fs = std::filesystem;
 
 // Leaves so many file descriptors, as long as it lives.
 class DescriptorsLeft {
@@ -52,6 +57,72 @@ TEST(Files, AreReadWithTheLastFileDescriptorAndNotWithoutOne) {
   const auto text = ReadFile(path);
   ASSERT_FALSE(text.ok());
   EXPECT_EQ(text.status().code(), ErrorCode::kUnreadable);
+}
+
+void Write(const std::string& path, const std::string& text) { ASSERT_TRUE(WriteFileAtomically(path, text).ok()); }
+
+std::string Read(const std::string& path) {
+  const auto text = ReadFile(path);
+  return text.ok() ? *text : "(none)";
+}
+
+std::vector<std::string> NamesIn(const std::string& folder) {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(folder)) names.push_back(entry.path().filename().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+TEST(Files, OfAGroupAppearTogetherOrNotAtAll) {
+  const TemporaryFolder folder("files");
+  Write(folder.Path("old"), "before");
+  fs::create_directories(folder.Path("taken/by_a_file"));  // nothing can be renamed to it
+  {
+    FileGroup group;
+    for (const char* name : {"new", "old", "taken"}) {
+      auto file = group.Create(folder.Path(name));
+      ASSERT_TRUE(file.ok()) << file.status().message();
+      ASSERT_TRUE(file->Append("after").ok());
+      ASSERT_TRUE(file->Close().ok());
+    }
+    const Status status = group.Commit();
+    EXPECT_EQ(status.code(), ErrorCode::kUnwritable);
+    EXPECT_NE(status.message().find("taken"), std::string::npos) << status.message();
+  }
+  EXPECT_EQ(NamesIn(folder.Path("")), (std::vector<std::string>{"old", "taken"}));
+  EXPECT_EQ(Read(folder.Path("old")), "before");
+  FileGroup group;
+  for (const char* name : {"new", "old"}) ASSERT_TRUE(group.Create(folder.Path(name))->Append("after").ok());
+  ASSERT_TRUE(group.Commit().ok());
+  EXPECT_EQ(NamesIn(folder.Path("")), (std::vector<std::string>{"new", "old", "taken"}));
+  EXPECT_EQ(Read(folder.Path("old")), "after");
+}
+
+TEST(Files, OfAStagedFolderAppearTogetherOrNotAtAll) {
+  const TemporaryFolder folder("files");
+  fs::create_directories(folder.Path("0/here"));
+  Write(folder.Path("0/a"), "before");
+  const auto stage = [&] {
+    auto staged = StagedFolder::Create(folder.Path(""), {});
+    EXPECT_TRUE(staged.ok() && staged->AddFolder("0").ok() && staged->AddFolder("1").ok());
+    for (const char* name : {"0/a", "0/b", "1/a"}) Write(staged->Path(name).string(), "after");
+    return staged;
+  };
+  {
+    auto staged = stage();
+    Write(staged->Path("0/here").string(), "a file, where there is a folder");
+    EXPECT_EQ(staged->Commit().code(), ErrorCode::kUnwritable);
+  }
+  EXPECT_EQ(NamesIn(folder.Path("")), (std::vector<std::string>{"0"}));
+  EXPECT_EQ(NamesIn(folder.Path("0")), (std::vector<std::string>{"a", "here"}));
+  EXPECT_EQ(Read(folder.Path("0/a")), "before");
+  {
+    auto staged = stage();
+    ASSERT_TRUE(staged->Commit().ok());
+  }
+  EXPECT_EQ(NamesIn(folder.Path("")), (std::vector<std::string>{"0", "1"}));
+  EXPECT_EQ(NamesIn(folder.Path("0")), (std::vector<std::string>{"a", "b", "here"}));
+  EXPECT_EQ(Read(folder.Path("0/a")), "after");
 }
 
 }  // namespace

@@ -286,6 +286,30 @@ TEST(Program, ModelCheckSaysWhatIsWrongAndExitsWithOne) {
   EXPECT_EQ(Pliant("model check /nowhere").exit, 1);
 }
 
+TEST(Program, ModelConvertStopsOnASignalAndLeavesNothing) {
+  const std::filesystem::path model = Temporary("model");
+  const std::filesystem::path out = Temporary("out");
+  std::filesystem::create_directories(model);
+  std::filesystem::create_directories(out);
+  std::ofstream(model / "cameras.txt") << "1 PINHOLE 64 48 50 50 32 24\n";
+  std::ofstream(model / "images.txt") << "1 1 0 0 0 0 0 0 1 a.png\n\n";
+  std::ofstream(model / "points3D.txt") << "";
+  // The output cameras.bin is a pipe, at which the program waits for a reader; 0x4000 is SIGTERM among those caught.
+  std::ofstream(Temporary("stop.sh")) << R"sh(cd "$(dirname "$0")"
+mkfifo out/cameras.bin
+"$1" model convert --input_path model --output_path out 2>err.txt & pid=$!
+for try in {1..500}; do
+  [ $(( 0x$(sed -n "s/^SigCgt:.*\(........\)$/\1/p" /proc/$pid/status) & 0x4000 )) != 0 ] && break; sleep 0.01
+done
+kill -TERM $pid; cat out/cameras.bin >read; wait $pid
+)sh";
+  const int status = std::system(("bash '" + Temporary("stop.sh").string() + "' '" PLIANT_PROGRAM "'").c_str());
+  EXPECT_EQ(WIFEXITED(status) ? WEXITSTATUS(status) : -1, 1);
+  EXPECT_THAT(ReadText(Temporary("err.txt")), HasSubstr("stopped on request; nothing was written"));
+  std::filesystem::remove(out / "cameras.bin");
+  EXPECT_TRUE(std::filesystem::is_empty(out));
+}
+
 TEST(Program, ReportSaysWhatItCannotWrite) {
   const auto error = [](const std::string& arguments, int exit) {
     const Outcome outcome = Pliant("report --run run " + arguments);

@@ -226,6 +226,20 @@ TEST(Export, EverySubmapHasAFolder) {
   }
 }
 
+TEST(Export, FilesAFrameAreNotAddedToThoseThatAreThere) {
+  const TestFolder folder;
+  WriteRun(folder);
+  for (const char* format : {"frames", "ply"}) {
+    ASSERT_TRUE(Export(folder, format).ok());
+    ExportOptions options;
+    options.stride = 2;
+    const Status again = Export(folder, format, options).status();
+    EXPECT_EQ(again.code(), ErrorCode::kInvalidArgument);
+    EXPECT_THAT(again.message(), HasSubstr("is there already; delete it or give another --output_path"));
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder.Path("out/.unfinished")));
+}
+
 TEST(Export, ARunThatWasKilledNeedsItsSequence) {
   const TestFolder folder;
   WriteRun(folder, End::kKilled);

@@ -52,8 +52,18 @@ class OutputFile {
   std::unique_ptr<std::FILE, Closer> file_;
 };
 
-// Files that appear together or not at all: each is written under another name, and Commit renames them. What is not
-// committed is deleted. Between the renames of several files a reader can see some of them.
+// A file or folder that is to be renamed.
+struct Renaming {
+  std::string from;
+  std::string to;
+};
+
+// Renames all of them, or none: where one fails those before it are taken back, and the files that they replaced are
+// there again. Between the renames a reader can see some of them. Fails with kUnwritable.
+Status RenameTogether(const std::vector<Renaming>& renamings);
+
+// Files that appear together or not at all: each is written under another name, and Commit renames them together. What
+// is not committed is deleted.
 class FileGroup {
  public:
   FileGroup() = default;
@@ -64,6 +74,7 @@ class FileGroup {
   // A new file of the group, which is to become `path`; the caller closes it before Commit. A device or a pipe that is
   // there is written into at once.
   Result<OutputFile> Create(const std::string& path);
+  // Renames all files, or none. Fails with kUnwritable.
   Status Commit();
 
  private:

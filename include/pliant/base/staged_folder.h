@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // Files and folders that appear in a folder together, when all of them are written, or not at all. Programs that count
-// the images of a folder must not find those of another export beside them: what is there already is not added to.
+// the images of a folder must not find those of another export beside them: CheckAbsent says what is there already.
 #pragma once
 
 #include <filesystem>
@@ -13,9 +13,12 @@
 
 namespace pliant {
 
+// Fails with kInvalidArgument where `folder` has one of `names`.
+Status CheckAbsent(const std::filesystem::path& folder, const std::vector<std::string>& names);
+
 class StagedFolder {
  public:
-  // `names` may appear in `folder`, which is there. Fails with kInvalidArgument where it has one of them, kUnwritable.
+  // `names` may appear in `folder`, which is there. Fails as CheckAbsent does, and with kUnwritable.
   static Result<StagedFolder> Create(const std::filesystem::path& folder, const std::vector<std::string>& names);
   StagedFolder(StagedFolder&& other) noexcept;
   StagedFolder& operator=(StagedFolder&&) = delete;
@@ -25,7 +28,8 @@ class StagedFolder {
   std::filesystem::path Path(const std::string& name) const { return staged_ / name; }
   // Makes a subfolder. Fails with kUnwritable.
   Status AddFolder(const std::string& name) const;
-  // Moves everything to its place. Fails with kUnwritable.
+  // Moves everything to its place, or nothing. A folder that is there gets what it lacks; a file that is there is
+  // replaced. Fails with kUnwritable.
   Status Commit();
 
  private:

@@ -19,6 +19,7 @@
 #include <utility>
 #include <vector>
 
+#include "pliant/base/job_progress.h"
 #include "pliant/base/options.h"
 #include "pliant/base/status.h"
 
@@ -144,9 +145,12 @@ Result<Format> FindModel(const std::string& folder);
 // kUnreadable for files that end too early, counts that cannot be, text that is not what it should be, an unknown
 // camera model, a missing line of observations, or an id that is there twice; the sentence names the file, and the line
 // in text.
-Result<Model> ReadModel(const std::string& folder, Observations observations = Observations::kRead);
+// `progress` is told of the files (task "read"); kInterrupted where it asks to stop.
+Result<Model> ReadModel(const std::string& folder, Observations observations = Observations::kRead,
+                        const JobProgress& progress = {});
 // `format` is kBinary or kText.
-Result<Model> ReadModel(const std::string& folder, Format format, Observations observations = Observations::kRead);
+Result<Model> ReadModel(const std::string& folder, Format format, Observations observations = Observations::kRead,
+                        const JobProgress& progress = {});
 
 // cameras.txt or cameras.bin alone, told apart by the extension. Fails as above.
 Result<std::vector<Camera>> ReadCameras(const std::string& path);
@@ -156,8 +160,10 @@ Result<std::vector<Camera>> ReadCameras(const std::string& path);
 Status CheckFolder(const std::string& folder, Format format);
 
 // Writes a model as COLMAP does, into a folder that is made if need be. All of its files appear at the end, or none.
-// Fails as CheckFolder does, with kInvalidArgument for a name that the format cannot hold, and with kUnwritable.
-Status WriteModel(const std::string& folder, const Model& model, Format format, Rigs rigs = Rigs::kLeftOut);
+// Fails as CheckFolder does, with kInvalidArgument for a name that the format cannot hold, with kUnwritable, and with
+// kInterrupted where `progress`, which is told of the images and points of each file (task "write"), asks to stop.
+Status WriteModel(const std::string& folder, const Model& model, Format format, Rigs rigs = Rigs::kLeftOut,
+                  const JobProgress& progress = {});
 
 }  // namespace pliant::colmap
 

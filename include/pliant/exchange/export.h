@@ -21,6 +21,7 @@
 
 namespace pliant {
 
+struct ExportFolder;
 struct RunSource;
 
 struct ExportOptions {
@@ -39,11 +40,13 @@ struct ExportOptions {
 
 struct ExportFormat {
   enum class Needs { kRun, kRunAndImages };
+  enum class Leaves { kFileGroup, kManyFiles };
 
   std::string_view name;
   std::string_view what;  // for people: what it leaves, a sentence
-  Status (*write)(const RunSource& source, const ExportOptions& options, const std::string& folder);
-  Needs needs = Needs::kRun;  // a format with images takes mask_path and surface_path of a request
+  Status (*write)(const RunSource& source, const ExportOptions& options, const ExportFolder& folder);
+  Leaves leaves = Leaves::kFileGroup;  // files that it lets appear together, or many, which ExportRun lets
+  Needs needs = Needs::kRun;           // a format with images takes mask_path and surface_path of a request
 };
 
 std::span<const ExportFormat> ExportFormats();
@@ -70,9 +73,9 @@ struct ExportSummary {
 
 // Fails with kNotFound, kUnreadable or kMismatch for what cannot be read, and images or a surface that are not the
 // run's; kInsufficient if no frame was tracked, or none has a depth; kInvalidArgument if there is no such format, the
-// folder has a model in another one or images already, or the format has no images to mask or to give depths;
-// kUnwritable. `progress` is told of the frames of a format that holds images or reads observations (task "export");
-// where it asks to stop nothing is left, but the files of single frames that are written (formats frames and ply).
+// folder has a model in another one, or images or files a frame already, or the format has no images to mask or to give
+// depths; kUnwritable. `progress` is told of the frames of a format that holds images or reads observations (task
+// "export"); where it asks to stop nothing is left. All files of all submaps appear together.
 Result<ExportSummary> ExportRun(const ExportRequest& request, const ExportOptions& options,
                                 const JobProgress& progress = {});
 
