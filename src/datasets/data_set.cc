@@ -13,8 +13,8 @@
 #include "datasets/depth_prior_file.h"
 #include "datasets/image_file.h"
 #include "datasets/image_list.h"
-#include "datasets/image_size.h"
 #include "datasets/pair_streams.h"
+#include "image/image_size.h"
 #include "pliant/camera/assumed_camera.h"
 #include "pliant/io/camera_file.h"
 

@@ -12,6 +12,7 @@
 
 #include <unistd.h>
 
+#include "image/image_size.h"
 #include "pliant/base/options.h"
 #include "pliant/base/text.h"
 
@@ -69,6 +70,13 @@ Result<std::unique_ptr<FrameGrabber>> FrameGrabber::Open(const std::string& sour
   }
   if (is_stopped()) return Status(ErrorCode::kInterrupted, "stopped on request before the first image");
   if (!opened.ok()) return opened;
+  const cv::Size size(static_cast<int>(grabber->capture_.get(cv::CAP_PROP_FRAME_WIDTH)),
+                      static_cast<int>(grabber->capture_.get(cv::CAP_PROP_FRAME_HEIGHT)));
+  if (size.area() != 0)  // a stream need not know it
+    if (Status status =
+            CheckPixels(size, source == "-" ? "the video on standard input" : "the stream " + Quoted(source));
+        !status.ok())
+      return status;
   const double fps = grabber->capture_.get(cv::CAP_PROP_FPS);
   if (std::isfinite(fps) && fps > 0 && fps < 1e4) grabber->fps_ = fps;
   return grabber;

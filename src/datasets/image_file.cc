@@ -10,11 +10,14 @@
 #include <fstream>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <zlib.h>
+
+#include "image/image_size.h"
 
 namespace pliant {
 namespace {
@@ -121,6 +124,9 @@ Result<DecodedImage> Decode(const std::filesystem::path& path) {
   if (png == Wholeness::kTruncated || (IsJpeg(*bytes) && !JpegIsWhole(*bytes)) ||
       (IsBmp(*bytes) && !BmpIsWhole(*bytes)))
     return Status(ErrorCode::kUnreadable, "the image " + path.string() + " is truncated" + advice);
+  const std::string what = "the image " + path.string();
+  if (const auto size = ImageSizeOf(*bytes))
+    if (Status status = CheckPixels(*size, what); !status.ok()) return status;
   DecodedImage decoded;
   try {
     decoded.image = cv::imdecode(*bytes, cv::IMREAD_UNCHANGED);
@@ -135,12 +141,13 @@ Result<DecodedImage> Decode(const std::filesystem::path& path) {
   if (decoded.image.empty())
     return Status(ErrorCode::kUnreadable,
                   "the image " + path.string() + " cannot be decoded (damaged, or not an image)" + advice);
+  if (Status status = CheckPixels(decoded.image.size(), what); !status.ok()) return status;
   decoded.lossy = IsJpeg(*bytes);
   return decoded;
 }
 
 // Gray or BGR; what the fourth channel says is dropped.
-cv::Mat WithoutAlpha(const cv::Mat& image) {
+cv::Mat WithoutAlpha(cv::Mat image) {
   if (image.channels() == 1 || image.channels() == 3) return image;
   cv::Mat result;
   if (image.channels() == 4)
@@ -155,27 +162,30 @@ cv::Mat WithoutAlpha(const cv::Mat& image) {
 std::string SizeText(int width, int height) { return std::to_string(width) + "x" + std::to_string(height); }
 
 Result<cv::Mat> ReadImage(const std::filesystem::path& path) {
-  const Result<DecodedImage> decoded = Decode(path);
+  Result<DecodedImage> decoded = Decode(path);
   if (!decoded.ok()) return decoded.status();
-  const cv::Mat image = WithoutAlpha(decoded->image);
-  if (image.depth() == CV_8U) return image;
+  cv::Mat image = std::move(decoded->image);
+  if (image.depth() == CV_8U) return WithoutAlpha(std::move(image));
   if (image.depth() != CV_16U)
     return Status(ErrorCode::kUnreadable,
                   "the image " + path.string() + " is neither 8-bit nor 16-bit; export it as 8-bit PNG");
   cv::Mat result;
   image.convertTo(result, CV_8U, 1.0 / 257.0);
-  return result;
+  image.release();  // there are not three of them at a time
+  return WithoutAlpha(std::move(result));
 }
 
 Result<cv::Mat> ReadMaskImage(const std::filesystem::path& path) {
   const Result<DecodedImage> decoded = Decode(path);
   if (!decoded.ok()) return decoded.status();
-  const cv::Mat image = WithoutAlpha(decoded->image);
-  const cv::Mat one_row_a_pixel = image.reshape(1, static_cast<int>(image.total()));
-  cv::Mat strongest;
-  cv::reduce(one_row_a_pixel.depth() == CV_8U ? one_row_a_pixel : cv::Mat_<float>(one_row_a_pixel), strongest, 1,
-             cv::REDUCE_MAX);
-  const cv::Mat mask = strongest.reshape(1, image.rows) > (decoded->lossy ? 127 : 0);
+  const int channels = decoded->image.channels() == 3 || decoded->image.channels() == 4 ? 3 : 1;
+  cv::Mat mask;
+  for (int k = 0; k < channels; ++k) {
+    cv::Mat channel;
+    cv::extractChannel(decoded->image, channel, k);
+    const cv::Mat counts = channel > (decoded->lossy ? 127 : 0);
+    mask = mask.empty() ? counts : cv::Mat(mask | counts);
+  }
   return mask;
 }
 

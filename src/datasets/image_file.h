@@ -18,6 +18,9 @@ namespace pliant {
 std::string SizeText(int width, int height);
 inline std::string SizeText(const cv::Mat& image) { return SizeText(image.cols, image.rows); }
 
+// All of them refuse images of more than kMaxImageMegapixels (image/image_size.h), where the head tells the size before
+// they are decoded.
+
 // 8-bit with one (gray) or three (BGR) channels. 16-bit values are divided by 257, alpha is dropped, EXIF is ignored.
 // Fails with kNotFound or kUnreadable.
 Result<cv::Mat> ReadImage(const std::filesystem::path& path);

@@ -7,7 +7,7 @@
 
 #include "datasets/image_file.h"
 #include "datasets/image_list.h"
-#include "datasets/image_size.h"
+#include "image/image_size.h"
 
 namespace pliant {
 namespace {

@@ -9,6 +9,7 @@
 #include <opencv2/videoio.hpp>
 
 #include "datasets/image_stream.h"
+#include "image/image_size.h"
 
 namespace pliant {
 namespace {
@@ -70,7 +71,7 @@ Status VideoStream::Open() {
   if (const double fps = capture_.get(cv::CAP_PROP_FPS); std::isfinite(fps) && fps > 0) fps_ = fps;
   size_ = {static_cast<int>(capture_.get(cv::CAP_PROP_FRAME_WIDTH)),
            static_cast<int>(capture_.get(cv::CAP_PROP_FRAME_HEIGHT))};
-  return Status::Ok();
+  return CheckPixels(size_, "the video " + file_.string());
 }
 
 Status VideoStream::BreaksOff() const {
@@ -96,7 +97,8 @@ Result<std::optional<cv::Mat>> VideoStream::Read(int idx) {
   const double recorded_ms = capture_.get(cv::CAP_PROP_POS_MSEC);
   const bool is_known = std::isfinite(recorded_ms) && (recorded_ms > 0 || idx == 0);
   recorded_s_ = is_known ? std::optional(1e-3 * recorded_ms) : std::nullopt;
-  return std::optional<cv::Mat>(decoded.clone());  // the decoder reuses its own memory
+  if (decoded.u == nullptr) decoded = decoded.clone();  // memory that the decoder reuses
+  return std::optional<cv::Mat>(std::move(decoded));
 }
 
 }  // namespace

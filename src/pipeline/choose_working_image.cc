@@ -27,6 +27,10 @@ constexpr int kMinAlive = 20;
 // more time than they give.
 constexpr int kMinSide_px = 320;
 constexpr int kMaxSide_px = 1300;
+// Of a larger source the working image has so many pixels: a map of each pixel's texture would fill the memory.
+constexpr double kMaxPixels = 12e6;
+// Of all images that are looked at. Those of more than a few megapixels are fewer.
+constexpr double kMaxImageBytes = 400e6;
 constexpr std::array kScales = {1.0, 0.75, 1.5, 0.5, 2.0, 1.0 / 3.0, 0.25};  // nearest to the source first
 constexpr std::array kSmoothings_px = {0.0, 0.7, 1.0, 1.4};
 // Of patches in images whose corners do not last: twice the pixels, so that noise moves a patch by 0.7 times as much.
@@ -83,10 +87,16 @@ std::vector<ImageRun> ReadFirstRuns(const SequenceRequest& request) {
   std::vector<ImageRun> runs(kRuns);
   // Images that have yet to come would be waited for.
   const int last_run = request.IsLive() ? 0 : kRuns - 1;
+  double bytes = 0;
+  double bytes_of_one = 0;
   for (int k = 0; k < last_run * kRunDistance + kRunFrames; ++k) {
+    if (bytes + bytes_of_one > kMaxImageBytes) break;
     auto next = (*sequence)->Next();
     if (!next.ok() || !next->has_value()) break;
-    if (k % kRunDistance < kRunFrames) runs[static_cast<std::size_t>(k / kRunDistance)].push_back(**std::move(next));
+    if (k % kRunDistance >= kRunFrames) continue;
+    bytes_of_one = static_cast<double>((*next)->image.total() * (*next)->image.elemSize());
+    bytes += bytes_of_one;
+    runs[static_cast<std::size_t>(k / kRunDistance)].push_back(**std::move(next));
   }
   return runs;
 }
@@ -94,7 +104,10 @@ std::vector<ImageRun> ReadFirstRuns(const SequenceRequest& request) {
 WorkingImage ChooseWorkingImage(const std::vector<ImageRun>& runs, const TrackOptions& options) {
   const WorkingImage fixed{options.image.scale, options.image.smoothing_px};
   if (options.image.working != WorkingImageMode::kMeasured || options.FollowsInSource()) return fixed;
-  if (runs.empty() || runs.front().size() < 2) return {};
+  if (runs.empty() || runs.front().empty()) return {};
+  const auto pixels = static_cast<double>(runs.front().front().image.total());
+  if (pixels > kMaxPixels) return {.scale = std::sqrt(kMaxPixels / pixels)};
+  if (runs.front().size() < 2) return {};
   const Trackability as_is = Measure(runs, {}, options);
   if (as_is.corners >= kMinAlive && as_is.alive >= kLastingShare * as_is.corners) return {};
   const cv::Size source = runs.front().front().image.size();

@@ -22,11 +22,11 @@ namespace pliant {
 using ImageRun = std::vector<SequenceFrame>;
 
 // Three runs of 16 images, 60 apart, from the request's first on: what one of them shows may be an exception. Up to the
-// first image that cannot be read; empty where there is none.
+// first image that cannot be read, and up to 400 MB; empty where there is none.
 std::vector<ImageRun> ReadFirstRuns(const SequenceRequest& request);
 
 // The source where `options` do not ask for a measurement, or the images do not tell: there are too few, or too few
-// corners last in any of them.
+// corners last in any of them. Images of more than 12 megapixels become images of 12 megapixels.
 WorkingImage ChooseWorkingImage(const std::vector<ImageRun>& runs, const TrackOptions& options);
 
 }  // namespace pliant

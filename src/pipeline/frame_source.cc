@@ -3,6 +3,7 @@
 
 #include "pipeline/frame_source.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "pipeline/working_frame.h"
@@ -13,7 +14,14 @@ namespace pliant {
 namespace {
 
 constexpr int kFramesAhead = 3;
-constexpr int kLiveFramesAhead = 1;  // it is prepared while tracking is busy; more would be old by then
+constexpr double kMaxPixelsAhead = 36e6;  // of the source's images; none of a larger one
+constexpr int kLiveFramesAhead = 1;       // it is prepared while tracking is busy; more would be old by then
+
+int FramesAhead(const RunStart& start) {
+  const double scale = start.working_image.scale;
+  const double pixels = 1.0 * start.working_camera->width() * start.working_camera->height() / (scale * scale);
+  return std::clamp(static_cast<int>(kMaxPixelsAhead / pixels), 0, kFramesAhead);
+}
 
 }  // namespace
 
@@ -106,7 +114,8 @@ Status FrameSource::GoBackTo(int frame_idx) {
 }
 
 void FrameSource::ReadAhead(std::function<std::optional<Result<ReadFrame>>()> read, Frames* frames) const {
-  frames->emplace(std::move(read), options_.threads == 1 ? 0 : (input_.IsLive() ? kLiveFramesAhead : kFramesAhead));
+  frames->emplace(std::move(read),
+                  options_.threads == 1 ? 0 : (input_.IsLive() ? kLiveFramesAhead : FramesAhead(start_)));
 }
 
 }  // namespace pliant

@@ -12,7 +12,9 @@
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
-#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "datasets/image_file.h"
 
 namespace pliant::simulation {
 namespace {
@@ -73,8 +75,10 @@ Status ReadPicture(const std::string& path, const aiScene& scene, cv::Mat* image
     std::error_code error;
     if (!fs::exists(picture, error))
       return {ErrorCode::kNotFound, what + " is not there; put it there, or take it out of the mesh's material"};
-    *image = cv::imread(picture.string(), cv::IMREAD_COLOR);
-    if (image->empty()) return {ErrorCode::kUnreadable, what + " cannot be decoded"};
+    const auto read = ReadImage(picture);
+    if (!read.ok()) return {read.status().code(), what + ": " + read.status().message()};
+    *image = *read;
+    if (image->channels() == 1) cv::cvtColor(*read, *image, cv::COLOR_GRAY2BGR);
     return Status::Ok();
   }
   return Status::Ok();

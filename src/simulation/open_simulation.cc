@@ -9,8 +9,7 @@
 #include <system_error>
 #include <vector>
 
-#include <opencv2/imgcodecs.hpp>
-
+#include "datasets/image_file.h"
 #include "pliant/datasets/native_layout.h"
 #include "pliant/io/camera_file.h"
 #include "pliant/io/options_file.h"
@@ -68,7 +67,9 @@ Status CheckDepth(const fs::path& folder, Simulator& simulator) {
   const fs::path path = folder / native::kDepthFolder / native::FrameFileName(0);
   std::error_code error;
   if (!fs::exists(path, error)) return Foreign(folder, path.string() + " is not there");
-  const cv::Mat steps = cv::imread(path.string(), cv::IMREAD_UNCHANGED);
+  const auto stored = ReadStoredImage(path);
+  if (!stored.ok()) return stored.status();
+  const cv::Mat& steps = *stored;
   const Camera& camera = simulator.camera();
   if (steps.type() != CV_16UC1 || steps.cols != camera.width() || steps.rows != camera.height())
     return Foreign(folder, path.string() + " is not a depth image of the camera's size");

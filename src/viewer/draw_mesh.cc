@@ -14,6 +14,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "image/image_size.h"
 #include "pliant/base/text.h"
 #include "viewer/view_lookup.h"
 #include "viewer/viridis.h"
@@ -177,7 +178,8 @@ class TextureColors {
 
 std::vector<cv::Mat> TextureLevels(const std::string& jpeg) {
   std::vector<cv::Mat> levels;
-  if (jpeg.empty()) return levels;
+  const auto size = ImageSizeOf(std::span(reinterpret_cast<const unsigned char*>(jpeg.data()), jpeg.size()));
+  if (!size || !CheckPixels(*size, "the texture").ok()) return levels;  // as without one
   levels.push_back(
       cv::imdecode(cv::Mat(1, static_cast<int>(jpeg.size()), CV_8U, const_cast<char*>(jpeg.data())), cv::IMREAD_COLOR));
   if (levels.front().empty()) return {};

@@ -73,6 +73,13 @@ TEST_F(OpenSequenceTest, NamesATruncatedBmpAndTiff) {
   }
 }
 
+TEST_F(OpenSequenceTest, RefusesAnImageOfMoreThanFiftyMegapixels) {
+  WriteNative(2);
+  Write("images/000001.png", cv::Mat(5001, 10000, CV_8U, cv::Scalar(1)));
+  ExpectBadFrame(*Open(Request()), 2, 1, ErrorCode::kUnreadable,
+                 "000001.png has 10000x5001 pixels, more than 50 million; scale it down");
+}
+
 TEST_F(OpenSequenceTest, TellsWhenTheImageSizeChanges) {
   WriteNative(4);
   Write("images/000002.png", Image(2, 32, 24));

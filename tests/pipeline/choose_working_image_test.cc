@@ -4,6 +4,7 @@
 #include "pipeline/choose_working_image.h"
 
 #include <array>
+#include <cmath>
 
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
@@ -77,6 +78,14 @@ TEST_F(MovingTexture, NoisyOnesAreMadeSmallerOrSmoother) {
 TEST_F(MovingTexture, VeryNoisyOnesTakeLargerPatches) {
   Write(kVeryStrongNoise);
   EXPECT_GT(Chosen().patch_scale, 1);
+}
+
+TEST(ChooseWorkingImage, LargeImagesAreMadeSmaller) {
+  SequenceFrame frame;
+  frame.image = cv::Mat(4000, 5000, CV_8U, cv::Scalar(7));
+  const WorkingImage chosen = ChooseWorkingImage({{frame}}, TrackOptions());
+  EXPECT_NEAR(chosen.scale, std::sqrt(12.0 / 20.0), 1e-9);
+  EXPECT_EQ(chosen.smoothing_px, 0);
 }
 
 TEST(WorkingOptions, PatchesGrowUpToTheLargest) {

@@ -202,6 +202,8 @@ TEST_F(MeshSceneTest, CarriesTheSolidTextureOrItsOwnPicture) {
   const auto& right = image.at<cv::Vec3b>(100, 110);
   EXPECT_GT(left[1], 2 * left[0]);
   EXPECT_GT(right[0], 2 * right[1]);
+  ASSERT_TRUE(cv::imwrite((folder_ / "floor.png").string(), cv::Mat(5001, 10000, CV_8U, cv::Scalar(7))));
+  EXPECT_THAT(Simulator::Create(options).status().message(), HasSubstr("10000x5001 pixels, more than 50 million"));
   fs::remove(folder_ / "floor.png");
   EXPECT_THAT(Simulator::Create(options).status().message(), HasSubstr("floor.png"));
 }
