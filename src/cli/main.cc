@@ -19,6 +19,7 @@
 #include "cli/commands.h"
 #include "cli/messages.h"
 #include "pliant/base/options.h"
+#include "pliant/base/text.h"
 #include "pliant/base/version.h"
 
 namespace pliant::cli {
@@ -105,11 +106,16 @@ void SurviveFileSizeLimit() { std::signal(SIGXFSZ, SIG_IGN); }
 
 // Of what a library threw that ran out of memory, or met what it did not expect.
 std::string SentenceOf(const std::exception& error) {
-  const bool no_memory = dynamic_cast<const std::bad_alloc*>(&error) != nullptr ||
-                         std::string_view(error.what()).find("Insufficient memory") != std::string_view::npos;
-  return no_memory ? "there is not enough memory; give smaller images, fewer points or a part of the frames, or end "
-                     "other programs"
-                   : error.what();
+  const std::string what = error.what();
+  if (dynamic_cast<const std::bad_alloc*>(&error) != nullptr || what.find("Insufficient memory") != std::string::npos)
+    return "there is not enough memory; give smaller images, fewer points or a part of the frames, or end other "
+           "programs";
+  if (!what.starts_with("OpenCV(")) return what;
+  constexpr std::string_view kBefore = "in function '";
+  const std::size_t found = what.find(kBefore);
+  const std::size_t begin = found == std::string::npos ? what.size() : found + kBefore.size();
+  return "OpenCV failed in its function " + Quoted(what.substr(begin, what.find('\'', begin) - begin)) +
+         "; is there enough memory? If there is, report it with the command";
 }
 
 }  // namespace

@@ -88,6 +88,18 @@ Status MoveObservations(FileGroup& group, const std::string& run_path, std::span
   return file->Close();
 }
 
+// `to` appears when all of it is there: TakeKeptRows would take a part of it for the whole.
+std::error_code CopyWhole(const fs::path& from, const fs::path& to) {
+  fs::path beside = to;
+  beside += ".tmp";
+  std::error_code error;
+  fs::copy_file(from, beside, fs::copy_options::overwrite_existing, error);
+  if (!error) fs::rename(beside, to, error);
+  std::error_code ignored;
+  if (error) fs::remove(beside, ignored);
+  return error;
+}
+
 }  // namespace
 
 void AppendObservation(std::string* out, int frame_idx, const PointObservation& o) {
@@ -129,7 +141,7 @@ Status KeepRows(const std::string& run_path) {
     const fs::path kept = fs::path(run_path) / kCheckpointFolder / name;
     fs::remove(kept, error);
     fs::create_hard_link(fs::path(run_path) / name, kept, error);
-    if (error) fs::copy_file(fs::path(run_path) / name, kept, error);  // a file system without links
+    if (error) error = CopyWhole(fs::path(run_path) / name, kept);  // a file system without links
     if (error) return UnwritableFolder(kept.parent_path(), error);
   }
   return Status::Ok();

@@ -85,7 +85,9 @@ Result<BundleSummary> BundleProblem::Solve(int max_iterations, const std::functi
   const OneOpenMpThread one_thread;
   ceres::Solve(options, problem_.get(), &summary);
   if (!summary.IsSolutionUsable())
-    return Status(ErrorCode::kDegenerate, "the refinement found no step that lowers its cost: " + summary.message);
+    return Status(
+        ErrorCode::kDegenerate,
+        "the refinement found no step that lowers its cost; refine a part of the frames, or frames with more motion");
   CopyToState();
   return BundleSummary{summary.initial_cost, summary.final_cost};
 }

@@ -112,7 +112,8 @@ Status SolveFreeIntrinsics(const Recording& recording, const std::vector<bool>& 
     ceres::Solve(options, &problem, &summary);
   }
   if (!summary.IsSolutionUsable())
-    return {ErrorCode::kDegenerate, "no focal length and distortion fit better: " + summary.message};
+    return {ErrorCode::kDegenerate,
+            "no focal length and distortion fit better; give frames with more motion, or a calibration"};
   intrinsics->focal_px = std::exp(free[0]);
   intrinsics->k = free[1];
   for (std::size_t v = 0; v < poses.size(); ++v) {

@@ -4,14 +4,18 @@
 // Checkpoints, and run folders that are gone on with.
 #include "pliant/io/checkpoint.h"
 
+#include <csignal>
 #include <filesystem>
 #include <string>
 #include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include "io/run_reports.h"
+#include "io/run_rows.h"
 #include "pliant/base/state_archive.h"
 #include "support/test_folder.h"
 
@@ -34,6 +38,35 @@ TEST(Checkpoint, IsReadAsItWasWritten) {
   const auto read = ReadCheckpoint(folder.Path("run"));
   ASSERT_TRUE(read.ok()) << read.status().message();
   EXPECT_EQ(*read, state);
+}
+
+// In another file system, to which there are no hard links, rows are copied.
+TEST(Checkpoint, RowsThatCouldNotBeCopiedToTheirEndAreNotTakenBack) {
+  const TestFolder folder;
+  const std::string memory = "/dev/shm/pliant_checkpoint_" + std::to_string(getpid());
+  std::error_code error;
+  if (!std::filesystem::create_directories(memory, error)) GTEST_SKIP() << "there is no /dev/shm";
+  std::filesystem::create_directory_symlink(memory, folder.Path("checkpoint"));
+  const std::string rows(100'000, '1');
+  for (const char* name : {"trajectory.txt", "frames.csv", "observations.csv"}) folder.Write(name, rows);
+  std::filesystem::create_hard_link(folder.Path("frames.csv"), memory + "/link", error);
+  const bool is_other_file_system = static_cast<bool>(error);
+  rlimit before = {};
+  getrlimit(RLIMIT_FSIZE, &before);
+  const auto ignored = std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit small = {.rlim_cur = rows.size() / 2, .rlim_max = before.rlim_max};
+  setrlimit(RLIMIT_FSIZE, &small);
+  const Status kept = KeepRows(folder.Path(""));
+  setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, ignored);
+  const bool is_left = !std::filesystem::is_empty(memory);
+  const bool copied =
+      KeepRows(folder.Path("")).ok() && std::filesystem::file_size(memory + "/frames.csv") == rows.size();
+  std::filesystem::remove_all(memory);
+  if (!is_other_file_system) GTEST_SKIP() << "/dev/shm is no other file system";
+  EXPECT_EQ(kept.code(), ErrorCode::kUnwritable);
+  EXPECT_FALSE(is_left);
+  EXPECT_TRUE(copied);
 }
 
 TEST(Checkpoint, IsRefusedWhereItIsDamagedOrOfAnotherVersion) {

@@ -114,7 +114,7 @@ Result<FrameEstimate> SolveFrameByLbfgs(const FrameData& data, const FrameTerms&
   ceres::GradientProblemSolver::Summary summary;
   ceres::Solve(SolverOptions(data.options), problem, z.data(), &summary);
   if (!summary.IsSolutionUsable() || !z.allFinite())
-    return {ErrorCode::kDegenerate, "the joint problem of pose and deformation has no solution: " + summary.message};
+    return {ErrorCode::kDegenerate, "the joint problem of pose and deformation has no solution"};
 
   FrameEstimate estimate;
   Vector6d increment;

@@ -30,7 +30,7 @@ Result<FrameEstimate> SolveFrameByLevenbergMarquardt(const FrameData& data, cons
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
   if (!summary.IsSolutionUsable() || !blocks.increment.allFinite())
-    return {ErrorCode::kDegenerate, "the joint problem of pose and deformation has no solution: " + summary.message};
+    return {ErrorCode::kDegenerate, "the joint problem of pose and deformation has no solution"};
 
   FrameEstimate estimate;
   estimate.cam_from_world = data.pose.Pose(blocks.increment);

@@ -94,7 +94,7 @@ Result<CameraPoseEstimate> SolvePose(const Camera& camera, std::span<const Eigen
   ceres::Solver::Summary summary;
   ceres::Solve(solver_options, &problem, &summary);
   if (!summary.IsSolutionUsable() || !increment.allFinite())
-    return {ErrorCode::kDegenerate, "the camera pose could not be computed: " + summary.message};
+    return {ErrorCode::kDegenerate, "the camera pose could not be computed"};
 
   CameraPoseEstimate estimate;
   estimate.cam_from_world = pose.Pose(increment);
