@@ -3,13 +3,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Damages what the program reads, kills it, fills its disk and takes its resources away, and checks what must hold.
 
-usage: campaign.py PROGRAM WORK [--fail_nth LIBRARY] [--minutes M | --cases N] [--seed S] [--jobs J] [--kinds KIND ...]
+usage: campaign.py PROGRAM WORK [--fail_nth LIBRARY [--faulty_program PROGRAM]] [--minutes M | --cases N] [--seed S]
+                   [--jobs J] [--kinds KIND ...]
 
 Cases are drawn by the seed: damaged inputs (mutation), signals at random instants (kill), full disks (disk, as root),
 limits on the size and the number of files (limit), runs that are stopped at random instants and resumed until they end,
 which then have to be those that were not stopped byte for byte (resume), random options (options), scenes and motions
 from which geometry cannot be had (scene), and, with LIBRARY (fail_nth.c), one call that fails: the n-th open, read,
-write, fsync, rename, mkdir or thread start (fault). After each of them the program has to have ended by itself within a
+write, fsync, rename, mkdir, thread start or large malloc, and, of the program that is built for it (fail_calls.cc), the
+n-th image that is decoded or solver that is called (fault). After each of them the program has to have ended by itself within a
 minute, with exit code 0, 1 or 2, a sentence of at most 400 characters where it failed, no file that breaks off under
 its final name, and no more than 1 GB of memory. After random options and scenes the run has finite numbers, quaternions
 of unit length, documented states, and as many poses as tracked frames. WORK/campaign.json has the counts; what does not
@@ -43,7 +45,7 @@ MOST_MEMORY_KB = 1_000_000
 MOST_PARTS = 20  # of a run that is resumed
 KINDS = ["mutation"] * 12 + ["kill"] * 4 + ["limit"] * 2 + ["disk"] * 2 + ["resume"] * 2 + ["fault"] * 4 + \
         ["options"] * 4 + ["scene"] * 4
-FAULTS = ["open", "read", "write", "fsync", "rename", "mkdir", "thread"]
+FAULTS = ["open", "read", "write", "fsync", "rename", "mkdir", "thread", "malloc", "decode", "solve"]
 
 
 class Ended:
@@ -106,6 +108,7 @@ class Case:
     """One case: a folder with the material, what is done, and what did not hold."""
 
     fail_nth = None  # the library
+    faulty_program = None  # the program for it, where it is another one
 
     def __init__(self, program, source, folder, seed):
         self.program, self.source, self.folder = str(program), source, folder
@@ -115,7 +118,7 @@ class Case:
         self.wrong = []
 
     def execute(self):
-        shutil.copytree(self.source, self.folder, copy_function=os.link)
+        material.copy(self.source, self.folder, os.link)
         getattr(self, self.kind)()
         return self
 
@@ -185,6 +188,7 @@ class Case:
     def fault(self):
         words = self.chance.choice([*material.WRITERS, (*material.RESUMABLE, "-o", "OUT")])
         command = self.command_of(words)
+        command[0] = str(Case.faulty_program or command[0])
         counts_path = self.folder / "counts"
         loaded = {"LD_PRELOAD": str(Case.fail_nth)}
         self.check(run(command, self.folder, environment={**loaded, "PLIANT_FAIL_COUNTS": str(counts_path)}))
@@ -204,10 +208,11 @@ class Case:
 
     def scene(self):
         names = [self.chance.choice(sorted(table)) for table in (scenes.SHAPES, scenes.MOTIONS)]
-        names += [self.chance.choice(scenes.SPOILS), self.chance.choice(scenes.RATES_HZ), self.chance.choice([0, 18])]
+        names += [self.chance.choice(scenes.SPOILS), self.chance.choice(scenes.RATES_HZ), *self.chance.choice([(0, False), (18, False), (18, True)])]
         self.what["scene"] = names
         scenes.write(self.folder / "scene", *names, self.what["seed"])
-        words = ["--tracks", "scene/tracks.csv"] if self.chance.random() < 0.5 else []
+        given = self.chance.random() < 0.5 or "huge_tracks" in names  # which are in the file of tracks alone
+        words = ["--tracks", "scene/tracks.csv"] if given else []
         if self.chance.random() < 0.5:  # what a dozen points suffice for
             words += ["--Tracking.min_corners", "8", "--Init.min_points", "12", "--WindowInit.min_points", "12"]
         if self.chance.random() < 0.3:
@@ -262,6 +267,7 @@ def main():
     parser.add_argument("program", type=pathlib.Path)
     parser.add_argument("work", type=pathlib.Path)
     parser.add_argument("--fail_nth", type=pathlib.Path, default=None)
+    parser.add_argument("--faulty_program", type=pathlib.Path, default=None)
     parser.add_argument("--minutes", type=float, default=None)
     parser.add_argument("--cases", type=int, default=None)
     parser.add_argument("--seed", type=int, default=1)
@@ -278,10 +284,13 @@ def main():
         print("no full disks: only root can mount them", file=sys.stderr)
     KINDS[:] = [kind for kind in KINDS if kind in arguments.kinds]
     Case.fail_nth = arguments.fail_nth and arguments.fail_nth.resolve()
+    Case.faulty_program = arguments.faulty_program and arguments.faulty_program.resolve()
     if Case.fail_nth is None:
         KINDS[:] = [kind for kind in KINDS if kind != "fault"]
     if not KINDS:
         parser.error("none of these kinds can be drawn: disk needs root, fault --fail_nth")
+    if "options" in KINDS or "scene" in KINDS:
+        options.check(str(arguments.program.resolve()))
     if arguments.minutes is None and arguments.cases is None:
         arguments.minutes = 30.0
     end = time.monotonic() + 60 * arguments.minutes if arguments.minutes is not None else None

@@ -14,8 +14,11 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import unittest.mock
 
+import campaign
 import checks
+import material
 import mutations
 import options
 import scenes
@@ -53,7 +56,7 @@ FILES = ["seq/camera.yaml", "seq/times.txt", "seq/groundtruth.txt", "seq/simulat
          "seq/right/000000.png", "seq/depth/000000.png", "run/run.json", "run/config.yaml", "run/frames.csv",
          "run/trajectory.txt", "refined/frames.csv", "run/observations.csv", "run/map.ply", "run/sparse/images.bin", "text/images.txt",
          "tum/trajectory.txt", "csv/tracks.csv", "npz/tracks.npz", "surface/surface.json", "surface/depth/0",
-         "surface/mesh/0", "surface/undeformed.ply", "film.mp4"]
+         "surface/mesh/0", "surface/undeformed.ply", "film.mp4", "film.y4m"]
 
 
 class Checks(unittest.TestCase):
@@ -63,7 +66,8 @@ class Checks(unittest.TestCase):
             self.assertEqual(checks.wrong_end(code, stderr, stopped_by), "", code)
         for code, stderr, stopped_by in [(-11, "", None), (-6, "", 15), (1, "", None), (3, "pliant: no", None),
                                          (-9, "", None), (1, "pliant: " + 400 * "x", None),
-                                         (1, "pliant: OpenCV(4.6) error", None)]:
+                                         (1, "pliant: OpenCV(4.6) error", None),
+                                         (1, "pliant: no step: a fault that was asked for", None)]:
             self.assertNotEqual(checks.wrong_end(code, stderr, stopped_by), "", code)
 
     def test_files(self):
@@ -144,7 +148,7 @@ class Scenes(unittest.TestCase):
 
     def test_motions_are_what_they_are_called(self):
         def moved(motion, first, last):
-            frames = scenes.tracks("plane", motion, 0, random.Random(1))
+            frames = scenes.tracks("plane", motion, 0, False, random.Random(1))
             both = [(frames[first][dot], frames[last][dot]) for dot in frames[first].keys() & frames[last].keys()]
             return [(there[0] - here[0], there[1] - here[1]) for here, there in both]
 
@@ -154,6 +158,33 @@ class Scenes(unittest.TestCase):
         self.assertEqual(moved("300_pixels", 0, 1), [])
         self.assertEqual(set(moved("still", 0, 20)), {(0.0, 0.0)})
         self.assertEqual(scenes.camera("quarter_turns", 21, 18), ((0.8 * 18 + 0.5 * 3, 0.1 * 18, 0.0), 270.0))
+
+    def test_half_of_the_dots_keep_their_places_where_the_map_is_to_live_on(self):
+        for shape in set(scenes.SHAPES) - {"cloud", "no_shape"}:
+            frames = scenes.tracks(shape, "still", 18, True, random.Random(1))
+            kept = [dot for dot in frames[17].keys() & frames[18].keys()
+                    if math.dist(frames[17][dot], frames[18][dot]) < 10]
+            self.assertGreater(sum(dot % 2 == 0 for dot in kept), 60, shape)
+            self.assertTrue(any(dot % 2 == 1 for dot in frames[18]), shape)
+            frames = scenes.tracks(shape, "still", 18, False, random.Random(1))
+            kept = [dot for dot in frames[17].keys() & frames[18].keys()
+                    if math.dist(frames[17][dot], frames[18][dot]) < 10]
+            self.assertLess(len(kept), 30, shape)
+
+    def test_huge_tracks_are_given_to_the_program(self):
+        given = 0
+        for seed in range(300):
+            with tempfile.TemporaryDirectory() as name:
+                case = campaign.Case("program", None, pathlib.Path(name), seed)
+                said = []
+                case.track = lambda *words: said.append(words)
+                with unittest.mock.patch.object(scenes, "write"), \
+                        unittest.mock.patch.object(options, "draw", return_value={}):
+                    case.scene()
+                if "huge_tracks" in case.what["scene"]:
+                    given += 1
+                    self.assertIn("--tracks", said[0])
+        self.assertGreater(given, 10)
 
     def test_images_are_spoiled(self):
         gray = [scenes.GRAY] * 10000
@@ -184,6 +215,24 @@ class Mutations(unittest.TestCase):
         for data in (b"", b"x", b"12"):
             for seed in range(200):
                 mutations.mutate(data, random.Random(seed))
+
+
+class Material(unittest.TestCase):
+    def test_a_command_that_fails_before_anything_is_damaged_is_found_out(self):
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name) / "whole"
+            for file in FILES + ["opencv.yaml", "opencv.xml", "text/a.txt"]:
+                (folder / file).parent.mkdir(parents=True, exist_ok=True)
+                (folder / file).write_text(f'{{"run": "{folder}/run"}}\n')
+            program = pathlib.Path(name) / "program"
+            program.write_text("#!/bin/sh\ngrep -q material/run surface/surface.json || exit 1\n"
+                               "case \"$*\" in *$FAILS*) echo no such option >&2; exit 2;; esac\n")
+            program.chmod(program.stat().st_mode | stat.S_IXUSR)
+            with unittest.mock.patch.dict("os.environ", {"FAILS": "none"}):
+                material.check(str(program), folder)
+            with unittest.mock.patch.dict("os.environ", {"FAILS": "mesh_path"}), \
+                    self.assertRaisesRegex(ValueError, "mesh_path .* fails before .*no such option"):
+                material.check(str(program), folder)
 
 
 class Campaign(unittest.TestCase):
@@ -242,6 +291,19 @@ class Campaign(unittest.TestCase):
         self.assertLess(min(sizes), 0.1)
         self.assertGreater(max(sizes), 1000)
         self.assertEqual(options.yaml({"B.x": "1", "A.y": "b", "A.x": "2"}), "A:\n  x: 2\n  y: b\nB:\n  x: 1\n")
+
+    def test_a_sentence_that_is_not_understood_ends_the_campaign(self):
+        with tempfile.TemporaryDirectory() as name:
+            program = pathlib.Path(name) / "program"
+            text = PROGRAM.replace("give a number from 0.001 to 1e+06 px", "use another one")
+            program.write_text(text.format(python=sys.executable, files=FILES, behavior=""))
+            program.chmod(program.stat().st_mode | stat.S_IXUSR)
+            with self.assertRaisesRegex(ValueError, "Group.one: no range is found in .*use another one"):
+                options.check(str(program))
+            program.write_text("#!/bin/sh\necho nothing\n")
+            options.table.cache_clear()
+            with self.assertRaisesRegex(ValueError, "no options"):
+                options.check(str(program))
 
 
 if __name__ == "__main__":

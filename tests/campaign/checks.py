@@ -14,6 +14,8 @@ import zipfile
 MOST_CHARACTERS = 400
 STATES = {"waiting_for_reference", "initializing", "ambiguous", "tracking", "provisional", "lost"}  # docs/formats.md
 NO_NUMBER = re.compile(r"(?<![\w.])[-+]?(nan|inf|infinity)(?![\w.])", re.IGNORECASE)
+# Those of Ceres are what fail_calls.cc says in its place.
+LIBRARIES_WORDS = ["terminate called", "OpenCV(", "Assertion", "std::bad_alloc", "a fault that was asked for"]
 CRASHES = {-4: "SIGILL", -6: "SIGABRT", -7: "SIGBUS", -8: "SIGFPE", -11: "SIGSEGV", -25: "SIGXFSZ", -31: "SIGSYS"}
 PLY_TYPES = {b"char": "b", b"uchar": "B", b"short": "h", b"ushort": "H", b"int": "i", b"uint": "I", b"float": "f",
              b"double": "d", b"int8": "b", b"uint8": "B", b"int16": "h", b"uint16": "H", b"int32": "i", b"uint32": "I",
@@ -35,7 +37,7 @@ def wrong_end(code, stderr, stopped_by=None, stdout=""):
     longest = max((len(line) for line in said), default=0)
     if longest > MOST_CHARACTERS:
         return f"a message of {longest} characters"
-    if "terminate called" in stderr or "OpenCV(" in stderr or "Assertion" in stderr:
+    if any(words in stderr for words in LIBRARIES_WORDS):
         return "a library's own message"
     return ""
 

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // Loaded before the C library (LD_PRELOAD), it lets one call of main and what follows from it fail: PLIANT_FAIL=KIND:N,
-// the N-th of its kind (open, read, write, fsync, rename, mkdir, thread, malloc) in the process. PLIANT_FAIL_COUNTS
-// names a file that gets a line KIND COUNT for each kind when the process ends. Files of the system and the standard
-// streams are left alone.
+// the N-th of its kind (open, read, write, fsync, rename, mkdir, thread; with fail_calls.cc also malloc, decode, solve)
+// in the process. PLIANT_FAIL_COUNTS names a file that gets a line KIND COUNT for each kind when the process ends. Files
+// of the system and the standard streams are left alone.
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>
@@ -21,9 +21,10 @@
 #include <sys/uio.h>
 #include <unistd.h>
 
-enum Kind { kOpen, kRead, kWrite, kFsync, kRename, kMkdir, kThread, kMalloc, kKinds };
-static const char* const kNames[kKinds] = {"open", "read", "write", "fsync", "rename", "mkdir", "thread", "malloc"};
-static const int kErrors[kKinds] = {EMFILE, EIO, ENOSPC, EIO, EACCES, ENOSPC, EAGAIN, ENOMEM};
+enum Kind { kOpen, kRead, kWrite, kFsync, kRename, kMkdir, kThread, kMalloc, kDecode, kSolve, kKinds };
+static const char* const kNames[kKinds] = {"open",  "read",   "write",  "fsync",  "rename",
+                                           "mkdir", "thread", "malloc", "decode", "solve"};
+static const int kErrors[kKinds] = {EMFILE, EIO, ENOSPC, EIO, EACCES, ENOSPC, EAGAIN, ENOMEM, 0, 0};
 
 static atomic_int armed;  // main has begun
 static atomic_long counts[kKinds];
@@ -36,6 +37,14 @@ static int Fails(enum Kind kind) {
   if ((int)kind != wanted_kind || number != wanted_number) return 0;
   errno = kErrors[kind];
   return 1;
+}
+
+// For fail_calls.cc: whether this call of the kind fails.
+int PliantFails(const char* name);
+int PliantFails(const char* name) {
+  for (int kind = 0; kind < kKinds; ++kind)
+    if (strcmp(name, kNames[kind]) == 0) return Fails((enum Kind)kind);
+  return 0;
 }
 
 static int IsSystems(const char* path) {
@@ -132,15 +141,4 @@ int mkdir(const char* path, mode_t mode) { return Fails(kMkdir) ? -1 : (int)sysc
 
 int pthread_create(pthread_t* thread, const pthread_attr_t* attributes, void* (*function)(void*), void* argument) {
   return Fails(kThread) ? EAGAIN : REAL(pthread_create)(thread, attributes, function, argument);
-}
-
-extern void* __libc_malloc(size_t size);
-extern void* __libc_calloc(size_t count, size_t size);
-extern void* __libc_memalign(size_t alignment, size_t size);
-void* malloc(size_t size) { return Fails(kMalloc) ? NULL : __libc_malloc(size); }
-void* calloc(size_t count, size_t size) { return Fails(kMalloc) ? NULL : __libc_calloc(count, size); }
-void* aligned_alloc(size_t alignment, size_t size) { return Fails(kMalloc) ? NULL : __libc_memalign(alignment, size); }
-int posix_memalign(void** data, size_t alignment, size_t size) {
-  *data = Fails(kMalloc) ? NULL : __libc_memalign(alignment, size);
-  return *data == NULL ? ENOMEM : 0;
 }

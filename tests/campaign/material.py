@@ -3,9 +3,12 @@
 """What a campaign damages and what it runs: a small simulated sequence with everything that is made of it."""
 
 import dataclasses
+import os
 import pathlib
+import random
 import shutil
 import subprocess
+import tempfile
 
 BOARD = "%YAML:1.0\n---\nimage_width: 160\nimage_height: 120\nK: !!opencv-matrix\n   rows: 3\n   cols: 3\n   dt: d\n" \
         "   data: [ 114., 0., 79.5, 0., 114., 59.5, 0., 0., 1. ]\nD: !!opencv-matrix\n   rows: 1\n   cols: 5\n   dt: d\n" \
@@ -13,6 +16,14 @@ BOARD = "%YAML:1.0\n---\nimage_width: 160\nimage_height: 120\nK: !!opencv-matrix
 XML = "<?xml version=\"1.0\"?>\n<opencv_storage>\n<image_width>160</image_width><image_height>120</image_height>\n" \
       "<K type_id=\"opencv-matrix\"><rows>3</rows><cols>3</cols><dt>d</dt><data>114. 0. 79.5 0. 114. 59.5 0. 0. 1.</data></K>\n" \
       "</opencv_storage>\n"
+
+
+def _raw_video():
+    """Eight images of a texture that moves, for standard input, in which nobody can go back to an index."""
+    chance = random.Random(1)
+    texture = [chance.randbytes(240) for _ in range(120)]
+    frames = b"".join(b"FRAME\n" + b"".join(row[2 * k:2 * k + 160] for row in texture) for k in range(8))
+    return b"YUV4MPEG2 W160 H120 F30:1 Ip A1:1 Cmono\n" + frames
 
 
 # A run with a few checkpoints, from which no wall time is written.
@@ -48,9 +59,37 @@ def make(program, folder):
     run("export", "--run", "run", "-o", "npz", "--format", "tracks_npz")
     run("export", "--run", "run", "-o", "tum", "--format", "tum")
     run("report", "--run", "run", "--video", "-o", "film.mp4")
+    (folder / "film.y4m").write_bytes(_raw_video())
     (folder / "opencv.yaml").write_text(BOARD, encoding="utf-8")
     (folder / "opencv.xml").write_text(XML, encoding="utf-8")
+    check(program, folder)
     (folder / "done").write_text(version, encoding="utf-8")
+
+
+def copy(folder, place, copy_function=shutil.copy2):
+    """A surface knows its run by its path."""
+    shutil.copytree(folder, place, copy_function=copy_function)
+    summary = place / "surface" / "surface.json"
+    text = summary.read_text(encoding="utf-8").replace(str(folder.resolve()), str(place.resolve()))
+    summary.unlink()
+    summary.write_text(text, encoding="utf-8")
+
+
+def check(program, folder):
+    """That every reader reads its files before they are damaged: one that is refused for its command tests nothing."""
+    with tempfile.TemporaryDirectory() as name:
+        place = pathlib.Path(name) / "material"
+        copy(folder, place)
+        for number, reader in enumerate(READERS):
+            words = [word.replace("OUT", f"out_{number}") for word in reader.command]
+            stdin = sorted(place.glob(reader.files))[0] if "-" in words else os.devnull
+            with open(stdin, "rb") as given:
+                ended = subprocess.run([program, *words, "--quiet"], cwd=place, stdin=given, stdout=subprocess.DEVNULL,
+                                       stderr=subprocess.PIPE, text=True, check=False)
+            # Tracking that has nothing to begin with has read what there is.
+            has_tracked = any(words in ended.stderr for words in ["ended without a first map", "not enough for a map"])
+            if ended.returncode != 0 and not has_tracked:
+                raise ValueError(f"{' '.join(words)} fails before anything is damaged: {ended.stderr}")
 
 
 @dataclasses.dataclass(frozen=True)
@@ -98,11 +137,12 @@ READERS = [
     _reader("surface/depth/*", "report --run run --surface surface -o OUT.html"),
     _reader("surface/mesh/*", "report --run run --surface surface -o OUT.html"),
     _reader("surface/undeformed.ply", "track seq -o OUT --end 3 --Init.method depth --Init.depth_cloud surface/undeformed.ply"),
-    _reader("surface/undeformed.ply", "simulate -o OUT --Scene.kind mesh --Scene.mesh surface/undeformed.ply"
-                                      " --Trajectory.frames 1 --Camera.width 64 --Camera.height 48"),
+    _reader("surface/undeformed.ply", "simulate -o OUT --Scene.kind mesh --Scene.mesh_path surface/undeformed.ply"
+                                      " --Trajectory.start_pose 0,0,0,0,0,0,1 --Trajectory.frames 1 --Camera.width 64"
+                                      " --Camera.height 48"),
     _reader("film.mp4", "dataset info film.mp4 --camera unknown"),
     _reader("film.mp4", "track film.mp4 --camera unknown -o OUT --end 3"),
-    _reader("film.mp4", "track - --camera unknown -o OUT --end 3"),
+    _reader("film.y4m", "track - --camera unknown -o OUT --end 6"),
     _reader("opencv.yaml", "track seq -o OUT --end 2 --camera opencv.yaml"),
     _reader("opencv.xml", "track seq -o OUT --end 2 --camera opencv.xml"),
 ]

@@ -47,8 +47,21 @@ def table(program):
 @functools.cache
 def span(program, name):
     """Least and largest value, and whether it is a whole number; None of text."""
-    found = RANGE.search(_answer(program, f"--{name}", "x").stderr)
-    return (float(found[2]), float(found[3]), bool(found[1])) if found else None
+    answer = _answer(program, f"--{name}", "x")
+    if found := RANGE.search(answer.stderr):
+        return float(found[2]), float(found[3]), bool(found[1])
+    if answer.returncode == 0:
+        return None
+    raise ValueError(f"{name}: no range is found in {answer.stderr!r}")
+
+
+def check(program):
+    """That the program says what is read here. Options that are not understood would never be drawn."""
+    if not table(program):
+        raise ValueError("no options are found in what --print_config prints")
+    for name, (_, unit) in sorted(table(program).items()):
+        if name not in FILES and " | " not in unit:
+            span(program, name)
 
 
 def _number(low, high, whole, default, chance, near):

@@ -10,6 +10,7 @@ import zlib
 WIDTH, HEIGHT, FOCAL_PX = 320, 240, 250.0
 CENTER_PX = (WIDTH - 1) / 2, (HEIGHT - 1) / 2
 FRAMES = 36
+DOTS = 150  # of a cloud
 GRAY = 110
 NOISE_LEVELS = 50
 NOTHING = {"equal": GRAY, "black": 0, "white": 255}  # images that show nothing
@@ -27,14 +28,14 @@ def _in_view(chance, count, depth):
 
 # Where the dots are.
 SHAPES = {
-    "cloud": lambda chance: _in_view(chance, 150, lambda: chance.uniform(40, 120)),
+    "cloud": lambda chance: _in_view(chance, DOTS, lambda: chance.uniform(40, 120)),
     "dozen": lambda chance: _in_view(chance, 12, lambda: chance.uniform(40, 120)),
     "line": lambda chance: [(-40 + 1.2 * i, -20 + 0.8 * i, 60 + 0.5 * i) for i in range(70)],
-    "plane": lambda chance: _in_view(chance, 150, lambda: 60.0),
-    "depths_1_to_1000": lambda chance: _in_view(chance, 150, lambda: 10 * 1000 ** chance.random()),
-    "far_away": lambda chance: _in_view(chance, 150, lambda: chance.uniform(1e8, 1e9)),
+    "plane": lambda chance: _in_view(chance, DOTS, lambda: 60.0),
+    "depths_1_to_1000": lambda chance: _in_view(chance, DOTS, lambda: 10 * 1000 ** chance.random()),
+    "far_away": lambda chance: _in_view(chance, DOTS, lambda: chance.uniform(1e8, 1e9)),
     "one_place": lambda chance: [tuple(at + chance.uniform(-1, 1) for at in (0, 0, 60)) for _ in range(80)],
-    "no_shape": lambda chance: _in_view(chance, 150, lambda: chance.uniform(40, 120)),  # and every dot wanders
+    "no_shape": lambda chance: _in_view(chance, DOTS, lambda: chance.uniform(40, 120)),  # and every dot wanders
 }
 
 # Of the n-th camera: its center, and its angle around the optical axis, degrees. Depths are 80 in the mean.
@@ -59,19 +60,31 @@ def camera(motion, frame, begin):
     return tuple(map(sum, zip(center, MOTIONS["sideways"](min(frame, begin))[0]))), angle_deg
 
 
-def tracks(shape, motion, begin, chance):
+def _points(shape, before, keeps, chance):
+    """The dots' points, {dot: point}, once the shape has taken the place of the cloud, or of each second dot of it."""
+    if shape in ("cloud", "no_shape"):
+        return dict(enumerate(before))
+    if not keeps:
+        return dict(enumerate(SHAPES[shape](chance)))
+    moved = SHAPES[shape](chance)[:DOTS // 2]
+    return {dot: point for dot, point in enumerate(before) if dot % 2 == 0} | {
+        2 * i + 1: point for i, point in enumerate(moved)}
+
+
+def tracks(shape, motion, begin, keeps, chance):
     """Of every frame the pixels of the dots in its image, {dot: (u, v)}. Until the frame `begin` they are a cloud that
-    a camera passes, of which a map can be made; another shape takes the place of it at once."""
+    a camera passes, of which a map can be made; another shape takes the place of it at once, and with it goes the map.
+    Where half of the cloud is kept the map lives on."""
     before = SHAPES["cloud"](chance)
-    points = before if shape in ("cloud", "no_shape") else SHAPES[shape](chance)
+    points = _points(shape, before, keeps, chance)
     frames = []
     for frame in range(FRAMES):
         center, angle_deg = camera(motion, frame, begin)
         cosine, sine = math.cos(math.radians(angle_deg)), math.sin(math.radians(angle_deg))
         if shape == "no_shape":
-            points = [tuple(value + chance.gauss(0, 0.5) for value in point) for point in points]
+            points = {dot: tuple(value + chance.gauss(0, 0.5) for value in point) for dot, point in points.items()}
         seen = {}
-        for dot, point in enumerate(before if frame < begin else points):
+        for dot, point in enumerate(before) if frame < begin else points.items():
             x, y, z = (value - origin for value, origin in zip(point, center))
             if z < 1e-3:
                 continue
@@ -118,10 +131,11 @@ def png(gray):
             chunk(b"IEND", b""))
 
 
-def write(folder, shape, motion, what, rate_hz, begin, seed):
-    """The sequence `folder`, and in it tracks.csv. It is hostile from the frame `begin` on."""
+def write(folder, shape, motion, what, rate_hz, begin, keeps, seed):
+    """The sequence `folder`, and in it tracks.csv. It is hostile from the frame `begin` on, where `keeps` with a half of
+    the dots in their places."""
     chance = random.Random(seed)
-    frames = tracks(shape, motion, begin, chance)
+    frames = tracks(shape, motion, begin, keeps, chance)
     looks = [(chance.uniform(-0.8, 0.8), chance.uniform(-0.8, 0.8), chance.uniform(0, 6)) for _ in range(200)]
     (folder / "images").mkdir(parents=True)
     rows = ["frame,track_id,u_px,v_px"]
