@@ -20,6 +20,7 @@ namespace {
 constexpr double kLargestSearched_px = 960;
 constexpr double kSmallestSearched_px = 640;
 constexpr double kNoiseSmoothing_px = 1.5;
+constexpr std::size_t kMaxBlobs = 500;
 constexpr int kChessboardFlags = cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_ACCURACY;
 
 cv::Mat Resized(const cv::Mat& gray, double scale) {
@@ -89,12 +90,30 @@ bool FindChessboard(const cv::Mat& gray, cv::Size size, Effort effort, std::vect
   return cv::findChessboardCornersSB(gray, size, *corners, kChessboardFlags | exhaustive);
 }
 
+// Blobs, or none where there are so many that no board is looked for among them: the search takes the third power of
+// their number, hours for a picture of gravel.
+class Blobs final : public cv::Feature2D {
+ public:
+  Blobs(const cv::SimpleBlobDetector::Params& params, std::size_t most)
+      : detector_(cv::SimpleBlobDetector::create(params)), most_(most) {}
+
+  void detect(cv::InputArray image, std::vector<cv::KeyPoint>& keypoints, cv::InputArray mask) override {
+    detector_->detect(image, keypoints, mask);
+    if (keypoints.size() > most_) keypoints.clear();
+  }
+
+ private:
+  cv::Ptr<cv::FeatureDetector> detector_;
+  std::size_t most_;
+};
+
 bool FindCircles(const cv::Mat& gray, const CalibrationBoard& board, std::vector<cv::Point2f>* centers) {
   const int grid = board.kind == BoardKind::kCircles ? cv::CALIB_CB_SYMMETRIC_GRID : cv::CALIB_CB_ASYMMETRIC_GRID;
   cv::SimpleBlobDetector::Params params;
   params.maxArea = static_cast<float>(gray.total()) / static_cast<float>(board.NumPoints());
   params.minDistBetweenBlobs = 4;
-  const cv::Ptr<cv::FeatureDetector> blobs = cv::SimpleBlobDetector::create(params);
+  const auto most = std::max<std::size_t>(kMaxBlobs, 4 * static_cast<std::size_t>(board.NumPoints()));
+  const cv::Ptr<cv::FeatureDetector> blobs = cv::makePtr<Blobs>(params, most);
   const cv::Size size(board.columns, board.rows);
   return cv::findCirclesGrid(gray, size, *centers, grid, blobs) ||
          cv::findCirclesGrid(gray, size, *centers, grid | cv::CALIB_CB_CLUSTERING, blobs);

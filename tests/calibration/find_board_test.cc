@@ -55,6 +55,16 @@ TEST(FindBoard, FindsNothingInAnEmptyImage) {
   EXPECT_FALSE(LargestChessboard(cv::Mat(240, 320, CV_8UC1, cv::Scalar(128))).has_value());
 }
 
+// OpenCV's search would take hours among them.
+TEST(FindBoard, LooksForNoBoardOfCirclesAmongThousandsOfSpots) {
+  cv::Mat image(900, 900, CV_8UC1, cv::Scalar(220));
+  cv::RNG random(3);
+  for (int y = 10; y < image.rows; y += 16)
+    for (int x = 10; x < image.cols; x += 16)
+      cv::circle(image, {x + random.uniform(-2, 3), y + random.uniform(-2, 3)}, 4, cv::Scalar(20), cv::FILLED);
+  EXPECT_FALSE(FindBoard(image, {BoardKind::kCircles, 9, 6, 20.0}).has_value());
+}
+
 TEST(FindBoard, TellsHowLargeAChessboardIs) {
   const Camera camera = CameraOf(640, 480, 500);
   const cv::Mat image = ImageOf(kBoard, camera, BoardPoseAt(kBoard, {0, 0, 22}, 0.3, 0.7));
