@@ -130,8 +130,8 @@ Status RenameTogether(const std::vector<Renaming>& renamings) {
     return Status::Ok();
   }
   std::filesystem::remove(Former(renamings[done].from), ignored);
-  const Status failure(ErrorCode::kUnwritable,
-                       "cannot write " + Quoted(renamings[done].to) + ": " + error.message() + "; nothing was written");
+  Status failure(ErrorCode::kUnwritable,
+                 "cannot write " + Quoted(renamings[done].to) + ": " + error.message() + "; nothing was written");
   while (done-- > 0) {
     std::filesystem::rename(renamings[done].to, renamings[done].from, ignored);
     std::filesystem::rename(Former(renamings[done].from), renamings[done].to, ignored);

@@ -106,7 +106,7 @@ void SurviveFileSizeLimit() { std::signal(SIGXFSZ, SIG_IGN); }
 
 // Of what a library threw that ran out of memory, or met what it did not expect.
 std::string SentenceOf(const std::exception& error) {
-  const std::string what = error.what();
+  std::string what = error.what();
   if (dynamic_cast<const std::bad_alloc*>(&error) != nullptr || what.find("Insufficient memory") != std::string::npos)
     return "there is not enough memory; give smaller images, fewer points or a part of the frames, or end other "
            "programs";
