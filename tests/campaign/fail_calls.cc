@@ -36,61 +36,52 @@ void Fail(Summary* summary) {
 
 }  // namespace
 
-#define REAL_IMDECODE __real__ZN2cv8imdecodeERKNS_11_InputArrayEi
-#define WRAP_IMDECODE __wrap__ZN2cv8imdecodeERKNS_11_InputArrayEi
-#define REAL_GRAB __real__ZN2cv12VideoCapture4grabEv
-#define WRAP_GRAB __wrap__ZN2cv12VideoCapture4grabEv
-#define REAL_SOLVE __real__ZN5ceres5SolveERKNS_6Solver7OptionsEPNS_7ProblemEPNS0_7SummaryE
-#define WRAP_SOLVE __wrap__ZN5ceres5SolveERKNS_6Solver7OptionsEPNS_7ProblemEPNS0_7SummaryE
-#define REAL_GRADIENT_SOLVE \
-  __real__ZN5ceres5SolveERKNS_21GradientProblemSolver7OptionsERKNS_15GradientProblemEPdPNS0_7SummaryE
-#define WRAP_GRADIENT_SOLVE \
-  __wrap__ZN5ceres5SolveERKNS_21GradientProblemSolver7OptionsERKNS_15GradientProblemEPdPNS0_7SummaryE
+// The linker's names of the calls: __wrap_NAME takes them, __real_NAME makes them.
+#define WRAPPED(name) __asm__("__wrap_" name)
+#define REAL(name) __asm__("__real_" name)
+#define IMDECODE "_ZN2cv8imdecodeERKNS_11_InputArrayEi"
+#define GRAB "_ZN2cv12VideoCapture4grabEv"
+#define SOLVE "_ZN5ceres5SolveERKNS_6Solver7OptionsEPNS_7ProblemEPNS0_7SummaryE"
+#define GRADIENT_SOLVE "_ZN5ceres5SolveERKNS_21GradientProblemSolver7OptionsERKNS_15GradientProblemEPdPNS0_7SummaryE"
 
-#ifdef __clang__
-#pragma clang diagnostic ignored "-Wreturn-type-c-linkage"
-#endif
+void* RealMalloc(std::size_t size) REAL("malloc");
+void* Malloc(std::size_t size) WRAPPED("malloc");
+cv::Mat RealImdecode(cv::InputArray file, int flags) REAL(IMDECODE);
+cv::Mat Imdecode(cv::InputArray file, int flags) WRAPPED(IMDECODE);
+bool RealGrab(cv::VideoCapture* capture) REAL(GRAB);
+bool Grab(cv::VideoCapture* capture) WRAPPED(GRAB);
+void RealSolve(const ceres::Solver::Options& options, ceres::Problem* problem, ceres::Solver::Summary* summary)
+    REAL(SOLVE);
+void Solve(const ceres::Solver::Options& options, ceres::Problem* problem, ceres::Solver::Summary* summary)
+    WRAPPED(SOLVE);
+void RealSolve(const ceres::GradientProblemSolver::Options& options, const ceres::GradientProblem& problem,
+               double* parameters, ceres::GradientProblemSolver::Summary* summary) REAL(GRADIENT_SOLVE);
+void Solve(const ceres::GradientProblemSolver::Options& options, const ceres::GradientProblem& problem,
+           double* parameters, ceres::GradientProblemSolver::Summary* summary) WRAPPED(GRADIENT_SOLVE);
 
-extern "C" {
-void* __real_malloc(std::size_t size);
-void* __wrap_malloc(std::size_t size);
-cv::Mat REAL_IMDECODE(cv::InputArray file, int flags);
-cv::Mat WRAP_IMDECODE(cv::InputArray file, int flags);
-bool REAL_GRAB(cv::VideoCapture* capture);
-bool WRAP_GRAB(cv::VideoCapture* capture);
-void REAL_SOLVE(const ceres::Solver::Options& options, ceres::Problem* problem, ceres::Solver::Summary* summary);
-void WRAP_SOLVE(const ceres::Solver::Options& options, ceres::Problem* problem, ceres::Solver::Summary* summary);
-void REAL_GRADIENT_SOLVE(const ceres::GradientProblemSolver::Options& options, const ceres::GradientProblem& problem,
-                         double* parameters, ceres::GradientProblemSolver::Summary* summary);
-void WRAP_GRADIENT_SOLVE(const ceres::GradientProblemSolver::Options& options, const ceres::GradientProblem& problem,
-                         double* parameters, ceres::GradientProblemSolver::Summary* summary);
+void* Malloc(std::size_t size) { return FailsToGive(size) ? nullptr : RealMalloc(size); }
 
-void* __wrap_malloc(std::size_t size) { return FailsToGive(size) ? nullptr : __real_malloc(size); }
+cv::Mat Imdecode(cv::InputArray file, int flags) { return Fails("decode") ? cv::Mat() : RealImdecode(file, flags); }
 
-cv::Mat WRAP_IMDECODE(cv::InputArray file, int flags) {
-  return Fails("decode") ? cv::Mat() : REAL_IMDECODE(file, flags);
-}
+bool Grab(cv::VideoCapture* capture) { return !Fails("decode") && RealGrab(capture); }
 
-bool WRAP_GRAB(cv::VideoCapture* capture) { return !Fails("decode") && REAL_GRAB(capture); }
-
-void WRAP_SOLVE(const ceres::Solver::Options& options, ceres::Problem* problem, ceres::Solver::Summary* summary) {
+void Solve(const ceres::Solver::Options& options, ceres::Problem* problem, ceres::Solver::Summary* summary) {
   if (Fails("solve"))
     Fail(summary);
   else
-    REAL_SOLVE(options, problem, summary);
+    RealSolve(options, problem, summary);
 }
 
-void WRAP_GRADIENT_SOLVE(const ceres::GradientProblemSolver::Options& options, const ceres::GradientProblem& problem,
-                         double* parameters, ceres::GradientProblemSolver::Summary* summary) {
+void Solve(const ceres::GradientProblemSolver::Options& options, const ceres::GradientProblem& problem,
+           double* parameters, ceres::GradientProblemSolver::Summary* summary) {
   if (Fails("solve"))
     Fail(summary);
   else
-    REAL_GRADIENT_SOLVE(options, problem, parameters, summary);
-}
+    RealSolve(options, problem, parameters, summary);
 }
 
 void* operator new(std::size_t size) {
-  if (void* memory = FailsToGive(size) ? nullptr : __real_malloc(size == 0 ? 1 : size)) return memory;
+  if (void* memory = FailsToGive(size) ? nullptr : RealMalloc(size == 0 ? 1 : size)) return memory;
   throw std::bad_alloc();
 }
 void* operator new(std::size_t size, std::align_val_t alignment) {
