@@ -16,6 +16,7 @@
 
 #include "image/image_size.h"
 #include "pliant/base/text.h"
+#include "pliant/surface/mesh_raster.h"
 #include "viewer/view_lookup.h"
 #include "viewer/viridis.h"
 
