@@ -41,29 +41,20 @@ TEST(Robustness, ATruncatedImageEndsTheRunAndTheFramesBeforeItStay) {
 }
 
 TEST(Robustness, AnImageOfAnotherSizeIsNamedBeforeTheFirstFrame) {
-  const TestFolder folder;
-  const SequenceCopy sequence(folder, kFrames);
-  sequence.Replace(5, cv::Mat(100, 200, CV_8UC3, cv::Scalar::all(90)));
-  RunRequest request;
-  request.input.image_path = sequence.path();
-  request.output_path = folder.Path("run");
-  const auto summary = RunTrack(request, DepthStart(), {});
-  EXPECT_EQ(summary.status().code(), ErrorCode::kMismatch);
-  EXPECT_THAT(summary.status().message(), HasSubstr(FrameName(5) + " is 200x100"));
-  EXPECT_FALSE(std::filesystem::exists(folder.Path("run")));
-}
-
-// Of which the size cannot be seen before it is decoded.
-TEST(Robustness, ATiffOfAnotherSizeEndsTheRunAndIsNamed) {
-  const TestFolder folder;
-  const SequenceCopy sequence(folder, kFrames);
-  const std::filesystem::path tiff = sequence.Image(5).replace_extension(".tif");
-  std::filesystem::remove(sequence.Image(5));
-  ASSERT_TRUE(cv::imwrite(tiff.string(), cv::Mat(100, 200, CV_8UC3, cv::Scalar::all(90))));
-  const RunSummary summary = TrackSequenceAt(sequence.path(), folder.Path("run"), DepthStart());
-  EXPECT_EQ(summary.status, RunStatus::kFailed);
-  EXPECT_THAT(summary.note, HasSubstr("000005.tif is 200x100"));
-  ExpectReadable(folder.Path("run"), 5);
+  for (const std::string extension : {".png", ".tif"}) {
+    const TestFolder folder;
+    const SequenceCopy sequence(folder, kFrames);
+    const std::filesystem::path image = sequence.Image(5).replace_extension(extension);
+    std::filesystem::remove(sequence.Image(5));
+    ASSERT_TRUE(cv::imwrite(image.string(), cv::Mat(100, 200, CV_8UC3, cv::Scalar::all(90))));
+    RunRequest request;
+    request.input.image_path = sequence.path();
+    request.output_path = folder.Path("run");
+    const auto summary = RunTrack(request, DepthStart(), {});
+    EXPECT_EQ(summary.status().code(), ErrorCode::kMismatch);
+    EXPECT_THAT(summary.status().message(), HasSubstr(image.filename().string() + " is 200x100"));
+    EXPECT_FALSE(std::filesystem::exists(folder.Path("run")));
+  }
 }
 
 TEST(Robustness, BlackToTheEndIsLostAndSaysBlack) {
