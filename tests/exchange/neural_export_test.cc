@@ -215,7 +215,8 @@ TEST(NerfstudioExport, MasksKeepWhatIsUsed) {
   ExportRequest request;
   request.mask_path = folder.Path("mask.png");
   ASSERT_TRUE(Export(folder, "nerfstudio", request).ok());
-  for (const Json& frame : ReadTransforms(folder)["frames"]) {
+  const Json transforms = ReadTransforms(folder);
+  for (const Json& frame : transforms["frames"]) {
     const cv::Mat written = ReadPng(folder.Path("out/" + frame["mask_path"].get<std::string>()));
     EXPECT_EQ(cv::countNonZero(written != mask), 0);
   }
