@@ -4,6 +4,8 @@
 #include "refinement/bundle.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numeric>
 
 #include "pliant/base/statistics.h"
 #include "refinement/bundle_covariance.h"
@@ -19,20 +21,12 @@ constexpr double kShrunk = 2.0;
 // (F9) Of a track as one measurement, a coordinate: what a drift moves along the epipolar line goes into the depth, and
 // its residuals show the other coordinate alone.
 double TrackNoisePx(const BundleInput& input, const BundleState& state) {
-  const auto errors_px = ReprojectionErrors(input.camera, input.recording, state);
-  std::vector<double> squares(input.recording.rest_positions.size(), 0.0);
-  for (std::size_t o = 0; o < errors_px.size(); ++o)
-    if (input.used[o])
-      squares[static_cast<std::size_t>(input.recording.observations[o].point_idx)] += errors_px[o].squaredNorm();
+  const std::vector<double> squares =
+      MeanSquareErrors(input.recording, input.used, ReprojectionErrors(input.camera, input.recording, state));
   const std::vector<int> views = CountViews(input.recording, input.used);
-  double sum = 0.0;
-  int tracks = 0;
-  for (std::size_t i = 0; i < squares.size(); ++i) {
-    if (views[i] == 0) continue;
-    sum += squares[i] / views[i];
-    ++tracks;
-  }
-  return std::max(input.sigmas.noise_px, std::sqrt(sum / std::max(1, tracks)));
+  const double sum = std::accumulate(squares.begin(), squares.end(), 0.0);
+  const auto tracks = views.size() - static_cast<std::size_t>(std::ranges::count(views, 0));
+  return std::max(input.sigmas.noise_px, std::sqrt(sum / static_cast<double>(std::max<std::size_t>(1, tracks))));
 }
 
 }  // namespace
@@ -63,6 +57,16 @@ std::vector<int> CountViews(const Recording& recording, const std::vector<bool>&
   for (std::size_t o = 0; o < used.size(); ++o)
     if (used[o]) ++views[static_cast<std::size_t>(recording.observations[o].point_idx)];
   return views;
+}
+
+std::vector<double> MeanSquareErrors(const Recording& recording, const std::vector<bool>& used,
+                                     const std::vector<Eigen::Vector2d>& errors_px) {
+  std::vector<double> squares(recording.rest_positions.size(), 0.0);
+  for (std::size_t o = 0; o < errors_px.size(); ++o)
+    if (used[o]) squares[static_cast<std::size_t>(recording.observations[o].point_idx)] += errors_px[o].squaredNorm();
+  const std::vector<int> views = CountViews(recording, used);
+  for (std::size_t i = 0; i < squares.size(); ++i) squares[i] /= std::max(1, views[i]);
+  return squares;
 }
 
 std::vector<Eigen::Vector2d> ReprojectionErrors(const Camera& camera, const Recording& recording,

@@ -95,6 +95,10 @@ Result<BundleCovariance> CovarianceOfBundle(const BundleInput& input, const Bund
 // The views of every point, of its used observations.
 std::vector<int> CountViews(const Recording& recording, const std::vector<bool>& used);
 
+// Mean square error of every point's used observations, px^2; 0 where it has none.
+std::vector<double> MeanSquareErrors(const Recording& recording, const std::vector<bool>& used,
+                                     const std::vector<Eigen::Vector2d>& errors_px);
+
 // Of the points from the cameras, over the observations.
 double MedianDistance(const Recording& recording);
 

@@ -76,8 +76,12 @@ class Covariance {
     Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(kSamples);
     int count = 0;
     for (std::size_t i = 0; i < point_normals_.size(); ++i) {
-      if (point_normals_[i].self.size() == 0) continue;
-      sum += SampledLogDistance(i, SampledPoint(i), views_of_point[i][views_of_point[i].size() / 2]);
+      const PointNormal& normal = point_normals_[i];
+      if (normal.self.size() == 0) continue;
+      const int view = views_of_point[i][views_of_point[i].size() / 2];
+      const LogDistanceGradient gradient = GradientOf(i, static_cast<std::size_t>(view));
+      sum += gradient.by_view * SamplesOf(view) +
+             gradient.by_point * SampledPoint(normal, Eigen::LLT<Eigen::MatrixXd>(normal.self));
       ++count;
     }
     common_ = sum / std::max(1, count);
@@ -112,30 +116,29 @@ class Covariance {
     const PointNormal& normal = point_normals_[point];
     if (normal.self.size() == 0) return std::vector<double>(views.size(), 0.0);
     const Eigen::LLT<Eigen::MatrixXd> own(normal.self);
-    const Eigen::MatrixXd moved = SampledPoint(point);
+    const Eigen::MatrixXd moved = SampledPoint(normal, own);
     std::vector<double> sigmas;
     for (const int view : views) {
-      const Eigen::RowVectorXd sampled = SampledLogDistance(point, moved, view) - common_;
-      const Eigen::RowVectorXd by_point = LogDistanceGradient(point, static_cast<std::size_t>(view)).second;
-      const double known_views = by_point * own.solve(by_point.transpose());
+      const LogDistanceGradient gradient = GradientOf(point, static_cast<std::size_t>(view));
+      const Eigen::RowVectorXd sampled = gradient.by_view * SamplesOf(view) + gradient.by_point * moved - common_;
+      const double known_views = gradient.by_point * own.solve(gradient.by_point.transpose());
       sigmas.push_back(std::sqrt(known_views + sampled.squaredNorm() / kSamples));
     }
     return sigmas;
   }
 
  private:
-  // A point's numbers, by the samples of views and nodes.
-  Eigen::MatrixXd SampledPoint(std::size_t point) const {
-    const PointNormal& normal = point_normals_[point];
+  struct LogDistanceGradient {
+    Eigen::RowVectorXd by_view;
+    Eigen::RowVectorXd by_point;
+  };
+
+  // A point's numbers, by the samples of views and nodes; `own` is of its normal equations.
+  Eigen::MatrixXd SampledPoint(const PointNormal& normal, const Eigen::LLT<Eigen::MatrixXd>& own) const {
     Eigen::MatrixXd moved = Eigen::MatrixXd::Zero(normal.self.rows(), kSamples);
     for (const auto& [block, matrix] : normal.by_block) moved.noalias() -= matrix.transpose() * SamplesOf(block);
-    Eigen::LLT<Eigen::MatrixXd>(normal.self).solveInPlace(moved);
+    own.solveInPlace(moved);
     return moved;
-  }
-
-  Eigen::RowVectorXd SampledLogDistance(std::size_t point, const Eigen::MatrixXd& sampled_point, int view) const {
-    const auto [by_view, by_point] = LogDistanceGradient(point, static_cast<std::size_t>(view));
-    return by_view * SamplesOf(view) + by_point * sampled_point;
   }
 
   // The center of a camera, from the first one's.
@@ -276,7 +279,7 @@ class Covariance {
     }
   }
 
-  std::pair<Eigen::RowVectorXd, Eigen::RowVectorXd> LogDistanceGradient(std::size_t point, std::size_t view) const {
+  LogDistanceGradient GradientOf(std::size_t point, std::size_t view) const {
     const int rank = problem_.rank();
     const ModelPoint moved(problem_.poses()[view], problem_.views()[view], problem_.points()[point], rank);
     const Eigen::RowVector3d by_cam_point = moved.in_cam().transpose() / moved.in_cam().squaredNorm();

@@ -174,22 +174,16 @@ class Refinement {
   // Tracks whose error, in those observations, is far above that of the others.
   void RejectWrongTracks(const BundleState& state, const std::vector<bool>& used) {
     const auto errors_px = ReprojectionErrors(input_.camera, start_, state);
-    std::vector<double> squares(start_.rest_positions.size(), 0.0);
-    std::vector<int> counts(squares.size(), 0);
-    for (std::size_t o = 0; o < errors_px.size(); ++o) {
-      if (!used[o]) continue;
-      const auto point = static_cast<std::size_t>(start_.observations[o].point_idx);
-      squares[point] += errors_px[o].squaredNorm();
-      ++counts[point];
-    }
+    const std::vector<double> squares = MeanSquareErrors(start_, used, errors_px);
+    const std::vector<int> counts = CountViews(start_, used);
     std::vector<double> rms;
     for (std::size_t i = 0; i < squares.size(); ++i)
-      if (counts[i] > 0) rms.push_back(std::sqrt(squares[i] / counts[i]));
+      if (counts[i] > 0) rms.push_back(std::sqrt(squares[i]));
     if (rms.empty()) return;
     const double bound = std::max(kWrongTrack * Median(rms), kMinWrongTrackPx);
     for (std::size_t o = 0; o < errors_px.size(); ++o) {
       const auto point = static_cast<std::size_t>(start_.observations[o].point_idx);
-      if (counts[point] > 0 && std::sqrt(squares[point] / counts[point]) > bound) input_.used[o] = false;
+      if (std::sqrt(squares[point]) > bound) input_.used[o] = false;
     }
     KeepPointsSeenOften(start_, &input_.used);
   }

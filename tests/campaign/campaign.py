@@ -11,8 +11,8 @@ limits on the size and the number of files (limit), runs that are stopped at ran
 which then have to be those that were not stopped byte for byte (resume), random options (options), scenes and motions
 from which geometry cannot be had (scene), and, with LIBRARY (fail_nth.c), one call that fails: the n-th open, read,
 write, fsync, rename, mkdir, thread start or large malloc, and, of the program that is built for it (fail_calls.cc), the
-n-th image that is decoded or solver that is called (fault). After each of them the program has to have ended by itself within a
-minute, with exit code 0, 1 or 2, a sentence of at most 400 characters where it failed, no file that breaks off under
+n-th image that is decoded or solver that is called (fault). After each of them the program has to have ended by itself
+within a minute, with exit code 0, 1 or 2, a sentence of at most 400 characters where it failed, no file that breaks off under
 its final name, and no more than 1 GB of memory. After random options and scenes the run has finite numbers, quaternions
 of unit length, documented states, and as many poses as tracked frames. WORK/campaign.json has the counts; what does not
 hold stays in WORK/wrong/NUMBER with its input and its command, and makes the exit code 1.
