@@ -30,7 +30,7 @@ using test::WavingTracks;
 constexpr int kFromTheStart = 100;       // ids below are in view from the start
 constexpr int kMinLater = 20;            // points that come into view later, and are certain
 constexpr std::size_t kMinPoints = 100;  // the others stay
-constexpr int kMinMaps = 3;              // of nine trials, or nothing was tested
+constexpr int kMinMaps = 3;              // of fifteen trials, or nothing was tested
 constexpr std::size_t kMinBrief = 5;     // of the ten that were there from the start
 constexpr double kRigidShare = 0.3;      // of kShape: nothing moves, and nothing is pulled to a prior
 constexpr double kFlatShare = 0.25;      // of kShape; the other motion's plane would be at another tilt
@@ -373,7 +373,7 @@ TEST(WindowInitializer, APlaneThatWavesIsKnownOrRefused) {
   int maps = 0;
   WindowInitOptions options;
   options.min_still_camera_ratio = 0;  // most of these smooth paths would be refused for that alone
-  for (const unsigned seed : {1U, 2U, 3U}) {
+  for (const unsigned seed : {1U, 2U, 3U, 4U, 5U}) {
     for (const int frames : {31, 36, 46}) {
       const WavingTracks plane(frames, CameraMotion::kForwards, 1, 0, seed);
       const InitOutcome outcome = plane.Try(options, InitMoment::kLastFrame);
@@ -398,6 +398,24 @@ TEST(WindowInitializer, ADeformingMapWhoseDepthsHardlyStandOutIsPutAside) {
     ++maps;
     EXPECT_TRUE(at_the_end.provisional) << seed;
     EXPECT_EQ(plane.Try(options).decision, InitDecision::kProvisional) << seed;
+  }
+  EXPECT_GT(maps, 0);
+}
+
+// However long it has waited.
+TEST(WindowInitializer, ADeformingMapWhoseDepthsHardlyStandOutHasToKnowThem) {
+  int maps = 0;
+  WindowInitOptions options;
+  options.min_still_camera_ratio = 0;
+  for (const unsigned seed : {1U, 2U, 3U}) {
+    const WavingTracks plane(46, CameraMotion::kForwards, 1, 0, seed);
+    options.max_depth_sigma = options.last_depth_sigma;
+    const InitOutcome known = plane.Try(options, InitMoment::kLastFrame);
+    if (known.decision != InitDecision::kMap || known.measured.DepthSignal() >= 2) continue;
+    ++maps;
+    options.max_depth_sigma = 0.5 * known.measured.median_depth_sigma;
+    const InitOutcome unknown = plane.Try(options, InitMoment::kLastFrame);
+    EXPECT_TRUE(unknown.decision != InitDecision::kMap || unknown.measured.DepthSignal() >= 2) << unknown.reason;
   }
   EXPECT_GT(maps, 0);
 }

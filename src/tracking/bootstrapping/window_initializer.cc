@@ -138,6 +138,8 @@ class WindowInitializer final : public Initializer {
     const auto window = SolveWindow(input, input.frames.size(), WindowScene::kAny, options_, nominal_depth_mm_);
     Status status = Make(input, window, LastDemands(since), outcome);
     if (status.ok() || outcome->ambiguous) return status;
+    // Where the depths hardly stand out, those of fewer frames do so by chance.
+    if (window.ok() && status.code() == ErrorCode::kDegenerate) return status;
     // The longer the window the more it holds, and the more there is to go wrong.
     const int shorter = 2 * (since + 1) / 3;
     Status of_shorter = Make(
@@ -151,7 +153,8 @@ class WindowInitializer final : public Initializer {
   Status MakeProvisional(const InitInput& input, const Result<SolvedWindow>& window, const Status& status,
                          InitOutcome* outcome) const {
     if (options_.provisional == Switch::kOff || !window.ok() || outcome->ambiguous) return status;
-    if (ContradictsLightClearly(*window)) return status;
+    // Where the depths of all points hardly stand out, those of fewer do so by chance.
+    if (status.code() == ErrorCode::kDegenerate || ContradictsLightClearly(*window)) return status;
     Status missing = status;
     for (const bool far_by_own_distance : {false, true}) {
       // Sigmas of rigid windows know nothing of a deformation: they are not taken for more than they are.

@@ -24,7 +24,7 @@ namespace pliant {
 namespace {
 
 constexpr double kMaxErrorRatio = 3.0;         // of a point's error by the median one, where sigmas are scaled with it
-constexpr double kMinProvisionalSignal = 2.0;  // as kMinDepthSignal, of a map that is put aside; not of far ones
+constexpr double kMinProvisionalSignal = 2.0;  // as kMinDepthSignal, of a map that is provisional; not of far ones
 constexpr double kMaxOwnSigma = 2.0;  // of points by their own median distance, by what was demanded by that of all
 // Above it linear sigmas are far too small where tissue moves as fast as the camera.
 constexpr double kMaxProvisionalSigma = 0.06;
@@ -205,14 +205,16 @@ Status OptimizePoints(const InitInput& input, const MapDemands& demands, const W
 
 // (W15) Whether the map is provisional, and may be. Points that are certain by the median distance of all may be near
 // ones of a window that knows nothing: what is left is judged by its own. Before a camera that hardly moves noise
-// passes for motion, and so does tissue that swells; of a rigid scene nothing else asks for that (W14).
+// passes for motion, and so does tissue that swells; of a rigid scene nothing else asks for that (W14). Depths that
+// hardly stand out are as wrong as one constant depth unless their sigmas are small, however long the window has
+// waited.
 Status CheckDepthSignal(const SolvedWindow& window, const MapDemands& demands, const WindowInitOptions& options,
                         InitOutcome* outcome) {
   const InitMeasurements& measured = outcome->measured;
   outcome->provisional = demands.provisional || measured.DepthSignal() < kMinDepthSignal;
   const bool stands_out =
       measured.DepthSignal() >= (demands.far_by_own_distance ? kMinDepthSignal : kMinProvisionalSignal);
-  const double max_sigma = window.IsRigid() && !stands_out ? options.max_depth_sigma : kMaxOwnSigma * demands.max_sigma;
+  const double max_sigma = stands_out ? kMaxOwnSigma * demands.max_sigma : options.max_depth_sigma;
   const bool explained = window.solution.residual_correlation <= kMaxNoiseCorrelation;
   const bool may_be_motion = window.IsRigid() && !stands_out && !explained;
   const bool known = demands.provisional ? stands_out && measured.median_depth_sigma <= kMaxProvisionalSigma
@@ -224,7 +226,7 @@ Status CheckDepthSignal(const SolvedWindow& window, const MapDemands& demands, c
                 Digits(window.solution.residual_correlation, 2) +
                 ", the scene may deform before a camera that stands still; move the camera sideways or forwards"};
   if (known && (!outcome->provisional || options.provisional == Switch::kOn)) return Status::Ok();
-  return {ErrorCode::kInsufficient,
+  return {stands_out ? ErrorCode::kInsufficient : ErrorCode::kDegenerate,
           "the depths spread by " + Digits(100.0 * measured.depth_spread, 1) + " % and are known to " +
               Digits(100.0 * measured.median_depth_sigma, 1) +
               " %: hardly better than one constant depth; move the camera sideways or forwards"};
