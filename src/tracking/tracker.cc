@@ -120,7 +120,11 @@ void Tracker::TakeMap(const PreparedFrame& frame, const FrameReport& report) {
   }
   submap.idx = report.submap;
   submap.provisional = report.state == TrackingState::kProvisional;
-  if (report.first_map) submap.depth_sigma = report.first_map->evidence.depth_sigma;
+  if (report.first_map) {
+    const FirstMapEvidence& evidence = report.first_map->evidence;
+    submap.depths = {.sigma = evidence.depth_sigma,
+                     .signal = evidence.depth_sigma > 0 ? evidence.depth_spread / evidence.depth_sigma : 0.0};
+  }
   submap.last_cam_from_world = *report.cam_from_world;
   submap.before_last_cam_from_world = *report.cam_from_world;
   submap.previous = frame;

@@ -73,7 +73,9 @@ struct WavingTracks {
     return MakeWindowInitializer(options, kNominalMm)->Try({camera, frames, {}, moment});
   }
 
-  InitOutcome Reestimate(WindowScene scene) const { return ReestimateMap({camera, frames, {}}, scene, {}, kNominalMm); }
+  InitOutcome Reestimate(WindowScene scene, bool of_provisional = false, const WindowInitOptions& options = {}) const {
+    return ReestimateMap({camera, frames, {}}, scene, of_provisional, options, kNominalMm);
+  }
 
   // Median relative depth error of a frame's positions, after the best scale.
   double ShapeError(const InitOutcome& outcome, int t) const {

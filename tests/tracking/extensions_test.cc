@@ -95,6 +95,44 @@ TEST_F(Extensions, AProvisionalMapOfARigidSceneGivesWayToOneThatDeforms) {
   }
 }
 
+// A provisional map whose depths stand out so much.
+class ProvisionalMap final : public Initializer {
+ public:
+  ProvisionalMap(const InitOptions& options, double signal)
+      : gated_(MakeGatedInitializer(options.monocular, Random(1).Child("initializer"))), signal_(signal) {}
+  std::string_view name() const override { return "provisional"; }
+  InitOutcome Try(const InitInput& input) const override {
+    InitOutcome outcome = gated_->Try(input);
+    outcome.provisional = true;
+    outcome.measured.median_depth_sigma = 0.02;
+    outcome.measured.depth_spread = signal_ * outcome.measured.median_depth_sigma;
+    return outcome;
+  }
+
+ private:
+  std::shared_ptr<const Initializer> gated_;
+  double signal_;
+};
+
+TEST_F(Extensions, AProvisionalMapIsReestimatedByOneWhoseDepthsStandOutMore) {
+  TrackerOptions options;
+  options.growth.window = 7;
+  options.growth.reestimate_every = 1;
+  // None is certain.
+  options.init.window.certain_depth_sigma = options.init.window.last_depth_sigma = 1e-4;
+  options.init.window.max_depth_sigma = 1e-4;
+  for (const double signal : {0.1, 1000.0}) {
+    TrackerExtensions extensions;
+    extensions.initializer = std::make_shared<ProvisionalMap>(InitOptions(), signal);
+    const std::vector<FrameReport> reports = Run(options, extensions);
+    ASSERT_FALSE(reports.empty());
+    const bool is_reestimated = std::ranges::any_of(
+        reports, [](const FrameReport& report) { return report.note.starts_with("the map was re-estimated"); });
+    EXPECT_EQ(is_reestimated, signal < 1) << signal;
+    EXPECT_EQ(reports.back().state, TrackingState::kProvisional);
+  }
+}
+
 TEST_F(Extensions, AGivenSourceFollowsThePoints) {
   TrackerOptions options;
   options.init.method = InitMethod::kGated;

@@ -98,5 +98,18 @@ TEST(ReestimateMap, MakesAMapOfASceneThatDeformsWhereItMayBeAny) {
   EXPECT_FALSE(none.reason.empty());
 }
 
+TEST(ReestimateMap, AProvisionalMapIsReplacedByAnother) {
+  const WavingTracks sequence(46);
+  WindowInitOptions options;
+  options.certain_depth_sigma = options.max_depth_sigma = options.last_depth_sigma = 1e-4;
+  EXPECT_EQ(sequence.Reestimate(WindowScene::kAny, false, options).decision, InitDecision::kWait);
+  const InitOutcome reestimated = sequence.Reestimate(WindowScene::kAny, true, options);
+  ASSERT_EQ(reestimated.decision, InitDecision::kMap) << reestimated.reason;
+  EXPECT_TRUE(reestimated.provisional);
+  EXPECT_LT(sequence.ShapeError(reestimated, 45), 2 * kShape);
+  // It may be certain as well.
+  EXPECT_FALSE(sequence.Reestimate(WindowScene::kAny, true).provisional);
+}
+
 }  // namespace
 }  // namespace pliant

@@ -46,13 +46,15 @@ bool MapUpdater::EstimatesPoses() const {
 void MapUpdater::Reestimate(const std::vector<InitFrame>& frames, WindowScene scene, const Submap& submap) {
   Reestimation reestimation{scene, {submap.map, submap.last_cam_from_world}};
   const bool beside = threads_ > 1 && options_.handover_frames > 0;
+  // Only what was compared with one constant depth can be compared with another map.
+  const bool of_provisional = submap.provisional && submap.depths.signal > 0.0;
   // To refine a rigid map takes much less time, and every frame without it is tracked with a worse one.
   const int delay = scene == WindowScene::kRigid ? (options_.handover_frames + 2) / 3 : options_.handover_frames;
   reestimations_.Ask(updates_ + delay, beside ? WorkPlace::kBeside : WorkPlace::kHere,
-                     [this, frames, made = std::move(reestimation)]() mutable {
-                       made.outcome =
-                           ReestimateMap({camera_, frames, {}, InitMoment::kMoreFollow, threads_, {}, photometric_},
-                                         made.scene, options_.init.window, options_.init.monocular.nominal_depth_mm);
+                     [this, frames, of_provisional, made = std::move(reestimation)]() mutable {
+                       made.outcome = ReestimateMap(
+                           {camera_, frames, {}, InitMoment::kMoreFollow, threads_, {}, photometric_}, made.scene,
+                           of_provisional, options_.init.window, options_.init.monocular.nominal_depth_mm);
                        return std::move(made);
                      });
 }
@@ -71,7 +73,7 @@ void MapUpdater::Start(FirstMap first, Submap* submap) {
   const InitOutcome& outcome = first.outcome;
   submap->map = MakeFirstMap(first);
   submap->provisional = outcome.provisional;
-  submap->depth_sigma = outcome.measured.median_depth_sigma;
+  submap->depths = {.sigma = outcome.measured.median_depth_sigma, .signal = outcome.measured.DepthSignal()};
   for (Landmark& landmark : submap->map.landmarks)
     landmark.measured = options_.init.IsMetric() || options_.oracle.first_map == Switch::kOn;
   submap->last_cam_from_world = outcome.frames.back().cam_from_world;
@@ -196,7 +198,7 @@ void MapUpdater::Grow(const PreparedFrame& frame, Submap* submap, StageTimes* ti
   }
   const StageTimer timer(times, Stage::kInitialize);
   for (const Candidates::CertainPoint& point :
-       submap->candidates.Certain(submap->last_cam_from_world, submap->map, submap->depth_sigma))
+       submap->candidates.Certain(submap->last_cam_from_world, submap->map, submap->depths.sigma))
     Promote(point, submap, update);
   if (options_.growth.window > 0) {
     RememberWindow(frame, submap);
@@ -292,6 +294,8 @@ bool MapUpdater::IsReestimationDue(int frame_idx, const Submap& submap) const {
 void MapUpdater::TakeAny(const Reestimation& reestimation, Submap* submap, MapUpdate* update) const {
   const auto& [scene, then, outcome] = reestimation;
   if (outcome.decision != InitDecision::kMap) return;
+  const double signal = outcome.measured.DepthSignal();
+  if (submap->provisional && outcome.provisional && signal < submap->depths.signal) return;
   std::vector<InitPosition> positions = ReestimatedPositions(outcome, then.cam_from_world, then.map);
   if (positions.empty()) return;
   RejectReprojectionOutliers(outcome, submap, &update->losses);
@@ -312,6 +316,7 @@ void MapUpdater::TakeAny(const Reestimation& reestimation, Submap* submap, MapUp
   submap->candidates.TakeCorrection(before, submap->map);
   for (const InitPosition& point : positions)
     if (submap->map.Find(point.id) == nullptr) Promote({point.id, point.position}, submap, update);
+  if (submap->provisional) submap->depths.signal = std::max(submap->depths.signal, signal);
   if (!outcome.provisional && 2 * positions.size() >= submap->map.landmarks.size()) submap->provisional = false;
   update->note = "the map was re-estimated: " + outcome.reason;
 }

@@ -14,8 +14,8 @@ namespace {
 constexpr double kRelaxed = 0.05;
 
 // What is missing for a map; ok when the outcome is one.
-Status Reestimate(const InitInput& input, WindowScene scene, const WindowInitOptions& options, double nominal_depth_mm,
-                  InitOutcome* outcome) {
+Status Reestimate(const InitInput& input, WindowScene scene, bool of_provisional, const WindowInitOptions& options,
+                  double nominal_depth_mm, InitOutcome* outcome) {
   const bool may_deform = scene == WindowScene::kAny;
   if (may_deform)  // a rotation alone does not constrain the deforming window
     if (Status status = CheckWindowNotARotation(input, &outcome->measured); !status.ok()) return status;
@@ -28,16 +28,21 @@ Status Reestimate(const InitInput& input, WindowScene scene, const WindowInitOpt
   // a time, shows in them.
   demands.scales_sigmas_with_error = window->IsRigid();
   outcome->decision = InitDecision::kWait;
+  const Status status = MakeWindowMap(input, *window, demands, options, nominal_depth_mm, outcome);
+  const bool is_settled = status.ok() || outcome->ambiguous || status.code() == ErrorCode::kDegenerate;
+  if (is_settled || !of_provisional || !may_deform) return status;
+  demands = ProvisionalDemands(window->solution.window, false);
+  demands.scales_sigmas_with_error = window->IsRigid();
   return MakeWindowMap(input, *window, demands, options, nominal_depth_mm, outcome);
 }
 
 }  // namespace
 
-InitOutcome ReestimateMap(const InitInput& input, WindowScene scene, const WindowInitOptions& options,
-                          double nominal_depth_mm) {
+InitOutcome ReestimateMap(const InitInput& input, WindowScene scene, bool of_provisional,
+                          const WindowInitOptions& options, double nominal_depth_mm) {
   InitOutcome outcome;
   outcome.decision = InitDecision::kNewReference;
-  if (Status status = Reestimate(input, scene, options, nominal_depth_mm, &outcome); !status.ok())
+  if (Status status = Reestimate(input, scene, of_provisional, options, nominal_depth_mm, &outcome); !status.ok())
     outcome.reason = status.message();
   return outcome;
 }

@@ -11,9 +11,11 @@
 
 namespace pliant {
 
-// From all frames of the input, of which some between the first and the last may be left out. kWait: they make no map
-// that is certain; kNewReference: the scene is not of the kind that is asked for, or is seen too little.
-InitOutcome ReestimateMap(const InitInput& input, WindowScene scene, const WindowInitOptions& options,
-                          double nominal_depth_mm);
+// From all frames of the input, of which some between the first and the last may be left out. `of_provisional`: in
+// place of a provisional map, which another one may replace; one that is certain is only improved by what is certain
+// itself. kWait: they make no map that is certain enough; kNewReference: the scene is not of the kind that is asked
+// for, or is seen too little.
+InitOutcome ReestimateMap(const InitInput& input, WindowScene scene, bool of_provisional,
+                          const WindowInitOptions& options, double nominal_depth_mm);
 
 }  // namespace pliant

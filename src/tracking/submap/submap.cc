@@ -100,5 +100,6 @@ void Submap::RemoveFrom(TrackSource* tracks) const {
 }
 
 void Submap::Serialize(StateArchive& archive) { archive.Members<15>(*this); }
+void DepthCertainty::Serialize(StateArchive& archive) { archive.Members<2>(*this); }
 
 }  // namespace pliant

@@ -20,6 +20,13 @@
 
 namespace pliant {
 
+// (W15) How well the depths of a map were known when it was made.
+struct DepthCertainty {
+  double sigma = 0;   // of the points, by their distance, in the median; 0: from metric depth
+  double signal = 0;  // their spread by their sigma; 0: from metric depth
+  void Serialize(StateArchive& archive);
+};
+
 struct Submap {
   Submap(int submap_idx, const Camera& camera, const TrackerOptions& options)
       : idx(submap_idx), candidates(camera, options.growth), descriptors(options.relocalization) {}
@@ -51,7 +58,7 @@ struct Submap {
   int idx;
   Map map;
   bool provisional = false;  // it is less certain than demanded, or hardly better than one constant depth
-  double depth_sigma = 0;    // of the map's points, by their distance, in the median; 0: from metric depth
+  DepthCertainty depths;
   LostPoints lost_points;
   RigidHistory rigid_history;
   Candidates candidates;
