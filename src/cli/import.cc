@@ -3,10 +3,14 @@
 
 #include "pliant/exchange/import.h"
 
+#include <functional>
+
 #include "cli/command_line.h"
 #include "cli/commands.h"
+#include "cli/interrupt.h"
 #include "cli/messages.h"
 #include "cli/output_folder.h"
+#include "cli/progress.h"
 
 namespace pliant::cli {
 namespace {
@@ -53,7 +57,10 @@ int ImportCommand(std::span<const std::string> args) {
     if (const auto exit = output.Check(line, output.path, OutputFolder::Content::kRun)) return *exit;
   request.output_path = output.path;
   request.command_line = line.Words(args);
-  const auto summary = Import(request, options);
+  const auto summary = [&] {
+    JobBars bars(StopOnSignals());
+    return Import(request, options, std::ref(bars));
+  }();
   if (!summary.ok()) return line.Failure(summary.status().message());
   for (const std::string& note : summary->notes) SayNote(note);
   SayResult(std::to_string(summary->frames) + " of " + std::to_string(summary->sequence_frames) + " frames, " +

@@ -219,8 +219,8 @@ bool IsValid(const std::vector<Finding>& findings) {
                       [](const Finding& finding) { return finding.severity == Severity::kError; });
 }
 
-Result<Model> ReadValidModel(const std::string& folder) {
-  auto model = ReadModel(folder);
+Result<Model> ReadValidModel(const std::string& folder, const JobProgress& progress) {
+  auto model = ReadModel(folder, Observations::kRead, progress);
   if (!model.ok()) return model;
   for (const Finding& finding : CheckModel(*model))
     if (finding.severity == Severity::kError)

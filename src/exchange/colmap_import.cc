@@ -112,8 +112,8 @@ Status AddImages(const colmap::Model& model, const Sequence& sequence, const std
 
 }  // namespace
 
-Result<Imported> ReadColmapModel(const std::string& folder, const Sequence& sequence) {
-  const auto model = colmap::ReadValidModel(folder);
+Result<Imported> ReadColmapModel(const std::string& folder, const Sequence& sequence, const JobProgress& progress) {
+  const auto model = colmap::ReadValidModel(folder, progress);
   if (!model.ok()) return model.status();
   const auto camera = TheCamera(*model, folder);
   if (!camera.ok()) return camera.status();

@@ -39,10 +39,11 @@ SequenceRequest ImagesOf(const ImportRequest& request) {
   return images;
 }
 
-Result<Imported> ReadInput(const ImportRequest& request, const Sequence& sequence, const ImportOptions& options) {
+Result<Imported> ReadInput(const ImportRequest& request, const Sequence& sequence, const ImportOptions& options,
+                           const JobProgress& progress) {
   switch (request.format) {
     case ImportFormat::kColmap:
-      return ReadColmapModel(request.input_path, sequence);
+      return ReadColmapModel(request.input_path, sequence, progress);
     case ImportFormat::kResult:
       return ReadResult(request.input_path, sequence, options);
     case ImportFormat::kTum:
@@ -196,16 +197,17 @@ void ImportOptions::List(OptionTable& table) {
   table.Add("seconds", &seconds, "s", "time that the other program took, for run.json", 0.0, 1e9);
 }
 
-Result<ImportSummary> Import(const ImportRequest& request, const ImportOptions& options) {
+Result<ImportSummary> Import(const ImportRequest& request, const ImportOptions& options, const JobProgress& progress) {
   const auto sequence = OpenSequence(ImagesOf(request));
   if (!sequence.ok()) return sequence.status();
-  auto imported = ReadInput(request, **sequence, options);
+  auto imported = ReadInput(request, **sequence, options, progress);
   if (!imported.ok()) return imported.status();
   if (imported->frames.empty())
     return Status(ErrorCode::kInsufficient,
                   Quoted(request.input_path) + " gives no frame a pose; there is nothing to import");
   MultiplyUnit(options.unit_mm, &*imported);
   if (Status status = CheckUnit(*imported, options.unit_mm); !status.ok()) return status;
+  if (Status status = Tell(progress, "read", 1, 1); !status.ok()) return status;
   const Camera& camera = imported->camera ? *imported->camera : (*sequence)->camera();
   const Status written = request.as == ImportAs::kRun ? WriteRun(request, options, *imported, camera, **sequence)
                                                       : WriteTruth(request, *imported, camera, **sequence);

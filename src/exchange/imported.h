@@ -34,7 +34,7 @@ struct Imported {
 };
 
 // Each fails as Import does.
-Result<Imported> ReadColmapModel(const std::string& folder, const Sequence& sequence);
+Result<Imported> ReadColmapModel(const std::string& folder, const Sequence& sequence, const JobProgress& progress);
 Result<Imported> ReadResult(const std::string& folder, const Sequence& sequence, const ImportOptions& options);
 Result<Imported> ReadTrajectory(const std::string& path, ImportFormat format, const Sequence& sequence,
                                 const ImportOptions& options);

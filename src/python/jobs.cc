@@ -234,7 +234,8 @@ Texts ImportAny(const py::dict& request, const py::object& options) {
                                      .output_path = Text(request, "output_path"),
                                      .command_line = {"pliant.import_result"}};
   Interrupt interrupt;
-  return ValueOf(WithoutGil(&interrupt, [&] { return Import(import_request, import_options); })).notes;
+  return ValueOf(WithoutGil(&interrupt, [&] { return Import(import_request, import_options, EndingBy(interrupt)); }))
+      .notes;
 }
 
 py::dict Export(const py::dict& request, const py::object& options) {

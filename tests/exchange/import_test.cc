@@ -106,6 +106,20 @@ TEST_F(ImportTest, AModelBecomesARunOfItsImagesFrames) {
   }
 }
 
+TEST_F(ImportTest, StoppedOnRequestItWritesNothing) {
+  WriteModel();
+  const ImportRequest request{folder_.Path("model"), folder_.Path(""),    "",        ImportFormat::kColmap,
+                              ImportAs::kRun,        folder_.Path("out"), {"pliant"}};
+  for (const int stop_at : {1, 2}) {
+    int times = 0;
+    const auto summary =
+        Import(request, {}, [&](std::string_view /*task*/, int /*done*/, int /*total*/) { return ++times < stop_at; });
+    EXPECT_EQ(summary.status().code(), ErrorCode::kInterrupted) << stop_at;
+    EXPECT_FALSE(std::filesystem::exists(folder_.Path("out"))) << stop_at;
+    EXPECT_EQ(times, stop_at);
+  }
+}
+
 TEST_F(ImportTest, WhatWasImportedIsExportedAsTheSameModel) {
   WriteModel();
   ASSERT_TRUE(ImportModel().ok());

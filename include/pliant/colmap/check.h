@@ -39,6 +39,6 @@ std::vector<Finding> CheckModel(const Model& model);
 bool IsValid(const std::vector<Finding>& findings);
 
 // ReadModel, and kUnreadable with the first error that CheckModel finds.
-Result<Model> ReadValidModel(const std::string& folder);
+Result<Model> ReadValidModel(const std::string& folder, const JobProgress& progress = {});
 
 }  // namespace pliant::colmap

@@ -19,6 +19,7 @@
 #include <utility>
 #include <vector>
 
+#include "pliant/base/job_progress.h"
 #include "pliant/base/options.h"
 #include "pliant/base/status.h"
 
@@ -73,6 +74,8 @@ struct ImportSummary {
 // Fails with kNotFound, kUnreadable or kMismatch for what cannot be read or does not belong together; with
 // kInvalidArgument for a model that Pliant has no camera for, one with several cameras, or an output folder that holds
 // something else; with kInsufficient where no frame has a pose (of truth: where one has none); with kUnwritable.
-Result<ImportSummary> Import(const ImportRequest& request, const ImportOptions& options);
+// `progress` is told of a model's files (task "read"); kInterrupted where it asks to stop before anything is written.
+Result<ImportSummary> Import(const ImportRequest& request, const ImportOptions& options,
+                             const JobProgress& progress = {});
 
 }  // namespace pliant
