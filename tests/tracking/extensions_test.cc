@@ -51,13 +51,14 @@ TEST_F(Extensions, AGivenInitializerMakesTheFirstMap) {
   ExpectSame(Run(options, extensions), of_options);
 }
 
-// First a provisional map of a rigid scene whose depths stand out; then one that is less certain, of a scene that
-// deforms or not; then none.
+// First a provisional map whose depths stand out; then one that is less certain; then none. `describe` says what else
+// they are: of the map of this number, from 0.
 class TwoMaps final : public Initializer {
  public:
-  TwoMaps(const InitOptions& options, bool second_deforms)
-      : gated_(MakeGatedInitializer(options.monocular, Random(1).Child("initializer"))),
-        second_deforms_(second_deforms) {}
+  using Describe = std::function<void(int, InitOutcome*)>;
+  explicit TwoMaps(Describe describe)
+      : gated_(MakeGatedInitializer(InitOptions().monocular, Random(1).Child("initializer"))),
+        describe_(std::move(describe)) {}
   std::string_view name() const override { return "two maps"; }
   InitOutcome Try(const InitInput& input) const override {
     InitOutcome outcome;
@@ -67,7 +68,7 @@ class TwoMaps final : public Initializer {
       outcome.provisional = true;
       outcome.measured.depth_spread = 0.2;
       outcome.measured.median_depth_sigma = made_ == 0 ? 0.02 : 0.08;
-      outcome.deforming = made_ == 1 && second_deforms_;
+      describe_(made_, &outcome);
       ++made_;
     }
     if (input.moment == InitMoment::kLastFrame) outcome.decision = InitDecision::kNewReference;
@@ -77,22 +78,40 @@ class TwoMaps final : public Initializer {
 
  private:
   std::shared_ptr<const Initializer> gated_;
-  bool second_deforms_;
+  Describe describe_;
   mutable int made_ = 0;
 };
 
-TEST_F(Extensions, AProvisionalMapOfARigidSceneGivesWayToOneThatDeforms) {
-  for (const bool second_deforms : {false, true}) {
-    const auto initializer = std::make_shared<TwoMaps>(InitOptions(), second_deforms);
+class ExtensionsOfTwoMaps : public Extensions {
+ protected:
+  // Whether the second map is taken, which is less certain.
+  static bool TakesSecond(const TwoMaps::Describe& describe) {
+    const auto initializer = std::make_shared<TwoMaps>(describe);
     Tracker tracker(*camera_, {}, 1, 1, {.extensions = {.initializer = initializer}});
     for (int i = 0; i < kFrames; ++i) EXPECT_TRUE(Show(i, i, &tracker).empty());
     EXPECT_EQ(initializer->made(), 2);
     tracker.EndSequence();
     const std::vector<FrameReport> reports = tracker.Finish();
-    ASSERT_FALSE(reports.empty());
-    ASSERT_TRUE(reports.front().first_map);
-    EXPECT_EQ(reports.front().first_map->evidence.deforming, second_deforms);
+    const bool has_map = !reports.empty() && reports.front().first_map;
+    EXPECT_TRUE(has_map);
+    return has_map && reports.front().first_map->evidence.depth_sigma == 0.08;
   }
+};
+
+TEST_F(ExtensionsOfTwoMaps, TheMoreCertainOneIsTaken) {
+  EXPECT_FALSE(TakesSecond([](int /*map*/, InitOutcome* /*outcome*/) {}));
+}
+
+TEST_F(ExtensionsOfTwoMaps, AMapOfARigidSceneGivesWayToOneThatDeforms) {
+  EXPECT_TRUE(TakesSecond([](int map, InitOutcome* outcome) { outcome->deforming = map == 1; }));
+}
+
+TEST_F(ExtensionsOfTwoMaps, AMapWhoseFarPointsAreJudgedByThemselvesGivesWay) {
+  EXPECT_TRUE(TakesSecond([](int map, InitOutcome* outcome) { outcome->far_by_own_distance = map == 0; }));
+  EXPECT_FALSE(TakesSecond([](int map, InitOutcome* outcome) {
+    outcome->deforming = true;
+    outcome->far_by_own_distance = map == 1;
+  }));
 }
 
 // A provisional map whose depths stand out so much.

@@ -18,8 +18,9 @@ namespace {
 constexpr std::size_t kAskAlternativeEvery = 5;  // frames
 
 // Of two provisional maps, the second one of a longer window. Sigmas of a rigid window may know nothing of a
-// deformation: where a longer one deforms they do not count.
+// deformation: where a longer one deforms they do not count. Those by own distances are not compared with others.
 bool IsBetter(const InitOutcome& first, const InitOutcome& second) {
+  if (first.far_by_own_distance != second.far_by_own_distance) return second.far_by_own_distance;
   const auto allows_deformation = [](const InitOutcome& map) { return map.deforming || map.allows_deformation; };
   const bool is_comparable = allows_deformation(first) || !allows_deformation(second);
   return is_comparable && first.measured.DepthSignal() >= second.measured.DepthSignal();

@@ -326,6 +326,7 @@ Status MakeWindowMap(const InitInput& input, const SolvedWindow& window, const M
   if (Status status = FillOutcome(input, nominal_depth_mm, points, outcome); !status.ok()) return status;
   outcome->refinable = !outcome->deforming && options.refine_rigid == Switch::kOn;
   outcome->allows_deformation = window.deforming != nullptr;
+  outcome->far_by_own_distance = demands.far_by_own_distance;
   outcome->rejected = AllRejected(input, points, std::move(rejected));
   outcome->reason = std::string(outcome->provisional ? "provisional" : "first") + " map of " +
                     std::to_string(points.ids.size()) + " points from a " + (window.IsRigid() ? "rigid" : "deforming") +

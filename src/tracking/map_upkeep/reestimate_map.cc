@@ -28,7 +28,7 @@ Status Reestimate(const InitInput& input, WindowScene scene, bool of_provisional
   // a time, shows in them.
   demands.scales_sigmas_with_error = window->IsRigid();
   outcome->decision = InitDecision::kWait;
-  const Status status = MakeWindowMap(input, *window, demands, options, nominal_depth_mm, outcome);
+  Status status = MakeWindowMap(input, *window, demands, options, nominal_depth_mm, outcome);
   const bool is_settled = status.ok() || outcome->ambiguous || status.code() == ErrorCode::kDegenerate;
   if (is_settled || !of_provisional || !may_deform) return status;
   demands = ProvisionalDemands(window->solution.window, false);

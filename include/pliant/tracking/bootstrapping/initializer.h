@@ -142,6 +142,9 @@ struct InitOutcome {
   bool deforming = false;           // the scene deformed, by the model that was chosen
   bool allows_deformation = false;  // of a rigid scene: its sigmas do, though the model does not
   bool refinable = false;           // of a rigid scene: the frames that follow can make it better
+  // (W15) Its sigmas are by the points' own distances, and look smaller than those of a map whose are by the median
+  // one.
+  bool far_by_own_distance = false;
 };
 
 inline constexpr int kFewestPoints = 12;  // that a map is made of, whoever follows them
