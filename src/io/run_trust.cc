@@ -34,7 +34,7 @@ std::string OfFrames(const RunSummary& summary) {
 }
 
 bool IsDepthKnown(const FirstMapEvidence& evidence) {
-  return evidence.depth_sigma > 0.0 && evidence.depth_spread >= kMinDepthSignal * evidence.depth_sigma;
+  return DepthSignal(evidence.depth_spread, evidence.depth_sigma) >= kMinDepthSignal;
 }
 
 std::string Capitalized(std::string sentence) {

@@ -122,8 +122,7 @@ void Tracker::TakeMap(const PreparedFrame& frame, const FrameReport& report) {
   submap.provisional = report.state == TrackingState::kProvisional;
   if (report.first_map) {
     const FirstMapEvidence& evidence = report.first_map->evidence;
-    submap.depths = {.sigma = evidence.depth_sigma,
-                     .signal = evidence.depth_sigma > 0 ? evidence.depth_spread / evidence.depth_sigma : 0.0};
+    submap.depths = {.sigma = evidence.depth_sigma, .signal = DepthSignal(evidence.depth_spread, evidence.depth_sigma)};
   }
   submap.last_cam_from_world = *report.cam_from_world;
   submap.before_last_cam_from_world = *report.cam_from_world;

@@ -79,7 +79,11 @@ struct RefinedPoint {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  // undeformed, world frame, map units
 };
 
-// (W15) Of the depths' spread by their standard deviation: below it they are hardly better known than by one depth.
+// (W15) How far depths stand out from their uncertainty: their spread by their standard deviation, both by the median
+// depth; 0 where the latter was not measured.
+inline double DepthSignal(double spread, double sigma) { return sigma > 0 ? spread / sigma : 0.0; }
+
+// Below it depths are hardly better known than by one constant depth.
 inline constexpr double kMinDepthSignal = 3.0;
 
 // What a first map rests on, as it was measured when it was made; 0 where its method does not measure it.

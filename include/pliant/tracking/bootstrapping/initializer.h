@@ -23,6 +23,7 @@
 #include "pliant/camera/camera.h"
 #include "pliant/camera/photometric_calibration.h"
 #include "pliant/geometry/rigid3.h"
+#include "pliant/scene/frame_report.h"
 
 namespace pliant {
 
@@ -121,8 +122,7 @@ struct InitMeasurements {
   double still_camera_error_ratio = 0;  // errors of a camera that stands still by those of one that moves; 0: unknown
   double focal_length_factor = 1;       // on the calibration's, with which a rigid scene fits clearly better; 1: none
 
-  // (W15) How far the depths stand out from their uncertainty; 0 where that was not measured.
-  double DepthSignal() const { return median_depth_sigma > 0 ? depth_spread / median_depth_sigma : 0; }
+  double DepthSignal() const { return pliant::DepthSignal(depth_spread, median_depth_sigma); }  // (W15)
 };
 
 struct InitOutcome {
