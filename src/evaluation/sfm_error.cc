@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "evaluation/nearest_pixels.h"
+#include "geometry/nearest_pixels.h"
 #include "evaluation/seen_points.h"
 
 namespace pliant {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "evaluation/nearest_pixels.h"
+#include "geometry/nearest_pixels.h"
 
 #include <algorithm>
 #include <cmath>
