@@ -4,7 +4,6 @@
 #include "exchange/run_images.h"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <system_error>
 #include <utility>
@@ -14,20 +13,13 @@
 #include "datasets/image_file.h"
 #include "pliant/base/files.h"
 #include "pliant/base/text.h"
+#include "pliant/camera/same_camera.h"
 #include "pliant/datasets/run_sequence.h"
 
 namespace pliant {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr double kSameParameter = 1e-6;  // px: files hold more digits
-
-bool IsSameCamera(const Camera& a, const Camera& b) {
-  return a.model_id() == b.model_id() && std::ranges::equal(a.params(), b.params(), [](double p, double q) {
-           return std::abs(p - q) <= kSameParameter;
-         });
-}
 
 // Also where one is a copy of the other.
 bool IsSameRun(const std::string& a, const std::string& b) {
