@@ -58,6 +58,7 @@ RunDescription ReadDescription(const Json& json) {
                                 json.value("mask", ""),
                                 json.value("oracles", std::vector<std::string>())};
   description.refined_from = json.value("refined_from", "");
+  description.joined_from = json.value("joined_from", std::vector<std::string>());
   if (const Json metric = json.value("metric", Json()); !metric.is_null()) description.metric = metric.get<bool>();
   description.tracks = json.value("tracks", "");
   description.depth_prior = json.value("depth_prior", "");
@@ -126,6 +127,7 @@ Status WriteRunSummary(const std::string& path, const RunSummary& summary) {
                  {"end", summary.description.range.end},
                  {"stride", summary.description.range.stride}}},
                {"refined_from", summary.description.refined_from},
+               {"joined_from", summary.description.joined_from},
                {"metric", summary.description.metric ? Json(*summary.description.metric) : Json()},
                {"tracks", summary.description.tracks},
                {"depth_prior", summary.description.depth_prior},

@@ -45,6 +45,7 @@ std::vector<fs::path> KnownPaths(const std::string& run_path, const RunDescripti
   std::vector<fs::path> paths = {fs::absolute(run_path + "/").parent_path()};
   for (const std::string* path : {&run.input, &run.camera, &run.mask, &run.refined_from, &run.tracks, &run.depth_prior})
     if (!path->empty()) paths.emplace_back(*path);
+  paths.insert(paths.end(), run.joined_from.begin(), run.joined_from.end());
   return paths;
 }
 

@@ -67,7 +67,8 @@ struct RunDescription {
   std::string depth_prior = {};  // the folder of the depth prior, absolute; empty: none
   // Parts that the calling program gave: "initializer NAME", "tracks", "cost NAME".
   std::vector<std::string> extensions = {};
-  FrameSelection range = {};  // all frames in runs of earlier versions, which do not say
+  FrameSelection range = {};                  // all frames in runs of earlier versions, which do not say
+  std::vector<std::string> joined_from = {};  // the runs that were joined, absolute; empty: a run of its own
 };
 
 // Images of a source that went on while they were tracked.
