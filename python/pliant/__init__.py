@@ -18,7 +18,7 @@ from . import extensions, kernels
 from ._pliant import Camera, Error, FrameReport, __version__
 from .extensions import FirstMap, NewReference, Wait, register_cost, register_initializer
 from .jobs import (Calibration, StereoCalibration, calibrate, calibrate_stereo, compare, evaluate, evaluate_stir,
-                   export, import_result, read_camera, refine, report, simulate, surface, track)
+                   export, import_result, join, read_camera, refine, report, simulate, surface, track)
 from .options import Options, options
 from .run import Run, open_run
 from .sequence import Sequence, SequenceFrame, open_sequence
@@ -29,6 +29,6 @@ __all__ = [
     "Calibration", "Camera", "Error", "FirstMap", "FrameReport", "Frames", "NewReference", "Observations", "Options",
     "Points", "Poses", "Run", "Sequence", "SequenceFrame", "StereoCalibration", "Tracker", "Wait", "__version__",
     "calibrate", "calibrate_stereo", "compare", "evaluate", "evaluate_stir", "export", "extensions", "import_result",
-    "kernels", "open_run", "open_sequence", "options", "read_camera", "refine", "register_cost",
+    "join", "kernels", "open_run", "open_sequence", "options", "read_camera", "refine", "register_cost",
     "register_initializer", "report", "simulate", "surface", "track",
 ]

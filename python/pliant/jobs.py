@@ -248,6 +248,28 @@ def refine(run: RunOrPath, output_path: StrPath, options: OptionValues | None = 
     return Run(output_path)
 
 
+def join(runs: Any, output_path: StrPath, options: OptionValues | None = None, *, sequence: StrPath | None = None,
+         camera: StrPath | None = None) -> Run:
+    """One run of runs of parts of a recording, which overlap. Where two parts have no map in common, the later one's is
+    a submap of its own, with a warning.
+
+    Args:
+        runs: two or more runs or their folders, in any order.
+        output_path: folder of the joined run, made if need be; none of the runs'.
+        options: such as {"Join.min_points": 100}.
+        sequence, camera: images of a run that has no sparse/, and their calibration file.
+
+    Returns:
+        The joined run.
+    """
+    request = {"run_paths": _several(runs), "sequence_path": _text(sequence), "camera_path": _text(camera),
+               "output_path": os.fspath(output_path)}
+    for joint in _pliant.join(request, _options(options)):
+        if joint["failure"]:
+            warnings.warn(f"{joint['run']} is not joined to {joint['before']}: {joint['failure']}", stacklevel=2)
+    return Run(output_path)
+
+
 def surface(run: RunOrPath, output_path: StrPath, options: OptionValues | None = None, *,
             frames: Sequence[int] | None = None, sequence: StrPath | None = None, camera: StrPath | None = None,
             mask_path: StrPath | None = None,

@@ -21,6 +21,7 @@ int ExportCommand(std::span<const std::string> args);
 int DatasetCommand(std::span<const std::string> args);
 int ModelCommand(std::span<const std::string> args);
 int RefineCommand(std::span<const std::string> args);
+int JoinCommand(std::span<const std::string> args);
 int SurfaceCommand(std::span<const std::string> args);
 int ReportCommand(std::span<const std::string> args);
 int DemoCommand(std::span<const std::string> args);

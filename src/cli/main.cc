@@ -43,6 +43,7 @@ constexpr std::array kCommands = {
     Command{"import", "make a run, or a sequence's truth, of another program's result: COLMAP, TUM, KITTI, EuRoC",
             ImportCommand},
     Command{"refine", "solve for all frames of a run at once", RefineCommand},
+    Command{"join", "one run of runs of parts of a recording, which overlap", JoinCommand},
     Command{"surface", "dense depth of every frame of a run", SurfaceCommand},
     Command{"export", "write a run in other programs' formats: COLMAP, PLY, TUM, nerfstudio, EndoNeRF, tracks",
             ExportCommand},

@@ -18,6 +18,7 @@
 #include "pliant/exchange/export.h"
 #include "pliant/exchange/import.h"
 #include "pliant/pipeline/calibrate_images.h"
+#include "pliant/pipeline/join_runs.h"
 #include "pliant/pipeline/refine_run.h"
 #include "pliant/pipeline/surface_run.h"
 #include "pliant/simulation/write_sequence.h"
@@ -202,6 +203,27 @@ std::string EvaluateStirFiles(const std::string& tracked, const std::string& sta
   return StirJson(error);
 }
 
+// A dictionary a joint, in the order of time.
+py::list Join(const py::dict& request, const py::object& options) {
+  const auto join_options = OptionsOf<JoinOptions>(options);
+  const JoinRequest join_request{.run_paths = AllTexts(request, "run_paths"),
+                                 .sequence_path = Text(request, "sequence_path"),
+                                 .camera_path = Text(request, "camera_path"),
+                                 .output_path = Text(request, "output_path"),
+                                 .command_line = {"pliant.join"}};
+  Interrupt interrupt;
+  const auto summary =
+      ValueOf(WithoutGil(&interrupt, [&] { return JoinRuns(join_request, join_options, EndingBy(interrupt)); }));
+  py::list joints;
+  using py::literals::operator""_a;
+  for (const RunJoint& joint : summary.joints)
+    joints.append(py::dict("run"_a = joint.run, "before"_a = joint.before, "frames"_a = joint.frames,
+                           "points"_a = joint.points, "scale"_a = joint.scale,
+                           "depth_difference"_a = joint.depth_difference, "depth_spread"_a = joint.depth_spread,
+                           "same_points"_a = joint.same_points, "failure"_a = joint.failure));
+  return joints;
+}
+
 // comparison.json of the runs that can be evaluated; the others are warnings.
 std::string Compare(const py::dict& request, const py::object& options, const std::string& output_path,
                     const std::string& figure) {
@@ -298,6 +320,7 @@ void BindJobs(py::module_& module) {
   module.def("calibrate", &Calibrate);
   module.def("calibrate_stereo", &CalibrateStereoPairs);
   module.def("refine", &Refine);
+  module.def("join", &Join);
   module.def("surface", &Surface);
   module.def("evaluate", &Evaluate);
   module.def("evaluate_stir", &EvaluateStirFiles);

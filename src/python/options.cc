@@ -9,6 +9,7 @@
 #include "pliant/exchange/export.h"
 #include "pliant/exchange/import.h"
 #include "pliant/pipeline/calibrate_images.h"
+#include "pliant/pipeline/join_runs.h"
 #include "pliant/pipeline/refine_run.h"
 #include "pliant/pipeline/surface_run.h"
 #include "pliant/pipeline/track.h"
@@ -77,6 +78,7 @@ py::tuple ListOptions(const std::string& job, const std::string& preset) {
   if (job == "calibrate") return Listed(CalibrateOptions());
   if (job == "simulate") return Listed(MakeSimulationOptions(EnumOf<Realism>(preset, "realism")));
   if (job == "refine") return Listed(RefineOptions());
+  if (job == "join") return Listed(JoinOptions());
   if (job == "surface") return Listed(SurfaceRunOptions());
   if (job == "evaluate") return Listed(EvaluationOptions());
   if (job == "import") return Listed(ImportOptions());
@@ -84,7 +86,7 @@ py::tuple ListOptions(const std::string& job, const std::string& preset) {
   if (job == "report") return Listed(ReportOptions(), FigureOptions());
   RaiseValueError(
       "there are no options of '" + job +
-      "'; give one of track | calibrate | simulate | refine | surface | evaluate | import | export | report");
+      "'; give one of track | calibrate | simulate | refine | join | surface | evaluate | import | export | report");
 }
 
 }  // namespace

@@ -91,7 +91,7 @@ class Options(TestCase):
         self.assertEqual(pliant.options("track", "paper")["Init.method"], "paper")
         self.assertEqual(pliant.options("simulate")["Sensor.gamma"], 2.2)
         self.assertNotEqual(pliant.options("simulate", "endoscope"), pliant.options("simulate"))
-        for job in ("refine", "surface", "evaluate", "export", "report"):
+        for job in ("refine", "join", "surface", "evaluate", "export", "report"):
             self.assertTrue(pliant.options(job))
         with self.assertRaises(ValueError) as caught:
             pliant.options("trakc")

@@ -40,6 +40,16 @@ class Jobs(TestCase):
             pliant.refine(run, RUN)
         sentence(self, caught.exception)
 
+    def test_runs_of_parts_are_joined(self):
+        parts = [pliant.track(SEQUENCE, self.folder / f"part{i}", start=20 * i, end=20 * i + 40) for i in range(2)]
+        joined = pliant.join(parts, self.folder / "joined")
+        self.assertEqual(list(joined.frames.frame), list(range(60)))
+        self.assertTrue(np.all(joined.frames.submap == 0))
+        difference = pliant.evaluate(joined, other_runs=[RUN])["consistency"][0]["median_relative_depth"]
+        self.assertLess(difference, 0.05)
+        with self.assertRaisesRegex(ValueError, "was given twice"):
+            pliant.join([RUN, RUN], self.folder / "twice")
+
     def test_a_surface_has_depths_of_the_frames(self):
         told = []
         summary = pliant.surface(RUN, self.folder / "surface", {"Surface.vtk": False, "Surface.gltf": False},
