@@ -200,6 +200,24 @@ TEST(WindowInitializer, ARigidSceneNeedsTenFrames) {
   EXPECT_THAT(breathing.reason, HasSubstr("the scene deforms"));
 }
 
+// Noise of the tracks, which no neighbors share, may be larger than what a point of a map is allowed otherwise.
+TEST(WindowInitializer, ARigidSceneIsMappedFromNoisyTracks) {
+  WavingTracks sequence(41, CameraMotion::kForwards, 0.0);
+  constexpr double kNoisy_px = 0.5;
+  Random random(9);
+  for (InitFrame& frame : sequence.frames)
+    for (InitObservation& seen : frame.observations)
+      seen.pixel += kNoisy_px * Eigen::Vector2d(random.Normal(), random.Normal());
+  const WindowInitOptions options;
+  const InitOutcome outcome = sequence.Try(options);
+  ASSERT_TRUE(outcome.decision == InitDecision::kMap || outcome.decision == InitDecision::kProvisional)
+      << outcome.reason;
+  EXPECT_THAT(outcome.reason, HasSubstr("rigid window of 41 frames"));
+  EXPECT_GT(outcome.measured.median_error_px, options.max_error_px);
+  EXPECT_GT(outcome.points.size(), kMinPoints);
+  EXPECT_LT(sequence.ShapeError(outcome, 40), kShape);
+}
+
 TEST(WindowInitializer, MakesNoMapOfNoise) {
   WavingTracks sequence(61);
   Random random(8);

@@ -119,10 +119,12 @@ double DepthSpread(const DeformingWindow& window) {
   return std::min(LogSpread(std::move(depths)), LogSpread(std::move(distances)));
 }
 
-// Errors of a rigid window in a scene that deforms are the scene's: what is wrong stands out from them.
+// Errors of a rigid window are the scene's, where that deforms, or the noise of the tracks, where neighbors share none:
+// what is wrong stands out from them.
 double MaxErrorPx(const SolvedWindow& window, const std::vector<double>& errors_px, const WindowInitOptions& options) {
-  return window.deforming == nullptr ? options.max_error_px
-                                     : std::max(options.max_error_px, kMaxErrorRatio * Median(errors_px));
+  const bool is_noise = window.IsRigid() && window.solution.residual_correlation <= kMaxNoiseCorrelation;
+  if (window.deforming == nullptr && !is_noise) return options.max_error_px;
+  return std::max(options.max_error_px, kMaxErrorRatio * Median(errors_px));
 }
 
 // How many of `ids` a frame sees.
