@@ -47,6 +47,13 @@ def dry_run(folder):
     text = snakemake("soak", folder / "soak", "--dry-run", "--quiet", "--config", "alone_corners=300,500")
     counts = {line.split()[0]: line.split()[1] for line in text.splitlines() if len(line.split()) > 1}
     assert counts["simulate"] == "1" and counts["repeat"] == "2" and counts["track"] == "4", text
+    text = snakemake("parts", folder / "parts", "--dry-run", "--quiet", "--config", "frames=1000")
+    counts = {line.split()[0]: line.split()[1] for line in text.splitlines() if len(line.split()) > 1}
+    assert counts["part"] == "7" and counts["join"] == counts["whole"] == counts["simulate"] == "1", text
+    text = snakemake("parts", folder / "film", "--dry-run", "--quiet", "--config", "image_path=/film.mp4", "frames=300",
+                     "compare=false")
+    counts = {line.split()[0]: line.split()[1] for line in text.splitlines() if len(line.split()) > 1}
+    assert counts["part"] == "2" and "whole" not in counts and "simulate" not in counts, text
     text = snakemake("fisheye", folder / "fisheye", "--dry-run", "--quiet")
     counts = {line.split()[0]: line.split()[1] for line in text.splitlines() if len(line.split()) > 1}
     assert counts["simulate"] == counts["track"] == counts["evaluate"] == "12", text
