@@ -65,6 +65,13 @@ Sim3 WorldsFromPoses(std::span<const SharedFrame> frames, double scale) {
   return mean;
 }
 
+std::ptrdiff_t FramesOfBoth(std::span<const SharedFrame> frames, PointId after, PointId before) {
+  return std::ranges::count_if(frames, [&](const SharedFrame& frame) {
+    return FindById(frame.after.observations, after) != nullptr &&
+           FindById(frame.before.observations, before) != nullptr;
+  });
+}
+
 // (J2) A point of each that are nearest to each other, and near, in most frames in which both are seen.
 std::map<PointId, PointId> SamePoints(std::span<const SharedFrame> frames, double radius_px) {
   std::map<std::pair<PointId, PointId>, int> together;  // after's, before's
@@ -83,11 +90,7 @@ std::map<PointId, PointId> SamePoints(std::span<const SharedFrame> frames, doubl
   std::map<PointId, PointId> same;
   for (const auto& [ids, count] : together) {
     if (count < kMinSameFrames) continue;
-    const auto both = std::ranges::count_if(frames, [&](const SharedFrame& frame) {
-      return FindById(frame.after.observations, ids.first) != nullptr &&
-             FindById(frame.before.observations, ids.second) != nullptr;
-    });
-    if (2 * count > both) same.emplace(ids);
+    if (2 * count > FramesOfBoth(frames, ids.first, ids.second)) same.emplace(ids);
   }
   return same;
 }

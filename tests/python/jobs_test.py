@@ -45,7 +45,7 @@ class Jobs(TestCase):
         joined = pliant.join(parts, self.folder / "joined")
         self.assertEqual(list(joined.frames.frame), list(range(60)))
         self.assertTrue(np.all(joined.frames.submap == 0))
-        difference = pliant.evaluate(joined, other_runs=[RUN])["consistency"][0]["median_relative_depth"]
+        difference = pliant.evaluate(joined, other_runs=[RUN])["consistency"][0]["estimate"]["median_relative_depth"]
         self.assertLess(difference, 0.05)
         with self.assertRaisesRegex(ValueError, "was given twice"):
             pliant.join([RUN, RUN], self.folder / "twice")
