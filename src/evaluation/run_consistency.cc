@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "geometry/nearest_pixels.h"
 #include "evaluation/seen_points.h"
+#include "geometry/nearest_pixels.h"
 
 namespace pliant {
 namespace {
