@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
+
+// Whether two cameras are one, as files have them.
 #pragma once
 
 #include <algorithm>
