@@ -33,9 +33,7 @@ int RefineCommand(std::span<const std::string> args) {
   CommandLine line(kManual);
   line.Add("run", &request.run_path, "DIR", "run folder", Need::kRequired);
   output.AddTo(&line, "folder to write, made if need be", Need::kRequired);
-  line.Add("sequence", &request.sequence_path, "PATH",
-           "images of a run that has no sparse/; without it those that its run.json names", Need::kOptional);
-  AddCameraOfRun(&line, &request.camera_path);
+  AddSequenceOfKilledRun(&line, &request.sequence_path, &request.camera_path);
   if (const auto exit = line.Parse(args)) return *exit;
   OptionTable table;
   options.List(table);

@@ -47,6 +47,12 @@ void AddCameraOfRun(CommandLine* line, std::string* camera_path) {
             Need::kOptional);
 }
 
+void AddSequenceOfKilledRun(CommandLine* line, std::string* sequence_path, std::string* camera_path) {
+  line->Add("sequence", sequence_path, "PATH",
+            "images of a run that has no sparse/; without it those that its run.json names", Need::kOptional);
+  AddCameraOfRun(line, camera_path);
+}
+
 void AddMasksOfRun(CommandLine* line, std::string* mask_path) {
   line->Add("mask_path", mask_path, "PATH",
             "folder of masks, or one image for all frames (0 = ignore); without it the run's", Need::kOptional);

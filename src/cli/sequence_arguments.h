@@ -30,6 +30,8 @@ struct SequenceArguments {
 
 // Of a command that reads the images of a run.
 void AddCameraOfRun(CommandLine* line, std::string* camera_path);
+// Of a command that reads a run alone, unless that was killed.
+void AddSequenceOfKilledRun(CommandLine* line, std::string* sequence_path, std::string* camera_path);
 void AddMasksOfRun(CommandLine* line, std::string* mask_path);
 
 }  // namespace pliant::cli
