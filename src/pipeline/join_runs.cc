@@ -309,6 +309,7 @@ RunDescription JoinedDescription(const JoinRequest& request, const std::vector<P
   RunDescription description = parts.front().description();
   description.program_version = kVersion;
   description.command_line = request.command_line;
+  description.refined_from.clear();
   description.joined_from.clear();
   for (const Part& part : parts) description.joined_from.push_back(fs::absolute(part.path).lexically_normal().string());
   description.range.end = parts.back().description().range.end;

@@ -59,6 +59,7 @@ class JoinRunsTest : public testing::Test {
   void Write(const PartOfTruth& part) {
     RunDescription description{.program_version = "0.1.0", .command_line = {"pliant"}, .input = part.input};
     description.metric = part.metric;
+    description.refined_from = "refined part";
     description.range = {part.first, part.end, 1};
     auto writer = RunWriter::Create(folder_.Path(part.name), TestCamera(), description, "Track:\n", {});
     ASSERT_TRUE(writer.ok()) << writer.status().message();
@@ -150,6 +151,7 @@ TEST_F(JoinRunsTest, OfTwoPartsIsTheWhole) {
   const auto description = ReadRunSummary(folder_.Path("joined/run.json"))->description;
   EXPECT_THAT(description.joined_from, testing::ElementsAre(folder_.Path("first"), folder_.Path("second")));
   EXPECT_EQ(description.range, (FrameSelection{0, 20, 1}));
+  EXPECT_EQ(description.refined_from, "");  // it is of several
 }
 
 TEST_F(JoinRunsTest, PartsMayBeManyAndInAnyOrder) {
