@@ -140,14 +140,7 @@ class Reporter {
   }
 
   FrameReport Report(const RunFrame& frame) {
-    FrameReport report;
-    report.frame_idx = frame.frame_idx;
-    report.timestamp_s = frame.timestamp_s;
-    report.state = frame.state;
-    report.submap = frame.submap;
-    report.tracked = frame.tracked;
-    report.lost = frame.lost;
-    if (const auto name = known_.names.find(frame.frame_idx); name != known_.names.end()) report.name = name->second;
+    FrameReport report = ReportOf(frame, known_);
     if (!HasPose(frame.state)) return report;
     const auto view = static_cast<std::size_t>(submaps_.at(frame.submap).view_of_frame.at(frame.frame_idx));
     report.cam_from_world = refined_.at(frame.submap).recording.cams_from_world[view];
@@ -163,12 +156,7 @@ class Reporter {
       report.new_points.push_back(point);
       rest_positions_.erase(rest);
     }
-    report.optimized = static_cast<int>(report.observations.size());
-    report.added = static_cast<int>(report.new_points.size());
-    report.median_reprojection_error_px =
-        MedianReprojectionErrorPx(*known_.camera, *report.cam_from_world, report.observations);
-    for (const FirstMapFrames& map : run_.summary->first_maps)
-      if (map.declared_frame_idx == frame.frame_idx) report.first_map = map;
+    CompleteReport(run_, *known_.camera, &report);
     return report;
   }
 

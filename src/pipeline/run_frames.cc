@@ -19,4 +19,25 @@ Result<std::vector<int>> FramesWithPose(const std::string& path, const Run& run)
   return frames_idx;
 }
 
+FrameReport ReportOf(const RunFrame& frame, const RunMap& known) {
+  FrameReport report;
+  report.frame_idx = frame.frame_idx;
+  report.timestamp_s = frame.timestamp_s;
+  report.state = frame.state;
+  report.submap = frame.submap;
+  report.tracked = frame.tracked;
+  report.lost = frame.lost;
+  if (const auto name = known.names.find(frame.frame_idx); name != known.names.end()) report.name = name->second;
+  return report;
+}
+
+void CompleteReport(const Run& run, const Camera& camera, FrameReport* report) {
+  report->optimized = static_cast<int>(report->observations.size());
+  report->added = static_cast<int>(report->new_points.size());
+  report->median_reprojection_error_px =
+      MedianReprojectionErrorPx(camera, *report->cam_from_world, report->observations);
+  for (const FirstMapFrames& map : run.summary->first_maps)
+    if (map.declared_frame_idx == report->frame_idx) report->first_map = map;
+}
+
 }  // namespace pliant

@@ -8,12 +8,21 @@
 #include <vector>
 
 #include "pliant/base/status.h"
+#include "pliant/camera/camera.h"
+#include "pliant/io/run_map.h"
 #include "pliant/io/run_reader.h"
+#include "pliant/scene/frame_report.h"
 
 namespace pliant {
 
 // The frame of every pose of `run`, which was read from `path`. Fails with kMismatch for another program's result,
 // whose poses belong to no frame.
 Result<std::vector<int>> FramesWithPose(const std::string& path, const Run& run);
+
+// A frame of a run whose map is `known`, as it is written again: all but its pose and its points.
+FrameReport ReportOf(const RunFrame& frame, const RunMap& known);
+
+// What follows of a frame's pose, observations and new points, and the first map that `run` declared in it.
+void CompleteReport(const Run& run, const Camera& camera, FrameReport* report);
 
 }  // namespace pliant
