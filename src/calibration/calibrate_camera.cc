@@ -241,6 +241,15 @@ std::optional<Candidate> Evaluate(const CalibrationInput& input, const std::vect
   return Candidate{std::move(fit), *std::move(camera), std::move(sigmas), groups->prediction_errors_px};
 }
 
+// Of the mean.
+double StandardError(const std::vector<double>& values) {
+  const double mean = Mean(values);
+  double sum = 0;
+  for (const double value : values) sum += (value - mean) * (value - mean);
+  const double count = static_cast<double>(values.size());
+  return std::sqrt(sum / (count * std::max(1.0, count - 1)));
+}
+
 HeldOutError Compared(const Candidate& candidate, const Candidate& best) {
   HeldOutError error;
   error.model = candidate.fit.model;
@@ -250,22 +259,21 @@ HeldOutError Compared(const Candidate& candidate, const Candidate& best) {
   for (std::size_t i = 0; i < candidate.prediction_errors_px.size(); ++i)
     excess.push_back(candidate.prediction_errors_px[i] - best.prediction_errors_px[i]);
   error.excess_px = Mean(excess);
-  double sum = 0;
-  for (const double value : excess) sum += (value - error.excess_px) * (value - error.excess_px);
-  const double count = static_cast<double>(excess.size());
-  error.excess_sigma_px = std::sqrt(sum / (count * std::max(1.0, count - 1)));
+  error.excess_sigma_px = StandardError(excess);
   return error;
 }
 
-// The candidate of the fewest parameters that is no worse than the best one by more than a standard error.
+// The candidate of the fewest parameters that is no worse than the best one by more than a standard error, of the
+// difference or of the best one's own error: what the points' own errors imitate differs little, but in every view.
 std::size_t Choose(const std::vector<Candidate>& candidates, std::vector<HeldOutError>* errors) {
   const auto error_of = [](const Candidate& candidate) { return Mean(candidate.prediction_errors_px); };
   const auto best = std::min_element(candidates.begin(), candidates.end(),
                                      [&](const auto& a, const auto& b) { return error_of(a) < error_of(b); });
   auto chosen = static_cast<std::size_t>(best - candidates.begin());
+  const double best_sigma_px = StandardError(best->prediction_errors_px);
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     errors->push_back(Compared(candidates[i], *best));
-    if (errors->back().excess_px <= errors->back().excess_sigma_px &&
+    if (errors->back().excess_px <= std::max(errors->back().excess_sigma_px, best_sigma_px) &&
         candidates[i].fit.num_free < candidates[chosen].fit.num_free)
       chosen = i;
   }

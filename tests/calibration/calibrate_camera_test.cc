@@ -108,6 +108,21 @@ TEST(CalibrateCamera, TakesNoMoreParametersThanItNeeds) {
   EXPECT_EQ(calibration->camera.model_id(), CameraModelId::kSimplePinhole);
 }
 
+// A detector whose corners are drawn by a tenth of a pixel towards the image's border makes no other lens.
+TEST(CalibrateCamera, TakesNoMoreParametersForWhatTheDetectorDoes) {
+  constexpr double kDrawn_px = 0.12;
+  const Camera camera = Make(kLenses[1]);
+  std::vector<BoardView> views = Views(camera, 20, 0.05, 5);
+  for (BoardView& view : views)
+    for (Eigen::Vector2d& pixel : view.pixels) {
+      const Eigen::Vector2d from_center = (pixel - Eigen::Vector2d(320, 240)) / 400;
+      pixel += kDrawn_px * from_center.squaredNorm() * from_center;
+    }
+  const auto calibration = CalibrateCamera(kBoard, views, 640, 480, ModelChoice::kAuto, 2);
+  ASSERT_TRUE(calibration.ok());
+  EXPECT_EQ(calibration->camera.model_id(), CameraModelId::kPinhole);
+}
+
 TEST(CalibrateCamera, LeavesOutAViewThatFitsBadly) {
   const Camera camera = Make(kLenses[3]);
   std::vector<BoardView> views = Views(camera, 14, 0.05, 5);

@@ -8,8 +8,9 @@
 // Views whose residuals are clearly larger than the others' are left out. The model is chosen by held-out views: each
 // group of views is fitted with the others' parameters, its pose from half of its points, and the error of the other
 // half counts; the model with the fewest parameters wins whose error is not larger than the least one by more than a
-// standard error. Standard deviations are the larger of the covariance's and of those of a grouped jackknife over the
-// views, which also knows of errors that the points of a view share.
+// standard error, that of the difference or that of the least one itself. Standard deviations are the larger of the
+// covariance's and of those of a grouped jackknife over the views, which also knows of errors that the points of a view
+// share.
 #pragma once
 
 #include <array>
