@@ -6,8 +6,8 @@
     calibration.py --program build/release/pliant --output_path RESULTS [--only "NAME;..."] [--seed N]
 
 Renders a chessboard from 24 sides through lenses of every camera model, clean and as an endoscope records it,
-calibrates with and without knowledge of the model, and prints a table; then the errors in the image's corners with more
-views and with views that reach into the corners; then the table of pairs of cameras. What is there already is kept.
+calibrates with and without knowledge of the model, and prints a table; then the same for pairs of cameras. What is
+there already is kept.
 """
 import math
 import re
@@ -24,8 +24,6 @@ COLUMNS, ROWS, SQUARE_MM = 9, 6, 3.0  # inner corners
 MARGIN = 1  # white, in squares, around the outer squares
 TEXELS = 64  # a square
 VIEWS = 24
-MORE_VIEWS = 72
-CORNER_PX = 40  # a view reaches into a corner of the image whose distance from a corner of the board is at most this
 WIDTH, HEIGHT = 640, 480
 # name: model, parameters
 LENSES = {
@@ -94,20 +92,13 @@ def quaternion(matrix):
             (matrix[1, 0] - matrix[0, 1]) / (4 * w), w]
 
 
-def reaches(pixels, corner):
-    """Whether a corner of the board is near a corner (0 to 3) of the image."""
-    place = np.array([corner % 2 * WIDTH, corner // 2 * HEIGHT])
-    outermost = pixels[[0, COLUMNS - 1, (ROWS - 1) * COLUMNS, ROWS * COLUMNS - 1]]
-    return np.hypot(*(outermost - place).T).min() < CORNER_PX
-
-
-def camera_from_board(model, params, random, right=None, views=VIEWS, into_corners=False):
+def camera_from_board(model, params, random, right=None):
     """Views in which the whole board is in the image, tilted by 5 to 40 degrees, near its edges too; with the
-    parameters of a right camera in its image too. Of views into the corners every other one reaches into one of them."""
+    parameters of a right camera in its image too."""
     corners = np.array([(x, y, 0) for y in range(ROWS) for x in range(COLUMNS)]) * SQUARE_MM
     center = corners.mean(0)
     poses = []
-    while len(poses) < views:
+    while len(poses) < VIEWS:
         direction = random.uniform(0, 2 * math.pi)
         tilt = math.radians(random.uniform(5, 40))
         turned = rotation(tilt * np.array([math.cos(direction), math.sin(direction), 1e-9]))
@@ -118,8 +109,6 @@ def camera_from_board(model, params, random, right=None, views=VIEWS, into_corne
         if in_camera[:, 2].min() < 5:
             continue
         pixels = project(model, params, in_camera)
-        if into_corners and len(poses) % 2 == 0 and not reaches(pixels, len(poses) // 2 % 4):
-            continue
         if right:
             seen_right = project(model, right, (in_camera - RIGHT_CENTER_MM) @ rotation(RIGHT_TURN).T)
             pixels = np.concatenate([pixels, seen_right])
@@ -147,18 +136,17 @@ def render_boards(arguments, folder, boards, look, lens, poses):
     (folder / f"{boards}.txt").write_text("\n".join(lines) + "\n")
     call(arguments.program, "simulate", "--quiet", "--overwrite", "-o", folder / boards, "--realism", look,
          "--Scene.kind", "mesh", "--Scene.mesh_path", folder / "board.obj", "--Scene.seed", arguments.seed,
-         "--Trajectory.kind", "file", "--Trajectory.path", folder / f"{boards}.txt", "--Trajectory.frames", len(poses),
+         "--Trajectory.kind", "file", "--Trajectory.path", folder / f"{boards}.txt", "--Trajectory.frames", VIEWS,
          "--Camera.model", model, "--Camera.params", ",".join(map(str, params)), *SET_UP.split()).check_returncode()
 
 
-def render(arguments, name, look, views=VIEWS, into_corners=False):
-    kind = "" if views == VIEWS else f"_{views}_corners" if into_corners else f"_{views}"
-    folder = arguments.output_path / "sequences" / f"{slug(name)}{kind}_{look}_{arguments.seed}"
+def render(arguments, name, look):
+    folder = arguments.output_path / "sequences" / f"{slug(name)}_{look}_{arguments.seed}"
     if (folder / "boards" / "simulation.yaml").exists():
         return folder / "boards"
     folder.mkdir(parents=True, exist_ok=True)
     write_board(folder)
-    poses = camera_from_board(*LENSES[name], np.random.default_rng(arguments.seed), None, views, into_corners)
+    poses = camera_from_board(*LENSES[name], np.random.default_rng(arguments.seed))
     render_boards(arguments, folder, "boards", look, LENSES[name], poses)
     return folder / "boards"
 
@@ -225,21 +213,6 @@ def print_cameras(arguments):
                   + " | ".join(errors(model, params, found, estimated)) + " |", flush=True)
 
 
-def print_corners(arguments):
-    print(f"| lens | images | {VIEWS} views | {MORE_VIEWS} views | {MORE_VIEWS} views, half of them into the corners |")
-    print("| --- | --- | --- | --- | --- |")
-    for name, look in wanted(arguments, LENSES):
-        model, params = LENSES[name]
-        cells = []
-        for views, into_corners in ((VIEWS, False), (MORE_VIEWS, False), (MORE_VIEWS, True)):
-            boards = render(arguments, name, look, views, into_corners)
-            camera = boards.parent / f"camera_{model}.yaml"
-            text = calibrated(arguments, camera, "--image_path", boards, "--Calibrate.model", model)
-            used = re.search(r"(\d+) used", text)[1]
-            cells.append(f"{errors(model, params, *read_camera(camera))[3]} ({used} used)")
-        print(f"| {name} | {look} | " + " | ".join(cells) + " |", flush=True)
-
-
 def print_pairs(arguments):
     print("| lenses | images | pairs | error, px | baseline off by | it says | rotation off by, deg | it says |")
     print("| --- | --- | --- | --- | --- | --- | --- | --- |")
@@ -283,8 +256,6 @@ def calibrated(arguments, camera, *images):
 def main():
     arguments = scene_arguments(__doc__)
     print_cameras(arguments)
-    print()
-    print_corners(arguments)
     print()
     print_pairs(arguments)
 
