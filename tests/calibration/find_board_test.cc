@@ -4,13 +4,14 @@
 #include "pliant/calibration/find_board.h"
 
 #include <algorithm>
-#include <cmath>
+#include <iterator>
 #include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
 
+#include "pliant/base/statistics.h"
 #include "support/board_views.h"
 
 namespace pliant {
@@ -62,15 +63,13 @@ TEST(FindBoard, FindsCornersToASmallPartOfAPixel) {
 TEST(FindBoard, FindsCornersToAFewHundredthsOfAPixelInTheMean) {
   constexpr double kMaxRms_px = 0.05;  // 0.03 px along either axis
   const Camera camera = CameraOf(640, 480, 500);
-  double sum_of_squares = 0;
-  std::size_t corners = 0;
+  std::vector<double> errors;
   for (const Rigid3& pose : VariedBoardPoses(kBoard, camera, 4, 3)) {
     const auto view = FindBoard(ImageOf(kBoard, camera, pose), kBoard);
     ASSERT_TRUE(view.has_value());
-    for (const double error : Errors(*view, camera, pose)) sum_of_squares += error * error;
-    corners += view->pixels.size();
+    std::ranges::copy(Errors(*view, camera, pose), std::back_inserter(errors));
   }
-  EXPECT_LT(std::sqrt(sum_of_squares / static_cast<double>(corners)), kMaxRms_px);
+  EXPECT_LT(Rms(errors), kMaxRms_px);
 }
 
 TEST(FindBoard, FindsNothingInAnEmptyImage) {

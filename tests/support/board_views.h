@@ -73,7 +73,7 @@ inline std::vector<BoardView> ViewsOf(const CalibrationBoard& board, const Camer
   return views;
 }
 
-// An image of a chessboard, 4x4 rays a pixel, white around its squares and gray beyond.
+// An image of a chessboard, 8x8 rays a pixel, white around its squares and gray beyond.
 inline cv::Mat ImageOf(const CalibrationBoard& board, const Camera& camera, const Rigid3& cam_from_board) {
   constexpr int kRays = 8;
   const Rigid3 board_from_cam = cam_from_board.Inverse();
