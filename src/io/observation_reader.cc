@@ -5,6 +5,8 @@
 #include <array>
 #include <filesystem>
 #include <limits>
+#include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -84,6 +86,8 @@ struct ObservationReader::State {
   OptionalColumns columns;
   bool ours = false;                        // ours end every line, so an open one was cut
   std::optional<Row> ahead = std::nullopt;  // the next frame's first row
+  // Read by Of, which was asked for a frame before it.
+  std::optional<FrameObservations> later = std::nullopt;
   int last_frame_idx = -1;
   int cut_lines = 0;
 };
@@ -110,6 +114,7 @@ Result<ObservationReader> ObservationReader::Open(const std::string& path) {
 }
 
 Result<std::optional<FrameObservations>> ObservationReader::Next() {
+  if (state_->later) return std::exchange(state_->later, std::nullopt);
   std::optional<FrameObservations> frame;
   if (state_->ahead) {
     frame = FrameObservations{state_->ahead->frame_idx, {state_->ahead->observation}};
@@ -144,24 +149,29 @@ Result<std::optional<FrameObservations>> ObservationReader::Next() {
   return frame;
 }
 
+Result<std::vector<PointObservation>> ObservationReader::Of(int frame_idx) {
+  while (true) {
+    auto frame = Next();
+    if (!frame.ok()) return frame.status();
+    if (!*frame) return std::vector<PointObservation>();
+    if ((*frame)->frame_idx == frame_idx) return std::move((*frame)->observations);
+    if ((*frame)->frame_idx > frame_idx) {
+      state_->later = *std::move(frame);
+      return std::vector<PointObservation>();
+    }
+  }
+}
+
 int ObservationReader::cut_lines() const { return state_->cut_lines; }
 
 Status ForEachFrame(const std::string& run_path, std::span<const int> frames_idx,
                     const ObservationsFunction& function) {
   auto reader = ObservationReader::Open(run_path);
   if (!reader.ok()) return reader.status();
-  const std::vector<PointObservation> none;
-  std::optional<FrameObservations> rows;
-  bool ended = false;
   for (std::size_t k = 0; k < frames_idx.size(); ++k) {
-    while (!ended && (!rows || rows->frame_idx < frames_idx[k])) {
-      auto next = reader->Next();
-      if (!next.ok()) return next.status();
-      rows = std::move(next).value();
-      ended = !rows.has_value();
-    }
-    const bool has_rows = rows && rows->frame_idx == frames_idx[k];
-    if (Status status = function(k, has_rows ? std::as_const(rows->observations) : none); !status.ok()) return status;
+    const auto observations = reader->Of(frames_idx[k]);
+    if (!observations.ok()) return observations.status();
+    if (Status status = function(k, *observations); !status.ok()) return status;
   }
   return Status::Ok();
 }

@@ -57,15 +57,15 @@ Result<RunSummary> WriteJoined(const JoinRequest& request, const JoinOptions& op
   auto writer = RunWriter::Create(request.output_path, *parts.front().known.camera, JoinedDescription(request, parts),
                                   table.ToYaml(), {}, writer_options);
   if (!writer.ok()) return writer.status();
-  std::vector<PartObservations> observations;
+  std::vector<ObservationReader> readers;
   for (const RunPart& part : parts) {
-    auto opened = PartObservations::Open(part);
+    auto opened = ObservationReader::Open(part.path);
     if (!opened.ok()) return opened.status();
-    observations.push_back(*std::move(opened));
+    readers.push_back(*std::move(opened));
   }
   JoinedReports reports(parts, joiner);
   for (const auto& [frame_idx, part] : PartOfFrames(parts)) {
-    auto seen = observations[part].Of(frame_idx);
+    auto seen = readers[part].Of(frame_idx);
     if (!seen.ok()) return seen.status();
     if (Status status = writer->Write(reports.Report(part, frame_idx, *std::move(seen))); !status.ok()) return status;
   }

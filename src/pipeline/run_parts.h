@@ -6,9 +6,7 @@
 
 #include <cstddef>
 #include <map>
-#include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "pliant/base/ids.h"
@@ -40,34 +38,5 @@ Result<std::vector<RunPart>> ReadParts(const JoinRequest& request, const JobProg
 
 // The part that each frame is taken from: of two that have its pose the earlier one up to the middle of their overlap.
 std::map<int, std::size_t> PartOfFrames(const std::vector<RunPart>& parts);
-
-// A part's observations, frame by frame in growing order.
-class PartObservations {
- public:
-  static Result<PartObservations> Open(const RunPart& part) {
-    auto reader = ObservationReader::Open(part.path);
-    if (!reader.ok()) return reader.status();
-    return PartObservations(*std::move(reader));
-  }
-
-  // Those of a frame, none where the file has none.
-  Result<std::vector<PointObservation>> Of(int frame_idx) {
-    while (!ended_ && (!next_ || next_->frame_idx < frame_idx)) {
-      auto read = reader_.Next();
-      if (!read.ok()) return read.status();
-      next_ = *std::move(read);
-      ended_ = !next_.has_value();
-    }
-    if (!next_ || next_->frame_idx != frame_idx) return std::vector<PointObservation>();
-    return std::move(next_->observations);
-  }
-
- private:
-  explicit PartObservations(ObservationReader reader) : reader_(std::move(reader)) {}
-
-  ObservationReader reader_;
-  std::optional<FrameObservations> next_;
-  bool ended_ = false;
-};
 
 }  // namespace pliant

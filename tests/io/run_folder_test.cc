@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include <cmath>
+#include <cstdint>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -16,7 +18,9 @@ namespace pliant {
 namespace {
 
 using namespace run_reports;
+using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::IsEmpty;
 using testing::Pair;
 using testing::UnorderedElementsAre;
 
@@ -231,6 +235,30 @@ TEST(RunFolder, ReadsColumnsBehindThoseOfEveryRunByTheirNames) {
   EXPECT_EQ((*frame)->observations[0].position.z(), 3);
   EXPECT_EQ((*frame)->observations[0].sigma, 0.5);
   EXPECT_EQ((*frame)->observations[0].ssim, 0.75);
+}
+
+TEST(RunFolder, GivesTheRowsOfFramesThatAreAskedForInGrowingOrder) {
+  const TestFolder folder;
+  folder.Write("observations.csv",
+               "frame,point_id,u_px,v_px,x,y,z\n4,1,10,20,1,2,3\n6,1,10,20,1,2,3\n6,2,10,20,1,2,3\n9,5,10,20,1,2,3\n");
+  auto reader = ObservationReader::Open(folder.Path(""));
+  ASSERT_TRUE(reader.ok()) << reader.status().message();
+  const auto ids = [&](int frame_idx) {
+    std::vector<std::int64_t> found;
+    const auto rows = reader->Of(frame_idx);
+    EXPECT_TRUE(rows.ok()) << rows.status().message();
+    if (rows.ok())
+      for (const PointObservation& observation : *rows) found.push_back(observation.id.value);
+    return found;
+  };
+  EXPECT_THAT(ids(5), IsEmpty()) << "passes over frame 4";
+  EXPECT_THAT(ids(6), ElementsAre(1, 2)) << "which was read when frame 5 was asked for";
+  EXPECT_THAT(ids(7), IsEmpty());
+  const auto next = reader->Next();
+  ASSERT_TRUE(next.ok() && next->has_value());
+  EXPECT_EQ((*next)->frame_idx, 9) << "what was read ahead is the next";
+  EXPECT_THAT(ids(10), IsEmpty());
+  EXPECT_THAT(ids(11), IsEmpty()) << "after the end, too";
 }
 
 TEST(RunFolder, RefusesRowsThatAreNone) {

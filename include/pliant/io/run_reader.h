@@ -74,6 +74,9 @@ class ObservationReader {
   // The next frame's rows, nothing at the end. A frame whose last row was cut off is returned without that row. Fails
   // with kUnreadable for a row that is not numbers, that repeats a point, or whose frame is before the one before.
   Result<std::optional<FrameObservations>> Next();
+  // The rows of frame `frame_idx`, none where the file has none. Frames before it are passed over, so frames are asked
+  // for in growing order. Fails as Next.
+  Result<std::vector<PointObservation>> Of(int frame_idx);
   int cut_lines() const;
 
  private:
