@@ -241,15 +241,6 @@ std::optional<Candidate> Evaluate(const CalibrationInput& input, const std::vect
   return Candidate{std::move(fit), *std::move(camera), std::move(sigmas), groups->prediction_errors_px};
 }
 
-// Of the mean.
-double StandardError(const std::vector<double>& values) {
-  const double mean = Mean(values);
-  double sum = 0;
-  for (const double value : values) sum += (value - mean) * (value - mean);
-  const double count = static_cast<double>(values.size());
-  return std::sqrt(sum / (count * std::max(1.0, count - 1)));
-}
-
 HeldOutError Compared(const Candidate& candidate, const Candidate& best) {
   HeldOutError error;
   error.model = candidate.fit.model;

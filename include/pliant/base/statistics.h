@@ -13,6 +13,8 @@ double Median(std::vector<double> values);
 // The value below which `share` (0 to 1) of them lie, between the two nearest ones by their distance (NumPy's default).
 double Quantile(std::vector<double> values, double share);
 double Mean(const std::vector<double>& values);
+// How far the mean may be off: the values' standard deviation by the square root of their number. Of one value 0.
+double StandardError(const std::vector<double>& values);
 // The median of |value - median|.
 double MedianDeviation(std::vector<double> values);
 // By this a median of absolute errors becomes the standard deviation of a normal distribution.

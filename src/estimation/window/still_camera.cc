@@ -78,12 +78,8 @@ std::vector<ErrorPair> ErrorsIn(const CameraMotionModels& models, const std::vec
 
 // The mean of the points' values by its standard error; 0 where there are fewer than two or they do not differ.
 double StandardErrorsFromZero(const std::vector<double>& values) {
-  if (values.size() < 2) return 0.0;
-  const auto n = static_cast<double>(values.size());
-  const double mean = Mean(values);
-  double squares = 0;
-  for (const double value : values) squares += (value - mean) * (value - mean);
-  return squares > 0.0 ? mean / std::sqrt(squares / (n - 1.0) / n) : 0.0;
+  const double error = StandardError(values);
+  return error > 0.0 ? Mean(values) / error : 0.0;
 }
 
 // The ratio of the errors that neighbors share, where the moving camera leaves noise alone; else 0.
