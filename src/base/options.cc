@@ -19,8 +19,14 @@ std::string YamlScalar(const std::string& text) {
     return std::isalnum(c) != 0 || c == '_' || c == '.' || c == '-' || c == '+' || c == '/';
   });
   if (plain) return text;
+  constexpr std::string_view kHexDigits = "0123456789abcdef";
   std::string quoted = "\"";
   for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (std::iscntrl(byte) != 0) {  // a line break would be read as a space
+      quoted.append("\\x").append(1, kHexDigits[byte / 16]).append(1, kHexDigits[byte % 16]);
+      continue;
+    }
     if (c == '"' || c == '\\') quoted += '\\';
     quoted += c;
   }

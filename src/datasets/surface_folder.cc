@@ -13,6 +13,23 @@
 #include "pliant/io/point_cloud.h"
 
 namespace pliant {
+namespace {
+
+// What pliant surface writes, with room for other programs.
+constexpr int kMostWindow_px = 255;
+constexpr double kMostSmoothing_px = 100;
+constexpr double kMostNoise_levels = 255;
+
+bool AreRight(const ComparedWindows& windows) {
+  const auto within = [](double value, double most) { return value >= 0 && value <= most; };
+  return windows.width_px > 0 && windows.window_px > 0 && windows.window_px <= kMostWindow_px &&
+         within(windows.smoothing_px, kMostSmoothing_px) && within(windows.noise_levels, kMostNoise_levels);
+}
+
+// It names a file in the folders of the surface, and no other.
+bool IsFileName(const std::string& name) { return !name.empty() && std::filesystem::path(name).filename() == name; }
+
+}  // namespace
 
 Result<SurfaceFolder> ReadSurfaceFolder(const std::filesystem::path& path) {
   const std::string summary = (path / surface::kSummaryFile).string();
@@ -30,14 +47,22 @@ Result<SurfaceFolder> ReadSurfaceFolder(const std::filesystem::path& path) {
       return Status(ErrorCode::kUnreadable,
                     Quoted(summary) + " says that the surface was never finished; make it again");
     folder.run = json.value("run", "");
-    for (const auto& frame : json.at("frames"))
-      if (frame.at("note").get<std::string>().empty())
-        folder.frames.push_back({frame.at("frame").get<int>(), frame.at("name").get<std::string>(),
-                                 frame.value("neighbors", std::vector<int>()), frame.value("pair", false)});
+    for (const auto& frame : json.at("frames")) {
+      if (!frame.at("note").get<std::string>().empty()) continue;
+      folder.frames.push_back({frame.at("frame").get<int>(), frame.at("name").get<std::string>(),
+                               frame.value("neighbors", std::vector<int>()), frame.value("pair", false)});
+      if (!IsFileName(folder.frames.back().file_name))
+        return Status(ErrorCode::kUnreadable, Quoted(summary) + " names a frame " +
+                                                  Quoted(folder.frames.back().file_name) +
+                                                  ", which is not a file's name");
+    }
     if (json.contains("windows")) {
       const auto& windows = json.at("windows");
       folder.windows = {windows.at("image_width").get<int>(), windows.at("side").get<int>(),
                         windows.at("smoothing_px").get<double>(), windows.at("noise_levels").get<double>()};
+      if (!AreRight(*folder.windows))
+        return Status(ErrorCode::kUnreadable,
+                      Quoted(summary) + " says of the windows that were compared what cannot be");
     }
   } catch (const nlohmann::json::exception& error) {
     return Status(ErrorCode::kUnreadable, Quoted(summary) + " is not a surface's: " + error.what());
