@@ -66,6 +66,15 @@ std::string OfDepth(const FirstMapEvidence& evidence) {
                                          : "the shape can be trusted to about that.");
 }
 
+// A certain map becomes provisional where its scene, which was taken for rigid, is found to deform (W13).
+std::string OfRigidity(const RunSummary& summary) {
+  const bool were_certain =
+      std::ranges::none_of(summary.first_maps, [](const FirstMapFrames& map) { return map.evidence.provisional; });
+  if (!were_certain || FramesIn(summary, TrackingState::kProvisional) == 0) return {};
+  return "The scene was taken for rigid and then found to deform: where the map is provisional its depths are known "
+         "less well than that.";
+}
+
 // What a start from one image, which is provisional from the first frame on, took for granted.
 std::string OfPrior(const RunSummary& summary) {
   if (summary.description.depth_prior.empty()) return {};
@@ -178,7 +187,7 @@ std::vector<std::pair<std::string, std::string>> TrustIn(const RunSummary& summa
   };
   if (summary.frames_read == 0) return trust;
   add("frames", OfFrames(summary));
-  add("depth", OfMaps(summary, OfDepth));
+  add("depth", Joined({OfMaps(summary, OfDepth), OfRigidity(summary)}));
   add("depth_prior", OfPrior(summary));
   add("camera", OfMaps(summary, OfCamera));
   add("calibration", Joined({OfAssumedCamera(summary.description), OfMaps(summary, OfCalibration)}));

@@ -122,6 +122,17 @@ TEST(RunTrust, SaysThatARigidMapIsOfASceneThatDeformsLittle) {
                         "with a camera that stands still"));
 }
 
+TEST(RunTrust, SaysThatASceneTakenForRigidWasFoundToDeform) {
+  FirstMapEvidence rigid = kKnown;
+  rigid.deforming = false;
+  RunSummary summary = Summary(rigid);
+  EXPECT_THAT(Trust(summary).at("depth"), Not(HasSubstr("found to deform")));
+  summary.states = {{TrackingState::kTracking, 60}, {TrackingState::kProvisional, 30}};
+  EXPECT_THAT(Trust(summary).at("depth"), HasSubstr("taken for rigid and then found to deform"));
+  summary.first_maps[0].evidence.provisional = true;
+  EXPECT_THAT(Trust(summary).at("depth"), Not(HasSubstr("found to deform"))) << "it never was certain";
+}
+
 TEST(RunTrust, TellsSeveralMapsApart) {
   RunSummary summary = Summary(kKnown);
   FirstMapEvidence rigid = kKnown;

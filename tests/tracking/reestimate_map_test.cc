@@ -48,7 +48,10 @@ TEST(ReestimateMap, RefinesNoMapOfASceneThatDeforms) {
   EXPECT_FALSE(first.refinable);
   const InitOutcome refined = sequence.Reestimate(WindowScene::kRigid);
   EXPECT_EQ(refined.decision, InitDecision::kNewReference);
+  EXPECT_TRUE(refined.deforming);
   EXPECT_THAT(refined.reason, HasSubstr("the scene deforms"));
+  // That too little was seen says nothing of the scene.
+  EXPECT_FALSE(WavingTracks(2).Reestimate(WindowScene::kRigid).deforming);
 }
 
 // A tenth of a pixel a frame at most: what it tells the first map is no worse than noise.

@@ -57,6 +57,46 @@ TEST(WindowCamera, SaysThatTheImagesContradictTheFocalLength) {
   EXPECT_THAT(outcome.reason, HasSubstr("contradict the focal length"));
 }
 
+// (W20) What contradicts a rigid scene of this calibration may as well be a deformation.
+TEST(WindowCamera, ARigidMapThatContradictsTheFocalLengthIsPutAside) {
+  WavingTracks rigid = Orbit(16, SceneMotion::kNone);
+  WindowInitOptions options;
+  options.max_correlation = 1;  // the errors that neighbors share do not refuse it
+  const InitOutcome right = rigid.Try(options);
+  ASSERT_EQ(right.decision, InitDecision::kMap) << right.reason;
+  EXPECT_FALSE(right.provisional);
+  rigid.camera = rigid.camera.WithFocalLengthTimes(0.5).value();
+  const InitOutcome wrong = rigid.Try(options);
+  ASSERT_NE(wrong.measured.focal_length_factor, 1.0) << wrong.reason;
+  EXPECT_EQ(wrong.decision, InitDecision::kProvisional) << wrong.reason;
+  EXPECT_TRUE(wrong.provisional);
+  EXPECT_FALSE(wrong.refinable);
+  EXPECT_EQ(rigid.Try(options, InitMoment::kLastFrame).decision, InitDecision::kMap);
+  options.provisional = Switch::kOff;
+  const InitOutcome refused = rigid.Try(options);
+  EXPECT_EQ(refused.decision, InitDecision::kWait);
+  EXPECT_THAT(refused.reason, HasSubstr("a rigid motion does not explain the images with this focal length"));
+}
+
+// (W20) Of a flat scene, whose depths hardly stand out.
+TEST(WindowCamera, AfterCameraAndSceneCouldNotBeToldApartDepthsOfARigidMapHaveToStandOut) {
+  const WavingTracks plane(46, CameraMotion::kForwards, 0, 0);
+  const auto initializer = MakeWindowInitializer({}, kNominalMm);
+  InitInput input{plane.camera, plane.frames, {}};
+  const InitOutcome map = initializer->Try(input);
+  ASSERT_EQ(map.decision, InitDecision::kMap) << map.reason;
+  ASSERT_TRUE(map.provisional);
+  ASSERT_FALSE(map.deforming || map.allows_deformation);
+  input.was_ambiguous = true;
+  const InitOutcome refused = initializer->Try(input);
+  EXPECT_EQ(refused.decision, InitDecision::kWait);
+  EXPECT_THAT(refused.reason, HasSubstr("could not be told apart before this reference"));
+  const WavingTracks deep(46, CameraMotion::kForwards, 0);
+  InitInput of_deep{deep.camera, deep.frames, {}};
+  of_deep.was_ambiguous = true;
+  EXPECT_EQ(initializer->Try(of_deep).decision, InitDecision::kMap);
+}
+
 TEST(WindowCamera, ASceneThatDeformsDoesNotContradictTheFocalLength) {
   for (const int frames : {16, 31, 51}) {
     const InitOutcome outcome = Orbit(frames, SceneMotion::kWave).Try({}, InitMoment::kLastFrame);

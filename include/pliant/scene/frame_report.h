@@ -85,6 +85,8 @@ inline double DepthSignal(double spread, double sigma) { return sigma > 0 ? spre
 
 // Below it depths are hardly better known than by one constant depth.
 inline constexpr double kMinDepthSignal = 3.0;
+// The same for a map that is provisional.
+inline constexpr double kMinProvisionalSignal = 2.0;
 
 // What a first map rests on, as it was measured when it was made; 0 where its method does not measure it.
 struct FirstMapEvidence {

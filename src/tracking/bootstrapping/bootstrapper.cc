@@ -131,27 +131,25 @@ std::optional<Bootstrapper::Answer> Bootstrapper::NextAnswer(const PreparedFrame
   const StageTimer timer(times, Stage::kInitialize);
   if (handover_frames_ == 0) {
     const auto alternative = frames_.size() % kAskAlternativeEvery == 0 ? AlternativeToAsk() : nullptr;
-    return AskInitializers(frames_, known_depths_, camera_may_stand_still_, frame, InitMoment::kMoreFollow,
-                           alternative.get());
+    return AskInitializers(frames_, known_depths_, doubts_, frame, InitMoment::kMoreFollow, alternative.get());
   }
   const auto step = static_cast<int>(frames_.size());
   const WorkPlace place = threads_ > 1 ? WorkPlace::kBeside : WorkPlace::kHere;
-  answers_.Ask(
-      step + handover_frames_, place,
-      [this, frame, frames = frames_, known_depths = known_depths_, may_stand_still = camera_may_stand_still_] {
-        return AskInitializers(frames, known_depths, may_stand_still, frame, InitMoment::kMoreFollow, nullptr);
-      });
+  answers_.Ask(step + handover_frames_, place,
+               [this, frame, frames = frames_, known_depths = known_depths_, doubts = doubts_] {
+                 return AskInitializers(frames, known_depths, doubts, frame, InitMoment::kMoreFollow, nullptr);
+               });
   return answers_.Take(step);
 }
 
 // Beside tracking it reads only what does not change. `alternative`: null: it is not asked.
 Bootstrapper::Answer Bootstrapper::AskInitializers(const std::vector<InitFrame>& frames,
-                                                   const std::vector<double>& known_depths, bool may_stand_still,
+                                                   const std::vector<double>& known_depths, const Doubts& doubts,
                                                    const PreparedFrame& last, InitMoment moment,
                                                    const Initializer* alternative) const {
   Answer answer{.frames = frames.size(), .last = last};
-  answer.outcome = initializer_->Try(
-      {camera_, frames, last.depth_mm, moment, threads_, known_depths, photometric_, may_stand_still});
+  answer.outcome = initializer_->Try({camera_, frames, last.depth_mm, moment, threads_, known_depths, photometric_,
+                                      doubts.camera_may_stand_still, doubts.was_ambiguous});
   const bool is_settled = answer.outcome.decision == InitDecision::kMap || answer.outcome.ambiguous;
   if (alternative != nullptr && !is_settled)
     answer.alternative = alternative->Try({camera_, frames, {}, moment, threads_, {}, photometric_});
@@ -185,6 +183,7 @@ void Bootstrapper::TakeAnswer(Answer answer, BootstrapStep* step) {
         GoBack(step);
       else
         Abandon();
+      doubts_.was_ambiguous |= outcome.ambiguous;
       break;
   }
 }
@@ -195,7 +194,7 @@ void Bootstrapper::TakeAlternative(const Answer& answer) {
     if (is_weak || answer.outcome.camera_may_stand_still) provisional_.reset();
     ForgetAlternative();
   }
-  camera_may_stand_still_ |= answer.outcome.camera_may_stand_still;
+  doubts_.camera_may_stand_still |= answer.outcome.camera_may_stand_still;
   if (!answer.alternative || answer.alternative->decision != InitDecision::kMap || AlternativeToAsk() == nullptr)
     return;
   would_start_ = "--Init.method " + std::string(alternative_->name()) + " would have made a map by frame " +
@@ -269,7 +268,7 @@ void Bootstrapper::FinishMap(FirstMap map, BootstrapStep* step) {
   for (const InitRejectedPoint& rejected : map.outcome.rejected)
     if (rejected.reason != InitRejection::kLostOnTheWay) step->losses.Add(InitRejectionName(rejected.reason), 1);
   provisional_.reset();
-  camera_may_stand_still_ = false;
+  doubts_ = {};
   ForgetAlternative();
   map.outcome.decision = InitDecision::kMap;
   oracle_poses_->TakeWorld({camera_, map.frames, {}}, &map.outcome);
@@ -296,8 +295,7 @@ BootstrapStep Bootstrapper::EndSequence(StageTimes* times) {
   PreparedFrame last;
   last.frame_idx = frames_.back().frame_idx;
   const auto alternative = provisional_ ? nullptr : AlternativeToAsk();
-  Answer answer =
-      AskInitializers(frames_, known_depths_, camera_may_stand_still_, last, InitMoment::kLastFrame, alternative.get());
+  Answer answer = AskInitializers(frames_, known_depths_, doubts_, last, InitMoment::kLastFrame, alternative.get());
   step.note = WithFault(answer.outcome.reason, image_fault_);
   TakeAlternative(answer);
   if (answer.outcome.ambiguous && answer.outcome.decision == InitDecision::kNewReference)
@@ -315,7 +313,7 @@ void Bootstrapper::Abandon() {
   frames_.clear();
   known_depths_.clear();
   provisional_.reset();
-  camera_may_stand_still_ = false;
+  doubts_.camera_may_stand_still = false;
   has_map_ = false;
   last_reason_ = "the first map is attempted beside tracking";
   answers_.Drop();
@@ -396,9 +394,9 @@ void Bootstrapper::Serialize(StateArchive& archive) {
   bool asks_alternative = alternative_ != nullptr;
   archive(asks_alternative);
   if (!asks_alternative) alternative_.reset();
-  archive(has_map_, frames_, known_depths_, image_fault_, provisional_, camera_may_stand_still_, would_start_,
-          last_reason_, answers_);
+  archive(has_map_, frames_, known_depths_, image_fault_, provisional_, doubts_, would_start_, last_reason_, answers_);
 }
+void Bootstrapper::Doubts::Serialize(StateArchive& archive) { archive.Members<2>(*this); }
 void Bootstrapper::Made::Serialize(StateArchive& archive) { archive.Members<2>(*this); }
 void Bootstrapper::Answer::Serialize(StateArchive& archive) { archive.Members<4>(*this); }
 

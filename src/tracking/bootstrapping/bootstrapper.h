@@ -86,6 +86,12 @@ class Bootstrapper {
     PreparedFrame frame;
     void Serialize(StateArchive& archive);
   };
+  // Whether the camera moves at all, as answers said.
+  struct Doubts {
+    bool camera_may_stand_still = false;  // since the reference
+    bool was_ambiguous = false;           // when an earlier reference was given up, since the last map
+    void Serialize(StateArchive& archive);
+  };
   // What the initializers say of the frames up to one of them.
   struct Answer {
     std::size_t frames = 0;  // since the reference
@@ -96,7 +102,7 @@ class Bootstrapper {
   };
 
   Answer AskInitializers(const std::vector<InitFrame>& frames, const std::vector<double>& known_depths,
-                         bool may_stand_still, const PreparedFrame& last, InitMoment moment,
+                         const Doubts& doubts, const PreparedFrame& last, InitMoment moment,
                          const Initializer* alternative) const;
   std::shared_ptr<const Initializer> AlternativeToAsk() const;
   std::optional<Answer> NextAnswer(const PreparedFrame& frame, StageTimes* times);
@@ -126,12 +132,12 @@ class Bootstrapper {
   std::shared_ptr<const Initializer> initializer_;
   std::shared_ptr<const Initializer> alternative_;
 
-  bool has_map_ = false;                 // one that catches up
-  std::vector<InitFrame> frames_;        // since the reference; empty: there is none
-  std::vector<double> known_depths_;     // of the reference's points, where they are known
-  std::string image_fault_;              // of the last frame
-  std::optional<Made> provisional_;      // the best one since the reference
-  bool camera_may_stand_still_ = false;  // as an answer since the reference said
+  bool has_map_ = false;              // one that catches up
+  std::vector<InitFrame> frames_;     // since the reference; empty: there is none
+  std::vector<double> known_depths_;  // of the reference's points, where they are known
+  std::string image_fault_;           // of the last frame
+  std::optional<Made> provisional_;   // the best one since the reference
+  Doubts doubts_;
   std::string would_start_;
   std::string last_reason_;         // of the last answer
   DelayedAnswers<Answer> answers_;  // steps: the number of frames since the reference; ends before what it reads

@@ -68,13 +68,17 @@ class WindowInitializer final : public Initializer {
     Status status = CheckWindowNotARotation(input, &outcome.measured);
     const bool is_rotation = !status.ok();
     if (status.ok()) status = last ? LastAttempt(input, &outcome) : Attempt(input, &outcome);
+    if (options_.focal_length_check == Switch::kOn && (status.ok() || (last && !is_rotation)))
+      outcome.measured.focal_length_factor = ContradictingFocalLengthFactor(input, options_, nominal_depth_mm_);
+    if (status.ok()) status = CheckRigidity(input, last, &outcome);
     if (!status.ok()) {
       outcome.decision = last ? InitDecision::kNewReference : InitDecision::kWait;
       outcome.reason = status.message();
       if (last) outcome.reason += "; given up after " + std::to_string(since) + " frames from one reference";
     }
-    if (options_.focal_length_check == Switch::kOn && (status.ok() || (last && !is_rotation)))
-      CheckFocalLength(input, &outcome);
+    if (const double factor = outcome.measured.focal_length_factor; factor != 1.0)
+      outcome.reason += "; the images contradict the focal length: a rigid scene fits clearly better with about " +
+                        Digits(factor, 2) + " times it, check the calibration";
     return outcome;
   }
 
@@ -100,13 +104,22 @@ class WindowInitializer final : public Initializer {
     return options_.first_frame + (after_first + options_.every - 1) / options_.every * options_.every;
   }
 
-  // It changes nothing but what is said.
-  void CheckFocalLength(const InitInput& input, InitOutcome* outcome) const {
-    double& factor = outcome->measured.focal_length_factor;
-    factor = ContradictingFocalLengthFactor(input, options_, nominal_depth_mm_);
-    if (factor == 1.0) return;
-    outcome->reason += "; the images contradict the focal length: a rigid scene fits clearly better with about " +
-                       Digits(factor, 2) + " times it, check the calibration";
+  // (W20) The sigmas of a rigid window know nothing of a deformation that is taken for depth. Where something says that
+  // there is one its map is provisional, and none if its depths hardly stand out.
+  Status CheckRigidity(const InitInput& input, bool last, InitOutcome* outcome) const {
+    const bool contradicts = outcome->measured.focal_length_factor != 1.0;
+    if (outcome->deforming || outcome->allows_deformation || !(contradicts || input.was_ambiguous)) return Status::Ok();
+    const std::string why = contradicts ? "a rigid motion does not explain the images with this focal length"
+                                        : "camera and scene could not be told apart before this reference";
+    if (outcome->provisional)
+      return {ErrorCode::kDegenerate,
+              "the depths hardly stand out, and " + why + "; move the camera sideways or forwards"};
+    if (!contradicts) return Status::Ok();
+    if (options_.provisional == Switch::kOff) return {ErrorCode::kInsufficient, why};
+    outcome->provisional = true;
+    outcome->refinable = false;
+    if (!last) outcome->decision = InitDecision::kProvisional;
+    return Status::Ok();
   }
 
   // What is missing for a map; ok when the outcome is one.

@@ -23,9 +23,8 @@
 namespace pliant {
 namespace {
 
-constexpr double kMaxErrorRatio = 3.0;         // of a point's error by the median one, where sigmas are scaled with it
-constexpr double kMinProvisionalSignal = 2.0;  // as kMinDepthSignal, of a map that is provisional; not of far ones
-constexpr double kMaxOwnSigma = 2.0;  // of points by their own median distance, by what was demanded by that of all
+constexpr double kMaxErrorRatio = 3.0;  // of a point's error by the median one, where sigmas are scaled with it
+constexpr double kMaxOwnSigma = 2.0;    // of points by their own median distance, by what was demanded by that of all
 // Above it linear sigmas are far too small where tissue moves as fast as the camera.
 constexpr double kMaxProvisionalSigma = 0.06;
 constexpr double kMinProvisionalShare = 0.5;  // of the points still seen, that are certain enough

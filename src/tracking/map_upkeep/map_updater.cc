@@ -92,7 +92,9 @@ void MapUpdater::Start(FirstMap first, Submap* submap) {
       tracks_->Remove(rejected.id);
   }
   submap->window_frames = first.frames;
-  if (outcome.refinable && EstimatesPoses()) submap->rigid_history.Start(std::move(first.frames));
+  // What (W19) takes for rigid is known to deform.
+  const bool may_be_rigid = outcome.refinable && !outcome.allows_deformation;
+  if (may_be_rigid && EstimatesPoses()) submap->rigid_history.Start(std::move(first.frames));
 }
 
 void MapUpdater::RemoveCommonMotion(Submap* submap) const {
@@ -158,6 +160,7 @@ void MapUpdater::TakeRigid(const Reestimation& reestimation, Submap* submap, Map
   if (submap->rigid_history.empty()) return;
   if (outcome.decision == InitDecision::kNewReference) {
     submap->rigid_history.Stop();
+    if (outcome.deforming) submap->BecomeProvisional();
     update->note = "the map is not refined any more: " + outcome.reason;
   }
   if (outcome.decision != InitDecision::kMap) return;

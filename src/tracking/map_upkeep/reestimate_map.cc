@@ -22,7 +22,10 @@ Status Reestimate(const InitInput& input, WindowScene scene, bool of_provisional
   WindowInitOptions as_deforming = options;
   as_deforming.rigid_views = options.views;
   const auto window = SolveWindow(input, input.frames.size(), scene, as_deforming, nominal_depth_mm);
-  if (!window.ok()) return window.status();
+  if (!window.ok()) {
+    outcome->deforming = window.status().code() == ErrorCode::kDegenerate;
+    return window.status();
+  }
   MapDemands demands = DemandsOf(options, may_deform ? kRelaxed : 0.0);
   // Where the scene is rigid errors are of the tracks alone. What drifts along a contour or over the surface, little at
   // a time, shows in them.

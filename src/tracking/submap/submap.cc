@@ -61,6 +61,13 @@ void Submap::Commit(const FollowedPoints& points, const Rigid3& cam_from_world, 
   blurred_frames = points.in_blur ? blurred_frames + 1 : 0;
 }
 
+void Submap::BecomeProvisional() {
+  provisional = true;
+  if (depths.signal <= kMinProvisionalSignal) return;
+  for (Landmark& landmark : map.landmarks) landmark.log_distance_sigma *= depths.signal / kMinProvisionalSignal;
+  depths.signal = kMinProvisionalSignal;
+}
+
 void Submap::MoveInto(const Sim3& other_from_world) {
   for (Landmark& landmark : map.landmarks) landmark = Moved(other_from_world, landmark);
   lost_points.MoveInto(other_from_world);

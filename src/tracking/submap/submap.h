@@ -43,6 +43,9 @@ struct Submap {
   // was found and contradicts the rest is forgotten. `before`: the state before this frame.
   void Commit(const FollowedPoints& points, const Rigid3& cam_from_world, TrackingState before,
               const TrackerOptions& options, TrackSource* tracks);
+  // (W13) A map of a rigid window, of a scene that turns out to deform: its sigmas knew nothing of that. They become
+  // those of depths that just stand out.
+  void BecomeProvisional();
   // Into another world; where the two are one.
   void MoveInto(const Sim3& other_from_world);
   // Moves what is now, cameras and points alike, and not where the points rest.

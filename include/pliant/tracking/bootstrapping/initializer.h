@@ -62,6 +62,7 @@ struct InitInput {
   std::vector<double> reference_depths = {};
   std::optional<PhotometricCalibration> photometric = std::nullopt;  // where it is known
   bool camera_may_stand_still = false;  // as an answer since the reference said (InitOutcome)
+  bool was_ambiguous = false;           // when an earlier reference, since the last map, was given up (InitOutcome)
 };
 
 enum class InitDecision {
@@ -133,7 +134,7 @@ struct InitOutcome {
   bool camera_may_stand_still = false;  // it explains them as well but for chance
   bool moves_by_depth = false;          // the depths alone show that the camera moves (W18)
 
-  // Filled in for kMap and kProvisional alone.
+  // Filled in for kMap and kProvisional; `deforming` also where a rigid scene was asked for and it is none.
   std::vector<InitFrameState> frames;       // one a frame of the input, in its order; the first pose is the identity
   std::vector<InitPoint> points;            // sorted by id; each is in some of the frames, not in all
   std::vector<InitRejectedPoint> rejected;  // the other points, sorted by id
