@@ -1,9 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The Pliant authors
 # SPDX-License-Identifier: BSD-3-Clause
 #
-# The distributed OpenGV is compiled for SSE2 and without sanitizers. Eigen aligns its types by the widest vectors that
-# the compiler may use, and allocates them itself under the address sanitizer, so code compiled for either and OpenGV
-# disagree about the layout and the allocation of the same types.
+# The distributed OpenGV is compiled for SSE2. Eigen aligns its types by the widest vectors that the compiler may use,
+# so code compiled for AVX and OpenGV disagree about the layout and the allocation of the same types.
 set(_pliant_flags "${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_RELEASE} ${CMAKE_CXX_FLAGS_DEBUG} \
 ${CMAKE_CXX_FLAGS_RELWITHDEBINFO}")
 if(_pliant_flags MATCHES "(-mavx[^ ]*|-mfma|-march=[^ ]*)")
@@ -14,7 +13,4 @@ if(_pliant_flags MATCHES "(-mavx[^ ]*|-mfma|-march=[^ ]*)")
       "its types differently, so calls into OpenGV crash with a double free. Remove the flag; wide vectors are chosen "
       "at run time where they pay.")
   endif()
-endif()
-if(_pliant_flags MATCHES "-fsanitize=[a-z,-]*address")
-  add_compile_definitions(EIGEN_MALLOC_ALREADY_ALIGNED=1)
 endif()
