@@ -29,6 +29,6 @@ configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/PliantConfig.cmake.in
 # Before 1.0 every minor version may change the interface.
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/PliantConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/PliantConfig.cmake ${PROJECT_BINARY_DIR}/PliantConfigVersion.cmake
-              ${CMAKE_CURRENT_LIST_DIR}/PliantDependencies.cmake ${CMAKE_CURRENT_LIST_DIR}/PliantOpenGvAbi.cmake
+              ${CMAKE_CURRENT_LIST_DIR}/PliantDependencies.cmake ${CMAKE_CURRENT_LIST_DIR}/PliantRefuseAvx.cmake
         DESTINATION ${_pliant_package_dir})
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
