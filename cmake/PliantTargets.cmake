@@ -28,8 +28,8 @@ endif()
 # the templates that they instantiate. Two remedies, which must not hide a missing #include: `./run lint` parses without
 # them.
 # 1. What nearly every file includes is parsed once (CMAKE_DISABLE_PRECOMPILE_HEADERS=ON: not).
-# 2. Modules of many small files (BATCHED below) are compiled several files at a time.
-option(PLIANT_BATCHED_BUILD "Compile the files of modules with many small ones in batches" ON)
+# 2. Several files of a module are compiled at a time. Who works inside a module may prefer 1.
+set(PLIANT_BATCH_SIZE 8 CACHE STRING "So many files are compiled at a time")
 set(PLIANT_PRECOMPILED_HEADERS
   <algorithm> <array> <cassert> <cmath> <cstdint> <filesystem> <functional> <limits> <map> <memory> <numbers> <optional>
   <set> <span> <string> <string_view> <utility> <variant> <vector> <Eigen/Dense> <opencv2/core.hpp>)
@@ -52,15 +52,23 @@ function(pliant_reuse_precompiled target name)
   endif()
 endfunction()
 
+# Compiles several files of the target at a time: names in their anonymous namespaces must differ.
+function(pliant_batch target)
+  if(PLIANT_BATCH_SIZE GREATER 1)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${PLIANT_BATCH_SIZE})
+    # In a batch every file is taken for a header.
+    target_compile_options(${target} PRIVATE $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-Wno-subobject-linkage>)
+  endif()
+endfunction()
+
 pliant_precompile(pliant_precompiled LIBRARIES Eigen3::Eigen opencv_core HEADERS ${PLIANT_PRECOMPILED_HEADERS})
 set_target_properties(pliant_precompiled PROPERTIES POSITION_INDEPENDENT_CODE ON)
 
 set_property(GLOBAL PROPERTY PLIANT_MODULES "")
 
 # A module: one static library. DEPENDS names the modules below that it may include, LIBRARIES what it takes from outside.
-# BATCHED: several files are compiled at a time, so names in their anonymous namespaces must differ.
 function(pliant_module name)
-  cmake_parse_arguments(ARG "BATCHED" "" "SOURCES;DEPENDS;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;LIBRARIES" ${ARGN})
   set(target pliant_${name})
   add_library(${target} STATIC ${ARG_SOURCES})
   add_library(Pliant::${name} ALIAS ${target})
@@ -73,11 +81,7 @@ function(pliant_module name)
   target_link_libraries(${target} PUBLIC ${ARG_LIBRARIES} PRIVATE $<BUILD_INTERFACE:pliant_warnings>)
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
   pliant_reuse_precompiled(${target} pliant_precompiled)
-  if(ARG_BATCHED AND PLIANT_BATCHED_BUILD)
-    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
-    # In a batch every file is taken for a header.
-    target_compile_options(${target} PRIVATE $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-Wno-subobject-linkage>)
-  endif()
+  pliant_batch(${target})
   set_property(GLOBAL APPEND PROPERTY PLIANT_MODULES ${target})
 endfunction()
 
@@ -93,6 +97,7 @@ function(pliant_test name)
   endforeach()
   target_link_libraries(${target} PRIVATE ${ARG_LIBRARIES} GTest::gmock GTest::gtest_main pliant_warnings)
   pliant_reuse_precompiled(${target} pliant_test_precompiled)
+  pliant_batch(${target})
   if(ARG_WHOLE)
     add_test(NAME ${target} COMMAND ${target})
     set_tests_properties(${target} PROPERTIES TIMEOUT 600)

@@ -18,6 +18,12 @@
 
 namespace pliant {
 
+inline constexpr int kMaxIterations = 100;
+// A view (or pair of views) is left out when its error is so many times the median one's; no pair of cameras fits when
+// the median pair's error is so many times that of each camera alone.
+inline constexpr double kOutlierFactor = 3;
+inline constexpr int kMaxGroups = 8;  // of views or pairs that are held out, one group after the other
+
 // Rotation vector and translation: cam_from_board, rad and mm.
 using BoardPose = std::array<double, 6>;
 

@@ -21,10 +21,6 @@ constexpr std::array kPerspectiveStarts_deg = {20.0, 35.0, 50.0, 65.0, 80.0, 95.
 constexpr std::array kFisheyeStarts_deg = {50.0, 80.0, 110.0, 140.0, 170.0, 200.0};
 constexpr double kWidestPerspective_deg = 160;
 constexpr int kStartIterations = 15;
-constexpr int kMaxIterations = 100;
-// A view is left out when its error is so many times the median view's.
-constexpr double kOutlierFactor = 3;
-constexpr int kMaxGroups = 8;  // of held-out views
 constexpr int kEvenAndOdd = 2;
 
 struct CalibrationInput {

@@ -19,12 +19,7 @@
 namespace pliant {
 namespace {
 
-constexpr int kMaxIterations = 100;
-// A pair is left out when its error is so many times the median pair's; no pair fits when the median pair's is so many
-// times that of each camera alone.
-constexpr double kOutlierFactor = 3;
 constexpr double kShortestBaseline = 1e-3;  // by the distance of the board
-constexpr int kMaxGroups = 8;               // of pairs that are left out, one group after the other
 
 constexpr std::size_t kMostParams = OpenCv::kNumParams;
 using CameraParams = std::array<double, kMostParams>;  // fewer of a smaller model
@@ -243,7 +238,7 @@ Status CheckMount(const Rigid3& right_from_left, double depth_mm) {
   return Status::Ok();
 }
 
-Status TooFew(std::size_t pairs) {
+Status TooFewPairs(std::size_t pairs) {
   return {ErrorCode::kInsufficient, "the board is seen by both cameras in " + std::to_string(pairs) +
                                         " pairs that differ, and " + std::to_string(kFewestCalibrationPairs) +
                                         " are the least; add pairs of images in which both see all of it"};
@@ -305,7 +300,7 @@ Result<std::vector<bool>> FitPairs(const StereoInput& input, double alone_px, St
     outliers[pair] = pair_px[pair] > kOutlierFactor * median_px;
     used += outliers[pair] ? 0 : 1;
   }
-  if (used < kFewestCalibrationPairs) return TooFew(used);
+  if (used < kFewestCalibrationPairs) return TooFewPairs(used);
   if (!SolvePairs(input, outliers, fit)) return NoRig(median_px, alone_px);
   return outliers;
 }
@@ -319,7 +314,7 @@ Result<StereoCameras> CalibrateStereo(const CalibrationBoard& board, const Camer
     if (camera->model_id() == CameraModelId::kOpenCvFisheye)
       return Status(ErrorCode::kInvalidArgument,
                     "pairs of fisheye cameras cannot be rectified; choose a perspective Calibrate.model");
-  if (left_views.size() < kFewestCalibrationPairs) return TooFew(left_views.size());
+  if (left_views.size() < kFewestCalibrationPairs) return TooFewPairs(left_views.size());
   StereoInput input{board.Points(), {left_views.begin(), left_views.end()}, {right_views.begin(), right_views.end()}};
   auto start = StartPairs(board, left, right, &input);
   if (!start)

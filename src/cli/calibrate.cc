@@ -21,7 +21,7 @@
 namespace pliant::cli {
 namespace {
 
-const Manual kManual = {
+const Manual kCalibrateManual = {
     "calibrate",
     "camera.yaml from images or a video of a calibration board",
     "Reads --image_path: a folder of images or a video in which a flat board of known size is seen from many sides, "
@@ -159,7 +159,7 @@ int CalibrateCommand(std::span<const std::string> args) {
   std::string figure_path;
   CalibrateRequest request;
   CalibrateOptions options;
-  CommandLine line(kManual);
+  CommandLine line(kCalibrateManual);
   line.Add("image_path", &image_path, "PATH", "folder of images, or video, of the board", Need::kRequired);
   line.Add("right_path", &right_path, "PATH", "those of a right camera at the same moments", Need::kOptional);
   line.AddChoice("pairs", &request.pairs,

@@ -17,7 +17,7 @@
 namespace pliant::cli {
 namespace {
 
-const Manual kManual = {
+const Manual kCompareManual = {
     "compare",
     "set runs side by side, and against the truth where there is one",
     "Prints two tables with a row a run. The first says what was reconstructed: frames with a pose, points in a frame, "
@@ -43,7 +43,7 @@ int CompareCommand(std::span<const std::string> args) {
   std::string output_path;
   std::string figure_path;
   EvaluationOptions options;
-  CommandLine line(kManual);
+  CommandLine line(kCompareManual);
   line.Add("run", &request.run_paths, "DIR", "run folder", Need::kRequired);
   line.Add("sequence", &request.sequence_paths, "PATH",
            "the images, with truth where there is; one for all runs, or one for each", Need::kRequired);

@@ -39,7 +39,7 @@ const Manual kInfoManual = {
     {"pliant dataset info seq", "pliant dataset info clip.mp4 --camera stereo.yaml"},
 };
 
-const Manual kConvertManual = {
+const Manual kDatasetConvertManual = {
     "dataset convert",
     "write a data set as a native sequence",
     "Reads what lies at --input_path and writes images, right images, masks, depth, poses and times in Pliant's own "
@@ -175,7 +175,7 @@ int InfoCommand(std::span<const std::string> args) {
 int ConvertCommand(std::span<const std::string> args) {
   SequenceArguments arguments;
   std::string output_path;
-  CommandLine line(kConvertManual);
+  CommandLine line(kDatasetConvertManual);
   arguments.AddTo(&line, "input_path");
   line.Add("output_path", &output_path, "DIR", "folder of the new sequence", Need::kRequired);
   if (const auto exit = line.Parse(args)) return *exit;

@@ -21,7 +21,7 @@
 namespace pliant::cli {
 namespace {
 
-const Manual kManual = {
+const Manual kDemoManual = {
     "demo",
     "simulate, track and evaluate a small sequence",
     "Renders a short way through a colon that deforms, tracks it with the default options from the images alone, "
@@ -121,7 +121,7 @@ Status RunDemo(const SimulationOptions& simulation, const std::filesystem::path&
 
 int DemoCommand(std::span<const std::string> args) {
   std::string output_path = "pliant_demo";
-  CommandLine line(kManual);
+  CommandLine line(kDemoManual);
   line.Add("output_path", &output_path, "DIR", "folder for everything; made where it is not there", Need::kOptional);
   if (const auto exit = line.Parse(args)) return *exit;
 

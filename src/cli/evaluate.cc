@@ -17,7 +17,7 @@
 namespace pliant::cli {
 namespace {
 
-const Manual kManual = {
+const Manual kEvaluateManual = {
     "evaluate",
     "compare a run with the truth of its sequence, or with other runs",
     "Prints how far the points of a run lie from the true surface (the RMSE of the paper, untrimmed, and the "
@@ -101,7 +101,7 @@ int EvaluateCommand(std::span<const std::string> args) {
   EvaluationRequest request;
   std::string output_path;
   EvaluationOptions options;
-  CommandLine line(kManual);
+  CommandLine line(kEvaluateManual);
   line.Add("run", &request.run_path, "DIR", "run folder; needed unless --tracks or --stir is given", Need::kOptional);
   line.AddAlias("tracks", "TrackFile.path", "FILE",
                 "instead of a run: a file of point tracks, as pliant track --tracks reads it");

@@ -15,7 +15,7 @@
 namespace pliant::cli {
 namespace {
 
-const Manual kManual = {
+const Manual kImportManual = {
     "import",
     "make a run, or a sequence's truth, of another program's result",
     "Reads --input_path, by --format:\n\n"
@@ -40,7 +40,7 @@ int ImportCommand(std::span<const std::string> args) {
   ImportRequest request;
   ImportOptions options;
   OutputFolder output;
-  CommandLine line(kManual);
+  CommandLine line(kImportManual);
   line.Add("input_path", &request.input_path, "PATH", "what to import", Need::kRequired);
   line.AddChoice("format", &request.format, "what it is");
   line.Add("sequence", &request.sequence_path, "PATH", "the images that it was made of", Need::kRequired);

@@ -16,7 +16,7 @@
 namespace pliant::cli {
 namespace {
 
-const Manual kManual = {
+const Manual kJoinManual = {
     "join",
     "one run of runs of parts of a recording, which overlap",
     "Reads --run, two or more: run folders that pliant track left of parts of one recording (--start, --end). Parts "
@@ -46,7 +46,7 @@ int JoinCommand(std::span<const std::string> args) {
   JoinRequest request;
   JoinOptions options;
   OutputFolder output;
-  CommandLine line(kManual);
+  CommandLine line(kJoinManual);
   line.Add("run", &request.run_paths, "DIR", "run folder of a part, in any order", Need::kRequired);
   output.AddTo(&line, "folder to write, made if need be", Need::kRequired);
   AddSequenceOfKilledRun(&line, &request.sequence_path, &request.camera_path);

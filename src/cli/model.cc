@@ -30,7 +30,7 @@ const Manual kCheckManual = {
     {"pliant model check run/sparse", "pliant model check reconstruction/sparse/0"},
 };
 
-const Manual kConvertManual = {
+const Manual kModelConvertManual = {
     "model convert",
     "write a COLMAP model as text or binary",
     "Reads a folder with cameras, images and points3D, and writes them into another, as COLMAP itself does: a model "
@@ -77,7 +77,7 @@ int ConvertCommand(std::span<const std::string> args) {
   std::string output_path;
   colmap::Format format = colmap::Format::kBinary;
   bool with_rigs = false;
-  CommandLine line(kConvertManual);
+  CommandLine line(kModelConvertManual);
   line.Add("input_path", &input_path, "DIR", "folder of the model", Need::kRequired);
   line.Add("output_path", &output_path, "DIR", "folder to write, made if need be", Need::kRequired);
   line.AddChoice("format", &format, "what to write");

@@ -11,7 +11,7 @@
 namespace pliant::cli {
 namespace {
 
-const Manual kManual = {
+const Manual kRefineManual = {
     "refine",
     "solve for all frames of a run at once",
     "Reads --run: a run folder that pliant track or pliant import left. Tracking knows only the frames before; here "
@@ -30,7 +30,7 @@ int RefineCommand(std::span<const std::string> args) {
   RefineRequest request;
   RefineOptions options;
   OutputFolder output;
-  CommandLine line(kManual);
+  CommandLine line(kRefineManual);
   line.Add("run", &request.run_path, "DIR", "run folder", Need::kRequired);
   output.AddTo(&line, "folder to write, made if need be", Need::kRequired);
   AddSequenceOfKilledRun(&line, &request.sequence_path, &request.camera_path);

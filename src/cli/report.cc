@@ -20,7 +20,7 @@
 namespace pliant::cli {
 namespace {
 
-const Manual kManual = {
+const Manual kReportManual = {
     "report",
     "show runs: a page for the browser, figures, films",
     "Writes one HTML file that holds everything: the images with the tracked points, the scene in 3D with each point's "
@@ -119,7 +119,7 @@ Result<std::vector<std::string>> WriteFilmWithProgress(const ReportArguments& ar
 
 int ReportCommand(std::span<const std::string> args) {
   ReportArguments arguments;
-  CommandLine line(kManual);
+  CommandLine line(kReportManual);
   line.Add("run", &arguments.view.run_paths, "DIR", "run folder", Need::kRequired);
   line.Add("sequence", &arguments.view.sequence_path, "PATH",
            "the images, with truth where there is; without it those that the first run's run.json names",

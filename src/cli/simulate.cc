@@ -16,7 +16,7 @@
 namespace pliant::cli {
 namespace {
 
-const Manual kManual = {
+const Manual kSimulateManual = {
     "simulate",
     "render a deforming scene with depth and poses",
     "Renders what a camera with a light beside it sees in a textured scene that deforms, and writes it as a sequence "
@@ -45,7 +45,7 @@ const Manual kManual = {
 int SimulateCommand(std::span<const std::string> args) {
   OutputFolder output;
   Realism realism = Realism::kClean;
-  CommandLine line(kManual);
+  CommandLine line(kSimulateManual);
   output.AddTo(&line, "folder of the new sequence; made where it is not there", Need::kRequired);
   line.AddChoice(
       "realism", &realism,

@@ -17,7 +17,7 @@
 namespace pliant::cli {
 namespace {
 
-const Manual kManual = {
+const Manual kSurfaceManual = {
     "surface",
     "dense depth of every frame of a run",
     "Reads --run: a run folder that pliant track or pliant refine left, and its images. The depth at every pixel is "
@@ -41,7 +41,7 @@ int SurfaceCommand(std::span<const std::string> args) {
   SurfaceRunOptions options;
   OutputFolder output;
   std::string frames;
-  CommandLine line(kManual);
+  CommandLine line(kSurfaceManual);
   line.Add("run", &request.run_path, "DIR", "run folder", Need::kRequired);
   output.AddTo(&line, "folder to write, made if need be", Need::kRequired);
   line.Add("sequence", &request.sequence_path, "PATH", "the run's images; without it those that its run.json names",

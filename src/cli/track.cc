@@ -30,7 +30,7 @@
 namespace pliant::cli {
 namespace {
 
-const Manual kManual = {
+const Manual kTrackManual = {
     "track",
     "camera pose and the motion of every point, from a folder of images or a video",
     "Follows points through the images of one moving, calibrated camera in a scene that deforms, and estimates for "
@@ -173,7 +173,7 @@ void KeepServing(LiveView* live) {
 
 int TrackCommand(std::span<const std::string> args) {
   TrackArguments arguments;
-  CommandLine line(kManual);
+  CommandLine line(kTrackManual);
   AddArguments(&arguments, &line);
   if (const auto exit = line.Parse(args)) return *exit;
 

@@ -14,7 +14,7 @@
 namespace pliant::cli {
 namespace {
 
-const Manual kManual = {
+const Manual kTruthManual = {
     "truth",
     "follow the material that pixels of a simulated sequence show",
     "Says which point of the wall each of the given pixels shows, and where that point is in every frame of the "
@@ -66,7 +66,7 @@ Status Follow(const Arguments& arguments) {
 
 int TruthCommand(std::span<const std::string> args) {
   Arguments arguments;
-  CommandLine line(kManual);
+  CommandLine line(kTruthManual);
   line.Add("sequence", &arguments.sequence_path, "DIR", "folder of a simulated sequence", Need::kRequired);
   line.Add("points", &arguments.points_path, "FILE", "CSV file of the pixels to follow", Need::kOptional);
   line.Add("grid_px", &arguments.grid_px, "follow every Nth pixel each way instead; 0: none", 0, 10000);

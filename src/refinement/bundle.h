@@ -17,6 +17,9 @@
 
 namespace pliant {
 
+inline constexpr double kStartNoisePx = 0.3;  // before a solution has measured it
+inline constexpr double kWrongTrack = 3.0;    // times the median track's error
+
 struct BundleState {
   std::vector<Rigid3> cams_from_world;
   std::vector<Eigen::Vector3d> rest_positions;

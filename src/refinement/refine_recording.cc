@@ -20,9 +20,7 @@ namespace {
 constexpr int kRounds = 2;  // solutions of few views, each with the sigmas and the tracks that the one before has found
 constexpr int kFewViewsPerTrack = 15;      // of the median track, in these; with all of them follows one more solution
 constexpr double kUsualIterations = 10.0;  // of a solution
-constexpr double kStartNoisePx = 0.3;
-constexpr double kMinShapeSigma = 0.002;  // below it a scene moves by less than its noise
-constexpr double kWrongTrack = 3.0;       // times the median track's error
+constexpr double kMinShapeSigma = 0.002;   // below it a scene moves by less than its noise
 constexpr double kMinWrongTrackPx = 0.5;
 constexpr int kRankStep = 2;
 constexpr double kSignificant = 2.0;  // times its standard error: then a correlation asks for more shapes

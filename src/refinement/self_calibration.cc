@@ -32,14 +32,12 @@ constexpr double kFineLogStep = 0.02;  // of the parabola through the costs arou
 constexpr double kDistortionStep = 0.02;
 constexpr double kLargestDistortionSigma = 0.05;
 constexpr double kCoarseTolerance = 1e-3;
-constexpr double kFineTolerance = 1e-6;  // of costs that are subtracted from each other
-constexpr double kSignificant = 3;       // standard deviations
+constexpr double kFineTolerance = 1e-6;       // of costs that are subtracted from each other
+constexpr double kSignificantDistortion = 3;  // standard deviations
 constexpr int kMostMoves = 12;
 constexpr double kWideLoss = 10;  // times the noise
 constexpr int kViewsPerTrack = 15;
 constexpr double kStartLogDepthSigma = 5;  // holds the unit, and says nothing of the depths, which are wrong
-constexpr double kStartNoise_px = 0.3;
-constexpr double kWrongTrack = 3;  // times the median track's error
 
 // What is searched.
 struct Intrinsics {
@@ -242,7 +240,7 @@ class IntrinsicsSearch {
     if (minimum) {
       const double sigma = Sigmas(*minimum).y();
       if (sigma < kLargestDistortionSigma * distortion_unit_ &&
-          std::abs(minimum->solution.at.distortion) > kSignificant * sigma)
+          std::abs(minimum->solution.at.distortion) > kSignificantDistortion * sigma)
         return minimum;
     }
     used_ = used_without;
@@ -279,7 +277,7 @@ class IntrinsicsSearch {
   std::vector<bool> used_;
   double distance_ = 1;
   double distortion_unit_ = 1;  // k that moves the corner by its distance from the center
-  double noise_px_ = kStartNoise_px;
+  double noise_px_ = kStartNoisePx;
 };
 
 }  // namespace

@@ -15,12 +15,12 @@ constexpr double kOnEdge = 1e-3;  // px, and of a triangle: what rounding puts o
 double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 // Corners in pixels of the raster, and their inverse depths, which are linear in the image.
-struct Corners {
+struct RasterCorners {
   std::array<Eigen::Vector2d, 3> at;
   std::array<double, 3> inverse_depth;
 };
 
-void Draw(const Corners& corners, std::int32_t index, MeshRaster* raster) {
+void Draw(const RasterCorners& corners, std::int32_t index, MeshRaster* raster) {
   const auto& [a, b, c] = corners.at;
   const double area = Cross(b - a, c - a);
   if (!(std::abs(area) > 0.0)) return;
@@ -53,7 +53,7 @@ MeshRaster RasterizeMesh(std::span<const std::optional<Eigen::Vector2d>> pixels,
                          std::span<const std::array<std::int32_t, 3>> triangles, cv::Size size, double step) {
   MeshRaster raster{cv::Mat(size, CV_32F, cv::Scalar(0)), cv::Mat(size, CV_32S, cv::Scalar(kNoTriangle))};
   for (std::size_t t = 0; t < triangles.size(); ++t) {
-    Corners corners;
+    RasterCorners corners;
     bool is_seen = true;
     for (std::size_t k = 0; k < 3; ++k) {
       const auto v = static_cast<std::size_t>(triangles[t][k]);

@@ -21,8 +21,8 @@ namespace pliant {
 namespace {
 
 constexpr std::array kNeighborCounts = {8, 12, 16};
-constexpr double kDamping = 0.03;  // of the affine part, by the neighbors' own spread
-constexpr double kCauchy = 3.0;    // of the residuals by their median
+constexpr double kAffineDamping = 0.03;  // of the affine part, by the neighbors' own spread
+constexpr double kCauchy = 3.0;          // of the residuals by their median
 constexpr int kInversions = 3;
 constexpr double kMinWeight = 1e-3;
 
@@ -77,7 +77,7 @@ AffineMotion FitAffine(std::span<const Eigen::Vector3d> rest, std::span<const Ei
   }
   const double trace = spread.trace();
   if (!(trace > 0.0)) return motion;
-  spread += kDamping * trace * Eigen::Matrix3d::Identity();
+  spread += kAffineDamping * trace * Eigen::Matrix3d::Identity();
   motion.affine = spread.ldlt().solve(cross.transpose()).transpose();
   motion.radius = std::sqrt(2.0 * trace / sum);
   return motion;

@@ -14,8 +14,6 @@
 namespace pliant {
 namespace {
 
-const CalibrationBoard kBoard = {BoardKind::kChessboard, 9, 6, 2.0};
-
 struct Lens {
   ModelChoice choice;
   std::string model;
@@ -35,7 +33,7 @@ const std::vector<Lens> kLenses = {
 Camera Make(const Lens& lens) { return Camera::Create(lens.model, 640, 480, lens.params).value(); }
 
 std::vector<BoardView> Views(const Camera& camera, int count, double noise_px, std::uint64_t seed) {
-  return ViewsOf(kBoard, camera, VariedBoardPoses(kBoard, camera, count, seed), noise_px, seed + 1);
+  return ViewsOf(kChessboard9x6, camera, VariedBoardPoses(kChessboard9x6, camera, count, seed), noise_px, seed + 1);
 }
 
 // The largest distance between what two cameras make of the rays of pixels of the first one, within the circle
@@ -59,7 +57,7 @@ TEST(CalibrateCamera, RecoversEveryModelExactlyWithoutNoise) {
   for (const Lens& lens : kLenses) {
     const Camera camera = Make(lens);
     const std::vector<BoardView> views = Views(camera, 14, 0, 3);
-    const auto calibration = CalibrateCamera(kBoard, views, 640, 480, lens.choice, 2);
+    const auto calibration = CalibrateCamera(kChessboard9x6, views, 640, 480, lens.choice, 2);
     ASSERT_TRUE(calibration.ok()) << lens.model << ": " << calibration.status().message();
     EXPECT_EQ(calibration->camera.model_name(), lens.model);
     EXPECT_LT(LargestDifference(camera, calibration->camera), 1e-3) << lens.model;
@@ -74,7 +72,7 @@ TEST(CalibrateCamera, KnowsHowFarItIsOff) {
   for (const Lens& lens : kLenses) {
     const Camera camera = Make(lens);
     const std::vector<BoardView> views = Views(camera, 20, 0.1, 11);
-    const auto calibration = CalibrateCamera(kBoard, views, 640, 480, lens.choice, 2);
+    const auto calibration = CalibrateCamera(kChessboard9x6, views, 640, 480, lens.choice, 2);
     ASSERT_TRUE(calibration.ok()) << lens.model;
     // Of a fisheye the last coefficients may be left at 0, and the others of the distortion then differ from the truth.
     const std::size_t compared = lens.choice == ModelChoice::kOpenCvFisheye ? 4 : lens.params.size();
@@ -93,7 +91,8 @@ TEST(CalibrateCamera, KnowsHowFarItIsOff) {
 TEST(CalibrateCamera, ChoosesAModelThatDescribesTheLens) {
   for (const Lens& lens : kLenses) {
     const Camera camera = Make(lens);
-    const auto calibration = CalibrateCamera(kBoard, Views(camera, 20, 0.1, 5), 640, 480, ModelChoice::kAuto, 2);
+    const auto calibration =
+        CalibrateCamera(kChessboard9x6, Views(camera, 20, 0.1, 5), 640, 480, ModelChoice::kAuto, 2);
     ASSERT_TRUE(calibration.ok()) << lens.model << ": " << calibration.status().message();
     // About three standard deviations of what 20 views with this noise determine at the border.
     EXPECT_LT(LargestDifference(camera, calibration->camera), 1.0)
@@ -103,7 +102,7 @@ TEST(CalibrateCamera, ChoosesAModelThatDescribesTheLens) {
 
 TEST(CalibrateCamera, TakesNoMoreParametersThanItNeeds) {
   const Camera camera = Make(kLenses[0]);
-  const auto calibration = CalibrateCamera(kBoard, Views(camera, 20, 0.1, 5), 640, 480, ModelChoice::kAuto, 2);
+  const auto calibration = CalibrateCamera(kChessboard9x6, Views(camera, 20, 0.1, 5), 640, 480, ModelChoice::kAuto, 2);
   ASSERT_TRUE(calibration.ok());
   EXPECT_EQ(calibration->camera.model_id(), CameraModelId::kSimplePinhole);
 }
@@ -118,7 +117,7 @@ TEST(CalibrateCamera, TakesNoMoreParametersForWhatTheDetectorDoes) {
       const Eigen::Vector2d from_center = (pixel - Eigen::Vector2d(320, 240)) / 400;
       pixel += kDrawn_px * from_center.squaredNorm() * from_center;
     }
-  const auto calibration = CalibrateCamera(kBoard, views, 640, 480, ModelChoice::kAuto, 2);
+  const auto calibration = CalibrateCamera(kChessboard9x6, views, 640, 480, ModelChoice::kAuto, 2);
   ASSERT_TRUE(calibration.ok());
   EXPECT_EQ(calibration->camera.model_id(), CameraModelId::kPinhole);
 }
@@ -128,7 +127,7 @@ TEST(CalibrateCamera, LeavesOutAViewThatFitsBadly) {
   std::vector<BoardView> views = Views(camera, 14, 0.05, 5);
   Random random(2);
   for (Eigen::Vector2d& pixel : views[4].pixels) pixel += Eigen::Vector2d(random.Normal(3), random.Normal(3));
-  const auto calibration = CalibrateCamera(kBoard, views, 640, 480, ModelChoice::kRadial, 2);
+  const auto calibration = CalibrateCamera(kChessboard9x6, views, 640, 480, ModelChoice::kRadial, 2);
   ASSERT_TRUE(calibration.ok());
   for (std::size_t i = 0; i < views.size(); ++i) EXPECT_EQ(calibration->views[i].is_outlier, i == 4) << i;
   EXPECT_LT(LargestDifference(camera, calibration->camera), 0.7);
@@ -136,8 +135,8 @@ TEST(CalibrateCamera, LeavesOutAViewThatFitsBadly) {
 
 TEST(CalibrateCamera, IsTheSameWithOneThreadAndWithTwo) {
   const std::vector<BoardView> views = Views(Make(kLenses[4]), 12, 0.1, 5);
-  const auto one = CalibrateCamera(kBoard, views, 640, 480, ModelChoice::kAuto, 1);
-  const auto two = CalibrateCamera(kBoard, views, 640, 480, ModelChoice::kAuto, 2);
+  const auto one = CalibrateCamera(kChessboard9x6, views, 640, 480, ModelChoice::kAuto, 1);
+  const auto two = CalibrateCamera(kChessboard9x6, views, 640, 480, ModelChoice::kAuto, 2);
   ASSERT_TRUE(one.ok() && two.ok());
   ASSERT_EQ(one->camera.model_id(), two->camera.model_id());
   for (std::size_t i = 0; i < one->sigmas.size(); ++i) {
@@ -148,9 +147,9 @@ TEST(CalibrateCamera, IsTheSameWithOneThreadAndWithTwo) {
 
 TEST(CalibrateCamera, RefusesViewsOfOnePose) {
   const Camera camera = Make(kLenses[0]);
-  const Rigid3 pose = BoardPoseAt(kBoard, {0, 0, 25}, 0, 0);
-  const std::vector<BoardView> views = ViewsOf(kBoard, camera, std::vector<Rigid3>(10, pose), 0.1, 5);
-  const auto calibration = CalibrateCamera(kBoard, views, 640, 480, ModelChoice::kAuto, 2);
+  const Rigid3 pose = BoardPoseAt(kChessboard9x6, {0, 0, 25}, 0, 0);
+  const std::vector<BoardView> views = ViewsOf(kChessboard9x6, camera, std::vector<Rigid3>(10, pose), 0.1, 5);
+  const auto calibration = CalibrateCamera(kChessboard9x6, views, 640, 480, ModelChoice::kAuto, 2);
   ASSERT_FALSE(calibration.ok());
   EXPECT_EQ(calibration.status().code(), ErrorCode::kInsufficient);
   EXPECT_THAT(calibration.status().message(), testing::HasSubstr("tilted"));
@@ -158,7 +157,7 @@ TEST(CalibrateCamera, RefusesViewsOfOnePose) {
 
 TEST(CalibrateCamera, RefusesTooFewViews) {
   const auto calibration =
-      CalibrateCamera(kBoard, Views(Make(kLenses[0]), 2, 0.1, 5), 640, 480, ModelChoice::kPinhole, 1);
+      CalibrateCamera(kChessboard9x6, Views(Make(kLenses[0]), 2, 0.1, 5), 640, 480, ModelChoice::kPinhole, 1);
   ASSERT_FALSE(calibration.ok());
   EXPECT_EQ(calibration.status().code(), ErrorCode::kInsufficient);
 }

@@ -17,7 +17,6 @@ namespace {
 
 using testing::HasSubstr;
 
-const CalibrationBoard kBoard = {BoardKind::kChessboard, 9, 6, 2.0};
 const Camera kLeft =
     Camera::Create("OPENCV", 640, 480, std::vector<double>{520, 523, 322, 236, -0.2, 0.05, 1e-3, -1e-3}).value();
 const Camera kRight = Camera::Create("RADIAL", 640, 480, std::vector<double>{515, 310, 245, -0.18, 0.04}).value();
@@ -39,20 +38,20 @@ struct Pairs {
 Pairs MakePairs(int count, double noise_px, const Rigid3& right_from_left = kRightFromLeft) {
   Random random(3);
   Pairs pairs;
-  for (const Rigid3& pose : VariedBoardPoses(kBoard, kLeft, 4 * count, 5)) {
-    const bool is_seen = std::ranges::all_of(kBoard.Points(), [&](const Eigen::Vector3d& point) {
+  for (const Rigid3& pose : VariedBoardPoses(kChessboard9x6, kLeft, 4 * count, 5)) {
+    const bool is_seen = std::ranges::all_of(kChessboard9x6.Points(), [&](const Eigen::Vector3d& point) {
       const auto pixel = kRight.Project(right_from_left * (pose * point));
       return pixel && kRight.Contains(*pixel, 2);
     });
     if (!is_seen || static_cast<int>(pairs.left.size()) == count) continue;
-    pairs.left.push_back(ViewOf(kBoard, kLeft, pose, noise_px, &random));
-    pairs.right.push_back(ViewOf(kBoard, kRight, right_from_left * pose, noise_px, &random));
+    pairs.left.push_back(ViewOf(kChessboard9x6, kLeft, pose, noise_px, &random));
+    pairs.right.push_back(ViewOf(kChessboard9x6, kRight, right_from_left * pose, noise_px, &random));
   }
   return pairs;
 }
 
 Result<StereoCameras> Calibrate(const Pairs& pairs) {
-  return CalibrateStereo(kBoard, kLeft, kRight, pairs.left, pairs.right, 2);
+  return CalibrateStereo(kChessboard9x6, kLeft, kRight, pairs.left, pairs.right, 2);
 }
 
 double AngleDeg(const Rigid3& a, const Rigid3& b) {
@@ -117,7 +116,7 @@ TEST(CalibrateStereo, PairsThatNoMountExplainsAreRefused) {
 
 TEST(CalibrateStereo, CamerasThatAreExchangedAreRefused) {
   const Pairs pairs = MakePairs(8, kNoise_px);
-  ExpectRefused(CalibrateStereo(kBoard, kRight, kLeft, pairs.right, pairs.left, 1),
+  ExpectRefused(CalibrateStereo(kChessboard9x6, kRight, kLeft, pairs.right, pairs.left, 1),
                 "to the left of the left one by 4.2 mm; exchange the two");
 }
 
@@ -128,7 +127,7 @@ TEST(CalibrateStereo, ACameraBelowTheOtherIsRefused) {
 
 TEST(CalibrateStereo, OneCameraTwiceIsNoPair) {
   const Pairs pairs = MakePairs(8, kNoise_px);
-  ExpectRefused(CalibrateStereo(kBoard, kLeft, kLeft, pairs.left, pairs.left, 1), "at the same place");
+  ExpectRefused(CalibrateStereo(kChessboard9x6, kLeft, kLeft, pairs.left, pairs.left, 1), "at the same place");
 }
 
 TEST(CalibrateStereo, TwoPairsAreTooFew) { ExpectRefused(Calibrate(MakePairs(2, kNoise_px)), "in 2 pairs"); }

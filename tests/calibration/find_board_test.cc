@@ -17,7 +17,7 @@
 namespace pliant {
 namespace {
 
-const CalibrationBoard kBoard = {BoardKind::kChessboard, 7, 5, 2.0};
+const CalibrationBoard kBoardInView = {BoardKind::kChessboard, 7, 5, 2.0};
 
 Camera CameraOf(int width, int height, double focal_px) {
   return Camera::Create("PINHOLE", width, height,
@@ -27,7 +27,7 @@ Camera CameraOf(int width, int height, double focal_px) {
 
 // The distance of every corner from where it is; the order may be turned by half a turn.
 std::vector<double> Errors(const BoardView& view, const Camera& camera, const Rigid3& cam_from_board) {
-  const std::vector<Eigen::Vector3d> points = kBoard.Points();
+  const std::vector<Eigen::Vector3d> points = kBoardInView.Points();
   std::vector<double> forward;
   std::vector<double> backward;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -51,8 +51,8 @@ TEST(FindBoard, FindsCornersToASmallPartOfAPixel) {
   };
   for (const auto& [width, height, tolerance_px] : {Case{640, 480, 0.15}, {1280, 960, 0.15}, {200, 150, 0.3}}) {
     const Camera camera = CameraOf(width, height, 0.8 * width);
-    const Rigid3 pose = BoardPoseAt(kBoard, {1, -0.5, 22}, 0.4, 0.7);
-    const auto view = FindBoard(ImageOf(kBoard, camera, pose), kBoard);
+    const Rigid3 pose = BoardPoseAt(kBoardInView, {1, -0.5, 22}, 0.4, 0.7);
+    const auto view = FindBoard(ImageOf(kBoardInView, camera, pose), kBoardInView);
     ASSERT_TRUE(view.has_value()) << width;
     ASSERT_EQ(view->pixels.size(), 35u);
     EXPECT_LT(LargestError(*view, camera, pose), tolerance_px) << width;
@@ -64,8 +64,8 @@ TEST(FindBoard, FindsCornersToAFewHundredthsOfAPixelInTheMean) {
   constexpr double kMaxRms_px = 0.05;  // 0.03 px along either axis
   const Camera camera = CameraOf(640, 480, 500);
   std::vector<double> errors;
-  for (const Rigid3& pose : VariedBoardPoses(kBoard, camera, 4, 3)) {
-    const auto view = FindBoard(ImageOf(kBoard, camera, pose), kBoard);
+  for (const Rigid3& pose : VariedBoardPoses(kBoardInView, camera, 4, 3)) {
+    const auto view = FindBoard(ImageOf(kBoardInView, camera, pose), kBoardInView);
     ASSERT_TRUE(view.has_value());
     std::ranges::copy(Errors(*view, camera, pose), std::back_inserter(errors));
   }
@@ -73,7 +73,7 @@ TEST(FindBoard, FindsCornersToAFewHundredthsOfAPixelInTheMean) {
 }
 
 TEST(FindBoard, FindsNothingInAnEmptyImage) {
-  EXPECT_FALSE(FindBoard(cv::Mat(240, 320, CV_8UC1, cv::Scalar(0)), kBoard).has_value());
+  EXPECT_FALSE(FindBoard(cv::Mat(240, 320, CV_8UC1, cv::Scalar(0)), kBoardInView).has_value());
   EXPECT_FALSE(LargestChessboard(cv::Mat(240, 320, CV_8UC1, cv::Scalar(128))).has_value());
 }
 
@@ -89,7 +89,7 @@ TEST(FindBoard, LooksForNoBoardOfCirclesAmongThousandsOfSpots) {
 
 TEST(FindBoard, TellsHowLargeAChessboardIs) {
   const Camera camera = CameraOf(640, 480, 500);
-  const cv::Mat image = ImageOf(kBoard, camera, BoardPoseAt(kBoard, {0, 0, 22}, 0.3, 0.7));
+  const cv::Mat image = ImageOf(kBoardInView, camera, BoardPoseAt(kBoardInView, {0, 0, 22}, 0.3, 0.7));
   EXPECT_EQ(LargestChessboard(image), (ChessboardSize{7, 5}));
 }
 

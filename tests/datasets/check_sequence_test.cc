@@ -12,11 +12,11 @@
 namespace pliant {
 namespace {
 
-constexpr double kRightPoses = 0.6;   // correlation; poses that are wrong have one of about none
-constexpr int kMinMatches = 100;      // of some hundred corners a frame
-constexpr double kSameRow_px = 0.1;   // rendered rectified: what matching leaves
-constexpr double kNearlyAll = 0.99;   // share; a match may be wrong
-constexpr double kDepthRatio = 0.01;  // of disparities of some 25 px, right to a fifth of one in the median
+constexpr double kRightPoses = 0.6;          // correlation; poses that are wrong have one of about none
+constexpr int kMinMatches = 100;             // of some hundred corners a frame
+constexpr double kRenderedRow_px = 0.1;      // rendered rectified: what matching leaves
+constexpr double kMatchesOnTheirRow = 0.99;  // share; a match may be wrong
+constexpr double kDepthRatio = 0.01;         // of disparities of some 25 px, right to a fifth of one in the median
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -38,8 +38,8 @@ TEST(CheckSequence, FindsNothingWrongWithTheTruth) {
   EXPECT_EQ(check.poses->right, true);
   EXPECT_GT(check.poses->as_given.correlation, kRightPoses);
   EXPECT_GT(check.stereo->matches, kMinMatches);
-  EXPECT_LT(check.stereo->median_row_error_px, kSameRow_px);
-  EXPECT_GT(check.stereo->share_right_way, kNearlyAll);
+  EXPECT_LT(check.stereo->median_row_error_px, kRenderedRow_px);
+  EXPECT_GT(check.stereo->share_right_way, kMatchesOnTheirRow);
   EXPECT_NEAR(check.stereo->depth_ratio.value(), 1.0, kDepthRatio);
 }
 

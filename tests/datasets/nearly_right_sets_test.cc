@@ -18,7 +18,7 @@
 namespace pliant {
 namespace {
 
-constexpr double kStep_mm = 0.01;  // 16 bits over up to 200 mm have steps of 0.003
+constexpr double kDepthStep_mm = 0.01;  // 16 bits over up to 200 mm have steps of 0.003
 
 using testing::AllOf;
 using testing::Contains;
@@ -59,7 +59,7 @@ TEST_F(NearlyRightSets, DepthAtFullScaleIsNone) {
     const auto read = (*sequence)->Depth(0);
     ASSERT_TRUE(read.ok() && read->has_value());
     EXPECT_EQ(cv::countNonZero(**read), 1);
-    EXPECT_NEAR((*read)->at<float>(3, 4), largest_mm, kStep_mm);
+    EXPECT_NEAR((*read)->at<float>(3, 4), largest_mm, kDepthStep_mm);
   }
 }
 

@@ -13,9 +13,9 @@
 namespace pliant {
 namespace {
 
-constexpr double kMinMeanPoints = 100;  // a map of some hundred points, of which few are lost
-constexpr double kShareOfNull = 0.2;    // the shape is known, not the mean depth alone
-constexpr double kAsWell = 1.3;         // the same scene, with fewer pixels a degree
+constexpr double kMinMeanPoints = 100;       // a map of some hundred points, of which few are lost
+constexpr double kFisheyeShareOfNull = 0.2;  // the shape is known, not the mean depth alone
+constexpr double kAsWell = 1.3;              // the same scene, with fewer pixels a degree
 
 std::string Render(const TestFolder& folder, CameraModelId lens, double fov_deg) {
   SimulationOptions options;
@@ -46,7 +46,7 @@ TEST(Fisheye, IsTrackedAsWellAsAPinhole) {
     const Evaluation evaluation = EvaluateRun(run, sequence, ErrorScale::kPerFrame);
     EXPECT_GT(evaluation.survival.mean_points, kMinMeanPoints);
     EXPECT_LT(evaluation.surface->plain.estimate.mean_rmse_mm,
-              kShareOfNull * evaluation.surface->plain.null.mean_rmse_mm);
+              kFisheyeShareOfNull * evaluation.surface->plain.null.mean_rmse_mm);
     rmses_mm[k] = evaluation.surface->plain.estimate.mean_rmse_mm;
   }
   EXPECT_LT(rmses_mm[1], kAsWell * rmses_mm[0]);

@@ -12,7 +12,7 @@
 namespace pliant {
 namespace {
 
-constexpr int kFrames = 24;
+constexpr int kProvisionalFrames = 24;
 // Images of something else: the reference's points are lost, and found again.
 constexpr int kCut = 18;
 constexpr int kCutFrames = 2;
@@ -20,7 +20,7 @@ constexpr double kNever = 1e-5;  // no depth is known to this share of it
 
 class ProvisionalMap : public testing::Test {
  protected:
-  ProvisionalMap() : sequence_(folder_, kFrames) {
+  ProvisionalMap() : sequence_(folder_, kProvisionalFrames) {
     for (int k = kCut; k < kCut + kCutFrames; ++k) {
       cv::Mat noise = cv::imread(sequence_.Image(k).string());
       cv::RNG(static_cast<std::uint64_t>(k)).fill(noise, cv::RNG::UNIFORM, 40, 220);
@@ -45,14 +45,14 @@ class ProvisionalMap : public testing::Test {
 
 TEST_F(ProvisionalMap, IsGoneBackToAndEveryFrameIsReportedOnce) {
   const pliant::Run run = Track();
-  ASSERT_EQ(run.frames.size(), static_cast<std::size_t>(kFrames));
-  for (int k = 0; k < kFrames; ++k) {
+  ASSERT_EQ(run.frames.size(), static_cast<std::size_t>(kProvisionalFrames));
+  for (int k = 0; k < kProvisionalFrames; ++k) {
     const RunFrame& frame = run.frames[static_cast<std::size_t>(k)];
     EXPECT_EQ(frame.frame_idx, k);
     const bool cut = kCut <= k && k < kCut + kCutFrames;
     EXPECT_EQ(EnumName(frame.state), EnumName(cut ? TrackingState::kLost : TrackingState::kProvisional)) << k;
   }
-  EXPECT_EQ(summary_.frames_tracked, kFrames - kCutFrames);
+  EXPECT_EQ(summary_.frames_tracked, kProvisionalFrames - kCutFrames);
   ASSERT_EQ(summary_.first_maps.size(), 1U);
   const FirstMapFrames& map = summary_.first_maps.front();
   EXPECT_EQ(map.reference_frame_idx, 0);
@@ -68,7 +68,7 @@ TEST_F(ProvisionalMap, IsTheSameForAnyNumberOfThreads) {
   std::set<std::string> observations;
   for (const int threads : {1, 2}) {
     options_.threads = threads;
-    EXPECT_EQ(Track().poses.size(), static_cast<std::size_t>(kFrames - kCutFrames));
+    EXPECT_EQ(Track().poses.size(), static_cast<std::size_t>(kProvisionalFrames - kCutFrames));
     observations.insert(folder_.Read("run/observations.csv") + folder_.Read("run/frames.csv"));
   }
   EXPECT_EQ(observations.size(), 1U);
@@ -80,7 +80,7 @@ TEST_F(ProvisionalMap, IsNotTakenWhereItIsNotWanted) {
   EXPECT_EQ(summary_.frames_tracked, 0);
   EXPECT_TRUE(summary_.first_maps.empty());
   EXPECT_EQ(summary_.status, RunStatus::kFailed);
-  EXPECT_EQ(run.frames.size(), static_cast<std::size_t>(kFrames));
+  EXPECT_EQ(run.frames.size(), static_cast<std::size_t>(kProvisionalFrames));
 }
 
 }  // namespace

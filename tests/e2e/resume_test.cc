@@ -22,7 +22,7 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr int kFrames = 40;
+constexpr int kResumedFrames = 40;
 constexpr int kEvery = 4;  // frames from one checkpoint to the next
 
 // Stops the run after this frame.
@@ -69,7 +69,7 @@ class ResumedRun : public testing::Test {
   RunRequest Request(const std::string& run) const {
     RunRequest request;
     request.input.image_path = sequence_;
-    request.input.end = kFrames;
+    request.input.end = kResumedFrames;
     request.output_path = folder_.Path(run);
     request.command_line = {"pliant", "track"};
     return request;
@@ -86,7 +86,7 @@ class ResumedRun : public testing::Test {
   }
   // Stopped after each of these frames, and gone on with; compared with a run in one go.
   void ExpectSameAfterStops(const std::vector<int>& stops) {
-    ASSERT_TRUE(Track("whole", false, 10 * kFrames).ok());
+    ASSERT_TRUE(Track("whole", false, 10 * kResumedFrames).ok());
     bool resume = false;
     for (const int after : stops) {
       const auto summary = Track("parts", std::exchange(resume, true), after);
@@ -94,13 +94,13 @@ class ResumedRun : public testing::Test {
       EXPECT_EQ(summary->status, RunStatus::kInterrupted) << after;
       options_.threads = 3 - options_.threads;  // one or two: they change nothing
     }
-    Stopper last(10 * kFrames);
-    const auto summary = Track("parts", true, 10 * kFrames, &last);
+    Stopper last(10 * kResumedFrames);
+    const auto summary = Track("parts", true, 10 * kResumedFrames, &last);
     ASSERT_TRUE(summary.ok()) << summary.status().message();
     EXPECT_EQ(summary->status, RunStatus::kCompleted) << summary->note;
     const int done = (stops.back() + 1) / kEvery * kEvery;
     EXPECT_EQ(last.first_frame_idx, done);
-    EXPECT_EQ(last.remaining, kFrames - done);
+    EXPECT_EQ(last.remaining, kResumedFrames - done);
     EXPECT_FALSE(std::filesystem::exists(folder_.Path("parts/checkpoint")));
     ExpectSameFiles();
   }
@@ -136,7 +136,7 @@ TEST_F(ResumedRun, IsTheSameWithMapsThatAreMadeBeside) {
 
 // The view is lost in the middle: another map follows, or the first is found again.
 TEST_F(ResumedRun, IsTheSameWhereTheViewWasLost) {
-  const SequenceCopy copy(folder_, kFrames);
+  const SequenceCopy copy(folder_, kResumedFrames);
   copy.Fill(18, 21, 128);
   sequence_ = copy.path();
   options_.tracker.max_lost_frames = 2;
@@ -155,18 +155,18 @@ TEST_F(ResumedRun, IsTheSameWithTracksOfAFile) {
 TEST_F(ResumedRun, BeginsAnewWhereThereIsNoCheckpointYet) {
   ASSERT_TRUE(Track("parts", false, 2).ok());
   EXPECT_FALSE(HasCheckpoint(folder_.Path("parts")));
-  Stopper stopper(10 * kFrames);
+  Stopper stopper(10 * kResumedFrames);
   const auto summary = Track("parts", true, 0, &stopper);
   ASSERT_TRUE(summary.ok()) << summary.status().message();
   EXPECT_EQ(stopper.first_frame_idx, 0);
-  EXPECT_EQ(summary->frames_tracked, kFrames);
+  EXPECT_EQ(summary->frames_tracked, kResumedFrames);
 }
 
 TEST_F(ResumedRun, OfARunThatHasEndedHasNothingToDo) {
-  const auto whole = Track("parts", false, 10 * kFrames);
+  const auto whole = Track("parts", false, 10 * kResumedFrames);
   ASSERT_TRUE(whole.ok());
   const auto written = std::filesystem::last_write_time(folder_.Path("parts/run.json"));
-  Stopper stopper(10 * kFrames);
+  Stopper stopper(10 * kResumedFrames);
   const auto summary = Track("parts", true, 0, &stopper);
   ASSERT_TRUE(summary.ok()) << summary.status().message();
   EXPECT_EQ(summary->frames_tracked, whole->frames_tracked);
@@ -178,10 +178,10 @@ TEST_F(ResumedRun, OfARunThatHasEndedHasNothingToDo) {
   options_.seed = 1;
   RunRequest shorter = Request("parts");
   shorter.resume = true;
-  shorter.input.end = kFrames - 1;
+  shorter.input.end = kResumedFrames - 1;
   EXPECT_THAT(RunTrack(shorter, options_, {}).status().message(),
               HasSubstr("has come to its end with other frames, --start 0 --end 40 --stride 1"));
-  const SequenceCopy copy(folder_, kFrames);
+  const SequenceCopy copy(folder_, kResumedFrames);
   sequence_ = copy.path();
   EXPECT_THAT(Track("parts", true, 0).status().message(),
               HasSubstr("has come to its end with other images, '" + kSequence));
@@ -189,7 +189,7 @@ TEST_F(ResumedRun, OfARunThatHasEndedHasNothingToDo) {
 }
 
 TEST_F(ResumedRun, IsRefusedWithOtherOptionsFramesOrImages) {
-  const SequenceCopy copy(folder_, kFrames);
+  const SequenceCopy copy(folder_, kResumedFrames);
   sequence_ = copy.path();
   ASSERT_TRUE(Track("parts", false, 22).ok());
   const auto refused = [&](const RunRequest& request, const TrackOptions& options) {
@@ -208,7 +208,7 @@ TEST_F(ResumedRun, IsRefusedWithOtherOptionsFramesOrImages) {
   other.seed = 2;
   EXPECT_THAT(refused(request, other), HasSubstr("'General.seed 2'"));
   RunRequest longer = request;
-  longer.input.end = kFrames + 1;
+  longer.input.end = kResumedFrames + 1;
   EXPECT_THAT(refused(longer, options_), HasSubstr("'--start 0 --end 41 --stride 1'"));
   const std::string image = folder_.Read("sequence/images/000019.png");
   copy.Fill(19, 19, 128);
@@ -222,7 +222,7 @@ TEST_F(ResumedRun, IsRefusedWhereTheCheckpointIsDamaged) {
   ASSERT_TRUE(Track("parts", false, 22).ok());
   const std::string rows = folder_.Read("parts/frames.csv");
   folder_.Write("parts/checkpoint/state", folder_.Read("parts/checkpoint/state") + "x");
-  const auto summary = Track("parts", true, 10 * kFrames);
+  const auto summary = Track("parts", true, 10 * kResumedFrames);
   EXPECT_EQ(summary.status().code(), ErrorCode::kUnreadable);
   EXPECT_THAT(summary.status().message(), HasSubstr("is damaged; track the sequence anew, with --overwrite"));
   EXPECT_EQ(folder_.Read("parts/frames.csv"), rows);
@@ -230,17 +230,17 @@ TEST_F(ResumedRun, IsRefusedWhereTheCheckpointIsDamaged) {
 
 // An image that cannot be read ends the run; once it is mended the run goes on.
 TEST_F(ResumedRun, GoesOnAfterAnImageWasMended) {
-  ASSERT_TRUE(Track("whole", false, 10 * kFrames).ok());
-  const SequenceCopy copy(folder_, kFrames);
+  ASSERT_TRUE(Track("whole", false, 10 * kResumedFrames).ok());
+  const SequenceCopy copy(folder_, kResumedFrames);
   sequence_ = copy.path();
   const std::string image = "sequence/images/" + FrameName(21);
   const std::string bytes = folder_.Read(image);
   folder_.Write(image, bytes.substr(0, 1000));
-  const auto failed = Track("parts", false, 10 * kFrames);
+  const auto failed = Track("parts", false, 10 * kResumedFrames);
   ASSERT_TRUE(failed.ok());
   EXPECT_EQ(failed->status, RunStatus::kFailed);
   folder_.Write(image, bytes);
-  const auto summary = Track("parts", true, 10 * kFrames);
+  const auto summary = Track("parts", true, 10 * kResumedFrames);
   ASSERT_TRUE(summary.ok()) << summary.status().message();
   for (const char* name : {"frames.csv", "observations.csv", "trajectory.txt", "map.ply", "sparse/points3D.bin"})
     EXPECT_TRUE(folder_.Read("whole/" + std::string(name)) == folder_.Read("parts/" + std::string(name))) << name;

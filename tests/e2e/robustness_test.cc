@@ -19,7 +19,7 @@ using testing::HasSubstr;
 
 constexpr double kStandstill_mm = 0.05;        // what constant velocity and the solver's tolerance leave
 constexpr std::size_t kPosesBeforeSignal = 6;  // the signal follows the eighth row; the last ones may be cut
-constexpr int kFrames = 16;
+constexpr int kShortFrames = 16;
 
 // The run folder reads back and holds as many poses as the summary says.
 void ExpectReadable(const std::string& path, std::int64_t poses) {
@@ -30,7 +30,7 @@ void ExpectReadable(const std::string& path, std::int64_t poses) {
 
 TEST(Robustness, ATruncatedImageEndsTheRunAndTheFramesBeforeItStay) {
   const TestFolder folder;
-  const SequenceCopy sequence(folder, kFrames);
+  const SequenceCopy sequence(folder, kShortFrames);
   std::filesystem::resize_file(sequence.Image(9), std::filesystem::file_size(sequence.Image(9)) / 2);
   const RunSummary summary = TrackSequenceAt(sequence.path(), folder.Path("run"), DepthStart());
   EXPECT_EQ(summary.status, RunStatus::kFailed);
@@ -43,7 +43,7 @@ TEST(Robustness, ATruncatedImageEndsTheRunAndTheFramesBeforeItStay) {
 TEST(Robustness, AnImageOfAnotherSizeIsNamedBeforeTheFirstFrame) {
   for (const std::string extension : {".png", ".tif"}) {
     const TestFolder folder;
-    const SequenceCopy sequence(folder, kFrames);
+    const SequenceCopy sequence(folder, kShortFrames);
     const std::filesystem::path image = sequence.Image(5).replace_extension(extension);
     std::filesystem::remove(sequence.Image(5));
     ASSERT_TRUE(cv::imwrite(image.string(), cv::Mat(100, 200, CV_8UC3, cv::Scalar::all(90))));
@@ -59,8 +59,8 @@ TEST(Robustness, AnImageOfAnotherSizeIsNamedBeforeTheFirstFrame) {
 
 TEST(Robustness, BlackToTheEndIsLostAndSaysBlack) {
   const TestFolder folder;
-  const SequenceCopy sequence(folder, kFrames);
-  sequence.Fill(6, kFrames - 1, 0);
+  const SequenceCopy sequence(folder, kShortFrames);
+  sequence.Fill(6, kShortFrames - 1, 0);
   const RunSummary summary = TrackSequenceAt(sequence.path(), folder.Path("run"), DepthStart());
   EXPECT_EQ(summary.status, RunStatus::kLost);
   EXPECT_THAT(summary.note, HasSubstr("the image is black"));
@@ -69,8 +69,8 @@ TEST(Robustness, BlackToTheEndIsLostAndSaysBlack) {
 
 TEST(Robustness, WhiteToTheEndIsLostAndSaysWhite) {
   const TestFolder folder;
-  const SequenceCopy sequence(folder, kFrames);
-  sequence.Fill(6, kFrames - 1, 255);
+  const SequenceCopy sequence(folder, kShortFrames);
+  sequence.Fill(6, kShortFrames - 1, 255);
   const RunSummary summary = TrackSequenceAt(sequence.path(), folder.Path("run"), DepthStart());
   EXPECT_EQ(summary.status, RunStatus::kLost);
   EXPECT_THAT(summary.note, HasSubstr("the image is white"));
@@ -79,18 +79,18 @@ TEST(Robustness, WhiteToTheEndIsLostAndSaysWhite) {
 
 TEST(Robustness, AFlashOfBlackIsSurvivedInTheSameMap) {
   const TestFolder folder;
-  const SequenceCopy sequence(folder, kFrames);
+  const SequenceCopy sequence(folder, kShortFrames);
   sequence.Fill(6, 7, 0);
   const RunSummary summary = TrackSequenceAt(sequence.path(), folder.Path("run"), DepthStart());
   EXPECT_EQ(summary.status, RunStatus::kCompleted);
-  EXPECT_EQ(summary.frames_tracked, kFrames - 2);
-  ExpectReadable(folder.Path("run"), kFrames - 2);
+  EXPECT_EQ(summary.frames_tracked, kShortFrames - 2);
+  ExpectReadable(folder.Path("run"), kShortFrames - 2);
 }
 
 // A few points stay visible, too few to track: what was followed of them in the meantime must not stand in the way.
 TEST(Robustness, AViewThatIsNearlyCoveredForAMomentIsSurvivedInTheSameMap) {
   const TestFolder folder;
-  const SequenceCopy sequence(folder, kFrames);
+  const SequenceCopy sequence(folder, kShortFrames);
   for (int i = 6; i <= 8; ++i) {
     const cv::Mat image = cv::imread(sequence.Image(i).string());
     cv::Mat covered(image.size(), image.type(), cv::Scalar::all(0));
@@ -100,7 +100,7 @@ TEST(Robustness, AViewThatIsNearlyCoveredForAMomentIsSurvivedInTheSameMap) {
   }
   const RunSummary summary = TrackSequenceAt(sequence.path(), folder.Path("run"), DepthStart());
   EXPECT_EQ(summary.status, RunStatus::kCompleted);
-  EXPECT_EQ(summary.frames_tracked, kFrames - 3);
+  EXPECT_EQ(summary.frames_tracked, kShortFrames - 3);
   const auto run = ReadRun(folder.Path("run"));
   ASSERT_TRUE(run.ok()) << run.status().message();
   EXPECT_GT(run->frames[9].optimized, run->frames[5].optimized / 2);
@@ -118,12 +118,12 @@ TEST(Robustness, BlackFromTheBeginningHasNoReferenceAndSaysSo) {
 
 TEST(Robustness, AFrozenStretchIsTrackedWithACameraThatStandsStill) {
   const TestFolder folder;
-  const SequenceCopy sequence(folder, kFrames);
+  const SequenceCopy sequence(folder, kShortFrames);
   const cv::Mat still = cv::imread(sequence.Image(6).string());
   for (int i = 7; i <= 10; ++i) sequence.Replace(i, still);
   const RunSummary summary = TrackSequenceAt(sequence.path(), folder.Path("run"), DepthStart());
   EXPECT_EQ(summary.status, RunStatus::kCompleted);
-  EXPECT_EQ(summary.frames_tracked, kFrames);
+  EXPECT_EQ(summary.frames_tracked, kShortFrames);
   const auto run = ReadRun(folder.Path("run"));
   ASSERT_TRUE(run.ok());
   EXPECT_LT((run->poses[10].world_from_cam.translation - run->poses[8].world_from_cam.translation).norm(),

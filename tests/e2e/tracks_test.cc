@@ -16,10 +16,10 @@
 namespace pliant {
 namespace {
 
-constexpr double kMaxRmse_mm = 1.0;     // plain, untrimmed, scale per frame, as with our own tracks
-constexpr double kShareOfNull = 0.1;    // a map that says more than that all is at one depth
-constexpr double kMinWithin = 0.9;      // delta_avg of our own tracks of a rigid scene
-constexpr std::size_t kFewPoints = 60;  // that are seen at a time
+constexpr double kMaxTracksRmse_mm = 1.0;   // plain, untrimmed, scale per frame, as with our own tracks
+constexpr double kTracksShareOfNull = 0.1;  // a map that says more than that all is at one depth
+constexpr double kMinWithin = 0.9;          // delta_avg of our own tracks of a rigid scene
+constexpr std::size_t kFewPoints = 60;      // that are seen at a time
 
 std::vector<PixelTrack> TracksOfDefaultRun() {
   std::map<PointId, PixelTrack> tracks;
@@ -65,7 +65,7 @@ Evaluation Evaluated(const TestFolder& folder, const std::vector<PixelTrack>& tr
 TEST(RigidScene, TracksOfARunFromAFileGiveAMapAsOurOwnTracksDo) {
   const TestFolder folder;
   const Evaluation evaluation = Evaluated(folder, TracksOfDefaultRun());
-  EXPECT_LT(evaluation.surface->plain.estimate.mean_rmse_mm, kMaxRmse_mm);
+  EXPECT_LT(evaluation.surface->plain.estimate.mean_rmse_mm, kMaxTracksRmse_mm);
 }
 
 TEST(RigidScene, TracksFromAFileGiveAMapThatIsHandedOverLater) {
@@ -73,20 +73,20 @@ TEST(RigidScene, TracksFromAFileGiveAMapThatIsHandedOverLater) {
   TrackOptions options;
   options.tracker.handover_frames = 6;
   const Evaluation evaluation = Evaluated(folder, TracksOfDefaultRun(), 60, options);
-  EXPECT_LT(evaluation.surface->plain.estimate.mean_rmse_mm, kMaxRmse_mm);
+  EXPECT_LT(evaluation.surface->plain.estimate.mean_rmse_mm, kMaxTracksRmse_mm);
 }
 
 TEST(RigidScene, SixtyTracksAtATimeGiveAMap) {
   const TestFolder folder;
   const PointError error = *Evaluated(folder, Thinned(LongestFirst(TracksOfDefaultRun()))).surface;
-  EXPECT_LT(error.plain.estimate.mean_rmse_mm, kShareOfNull * error.plain.null.mean_rmse_mm);
+  EXPECT_LT(error.plain.estimate.mean_rmse_mm, kTracksShareOfNull * error.plain.null.mean_rmse_mm);
 }
 
 // Of the 60 that begin in the first frame only 12 are left in frame 22.
 TEST(RigidScene, TracksThatEndBeforeOthersBeginGiveAMapToo) {
   const TestFolder folder;
   const PointError error = *Evaluated(folder, Thinned(TracksOfDefaultRun()), 50).surface;
-  EXPECT_LT(error.plain.estimate.mean_rmse_mm, kShareOfNull * error.plain.null.mean_rmse_mm);
+  EXPECT_LT(error.plain.estimate.mean_rmse_mm, kTracksShareOfNull * error.plain.null.mean_rmse_mm);
 }
 
 TEST(RigidScene, OurTracksAreScoredAgainstTheTruth) {

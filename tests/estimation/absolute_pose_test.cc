@@ -18,7 +18,7 @@ constexpr double kFocal_px = 450;
 constexpr double kOrigin_mm = 1.5;      // pixels of 1 px noise, 40 of them, some 60 mm away
 constexpr double kRotation_rad = 0.03;  // the same over that distance
 constexpr int kMinRight = 36;           // of 40; a few lie beyond the threshold
-constexpr int kMaxWrong = 4;            // of 60, that are near their point by chance
+constexpr int kMaxNearByChance = 4;     // of 60, that are near their point by chance
 
 struct Matches {
   std::vector<Eigen::Vector3d> points;
@@ -51,7 +51,7 @@ TEST(AbsolutePose, IsFoundAmongWrongMatches) {
   int right = 0;
   for (const int i : pose->inliers) right += i >= 60 ? 1 : 0;
   EXPECT_GT(right, kMinRight);
-  EXPECT_LT(static_cast<int>(pose->inliers.size()) - right, kMaxWrong);
+  EXPECT_LT(static_cast<int>(pose->inliers.size()) - right, kMaxNearByChance);
   EXPECT_TRUE(std::is_sorted(pose->inliers.begin(), pose->inliers.end()));
 }
 

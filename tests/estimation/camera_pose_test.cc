@@ -22,10 +22,6 @@ double RotationDifference(const Rigid3& a, const Rigid3& b) {
   return RotationAngle(a.rotation * b.rotation.conjugate());
 }
 
-Rigid3 Predicted(const FrameScene& scene) {
-  return PredictCameraPose(scene.before_last_cam_from_world, scene.last_cam_from_world);
-}
-
 TEST(PredictCameraPose, RepeatsTheLastMotion) {
   const Rigid3 step(RotationExp({0.01, 0.02, -0.03}), {1, 2, 3});
   const Rigid3 before_last(RotationExp({0.5, 0.1, 0.2}), {-4, 5, 6});

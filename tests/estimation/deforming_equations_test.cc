@@ -16,11 +16,11 @@
 namespace pliant {
 namespace {
 
+using deforming_test::DeformingScene;
 using deforming_test::kFocalPx;
-using deforming_test::Scene;
 
-constexpr double kDifference = 1e-5;  // of central differences with kStep, relative to entries of up to 1e3
-constexpr double kStep = 1e-6;
+constexpr double kDifference = 1e-5;  // of central differences with kStateStep, relative to entries of up to 1e3
+constexpr double kStateStep = 1e-6;
 constexpr double kDirectional = 1e-4;  // relative to both lengths; kDifference, times a cosine that may be small
 constexpr double kStepped = 1e-5;      // relative; the step solves the equations to the solver's precision
 
@@ -30,7 +30,7 @@ struct PerturbedWindow {
   SurfaceNodes nodes;
 
   PerturbedWindow() {
-    const Scene scene(6);
+    const DeformingScene scene(6);
     window = scene.Start(0.1);
     Random random(7);
     const auto noise = [&](Eigen::Index rows, Eigen::Index cols, double sigma) {
@@ -53,12 +53,12 @@ TEST(DeformingTerms, GradientsMatchDifferences) {
     for (Eigen::Index k = 0; k < gradient.size(); ++k) {
       double& value = state.points(k, static_cast<Eigen::Index>(point));
       const double kept = value;
-      value = kept + kStep;
+      value = kept + kStateStep;
       const double after = terms.PointCost(point, state).value();
-      value = kept - kStep;
+      value = kept - kStateStep;
       const double before = terms.PointCost(point, state).value();
       value = kept;
-      EXPECT_NEAR((after - before) / (2 * kStep), gradient[k], kDifference * gradient.norm()) << point << " " << k;
+      EXPECT_NEAR((after - before) / (2 * kStateStep), gradient[k], kDifference * gradient.norm()) << point << " " << k;
     }
   }
 }
@@ -90,9 +90,9 @@ TEST(DeformingEquations, GradientMatchesDifferencesWhereThePointsAreOptimized) {
     for (int trial = 0; trial < 10; ++trial) {
       Eigen::VectorXd direction(equations->gradient().size());
       for (double& value : direction) value = random.Normal(1.0);
-      const double after = terms.Cost(equations->Moved(state, kStep * direction)).value();
-      const double before = terms.Cost(equations->Moved(state, -kStep * direction)).value();
-      EXPECT_NEAR((after - before) / (2 * kStep), equations->gradient().dot(direction),
+      const double after = terms.Cost(equations->Moved(state, kStateStep * direction)).value();
+      const double before = terms.Cost(equations->Moved(state, -kStateStep * direction)).value();
+      EXPECT_NEAR((after - before) / (2 * kStateStep), equations->gradient().dot(direction),
                   kDirectional * equations->gradient().norm() * direction.norm());
     }
   }

@@ -22,13 +22,13 @@ inline constexpr double kShape = 0.02;    // median relative depth error; what t
 inline constexpr double kWithinThreeSigmas = 0.95;  // of the errors; fewer than 99.7 %, for points share errors
 
 // A wavy surface that waves, seen by a camera that goes forwards and sways: neither motion is small against the other.
-struct Scene {
+struct DeformingScene {
   std::vector<Eigen::Vector3d> points;  // in the reference
   std::vector<Rigid3> poses;
   double amplitude_mm = 4;
   double noise_px = kNoisePx;
 
-  explicit Scene(int views = 13, double relief_mm = 15) {
+  explicit DeformingScene(int views = 13, double relief_mm = 15) {
     Random random(3);
     for (int i = 0; i < 150; ++i) {
       const double x = random.Uniform(-35, 35);

@@ -14,14 +14,14 @@
 namespace pliant {
 namespace {
 
+using deforming_test::DeformingScene;
 using deforming_test::kFocalPx;
 using deforming_test::kShape;
 using deforming_test::kWithinThreeSigmas;
-using deforming_test::Scene;
 
-constexpr double kNoLessCertain = 1.1;  // sigmas come from another solution of the same window
-constexpr double kAgain_mm = 0.05;      // two solutions that rest where the solver stops
-constexpr double kUnknown = 1.0;        // of the logarithm: the depth may be three times as much
+constexpr double kNoLessCertain = 1.1;   // sigmas come from another solution of the same window
+constexpr double kSamePoints_mm = 0.05;  // two solutions that rest where the solver stops
+constexpr double kUnknown = 1.0;         // of the logarithm: the depth may be three times as much
 
 // A scene's solution, and what becomes of every fifth of its points when the others are solved without them.
 struct JoiningScene {
@@ -41,7 +41,7 @@ struct JoiningScene {
     order.insert(order.end(), joining_points.begin(), joining_points.end());
   }
 
-  Scene scene;
+  DeformingScene scene;
   PointSample joining_points;
   std::vector<DeformingObservation> joining;  // without the first four views
   PointSample order;                          // the scene's points, those that join last
@@ -90,7 +90,7 @@ TEST(DeformingWindow, WhatJoinsMakesTheOthersNoLessCertain) {
   const std::size_t known = alone->log_depth_sigmas.size();
   ASSERT_GT(with->log_depth_sigmas.size(), known);
   for (std::size_t i = 0; i < known; ++i)
-    EXPECT_LT((with->window.points_in_world[i] - alone->window.points_in_world[i]).norm(), kAgain_mm) << i;
+    EXPECT_LT((with->window.points_in_world[i] - alone->window.points_in_world[i]).norm(), kSamePoints_mm) << i;
   const std::vector<double> sigmas(with->log_depth_sigmas.begin(),
                                    with->log_depth_sigmas.begin() + static_cast<std::ptrdiff_t>(known));
   EXPECT_LT(Median(sigmas), kNoLessCertain * Median(alone->log_depth_sigmas));

@@ -16,11 +16,11 @@
 namespace pliant {
 namespace {
 
+using deforming_test::DeformingScene;
 using deforming_test::kFocalPx;
 using deforming_test::kNoisePx;
 using deforming_test::kShape;
 using deforming_test::kWithinThreeSigmas;
-using deforming_test::Scene;
 
 constexpr double kRounding = 1e-9;     // mm, of a point through its chart and back
 constexpr double kWithoutNoise = 0.5;  // of kShape: the scene is rigid, noise and priors are left
@@ -35,7 +35,7 @@ constexpr double kMaxOfIndependent = 0.05;
 constexpr double kMinOfMotion = 0.5;  // of residuals that are a motion of six times the noise
 
 TEST(DeformingWindow, FindsTheShapeOfASceneThatMovesAsFastAsTheCamera) {
-  const Scene scene;
+  const DeformingScene scene;
   const auto solution = SolveDeformingWindow(scene.Start(0), kFocalPx, {});
   ASSERT_TRUE(solution.ok()) << solution.status().message();
   EXPECT_EQ(solution->window.coefficients.rows(), DeformingWindowOptions().rank);
@@ -45,7 +45,7 @@ TEST(DeformingWindow, FindsTheShapeOfASceneThatMovesAsFastAsTheCamera) {
 }
 
 TEST(DeformingWindow, ARigidBundleAdjustmentOfThatSceneDoesNot) {
-  const Scene scene;
+  const DeformingScene scene;
   const DeformingWindow start = scene.Start(0);
   Window rigid{start.cams_from_world, start.points_in_world, {}};
   for (const DeformingObservation& observation : start.observations)
@@ -59,7 +59,7 @@ TEST(DeformingWindow, ARigidBundleAdjustmentOfThatSceneDoesNot) {
 }
 
 TEST(DeformingWindow, OfARigidSceneIsRigid) {
-  Scene scene;
+  DeformingScene scene;
   scene.amplitude_mm = 0;
   const auto solution = SolveDeformingWindow(scene.Start(0), kFocalPx, {});
   ASSERT_TRUE(solution.ok());
@@ -68,7 +68,7 @@ TEST(DeformingWindow, OfARigidSceneIsRigid) {
 }
 
 TEST(DeformingWindow, SaysHowUncertainItsDepthsAre) {
-  const Scene scene;
+  const DeformingScene scene;
   const auto solution = SolveDeformingWindow(scene.Start(0), kFocalPx, {});
   ASSERT_TRUE(solution.ok());
   const std::vector<double> errors = scene.DepthErrors(solution->window, 0);
@@ -76,37 +76,37 @@ TEST(DeformingWindow, SaysHowUncertainItsDepthsAre) {
   for (std::size_t i = 0; i < errors.size(); ++i) within += errors[i] < 3 * solution->log_depth_sigmas[i] ? 1 : 0;
   EXPECT_GT(within, kWithinThreeSigmas * static_cast<double>(errors.size()));
   // ... and not by calling everything uncertain: with half the views, and half the way, it knows less.
-  const auto shorter = SolveDeformingWindow(Scene(6).Start(0), kFocalPx, {});
+  const auto shorter = SolveDeformingWindow(DeformingScene(6).Start(0), kFocalPx, {});
   ASSERT_TRUE(shorter.ok());
   EXPECT_GT(Median(shorter->log_depth_sigmas), kLessCertain * Median(solution->log_depth_sigmas));
 }
 
 TEST(DeformingWindow, TwoSamplesOfThePointsCheckOneAnother) {
-  const Scene scene;
+  const DeformingScene scene;
   const auto solution = SolveDeformingWindow(scene.Start(0), kFocalPx, {});
-  const auto shorter = SolveDeformingWindow(Scene(6).Start(0), kFocalPx, {});
+  const auto shorter = SolveDeformingWindow(DeformingScene(6).Start(0), kFocalPx, {});
   ASSERT_TRUE(solution.ok() && shorter.ok());
   ASSERT_EQ(solution->sample_sigmas.size(), scene.points.size());
   EXPECT_LT(Median(solution->sample_sigmas), kShape);
   EXPECT_GT(Median(shorter->sample_sigmas), kLessCertain * Median(solution->sample_sigmas));
   // Fewer points than two samples take are solved all the same.
-  const auto few = [](const Scene& of) {
+  const auto few = [](const DeformingScene& of) {
     DeformingWindow start = of.Start(0);
     start.points_in_world.resize(70);
     std::erase_if(start.observations, [](const DeformingObservation& seen) { return seen.point_idx >= 70; });
     return start;
   };
-  const auto one_sample = SolveDeformingWindow(few(Scene(13, 45)), kFocalPx, {});
+  const auto one_sample = SolveDeformingWindow(few(DeformingScene(13, 45)), kFocalPx, {});
   ASSERT_TRUE(one_sample.ok());
   EXPECT_TRUE(one_sample->sample_sigmas.empty());
   // ... and compared with the other motion of the plane where they are close to one.
-  const auto nearly_flat = SolveDeformingWindow(few(Scene(13, 5)), kFocalPx, {});
+  const auto nearly_flat = SolveDeformingWindow(few(DeformingScene(13, 5)), kFocalPx, {});
   ASSERT_TRUE(nearly_flat.ok());
   EXPECT_EQ(nearly_flat->sample_sigmas.size(), 70U);
 }
 
 TEST(DeformingWindow, TheLightTellsSolutionsApart) {
-  const Scene scene;
+  const DeformingScene scene;
   const auto solution = SolveDeformingWindow(scene.Start(0.1), kFocalPx, {});
   ASSERT_TRUE(solution.ok());
   for (const int view : {0, 6, 12}) EXPECT_LT(Median(scene.DepthErrors(solution->window, view)), kShape) << view;
@@ -116,7 +116,7 @@ TEST(DeformingWindow, TheLightTellsSolutionsApart) {
 }
 
 TEST(DeformingWindow, DoesNotDependOnTheNumberOfThreads) {
-  const DeformingWindow start = Scene(7).Start(0.1);
+  const DeformingWindow start = DeformingScene(7).Start(0.1);
   const auto one = SolveDeformingWindow(start, kFocalPx, {}, 1);
   const auto two = SolveDeformingWindow(start, kFocalPx, {}, 2);
   ASSERT_TRUE(one.ok() && two.ok());
@@ -128,7 +128,7 @@ TEST(DeformingWindow, DoesNotDependOnTheNumberOfThreads) {
 }
 
 TEST(DeformingWindow, OptimizesTheViewsBetween) {
-  const Scene scene;
+  const DeformingScene scene;
   const auto solution = SolveDeformingWindow(scene.Start(0), kFocalPx, {});
   ASSERT_TRUE(solution.ok());
   DeformingWindow moved = solution->window;
@@ -144,7 +144,7 @@ TEST(DeformingWindow, OptimizesTheViewsBetween) {
 }
 
 TEST(DeformingWindow, RefusesWhatIsNoWindow) {
-  const Scene scene;
+  const DeformingScene scene;
   DeformingWindow start = scene.Start(0);
   DeformingWindow unequal = start;
   unequal.times.pop_back();
@@ -163,9 +163,9 @@ TEST(DeformingWindow, RefusesWhatIsNoWindow) {
 }
 
 TEST(DeformingWindow, TellsARigidSceneFromOneThatDeformsALittle) {
-  Scene rigid;
+  DeformingScene rigid;
   rigid.amplitude_mm = 0;
-  Scene breathing;
+  DeformingScene breathing;
   breathing.amplitude_mm = 0.3;
   const auto still = RigidResidualCorrelation(rigid.Start(0), kFocalPx, {});
   const auto moving = RigidResidualCorrelation(breathing.Start(0), kFocalPx, {});
@@ -204,7 +204,7 @@ TEST(DeformingWindow, ErrorsOfPatchesThatOverlapAreNoSignOfMotion) {
 }
 
 TEST(DeformingWindow, SolvesARigidSceneAsOne) {
-  Scene scene;
+  DeformingScene scene;
   scene.amplitude_mm = 0;
   const auto solution = SolveRigidWindow(scene.Start(0), kFocalPx, {});
   ASSERT_TRUE(solution.ok()) << solution.status().message();

@@ -19,8 +19,8 @@ namespace {
 
 constexpr double kSameCost = 1e-6;  // relative; what both solvers' convergence guarantees
 constexpr double kSamePosition_mm = 1e-2;
-constexpr double kDifference = 1e-4;     // step of the differences, mm and rad
-constexpr double kGradientError = 1e-5;  // relative to the largest entry; of central differences with this step
+constexpr double kDifferenceStep = 1e-4;  // step of the differences, mm and rad
+constexpr double kGradientError = 1e-5;   // relative to the largest entry; of central differences with this step
 
 // Draws points to given places, and edges to a length; both change with a rotation of the world.
 class Anchors final : public FrameCost {
@@ -150,12 +150,12 @@ TEST(FrameCost, GradientOfTheEnergyIsThatOfDifferences) {
     const double at = *variable;
     double above = 0;
     double below = 0;
-    *variable = at + kDifference;
+    *variable = at + kDifferenceStep;
     EXPECT_TRUE(energy.Evaluate(points, increment, &above, &ignored, &ignored_too));
-    *variable = at - kDifference;
+    *variable = at - kDifferenceStep;
     EXPECT_TRUE(energy.Evaluate(points, increment, &below, &ignored, &ignored_too));
     *variable = at;
-    return (above - below) / (2 * kDifference);
+    return (above - below) / (2 * kDifferenceStep);
   };
   const double largest_by_increment = by_increment.cwiseAbs().maxCoeff();
   for (int k = 0; k < 6; ++k)

@@ -18,13 +18,9 @@ namespace {
 constexpr double kSmooth_px = 0.1;     // what the regularizers hold back of a smooth deformation
 constexpr double kBystander_mm = 0.1;  // how far an outlier of no size moves the others, on average
 constexpr double kSaturated = 1.1;     // with squares instead it would be ten times as strong
-constexpr double kExactRad = 1e-8;     // zero noise: the gradient's tolerance over the weakest curvature
-constexpr double kExactMm = 1e-6;
-constexpr double kSameCost = 1e-6;  // relative; what both solvers' convergence guarantees
-
-Rigid3 Predicted(const FrameScene& scene) {
-  return PredictCameraPose(scene.before_last_cam_from_world, scene.last_cam_from_world);
-}
+constexpr double kSolvedRad = 1e-8;    // zero noise: the gradient's tolerance over the weakest curvature
+constexpr double kSolvedMm = 1e-6;
+constexpr double kSameSolvedCost = 1e-6;  // relative; what both solvers' convergence guarantees
 
 Rigid3 PoseOnLastGeometry(const FrameScene& scene) {
   return EstimateCameraPose(scene.camera, scene.positions, scene.pixels, Predicted(scene), {}).value().cam_from_world;
@@ -53,9 +49,9 @@ TEST(FrameProblem, RecoversARigidSceneExactlyFromConstantVelocity) {
     const FrameSolution solution = Solve(scene, Predicted(scene), options);
     EXPECT_TRUE(solution.converged) << solution.message;
     EXPECT_LT(RotationAngle(solution.cam_from_world.rotation * scene.true_cam_from_world.rotation.conjugate()),
-              kExactRad);
-    EXPECT_LT((solution.cam_from_world.translation - scene.true_cam_from_world.translation).norm(), kExactMm);
-    EXPECT_LT(LargestPositionError(solution, scene.positions), kExactMm);
+              kSolvedRad);
+    EXPECT_LT((solution.cam_from_world.translation - scene.true_cam_from_world.translation).norm(), kSolvedMm);
+    EXPECT_LT(LargestPositionError(solution, scene.positions), kSolvedMm);
   }
 }
 
@@ -81,14 +77,14 @@ TEST(FrameProblem, AHeldPoseStaysAndBothSolversFindTheSameDisplacements) {
     ASSERT_TRUE(solution.ok()) << solution.status().message();
     EXPECT_TRUE(solution->converged) << solution->message;
     EXPECT_LT(RotationAngle(solution->cam_from_world.rotation * scene.true_cam_from_world.rotation.conjugate()),
-              kExactRad);
-    EXPECT_LT((solution->cam_from_world.translation - scene.true_cam_from_world.translation).norm(), kExactMm);
+              kSolvedRad);
+    EXPECT_LT((solution->cam_from_world.translation - scene.true_cam_from_world.translation).norm(), kSolvedMm);
     EXPECT_LT(TotalCost(solution->costs), TotalCost(solution->initial_costs));
     if (solver == FrameSolver::kLevenbergMarquardt) cost = TotalCost(solution->costs);
-    EXPECT_NEAR(TotalCost(solution->costs), cost, kSameCost * cost);
+    EXPECT_NEAR(TotalCost(solution->costs), cost, kSameSolvedCost * cost);
   }
   // The pose was held against its will: freed, it moves.
-  EXPECT_LT(TotalCost(Solve(scene, scene.true_cam_from_world).costs), (1 - kSameCost) * cost);
+  EXPECT_LT(TotalCost(Solve(scene, scene.true_cam_from_world).costs), (1 - kSameSolvedCost) * cost);
 }
 
 struct Variant {
@@ -109,7 +105,7 @@ TEST_P(FrameProblemVariant, BothSolversEndInTheSameMinimum) {
   options.function_tolerance = 1e-12;
   const FrameSolution reference = Solve(scene, initial, options);
   ASSERT_TRUE(ours.converged && reference.converged) << ours.message << " / " << reference.message;
-  EXPECT_NEAR(TotalCost(ours.costs), TotalCost(reference.costs), kSameCost * TotalCost(reference.costs));
+  EXPECT_NEAR(TotalCost(ours.costs), TotalCost(reference.costs), kSameSolvedCost * TotalCost(reference.costs));
   EXPECT_DOUBLE_EQ(TotalCost(ours.initial_costs), TotalCost(reference.initial_costs));
 }
 
@@ -209,7 +205,7 @@ TEST(FrameProblem, LeavesOutPointsBehindTheCamera) {
   EXPECT_FALSE(solution.points[17].used);
   EXPECT_EQ(solution.points[17].position, behind);
   EXPECT_TRUE(std::isinf(solution.points[17].reprojection_error_px));
-  EXPECT_LT(LargestPositionError(solution, scene.positions), kExactMm);
+  EXPECT_LT(LargestPositionError(solution, scene.positions), kSolvedMm);
 }
 
 TEST(FrameProblem, SaysWhyThereIsNoSolution) {

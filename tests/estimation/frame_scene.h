@@ -13,6 +13,7 @@
 #include "pliant/camera/camera.h"
 #include "pliant/deformation/graph.h"
 #include "pliant/estimation/frame/frame_problem.h"
+#include "pliant/estimation/pose/camera_pose.h"
 
 namespace pliant {
 
@@ -40,6 +41,10 @@ struct FrameScene {
     return {positions, pixels, graph.edges, initial_cam_from_world};
   }
 };
+
+inline Rigid3 Predicted(const FrameScene& scene) {
+  return PredictCameraPose(scene.before_last_cam_from_world, scene.last_cam_from_world);
+}
 
 inline FrameScene MakeFrameScene(const FrameSceneOptions& options) {
   Random random = Random(options.seed).Child("frame scene");

@@ -27,7 +27,6 @@ using test::Scene;
 using test::SceneOptions;
 using test::Surface;
 
-constexpr double kDeg = std::numbers::pi / 180.0;
 // Of exact pixels: the solvers' own rounding.
 constexpr int kMaxWrong = 15;                 // of about 150: those that fell near their epipolar line by chance
 constexpr int kMaxMissed = 90;                // of about 350: a raw five-point motion leaves some beyond the threshold
@@ -40,7 +39,7 @@ constexpr int kMinInliersSharp = 340;               // of about 350 at 0.1 px
 constexpr int kMinInliers = 300;                    // of about 350 without noise, next to 150 outliers
 constexpr int kMaxByRotation = 150;                 // of 500 pairs, those far away or at the image's middle
 constexpr int kMaxByPlane = 250;                    // of 500 pairs: a tube is no plane, but some of it nearly is
-constexpr double kExactRad = 1e-6;
+constexpr double kExactRelativeRad = 1e-6;
 constexpr double kKneipExactRad = 1e-4;
 
 struct Pair {
@@ -114,7 +113,7 @@ INSTANTIATE_TEST_SUITE_P(RelativePose, EveryRelativePose, testing::ValuesIn(AllM
 INSTANTIATE_TEST_SUITE_P(RelativePose, EverySampler, testing::ValuesIn(SamplingMethods()), kMethodName);
 
 TEST_P(EveryEssential, IsExactWithoutNoise) {
-  const double exact_rad = GetParam().solver == RelativePoseSolver::kKneip ? kKneipExactRad : kExactRad;
+  const double exact_rad = GetParam().solver == RelativePoseSolver::kKneip ? kKneipExactRad : kExactRelativeRad;
   for (const Motion motion : {Motion::kForward, Motion::kSideways}) {
     const Pair pair = MakePair({.motion = motion});
     const auto pose = Estimate(pair, GetParam());

@@ -14,12 +14,12 @@
 namespace pliant {
 namespace {
 
-using deforming_test::Scene;
+using deforming_test::DeformingScene;
 
 constexpr std::size_t kMaxNodes = 4;  // nodes that share a point
 
 TEST(SurfaceNodes, WeightsSumToOneAndANodesOwnPointIsItsAlone) {
-  const Scene scene;
+  const DeformingScene scene;
   const SurfaceNodes nodes = NodesAt(scene.points, {0, 20, 40, 60, 80, 100, 120});
   const std::vector<NodesOfPoint> around = NodesAround(scene.points, nodes.positions);
   for (const NodesOfPoint& of : around) {

@@ -12,8 +12,8 @@
 namespace pliant {
 namespace {
 
+using deforming_test::DeformingScene;
 using deforming_test::kFocalPx;
-using deforming_test::Scene;
 
 constexpr double kAlike = 1.1;     // times the errors of the other model: both leave noise
 constexpr double kFarWorse = 2.0;  // the same, of a model that cannot be
@@ -24,7 +24,7 @@ constexpr int kManyViews = 25;
 constexpr double kByChance = 3.0;  // standard errors
 
 // Over all views but the reference.
-CameraMotionEvidence EvidenceOf(const Scene& scene) {
+CameraMotionEvidence EvidenceOf(const DeformingScene& scene) {
   const auto solution = SolveDeformingWindow(scene.Start(0), kFocalPx, {});
   EXPECT_TRUE(solution.ok()) << solution.status().message();
   const auto models = SolveCameraMotionModels(*solution, kFocalPx, {});
@@ -35,10 +35,10 @@ CameraMotionEvidence EvidenceOf(const Scene& scene) {
   return EvidenceOfCameraMotion(*models, views, 0.0);
 }
 
-double RatioOf(const Scene& scene) { return EvidenceOf(scene).error_ratio; }
+double RatioOf(const DeformingScene& scene) { return EvidenceOf(scene).error_ratio; }
 
-Scene BeforeAStillCamera() {
-  Scene scene;
+DeformingScene BeforeAStillCamera() {
+  DeformingScene scene;
   for (Rigid3& pose : scene.poses) pose = Rigid3();
   return scene;
 }
@@ -46,19 +46,19 @@ Scene BeforeAStillCamera() {
 TEST(StillCamera, ExplainsAWindowInWhichTheSceneAloneMoves) { EXPECT_LT(RatioOf(BeforeAStillCamera()), kAlike); }
 
 TEST(StillCamera, ExplainsAWindowInWhichTheCameraOnlyTurns) {
-  Scene scene;
+  DeformingScene scene;
   for (Rigid3& pose : scene.poses) pose.translation.setZero();
   EXPECT_LT(RatioOf(scene), kAlike);
 }
 
-TEST(StillCamera, DoesNotExplainAWindowInWhichTheCameraMoves) { EXPECT_GT(RatioOf(Scene()), kFarWorse); }
+TEST(StillCamera, DoesNotExplainAWindowInWhichTheCameraMoves) { EXPECT_GT(RatioOf(DeformingScene()), kFarWorse); }
 
 // Noise is most of both errors here, and the camera moves by a few millimeters: the errors alone are 1.35 times as
 // large.
 TEST(StillCamera, IsToldFromOneThatMovesALittleInMuchNoise) {
-  Scene moving(kManyViews);
+  DeformingScene moving(kManyViews);
   for (Rigid3& pose : moving.poses) pose.translation *= kLittle;
-  Scene still(kManyViews);
+  DeformingScene still(kManyViews);
   for (Rigid3& pose : still.poses) pose = Rigid3();
   moving.noise_px = still.noise_px = kMuchNoisePx;
   const CameraMotionEvidence of_still = EvidenceOf(still);
@@ -71,7 +71,7 @@ TEST(StillCamera, IsToldFromOneThatMovesALittleInMuchNoise) {
 
 // The camera is shifted against its solution, by which all errors are alike.
 TEST(StillCamera, AModelThatLeavesMoreThanNoiseSaysSo) {
-  Scene scene(kManyViews);
+  DeformingScene scene(kManyViews);
   const auto solution = SolveDeformingWindow(scene.Start(0), kFocalPx, {});
   ASSERT_TRUE(solution.ok());
   auto models = SolveCameraMotionModels(*solution, kFocalPx, {});
@@ -86,7 +86,7 @@ TEST(StillCamera, AModelThatLeavesMoreThanNoiseSaysSo) {
 }
 
 TEST(StillCamera, HasNoTranslationInItsModelAndNoHigherRank) {
-  const Scene scene = BeforeAStillCamera();
+  const DeformingScene scene = BeforeAStillCamera();
   const auto solution = SolveDeformingWindow(scene.Start(0), kFocalPx, {});
   ASSERT_TRUE(solution.ok());
   const auto models = SolveCameraMotionModels(*solution, kFocalPx, {.sample_points = 60});
@@ -102,7 +102,7 @@ TEST(StillCamera, HasNoTranslationInItsModelAndNoHigherRank) {
 }
 
 TEST(StillCamera, IsNotAskedOfARigidWindow) {
-  Scene scene;
+  DeformingScene scene;
   scene.amplitude_mm = 0;
   const auto rigid = SolveRigidWindow(scene.Start(0), kFocalPx, {});
   ASSERT_TRUE(rigid.ok());
@@ -110,7 +110,7 @@ TEST(StillCamera, IsNotAskedOfARigidWindow) {
 }
 
 TEST(StillCamera, IsAsGoodWhereNothingIsCompared) {
-  const auto solution = SolveDeformingWindow(Scene().Start(0), kFocalPx, {});
+  const auto solution = SolveDeformingWindow(DeformingScene().Start(0), kFocalPx, {});
   ASSERT_TRUE(solution.ok());
   const auto models = SolveCameraMotionModels(*solution, kFocalPx, {});
   ASSERT_TRUE(models.ok());

@@ -4,7 +4,6 @@
 #include "pliant/estimation/two_view/two_view_refinement.h"
 
 #include <array>
-#include <numbers>
 
 #include <ceres/jet.h>
 #include <ceres/rotation.h>
@@ -23,7 +22,6 @@ using test::RaysOf;
 using test::Scene;
 using test::SceneOptions;
 
-constexpr double kDeg = std::numbers::pi / 180.0;
 constexpr double kDerivative = 1e-12;       // analytic against automatic derivatives, entries of about one
 constexpr double kExactCost_px2 = 1e-3;     // of 500 pairs
 constexpr double kRobust_rad = 2.0 * kDeg;  // direction, at 0.3 px and a tenth outliers
@@ -32,7 +30,7 @@ constexpr double kDisturbed = 2.0;          // times the cost of the minimum
 constexpr double kSpread_px = 0.06;         // the sample's own spread and the outliers' share in the median
 constexpr double kSpreadLow = 0.6;  // a few degrees of freedom by 40 trials fix it to about 15 %; three times that
 constexpr double kSpreadHigh = 1.6;
-constexpr double kExactRad = 1e-7;  // where the least squares rest without noise
+constexpr double kRefinedRad = 1e-7;  // where the least squares rest without noise
 
 template <class T>
 using Vec3 = Eigen::Matrix<T, 3, 1>;
@@ -118,7 +116,8 @@ TEST(TwoViewRefinement, FindsTheExactMotionWithoutNoise) {
   const Scene scene = MakeScene(options);
   const Rigid3& truth = scene.cams_from_world.back();
   constexpr double kOpengvRad = 1e-4;  // it creeps towards the end
-  for (const auto& [refine, exact_rad] : {std::pair{&RefineTwoView, kExactRad}, {&RefineTwoViewByOpengv, kOpengvRad}}) {
+  for (const auto& [refine, exact_rad] :
+       {std::pair{&RefineTwoView, kRefinedRad}, {&RefineTwoViewByOpengv, kOpengvRad}}) {
     const auto refined =
         refine(Disturbed(truth), RaysOf(scene, options, 0), RaysOf(scene, options, 8), options.focal_px, {});
     ASSERT_TRUE(refined.ok());

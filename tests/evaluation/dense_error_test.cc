@@ -16,7 +16,7 @@
 namespace pliant {
 namespace {
 
-constexpr double kDepthScale = 0.005;
+constexpr double kDenseDepthScale = 0.005;
 
 class DenseErrorTest : public testing::Test {
  protected:
@@ -24,7 +24,8 @@ class DenseErrorTest : public testing::Test {
   SurfaceFolder WriteSurface(const std::function<void(cv::Mat*)>& change) {
     for (const char* kind : {"depth", "confidence"}) std::filesystem::create_directories(folder_.Path(kind));
     EXPECT_TRUE(
-        WriteCameraFile(folder_.Path("camera.yaml"), {.camera = Rendered().camera, .depth_scale = kDepthScale}).ok());
+        WriteCameraFile(folder_.Path("camera.yaml"), {.camera = Rendered().camera, .depth_scale = kDenseDepthScale})
+            .ok());
     std::string frames;
     for (const int k : {2, 5}) {
       cv::Mat depth = Rendered().frames[static_cast<std::size_t>(k)].depth.clone();
@@ -32,7 +33,7 @@ class DenseErrorTest : public testing::Test {
       sigma(cv::Rect(0, 0, depth.cols / 2, depth.rows)).setTo(0.01);
       change(&depth);
       const std::string name = std::to_string(k) + ".png";
-      EXPECT_TRUE(WritePng(folder_.Path("depth/" + name), QuantizeDepth(depth, kDepthScale)).ok());
+      EXPECT_TRUE(WritePng(folder_.Path("depth/" + name), QuantizeDepth(depth, kDenseDepthScale)).ok());
       EXPECT_TRUE(WritePng(folder_.Path("confidence/" + name), QuantizeDepth(sigma, surface::kConfidenceUnit)).ok());
       frames += (frames.empty() ? "" : ", ") + std::string("{\"frame\": ") + std::to_string(k) + ", \"name\": \"" +
                 name + "\", \"note\": \"\"}";

@@ -30,8 +30,6 @@ constexpr double kDrifted_mm = 10;
 constexpr double kDrifted_px = 10;
 constexpr double kScaleOfDrift = 0.2;  // of 2; the best scale makes up for some of the drift
 
-const Result<MaterialTruth*> kNoMaterial = Status(ErrorCode::kNotFound, "there is no simulation.yaml");
-
 EvaluationOptions WithParts(std::vector<EvaluationPart> parts) {
   EvaluationOptions options;
   options.parts = std::move(parts);

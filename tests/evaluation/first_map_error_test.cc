@@ -4,7 +4,6 @@
 #include "pliant/evaluation/first_map_error.h"
 
 #include <cmath>
-#include <numbers>
 #include <string>
 #include <vector>
 
@@ -20,7 +19,6 @@ namespace {
 using testing::HasSubstr;
 
 constexpr double kNotFlat = 0.01;  // the truth is no plane before the camera, so the null has an error
-const Result<MaterialTruth*> kNoMaterial = Status(ErrorCode::kNotFound, "not wanted");
 
 // A frame with points at given depths before true ones, mm.
 PairedFrame Depths(int frame_idx, const std::vector<std::pair<double, double>>& estimate_and_truth) {
@@ -104,7 +102,6 @@ TEST(FirstMapError, ComparesTheCamerasMotionByAngles) {
   PosePair declared;
   // The true camera goes 4 mm along the reference's z and turns by 10 degrees about its x; the estimate turns by 12
   // degrees and goes 30 degrees off the z axis, in units of its own.
-  constexpr double kDeg = std::numbers::pi / 180;
   declared.true_world_from_cam =
       reference.true_world_from_cam * Rigid3(RotationExp({10 * kDeg, 0, 0}), Eigen::Vector3d(0, 0, 4));
   declared.world_from_cam =

@@ -22,7 +22,7 @@ constexpr double kNoiseBeyond = 0.03;     // share: what noise puts beyond 2.5 s
 constexpr double kScaleOf100 = 0.02;      // 100 points of 0.5 mm noise some 50 mm away
 constexpr double kOutliersIn_mm = 10;     // a tenth of the points, off by tens of millimeters
 constexpr double kOutliersOut_mm = 1;     // the noise of 0.5 mm in three coordinates
-constexpr double kNotFlat_mm = 3;         // the truth is no plane before the camera, so the null has an error
+constexpr double kColonNotFlat_mm = 3;    // the truth is no plane before the camera, so the null has an error
 constexpr double kNullScale = 35;         // the null is rays of depth one, the truth lies 40 mm to 60 mm away
 constexpr double kOneScaleForTwo_mm = 1;  // submaps of scales 2 and 3 do not fit one
 
@@ -149,8 +149,8 @@ TEST(PointError, EveryProtocolStandsBesideThePlainFigureWithItsNullAndTheShareLe
   EXPECT_NEAR(lmeds.estimate.left_out_share, 0.1, kNoiseBeyond);
   EXPECT_NEAR(lmeds.estimate.max_scale, 3, kScaleOf100);
   EXPECT_LT(lmeds.estimate.mean_rmse_mm, kOutliersOut_mm);
-  EXPECT_GT(lmeds.null.mean_rmse_mm, kNotFlat_mm);
-  EXPECT_GT(trimmed.null.mean_rmse_mm, kNotFlat_mm);
+  EXPECT_GT(lmeds.null.mean_rmse_mm, kColonNotFlat_mm);
+  EXPECT_GT(trimmed.null.mean_rmse_mm, kColonNotFlat_mm);
 }
 
 TEST(PointError, ScaleIsOrthogonalToTheProtocol) {

@@ -37,8 +37,6 @@ constexpr double kNotNone_mm = 0.5;
 constexpr double kNotNone_px = 0.5;
 constexpr int kMinPoints = 200;
 
-const Result<MaterialTruth*> kNoMaterial = Status(ErrorCode::kNotFound, "none");
-
 class RunFolderEvaluation : public testing::Test {
  protected:
   void SetUp() override {
@@ -193,13 +191,13 @@ TEST_F(RunFolderEvaluation, BadRowsAndEmptyRunsAreOneSentence) {
 }
 
 TEST_F(RunFolderEvaluation, AgreesWithAnIndependentNumPyScript) {
-  constexpr int kFrames = 6;
-  EvaluationInput run = MakeRun(kFrames, 2, 1.5);
+  constexpr int kFramesOfRun = 6;
+  EvaluationInput run = MakeRun(kFramesOfRun, 2, 1.5);
   for (EvaluationFrame& frame : run.frames)
     for (PointObservation& outlier : frame.observations)
       if (outlier.id.value % 10 == 0) outlier.position += Eigen::Vector3d(10, -3, 20);
   WriteRun(run);
-  const TruthSequence sequence(kFrames);
+  const TruthSequence sequence(kFramesOfRun);
   const std::string first_map_frames =
       std::to_string(kFirstMap.reference_frame_idx) + " " + std::to_string(kFirstMap.declared_frame_idx);
   const auto script = Reference(sequence, 1, first_map_frames);

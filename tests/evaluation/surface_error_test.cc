@@ -18,7 +18,7 @@
 namespace pliant {
 namespace {
 
-constexpr double kNotFlat_mm = 1.0;          // the truth is no plane before the camera, so the null has an error
+constexpr double kSurfaceNotFlat_mm = 1.0;   // the truth is no plane before the camera, so the null has an error
 constexpr double kScaleDrift_mm = 2.0;       // a fifth of the distance, shared by two frames
 constexpr double kOnePoint_mm = 1.0;         // all points in one, before a plane of many millimeters
 constexpr double kRootMeanOf30000 = 0.0125;  // relative: half of 3 * sqrt(2 / 30000), which the mean square is right to
@@ -71,7 +71,7 @@ TEST(SurfaceError, IsZeroForTheTruthItself) {
     EXPECT_LT(error->plain.estimate.mean_rmse_mm, kLengthRoundOff_mm);
     EXPECT_LT(error->plain.estimate.pooled_median_mm, kLengthRoundOff_mm);
     EXPECT_LT(error->plain.estimate.median_relative_depth, kLengthRoundOff_mm);
-    EXPECT_GT(error->plain.null.mean_rmse_mm, kNotFlat_mm);
+    EXPECT_GT(error->plain.null.mean_rmse_mm, kSurfaceNotFlat_mm);
     EXPECT_EQ(error->points, 400);
   }
 }

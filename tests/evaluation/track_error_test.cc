@@ -17,7 +17,7 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr int kFrames = 5;
+constexpr int kTrackFrames = 5;
 
 // Images of twice the scored size: a pixel of the image is half a scored one, each way.
 Camera TwiceTheScoredSize() {
@@ -70,7 +70,7 @@ PixelTrack TrackOf(int id, int first, const std::vector<double>& off_px) {
 }
 
 Result<TrackError> Compute(const std::vector<PixelTrack>& tracks, std::set<int> hidden = {}) {
-  std::vector<int> frames(kFrames);
+  std::vector<int> frames(kTrackFrames);
   std::iota(frames.begin(), frames.end(), 0);
   MovingMaterial truth(std::move(hidden));
   return ComputeTrackError(tracks, frames, TwiceTheScoredSize(), truth);
@@ -132,7 +132,7 @@ TEST(TrackError, ATrackFailsWhenItIsFiftyPixelsOff) {
 
 TEST(TrackError, TracksWithoutTruthAreLeftOut) {
   PixelTrack nowhere{PointId{1}, {{0, {-1, 5}}, {1, {-1, 5}}}};
-  const auto error = Compute({TrackOf(0, 0, {0, 0, 0, 0}), nowhere, TrackOf(2, kFrames - 1, {})});
+  const auto error = Compute({TrackOf(0, 0, {0, 0, 0, 0}), nowhere, TrackOf(2, kTrackFrames - 1, {})});
   ASSERT_TRUE(error.ok());
   EXPECT_EQ(error->tracks, 1);
   EXPECT_EQ(error->without_truth, 2);

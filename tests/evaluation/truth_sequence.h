@@ -14,11 +14,13 @@
 #include "evaluation/pair_with_depth.h"
 #include "pliant/base/random.h"
 #include "pliant/evaluation/evaluation.h"
+#include "pliant/evaluation/material_truth.h"
 #include "pliant/evaluation/surface_error.h"
 
 namespace pliant {
 
 inline constexpr double kFps = 25;
+inline const Result<MaterialTruth*> kNoMaterial = Status(ErrorCode::kNotFound, "there is no simulation.yaml");
 
 inline Camera TestCamera() {
   constexpr std::array<double, 4> kParams = {60, 60, 31.5, 23.5};

@@ -12,7 +12,7 @@
 namespace pliant {
 namespace {
 
-constexpr int kPoints = 20000;
+constexpr int kDraws = 20000;
 constexpr double kShare = 0.015;  // of 20,000: more than four standard errors
 
 // Points at 40 to 80 mm before the camera in four frames whose unit is `unit_mm`, each off along its ray by as much as
@@ -20,7 +20,7 @@ constexpr double kShare = 0.015;  // of 20,000: more than four standard errors
 std::vector<PairedFrame> Frames(double factor, double unit_mm) {
   Random random(5);
   std::vector<PairedFrame> frames(4);
-  for (int i = 0; i < kPoints; ++i) {
+  for (int i = 0; i < kDraws; ++i) {
     PairedFrame& frame = frames[static_cast<std::size_t>(i % 4)];
     frame.frame_idx = i % 4;
     const Eigen::Vector3d ray(random.Uniform(-0.3, 0.3), random.Uniform(-0.3, 0.3), 1);
@@ -39,7 +39,7 @@ UncertaintyError Judged(const std::vector<PairedFrame>& frames) {
 TEST(UncertaintyError, OfRightSigmasIsThatOfANormalDistribution) {
   for (const double unit_mm : {1.0, 12.5}) {
     const UncertaintyError error = Judged(Frames(1, unit_mm));
-    EXPECT_EQ(error.points, kPoints);
+    EXPECT_EQ(error.points, kDraws);
     EXPECT_EQ(error.points_without, 0);
     EXPECT_NEAR(error.within_1_sigma, 0.683, kShare) << unit_mm;
     EXPECT_NEAR(error.within_2_sigma, 0.954, kShare);
@@ -83,7 +83,7 @@ TEST(UncertaintyError, SparsificationIsBetweenTheOracleAndNothing) {
 TEST(UncertaintyError, CountsPointsThatSayNothing) {
   std::vector<PairedFrame> frames = Frames(1, 1);
   frames[0].pairs[7].sigma = 0;
-  EXPECT_EQ(Judged(frames).points, kPoints - 1);
+  EXPECT_EQ(Judged(frames).points, kDraws - 1);
   EXPECT_EQ(Judged(frames).points_without, 1);
   for (PairedFrame& frame : frames)
     for (PointPair& pair : frame.pairs) pair.sigma = 0;

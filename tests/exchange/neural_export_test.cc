@@ -27,7 +27,8 @@ using testing::HasSubstr;
 constexpr double kSpot_px = 0.15;
 constexpr double kNerfstudioDepthStep = 1e-3;  // nerfstudio's default of depth_unit_scale_factor
 
-Result<ExportSummary> Export(const TestFolder& folder, const std::string& format, const ExportRequest& extra = {}) {
+Result<ExportSummary> ExportNeural(const TestFolder& folder, const std::string& format,
+                                   const ExportRequest& extra = {}) {
   ExportRequest request = extra;
   request.run_path = folder.Path("run");
   request.format = format;
@@ -37,7 +38,7 @@ Result<ExportSummary> Export(const TestFolder& folder, const std::string& format
 
 std::string ExportError(const TestFolder& folder, const std::string& format, ErrorCode code,
                         const ExportRequest& extra = {}) {
-  const Status status = Export(folder, format, extra).status();
+  const Status status = ExportNeural(folder, format, extra).status();
   EXPECT_EQ(status.code(), code) << status.message();
   EXPECT_TRUE(!std::filesystem::exists(folder.Path("out")) || std::filesystem::is_empty(folder.Path("out")))
       << "something was left behind";
@@ -139,7 +140,7 @@ TEST(NerfstudioExport, ProjectsPointsToTheirPixelsWithEveryCamera) {
   for (const Camera& camera : NeuralCameras()) {
     const TestFolder folder;
     WriteNeuralRun(folder, camera);
-    const auto summary = Export(folder, "nerfstudio");
+    const auto summary = ExportNeural(folder, "nerfstudio");
     ASSERT_TRUE(summary.ok()) << summary.status().message();
     const Json json = ReadTransforms(folder);
     ASSERT_EQ(json["frames"].size(), static_cast<std::size_t>(kRunFrames));
@@ -163,7 +164,7 @@ TEST(NerfstudioExport, ProjectsPointsToTheirPixelsWithEveryCamera) {
 TEST(NerfstudioExport, HasTheUndeformedPointsInTheUnitOfThePoses) {
   const TestFolder folder;
   WriteNeuralRun(folder, TestCamera());
-  ASSERT_TRUE(Export(folder, "nerfstudio").ok());
+  ASSERT_TRUE(ExportNeural(folder, "nerfstudio").ok());
   EXPECT_EQ(ReadTransforms(folder)["ply_file_path"], "sparse_pc.ply");
   const std::string ply = folder.Read("out/sparse_pc.ply");
   EXPECT_THAT(ply, HasSubstr("element vertex " + std::to_string(kRunPoints) + "\n"));
@@ -181,7 +182,7 @@ TEST(NerfstudioExport, DepthsAreInTheUnitOfThePosesAndFramesWithoutAreLeftOut) {
   const TestFolder folder;
   WriteNeuralRun(folder, TestCamera());
   WriteSurface(folder, TestCamera(), {10, 14, 16}, folder.Path("run"));
-  const auto summary = Export(folder, "nerfstudio", WithSurface(folder));
+  const auto summary = ExportNeural(folder, "nerfstudio", WithSurface(folder));
   ASSERT_TRUE(summary.ok()) << summary.status().message();
   EXPECT_EQ(summary->frames, 3);
   ASSERT_EQ(summary->notes.size(), 1U);
@@ -214,7 +215,7 @@ TEST(NerfstudioExport, MasksKeepWhatIsUsed) {
   const cv::Mat mask = WriteMask(folder);
   ExportRequest request;
   request.mask_path = folder.Path("mask.png");
-  ASSERT_TRUE(Export(folder, "nerfstudio", request).ok());
+  ASSERT_TRUE(ExportNeural(folder, "nerfstudio", request).ok());
   const Json transforms = ReadTransforms(folder);
   for (const Json& frame : transforms["frames"]) {
     const cv::Mat written = ReadPng(folder.Path("out/" + frame["mask_path"].get<std::string>()));
@@ -226,7 +227,7 @@ TEST(EndoNerfExport, ImagesOfEveryCameraAreThoseOfACenteredPinhole) {
   for (const Camera& camera : NeuralCameras()) {
     const TestFolder folder;
     WriteNeuralRun(folder, camera);
-    const auto summary = Export(folder, "endonerf");
+    const auto summary = ExportNeural(folder, "endonerf");
     ASSERT_TRUE(summary.ok()) << summary.status().message();
     EXPECT_FALSE(std::filesystem::exists(folder.Path("out/depth")));
     const auto rows = ReadPoses(folder);
@@ -258,7 +259,7 @@ TEST(EndoNerfExport, ImagesOfEveryCameraAreThoseOfACenteredPinhole) {
 TEST(EndoNerfExport, ImagesOfSuchACameraStayAsTheyAre) {
   const TestFolder folder;
   WriteNeuralRun(folder, TestCamera());
-  ASSERT_TRUE(Export(folder, "endonerf").ok());
+  ASSERT_TRUE(ExportNeural(folder, "endonerf").ok());
   const cv::Mat before = cv::imread(folder.Path("sequence/images/10.png"), cv::IMREAD_COLOR);
   const cv::Mat after = ReadPng(folder.Path("out/images/000010.png"));
   EXPECT_EQ(cv::norm(before, after, cv::NORM_INF), 0);
@@ -270,7 +271,7 @@ TEST(EndoNerfExport, DepthsHaveTheUnitOfThePosesAndMasksTheirHoles) {
   const TestFolder folder;
   WriteNeuralRun(folder, camera);
   WriteSurface(folder, camera, {10, 12, 14, 16, 18}, folder.Path("run"));
-  ASSERT_TRUE(Export(folder, "endonerf", WithSurface(folder)).ok());
+  ASSERT_TRUE(ExportNeural(folder, "endonerf", WithSurface(folder)).ok());
   const auto rows = ReadPoses(folder);
   ASSERT_EQ(rows.size(), 5U);
   const auto file = ReadCameraFile(folder.Path("out/pinhole.yaml"));
@@ -320,7 +321,7 @@ TEST(EndoNerfExport, MasksAreWhiteWhereTheSequencesAreBlack) {
   const cv::Mat mask = WriteMask(folder);
   ExportRequest request;
   request.mask_path = folder.Path("mask.png");
-  ASSERT_TRUE(Export(folder, "endonerf", request).ok());
+  ASSERT_TRUE(ExportNeural(folder, "endonerf", request).ok());
   EXPECT_EQ(cv::countNonZero(ReadPng(folder.Path("out/masks/000018.png")) != 255 - mask), 0);
 }
 
@@ -329,7 +330,7 @@ TEST(NeuralExport, EverySubmapHasAFolder) {
        {std::pair("nerfstudio", "transforms.json"), std::pair("endonerf", "poses_bounds.npy")}) {
     const TestFolder folder;
     WriteNeuralRun(folder, TestCamera(), 2);
-    const auto summary = Export(folder, format);
+    const auto summary = ExportNeural(folder, format);
     ASSERT_TRUE(summary.ok()) << summary.status().message();
     EXPECT_EQ(summary->frames, 2 * kRunFrames);
     for (const std::string submap : {"0", "1"}) {
@@ -344,8 +345,8 @@ TEST(NeuralExport, DoesNotMixWithAnEarlierExport) {
   for (const std::string format : {"nerfstudio", "endonerf"}) {
     const TestFolder folder;
     WriteNeuralRun(folder, TestCamera());
-    ASSERT_TRUE(Export(folder, format).ok());
-    const Status again = Export(folder, format).status();
+    ASSERT_TRUE(ExportNeural(folder, format).ok());
+    const Status again = ExportNeural(folder, format).status();
     EXPECT_EQ(again.code(), ErrorCode::kInvalidArgument);
     EXPECT_THAT(again.message(), HasSubstr("is there already; delete it or give another --output_path"));
   }
@@ -409,7 +410,7 @@ TEST(NeuralExport, ASurfaceOfARunThatWasCopiedIsTheRuns) {
       std::filesystem::copy(folder.Path("run"), folder.Path(of), std::filesystem::copy_options::recursive);
     WriteSurface(folder, TestCamera(), {10}, folder.Path(of));
     std::filesystem::remove_all(folder.Path("out"));
-    EXPECT_TRUE(Export(folder, "nerfstudio", WithSurface(folder)).ok()) << of;
+    EXPECT_TRUE(ExportNeural(folder, "nerfstudio", WithSurface(folder)).ok()) << of;
   }
 }
 

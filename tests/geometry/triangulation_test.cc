@@ -26,7 +26,6 @@ constexpr double kUnequalDistances = 0.1;   // relative; the formula takes both 
 constexpr double kSpreadOf2000 = 0.07;      // 2000 trials fix a deviation to 1.6 %; three times that, and the curvature
 constexpr double kTurnOfRay = 1e-3;         // relative; Sampson's error is of first order in the turn
 constexpr double kTurnOfPlane = 1e-2;  // relative; the planes' angle is the ray's turn by the parallax angle's sine
-constexpr double kDeg = std::numbers::pi / 180.0;
 
 constexpr std::array kAllMethods = {&TriangulateIdwm, &TriangulateMidpoint, &TriangulateLinear, &TriangulateOptimalL2};
 

@@ -8,14 +8,14 @@
 namespace pliant {
 namespace {
 
-constexpr double kBrightened = 110;  // gray levels: what the highlight adds to the surface's 100, and more
-constexpr double kRim = 2.0;         // gray levels: the highlight's rim shares pixels of the average
-constexpr double kRounding = 0.6;    // gray levels: averages are taken of whole levels
+constexpr double kBrightened = 110;       // gray levels: what the highlight adds to the surface's 100, and more
+constexpr double kHighlightRim = 2.0;     // gray levels: the highlight's rim shares pixels of the average
+constexpr double kAverageRounding = 0.6;  // gray levels: averages are taken of whole levels
 
 TEST(LocalBrightness, IsThatOfTheRedChannel) {
   const cv::Mat image(60, 80, CV_8UC3, cv::Scalar(200, 100, 50));
-  EXPECT_NEAR(LocalBrightness(image, {}).At({40, 30}), 50, kRounding);
-  EXPECT_NEAR(LocalBrightness(cv::Mat(60, 80, CV_8UC1, cv::Scalar(70)), {}).At({0, 59}), 70, kRounding);
+  EXPECT_NEAR(LocalBrightness(image, {}).At({40, 30}), 50, kAverageRounding);
+  EXPECT_NEAR(LocalBrightness(cv::Mat(60, 80, CV_8UC1, cv::Scalar(70)), {}).At({0, 59}), 70, kAverageRounding);
 }
 
 TEST(LocalBrightness, LeavesOutWhatIsNotTheSurface) {
@@ -25,7 +25,7 @@ TEST(LocalBrightness, LeavesOutWhatIsNotTheSurface) {
   image(highlight).setTo(cv::Scalar(255, 255, 255));
   EXPECT_GT(LocalBrightness(image, valid).At({40, 30}), kBrightened);
   valid(highlight).setTo(0);
-  EXPECT_NEAR(LocalBrightness(image, valid).At({40, 30}), 100, kRim);
+  EXPECT_NEAR(LocalBrightness(image, valid).At({40, 30}), 100, kHighlightRim);
   valid.setTo(0);
   EXPECT_EQ(LocalBrightness(image, valid).At({40, 30}), 0);
 }
@@ -34,7 +34,7 @@ TEST(LocalBrightness, FollowsTheImageToAFractionOfAPixel) {
   cv::Mat image(64, 128, CV_8UC1);
   for (int x = 0; x < image.cols; ++x) image.col(x).setTo(2 * x);
   const LocalBrightness brightness(image, {});
-  for (const double x : {40.0, 41.3, 61.9, 80.5}) EXPECT_NEAR(brightness.At({x, 30.2}), 2 * x, kRounding);
+  for (const double x : {40.0, 41.3, 61.9, 80.5}) EXPECT_NEAR(brightness.At({x, 30.2}), 2 * x, kAverageRounding);
   EXPECT_EQ(brightness.At({-20, 30}), 0);
   EXPECT_EQ(brightness.At({40, 300}), 0);
 }

@@ -12,13 +12,13 @@
 namespace pliant {
 namespace {
 
-constexpr int kWidth = 37;
-constexpr int kHeight = 23;
+constexpr int kStoredWidth = 37;
+constexpr int kStoredHeight = 23;
 
 std::vector<unsigned char> Encoded(const std::string& extension, int type) {
   std::vector<unsigned char> file;
   try {
-    cv::imencode(extension, cv::Mat(kHeight, kWidth, type, cv::Scalar::all(1)), file);
+    cv::imencode(extension, cv::Mat(kStoredHeight, kStoredWidth, type, cv::Scalar::all(1)), file);
   } catch (const cv::Exception&) {
     file.clear();  // a format that this OpenCV has not
   }
@@ -35,7 +35,7 @@ TEST(ImageSize, IsTheOneThatIsDecoded) {
     const auto file = Encoded(extension, type);
     if (file.empty()) continue;
     ++known;
-    EXPECT_EQ(ImageSizeOf(file), cv::Size(kWidth, kHeight)) << extension;
+    EXPECT_EQ(ImageSizeOf(file), cv::Size(kStoredWidth, kStoredHeight)) << extension;
     for (std::size_t size = 0; size < file.size(); ++size)  // no byte behind the end is looked at
       ImageSizeOf(std::vector(file.begin(), file.begin() + static_cast<std::ptrdiff_t>(size)));
   }
@@ -50,7 +50,7 @@ TEST(ImageSize, IsThatOfATiffOfEitherByteOrderAndOfBigTiff) {
       64);
   for (const std::string& file : {big_endian, big_tiff})
     EXPECT_EQ(ImageSizeOf(std::span(reinterpret_cast<const unsigned char*>(file.data()), file.size())),
-              cv::Size(kWidth, kHeight));
+              cv::Size(kStoredWidth, kStoredHeight));
 }
 
 TEST(ImageSize, OfOtherFilesIsNotKnown) {

@@ -11,14 +11,14 @@
 namespace pliant {
 namespace {
 
-const cv::Size kSize(320, 240);
+const cv::Size kMaskSize(320, 240);
 const cv::Point kCenter(160, 120);
 constexpr int kSpotWithHalo = 400;  // pixels: a disk of radius 11 has 380
 
-cv::Mat Tissue() { return {kSize, CV_8UC3, cv::Scalar(90, 100, 170)}; }
+cv::Mat Tissue() { return {kMaskSize, CV_8UC3, cv::Scalar(90, 100, 170)}; }
 
 cv::Mat RoundView() {
-  cv::Mat image(kSize, CV_8UC3, cv::Scalar(3, 3, 3));
+  cv::Mat image(kMaskSize, CV_8UC3, cv::Scalar(3, 3, 3));
   cv::circle(image, kCenter, 110, cv::Scalar(90, 100, 170), cv::FILLED);
   return image;
 }
@@ -73,13 +73,13 @@ TEST(DarkBorderMask, IgnoresCaptionsOnTheBlack) {
 
 TEST(DarkBorderMask, IsEmptyOnAFullViewAndFullOnABlackImage) {
   EXPECT_EQ(cv::countNonZero(DarkBorderMask(ToGray(Tissue()), {})), 0);
-  EXPECT_EQ(cv::countNonZero(DarkBorderMask(cv::Mat::zeros(kSize, CV_8UC1), {})), kSize.area());
+  EXPECT_EQ(cv::countNonZero(DarkBorderMask(cv::Mat::zeros(kMaskSize, CV_8UC1), {})), kMaskSize.area());
 }
 
 TEST(ValidMask, CombinesGivenAndFoundMasksAndHonorsTheSwitches) {
   cv::Mat image = RoundView();
   cv::circle(image, {200, 150}, 5, cv::Scalar(255, 255, 255), cv::FILLED);
-  cv::Mat given(kSize, CV_8UC1, cv::Scalar(7));
+  cv::Mat given(kMaskSize, CV_8UC1, cv::Scalar(7));
   given(cv::Rect(100, 100, 20, 20)).setTo(0);
   const cv::Mat valid = ValidMask(image, given, {});
   EXPECT_EQ(At(valid, 110, 110), 0);
@@ -89,7 +89,7 @@ TEST(ValidMask, CombinesGivenAndFoundMasksAndHonorsTheSwitches) {
   MaskOptions off;
   off.highlights = Switch::kOff;
   off.border = Switch::kOff;
-  EXPECT_EQ(cv::countNonZero(ValidMask(image, {}, off)), kSize.area());
+  EXPECT_EQ(cv::countNonZero(ValidMask(image, {}, off)), kMaskSize.area());
 }
 
 TEST(SupportMask, GivesTheShareOfASquareAndCountsTheOutsideAsUnusable) {

@@ -66,9 +66,9 @@ TEST(ColmapModel, OfARunLinksImagesAndPointsBothWays) {
   EXPECT_EQ(num_points, kPoints);
 }
 
-class Bytes {
+class BinaryRows {
  public:
-  explicit Bytes(std::string bytes) : bytes_(std::move(bytes)) {}
+  explicit BinaryRows(std::string bytes) : bytes_(std::move(bytes)) {}
   template <class T>
   T Take() {
     T value{};
@@ -92,7 +92,7 @@ class Bytes {
 TEST(ColmapModel, HasTheSameInBinary) {
   const TestFolder folder;
   WriteRun(folder.Path("run"), 5);
-  Bytes images(folder.Read("run/sparse/images.bin"));
+  BinaryRows images(folder.Read("run/sparse/images.bin"));
   ASSERT_EQ(images.Take<std::uint64_t>(), 4u);
   for (int i = 1; i < 5; ++i) {
     const FrameReport report = Report(i);
@@ -111,7 +111,7 @@ TEST(ColmapModel, HasTheSameInBinary) {
     }
   }
   EXPECT_TRUE(images.AtEnd());
-  Bytes points(folder.Read("run/sparse/points3D.bin"));
+  BinaryRows points(folder.Read("run/sparse/points3D.bin"));
   ASSERT_EQ(points.Take<std::uint64_t>(), static_cast<std::uint64_t>(kPoints));
   for (int i = 0; i < kPoints; ++i) {
     EXPECT_EQ(points.Take<std::uint64_t>(), static_cast<std::uint64_t>(3 * i));

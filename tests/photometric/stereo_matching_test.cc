@@ -19,7 +19,7 @@ namespace pliant {
 namespace {
 
 constexpr std::size_t kMinCorners = 100;  // of 300 asked for
-constexpr double kSubPixel_px = 0.06;     // median: an alignment of patches that are not quite flat
+constexpr double kMatched_px = 0.06;      // median: an alignment of patches that are not quite flat
 constexpr double kSemiGlobal_px = 0.15;   // median: sixteenths of a pixel, and windows across edges
 constexpr double kWrong_px = 1.0;         // is no noise any more
 constexpr double kMaxShareWrong = 0.03;
@@ -78,7 +78,7 @@ TEST_P(EveryMatcher, FindsTheDisparityThatTheDepthSays) {
       errors_px.push_back(std::abs(matches[i]->disparity_px - focal_baseline / *depth_mm));
   }
   EXPECT_GT(errors_px.size(), pixels.size() / 2);
-  EXPECT_LT(Median(errors_px), GetParam() == StereoMatcher::kPhotometric ? kSubPixel_px : kSemiGlobal_px);
+  EXPECT_LT(Median(errors_px), GetParam() == StereoMatcher::kPhotometric ? kMatched_px : kSemiGlobal_px);
   const auto wrong = std::count_if(errors_px.begin(), errors_px.end(), [](double error) { return error > kWrong_px; });
   EXPECT_LT(static_cast<double>(wrong), kMaxShareWrong * static_cast<double>(errors_px.size()));
 }

@@ -17,7 +17,7 @@
 namespace pliant {
 namespace {
 
-constexpr int kFrames = 16;
+constexpr int kImages = 16;
 constexpr int kWidth = 1600;
 constexpr int kHeight = 1200;
 constexpr double kBlob_px = 3;       // of the texture: nothing in it is finer
@@ -36,14 +36,14 @@ class MovingTexture : public testing::Test {
     auto writer = NativeWriter::Create(folder_.Path("sequence"), {.camera = *camera, .fps = 25});
     ASSERT_TRUE(writer.ok()) << writer.status().message();
     cv::RNG random(7);
-    cv::Mat texture(kHeight, kWidth + kFrames * kStep_px, CV_32FC1);
+    cv::Mat texture(kHeight, kWidth + kImages * kStep_px, CV_32FC1);
     random.fill(texture, cv::RNG::NORMAL, 0, 1);
     cv::GaussianBlur(texture, texture, {}, kBlob_px);
     cv::Scalar mean;
     cv::Scalar deviation;
     cv::meanStdDev(texture, mean, deviation);
     texture = 128 + kContrast / deviation[0] * texture;
-    for (int k = 0; k < kFrames; ++k) {
+    for (int k = 0; k < kImages; ++k) {
       cv::Mat grain(kHeight, kWidth, CV_32FC1);
       random.fill(grain, cv::RNG::NORMAL, 0, noise);
       cv::Mat image;

@@ -24,15 +24,15 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr int kFrames = 24;
-constexpr double kAsGood = 1.02;       // two per cent for the points that one run has and the other has not
-constexpr double kRounding = 0.51e-4;  // px: a file has four decimals
+constexpr int kTrackedFrames = 24;
+constexpr double kAsGoodAsOracle = 1.02;  // two per cent for the points that one run has and the other has not
+constexpr double kRounding = 0.51e-4;     // px: a file has four decimals
 constexpr int kMinPoints = 100;
 
 class GivenTracksRun : public testing::Test {
  protected:
   void SetUp() override {
-    scene_ = simulation_test::SmallScene(TrajectoryKind::kSway, kFrames);
+    scene_ = simulation_test::SmallScene(TrajectoryKind::kSway, kTrackedFrames);
     scene_.camera.width = 320;
     scene_.camera.height = 240;
     scene_.deformation.amplitude_mm = 2.5;
@@ -52,7 +52,7 @@ class GivenTracksRun : public testing::Test {
     for (const auto& hit : simulator.HitsAt(0, pixels))
       if (hit) points.push_back(hit->point);
     std::vector<PixelTrack> tracks(points.size());
-    for (int frame_idx = 0; frame_idx < kFrames; ++frame_idx) {
+    for (int frame_idx = 0; frame_idx < kTrackedFrames; ++frame_idx) {
       const auto seen = simulator.Observe(frame_idx, points);
       for (std::size_t k = 0; k < seen.size(); ++k) {
         tracks[k].id.value = static_cast<std::int64_t>(k);
@@ -121,9 +121,9 @@ TEST_F(GivenTracksRun, TrueTracksFromAFileAreAsGoodAsTheOracle) {
   ASSERT_TRUE(with_oracle.ok()) << with_oracle.status().message();
   const RunSummary summary = TrackFile(TrueTracks(), Options());
   EXPECT_EQ(summary.status, RunStatus::kCompleted);
-  EXPECT_EQ(summary.frames_tracked, kFrames);
+  EXPECT_EQ(summary.frames_tracked, kTrackedFrames);
   EXPECT_GE(summary.frames_tracked, with_oracle->frames_tracked);
-  EXPECT_LT(DepthErrorMm("run"), kAsGood * DepthErrorMm("oracle"));
+  EXPECT_LT(DepthErrorMm("run"), kAsGoodAsOracle * DepthErrorMm("oracle"));
   EXPECT_EQ(summary.description.tracks, folder_.Path("tracks.csv"));
   EXPECT_EQ(ReadRunSummary(folder_.Path("run/run.json"))->description.tracks, folder_.Path("tracks.csv"));
 }
@@ -142,7 +142,7 @@ TEST_F(GivenTracksRun, PointsHaveTheIdsAndPixelsOfTheirTracks) {
       EXPECT_LT((seen.pixel - pixel->pixel).cwiseAbs().maxCoeff(), 2 * kRounding);
       ++count;
     }
-  EXPECT_GT(count, kFrames * kMinPoints);
+  EXPECT_GT(count, kTrackedFrames * kMinPoints);
 }
 
 TEST_F(GivenTracksRun, TracksThatBeginLaterAreCandidatesOfTheMap) {
@@ -159,7 +159,7 @@ TEST_F(GivenTracksRun, TracksThatBeginLaterAreCandidatesOfTheMap) {
   int grown = 0;
   for (auto rows = reader.Next(); rows.ok() && rows->has_value(); rows = reader.Next())
     for (const PointObservation& seen : (*rows)->observations)
-      if (seen.id.value % 2 == 0 && (*rows)->frame_idx == kFrames - 1) ++grown;
+      if (seen.id.value % 2 == 0 && (*rows)->frame_idx == kTrackedFrames - 1) ++grown;
   EXPECT_GT(grown, 0);
 }
 
@@ -197,7 +197,7 @@ TEST_F(GivenTracksRun, TheNoiseOfTheOracleIsOfTheSizeThatWasAskedFor) {
       squares += (seen.pixel - PixelIn(*track->second, (*rows)->frame_idx)->pixel).squaredNorm();
       count += 2;
     }
-  ASSERT_GT(count, kFrames * kMinPoints);
+  ASSERT_GT(count, kTrackedFrames * kMinPoints);
   EXPECT_NEAR(std::sqrt(squares / count), 0.3, 0.03);  // points that are far off are rejected
 }
 

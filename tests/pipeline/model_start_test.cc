@@ -23,12 +23,12 @@ using testing::HasSubstr;
 constexpr double kFileModel_mm = 0.05;  // what the steps of the model's numbers add to the error
 constexpr double kMedianOfOthers_mm =
     1.0;  // the scale is that of the points seen in the first image, the median of all
-constexpr int kFrames = 12;
+constexpr int kModelFrames = 12;
 
 class ModelStartTest : public testing::Test {
  protected:
   void SetUp() override {
-    SimulationOptions scene = simulation_test::SmallScene(TrajectoryKind::kSway, kFrames);
+    SimulationOptions scene = simulation_test::SmallScene(TrajectoryKind::kSway, kModelFrames);
     scene.camera.width = 320;
     scene.camera.height = 240;
     scene.trajectory.sway_period_s = 2.0;
@@ -70,7 +70,7 @@ TEST_F(ModelStartTest, ItsPointsAreTrackedAsThoseOfTrueDepth) {
   const auto summary = Track(InitMethod::kColmapModel, "run", Model());
   ASSERT_TRUE(summary.ok()) << summary.status().message();
   EXPECT_EQ(summary->status, RunStatus::kCompleted) << summary->note;
-  EXPECT_EQ(summary->frames_tracked, kFrames);
+  EXPECT_EQ(summary->frames_tracked, kModelFrames);
   EXPECT_EQ(summary->first_maps.front().declared_frame_idx, 0);
   EXPECT_LT(RmseMm("run"), RmseMm("true") + kFileModel_mm);
 }
@@ -111,7 +111,7 @@ TEST_F(ModelStartTest, WaitsForAnImageThatTheModelHas) {
   const auto summary = Track(InitMethod::kColmapModel, "run", late);
   ASSERT_TRUE(summary.ok());
   EXPECT_EQ(summary->first_maps.front().reference_frame_idx, 3);
-  EXPECT_EQ(summary->frames_tracked, kFrames) << "those before it are tracked back from it";
+  EXPECT_EQ(summary->frames_tracked, kModelFrames) << "those before it are tracked back from it";
 }
 
 TEST_F(ModelStartTest, WhatIsNoModelOfThisSequenceIsRefusedInOneSentence) {

@@ -34,11 +34,11 @@ using simulation_test::WarpErrors;
 using testing::HasSubstr;
 
 constexpr double kMeanLevel = 1.0;  // gray levels in the mean: lit alike, but for the rounding of the files' corners
-constexpr double kInterpolation_mm = 0.03;   // between pixels on a slanted wall
-constexpr double kChord_mm = 0.01;           // of an edge of 1 mm: k^2 3 A / 8 / 2
-constexpr double kReddish = 1.4;             // mucosa is red
-constexpr double kTextured = 8.0;            // gray levels; a wall of one color has shading alone
-constexpr std::size_t kMinWarpedFar = 1000;  // the camera goes 10 mm ahead between the two views
+constexpr double kSlantedInterpolation_mm = 0.03;  // between pixels on a slanted wall
+constexpr double kEdgeChord_mm = 0.01;             // of an edge of 1 mm: k^2 3 A / 8 / 2
+constexpr double kReddish = 1.4;                   // mucosa is red
+constexpr double kTextured = 8.0;                  // gray levels; a wall of one color has shading alone
+constexpr std::size_t kMinWarpedFar = 1000;        // the camera goes 10 mm ahead between the two views
 
 // A room from -half to half, in millimeters.
 const Eigen::Vector3d kHalf(25, 20, 60);
@@ -150,7 +150,7 @@ TEST_F(MeshSceneTest, DepthAndPosesAgreeOnEveryPath) {
     Simulator simulator = Make(Room(WritePly(), kind, 20));
     const std::vector<double> errors = WarpErrors(simulator, 0, 12);
     EXPECT_GT(errors.size(), kMinWarped);
-    EXPECT_LT(Median(errors), kInterpolation_mm) << EnumName(kind);
+    EXPECT_LT(Median(errors), kSlantedInterpolation_mm) << EnumName(kind);
   }
 }
 
@@ -168,7 +168,7 @@ TEST_F(MeshSceneTest, CoarseWallsBendAsTheFormulaSays) {
     const Eigen::Vector3d rest = simulator.RestPosition(hit->point);
     Eigen::Vector3d moved = rest;
     moved.y() += 3.0 * std::sin(4.0 * 19 / 30.0 + 2.0 * M_PI / 80.0 * rest.sum());
-    EXPECT_LT((moved - hit->point_in_world).norm(), kChord_mm);
+    EXPECT_LT((moved - hit->point_in_world).norm(), kEdgeChord_mm);
     EXPECT_LT((moved - simulator.Position(hit->point, 19)).norm(), kLengthRoundOff_mm);
   }
 }

@@ -25,22 +25,22 @@ using simulation_test::SmoothDepth;
 using simulation_test::WarpErrors;
 using testing::HasSubstr;
 
-constexpr std::size_t kMinWarped = 160U * 120U / 6U;  // pixels that both views see; folds and lobes hide many
-constexpr double kInterpolation_mm = 0.05;     // of depth between pixels a millimeter apart on a curved, uneven wall
-constexpr int kFilled = 160 * 120 * 85 / 100;  // pixels; above the horizon there is nothing
-constexpr double kHills_mm = 12.0;             // hills of a centimeter, seen at a slant
-constexpr std::size_t kMinPoints = 200;        // of a grid of 374
-constexpr double kRayRest_mm = 1e-5;           // the hit of a ray in floats, mapped back to rest
-constexpr double kRayRest10_mm = 1e-4;         // the same for hits further away, to and from the axis
-constexpr double kOneDirection = 1e-4;         // of unit vectors from pokes of half a millimeter and more
-constexpr double kPoked_mm = 3.0;              // of 5 mm, at the nearest point of the grid
-constexpr double kUp = -0.7;                   // y points down; the sheet's normal points to the camera
-constexpr double kMoved_mm = 0.5;              // or nothing would have been tested
-constexpr int kMinOnALobe = 100;               // points of the grid: each lobe is in view
-constexpr double kOneOfTwo_mm = 1e-6;          // the two motions differ by millimeters
-constexpr int kHalfOfTheRows = 60;             // the gap runs across the view
-constexpr double kTremor_mm = 2.0;             // it adds a few tenths
-constexpr double kNoJump_mm = 2.5;             // a loop of about 50 mm in 40 steps, with tremor
+constexpr std::size_t kMinWarpedAtFolds = 160U * 120U / 6U;  // pixels that both views see; folds and lobes hide many
+constexpr double kCoarseInterpolation_mm = 0.05;  // of depth between pixels a millimeter apart on a curved, uneven wall
+constexpr int kFilled = 160 * 120 * 85 / 100;     // pixels; above the horizon there is nothing
+constexpr double kHills_mm = 12.0;                // hills of a centimeter, seen at a slant
+constexpr std::size_t kMinPoints = 200;           // of a grid of 374
+constexpr double kRayRest_mm = 1e-5;              // the hit of a ray in floats, mapped back to rest
+constexpr double kRayRest10_mm = 1e-4;            // the same for hits further away, to and from the axis
+constexpr double kOneDirection = 1e-4;            // of unit vectors from pokes of half a millimeter and more
+constexpr double kPoked_mm = 3.0;                 // of 5 mm, at the nearest point of the grid
+constexpr double kUp = -0.7;                      // y points down; the sheet's normal points to the camera
+constexpr double kSomeMotion_mm = 0.5;            // or nothing would have been tested
+constexpr int kMinOnALobe = 100;                  // points of the grid: each lobe is in view
+constexpr double kOneOfTwo_mm = 1e-6;             // the two motions differ by millimeters
+constexpr int kHalfOfTheRows = 60;                // the gap runs across the view
+constexpr double kTremor_mm = 2.0;                // it adds a few tenths
+constexpr double kNoJump_mm = 2.5;                // a loop of about 50 mm in 40 steps, with tremor
 
 SimulationOptions Scene(SceneKind scene, TrajectoryKind trajectory, int frames) {
   SimulationOptions options = SmallScene(trajectory, frames);
@@ -73,8 +73,8 @@ TEST_P(EveryScene, DepthAndPosesAgreeWhereNothingDeforms) {
   Simulator simulator = Make(Scene(GetParam().scene, GetParam().path, 20));
   EXPECT_TRUE(simulator.warnings().empty());
   const std::vector<double> errors = WarpErrors(simulator, 0, 12);
-  EXPECT_GT(errors.size(), kMinWarped);
-  EXPECT_LT(Median(errors), kInterpolation_mm);
+  EXPECT_GT(errors.size(), kMinWarpedAtFolds);
+  EXPECT_LT(Median(errors), kCoarseInterpolation_mm);
 }
 
 TEST_P(EveryScene, GivesTheSameBytesForAnyNumberOfThreads) {
@@ -174,8 +174,8 @@ TEST(Deformation, MaterialPointsLieOnTheSurfaceThatIsSeen) {
       if (seen && std::abs(*seen - in_cam.z()) < 1.5) errors.push_back(std::abs(*seen - in_cam.z()));
     }
     ASSERT_GT(errors.size(), kMinSeen);
-    EXPECT_LT(Median(errors), kInterpolation_mm) << EnumName(scene);
-    EXPECT_GT(Median(motions), kMoved_mm) << EnumName(scene);
+    EXPECT_LT(Median(errors), kCoarseInterpolation_mm) << EnumName(scene);
+    EXPECT_GT(Median(motions), kSomeMotion_mm) << EnumName(scene);
   }
 }
 

@@ -35,7 +35,7 @@ constexpr double kDefocused = 0.3;          // of the pixels change where all of
 constexpr std::size_t kMinCompared = 5000;  // of 11,200 pixels
 constexpr double kMinDisparity_px = 5.0;    // or the mirrored camera would look the same
 constexpr double kSameLevel = 2.5;          // gray levels: fine texture between pixels; hidden ones are fewer than half
-constexpr double kChord_mm = 0.02;          // as kChord_px, at 25 mm and a focal length of about 25 px a mm
+constexpr double kSensorChord_mm = 0.02;    // as kChord_px, at 25 mm and a focal length of about 25 px a mm
 constexpr double kInverseModel_px = 1e-6;   // of the inverse model, which is iterative
 constexpr std::size_t kMinRatios = 500;     // pixels that are neither dark nor bright in both images
 constexpr double kResampled = 0.03;         // relative; fine texture is sampled at other points
@@ -251,7 +251,7 @@ TEST(Sensor, MaterialLiesInTheRightImageAtTheDisparity) {
     if (right[i].visibility != Visibility::kVisible) continue;
     ++visible;
     const auto seen = simulator.HitsAt(9, std::vector{right[i].pixel}, Eye::kRight)[0];
-    EXPECT_LT((seen.value().point_in_world - hits[i]->point_in_world).norm(), kChord_mm);
+    EXPECT_LT((seen.value().point_in_world - hits[i]->point_in_world).norm(), kSensorChord_mm);
   }
   EXPECT_GT(visible, 0);
 }

@@ -20,6 +20,8 @@
 
 namespace pliant {
 
+inline const CalibrationBoard kChessboard9x6 = {BoardKind::kChessboard, 9, 6, 2.0};
+
 // Of a board whose center is at `center_in_cam`, tilted about an axis in its plane.
 inline Rigid3 BoardPoseAt(const CalibrationBoard& board, const Eigen::Vector3d& center_in_cam, double tilt_rad,
                           double axis_rad) {

@@ -1,10 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Tolerances that have the same reason in many tests. What has a reason of its own stands in its test.
+// Units, and tolerances that have the same reason in many tests. What has a reason of its own stands in its test.
 #pragma once
 
+#include <numbers>
+
 namespace pliant {
+
+inline constexpr double kDeg = std::numbers::pi / 180;  // rad
 
 inline constexpr double kRoundOff = 1e-12;             // a few operations in double precision on values of about one
 inline constexpr double kLengthRoundOff_mm = 1e-9;     // many of them on lengths of about 100 mm

@@ -19,12 +19,12 @@ namespace {
 using test::TexturedPlane;
 
 constexpr int kColumns = 80;  // every fourth pixel
-constexpr double kSigma = 0.01;
+constexpr double kMeshSigma = 0.01;
 
 // The true depth of the plane in a view.
 DenseDepth TrueDepth(const TexturedPlane& plane, int view) {
   const cv::Size size(TexturedPlane::kWidth, TexturedPlane::kHeight);
-  DenseDepth dense{cv::Mat(size, CV_32F), cv::Mat(size, CV_32F, cv::Scalar(kSigma))};
+  DenseDepth dense{cv::Mat(size, CV_32F), cv::Mat(size, CV_32F, cv::Scalar(kMeshSigma))};
   for (int y = 0; y < size.height; ++y)
     for (int x = 0; x < size.width; ++x)
       dense.depth.at<float>(y, x) = static_cast<float>(plane.PointOn(x, y, view).z());
@@ -55,7 +55,7 @@ TEST(TrackedMesh, OfOneFrameLiesOnTheSurfaceAndFacesTheCamera) {
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
     EXPECT_NEAR(mesh.vertices[v].z(), 50 + 0.3 * mesh.vertices[v].x(), 0.05);
     EXPECT_GT(mesh.normals[v].dot(normal), 0.99F);
-    EXPECT_NEAR(mesh.sigmas[v], kSigma * mesh.vertices[v].norm(), 1e-2);
+    EXPECT_NEAR(mesh.sigmas[v], kMeshSigma * mesh.vertices[v].norm(), 1e-2);
   }
 }
 
@@ -169,7 +169,7 @@ TEST(TrackedMesh, FramesTogetherAreNearerThanOne) {
     Random random(static_cast<std::uint64_t>(seed + 1));
     for (int y = 0; y < dense.depth.rows; ++y)
       for (int x = 0; x < dense.depth.cols; ++x)
-        dense.depth.at<float>(y, x) *= static_cast<float>(1.0 + kSigma * random.Normal());
+        dense.depth.at<float>(y, x) *= static_cast<float>(1.0 + kMeshSigma * random.Normal());
     return dense;
   };
   const auto error_of = [&](int views) {

@@ -18,7 +18,7 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 
 constexpr double kMaxChange = 0.02;
-constexpr int kSide = 12;  // points in a row, of as many rows
+constexpr int kPointsInARow = 12;  // points in a row, of as many rows
 
 // A wall that three maps saw; the last of them bends it, by 6 % from one side to the other, and errs by half a per
 // cent.
@@ -29,12 +29,12 @@ struct Wall {
 
   Wall() {
     Random random(3);
-    for (int i = 0; i < kSide * kSide; ++i) {
-      const int row = i / kSide;
-      const Eigen::Vector3d in_cam(4.0 * (i % kSide) - 22, 4.0 * row - 22, 60);
+    for (int i = 0; i < kPointsInARow * kPointsInARow; ++i) {
+      const int row = i / kPointsInARow;
+      const Eigen::Vector3d in_cam(4.0 * (i % kPointsInARow) - 22, 4.0 * row - 22, 60);
       Landmark landmark{.id = PointId{i}, .position = cam_from_world.Inverse() * in_cam, .times_reestimated = 2};
       map.landmarks.push_back(landmark);
-      Put(i, 1 + 0.06 * (i % kSide) / kSide + random.Normal(0.005));
+      Put(i, 1 + 0.06 * (i % kPointsInARow) / kPointsInARow + random.Normal(0.005));
     }
   }
   // Where the last map has a point, by where it was.
@@ -75,7 +75,7 @@ TEST(DriftedPoints, ThatTheMapDoesNotHaveAreNone) {
 TEST(DriftedPoints, ErrByMoreThanThreeStandardDeviations) {
   Wall wall;
   Random random(5);
-  for (int i = 0; i < kSide * kSide; ++i) wall.Put(i, 1 + random.Normal(0.02));
+  for (int i = 0; i < kPointsInARow * kPointsInARow; ++i) wall.Put(i, 1 + random.Normal(0.02));
   wall.Put(40, 0.95);
   EXPECT_THAT(wall.Drifted(), testing::Not(testing::Contains(PointId{40})));
   wall.Put(40, 0.85);

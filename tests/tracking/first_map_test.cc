@@ -12,7 +12,7 @@
 namespace pliant {
 namespace {
 
-constexpr double kRounding = 1e-9;
+constexpr double kFirstMapRounding = 1e-9;
 const std::array<double, 3> kParams = {100, 31.5, 23.5};
 
 // Three frames of a scene that deforms: point k starts at (5 k - 5, 0, 50) and moves by (k, 0, 1) a frame, the camera
@@ -57,7 +57,7 @@ TEST(FirstMap, IsThatOfTheLastFrameWithTheMotionIntoIt) {
     EXPECT_EQ(landmark.rest_position, DeformingStart::Position(k, 0));
     EXPECT_EQ(landmark.position, DeformingStart::Position(k, 2));
     EXPECT_EQ(landmark.last_motion, Eigen::Vector3d(k, 0, 1));
-    EXPECT_NEAR(landmark.log_distance_sigma, kLogSigma, kRounding);
+    EXPECT_NEAR(landmark.log_distance_sigma, kLogSigma, kFirstMapRounding);
     EXPECT_EQ(landmark.determined_at, landmark.position);
     EXPECT_EQ(landmark.pixel, start.frames[2].observations[k == 0 ? 0 : 1].pixel);
   }
@@ -99,12 +99,12 @@ TEST(FirstMap, GivesEveryFrameItsOwnPositions) {
     EXPECT_EQ(report.first_map->declared_frame_idx, start.frames.back().frame_idx);
     EXPECT_EQ(report.optimized, t == 1 ? 3 : 2);
     ASSERT_EQ(static_cast<int>(report.observations.size()), report.optimized);
-    EXPECT_LT(report.median_reprojection_error_px, kRounding);
+    EXPECT_LT(report.median_reprojection_error_px, kFirstMapRounding);
     for (const PointObservation& seen : report.observations) {
       EXPECT_EQ(seen.position, DeformingStart::Position(static_cast<int>(seen.id.value), t));
       EXPECT_EQ(seen.ssim, 1 - 0.1 * t);
-      EXPECT_NEAR(seen.sigma, kLogSigma * (*report.cam_from_world * seen.position).norm(), kRounding);
-      EXPECT_LT((*start.camera.Project(*report.cam_from_world * seen.position) - seen.pixel).norm(), kRounding);
+      EXPECT_NEAR(seen.sigma, kLogSigma * (*report.cam_from_world * seen.position).norm(), kFirstMapRounding);
+      EXPECT_LT((*start.camera.Project(*report.cam_from_world * seen.position) - seen.pixel).norm(), kFirstMapRounding);
     }
     EXPECT_EQ(report.added, 2 - t);
     ASSERT_EQ(static_cast<int>(report.new_points.size()), report.added);
@@ -147,7 +147,7 @@ TEST(FirstMap, TakesItsUnitFromTheReferencesPointsAlone) {
   // The map has the surface at 50: so much is a millimeter.
   for (const InitFrameState& frame : start.outcome.frames) {
     const int since = frame.frame_idx - start.outcome.frames.front().frame_idx;
-    EXPECT_NEAR(frame.cam_from_world.translation.x(), -since * 50.0 / 40.0, kRounding);
+    EXPECT_NEAR(frame.cam_from_world.translation.x(), -since * 50.0 / 40.0, kFirstMapRounding);
   }
   ASSERT_TRUE(oracle.Pose(22));
 }

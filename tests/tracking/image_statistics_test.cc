@@ -15,9 +15,9 @@
 namespace pliant {
 namespace {
 
-constexpr double kNoise = 0.1;       // relative
-constexpr double kRounding = 0.35;   // gray levels: that of an image without noise
-constexpr double kTrackNoise = 0.1;  // relative; 500 tracks fix the deviation to 1 %
+constexpr double kNoiseError = 0.1;        // relative
+constexpr double kNoiselessLevels = 0.35;  // gray levels: that of an image without noise
+constexpr double kTrackNoise = 0.1;        // relative; 500 tracks fix the deviation to 1 %
 constexpr double kExact_px = 1e-9;
 
 cv::Mat NoisyField(double sigma) {
@@ -30,13 +30,13 @@ cv::Mat NoisyField(double sigma) {
 }
 
 TEST(ImageNoise, IsTheDeviationOfWhiteNoise) {
-  for (const double sigma : {1.0, 3.0, 8.0}) EXPECT_NEAR(ImageNoise(NoisyField(sigma), {}) / sigma, 1.0, kNoise);
+  for (const double sigma : {1.0, 3.0, 8.0}) EXPECT_NEAR(ImageNoise(NoisyField(sigma), {}) / sigma, 1.0, kNoiseError);
 }
 
 TEST(ImageNoise, IsThatOfRoundingWhereThereIsNone) {
-  EXPECT_LT(ImageNoise(NoisyField(0), {}), kRounding);
+  EXPECT_LT(ImageNoise(NoisyField(0), {}), kNoiselessLevels);
   const SyntheticTexture texture(2);
-  EXPECT_LT(ImageNoise(texture.Render({200, 150}, [](cv::Point2d p) { return p; }), {}), kRounding);
+  EXPECT_LT(ImageNoise(texture.Render({200, 150}, [](cv::Point2d p) { return p; }), {}), kNoiselessLevels);
 }
 
 TEST(ImageNoise, LeavesOutWhatIsMaskedOrSaturated) {
@@ -53,7 +53,7 @@ TEST(ImageNoise, LeavesOutWhatIsMaskedOrSaturated) {
       }
     }
   }
-  EXPECT_NEAR(ImageNoise(gray, valid) / 3, 1.0, kNoise);
+  EXPECT_NEAR(ImageNoise(gray, valid) / 3, 1.0, kNoiseError);
   EXPECT_EQ(ImageNoise(gray, cv::Mat::zeros(gray.size(), CV_8UC1)), 0.0);
 }
 
@@ -111,8 +111,8 @@ TEST(MeasureImageStatistics, TellsNoiseAndItsEffectOnTracks) {
   const ImageStatistics clean = MeasureImageStatistics(MovingFrames(20, 0), {}, 2);
   const ImageStatistics noisy = MeasureImageStatistics(MovingFrames(20, 6), {}, 2);
   EXPECT_EQ(clean.frames, 20);
-  EXPECT_LT(clean.noise_levels, kRounding);
-  EXPECT_NEAR(noisy.noise_levels / 6, 1.0, kNoise);
+  EXPECT_LT(clean.noise_levels, kNoiselessLevels);
+  EXPECT_NEAR(noisy.noise_levels / 6, 1.0, kNoiseError);
   EXPECT_GT(clean.corners, 20);
   EXPECT_GE(clean.alive_after_1, clean.alive_after_9);
   EXPECT_GT(clean.alive_after_9, 0.5);  // some leave the image

@@ -10,17 +10,17 @@
 namespace pliant {
 namespace {
 
-constexpr double kSamePixel_px = 1e-6;  // and entries of the affine change: round-off, times pixels a mm
-constexpr double kRounding = 1e-9;      // px; operations on pixels of some hundreds
+constexpr double kSamePixel_px = 1e-6;   // and entries of the affine change: round-off, times pixels a mm
+constexpr double kPixelRounding = 1e-9;  // px; operations on pixels of some hundreds
 
-Camera TestCamera() { return *Camera::Create("PINHOLE", 640, 480, std::vector<double>{500, 500, 319.5, 239.5}); }
+Camera LostPointsCamera() { return *Camera::Create("PINHOLE", 640, 480, std::vector<double>{500, 500, 319.5, 239.5}); }
 
 // What the wall has done by time t: it slides and bends, evenly over the few millimeters between points.
 Eigen::Vector3d Displaced(const Eigen::Vector3d& rest, double t) {
   return rest + t * Eigen::Vector3d(1 + 0.02 * rest.x(), 0.5, 0.01 * rest.y());
 }
 
-std::vector<Landmark> Wall(double t) {
+std::vector<Landmark> MovingWall(double t) {
   std::vector<Landmark> seen;
   for (int y = -4; y <= 4; ++y)
     for (int x = -4; x <= 4; ++x) {
@@ -40,12 +40,12 @@ TEST(LostPoints, MoveWithThePointsAroundThem) {
   const Eigen::Vector3d own_share(0.1, -0.2, 0.3);
   LostPoints lost;
   lost.Add(PointAt(rest, own_share, 1), Rigid3());
-  lost.Move(Wall(1));
-  EXPECT_LT((lost.Find(PointId{1000})->position - PointAt(rest, own_share, 1).position).norm(), kRounding);
-  lost.Move(Wall(3));
+  lost.Move(MovingWall(1));
+  EXPECT_LT((lost.Find(PointId{1000})->position - PointAt(rest, own_share, 1).position).norm(), kPixelRounding);
+  lost.Move(MovingWall(3));
   EXPECT_LT((lost.Find(PointId{1000})->position - PointAt(rest, own_share, 3).position).norm(), kBend);
-  lost.Move(Wall(1));  // nothing adds up on the way
-  EXPECT_LT((lost.Find(PointId{1000})->position - PointAt(rest, own_share, 1).position).norm(), kRounding);
+  lost.Move(MovingWall(1));  // nothing adds up on the way
+  EXPECT_LT((lost.Find(PointId{1000})->position - PointAt(rest, own_share, 1).position).norm(), kPixelRounding);
 }
 
 TEST(LostPoints, TheOldestIsTheOneLostFirst) {
@@ -76,17 +76,17 @@ TEST(LostPoints, AreExpectedWhereTheCameraShouldSeeThem) {
   add(3, {0, 0, 10});    // behind the camera, once that has gone 25 mm ahead
   add(4, {5, 0, 50});
   const Rigid3 ahead(Eigen::Quaterniond::Identity(), Eigen::Vector3d(0, 0, -25));
-  const auto expected = lost.Expected(TestCamera(), ahead, 10);
+  const auto expected = lost.Expected(LostPointsCamera(), ahead, 10);
   ASSERT_EQ(expected.size(), 2U);
   EXPECT_EQ(expected[0].id, PointId{1});
-  EXPECT_LT((expected[0].pixel - Eigen::Vector2d(319.5, 239.5)).norm(), kRounding);
-  EXPECT_LT((expected[0].affine_from_latest - 2 * Eigen::Matrix2d::Identity()).norm(), kRounding);  // half as far
-  EXPECT_LT((expected[1].pixel - Eigen::Vector2d(419.5, 239.5)).norm(), kRounding);
+  EXPECT_LT((expected[0].pixel - Eigen::Vector2d(319.5, 239.5)).norm(), kPixelRounding);
+  EXPECT_LT((expected[0].affine_from_latest - 2 * Eigen::Matrix2d::Identity()).norm(), kPixelRounding);  // half as far
+  EXPECT_LT((expected[1].pixel - Eigen::Vector2d(419.5, 239.5)).norm(), kPixelRounding);
   // A camera that has turned about its axis by a quarter.
   const Rigid3 turned(RotationExp({0, 0, EIGEN_PI / 2}), Eigen::Vector3d::Zero());
   Eigen::Matrix2d quarter;
   quarter << 0, -1, 1, 0;
-  EXPECT_LT((lost.Expected(TestCamera(), turned, 10)[0].affine_from_latest - quarter).norm(), kRounding);
+  EXPECT_LT((lost.Expected(LostPointsCamera(), turned, 10)[0].affine_from_latest - quarter).norm(), kPixelRounding);
 }
 
 TEST(LostPoints, AreLookedForInTurn) {
@@ -94,7 +94,7 @@ TEST(LostPoints, AreLookedForInTurn) {
   for (int id = 0; id < 5; ++id) lost.Add({PointId{id}, {0, 0, 50}, {0, 0, 50}}, Rigid3());
   std::vector<std::int64_t> asked;
   for (int frame = 0; frame < 5; ++frame)
-    for (const PointPrediction& prediction : lost.Expected(TestCamera(), Rigid3(), 2))
+    for (const PointPrediction& prediction : lost.Expected(LostPointsCamera(), Rigid3(), 2))
       asked.push_back(prediction.id.value);
   EXPECT_EQ(asked, (std::vector<std::int64_t>{0, 1, 2, 3, 4, 0, 1, 2, 3, 4}));
   lost.Remove(PointId{1});
@@ -105,11 +105,11 @@ TEST(LostPoints, AreLookedForInTurn) {
 TEST(LostPoints, GiveTheirPlaceUpWhereTheyAreSearchedInVain) {
   LostPoints lost;
   lost.Add({PointId{0}, {0, 0, 50}, {0, 0, 50}}, Rigid3());
-  for (int frame = 0; frame < 9; ++frame) lost.Expected(TestCamera(), Rigid3(), 1);
-  EXPECT_EQ(lost.Pixels(TestCamera(), Rigid3()).size(), 1U);
-  lost.Expected(TestCamera(), Rigid3(), 1);
-  EXPECT_TRUE(lost.Pixels(TestCamera(), Rigid3()).empty());
-  EXPECT_EQ(lost.Expected(TestCamera(), Rigid3(), 1).size(), 1U) << "it is searched on";
+  for (int frame = 0; frame < 9; ++frame) lost.Expected(LostPointsCamera(), Rigid3(), 1);
+  EXPECT_EQ(lost.Pixels(LostPointsCamera(), Rigid3()).size(), 1U);
+  lost.Expected(LostPointsCamera(), Rigid3(), 1);
+  EXPECT_TRUE(lost.Pixels(LostPointsCamera(), Rigid3()).empty());
+  EXPECT_EQ(lost.Expected(LostPointsCamera(), Rigid3(), 1).size(), 1U) << "it is searched on";
 }
 
 // Cameras and points moved alike; where they rest stays.
@@ -118,11 +118,11 @@ TEST(LostPoints, AreExpectedAtTheSamePixelsWhenAllButRestIsMoved) {
   const Rigid3 ahead(RotationExp({0, 0.1, 0}), Eigen::Vector3d(0, 0, -25));
   LostPoints lost;
   lost.Add(PointAt({1.2, -0.7, 50}, {0.1, -0.2, 0.3}, 1), Rigid3());
-  lost.Move(Wall(1));
+  lost.Move(MovingWall(1));
   LostPoints moved = lost;
   moved.MoveAllButRest(motion);
-  const auto here = lost.Expected(TestCamera(), ahead, 1);
-  const auto there = moved.Expected(TestCamera(), ahead * motion.Inverse(), 1);
+  const auto here = lost.Expected(LostPointsCamera(), ahead, 1);
+  const auto there = moved.Expected(LostPointsCamera(), ahead * motion.Inverse(), 1);
   ASSERT_EQ(here.size(), 1U);
   ASSERT_EQ(there.size(), 1U);
   EXPECT_LT((there[0].pixel - here[0].pixel).norm(), kSamePixel_px);
@@ -139,19 +139,19 @@ TEST(LostPoints, AreExpectedAtTheSamePixelsInAnotherWorld) {
   };
   LostPoints lost;
   lost.Add(PointAt({1.2, -0.7, 50}, {0.1, -0.2, 0.3}, 1), Rigid3());
-  lost.Move(Wall(1));
+  lost.Move(MovingWall(1));
   LostPoints moved = lost;
   moved.MoveInto(other_from_world);
   const auto expect_same = [&] {
-    const auto here = lost.Expected(TestCamera(), ahead, 1);
-    const auto there = moved.Expected(TestCamera(), PoseInWorld(other_from_world, ahead), 1);
+    const auto here = lost.Expected(LostPointsCamera(), ahead, 1);
+    const auto there = moved.Expected(LostPointsCamera(), PoseInWorld(other_from_world, ahead), 1);
     ASSERT_EQ(there.size(), here.size());
     EXPECT_LT((there[0].pixel - here[0].pixel).norm(), kSamePixel_px);
     EXPECT_LT((there[0].affine_from_latest - here[0].affine_from_latest).norm(), kSamePixel_px);
   };
   expect_same();
-  lost.Move(Wall(3));
-  moved.Move(in_other(Wall(3)));
+  lost.Move(MovingWall(3));
+  moved.Move(in_other(MovingWall(3)));
   expect_same();
 }
 
@@ -161,12 +161,12 @@ TEST(LostPoints, OfAnotherMapGetTheRestThatTheyWouldHaveHadInThisOne) {
   const Eigen::Vector3d rest(1.2, -0.7, 50);
   LostPoints other;
   other.Add({PointId{1000}, Displaced(rest, 1), Displaced(rest, 2)}, Rigid3());
-  other.Move(Wall(1));
+  other.Move(MovingWall(1));
   LostPoints lost;
-  lost.TakeOver(std::move(other), Wall(2));
+  lost.TakeOver(std::move(other), MovingWall(2));
   EXPECT_LT((lost.Find(PointId{1000})->rest_position - rest).norm(), kBend);
   for (const double t : {2.0, 3.0}) {
-    lost.Move(Wall(t));
+    lost.Move(MovingWall(t));
     EXPECT_LT((lost.Find(PointId{1000})->position - Displaced(rest, t)).norm(), kBend) << t;
   }
 }

@@ -28,15 +28,15 @@ using test::Surface;
 constexpr double kExactPose_mm = 1e-3;  // where the solver rests, at the nominal depth
 // Median relative depth error: 0.9 % is predicted for two views, 0.3 px, 4 degrees and f = 450 px.
 constexpr double kDepth = 0.015;
-constexpr double kDepthByOpengv = 0.04;    // its refinement is not robust
-constexpr double kDepthOfThePaper = 0.25;  // four frames in, at little parallax
-constexpr double kDepthOfRansac = 0.05;    // at 0.1 px: a motion that is not refined
-constexpr double kMaxShareWrong = 0.01;    // by more than a tenth: what is uncertain stays out
-constexpr int kMaxOutliers = 2;            // that lie on their epipolar lines in all views by chance
-constexpr double kParallax_deg = 0.3;      // the median is of the points that stay in view
-constexpr double kMinByRotation = 0.95;    // share of the tracks; noise takes the others
-constexpr int kMaxMaps = 1;                // of 20 trials
-constexpr std::size_t kMinPoints = 200;    // of 500, of which some leave the image and some are uncertain
+constexpr double kDepthByOpengv = 0.04;           // its refinement is not robust
+constexpr double kDepthOfThePaper = 0.25;         // four frames in, at little parallax
+constexpr double kDepthOfRansac = 0.05;           // at 0.1 px: a motion that is not refined
+constexpr double kMaxShareWrong = 0.01;           // by more than a tenth: what is uncertain stays out
+constexpr int kMaxOutliers = 2;                   // that lie on their epipolar lines in all views by chance
+constexpr double kParallax_deg = 0.3;             // the median is of the points that stay in view
+constexpr double kMinByRotation = 0.95;           // share of the tracks; noise takes the others
+constexpr int kMaxMaps = 1;                       // of 20 trials
+constexpr std::size_t kMinMonocularPoints = 200;  // of 500, of which some leave the image and some are uncertain
 constexpr double kByEightViews = 0.85;  // a line through eight even positions has 0.77 of the error of its ends alone
 
 // A sequence need not begin where the reference is taken.
@@ -334,7 +334,7 @@ TEST(PaperInitializer, MakesItsMapThreeFramesAfterTheReference) {
   const InitOutcome outcome = Try(options, {}, InitMethod::kPaper);
   ASSERT_EQ(outcome.decision, InitDecision::kMap) << outcome.reason;
   EXPECT_EQ(outcome.frames.size(), 4U);
-  EXPECT_GT(outcome.points.size(), kMinPoints);
+  EXPECT_GT(outcome.points.size(), kMinMonocularPoints);
   EXPECT_LT(ErrorOf(outcome, MakeScene(options)).median, kDepthOfRansac);
 }
 

@@ -20,9 +20,9 @@ using test::kShape;
 using test::WavingTracks;
 using testing::HasSubstr;
 
-constexpr double kRefined = 0.5;         // of the error: six times the frames
-constexpr double kNoisier = 1.5;         // times the sigma, for twice the noise
-constexpr std::size_t kMinPoints = 100;  // the others stay
+constexpr double kRefined = 0.5;              // of the error: six times the frames
+constexpr double kNoisier = 1.5;              // times the sigma, for twice the noise
+constexpr std::size_t kMinReestimated = 100;  // the others stay
 
 TEST(ReestimateMap, RefinesTheMapOfARigidSceneByTheFramesThatFollow) {
   const WavingTracks start(11, CameraMotion::kForwards, 0.0);
@@ -65,7 +65,7 @@ TEST(ReestimateMap, APointThatDriftsStaysOut) {
     ASSERT_EQ(reestimated.decision, InitDecision::kMap) << reestimated.reason;
     EXPECT_EQ(FindById(reestimated.points, PointId{42}), nullptr);
     EXPECT_EQ(FindById(reestimated.rejected, PointId{42})->reason, InitRejection::kReprojection);
-    EXPECT_GT(reestimated.points.size(), kMinPoints);
+    EXPECT_GT(reestimated.points.size(), kMinReestimated);
   }
 }
 

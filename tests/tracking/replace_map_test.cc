@@ -13,8 +13,8 @@
 namespace pliant {
 namespace {
 
-constexpr double kSameRay = 1e-6;   // mm^2, of a cross product of positions some 50 mm away
-constexpr double kRounding = 1e-9;  // of logarithms of distances, through poses and back
+constexpr double kSameRay = 1e-6;      // mm^2, of a cross product of positions some 50 mm away
+constexpr double kLogRounding = 1e-9;  // of logarithms of distances, through poses and back
 
 // The map made again is right, in a unit of its own; the one there is has wrong depths, and points of its own.
 struct TwoMaps {
@@ -47,8 +47,8 @@ TEST(ReplaceMap, KeepsTheUnit) {
   ASSERT_TRUE(pose);
   // Of the eight in both the median is between the fifth and the sixth: 0.505.
   const double scale = 0.5 * (1 / 0.50 + 1 / 0.51);
-  EXPECT_LT((pose->translation - scale * maps.after.translation).norm(), kRounding);
-  EXPECT_LT(pose->rotation.angularDistance(maps.after.rotation), kRounding);
+  EXPECT_LT((pose->translation - scale * maps.after.translation).norm(), kLogRounding);
+  EXPECT_LT(pose->rotation.angularDistance(maps.after.rotation), kLogRounding);
   ASSERT_EQ(maps.map.landmarks.size(), 9U);
   ASSERT_EQ(refined.size(), 9U);
   for (const InitPosition& point : maps.outcome.frames[1].positions) {
@@ -57,7 +57,7 @@ TEST(ReplaceMap, KeepsTheUnit) {
       EXPECT_EQ(point.id, PointId{20});
       continue;
     }
-    EXPECT_LT((landmark->position - scale * point.position).norm(), kRounding);
+    EXPECT_LT((landmark->position - scale * point.position).norm(), kLogRounding);
     EXPECT_EQ(landmark->rest_position, landmark->position);
     EXPECT_EQ(FindById(refined, point.id)->position, landmark->rest_position);
     EXPECT_EQ(landmark->last_motion, Eigen::Vector3d::Zero());
@@ -74,9 +74,9 @@ TEST(ReplaceMap, LeavesThePointsThatItDoesNotHaveWhereTheCameraSeesThem) {
   const auto pose = ReplaceMap(maps.outcome, {maps.map, maps.before}, &maps.map, &refined);
   ASSERT_TRUE(pose);
   const Landmark& left = *maps.map.Find(PointId{3});
-  EXPECT_LT((*pose * left.position - maps.before * old.position).norm(), kRounding);
-  EXPECT_NEAR(DistanceSigma(left, *pose), DistanceSigma(old, maps.before), kRounding);
-  EXPECT_LT((left.position - left.rest_position - (old.position - old.rest_position)).norm(), kRounding);
+  EXPECT_LT((*pose * left.position - maps.before * old.position).norm(), kLogRounding);
+  EXPECT_NEAR(DistanceSigma(left, *pose), DistanceSigma(old, maps.before), kLogRounding);
+  EXPECT_LT((left.position - left.rest_position - (old.position - old.rest_position)).norm(), kLogRounding);
 }
 
 TEST(ReplaceMap, OfOtherPointsChangesNothing) {
@@ -106,7 +106,7 @@ TEST(ReplaceMap, OfAnEarlierFramePutsThePointsWhereItFoundThem) {
   const double unit = (1 / 0.50) / (0.5 * (1 / 0.50 + 1 / 0.51));
   for (const Landmark& landmark : maps.map.landmarks) {
     if (landmark.id == PointId{3}) continue;  // which the outcome does not have
-    EXPECT_LT((landmark.position - unit * at_once.map.Find(landmark.id)->position).norm(), kRounding);
+    EXPECT_LT((landmark.position - unit * at_once.map.Find(landmark.id)->position).norm(), kLogRounding);
   }
 }
 
@@ -119,7 +119,7 @@ TEST(ReestimatedPositions, AreInTheMapsWorldAndUnit) {
   for (std::size_t k = 0; k < positions.size(); ++k) {
     const InitPosition& point = maps.outcome.frames[1].positions[k];
     EXPECT_EQ(positions[k].id, point.id);
-    EXPECT_LT((maps.before * positions[k].position - scale * (maps.after * point.position)).norm(), kRounding);
+    EXPECT_LT((maps.before * positions[k].position - scale * (maps.after * point.position)).norm(), kLogRounding);
   }
   EXPECT_TRUE(ReestimatedPositions(maps.outcome, maps.before, maps.map, 9).empty()) << "eight are in both";
 }
@@ -151,7 +151,7 @@ TEST(BringForward, ChangesDistancesAsTheyChangedThen) {
     const Eigen::Vector3d was = later.before * later.then.map.Find(point.id)->position;
     const Eigen::Vector3d found = later.before * FindById(later.reestimated, point.id)->position;
     const Eigen::Vector3d is = later.cam_now * landmark->position;
-    EXPECT_LT((later.cam_now * point.position - found.norm() / was.norm() * is).norm(), kRounding);
+    EXPECT_LT((later.cam_now * point.position - found.norm() / was.norm() * is).norm(), kLogRounding);
   }
 }
 
@@ -162,7 +162,7 @@ TEST(BringForward, PutsAPointOutsideTheMapWhereItIsSeen) {
   ASSERT_NE(point, nullptr);
   const Eigen::Vector3d in_cam = later.cam_now * point->position;
   EXPECT_LT((*later.camera.Project(in_cam) - later.pixel_of_20).norm(), 1e-6);
-  EXPECT_NEAR(in_cam.norm(), (later.cam_now * FindById(later.reestimated, PointId{20})->position).norm(), kRounding);
+  EXPECT_NEAR(in_cam.norm(), (later.cam_now * FindById(later.reestimated, PointId{20})->position).norm(), kLogRounding);
 }
 
 TEST(BringForward, LeavesOutWhatIsNotSeenAnyMoreAndWhatHasBecomeALandmark) {
@@ -192,7 +192,7 @@ TEST(AverageWithBefore, TheMoreMapsHadAPointTheLessOneMovesIt) {
     const double was = std::log((maps.before * landmark->position).norm());
     const double found = std::log((maps.before * reestimated[k].position).norm());
     const double weight = landmark->times_reestimated < 5 ? 1.0 / landmark->times_reestimated : 0.2;
-    EXPECT_NEAR(std::log((maps.before * held[k].position).norm()), was + weight * (found - was), kRounding);
+    EXPECT_NEAR(std::log((maps.before * held[k].position).norm()), was + weight * (found - was), kLogRounding);
     EXPECT_LT((maps.before * held[k].position).cross(maps.before * reestimated[k].position).norm(), kSameRay);
   }
 }

@@ -15,12 +15,12 @@ namespace {
 
 constexpr int kNeighbors = 8;
 
-Camera TestCamera() { return *Camera::Create("PINHOLE", 640, 480, std::vector<double>{450, 450, 319.5, 239.5}); }
+Camera WallCamera() { return *Camera::Create("PINHOLE", 640, 480, std::vector<double>{450, 450, 319.5, 239.5}); }
 
 // A wall that is slanted, or folded along x = 0; its distances with noise.
 Eigen::Vector3d OnWall(double x, double y, double fold) { return {x, y, 60 + 0.4 * x - 0.2 * y + (x > 0 ? fold : 0)}; }
 
-Map Wall(double noise, double fold = 0) {
+Map FoldedWall(double noise, double fold = 0) {
   Random random(1);
   Map map;
   for (int y = -5; y <= 5; ++y)
@@ -28,14 +28,14 @@ Map Wall(double noise, double fold = 0) {
       Landmark landmark{.id = PointId{static_cast<std::int64_t>(map.landmarks.size())}};
       const Eigen::Vector3d on_wall = OnWall(4 * x + 0.5, 4 * y, fold);
       landmark.position = on_wall * (1.0 + random.Normal(noise));
-      landmark.pixel = *TestCamera().Project(on_wall);
+      landmark.pixel = *WallCamera().Project(on_wall);
       map.landmarks.push_back(landmark);
     }
   return map;
 }
 
 std::optional<DistancePrior> DistanceAt(const Map& map, const Eigen::Vector3d& point) {
-  return SurfaceDistances(map, Rigid3(), kNeighbors).At(*TestCamera().Project(point), point.normalized());
+  return SurfaceDistances(map, Rigid3(), kNeighbors).At(*WallCamera().Project(point), point.normalized());
 }
 
 TEST(SurfaceDistances, AreThoseOfTheWallAndAsCertainAsItsPoints) {
@@ -45,7 +45,7 @@ TEST(SurfaceDistances, AreThoseOfTheWallAndAsCertainAsItsPoints) {
   for (int y = -3; y <= 3; ++y)
     for (int x = -3; x <= 3; ++x) {
       const Eigen::Vector3d truth = OnWall(4 * x + 2, 4 * y + 2, 0);
-      const auto distance = DistanceAt(Wall(kNoise), truth);
+      const auto distance = DistanceAt(FoldedWall(kNoise), truth);
       ASSERT_TRUE(distance);
       EXPECT_GT(distance->sigma, 0.7 * kNoise);
       EXPECT_LT(distance->sigma, 3.0 * kNoise);
@@ -56,7 +56,7 @@ TEST(SurfaceDistances, AreThoseOfTheWallAndAsCertainAsItsPoints) {
 }
 
 TEST(SurfaceDistances, AreUncertainAtAFoldAndBeyondTheMap) {
-  const Map folded = Wall(0.001, 15);
+  const Map folded = FoldedWall(0.001, 15);
   const auto flat = DistanceAt(folded, OnWall(-14, 2, 15));
   const auto fold = DistanceAt(folded, OnWall(0, 2, 15));
   const auto beyond = DistanceAt(folded, OnWall(-34, 2, 15));
@@ -74,7 +74,7 @@ TEST(SurfaceDistances, AreAsUncertainAcrossAGapAsTheMapIsBent) {
     for (int x = -7; x <= 7; ++x) {
       Landmark landmark{.id = PointId{static_cast<std::int64_t>(map.landmarks.size())}};
       landmark.position = on_bowl(3 * x, 3 * y);
-      landmark.pixel = *TestCamera().Project(landmark.position);
+      landmark.pixel = *WallCamera().Project(landmark.position);
       if (landmark.position.head<2>().norm() > kHole_mm) map.landmarks.push_back(landmark);
     }
   const auto hole = DistanceAt(map, on_bowl(0, 0));
@@ -85,14 +85,14 @@ TEST(SurfaceDistances, AreAsUncertainAcrossAGapAsTheMapIsBent) {
 }
 
 TEST(SurfaceDistances, AreUnknownWhereTheMapHasNoGapAsWide) {
-  Map corner = Wall(0.001);
+  Map corner = FoldedWall(0.001);
   std::erase_if(corner.landmarks, [](const Landmark& landmark) { return landmark.position.head<2>().maxCoeff() > 0; });
   EXPECT_TRUE(DistanceAt(corner, OnWall(-2, -2, 0)));
   EXPECT_FALSE(DistanceAt(corner, OnWall(60, 60, 0)));
 }
 
 TEST(SurfaceDistances, AreNotToldByPointsThatHaveTheirsFromTheSurface) {
-  Map map = Wall(0.001);
+  Map map = FoldedWall(0.001);
   for (Landmark& landmark : map.landmarks) landmark.from_surface = true;
   EXPECT_FALSE(DistanceAt(map, OnWall(2, 2, 0)));
   for (int i = 0; i < 5; ++i) map.landmarks[static_cast<std::size_t>(20 * i)].from_surface = false;

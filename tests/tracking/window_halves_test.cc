@@ -24,7 +24,7 @@ using test::CameraMotion;
 using test::kNominalMm;
 using test::WavingTracks;
 
-constexpr int kFrames = 61;
+constexpr int kWindowFrames = 61;
 constexpr double kRigid_mm = 0;
 constexpr double kTremor_mm = 0.05;  // 0.4 px: more than the noise of the tracks
 constexpr double kWave_mm = 1;
@@ -68,7 +68,7 @@ WavingTracks Distorted(WavingTracks sequence, double k) {
 }
 
 TEST(WindowHalves, AgreeWhereNothingDeforms) {
-  const WavingTracks sequence(kFrames, CameraMotion::kForwards, kRigid_mm);
+  const WavingTracks sequence(kWindowFrames, CameraMotion::kForwards, kRigid_mm);
   const SolvedWindow window = Rigid(sequence);
   const std::vector<double> sigmas = SigmasOfHalves(InputOf(sequence), window, {}, kNominalMm);
   ASSERT_EQ(sigmas.size(), window.ids.size());
@@ -77,7 +77,7 @@ TEST(WindowHalves, AgreeWhereNothingDeforms) {
 }
 
 TEST(WindowHalves, DifferByWhatADeformationMakesOfDepths) {
-  const WavingTracks sequence(kFrames, CameraMotion::kForwards, kWave_mm);
+  const WavingTracks sequence(kWindowFrames, CameraMotion::kForwards, kWave_mm);
   const SolvedWindow window = Rigid(sequence);
   const double linear = MedianSigma(window);
   const double error = Error(sequence, window);
@@ -95,7 +95,7 @@ TEST(WindowHalves, SayNothingWhereTheyAreTooShort) {
 
 TEST(WindowHalves, ATremorOrAWrongLensDoesNotCostTheDepthsOfARigidScene) {
   for (const double k : {0.0, 0.02}) {
-    const WavingTracks sequence = Distorted(WavingTracks(kFrames, CameraMotion::kForwards, kTremor_mm), k);
+    const WavingTracks sequence = Distorted(WavingTracks(kWindowFrames, CameraMotion::kForwards, kTremor_mm), k);
     const SolvedWindow window = Solved(sequence);
     ASSERT_TRUE(window.IsRigid()) << k;
     EXPECT_GT(window.solution.residual_correlation, WindowInitOptions().max_correlation) << k;
@@ -108,14 +108,14 @@ TEST(WindowHalves, ATremorOrAWrongLensDoesNotCostTheDepthsOfARigidScene) {
 
 TEST(WindowHalves, AWaveIsNotTakenForRigid) {
   for (const unsigned seed : {1U, 2U, 3U}) {
-    const SolvedWindow window = Solved(WavingTracks(kFrames, CameraMotion::kForwards, kWave_mm, 15, seed));
+    const SolvedWindow window = Solved(WavingTracks(kWindowFrames, CameraMotion::kForwards, kWave_mm, 15, seed));
     EXPECT_FALSE(window.IsRigid()) << seed;
     EXPECT_EQ(window.deforming, nullptr) << seed;
   }
 }
 
 TEST(WindowHalves, AMapOfATremorSaysSo) {
-  const WavingTracks sequence(kFrames, CameraMotion::kForwards, kTremor_mm);
+  const WavingTracks sequence(kWindowFrames, CameraMotion::kForwards, kTremor_mm);
   WindowInitOptions options;
   options.min_still_camera_ratio = 0;
   const InitOutcome outcome = sequence.Try(options);
@@ -127,7 +127,7 @@ TEST(WindowHalves, AMapOfATremorSaysSo) {
 
 // A scene that deforms at all may do so before a camera that stands still: here in one way, as the camera moves.
 TEST(WindowHalves, WhetherTheCameraMovesIsAskedAllTheSame) {
-  const WavingTracks sequence(kFrames, CameraMotion::kForwards, kTremor_mm);
+  const WavingTracks sequence(kWindowFrames, CameraMotion::kForwards, kTremor_mm);
   const InitOutcome outcome = sequence.Try({});
   EXPECT_TRUE(outcome.ambiguous) << outcome.reason;
   EXPECT_LT(outcome.measured.still_camera_error_ratio, WindowInitOptions().min_still_camera_ratio);

@@ -29,7 +29,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::SizeIs;
 
-constexpr double kQuantized_mm = 0.01;  // 16 bits over the extent of the points
+constexpr double kLiveQuantized_mm = 0.01;  // 16 bits over the extent of the points
 
 class LiveViewTest : public testing::Test {
  protected:
@@ -116,7 +116,8 @@ TEST_F(LiveViewTest, AMergeMakesWhatWasGivenVoid) {
   EXPECT_THAT(run["frames"]["submap"], ElementsAre(0, 0));
   const std::vector<double> rest = Unpack(run["points"]["rest"]);
   const Eigen::Vector3d moved = into_from_submap * Undeformed(0);
-  for (int i = 0; i < 3; ++i) EXPECT_NEAR(rest[static_cast<std::size_t>(3 * kRunPoints + i)], moved[i], kQuantized_mm);
+  for (int i = 0; i < 3; ++i)
+    EXPECT_NEAR(rest[static_cast<std::size_t>(3 * kRunPoints + i)], moved[i], kLiveQuantized_mm);
 }
 
 TEST_F(LiveViewTest, SaysWhatItWaitsFor) {

@@ -45,7 +45,7 @@ class SampsonCost final : public ceres::SizedCostFunction<1, 4, 3> {
   double focal_px_;
 };
 
-Status CheckRays(Rays rays0, Rays rays1) {
+Status CheckCorrespondences(Rays rays0, Rays rays1) {
   if (rays0.size() != rays1.size())
     return {ErrorCode::kInvalidArgument, "the two views to refine have different numbers of rays"};
   if (rays0.size() < 6)
@@ -98,7 +98,7 @@ TwoViewRefinement Assessed(const Rigid3& cam1_from_cam0, Rays rays0, Rays rays1,
 
 Result<TwoViewRefinement> RefineTwoView(const Rigid3& start, Rays rays0, Rays rays1, double focal_px,
                                         const RefinementOptions& options) {
-  if (Status status = CheckRays(rays0, rays1); !status.ok()) return status;
+  if (Status status = CheckCorrespondences(rays0, rays1); !status.ok()) return status;
   Eigen::Vector4d rotation = start.rotation.coeffs();
   Eigen::Vector3d translation = start.translation.normalized();
   ceres::CauchyLoss loss(options.loss_scale_px);
@@ -122,7 +122,7 @@ Result<TwoViewRefinement> RefineTwoView(const Rigid3& start, Rays rays0, Rays ra
 
 Result<TwoViewRefinement> RefineTwoViewByOpengv(const Rigid3& start, Rays rays0, Rays rays1, double focal_px,
                                                 const RefinementOptions& options) {
-  if (Status status = CheckRays(rays0, rays1); !status.ok()) return status;
+  if (Status status = CheckCorrespondences(rays0, rays1); !status.ok()) return status;
   const auto refined = RefineMotionByOpengv(start, rays0, rays1);
   if (!refined.ok()) return refined.status();
   return Assessed(*refined, rays0, rays1, focal_px, options.loss_scale_px);
@@ -130,7 +130,7 @@ Result<TwoViewRefinement> RefineTwoViewByOpengv(const Rigid3& start, Rays rays0,
 
 Result<TwoViewRefinement> AssessTwoView(const Rigid3& cam1_from_cam0, Rays rays0, Rays rays1, double focal_px,
                                         const RefinementOptions& options) {
-  if (Status status = CheckRays(rays0, rays1); !status.ok()) return status;
+  if (Status status = CheckCorrespondences(rays0, rays1); !status.ok()) return status;
   return Assessed(Rigid3(cam1_from_cam0.rotation, cam1_from_cam0.translation.normalized()), rays0, rays1, focal_px,
                   options.loss_scale_px);
 }

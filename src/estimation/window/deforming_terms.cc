@@ -21,11 +21,11 @@ constexpr double kFarSigma = 100.0;
 constexpr double kLightLoss = 1.5;  // in standard deviations
 
 // Cauchy's loss of a squared error in units of its scale, of unit second derivative at zero, and its derivative.
-double Loss(double squared) { return std::log1p(squared); }
+double CauchyLoss(double squared) { return std::log1p(squared); }
 double LossWeight(double squared) { return 1.0 / (1.0 + squared); }
 
 // The light's error in standard deviations: its share of the cost, and its weight in the equations.
-double LightLoss(double error) { return kLightLoss * kLightLoss * Loss(std::pow(error / kLightLoss, 2)); }
+double LightLoss(double error) { return kLightLoss * kLightLoss * CauchyLoss(std::pow(error / kLightLoss, 2)); }
 double LightWeight(double error) { return LossWeight(std::pow(error / kLightLoss, 2)); }
 
 }  // namespace
@@ -134,7 +134,8 @@ void DeformingTerms::PrepareLight() {
 }
 
 double DeformingTerms::unmeasured_cost() const {
-  return 0.5 * unmeasured_ * Loss(std::pow(0.5 * std::numbers::pi * scale_, 2));  // each as if off by a right angle
+  return 0.5 * unmeasured_ *
+         CauchyLoss(std::pow(0.5 * std::numbers::pi * scale_, 2));  // each as if off by a right angle
 }
 
 DeformingState DeformingTerms::Start() const {
@@ -184,7 +185,7 @@ std::optional<double> DeformingTerms::PointCost(std::size_t point, const Deformi
     const ViewPose& pose = state.poses[static_cast<std::size_t>(seen.view_idx)];
     const Eigen::Vector3d x = pose.rotation * Position(point, seen.view_idx, rest, state) + pose.translation;
     if (!(x.dot(seen.ray) > 0.0)) return std::nullopt;
-    twice += Loss(scale_ * scale_ * (seen.basis * x).squaredNorm() / x.squaredNorm());
+    twice += CauchyLoss(scale_ * scale_ * (seen.basis * x).squaredNorm() / x.squaredNorm());
   }
   const Light& light = lights_[point];
   const double error = (column[2] - light.log_distance - state.light_offset) / light.sigma;

@@ -16,7 +16,7 @@ namespace pliant {
 namespace {
 
 constexpr std::size_t kMinSample = 60;
-constexpr std::size_t kNearest = 4;
+constexpr std::size_t kNearestDirections = 4;
 constexpr double kSameDirection = 1e-3;  // rad, below which nearer does not count for more
 
 using Directions = std::vector<Eigen::Vector3d>;
@@ -38,7 +38,7 @@ std::vector<Eigen::Vector3d> DirectionsOf(const std::vector<Eigen::Vector3d>& po
 std::vector<NearPoint> NearestPoints(const std::vector<Eigen::Vector3d>& directions, const Eigen::Vector3d& direction) {
   std::vector<std::pair<double, std::size_t>> near;
   for (std::size_t k = 0; k < directions.size(); ++k) near.emplace_back((directions[k] - direction).norm(), k);
-  const std::size_t count = std::min(kNearest, near.size());
+  const std::size_t count = std::min(kNearestDirections, near.size());
   std::partial_sort(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(count), near.end());
   std::vector<NearPoint> nearest;
   double sum = 0;

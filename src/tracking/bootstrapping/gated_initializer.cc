@@ -23,7 +23,7 @@ namespace {
 // Motions whose translations are this near (and the rotations likewise) are the same motion.
 constexpr double kSameMotionRad = 5.0 / kDegPerRad;
 // Costs are compared as if every point had at least this error: exact data must not turn rounding into evidence.
-constexpr double kMinErrorPx = 0.02;
+constexpr double kMinInlierErrorPx = 0.02;
 // A competing motion has to put nearly as many points in front of the cameras as the one it is compared with.
 constexpr double kCompetingFrontShare = 0.9;
 
@@ -179,7 +179,7 @@ class Attempt {
   Status CompareCompetingMotions() {
     const std::vector<char> used = motion_.inliers;
     if (Status status = Refine(motion_.cam1_from_cam0, used, &motion_); !status.ok()) return status;
-    const double floor = 0.5 * motion_.num_inliers * kMinErrorPx * kMinErrorPx;
+    const double floor = 0.5 * motion_.num_inliers * kMinInlierErrorPx * kMinInlierErrorPx;
     std::vector<PairMotion> competing;
     for (const Rigid3& start : CompetingStarts()) {
       PairMotion other;

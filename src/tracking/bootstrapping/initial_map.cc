@@ -19,12 +19,12 @@ constexpr double kWideLossPx = 10.0;  // frames may lie tens of pixels apart
 
 Result<Rigid3> EstimateOnce(const Camera& camera, const InitFrame& frame, const InitialMap& map, const Rigid3& near,
                             const RefinementOptions& options) {
-  constexpr std::size_t kMinPoints = 6;
+  constexpr std::size_t kMinSeen = 6;
   Window window;
   window.cams_from_world = {Rigid3(), near};
   window.points_in_world = map.positions;
   window.observations = ObservationsOf(camera, frame, map.ids, 1);
-  if (window.observations.size() < kMinPoints)
+  if (window.observations.size() < kMinSeen)
     return Status(ErrorCode::kInsufficient, "frame " + std::to_string(frame.frame_idx) + " sees only " +
                                                 std::to_string(window.observations.size()) + " points of the map");
   const auto optimized = RefineWindow(window, camera.MeanFocalLengthPx(), WindowPoints::kFixed, options);

@@ -17,7 +17,7 @@ namespace {
 
 // A light from which the prior with a shift differs by more than this, by the spread of log depths and by how much it
 // differs without a shift, says nothing of the shift.
-constexpr double kMaxOfSpread = 0.8;
+constexpr double kMaxDifferenceOfSpread = 0.8;
 
 // One image: nothing but the prior says how deep it is, up to a scale, and nobody how well.
 class PriorInitializer final : public Initializer {
@@ -106,7 +106,7 @@ class PriorInitializer final : public Initializer {
     if (!fit || values.empty()) return std::nullopt;
     const double spread = kMedianToSigma * MedianDeviation(std::move(log_targets));
     const double without = kMedianToSigma * MedianDeviation(std::move(log_ratios));
-    return fit->sigma <= kMaxOfSpread * std::min(spread, without) ? fit : std::nullopt;
+    return fit->sigma <= kMaxDifferenceOfSpread * std::min(spread, without) ? fit : std::nullopt;
   }
 
   MonocularInitOptions options_;

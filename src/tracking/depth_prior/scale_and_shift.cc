@@ -15,7 +15,7 @@
 namespace pliant {
 namespace {
 
-constexpr std::size_t kMinPoints = 12;
+constexpr std::size_t kMinFitted = 12;
 constexpr int kIterations = 10;
 constexpr double kStartSigma = 0.1;  // of a relative error
 constexpr double kMinSigma = 0.01;
@@ -25,7 +25,7 @@ constexpr double kCauchy = 2.0;      // in standard deviations
 }  // namespace
 
 std::optional<ScaleAndShift> FitScaleAndShift(const std::vector<double>& values, const std::vector<double>& targets) {
-  if (values.size() < kMinPoints) return std::nullopt;
+  if (values.size() < kMinFitted) return std::nullopt;
   const double value_unit = Median(values);
   const double target_unit = Median(targets);
   Eigen::Vector2d fit(1.0, 0.0);

@@ -13,7 +13,7 @@
 namespace pliant {
 namespace {
 
-constexpr int kNeighbors = 8;
+constexpr int kLostNeighbors = 8;
 constexpr int kVainSearches = 10;  // of a point that should be in sight: it is hidden, or changed, and may stay so
 
 // The change of a neighborhood that faces the camera, between two poses that see it at these positions.
@@ -38,7 +38,7 @@ std::vector<Eigen::Vector3d> DisplacementsAt(const std::vector<Landmark>& landma
                                              const std::vector<Eigen::Vector3d>& positions) {
   std::vector<Eigen::Vector3d> displacements(positions.size(), Eigen::Vector3d::Zero());
   if (landmarks.empty()) return displacements;
-  const NeighborLists nearest = NearestNeighbors(anchors, positions, kNeighbors);
+  const NeighborLists nearest = NearestNeighbors(anchors, positions, kLostNeighbors);
   for (std::size_t k = 0; k < positions.size(); ++k) {
     // Inverse-distance weights: at an anchor the displacement is that landmark's.
     double sum = 0;

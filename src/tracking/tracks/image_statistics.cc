@@ -22,7 +22,7 @@ namespace {
 using Track = std::vector<Eigen::Vector2d>;
 
 constexpr int kMinPixels = 100;
-constexpr int kNeighbors = 12;
+constexpr int kTrackNeighbors = 12;
 constexpr double kVarianceOfMedian = 0.117;  // of 12 standard normal values
 
 // The median of whole numbers that are real ones rounded: between its neighbors by how many lie on either side.
@@ -50,9 +50,9 @@ Eigen::Vector2d MedianOfNeighbors(std::span<const Bend> bends, std::size_t of) {
   std::vector<std::pair<double, std::size_t>> nearest;
   for (std::size_t i = 0; i < bends.size(); ++i)
     if (i != of) nearest.emplace_back((bends[i].pixel - bends[of].pixel).squaredNorm(), i);
-  std::ranges::nth_element(nearest, nearest.begin() + kNeighbors - 1);
+  std::ranges::nth_element(nearest, nearest.begin() + kTrackNeighbors - 1);
   std::array<std::vector<double>, 2> differences;
-  for (int k = 0; k < kNeighbors; ++k)
+  for (int k = 0; k < kTrackNeighbors; ++k)
     for (int axis = 0; axis < 2; ++axis) differences[axis].push_back(bends[nearest[k].second].second_difference[axis]);
   return {Median(differences[0]), Median(differences[1])};
 }
@@ -94,7 +94,7 @@ std::vector<double> TrackResiduals(std::span<const Track> tracks) {
     std::vector<Bend> bends;
     for (const Track& track : tracks)
       if (track.size() > k + 1) bends.push_back({track[k], track[k + 1] - 2 * track[k] + track[k - 1]});
-    if (bends.size() <= kNeighbors) continue;
+    if (bends.size() <= kTrackNeighbors) continue;
     for (std::size_t i = 0; i < bends.size(); ++i) {
       const Eigen::Vector2d residual = bends[i].second_difference - MedianOfNeighbors(bends, i);
       residuals.insert(residuals.end(), {residual.x(), residual.y()});
