@@ -156,6 +156,11 @@ std::optional<BoardView> FindBoard(const cv::Mat& gray, const CalibrationBoard& 
   return view;
 }
 
+cv::Mat AsSearched(const cv::Mat& gray) {
+  const double scale = SearchScales(gray).front();
+  return scale < 1.0 ? Resized(gray, scale) : gray;
+}
+
 std::optional<ChessboardSize> LargestChessboard(const cv::Mat& gray) {
   const double scale = SearchScales(gray).front();
   const cv::Mat searched = scale == 1.0 ? gray : Resized(gray, scale);

@@ -21,52 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The sharpest image of every stretch of a stream, of whatever length: stretches become longer as there are more.
-class SharpestImages {
- public:
-  // `expected`: images of the stream, where that is known; 0: not.
-  SharpestImages(int max_images, int expected)
-      : max_images_(static_cast<std::size_t>(max_images)),
-        stretch_(std::max(1, (expected + max_images - 1) / max_images)) {}
-
-  void Add(BoardImage image) {
-    if (in_last_ == 0 || in_last_ == stretch_) {
-      if (images_.size() == 2 * max_images_) Halve();
-      images_.push_back(std::move(image));
-      in_last_ = 1;
-      return;
-    }
-    ++in_last_;
-    if (image.sharpness > images_.back().sharpness) images_.back() = std::move(image);
-  }
-
-  // At most as many as were asked for.
-  std::vector<BoardImage> Take() {
-    if (images_.size() > max_images_) Halve();
-    return std::move(images_);
-  }
-
- private:
-  void Halve() {
-    std::vector<BoardImage> half;
-    for (std::size_t i = 0; i < images_.size(); i += 2) {
-      const bool second = i + 1 < images_.size() && images_[i + 1].sharpness > images_[i].sharpness;
-      half.push_back(std::move(images_[second ? i + 1 : i]));
-    }
-    images_ = std::move(half);
-    stretch_ *= 2;
-    in_last_ = stretch_;
-  }
-
-  std::size_t max_images_;
-  std::vector<BoardImage> images_;
-  int stretch_;
-  int in_last_ = 0;  // images that the last one stands for
-};
-
-using Stream = std::unique_ptr<ImageStream>;
-
-Result<Stream> OpenStream(const fs::path& path) {
+Result<std::unique_ptr<ImageStream>> OpenStream(const fs::path& path) {
   std::error_code error;
   if (!fs::is_directory(path, error)) {
     if (!fs::exists(path, error))
@@ -85,8 +40,8 @@ Status Unequal(const fs::path& left, int left_count, const fs::path& right, int 
 }
 
 // One stream, or two of a pair.
-Result<std::vector<Stream>> OpenStreams(const CalibrateRequest& request) {
-  std::vector<Stream> streams;
+Result<ImageStreams> OpenStreams(const CalibrateRequest& request) {
+  ImageStreams streams;
   auto first = OpenStream(request.image_path);
   if (!first.ok()) return first.status();
   if (request.pairs != PairLayout::kApart) {
@@ -109,9 +64,9 @@ Result<std::vector<Stream>> OpenStreams(const CalibrateRequest& request) {
 }
 
 // The images of one moment; empty at the end. Where one eye's end before the other's that is an error.
-Result<std::vector<cv::Mat>> ReadMoment(const CalibrateRequest& request, const std::vector<Stream>& streams, int idx) {
+Result<std::vector<cv::Mat>> ReadMoment(const CalibrateRequest& request, const ImageStreams& streams, int idx) {
   std::vector<cv::Mat> images;
-  for (const Stream& stream : streams) {
+  for (const std::unique_ptr<ImageStream>& stream : streams) {
     if (stream->count_is_exact() && idx == stream->count()) return std::vector<cv::Mat>();
     auto image = stream->Read(idx);
     if (!image.ok()) return image.status();
@@ -128,42 +83,36 @@ Result<std::vector<cv::Mat>> ReadMoment(const CalibrateRequest& request, const s
 
 }  // namespace
 
-Result<BoardImages> ReadBoardImages(const CalibrateRequest& request, int max_images,
-                                    const CalibrateProgress& progress) {
+Result<BoardImageReader> BoardImageReader::Open(const CalibrateRequest& request) {
   auto streams = OpenStreams(request);
   if (!streams.ok()) return streams.status();
-  const ImageStream& first = *streams->front();
-  SharpestImages sharpest(max_images, first.count());
-  BoardImages read;
-  read.fps = first.fps();
-  std::vector<cv::Size> sizes(streams->size());
-  while (true) {
-    auto moment = ReadMoment(request, *streams, read.count);
-    if (!moment.ok()) return moment.status();
-    if (moment->empty()) break;
-    BoardImage image{first.Name(read.count), {}};
-    for (std::size_t eye = 0; eye < moment->size(); ++eye) {
-      const cv::Mat& pixels = (*moment)[eye];
-      const ImageStream& stream = *(*streams)[eye];
-      if (read.count == 0) sizes[eye] = pixels.size();
-      if (pixels.size() != sizes[eye])
-        return Status(ErrorCode::kMismatch,
-                      stream.Title(read.count) + " is " + SizeText(pixels) + " and " + stream.Title(0) + " is " +
-                          SizeText(sizes[eye].width, sizes[eye].height) + "; calibrate with images of one size");
-      // Not a view into a pair's image: filters would look beyond its border.
-      image.gray.push_back(ToGray(streams->size() > 1 ? pixels.clone() : pixels));
-      const double sharpness = Sharpness(image.gray.back(), {});
-      image.sharpness = eye == 0 ? sharpness : std::min(image.sharpness, sharpness);
-    }
-    sharpest.Add(std::move(image));
-    ++read.count;
-    if (!progress(0, 0)) return Status(ErrorCode::kInterrupted, "the calibration was stopped");
-  }
-  read.images = sharpest.Take();
-  if (read.images.empty())
+  return BoardImageReader(request, *std::move(streams));
+}
+
+Result<std::optional<BoardImage>> BoardImageReader::Next() {
+  auto moment = ReadMoment(request_, streams_, count_);
+  if (!moment.ok()) return moment.status();
+  if (moment->empty()) {
+    if (count_ > 0) return std::optional<BoardImage>();
     return Status(ErrorCode::kUnreadable,
-                  Quoted(request.image_path.string()) + " has no image; give images of the board");
-  return read;
+                  Quoted(request_.image_path.string()) + " has no image; give images of the board");
+  }
+  BoardImage image{streams_.front()->Name(count_), {}};
+  for (std::size_t eye = 0; eye < moment->size(); ++eye) {
+    const cv::Mat& pixels = (*moment)[eye];
+    const ImageStream& stream = *streams_[eye];
+    if (count_ == 0) sizes_.push_back(pixels.size());
+    if (pixels.size() != sizes_[eye])
+      return Status(ErrorCode::kMismatch, stream.Title(count_) + " is " + SizeText(pixels) + " and " + stream.Title(0) +
+                                              " is " + SizeText(sizes_[eye].width, sizes_[eye].height) +
+                                              "; calibrate with images of one size");
+    // Not a view into a pair's image: filters would look beyond its border.
+    image.gray.push_back(ToGray(streams_.size() > 1 ? pixels.clone() : pixels));
+    const double sharpness = Sharpness(image.gray.back(), {});
+    image.sharpness = eye == 0 ? sharpness : std::min(image.sharpness, sharpness);
+  }
+  ++count_;
+  return std::optional<BoardImage>(std::move(image));
 }
 
 }  // namespace pliant

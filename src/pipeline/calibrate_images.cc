@@ -5,11 +5,9 @@
 
 #include <algorithm>
 #include <map>
-#include <memory>
-#include <mutex>
 
 #include "calibration/board_problem.h"
-#include "pipeline/board_images.h"
+#include "pipeline/board_search.h"
 #include "pliant/base/parallel.h"
 #include "pliant/base/text.h"
 #include "pliant/calibration/choose_views.h"
@@ -89,73 +87,26 @@ Status CheckSize(const CalibrateRequest& request, const std::vector<cv::Mat>& wi
           "the " + request.board.Title() + " is a part of what the images show: " + SeenSentence(seen, request.board)};
 }
 
-// The board in every image of one camera.
-using Detections = std::vector<std::optional<BoardView>>;
-
-// By camera. Nothing where `progress` ended the search.
-std::optional<std::vector<Detections>> FindBoards(const std::vector<BoardImage>& images, const CalibrationBoard& board,
-                                                  int threads, const CalibrateProgress& progress) {
-  const std::size_t cameras = images.front().gray.size();
-  std::vector<Detections> found(cameras, Detections(images.size()));
-  std::mutex mutex;
-  int done = 0;
-  bool stopped = false;
-  ParallelFor(
-      static_cast<int>(images.size()), threads,
-      [&](int i) {
-        const auto idx = static_cast<std::size_t>(i);
-        {
-          const std::scoped_lock lock(mutex);
-          if (stopped) return;
-        }
-        for (std::size_t camera = 0; camera < cameras; ++camera)
-          found[camera][idx] = FindBoard(images[idx].gray[camera], board);
-        const std::scoped_lock lock(mutex);
-        ++done;
-        if (!progress(done, static_cast<int>(images.size()))) stopped = true;
-      },
-      1);
-  if (stopped) return std::nullopt;
-  return found;
-}
-
-// What was read and found, whatever is made of it.
-struct BoardRecording {
-  BoardImages read;
-  std::vector<Detections> found;  // by camera
-};
-
-Result<BoardRecording> SearchBoards(const CalibrateRequest& request, const CalibrateOptions& options,
-                                    const CalibrateProgress& progress) {
-  if (Status status = CheckBoardIsSupported(request.board); !status.ok()) return status;
-  auto read = ReadBoardImages(request, options.max_images, progress);
-  if (!read.ok()) return read.status();
-  auto found = FindBoards(read->images, request.board, options.threads, progress);
-  if (!found) return Status(ErrorCode::kInterrupted, "the calibration was stopped");
-  return BoardRecording{*std::move(read), *std::move(found)};
-}
-
 // One camera of the recording, alone. `source` is what messages call its images.
 Result<CalibrateSummary> CalibrateOne(const CalibrateRequest& request, const CalibrateOptions& options,
                                       const BoardRecording& recording, std::size_t camera, Lenses lenses,
                                       const std::string& source) {
-  const std::vector<BoardImage>& images = recording.read.images;
-  const Detections& found = recording.found[camera];
   std::vector<BoardView> seen;
   std::vector<std::size_t> image_of_seen;
   std::vector<cv::Mat> all;
   std::vector<cv::Mat> with_board;
-  for (std::size_t i = 0; i < images.size(); ++i) {
-    all.push_back(images[i].gray[camera]);
-    if (!found[i]) continue;
-    seen.push_back(*found[i]);
+  for (std::size_t i = 0; i < recording.images.size(); ++i) {
+    const SearchedImage& image = recording.images[i];
+    all.push_back(image.smaller[camera]);
+    if (!image.found[camera]) continue;
+    seen.push_back(*image.found[camera]);
     image_of_seen.push_back(i);
-    with_board.push_back(images[i].gray[camera]);
+    with_board.push_back(image.smaller[camera]);
   }
   if (seen.empty()) return NotSeen(request, source, all, options.threads);
   if (Status status = CheckSize(request, with_board, options.threads); !status.ok()) return status;
 
-  const cv::Size size = all.front().size();
+  const cv::Size size = recording.sizes[camera];
   const std::vector<int> chosen = ChooseVariedViews(request.board, seen, size.width, size.height, options.max_views);
   std::vector<BoardView> views;
   for (const int view : chosen) views.push_back(seen[static_cast<std::size_t>(view)]);
@@ -164,9 +115,9 @@ Result<CalibrateSummary> CalibrateOne(const CalibrateRequest& request, const Cal
   if (!calibration.ok()) return Status(calibration.status().code(), source + ": " + calibration.status().message());
 
   CalibrateSummary summary{.calibration = *std::move(calibration)};
-  summary.images_read = recording.read.count;
-  for (std::size_t i = 0; i < images.size(); ++i)
-    summary.images.push_back({images[i].name, found[i] ? ImageUse::kAlike : ImageUse::kNoBoard});
+  summary.images_read = recording.images_read;
+  for (const SearchedImage& image : recording.images)
+    summary.images.push_back({image.name, image.found[camera] ? ImageUse::kAlike : ImageUse::kNoBoard});
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     CalibrationImage& image = summary.images[image_of_seen[static_cast<std::size_t>(chosen[i])]];
     image.use = summary.calibration.views[i].is_outlier ? ImageUse::kOutlier : ImageUse::kUsed;
@@ -187,12 +138,12 @@ struct BoardPairs {
 BoardPairs ChoosePairs(const CalibrateRequest& request, const CalibrateOptions& options,
                        const BoardRecording& recording) {
   BoardPairs both;
-  for (std::size_t i = 0; i < recording.read.images.size(); ++i) {
-    if (!recording.found[0][i] || !recording.found[1][i]) continue;
-    both.left.push_back(*recording.found[0][i]);
-    both.right.push_back(*recording.found[1][i]);
+  for (const SearchedImage& image : recording.images) {
+    if (!image.found[0] || !image.found[1]) continue;
+    both.left.push_back(*image.found[0]);
+    both.right.push_back(*image.found[1]);
   }
-  const cv::Size size = recording.read.images.front().gray.front().size();
+  const cv::Size size = recording.sizes.front();
   BoardPairs chosen;
   for (const int pair : ChooseVariedViews(request.board, both.left, size.width, size.height, options.max_views)) {
     chosen.left.push_back(both.left[static_cast<std::size_t>(pair)]);
@@ -230,7 +181,7 @@ Result<CalibrateSummary> CalibrateImages(const CalibrateRequest& request, const 
   auto summary = CalibrateOne(request, options, *recording, 0, Lenses::kAll, request.image_path.string());
   if (!summary.ok() || request.output_path.empty()) return summary;
   CameraFile file{summary->calibration.camera};
-  file.fps = recording->read.fps;
+  file.fps = recording->fps;
   if (Status status = WriteCameraFile(request.output_path.string(), file); !status.ok()) return status;
   return summary;
 }

@@ -93,6 +93,15 @@ TEST(FindBoard, TellsHowLargeAChessboardIs) {
   EXPECT_EQ(LargestChessboard(image), (ChessboardSize{7, 5}));
 }
 
+TEST(FindBoard, TellsHowLargeAChessboardIsByASmallerCopy) {
+  const Camera camera = CameraOf(1600, 1200, 1250);
+  const cv::Mat large = ImageOf(kBoardInView, camera, BoardPoseAt(kBoardInView, {0, 0, 22}, 0.3, 0.7));
+  const cv::Mat smaller = AsSearched(large);
+  EXPECT_LT(smaller.total(), large.total() / 2);
+  EXPECT_EQ(LargestChessboard(smaller), (ChessboardSize{7, 5}));
+  EXPECT_EQ(AsSearched(smaller).size(), smaller.size());
+}
+
 TEST(FindBoard, FindsCircles) {
   for (const BoardKind kind : {BoardKind::kCircles, BoardKind::kAsymmetricCircles}) {
     const CalibrationBoard board = {kind, 4, 7, 40.0};

@@ -39,6 +39,9 @@ struct ChessboardSize {
 };
 std::optional<ChessboardSize> LargestChessboard(const cv::Mat& gray);
 
+// An image of which LargestChessboard has the same answer: of a large one a smaller one, in which the search begins.
+cv::Mat AsSearched(const cv::Mat& gray);
+
 // Whether a ChArUco board is seen in the mirror image.
 bool IsMirrored(const cv::Mat& gray, const CalibrationBoard& board);
 
