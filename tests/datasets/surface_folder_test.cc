@@ -1,0 +1,87 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/datasets/surface_folder.h"
+
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "support/test_folder.h"
+
+namespace pliant {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr const char* kWindows = R"({"image_width": 320, "side": 21, "smoothing_px": 1.5, "noise_levels": 2})";
+
+class SurfaceFolderFile : public testing::Test {
+ protected:
+  SurfaceFolderFile() {
+    folder_.Write("camera.yaml",
+                  "model: PINHOLE\nwidth: 32\nheight: 24\nparams: [30, 30, 15.5, 11.5]\ndepth_scale: 0.01\n");
+  }
+  // With one frame of this name, and what is said of the windows.
+  Result<SurfaceFolder> Read(const std::string& name, const std::string& windows = kWindows) {
+    folder_.Write("surface.json", R"({"status": "completed", "frames": [
+      {"frame": 3, "name": ")" + name +
+                                      R"(", "note": "", "neighbors": [1, 5]},
+      {"frame": 4, "name": "4.png", "note": "there is no map"}], "windows": )" +
+                                      windows + "}");
+    return ReadSurfaceFolder(folder_.Path("."));
+  }
+
+  const TestFolder folder_;
+};
+
+TEST_F(SurfaceFolderFile, HasTheFramesWithADepth) {
+  const auto surface = Read("3.png");
+  ASSERT_TRUE(surface.ok()) << surface.status().message();
+  ASSERT_EQ(surface->frames.size(), 1U);
+  EXPECT_EQ(surface->frames[0].frame_idx, 3);
+  EXPECT_EQ(surface->frames[0].file_name, "3.png");
+  EXPECT_THAT(surface->frames[0].neighbors, testing::ElementsAre(1, 5));
+  EXPECT_EQ(surface->depth_scale, 0.01);
+  ASSERT_TRUE(surface->windows.has_value());
+  EXPECT_EQ(surface->windows->window_px, 21);
+}
+
+TEST_F(SurfaceFolderFile, NamesNoFileElsewhere) {
+  for (const std::string name : {"../3.png", "/tmp/3.png", "a/3.png", ""}) {
+    const auto surface = Read(name);
+    ASSERT_FALSE(surface.ok()) << name;
+    EXPECT_EQ(surface.status().code(), ErrorCode::kUnreadable);
+    EXPECT_THAT(surface.status().message(), HasSubstr("which is not a file's name")) << name;
+  }
+}
+
+TEST_F(SurfaceFolderFile, ComparedNoWindowsThatCannotBe) {
+  for (const char* windows : {R"({"image_width": 0, "side": 21, "smoothing_px": 1, "noise_levels": 2})",
+                              R"({"image_width": 320, "side": 0, "smoothing_px": 1, "noise_levels": 2})",
+                              R"({"image_width": 320, "side": 100000, "smoothing_px": 1, "noise_levels": 2})",
+                              R"({"image_width": 320, "side": 21, "smoothing_px": 1e9, "noise_levels": 2})",
+                              R"({"image_width": 320, "side": 21, "smoothing_px": 1, "noise_levels": -2})"}) {
+    const auto surface = Read("3.png", windows);
+    ASSERT_FALSE(surface.ok()) << windows;
+    EXPECT_EQ(surface.status().code(), ErrorCode::kUnreadable);
+    EXPECT_THAT(surface.status().message(), HasSubstr("windows that were compared what cannot be")) << windows;
+  }
+}
+
+TEST_F(SurfaceFolderFile, OfAnotherFormIsRefused) {
+  for (const std::string text :
+       {"", "{", "[]", R"({"status": "completed"})", R"({"status": "completed", "frames": [{"frame": "x"}]})"}) {
+    folder_.Write("surface.json", text);
+    const auto surface = ReadSurfaceFolder(folder_.Path("."));
+    ASSERT_FALSE(surface.ok()) << text;
+    EXPECT_EQ(surface.status().code(), ErrorCode::kUnreadable);
+    EXPECT_THAT(surface.status().message(), HasSubstr("surface.json")) << text;
+  }
+  folder_.Write("surface.json", R"({"status": "interrupted"})");
+  EXPECT_THAT(ReadSurfaceFolder(folder_.Path(".")).status().message(), HasSubstr("never finished"));
+}
+
+}  // namespace
+}  // namespace pliant
