@@ -282,6 +282,9 @@ def main():
     if not can_mount():
         KINDS[:] = [kind for kind in KINDS if kind != "disk"]
         print("no full disks: only root can mount them", file=sys.stderr)
+    if shutil.which("colmap") is None:
+        material.WRITERS[:] = [command for command in material.WRITERS if "database" not in command]
+        print("no export to a database: there is no program 'colmap' on PATH", file=sys.stderr)
     KINDS[:] = [kind for kind in KINDS if kind in arguments.kinds]
     Case.fail_nth = arguments.fail_nth and arguments.fail_nth.resolve()
     Case.faulty_program = arguments.faulty_program and arguments.faulty_program.resolve()
