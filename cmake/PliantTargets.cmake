@@ -7,6 +7,8 @@ set(CMAKE_CXX_EXTENSIONS OFF)
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 # One result on every machine: the compiler may not fuse or reorder floating-point operations.
 add_compile_options(-ffp-contract=off)
+# Nor does it write where the sources lie into what it compiles: ccache shares the results of all clones.
+add_compile_options(-fmacro-prefix-map=${PROJECT_SOURCE_DIR}/=)
 
 include(GNUInstallDirs)
 
