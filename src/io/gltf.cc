@@ -334,7 +334,8 @@ std::optional<std::vector<T>> ValuesAt(const tinygltf::Model& model, int accesso
       bytes > model.buffers[0].data.size() - view.byteOffset)
     return std::nullopt;
   std::vector<T> values(bytes / sizeof(T));
-  std::memcpy(values.data(), model.buffers[0].data.data() + view.byteOffset, values.size() * sizeof(T));
+  if (!values.empty())
+    std::memcpy(values.data(), model.buffers[0].data.data() + view.byteOffset, values.size() * sizeof(T));
   return values;
 }
 

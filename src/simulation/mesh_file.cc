@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
+#include <string>
 
 #include <Eigen/Geometry>
 #include <assimp/Importer.hpp>
@@ -63,6 +65,17 @@ Status CheckFaces(const std::string& path, const aiScene& scene) {
   return Status::Ok();
 }
 
+// Assimp looks for the end of a PLY's header for ever where there is none.
+Status CheckPlyHeader(const std::string& path) {
+  constexpr int kMostLines = 10000;
+  std::ifstream file(path, std::ios::binary);
+  std::string line;
+  if (!std::getline(file, line) || (!line.starts_with("ply") && !line.starts_with("PLY"))) return Status::Ok();
+  for (int k = 0; k < kMostLines && std::getline(file, line); ++k)
+    if (line.starts_with("end_header")) return Status::Ok();
+  return {ErrorCode::kUnreadable, "the mesh " + path + " is a PLY whose header has no end; export it again"};
+}
+
 // The picture that the first material with one names, beside the mesh.
 Status ReadPicture(const std::string& path, const aiScene& scene, cv::Mat* image) {
   for (unsigned i = 0; i < scene.mNumMaterials; ++i) {
@@ -90,6 +103,7 @@ Result<MeshFile> ReadMeshFile(const std::string& path) {
   std::error_code error;
   if (!fs::is_regular_file(path, error))
     return {ErrorCode::kNotFound, "there is no mesh file " + path + "; check Scene.mesh_path"};
+  if (Status status = CheckPlyHeader(path); !status.ok()) return status;
   Assimp::Importer importer;
   // What a renderer would want (normals, colors) only keeps vertices of one position apart.
   importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, aiComponent_NORMALS | aiComponent_COLORS |
