@@ -71,8 +71,10 @@ Status CheckPlyHeader(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   std::string line;
   if (!std::getline(file, line) || (!line.starts_with("ply") && !line.starts_with("PLY"))) return Status::Ok();
-  for (int k = 0; k < kMostLines && std::getline(file, line); ++k)
-    if (line.starts_with("end_header")) return Status::Ok();
+  for (int k = 0; k < kMostLines && std::getline(file, line); ++k) {
+    if (line.ends_with('\r')) line.pop_back();
+    if (line == "end_header") return Status::Ok();
+  }
   return {ErrorCode::kUnreadable, "the mesh " + path + " is a PLY whose header has no end; export it again"};
 }
 

@@ -217,8 +217,11 @@ TEST_F(MeshSceneTest, SaysWhatIsWrongWithAMesh) {
   EXPECT_THAT(message(""), HasSubstr("needs Scene.mesh_path"));
   EXPECT_THAT(message((folder_ / "none.stl").string()), HasSubstr("there is no mesh file"));
   EXPECT_THAT(message(Write("text.ply", "not a mesh\n")), HasSubstr("cannot be read"));
-  EXPECT_THAT(message(Write("endless.ply", "ply\nformat ascii 1.0\nelement vertex 3\n")),
-              HasSubstr("endless.ply is a PLY whose header has no end"));
+  for (const char* end : {"", "end_headers\n", "comment end_header\n"})
+    EXPECT_THAT(
+        message(Write("endless.ply", std::string("ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n") + end)),
+        HasSubstr("endless.ply is a PLY whose header has no end"))
+        << end;
   EXPECT_THAT(message(Write("points.obj", "v 0 0 0\nv 30 0 0\nv 0 40 0\n")), HasSubstr("points.obj has no faces"));
   EXPECT_THAT(message(Write("flat.obj", "v 0 0 0\nv 30 0 0\nv 60 0 0\nf 1 2 3\n")), HasSubstr("no faces"));
   EXPECT_THAT(message(Write("nan.ply",
