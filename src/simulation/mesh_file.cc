@@ -72,8 +72,7 @@ Status CheckPlyHeader(const std::string& path) {
   std::string line;
   if (!std::getline(file, line) || (!line.starts_with("ply") && !line.starts_with("PLY"))) return Status::Ok();
   for (int k = 0; k < kMostLines && std::getline(file, line); ++k) {
-    if (line.ends_with('\r')) line.pop_back();
-    if (line == "end_header") return Status::Ok();
+    if (line.substr(0, line.find_last_not_of(" \t\r") + 1) == "end_header") return Status::Ok();
   }
   return {ErrorCode::kUnreadable, "the mesh " + path + " is a PLY whose header has no end; export it again"};
 }
