@@ -24,6 +24,7 @@ constexpr std::size_t kMaxBlobs = 500;
 constexpr int kChessboardFlags = cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_ACCURACY;
 
 cv::Mat Resized(const cv::Mat& gray, double scale) {
+  if (scale == 1.0) return gray;
   cv::Mat resized;
   cv::resize(gray, resized, {}, scale, scale, scale < 1 ? cv::INTER_AREA : cv::INTER_CUBIC);
   return resized;
@@ -125,7 +126,7 @@ std::vector<cv::Point2f> FindWholeBoard(const cv::Mat& gray, const CalibrationBo
   const bool is_chessboard = board.kind == BoardKind::kChessboard;
   for (const auto& [scale, smoothing_px, effort] : Searches(gray)) {
     if (effort == Effort::kExhaustive && !is_chessboard) continue;
-    cv::Mat searched = scale == 1.0 ? gray : Resized(gray, scale);
+    cv::Mat searched = Resized(gray, scale);
     if (smoothing_px > 0) cv::GaussianBlur(searched, searched, {}, smoothing_px);
     std::vector<cv::Point2f> points;
     const bool found = is_chessboard ? FindChessboard(searched, {board.columns, board.rows}, effort, &points)
@@ -156,14 +157,10 @@ std::optional<BoardView> FindBoard(const cv::Mat& gray, const CalibrationBoard& 
   return view;
 }
 
-cv::Mat AsSearched(const cv::Mat& gray) {
-  const double scale = SearchScales(gray).front();
-  return scale < 1.0 ? Resized(gray, scale) : gray;
-}
+cv::Mat AsSearched(const cv::Mat& gray) { return Resized(gray, std::min(1.0, SearchScales(gray).front())); }
 
 std::optional<ChessboardSize> LargestChessboard(const cv::Mat& gray) {
-  const double scale = SearchScales(gray).front();
-  const cv::Mat searched = scale == 1.0 ? gray : Resized(gray, scale);
+  const cv::Mat searched = Resized(gray, SearchScales(gray).front());
   cv::Mat corners;
   cv::Mat meta;
   if (!cv::findChessboardCornersSB(searched, {3, 3}, corners,
