@@ -5,9 +5,11 @@
 #include "simulation/mesh_file.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <utility>
 
 #include <Eigen/Geometry>
 #include <assimp/Importer.hpp>
@@ -17,6 +19,8 @@
 #include <opencv2/imgproc.hpp>
 
 #include "datasets/image_file.h"
+#include "pliant/base/child_call.h"
+#include "pliant/base/state_archive.h"
 
 namespace pliant::simulation {
 namespace {
@@ -77,33 +81,39 @@ Status CheckPlyHeader(const std::string& path) {
   return {ErrorCode::kUnreadable, "the mesh " + path + " is a PLY whose header has no end; export it again"};
 }
 
-// The picture that the first material with one names, beside the mesh.
-Status ReadPicture(const std::string& path, const aiScene& scene, cv::Mat* image) {
+// The path of the picture that the first material with one names, beside the mesh; empty: none does.
+std::string PicturePath(const std::string& path, const aiScene& scene) {
   for (unsigned i = 0; i < scene.mNumMaterials; ++i) {
     aiString name;
     if (scene.mMaterials[i]->GetTexture(aiTextureType_DIFFUSE, 0, &name) != aiReturn_SUCCESS) continue;
     std::string relative = name.C_Str();
     std::replace(relative.begin(), relative.end(), '\\', '/');
-    const fs::path picture = fs::path(path).parent_path() / relative;
-    const std::string what = "the picture " + picture.string() + " of the mesh " + path;
-    std::error_code error;
-    if (!fs::exists(picture, error))
-      return {ErrorCode::kNotFound, what + " is not there; put it there, or take it out of the mesh's material"};
-    const auto read = ReadImage(picture);
-    if (!read.ok()) return {read.status().code(), what + ": " + read.status().message()};
-    *image = *read;
-    if (image->channels() == 1) cv::cvtColor(*read, *image, cv::COLOR_GRAY2BGR);
-    return Status::Ok();
+    return (fs::path(path).parent_path() / relative).string();
   }
+  return {};
+}
+
+Status ReadPicture(const std::string& path, MeshFile& mesh) {
+  const std::string what = "the picture " + mesh.picture_path + " of the mesh " + path;
+  std::error_code error;
+  if (!fs::exists(mesh.picture_path, error))
+    return {ErrorCode::kNotFound, what + " is not there; put it there, or take it out of the mesh's material"};
+  const auto read = ReadImage(mesh.picture_path);
+  if (!read.ok()) return {read.status().code(), what + ": " + read.status().message()};
+  mesh.image = *read;
+  if (mesh.image.channels() == 1) cv::cvtColor(*read, mesh.image, cv::COLOR_GRAY2BGR);
   return Status::Ok();
 }
 
+void Transfer(StateArchive& archive, MeshFile& mesh) {
+  archive(mesh.vertices, mesh.uv, mesh.triangles, mesh.picture_path);
+}
+
+std::string Unreadable(const std::string& path) { return "the mesh " + path + " cannot be read as OBJ, PLY or STL"; }
+
 }  // namespace
 
-Result<MeshFile> ReadMeshFile(const std::string& path) {
-  std::error_code error;
-  if (!fs::is_regular_file(path, error))
-    return {ErrorCode::kNotFound, "there is no mesh file " + path + "; check Scene.mesh_path"};
+Result<MeshFile> ParseMeshFile(const std::string& path) {
   if (Status status = CheckPlyHeader(path); !status.ok()) return status;
   Assimp::Importer importer;
   // What a renderer would want (normals, colors) only keeps vertices of one position apart.
@@ -114,8 +124,7 @@ Result<MeshFile> ReadMeshFile(const std::string& path) {
   const Status no_faces(ErrorCode::kInsufficient,
                         "the mesh " + path + " has no faces; a cloud of points shows nothing");
   const auto unreadable = [&] {
-    return Status(ErrorCode::kUnreadable,
-                  "the mesh " + path + " cannot be read as OBJ, PLY or STL: " + importer.GetErrorString());
+    return Status(ErrorCode::kUnreadable, Unreadable(path) + ": " + importer.GetErrorString());
   };
   const aiScene* scene = importer.ReadFile(path, 0);
   if (scene == nullptr) return unreadable();
@@ -133,8 +142,32 @@ Result<MeshFile> ReadMeshFile(const std::string& path) {
   for (unsigned i = 0; i < scene->mNumMeshes; ++i)
     if (Status status = Append(path, *scene->mMeshes[i], with_uv, mesh); !status.ok()) return status;
   if (mesh.triangles.empty()) return no_faces;
-  if (with_uv)
-    if (Status status = ReadPicture(path, *scene, &mesh.image); !status.ok()) return status;
+  if (with_uv) mesh.picture_path = PicturePath(path, *scene);
+  return mesh;
+}
+
+Result<MeshFile> ReadMeshFile(const std::string& path) {
+  std::error_code error;
+  if (!fs::is_regular_file(path, error))
+    return {ErrorCode::kNotFound, "there is no mesh file " + path + "; check Scene.mesh_path"};
+  // What Assimp takes for meshes of millions of triangles, twice.
+  const auto size = static_cast<std::int64_t>(fs::file_size(path, error));
+  const ChildLimits limits = {.cpu_seconds = 10 + static_cast<int>(size / 1000000),
+                              .memory_bytes = 500000000 + 40 * size};
+  Result<std::string> bytes = CallInChild(Unreadable(path), limits, [&]() -> Result<std::string> {
+    Result<MeshFile> parsed = ParseMeshFile(path);
+    if (!parsed.ok()) return parsed.status();
+    StateArchive archive;
+    Transfer(archive, *parsed);
+    return archive.bytes();
+  });
+  if (!bytes.ok()) return bytes.status();
+  MeshFile mesh;
+  StateArchive archive = StateArchive::Reading(std::move(*bytes));
+  Transfer(archive, mesh);
+  if (!archive.ok()) return {ErrorCode::kUnreadable, Unreadable(path) + ": its reader's answer breaks off"};
+  if (!mesh.picture_path.empty())
+    if (Status status = ReadPicture(path, mesh); !status.ok()) return status;
   return mesh;
 }
 

@@ -20,7 +20,7 @@ constexpr std::array<const char*, 3> kNames = {"mesh.obj", "mesh.ply", "mesh.stl
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const FuzzInput input(data, size, static_cast<int>(kNames.size()));
   const std::string path = WriteFuzzFile(kNames.at(static_cast<std::size_t>(input.choice)), input.bytes);
-  const auto mesh = simulation::ReadMeshFile(path);
+  const auto mesh = simulation::ParseMeshFile(path);
   std::filesystem::remove(path);
   if (!mesh.ok()) {
     if (mesh.status().message().empty()) std::abort();
