@@ -30,6 +30,12 @@ cv::Mat Resized(const cv::Mat& gray, double scale) {
   return resized;
 }
 
+cv::Mat Smoothed(const cv::Mat& gray, double sigma_px) {
+  cv::Mat smoothed;  // not in place: `gray` may be the caller's image
+  cv::GaussianBlur(gray, smoothed, {}, sigma_px);
+  return smoothed;
+}
+
 // The scales to search at, the likeliest first.
 std::vector<double> SearchScales(const cv::Mat& gray) {
   const double longest = std::max(gray.cols, gray.rows);
@@ -127,7 +133,7 @@ std::vector<cv::Point2f> FindWholeBoard(const cv::Mat& gray, const CalibrationBo
   for (const auto& [scale, smoothing_px, effort] : Searches(gray)) {
     if (effort == Effort::kExhaustive && !is_chessboard) continue;
     cv::Mat searched = Resized(gray, scale);
-    if (smoothing_px > 0) cv::GaussianBlur(searched, searched, {}, smoothing_px);
+    if (smoothing_px > 0) searched = Smoothed(searched, smoothing_px);
     std::vector<cv::Point2f> points;
     const bool found = is_chessboard ? FindChessboard(searched, {board.columns, board.rows}, effort, &points)
                                      : FindCircles(searched, board, &points);

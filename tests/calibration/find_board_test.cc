@@ -77,6 +77,15 @@ TEST(FindBoard, FindsNothingInAnEmptyImage) {
   EXPECT_FALSE(LargestChessboard(cv::Mat(240, 320, CV_8UC1, cv::Scalar(128))).has_value());
 }
 
+// Of 640 to 960 px, which is searched as it is.
+TEST(FindBoard, LeavesTheImageAsItIs) {
+  cv::Mat image(600, 800, CV_8UC1);
+  cv::RNG(1).fill(image, cv::RNG::UNIFORM, 100, 156);
+  const cv::Mat before = image.clone();
+  EXPECT_FALSE(FindBoard(image, kBoardInView).has_value());
+  EXPECT_EQ(cv::countNonZero(image != before), 0);
+}
+
 // OpenCV's search would take hours among them.
 TEST(FindBoard, LooksForNoBoardOfCirclesAmongThousandsOfSpots) {
   cv::Mat image(900, 900, CV_8UC1, cv::Scalar(220));
