@@ -3,18 +3,22 @@
 """Sphinx's configuration. build.py makes the folder of pages that it reads."""
 
 import re
+import sys
+from pathlib import Path
 
 from docutils import nodes
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 project = "Pliant"
 author = "The Pliant authors"
 copyright = "2026 The Pliant authors"
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_copybutton"]
-myst_enable_extensions = ["deflist"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_copybutton", "equations"]
+myst_enable_extensions = ["deflist", "dollarmath"]
 myst_heading_anchors = 4
 smartquotes = False            # --flag stays --flag
-highlight_language = "none"    # indented blocks are commands and equations
+highlight_language = "none"    # indented blocks are commands
 copybutton_exclude = ".linenos, .gp, .go"
 exclude_patterns = ["experiments/behavior"]
 suppress_warnings = ["myst.header"]  # some pages of notebooks begin with a heading of another level
@@ -34,6 +38,7 @@ html_static_path = ["static"]
 html_css_files = ["site.css"]
 html_show_sphinx = False
 html_copy_source = False
+html_math_renderer = "katex"   # of equations.py
 
 
 EQUATION = re.compile(r"\(([A-Z]\d{1,2})\)")
@@ -53,12 +58,13 @@ def link_equations(app, doctree):
     if app.env.docname != "docs/method":
         return
     numbers = set()
-    for block in doctree.findall(nodes.literal_block):
-        here = re.findall(r"^\(([A-Z]\d{1,2})\)", block.astext(), re.MULTILINE)
+    for block in doctree.findall(lambda node: isinstance(node, (nodes.literal_block, nodes.math_block))):
+        here = re.findall(r"^\(([A-Z]\d{1,2})\)|\\tag\{([A-Z]\d{1,2})\}", block.astext(), re.MULTILINE)
+        here = [in_words or in_symbols for in_words, in_symbols in here]
         block["ids"] += [number for number in here if number not in numbers]
         numbers.update(here)
     for text in list(doctree.findall(nodes.Text)):
-        if isinstance(text.parent, (nodes.literal_block, nodes.literal, nodes.title, nodes.reference)):
+        if isinstance(text.parent, (nodes.literal_block, nodes.literal, nodes.math_block, nodes.title, nodes.reference)):
             continue
         parts = EQUATION.split(str(text))  # text, number, text, number, text ...
         if any(number in numbers for number in parts[1::2]):
