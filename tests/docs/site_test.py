@@ -21,6 +21,7 @@ SHOWN = (
     ("index.html", "Your own video"),
     ("docs/method.html", 'id="E7"'),
     ("docs/method.html", 'href="#E7"'),
+    ("docs/method.html", 'class="katex-display"'),
     ("options/track.html", "--Growth.grow"),
     ("python_api.html", "Camera pose and the motion of every point."),
     ("python_api.html", "Tracks images as they come, without a run folder."),
@@ -33,7 +34,7 @@ SHOWN = (
 
 
 def need(python_path):
-    missing = [program for program in ("sphinx-build", "doxygen") if shutil.which(program) is None]
+    missing = [program for program in ("sphinx-build", "doxygen", "katex") if shutil.which(program) is None]
     if not missing:
         # Sphinx's own Python reads the package.
         head = pathlib.Path(shutil.which("sphinx-build")).read_text(encoding="utf-8").splitlines()[0]
