@@ -45,6 +45,23 @@ TEST(Recordings, TheLaparoscopyVideoIsReadDirectlyAndTrackedThroughAllItsFrames)
   EXPECT_EQ(static_cast<std::int64_t>(run->poses.size()), summary->frames_tracked);
 }
 
+// Coefficients explain the parallax of so few frames away; the rigid window's map is provisional (W19).
+TEST(Recordings, TheLaparoscopyAtAThirdOfItsFrameRateHasAProvisionalMap) {
+  const std::string folder_path = RecordingOrSkip("laparoscopy");
+  if (folder_path.empty()) GTEST_SKIP() << "no recordings at " << PLIANT_TEST_RECORDINGS;
+  const TestFolder folder;
+  RunRequest request;
+  request.input.image_path = folder_path + "/endo.mp4";
+  request.input.camera_path = folder_path + "/camera.yaml";
+  request.input.stride = 3;
+  request.output_path = folder.Path("run");
+  const auto summary = RunTrack(request, TrackOptions(), {});
+  ASSERT_TRUE(summary.ok()) << summary.status().message();
+  EXPECT_EQ(summary->frames_tracked, 84);
+  ASSERT_FALSE(summary->first_maps.empty());
+  EXPECT_TRUE(summary->first_maps.front().evidence.provisional);
+}
+
 TEST(Recordings, NoisyFullHdIsTrackedInSmallerImagesAndReportedInItsOwnPixels) {
   const std::string folder_path = RecordingOrSkip("nasal");
   if (folder_path.empty()) GTEST_SKIP() << "no recordings at " << PLIANT_TEST_RECORDINGS;

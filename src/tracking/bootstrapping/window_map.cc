@@ -212,7 +212,7 @@ Status OptimizePoints(const InitInput& input, const MapDemands& demands, const W
 Status CheckDepthSignal(const SolvedWindow& window, const MapDemands& demands, const WindowInitOptions& options,
                         InitOutcome* outcome) {
   const InitMeasurements& measured = outcome->measured;
-  outcome->provisional = demands.provisional || measured.DepthSignal() < kMinDepthSignal;
+  outcome->provisional = demands.provisional || window.is_contradicted || measured.DepthSignal() < kMinDepthSignal;
   const bool stands_out =
       measured.DepthSignal() >= (demands.far_by_own_distance ? kMinDepthSignal : kMinProvisionalSignal);
   const double max_sigma = stands_out ? kMaxOwnSigma * demands.max_sigma : options.max_depth_sigma;

@@ -15,6 +15,7 @@
 #include "pliant/base/text.h"
 #include "pliant/estimation/window/window_refinement.h"
 #include "pliant/geometry/triangulation.h"
+#include "pliant/scene/frame_report.h"
 #include "tracking/bootstrapping/initial_map.h"
 #include "tracking/bootstrapping/window_halves.h"
 
@@ -137,6 +138,15 @@ double MedianSigma(const DeformingSolution& solution) {
   return Median(std::move(sigmas));
 }
 
+// (W15) As of a map, but of all of the window's points and by their distances in the reference.
+double DepthSignal(const DeformingSolution& solution) {
+  std::vector<double> logs;
+  for (const Eigen::Vector3d& point : solution.window.points_in_world) logs.push_back(std::log(point.norm()));
+  const double median = Median(logs);
+  for (double& value : logs) value = std::abs(value - median);
+  return pliant::DepthSignal(Median(std::move(logs)), MedianSigma(solution));
+}
+
 // A window's frames and points, ready to be solved.
 struct PreparedWindow {
   std::vector<std::size_t> views;  // frames of the input, ascending
@@ -212,17 +222,23 @@ Result<SolvedWindow> SolveRigid(const InitInput& input, const PreparedWindow& wi
   return rigid;
 }
 
-// (W19) The rigid window in place of the deforming one where it knows depths better, by what its halves say of it.
+// (W19) The rigid window in place of the deforming one where it knows depths better, by what its halves say of it, or
+// where its depths stand out and the other one's do not.
 Result<SolvedWindow> MoreCertain(const InitInput& input, const PreparedWindow& wide, SolvedWindow deforming,
                                  const WindowInitOptions& options, double nominal_depth_mm) {
   auto rigid = SolvedAsRigid(input, wide, options);
   const double sigma = MedianSigma(deforming.solution);
-  if (!rigid.ok() || !(MedianSigma(rigid->solution) < sigma)) return deforming;
+  const bool stands_out = DepthSignal(deforming.solution) >= kMinProvisionalSignal;
+  const auto knows_better = [&](const DeformingSolution& solution) {
+    return MedianSigma(solution) < sigma || (!stands_out && DepthSignal(solution) >= kMinProvisionalSignal);
+  };
+  if (!rigid.ok() || !knows_better(rigid->solution)) return deforming;
   const std::vector<double> of_halves = SigmasOfHalves(input, *rigid, options, nominal_depth_mm);
   std::vector<double>& sigmas = rigid->solution.sample_sigmas;
   if (sigmas.empty()) sigmas.assign(of_halves.size(), 0.0);
   std::ranges::transform(sigmas, of_halves, sigmas.begin(), [](double a, double b) { return std::max(a, b); });
-  if (!(MedianSigma(rigid->solution) < sigma)) return deforming;
+  if (!knows_better(rigid->solution)) return deforming;
+  rigid->is_contradicted = !(MedianSigma(rigid->solution) < sigma);
   rigid->deforming = std::make_shared<const SolvedWindow>(std::move(deforming));
   return rigid;
 }

@@ -23,6 +23,7 @@ struct SolvedWindow {
   // Of a rigid window that leaves more than noise unexplained, and knows depths better all the same: the same window
   // with coefficients. Else null.
   std::shared_ptr<const SolvedWindow> deforming = nullptr;
+  bool is_contradicted = false;  // that one is more certain, of depths that are all nearly the same
 
   bool IsRigid() const { return solution.window.coefficients.rows() == 0; }
   // Whether the sigmas allow for a deformation.
@@ -41,7 +42,8 @@ enum class WindowScene { kRigid, kAny };
 // The window of the input's first `frames` frames, solved: as a rigid scene if it is one, else, where it may be any,
 // with coefficients; where the light turns out to say nothing of these, with the depth prior, and where that does not
 // either, with none, if that is more certain. Where its halves agree so well that a rigid scene leaves depths less
-// uncertain than coefficients do, as a rigid scene all the same (W19).
+// uncertain than coefficients do, or that its depths stand out where those with coefficients do not, as a rigid scene
+// all the same (W19).
 // kInsufficient, kDegenerate: what is missing, or that the scene deforms.
 Result<SolvedWindow> SolveWindow(const InitInput& input, std::size_t frames, WindowScene scene,
                                  const WindowInitOptions& options, double nominal_depth_mm);
