@@ -68,13 +68,15 @@ TEST(CallInChild, EndsACallThatDoesNotEnd) {
 }
 
 TEST(CallInChild, EndsACallThatWantsTooMuchMemory) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "addresses are not limited under the address sanitizer";
+#endif
   const auto failed = CallInChild(kWhat, {.memory_bytes = 100000000}, []() -> Result<std::string> {
     std::vector<std::string> parts;
     for (int k = 0; k < 1000; ++k) parts.emplace_back(1000000, static_cast<char>(k));
     return parts.back();
   });
   ASSERT_FALSE(failed.ok());
-  // The address sanitizer ends the process in place of throwing.
   EXPECT_THAT(failed.status().message(), StartsWith("the file f cannot be read: its reader "));
 }
 
