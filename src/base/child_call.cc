@@ -25,6 +25,7 @@ namespace {
 
 // An answer is an error code, the size of what follows, and the bytes or the sentence.
 constexpr std::size_t kHeadSize = 1 + sizeof(std::uint64_t);
+constexpr int kWallByCpu = 5;  // seconds by the clock: the machine may have other work
 
 void Limit(int what, rlim_t soft, rlim_t hard) {
   struct rlimit limit = {};
@@ -69,12 +70,13 @@ std::string ReadAll(int file) {
 // In the child: its signals and limits, the call, the answer. Never returns.
 [[noreturn]] void Answer(int file, pid_t parent, const std::string& what, const ChildLimits& limits,
                          const std::function<Result<std::string>()>& call) {
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGXCPU}) std::signal(signal, SIG_DFL);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGXCPU, SIGALRM}) std::signal(signal, SIG_DFL);
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(1);
   Limit(RLIMIT_CORE, 0, 0);
   const auto seconds = static_cast<rlim_t>(limits.cpu_seconds);
   Limit(RLIMIT_CPU, seconds, seconds + 1);
+  alarm(static_cast<unsigned>(kWallByCpu * limits.cpu_seconds));  // one that waits takes no CPU time
   const std::string too_much =
       what + ": its reader asks for more than " + std::to_string(limits.memory_bytes / 1000000) + " MB of memory";
   if (const rlim_t now = AddressSpace(); now > 0) {
@@ -133,7 +135,7 @@ Result<std::string> CallInChild(const std::string& what, const ChildLimits& limi
   }
   const int signal = WIFSIGNALED(state) ? WTERMSIG(state) : 0;
   std::string why = signal == 0 ? "did not answer" : "was ended by signal " + std::to_string(signal);
-  if (signal == SIGXCPU) why = "needs more than " + std::to_string(limits.cpu_seconds) + " s";
+  if (signal == SIGXCPU || signal == SIGALRM) why = "needs more than " + std::to_string(limits.cpu_seconds) + " s";
   return {ErrorCode::kUnreadable, what + ": its reader " + why};
 }
 

@@ -67,6 +67,13 @@ TEST(CallInChild, EndsACallThatDoesNotEnd) {
   EXPECT_THAT(failed.status().message(), HasSubstr("its reader needs more than 1 s"));
 }
 
+TEST(CallInChild, EndsACallThatWaits) {
+  const auto failed = CallInChild(kWhat, {.cpu_seconds = 1}, []() -> Result<std::string> {
+    for (;;) pause();
+  });
+  EXPECT_THAT(failed.status().message(), HasSubstr("its reader needs more than 1 s"));
+}
+
 TEST(CallInChild, EndsACallThatWantsTooMuchMemory) {
 #ifdef __SANITIZE_ADDRESS__
   GTEST_SKIP() << "addresses are not limited under the address sanitizer";

@@ -14,7 +14,7 @@
 namespace pliant {
 
 struct ChildLimits {
-  int cpu_seconds = 10;             // at least 1
+  int cpu_seconds = 10;             // at least 1; five times as long by the clock
   std::int64_t memory_bytes = 1e9;  // of addresses, beyond those that the program has already
 };
 
