@@ -37,8 +37,8 @@ class Katex:
         if self.process is None:
             if shutil.which("node") is None or not MODULE.is_dir() or not ASSETS.is_dir():
                 raise ExtensionError("equations need Node and KaTeX; install nodejs, katex and libjs-katex")
-            self.process = subprocess.Popen(["node", "-e", PROGRAM, str(MODULE)], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
-                                            text=True, encoding="utf-8")
+            self.process = subprocess.Popen(["node", "-e", PROGRAM, str(MODULE)], stdin=subprocess.PIPE,
+                                            stdout=subprocess.PIPE, text=True, encoding="utf-8")
         self.process.stdin.write(json.dumps([tex, display]) + "\n")
         self.process.stdin.flush()
         answer = json.loads(self.process.stdout.readline() or '{"error": "Node ended"}')

@@ -29,14 +29,19 @@ std::string RecordingOrSkip(const std::string& name) {
   return std::filesystem::exists(path) ? path.string() : "";
 }
 
+RunRequest LaparoscopyRequest(const std::string& folder_path, const std::string& output_path) {
+  RunRequest request;
+  request.input.image_path = folder_path + "/endo.mp4";
+  request.input.camera_path = folder_path + "/camera.yaml";
+  request.output_path = output_path;
+  return request;
+}
+
 TEST(Recordings, TheLaparoscopyVideoIsReadDirectlyAndTrackedThroughAllItsFrames) {
   const std::string folder_path = RecordingOrSkip("laparoscopy");
   if (folder_path.empty()) GTEST_SKIP() << "no recordings at " << PLIANT_TEST_RECORDINGS;
   const TestFolder folder;
-  RunRequest request;
-  request.input.image_path = folder_path + "/endo.mp4";
-  request.input.camera_path = folder_path + "/camera.yaml";
-  request.output_path = folder.Path("run");
+  const RunRequest request = LaparoscopyRequest(folder_path, folder.Path("run"));
   const auto summary = RunTrack(request, TrackOptions(), {});
   ASSERT_TRUE(summary.ok()) << summary.status().message();
   EXPECT_EQ(summary->frames_tracked, 250);
@@ -50,11 +55,8 @@ TEST(Recordings, TheLaparoscopyAtAThirdOfItsFrameRateHasAProvisionalMap) {
   const std::string folder_path = RecordingOrSkip("laparoscopy");
   if (folder_path.empty()) GTEST_SKIP() << "no recordings at " << PLIANT_TEST_RECORDINGS;
   const TestFolder folder;
-  RunRequest request;
-  request.input.image_path = folder_path + "/endo.mp4";
-  request.input.camera_path = folder_path + "/camera.yaml";
+  RunRequest request = LaparoscopyRequest(folder_path, folder.Path("run"));
   request.input.stride = 3;
-  request.output_path = folder.Path("run");
   const auto summary = RunTrack(request, TrackOptions(), {});
   ASSERT_TRUE(summary.ok()) << summary.status().message();
   EXPECT_EQ(summary->frames_tracked, 84);

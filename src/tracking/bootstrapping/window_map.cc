@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <numbers>
 #include <numeric>
@@ -93,15 +92,6 @@ MapPoints ChooseCertain(const MapPoints& points, const std::vector<double>& erro
     if (!from.sample_sigmas.empty()) to.sample_sigmas.push_back(from.sample_sigmas[i]);
   }
   return chosen;
-}
-
-// The median of |log(value / median)|; infinite where a value is not positive.
-double LogSpread(std::vector<double> values) {
-  if (std::ranges::any_of(values, [](double value) { return !(value > 0.0); }))
-    return std::numeric_limits<double>::infinity();
-  const double median = Median(values);
-  for (double& value : values) value = std::abs(std::log(value / median));
-  return Median(std::move(values));
 }
 
 // (W15) The error that one depth for all points would have in the window's last frame, or one distance where that is

@@ -140,11 +140,9 @@ double MedianSigma(const DeformingSolution& solution) {
 
 // (W15) As of a map, but of all of the window's points and by their distances in the reference.
 double DepthSignal(const DeformingSolution& solution) {
-  std::vector<double> logs;
-  for (const Eigen::Vector3d& point : solution.window.points_in_world) logs.push_back(std::log(point.norm()));
-  const double median = Median(logs);
-  for (double& value : logs) value = std::abs(value - median);
-  return pliant::DepthSignal(Median(std::move(logs)), MedianSigma(solution));
+  std::vector<double> distances;
+  for (const Eigen::Vector3d& point : solution.window.points_in_world) distances.push_back(point.norm());
+  return pliant::DepthSignal(LogSpread(std::move(distances)), MedianSigma(solution));
 }
 
 // A window's frames and points, ready to be solved.
@@ -250,6 +248,14 @@ double MedianParallaxRad(const DeformingWindow& window, const Rigid3& cam_from_w
   std::vector<double> angles;
   for (const Eigen::Vector3d& point : window.points_in_world) angles.push_back(AngleBetween(point, point - center));
   return Median(std::move(angles));
+}
+
+double LogSpread(std::vector<double> values) {
+  if (std::ranges::any_of(values, [](double value) { return !(value > 0.0); }))
+    return std::numeric_limits<double>::infinity();
+  const double median = Median(values);
+  for (double& value : values) value = std::abs(std::log(value / median));
+  return Median(std::move(values));
 }
 
 bool ContradictsLight(const DeformingSolution& solution) {

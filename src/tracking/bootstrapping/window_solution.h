@@ -33,6 +33,9 @@ struct SolvedWindow {
 // Of the points, between the reference and a view: median.
 double MedianParallaxRad(const DeformingWindow& window, const Rigid3& cam_from_world);
 
+// The median of |log(value / median)|; infinite where a value is not positive.
+double LogSpread(std::vector<double> values);
+
 // Whether the light says of the distances next to nothing, or something else: the solution is wrong, or the light is
 // not at the camera, of another response, or on tissue of many colors. False where there is no light.
 bool ContradictsLight(const DeformingSolution& solution);
