@@ -47,32 +47,40 @@ Trackability Measure(const std::vector<ImageRun>& runs, const WorkingImage& work
     const Trackability measured = MeasureTrackability(frames, tracker, options.threads);
     all.corners += measured.corners;
     all.alive += measured.alive;
+    all.residuals_px.insert(all.residuals_px.end(), measured.residuals_px.begin(), measured.residuals_px.end());
   }
   return all;
 }
 
-// How many corners last, in working images of which some are asked for more than once.
-class AliveCounts {
+// Of working images, some of which are asked for more than once.
+class Measurements {
  public:
-  // Both have to outlive this.
-  AliveCounts(const std::vector<ImageRun>& runs, const TrackOptions& options) : runs_(runs), options_(options) {}
+  struct Value {
+    int alive = 0;
+    double information = 0;  // Trackability::Information in px of the source
+  };
 
-  int Of(const WorkingImage& working) {
-    const auto known = std::ranges::find(counts_, working, &std::pair<WorkingImage, int>::first);
-    if (known != counts_.end()) return known->second;
-    return counts_.emplace_back(working, Measure(runs_, working, options_).alive).second;
+  // Both have to outlive this.
+  Measurements(const std::vector<ImageRun>& runs, const TrackOptions& options) : runs_(runs), options_(options) {}
+
+  Value Of(const WorkingImage& working) {
+    const auto known = std::ranges::find(values_, working, &std::pair<WorkingImage, Value>::first);
+    if (known != values_.end()) return known->second;
+    const Trackability measured = Measure(runs_, working, options_);
+    return values_.emplace_back(working, Value{measured.alive, measured.Information(working.scale)}).second;
   }
 
  private:
   const std::vector<ImageRun>& runs_;
   const TrackOptions& options_;
-  std::vector<std::pair<WorkingImage, int>> counts_;
+  std::vector<std::pair<WorkingImage, Value>> values_;
 };
 
-// The first that is as good as the best, to the accuracy of a count; the first of all where none tells.
-WorkingImage FirstAsGoodAsTheBest(const std::vector<WorkingImage>& candidates, AliveCounts* counts) {
+// The first in which as many corners last as in the best, to the accuracy of a count; the first of all where none
+// tells.
+WorkingImage FirstAsGoodAsTheBest(const std::vector<WorkingImage>& candidates, Measurements* measurements) {
   std::vector<int> alive;
-  for (const WorkingImage& candidate : candidates) alive.push_back(counts->Of(candidate));
+  for (const WorkingImage& candidate : candidates) alive.push_back(measurements->Of(candidate).alive);
   const int best = *std::ranges::max_element(alive);
   if (best < kMinAlive) return candidates.front();
   const auto chosen = std::ranges::find_if(alive, [&](int count) { return count >= best - std::sqrt(best); });
@@ -117,17 +125,17 @@ WorkingImage ChooseWorkingImage(const std::vector<ImageRun>& runs, const TrackOp
     if (scale == 1 || (side >= kMinSide_px && side <= kMaxSide_px))
       sizes.push_back({scale, kSmoothingOfSizes_px, kNoisyPatchScale});
   }
-  AliveCounts counts(runs, options);
-  const WorkingImage size = FirstAsGoodAsTheBest(sizes, &counts);
+  Measurements measurements(runs, options);
+  const WorkingImage size = FirstAsGoodAsTheBest(sizes, &measurements);
   std::vector<WorkingImage> smoothings;
   for (const double smoothing_px : kSmoothings_px) smoothings.push_back({size.scale, smoothing_px, kNoisyPatchScale});
-  const WorkingImage chosen = FirstAsGoodAsTheBest(smoothings, &counts);
+  const WorkingImage chosen = FirstAsGoodAsTheBest(smoothings, &measurements);
   WorkingImage small_patches = chosen;
   small_patches.patch_scale = 1;
   // Pixels that are neither smoothed nor interpolated hold as much each as the source's: it is not noise that loses
   // the corners, and a larger patch crosses more folds.
   if (chosen.scale <= 1 && chosen.smoothing_px == 0) return small_patches;
-  return FirstAsGoodAsTheBest({small_patches, chosen}, &counts);
+  return measurements.Of(small_patches).information >= measurements.Of(chosen).information ? small_patches : chosen;
 }
 
 }  // namespace pliant

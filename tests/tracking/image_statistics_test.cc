@@ -130,6 +130,22 @@ TEST(MeasureImageStatistics, DoesNotDependOnThreadsAndCountsAsTrackabilityDoes) 
   EXPECT_EQ(one.alive_after_9 * one.corners, counts.alive);
 }
 
+TEST(Trackability, ExactTracksTellMoreThanMany) {
+  Trackability few{.corners = 500, .alive = 100, .residuals_px = TrackResiduals(NoisyTracks(0.1, 0))};
+  Trackability many{.corners = 500, .alive = 150, .residuals_px = TrackResiduals(NoisyTracks(0.15, 0))};
+  EXPECT_GT(few.Information(1), many.Information(1));
+  EXPECT_NEAR(few.Information(1) * (0.1 * 0.1 + 0.01 * 0.01) / few.alive, 1.0, 2 * kTrackNoise);
+  // The same pixels of an image of twice the size are half as many of the source.
+  EXPECT_NEAR(few.Information(2) / few.Information(1), 4.0, 0.2);
+  EXPECT_EQ(Trackability().Information(1), 0.0);
+}
+
+TEST(Trackability, OfImagesThatRepeatIsFinite) {
+  const std::vector<PreparedFrame> one = MovingFrames(1, 0);
+  const std::vector<PreparedFrame> still(5, one.front());
+  EXPECT_TRUE(std::isfinite(MeasureTrackability(still, {}, 1).Information(1)));
+}
+
 TEST(MeasureImageStatistics, IsNothingForTooFewFrames) {
   EXPECT_EQ(MeasureImageStatistics(MovingFrames(kStatisticsRunFrames - 1, 0), {}, 1).frames, 0);
 }

@@ -5,15 +5,28 @@
 
 #include <algorithm>
 
+#include "pliant/tracking/tracks/image_statistics.h"
 #include "tracking/tracks/followed_corners.h"
 
 namespace pliant {
+namespace {
+
+// Images that stand still, or are repeated, have no noise.
+constexpr double kMinNoise_px = 0.01;
+
+}  // namespace
+
+double Trackability::Information(double scale) const {
+  if (residuals_px.empty()) return 0;
+  const double noise_px = TrackNoise(residuals_px) / scale;
+  return alive / (noise_px * noise_px + kMinNoise_px * kMinNoise_px);
+}
 
 Trackability MeasureTrackability(std::span<const PreparedFrame> frames, const TrackerOptions& options, int threads) {
   if (frames.size() < 2) return {};
   const auto tracks = FollowCorners(frames, options, threads);
   const auto alive = std::ranges::count_if(tracks, [&](const auto& track) { return track.size() == frames.size(); });
-  return {static_cast<int>(tracks.size()), static_cast<int>(alive)};
+  return {static_cast<int>(tracks.size()), static_cast<int>(alive), TrackResiduals(tracks)};
 }
 
 }  // namespace pliant

@@ -2,10 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // How well the corners of an image can be tracked: measured on a few images of a recording, it tells how far they have
-// to be resized and smoothed (WorkingImage).
+// to be resized and smoothed, and how large patches have to be (WorkingImage).
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "pliant/tracking/prepared_frame.h"
 #include "pliant/tracking/tracker_options.h"
@@ -13,8 +14,14 @@
 namespace pliant {
 
 struct Trackability {
-  int corners = 0;  // of the first image that can be tracked at all
-  int alive = 0;    // of them, tracked from image to image into the last one
+  int corners = 0;                        // of the first image that can be tracked at all
+  int alive = 0;                          // of them, tracked from image to image into the last one
+  std::vector<double> residuals_px = {};  // TrackResiduals of all of them
+
+  // What the tracks tell of a motion, 1/px^2: 1 / (noise^2 + 0.01^2) for each of the alive ones, with their TrackNoise
+  // in px of the source, of which the frames are `scale` (> 0) times as large. 0 where there are no residuals.
+  // Source: docs/method.md (P14).
+  double Information(double scale) const;
 };
 
 // Tracks the corners of the first frame through the others, each predicted at constant velocity. All 0 for fewer than
