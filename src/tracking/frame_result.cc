@@ -85,10 +85,10 @@ void AddLastAttempt(const BootstrapStep& step, const StageTimes& times, FrameRep
   for (std::size_t k = 0; k < added.size(); ++k) report->stage_ms[k].second += added[k].second;
 }
 
-void MarkAmbiguous(const std::string& reason, std::vector<FrameReport>* reports) {
+void MarkAmbiguous(const std::string& reason, int since_frame_idx, std::vector<FrameReport>* reports) {
   if (reason.empty()) return;
   for (FrameReport& report : *reports) {
-    if (report.state != TrackingState::kInitializing) continue;
+    if (report.state != TrackingState::kInitializing || report.frame_idx < since_frame_idx) continue;
     report.state = TrackingState::kAmbiguous;
     report.note = reason;
   }

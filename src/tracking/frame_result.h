@@ -49,7 +49,7 @@ void AddLosses(const LossCounts& losses, FrameReport* report);
 // The attempt after the last frame is reported with that frame.
 void AddLastAttempt(const BootstrapStep& step, const StageTimes& times, FrameReport* report);
 // Frames in which points were followed from a reference that came to nothing, since camera and scene could not be told
-// apart; nothing where there is no `reason`.
-void MarkAmbiguous(const std::string& reason, std::vector<FrameReport>* reports);
+// apart; nothing where there is no `reason`. `since_frame_idx`: the reference.
+void MarkAmbiguous(const std::string& reason, int since_frame_idx, std::vector<FrameReport>* reports);
 
 }  // namespace pliant

@@ -148,9 +148,8 @@ std::vector<FrameReport> Tracker::Process(const PreparedFrame& frame) {
   std::erase_if(set_aside_, [&](const FrameReport& report) { return report.frame_idx <= frame.frame_idx; });
   Report(frame, result, &times);
 
-  const auto first_held = state_ == TrackingState::kInitializing
-                              ? std::ranges::find(held_, bootstrapper_->reference_frame_idx(), &FrameReport::frame_idx)
-                              : held_.end();
+  const std::optional<int> since = bootstrapper_->AwaitsMapSince();
+  const auto first_held = since ? std::ranges::find(held_, *since, &FrameReport::frame_idx) : held_.end();
   std::vector<FrameReport> done(std::make_move_iterator(held_.begin()), std::make_move_iterator(first_held));
   held_.erase(held_.begin(), first_held);
   return done;
@@ -170,7 +169,7 @@ void Tracker::FindSubmapAgain(const PreparedFrame& frame) {
 FrameResult Tracker::Bootstrap(const PreparedFrame& frame, StageTimes* times) {
   BootstrapStep step = bootstrapper_->Process(frame, &submaps_->current(), times);
   for (const TrackingEvent event : step.events) Apply(event);
-  MarkAmbiguous(step.ambiguity, &held_);
+  MarkAmbiguous(step.ambiguity, step.ambiguous_since_frame_idx, &held_);
   FrameResult result{.tracked = step.tracked, .losses = std::move(step.losses), .note = std::move(step.note)};
   if (step.has_to_catch_up) {
     BeginCatchUp(*std::move(step.map));
@@ -319,14 +318,14 @@ std::vector<FrameReport> Tracker::Finish() {
 }
 
 void Tracker::EndSequence() {
-  if (state_ != TrackingState::kInitializing || held_.empty()) return;
+  if (!bootstrapper_->AwaitsMapSince() || held_.empty()) return;
   StageTimes times;
   FrameResult result;
   if (!catch_up_) {
     BootstrapStep step = bootstrapper_->EndSequence(&times);
     for (const TrackingEvent event : step.events) Apply(event);
     AddLastAttempt(step, times, &held_.back());
-    MarkAmbiguous(step.ambiguity, &held_);
+    MarkAmbiguous(step.ambiguity, step.ambiguous_since_frame_idx, &held_);
     if (step.has_to_catch_up) {
       BeginCatchUp(*std::move(step.map));
     } else if (step.map) {

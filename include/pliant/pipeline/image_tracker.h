@@ -34,8 +34,9 @@ class ImageTracker {
                                      const TrackerExtensions& extensions = {});
 
   // The reports that became final with this frame, in order of time; each frame is reported once. From the reference on
-  // reports are held back until there is a map. Frames come in order of time. Fails with kMismatch for an image or mask
-  // that has not the camera's size; the frame is passed over then.
+  // reports and their images are held back until there is a map: of WindowInit.last_frame frames, or three times as
+  // many where a map waits that is hardly better than one constant depth. Frames come in order of time. Fails with
+  // kMismatch for an image or mask that has not the camera's size; the frame is passed over then.
   Result<std::vector<FrameReport>> Process(const SequenceFrame& frame);
   // No more frames come: the reports that are held back.
   std::vector<FrameReport> Finish();

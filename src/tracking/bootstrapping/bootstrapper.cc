@@ -16,6 +16,14 @@ namespace pliant {
 namespace {
 
 constexpr std::size_t kAskAlternativeEvery = 5;  // frames
+// So many references of WindowInit.last_frame frames have the time to give a better map than a weak one.
+constexpr int kWeakReferences = 3;
+
+// (W15) Of a window that deforms, and hardly better than one constant depth.
+bool IsWeak(const InitOutcome& map) {
+  return map.provisional && (map.deforming || map.allows_deformation) &&
+         map.measured.DepthSignal() < kMinProvisionalSignal;
+}
 
 // Of two provisional maps, the second one of a longer window. Sigmas of a rigid window may know nothing of a
 // deformation: where a longer one deforms they do not count. Those by own distances are not compared with others.
@@ -44,6 +52,7 @@ Bootstrapper::Bootstrapper(const Camera& camera, const TrackerOptions& options, 
 
 BootstrapStep Bootstrapper::Process(const PreparedFrame& frame, Submap* submap, StageTimes* times) {
   assert(submap->map.landmarks.empty());
+  if (weak_) ++weak_frames_;
   if (!HasReference()) return TakeReference(frame, submap, times);
   if (options_.track_blurred == Switch::kOn && submap->IsBlurred(frame, options_)) {
     // A dark or blurred frame is passed over: the points are searched again in the next one.
@@ -56,7 +65,7 @@ BootstrapStep Bootstrapper::Process(const PreparedFrame& frame, Submap* submap, 
 }
 
 BootstrapStep Bootstrapper::TakeReference(const PreparedFrame& frame, Submap* submap, StageTimes* times) {
-  Abandon();
+  DropReference();
   BootstrapStep step;
   {
     const StageTimer timer(times, Stage::kInitialize);
@@ -72,12 +81,12 @@ BootstrapStep Bootstrapper::TakeReference(const PreparedFrame& frame, Submap* su
   const int needed =
       tracks_->abilities().adds_always ? std::min(kFewestPoints, options_.min_corners) : options_.min_corners;
   if (step.tracked < needed) {
-    Abandon();
     step.events = {TrackingEvent::kTooFewCorners};
     step.note = WithFault("no reference yet: " + std::to_string(step.tracked) +
                               (initializer_->TakesKnownPoints() ? " points of the model" : " corners") +
                               ", of at least " + std::to_string(needed),
                           ImageFault(frame, submap->previous));
+    GiveUpReference(&step);
   } else {
     TryInitialize(frame, times, &step);
     if (HasReference()) {
@@ -102,6 +111,7 @@ BootstrapStep Bootstrapper::FollowReference(const PreparedFrame& frame, Submap* 
     BootstrapStep next = TakeReference(frame, submap, times);
     next.events.insert(next.events.begin(), TrackingEvent::kReferenceSpent);
     next.ambiguity = std::move(step.ambiguity);
+    next.ambiguous_since_frame_idx = step.ambiguous_since_frame_idx;
     step.losses.Add(next.losses);
     next.losses = std::move(step.losses);
     next.note = step.note + "; " + next.note;
@@ -168,7 +178,12 @@ void Bootstrapper::TakeAnswer(Answer answer, BootstrapStep* step) {
   TakeAlternative(answer);
   switch (outcome.decision) {
     case InitDecision::kMap:
-      FinishMapOrGoBack(std::move(answer), step);
+      if (IsWeak(outcome)) {
+        PutAside(std::move(answer));
+        GiveUpReference(step);
+      } else {
+        FinishMapOrGoBack(std::move(answer), step);
+      }
       break;
     case InitDecision::kProvisional:
       PutAside(std::move(answer));
@@ -178,11 +193,11 @@ void Bootstrapper::TakeAnswer(Answer answer, BootstrapStep* step) {
       step->events.push_back(TrackingEvent::kMapAwaited);
       break;
     case InitDecision::kNewReference:
-      if (outcome.ambiguous) step->ambiguity = outcome.reason;
-      if (provisional_)
-        GoBack(step);
-      else
-        Abandon();
+      if (outcome.ambiguous) {
+        step->ambiguity = outcome.reason;
+        step->ambiguous_since_frame_idx = frames_.front().frame_idx;
+      }
+      GiveUpReference(step);
       doubts_.was_ambiguous |= outcome.ambiguous;
       break;
   }
@@ -190,8 +205,9 @@ void Bootstrapper::TakeAnswer(Answer answer, BootstrapStep* step) {
 
 void Bootstrapper::TakeAlternative(const Answer& answer) {
   if (answer.outcome.ambiguous) {  // what is less certain, or takes more for granted, is no answer then
-    const bool is_weak = provisional_ && provisional_->map.outcome.measured.DepthSignal() < kMinDepthSignal;
-    if (is_weak || answer.outcome.camera_may_stand_still) provisional_.reset();
+    const bool is_uncertain = provisional_ && provisional_->map.outcome.measured.DepthSignal() < kMinDepthSignal;
+    if (is_uncertain || answer.outcome.camera_may_stand_still) provisional_.reset();
+    weak_.reset();
     ForgetAlternative();
   }
   doubts_.camera_may_stand_still |= answer.outcome.camera_may_stand_still;
@@ -239,6 +255,26 @@ void Bootstrapper::PutAside(Answer answer) {
   provisional_ = MapOf(std::move(answer));
 }
 
+// To the best map that was put aside, if there is one. A weak one waits for what the next references give, where the
+// frames since then can be read again.
+void Bootstrapper::GiveUpReference(BootstrapStep* step) {
+  if (!weak_) weak_frames_ = static_cast<int>(frames_.size());
+  TakeWeak();
+  const bool waits = provisional_ && IsWeak(provisional_->map.outcome) && handover_frames_ == 0 &&
+                     weak_frames_ < kWeakReferences * options_.init.window.last_frame;
+  if (waits) weak_ = std::exchange(provisional_, std::nullopt);
+  if (provisional_)
+    GoBack(step);
+  else
+    DropReference();
+}
+
+// What earlier references left is put aside like a map of this one, unless that is better.
+void Bootstrapper::TakeWeak() {
+  auto weak = std::exchange(weak_, std::nullopt);
+  if (weak && !(provisional_ && IsBetter(provisional_->map.outcome, weak->map.outcome))) provisional_ = std::move(weak);
+}
+
 // To the map that was put aside.
 void Bootstrapper::GoBack(BootstrapStep* step) {
   Made provisional = *std::exchange(provisional_, std::nullopt);
@@ -249,9 +285,14 @@ void Bootstrapper::GoBack(BootstrapStep* step) {
     Retrack(std::move(provisional), step);
 }
 
+std::optional<int> Bootstrapper::AwaitsMapSince() const {
+  if (weak_) return weak_->map.frames.front().frame_idx;
+  return HasReference() ? std::optional(frames_.front().frame_idx) : std::nullopt;
+}
+
 // The points of the map are followed again from the frame that it is of.
 void Bootstrapper::Retrack(Made made, BootstrapStep* step) {
-  const bool present = made.frame.frame_idx == frames_.back().frame_idx;
+  const bool present = !frames_.empty() && made.frame.frame_idx == frames_.back().frame_idx;
   Abandon();
   std::erase_if(made.map.frames.back().observations,
                 [&](const InitObservation& seen) { return !tracks_->Resume(seen.id, seen.pixel, made.frame); });
@@ -268,6 +309,7 @@ void Bootstrapper::FinishMap(FirstMap map, BootstrapStep* step) {
   for (const InitRejectedPoint& rejected : map.outcome.rejected)
     if (rejected.reason != InitRejection::kLostOnTheWay) step->losses.Add(InitRejectionName(rejected.reason), 1);
   provisional_.reset();
+  weak_.reset();
   doubts_ = {};
   ForgetAlternative();
   map.outcome.decision = InitDecision::kMap;
@@ -292,14 +334,21 @@ BootstrapStep Bootstrapper::EndSequence(StageTimes* times) {
     TakeAnswer(*std::move(answer), &step);
     if (step.map || !HasReference()) return step;
   }
+  TakeWeak();
+  if (!HasReference()) {
+    if (provisional_) GoBack(&step);
+    return step;
+  }
   PreparedFrame last;
   last.frame_idx = frames_.back().frame_idx;
   const auto alternative = provisional_ ? nullptr : AlternativeToAsk();
   Answer answer = AskInitializers(frames_, known_depths_, doubts_, last, InitMoment::kLastFrame, alternative.get());
   step.note = WithFault(answer.outcome.reason, image_fault_);
   TakeAlternative(answer);
-  if (answer.outcome.ambiguous && answer.outcome.decision == InitDecision::kNewReference)
+  if (answer.outcome.ambiguous && answer.outcome.decision == InitDecision::kNewReference) {
     step.ambiguity = answer.outcome.reason;
+    step.ambiguous_since_frame_idx = frames_.front().frame_idx;
+  }
   if (answer.outcome.decision == InitDecision::kMap)
     FinishMapOrGoBack(std::move(answer), &step);
   else if (provisional_)
@@ -308,6 +357,11 @@ BootstrapStep Bootstrapper::EndSequence(StageTimes* times) {
 }
 
 void Bootstrapper::Abandon() {
+  DropReference();
+  weak_.reset();
+}
+
+void Bootstrapper::DropReference() {
   if (!frames_.empty())
     for (const InitObservation& seen : frames_.back().observations) tracks_->Remove(seen.id);
   frames_.clear();
@@ -394,7 +448,8 @@ void Bootstrapper::Serialize(StateArchive& archive) {
   bool asks_alternative = alternative_ != nullptr;
   archive(asks_alternative);
   if (!asks_alternative) alternative_.reset();
-  archive(has_map_, frames_, known_depths_, image_fault_, provisional_, doubts_, would_start_, last_reason_, answers_);
+  archive(has_map_, frames_, known_depths_, image_fault_, provisional_, weak_, weak_frames_, doubts_, would_start_,
+          last_reason_, answers_);
 }
 void Bootstrapper::Doubts::Serialize(StateArchive& archive) { archive.Members<2>(*this); }
 void Bootstrapper::Made::Serialize(StateArchive& archive) { archive.Members<2>(*this); }

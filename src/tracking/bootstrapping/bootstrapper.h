@@ -34,6 +34,7 @@ struct BootstrapStep {
   std::string note = {};  // one sentence
   // Why camera and scene cannot be told apart in the frames since a reference that was given up for it; else empty.
   std::string ambiguity = {};
+  int ambiguous_since_frame_idx = 0;           // that reference
   std::optional<FirstMap> map = std::nullopt;  // when the initializer made one; the bootstrapper then begins anew
   // Where the map is of an earlier frame, one of the two: it has to catch up with the frames in which the bootstrapper
   // follows its points until Release; or tracking goes on after that frame.
@@ -53,14 +54,13 @@ class Bootstrapper {
 
   // The next frame; `submap` has no landmarks yet.
   BootstrapStep Process(const PreparedFrame& frame, Submap* submap, StageTimes* times);
-  // No frame will follow: a last attempt with those that were processed since the reference, of which there has to be
-  // one.
+  // No frame will follow: a last attempt with those that were processed since the reference, if there is one.
   BootstrapStep EndSequence(StageTimes* times);
   // The reports of the frames since the reference, with what the first map knows of them.
   std::vector<FrameReport> Completed(const FirstMap& first, std::vector<FrameReport> reports) const {
     return CompletedReports(camera_, first, std::move(reports));
   }
-  // Gives the reference up, and its points.
+  // Gives the reference up, its points, and what earlier references left.
   void Abandon();
   // While a map catches up: the frames since the reference, of which the last may be the present one.
   const std::vector<InitFrame>& followed() const { return frames_; }
@@ -74,8 +74,8 @@ class Bootstrapper {
   void Serialize(StateArchive& archive);
 
   bool HasReference() const { return !frames_.empty(); }
-  // There has to be one.
-  int reference_frame_idx() const { return frames_.front().frame_idx; }
+  // The first frame for which a map may still come that was put aside, or is made: a reference. Nothing: there is none.
+  std::optional<int> AwaitsMapSince() const;
 
  private:
   BootstrapStep TakeReference(const PreparedFrame& frame, Submap* submap, StageTimes* times);
@@ -115,6 +115,9 @@ class Bootstrapper {
   void FinishMap(FirstMap map, BootstrapStep* step);
   void FinishMapOrGoBack(Answer answer, BootstrapStep* step);
   void PutAside(Answer answer);
+  void GiveUpReference(BootstrapStep* step);
+  void TakeWeak();
+  void DropReference();
   void GoBack(BootstrapStep* step);
   void Retrack(Made made, BootstrapStep* step);
   std::vector<PointPrediction> PredictPixels(int frame_idx) const;
@@ -137,6 +140,8 @@ class Bootstrapper {
   std::vector<double> known_depths_;  // of the reference's points, where they are known
   std::string image_fault_;           // of the last frame
   std::optional<Made> provisional_;   // the best one since the reference
+  std::optional<Made> weak_;          // the best one of references that were given up
+  int weak_frames_ = 0;               // since the first of those references that had one
   Doubts doubts_;
   std::string would_start_;
   std::string last_reason_;         // of the last answer

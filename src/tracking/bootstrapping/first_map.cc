@@ -47,6 +47,7 @@ std::vector<FrameReport> CompletedReports(const Camera& camera, const FirstMap& 
   assert(outcome.frames.size() == frames.size());
   std::set<PointId> known;
   for (FrameReport& report : reports) {
+    if (report.frame_idx < frames.front().frame_idx) continue;
     const auto frame = std::ranges::find(frames, report.frame_idx, &InitFrame::frame_idx);
     if (frame == frames.end()) {
       report.state = TrackingState::kLost;

@@ -21,7 +21,7 @@ struct FirstMap {
 
 // The reports since the reference, in order of time, completed: state tracking, pose, observations; a point is new in
 // the first frame that shows it, colored as there. The notes of all but the last say that the map came later. A report
-// that is of none of the map's frames, which was passed over, becomes lost.
+// that is of none of the map's frames, which was passed over, becomes lost; those before the reference stay.
 std::vector<FrameReport> CompletedReports(const Camera& camera, const FirstMap& first,
                                           std::vector<FrameReport> reports);
 
