@@ -114,6 +114,22 @@ TEST_F(ExtensionsOfTwoMaps, AMapWhoseFarPointsAreJudgedByThemselvesGivesWay) {
   }));
 }
 
+TEST_F(ExtensionsOfTwoMaps, WhatHalvesSayCountsMoreThanLinearSigmas) {
+  EXPECT_FALSE(TakesSecond([](int map, InitOutcome* outcome) {
+    (map == 0 ? outcome->allows_deformation : outcome->deforming) = true;
+    if (map == 0) outcome->measured.median_depth_sigma = 0.09;
+  }));
+  EXPECT_TRUE(TakesSecond([](int map, InitOutcome* outcome) {
+    (map == 1 ? outcome->allows_deformation : outcome->deforming) = true;
+    if (map == 0) outcome->measured.median_depth_sigma = 0.07;
+  }));
+  // But not where the depths of the deforming window stand out as those of a certain map do.
+  EXPECT_FALSE(TakesSecond([](int map, InitOutcome* outcome) {
+    (map == 1 ? outcome->allows_deformation : outcome->deforming) = true;
+    if (map == 0) outcome->measured.median_depth_sigma = 0.05;
+  }));
+}
+
 // A provisional map whose depths stand out so much.
 class ProvisionalMap final : public Initializer {
  public:

@@ -25,10 +25,21 @@ bool IsWeak(const InitOutcome& map) {
          map.measured.DepthSignal() < kMinProvisionalSignal;
 }
 
+// (W19) A rigid window's whose halves agree, and stands out.
+bool IsCheckedByHalves(const InitOutcome& map) {
+  return map.allows_deformation && map.measured.DepthSignal() >= kMinProvisionalSignal;
+}
+
+// Its sigmas, which are linear, may be too small by far.
+bool IsLinear(const InitOutcome& map) { return map.deforming && map.measured.DepthSignal() < kMinDepthSignal; }
+
 // Of two provisional maps, the second one of a longer window. Sigmas of a rigid window may know nothing of a
-// deformation: where a longer one deforms they do not count. Those by own distances are not compared with others.
+// deformation: where a longer one deforms they do not count, but where they are of its halves, they count more than
+// linear ones. Those by own distances are not compared with others.
 bool IsBetter(const InitOutcome& first, const InitOutcome& second) {
   if (first.far_by_own_distance != second.far_by_own_distance) return second.far_by_own_distance;
+  if (IsCheckedByHalves(first) && IsLinear(second)) return true;
+  if (IsLinear(first) && IsCheckedByHalves(second)) return false;
   const auto allows_deformation = [](const InitOutcome& map) { return map.deforming || map.allows_deformation; };
   const bool is_comparable = allows_deformation(first) || !allows_deformation(second);
   return is_comparable && first.measured.DepthSignal() >= second.measured.DepthSignal();
