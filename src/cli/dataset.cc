@@ -210,8 +210,9 @@ void ListStatisticsOptions(TrackOptions* options, OptionTable* table) {
 
 void PrintStatistics(const SequenceStatistics& measured) {
   const ImageStatistics& images = measured.images;
-  PrintLine("image", Formatted("%dx%d, scale %.3g, smoothing %.2g px", measured.size.width, measured.size.height,
-                               measured.working_image.scale, measured.working_image.smoothing_px));
+  PrintLine("image", Formatted("%dx%d, scale %.3g, smoothing %.2g px%s", measured.size.width, measured.size.height,
+                               measured.working_image.scale, measured.working_image.smoothing_px,
+                               measured.working_image.interlaced ? ", interlaced" : ""));
   PrintLine("frames", std::to_string(images.frames));
   PrintLine("noise", Formatted("%.2f gray levels", images.noise_levels));
   PrintLine("corners", Formatted("%.0f in a frame", images.corners));

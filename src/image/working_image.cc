@@ -8,6 +8,8 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "pliant/image/interlacing.h"
+
 namespace pliant {
 
 cv::Size WorkingImage::SizeOf(const cv::Size& source) const {
@@ -26,7 +28,7 @@ Eigen::Vector2d WorkingImage::ToSource(const Eigen::Vector2d& working_pixel) con
 cv::Mat WorkingImage::Image(const cv::Mat& source) const {
   if (IsSource()) return source;
   // Never into the source's own memory: its owner may need it again.
-  cv::Mat image = source;
+  cv::Mat image = interlaced ? WithoutOddRows(source) : source;
   if (scale < 1) {
     const double sigma = 0.5 * std::sqrt(1 / (scale * scale) - 1);  // what the smaller image cannot hold
     cv::Mat without_aliases;

@@ -41,6 +41,7 @@ bool HasRunMap(const std::string& run_path) {
 
 Result<RunMap> ReadRunMap(const std::string& run_path, const Run& run) {
   RunMap map;
+  map.interlaced = run.summary && run.summary->description.interlaced;
   const std::string folder = SparseOf(run_path);
   const int submaps = run.summary ? run.summary->submaps : 1;
   for (int submap = 0; submap < std::max(1, submaps); ++submap)

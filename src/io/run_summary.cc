@@ -72,6 +72,7 @@ RunDescription ReadDescription(const Json& json) {
     description.image_noise_levels = working.value("noise_levels", 0.0);
     description.track_noise_px = working.value("track_noise_px", 0.0);
     description.alive_after_9 = working.value("alive_after_9", 0.0);
+    description.interlaced = working.value("interlaced", false);
   }
   return description;
 }
@@ -139,7 +140,8 @@ Status WriteRunSummary(const std::string& path, const RunSummary& summary) {
                  {"patch_size", summary.description.patch_size},
                  {"noise_levels", summary.description.image_noise_levels},
                  {"track_noise_px", summary.description.track_noise_px},
-                 {"alive_after_9", summary.description.alive_after_9}}},
+                 {"alive_after_9", summary.description.alive_after_9},
+                 {"interlaced", summary.description.interlaced}}},
                {"status", EnumName(summary.status)},
                {"note", summary.note},
                {"trust", trust},

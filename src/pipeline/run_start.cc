@@ -106,6 +106,9 @@ Result<RunStart> ReadStart(const RunRequest& request, const TrackOptions& option
   if (Status status = ReadTracks(request, options, &start); !status.ok()) return status;
   const std::vector<ImageRun> runs = options.FollowsInSource() ? std::vector<ImageRun>() : ReadFirstRuns(request.input);
   start.working_image = ChooseWorkingImage(runs, options);
+  if (start.working_image.interlaced && options.image.interlaced == Interlacing::kMeasured)
+    start.warnings.push_back(
+        "the images are interlaced, and their odd rows are of another time: they are not used (Image.interlaced)");
   start.images = MeasureImages(runs, start.working_image, options);
   auto camera = sequence.camera().Resized(start.working_image.scale);
   if (!camera.ok()) return camera.status();

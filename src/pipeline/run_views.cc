@@ -9,6 +9,7 @@
 #include "pipeline/run_frames.h"
 #include "pliant/base/statistics.h"
 #include "pliant/datasets/run_sequence.h"
+#include "pliant/image/interlacing.h"
 #include "pliant/photometric/stereo_matching.h"
 
 namespace pliant {
@@ -43,18 +44,21 @@ Status RunViews::ReadUntil(std::size_t position, const std::function<bool(std::s
                                       name != known_.names.end() ? name->second : std::string(), sequence_.get());
     if (!frame.ok()) return frame.status();
     if (!is_needed(next_)) continue;
-    const SurfaceView& view = views_[next_] = {frame->image, ValidMask(frame->image, frame->mask, masks_),
-                                               posed.cam_from_world, posed.observations};
+    const cv::Mat image = ImageOf(frame->image);
+    const SurfaceView& view =
+        views_[next_] = {image, ValidMask(image, frame->mask, masks_), posed.cam_from_world, posed.observations};
     masks_given_[next_] = frame->mask;
     if (pair_threads_ == 0 || !needs_right || !needs_right(next_)) continue;
     if (!CheckPairs("a surface", *known_.camera, sequence_->BaselineMm()).ok()) continue;
     const auto right = sequence_->Right();
     if (!right.ok()) return right.status();
     if (!right->has_value()) continue;
-    if (auto right_view = RightView(view, frame->mask, **right)) rights_[next_] = *std::move(right_view);
+    if (auto right_view = RightView(view, frame->mask, ImageOf(**right))) rights_[next_] = *std::move(right_view);
   }
   return Status::Ok();
 }
+
+cv::Mat RunViews::ImageOf(const cv::Mat& source) const { return known_.interlaced ? WithoutOddRows(source) : source; }
 
 const SurfaceView* RunViews::RightOf(std::size_t position) const {
   const auto found = rights_.find(position);

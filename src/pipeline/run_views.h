@@ -57,6 +57,8 @@ class RunViews {
   void ForgetUnless(const std::function<bool(std::size_t)>& is_needed);
 
  private:
+  // As it is compared: of one time.
+  cv::Mat ImageOf(const cv::Mat& source) const;
   std::optional<SurfaceView> RightView(const SurfaceView& left, const cv::Mat& mask, const cv::Mat& right) const;
 
   std::unique_ptr<Sequence> sequence_;

@@ -217,7 +217,9 @@ RunDescription DescriptionOf(const RunRequest& request, const TrackOptions& opti
           options.track_file.path,
           options.tracker.depth_prior.path,
           request.extensions.Names(),
-          SelectionOf(request.input)};
+          SelectionOf(request.input),
+          {},
+          start.working_image.interlaced};
 }
 
 Status CheckImagesComeAgain(const SequenceRequest& input) {

@@ -14,6 +14,9 @@ void ImageOptions::List(OptionTable& table) {
   table.Add("scale", &scale, "-", "fixed: size of the working image divided by that of the source", 0.05, 4);
   table.Add("smoothing_px", &smoothing_px, "px",
             "fixed: standard deviation of the Gaussian that smooths the working image, in its pixels; 0: none", 0, 20);
+  table.AddChoice("interlaced", &interlaced,
+                  "whether the odd rows of the images are of another time than the even ones, and are not used; "
+                  "measured: by the combs that motion makes in the first images, where working is measured, too");
 }
 
 void TrackOptions::List(OptionTable& table) {
@@ -40,6 +43,7 @@ TrackOptions MakeTrackOptions(Preset preset) {
   if (preset == Preset::kDefault) return options;
   options.max_frames_back = 0;
   options.image.working = WorkingImageMode::kFixed;
+  options.image.interlaced = Interlacing::kOff;
   TrackerOptions& tracker = options.tracker;
   tracker.corners.contour_filter = Switch::kOff;
   tracker.masks.highlights = Switch::kOff;

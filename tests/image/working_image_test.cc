@@ -58,6 +58,7 @@ TEST(WorkingImage, TheSourceIsNeverWrittenTo) {
 TEST(WorkingImage, TheSourceItselfIsGivenWhereNothingChanges) {
   const cv::Mat source = Blob({60, 40}, {30, 20}, 3);
   EXPECT_EQ(WorkingImage{}.Image(source).data, source.data);
+  EXPECT_NE(WorkingImage{.interlaced = true}.Image(source).data, source.data);
   EXPECT_EQ(WorkingImage{}.Nearest(source).data, source.data);
   EXPECT_TRUE(WorkingImage{.scale = 2}.Nearest(cv::Mat()).empty());
 }

@@ -24,19 +24,20 @@ constexpr double kBlob_px = 3;       // of the texture: nothing in it is finer
 constexpr double kContrast = 25;     // standard deviation, gray levels
 constexpr double kStrongNoise = 25;  // standard deviation, gray levels, of every pixel by itself
 constexpr double kVeryStrongNoise = 80;
-constexpr int kStep_px = 3;  // the texture moves on by this, a frame
+constexpr int kStep_px = 3;       // the texture moves on by this, a frame
+constexpr int kFieldStep_px = 2;  // of it, until the odd rows of an interlaced image are exposed
 
 // A smooth texture that moves sideways, with noise that is new in every frame.
 class MovingTexture : public testing::Test {
  protected:
-  void Write(double noise) {
+  void Write(double noise, int field_step_px = 0) {
     const auto camera =
         Camera::Create(CameraModelId::kSimplePinhole, kWidth, kHeight, std::array{1200.0, kWidth / 2.0, kHeight / 2.0});
     ASSERT_TRUE(camera.ok());
     auto writer = NativeWriter::Create(folder_.Path("sequence"), {.camera = *camera, .fps = 25});
     ASSERT_TRUE(writer.ok()) << writer.status().message();
     cv::RNG random(7);
-    cv::Mat texture(kHeight, kWidth + kImages * kStep_px, CV_32FC1);
+    cv::Mat texture(kHeight, kWidth + (kImages + 1) * kStep_px, CV_32FC1);
     random.fill(texture, cv::RNG::NORMAL, 0, 1);
     cv::GaussianBlur(texture, texture, {}, kBlob_px);
     cv::Scalar mean;
@@ -46,18 +47,21 @@ class MovingTexture : public testing::Test {
     for (int k = 0; k < kImages; ++k) {
       cv::Mat grain(kHeight, kWidth, CV_32FC1);
       random.fill(grain, cv::RNG::NORMAL, 0, noise);
+      cv::Mat shown = texture.colRange(k * kStep_px, k * kStep_px + kWidth).clone();
+      const int later_px = k * kStep_px + field_step_px;
+      for (int y = 1; y < kHeight; y += 2) texture.row(y).colRange(later_px, later_px + kWidth).copyTo(shown.row(y));
       cv::Mat image;
-      cv::Mat(texture.colRange(k * kStep_px, k * kStep_px + kWidth) + grain).convertTo(image, CV_8UC1);
+      cv::Mat(shown + grain).convertTo(image, CV_8UC1);
       cv::cvtColor(image, image, cv::COLOR_GRAY2BGR);
       const Status written = writer->Write({.timestamp_s = k / 25.0, .image = image});
       ASSERT_TRUE(written.ok()) << written.message();
     }
   }
 
-  WorkingImage Chosen() const {
+  WorkingImage Chosen(const TrackOptions& options = {}) const {
     SequenceRequest request;
     request.image_path = folder_.Path("sequence");
-    return ChooseWorkingImage(ReadFirstRuns(request), TrackOptions());
+    return ChooseWorkingImage(ReadFirstRuns(request), options);
   }
 
   TestFolder folder_;
@@ -67,6 +71,27 @@ TEST_F(MovingTexture, CleanImagesAreUsedAsTheyAre) {
   Write(0.3);
   EXPECT_TRUE(Chosen().IsSource());
   EXPECT_EQ(Chosen().patch_scale, 1);
+}
+
+TEST_F(MovingTexture, OfInterlacedOnesTheOddRowsAreLeftOut) {
+  Write(0.3, kFieldStep_px);
+  EXPECT_EQ(Chosen(), WorkingImage{.interlaced = true});
+  TrackOptions options;
+  options.image.working = WorkingImageMode::kFixed;
+  EXPECT_EQ(Chosen(options), WorkingImage{}) << "images are taken as they are";
+  options.image.interlaced = Interlacing::kOn;
+  EXPECT_EQ(Chosen(options), WorkingImage{.interlaced = true});
+}
+
+TEST_F(MovingTexture, OddRowsAreLeftOutWhereThatIsAskedFor) {
+  Write(0.3);
+  EXPECT_FALSE(Chosen().interlaced);
+  TrackOptions options;
+  options.image.interlaced = Interlacing::kOn;
+  EXPECT_TRUE(Chosen(options).interlaced);
+  Write(0.3, kFieldStep_px);
+  options.image.interlaced = Interlacing::kOff;
+  EXPECT_FALSE(Chosen(options).interlaced);
 }
 
 TEST_F(MovingTexture, NoisyOnesAreMadeSmallerOrSmoother) {

@@ -15,11 +15,12 @@ struct WorkingImage {
   double scale = 1;         // size of the working image by that of the source; > 0
   double smoothing_px = 0;  // standard deviation of a Gaussian, in pixels of the working image; 0: none
   double patch_scale = 1;   // side of the patches that are tracked in it by that of the options; > 0
+  bool interlaced = false;  // the source is: its odd rows are of another time, and not used
 
   bool operator==(const WorkingImage&) const = default;
 
   // Whether the images are the same.
-  bool IsSource() const { return scale == 1 && smoothing_px == 0; }
+  bool IsSource() const { return scale == 1 && smoothing_px == 0 && !interlaced; }
 
   // Of an image of this size, rounded to whole pixels.
   cv::Size SizeOf(const cv::Size& source) const;

@@ -20,6 +20,7 @@ struct RunMap {
   std::optional<Camera> camera;
   std::map<int, std::string> names;  // of the images, by frame
   std::map<PointId, NewPoint> points;
+  bool interlaced = false;  // the images are
 };
 
 bool HasRunMap(const std::string& run_path);

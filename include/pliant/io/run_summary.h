@@ -69,6 +69,7 @@ struct RunDescription {
   std::vector<std::string> extensions = {};
   FrameSelection range = {};                  // all frames in runs of earlier versions, which do not say
   std::vector<std::string> joined_from = {};  // the runs that were joined, absolute; empty: a run of its own
+  bool interlaced = false;                    // the images are: their odd rows were not used
 };
 
 // Images of a source that went on while they were tracked.

@@ -52,10 +52,24 @@ struct EnumNames<WorkingImageMode> {
                                         std::pair{WorkingImageMode::kFixed, std::string_view("fixed")}};
 };
 
+// Whether the source's images are interlaced: their odd rows are of another time then, and are not used.
+enum class Interlacing {
+  kMeasured,  // with WorkingImageMode::kMeasured; else they are not
+  kOff,
+  kOn,
+};
+template <>
+struct EnumNames<Interlacing> {
+  static constexpr std::array kNames = {std::pair{Interlacing::kMeasured, std::string_view("measured")},
+                                        std::pair{Interlacing::kOff, std::string_view("off")},
+                                        std::pair{Interlacing::kOn, std::string_view("on")}};
+};
+
 struct ImageOptions {
   WorkingImageMode working = WorkingImageMode::kMeasured;
   double scale = 1;         // fixed: size of the working image by that of the source
   double smoothing_px = 0;  // fixed: standard deviation of a Gaussian, in working pixels
+  Interlacing interlaced = Interlacing::kMeasured;
 
   void List(OptionTable& table);  // group "Image"
 };
