@@ -41,21 +41,34 @@ constexpr double kNoisyPatchScale = 1.41;
 // six recordings that are not.
 constexpr double kMinCombRatio = 3.0;
 constexpr double kMovingMost = 0.75;
+constexpr std::size_t kCombEvery = 4;  // images of a run
+constexpr int kCombSide_px = 1024;
 // With which sizes are compared. At the source's own noise all large sizes would lose.
 constexpr double kSmoothingOfSizes_px = 0.7;
 
-Trackability Measure(const std::vector<ImageRun>& runs, const WorkingImage& working, const TrackOptions& options) {
-  Trackability all;
+// One a run.
+std::vector<Trackability> Measure(const std::vector<ImageRun>& runs, const WorkingImage& working,
+                                  const TrackOptions& options) {
+  std::vector<Trackability> measured;
   const TrackerOptions tracker = WorkingOptions(options.tracker, working);
   for (const ImageRun& run : runs) {
     std::vector<PreparedFrame> frames;
     for (const SequenceFrame& frame : run) frames.push_back(PrepareWorkingFrame(frame, working, tracker));
-    const Trackability measured = MeasureTrackability(frames, tracker, options.threads);
-    all.corners += measured.corners;
-    all.alive += measured.alive;
-    all.residuals_px.insert(all.residuals_px.end(), measured.residuals_px.begin(), measured.residuals_px.end());
+    measured.push_back(MeasureTrackability(frames, tracker, options.threads));
   }
-  return all;
+  return measured;
+}
+
+int SumOf(std::span<const Trackability> runs, int Trackability::*count) {
+  int sum = 0;
+  for (const Trackability& run : runs) sum += run.*count;
+  return sum;
+}
+
+// The middle of an image, which is as interlaced as all of it.
+cv::Mat MiddleOf(const cv::Mat& image) {
+  const cv::Size size(std::min(image.cols, kCombSide_px), std::min(image.rows, kCombSide_px));
+  return image({(image.cols - size.width) / 2, (image.rows - size.height) / 2, size.width, size.height});
 }
 
 bool IsInterlaced(const std::vector<ImageRun>& runs, const ImageOptions& options) {
@@ -63,39 +76,38 @@ bool IsInterlaced(const std::vector<ImageRun>& runs, const ImageOptions& options
   if (options.working == WorkingImageMode::kFixed) return false;
   std::vector<double> ratios;
   for (const ImageRun& run : runs)
-    for (const SequenceFrame& frame : run) ratios.push_back(CombRatio(frame.image));
+    for (std::size_t k = 0; k < run.size(); k += kCombEvery) ratios.push_back(CombRatio(MiddleOf(run[k].image)));
   return !ratios.empty() && Quantile(std::move(ratios), kMovingMost) > kMinCombRatio;
 }
 
 // Of working images, some of which are asked for more than once.
 class Measurements {
  public:
-  struct Value {
-    int alive = 0;
-    double information = 0;  // Trackability::Information in px of the source
-  };
-
   // Both have to outlive this.
   Measurements(const std::vector<ImageRun>& runs, const TrackOptions& options) : runs_(runs), options_(options) {}
 
-  Value Of(const WorkingImage& working) {
-    const auto known = std::ranges::find(values_, working, &std::pair<WorkingImage, Value>::first);
-    if (known != values_.end()) return known->second;
-    const Trackability measured = Measure(runs_, working, options_);
-    return values_.emplace_back(working, Value{measured.alive, measured.Information(working.scale)}).second;
-  }
+  int Alive(const WorkingImage& working) { return SumOf(Of(working), &Trackability::alive); }
+  // In px of the source.
+  double Information(const WorkingImage& working) { return TrackInformation(Of(working), working.scale); }
 
  private:
+  const std::vector<Trackability>& Of(const WorkingImage& working) {
+    const auto known =
+        std::ranges::find(measured_, working, &std::pair<WorkingImage, std::vector<Trackability>>::first);
+    if (known != measured_.end()) return known->second;
+    return measured_.emplace_back(working, Measure(runs_, working, options_)).second;
+  }
+
   const std::vector<ImageRun>& runs_;
   const TrackOptions& options_;
-  std::vector<std::pair<WorkingImage, Value>> values_;
+  std::vector<std::pair<WorkingImage, std::vector<Trackability>>> measured_;
 };
 
 // The first in which as many corners last as in the best, to the accuracy of a count; the first of all where none
 // tells.
 WorkingImage FirstAsGoodAsTheBest(const std::vector<WorkingImage>& candidates, Measurements* measurements) {
   std::vector<int> alive;
-  for (const WorkingImage& candidate : candidates) alive.push_back(measurements->Of(candidate).alive);
+  for (const WorkingImage& candidate : candidates) alive.push_back(measurements->Alive(candidate));
   const int best = *std::ranges::max_element(alive);
   if (best < kMinAlive) return candidates.front();
   const auto chosen = std::ranges::find_if(alive, [&](int count) { return count >= best - std::sqrt(best); });
@@ -135,8 +147,9 @@ WorkingImage ChooseWorkingImage(const std::vector<ImageRun>& runs, const TrackOp
   const auto pixels = static_cast<double>(runs.front().front().image.total());
   if (pixels > kMaxPixels) return {.scale = std::sqrt(kMaxPixels / pixels), .interlaced = as_read.interlaced};
   if (runs.front().size() < 2) return as_read;
-  const Trackability of_all = Measure(runs, as_read, options);
-  if (of_all.corners >= kMinAlive && of_all.alive >= kLastingShare * of_all.corners) return as_read;
+  const std::vector<Trackability> measured = Measure(runs, as_read, options);
+  const int corners = SumOf(measured, &Trackability::corners);
+  if (corners >= kMinAlive && SumOf(measured, &Trackability::alive) >= kLastingShare * corners) return as_read;
   const cv::Size source = runs.front().front().image.size();
   std::vector<WorkingImage> sizes;
   for (const double scale : kScales) {
@@ -155,7 +168,7 @@ WorkingImage ChooseWorkingImage(const std::vector<ImageRun>& runs, const TrackOp
   // Pixels that are neither smoothed nor interpolated hold as much each as the source's: it is not noise that loses
   // the corners, and a larger patch crosses more folds.
   if (chosen.scale <= 1 && chosen.smoothing_px == 0) return small_patches;
-  return measurements.Of(small_patches).information >= measurements.Of(chosen).information ? small_patches : chosen;
+  return measurements.Information(small_patches) >= measurements.Information(chosen) ? small_patches : chosen;
 }
 
 }  // namespace pliant

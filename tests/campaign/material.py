@@ -31,8 +31,9 @@ RESUMABLE = ("track", "seq", "--General.timings", "none", "--General.checkpoint_
 
 
 def make(program, folder):
-    """Makes it once; a folder that this version of it made is taken as it is."""
-    version = pathlib.Path(__file__).read_text(encoding="utf-8")
+    """Makes it once; a folder that this version of it, and of the program, made is taken as it is."""
+    state = pathlib.Path(program).stat()
+    version = f"{state.st_size} {state.st_mtime_ns}\n" + pathlib.Path(__file__).read_text(encoding="utf-8")
     if (folder / "done").exists() and (folder / "done").read_text(encoding="utf-8") == version:
         return
     shutil.rmtree(folder, ignore_errors=True)

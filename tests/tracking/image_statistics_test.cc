@@ -131,19 +131,22 @@ TEST(MeasureImageStatistics, DoesNotDependOnThreadsAndCountsAsTrackabilityDoes) 
 }
 
 TEST(Trackability, ExactTracksTellMoreThanMany) {
-  Trackability few{.corners = 500, .alive = 100, .residuals_px = TrackResiduals(NoisyTracks(0.1, 0))};
-  Trackability many{.corners = 500, .alive = 150, .residuals_px = TrackResiduals(NoisyTracks(0.15, 0))};
-  EXPECT_GT(few.Information(1), many.Information(1));
-  EXPECT_NEAR(few.Information(1) * (0.1 * 0.1 + 0.01 * 0.01) / few.alive, 1.0, 2 * kTrackNoise);
+  const std::vector<Trackability> few{{.corners = 500, .alive = 100, .tracks = NoisyTracks(0.1, 0)}};
+  const std::vector<Trackability> many{{.corners = 500, .alive = 150, .tracks = NoisyTracks(0.15, 0)}};
+  const double of_few = TrackInformation(few, 1);
+  EXPECT_GT(of_few, TrackInformation(many, 1));
+  EXPECT_NEAR(of_few * (0.1 * 0.1 + 0.01 * 0.01) / few.front().alive, 1.0, 2 * kTrackNoise);
   // The same pixels of an image of twice the size are half as many of the source.
-  EXPECT_NEAR(few.Information(2) / few.Information(1), 4.0, 0.2);
-  EXPECT_EQ(Trackability().Information(1), 0.0);
+  EXPECT_NEAR(TrackInformation(few, 2) / of_few, 4.0, 0.2);
+  EXPECT_NEAR(TrackInformation(std::vector<Trackability>{few.front(), few.front()}, 1) / of_few, 2.0, 1e-9);
+  EXPECT_EQ(TrackInformation({}, 1), 0.0);
 }
 
 TEST(Trackability, OfImagesThatRepeatIsFinite) {
   const std::vector<PreparedFrame> one = MovingFrames(1, 0);
   const std::vector<PreparedFrame> still(5, one.front());
-  EXPECT_TRUE(std::isfinite(MeasureTrackability(still, {}, 1).Information(1)));
+  const std::vector<Trackability> runs{MeasureTrackability(still, {}, 1)};
+  EXPECT_TRUE(std::isfinite(TrackInformation(runs, 1)));
 }
 
 TEST(MeasureImageStatistics, IsNothingForTooFewFrames) {
