@@ -118,6 +118,7 @@ TEST_F(StereoRun, WhatWasMeasuredIsNotReestimatedWhileItIsInView) {
   const auto reestimated = [&](double max_measured_share) {
     request.output_path = folder_.Path("run" + std::to_string(max_measured_share));
     TrackOptions options = StereoOptions();
+    options.image.working = WorkingImageMode::kFixed;
     options.tracker.growth.window = 12;
     options.tracker.growth.reestimate_every = 2;
     WindowInitOptions& window = options.tracker.init.window;  // which makes do with so few frames
