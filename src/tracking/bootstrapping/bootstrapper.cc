@@ -19,10 +19,11 @@ constexpr std::size_t kAskAlternativeEvery = 5;  // frames
 // So many references of WindowInit.last_frame frames have the time to give a better map than a weak one.
 constexpr int kWeakReferences = 3;
 
+bool AllowsDeformation(const InitOutcome& map) { return map.deforming || map.allows_deformation; }
+
 // (W15) Of a window that deforms, and hardly better than one constant depth.
 bool IsWeak(const InitOutcome& map) {
-  return map.provisional && (map.deforming || map.allows_deformation) &&
-         map.measured.DepthSignal() < kMinProvisionalSignal;
+  return map.provisional && AllowsDeformation(map) && map.measured.DepthSignal() < kMinProvisionalSignal;
 }
 
 // (W19) A rigid window's whose halves agree, and stands out.
@@ -40,8 +41,7 @@ bool IsBetter(const InitOutcome& first, const InitOutcome& second) {
   if (first.far_by_own_distance != second.far_by_own_distance) return second.far_by_own_distance;
   if (IsCheckedByHalves(first) && IsLinear(second)) return true;
   if (IsLinear(first) && IsCheckedByHalves(second)) return false;
-  const auto allows_deformation = [](const InitOutcome& map) { return map.deforming || map.allows_deformation; };
-  const bool is_comparable = allows_deformation(first) || !allows_deformation(second);
+  const bool is_comparable = AllowsDeformation(first) || !AllowsDeformation(second);
   return is_comparable && first.measured.DepthSignal() >= second.measured.DepthSignal();
 }
 
@@ -204,14 +204,18 @@ void Bootstrapper::TakeAnswer(Answer answer, BootstrapStep* step) {
       step->events.push_back(TrackingEvent::kMapAwaited);
       break;
     case InitDecision::kNewReference:
-      if (outcome.ambiguous) {
-        step->ambiguity = outcome.reason;
-        step->ambiguous_since_frame_idx = frames_.front().frame_idx;
-      }
+      TellAmbiguity(outcome, step);
       GiveUpReference(step);
       doubts_.was_ambiguous |= outcome.ambiguous;
       break;
   }
+}
+
+// Of a reference that is given up.
+void Bootstrapper::TellAmbiguity(const InitOutcome& outcome, BootstrapStep* step) const {
+  if (!outcome.ambiguous) return;
+  step->ambiguity = outcome.reason;
+  step->ambiguous_since_frame_idx = frames_.front().frame_idx;
 }
 
 void Bootstrapper::TakeAlternative(const Answer& answer) {
@@ -356,10 +360,7 @@ BootstrapStep Bootstrapper::EndSequence(StageTimes* times) {
   Answer answer = AskInitializers(frames_, known_depths_, doubts_, last, InitMoment::kLastFrame, alternative.get());
   step.note = WithFault(answer.outcome.reason, image_fault_);
   TakeAlternative(answer);
-  if (answer.outcome.ambiguous && answer.outcome.decision == InitDecision::kNewReference) {
-    step.ambiguity = answer.outcome.reason;
-    step.ambiguous_since_frame_idx = frames_.front().frame_idx;
-  }
+  if (answer.outcome.decision == InitDecision::kNewReference) TellAmbiguity(answer.outcome, &step);
   if (answer.outcome.decision == InitDecision::kMap)
     FinishMapOrGoBack(std::move(answer), &step);
   else if (provisional_)

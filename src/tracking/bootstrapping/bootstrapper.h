@@ -108,6 +108,7 @@ class Bootstrapper {
   std::optional<Answer> NextAnswer(const PreparedFrame& frame, StageTimes* times);
   void TryInitialize(const PreparedFrame& frame, StageTimes* times, BootstrapStep* step);
   void TakeAnswer(Answer answer, BootstrapStep* step);
+  void TellAmbiguity(const InitOutcome& outcome, BootstrapStep* step) const;
   void TakeAlternative(const Answer& answer);
   void ForgetAlternative();
   Made MapOf(Answer answer) const;
