@@ -19,32 +19,6 @@ constexpr std::size_t kAskAlternativeEvery = 5;  // frames
 // So many references of WindowInit.last_frame frames have the time to give a better map than a weak one.
 constexpr int kWeakReferences = 3;
 
-bool AllowsDeformation(const InitOutcome& map) { return map.deforming || map.allows_deformation; }
-
-// (W15) Of a window that deforms, and hardly better than one constant depth.
-bool IsWeak(const InitOutcome& map) {
-  return map.provisional && AllowsDeformation(map) && map.measured.DepthSignal() < kMinProvisionalSignal;
-}
-
-// (W19) A rigid window's whose halves agree, and stands out.
-bool IsCheckedByHalves(const InitOutcome& map) {
-  return map.allows_deformation && map.measured.DepthSignal() >= kMinProvisionalSignal;
-}
-
-// Its sigmas, which are linear, may be too small by far.
-bool IsLinear(const InitOutcome& map) { return map.deforming && map.measured.DepthSignal() < kMinDepthSignal; }
-
-// Of two provisional maps, the second one of a longer window. Sigmas of a rigid window may know nothing of a
-// deformation: where a longer one deforms they do not count, but where they are of its halves, they count more than
-// linear ones. Those by own distances are not compared with others.
-bool IsBetter(const InitOutcome& first, const InitOutcome& second) {
-  if (first.far_by_own_distance != second.far_by_own_distance) return second.far_by_own_distance;
-  if (IsCheckedByHalves(first) && IsLinear(second)) return true;
-  if (IsLinear(first) && IsCheckedByHalves(second)) return false;
-  const bool is_comparable = AllowsDeformation(first) || !AllowsDeformation(second);
-  return is_comparable && first.measured.DepthSignal() >= second.measured.DepthSignal();
-}
-
 }  // namespace
 
 Bootstrapper::Bootstrapper(const Camera& camera, const TrackerOptions& options, int threads, int handover_frames,
@@ -63,7 +37,7 @@ Bootstrapper::Bootstrapper(const Camera& camera, const TrackerOptions& options, 
 
 BootstrapStep Bootstrapper::Process(const PreparedFrame& frame, Submap* submap, StageTimes* times) {
   assert(submap->map.landmarks.empty());
-  if (weak_) ++weak_frames_;
+  waiting_.CountFrame();
   if (!HasReference()) return TakeReference(frame, submap, times);
   if (options_.track_blurred == Switch::kOn && submap->IsBlurred(frame, options_)) {
     // A dark or blurred frame is passed over: the points are searched again in the next one.
@@ -190,14 +164,14 @@ void Bootstrapper::TakeAnswer(Answer answer, BootstrapStep* step) {
   switch (outcome.decision) {
     case InitDecision::kMap:
       if (IsWeak(outcome)) {
-        PutAside(std::move(answer));
+        waiting_.Put(MapOf(std::move(answer)));
         GiveUpReference(step);
       } else {
         FinishMapOrGoBack(std::move(answer), step);
       }
       break;
     case InitDecision::kProvisional:
-      PutAside(std::move(answer));
+      waiting_.Put(MapOf(std::move(answer)));
       step->events.push_back(TrackingEvent::kMapAwaited);
       break;
     case InitDecision::kWait:
@@ -220,9 +194,7 @@ void Bootstrapper::TellAmbiguity(const InitOutcome& outcome, BootstrapStep* step
 
 void Bootstrapper::TakeAlternative(const Answer& answer) {
   if (answer.outcome.ambiguous) {  // what is less certain, or takes more for granted, is no answer then
-    const bool is_uncertain = provisional_ && provisional_->map.outcome.measured.DepthSignal() < kMinDepthSignal;
-    if (is_uncertain || answer.outcome.camera_may_stand_still) provisional_.reset();
-    weak_.reset();
+    waiting_.Doubt(answer.outcome.camera_may_stand_still);
     ForgetAlternative();
   }
   doubts_.camera_may_stand_still |= answer.outcome.camera_may_stand_still;
@@ -238,7 +210,7 @@ void Bootstrapper::ForgetAlternative() {
   would_start_.clear();
 }
 
-Bootstrapper::Made Bootstrapper::MapOf(Answer answer) const {
+MadeMap Bootstrapper::MapOf(Answer answer) const {
   const auto end = frames_.begin() + static_cast<std::ptrdiff_t>(answer.frames);
   return {{{frames_.begin(), end}, std::move(answer.outcome)}, std::move(answer.last)};
 }
@@ -253,60 +225,42 @@ bool Bootstrapper::IsFollowed(const FirstMap& map) const {
 
 // A map that is provisional itself does not replace a better one that was put aside.
 void Bootstrapper::FinishMapOrGoBack(Answer answer, BootstrapStep* step) {
-  if (answer.outcome.provisional && provisional_ && IsBetter(provisional_->map.outcome, answer.outcome)) {
-    GoBack(step);
+  if (answer.outcome.provisional && waiting_.HasBetterThan(answer.outcome)) {
+    GoBack(*waiting_.Take(), step);
     return;
   }
-  Made made = MapOf(std::move(answer));
+  MadeMap made = MapOf(std::move(answer));
   if (IsFollowed(made.map))
     FinishMap(std::move(made.map), step);
   else
     Retrack(std::move(made), step);
 }
 
-// The one whose depths stand out most from their uncertainty is kept, or the one that knows of a deformation.
-void Bootstrapper::PutAside(Answer answer) {
-  if (provisional_ && IsBetter(provisional_->map.outcome, answer.outcome)) return;
-  provisional_ = MapOf(std::move(answer));
-}
-
-// To the best map that was put aside, if there is one. A weak one waits for what the next references give, where the
-// frames since then can be read again.
+// To the best map that was put aside, if there is one. A weak one waits where the frames since then can be read again.
 void Bootstrapper::GiveUpReference(BootstrapStep* step) {
-  if (!weak_) weak_frames_ = static_cast<int>(frames_.size());
-  TakeWeak();
-  const bool waits = provisional_ && IsWeak(provisional_->map.outcome) && handover_frames_ == 0 &&
-                     weak_frames_ < kWeakReferences * options_.init.window.last_frame;
-  if (waits) weak_ = std::exchange(provisional_, std::nullopt);
-  if (provisional_)
-    GoBack(step);
+  const int max_wait = handover_frames_ == 0 ? kWeakReferences * options_.init.window.last_frame : 0;
+  if (auto made = waiting_.GiveUpReference(static_cast<int>(frames_.size()), max_wait))
+    GoBack(*std::move(made), step);
   else
     DropReference();
 }
 
-// What earlier references left is put aside like a map of this one, unless that is better.
-void Bootstrapper::TakeWeak() {
-  auto weak = std::exchange(weak_, std::nullopt);
-  if (weak && !(provisional_ && IsBetter(provisional_->map.outcome, weak->map.outcome))) provisional_ = std::move(weak);
-}
-
-// To the map that was put aside.
-void Bootstrapper::GoBack(BootstrapStep* step) {
-  Made provisional = *std::exchange(provisional_, std::nullopt);
-  step->note = provisional.map.outcome.reason;
-  if (handover_frames_ > 0 && IsFollowed(provisional.map))
-    FinishMap(std::move(provisional.map), step);
+// To a map that was put aside.
+void Bootstrapper::GoBack(MadeMap made, BootstrapStep* step) {
+  step->note = made.map.outcome.reason;
+  if (handover_frames_ > 0 && IsFollowed(made.map))
+    FinishMap(std::move(made.map), step);
   else
-    Retrack(std::move(provisional), step);
+    Retrack(std::move(made), step);
 }
 
 std::optional<int> Bootstrapper::AwaitsMapSince() const {
-  if (weak_) return weak_->map.frames.front().frame_idx;
+  if (const auto since = waiting_.WeakSince()) return since;
   return HasReference() ? std::optional(frames_.front().frame_idx) : std::nullopt;
 }
 
 // The points of the map are followed again from the frame that it is of.
-void Bootstrapper::Retrack(Made made, BootstrapStep* step) {
+void Bootstrapper::Retrack(MadeMap made, BootstrapStep* step) {
   const bool present = !frames_.empty() && made.frame.frame_idx == frames_.back().frame_idx;
   Abandon();
   std::erase_if(made.map.frames.back().observations,
@@ -323,8 +277,7 @@ void Bootstrapper::Retrack(Made made, BootstrapStep* step) {
 void Bootstrapper::FinishMap(FirstMap map, BootstrapStep* step) {
   for (const InitRejectedPoint& rejected : map.outcome.rejected)
     if (rejected.reason != InitRejection::kLostOnTheWay) step->losses.Add(InitRejectionName(rejected.reason), 1);
-  provisional_.reset();
-  weak_.reset();
+  waiting_.DropAll();
   doubts_ = {};
   ForgetAlternative();
   map.outcome.decision = InitDecision::kMap;
@@ -349,28 +302,28 @@ BootstrapStep Bootstrapper::EndSequence(StageTimes* times) {
     TakeAnswer(*std::move(answer), &step);
     if (step.map || !HasReference()) return step;
   }
-  TakeWeak();
+  waiting_.EndWait();
   if (!HasReference()) {
-    if (provisional_) GoBack(&step);
+    if (auto made = waiting_.Take()) GoBack(*std::move(made), &step);
     return step;
   }
   PreparedFrame last;
   last.frame_idx = frames_.back().frame_idx;
-  const auto alternative = provisional_ ? nullptr : AlternativeToAsk();
+  const auto alternative = waiting_.HasOfReference() ? nullptr : AlternativeToAsk();
   Answer answer = AskInitializers(frames_, known_depths_, doubts_, last, InitMoment::kLastFrame, alternative.get());
   step.note = WithFault(answer.outcome.reason, image_fault_);
   TakeAlternative(answer);
   if (answer.outcome.decision == InitDecision::kNewReference) TellAmbiguity(answer.outcome, &step);
   if (answer.outcome.decision == InitDecision::kMap)
     FinishMapOrGoBack(std::move(answer), &step);
-  else if (provisional_)
-    GoBack(&step);
+  else if (auto made = waiting_.Take())
+    GoBack(*std::move(made), &step);
   return step;
 }
 
 void Bootstrapper::Abandon() {
   DropReference();
-  weak_.reset();
+  waiting_.DropAll();
 }
 
 void Bootstrapper::DropReference() {
@@ -378,7 +331,7 @@ void Bootstrapper::DropReference() {
     for (const InitObservation& seen : frames_.back().observations) tracks_->Remove(seen.id);
   frames_.clear();
   known_depths_.clear();
-  provisional_.reset();
+  waiting_.DropReference();
   doubts_.camera_may_stand_still = false;
   has_map_ = false;
   last_reason_ = "the first map is attempted beside tracking";
@@ -460,11 +413,9 @@ void Bootstrapper::Serialize(StateArchive& archive) {
   bool asks_alternative = alternative_ != nullptr;
   archive(asks_alternative);
   if (!asks_alternative) alternative_.reset();
-  archive(has_map_, frames_, known_depths_, image_fault_, provisional_, weak_, weak_frames_, doubts_, would_start_,
-          last_reason_, answers_);
+  archive(has_map_, frames_, known_depths_, image_fault_, waiting_, doubts_, would_start_, last_reason_, answers_);
 }
 void Bootstrapper::Doubts::Serialize(StateArchive& archive) { archive.Members<2>(*this); }
-void Bootstrapper::Made::Serialize(StateArchive& archive) { archive.Members<2>(*this); }
 void Bootstrapper::Answer::Serialize(StateArchive& archive) { archive.Members<4>(*this); }
 
 }  // namespace pliant

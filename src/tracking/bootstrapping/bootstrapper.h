@@ -20,6 +20,7 @@
 #include "pliant/tracking/tracker_options.h"
 #include "pliant/tracking/tracks/track_source.h"
 #include "tracking/bootstrapping/first_map.h"
+#include "tracking/bootstrapping/waiting_maps.h"
 #include "tracking/frame/oracle_poses.h"
 #include "tracking/submap/submap.h"
 #include "tracking/tracks/loss_counts.h"
@@ -80,12 +81,6 @@ class Bootstrapper {
  private:
   BootstrapStep TakeReference(const PreparedFrame& frame, Submap* submap, StageTimes* times);
   BootstrapStep FollowReference(const PreparedFrame& frame, Submap* submap, StageTimes* times);
-  // A map, and the frame that it is of.
-  struct Made {
-    FirstMap map;
-    PreparedFrame frame;
-    void Serialize(StateArchive& archive);
-  };
   // Whether the camera moves at all, as answers said.
   struct Doubts {
     bool camera_may_stand_still = false;  // since the reference
@@ -111,16 +106,14 @@ class Bootstrapper {
   void TellAmbiguity(const InitOutcome& outcome, BootstrapStep* step) const;
   void TakeAlternative(const Answer& answer);
   void ForgetAlternative();
-  Made MapOf(Answer answer) const;
+  MadeMap MapOf(Answer answer) const;
   bool IsFollowed(const FirstMap& map) const;
   void FinishMap(FirstMap map, BootstrapStep* step);
   void FinishMapOrGoBack(Answer answer, BootstrapStep* step);
-  void PutAside(Answer answer);
   void GiveUpReference(BootstrapStep* step);
-  void TakeWeak();
   void DropReference();
-  void GoBack(BootstrapStep* step);
-  void Retrack(Made made, BootstrapStep* step);
+  void GoBack(MadeMap made, BootstrapStep* step);
+  void Retrack(MadeMap made, BootstrapStep* step);
   std::vector<PointPrediction> PredictPixels(int frame_idx) const;
   void AddCorners(const PreparedFrame& frame, const LocalBrightness& brightness, int max_corners, InitFrame* points);
   void AddKnownPoints(const PreparedFrame& frame, const LocalBrightness& brightness, InitFrame* points);
@@ -140,9 +133,7 @@ class Bootstrapper {
   std::vector<InitFrame> frames_;     // since the reference; empty: there is none
   std::vector<double> known_depths_;  // of the reference's points, where they are known
   std::string image_fault_;           // of the last frame
-  std::optional<Made> provisional_;   // the best one since the reference
-  std::optional<Made> weak_;          // the best one of references that were given up
-  int weak_frames_ = 0;               // since the first of those references that had one
+  WaitingMaps waiting_;               // provisional ones
   Doubts doubts_;
   std::string would_start_;
   std::string last_reason_;         // of the last answer
