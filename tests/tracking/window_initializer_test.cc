@@ -143,15 +143,15 @@ TEST(WindowInitializer, WaitsWhileMostPointsAreUncertain) {
 
 TEST(WindowInitializer, DemandsLessTheLongerItWaits) {
   // What is not good enough at first is, of the same frames, where the reference is to be given up soon.
-  const WavingTracks sequence(31);
+  const WavingTracks sequence(36);
   WindowInitOptions options;
   options.provisional = Switch::kOff;
   options.certain_depth_sigma = options.max_depth_sigma = 0.002;
   EXPECT_EQ(sequence.Try(options).decision, InitDecision::kWait);
-  options.last_frame = 32;
+  options.last_frame = 37;
   const InitOutcome outcome = sequence.Try(options);
   ASSERT_EQ(outcome.decision, InitDecision::kMap) << outcome.reason;
-  EXPECT_LT(sequence.ShapeError(outcome, 30), 2 * kShape);
+  EXPECT_LT(sequence.ShapeError(outcome, 35), 2 * kShape);
 }
 
 TEST(WindowInitializer, AttemptsAtTheSequencesEndWhatItWouldHaveWaitedFor) {

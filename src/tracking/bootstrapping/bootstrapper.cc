@@ -302,17 +302,18 @@ BootstrapStep Bootstrapper::EndSequence(StageTimes* times) {
     TakeAnswer(*std::move(answer), &step);
     if (step.map || !HasReference()) return step;
   }
-  waiting_.EndWait();
   if (!HasReference()) {
+    waiting_.EndWait();
     if (auto made = waiting_.Take()) GoBack(*std::move(made), &step);
     return step;
   }
   PreparedFrame last;
   last.frame_idx = frames_.back().frame_idx;
-  const auto alternative = waiting_.HasOfReference() ? nullptr : AlternativeToAsk();
+  const auto alternative = waiting_.IsEmpty() ? AlternativeToAsk() : nullptr;
   Answer answer = AskInitializers(frames_, known_depths_, doubts_, last, InitMoment::kLastFrame, alternative.get());
   step.note = WithFault(answer.outcome.reason, image_fault_);
   TakeAlternative(answer);
+  waiting_.EndWait();
   if (answer.outcome.decision == InitDecision::kNewReference) TellAmbiguity(answer.outcome, &step);
   if (answer.outcome.decision == InitDecision::kMap)
     FinishMapOrGoBack(std::move(answer), &step);

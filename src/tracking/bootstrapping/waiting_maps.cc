@@ -68,7 +68,7 @@ std::optional<MadeMap> WaitingMaps::Take() { return std::exchange(of_reference_,
 void WaitingMaps::Doubt(bool camera_may_stand_still) {
   const bool is_uncertain = of_reference_ && of_reference_->map.outcome.measured.DepthSignal() < kMinDepthSignal;
   if (is_uncertain || camera_may_stand_still) of_reference_.reset();
-  weak_.reset();
+  if (weak_ && weak_->map.outcome.measured.LinearDepthSignal() < kMinProvisionalSignal) weak_.reset();
 }
 
 void WaitingMaps::DropReference() { of_reference_.reset(); }

@@ -41,13 +41,13 @@ class WaitingMaps {
   void EndWait();
   // The best map of the present reference, or nothing; it is no longer here.
   std::optional<MadeMap> Take();
-  // Camera and scene cannot be told apart: what is less certain is no answer then, nor is anything if the camera may
-  // stand still.
+  // Camera and scene cannot be told apart: what is less certain is no answer then, nor is anything of this reference if
+  // the camera may stand still. A map of an earlier one that a part of its frames alone made weak (W21) stays.
   void Doubt(bool camera_may_stand_still);
   void DropReference();
   void DropAll();
 
-  bool HasOfReference() const { return of_reference_.has_value(); }
+  bool IsEmpty() const { return !of_reference_ && !weak_; }
   // The first frame of the weak map that waits.
   std::optional<int> WeakSince() const;
 

@@ -17,7 +17,7 @@
 #include "pliant/geometry/triangulation.h"
 #include "pliant/scene/frame_report.h"
 #include "tracking/bootstrapping/initial_map.h"
-#include "tracking/bootstrapping/window_halves.h"
+#include "tracking/bootstrapping/window_parts.h"
 
 namespace pliant {
 namespace {
@@ -132,12 +132,6 @@ Result<DeformingWindow> Start(const InitInput& input, const std::vector<std::siz
   return start;
 }
 
-double MedianSigma(const DeformingSolution& solution) {
-  std::vector<double> sigmas;
-  for (std::size_t i = 0; i < solution.log_depth_sigmas.size(); ++i) sigmas.push_back(solution.LogDepthSigma(i));
-  return Median(std::move(sigmas));
-}
-
 // (W15) As of a map, but of all of the window's points and by their distances in the reference.
 double DepthSignal(const DeformingSolution& solution) {
   std::vector<double> distances;
@@ -248,6 +242,12 @@ double MedianParallaxRad(const DeformingWindow& window, const Rigid3& cam_from_w
   std::vector<double> angles;
   for (const Eigen::Vector3d& point : window.points_in_world) angles.push_back(AngleBetween(point, point - center));
   return Median(std::move(angles));
+}
+
+double MedianSigma(const DeformingSolution& solution) {
+  std::vector<double> sigmas;
+  for (std::size_t i = 0; i < solution.log_depth_sigmas.size(); ++i) sigmas.push_back(solution.LogDepthSigma(i));
+  return Median(std::move(sigmas));
 }
 
 double LogSpread(std::vector<double> values) {

@@ -33,6 +33,9 @@ struct SolvedWindow {
 // Of the points, between the reference and a view: median.
 double MedianParallaxRad(const DeformingWindow& window, const Rigid3& cam_from_world);
 
+// Of the points' log depths.
+double MedianSigma(const DeformingSolution& solution);
+
 // The median of |log(value / median)|; infinite where a value is not positive.
 double LogSpread(std::vector<double> values);
 

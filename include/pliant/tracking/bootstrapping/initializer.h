@@ -122,8 +122,11 @@ struct InitMeasurements {
   double median_error_px = 0;       // of the map in its frames
   double still_camera_error_ratio = 0;  // errors of a camera that stands still by those of one that moves; 0: unknown
   double focal_length_factor = 1;       // on the calibration's, with which a rigid scene fits clearly better; 1: none
+  double sigma_factor = 1;              // by which a part of the window's frames says that its sigmas are too small
 
-  double DepthSignal() const { return pliant::DepthSignal(depth_spread, median_depth_sigma); }  // (W15)
+  // (W15), and as a part of the frames has it (W21).
+  double LinearDepthSignal() const { return pliant::DepthSignal(depth_spread, median_depth_sigma); }
+  double DepthSignal() const { return LinearDepthSignal() / sigma_factor; }
 };
 
 struct InitOutcome {

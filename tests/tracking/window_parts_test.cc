@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "tracking/bootstrapping/window_halves.h"
+#include "tracking/bootstrapping/window_parts.h"
 
 #include <cmath>
 #include <cstddef>
@@ -28,6 +28,8 @@ constexpr int kWindowFrames = 61;
 constexpr double kRigid_mm = 0;
 constexpr double kTremor_mm = 0.05;  // 0.4 px: more than the noise of the tracks
 constexpr double kWave_mm = 1;
+constexpr double kWrong = 0.3;  // of log distances
+constexpr double kMaxFactorWhereRight = 2;
 constexpr double kMaxRigidSigma = 0.003;  // where nothing deforms
 
 InitInput InputOf(const WavingTracks& sequence) { return {sequence.camera, sequence.frames, {}}; }
@@ -38,12 +40,6 @@ SolvedWindow Rigid(const WavingTracks& sequence) {
 
 SolvedWindow Solved(const WavingTracks& sequence) {
   return SolveWindow(InputOf(sequence), sequence.frames.size(), WindowScene::kAny, {}, kNominalMm).value();
-}
-
-double MedianSigma(const SolvedWindow& window) {
-  std::vector<double> sigmas;
-  for (std::size_t i = 0; i < window.ids.size(); ++i) sigmas.push_back(window.solution.LogDepthSigma(i));
-  return Median(sigmas);
 }
 
 // Median error of log distance in the reference, after one scale.
@@ -67,7 +63,7 @@ WavingTracks Distorted(WavingTracks sequence, double k) {
   return sequence;
 }
 
-TEST(WindowHalves, AgreeWhereNothingDeforms) {
+TEST(WindowParts, HalvesAgreeWhereNothingDeforms) {
   const WavingTracks sequence(kWindowFrames, CameraMotion::kForwards, kRigid_mm);
   const SolvedWindow window = Rigid(sequence);
   const std::vector<double> sigmas = SigmasOfHalves(InputOf(sequence), window, {}, kNominalMm);
@@ -76,10 +72,10 @@ TEST(WindowHalves, AgreeWhereNothingDeforms) {
   EXPECT_GT(Median(sigmas), Error(sequence, window) / 2);
 }
 
-TEST(WindowHalves, DifferByWhatADeformationMakesOfDepths) {
+TEST(WindowParts, HalvesDifferByWhatADeformationMakesOfDepths) {
   const WavingTracks sequence(kWindowFrames, CameraMotion::kForwards, kWave_mm);
   const SolvedWindow window = Rigid(sequence);
-  const double linear = MedianSigma(window);
+  const double linear = MedianSigma(window.solution);
   const double error = Error(sequence, window);
   EXPECT_GT(error, 1.5 * linear);  // which knows nothing of a deformation
   const double of_halves = Median(SigmasOfHalves(InputOf(sequence), window, {}, kNominalMm));
@@ -87,13 +83,13 @@ TEST(WindowHalves, DifferByWhatADeformationMakesOfDepths) {
   EXPECT_LT(of_halves, 3 * error);
 }
 
-TEST(WindowHalves, SayNothingWhereTheyAreTooShort) {
+TEST(WindowParts, HalvesSayNothingWhereTheyAreTooShort) {
   const WavingTracks sequence(9, CameraMotion::kForwards, kRigid_mm);
   EXPECT_THAT(SigmasOfHalves(InputOf(sequence), Rigid(sequence), {}, kNominalMm),
               Each(std::numeric_limits<double>::infinity()));
 }
 
-TEST(WindowHalves, ATremorOrAWrongLensDoesNotCostTheDepthsOfARigidScene) {
+TEST(WindowParts, ATremorOrAWrongLensDoesNotCostTheDepthsOfARigidScene) {
   for (const double k : {0.0, 0.02}) {
     const WavingTracks sequence = Distorted(WavingTracks(kWindowFrames, CameraMotion::kForwards, kTremor_mm), k);
     const SolvedWindow window = Solved(sequence);
@@ -101,12 +97,12 @@ TEST(WindowHalves, ATremorOrAWrongLensDoesNotCostTheDepthsOfARigidScene) {
     EXPECT_GT(window.solution.residual_correlation, WindowInitOptions().max_correlation) << k;
     ASSERT_NE(window.deforming, nullptr) << k;
     EXPECT_FALSE(window.deforming->IsRigid()) << k;
-    EXPECT_LT(MedianSigma(window), MedianSigma(*window.deforming)) << k;
+    EXPECT_LT(MedianSigma(window.solution), MedianSigma(window.deforming->solution)) << k;
     EXPECT_LT(Error(sequence, window), Error(sequence, *window.deforming)) << k;
   }
 }
 
-TEST(WindowHalves, AWaveIsNotTakenForRigid) {
+TEST(WindowParts, AWaveIsNotTakenForRigid) {
   for (const unsigned seed : {1U, 2U, 3U}) {
     const SolvedWindow window = Solved(WavingTracks(kWindowFrames, CameraMotion::kForwards, kWave_mm, 15, seed));
     EXPECT_FALSE(window.IsRigid()) << seed;
@@ -114,7 +110,7 @@ TEST(WindowHalves, AWaveIsNotTakenForRigid) {
   }
 }
 
-TEST(WindowHalves, AMapOfATremorSaysSo) {
+TEST(WindowParts, AMapOfATremorSaysSo) {
   const WavingTracks sequence(kWindowFrames, CameraMotion::kForwards, kTremor_mm);
   WindowInitOptions options;
   options.min_still_camera_ratio = 0;
@@ -126,11 +122,37 @@ TEST(WindowHalves, AMapOfATremorSaysSo) {
 }
 
 // A scene that deforms at all may do so before a camera that stands still: here in one way, as the camera moves.
-TEST(WindowHalves, WhetherTheCameraMovesIsAskedAllTheSame) {
+TEST(WindowParts, WhetherTheCameraMovesIsAskedAllTheSame) {
   const WavingTracks sequence(kWindowFrames, CameraMotion::kForwards, kTremor_mm);
   const InitOutcome outcome = sequence.Try({});
   EXPECT_TRUE(outcome.ambiguous) << outcome.reason;
   EXPECT_LT(outcome.measured.still_camera_error_ratio, WindowInitOptions().min_still_camera_ratio);
+}
+
+TEST(WindowParts, AgreeWithAWindowThatIsRight) {
+  for (const unsigned seed : {1U, 2U, 3U}) {
+    const WavingTracks sequence(kWindowFrames, CameraMotion::kForwards, kWave_mm, 15, seed);
+    EXPECT_LT(SigmaFactorOfLaterPart(InputOf(sequence), Solved(sequence), {}, kNominalMm), kMaxFactorWhereRight)
+        << seed;
+  }
+}
+
+TEST(WindowParts, SayByHowMuchItsSigmasAreTooSmall) {
+  const WavingTracks sequence(kWindowFrames, CameraMotion::kForwards, kWave_mm);
+  SolvedWindow wrong = Solved(sequence);
+  const double right = SigmaFactorOfLaterPart(InputOf(sequence), wrong, {}, kNominalMm);
+  ASSERT_FALSE(wrong.IsRigid());
+  std::vector<Eigen::Vector3d>& points = wrong.solution.window.points_in_world;
+  for (std::size_t i = 0; i < points.size(); ++i) points[i] *= std::exp(i % 2 == 0 ? kWrong : -kWrong);
+  const double factor = SigmaFactorOfLaterPart(InputOf(sequence), wrong, {}, kNominalMm);
+  EXPECT_GT(factor, 5 * right);
+}
+
+TEST(WindowParts, SayNothingOfPointsThatTheyDoNotHave) {
+  const WavingTracks sequence(kWindowFrames, CameraMotion::kForwards, kWave_mm);
+  SolvedWindow window = Solved(sequence);
+  for (PointId& id : window.ids) id = PointId(id.value + 100000);
+  EXPECT_EQ(SigmaFactorOfLaterPart(InputOf(sequence), window, {}, kNominalMm), 1.0);
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// What a rigid window does not know of a deformation: its two halves in time, each solved by itself.
+// What a window does not know of itself: parts of its frames, each solved alone.
 #pragma once
 
 #include <vector>
@@ -16,5 +16,11 @@ namespace pliant {
 // halves get the median. Infinite where a half has no solution.
 std::vector<double> SigmasOfHalves(const InitInput& input, const SolvedWindow& rigid, const WindowInitOptions& options,
                                    double nominal_depth_mm);
+
+// (W21) How many times farther the log distances of a window of `input` in its last view are from those of its later
+// two thirds, solved alone with `options`, than the sigmas of both say: at least 1, and 1 where these frames have no
+// solution, or too few points in common.
+double SigmaFactorOfLaterPart(const InitInput& input, const SolvedWindow& window, const WindowInitOptions& options,
+                              double nominal_depth_mm);
 
 }  // namespace pliant

@@ -1,0 +1,66 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tracking/bootstrapping/waiting_maps.h"
+
+#include <optional>
+
+#include <gtest/gtest.h>
+
+namespace pliant {
+namespace {
+
+constexpr double kMapSigma = 0.02;
+constexpr int kFramesOfReference = 50;
+constexpr int kMaxWaitFrames = 150;
+
+// A provisional one of a deforming window.
+MadeMap Deforming(double linear_signal, double sigma_factor, int frame_idx = 0) {
+  MadeMap made;
+  made.map.frames = {{frame_idx, {}}};
+  made.map.outcome.provisional = made.map.outcome.deforming = true;
+  made.map.outcome.measured.median_depth_sigma = kMapSigma;
+  made.map.outcome.measured.depth_spread = linear_signal * kMapSigma;
+  made.map.outcome.measured.sigma_factor = sigma_factor;
+  return made;
+}
+
+TEST(WaitingMaps, APartOfItsFramesMakesAMapWeak) {
+  EXPECT_FALSE(IsWeak(Deforming(2.5, 1).map.outcome));
+  EXPECT_TRUE(IsWeak(Deforming(2.5, 1.5).map.outcome));
+}
+
+TEST(WaitingMaps, TheOneThatItsOwnFramesContradictGivesWay) {
+  WaitingMaps maps;
+  maps.Put(Deforming(4, 3));
+  maps.Put(Deforming(2.5, 1));
+  const auto taken = maps.Take();
+  ASSERT_TRUE(taken);
+  EXPECT_EQ(taken->map.outcome.measured.sigma_factor, 1);
+  EXPECT_TRUE(maps.IsEmpty());
+}
+
+TEST(WaitingMaps, AWeakOneWaitsForLaterReferences) {
+  WaitingMaps maps;
+  maps.Put(Deforming(2.5, 2, 7));
+  EXPECT_FALSE(maps.GiveUpReference(kFramesOfReference, kMaxWaitFrames));
+  EXPECT_EQ(maps.WeakSince(), 7);
+  for (int k = 0; k < kFramesOfReference; ++k) maps.CountFrame();
+  EXPECT_FALSE(maps.GiveUpReference(kFramesOfReference, kMaxWaitFrames));
+  for (int k = 0; k < kFramesOfReference; ++k) maps.CountFrame();
+  EXPECT_TRUE(maps.GiveUpReference(kFramesOfReference, kMaxWaitFrames));
+  EXPECT_TRUE(maps.IsEmpty());
+}
+
+TEST(WaitingMaps, DoubtEndsTheWaitOfThoseWhoseOwnSigmasAreWeak) {
+  for (const double linear_signal : {1.5, 2.5}) {
+    WaitingMaps maps;
+    maps.Put(Deforming(linear_signal, 2));
+    EXPECT_FALSE(maps.GiveUpReference(kFramesOfReference, kMaxWaitFrames));
+    maps.Doubt(true);
+    EXPECT_EQ(maps.WeakSince().has_value(), linear_signal > 2) << linear_signal;
+  }
+}
+
+}  // namespace
+}  // namespace pliant
