@@ -151,7 +151,7 @@ TEST(WindowParts, SayByHowMuchItsSigmasAreTooSmall) {
 TEST(WindowParts, SayNothingOfPointsThatTheyDoNotHave) {
   const WavingTracks sequence(kWindowFrames, CameraMotion::kForwards, kWave_mm);
   SolvedWindow window = Solved(sequence);
-  for (PointId& id : window.ids) id = PointId(id.value + 100000);
+  for (PointId& id : window.ids) id = {id.value + 100000};
   EXPECT_EQ(SigmaFactorOfLaterPart(InputOf(sequence), window, {}, kNominalMm), 1.0);
 }
 
