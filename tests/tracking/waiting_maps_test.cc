@@ -28,6 +28,7 @@ MadeMap Deforming(double linear_signal, double sigma_factor, int frame_idx = 0) 
 TEST(WaitingMaps, APartOfItsFramesMakesAMapWeak) {
   EXPECT_FALSE(IsWeak(Deforming(2.5, 1).map.outcome));
   EXPECT_TRUE(IsWeak(Deforming(2.5, 1.5).map.outcome));
+  EXPECT_FALSE(IsWeak(Deforming(3.5, 2).map.outcome));  // which is certain by its own
 }
 
 TEST(WaitingMaps, TheOneThatItsOwnFramesContradictGivesWay) {

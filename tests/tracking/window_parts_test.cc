@@ -42,6 +42,10 @@ SolvedWindow Solved(const WavingTracks& sequence) {
   return SolveWindow(InputOf(sequence), sequence.frames.size(), WindowScene::kAny, {}, kNominalMm).value();
 }
 
+double SigmaFactor(const WavingTracks& sequence, const SolvedWindow& window) {
+  return SigmaFactorOfLaterPart(InputOf(sequence), window, window.ids, {}, kNominalMm);
+}
+
 // Median error of log distance in the reference, after one scale.
 double Error(const WavingTracks& sequence, const SolvedWindow& window) {
   std::vector<double> errors;
@@ -132,19 +136,18 @@ TEST(WindowParts, WhetherTheCameraMovesIsAskedAllTheSame) {
 TEST(WindowParts, AgreeWithAWindowThatIsRight) {
   for (const unsigned seed : {1U, 2U, 3U}) {
     const WavingTracks sequence(kWindowFrames, CameraMotion::kForwards, kWave_mm, 15, seed);
-    EXPECT_LT(SigmaFactorOfLaterPart(InputOf(sequence), Solved(sequence), {}, kNominalMm), kMaxFactorWhereRight)
-        << seed;
+    EXPECT_LT(SigmaFactor(sequence, Solved(sequence)), kMaxFactorWhereRight) << seed;
   }
 }
 
 TEST(WindowParts, SayByHowMuchItsSigmasAreTooSmall) {
   const WavingTracks sequence(kWindowFrames, CameraMotion::kForwards, kWave_mm);
   SolvedWindow wrong = Solved(sequence);
-  const double right = SigmaFactorOfLaterPart(InputOf(sequence), wrong, {}, kNominalMm);
+  const double right = SigmaFactor(sequence, wrong);
   ASSERT_FALSE(wrong.IsRigid());
   std::vector<Eigen::Vector3d>& points = wrong.solution.window.points_in_world;
   for (std::size_t i = 0; i < points.size(); ++i) points[i] *= std::exp(i % 2 == 0 ? kWrong : -kWrong);
-  const double factor = SigmaFactorOfLaterPart(InputOf(sequence), wrong, {}, kNominalMm);
+  const double factor = SigmaFactor(sequence, wrong);
   EXPECT_GT(factor, 5 * right);
 }
 
@@ -152,7 +155,7 @@ TEST(WindowParts, SayNothingOfPointsThatTheyDoNotHave) {
   const WavingTracks sequence(kWindowFrames, CameraMotion::kForwards, kWave_mm);
   SolvedWindow window = Solved(sequence);
   for (PointId& id : window.ids) id = {id.value + 100000};
-  EXPECT_EQ(SigmaFactorOfLaterPart(InputOf(sequence), window, {}, kNominalMm), 1.0);
+  EXPECT_EQ(SigmaFactor(sequence, window), 1.0);
 }
 
 }  // namespace

@@ -34,7 +34,8 @@ bool IsBetter(const InitOutcome& first, const InitOutcome& second) {
 }  // namespace
 
 bool IsWeak(const InitOutcome& map) {
-  return map.provisional && AllowsDeformation(map) && map.measured.DepthSignal() < kMinProvisionalSignal;
+  return map.provisional && AllowsDeformation(map) && map.measured.DepthSignal() < kMinProvisionalSignal &&
+         map.measured.LinearDepthSignal() < kMinDepthSignal;
 }
 
 void WaitingMaps::CountFrame() {

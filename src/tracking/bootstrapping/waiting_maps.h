@@ -21,8 +21,8 @@ struct MadeMap {
   void Serialize(StateArchive& archive);
 };
 
-// (W15) Whether a map is of a window that deforms, and hardly better than one constant depth. Such a map waits for what
-// later references give.
+// (W15) Whether a map is of a window that deforms, and hardly better than one constant depth: not certain by its own
+// sigmas, and by those of a part of its frames (W21) not even provisional. It waits for what later references give.
 bool IsWeak(const InitOutcome& map);
 
 class WaitingMaps {

@@ -225,21 +225,19 @@ Status CheckDepthSignal(const SolvedWindow& window, const MapDemands& demands, c
 }
 
 // (W21) Linear sigmas of a deforming window know of one minimum alone. Where those of a part of its frames say that
-// they are too small, the map is no better than one constant depth, or provisional.
-Status CheckLaterPart(const InitInput& input, const SolvedWindow& window, const WindowInitOptions& options,
-                      double nominal_depth_mm, InitOutcome* outcome) {
+// they are too small, the map is provisional.
+Status CheckLaterPart(const InitInput& input, const SolvedWindow& window, const MapPoints& points,
+                      const WindowInitOptions& options, double nominal_depth_mm, InitOutcome* outcome) {
   if (window.IsRigid()) return Status::Ok();
   InitMeasurements& measured = outcome->measured;
-  measured.sigma_factor = SigmaFactorOfLaterPart(input, window, options, nominal_depth_mm);
+  measured.sigma_factor = SigmaFactorOfLaterPart(input, window, points.ids, options, nominal_depth_mm);
   outcome->provisional |= measured.DepthSignal() < kMinDepthSignal;
-  const bool is_known = measured.DepthSignal() >= 1.0;
-  if (is_known && (!outcome->provisional || options.provisional == Switch::kOn)) return Status::Ok();
-  return {is_known ? ErrorCode::kInsufficient : ErrorCode::kDegenerate,
+  if (!outcome->provisional || options.provisional == Switch::kOn) return Status::Ok();
+  return {ErrorCode::kInsufficient,
           "the depths spread by " + Digits(100.0 * measured.depth_spread, 1) + " % and seem known to " +
               Digits(100.0 * measured.median_depth_sigma, 1) +
               " %, but by the later two thirds of the frames that is too little by a factor of " +
-              Digits(measured.sigma_factor, 1) +
-              ": hardly better than one constant depth; move the camera sideways or forwards"};
+              Digits(measured.sigma_factor, 1) + "; give more frames, or move the camera sideways or forwards"};
 }
 
 // The points not in the map, each with why.
@@ -334,7 +332,8 @@ Status MakeWindowMap(const InitInput& input, const SolvedWindow& window, const M
   measure();
   if (Status status = CheckDepthSignal(window, demands, options, outcome); !status.ok()) return status;
   if (Status status = CheckCameraMotion(input, window, options, outcome); !status.ok()) return status;
-  if (Status status = CheckLaterPart(input, window, options, nominal_depth_mm, outcome); !status.ok()) return status;
+  if (Status status = CheckLaterPart(input, window, points, options, nominal_depth_mm, outcome); !status.ok())
+    return status;
   if (Status status = FillOutcome(input, nominal_depth_mm, points, outcome); !status.ok()) return status;
   outcome->refinable = !outcome->deforming && options.refine_rigid == Switch::kOn;
   outcome->allows_deformation = window.deforming != nullptr;

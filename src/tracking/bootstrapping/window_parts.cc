@@ -49,6 +49,14 @@ std::vector<double> Differences(const std::vector<double>& x, const std::vector<
   return differences;
 }
 
+// Of the log depths of `ids`, all of which the window has.
+double MedianSigma(const SolvedWindow& window, const std::vector<PointId>& ids) {
+  std::vector<double> sigmas;
+  for (const PointId id : ids)
+    sigmas.push_back(window.solution.LogDepthSigma(static_cast<std::size_t>(IndexOf(id, window.ids))));
+  return Median(std::move(sigmas));
+}
+
 // The input's frames from `begin` to `end`, which is not one of them.
 std::vector<InitFrame> FramesOf(const InitInput& input, std::size_t begin, std::size_t end) {
   const auto frame = [&](std::size_t k) { return input.frames.begin() + static_cast<std::ptrdiff_t>(k); };
@@ -90,17 +98,20 @@ std::vector<double> SigmasOfHalves(const InitInput& input, const SolvedWindow& r
   return sigmas;
 }
 
-double SigmaFactorOfLaterPart(const InitInput& input, const SolvedWindow& window, const WindowInitOptions& options,
-                              double nominal_depth_mm) {
+double SigmaFactorOfLaterPart(const InitInput& input, const SolvedWindow& window, const std::vector<PointId>& ids,
+                              const WindowInitOptions& options, double nominal_depth_mm) {
   const std::size_t end = window.views.back() + 1;
   const std::vector<InitFrame> frames = FramesOf(input, end / 3, end);
   const auto part = SolveWindow(WithFrames(input, frames), frames.size(), WindowScene::kAny, options, nominal_depth_mm);
   if (!part.ok()) return 1.0;
-  std::vector<double> differences = Finite(Differences(LogDistances(window, window.views.size() - 1, window.ids),
-                                                       LogDistances(*part, part->views.size() - 1, window.ids)));
+  std::vector<PointId> common;
+  std::ranges::copy_if(ids, std::back_inserter(common),
+                       [&](PointId id) { return IndexOf(id, window.ids) >= 0 && IndexOf(id, part->ids) >= 0; });
+  const std::vector<double> differences = Differences(LogDistances(window, window.views.size() - 1, common),
+                                                      LogDistances(*part, part->views.size() - 1, common));
   if (differences.empty()) return 1.0;
-  const double sigma = std::hypot(MedianSigma(window.solution), MedianSigma(part->solution));
-  return std::max(1.0, kMedianToSigma * Median(std::move(differences)) / sigma);
+  const double sigma = std::hypot(MedianSigma(window, common), MedianSigma(*part, common));
+  return std::max(1.0, kMedianToSigma * Median(differences) / sigma);
 }
 
 }  // namespace pliant

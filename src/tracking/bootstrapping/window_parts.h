@@ -17,10 +17,10 @@ namespace pliant {
 std::vector<double> SigmasOfHalves(const InitInput& input, const SolvedWindow& rigid, const WindowInitOptions& options,
                                    double nominal_depth_mm);
 
-// (W21) How many times farther the log distances of a window of `input` in its last view are from those of its later
-// two thirds, solved alone with `options`, than the sigmas of both say: at least 1, and 1 where these frames have no
-// solution, or too few points in common.
-double SigmaFactorOfLaterPart(const InitInput& input, const SolvedWindow& window, const WindowInitOptions& options,
-                              double nominal_depth_mm);
+// (W21) How many times farther the log distances of `ids` in the last view of a window of `input` are from those of its
+// later two thirds, solved alone with `options`, than the sigmas of both say: at least 1, and 1 where these frames have
+// no solution, or too few of the points.
+double SigmaFactorOfLaterPart(const InitInput& input, const SolvedWindow& window, const std::vector<PointId>& ids,
+                              const WindowInitOptions& options, double nominal_depth_mm);
 
 }  // namespace pliant
