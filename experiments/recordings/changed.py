@@ -11,7 +11,6 @@ changes.py: its light, noise and compression, the order and number of its frames
 depths are compared with are changed alike. The recordings without truth are cut to parts of 100 frames, begun at every
 30th frame, forwards and backwards. Runs that are there already are kept. Prints two tables.
 """
-import argparse
 import csv
 import json
 import shutil
@@ -24,10 +23,9 @@ import cv2
 import numpy as np
 import yaml
 
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "common"))
-from changes import CHANGES, Recording  # noqa: E402
-from clips import CLIPS, RECORDINGS  # noqa: E402
-from recordings import depths, evaluated, percent, structure_from_motion  # noqa: E402
+from changes import CHANGES, Recording
+from recordings import (chosen, depths, evaluated, first_map_cell, frames_of, parser_of, percent, print_table,
+                        provisional_of, structure_from_motion, working_cell)
 
 PART, STEP = 100, 30  # frames of a part, and between the beginnings of two
 MIN_PART = 50  # frames of a part at the end of a recording
@@ -63,9 +61,8 @@ def model_points(program, model):
     return np.array(rows)
 
 
-def opened(name, arguments):
+def opened(name, path, arguments):
     """A recording with the points that its depths are compared with; none where it has no such points."""
-    path = arguments.recordings / CLIPS[name][0]
     camera = yaml.safe_load((path.parent / "camera.yaml").read_text())
     mask, points = None, np.empty((0, 4))
     if path.is_dir():
@@ -104,18 +101,10 @@ def tracked(program, recording, folder):
     shutil.rmtree(images)
 
 
-def frames_with_map(run):
-    """Frames, those with a map, those of them that are provisional, and the number of the first."""
-    with open(run / "frames.csv", newline="", encoding="utf-8") as stream:
-        states = [row["state"] for row in csv.DictReader(stream)]
-    mapped = [k for k, state in enumerate(states) if state in ("tracking", "provisional")]
-    return len(states), len(mapped), states.count("provisional"), mapped[0] if mapped else None
-
-
 def changed_row(program, name, change, recording, folder):
     run = folder / f"{name}_{change.replace(' ', '_')}"
     tracked(program, recording, run)
-    frames, mapped, provisional, first = frames_with_map(run)
+    frames, mapped = frames_of(run)
     error = None
     if mapped:
         points = run.with_name(f"{run.name}_points.csv")
@@ -123,50 +112,33 @@ def changed_row(program, name, change, recording, folder):
         judged = evaluated(program, run, folder / "evaluations" / run.name, "--sfm_path", points)
         error = depths(judged.get("sfm"))
     summary = json.loads((run / "run.json").read_text())
-    working, first_map = summary["working_image"], summary["first_map"]
-    return [name, change, f"{mapped} of {frames}", str(provisional), "" if first is None else str(first),
-            f"{working['scale']:.2f}, {working['smoothing_px']:.1f}, {working['patch_size']}",
-            f"{first_map['model']}, {percent(first_map['depth_sigma'])} of {percent(first_map['depth_spread'])}"
-            if first_map else "", percent(error and error[0]), percent(error and error[1])]
+    return [name, change, f"{len(mapped)} of {len(frames)}", str(provisional_of(frames)),
+            mapped[0]["frame"] if mapped else "", working_cell(summary["working_image"]),
+            first_map_cell(summary["first_map"]), percent(error and error[0]), percent(error and error[1])]
 
 
 def parts(program, name, recording, folder):
     """A row of frames with a map in each part, forwards and backwards."""
     for direction, whole in (("forwards", recording), ("backwards", CHANGES["backwards"](recording))):
-        mapped, frames = [], []
+        counts = []  # frames, and those with a map, of each part
         for begin in range(0, whole.frames - MIN_PART + 1, STEP):
             run = folder / f"{name}_{direction}_{begin}"
             part = whole.in_order(range(begin, min(begin + PART, whole.frames)))
             tracked(program, part, run)
-            counts = frames_with_map(run)
-            frames.append(counts[0])
-            mapped.append(counts[1])
-        share = percent(sum(mapped) / sum(frames), 0)
-        yield [name, direction, *(f"{of} of {all_of}" for of, all_of in zip(mapped, frames)), share]
-
-
-def print_table(head, rows):
-    print("\n| " + " | ".join(head) + " |\n|" + " --- |" * len(head))
-    for row in rows:
-        print("| " + " | ".join(row) + " |")
+            counts.append([len(rows) for rows in frames_of(run)])
+        frames, mapped = map(sum, zip(*counts))
+        yield [name, direction, *(f"{of} of {all_of}" for all_of, of in counts), percent(mapped / frames, 0)]
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--program", required=True)
-    parser.add_argument("--output_path", required=True, type=Path)
-    parser.add_argument("--recordings", default=RECORDINGS, type=Path)
-    parser.add_argument("--only", default="")
+    parser = parser_of(__doc__)
     parser.add_argument("--changes", default=",".join(CHANGES))
-    parser.add_argument("--colmap", default="colmap")
     arguments = parser.parse_args()
     folder = arguments.output_path
     folder.mkdir(parents=True, exist_ok=True)
     rows, part_rows = [], []
-    for name, (images, _) in CLIPS.items():
-        if not (arguments.recordings / images).exists() or (arguments.only and name not in arguments.only.split(",")):
-            continue
-        recording = opened(name, arguments)
+    for name, path, _ in chosen(arguments):
+        recording = opened(name, path, arguments)
         if len(recording.points) == 0:
             part_rows += parts(arguments.program, name, recording, folder)
             continue

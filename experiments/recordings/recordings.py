@@ -81,6 +81,52 @@ def percent(value, digits=1):
     return "" if value is None else f"{100 * value:.{digits}f} %"
 
 
+def parser_of(documentation):
+    """The options that the scripts of this folder share."""
+    parser = argparse.ArgumentParser(description=documentation, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--program", required=True)
+    parser.add_argument("--output_path", required=True, type=Path)
+    parser.add_argument("--recordings", default=RECORDINGS, type=Path)
+    parser.add_argument("--only", default="")
+    parser.add_argument("--colmap", default="colmap")
+    return parser
+
+
+def chosen(arguments):
+    """Name, images and other arguments of pliant of each recording that is there and asked for."""
+    for name, (images, options) in CLIPS.items():
+        images = arguments.recordings / images
+        if images.exists() and (not arguments.only or name in arguments.only.split(",")):
+            yield name, images, options.format(arguments.recordings).split()
+
+
+def frames_of(run):
+    """The rows of frames.csv, and those of them that have a map."""
+    with open(run / "frames.csv", newline="", encoding="utf-8") as stream:
+        frames = list(csv.DictReader(stream))
+    return frames, [row for row in frames if row["state"] in ("tracking", "provisional")]
+
+
+def provisional_of(frames):
+    return sum(row["state"] == "provisional" for row in frames)
+
+
+def working_cell(working):
+    return f"{working['scale']:.2f}, {working['smoothing_px']:.1f}, {working['patch_size']}"
+
+
+def first_map_cell(first_map):
+    if not first_map:
+        return ""
+    return f"{first_map['model']}, {percent(first_map['depth_sigma'])} of {percent(first_map['depth_spread'])}"
+
+
+def print_table(head, rows):
+    print("\n| " + " | ".join(head) + " |\n|" + " --- |" * len(head))
+    for row in rows:
+        print("| " + " | ".join(row) + " |")
+
+
 def refined(program, run):
     """The folder of the run after pliant refine with default options; none where it cannot be refined."""
     folder = run.with_name(f"{run.name}_refined")
@@ -129,21 +175,13 @@ def judgment(program, run, first, images, model, evaluations):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--program", required=True)
-    parser.add_argument("--output_path", required=True, type=Path)
-    parser.add_argument("--recordings", default=RECORDINGS, type=Path)
-    parser.add_argument("--only", default="")
-    parser.add_argument("--colmap", default="colmap")
+    parser = parser_of(__doc__)
     parser.add_argument("--sfm", default="", help="recordings that COLMAP reconstructs")
     arguments = parser.parse_args()
     arguments.output_path.mkdir(parents=True, exist_ok=True)
     rows, agreements, refinements = [], [], []
     evaluations = arguments.output_path / "evaluations"
-    for name, (images, options) in CLIPS.items():
-        images = arguments.recordings / images
-        if not images.exists() or (arguments.only and name not in arguments.only.split(",")):
-            continue
+    for name, images, options in chosen(arguments):
         model = None
         if name in arguments.sfm.split(","):
             model = structure_from_motion(arguments.colmap, images, images.parent / "camera.yaml",
@@ -153,27 +191,22 @@ def main():
             folder = arguments.output_path / f"{name}_{variant.replace(' ', '_')}"
             if not (folder / "run.json").exists():
                 command = [arguments.program, "track", "--quiet", "--image_path", images, "--output_path", folder,
-                           *options.format(arguments.recordings).split(), *change.split()]
+                           *options, *change.split()]
                 subprocess.run([str(part) for part in command], check=False, stderr=subprocess.DEVNULL)
-            with open(folder / "frames.csv", newline="", encoding="utf-8") as stream:
-                frames = list(csv.DictReader(stream))
-            tracked = [row for row in frames if row["state"] in ("tracking", "provisional")]
-            provisional = sum(row["state"] == "provisional" for row in frames)
+            frames, tracked = frames_of(folder)
             points = [int(row["optimized"]) for row in tracked]
             summary = json.loads((folder / "run.json").read_text())
-            working, first_map = summary["working_image"], summary["first_map"]
+            working = summary["working_image"]
             run = folder if tracked else None
             if variant == AS_IT_IS:
                 first, first_after = run, None
             error, ate, agreed = judgment(arguments.program, run, first, images, model, evaluations)
-            rows.append([name, variant, f"{len(tracked)} of {len(frames)}", str(provisional),
+            rows.append([name, variant, f"{len(tracked)} of {len(frames)}", str(provisional_of(frames)),
                          tracked[0]["frame"] if tracked else "", str(len({row["submap"] for row in tracked})),
                          f"{statistics.median(points):.0f}" if points else "",
                          *(percent(summary["medians"][of]) if tracked else "" for of in COVERAGES),
-                         f"{working['scale']:.2f}, {working['smoothing_px']:.1f}, {working['patch_size']}",
-                         f"{working['track_noise_px']:.2f} px",
-                         f"{first_map['model']}, {percent(first_map['depth_sigma'])} of "
-                         f"{percent(first_map['depth_spread'])}" if first_map else "",
+                         working_cell(working), f"{working['track_noise_px']:.2f} px",
+                         first_map_cell(summary["first_map"]),
                          percent(error and error[0]), percent(error and error[1]), percent(ate)])
             if agreed:
                 agreements.append([name, variant, str(agreed[2]), percent(agreed[0]), percent(agreed[1])])
@@ -193,9 +226,7 @@ def main():
                        (["recording", "compared with", "frames", "depths differ", "spread of the depths"], agreements),
                        (["recording", "variant", "depth error", "refined", "ATE", "refined", "depths differ",
                          "refined"], refinements)):
-        print("\n| " + " | ".join(head) + " |\n|" + " --- |" * len(head))
-        for row in body:
-            print("| " + " | ".join(row) + " |")
+        print_table(head, body)
     return 0 if rows else 1
 
 
