@@ -60,8 +60,7 @@ std::optional<MadeMap> WaitingMaps::GiveUpReference(int reference_frames, int ma
 
 void WaitingMaps::EndWait() {
   auto weak = std::exchange(weak_, std::nullopt);
-  if (weak && !(of_reference_ && IsBetter(of_reference_->map.outcome, weak->map.outcome)))
-    of_reference_ = std::move(weak);
+  if (weak) Put(*std::move(weak));
 }
 
 std::optional<MadeMap> WaitingMaps::Take() { return std::exchange(of_reference_, std::nullopt); }

@@ -33,7 +33,7 @@ struct SolvedWindow {
 // Of the points, between the reference and a view: median.
 double MedianParallaxRad(const DeformingWindow& window, const Rigid3& cam_from_world);
 
-// Of the points' log depths.
+// The median of the standard deviations of the points' log depths.
 double MedianSigma(const DeformingSolution& solution);
 
 // The median of |log(value / median)|; infinite where a value is not positive.
