@@ -113,37 +113,62 @@ void DeformingEquations::Eliminate(std::size_t point, const PointEquations& own,
   sums->gradient -= ByPoint(point, point_step);
 }
 
-// What is left of the views' equations without the point. What couples a point to a view has two rows, as the
-// observation has: these are multiplied. Views are ascending, the first one is not free.
 void DeformingEquations::SubtractViews(std::size_t point, Sums* sums) const {
-  const Eigen::Index view_size = terms_->view_size();
-  const Eigen::Index shapes_size = terms_->shapes_size();
+  static_assert(kMaxWindowRank == 4);
+  switch (terms_->rank()) {
+    case 0:
+      return SubtractViewsOfRank<0>(point, sums);
+    case 1:
+      return SubtractViewsOfRank<1>(point, sums);
+    case 2:
+      return SubtractViewsOfRank<2>(point, sums);
+    case 3:
+      return SubtractViewsOfRank<3>(point, sums);
+    default:
+      return SubtractViewsOfRank<4>(point, sums);
+  }
+}
+
+// What is left of the views' equations without the point. What couples a point to a view has two rows, as the
+// observation has: these are multiplied. Views are ascending, the first one is not free. Sums are in order, whatever
+// the compiler makes of sizes that it knows: a window's solution depends on no machine.
+template <int kRank>
+void DeformingEquations::SubtractViewsOfRank(std::size_t point, Sums* sums) const {
+  constexpr int kViewSize = 6 + kRank;
+  constexpr int kShapesSize = 3 * kRank;
+  constexpr int kPointSize = 3 + kShapesSize;
+  using ByView = Eigen::Map<const Eigen::Matrix<double, 2, kViewSize>>;
+  using ByPoint = Eigen::Map<const Eigen::Matrix<double, 2, kPointSize>>;
+  using Inverse = Eigen::Map<const Eigen::Matrix<double, kPointSize, kPointSize>>;
   const Eigen::Index offset = OffsetIndex();
   const Point& of = points_[point];
-  SmallMatrix<Eigen::Dynamic, kMaxPointSize, 2> inverse_by_a(terms_->point_size(), 2);
-  SmallMatrix<2, 2, kMaxViewSize> weighted(2, view_size);
-  SmallMatrix<Eigen::Dynamic, kMaxPointSize, kMaxViewSize> shapes_by_a(shapes_size, view_size);
+  const Inverse inverse(of.inverse.data());
   for (std::size_t a = 0; a < of.seen.size(); ++a) {
     const Eigen::Index index_a = ViewIndex(terms_->seen(point)[a].view_idx);
     if (index_a < 0) continue;
-    const SeenEquations& of_a = of.seen[a];
-    inverse_by_a.noalias() = of.inverse.lazyProduct(of_a.by_point.transpose());
+    const ByPoint a_by_point(of.seen[a].by_point.data());
+    const ByView a_by_view(of.seen[a].by_view.data());
+    Eigen::Matrix<double, kPointSize, 2> inverse_by_a = Eigen::Matrix<double, kPointSize, 2>::Zero();
+    for (int k = 0; k < kPointSize; ++k) inverse_by_a += inverse.col(k) * a_by_point.col(k).transpose();
     for (std::size_t b = 0; b <= a; ++b) {
       const Eigen::Index index_b = ViewIndex(terms_->seen(point)[b].view_idx);
       if (index_b < 0) continue;
-      const SeenEquations& of_b = of.seen[b];
-      const Eigen::Matrix2d between = inverse_by_a.transpose().lazyProduct(of_b.by_point.transpose());
-      weighted.noalias() = between.lazyProduct(of_b.by_view);
-      sums->hessian.block(index_a, index_b, view_size, view_size).noalias() -=
-          of_a.by_view.transpose().lazyProduct(weighted);
+      const ByPoint b_by_point(of.seen[b].by_point.data());
+      Eigen::Matrix2d between = Eigen::Matrix2d::Zero();
+      for (int k = 0; k < kPointSize; ++k) between += inverse_by_a.row(k).transpose() * b_by_point.col(k).transpose();
+      const Eigen::Matrix<double, 2, kViewSize> weighted = between.lazyProduct(ByView(of.seen[b].by_view.data()));
+      sums->hessian.template block<kViewSize, kViewSize>(index_a, index_b).noalias() -=
+          a_by_view.transpose().lazyProduct(weighted);
     }
-    sums->hessian.row(offset).segment(index_a, view_size).noalias() -=
-        of.by_offset * inverse_by_a.row(2).lazyProduct(of_a.by_view);
-    if (shapes_size == 0) continue;
-    shapes_by_a.noalias() =
-        terms_->node_information(point) * inverse_by_a.bottomRows(shapes_size).lazyProduct(of_a.by_view);
-    for (const NodeWeight& node : terms_->nodes(point))
-      sums->hessian.block(NodeIndex(node.node_idx), index_a, shapes_size, view_size) += node.weight * shapes_by_a;
+    sums->hessian.row(offset).template segment<kViewSize>(index_a).noalias() -=
+        of.by_offset * inverse_by_a.row(2).lazyProduct(a_by_view);
+    if constexpr (kRank > 0) {
+      const Eigen::Matrix<double, kShapesSize, kViewSize> shapes_by_a =
+          terms_->node_information(point) * inverse_by_a.template bottomRows<kShapesSize>().lazyProduct(a_by_view);
+      for (const NodeWeight& node : terms_->nodes(point))
+        sums->hessian.template block<kShapesSize, kViewSize>(NodeIndex(node.node_idx), index_a) +=
+            node.weight * shapes_by_a;
+    }
   }
 }
 

@@ -51,6 +51,8 @@ class DeformingEquations final : public NormalEquations {
   void AddViews(std::size_t point, const std::vector<SeenEquations>& seen, Sums* sums) const;
   void Eliminate(std::size_t point, const PointEquations& own, Sums* sums);
   void SubtractViews(std::size_t point, Sums* sums) const;
+  template <int kRank>
+  void SubtractViewsOfRank(std::size_t point, Sums* sums) const;
   void AddNodes(std::size_t point, const PointVector& node_difference, Sums* sums) const;
   bool Factorize();
   Eigen::VectorXd ByPoint(std::size_t point, const PointVector& factor) const;
