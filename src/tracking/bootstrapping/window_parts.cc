@@ -102,7 +102,8 @@ double SigmaFactorOfLaterPart(const InitInput& input, const SolvedWindow& window
                               const WindowInitOptions& options, double nominal_depth_mm) {
   const std::size_t end = window.views.back() + 1;
   const std::vector<InitFrame> frames = FramesOf(input, end / 3, end);
-  const auto part = SolveWindow(WithFrames(input, frames), frames.size(), WindowScene::kAny, options, nominal_depth_mm);
+  const auto part =
+      SolveWindow(WithFrames(input, frames), frames.size(), WindowScene::kDeforming, options, nominal_depth_mm);
   if (!part.ok()) return 1.0;
   std::vector<PointId> common;
   std::ranges::copy_if(ids, std::back_inserter(common),

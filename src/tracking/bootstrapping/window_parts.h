@@ -18,8 +18,8 @@ std::vector<double> SigmasOfHalves(const InitInput& input, const SolvedWindow& r
                                    double nominal_depth_mm);
 
 // (W21) How many times farther the log distances of `ids` in the last view of a window of `input` are from those of its
-// later two thirds, solved alone with `options`, than the sigmas of both say: at least 1, and 1 where these frames have
-// no solution, or too few of the points.
+// later two thirds, solved alone as a deforming scene with `options`, than the sigmas of both say: at least 1, and 1
+// where these frames have no solution, or too few of the points.
 double SigmaFactorOfLaterPart(const InitInput& input, const SolvedWindow& window, const std::vector<PointId>& ids,
                               const WindowInitOptions& options, double nominal_depth_mm);
 

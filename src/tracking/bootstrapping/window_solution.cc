@@ -170,11 +170,12 @@ Result<SolvedWindow> SolvedWithCue(const InitInput& input, const PreparedWindow&
 }
 
 // Where the solution contradicts its cue, the depth prior is one, unless it is contradicted too; else there is none.
-Result<SolvedWindow> SolveDeforming(const InitInput& input, const PreparedWindow& window,
-                                    const WindowInitOptions& options, double nominal_depth_mm) {
-  auto first = SolvedWithCue(input, window, options);
+Result<SolvedWindow> SolveDeforming(const InitInput& input, std::size_t frames, const WindowInitOptions& options,
+                                    double nominal_depth_mm) {
+  const auto window = PrepareWindow(input, frames, options.views, options, nominal_depth_mm);
+  if (!window.ok()) return window.status();
+  auto first = SolvedWithCue(input, *window, options);
   if (!first.ok() || !ContradictsLight(first->solution)) return first;
-  const std::size_t frames = window.views.back() + 1;
   std::vector<WindowInitOptions> others;
   if (options.cue == DistanceCue::kLight && HasPrior(input, frames, options))
     others.push_back(WithCue(options, DistanceCue::kPrior));
@@ -327,13 +328,12 @@ Result<SolvedWindow> SolveWindow(const InitInput& input, std::size_t frames, Win
                                  const WindowInitOptions& options, double nominal_depth_mm) {
   const bool prior_alone = options.light == Switch::kOff && HasPrior(input, frames, options);
   const WindowInitOptions cued = prior_alone ? WithCue(options, DistanceCue::kPrior) : options;
+  if (scene == WindowScene::kDeforming) return SolveDeforming(input, frames, cued, nominal_depth_mm);
   const auto wide = PrepareWindow(input, frames, cued.rigid_views, cued, nominal_depth_mm);
   if (!wide.ok()) return wide.status();
   auto rigid = SolveRigid(input, *wide, cued);
   if (rigid.ok() || scene == WindowScene::kRigid) return rigid;
-  const auto window = PrepareWindow(input, frames, cued.views, cued, nominal_depth_mm);
-  if (!window.ok()) return window.status();
-  auto deforming = SolveDeforming(input, *window, cued, nominal_depth_mm);
+  auto deforming = SolveDeforming(input, frames, cued, nominal_depth_mm);
   if (!deforming.ok()) return deforming;
   return MoreCertain(input, *wide, *std::move(deforming), cued, nominal_depth_mm);
 }

@@ -43,13 +43,13 @@ double LogSpread(std::vector<double> values);
 // not at the camera, of another response, or on tissue of many colors. False where there is no light.
 bool ContradictsLight(const DeformingSolution& solution);
 
-enum class WindowScene { kRigid, kAny };
+enum class WindowScene { kRigid, kDeforming, kAny };
 
-// The window of the input's first `frames` frames, solved: as a rigid scene if it is one, else, where it may be any,
-// with coefficients; where the light turns out to say nothing of these, with the depth prior, and where that does not
-// either, with none, if that is more certain. Where its halves agree so well that a rigid scene leaves depths less
-// uncertain than coefficients do, or that its depths stand out where those with coefficients do not, as a rigid scene
-// all the same (W19).
+// The window of the input's first `frames` frames, solved: as a rigid scene if it is one, else, where it may be any, or
+// at once where it is known to deform, with coefficients; where the light turns out to say nothing of these, with the
+// depth prior, and where that does not either, with none, if that is more certain. Where it may be any and its halves
+// agree so well that a rigid scene leaves depths less uncertain than coefficients do, or that its depths stand out
+// where those with coefficients do not, as a rigid scene all the same (W19).
 // kInsufficient, kDegenerate: what is missing, or that the scene deforms.
 Result<SolvedWindow> SolveWindow(const InitInput& input, std::size_t frames, WindowScene scene,
                                  const WindowInitOptions& options, double nominal_depth_mm);
