@@ -110,7 +110,7 @@ void DeformingEquations::Eliminate(std::size_t point, const PointEquations& own,
   sums->hessian(offset, offset) -= own.by_offset + of.by_offset * of.by_offset * of.inverse(2, 2);
   sums->gradient[offset] += own.offset_gradient;
   if (terms_->shapes_size() > 0) AddNodes(point, own.node_difference, sums);
-  sums->gradient -= ByPoint(point, point_step);
+  AddByPoint(point, point_step, -1.0, &sums->gradient);
 }
 
 void DeformingEquations::SubtractViews(std::size_t point, Sums* sums) const {
@@ -202,29 +202,29 @@ bool DeformingEquations::Factorize() {
   if (!factorized) return false;
   scale_.setZero(Size());
   for (const int i : gauge_)
-    scale_ += ByPoint(static_cast<std::size_t>(i), points_[static_cast<std::size_t>(i)].inverse.col(2));
+    AddByPoint(static_cast<std::size_t>(i), points_[static_cast<std::size_t>(i)].inverse.col(2), 1.0, &scale_);
   return true;
 }
 
-// A point's share W' x of the equations that are left, and W x of its own.
-Eigen::VectorXd DeformingEquations::ByPoint(std::size_t point, const PointVector& factor) const {
+// `scale` times a point's share W' x of the equations that are left.
+void DeformingEquations::AddByPoint(std::size_t point, const PointVector& factor, double scale,
+                                    Eigen::VectorXd* sum) const {
   const Eigen::Index shapes_size = terms_->shapes_size();
   const Point& of = points_[point];
-  Eigen::VectorXd sum = Eigen::VectorXd::Zero(Size());
   for (std::size_t k = 0; k < of.seen.size(); ++k) {
     const Eigen::Index index = ViewIndex(terms_->seen(point)[k].view_idx);
     if (index < 0) continue;
-    const Eigen::Vector2d seen = of.seen[k].by_point.lazyProduct(factor);
-    sum.segment(index, terms_->view_size()).noalias() += of.seen[k].by_view.transpose().lazyProduct(seen);
+    const Eigen::Vector2d seen = scale * of.seen[k].by_point.lazyProduct(factor);
+    sum->segment(index, terms_->view_size()).noalias() += of.seen[k].by_view.transpose().lazyProduct(seen);
   }
   if (shapes_size > 0)
     for (const NodeWeight& node : terms_->nodes(point))
-      sum.segment(NodeIndex(node.node_idx), shapes_size) -=
-          terms_->node_information(point) * node.weight * factor.tail(shapes_size);
-  sum[OffsetIndex()] += of.by_offset * factor[2];
-  return sum;
+      sum->segment(NodeIndex(node.node_idx), shapes_size) -=
+          scale * terms_->node_information(point) * node.weight * factor.tail(shapes_size);
+  (*sum)[OffsetIndex()] += scale * of.by_offset * factor[2];
 }
 
+// W x, of the point's own equations.
 PointVector DeformingEquations::ByRest(std::size_t point, const Eigen::VectorXd& step) const {
   const Eigen::Index shapes_size = terms_->shapes_size();
   const Point& of = points_[point];
@@ -279,7 +279,9 @@ std::vector<double> DeformingEquations::Variances() const {
   ParallelFor(static_cast<int>(points_.size()), threads_, [&](int i) {
     const auto point = static_cast<std::size_t>(i);
     const PointVector own = points_[point].inverse.col(2);
-    const Eigen::VectorXd half = factors_.matrixL().solve(ByPoint(point, own));
+    Eigen::VectorXd half = Eigen::VectorXd::Zero(Size());
+    AddByPoint(point, own, 1.0, &half);
+    factors_.matrixL().solveInPlace(half);
     double variance = own[2] + half.squaredNorm();
     if (!gauge_.empty()) variance -= std::pow(by_scale[i], 2) / scale_variance;
     variances[point] = own[2] > 0.0 && variance > 0.0 ? variance : std::numeric_limits<double>::infinity();

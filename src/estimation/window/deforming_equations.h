@@ -55,7 +55,7 @@ class DeformingEquations final : public NormalEquations {
   void SubtractViewsOfRank(std::size_t point, Sums* sums) const;
   void AddNodes(std::size_t point, const PointVector& node_difference, Sums* sums) const;
   bool Factorize();
-  Eigen::VectorXd ByPoint(std::size_t point, const PointVector& factor) const;
+  void AddByPoint(std::size_t point, const PointVector& factor, double scale, Eigen::VectorXd* sum) const;
   PointVector ByRest(std::size_t point, const Eigen::VectorXd& step) const;
 
   // A point's equations: their inverse, and what couples it to the rest.
