@@ -93,6 +93,33 @@ TEST_F(HandedOverMap, IsTakenWhereTheSequenceEndsBefore) {
   }
 }
 
+// To track back would keep the frame waiting: where as many points are left as a map needs, it goes on with these.
+TEST_F(HandedOverMap, GoesOnWithThePointsThatAreLeft) {
+  const int declared = Run(Options(0), 1).front().first_map->declared_frame_idx;
+  const cv::Size size = images_->front().size();
+  for (const int min_points : {20, 1000}) {
+    TrackerOptions options = Options(3);
+    options.init.window.min_points = min_points;
+    Tracker tracker(*camera_, options, 1, 1);
+    std::vector<FrameReport> reports;
+    bool goes_back = false;
+    for (int i = 0; i < kFrames && !goes_back; ++i) {
+      cv::Mat mask(size, CV_8UC1, cv::Scalar(255));
+      if (i > declared) mask.colRange(0, 2 * size.width / 3) = 0;
+      const cv::Mat& image = (*images_)[static_cast<std::size_t>(i)];
+      for (FrameReport& report : tracker.Process(PrepareFrame(i, NameOf(i), i / 30.0, image, mask, options)))
+        reports.push_back(std::move(report));
+      goes_back = tracker.TakeGoesBackTo().has_value();
+    }
+    EXPECT_EQ(goes_back, min_points == 1000);
+    if (goes_back) continue;
+    ASSERT_EQ(reports.size(), static_cast<std::size_t>(kFrames));
+    ASSERT_TRUE(reports.front().first_map);
+    EXPECT_LT(2 * reports.back().observations.size(), reports.front().observations.size());
+    EXPECT_TRUE(reports.back().cam_from_world) << reports.back().note;
+  }
+}
+
 // What the reference alone tells needs no frame after it.
 TEST_F(HandedOverMap, FromKnownDepthIsTakenAtOnce) {
   for (const InitMethod method : {InitMethod::kDepth, InitMethod::kDepthPrior, InitMethod::kColmapModel}) {

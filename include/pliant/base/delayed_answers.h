@@ -16,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include "pliant/base/parallel.h"
 #include "pliant/base/state_archive.h"
 
 namespace pliant {
@@ -23,7 +24,7 @@ namespace pliant {
 // Where the work is done. It does not change what is taken when.
 enum class WorkPlace {
   kHere,    // on the calling thread, when it is asked for
-  kBeside,  // on a thread of its own, one job after the other
+  kBeside,  // on a thread of its own, of low priority, one job after the other
 };
 
 template <class Answer>
@@ -96,6 +97,7 @@ class DelayedAnswers {
   };
 
   void Work() {
+    LowerThreadPriority();
     std::unique_lock lock(mutex_);
     while (true) {
       changed_.wait(lock, [this] { return stop_ || !waiting_.empty(); });

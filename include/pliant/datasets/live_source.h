@@ -38,7 +38,7 @@ struct LiveInputOptions {
   LiveFrames frames = LiveFrames::kNewest;
   double timeout_s = 10;  // without an image, after which the source counts as stalled
   // newest: Tracking.handover_frames, at least; and General.max_frames_back is 0: nothing holds tracking up.
-  int handover_frames = 15;
+  int handover_frames = 30;
 
   void List(OptionTable& table);  // group "LiveInput"
 };

@@ -215,12 +215,12 @@ MadeMap Bootstrapper::MapOf(Answer answer) const {
   return {{{frames_.begin(), end}, std::move(answer.outcome)}, std::move(answer.last)};
 }
 
-// Whether most of its points are still there.
+// Whether most of its points are still there; where frames do not come again, as many as a map needs.
 bool Bootstrapper::IsFollowed(const FirstMap& map) const {
   const std::vector<InitPosition>& points = map.outcome.frames.back().positions;
   const auto followed = std::ranges::count_if(
       points, [&](const InitPosition& point) { return FindById(frames_.back().observations, point.id) != nullptr; });
-  return 2 * followed >= std::ssize(points);
+  return 2 * followed >= std::ssize(points) || (handover_frames_ > 0 && followed >= options_.init.window.min_points);
 }
 
 // A map that is provisional itself does not replace a better one that was put aside.
