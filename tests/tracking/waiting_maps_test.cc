@@ -18,6 +18,7 @@ constexpr int kMaxWaitFrames = 150;
 MadeMap Deforming(double linear_signal, double sigma_factor, int frame_idx = 0) {
   MadeMap made;
   made.map.frames = {{frame_idx, {}}};
+  made.map.outcome.frames = {{frame_idx, {}, {}}};
   made.map.outcome.provisional = made.map.outcome.deforming = true;
   made.map.outcome.measured.median_depth_sigma = kMapSigma;
   made.map.outcome.measured.depth_spread = linear_signal * kMapSigma;
@@ -39,6 +40,18 @@ TEST(WaitingMaps, TheOneThatItsOwnFramesContradictGivesWay) {
   ASSERT_TRUE(taken);
   EXPECT_EQ(taken->map.outcome.measured.sigma_factor, 1);
   EXPECT_TRUE(maps.IsEmpty());
+}
+
+TEST(WaitingMaps, ALongerWindowOfTheReferenceGivesWayToWhatIsMoreCertainInAllWaysAlone) {
+  const auto later_one_stays = [](double linear_signal, double sigma_factor, int reference) {
+    WaitingMaps maps;
+    maps.Put(Deforming(2.9, 1));
+    MadeMap later = Deforming(linear_signal, sigma_factor, reference);
+    return !maps.HasBetterThan(later.map.outcome);
+  };
+  EXPECT_TRUE(later_one_stays(4.5, 2, 0));
+  EXPECT_FALSE(later_one_stays(2.8, 1, 0));
+  EXPECT_FALSE(later_one_stays(4.5, 2, 50)) << "the windows have no frames in common";
 }
 
 TEST(WaitingMaps, AWeakOneWaitsForLaterReferences) {

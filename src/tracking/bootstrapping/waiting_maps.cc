@@ -20,15 +20,23 @@ bool IsCheckedByHalves(const InitOutcome& map) {
 // Its sigmas, which are linear, may be too small by far.
 bool IsLinear(const InitOutcome& map) { return map.deforming && map.measured.DepthSignal() < kMinDepthSignal; }
 
+bool AreOfOneReference(const InitOutcome& first, const InitOutcome& second) {
+  return !first.frames.empty() && !second.frames.empty() &&
+         first.frames.front().frame_idx == second.frames.front().frame_idx;
+}
+
 // Of two provisional maps, the second one of a longer window. Sigmas of a rigid window may know nothing of a
 // deformation: where a longer one deforms they do not count, but where they are of its halves, they count more than
-// linear ones. Those by own distances are not compared with others.
+// linear ones. Those by own distances are not compared with others. A longer window of the same reference knows all
+// that the other one does, and a part of its frames that contradicts it (W21) may be what is wrong: it has to be less
+// certain by its own sigmas, too.
 bool IsBetter(const InitOutcome& first, const InitOutcome& second) {
   if (first.far_by_own_distance != second.far_by_own_distance) return second.far_by_own_distance;
   if (IsCheckedByHalves(first) && IsLinear(second)) return true;
   if (IsLinear(first) && IsCheckedByHalves(second)) return false;
-  const bool is_comparable = AllowsDeformation(first) || !AllowsDeformation(second);
-  return is_comparable && first.measured.DepthSignal() >= second.measured.DepthSignal();
+  if (!AllowsDeformation(first) && AllowsDeformation(second)) return false;
+  if (first.measured.DepthSignal() < second.measured.DepthSignal()) return false;
+  return !AreOfOneReference(first, second) || first.measured.LinearDepthSignal() >= second.measured.LinearDepthSignal();
 }
 
 }  // namespace
