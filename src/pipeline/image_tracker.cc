@@ -77,10 +77,12 @@ Result<std::vector<FrameReport>> ImageTracker::Process(const SequenceFrame& fram
 
 std::vector<FrameReport> ImageTracker::Finish() {
   std::vector<FrameReport> done;
-  tracker_->EndSequence();
-  std::size_t next = kept_.size();
-  GoBack(&next);
-  done = ProcessFrom(next);
+  while (true) {
+    tracker_->EndSequence();
+    std::size_t next = kept_.size();
+    if (!GoBack(&next)) break;
+    std::ranges::move(ProcessFrom(next), std::back_inserter(done));
+  }
   for (FrameReport& report : tracker_->Finish()) done.push_back(InSourcePixels(std::move(report), working_));
   kept_.clear();
   return done;
@@ -98,12 +100,13 @@ std::vector<FrameReport> ImageTracker::ProcessFrom(std::size_t next) {
   return done;
 }
 
-// What comes next is the frame after the one that tracking went back to.
-void ImageTracker::GoBack(std::size_t* next) {
+// Whether tracking went back: what comes next is the frame after the one that it went back to.
+bool ImageTracker::GoBack(std::size_t* next) {
   const auto back = tracker_->TakeGoesBackTo();
-  if (!back) return;
+  if (!back) return false;
   const auto after = std::ranges::find_if(kept_, [&](const SequenceFrame& frame) { return frame.frame_idx > *back; });
   *next = static_cast<std::size_t>(after - kept_.begin());
+  return true;
 }
 
 void ImageTracker::ForgetFrames() {

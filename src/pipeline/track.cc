@@ -325,6 +325,7 @@ Result<RunSummary> RunTrack(const RunRequest& given, const TrackOptions& wanted,
   if (!start.ok()) return start.status();
   if (const Status begun = PassOldImages(options, *start, &request.input, &*sequence); !begun.ok()) return begun;
   usable.tracker = WorkingOptions(std::move(usable.tracker), start->working_image);
+  usable.tracker.frame_stride = request.input.stride;
 
   TellBeginning(**sequence, *start, observers);
   int frames = (*sequence)->size();

@@ -15,6 +15,7 @@ PreparedFrame PrepareFrame(int frame_idx, std::string name, double timestamp_s, 
   const auto start = std::chrono::steady_clock::now();
   PreparedFrame frame;
   frame.frame_idx = frame_idx;
+  frame.step = frame_idx / options.frame_stride;
   frame.name = std::move(name);
   frame.timestamp_s = timestamp_s;
   frame.image = image;

@@ -159,7 +159,7 @@ std::vector<FrameReport> Tracker::Process(const PreparedFrame& frame) {
 // is awaited is dropped.
 void Tracker::FindSubmapAgain(const PreparedFrame& frame) {
   if (state_ == TrackingState::kTracking || catch_up_) return;
-  if (frame.frame_idx % options_.relocalization.search_every != 0) return;
+  if (frame.step % options_.relocalization.search_every != 0) return;
   const auto former = state_ == TrackingState::kLost ? Submaps::Former::kInactive : Submaps::Former::kDropped;
   if (!submaps_->FindAgain(frame, former, relocalizer_.get())) return;
   bootstrapper_->Abandon();

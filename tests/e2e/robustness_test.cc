@@ -57,6 +57,28 @@ TEST(Robustness, AnImageOfAnotherSizeIsNamedBeforeTheFirstFrame) {
   }
 }
 
+// What is done every Nth frame is done whatever the numbers of the frames are.
+TEST(Robustness, EverySecondFrameAddsPointsFromAnOddOneOnToo) {
+  const TestFolder folder;
+  TrackOptions options = DepthStart();
+  options.tracker.corners.max_corners = 250;
+  options.tracker.growth.min_views = 4;
+  for (const int start : {0, 1}) {
+    RunRequest request;
+    request.input.image_path = kSequence;
+    request.input.start = start;
+    request.input.stride = 2;
+    request.output_path = folder.Path("run" + std::to_string(start));
+    const auto summary = RunTrack(request, options, {});
+    ASSERT_TRUE(summary.ok()) << summary.status().message();
+    const auto run = ReadRun(request.output_path);
+    ASSERT_TRUE(run.ok()) << run.status().message();
+    int added = 0;
+    for (std::size_t k = 1; k < run->frames.size(); ++k) added += run->frames[k].added;
+    EXPECT_GT(added, 10) << "begun at " << start;
+  }
+}
+
 TEST(Robustness, BlackToTheEndIsLostAndSaysBlack) {
   const TestFolder folder;
   const SequenceCopy sequence(folder, kShortFrames);

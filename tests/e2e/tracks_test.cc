@@ -3,6 +3,7 @@
 
 // Point tracks out of a run, and into another one.
 #include <algorithm>
+#include <cstdint>
 #include <map>
 #include <utility>
 #include <vector>
@@ -87,6 +88,19 @@ TEST(RigidScene, TracksThatEndBeforeOthersBeginGiveAMapToo) {
   const TestFolder folder;
   const PointError error = *Evaluated(folder, Thinned(TracksOfDefaultRun()), 50).surface;
   EXPECT_LT(error.plain.estimate.mean_rmse_mm, kTracksShareOfNull * error.plain.null.mean_rmse_mm);
+}
+
+// The points of a model come in another order than the tracks that are seen there.
+TEST(RigidScene, TracksFromAFileCarryAMapThatBeginsWithTheModelOfAnotherRun) {
+  const TestFolder folder;
+  TrackOptions options;
+  options.tracker.init.method = InitMethod::kColmapModel;
+  options.tracker.init.model.path = kDefaultRun + "/sparse";
+  std::vector<PixelTrack> tracks = TracksOfDefaultRun();
+  std::ranges::reverse(tracks);
+  for (std::size_t k = 0; k < tracks.size(); ++k) tracks[k].id = PointId{static_cast<std::int64_t>(k)};
+  const Evaluation evaluation = Evaluated(folder, tracks, 60, options);
+  EXPECT_LT(evaluation.surface->plain.estimate.mean_rmse_mm, kMaxTracksRmse_mm);
 }
 
 TEST(RigidScene, OurTracksAreScoredAgainstTheTruth) {

@@ -54,6 +54,27 @@ TEST(WaitingMaps, ALongerWindowOfTheReferenceGivesWayToWhatIsMoreCertainInAllWay
   EXPECT_FALSE(later_one_stays(4.5, 2, 50)) << "the windows have no frames in common";
 }
 
+// A provisional one of a rigid window, of a later reference.
+MadeMap Rigid(double signal) {
+  MadeMap made = Deforming(signal, 1, kFramesOfReference);
+  made.map.outcome.deforming = false;
+  return made;
+}
+
+TEST(WaitingMaps, AWeakOneGivesWayToALaterReferencesUnlessThatKnowsLess) {
+  for (const double signal : {1.2, 2.8}) {
+    WaitingMaps maps;
+    maps.Put(Deforming(1.8, 1));
+    EXPECT_FALSE(maps.GiveUpReference(kFramesOfReference, kMaxWaitFrames));
+    EXPECT_EQ(maps.HasBetterThan(Rigid(signal).map.outcome), signal < 1.8) << signal;
+    maps.Put(Rigid(signal));
+    maps.EndWait();
+    const auto taken = maps.Take();
+    ASSERT_TRUE(taken);
+    EXPECT_EQ(taken->map.outcome.deforming, signal < 1.8) << signal;
+  }
+}
+
 TEST(WaitingMaps, AWeakOneWaitsForLaterReferences) {
   WaitingMaps maps;
   maps.Put(Deforming(2.5, 2, 7));

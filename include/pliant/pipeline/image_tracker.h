@@ -52,7 +52,7 @@ class ImageTracker {
   ImageTracker(const Camera& source, const Camera& working_camera, const WorkingImage& working,
                const TrackerInputs& inputs, const TrackOptions& options);
   std::vector<FrameReport> ProcessFrom(std::size_t next);
-  void GoBack(std::size_t* next);
+  bool GoBack(std::size_t* next);
   void ForgetFrames();
 
   Camera camera_;

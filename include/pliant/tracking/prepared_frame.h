@@ -26,6 +26,7 @@ struct PixelDepth {
 
 struct PreparedFrame {
   int frame_idx = 0;  // the sequence's own number
+  int step = 0;       // the same by TrackerOptions::frame_stride: that of the next frame is one more
   std::string name;
   double timestamp_s = 0;
   cv::Mat image;  // 8-bit, 1 or 3 (BGR) channels

@@ -157,6 +157,16 @@ std::shared_ptr<const Initializer> Bootstrapper::AlternativeToAsk() const {
 }
 
 void Bootstrapper::TakeAnswer(Answer answer, BootstrapStep* step) {
+  // Of an attempt beside tracking, which did not know of the others' doubts (W18).
+  const bool is_map =
+      answer.outcome.decision == InitDecision::kMap || answer.outcome.decision == InitDecision::kProvisional;
+  if (is_map && answer.outcome.moves_by_depth && doubts_.camera_may_stand_still) {
+    answer.outcome.decision = InitDecision::kWait;
+    answer.outcome.ambiguous = true;
+    answer.outcome.reason =
+        "camera and scene cannot be told apart: in another window the camera may as well stand still; move it further "
+        "and not evenly";
+  }
   const InitOutcome& outcome = answer.outcome;
   last_reason_ = outcome.reason;
   step->note = outcome.reason;
@@ -179,8 +189,8 @@ void Bootstrapper::TakeAnswer(Answer answer, BootstrapStep* step) {
       break;
     case InitDecision::kNewReference:
       TellAmbiguity(outcome, step);
-      GiveUpReference(step);
       doubts_.was_ambiguous |= outcome.ambiguous;
+      GiveUpReference(step);
       break;
   }
 }
@@ -226,6 +236,7 @@ bool Bootstrapper::IsFollowed(const FirstMap& map) const {
 // A map that is provisional itself does not replace a better one that was put aside.
 void Bootstrapper::FinishMapOrGoBack(Answer answer, BootstrapStep* step) {
   if (answer.outcome.provisional && waiting_.HasBetterThan(answer.outcome)) {
+    waiting_.EndWait();
     GoBack(*waiting_.Take(), step);
     return;
   }
@@ -374,13 +385,18 @@ void Bootstrapper::AddCorners(const PreparedFrame& frame, const LocalBrightness&
 
 void Bootstrapper::AddKnownPoints(const PreparedFrame& frame, const LocalBrightness& brightness, InitFrame* points) {
   if (!frame.known_points) return;
+  std::vector<std::pair<InitObservation, double>> added;
   for (const PixelDepth& known : frame.known_points()) {
-    if (static_cast<int>(points->observations.size()) == options_.corners.max_corners) break;
+    if (static_cast<int>(added.size()) == options_.corners.max_corners) break;
     const auto id = tracks_->Add(known.pixel, frame);
     if (!id) continue;
-    points->observations.push_back(
-        {*id, known.pixel, 1.0, brightness.At(known.pixel), ColorAt(frame.image, known.pixel)});
-    known_depths_.push_back(known.depth);
+    added.push_back(
+        {{*id, known.pixel, 1.0, brightness.At(known.pixel), ColorAt(frame.image, known.pixel)}, known.depth});
+  }
+  std::ranges::sort(added, {}, [](const auto& point) { return point.first.id; });
+  for (const auto& [observation, depth] : added) {
+    points->observations.push_back(observation);
+    known_depths_.push_back(depth);
   }
 }
 

@@ -51,11 +51,11 @@ void WaitingMaps::CountFrame() {
 }
 
 void WaitingMaps::Put(MadeMap made) {
-  if (!HasBetterThan(made.map.outcome)) of_reference_ = std::move(made);
+  if (!of_reference_ || !IsBetter(of_reference_->map.outcome, made.map.outcome)) of_reference_ = std::move(made);
 }
 
 bool WaitingMaps::HasBetterThan(const InitOutcome& map) const {
-  return of_reference_ && IsBetter(of_reference_->map.outcome, map);
+  return (of_reference_ && IsBetter(of_reference_->map.outcome, map)) || (weak_ && IsBetter(weak_->map.outcome, map));
 }
 
 std::optional<MadeMap> WaitingMaps::GiveUpReference(int reference_frames, int max_frames) {
@@ -68,7 +68,8 @@ std::optional<MadeMap> WaitingMaps::GiveUpReference(int reference_frames, int ma
 
 void WaitingMaps::EndWait() {
   auto weak = std::exchange(weak_, std::nullopt);
-  if (weak) Put(*std::move(weak));
+  if (weak && (!of_reference_ || IsBetter(weak->map.outcome, of_reference_->map.outcome)))
+    of_reference_ = std::move(weak);
 }
 
 std::optional<MadeMap> WaitingMaps::Take() { return std::exchange(of_reference_, std::nullopt); }

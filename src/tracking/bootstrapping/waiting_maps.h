@@ -32,7 +32,7 @@ class WaitingMaps {
   // Puts a map of the present reference aside: the one whose depths stand out most from their uncertainty is kept, or
   // the one that knows of a deformation.
   void Put(MadeMap made);
-  // Whether there is a map of the present reference that is better than this one.
+  // Whether there is a map, of the present reference or a weak one, that is better than this one.
   bool HasBetterThan(const InitOutcome& map) const;
   // The present reference is given up, after so many frames: the map to take now, if there is one. A weak one stays
   // here for up to `max_frames` frames, counted from the first reference that had one.

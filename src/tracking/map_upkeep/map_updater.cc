@@ -168,6 +168,7 @@ void MapUpdater::TakeRigid(const Reestimation& reestimation, Submap* submap, Map
   const Map before = submap->map;
   const auto then_from_world = ReplaceMap(outcome, then, &submap->map, &update->refined_points);
   if (!then_from_world) return;
+  submap->depths.signal = outcome.measured.DepthSignal();
   submap->candidates.TakeCorrection(before, submap->map);
   const Rigid3 cam_from_world = PoseInWorldOf(*then_from_world, then, *submap);
   submap->before_last_cam_from_world =
@@ -205,12 +206,12 @@ void MapUpdater::Grow(const PreparedFrame& frame, Submap* submap, StageTimes* ti
     Promote(point, submap, update);
   if (options_.growth.window > 0) {
     RememberWindow(frame, submap);
-    if (IsReestimationDue(frame.frame_idx, *submap)) Reestimate(submap->window_frames, WindowScene::kAny, *submap);
+    if (IsReestimationDue(frame.step, *submap)) Reestimate(submap->window_frames, WindowScene::kAny, *submap);
     TakeReestimations(submap, update);  // the candidates were followed into this frame
   }
   const bool half_full = 2 * submap->map.landmarks.size() >= static_cast<std::size_t>(options_.corners.max_corners);
   const int every = half_full ? 2 * options_.growth.every : options_.growth.every;
-  if (tracks_->abilities().adds_always || frame.frame_idx % every == 0) AddCandidates(frame, submap);
+  if (tracks_->abilities().adds_always || frame.step % every == 0) AddCandidates(frame, submap);
 }
 
 void MapUpdater::FollowCandidates(const PreparedFrame& frame, Submap* submap) const {
@@ -279,10 +280,10 @@ void MapUpdater::AddToWindow(InitFrame frame, Submap* submap) const {
   if (frames.size() > length) frames.erase(frames.begin(), frames.end() - static_cast<std::ptrdiff_t>(length));
 }
 
-bool MapUpdater::IsReestimationDue(int frame_idx, const Submap& submap) const {
+bool MapUpdater::IsReestimationDue(int step, const Submap& submap) const {
   const int every = options_.growth.reestimate_every;
   if (submap.window_frames.size() <= static_cast<std::size_t>(options_.growth.window) ||
-      !submap.rigid_history.empty() || frame_idx % every != 0)
+      !submap.rigid_history.empty() || step % every != 0)
     return false;
   const std::vector<Landmark>& landmarks = submap.map.landmarks;
   const auto in_view = static_cast<double>(landmarks.size());
@@ -290,7 +291,7 @@ bool MapUpdater::IsReestimationDue(int frame_idx, const Submap& submap) const {
   if (measured >= options_.growth.max_measured_share * in_view) return false;
   const auto well_known = static_cast<double>(std::ranges::count_if(
       landmarks, [](const Landmark& landmark) { return landmark.times_reestimated >= kWellKnown; }));
-  return !(well_known > 0.5 * in_view) || frame_idx % (2 * every) == 0;
+  return !(well_known > 0.5 * in_view) || step % (2 * every) == 0;
 }
 
 // From the pixels of the last frames alone, so that no error of the map outlives them (G5).
@@ -298,7 +299,7 @@ void MapUpdater::TakeAny(const Reestimation& reestimation, Submap* submap, MapUp
   const auto& [scene, then, outcome] = reestimation;
   if (outcome.decision != InitDecision::kMap) return;
   const double signal = outcome.measured.DepthSignal();
-  if (submap->provisional && outcome.provisional && signal < submap->depths.signal) return;
+  if (outcome.provisional && (!submap->provisional || signal < submap->depths.signal)) return;
   std::vector<InitPosition> positions = ReestimatedPositions(outcome, then.cam_from_world, then.map);
   if (positions.empty()) return;
   RejectReprojectionOutliers(outcome, submap, &update->losses);

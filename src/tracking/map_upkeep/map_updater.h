@@ -84,7 +84,7 @@ class MapUpdater {
 
   void RememberWindow(const PreparedFrame& frame, Submap* submap) const;
   void AddToWindow(InitFrame frame, Submap* submap) const;
-  bool IsReestimationDue(int frame_idx, const Submap& submap) const;
+  bool IsReestimationDue(int step, const Submap& submap) const;
 
   void Remove(PointId id, Submap* submap) const;
   void RejectReprojectionOutliers(const InitOutcome& outcome, Submap* submap, LossCounts* losses) const;

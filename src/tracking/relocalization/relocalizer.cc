@@ -22,11 +22,11 @@ Rigid3 Repeated(const Rigid3& motion, double count) {
 void Relocalizer::Remember(const PreparedFrame& frame, Submap* submap) const {
   const auto length = static_cast<std::size_t>(options_.relocalization.velocity_frames) + 1;
   auto& poses = submap->recent_poses;
-  if (!poses.empty() && poses.back().first + 1 != frame.frame_idx) poses.clear();
-  poses.emplace_back(frame.frame_idx, submap->last_cam_from_world);
+  if (!poses.empty() && poses.back().first + 1 != frame.step) poses.clear();
+  poses.emplace_back(frame.step, submap->last_cam_from_world);
   if (poses.size() > length) poses.erase(poses.begin());
   if (options_.relocalization.relocalize == Switch::kOff || !abilities_.sees_appearance) return;
-  if (frame.frame_idx % options_.relocalization.describe_every != 0) return;
+  if (frame.step % options_.relocalization.describe_every != 0) return;
   submap->descriptors.See(frame.gray, submap->map.landmarks);
   std::vector<PointId> known;
   for (const Landmark& landmark : submap->KnownLandmarks()) known.push_back(landmark.id);
@@ -40,12 +40,12 @@ void Relocalizer::RememberLastView(Submap* submap) const {
 }
 
 // Where the camera may be in this frame: where it was, and where it would be had it gone on as it went.
-std::vector<Rigid3> Relocalizer::GuessPoses(int frame_idx, const Submap& submap) const {
+std::vector<Rigid3> Relocalizer::GuessPoses(int step, const Submap& submap) const {
   std::vector<Rigid3> guesses = {submap.last_cam_from_world};
   if (options_.relocalization.relocalize == Switch::kOff || submap.recent_poses.size() < 2) return guesses;
-  const auto& [first_idx, first] = submap.recent_poses.front();
-  const auto& [last_idx, last] = submap.recent_poses.back();
-  const double frames = static_cast<double>(frame_idx - last_idx) / (last_idx - first_idx);
+  const auto& [first_step, first] = submap.recent_poses.front();
+  const auto& [last_step, last] = submap.recent_poses.back();
+  const double frames = static_cast<double>(step - last_step) / (last_step - first_step);
   guesses.insert(guesses.begin(), Repeated(last * first.Inverse(), frames) * submap.last_cam_from_world);
   return guesses;
 }
@@ -91,7 +91,7 @@ const DescribedImage& Relocalizer::Described(const PreparedFrame& frame) {
 
 FollowedPoints Relocalizer::Relocalize(const PreparedFrame& frame, Submap* submap) {
   if (!Blankness(frame.gray).empty()) return {};
-  for (const Rigid3& guess : GuessPoses(frame.frame_idx, *submap))
+  for (const Rigid3& guess : GuessPoses(frame.step, *submap))
     if (FollowedPoints followed = FollowFrom(frame, guess, submap); followed.size() > 0) return followed;
   if (options_.relocalization.relocalize == Switch::kOff) return {};
   const auto recognized = submap->descriptors.Recognize(Described(frame), camera_, submap->KnownLandmarks());

@@ -28,7 +28,7 @@ class Relocalizer {
   void RememberLastView(Submap* submap) const;
 
  private:
-  std::vector<Rigid3> GuessPoses(int frame_idx, const Submap& submap) const;
+  std::vector<Rigid3> GuessPoses(int step, const Submap& submap) const;
   FollowedPoints FollowFrom(const PreparedFrame& frame, const Rigid3& guess, Submap* submap) const;
   bool IsConfirmed(const FollowedPoints& followed) const;
   const DescribedImage& Described(const PreparedFrame& frame);

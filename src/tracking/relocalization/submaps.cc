@@ -47,9 +47,8 @@ bool Submaps::CanMerge() const {
 
 std::optional<Submaps::FoundMerge> Submaps::FindMerge(const PreparedFrame& frame, Relocalizer* relocalizer) {
   const int every = options_.relocalization.merge_every;
-  if (!CanMerge() || inactive_.empty() || frame.frame_idx % every != 0 || current_->blurred_frames > 0)
-    return std::nullopt;
-  FoundMerge merge{.inactive = static_cast<std::size_t>(frame.frame_idx / every) % inactive_.size()};
+  if (!CanMerge() || inactive_.empty() || frame.step % every != 0 || current_->blurred_frames > 0) return std::nullopt;
+  FoundMerge merge{.inactive = static_cast<std::size_t>(frame.step / every) % inactive_.size()};
   Submap& inactive = *inactive_[merge.inactive];
   const FollowedPoints found = relocalizer->Relocalize(frame, &inactive);
   if (found.size() == 0 || found.in_blur) return std::nullopt;

@@ -30,7 +30,8 @@ std::vector<Landmark> Submap::KnownLandmarks() const {
 
 void Submap::Commit(const FollowedPoints& points, const Rigid3& cam_from_world, TrackingState before,
                     const TrackerOptions& options, TrackSource* tracks) {
-  tracks->Keep(points.ids);
+  // What is followed into blur is not kept; what a search that failed before it found would be.
+  if (!points.in_blur) tracks->Keep(points.ids);
   Map next;
   for (std::size_t k = 0; k < points.size(); ++k) {
     const Landmark* known = map.Find(points.ids[k]);
@@ -72,7 +73,7 @@ void Submap::MoveInto(const Sim3& other_from_world) {
   for (Landmark& landmark : map.landmarks) landmark = Moved(other_from_world, landmark);
   lost_points.MoveInto(other_from_world);
   for (Rigid3* pose : {&last_cam_from_world, &before_last_cam_from_world}) *pose = PoseInWorld(other_from_world, *pose);
-  for (auto& [frame_idx, pose] : recent_poses) pose = PoseInWorld(other_from_world, pose);
+  for (auto& [step, pose] : recent_poses) pose = PoseInWorld(other_from_world, pose);
 }
 
 void Submap::MoveAllButRest(const Rigid3& motion) {
@@ -85,7 +86,7 @@ void Submap::MoveAllButRest(const Rigid3& motion) {
   candidates.Move(motion);
   const Rigid3 back = motion.Inverse();
   for (Rigid3* pose : {&last_cam_from_world, &before_last_cam_from_world}) *pose = *pose * back;
-  for (auto& [frame_idx, pose] : recent_poses) pose = pose * back;
+  for (auto& [step, pose] : recent_poses) pose = pose * back;
 }
 
 void Submap::TakeOver(Submap&& other, TrackSource* tracks) {

@@ -70,7 +70,7 @@ struct Submap {
   PreparedFrame previous;                // the last frame in which points were seen
   Rigid3 last_cam_from_world;
   Rigid3 before_last_cam_from_world;
-  std::vector<std::pair<int, Rigid3>> recent_poses;  // by frame_idx, of the last frames in a row that were tracked
+  std::vector<std::pair<int, Rigid3>> recent_poses;  // by step, of the last frames in a row that were tracked
   int blurred_frames = 0;                            // in a row, up to now
   int lost_frames = 0;                               // in a row that show something, up to now
 };
