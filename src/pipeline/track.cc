@@ -196,6 +196,14 @@ class FrameLoop {
   int last_frame_idx_ = -1;  // before the run was resumed
 };
 
+// Of this machine and these frames. More threads than processors gain nothing, and TBB complains of them on standard
+// error.
+TrackOptions UsableOptions(TrackOptions options, const SequenceRequest& input) {
+  options.threads = std::min(options.threads, std::max(2, static_cast<int>(std::thread::hardware_concurrency())));
+  options.tracker.frame_stride = input.stride;
+  return options;
+}
+
 // `options` are those of the working image.
 RunDescription DescriptionOf(const RunRequest& request, const TrackOptions& options, const RunStart& start) {
   const std::vector<std::string_view> oracles = options.tracker.oracle.Names();
@@ -307,9 +315,7 @@ Result<RunSummary> RunTrack(const RunRequest& given, const TrackOptions& wanted,
   }
   const TrackOptions options = request.input.IsLive() ? ForLiveInput(wanted) : wanted;
   if (options.tracker.depth_prior.IsGiven()) request.input.depth_prior_path = options.tracker.depth_prior.path;
-  // More threads than processors gain nothing, and TBB complains of them on standard error.
-  TrackOptions usable = options;
-  usable.threads = std::min(options.threads, std::max(2, static_cast<int>(std::thread::hardware_concurrency())));
+  TrackOptions usable = UsableOptions(options, request.input);
   cv::setNumThreads(usable.threads);
   auto sequence = OpenSequence(request.input);
   if (!sequence.ok()) return sequence.status();
@@ -325,7 +331,6 @@ Result<RunSummary> RunTrack(const RunRequest& given, const TrackOptions& wanted,
   if (!start.ok()) return start.status();
   if (const Status begun = PassOldImages(options, *start, &request.input, &*sequence); !begun.ok()) return begun;
   usable.tracker = WorkingOptions(std::move(usable.tracker), start->working_image);
-  usable.tracker.frame_stride = request.input.stride;
 
   TellBeginning(**sequence, *start, observers);
   int frames = (*sequence)->size();
