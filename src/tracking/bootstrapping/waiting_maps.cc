@@ -25,7 +25,7 @@ bool AreOfOneReference(const InitOutcome& first, const InitOutcome& second) {
          first.frames.front().frame_idx == second.frames.front().frame_idx;
 }
 
-// Of two provisional maps, the second one of a longer window. Sigmas of a rigid window may know nothing of a
+// Of two provisional maps, the second one made later. Sigmas of a rigid window may know nothing of a
 // deformation: where a longer one deforms they do not count, but where they are of its halves, they count more than
 // linear ones. Those by own distances are not compared with others. A longer window of the same reference knows all
 // that the other one does, and a part of its frames that contradicts it (W21) may be what is wrong: it has to be less
