@@ -63,7 +63,7 @@ std::string EndomapperLacks(const fs::path& path) {
 
 Result<DataSet> OpenEndomapper(const SequenceRequest& request) {
   const fs::path& folder = request.image_path;
-  auto video = StreamVideo(VideoOf(folder));
+  auto video = StreamVideo(VideoOf(folder), request.video_index);
   if (!video.ok()) return video.status();
   if (!request.camera_path.empty() || IsFile(folder / "camera.yaml")) return Calibrated(request, *std::move(video));
   const fs::path file = CalibrationOf(folder, kGeometry);

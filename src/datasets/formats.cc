@@ -83,7 +83,7 @@ Result<DataSet> OpenImageFolder(const SequenceRequest& request) {
 }
 
 Result<DataSet> OpenVideo(const SequenceRequest& request) {
-  auto video = StreamVideo(request.image_path);
+  auto video = StreamVideo(request.image_path, request.video_index);
   if (!video.ok()) return video.status();
   return Calibrated(request, *std::move(video));
 }

@@ -96,7 +96,7 @@ std::string ScaredLacks(const fs::path& path) {
 
 Result<DataSet> OpenScared(const SequenceRequest& request) {
   const fs::path& folder = request.image_path;
-  auto video = StreamVideo(folder / kVideo);
+  auto video = StreamVideo(folder / kVideo, request.video_index);
   if (!video.ok()) return video.status();
   const fs::path file = request.camera_path.empty() ? folder / kCalibrationFile : request.camera_path;
   const auto calibration = ReadStereoCalibration(file.string());

@@ -53,7 +53,7 @@ std::string StereoMisLacks(const fs::path& path) {
 
 Result<DataSet> OpenStereoMis(const SequenceRequest& request) {
   const fs::path& folder = request.image_path;
-  auto video = StreamVideo(OnlyFile(folder, ".mp4"));
+  auto video = StreamVideo(OnlyFile(folder, ".mp4"), request.video_index);
   if (!video.ok()) return video.status();
   const fs::path file = request.camera_path.empty() ? folder / kCalibrationName : request.camera_path;
   const auto calibration = ReadStereoIni(file);

@@ -9,6 +9,7 @@
 #include <opencv2/videoio.hpp>
 
 #include "datasets/image_stream.h"
+#include "datasets/video_index.h"
 #include "image/image_size.h"
 
 namespace pliant {
@@ -16,12 +17,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// Frames that are decoded and dropped sooner than sought: about as many as lie between two that need no others.
+constexpr int kMaxDropped = 250;
+constexpr int kSoughtBefore = 4;  // frames: what is sought by its time is met a little early
+
 // Containers without an index estimate their number of frames from duration and rate.
 constexpr double kCountSlack = 0.01;  // of the count, and at least one frame
 
 class VideoStream final : public ImageStream {
  public:
-  explicit VideoStream(fs::path file) : file_(std::move(file)) {}
+  VideoStream(fs::path file, std::shared_ptr<VideoIndex> index) : file_(std::move(file)), index_(std::move(index)) {}
 
   Status Open();
 
@@ -44,28 +49,42 @@ class VideoStream final : public ImageStream {
   std::optional<double> RecordedS() const override { return recorded_s_; }
 
  private:
+  Status BeginAnew();
   Status BreaksOff() const;
+  bool Grab();
+  Status Seek(int idx);
+  Status ReadWithoutSeeking();
+  bool IsTheSame(int idx, const cv::Mat& decoded) const;
 
   fs::path file_;
+  std::shared_ptr<VideoIndex> index_;
   cv::VideoCapture capture_;
   cv::Size size_;
   std::optional<double> fps_;
   int count_ = 0;
-  int read_ = 0;  // frames taken from the decoder
+  int read_ = 0;  // frames before the one that the decoder gives next
   std::optional<double> recorded_s_;
   bool ended_ = false;
+  bool has_sought_ = false;  // since the decoder began with frame 0
+  bool may_seek_ = true;     // until that gave another frame than the index knows
 };
 
-Status VideoStream::Open() {
+Status VideoStream::BeginAnew() {
+  read_ = 0;
+  has_sought_ = false;
   try {
     capture_.open(file_.string(), cv::CAP_FFMPEG);
   } catch (const cv::Exception&) {
     capture_.release();
   }
-  if (!capture_.isOpened())
-    return {ErrorCode::kUnreadable, "cannot open " + file_.string() +
-                                        " as a video: it is damaged, cut off before its index, or not a video; convert "
-                                        "it to a folder of images, or copy it again"};
+  if (capture_.isOpened()) return Status::Ok();
+  return {ErrorCode::kUnreadable, "cannot open " + file_.string() +
+                                      " as a video: it is damaged, cut off before its index, or not a video; convert "
+                                      "it to a folder of images, or copy it again"};
+}
+
+Status VideoStream::Open() {
+  if (Status status = BeginAnew(); !status.ok()) return status;
   const double count = capture_.get(cv::CAP_PROP_FRAME_COUNT);
   count_ = count > 0 && count < 1e9 ? static_cast<int>(std::lround(count)) : 0;
   if (const double fps = capture_.get(cv::CAP_PROP_FPS); std::isfinite(fps) && fps > 0) fps_ = fps;
@@ -80,20 +99,60 @@ Status VideoStream::BreaksOff() const {
                                       " cannot be decoded; copy it again, or set end to " + std::to_string(read_)};
 }
 
+bool VideoStream::Grab() {
+  if (!capture_.grab()) return false;
+  if (index_ && !has_sought_) index_->Add(read_, capture_.get(cv::CAP_PROP_POS_MSEC));
+  ++read_;
+  return true;
+}
+
+// The frame that is grabbed next is `idx` then, or the video is read anew.
+Status VideoStream::Seek(int idx) {
+  const auto time_before_ms = index_->TimeMs(idx - 1);
+  const auto sought_ms = index_->TimeMs(idx - kSoughtBefore);
+  if (!time_before_ms || !sought_ms || !index_->Digest(idx)) return Status::Ok();
+  double time_ms = -1.0;
+  bool goes_on = capture_.set(cv::CAP_PROP_POS_MSEC, *sought_ms);
+  while (goes_on && time_ms < *time_before_ms) {
+    goes_on = capture_.grab();
+    time_ms = capture_.get(cv::CAP_PROP_POS_MSEC);
+  }
+  has_sought_ = true;
+  read_ = idx;
+  return time_ms == *time_before_ms ? Status::Ok() : ReadWithoutSeeking();
+}
+
+Status VideoStream::ReadWithoutSeeking() {
+  may_seek_ = false;
+  return BeginAnew();
+}
+
+// Whether frame `idx` is what it was when nothing was sought; true where it was not decoded then.
+bool VideoStream::IsTheSame(int idx, const cv::Mat& decoded) const {
+  const auto digest = index_->Digest(idx);
+  return !digest || *digest == DigestOf(decoded);
+}
+
 Result<std::optional<cv::Mat>> VideoStream::Read(int idx) {
   if (ended_) return std::optional<cv::Mat>();
+  if (index_ && may_seek_ && idx - read_ > kMaxDropped)
+    if (Status status = Seek(idx); !status.ok()) return status;
   while (read_ <= idx) {
-    if (!capture_.grab()) {
+    if (!Grab()) {
       ended_ = true;
       const int slack = std::max(1, static_cast<int>(kCountSlack * count_));
       if (count_ - read_ > slack) return BreaksOff();
       return std::optional<cv::Mat>();
     }
-    ++read_;
   }
   cv::Mat decoded;
-  if (!capture_.retrieve(decoded) || decoded.empty() || decoded.depth() != CV_8U)
-    return Status(ErrorCode::kUnreadable, Title(idx) + " cannot be decoded; copy it again");
+  const bool is_decoded = capture_.retrieve(decoded) && !decoded.empty() && decoded.depth() == CV_8U;
+  if (has_sought_ && !(is_decoded && IsTheSame(idx, decoded))) {
+    if (Status status = ReadWithoutSeeking(); !status.ok()) return status;
+    return Read(idx);
+  }
+  if (!is_decoded) return Status(ErrorCode::kUnreadable, Title(idx) + " cannot be decoded; copy it again");
+  if (index_ && !has_sought_) index_->SetDigest(idx, DigestOf(decoded));
   const double recorded_ms = capture_.get(cv::CAP_PROP_POS_MSEC);
   const bool is_known = std::isfinite(recorded_ms) && (recorded_ms > 0 || idx == 0);
   recorded_s_ = is_known ? std::optional(1e-3 * recorded_ms) : std::nullopt;
@@ -103,8 +162,8 @@ Result<std::optional<cv::Mat>> VideoStream::Read(int idx) {
 
 }  // namespace
 
-Result<std::unique_ptr<ImageStream>> StreamVideo(const fs::path& file) {
-  auto stream = std::make_unique<VideoStream>(file);
+Result<std::unique_ptr<ImageStream>> StreamVideo(const fs::path& file, std::shared_ptr<VideoIndex> index) {
+  auto stream = std::make_unique<VideoStream>(file, std::move(index));
   if (Status status = stream->Open(); !status.ok()) return status;
   return std::unique_ptr<ImageStream>(std::move(stream));
 }

@@ -48,8 +48,8 @@ std::vector<FrameReport> FramesBefore::Pass(std::vector<FrameReport> reports) {
       if (static_cast<int>(waiting_.size()) > options_.max_frames_back) release(1);
       continue;
     }
-    const bool is_reference = report.first_map && report.first_map->reference_frame_idx == report.frame_idx;
-    if (is_reference && !waiting_.empty()) {
+    if (report.first_map) evidence_[report.submap] = report.first_map->evidence;
+    if (!waiting_.empty()) {
       TrackBack(report);
       MoveNewPoints(&report);
     }
@@ -77,19 +77,21 @@ std::vector<PreparedFrame> FramesBefore::Read(int first, int last, std::size_t c
   return frames;
 }
 
-// An image that cannot be read, or a map that is lost on the way, leaves the frames before it as they are.
-void FramesBefore::TrackBack(const FrameReport& reference) {
-  const std::vector<PreparedFrame> at_reference = Read(reference.frame_idx, reference.frame_idx, 1);
-  if (at_reference.empty()) return;
+// From `last`, the frame after those that wait. An image that cannot be read, or a map that is lost on the way, leaves
+// the frames before it as they are.
+void FramesBefore::TrackBack(const FrameReport& last) {
+  const std::vector<PreparedFrame> at_last = Read(last.frame_idx, last.frame_idx, 1);
+  if (at_last.empty()) return;
   Tracker tracker(camera_, options_.tracker, 0, options_.threads, inputs_);
-  tracker.TakeMap(at_reference.front(), reference);
+  tracker.TakeMap(at_last.front(), last, evidence_[last.submap]);
   tracker.SkipPointIds(tracker_->next_point_id());
-  FollowBack(&tracker, reference);
+  const std::string what = last.first_map ? "the reference of the first map" : "in which the map was found again";
+  FollowBack(&tracker, "tracked back from frame " + last.name + ", " + what);
   tracker_->SkipPointIds(tracker.next_point_id());
 }
 
 // Until the map is lost.
-void FramesBefore::FollowBack(Tracker* tracker, const FrameReport& reference) {
+void FramesBefore::FollowBack(Tracker* tracker, const std::string& note) {
   for (std::size_t end = waiting_.size(); end > 0;) {
     const std::size_t begin = end - std::min(end, kChunk);
     const auto frames = Read(waiting_[begin].frame_idx, waiting_[end - 1].frame_idx, end - begin);
@@ -100,14 +102,14 @@ void FramesBefore::FollowBack(Tracker* tracker, const FrameReport& reference) {
       if (tracker->GaveUp()) return;
       if (!back.cam_from_world) continue;
       AddTimes(waiting, &back);
-      back.note = "tracked back from frame " + reference.name + ", the reference of the first map";
+      back.note = note;
       waiting = std::move(back);
     }
   }
 }
 
 // A point is new in the first frame that shows it.
-void FramesBefore::MoveNewPoints(FrameReport* reference) {
+void FramesBefore::MoveNewPoints(FrameReport* last) {
   std::map<PointId, NewPoint> points;
   const auto take = [&](FrameReport& report) {
     for (const NewPoint& point : report.new_points) points.emplace(point.id, point);
@@ -119,13 +121,13 @@ void FramesBefore::MoveNewPoints(FrameReport* reference) {
     report.added = static_cast<int>(report.new_points.size());
   };
   for (FrameReport& report : waiting_) take(report);
-  take(*reference);
+  take(*last);
   for (FrameReport& report : waiting_) give(report);
-  give(*reference);
-  for (const auto& [id, point] : points) reference->new_points.push_back(point);
-  reference->added = static_cast<int>(reference->new_points.size());
+  give(*last);
+  for (const auto& [id, point] : points) last->new_points.push_back(point);
+  last->added = static_cast<int>(last->new_points.size());
 }
 
-void FramesBefore::Serialize(StateArchive& archive) { archive(waiting_); }
+void FramesBefore::Serialize(StateArchive& archive) { archive(waiting_, evidence_); }
 
 }  // namespace pliant

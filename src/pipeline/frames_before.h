@@ -1,12 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// The frames before a first map: those that had no reference, or one that was given up, and those in which the map
-// before was lost. When a map has come they are read once more and tracked from its reference frame back in time, so
-// that they too have poses and points.
+// Frames without a map: those before a first map, which had no reference or one that was given up, and those in which
+// the map was lost. When there is one again they are read once more and tracked back in time, from the reference frame
+// of the first map or from the frame in which the lost one was found, so that they too have poses and points.
 #pragma once
 
 #include <cstddef>
+#include <map>
+#include <string>
 #include <vector>
 
 #include "pliant/camera/camera.h"
@@ -37,9 +39,9 @@ class FramesBefore {
 
  private:
   std::vector<PreparedFrame> Read(int first, int last, std::size_t count) const;
-  void TrackBack(const FrameReport& reference);
-  void FollowBack(Tracker* tracker, const FrameReport& reference);
-  void MoveNewPoints(FrameReport* reference);
+  void TrackBack(const FrameReport& last);
+  void FollowBack(Tracker* tracker, const std::string& note);
+  void MoveNewPoints(FrameReport* last);
 
   SequenceRequest input_;
   WorkingImage working_;
@@ -48,6 +50,7 @@ class FramesBefore {
   TrackerInputs inputs_;
   Tracker* tracker_;
   std::vector<FrameReport> waiting_;
+  std::map<int, FirstMapEvidence> evidence_;  // by submap
 };
 
 }  // namespace pliant

@@ -9,6 +9,7 @@
 
 #include <opencv2/core.hpp>
 
+#include "datasets/video_index.h"
 #include "pipeline/frame_source.h"
 #include "pipeline/live_start.h"
 #include "pipeline/recorder.h"
@@ -230,6 +231,12 @@ RunDescription DescriptionOf(const RunRequest& request, const TrackOptions& opti
           start.working_image.interlaced};
 }
 
+// Frames of a video that are read again are found again.
+RunRequest WithVideoIndex(RunRequest request) {
+  request.input.video_index = std::make_shared<VideoIndex>();
+  return request;
+}
+
 Status CheckImagesComeAgain(const SequenceRequest& input) {
   if (!input.given && !IsLiveSource(input.image_path)) return Status::Ok();
   return {ErrorCode::kInvalidArgument,
@@ -296,7 +303,7 @@ Status EndOf(const RunSummary& summary, const std::string& output_path) {
 Result<RunSummary> RunTrack(const RunRequest& given, const TrackOptions& wanted,
                             std::span<TrackObserver* const> observers) {
   if (Status status = CheckTrackOptions(wanted); !status.ok()) return status;
-  RunRequest request = given;
+  RunRequest request = WithVideoIndex(given);
   std::optional<OpenedCheckpoint> checkpoint;  // nothing: the run begins with its first frame
   if (request.resume) {
     if (Status status = CheckImagesComeAgain(request.input); !status.ok()) return status;

@@ -27,7 +27,9 @@ void TrackOptions::List(OptionTable& table) {
             "changes the result",
             1, 1024);
   table.Add("max_frames_back", &max_frames_back, "frames",
-            "frames without a map, before the reference of a first map, tracked backwards in time from it", 0, 100000);
+            "frames without a map that are tracked backwards in time, from a first map's reference or where a map is "
+            "found again",
+            0, 100000);
   table.Add("checkpoint_frames", &checkpoint_frames, "frames",
             "what --resume goes on with is written every Nth frame, about 20 MB, and deleted at the end; 0: never", 0,
             1000000);

@@ -107,7 +107,7 @@ bool Tracker::LeavesMap() const { return submaps_->current().lost_frames >= opti
 
 bool Tracker::GaveUp() const { return LeavesMap() && options_.submaps == Switch::kOff; }
 
-void Tracker::TakeMap(const PreparedFrame& frame, const FrameReport& report) {
+void Tracker::TakeMap(const PreparedFrame& frame, const FrameReport& report, const FirstMapEvidence& evidence) {
   Submap& submap = submaps_->current();
   for (const PointObservation& seen : report.observations) {
     if (!tracks_->Resume(seen.id, seen.pixel, frame)) continue;
@@ -120,10 +120,7 @@ void Tracker::TakeMap(const PreparedFrame& frame, const FrameReport& report) {
   }
   submap.idx = report.submap;
   submap.provisional = report.state == TrackingState::kProvisional;
-  if (report.first_map) {
-    const FirstMapEvidence& evidence = report.first_map->evidence;
-    submap.depths = {.sigma = evidence.depth_sigma, .signal = DepthSignal(evidence.depth_spread, evidence.depth_sigma)};
-  }
+  submap.depths = {.sigma = evidence.depth_sigma, .signal = DepthSignal(evidence.depth_spread, evidence.depth_sigma)};
   submap.last_cam_from_world = *report.cam_from_world;
   submap.before_last_cam_from_world = *report.cam_from_world;
   submap.previous = frame;

@@ -22,6 +22,8 @@
 
 namespace pliant {
 
+class VideoIndex;
+
 struct SequenceRequest {
   std::filesystem::path image_path = {};  // folder of images, video file or native sequence
   // Calibration, or an assumed camera (pliant/camera/assumed_camera.h); empty: camera.yaml in image_path, for a video
@@ -38,6 +40,8 @@ struct SequenceRequest {
   // Instead of what lies at image_path, and of a calibration; null: none. Where image_path is not empty, these images
   // are recorded there.
   std::shared_ptr<const GivenImages> given = nullptr;
+  // Where images are read several times: what was learned of a video's frames, to find them sooner; null: nothing.
+  std::shared_ptr<VideoIndex> video_index = nullptr;
 
   // Whether the images arrive while they are read.
   bool IsLive() const { return given && given->images->IsLive(); }

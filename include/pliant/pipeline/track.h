@@ -79,7 +79,7 @@ struct TrackOptions {
   int threads = 2;  // 1: everything on one thread; 2 and more: images are read ahead, points are followed in parallel
   int checkpoint_frames = 1000;  // what RunRequest::resume goes on with is written every Nth frame; 0: never
   RunTimings timings = RunTimings::kWritten;
-  int max_frames_back = 10000;  // without a map, before the reference of a first map, tracked backwards in time from it
+  int max_frames_back = 10000;  // without a map, tracked back from a first map's reference or where it is found again
   LiveInputOptions live_input;  // where the image path names a live source
   ImageOptions image;
   TrackFileOptions track_file;  // where it is given, points are followed by it

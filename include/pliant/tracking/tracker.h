@@ -53,9 +53,9 @@ class Tracker {
   ~Tracker();
 
   // Begins with the map that was reported in this frame, instead of a first map of its own: the points that are
-  // observed there, at rest where they are new. To be called before any Process; the frames that follow may come in any
-  // order of time.
-  void TakeMap(const PreparedFrame& frame, const FrameReport& report);
+  // observed there, at rest where they are new. `evidence` is what that map rests on. To be called before any Process;
+  // the frames that follow may come in any order of time.
+  void TakeMap(const PreparedFrame& frame, const FrameReport& report, const FirstMapEvidence& evidence);
 
   // Ids of new points: the next one's, at least; and to leave those below `next` to others, who report points of the
   // same run.
