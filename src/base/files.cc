@@ -150,8 +150,12 @@ Result<OutputFile> FileGroup::Create(const std::string& path) {
   const auto type = std::filesystem::status(path, error).type();
   if (type == std::filesystem::file_type::character || type == std::filesystem::file_type::fifo)
     return OutputFile::Create(path);
-  auto file = OutputFile::Create(Beside(path));
-  if (file.ok()) paths_.push_back(path);
+  // A link stays one: what it leads to is replaced.
+  const bool is_link = std::filesystem::is_symlink(path, error);
+  const std::string target = is_link ? std::filesystem::weakly_canonical(path, error).string() : path;
+  if (error && is_link) return Unwritable(path);
+  auto file = OutputFile::Create(Beside(target));
+  if (file.ok()) paths_.push_back(target);
   return file;
 }
 

@@ -183,14 +183,18 @@ int ConvertCommand(std::span<const std::string> args) {
   if (const auto exit = line.Resolve(no_options)) return *exit;
   if (const auto exit = arguments.Check(line)) return *exit;
 
-  const auto sequence = OpenSequence(arguments.Request());
+  const SequenceRequest request = arguments.Request();
+  const auto sequence = OpenSequence(request);
   if (!sequence.ok()) return line.Failure(sequence.status().message());
   const std::atomic<bool>& stop = StopOnSignals();
   Progress progress("convert", (*sequence)->size());
-  const auto summary = ConvertSequence(**sequence, output_path, [&](int done) {
-    progress.Update(done, "");
-    return !stop;
-  });
+  const auto summary = ConvertSequence(
+      **sequence, output_path,
+      [&](int done) {
+        progress.Update(done, "");
+        return !stop;
+      },
+      request.stride);
   if (!summary.ok()) return line.Failure(summary.status().message());
   for (const std::string& warning : (*sequence)->Warnings()) SayWarning(warning);
   if (summary->clipped_depths > 0)

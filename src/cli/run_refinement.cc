@@ -47,11 +47,12 @@ int RefineAndSay(const RefineRequest& request, const RefineOptions& options) {
     SayError(summary.status().message());
     return kExitFailed;
   }
-  if (summary->stopped) SayNote("stopped before the end; this is the best so far");
   if (summary->focal_length) Say(*summary->focal_length);
   for (const SubmapRefinement& submap : summary->submaps) Say(submap);
   SayResult(request.output_path);
-  return kExitOk;
+  if (!summary->stopped) return kExitOk;
+  SayError("the refinement was stopped before its end; the best until then is in " + request.output_path);
+  return kExitFailed;
 }
 
 }  // namespace pliant::cli

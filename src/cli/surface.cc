@@ -77,6 +77,9 @@ int SurfaceCommand(std::span<const std::string> args) {
   depths.reset();
   mesh.reset();
   if (!summary.ok()) return line.Failure(summary.status().message());
+  if (summary->stopped)
+    return line.Failure("stopped on request; the depths of " + std::to_string(summary->frames.size()) +
+                        " frames are in " + request.output_path + ", and no meshes");
   SayResult(request.output_path);
   return kExitOk;
 }

@@ -107,7 +107,15 @@ Status CheckWritable(const Model& model) {
 
 }  // namespace
 
-Status CheckFolder(const std::string& folder, Format format) {
+Status CheckFolder(const std::string& folder, Format format, Rigs rigs) {
+  if (rigs == Rigs::kLeftOut)
+    for (const char* name : {"rigs.bin", "rigs.txt", "frames.bin", "frames.txt"}) {
+      const std::string path = folder + "/" + name;
+      if (Exists(path))
+        return {ErrorCode::kInvalidArgument, "there is " + Quoted(path) +
+                                                 ", of another model, which would be read with this one; delete it or "
+                                                 "choose another folder"};
+    }
   if (format == Format::kBoth) return Status::Ok();
   const std::string other = format == Format::kText ? ".bin" : ".txt";
   for (const char* name : {"cameras", "images", "points3D", "rigs", "frames"}) {
@@ -123,7 +131,7 @@ Status CheckFolder(const std::string& folder, Format format) {
 Status WriteModel(const std::string& folder, const Model& model, Format format, Rigs rigs,
                   const JobProgress& progress) {
   if (Status status = CheckWritable(model); !status.ok()) return status;
-  if (Status status = CheckFolder(folder, format); !status.ok()) return status;
+  if (Status status = CheckFolder(folder, format, rigs); !status.ok()) return status;
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) return {ErrorCode::kUnwritable, "cannot make the folder " + Quoted(folder) + ": " + error.message()};

@@ -13,8 +13,8 @@
 namespace pliant {
 
 // Calibu's XML of one camera, such as Endomapper's *_geometrical.xml, with response, vignetting and light of the only
-// *_photometrical.xml beside it. Nothing for an XML file that has no camera_model. Fails with kUnreadable, and with
-// kInvalidArgument for a model that is not known.
+// *_photometrical.xml beside it. Nothing for an XML file that has no camera_model of a type. Fails with kUnreadable,
+// and with kInvalidArgument for a model that is not known.
 Result<std::optional<SourceCalibration>> ReadCalibu(const std::filesystem::path& file);
 // Of such a *_photometrical.xml. Fails with kUnreadable.
 Result<PhotometricCalibration> ReadCalibuPhotometry(const std::filesystem::path& file);

@@ -103,7 +103,7 @@ Result<PhotometricCalibration> ReadCalibuPhotometry(const fs::path& file) {
 Result<std::optional<SourceCalibration>> ReadCalibu(const fs::path& file) {
   const auto xml = ReadCalibration(file);
   if (!xml.ok()) return xml.status();
-  if (!xml->camera) return std::optional<SourceCalibration>();
+  if (!xml->camera.attribute("type")) return std::optional<SourceCalibration>();
   auto camera = GeometryOf(file, xml->camera);
   if (!camera.ok()) return camera.status();
   SourceCalibration calibration{*std::move(camera), file};

@@ -24,10 +24,11 @@ namespace fs = std::filesystem;
 constexpr double kDepthHeadroom = 2.0;
 constexpr int kDepthsLookedAt = 50;
 
-double DepthScaleFor(const Sequence& sequence, int first_frame_idx, int last_frame_idx) {
+// Of `count` frames, every `stride`-th from the first one on.
+double DepthScaleFor(const Sequence& sequence, int first_frame_idx, int stride, int count) {
   double largest_mm = 0;
   for (int k = 0; k < kDepthsLookedAt; ++k) {
-    const int frame_idx = first_frame_idx + (last_frame_idx - first_frame_idx) * k / (kDepthsLookedAt - 1);
+    const int frame_idx = first_frame_idx + stride * ((count - 1) * k / (kDepthsLookedAt - 1));
     const auto depth_mm = sequence.Depth(frame_idx);
     if (!depth_mm.ok() || !depth_mm->has_value()) continue;
     double largest_of_frame_mm = 0;
@@ -56,17 +57,18 @@ Result<NativeFrame> Gather(Sequence& sequence, SequenceFrame frame) {
   return gathered;
 }
 
-Result<NativeWriter> MakeWriter(const Sequence& sequence, int first_frame_idx, const fs::path& folder) {
+Result<NativeWriter> MakeWriter(const Sequence& sequence, int first_frame_idx, int stride, const fs::path& folder) {
   CameraFile camera{.camera = sequence.camera()};
   camera.baseline_mm = sequence.BaselineMm();
   camera.photometric = sequence.Photometric();
-  camera.depth_scale = DepthScaleFor(sequence, first_frame_idx, first_frame_idx + std::max(0, sequence.size() - 1));
+  camera.depth_scale = DepthScaleFor(sequence, first_frame_idx, stride, std::max(1, sequence.size()));
   return NativeWriter::Create(folder, camera);
 }
 
 }  // namespace
 
-Result<ConvertSummary> ConvertSequence(Sequence& sequence, const fs::path& folder, const ConvertProgress& progress) {
+Result<ConvertSummary> ConvertSequence(Sequence& sequence, const fs::path& folder, const ConvertProgress& progress,
+                                       int stride) {
   std::error_code error;
   if (fs::exists(folder, error) && !(fs::is_directory(folder, error) && fs::is_empty(folder, error)))
     return Status(ErrorCode::kInvalidArgument,
@@ -81,7 +83,7 @@ Result<ConvertSummary> ConvertSequence(Sequence& sequence, const fs::path& folde
     auto frame = Gather(sequence, **std::move(next));
     if (!frame.ok()) return frame.status();
     if (!writer) {
-      auto made = MakeWriter(sequence, frame_idx, folder);
+      auto made = MakeWriter(sequence, frame_idx, stride, folder);
       if (!made.ok()) return made.status();
       writer = *std::move(made);
     }

@@ -38,6 +38,13 @@ void WarnOfMissing(const std::string& what, const FrameRange& range, const DataS
                         ", the first is " + data_set.images->Name(first) + " (frame " + std::to_string(first) + ")");
 }
 
+// What the range is of these images: of a video by its container's word.
+FrameRange ByItsWord(const FrameRange& range, const ImageStream& images) {
+  if (images.count() == 0) return range;
+  const auto known = range.Within(images.count(), images.path());
+  return known.ok() ? *known : FrameRange{range.start, range.start, range.stride};
+}
+
 Status CheckStoredSizes(const ImageStream& images, const FrameRange& range) {
   std::optional<std::pair<int, cv::Size>> first;
   for (int idx = range.start; idx < range.end; idx += range.stride) {
@@ -64,7 +71,7 @@ class DataSetSequence final : public Sequence {
   Status OpenDepthPriors(const std::filesystem::path& folder);
 
   const Camera& camera() const override { return data_set_.calibration.camera; }
-  int size() const override { return range_.Count(); }
+  int size() const override { return KnownRange().Count(); }
   Result<std::optional<SequenceFrame>> Next() override;
   Status CheckSizes() const override;
   std::optional<PhotometricCalibration> Photometric() const override { return data_set_.calibration.photometric; }
@@ -78,6 +85,7 @@ class DataSetSequence final : public Sequence {
 
  private:
   ImageStream& images() const { return *data_set_.images; }
+  FrameRange KnownRange() const { return ByItsWord(range_, images()); }
   CompanionImages::Counts Counts() const {
     return images().count_is_exact() ? CompanionImages::Counts::kMustAgree : CompanionImages::Counts::kMayDiffer;
   }
@@ -112,9 +120,9 @@ Status DataSetSequence::CheckFirstImage() const {
 // A video may end before its container says so: there only a gap before a frame that has a mask is one for certain.
 Status DataSetSequence::CheckMasks(const CompanionImages& masks) const {
   const bool exact = images().count_is_exact();
-  const int end = range_.end == -1 ? images().count() : range_.end;
+  const FrameRange range = KnownRange();
   Status missing = Status::Ok();
-  for (int idx = range_.start; idx < end; idx += range_.stride) {
+  for (int idx = range.start; idx < range.end; idx += range.stride) {
     const auto found = masks.Require(idx, images().Name(idx));
     if (!found.ok() && exact) return found.status();
     if (found.ok() && !missing.ok()) return missing;
@@ -152,13 +160,13 @@ Status DataSetSequence::OpenDepthPriors(const fs::path& folder) {
                                       images().Name(0)};
   if (images().count_is_exact())
     WarnOfMissing(
-        "depth prior", range_, data_set_,
+        "depth prior", KnownRange(), data_set_,
         [&](std::size_t idx) { return !DepthPriorFile(static_cast<int>(idx)).empty(); }, &data_set_.warnings);
   return Status::Ok();
 }
 
 Status DataSetSequence::CheckSizes() const {
-  const FrameRange range{range_.start, range_.end == -1 ? images().count() : range_.end, range_.stride};
+  const FrameRange range = KnownRange();
   if (Status status = CheckStoredSizes(images(), range); !status.ok()) return status;
   if (BaselineMm())
     if (Status status = CheckStoredSizes(*data_set_.right, range); !status.ok()) return status;
@@ -186,6 +194,9 @@ Result<std::optional<SequenceFrame>> DataSetSequence::Next() {
   last_idx_ = idx;
   Result<std::optional<cv::Mat>> image = images().Read(idx);
   if (!image.ok()) return image.status();
+  if (!image->has_value() && idx > 0 && idx == range_.start)
+    return Status(ErrorCode::kInvalidArgument,
+                  "start is " + std::to_string(idx) + ", but " + images().path().string() + " has fewer frames");
   if (!image->has_value()) return std::optional<SequenceFrame>();
   if (Status status = CheckSize(**image, images().Title(idx)); !status.ok()) return status;
   SequenceFrame frame;
@@ -272,7 +283,7 @@ std::optional<double> DataSetSequence::TimestampS(int frame_idx) const {
 
 double DataSetSequence::TimeOf(int idx) const {
   if (!data_set_.timestamps_s.empty()) return data_set_.timestamps_s[static_cast<std::size_t>(idx)];
-  return images().TimestampS(idx).value_or(idx / data_set_.calibration.fps);
+  return images().TimestampS(idx).value_or(idx / data_set_.calibration.Fps());
 }
 
 std::optional<std::string> DataSetSequence::Name(int frame_idx) const {
@@ -393,7 +404,7 @@ Result<DataSet> Calibrated(const SequenceRequest& request, std::unique_ptr<Image
   const Result<CameraFile> file = ReadCameraFile(path->string(), options);
   if (!file.ok()) return file.status();
   SourceCalibration calibration{file->camera, *path};
-  if (file->fps) calibration.fps = *file->fps;
+  calibration.fps = file->fps;
   if (images->fps()) calibration.fps = *images->fps();
   calibration.depth_scale = file->depth_scale;
   calibration.baseline_mm = file->baseline_mm;
@@ -404,10 +415,11 @@ Result<DataSet> Calibrated(const SequenceRequest& request, std::unique_ptr<Image
 
 Result<std::unique_ptr<Sequence>> ReadDataSet(DataSet data_set, const SequenceRequest& request) {
   Result<FrameRange> range = FrameRange::From(request);
-  if (range.ok() && data_set.images->count() > 0)
+  // Containers without an index estimate their number of frames: how far a video goes is known when it has been read.
+  if (range.ok() && data_set.images->count() > 0 && data_set.images->count_is_exact())
     range = range->Within(data_set.images->count(), data_set.images->path());
   if (!range.ok()) return range.status();
-  WarnOfMissingTruth(*range, &data_set);
+  WarnOfMissingTruth(ByItsWord(*range, *data_set.images), &data_set);
   auto sequence = std::make_unique<DataSetSequence>(std::move(data_set), *range);
   if (Status status = sequence->CheckFirstImage(); !status.ok()) return status;
   if (Status status = sequence->OpenMasks(); !status.ok()) return status;

@@ -30,11 +30,13 @@ namespace pliant {
 struct SourceCalibration {
   Camera camera;
   std::filesystem::path path;                        // for messages
-  double fps = 30.0;                                 // of sources that carry no time of their own
+  std::optional<double> fps = std::nullopt;          // of sources that carry no time of their own
   std::optional<double> depth_scale = std::nullopt;  // mm a unit of the depth images
   std::optional<double> baseline_mm = std::nullopt;  // of rectified pairs
   double unit_mm = 1.0;                              // of the poses beside the file
   std::optional<PhotometricCalibration> photometric = std::nullopt;
+
+  double Fps() const { return fps.value_or(30.0); }
 };
 
 struct DataSet {

@@ -207,7 +207,7 @@ Result<std::optional<cv::Mat>> LiveSource::State::Take(std::unique_lock<std::mut
   if (!written.ok()) return written;
   const int idx = static_cast<int>(times_s.size());
   arrivals.push_back(next->time);
-  times_s.push_back(request.options.frames == LiveFrames::kAll ? idx / calibration->calibration.fps
+  times_s.push_back(request.options.frames == LiveFrames::kAll ? idx / calibration->calibration.Fps()
                                                                : SecondsBetween(*first_arrival, next->time));
   const cv::Mat image = std::exchange(next, std::nullopt)->image;
   unwritten.emplace_back(idx, image);
@@ -270,7 +270,7 @@ Result<std::shared_ptr<LiveSource>> LiveSource::Open(const LiveRequest& request)
   if (!lock_of_recording.ok()) return lock_of_recording.status();
   state.lock_of_recording = *std::move(lock_of_recording);
   const SourceCalibration& source = state.calibration->calibration;
-  CameraFile camera{.camera = source.camera, .fps = source.fps};
+  CameraFile camera{.camera = source.camera, .fps = source.Fps()};
   camera.photometric = source.photometric;
   auto writer = NativeWriter::Create(request.recording_path, camera);
   if (!writer.ok()) return writer.status();
@@ -282,7 +282,7 @@ Result<std::shared_ptr<LiveSource>> LiveSource::Open(const LiveRequest& request)
 std::shared_ptr<const GivenImages> LiveSource::Given(const std::shared_ptr<LiveSource>& self) {
   const LiveCalibration& of = *self->state_->calibration;
   GivenImages given{.camera = of.calibration.camera, .photometric = of.calibration.photometric, .images = self};
-  given.fps = of.calibration.fps;
+  given.fps = of.calibration.Fps();
   given.warnings = of.warnings;
   return std::make_shared<const GivenImages>(std::move(given));
 }

@@ -15,6 +15,7 @@
 #include "pliant/base/files.h"
 #include "pliant/base/options.h"
 #include "pliant/datasets/native_layout.h"
+#include "pliant/io/camera_file.h"
 #include "pliant/io/trajectory.h"
 
 namespace pliant {
@@ -71,7 +72,7 @@ Status AddPoses(const fs::path& file, const std::vector<TimedPose>& poses, DataS
   }
   std::vector<double> times_s = data_set->timestamps_s;
   for (std::size_t idx = times_s.size(); idx < count; ++idx)
-    times_s.push_back(static_cast<double>(idx) / data_set->calibration.fps);
+    times_s.push_back(static_cast<double>(idx) / data_set->calibration.Fps());
   data_set->world_from_cam = PosesAt(times_s, poses, unit_mm, kSameTime_s);
   const auto found = std::count_if(data_set->world_from_cam.begin(), data_set->world_from_cam.end(),
                                    [](const auto& pose) { return pose.has_value(); });
@@ -131,6 +132,17 @@ Status AddRight(const fs::path& folder, DataSet* data_set) {
   return Status::Ok();
 }
 
+// What a calibration that was given in place of the sequence's own does not say: how its images and poses are stored.
+void TakeStorage(const fs::path& own_file, SourceCalibration* calibration) {
+  if (!Exists(own_file) || calibration->path == own_file) return;
+  const auto own = ReadCameraFile(own_file.string());
+  if (!own.ok()) return;
+  calibration->unit_mm = own->unit_mm;
+  if (!calibration->depth_scale) calibration->depth_scale = own->depth_scale;
+  if (!calibration->baseline_mm) calibration->baseline_mm = own->baseline_mm;
+  if (!calibration->fps) calibration->fps = own->fps;
+}
+
 }  // namespace
 
 bool IsNativeSequence(const fs::path& path) { return IsFolder(path / native::kImageFolder); }
@@ -141,6 +153,7 @@ Result<DataSet> OpenNativeSequence(const SequenceRequest& request) {
   if (!images.ok()) return images.status();
   Result<DataSet> data_set = Calibrated(request, *std::move(images));
   if (!data_set.ok()) return data_set.status();
+  TakeStorage(folder / native::kCameraFile, &data_set->calibration);
   if (request.mask_path.empty() && Exists(folder / native::kMaskFolder))
     data_set->mask_path = folder / native::kMaskFolder;
   for (const Status& status :

@@ -20,6 +20,7 @@ Result<RunMap> MapFromSequence(const SequenceRequest& request, const Run& run) {
   if (!sequence.ok()) return sequence.status();
   RunMap known;
   known.camera = (*sequence)->camera();
+  known.interlaced = run.summary && run.summary->description.interlaced;
   for (const RunFrame& frame : run.frames)
     if (auto name = (*sequence)->Name(frame.frame_idx)) known.names.emplace(frame.frame_idx, *std::move(name));
   return known;
@@ -58,6 +59,12 @@ Result<RunMap> KnownMapOfRun(const std::string& run_path, const SequenceRequest&
   return Status(ErrorCode::kNotFound, Quoted(run_path) +
                                           " has no sparse/ to take the camera and the images' names "
                                           "from; name its sequence with --sequence");
+}
+
+Status CheckMasksOfRun(const SequenceRequest& request, const Run& run) {
+  if (!request.mask_path.empty() || !run.summary || run.summary->description.mask.empty()) return Status::Ok();
+  return {ErrorCode::kNotFound, "the masks that the run was tracked with are not at " +
+                                    Quoted(run.summary->description.mask) + "; name them with --mask_path"};
 }
 
 Result<std::unique_ptr<Sequence>> OpenImagesOfRun(const std::string& run_path, const SequenceRequest& request) {

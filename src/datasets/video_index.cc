@@ -31,8 +31,9 @@ std::uint64_t DigestOf(const cv::Mat& image) {
 void VideoIndex::Add(int idx, double recorded_ms) {
   const std::lock_guard lock(mutex_);
   if (idx != static_cast<int>(frames_.size())) return;
-  times_grow_ = times_grow_ && (frames_.empty() || recorded_ms > frames_.back().recorded_ms);
-  frames_.push_back({recorded_ms});
+  const bool is_later = recorded_ms > latest_ms_;
+  frames_.push_back({is_later ? std::optional(recorded_ms) : std::nullopt});
+  if (is_later) latest_ms_ = recorded_ms;
 }
 
 void VideoIndex::SetDigest(int idx, std::uint64_t digest) {
@@ -42,7 +43,7 @@ void VideoIndex::SetDigest(int idx, std::uint64_t digest) {
 
 std::optional<double> VideoIndex::TimeMs(int idx) const {
   const std::lock_guard lock(mutex_);
-  if (!times_grow_ || idx < 0 || idx >= static_cast<int>(frames_.size())) return std::nullopt;
+  if (idx < 0 || idx >= static_cast<int>(frames_.size())) return std::nullopt;
   return frames_[static_cast<std::size_t>(idx)].recorded_ms;
 }
 

@@ -26,19 +26,19 @@ class VideoIndex {
   // Frame `idx`, which was added, was decoded.
   void SetDigest(int idx, std::uint64_t digest);
 
-  // Its time; nothing where it is not known, or where the times of the known frames do not grow.
+  // Its time; nothing where it is not known, or not later than those before.
   std::optional<double> TimeMs(int idx) const;
   std::optional<std::uint64_t> Digest(int idx) const;
 
  private:
   struct Entry {
-    double recorded_ms = 0;
+    std::optional<double> recorded_ms;
     std::optional<std::uint64_t> digest = {};
   };
 
   mutable std::mutex mutex_;
   std::vector<Entry> frames_;
-  bool times_grow_ = true;
+  double latest_ms_ = -1;
 };
 
 }  // namespace pliant

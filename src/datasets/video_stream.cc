@@ -51,6 +51,7 @@ class VideoStream final : public ImageStream {
  private:
   Status BeginAnew();
   Status BreaksOff() const;
+  bool EndsEarly() const;
   bool Grab();
   Status Seek(int idx);
   Status ReadWithoutSeeking();
@@ -64,6 +65,7 @@ class VideoStream final : public ImageStream {
   int count_ = 0;
   int read_ = 0;  // frames before the one that the decoder gives next
   std::optional<double> recorded_s_;
+  double last_ms_ = 0;  // the latest time of a frame that was grabbed
   bool ended_ = false;
   bool has_sought_ = false;  // since the decoder began with frame 0
   bool may_seek_ = true;     // until that gave another frame than the index knows
@@ -73,7 +75,8 @@ Status VideoStream::BeginAnew() {
   read_ = 0;
   has_sought_ = false;
   try {
-    capture_.open(file_.string(), cv::CAP_FFMPEG);
+    // FFmpeg takes what stands before a colon in a relative name for a protocol.
+    capture_.open(fs::absolute(file_).string(), cv::CAP_FFMPEG);
   } catch (const cv::Exception&) {
     capture_.release();
   }
@@ -99,8 +102,17 @@ Status VideoStream::BreaksOff() const {
                                       " cannot be decoded; copy it again, or set end to " + std::to_string(read_)};
 }
 
+// By the number of frames, and by the time of the last one: at an uneven rate an estimate of the former is off.
+bool VideoStream::EndsEarly() const {
+  const double slack = std::max(1.0, kCountSlack * count_);
+  const double by_time = fps_.value_or(0.0) * last_ms_ / 1e3 + 1.0;
+  return count_ - std::max(1.0 * read_, by_time) > slack;
+}
+
 bool VideoStream::Grab() {
   if (!capture_.grab()) return false;
+  // The last frames of some videos come without a time.
+  if (const double ms = capture_.get(cv::CAP_PROP_POS_MSEC); ms > last_ms_) last_ms_ = ms;
   if (index_ && !has_sought_) index_->Add(read_, capture_.get(cv::CAP_PROP_POS_MSEC));
   ++read_;
   return true;
@@ -140,8 +152,7 @@ Result<std::optional<cv::Mat>> VideoStream::Read(int idx) {
   while (read_ <= idx) {
     if (!Grab()) {
       ended_ = true;
-      const int slack = std::max(1, static_cast<int>(kCountSlack * count_));
-      if (count_ - read_ > slack) return BreaksOff();
+      if (EndsEarly()) return BreaksOff();
       return std::optional<cv::Mat>();
     }
   }

@@ -116,8 +116,12 @@ Result<EvaluationInput> ReadInput(const std::string& run_path, const Sequence* s
         !status.ok())
       return status;
   } else {
-    for (const RunPose& pose : run->poses)
+    for (const RunPose& pose : run->poses) {
+      if (!pose.frame_idx)
+        return Status(ErrorCode::kMismatch,
+                      "the run " + run_path + " has poses whose frames are not known; is its frames.csv missing?");
       FrameAt(*pose.frame_idx, pose.timestamp_s, &frames).cam_from_world = pose.world_from_cam.Inverse();
+    }
   }
   if (Status status = ReadPoints(run_path, foreign ? sequence : nullptr, &input, &frames); !status.ok()) return status;
   for (auto& entry : frames) input.frames.push_back(std::move(entry.second));

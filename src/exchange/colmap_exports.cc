@@ -16,10 +16,19 @@
 namespace pliant {
 namespace {
 
-constexpr std::uint64_t kPointsAFrame = 1'000'000;  // ids of a spacetime model: frame * this + track
+constexpr std::int64_t kPointsAFrame = 1'000'000;  // ids of a spacetime model: frame * this + track
 
 std::uint64_t SpacetimeId(const SourceFrame& frame, PointId point) {
-  return static_cast<std::uint64_t>(frame.frame_idx) * kPointsAFrame + static_cast<std::uint64_t>(point.value);
+  return static_cast<std::uint64_t>(frame.frame_idx * kPointsAFrame + point.value);
+}
+
+// `points` are sorted by id.
+Status CheckSpacetimeIds(const std::vector<CanonicalPoint>& points) {
+  if (points.empty() || points.back().point.id.value < kPointsAFrame) return Status::Ok();
+  return {ErrorCode::kInvalidArgument, "the run has a point " + std::to_string(points.back().point.id.value) +
+                                           "; in this format, whose point ids are frame * " +
+                                           std::to_string(kPointsAFrame) +
+                                           " + point, they have to be smaller: use the format canonical or frames"};
 }
 
 // A model whose images and points3D are written as a stream.
@@ -69,6 +78,7 @@ Status AddFrame(const RunSource& source, const SourceFrame& frame, const std::ve
 // Calls `also` for every frame.
 Status WriteSpacetime(const RunSource& source, colmap::Format format, const std::string& folder, FileGroup& group,
                       const FrameFunction& also) {
+  if (Status status = CheckSpacetimeIds(source.points); !status.ok()) return status;
   auto model = ModelStream::Create(group, folder, format, source.camera, source.frames.size(),
                                    static_cast<std::uint64_t>(source.num_observations));
   if (!model.ok()) return model.status();

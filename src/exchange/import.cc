@@ -57,7 +57,10 @@ Result<Imported> ReadInput(const ImportRequest& request, const Sequence& sequenc
 void MultiplyUnit(double unit_mm, Imported* imported) {
   for (auto& [frame_idx, frame] : imported->frames) {
     frame.cam_from_world.translation *= unit_mm;
-    for (PointObservation& observation : frame.observations) observation.position *= unit_mm;
+    for (PointObservation& observation : frame.observations) {
+      observation.position *= unit_mm;
+      observation.sigma *= unit_mm;
+    }
   }
 }
 
@@ -177,7 +180,11 @@ Status WriteTruth(const ImportRequest& request, const Imported& imported, const 
   if (Exists(folder / "groundtruth.txt"))
     return {ErrorCode::kInvalidArgument, "there is a groundtruth.txt in " + Quoted(folder.string()) +
                                              " already; move it away, or give another folder"};
-  if (!Exists(folder / "camera.yaml")) {
+  if (Exists(folder / "camera.yaml")) {
+    const auto there = ReadCameraFile((folder / "camera.yaml").string());
+    if (!there.ok()) return there.status();
+    for (TimedPose& pose : poses) pose.world_from_cam.translation /= there->unit_mm;
+  } else {
     CameraFile file{camera};
     if (poses.size() > 1)
       file.fps = static_cast<double>(poses.size() - 1) / (poses.back().timestamp_s - poses.front().timestamp_s);

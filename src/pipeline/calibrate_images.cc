@@ -4,10 +4,15 @@
 #include "pliant/pipeline/calibrate_images.h"
 
 #include <algorithm>
+#include <cerrno>
+#include <filesystem>
 #include <map>
+
+#include <unistd.h>
 
 #include "calibration/board_problem.h"
 #include "pipeline/board_search.h"
+#include "pliant/base/files.h"
 #include "pliant/base/parallel.h"
 #include "pliant/base/text.h"
 #include "pliant/calibration/choose_views.h"
@@ -163,6 +168,16 @@ StereoCalibration::Eye EyeOf(const Camera& camera) {
   return eye;
 }
 
+// Minutes of search are not to end with a file that cannot be written.
+Status CheckOutput(const std::filesystem::path& path) {
+  std::error_code error;
+  if (path.empty() || std::filesystem::is_character_file(path, error) || std::filesystem::is_fifo(path, error))
+    return Status::Ok();
+  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  errno = 0;
+  return access(folder.c_str(), W_OK) == 0 ? Status::Ok() : Unwritable(path);
+}
+
 }  // namespace
 
 void CalibrateOptions::List(OptionTable& table) {
@@ -176,6 +191,7 @@ void CalibrateOptions::List(OptionTable& table) {
 
 Result<CalibrateSummary> CalibrateImages(const CalibrateRequest& request, const CalibrateOptions& options,
                                          const CalibrateProgress& progress) {
+  if (Status status = CheckOutput(request.output_path); !status.ok()) return status;
   const auto recording = SearchBoards(request, options, progress);
   if (!recording.ok()) return recording.status();
   auto summary = CalibrateOne(request, options, *recording, 0, Lenses::kAll, request.image_path.string());
@@ -188,6 +204,7 @@ Result<CalibrateSummary> CalibrateImages(const CalibrateRequest& request, const 
 
 Result<CalibratePairsSummary> CalibratePairs(const CalibrateRequest& request, const CalibrateOptions& options,
                                              const CalibrateProgress& progress) {
+  if (Status status = CheckOutput(request.output_path); !status.ok()) return status;
   const auto recording = SearchBoards(request, options, progress);
   if (!recording.ok()) return recording.status();
   const bool is_apart = !request.right_path.empty();

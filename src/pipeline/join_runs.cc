@@ -3,6 +3,7 @@
 
 #include "pliant/pipeline/join_runs.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <filesystem>
 #include <system_error>
@@ -34,16 +35,39 @@ Status CheckRunPaths(const JoinRequest& request) {
   return Status::Ok();
 }
 
+// Those that are not there yet.
+void AddNames(const std::vector<std::string>& names, std::vector<std::string>* all) {
+  for (const std::string& name : names)
+    if (std::ranges::find(*all, name) == all->end()) all->push_back(name);
+}
+
 RunDescription JoinedDescription(const JoinRequest& request, const std::vector<RunPart>& parts) {
   RunDescription description = parts.front().description();
   description.program_version = kVersion;
   description.command_line = request.command_line;
   description.refined_from.clear();
   description.joined_from.clear();
-  for (const RunPart& part : parts)
+  for (const RunPart& part : parts) {
+    const RunDescription& of_part = part.description();
     description.joined_from.push_back(fs::absolute(part.path).lexically_normal().string());
-  description.range.end = parts.back().description().range.end;
+    const bool is_open = description.range.end == -1 || of_part.range.end == -1;
+    description.range.end = is_open ? -1 : std::max(description.range.end, of_part.range.end);
+    AddNames(of_part.oracles, &description.oracles);
+    AddNames(of_part.extensions, &description.extensions);
+    if (description.depth_prior.empty()) description.depth_prior = of_part.depth_prior;
+    if (description.tracks.empty()) description.tracks = of_part.tracks;
+  }
   return description;
+}
+
+// The last part's, unless an earlier one did not come to its end.
+Status FinishAsParts(const std::vector<RunPart>& parts, RunWriter* writer) {
+  for (const RunPart& part : parts) {
+    const RunSummary& of_part = *part.run.summary;
+    if (of_part.status == RunStatus::kFailed || of_part.status == RunStatus::kInterrupted)
+      return writer->Finish(of_part.status, "of the part " + part.path + ": " + of_part.note);
+  }
+  return writer->Finish(parts.back().run.summary->status, parts.back().run.summary->note);
 }
 
 Result<RunSummary> WriteJoined(const JoinRequest& request, const JoinOptions& options,
@@ -69,8 +93,7 @@ Result<RunSummary> WriteJoined(const JoinRequest& request, const JoinOptions& op
     if (!seen.ok()) return seen.status();
     if (Status status = writer->Write(reports.Report(part, frame_idx, *std::move(seen))); !status.ok()) return status;
   }
-  const RunSummary& last = *parts.back().run.summary;
-  if (Status status = writer->Finish(last.status, last.note); !status.ok()) return status;
+  if (Status status = FinishAsParts(parts, &*writer); !status.ok()) return status;
   return writer->summary();
 }
 

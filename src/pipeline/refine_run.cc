@@ -48,11 +48,15 @@ Status CheckPaths(const RefineRequest& request) {
 }
 
 // (F7) Depths that the run has found by motion come from the pixels that are used again: they are a start, and no
-// measurement. Those of a pair, of depth images or of another program may say more.
+// measurement. Those of a pair, of depth images or of another program may say more. A run that was killed does not say
+// what its maps rest on.
 double LogDepthSigmaOf(const RunSummary& summary) {
   constexpr double kFromElsewhere = 0.1;
-  const bool by_motion =
-      std::ranges::any_of(summary.first_maps, [](const auto& map) { return map.evidence.depth_sigma > 0.0; });
+  const RunDescription& run = summary.description;
+  const bool was_killed = summary.first_maps.empty() && run.metric == false && run.depth_prior.empty();
+  const bool by_motion = was_killed || std::ranges::any_of(summary.first_maps, [](const auto& map) {
+                           return map.evidence.depth_sigma > 0.0 || map.evidence.median_parallax_deg > 0.0;
+                         });
   return by_motion ? kStartLogDepthSigma : kFromElsewhere;
 }
 
@@ -66,9 +70,18 @@ void SetRestPositions(Recording* recording) {
   for (std::size_t i = 0; i < counts.size(); ++i) recording->rest_positions[i] /= std::max(1, counts[i]);
 }
 
+// Frames that were written before two maps became one are written again at a run's end.
+Status CheckOneSubmap(int one, int other, PointId id) {
+  if (one == other) return Status::Ok();
+  return {ErrorCode::kMismatch, "the point " + std::to_string(id.value) + " is in the submaps " + std::to_string(one) +
+                                    " and " + std::to_string(other) +
+                                    ": the run was killed after the two were merged; finish it first, with pliant "
+                                    "track --resume"};
+}
+
 Result<std::map<int, RefinedSubmap>> ReadSubmaps(const std::string& path, const Run& run) {
   std::map<int, RefinedSubmap> submaps;
-  std::map<int, std::map<PointId, int>> index_of;  // by submap
+  std::map<PointId, std::pair<int, int>> index_of;  // submap, number in it
   const auto frames_idx = FramesWithPose(path, run);
   if (!frames_idx.ok()) return frames_idx.status();
   const Status status = ForEachFrame(path, *frames_idx, [&](std::size_t k, const auto& observations) {
@@ -80,12 +93,14 @@ Result<std::map<int, RefinedSubmap>> ReadSubmaps(const std::string& path, const 
     submap.recording.cams_from_world.push_back(pose.world_from_cam.Inverse());
     submap.observations.push_back(observations);
     for (const PointObservation& o : observations) {
-      const auto [entry, added] = index_of[pose.submap].try_emplace(o.id, static_cast<int>(submap.ids.size()));
+      const auto [entry, added] = index_of.try_emplace(o.id, pose.submap, static_cast<int>(submap.ids.size()));
+      const auto& [of_submap, number] = entry->second;
+      if (Status one = CheckOneSubmap(of_submap, pose.submap, o.id); !one.ok()) return one;
       if (added) {
         submap.ids.push_back(o.id);
         submap.recording.rest_positions.emplace_back(Eigen::Vector3d::Zero());
       }
-      submap.recording.observations.push_back({view, entry->second, o.pixel, o.position});
+      submap.recording.observations.push_back({view, number, o.pixel, o.position});
     }
     return Status::Ok();
   });
@@ -196,7 +211,8 @@ bool IsFocalLengthWanted(const RefineOptions& options, const RunDescription& run
 
 // Of a refinement that was stopped too: it is whole, if not at its minimum.
 Result<RunSummary> Write(const RefineRequest& request, const RefineOptions& options, const Run& run,
-                         const RunMap& known, bool has_new_camera, Reporter reporter, double seconds) {
+                         const RunMap& known, bool has_new_camera, bool was_stopped, Reporter reporter,
+                         double seconds) {
   OptionTable table;
   RefineOptions listed = options;
   listed.List(table);
@@ -214,7 +230,10 @@ Result<RunSummary> Write(const RefineRequest& request, const RefineOptions& opti
     if (Status status = writer->Write(reporter.Report(frame)); !status.ok()) return status;
   if (has_new_camera)
     if (Status status = WriteCameraFile(camera_file, {*known.camera}); !status.ok()) return status;
-  if (Status status = writer->Finish(run.summary->status, run.summary->note); !status.ok()) return status;
+  const Status finished =
+      was_stopped ? writer->Finish(RunStatus::kInterrupted, "the refinement was stopped; this is the best until then")
+                  : writer->Finish(run.summary->status, run.summary->note);
+  if (!finished.ok()) return finished;
   return writer->summary();
 }
 
@@ -275,8 +294,8 @@ Result<RefineSummary> RefineRun(const RefineRequest& request, const RefineOption
   }
   if (std::ranges::none_of(summary.submaps, &std::string::empty, &SubmapRefinement::failure)) return failed;
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  auto written =
-      Write(request, options, *run, *known, has_new_camera, Reporter(*run, *known, *submaps, refined), seconds);
+  auto written = Write(request, options, *run, *known, has_new_camera, summary.stopped,
+                       Reporter(*run, *known, *submaps, refined), seconds);
   if (!written.ok()) return written.status();
   summary.run = *std::move(written);
   return summary;

@@ -37,6 +37,11 @@ bool IsSamePlace(const std::filesystem::path& a, const std::filesystem::path& b)
          std::filesystem::absolute(a).lexically_normal() == std::filesystem::absolute(b).lexically_normal();
 }
 
+// Of what may be left out.
+bool IsSameGiven(const std::string& a, const std::filesystem::path& b) {
+  return a.empty() || b.empty() ? a.empty() && b.empty() : IsSamePlace(a, b);
+}
+
 // A line each, without those that never change a result.
 std::string ComparedOptions(TrackOptions options) {
   options.threads = 1;
@@ -75,6 +80,10 @@ Result<std::optional<RunSummary>> SummaryOfEnded(const RunRequest& request, cons
   if (!loaded.ok() || ComparedOptions(of_run) != ComparedOptions(options)) return other("options");
   if (!IsSamePlace(summary->description.input, request.input.image_path))
     return other("images, " + Quoted(summary->description.input));
+  if (!IsSameGiven(summary->description.camera, request.input.camera_path))
+    return other("calibration, " + Quoted(summary->description.camera));
+  if (!IsSameGiven(summary->description.mask, request.input.mask_path))
+    return other("masks, " + Quoted(summary->description.mask));
   if (summary->description.range != SelectionOf(request.input))
     return other("frames, " + TextOf(summary->description.range));
   return summary;

@@ -50,7 +50,8 @@ std::vector<std::size_t> ChooseNeighbors(std::span<const PosedFrame> frames, std
     for (auto k = static_cast<std::ptrdiff_t>(reference) + direction;
          k >= 0 && k < static_cast<std::ptrdiff_t>(frames.size()); k += direction) {
       const PosedFrame& other = frames[static_cast<std::size_t>(k)];
-      if (other.submap != frames[reference].submap) break;
+      if (other.submap != frames[reference].submap || static_cast<int>(usable.size()) == options.max_frames_apart)
+        break;
       const Overlap overlap = OverlapOf(frames[reference], other);
       if (overlap.common_share < options.min_common_points || overlap.parallax_deg > options.max_parallax_deg) break;
       usable.push_back(static_cast<std::size_t>(k));

@@ -88,13 +88,16 @@ int ComparedWindowPx(const TrackedImage& tracked, const DenseDepthOptions& optio
   return 2 * std::max(1, static_cast<int>(std::lround((side - 1) / 2))) + 1;
 }
 
-// A bound on the depths of the run: no surface that was tracked is farther.
+// A bound on the depths of the run: no surface that was tracked is farther, but for wild points, which would make the
+// steps of all depth images coarse.
 double LargestDepth(const std::vector<PosedFrame>& frames) {
-  double largest = 0.0;
+  std::vector<double> distances;
   for (const PosedFrame& frame : frames)
     for (const PointObservation& o : frame.observations)
-      largest = std::max(largest, (frame.cam_from_world * o.position).norm());
-  return 2.0 * largest;
+      distances.push_back((frame.cam_from_world * o.position).norm());
+  if (distances.empty()) return 0.0;
+  const double largest = *std::ranges::max_element(distances);
+  return std::min(2.0 * largest, 4.0 * Quantile(std::move(distances), 0.99));
 }
 
 class SurfaceMaker {
@@ -184,6 +187,8 @@ void SurfaceRunOptions::List(OptionTable& table) {
   table.Add("neighbors", &neighbors, "", "other images that a frame is compared with", 1, 100);
   table.Add("min_common_points", &min_common_points, "1", "of the frame's points, that a neighbor has too", 0.0, 1.0);
   table.Add("max_parallax_deg", &max_parallax_deg, "deg", "of these, in the median", 0.1, 90.0);
+  table.Add("max_frames_apart", &max_frames_apart, "frames",
+            "between a frame and a neighbor; the images of so many frames are in memory", 1, 1000000);
   table.Add("pairs", &pairs, "bool", "a frame that has a right image is compared with that alone");
   table.Add("mesh_columns", &mesh_columns, "", "vertices of the mesh across an image; 0: no mesh", 0, 4096);
   table.Add("gltf", &gltf, "bool", "surface.glb: the mesh, its texture, its motion and the camera's");
@@ -208,9 +213,7 @@ Result<SurfaceSummary> MakeSurface(const SurfaceRequest& request, const SurfaceR
                   "no frame of the run " + Quoted(request.run_path) + " was tracked; there is no surface to see");
   SequenceRequest source = SequenceOfRun(request.run_path, request.sequence_path, request.camera_path);
   if (!request.mask_path.empty()) source.mask_path = request.mask_path;
-  if (source.mask_path.empty() && run->summary && !run->summary->description.mask.empty())
-    return Status(ErrorCode::kNotFound, "the masks that the run was tracked with are not at " +
-                                            Quoted(run->summary->description.mask) + "; name them with --mask_path");
+  if (Status status = CheckMasksOfRun(source, *run); !status.ok()) return status;
   auto sequence = OpenImagesOfRun(request.run_path, source);
   if (!sequence.ok()) return sequence.status();
   const auto known = KnownMapOfRun(request.run_path, source, *run);

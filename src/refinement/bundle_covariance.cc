@@ -252,7 +252,7 @@ class Covariance {
       if (const auto found = point_of_.find(parameters[p]); found != point_of_.end()) {
         point = &point_normals_[static_cast<std::size_t>(found->second)];
         point_at = p;
-      } else if (parameters[p] == problem_.views().front()) {
+      } else if (parameters[p] == problem_.held_view()) {
         jacobians[p].leftCols(6).setZero();
       }
     }

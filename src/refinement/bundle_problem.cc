@@ -150,8 +150,10 @@ void BundleProblem::CopyToState() {
 }
 
 void BundleProblem::HoldFirstPose() {
-  double* const first = views_.front();
-  if (!problem_->HasParameterBlock(first)) return;
+  const auto found = std::ranges::find_if(views_, [&](double* view) { return problem_->HasParameterBlock(view); });
+  if (found == views_.end()) return;
+  double* const first = *found;
+  held_view_ = first;
   if (rank_ == 0) return problem_->SetParameterBlockConstant(first);
   problem_->SetManifold(first, new ceres::SubsetManifold(6 + rank_, {0, 1, 2, 3, 4, 5}));
 }

@@ -28,11 +28,13 @@ class BundleProblem {
   Result<BundleSummary> Solve(int max_iterations, const std::function<bool(double)>& callback);
 
   // The variables, whose values are the start's until Solve. Blocks of views are a pose increment and R temporal
-  // coefficients, of points a rest position and R basis shapes, of nodes R basis shapes. The pose of the first view is
-  // held.
+  // coefficients, of points a rest position and R basis shapes, of nodes R basis shapes. The pose of the first view
+  // that has terms is held.
   int rank() const { return rank_; }
   ceres::Problem& terms() const { return *problem_; }
   const std::vector<double*>& views() const { return views_; }
+  // Whose pose is held: the first one that has terms; null: none has.
+  const double* held_view() const { return held_view_; }
   const std::vector<double*>& points() const { return points_; }
   const std::vector<double*>& nodes() const { return nodes_; }
   const std::vector<PoseIncrement>& poses() const { return poses_; }  // of the views
@@ -58,6 +60,7 @@ class BundleProblem {
   std::vector<PoseIncrement> poses_;
   std::vector<double> parameters_;
   std::vector<double*> views_;
+  const double* held_view_ = nullptr;
   std::vector<double*> points_;
   std::vector<double*> nodes_;
   std::vector<bool> is_view_in_problem_;

@@ -8,16 +8,10 @@
 
 namespace pliant {
 
-namespace {
-
-constexpr std::size_t kMinPoints = 8;
-
-}  // namespace
-
 Status CheckRecording(const Recording& recording, const RefineOptions& options) {
   const std::size_t views = recording.times.size();
-  if (views < 2 || recording.rest_positions.size() < kMinPoints)
-    return {ErrorCode::kInsufficient, "a refinement needs 2 frames and " + std::to_string(kMinPoints) +
+  if (views < 2 || std::ssize(recording.rest_positions) < kMinRefinedPoints)
+    return {ErrorCode::kInsufficient, "a refinement needs 2 frames and " + std::to_string(kMinRefinedPoints) +
                                           " points, and there are " + std::to_string(views) + " and " +
                                           std::to_string(recording.rest_positions.size())};
   if (recording.cams_from_world.size() != views || options.rank < 1 || !(recording.log_depth_sigma > 0))

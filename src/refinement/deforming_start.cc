@@ -69,9 +69,11 @@ void Factorize(const std::vector<Motion>& motions, BundleState* state) {
 
 std::vector<int> ChooseNodes(const Recording& recording, int nodes_in_view) {
   const std::vector<int> views = CountViews(recording, std::vector<bool>(recording.observations.size(), true));
+  // Of a few frames: those that are seen most often.
+  const int most = views.empty() ? 0 : *std::ranges::max_element(views);
   std::vector<int> candidates;
   for (std::size_t i = 0; i < views.size(); ++i)
-    if (views[i] >= kMinViewsOfNode) candidates.push_back(static_cast<int>(i));
+    if (views[i] >= std::min(kMinViewsOfNode, most)) candidates.push_back(static_cast<int>(i));
   const double in_view =
       static_cast<double>(recording.observations.size()) / static_cast<double>(recording.times.size());
   const double wanted = nodes_in_view * static_cast<double>(candidates.size()) / std::max(1.0, in_view);

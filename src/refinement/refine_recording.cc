@@ -64,8 +64,8 @@ class Refinement {
   }
 
  private:
-  // With more and more shapes, until neighbors' residuals are not alike any more. One that was stopped leaves the one
-  // before.
+  // With more and more shapes, until neighbors' residuals are not alike any more. One that was stopped, or failed,
+  // leaves the one before.
   Status SolveDeforming(BundleState* state) {
     for (int rank = options_.rank;; rank += kRankStep) {
       const BundleState state_before = *state;
@@ -74,15 +74,17 @@ class Refinement {
       UseAll();
       *state = DeformingStart(start_, rank, options_.nodes_in_view);
       input_.graph = MakeGraph(*state, options_.neighbors);
-      if (Status status = Solve("deforming", state); !status.ok()) return status;
-      if (stopped_ && rank > options_.rank) {
+      const Status status = Solve("deforming", state);
+      const bool is_first = rank == options_.rank;
+      if (!status.ok() && is_first) return status;
+      if (!is_first && (stopped_ || !status.ok())) {
         *state = state_before;
         refined_ = refined_before;
         input_.used = input_before.used;
         input_.graph = input_before.graph;
         input_.sigmas = input_before.sigmas;
       }
-      if (stopped_ || rank + kRankStep > options_.max_rank) return Status::Ok();
+      if (stopped_ || !status.ok() || rank + kRankStep > options_.max_rank) return Status::Ok();
       const NeighborCorrelation left = CorrelationOf(*state, stride_);
       if (left.value <= kSignificant * left.standard_error) return Status::Ok();
       work_ += WorkOfAll(rank + kRankStep);
@@ -125,7 +127,18 @@ class Refinement {
     return FollowKeyViews(stride_, state);
   }
 
+  Status CheckUsed() const {
+    const std::vector<int> counts = CountViews(start_, input_.used);
+    const auto points = std::ranges::count_if(counts, [](int count) { return count > 0; });
+    if (points >= kMinRefinedPoints) return Status::Ok();
+    return {ErrorCode::kInsufficient, std::to_string(points) +
+                                          " points are seen in three frames or more and agree with the others; a "
+                                          "refinement needs " +
+                                          std::to_string(kMinRefinedPoints)};
+  }
+
   Status SolveKeyViews(std::string_view stage, int stride, BundleState* state) {
+    if (Status status = CheckUsed(); !status.ok()) return status;
     int iterations = 0;
     const auto on_iteration = [&](double cost) {
       const double of_solution = iterations / (iterations + kUsualIterations);

@@ -89,9 +89,9 @@ std::string CleanedSummary(const std::string& text, const std::vector<fs::path>&
   return cleaned.dump(2) + "\n";
 }
 
-// Of config.yaml: `name_path: value  # why`.
+// Of config.yaml: `name: value  # [unit] why`; units of files and folders are FILE, DIR, file and path.
 std::string CleanedOptions(const std::string& yaml) {
-  static const std::regex path_option(R"re((\n\s+\w*path: )([^"\s#][^\s#]*|"[^"\n]+"))re");
+  static const std::regex path_option(R"re((\n\s+\w+: )([^"\s#][^\s#]*|"[^"\n]+")(?=\s+# \[(FILE|DIR|file|path)\]))re");
   return WithoutPaths(std::regex_replace(yaml, path_option, "$1<path>"));
 }
 

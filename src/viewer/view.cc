@@ -149,11 +149,12 @@ void ViewOptions::List(OptionTable& table) {
 }
 
 void Move(const Sim3& world_from_run, int submap, ViewedRun* run) {
-  std::set<PointId> moved;
+  std::map<PointId, int> submap_of;  // the one in whose world a point's undeformed position is
   const auto transform = [&](Eigen::Vector3f* position) {
     *position = (world_from_run * position->cast<double>()).cast<float>();
   };
   for (ViewedFrame& frame : run->frames) {
+    for (const ViewedObservation& o : frame.observations) submap_of.emplace(o.id, frame.row.submap);
     if (frame.row.submap != submap) continue;
     if (frame.world_from_cam)
       frame.world_from_cam = PoseInWorld(world_from_run, frame.world_from_cam->Inverse()).Inverse();
@@ -161,12 +162,13 @@ void Move(const Sim3& world_from_run, int submap, ViewedRun* run) {
       transform(&o.position);
       transform(&o.truth);
       o.depth *= static_cast<float>(world_from_run.scale);
-      moved.insert(o.id);
+      o.sigma *= static_cast<float>(world_from_run.scale);
     }
   }
   for (ViewedMesh& mesh : run->meshes)
     if (mesh.surface.submap == submap) Move(world_from_run, &mesh.surface);
-  for (const PointId id : moved) {
+  for (const auto& [id, of] : submap_of) {
+    if (of != submap) continue;
     Eigen::Vector3d& position = run->points.at(id).position;
     position = world_from_run * position;
   }

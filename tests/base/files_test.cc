@@ -125,5 +125,14 @@ TEST(Files, OfAStagedFolderAppearTogetherOrNotAtAll) {
   EXPECT_EQ(Read(folder.Path("0/a")), "after");
 }
 
+TEST(FileGroup, WritesWhereALinkLeads) {
+  const TemporaryFolder folder("file_group_link");
+  ASSERT_TRUE(WriteFileAtomically(folder.Path("target.txt"), "before").ok());
+  std::filesystem::create_symlink("target.txt", folder.Path("link.txt"));
+  ASSERT_TRUE(WriteFileAtomically(folder.Path("link.txt"), "after").ok());
+  EXPECT_TRUE(std::filesystem::is_symlink(folder.Path("link.txt")));
+  EXPECT_EQ(*ReadFile(folder.Path("target.txt")), "after");
+}
+
 }  // namespace
 }  // namespace pliant

@@ -36,6 +36,44 @@ TEST_F(OpenSequenceTest, ReadsANativeSequence) {
   EXPECT_FALSE(sequence->Depth(0)->has_value());
 }
 
+// How images are stored is the sequence's own, whatever the lens.
+TEST_F(OpenSequenceTest, TakesFromItsOwnCalibrationWhatAnotherDoesNotSay) {
+  WriteNative(3);
+  for (int idx = 0; idx < 3; ++idx) Write("depth/" + Name(idx), cv::Mat(kHeight, kWidth, CV_16UC1, cv::Scalar(100)));
+  Text("other.yaml", "model: PINHOLE\nwidth: 64\nheight: 48\nparams: [70, 70, 31.5, 23.5]\n");
+  SequenceRequest request = Request();
+  request.camera_path = Path("other.yaml");
+  const auto sequence = Open(request);
+  ASSERT_NE(sequence, nullptr);
+  EXPECT_EQ(sequence->camera().params()[0], 70);
+  ASSERT_TRUE(sequence->Next().ok());
+  EXPECT_DOUBLE_EQ((*sequence->Next())->timestamp_s, 1 / 20.0);
+  EXPECT_FLOAT_EQ((**sequence->Depth(0)).at<float>(0, 0), 50);
+}
+
+TEST_F(OpenSequenceTest, AVideosNameMayHaveAColon) {
+  WriteCamera();
+  WriteVideo("clip:1.avi", 2);
+  const auto before = std::filesystem::current_path();
+  std::filesystem::current_path(root_);
+  const auto sequence = Open({.image_path = "clip:1.avi"});
+  std::filesystem::current_path(before);
+  ASSERT_NE(sequence, nullptr);
+  EXPECT_THAT(Indices(*sequence), ElementsAre(0, 1));
+}
+
+TEST_F(OpenSequenceTest, TellsWhenAVideoEndsBeforeTheStart) {
+  WriteCamera();
+  WriteVideo("clip.avi", 4);
+  SequenceRequest request = Request("clip.avi");
+  request.start = 9;
+  const auto sequence = Open(request);
+  ASSERT_NE(sequence, nullptr);
+  const Status status = sequence->Next().status();
+  EXPECT_EQ(status.code(), ErrorCode::kInvalidArgument);
+  EXPECT_THAT(status.message(), HasSubstr("start is 9"));
+}
+
 TEST_F(OpenSequenceTest, AppliesStartEndAndStrideToSourceNumbers) {
   WriteNative(10);
   SequenceRequest request = Request();

@@ -82,7 +82,7 @@ TEST_F(VideoIndexTest, IsNotBelievedWhereTheVideoGivesAnotherFrame) {
   EXPECT_TRUE(AreEqual(Read(wrong, kFar), Read(nullptr, kFar)));
 }
 
-TEST_F(VideoIndexTest, IsOfNoUseWhereTimesDoNotGrow) {
+TEST_F(VideoIndexTest, KnowsNoTimeThatIsNotLater) {
   VideoIndex index;
   index.Add(0, 0.0);
   index.Add(1, 40.0);
@@ -90,7 +90,10 @@ TEST_F(VideoIndexTest, IsOfNoUseWhereTimesDoNotGrow) {
   index.Add(3, 120.0);
   EXPECT_FALSE(index.TimeMs(3)) << "frame 2 is not known";
   index.Add(2, 40.0);
-  EXPECT_FALSE(index.TimeMs(1));
+  EXPECT_FALSE(index.TimeMs(2));
+  EXPECT_EQ(index.TimeMs(1), 40.0);
+  index.Add(3, 120.0);
+  EXPECT_EQ(index.TimeMs(3), 120.0);
 }
 
 }  // namespace

@@ -181,6 +181,10 @@ TEST_F(ResumedRun, OfARunThatHasEndedHasNothingToDo) {
   shorter.input.end = kResumedFrames - 1;
   EXPECT_THAT(RunTrack(shorter, options_, {}).status().message(),
               HasSubstr("has come to its end with other frames, --start 0 --end 40 --stride 1"));
+  RunRequest masked = Request("parts");
+  masked.resume = true;
+  masked.input.mask_path = folder_.Path("masks");
+  EXPECT_THAT(RunTrack(masked, options_, {}).status().message(), HasSubstr("has come to its end with other masks"));
   const SequenceCopy copy(folder_, kResumedFrames);
   sequence_ = copy.path();
   EXPECT_THAT(Track("parts", true, 0).status().message(),

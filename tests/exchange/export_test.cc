@@ -257,6 +257,33 @@ TEST(Export, RefusesAFolderWithAModelInAnotherFormat) {
   EXPECT_EQ(Export(folder, "spacetime", options).status().code(), ErrorCode::kInvalidArgument);
 }
 
+TEST(Export, RefusesAFolderWhoseRigsWouldStay) {
+  const TestFolder folder;
+  WriteRun(folder);
+  std::filesystem::create_directories(folder.Path("out"));
+  folder.Write("out/frames.bin", "of another model");
+  const Status status = Export(folder, "canonical").status();
+  EXPECT_EQ(status.code(), ErrorCode::kInvalidArgument);
+  EXPECT_THAT(status.message(), testing::HasSubstr("frames.bin"));
+}
+
+TEST(Export, RefusesIdsThatWouldBeThoseOfTheNextFrame) {
+  const TestFolder folder;
+  auto writer = RunWriter::Create(folder.Path("run"), TestCamera(), {"0.1.0", {"pliant"}, 7, "nowhere", {}}, "", {});
+  ASSERT_TRUE(writer.ok());
+  for (int frame = 0; frame < kRunFrames; ++frame) {
+    FrameReport report = Report(frame);
+    for (NewPoint& point : report.new_points) point.id.value += 1'000'000;
+    for (PointObservation& seen : report.observations) seen.id.value += 1'000'000;
+    ASSERT_TRUE(writer->Write(report).ok());
+  }
+  ASSERT_TRUE(writer->Finish(RunStatus::kCompleted, "").ok());
+  const Status status = Export(folder, "spacetime").status();
+  EXPECT_EQ(status.code(), ErrorCode::kInvalidArgument);
+  EXPECT_THAT(status.message(), testing::HasSubstr("use the format canonical"));
+  EXPECT_TRUE(Export(folder, "canonical").ok());
+}
+
 TEST(Export, AnUnknownFormatIsRefusedWithTheKnownOnes) {
   const TestFolder folder;
   WriteRun(folder);

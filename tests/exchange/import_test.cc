@@ -240,6 +240,25 @@ TEST_F(ImportTest, AModelOfEveryImageIsTheSequencesTruth) {
   EXPECT_THAT(again.message(), HasSubstr("already"));
 }
 
+TEST_F(ImportTest, ATruthHasTheUnitOfTheCalibrationBesideIt) {
+  WriteRun(folder_);
+  std::filesystem::remove_all(folder_.Path("images"));
+  std::filesystem::create_directories(folder_.Path("images"));
+  for (int frame = 0; frame < kRunFrames; ++frame) {
+    const cv::Mat image(TestCamera().height(), TestCamera().width(), CV_8UC1, cv::Scalar(90));
+    ASSERT_TRUE(cv::imwrite(folder_.Path("images/" + Report(frame).name), image));
+  }
+  ASSERT_TRUE(ExportRun({folder_.Path("run"), "", "canonical", folder_.Path("model")}, {}).ok());
+  std::filesystem::create_directories(folder_.Path("out"));
+  folder_.Write("out/camera.yaml",
+                "model: PINHOLE\nwidth: 640\nheight: 480\nparams: [500, 500, 319.5, 239.5]\nunit: m\n");
+  ASSERT_TRUE(ImportModel({}, ImportAs::kTruth).ok());
+  const auto poses = ReadTumTrajectory(folder_.Path("out/groundtruth.txt"));
+  ASSERT_TRUE(poses.ok());
+  EXPECT_LT((1000 * (*poses)[4].world_from_cam.translation - PoseAt(4).Inverse().translation).norm(),
+            1000 * kFileLength_mm);
+}
+
 TEST_F(ImportTest, ATruthNeedsAPoseForEveryImage) {
   WriteModel();
   const Status status = ImportModel({}, ImportAs::kTruth).status();
@@ -346,6 +365,24 @@ TEST_F(ImportTest, AnotherSystemsResultBecomesARunThatIsExported) {
   const auto exported = ExportRun(request, {});
   ASSERT_TRUE(exported.ok()) << exported.status().message();
   EXPECT_EQ(exported->points, 2);
+}
+
+TEST_F(ImportTest, TheUnitIsThatOfStandardDeviationsToo) {
+  std::filesystem::create_directories(folder_.Path("result"));
+  folder_.Write("result/trajectory.txt", "0.04 0 0 0 0 0 0 1\n0.08 1 0 0 0 0 0 1\n");
+  folder_.Write("result/observations.csv",
+                "frame,point_id,u_px,v_px,x,y,z,ssim,sigma_mm\n1,5,319.5,239.5,0,0,5,0.9,0.2\n"
+                "2,5,309.5,239.5,0,0,5,0.9,0.2\n");
+  ImportOptions options;
+  options.unit_mm = 10;
+  ASSERT_TRUE(ImportFrom("result", ImportFormat::kResult, options).ok());
+  auto reader = ObservationReader::Open(folder_.Path("out"));
+  ASSERT_TRUE(reader.ok());
+  const auto seen = reader->Of(1);
+  ASSERT_TRUE(seen.ok());
+  ASSERT_EQ(seen->size(), 1U);
+  EXPECT_NEAR(seen->front().position.z(), 50, kFileLength_mm);
+  EXPECT_NEAR(seen->front().sigma, 2, kFileLength_mm);
 }
 
 }  // namespace

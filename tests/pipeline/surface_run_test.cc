@@ -113,6 +113,12 @@ TEST(SurfaceNeighbors, AreAllOnOneSideAtTheEnds) {
   EXPECT_TRUE(ChooseNeighbors(Frames(1, 2), 0, {}).empty());
 }
 
+TEST(SurfaceNeighbors, AreNotFartherThanAsManyFrames) {
+  SurfaceRunOptions options;
+  options.max_frames_apart = 4;
+  EXPECT_THAT(ChooseNeighbors(Frames(41, 2), 20, options), ElementsAre(18, 16, 24, 22));
+}
+
 TEST(SurfaceNeighbors, EndAtTheLargestParallaxAndAtTheSubmap) {
   SurfaceRunOptions options;
   options.max_parallax_deg = 2.5;  // between 2 and 3 mm from some 53 mm

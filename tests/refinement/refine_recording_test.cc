@@ -117,6 +117,36 @@ TEST(RefineRecording, SolvesForFewerViewsAtOnceWhereTracksAreLong) {
   }
 }
 
+TEST(RefineRecording, OfThreeOrFourViewsHasNodesToo) {
+  for (const int views : {3, 4}) {
+    RecordedScene scene;
+    scene.views = views;
+    const Recording start = scene.Start();
+    const auto refined = Refine(start, {.model = RefinementModel::kDeforming});
+    ASSERT_TRUE(refined.ok()) << refined.status().message();
+    EXPECT_GT(std::ranges::count(refined->is_inlier, true), std::ssize(start.observations) / 2);
+  }
+}
+
+TEST(RefineRecording, NeedsPointsThatAreSeenOften) {
+  RecordedScene scene;
+  scene.views = 2;
+  const auto refined = Refine(scene.Start());
+  EXPECT_EQ(refined.status().code(), ErrorCode::kInsufficient);
+}
+
+TEST(RefineRecording, KnowsCertaintiesWhereTheFirstViewSeesNothing) {
+  for (const double amplitude_mm : {0.0, 4.0}) {
+    const RecordedScene scene(amplitude_mm);
+    Recording start = scene.Start();
+    std::erase_if(start.observations, [](const RecordedObservation& o) { return o.view_idx == 0; });
+    const auto refined = Refine(start);
+    ASSERT_TRUE(refined.ok()) << refined.status().message();
+    EXPECT_EQ(refined->pose_covariances.size(), start.times.size());
+    EXPECT_GT(std::ranges::max(refined->sigmas), 0.0);
+  }
+}
+
 TEST(RefineRecording, LeavesWrongTracksOut) {
   const RecordedScene scene;
   Recording start = scene.Start();

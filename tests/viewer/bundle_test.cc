@@ -47,7 +47,9 @@ class BundleTest : public testing::Test {
         "--config", "smith.yaml"};
     summary.note = "image " + sequence_ + "/images/5.png cannot be read";
     ASSERT_TRUE(WriteRunSummary(run_ + "/run.json", summary).ok());
-    std::ofstream(run_ + "/config.yaml") << "TrackFile:\n  path: /data/smith/tracks.npz  # [path] tracks\n  other: 5\n";
+    std::ofstream(run_ + "/config.yaml")
+        << "TrackFile:\n  path: /data/smith/tracks.npz  # [path] tracks\n  other: 5  # [-] -\n"
+           "Init:\n  depth_cloud: smith.ply  # [FILE] cloud\n";
     std::ofstream(run_ + "/frames.csv") << "frame,state\n0,tracking\n";
   }
 

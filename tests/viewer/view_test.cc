@@ -29,6 +29,7 @@ constexpr double kDepthOfPlane = 0.05;     // relative; the camera turns and mov
 constexpr double kFloatPixel_px = 1e-2;    // positions are floats in a world that is 500 px for one unit of depth
 constexpr double kFloatError_mm = 1e-4;    // the same sum from floats
 constexpr double kVertexError_mm = 1e-2;   // depth images have steps, and meshes in files floats
+constexpr double kSigma_mm = 0.5;          // of every point of a run in another world
 constexpr double kAligned_mm = 1e-3;       // two paths from files, aligned with each other
 constexpr double kAlignedPoint_mm = 1e-2;  // the same at the arm of the points
 
@@ -112,7 +113,10 @@ void WriteRunInWorld(const Sim3& world, const std::string& path, const RunDescri
   for (int i = 0; i < kRunFrames; ++i) {
     FrameReport report = Report(i);
     report.cam_from_world = PoseInWorld(world, *report.cam_from_world);
-    for (PointObservation& o : report.observations) o.position = world * o.position;
+    for (PointObservation& o : report.observations) {
+      o.position = world * o.position;
+      o.sigma = world.scale * kSigma_mm;
+    }
     for (NewPoint& point : report.new_points) point.position = world * point.position;
     ASSERT_TRUE(writer->Write(report).ok());
   }
@@ -120,7 +124,7 @@ void WriteRunInWorld(const Sim3& world, const std::string& path, const RunDescri
 }
 
 TEST_F(ViewTest, ShowsRunsOfOneSceneInOneWorld) {
-  WriteRun(folder_);
+  WriteRunInWorld({}, folder_.Path("run"));
   WriteRunInWorld({0.3, kTruthFromRun.rotation, {1, 1, 1}}, folder_.Path("b/run"));
   const auto view =
       OpenView({.run_paths = {folder_.Path("run"), folder_.Path("b/run")}, .sequence_path = "", .camera_path = ""}, {});
@@ -136,6 +140,8 @@ TEST_F(ViewTest, ShowsRunsOfOneSceneInOneWorld) {
     for (std::size_t k = 0; k < a.observations.size(); ++k) {
       EXPECT_LT((a.observations[k].position - b.observations[k].position).norm(), kAlignedPoint_mm);
       EXPECT_NEAR(a.observations[k].depth, b.observations[k].depth, kAlignedPoint_mm);
+      EXPECT_NEAR(a.observations[k].sigma, b.observations[k].sigma, kAlignedPoint_mm);
+      EXPECT_NEAR(a.observations[k].sigma, kSigma_mm, kAlignedPoint_mm);
     }
   }
 }

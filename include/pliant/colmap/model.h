@@ -156,8 +156,8 @@ Result<Model> ReadModel(const std::string& folder, Format format, Observations o
 Result<std::vector<Camera>> ReadCameras(const std::string& path);
 
 // Fails with kInvalidArgument if the folder has a model in another format than the one to be written, which COLMAP
-// could read instead of it.
-Status CheckFolder(const std::string& folder, Format format);
+// could read instead of it, or rigs and frames that would stay.
+Status CheckFolder(const std::string& folder, Format format, Rigs rigs = Rigs::kLeftOut);
 
 // Writes a model as COLMAP does, into a folder that is made if need be. All of its files appear at the end, or none.
 // Fails as CheckFolder does, with kInvalidArgument for a name that the format cannot hold, with kUnwritable, and with

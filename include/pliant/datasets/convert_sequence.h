@@ -25,9 +25,10 @@ struct ConvertSummary {
 // Called after each frame is on disk; false asks to stop.
 using ConvertProgress = std::function<bool(int frames_done)>;
 
-// Reads `sequence` to its end. The folder must be new or empty (kInvalidArgument). Fails as Sequence::Next and
-// NativeWriter, and with kInterrupted; what was written until then is readable.
+// Reads `sequence`, of which every `stride`-th frame was asked for, to its end. The folder must be new or empty
+// (kInvalidArgument). Fails as Sequence::Next and NativeWriter, and with kInterrupted; what was written until then is
+// readable.
 Result<ConvertSummary> ConvertSequence(Sequence& sequence, const std::filesystem::path& folder,
-                                       const ConvertProgress& progress = {});
+                                       const ConvertProgress& progress = {}, int stride = 1);
 
 }  // namespace pliant

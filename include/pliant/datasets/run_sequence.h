@@ -28,6 +28,10 @@ SequenceRequest SequenceOfRun(const std::string& run_path, const std::filesystem
 // with kNotFound where neither is there.
 Result<RunMap> KnownMapOfRun(const std::string& run_path, const SequenceRequest& sequence, const Run& run);
 
+// Fails with kNotFound where the run was tracked with masks and `request` names none: without them instruments would be
+// taken for the scene.
+Status CheckMasksOfRun(const SequenceRequest& request, const Run& run);
+
 // The images of the run at `run_path`: what SequenceOfRun says. Fails with kNotFound where that names none, or they are
 // not there, and as OpenSequence does.
 Result<std::unique_ptr<Sequence>> OpenImagesOfRun(const std::string& run_path, const SequenceRequest& request);

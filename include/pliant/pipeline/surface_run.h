@@ -24,6 +24,7 @@ struct SurfaceRunOptions {
   int neighbors = 6;               // other images that a frame is compared with
   double min_common_points = 0.5;  // of the frame's points, that a neighbor has too
   double max_parallax_deg = 15;    // in the median of these
+  int max_frames_apart = 100;      // tracked frames from a frame to its neighbor
   bool pairs = true;               // a frame that has a right image is compared with that alone
   int mesh_columns = 96;           // vertices of the mesh across an image; 0: no mesh
   bool gltf = true;                // which files of it, beside a PLY file a frame
