@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -112,7 +113,7 @@ DepthFigures FiguresOf(const std::vector<double>& truth, const Depth& at, const 
   return sum;
 }
 
-void Add(const DepthFigures& figures, double weight, DepthFigures* sum) {
+void AddWeighted(const DepthFigures& figures, double weight, DepthFigures* sum) {
   sum->abs_rel += weight * figures.abs_rel;
   sum->sq_rel_mm += weight * figures.sq_rel_mm;
   sum->rmse_mm += weight * figures.rmse_mm;
@@ -123,52 +124,105 @@ void Add(const DepthFigures& figures, double weight, DepthFigures* sum) {
   }
 }
 
-void AddMesh(const std::vector<Pixels>& frames, const std::vector<double>& scales, DenseError* error) {
-  const auto add = [&](bool with_depth, DepthFigures* figures) {
-    double count = 0.0;
-    for (const Pixels& pixels : frames) count += pixels.Vertices(with_depth) > 0 ? 1.0 : 0.0;
-    for (std::size_t k = 0; k < frames.size(); ++k) {
-      const Pixels& pixels = frames[k];
-      if (pixels.Vertices(with_depth) == 0) continue;
-      std::vector<bool> counts(pixels.vertex_truth_mm.size());
-      for (std::size_t i = 0; i < counts.size(); ++i) counts[i] = (i < pixels.vertices_with_depth) == with_depth;
-      const auto estimate = [&](std::size_t i) { return scales[k] * pixels.vertex_estimate[i]; };
-      Add(FiguresOf(pixels.vertex_truth_mm, estimate, counts), 1.0 / count, figures);
-    }
-  };
-  add(true, &error->mesh);
-  add(false, &error->mesh_alone);
-  double all = 0.0;
-  double alone = 0.0;
-  for (const Pixels& pixels : frames) {
-    all += static_cast<double>(pixels.vertex_truth_mm.size());
-    alone += static_cast<double>(pixels.Vertices(false));
+// Of a frame, before its pixels are read again: all frames' pixels at once would be gigabytes.
+struct FrameScale {
+  int submap = 0;
+  double scale = 1;          // of the surface's depths
+  double interpolation = 1;  // of those that are interpolated between the points; 0: there are none
+  bool has_filled = false;
+  bool has_vertices = false;
+  bool has_vertices_alone = false;
+};
+
+FrameScale ScaleOfFrame(const Pixels& pixels, int submap) {
+  return {.submap = submap,
+          .scale = ScaleOf(pixels.estimate, pixels.truth_mm),
+          .interpolation = pixels.interpolation.empty() ? 0.0 : ScaleOf(pixels.interpolation, pixels.truth_mm),
+          .has_filled = !pixels.filled_truth_mm.empty(),
+          .has_vertices = pixels.Vertices(true) > 0,
+          .has_vertices_alone = pixels.Vertices(false) > 0};
+}
+
+// One scale a submap, the median of its frames', for the depths that `of` gives.
+void ShareScale(double FrameScale::*of, std::vector<FrameScale>* frames) {
+  std::map<int, std::vector<double>> scales;
+  for (const FrameScale& frame : *frames)
+    if (frame.*of > 0) scales[frame.submap].push_back(frame.*of);
+  for (FrameScale& frame : *frames)
+    if (frame.*of > 0) frame.*of = Median(scales.at(frame.submap));
+}
+
+void SetScales(ErrorScale scale, std::vector<FrameScale>* frames) {
+  if (scale == ErrorScale::kPerFrame) return;
+  for (double FrameScale::*of : {&FrameScale::scale, &FrameScale::interpolation})
+    if (scale == ErrorScale::kGlobal)
+      ShareScale(of, frames);
+    else
+      for (FrameScale& frame : *frames) frame.*of = frame.*of > 0 ? 1.0 : 0.0;
+}
+
+double CountOf(const std::vector<FrameScale>& frames, bool FrameScale::*what) {
+  return static_cast<double>(std::ranges::count(frames, true, what));
+}
+
+// The figures of one frame after the other.
+class DenseErrorSum {
+ public:
+  explicit DenseErrorSum(const std::vector<FrameScale>& frames) : frames_(frames) {
+    error_.frames = static_cast<int>(frames.size());
   }
-  error->mesh_vertices = all / static_cast<double>(frames.size());
-  error->mesh_alone_share = all > 0.0 ? alone / all : 0.0;
+
+  void Add(const Pixels& pixels, const FrameScale& scale) {
+    AddDepths(pixels, scale);
+    AddFilled(pixels, scale.scale);
+    AddMesh(pixels, scale.scale, /*with_depth=*/true, CountOf(frames_, &FrameScale::has_vertices), &error_.mesh);
+    AddMesh(pixels, scale.scale, /*with_depth=*/false, CountOf(frames_, &FrameScale::has_vertices_alone),
+            &error_.mesh_alone);
+    vertices_ += static_cast<double>(pixels.vertex_truth_mm.size());
+    vertices_alone_ += static_cast<double>(pixels.Vertices(false));
+  }
+
+  DenseError Take() {
+    error_.mesh_vertices = vertices_ / static_cast<double>(frames_.size());
+    error_.mesh_alone_share = vertices_ > 0.0 ? vertices_alone_ / vertices_ : 0.0;
+    return error_;
+  }
+
+ private:
+  void AddDepths(const Pixels& pixels, const FrameScale& scale);
+  void AddFilled(const Pixels& pixels, double scale);
+  static void AddMesh(const Pixels& pixels, double scale, bool with_depth, double frames, DepthFigures* figures);
+
+  const std::vector<FrameScale>& frames_;
+  DenseError error_;
+  double vertices_ = 0.0;
+  double vertices_alone_ = 0.0;
+};
+
+void DenseErrorSum::AddMesh(const Pixels& pixels, double scale, bool with_depth, double frames, DepthFigures* figures) {
+  if (pixels.Vertices(with_depth) == 0) return;
+  std::vector<bool> counts(pixels.vertex_truth_mm.size());
+  for (std::size_t i = 0; i < counts.size(); ++i) counts[i] = (i < pixels.vertices_with_depth) == with_depth;
+  const auto estimate = [&](std::size_t i) { return scale * pixels.vertex_estimate[i]; };
+  AddWeighted(FiguresOf(pixels.vertex_truth_mm, estimate, counts), 1.0 / frames, figures);
 }
 
 // The pixels that were filled.
-void AddFilled(const std::vector<Pixels>& frames, const std::vector<double>& scales, DenseError* error) {
-  const auto count = static_cast<double>(
-      std::ranges::count_if(frames, [](const Pixels& pixels) { return !pixels.filled_truth_mm.empty(); }));
-  for (std::size_t k = 0; k < frames.size(); ++k) {
-    const Pixels& pixels = frames[k];
-    if (pixels.filled_truth_mm.empty()) continue;
-    const auto estimate = [&](std::size_t i) { return scales[k] * pixels.filled_estimate[i]; };
-    Add(FiguresOf(pixels.filled_truth_mm, estimate, {}), 1.0 / count, &error->filled);
-    error->filled_share +=
-        static_cast<double>(pixels.filled_truth_mm.size()) / (pixels.with_truth * static_cast<double>(frames.size()));
-  }
+void DenseErrorSum::AddFilled(const Pixels& pixels, double scale) {
+  if (pixels.filled_truth_mm.empty()) return;
+  const auto estimate = [&](std::size_t i) { return scale * pixels.filled_estimate[i]; };
+  AddWeighted(FiguresOf(pixels.filled_truth_mm, estimate, {}), 1.0 / CountOf(frames_, &FrameScale::has_filled),
+              &error_.filled);
+  error_.filled_share +=
+      static_cast<double>(pixels.filled_truth_mm.size()) / (pixels.with_truth * static_cast<double>(frames_.size()));
 }
 
-// Adds a frame, as one of `frames`.
-void AddFrame(const Pixels& pixels, double scale, double frames, DenseError* error) {
-  const double weight = 1.0 / frames;
+void DenseErrorSum::AddDepths(const Pixels& pixels, const FrameScale& scale) {
+  const double weight = 1.0 / static_cast<double>(frames_.size());
   const auto& truth = pixels.truth_mm;
-  const auto estimate = [&](std::size_t i) { return scale * pixels.estimate[i]; };
+  const auto estimate = [&](std::size_t i) { return scale.scale * pixels.estimate[i]; };
   const DepthFigures of_estimate = FiguresOf(truth, estimate, {});
-  Add(of_estimate, weight, &error->estimate);
+  AddWeighted(of_estimate, weight, &error_.estimate);
   const double middle = Median(pixels.sigma);
   std::vector<bool> certain;
   double inside[2] = {0.0, 0.0};
@@ -177,61 +231,74 @@ void AddFrame(const Pixels& pixels, double scale, double frames, DenseError* err
     const double ratio = std::abs(estimate(i) - truth[i]) / (pixels.sigma[i] * estimate(i));
     for (int k = 0; k < 2; ++k) inside[k] += ratio < k + 1 ? 1.0 : 0.0;
   }
-  Add(FiguresOf(truth, estimate, certain), weight, &error->certain_half);
+  AddWeighted(FiguresOf(truth, estimate, certain), weight, &error_.certain_half);
   const auto known = static_cast<double>(truth.size());
-  error->within_1_sigma += weight * inside[0] / known;
-  error->within_2_sigma += weight * inside[1] / known;
+  error_.within_1_sigma += weight * inside[0] / known;
+  error_.within_2_sigma += weight * inside[1] / known;
   const double share = known / pixels.with_truth;
-  error->known_share += weight * share;
-  for (std::size_t k = 0; k < 3; ++k) error->complete_mm[k] += weight * share * of_estimate.within_mm[k];
+  error_.known_share += weight * share;
+  for (std::size_t k = 0; k < 3; ++k) error_.complete_mm[k] += weight * share * of_estimate.within_mm[k];
   const double constant = Median(truth);
-  Add(FiguresOf(truth, [&](std::size_t) { return constant; }, {}), weight, &error->null);
+  AddWeighted(FiguresOf(truth, [&](std::size_t) { return constant; }, {}), weight, &error_.null);
   if (pixels.interpolation.empty()) return;
-  const double own_scale = ScaleOf(pixels.interpolation, truth);
-  Add(FiguresOf(truth, [&](std::size_t i) { return own_scale * pixels.interpolation[i]; }, {}), weight,
-      &error->interpolation);
+  const auto interpolated = [&](std::size_t i) { return scale.interpolation * pixels.interpolation[i]; };
+  AddWeighted(FiguresOf(truth, interpolated, {}), weight, &error_.interpolation);
+}
+
+// Nothing: no pixel of the frame has both depths.
+Result<std::optional<Pixels>> ReadPixels(const SurfaceFolder& surface, const SurfaceFolder::Frame& frame,
+                                         const EvaluationFrame* of_run, const Sequence& sequence) {
+  const auto truth_mm = sequence.Depth(frame.frame_idx);
+  if (!truth_mm.ok()) return truth_mm.status();
+  if (!truth_mm->has_value()) return std::optional<Pixels>();
+  auto dense = ReadSurfaceDepth(surface, frame);
+  if (!dense.ok()) return dense.status();
+  if ((*truth_mm)->size() != dense->depth.size())
+    return Status(ErrorCode::kMismatch, "the true depth of frame " + std::to_string(frame.frame_idx) +
+                                            " has another size than the surface " + Quoted(surface.path.string()));
+  std::optional<cv::Mat> interpolated;
+  if (of_run != nullptr && of_run->cam_from_world)
+    interpolated = InterpolatedDepth(surface.camera, *of_run->cam_from_world, of_run->observations);
+  Pixels pixels = PixelsOf(*dense, **truth_mm, interpolated);
+  dense->KeepMeasured();
+  if (pixels.truth_mm.empty()) return std::optional<Pixels>();
+  const auto vertices = ReadSurfaceVertices(surface, frame);
+  if (!vertices.ok()) return vertices.status();
+  AddVertices(surface.camera, *vertices, *dense, **truth_mm, &pixels);
+  return std::optional(std::move(pixels));
+}
+
+// Calls `function(pixels, submap)` for every frame that has some.
+template <class Function>
+Status ForEachFrame(const SurfaceFolder& surface, const EvaluationInput& run, const Sequence& sequence,
+                    const Function& function) {
+  for (const SurfaceFolder::Frame& frame : surface.frames) {
+    const auto found = std::ranges::find(run.frames, frame.frame_idx, &EvaluationFrame::frame_idx);
+    const EvaluationFrame* of_run = found == run.frames.end() ? nullptr : &*found;
+    const auto pixels = ReadPixels(surface, frame, of_run, sequence);
+    if (!pixels.ok()) return pixels.status();
+    if (pixels->has_value()) function(**pixels, of_run == nullptr ? 0 : of_run->submap);
+  }
+  return Status::Ok();
 }
 
 }  // namespace
 
+// Twice over all frames: first for their scales.
 Result<DenseError> ComputeDenseError(const SurfaceFolder& surface, const EvaluationInput& run, const Sequence& sequence,
                                      ErrorScale scale) {
-  std::vector<Pixels> frames;
-  std::vector<double> scales;
-  for (const SurfaceFolder::Frame& frame : surface.frames) {
-    const auto truth_mm = sequence.Depth(frame.frame_idx);
-    if (!truth_mm.ok()) return truth_mm.status();
-    if (!truth_mm->has_value()) continue;
-    auto dense = ReadSurfaceDepth(surface, frame);
-    if (!dense.ok()) return dense.status();
-    if ((*truth_mm)->size() != dense->depth.size())
-      return Status(ErrorCode::kMismatch, "the true depth of frame " + std::to_string(frame.frame_idx) +
-                                              " has another size than the surface " + Quoted(surface.path.string()));
-    std::optional<cv::Mat> interpolated;
-    const auto of_run = std::ranges::find(run.frames, frame.frame_idx, &EvaluationFrame::frame_idx);
-    if (of_run != run.frames.end() && of_run->cam_from_world)
-      interpolated = InterpolatedDepth(surface.camera, *of_run->cam_from_world, of_run->observations);
-    Pixels pixels = PixelsOf(*dense, **truth_mm, interpolated);
-    dense->KeepMeasured();
-    if (pixels.truth_mm.empty()) continue;
-    const auto vertices = ReadSurfaceVertices(surface, frame);
-    if (!vertices.ok()) return vertices.status();
-    AddVertices(surface.camera, *vertices, *dense, **truth_mm, &pixels);
-    scales.push_back(ScaleOf(pixels.estimate, pixels.truth_mm));
-    frames.push_back(std::move(pixels));
-  }
+  std::vector<FrameScale> frames;
+  const auto take_scale = [&](const Pixels& pixels, int submap) { frames.push_back(ScaleOfFrame(pixels, submap)); };
+  if (Status status = ForEachFrame(surface, run, sequence, take_scale); !status.ok()) return status;
   if (frames.empty())
     return Status(ErrorCode::kInsufficient,
                   "no frame of the surface " + Quoted(surface.path.string()) + " has pixels whose true depth is known");
-  DenseError error;
-  error.frames = static_cast<int>(frames.size());
-  if (scale != ErrorScale::kPerFrame)
-    std::ranges::fill(scales, scale == ErrorScale::kGlobal ? Median(std::vector<double>(scales)) : 1.0);
-  for (std::size_t k = 0; k < frames.size(); ++k)
-    AddFrame(frames[k], scales[k], static_cast<double>(frames.size()), &error);
-  AddFilled(frames, scales, &error);
-  AddMesh(frames, scales, &error);
-  return error;
+  SetScales(scale, &frames);
+  DenseErrorSum sum(frames);
+  std::size_t next = 0;
+  const auto add = [&](const Pixels& pixels, int /*submap*/) { sum.Add(pixels, frames[next++]); };
+  if (Status status = ForEachFrame(surface, run, sequence, add); !status.ok()) return status;
+  return sum.Take();
 }
 
 }  // namespace pliant

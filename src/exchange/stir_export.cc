@@ -13,6 +13,7 @@
 #include "exchange/exports.h"
 #include "pliant/base/files.h"
 #include "pliant/base/text.h"
+#include "pliant/io/run_reader.h"
 #include "pliant/io/run_summary.h"
 #include "pliant/io/stir_file.h"
 
@@ -112,8 +113,24 @@ std::vector<Eigen::Vector3d> Pixels(std::span<const Eigen::Vector2d> pixels) {
   return points;
 }
 
+// Labels are of the recording's first frame, and are wanted in its last.
+Status CheckIsWhole(const RunSource& source) {
+  const auto run = ReadRun(source.run_path);
+  if (!run.ok()) return run.status();
+  const int first = source.frames.front().frame_idx;
+  const int last = source.frames.back().frame_idx;
+  if (run->frames.empty() || (first == run->frames.front().frame_idx && last == run->frames.back().frame_idx))
+    return Status::Ok();
+  return {ErrorCode::kInsufficient, "labelled points go from the first frame of a run to its last, " +
+                                        std::to_string(run->frames.front().frame_idx) + " to " +
+                                        std::to_string(run->frames.back().frame_idx) +
+                                        ", in one map and with --Export.stride 1; here a map has the frames " +
+                                        std::to_string(first) + " to " + std::to_string(last)};
+}
+
 // The labelled points of the start where they are at the end.
 Status WriteCarried(const RunSource& source, const ExportOptions& options, const ExportFolder& folder) {
+  if (Status status = CheckIsWhole(source); !status.ok()) return status;
   const auto start = ReadStirPoints(options.start_points);
   if (!start.ok()) return start.status();
   if (start->dimensions != 2)

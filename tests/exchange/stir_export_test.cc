@@ -112,6 +112,16 @@ TEST_F(StirExport, ARunWithoutAUnitHasPixelsAlone) {
   }
 }
 
+TEST_F(StirExport, LabelsNeedTheLastFrameToo) {
+  WriteRun(true);
+  WriteStart({2, {{"a", {{1, 2, 0}}}}});
+  ExportOptions options = OfStart();
+  options.stride = kRunFrames - 2;
+  const Status status = Export(options);
+  EXPECT_EQ(status.code(), ErrorCode::kInsufficient);
+  EXPECT_THAT(status.message(), HasSubstr("a map has the frames 10 to 16"));
+}
+
 TEST_F(StirExport, LabelsThatDoNotServeAreRefused) {
   WriteRun(true);
   EXPECT_EQ(Export(OfStart()).code(), ErrorCode::kNotFound);
