@@ -46,6 +46,14 @@ def _several(paths: Any) -> list[str]:
     return [_run_path(path) for path in paths]
 
 
+def _numbers(frames: Iterable[int] | None, name: str) -> list[int]:
+    """None: no choice was made."""
+    numbers = [] if frames is None else [int(frame) for frame in frames]
+    if frames is not None and not numbers:
+        raise ValueError(f"{name} has no frame; give numbers of frames, or None")
+    return numbers
+
+
 def _options(options: OptionValues | None) -> dict[str, Any] | None:
     return dict(options) if isinstance(options, Mapping) else options
 
@@ -288,7 +296,7 @@ def surface(run: RunOrPath, output_path: StrPath, options: OptionValues | None =
     """
     request = {"run_path": _run_path(run), "sequence_path": _text(sequence), "camera_path": _text(camera),
                "mask_path": _text(mask_path), "output_path": os.fspath(output_path)}
-    _pliant.surface(request, [int(frame) for frame in frames or []], _options(options), on_progress)
+    _pliant.surface(request, _numbers(frames, "frames"), _options(options), on_progress)
     with open(os.path.join(os.fspath(output_path), "surface.json"), encoding="utf-8") as file:
         return json.load(file)
 
@@ -431,4 +439,4 @@ def report(runs: Any, output_path: StrPath, options: OptionValues | None = None,
     """
     request = {"run_paths": _several(runs), "sequence_path": _text(sequence), "camera_path": _text(camera),
                "surface_paths": _several(surface_paths)}
-    return _pliant.report(request, [int(frame) for frame in figure or []], _options(options), os.fspath(output_path))
+    return _pliant.report(request, _numbers(figure, "figure"), _options(options), os.fspath(output_path))

@@ -72,7 +72,8 @@ class Run:
 
     def frame(self, frame_idx: int) -> Observations:
         """The points of the frame with this number, sorted by point_id; views, not copies. None: no rows."""
-        first, last = np.searchsorted(self.observations.frame_idx, [frame_idx, frame_idx + 1])
+        column = self.observations.frame_idx
+        first, last = np.searchsorted(column, np.array([frame_idx, frame_idx + 1], column.dtype))  # no copy of it
         return self.observations[first:last]
 
     def path(self, point_id: int) -> tuple[NDArray[np.int32], NDArray[np.float64]]:

@@ -76,6 +76,7 @@ class DataSetSequence final : public Sequence {
   Status CheckSizes() const override;
   std::optional<PhotometricCalibration> Photometric() const override { return data_set_.calibration.photometric; }
   std::optional<double> BaselineMm() const override;
+  std::optional<double> Fps() const override { return data_set_.calibration.fps; }
   Result<std::optional<cv::Mat>> Right() override;
   Result<std::optional<cv::Mat>> Depth(int frame_idx) const override;
   std::optional<Rigid3> WorldFromCamera(int frame_idx) const override;

@@ -23,7 +23,8 @@ namespace {
 
 Calibration MakeCalibration(const std::string& model, int width, int height, const std::vector<double>& params,
                             std::optional<double> fps) {
-  if (fps && !(*fps > 0)) RaiseValueError("fps is " + FormatDouble(*fps) + "; give the images a second, above 0");
+  if (fps && !(*fps > 0 && std::isfinite(*fps)))
+    RaiseValueError("fps is " + FormatDouble(*fps) + "; give the images a second, above 0");
   return {ValueOf(Camera::Create(model, width, height, params)), fps};
 }
 

@@ -193,11 +193,11 @@ class PythonTracks final : public TrackSource {
   void Found(const Eigen::Vector2d& pixel, const PreparedFrame& frame, PointTrack* track) {
     if (!pixel.allFinite()) RaiseValueError("follow returned a pixel that is not a number and says that it is visible");
     track->pixel = pixel;
-    const cv::Rect image(0, 0, frame.gray.cols, frame.gray.rows);
-    const cv::Point at(static_cast<int>(std::lround(pixel.x())), static_cast<int>(std::lround(pixel.y())));
-    if (!image.contains(at)) {
+    const Eigen::Array2d at = pixel.array().round();  // may be too far away for an integer
+    const bool inside = (at >= 0).all() && at.x() < frame.gray.cols && at.y() < frame.gray.rows;
+    if (!inside) {
       track->failure = PatchFailure::kOutOfImage;
-    } else if (!frame.mask.unrestricted() && !frame.mask.Valid(at.x, at.y)) {
+    } else if (!frame.mask.unrestricted() && !frame.mask.Valid(static_cast<int>(at.x()), static_cast<int>(at.y()))) {
       track->failure = PatchFailure::kMasked;
     } else {
       track->failure = PatchFailure::kNone;

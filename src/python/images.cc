@@ -32,21 +32,27 @@ std::optional<cv::Mat> PythonImages::Get(int idx) {
     if (idx >= count_) return std::nullopt;
     return ImageOf(images_[py::int_(idx)], title);
   }
-  while (static_cast<int>(kept_.size()) <= idx && iterator_ != py::iterator::sentinel()) {
-    kept_.push_back(ImageOf(*iterator_, "image " + std::to_string(kept_.size())));
-    ++iterator_;
+  // No image is asked for before it is wanted: a camera would be one image late.
+  while (static_cast<int>(kept_.size()) <= idx && iterator_) {
+    const auto next = py::reinterpret_steal<py::object>(PyIter_Next(iterator_.ptr()));
+    if (PyErr_Occurred() != nullptr) throw py::error_already_set();
+    if (next)
+      kept_.push_back(ImageOf(next, "image " + std::to_string(kept_.size())));
+    else
+      iterator_ = py::object();
   }
   return idx < static_cast<int>(kept_.size()) ? std::optional(kept_[static_cast<std::size_t>(idx)]) : std::nullopt;
 }
 
 Result<std::optional<cv::Mat>> PythonImages::Read(int idx) {
   const std::lock_guard lock(mutex_);
-  if (!error_) {
+  if (!error_ || idx < failed_idx_) {
     const py::gil_scoped_acquire acquire;
     try {
       return Get(idx);
     } catch (...) {
       error_ = std::current_exception();
+      failed_idx_ = idx;
     }
   }
   return Status(ErrorCode::kUnreadable, "image " + std::to_string(idx) + " could not be had from the program");

@@ -34,11 +34,12 @@ class PythonImages final : public ImageSource {
   std::optional<cv::Mat> Get(int idx);
 
   pybind11::object images_;
-  pybind11::iterator iterator_;  // of what has no length
+  pybind11::object iterator_;  // of what has no length; none after its end
   int count_ = 0;
   std::mutex mutex_;  // taken before the GIL
   std::vector<cv::Mat> kept_;
   std::exception_ptr error_;
+  int failed_idx_ = 0;  // of the image at which it was raised
 };
 
 }  // namespace pliant::python

@@ -103,6 +103,8 @@ py::dict CalibrationDict(const CalibrateSummary& summary) {
 
 py::dict Calibrate(const py::dict& request, const py::object& options, const py::object& on_progress) {
   const auto calibrate_options = OptionsOf<CalibrateOptions>(options);
+  const std::string figure = Text(request, "figure");
+  if (!figure.empty()) RaiseUnlessOk(CheckEnding(ViewOutput::kFigure, figure));
   const CalibrateRequest calibrate_request{.image_path = Text(request, "image_path"),
                                            .board = ValueOf(ParseBoard(Text(request, "board"))),
                                            .output_path = Text(request, "output_path")};
@@ -110,8 +112,7 @@ py::dict Calibrate(const py::dict& request, const py::object& options, const py:
   const auto summary = ValueOf(WithoutGil(&interrupt, [&] {
     return CalibrateImages(calibrate_request, calibrate_options, Told(on_progress, &interrupt));
   }));
-  if (const std::string figure = Text(request, "figure"); !figure.empty())
-    RaiseUnlessOk(WriteCalibrationFigure(summary, figure));
+  if (!figure.empty()) RaiseUnlessOk(WriteCalibrationFigure(summary, figure));
   return CalibrationDict(summary);
 }
 

@@ -63,7 +63,7 @@ class PythonSequence {
     Warn(sequence_->Warnings());
   }
 
-  Calibration camera() const { return {sequence_->camera(), std::nullopt, sequence_->Photometric()}; }
+  Calibration camera() const { return {sequence_->camera(), sequence_->Fps(), sequence_->Photometric()}; }
   int size() const { return sequence_->size(); }
   std::optional<double> baseline_mm() const { return sequence_->BaselineMm(); }
   std::unique_ptr<FrameReader> Begin() const { return std::make_unique<FrameReader>(request_); }

@@ -28,6 +28,21 @@ namespace {
 
 constexpr double kDefaultFps = 30.0;
 
+// From one thread at a time, and not from what it calls itself; holds the interpreter's lock when it begins and ends.
+class Busy {
+ public:
+  explicit Busy(bool* busy) : busy_(busy) {
+    if (*busy) RaiseValueError("the tracker is busy with another image; call it from one thread");
+    *busy = true;
+  }
+  ~Busy() { *busy_ = false; }
+  Busy(const Busy&) = delete;
+  Busy& operator=(const Busy&) = delete;
+
+ private:
+  bool* busy_;
+};
+
 // Numbers the images and gives them times.
 class PythonTracker {
  public:
@@ -41,6 +56,7 @@ class PythonTracker {
   std::vector<FrameReport> Process(const py::object& image, const py::object& mask, std::optional<double> timestamp,
                                    const py::object& depth_prior) {
     if (finished_) RaiseValueError("the tracker is finished; make another one for other images");
+    const Busy busy(&busy_);
     SequenceFrame frame = FrameOf(next_idx_, image, "the image");
     frame.mask = MaskOf(mask);
     frame.depth_prior = DepthPriorOf(depth_prior);
@@ -56,6 +72,7 @@ class PythonTracker {
   }
 
   std::vector<FrameReport> Finish() {
+    const Busy busy(&busy_);
     if (std::exchange(finished_, true)) return {};
     auto reports = [&] {
       const py::gil_scoped_release release;
@@ -97,6 +114,7 @@ class PythonTracker {
     }());
   }
 
+  bool busy_ = false;
   double fps_;
   py::dict extensions_;  // that the tracker calls
   Callbacks callbacks_;

@@ -174,7 +174,7 @@ Result<simulation::Poke> Simulator::State::FindPoke() const {
   if (options.deformation.poke_mm == 0) return poke;
   const Rigid3 world_from_cam = WorldFromCamera(0);
   Eigen::Vector2d pixel(0.5 * (camera.width() - 1), 0.8 * (camera.height() - 1));
-  Eigen::Vector3d direction;
+  Eigen::Vector3d direction = Eigen::Vector3d::Zero();
   if (!options.deformation.poke_place.empty()) {
     const auto position = ParseNumbers(options.deformation.poke_place);
     if (!position || position->size() != 3)

@@ -28,10 +28,11 @@ Status WriteOptions(const fs::path& path, const SimulationOptions& options) {
 Status CheckOwnFolder(const fs::path& output) {
   std::error_code error;
   if (fs::exists(output / simulation::kOptionsFile, error)) return Status::Ok();
-  for (const char* name : {native::kImageFolder, native::kRightFolder, native::kDepthFolder})
+  for (const char* name : {native::kImageFolder, native::kRightFolder, native::kDepthFolder, native::kMaskFolder,
+                           native::kCameraFile, native::kPosesFile, native::kTimesFile})
     if (fs::exists(output / name, error) && !fs::is_empty(output / name, error))
-      return {ErrorCode::kInvalidArgument, "the folder " + (output / name).string() +
-                                               " holds files of a sequence that was not simulated; give a new or an "
+      return {ErrorCode::kInvalidArgument, (output / name).string() +
+                                               " is of a sequence that was not simulated; give a new or an "
                                                "empty folder"};
   return Status::Ok();
 }

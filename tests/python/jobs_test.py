@@ -53,12 +53,14 @@ class Jobs(TestCase):
     def test_a_surface_has_depths_of_the_frames(self):
         told = []
         summary = pliant.surface(RUN, self.folder / "surface", {"Surface.vtk": False, "Surface.gltf": False},
-                                 frames=[20, 40], on_progress=lambda *at: told.append(at))
+                                 frames=np.array([20, 40]), on_progress=lambda *at: told.append(at))
         self.assertEqual([frame["frame"] for frame in summary["frames"]], [20, 40])
         self.assertEqual(len(list((self.folder / "surface" / "depth").iterdir())), 2)
         self.assertIn(("depth", 2, 2), told)
         with self.assertRaises(pliant.Error):
             pliant.surface(RUN, self.folder / "other", frames=[9999])
+        with self.assertRaisesRegex(ValueError, "frames has no frame"):
+            pliant.surface(RUN, self.folder / "other", frames=[])
 
     def test_depth_of_a_surface_is_an_array_that_a_sequence_may_have(self):
         options = {"Surface.vtk": False, "Surface.gltf": False, "Surface.npy": True}

@@ -43,6 +43,7 @@ class Sequences(TestCase):
 
     def test_it_is_tracked_as_it_is(self):
         sequence = pliant.open_sequence(SEQUENCE, end=20)
+        self.assertEqual(sequence.camera.fps, pliant.read_camera(SEQUENCE / "camera.yaml").fps)
         run = pliant.track((frame.image for frame in sequence), self.folder / "run", {"Image.working": "fixed"},
                            camera=sequence.camera)
         self.assertEqual(len(run.frames), 20)

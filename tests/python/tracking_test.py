@@ -34,6 +34,28 @@ class Images(TestCase):
         iterated = pliant.track((image for image in self.images), self.folder / "iterated", options, camera=self.camera)
         np.testing.assert_array_equal(iterated.observations.position, folder.observations.position)
 
+    def test_times_grow(self):
+        for timestamps in ([0.1] * COUNT, [np.nan] + self.timestamps[1:]):
+            with self.assertRaisesRegex(ValueError, "the timestamp of image"):
+                pliant.track(self.images, self.folder / "run", FIXED, camera=self.camera, timestamps=timestamps)
+            self.assertFalse((self.folder / "run" / "frames.csv").exists())
+
+    def test_no_image_is_asked_for_before_it_is_wanted(self):
+        asked = []
+
+        def camera():
+            for idx, image in enumerate(self.images):
+                asked.append(idx)
+                yield image
+            raise RuntimeError("unplugged")
+
+        reported = []
+        options = {**FIXED, "General.threads": 1, "General.max_frames_back": 0, "Image.interlaced": "off"}
+        with self.assertRaisesRegex(RuntimeError, "unplugged"):
+            pliant.track(camera(), self.folder / "run", options, camera=self.camera,
+                         on_frame=lambda report: reported.append(report.frame_idx))
+        self.assertEqual(reported, list(range(COUNT)), "the images before are tracked")
+
     def test_a_part_of_the_images_is_tracked_with_their_numbers(self):
         seen = []
         run = pliant.track(self.images, self.folder / "run", FIXED, camera=self.camera, start=2, stride=2,

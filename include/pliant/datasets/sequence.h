@@ -60,6 +60,8 @@ class Sequence {
   // The distance of the cameras of a rectified pair, the right one at +x of the left one, whose images Next gives;
   // nothing where the source has no pairs.
   virtual std::optional<double> BaselineMm() const { return std::nullopt; }
+  // Images a second, where the video or the calibration says it.
+  virtual std::optional<double> Fps() const { return std::nullopt; }
   // The right image of the frame that Next gave last, rectified like it, of its size; nothing where there is none.
   // Fails as Next.
   virtual Result<std::optional<cv::Mat>> Right() { return std::optional<cv::Mat>(); }
