@@ -74,7 +74,7 @@ class Refinement {
       UseAll();
       *state = DeformingStart(start_, rank, options_.nodes_in_view);
       input_.graph = MakeGraph(*state, options_.neighbors);
-      const Status status = Solve("deforming", state);
+      Status status = Solve("deforming", state);
       const bool is_first = rank == options_.rank;
       if (!status.ok() && is_first) return status;
       if (!is_first && (stopped_ || !status.ok())) {
