@@ -79,7 +79,7 @@ int SurfaceCommand(std::span<const std::string> args) {
   if (!summary.ok()) return line.Failure(summary.status().message());
   if (summary->stopped)
     return line.Failure("stopped on request; the depths of " + std::to_string(summary->frames.size()) +
-                        " frames are in " + request.output_path + ", and no meshes");
+                        " frames are in " + request.output_path + ", and the meshes are not complete");
   SayResult(request.output_path);
   return kExitOk;
 }

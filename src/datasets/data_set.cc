@@ -195,9 +195,6 @@ Result<std::optional<SequenceFrame>> DataSetSequence::Next() {
   last_idx_ = idx;
   Result<std::optional<cv::Mat>> image = images().Read(idx);
   if (!image.ok()) return image.status();
-  if (!image->has_value() && idx > 0 && idx == range_.start)
-    return Status(ErrorCode::kInvalidArgument,
-                  "start is " + std::to_string(idx) + ", but " + images().path().string() + " has fewer frames");
   if (!image->has_value()) return std::optional<SequenceFrame>();
   if (Status status = CheckSize(**image, images().Title(idx)); !status.ok()) return status;
   SequenceFrame frame;
@@ -278,12 +275,14 @@ std::optional<Rigid3> DataSetSequence::WorldFromCamera(int frame_idx) const {
 }
 
 std::optional<double> DataSetSequence::TimestampS(int frame_idx) const {
-  if (frame_idx < 0 || (images().count() > 0 && frame_idx >= images().count())) return std::nullopt;
+  if (frame_idx < 0 || (images().count_is_exact() && images().count() > 0 && frame_idx >= images().count()))
+    return std::nullopt;
   return TimeOf(frame_idx);
 }
 
 double DataSetSequence::TimeOf(int idx) const {
-  if (!data_set_.timestamps_s.empty()) return data_set_.timestamps_s[static_cast<std::size_t>(idx)];
+  const auto k = static_cast<std::size_t>(idx);
+  if (k < data_set_.timestamps_s.size()) return data_set_.timestamps_s[k];
   return images().TimestampS(idx).value_or(idx / data_set_.calibration.Fps());
 }
 
@@ -414,12 +413,23 @@ Result<DataSet> Calibrated(const SequenceRequest& request, std::unique_ptr<Image
   return DataSet{.calibration = std::move(calibration), .images = std::move(images), .mask_path = request.mask_path};
 }
 
+// Where the number of frames is an estimate: by reading.
+Status CheckStart(const FrameRange& range, ImageStream* images) {
+  if (images->count_is_exact() || images->count() == 0 || range.start < images->count()) return Status::Ok();
+  const auto first = images->Read(range.start);
+  if (!first.ok()) return first.status();
+  if (first->has_value()) return Status::Ok();
+  return {ErrorCode::kInvalidArgument,
+          "start is " + std::to_string(range.start) + ", but " + images->path().string() + " has fewer frames"};
+}
+
 Result<std::unique_ptr<Sequence>> ReadDataSet(DataSet data_set, const SequenceRequest& request) {
   Result<FrameRange> range = FrameRange::From(request);
   // Containers without an index estimate their number of frames: how far a video goes is known when it has been read.
   if (range.ok() && data_set.images->count() > 0 && data_set.images->count_is_exact())
     range = range->Within(data_set.images->count(), data_set.images->path());
   if (!range.ok()) return range.status();
+  if (Status status = CheckStart(*range, data_set.images.get()); !status.ok()) return status;
   WarnOfMissingTruth(ByItsWord(*range, *data_set.images), &data_set);
   auto sequence = std::make_unique<DataSetSequence>(std::move(data_set), *range);
   if (Status status = sequence->CheckFirstImage(); !status.ok()) return status;

@@ -150,7 +150,10 @@ Result<std::optional<cv::Mat>> VideoStream::Read(int idx) {
   if (index_ && may_seek_ && idx - read_ > kMaxDropped)
     if (Status status = Seek(idx); !status.ok()) return status;
   while (read_ <= idx) {
-    if (!Grab()) {
+    if (Grab()) continue;
+    if (has_sought_) {
+      if (Status status = ReadWithoutSeeking(); !status.ok()) return status;
+    } else {
       ended_ = true;
       if (EndsEarly()) return BreaksOff();
       return std::optional<cv::Mat>();

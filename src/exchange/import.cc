@@ -181,9 +181,12 @@ Status WriteTruth(const ImportRequest& request, const Imported& imported, const 
     return {ErrorCode::kInvalidArgument, "there is a groundtruth.txt in " + Quoted(folder.string()) +
                                              " already; move it away, or give another folder"};
   if (Exists(folder / "camera.yaml")) {
-    const auto there = ReadCameraFile((folder / "camera.yaml").string());
-    if (!there.ok()) return there.status();
-    for (TimedPose& pose : poses) pose.world_from_cam.translation /= there->unit_mm;
+    // One of another program says no unit.
+    CameraFileOptions options;
+    options.image_size = ImageSize{camera.width(), camera.height()};
+    const auto there = ReadCameraFile((folder / "camera.yaml").string(), options);
+    const double unit_mm = there.ok() ? there->unit_mm : 1.0;
+    for (TimedPose& pose : poses) pose.world_from_cam.translation /= unit_mm;
   } else {
     CameraFile file{camera};
     if (poses.size() > 1)

@@ -85,7 +85,8 @@ void FramesBefore::TrackBack(const FrameReport& last) {
   Tracker tracker(camera_, options_.tracker, 0, options_.threads, inputs_);
   tracker.TakeMap(at_last.front(), last, evidence_[last.submap]);
   tracker.SkipPointIds(tracker_->next_point_id());
-  const std::string what = last.first_map ? "the reference of the first map" : "in which the map was found again";
+  const bool is_reference = last.first_map && last.first_map->reference_frame_idx == last.frame_idx;
+  const std::string what = is_reference ? "the reference of the first map" : "in which the map is seen again";
   FollowBack(&tracker, "tracked back from frame " + last.name + ", " + what);
   tracker_->SkipPointIds(tracker.next_point_id());
 }

@@ -91,13 +91,18 @@ int ComparedWindowPx(const TrackedImage& tracked, const DenseDepthOptions& optio
 // A bound on the depths of the run: no surface that was tracked is farther, but for wild points, which would make the
 // steps of all depth images coarse.
 double LargestDepth(const std::vector<PosedFrame>& frames) {
-  std::vector<double> distances;
-  for (const PosedFrame& frame : frames)
+  constexpr double kFar = 0.9;  // of a frame's points are nearer
+  double largest = 0.0;
+  double far = 0.0;
+  for (const PosedFrame& frame : frames) {
+    std::vector<double> distances;
     for (const PointObservation& o : frame.observations)
       distances.push_back((frame.cam_from_world * o.position).norm());
-  if (distances.empty()) return 0.0;
-  const double largest = *std::ranges::max_element(distances);
-  return std::min(2.0 * largest, 4.0 * Quantile(std::move(distances), 0.99));
+    if (distances.empty()) continue;
+    largest = std::max(largest, *std::ranges::max_element(distances));
+    far = std::max(far, Quantile(std::move(distances), kFar));
+  }
+  return std::min(2.0 * largest, 4.0 * far);
 }
 
 class SurfaceMaker {

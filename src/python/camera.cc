@@ -3,6 +3,7 @@
 
 #include "pliant/camera/camera.h"
 
+#include <cmath>
 #include <limits>
 #include <string>
 #include <vector>

@@ -14,6 +14,7 @@
 
 #include "exchange/neural_run.h"
 #include "pliant/exchange/export.h"
+#include "pliant/io/run_summary.h"
 #include "support/test_folder.h"
 #include "support/tolerances.h"
 
@@ -221,6 +222,18 @@ TEST(NerfstudioExport, MasksKeepWhatIsUsed) {
     const cv::Mat written = ReadPng(folder.Path("out/" + frame["mask_path"].get<std::string>()));
     EXPECT_EQ(cv::countNonZero(written != mask), 0);
   }
+}
+
+TEST(NerfstudioExport, RefusesToLeaveOutTheMasksOfTheRun) {
+  const TestFolder folder;
+  WriteNeuralRun(folder, TestCamera());
+  auto summary = ReadRunSummary(folder.Path("run/run.json"));
+  ASSERT_TRUE(summary.ok());
+  summary->description.mask = folder.Path("moved.png");
+  ASSERT_TRUE(WriteRunSummary(folder.Path("run/run.json"), *summary).ok());
+  const Status status = ExportNeural(folder, "nerfstudio").status();
+  EXPECT_EQ(status.code(), ErrorCode::kNotFound);
+  EXPECT_THAT(status.message(), testing::HasSubstr("--mask_path"));
 }
 
 TEST(EndoNerfExport, ImagesOfEveryCameraAreThoseOfACenteredPinhole) {

@@ -89,8 +89,7 @@ TEST_F(FramesOfALoss, AreTrackedBackFromWhereTheMapIsFound) {
       EXPECT_EQ(report.note, of_run.note);
       continue;
     }
-    EXPECT_THAT(report.note,
-                testing::HasSubstr("tracked back from frame 000012.png, in which the map was found again"));
+    EXPECT_THAT(report.note, testing::HasSubstr("tracked back from frame 000012.png, in which the map is seen again"));
     EXPECT_LT((report.cam_from_world->Inverse().translation - of_run.cam_from_world->Inverse().translation).norm(),
               kCameraAgain_mm);
     std::vector<double> apart_px;

@@ -54,7 +54,7 @@ struct DenseError {
   std::optional<DenseCompleteness> textured;  // nothing: it is not known what other images see
 };
 
-// `scale`: of each frame the median of y / x, one for all frames (the median of these), or none. `run` is the one that
+// `scale`: of each frame the median of y / x, one a submap (the median of these), or none. `run` is the one that
 // the surface was made of. Fails with kMismatch where the surface's images are not the sequence's, kInsufficient where
 // no frame has both depths, and as Sequence and ReadSurfaceDepth.
 Result<DenseError> ComputeDenseError(const SurfaceFolder& surface, const EvaluationInput& run, const Sequence& sequence,
