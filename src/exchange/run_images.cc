@@ -15,7 +15,6 @@
 #include "pliant/base/text.h"
 #include "pliant/camera/same_camera.h"
 #include "pliant/datasets/run_sequence.h"
-#include "pliant/io/run_reader.h"
 
 namespace pliant {
 namespace {
@@ -36,9 +35,7 @@ bool IsSameRun(const std::string& a, const std::string& b) {
 Result<RunImages> RunImages::Open(const RunSource& source) {
   auto sequence = OpenImagesOfRun(source.run_path, source.images);
   if (!sequence.ok()) return sequence.status();
-  const auto run = ReadRun(source.run_path);
-  if (!run.ok()) return run.status();
-  if (Status status = CheckMasksOfRun(source.images, *run); !status.ok()) return status;
+  if (Status status = CheckMasksOfRun(source.images, *source.run); !status.ok()) return status;
   return RunImages(source, *std::move(sequence));
 }
 

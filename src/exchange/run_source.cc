@@ -83,7 +83,7 @@ Result<std::vector<RunSource>> ReadRunSources(const ExportRequest& request, int 
   if (!request.mask_path.empty()) images.mask_path = request.mask_path;
   const auto known = KnownMapOfRun(request.run_path, images, *run);
   if (!known.ok()) return known.status();
-  RunSource empty{request.run_path, *known->camera, images, {}, {}, {}, 0, {}};
+  RunSource empty{request.run_path, std::make_shared<const Run>(*run), *known->camera, images, {}, {}, {}, 0, {}};
   if (!request.surface_path.empty()) {
     auto surface = ReadSurfaceOfRun(request.surface_path, request.run_path, *known);
     if (!surface.ok()) return surface.status();

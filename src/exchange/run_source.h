@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -30,6 +31,7 @@ struct SourceFrame {
 
 struct RunSource {
   std::string run_path;
+  std::shared_ptr<const Run> run;  // all of it, also of its other submaps
   Camera camera;
   SequenceRequest images;                // that the run was made of; an empty image_path: not known
   std::optional<SurfaceFolder> surface;  // has a depth of every frame

@@ -13,8 +13,6 @@
 #include "exchange/exports.h"
 #include "pliant/base/files.h"
 #include "pliant/base/text.h"
-#include "pliant/io/run_reader.h"
-#include "pliant/io/run_summary.h"
 #include "pliant/io/stir_file.h"
 
 namespace pliant {
@@ -98,8 +96,8 @@ Result<std::vector<Eigen::Vector3d>> Lifted(const RunSource& source, const Way& 
 
 // Whether map units are millimeters, which the file in three dimensions is in.
 bool IsMetric(const RunSource& source) {
-  const auto summary = ReadRunSummary(source.run_path + "/run.json");
-  return summary.ok() && summary->description.metric.value_or(false);
+  const auto& summary = source.run->summary;
+  return summary && summary->description.metric.value_or(false);
 }
 
 Status Write(const std::string& recording, std::vector<Eigen::Vector3d> points, int dimensions,
@@ -115,15 +113,13 @@ std::vector<Eigen::Vector3d> Pixels(std::span<const Eigen::Vector2d> pixels) {
 
 // Labels are of the recording's first frame, and are wanted in its last.
 Status CheckIsWhole(const RunSource& source) {
-  const auto run = ReadRun(source.run_path);
-  if (!run.ok()) return run.status();
+  const std::vector<RunFrame>& of_run = source.run->frames;
   const int first = source.frames.front().frame_idx;
   const int last = source.frames.back().frame_idx;
-  if (run->frames.empty() || (first == run->frames.front().frame_idx && last == run->frames.back().frame_idx))
-    return Status::Ok();
+  if (of_run.empty() || (first == of_run.front().frame_idx && last == of_run.back().frame_idx)) return Status::Ok();
   return {ErrorCode::kInsufficient, "labelled points go from the first frame of a run to its last, " +
-                                        std::to_string(run->frames.front().frame_idx) + " to " +
-                                        std::to_string(run->frames.back().frame_idx) +
+                                        std::to_string(of_run.front().frame_idx) + " to " +
+                                        std::to_string(of_run.back().frame_idx) +
                                         ", in one map and with --Export.stride 1; here a map has the frames " +
                                         std::to_string(first) + " to " + std::to_string(last)};
 }

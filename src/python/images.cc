@@ -52,7 +52,7 @@ Result<std::optional<cv::Mat>> PythonImages::Read(int idx) {
       return Get(idx);
     } catch (...) {
       error_ = std::current_exception();
-      failed_idx_ = idx;
+      failed_idx_ = count_ > 0 ? idx : static_cast<int>(kept_.size());
     }
   }
   return Status(ErrorCode::kUnreadable, "image " + std::to_string(idx) + " could not be had from the program");

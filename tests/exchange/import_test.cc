@@ -49,6 +49,15 @@ class ImportTest : public testing::Test {
     ExportRequest request{folder_.Path("run"), "", "canonical", folder_.Path("model")};
     ASSERT_TRUE(ExportRun(request, {}).ok());
   }
+  // The same; the sequence has its images alone.
+  void WriteModelOfEveryImage() {
+    std::filesystem::remove_all(folder_.Path("images"));
+    std::filesystem::create_directories(folder_.Path("images"));
+    const cv::Mat image(TestCamera().height(), TestCamera().width(), CV_8UC1, cv::Scalar(90));
+    for (int frame = 0; frame < kRunFrames; ++frame)
+      ASSERT_TRUE(cv::imwrite(folder_.Path("images/" + Report(frame).name), image));
+    WriteModel();
+  }
   void ChangeModel(const std::function<void(colmap::Model*)>& change) {
     WriteModel();
     auto model = colmap::ReadModel(folder_.Path("model"));
@@ -215,15 +224,7 @@ TEST_F(ImportTest, ImagesWithoutACalibrationTakeTheModels) {
 }
 
 TEST_F(ImportTest, AModelOfEveryImageIsTheSequencesTruth) {
-  WriteRun(folder_);
-  std::filesystem::remove_all(folder_.Path("images"));
-  for (int frame = 0; frame < kRunFrames; ++frame) {
-    const cv::Mat image(TestCamera().height(), TestCamera().width(), CV_8UC1, cv::Scalar(90));
-    std::filesystem::create_directories(folder_.Path("images"));
-    ASSERT_TRUE(cv::imwrite(folder_.Path("images/" + Report(frame).name), image));
-  }
-  ExportRequest request{folder_.Path("run"), "", "canonical", folder_.Path("model")};
-  ASSERT_TRUE(ExportRun(request, {}).ok());
+  WriteModelOfEveryImage();
   const auto summary = ImportModel({}, ImportAs::kTruth);
   ASSERT_TRUE(summary.ok()) << summary.status().message();
   const auto poses = ReadTumTrajectory(folder_.Path("out/groundtruth.txt"));
@@ -241,14 +242,7 @@ TEST_F(ImportTest, AModelOfEveryImageIsTheSequencesTruth) {
 }
 
 TEST_F(ImportTest, ATruthHasTheUnitOfTheCalibrationBesideIt) {
-  WriteRun(folder_);
-  std::filesystem::remove_all(folder_.Path("images"));
-  std::filesystem::create_directories(folder_.Path("images"));
-  for (int frame = 0; frame < kRunFrames; ++frame) {
-    const cv::Mat image(TestCamera().height(), TestCamera().width(), CV_8UC1, cv::Scalar(90));
-    ASSERT_TRUE(cv::imwrite(folder_.Path("images/" + Report(frame).name), image));
-  }
-  ASSERT_TRUE(ExportRun({folder_.Path("run"), "", "canonical", folder_.Path("model")}, {}).ok());
+  WriteModelOfEveryImage();
   std::filesystem::create_directories(folder_.Path("out"));
   folder_.Write("out/camera.yaml",
                 "model: PINHOLE\nwidth: 640\nheight: 480\nparams: [500, 500, 319.5, 239.5]\nunit: m\n");
