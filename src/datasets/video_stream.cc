@@ -111,9 +111,9 @@ bool VideoStream::EndsEarly() const {
 
 bool VideoStream::Grab() {
   if (!capture_.grab()) return false;
-  // The last frames of some videos come without a time.
-  if (const double ms = capture_.get(cv::CAP_PROP_POS_MSEC); ms > last_ms_) last_ms_ = ms;
-  if (index_ && !has_sought_) index_->Add(read_, capture_.get(cv::CAP_PROP_POS_MSEC));
+  const double ms = capture_.get(cv::CAP_PROP_POS_MSEC);
+  if (ms > last_ms_) last_ms_ = ms;  // the last frames of some videos come without a time
+  if (index_ && !has_sought_) index_->Add(read_, ms);
   ++read_;
   return true;
 }

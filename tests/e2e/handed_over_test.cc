@@ -8,19 +8,13 @@
 #include <gtest/gtest.h>
 
 #include "e2e/e2e_support.h"
+#include "support/kept_reports.h"
 
 namespace pliant {
 namespace {
 
 constexpr double kMaxRmse_mm = 1.0;  // where one constant depth has 17
 constexpr double kTrackedOn = 0.8;   // share of the points that enter a map
-
-class Reports : public TrackObserver {
- public:
-  void OnStart(int) override {}
-  void OnFrame(const FrameReport& report) override { all.push_back(report); }
-  std::vector<FrameReport> all;
-};
 
 // They enter by re-estimates alone: where the frame that takes the map over shows them.
 TEST(RigidScene, PointsOfAMapThatIsHandedOverAreTrackedOn) {
@@ -34,18 +28,18 @@ TEST(RigidScene, PointsOfAMapThatIsHandedOverAreTrackedOn) {
   RunRequest request;
   request.input.image_path = kSequence;
   request.output_path = folder.Path("run");
-  Reports reports;
-  const std::vector<TrackObserver*> observers = {&reports};
+  KeptReports kept;
+  const std::vector<TrackObserver*> observers = {&kept};
   const auto summary = RunTrack(request, options, observers);
   ASSERT_TRUE(summary.ok()) << summary.status().message();
   ASSERT_EQ(summary->frames_tracked, 60) << summary->note;
   int added = 0;
   int tracked_on = 0;
-  for (std::size_t k = 1; k + 1 < reports.all.size(); ++k) {
-    if (reports.all[k].first_map) continue;
-    for (const NewPoint& point : reports.all[k].new_points) {
+  for (std::size_t k = 1; k + 1 < kept.reports.size(); ++k) {
+    if (kept.reports[k].first_map) continue;
+    for (const NewPoint& point : kept.reports[k].new_points) {
       ++added;
-      if (FindById(reports.all[k + 1].observations, point.id) != nullptr) ++tracked_on;
+      if (FindById(kept.reports[k + 1].observations, point.id) != nullptr) ++tracked_on;
     }
   }
   EXPECT_GT(added, 20);

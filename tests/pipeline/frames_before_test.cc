@@ -15,6 +15,7 @@
 #include "pliant/base/statistics.h"
 #include "pliant/datasets/convert_sequence.h"
 #include "pliant/pipeline/track.h"
+#include "support/kept_reports.h"
 #include "support/rendered_sequence.h"
 #include "support/test_folder.h"
 
@@ -26,13 +27,6 @@ constexpr std::size_t kFound = 12;  // the frame in which it is found again
 // Between a frame tracked forwards and backwards, medians: the camera goes 2 mm a frame, 50 mm before the surface.
 constexpr double kCameraAgain_mm = 0.5;
 constexpr double kPointAgain_px = 0.2;
-
-class KeptReports final : public TrackObserver {
- public:
-  void OnStart(int /*frames*/) override {}
-  void OnFrame(const FrameReport& report) override { reports.push_back(report); }
-  std::vector<FrameReport> reports;
-};
 
 class FramesOfALoss : public testing::Test {
  protected:

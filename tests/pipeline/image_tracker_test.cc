@@ -15,6 +15,7 @@
 
 #include "pliant/base/statistics.h"
 #include "pliant/datasets/given_images.h"
+#include "support/kept_reports.h"
 #include "support/rendered_sequence.h"
 #include "support/temporary_folder.h"
 
@@ -29,13 +30,6 @@ class RenderedImages final : public ImageSource {
   Result<std::optional<cv::Mat>> Read(int idx) override {
     return idx < count() ? std::optional(Rendered().frames[static_cast<std::size_t>(idx)].image) : std::nullopt;
   }
-};
-
-class KeepReports final : public TrackObserver {
- public:
-  void OnStart(int /*frames*/) override {}
-  void OnFrame(const FrameReport& report) override { reports.push_back(report); }
-  std::vector<FrameReport> reports;
 };
 
 TrackOptions FixedImages() {
@@ -53,7 +47,7 @@ TEST(ImageTracker, ReportsWhatARunOfTheSameImagesReports) {
   request.output_path = folder.Path("run");
   TrackOptions options = FixedImages();
   options.image.smoothing_px = 0.7;
-  KeepReports run;
+  KeptReports run;
   const auto summary = RunTrack(request, options, std::array<TrackObserver*, 1>{&run});
   ASSERT_TRUE(summary.ok()) << summary.status().message();
 

@@ -18,6 +18,7 @@
 #include "pliant/io/trajectory.h"
 #include "pliant/pipeline/surface_run.h"
 #include "pliant/pipeline/track.h"
+#include "support/kept_reports.h"
 #include "support/rendered_sequence.h"
 #include "support/test_folder.h"
 
@@ -32,15 +33,6 @@ constexpr double kFollowed_px = 0.5;        // where the points lie in the image
 using testing::Contains;
 using testing::HasSubstr;
 using testing::IsEmpty;
-
-class Observer final : public TrackObserver {
- public:
-  void OnStart(int /*frames*/) override {}
-  void OnWarning(const std::string& sentence) override { warnings.push_back(sentence); }
-  void OnFrame(const FrameReport& report) override { reports.push_back(report); }
-  std::vector<std::string> warnings;
-  std::vector<FrameReport> reports;
-};
 
 TrackOptions StereoOptions() {
   TrackOptions options = MakeTrackOptions(Preset::kDefault);
@@ -66,7 +58,7 @@ TEST_F(StereoRun, HasTrueMillimetersFromTheFirstFrameOn) {
   RunRequest request;
   request.input.image_path = Sequence(/*mono=*/false);
   request.output_path = folder_.Path("run");
-  Observer observer;
+  KeptReports observer;
   TrackObserver* const observers[] = {&observer};
   const auto summary = RunTrack(request, StereoOptions(), observers);
   ASSERT_TRUE(summary.ok()) << summary.status().message();
@@ -97,7 +89,7 @@ TEST_F(StereoRun, KeepsACameraWhereItIsSaidToStandStill) {
   request.output_path = folder_.Path("run");
   TrackOptions options = StereoOptions();
   options.tracker.camera_motion = CameraMotion::kNone;
-  Observer observer;
+  KeptReports observer;
   TrackObserver* const observers[] = {&observer};
   const auto summary = RunTrack(request, options, observers);
   ASSERT_TRUE(summary.ok()) << summary.status().message();
@@ -126,7 +118,7 @@ TEST_F(StereoRun, WhatWasMeasuredIsNotReestimatedWhileItIsInView) {
     window.min_certain_share = 0.01;
     window.deforming_frame = 1;
     options.tracker.growth.max_measured_share = max_measured_share;
-    Observer observer;
+    KeptReports observer;
     TrackObserver* const observers[] = {&observer};
     const auto summary = RunTrack(request, options, observers);
     EXPECT_TRUE(summary.ok() && summary->status == RunStatus::kCompleted);
@@ -158,7 +150,7 @@ TEST_F(StereoRun, SaysBeforeItStartsThatPairsAreSwappedOrDepthIsInAnotherUnit) {
   swapped.swapped = true;
   ASSERT_TRUE(ConvertSequence(swapped, folder_.Path("set")).ok());
   request.output_path = folder_.Path("run");
-  Observer observer;
+  KeptReports observer;
   TrackObserver* const observers[] = {&observer};
   const auto failed = RunTrack(request, StereoOptions(), observers);
   ASSERT_TRUE(failed.ok()) << failed.status().message();
