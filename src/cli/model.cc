@@ -3,6 +3,7 @@
 
 #include "pliant/colmap/model.h"
 
+#include <algorithm>
 #include <functional>
 
 #include "cli/command_line.h"
@@ -50,6 +51,13 @@ std::string Counts(const colmap::Model& model) {
   return text;
 }
 
+// The first image whose name has a blank; empty: there is none.
+std::string NameThatColmapCuts(const colmap::Model& model) {
+  const auto found = std::ranges::find_if(
+      model.images, [](const colmap::Image& image) { return image.name.find(' ') != std::string::npos; });
+  return found == model.images.end() ? "" : found->name;
+}
+
 int CheckCommand(std::span<const std::string> args) {
   std::string path;
   CommandLine line(kCheckManual);
@@ -86,14 +94,20 @@ int ConvertCommand(std::span<const std::string> args) {
   OptionTable no_options;
   if (const auto exit = line.Resolve(no_options)) return *exit;
 
+  std::string cut_name;
   const Status status = [&] {
     JobBars bars(StopOnSignals());
     const auto model = colmap::ReadModel(input_path, colmap::Observations::kRead, std::ref(bars));
     if (!model.ok()) return model.status();
+    if (format != colmap::Format::kBinary) cut_name = NameThatColmapCuts(*model);
     const colmap::Rigs rigs = with_rigs && !model->rigs.empty() ? colmap::Rigs::kWritten : colmap::Rigs::kLeftOut;
     return colmap::WriteModel(output_path, *model, format, rigs, std::ref(bars));
   }();
-  return status.ok() ? kExitOk : line.Failure(status.message());
+  if (!status.ok()) return line.Failure(status.message());
+  if (!cut_name.empty())
+    SayWarning("COLMAP reads a name of an image in text up to its first blank, so it will not find " +
+               Quoted(cut_name) + "; use --format binary for it, or rename the images");
+  return kExitOk;
 }
 
 }  // namespace

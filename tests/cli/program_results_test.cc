@@ -273,6 +273,10 @@ TEST(Program, ModelCheckSaysWhatIsWrongAndExitsWithOne) {
   EXPECT_EQ(beside.exit, 1);
   EXPECT_THAT(beside.err, HasSubstr("cameras.bin"));
 
+  const std::string text = Temporary("text").string();
+  const std::string to_text = "model convert --format text --input_path '" + folder.string() + "' --output_path '";
+  EXPECT_EQ(Pliant(to_text + text + "'").err, "");
+
   std::ofstream(folder / "points3D.txt") << "7 0 0 5 1 2 3 0.5 1 0 3 0\n";
   const Outcome bad = Pliant("model check '" + folder.string() + "'");
   EXPECT_EQ(bad.exit, 1);
@@ -284,6 +288,22 @@ TEST(Program, ModelCheckSaysWhatIsWrongAndExitsWithOne) {
   EXPECT_EQ(Pliant("model check").exit, 2);
   EXPECT_EQ(Pliant("model").exit, 2);
   EXPECT_EQ(Pliant("model check /nowhere").exit, 1);
+}
+
+TEST(Program, ModelConvertSaysWhichNamesColmapDoesNotReadFromText) {
+  const std::filesystem::path folder = Temporary("model");
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder / "cameras.txt") << "1 SIMPLE_PINHOLE 640 480 500 320 240\n";
+  std::ofstream(folder / "images.txt") << "1 1 0 0 0 0 0 0 1 left eye 1.png\n320 240 -1\n";
+  std::ofstream(folder / "points3D.txt") << "# none\n";
+  const auto convert = [&](const std::string& format) {
+    return Pliant("model convert --format " + format + " --input_path '" + folder.string() + "' --output_path '" +
+                  Temporary(format).string() + "'");
+  };
+  const Outcome text = convert("text");
+  EXPECT_EQ(text.exit, 0);
+  EXPECT_THAT(text.err, HasSubstr("will not find 'left eye 1.png'; use --format binary"));
+  EXPECT_EQ(convert("binary").err, "");
 }
 
 TEST(Program, ModelConvertStopsOnASignalAndLeavesNothing) {
