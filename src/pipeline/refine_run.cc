@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <system_error>
@@ -186,10 +187,10 @@ class Reporter {
 
 // From the submap with the most observations.
 Result<SelfCalibration> CalibrationOf(const Camera& camera, const std::map<int, RefinedSubmap>& submaps,
-                                      const RefineOptions& options) {
+                                      const RefineOptions& options, const std::function<bool()>& goes_on) {
   const auto largest = std::ranges::max_element(
       submaps, {}, [](const auto& numbered) { return numbered.second.recording.observations.size(); });
-  return SelfCalibrate(camera, largest->second.recording, options);
+  return SelfCalibrate(camera, largest->second.recording, options, goes_on);
 }
 
 RefinedFocalLength FocalLengthOf(const Camera& assumed, const Result<SelfCalibration>& calibration) {
@@ -254,10 +255,12 @@ Result<RefineSummary> RefineRun(const RefineRequest& request, const RefineOption
   auto submaps = ReadSubmaps(request.run_path, *run);
   if (!submaps.ok()) return submaps.status();
 
+  const auto goes_on = [&] { return request.stop == nullptr || !*request.stop; };
   RefineSummary summary;
   bool has_new_camera = false;
   if (IsFocalLengthWanted(options, run->summary->description)) {
-    const auto calibration = CalibrationOf(*known->camera, *submaps, options);
+    const auto calibration = CalibrationOf(*known->camera, *submaps, options, goes_on);
+    if (calibration.status().code() == ErrorCode::kInterrupted) return calibration.status();
     summary.focal_length = FocalLengthOf(*known->camera, calibration);
     has_new_camera = calibration.ok();
     if (has_new_camera) {
@@ -275,7 +278,7 @@ Result<RefineSummary> RefineRun(const RefineRequest& request, const RefineOption
     const auto on_iteration = [&](RefinementProgress progress) {
       progress.share = share_before + share * progress.share;
       if (callback) callback(progress);
-      return request.stop == nullptr || !*request.stop;
+      return goes_on();
     };
     auto recording = RefineRecording(*known->camera, submap.recording, options, on_iteration);
     const std::string failure = recording.status().message();

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <string>
@@ -53,8 +54,9 @@ struct Solution {
 
 class IntrinsicsSearch {
  public:
-  IntrinsicsSearch(const Camera& camera, const Recording& recording, const RefineOptions& options)
-      : camera_(camera), recording_(recording), options_(options) {
+  IntrinsicsSearch(const Camera& camera, const Recording& recording, const RefineOptions& options,
+                   const std::function<bool()>& goes_on)
+      : camera_(camera), recording_(recording), options_(options), goes_on_(goes_on) {
     used_.assign(recording.observations.size(), true);
     KeepPointsSeenOften(recording, &used_);
     used_ = UsedInKeyViews(recording, used_, StrideOfKeyViews(recording, used_, kViewsPerTrack));
@@ -65,6 +67,13 @@ class IntrinsicsSearch {
   }
 
   Result<SelfCalibration> Run() {
+    auto found = Search();
+    if (stopped_) return Status(ErrorCode::kInterrupted, "stopped while the focal length was estimated");
+    return found;
+  }
+
+ private:
+  Result<SelfCalibration> Search() {
     if (!std::count(used_.begin(), used_.end(), true)) return NotDetermined("too few points are seen for long enough");
     Solution start;
     start.state.cams_from_world = recording_.cams_from_world;
@@ -97,7 +106,6 @@ class IntrinsicsSearch {
     return Checked(*minimum);
   }
 
- private:
   static Status NotDetermined(const std::string& why) {
     return {ErrorCode::kInsufficient, "the recording does not determine the focal length: " + why};
   }
@@ -108,6 +116,11 @@ class IntrinsicsSearch {
     Eigen::Matrix2d curvature;  // by the logarithm of the focal length and by distortion
     bool has_distortion = false;
   };
+
+  bool GoesOn() const {
+    if (goes_on_ && !goes_on_()) stopped_ = true;
+    return !stopped_;
+  }
 
   bool CanBeDistorted() const { return camera_.model_id() == CameraModelId::kSimplePinhole; }
 
@@ -124,7 +137,7 @@ class IntrinsicsSearch {
   std::optional<Solution> SolveAt(const Intrinsics& at, const BundleState& start,
                                   double function_tolerance = kCoarseTolerance) const {
     const auto camera = CameraAt(at);
-    if (!camera) return std::nullopt;
+    if (!camera || !GoesOn()) return std::nullopt;
     BundleInput input{.camera = *camera, .recording = recording_};
     input.used = used_;
     input.distance = distance_;
@@ -132,7 +145,8 @@ class IntrinsicsSearch {
     input.sigmas.log_distance = kStartLogDepthSigma;
     input.function_tolerance = function_tolerance;
     Solution solution{at, 0, start};
-    const auto summary = SolveBundle(input, options_.max_iterations, {}, &solution.state);
+    const auto summary = SolveBundle(
+        input, options_.max_iterations, [this](double) { return GoesOn(); }, &solution.state);
     if (!summary.ok()) return std::nullopt;
     solution.cost = summary->final_cost;
     return solution;
@@ -273,6 +287,8 @@ class IntrinsicsSearch {
   const Camera& camera_;
   const Recording& recording_;
   const RefineOptions& options_;
+  const std::function<bool()>& goes_on_;
+  mutable bool stopped_ = false;  // what is found after it means nothing
   std::vector<bool> usable_;  // observations, whether they fit or not
   std::vector<bool> used_;
   double distance_ = 1;
@@ -282,9 +298,10 @@ class IntrinsicsSearch {
 
 }  // namespace
 
-Result<SelfCalibration> SelfCalibrate(const Camera& camera, const Recording& recording, const RefineOptions& options) {
+Result<SelfCalibration> SelfCalibrate(const Camera& camera, const Recording& recording, const RefineOptions& options,
+                                      const std::function<bool()>& goes_on) {
   if (Status status = CheckRecording(recording, options); !status.ok()) return status;
-  return IntrinsicsSearch(camera, recording, options).Run();
+  return IntrinsicsSearch(camera, recording, options, goes_on).Run();
 }
 
 }  // namespace pliant

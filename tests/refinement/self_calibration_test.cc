@@ -83,6 +83,14 @@ TEST(SelfCalibration, IsNotFoundFromAMotionAlongTheOpticalAxis) {
   EXPECT_THAT(estimate.status().message(), testing::HasSubstr("focal length"));
 }
 
+TEST(SelfCalibration, StopsWhenItIsAskedTo) {
+  const RecordedScene scene(0);
+  int asked = 0;
+  const auto stopped = SelfCalibrate(Assumed(0.9), scene.Start(), {}, [&] { return ++asked < 20; });
+  EXPECT_EQ(stopped.status().code(), ErrorCode::kInterrupted);
+  EXPECT_LT(asked, 60);  // what is asked after it has ended at once
+}
+
 TEST(SelfCalibration, RefusesARecordingThatIsNone) {
   EXPECT_EQ(SelfCalibrate(Assumed(1), {}, {}).status().code(), ErrorCode::kInsufficient);
 }

@@ -7,6 +7,7 @@
 // point is held, and so is the distortion of a camera that has one.
 #pragma once
 
+#include <functional>
 #include <optional>
 
 #include "pliant/base/status.h"
@@ -28,7 +29,8 @@ inline constexpr double kLargestFocalLengthLogSigma = 0.05;
 // `camera`: with a focal length that is right to about a factor of 1.8. Distortion is estimated of one without
 // distortion and with one focal length. Fails with kInvalidArgument as RefineRecording, with kInsufficient where the
 // motion does not determine the focal length, and with kDegenerate for a recording that no focal length explains as
-// rigid.
-Result<SelfCalibration> SelfCalibrate(const Camera& camera, const Recording& recording, const RefineOptions& options);
+// rigid. `goes_on` is asked after every iteration of every solution; false: fails with kInterrupted.
+Result<SelfCalibration> SelfCalibrate(const Camera& camera, const Recording& recording, const RefineOptions& options,
+                                      const std::function<bool()>& goes_on = {});
 
 }  // namespace pliant
