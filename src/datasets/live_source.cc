@@ -113,6 +113,8 @@ struct LiveSource::State {
   void Record();
   // Waits for the next image, which stays. Nothing at the end. `lock` is of `mutex`.
   Result<bool> HasNext(std::unique_lock<std::mutex>& lock);
+  // Waits until at most so many images are not recorded yet, or one cannot be.
+  Status WaitForRecorder(std::size_t most, std::unique_lock<std::mutex>& lock);
   Result<std::optional<cv::Mat>> Take(std::unique_lock<std::mutex>& lock);
   Status Stalled() const {
     return {ErrorCode::kUnreadable, SourceName(request.source) + " has sent no image for " +
@@ -198,13 +200,17 @@ Result<bool> LiveSource::State::HasNext(std::unique_lock<std::mutex>& lock) {
   return !IsStopped();
 }
 
+Status LiveSource::State::WaitForRecorder(std::size_t most, std::unique_lock<std::mutex>& lock) {
+  while (unwritten.size() > most && written.ok()) changed.wait_for(lock, kPoll);
+  return written;
+}
+
 Result<std::optional<cv::Mat>> LiveSource::State::Take(std::unique_lock<std::mutex>& lock) {
   const auto has_next = HasNext(lock);
   if (!has_next.ok()) return has_next.status();
   if (!*has_next) return std::optional<cv::Mat>();
-  while (unwritten.size() > 1 && unwritten.size() * SizeInBytes(next->image) > kMaxUnwrittenBytes && written.ok())
-    changed.wait_for(lock, kPoll);
-  if (!written.ok()) return written;
+  const std::size_t most = std::max<std::size_t>(1, kMaxUnwrittenBytes / SizeInBytes(next->image));
+  if (Status status = WaitForRecorder(most, lock); !status.ok()) return status;
   const int idx = static_cast<int>(times_s.size());
   arrivals.push_back(next->time);
   times_s.push_back(request.options.frames == LiveFrames::kAll ? idx / calibration->calibration.Fps()
@@ -326,6 +332,11 @@ int LiveSource::Passed() const {
 StreamCounts LiveSource::counts() const {
   const std::lock_guard lock(state_->mutex);
   return state_->counts;
+}
+
+Status LiveSource::FinishRecording() {
+  std::unique_lock lock(state_->mutex);
+  return state_->WaitForRecorder(0, lock);
 }
 
 }  // namespace pliant

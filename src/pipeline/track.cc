@@ -263,7 +263,13 @@ Result<std::unique_ptr<TrackingTruth>> TruthOf(const TrackOptions& options, cons
   return OpenSimulationTruth(request.input.image_path, sequence);
 }
 
-RunSummary FinishRun(RunWriter& writer, const Ending& ending) {
+// `live`: null for files. What could not be recorded is not found out later.
+RunSummary FinishRun(RunWriter& writer, LiveSource* live, Ending ending) {
+  if (live != nullptr) {
+    writer.SetStream(live->counts());
+    const Status recorded = live->FinishRecording();
+    if (!recorded.ok() && ending.status != RunStatus::kFailed) ending = {RunStatus::kFailed, recorded.message()};
+  }
   const Status finished = writer.Finish(ending.status, ending.note);
   RunSummary summary = writer.summary();
   if (!finished.ok()) {
@@ -357,8 +363,7 @@ Result<RunSummary> RunTrack(const RunRequest& given, const TrackOptions& wanted,
   for (TrackObserver* observer : observers) observer->OnStart(std::max(frames, 0));
   const Ending ending = loop.Run();
   TellOfImages(checked, observers);
-  if (live) writer->SetStream(live->counts());
-  return FinishRun(*writer, ending);
+  return FinishRun(*writer, live.get(), ending);
 }
 
 }  // namespace pliant

@@ -88,7 +88,7 @@ TEST_F(LiveSourceTest, GivesEveryImageAndRecordsItAsASequence) {
   EXPECT_EQ((*source)->counts().received, 6);
   EXPECT_EQ((*source)->counts().skipped, 0);
   EXPECT_TRUE(AreEqual(**(*source)->Read(2), images[2]));  // tracking goes back
-  source->reset();                                         // all is on disk then
+  EXPECT_TRUE((*source)->FinishRecording().ok());
   const auto recorded = OpenSequence({.image_path = Path("recording")});
   ASSERT_TRUE(recorded.ok()) << recorded.status().message();
   EXPECT_EQ((*recorded)->size(), 6);
@@ -98,6 +98,22 @@ TEST_F(LiveSourceTest, GivesEveryImageAndRecordsItAsASequence) {
     EXPECT_TRUE(AreEqual((*frame)->image, images[k]));
     EXPECT_EQ((*frame)->timestamp_s, static_cast<double>(k) / kFps);
   }
+}
+
+TEST_F(LiveSourceTest, SaysWhenItsLastImageWasNotRecorded) {
+  pipe_.Header(kWidth, kHeight, kFps);
+  Send(0, 2);
+  auto source = LiveSource::Open(request_);
+  ASSERT_TRUE(source.ok()) << source.status().message();
+  ASSERT_TRUE((*source)->Read(0)->has_value());
+  ASSERT_TRUE((*source)->FinishRecording().ok());
+  std::filesystem::remove_all(Path("recording"));
+  Text("recording", "no folder any more");
+  ASSERT_TRUE((*source)->Read(1)->has_value());
+  const Status recorded = (*source)->FinishRecording();
+  EXPECT_EQ(recorded.code(), ErrorCode::kUnwritable);
+  EXPECT_THAT(recorded.message(), HasSubstr("recording"));
+  pipe_.Close();
 }
 
 TEST_F(LiveSourceTest, SkipsAndCountsWhatCameWhileTrackingWasBusy) {

@@ -87,6 +87,9 @@ class LiveSource final : public ImageSource {
   // So far.
   StreamCounts counts() const;
 
+  // Waits until all images that were taken are recorded. Fails with kUnwritable where one could not be.
+  Status FinishRecording();
+
  private:
   struct State;
   explicit LiveSource(std::unique_ptr<State> state);
