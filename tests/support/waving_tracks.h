@@ -22,7 +22,7 @@ inline constexpr double kShape = 0.03;  // relative depth error, median; a const
 inline constexpr double kNoisePx = 0.05;
 
 // kStill and kRotation: nothing moves but the camera. kHeld: the camera alone does not.
-enum class CameraMotion { kForwards, kRotation, kStill, kHeld };
+enum class CameraPath { kForwards, kRotation, kStill, kHeld };
 
 // Tracks on a wavy surface that waves. Points 100 and above come into view later.
 struct WavingTracks {
@@ -33,11 +33,11 @@ struct WavingTracks {
 
   double amplitude_mm;
 
-  explicit WavingTracks(int count, CameraMotion motion = CameraMotion::kForwards, double amplitude = 3,
+  explicit WavingTracks(int count, CameraPath motion = CameraPath::kForwards, double amplitude = 3,
                         double relief = 15, unsigned seed = 5)
       : amplitude_mm(amplitude) {
-    const bool turns = motion == CameraMotion::kForwards || motion == CameraMotion::kRotation;
-    const bool waves = motion == CameraMotion::kForwards || motion == CameraMotion::kHeld;
+    const bool turns = motion == CameraPath::kForwards || motion == CameraPath::kRotation;
+    const bool waves = motion == CameraPath::kForwards || motion == CameraPath::kHeld;
     Random random(seed);
     for (int i = 0; i < 160; ++i) {
       const double x = random.Uniform(-30, 30);
@@ -47,7 +47,7 @@ struct WavingTracks {
     for (int t = 0; t < count; ++t) {
       const double turn = turns ? 1 : 0;
       poses.emplace_back(RotationExp(turn * Eigen::Vector3d(0.02 * std::sin(0.05 * t), 0.002 * t, 0)),
-                         motion == CameraMotion::kForwards ? Eigen::Vector3d(0.5 * std::sin(0.06 * t), 0, -0.5 * t)
+                         motion == CameraPath::kForwards ? Eigen::Vector3d(0.5 * std::sin(0.06 * t), 0, -0.5 * t)
                                                            : Eigen::Vector3d::Zero());
       InitFrame frame{100 + t, {}};
       for (int i = 0; i < 160; ++i) {

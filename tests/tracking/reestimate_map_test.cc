@@ -14,7 +14,7 @@
 namespace pliant {
 namespace {
 
-using test::CameraMotion;
+using test::CameraPath;
 using test::kNoisePx;
 using test::kShape;
 using test::WavingTracks;
@@ -25,11 +25,11 @@ constexpr double kNoisier = 1.5;              // times the sigma, for twice the 
 constexpr std::size_t kMinReestimated = 100;  // the others stay
 
 TEST(ReestimateMap, RefinesTheMapOfARigidSceneByTheFramesThatFollow) {
-  const WavingTracks start(11, CameraMotion::kForwards, 0.0);
+  const WavingTracks start(11, CameraPath::kForwards, 0.0);
   const InitOutcome first = start.Try({});
   ASSERT_EQ(first.decision, InitDecision::kMap) << first.reason;
   EXPECT_TRUE(first.refinable);
-  const WavingTracks longer(61, CameraMotion::kForwards, 0.0);
+  const WavingTracks longer(61, CameraPath::kForwards, 0.0);
   const InitOutcome refined = longer.Reestimate(WindowScene::kRigid);
   ASSERT_EQ(refined.decision, InitDecision::kMap) << refined.reason;
   EXPECT_EQ(refined.frames.size(), 61U);
@@ -56,7 +56,7 @@ TEST(ReestimateMap, RefinesNoMapOfASceneThatDeforms) {
 
 // A tenth of a pixel a frame at most: what it tells the first map is no worse than noise.
 TEST(ReestimateMap, APointThatDriftsStaysOut) {
-  WavingTracks sequence(61, CameraMotion::kForwards, 0.0);
+  WavingTracks sequence(61, CameraPath::kForwards, 0.0);
   for (InitFrame& frame : sequence.frames)
     for (InitObservation& seen : frame.observations)
       if (seen.id == PointId{42}) seen.pixel.x() += 0.5 * std::sin(0.2 * (frame.frame_idx - 100));
@@ -70,7 +70,7 @@ TEST(ReestimateMap, APointThatDriftsStaysOut) {
 }
 
 TEST(ReestimateMap, APointWithLargerErrorsIsLessCertain) {
-  WavingTracks sequence(61, CameraMotion::kForwards, 0.0);
+  WavingTracks sequence(61, CameraPath::kForwards, 0.0);
   const InitOutcome clean = sequence.Reestimate(WindowScene::kRigid);
   ASSERT_EQ(clean.decision, InitDecision::kMap) << clean.reason;
   const InitPoint* before = FindById(clean.points, PointId{42});

@@ -14,6 +14,7 @@ namespace pliant {
 namespace {
 
 constexpr double kSameRay = 1e-6;      // mm^2, of a cross product of positions some 50 mm away
+constexpr double kTriangulated_mm = 1e-3;  // from exact rays
 constexpr double kLogRounding = 1e-9;  // of logarithms of distances, through poses and back
 
 // The map made again is right, in a unit of its own; the one there is has wrong depths, and points of its own.
@@ -39,20 +40,28 @@ struct TwoMaps {
   }
 };
 
+Submap SubmapOf(const TwoMaps& maps) {
+  Submap submap(0, TestCamera(), TrackerOptions());
+  submap.map = maps.map;
+  submap.last_cam_from_world = maps.before;
+  submap.before_last_cam_from_world = maps.before;
+  return submap;
+}
+
 TEST(ReplaceMap, KeepsTheUnit) {
-  TwoMaps maps;
-  const Map old = maps.map;
+  const TwoMaps maps;
+  Submap submap = SubmapOf(maps);
   std::vector<RefinedPoint> refined;
-  const auto pose = ReplaceMap(maps.outcome, {maps.map, maps.before}, &maps.map, &refined);
-  ASSERT_TRUE(pose);
+  ASSERT_TRUE(ReplaceMap(maps.outcome, {maps.map, maps.before}, &submap, &refined));
   // Of the eight in both the median is between the fifth and the sixth: 0.505.
   const double scale = 0.5 * (1 / 0.50 + 1 / 0.51);
-  EXPECT_LT((pose->translation - scale * maps.after.translation).norm(), kLogRounding);
-  EXPECT_LT(pose->rotation.angularDistance(maps.after.rotation), kLogRounding);
-  ASSERT_EQ(maps.map.landmarks.size(), 9U);
+  const Rigid3& pose = submap.last_cam_from_world;
+  EXPECT_LT((pose.translation - scale * maps.after.translation).norm(), kLogRounding);
+  EXPECT_LT(pose.rotation.angularDistance(maps.after.rotation), kLogRounding);
+  ASSERT_EQ(submap.map.landmarks.size(), 9U);
   ASSERT_EQ(refined.size(), 9U);
   for (const InitPosition& point : maps.outcome.frames[1].positions) {
-    const Landmark* landmark = maps.map.Find(point.id);
+    const Landmark* landmark = submap.map.Find(point.id);
     if (landmark == nullptr) {
       EXPECT_EQ(point.id, PointId{20});
       continue;
@@ -69,42 +78,73 @@ TEST(ReplaceMap, LeavesThePointsThatItDoesNotHaveWhereTheCameraSeesThem) {
   Landmark& before = *maps.map.Find(PointId{3});
   before.log_distance_sigma = 0.02;
   before.determined_at = before.position + Eigen::Vector3d(0, 1, 0);
-  const Landmark old = before;
+  Submap submap = SubmapOf(maps);
+  Landmark lost = before;
+  lost.id = PointId{30};
+  submap.lost_points.Add(lost, maps.before);
   std::vector<RefinedPoint> refined;
-  const auto pose = ReplaceMap(maps.outcome, {maps.map, maps.before}, &maps.map, &refined);
-  ASSERT_TRUE(pose);
-  const Landmark& left = *maps.map.Find(PointId{3});
-  EXPECT_LT((*pose * left.position - maps.before * old.position).norm(), kLogRounding);
-  EXPECT_NEAR(DistanceSigma(left, *pose), DistanceSigma(old, maps.before), kLogRounding);
-  EXPECT_LT((left.position - left.rest_position - (old.position - old.rest_position)).norm(), kLogRounding);
+  ASSERT_TRUE(ReplaceMap(maps.outcome, {maps.map, maps.before}, &submap, &refined));
+  const Rigid3& pose = submap.last_cam_from_world;
+  const Landmark& left = *submap.map.Find(PointId{3});
+  const Eigen::Vector3d in_cam = maps.before * before.position;
+  const Eigen::Vector3d rest_in_cam = maps.before * before.rest_position;
+  EXPECT_LT((pose * left.position - in_cam).norm(), kLogRounding);
+  EXPECT_LT((pose * left.rest_position - rest_in_cam).norm(), kLogRounding);
+  EXPECT_NEAR(DistanceSigma(left, pose), DistanceSigma(before, maps.before), kLogRounding);
+  const Landmark& still_lost = *submap.lost_points.Find(lost.id);
+  EXPECT_LT((pose * still_lost.position - in_cam).norm(), kLogRounding);
+  EXPECT_LT((pose * still_lost.rest_position - rest_in_cam).norm(), kLogRounding);
+}
+
+// A point that was followed by other cameras before is triangulated from where they are in the new world.
+TEST(ReplaceMap, MovesTheViewsOfCandidates) {
+  const Camera camera = TestCamera();
+  const TwoMaps maps;
+  Submap submap = SubmapOf(maps);
+  const Rigid3 first = Rigid3(Eigen::Quaterniond::Identity(), Eigen::Vector3d(6, 0, 0)) * maps.before;
+  const Eigen::Vector3d position = maps.before.Inverse() * Eigen::Vector3d(1, 2, 45);
+  const auto pixel_in = [&](const Rigid3& pose) { return *camera.Project(pose * position); };
+  ASSERT_TRUE(submap.candidates.Add({.id = PointId{40}, .pixel = pixel_in(first)}, first, maps.map));
+  const int views = GrowthOptions().min_views;
+  for (int view = 1; view < views; ++view) {
+    const double share = static_cast<double>(view) / (views - 1);
+    const Rigid3 pose = Rigid3(Eigen::Quaterniond::Identity(), Eigen::Vector3d(6 * (1 - share), 0, 0)) * maps.before;
+    ASSERT_TRUE(submap.candidates.AddView({.id = PointId{40}, .pixel = pixel_in(pose)}, pose, maps.map));
+  }
+  std::vector<RefinedPoint> refined;
+  ASSERT_TRUE(ReplaceMap(maps.outcome, {maps.map, maps.before}, &submap, &refined));
+  const auto certain = submap.candidates.Certain(submap.last_cam_from_world, submap.map, 0.0);
+  ASSERT_EQ(certain.size(), 1U);
+  EXPECT_LT((submap.last_cam_from_world * certain.front().position - maps.before * position).norm(), kTriangulated_mm);
 }
 
 TEST(ReplaceMap, OfOtherPointsChangesNothing) {
   TwoMaps maps;
   maps.outcome.frames[1].positions = {{PointId{20}, Eigen::Vector3d(0, 0, 50)}};
-  const Eigen::Vector3d first = maps.map.landmarks.front().position;
+  Submap submap = SubmapOf(maps);
   std::vector<RefinedPoint> refined;
-  EXPECT_FALSE(ReplaceMap(maps.outcome, {maps.map, maps.before}, &maps.map, &refined));
-  EXPECT_EQ(maps.map.landmarks.front().position, first);
+  EXPECT_FALSE(ReplaceMap(maps.outcome, {maps.map, maps.before}, &submap, &refined));
+  EXPECT_EQ(submap.map.landmarks.front().position, maps.map.landmarks.front().position);
+  EXPECT_EQ(submap.last_cam_from_world.translation, maps.before.translation);
   EXPECT_TRUE(refined.empty());
 }
 
 // The scene is rigid: what was found of an earlier frame holds in the present one.
 TEST(ReplaceMap, OfAnEarlierFramePutsThePointsWhereItFoundThem) {
-  TwoMaps maps;
+  const TwoMaps maps;
   const MapInFrame then{maps.map, maps.before};
-  TwoMaps at_once;
+  Submap at_once = SubmapOf(maps);
   std::vector<RefinedPoint> refined;
-  ASSERT_TRUE(ReplaceMap(at_once.outcome, then, &at_once.map, &refined));
-  std::erase_if(maps.map.landmarks, [](const Landmark& landmark) { return landmark.id == PointId{8}; });
-  for (Landmark& landmark : maps.map.landmarks) landmark.pixel += Eigen::Vector2d(4, 1);
+  ASSERT_TRUE(ReplaceMap(maps.outcome, then, &at_once, &refined));
+  Submap later = SubmapOf(maps);
+  std::erase_if(later.map.landmarks, [](const Landmark& landmark) { return landmark.id == PointId{8}; });
+  for (Landmark& landmark : later.map.landmarks) landmark.pixel += Eigen::Vector2d(4, 1);
   refined.clear();
-  const auto pose = ReplaceMap(maps.outcome, then, &maps.map, &refined);
-  ASSERT_TRUE(pose);
+  ASSERT_TRUE(ReplaceMap(maps.outcome, then, &later, &refined));
   EXPECT_EQ(refined.size(), 8U);
   // Without the eighth the unit is that of the seven: 1 / 0.50.
   const double unit = (1 / 0.50) / (0.5 * (1 / 0.50 + 1 / 0.51));
-  for (const Landmark& landmark : maps.map.landmarks) {
+  for (const Landmark& landmark : later.map.landmarks) {
     if (landmark.id == PointId{3}) continue;  // which the outcome does not have
     EXPECT_LT((landmark.position - unit * at_once.map.Find(landmark.id)->position).norm(), kLogRounding);
   }

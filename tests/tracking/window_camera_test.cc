@@ -18,13 +18,13 @@ namespace {
 
 using testing::HasSubstr;
 
-using test::CameraMotion;
+using test::CameraPath;
 using test::kNoisePx;
 using test::kNominalMm;
 using test::WavingTracks;
 
 TEST(WindowCamera, SaysThatTheCameraOnlyTurned) {
-  const InitOutcome outcome = WavingTracks(31, CameraMotion::kRotation).Try({});
+  const InitOutcome outcome = WavingTracks(31, CameraPath::kRotation).Try({});
   EXPECT_EQ(outcome.decision, InitDecision::kWait);
   EXPECT_THAT(outcome.reason, HasSubstr("rotated or stood still"));
 }
@@ -33,7 +33,7 @@ enum class SceneMotion { kNone, kWave };
 
 // A camera that turns about the scene: if it moved along its axis, any focal length would do.
 WavingTracks Orbit(int frames, SceneMotion motion) {
-  WavingTracks sequence(frames, CameraMotion::kStill);
+  WavingTracks sequence(frames, CameraPath::kStill);
   const Eigen::Vector3d center(0, 0, 60);
   Random random(3);
   for (std::size_t t = 0; t < sequence.frames.size(); ++t)
@@ -80,7 +80,7 @@ TEST(WindowCamera, ARigidMapThatContradictsTheFocalLengthIsPutAside) {
 
 // (W20) Of a flat scene, whose depths hardly stand out.
 TEST(WindowCamera, AfterCameraAndSceneCouldNotBeToldApartDepthsOfARigidMapHaveToStandOut) {
-  const WavingTracks plane(46, CameraMotion::kForwards, 0, 0);
+  const WavingTracks plane(46, CameraPath::kForwards, 0, 0);
   const auto initializer = MakeWindowInitializer({}, kNominalMm);
   InitInput input{plane.camera, plane.frames, {}};
   const InitOutcome map = initializer->Try(input);
@@ -91,7 +91,7 @@ TEST(WindowCamera, AfterCameraAndSceneCouldNotBeToldApartDepthsOfARigidMapHaveTo
   const InitOutcome refused = initializer->Try(input);
   EXPECT_EQ(refused.decision, InitDecision::kWait);
   EXPECT_THAT(refused.reason, HasSubstr("could not be told apart before this reference"));
-  const WavingTracks deep(46, CameraMotion::kForwards, 0);
+  const WavingTracks deep(46, CameraPath::kForwards, 0);
   InitInput of_deep{deep.camera, deep.frames, {}};
   of_deep.was_ambiguous = true;
   EXPECT_EQ(initializer->Try(of_deep).decision, InitDecision::kMap);
@@ -105,7 +105,7 @@ TEST(WindowCamera, ASceneThatDeformsDoesNotContradictTheFocalLength) {
 }
 
 TEST(WindowCamera, SaysWhenCameraAndSceneCannotBeToldApart) {
-  const WavingTracks held(51, CameraMotion::kHeld);
+  const WavingTracks held(51, CameraPath::kHeld);
   const InitOutcome outcome = held.Try({});
   EXPECT_EQ(outcome.decision, InitDecision::kNewReference);
   EXPECT_TRUE(outcome.ambiguous);
@@ -118,7 +118,7 @@ TEST(WindowCamera, SaysWhenCameraAndSceneCannotBeToldApart) {
 
 // A camera that stands still before a wall of which a part moves, in noisy images.
 WavingTracks PokedWall(int frames) {
-  WavingTracks sequence(frames, CameraMotion::kStill);
+  WavingTracks sequence(frames, CameraPath::kStill);
   Random random(8);
   for (std::size_t t = 0; t < sequence.frames.size(); ++t)
     for (InitObservation& seen : sequence.frames[t].observations) {
@@ -139,7 +139,7 @@ TEST(WindowCamera, TakesNoPokeForAMotionOfTheCamera) {
 }
 
 TEST(WindowCamera, ARigidMotionThatExplainsLittleMakesNoMapOfAFlatScene) {
-  const WavingTracks plane(36, CameraMotion::kForwards, 0, 0);
+  const WavingTracks plane(36, CameraPath::kForwards, 0, 0);
   const InitInput input{plane.camera, plane.frames, {}};
   auto window = SolveAsRigid(input, plane.frames.size(), {}, kNominalMm);
   ASSERT_TRUE(window.ok()) << window.status().message();
@@ -191,13 +191,13 @@ TEST(WindowCamera, DepthsShowNothingWhereAnEarlierWindowContradictsThem) {
 }
 
 TEST(WindowCamera, AHeldCameraMayStandStillWhateverTheDepths) {
-  const InitOutcome outcome = WavingTracks(51, CameraMotion::kHeld).Try({});
+  const InitOutcome outcome = WavingTracks(51, CameraPath::kHeld).Try({});
   EXPECT_TRUE(outcome.camera_may_stand_still);
   EXPECT_FALSE(outcome.moves_by_depth);
 }
 
 TEST(WindowCamera, SaysThatTheCameraStoodStill) {
-  const InitOutcome outcome = WavingTracks(31, CameraMotion::kStill).Try({});
+  const InitOutcome outcome = WavingTracks(31, CameraPath::kStill).Try({});
   EXPECT_EQ(outcome.decision, InitDecision::kWait);
   EXPECT_THAT(outcome.reason, HasSubstr("rotated or stood still"));
 }

@@ -22,7 +22,7 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-using test::CameraMotion;
+using test::CameraPath;
 using test::kNominalMm;
 using test::kShape;
 using test::WavingTracks;
@@ -123,7 +123,7 @@ TEST(WindowInitializer, ASequenceThatEndsEarlyMustBeAsCertain) {
   WindowInitOptions strict;
   strict.provisional = Switch::kOff;
   for (const unsigned seed : {1U, 2U, 3U}) {
-    const WavingTracks sequence(16, CameraMotion::kForwards, 3, 15, seed);
+    const WavingTracks sequence(16, CameraPath::kForwards, 3, 15, seed);
     const InitOutcome last = sequence.Try(strict, InitMoment::kLastFrame);
     EXPECT_EQ(last.decision, InitDecision::kNewReference) << seed << ": " << last.reason;
     EXPECT_THAT(last.reason, HasSubstr("points is known to 2.0 % of the median depth"));
@@ -189,20 +189,20 @@ TEST(WindowInitializer, AtTheEndAProvisionalMapIsTaken) {
 }
 
 TEST(WindowInitializer, ARigidSceneNeedsTenFrames) {
-  const WavingTracks sequence(11, CameraMotion::kForwards, 0.0);
+  const WavingTracks sequence(11, CameraPath::kForwards, 0.0);
   const InitOutcome outcome = sequence.Try({});
   ASSERT_EQ(outcome.decision, InitDecision::kMap) << outcome.reason;
   EXPECT_THAT(outcome.reason, HasSubstr("rigid window of 11 frames"));
   for (const int t : {0, 10}) EXPECT_LT(sequence.ShapeError(outcome, t), kRigidShare * kShape) << t;
   // One that deforms a little does not pass for rigid, and is told so.
-  const InitOutcome breathing = WavingTracks(11, CameraMotion::kForwards, 0.3).Try({});
+  const InitOutcome breathing = WavingTracks(11, CameraPath::kForwards, 0.3).Try({});
   EXPECT_EQ(breathing.decision, InitDecision::kWait);
   EXPECT_THAT(breathing.reason, HasSubstr("the scene deforms"));
 }
 
 // Noise of the tracks, which no neighbors share, may be larger than what a point of a map is allowed otherwise.
 TEST(WindowInitializer, ARigidSceneIsMappedFromNoisyTracks) {
-  WavingTracks sequence(41, CameraMotion::kForwards, 0.0);
+  WavingTracks sequence(41, CameraPath::kForwards, 0.0);
   constexpr double kNoisy_px = 0.5;
   Random random(9);
   for (InitFrame& frame : sequence.frames)
@@ -368,7 +368,7 @@ TEST(WindowInitializer, AShortDeformingWindowIsTriedWhereHalfOfThePointsAreLostB
 // Two views of a plane are explained by two motions, each of which is a minimum of the window's cost.
 TEST(WindowInitializer, ARigidPlaneIsFlat) {
   for (const int frames : {36, 46, 61}) {
-    const WavingTracks plane(frames, CameraMotion::kForwards, 0, 0);
+    const WavingTracks plane(frames, CameraPath::kForwards, 0, 0);
     const InitOutcome outcome = plane.Try({});
     ASSERT_EQ(outcome.decision, InitDecision::kMap) << frames << ": " << outcome.reason;
     EXPECT_LT(plane.ShapeError(outcome, 0), kFlatShare * kShape) << frames;
@@ -380,7 +380,7 @@ TEST(WindowInitializer, ARigidPlaneIsFlat) {
 TEST(WindowInitializer, APlaneOfTwoMotionsIsNoMap) {
   for (const auto& [frames, amplitude] : {std::pair(11, 1.0), std::pair(16, 0.3)}) {
     for (const InitMoment moment : {InitMoment::kMoreFollow, InitMoment::kLastFrame}) {
-      const InitOutcome outcome = WavingTracks(frames, CameraMotion::kForwards, amplitude, 0).Try({}, moment);
+      const InitOutcome outcome = WavingTracks(frames, CameraPath::kForwards, amplitude, 0).Try({}, moment);
       EXPECT_NE(outcome.decision, InitDecision::kMap) << outcome.reason;
     }
   }
@@ -393,7 +393,7 @@ TEST(WindowInitializer, APlaneThatWavesIsKnownOrRefused) {
   options.min_still_camera_ratio = 0;  // most of these smooth paths would be refused for that alone
   for (const unsigned seed : {1U, 2U, 3U, 4U, 5U}) {
     for (const int frames : {31, 36, 46}) {
-      const WavingTracks plane(frames, CameraMotion::kForwards, 1, 0, seed);
+      const WavingTracks plane(frames, CameraPath::kForwards, 1, 0, seed);
       const InitOutcome outcome = plane.Try(options, InitMoment::kLastFrame);
       if (outcome.decision != InitDecision::kMap) continue;
       ++maps;
@@ -410,7 +410,7 @@ TEST(WindowInitializer, ADeformingMapWhoseDepthsHardlyStandOutIsPutAside) {
   WindowInitOptions options;
   options.min_still_camera_ratio = 0;
   for (const unsigned seed : {1U, 2U, 3U}) {
-    const WavingTracks plane(46, CameraMotion::kForwards, 1, 0, seed);
+    const WavingTracks plane(46, CameraPath::kForwards, 1, 0, seed);
     const InitOutcome at_the_end = plane.Try(options, InitMoment::kLastFrame);
     if (at_the_end.decision != InitDecision::kMap) continue;
     ++maps;
@@ -426,7 +426,7 @@ TEST(WindowInitializer, ADeformingMapWhoseDepthsHardlyStandOutHasToKnowThem) {
   WindowInitOptions options;
   options.min_still_camera_ratio = 0;
   for (const unsigned seed : {1U, 2U, 3U}) {
-    const WavingTracks plane(46, CameraMotion::kForwards, 1, 0, seed);
+    const WavingTracks plane(46, CameraPath::kForwards, 1, 0, seed);
     options.max_depth_sigma = options.last_depth_sigma;
     const InitOutcome known = plane.Try(options, InitMoment::kLastFrame);
     if (known.decision != InitDecision::kMap || known.measured.DepthSignal() >= 2) continue;

@@ -20,7 +20,7 @@ namespace {
 using testing::Each;
 using testing::HasSubstr;
 
-using test::CameraMotion;
+using test::CameraPath;
 using test::kNominalMm;
 using test::WavingTracks;
 
@@ -68,7 +68,7 @@ WavingTracks Distorted(WavingTracks sequence, double k) {
 }
 
 TEST(WindowParts, HalvesAgreeWhereNothingDeforms) {
-  const WavingTracks sequence(kWindowFrames, CameraMotion::kForwards, kRigid_mm);
+  const WavingTracks sequence(kWindowFrames, CameraPath::kForwards, kRigid_mm);
   const SolvedWindow window = Rigid(sequence);
   const std::vector<double> sigmas = SigmasOfHalves(InputOf(sequence), window, {}, kNominalMm);
   ASSERT_EQ(sigmas.size(), window.ids.size());
@@ -77,7 +77,7 @@ TEST(WindowParts, HalvesAgreeWhereNothingDeforms) {
 }
 
 TEST(WindowParts, HalvesDifferByWhatADeformationMakesOfDepths) {
-  const WavingTracks sequence(kWindowFrames, CameraMotion::kForwards, kWave_mm);
+  const WavingTracks sequence(kWindowFrames, CameraPath::kForwards, kWave_mm);
   const SolvedWindow window = Rigid(sequence);
   const double linear = MedianSigma(window.solution);
   const double error = Error(sequence, window);
@@ -88,14 +88,14 @@ TEST(WindowParts, HalvesDifferByWhatADeformationMakesOfDepths) {
 }
 
 TEST(WindowParts, HalvesSayNothingWhereTheyAreTooShort) {
-  const WavingTracks sequence(9, CameraMotion::kForwards, kRigid_mm);
+  const WavingTracks sequence(9, CameraPath::kForwards, kRigid_mm);
   EXPECT_THAT(SigmasOfHalves(InputOf(sequence), Rigid(sequence), {}, kNominalMm),
               Each(std::numeric_limits<double>::infinity()));
 }
 
 TEST(WindowParts, ATremorOrAWrongLensDoesNotCostTheDepthsOfARigidScene) {
   for (const double k : {0.0, 0.02}) {
-    const WavingTracks sequence = Distorted(WavingTracks(kWindowFrames, CameraMotion::kForwards, kTremor_mm), k);
+    const WavingTracks sequence = Distorted(WavingTracks(kWindowFrames, CameraPath::kForwards, kTremor_mm), k);
     const SolvedWindow window = Solved(sequence);
     ASSERT_TRUE(window.IsRigid()) << k;
     EXPECT_GT(window.solution.residual_correlation, WindowInitOptions().max_correlation) << k;
@@ -108,14 +108,14 @@ TEST(WindowParts, ATremorOrAWrongLensDoesNotCostTheDepthsOfARigidScene) {
 
 TEST(WindowParts, AWaveIsNotTakenForRigid) {
   for (const unsigned seed : {1U, 2U, 3U}) {
-    const SolvedWindow window = Solved(WavingTracks(kWindowFrames, CameraMotion::kForwards, kWave_mm, 15, seed));
+    const SolvedWindow window = Solved(WavingTracks(kWindowFrames, CameraPath::kForwards, kWave_mm, 15, seed));
     EXPECT_FALSE(window.IsRigid()) << seed;
     EXPECT_EQ(window.deforming, nullptr) << seed;
   }
 }
 
 TEST(WindowParts, AMapOfATremorSaysSo) {
-  const WavingTracks sequence(kWindowFrames, CameraMotion::kForwards, kTremor_mm);
+  const WavingTracks sequence(kWindowFrames, CameraPath::kForwards, kTremor_mm);
   WindowInitOptions options;
   options.min_still_camera_ratio = 0;
   const InitOutcome outcome = sequence.Try(options);
@@ -127,7 +127,7 @@ TEST(WindowParts, AMapOfATremorSaysSo) {
 
 // A scene that deforms at all may do so before a camera that stands still: here in one way, as the camera moves.
 TEST(WindowParts, WhetherTheCameraMovesIsAskedAllTheSame) {
-  const WavingTracks sequence(kWindowFrames, CameraMotion::kForwards, kTremor_mm);
+  const WavingTracks sequence(kWindowFrames, CameraPath::kForwards, kTremor_mm);
   const InitOutcome outcome = sequence.Try({});
   EXPECT_TRUE(outcome.ambiguous) << outcome.reason;
   EXPECT_LT(outcome.measured.still_camera_error_ratio, WindowInitOptions().min_still_camera_ratio);
@@ -135,13 +135,13 @@ TEST(WindowParts, WhetherTheCameraMovesIsAskedAllTheSame) {
 
 TEST(WindowParts, AgreeWithAWindowThatIsRight) {
   for (const unsigned seed : {1U, 2U, 3U}) {
-    const WavingTracks sequence(kWindowFrames, CameraMotion::kForwards, kWave_mm, 15, seed);
+    const WavingTracks sequence(kWindowFrames, CameraPath::kForwards, kWave_mm, 15, seed);
     EXPECT_LT(SigmaFactor(sequence, Solved(sequence)), kMaxFactorWhereRight) << seed;
   }
 }
 
 TEST(WindowParts, SayByHowMuchItsSigmasAreTooSmall) {
-  const WavingTracks sequence(kWindowFrames, CameraMotion::kForwards, kWave_mm);
+  const WavingTracks sequence(kWindowFrames, CameraPath::kForwards, kWave_mm);
   SolvedWindow wrong = Solved(sequence);
   const double right = SigmaFactor(sequence, wrong);
   ASSERT_FALSE(wrong.IsRigid());
@@ -152,7 +152,7 @@ TEST(WindowParts, SayByHowMuchItsSigmasAreTooSmall) {
 }
 
 TEST(WindowParts, SayNothingOfPointsThatTheyDoNotHave) {
-  const WavingTracks sequence(kWindowFrames, CameraMotion::kForwards, kWave_mm);
+  const WavingTracks sequence(kWindowFrames, CameraPath::kForwards, kWave_mm);
   SolvedWindow window = Solved(sequence);
   for (PointId& id : window.ids) id = {id.value + 100000};
   EXPECT_EQ(SigmaFactor(sequence, window), 1.0);

@@ -165,12 +165,9 @@ void MapUpdater::TakeRigid(const Reestimation& reestimation, Submap* submap, Map
   }
   if (outcome.decision != InitDecision::kMap) return;
   RejectReprojectionOutliers(outcome, submap, &update->losses);
-  const Map before = submap->map;
-  const auto then_from_world = ReplaceMap(outcome, then, &submap->map, &update->refined_points);
-  if (!then_from_world) return;
+  if (!ReplaceMap(outcome, then, submap, &update->refined_points)) return;
   submap->depths.signal = outcome.measured.DepthSignal();
-  submap->candidates.TakeCorrection(before, submap->map);
-  const Rigid3 cam_from_world = PoseInWorldOf(*then_from_world, then, *submap);
+  const Rigid3 cam_from_world = PoseInReplaced(*submap);
   submap->before_last_cam_from_world =
       submap->before_last_cam_from_world * submap->last_cam_from_world.Inverse() * cam_from_world;
   submap->last_cam_from_world = cam_from_world;
@@ -179,19 +176,18 @@ void MapUpdater::TakeRigid(const Reestimation& reestimation, Submap* submap, Map
   update->note = "the map was refined: " + outcome.reason;
 }
 
-// The camera of the present frame in the world into which the map was moved; `then_from_world`: that of an earlier
-// frame, in this world.
-Rigid3 MapUpdater::PoseInWorldOf(const Rigid3& then_from_world, const MapInFrame& then, const Submap& submap) const {
-  if (options_.handover_frames == 0) return then_from_world;
+// The camera of the present frame in a map that was replaced: where it was moved with the map of an earlier frame, it
+// is estimated again.
+Rigid3 MapUpdater::PoseInReplaced(const Submap& submap) const {
+  if (options_.handover_frames == 0) return submap.last_cam_from_world;
   std::vector<Eigen::Vector3d> positions;
   std::vector<Eigen::Vector2d> pixels;
   for (const Landmark& landmark : submap.map.landmarks) {
     positions.push_back(landmark.position);
     pixels.push_back(landmark.pixel);
   }
-  const Rigid3 guess = submap.last_cam_from_world * then.cam_from_world.Inverse() * then_from_world;
-  const auto estimate = EstimateCameraPose(camera_, positions, pixels, guess, options_.pose);
-  return estimate.ok() ? estimate->cam_from_world : guess;
+  const auto estimate = EstimateCameraPose(camera_, positions, pixels, submap.last_cam_from_world, options_.pose);
+  return estimate.ok() ? estimate->cam_from_world : submap.last_cam_from_world;
 }
 
 // Candidates are followed with the pose and the deformation that the map has given; those that are certain enter it.

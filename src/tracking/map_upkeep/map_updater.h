@@ -75,7 +75,7 @@ class MapUpdater {
   void TakeReestimations(Submap* submap, MapUpdate* update);
   void TakeRigid(const Reestimation& reestimation, Submap* submap, MapUpdate* update) const;
   void TakeAny(const Reestimation& reestimation, Submap* submap, MapUpdate* update) const;
-  Rigid3 PoseInWorldOf(const Rigid3& then_from_world, const MapInFrame& then, const Submap& submap) const;
+  Rigid3 PoseInReplaced(const Submap& submap) const;
   bool AddToRigidHistory(int frame_idx, Submap* submap) const;
   void Grow(const PreparedFrame& frame, Submap* submap, StageTimes* times, MapUpdate* update);
   void FollowCandidates(const PreparedFrame& frame, Submap* submap) const;

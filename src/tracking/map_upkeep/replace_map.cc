@@ -26,29 +26,27 @@ std::optional<double> UnitOf(const InitFrameState& last, const Rigid3& cam_from_
 
 }  // namespace
 
-std::optional<Rigid3> ReplaceMap(const InitOutcome& outcome, const MapInFrame& then, Map* map,
-                                 std::vector<RefinedPoint>* refined) {
+bool ReplaceMap(const InitOutcome& outcome, const MapInFrame& then, Submap* submap,
+                std::vector<RefinedPoint>* refined) {
   const InitFrameState& now = outcome.frames.back();
-  const auto unit = UnitOf(now, then.cam_from_world, then.map, *map, 1);
-  if (!unit) return std::nullopt;
+  const auto unit = UnitOf(now, then.cam_from_world, then.map, submap->map, 1);
+  if (!unit) return false;
   const Rigid3 now_from_world(now.cam_from_world.rotation, *unit * now.cam_from_world.translation);
-  const Rigid3 now_from_before = now_from_world.Inverse() * then.cam_from_world;
-  for (Landmark& landmark : map->landmarks) {
-    const InitPosition* point = FindById(now.positions, landmark.id);
-    const Eigen::Vector3d position = point != nullptr ? *unit * point->position : now_from_before * landmark.position;
-    landmark.rest_position = point != nullptr ? position : landmark.rest_position + position - landmark.position;
-    landmark.position = position;
-    if (point != nullptr) {
+  submap->MoveInto(now_from_world.Inverse() * then.cam_from_world);
+  const Map before = submap->map;
+  for (Landmark& landmark : submap->map.landmarks) {
+    if (const InitPosition* point = FindById(now.positions, landmark.id); point != nullptr) {
       const InitPoint* determined = FindById(outcome.points, landmark.id);
+      landmark.position = *unit * point->position;
+      landmark.rest_position = landmark.position;
       landmark.log_distance_sigma = determined != nullptr ? determined->LogDistanceSigma() : 0.0;
-      landmark.determined_at = position;
-    } else {
-      landmark.determined_at = now_from_before * landmark.determined_at;
+      landmark.determined_at = landmark.position;
     }
     landmark.last_motion.setZero();
     refined->push_back({landmark.id, landmark.rest_position});
   }
-  return now_from_world;
+  submap->candidates.TakeCorrection(before, submap->map);
+  return true;
 }
 
 std::vector<InitPosition> ReestimatedPositions(const InitOutcome& outcome, const Rigid3& cam_from_world, const Map& map,

@@ -15,6 +15,7 @@
 #include "pliant/scene/frame_report.h"
 #include "pliant/scene/map.h"
 #include "pliant/tracking/bootstrapping/initializer.h"
+#include "tracking/submap/submap.h"
 
 namespace pliant {
 
@@ -24,12 +25,11 @@ struct MapInFrame {
   Rigid3 cam_from_world;
 };
 
-// Of the same reference, and of a scene that is rigid: points are put where the outcome has them, and are there at
-// rest; those that it does not have stay where the camera sees them. `then` is of the outcome's last frame; what `map`
-// has no more does not count. Returns the camera's pose in that frame, and appends the points with their new undeformed
-// positions; nothing changes when the two have no point in common.
-std::optional<Rigid3> ReplaceMap(const InitOutcome& outcome, const MapInFrame& then, Map* map,
-                                 std::vector<RefinedPoint>* refined);
+// Of the same reference, and of a scene that is rigid: the submap is moved into the outcome's world, as the camera of
+// `then`, its last frame, says; there points are put where the outcome has them, and are there at rest. Appends all
+// points with their undeformed positions. False when the two have no point in common that the map still has: nothing
+// changes then.
+bool ReplaceMap(const InitOutcome& outcome, const MapInFrame& then, Submap* submap, std::vector<RefinedPoint>* refined);
 
 // Of another reference: where the outcome's points are in its last frame, in the map's world, with the camera kept;
 // sorted by id. None when fewer than `min_common` are in both.

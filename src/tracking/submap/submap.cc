@@ -76,6 +76,11 @@ void Submap::MoveInto(const Sim3& other_from_world) {
   for (auto& [step, pose] : recent_poses) pose = PoseInWorld(other_from_world, pose);
 }
 
+void Submap::MoveInto(const Rigid3& other_from_world) {
+  MoveInto(Sim3{1.0, other_from_world.rotation, other_from_world.translation});
+  candidates.Move(other_from_world);
+}
+
 void Submap::MoveAllButRest(const Rigid3& motion) {
   for (Landmark& landmark : map.landmarks) {
     landmark.position = motion * landmark.position;

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "pliant/geometry/rigid3.h"
 #include "pliant/geometry/sim3.h"
 #include "pliant/scene/frame_report.h"
 #include "pliant/scene/map.h"
@@ -46,8 +47,10 @@ struct Submap {
   // (W13) A map of a rigid window, of a scene that turns out to deform: its sigmas knew nothing of that. They become
   // those of depths that just stand out.
   void BecomeProvisional();
-  // Into another world; where the two are one.
+  // Into another world; where the two are one. Without its candidates, which are not kept where maps are merged.
   void MoveInto(const Sim3& other_from_world);
+  // Into another world of the same unit, with all that it knows.
+  void MoveInto(const Rigid3& other_from_world);
   // Moves what is now, cameras and points alike, and not where the points rest.
   void MoveAllButRest(const Rigid3& motion);
   // All that `other`, which is in the same world, knows besides: its points are lost ones, which are found where they
