@@ -289,7 +289,7 @@ class IntrinsicsSearch {
   const RefineOptions& options_;
   const std::function<bool()>& goes_on_;
   mutable bool stopped_ = false;  // what is found after it means nothing
-  std::vector<bool> usable_;  // observations, whether they fit or not
+  std::vector<bool> usable_;      // observations, whether they fit or not
   std::vector<bool> used_;
   double distance_ = 1;
   double distortion_unit_ = 1;  // k that moves the corner by its distance from the center

@@ -60,7 +60,13 @@ Submap CatchUp::TakeSubmap(const InitFrame& present) {
   map_updater_->KeepFollowed(present, &submap_);
   // The source has forgotten them, in the frame in which they were lost.
   submap_.lost_points.Clear();
-  if (state_ == TrackingState::kTracking) map_updater_->AdoptFollowed(first_.frames.back(), present, &submap_);
+  if (state_ == TrackingState::kTracking) {
+    map_updater_->AdoptFollowed(first_.frames.back(), present, &submap_);
+  } else {
+    // They are described there, to be found again.
+    for (Landmark& landmark : submap_.map.landmarks)
+      landmark.pixel = FindById(present.observations, landmark.id)->pixel;
+  }
   return std::move(submap_);
 }
 

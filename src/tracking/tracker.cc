@@ -180,10 +180,12 @@ FrameResult Tracker::Bootstrap(const PreparedFrame& frame, StageTimes* times) {
   catch_up_->GoOn(frames, kFramesAtOnce, &held_, times, &result);
   if (catch_up_->reached() == frames.size() && frames.back().frame_idx == frame.frame_idx) {
     EndCatchUp(&result);
-    if (state_ == TrackingState::kTracking)
-      relocalizer_->Remember(frame, &submaps_->current());
-    else
+    if (state_ == TrackingState::kTracking) {
+      relocalizer_->RememberPose(frame.step, &submaps_->current());
+      relocalizer_->RememberView(frame, &submaps_->current());
+    } else {
       relocalizer_->RememberLastView(&submaps_->current());
+    }
   }
   return result;
 }
@@ -239,11 +241,12 @@ FrameResult Tracker::TrackFrame(const PreparedFrame& frame, StageTimes* times) {
   map_updater_->RemoveCommonMotion(&submap);                                                      // (E12)
   Apply(TrackingEvent::kFrameTracked);
   AddSolved(solved, &result);
+  relocalizer_->RememberPose(frame.step, &submap);
   if (solved.points.in_blur) {
     result.note = "the image is blurred";
     return result;
   }
-  relocalizer_->Remember(frame, &submap);
+  relocalizer_->RememberView(frame, &submap);
   result.update = map_updater_->Update(frame, &submap, times);  // (W13), (G1) to (G8)
   result.losses.Add(result.update.losses);
   result.note = WithFault(result.update.note, ImageFault(frame, submap.previous));

@@ -33,8 +33,8 @@ struct WavingTracks {
 
   double amplitude_mm;
 
-  explicit WavingTracks(int count, CameraPath motion = CameraPath::kForwards, double amplitude = 3,
-                        double relief = 15, unsigned seed = 5)
+  explicit WavingTracks(int count, CameraPath motion = CameraPath::kForwards, double amplitude = 3, double relief = 15,
+                        unsigned seed = 5)
       : amplitude_mm(amplitude) {
     const bool turns = motion == CameraPath::kForwards || motion == CameraPath::kRotation;
     const bool waves = motion == CameraPath::kForwards || motion == CameraPath::kHeld;
@@ -48,7 +48,7 @@ struct WavingTracks {
       const double turn = turns ? 1 : 0;
       poses.emplace_back(RotationExp(turn * Eigen::Vector3d(0.02 * std::sin(0.05 * t), 0.002 * t, 0)),
                          motion == CameraPath::kForwards ? Eigen::Vector3d(0.5 * std::sin(0.06 * t), 0, -0.5 * t)
-                                                           : Eigen::Vector3d::Zero());
+                                                         : Eigen::Vector3d::Zero());
       InitFrame frame{100 + t, {}};
       for (int i = 0; i < 160; ++i) {
         if (i >= 100 && t < 10) continue;

@@ -13,9 +13,9 @@
 namespace pliant {
 namespace {
 
-constexpr double kSameRay = 1e-6;      // mm^2, of a cross product of positions some 50 mm away
+constexpr double kSameRay = 1e-6;          // mm^2, of a cross product of positions some 50 mm away
 constexpr double kTriangulated_mm = 1e-3;  // from exact rays
-constexpr double kLogRounding = 1e-9;  // of logarithms of distances, through poses and back
+constexpr double kLogRounding = 1e-9;      // of logarithms of distances, through poses and back
 
 // The map made again is right, in a unit of its own; the one there is has wrong depths, and points of its own.
 struct TwoMaps {

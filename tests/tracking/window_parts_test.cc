@@ -125,6 +125,25 @@ TEST(WindowParts, AMapOfATremorSaysSo) {
   EXPECT_THAT(outcome.reason, HasSubstr("the scene deforms, but so little"));
 }
 
+// What two halves differ by is one sample of what a deformation adds to depths.
+TEST(WindowParts, AMapOfATremorOverAFlatSceneIsProvisional) {
+  WindowInitOptions options;
+  options.min_still_camera_ratio = 0;
+  const WavingTracks flat(kWindowFrames - 10, CameraPath::kForwards, 0.8 * kTremor_mm, 4.5);
+  const InitOutcome outcome = flat.Try(options);
+  ASSERT_EQ(outcome.decision, InitDecision::kMap) << outcome.reason;
+  EXPECT_TRUE(outcome.allows_deformation);
+  EXPECT_GE(outcome.measured.DepthSignal(), kMinDepthSignal);
+  EXPECT_TRUE(outcome.provisional);
+  EXPECT_THAT(outcome.reason, HasSubstr("it is provisional"));
+  EXPECT_FALSE(WavingTracks(kWindowFrames, CameraPath::kForwards, 0.8 * kTremor_mm, 4.5).Try(options).provisional);
+
+  options.provisional = Switch::kOff;
+  const InitOutcome refused = flat.Try(options);
+  EXPECT_NE(refused.decision, InitDecision::kMap);
+  EXPECT_THAT(refused.reason, HasSubstr("a certain map needs"));
+}
+
 // A scene that deforms at all may do so before a camera that stands still: here in one way, as the camera moves.
 TEST(WindowParts, WhetherTheCameraMovesIsAskedAllTheSame) {
   const WavingTracks sequence(kWindowFrames, CameraPath::kForwards, kTremor_mm);

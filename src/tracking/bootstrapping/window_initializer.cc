@@ -71,6 +71,7 @@ class WindowInitializer final : public Initializer {
     if (options_.focal_length_check == Switch::kOn && (status.ok() || (last && !is_rotation)))
       outcome.measured.focal_length_factor = ContradictingFocalLengthFactor(input, options_, nominal_depth_mm_);
     if (status.ok()) status = CheckRigidity(input, last, &outcome);
+    if (status.ok()) status = CheckHalves(&outcome);
     if (!status.ok()) {
       outcome.decision = last ? InitDecision::kNewReference : InitDecision::kWait;
       outcome.reason = status.message();
@@ -119,6 +120,21 @@ class WindowInitializer final : public Initializer {
     outcome->provisional = true;
     outcome->refinable = false;
     if (!last) outcome->decision = InitDecision::kProvisional;
+    return Status::Ok();
+  }
+
+  // (W19) Sigmas of two halves are one sample of what a deformation adds: it may as well be twice that. A map whose
+  // depths would hardly stand out then is taken at once, since a longer window knows no better, but it is provisional.
+  Status CheckHalves(InitOutcome* outcome) const {
+    const double signal = outcome->measured.DepthSignal();
+    if (!outcome->allows_deformation || outcome->provisional || signal >= 2 * kMinProvisionalSignal)
+      return Status::Ok();
+    const std::string why = "the scene deforms, and its depths stand out " + Digits(signal, 1) +
+                            " times from what a rigid window leaves open, where a certain map needs " +
+                            Digits(2 * kMinProvisionalSignal, 1);
+    if (options_.provisional == Switch::kOff) return {ErrorCode::kInsufficient, why};
+    outcome->provisional = true;
+    outcome->reason += "; it is provisional: " + why;
     return Status::Ok();
   }
 

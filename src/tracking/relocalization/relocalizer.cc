@@ -19,12 +19,15 @@ Rigid3 Repeated(const Rigid3& motion, double count) {
 
 }  // namespace
 
-void Relocalizer::Remember(const PreparedFrame& frame, Submap* submap) const {
+void Relocalizer::RememberPose(int step, Submap* submap) const {
   const auto length = static_cast<std::size_t>(options_.relocalization.velocity_frames) + 1;
   auto& poses = submap->recent_poses;
-  if (!poses.empty() && poses.back().first + 1 != frame.step) poses.clear();
-  poses.emplace_back(frame.step, submap->last_cam_from_world);
+  if (!poses.empty() && poses.back().first + 1 != step) poses.clear();
+  poses.emplace_back(step, submap->last_cam_from_world);
   if (poses.size() > length) poses.erase(poses.begin());
+}
+
+void Relocalizer::RememberView(const PreparedFrame& frame, Submap* submap) const {
   if (options_.relocalization.relocalize == Switch::kOff || !abilities_.sees_appearance) return;
   if (frame.step % options_.relocalization.describe_every != 0) return;
   submap->descriptors.See(frame.gray, submap->map.landmarks);
@@ -35,7 +38,8 @@ void Relocalizer::Remember(const PreparedFrame& frame, Submap* submap) const {
 }
 
 void Relocalizer::RememberLastView(Submap* submap) const {
-  if (options_.relocalization.relocalize == Switch::kOn)
+  // The landmarks' pixels are of the last frame that was tracked, the image is that of the last sharp one.
+  if (options_.relocalization.relocalize == Switch::kOn && submap->blurred_frames == 0)
     submap->descriptors.See(submap->previous.gray, submap->map.landmarks);
 }
 

@@ -22,9 +22,11 @@ class Relocalizer {
   // track source's present one.
   FollowedPoints Relocalize(const PreparedFrame& frame, Submap* submap);
 
-  // To be called with every sharp frame that was tracked: what relocalization starts from.
-  void Remember(const PreparedFrame& frame, Submap* submap) const;
-  // To be called when the view is lost: how the points looked last.
+  // To be called with every frame that was tracked: where the camera was.
+  void RememberPose(int step, Submap* submap) const;
+  // To be called with every sharp frame that was tracked: how the points look, every now and then.
+  void RememberView(const PreparedFrame& frame, Submap* submap) const;
+  // To be called when the view is lost: how the points looked last, unless that was in blur.
   void RememberLastView(Submap* submap) const;
 
  private:
