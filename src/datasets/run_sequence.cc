@@ -9,10 +9,13 @@
 #include "datasets/image_file.h"
 #include "pliant/base/files.h"
 #include "pliant/base/text.h"
+#include "pliant/camera/assumed_camera.h"
 #include "pliant/io/run_summary.h"
 
 namespace pliant {
 namespace {
+
+namespace fs = std::filesystem;
 
 // The camera and the images' names.
 Result<RunMap> MapFromSequence(const SequenceRequest& request, const Run& run) {
@@ -30,6 +33,15 @@ Status NotOfRun(const std::string& what) {
   return {ErrorCode::kMismatch, what + "; are the images those that were tracked? Name them with --sequence"};
 }
 
+// The calibration that the run was made with, or, where that is gone, what its model says.
+fs::path CameraOfRun(const std::string& run_path, const RunDescription& run) {
+  std::error_code error;
+  if (IsAssumedCamera(run.camera) || fs::exists(run.camera, error)) return run.camera;
+  for (const char* model : {"sparse", "sparse/0"})
+    if (const fs::path cameras = fs::path(run_path) / model / "cameras.bin"; fs::exists(cameras, error)) return cameras;
+  return run.camera;
+}
+
 }  // namespace
 
 SequenceRequest SequenceOfRun(const std::string& run_path, const std::filesystem::path& sequence_path,
@@ -39,10 +51,10 @@ SequenceRequest SequenceOfRun(const std::string& run_path, const std::filesystem
   if (!summary.ok()) return request;
   const std::filesystem::path input = summary->description.input;
   if (sequence_path.empty()) request.image_path = input;
+  request.spare_camera_path = CameraOfRun(run_path, summary->description);
   std::error_code error;
   const bool same = request.image_path == input || std::filesystem::equivalent(request.image_path, input, error);
   if (!same) return request;
-  request.spare_camera_path = summary->description.camera;
   const std::filesystem::path mask = summary->description.mask;
   if (std::filesystem::exists(mask, error)) request.mask_path = mask;
   return request;

@@ -268,7 +268,10 @@ TEST_F(NearlyRightSets, ARunsImagesKeepTheCalibrationItWasMadeWith) {
   EXPECT_EQ(SequenceOfRun(run, Path("run/../images")).spare_camera_path, "lens.yaml");
   EXPECT_EQ(SequenceOfRun(run).mask_path, Path("run"));
   EXPECT_EQ(SequenceOfRun(run, "elsewhere").mask_path, "");
-  EXPECT_EQ(SequenceOfRun(run, "elsewhere").spare_camera_path, "");
+  EXPECT_EQ(SequenceOfRun(run, "elsewhere").spare_camera_path, "lens.yaml");
+  std::filesystem::create_directories(Path("run/sparse/0"));
+  Text("run/sparse/0/cameras.bin", "");
+  EXPECT_EQ(SequenceOfRun(run, "elsewhere").spare_camera_path, Path("run/sparse/0/cameras.bin"));
   EXPECT_EQ(SequenceOfRun(run, "elsewhere", "other.yaml").camera_path, "other.yaml");
   EXPECT_EQ(SequenceOfRun(Path("no_run").string()).image_path, "");
 }
