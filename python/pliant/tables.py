@@ -144,7 +144,7 @@ class Observations(_Table):
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Points(_Table):
-    """The undeformed map: where the points that two or more frames show were when they entered (sparse/).
+    """The undeformed map, as known at the end, of the points that two or more frames show (sparse/).
 
     Attributes:
         point_id: (M,) int64, growing.

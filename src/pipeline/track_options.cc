@@ -31,7 +31,7 @@ void TrackOptions::List(OptionTable& table) {
             "found again",
             0, 100000);
   table.Add("checkpoint_frames", &checkpoint_frames, "frames",
-            "what --resume goes on with is written every Nth frame, about 20 MB, and deleted at the end; 0: never", 0,
+            "what --resume goes on with is written every Nth frame, 15 to 60 MB, and deleted at the end; 0: never", 0,
             1000000);
   table.AddChoice("timings", &timings, "none: wall times are written as 0, so that two runs are equal byte for byte");
   live_input.List(table);

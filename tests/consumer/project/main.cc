@@ -21,6 +21,7 @@ int main(int, char** argv) {  // a folder with images/ and camera.yaml, and the 
   PrintPoints print;
   const auto run = pliant::RunTrack(request, pliant::MakeTrackOptions(pliant::Preset::kDefault),
                                     std::array<pliant::TrackObserver*, 1>{&print});
-  std::cout << (run.ok() ? run->note : run.status().message()) << std::endl;
-  return run.ok() ? 0 : 1;
+  const pliant::Status end = run.ok() ? pliant::EndOf(*run, request.output_path) : run.status();
+  std::cout << (end.ok() ? run->note : end.message()) << std::endl;
+  return end.ok() ? 0 : 1;
 }
