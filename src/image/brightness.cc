@@ -18,7 +18,9 @@ constexpr float kMinValid = 0.05F;
 }  // namespace
 
 std::array<std::uint8_t, 3> ColorAt(const cv::Mat& image, const Eigen::Vector2d& pixel) {
-  const cv::Point nearest(static_cast<int>(std::lround(pixel.x())), static_cast<int>(std::lround(pixel.y())));
+  // Half a pixel outside is still the pixel at the edge.
+  const cv::Point nearest(std::clamp(static_cast<int>(std::lround(pixel.x())), 0, image.cols - 1),
+                          std::clamp(static_cast<int>(std::lround(pixel.y())), 0, image.rows - 1));
   if (image.channels() == 3) {
     const auto& bgr = image.at<cv::Vec3b>(nearest);
     return {bgr[2], bgr[1], bgr[0]};

@@ -155,6 +155,12 @@ TEST(DeformingWindow, RefusesWhatIsNoWindow) {
   DeformingWindow infinite = start;
   infinite.points_in_world[3].x() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(SolveDeformingWindow(infinite, kFocalPx, {}).status().code(), ErrorCode::kInvalidArgument);
+  DeformingWindow again = start;
+  again.times[2] = again.times[1];
+  EXPECT_EQ(SolveDeformingWindow(again, kFocalPx, {}).status().code(), ErrorCode::kInvalidArgument);
+  DeformingWindow blind = start;
+  std::erase_if(blind.observations, [](const DeformingObservation& seen) { return seen.view_idx == 3; });
+  EXPECT_EQ(SolveRigidWindow(blind, kFocalPx, {}).status().code(), ErrorCode::kDegenerate);
   DeformingWindowOptions rigid;
   rigid.rank = 0;
   EXPECT_EQ(SolveDeformingWindow(start, kFocalPx, rigid).status().code(), ErrorCode::kInvalidArgument);

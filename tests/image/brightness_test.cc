@@ -18,6 +18,14 @@ TEST(LocalBrightness, IsThatOfTheRedChannel) {
   EXPECT_NEAR(LocalBrightness(cv::Mat(60, 80, CV_8UC1, cv::Scalar(70)), {}).At({0, 59}), 70, kAverageRounding);
 }
 
+TEST(ColorAt, TakesTheEdgeForHalfAPixelOutside) {
+  cv::Mat image(60, 80, CV_8UC1, cv::Scalar(0));
+  image.at<std::uint8_t>(0, 0) = 10;
+  image.at<std::uint8_t>(59, 79) = 20;
+  EXPECT_EQ(ColorAt(image, {-0.5, -0.5})[0], 10);
+  EXPECT_EQ(ColorAt(image, {79.5, 59.5})[0], 20);
+}
+
 TEST(LocalBrightness, LeavesOutWhatIsNotTheSurface) {
   cv::Mat image(60, 80, CV_8UC3, cv::Scalar(0, 0, 100));
   cv::Mat valid(60, 80, CV_8UC1, cv::Scalar(255));

@@ -3,9 +3,13 @@
 
 #include "tracking/bootstrapping/window_parts.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
+#include <map>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -104,6 +108,48 @@ TEST(WindowParts, ATremorOrAWrongLensDoesNotCostTheDepthsOfARigidScene) {
     EXPECT_LT(MedianSigma(window.solution), MedianSigma(window.deforming->solution)) << k;
     EXPECT_LT(Error(sequence, window), Error(sequence, *window.deforming)) << k;
   }
+}
+
+// Ids are given from the top of the image to its bottom.
+TEST(WindowParts, PointsThatAreTooManyAreTakenFromEverywhere) {
+  WavingTracks sequence(kWindowFrames, CameraPath::kForwards, kRigid_mm);
+  std::vector<std::pair<double, PointId>> by_row;
+  for (const InitObservation& seen : sequence.frames.front().observations) by_row.emplace_back(seen.pixel.y(), seen.id);
+  std::ranges::sort(by_row);
+  std::map<PointId, PointId> renamed;
+  for (std::size_t k = 0; k < by_row.size(); ++k) renamed[by_row[k].second] = PointId{static_cast<std::int64_t>(k)};
+  for (InitFrame& frame : sequence.frames) {
+    std::erase_if(frame.observations, [&](const InitObservation& seen) { return !renamed.contains(seen.id); });
+    for (InitObservation& seen : frame.observations) seen.id = renamed.at(seen.id);
+    std::ranges::sort(frame.observations, {}, &InitObservation::id);
+  }
+  WindowInitOptions options;
+  options.max_points = 40;
+  const auto window = SolveAsRigid(InputOf(sequence), sequence.frames.size(), options, kNominalMm);
+  ASSERT_TRUE(window.ok()) << window.status().message();
+  const auto upper = std::ranges::count_if(
+      window->ids, [&](PointId id) { return 2 * static_cast<std::size_t>(id.value) < by_row.size(); });
+  EXPECT_EQ(window->ids.size(), 40U);
+  EXPECT_GT(upper, 10);
+  EXPECT_LT(upper, 30);
+}
+
+TEST(WindowParts, AWindowMayHaveFewerViewsThanAPointIsOtherwiseSeenIn) {
+  const WavingTracks sequence(kWindowFrames, CameraPath::kForwards, kRigid_mm);
+  WindowInitOptions options;
+  options.views = 4;
+  ASSERT_LT(options.views, options.min_views);
+  EXPECT_TRUE(SolveAsRigid(InputOf(sequence), sequence.frames.size(), options, kNominalMm).ok());
+}
+
+TEST(WindowParts, AReferenceWhosePointsAreGoneIsGivenUp) {
+  WavingTracks sequence(31, CameraPath::kForwards, kRigid_mm);
+  for (std::size_t t = 20; t < sequence.frames.size(); ++t)
+    std::erase_if(sequence.frames[t].observations,
+                  [](const InitObservation& seen) { return seen.id.value > 1 && seen.id.value < 100; });
+  const InitOutcome outcome = sequence.Try({});
+  EXPECT_EQ(outcome.decision, InitDecision::kNewReference);
+  EXPECT_THAT(outcome.reason, HasSubstr("of the reference's points are still followed"));
 }
 
 TEST(WindowParts, AWaveIsNotTakenForRigid) {

@@ -10,8 +10,10 @@
 #include <cstdlib>
 #include <limits>
 #include <memory>
+#include <mutex>
 #include <numbers>
 #include <numeric>
+#include <optional>
 #include <vector>
 
 #include <opengv/relative_pose/CentralRelativeAdapter.hpp>
@@ -224,14 +226,21 @@ std::vector<std::size_t> RandomOrder(std::size_t size, std::size_t count, Random
 }
 
 // The C library's generator, which OpenGV's eigensolver asks, at a fixed seed; the host's state comes back at the end.
+// There is one generator in a process: the others wait.
 class FixedCRandom {
  public:
-  FixedCRandom() : before_(initstate(1U, state_.data(), state_.size())) {}
+  FixedCRandom() : lock_(Mutex()), before_(initstate(1U, state_.data(), state_.size())) {}
   ~FixedCRandom() { setstate(before_); }
   FixedCRandom(const FixedCRandom&) = delete;
   FixedCRandom& operator=(const FixedCRandom&) = delete;
 
  private:
+  static std::mutex& Mutex() {
+    static std::mutex mutex;
+    return mutex;
+  }
+
+  std::unique_lock<std::mutex> lock_;
   std::array<char, 128> state_{};
   char* before_;
 };
@@ -274,7 +283,8 @@ std::optional<Rigid3> SampleMotion(Rays rays0, Rays rays1, double focal_px, Rand
     if (!loop.computeModel()) return std::nullopt;
     return loop.model_coefficients_;
   };
-  const FixedCRandom fixed;
+  std::optional<FixedCRandom> fixed;
+  if (options.solver == RelativePoseSolver::kEigensolver) fixed.emplace();
   if (options.robust == RobustLoop::kLmeds)
     return run(opengv::sac::Lmeds<RelativePoseProblem>(SamplesForHalf(problem->getSampleSize(), options),
                                                        problem->Threshold(), options.confidence));

@@ -36,6 +36,9 @@ constexpr int kMinViews = 3;
 constexpr int kMinPoints = 12;
 
 Status NoStart() { return {ErrorCode::kDegenerate, "the deforming window has no finite cost at its start"}; }
+Status NotDetermined() {
+  return {ErrorCode::kDegenerate, "the rays of the deforming window do not determine its poses"};
+}
 
 }  // namespace
 
@@ -51,6 +54,10 @@ Status CheckWindow(const DeformingWindow& window) {
                                           std::to_string(kMinPoints) + " points; there are " + std::to_string(views) +
                                           " and " + std::to_string(points)};
   const auto finite = [](const Eigen::Vector3d& vector) { return vector.allFinite(); };
+  for (std::size_t v = 0; v < views; ++v)
+    if (!std::isfinite(window.times[v]) || (v > 0 && !(window.times[v] > window.times[v - 1])))
+      return {ErrorCode::kInvalidArgument, "the times of the deforming window's views have to grow; that of view " +
+                                               std::to_string(v) + " does not"};
   if (!std::all_of(window.points_in_world.begin(), window.points_in_world.end(), finite))
     return {ErrorCode::kInvalidArgument, "a point of the deforming window is not a finite number"};
   return CheckObservations(window.observations, views, points);
@@ -169,7 +176,10 @@ Result<double> DeformingProblem::Descend(int max_iterations, NormalEquations* eq
   double radius = kFirstRadius;
   bool done = false;
   for (int iteration = 0; iteration < max_iterations && !done; ++iteration) {
-    if (!equations->Linearize(state_)) break;
+    if (!equations->Linearize(state_)) {
+      if (iteration == 0) return NotDetermined();
+      break;
+    }
     const SubspaceDogleg dogleg(*equations);
     for (bool accepted = false; !accepted && !done;) {
       const SubspaceDogleg::Step best = dogleg.Best(radius);

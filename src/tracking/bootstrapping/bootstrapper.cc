@@ -68,7 +68,7 @@ BootstrapStep Bootstrapper::TakeReference(const PreparedFrame& frame, Submap* su
   if (step.tracked < needed) {
     step.events = {TrackingEvent::kTooFewCorners};
     step.note = WithFault("no reference yet: " + std::to_string(step.tracked) +
-                              (initializer_->TakesKnownPoints() ? " points of the model" : " corners") +
+                              (initializer_->TakesKnownPoints() ? " points of known depth" : " corners") +
                               ", of at least " + std::to_string(needed),
                           ImageFault(frame, submap->previous));
     GiveUpReference(&step);
@@ -143,8 +143,9 @@ Bootstrapper::Answer Bootstrapper::AskInitializers(const std::vector<InitFrame>&
                                                    const PreparedFrame& last, InitMoment moment,
                                                    const Initializer* alternative) const {
   Answer answer{.frames = frames.size(), .last = last};
-  answer.outcome = initializer_->Try({camera_, frames, last.depth_mm, moment, threads_, known_depths, photometric_,
-                                      doubts.camera_may_stand_still, doubts.was_ambiguous});
+  const bool is_reference = frames.size() == 1;
+  answer.outcome = initializer_->Try({camera_, frames, is_reference ? last.depth_mm : cv::Mat(), moment, threads_,
+                                      known_depths, photometric_, doubts.camera_may_stand_still, doubts.was_ambiguous});
   const bool is_settled = answer.outcome.decision == InitDecision::kMap || answer.outcome.ambiguous;
   if (alternative != nullptr && !is_settled)
     answer.alternative = alternative->Try({camera_, frames, {}, moment, threads_, {}, photometric_});

@@ -18,7 +18,7 @@ FirstMapEvidence EvidenceOf(const InitOutcome& outcome) {
           .points = static_cast<int>(outcome.points.size()),
           .median_parallax_deg = measured.median_parallax_deg,
           .median_error_px = measured.median_error_px,
-          .depth_sigma = measured.median_depth_sigma,
+          .depth_sigma = measured.median_depth_sigma * measured.sigma_factor,
           .depth_spread = measured.depth_spread,
           .still_camera_error_ratio = measured.still_camera_error_ratio,
           .focal_length_factor = measured.focal_length_factor,

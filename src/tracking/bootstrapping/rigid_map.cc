@@ -36,6 +36,9 @@ Status CheckPoses(const std::vector<std::optional<Rigid3>>& cams_from_world, std
                    std::to_string(frames) + " frames since the reference");
   if (!cams_from_world.front() || !cams_from_world.back())
     return Invalid("the poses of the reference and of the present frame have to be known");
+  for (const std::optional<Rigid3>& pose : cams_from_world)
+    if (pose && !(pose->RotationMatrix().allFinite() && pose->translation.allFinite()))
+      return Invalid("a pose of the map is not a finite number");
   const Rigid3& first = *cams_from_world.front();
   if (!first.RotationMatrix().isIdentity(kSame) || first.translation.norm() > kSame)
     return Invalid("the first pose has to be the identity: the world is the camera of the reference");

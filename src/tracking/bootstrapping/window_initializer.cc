@@ -19,6 +19,7 @@
 namespace pliant {
 namespace {
 
+constexpr int kFewestKept = 3;          // points of the reference, that a rotation is fitted to
 constexpr int kMinWait = 6;             // frames after the reference, before the first of the other attempts
 constexpr double kMaxLightError = 0.2;  // of log distance, in the median: twice what it is where there is light at all
 
@@ -54,6 +55,13 @@ class WindowInitializer final : public Initializer {
       outcome.decision = InitDecision::kNewReference;
       outcome.reason = "only " + std::to_string(followed) + " points are still followed (at least " +
                        std::to_string(needed) + " must be)";
+      return outcome;
+    }
+    // Without them nothing says that the camera did not only turn.
+    if (const int kept = KeptPoints(input.frames.front(), input.frames.back()); kept < kFewestKept) {
+      outcome.decision = InitDecision::kNewReference;
+      outcome.reason = "only " + std::to_string(kept) + " of the reference's points are still followed (at least " +
+                       std::to_string(kFewestKept) + " must be)";
       return outcome;
     }
     const bool ends = input.moment == InitMoment::kLastFrame;
@@ -112,7 +120,7 @@ class WindowInitializer final : public Initializer {
     if (outcome->deforming || outcome->allows_deformation || !(contradicts || input.was_ambiguous)) return Status::Ok();
     const std::string why = contradicts ? "a rigid motion does not explain the images with this focal length"
                                         : "camera and scene could not be told apart before this reference";
-    if (outcome->provisional)
+    if (outcome->measured.DepthSignal() < kMinDepthSignal)
       return {ErrorCode::kDegenerate,
               "the depths hardly stand out, and " + why + "; move the camera sideways or forwards"};
     if (!contradicts) return Status::Ok();

@@ -311,7 +311,10 @@ Status MakeWindowMap(const InitInput& input, const SolvedWindow& window, const M
     outcome->measured.depth_spread = points.ids.empty() ? 0.0 : DepthSpread(points.solution.window);
   };
   measure();
+  // Of this window, and not of one that made no map.
   outcome->measured.sigma_factor = 1.0;
+  outcome->measured.still_camera_error_ratio = 0.0;
+  outcome->moves_by_depth = false;
   outcome->measured.median_error_px = Median(errors_px);
   const DeformingWindow& solved = window.solution.window;
   outcome->measured.median_parallax_deg =

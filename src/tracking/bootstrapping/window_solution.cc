@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
 #include <string>
@@ -13,6 +14,7 @@
 
 #include "pliant/base/statistics.h"
 #include "pliant/base/text.h"
+#include "pliant/estimation/window/shape_basis.h"
 #include "pliant/estimation/window/window_refinement.h"
 #include "pliant/geometry/triangulation.h"
 #include "pliant/scene/frame_report.h"
@@ -45,25 +47,43 @@ WindowInitOptions WithoutCue(WindowInitOptions options) {
   return options;
 }
 
-// The points that are seen in enough views; where they are too many, those still seen, then those seen most.
+// `count` of these points, evenly over the image, each where it is first seen.
+std::vector<PointId> EvenlyOverImage(const InitInput& input, const std::vector<std::size_t>& views,
+                                     const std::vector<PointId>& ids, std::size_t count) {
+  std::vector<Eigen::Vector3d> positions;
+  std::vector<int> all;
+  for (const PointId id : ids) {
+    const InitObservation* seen = nullptr;
+    for (std::size_t v = 0; seen == nullptr; ++v) seen = FindById(input.frames[views[v]].observations, id);
+    all.push_back(static_cast<int>(positions.size()));
+    positions.emplace_back(seen->pixel.x(), seen->pixel.y(), 0.0);
+  }
+  std::vector<PointId> chosen;
+  for (const int i : SpreadPositions(positions, all, count)) chosen.push_back(ids[static_cast<std::size_t>(i)]);
+  return chosen;
+}
+
+// The points that are seen in enough views; where they are too many, those still seen, then those seen most, and of
+// those that are seen as often some from everywhere.
 std::vector<PointId> ChoosePoints(const InitInput& input, const std::vector<std::size_t>& views,
                                   const WindowInitOptions& options) {
   std::map<PointId, int> seen;
   for (const std::size_t view : views)
     for (const InitObservation& observation : input.frames[view].observations) ++seen[observation.id];
   const auto bonus = static_cast<int>(views.size());
-  const int least = std::max(std::min(options.min_views, bonus), options.min_views * bonus / options.views);
+  const int least = std::min(bonus, std::max(options.min_views, options.min_views * bonus / options.views));
   for (const InitObservation& observation : input.frames.back().observations)
     if (const auto found = seen.find(observation.id); found != seen.end() && found->second >= least)
       found->second += bonus;
-  std::vector<std::pair<int, PointId>> chosen;
+  std::map<int, std::vector<PointId>, std::greater<>> by_count;
   for (const auto& [id, count] : seen)
-    if (count >= least) chosen.emplace_back(count, id);
-  std::stable_sort(chosen.begin(), chosen.end(), [](const auto& x, const auto& y) { return x.first > y.first; });
-  if (chosen.size() > static_cast<std::size_t>(options.max_points))
-    chosen.resize(static_cast<std::size_t>(options.max_points));
+    if (count >= least) by_count[count].push_back(id);
   std::vector<PointId> ids;
-  for (const auto& [count, id] : chosen) ids.push_back(id);
+  for (const auto& [count, of_count] : by_count) {
+    const std::size_t left = static_cast<std::size_t>(options.max_points) - ids.size();
+    const auto& taken = of_count.size() <= left ? of_count : EvenlyOverImage(input, views, of_count, left);
+    ids.insert(ids.end(), taken.begin(), taken.end());
+  }
   std::sort(ids.begin(), ids.end());
   return ids;
 }

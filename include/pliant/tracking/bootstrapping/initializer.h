@@ -55,7 +55,8 @@ struct InitInput {
   // frame. A point lost on the way is missing from its frame on; one that was added on the way (TakesLaterPoints) is
   // missing before.
   const std::vector<InitFrame>& frames;
-  cv::Mat reference_depth_mm;  // CV_32FC1, z along the optical axis, 0 = none; empty where there is no depth
+  // CV_32FC1, z along the optical axis, 0 = none; empty where there is no depth, and after the reference.
+  cv::Mat reference_depth_mm;
   InitMoment moment = InitMoment::kMoreFollow;
   int threads = 1;  // that an initializer may use; they never change its answer
   // z of the reference's points, in their order, in any unit; empty: not known.
