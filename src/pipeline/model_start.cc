@@ -54,14 +54,17 @@ Result<ModelStart> ModelStart::Open(const std::string& folder, const Camera& cam
   for (const colmap::Image& image : model->images) {
     auto of_image = PointsOf(image, points);
     if (!of_image.ok()) return of_image.status();
-    start.points_.emplace(StemOf(image.name), *std::move(of_image));
+    start.points_.emplace(image.name, *std::move(of_image));
+    start.names_of_stem_[StemOf(image.name)].push_back(image.name);
   }
   return start;
 }
 
 std::vector<PixelDepth> ModelStart::PointsIn(const std::string& image_name) const {
-  const auto found = points_.find(StemOf(image_name));
-  return found == points_.end() ? std::vector<PixelDepth>() : found->second;
+  if (const auto found = points_.find(image_name); found != points_.end()) return found->second;
+  const auto names = names_of_stem_.find(StemOf(image_name));
+  const bool is_one = names != names_of_stem_.end() && names->second.size() == 1;
+  return is_one ? points_.at(names->second.front()) : std::vector<PixelDepth>();
 }
 
 }  // namespace pliant

@@ -20,12 +20,13 @@ class ModelStart {
   // sequence's size.
   static Result<ModelStart> Open(const std::string& folder, const Camera& camera);
 
-  // Those in the image of this file name, or this stem; those with the longest tracks first. Empty where the model does
-  // not have the image.
+  // Those in the image of this name, or, where one image alone has it, of this stem; those with the longest tracks
+  // first. Empty where the model does not have the image.
   std::vector<PixelDepth> PointsIn(const std::string& image_name) const;
 
  private:
-  std::map<std::string, std::vector<PixelDepth>> points_;  // by the image file's stem
+  std::map<std::string, std::vector<PixelDepth>> points_;  // by the image's name
+  std::map<std::string, std::vector<std::string>> names_of_stem_;
 };
 
 }  // namespace pliant

@@ -129,6 +129,8 @@ class FrameLoop {
         return {RunStatus::kFailed, reopened.message()};
     }
     if (!tracker_.held().empty()) so_far_.last_note = tracker_.held().back().note;
+    for (const FrameReport& report : tracker_.held())
+      if (HasPose(report.state)) so_far_.last_tracked = report.name;
     // What holds for a whole window says more than how the last one ended.
     if (so_far_.last_tracked.empty() && !so_far_.ambiguity.empty()) so_far_.last_note = so_far_.ambiguity;
     return AtTheEnd(tracker_, so_far_.frames, so_far_.last_note, so_far_.last_tracked,

@@ -63,9 +63,13 @@ Submap CatchUp::TakeSubmap(const InitFrame& present) {
   if (state_ == TrackingState::kTracking) {
     map_updater_->AdoptFollowed(first_.frames.back(), present, &submap_);
   } else {
-    // They are described there, to be found again.
-    for (Landmark& landmark : submap_.map.landmarks)
-      landmark.pixel = FindById(present.observations, landmark.id)->pixel;
+    // The map's points are described there, to be found again; nobody follows the others any more.
+    for (const InitObservation& seen : present.observations) {
+      if (Landmark* landmark = submap_.map.Find(seen.id); landmark != nullptr)
+        landmark->pixel = seen.pixel;
+      else if (submap_.candidates.Pixel(seen.id) == nullptr)
+        tracks_->Remove(seen.id);
+    }
   }
   return std::move(submap_);
 }

@@ -144,6 +144,7 @@ std::vector<FrameReport> Tracker::Process(const PreparedFrame& frame) {
   FrameResult result = has_map ? TrackFrame(frame, &times) : Bootstrap(frame, &times);
   std::erase_if(set_aside_, [&](const FrameReport& report) { return report.frame_idx <= frame.frame_idx; });
   Report(frame, result, &times);
+  last_gray_ = frame.gray;
 
   const std::optional<int> since = bootstrapper_->AwaitsMapSince();
   const auto first_held = since ? std::ranges::find(held_, *since, &FrameReport::frame_idx) : held_.end();
@@ -156,6 +157,7 @@ std::vector<FrameReport> Tracker::Process(const PreparedFrame& frame) {
 // is awaited is dropped.
 void Tracker::FindSubmapAgain(const PreparedFrame& frame) {
   if (state_ == TrackingState::kTracking || catch_up_) return;
+  if (options_.relocalization.relocalize == Switch::kOff) return;
   if (frame.step % options_.relocalization.search_every != 0) return;
   const auto former = state_ == TrackingState::kLost ? Submaps::Former::kInactive : Submaps::Former::kDropped;
   if (!submaps_->FindAgain(frame, former, relocalizer_.get())) return;
@@ -249,7 +251,7 @@ FrameResult Tracker::TrackFrame(const PreparedFrame& frame, StageTimes* times) {
   relocalizer_->RememberView(frame, &submap);
   result.update = map_updater_->Update(frame, &submap, times);  // (W13), (G1) to (G8)
   result.losses.Add(result.update.losses);
-  result.note = WithFault(result.update.note, ImageFault(frame, submap.previous));
+  result.note = WithFault(result.update.note, ImageFault(frame, submap.previous.gray));
   submap.previous = frame;
   return result;
 }
@@ -266,7 +268,7 @@ std::string Tracker::Lose(const PreparedFrame& frame, const std::string& reason,
   if (state_ == TrackingState::kTracking) relocalizer_->RememberLastView(submap);
   map_updater_->Forget();
   Apply(TrackingEvent::kTooFewPoints);
-  const std::string fault = ImageFault(frame, submap->previous);
+  const std::string fault = ImageFault(frame, last_gray_);
   if (fault.empty()) ++submap->lost_frames;
   return WithFault(reason, fault);
 }
@@ -347,7 +349,7 @@ bool Tracker::IsSerializable() const {
 
 void Tracker::Serialize(StateArchive& archive) {
   tracks_->Serialize(archive);
-  archive(*bootstrapper_, *map_updater_, *submaps_, state_, held_, goes_back_to_, set_aside_);
+  archive(*bootstrapper_, *map_updater_, *submaps_, state_, held_, goes_back_to_, set_aside_, last_gray_);
 }
 
 }  // namespace pliant

@@ -94,8 +94,10 @@ TEST(LostPoints, AreLookedForInTurn) {
   for (int id = 0; id < 5; ++id) lost.Add({PointId{id}, {0, 0, 50}, {0, 0, 50}}, Rigid3());
   std::vector<std::int64_t> asked;
   for (int frame = 0; frame < 5; ++frame)
-    for (const PointPrediction& prediction : lost.Expected(LostPointsCamera(), Rigid3(), 2))
+    for (const PointPrediction& prediction : lost.Expected(LostPointsCamera(), Rigid3(), 2)) {
       asked.push_back(prediction.id.value);
+      lost.CountSearches({prediction.id, PointId{77}});
+    }
   EXPECT_EQ(asked, (std::vector<std::int64_t>{0, 1, 2, 3, 4, 0, 1, 2, 3, 4}));
   lost.Remove(PointId{1});
   EXPECT_EQ(lost.size(), 4U);
@@ -105,9 +107,10 @@ TEST(LostPoints, AreLookedForInTurn) {
 TEST(LostPoints, GiveTheirPlaceUpWhereTheyAreSearchedInVain) {
   LostPoints lost;
   lost.Add({PointId{0}, {0, 0, 50}, {0, 0, 50}}, Rigid3());
-  for (int frame = 0; frame < 9; ++frame) lost.Expected(LostPointsCamera(), Rigid3(), 1);
+  for (int frame = 0; frame < 20; ++frame) lost.Expected(LostPointsCamera(), Rigid3(), 1);  // where the camera was not
+  for (int frame = 0; frame < 9; ++frame) lost.CountSearches({PointId{0}});
   EXPECT_EQ(lost.Pixels(LostPointsCamera(), Rigid3()).size(), 1U);
-  lost.Expected(LostPointsCamera(), Rigid3(), 1);
+  lost.CountSearches({PointId{0}});
   EXPECT_TRUE(lost.Pixels(LostPointsCamera(), Rigid3()).empty());
   EXPECT_EQ(lost.Expected(LostPointsCamera(), Rigid3(), 1).size(), 1U) << "it is searched on";
 }

@@ -56,6 +56,11 @@ TEST(Relocalizer, RemembersAsManyPosesInARowAsTheVelocityIsOf) {
   EXPECT_EQ(seen.submap.recent_poses.back().second.translation.x(), 2 * length - 1);
   seen.relocalizer.RememberPose(2 * length + 1, &seen.submap);
   EXPECT_EQ(seen.submap.recent_poses.size(), 1U);
+  // Backward in time; a turn in time begins anew.
+  for (int step = 2 * length; step > length; --step) seen.relocalizer.RememberPose(step, &seen.submap);
+  EXPECT_EQ(static_cast<int>(seen.submap.recent_poses.size()), length);
+  seen.relocalizer.RememberPose(length + 2, &seen.submap);
+  EXPECT_EQ(seen.submap.recent_poses.size(), 1U);
 }
 
 TEST(Relocalizer, DescribesTheLastViewUnlessItWasBlurred) {

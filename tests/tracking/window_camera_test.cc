@@ -95,11 +95,12 @@ TEST(WindowCamera, AfterCameraAndSceneCouldNotBeToldApartDepthsOfARigidMapHaveTo
   InitInput of_deep{deep.camera, deep.frames, {}};
   of_deep.was_ambiguous = true;
   EXPECT_EQ(initializer->Try(of_deep).decision, InitDecision::kMap);
-  // Less certain than demanded, which says nothing of how its depths stand out.
+  // Nor may they be less certain than demanded, however they stand out.
   WindowInitOptions strict;
   strict.certain_depth_sigma = strict.max_depth_sigma = strict.last_depth_sigma = 1e-4;
-  const InitOutcome provisional = MakeWindowInitializer(strict, kNominalMm)->Try(of_deep);
-  EXPECT_EQ(provisional.decision, InitDecision::kProvisional) << provisional.reason;
+  const InitOutcome uncertain = MakeWindowInitializer(strict, kNominalMm)->Try(of_deep);
+  EXPECT_EQ(uncertain.decision, InitDecision::kWait) << uncertain.reason;
+  EXPECT_THAT(uncertain.reason, HasSubstr("not as certain as demanded"));
 }
 
 TEST(WindowCamera, ASceneThatDeformsDoesNotContradictTheFocalLength) {

@@ -61,6 +61,9 @@ class DelayedAnswers {
     if (!worker_.joinable()) worker_ = std::thread([this] { Work(); });
   }
 
+  // Whether nothing was asked for that is not taken.
+  bool IsEmpty() const { return asked_.empty(); }
+
   // The oldest answer that is due in this step or was before, waited for; nothing: there is none.
   std::optional<Answer> Take(int step) {
     if (asked_.empty() || asked_.front().due > step) return std::nullopt;

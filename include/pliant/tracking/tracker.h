@@ -125,6 +125,7 @@ class Tracker {
   std::vector<FrameReport> held_;      // since the reference
   std::optional<int> goes_back_to_;
   std::vector<FrameReport> set_aside_;  // of the frames after the one gone back to, until they are processed again
+  cv::Mat last_gray_;                   // the last image that was processed
 };
 
 }  // namespace pliant

@@ -39,11 +39,12 @@ BootstrapStep Bootstrapper::Process(const PreparedFrame& frame, Submap* submap, 
   assert(submap->map.landmarks.empty());
   waiting_.CountFrame();
   if (!HasReference()) return TakeReference(frame, submap, times);
-  if (options_.track_blurred == Switch::kOn && submap->IsBlurred(frame, options_)) {
+  if (options_.track_blurred == Switch::kOn && tracks_->abilities().tracks_blurred &&
+      submap->IsBlurred(frame, options_)) {
     // A dark or blurred frame is passed over: the points are searched again in the next one.
     ++submap->blurred_frames;
     return {.tracked = static_cast<int>(frames_.back().observations.size()),
-            .note = WithFault("passed over: the image is blurred or dark", ImageFault(frame, submap->previous))};
+            .note = WithFault("passed over: the image is blurred or dark", ImageFault(frame, submap->previous.gray))};
   }
   submap->blurred_frames = 0;
   return FollowReference(frame, submap, times);
@@ -70,7 +71,7 @@ BootstrapStep Bootstrapper::TakeReference(const PreparedFrame& frame, Submap* su
     step.note = WithFault("no reference yet: " + std::to_string(step.tracked) +
                               (initializer_->TakesKnownPoints() ? " points of known depth" : " corners") +
                               ", of at least " + std::to_string(needed),
-                          ImageFault(frame, submap->previous));
+                          ImageFault(frame, submap->previous.gray));
     GiveUpReference(&step);
   } else {
     TryInitialize(frame, times, &step);
@@ -90,7 +91,7 @@ BootstrapStep Bootstrapper::FollowReference(const PreparedFrame& frame, Submap* 
     frames_.push_back(FollowedFrame(frame, *submap, &step.losses));
     step.tracked = static_cast<int>(frames_.back().observations.size());
   }
-  image_fault_ = ImageFault(frame, submap->previous);
+  image_fault_ = ImageFault(frame, submap->previous.gray);
   TryInitialize(frame, times, &step);
   if (!HasReference() && !step.map) {  // the reference is spent: this image becomes the next one
     BootstrapStep next = TakeReference(frame, submap, times);

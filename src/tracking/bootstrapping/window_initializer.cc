@@ -114,15 +114,15 @@ class WindowInitializer final : public Initializer {
   }
 
   // (W20) The sigmas of a rigid window know nothing of a deformation that is taken for depth. Where something says that
-  // there is one its map is provisional, and none if its depths hardly stand out.
+  // there is one its map is provisional, and none if it would be provisional anyway.
   Status CheckRigidity(const InitInput& input, bool last, InitOutcome* outcome) const {
     const bool contradicts = outcome->measured.focal_length_factor != 1.0;
     if (outcome->deforming || outcome->allows_deformation || !(contradicts || input.was_ambiguous)) return Status::Ok();
     const std::string why = contradicts ? "a rigid motion does not explain the images with this focal length"
                                         : "camera and scene could not be told apart before this reference";
-    if (outcome->measured.DepthSignal() < kMinDepthSignal)
+    if (outcome->provisional)
       return {ErrorCode::kDegenerate,
-              "the depths hardly stand out, and " + why + "; move the camera sideways or forwards"};
+              "the depths are not as certain as demanded, and " + why + "; move the camera sideways or forwards"};
     if (!contradicts) return Status::Ok();
     if (options_.provisional == Switch::kOff) return {ErrorCode::kInsufficient, why};
     outcome->provisional = true;

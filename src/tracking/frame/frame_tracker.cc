@@ -13,7 +13,7 @@ SolvedFrame FrameTracker::Solve(const PreparedFrame& frame, TrackingState state,
                                 Submap* submap, StageTimes* times) const {
   SolvedFrame solved{.tracked = static_cast<int>(followed.size())};
   if (solved.tracked < options_.min_points) {
-    solved.failure = TooFewPoints(solved.tracked, *submap);
+    solved.failure = followed.unconfirmed > 0 ? Unconfirmed(followed) : TooFewPoints(solved.tracked, *submap);
     return solved;
   }
   const FramePose held = KnownPose(frame.frame_idx, *submap) ? FramePose::kHeld : FramePose::kEstimated;
@@ -134,6 +134,7 @@ void FrameTracker::FindLost(const PreparedFrame& frame, const Rigid3& cam_from_w
     if ((tracks[k].pixel - expected[k].pixel).norm() > options_.max_search_px) continue;
     followed->Add(*submap->lost_points.Find(tracks[k].id), tracks[k]);
   }
+  for (const PointPrediction& prediction : expected) followed->searched.push_back(prediction.id);
   followed->expected += static_cast<std::ptrdiff_t>(expected.size());
 }
 
@@ -196,6 +197,11 @@ void FrameTracker::RejectReprojectionOutliers(FollowedPoints* followed) const {
 std::string FrameTracker::TooFewPoints(int count, const Submap& submap) const {
   return std::to_string(count) + " of " + std::to_string(submap.map.landmarks.size()) +
          " points could be followed, of at least " + std::to_string(options_.min_points);
+}
+
+std::string FrameTracker::Unconfirmed(const FollowedPoints& followed) const {
+  return std::to_string(followed.unconfirmed) + " of " + std::to_string(followed.expected) +
+         " points were found again, but too few of them agree on where the camera is";
 }
 
 }  // namespace pliant

@@ -66,6 +66,7 @@ class FrameTracker {
                               FollowedPoints* followed) const;
   void RejectReprojectionOutliers(FollowedPoints* followed) const;
   std::string TooFewPoints(int count, const Submap& submap) const;
+  std::string Unconfirmed(const FollowedPoints& followed) const;
 
   Camera camera_;
   TrackerOptions options_;

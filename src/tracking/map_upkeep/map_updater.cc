@@ -44,6 +44,8 @@ bool MapUpdater::EstimatesPoses() const {
 
 // From frames of which the last is the present one.
 void MapUpdater::Reestimate(const std::vector<InitFrame>& frames, WindowScene scene, const Submap& submap) {
+  // What is under way corrects the same map: another one would correct it once more.
+  if (!reestimations_.IsEmpty()) return;
   Reestimation reestimation{scene, {submap.map, submap.last_cam_from_world}};
   const bool beside = threads_ > 1 && options_.handover_frames > 0;
   // Only what was compared with one constant depth can be compared with another map.

@@ -4,6 +4,7 @@
 #include "tracking/relocalization/relocalizer.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <utility>
 
 #include "tracking/image_fault.h"
@@ -22,7 +23,12 @@ Rigid3 Repeated(const Rigid3& motion, double count) {
 void Relocalizer::RememberPose(int step, Submap* submap) const {
   const auto length = static_cast<std::size_t>(options_.relocalization.velocity_frames) + 1;
   auto& poses = submap->recent_poses;
-  if (!poses.empty() && poses.back().first + 1 != step) poses.clear();
+  // Frames may be tracked backward.
+  const auto follows = [&] {
+    const int by = step - poses.back().first;
+    return poses.size() < 2 ? std::abs(by) == 1 : by == poses.back().first - poses[poses.size() - 2].first;
+  };
+  if (!poses.empty() && !follows()) poses.clear();
   poses.emplace_back(step, submap->last_cam_from_world);
   if (poses.size() > length) poses.erase(poses.begin());
 }
@@ -70,9 +76,12 @@ FollowedPoints Relocalizer::FollowFrom(const PreparedFrame& frame, const Rigid3&
   followed = frame_tracker_->Follow(frame, *submap, better);
   if (options_.find_lost == Switch::kOn && !followed.in_blur)
     frame_tracker_->FindLost(frame, better, submap, &followed);
-  if (static_cast<int>(followed.size()) < options_.min_points) return {};
+  FollowedPoints none;
+  none.expected = followed.expected;
+  none.unconfirmed = followed.size();
+  if (static_cast<int>(followed.size()) < options_.min_points) return none;
   improve();
-  return IsConfirmed(followed) ? followed : FollowedPoints{};
+  return IsConfirmed(followed) ? followed : none;
 }
 
 bool Relocalizer::IsConfirmed(const FollowedPoints& followed) const {
@@ -94,13 +103,19 @@ const DescribedImage& Relocalizer::Described(const PreparedFrame& frame) {
 }
 
 FollowedPoints Relocalizer::Relocalize(const PreparedFrame& frame, Submap* submap) {
-  if (!Blankness(frame.gray).empty()) return {};
+  if (!Blankness(frame.gray, frame.mask).empty()) return {};
+  FollowedPoints best;  // none; what is said of it
+  const auto is_found = [&](const Rigid3& guess) {
+    FollowedPoints followed = FollowFrom(frame, guess, submap);
+    if (followed.size() > 0 || followed.unconfirmed > best.unconfirmed) best = std::move(followed);
+    return best.size() > 0;
+  };
   for (const Rigid3& guess : GuessPoses(frame.step, *submap))
-    if (FollowedPoints followed = FollowFrom(frame, guess, submap); followed.size() > 0) return followed;
-  if (options_.relocalization.relocalize == Switch::kOff) return {};
+    if (is_found(guess)) return best;
+  if (options_.relocalization.relocalize == Switch::kOff) return best;
   const auto recognized = submap->descriptors.Recognize(Described(frame), camera_, submap->KnownLandmarks());
-  if (!recognized.ok()) return {};
-  return FollowFrom(frame, recognized->cam_from_world, submap);
+  if (recognized.ok()) is_found(recognized->cam_from_world);
+  return best;
 }
 
 }  // namespace pliant

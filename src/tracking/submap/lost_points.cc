@@ -130,7 +130,7 @@ std::vector<Eigen::Vector2d> LostPoints::Pixels(const Camera& camera, const Rigi
 }
 
 std::vector<PointPrediction> LostPoints::Expected(const Camera& camera, const Rigid3& cam_from_world,
-                                                  std::size_t count) {
+                                                  std::size_t count) const {
   std::vector<std::pair<int, PointPrediction>> expected;  // by how often it was searched
   for (const auto& [id, point] : points_) {
     const Eigen::Vector3d& position = point.landmark.position;
@@ -145,11 +145,13 @@ std::vector<PointPrediction> LostPoints::Expected(const Camera& camera, const Ri
   std::sort(expected.begin(), expected.end(), rarest);
   expected.resize(std::min(expected.size(), count));
   std::vector<PointPrediction> predictions;
-  for (const auto& [searches, prediction] : expected) {
-    ++points_.at(prediction.id).searches;
-    predictions.push_back(prediction);
-  }
+  for (const auto& [searches, prediction] : expected) predictions.push_back(prediction);
   return predictions;
+}
+
+void LostPoints::CountSearches(const std::vector<PointId>& ids) {
+  for (const PointId id : ids)
+    if (const auto found = points_.find(id); found != points_.end()) ++found->second.searches;
 }
 
 std::vector<Landmark> LostPoints::landmarks() const {

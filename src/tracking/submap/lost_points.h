@@ -54,7 +54,10 @@ class LostPoints {
 
   // Those that a camera at this pose should see, at most `count`, and where: those searched least often first. The
   // affine change is that of a surface that faces the camera.
-  std::vector<PointPrediction> Expected(const Camera& camera, const Rigid3& cam_from_world, std::size_t count);
+  std::vector<PointPrediction> Expected(const Camera& camera, const Rigid3& cam_from_world, std::size_t count) const;
+  // These were searched where the camera, as it turned out, should have seen them. Those that are not lost count for
+  // nothing.
+  void CountSearches(const std::vector<PointId>& ids);
 
   // Where a camera at this pose should see them; without those that were searched in vain so often that another point
   // may take their place.

@@ -54,6 +54,7 @@ void Submap::Commit(const FollowedPoints& points, const Rigid3& cam_from_world, 
   for (; static_cast<int>(lost_points.size()) > options.max_lost_points; lost_points.Remove(lost_points.Oldest()))
     tracks->Remove(lost_points.Oldest());
   map = std::move(next);
+  lost_points.CountSearches(points.searched);
   lost_points.Move(map.landmarks);  // (R1)
   // After a gap there is no velocity.
   before_last_cam_from_world = before == TrackingState::kTracking ? last_cam_from_world : cam_from_world;

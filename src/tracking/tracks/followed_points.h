@@ -25,11 +25,14 @@ struct FollowedPoints {
   std::vector<double> ssim;
   std::vector<FramePoint> solved;  // of the joint problem, once there is a solution
 
-  Rigid3 cam_from_world;        // predicted, or where relocalization found the camera
-  std::vector<PointId> unseen;  // landmarks that were not found in this image, ascending
-  std::ptrdiff_t expected = 0;  // landmarks and searched lost points that the image should show
-  LossCounts losses;            // points given up so far, by reason
-  bool in_blur = false;         // the image is blurred; the patches stay those of the last sharp one
+  Rigid3 cam_from_world;          // predicted, or where relocalization found the camera
+  std::vector<PointId> unseen;    // landmarks that were not found in this image, ascending
+  std::vector<PointId> searched;  // lost points that the image should show
+  std::ptrdiff_t expected = 0;    // landmarks and searched lost points that the image should show
+  LossCounts losses;              // points given up so far, by reason
+  bool in_blur = false;           // the image is blurred; the patches stay those of the last sharp one
+  std::size_t unconfirmed =
+      0;  // points that were found where none of the camera's poses is confirmed; then none is here
 
   std::size_t size() const { return positions.size(); }
 
