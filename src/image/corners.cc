@@ -12,6 +12,8 @@
 namespace pliant {
 namespace {
 
+constexpr double kSamePoint_px = 1;  // nearer ones are one point, whatever the options say
+
 constexpr double kReferenceQuantile = 0.99;  // of the local maxima: a few highlights do not set the scale
 // Smallest response of a corner, (gray levels / px)^2 of the mean tensor: below it is the noise of an 8-bit image.
 constexpr double kNoiseFloor = 0.5;
@@ -130,7 +132,7 @@ std::vector<std::size_t> SpreadPoints(std::span<const Eigen::Vector2d> pixels, c
       if (done[i] != 0 || cells.count(cells.Index(pixels[i])) > round) continue;
       done[i] = 1;
       --left;
-      if (cells.Crowded(pixels[i], options.min_distance_px)) continue;
+      if (cells.Crowded(pixels[i], std::max(options.min_distance_px, kSamePoint_px))) continue;
       cells.Take(pixels[i]);
       chosen.push_back(i);
     }

@@ -3,6 +3,8 @@
 
 #include "pliant/image/sharpness.h"
 
+#include <algorithm>
+
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -10,7 +12,8 @@ namespace pliant {
 
 double Sharpness(const cv::Mat& gray, const cv::Mat& valid) {
   cv::Mat small;
-  cv::resize(gray, small, cv::Size(), 0.5, 0.5, cv::INTER_AREA);
+  const cv::Size half(std::max(1, cvRound(0.5 * gray.cols)), std::max(1, cvRound(0.5 * gray.rows)));
+  cv::resize(gray, small, half, 0, 0, cv::INTER_AREA);
   cv::Mat laplacian;
   cv::Laplacian(small, laplacian, CV_32F);
   cv::Mat usable;

@@ -80,8 +80,9 @@ std::optional<RowMatch> Refine(const Side& left, const Side& right, const Eigen:
   return match;
 }
 
-// Semi-global matching's disparity between four pixels; nothing where one of them has none or they differ.
-std::optional<RowMatch> Between(const cv::Mat& disparities, const Eigen::Vector2d& pixel) {
+// Semi-global matching's disparity between four pixels; nothing where one of them has none, they differ, or it is too
+// small.
+std::optional<RowMatch> Between(const cv::Mat& disparities, const Eigen::Vector2d& pixel, double min_disparity_px) {
   constexpr float kStep = 1.0F / 16;
   constexpr float kMaxDifference_px = 1;
   const int u = static_cast<int>(std::floor(pixel.x()));
@@ -94,7 +95,8 @@ std::optional<RowMatch> Between(const cv::Mat& disparities, const Eigen::Vector2
   cv::minMaxLoc(four, &low, &high);
   if (low <= 0 || high - low > kMaxDifference_px) return std::nullopt;
   const auto disparity_px = SampleBilinear(four, pixel.x() - u, pixel.y() - v);
-  return disparity_px ? std::optional(RowMatch{.disparity_px = *disparity_px}) : std::nullopt;
+  if (!disparity_px || *disparity_px < min_disparity_px) return std::nullopt;
+  return RowMatch{.disparity_px = *disparity_px};
 }
 
 cv::Mat SemiGlobalDisparities(const cv::Mat& left, const cv::Mat& right, const StereoMatchingOptions& options) {
@@ -157,7 +159,7 @@ std::vector<std::optional<RowMatch>> MatchAlongRows(const ImagePyramid& left, co
   if (options.matcher == StereoMatcher::kSgbm) {
     const cv::Mat dense = SemiGlobalDisparities(left_image, right_image, options);
     std::transform(pixels.begin(), pixels.end(), matches.begin(),
-                   [&](const Eigen::Vector2d& pixel) { return Between(dense, pixel); });
+                   [&](const Eigen::Vector2d& pixel) { return Between(dense, pixel, options.min_disparity_px); });
     return matches;
   }
   ParallelFor(static_cast<int>(pixels.size()), threads, [&](int i) {

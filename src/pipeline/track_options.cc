@@ -77,10 +77,10 @@ Status CheckTrackOptions(const TrackOptions& options) {
   if (options.track_file.IsGiven() && options.tracker.oracle.tracks == Switch::kOn)
     return {ErrorCode::kInvalidArgument,
             "a file of tracks and Oracle.tracks both say where points are; give one of them"};
-  if (options.FollowsInSource() && options.image.working == WorkingImageMode::kFixed && options.image.scale != 1.0)
+  if (options.FollowsInSource() && (options.image.scale != 1.0 || options.image.interlaced == Interlacing::kOn))
     return {ErrorCode::kInvalidArgument,
             "with an Oracle option or a file of tracks points are where these have them, in pixels of the source: "
-            "leave Image.scale at 1"};
+            "leave Image.scale at 1, and do not give Image.interlaced on"};
   return Status::Ok();
 }
 

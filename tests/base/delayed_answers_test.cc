@@ -39,7 +39,9 @@ TEST_P(DelayedAnswersIn, ThatWereNotTakenInTimeAreTakenInTheirOrder) {
   for (int step = 0; step < 3; ++step) answers.Ask(step + 1, GetParam(), [step] { return step; });
   EXPECT_EQ(answers.Take(3), 0);
   EXPECT_EQ(answers.Take(3), 1);
+  EXPECT_FALSE(answers.IsEmpty());
   EXPECT_EQ(answers.Take(3), 2);
+  EXPECT_TRUE(answers.IsEmpty());
   EXPECT_EQ(answers.Take(3), std::nullopt);
 }
 

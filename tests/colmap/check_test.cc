@@ -67,6 +67,8 @@ INSTANTIATE_TEST_SUITE_P(
                "cameras have image sizes that are not possible"},
         Damage{"Focal", [](Model& m) { m.cameras[0].params[0] = -1; }, kError,
                "cameras have focal lengths that are not positive"},
+        Damage{"SecondFocal", [](Model& m) { m.cameras[0].params[1] = 0; }, kError,
+               "cameras have focal lengths that are not positive"},
         Damage{"Fov", [](Model& m) { m.cameras[1].model_id = 7; }, kWarning,
                "cameras have a model that Pliant does not have"},
         Damage{"Pose", [](Model& m) { m.images[0].cam_from_world.tvec[1] = kNaN; }, kError,

@@ -82,6 +82,17 @@ TEST(DetectCorners, StaysOffMasksEdgesAndExistingPoints) {
   }
 }
 
+TEST(DetectCorners, AreNotMadeAgainWhereTheyAre) {
+  CornerOptions options = Options(500);
+  options.min_distance_px = 0;
+  const cv::Mat texture = UnevenTexture(3);
+  const cv::Mat valid(kSize, CV_8UC1, cv::Scalar(255));
+  std::vector<Eigen::Vector2d> existing;
+  for (const Corner& corner : DetectCorners(texture, valid, {}, options)) existing.push_back(corner.pixel);
+  for (const Corner& corner : DetectCorners(texture, valid, existing, options))
+    for (const Eigen::Vector2d& pixel : existing) ASSERT_GE((corner.pixel - pixel).norm(), 1);
+}
+
 // Corners of a bright square whose upper left corner lies at (100, 80) + shift / 8, drawn eight times too large.
 std::vector<Corner> SquareCorners(int shift) {
   cv::Mat large(kSize.height * 8, kSize.width * 8, CV_8UC1, cv::Scalar(60));

@@ -39,6 +39,11 @@ TEST(Sharpness, FallsWithBlur) {
   EXPECT_EQ(Sharpness(cv::Mat(120, 160, CV_8UC1, cv::Scalar(80)), {}), 0);
 }
 
+TEST(Sharpness, OfALineIsThatOfItsPixels) {
+  EXPECT_EQ(Sharpness(cv::Mat(1, 1, CV_8UC1, cv::Scalar(90)), {}), 0);
+  EXPECT_EQ(Sharpness(cv::Mat(40, 1, CV_8UC1, cv::Scalar(90)), {}), 0);
+}
+
 TEST(Sharpness, IsThatOfTheUsablePixels) {
   cv::Mat image = Blurred(Noise(160), 1);
   cv::Mat valid(image.size(), CV_8UC1, cv::Scalar(255));

@@ -104,6 +104,24 @@ TEST_P(EveryMatcher, FindsNothingWhereThereIsNothing) {
   EXPECT_LT(Count(Match({pair.left, turned}, pixels, Options())), found / 4);
 }
 
+TEST_P(EveryMatcher, HasAMinimumOfTheDisparity) {
+  const Pair pair = RenderedPair();
+  const std::vector<Eigen::Vector2d> pixels = CornersOf(pair.left);
+  StereoMatchingOptions options;
+  options.matcher = GetParam();
+  std::vector<double> disparities_px;
+  for (const auto& match : Match(pair, pixels, options))
+    if (match) disparities_px.push_back(match->disparity_px);
+  options.min_disparity_px = Median(disparities_px);
+  int matched = 0;
+  for (const auto& match : Match(pair, pixels, options)) {
+    if (!match) continue;
+    ++matched;
+    EXPECT_GE(match->disparity_px, options.min_disparity_px);
+  }
+  EXPECT_GT(matched, 0);
+}
+
 TEST_P(EveryMatcher, SurvivesCornersAtTheEdge) {
   const Pair pair = RenderedPair();
   const double right = pair.left.cols - 1.0;

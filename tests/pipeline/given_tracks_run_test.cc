@@ -171,6 +171,10 @@ TEST_F(GivenTracksRun, WhatContradictsAFileOfTracksIsRefusedInOneSentence) {
   options.track_file.path = folder_.Path("tracks.csv");
   options.image = {.working = WorkingImageMode::kFixed, .scale = 0.5};
   EXPECT_THAT(Track(options).status().message(), HasSubstr("leave Image.scale at 1"));
+  options.image = {.scale = 0.5};
+  EXPECT_THAT(Track(options).status().message(), HasSubstr("leave Image.scale at 1"));
+  options.image = {.interlaced = Interlacing::kOn};
+  EXPECT_THAT(Track(options).status().message(), HasSubstr("do not give Image.interlaced on"));
   options.image = {};
   options.tracker.oracle.tracks = Switch::kOn;
   EXPECT_THAT(Track(options).status().message(), HasSubstr("both say where points are"));

@@ -4,6 +4,7 @@
 // Runs that start from a COLMAP model: here the one that a start from true depth leaves, of a rigid scene.
 #include <algorithm>
 #include <filesystem>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -73,6 +74,29 @@ TEST_F(ModelStartTest, ItsPointsAreTrackedAsThoseOfTrueDepth) {
   EXPECT_EQ(summary->frames_tracked, kModelFrames);
   EXPECT_EQ(summary->first_maps.front().declared_frame_idx, 0);
   EXPECT_LT(RmseMm("run"), RmseMm("true") + kFileModel_mm);
+}
+
+// As of a rig of two cameras.
+TEST_F(ModelStartTest, ImagesOfAnotherFolderWithTheSameNamesAreOthers) {
+  auto model = colmap::ReadModel(folder_.Path("true/sparse"));
+  ASSERT_TRUE(model.ok()) << model.status().message();
+  std::vector<colmap::Image> images;
+  for (const colmap::Image& image : model->images) {
+    colmap::Image of_other = image;
+    of_other.id += 1000;
+    of_other.name = "another/" + image.name;
+    of_other.points2D.clear();
+    images.push_back(of_other);
+  }
+  images.insert(images.end(), model->images.begin(), model->images.end());
+  model->images = images;
+  const Status written = colmap::WriteModel(folder_.Path("two"), *model, colmap::Format::kBinary);
+  ASSERT_TRUE(written.ok()) << written.message();
+  ModelInitOptions two = Model();
+  two.path = folder_.Path("two");
+  const auto summary = Track(InitMethod::kColmapModel, "run", two);
+  ASSERT_TRUE(summary.ok()) << summary.status().message();
+  EXPECT_EQ(summary->frames_tracked, kModelFrames) << summary->note;
 }
 
 TEST_F(ModelStartTest, AModelOfUnknownUnitIsScaledToTheNominalDepth) {

@@ -71,6 +71,24 @@ TEST(GivenTracks, LeaveContoursOutWhereThereAreEnoughOthers) {
   EXPECT_THAT(GivenTracks(on_the_step).AddNew(frame, existing, {}), IsEmpty());
 }
 
+// Those that are followed already are no others.
+TEST(GivenTracks, TakeThoseOnContoursWhereTheOthersAreFollowedAlready) {
+  cv::Mat step(kHeight, kWidth, CV_8UC1, cv::Scalar(30));
+  step.colRange(80, kWidth).setTo(180);
+  const PreparedFrame frame = PrepareFrame(0, "image", 0, step, {}, {});
+  std::vector<PixelTrack> all = {{PointId{1}, {{0, {80, 60}}}}};
+  std::vector<Eigen::Vector2d> followed;
+  for (int i = 0; i < 30; ++i) {
+    followed.emplace_back(20 + 10.0 * (i % 3), 10 + 3.0 * i);
+    all.push_back({PointId{2 + i}, {{0, followed.back()}}});
+  }
+  EXPECT_THAT(Ids(GivenTracks(all).AddNew(frame, followed, {})), ElementsAre(1));
+  CornerOptions close;
+  close.min_distance_px = 0;
+  close.contour_filter = Switch::kOff;
+  EXPECT_THAT(Ids(GivenTracks(all).AddNew(frame, followed, close)), ElementsAre(1));
+}
+
 TEST(GivenTracks, FollowPointsWhileTheyAreSeenAndFindThemAgain) {
   GivenTracks tracks(kTracks);
   ASSERT_THAT(tracks.AddNew(Frame(0), {}, {}), SizeIs(1));

@@ -3,7 +3,7 @@
 
 // Which pixels show the scene. Three things do not: what a given mask excludes, specular highlights (they move with the
 // light, not with the tissue), and the dark surroundings of an endoscope's round or octagonal field of view. A valid
-// mask is CV_8UC1, 255 = usable, 0 = not. Equations: docs/method.md, eq. P10.
+// mask is CV_8UC1, 255 = usable, 0 = not. Equations: docs/method.md, eq. P13.
 #pragma once
 
 #include <opencv2/core/mat.hpp>

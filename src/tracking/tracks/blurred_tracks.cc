@@ -27,16 +27,21 @@ Eigen::Vector2d Enlarged(const Eigen::Vector2d& pixel, int shrink) {
   return shrink * (pixel + Eigen::Vector2d::Constant(0.5)) - Eigen::Vector2d::Constant(0.5);
 }
 
+cv::Size Shrunk(const cv::Size& size, int shrink) {
+  const auto side = [&](int full) { return std::max(1, cvRound(full / static_cast<double>(shrink))); };
+  return {side(size.width), side(size.height)};
+}
+
 ImagePyramid SmallPyramid(const cv::Mat& gray, int shrink, int levels) {
   cv::Mat small;
-  cv::resize(gray, small, cv::Size(), 1.0 / shrink, 1.0 / shrink, cv::INTER_AREA);
+  cv::resize(gray, small, Shrunk(gray.size(), shrink), 0, 0, cv::INTER_AREA);
   return ImagePyramid(small, levels);
 }
 
 SupportMask SmallMask(const SupportMask& mask, int shrink) {
   if (mask.unrestricted()) return {};
   cv::Mat small;
-  cv::resize(mask.valid(), small, cv::Size(), 1.0 / shrink, 1.0 / shrink, cv::INTER_NEAREST);
+  cv::resize(mask.valid(), small, Shrunk(mask.valid().size(), shrink), 0, 0, cv::INTER_NEAREST);
   return SupportMask(small);
 }
 

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "geometry/nearest_pixels.h"
 #include "pliant/scene/serialize.h"
 
 namespace pliant {
@@ -42,10 +43,13 @@ std::vector<NewTrack> GivenTracks::AddNew(const PreparedFrame& frame, std::span<
     Eigen::Vector2d pixel;
     std::ptrdiff_t length;
   };
+  const NearestPixels known({existing.begin(), existing.end()}, kSamePoint_px);
   std::vector<Offer> offers;
   for (const PixelTrack& track : tracks_)
-    if (const TrackPixel* seen = SeenIn(track, frame.frame_idx); seen != nullptr && IsUsable(frame, seen->pixel))
+    if (const TrackPixel* seen = SeenIn(track, frame.frame_idx);
+        seen != nullptr && IsUsable(frame, seen->pixel) && known.Find(seen->pixel, 1).empty())
       offers.push_back({&track, seen->pixel, LengthFrom(track, frame.frame_idx)});
+  if (offers.empty()) return {};
   std::ranges::stable_sort(offers, std::ranges::greater(), &Offer::length);
   const auto pixels_of = [](const std::vector<Offer>& some) {
     std::vector<Eigen::Vector2d> pixels;

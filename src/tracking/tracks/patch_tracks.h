@@ -17,7 +17,9 @@ class PatchTracks : public TrackSource {
   PatchTracks(const PointTrackerOptions& options, int threads)
       : options_(options), threads_(threads), tracker_(options) {}
 
-  TrackAbilities abilities() const override { return {}; }
+  TrackAbilities abilities() const override {
+    return {.finds_points = options_.patch_policy == PatchPolicy::kAdaptive};
+  }
   std::optional<PointId> Add(const Eigen::Vector2d& pixel, const PreparedFrame& frame) override;
   bool Resume(PointId id, const Eigen::Vector2d& pixel, const PreparedFrame& frame) override;
   PointId next_id() const override { return PointId{next_id_}; }
