@@ -38,7 +38,7 @@ fs::path CameraOfRun(const std::string& run_path, const RunDescription& run) {
   std::error_code error;
   if (IsAssumedCamera(run.camera) || fs::exists(run.camera, error)) return run.camera;
   for (const char* model : {"sparse", "sparse/0"})
-    if (const fs::path cameras = fs::path(run_path) / model / "cameras.bin"; fs::exists(cameras, error)) return cameras;
+    if (fs::path cameras = fs::path(run_path) / model / "cameras.bin"; fs::exists(cameras, error)) return cameras;
   return run.camera;
 }
 

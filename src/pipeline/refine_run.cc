@@ -205,6 +205,19 @@ RefinedFocalLength FocalLengthOf(const Camera& assumed, const Result<SelfCalibra
   return result;
 }
 
+// Where one is found it is the camera's from here on. Fails where it is asked to stop.
+Result<RefinedFocalLength> EstimateFocalLength(const RefineOptions& options, const std::function<bool()>& goes_on,
+                                               RunMap* known, std::map<int, RefinedSubmap>* submaps) {
+  const auto calibration = CalibrationOf(*known->camera, *submaps, options, goes_on);
+  if (calibration.status().code() == ErrorCode::kInterrupted) return calibration.status();
+  RefinedFocalLength focal_length = FocalLengthOf(*known->camera, calibration);
+  if (!calibration.ok()) return focal_length;
+  known->camera = calibration->camera;
+  // Depths under another focal length are a start, and no measurement.
+  for (auto& [number, submap] : *submaps) submap.recording.log_depth_sigma = kStartLogDepthSigma;
+  return focal_length;
+}
+
 bool IsFocalLengthWanted(const RefineOptions& options, const RunDescription& run) {
   return options.focal_length == FocalLength::kEstimated ||
          (options.focal_length == FocalLength::kAuto && IsAssumedCamera(run.camera));
@@ -259,15 +272,10 @@ Result<RefineSummary> RefineRun(const RefineRequest& request, const RefineOption
   RefineSummary summary;
   bool has_new_camera = false;
   if (IsFocalLengthWanted(options, run->summary->description)) {
-    const auto calibration = CalibrationOf(*known->camera, *submaps, options, goes_on);
-    if (calibration.status().code() == ErrorCode::kInterrupted) return calibration.status();
-    summary.focal_length = FocalLengthOf(*known->camera, calibration);
-    has_new_camera = calibration.ok();
-    if (has_new_camera) {
-      known->camera = calibration->camera;
-      // Depths under another focal length are a start, and no measurement.
-      for (auto& [number, submap] : *submaps) submap.recording.log_depth_sigma = kStartLogDepthSigma;
-    }
+    auto focal_length = EstimateFocalLength(options, goes_on, &*known, &*submaps);
+    if (!focal_length.ok()) return focal_length.status();
+    has_new_camera = focal_length->failure.empty();
+    summary.focal_length = *std::move(focal_length);
   }
   std::map<int, RefinedRecording> refined;
   Status failed;

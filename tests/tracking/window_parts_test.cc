@@ -142,16 +142,6 @@ TEST(WindowParts, AWindowMayHaveFewerViewsThanAPointIsOtherwiseSeenIn) {
   EXPECT_TRUE(SolveAsRigid(InputOf(sequence), sequence.frames.size(), options, kNominalMm).ok());
 }
 
-TEST(WindowParts, AReferenceWhosePointsAreGoneIsGivenUp) {
-  WavingTracks sequence(31, CameraPath::kForwards, kRigid_mm);
-  for (std::size_t t = 20; t < sequence.frames.size(); ++t)
-    std::erase_if(sequence.frames[t].observations,
-                  [](const InitObservation& seen) { return seen.id.value > 1 && seen.id.value < 100; });
-  const InitOutcome outcome = sequence.Try({});
-  EXPECT_EQ(outcome.decision, InitDecision::kNewReference);
-  EXPECT_THAT(outcome.reason, HasSubstr("of the reference's points are still followed"));
-}
-
 TEST(WindowParts, AWaveIsNotTakenForRigid) {
   for (const unsigned seed : {1U, 2U, 3U}) {
     const SolvedWindow window = Solved(WavingTracks(kWindowFrames, CameraPath::kForwards, kWave_mm, 15, seed));

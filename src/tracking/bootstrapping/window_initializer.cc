@@ -19,7 +19,6 @@
 namespace pliant {
 namespace {
 
-constexpr int kFewestKept = 3;          // points of the reference, that a rotation is fitted to
 constexpr int kMinWait = 6;             // frames after the reference, before the first of the other attempts
 constexpr double kMaxLightError = 0.2;  // of log distance, in the median: twice what it is where there is light at all
 
@@ -55,13 +54,6 @@ class WindowInitializer final : public Initializer {
       outcome.decision = InitDecision::kNewReference;
       outcome.reason = "only " + std::to_string(followed) + " points are still followed (at least " +
                        std::to_string(needed) + " must be)";
-      return outcome;
-    }
-    // Without them nothing says that the camera did not only turn.
-    if (const int kept = KeptPoints(input.frames.front(), input.frames.back()); kept < kFewestKept) {
-      outcome.decision = InitDecision::kNewReference;
-      outcome.reason = "only " + std::to_string(kept) + " of the reference's points are still followed (at least " +
-                       std::to_string(kFewestKept) + " must be)";
       return outcome;
     }
     const bool ends = input.moment == InitMoment::kLastFrame;
