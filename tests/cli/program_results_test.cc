@@ -216,10 +216,16 @@ TEST(Program, ARunIsEvaluatedAndShownWithTheCalibrationItWasMadeWith) {
   const Outcome figure = Pliant("report --run '" + run + "' --figure 2 -o '" + Temporary("figure.png").string() + "'");
   EXPECT_EQ(figure.exit, 0) << figure.err;
   EXPECT_THAT(figure.out, Not(HasSubstr("note:")));
+  // Its model has the camera as well.
   std::filesystem::remove(camera);
-  const Outcome without = Pliant("report --run '" + run + "' --figure 2 -o '" + Temporary("figure.png").string() + "'");
-  EXPECT_EQ(without.exit, 0) << without.err;
-  EXPECT_THAT(without.out, HasSubstr("note: the images cannot be shown"));
+  const std::string again = "report --run '" + run + "' --figure 2 -o '" + Temporary("figure.png").string() + "'";
+  const Outcome by_model = Pliant(again);
+  EXPECT_EQ(by_model.exit, 0) << by_model.err;
+  EXPECT_THAT(by_model.out, Not(HasSubstr("note:")));
+  std::filesystem::rename(sequence, sequence + "_moved");
+  EXPECT_THAT(Pliant(again + " --sequence '" + sequence + "_moved'").out, Not(HasSubstr("note:")));
+  std::filesystem::remove_all(run + "/sparse");
+  EXPECT_THAT(Pliant(again).out, HasSubstr("note: the images cannot be shown"));
 }
 
 TEST(Program, TruthFollowsMaterialThroughASequence) {
