@@ -8,6 +8,7 @@
 #include <string>
 
 #include "pliant/base/random.h"
+#include "pliant/image/serialize.h"
 #include "pliant/scene/serialize.h"
 #include "pliant/tracking/stage_times.h"
 #include "tracking/bootstrapping/bootstrapper.h"

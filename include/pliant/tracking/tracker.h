@@ -14,6 +14,8 @@
 #include <utility>
 #include <vector>
 
+#include <opencv2/core/mat.hpp>
+
 #include "pliant/camera/camera.h"
 #include "pliant/scene/frame_report.h"
 #include "pliant/scene/map.h"
