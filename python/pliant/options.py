@@ -29,7 +29,9 @@ class Options(dict[str, Any]):
 
 
 def options(job: str, preset: str | None = None) -> Options:
-    """The options of a job (track, simulate, calibrate, refine, join, surface, evaluate, import, export or report) with their defaults.
+    """The options of a job with their defaults.
+
+    job: track, simulate, calibrate, refine, join, surface, evaluate, import, export or report.
 
     preset: of track default or paper, of simulate clean or endoscope. `print(pliant.options("track"))` lists all of
     them with their units and what they are for.

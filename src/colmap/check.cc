@@ -4,7 +4,6 @@
 #include "pliant/colmap/check.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -55,10 +54,9 @@ void CheckCamera(const Camera& camera, Findings* findings) {
   constexpr std::uint64_t kMaxPixels = 1'000'000;
   if (camera.width == 0 || camera.height == 0 || camera.width > kMaxPixels || camera.height > kMaxPixels)
     findings->Error("cameras have image sizes that are not possible", name);
-  constexpr std::array kWithOneFocalLength = {0, 2, 3, 8, 9};  // COLMAP's numbers of the models; others have two
-  const bool has_one = std::ranges::find(kWithOneFocalLength, camera.model_id) != kWithOneFocalLength.end();
-  const auto focal_lengths =
-      std::span(camera.params).first(std::min<std::size_t>(has_one ? 1 : 2, camera.params.size()));
+  const CameraModelInfo* model = FindCameraModel(camera.model_id);
+  const auto num_focal_lengths = static_cast<std::size_t>(model == nullptr ? 1 : model->num_focal_lengths);
+  const auto focal_lengths = std::span(camera.params).first(std::min(num_focal_lengths, camera.params.size()));
   if (!std::ranges::all_of(focal_lengths, [](double focal_px) { return focal_px > 0.0; }))
     findings->Error("cameras have focal lengths that are not positive", name);
   if (camera.model_id > static_cast<int>(CameraModelId::kOpenCvFisheye))

@@ -17,10 +17,9 @@ constexpr double kPixelShift = 0.5;  // COLMAP's coordinate minus ours, px
 
 // Adds to the principal point in a model's parameters. Too few of them are refused when the camera is made.
 void ShiftPrincipalPoint(int model_id, double shift_px, std::vector<double>* params) {
-  const auto model = static_cast<CameraModelId>(model_id);
-  const bool one_focal = model == CameraModelId::kSimplePinhole || model == CameraModelId::kSimpleRadial ||
-                         model == CameraModelId::kRadial;
-  const std::size_t first = one_focal ? 1 : 2;
+  const CameraModelInfo* model = FindCameraModel(model_id);
+  if (model == nullptr) return;
+  const auto first = static_cast<std::size_t>(model->num_focal_lengths);
   for (std::size_t i = first; i < first + 2 && i < params->size(); ++i) (*params)[i] += shift_px;
 }
 

@@ -14,18 +14,18 @@
 namespace pliant::colmap {
 namespace {
 
-constexpr std::array kCameraModels = {CameraModelInfo{0, "SIMPLE_PINHOLE", 3},
-                                      CameraModelInfo{1, "PINHOLE", 4},
-                                      CameraModelInfo{2, "SIMPLE_RADIAL", 4},
-                                      CameraModelInfo{3, "RADIAL", 5},
-                                      CameraModelInfo{4, "OPENCV", 8},
-                                      CameraModelInfo{5, "OPENCV_FISHEYE", 8},
-                                      CameraModelInfo{6, "FULL_OPENCV", 12},
-                                      CameraModelInfo{7, "FOV", 5},
-                                      CameraModelInfo{8, "SIMPLE_RADIAL_FISHEYE", 4},
-                                      CameraModelInfo{9, "RADIAL_FISHEYE", 5},
-                                      CameraModelInfo{10, "THIN_PRISM_FISHEYE", 12},
-                                      CameraModelInfo{11, "RAD_TAN_THIN_PRISM_FISHEYE", 16}};
+constexpr std::array kCameraModels = {CameraModelInfo{0, "SIMPLE_PINHOLE", 3, 1},
+                                      CameraModelInfo{1, "PINHOLE", 4, 2},
+                                      CameraModelInfo{2, "SIMPLE_RADIAL", 4, 1},
+                                      CameraModelInfo{3, "RADIAL", 5, 1},
+                                      CameraModelInfo{4, "OPENCV", 8, 2},
+                                      CameraModelInfo{5, "OPENCV_FISHEYE", 8, 2},
+                                      CameraModelInfo{6, "FULL_OPENCV", 12, 2},
+                                      CameraModelInfo{7, "FOV", 5, 2},
+                                      CameraModelInfo{8, "SIMPLE_RADIAL_FISHEYE", 4, 1},
+                                      CameraModelInfo{9, "RADIAL_FISHEYE", 5, 1},
+                                      CameraModelInfo{10, "THIN_PRISM_FISHEYE", 12, 2},
+                                      CameraModelInfo{11, "RAD_TAN_THIN_PRISM_FISHEYE", 16, 2}};
 constexpr std::array<std::string_view, 3> kFiles = {"cameras", "images", "points3D"};
 constexpr std::string_view kReadTask = "read";
 constexpr int kNumFiles = 3;

@@ -30,6 +30,7 @@ struct CameraModelInfo {
   int id = 0;
   std::string_view name;
   int num_params = 0;
+  int num_focal_lengths = 0;  // the first of the parameters; the principal point follows them
 };
 
 // Null where there is none.

@@ -39,8 +39,7 @@ BootstrapStep Bootstrapper::Process(const PreparedFrame& frame, Submap* submap, 
   assert(submap->map.landmarks.empty());
   waiting_.CountFrame();
   if (!HasReference()) return TakeReference(frame, submap, times);
-  if (options_.track_blurred == Switch::kOn && tracks_->abilities().tracks_blurred &&
-      submap->IsBlurred(frame, options_)) {
+  if (submap->IsBlurred(frame, options_, tracks_->abilities())) {
     // A dark or blurred frame is passed over: the points are searched again in the next one.
     ++submap->blurred_frames;
     return {.tracked = static_cast<int>(frames_.back().observations.size()),

@@ -73,17 +73,11 @@ std::vector<PointPrediction> FrameTracker::PredictPixels(const Submap& submap, c
   return predictions;
 }
 
-// Against the last sharp image. Of many such images in a row the later ones are taken as they are: the blur stays.
-bool FrameTracker::IsBlurred(const PreparedFrame& frame, const Submap& submap) const {
-  return options_.track_blurred == Switch::kOn && tracks_->abilities().tracks_blurred &&
-         submap.IsBlurred(frame, options_);
-}
-
 FollowedPoints FrameTracker::Follow(const PreparedFrame& frame, const Submap& submap,
                                     const Rigid3& cam_from_world) const {
   FollowedPoints followed;
   followed.cam_from_world = cam_from_world;
-  followed.in_blur = IsBlurred(frame, submap);
+  followed.in_blur = submap.IsBlurred(frame, options_, tracks_->abilities());
   const std::vector<PointPrediction> predictions = PredictPixels(submap, cam_from_world);
   followed.expected = std::ranges::count_if(
       predictions, [&](const PointPrediction& prediction) { return camera_.Contains(prediction.pixel); });

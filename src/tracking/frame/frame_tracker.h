@@ -59,7 +59,6 @@ class FrameTracker {
  private:
   Rigid3 PredictPose(int frame_idx, const Submap& submap) const;
   std::vector<PointPrediction> PredictPixels(const Submap& submap, const Rigid3& cam_from_world) const;
-  bool IsBlurred(const PreparedFrame& frame, const Submap& submap) const;
   Rigid3 EstimatePose(const FollowedPoints& followed, StageTimes* times) const;
   DeformationGraph BuildGraph(const FollowedPoints& followed, StageTimes* times) const;
   void RejectNeighborOutliers(const Rigid3& cam_from_world, const DeformationGraph& graph,

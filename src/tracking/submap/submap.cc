@@ -9,8 +9,10 @@
 
 namespace pliant {
 
-bool Submap::IsBlurred(const PreparedFrame& frame, const TrackerOptions& options) const {
-  return blurred_frames < options.max_blurred_frames && frame.sharpness < options.min_sharpness * previous.sharpness;
+bool Submap::IsBlurred(const PreparedFrame& frame, const TrackerOptions& options,
+                       const TrackAbilities& abilities) const {
+  return options.track_blurred == Switch::kOn && abilities.tracks_blurred &&
+         blurred_frames < options.max_blurred_frames && frame.sharpness < options.min_sharpness * previous.sharpness;
 }
 
 std::vector<PointObservation> Submap::Observations() const {

@@ -32,9 +32,9 @@ struct Submap {
   Submap(int submap_idx, const Camera& camera, const TrackerOptions& options)
       : idx(submap_idx), candidates(camera, options.growth), descriptors(options.relocalization) {}
 
-  // Whether an image is blurred, or dark, against the last sharp one. Of many such images in a row the later ones are
-  // not: the blur stays.
-  bool IsBlurred(const PreparedFrame& frame, const TrackerOptions& options) const;
+  // Whether an image is blurred, or dark, against the last sharp one, and that matters to the source of tracks. Of many
+  // such images in a row the later ones are not: the blur stays.
+  bool IsBlurred(const PreparedFrame& frame, const TrackerOptions& options, const TrackAbilities& abilities) const;
   // The landmarks as this submap's last frame shows them; sorted by id.
   std::vector<PointObservation> Observations() const;
   // The landmarks in sight and those that were lost.
