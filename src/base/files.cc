@@ -14,6 +14,7 @@ namespace pliant {
 namespace {
 
 constexpr std::size_t kLargeBuffer = 1 << 20;
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // of programs for Windows, before the first line
 
 // The name under which a file is written before it is renamed.
 std::string Beside(const std::string& path) { return path + ".tmp"; }
@@ -234,6 +235,7 @@ bool LineReader::Next(std::string_view* line) {
   ++number_;
   ended_ = !stream_.eof();
   *line = line_;
+  if (number_ == 1 && line->starts_with(kByteOrderMark)) line->remove_prefix(kByteOrderMark.size());
   if (line->ends_with('\r')) line->remove_suffix(1);
   return true;
 }

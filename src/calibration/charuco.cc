@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <numeric>
+#include <set>
 #include <string_view>
 #include <utility>
 
@@ -65,6 +66,19 @@ Status CheckCharucoIsSupported(const CalibrationBoard& board) {
                                            "; did you mean " + NearestName(board.dictionary, names) + "?"};
 }
 
+// Enough of the board's inner corners, and not in one row or column.
+bool DeterminePose(const std::vector<int>& ids, const CalibrationBoard& board) {
+  constexpr int kFewest = 6;
+  if (static_cast<double>(ids.size()) < std::max<double>(kFewest, kSmallestSeenShare * board.NumPoints())) return false;
+  std::set<int> rows;
+  std::set<int> columns;
+  for (const int id : ids) {
+    rows.insert(id / board.columns);
+    columns.insert(id % board.columns);
+  }
+  return rows.size() > 1 && columns.size() > 1;
+}
+
 std::optional<BoardView> FindCharuco(const cv::Mat& gray, const CalibrationBoard& board) {
   const cv::Ptr<cv::aruco::CharucoBoard> pattern = OpenCvBoard(board);
   if (!pattern) return std::nullopt;
@@ -75,7 +89,7 @@ std::optional<BoardView> FindCharuco(const cv::Mat& gray, const CalibrationBoard
   std::vector<cv::Point2f> corners;
   std::vector<int> ids;
   cv::aruco::interpolateCornersCharuco(markers, marker_ids, gray, pattern, corners, ids);
-  if (static_cast<double>(ids.size()) < kSmallestSeenShare * board.NumPoints()) return std::nullopt;
+  if (!DeterminePose(ids, board)) return std::nullopt;
   std::vector<std::size_t> order(ids.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return ids[a] < ids[b]; });

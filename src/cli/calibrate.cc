@@ -44,11 +44,13 @@ const Manual kCalibrateManual = {
 };
 
 // One line a parameter: name, value, standard deviation.
+// `sigmas`: one each, or none.
 void SayParameters(const Camera& camera, const std::vector<double>& sigmas) {
   const std::string names(camera.Visit([](const auto& model) { return model.kParamNames; }));
   std::size_t i = 0;
   for (const std::string_view name : Split(names, ',')) {
-    SayResult(Formatted("  %-4s %14.6g  +- %.2g", std::string(name).c_str(), camera.params()[i], sigmas[i]));
+    SayResult(Formatted("  %-4s %14.6g", std::string(name).c_str(), camera.params()[i]) +
+              (sigmas.empty() ? "" : Formatted("  +- %.2g", sigmas[i])));
     ++i;
   }
 }
@@ -104,8 +106,8 @@ void Say(const CalibratePairsSummary& summary) {
   SayResult("right camera, alone");
   Say(summary.right);
   SayResult("left and right camera, together");
-  SayParameters(stereo.left, summary.left.calibration.sigmas);
-  SayParameters(stereo.right, summary.right.calibration.sigmas);
+  SayParameters(stereo.left, {});  // they are known as well as alone, or better
+  SayParameters(stereo.right, {});
   const auto pairs = static_cast<int>(stereo.is_outlier.size());
   const auto outliers = static_cast<int>(std::count(stereo.is_outlier.begin(), stereo.is_outlier.end(), true));
   SayResult(Formatted("pairs         %d, %d fit badly", pairs, outliers));

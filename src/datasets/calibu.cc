@@ -107,7 +107,8 @@ Result<std::optional<SourceCalibration>> ReadCalibu(const fs::path& file) {
   auto camera = GeometryOf(file, xml->camera);
   if (!camera.ok()) return camera.status();
   SourceCalibration calibration{*std::move(camera), file};
-  if (const fs::path beside = OnlyFile(file.parent_path(), "_photometrical.xml"); !beside.empty()) {
+  const fs::path folder = file.has_parent_path() ? file.parent_path() : ".";
+  if (const fs::path beside = OnlyFile(folder, "_photometrical.xml"); !beside.empty()) {
     const auto photometric = ReadCalibuPhotometry(beside);
     if (!photometric.ok()) return photometric.status();
     calibration.photometric = *photometric;

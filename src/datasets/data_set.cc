@@ -92,6 +92,10 @@ class DataSetSequence final : public Sequence {
   }
   Status CheckSize(const cv::Mat& image, const std::string& title) const;
   double TimeOf(int idx) const;
+  // Masks are drawn on the images as they are, before they are rectified.
+  cv::Size MaskSize() const {
+    return data_set_.warp ? data_set_.warp->raw : cv::Size(camera().width(), camera().height());
+  }
   Result<cv::Mat> Mask(int idx, const std::string& name) const;
   Result<cv::Mat> RawMask(int idx) const;
   fs::path DepthPriorFile(int idx) const;
@@ -159,6 +163,10 @@ Status DataSetSequence::OpenDepthPriors(const fs::path& folder) {
     return {ErrorCode::kMismatch, "how many images there are is not known before the last, so the depth priors in " +
                                       folder.string() + " belong to them by name; name the first one like its image, " +
                                       images().Name(0)};
+  if (!images().count_is_exact() && DepthPriorFile(0).empty() && !DepthPriorFile(1).empty())
+    data_set_.warnings.push_back("the depth priors in " + folder.string() +
+                                 " begin with number 1, and the first image is " + images().Name(0) +
+                                 ": if the first prior is that image's, all come one image late");
   if (images().count_is_exact())
     WarnOfMissing(
         "depth prior", KnownRange(), data_set_,
@@ -176,8 +184,7 @@ Status DataSetSequence::CheckSizes() const {
     const fs::path mask = masks_->Find(idx, fs::path(images().Name(idx)).stem().string());
     const std::optional<cv::Size> size = ReadImageSize(mask);
     if (!size) continue;
-    if (Status status = CheckFrameMaskSize(mask, *size, {camera().width(), camera().height()}); !status.ok())
-      return status;
+    if (Status status = CheckFrameMaskSize(mask, *size, MaskSize()); !status.ok()) return status;
   }
   return Status::Ok();
 }
@@ -214,8 +221,11 @@ Result<std::optional<SequenceFrame>> DataSetSequence::Next() {
 
 Result<cv::Mat> DataSetSequence::Mask(int idx, const std::string& name) const {
   if (!masks_) return RawMask(idx);
-  Result<cv::Mat> mask = ReadFrameMask(*masks_, idx, name, camera().width(), camera().height());
-  if (mask.ok() && !data_set_.inside.empty()) mask = cv::Mat(*mask & data_set_.inside);
+  const cv::Size size = MaskSize();
+  Result<cv::Mat> mask = ReadFrameMask(*masks_, idx, name, size.width, size.height);
+  if (!mask.ok()) return mask;
+  if (data_set_.warp) mask = data_set_.warp->ApplyNearest(*mask);
+  if (!data_set_.inside.empty()) mask = cv::Mat(*mask & data_set_.inside);
   return mask;
 }
 
@@ -226,8 +236,7 @@ Result<cv::Mat> DataSetSequence::RawMask(int idx) const {
   Result<cv::Mat> raw = ReadMaskImage(file->second);
   if (!raw.ok()) return raw;
   cv::Mat mask;
-  cv::resize(*raw, mask, data_set_.warp ? data_set_.warp->raw : cv::Size(camera().width(), camera().height()), 0, 0,
-             cv::INTER_NEAREST);
+  cv::resize(*raw, mask, MaskSize(), 0, 0, cv::INTER_NEAREST);
   if (data_set_.warp) mask = data_set_.warp->ApplyNearest(mask);
   if (!data_set_.inside.empty()) mask &= data_set_.inside;
   return mask;

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <string_view>
 #include <system_error>
+#include <thread>
 #include <utility>
 
 #include <unistd.h>
@@ -23,7 +24,10 @@ constexpr std::string_view kDevice = "device:";
 using Clock = std::chrono::steady_clock;
 
 constexpr double kMostOfTheTimeout = 0.9;
-constexpr int kMaxDevice = 255;  // Video4Linux has no more
+constexpr int kMaxDamaged = 100;  // packets in a row: a decoder says no more of one than of the stream's end
+constexpr auto kPauseOfDevice = std::chrono::milliseconds(20);
+constexpr double kMaxFps = 1000;  // rates from there on are the unit of the stream's times
+constexpr int kMaxDevice = 255;   // Video4Linux has no more
 
 Result<int> DeviceNumber(std::string_view source) {
   int number = -1;
@@ -78,12 +82,13 @@ Result<std::unique_ptr<FrameGrabber>> FrameGrabber::Open(const std::string& sour
         !status.ok())
       return status;
   const double fps = grabber->capture_.get(cv::CAP_PROP_FPS);
-  if (std::isfinite(fps) && fps > 0 && fps < 1e4) grabber->fps_ = fps;
+  if (std::isfinite(fps) && fps > 0 && fps < kMaxFps) grabber->fps_ = fps;
   return grabber;
 }
 
 Status FrameGrabber::OpenCapture(const std::string& source, double timeout_s) {
-  if (source.starts_with(kDevice)) {
+  is_device_ = source.starts_with(kDevice);
+  if (is_device_) {
     const auto number = DeviceNumber(source);
     if (!number.ok()) return number.status();
     if (Status status = CheckDevice(*number); !status.ok()) return status;
@@ -98,18 +103,27 @@ Status FrameGrabber::OpenCapture(const std::string& source, double timeout_s) {
   return capture_.isOpened() ? Status::Ok() : Status(ErrorCode::kUnreadable, CannotBeDecoded(source));
 }
 
-std::optional<cv::Mat> FrameGrabber::Grab() {
-  const auto begin = Clock::now();
+std::optional<cv::Mat> FrameGrabber::Decode() {
   try {
     cv::Mat decoded;
     if (capture_.read(decoded) && !decoded.empty() && decoded.depth() == CV_8U)
       return decoded.clone();  // the decoder reuses its own memory
   } catch (const cv::Exception&) {
-    // A stream that cannot be decoded any further has ended.
+    // As a packet that cannot be decoded.
   }
-  // A decoder that waited in vain says no more than one whose stream has ended.
-  const double waited_s = std::chrono::duration<double>(Clock::now() - begin).count();
-  has_stalled_ = standard_input_ ? standard_input_->has_stalled() : waited_s > kMostOfTheTimeout * timeout_s_;
+  return std::nullopt;
+}
+
+std::optional<cv::Mat> FrameGrabber::Grab() {
+  const auto begin = Clock::now();
+  const auto waited_s = [&] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
+  int damaged = 0;
+  do {
+    if (auto image = Decode()) return image;
+    if (is_device_) std::this_thread::sleep_for(kPauseOfDevice);
+  } while (waited_s() < kMostOfTheTimeout * timeout_s_ && (is_device_ || ++damaged <= kMaxDamaged));
+  // A decoder that waited in vain says no more than one whose stream has ended. A camera has no end.
+  has_stalled_ = standard_input_ ? standard_input_->has_stalled() : waited_s() > kMostOfTheTimeout * timeout_s_;
   return std::nullopt;
 }
 

@@ -25,8 +25,8 @@ class FrameGrabber {
   static Result<std::unique_ptr<FrameGrabber>> Open(const std::string& source, double timeout_s,
                                                     const std::function<bool()>& is_stopped);
 
-  // Waits for the next image, 8-bit BGR; nothing at the source's end, or where it stalls. To be called by one thread,
-  // as has_stalled.
+  // Waits for the next image, 8-bit BGR; nothing at the source's end, or where it stalls. What cannot be decoded is
+  // left out. To be called by one thread, as has_stalled.
   std::optional<cv::Mat> Grab();
   // Whether Grab has waited in vain, so that it gives nothing.
   bool has_stalled() const { return has_stalled_; }
@@ -36,11 +36,13 @@ class FrameGrabber {
  private:
   FrameGrabber() = default;
   Status OpenCapture(const std::string& source, double timeout_s);
+  std::optional<cv::Mat> Decode();
 
   std::unique_ptr<StandardInput> standard_input_;  // outlives the capture that reads it
   cv::VideoCapture capture_;
   std::optional<double> fps_;
   double timeout_s_ = 0;
+  bool is_device_ = false;
   bool has_stalled_ = false;
 };
 

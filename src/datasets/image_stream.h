@@ -55,8 +55,9 @@ std::unique_ptr<ImageStream> StreamFiles(std::filesystem::path folder, std::vect
 Result<std::unique_ptr<ImageStream>> StreamFolder(const std::filesystem::path& folder);
 // Through OpenCV's FFmpeg back end. What is passed over is decoded and dropped, since seeking is not exact in most
 // containers; but far ahead it is sought where `index`, which learns from what is read, knows the frame and the video
-// gives the same one. `index` is that of this file; null: none. A video that promises clearly more frames than can be
-// decoded fails once with kUnreadable. Fails with kUnreadable.
+// gives the same one. `index` is that of this file; null: none. What cannot be decoded is left out. A video
+// that promises clearly more frames than can be decoded fails once with kUnreadable, unless it is a whole MP4. Fails
+// with kUnreadable.
 Result<std::unique_ptr<ImageStream>> StreamVideo(const std::filesystem::path& file,
                                                  std::shared_ptr<VideoIndex> index = nullptr);
 

@@ -39,6 +39,14 @@ Result<std::unique_ptr<Sequence>> OpenWithCamera(const SequenceRequest& request)
 
 }  // namespace
 
+SequenceRequest SequenceRequest::Whole() const {
+  SequenceRequest whole = *this;
+  whole.start = 0;
+  whole.end = -1;
+  whole.stride = 1;
+  return whole;
+}
+
 Result<std::unique_ptr<Sequence>> OpenSequence(const SequenceRequest& request) {
   auto sequence = OpenWithCamera(request);
   if (sequence.ok() || !request.camera_path.empty() || request.spare_camera_path.empty()) return sequence;

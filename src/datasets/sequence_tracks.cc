@@ -20,10 +20,10 @@ constexpr std::size_t kMinPixels = 100;    // fewer say nothing of the images' s
 Status Mismatch(const std::string& sentence) { return {ErrorCode::kMismatch, sentence}; }
 
 // A database's places in its list of images become the sequence's frames.
-Status NameFrames(const std::string& path, const Sequence& sequence, TrackFile* file) {
+Status NameFrames(const std::string& path, const Sequence& sequence, int count, TrackFile* file) {
   if (file->images.empty()) return Status::Ok();
   std::map<std::string, int> frames;
-  for (int k = 0; k < sequence.size(); ++k)
+  for (int k = 0; k < count; ++k)
     if (const auto name = sequence.Name(k)) frames.emplace(std::filesystem::path(*name).filename().string(), k);
   std::vector<std::optional<int>> frame_of;
   int known = 0;
@@ -63,6 +63,17 @@ Status CheckFrames(const std::string& path, int frames, const TrackFile& file) {
                       std::to_string(track.pixels.back().frame_idx) + ", and the images are the frames 0 to " +
                       std::to_string(frames - 1));
   return Status::Ok();
+}
+
+// By reading all of them.
+Result<int> CountFrames(const SequenceRequest& whole) {
+  const auto sequence = OpenSequence(whole);
+  if (!sequence.ok()) return sequence.status();
+  for (int count = 0;; ++count) {
+    const auto frame = (*sequence)->Next();
+    if (!frame.ok()) return frame.status();
+    if (!frame->has_value()) return count;
+  }
 }
 
 // Leaves pixels out that lie outside the image, and notes it.
@@ -111,16 +122,24 @@ void TrackFileOptions::List(OptionTable& table) {
 }
 
 Result<SequenceTracks> ReadTracksOfSequence(const TrackFileOptions& options, const SequenceRequest& request) {
-  SequenceRequest whole = request;
-  whole.start = 0;
-  whole.end = -1;
-  whole.stride = 1;
+  const SequenceRequest whole = request.Whole();
   const auto sequence = OpenSequence(whole);
   if (!sequence.ok()) return sequence.status();
   auto file = ReadTrackFile(options.path);
   if (!file.ok()) return file.status();
-  if (Status status = NameFrames(options.path, **sequence, &*file); !status.ok()) return status;
-  if (Status status = CheckFrames(options.path, (*sequence)->size(), *file); !status.ok()) return status;
+  // How many frames a video has is its container's word, which may be off or missing.
+  int frames = (*sequence)->size();
+  const auto count = [&] {
+    const auto counted = CountFrames(whole);
+    if (counted.ok()) frames = *counted;
+    return counted.status();
+  };
+  if (frames == 0)
+    if (Status status = count(); !status.ok()) return status;
+  if (Status status = NameFrames(options.path, **sequence, frames, &*file); !status.ok()) return status;
+  if (!CheckFrames(options.path, frames, *file).ok())
+    if (Status status = count(); !status.ok()) return status;
+  if (Status status = CheckFrames(options.path, frames, *file); !status.ok()) return status;
   const bool corner = options.pixel_origin == PixelOrigin::kCorner && file->images.empty();
   for (PixelTrack& track : file->tracks)
     for (TrackPixel& seen : track.pixels) {

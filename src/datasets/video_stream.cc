@@ -2,8 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
+#include <fstream>
+#include <string_view>
+#include <system_error>
 #include <utility>
 
 #include <opencv2/videoio.hpp>
@@ -23,6 +28,38 @@ constexpr int kSoughtBefore = 4;  // frames: what is sought by its time is met a
 
 // Containers without an index estimate their number of frames from duration and rate.
 constexpr double kCountSlack = 0.01;  // of the count, and at least one frame
+constexpr double kMaxFps = 1000;      // rates from there on are the unit of the container's times
+constexpr int kMaxDamaged = 100;      // packets in a row: a decoder says no more of one than of the video's end
+
+// Whether a file of MP4's family is all there: its boxes end where the file does. False of other files.
+bool IsWholeMp4(const fs::path& file) {
+  std::error_code error;
+  const std::uintmax_t size = fs::file_size(file, error);
+  std::ifstream in(file, std::ios::binary);
+  std::uintmax_t at = 0;
+  for (bool is_first = true; !error && at < size; is_first = false) {
+    std::array<unsigned char, 16> head = {};
+    in.seekg(static_cast<std::streamoff>(at));
+    if (!in.read(reinterpret_cast<char*>(head.data()), 8)) return false;
+    const auto number = [&](int begin, int end) {
+      std::uint64_t value = 0;
+      for (int i = begin; i < end; ++i) value = value << 8 | head[static_cast<std::size_t>(i)];
+      return value;
+    };
+    const std::string_view type(reinterpret_cast<const char*>(head.data()) + 4, 4);
+    if (is_first && type != "ftyp" && type != "moov" && type != "mdat" && type != "wide" && type != "free")
+      return false;
+    std::uint64_t length = number(0, 4);
+    if (length == 0) return true;  // to the end of the file
+    if (length == 1) {
+      if (!in.read(reinterpret_cast<char*>(head.data()) + 8, 8)) return false;
+      length = number(8, 16);
+    }
+    if (length < 8 || length > size - at) return false;
+    at += length;
+  }
+  return !error && at == size && size > 0;
+}
 
 class VideoStream final : public ImageStream {
  public:
@@ -90,7 +127,7 @@ Status VideoStream::Open() {
   if (Status status = BeginAnew(); !status.ok()) return status;
   const double count = capture_.get(cv::CAP_PROP_FRAME_COUNT);
   count_ = count > 0 && count < 1e9 ? static_cast<int>(std::lround(count)) : 0;
-  if (const double fps = capture_.get(cv::CAP_PROP_FPS); std::isfinite(fps) && fps > 0) fps_ = fps;
+  if (const double fps = capture_.get(cv::CAP_PROP_FPS); std::isfinite(fps) && fps > 0 && fps < kMaxFps) fps_ = fps;
   size_ = {static_cast<int>(capture_.get(cv::CAP_PROP_FRAME_WIDTH)),
            static_cast<int>(capture_.get(cv::CAP_PROP_FRAME_HEIGHT))};
   return CheckPixels(size_, "the video " + file_.string());
@@ -102,15 +139,19 @@ Status VideoStream::BreaksOff() const {
                                       " cannot be decoded; copy it again, or set end to " + std::to_string(read_)};
 }
 
-// By the number of frames, and by the time of the last one: at an uneven rate an estimate of the former is off.
+// By the number of frames, and by the time of the last one: at an uneven rate an estimate of the former is off. An MP4
+// that was cut without being coded again counts frames that are not shown.
 bool VideoStream::EndsEarly() const {
+  if (IsWholeMp4(file_)) return false;
   const double slack = std::max(1.0, kCountSlack * count_);
   const double by_time = fps_.value_or(0.0) * last_ms_ / 1e3 + 1.0;
   return count_ - std::max(1.0 * read_, by_time) > slack;
 }
 
 bool VideoStream::Grab() {
-  if (!capture_.grab()) return false;
+  int damaged = 0;
+  while (!capture_.grab())
+    if (++damaged > kMaxDamaged) return false;
   const double ms = capture_.get(cv::CAP_PROP_POS_MSEC);
   if (ms > last_ms_) last_ms_ = ms;  // the last frames of some videos come without a time
   if (index_ && !has_sought_) index_->Add(read_, ms);

@@ -66,18 +66,18 @@ Result<ImageStreams> OpenStreams(const CalibrateRequest& request) {
 // The images of one moment; empty at the end. Where one eye's end before the other's that is an error.
 Result<std::vector<cv::Mat>> ReadMoment(const CalibrateRequest& request, const ImageStreams& streams, int idx) {
   std::vector<cv::Mat> images;
+  std::vector<int> counts;
   for (const std::unique_ptr<ImageStream>& stream : streams) {
-    if (stream->count_is_exact() && idx == stream->count()) return std::vector<cv::Mat>();
+    counts.push_back(idx);
+    if (stream->count_is_exact() && idx == stream->count()) continue;
     auto image = stream->Read(idx);
     if (!image.ok()) return image.status();
-    if (*image) {
-      images.push_back(**std::move(image));
-    } else if (!images.empty()) {
-      return Unequal(request.image_path, idx + 1, request.right_path, idx);
-    } else {
-      break;
-    }
+    if (!*image) continue;
+    images.push_back(**std::move(image));
+    ++counts.back();
   }
+  if (!images.empty() && images.size() < streams.size())
+    return Unequal(request.image_path, counts.front(), request.right_path, counts.back());
   return images;
 }
 

@@ -173,6 +173,8 @@ Status CheckOutput(const std::filesystem::path& path) {
   std::error_code error;
   if (path.empty() || std::filesystem::is_character_file(path, error) || std::filesystem::is_fifo(path, error))
     return Status::Ok();
+  if (std::filesystem::is_directory(path, error))
+    return {ErrorCode::kUnwritable, Quoted(path.string()) + " is a folder; name the file to write"};
   const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
   errno = 0;
   return access(folder.c_str(), W_OK) == 0 ? Status::Ok() : Unwritable(path);

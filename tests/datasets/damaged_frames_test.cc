@@ -2,13 +2,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // Frames that cannot be read in the middle of a sequence.
+#include <array>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <opencv2/core.hpp>
+#include <opencv2/videoio.hpp>
 
 #include "datasets/opened_sequence.h"
 
@@ -129,6 +133,64 @@ TEST_F(OpenSequenceTest, TellsWhenAVideoBreaksOff) {
   EXPECT_EQ(frame.status().code(), ErrorCode::kUnreadable);
   EXPECT_THAT(frame.status().message(), HasSubstr("clip.avi breaks off: frame " + std::to_string(good) + " of 20"));
   EXPECT_FALSE(sequence->Next()->has_value());
+}
+
+TEST_F(OpenSequenceTest, LeavesADamagedFrameOfAVideoOut) {
+  WriteVideo("clip.avi", 20);
+  WriteCamera();
+  std::fstream file(Path("clip.avi"), std::ios::in | std::ios::out | std::ios::binary);
+  std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  std::size_t at = 0;
+  for (int idx = 0; idx < 11; ++idx) at = bytes.find("00dc", at + 1);
+  ASSERT_NE(at, std::string::npos);
+  const std::string nothing(bytes.find("00dc", at + 1) - at - 8, '\0');
+  file.seekp(static_cast<std::streamoff>(at + 8));
+  file.write(nothing.data(), static_cast<std::streamsize>(nothing.size()));
+  file.close();
+  const auto sequence = Open(Request("clip.avi"));
+  ASSERT_NE(sequence, nullptr);
+  int good = 0;
+  auto frame = sequence->Next();
+  for (; frame.ok() && frame->has_value(); frame = sequence->Next()) ++good;
+  EXPECT_TRUE(frame.ok()) << frame.status().message();
+  EXPECT_GE(good, 19);
+}
+
+// Cut without being coded again: an edit list hides the frames before the cut, which the container still counts.
+TEST_F(OpenSequenceTest, ReadsAnMp4ThatCountsHiddenFramesToItsEnd) {
+  constexpr int kCoded = 60;
+  constexpr int kHidden = 20;
+  {
+    cv::VideoWriter writer(Path("clip.mp4").string(), cv::CAP_FFMPEG, cv::VideoWriter::fourcc('m', 'p', '4', 'v'), 25,
+                           {kWidth, kHeight});
+    if (!writer.isOpened()) GTEST_SKIP() << "OpenCV's FFmpeg has no MPEG-4 encoder";
+    for (int idx = 0; idx < kCoded; ++idx) writer.write(Image(idx));
+  }
+  WriteCamera();
+  std::fstream file(Path("clip.mp4"), std::ios::in | std::ios::out | std::ios::binary);
+  std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  const auto number = [&](std::size_t at) {
+    std::uint32_t value = 0;
+    for (std::size_t i = 0; i < 4; ++i) value = value << 8 | static_cast<unsigned char>(bytes[at + i]);
+    return value;
+  };
+  const std::size_t mdhd = bytes.find("mdhd");
+  const std::size_t elst = bytes.find("elst");
+  ASSERT_TRUE(mdhd != std::string::npos && elst != std::string::npos);
+  const std::uint32_t start = number(mdhd + 16) / 25 * kHidden;  // in units of the media's time
+  const std::array<char, 4> media_time = {static_cast<char>(start >> 24), static_cast<char>(start >> 16),
+                                          static_cast<char>(start >> 8), static_cast<char>(start)};
+  file.seekp(static_cast<std::streamoff>(elst + 16));
+  file.write(media_time.data(), media_time.size());
+  file.close();
+  const auto sequence = Open(Request("clip.mp4"));
+  ASSERT_NE(sequence, nullptr);
+  int good = 0;
+  auto frame = sequence->Next();
+  for (; frame.ok() && frame->has_value(); frame = sequence->Next()) ++good;
+  EXPECT_TRUE(frame.ok()) << frame.status().message();
+  EXPECT_NEAR(good, kCoded - kHidden, 1);
+  EXPECT_EQ(sequence->size(), kCoded) << "the container's word";
 }
 
 TEST_F(OpenSequenceTest, TellsWhenAVideoFrameHasNoMask) {

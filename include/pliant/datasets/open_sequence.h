@@ -43,6 +43,8 @@ struct SequenceRequest {
   // Where images are read several times: what was learned of a video's frames, to find them sooner; null: nothing.
   std::shared_ptr<VideoIndex> video_index = nullptr;
 
+  // The same with all frames.
+  SequenceRequest Whole() const;
   // Whether the images arrive while they are read.
   bool IsLive() const { return given && given->images->IsLive(); }
 };
