@@ -23,7 +23,19 @@ FrameReport JoinedReports::Report(std::size_t part_idx, int frame_idx, std::vect
   report.cam_from_world = PoseInWorld(placed.root_from_submap, pose.world_from_cam.Inverse());
   Take(part_idx, placed.root_from_submap, std::move(observations), &report);
   CompleteReport(part.run, *part.known.camera, &report);
+  if (placed.root == SubmapKey{part_idx, pose.submap}) AddEarlierFirstMap(part, pose.submap, &report);
   return report;
+}
+
+// A map of its own that was declared before the first frame that this part has in the joined run.
+void JoinedReports::AddEarlierFirstMap(const RunPart& part, int submap, FrameReport* report) {
+  if (!begun_.insert(report->submap).second || report->first_map) return;
+  for (const FirstMapFrames& map : part.run.summary->first_maps) {
+    const auto declared = part.frames.find(map.declared_frame_idx);
+    if (declared == part.frames.end() || declared->second->submap != submap) continue;
+    if (map.declared_frame_idx < report->frame_idx) report->first_map = map;
+    return;
+  }
 }
 
 // In the joined run, whose ids grow in the order of the points' first frames.

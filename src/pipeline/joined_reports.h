@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <map>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -27,6 +28,7 @@ class JoinedReports {
   FrameReport Report(std::size_t part_idx, int frame_idx, std::vector<PointObservation> observations);
 
  private:
+  void AddEarlierFirstMap(const RunPart& part, int submap, FrameReport* report);
   std::pair<PointId, bool> JoinedId(std::size_t part_idx, PointId id);
   void Take(std::size_t part_idx, const Sim3& root_from_submap, std::vector<PointObservation> observations,
             FrameReport* report);
@@ -34,6 +36,7 @@ class JoinedReports {
   const std::vector<RunPart>& parts_;
   const PartJoiner& joiner_;
   std::map<SubmapKey, int> numbers_;                        // in the joined run, by root
+  std::set<int> begun_;                                     // of these, that have a frame
   int submap_ = 0;                                          // of the last frame
   std::map<std::pair<std::size_t, PointId>, PointId> ids_;  // by part and the id there
 };

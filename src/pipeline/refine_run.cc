@@ -63,21 +63,13 @@ double LogDepthSigmaOf(const RunSummary& summary) {
 
 // Means over the observations of each point.
 void SetRestPositions(Recording* recording) {
+  std::ranges::fill(recording->rest_positions, Eigen::Vector3d::Zero());
   std::vector<int> counts(recording->rest_positions.size(), 0);
   for (const RecordedObservation& observation : recording->observations) {
     recording->rest_positions[static_cast<std::size_t>(observation.point_idx)] += observation.position;
     ++counts[static_cast<std::size_t>(observation.point_idx)];
   }
   for (std::size_t i = 0; i < counts.size(); ++i) recording->rest_positions[i] /= std::max(1, counts[i]);
-}
-
-// Frames that were written before two maps became one are written again at a run's end.
-Status CheckOneSubmap(int one, int other, PointId id) {
-  if (one == other) return Status::Ok();
-  return {ErrorCode::kMismatch, "the point " + std::to_string(id.value) + " is in the submaps " + std::to_string(one) +
-                                    " and " + std::to_string(other) +
-                                    ": the run was killed after the two were merged; finish it first, with pliant "
-                                    "track --resume"};
 }
 
 Result<std::map<int, RefinedSubmap>> ReadSubmaps(const std::string& path, const Run& run) {
@@ -121,10 +113,19 @@ std::size_t CountObservations(const std::map<int, RefinedSubmap>& submaps) {
   return count;
 }
 
-// A submap that cannot be refined.
-RefinedRecording AsItIs(const RefinedSubmap& submap) {
+// A submap that cannot be refined. `new_camera`: another one than that of the run, or null; points are then on its
+// rays, as far away as they were.
+RefinedRecording AsItIs(const RefinedSubmap& submap, const Camera* new_camera) {
   RefinedRecording recording;
   recording.recording = submap.recording;
+  if (new_camera != nullptr) {
+    for (RecordedObservation& seen : recording.recording.observations) {
+      const Rigid3& pose = recording.recording.cams_from_world[static_cast<std::size_t>(seen.view_idx)];
+      if (const auto ray = new_camera->Unproject(seen.pixel))
+        seen.position = pose.Inverse() * Eigen::Vector3d((pose * seen.position).norm() * *ray);
+    }
+    SetRestPositions(&recording.recording);
+  }
   recording.is_inlier.assign(submap.recording.observations.size(), true);
   for (const std::vector<PointObservation>& of_view : submap.observations)
     for (const PointObservation& observation : of_view) recording.sigmas.push_back(observation.sigma);
@@ -292,7 +293,8 @@ Result<RefineSummary> RefineRun(const RefineRequest& request, const RefineOption
     const std::string failure = recording.status().message();
     if (!recording.ok()) {
       failed = Status(recording.status().code(), "submap " + std::to_string(number) + " cannot be refined: " + failure);
-      recording = AsItIs(submap);
+      summary.stopped = summary.stopped || failed.code() == ErrorCode::kInterrupted;
+      recording = AsItIs(submap, has_new_camera ? &*known->camera : nullptr);
     }
     summary.stopped = summary.stopped || recording->stopped;
     const auto wrong = std::ranges::count(recording->is_inlier, false);
@@ -303,7 +305,11 @@ Result<RefineSummary> RefineRun(const RefineRequest& request, const RefineOption
     refined.emplace(number, *std::move(recording));
     share_before += share;
   }
-  if (std::ranges::none_of(summary.submaps, &std::string::empty, &SubmapRefinement::failure)) return failed;
+  if (std::ranges::none_of(summary.submaps, &std::string::empty, &SubmapRefinement::failure)) {
+    if (!summary.stopped) return failed;
+    return Status(ErrorCode::kInterrupted,
+                  "the refinement was stopped before it had found anything better than the run; nothing was written");
+  }
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   auto written = Write(request, options, *run, *known, has_new_camera, summary.stopped,
                        Reporter(*run, *known, *submaps, refined), seconds);

@@ -19,6 +19,14 @@ Result<std::vector<int>> FramesWithPose(const std::string& path, const Run& run)
   return frames_idx;
 }
 
+Status CheckOneSubmap(int one, int other, PointId id) {
+  if (one == other) return Status::Ok();
+  return {ErrorCode::kMismatch, "the point " + std::to_string(id.value) + " is in the submaps " + std::to_string(one) +
+                                    " and " + std::to_string(other) +
+                                    ": the run was killed after the two were merged; finish it first, with pliant "
+                                    "track --resume"};
+}
+
 FrameReport ReportOf(const RunFrame& frame, const RunMap& known) {
   FrameReport report;
   report.frame_idx = frame.frame_idx;

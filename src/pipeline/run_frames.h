@@ -22,6 +22,10 @@ Result<std::vector<int>> FramesWithPose(const std::string& path, const Run& run)
 // A frame of a run whose map is `known`, as it is written again: all but its pose and its points.
 FrameReport ReportOf(const RunFrame& frame, const RunMap& known);
 
+// That a point that is in the submap `one` and in `other` is in one: frames that were written before two maps became
+// one are written again at a run's end. Fails with kMismatch.
+Status CheckOneSubmap(int one, int other, PointId id);
+
 // What follows of a frame's pose, observations and new points, and the first map that `run` declared in it.
 void CompleteReport(const Run& run, const Camera& camera, FrameReport* report);
 

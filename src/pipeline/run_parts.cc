@@ -4,6 +4,7 @@
 #include "pipeline/run_parts.h"
 
 #include <algorithm>
+#include <unordered_map>
 #include <utility>
 
 #include "pipeline/run_frames.h"
@@ -14,13 +15,28 @@
 namespace pliant {
 namespace {
 
+Status CheckSubmapsOfPoints(const std::string& path, const Run& run, const std::vector<int>& frames_idx) {
+  if (run.summary && run.summary->status != RunStatus::kInterrupted) return Status::Ok();  // they were written again
+  std::unordered_map<PointId, int> submap_of;
+  return ForEachFrame(path, frames_idx, [&](std::size_t k, const auto& observations) {
+    for (const PointObservation& seen : observations) {
+      const int submap = run.poses[k].submap;
+      if (Status one = CheckOneSubmap(submap_of.try_emplace(seen.id, submap).first->second, submap, seen.id); !one.ok())
+        return one;
+    }
+    return Status::Ok();
+  });
+}
+
 Result<RunPart> ReadPart(const std::string& path, const JoinRequest& request) {
   RunPart part;
   part.path = path;
   auto run = ReadRun(path);
   if (!run.ok()) return run.status();
   part.run = *std::move(run);
-  if (const auto frames_idx = FramesWithPose(path, part.run); !frames_idx.ok()) return frames_idx.status();
+  const auto frames_idx = FramesWithPose(path, part.run);
+  if (!frames_idx.ok()) return frames_idx.status();
+  if (Status status = CheckSubmapsOfPoints(path, part.run, *frames_idx); !status.ok()) return status;
   if (!part.run.summary || part.run.frames.empty())
     return Status(ErrorCode::kInsufficient, "the run " + Quoted(path) + " has no frames; there is nothing to join");
   auto known = KnownMapOfRun(path, SequenceOfRun(path, request.sequence_path, request.camera_path), part.run);

@@ -23,6 +23,17 @@ constexpr double kLogDistanceSigma = 5;  // of every point: it says nothing of t
 
 using Pose = std::array<double, 6>;  // rotation vector, translation
 
+class StopCallback final : public ceres::IterationCallback {
+ public:
+  explicit StopCallback(const std::function<bool()>& goes_on) : goes_on_(goes_on) {}
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& /*summary*/) override {
+    return goes_on_() ? ceres::SOLVER_CONTINUE : ceres::SOLVER_TERMINATE_SUCCESSFULLY;
+  }
+
+ private:
+  const std::function<bool()>& goes_on_;
+};
+
 struct RadialResidual {
   Eigen::Vector2d pixel;
   Eigen::Vector2d center;
@@ -68,7 +79,7 @@ Pose ToPose(const Rigid3& rigid) {
 }  // namespace
 
 Status SolveFreeIntrinsics(const Recording& recording, const std::vector<bool>& used, double noise_px,
-                           RadialIntrinsics* intrinsics, BundleState* state) {
+                           const std::function<bool()>& goes_on, RadialIntrinsics* intrinsics, BundleState* state) {
   std::array<double, 2> free = {std::log(intrinsics->focal_px), intrinsics->k};
   std::vector<Pose> poses;
   for (const Rigid3& pose : state->cams_from_world) poses.push_back(ToPose(pose));
@@ -80,6 +91,9 @@ Status SolveFreeIntrinsics(const Recording& recording, const std::vector<bool>& 
   for (std::size_t o = 0; o < used.size(); ++o) {
     if (!used[o]) continue;
     const RecordedObservation& seen = recording.observations[o];
+    // One behind the camera at the start could not be evaluated.
+    const Rigid3& start = state->cams_from_world[static_cast<std::size_t>(seen.view_idx)];
+    if (!((start * state->rest_positions[static_cast<std::size_t>(seen.point_idx)]).z() > 0)) continue;
     double* point = state->rest_positions[static_cast<std::size_t>(seen.point_idx)].data();
     double* pose = poses[static_cast<std::size_t>(seen.view_idx)].data();
     problem.AddResidualBlock(new ceres::AutoDiffCostFunction<RadialResidual, 2, 2, 6, 3>(new RadialResidual{
@@ -91,6 +105,9 @@ Status SolveFreeIntrinsics(const Recording& recording, const std::vector<bool>& 
   ordering->AddElementToGroup(free.data(), 1);
   const auto first =
       std::ranges::find_if(poses, [&](const Pose& pose) { return problem.HasParameterBlock(pose.data()); });
+  const Status degenerate(ErrorCode::kDegenerate,
+                          "no focal length and distortion fit better; give frames with more motion, or a calibration");
+  if (first == poses.end()) return degenerate;
   problem.SetParameterBlockConstant(first->data());
   const Eigen::Vector3d origin =
       state->cams_from_world[static_cast<std::size_t>(first - poses.begin())].OriginInSource();
@@ -106,14 +123,14 @@ Status SolveFreeIntrinsics(const Recording& recording, const std::vector<bool>& 
   options.function_tolerance = kFunctionTolerance;
   options.logging_type = ceres::SILENT;
   options.num_threads = 1;
+  StopCallback stop(goes_on);
+  options.callbacks.push_back(&stop);
   ceres::Solver::Summary summary;
   {
     const OneOpenMpThread one_thread;
     ceres::Solve(options, &problem, &summary);
   }
-  if (!summary.IsSolutionUsable())
-    return {ErrorCode::kDegenerate,
-            "no focal length and distortion fit better; give frames with more motion, or a calibration"};
+  if (!summary.IsSolutionUsable()) return degenerate;
   intrinsics->focal_px = std::exp(free[0]);
   intrinsics->k = free[1];
   for (std::size_t v = 0; v < poses.size(); ++v) {

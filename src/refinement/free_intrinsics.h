@@ -4,6 +4,7 @@
 // A rigid bundle adjustment whose camera is solved for, too (docs/method.md, eq. F10).
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "pliant/base/status.h"
@@ -20,8 +21,9 @@ struct RadialIntrinsics {
 };
 
 // Solves for the focal length, k, all poses but the first and all points, from `state` and `intrinsics`, with the
-// robust loss of a refinement for `noise_px`. Fails with kDegenerate where there is no usable step.
+// robust loss of a refinement for `noise_px`. `goes_on` is asked after every iteration; false ends it. Fails with
+// kDegenerate where there is no usable step.
 Status SolveFreeIntrinsics(const Recording& recording, const std::vector<bool>& used, double noise_px,
-                           RadialIntrinsics* intrinsics, BundleState* state);
+                           const std::function<bool()>& goes_on, RadialIntrinsics* intrinsics, BundleState* state);
 
 }  // namespace pliant

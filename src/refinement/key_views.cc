@@ -12,15 +12,21 @@
 namespace pliant {
 namespace {
 
-constexpr int kMinViews = 3;  // of a point that has a part in a solution
+constexpr int kMinViews = 3;   // of a point that has a part in a solution
+constexpr int kMinPoints = 4;  // of a view that has: fewer do not determine its pose
+
+std::vector<int> CountPoints(const Recording& recording, const std::vector<bool>& used) {
+  std::vector<int> counts(recording.times.size(), 0);
+  for (std::size_t o = 0; o < used.size(); ++o)
+    if (used[o]) ++counts[static_cast<std::size_t>(recording.observations[o].view_idx)];
+  return counts;
+}
 
 std::vector<std::size_t> ViewsWith(const Recording& recording, const std::vector<bool>& used) {
-  std::vector<bool> has(recording.times.size(), false);
-  for (std::size_t o = 0; o < used.size(); ++o)
-    if (used[o]) has[static_cast<std::size_t>(recording.observations[o].view_idx)] = true;
+  const std::vector<int> points = CountPoints(recording, used);
   std::vector<std::size_t> views;
-  for (std::size_t v = 0; v < has.size(); ++v)
-    if (has[v]) views.push_back(v);
+  for (std::size_t v = 0; v < points.size(); ++v)
+    if (points[v] > 0) views.push_back(v);
   return views;
 }
 
@@ -39,14 +45,24 @@ std::vector<bool> UsedInKeyViews(const Recording& recording, const std::vector<b
   std::vector<bool> in_key_views = used;
   for (std::size_t o = 0; o < used.size(); ++o)
     in_key_views[o] = used[o] && recording.observations[o].view_idx % stride == 0;
-  KeepPointsSeenOften(recording, &in_key_views);
+  KeepDetermined(recording, &in_key_views);
   return in_key_views;
 }
 
-void KeepPointsSeenOften(const Recording& recording, std::vector<bool>* used) {
-  const std::vector<int> views = CountViews(recording, *used);
-  for (std::size_t o = 0; o < used->size(); ++o)
-    if (views[static_cast<std::size_t>(recording.observations[o].point_idx)] < kMinViews) (*used)[o] = false;
+void KeepDetermined(const Recording& recording, std::vector<bool>* used) {
+  for (bool has_changed = true; has_changed;) {
+    const std::vector<int> views = CountViews(recording, *used);
+    const std::vector<int> points = CountPoints(recording, *used);
+    has_changed = false;
+    for (std::size_t o = 0; o < used->size(); ++o) {
+      const RecordedObservation& seen = recording.observations[o];
+      if (!(*used)[o] || (views[static_cast<std::size_t>(seen.point_idx)] >= kMinViews &&
+                          points[static_cast<std::size_t>(seen.view_idx)] >= kMinPoints))
+        continue;
+      (*used)[o] = false;
+      has_changed = true;
+    }
+  }
 }
 
 void InterpolateViews(const Recording& recording, const std::vector<bool>& used, BundleState* state) {

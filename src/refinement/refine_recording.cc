@@ -48,6 +48,7 @@ class Refinement {
     if (options_.model == RefinementModel::kAuto) {
       work_ += WorkOf(0, wide_stride_);
       if (Status status = SolveForFewViews("rigid", 1, &state); !status.ok()) return status;
+      if (stopped_) return {ErrorCode::kInterrupted, "it was stopped before anything better was found"};
       refined_.residual_correlation = CorrelationOf(state, wide_stride_).value;
       rigid = refined_.residual_correlation <= options_.max_correlation;
       if (rigid) work_ = WorkOf(0, wide_stride_) + WorkOfAll(0);
@@ -101,7 +102,7 @@ class Refinement {
 
   void UseAll() {
     input_.used.assign(start_.observations.size(), true);
-    KeepPointsSeenOften(start_, &input_.used);
+    KeepDetermined(start_, &input_.used);
   }
 
   // Several solutions for few views, the first with the sigmas of the start, the others with those that the one before
@@ -159,11 +160,11 @@ class Refinement {
   }
 
   // All views by the points of the key views, all points by the views, and the views once more: many small problems,
-  // which no stop interrupts, since they bring all into one world.
+  // which no stop interrupts, since they bring all into one world. Views without points go along with the others.
   Status FollowKeyViews(int stride, BundleState* state) const {
+    InterpolateViews(start_, UsedInKeyViews(start_, input_.used, stride), state);
     if (stride == 1) return Status::Ok();
     BundleInput input = input_;
-    InterpolateViews(start_, UsedInKeyViews(start_, input_.used, stride), state);
     for (const BundlePart part : {BundlePart::kViews, BundlePart::kPoints, BundlePart::kViews}) {
       input.part = part;
       const auto of_part = SolveBundle(input, options_.max_iterations, {}, state);
@@ -196,7 +197,7 @@ class Refinement {
       const auto point = static_cast<std::size_t>(start_.observations[o].point_idx);
       if (std::sqrt(squares[point]) > bound) input_.used[o] = false;
     }
-    KeepPointsSeenOften(start_, &input_.used);
+    KeepDetermined(start_, &input_.used);
   }
 
   // Where the terms do not determine their variables, nothing is known.

@@ -33,6 +33,8 @@ NeighborCorrelation ResidualCorrelation(const Recording& recording, const std::v
   const auto error = [&](std::size_t o) {
     return Eigen::Vector2d(errors_px[o] * std::min(1.0, cut / std::max(1e-12, errors_px[o].norm())));
   };
+  std::erase_if(of_view, [](const std::vector<std::size_t>& seen) { return seen.empty(); });
+  if (of_view.size() < 2) return {};
   double products = 0;
   double squares = 0;
   double pairs = 0;

@@ -17,8 +17,8 @@ struct NeighborCorrelation {
   double standard_error = 0;  // of the value, where errors are independent
 };
 
-// Over the used observations of at most 64 views: with the four nearest of the same view that are at least
-// `min_distance_px` away.
+// Over the used observations of at most 64 of the views that have any: with the four nearest of the same view that are
+// at least `min_distance_px` away.
 NeighborCorrelation ResidualCorrelation(const Recording& recording, const std::vector<bool>& used,
                                         const std::vector<Eigen::Vector2d>& errors_px, double min_distance_px);
 

@@ -58,7 +58,7 @@ class IntrinsicsSearch {
                    const std::function<bool()>& goes_on)
       : camera_(camera), recording_(recording), options_(options), goes_on_(goes_on) {
     used_.assign(recording.observations.size(), true);
-    KeepPointsSeenOften(recording, &used_);
+    KeepDetermined(recording, &used_);
     used_ = UsedInKeyViews(recording, used_, StrideOfKeyViews(recording, used_, kViewsPerTrack));
     usable_ = used_;
     distance_ = MedianDistance(recording);
@@ -214,7 +214,10 @@ class IntrinsicsSearch {
     const auto params = CameraAt({start.at.log_factor, 0})->params();
     RadialIntrinsics intrinsics{params[0], params[1], params[2], start.at.distortion};
     Solution solution = start;
-    if (!SolveFreeIntrinsics(recording_, used_, noise_px_, &intrinsics, &solution.state).ok()) return std::nullopt;
+    if (!SolveFreeIntrinsics(
+             recording_, used_, noise_px_, [this] { return GoesOn(); }, &intrinsics, &solution.state)
+             .ok())
+      return std::nullopt;
     solution.at = {std::log(intrinsics.focal_px / camera_.MeanFocalLengthPx()), intrinsics.k};
     return CameraAt(solution.at) ? std::optional(solution) : std::nullopt;  // some are no camera's
   }

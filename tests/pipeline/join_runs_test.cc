@@ -50,6 +50,7 @@ struct PartOfTruth {
   std::set<int> lost = {};
   std::string input = "film";
   std::optional<bool> metric = {};
+  std::optional<int> declared = {};  // the frame in which its map was made
 };
 
 const Sim3 kOther = {2.0, Eigen::Quaterniond(RotationExp({0.3, -0.8, 0.4})), Eigen::Vector3d(5, -7, 11)};
@@ -113,6 +114,7 @@ class JoinRunsTest : public testing::Test {
     report.state = TrackingState::kLost;
     if (part.lost.contains(frame)) return report;
     report.state = TrackingState::kTracking;
+    if (part.declared == frame) report.first_map = FirstMapFrames{part.first, frame, {}};
     report.cam_from_world = PoseInWorld(part.world_from_truth, TruePose(frame));
     for (int i = 0; i < kPoints; ++i) {
       const PointId id{part.first_id + i};
@@ -216,6 +218,26 @@ TEST_F(JoinRunsTest, DepthsThatDifferTooMuchJoinNothing) {
   ASSERT_TRUE(joined.ok()) << joined.status().message();
   EXPECT_THAT(joined->joints.front().failure, HasSubstr("one of the maps is wrong"));
   EXPECT_EQ(joined->run.submaps, 2);
+}
+
+// The first frames that both parts have are the earlier one's.
+TEST_F(JoinRunsTest, EveryMapIsDeclared) {
+  Write({.name = "first", .first = 0, .end = 12, .declared = 3});
+  Write({.name = "second", .first = 8, .end = 20, .wrong = true, .declared = 9});
+  const auto joined = Join();
+  ASSERT_TRUE(joined.ok()) << joined.status().message();
+  ASSERT_EQ(joined->run.submaps, 2);
+  std::vector<int> declared;
+  for (const FirstMapFrames& map : joined->run.first_maps) declared.push_back(map.declared_frame_idx);
+  EXPECT_THAT(declared, testing::ElementsAre(3, 9));
+}
+
+TEST_F(JoinRunsTest, AMapThatWasJoinedIsDeclaredOnce) {
+  Write({.name = "first", .first = 0, .end = 12, .declared = 3});
+  Write({.name = "second", .first = 8, .end = 20, .declared = 9});
+  const auto joined = Join();
+  ASSERT_TRUE(joined.ok()) << joined.status().message();
+  EXPECT_EQ(joined->run.first_maps.size(), 1U);
 }
 
 TEST_F(JoinRunsTest, MillimetersStayMillimeters) {

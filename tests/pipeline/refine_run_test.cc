@@ -170,10 +170,29 @@ TEST_F(RefineRunTest, AStopLeavesAWholeRun) {
   request.run_path = folder_.Path("run");
   request.output_path = folder_.Path("refined");
   request.stop = &stop;
-  const auto summary = RefineRun(request, {}, {});
+  const auto early = RefineRun(request, {}, {});
+  EXPECT_EQ(early.status().code(), ErrorCode::kInterrupted) << "nothing is known of the scene yet";
+  EXPECT_FALSE(std::filesystem::exists(request.output_path));
+  const auto summary = RefineRun(request, {.model = RefinementModel::kRigid}, {});
   ASSERT_TRUE(summary.ok()) << summary.status().message();
   EXPECT_TRUE(summary->stopped);
   EXPECT_EQ(summary->run.frames_tracked, kRunFrames);
+}
+
+// A focal length that was estimated is that of a refined run alone.
+TEST_F(RefineRunTest, TheCalibrationOfAFormerOneGoesWithIt) {
+  WriteRun(folder_);
+  ASSERT_TRUE(Refine().ok());
+  folder_.Write("refined/camera.yaml", "of its user");
+  ASSERT_TRUE(Refine().ok());
+  EXPECT_EQ(folder_.Read("refined/camera.yaml"), "of its user");
+  std::string summary = folder_.Read("refined/run.json");
+  const std::string camera = "\"camera\": \"";
+  const std::size_t begin = summary.find(camera) + camera.size();
+  summary.replace(begin, summary.find('"', begin) - begin, folder_.Path("refined/camera.yaml"));
+  folder_.Write("refined/run.json", summary);
+  ASSERT_TRUE(Refine().ok());
+  EXPECT_FALSE(std::filesystem::exists(folder_.Path("refined/camera.yaml")));
 }
 
 }  // namespace

@@ -49,6 +49,16 @@ TEST(KeyViews, HaveNoPointThatFewOfThemSee) {
   }
 }
 
+TEST(KeyViews, HaveNoViewThatSeesFewPoints) {
+  Recording recording = RecordedScene().Start();
+  int left = 0;
+  std::erase_if(recording.observations, [&](const RecordedObservation& o) { return o.view_idx == 20 && ++left > 3; });
+  std::vector<bool> used = All(recording);
+  KeepDetermined(recording, &used);
+  EXPECT_GT(std::ranges::count(used, true), std::ssize(used) / 2);
+  for (std::size_t o = 0; o < used.size(); ++o) EXPECT_FALSE(used[o] && recording.observations[o].view_idx == 20);
+}
+
 // A solution in another world: each pose is that of the recording in it, so what is between key views is known.
 TEST(KeyViews, TakeTheOthersAlongIntoTheirWorld) {
   const Recording recording = RecordedScene().Start();

@@ -147,6 +147,29 @@ TEST(RefineRecording, KnowsCertaintiesWhereTheFirstViewSeesNothing) {
   }
 }
 
+// Two points do not determine a pose.
+TEST(RefineRecording, KnowsCertaintiesWhereAViewSeesNextToNothing) {
+  for (const double amplitude_mm : {0.0, 4.0}) {
+    const RecordedScene scene(amplitude_mm);
+    Recording start = scene.Start();
+    const auto whole = Refine(start);
+    int left = 0;
+    std::erase_if(start.observations, [&](const RecordedObservation& o) { return o.view_idx == 20 && ++left > 2; });
+    const auto refined = Refine(start);
+    ASSERT_TRUE(whole.ok() && refined.ok());
+    EXPECT_EQ(refined->pose_covariances.size(), start.times.size());
+    const auto median = [](std::vector<double> sigmas) {
+      std::erase(sigmas, 0.0);
+      return Median(sigmas);
+    };
+    EXPECT_NEAR(median(refined->sigmas) / median(whole->sigmas), 1.0, 0.1) << amplitude_mm;
+    const auto away = [&](std::size_t view) {
+      return Eigen::Vector3d((refined->recording.cams_from_world[view] * scene.poses[view].Inverse()).translation);
+    };
+    EXPECT_LT((away(20) - 0.5 * (away(19) + away(21))).norm(), 0.3) << "it goes along with the views beside it";
+  }
+}
+
 TEST(RefineRecording, LeavesWrongTracksOut) {
   const RecordedScene scene;
   Recording start = scene.Start();
@@ -218,13 +241,18 @@ TEST(RefineRecording, LeavesOneWorldWhereverItIsStopped) {
   const Recording start = scene.Start();
   for (const int after : {1, 4, 12, 20, 28}) {
     int iterations = 0;
-    const auto refined = Refine(start, {.max_rank = 3, .views_per_track = 10},
+    const auto refined = Refine(start, {.model = RefinementModel::kDeforming, .max_rank = 3, .views_per_track = 10},
                                 [&](const RefinementProgress&) { return ++iterations < after; });
     ASSERT_TRUE(refined.ok()) << refined.status().message();
     EXPECT_TRUE(refined->stopped);
     EXPECT_LT(scene.DepthError(refined->recording), scene.DepthError(start)) << "stopped after " << after;
     EXPECT_LT(refined->noise_px, 0.05 * RecordingCamera().width());
   }
+}
+
+TEST(RefineRecording, IsNothingUntilItKnowsWhichModelIsTheScenes) {
+  const auto refined = Refine(RecordedScene().Start(), {}, [](const RefinementProgress&) { return false; });
+  EXPECT_EQ(refined.status().code(), ErrorCode::kInterrupted);
 }
 
 TEST(RefineRecording, SaysHowMuchIsDone) {

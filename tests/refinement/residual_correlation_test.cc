@@ -3,6 +3,8 @@
 
 #include "refinement/residual_correlation.h"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "refinement/recorded_scene.h"
@@ -36,6 +38,26 @@ TEST(ResidualCorrelation, OfACommonMotionIsNearOne) {
   EXPECT_GT(ResidualCorrelation(recording, used, errors, recording.patch_px).value, kMinOfMotion);
   EXPECT_EQ(ResidualCorrelation(recording, std::vector<bool>(errors.size(), false), errors, recording.patch_px).value,
             0.0);
+}
+
+// Of a long recording few views are solved for: all of these count, wherever they lie.
+TEST(ResidualCorrelation, IsOfTheViewsThatAreUsed) {
+  RecordedScene scene(0);
+  scene.views = 400;
+  scene.poses.assign(400, scene.poses.front());
+  const Recording recording = scene.Start();
+  std::vector<Eigen::Vector2d> errors;
+  std::vector<bool> used;
+  std::vector<bool> used_twice_as_often;
+  for (const RecordedObservation& o : recording.observations) {
+    errors.emplace_back(o.view_idx % 40 == 0 ? Eigen::Vector2d(1, 0) : Eigen::Vector2d(0, 1));
+    used.push_back(o.view_idx % 20 == 0);
+    used_twice_as_often.push_back(o.view_idx % 10 == 0);
+  }
+  const NeighborCorrelation of_20 = ResidualCorrelation(recording, used, errors, recording.patch_px);
+  const NeighborCorrelation of_40 = ResidualCorrelation(recording, used_twice_as_often, errors, recording.patch_px);
+  EXPECT_GT(of_20.value, kMinOfMotion);
+  EXPECT_NEAR(of_20.standard_error / of_40.standard_error, std::sqrt(2.0), 0.01);
 }
 
 }  // namespace

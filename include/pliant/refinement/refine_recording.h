@@ -108,7 +108,8 @@ struct RefinementProgress {
 using RefinementCallback = std::function<bool(const RefinementProgress&)>;
 
 // Refines a recording. Fails with kInvalidArgument for indices or numbers that are none, kInsufficient below two views
-// or eight points, kDegenerate where there is no usable step.
+// or eight points, kDegenerate where there is no usable step, kInterrupted where it is stopped before it is known which
+// model is the scene's.
 Result<RefinedRecording> RefineRecording(const Camera& camera, const Recording& start, const RefineOptions& options,
                                          const RefinementCallback& callback = {});
 
