@@ -40,7 +40,7 @@ Result<SurfaceFolder> ReadSurfaceFolder(const std::filesystem::path& path) {
   if (!camera.ok()) return camera.status();
   const auto text = ReadFile(summary);
   if (!text.ok()) return text.status();
-  SurfaceFolder folder{path, {}, camera->camera, camera->depth_scale.value_or(1.0), {}, {}};
+  SurfaceFolder folder{path, {}, camera->camera, camera->depth_scale.value_or(1.0), {}, {}, {}};
   try {
     const auto json = nlohmann::json::parse(*text);
     if (json.at("status") == "interrupted" && !json.contains("frames"))
@@ -48,7 +48,10 @@ Result<SurfaceFolder> ReadSurfaceFolder(const std::filesystem::path& path) {
                     Quoted(summary) + " says that the surface was never finished; make it again");
     folder.run = json.value("run", "");
     for (const auto& frame : json.at("frames")) {
-      if (!frame.at("note").get<std::string>().empty()) continue;
+      if (!frame.at("note").get<std::string>().empty()) {
+        folder.frames_without_depth.push_back(frame.at("frame").get<int>());
+        continue;
+      }
       folder.frames.push_back({frame.at("frame").get<int>(), frame.at("name").get<std::string>(),
                                frame.value("neighbors", std::vector<int>()), frame.value("pair", false)});
       if (!IsFileName(folder.frames.back().file_name))

@@ -20,7 +20,7 @@ std::vector<SequenceRequest> SequencesOf(const CompareRequest& request) {
   std::map<std::filesystem::path, std::filesystem::path> spare_of;
   for (std::size_t i = 0; i < request.run_paths.size(); ++i) {
     const std::string& path = request.sequence_paths[request.sequence_paths.size() == 1 ? 0 : i];
-    sequences.push_back(SequenceOfRun(request.run_paths[i], path, request.camera_path));
+    sequences.push_back(SequenceOfRun(request.run_paths[i], path, request.camera_path).Whole());
     if (!sequences.back().spare_camera_path.empty()) spare_of.emplace(path, sequences.back().spare_camera_path);
   }
   for (SequenceRequest& sequence : sequences)
@@ -31,7 +31,7 @@ std::vector<SequenceRequest> SequencesOf(const CompareRequest& request) {
 }
 
 bool IsSame(const SequenceRequest& a, const SequenceRequest& b) {
-  return a.image_path == b.image_path && a.spare_camera_path == b.spare_camera_path;
+  return a.image_path == b.image_path && a.spare_camera_path == b.spare_camera_path && a.mask_path == b.mask_path;
 }
 
 }  // namespace

@@ -124,8 +124,9 @@ Result<std::optional<DenseCompleteness>> ComputeDenseCompleteness(const SurfaceF
     if (!truth_mm->has_value()) continue;
     const auto image = ReadFrame(frame.frame_idx, images);
     if (!image.ok()) return image.status();
-    const auto dense = ReadSurfaceDepth(surface, frame);
+    auto dense = ReadSurfaceDepth(surface, frame);
     if (!dense.ok()) return dense.status();
+    dense->KeepMeasured();
     if (!image->has_value() || (*image)->image.size() != dense->depth.size() ||
         (*truth_mm)->size() != dense->depth.size())
       return Status(ErrorCode::kMismatch, "image and true depth of frame " + std::to_string(frame.frame_idx) +

@@ -129,6 +129,7 @@ struct FrameScale {
   int submap = 0;
   double scale = 1;          // of the surface's depths
   double interpolation = 1;  // of those that are interpolated between the points; 0: there are none
+  bool has_interpolation = false;
   bool has_filled = false;
   bool has_vertices = false;
   bool has_vertices_alone = false;
@@ -138,6 +139,7 @@ FrameScale ScaleOfFrame(const Pixels& pixels, int submap) {
   return {.submap = submap,
           .scale = ScaleOf(pixels.estimate, pixels.truth_mm),
           .interpolation = pixels.interpolation.empty() ? 0.0 : ScaleOf(pixels.interpolation, pixels.truth_mm),
+          .has_interpolation = !pixels.interpolation.empty(),
           .has_filled = !pixels.filled_truth_mm.empty(),
           .has_vertices = pixels.Vertices(true) > 0,
           .has_vertices_alone = pixels.Vertices(false) > 0};
@@ -168,8 +170,11 @@ double CountOf(const std::vector<FrameScale>& frames, bool FrameScale::*what) {
 // The figures of one frame after the other.
 class DenseErrorSum {
  public:
-  explicit DenseErrorSum(const std::vector<FrameScale>& frames) : frames_(frames) {
+  // `without_pixels`: frames that have a true depth, and no other one; nothing of them is known.
+  DenseErrorSum(const std::vector<FrameScale>& frames, int without_pixels)
+      : frames_(frames), all_frames_(static_cast<double>(frames.size()) + without_pixels) {
     error_.frames = static_cast<int>(frames.size());
+    error_.frames_without_depth = without_pixels;
   }
 
   void Add(const Pixels& pixels, const FrameScale& scale) {
@@ -194,6 +199,7 @@ class DenseErrorSum {
   static void AddMesh(const Pixels& pixels, double scale, bool with_depth, double frames, DepthFigures* figures);
 
   const std::vector<FrameScale>& frames_;
+  double all_frames_;
   DenseError error_;
   double vertices_ = 0.0;
   double vertices_alone_ = 0.0;
@@ -236,16 +242,17 @@ void DenseErrorSum::AddDepths(const Pixels& pixels, const FrameScale& scale) {
   error_.within_1_sigma += weight * inside[0] / known;
   error_.within_2_sigma += weight * inside[1] / known;
   const double share = known / pixels.with_truth;
-  error_.known_share += weight * share;
-  for (std::size_t k = 0; k < 3; ++k) error_.complete_mm[k] += weight * share * of_estimate.within_mm[k];
+  error_.known_share += share / all_frames_;
+  for (std::size_t k = 0; k < 3; ++k) error_.complete_mm[k] += share * of_estimate.within_mm[k] / all_frames_;
   const double constant = Median(truth);
   AddWeighted(FiguresOf(truth, [&](std::size_t) { return constant; }, {}), weight, &error_.null);
   if (pixels.interpolation.empty()) return;
   const auto interpolated = [&](std::size_t i) { return scale.interpolation * pixels.interpolation[i]; };
-  AddWeighted(FiguresOf(truth, interpolated, {}), weight, &error_.interpolation);
+  AddWeighted(FiguresOf(truth, interpolated, {}), 1.0 / CountOf(frames_, &FrameScale::has_interpolation),
+              &error_.interpolation);
 }
 
-// Nothing: no pixel of the frame has both depths.
+// Nothing: the frame has no true depth. Without pixels: none has both depths.
 Result<std::optional<Pixels>> ReadPixels(const SurfaceFolder& surface, const SurfaceFolder::Frame& frame,
                                          const EvaluationFrame* of_run, const Sequence& sequence) {
   const auto truth_mm = sequence.Depth(frame.frame_idx);
@@ -261,14 +268,14 @@ Result<std::optional<Pixels>> ReadPixels(const SurfaceFolder& surface, const Sur
     interpolated = InterpolatedDepth(surface.camera, *of_run->cam_from_world, of_run->observations);
   Pixels pixels = PixelsOf(*dense, **truth_mm, interpolated);
   dense->KeepMeasured();
-  if (pixels.truth_mm.empty()) return std::optional<Pixels>();
+  if (pixels.truth_mm.empty()) return std::optional(std::move(pixels));
   const auto vertices = ReadSurfaceVertices(surface, frame);
   if (!vertices.ok()) return vertices.status();
   AddVertices(surface.camera, *vertices, *dense, **truth_mm, &pixels);
   return std::optional(std::move(pixels));
 }
 
-// Calls `function(pixels, submap)` for every frame that has some.
+// Calls `function(pixels, submap)` for every frame that has a true depth.
 template <class Function>
 Status ForEachFrame(const SurfaceFolder& surface, const EvaluationInput& run, const Sequence& sequence,
                     const Function& function) {
@@ -288,15 +295,28 @@ Status ForEachFrame(const SurfaceFolder& surface, const EvaluationInput& run, co
 Result<DenseError> ComputeDenseError(const SurfaceFolder& surface, const EvaluationInput& run, const Sequence& sequence,
                                      ErrorScale scale) {
   std::vector<FrameScale> frames;
-  const auto take_scale = [&](const Pixels& pixels, int submap) { frames.push_back(ScaleOfFrame(pixels, submap)); };
+  int without_pixels = 0;
+  const auto take_scale = [&](const Pixels& pixels, int submap) {
+    if (pixels.truth_mm.empty())
+      ++without_pixels;
+    else
+      frames.push_back(ScaleOfFrame(pixels, submap));
+  };
   if (Status status = ForEachFrame(surface, run, sequence, take_scale); !status.ok()) return status;
+  for (const int frame_idx : surface.frames_without_depth) {
+    const auto truth_mm = sequence.Depth(frame_idx);
+    if (!truth_mm.ok()) return truth_mm.status();
+    without_pixels += truth_mm->has_value() ? 1 : 0;
+  }
   if (frames.empty())
     return Status(ErrorCode::kInsufficient,
                   "no frame of the surface " + Quoted(surface.path.string()) + " has pixels whose true depth is known");
   SetScales(scale, &frames);
-  DenseErrorSum sum(frames);
+  DenseErrorSum sum(frames, without_pixels);
   std::size_t next = 0;
-  const auto add = [&](const Pixels& pixels, int /*submap*/) { sum.Add(pixels, frames[next++]); };
+  const auto add = [&](const Pixels& pixels, int /*submap*/) {
+    if (!pixels.truth_mm.empty()) sum.Add(pixels, frames[next++]);
+  };
   if (Status status = ForEachFrame(surface, run, sequence, add); !status.ok()) return status;
   return sum.Take();
 }

@@ -63,6 +63,10 @@ Status AddDense(const EvaluationInput& run, const RunReferences& references, con
   auto dense = ComputeDenseError(*surface, run, *references.truth->sequence, options.points.scale);
   if (!dense.ok()) return dense.status();
   evaluation->dense = *std::move(dense);
+  std::error_code error;
+  if (!surface->run.empty() && !std::filesystem::equivalent(surface->run, run.name, error))
+    evaluation->notes.push_back("the surface " + Quoted(references.surface_path) + " says that it was made of " +
+                                Quoted(surface->run.string()) + ", and not of this run");
   // The images are read once more, from their beginning.
   const auto images = OpenSequence(references.truth->request);
   if (!images.ok()) return images.status();
@@ -152,7 +156,7 @@ Result<Evaluation> EvaluateRun(const EvaluationRequest& request, const Evaluatio
     auto opened =
         OpenTruth(request.run_path.empty()
                       ? SequenceRequest{.image_path = request.sequence_path, .camera_path = request.camera_path}
-                      : SequenceOfRun(request.run_path, request.sequence_path, request.camera_path),
+                      : SequenceOfRun(request.run_path, request.sequence_path, request.camera_path).Whole(),
                   options);
     if (!opened.ok()) return opened.status();
     truth = *std::move(opened);

@@ -20,7 +20,7 @@ struct CollectedTruth {
   std::vector<PosePair> poses;
   FirstMapTruth reference;  // of the first map
   FirstMapTruth declared;
-  std::optional<int> own_pair;  // the one frame that a map was made of, perhaps of its pair, where pairs are the truth
+  std::vector<int> own_pairs;  // frames that maps were made of alone, perhaps of their pair, where pairs are the truth
 };
 
 // The points of a frame, each with the true surface at its pixel.
@@ -68,12 +68,10 @@ Status CollectFrame(const EvaluationFrame& frame, const Sequence& sequence, cons
         return status;
     known.surface = std::move(paired->surface);
     if (known.surface) known.surface->submap = frame.submap;
-    // A map that was made of one frame may be of its pair, and would be compared with itself.
-    const bool of_one_frame =
-        frame.first_map && frame.first_map->reference_frame_idx == frame.first_map->declared_frame_idx;
-    if (of_one_frame && surface->IsOfPairs()) {
+    // It would be compared with itself.
+    if (frame.makes_map_alone && surface->IsOfPairs()) {
       known.surface.reset();
-      if (options.Wants(EvaluationPart::kSurface)) truth->own_pair = frame.frame_idx;
+      truth->own_pairs.push_back(frame.frame_idx);
     }
   }
   if (const std::optional<Rigid3> world_from_cam = sequence.WorldFromCamera(frame.frame_idx))
@@ -146,8 +144,11 @@ Status ComputeParts(const EvaluationInput& run, const CollectedTruth& truth, con
       return status;
   }
   if (!options.Wants(EvaluationPart::kFirstMap)) return Status::Ok();
+  const bool is_of_own_pair = std::ranges::any_of(run.frames, [&](const EvaluationFrame& frame) {
+    return frame.first_map && std::ranges::count(truth.own_pairs, frame.frame_idx) > 0;
+  });
   auto first_map =
-      truth.own_pair
+      is_of_own_pair
           ? Result<FirstMapError>(missing(
                 "the map was made from one frame, perhaps from the pair of images that it would be compared with"))
           : ComputeFirstMapError(run.frames, truth.reference, truth.declared);
@@ -246,10 +247,11 @@ Result<Evaluation> Evaluate(const EvaluationInput& run, const Sequence& sequence
     if (Status status = Tell(progress, "evaluate", ++done, static_cast<int>(run.frames.size())); !status.ok())
       return status;
   }
-  if (truth.own_pair)
-    evaluation.notes.push_back(
-        "the surface of frame " + std::to_string(*truth.own_pair) +
-        " is not evaluated with its pair of images: a map was made from that frame alone, perhaps from the same pair");
+  if (options.Wants(EvaluationPart::kSurface))
+    for (const int frame_idx : truth.own_pairs)
+      evaluation.notes.push_back("the surface of frame " + std::to_string(frame_idx) +
+                                 " is not evaluated with its pair of images: a map was made from that frame alone, "
+                                 "perhaps from the same pair");
   if (Status status = ComputeParts(run, truth, material.status(), options, &evaluation); !status.ok()) return status;
   if (Status status = ComputeTracks(run, sequence.camera(), material, options, &evaluation); !status.ok())
     return status;
@@ -301,7 +303,7 @@ Status AddConsistency(const EvaluationInput& run, const EvaluationInput& other, 
   Result<RelativeDepthError> depths = CompareRuns(run, other, width_px, options.consistency);
   if (!depths.ok()) return depths.status();
   RunConsistency consistency{other.name, *std::move(depths), std::nullopt};
-  if (auto path = CompareCameraPaths(run, other, options.consistency, options.trajectory); path.ok())
+  if (auto path = CompareCameraPaths(run, other, options.consistency, {}); path.ok())
     consistency.path = *std::move(path);
   evaluation->consistency.push_back(std::move(consistency));
   return Status::Ok();

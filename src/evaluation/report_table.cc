@@ -60,8 +60,10 @@ std::string DenseRow(const char* what, const DepthFigures& f) {
 }
 
 std::string DenseTable(const DenseError& e) {
-  return FormatText("dense depth (%d frames; %.1f %% of the pixels with a true depth are known)\n", e.frames,
-                    100 * e.known_share) +
+  const std::string without =
+      e.frames_without_depth > 0 ? FormatText(", %d more have no depth", e.frames_without_depth) : "";
+  return FormatText("dense depth (%d frames%s; %.1f %% of the pixels with a true depth are known)\n", e.frames,
+                    without.c_str(), 100 * e.known_share) +
          (e.textured ? FormatText("  of the %.1f %% that have texture and are seen in other images: %.1f %%\n",
                                   100 * e.textured->share, 100 * e.textured->known_share)
                      : "") +
@@ -71,7 +73,8 @@ std::string DenseTable(const DenseError& e) {
          (e.filled_share > 0 ? DenseRow("filled holes", e.filled) : "") +
          (e.mesh_vertices > 0 ? DenseRow("mesh, where it is known", e.mesh) + DenseRow("mesh elsewhere", e.mesh_alone)
                               : "") +
-         DenseRow("points, interpolated", e.interpolation) + DenseRow("one constant depth", e.null) +
+         (e.interpolation.rmse_mm > 0 ? DenseRow("points, interpolated", e.interpolation) : "") +
+         DenseRow("one constant depth", e.null) +
          FormatText("  known to 1, 2, 5 mm: %.1f, %.1f, %.1f %%; within 1 sigma %.1f %%, 2 sigma %.1f %%\n",
                     100 * e.complete_mm[0], 100 * e.complete_mm[1], 100 * e.complete_mm[2], 100 * e.within_1_sigma,
                     100 * e.within_2_sigma);

@@ -36,6 +36,9 @@ void TakeRow(const Run& run, const RunFrame& row, EvaluationFrame* frame) {
   for (std::size_t i = 0; i < run.stage_names.size(); ++i)
     if (run.stage_names[i] == kInitializeStage) frame->initialize_ms = row.stage_ms[i];
   if (!run.summary || run.summary->first_maps.empty()) return;
+  frame->makes_map_alone = std::ranges::any_of(run.summary->first_maps, [&](const FirstMapFrames& map) {
+    return map.reference_frame_idx == row.frame_idx && map.declared_frame_idx == row.frame_idx;
+  });
   const FirstMapFrames& first_map = run.summary->first_maps.front();
   if (first_map.reference_frame_idx <= row.frame_idx && row.frame_idx <= first_map.declared_frame_idx)
     frame->first_map = first_map;
@@ -172,6 +175,8 @@ EvaluationFrame FrameFromReport(const FrameReport& report) {
                         report.first_map};
   for (const auto& [stage, ms] : report.stage_ms)
     if (stage == kInitializeStage) frame.initialize_ms = ms;
+  frame.makes_map_alone =
+      report.first_map && report.first_map->reference_frame_idx == report.first_map->declared_frame_idx;
   frame.submap = report.submap;
   return frame;
 }

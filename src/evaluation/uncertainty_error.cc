@@ -64,7 +64,8 @@ Result<UncertaintyError> ComputeUncertaintyError(std::span<const PairedFrame> fr
       const double scale = scales.at(frame.frame_idx);
       const Judged j = {scale * pair.sigma, std::abs(scale * pair.estimate.norm() - pair.truth.norm())};
       judged.push_back(j);
-      ratios.push_back(j.error_mm / j.sigma_mm);
+      const double truth_sigma_mm = pair.truth_sigma_mm * pair.truth.norm() / std::abs(pair.truth.z());
+      ratios.push_back(j.error_mm / std::hypot(j.sigma_mm, truth_sigma_mm));
       relative.push_back(pair.sigma / pair.estimate.norm());
     }
   }

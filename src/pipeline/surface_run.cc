@@ -160,6 +160,12 @@ class SurfaceMaker {
       others.push_back(*right);
     else
       for (const std::size_t n : neighbors) others.push_back(images.At(n));
+    if (others.empty()) {
+      frame->note = "no other frame has " + Percent(options_.min_common_points) +
+                    " of its points, seen from elsewhere by at most " + Digits(options_.max_parallax_deg, 0) +
+                    " deg; track more frames, or raise Surface.max_parallax_deg or lower Surface.min_common_points";
+      return Status::Ok();
+    }
     auto dense = estimator_.Estimate(images.At(reference), others);
     frame->seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     if (!dense.ok()) {
@@ -235,6 +241,12 @@ Result<SurfaceSummary> MakeSurface(const SurfaceRequest& request, const SurfaceR
   if (!writer.ok()) return writer.status();
   RunViews images(*std::move(sequence), *frames, *known, options.masks, options.pairs ? ThreadsOf(options) : 0);
   SurfaceSummary summary{estimator->windows(), {}};
+  for (const int frame_idx : std::set<int>(request.frames.begin(), request.frames.end()))
+    if (std::ranges::count(*frames, frame_idx, &PosedFrame::frame_idx) == 0) {
+      SurfaceFrame& missing = summary.frames.emplace_back();
+      missing.frame_idx = frame_idx;
+      missing.note = "it was not tracked";
+    }
   const Status made =
       SurfaceMaker(request, options, callback, *estimator, ComparedWindowPx(tracked, options.depth), &*writer)
           .Make(*frames, plan, *known, &images, &summary);

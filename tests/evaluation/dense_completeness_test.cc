@@ -75,6 +75,18 @@ TEST_F(DenseCompletenessTest, CountsWhatTwoOtherImagesSee) {
   EXPECT_FALSE(none->has_value());
 }
 
+TEST_F(DenseCompletenessTest, DoesNotCountFilledHoles) {
+  const SurfaceFolder surface = Surface(false);
+  std::filesystem::create_directories(folder_.Path("filled"));
+  cv::Mat filled(Rendered().camera.height(), Rendered().camera.width(), CV_8U, cv::Scalar(0));
+  filled(cv::Rect(0, 0, filled.cols, filled.rows / 2)).setTo(255);
+  ASSERT_TRUE(WritePng(folder_.Path("filled/5.png"), filled).ok());
+  SeenIn both({3, 7});
+  const auto measured = Compute(surface, &both);
+  ASSERT_TRUE(measured.ok() && measured->has_value());
+  EXPECT_NEAR((*measured)->known_share, 0.5, 0.1);
+}
+
 TEST_F(DenseCompletenessTest, OfAPairCountsWhatTheRightImageSees) {
   const auto whole = Compute(Surface(true), nullptr);
   ASSERT_TRUE(whole.ok() && whole->has_value());

@@ -126,6 +126,28 @@ TEST_F(DenseErrorTest, HolesAndTheUncertainHalfAreTold) {
   EXPECT_LT(error->complete_mm[1], 0.6);
 }
 
+TEST_F(DenseErrorTest, FramesWithoutADepthAreNotKnown) {
+  SurfaceFolder surface = WriteSurface([](cv::Mat*) {});
+  cv::Mat nothing(Rendered().camera.height(), Rendered().camera.width(), CV_32F, cv::Scalar(0));
+  ASSERT_TRUE(WritePng(folder_.Path("depth/5.png"), QuantizeDepth(nothing, kDenseDepthScale)).ok());
+  const auto half = ComputeDenseError(surface, {}, sequence_, ErrorScale::kPerFrame);
+  ASSERT_TRUE(half.ok()) << half.status().message();
+  EXPECT_EQ(half->frames, 1);
+  EXPECT_EQ(half->frames_without_depth, 1);
+  EXPECT_NEAR(half->known_share, 0.5, 0.01);
+  EXPECT_NEAR(half->complete_mm[2], 0.5, 0.01);
+  EXPECT_LT(half->estimate.abs_rel, 1e-3) << "errors are of the pixels that have a depth";
+
+  const std::string failed = "{\"frame\": 3, \"name\": \"3.png\", \"note\": \"it was not tracked\"}";
+  folder_.Write("surface.json",
+                "{\"status\": \"completed\", \"frames\": [{\"frame\": 2, \"name\": \"2.png\", "
+                "\"note\": \"\"}, " +
+                    failed + "]}");
+  surface = *ReadSurfaceFolder(folder_.Path("."));
+  EXPECT_EQ(surface.frames_without_depth, std::vector<int>{3});
+  EXPECT_NEAR(ComputeDenseError(surface, {}, sequence_, ErrorScale::kPerFrame)->known_share, 0.5, 0.01);
+}
+
 TEST_F(DenseErrorTest, NeedsFramesAndFilesThatFit) {
   SurfaceFolder surface = WriteSurface([](cv::Mat*) {});
   SurfaceFolder none = surface;

@@ -51,6 +51,20 @@ TEST(UncertaintyError, OfRightSigmasIsThatOfANormalDistribution) {
   }
 }
 
+// Right sigmas, compared with a truth that has an error of its own.
+TEST(UncertaintyError, KnowsThatTheTruthIsUncertainToo) {
+  Random random(6);
+  std::vector<PairedFrame> frames = Frames(1, 1);
+  for (PairedFrame& frame : frames)
+    for (PointPair& pair : frame.pairs) {
+      pair.truth_sigma_mm = 0.3;
+      pair.truth *= 1 + random.Normal(pair.truth_sigma_mm) / pair.truth.z();
+    }
+  const UncertaintyError error = Judged(frames);
+  EXPECT_NEAR(error.within_1_sigma, 0.683, kShare);
+  EXPECT_NEAR(error.nees, 1, 0.05);
+}
+
 TEST(UncertaintyError, SaysThatSigmasAreTooSmall) {
   const UncertaintyError error = Judged(Frames(2, 1));
   EXPECT_NEAR(error.within_1_sigma, 0.383, kShare);  // of a normal distribution, within half its standard deviation

@@ -37,9 +37,10 @@ struct SurfaceFolder {
   std::filesystem::path path;
   std::filesystem::path run;  // that it was made of, absolute; empty: it does not say
   Camera camera;
-  double depth_scale = 1;                  // map units
-  std::vector<Frame> frames;               // that have a depth
-  std::optional<ComparedWindows> windows;  // nothing: it does not say
+  double depth_scale = 1;                      // map units
+  std::vector<Frame> frames;                   // that have a depth
+  std::optional<ComparedWindows> windows;      // nothing: it does not say
+  std::vector<int> frames_without_depth = {};  // that were chosen, too
 };
 
 struct SurfaceDepth {

@@ -29,8 +29,9 @@ struct EvaluationFrame {
   std::optional<Rigid3> cam_from_world;        // nothing: not tracked
   std::vector<PointObservation> observations;  // sorted by id
   std::optional<FirstMapFrames> first_map;     // where pose and points came with the first map, and the run says so
-  double initialize_ms = 0;                    // wall time that the initializer took; 0 where the run does not say
-  int submap = 0;                              // whose world and unit pose and points are in
+  bool makes_map_alone = false;  // a map was made of this frame and no other: perhaps of its pair or depth image
+  double initialize_ms = 0;      // wall time that the initializer took; 0 where the run does not say
+  int submap = 0;                // whose world and unit pose and points are in
 };
 
 struct EvaluationInput {
