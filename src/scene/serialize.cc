@@ -8,7 +8,7 @@ namespace pliant {
 void Serialize(StateArchive& archive, PointId& id) { archive.Members<1>(id); }
 void Serialize(StateArchive& archive, Rigid3& b_from_a) { archive.Members<2>(b_from_a); }
 void Serialize(StateArchive& archive, Sim3& b_from_a) { archive.Members<3>(b_from_a); }
-void Serialize(StateArchive& archive, Landmark& landmark) { archive.Members<11>(landmark); }
+void Serialize(StateArchive& archive, Landmark& landmark) { archive.Members<12>(landmark); }
 void Serialize(StateArchive& archive, Map& map) { archive.Members<1>(map); }
 void Serialize(StateArchive& archive, CostTerm& cost) { archive.Members<2>(cost); }
 void Serialize(StateArchive& archive, PointObservation& observation) { archive.Members<5>(observation); }

@@ -3,6 +3,7 @@
 
 #include "tracking/submap/lost_points.h"
 
+#include <cmath>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -87,6 +88,44 @@ TEST(LostPoints, AreExpectedWhereTheCameraShouldSeeThem) {
   Eigen::Matrix2d quarter;
   quarter << 0, -1, 1, 0;
   EXPECT_LT((lost.Expected(LostPointsCamera(), turned, 10)[0].affine_from_latest - quarter).norm(), kPixelRounding);
+}
+
+// 100 degrees from the axis of a lens that sees there, and from half as far.
+TEST(LostPoints, AreExpectedBesideTheCameraWhereTheLensSeesThem) {
+  const Camera fisheye =
+      *Camera::Create("OPENCV_FISHEYE", 640, 480, std::vector<double>{130, 130, 319.5, 239.5, 0, 0, 0, 0});
+  const double angle = 100 * EIGEN_PI / 180;
+  const Eigen::Vector3d position = 50 * Eigen::Vector3d(std::sin(angle), 0, std::cos(angle));
+  LostPoints lost;
+  lost.Add({PointId{1}, position, position}, Rigid3());
+  const auto expected = lost.Expected(fisheye, Rigid3(Eigen::Quaterniond::Identity(), -0.5 * position), 10);
+  ASSERT_EQ(expected.size(), 1U);
+  EXPECT_LT((expected[0].pixel - Eigen::Vector2d(319.5 + 130 * angle, 239.5)).norm(), kSamePixel_px);
+  EXPECT_LT((expected[0].affine_from_latest - 2 * Eigen::Matrix2d::Identity()).norm(), kSamePixel_px);
+}
+
+// A plane across the ray to a point at the edge of the view, before a camera that turns: its homography, near the
+// point.
+TEST(LostPoints, ChangeAsAPlaneThatFacesTheCamera) {
+  constexpr double kStep_px = 0.01;
+  constexpr double kCurved = 1e-3;  // what the homography bends over that step, by the step
+  const Camera camera = LostPointsCamera();
+  const Eigen::Vector2d pixel(600, 440);
+  const Eigen::Vector3d ray = *camera.Unproject(pixel);
+  const Eigen::Vector3d position = 50 * ray;
+  const Rigid3 turned(RotationExp({0.1, -0.2, 0.3}), Eigen::Vector3d::Zero());
+  const auto seen_through = [&](const Eigen::Vector2d& at) -> Eigen::Vector2d {
+    const Eigen::Vector3d other = *camera.Unproject(at);
+    return *camera.Project(turned * Eigen::Vector3d(50 / ray.dot(other) * other));
+  };
+  Eigen::Matrix2d change;
+  for (int k = 0; k < 2; ++k)
+    change.col(k) = (seen_through(pixel + kStep_px * Eigen::Vector2d::Unit(k)) - seen_through(pixel)) / kStep_px;
+  LostPoints lost;
+  lost.Add({PointId{1}, position, position}, Rigid3());
+  const auto expected = lost.Expected(camera, turned, 10);
+  ASSERT_EQ(expected.size(), 1U);
+  EXPECT_LT((expected[0].affine_from_latest - change).norm(), kCurved);
 }
 
 TEST(LostPoints, AreLookedForInTurn) {

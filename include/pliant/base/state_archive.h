@@ -4,7 +4,7 @@
 // The state of a program as bytes, to go on with it in another process: bit for bit, for the same build on the same
 // kind of machine. One archive either writes or reads, and the same code does both:
 //
-//   void Serialize(StateArchive& archive, Landmark& landmark) { archive.Members<11>(landmark); }
+//   void Serialize(StateArchive& archive, Landmark& landmark) { archive.Members<12>(landmark); }
 //   void Candidates::Serialize(StateArchive& archive) { archive(points_); }
 //
 // A type is serialized by its member function Serialize, else by a function of that name in namespace pliant, else it

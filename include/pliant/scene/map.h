@@ -6,6 +6,7 @@
 // the median depth of the first map is the configured nominal depth.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -25,7 +26,8 @@ struct Landmark {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();       // X_i^{t-1}: in the last tracked frame
   Eigen::Vector3d last_motion = Eigen::Vector3d::Zero();    // delta_i of the last tracked frame
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();          // where it was last measured
-  double ssim = 1;                                          // of that measurement, to its reference patch
+  std::optional<Eigen::Vector2d> sharp_pixel = {};  // in the last sharp image, while `pixel` is of a blurred one
+  double ssim = 1;                                  // of that measurement, to its reference patch
   double log_distance_sigma = 0;  // of its distance from the camera when that was determined; 0: not known
   Eigen::Vector3d determined_at = Eigen::Vector3d::Zero();  // its position then
   int times_reestimated = 0;                                // the re-estimated maps that had it

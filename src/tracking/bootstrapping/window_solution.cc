@@ -41,12 +41,6 @@ bool HasPrior(const InitInput& input, std::size_t frames, const WindowInitOption
   });
 }
 
-WindowInitOptions WithoutCue(WindowInitOptions options) {
-  options.light = Switch::kOff;
-  options.cue = DistanceCue::kLight;
-  return options;
-}
-
 // `count` of these points, evenly over the image, each where it is first seen.
 std::vector<PointId> EvenlyOverImage(const InitInput& input, const std::vector<std::size_t>& views,
                                      const std::vector<PointId>& ids, std::size_t count) {
@@ -199,7 +193,7 @@ Result<SolvedWindow> SolveDeforming(const InitInput& input, std::size_t frames, 
   std::vector<WindowInitOptions> others;
   if (options.cue == DistanceCue::kLight && HasPrior(input, frames, options))
     others.push_back(WithCue(options, DistanceCue::kPrior));
-  others.push_back(WithoutCue(options));
+  others.push_back(WithCue(options, DistanceCue::kNone));
   for (const WindowInitOptions& other : others) {
     const auto prepared = PrepareWindow(input, frames, options.views, other, nominal_depth_mm);
     if (!prepared.ok()) continue;
@@ -290,7 +284,6 @@ int IndexOf(PointId id, const std::vector<PointId>& ids) {
 
 WindowInitOptions WithCue(WindowInitOptions options, DistanceCue cue) {
   options.cue = cue;
-  if (cue == DistanceCue::kPrior) options.light = Switch::kOn;
   return options;
 }
 
@@ -298,13 +291,13 @@ std::vector<DeformingObservation> SeenIn(const InitInput& input, const InitFrame
                                          const std::vector<PointId>& ids, int view_idx,
                                          const WindowInitOptions& options) {
   const PhotometricCalibration light = input.photometric.value_or(PhotometricCalibration{.gamma = options.gamma});
+  const bool has_light = options.cue == DistanceCue::kLight && options.light == Switch::kOn;
   std::vector<DeformingObservation> observations;
   for (const WindowObservation& seen : ObservationsOf(input.camera, frame, ids, view_idx)) {
     const InitObservation& observation = *FindById(frame.observations, ids[static_cast<std::size_t>(seen.point_idx)]);
     double log_cue = std::numeric_limits<double>::quiet_NaN();
-    if (options.light == Switch::kOn)
-      log_cue = options.cue == DistanceCue::kPrior ? observation.log_prior
-                                                   : LogDistanceFromLight(light, observation.brightness, seen.ray);
+    if (has_light) log_cue = LogDistanceFromLight(light, observation.brightness, seen.ray);
+    if (options.cue == DistanceCue::kPrior) log_cue = observation.log_prior;
     observations.push_back({view_idx, seen.point_idx, seen.ray, log_cue});
   }
   return observations;

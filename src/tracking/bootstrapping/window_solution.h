@@ -58,7 +58,7 @@ Result<SolvedWindow> SolveWindow(const InitInput& input, std::size_t frames, Win
 Result<SolvedWindow> SolveAsRigid(const InitInput& input, std::size_t frames, const WindowInitOptions& options,
                                   double nominal_depth_mm);
 
-// The options with another cue; a depth prior is one also where the light is not.
+// The options with another cue.
 WindowInitOptions WithCue(WindowInitOptions options, DistanceCue cue);
 
 // A point's index in the sorted `ids`, or -1.

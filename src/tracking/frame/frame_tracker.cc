@@ -64,7 +64,7 @@ std::vector<PointPrediction> FrameTracker::PredictPixels(const Submap& submap, c
   for (const Landmark& landmark : submap.map.landmarks) {
     const auto last = camera_.Project(submap.last_cam_from_world * landmark.position);
     const auto next = camera_.Project(cam_from_world * (landmark.position + landmark.last_motion));
-    from.push_back(landmark.pixel);
+    from.push_back(landmark.sharp_pixel.value_or(landmark.pixel));  // its patch is of the last sharp image
     to.push_back(last && next ? Eigen::Vector2d(landmark.pixel + *next - *last) : landmark.pixel);
   }
   const std::vector<Eigen::Matrix2d> affines = NeighborhoodAffines(from, to);

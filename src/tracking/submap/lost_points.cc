@@ -16,17 +16,26 @@ namespace {
 constexpr int kLostNeighbors = 8;
 constexpr int kVainSearches = 10;  // of a point that should be in sight: it is hidden, or changed, and may stay so
 
-// The change of a neighborhood that faces the camera, between two poses that see it at these positions.
-Eigen::Matrix2d FacingAffine(const Rigid3& before, const Eigen::Vector3d& position_before, const Rigid3& now,
-                             const Eigen::Vector3d& position_now) {
-  const double scale = (before * position_before).z() / (now * position_now).z();
-  const Eigen::Matrix3d turn = now.RotationMatrix() * before.RotationMatrix().transpose();
-  return scale * turn.topLeftCorner<2, 2>();
+// How the neighborhood of a point changes in the image between two poses that see it at these positions, if it faces
+// both of them: it lies across the ray to the point. Nothing where a camera cannot see it.
+std::optional<Eigen::Matrix2d> FacingAffine(const Camera& camera, const Rigid3& before,
+                                            const Eigen::Vector3d& position_before, const Rigid3& now,
+                                            const Eigen::Vector3d& position_now) {
+  const auto seen_before = camera.ProjectWithJacobian(before * position_before);
+  const auto seen_now = camera.ProjectWithJacobian(now * position_now);
+  if (!seen_before || !seen_now) return std::nullopt;
+  const Eigen::Vector3d ray = (before * position_before).normalized();
+  Eigen::Matrix<double, 3, 2> across;
+  across.col(0) = ray.unitOrthogonal();
+  across.col(1) = ray.cross(across.col(0));
+  const Eigen::Quaterniond turn = now.rotation * before.rotation.conjugate();
+  const Eigen::Quaterniond refacing = Eigen::Quaterniond::FromTwoVectors(turn * ray, now * position_now);
+  return seen_now->d_pixel_d_point * (refacing * turn).toRotationMatrix() * across *
+         (seen_before->d_pixel_d_point * across).inverse();
 }
 
 // The pixel of a point in the camera's frame, when the image shows it.
 std::optional<Eigen::Vector2d> PixelOf(const Camera& camera, const Eigen::Vector3d& in_cam) {
-  if (!(in_cam.z() > 0)) return std::nullopt;
   const auto pixel = camera.Project(in_cam);
   return pixel && camera.Contains(*pixel) ? pixel : std::nullopt;
 }
@@ -86,6 +95,10 @@ void LostPoints::MoveAllButRest(const Rigid3& motion) {
   }
 }
 
+void LostPoints::ScaleSigmas(double factor) {
+  for (auto& [id, point] : points_) point.landmark.log_distance_sigma *= factor;
+}
+
 void LostPoints::TakeOver(LostPoints&& other, const std::vector<Landmark>& seen) {
   for (auto& [id, point] : points_) point.order += other.next_order_;
   next_order_ += other.next_order_;
@@ -135,9 +148,8 @@ std::vector<PointPrediction> LostPoints::Expected(const Camera& camera, const Ri
   for (const auto& [id, point] : points_) {
     const Eigen::Vector3d& position = point.landmark.position;
     const auto pixel = PixelOf(camera, cam_from_world * position);
-    if (!pixel) continue;
-    expected.push_back(
-        {point.searches, {id, *pixel, FacingAffine(point.cam_from_world, point.seen_at, cam_from_world, position)}});
+    const auto affine = FacingAffine(camera, point.cam_from_world, point.seen_at, cam_from_world, position);
+    if (pixel && affine) expected.push_back({point.searches, {id, *pixel, *affine}});
   }
   const auto rarest = [](const auto& a, const auto& b) {
     return a.first != b.first ? a.first < b.first : a.second.id < b.second.id;

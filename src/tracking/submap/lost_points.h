@@ -45,6 +45,8 @@ class LostPoints {
   void MoveInto(const Sim3& other_from_world);
   // Moves where they are now, and not where they rest.
   void MoveAllButRest(const Rigid3& motion);
+  // Multiplies the standard deviations of their distances.
+  void ScaleSigmas(double factor);
   // All of `other`, which is in the same world and has other ids; as if they had been lost before these. Each is at
   // rest where it would be had it moved as the landmarks around it that are seen.
   void TakeOver(LostPoints&& other, const std::vector<Landmark>& seen);

@@ -41,6 +41,10 @@ void Submap::Commit(const FollowedPoints& points, const Rigid3& cam_from_world, 
     lost_points.Remove(landmark.id);
     landmark.last_motion = points.solved[k].position - landmark.position;
     landmark.position = points.solved[k].position;
+    if (!points.in_blur)
+      landmark.sharp_pixel.reset();
+    else if (!landmark.sharp_pixel)
+      landmark.sharp_pixel = landmark.pixel;
     landmark.pixel = points.pixels[k];
     landmark.ssim = points.ssim[k];
     next.landmarks.push_back(landmark);
@@ -68,7 +72,9 @@ void Submap::Commit(const FollowedPoints& points, const Rigid3& cam_from_world, 
 void Submap::BecomeProvisional() {
   provisional = true;
   if (depths.signal <= kMinProvisionalSignal) return;
-  for (Landmark& landmark : map.landmarks) landmark.log_distance_sigma *= depths.signal / kMinProvisionalSignal;
+  const double factor = depths.signal / kMinProvisionalSignal;
+  for (Landmark& landmark : map.landmarks) landmark.log_distance_sigma *= factor;
+  lost_points.ScaleSigmas(factor);
   depths.signal = kMinProvisionalSignal;
 }
 

@@ -39,6 +39,7 @@ struct DeformingObservation {
 enum class DistanceCue {
   kLight,  // at the camera: brightness, which also falls with the surface's inclination (W6)
   kPrior,  // a depth prior: the distance itself
+  kNone,   // there is none: every log_cue is NaN
 };
 
 // How the camera may move in a window.
