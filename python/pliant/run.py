@@ -71,7 +71,8 @@ class Run:
         return self._map[2]
 
     def frame(self, frame_idx: int) -> Observations:
-        """The points of the frame with this number, sorted by point_id; views, not copies. None: no rows."""
+        """The points of the frame with this number, sorted by point_id; views, not copies; none where
+        it has none."""
         column = self.observations.frame_idx
         first, last = np.searchsorted(column, np.array([frame_idx, frame_idx + 1], column.dtype))  # no copy of it
         return self.observations[first:last]

@@ -30,10 +30,11 @@ void AddRenamings(const fs::path& from, const fs::path& to, std::vector<Renaming
 
 }  // namespace
 
-StagedFolder::StagedFolder(fs::path folder, fs::path staged) : folder_(std::move(folder)), staged_(std::move(staged)) {}
+StagedFolder::StagedFolder(fs::path folder, fs::path staged, FolderLock lock)
+    : lock_(std::move(lock)), folder_(std::move(folder)), staged_(std::move(staged)) {}
 
 StagedFolder::StagedFolder(StagedFolder&& other) noexcept
-    : folder_(std::move(other.folder_)), staged_(std::exchange(other.staged_, {})) {}
+    : lock_(std::move(other.lock_)), folder_(std::move(other.folder_)), staged_(std::exchange(other.staged_, {})) {}
 
 StagedFolder::~StagedFolder() {
   std::error_code error;
@@ -50,8 +51,12 @@ Status CheckAbsent(const fs::path& folder, const std::vector<std::string>& names
 
 Result<StagedFolder> StagedFolder::Create(const fs::path& folder, const std::vector<std::string>& names) {
   if (Status status = CheckAbsent(folder, names); !status.ok()) return status;
-  StagedFolder result(folder, folder / kUnfinished);
   std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) return Unwritable(folder);
+  auto lock = FolderLock::Take(folder);
+  if (!lock.ok()) return lock.status();
+  StagedFolder result(folder, folder / kUnfinished, *std::move(lock));
   fs::remove_all(result.staged_, error);  // that of an export that was killed
   fs::create_directories(result.staged_, error);
   if (error) return Unwritable(result.staged_);

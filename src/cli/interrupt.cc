@@ -12,7 +12,13 @@ namespace {
 std::atomic<bool> stop_requested = false;
 static_assert(std::atomic<bool>::is_always_lock_free);
 
-void RequestStop(int) { stop_requested = true; }
+std::atomic<int> last_signal = 0;
+static_assert(std::atomic<int>::is_always_lock_free);
+
+void RequestStop(int signal) {
+  last_signal = signal;
+  stop_requested = true;
+}
 
 }  // namespace
 
@@ -29,5 +35,7 @@ std::atomic<bool>& StopOnSignals() {
   std::signal(SIGPIPE, SIG_IGN);  // whoever read the progress is gone; that is no reason to end a run
   return stop_requested;
 }
+
+int LastSignal() { return last_signal; }
 
 }  // namespace pliant::cli

@@ -12,4 +12,7 @@ namespace pliant::cli {
 // returned; a second one of its kind ends the process at once. A closed pipe on standard output or error ends nothing.
 std::atomic<bool>& StopOnSignals();
 
+// The signal that came last; 0: none has.
+int LastSignal();
+
 }  // namespace pliant::cli

@@ -442,7 +442,7 @@ def main():
         sys.exit(__doc__)
     program, folder = sys.argv[1], pathlib.Path(sys.argv[2])
     title, commands = read_program(program)
-    version = ask(program, "--version").split()[-1]
+    version = ask(program, "--version").split()[1]
     for name, lines in man_pages(title, commands, version):
         write(folder / "man" / "man1" / name, "\n".join(lines) + "\n")
     write(folder / "bash-completion" / "completions" / "pliant", bash_completion(commands))

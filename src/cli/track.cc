@@ -6,6 +6,7 @@
 #include <array>
 #include <atomic>
 #include <chrono>
+#include <csignal>
 #include <ctime>
 #include <filesystem>
 #include <memory>
@@ -160,10 +161,12 @@ int Refine(const RunRequest& request, const TrackArguments& arguments, const Ref
   return RefineAndSay(refinement, options);
 }
 
-// Until the next Ctrl-C; one that has ended a run on a live source is over.
-void KeepServing(LiveView* live) {
-  live->KeepRun();
+// Until the next Ctrl-C; one that has ended a run on a live source is over. Any other signal, and one that has ended a
+// run on files, ends the program.
+void KeepServing(bool is_live_source, LiveView* live) {
   std::atomic<bool>& stop = StopOnSignals();
+  if (stop && !(is_live_source && LastSignal() == SIGINT)) return;
+  live->KeepRun();
   stop = false;
   SayNote("the live view stays at " + live->Url() + "; Ctrl-C ends it");
   while (!stop) std::this_thread::sleep_for(std::chrono::milliseconds(50));
@@ -224,7 +227,7 @@ int TrackCommand(std::span<const std::string> args) {
     if (IsLiveSource(arguments.input.path)) StopOnSignals() = false;  // Ctrl-C has ended the source
     exit_code = Refine(request, arguments, refine_options);
   }
-  if (live && !had_ended) KeepServing(live.get());
+  if (live && !had_ended) KeepServing(IsLiveSource(arguments.input.path), live.get());
   return exit_code;
 }
 

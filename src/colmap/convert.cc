@@ -82,9 +82,12 @@ Result<pliant::Camera> ReadCamera(const std::string& path, std::optional<int> ca
   const auto cameras = ReadCameras(path);
   if (!cameras.ok()) return cameras.status();
   if (cameras->empty()) return Status(ErrorCode::kUnreadable, Quoted(path) + " holds no camera");
+  constexpr std::size_t kMostNamed = 8;
   std::string ids;
+  for (std::size_t i = 0; i < std::min(kMostNamed, cameras->size()); ++i)
+    ids += (i == 0 ? "" : ", ") + std::to_string((*cameras)[i].id);
+  if (cameras->size() > kMostNamed) ids += ", ...";
   for (const Camera& camera : *cameras) {
-    ids += (ids.empty() ? "" : ", ") + std::to_string(camera.id);
     if (camera_id ? static_cast<std::int64_t>(camera.id) != *camera_id : cameras->size() > 1) continue;
     auto converted = ToPliant(camera);
     if (converted.ok()) return converted;

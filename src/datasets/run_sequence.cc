@@ -51,6 +51,11 @@ SequenceRequest SequenceOfRun(const std::string& run_path, const std::filesystem
   if (!summary.ok()) return request;
   const std::filesystem::path input = summary->description.input;
   if (sequence_path.empty()) request.image_path = input;
+  // Parts that were joined need not have begun a multiple of the stride apart.
+  const FrameSelection& range = summary->description.range;
+  request.start = range.start;
+  request.end = range.end;
+  request.stride = summary->description.joined_from.empty() ? range.stride : 1;
   request.spare_camera_path = CameraOfRun(run_path, summary->description);
   std::error_code error;
   const bool same = request.image_path == input || std::filesystem::equivalent(request.image_path, input, error);
@@ -61,7 +66,7 @@ SequenceRequest SequenceOfRun(const std::string& run_path, const std::filesystem
 }
 
 Result<RunMap> KnownMapOfRun(const std::string& run_path, const SequenceRequest& sequence, const Run& run) {
-  if (HasRunMap(run_path)) return ReadRunMap(run_path, run);
+  if (HasRunMap(run_path, run)) return ReadRunMap(run_path, run);
   if (!sequence.image_path.empty()) {
     auto known = MapFromSequence(sequence, run);
     if (known.ok()) return known;
@@ -75,8 +80,13 @@ Result<RunMap> KnownMapOfRun(const std::string& run_path, const SequenceRequest&
 
 Status CheckMasksOfRun(const SequenceRequest& request, const Run& run) {
   if (!request.mask_path.empty() || !run.summary || run.summary->description.mask.empty()) return Status::Ok();
-  return {ErrorCode::kNotFound, "the masks that the run was tracked with are not at " +
-                                    Quoted(run.summary->description.mask) + "; name them with --mask_path"};
+  const std::string& mask = run.summary->description.mask;
+  if (Exists(mask))
+    return {ErrorCode::kNotFound, "the masks that the run was tracked with, " + Quoted(mask) +
+                                      ", are of the images that it names, and others were given; name theirs, or the "
+                                      "same again, with --mask_path"};
+  return {ErrorCode::kNotFound,
+          "the masks that the run was tracked with are not at " + Quoted(mask) + "; name them with --mask_path"};
 }
 
 Result<std::unique_ptr<Sequence>> OpenImagesOfRun(const std::string& run_path, const SequenceRequest& request) {

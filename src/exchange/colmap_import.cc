@@ -44,12 +44,16 @@ class FrameNames {
   std::string first_;
 };
 
+Status CheckOne(std::size_t cameras, const std::string& folder) {
+  if (cameras == 1) return Status::Ok();
+  return {ErrorCode::kInvalidArgument,
+          "the model " + Quoted(folder) + " has " + std::to_string(cameras) +
+              " cameras, and a run has one; let COLMAP know that all images are of one camera "
+              "(feature_extractor --ImageReader.single_camera 1)"};
+}
+
 Result<Camera> TheCamera(const colmap::Model& model, const std::string& folder) {
-  if (model.cameras.size() != 1)
-    return Status(ErrorCode::kInvalidArgument,
-                  "the model " + Quoted(folder) + " has " + std::to_string(model.cameras.size()) +
-                      " cameras, and a run has one; let COLMAP know that all images are of one camera "
-                      "(feature_extractor --ImageReader.single_camera 1)");
+  if (Status status = CheckOne(model.cameras.size(), folder); !status.ok()) return status;
   auto camera = colmap::ToPliant(model.cameras.front());
   if (camera.ok()) return camera;
   return Status(camera.status().code(), "the model " + Quoted(folder) + ": " + camera.status().message());
@@ -111,6 +115,17 @@ Status AddImages(const colmap::Model& model, const Sequence& sequence, const std
 }
 
 }  // namespace
+
+Status CheckOneCamera(const std::string& folder) {
+  for (const char* name : {"cameras.bin", "cameras.txt"}) {
+    const std::filesystem::path path = std::filesystem::path(folder) / name;
+    std::error_code error;
+    if (!std::filesystem::exists(path, error)) continue;
+    const auto cameras = colmap::ReadCameras(path.string());
+    return cameras.ok() ? CheckOne(cameras->size(), folder) : Status::Ok();
+  }
+  return Status::Ok();
+}
 
 Result<Imported> ReadColmapModel(const std::string& folder, const Sequence& sequence, const JobProgress& progress) {
   const auto model = colmap::ReadValidModel(folder, progress);

@@ -119,7 +119,9 @@ Status AddMatches(SqliteDatabase& database, const RunSource& source, const std::
 Status Fill(const std::string& path, const RunSource& source, const ExportOptions& options) {
   auto database = SqliteDatabase::Open(path);
   if (!database.ok()) return database.status();
-  Status status = database->Execute("BEGIN");
+  // COLMAP's keeps what is committed in a log beside it, which is not renamed with it.
+  Status status = database->Execute("PRAGMA journal_mode=DELETE");
+  if (status.ok()) status = database->Execute("BEGIN");
   if (status.ok()) status = AddCamera(*database, source.camera);
   if (!status.ok()) return status;
   const auto tracks = AddImages(*database, source);
@@ -143,6 +145,7 @@ Status ExportDatabase(const RunSource& source, const ExportOptions& options, con
   Status status = RunProgram({"colmap", "database_creator", "--database_path", beside}, log);
   if (status.ok()) status = Fill(beside, source, options);
   if (status.ok()) {
+    for (const char* log_of_former : {"-wal", "-shm"}) std::filesystem::remove(path + log_of_former, error);
     std::filesystem::rename(beside, path, error);
     if (error) status = {ErrorCode::kUnwritable, "cannot write " + Quoted(path) + ": " + error.message()};
   }

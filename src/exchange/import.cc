@@ -26,16 +26,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The images, with the calibration that is named, or the model's where they have none.
+// The images, with the calibration that is named, or their own, or the model's where they have none.
 SequenceRequest ImagesOf(const ImportRequest& request) {
   SequenceRequest images;
   images.image_path = request.sequence_path;
   images.camera_path = request.camera_path;
   const fs::path model = request.input_path;
-  if (request.format == ImportFormat::kColmap && images.camera_path.empty() &&
-      !Exists(images.image_path / "camera.yaml"))
+  if (request.format == ImportFormat::kColmap && images.camera_path.empty())
     for (const char* name : {"cameras.txt", "cameras.bin"})
-      if (Exists(model / name)) images.camera_path = model / name;
+      if (Exists(model / name)) images.spare_camera_path = model / name;
   return images;
 }
 
@@ -208,6 +207,8 @@ void ImportOptions::List(OptionTable& table) {
 }
 
 Result<ImportSummary> Import(const ImportRequest& request, const ImportOptions& options, const JobProgress& progress) {
+  if (request.format == ImportFormat::kColmap)
+    if (Status status = CheckOneCamera(request.input_path); !status.ok()) return status;
   const auto sequence = OpenSequence(ImagesOf(request));
   if (!sequence.ok()) return sequence.status();
   auto imported = ReadInput(request, **sequence, options, progress);

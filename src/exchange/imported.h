@@ -33,6 +33,9 @@ struct Imported {
   std::vector<std::string> notes;
 };
 
+// Fails with kInvalidArgument where the model has not one camera; one that cannot be read is ReadColmapModel's to
+// report.
+Status CheckOneCamera(const std::string& folder);
 // Each fails as Import does.
 Result<Imported> ReadColmapModel(const std::string& folder, const Sequence& sequence, const JobProgress& progress);
 Result<Imported> ReadResult(const std::string& folder, const Sequence& sequence, const ImportOptions& options);

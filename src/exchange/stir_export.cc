@@ -182,6 +182,9 @@ Status WriteOwn(const RunSource& source, const ExportOptions& options, const Exp
 }  // namespace
 
 Status ExportStir(const RunSource& source, const ExportOptions& options, const ExportFolder& folder) {
+  if (Status status = CheckAbsent(folder.place, {"start.json", "start3d.json", "positions.json", "positions3d.json"});
+      !status.ok())
+    return status;
   return options.start_points.empty() ? WriteOwn(source, options, folder) : WriteCarried(source, options, folder);
 }
 

@@ -28,12 +28,9 @@ Result<std::vector<PixelTrack>> TracksOf(const RunSource& source) {
 // Of the images, where they are there; else what the run read of them.
 int NumFrames(const RunSource& source) {
   int frames = source.frames.back().frame_idx + 1;
+  if (!source.run->frames.empty()) frames = std::max(frames, source.run->frames.back().frame_idx + 1);
   if (source.images.image_path.empty()) return frames;
-  SequenceRequest whole = source.images;
-  whole.start = 0;
-  whole.end = -1;
-  whole.stride = 1;
-  const auto sequence = OpenSequence(whole);
+  const auto sequence = OpenSequence(source.images.Whole());
   return sequence.ok() ? std::max(frames, (*sequence)->size()) : frames;
 }
 

@@ -21,24 +21,36 @@ namespace fs = std::filesystem;
 
 constexpr const char* kAside = ".former_run";
 
+// Whether the calibration in the run's folder was found by the run itself, and is not its user's.
+bool HasOwnCamera(const RunDescription& run, const fs::path& folder) {
+  const fs::path camera = run.camera;
+  if (run.refined_from.empty() || camera.filename() != kEstimatedCamera) return false;
+  std::error_code error;
+  return fs::equivalent(camera.parent_path(), folder.filename() == kAside ? folder.parent_path() : folder, error);
+}
+
 // Files, and then the folders of models, where `folder` has them. A killed run says of no submaps, and has no models.
 std::vector<std::string> FilesOfRun(const fs::path& folder) {
   const auto run = ReadRunSummary((folder / "run.json").string());
   const int submaps = run.ok() ? run->submaps : 0;
   std::vector<std::string> names(kRunFiles.begin(), kRunFiles.end());
-  for (int submap = 0; submap < std::max(1, submaps); ++submap) {
+  if (run.ok() && HasOwnCamera(run->description, folder)) names.emplace_back(kEstimatedCamera);
+  std::error_code error;
+  const auto is_there = [&](int submap) { return fs::exists(folder / SubmapModel(submap, submaps), error); };
+  int counted = 1;  // what run.json claims may be anything
+  while (counted < submaps && is_there(counted)) ++counted;
+  for (int submap = 0; submap < counted; ++submap) {
     if (submap > 0) names.push_back(SubmapPly(submap));
     for (const std::string_view name : kModelFiles)
       names.push_back(SubmapModel(submap, submaps) + "/" + std::string(name));
   }
-  for (int submap = 0; submaps > 1 && submap < submaps; ++submap) names.push_back(SubmapModel(submap, submaps));
+  for (int submap = 0; submaps > 1 && submap < counted; ++submap) names.push_back(SubmapModel(submap, submaps));
   names.emplace_back("sparse");
   names.emplace_back(kCheckpointState);
   names.push_back(std::string(kCheckpointState) + ".tmp");
   for (const std::string_view rows : kRowFiles)
     names.push_back(std::string(kCheckpointFolder) + "/" + std::string(rows));
   names.emplace_back(kCheckpointFolder);
-  std::error_code error;
   std::erase_if(names, [&](const std::string& name) { return !fs::exists(folder / name, error); });
   return names;
 }

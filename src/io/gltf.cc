@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <cstring>
 #include <exception>
+#include <limits>
 #include <map>
 #include <optional>
 #include <sstream>
@@ -412,10 +413,16 @@ Status WriteGlb(const std::string& path, const MeshAnimation& animation) {
   scene.nodes = {kSurfaceNode, kCameraNode};
   builder.model().scenes.push_back(scene);
   builder.model().defaultScene = 0;
+  // The format counts its bytes in 32 bits; a description in JSON comes before the numbers.
+  constexpr std::size_t kMostBytes = std::numeric_limits<std::uint32_t>::max() - (std::size_t{1} << 26);
+  std::size_t bytes = 0;
+  for (const tinygltf::Buffer& buffer : builder.model().buffers) bytes += buffer.data.size();
   std::ostringstream stream;
   tinygltf::TinyGLTF writer;
-  if (!writer.WriteGltfSceneToStream(&builder.model(), stream, false, true))
-    return {ErrorCode::kUnwritable, "cannot write " + Quoted(path) + ": the model is too large for a .glb file"};
+  if (bytes > kMostBytes || !writer.WriteGltfSceneToStream(&builder.model(), stream, false, true))
+    return {ErrorCode::kUnwritable,
+            "cannot write " + Quoted(path) +
+                ": the model is too large for a .glb file; lower Surface.animation_keys or Surface.mesh_columns"};
   return WriteFileAtomically(path, std::move(stream).str());
 }
 

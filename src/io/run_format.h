@@ -56,6 +56,8 @@ inline constexpr std::array<std::string_view, 13> kRunFiles = {"config.yaml",
                                                                "map.ply",
                                                                "pose_covariance.csv",
                                                                "pose_covariance.csv.tmp"};
+// Of a refined run whose focal length was estimated.
+inline constexpr std::string_view kEstimatedCamera = "camera.yaml";
 // (pliant/io/checkpoint.h)
 inline constexpr std::string_view kCheckpointFolder = "checkpoint";
 inline constexpr std::string_view kCheckpointState = "checkpoint/state";

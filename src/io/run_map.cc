@@ -3,17 +3,24 @@
 
 #include "pliant/io/run_map.h"
 
-#include <algorithm>
-#include <filesystem>
 #include <utility>
+#include <vector>
 
 #include "pliant/base/text.h"
 #include "pliant/colmap/convert.h"
+#include "pliant/colmap/model.h"
 
 namespace pliant {
 namespace {
 
-std::string SparseOf(const std::string& run_path) { return run_path + "/sparse"; }
+std::vector<std::string> ModelFolders(const std::string& run_path, const Run& run) {
+  const std::string folder = run_path + "/sparse";
+  const int submaps = run.summary ? run.summary->submaps : 1;
+  if (submaps <= 1) return {folder};
+  std::vector<std::string> folders;
+  for (int submap = 0; submap < submaps; ++submap) folders.push_back(folder + "/" + std::to_string(submap));
+  return folders;
+}
 
 Status AddModel(const std::string& folder, RunMap* map) {
   const auto model = colmap::ReadModel(folder, colmap::Observations::kSkipped);
@@ -34,19 +41,17 @@ Status AddModel(const std::string& folder, RunMap* map) {
 
 }  // namespace
 
-bool HasRunMap(const std::string& run_path) {
-  std::error_code error;
-  return std::filesystem::is_directory(SparseOf(run_path), error);
+bool HasRunMap(const std::string& run_path, const Run& run) {
+  for (const std::string& folder : ModelFolders(run_path, run))
+    if (!colmap::FindModel(folder).ok()) return false;
+  return true;
 }
 
 Result<RunMap> ReadRunMap(const std::string& run_path, const Run& run) {
   RunMap map;
   map.interlaced = run.summary && run.summary->description.interlaced;
-  const std::string folder = SparseOf(run_path);
-  const int submaps = run.summary ? run.summary->submaps : 1;
-  for (int submap = 0; submap < std::max(1, submaps); ++submap)
-    if (Status status = AddModel(submaps > 1 ? folder + "/" + std::to_string(submap) : folder, &map); !status.ok())
-      return status;
+  for (const std::string& folder : ModelFolders(run_path, run))
+    if (Status status = AddModel(folder, &map); !status.ok()) return status;
   return map;
 }
 

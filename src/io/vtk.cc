@@ -122,7 +122,9 @@ Status WritePvd(const std::string& path, std::span<const VtkTime> times) {
   pugi::xml_node collection = file.append_child("Collection");
   for (const VtkTime& time : times) {
     pugi::xml_node entry = collection.append_child("DataSet");
-    entry.append_attribute("timestep") = Digits(time.time_s, 6).c_str();
+    std::string time_s;
+    AppendFixed(&time_s, time.time_s, 6);
+    entry.append_attribute("timestep") = time_s.c_str();
     entry.append_attribute("part") = "0";
     entry.append_attribute("file") = time.file.c_str();
   }

@@ -199,7 +199,9 @@ std::string Evaluate(const py::dict& request, const py::object& options, const s
 // stir.json.
 std::string EvaluateStirFiles(const std::string& tracked, const std::string& start, const std::string& end,
                               const std::string& output_path) {
-  const auto error = ValueOf(EvaluateStir({.tracked_path = tracked, .start_path = start, .end_path = end}));
+  Interrupt interrupt;
+  const auto error = ValueOf(WithoutGil(
+      &interrupt, [&] { return EvaluateStir({.tracked_path = tracked, .start_path = start, .end_path = end}); }));
   if (!output_path.empty()) RaiseUnlessOk(WriteStirError(error, output_path));
   return StirJson(error);
 }

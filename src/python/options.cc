@@ -40,7 +40,10 @@ std::string TextOf(const py::handle& value, const OptionField& field, bool* ok) 
     if (field.unit == kSwitchUnit) return on ? "on" : "off";
     return on ? "true" : "false";
   }
-  if (PyIndex_Check(value.ptr()) != 0) return py::cast<std::string>(py::str(py::int_(py::cast<py::object>(value))));
+  // An array of no dimensions claims to be an index, whatever it holds.
+  if (PyObject* const whole = PyNumber_Index(value.ptr()); whole != nullptr)
+    return py::cast<std::string>(py::str(py::reinterpret_steal<py::object>(whole)));
+  PyErr_Clear();
   if (PyNumber_Check(value.ptr()) != 0 && py::hasattr(value, "__float__"))
     return FormatDouble(py::cast<double>(py::float_(py::cast<py::object>(value))));
   if (py::hasattr(value, "__fspath__")) return py::cast<std::string>(value.attr("__fspath__")());

@@ -54,8 +54,10 @@ void RunAndRaise(const py::dict& input, RunRequest request, const py::object& op
     const py::gil_scoped_release release;
     return RunTrack(request, track_options, std::array<TrackObserver*, 1>{&observer});
   }();
-  if (images != nullptr) images->Raise();
   interrupt.Raise();
+  // Images are read ahead: one that fails after the run's end is nobody's.
+  const bool has_failed = !summary.ok() || summary->status == RunStatus::kFailed;
+  if (images != nullptr && has_failed) images->Raise();
   Warn(observer.warnings());
   RaiseUnlessOk(EndOf(ValueOf(summary), request.output_path));
 }

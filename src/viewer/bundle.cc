@@ -4,6 +4,8 @@
 #include "pliant/viewer/bundle.h"
 
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <filesystem>
 #include <regex>
 #include <sstream>
@@ -38,14 +40,52 @@ constexpr const char* kSummary = "run.json";
 constexpr const char* kConfig = "config.yaml";
 constexpr const char* kCamera = "camera.yaml";
 
-std::string Placeholder(const std::string& path) { return "<path>" + fs::path(path).extension().string(); }
+bool IsWordCharacter(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
+
+// With the ending, where it is one, and says no more than what kind of a file it is.
+std::string Placeholder(const std::string& path) {
+  constexpr std::size_t kLongest = 6;  // ".webm"
+  const std::string ending = path.find("://") == std::string::npos ? fs::path(path).extension().string() : "";
+  const bool is_short = ending.size() <= kLongest &&
+                        std::all_of(ending.begin() + (ending.empty() ? 0 : 1), ending.end(), IsWordCharacter);
+  return "<path>" + (is_short ? ending : "");
+}
+
+// Whether a text names a file by its looks: "clip.mp4", "data/camera.yaml".
+bool LooksLikeFile(const std::string& text) {
+  if (text.find('/') != std::string::npos) return true;
+  const std::size_t dot = text.rfind('.');
+  return dot != std::string::npos && dot + 1 < text.size() &&
+         std::isalpha(static_cast<unsigned char>(text[dot + 1])) != 0 &&
+         std::all_of(text.begin() + static_cast<std::ptrdiff_t>(dot) + 1, text.end(), IsWordCharacter);
+}
+
+// Images and videos that a sentence names without their folder, up to the blank before them.
+std::string WithoutImageNames(const std::string& sentence) {
+  constexpr std::array kEndings = {".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff", ".webp", ".mp4",
+                                   ".m4v", ".avi", ".mov",  ".mkv", ".mpg", ".mpeg", ".webm", ".wmv"};
+  std::string cleaned;
+  for (std::size_t begin = 0; begin < sentence.size();) {
+    std::size_t end = std::min(sentence.find_first_of(" \n'\"(),;:", begin), sentence.size());
+    std::string word = sentence.substr(begin, end - begin);
+    std::string lower = word;
+    std::ranges::transform(lower, lower.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (std::ranges::any_of(kEndings, [&](const char* ending) { return lower.ends_with(ending); }))
+      word = Placeholder(word);
+    cleaned += word;
+    if (end < sentence.size()) cleaned += sentence[end++];
+    begin = end;
+  }
+  return cleaned;
+}
 
 // The files and folders that a run speaks of, by their whole names; the run's own folder, too.
 std::vector<fs::path> KnownPaths(const std::string& run_path, const RunDescription& run) {
   std::vector<fs::path> paths = {fs::absolute(run_path + "/").parent_path()};
   for (const std::string* path : {&run.input, &run.camera, &run.mask, &run.refined_from, &run.tracks, &run.depth_prior})
     if (!path->empty()) paths.emplace_back(*path);
-  paths.insert(paths.end(), run.joined_from.begin(), run.joined_from.end());
+  for (const std::string& path : run.joined_from)
+    if (!path.empty()) paths.emplace_back(path);
   return paths;
 }
 
@@ -56,19 +96,20 @@ std::string ReplacedAll(std::string text, const std::string& from, const std::st
 }
 
 std::string Cleaned(std::string sentence, const std::vector<fs::path>& known) {
+  constexpr std::size_t kLongest = 4000;  // of a sentence of ours
+  if (sentence.size() > kLongest) sentence.resize(kLongest);
   for (const fs::path& path : known) sentence = ReplacedAll(std::move(sentence), path.string(), Placeholder(path));
-  return WithoutPaths(sentence);
+  return WithoutImageNames(WithoutPaths(sentence));
 }
 
 // A word of the command line: "clip.mp4", "--camera=data/camera.yaml", "run of monday".
 std::string CleanedWord(const std::string& word, const std::vector<fs::path>& known) {
-  static const std::regex file(R"re(.*/.*|.*\.[A-Za-z]\w*)re");
   const std::size_t begin = word.starts_with("--") && word.find('=') != std::string::npos ? word.find('=') + 1 : 0;
   const std::string value = word.substr(begin);
   const bool is_known =
       std::any_of(known.begin(), known.end(), [&](const fs::path& path) { return path.filename() == value; });
   const bool is_name = begin == 0 && word.starts_with("-");  // of an argument
-  if (is_known || (!is_name && std::regex_match(value, file))) return word.substr(0, begin) + Placeholder(value);
+  if (is_known || (!is_name && LooksLikeFile(value))) return word.substr(0, begin) + Placeholder(value);
   return word;
 }
 

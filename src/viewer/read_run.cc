@@ -173,7 +173,7 @@ Result<ReadViewedRun> ReadRunForView(const std::string& run_path, const Sequence
   }
   if (Status status = AddObservations(run_path, max_observations, &read); !status.ok()) return status;
   RunMap map;
-  if (HasRunMap(run_path)) {
+  if (HasRunMap(run_path, *source)) {
     auto known = ReadRunMap(run_path, *source);
     if (!known.ok()) return known.status();
     map = *std::move(known);

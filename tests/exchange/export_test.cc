@@ -11,6 +11,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "pliant/base/staged_folder.h"
 #include "pliant/colmap/check.h"
 #include "pliant/colmap/convert.h"
 #include "pliant/io/run_reader.h"
@@ -246,6 +247,26 @@ TEST(Export, ARunThatWasKilledNeedsItsSequence) {
   const auto summary = Export(folder, "canonical");
   EXPECT_EQ(summary.status().code(), ErrorCode::kNotFound);
   EXPECT_THAT(summary.status().message(), HasSubstr("no sparse/"));
+}
+
+// What it had written of its model is none.
+TEST(Export, ARunThatWasKilledWhileItWroteItsModelNeedsItsSequence) {
+  const TestFolder folder;
+  WriteRun(folder, End::kKilled);
+  std::filesystem::create_directories(folder.Path("run/sparse"));
+  folder.Write("run/sparse/cameras.bin.tmp", "half");
+  const auto summary = Export(folder, "canonical");
+  EXPECT_EQ(summary.status().code(), ErrorCode::kNotFound);
+  EXPECT_THAT(summary.status().message(), HasSubstr("no sparse/"));
+}
+
+TEST(Export, OneWritesIntoAFolderAtATime) {
+  const TestFolder folder;
+  WriteRun(folder);
+  std::filesystem::create_directories(folder.Path("out"));
+  const auto other = StagedFolder::Create(folder.Path("out"), {});
+  ASSERT_TRUE(other.ok());
+  EXPECT_EQ(Export(folder, "ply").status().code(), ErrorCode::kUnwritable);
 }
 
 TEST(Export, RefusesAFolderWithAModelInAnotherFormat) {

@@ -217,6 +217,12 @@ TEST_F(ImportTest, ModelsThatAreNoRunOfThisSequenceAreRefusedInOneSentence) {
   EXPECT_EQ(ImportFrom("nowhere", ImportFormat::kColmap).status().code(), ErrorCode::kNotFound);
 }
 
+TEST_F(ImportTest, AModelWithACameraAnImageIsRefusedWithWhatToDo) {
+  ChangeModel([](auto* m) { m->cameras.push_back(m->cameras[0]), m->cameras[1].id = 2; });
+  std::filesystem::remove(folder_.Path("camera.yaml"));
+  EXPECT_THAT(ImportModel().status().message(), HasSubstr("--ImageReader.single_camera 1"));
+}
+
 TEST_F(ImportTest, ImagesWithoutACalibrationTakeTheModels) {
   WriteModel();
   std::filesystem::remove(folder_.Path("camera.yaml"));

@@ -108,7 +108,7 @@ TEST_F(StirExport, ARunWithoutAUnitHasPixelsAlone) {
     ASSERT_TRUE(Export({}).ok());
     EXPECT_TRUE(std::filesystem::exists(folder_.Path("out/positions.json")));
     EXPECT_FALSE(std::filesystem::exists(folder_.Path("out/positions3d.json")));
-    std::filesystem::remove_all(folder_.Path("run"));
+    for (const char* name : {"run", "out"}) std::filesystem::remove_all(folder_.Path(name));
   }
 }
 
@@ -132,6 +132,13 @@ TEST_F(StirExport, LabelsThatDoNotServeAreRefused) {
   EXPECT_THAT(Export(OfStart()).message(), HasSubstr("are pixels"));
   WriteStart({2, {{"a", {{1, 2, 0}}}}});
   EXPECT_TRUE(Export(OfStart()).ok());
+}
+
+TEST_F(StirExport, FilesOfTwoExportsAreNotMixed) {
+  WriteRun(true);
+  ASSERT_TRUE(Export({}).ok());
+  WriteRun(false);
+  EXPECT_EQ(Export({}).code(), ErrorCode::kInvalidArgument);
 }
 
 }  // namespace

@@ -65,7 +65,7 @@ class Options(TestCase):
 
     def test_values_of_python_and_numpy_are_taken(self):
         options = {"General.seed": np.int64(3), "Growth.grow": np.bool_(False), "Image.working": "fixed",
-                   "Image.smoothing_px": np.float32(0.5), "Image.scale": 1}
+                   "Image.smoothing_px": np.array(0.5), "Image.scale": np.array(1)}
         with self.assertRaises(pliant.Error):  # one frame: options are resolved, and then there is no map
             pliant.track(SEQUENCE, self.folder / "run", options, end=1)
         config = (self.folder / "run" / "config.yaml").read_text()

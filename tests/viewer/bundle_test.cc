@@ -42,10 +42,19 @@ class BundleTest : public testing::Test {
     summary.description.program_version = "0.0.7";
     summary.description.input = sequence_;
     summary.description.camera = sequence_ + "/camera.yaml";
-    summary.description.command_line = {
-        "pliant",   "track",     "smith/seq", "-o", "run of smith", "--Corners.quality=0.01", "--mask_path=smith.png",
-        "--config", "smith.yaml"};
-    summary.note = "image " + sequence_ + "/images/5.png cannot be read";
+    summary.description.command_line = {"pliant",
+                                        "track",
+                                        "smith/seq",
+                                        "-o",
+                                        "run of smith",
+                                        "--Corners.quality=0.01",
+                                        "--mask_path=smith.png",
+                                        "--config",
+                                        "smith.yaml",
+                                        "http://cam/v.cgi?user=a&pwd=smith",
+                                        "--image_path=rtsp://a:pa.smith@cam"};
+    summary.description.joined_from = {""};
+    summary.note = "image " + sequence_ + "/images/5.png cannot be read; stopped on request after frame smith_12.PNG";
     ASSERT_TRUE(WriteRunSummary(run_ + "/run.json", summary).ok());
     std::ofstream(run_ + "/config.yaml")
         << "TrackFile:\n  path: /data/smith/tracks.npz  # [path] tracks\n  other: 5  # [-] -\n"
@@ -82,6 +91,16 @@ TEST_F(BundleTest, HoldsWhatExplainsTheRunAndNothingPrivate) {
   EXPECT_THAT(*ReadFile(bundle_ + "/frames.csv"), HasSubstr("0,tracking"));
   EXPECT_FALSE(fs::exists(bundle_ + "/images"));
   EXPECT_FALSE(fs::exists(bundle_ + "/.unfinished"));
+}
+
+TEST_F(BundleTest, OfATextWithoutAnEndIsSmall) {
+  auto summary = *ReadRunSummary(run_ + "/run.json");
+  summary.note = std::string(300000, 'a') + "/b.png";
+  summary.description.command_line.push_back(summary.note);
+  ASSERT_TRUE(WriteRunSummary(run_ + "/run.json", summary).ok());
+  const auto bundle = WriteBundle({.run_path = run_, .output_path = bundle_});
+  ASSERT_TRUE(bundle.ok()) << bundle.status().message();
+  EXPECT_LT(bundle->megabytes, 0.1);
 }
 
 TEST_F(BundleTest, HoldsTenImagesWhereTheyAreAskedFor) {

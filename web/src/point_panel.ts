@@ -65,7 +65,8 @@ export class PointPanel {
     setText(byId("point-title"), `Point ${picked}`);
     setText(byId("point-first"), `frame ${first}`);
     setText(byId("point-last"), `frame ${last}`);
-    setText(byId("point-length"), `seen in ${this.observations.length} of ${last - first + 1} frames`);
+    const rows = this.observations.map((o) => run.row.values[o]);
+    setText(byId("point-length"), `seen in ${rows.length} of ${rows[rows.length - 1] - rows[0] + 1} frames`);
     this.made = this.figures(run).map(({ title, unit, note, series }) => new Plot({
       title, unit, note, frames: report.frames, dark, height: 84, go: this.go,
       series: series.map(({ label, value }, i) => ({

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "pliant/base/folder_lock.h"
 #include "pliant/base/status.h"
 
 namespace pliant {
@@ -18,7 +19,8 @@ Status CheckAbsent(const std::filesystem::path& folder, const std::vector<std::s
 
 class StagedFolder {
  public:
-  // `names` may appear in `folder`, which is there. Fails as CheckAbsent does, and with kUnwritable.
+  // `names` may appear in `folder`, which is made if need be. Fails as CheckAbsent does, and with kUnwritable, also
+  // while another one writes there.
   static Result<StagedFolder> Create(const std::filesystem::path& folder, const std::vector<std::string>& names);
   StagedFolder(StagedFolder&& other) noexcept;
   StagedFolder& operator=(StagedFolder&&) = delete;
@@ -33,8 +35,9 @@ class StagedFolder {
   Status Commit();
 
  private:
-  StagedFolder(std::filesystem::path folder, std::filesystem::path staged);
+  StagedFolder(std::filesystem::path folder, std::filesystem::path staged, FolderLock lock);
 
+  FolderLock lock_;
   std::filesystem::path folder_;
   std::filesystem::path staged_;  // empty: nothing to delete
 };

@@ -19,7 +19,8 @@ namespace pliant {
 // The images at `sequence_path`, or, where that is empty, those that run.json in `run_path` names, with the calibration
 // at `camera_path`. The run's calibration, or the camera of its model where that is gone, is a spare one: it serves
 // where the images have none that fits. Where the images are those that run.json names, the run's masks are used, if
-// they are still there. All frames. An empty image_path: nothing says which images the run is of.
+// they are still there. The frames that the run was asked for. An empty image_path: nothing says which images the run
+// is of.
 SequenceRequest SequenceOfRun(const std::string& run_path, const std::filesystem::path& sequence_path = {},
                               const std::filesystem::path& camera_path = {});
 

@@ -23,7 +23,9 @@ struct RunMap {
   bool interlaced = false;  // the images are
 };
 
-bool HasRunMap(const std::string& run_path);
+// Whether the models of all submaps of `run`, which was read from `run_path`, are there: a run that was killed has
+// none, or some.
+bool HasRunMap(const std::string& run_path, const Run& run);
 
 // Of all submaps of `run`, which was read from `run_path`. Fails as colmap::ReadModel does, and with kMismatch where a
 // model has not one camera.
