@@ -238,7 +238,7 @@ def track(input: StrPath | Iterable[NDArray[np.uint8]], output_path: StrPath, op
 def refine(run: RunOrPath, output_path: StrPath, options: OptionValues | None = None, *,
            sequence: StrPath | None = None, camera: StrPath | None = None,
            on_progress: Callable[[str, float, float], Any] | None = None) -> Run:
-    """Solves for all frames of a run at once. Ctrl-C ends it with the best so far.
+    """Solves for all frames of a run at once. Ctrl-C ends it with the best so far, if there is any.
 
     Args:
         run: a run or its folder.

@@ -224,7 +224,8 @@ int TrackCommand(std::span<const std::string> args) {
   if (had_ended && live) SayNote("the run had ended before: the live view has nothing to show");
   if (arguments.refine && summary->frames_tracked > 0 && exit_code == kExitOk &&
       !(had_ended && EndedRun(RefinedFolder(request.output_path)))) {
-    if (IsLiveSource(arguments.input.path)) StopOnSignals() = false;  // Ctrl-C has ended the source
+    // Ctrl-C has ended the source; other signals end the program.
+    if (IsLiveSource(arguments.input.path) && LastSignal() == SIGINT) StopOnSignals() = false;
     exit_code = Refine(request, arguments, refine_options);
   }
   if (live && !had_ended) KeepServing(IsLiveSource(arguments.input.path), live.get());

@@ -148,6 +148,13 @@ void JudgeTimes(const std::vector<double>& steps_s, ImageCheck* check) {
                          "--end), or a sequence with times.txt");
 }
 
+void JudgeDamaged(ImageCheck* check) {
+  if (check->damaged <= 0) return;
+  check->wrong.push_back(
+      ShareText(check->damaged, check->damaged + check->images, "frames") +
+      " of the video are damaged and left out, where points jump; copy it again, or convert it anew");
+}
+
 void JudgeMasks(const MaskSide& left, const MaskSide& taken, ImageCheck* check) {
   if (left.pixels == 0 || taken.pixels == 0 || taken.pixels < kMinTakenShare * (left.pixels + taken.pixels)) return;
   check->has_masks = true;
@@ -183,6 +190,9 @@ struct ImageChecker::State {
   std::vector<Change> changes;
   std::optional<double> last_time_s;
   std::vector<double> steps_s;
+  int first_idx = 0;
+  int last_idx = 0;
+  int step_idx = 0;  // the smallest; 0: there is one image
   std::vector<GridSample> samples;
   int sample_every = 1;
   MaskSide left;
@@ -223,16 +233,23 @@ void ImageChecker::Add(const SequenceFrame& frame) {
   state.last = std::move(grid);
   state.AddTime(frame.recorded_s);
   if (state.images % state.sample_every == 0) state.AddSample(gray, frame.mask);
+  if (state.images == 0) state.first_idx = frame.frame_idx;
+  if (const int step = frame.frame_idx - state.last_idx; state.images > 0)
+    state.step_idx = state.step_idx == 0 ? step : std::min(state.step_idx, step);
+  state.last_idx = frame.frame_idx;
   ++state.images;
 }
 
-void ImageChecker::Serialize(StateArchive& archive) { archive.Members<10>(*state_); }
+void ImageChecker::Serialize(StateArchive& archive) { archive.Members<13>(*state_); }
 
 ImageCheck ImageChecker::Check() const {
   ImageCheck check;
   check.images = state_->images;
   JudgeRepeated(LitChanges(state_->changes), &check);
   JudgeTimes(state_->steps_s, &check);
+  if (state_->step_idx > 0)
+    check.damaged = (state_->last_idx - state_->first_idx) / state_->step_idx + 1 - state_->images;
+  JudgeDamaged(&check);
   JudgeMasks(state_->left, state_->taken, &check);
   if (check.masks_are_inverted) return check;  // what they leave says nothing
   const OverlaySearch search = FindOverlay(state_->samples, state_->step);

@@ -201,7 +201,7 @@ Result<std::optional<SequenceFrame>> DataSetSequence::Next() {
   const int idx = std::exchange(next_idx_, next_idx_ + range_.stride);  // also where it fails: the next may be read
   last_idx_ = idx;
   Result<std::optional<cv::Mat>> image = images().Read(idx);
-  if (!image.ok()) return image.status();
+  if (!image.ok()) return images().IsDamaged(idx) ? Next() : image.status();
   if (!image->has_value()) return std::optional<SequenceFrame>();
   if (Status status = CheckSize(**image, images().Title(idx)); !status.ok()) return status;
   SequenceFrame frame;
@@ -259,6 +259,7 @@ std::optional<double> DataSetSequence::BaselineMm() const {
 Result<std::optional<cv::Mat>> DataSetSequence::Right() {
   if (!BaselineMm() || last_idx_ < 0) return std::optional<cv::Mat>();
   Result<std::optional<cv::Mat>> right = data_set_.right->Read(last_idx_);
+  if (!right.ok() && data_set_.right->IsDamaged(last_idx_)) return std::optional<cv::Mat>();
   if (!right.ok() || !right->has_value()) return right;
   if (Status status = CheckSize(**right, data_set_.right->Title(last_idx_)); !status.ok()) return status;
   return right;
@@ -426,7 +427,7 @@ Result<DataSet> Calibrated(const SequenceRequest& request, std::unique_ptr<Image
 Status CheckStart(const FrameRange& range, ImageStream* images) {
   if (images->count_is_exact() || images->count() == 0 || range.start < images->count()) return Status::Ok();
   const auto first = images->Read(range.start);
-  if (!first.ok()) return first.status();
+  if (!first.ok()) return images->IsDamaged(range.start) ? Status::Ok() : first.status();
   if (first->has_value()) return Status::Ok();
   return {ErrorCode::kInvalidArgument,
           "start is " + std::to_string(range.start) + ", but " + images->path().string() + " has fewer frames"};

@@ -58,7 +58,8 @@ struct DataSet {
 // These images with the calibration that belongs to them: the request's file, else camera.yaml in the folder or beside
 // the file. One that does not say its images' size takes that of the stream; one of two cameras rectifies the pairs
 // that the images hold (a StereoMIS .ini is of nothing else: kMismatch). Calibu's XML is read too. Where there is no
-// file, `published` is taken, the data set's own. The request's masks are of the images as they are given.
+// file, `published` is taken, the data set's own. The request's masks are of the images as they are, before they are
+// rectified.
 Result<DataSet> Calibrated(const SequenceRequest& request, std::unique_ptr<ImageStream> images,
                            const std::optional<SourceCalibration>& published = {});
 

@@ -61,6 +61,7 @@ Result<std::unique_ptr<FrameGrabber>> FrameGrabber::Open(const std::string& sour
                                                          const std::function<bool()>& is_stopped) {
   std::unique_ptr<FrameGrabber> grabber(new FrameGrabber);
   grabber->timeout_s_ = timeout_s;
+  grabber->is_stopped_ = is_stopped;
   if (source == "-") {
     auto input = StandardInput::Open(timeout_s, is_stopped);
     if (!input.ok()) return input.status();
@@ -121,7 +122,7 @@ std::optional<cv::Mat> FrameGrabber::Grab() {
   do {
     if (auto image = Decode()) return image;
     if (is_device_) std::this_thread::sleep_for(kPauseOfDevice);
-  } while (waited_s() < kMostOfTheTimeout * timeout_s_ && (is_device_ || ++damaged <= kMaxDamaged));
+  } while (!is_stopped_() && waited_s() < kMostOfTheTimeout * timeout_s_ && (is_device_ || ++damaged <= kMaxDamaged));
   // A decoder that waited in vain says no more than one whose stream has ended. A camera has no end.
   has_stalled_ = standard_input_ ? standard_input_->has_stalled() : waited_s() > kMostOfTheTimeout * timeout_s_;
   return std::nullopt;

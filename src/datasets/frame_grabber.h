@@ -42,6 +42,7 @@ class FrameGrabber {
   cv::VideoCapture capture_;
   std::optional<double> fps_;
   double timeout_s_ = 0;
+  std::function<bool()> is_stopped_;
   bool is_device_ = false;
   bool has_stalled_ = false;
 };

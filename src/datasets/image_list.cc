@@ -216,7 +216,7 @@ Status CheckFrameMaskSize(const fs::path& mask, cv::Size size, cv::Size images) 
   if (size == images) return Status::Ok();
   return {ErrorCode::kMismatch, "the mask " + mask.string() + " is " + SizeText(size.width, size.height) +
                                     ", but the images are " + SizeText(images.width, images.height) +
-                                    "; masks have the images' size"};
+                                    "; masks have the size of the images, before pairs are rectified"};
 }
 
 Result<cv::Mat> ReadFrameMask(const CompanionImages& masks, int frame_idx, const std::string& frame_name, int width,

@@ -43,6 +43,8 @@ class ImageStream {
   // 8-bit, gray or BGR; nothing beyond the end. `idx` may not be smaller than the time before. Fails with kNotFound or
   // kUnreadable; a list of files can be read on after that, a video that breaks off ends.
   virtual Result<std::optional<cv::Mat>> Read(int idx) = 0;
+  // Whether Read has failed for image `idx` because it is damaged, and the next one may be read.
+  virtual bool IsDamaged(int /*idx*/) const { return false; }
   // When the image that Read gave last was taken, by the source's own word; nothing where it says nothing.
   virtual std::optional<double> RecordedS() const { return std::nullopt; }
   // The time of image `idx`, which was read, seconds; nothing: it goes by its number.
@@ -55,8 +57,8 @@ std::unique_ptr<ImageStream> StreamFiles(std::filesystem::path folder, std::vect
 Result<std::unique_ptr<ImageStream>> StreamFolder(const std::filesystem::path& folder);
 // Through OpenCV's FFmpeg back end. What is passed over is decoded and dropped, since seeking is not exact in most
 // containers; but far ahead it is sought where `index`, which learns from what is read, knows the frame and the video
-// gives the same one. `index` is that of this file; null: none. What cannot be decoded is left out. A video
-// that promises clearly more frames than can be decoded fails once with kUnreadable, unless it is a whole MP4. Fails
+// gives the same one. `index` is that of this file; null: none. A video
+// that promises clearly more frames than can be decoded fails once with kUnreadable. Fails
 // with kUnreadable.
 Result<std::unique_ptr<ImageStream>> StreamVideo(const std::filesystem::path& file,
                                                  std::shared_ptr<VideoIndex> index = nullptr);

@@ -29,6 +29,7 @@ class DerivedStream : public ImageStream {
   std::string Name(int idx) const override { return source_->Name(idx); }
   std::string Title(int idx) const override { return source_->Title(idx); }
   std::optional<cv::Size> StoredSize(int idx) const override { return source_->StoredSize(idx); }
+  bool IsDamaged(int idx) const override { return source_->IsDamaged(idx); }
   std::optional<double> RecordedS() const override { return source_->RecordedS(); }
 
  protected:

@@ -122,22 +122,28 @@ void TrackFileOptions::List(OptionTable& table) {
 }
 
 Result<SequenceTracks> ReadTracksOfSequence(const TrackFileOptions& options, const SequenceRequest& request) {
+  if (request.IsLive())
+    return Status(
+        ErrorCode::kInvalidArgument,
+        "tracks are of images that are there already, and live ones are not; record them, and track the file");
   const SequenceRequest whole = request.Whole();
   const auto sequence = OpenSequence(whole);
   if (!sequence.ok()) return sequence.status();
   auto file = ReadTrackFile(options.path);
   if (!file.ok()) return file.status();
   // How many frames a video has is its container's word, which may be off or missing.
+  std::error_code error;
+  const bool may_differ = std::filesystem::is_regular_file(request.image_path, error);
   int frames = (*sequence)->size();
   const auto count = [&] {
     const auto counted = CountFrames(whole);
     if (counted.ok()) frames = *counted;
     return counted.status();
   };
-  if (frames == 0)
+  if (frames == 0 && may_differ)
     if (Status status = count(); !status.ok()) return status;
   if (Status status = NameFrames(options.path, **sequence, frames, &*file); !status.ok()) return status;
-  if (!CheckFrames(options.path, frames, *file).ok())
+  if (may_differ && !CheckFrames(options.path, frames, *file).ok())
     if (Status status = count(); !status.ok()) return status;
   if (Status status = CheckFrames(options.path, frames, *file); !status.ok()) return status;
   const bool corner = options.pixel_origin == PixelOrigin::kCorner && file->images.empty();

@@ -8,7 +8,6 @@
 #include <cstdio>
 #include <fstream>
 #include <string_view>
-#include <system_error>
 #include <utility>
 
 #include <opencv2/videoio.hpp>
@@ -29,36 +28,67 @@ constexpr int kSoughtBefore = 4;  // frames: what is sought by its time is met a
 // Containers without an index estimate their number of frames from duration and rate.
 constexpr double kCountSlack = 0.01;  // of the count, and at least one frame
 constexpr double kMaxFps = 1000;      // rates from there on are the unit of the container's times
-constexpr int kMaxDamaged = 100;      // packets in a row: a decoder says no more of one than of the video's end
+constexpr int kMaxDamaged = 300;      // packets in a row: a decoder says no more of one than of the video's end
 
-// Whether a file of MP4's family is all there: its boxes end where the file does. False of other files.
-bool IsWholeMp4(const fs::path& file) {
-  std::error_code error;
-  const std::uintmax_t size = fs::file_size(file, error);
+std::uint64_t BigEndian(std::string_view bytes) {
+  std::uint64_t value = 0;
+  for (const char byte : bytes) value = value << 8 | static_cast<unsigned char>(byte);
+  return value;
+}
+
+// The box `moov` of a file of MP4's family; empty where it has none.
+std::string MovieBoxOf(const fs::path& file) {
+  constexpr std::uint64_t kMostBytes = 1 << 28;
   std::ifstream in(file, std::ios::binary);
-  std::uintmax_t at = 0;
-  for (bool is_first = true; !error && at < size; is_first = false) {
-    std::array<unsigned char, 16> head = {};
-    in.seekg(static_cast<std::streamoff>(at));
-    if (!in.read(reinterpret_cast<char*>(head.data()), 8)) return false;
-    const auto number = [&](int begin, int end) {
-      std::uint64_t value = 0;
-      for (int i = begin; i < end; ++i) value = value << 8 | head[static_cast<std::size_t>(i)];
-      return value;
-    };
-    const std::string_view type(reinterpret_cast<const char*>(head.data()) + 4, 4);
-    if (is_first && type != "ftyp" && type != "moov" && type != "mdat" && type != "wide" && type != "free")
-      return false;
-    std::uint64_t length = number(0, 4);
-    if (length == 0) return true;  // to the end of the file
-    if (length == 1) {
-      if (!in.read(reinterpret_cast<char*>(head.data()) + 8, 8)) return false;
-      length = number(8, 16);
+  std::string head(16, '\0');
+  for (std::uint64_t at = 0; in.seekg(static_cast<std::streamoff>(at)) && in.read(head.data(), 8);) {
+    const std::string_view type = std::string_view(head).substr(4, 4);
+    std::uint64_t length = BigEndian(std::string_view(head).substr(0, 4));
+    if (length == 1 && in.read(head.data() + 8, 8)) length = BigEndian(std::string_view(head).substr(8));
+    if (length < 8) break;
+    if (type == "moov") {
+      std::string box(static_cast<std::size_t>(std::min(length, kMostBytes)), '\0');
+      in.seekg(static_cast<std::streamoff>(at));
+      in.read(box.data(), static_cast<std::streamsize>(box.size()));
+      return in ? box : std::string();
     }
-    if (length < 8 || length > size - at) return false;
     at += length;
   }
-  return !error && at == size && size > 0;
+  return {};
+}
+
+// Whether the container says how many frames there are, as AVI and MP4 do; of others it is estimated.
+bool IsCounted(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::string head(8, '\0');
+  if (!in.read(head.data(), 8)) return false;
+  return head.starts_with("RIFF") || !MovieBoxOf(file).empty();
+}
+
+// For how long a file of MP4's family shows something, by its edit lists: one that was cut without being coded again
+// counts frames that they hide. Nothing where it has no such list.
+std::optional<double> ShownSeconds(const fs::path& file) {
+  const std::string movie = MovieBoxOf(file);
+  const std::string_view view = movie;
+  const auto number = [&](std::size_t at, std::size_t bytes) {
+    return at + bytes <= view.size() ? BigEndian(view.substr(at, bytes)) : 0;
+  };
+  const std::size_t header = view.find("mvhd");
+  if (header == std::string_view::npos) return std::nullopt;
+  const double units_per_s = static_cast<double>(number(header + (number(header + 4, 1) == 1 ? 24 : 16), 4));
+  double longest = 0.0;
+  for (std::size_t list = view.find("elst"); list != std::string_view::npos; list = view.find("elst", list + 4)) {
+    const std::size_t bytes = number(list + 4, 1) == 1 ? 8 : 4;  // of a number in it
+    const std::uint64_t entries = std::min<std::uint64_t>(number(list + 8, 4), view.size());
+    double shown = 0.0;
+    std::size_t at = list + 12;
+    for (std::uint64_t k = 0; k < entries && at < view.size(); ++k, at += 2 * bytes + 4) {
+      const bool is_empty = number(at + bytes, 4) == 0xFFFFFFFF;  // a pause before the first frame
+      if (!is_empty) shown += static_cast<double>(number(at, bytes));
+    }
+    longest = std::max(longest, shown);
+  }
+  return longest > 0.0 && units_per_s > 0.0 ? std::optional(longest / units_per_s) : std::nullopt;
 }
 
 class VideoStream final : public ImageStream {
@@ -83,6 +113,7 @@ class VideoStream final : public ImageStream {
   }
 
   Result<std::optional<cv::Mat>> Read(int idx) override;
+  bool IsDamaged(int idx) const override { return idx < read_ - 1; }  // the decoder is beyond it
   std::optional<double> RecordedS() const override { return recorded_s_; }
 
  private:
@@ -126,8 +157,9 @@ Status VideoStream::BeginAnew() {
 Status VideoStream::Open() {
   if (Status status = BeginAnew(); !status.ok()) return status;
   const double count = capture_.get(cv::CAP_PROP_FRAME_COUNT);
-  count_ = count > 0 && count < 1e9 ? static_cast<int>(std::lround(count)) : 0;
   if (const double fps = capture_.get(cv::CAP_PROP_FPS); std::isfinite(fps) && fps > 0 && fps < kMaxFps) fps_ = fps;
+  // Where it has no index the number is that of the rate.
+  if (fps_ && count > 0 && count < 1e9) count_ = static_cast<int>(std::lround(count));
   size_ = {static_cast<int>(capture_.get(cv::CAP_PROP_FRAME_WIDTH)),
            static_cast<int>(capture_.get(cv::CAP_PROP_FRAME_HEIGHT))};
   return CheckPixels(size_, "the video " + file_.string());
@@ -139,13 +171,15 @@ Status VideoStream::BreaksOff() const {
                                       " cannot be decoded; copy it again, or set end to " + std::to_string(read_)};
 }
 
-// By the number of frames, and by the time of the last one: at an uneven rate an estimate of the former is off. An MP4
-// that was cut without being coded again counts frames that are not shown.
+// By the number of frames, and by the time of the last one: at an uneven rate an estimate of the former is off.
+// One that begins between two frames that need no others shows nothing up to the second.
 bool VideoStream::EndsEarly() const {
-  if (IsWholeMp4(file_)) return false;
-  const double slack = std::max(1.0, kCountSlack * count_);
+  const double slack = std::max(IsCounted(file_) ? 1.0 : kMaxDropped, kCountSlack * count_);
   const double by_time = fps_.value_or(0.0) * last_ms_ / 1e3 + 1.0;
-  return count_ - std::max(1.0 * read_, by_time) > slack;
+  const double read = std::max(1.0 * read_, by_time);
+  if (count_ - read <= slack) return false;
+  const auto shown_s = ShownSeconds(file_);
+  return !shown_s || std::min<double>(count_, *shown_s * fps_.value_or(0.0)) - read > slack;
 }
 
 bool VideoStream::Grab() {
@@ -154,6 +188,7 @@ bool VideoStream::Grab() {
     if (++damaged > kMaxDamaged) return false;
   const double ms = capture_.get(cv::CAP_PROP_POS_MSEC);
   if (ms > last_ms_) last_ms_ = ms;  // the last frames of some videos come without a time
+  read_ += damaged;                  // each of a frame of its own
   if (index_ && !has_sought_) index_->Add(read_, ms);
   ++read_;
   return true;
@@ -200,6 +235,7 @@ Result<std::optional<cv::Mat>> VideoStream::Read(int idx) {
       return std::optional<cv::Mat>();
     }
   }
+  if (IsDamaged(idx)) return Status(ErrorCode::kUnreadable, Title(idx) + " is damaged; copy it again");
   cv::Mat decoded;
   const bool is_decoded = capture_.retrieve(decoded) && !decoded.empty() && decoded.depth() == CV_8U;
   if (has_sought_ && !(is_decoded && IsTheSame(idx, decoded))) {

@@ -268,6 +268,7 @@ Result<std::optional<Pixels>> ReadPixels(const SurfaceFolder& surface, const Sur
     interpolated = InterpolatedDepth(surface.camera, *of_run->cam_from_world, of_run->observations);
   Pixels pixels = PixelsOf(*dense, **truth_mm, interpolated);
   dense->KeepMeasured();
+  if (pixels.with_truth == 0) return std::optional<Pixels>();
   if (pixels.truth_mm.empty()) return std::optional(std::move(pixels));
   const auto vertices = ReadSurfaceVertices(surface, frame);
   if (!vertices.ok()) return vertices.status();
@@ -306,7 +307,7 @@ Result<DenseError> ComputeDenseError(const SurfaceFolder& surface, const Evaluat
   for (const int frame_idx : surface.frames_without_depth) {
     const auto truth_mm = sequence.Depth(frame_idx);
     if (!truth_mm.ok()) return truth_mm.status();
-    without_pixels += truth_mm->has_value() ? 1 : 0;
+    without_pixels += truth_mm->has_value() && cv::countNonZero(**truth_mm > 0.0F) > 0 ? 1 : 0;
   }
   if (frames.empty())
     return Status(ErrorCode::kInsufficient,

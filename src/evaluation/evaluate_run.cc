@@ -64,7 +64,7 @@ Status AddDense(const EvaluationInput& run, const RunReferences& references, con
   if (!dense.ok()) return dense.status();
   evaluation->dense = *std::move(dense);
   std::error_code error;
-  if (!surface->run.empty() && !std::filesystem::equivalent(surface->run, run.name, error))
+  if (std::filesystem::exists(surface->run, error) && !std::filesystem::equivalent(surface->run, run.name, error))
     evaluation->notes.push_back("the surface " + Quoted(references.surface_path) + " says that it was made of " +
                                 Quoted(surface->run.string()) + ", and not of this run");
   // The images are read once more, from their beginning.

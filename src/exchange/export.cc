@@ -162,11 +162,16 @@ Result<ExportSummary> ExportRun(const ExportRequest& request, const ExportOption
   for (RunSource& source : *sources) source.progress = progress;
   // What is more than a group of files is written elsewhere and moved when all of it is there.
   std::optional<StagedFolder> staged;
+  std::optional<FolderLock> lock;  // a staged folder has its own
   if (Status status = MakeFolder(request.output_path); !status.ok()) return status;
   if (sources->size() > 1 || (*format)->leaves == Leaves::kManyFiles) {
     auto created = StagedFolder::Create(request.output_path, {});
     if (!created.ok()) return created.status();
     staged.emplace(*std::move(created));
+  } else {
+    auto taken = FolderLock::Take(request.output_path);
+    if (!taken.ok()) return taken.status();
+    lock.emplace(*std::move(taken));
   }
   ExportSummary summary;
   for (std::size_t k = 0; k < sources->size(); ++k) {

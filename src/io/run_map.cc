@@ -3,8 +3,8 @@
 
 #include "pliant/io/run_map.h"
 
+#include <algorithm>
 #include <utility>
-#include <vector>
 
 #include "pliant/base/text.h"
 #include "pliant/colmap/convert.h"
@@ -13,14 +13,12 @@
 namespace pliant {
 namespace {
 
-std::vector<std::string> ModelFolders(const std::string& run_path, const Run& run) {
-  const std::string folder = run_path + "/sparse";
-  const int submaps = run.summary ? run.summary->submaps : 1;
-  if (submaps <= 1) return {folder};
-  std::vector<std::string> folders;
-  for (int submap = 0; submap < submaps; ++submap) folders.push_back(folder + "/" + std::to_string(submap));
-  return folders;
+std::string ModelFolder(const std::string& run_path, const Run& run, int submap) {
+  const bool is_only = !run.summary || run.summary->submaps <= 1;
+  return run_path + "/sparse" + (is_only ? "" : "/" + std::to_string(submap));
 }
+
+int CountModels(const Run& run) { return run.summary ? std::max(1, run.summary->submaps) : 1; }
 
 Status AddModel(const std::string& folder, RunMap* map) {
   const auto model = colmap::ReadModel(folder, colmap::Observations::kSkipped);
@@ -42,16 +40,16 @@ Status AddModel(const std::string& folder, RunMap* map) {
 }  // namespace
 
 bool HasRunMap(const std::string& run_path, const Run& run) {
-  for (const std::string& folder : ModelFolders(run_path, run))
-    if (!colmap::FindModel(folder).ok()) return false;
+  for (int submap = 0; submap < CountModels(run); ++submap)
+    if (!colmap::FindModel(ModelFolder(run_path, run, submap)).ok()) return false;
   return true;
 }
 
 Result<RunMap> ReadRunMap(const std::string& run_path, const Run& run) {
   RunMap map;
   map.interlaced = run.summary && run.summary->description.interlaced;
-  for (const std::string& folder : ModelFolders(run_path, run))
-    if (Status status = AddModel(folder, &map); !status.ok()) return status;
+  for (int submap = 0; submap < CountModels(run); ++submap)
+    if (Status status = AddModel(ModelFolder(run_path, run, submap), &map); !status.ok()) return status;
   return map;
 }
 

@@ -91,6 +91,9 @@ Result<BoardImageReader> BoardImageReader::Open(const CalibrateRequest& request)
 
 Result<std::optional<BoardImage>> BoardImageReader::Next() {
   auto moment = ReadMoment(request_, streams_, count_);
+  const auto is_damaged = [&](const std::unique_ptr<ImageStream>& stream) { return stream->IsDamaged(count_); };
+  for (; !moment.ok() && std::ranges::any_of(streams_, is_damaged); ++count_)
+    moment = ReadMoment(request_, streams_, count_ + 1);
   if (!moment.ok()) return moment.status();
   if (moment->empty()) {
     if (count_ > 0) return std::optional<BoardImage>();
@@ -101,7 +104,7 @@ Result<std::optional<BoardImage>> BoardImageReader::Next() {
   for (std::size_t eye = 0; eye < moment->size(); ++eye) {
     const cv::Mat& pixels = (*moment)[eye];
     const ImageStream& stream = *streams_[eye];
-    if (count_ == 0) sizes_.push_back(pixels.size());
+    if (sizes_.size() <= eye) sizes_.push_back(pixels.size());
     if (pixels.size() != sizes_[eye])
       return Status(ErrorCode::kMismatch, stream.Title(count_) + " is " + SizeText(pixels) + " and " + stream.Title(0) +
                                               " is " + SizeText(sizes_[eye].width, sizes_[eye].height) +

@@ -32,6 +32,8 @@
 namespace pliant {
 namespace {
 
+constexpr const char* kNotTracked = "it was not tracked";
+
 // Which frames are to be done, and when: a frame is done when the last of its images has been read.
 struct Plan {
   std::vector<std::size_t> references;              // in the order in which they can be done
@@ -191,6 +193,13 @@ class SurfaceMaker {
   SurfaceWriter* writer_;
 };
 
+// Why the frames have no depth: what is said of the first one that was tracked.
+std::string ReasonOf(const std::vector<SurfaceFrame>& frames) {
+  for (const SurfaceFrame& frame : frames)
+    if (!frame.note.empty() && frame.note != kNotTracked) return frame.note;
+  return "the images do not agree anywhere";
+}
+
 }  // namespace
 
 void SurfaceRunOptions::List(OptionTable& table) {
@@ -245,7 +254,7 @@ Result<SurfaceSummary> MakeSurface(const SurfaceRequest& request, const SurfaceR
     if (std::ranges::count(*frames, frame_idx, &PosedFrame::frame_idx) == 0) {
       SurfaceFrame& missing = summary.frames.emplace_back();
       missing.frame_idx = frame_idx;
-      missing.note = "it was not tracked";
+      missing.note = kNotTracked;
     }
   const Status made =
       SurfaceMaker(request, options, callback, *estimator, ComparedWindowPx(tracked, options.depth), &*writer)
@@ -258,9 +267,7 @@ Result<SurfaceSummary> MakeSurface(const SurfaceRequest& request, const SurfaceR
   if (!made.ok()) return made;
   if (!finished.ok()) return finished;
   if (std::ranges::none_of(summary.frames, [](const SurfaceFrame& frame) { return frame.known_share > 0.0; }))
-    return Status(ErrorCode::kInsufficient, summary.frames.empty() || summary.frames.front().note.empty()
-                                                ? "no frame has a depth: the images do not agree anywhere"
-                                                : "no frame has a depth: " + summary.frames.front().note);
+    return Status(ErrorCode::kInsufficient, "no frame has a depth: " + ReasonOf(summary.frames));
   if (stopped) return summary;
   summary.stopped = false;
   if (options.mesh_columns > 0) {

@@ -283,6 +283,8 @@ void Tracker::Report(const PreparedFrame& frame, const FrameResult& result, Stag
     found = submaps_->FindMerge(frame, relocalizer_.get());
   }
   FrameReport report = MakeReport(frame, state, submaps_->current(), result, *times);
+  const std::vector<RefinedPoint> moved = std::exchange(moved_rests_, {});
+  report.refined_points.insert(report.refined_points.begin(), moved.begin(), moved.end());
   if (found) {
     report.merge = found->merge;
     report.note = WithFault(report.note, "map " + std::to_string(found->merge.submap) + " is now part of map " +
@@ -298,6 +300,8 @@ void Tracker::Report(const PreparedFrame& frame, const FrameResult& result, Stag
   if (found) {
     submaps_->Apply(*found);
     map_updater_->Forget();
+    for (const Landmark& lost : submaps_->current().lost_points.landmarks())
+      moved_rests_.push_back({lost.id, lost.rest_position});
   }
 }
 
@@ -350,7 +354,7 @@ bool Tracker::IsSerializable() const {
 
 void Tracker::Serialize(StateArchive& archive) {
   tracks_->Serialize(archive);
-  archive(*bootstrapper_, *map_updater_, *submaps_, state_, held_, goes_back_to_, set_aside_, last_gray_);
+  archive(*bootstrapper_, *map_updater_, *submaps_, state_, held_, goes_back_to_, set_aside_, last_gray_, moved_rests_);
 }
 
 }  // namespace pliant

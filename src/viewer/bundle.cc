@@ -68,7 +68,7 @@ std::string WithoutImageNames(const std::string& sentence) {
   for (std::size_t begin = 0; begin < sentence.size();) {
     std::size_t end = std::min(sentence.find_first_of(" \n'\"(),;:", begin), sentence.size());
     std::string word = sentence.substr(begin, end - begin);
-    std::string lower = word;
+    std::string lower = word.substr(0, word.find_last_not_of(".!?") + 1);
     std::ranges::transform(lower, lower.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     if (std::ranges::any_of(kEndings, [&](const char* ending) { return lower.ends_with(ending); }))
       word = Placeholder(word);
@@ -97,7 +97,7 @@ std::string ReplacedAll(std::string text, const std::string& from, const std::st
 
 std::string Cleaned(std::string sentence, const std::vector<fs::path>& known) {
   constexpr std::size_t kLongest = 4000;  // of a sentence of ours
-  if (sentence.size() > kLongest) sentence.resize(kLongest);
+  if (sentence.size() > kLongest) sentence = "<long text>";
   for (const fs::path& path : known) sentence = ReplacedAll(std::move(sentence), path.string(), Placeholder(path));
   return WithoutImageNames(WithoutPaths(sentence));
 }
@@ -223,7 +223,7 @@ class Bundle {
     text += request_.images == BundledImages::kNone
                 ? " It holds no images.\n"
                 : " It holds images of the recording (images/), which whoever gets it can see.\n";
-    for (const std::string& note : summary_.notes) text += "\nnote: " + note;
+    for (const std::string& note : summary_.notes) text += "\nnote: " + WithoutImageNames(note);
     if (Status status = Add(kReadMe, text + (summary_.notes.empty() ? "" : "\n")); !status.ok()) return status;
     if (Status status = staged_.Commit(); !status.ok()) return status;
     return summary_;

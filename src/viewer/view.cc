@@ -24,7 +24,8 @@ namespace {
 
 // The sequence of the request, or the one that the first run names if it can be opened.
 Result<std::optional<OpenedTruth>> OpenItsSequence(const ViewRequest& request, View* view) {
-  const SequenceRequest sequence = SequenceOfRun(request.run_paths.front(), request.sequence_path, request.camera_path);
+  SequenceRequest sequence = SequenceOfRun(request.run_paths.front(), request.sequence_path, request.camera_path);
+  if (request.run_paths.size() > 1) sequence = sequence.Whole();  // the others may be of other frames
   const bool named = !request.sequence_path.empty();
   if (sequence.image_path.empty()) {
     view->notes.emplace_back("the run does not say which images it is of; name them with --sequence to see them");

@@ -7,7 +7,9 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <numeric>
 #include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -15,6 +17,7 @@
 #include <opencv2/videoio.hpp>
 
 #include "datasets/opened_sequence.h"
+#include "pliant/datasets/check_images.h"
 
 namespace pliant {
 namespace {
@@ -149,11 +152,20 @@ TEST_F(OpenSequenceTest, LeavesADamagedFrameOfAVideoOut) {
   file.close();
   const auto sequence = Open(Request("clip.avi"));
   ASSERT_NE(sequence, nullptr);
-  int good = 0;
+  ImageChecker checker;
+  std::vector<int> read;
   auto frame = sequence->Next();
-  for (; frame.ok() && frame->has_value(); frame = sequence->Next()) ++good;
+  for (; frame.ok() && frame->has_value(); frame = sequence->Next()) {
+    read.push_back((*frame)->frame_idx);
+    checker.Add(**frame);
+  }
   EXPECT_TRUE(frame.ok()) << frame.status().message();
-  EXPECT_GE(good, 19);
+  std::vector<int> expected(20);
+  std::iota(expected.begin(), expected.end(), 0);
+  expected.erase(expected.begin() + 10);
+  EXPECT_EQ(read, expected) << "the others keep their numbers";
+  EXPECT_EQ(checker.Check().damaged, 1);
+  EXPECT_THAT(checker.Check().wrong, testing::Contains(HasSubstr("of the video are damaged and left out")));
 }
 
 // Cut without being coded again: an edit list hides the frames before the cut, which the container still counts.
@@ -182,6 +194,11 @@ TEST_F(OpenSequenceTest, ReadsAnMp4ThatCountsHiddenFramesToItsEnd) {
                                           static_cast<char>(start >> 8), static_cast<char>(start)};
   file.seekp(static_cast<std::streamoff>(elst + 16));
   file.write(media_time.data(), media_time.size());
+  const std::uint32_t shown = number(elst + 12) / kCoded * (kCoded - kHidden);
+  const std::array<char, 4> duration = {static_cast<char>(shown >> 24), static_cast<char>(shown >> 16),
+                                        static_cast<char>(shown >> 8), static_cast<char>(shown)};
+  file.seekp(static_cast<std::streamoff>(elst + 12));
+  file.write(duration.data(), duration.size());
   file.close();
   const auto sequence = Open(Request("clip.mp4"));
   ASSERT_NE(sequence, nullptr);
@@ -191,6 +208,24 @@ TEST_F(OpenSequenceTest, ReadsAnMp4ThatCountsHiddenFramesToItsEnd) {
   EXPECT_TRUE(frame.ok()) << frame.status().message();
   EXPECT_NEAR(good, kCoded - kHidden, 1);
   EXPECT_EQ(sequence->size(), kCoded) << "the container's word";
+}
+
+// The unit of the times of a container, which says no rate.
+TEST_F(OpenSequenceTest, DoesNotBelieveARateThatNoCameraHas) {
+  {
+    cv::VideoWriter writer(Path("clip.avi").string(), cv::CAP_FFMPEG, cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), 2000,
+                           {kWidth, kHeight});
+    ASSERT_TRUE(writer.isOpened());
+    for (int idx = 0; idx < 3; ++idx) writer.write(Image(idx));
+  }
+  WriteCamera();
+  const auto sequence = Open(Request("clip.avi"));
+  ASSERT_NE(sequence, nullptr);
+  ASSERT_TRUE(sequence->Next().ok());
+  EXPECT_DOUBLE_EQ((*sequence->Next())->timestamp_s, 1 / 20.0) << "that of camera.yaml";
+  EXPECT_TRUE(sequence->Next()->has_value());
+  const auto end = sequence->Next();
+  EXPECT_TRUE(end.ok() && !end->has_value());
 }
 
 TEST_F(OpenSequenceTest, TellsWhenAVideoFrameHasNoMask) {

@@ -259,7 +259,8 @@ TEST_F(NearlyRightSets, ARunsImagesKeepTheCalibrationItWasMadeWith) {
   Text("run/run.json",
        "{\"program\": \"pliant\", \"version\": \"0\", \"command_line\": [], \"seed\": 1, \"input\": \"" +
            Path("images").string() + "\", \"camera\": \"lens.yaml\", \"mask\": \"" + Path("run").string() +
-           "\", \"status\": \"completed\", \"note\": \"\", \"counts\": {\"frames_read\": 0, "
+           "\", \"frames\": {\"start\": 3, \"end\": 9, \"stride\": 2}, \"status\": \"completed\", \"note\": \"\", "
+           "\"counts\": {\"frames_read\": 0, "
            "\"frames_tracked\": 0, \"points\": 0, \"observations\": 0, \"losses\": {}}, \"timings\": {\"total_s\": 0, "
            "\"frames_per_second\": 0, \"mean_ms\": {}}}");
   const std::string run = Path("run").string();
@@ -267,6 +268,10 @@ TEST_F(NearlyRightSets, ARunsImagesKeepTheCalibrationItWasMadeWith) {
   EXPECT_EQ(SequenceOfRun(run).spare_camera_path, "lens.yaml");
   EXPECT_EQ(SequenceOfRun(run, Path("run/../images")).spare_camera_path, "lens.yaml");
   EXPECT_EQ(SequenceOfRun(run).mask_path, Path("run"));
+  EXPECT_EQ(SequenceOfRun(run).start, 3);
+  EXPECT_EQ(SequenceOfRun(run).end, 9);
+  EXPECT_EQ(SequenceOfRun(run).stride, 2);
+  EXPECT_EQ(SequenceOfRun(run).Whole().end, -1);
   EXPECT_EQ(SequenceOfRun(run, "elsewhere").mask_path, "");
   EXPECT_EQ(SequenceOfRun(run, "elsewhere").spare_camera_path, "lens.yaml");
   std::filesystem::create_directories(Path("run/sparse/0"));

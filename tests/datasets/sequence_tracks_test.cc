@@ -46,6 +46,17 @@ class SequenceTracksTest : public OpenSequenceTest {
   }
 };
 
+TEST_F(SequenceTracksTest, MayBeginWithAByteOrderMark) {
+  Text("tracks.csv",
+       "\xEF\xBB\xBF"
+       "frame,track_id,u_px,v_px\r\n3,7,10.5,20.25\r\n");
+  TrackFileOptions options;
+  options.path = Path("tracks.csv").string();
+  const auto tracks = ReadTracksOfSequence(options, Request());
+  ASSERT_TRUE(tracks.ok()) << tracks.status().message();
+  EXPECT_EQ(tracks->tracks.at(0).id, PointId{7});
+}
+
 TEST_F(SequenceTracksTest, AreThoseOfTheFileInOurPixels) {
   const std::string row = "3,7,10.5,20.25,0\n";
   const auto center = Read(row);

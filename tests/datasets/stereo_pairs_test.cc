@@ -88,6 +88,28 @@ class StereoPairs : public SequenceFiles {
   }
 };
 
+// Drawn on the image that its user has.
+TEST_F(StereoPairs, MasksAreRectifiedWithTheirImages) {
+  constexpr double kSqueeze = 1.79;
+  WritePairs(false, kSqueeze);
+  WriteStereo(kSqueeze);
+  const cv::Size raw(Rendered().camera.width(), cvRound(Rendered().camera.height() / kSqueeze));
+  cv::Mat mask(raw, CV_8U, cv::Scalar(255));
+  mask(cv::Rect(40, 20, 30, 10)).setTo(0);
+  Write("mask.png", mask);
+  const auto sequence =
+      OpenSequence({.image_path = Path("pairs"), .camera_path = Path("stereo.yaml"), .mask_path = Path("mask.png")});
+  ASSERT_TRUE(sequence.ok()) << sequence.status().message();
+  const auto frame = (*sequence)->Next();
+  ASSERT_TRUE(frame.ok() && frame->has_value()) << frame.status().message();
+  ASSERT_EQ((*frame)->mask.size(), (*frame)->image.size());
+  const cv::Rect there(40, cvRound(20 * kSqueeze), 30, cvRound(10 * kSqueeze));
+  const cv::Mat inside = (*frame)->mask(there & cv::Rect({0, 0}, (*frame)->mask.size()));
+  EXPECT_LT(cv::countNonZero(inside), 0.2 * there.area());
+  const int ignored = (*frame)->mask.size().area() - cv::countNonZero((*frame)->mask);
+  EXPECT_LT(ignored, 3 * there.area());
+}
+
 TEST_F(StereoPairs, OfANativeSequenceAreItsRightImages) {
   RenderedSequence rendered;
   rendered.mono = false;

@@ -255,6 +255,7 @@ TEST_F(MapsThatMeet, BecomeOne) {
   EXPECT_EQ(merge.submap, 1);
   EXPECT_EQ(merge.into, 0);
   EXPECT_NEAR(merge.into_from_submap.scale, kHalf, kUnit);
+  EXPECT_FALSE(reports[kJoined + 1].refined_points.empty()) << "the other map's points rest where this one's do";
   const auto undisturbed = Run(FromDepth(), AllImages());
   for (int image = 0; image < kFrames; ++image) {
     const FrameReport& again = reports[static_cast<std::size_t>(kAgain + image)];

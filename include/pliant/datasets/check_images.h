@@ -31,6 +31,7 @@ struct ImageCheck {
   int images = 0;
   // Images that show what the one before shows: they differ by a small part of what their neighbors differ by.
   int repeated = 0;
+  int damaged = 0;  // frames of a video between them that cannot be decoded
   // Between times that the source itself says; 0: it says none.
   int steps = 0;
   int uneven_steps = 0;      // longer or shorter than the median one by more than half

@@ -55,7 +55,8 @@ struct SequenceRequest {
 // Errors, each naming the file: kNotFound (nothing there, no images, no calibration, no mask for a frame), kUnreadable
 // (cannot be listed, opened or decoded; a garbled line, with its number), kMismatch (sizes or counts that disagree),
 // kInvalidArgument (start, end, stride, an unknown camera model).
-// Next() of the result fails for the frame that cannot be read and goes on after it; a video ends there.
+// Next() of the result fails for the frame that cannot be read and goes on after it; damaged frames of a video it
+// leaves out.
 Result<std::unique_ptr<Sequence>> OpenSequence(const SequenceRequest& request);
 
 struct DataSetKind {

@@ -19,11 +19,12 @@ namespace pliant {
 
 struct RefineRequest {
   std::string run_path;
-  std::string sequence_path;                // images of a run without sparse/; empty: those that its run.json names
-  std::string camera_path;                  // their calibration; empty: the one that belongs to them
-  std::string output_path;                  // a folder, made if need be; not the run's
-  std::vector<std::string> command_line;    // for run.json
-  const std::atomic<bool>* stop = nullptr;  // becomes true when the best so far is to be written; may be null
+  std::string sequence_path;              // images of a run without sparse/; empty: those that its run.json names
+  std::string camera_path;                // their calibration; empty: the one that belongs to them
+  std::string output_path;                // a folder, made if need be; not the run's
+  std::vector<std::string> command_line;  // for run.json
+  const std::atomic<bool>* stop =
+      nullptr;  // becomes true when the best so far is to be written, if there is any; may be null
 };
 
 // What became of one submap.

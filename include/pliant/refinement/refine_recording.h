@@ -84,8 +84,8 @@ struct Recording {
 
 struct RefinedRecording {
   Recording recording;  // everything that is solved for; world and unit are those of the start
-  // An observation each: whether it had a part in the solution, as those of wrong tracks and of points seen in fewer
-  // than three views had not.
+  // An observation each: whether it had a part in the solution, as those of wrong tracks, of points seen in fewer than
+  // three views and of views that see fewer than four points had not.
   std::vector<bool> is_inlier;
   // An observation each: standard deviation of the point's distance from the camera, map units; 0: not known, or no
   // inlier.

@@ -126,8 +126,9 @@ class Tracker {
   std::unique_ptr<CatchUp> catch_up_;  // while the first map is of an earlier frame
   std::vector<FrameReport> held_;      // since the reference
   std::optional<int> goes_back_to_;
-  std::vector<FrameReport> set_aside_;  // of the frames after the one gone back to, until they are processed again
-  cv::Mat last_gray_;                   // the last image that was processed
+  std::vector<FrameReport> set_aside_;     // of the frames after the one gone back to, until they are processed again
+  cv::Mat last_gray_;                      // the last image that was processed
+  std::vector<RefinedPoint> moved_rests_;  // of points that a merge has given another rest, for the next report
 };
 
 }  // namespace pliant

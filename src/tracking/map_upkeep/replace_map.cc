@@ -45,6 +45,7 @@ bool ReplaceMap(const InitOutcome& outcome, const MapInFrame& then, Submap* subm
     landmark.last_motion.setZero();
     refined->push_back({landmark.id, landmark.rest_position});
   }
+  for (const Landmark& lost : submap->lost_points.landmarks()) refined->push_back({lost.id, lost.rest_position});
   submap->candidates.TakeCorrection(before, submap->map);
   return true;
 }
