@@ -13,6 +13,8 @@
 #include <utility>
 #include <vector>
 
+#include <opencv2/core.hpp>
+
 #include "pliant/base/statistics.h"
 #include "pliant/base/text.h"
 #include "pliant/surface/interpolated_depth.h"

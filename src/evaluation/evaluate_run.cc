@@ -3,9 +3,11 @@
 
 #include "pliant/evaluation/evaluate_run.h"
 
+#include <filesystem>
 #include <system_error>
 #include <utility>
 
+#include "pliant/base/text.h"
 #include "pliant/datasets/run_sequence.h"
 #include "pliant/evaluation/dense_completeness.h"
 

@@ -11,6 +11,7 @@
 
 #include "exchange/exports.h"
 #include "pliant/base/files.h"
+#include "pliant/base/folder_lock.h"
 #include "pliant/base/staged_folder.h"
 #include "pliant/base/text.h"
 #include "pliant/io/trajectory.h"

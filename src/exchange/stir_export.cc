@@ -12,6 +12,7 @@
 
 #include "exchange/exports.h"
 #include "pliant/base/files.h"
+#include "pliant/base/staged_folder.h"
 #include "pliant/base/text.h"
 #include "pliant/io/stir_file.h"
 

@@ -132,6 +132,19 @@ RefinedRecording AsItIs(const RefinedSubmap& submap, const Camera* new_camera) {
   return recording;
 }
 
+SubmapRefinement SummaryOf(int number, const RefinedSubmap& submap, const RefinedRecording& refined,
+                           const std::string& failure) {
+  return {number,
+          refined.deforming,
+          refined.residual_correlation,
+          refined.noise_px,
+          static_cast<int>(submap.recording.times.size()),
+          static_cast<int>(submap.ids.size()),
+          static_cast<int>(submap.recording.observations.size()),
+          static_cast<int>(std::ranges::count(refined.is_inlier, false)),
+          failure};
+}
+
 // The run's reports with refined poses and points.
 class Reporter {
  public:
@@ -297,11 +310,7 @@ Result<RefineSummary> RefineRun(const RefineRequest& request, const RefineOption
       recording = AsItIs(submap, has_new_camera ? &*known->camera : nullptr);
     }
     summary.stopped = summary.stopped || recording->stopped;
-    const auto wrong = std::ranges::count(recording->is_inlier, false);
-    summary.submaps.push_back({number, recording->deforming, recording->residual_correlation, recording->noise_px,
-                               static_cast<int>(submap.recording.times.size()), static_cast<int>(submap.ids.size()),
-                               static_cast<int>(submap.recording.observations.size()), static_cast<int>(wrong),
-                               failure});
+    summary.submaps.push_back(SummaryOf(number, submap, *recording, failure));
     refined.emplace(number, *std::move(recording));
     share_before += share;
   }

@@ -76,6 +76,20 @@ Pose ToPose(const Rigid3& rigid) {
   return {rotation.x(), rotation.y(), rotation.z(), t.x(), t.y(), t.z()};
 }
 
+// Of the points in the problem.
+void AddDistances(const Eigen::Vector3d& origin, std::vector<Eigen::Vector3d>* points, ceres::Problem* problem) {
+  for (Eigen::Vector3d& point : *points)
+    if (problem->HasParameterBlock(point.data()))
+      problem->AddResidualBlock(new ceres::AutoDiffCostFunction<DistanceResidual, 1, 3>(
+                                    new DistanceResidual{origin, (point - origin).norm()}),
+                                nullptr, point.data());
+}
+
+Status NothingFits() {
+  return {ErrorCode::kDegenerate,
+          "no focal length and distortion fit better; give frames with more motion, or a calibration"};
+}
+
 }  // namespace
 
 Status SolveFreeIntrinsics(const Recording& recording, const std::vector<bool>& used, double noise_px,
@@ -105,17 +119,10 @@ Status SolveFreeIntrinsics(const Recording& recording, const std::vector<bool>& 
   ordering->AddElementToGroup(free.data(), 1);
   const auto first =
       std::ranges::find_if(poses, [&](const Pose& pose) { return problem.HasParameterBlock(pose.data()); });
-  const Status degenerate(ErrorCode::kDegenerate,
-                          "no focal length and distortion fit better; give frames with more motion, or a calibration");
-  if (first == poses.end()) return degenerate;
+  if (first == poses.end()) return NothingFits();
   problem.SetParameterBlockConstant(first->data());
-  const Eigen::Vector3d origin =
-      state->cams_from_world[static_cast<std::size_t>(first - poses.begin())].OriginInSource();
-  for (Eigen::Vector3d& point : state->rest_positions)
-    if (problem.HasParameterBlock(point.data()))
-      problem.AddResidualBlock(new ceres::AutoDiffCostFunction<DistanceResidual, 1, 3>(
-                                   new DistanceResidual{origin, (point - origin).norm()}),
-                               nullptr, point.data());
+  AddDistances(state->cams_from_world[static_cast<std::size_t>(first - poses.begin())].OriginInSource(),
+               &state->rest_positions, &problem);
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::SPARSE_SCHUR;
   options.linear_solver_ordering = ordering;
@@ -130,7 +137,7 @@ Status SolveFreeIntrinsics(const Recording& recording, const std::vector<bool>& 
     const OneOpenMpThread one_thread;
     ceres::Solve(options, &problem, &summary);
   }
-  if (!summary.IsSolutionUsable()) return degenerate;
+  if (!summary.IsSolutionUsable()) return NothingFits();
   intrinsics->focal_px = std::exp(free[0]);
   intrinsics->k = free[1];
   for (std::size_t v = 0; v < poses.size(); ++v) {

@@ -34,10 +34,12 @@ class SequenceTracksTest : public OpenSequenceTest {
   static std::string Rows(double width, double height) {
     std::string rows;
     for (int frame = 0; frame < kImages; ++frame)
-      for (int point = 0; point < 100; ++point)
+      for (int point = 0; point < 100; ++point) {
+        const int column = point % 10;
+        const int row = point / 10;
         rows += std::to_string(frame) + "," + std::to_string(point) + "," +
-                std::to_string((point % 10 + 0.5) / 10 * width) + "," +
-                std::to_string((point / 10 + 0.5) / 10 * height) + ",0\n";
+                std::to_string((column + 0.5) / 10 * width) + "," + std::to_string((row + 0.5) / 10 * height) + ",0\n";
+      }
     return rows;
   }
   static void ExpectMismatch(const Result<SequenceTracks>& tracks, const std::string& says) {
