@@ -131,7 +131,6 @@ struct FrameScale {
   int submap = 0;
   double scale = 1;          // of the surface's depths
   double interpolation = 1;  // of those that are interpolated between the points; 0: there are none
-  bool has_interpolation = false;
   bool has_filled = false;
   bool has_vertices = false;
   bool has_vertices_alone = false;
@@ -141,7 +140,6 @@ FrameScale ScaleOfFrame(const Pixels& pixels, int submap) {
   return {.submap = submap,
           .scale = ScaleOf(pixels.estimate, pixels.truth_mm),
           .interpolation = pixels.interpolation.empty() ? 0.0 : ScaleOf(pixels.interpolation, pixels.truth_mm),
-          .has_interpolation = !pixels.interpolation.empty(),
           .has_filled = !pixels.filled_truth_mm.empty(),
           .has_vertices = pixels.Vertices(true) > 0,
           .has_vertices_alone = pixels.Vertices(false) > 0};
@@ -250,7 +248,9 @@ void DenseErrorSum::AddDepths(const Pixels& pixels, const FrameScale& scale) {
   AddWeighted(FiguresOf(truth, [&](std::size_t) { return constant; }, {}), weight, &error_.null);
   if (pixels.interpolation.empty()) return;
   const auto interpolated = [&](std::size_t i) { return scale.interpolation * pixels.interpolation[i]; };
-  AddWeighted(FiguresOf(truth, interpolated, {}), 1.0 / CountOf(frames_, &FrameScale::has_interpolation),
+  const auto interpolated_frames =
+      std::ranges::count_if(frames_, [](const FrameScale& frame) { return frame.interpolation > 0; });
+  AddWeighted(FiguresOf(truth, interpolated, {}), 1.0 / static_cast<double>(interpolated_frames),
               &error_.interpolation);
 }
 
