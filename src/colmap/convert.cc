@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "pliant/base/text.h"
@@ -83,9 +85,8 @@ Result<pliant::Camera> ReadCamera(const std::string& path, std::optional<int> ca
   if (!cameras.ok()) return cameras.status();
   if (cameras->empty()) return Status(ErrorCode::kUnreadable, Quoted(path) + " holds no camera");
   constexpr std::size_t kMostNamed = 8;
-  std::string ids;
-  for (std::size_t i = 0; i < std::min(kMostNamed, cameras->size()); ++i)
-    ids += (i == 0 ? "" : ", ") + std::to_string((*cameras)[i].id);
+  const std::span<const Camera> named = std::span(*cameras).first(std::min(kMostNamed, cameras->size()));
+  std::string ids = CommaSeparated(named, [](const Camera& camera) { return std::to_string(camera.id); });
   if (cameras->size() > kMostNamed) ids += ", ...";
   for (const Camera& camera : *cameras) {
     if (camera_id ? static_cast<std::int64_t>(camera.id) != *camera_id : cameras->size() > 1) continue;

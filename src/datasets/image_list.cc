@@ -13,6 +13,7 @@
 
 #include "datasets/image_file.h"
 #include "pliant/base/options.h"
+#include "pliant/base/text.h"
 
 namespace pliant {
 namespace {
@@ -32,9 +33,7 @@ std::span<const std::string_view> EndingsOf(CompanionKind kind) {
 
 // "png, jpg".
 std::string ListText(std::span<const std::string_view> endings) {
-  std::string text;
-  for (const std::string_view ending : endings) text += (text.empty() ? "" : ", ") + std::string(ending.substr(1));
-  return text;
+  return CommaSeparated(endings, [](std::string_view ending) { return ending.substr(1); });
 }
 
 bool HasEnding(const fs::path& path, std::span<const std::string_view> endings) {

@@ -76,9 +76,8 @@ constexpr std::array kFormats = {
 Result<const ExportFormat*> FindFormat(const std::string& name) {
   const auto format = std::ranges::find(kFormats, name, &ExportFormat::name);
   if (format != kFormats.end()) return &*format;
-  std::string names;
-  for (const ExportFormat& known : kFormats) names += (names.empty() ? "" : ", ") + std::string(known.name);
-  return Status(ErrorCode::kInvalidArgument, "there is no export format " + Quoted(name) + "; there are " + names);
+  return Status(ErrorCode::kInvalidArgument, "there is no export format " + Quoted(name) + "; there are " +
+                                                 CommaSeparated(kFormats, &ExportFormat::name));
 }
 
 Status MakeFolder(const std::string& path) {

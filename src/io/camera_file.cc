@@ -289,18 +289,15 @@ Result<Camera> ReadCamera(const std::string& path, const CameraFileOptions& opti
 Status WriteCameraFile(const std::string& path, const CameraFile& file) {
   std::string text = "model: " + std::string(file.camera.model_name()) +
                      "\nwidth: " + std::to_string(file.camera.width()) +
-                     "\nheight: " + std::to_string(file.camera.height()) + "\nparams: [";
-  for (std::size_t i = 0; i < file.camera.params().size(); ++i)
-    text += (i == 0 ? "" : ", ") + FormatDouble(file.camera.params()[i]);
-  text += "]\n";
+                     "\nheight: " + std::to_string(file.camera.height()) + "\nparams: [" +
+                     CommaSeparated(file.camera.params(), FormatDouble) + "]\n";
   if (file.fps) text += "fps: " + FormatDouble(*file.fps) + "\n";
   if (file.depth_scale) text += "depth_scale: " + FormatDouble(*file.depth_scale) + "  # mm per unit\n";
   if (file.baseline_mm) text += "baseline: " + FormatDouble(*file.baseline_mm) + "  # mm\n";
   if (const auto& light = file.photometric) {
     text += "gamma: " + FormatDouble(light->gamma) + "\nvignetting: " + FormatDouble(light->vignetting) +
-            "\nlight_spread: " + FormatDouble(light->light_spread) + "\nlight_axis: [";
-    for (int i = 0; i < 3; ++i) text += (i == 0 ? "" : ", ") + FormatDouble(light->light_axis[i]);
-    text += "]\n";
+            "\nlight_spread: " + FormatDouble(light->light_spread) + "\nlight_axis: [" +
+            CommaSeparated(light->light_axis, FormatDouble) + "]\n";
   }
   return WriteFileAtomically(path, text + "unit: mm\n");
 }
@@ -308,10 +305,9 @@ Status WriteCameraFile(const std::string& path, const CameraFile& file) {
 namespace {
 
 std::string OpenCvMatrix(std::string_view name, int rows, int cols, std::span<const double> values) {
-  std::string text = std::string(name) + ": !!opencv-matrix\n   rows: " + std::to_string(rows) +
-                     "\n   cols: " + std::to_string(cols) + "\n   dt: d\n   data: [ ";
-  for (std::size_t i = 0; i < values.size(); ++i) text += (i == 0 ? "" : ", ") + FormatDouble(values[i]);
-  return text + " ]\n";
+  return std::string(name) + ": !!opencv-matrix\n   rows: " + std::to_string(rows) +
+         "\n   cols: " + std::to_string(cols) + "\n   dt: d\n   data: [ " + CommaSeparated(values, FormatDouble) +
+         " ]\n";
 }
 
 std::string OpenCvEye(const std::string& number, const StereoCalibration::Eye& eye) {

@@ -11,6 +11,7 @@
 #include <pybind11/stl.h>
 
 #include "pliant/base/options.h"
+#include "pliant/base/text.h"
 #include "pliant/io/camera_file.h"
 #include "python/arrays.h"
 #include "python/bind.h"
@@ -63,11 +64,9 @@ py::array_t<double> Unproject(const Calibration& calibration, const py::object& 
 }
 
 std::string Representation(const Calibration& calibration) {
-  std::string params;
-  for (const double value : calibration.camera.params()) params += (params.empty() ? "" : ", ") + FormatDouble(value);
   return "pliant.Camera('" + std::string(calibration.camera.model_name()) + "', " +
          std::to_string(calibration.camera.width()) + ", " + std::to_string(calibration.camera.height()) + ", [" +
-         params + "])";
+         CommaSeparated(calibration.camera.params(), FormatDouble) + "])";
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "pliant/base/files.h"
+#include "pliant/base/text.h"
 #include "viewer/page_asset.h"
 #include "viewer/page_data.h"
 #include "viewer/view_images.h"
@@ -34,10 +35,9 @@ Result<ReportSummary> WriteReportPage(const ViewRequest& request, const ReportOp
     if (!read.ok()) return read.status();
     images = *std::move(read);
   }
-  std::string title;
+  const std::string title = CommaSeparated(view->runs, &ViewedRun::name);
   ReportSummary summary;
   for (const ViewedRun& run : view->runs) {
-    title += (title.empty() ? "" : ", ") + run.name;
     summary.frames = std::max(summary.frames, static_cast<int>(run.frames.size()));
     for (const ViewedFrame& frame : run.frames)
       summary.observations += static_cast<std::int64_t>(frame.observations.size());

@@ -15,12 +15,6 @@ namespace {
 std::string Millimeters(double value) { return FormatNumber("%.3f mm", value); }
 std::string PreciseShare(double share) { return Percent(share, 2); }
 
-std::string Listed(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
-}
-
 class Rows {
  public:
   void Begin(std::string group) { group_ = std::move(group); }
@@ -98,8 +92,8 @@ std::vector<NamedText> RunFigures(const ViewedRun& run, const std::optional<RunS
     }
     if (summary->total_s > 0) rows.Add("wall time", FormatNumber("%.2f s", summary->total_s));
     const RunDescription& description = summary->description;
-    if (!description.oracles.empty()) rows.Add("replaced by the truth", Listed(description.oracles));
-    if (!description.extensions.empty()) rows.Add("given by a program", Listed(description.extensions));
+    if (!description.oracles.empty()) rows.Add("replaced by the truth", CommaSeparated(description.oracles));
+    if (!description.extensions.empty()) rows.Add("given by a program", CommaSeparated(description.extensions));
     for (const auto& [reason, count] : summary->losses) rows.Add("given up: " + reason, std::to_string(count));
   }
   if (summary) {

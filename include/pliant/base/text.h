@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -13,6 +14,19 @@
 namespace pliant {
 
 inline std::string Quoted(std::string_view text) { return "'" + std::string(text) + "'"; }
+
+// "a, b, c": the text of every element of a range.
+template <typename Range, typename TextOf = std::identity>
+std::string CommaSeparated(const Range& range, TextOf text_of = {}) {
+  std::string text;
+  bool is_first = true;
+  for (const auto& element : range) {
+    if (!is_first) text += ", ";
+    text += std::invoke(text_of, element);
+    is_first = false;
+  }
+  return text;
+}
 
 // One number as printf writes it; the format has to be for one double, and gives at most 63 characters.
 std::string FormatNumber(const char* format, double value);
