@@ -4,6 +4,8 @@
 #include "colmap/sqlite.h"
 
 #include <algorithm>
+#include <filesystem>
+#include <system_error>
 
 #include <sqlite3.h>
 
@@ -22,6 +24,33 @@ int Bind(sqlite3_stmt* statement, int index, const SqliteValue& value) {
   if (const auto* blob = std::get_if<SqliteBlob>(&value))
     return sqlite3_bind_blob64(statement, index, blob->bytes.data(), blob->bytes.size(), SQLITE_TRANSIENT);
   return sqlite3_bind_null(statement, index);
+}
+
+// Whether a database cannot be read because its journal (WAL) wants files beside it, as on read-only media, and may be
+// read as it is. One whose journal holds something may not: it would be read without its last changes.
+bool MayBeReadAsUnchanging(sqlite3* database) {
+  if (sqlite3_exec(database, "SELECT 1 FROM sqlite_master", nullptr, nullptr, nullptr) != SQLITE_CANTOPEN) return false;
+  std::error_code error;
+  const std::string file = sqlite3_db_filename(database, "main");  // where a link leads to
+  const auto journal_bytes = std::filesystem::file_size(file + "-wal", error);
+  return error ? error == std::errc::no_such_file_or_directory : journal_bytes == 0;
+}
+
+// By which SQLite takes a file as one that nobody writes.
+std::string UnchangingUri(const std::string& path) {
+  std::string uri = "file://";
+  std::error_code error;
+  for (const char c : std::filesystem::absolute(path, error).string()) {
+    if (c == '%')
+      uri += "%25";
+    else if (c == '?')
+      uri += "%3F";
+    else if (c == '#')
+      uri += "%23";
+    else
+      uri += c;
+  }
+  return uri + "?immutable=1";
 }
 
 }  // namespace
@@ -44,8 +73,12 @@ Status SqliteDatabase::Failure(const std::string& what) const {
 Result<SqliteDatabase> SqliteDatabase::Open(const std::string& path, SqliteAccess access) {
   sqlite3* handle = nullptr;
   const int flags = access == SqliteAccess::kRead ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE;
-  const int code = sqlite3_open_v2(path.c_str(), &handle, flags, nullptr);
+  int code = sqlite3_open_v2(path.c_str(), &handle, flags, nullptr);
   SqliteDatabase database(path, access, handle);
+  if (code == SQLITE_OK && access == SqliteAccess::kRead && MayBeReadAsUnchanging(handle)) {
+    code = sqlite3_open_v2(UnchangingUri(path).c_str(), &handle, flags | SQLITE_OPEN_URI, nullptr);
+    database = SqliteDatabase(path, access, handle);
+  }
   if (code != SQLITE_OK) return database.Failure("open");
   sqlite3_busy_timeout(handle, kBusyMs);
   return database;
@@ -74,17 +107,15 @@ Result<SqliteInsert> SqliteInsert::Create(SqliteDatabase& database, const std::s
                                           const std::vector<std::string>& columns) {
   const auto known = database.Columns(table);
   if (!known.ok()) return known.status();
-  std::string names;
   std::string placeholders;
   for (const std::string& column : columns) {
     if (std::find(known->begin(), known->end(), column) == known->end())
       return Status(ErrorCode::kMismatch, "the database " + Quoted(database.path_) + " has no column " + column +
                                               " in a table " + table + "; this version does not know its layout");
-    names += (names.empty() ? "" : ", ") + column;
     placeholders += placeholders.empty() ? "?" : ", ?";
   }
   sqlite3_stmt* handle = nullptr;
-  const std::string sql = "INSERT INTO " + table + " (" + names + ") VALUES (" + placeholders + ")";
+  const std::string sql = "INSERT INTO " + table + " (" + CommaSeparated(columns) + ") VALUES (" + placeholders + ")";
   if (sqlite3_prepare_v2(database.database_.get(), sql.c_str(), -1, &handle, nullptr) != SQLITE_OK)
     return database.Failure("write");
   return SqliteInsert(database, handle);

@@ -30,7 +30,8 @@ enum class SqliteAccess { kWrite, kRead };
 class SqliteDatabase {
  public:
   // A database that is there. Fails with kUnreadable if it is none, kUnwritable if it cannot be written or is locked.
-  // One that is only read fails with kUnreadable alone.
+  // One that is only read fails with kUnreadable alone, and needs no files beside it that could be
+  // written, unless its journal holds something.
   static Result<SqliteDatabase> Open(const std::string& path, SqliteAccess access = SqliteAccess::kWrite);
 
   // Names of a table's columns; empty: there is no such table.
