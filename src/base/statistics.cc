@@ -10,7 +10,9 @@
 
 namespace pliant {
 
-double Median(std::vector<double> values) {
+double Median(std::vector<double> values) { return MedianInPlace(values); }
+
+double MedianInPlace(std::span<double> values) {
   if (values.empty()) return 0;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());

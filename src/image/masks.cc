@@ -23,20 +23,19 @@ cv::Mat Disc(int radius) {
   return cv::getStructuringElement(cv::MORPH_ELLIPSE, cv::Size(2 * radius + 1, 2 * radius + 1));
 }
 
-// 255 where max - min <= limit * max over the channels.
-cv::Mat PaleMask(const cv::Mat& image, double limit) {
-  if (image.channels() == 1) return {image.size(), CV_8UC1, cv::Scalar(255)};
-  cv::Mat pale(image.size(), CV_8UC1);
+// Leaves of a mask the pixels where max - min <= limit * max over the channels.
+void KeepPale(const cv::Mat& image, double limit, cv::Mat* mask) {
+  if (image.channels() == 1) return;
   const int limit_256 = static_cast<int>(limit * 256);
   for (int y = 0; y < image.rows; ++y) {
     const auto* in = image.ptr<cv::Vec3b>(y);
-    auto* out = pale.ptr<std::uint8_t>(y);
+    auto* out = mask->ptr<std::uint8_t>(y);
     for (int x = 0; x < image.cols; ++x) {
+      if (out[x] == 0) continue;
       const auto [low, high] = std::minmax({in[x][0], in[x][1], in[x][2]});
-      out[x] = 256 * (high - low) <= limit_256 * high ? 255 : 0;
+      if (256 * (high - low) > limit_256 * high) out[x] = 0;
     }
   }
-  return pale;
 }
 
 cv::Mat LocalMedian(const cv::Mat& gray) {
@@ -70,6 +69,18 @@ std::vector<cv::Point> RowEnds(const cv::Mat& bright, cv::Size full) {
   return ends;
 }
 
+cv::Mat HighlightMaskOf(const cv::Mat& image, const cv::Mat& gray, const MaskOptions& options) {
+  cv::Mat mask = gray >= std::min(options.highlight_level, options.highlight_near_level);
+  if (cv::countNonZero(mask) == 0) return mask;
+  cv::Mat stands_out;
+  cv::subtract(gray, LocalMedian(gray), stands_out);  // saturates at 0
+  cv::Mat near = (gray >= options.highlight_near_level) & (stands_out >= options.highlight_contrast);
+  KeepPale(image, options.highlight_saturation, &near);
+  mask = (gray >= options.highlight_level) | near;
+  if (options.highlight_dilation_px > 0) cv::dilate(mask, mask, Disc(options.highlight_dilation_px));
+  return mask;
+}
+
 }  // namespace
 
 void MaskOptions::List(OptionTable& table) {
@@ -91,16 +102,7 @@ void MaskOptions::List(OptionTable& table) {
 }
 
 cv::Mat HighlightMask(const cv::Mat& image, const MaskOptions& options) {
-  const cv::Mat gray = ToGray(image);
-  cv::Mat mask = gray >= std::min(options.highlight_level, options.highlight_near_level);
-  if (cv::countNonZero(mask) == 0) return mask;
-  cv::Mat stands_out;
-  cv::subtract(gray, LocalMedian(gray), stands_out);  // saturates at 0
-  const cv::Mat near = (gray >= options.highlight_near_level) & PaleMask(image, options.highlight_saturation) &
-                       (stands_out >= options.highlight_contrast);
-  mask = (gray >= options.highlight_level) | near;
-  if (options.highlight_dilation_px > 0) cv::dilate(mask, mask, Disc(options.highlight_dilation_px));
-  return mask;
+  return HighlightMaskOf(image, ToGray(image), options);
 }
 
 cv::Mat DarkBorderMask(const cv::Mat& gray, const MaskOptions& options) {
@@ -131,8 +133,10 @@ cv::Mat ValidMask(const cv::Mat& image, const cv::Mat& given, const MaskOptions&
   assert(given.empty() || (given.type() == CV_8UC1 && given.size() == image.size()));
   cv::Mat valid(image.size(), CV_8UC1, cv::Scalar(255));
   if (!given.empty()) valid.setTo(0, given == 0);
-  if (options.highlights == Switch::kOn) valid.setTo(0, HighlightMask(image, options));
-  if (options.border == Switch::kOn) valid.setTo(0, DarkBorderMask(ToGray(image), options));
+  if (options.highlights == Switch::kOff && options.border == Switch::kOff) return valid;
+  const cv::Mat gray = ToGray(image);
+  if (options.highlights == Switch::kOn) valid.setTo(0, HighlightMaskOf(image, gray, options));
+  if (options.border == Switch::kOn) valid.setTo(0, DarkBorderMask(gray, options));
   return valid;
 }
 

@@ -4,6 +4,7 @@
 #include "pipeline/frame_source.h"
 
 #include <algorithm>
+#include <memory>
 #include <utility>
 
 #include "pipeline/working_frame.h"
@@ -16,6 +17,23 @@ namespace {
 constexpr int kFramesAhead = 3;
 constexpr double kMaxPixelsAhead = 36e6;  // of the source's images; none of a larger one
 constexpr int kLiveFramesAhead = 1;       // it is prepared while tracking is busy; more would be old by then
+
+// The depth image of a frame, read when it is asked for; copies read it once together. The sequence must outlive that.
+class KnownDepth {
+ public:
+  KnownDepth(const Sequence& sequence, int frame_idx)
+      : sequence_(&sequence), frame_idx_(frame_idx), read_(std::make_shared<std::optional<DepthImage>>()) {}
+  const Result<std::optional<cv::Mat>>& Get() const {
+    if (!*read_) *read_ = sequence_->Depth(frame_idx_);
+    return **read_;
+  }
+
+ private:
+  using DepthImage = Result<std::optional<cv::Mat>>;
+  const Sequence* sequence_;
+  int frame_idx_;
+  std::shared_ptr<std::optional<DepthImage>> read_;
+};
 
 int FramesAhead(const RunStart& start) {
   const double scale = start.working_image.scale;
@@ -65,10 +83,11 @@ std::optional<Result<ReadFrame>> FrameSource::Read(Sequence& sequence) const {
       return points;
     };
   } else if (!start_.cloud_depth_mm.empty()) {
-    if (frame.frame_idx == start_.first_frame_idx) read.frame.depth_mm = working.Nearest(start_.cloud_depth_mm);
+    if (frame.frame_idx == start_.first_frame_idx)
+      read.frame.known_depth_mm = [&start = start_] { return start.working_image.Nearest(start.cloud_depth_mm); };
   } else if (options_.tracker.init.method == InitMethod::kStereo) {
     const auto right = sequence.Right();
-    read.depth = right.status();
+    read.depth_status = [status = right.status()] { return status; };
     if (right.ok() && right->has_value())
       read.frame.known_points = [left = read.frame, right = working.Image(**right), camera = *start_.working_camera,
                                  baseline_mm = sequence.BaselineMm().value_or(0.0), &options = options_.tracker,
@@ -76,9 +95,12 @@ std::optional<Result<ReadFrame>> FrameSource::Read(Sequence& sequence) const {
         return PointsOfPair(left, right, camera, baseline_mm, options, threads);
       };
   } else {
-    const auto depth = sequence.Depth(frame.frame_idx);
-    read.depth = depth.status();
-    if (depth.ok() && depth->has_value()) read.frame.depth_mm = working.Nearest(**depth);
+    const KnownDepth depth(sequence, frame.frame_idx);
+    read.depth_status = [depth] { return depth.Get().status(); };
+    read.frame.known_depth_mm = [depth, &working] {
+      const auto& depth_mm = depth.Get();
+      return depth_mm.ok() && depth_mm->has_value() ? working.Nearest(**depth_mm) : cv::Mat();
+    };
   }
   return read;
 }

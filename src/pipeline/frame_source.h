@@ -26,7 +26,8 @@ namespace pliant {
 struct ReadFrame {
   PreparedFrame frame;
   cv::Mat image;  // as the source has it
-  Status depth;   // of reading its depth image, or its right one; matters only while the tracker wants depth
+  // Of reading its depth image, or its right one; empty: neither is wanted of it. Asked while the tracker needs depth.
+  std::function<Status()> depth_status;
   // After this frame the run may be resumed: what the sequence knows of its images so far (CheckedSequence). Else
   // empty.
   std::string checked;
@@ -44,7 +45,8 @@ class FrameSource {
   // Of those that came for the first time the last one, and for how long it has been there.
   int last_frame_idx() const { return last_frame_idx_; }
   double LatencyMs() const { return std::chrono::duration<double, std::milli>(Clock::now() - arrived_).count(); }
-  // Once there is a map no depth image is read any more; those read ahead in the meantime change nothing.
+  // Where no other map may follow the first one, nothing is read for it any more; what was read ahead in the meantime
+  // changes nothing.
   void SetWantsDepth(bool wants) { wants_depth_ = wants; }
   // What comes next is the frame after this one, which has come already. Fails as OpenSequence does.
   Status GoBackTo(int frame_idx);

@@ -8,9 +8,9 @@
 namespace pliant {
 
 void Serialize(StateArchive& archive, PreparedFrame& frame) {
-  auto& [frame_idx, step, name, timestamp_s, image, gray, pyramid, mask, depth_mm, depth_prior, known_points, sharpness,
-         prepare_ms] = frame;
-  archive(frame_idx, step, name, timestamp_s, image, gray, pyramid, mask, depth_mm, depth_prior, sharpness, prepare_ms);
+  auto& [frame_idx, step, name, timestamp_s, image, gray, pyramid, mask, known_depth_mm, depth_prior, known_points,
+         sharpness, prepare_ms] = frame;
+  archive(frame_idx, step, name, timestamp_s, image, gray, pyramid, mask, depth_prior, sharpness, prepare_ms);
 }
 
 void Serialize(StateArchive& archive, InitObservation& observation) { archive.Members<6>(observation); }

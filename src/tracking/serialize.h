@@ -13,7 +13,7 @@
 
 namespace pliant {
 
-// Without known_points, which only the frame that is processed needs.
+// Without what is known beforehand, which only the frame that is processed needs.
 void Serialize(StateArchive& archive, PreparedFrame& frame);
 void Serialize(StateArchive& archive, InitObservation& observation);
 void Serialize(StateArchive& archive, InitFrame& frame);

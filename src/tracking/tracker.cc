@@ -84,8 +84,8 @@ Tracker::Tracker(const Camera& camera, const TrackerOptions& options, std::uint6
       bootstrapper_(std::make_unique<Bootstrapper>(
           camera, options_, threads, HandoverOfFirstMap(options_, inputs), inputs.photometric, tracks_.get(),
           oracle_poses_.get(), MakeFirstInitializer(options_, seed, inputs), MakeAlternative(options_, seed, inputs))),
-      frame_tracker_(
-          std::make_unique<FrameTracker>(camera, options_, tracks_.get(), oracle_poses_.get(), inputs.extensions.cost)),
+      frame_tracker_(std::make_unique<FrameTracker>(camera, options_, threads, tracks_.get(), oracle_poses_.get(),
+                                                    inputs.extensions.cost)),
       relocalizer_(std::make_unique<Relocalizer>(camera, options_, tracks_->abilities(), frame_tracker_.get())),
       map_updater_(std::make_unique<MapUpdater>(camera, options_, threads, inputs.photometric, tracks_.get())),
       submaps_(std::make_unique<Submaps>(camera, options_, tracks_.get())) {}
@@ -124,7 +124,7 @@ void Tracker::TakeMap(const PreparedFrame& frame, const FrameReport& report, con
   submap.depths = {.sigma = evidence.depth_sigma, .signal = DepthSignal(evidence.depth_spread, evidence.depth_sigma)};
   submap.last_cam_from_world = *report.cam_from_world;
   submap.before_last_cam_from_world = *report.cam_from_world;
-  submap.previous = frame;
+  submap.Remember(frame);
   submaps_->CountMap();
   Apply(TrackingEvent::kMapCreated);
 }
@@ -221,7 +221,7 @@ void Tracker::GoBackTo(const PreparedFrame& frame) {
   set_aside_.insert(set_aside_.begin(), std::make_move_iterator(after), std::make_move_iterator(held_.end()));
   held_.erase(after, held_.end());
   submaps_->current().blurred_frames = 0;
-  submaps_->current().previous = frame;
+  submaps_->current().Remember(frame);
 }
 
 void Tracker::StartMap(const FirstMap& first) {
@@ -253,7 +253,7 @@ FrameResult Tracker::TrackFrame(const PreparedFrame& frame, StageTimes* times) {
   result.update = map_updater_->Update(frame, &submap, times);  // (W13), (G1) to (G8)
   result.losses.Add(result.update.losses);
   result.note = WithFault(result.update.note, ImageFault(frame, submap.previous.gray));
-  submap.previous = frame;
+  submap.Remember(frame);
   return result;
 }
 

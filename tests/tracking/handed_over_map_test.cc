@@ -129,7 +129,7 @@ TEST_F(HandedOverMap, FromKnownDepthIsTakenAtOnce) {
     Tracker tracker(*camera_, options, 1, 1);
     for (int i = 0; i < 5; ++i) {
       PreparedFrame frame = PrepareFrame(i, NameOf(i), i / 30.0, (*images_)[static_cast<std::size_t>(i)], {}, options);
-      frame.depth_mm = *depth_;
+      frame.known_depth_mm = [depth = *depth_] { return depth; };
       if (method == InitMethod::kDepthPrior) frame.depth_prior = *depth_;
       frame.known_points = [] {
         std::vector<PixelDepth> points;

@@ -62,7 +62,7 @@ class LossOfTheView : public tracking_test::TrackerFromImages {
     for (std::size_t i = 0; i < images.size(); ++i) {
       const int idx = static_cast<int>(i);
       PreparedFrame frame = PrepareFrame(idx, NameOf(idx), idx / 30.0, images[i], {}, options);
-      frame.depth_mm = *depth_;
+      frame.known_depth_mm = [depth = *depth_] { return depth; };
       take(tracker.Process(frame));
     }
     take(tracker.Finish());
@@ -227,7 +227,7 @@ class MapsThatMeet : public LossOfTheView {
       const int idx = static_cast<int>(i);
       PreparedFrame frame =
           PrepareFrame(idx, NameOf(idx), idx / 30.0, images[i] < 0 ? Noise(idx) : Image(images[i]), {}, options);
-      frame.depth_mm = idx > kElsewhere ? cv::Mat(*depth_ * 2) : *depth_;
+      frame.known_depth_mm = [depth = idx > kElsewhere ? cv::Mat(*depth_ * 2) : *depth_] { return depth; };
       for (FrameReport& report : tracker.Process(frame)) reports.push_back(std::move(report));
     }
     return reports;
@@ -343,7 +343,7 @@ TEST_F(LossOfTheView, OnlyFramesThatShowSomethingEndTheRun) {
   Tracker tracker = MakeTracker(options);
   const auto show = [&](const cv::Mat& image) {
     PreparedFrame frame = PrepareFrame(0, NameOf(0), 0, image, {}, options);
-    frame.depth_mm = *depth_;
+    frame.known_depth_mm = [depth = *depth_] { return depth; };
     tracker.Process(frame);
   };
   show(Image(0));

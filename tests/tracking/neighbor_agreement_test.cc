@@ -52,7 +52,12 @@ TEST(NeighborAgreement, AffineMotionOfTheWholeSceneIsNoOutlier) {
   gradient << 0.02, 0.01, 0, -0.03, 0.01, 0, 0.02, 0.05, 0;
   const auto motions = MovingSheet(
       [&](const Eigen::Vector3d& x) -> Eigen::Vector3d { return x + Eigen::Vector3d(1, -2, 3) + gradient * x; });
-  const auto disagreements = MeasureDisagreement(motions, Nearest(motions, 20), Eigen::Vector3d::Zero());
+  const auto disagreements = MeasureDisagreement(motions, Nearest(motions, 20), Eigen::Vector3d::Zero(), 1);
+  const auto on_threads = MeasureDisagreement(motions, Nearest(motions, 20), Eigen::Vector3d::Zero(), 3);
+  for (std::size_t k = 0; k < motions.size(); ++k) {
+    EXPECT_EQ(on_threads[k].distance_mm, disagreements[k].distance_mm);
+    EXPECT_EQ(on_threads[k].sigma_mm, disagreements[k].sigma_mm);
+  }
   ASSERT_EQ(disagreements.size(), motions.size());
   for (const Disagreement& d : disagreements) EXPECT_LT(d.distance_mm * kPxPerMm, kDamped_px);
 }
@@ -69,7 +74,7 @@ TEST(NeighborAgreement, SmoothDeformationIsAcceptedAndSlidingPointsAreFound) {
     sliding.push_back(i);
   }
   const AgreementOptions options;
-  const auto disagreements = MeasureDisagreement(motions, Nearest(motions, 20), Eigen::Vector3d::Zero());
+  const auto disagreements = MeasureDisagreement(motions, Nearest(motions, 20), Eigen::Vector3d::Zero(), 1);
   int found = 0;
   int false_alarms = 0;
   for (int i = 0; i < kPoints; ++i) {
@@ -84,14 +89,14 @@ TEST(NeighborAgreement, SmoothDeformationIsAcceptedAndSlidingPointsAreFound) {
 TEST(NeighborAgreement, MotionAlongTheRayIsNotMeasured) {
   auto motions = MovingSheet([](const Eigen::Vector3d& x) { return x; });
   motions[42].position *= 1.2;
-  const auto disagreements = MeasureDisagreement(motions, Nearest(motions, 20), Eigen::Vector3d::Zero());
+  const auto disagreements = MeasureDisagreement(motions, Nearest(motions, 20), Eigen::Vector3d::Zero(), 1);
   EXPECT_LT(disagreements[42].distance_mm, kLengthRoundOff_mm);
 }
 
 TEST(NeighborAgreement, TooFewNeighborsSayNothing) {
   auto motions = MovingSheet([](const Eigen::Vector3d& x) { return x; });
   motions[0].position.x() += 100;
-  const auto disagreements = MeasureDisagreement(motions, Nearest(motions, 3), Eigen::Vector3d::Zero());
+  const auto disagreements = MeasureDisagreement(motions, Nearest(motions, 3), Eigen::Vector3d::Zero(), 1);
   EXPECT_FALSE(Contradicts(disagreements[0], kPxPerMm, AgreementOptions{}));
 }
 

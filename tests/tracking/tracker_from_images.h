@@ -62,7 +62,7 @@ class TrackerFromImages : public testing::Test {
       hide(i, mask);
       PreparedFrame frame =
           PrepareFrame(i, NameOf(i), i / 30.0, (*images_)[static_cast<std::size_t>(i)], mask, options);
-      frame.depth_mm = *depth_;
+      frame.known_depth_mm = [depth = *depth_] { return depth; };
       for (FrameReport& report : tracker.Process(frame)) reports.push_back(std::move(report));
     }
     return reports;

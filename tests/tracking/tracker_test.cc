@@ -310,7 +310,7 @@ TEST_F(TrackerFromImages, AReestimatedMapRejectsReprojectionOutliers) {
     cv::warpAffine(image, moved, cv::Matx23d(1, 0, std::sin(0.8 * i), 0, 1, 0), image.size());
     moved(stain).copyTo(image(stain));
     PreparedFrame frame = PrepareFrame(i, NameOf(i), i / 30.0, image, {}, options);
-    frame.depth_mm = *depth_;
+    frame.known_depth_mm = [depth = *depth_] { return depth; };
     for (FrameReport& report : tracker.Process(frame)) reports.push_back(std::move(report));
   }
   ASSERT_EQ(static_cast<int>(reports.size()), kFrames);

@@ -4,12 +4,15 @@
 // Plain statistics of a list of numbers. Of an empty list each is 0.
 #pragma once
 
+#include <span>
 #include <vector>
 
 namespace pliant {
 
 // The middle value; the mean of the two middle ones of an even count.
 double Median(std::vector<double> values);
+// The same without a copy; their order is lost.
+double MedianInPlace(std::span<double> values);
 // The value below which `share` (0 to 1) of them lie, between the two nearest ones by their distance (NumPy's default).
 double Quantile(std::vector<double> values, double share);
 double Mean(const std::vector<double>& values);

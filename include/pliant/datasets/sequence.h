@@ -50,7 +50,8 @@ class Sequence {
   virtual Status CheckSizes() const { return Status::Ok(); }
 
   // Truth by the frame's own index, where the sequence has it; nothing where not.
-  // These do not depend on how far Next has come. Depth: CV_32FC1, z along the optical axis in mm, 0 = none.
+  // These do not depend on how far Next has come. Depth: CV_32FC1, z along the optical axis in mm, 0 = none; it may be
+  // asked for while another thread is in Next.
   virtual Result<std::optional<cv::Mat>> Depth(int frame_idx) const = 0;
   virtual std::optional<Rigid3> WorldFromCamera(int frame_idx) const = 0;
 

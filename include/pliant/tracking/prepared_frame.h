@@ -33,7 +33,8 @@ struct PreparedFrame {
   cv::Mat gray;   // CV_8UC1
   ImagePyramid pyramid;
   SupportMask mask;
-  cv::Mat depth_mm;  // CV_32FC1 or empty; only a start from depth uses it
+  // Gives CV_32FC1 or, where it is not known, nothing; asked when the frame becomes a reference, while it is processed.
+  std::function<cv::Mat()> known_depth_mm;
   // CV_32FC1 of any size, over the whole image, or empty: up to scale and shift; 0 or less and NaN = none.
   cv::Mat depth_prior;
   // Instead of corners, the best first; only a start from a model or a pair uses them, when it takes a reference.

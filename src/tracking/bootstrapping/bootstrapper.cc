@@ -79,7 +79,7 @@ BootstrapStep Bootstrapper::TakeReference(const PreparedFrame& frame, Submap* su
       step.note = "reference with " + std::to_string(step.tracked) + " corners";
     }
   }
-  submap->previous = frame;
+  submap->Remember(frame);
   return step;
 }
 
@@ -103,7 +103,7 @@ BootstrapStep Bootstrapper::FollowReference(const PreparedFrame& frame, Submap* 
     step = std::move(next);
   }
   step.note = WithFault(step.note, image_fault_);
-  submap->previous = frame;
+  submap->Remember(frame);
   return step;
 }
 
@@ -126,26 +126,28 @@ std::optional<Bootstrapper::Answer> Bootstrapper::NextAnswer(const PreparedFrame
   const StageTimer timer(times, Stage::kInitialize);
   if (handover_frames_ == 0) {
     const auto alternative = frames_.size() % kAskAlternativeEvery == 0 ? AlternativeToAsk() : nullptr;
-    return AskInitializers(frames_, known_depths_, doubts_, frame, InitMoment::kMoreFollow, alternative.get());
+    const bool knows_depth = frames_.size() == 1 && frame.known_depth_mm;
+    return AskInitializers(frames_, knows_depth ? frame.known_depth_mm() : cv::Mat(), known_depths_, doubts_, frame,
+                           InitMoment::kMoreFollow, alternative.get());
   }
   const auto step = static_cast<int>(frames_.size());
   const WorkPlace place = threads_ > 1 ? WorkPlace::kBeside : WorkPlace::kHere;
   answers_.Ask(step + handover_frames_, place,
                [this, frame, frames = frames_, known_depths = known_depths_, doubts = doubts_] {
-                 return AskInitializers(frames, known_depths, doubts, frame, InitMoment::kMoreFollow, nullptr);
+                 return AskInitializers(frames, {}, known_depths, doubts, frame, InitMoment::kMoreFollow, nullptr);
                });
   return answers_.Take(step);
 }
 
 // Beside tracking it reads only what does not change. `alternative`: null: it is not asked.
 Bootstrapper::Answer Bootstrapper::AskInitializers(const std::vector<InitFrame>& frames,
+                                                   const cv::Mat& reference_depth_mm,
                                                    const std::vector<double>& known_depths, const Doubts& doubts,
                                                    const PreparedFrame& last, InitMoment moment,
                                                    const Initializer* alternative) const {
   Answer answer{.frames = frames.size(), .last = last};
-  const bool is_reference = frames.size() == 1;
-  answer.outcome = initializer_->Try({camera_, frames, is_reference ? last.depth_mm : cv::Mat(), moment, threads_,
-                                      known_depths, photometric_, doubts.camera_may_stand_still, doubts.was_ambiguous});
+  answer.outcome = initializer_->Try({camera_, frames, reference_depth_mm, moment, threads_, known_depths, photometric_,
+                                      doubts.camera_may_stand_still, doubts.was_ambiguous});
   const bool is_settled = answer.outcome.decision == InitDecision::kMap || answer.outcome.ambiguous;
   if (alternative != nullptr && !is_settled)
     answer.alternative = alternative->Try({camera_, frames, {}, moment, threads_, {}, photometric_});
@@ -322,7 +324,7 @@ BootstrapStep Bootstrapper::EndSequence(StageTimes* times) {
   PreparedFrame last;
   last.frame_idx = frames_.back().frame_idx;
   const auto alternative = waiting_.IsEmpty() ? AlternativeToAsk() : nullptr;
-  Answer answer = AskInitializers(frames_, known_depths_, doubts_, last, InitMoment::kLastFrame, alternative.get());
+  Answer answer = AskInitializers(frames_, {}, known_depths_, doubts_, last, InitMoment::kLastFrame, alternative.get());
   step.note = WithFault(answer.outcome.reason, image_fault_);
   TakeAlternative(answer);
   waiting_.EndWait();

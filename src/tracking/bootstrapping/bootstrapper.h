@@ -96,9 +96,9 @@ class Bootstrapper {
     void Serialize(StateArchive& archive);
   };
 
-  Answer AskInitializers(const std::vector<InitFrame>& frames, const std::vector<double>& known_depths,
-                         const Doubts& doubts, const PreparedFrame& last, InitMoment moment,
-                         const Initializer* alternative) const;
+  Answer AskInitializers(const std::vector<InitFrame>& frames, const cv::Mat& reference_depth_mm,
+                         const std::vector<double>& known_depths, const Doubts& doubts, const PreparedFrame& last,
+                         InitMoment moment, const Initializer* alternative) const;
   std::shared_ptr<const Initializer> AlternativeToAsk() const;
   std::optional<Answer> NextAnswer(const PreparedFrame& frame, StageTimes* times);
   void TryInitialize(const PreparedFrame& frame, StageTimes* times, BootstrapStep* step);

@@ -165,7 +165,7 @@ void FrameTracker::RejectNeighborOutliers(const Rigid3& cam_from_world, const De
     neighbors[edge.i].push_back(edge.j);
     neighbors[edge.j].push_back(edge.i);
   }
-  const auto disagreements = MeasureDisagreement(motions, neighbors, world_from_cam.translation);
+  const auto disagreements = MeasureDisagreement(motions, neighbors, world_from_cam.translation, threads_);
   std::vector<char> keep(followed->size(), 1);
   for (std::size_t k = 0; k < keep.size(); ++k)
     if (Contradicts(disagreements[k], px_per_mm[k], options_.agreement)) keep[k] = 0;

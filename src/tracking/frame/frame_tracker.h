@@ -34,9 +34,14 @@ struct SolvedFrame {
 class FrameTracker {
  public:
   // `tracks` and `oracle_poses` must outlive this. `cost`: a term of the program's own, or null.
-  FrameTracker(const Camera& camera, const TrackerOptions& options, TrackSource* tracks,
+  FrameTracker(const Camera& camera, const TrackerOptions& options, int threads, TrackSource* tracks,
                const OraclePoses* oracle_poses, std::shared_ptr<const FrameCost> cost)
-      : camera_(camera), options_(options), tracks_(tracks), oracle_poses_(oracle_poses), cost_(std::move(cost)) {}
+      : camera_(camera),
+        options_(options),
+        threads_(threads),
+        tracks_(tracks),
+        oracle_poses_(oracle_poses),
+        cost_(std::move(cost)) {}
 
   // The pose that is known without estimating it: the truth's, or that of a camera that stands still.
   std::optional<Rigid3> KnownPose(int frame_idx, const Submap& submap) const;
@@ -69,6 +74,7 @@ class FrameTracker {
 
   Camera camera_;
   TrackerOptions options_;
+  int threads_;
   TrackSource* tracks_;
   const OraclePoses* oracle_poses_;
   std::shared_ptr<const FrameCost> cost_;

@@ -8,6 +8,7 @@
 
 #include <Eigen/Dense>
 
+#include "pliant/base/parallel.h"
 #include "pliant/base/statistics.h"
 
 namespace pliant {
@@ -27,9 +28,12 @@ struct AffineMotion {
   }
 };
 
+// One serves many points in turn, and keeps its memory.
 class MotionFit {
  public:
-  MotionFit(std::span<const NeighborMotion> motions, const std::vector<int>& neighbors) {
+  void Take(std::span<const NeighborMotion> motions, const std::vector<int>& neighbors) {
+    anchors_.clear();
+    displacements_.clear();
     for (const int j : neighbors) {
       anchors_.push_back(motions[j].anchor);
       displacements_.emplace_back(motions[j].position - motions[j].anchor);
@@ -40,10 +44,10 @@ class MotionFit {
   // Weights from the distance to the median displacement, then two rounds of weighted least squares.
   AffineMotion Run(const Eigen::Vector3d& center) {
     Eigen::Vector3d median;
-    std::vector<double> values(displacements_.size());
     for (int axis = 0; axis < 3; ++axis) {
-      for (std::size_t k = 0; k < values.size(); ++k) values[k] = displacements_[k][axis];
-      median[axis] = Median(values);
+      values_.clear();
+      for (const Eigen::Vector3d& displacement : displacements_) values_.push_back(displacement[axis]);
+      median[axis] = MedianInPlace(values_);
     }
     Reweigh([&](std::size_t k) { return (displacements_[k] - median).norm(); });
     AffineMotion motion = Solve(center);
@@ -52,23 +56,23 @@ class MotionFit {
   }
 
   // Robust spread of the neighbors' residuals across the viewing ray.
-  double Sigma(const AffineMotion& motion, const Eigen::Vector3d& ray) const {
-    std::vector<double> residuals;
+  double Sigma(const AffineMotion& motion, const Eigen::Vector3d& ray) {
+    values_.clear();
     for (std::size_t k = 0; k < anchors_.size(); ++k)
-      residuals.push_back((displacements_[k] - motion.At(anchors_[k])).cross(ray).norm());
-    return kMedianToSigma * Median(residuals);
+      values_.push_back((displacements_[k] - motion.At(anchors_[k])).cross(ray).norm());
+    return kMedianToSigma * MedianInPlace(values_);
   }
 
  private:
   template <class Distance>
   void Reweigh(const Distance& distance) {
-    std::vector<double> residuals(anchors_.size());
-    for (std::size_t k = 0; k < residuals.size(); ++k) residuals[k] = distance(k);
-    std::vector<double> sorted = residuals;
+    residuals_.clear();
+    for (std::size_t k = 0; k < anchors_.size(); ++k) residuals_.push_back(distance(k));
+    values_ = residuals_;
     // Never so tight that rounding decides: at least a micrometer.
-    const double cutoff = kTukey * std::max(1e-3, kMedianToSigma * Median(sorted));
-    for (std::size_t k = 0; k < residuals.size(); ++k) {
-      const double ratio = residuals[k] / cutoff;
+    const double cutoff = kTukey * std::max(1e-3, kMedianToSigma * MedianInPlace(values_));
+    for (std::size_t k = 0; k < residuals_.size(); ++k) {
+      const double ratio = residuals_[k] / cutoff;
       weights_[k] = ratio < 1 ? (1 - ratio * ratio) * (1 - ratio * ratio) : 0.0;
     }
   }
@@ -93,6 +97,8 @@ class MotionFit {
   std::vector<Eigen::Vector3d> anchors_;
   std::vector<Eigen::Vector3d> displacements_;
   std::vector<double> weights_;
+  std::vector<double> residuals_;
+  std::vector<double> values_;  // whose median is asked: their order is lost
 };
 
 }  // namespace
@@ -107,18 +113,20 @@ void AgreementOptions::List(OptionTable& table) {
 
 std::vector<Disagreement> MeasureDisagreement(std::span<const NeighborMotion> motions,
                                               std::span<const std::vector<int>> neighbors,
-                                              const Eigen::Vector3d& camera_center) {
+                                              const Eigen::Vector3d& camera_center, int threads) {
   std::vector<Disagreement> disagreements(motions.size());
-  for (std::size_t i = 0; i < motions.size(); ++i) {
-    if (neighbors[i].size() < 4) continue;
-    MotionFit fit(motions, neighbors[i]);
+  ParallelFor(static_cast<int>(motions.size()), threads, [&](int point) {
+    const auto i = static_cast<std::size_t>(point);
+    if (neighbors[i].size() < 4) return;
+    thread_local MotionFit fit;
+    fit.Take(motions, neighbors[i]);
     const AffineMotion motion = fit.Run(motions[i].anchor);
     const Eigen::Vector3d ray = (motions[i].position - camera_center).normalized();
     const Eigen::Vector3d predicted = motions[i].anchor + motion.At(motions[i].anchor);
     disagreements[i].distance_mm = (motions[i].position - predicted).cross(ray).norm();
     disagreements[i].sigma_mm = fit.Sigma(motion, ray);
     disagreements[i].neighbors = static_cast<int>(neighbors[i].size());
-  }
+  });
   return disagreements;
 }
 

@@ -15,6 +15,13 @@ bool Submap::IsBlurred(const PreparedFrame& frame, const TrackerOptions& options
          blurred_frames < options.max_blurred_frames && frame.sharpness < options.min_sharpness * previous.sharpness;
 }
 
+// Without what gives its depth, which belongs to the source of the frames.
+void Submap::Remember(const PreparedFrame& frame) {
+  previous = frame;
+  previous.known_depth_mm = nullptr;
+  previous.known_points = nullptr;
+}
+
 std::vector<PointObservation> Submap::Observations() const {
   std::vector<PointObservation> observations;
   for (const Landmark& landmark : map.landmarks)

@@ -35,6 +35,8 @@ struct Submap {
   // Whether an image is blurred, or dark, against the last sharp one, and that matters to the source of tracks. Of many
   // such images in a row the later ones are not: the blur stays.
   bool IsBlurred(const PreparedFrame& frame, const TrackerOptions& options, const TrackAbilities& abilities) const;
+  // The frame is the one that the next one's points are followed from.
+  void Remember(const PreparedFrame& frame);
   // The landmarks as this submap's last frame shows them; sorted by id.
   std::vector<PointObservation> Observations() const;
   // The landmarks in sight and those that were lost.

@@ -41,7 +41,7 @@ struct Disagreement {
 // `camera_center` only, because one view does not observe depth. `neighbors[i]` lists indices into `motions`.
 std::vector<Disagreement> MeasureDisagreement(std::span<const NeighborMotion> motions,
                                               std::span<const std::vector<int>> neighbors,
-                                              const Eigen::Vector3d& camera_center);
+                                              const Eigen::Vector3d& camera_center, int threads);
 
 // Whether the disagreement is a contradiction (A3): larger than both `max_disagreement_px` at this depth and
 // `max_disagreement_sigmas` spreads of the neighbors' own. `px_per_mm` = focal length / depth.
