@@ -8,6 +8,8 @@
 #include <system_error>
 
 #include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 namespace pliant {
@@ -37,9 +39,38 @@ Status CheckIsFile(const std::string& path) {
   return Status::Ok();
 }
 
+// The file at the path for this one alone, empty, or -1 with a reason. Where another one renamed what was opened before
+// it could be locked, the path is another file.
+int OpenAlone(const std::string& path, int* reason) {
+  constexpr int kAttempts = 100;
+  *reason = EWOULDBLOCK;
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    const int descriptor = open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
+    if (descriptor < 0) {
+      *reason = errno;
+      return -1;
+    }
+    const bool is_taken = flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+    struct stat opened = {};
+    struct stat named = {};
+    const bool is_named = fstat(descriptor, &opened) == 0 && stat(path.c_str(), &named) == 0 &&
+                          opened.st_dev == named.st_dev && opened.st_ino == named.st_ino;
+    if (is_named && !is_taken && (opened.st_size == 0 || ftruncate(descriptor, 0) == 0)) return descriptor;
+    *reason = is_taken ? EWOULDBLOCK : errno;
+    close(descriptor);
+    if (is_named) return -1;
+  }
+  return -1;
+}
+
 Status Unreadable(const std::string& path, int error) {
   return {ErrorCode::kUnreadable,
           "cannot read " + Quoted(path) + ": " + Reason(error) + "; check the file and its folder"};
+}
+
+Status CannotCreate(const std::string& path, int error) {
+  return {ErrorCode::kUnwritable,
+          "cannot write " + Quoted(path) + ": " + Reason(error) + "; choose another path or change its permissions"};
 }
 
 }  // namespace
@@ -57,9 +88,32 @@ Status Unwritable(const std::filesystem::path& path) {
 Result<OutputFile> OutputFile::Create(const std::string& path) {
   errno = 0;
   std::FILE* file = std::fopen(path.c_str(), "wb");
-  if (file == nullptr)
-    return Status(ErrorCode::kUnwritable, "cannot write " + Quoted(path) + ": " + Reason(errno) +
-                                              "; choose another path or change its permissions");
+  if (file == nullptr) return CannotCreate(path, errno);
+  std::setvbuf(file, nullptr, _IONBF, 0);
+  return OutputFile(path, file);
+}
+
+FileLock::~FileLock() {
+  if (descriptor_ < 0) return;
+  flock(descriptor_, LOCK_UN);  // a child of this process may hold the descriptor open
+  close(descriptor_);
+}
+
+Result<OutputFile> OutputFile::CreateAlone(const std::string& path, FileLock* lock) {
+  int reason = 0;
+  const int descriptor = OpenAlone(path, &reason);
+  if (descriptor < 0 && reason == EWOULDBLOCK)
+    return Status(ErrorCode::kUnwritable,
+                  Quoted(path) + " is being written by another program; wait for its end, or choose another path");
+  if (descriptor < 0) return CannotCreate(path, reason);
+  *lock = FileLock(fcntl(descriptor, F_DUPFD_CLOEXEC, 0));
+  std::FILE* file = lock->IsHeld() ? fdopen(descriptor, "wb") : nullptr;
+  if (file == nullptr) {
+    reason = errno;
+    unlink(path.c_str());
+    close(descriptor);
+    return CannotCreate(path, reason);
+  }
   std::setvbuf(file, nullptr, _IONBF, 0);
   return OutputFile(path, file);
 }
@@ -155,8 +209,11 @@ Result<OutputFile> FileGroup::Create(const std::string& path) {
   const bool is_link = std::filesystem::is_symlink(path, error);
   const std::string target = is_link ? std::filesystem::weakly_canonical(path, error).string() : path;
   if (error && is_link) return Unwritable(path);
-  auto file = OutputFile::Create(Beside(target));
-  if (file.ok()) paths_.push_back(target);
+  FileLock lock;
+  auto file = OutputFile::CreateAlone(Beside(target), &lock);
+  if (!file.ok()) return file;
+  paths_.push_back(target);
+  locks_.push_back(std::move(lock));
   return file;
 }
 
@@ -164,7 +221,9 @@ Status FileGroup::Commit() {
   std::vector<Renaming> renamings;
   for (const std::string& path : paths_) renamings.push_back({Beside(path), path});
   Status status = RenameTogether(renamings);
-  if (status.ok()) paths_.clear();
+  if (!status.ok()) return status;
+  paths_.clear();
+  locks_.clear();
   return status;
 }
 

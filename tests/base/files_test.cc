@@ -125,6 +125,23 @@ TEST(Files, OfAStagedFolderAppearTogetherOrNotAtAll) {
   EXPECT_EQ(Read(folder.Path("0/a")), "after");
 }
 
+TEST(FileGroup, IsTheOnlyOneThatWritesAFile) {
+  const TemporaryFolder folder("file_group_alone");
+  {
+    FileGroup group;
+    auto file = group.Create(folder.Path("report"));
+    ASSERT_TRUE(file.ok() && file->Append("first").ok() && file->Close().ok());
+    const Status other = WriteFileAtomically(folder.Path("report"), "second");
+    EXPECT_EQ(other.code(), ErrorCode::kUnwritable);
+    EXPECT_NE(other.message().find("being written by another program"), std::string::npos) << other.message();
+    ASSERT_TRUE(group.Commit().ok());
+    EXPECT_EQ(Read(folder.Path("report")), "first");
+    EXPECT_TRUE(WriteFileAtomically(folder.Path("report"), "third").ok());
+  }
+  EXPECT_EQ(Read(folder.Path("report")), "third");
+  EXPECT_EQ(NamesIn(folder.Path("")), std::vector<std::string>{"report"});
+}
+
 TEST(FileGroup, WritesWhereALinkLeads) {
   const TemporaryFolder folder("file_group_link");
   ASSERT_TRUE(WriteFileAtomically(folder.Path("target.txt"), "before").ok());

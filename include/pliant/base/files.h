@@ -25,10 +25,31 @@ bool Exists(const std::string& path);
 // kUnwritable, for a file or folder that could not be written.
 Status Unwritable(const std::filesystem::path& path);
 
+// Whoever holds it is the only one that writes a file. It ends with this object, or with the process and the children
+// that it was forked into, however these end. A file system that knows no locks grants every one.
+class FileLock {
+ public:
+  FileLock() = default;  // of no file
+  explicit FileLock(int descriptor) : descriptor_(descriptor) {}
+  FileLock(FileLock&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
+  FileLock& operator=(FileLock&& other) noexcept {
+    std::swap(descriptor_, other.descriptor_);
+    return *this;
+  }
+  ~FileLock();
+  bool IsHeld() const { return descriptor_ >= 0; }
+
+ private:
+  int descriptor_ = -1;
+};
+
 // A file that is written from its beginning. Append hands everything to the system before it returns.
 class OutputFile {
  public:
   static Result<OutputFile> Create(const std::string& path);
+  // The same; while `lock` is held, also after Close, no other one that is created thus writes it. Fails with
+  // kUnwritable where another one holds it.
+  static Result<OutputFile> CreateAlone(const std::string& path, FileLock* lock);
   // A file that is there, cut to its first `size` bytes, at its end. Fails with kUnreadable where it has fewer, and
   // with kUnwritable.
   static Result<OutputFile> Continue(const std::string& path, std::int64_t size);
@@ -72,13 +93,14 @@ class FileGroup {
   ~FileGroup();
 
   // A new file of the group, which is to become `path`; the caller closes it before Commit. A device or a pipe that is
-  // there is written into at once.
+  // there is written into at once. Fails with kUnwritable where that cannot be, and while another group is writing it.
   Result<OutputFile> Create(const std::string& path);
   // Renames all files, or none. Fails with kUnwritable.
   Status Commit();
 
  private:
   std::vector<std::string> paths_;
+  std::vector<FileLock> locks_;  // one a path
 };
 
 // The names of the files in a folder survive that the power goes. Fails with kUnwritable.
