@@ -41,6 +41,12 @@ std::string ThisProgram() {
 
 bool HasCheckpoint(const std::string& run_path) { return Exists(StateFile(run_path)); }
 
+void ForgetCheckpoint(const std::string& run_path) {
+  std::error_code error;
+  fs::remove(StateFile(run_path), error);  // first: what is left then is no checkpoint
+  fs::remove_all(fs::path(run_path) / kCheckpointFolder, error);
+}
+
 std::optional<RunSummary> EndedRun(const std::string& run_path) {
   auto summary = ReadRunSummary(run_path + "/run.json");
   const bool ended = summary.ok() &&

@@ -467,10 +467,7 @@ Status RunWriter::Finish(RunStatus run_status, const std::string& note) {
   }
   s.former.Forget();
   const Status written = WriteRunSummary(s.path + "/run.json", s.summary);
-  if (std::error_code error; written.ok() && has_ended) {
-    fs::remove(fs::path(s.path) / kCheckpointState, error);  // first: what is left then is no checkpoint
-    fs::remove_all(fs::path(s.path) / kCheckpointFolder, error);
-  }
+  if (written.ok() && has_ended) ForgetCheckpoint(s.path);
   return status.ok() ? written : status;
 }
 

@@ -140,7 +140,8 @@ class FrameLoop {
   // How the run ends with this frame; nothing: it goes on.
   std::optional<Ending> TrackFrame(const ReadFrame& read, FrameSource& frames) {
     // What was read ahead for nothing cannot end the run, or the number of threads would decide.
-    if (tracker_.NeedsDepth() && !read.depth.ok()) return Ending{RunStatus::kFailed, read.depth.message()};
+    if (tracker_.NeedsDepth() && read.depth_status)
+      if (const Status depth = read.depth_status(); !depth.ok()) return Ending{RunStatus::kFailed, depth.message()};
     recorder_.Show(read);
     std::vector<FrameReport> done = tracker_.Process(read.frame);
     recorder_.SetLatency(frames.last_frame_idx(), frames.LatencyMs());
@@ -317,7 +318,10 @@ Result<RunSummary> RunTrack(const RunRequest& given, const TrackOptions& wanted,
     if (Status status = CheckImagesComeAgain(request.input); !status.ok()) return status;
     auto ended = SummaryOfEnded(request, wanted);
     if (!ended.ok()) return ended.status();
-    if (ended->has_value()) return **std::move(ended);
+    if (ended->has_value()) {
+      ForgetCheckpoint(request.output_path);  // it may have been stopped while it did that
+      return **std::move(ended);
+    }
     auto opened = OpenCheckpoint(request.output_path);
     if (!opened.ok()) return opened.status();
     checkpoint = *std::move(opened);

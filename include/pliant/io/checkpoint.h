@@ -23,6 +23,8 @@ Status WriteCheckpoint(const std::string& run_path, std::string_view state);
 // kMismatch for one of another version or build.
 Result<std::string> ReadCheckpoint(const std::string& run_path);
 bool HasCheckpoint(const std::string& run_path);
+// Of a run that has ended: there is no checkpoint any more, nor what belongs to one.
+void ForgetCheckpoint(const std::string& run_path);
 
 // Of a run that has come to its end, so that there is nothing to resume; nothing: there is none.
 std::optional<RunSummary> EndedRun(const std::string& run_path);
