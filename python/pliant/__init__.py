@@ -16,7 +16,7 @@ first map has Init.nominal_depth_mm as its median depth; times are seconds.
 
 from . import extensions, kernels
 from ._pliant import Camera, Error, FrameReport, __version__
-from .extensions import FirstMap, NewReference, Wait, register_cost, register_initializer
+from .extensions import FirstMap, NewReference, Wait, register_cost, register_initializer, register_tracks
 from .jobs import (Calibration, StereoCalibration, calibrate, calibrate_stereo, compare, evaluate, evaluate_stir,
                    export, import_result, join, read_camera, refine, report, simulate, surface, track)
 from .options import Options, options
@@ -30,5 +30,5 @@ __all__ = [
     "Points", "Poses", "Run", "Sequence", "SequenceFrame", "StereoCalibration", "Tracker", "Wait", "__version__",
     "calibrate", "calibrate_stereo", "compare", "evaluate", "evaluate_stir", "export", "extensions", "import_result",
     "join", "kernels", "open_run", "open_sequence", "options", "read_camera", "refine", "register_cost",
-    "register_initializer", "report", "simulate", "surface", "track",
+    "register_initializer", "register_tracks", "report", "simulate", "surface", "track",
 ]

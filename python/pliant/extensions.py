@@ -125,6 +125,7 @@ class Cost(Protocol):
 
 
 _initializers: dict[str, Initializer] = {}
+_tracks: dict[str, Callable[[], PointFollower]] = {}
 _costs: dict[str, Cost] = {}
 
 
@@ -138,6 +139,28 @@ def register_initializer(name: str, initializer: Initializer) -> None:
     if name in options("track").unit["Init.method"].split(" | "):
         raise ValueError(f"{name!r} is a method of Pliant; give your initializer another name")
     _initializers[name] = initializer
+
+
+def register_tracks(name: str, make: Callable[[], PointFollower]) -> None:
+    """Makes tracks=name of pliant.track and pliant.Tracker stand for what this function makes, anew for every run.
+
+    A class will do. A file of tracks whose path is the name is given as a pathlib.Path then.
+    """
+    if not callable(make):
+        raise TypeError(f"the tracks {name!r} cannot be made; give a function without arguments, or a class, which "
+                        "makes an object with a method follow")
+    _tracks[name] = make
+
+
+def registered_tracks(tracks: Any) -> Any:
+    """What the function that is registered under a name makes; anything else as it is."""
+    if not isinstance(tracks, str) or tracks not in _tracks:
+        return tracks
+    made = _tracks[tracks]()
+    if not callable(getattr(made, "follow", None)):
+        raise TypeError(f"what is registered as the tracks {tracks!r} made a {type(made).__name__}; give a function that "
+                        "makes an object with a method follow")
+    return made
 
 
 def register_cost(name: str, cost: Cost) -> None:

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Union
 
 from . import _pliant
-from .extensions import Cost, Initializer, PointFollower, chosen
+from .extensions import Cost, Initializer, PointFollower, chosen, registered_tracks
 from .run import Run
 
 if TYPE_CHECKING:
@@ -191,8 +191,8 @@ def track(input: StrPath | Iterable[NDArray[np.uint8]], output_path: StrPath, op
         start, end, stride: the first frame, one past the last one (None: to the end), and every which frame.
         initializer: makes first maps in place of Init.method; a function (pliant.extensions.Initializer). One that is
             registered (pliant.register_initializer) is chosen by its name in Init.method.
-        tracks: follows points in place of Pliant's own tracker: an object (pliant.extensions.PointFollower), or the
-            file of another program's tracks (docs/tracks.md).
+        tracks: follows points in place of Pliant's own tracker: an object (pliant.extensions.PointFollower), the name
+            of what makes one (pliant.register_tracks), or the file of another program's tracks (docs/tracks.md).
         cost: a term that is added to the joint problem of every frame: an object (pliant.extensions.Cost), or the name
             of one that is registered (pliant.register_cost).
         depth_prior: folder of another program's depth images, a file an image (docs/your_own_video.md).
@@ -212,6 +212,7 @@ def track(input: StrPath | Iterable[NDArray[np.uint8]], output_path: StrPath, op
                                "stride": stride, "resume": resume}
     output = os.fspath(output_path)
     options = _options(options)
+    tracks = registered_tracks(tracks)
     if isinstance(tracks, (str, os.PathLike)):
         options, tracks = {**(options or {}), "TrackFile.path": os.fspath(tracks)}, None
     if depth_prior is not None:

@@ -9,7 +9,7 @@ from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from . import _pliant
-from .extensions import Cost, Initializer, PointFollower, chosen
+from .extensions import Cost, Initializer, PointFollower, chosen, registered_tracks
 
 if TYPE_CHECKING:
     import numpy as np
@@ -25,7 +25,7 @@ class Tracker(_pliant.Tracker):
 
     def __init__(self, camera: _pliant.Camera, options: Mapping[str, Any] | None = None, *, preset: str = "default",
                  examples: Iterable[NDArray[np.uint8]] = (), initializer: Initializer | None = None,
-                 tracks: PointFollower | None = None, cost: Cost | str | None = None):
+                 tracks: PointFollower | str | None = None, cost: Cost | str | None = None):
         """
         Args:
             camera: of the images.
@@ -41,8 +41,10 @@ class Tracker(_pliant.Tracker):
         Raises:
             ValueError: options that need more than images (a start from depth, for example).
         """
+        tracks = registered_tracks(tracks)
         if isinstance(tracks, (str, os.PathLike)):
             raise ValueError("a file of tracks belongs to the frames of a sequence; give it to pliant.track")
         chosen_options, extensions = chosen(dict(options) if isinstance(options, Mapping) else options, initializer,
                                             tracks, cost)
+        self._extensions = extensions  # which the library calls as long as this lives
         super().__init__(camera, chosen_options, preset, examples, extensions)

@@ -47,11 +47,10 @@ class Busy {
 class PythonTracker {
  public:
   PythonTracker(const Calibration& calibration, const py::object& options, const std::string& preset,
-                const py::iterable& examples, py::dict extensions)
+                const py::iterable& examples, const py::dict& extensions)
       : fps_(calibration.fps.value_or(kDefaultFps)),
-        extensions_(std::move(extensions)),
-        tracker_(
-            Create(calibration, OptionsOf(options, MakeTrackOptions(EnumOf<Preset>(preset, "preset"))), examples)) {}
+        tracker_(Create(calibration, OptionsOf(options, MakeTrackOptions(EnumOf<Preset>(preset, "preset"))), examples,
+                        extensions)) {}
 
   std::vector<FrameReport> Process(const py::object& image, const py::object& mask, std::optional<double> timestamp,
                                    const py::object& depth_prior) {
@@ -103,11 +102,12 @@ class PythonTracker {
     callbacks_.RaiseError();
   }
 
-  ImageTracker Create(const Calibration& calibration, const TrackOptions& options, const py::iterable& examples) {
+  ImageTracker Create(const Calibration& calibration, const TrackOptions& options, const py::iterable& examples,
+                      const py::dict& given) {
     std::vector<SequenceFrame> frames;
     for (const py::handle image : examples)
       frames.push_back(FrameOf(static_cast<int>(frames.size()), image, "example " + std::to_string(frames.size())));
-    const TrackerExtensions extensions = ExtensionsOf(extensions_, options.tracker, &callbacks_);
+    const TrackerExtensions extensions = ExtensionsOf(given, options.tracker, &callbacks_);
     return ValueOf([&] {
       const py::gil_scoped_release release;
       return ImageTracker::Create(calibration.camera, calibration.photometric, options, frames, extensions);
@@ -116,7 +116,6 @@ class PythonTracker {
 
   bool busy_ = false;
   double fps_;
-  py::dict extensions_;  // that the tracker calls
   Callbacks callbacks_;
   ImageTracker tracker_;
   int next_idx_ = 0;
@@ -185,9 +184,11 @@ void BindReport(py::module_& module) {
 
 void BindTracker(py::module_& module) {
   BindReport(module);
-  py::class_<PythonTracker>(module, "Tracker",
-                            "The tracker of pliant.Tracker, which makes `extensions` of what the program gives.")
-      .def(py::init<const Calibration&, const py::object&, const std::string&, const py::iterable&, py::dict>(),
+  py::class_<PythonTracker>(
+      module, "Tracker",
+      "The tracker of pliant.Tracker, which makes `extensions` of what the program gives, and holds them: "
+      "a cycle through them is one that Python finds.")
+      .def(py::init<const Calibration&, const py::object&, const std::string&, const py::iterable&, const py::dict&>(),
            py::arg("camera"), py::arg("options"), py::arg("preset"), py::arg("examples"), py::arg("extensions"))
       .def("process", &PythonTracker::Process, py::arg("image"), py::arg("mask") = py::none(),
            py::arg("timestamp") = py::none(), py::arg("depth_prior") = py::none(),

@@ -2,8 +2,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """First maps and point tracks from Python: what they give is used as ours is, and what cannot be meant is refused."""
 
+import gc
 import json
 import unittest
+import weakref
 
 import numpy as np
 
@@ -144,6 +146,22 @@ class Tracks(TestCase):
         self.assertGreater(len(run.frame(FRAMES - 1).point_id), LEAST_POINTS)
         self.assertLess(pliant.evaluate(run, SEQUENCE)["surface"]["estimate"]["median_relative_depth"], MAX_DEPTH_ERROR)
 
+    def test_they_are_chosen_by_their_name(self):
+        made = []
+
+        def make():
+            made.append(RecordedTracks(pliant.open_run(RUN)))
+            return made[-1]
+
+        pliant.register_tracks("recorded", make)
+        runs = [pliant.track(SEQUENCE, self.folder / f"run{k}", FIXED, end=FRAMES, tracks="recorded") for k in range(2)]
+        self.assertEqual(len(made), len(runs))
+        for run, tracks in zip(runs, made):
+            self.assertGreaterEqual(tracks.calls, FRAMES - 1)
+            self.assertEqual(run.summary["extensions"], ["tracks"])
+        pliant.Tracker(pliant.read_camera(SEQUENCE / "camera.yaml"), FIXED, tracks="recorded")
+        self.assertEqual(len(made), len(runs) + 1)
+
     def test_a_path_is_a_file_of_tracks(self):
         pliant.export(RUN, self.folder / "tracks", "tracks_csv", sequence=SEQUENCE)
         file = self.folder / "tracks" / "tracks.csv"
@@ -211,6 +229,22 @@ class InMemory(TestCase):
             tracker.process(images(1)[0])
         self.assertEqual(tracker.finish(), [])
 
+    def test_an_object_that_holds_its_tracker_is_freed(self):
+        class Program:
+            def __init__(self, camera, options):
+                self.tracker = pliant.Tracker(camera, options, initializer=self.first_map)
+
+            def first_map(self, frames, camera, is_last):
+                return None
+
+        program = Program(self.camera, self.options)
+        for image in images(3):
+            program.tracker.process(image)
+        freed = weakref.ref(program)
+        del program
+        gc.collect()
+        self.assertIsNone(freed())
+
     def test_a_file_of_tracks_is_refused(self):
         with self.assertRaises(ValueError) as raised:
             pliant.Tracker(self.camera, tracks="tracks.npz")
@@ -227,6 +261,13 @@ class Names(TestCase):
         with self.assertRaises(TypeError) as raised:
             pliant.track(SEQUENCE, self.folder / "run", tracks=5)
         self.assertIn("follow", sentence(self, raised.exception))
+        with self.assertRaises(TypeError) as raised:
+            pliant.register_tracks("object", object())
+        self.assertIn("cannot be made", sentence(self, raised.exception))
+        pliant.register_tracks("nothing", lambda: None)
+        with self.assertRaises(TypeError) as raised:
+            pliant.track(SEQUENCE, self.folder / "run", tracks="nothing")
+        self.assertIn("made a NoneType", sentence(self, raised.exception))
 
 
 if __name__ == "__main__":
