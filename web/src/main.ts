@@ -93,8 +93,10 @@ function start(report: Report, images: Images | null, live: boolean): (answer: A
   setText(byId("version"), `Pliant ${report.version}`);
   const store = new Store(firstState(report.runs.length));
   const { state } = store;
-  const modes = colorModes(report);
-  const coloring = () => Coloring.of(modes.find(({ name }) => name === state.color)!, report);
+  const coloring = () => {
+    const modes = colorModes(report);
+    return Coloring.of(modes.find(({ name }) => name === state.color) ?? modes[0], report);
+  };
   const page: Page = {
     report, store, images,
     coloring: coloring(),

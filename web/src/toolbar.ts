@@ -19,7 +19,7 @@ const LAYER_TITLES: Record<Layer, string> = {
 const prefersDark = window.matchMedia("(prefers-color-scheme: dark)");
 
 export class Toolbar {
-  private readonly modes: Mode[];
+  private modes: Mode[] = [];
   private readonly color = byId<HTMLSelectElement>("color");
   private readonly surfaceColor = byId<HTMLSelectElement>("surface-color");
   private readonly surfaceColors: SurfaceColor[];
@@ -29,8 +29,6 @@ export class Toolbar {
 
   constructor(private readonly page: Page) {
     const { report, store } = page;
-    this.modes = colorModes(report);
-    this.color.append(...this.modes.map(({ name, label }) => element("option", { value: name, textContent: label })));
     this.color.addEventListener("change", () => store.change({ color: this.color.value }));
     byId("gradient").style.backgroundImage = GRADIENT;
     this.runs = report.runs.map((run, index) => this.makeRun(run.name, index));
@@ -116,6 +114,7 @@ export class Toolbar {
 
   private showAll(): void {
     const { state } = this.page.store;
+    this.showModes();
     this.showRuns();
     this.showLegend();
     this.showSurfaceLegend();
@@ -134,6 +133,14 @@ export class Toolbar {
     this.trail.value = String(state.trail);
     setText(byId("trail-value"), String(state.trail));
     setText(byId("theme"), `Theme: ${state.theme}`);
+  }
+
+  // A live run has some of them only from its first points on.
+  private showModes(): void {
+    const modes = colorModes(this.page.report);
+    if (modes.length === this.modes.length) return;
+    this.modes = modes;
+    this.color.replaceChildren(...modes.map(({ name, label }) => element("option", { value: name, textContent: label })));
   }
 
   private showRuns(): void {
