@@ -9,7 +9,8 @@ usage: benchmarks.py NAME [--data DIR] [--output_path DIR] [--pliant PROGRAM] [-
 NAME is a file of third_party_configs/datasets/benchmarks: sequences, options, figures, published numbers and where they
 were read. Without --data, the published numbers alone are printed. A step that is done is not repeated unless its
 command has changed. Sequences that are not in --data are left out and named. --runs evaluates the runs (or results) of
-another system in the same way: DIR holds one folder a sequence, named as in --output_path. Needs PyYAML.
+another system in the same way: DIR holds one folder a sequence, named as in --output_path. Needs PyYAML, and OpenCV for
+labels that are images.
 
 Ends with 0; with 1 and one sentence if nothing can be run; and with 3 if a sequence that is there could not be.
 """
@@ -35,8 +36,9 @@ import windows
 
 PROTOCOLS = ROOT / "third_party_configs/datasets/benchmarks"
 IMAGES = {".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff"}
-STEPS = ["track", "surface", "evaluate"]
+STEPS = ["track", "surface", "evaluate", "export", "score"]
 COULD_NOT_RUN = 3
+UNLIKE_LABELS = "pixels are not those of the labels"  # what pliant track says of STIR's pairs that are not rectified
 
 
 class Failure(Exception):
@@ -72,9 +74,12 @@ def sequences_of(protocol, data, splits=None):
     if not data.is_dir():
         raise Failure(f"--data: {data} is not a folder")
     if protocol["sequences"] == "folders":
-        folders = folders_with(data, marker(protocol))
+        folders = folders_of(protocol, data)
         found = [part for folder in folders for part in parts(protocol, data, folder, splits)]
         missing = [] if found else [f"any folder with {marker(protocol)}"]
+        if "labels" in protocol:
+            missing += [f"{sequence.name} (no labels)" for sequence in found if not is_labelled(protocol, sequence)]
+            found = [sequence for sequence in found if is_labelled(protocol, sequence)]
     else:
         found, missing = [], []
         for name, entry in protocol["sequences"].items():
@@ -92,7 +97,11 @@ def marker(protocol):
     return protocol.get("folder_has") or protocol["view"]["images"]
 
 
-def folders_with(data, name):
+def folders_of(protocol, data):
+    """Those with the marker: where the protocol says that sequences lie, or up to two levels deep."""
+    if "folders" in protocol:
+        return sorted(path for path in data.glob(protocol["folders"]) if (path / marker(protocol)).exists())
+    name = marker(protocol)
     return sorted(path.parent for pattern in (name, f"*/{name}", f"*/*/{name}") for path in data.glob(pattern))
 
 
@@ -172,6 +181,27 @@ def quaternion(m):
     return [v / length for v in rows[i]]
 
 
+# Labels.
+
+def is_labelled(protocol, sequence):
+    return all(centers_of(sequence.path / image) for image in protocol["labels"].values())
+
+
+def centers_of(path):
+    """[[x, y], ...] of the patches in an image of labels: the middle of each one's box, as STIR's loader has them. None of
+    an image that is not there."""
+    try:
+        import cv2
+    except ImportError:
+        raise Failure("labels are images, for which Python needs OpenCV (python3-opencv)") from None
+    image = cv2.imread(str(path), cv2.IMREAD_GRAYSCALE) if path.is_file() else None
+    if image is None:
+        return []
+    contours = cv2.findContours(image, cv2.RETR_TREE, cv2.CHAIN_APPROX_SIMPLE)[-2]
+    boxes = [cv2.boundingRect(contour) for contour in contours]
+    return sorted([x + width // 2, y + height // 2] for x, y, width, height in boxes)
+
+
 # Runs.
 
 class Runner:
@@ -237,12 +267,16 @@ class Runner:
         folder = self.output / "runs" / sequence.slug
         path, camera = self.source(sequence)
         self.step("track", folder, "run/run.json",
-                  ["track", "--image_path", path, *camera, *sequence.part(), "--output_path", folder / "run", "--quiet",
-                   *self.options("track")])
+                  ["track", "--image_path", path, *camera, *sequence.part(), "--output_path", folder / "run",
+                   "--log_level", "warning", *self.options("track")])
         summary = json.loads((folder / "run/run.json").read_text(encoding="utf-8"))
         figures = {"sequence": sequence.name, "run": summary}
         if summary["counts"]["frames_tracked"] == 0:
             return figures
+        if "labels" in self.protocol:
+            if UNLIKE_LABELS in (folder / "track.log").read_text(encoding="utf-8"):
+                raise Failure("the images were rectified, and its labels are of those before")
+            return figures | {"points": self.points(sequence, folder, folder / "run")}
         surface = []
         frames = self.depth_frames(sequence, summary)
         if frames:
@@ -254,6 +288,21 @@ class Runner:
         if self.protocol.get("windows"):
             figures["windows"] = self.windows(folder, path, camera, sequence)
         return figures
+
+    def points(self, sequence, folder, run):
+        """How near the points that are labelled in the first frame come to those that are labelled in the last one."""
+        labels = {}
+        folder.mkdir(parents=True, exist_ok=True)
+        for end, image in self.protocol["labels"].items():
+            labels[end] = folder / f"labels_{end}.json"
+            labels[end].write_text(json.dumps({sequence.name: centers_of(sequence.path / image)}), encoding="utf-8")
+        self.step("export", folder, "points/positions.json",
+                  ["export", "--run", run, "--format", "stir", "--Export.start_points", labels["start"],
+                   "--Export.recording", sequence.name, "--output_path", folder / "points", "--quiet"])
+        self.step("score", folder, "score/stir.json",
+                  ["evaluate", "--stir", folder / "points/positions.json", "--stir_start", labels["start"],
+                   "--stir_end", labels["end"], "--output_path", folder / "score", "--quiet"])
+        return json.loads((folder / "score/stir.json").read_text(encoding="utf-8"))
 
     def windows(self, folder, path, camera, sequence):
         """The error of the camera in windows of five frames. One frame is converted for the axes of the rectified
@@ -288,7 +337,10 @@ class Runner:
             return None
         folder = self.output / "others" / re.sub(r"[^\w.-]+", "_", system) / sequence.slug
         path, camera = self.source(sequence)
-        (folder / "evaluate.json").unlink(missing_ok=True)  # nobody says whether the run is still the same
+        for step in ("evaluate", "export", "score"):
+            (folder / f"{step}.json").unlink(missing_ok=True)  # nobody says whether the run is still the same
+        if "labels" in self.protocol:
+            return {"sequence": sequence.name, "points": self.points(sequence, folder, run)}
         return self.evaluate(folder, run, path, camera, []) | {"sequence": sequence.name}
 
 
@@ -360,8 +412,6 @@ def notes(protocol, rows, missing, failed):
 def report(protocol, rows=(), others=(), missing=(), failed=(), total=0):
     measured = [("Pliant", "images", [figures for _, figures in rows])] if rows else []
     sections = [f"# {protocol['title']}"]
-    if not protocol.get("runnable", True):
-        sections.append(f"Cannot be run: {protocol['why_not'].strip()}")
     if measured or others or protocol["reported"]:
         sections.append(summary_table(protocol, [*measured, *others], total).rstrip())
     if not protocol["reported"]:
@@ -378,8 +428,6 @@ def report(protocol, rows=(), others=(), missing=(), failed=(), total=0):
 
 def run_all(protocol, arguments):
     """(the report, whether every sequence that is there could be run)."""
-    if not protocol.get("runnable", True):
-        raise Failure(f"'{arguments.name}' cannot be run: {protocol['why_not'].strip()}")
     others = [(system, pathlib.Path(runs)) for system, _, runs in (text.partition("=") for text in arguments.runs)]
     for system, runs in others:
         if not runs.name or not runs.is_dir():

@@ -41,7 +41,7 @@ std::string ThatIs(const fs::path& path, const DataSetFormat& format) {
 }  // namespace
 
 std::span<const DataSetFormat> DataSetFormats() {
-  static constexpr std::array<DataSetFormat, 14> kFormats = {{
+  static constexpr std::array<DataSetFormat, 15> kFormats = {{
       {"colmap", "a folder of COLMAP, images/ and a model in sparse/", IsColmapFolder, OpenColmapFolder},
       {"native", "a sequence in Pliant's own layout", IsNativeSequence, OpenNativeSequence},
       {"c3vd", "C3VD or C3VDv2, a colonoscope in a phantom", IsC3vd, OpenC3vd},
@@ -53,6 +53,7 @@ std::span<const DataSetFormat> DataSetFormats() {
       {"scared", "SCARED, a keyframe", IsScared, OpenScared, ScaredLacks},
       {"simcol", "SimCol3D", IsSimCol, OpenSimCol},
       {"stereomis", "StereoMIS", IsStereoMis, OpenStereoMis, StereoMisLacks},
+      {"stir", "STIR, a sequence of the left camera", IsStir, OpenStir, StirLacks},
       {"tum_rgbd", "TUM RGB-D", IsTumRgbd, OpenTumRgbd, TumRgbdLacks},
       {"images", "a folder of images", IsFolder, OpenImageFolder},
       {"video", "a video", IsFile, OpenVideo},

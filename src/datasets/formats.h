@@ -66,6 +66,10 @@ Result<DataSet> OpenScared(const SequenceRequest& request);
 bool IsSimCol(const std::filesystem::path& path);
 Result<DataSet> OpenSimCol(const SequenceRequest& request);
 
+bool IsStir(const std::filesystem::path& path);
+std::string StirLacks(const std::filesystem::path& path);
+Result<DataSet> OpenStir(const SequenceRequest& request);
+
 bool IsStereoMis(const std::filesystem::path& path);
 std::string StereoMisLacks(const std::filesystem::path& path);
 Result<DataSet> OpenStereoMis(const SequenceRequest& request);

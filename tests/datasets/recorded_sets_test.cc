@@ -153,6 +153,72 @@ TEST_F(DataSets, ReadsStereoMisWithItsMasks) {
   }
 }
 
+TEST_F(DataSets, ReadsStirWithTheImagesThatItsLabelsAreOf) {
+  constexpr int kShift = 3;  // columns, of the right camera's axis
+  const auto write = [&](const std::string& side, double fps, const auto& image_of) {
+    const std::filesystem::path folder = Path("0/" + side + "/seq00/frames");
+    std::filesystem::create_directories(folder);
+    cv::VideoWriter writer((folder / "00000ms-00200ms-visible.mp4").string(), cv::CAP_FFMPEG,
+                           cv::VideoWriter::fourcc('m', 'p', '4', 'v'), fps, {320, 240});
+    ASSERT_TRUE(writer.isOpened());
+    for (int k = 0; k < Frames(); ++k) writer.write(image_of(k));
+  };
+  write("left", 30, [](int k) { return Frame(k).image; });
+  write("right", 30, [](int k) {
+    cv::Mat shifted = cv::Mat::zeros(Frame(k).right.size(), CV_8UC3);
+    Frame(k).right.colRange(0, 320 - kShift).copyTo(shifted.colRange(kShift, 320));
+    return shifted;
+  });
+  const auto& p = Rendered().camera.params();
+  const auto matrix = [&](double shift) {
+    return "[[" + Line(", ", p[0], 0, p[2] + shift) + "], [" + Line(", ", 0, p[1], p[3]) + "], [0, 0, 1]]";
+  };
+  const auto calibration = [&](const std::string& turn) {
+    Text("0/calib.json",
+         "{\"leftcameramat\": " + matrix(0) + ", \"rightcameramat\": " + matrix(kShift) +
+             ", \"leftdistortioncoeffs\": [[0, 0, 0, 0, 0]], \"rightdistortioncoeffs\": [0, 0, 0, 0, 0], "
+             "\"rotation\": " +
+             turn + ", \"translation\": [-0.005, 0, 0]}");
+  };
+  calibration("[[1, 0, 0], [0, 1, 0], [0, 0, 1]]");
+  const std::filesystem::path left = Path("0/left/seq00");
+  ExpectTheScene(left, {.kind = "stir", .poses = false, .pairs = true, .gray_levels = 4.0});
+  ExpectTheScene(left / "", {.kind = "stir", .poses = false, .pairs = true, .gray_levels = 4.0});
+  const auto right_of = [](const Result<std::unique_ptr<Sequence>>& sequence) {
+    EXPECT_TRUE(sequence.ok() && (*sequence)->Next().ok());
+    const auto right = (*sequence)->Right();
+    EXPECT_TRUE(right.ok() && right->has_value());
+    return **right;
+  };
+  const auto sequence = OpenSequence({.image_path = left});
+  const cv::Rect inside(4, 4, 320 - 8 - kShift, 240 - 8);
+  EXPECT_LT(cv::norm(right_of(sequence)(inside), Frame(0).right(inside), cv::NORM_L1) / inside.area() / 3, 4.0);
+  for (std::size_t k = 0; k < 4; ++k) EXPECT_NEAR((*sequence)->camera().params()[k], p[k], kTextNumber);
+
+  write("left", 25, [](int k) { return Frame(k).image; });
+  const auto slower = OpenSequence({.image_path = left});
+  ASSERT_TRUE(slower.ok());
+  EXPECT_NEAR(*(*slower)->TimestampS(2), 2 / 25.0, kTimestamp_s);
+
+  // Pairs that are turned towards each other are rectified, which labels do not know.
+  calibration("[0, 0.02, 0]");
+  const auto turned = OpenSequence({.image_path = left});
+  ASSERT_TRUE(turned.ok()) << turned.status().message();
+  EXPECT_THAT((*turned)->Warnings(), ElementsAre(HasSubstr("not those of the labels")));
+  EXPECT_NEAR(*(*turned)->BaselineMm(), 5.0, kTextNumber);
+}
+
+TEST_F(DataSets, SaysWhatStirLacks) {
+  Text("0/left/seq00/frames/00000ms-00200ms-visible.mp4", "");
+  Text("0/calib.json", "{}");
+  const auto why_not = [&](const std::string& path) {
+    return OpenSequence({.image_path = Path(path)}).status().message();
+  };
+  EXPECT_THAT(why_not("0/left/seq00"), HasSubstr("the right camera's"));
+  Text("0/right/seq00/frames/00000ms-00200ms-visible.mp4", "");
+  EXPECT_THAT(why_not("0/right/seq00"), HasSubstr("which are in left/"));
+}
+
 TEST_F(DataSets, ReadsScared) {
   WriteStackedVideo("keyframe_1/data/rgb.mp4");
   Stereo("keyframe_1/endoscope_calibration.yaml", 5);

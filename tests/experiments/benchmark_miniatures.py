@@ -136,3 +136,30 @@ def endoslam(scene, folder):
         poses += ",".join(f"{value:.9g}" for value in values) + "\n"
     (folder / "Poses").mkdir()
     (folder / "Poses/colon_position_rotation.csv").write_text(poses)
+
+
+def stir(scene, folder):
+    """A sequence left/seq00, and discs of labels at six points of the tissue, in its first and its last frame."""
+    for side, images in (("left", scene.images), ("right", scene.right)):
+        path = folder / side / "seq00/frames/00000ms-00533ms-visible.mp4"
+        path.parent.mkdir(parents=True, exist_ok=True)
+        writer = cv2.VideoWriter(str(path), cv2.CAP_FFMPEG, cv2.VideoWriter_fourcc(*"mp4v"), 30, (WIDTH, HEIGHT))
+        assert writer.isOpened()
+        for image in images:
+            writer.write(image)
+        writer.release()
+    k = [[scene.fx, 0, scene.cx], [0, scene.fy, scene.cy], [0, 0, 1]]
+    (folder / "calib.json").write_text(json.dumps({
+        "leftcameramat": k, "rightcameramat": k, "leftdistortioncoeffs": [0] * 5, "rightdistortioncoeffs": [0] * 5,
+        "rotation": np.eye(3).tolist(), "translation": [-BASELINE_MM / 1000, 0, 0]}))
+    last_from_first = np.linalg.inv(scene.poses[-1]) @ scene.poses[0]
+    first, last = np.zeros((HEIGHT, WIDTH, 3), np.uint8), np.zeros((HEIGHT, WIDTH, 3), np.uint8)
+    for u in (60, 80, 100):
+        for v in (50, 70):
+            z = scene.depths_mm[0][v, u]
+            x, y, z = (last_from_first @ [z * (u - scene.cx) / scene.fx, z * (v - scene.cy) / scene.fy, z, 1])[:3]
+            there = (round(scene.fx * x / z + scene.cx), round(scene.fy * y / z + scene.cy))
+            cv2.circle(first, (u, v), 2, (255, 255, 255), -1)
+            cv2.circle(last, there, 2, (255, 255, 255), -1)
+    write(folder / "left/seq00/segmentation/icgstartseg.png", first)
+    write(folder / "left/seq00/segmentation/icgendseg.png", last)

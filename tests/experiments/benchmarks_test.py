@@ -12,6 +12,7 @@ import json
 import math
 import os
 import re
+import shutil
 import sys
 
 from support import ROUND_OFF, SKIPPED, experiment_modules, main
@@ -58,9 +59,9 @@ def tables(text):
     return found
 
 
-def run_on(folder, name, *arguments):
-    code, text, complaint = run(name, "--output_path", folder / f"out_{name}", *arguments)
-    assert code == 0, (code, text, complaint)
+def run_on(folder, name, *arguments, code=0):
+    ended_with, text, complaint = run(name, "--output_path", folder / f"out_{name}", *arguments)
+    assert ended_with == code, (ended_with, text, complaint)
     assert (folder / f"out_{name}/table.md").read_text(encoding="utf-8") == text
     return text, tables(text)
 
@@ -295,10 +296,31 @@ def benchmark_stereomis(folder):
     fails("needs the columns start and end", "stereomis", "--data", folder / "stereomis", "--output_path", folder / "x")
 
 
+def benchmark_stir(folder):
+    scene = scene_in(folder)
+    for name in ("0", "1", "2"):
+        miniatures.stir(scene, folder / "stir" / name)
+    miniatures.write(folder / "stir/1/left/seq00/segmentation/icgendseg.png",
+                     miniatures.np.zeros((miniatures.HEIGHT, miniatures.WIDTH), miniatures.np.uint8))
+    calibration = folder / "stir/2/calib.json"  # a pair that is turned
+    calibration.write_text(json.dumps({**json.loads(calibration.read_text()), "rotation": [0, 0.02, 0]}))
+    text, (summary, sequences) = run_on(folder, "stir", "--data", folder / "stir", code=benchmarks.COULD_NOT_RUN)
+    assert [(row["sequence"], row["frames"], row["tracked"], row["points"]) for row in sequences] == [
+        ("0/left/seq00", "16", "16", "6")], sequences
+    assert "1/left/seq00 (no labels)" in text and "2/left/seq00: the images were rectified" in text, text
+    within = "within 4, 8, 16, 32, 64 px, mean %"
+    assert float(summary[0][within]) > 95 and float(summary[0]["nothing moves, %"]) <= float(summary[0][within]), summary
+    # Another system's run in the same way.
+    shutil.copytree(folder / "out_stir/runs/0_left_seq00/run", folder / "theirs/0_left_seq00/run")
+    _, (summary, _) = run_on(folder, "stir", "--data", folder / "stir", "--only", "0/left/seq00",
+                             "--runs", f"Theirs={folder / 'theirs'}")
+    assert [row[within] for row in summary] == [summary[0][within]] * 2, summary
+
+
 def benchmark_complaints(folder):
     (folder / "data/cecum_t1_b").mkdir(parents=True)
     fails("there is no benchmark 'c4vd', but c3vd, ", "c4vd")
-    fails("'stir' cannot be run: Pliant has no reader", "stir", "--data", folder)
+    fails("any folder with segmentation/icgstartseg.png", "stir", "--data", folder)
     fails("is not a folder", "c3vd", "--data", folder / "nothing")
     fails("has none of the sequences of 'scared_depth': dataset_1/keyframe_3,", "scared_depth", "--data", folder)
     fails("any folder with StereoCalibration.ini", "stereomis", "--data", folder)
@@ -312,4 +334,5 @@ def benchmark_complaints(folder):
 
 
 main(benchmark_protocols, benchmark_windows, benchmark_rectified_axes, benchmark_poses, benchmark_c3vd,
-     benchmark_c3vd_others, benchmark_endoslam, benchmark_scared, benchmark_stereomis, benchmark_complaints)
+     benchmark_c3vd_others, benchmark_endoslam, benchmark_scared, benchmark_stereomis, benchmark_stir,
+     benchmark_complaints)
