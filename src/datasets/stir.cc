@@ -6,6 +6,7 @@
 // rightcameramat, leftdistortioncoeffs, rightdistortioncoeffs, rotation and translation (meters) of OpenCV. Its pairs
 // are rectified, but for the column of the axis. Labels are of the left images as they are, so these stay as they are.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 #include <system_error>
@@ -82,9 +83,10 @@ class StirCalibration {
   StereoCalibration::Eye EyeOf(const std::string& side) {
     const auto k = Numbers((side + "cameramat").c_str(), 9);
     StereoCalibration::Eye eye{k[0], k[4], k[2], k[5], Numbers((side + "distortioncoeffs").c_str(), 0)};
-    bool is_distorted = false;
-    for (const double coefficient : eye.distortion) is_distorted = is_distorted || coefficient != 0.0;
-    if (!is_distorted) eye.distortion.assign(4, 0.0);
+    if (std::ranges::all_of(eye.distortion, [](double value) { return value == 0.0; })) eye.distortion.assign(4, 0.0);
+    constexpr std::array<std::size_t, 5> kOpenCvCounts = {4, 5, 8, 12, 14};
+    if (std::ranges::find(kOpenCvCounts, eye.distortion.size()) == kOpenCvCounts.end() && missing_.empty())
+      missing_ = "4, 5, 8, 12 or 14 numbers of " + side + "distortioncoeffs";
     return eye;
   }
   Status Complete() const {

@@ -216,6 +216,11 @@ TEST_F(DataSets, SaysWhatStirLacks) {
   };
   EXPECT_THAT(why_not("0/left/seq00"), HasSubstr("the right camera's"));
   Text("0/right/seq00/frames/00000ms-00200ms-visible.mp4", "");
+  EXPECT_THAT(why_not("0/left/seq00"), HasSubstr("lacks the 9 numbers of leftcameramat"));
+  const std::string k = "[[300, 0, 160], [0, 300, 120], [0, 0, 1]]";
+  Text("0/calib.json", "{\"leftcameramat\": " + k + ", \"rightcameramat\": " + k +
+                           ", \"rightdistortioncoeffs\": [0.1, 0, 0], \"translation\": [-0.005, 0, 0]}");
+  EXPECT_THAT(why_not("0/left/seq00"), HasSubstr("14 numbers of rightdistortioncoeffs"));
   EXPECT_THAT(why_not("0/right/seq00"), HasSubstr("which are in left/"));
 }
 

@@ -33,12 +33,18 @@ async function follow(page, run) {
   await frames(5);
   await atEnd();
   assert.equal((await state(page)).points.length, POINTS);
+  const colors = () => page.locator("#color option").evaluateAll((options) => options.map(({ value }) => value));
+  assert.ok(!(await colors()).includes("uncertainty"), "nothing is known of it yet");
+  run.sigma = 0.5;
   run.rows = 40;   // the camera has left what was seen of the scene at first
   await frames(40);
   await atEnd();
   const box = await page.locator("#scene").boundingBox();
   await eventually(page, ({ x, y, width, height }) => window.pliant.frustumOnScreen().every((end) =>
     end.x > x && end.x < x + width && end.y > y && end.y < y + height), box);
+  assert.ok((await colors()).includes("uncertainty"));
+  await page.locator("#color").selectOption("uncertainty");
+  assert.equal((await state(page)).color, "uncertainty");
   await press(page, "n");
   await eventually(page, () => document.getElementById("point-length").textContent === "seen in 40 of 40 frames");
 
@@ -49,7 +55,8 @@ async function follow(page, run) {
   await page.locator("#newest").click();
   await atEnd();
 
-  // Two maps were joined: all is new.
+  // Two maps were joined: all is new, and without the color that was chosen.
+  run.sigma = null;
   run.epoch = 2;
   run.rows = 9;
   await frames(9);
@@ -74,7 +81,7 @@ test("says that the program of a live view is gone", { skip: report ? false : "P
   }, { allowed: url, wait: false, tolerated: /ERR_CONNECTION_REFUSED|ERR_EMPTY_RESPONSE|ERR_CONNECTION_RESET/ });
 });
 
-function answer(url, response, { epoch, rows, running }) {
+function answer(url, response, { epoch, rows, running, sigma = null }) {
   if (url.pathname === "/") {
     response.setHeader("Content-Type", "text/html; charset=utf-8");
     response.end(pageWith('{"format": 1, "live": true}', readFileSync(report, "utf8")));
@@ -82,7 +89,7 @@ function answer(url, response, { epoch, rows, running }) {
     const from = Number(url.searchParams.get("epoch")) === epoch ? Number(url.searchParams.get("from")) : 0;
     response.end(JSON.stringify({
       epoch, from, running, frames_in_sequence: 60, read: 12, state: rows ? "tracking" : "initializing", image_scale: 0.5, image_frames: [0],
-      data: { ...dataOf(runOf({ from, to: rows })), live: true },
+      data: { ...dataOf(runOf({ from, to: rows, sigma })), live: true },
     }));
   } else if (/^\/image\/\d+\.jpg$/.test(url.pathname)) {
     const { images } = JSON.parse(dataTextOf(readFileSync(report, "utf8")));
