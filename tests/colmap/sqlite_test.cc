@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 // As COLMAP leaves one: with a journal beside it while it is open.
 std::string WriteWithJournal(const TestFolder& folder) {
-  const std::string path = folder.Write("a folder with 100 %? #1.db", "");
+  std::string path = folder.Write("a folder with 100 %? #1.db", "");
   auto database = SqliteDatabase::Open(path);
   EXPECT_TRUE(database.ok());
   EXPECT_TRUE(database->Execute("PRAGMA journal_mode = WAL; CREATE TABLE cameras (camera_id INTEGER)").ok());
