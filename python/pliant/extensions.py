@@ -8,6 +8,7 @@ smoothed as they were measured to be tracked best in. {"Image.working": "fixed"}
 
 from __future__ import annotations
 
+import os
 import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Callable, NamedTuple, Protocol, Union
@@ -154,7 +155,12 @@ def register_tracks(name: str, make: Callable[[], PointFollower]) -> None:
 
 def registered_tracks(tracks: Any) -> Any:
     """What the function that is registered under a name makes; anything else as it is."""
-    if not isinstance(tracks, str) or tracks not in _tracks:
+    if not isinstance(tracks, str):
+        return tracks
+    if tracks not in _tracks:
+        if _tracks and not os.path.exists(tracks):
+            raise ValueError(f"there is no file of tracks at {tracks!r}, and no tracks of that name (registered: "
+                             f"{', '.join(sorted(_tracks))}); pliant.register_tracks gives them theirs")
         return tracks
     made = _tracks[tracks]()
     if not callable(getattr(made, "follow", None)):

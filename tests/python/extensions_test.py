@@ -159,6 +159,8 @@ class Tracks(TestCase):
         for run, tracks in zip(runs, made):
             self.assertGreaterEqual(tracks.calls, FRAMES - 1)
             self.assertEqual(run.summary["extensions"], ["tracks"])
+        with self.assertRaisesRegex(ValueError, "no tracks of that name .registered: .*recorded"):
+            pliant.track(SEQUENCE, self.folder / "run", FIXED, tracks="recoded")
         pliant.Tracker(pliant.read_camera(SEQUENCE / "camera.yaml"), FIXED, tracks="recorded")
         self.assertEqual(len(made), len(runs) + 1)
 
@@ -247,7 +249,7 @@ class InMemory(TestCase):
 
     def test_a_file_of_tracks_is_refused(self):
         with self.assertRaises(ValueError) as raised:
-            pliant.Tracker(self.camera, tracks="tracks.npz")
+            pliant.Tracker(self.camera, tracks=self.folder / "tracks.npz")
         self.assertIn("pliant.track", sentence(self, raised.exception))
 
 
