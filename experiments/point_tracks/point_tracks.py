@@ -4,6 +4,7 @@
 """What `pliant track --tracks` makes of tracks from outside, on simulated colons. README.md beside this file.
 
 usage: point_tracks.py [--build DIR] [--output_path DIR] [--sequences DIR] [--amplitudes 0,2.5,5,10] [--seeds 1,2]
+                       [--noise_seeds N]
 """
 import argparse
 import csv
@@ -22,6 +23,7 @@ CORNERS_OF = range(0, 100, 10)  # frames whose corners have a true track
 THINNED = 60  # points that are seen at a time
 FIRST_MAP_ALONE = "--Growth.grow off --Tracking.find_lost off".split()
 VARIANTS = ("own", "oracle", "truth", "opencv", "thinned")
+TRUE_TRACKS = ("oracle", "truth")
 
 
 def pliant(arguments, *args):
@@ -29,7 +31,6 @@ def pliant(arguments, *args):
     result = subprocess.run(command, capture_output=True, text=True, check=False)
     if result.returncode != 0:
         print(" ".join(command), result.stderr, file=sys.stderr)
-    return result.returncode == 0
 
 
 def sequence_of(arguments, amplitude, seed):
@@ -55,31 +56,43 @@ def write_tracks(path, rows):
     path.write_text("frame,track_id,u_px,v_px\n" + "\n".join(lines) + "\n", encoding="utf-8")
 
 
-def write_noisy_truth(arguments, sequence, path, seed):
-    """The true paths of the corners of the frames CORNERS_OF, each from its frame on, with noise.
+def true_paths(arguments, sequence):
+    """Rows (frame, track, u, v), in order, of the true paths of the corners of the frames CORNERS_OF, from these on.
 
-    A start from the depth of such a frame says which corners it has.
+    A start from the depth of such a frame says which corners it has. What was found of a sequence is kept.
     """
+    folder = arguments.output_path / "true_paths" / sequence.name
+    paths, starts = folder / "paths.csv", folder / "starts.csv"
+    if not paths.exists():
+        find_true_paths(arguments, sequence, folder, starts, paths)
+    begin = [int(row["frame"]) for row in rows_of(starts)]
+    rows = [(int(row["frame"]), int(row["point"]), float(row["u_px"]), float(row["v_px"])) for row in rows_of(paths)
+            if row["visibility"] == "visible"]
+    return sorted(row for row in rows if row[0] >= begin[row[1]])
+
+
+def find_true_paths(arguments, sequence, folder, starts, paths):
+    folder.mkdir(parents=True, exist_ok=True)
     first = []
     for frame in CORNERS_OF:
-        corners = path.with_suffix(f".corners{frame}")
+        corners = folder / f"corners{frame}"
         pliant(arguments, "track", "--quiet", "--overwrite", "--image_path", sequence, "--output_path", corners,
                "--start", frame, "--end", frame + 1, "--Init.method", "depth")
         first += rows_of(corners / "observations.csv")
-    starts = path.with_suffix(".starts.csv")
     starts.write_text("frame,u_px,v_px\n" + "".join(f"{r['frame']},{r['u_px']},{r['v_px']}\n" for r in first),
                       encoding="utf-8")
-    begin = [int(row["frame"]) for row in first]
-    paths = path.with_suffix(".paths.csv")
     pliant(arguments, "truth", "--quiet", "--sequence", sequence, "--points", starts, "--output_path", paths)
+
+
+def write_noisy_truth(arguments, sequence, path, seed):
+    """The true paths with the oracle's noise: none where a track begins."""
     random = np.random.default_rng(seed)
+    begun = set()
     rows = []
-    for row in rows_of(paths):
-        point, frame = int(row["point"]), int(row["frame"])
-        if row["visibility"] != "visible" or frame < begin[point]:
-            continue
-        noise = random.normal(0, NOISE_PX, 2)
-        rows.append((frame, point, float(row["u_px"]) + noise[0], float(row["v_px"]) + noise[1]))
+    for frame, track, u, v in true_paths(arguments, sequence):
+        noise = random.normal(0, NOISE_PX, 2) if track in begun else (0, 0)
+        begun.add(track)
+        rows.append((frame, track, u + noise[0], v + noise[1]))
     write_tracks(path, rows)
 
 
@@ -104,11 +117,11 @@ def options_of(arguments, variant, sequence, folder, seed):
     if variant == "own":
         return []
     if variant == "oracle":
-        return ["--Oracle.tracks", "on", "--Oracle.track_noise_px", NOISE_PX, *FIRST_MAP_ALONE]
+        return ["--Oracle.tracks", "on", "--Oracle.track_noise_px", NOISE_PX, "--General.seed", seed, *FIRST_MAP_ALONE]
     path = folder / f"{variant}.csv"
     if variant == "truth":
         write_noisy_truth(arguments, sequence, path, seed)
-        return ["--tracks", path, *FIRST_MAP_ALONE]
+        return ["--tracks", path, "--General.seed", seed, *FIRST_MAP_ALONE]
     if variant == "opencv":
         subprocess.run([arguments.build / "pliant_opencv_tracks", sequence, path], check=True, capture_output=True)
     if variant == "thinned":
@@ -124,10 +137,64 @@ def figures_of(run):
     evaluation = json.loads(path.read_text(encoding="utf-8"))
     return {"tracked": counts["frames_tracked"],
             "points": evaluation["survival"]["mean_points"],
+            "depth": evaluation["surface"]["estimate"]["median_relative_depth"],
             "rmse": evaluation["surface"]["estimate"]["mean_rmse_mm"],
             "null": evaluation["surface"]["null"]["mean_rmse_mm"],
             "within": evaluation["tracks"]["average_within"],
             "jaccard": evaluation["tracks"]["average_jaccard"]}
+
+
+def figures_of_run(arguments, variant, sequence, folder, seed):
+    """Tracks and evaluates into a run folder beside the files of tracks."""
+    run = folder / variant
+    pliant(arguments, "track", "--quiet", "--overwrite", "--image_path", sequence, "--output_path", run,
+           *options_of(arguments, variant, sequence, folder, seed))
+    pliant(arguments, "evaluate", "--quiet", "--run", run, "--sequence", sequence, "--output_path", run / "evaluation")
+    return figures_of(run)
+
+
+def print_table(arguments):
+    print("| A mm | seed | tracks | frames | points | RMSE mm | null mm | within, mean % | Jaccard, mean % |")
+    print("| --- | --- | --- | --- | --- | --- | --- | --- | --- |")
+    for amplitude in arguments.amplitudes.split(","):
+        for seed in arguments.seeds.split(","):
+            sequence = sequence_of(arguments, amplitude, seed)
+            folder = arguments.output_path / sequence.name
+            folder.mkdir(parents=True, exist_ok=True)
+            for variant in VARIANTS:
+                f = figures_of_run(arguments, variant, sequence, folder, int(seed))
+                cells = [f"{f['tracked']}"]
+                if "rmse" in f:
+                    cells += [f"{f['points']:.0f}", f"{f['rmse']:.2f}", f"{f['null']:.2f}", f"{100 * f['within']:.1f}",
+                              f"{100 * f['jaccard']:.1f}"]
+                else:
+                    cells += ["-"] * 5
+                print(f"| {amplitude} | {seed} | {variant} | " + " | ".join(cells) + " |", flush=True)
+
+
+def print_true_tracks(arguments):
+    """The oracle's tracks and a file of true tracks, over several draws of the same noise."""
+    print("| A mm | seed | oracle: maps | depth error % | quartiles | RMSE mm | file: maps | depth error % | quartiles | "
+          "RMSE mm | depth error of the file by the oracle's |")
+    print("| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |")
+    for amplitude in arguments.amplitudes.split(","):
+        for seed in arguments.seeds.split(","):
+            sequence = sequence_of(arguments, amplitude, seed)
+            cells, medians = [], []
+            for variant in TRUE_TRACKS:
+                runs = []
+                for noise_seed in range(1, arguments.noise_seeds + 1):
+                    folder = arguments.output_path / "noise" / sequence.name / str(noise_seed)
+                    folder.mkdir(parents=True, exist_ok=True)
+                    runs.append(figures_of_run(arguments, variant, sequence, folder, noise_seed))
+                maps = [run for run in runs if "rmse" in run]
+                cells.append(f"{len(maps)} of {len(runs)}")
+                depths = [100 * run["depth"] for run in maps] or [np.nan]
+                low, median, high = np.percentile(depths, [25, 50, 75])
+                medians.append(median)
+                rmse = np.median([run["rmse"] for run in maps] or [np.nan])
+                cells += [f"{median:.2f}", f"{low:.2f} to {high:.2f}", f"{rmse:.2f}"]
+            print(f"| {amplitude} | {seed} | " + " | ".join(cells) + f" | {medians[1] / medians[0]:.2f} |", flush=True)
 
 
 def main():
@@ -137,28 +204,13 @@ def main():
     parser.add_argument("--sequences", type=Path, help="sequences of the experiment simulated_colon, where they are there")
     parser.add_argument("--amplitudes", default="0,2.5,5,10")
     parser.add_argument("--seeds", default="1,2")
+    parser.add_argument("--noise_seeds", type=int, default=0,
+                        help="compare the oracle with a file of true tracks over as many draws of the noise, no more")
     arguments = parser.parse_args()
-    print("| A mm | seed | tracks | frames | points | RMSE mm | null mm | within, mean % | Jaccard, mean % |")
-    print("| --- | --- | --- | --- | --- | --- | --- | --- | --- |")
-    for amplitude in arguments.amplitudes.split(","):
-        for seed in arguments.seeds.split(","):
-            sequence = sequence_of(arguments, amplitude, seed)
-            folder = arguments.output_path / sequence.name
-            folder.mkdir(parents=True, exist_ok=True)
-            for variant in VARIANTS:
-                run = folder / variant
-                pliant(arguments, "track", "--quiet", "--image_path", sequence, "--output_path", run,
-                       *options_of(arguments, variant, sequence, folder, int(seed)))
-                pliant(arguments, "evaluate", "--quiet", "--run", run, "--sequence", sequence, "--output_path",
-                       run / "evaluation")
-                f = figures_of(run)
-                cells = [f"{f['tracked']}"]
-                if "rmse" in f:
-                    cells += [f"{f['points']:.0f}", f"{f['rmse']:.2f}", f"{f['null']:.2f}", f"{100 * f['within']:.1f}",
-                              f"{100 * f['jaccard']:.1f}"]
-                else:
-                    cells += ["-"] * 5
-                print(f"| {amplitude} | {seed} | {variant} | " + " | ".join(cells) + " |", flush=True)
+    if arguments.noise_seeds > 0:
+        print_true_tracks(arguments)
+    else:
+        print_table(arguments)
 
 
 if __name__ == "__main__":
