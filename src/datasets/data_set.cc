@@ -4,7 +4,7 @@
 #include "datasets/data_set.h"
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
 #include <string>
 
 #include <opencv2/imgproc.hpp>
@@ -194,7 +194,9 @@ Status DataSetSequence::CheckSize(const cv::Mat& image, const std::string& title
 
 Result<std::optional<SequenceFrame>> DataSetSequence::Next() {
   if (range_.end != -1 && next_idx_ >= range_.end) return std::optional<SequenceFrame>();
-  const int idx = std::exchange(next_idx_, next_idx_ + range_.stride);  // also where it fails: the next may be read
+  const int idx = next_idx_;
+  constexpr int kLast = std::numeric_limits<int>::max();
+  next_idx_ = idx > kLast - range_.stride ? kLast : idx + range_.stride;  // also where it fails: the next may be read
   last_idx_ = idx;
   Result<std::optional<cv::Mat>> image = images().Read(idx);
   if (!image.ok()) return images().IsDamaged(idx) ? Next() : image.status();
