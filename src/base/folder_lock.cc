@@ -8,7 +8,6 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
-#include <unistd.h>
 
 #include "pliant/base/text.h"
 
@@ -25,12 +24,6 @@ Result<FolderLock> FolderLock::Take(const std::filesystem::path& folder) {
     return Status(ErrorCode::kUnwritable, "another run is being written into " + Quoted(folder.string()) +
                                               "; wait for its end, or give another folder");
   return lock;
-}
-
-FolderLock::~FolderLock() {
-  if (descriptor_ < 0) return;
-  ::flock(descriptor_, LOCK_UN);  // a child of this process may hold the descriptor open
-  ::close(descriptor_);
 }
 
 }  // namespace pliant

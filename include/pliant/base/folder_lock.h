@@ -5,8 +5,8 @@
 #pragma once
 
 #include <filesystem>
-#include <utility>
 
+#include "pliant/base/files.h"
 #include "pliant/base/status.h"
 
 namespace pliant {
@@ -19,17 +19,10 @@ class FolderLock {
   // folder cannot be opened.
   static Result<FolderLock> Take(const std::filesystem::path& folder);
 
-  FolderLock(FolderLock&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
-  FolderLock& operator=(FolderLock&& other) noexcept {
-    std::swap(descriptor_, other.descriptor_);
-    return *this;
-  }
-  ~FolderLock();
-
  private:
-  explicit FolderLock(int descriptor) : descriptor_(descriptor) {}
+  explicit FolderLock(int descriptor) : lock_(descriptor) {}
 
-  int descriptor_;  // -1: moved away
+  FileLock lock_;
 };
 
 }  // namespace pliant
