@@ -65,7 +65,8 @@ def reading(folder, repetitions):
 def tracking(program, sequence, folder, repetitions):
     """Of the program and of pliant.track, s."""
     flags = [part for name, value in OPTIONS.items() for part in (f"--{name}", str(value))]
-    command = [program, "track", "--image_path", sequence, "--output_path", folder / "a", "--quiet", *flags]
+    command = [program, "track", "--image_path", sequence, "--output_path", folder / "a", "--overwrite", "--quiet",
+               *flags]
     by_program = least(repetitions, resource.RUSAGE_CHILDREN, lambda: subprocess.run(command, check=True))
     by_package = least(repetitions, resource.RUSAGE_SELF, lambda: pliant.track(
         sequence, folder / "b", OPTIONS, on_frame=lambda report: report.observations.position.sum()))
