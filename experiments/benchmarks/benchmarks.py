@@ -32,11 +32,12 @@ import yaml
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "experiments/common"))
 import grid
+import labels
 import windows
 
 PROTOCOLS = ROOT / "third_party_configs/datasets/benchmarks"
 IMAGES = {".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff"}
-STEPS = ["track", "surface", "evaluate", "export", "score"]
+STEPS = ["track", "surface", "evaluate", "export", "score", "score3d"]
 COULD_NOT_RUN = 3
 UNLIKE_LABELS = "pixels are not those of the labels"  # what pliant track says of STIR's pairs that are not rectified
 
@@ -181,25 +182,11 @@ def quaternion(m):
     return [v / length for v in rows[i]]
 
 
-# Labels.
-
 def is_labelled(protocol, sequence):
-    return all(centers_of(sequence.path / image) for image in protocol["labels"].values())
-
-
-def centers_of(path):
-    """[[x, y], ...] of the patches in an image of labels: the middle of each one's box, as STIR's loader has them. None of
-    an image that is not there."""
     try:
-        import cv2
+        return all(labels.pixels(sequence.path / end["image"]) for end in protocol["labels"].values())
     except ImportError:
         raise Failure("labels are images, for which Python needs OpenCV (python3-opencv)") from None
-    image = cv2.imread(str(path), cv2.IMREAD_GRAYSCALE) if path.is_file() else None
-    if image is None:
-        return []
-    contours = cv2.findContours(image, cv2.RETR_TREE, cv2.CHAIN_APPROX_SIMPLE)[-2]
-    boxes = [cv2.boundingRect(contour) for contour in contours]
-    return sorted([x + width // 2, y + height // 2] for x, y, width, height in boxes)
 
 
 # Runs.
@@ -276,7 +263,7 @@ class Runner:
         if "labels" in self.protocol:
             if UNLIKE_LABELS in (folder / "track.log").read_text(encoding="utf-8"):
                 raise Failure("the images were rectified, and its labels are of those before")
-            return figures | {"points": self.points(sequence, folder, folder / "run")}
+            return figures | self.labelled_points(sequence, folder, folder / "run")
         surface = []
         frames = self.depth_frames(sequence, summary)
         if frames:
@@ -289,20 +276,30 @@ class Runner:
             figures["windows"] = self.windows(folder, path, camera, sequence)
         return figures
 
-    def points(self, sequence, folder, run):
-        """How near the points that are labelled in the first frame come to those that are labelled in the last one."""
-        labels = {}
+    def labelled_points(self, sequence, folder, run):
+        """How near the points that are labelled in the first frame come to those that are labelled in the last one, in
+        the image, and in space where both eyes' labels say where that is: {"points": ..., "points_3d": ...}."""
         folder.mkdir(parents=True, exist_ok=True)
-        for end, image in self.protocol["labels"].items():
-            labels[end] = folder / f"labels_{end}.json"
-            labels[end].write_text(json.dumps({sequence.name: centers_of(sequence.path / image)}), encoding="utf-8")
+        files = {}
+        for end, names in self.protocol["labels"].items():
+            for suffix, points in (("", labels.pixels(sequence.path / names["image"])),
+                                   ("3d", labels.positions(sequence.path, names["image"], names["infrared"]))):
+                files[end + suffix] = folder / f"labels{suffix}_{end}.json" if points else None
+                if points:
+                    files[end + suffix].write_text(json.dumps({sequence.name: points}), encoding="utf-8")
         self.step("export", folder, "points/positions.json",
-                  ["export", "--run", run, "--format", "stir", "--Export.start_points", labels["start"],
+                  ["export", "--run", run, "--format", "stir", "--Export.start_points", files["start"],
                    "--Export.recording", sequence.name, "--output_path", folder / "points", "--quiet"])
-        self.step("score", folder, "score/stir.json",
-                  ["evaluate", "--stir", folder / "points/positions.json", "--stir_start", labels["start"],
-                   "--stir_end", labels["end"], "--output_path", folder / "score", "--quiet"])
-        return json.loads((folder / "score/stir.json").read_text(encoding="utf-8"))
+        figures = {}
+        for key, suffix in (("points", ""), ("points_3d", "3d")):
+            tracked = folder / f"points/positions{suffix}.json"
+            if not (tracked.is_file() and files["start" + suffix] and files["end" + suffix]):
+                continue
+            self.step(f"score{suffix}", folder, f"score{suffix}/stir.json",
+                      ["evaluate", "--stir", tracked, "--stir_start", files["start" + suffix],
+                       "--stir_end", files["end" + suffix], "--output_path", folder / f"score{suffix}", "--quiet"])
+            figures[key] = json.loads((folder / f"score{suffix}/stir.json").read_text(encoding="utf-8"))
+        return figures
 
     def windows(self, folder, path, camera, sequence):
         """The error of the camera in windows of five frames. One frame is converted for the axes of the rectified
@@ -337,10 +334,10 @@ class Runner:
             return None
         folder = self.output / "others" / re.sub(r"[^\w.-]+", "_", system) / sequence.slug
         path, camera = self.source(sequence)
-        for step in ("evaluate", "export", "score"):
+        for step in ("evaluate", "export", "score", "score3d"):
             (folder / f"{step}.json").unlink(missing_ok=True)  # nobody says whether the run is still the same
         if "labels" in self.protocol:
-            return {"sequence": sequence.name, "points": self.points(sequence, folder, run)}
+            return {"sequence": sequence.name} | self.labelled_points(sequence, folder, run)
         return self.evaluate(folder, run, path, camera, []) | {"sequence": sequence.name}
 
 
@@ -357,8 +354,10 @@ def figure(figures, metric):
 
 
 def mean_text(protocol, metric, rows):
-    """Mean and standard deviation over the sequences, or the mean over their frames."""
-    weight = next((m for m in protocol["metrics"] if m["id"] == protocol.get("mean_weight")), None)
+    """Mean and standard deviation over the sequences, or the mean over what the metric, or else the protocol, names as
+    its weight: the id of another metric, or "sequences"."""
+    named = metric.get("weight", protocol.get("mean_weight", "sequences"))
+    weight = next((m for m in protocol["metrics"] if m["id"] == named), None)
     values = [(figure(row, metric), figure(row, weight) if weight else 1) for row in rows
               if figure(row, metric) is not None]
     if not values or sum(w for _, w in values) == 0:

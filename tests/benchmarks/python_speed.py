@@ -30,14 +30,15 @@ def processor_seconds(who):
     return usage.ru_utime + usage.ru_stime
 
 
-def least(repetitions, who, function):
-    """The least processor time of calling `function`, s."""
-    times = []
+def least(repetitions, *calls):
+    """The least processor time of each call, (whose time, function), s. They take turns: a machine's speed changes."""
+    times = [[] for _ in calls]
     for _ in range(repetitions):
-        before = processor_seconds(who)
-        function()
-        times.append(processor_seconds(who) - before)
-    return min(times)
+        for (who, function), of_call in zip(calls, times):
+            before = processor_seconds(who)
+            function()
+            of_call.append(processor_seconds(who) - before)
+    return [min(of_call) for of_call in times]
 
 
 def write_run(folder):
@@ -59,7 +60,7 @@ def reading(folder, repetitions):
     def read():
         run = pliant.open_run(folder)
         assert len(run.observations) == FRAMES * POINTS and len(run.poses) == FRAMES
-    return least(repetitions, resource.RUSAGE_SELF, read)
+    return least(repetitions, (resource.RUSAGE_SELF, read))[0]
 
 
 def tracking(program, sequence, folder, repetitions):
@@ -67,10 +68,9 @@ def tracking(program, sequence, folder, repetitions):
     flags = [part for name, value in OPTIONS.items() for part in (f"--{name}", str(value))]
     command = [program, "track", "--image_path", sequence, "--output_path", folder / "a", "--overwrite", "--quiet",
                *flags]
-    by_program = least(repetitions, resource.RUSAGE_CHILDREN, lambda: subprocess.run(command, check=True))
-    by_package = least(repetitions, resource.RUSAGE_SELF, lambda: pliant.track(
-        sequence, folder / "b", OPTIONS, on_frame=lambda report: report.observations.position.sum()))
-    return by_program, by_package
+    return least(repetitions, (resource.RUSAGE_CHILDREN, lambda: subprocess.run(command, check=True)),
+                 (resource.RUSAGE_SELF, lambda: pliant.track(
+                     sequence, folder / "b", OPTIONS, on_frame=lambda report: report.observations.position.sum())))
 
 
 def service(sequence, repetitions):
@@ -82,7 +82,7 @@ def service(sequence, repetitions):
     def track():
         tracker = pliant.Tracker(camera, OPTIONS)
         reports[:] = [report for image in images for report in tracker.process(image)] + tracker.finish()
-    frame = least(repetitions, resource.RUSAGE_SELF, track) / len(images)
+    frame = least(repetitions, (resource.RUSAGE_SELF, track))[0] / len(images)
 
     # An image that is refused for its mask is copied all the same.
     tracker, mask = pliant.Tracker(camera, OPTIONS), np.zeros((1, 1), np.uint8)
@@ -94,7 +94,7 @@ def service(sequence, repetitions):
             except pliant.Error:
                 pass
             report.observations, report.cam_from_world
-    return frame, least(repetitions, resource.RUSAGE_SELF, serve) / len(images)
+    return frame, least(repetitions, (resource.RUSAGE_SELF, serve))[0] / len(images)
 
 
 def main():

@@ -139,7 +139,7 @@ def endoslam(scene, folder):
 
 
 def stir(scene, folder):
-    """A sequence left/seq00, and discs of labels at six points of the tissue, in its first and its last frame."""
+    """A sequence left/seq00, and discs of labels at six points of the tissue, in the first and the last pair."""
     for side, images in (("left", scene.images), ("right", scene.right)):
         path = folder / side / "seq00/frames/00000ms-00533ms-visible.mp4"
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -152,14 +152,17 @@ def stir(scene, folder):
     (folder / "calib.json").write_text(json.dumps({
         "leftcameramat": k, "rightcameramat": k, "leftdistortioncoeffs": [0] * 5, "rightdistortioncoeffs": [0] * 5,
         "rotation": np.eye(3).tolist(), "translation": [-BASELINE_MM / 1000, 0, 0]}))
-    last_from_first = np.linalg.inv(scene.poses[-1]) @ scene.poses[0]
-    first, last = np.zeros((HEIGHT, WIDTH, 3), np.uint8), np.zeros((HEIGHT, WIDTH, 3), np.uint8)
-    for u in (60, 80, 100):
-        for v in (50, 70):
-            z = scene.depths_mm[0][v, u]
-            x, y, z = (last_from_first @ [z * (u - scene.cx) / scene.fx, z * (v - scene.cy) / scene.fy, z, 1])[:3]
-            there = (round(scene.fx * x / z + scene.cx), round(scene.fy * y / z + scene.cy))
-            cv2.circle(first, (u, v), 2, (255, 255, 255), -1)
-            cv2.circle(last, there, 2, (255, 255, 255), -1)
-    write(folder / "left/seq00/segmentation/icgstartseg.png", first)
-    write(folder / "left/seq00/segmentation/icgendseg.png", last)
+    seg = {(side, end): np.zeros((HEIGHT, WIDTH, 3), np.uint8) for side in ("left", "right") for end in (0, -1)}
+    for k in range(6):
+        u, v = (115, 125)[k % 2], 30 + 12 * k  # a near wall, for disparities that labels may have; one label on a row
+        z = scene.depths_mm[0][v, u]
+        point = [z * (u - scene.cx) / scene.fx, z * (v - scene.cy) / scene.fy, z, 1]
+        for end in (0, -1):
+            x, y, z = (np.linalg.inv(scene.poses[end]) @ scene.poses[0] @ point)[:3]
+            for side, baseline in (("left", 0), ("right", BASELINE_MM)):
+                there = (round(scene.fx * (x - baseline) / z + scene.cx), round(scene.fy * y / z + scene.cy))
+                cv2.circle(seg[side, end], there, 2, (255, 255, 255), -1)
+    for side, images in (("left", scene.images), ("right", scene.right)):
+        for end, name in ((0, "start"), (-1, "end")):
+            write(folder / side / f"seq00/segmentation/icg{name}seg.png", seg[side, end])
+            write(folder / side / f"seq00/00000ms_icg{name}.png", images[end])

@@ -25,6 +25,7 @@ for module in ("yaml", "numpy", "cv2"):
 
 import benchmark_miniatures as miniatures
 import benchmarks
+import labels
 import windows
 
 PLIANT = os.path.abspath(sys.argv[2])
@@ -310,11 +311,51 @@ def benchmark_stir(folder):
     assert "1/left/seq00 (no labels)" in text and "2/left/seq00: the images were rectified" in text, text
     within = "within 4, 8, 16, 32, 64 px, mean %"
     assert float(summary[0][within]) > 95 and float(summary[0]["nothing moves, %"]) <= float(summary[0][within]), summary
+    within_3d = "within 2, 4, 8, 16, 32 mm, mean %"
+    assert summary[0]["points in space"] == "6", summary
+    assert float(summary[0][within_3d]) > 75 > 60 > float(summary[0]["nothing moves in space, %"]), summary
     # Another system's run in the same way.
     shutil.copytree(folder / "out_stir/runs/0_left_seq00/run", folder / "theirs/0_left_seq00/run")
     _, (summary, _) = run_on(folder, "stir", "--data", folder / "stir", "--only", "0/left/seq00",
                              "--runs", f"Theirs={folder / 'theirs'}")
-    assert [row[within] for row in summary] == [summary[0][within]] * 2, summary
+    for figure in (within, within_3d):
+        assert [row[figure] for row in summary[:2]] == [summary[0][figure]] * 2, summary
+
+
+def benchmark_labels(folder):
+    """Places in space by hand: one label with one place, one with two of which the less alike counts, two with none."""
+    import cv2
+    import numpy as np
+    left, right = folder / "0/left/seq00", folder / "0/right/seq00"
+    calibration = {"leftcameramat": [[1000, 0, 640], [0, 1000, 512], [0, 0, 1]],
+                   "rightcameramat": [[1000, 0, 644], [0, 1000, 512], [0, 0, 1]], "translation": [-0.005, 0, 0]}
+    noise = np.random.default_rng(1).integers(0, 256, (1024, 1280, 3), np.uint8)
+    seg = {eye: np.zeros((1024, 1280, 3), np.uint8) for eye in (left, right)}
+    infrared = {eye: noise.copy() for eye in (left, right)}
+
+    def label(eye, u, v):
+        seg[eye][v - 5:v + 5, u - 5:u + 5] = 255
+
+    for u, v in ((240, 212), (640, 612), (840, 712), (1040, 812)):
+        label(left, u, v)
+    label(right, 194, 220)  # 8 rows lower; 46 px to the left, and 4 between the cameras' centers
+    for u in (600, 550):
+        label(right, u, 612)
+    infrared[right][607:617, 595:605] = infrared[left][607:617, 635:645]  # alike, so that the other one is taken
+    infrared[right][607:617, 545:555] = 255 - infrared[left][607:617, 635:645]
+    label(right, 800, 723)  # 11 rows lower
+    label(right, 930, 812)  # too near: 114 px
+    for eye in (left, right):
+        miniatures.write(eye / "segmentation/icgstartseg.png", seg[eye])
+        miniatures.write(eye / "00001ms_icgstart.png", infrared[eye])
+    (folder / "0/calib.json").write_text(json.dumps(calibration))
+    found = sorted(labels.positions(left, "segmentation/icgstartseg.png", "*_icgstart.png"))
+    expected = [[(240 - 640) * 0.1, (212 - 512) * 0.1, 100], [0, 100 * 5 / 94, 1000 * 5 / 94]]
+    assert np.allclose(found, expected), (found, expected)
+    assert labels.positions(left, "segmentation/icgendseg.png", "*_icgend.png") == []
+    assert labels.correlation(seg[left], seg[left] * 0.5) > 1 - ROUND_OFF and labels.correlation(seg[left], noise * 0) == 0
+    (right / "00001ms_icgstart.png").unlink()
+    assert labels.positions(left, "segmentation/icgstartseg.png", "*_icgstart.png") == []
 
 
 def benchmark_complaints(folder):
@@ -335,4 +376,4 @@ def benchmark_complaints(folder):
 
 main(benchmark_protocols, benchmark_windows, benchmark_rectified_axes, benchmark_poses, benchmark_c3vd,
      benchmark_c3vd_others, benchmark_endoslam, benchmark_scared, benchmark_stereomis, benchmark_stir,
-     benchmark_complaints)
+     benchmark_labels, benchmark_complaints)
