@@ -13,6 +13,7 @@
 
 #include "datasets/formats.h"
 #include "datasets/image_file.h"
+#include "datasets/json_numbers.h"
 #include "datasets/set_files.h"
 #include "pliant/base/files.h"
 
@@ -29,12 +30,7 @@ Result<Rigid3> ReadPose(const fs::path& file) {
   const auto text = ReadFile(file.string());
   if (!text.ok()) return text.status();
   const auto json = nlohmann::json::parse(*text, nullptr, /*allow_exceptions=*/false);
-  std::vector<double> matrix;
-  if (json.is_object() && json.contains("camera-pose") && json["camera-pose"].is_array())
-    for (const auto& row : json["camera-pose"])
-      if (row.is_array())
-        for (const auto& value : row)
-          if (value.is_number()) matrix.push_back(value.get<double>());
+  const std::vector<double> matrix = NumbersAt(json, "camera-pose");
   if (matrix.size() != 16)
     return Status(ErrorCode::kUnreadable, file.string() + " has no camera-pose of 4 x 4 numbers; unpack it again");
   return PoseOfMatrix(file.string(), matrix);

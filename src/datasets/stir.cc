@@ -19,6 +19,7 @@
 
 #include "datasets/formats.h"
 #include "datasets/image_file.h"
+#include "datasets/json_numbers.h"
 #include "datasets/pair_streams.h"
 #include "datasets/rectify.h"
 #include "datasets/set_files.h"
@@ -51,29 +52,13 @@ fs::path RightOf(const fs::path& path) {
   return left.parent_path().parent_path() / ("right" + side.substr(std::string("left").size())) / left.filename();
 }
 
-// The numbers of a list, or of a list of lists.
-std::vector<double> NumbersIn(const nlohmann::json& json) {
-  std::vector<double> numbers;
-  const auto add = [&](const nlohmann::json& value) {
-    if (value.is_number()) numbers.push_back(value.get<double>());
-  };
-  if (!json.is_array()) return numbers;
-  for (const nlohmann::json& part : json) {
-    add(part);
-    if (part.is_array())
-      for (const nlohmann::json& value : part) add(value);
-  }
-  return numbers;
-}
-
 class StirCalibration {
  public:
   StirCalibration(fs::path file, nlohmann::json json) : file_(std::move(file)), json_(std::move(json)) {}
 
   // `count` numbers; any number of them where it is 0.
   std::vector<double> Numbers(const char* key, std::size_t count) {
-    std::vector<double> numbers;
-    if (json_.is_object() && json_.contains(key)) numbers = NumbersIn(json_[key]);
+    std::vector<double> numbers = NumbersAt(json_, key);
     if (count > 0 && numbers.size() != count) {
       if (missing_.empty()) missing_ = std::to_string(count) + " numbers of " + key;
       numbers.assign(count, 0.0);
