@@ -160,6 +160,7 @@ Json ToJson(const TrajectoryError& e) {
           {"rpe_translation_rmse_mm", e.rpe_translation_rmse_mm},
           {"rpe_translation_mean_mm", e.rpe_translation_mean_mm},
           {"rpe_rotation_rmse_deg", e.rpe_rotation_rmse_deg},
+          {"rpe_rotation_mean_deg", e.rpe_rotation_mean_deg},
           {"true_path_length_mm", e.true_path_length_mm},
           {"true_path_extent_mm", e.true_path_extent_mm},
           {"true_path_width_mm", e.true_path_width_mm},

@@ -145,6 +145,7 @@ Result<TrajectoryError> ComputeTrajectoryError(std::span<const PosePair> pairs, 
   error.rpe_translation_rmse_mm = Rms(pooled.relative_mm);
   error.rpe_translation_mean_mm = Mean(pooled.relative_mm);
   error.rpe_rotation_rmse_deg = Rms(pooled.relative_deg);
+  error.rpe_rotation_mean_deg = Mean(pooled.relative_deg);
   return error;
 }
 

@@ -130,6 +130,7 @@ TEST(TrajectoryError, RelativeErrorSeesOneTurnedPoseTwice) {
   EXPECT_LT(error->ate_rmse_mm, kLengthRoundOff_mm);
   EXPECT_NEAR(error->rotation_rmse_deg, 0.1 * kDegPerRad / std::sqrt(30.0), kAngleRoundOff_deg);
   EXPECT_NEAR(error->rpe_rotation_rmse_deg, 0.1 * kDegPerRad * std::sqrt(2.0 / 29.0), kAngleRoundOff_deg);
+  EXPECT_NEAR(error->rpe_rotation_mean_deg, 0.1 * kDegPerRad * 2.0 / 29.0, kAngleRoundOff_deg);
   const auto far = ComputeTrajectoryError(pairs, {.rpe_delta = 29});
   EXPECT_EQ(far->rpe_pairs, 1);
   EXPECT_LT(far->rpe_rotation_rmse_deg, kAngleRoundOff_deg);

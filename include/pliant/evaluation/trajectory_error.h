@@ -78,6 +78,7 @@ struct TrajectoryError {
   double rpe_translation_rmse_mm = 0;
   double rpe_translation_mean_mm = 0;
   double rpe_rotation_rmse_deg = 0;
+  double rpe_rotation_mean_deg = 0;
   double true_path_length_mm = 0;  // over the frames compared
   double path_length_mm = 0;       // of the aligned estimate
   // Standard deviation of the true positions along and across the main direction of their path (first and second
