@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any, Callable, NamedTuple, Protocol, Union
 import numpy as np
 
 from . import _pliant
+from . import arguments as given
 from .options import options
 
 if TYPE_CHECKING:
@@ -219,6 +220,8 @@ def _coster(cost: Cost) -> Callable[..., tuple[NDArray[Any], NDArray[Any], NDArr
         raise TypeError(f"a cost is a {type(cost).__name__}; give an object with a method evaluate, or the name of a "
                         "registered one")
 
+    last: dict[bytes, int] = {}  # of the present frame, how many residuals it has
+
     def call(*columns: Any) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any], NDArray[Any]]:
         frame = CostFrame(*columns)
         answer = evaluate(frame)
@@ -228,6 +231,12 @@ def _coster(cost: Cost) -> Callable[..., tuple[NDArray[Any], NDArray[Any], NDArr
         residuals = np.asarray(answer[0], dtype=float)
         if residuals.ndim != 1:
             raise ValueError(f"the residuals of a cost have the shape {residuals.shape}; give (R,)")
+        problem = frame.point_id.tobytes() + frame.cam_from_world.tobytes()
+        if last.get(problem, len(residuals)) != len(residuals):
+            raise ValueError(f"a cost returned {last[problem]} residuals and then {len(residuals)} in the same frame; the "
+                             "number is the same in all calls of a frame")
+        last.clear()
+        last[problem] = len(residuals)
         row, column, value = _triplets(answer[1], len(residuals), 3 * len(frame.position))
         if not np.all(np.isfinite(residuals)) or not np.all(np.isfinite(value)):
             raise ValueError("a cost returned a residual or a derivative that is not a finite number")
@@ -250,6 +259,10 @@ def chosen_cost(cost: Cost | str | None) -> dict[str, Any]:
 
 def asker(initializer: Initializer) -> Callable[[list[Any], _pliant.Camera, bool], dict[str, Any]]:
     """What the library calls: tuples in, a dictionary out."""
+
+    if not callable(initializer):
+        raise TypeError(f"initializer is a {type(initializer).__name__}; give a function of frames, camera and is_last, "
+                        "or the name of a registered one")
 
     def ask(frames: list[Any], camera: _pliant.Camera, is_last: bool) -> dict[str, Any]:
         answer = initializer([FollowedFrame(*frame) for frame in frames], camera, is_last)
@@ -277,24 +290,47 @@ def follower(tracks: PointFollower) -> Callable[[Any, Any, Any, Any], tuple[NDAr
     follow = getattr(tracks, "follow", None)
     if not callable(follow):
         raise TypeError(f"tracks is a {type(tracks).__name__}; give an object with a method follow, or the path of a "
-                        "file")
+                        "file (arrays are saved first: np.savez(path, tracks=..., visibility=...))")
 
     def call(previous: Any, image: Any, pixel: Any, predicted: Any) -> tuple[NDArray[Any], NDArray[Any]]:
-        pixels, seen = follow(TrackedImage(*previous), TrackedImage(*image), pixel, predicted)
-        return np.asarray(pixels), np.asarray(seen)
+        answer = follow(TrackedImage(*previous), TrackedImage(*image), pixel, predicted)
+        if not isinstance(answer, (tuple, list)) or len(answer) != 2:
+            raise TypeError(f"follow returns (pixels, visible); this one returned {type(answer).__name__}"
+                            f"{f' of {len(answer)}' if isinstance(answer, (tuple, list)) else ''}")
+        seen = np.asarray(answer[1])
+        if seen.dtype.kind not in "biu" or (seen.dtype.kind != "b" and not np.isin(seen, (0, 1)).all()):
+            raise TypeError(f"follow returns visible as True and False; these are {seen.dtype}. Of scores say from which "
+                            "on a point is seen")
+        return np.asarray(answer[0]), seen.astype(bool)
 
     return call
 
 
-def chosen(options: Any, initializer: Initializer | None, tracks: Any,
+def _initializer_named(name: str) -> Initializer:
+    if name not in _initializers:
+        known = ", ".join(sorted(_initializers)) or "none"
+        raise ValueError(f"there is no initializer {name!r} (registered: {known}); pliant.register_initializer gives it "
+                         "its name")
+    return _initializers[name]
+
+
+def chosen(values: Any, initializer: Initializer | str | None, tracks: Any,
            cost: Cost | str | None) -> tuple[Any, dict[str, Any]]:
     """The options without a name that is registered, and what the library calls."""
     name = "python"
-    method = options.get("Init.method") if isinstance(options, dict) else None
-    if isinstance(method, str) and method in _initializers:
+    method = values.get("Init.method") if isinstance(values, dict) else None
+    if isinstance(initializer, str):
+        name, initializer = initializer, _initializer_named(initializer)
+    known = options("track").unit["Init.method"]
+    if isinstance(method, str) and method not in known.split(" | ") and _initializers:
+        if method not in _initializers:
+            raise ValueError(f"Init.method is {method!r}; give one of {known}, or one that is registered: "
+                             f"{', '.join(sorted(_initializers))}")
         if initializer is not None:
             raise ValueError("there is an initializer, and Init.method names another one; give one of them")
-        options = {key: value for key, value in options.items() if key != "Init.method"}
+        values = {key: value for key, value in values.items() if key != "Init.method"}
         name, initializer = method, _initializers[method]
-    return options, {"initializer": None if initializer is None else asker(initializer), "initializer_name": name,
-                     "tracks": None if tracks is None else follower(tracks), **chosen_cost(cost)}
+    if tracks is not None and isinstance(values, dict) and values.get("TrackFile.path"):
+        raise ValueError("there are tracks, and TrackFile.path names a file of others; give one of them")
+    return values, {"initializer": None if initializer is None else asker(initializer), "initializer_name": name,
+                    "tracks": None if tracks is None else follower(tracks), **chosen_cost(cost)}

@@ -14,13 +14,16 @@ from __future__ import annotations
 import json
 import os
 import warnings
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Sequence as Several
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Union
 
 from . import _pliant
+from . import arguments as given
 from .extensions import Cost, Initializer, PointFollower, chosen, registered_tracks
 from .run import Run
+from .sequence import Sequence, sequence_request
 
 if TYPE_CHECKING:
     import numpy as np
@@ -29,14 +32,11 @@ if TYPE_CHECKING:
 StrPath = Union[str, "os.PathLike[str]"]
 RunOrPath = Union[Run, StrPath]
 OptionValues = Mapping[str, Any]
-
-
-def _text(path: StrPath | None) -> str:
-    return "" if path is None else os.fspath(path)
+JobProgress = Callable[[str, int, int], Any]
 
 
 def _run_path(run: RunOrPath) -> str:
-    return os.fspath(run.folder if isinstance(run, Run) else run)
+    return given.path(run.folder if isinstance(run, Run) else run, "run")
 
 
 def _several(paths: Any) -> list[str]:
@@ -46,24 +46,12 @@ def _several(paths: Any) -> list[str]:
     return [_run_path(path) for path in paths]
 
 
-def _numbers(frames: Iterable[int] | None, name: str) -> list[int]:
-    """None: no choice was made."""
-    numbers = [] if frames is None else [int(frame) for frame in frames]
-    if frames is not None and not numbers:
-        raise ValueError(f"{name} has no frame; give numbers of frames, or None")
-    return numbers
-
-
-def _options(options: OptionValues | None) -> dict[str, Any] | None:
-    return dict(options) if isinstance(options, Mapping) else options
-
-
 def read_camera(path: StrPath) -> _pliant.Camera:
     """The camera of a calibration file: camera.yaml, COLMAP's cameras.txt or cameras.bin, or OpenCV's YAML or XML.
 
     Raises pliant.Error where it cannot be read, and ValueError where it cannot be meant.
     """
-    return _pliant.read_camera(os.fspath(path))
+    return _pliant.read_camera(given.path(path, "path"))
 
 
 @dataclass(frozen=True)
@@ -104,9 +92,10 @@ def calibrate(image_path: StrPath, board: str, output_path: StrPath | None = Non
     Raises:
         pliant.Error: the board is not seen, or the images do not determine the camera. Nothing is written then.
     """
-    request = {"image_path": os.fspath(image_path), "board": board, "output_path": _text(output_path),
-               "figure": _text(figure)}
-    return Calibration(**_pliant.calibrate(request, _options(options), on_progress))
+    request = {"image_path": given.path(image_path, "image_path"), "board": given.text(board, "board"),
+               "figure": given.optional_path(figure, "figure"), **given.files(output=output_path)}
+    return Calibration(**_pliant.calibrate(request, given.options(options),
+                                           given.function(on_progress, "on_progress")))
 
 
 @dataclass(frozen=True)
@@ -149,9 +138,9 @@ def calibrate_stereo(image_path: StrPath, board: str, output_path: StrPath | Non
     """
     if (right_path is None) == (pairs == "none"):
         raise ValueError("give the right camera's images as right_path, or how each image holds both as pairs")
-    request = {"image_path": os.fspath(image_path), "board": board, "output_path": _text(output_path),
-               "right_path": _text(right_path), "pairs": pairs}
-    found = _pliant.calibrate_stereo(request, _options(options), on_progress)
+    request = {"image_path": given.path(image_path, "image_path"), "board": given.text(board, "board"),
+               "pairs": given.text(pairs, "pairs"), **given.files(output=output_path, right=right_path)}
+    found = _pliant.calibrate_stereo(request, given.options(options), given.function(on_progress, "on_progress"))
     return StereoCalibration(**{**found, "left": Calibration(**found["left"]), "right": Calibration(**found["right"])})
 
 
@@ -165,13 +154,14 @@ def simulate(output_path: StrPath, options: OptionValues | None = None, *, reali
         realism: the defaults of the options, clean or endoscope.
         on_progress: called with the frames that are done and the frames that are to be.
     """
-    _pliant.simulate(os.fspath(output_path), _options(options), realism, on_progress)
+    _pliant.simulate(given.path(output_path, "output_path"), given.options(options), given.text(realism, "realism"),
+                     given.function(on_progress, "on_progress"))
 
 
-def track(input: StrPath | Iterable[NDArray[np.uint8]], output_path: StrPath, options: OptionValues | None = None, *,
-          camera: StrPath | _pliant.Camera | None = None, timestamps: Sequence[float] | None = None,
+def track(input: StrPath | Sequence | Iterable[NDArray[np.uint8]], output_path: StrPath, options: OptionValues | None = None, *,
+          camera: StrPath | _pliant.Camera | None = None, timestamps: Several[float] | None = None,
           preset: str = "default", mask_path: StrPath | None = None, start: int = 0, end: int | None = None,
-          stride: int = 1, initializer: Initializer | None = None, tracks: PointFollower | StrPath | None = None,
+          stride: int = 1, initializer: Initializer | str | None = None, tracks: PointFollower | StrPath | None = None,
           cost: Cost | str | None = None, depth_prior: StrPath | None = None, resume: bool = False,
           on_frame: Callable[[_pliant.FrameReport], Any] | None = None) -> Run:
     """Camera pose and the motion of every point.
@@ -181,7 +171,8 @@ def track(input: StrPath | Iterable[NDArray[np.uint8]], output_path: StrPath, op
             input ("-"), whose images are recorded beside the run; or images: a list or array of them, or anything that
             is iterated over. An image is uint8 (height, width), or (height, width, 3) in the order blue, green, red, as
             OpenCV reads it. What has a length and an index is asked for an image whenever it is needed; the images of
-            another iterable are kept in memory to the end, since tracking may go back.
+            another iterable are kept in memory to the end, since tracking may go back. Or a pliant.Sequence, with the
+            camera, masks and frames that it was opened with.
         output_path: run folder, made if need be.
         options: such as {"Init.method": "window", "Growth.grow": False, "General.seed": 3}.
         camera: of a path the calibration file (None: the one that belongs to the images), of images a pliant.Camera.
@@ -189,8 +180,8 @@ def track(input: StrPath | Iterable[NDArray[np.uint8]], output_path: StrPath, op
         preset: the defaults of the options, default or paper.
         mask_path: folder of masks, or one image for all frames; 0: ignore this pixel.
         start, end, stride: the first frame, one past the last one (None: to the end), and every which frame.
-        initializer: makes first maps in place of Init.method; a function (pliant.extensions.Initializer). One that is
-            registered (pliant.register_initializer) is chosen by its name in Init.method.
+        initializer: makes first maps in place of Init.method: a function (pliant.extensions.Initializer), or the name
+            of one that is registered (pliant.register_initializer), which Init.method takes, too.
         tracks: follows points in place of Pliant's own tracker: an object (pliant.extensions.PointFollower), the name
             of what makes one (pliant.register_tracks), or the file of another program's tracks (docs/tracks.md).
         cost: a term that is added to the joint problem of every frame: an object (pliant.extensions.Cost), or the name
@@ -208,30 +199,36 @@ def track(input: StrPath | Iterable[NDArray[np.uint8]], output_path: StrPath, op
     Raises:
         pliant.Error: the images cannot be read, or there is no map; the run folder has what there was until then.
     """
-    request: dict[str, Any] = {"mask_path": _text(mask_path), "start": start, "end": -1 if end is None else end,
-                               "stride": stride, "resume": resume}
-    output = os.fspath(output_path)
-    options = _options(options)
+    if isinstance(input, Sequence):
+        input, of_sequence = input.path, input.request
+        if (camera, mask_path, start, end, stride) != (None, None, 0, None, 1):
+            raise ValueError("the input is a pliant.Sequence, which has its camera, masks and frames; open it with those "
+                             "that are meant")
+    else:
+        of_sequence = sequence_request(mask_path, start, end, stride)
+    request: dict[str, Any] = {**of_sequence, "resume": given.truth(resume, "resume")}
+    output = given.path(output_path, "output_path")
+    options = given.options(options)
     tracks = registered_tracks(tracks)
     if isinstance(tracks, (str, os.PathLike)):
         options, tracks = {**(options or {}), "TrackFile.path": os.fspath(tracks)}, None
     if depth_prior is not None:
-        options = {**(options or {}), "DepthPrior.path": os.fspath(depth_prior)}
+        options = {**(options or {}), "DepthPrior.path": given.path(depth_prior, "depth_prior")}
     options, extensions = chosen(options, initializer, tracks, cost)
     request.update(extensions)
+    preset, on_frame = given.text(preset, "preset"), given.function(on_frame, "on_frame")
     if isinstance(input, (str, os.PathLike)):
-        if isinstance(camera, _pliant.Camera):
-            raise ValueError("camera is a pliant.Camera, and the input a path; give the path of its calibration")
         if timestamps is not None:
             raise ValueError("timestamps are for images that are given; those of a path come from its times.txt")
-        request.update(image_path=os.fspath(input), camera_path=_text(camera))
+        request = {"image_path": os.fspath(input), "camera_path": given.camera_path(camera), **request}
         _pliant.track_path(request, output, options, preset, on_frame)
     else:
         if resume:
             raise ValueError("images that are given do not come again, so such a run cannot be resumed; give a path")
         if not isinstance(camera, _pliant.Camera):
             raise ValueError("images need their camera; give a pliant.Camera (pliant.read_camera reads a file)")
-        request.update(images=input, camera=camera, timestamps=list(timestamps) if timestamps is not None else [])
+        request.update(images=input, camera=camera,
+                       timestamps=[] if timestamps is None else given.numbers(timestamps, "timestamps"))
         _pliant.track_images(request, output, options, preset, on_frame)
     return Run(output)
 
@@ -251,14 +248,14 @@ def refine(run: RunOrPath, output_path: StrPath, options: OptionValues | None = 
     Returns:
         The refined run.
     """
-    request = {"run_path": _run_path(run), "sequence_path": _text(sequence), "camera_path": _text(camera),
-               "output_path": os.fspath(output_path)}
-    _pliant.refine(request, _options(options), on_progress)
+    request = {"run_path": _run_path(run), "output_path": given.path(output_path, "output_path"),
+               **given.files(sequence=sequence, camera=camera)}
+    _pliant.refine(request, given.options(options), given.function(on_progress, "on_progress"))
     return Run(output_path)
 
 
 def join(runs: Any, output_path: StrPath, options: OptionValues | None = None, *, sequence: StrPath | None = None,
-         camera: StrPath | None = None) -> Run:
+         camera: StrPath | None = None, on_progress: JobProgress | None = None) -> Run:
     """One run of runs of parts of a recording, which overlap. Where two parts have no map in common, the later one's is
     a submap of its own, with a warning.
 
@@ -267,20 +264,21 @@ def join(runs: Any, output_path: StrPath, options: OptionValues | None = None, *
         output_path: folder of the joined run, made if need be; none of the runs'.
         options: such as {"Join.min_points": 100}.
         sequence, camera: images of a run that has no sparse/, and their calibration file.
+        on_progress: called with what is done ("join", for example), how much of it is done, and how much there is.
 
     Returns:
         The joined run.
     """
-    request = {"run_paths": _several(runs), "sequence_path": _text(sequence), "camera_path": _text(camera),
-               "output_path": os.fspath(output_path)}
-    for joint in _pliant.join(request, _options(options)):
+    request = {"run_paths": _several(runs), "output_path": given.path(output_path, "output_path"),
+               **given.files(sequence=sequence, camera=camera)}
+    for joint in _pliant.join(request, given.options(options), given.function(on_progress, "on_progress")):
         if joint["failure"]:
             warnings.warn(f"{joint['run']} is not joined to {joint['before']}: {joint['failure']}", stacklevel=2)
     return Run(output_path)
 
 
 def surface(run: RunOrPath, output_path: StrPath, options: OptionValues | None = None, *,
-            frames: Sequence[int] | None = None, sequence: StrPath | None = None, camera: StrPath | None = None,
+            frames: Several[int] | None = None, sequence: StrPath | None = None, camera: StrPath | None = None,
             mask_path: StrPath | None = None,
             on_progress: Callable[[str, int, int], Any] | None = None) -> dict[str, Any]:
     """Dense depth of the frames of a run, and a mesh that moves with the tissue (docs/formats.md).
@@ -295,17 +293,18 @@ def surface(run: RunOrPath, output_path: StrPath, options: OptionValues | None =
     Returns:
         surface.json.
     """
-    request = {"run_path": _run_path(run), "sequence_path": _text(sequence), "camera_path": _text(camera),
-               "mask_path": _text(mask_path), "output_path": os.fspath(output_path)}
-    _pliant.surface(request, _numbers(frames, "frames"), _options(options), on_progress)
+    request = {"run_path": _run_path(run), "output_path": given.path(output_path, "output_path"),
+               **given.files(sequence=sequence, camera=camera, mask=mask_path)}
+    _pliant.surface(request, given.wholes(frames, "frames"), given.options(options),
+                    given.function(on_progress, "on_progress"))
     with open(os.path.join(os.fspath(output_path), "surface.json"), encoding="utf-8") as file:
         return json.load(file)
 
 
 def evaluate(run: RunOrPath | None, sequence: StrPath | None = None, options: OptionValues | None = None, *,
              camera: StrPath | None = None, other_runs: Any = (), sfm_path: StrPath | None = None,
-             surface_path: StrPath | None = None, tracks: StrPath | None = None,
-             output_path: StrPath | None = None) -> dict[str, Any]:
+             surface_path: StrPath | None = None, tracks: StrPath | None = None, tracks_pixel_origin: str = "center",
+             output_path: StrPath | None = None, on_progress: JobProgress | None = None) -> dict[str, Any]:
     """How far a run is from the truth of its sequence, from other runs, or from structure from motion.
 
     Args:
@@ -317,7 +316,9 @@ def evaluate(run: RunOrPath | None, sequence: StrPath | None = None, options: Op
         sfm_path: points of structure from motion, a CSV or a COLMAP model.
         surface_path: a surface folder of the run, whose error is told too.
         tracks: file of another program's point tracks (docs/tracks.md), compared with the truth of the sequence.
+        tracks_pixel_origin: what (0, 0) is in that file: the center of the first pixel, or its upper left corner.
         output_path: folder for evaluation.json and evaluation.csv; None: they are not written.
+        on_progress: called with what is done ("evaluate", for example), how much of it is done, and how much there is.
 
     Returns:
         evaluation.json; docs/formats.md has its names. NaN is None.
@@ -329,10 +330,11 @@ def evaluate(run: RunOrPath | None, sequence: StrPath | None = None, options: Op
         raise ValueError("tracks are compared with the truth of a sequence; give sequence")
     if sequence is None and not others and sfm_path is None:
         raise ValueError("there is nothing to compare the run with; give sequence, other_runs or sfm_path")
-    request = {"run_path": "" if run is None else _run_path(run), "sequence_path": _text(sequence),
-               "camera_path": _text(camera), "sfm_path": _text(sfm_path), "surface_path": _text(surface_path),
-               "other_runs": others, "track_file_path": _text(tracks)}
-    return json.loads(_pliant.evaluate(request, _options(options), _text(output_path)))
+    request = {"run_path": "" if run is None else _run_path(run), "other_runs": others,
+               "tracks_pixel_origin": given.text(tracks_pixel_origin, "tracks_pixel_origin"),
+               **given.files(sequence=sequence, camera=camera, sfm=sfm_path, surface=surface_path, tracks=tracks,
+                             output=output_path)}
+    return json.loads(_pliant.evaluate(request, given.options(options), given.function(on_progress, "on_progress")))
 
 
 def evaluate_stir(tracked: StrPath, start: StrPath, end: StrPath, *,
@@ -352,22 +354,25 @@ def evaluate_stir(tracked: StrPath, start: StrPath, end: StrPath, *,
     Raises:
         pliant.Error: a file cannot be read, or the files do not belong together.
     """
-    return json.loads(_pliant.evaluate_stir(os.fspath(tracked), os.fspath(start), os.fspath(end), _text(output_path)))
+    return json.loads(_pliant.evaluate_stir(given.path(tracked, "tracked"), given.path(start, "start"),
+                                            given.path(end, "end"), given.optional_path(output_path, "output_path")))
 
 
-def compare(runs: Any, sequence: StrPath | Iterable[StrPath], options: OptionValues | None = None, *,
-            camera: StrPath | None = None, output_path: StrPath | None = None,
-            figure: StrPath | None = None) -> dict[str, Any]:
-    """Sets runs side by side: each is evaluated against the truth of its sequence.
+def compare(runs: Any, sequence: StrPath | Iterable[StrPath] | None = None, options: OptionValues | None = None, *,
+            camera: StrPath | None = None, output_path: StrPath | None = None, figure: StrPath | None = None,
+            on_progress: JobProgress | None = None) -> dict[str, Any]:
+    """Sets runs side by side: each is evaluated against the truth of its sequence, or else against the first run.
 
     Args:
         runs: the runs or their folders.
-        sequence: the images, with truth where there is; one for all runs, or a list with one for each.
+        sequence: the images, with truth where there is; one for all runs, or a list with one for each. None: each run
+            is compared with the first one ("consistency"): depths at the same pixels, ATE and RPE after alignment.
         options: as of pliant.evaluate, such as {"PointError.protocol": "all"}.
         camera: calibration file of the sequences; None: the one that belongs to them.
         output_path: folder for comparison.json and comparison.csv, and for evaluation.json and evaluation.csv of each
             run in 0/, 1/, ... in their order; None: they are not written.
         figure: a figure of the errors over the frames, .png, .svg or .pdf; None: none.
+        on_progress: as of pliant.evaluate, run by run.
 
     Returns:
         comparison.json: in "runs" what pliant.evaluate returns of each run without its frames, in their order ("run" is
@@ -375,16 +380,18 @@ def compare(runs: Any, sequence: StrPath | Iterable[StrPath], options: OptionVal
 
     Raises:
         pliant.Error: none of the runs can be evaluated, or a file cannot be written.
-        ValueError: there is no run, or there are neither one sequence nor as many as runs.
+        ValueError: there is no run, or one alone without a sequence, or there are neither one sequence nor as many as
+            runs.
     """
-    sequences = [sequence] if isinstance(sequence, (str, os.PathLike)) else list(sequence)
-    request = {"run_paths": _several(runs), "sequence_paths": [os.fspath(path) for path in sequences],
-               "camera_path": _text(camera)}
-    return json.loads(_pliant.compare(request, _options(options), _text(output_path), _text(figure)))
+    sequences = [sequence] if isinstance(sequence, (str, os.PathLike)) else list(sequence or [])
+    request = {"run_paths": _several(runs), "sequence_paths": [given.path(path, "sequence") for path in sequences],
+               **given.files(camera=camera, output=output_path, figure=figure)}
+    return json.loads(_pliant.compare(request, given.options(options), given.function(on_progress, "on_progress")))
 
 
 def import_result(input_path: StrPath, output_path: StrPath, sequence: StrPath, format: str = "colmap",
-                  options: OptionValues | None = None, *, camera: StrPath | None = None) -> Run:
+                  options: OptionValues | None = None, *, camera: StrPath | None = None,
+                  on_progress: JobProgress | None = None) -> Run:
     """Turns what another program made of a sequence into a run. What was left out is a UserWarning.
 
     Args:
@@ -394,17 +401,19 @@ def import_result(input_path: StrPath, output_path: StrPath, sequence: StrPath, 
         format: colmap, result, tum, kitti or euroc.
         options: such as {"Import.unit_mm": 1000}.
         camera: calibration file of images that have none; of a model its own, where it is None.
+        on_progress: called with what is done, how much of it is done, and how much there is.
     """
-    request = {"input_path": os.fspath(input_path), "sequence_path": os.fspath(sequence), "camera_path": _text(camera),
-               "format": format, "as": "run", "output_path": os.fspath(output_path)}
-    for note in _pliant.import_result(request, _options(options)):
+    request = {"input_path": given.path(input_path, "input_path"), "sequence_path": given.path(sequence, "sequence"),
+               "format": given.text(format, "format"), "as": "run",
+               "output_path": given.path(output_path, "output_path"), **given.files(camera=camera)}
+    for note in _pliant.import_result(request, given.options(options), given.function(on_progress, "on_progress")):
         warnings.warn(note, UserWarning, stacklevel=2)
     return Run(output_path)
 
 
 def export(run: RunOrPath, output_path: StrPath, format: str = "canonical", options: OptionValues | None = None, *,
            sequence: StrPath | None = None, camera: StrPath | None = None, mask_path: StrPath | None = None,
-           surface_path: StrPath | None = None) -> dict[str, Any]:
+           surface_path: StrPath | None = None, on_progress: JobProgress | None = None) -> dict[str, Any]:
     """Writes a run in the format of another program (docs/formats.md lists them).
 
     Args:
@@ -413,18 +422,20 @@ def export(run: RunOrPath, output_path: StrPath, format: str = "canonical", opti
         format: its name, such as canonical, spacetime, ply or nerfstudio.
         sequence, camera, mask_path: the images, their calibration file and masks; None: those of the run.
         surface_path: a surface folder of the run, for formats with depths.
+        on_progress: called with what is done, how much of it is done, and how much there is.
 
     Returns:
         frames, points, observations (how many were written), and notes (what could not be known).
     """
-    request = {"run_path": _run_path(run), "sequence_path": _text(sequence), "format": format,
-               "output_path": os.fspath(output_path), "camera_path": _text(camera), "mask_path": _text(mask_path),
-               "surface_path": _text(surface_path)}
-    return _pliant.export(request, _options(options))
+    request = {"run_path": _run_path(run), "format": given.text(format, "format"),
+               "output_path": given.path(output_path, "output_path"),
+               **given.files(sequence=sequence, camera=camera, mask=mask_path, surface=surface_path)}
+    return _pliant.export(request, given.options(options), given.function(on_progress, "on_progress"))
 
 
-def report(runs: Any, output_path: StrPath, options: OptionValues | None = None, *, figure: Sequence[int] | None = None,
-           sequence: StrPath | None = None, camera: StrPath | None = None, surface_paths: Any = ()) -> list[str]:
+def report(runs: Any, output_path: StrPath, options: OptionValues | None = None, *, figure: Several[int] | None = None,
+           sequence: StrPath | None = None, camera: StrPath | None = None, surface_paths: Any = (),
+           on_progress: JobProgress | None = None) -> list[str]:
     """Shows runs: a page for the browser (.html), with `figure` a still (.png, .svg or .pdf), or a film (.mp4).
 
     Args:
@@ -434,10 +445,12 @@ def report(runs: Any, output_path: StrPath, options: OptionValues | None = None,
         figure: numbers of the frames of a still.
         sequence, camera: the images, with truth where there is truth, and their calibration file.
         surface_paths: surface folders of the runs, whose meshes the page shows.
+        on_progress: of a page or a film, called with what is done, how much of it is done, and how much there is.
 
     Returns:
         What is missing or left out, a sentence each.
     """
-    request = {"run_paths": _several(runs), "sequence_path": _text(sequence), "camera_path": _text(camera),
-               "surface_paths": _several(surface_paths)}
-    return _pliant.report(request, _numbers(figure, "figure"), _options(options), os.fspath(output_path))
+    request = {"run_paths": _several(runs), "surface_paths": _several(surface_paths),
+               "output_path": given.path(output_path, "output_path"), **given.files(sequence=sequence, camera=camera)}
+    return _pliant.report(request, given.wholes(figure, "figure"), given.options(options),
+                          given.function(on_progress, "on_progress"))

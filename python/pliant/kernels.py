@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _pliant
+from . import arguments as given
 from .extensions import Cost, chosen_cost
 
 if TYPE_CHECKING:
@@ -31,7 +32,7 @@ def triangulate(cam1_from_cam0: NDArray[Any], rays0: NDArray[Any], rays1: NDArra
         (n, 3) float64, the points in camera 0, NaN where there is none; and (n,) bool, whether there is one (rays that
         are not numbers, run parallel, or meet behind a camera have none).
     """
-    return _pliant.triangulate(cam1_from_cam0, rays0, rays1, method)
+    return _pliant.triangulate(cam1_from_cam0, rays0, rays1, given.text(method, "method"))
 
 
 def relative_pose(rays0: NDArray[Any], rays1: NDArray[Any], focal_px: float, *, solver: str = "nister",
@@ -57,9 +58,12 @@ def relative_pose(rays0: NDArray[Any], rays1: NDArray[Any], focal_px: float, *, 
         pliant.Error: too few matches or inliers (insufficient), or matches that do not determine the motion
             (degenerate).
     """
-    return _pliant.relative_pose(rays0, rays1, focal_px, {
-        "solver": solver, "robust": robust, "max_error_px": max_error_px, "max_iterations": max_iterations,
-        "seed": seed})
+    if given.whole(seed, "seed") < 0:
+        raise ValueError(f"seed is {seed}; give a number from 0 on")
+    return _pliant.relative_pose(rays0, rays1, given.number(focal_px, "focal_px"), {
+        "solver": given.text(solver, "solver"), "robust": given.text(robust, "robust"),
+        "max_error_px": given.number(max_error_px, "max_error_px"),
+        "max_iterations": given.whole(max_iterations, "max_iterations"), "seed": given.whole(seed, "seed")})
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,8 +94,7 @@ def deformation_graph(positions: NDArray[Any], rest_positions: NDArray[Any] | No
 
     Raises ValueError for positions that are not finite, and pliant.Error for counts that differ.
     """
-    return DeformationGraph(*_pliant.deformation_graph(positions, rest_positions,
-                                                       None if options is None else dict(options)))
+    return DeformationGraph(*_pliant.deformation_graph(positions, rest_positions, given.options(options)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,8 +140,8 @@ def solve_frame(camera: _pliant.Camera, positions: NDArray[Any], pixels: NDArray
     Raises ValueError for numbers that are not finite, what a cost raises, and pliant.Error: counts that differ
     (mismatch), too few points before the camera (insufficient), no usable solution (degenerate).
     """
-    return FrameSolution(*_pliant.solve_frame(camera, positions, pixels, cam_from_world, rest_positions, held,
-                                              None if options is None else dict(options), chosen_cost(cost)))
+    return FrameSolution(*_pliant.solve_frame(given.camera(camera), positions, pixels, cam_from_world, rest_positions,
+                                              given.truth(held, "held"), given.options(options), chosen_cost(cost)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -182,6 +185,7 @@ def solve_window(times: NDArray[Any], cams_from_world: NDArray[Any], points: NDA
     Raises ValueError for what cannot be meant, and pliant.Error: too few views or points (insufficient), no usable step
     (degenerate).
     """
-    start = {"times": np.asarray(times, dtype=float), "cams_from_world": np.asarray(cams_from_world),
+    start = {"times": given.numbers(times, "times"), "cams_from_world": np.asarray(cams_from_world),
              "points": points, "rays": rays, "view_idx": np.asarray(view_idx), "point_idx": np.asarray(point_idx)}
-    return WindowSolution(*_pliant.solve_window(start, focal_px, deforming, None if options is None else dict(options)))
+    return WindowSolution(*_pliant.solve_window(start, given.number(focal_px, "focal_px"),
+                                                given.truth(deforming, "deforming"), given.options(options)))

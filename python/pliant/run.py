@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _pliant
+from . import arguments as given
 from .tables import Frames, Observations, Points, Poses
 
 if TYPE_CHECKING:
@@ -73,23 +74,25 @@ class Run:
     def frame(self, frame_idx: int) -> Observations:
         """The points of the frame with this number, sorted by point_id; views, not copies; none where
         it has none."""
-        column = self.observations.frame_idx
-        first, last = np.searchsorted(column, np.array([frame_idx, frame_idx + 1], column.dtype))  # no copy of it
+        column, wanted = self.observations.frame_idx, given.whole(frame_idx, "frame_idx")
+        if not 0 <= wanted < np.iinfo(column.dtype).max:
+            return self.observations[:0]
+        first, last = np.searchsorted(column, np.array([wanted, wanted + 1], column.dtype))  # no copy of it
         return self.observations[first:last]
 
     def path(self, point_id: int) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
         """The way of a point: numbers of the frames that have it (n,), and its positions in them (n, 3), world frame of
-        each frame's map, map units."""
-        order, ids = self._by_point
-        first, last = np.searchsorted(ids, [point_id, point_id + 1])
-        rows = order[first:last]
-        return self.observations.frame_idx[rows], self.observations.position[rows]
+        each frame's map, map units; views, of one copy of these columns in the order of the points."""
+        ids, frame_idx, position = self._by_point
+        wanted = given.whole(point_id, "point_id")
+        first, last = np.searchsorted(ids, [wanted, wanted + 1])
+        return frame_idx[first:last], position[first:last]
 
     @cached_property
-    def _by_point(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """The rows of the observations in the order of the points, and the points in this order."""
+    def _by_point(self) -> tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.float64]]:
+        """Points, frames and positions of the observations in the order of the points."""
         order = np.argsort(self.observations.point_id, kind="stable")
-        return order, self.observations.point_id[order]
+        return self.observations.point_id[order], self.observations.frame_idx[order], self.observations.position[order]
 
 
 def open_run(path: str | os.PathLike[str]) -> Run:

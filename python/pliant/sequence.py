@@ -4,13 +4,13 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from . import _pliant
+from . import arguments as given
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -30,17 +30,24 @@ class SequenceFrame(NamedTuple):
 
 
 class Sequence:
-    """A sequence that can be iterated over, again and again: every iteration reads it from its first frame.
+    """A sequence that can be iterated over, again and again: every iteration reads it from its first frame. It can be
+    given to pliant.track.
 
     Attributes:
+        path: where it is.
         camera: its pliant.Camera.
         baseline_mm: distance of the cameras of a rectified pair; None: there are no pairs.
     """
 
-    def __init__(self, source: _pliant.SequenceSource):
-        self._source = source
-        self.camera: _pliant.Camera = source.camera
-        self.baseline_mm: float | None = source.baseline_mm
+    def __init__(self, path: str, request: dict[str, Any]):
+        self.path = path
+        self.request = request
+        self._source = _pliant.SequenceSource({"image_path": path, **request})
+        self.camera: _pliant.Camera = self._source.camera
+        self.baseline_mm: float | None = self._source.baseline_mm
+
+    def __repr__(self) -> str:
+        return f"<pliant.Sequence {self.path}: {len(self)} frames of {self.camera.width}x{self.camera.height} pixels>"
 
     def __len__(self) -> int:
         """How many frames there are; of a video what its container says."""
@@ -53,11 +60,17 @@ class Sequence:
 
     def depth(self, frame_idx: int) -> NDArray[np.float32] | None:
         """(height, width), z along the optical axis in mm, 0: none there; None where the sequence has no depth."""
-        return self._source.depth(frame_idx)
+        return self._source.depth(given.whole(frame_idx, "frame_idx"))
 
     def world_from_cam(self, frame_idx: int) -> NDArray[np.float64] | None:
         """(4, 4), the true pose; None where the sequence has none."""
-        return self._source.world_from_cam(frame_idx)
+        return self._source.world_from_cam(given.whole(frame_idx, "frame_idx"))
+
+
+def sequence_request(mask_path: StrPath | None, start: int, end: int | None, stride: int) -> dict[str, Any]:
+    """What the library is asked for beside the images and their camera."""
+    return {"start": given.whole(start, "start"), "end": -1 if end is None else given.whole(end, "end"),
+            "stride": given.whole(stride, "stride"), **given.files(mask=mask_path)}
 
 
 def open_sequence(path: StrPath, *, camera: StrPath | None = None, mask_path: StrPath | None = None, start: int = 0,
@@ -72,7 +85,5 @@ def open_sequence(path: StrPath, *, camera: StrPath | None = None, mask_path: St
 
     Raises pliant.Error where it cannot be read, also while it is iterated over.
     """
-    return Sequence(_pliant.SequenceSource({
-        "image_path": os.fspath(path), "camera_path": "" if camera is None else os.fspath(camera),
-        "mask_path": "" if mask_path is None else os.fspath(mask_path), "start": start,
-        "end": -1 if end is None else end, "stride": stride}))
+    return Sequence(given.path(path, "path"),
+                    {"camera_path": given.camera_path(camera), **sequence_request(mask_path, start, end, stride)})

@@ -4,13 +4,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+import operator
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+
+Table = TypeVar("Table", bound="_Table")
 
 
 class _Table:
@@ -30,6 +34,17 @@ class _Table:
 
     def __len__(self) -> int:
         raise NotImplementedError
+
+    def __getitem__(self: Table, rows: Any) -> Table:
+        """The rows that a slice, a mask, indices or one index name; of a slice or one index the columns are views."""
+        if isinstance(rows, (int, np.integer)):
+            idx = operator.index(rows)
+            if not -len(self) <= idx < len(self):
+                raise IndexError(f"there is no row {idx}; there are {len(self)}")
+            rows = slice(idx % len(self), idx % len(self) + 1)
+        columns = (getattr(self, field.name) for field in fields(self))  # type: ignore[arg-type]
+        return type(self)(*({name: column[rows] for name, column in columns_.items()} if isinstance(columns_, dict)
+                            else columns_[rows] for columns_ in columns))
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -130,11 +145,6 @@ class Observations(_Table):
 
     def __len__(self) -> int:
         return len(self.point_id)
-
-    def __getitem__(self, rows: Any) -> Observations:
-        """The rows that a slice, a mask or indices name; of a slice the columns are views."""
-        return Observations(self.frame_idx[rows], self.point_id[rows], self.pixel[rows], self.position[rows],
-                            self.ssim[rows], self.sigma[rows])
 
     def columns(self) -> dict[str, NDArray[Any]]:
         return {"frame_idx": self.frame_idx, "point_id": self.point_id, "u_px": self.pixel[:, 0],

@@ -9,6 +9,7 @@ from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from . import _pliant
+from . import arguments as given
 from .extensions import Cost, Initializer, PointFollower, chosen, registered_tracks
 
 if TYPE_CHECKING:
@@ -24,7 +25,7 @@ class Tracker(_pliant.Tracker):
     """
 
     def __init__(self, camera: _pliant.Camera, options: Mapping[str, Any] | None = None, *, preset: str = "default",
-                 examples: Iterable[NDArray[np.uint8]] = (), initializer: Initializer | None = None,
+                 examples: Iterable[NDArray[np.uint8]] = (), initializer: Initializer | str | None = None,
                  tracks: PointFollower | str | None = None, cost: Cost | str | None = None):
         """
         Args:
@@ -44,7 +45,8 @@ class Tracker(_pliant.Tracker):
         tracks = registered_tracks(tracks)
         if isinstance(tracks, (str, os.PathLike)):
             raise ValueError("a file of tracks belongs to the frames of a sequence; give it to pliant.track")
-        chosen_options, extensions = chosen(dict(options) if isinstance(options, Mapping) else options, initializer,
-                                            tracks, cost)
+        if not isinstance(examples, Iterable):
+            raise TypeError(f"examples is a {type(examples).__name__}; give a list of images")
+        chosen_options, extensions = chosen(given.options(options), initializer, tracks, cost)
         self._extensions = extensions  # which the library calls as long as this lives
-        super().__init__(camera, chosen_options, preset, examples, extensions)
+        super().__init__(given.camera(camera), chosen_options, given.text(preset, "preset"), examples, extensions)

@@ -24,16 +24,18 @@ const Manual kCompareManual = {
     "tracks and their mean length in frames, tracks that continue another one that had ended at the same point of "
     "the material (simulated sequences), the reprojection error of the run's own points, and the time it took. The "
     "second says how far it is from the truth, where the sequence has one: pliant evaluate --help explains its figures "
-    "and their nulls.\n\n"
+    "and their nulls. Without --sequence it says how far each run is from the first one: depths at the same pixels "
+    "after one scale a frame, ATE after a similarity by the length of the path, and RPE from frame to frame.\n\n"
     "Reads --run, two or more: run folders that pliant track or pliant import left, or other systems' results. Reads "
-    "--sequence, one for all of them, or one for each in their order.\n\n"
+    "--sequence, one for all of them, or one for each in their order, or none.\n\n"
     "Leaves, where --output_path is given: comparison.json, comparison.csv (one row a run), and evaluation.json and "
     "evaluation.csv of each run in 0/, 1/, ... in their order. Where --figure is given: a figure for a paper, one "
     "column (3.4 inches) wide, with the surface RMSE and its null, the camera error and the points of every frame, as "
     "far as the runs have them. A line has a gap where the run has no map.\n\n"
     "A run that cannot be evaluated is said on standard error; the others are compared, and the command ends with 1.",
     {"pliant compare --run ours --run rigid --sequence colon --figure comparison.pdf",
-     "pliant compare --run ours --run theirs --sequence colon --protocol all --output_path comparison"},
+     "pliant compare --run ours --run theirs --sequence colon --protocol all --output_path comparison",
+     "pliant compare --run ours --run theirs"},
 };
 
 }  // namespace
@@ -46,7 +48,9 @@ int CompareCommand(std::span<const std::string> args) {
   CommandLine line(kCompareManual);
   line.Add("run", &request.run_paths, "DIR", "run folder", Need::kRequired);
   line.Add("sequence", &request.sequence_paths, "PATH",
-           "the images, with truth where there is; one for all runs, or one for each", Need::kRequired);
+           "the images, with truth where there is; one for all runs, or one for each; without it the runs are compared "
+           "with the first one",
+           Need::kOptional);
   AddEvaluationArguments(&line, &request.camera_path);
   line.Add("output_path", &output_path, "DIR", "folder for the JSON and CSV files", Need::kOptional);
   line.Add("figure", &figure_path, "FILE", "figure of the errors over the frames to write: .png, .svg or .pdf",

@@ -3,16 +3,15 @@
 
 #include "datasets/depth_prior_file.h"
 
-#include <cmath>
 #include <string>
+#include <utility>
 
 #include "datasets/depth_array.h"
 #include "datasets/image_file.h"
+#include "pliant/datasets/frame_checks.h"
 
 namespace pliant {
 namespace {
-
-constexpr double kMaxStretch = 0.02;  // of the sides' ratio: sizes are rounded to multiples of a network's patches
 
 Result<cv::Mat> ReadValues(const std::filesystem::path& path) {
   if (path.extension() == ".npy") return ReadDepthArray(path, "a depth prior");
@@ -33,12 +32,8 @@ Result<cv::Mat> ReadValues(const std::filesystem::path& path) {
 Result<cv::Mat> ReadDepthPrior(const std::filesystem::path& path, int width, int height) {
   Result<cv::Mat> values = ReadValues(path);
   if (!values.ok()) return values;
-  const double stretch = static_cast<double>(values->cols) * height / (static_cast<double>(values->rows) * width);
-  if (std::abs(stretch - 1.0) > kMaxStretch)
-    return Status(ErrorCode::kMismatch, "the depth prior " + path.string() + " is " + SizeText(*values) +
-                                            ", but the images are " + SizeText(width, height) +
-                                            "; resize it to the sides of the images");
-  return values;
+  const Status size = CheckDepthPriorSize(values->size(), {width, height}, "the depth prior " + path.string());
+  return size.ok() ? std::move(values) : Result<cv::Mat>(size);
 }
 
 }  // namespace pliant

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "datasets/formats.h"
+#include "pliant/datasets/frame_checks.h"
 
 namespace pliant {
 namespace {
@@ -51,10 +52,7 @@ Result<DataSet> OpenGivenImages(const SequenceRequest& request) {
                   "there are " + std::to_string(times) + " timestamps for " +
                       (given.images->count() > 0 ? std::to_string(given.images->count()) : "an unknown number of") +
                       " images; each image needs one");
-  for (std::size_t k = 0; k < given.timestamps_s.size(); ++k)
-    if (!std::isfinite(given.timestamps_s[k]) || (k > 0 && !(given.timestamps_s[k] > given.timestamps_s[k - 1])))
-      return Status(ErrorCode::kInvalidArgument, "the timestamp of image " + std::to_string(k) +
-                                                     " is not a number, or not after the one before; times grow");
+  if (Status status = CheckFrameTimes(given.timestamps_s, "the timestamps are"); !status.ok()) return status;
   DataSet data_set{.calibration = {given.camera, "that was given"},
                    .images = std::make_unique<GivenStream>(given.images),
                    .mask_path = request.mask_path,

@@ -3,6 +3,7 @@
 
 #include "pliant/datasets/match_poses.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <iterator>
@@ -20,6 +21,9 @@ struct TimeUnit {
 
 constexpr std::array<TimeUnit, 4> kTimeUnits{
     {{"seconds", 1.0}, {"milliseconds", 1e-3}, {"microseconds", 1e-6}, {"nanoseconds", 1e-9}}};
+
+// Of the poses, or of the frames where these are fewer: what a clock that is not the sequence's matches by chance.
+constexpr double kMinMatchedShare = 0.1;
 
 using FrameAtTime = std::map<double, int>;  // seconds of the sequence's clock
 
@@ -46,6 +50,12 @@ std::map<int, NearestPose> NearestPoses(std::span<const TimedPose> poses, const 
   return nearest;
 }
 
+std::string HowMany(std::size_t matched, std::size_t poses, const std::string& name) {
+  if (matched == 0) return "no pose of " + name + " is";
+  return "only " + std::to_string(matched) + " of the " + std::to_string(poses) + " poses of " + name +
+         (matched == 1 ? " is" : " are");
+}
+
 std::string Span(double first_s, double last_s) { return Seconds(first_s) + " to " + Seconds(last_s); }
 
 }  // namespace
@@ -66,13 +76,14 @@ Result<MatchedPoses> MatchPoses(std::span<const TimedPose> poses, const Sequence
     nearest = std::move(found);
     unit = &candidate;
   }
-  const bool by_chance = nearest.size() == 1 && poses.size() > 1 && frame_at.size() > 1;
+  const std::size_t possible = std::min(poses.size(), frame_at.size());
+  const bool by_chance = possible > 1 && (nearest.size() == 1 || static_cast<double>(nearest.size()) <
+                                                                     kMinMatchedShare * static_cast<double>(possible));
   if ((nearest.empty() && !poses.empty()) || by_chance)
     return Status(ErrorCode::kMismatch,
-                  (by_chance ? "only one of the poses of " : "no pose of ") + name + " is within " +
-                      Seconds(max_difference_s) + " of a frame: its times go from " +
-                      Span(poses.front().timestamp_s, poses.back().timestamp_s) + ", the sequence's from " +
-                      Span(frame_at.begin()->first, frame_at.rbegin()->first) +
+                  HowMany(nearest.size(), poses.size(), name) + " within " + Seconds(max_difference_s) +
+                      " of a frame: its times go from " + Span(poses.front().timestamp_s, poses.back().timestamp_s) +
+                      ", the sequence's from " + Span(frame_at.begin()->first, frame_at.rbegin()->first) +
                       "; write times in seconds of the sequence's clock");
   MatchedPoses matched;
   for (const auto& [frame_idx, match] : nearest) matched.world_from_cam.emplace(frame_idx, match.pose->world_from_cam);

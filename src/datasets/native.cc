@@ -14,6 +14,7 @@
 #include "datasets/set_files.h"
 #include "pliant/base/files.h"
 #include "pliant/base/options.h"
+#include "pliant/datasets/frame_checks.h"
 #include "pliant/datasets/native_layout.h"
 #include "pliant/io/camera_file.h"
 #include "pliant/io/trajectory.h"
@@ -86,6 +87,8 @@ Status AddTimesAndTruth(const fs::path& folder, DataSet* data_set) {
   if (const fs::path file = folder / native::kTimesFile; Exists(file)) {
     Result<std::vector<double>> times_s = ReadTimes(file);
     if (!times_s.ok()) return times_s.status();
+    if (Status status = CheckFrameTimes(*times_s, "the times in " + file.string() + " are"); !status.ok())
+      return {ErrorCode::kMismatch, status.message()};
     if (times_s->size() != static_cast<std::size_t>(count))
       return WrongLineCount(file, "times", times_s->size(), count);
     data_set->timestamps_s = *std::move(times_s);

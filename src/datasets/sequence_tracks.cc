@@ -135,6 +135,11 @@ Result<SequenceTracks> ReadTracksOfSequence(const TrackFileOptions& options, con
   std::error_code error;
   const bool may_differ = std::filesystem::is_regular_file(request.image_path, error);
   int frames = (*sequence)->size();
+  const bool is_unknown = request.given != nullptr && frames == 0;  // images that come one by one
+  if (is_unknown && !file->images.empty())
+    return Mismatch("the database " + Quoted(options.path) +
+                    " has names of images, and images that come one by one have none before; give a list of them, or a "
+                    "path");
   const auto count = [&] {
     const auto counted = CountFrames(whole);
     if (counted.ok()) frames = *counted;
@@ -145,7 +150,7 @@ Result<SequenceTracks> ReadTracksOfSequence(const TrackFileOptions& options, con
   if (Status status = NameFrames(options.path, **sequence, frames, &*file); !status.ok()) return status;
   if (may_differ && !CheckFrames(options.path, frames, *file).ok())
     if (Status status = count(); !status.ok()) return status;
-  if (Status status = CheckFrames(options.path, frames, *file); !status.ok()) return status;
+  if (Status status = CheckFrames(options.path, frames, *file); !status.ok() && !is_unknown) return status;
   const bool corner = options.pixel_origin == PixelOrigin::kCorner && file->images.empty();
   for (PixelTrack& track : file->tracks)
     for (TrackPixel& seen : track.pixels) {

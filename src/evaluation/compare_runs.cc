@@ -30,6 +30,15 @@ std::vector<SequenceRequest> SequencesOf(const CompareRequest& request) {
   return sequences;
 }
 
+// Each but the first against the first.
+Result<Evaluation> WithoutTruth(const CompareRequest& request, std::size_t i, const EvaluationOptions& options,
+                                const JobProgress& progress) {
+  const std::string& path = request.run_paths[i];
+  if (i == 0) return EvaluateRun(path, RunReferences{}, options, progress);
+  const std::vector<std::string> others = {request.run_paths.front()};
+  return EvaluateRun(path, RunReferences{.other_runs = others}, options, progress);
+}
+
 bool IsSame(const SequenceRequest& a, const SequenceRequest& b) {
   return a.image_path == b.image_path && a.spare_camera_path == b.spare_camera_path && a.mask_path == b.mask_path;
 }
@@ -47,7 +56,10 @@ Status CheckCompareRequest(const CompareRequest& request) {
   const std::size_t runs = request.run_paths.size();
   const std::size_t sequences = request.sequence_paths.size();
   if (runs == 0) return {ErrorCode::kInvalidArgument, "there is no run to compare; give the folders of two or more"};
-  if (sequences == 1 || sequences == runs) return Status::Ok();
+  if (sequences == 0 && runs == 1)
+    return {ErrorCode::kInvalidArgument,
+            "there is one run and no sequence to compare it with; give another run, or the sequence with its truth"};
+  if (sequences == 0 || sequences == 1 || sequences == runs) return Status::Ok();
   return {ErrorCode::kInvalidArgument, "the number of sequences is " + std::to_string(sequences) + " for " +
                                            std::to_string(runs) + " runs; give one for all of them, or one for each"};
 }
@@ -57,15 +69,17 @@ Result<RunComparison> CompareRuns(const CompareRequest& request, const Evaluatio
   if (Status status = CheckCompareRequest(request); !status.ok()) return status;
   RunComparison comparison;
   comparison.evaluations.resize(request.run_paths.size());
-  const std::vector<SequenceRequest> sequences = SequencesOf(request);
+  const bool has_truth = !request.sequence_paths.empty();
+  const std::vector<SequenceRequest> sequences = has_truth ? SequencesOf(request) : std::vector<SequenceRequest>();
   std::optional<Result<OpenedTruth>> truth;
   for (std::size_t i = 0; i < request.run_paths.size(); ++i) {
-    if (!truth || !IsSame(sequences[i], sequences[i - 1])) {
+    if (has_truth && (!truth || !IsSame(sequences[i], sequences[i - 1]))) {
       truth = OpenTruth(sequences[i], options);
       if (!truth->ok()) comparison.failures.push_back(truth->status());
     }
-    if (!truth->ok()) continue;
-    Result<Evaluation> evaluation = EvaluateRun(request.run_paths[i], **truth, options, progress);
+    if (has_truth && !truth->ok()) continue;
+    Result<Evaluation> evaluation = has_truth ? EvaluateRun(request.run_paths[i], **truth, options, progress)
+                                              : WithoutTruth(request, i, options, progress);
     if (evaluation.ok())
       comparison.evaluations[i] = *std::move(evaluation);
     else if (evaluation.status().code() == ErrorCode::kInterrupted)

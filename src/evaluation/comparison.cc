@@ -37,6 +37,20 @@ std::string Quoted(const std::string& text) {
   return quoted + '"';
 }
 
+// What a comparison with the first run adds, where no truth is known.
+void AddOtherRun(const RunConsistency& other, Cells* cells) {
+  cells->emplace_back("other_run", Quoted(other.other_run));
+  if (other.depths) {
+    cells->emplace_back("other_median_relative_depth", FormatDouble(other.depths->difference));
+    cells->emplace_back("other_null_median_relative_depth", FormatDouble(other.depths->null));
+  }
+  if (!other.path) return;
+  cells->emplace_back("other_poses", std::to_string(other.path->poses));
+  cells->emplace_back("other_ate_share", FormatDouble(other.path->AteShare()));
+  cells->emplace_back("other_rpe_translation_share", FormatDouble(other.path->RpeShare()));
+  cells->emplace_back("other_rpe_rotation_rmse_deg", FormatDouble(other.path->rpe_rotation_rmse_deg));
+}
+
 Cells CellsOf(const Evaluation& e) {
   Cells cells = {{"run", Quoted(e.run)},
                  {"sequence", Quoted(e.sequence)},
@@ -79,6 +93,7 @@ Cells CellsOf(const Evaluation& e) {
     cells.emplace_back("first_map_null_median_relative_depth", FormatDouble(e.first_map->declared.null.median));
     cells.emplace_back("first_map_rmse_relative_depth", FormatDouble(e.first_map->declared.estimate.rmse));
   }
+  if (!e.consistency.empty()) AddOtherRun(e.consistency.front(), &cells);
   return cells;
 }
 
@@ -140,12 +155,9 @@ Rows ReconstructionRows(std::span<const Evaluation> evaluations) {
   return rows;
 }
 
-}  // namespace
-
-std::string ComparisonTable(std::span<const Evaluation> evaluations) {
+Rows TruthRows(std::span<const Evaluation> evaluations) {
   Rows rows = {{"run", "alive at 50, 100 %", "surface RMSE mm (null)", "material RMSE mm (null)", "drift px",
                 "drift mm", "ATE mm", "first map % (null)"}};
-  bool has_protocol[EnumNames<ErrorProtocol>::kNames.size()] = {};
   for (const Evaluation& e : evaluations) {
     const TrackSurvival& s = e.survival;
     rows.push_back(
@@ -157,11 +169,43 @@ std::string ComparisonTable(std::span<const Evaluation> evaluations) {
          e.first_map ? FormatText("%.2f (%.2f)", 100 * e.first_map->declared.estimate.median,
                                   100 * e.first_map->declared.null.median)
                      : "-"});
+  }
+  return rows;
+}
+
+// Of the runs that were compared with another one; none of those that were not.
+Rows ConsistencyRows(std::span<const Evaluation> evaluations) {
+  Rows rows;
+  for (const Evaluation& e : evaluations) {
+    if (e.consistency.empty()) continue;
+    const RunConsistency& other = e.consistency.front();
+    if (rows.empty())
+      rows.push_back(
+          {"against " + other.other_run, "depth % (null)", "poses", "ATE % of the path", "RPE % of a step", "RPE deg"});
+    const bool has_path = other.path.has_value();
+    rows.push_back(
+        {e.run,
+         other.depths ? FormatText("%.2f (%.2f)", 100 * other.depths->difference, 100 * other.depths->null) : "-",
+         has_path ? std::to_string(other.path->poses) : "-",
+         has_path ? FormatText("%.2f", 100 * other.path->AteShare()) : "-",
+         has_path ? FormatText("%.1f", 100 * other.path->RpeShare()) : "-",
+         has_path ? FormatText("%.3f", other.path->rpe_rotation_rmse_deg) : "-"});
+  }
+  return rows;
+}
+
+}  // namespace
+
+std::string ComparisonTable(std::span<const Evaluation> evaluations) {
+  bool has_protocol[EnumNames<ErrorProtocol>::kNames.size()] = {};
+  for (const Evaluation& e : evaluations) {
     if (!e.surface && !e.material) continue;
     for (const ProtocolError& protocol : e.surface ? e.surface->protocols : e.material->error.protocols)
       has_protocol[static_cast<std::size_t>(protocol.protocol)] = true;
   }
-  std::string text = Print(ReconstructionRows(evaluations)) + "\n" + Print(rows);
+  const Rows consistency = ConsistencyRows(evaluations);
+  std::string text =
+      Print(ReconstructionRows(evaluations)) + "\n" + Print(consistency.empty() ? TruthRows(evaluations) : consistency);
   for (const auto& [protocol, name] : EnumNames<ErrorProtocol>::kNames)
     if (protocol != ErrorProtocol::kPaper && has_protocol[static_cast<std::size_t>(protocol)])
       text += "\n" + Print(ProtocolRows(evaluations, protocol));

@@ -301,11 +301,11 @@ Status AddSfmError(const EvaluationInput& run, const SfmPoints& sfm, int width_p
 Status AddConsistency(const EvaluationInput& run, const EvaluationInput& other, int width_px,
                       const EvaluationOptions& options, Evaluation* evaluation) {
   Result<RelativeDepthError> depths = CompareRuns(run, other, width_px, options.consistency);
-  if (!depths.ok()) return depths.status();
-  RunConsistency consistency{other.name, *std::move(depths), std::nullopt};
-  if (auto path = CompareCameraPaths(run, other, options.consistency, {}); path.ok())
-    consistency.path = *std::move(path);
-  evaluation->consistency.push_back(std::move(consistency));
+  Result<TrajectoryError> path = CompareCameraPaths(run, other, options.consistency, {});
+  if (!depths.ok() && !path.ok()) return depths.status();
+  if (!depths.ok()) evaluation->notes.push_back(depths.status().message());
+  evaluation->consistency.push_back({other.name, depths.ok() ? std::optional(*std::move(depths)) : std::nullopt,
+                                     path.ok() ? std::optional(*std::move(path)) : std::nullopt});
   return Status::Ok();
 }
 

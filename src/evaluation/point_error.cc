@@ -55,6 +55,11 @@ PointSummary Pool::Summary() const {
   summary.min_scale = *std::min_element(scales.begin(), scales.end());
   summary.max_scale = *std::max_element(scales.begin(), scales.end());
   summary.left_out_share = left_out / static_cast<double>(left_out + static_cast<int>(errors_mm.size()));
+  for (std::size_t k = 0; k < kNearDistances_mm.size(); ++k) {
+    const auto near = std::ranges::count_if(errors_mm, [&](double error) { return error <= kNearDistances_mm[k]; });
+    summary.within[k] = errors_mm.empty() ? 0.0 : static_cast<double>(near) / static_cast<double>(errors_mm.size());
+    summary.average_within += summary.within[k] / static_cast<double>(kNearDistances_mm.size());
+  }
   return summary;
 }
 

@@ -23,7 +23,9 @@ Json ToJson(const PointSummary& s) {
           {"median_relative_depth", s.median_relative_depth},
           {"left_out_share", s.left_out_share},
           {"min_scale", s.min_scale},
-          {"max_scale", s.max_scale}};
+          {"max_scale", s.max_scale},
+          {"within", s.within},
+          {"average_within", s.average_within}};
 }
 
 Json ToJson(const PointFigures& f) {
@@ -275,8 +277,8 @@ Json PathJson(const std::optional<TrajectoryError>& path) {
 Json ToJson(const std::vector<RunConsistency>& consistency) {
   Json runs = Json::array();
   for (const RunConsistency& other : consistency) {
-    Json run = {{"other_run", other.other_run}};
-    run.update(ToJson(other.depths));
+    Json run = {{"other_run", other.other_run}, {"frames_compared", 0}, {"points", 0}};
+    if (other.depths) run.update(ToJson(*other.depths));
     run["camera_path"] = PathJson(other.path);
     runs.push_back(std::move(run));
   }

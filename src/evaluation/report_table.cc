@@ -81,7 +81,12 @@ std::string DenseTable(const DenseError& e) {
 }
 
 std::string MaterialTable(const MaterialError& e) {
+  const PointSummary& estimate = e.error.plain.estimate;
   std::string text = PointTable("material error", e.error);
+  text +=
+      FormatText("  within 2, 4, 8, 16, 32 mm: %.1f, %.1f, %.1f, %.1f, %.1f %%; their mean %.1f %% (null %.1f %%)\n",
+                 100 * estimate.within[0], 100 * estimate.within[1], 100 * estimate.within[2], 100 * estimate.within[3],
+                 100 * estimate.within[4], 100 * estimate.average_within, 100 * e.error.plain.null.average_within);
   const DriftFigures& d = e.drift;
   text += FormatText("  drift, px: median %.3f, RMSE %.3f, 95 %% below %.3f (points that do not move: median %.3f)\n",
                      d.median_px, d.rmse_px, d.p95_px, d.still_median_px);
@@ -146,7 +151,7 @@ std::string SfmTable(const RelativeDepthError& e) {
 
 std::string ConsistencyTable(const RunConsistency& e) {
   return FormatText("%-40s %10s %10s\n", "against another run", "difference", "null") + "  " + e.other_run + "\n" +
-         RelativeDepthRows(e.depths) +
+         (e.depths ? RelativeDepthRows(*e.depths) : "") +
          (e.path ? FormatText(
                        "  camera path: %.2f %% of its length apart (ATE after a similarity, %d poses); from frame to "
                        "frame %.1f %% of a step and %.3f deg\n",

@@ -14,6 +14,7 @@
 
 #include "evaluation/format_text.h"
 #include "pliant/base/files.h"
+#include "pliant/evaluation/point_error.h"
 
 namespace pliant {
 namespace {
@@ -22,7 +23,6 @@ using Json = nlohmann::ordered_json;
 using Points = std::vector<Eigen::Vector3d>;
 
 constexpr std::array<double, 5> kThresholds_px = {4, 8, 16, 32, 64};
-constexpr std::array<double, 5> kThresholds_mm = {2, 4, 8, 16, 32};
 
 // Of each point to the nearest of `labels`, which there are.
 std::vector<double> NearestDistances(const Points& points, const Points& labels) {
@@ -98,7 +98,7 @@ Result<StirError> ComputeStirError(const StirPoints& tracked, const StirPoints& 
                                             " at the end; give all in pixels, or all in millimeters");
   StirError error;
   error.dimensions = tracked.dimensions;
-  error.thresholds = tracked.dimensions == 2 ? kThresholds_px : kThresholds_mm;
+  error.thresholds = tracked.dimensions == 2 ? kThresholds_px : kNearDistances_mm;
   Scores estimate;
   Scores null;
   for (const auto& [recording, points] : tracked.of_recording) {

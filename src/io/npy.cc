@@ -105,6 +105,16 @@ std::size_t NpyArray::size() const {
 
 double NpyArray::At(std::size_t i) const {
   const NpyType* known = FindType(type);
+  if (columns_first) {
+    std::size_t place = 0;
+    std::size_t count = size();
+    for (auto axis = shape.rbegin(); axis != shape.rend(); ++axis) {
+      count /= *axis;
+      place += i % *axis * count;
+      i /= *axis;
+    }
+    i = place;
+  }
   return known->at(data, i * known->width);
 }
 
@@ -124,8 +134,7 @@ Result<NpyArray> ParseNpy(const std::string& name, std::string_view bytes) {
   const NpyType* type = FindType(array.type);
   if (type == nullptr) return NpyError(name, WrongType(array.type));
   array.kind = type->kind;
-  if (header->find("'fortran_order': True") != std::string::npos)
-    return NpyError(name, "is stored columns first (Fortran order); save it with np.ascontiguousarray");
+  array.columns_first = header->find("'fortran_order': True") != std::string::npos;
   const auto shape = ShapeOf(HeaderEntry(*header, "shape", '(', ')'));
   if (!shape) return NpyError(name, "has a header that is damaged");
   array.shape = *shape;

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // NumPy's arrays of numbers (.npy, format 1 to 3) and archives of them (.npz: a zip file, stored or deflated). Arrays
-// are rows first (C order) and little-endian, as every machine of today writes them.
+// are little-endian, as every machine of today writes them.
 #pragma once
 
 #include <cstddef>
@@ -26,7 +26,8 @@ struct NpyArray {
   Kind kind = Kind::kFloat;
   std::string type;  // as NumPy writes it: <f4, <f8, |b1, |u1, <i4, ...
   std::vector<std::size_t> shape;
-  std::string_view data;  // of the file's bytes, exactly as many as type and shape say
+  bool columns_first = false;  // as Fortran has them, and the transpose of an array of NumPy's: the last axis last
+  std::string_view data;       // of the file's bytes, exactly as many as type and shape say
 
   std::size_t size() const;  // numbers in all
   // The i-th number, rows first. Integers beyond 2^53 are rounded.
@@ -37,8 +38,7 @@ struct NpyArray {
 std::string ShapeText(std::span<const std::size_t> shape);
 
 // `name` begins the sentence of a failure: the file, or the file and its array. `bytes` must outlive the result. Fails
-// with kUnreadable: cut off, columns first (Fortran order), or an array of something else than 4- or 8-byte floats,
-// integers and bools.
+// with kUnreadable: cut off, or an array of something else than 4- or 8-byte floats, integers and bools.
 Result<NpyArray> ParseNpy(const std::string& name, std::string_view bytes);
 
 // A file of format 1.0, whose numbers begin at a multiple of 64 bytes; `data` are the array's bytes.

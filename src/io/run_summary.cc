@@ -218,8 +218,10 @@ Result<RunSummary> ReadRunSummary(const std::string& path) {
       summary.latency = {latency.at("p50").get<double>(), latency.at("p99").get<double>(),
                          latency.at("max").get<double>()};
     return summary;
-  } catch (const Json::exception& error) {
-    return Status(ErrorCode::kUnreadable, Quoted(path) + " is not a run's run.json: " + error.what());
+  } catch (const Json::exception&) {
+    return Status(
+        ErrorCode::kUnreadable,
+        Quoted(path) + " is not a run's run.json: an entry is missing, or of another kind; make the run again");
   }
 }
 

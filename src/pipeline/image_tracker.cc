@@ -4,12 +4,14 @@
 #include "pliant/pipeline/image_tracker.h"
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <string>
 #include <utility>
 
 #include "pipeline/choose_working_image.h"
 #include "pipeline/working_frame.h"
+#include "pliant/datasets/frame_checks.h"
 
 namespace pliant {
 namespace {
@@ -69,6 +71,16 @@ Result<std::vector<FrameReport>> ImageTracker::Process(const SequenceFrame& fram
   if (!frame.depth_prior.empty() && frame.depth_prior.type() != CV_32FC1)
     return Status(ErrorCode::kInvalidArgument,
                   "the depth prior of image " + frame.name + " is not of 32-bit floats with one channel; convert it");
+  if (!frame.depth_prior.empty())
+    if (Status status = CheckDepthPriorSize(frame.depth_prior.size(), {camera_.width(), camera_.height()},
+                                            "the depth prior of image " + frame.name);
+        !status.ok())
+      return status;
+  const std::array times_s = {last_timestamp_s_.value_or(frame.timestamp_s - 1), frame.timestamp_s};
+  if (Status status = CheckFrameTimes(times_s, "the times of image " + frame.name + " and the one before are");
+      !status.ok())
+    return status;
+  last_timestamp_s_ = frame.timestamp_s;
   kept_.push_back(frame);
   std::vector<FrameReport> done = ProcessFrom(kept_.size() - 1);
   ForgetFrames();

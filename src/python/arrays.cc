@@ -4,6 +4,8 @@
 #include "python/arrays.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include <Eigen/LU>
 
@@ -19,11 +21,13 @@ std::string ShapeText(const py::array& array) {
          py::cast<std::string>(py::str(array.attr("shape")));
 }
 
+std::string TypeName(const py::handle& object) {
+  return py::cast<std::string>(py::str(py::type::of(object).attr("__name__")));
+}
+
 // An object that is no array is one of its elements; raises TypeError where NumPy makes none of it.
 py::array AnyArray(const py::handle& object, const std::string& what, const std::string& wanted) {
-  if (!py::isinstance<py::array>(object))
-    RaiseTypeError(what + " is " + wanted + ", not " +
-                   py::cast<std::string>(py::str(py::type::of(object).attr("__name__"))));
+  if (!py::isinstance<py::array>(object)) RaiseTypeError(what + " is " + wanted + ", not " + TypeName(object));
   return py::reinterpret_borrow<py::array>(object);
 }
 
@@ -40,6 +44,33 @@ constexpr py::ssize_t kMostPixels = 100'000;  // a side
 bool IsImageSide(py::ssize_t size) { return size > 0 && size <= kMostPixels; }
 
 }  // namespace
+
+double NumberOf(const py::handle& object, const std::string& what) {
+  const bool is_text = py::isinstance<py::str>(object) || py::isinstance<py::bytes>(object);
+  const double value = is_text ? -1.0 : PyFloat_AsDouble(object.ptr());
+  if (!is_text && (value != -1.0 || PyErr_Occurred() == nullptr)) return value;
+  PyErr_Clear();
+  RaiseTypeError(what + " is a " + TypeName(object) + "; give a number");
+}
+
+int WholeOf(const py::handle& object, const std::string& what) {
+  const double value = NumberOf(object, what);
+  if (value != std::floor(value) || std::abs(value) > std::numeric_limits<int>::max())
+    RaiseValueError(what + " is " + py::cast<std::string>(py::str(object)) + "; give a whole number");
+  return static_cast<int>(value);
+}
+
+std::vector<double> NumbersOf(const py::handle& object, const std::string& what) {
+  const std::string wanted = "a list of numbers, or an array of one axis";
+  const bool is_list = py::isinstance<py::sequence>(object) || py::isinstance<py::array>(object);
+  if (!is_list || py::isinstance<py::str>(object) || py::isinstance<py::bytes>(object))
+    RaiseTypeError(what + " is a " + TypeName(object) + "; give " + wanted);
+  if (py::isinstance<py::array>(object) && py::cast<py::array>(object).ndim() != 1)
+    RaiseValueError(what + " is " + wanted + "; this one is " + ShapeText(py::cast<py::array>(object)));
+  std::vector<double> numbers;
+  for (const py::handle number : py::cast<py::iterable>(object)) numbers.push_back(NumberOf(number, what));
+  return numbers;
+}
 
 py::list ListOf(const std::vector<std::string>& texts) {
   py::list list;

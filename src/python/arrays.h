@@ -41,6 +41,12 @@ pybind11::list ListOf(const std::vector<std::string>& texts);
 void AppendMatrix(const Rigid3& b_from_a, std::vector<double>* numbers);
 pybind11::array_t<double> MatrixOf(const Rigid3& b_from_a);
 
+// A whole number, also one of NumPy's and a float that is one; a number; numbers of a list or of an array of one axis.
+// Raise TypeError with `what`.
+int WholeOf(const pybind11::handle& object, const std::string& what);
+double NumberOf(const pybind11::handle& object, const std::string& what);
+std::vector<double> NumbersOf(const pybind11::handle& object, const std::string& what);
+
 // Points of an array of shape (n, columns), of any layout and of any real type. Raises ValueError or TypeError with
 // `what` ("points_in_cam").
 pybind11::array_t<double> PointsOf(const pybind11::handle& array, int columns, const std::string& what);

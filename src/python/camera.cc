@@ -3,12 +3,15 @@
 
 #include "pliant/camera/camera.h"
 
+#include <array>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <string>
 #include <vector>
 
 #include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
 
 #include "pliant/base/options.h"
 #include "pliant/base/text.h"
@@ -23,11 +26,45 @@ namespace py = pybind11;
 namespace pliant::python {
 namespace {
 
-Calibration MakeCalibration(const std::string& model, int width, int height, const std::vector<double>& params,
-                            std::optional<double> fps) {
-  if (fps && !(*fps > 0 && std::isfinite(*fps)))
-    RaiseValueError("fps is " + FormatDouble(*fps) + "; give the images a second, above 0");
-  return {ValueOf(Camera::Create(model, width, height, params)), fps};
+Calibration MakeCalibration(const std::string& model, const py::object& width, const py::object& height,
+                            const py::object& params, const py::object& fps) {
+  const std::optional<double> given_fps = fps.is_none() ? std::nullopt : std::optional(NumberOf(fps, "fps"));
+  if (given_fps && !(*given_fps > 0 && std::isfinite(*given_fps)))
+    RaiseValueError("fps is " + FormatDouble(*given_fps) + "; give the images a second, above 0");
+  return {
+      ValueOf(Camera::Create(model, WholeOf(width, "width"), WholeOf(height, "height"), NumbersOf(params, "params"))),
+      given_fps};
+}
+
+// What is needed to make it again.
+py::tuple StateOf(const Calibration& calibration) {
+  const Camera& camera = calibration.camera;
+  py::object photometric = py::none();
+  if (calibration.photometric) {
+    const PhotometricCalibration& light = *calibration.photometric;
+    photometric = py::make_tuple(light.gamma, light.vignetting, light.light_spread, light.light_axis.x(),
+                                 light.light_axis.y(), light.light_axis.z());
+  }
+  return py::make_tuple(std::string(camera.model_name()), camera.width(), camera.height(),
+                        std::vector<double>(camera.params().begin(), camera.params().end()), calibration.fps,
+                        photometric);
+}
+
+Calibration FromState(const py::tuple& state) {
+  Calibration calibration = MakeCalibration(py::cast<std::string>(state[0]), state[1], state[2], state[3], state[4]);
+  if (state[5].is_none()) return calibration;
+  const auto light = py::cast<std::array<double, 6>>(state[5]);
+  calibration.photometric = {light[0], light[1], light[2], {light[3], light[4], light[5]}};
+  return calibration;
+}
+
+bool IsSame(const Calibration& calibration, const py::object& other) {
+  return py::isinstance<Calibration>(other) && StateOf(calibration).equal(StateOf(py::cast<const Calibration&>(other)));
+}
+
+void Write(const Calibration& calibration, const std::filesystem::path& path) {
+  RaiseUnlessOk(WriteCameraFile(
+      path.string(), {.camera = calibration.camera, .fps = calibration.fps, .photometric = calibration.photometric}));
 }
 
 Calibration ReadCalibration(const std::string& path) {
@@ -83,9 +120,12 @@ void BindCamera(py::module_& module) {
       "Raises ValueError for numbers that no lens has.")
       .def(py::init(&MakeCalibration), py::arg("model"), py::arg("width"), py::arg("height"), py::arg("params"),
            py::kw_only(), py::arg("fps") = py::none())
-      .def_property_readonly("model", [](const Calibration& c) { return std::string(c.camera.model_name()); })
-      .def_property_readonly("width", [](const Calibration& c) { return c.camera.width(); })
-      .def_property_readonly("height", [](const Calibration& c) { return c.camera.height(); })
+      .def_property_readonly(
+          "model", [](const Calibration& c) { return std::string(c.camera.model_name()); }, "COLMAP's name.")
+      .def_property_readonly(
+          "width", [](const Calibration& c) { return c.camera.width(); }, "Of the images, pixels.")
+      .def_property_readonly(
+          "height", [](const Calibration& c) { return c.camera.height(); }, "Of the images, pixels.")
       .def_property_readonly(
           "params",
           [](const Calibration& c) {
@@ -98,6 +138,9 @@ void BindCamera(py::module_& module) {
            "pinhole, for example). A pixel may lie outside the image.")
       .def("unproject", &Unproject, py::arg("pixels"),
            "Unit rays (n, 3) in the camera frame through pixels (n, 2); NaN where no ray projects there.")
+      .def("write", &Write, py::arg("path"), "Writes a calibration file, a camera.yaml, which read_camera reads again.")
+      .def("__eq__", &IsSame, py::is_operator())
+      .def(py::pickle(&StateOf, &FromState))
       .def("__repr__", &Representation);
   module.def("read_camera", &ReadCalibration, py::arg("path"));
 }

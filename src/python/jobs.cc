@@ -56,8 +56,12 @@ auto WithoutGil(Interrupt* interrupt, const Job& job) {
   return result;
 }
 
-JobProgress EndingBy(const Interrupt& interrupt) {
-  return [&interrupt](std::string_view /*task*/, int /*done*/, int /*total*/) { return !interrupt.stop().load(); };
+// Tells Python how far a job is; ends it when that raises, or on Ctrl-C.
+JobProgress Telling(const py::object& on_progress, Interrupt* interrupt) {
+  return [&on_progress, interrupt](std::string_view task, int done, int total) {
+    if (!on_progress.is_none()) interrupt->Call([&] { on_progress(std::string(task), done, total); });
+    return !interrupt->stop().load();
+  };
 }
 
 void Simulate(const std::string& output_path, const py::object& options, const std::string& realism,
@@ -180,18 +184,22 @@ void Surface(const py::dict& request, const std::vector<int>& frames, const py::
 }
 
 // evaluation.json.
-std::string Evaluate(const py::dict& request, const py::object& options, const std::string& output_path) {
+std::string Evaluate(const py::dict& request, const py::object& options, const py::object& on_progress) {
   const auto evaluation_options = OptionsOf<EvaluationOptions>(options);
-  const EvaluationRequest evaluation_request{.run_path = Text(request, "run_path"),
-                                             .sequence_path = Text(request, "sequence_path"),
-                                             .camera_path = Text(request, "camera_path"),
-                                             .sfm_path = Text(request, "sfm_path"),
-                                             .surface_path = Text(request, "surface_path"),
-                                             .other_runs = AllTexts(request, "other_runs"),
-                                             .track_file = {.path = Text(request, "track_file_path")}};
+  const EvaluationRequest evaluation_request{
+      .run_path = Text(request, "run_path"),
+      .sequence_path = Text(request, "sequence_path"),
+      .camera_path = Text(request, "camera_path"),
+      .sfm_path = Text(request, "sfm_path"),
+      .surface_path = Text(request, "surface_path"),
+      .other_runs = AllTexts(request, "other_runs"),
+      .track_file = {.path = Text(request, "tracks_path"),
+                     .pixel_origin = EnumOf<PixelOrigin>(Text(request, "tracks_pixel_origin"), "tracks_pixel_origin")}};
+  const std::string output_path = Text(request, "output_path");
   Interrupt interrupt;
-  const auto evaluation = ValueOf(
-      WithoutGil(&interrupt, [&] { return EvaluateRun(evaluation_request, evaluation_options, EndingBy(interrupt)); }));
+  const auto evaluation = ValueOf(WithoutGil(&interrupt, [&] {
+    return EvaluateRun(evaluation_request, evaluation_options, Telling(on_progress, &interrupt));
+  }));
   if (!output_path.empty()) RaiseUnlessOk(WriteEvaluation(evaluation, output_path));
   return EvaluationJson(evaluation);
 }
@@ -207,7 +215,7 @@ std::string EvaluateStirFiles(const std::string& tracked, const std::string& sta
 }
 
 // A dictionary a joint, in the order of time.
-py::list Join(const py::dict& request, const py::object& options) {
+py::list Join(const py::dict& request, const py::object& options, const py::object& on_progress) {
   const auto join_options = OptionsOf<JoinOptions>(options);
   const JoinRequest join_request{.run_paths = AllTexts(request, "run_paths"),
                                  .sequence_path = Text(request, "sequence_path"),
@@ -215,8 +223,8 @@ py::list Join(const py::dict& request, const py::object& options) {
                                  .output_path = Text(request, "output_path"),
                                  .command_line = {"pliant.join"}};
   Interrupt interrupt;
-  const auto summary =
-      ValueOf(WithoutGil(&interrupt, [&] { return JoinRuns(join_request, join_options, EndingBy(interrupt)); }));
+  const auto summary = ValueOf(
+      WithoutGil(&interrupt, [&] { return JoinRuns(join_request, join_options, Telling(on_progress, &interrupt)); }));
   py::list joints;
   using py::literals::operator""_a;
   for (const RunJoint& joint : summary.joints)
@@ -228,16 +236,17 @@ py::list Join(const py::dict& request, const py::object& options) {
 }
 
 // comparison.json of the runs that can be evaluated; the others are warnings.
-std::string Compare(const py::dict& request, const py::object& options, const std::string& output_path,
-                    const std::string& figure) {
+std::string Compare(const py::dict& request, const py::object& options, const py::object& on_progress) {
   const auto evaluation_options = OptionsOf<EvaluationOptions>(options);
   const CompareRequest compare_request{.run_paths = AllTexts(request, "run_paths"),
                                        .sequence_paths = AllTexts(request, "sequence_paths"),
                                        .camera_path = Text(request, "camera_path")};
+  const std::string output_path = Text(request, "output_path");
+  const std::string figure = Text(request, "figure_path");
   if (!figure.empty()) RaiseUnlessOk(CheckEnding(ViewOutput::kFigure, figure));
   Interrupt interrupt;
-  const auto comparison = ValueOf(
-      WithoutGil(&interrupt, [&] { return CompareRuns(compare_request, evaluation_options, EndingBy(interrupt)); }));
+  const auto comparison = ValueOf(WithoutGil(
+      &interrupt, [&] { return CompareRuns(compare_request, evaluation_options, Telling(on_progress, &interrupt)); }));
   const std::vector<Evaluation> evaluated = comparison.Evaluated();
   if (evaluated.empty()) Raise(comparison.failures.front());
   if (!output_path.empty()) RaiseUnlessOk(WriteRunComparison(comparison, output_path));
@@ -249,7 +258,7 @@ std::string Compare(const py::dict& request, const py::object& options, const st
 }
 
 // What was left out, a sentence each.
-Texts ImportAny(const py::dict& request, const py::object& options) {
+Texts ImportAny(const py::dict& request, const py::object& options, const py::object& on_progress) {
   const auto import_options = OptionsOf<ImportOptions>(options);
   const ImportRequest import_request{.input_path = Text(request, "input_path"),
                                      .sequence_path = Text(request, "sequence_path"),
@@ -259,11 +268,12 @@ Texts ImportAny(const py::dict& request, const py::object& options) {
                                      .output_path = Text(request, "output_path"),
                                      .command_line = {"pliant.import_result"}};
   Interrupt interrupt;
-  return ValueOf(WithoutGil(&interrupt, [&] { return Import(import_request, import_options, EndingBy(interrupt)); }))
+  return ValueOf(WithoutGil(&interrupt,
+                            [&] { return Import(import_request, import_options, Telling(on_progress, &interrupt)); }))
       .notes;
 }
 
-py::dict Export(const py::dict& request, const py::object& options) {
+py::dict Export(const py::dict& request, const py::object& options, const py::object& on_progress) {
   const auto export_options = OptionsOf<ExportOptions>(options);
   const ExportRequest export_request{.run_path = Text(request, "run_path"),
                                      .sequence_path = Text(request, "sequence_path"),
@@ -273,8 +283,8 @@ py::dict Export(const py::dict& request, const py::object& options) {
                                      .mask_path = Text(request, "mask_path"),
                                      .surface_path = Text(request, "surface_path")};
   Interrupt interrupt;
-  const auto summary =
-      ValueOf(WithoutGil(&interrupt, [&] { return ExportRun(export_request, export_options, EndingBy(interrupt)); }));
+  const auto summary = ValueOf(WithoutGil(
+      &interrupt, [&] { return ExportRun(export_request, export_options, Telling(on_progress, &interrupt)); }));
   py::dict done;
   done["frames"] = summary.frames;
   done["points"] = summary.points;
@@ -284,15 +294,15 @@ py::dict Export(const py::dict& request, const py::object& options) {
 }
 
 Result<Texts> WritePage(const ViewRequest& view, const ReportOptions& options, const std::string& output_path,
-                        const Interrupt& interrupt) {
-  const auto summary = WriteReportPage(view, options, output_path, EndingBy(interrupt));
+                        const JobProgress& progress) {
+  const auto summary = WriteReportPage(view, options, output_path, progress);
   if (!summary.ok()) return summary.status();
   return summary->notes;
 }
 
 // What is missing, a sentence each. The ending of `output_path` says what is written.
 Texts Report(const py::dict& request, const std::vector<int>& frames, const py::object& options,
-             const std::string& output_path) {
+             const py::object& on_progress) {
   ReportOptions report_options;
   FigureOptions figure_options;
   OptionTable table;
@@ -304,6 +314,7 @@ Texts Report(const py::dict& request, const std::vector<int>& frames, const py::
                          .sequence_path = Text(request, "sequence_path"),
                          .camera_path = Text(request, "camera_path"),
                          .surface_paths = AllTexts(request, "surface_paths")};
+  const std::string output_path = Text(request, "output_path");
   const ViewOutput output = !frames.empty()                                            ? ViewOutput::kFigure
                             : std::filesystem::path(output_path).extension() == ".mp4" ? ViewOutput::kFilm
                                                                                        : ViewOutput::kPage;
@@ -311,8 +322,10 @@ Texts Report(const py::dict& request, const std::vector<int>& frames, const py::
   Interrupt interrupt;
   return ValueOf(WithoutGil(&interrupt, [&]() -> Result<Texts> {
     if (output == ViewOutput::kFigure) return WriteFigure(view, figure_options, frames, output_path);
-    if (output == ViewOutput::kPage) return WritePage(view, report_options, output_path, interrupt);
-    return WriteFilm(view, figure_options, output_path, [&](int, int) { return !interrupt.stop(); });
+    const JobProgress progress = Telling(on_progress, &interrupt);
+    if (output == ViewOutput::kPage) return WritePage(view, report_options, output_path, progress);
+    return WriteFilm(view, figure_options, output_path,
+                     [&](int done, int total) { return progress("film", done, total); });
   }));
 }
 

@@ -26,17 +26,16 @@ namespace {
 
 constexpr std::string_view kSwitchUnit = "off | on";
 
-bool IsNumpyBool(const py::handle& value) {
-  return py::hasattr(value, "dtype") && py::hasattr(value, "item") &&
-         py::cast<std::string>(value.attr("dtype").attr("kind")) == "b" && py::cast<int>(value.attr("ndim")) == 0;
-}
-
-// NumPy's numbers too. An empty answer with `ok` false: a value of another kind.
+// NumPy's numbers and arrays too. An empty answer with `ok` false: a value of another kind.
 std::string TextOf(const py::handle& value, const OptionField& field, bool* ok) {
   *ok = true;
+  if (py::hasattr(value, "dtype") && py::hasattr(value, "tolist")) {
+    const py::object plain = value.attr("tolist")();
+    return TextOf(plain, field, ok);
+  }
   if (py::isinstance<py::str>(value)) return py::cast<std::string>(value);
-  if (py::isinstance<py::bool_>(value) || IsNumpyBool(value)) {
-    const bool on = py::bool_(py::reinterpret_borrow<py::object>(value));
+  if (py::isinstance<py::bool_>(value)) {
+    const bool on = py::cast<bool>(value);
     if (field.unit == kSwitchUnit) return on ? "on" : "off";
     return on ? "true" : "false";
   }

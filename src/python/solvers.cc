@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // The two problems that the tracker solves: one frame, and the window of a first map.
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <string>
@@ -24,6 +25,13 @@ namespace py = pybind11;
 
 namespace pliant::python {
 namespace {
+
+constexpr double kUnitLength = 1e-6;  // as OpenGV's solvers ask for
+constexpr double kSamePose = 1e-6;
+
+bool IsIdentity(const Rigid3& pose) {
+  return pose.RotationMatrix().isIdentity(kSamePose) && pose.translation.norm() < kSamePose;
+}
 
 py::dict Costs(const std::vector<CostTerm>& costs) {
   py::dict dict;
@@ -84,6 +92,8 @@ py::tuple SolveFrame(const Calibration& calibration, const py::object& positions
 }
 
 std::vector<int> IndicesOf(const py::handle& array, std::size_t count, std::size_t end, const std::string& what) {
+  if (py::isinstance<py::array>(array) && py::cast<py::array>(array).dtype().kind() == 'f')
+    RaiseTypeError(what + " has to be whole numbers; these are floats");
   const auto indices = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>::ensure(array);
   if (!indices || indices.ndim() != 1 || indices.shape(0) != static_cast<py::ssize_t>(count))
     RaiseValueError(what + " has to be a list of as many whole numbers as there are rays");
@@ -100,7 +110,7 @@ std::vector<int> IndicesOf(const py::handle& array, std::size_t count, std::size
 // log_depth_sigma, cost, residual_correlation).
 py::tuple SolveWindow(const py::dict& start, double focal_px, bool deforming, const py::object& options) {
   DeformingWindow window;
-  window.times = py::cast<std::vector<double>>(start["times"].attr("tolist")());
+  window.times = NumbersOf(start["times"], "times");
   const auto poses = py::cast<py::array>(start["cams_from_world"]);
   if (poses.ndim() != 3 || poses.shape(0) != static_cast<py::ssize_t>(window.times.size()))
     RaiseValueError("cams_from_world has to be an array of shape (views, 4, 4), a pose for each of the times");
@@ -108,6 +118,10 @@ py::tuple SolveWindow(const py::dict& start, double focal_px, bool deforming, co
     window.cams_from_world.push_back(RigidOf(poses[py::int_(v)], "cams_from_world of view " + std::to_string(v)));
   window.points_in_world = VectorsOf(start["points"], "points");
   const auto rays = VectorsOf(start["rays"], "rays");
+  if (!window.cams_from_world.empty() && !IsIdentity(window.cams_from_world.front()))
+    RaiseValueError("the first of cams_from_world is not the identity; points are in the first view");
+  if (!std::ranges::all_of(rays, [](const Eigen::Vector3d& ray) { return std::abs(ray.norm() - 1.0) < kUnitLength; }))
+    RaiseValueError("rays has vectors that are not of length 1; give those of pliant.Camera.unproject");
   const auto views = IndicesOf(start["view_idx"], rays.size(), window.times.size(), "view_idx");
   const auto points = IndicesOf(start["point_idx"], rays.size(), window.points_in_world.size(), "point_idx");
   for (std::size_t k = 0; k < rays.size(); ++k)

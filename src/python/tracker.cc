@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include <array>
-#include <cmath>
 #include <cstdio>
 #include <string>
 #include <utility>
@@ -52,15 +51,14 @@ class PythonTracker {
         tracker_(Create(calibration, OptionsOf(options, MakeTrackOptions(EnumOf<Preset>(preset, "preset"))), examples,
                         extensions)) {}
 
-  std::vector<FrameReport> Process(const py::object& image, const py::object& mask, std::optional<double> timestamp,
+  std::vector<FrameReport> Process(const py::object& image, const py::object& mask, const py::object& timestamp,
                                    const py::object& depth_prior) {
     if (finished_) RaiseValueError("the tracker is finished; make another one for other images");
     const Busy busy(&busy_);
     SequenceFrame frame = FrameOf(next_idx_, image, "the image");
     frame.mask = MaskOf(mask);
     frame.depth_prior = DepthPriorOf(depth_prior);
-    frame.timestamp_s = timestamp.value_or(next_idx_ / fps_);
-    if (!std::isfinite(frame.timestamp_s)) RaiseValueError("timestamp is not a finite number; give seconds, or None");
+    frame.timestamp_s = timestamp.is_none() ? next_idx_ / fps_ : NumberOf(timestamp, "timestamp");
     auto reports = [&] {
       const py::gil_scoped_release release;
       return tracker_.Process(frame);

@@ -176,6 +176,8 @@ void Move(const Sim3& world_from_run, int submap, ViewedRun* run) {
 }
 
 Result<View> OpenView(const ViewRequest& request, const ViewOptions& options, const JobProgress& progress) {
+  if (request.run_paths.empty())
+    return Status(ErrorCode::kInvalidArgument, "there is no run to show; give the folder of one or more");
   View view;
   auto opened = OpenItsSequence(request, &view);
   if (!opened.ok()) return opened.status();

@@ -83,6 +83,26 @@ TEST(CompareRuns, MeasuresTheDifferenceOfMoreThanHalfOfThePoints) {
   EXPECT_NEAR(exchanged->difference, error->difference, kRoundOff) << "which run is the other one does not matter";
 }
 
+// What another program leaves is often a camera path alone.
+TEST(AddConsistency, ComparesTheCameraPathsOfRunsWithoutCommonPoints) {
+  const EvaluationInput run = MadeRun("a", 0, 5, DepthOf);
+  EvaluationInput path = MadeRun("b", 0, 5, DepthOf);
+  for (EvaluationFrame& frame : path.frames) frame.observations.clear();
+  Evaluation evaluation;
+  ASSERT_TRUE(AddConsistency(run, path, kWidth_px, {}, &evaluation).ok());
+  const RunConsistency& compared = evaluation.consistency.at(0);
+  EXPECT_FALSE(compared.depths.has_value());
+  ASSERT_TRUE(compared.path.has_value());
+  EXPECT_EQ(compared.path->poses, 5);
+  EXPECT_NEAR(compared.path->AteShare(), 0, kRoundOff);
+  const auto json = nlohmann::json::parse(EvaluationJson(evaluation));
+  EXPECT_EQ(json["consistency"][0]["frames_compared"], 0);
+  EXPECT_FALSE(json["consistency"][0].contains("estimate"));
+  EXPECT_THAT(EvaluationTable(evaluation), HasSubstr("camera path: 0.00 %"));
+  for (EvaluationFrame& frame : path.frames) frame.cam_from_world = Rigid3();  // a camera that never moves
+  EXPECT_EQ(AddConsistency(run, path, kWidth_px, {}, &evaluation).code(), ErrorCode::kInsufficient);
+}
+
 TEST(CompareRuns, FindsTheFramesOfARunThatWentBackwards) {
   const EvaluationInput run = MadeRun("a", 0, 4, DepthOf);
   EvaluationInput other = MadeRun("b", 0, 4, DepthOf);

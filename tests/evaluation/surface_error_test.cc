@@ -18,6 +18,8 @@
 namespace pliant {
 namespace {
 
+using testing::ElementsAre;
+
 constexpr double kSurfaceNotFlat_mm = 1.0;   // the truth is no plane before the camera, so the null has an error
 constexpr double kScaleDrift_mm = 2.0;       // a fifth of the distance, shared by two frames
 constexpr double kOnePoint_mm = 1.0;         // all points in one, before a plane of many millimeters
@@ -115,6 +117,8 @@ TEST(SurfaceError, IsThePlainUntrimmedRmse) {
   ASSERT_TRUE(error.ok());
   EXPECT_NEAR(error->plain.estimate.mean_rmse_mm, std::sqrt((9 + 16 + 144) / 4.0), kLengthRoundOff_mm);
   EXPECT_NEAR(error->plain.estimate.pooled_median_mm, 3.5, kLengthRoundOff_mm);
+  EXPECT_THAT(error->plain.estimate.within, ElementsAre(0.25, 0.75, 0.75, 1, 1));  // of 0, 3, 4 and 12 mm
+  EXPECT_NEAR(error->plain.estimate.average_within, 0.75, kRoundOff);
 }
 
 TEST(SurfaceError, NullOfAPlaneAtConstantDepthIsZero) {

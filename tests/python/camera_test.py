@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Cameras: made, read, and used on arrays."""
 
+import copy
+import pickle
 import unittest
 
 import numpy as np
@@ -69,6 +71,22 @@ class Camera(TestCase):
         with self.assertRaises(pliant.Error) as caught:
             pliant.read_camera(self.folder / "none.yaml")
         self.assertEqual(caught.exception.code, "not_found")
+
+    def test_it_is_written_copied_and_compared(self):
+        given = "model: OPENCV\nwidth: 640\nheight: 480\nparams: [457, 458, 319.5, 239.5, 0.01, 0, 0, 0.001]\nfps: 25\n"
+        (self.folder / "given.yaml").write_text(given + "gamma: 2.0\n")
+        camera = pliant.read_camera(self.folder / "given.yaml")
+        camera.write(self.folder / "written.yaml")
+        for same in (pliant.read_camera(self.folder / "written.yaml"), copy.deepcopy(camera),
+                     pickle.loads(pickle.dumps(camera))):
+            self.assertEqual(same, camera)
+            self.assertEqual((same.model, same.fps), ("OPENCV", 25))
+            np.testing.assert_array_equal(same.params, camera.params)
+        other = pliant.Camera("OPENCV", 640, 480, camera.params, fps=25)
+        self.assertNotEqual(other, camera)  # which has a photometric calibration
+        self.assertNotEqual(camera, "a camera")
+        with self.assertRaises(pliant.Error):
+            camera.write(self.folder / "nowhere" / "camera.yaml")
 
 
 if __name__ == "__main__":

@@ -7,7 +7,7 @@ import unittest
 import numpy as np
 
 import pliant
-from support import SEQUENCE, TestCase, sentence
+from support import RUN, SEQUENCE, TestCase, sentence
 
 
 class Errors(TestCase):
@@ -37,6 +37,78 @@ class Errors(TestCase):
         self.assertEqual(pliant.open_run(self.folder / "run").summary["status"], "failed")
 
 
+class Arguments(TestCase):
+    """A value of the wrong kind is a TypeError, or a ValueError, that names its argument; nothing is written."""
+
+    def refused(self, message, call, *arguments, **named):
+        with self.subTest(message), self.assertRaises((TypeError, ValueError)) as caught:
+            call(*arguments, **named)
+        self.assertIn(message, sentence(self, caught.exception))
+        self.assertFalse((self.folder / "out").exists())
+
+    def test_of_tracking(self):
+        out, image = self.folder / "out", np.zeros((480, 640), np.uint8)
+        camera = pliant.Camera("PINHOLE", 640, 480, [400, 400, 320, 240])
+        self.refused("end is a str; give a whole number", pliant.track, SEQUENCE, out, end="a")
+        self.refused("end is a float; give a whole number", pliant.track, SEQUENCE, out, end=2.5)
+        self.refused("stride is a NoneType", pliant.track, SEQUENCE, out, stride=None)
+        self.refused("resume is a str; give True or False", pliant.track, SEQUENCE, out, resume="yes")
+        self.refused("preset is a NoneType; give text", pliant.track, SEQUENCE, out, preset=None)
+        self.refused("on_frame is a int; give a function", pliant.track, SEQUENCE, out, on_frame=3)
+        self.refused("initializer is a int; give a function", pliant.track, SEQUENCE, out, initializer=3)
+        self.refused("there is no initializer 'z'", pliant.track, SEQUENCE, out, initializer="z")
+        self.refused("give the path of its calibration, which camera.write makes", pliant.track, SEQUENCE, out,
+                     camera=camera)
+        self.refused("timestamps is a str; give a number", pliant.track, [image] * 3, out, camera=camera,
+                     timestamps=["a"] * 3)
+        self.refused("apart, as nanoseconds would be; give seconds", pliant.track, [image] * 3, out, camera=camera,
+                     timestamps=1403636579763555584 + 33333333 * np.arange(3))
+        self.refused("camera is a NoneType; give a pliant.Camera", pliant.Tracker, None)
+        self.refused("examples is a NoneType", pliant.Tracker, camera, examples=None)
+        sequence = pliant.open_sequence(SEQUENCE)
+        self.refused("the input is a pliant.Sequence", pliant.track, sequence, out, end=3)
+        self.refused("frame_idx is a str; give a whole number", sequence.depth, "a")
+
+    def test_of_the_tracker(self):
+        camera = pliant.Camera("PINHOLE", 640.0, np.int64(480), np.array([400, 400, 320, 240]))
+        self.assertEqual((camera.width, camera.height), (640, 480))
+        self.refused("width is 640.5; give a whole number", pliant.Camera, "PINHOLE", 640.5, 480, [400, 400, 320, 240])
+        self.refused("params is a str; give a list of numbers", pliant.Camera, "PINHOLE", 640, 480, "abc")
+        self.refused("fps is a str; give a number", pliant.Camera, "PINHOLE", 640, 480, [400, 400, 320, 240], fps="30")
+        image, prior = np.zeros((480, 640), np.uint8), np.ones((5, 400), np.float32)
+        tracker = pliant.Tracker(camera)
+        self.refused("timestamp is a str; give a number", tracker.process, image, timestamp="a")
+        tracker.process(image, timestamp=5.0)
+        self.refused("not growing", tracker.process, image, timestamp=1.0)
+        self.refused("as nanoseconds would be", tracker.process, image, timestamp=1403636579763555584)
+        with self.assertRaisesRegex(pliant.Error, "is 400x5, but the images are 640x480"):
+            tracker.process(image, depth_prior=prior)
+        tracker.process(image, timestamp=6.0)
+
+    def test_of_the_other_jobs(self):
+        out, rays = self.folder / "out", np.tile([0.0, 0.0, 1.0], (9, 1))
+        self.refused("format is a NoneType; give text", pliant.export, RUN, out, None)
+        self.refused("board is a NoneType; give text", pliant.calibrate, SEQUENCE, None, out)
+        self.refused("frames is a str; give a list of whole numbers", pliant.surface, RUN, out, frames="12")
+        self.refused("frames is a float; give a whole number", pliant.surface, RUN, out, frames=[1.9])
+        for figure in (None, [1]):
+            self.refused("there is no run to show", pliant.report, [], out / "page.html" if figure is None else
+                         out / "still.png", figure=figure)
+        self.refused("seed is -1", pliant.kernels.relative_pose, rays, rays, 400, seed=-1)
+        self.refused("solver is a NoneType", pliant.kernels.relative_pose, rays, rays, 400, solver=None)
+        self.refused("focal_px is a str", pliant.kernels.relative_pose, rays, rays, "f")
+        self.refused("options are a dictionary", pliant.kernels.deformation_graph, rays, options=[3])
+        self.refused("camera is a NoneType", pliant.kernels.solve_frame, None, rays, rays[:, :2], np.eye(4))
+        poses = np.tile(np.eye(4), (3, 1, 1))
+        window = {"times": [0, 1, 2], "cams_from_world": poses, "points": rays, "rays": rays,
+                  "view_idx": [0, 1, 2] * 3, "point_idx": np.arange(9), "focal_px": 400}
+        for change, message in (({"times": np.zeros((3, 1))}, "times is a ndarray"),
+                                ({"view_idx": np.arange(9) % 3 + 0.5}, "view_idx has to be whole numbers"),
+                                ({"rays": 2 * rays}, "rays has vectors that are not of length 1"),
+                                ({"cams_from_world": poses + np.eye(4, k=3)}, "the first of cams_from_world")):
+            self.refused(message, lambda values=change: pliant.kernels.solve_window(**{**window, **values}))
+
+
 class Options(TestCase):
     def refused(self, options, **arguments):
         with self.assertRaises(ValueError) as caught:
@@ -55,6 +127,7 @@ class Options(TestCase):
         self.assertIn("give a number from", self.refused({"Image.scale": float("nan")}))
         self.assertIn("give a whole number", self.refused({"General.seed": 1.5}))
         self.assertIn("give a number, a boolean, text", self.refused({"General.seed": object()}))
+        self.assertIn("General.seed is '1,2'", self.refused({"General.seed": np.array([1, 2])}))
         self.assertIn("give one of default | paper", self.refused({}, preset="papre"))
         self.assertIn("Init.depth_cloud is for a start from depth", self.refused({"Init.depth_cloud": "cloud.ply"}))
 

@@ -78,8 +78,11 @@ class Initializers(TestCase):
             pliant.track(SEQUENCE, self.folder / "both", {"Init.method": "kernels"}, initializer=two_views)
         with self.assertRaisesRegex(ValueError, "a method of Pliant"):
             pliant.register_initializer("window", two_views)
-        with self.assertRaisesRegex(ValueError, "Init.method"):
+        with self.assertRaisesRegex(ValueError, "Init.method is 'no_such'; give one of window | .*registered: kernels"):
             pliant.track(SEQUENCE, self.folder / "unknown", {"Init.method": "no_such"})
+        again = self.track("kernels", "by_argument")
+        self.assertEqual(again.summary["extensions"], ["initializer kernels"])
+        np.testing.assert_array_equal(again.observations.position, given.observations.position)
 
     def test_it_may_wait_and_take_another_reference(self):
         asked = []
@@ -184,6 +187,16 @@ class Tracks(TestCase):
                                 (lambda p: (p * np.nan, np.ones(len(p), bool)), "not a number")]:
             with self.subTest(message), self.assertRaisesRegex(ValueError, message):
                 pliant.track(SEQUENCE, self.folder / "run", FIXED, end=FRAMES, tracks=Wrong(answer))
+        for answer, message in [(lambda p: None, "this one returned NoneType"),
+                                (lambda p: (p, p, p), "this one returned tuple of 3"),
+                                (lambda p: (p, np.full(len(p), 5.0)), "these are float64. Of scores say"),
+                                (lambda p: (p, np.full(len(p), -1)), "these are int64")]:
+            with self.subTest(message), self.assertRaisesRegex(TypeError, message):
+                pliant.track(SEQUENCE, self.folder / "run", FIXED, end=FRAMES, tracks=Wrong(answer))
+        with self.assertRaisesRegex(ValueError, "TrackFile.path names a file of others"):
+            pliant.track(SEQUENCE, self.folder / "both", {"TrackFile.path": "a.npz"}, tracks=Wrong(None))
+        with self.assertRaisesRegex(TypeError, "arrays are saved first"):
+            pliant.track(SEQUENCE, self.folder / "arrays", tracks=np.zeros((FRAMES, 5, 2)))
 
 
 class InMemory(TestCase):

@@ -111,6 +111,32 @@ class Jobs(TestCase):
         self.assertTrue((self.folder / "1" / "evaluation.csv").exists())
         self.assertIn("<svg", (self.folder / "figure.svg").read_text())
 
+    def test_runs_are_compared_without_a_truth(self):
+        pliant.export(RUN, self.folder / "path", "tum")
+        path = pliant.import_result(next((self.folder / "path").glob("*.txt")), self.folder / "run", SEQUENCE, "tum")
+        tasks = []
+        comparison = pliant.compare([RUN, RUN, path], on_progress=lambda task, done, total: tasks.append(task))
+        first, same, camera_alone = comparison["runs"]
+        self.assertEqual(first["consistency"], [])
+        self.assertEqual(same["consistency"][0]["other_run"], str(RUN))
+        self.assertEqual(same["consistency"][0]["estimate"]["median_relative_depth"], 0)
+        self.assertNotIn("estimate", camera_alone["consistency"][0])
+        for run in (same, camera_alone):
+            self.assertLess(run["consistency"][0]["camera_path"]["ate_share"], 1e-6)
+        with self.assertRaisesRegex(ValueError, "there is one run and no sequence"):
+            pliant.compare(RUN)
+
+    def test_jobs_say_how_far_they_are(self):
+        tasks = []
+        tell = lambda task, done, total: tasks.append((task, done <= total))
+        pliant.evaluate(RUN, SEQUENCE, on_progress=tell)
+        pliant.export(RUN, self.folder / "clouds", "ply", on_progress=tell)
+        pliant.report(RUN, self.folder / "page.html", on_progress=tell)
+        self.assertGreater(len(set(tasks)), 2, tasks)
+        self.assertTrue(all(fits for _, fits in tasks))
+        with self.assertRaisesRegex(KeyError, "enough"):
+            pliant.evaluate(RUN, SEQUENCE, on_progress=lambda *_: {}["enough"])
+
     def test_a_run_that_cannot_be_compared_is_a_warning_or_an_error(self):
         missing = self.folder / "missing"
         with self.assertWarnsRegex(UserWarning, "missing"):
@@ -144,7 +170,10 @@ class Jobs(TestCase):
     def test_tracks_of_a_file_are_scored(self):
         pliant.export(RUN, self.folder / "tracks", "tracks_npz", sequence=SEQUENCE)
         file = next((self.folder / "tracks").glob("*.npz"))
-        self.assertGreater(pliant.evaluate(None, SEQUENCE, tracks=file)["tracks"]["average_within"], 0.9)
+        scored = pliant.evaluate(None, SEQUENCE, tracks=file)["tracks"]
+        self.assertGreater(scored["average_within"], 0.9)
+        corner = pliant.evaluate(None, SEQUENCE, tracks=file, tracks_pixel_origin="corner")["tracks"]
+        self.assertNotEqual(scored["median_px"], corner["median_px"])
         for arguments in ({"run": None}, {"run": RUN, "tracks": file}, {"run": None, "tracks": file, "sequence": None}):
             with self.assertRaises(ValueError):
                 pliant.evaluate(**{"sequence": SEQUENCE, **arguments})

@@ -3,6 +3,7 @@
 """Runs as arrays: what the files say, read by Python alone, number by number."""
 
 import json
+import pickle
 import shutil
 import sys
 import types
@@ -66,8 +67,41 @@ class Reading(TestCase):
         frames, positions = self.result.path(point_id)
         np.testing.assert_array_equal(frames, seen.frame_idx[seen.point_id == point_id])
         np.testing.assert_array_equal(positions, seen.position[seen.point_id == point_id])
-        self.assertEqual(len(self.result.frame(10_000)), 0)
+        self.assertTrue(np.shares_memory(positions, self.result.path(point_id)[1]))
+        for none in (10_000, 10**12, -1):
+            self.assertEqual(len(self.result.frame(none)), 0)
         self.assertEqual(len(self.result.path(10**12)[0]), 0)
+        for call in (self.result.frame, self.result.path):
+            for value in (1.5, "a", None):
+                with self.assertRaisesRegex(TypeError, "give a whole number"):
+                    call(value)
+
+    def test_rows_are_chosen_by_slices_masks_and_indices(self):
+        for table in (self.result.observations, self.result.frames, self.result.poses, self.result.points):
+            columns = table.columns()
+            for rows in (slice(2, 9, 3), np.arange(len(table)) % 5 == 0, [4, 1], 3, -1):
+                chosen = table[rows]
+                self.assertIs(type(chosen), type(table))
+                self.assertIn(f"{len(chosen)} rows", repr(chosen))
+                for name, values in chosen.columns().items():
+                    np.testing.assert_array_equal(values, np.atleast_1d(columns[name][rows]), err_msg=name)
+            with self.assertRaises(IndexError):
+                table[len(table)]
+        self.assertEqual(sum(len(row) for row in self.result.poses), len(self.result.poses))
+
+    def test_a_run_is_copied_and_pickled(self):
+        self.assertIsNotNone(self.result.camera)
+        again = pickle.loads(pickle.dumps(self.result))
+        self.assertEqual(again.camera, self.result.camera)
+        np.testing.assert_array_equal(again.poses.world_from_cam, self.result.poses.world_from_cam)
+
+    def test_a_damaged_summary_is_one_sentence(self):
+        folder = self.folder / "run"
+        shutil.copytree(RUN, folder)
+        (folder / "run.json").write_text('{"counts": []}')
+        with self.assertRaises(pliant.Error) as caught:
+            pliant.report(folder, self.folder / "page.html")
+        self.assertNotIn("json.exception", sentence(self, caught.exception))
 
     def test_points_that_are_seen_project_to_their_pixels(self):
         camera, poses, errors = self.result.camera, self.result.poses, []

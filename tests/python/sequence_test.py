@@ -47,6 +47,9 @@ class Sequences(TestCase):
         run = pliant.track((frame.image for frame in sequence), self.folder / "run", {"Image.working": "fixed"},
                            camera=sequence.camera)
         self.assertEqual(len(run.frames), 20)
+        opened = pliant.track(sequence, self.folder / "opened", {"Image.working": "fixed"})
+        np.testing.assert_array_equal(opened.observations.position, run.observations.position)
+        self.assertIn("20 frames of 640x480", repr(sequence))
 
 
 if __name__ == "__main__":

@@ -36,7 +36,7 @@ class Images(TestCase):
 
     def test_times_grow(self):
         for timestamps in ([0.1] * COUNT, [np.nan] + self.timestamps[1:]):
-            with self.assertRaisesRegex(ValueError, "the timestamp of image"):
+            with self.assertRaisesRegex(ValueError, "the timestamps are not finite, or not growing, at"):
                 pliant.track(self.images, self.folder / "run", FIXED, camera=self.camera, timestamps=timestamps)
             self.assertFalse((self.folder / "run" / "frames.csv").exists())
 
@@ -161,6 +161,15 @@ class Images(TestCase):
         with self.assertRaises(pliant.Error) as caught:
             pliant.track(self.images, self.folder / "run", camera=self.camera, timestamps=[0.0, 1.0])
         self.assertIn("there are 2 timestamps for 25 images", sentence(self, caught.exception))
+
+    def test_images_that_come_one_by_one_may_have_tracks_of_a_file(self):
+        tracks = self.folder / "tracks.npz"
+        pixels = np.random.default_rng(1).uniform(50, 400, (COUNT, 300, 2))
+        np.savez(tracks, tracks=pixels, visibility=np.ones((300, COUNT), bool).T)  # stored columns first
+        for name, given in (("one_by_one", (image for image in self.images)), ("list", self.images)):
+            with self.assertRaises(pliant.Error) as caught:  # of random tracks there is no map
+                pliant.track(given, self.folder / name, FIXED, camera=self.camera, tracks=tracks)
+            self.assertEqual(caught.exception.code, "insufficient")
 
     def test_other_threads_run_meanwhile(self):
         count, done = 0, threading.Event()

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Pliant authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Several runs side by side: each evaluated against the truth of its sequence. One that cannot be evaluated does not
-// keep the others from it.
+// Several runs side by side: each evaluated against the truth of its sequence, or, without a sequence, against the
+// first of them. One that cannot be evaluated does not keep the others from it.
 #pragma once
 
 #include <optional>
@@ -17,7 +17,7 @@ namespace pliant {
 
 struct CompareRequest {
   std::vector<std::string> run_paths;
-  std::vector<std::string> sequence_paths;  // one for all runs, or one for each
+  std::vector<std::string> sequence_paths = {};  // one for all runs, or one for each; none: they have no truth
   std::string camera_path = {};  // calibration of the sequences; empty: their own, or that of a run of the same images
 };
 
@@ -29,7 +29,8 @@ struct RunComparison {
   std::vector<Evaluation> Evaluated() const;
 };
 
-// Fails with kInvalidArgument where there is no run, or not one sequence for all of them or one for each.
+// Fails with kInvalidArgument where there is no run, or one alone without a sequence, and where there are sequences,
+// but not one for all runs or one for each.
 Status CheckCompareRequest(const CompareRequest& request);
 
 // Fails as CheckCompareRequest, and with kInterrupted. A sequence that several runs in a row share is opened once.

@@ -63,8 +63,8 @@ struct EvaluationOptions {
 // How far a run is from another one of the same recording.
 struct RunConsistency {
   std::string other_run;
-  RelativeDepthError depths;
-  std::optional<TrajectoryError> path;  // CompareCameraPaths; nothing: too few poses, or a camera that never moves
+  std::optional<RelativeDepthError> depths;  // CompareRuns; nothing: they have no points at the same pixels
+  std::optional<TrajectoryError> path;       // CompareCameraPaths; nothing: too few poses, or a camera that never moves
 };
 
 struct Evaluation {
@@ -109,7 +109,8 @@ Result<Evaluation> EvaluateTracks(const std::string& name, std::span<const Pixel
 Status AddSfmError(const EvaluationInput& run, const SfmPoints& sfm, int width_px, const EvaluationOptions& options,
                    Evaluation* evaluation);
 
-// Adds the comparison with another run. Fails as CompareRuns.
+// Adds the comparison with another run, by depths and camera path, or by one of them. Fails as CompareRuns where
+// there is neither.
 Status AddConsistency(const EvaluationInput& run, const EvaluationInput& other, int width_px,
                       const EvaluationOptions& options, Evaluation* evaluation);
 

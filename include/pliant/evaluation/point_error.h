@@ -9,6 +9,7 @@
 // null says that nothing was reconstructed. Millimeters throughout.
 #pragma once
 
+#include <array>
 #include <span>
 #include <string>
 #include <vector>
@@ -67,6 +68,9 @@ struct PointFrameError {
   PointFigures null;
 };
 
+// At which points are near their truth: those of the STIR challenge in space (stir_error.h).
+inline constexpr std::array<double, 5> kNearDistances_mm = {2, 4, 8, 16, 32};
+
 // Over all frames that have a pair.
 struct PointSummary {
   double mean_rmse_mm = 0;           // mean over frames of the frames' RMSE: the paper's figure
@@ -76,7 +80,9 @@ struct PointSummary {
   double median_relative_depth = 0;  // over all observations
   double min_scale = 1;              // smallest and largest of the frames' scales
   double max_scale = 1;
-  double left_out_share = 0;  // of the pairs, by the protocol
+  double left_out_share = 0;          // of the pairs, by the protocol
+  std::array<double, 5> within = {};  // share of all observations at most kNearDistances_mm from the truth
+  double average_within = 0;          // the mean of these
 };
 
 struct ProtocolError {

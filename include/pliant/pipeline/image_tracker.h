@@ -35,8 +35,9 @@ class ImageTracker {
 
   // The reports that became final with this frame, in order of time; each frame is reported once. From the reference on
   // reports and their images are held back until there is a map: of WindowInit.last_frame frames, or three times as
-  // many where a map waits that is hardly better than one constant depth. Frames come in order of time. Fails with
-  // kMismatch for an image or mask that has not the camera's size; the frame is passed over then.
+  // many where a map waits that is hardly better than one constant depth. Fails with kMismatch for an image or mask
+  // that has not the camera's size, and for a depth prior of other sides, and with kInvalidArgument for a time that is
+  // not after that of the frame before (CheckFrameTimes); the frame is passed over then.
   Result<std::vector<FrameReport>> Process(const SequenceFrame& frame);
   // No more frames come: the reports that are held back.
   std::vector<FrameReport> Finish();
@@ -59,7 +60,8 @@ class ImageTracker {
   WorkingImage working_;
   TrackOptions options_;
   std::unique_ptr<Tracker> tracker_;
-  std::vector<SequenceFrame> kept_;  // that are held back: tracking may go back to one of them
+  std::vector<SequenceFrame> kept_;         // that are held back: tracking may go back to one of them
+  std::optional<double> last_timestamp_s_;  // of the frame before
 };
 
 }  // namespace pliant

@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// What comes with images, whether they are files or given one by one: their times, and other programs' depth.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include <opencv2/core/types.hpp>
+
+#include "pliant/base/status.h"
+
+namespace pliant {
+
+// Times of successive frames, seconds: finite, growing, and not of another unit, which steps of more than a thousand
+// seconds (in the median) tell. `what` begins the sentence ("the times in times.txt are"). Fails with kInvalidArgument.
+Status CheckFrameTimes(std::span<const double> times_s, const std::string& what);
+
+// A depth prior of any size, whose sides are to one another as those of the images. `what` begins the sentence. Fails
+// with kMismatch.
+Status CheckDepthPriorSize(cv::Size prior, cv::Size images, const std::string& what);
+
+}  // namespace pliant

@@ -1,0 +1,111 @@
+# SPDX-FileCopyrightText: 2026 The Pliant authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""What callers give, checked: a TypeError or a ValueError says which argument is of the wrong kind."""
+
+from __future__ import annotations
+
+import operator
+import os
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any
+
+import numpy as np
+
+from . import _pliant
+
+
+def _wrong(value: Any, name: str, wanted: str) -> TypeError:
+    return TypeError(f"{name} is a {type(value).__name__}; give {wanted}")
+
+
+def whole(value: Any, name: str) -> int:
+    """A whole number, also NumPy's, and a float that is one."""
+    if isinstance(value, (float, np.floating)) and float(value).is_integer():
+        return int(value)
+    try:
+        return operator.index(value)
+    except TypeError:
+        raise _wrong(value, name, "a whole number") from None
+
+
+def number(value: Any, name: str) -> float:
+    if isinstance(value, (str, bytes)):
+        raise _wrong(value, name, "a number")
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        raise _wrong(value, name, "a number") from None
+
+
+def numbers(values: Any, name: str) -> list[float]:
+    """Of a list, or of an array of one axis."""
+    if np.ndim(values) != 1 or isinstance(values, (str, bytes)):
+        raise _wrong(values, name, "a list of numbers, or an array of one axis")
+    return [number(value, name) for value in values]
+
+
+def wholes(values: Iterable[Any] | None, name: str) -> list[int]:
+    """Numbers of frames; none of None, which is no choice."""
+    if values is None:
+        return []
+    if isinstance(values, (str, bytes)) or not isinstance(values, Iterable):
+        raise _wrong(values, name, "a list of whole numbers")
+    chosen = [whole(value, name) for value in values]
+    if not chosen:
+        raise ValueError(f"{name} has no frame; give numbers of frames, or None")
+    return chosen
+
+
+def truth(value: Any, name: str) -> bool:
+    if not isinstance(value, (bool, np.bool_)):
+        raise _wrong(value, name, "True or False")
+    return bool(value)
+
+
+def text(value: Any, name: str) -> str:
+    if not isinstance(value, str):
+        raise _wrong(value, name, "text")
+    return value
+
+
+def path(value: Any, name: str) -> str:
+    if not isinstance(value, (str, os.PathLike)):
+        raise _wrong(value, name, "a path")
+    return os.fspath(value)
+
+
+def optional_path(value: Any, name: str) -> str:
+    """"" for None."""
+    return "" if value is None else path(value, name)
+
+
+def function(value: Any, name: str) -> Callable[..., Any] | None:
+    """Or None."""
+    if value is not None and not callable(value):
+        raise _wrong(value, name, "a function, or None")
+    return value
+
+
+def camera(value: Any, name: str = "camera") -> _pliant.Camera:
+    if not isinstance(value, _pliant.Camera):
+        raise _wrong(value, name, "a pliant.Camera (pliant.read_camera reads a file)")
+    return value
+
+
+def camera_path(value: Any) -> str:
+    """The path of a calibration file; "" for None."""
+    if isinstance(value, _pliant.Camera):
+        raise ValueError("camera is a pliant.Camera, and the images are a path; give the path of its calibration, which "
+                         "camera.write makes")
+    return optional_path(value, "camera")
+
+
+def options(values: Any) -> Any:
+    """A dictionary of any mapping; what is none is refused where it is read."""
+    return dict(values) if isinstance(values, Mapping) else values
+
+
+def files(**paths: Any) -> dict[str, str]:
+    """Paths that may be None, of a request: NAME_path by NAME."""
+    return {f"{name}_path": camera_path(value) if name == "camera" else optional_path(value, name)
+            for name, value in paths.items()}

@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: 2026 The Pliant authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pliant/datasets/frame_checks.h"
+
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "datasets/image_file.h"
+#include "pliant/base/statistics.h"
+#include "pliant/base/text.h"
+
+namespace pliant {
+namespace {
+
+constexpr double kMaxStep_s = 1000;        // of any camera
+constexpr double kMicrosecondSteps = 1e6;  // larger ones are nanoseconds
+constexpr double kMaxPriorStretch = 0.02;  // of the sides' ratio: sizes are rounded to multiples of a network's patches
+
+}  // namespace
+
+Status CheckFrameTimes(std::span<const double> times_s, const std::string& what) {
+  std::vector<double> steps_s;
+  for (std::size_t k = 0; k < times_s.size(); ++k) {
+    if (!std::isfinite(times_s[k]) || (k > 0 && !(times_s[k] > times_s[k - 1])))
+      return {ErrorCode::kInvalidArgument,
+              what + " not finite, or not growing, at frame " + std::to_string(k) + "; give times that grow"};
+    if (k > 0) steps_s.push_back(times_s[k] - times_s[k - 1]);
+  }
+  const double step_s = Median(std::move(steps_s));
+  if (step_s <= kMaxStep_s) return Status::Ok();
+  const std::string unit = step_s < kMicrosecondSteps ? "micro" : "nano";
+  return {ErrorCode::kInvalidArgument,
+          what + " " + Digits(step_s, 0) + " apart, as " + unit + "seconds would be; give seconds"};
+}
+
+Status CheckDepthPriorSize(cv::Size prior, cv::Size images, const std::string& what) {
+  const double stretch =
+      static_cast<double>(prior.width) * images.height / (static_cast<double>(prior.height) * images.width);
+  if (std::abs(stretch - 1.0) <= kMaxPriorStretch) return Status::Ok();
+  return {ErrorCode::kMismatch, what + " is " + SizeText(prior.width, prior.height) + ", but the images are " +
+                                    SizeText(images.width, images.height) + "; resize it to the sides of the images"};
+}
+
+}  // namespace pliant
