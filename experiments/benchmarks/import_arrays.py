@@ -22,7 +22,6 @@ import csv
 import math
 import pathlib
 import sys
-import zipfile
 
 import numpy as np
 
@@ -33,7 +32,20 @@ DROID_INTRINSICS = 8  # they are stored for images of an eighth of the size
 
 
 class Failure(Exception):
-    """What is wrong with the input, in one sentence."""
+    """What is wrong with the input or the output, in one sentence."""
+
+
+def numbers_of(name, load):
+    """The array that a function reads from a file: real numbers or bools."""
+    try:
+        array = load()
+    except OSError as error:
+        raise Failure(f"{name} cannot be read: {error.strerror or error}") from None
+    except Exception:  # of damaged files NumPy raises what its tokenizer and zipfile do, too
+        array = None
+    if not isinstance(array, np.ndarray) or array.dtype.kind not in "fiub":
+        raise Failure(f"{name} is not an array of real numbers")
+    return array
 
 
 class Arrays:
@@ -46,7 +58,7 @@ class Arrays:
         elif self.path.is_file():
             try:
                 self.arrays = np.load(self.path)
-            except (ValueError, OSError, zipfile.BadZipFile):
+            except Exception:  # as above
                 raise Failure(f"{path} is no .npz") from None
             if not hasattr(self.arrays, "files"):
                 raise Failure(f"{path} is one array, not an .npz")
@@ -55,10 +67,10 @@ class Arrays:
 
     def get(self, name, shape):
         """The array, of this shape: numbers are demanded; what letters stand for must agree among all arrays."""
-        if name not in self.arrays:
+        if name not in list(self.arrays):  # `in` itself reads the array of an .npz
             raise Failure(f"{self.path} has no array '{name}'")
-        found = self.arrays[name]
-        array = np.load(found) if isinstance(found, pathlib.Path) else found
+        file = self.arrays[name] if self.path.is_dir() else None
+        array = numbers_of(f"'{name}' of {self.path}", lambda: np.load(file) if file else self.arrays[name])
         if array.ndim != len(shape) or any(isinstance(n, int) and n != m for n, m in zip(shape, array.shape)):
             raise Failure(f"'{name}' has the shape {array.shape}, not ({', '.join(map(str, shape))})")
         sizes = self.__dict__.setdefault("sizes", {})
@@ -149,7 +161,10 @@ def dense_points(depths, intrinsics, poses, frames, size, step):
 
 def droid(arguments):
     arrays = Arrays(arguments.input)
-    indices = np.rint(arrays.get("tstamps", "N")).astype(int)
+    indices = np.rint(arrays.get("tstamps", "N"))
+    if not (np.isfinite(indices) & (indices >= 0)).all():
+        raise Failure("'tstamps' has values that are no numbers of frames")
+    indices = indices.astype(int)
     poses = inverse(matrices(arrays.get("poses", ("N", 7))))
     disparities = np.asarray(arrays.get("disps", ("N", "H", "W")), float)
     intrinsics = DROID_INTRINSICS * np.asarray(arrays.get("intrinsics", ("N", 4)), float)
@@ -160,7 +175,7 @@ def droid(arguments):
     found = dict(zip(indices.tolist(), poses))
     if arguments.path:
         path = camera_path(arguments.path)
-        if len(path) <= indices.max():
+        if len(path) <= indices.max(initial=-1):
             raise Failure(f"{arguments.path} has {len(path)} poses, but there is a keyframe {indices.max()}")
         # The points stay where the keyframes have them, so their poses are kept.
         found = dict(enumerate(matrices(path))) | found
@@ -169,10 +184,7 @@ def droid(arguments):
 
 
 def camera_path(path):
-    try:
-        rows = np.load(path)
-    except (ValueError, OSError):
-        raise Failure(f"{path} is no .npy") from None
+    rows = numbers_of(path, lambda: np.load(path))
     if rows.ndim != 2 or rows.shape[1] != 7:
         raise Failure(f"{path} has the shape {rows.shape}, not (frames, 7)")
     return rows
@@ -195,6 +207,8 @@ def tapip3d(arguments):
     k = np.asarray(arrays.get("intrinsics", ("T", 3, 3)), float)
     camera_from_world = np.asarray(arrays.get("extrinsics", ("T", 4, 4)), float)
     height, width = arrays.get("video", ("T", 3, "H", "W")).shape[2:]
+    if min(height, width) < 2:
+        raise Failure(f"'video' has images of {width}x{height} pixels")
     poses = inverse(camera_from_world)
     camera = np.einsum("tij,tnj->tni", camera_from_world[:, :3, :3], points) + camera_from_world[:, None, :3, 3]
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -210,7 +224,8 @@ def tapip3d(arguments):
     if arguments.tracks:
         if arguments.start != 0 or arguments.stride != 1:
             raise Failure("--tracks needs all frames of the sequence: leave out --start and --stride")
-        np.savez(arguments.tracks, tracks=np.where(np.isfinite(pixels), pixels, 0).astype(np.float32), visibility=seen)
+        tracks = np.where(np.isfinite(pixels), pixels, 0).astype(np.float32)
+        written(arguments.tracks, lambda: np.savez(arguments.tracks, tracks=tracks, visibility=seen))
     return dict(enumerate(poses)), observations
 
 
@@ -229,14 +244,28 @@ def times_of(arguments):
                 times = {int(row["frame"]): float(row["timestamp"]) for row in csv.DictReader(file)}
             else:
                 times = dict(enumerate(float(line) for line in file if line.strip() and line[0] != "#"))
-    except (OSError, KeyError, ValueError):
+    except (OSError, KeyError, TypeError, ValueError, csv.Error):
         raise Failure(f"{arguments.times} is neither a list of times nor frames.csv of a run") from None
 
     def time(frame):
-        if frame not in times:
+        if not math.isfinite(times.get(frame, math.nan)):
             raise Failure(f"{arguments.times} has no time of frame {frame}")
         return times[frame]
     return time
+
+
+def written(path, write):
+    """Calls a function that writes to a path."""
+    try:
+        write()
+    except (OSError, ValueError) as error:  # ValueError: a null character in the path
+        raise Failure(f"{path} cannot be written: {getattr(error, 'strerror', None) or error}") from None
+
+
+def write_result(folder, lines, rows):
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "trajectory.txt").write_text("".join(lines), encoding="utf-8")
+    np.savetxt(folder / "observations.csv", rows, fmt="%d,%d,%.4f,%.4f,%.9g,%.9g,%.9g", header=HEADER, comments="")
 
 
 def convert(arguments):
@@ -252,10 +281,7 @@ def convert(arguments):
     rows = observations(frame_of)
     rows = rows[np.isin(rows[:, 0], list(good))]
     rows = rows[np.lexsort((rows[:, 1], rows[:, 0]))]
-    folder = pathlib.Path(arguments.output_path)
-    folder.mkdir(parents=True, exist_ok=True)
-    (folder / "trajectory.txt").write_text("".join(lines), encoding="utf-8")
-    np.savetxt(folder / "observations.csv", rows, fmt="%d,%d,%.4f,%.4f,%.9g,%.9g,%.9g", header=HEADER, comments="")
+    written(arguments.output_path, lambda: write_result(pathlib.Path(arguments.output_path), lines, rows))
     bad = len(poses) - len(good)
     left_out = f" ({bad} left out: not finite, or not a rotation)" if bad else ""
     return f"{len(good)} poses{left_out}, {len(rows)} points in {len(np.unique(rows[:, 0]))} frames"
@@ -274,15 +300,31 @@ def positive(text):
     return int(text)
 
 
+def frame_number(text):
+    if not text.isdigit():
+        raise argparse.ArgumentTypeError(f"'{text}' is not a whole number from 0 on")
+    return int(text)
+
+
+def rate(text):
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not (math.isfinite(value) and value > 0):
+        raise argparse.ArgumentTypeError(f"'{text}' is not a number of frames a second above 0")
+    return value
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("system", choices=SYSTEMS)
     parser.add_argument("input")
     parser.add_argument("--size", type=size, required=True, metavar="WIDTHxHEIGHT")
     parser.add_argument("--output_path", required=True)
-    parser.add_argument("--start", type=int, default=0)
+    parser.add_argument("--start", type=frame_number, default=0)
     parser.add_argument("--stride", type=positive, default=1)
-    parser.add_argument("--fps", type=float, default=30)
+    parser.add_argument("--fps", type=rate, default=30)
     parser.add_argument("--times")
     parser.add_argument("--step", type=positive, default=8)
     parser.add_argument("--path", help="droid: the poses of all frames")

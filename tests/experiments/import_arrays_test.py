@@ -31,6 +31,7 @@ from benchmark_miniatures import FRAMES, HEIGHT, WIDTH
 
 PLIANT = os.path.abspath(sys.argv[2])
 UNIT_MM = 40  # of the systems' worlds
+SIZE = ("--size", f"{WIDTH}x{HEIGHT}")
 RESIZED = (512, 384)  # what DROID-SLAM and MegaSaM make of 160x120
 MAX_ATE_MM = 0.01
 # Depths of resized images are mixed at edges, and the systems' principal point is half a pixel off after it.
@@ -71,7 +72,7 @@ def run(*arguments):
 
 
 def converted(folder, *arguments):
-    code, said, complaint = run(*arguments, "--size", f"{WIDTH}x{HEIGHT}", "--output_path", folder / "result")
+    code, said, complaint = run(*arguments, *SIZE, "--output_path", folder / "result")
     assert code == 0, complaint
     return said
 
@@ -231,39 +232,118 @@ def arrays_times(folder):
         converted(folder, "megasam", folder / "m.npz", *arguments)
         times = np.loadtxt(folder / "result/trajectory.txt")[:, 0]
         assert np.allclose(times, expected, atol=1e-6), (arguments, times)
-    size = ("--size", f"{WIDTH}x{HEIGHT}")
-    fails("has no time of frame 3", "megasam", folder / "m.npz", *size, "--times", folder / "times.txt", "--start", 1)
-    fails("neither a list of times nor", "megasam", folder / "m.npz", *size, "--times", folder / "m.npz")
+    fails("has no time of frame 3", "megasam", folder / "m.npz", *SIZE, "--times", folder / "times.txt", "--start", 1)
+    fails("neither a list of times nor", "megasam", folder / "m.npz", *SIZE, "--times", folder / "m.npz")
+
+
+def good_megasam():
+    return {"depths": np.ones((2, 384, 512)), "cam_c2w": np.tile(np.eye(4), (2, 1, 1)), "intrinsic": np.eye(3)}
+
+
+def good_droid():
+    return {"tstamps": np.arange(2), "poses": np.tile([0, 0, 0, 0, 0, 0, 1.0], (2, 1)),
+            "disps": np.ones((2, 384, 512)), "intrinsics": np.tile([45, 45, 32, 24.0], (2, 1))}
+
+
+def good_tapip3d():
+    return {"coords": np.ones((2, 5, 3)), "visibs": np.ones((2, 5), bool), "video": np.zeros((2, 3, 4, 4)),
+            "intrinsics": np.tile(np.eye(3), (2, 1, 1)), "extrinsics": np.tile(np.eye(4), (2, 1, 1))}
+
+
+def saved(path, good, **changed):
+    """An .npz of good arrays, some of which are changed; None: left out."""
+    np.savez(path, **{name: array for name, array in (good | changed).items() if array is not None})
+    return path
 
 
 def arrays_complaints(folder):
-    size = ("--size", f"{WIDTH}x{HEIGHT}")
-    good = {"depths": np.ones((2, 384, 512)), "cam_c2w": np.tile(np.eye(4), (2, 1, 1)), "intrinsic": np.eye(3)}
-    def saved(**changed):
-        np.savez(folder / "a.npz", **{name: array for name, array in (good | changed).items() if array is not None})
-        return folder / "a.npz"
+    def megasam(**changed):
+        return "megasam", saved(folder / "m.npz", good_megasam(), **changed), *SIZE
 
-    fails("there is no", "megasam", folder / "nothing.npz", *size)
+    def droid(**changed):
+        return "droid", saved(folder / "d.npz", good_droid(), **changed), *SIZE
+
+    fails("there is no", "megasam", folder / "nothing.npz", *SIZE)
     (folder / "text.npz").write_text("no arrays")
-    fails("is no .npz", "megasam", folder / "text.npz", *size)
+    fails("is no .npz", "megasam", folder / "text.npz", *SIZE)
+    (folder / "empty.npz").write_bytes(b"")
+    fails("is no .npz", "megasam", folder / "empty.npz", *SIZE)
     np.save(folder / "one.npy", np.eye(3))
-    fails("is one array", "megasam", folder / "one.npy", *size)
-    fails("has no array 'depths'", "megasam", saved(depths=None), *size)
-    fails("'intrinsic' has the shape (4,), not (3, 3)", "megasam", saved(intrinsic=np.ones(4)), *size)
-    fails("but N is 2 in another array", "megasam", saved(depths=np.ones((3, 384, 512))), *size)
-    fails("its images have 512x384 pixels; of 1350x1080 it would have made 488x392", "megasam", saved(), "--size",
-          "1350x1080")
-    fails("none of the 2 poses is one", "megasam", saved(cam_c2w=np.zeros((2, 4, 4))), *size)
-    droid = {"tstamps": np.arange(2), "poses": np.tile([0, 0, 0, 0, 0, 0, 1.0], (2, 1)),
-             "disps": np.ones((2, 384, 512)), "intrinsics": np.tile([45, 45, 32, 24.0], (2, 1))}
-    np.savez(folder / "d.npz", **droid)
-    np.save(folder / "path.npy", droid["poses"][:1])
-    fails("has 1 poses, but there is a keyframe 1", "droid", folder / "d.npz", *size, "--path", folder / "path.npy")
-    fails("not (frames, 7)", "droid", folder / "d.npz", *size, "--path", folder / "one.npy")
-    np.savez(folder / "d.npz", **(droid | {"intrinsics": 8 * droid["intrinsics"]}))
-    fails("not of images of an eighth of the size", "droid", folder / "d.npz", *size)
-    assert run("megasam", saved(), "--size", "160", "--output_path", folder)[0] == 2
-    assert run("megasam", saved(), *size, "--stride", "0", "--output_path", folder)[0] == 2
+    fails("is one array", "megasam", folder / "one.npy", *SIZE)
+    fails("has no array 'depths'", *megasam(depths=None))
+    fails("'intrinsic' has the shape (4,), not (3, 3)", *megasam(intrinsic=np.ones(4)))
+    fails("but N is 2 in another array", *megasam(depths=np.ones((3, 384, 512))))
+    fails("its images have 512x384 pixels; of 1350x1080 it would have made 488x392", "megasam",
+          saved(folder / "m.npz", good_megasam()), "--size", "1350x1080")
+    fails("none of the 2 poses is one", *megasam(cam_c2w=np.zeros((2, 4, 4))))
+    np.save(folder / "path.npy", good_droid()["poses"][:1])
+    fails("has 1 poses, but there is a keyframe 1", *droid(), "--path", folder / "path.npy")
+    fails("not (frames, 7)", *droid(), "--path", folder / "one.npy")
+    fails("not of images of an eighth of the size", *droid(intrinsics=8 * good_droid()["intrinsics"]))
+    fails("'tstamps' has values that are no numbers of frames", *droid(tstamps=np.array([0, np.nan])))
+    video = saved(folder / "t.npz", good_tapip3d(), video=np.zeros((2, 3, 1, 1)))
+    fails("'video' has images of 1x1 pixels", "tapip3d", video, *SIZE)
 
 
-main(arrays_droid, arrays_megasam, arrays_tapip3d, orb_slam3_path, arrays_pixels, arrays_times, arrays_complaints)
+def arrays_unreadable(folder):
+    """Files that are no arrays of numbers."""
+    system = ("droid", folder / "droid", *SIZE)
+    (folder / "droid").mkdir()
+    for name, array in good_droid().items():
+        np.save(folder / f"droid/{name}.npy", array)
+    poses, path = folder / "droid/poses.npy", folder / "path.npy"
+    whole = poses.read_bytes()
+    np.save(folder / "objects.npy", good_droid()["poses"].astype(object))
+    np.save(folder / "words.npy", np.array(["one", "two"]))
+    saved(folder / "several.npz", good_droid())
+    for wrong in (b"", b"no array", b"\x80\x04\x95 garbage \xff\xfe", whole[:20], whole[:-9],
+                  whole.replace(b"'descr'", b"(descr'"),  # NumPy's tokenizer fails
+                  *((folder / name).read_bytes() for name in ("objects.npy", "words.npy", "several.npz"))):
+        poses.write_bytes(wrong)
+        fails(f"'poses' of {folder}/droid is not an array of real numbers", *system)
+        poses.write_bytes(whole)
+        path.write_bytes(wrong)
+        fails("path.npy is not an array of real numbers", *system, "--path", path)
+    fails("none.npy cannot be read: No such file", *system, "--path", folder / "none.npy")
+    fails("droid cannot be read: Is a directory", *system, "--path", folder / "droid")
+
+    fails("'cam_c2w' of", "megasam", saved(folder / "m.npz", good_megasam(), cam_c2w=np.array([{}])), *SIZE)
+    damaged = bytearray(saved(folder / "m.npz", good_megasam()).read_bytes())
+    damaged[2000] ^= 0xff  # in the first array, whose checksum is another one then
+    (folder / "m.npz").write_bytes(damaged)
+    fails("'depths' of", "megasam", folder / "m.npz", *SIZE)
+
+    megasam = ("megasam", saved(folder / "m.npz", good_megasam()), *SIZE)
+    for text, sentence in (("frame,timestamp\n0,nan\n1,2\n", "has no time of frame 0"),
+                           ("frame,timestamp\n0\n", "neither a list of times nor"),
+                           ("frame,timestamp\n0,\0\n", "neither a list of times nor"),
+                           ("frame\n0\n", "neither a list of times nor")):
+        (folder / "frames.csv").write_text(text)
+        fails(sentence, *megasam, "--times", folder / "frames.csv")
+
+
+def arrays_unwritable(folder):
+    file = saved(folder / "m.npz", good_megasam())
+    (folder / "result/trajectory.txt").mkdir(parents=True)
+    for output, reason in ((file / "result", "Not a directory"), (file, "File exists"),
+                           (folder / "result", "Is a directory")):
+        code, _, complaint = run("megasam", file, *SIZE, "--output_path", output)
+        assert code == 1 and complaint == f"import_arrays.py: {output} cannot be written: {reason}\n", complaint
+    fails("tracks.npz cannot be written: No such file", "tapip3d", saved(folder / "t.npz", good_tapip3d()), *SIZE,
+          "--tracks", folder / "nowhere/tracks.npz")
+
+
+def arrays_usage(folder):
+    """Wrong usage ends with the exit code 2, and with a line that says which argument is wrong."""
+    file = saved(folder / "m.npz", good_megasam())
+    for flag, values in (("--fps", ("0", "-5", "nan", "inf", "fast")), ("--start", ("-4", "1.5", "first")),
+                         ("--stride", ("0", "-1")), ("--step", ("0",)), ("--size", ("160", "0x120", "axb"))):
+        for value in values:
+            given = {"--size": SIZE[1], "--output_path": folder / "result", flag: value}
+            code, _, complaint = run("megasam", file, *(f"{name}={text}" for name, text in given.items()))
+            assert code == 2 and f"argument {flag}: '{value}' is not " in complaint.splitlines()[-1], complaint
+    assert not (folder / "result").exists()
+
+
+main(arrays_droid, arrays_megasam, arrays_tapip3d, orb_slam3_path, arrays_pixels, arrays_times, arrays_complaints,
+     arrays_unreadable, arrays_unwritable, arrays_usage)
