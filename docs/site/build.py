@@ -153,12 +153,17 @@ def write_notebooks(source):
         parts = []
         for cell in json.loads(path.read_text(encoding="utf-8"))["cells"]:
             text = "".join(cell["source"])
-            parts.append(f"```python\n{text}\n```" if cell["cell_type"] == "code" else text)
+            parts.append(f"```python\n{text}\n```" if cell["cell_type"] == "code" else links_to_pages(text))
         write(path.with_suffix(".md"), "\n\n".join(parts) + f"\n\n[The notebook itself]({path.name}).\n")
         names.append(path.stem)
-    for page in [folder / "README.md", source / "docs" / "tracks.md"]:
-        page.write_text(re.sub(r"\.ipynb\)", ".md)", page.read_text(encoding="utf-8")), encoding="utf-8")
+    for page in [folder / "README.md", source / "docs" / "python.md", source / "docs" / "tracks.md"]:
+        page.write_text(links_to_pages(page.read_text(encoding="utf-8")), encoding="utf-8")
     append(folder / "README.md", toctree(names))
+
+
+def links_to_pages(text):
+    """A text whose links to notebooks lead to their pages."""
+    return re.sub(r"\.ipynb\)", ".md)", text)
 
 
 def append(path, text):
