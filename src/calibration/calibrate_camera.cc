@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -22,6 +23,8 @@ constexpr std::array kFisheyeStarts_deg = {50.0, 80.0, 110.0, 140.0, 170.0, 200.
 constexpr double kWidestPerspective_deg = 160;
 constexpr int kStartIterations = 15;
 constexpr int kEvenAndOdd = 2;
+constexpr double kSmallestTilt_deg = 10;  // less is not known from a board's corners
+constexpr double kAsGood = 1.1;           // times the error of another model
 
 struct CalibrationInput {
   std::vector<Eigen::Vector3d> points;
@@ -267,12 +270,10 @@ std::size_t Choose(const std::vector<Candidate>& candidates, std::vector<HeldOut
   return chosen;
 }
 
-double TiltDeg(const Rigid3& cam_from_board, const std::vector<Eigen::Vector3d>& points, const BoardView& view) {
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();
-  for (const int id : view.point_ids) center += points[static_cast<std::size_t>(id)];
-  const Eigen::Vector3d ray = (cam_from_board * (center / static_cast<double>(view.point_ids.size()))).normalized();
+// Of the board against the image: one that is parallel to it says nothing of the focal length, wherever it is seen.
+double TiltDeg(const Rigid3& cam_from_board) {
   const Eigen::Vector3d normal = cam_from_board.rotation * Eigen::Vector3d::UnitZ();
-  return kDegPerRad * std::acos(std::min(1.0, std::abs(normal.dot(ray))));
+  return kDegPerRad * std::acos(std::min(1.0, std::abs(normal.z())));
 }
 
 std::vector<FittedView> FittedViews(const CalibrationInput& input, const std::vector<bool>& outliers,
@@ -290,10 +291,29 @@ std::vector<FittedView> FittedViews(const CalibrationInput& input, const std::ve
     view.cam_from_board = ToRigid3(pose);
     view.residuals_px = Residuals(input.points, input.views[i], fit, pose);
     view.rms_px = ViewRms(input, input.views[i], fit, pose);
-    view.tilt_deg = TiltDeg(view.cam_from_board, input.points, input.views[i]);
+    view.tilt_deg = TiltDeg(view.cam_from_board);
     views.push_back(std::move(view));
   }
   return views;
+}
+
+// Whether the chosen model knows the focal length by its own curves alone: a fisheye's, of images that perspective
+// models explain as well without knowing it, or any model's where no board was tilted.
+bool IsGuess(const CalibrationInput& input, const std::vector<BoardFit>& fits, const std::vector<Candidate>& candidates,
+             const CameraCalibration& calibration) {
+  const auto is_fisheye = [](const auto& fit) { return fit.model == CameraModelId::kOpenCvFisheye; };
+  const auto tilted = std::ranges::count_if(
+      calibration.views, [](const FittedView& view) { return !view.is_outlier && view.tilt_deg >= kSmallestTilt_deg; });
+  if (tilted == 0) return true;
+  if (!std::ranges::all_of(candidates, [&](const Candidate& candidate) { return is_fisheye(candidate.fit); }))
+    return false;
+  double perspective_px = std::numeric_limits<double>::infinity();
+  double fisheye_px = std::numeric_limits<double>::infinity();
+  for (const BoardFit& fit : fits) {
+    double& least_px = is_fisheye(fit) ? fisheye_px : perspective_px;
+    least_px = std::min(least_px, MedianError(input, fit));
+  }
+  return perspective_px < kAsGood * fisheye_px;
 }
 
 double RmsOf(const std::vector<FittedView>& views) {
@@ -305,7 +325,9 @@ double RmsOf(const std::vector<FittedView>& views) {
 }
 
 Status TooFew(std::size_t views) {
-  return {ErrorCode::kInsufficient, "the board is seen in " + std::to_string(views) + " images that differ, and " +
+  const std::string seen =
+      views <= 1 ? "one image, or in images that are alike" : std::to_string(views) + " images that differ";
+  return {ErrorCode::kInsufficient, "the board is seen in " + seen + ", and " +
                                         std::to_string(kFewestCalibrationViews) +
                                         " are the least; add images of the board from other sides"};
 }
@@ -328,19 +350,24 @@ Result<CameraCalibration> CalibrateCamera(const CalibrationBoard& board, std::sp
     return MedianError(input, a) < MedianError(input, b);
   });
   const std::vector<bool> outliers = Outliers(input, *best);
-  if (NumUsed(outliers) < kFewestCalibrationViews) return TooFew(static_cast<std::size_t>(NumUsed(outliers)));
+  if (const int used = NumUsed(outliers); used < kFewestCalibrationViews)
+    return Status(ErrorCode::kInsufficient,
+                  "only " + std::to_string(used) + " of the " + std::to_string(views.size()) +
+                      " images that differ fit one camera; look for blur, for a board that is not flat, and for zoom "
+                      "or focus that changed");
 
   std::vector<Candidate> candidates;
-  for (BoardFit& fit : fits)
-    if (auto candidate = Evaluate(input, outliers, std::move(fit))) candidates.push_back(*std::move(candidate));
+  for (const BoardFit& fit : fits)
+    if (auto candidate = Evaluate(input, outliers, fit)) candidates.push_back(*std::move(candidate));
   if (candidates.empty()) return undetermined;
   std::vector<HeldOutError> held_out;
-  Candidate& chosen = candidates[Choose(candidates, &held_out)];
-  CameraCalibration calibration{.camera = std::move(chosen.camera)};
-  calibration.sigmas = std::move(chosen.sigmas);
+  const Candidate& chosen = candidates[Choose(candidates, &held_out)];
+  CameraCalibration calibration{.camera = chosen.camera};
+  calibration.sigmas = chosen.sigmas;
   calibration.views = FittedViews(input, outliers, chosen.fit);
   calibration.rms_px = RmsOf(calibration.views);
   calibration.held_out = std::move(held_out);
+  if (IsGuess(input, fits, candidates, calibration)) return undetermined;
   return calibration;
 }
 

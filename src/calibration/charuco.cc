@@ -5,6 +5,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <map>
 #include <numeric>
 #include <set>
 #include <string_view>
@@ -12,6 +16,7 @@
 
 #ifdef PLIANT_HAS_ARUCO
 #include <opencv2/aruco/charuco.hpp>
+#include <opencv2/imgproc.hpp>
 #endif
 
 #include "pliant/base/text.h"
@@ -55,15 +60,70 @@ cv::Ptr<cv::aruco::CharucoBoard> OpenCvBoard(const CalibrationBoard& board) {
   return nullptr;
 }
 
-}  // namespace
+// Several: a tool or a rig may have one of its own.
+bool HasUnknownMarkers(const CalibrationBoard& board, const std::vector<int>& marker_ids) {
+  constexpr int kSeveral = 3;
+  const int markers = (board.columns + 1) * (board.rows + 1) / 2;
+  return std::count_if(marker_ids.begin(), marker_ids.end(), [&](int id) { return id >= markers; }) >= kSeveral;
+}
 
-Status CheckCharucoIsSupported(const CalibrationBoard& board) {
-  for (const auto& [name, dictionary] : kDictionaries)
-    if (name == board.dictionary) return Status::Ok();
-  std::vector<std::string> names;
-  for (const auto& [name, dictionary] : kDictionaries) names.emplace_back(name);
-  return {ErrorCode::kInvalidArgument, "there is no dictionary of markers " + Quoted(board.dictionary) +
-                                           "; did you mean " + NearestName(board.dictionary, names) + "?"};
+// Moves corners to where the gradients around them agree, within the white that is left around the markers: those of
+// OpenCV 4.6 are half a pixel off.
+void RefineCharuco(const cv::Mat& gray, const CalibrationBoard& board, const std::vector<int>& ids,
+                   std::vector<cv::Point2f>* corners) {
+  double step_px = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < ids.size(); ++i)
+    for (std::size_t j = i + 1; j < ids.size(); ++j) {
+      const int apart = std::abs(ids[i] / board.columns - ids[j] / board.columns) +
+                        std::abs(ids[i] % board.columns - ids[j] % board.columns);
+      if (apart == 1) step_px = std::min(step_px, cv::norm((*corners)[i] - (*corners)[j]));
+    }
+  if (!std::isfinite(step_px)) return;
+  const double margin_px = 0.5 * (1.0 - board.marker_mm / board.spacing_mm) * step_px;
+  const int reach = std::clamp(static_cast<int>(0.8 * margin_px), 2, 15);
+  cv::cornerSubPix(gray, *corners, {reach, reach}, {-1, -1},
+                   {cv::TermCriteria::EPS + cv::TermCriteria::MAX_ITER, 50, 1e-3});
+}
+
+using Corners = std::vector<cv::Point2f>;
+
+// Where `there` of the board is in the image, by one marker and its axes.
+cv::Point2f Beside(const std::vector<cv::Point3f>& marker_on_board, const Corners& marker, const cv::Point2f& there) {
+  const cv::Point3f& origin = marker_on_board[0];
+  const double side = cv::norm(marker_on_board[1] - origin);
+  const double along = (there - cv::Point2f(origin.x, origin.y))
+                           .dot(cv::Point2f(marker_on_board[1].x - origin.x, marker_on_board[1].y - origin.y)) /
+                       side;
+  const double across = (there - cv::Point2f(origin.x, origin.y))
+                            .dot(cv::Point2f(marker_on_board[3].x - origin.x, marker_on_board[3].y - origin.y)) /
+                        side;
+  const cv::Point2f u = 0.5F * (marker[1] - marker[0] + marker[2] - marker[3]);
+  const cv::Point2f v = 0.5F * (marker[3] - marker[0] + marker[2] - marker[1]);
+  return marker[0] + u * static_cast<float>(along / side) + v * static_cast<float>(across / side);
+}
+
+// Whether markers that a board of this size has beside each other are beside each other in the image, whatever the
+// lens.
+bool FitLayout(const CalibrationBoard& board, const cv::aruco::CharucoBoard& pattern,
+               const std::vector<Corners>& markers, const std::vector<int>& marker_ids) {
+  std::map<int, std::size_t> place;  // in the pattern
+  for (std::size_t k = 0; k < pattern.ids.size(); ++k) place[pattern.ids[k]] = k;
+  int beside = 0;
+  int fitting = 0;
+  for (std::size_t i = 0; i < markers.size(); ++i)
+    for (std::size_t j = 0; j < markers.size(); ++j) {
+      const auto one = place.find(marker_ids[i]);
+      const auto other = place.find(marker_ids[j]);
+      if (i == j || one == place.end() || other == place.end()) continue;
+      const auto& on_board = pattern.objPoints[one->second];
+      const cv::Point3f& there = pattern.objPoints[other->second][0];
+      if (cv::norm(there - on_board[0]) > 1.5 * board.spacing_mm) continue;
+      ++beside;
+      const double side_px = cv::norm(markers[i][1] - markers[i][0]);
+      const cv::Point2f expected = Beside(on_board, markers[i], {there.x, there.y});
+      fitting += cv::norm(expected - markers[j][0]) < side_px ? 1 : 0;
+    }
+  return 4 * fitting >= 3 * beside;
 }
 
 // Enough of the board's inner corners, and not in one row or column.
@@ -79,17 +139,29 @@ bool DeterminePose(const std::vector<int>& ids, const CalibrationBoard& board) {
   return rows.size() > 1 && columns.size() > 1;
 }
 
+}  // namespace
+
+Status CheckCharucoIsSupported(const CalibrationBoard& board) {
+  for (const auto& [name, dictionary] : kDictionaries)
+    if (name == board.dictionary) return Status::Ok();
+  std::vector<std::string> names;
+  for (const auto& [name, dictionary] : kDictionaries) names.emplace_back(name);
+  return {ErrorCode::kInvalidArgument, "there is no dictionary of markers " + Quoted(board.dictionary) +
+                                           "; did you mean " + NearestName(board.dictionary, names) + "?"};
+}
+
 std::optional<BoardView> FindCharuco(const cv::Mat& gray, const CalibrationBoard& board) {
   const cv::Ptr<cv::aruco::CharucoBoard> pattern = OpenCvBoard(board);
   if (!pattern) return std::nullopt;
   std::vector<std::vector<cv::Point2f>> markers;
   std::vector<int> marker_ids;
   cv::aruco::detectMarkers(gray, pattern->dictionary, markers, marker_ids);
-  if (marker_ids.empty()) return std::nullopt;
+  if (marker_ids.empty() || !FitLayout(board, *pattern, markers, marker_ids)) return std::nullopt;
   std::vector<cv::Point2f> corners;
   std::vector<int> ids;
   cv::aruco::interpolateCornersCharuco(markers, marker_ids, gray, pattern, corners, ids);
   if (!DeterminePose(ids, board)) return std::nullopt;
+  RefineCharuco(gray, board, ids, &corners);
   std::vector<std::size_t> order(ids.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return ids[a] < ids[b]; });
@@ -101,7 +173,20 @@ std::optional<BoardView> FindCharuco(const cv::Mat& gray, const CalibrationBoard
   return view;
 }
 
+bool ShowsOtherCharuco(const cv::Mat& gray, const CalibrationBoard& board) {
+  const cv::Ptr<cv::aruco::CharucoBoard> pattern = OpenCvBoard(board);
+  if (!pattern) return false;
+  std::vector<std::vector<cv::Point2f>> markers;
+  std::vector<int> marker_ids;
+  cv::aruco::detectMarkers(gray, pattern->dictionary, markers, marker_ids);
+  constexpr std::size_t kFewestMarkers = 4;
+  return marker_ids.size() >= kFewestMarkers &&
+         (HasUnknownMarkers(board, marker_ids) || !FitLayout(board, *pattern, markers, marker_ids));
+}
+
 #else
+
+bool ShowsOtherCharuco(const cv::Mat& /*gray*/, const CalibrationBoard& /*board*/) { return false; }
 
 Status CheckCharucoIsSupported(const CalibrationBoard& /*board*/) {
   return {ErrorCode::kInvalidArgument,

@@ -18,4 +18,8 @@ namespace pliant {
 Status CheckCharucoIsSupported(const CalibrationBoard& board);
 std::optional<BoardView> FindCharuco(const cv::Mat& gray, const CalibrationBoard& board);
 
+// Whether four or more markers of the board's dictionary are seen, of which several are none that a board of this size
+// has, or which are not beside each other as it has them.
+bool ShowsOtherCharuco(const cv::Mat& gray, const CalibrationBoard& board);
+
 }  // namespace pliant

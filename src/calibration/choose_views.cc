@@ -24,6 +24,7 @@ constexpr int kFewViews = 8;
 constexpr double kSmallTilt_deg = 25;
 constexpr double kLargeFocalLengthSigma = 0.01;
 constexpr double kManyOutliers = 0.2;
+constexpr double kLargeRms = 0.002;  // of the longer side of the image
 
 using Outline = std::array<Eigen::Vector2d, 4>;
 
@@ -155,6 +156,11 @@ std::vector<std::string> CalibrationAdvice(std::span<const BoardView> views, con
   if (sigma > kLargeFocalLengthSigma)
     advice.push_back("the focal length is known to " + Percent(sigma, 1) +
                      " only; take images in which the board is larger and tilted more");
+  const double rms = calibration.rms_px / std::max(calibration.camera.width(), calibration.camera.height());
+  if (rms > kLargeRms)
+    advice.push_back("an error of " + Digits(calibration.rms_px, 2) +
+                     " px is large for images of this size; look for blur, for a board that is not flat, for zoom that "
+                     "changed, and whether --board and the model are those of the images");
   if (outliers > kManyOutliers * static_cast<double>(calibration.views.size()))
     advice.push_back(std::to_string(outliers) + " of " + std::to_string(calibration.views.size()) +
                      " images fit badly; look for blur, and whether the board is flat");

@@ -175,6 +175,26 @@ std::optional<ChessboardSize> LargestChessboard(const cv::Mat& gray) {
   return ChessboardSize{std::max(meta.cols, meta.rows), std::min(meta.cols, meta.rows)};
 }
 
+std::optional<CalibrationBoard> LargerCircles(const cv::Mat& gray, const CalibrationBoard& board) {
+  constexpr int kMostMore = 4;
+  CalibrationBoard larger = board;
+  const auto grows = [&](int CalibrationBoard::*side) {
+    for (int more = 0; more < kMostMore; ++more) {
+      CalibrationBoard next = larger;
+      ++(next.*side);
+      if (FindWholeBoard(gray, next).empty()) return;
+      larger = next;
+    }
+  };
+  grows(&CalibrationBoard::columns);
+  grows(&CalibrationBoard::rows);
+  return larger.NumPoints() > board.NumPoints() ? std::optional(larger) : std::nullopt;
+}
+
+bool ShowsOtherMarkers(const cv::Mat& gray, const CalibrationBoard& board) {
+  return board.kind == BoardKind::kCharuco && ShowsOtherCharuco(gray, board);
+}
+
 bool IsMirrored(const cv::Mat& gray, const CalibrationBoard& board) {
   if (board.kind != BoardKind::kCharuco) return false;
   cv::Mat mirrored;

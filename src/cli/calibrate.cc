@@ -44,13 +44,15 @@ const Manual kCalibrateManual = {
 };
 
 // One line a parameter: name, value, standard deviation.
-// `sigmas`: one each, or none.
+// `sigmas`: one each, 0 of a coefficient that the images do not determine and that is held, or none.
 void SayParameters(const Camera& camera, const std::vector<double>& sigmas) {
   const std::string names(camera.Visit([](const auto& model) { return model.kParamNames; }));
   std::size_t i = 0;
   for (const std::string_view name : Split(names, ',')) {
     SayResult(Formatted("  %-4s %14.6g", std::string(name).c_str(), camera.params()[i]) +
-              (sigmas.empty() ? "" : Formatted("  +- %.2g", sigmas[i])));
+              (sigmas.empty()  ? ""
+               : sigmas[i] > 0 ? Formatted("  +- %.2g", sigmas[i])
+                               : "  held"));
     ++i;
   }
 }
@@ -125,18 +127,31 @@ std::string RightFigurePath(const std::string& path) {
   return (left.parent_path() / (left.stem().string() + "_right" + left.extension().string())).string();
 }
 
-struct Figure {
-  const CalibrateSummary* summary;
-  std::string path;
-};
+// None, one, or of pairs one a camera.
+std::vector<std::string> FigurePaths(const std::string& path, bool has_pairs) {
+  if (path.empty()) return {};
+  return has_pairs ? std::vector{path, RightFigurePath(path)} : std::vector{path};
+}
 
-// The outcome in words and pictures.
-int Finish(const CommandLine& line, const std::string& output_path, const std::vector<Figure>& figures) {
-  SayResult(output_path);
-  for (const Figure& figure : figures) {
-    if (const Status status = WriteCalibrationFigure(*figure.summary, figure.path); !status.ok())
+// Nothing where they can be written; else an exit code.
+std::optional<int> CheckFigures(const CommandLine& line, const std::vector<std::string>& paths, ExistingFile existing) {
+  for (const std::string& path : paths) {
+    if (const Status status = CheckEnding(ViewOutput::kFigure, path); !status.ok())
+      return line.UsageError(status.message());
+    if (const Status status = CheckCalibrationOutput(path, existing); !status.ok())
       return line.Failure(status.message());
-    SayResult(figure.path);
+  }
+  return std::nullopt;
+}
+
+// The outcome in words and pictures: none, or one a summary.
+int Finish(const CommandLine& line, const std::string& output_path,
+           const std::vector<const CalibrateSummary*>& summaries, const std::vector<std::string>& figure_paths) {
+  SayResult(output_path);
+  for (std::size_t i = 0; i < figure_paths.size(); ++i) {
+    if (const Status status = WriteCalibrationFigure(*summaries[i], figure_paths[i]); !status.ok())
+      return line.Failure(status.message());
+    SayResult(figure_paths[i]);
   }
   return kExitOk;
 }
@@ -159,6 +174,7 @@ int CalibrateCommand(std::span<const std::string> args) {
   std::string board_text;
   std::string output_path;
   std::string figure_path;
+  bool overwrite = false;
   CalibrateRequest request;
   CalibrateOptions options;
   CommandLine line(kCalibrateManual);
@@ -169,6 +185,7 @@ int CalibrateCommand(std::span<const std::string> args) {
   line.Add("board", &board_text, "BOARD", "kind, size and side of the board, such as chessboard:9x6:2.0",
            Need::kRequired);
   line.Add("output_path", &output_path, "FILE", "camera.yaml, or stereo.yaml of pairs, to write", Need::kRequired);
+  line.AddFlag("overwrite", &overwrite, "replace the files to write if they are there");
   line.Add("figure", &figure_path, "FILE",
            "picture of the errors to write: .png, .svg or .pdf; of pairs a second one with _right behind its name",
            Need::kOptional);
@@ -179,14 +196,14 @@ int CalibrateCommand(std::span<const std::string> args) {
   request.image_path = image_path;
   request.right_path = right_path;
   request.output_path = output_path;
+  if (overwrite) request.existing = ExistingFile::kOverwrite;
   const auto board = ParseBoard(board_text);
   if (!board.ok()) return line.UsageError(board.status().message());
   request.board = *board;
   if (const Status status = CheckBoardIsSupported(*board); !status.ok()) return line.UsageError(status.message());
   if (const std::string wrong = CheckPairs(request, options.model); !wrong.empty()) return line.UsageError(wrong);
-  if (!figure_path.empty())
-    if (const Status status = CheckEnding(ViewOutput::kFigure, figure_path); !status.ok())
-      return line.UsageError(status.message());
+  const std::vector<std::string> figure_paths = FigurePaths(figure_path, request.HasPairs());
+  if (const auto exit = CheckFigures(line, figure_paths, request.existing)) return *exit;
 
   const std::atomic<bool>& stop = StopOnSignals();
   std::optional<Progress> progress;
@@ -200,16 +217,13 @@ int CalibrateCommand(std::span<const std::string> args) {
     progress.reset();
     if (!summary.ok()) return line.Failure(summary.status().message());
     Say(*summary);
-    return Finish(line, output_path,
-                  figure_path.empty() ? std::vector<Figure>() : std::vector<Figure>{{&*summary, figure_path}});
+    return Finish(line, output_path, {&*summary}, figure_paths);
   }
   const auto summary = CalibratePairs(request, options, on_progress);
   progress.reset();
   if (!summary.ok()) return line.Failure(summary.status().message());
   Say(*summary);
-  std::vector<Figure> figures;
-  if (!figure_path.empty()) figures = {{&summary->left, figure_path}, {&summary->right, RightFigurePath(figure_path)}};
-  return Finish(line, output_path, figures);
+  return Finish(line, output_path, {&summary->left, &summary->right}, figure_paths);
 }
 
 }  // namespace pliant::cli

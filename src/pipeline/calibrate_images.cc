@@ -21,8 +21,9 @@
 namespace pliant {
 namespace {
 
-constexpr int kImagesForSize = 9;      // in which larger chessboards are looked for
-constexpr int kFewestCorners = 4 * 5;  // of one that is named: smaller ones are seen in tissue, too
+constexpr std::size_t kImagesForSize = 9;  // in which larger boards are looked for
+constexpr int kFewestWithAny = 3;          // that tell a size where few images show the board that was given
+constexpr int kFewestCorners = 4 * 5;      // of one that is named: smaller ones are seen in tissue, too
 
 // Whether `larger` is a chessboard of which one of `board`'s size is a part.
 bool IsPart(const CalibrationBoard& board, const ChessboardSize& larger) {
@@ -34,30 +35,46 @@ std::string SizeName(const ChessboardSize& size) {
   return std::to_string(size.longer) + "x" + std::to_string(size.shorter);
 }
 
+// Images that are spread evenly over all of them.
+std::vector<cv::Mat> SomeOf(const std::vector<cv::Mat>& images) {
+  const auto count = std::min(kImagesForSize, images.size());
+  std::vector<cv::Mat> some;
+  for (std::size_t i = 0; i < count; ++i) some.push_back(images[i * images.size() / count]);
+  return some;
+}
+
+// What `look` says of each image, at the same time.
+template <class Look>
+auto InEach(const std::vector<cv::Mat>& images, int threads, const Look& look) {
+  std::vector<decltype(look(images.front()))> answers(images.size());
+  ParallelFor(
+      static_cast<int>(images.size()), threads,
+      [&](int i) { answers[static_cast<std::size_t>(i)] = look(images[static_cast<std::size_t>(i)]); }, 1);
+  return answers;
+}
+
 // The size of chessboard that is seen most often in some of the images.
 struct SeenSize {
   ChessboardSize size;
   int images = 0;
+  int with_any = 0;  // in which there is a chessboard
   int looked_at = 0;
+
+  bool IsOfMost() const { return 2 * images > with_any && size.longer * size.shorter >= kFewestCorners; }
 };
 
 SeenSize MostSeenSize(const std::vector<cv::Mat>& images, int threads) {
-  const int count = std::min(kImagesForSize, static_cast<int>(images.size()));
-  std::vector<std::optional<ChessboardSize>> sizes(static_cast<std::size_t>(count));
-  ParallelFor(
-      count, threads,
-      [&](int i) {
-        const std::size_t at = static_cast<std::size_t>(i) * images.size() / static_cast<std::size_t>(count);
-        sizes[static_cast<std::size_t>(i)] = LargestChessboard(images[at]);
-      },
-      1);
+  const std::vector<cv::Mat> some = SomeOf(images);
   std::map<std::pair<int, int>, int> images_of_size;
-  for (const auto& size : sizes)
-    if (size) ++images_of_size[{size->longer, size->shorter}];
   SeenSize seen;
-  seen.looked_at = count;
+  seen.looked_at = static_cast<int>(some.size());
+  for (const auto& size : InEach(some, threads, LargestChessboard)) {
+    if (!size) continue;
+    ++images_of_size[{size->longer, size->shorter}];
+    ++seen.with_any;
+  }
   for (const auto& [size, number] : images_of_size)
-    if (number >= seen.images) seen = {{size.first, size.second}, number, count};
+    if (number >= seen.images) seen = {{size.first, size.second}, number, seen.with_any, seen.looked_at};
   return seen;
 }
 
@@ -67,29 +84,69 @@ std::string SeenSentence(const SeenSize& seen, const CalibrationBoard& board) {
          "chessboard:" + SizeName(seen.size) + ":" + FormatDouble(board.spacing_mm);
 }
 
-// Why the board is in none of the images of one camera.
-Status NotSeen(const CalibrateRequest& request, const std::string& source, const std::vector<cv::Mat>& images,
-               int threads) {
-  std::string sentence = "the " + request.board.Title() + " is in none of the " + std::to_string(images.size()) +
-                         " images of " + source + " that were searched; ";
-  if (request.board.kind == BoardKind::kChessboard) {
-    const SeenSize seen = MostSeenSize(images, threads);
-    if (2 * seen.images > seen.looked_at && seen.size.longer * seen.size.shorter >= kFewestCorners)
-      return {ErrorCode::kInsufficient, sentence + SeenSentence(seen, request.board)};
-  }
-  if (std::any_of(images.begin(), images.end(), [&](const cv::Mat& image) { return IsMirrored(image, request.board); }))
-    return {ErrorCode::kInsufficient, sentence + "it is in their mirror images: flip them first"};
-  return {ErrorCode::kInsufficient,
-          sentence + "check its kind and size, and that all of it is in view, sharp and evenly lit"};
+bool ShowOtherMarkers(const std::vector<cv::Mat>& images, const CalibrationBoard& board, int threads) {
+  if (board.kind != BoardKind::kCharuco) return false;
+  const auto others =
+      InEach(SomeOf(images), threads, [&](const cv::Mat& image) { return ShowsOtherMarkers(image, board) ? 1 : 0; });
+  return 2 * std::count(others.begin(), others.end(), 1) > static_cast<std::ptrdiff_t>(others.size());
 }
 
-// A part of a larger chessboard looks like a whole one, but another part in every image.
-Status CheckSize(const CalibrateRequest& request, const std::vector<cv::Mat>& with_board, int threads) {
-  if (request.board.kind != BoardKind::kChessboard) return Status::Ok();
-  const SeenSize seen = MostSeenSize(with_board, threads);
-  if (2 * seen.images <= seen.looked_at || !IsPart(request.board, seen.size)) return Status::Ok();
-  return {ErrorCode::kInsufficient,
-          "the " + request.board.Title() + " is a part of what the images show: " + SeenSentence(seen, request.board)};
+std::string OtherMarkers(const CalibrationBoard& board) {
+  return "markers of " + board.dictionary + " are seen, but not those of a board of " +
+         std::to_string(board.columns + 1) + "x" + std::to_string(board.rows + 1) +
+         " squares, or not in its order: check the numbers of squares along both sides";
+}
+
+// Why the board is seen in so few of the images of one camera.
+Status NotSeen(const CalibrateRequest& request, const std::string& source, const std::vector<cv::Mat>& images,
+               std::size_t seen_in, int threads) {
+  const CalibrationBoard& board = request.board;
+  const std::string sentence = "the " + board.Title() + " is in " +
+                               (seen_in == 0 ? "none" : "only " + std::to_string(seen_in)) + " of the " +
+                               std::to_string(images.size()) + " images of " + source + " that were searched; ";
+  const ChessboardSize own{std::max(board.columns, board.rows), std::min(board.columns, board.rows)};
+  if (board.kind == BoardKind::kChessboard) {
+    const SeenSize seen = MostSeenSize(images, threads);
+    if (seen.IsOfMost() && seen.size != own && 2 * seen.images > seen.looked_at)
+      return {ErrorCode::kInsufficient, sentence + SeenSentence(seen, board)};
+  }
+  if (ShowOtherMarkers(images, board, threads)) return {ErrorCode::kInsufficient, sentence + OtherMarkers(board)};
+  if (std::any_of(images.begin(), images.end(), [&](const cv::Mat& image) { return IsMirrored(image, board); }))
+    return {ErrorCode::kInsufficient, sentence + "it is in their mirror images: flip them first"};
+  return {ErrorCode::kInsufficient, sentence + "check its kind" +
+                                        (board.kind == BoardKind::kCharuco ? ", dictionary" : "") +
+                                        " and size, and that all of it is in view, sharp and evenly lit"};
+}
+
+// A part of a larger board looks like a whole one, but another part in every image. Those in which it is not seen show
+// the larger one, too.
+Status CheckSize(const CalibrateRequest& request, const std::vector<cv::Mat>& images,
+                 const std::vector<cv::Mat>& with_board, int threads) {
+  const CalibrationBoard& board = request.board;
+  const std::string is_part = "the " + board.Title() + " is a part of what the images show: ";
+  if (board.kind == BoardKind::kChessboard) {
+    const SeenSize of_found = MostSeenSize(with_board, threads);
+    if (of_found.IsOfMost() && 2 * of_found.images > of_found.looked_at && IsPart(board, of_found.size))
+      return {ErrorCode::kInsufficient, is_part + SeenSentence(of_found, board)};
+    const SeenSize of_all = MostSeenSize(images, threads);
+    if (of_all.IsOfMost() && of_all.with_any >= kFewestWithAny && IsPart(board, of_all.size))
+      return {ErrorCode::kInsufficient, is_part + SeenSentence(of_all, board)};
+    return Status::Ok();
+  }
+  if (board.kind == BoardKind::kCharuco)
+    return ShowOtherMarkers(with_board, board, threads)
+               ? Status(ErrorCode::kInsufficient, is_part + OtherMarkers(board))
+               : Status::Ok();
+  std::map<std::pair<int, int>, int> images_of_size;
+  const std::vector<cv::Mat> some = SomeOf(with_board);
+  for (const auto& larger : InEach(some, threads, [&](const cv::Mat& image) { return LargerCircles(image, board); }))
+    if (larger) ++images_of_size[{larger->columns, larger->rows}];
+  for (const auto& [size, number] : images_of_size)
+    if (2 * number > static_cast<int>(some.size()))
+      return {ErrorCode::kInsufficient, is_part + std::to_string(size.first) + "x" + std::to_string(size.second) +
+                                            " circles are seen in " + std::to_string(number) + " of the " +
+                                            std::to_string(some.size()) + " images that were looked at"};
+  return Status::Ok();
 }
 
 // One camera of the recording, alone. `source` is what messages call its images.
@@ -108,8 +165,9 @@ Result<CalibrateSummary> CalibrateOne(const CalibrateRequest& request, const Cal
     image_of_seen.push_back(i);
     with_board.push_back(image.smaller[camera]);
   }
-  if (seen.empty()) return NotSeen(request, source, all, options.threads);
-  if (Status status = CheckSize(request, with_board, options.threads); !status.ok()) return status;
+  if (seen.size() < kFewestCalibrationViews && 2 * seen.size() <= all.size())
+    return NotSeen(request, source, all, seen.size(), options.threads);
+  if (Status status = CheckSize(request, all, with_board, options.threads); !status.ok()) return status;
 
   const cv::Size size = recording.sizes[camera];
   const std::vector<int> chosen = ChooseVariedViews(request.board, seen, size.width, size.height, options.max_views);
@@ -157,6 +215,8 @@ BoardPairs ChoosePairs(const CalibrateRequest& request, const CalibrateOptions& 
   return chosen;
 }
 
+std::string SizeText(cv::Size size) { return std::to_string(size.width) + "x" + std::to_string(size.height); }
+
 // As OpenCV has it: fx, fy, cx, cy and k1, k2, p1, p2.
 StereoCalibration::Eye EyeOf(const Camera& camera) {
   auto eye = camera.Visit([](const auto& model) {
@@ -168,19 +228,23 @@ StereoCalibration::Eye EyeOf(const Camera& camera) {
   return eye;
 }
 
-// Minutes of search are not to end with a file that cannot be written.
-Status CheckOutput(const std::filesystem::path& path) {
+}  // namespace
+
+Status CheckCalibrationOutput(const std::filesystem::path& path, ExistingFile existing) {
   std::error_code error;
   if (path.empty() || std::filesystem::is_character_file(path, error) || std::filesystem::is_fifo(path, error))
     return Status::Ok();
   if (std::filesystem::is_directory(path, error))
     return {ErrorCode::kUnwritable, Quoted(path.string()) + " is a folder; name the file to write"};
+  if (existing == ExistingFile::kKeep && std::filesystem::exists(path, error))
+    return {ErrorCode::kUnwritable,
+            Quoted(path.string()) + " is there already; delete it, or say that it is to be overwritten"};
   const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  if (!std::filesystem::is_directory(folder, error))
+    return {ErrorCode::kUnwritable, "there is no folder " + Quoted(folder.string()) + "; make it first"};
   errno = 0;
   return access(folder.c_str(), W_OK) == 0 ? Status::Ok() : Unwritable(path);
 }
-
-}  // namespace
 
 void CalibrateOptions::List(OptionTable& table) {
   table.BeginGroup("Calibrate", "how a camera is calibrated with a board");
@@ -193,7 +257,7 @@ void CalibrateOptions::List(OptionTable& table) {
 
 Result<CalibrateSummary> CalibrateImages(const CalibrateRequest& request, const CalibrateOptions& options,
                                          const CalibrateProgress& progress) {
-  if (Status status = CheckOutput(request.output_path); !status.ok()) return status;
+  if (Status status = CheckCalibrationOutput(request.output_path, request.existing); !status.ok()) return status;
   const auto recording = SearchBoards(request, options, progress);
   if (!recording.ok()) return recording.status();
   auto summary = CalibrateOne(request, options, *recording, 0, Lenses::kAll, request.image_path.string());
@@ -206,9 +270,13 @@ Result<CalibrateSummary> CalibrateImages(const CalibrateRequest& request, const 
 
 Result<CalibratePairsSummary> CalibratePairs(const CalibrateRequest& request, const CalibrateOptions& options,
                                              const CalibrateProgress& progress) {
-  if (Status status = CheckOutput(request.output_path); !status.ok()) return status;
+  if (Status status = CheckCalibrationOutput(request.output_path, request.existing); !status.ok()) return status;
   const auto recording = SearchBoards(request, options, progress);
   if (!recording.ok()) return recording.status();
+  if (recording->sizes[0] != recording->sizes[1])
+    return Status(ErrorCode::kMismatch, "the left images are " + SizeText(recording->sizes[0]) +
+                                            " and the right ones " + SizeText(recording->sizes[1]) +
+                                            "; give both as they were recorded, at one size");
   const bool is_apart = !request.right_path.empty();
   const std::string source = request.image_path.string();
   auto left =

@@ -155,6 +155,27 @@ TEST(CalibrateCamera, RefusesViewsOfOnePose) {
   EXPECT_THAT(calibration.status().message(), testing::HasSubstr("tilted"));
 }
 
+// Of a lens with distortion, whose curve a fisheye model takes for its own.
+TEST(CalibrateCamera, RefusesViewsOfABoardThatIsNeverTilted) {
+  const Camera camera = Camera::Create("RADIAL", 640, 480, std::vector<double>{500, 323.5, 236.5, -0.25, 0.08}).value();
+  Random random(3);
+  std::vector<Rigid3> poses;
+  while (poses.size() < 16) {
+    const Eigen::Vector3d center(random.Uniform(-8.0, 8.0), random.Uniform(-6.0, 6.0), random.Uniform(24.0, 40.0));
+    const Rigid3 pose = BoardPoseAt(kChessboard9x6, center, random.Uniform(0.0, 0.03), random.Uniform(0.0, 6.28));
+    const auto points = kChessboard9x6.Points();
+    if (std::ranges::all_of(points, [&](const Eigen::Vector3d& point) {
+          const auto pixel = camera.Project(pose * point);
+          return pixel && camera.Contains(*pixel, 4);
+        }))
+      poses.push_back(pose);
+  }
+  const auto calibration =
+      CalibrateCamera(kChessboard9x6, ViewsOf(kChessboard9x6, camera, poses, 0.02, 5), 640, 480, ModelChoice::kAuto, 2);
+  ASSERT_FALSE(calibration.ok()) << calibration->camera.MeanFocalLengthPx();
+  EXPECT_THAT(calibration.status().message(), testing::HasSubstr("tilted"));
+}
+
 TEST(CalibrateCamera, RefusesTooFewViews) {
   const auto calibration =
       CalibrateCamera(kChessboard9x6, Views(Make(kLenses[0]), 2, 0.1, 5), 640, 480, ModelChoice::kPinhole, 1);

@@ -10,6 +10,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
+#if __has_include(<opencv2/aruco/charuco.hpp>)
+#include <opencv2/aruco/charuco.hpp>
+#endif
 
 #include "pliant/base/statistics.h"
 #include "support/board_views.h"
@@ -123,6 +126,56 @@ TEST(FindBoard, FindsCircles) {
     EXPECT_EQ(view->pixels.size(), 28u);
   }
 }
+
+TEST(FindBoard, TellsHowLargeAGridOfCirclesIs) {
+  const CalibrationBoard board = {BoardKind::kCircles, 5, 7, 40.0};
+  cv::Mat image(480, 640, CV_8UC1, cv::Scalar(255));
+  for (const Eigen::Vector3d& point : board.Points())
+    cv::circle(image, cv::Point(120 + static_cast<int>(point.x()), 80 + static_cast<int>(point.y())), 12, cv::Scalar(0),
+               cv::FILLED, cv::LINE_AA);
+  const auto larger = LargerCircles(image, {BoardKind::kCircles, 4, 7, 40.0});
+  ASSERT_TRUE(larger.has_value());
+  EXPECT_EQ(larger->columns, 5);
+  EXPECT_EQ(larger->rows, 7);
+  EXPECT_FALSE(LargerCircles(image, board).has_value());
+}
+
+#if __has_include(<opencv2/aruco/charuco.hpp>)
+
+// 8 x 5 squares of 50 px within a white rim of 40 px.
+cv::Mat CharucoImage() {
+  const auto pattern =
+      cv::aruco::CharucoBoard::create(8, 5, 10, 7, cv::aruco::getPredefinedDictionary(cv::aruco::DICT_5X5_100));
+  cv::Mat large;
+  pattern->draw({1600, 1000}, large);
+  cv::Mat small;
+  cv::Mat image;
+  cv::resize(large, small, {400, 250}, 0, 0, cv::INTER_AREA);
+  cv::copyMakeBorder(small, image, 40, 40, 40, 40, cv::BORDER_CONSTANT, cv::Scalar(255));
+  return image;
+}
+
+TEST(FindBoard, FindsCornersOfCharucoBoardsWhereTheyAre) {
+  const auto view = FindBoard(CharucoImage(), {BoardKind::kCharuco, 7, 4, 10.0, 7.0, "5X5_100"});
+  ASSERT_TRUE(view.has_value());
+  ASSERT_EQ(view->pixels.size(), 28u);
+  for (const Eigen::Vector2d& pixel : view->pixels) {
+    const Eigen::Array2d from_first = (pixel.array() - (40 + 50 - 0.5)) / 50;
+    EXPECT_LT((50 * (from_first - from_first.round())).abs().maxCoeff(), 0.1) << pixel.transpose();
+  }
+}
+
+TEST(FindBoard, TellsACharucoBoardOfAnotherSize) {
+  const cv::Mat image = CharucoImage();
+  for (const auto& [columns, rows] : {std::pair(7, 3), std::pair(4, 7), std::pair(6, 4), std::pair(8, 4)})
+    EXPECT_TRUE(ShowsOtherMarkers(image, {BoardKind::kCharuco, columns, rows, 10.0, 7.0, "5X5_100"}))
+        << columns << "x" << rows;
+  EXPECT_FALSE(ShowsOtherMarkers(image, {BoardKind::kCharuco, 7, 4, 10.0, 7.0, "5X5_100"}));
+  EXPECT_FALSE(ShowsOtherMarkers(cv::Mat(300, 300, CV_8UC1, cv::Scalar(200)),
+                                 {BoardKind::kCharuco, 7, 4, 10.0, 7.0, "5X5_100"}));
+}
+
+#endif
 
 TEST(FindBoard, NamesTheNearestDictionary) {
   const CalibrationBoard board = {BoardKind::kCharuco, 7, 4, 10.0, 7.0, "5X5_101"};

@@ -51,7 +51,9 @@ class CalibrateImagesTest : public testing::Test {
   // Says `part`, and leaves camera.yaml as it was.
   void ExpectFailure(const CalibrateRequest& request, ErrorCode code, const std::string& part) {
     ASSERT_TRUE(WriteFileAtomically(request.output_path, "before").ok());
-    const auto summary = Calibrate(request);
+    CalibrateRequest overwriting = request;
+    overwriting.existing = ExistingFile::kOverwrite;
+    const auto summary = Calibrate(overwriting);
     ASSERT_FALSE(summary.ok());
     EXPECT_EQ(summary.status().code(), code);
     EXPECT_THAT(summary.status().message(), HasSubstr(part));
@@ -113,6 +115,24 @@ TEST_F(CalibrateImagesTest, NamesTheSizeOfABoardThatWasGivenTooLarge) {
   ExpectFailure(request, ErrorCode::kInsufficient, "chessboard:7x5:2");
 }
 
+// Most images fail the search for the wrong size, and show the right one.
+TEST_F(CalibrateImagesTest, NamesTheSizeOfABoardThatFewImagesShowAsItWasGiven) {
+  CalibrateRequest request = Request(8);
+  request.board = {BoardKind::kChessboard, 6, 5, 2.0};
+  ExpectFailure(request, ErrorCode::kInsufficient, "chessboard:7x5:2");
+}
+
+TEST_F(CalibrateImagesTest, KeepsAFileThatIsThere) {
+  const CalibrateRequest request = Request(1);
+  ASSERT_TRUE(WriteFileAtomically(request.output_path, "before").ok());
+  const auto summary = Calibrate(request);
+  ASSERT_FALSE(summary.ok());
+  EXPECT_THAT(summary.status().message(), HasSubstr("is there already"));
+  EXPECT_EQ(ReadFile(request.output_path).value(), "before");
+  EXPECT_THAT(CheckCalibrationOutput(folder_ / "none/camera.yaml", ExistingFile::kKeep).message(),
+              HasSubstr("there is no folder"));
+}
+
 TEST_F(CalibrateImagesTest, RefusesImagesWithoutABoard) {
   const CalibrateRequest request = Request(0, {cv::Mat(360, 480, CV_8UC1, cv::Scalar(0))});
   ExpectFailure(request, ErrorCode::kInsufficient, "is in none of the 1 images");
@@ -125,7 +145,8 @@ TEST_F(CalibrateImagesTest, RefusesOneImage) {
 TEST_F(CalibrateImagesTest, RefusesImagesThatAreAllAlike) {
   const Rigid3 pose = BoardPoseAt(kBoard, {0, 0, 22}, 0.3, 0.5);
   const cv::Mat image = ImageOf(kBoard, kCamera, pose);
-  ExpectFailure(Request(0, {image, image, image, image, image}), ErrorCode::kInsufficient, "in 1 images that differ");
+  ExpectFailure(Request(0, {image, image, image, image, image}), ErrorCode::kInsufficient,
+                "in one image, or in images that are alike");
 }
 
 TEST_F(CalibrateImagesTest, RefusesImagesOfDifferentSizes) {
@@ -216,6 +237,7 @@ TEST_F(CalibratePairsTest, WritesAStereoCalibrationThatSequencesTake) {
   both.image_path = folder_ / "both";
   both.right_path.clear();
   both.pairs = PairLayout::kLeftRight;
+  both.existing = ExistingFile::kOverwrite;
   const auto of_both = Pairs(both);
   ASSERT_TRUE(of_both.ok()) << of_both.status().message();
   EXPECT_EQ(of_both->stereo.BaselineMm(), summary->stereo.BaselineMm());

@@ -49,7 +49,7 @@ struct FittedView {
   bool is_outlier = false;                         // left out: its residuals are larger than the others' by far
   Rigid3 cam_from_board;                           // mm
   double rms_px = 0;                               // of the residuals' lengths
-  double tilt_deg = 0;                             // of the board against the image plane, at the board's center
+  double tilt_deg = 0;                             // of the board against the image plane
   std::vector<Eigen::Vector2d> residuals_px = {};  // by point: measured minus projected
 };
 

@@ -39,6 +39,13 @@ struct ChessboardSize {
 };
 std::optional<ChessboardSize> LargestChessboard(const cv::Mat& gray);
 
+// A grid of circles that is seen and has more columns or rows than `board`, which is a part of it; nothing where there
+// is none.
+std::optional<CalibrationBoard> LargerCircles(const cv::Mat& gray, const CalibrationBoard& board);
+
+// Whether markers of a ChArUco board's dictionary are seen, but not those of a board of this size in its order.
+bool ShowsOtherMarkers(const cv::Mat& gray, const CalibrationBoard& board);
+
 // An image of which LargestChessboard has the same answer: of a large one a smaller one, in which the search begins.
 cv::Mat AsSearched(const cv::Mat& gray);
 

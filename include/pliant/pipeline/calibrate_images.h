@@ -34,6 +34,12 @@ struct CalibrateOptions {
   void List(OptionTable& table);  // group "Calibrate"
 };
 
+enum class ExistingFile { kKeep, kOverwrite };
+
+// Minutes of search are not to end with a file that cannot be written. Fails with kUnwritable: a folder, one that is
+// not there or not writable, and a file that is to be kept.
+Status CheckCalibrationOutput(const std::filesystem::path& path, ExistingFile existing);
+
 struct CalibrateRequest {
   std::filesystem::path image_path;  // folder of images, native sequence or video
   CalibrationBoard board;
@@ -42,6 +48,7 @@ struct CalibrateRequest {
   // both (the left one's on the left, or on top).
   std::filesystem::path right_path = {};
   PairLayout pairs = PairLayout::kApart;
+  ExistingFile existing = ExistingFile::kKeep;  // what becomes of a file at output_path
 
   bool HasPairs() const { return !right_path.empty() || pairs != PairLayout::kApart; }
 };
