@@ -79,13 +79,47 @@ std::string WithoutImageNames(const std::string& sentence) {
   return cleaned;
 }
 
-// The files and folders that a run speaks of, by their whole names; the run's own folder, too.
+// Of "--camera=data/camera.yaml" what is behind the sign; nothing of another name, and any other word as it is.
+std::string ValueIn(const std::string& word) {
+  if (!word.starts_with("-")) return word;
+  const std::size_t sign = word.find('=');
+  return sign == std::string::npos ? "" : word.substr(sign + 1);
+}
+
+// Whether the word behind this one of a command line is a path.
+bool TakesPath(const std::string& name) {
+  constexpr std::array kNames = {"-o",       "--config",      "--camera", "--run",    "--sequence",
+                                 "--tracks", "--depth_prior", "--figure", "--surface"};
+  return std::ranges::find(kNames, name) != kNames.end() || (name.starts_with("--") && name.ends_with("path"));
+}
+
+// Names in a folder that have blanks, which a sentence does not tell from its words.
+std::vector<fs::path> NamesWithBlanks(const fs::path& folder) {
+  constexpr int kMostNames = 100000;
+  std::vector<fs::path> names;
+  std::error_code error;
+  int seen = 0;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end && ++seen < kMostNames; it.increment(error))
+    if (const fs::path name = it->path().filename(); name.string().find(' ') != std::string::npos)
+      names.push_back(name);
+  return names;
+}
+
+// The files and folders that a run speaks of, by their whole names and as they were typed; the run's own folder, too.
+// The longest first: none is a part of a later one.
 std::vector<fs::path> KnownPaths(const std::string& run_path, const RunDescription& run) {
   std::vector<fs::path> paths = {fs::absolute(run_path + "/").parent_path()};
+  for (const std::string& word : run.command_line) {
+    const std::string value = ValueIn(word);
+    if (LooksLikeFile(value) || value.find(' ') != std::string::npos) paths.emplace_back(value);
+  }
+  for (const fs::path& folder : {fs::path(run.input), fs::path(run.input) / "images", fs::path(run.mask)})
+    for (fs::path& name : NamesWithBlanks(folder)) paths.push_back(std::move(name));
   for (const std::string* path : {&run.input, &run.camera, &run.mask, &run.refined_from, &run.tracks, &run.depth_prior})
     if (!path->empty()) paths.emplace_back(*path);
   for (const std::string& path : run.joined_from)
     if (!path.empty()) paths.emplace_back(path);
+  std::ranges::stable_sort(paths, {}, [](const fs::path& path) { return -static_cast<int>(path.native().size()); });
   return paths;
 }
 
@@ -102,15 +136,14 @@ std::string Cleaned(std::string sentence, const std::vector<fs::path>& known) {
   return WithoutImageNames(WithoutPaths(sentence));
 }
 
-// A word of the command line: "clip.mp4", "--camera=data/camera.yaml", "run of monday".
-std::string CleanedWord(const std::string& word, const std::vector<fs::path>& known) {
-  const std::size_t begin = word.starts_with("--") && word.find('=') != std::string::npos ? word.find('=') + 1 : 0;
-  const std::string value = word.substr(begin);
-  const bool is_known =
-      std::any_of(known.begin(), known.end(), [&](const fs::path& path) { return path.filename() == value; });
-  const bool is_name = begin == 0 && word.starts_with("-");  // of an argument
-  if (is_known || (!is_name && LooksLikeFile(value))) return word.substr(0, begin) + Placeholder(value);
-  return word;
+// A word of the command line, and the one before it: "clip.mp4", "--camera=data/camera.yaml", "run of monday".
+std::string CleanedWord(const std::string& before, const std::string& word, const std::vector<fs::path>& known) {
+  const std::string value = ValueIn(word);
+  if (value.empty() || value == "unknown") return word;  // a name, or a camera without a calibration
+  const std::size_t begin = word.size() - value.size();
+  const bool is_known = TakesPath(begin > 0 ? word.substr(0, begin - 1) : before) ||
+                        std::ranges::any_of(known, [&](const fs::path& path) { return path.filename() == value; });
+  return is_known || LooksLikeFile(value) ? word.substr(0, begin) + Placeholder(value) : word;
 }
 
 Json Cleaned(const Json& json, const std::vector<fs::path>& known) {
@@ -125,7 +158,11 @@ std::string CleanedSummary(const std::string& text, const std::vector<fs::path>&
   const Json summary = Json::parse(text);
   Json cleaned = Cleaned(summary, known);
   Json words = Json::array();
-  for (const Json& word : summary.at("command_line")) words.push_back(CleanedWord(word.get<std::string>(), known));
+  std::string before;
+  for (const Json& word : summary.at("command_line")) {
+    words.push_back(CleanedWord(before, word.get<std::string>(), known));
+    before = word.get<std::string>();
+  }
   cleaned["command_line"] = std::move(words);
   return cleaned.dump(2) + "\n";
 }

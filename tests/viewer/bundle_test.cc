@@ -48,13 +48,22 @@ class BundleTest : public testing::Test {
                                         "-o",
                                         "run of smith",
                                         "--Corners.quality=0.01",
+                                        "--Init.method",
+                                        "window",
+                                        "--config=smith",
                                         "--mask_path=smith.png",
                                         "--config",
-                                        "smith.yaml",
+                                        "smith",
+                                        "--camera",
+                                        "of smith/camera",
                                         "http://cam/v.cgi?user=a&pwd=smith",
                                         "--image_path=rtsp://a:pa.smith@cam"};
     summary.description.joined_from = {""};
-    summary.note = "image " + sequence_ + "/images/5.png cannot be read; stopped on request after frame smith_12.PNG";
+    summary.note = "image " + sequence_ +
+                   "/images/5.png cannot be read; stopped after frame smith_12.PNG; "
+                   "so were smith/seq/images/7 of smith.png and 7 of smith.png";
+    fs::create_directories(sequence_);
+    std::ofstream(sequence_ + "/7 of smith.png") << "no image";
     ASSERT_TRUE(WriteRunSummary(run_ + "/run.json", summary).ok());
     std::ofstream(run_ + "/config.yaml")
         << "TrackFile:\n  path: /data/smith/tracks.npz  # [path] tracks\n  other: 5  # [-] -\n"
@@ -84,6 +93,7 @@ TEST_F(BundleTest, HoldsWhatExplainsTheRunAndNothingPrivate) {
   EXPECT_THAT(texts, Not(HasSubstr("smith")));
   EXPECT_THAT(texts, HasSubstr("image <path>.png cannot be read"));
   EXPECT_THAT(texts, HasSubstr("Corners.quality=0.01"));
+  EXPECT_THAT(texts, HasSubstr("--Init.method"));
   EXPECT_THAT(texts, HasSubstr("other: 5"));
   EXPECT_THAT(texts, HasSubstr("0.0.7"));
   EXPECT_THAT(texts, HasSubstr(kVersion));
